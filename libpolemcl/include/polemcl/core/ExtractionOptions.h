@@ -1,0 +1,83 @@
+#pragma once
+/// \file ExtractionOptions.h
+/// \brief The settings of sensor and extraction, with units, defaults and sources.
+
+#include <string>
+#include <vector>
+
+namespace polemcl {
+
+/// \brief The LiDAR's geometry and mounting. `[sensor]` in INI files.
+struct SensorOptions {
+  /// `hdl64e`, `hdl32e`, `vlp16`, `os1_64`, `os1_128`, `os0_64`: beams of the data sheet;
+  /// `table`: `elevations_deg`; `uniform`: `rows` beams from `fov_up_deg` to `fov_down_deg`.
+  std::string model = "hdl64e";
+  /// Upside down mounting: the beams are listed as seen upright, z up (elevations change sign).
+  bool upsideDown = false;
+  std::vector<double> elevations;  ///< rad, any order, only for `table` (`elevations_deg`)
+  int rows = 64;                   ///< beams, only for `uniform`
+  double fovUp = 0.0349;           ///< rad, only for `uniform` (`fov_up_deg`)
+  double fovDown = -0.4334;        ///< rad, only for `uniform` (`fov_down_deg`)
+  int columns = 0;                 ///< firing steps a turn; 0: the model's
+  double height = 1.73;            ///< optical centre above ground, m (`height_m`)
+  /// Optical centre in the *robot frame after the sensor pose*, when clouds come in another frame
+  /// than the LiDAR's own (NCLT: body frame, 0.957 m above its origin): `origin = x y z`, m.
+  double originX = 0, originY = 0, originZ = 0;
+  double minRange = 1.0;   ///< m, nearer returns are the vehicle
+  double maxRange = 60.0;  ///< m
+  void validate() const;   ///< \throws Error
+};
+
+enum class ExtractionMethod { paper, native };
+
+/// \brief The paper's Algorithm 1. `[paper]` in INI files; departures are named options.
+struct PaperOptions {
+  int rows = 64, columns = 500;               ///< range image, px
+  double fovUp = 0.0524, fovDown = -0.4363;   ///< rad
+  double minZ = -1.3, maxZ = 6;               ///< height cut, m; see `heights_above_ground`
+  double maxRange = 50;                       ///< m
+  double epsilon = 0.2;                       ///< ε: range step inside a cluster, m
+  int minPixels = 3;                          ///< ζ: clusters need strictly more pixels
+  int maxWidthPx = 10;                        ///< px
+  double minAspect = 1;                       ///< least h/w, px
+  double foreground = 0.7;                    ///< δ: least share of pixels not behind a side neighbour
+  double minTop = 0.7;                        ///< α, m
+  double maxBottom = 1.5;                     ///< β, m
+  double minHeight = 0.6;                     ///< γ, m
+  double minRadius = 0.02, maxRadius = 0.4;   ///< b, a, m
+  double fitMargin = 0.1;                     ///< box for the fit: ± (R + margin), m
+  double fitMaxZ = 3;                         ///< highest point of the fit, m
+  int minFitPoints = 6;
+  double freeRing = 0.5;                      ///< width of the free space, m
+  double freeShare = 0.15;                    ///< μ: allowed points there as a share of the fitted ones
+  bool heightsAboveGround = false;            ///< false: z in the sensor frame, as the paper; true: z + `height_m`
+  bool wrapAround = true;                     ///< false: border columns end the image (first implementation)
+  bool growUpwards = false;                   ///< true: eight-connected growing; false: left, right, below
+  std::string circleFit = "kasa";             ///< `kasa` (paper), `taubin`, `footprint` (not biased on short arcs)
+  std::string freeSpace = "box";              ///< `box` (as the first implementation means it), `ring`
+  void validate() const;
+};
+
+/// \brief The native method: scan lines of real beams. `[native]` in INI files.
+struct NativeOptions {
+  double maxWidth = 0.9;        ///< widest slice of a pole on one beam, m
+  double edgeStep = 0.35;       ///< least step in range to what lies behind a slice's edges, m
+  double minTop = 2.0;          ///< least height of the top, m above local ground (`min_top_m`)
+  double maxBottom = 1.6;       ///< greatest height of the lowest return, m
+  double minHeight = 0.5;       ///< least visible height, m
+  double minRadius = 0.02;      ///< m
+  double maxRadius = 0.45;      ///< m
+  double minConfidence = 0.5;   ///< poles below are refused
+  double maxRange = 40;         ///< poles farther away are not looked for, m
+  void validate() const;
+};
+
+/// \brief `[extraction]` in INI files.
+struct ExtractionOptions {
+  ExtractionMethod method = ExtractionMethod::native;
+  PaperOptions paper;
+  NativeOptions native;
+  void validate() const;  ///< \throws Error
+};
+
+}  // namespace polemcl

@@ -1,0 +1,61 @@
+#pragma once
+/// \file PoleExtractor.h
+/// \brief Scan in, poles out: steps A to B3 of the paper on one screen, and the native method.
+
+#include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/Types.h>
+
+#include <memory>
+#include <vector>
+
+namespace polemcl {
+
+/// \brief Why a candidate is no pole. Counted per scan, so that a setting can be judged.
+enum class Refusal {
+  tooFewPoints,
+  tooWide,       ///< wider than tall, or wider than any pole
+  notForeground, ///< something nearer stands beside it
+  tooLow,        ///< its top is below `min_top_m`
+  startsTooHigh, ///< its bottom is above `max_bottom_m`
+  tooShort,      ///< its visible height is below `min_height_m`
+  badFit,        ///< no circle, or a radius out of range
+  notFree,       ///< its surroundings are not free
+  tilted,
+  lowConfidence,
+  count_         ///< number of reasons
+};
+const char* name(Refusal reason);
+
+/// \brief Counters of one extraction.
+struct ExtractionReport {
+  std::size_t points = 0;      ///< in the cloud
+  std::size_t invalid = 0;     ///< NaN, infinite, or at the sensor: dropped
+  std::size_t outOfView = 0;   ///< match no beam: dropped
+  std::size_t outOfRange = 0;  ///< dropped
+  std::size_t candidates = 0;
+  std::size_t refused[static_cast<int>(Refusal::count_)] = {};
+  double ground = 0;           ///< median height of the ground below the sensor origin, m (negative)
+};
+
+/// \brief Extracts poles; keeps its buffers between scans, so one object serves one thread.
+class PoleExtractor {
+ public:
+  /// \throws Error when an option is out of range or the sensor's geometry is unknown.
+  explicit PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction);
+  ~PoleExtractor();
+  PoleExtractor(PoleExtractor&&) noexcept;
+  PoleExtractor& operator=(PoleExtractor&&) noexcept;
+
+  /// \brief Poles of one full turn, sorted by azimuth then range so that the order is defined.
+  /// \param points Cloud in the LiDAR's own frame, origin at its optical centre, z up
+  ///        (within the mounting tilt; see SensorOptions). Order of points is of no consequence.
+  /// \return Poles in that same frame; heights above the local ground.
+  const std::vector<PoleDetection>& extract(const PointsView& points);
+  const ExtractionReport& report() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace polemcl
