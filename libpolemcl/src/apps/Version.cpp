@@ -1,0 +1,5 @@
+#include <polemcl/apps/Version.h>
+
+namespace polemcl::apps {
+const char* version() { return POLEMCL_VERSION; }
+}  // namespace polemcl::apps
