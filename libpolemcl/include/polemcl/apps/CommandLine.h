@@ -1,0 +1,50 @@
+#pragma once
+/// \file CommandLine.h
+/// \brief The frame every program stands in: parse, run, catch; exit codes; common flags.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+namespace polemcl::apps {
+
+/// \brief What a program ends with.
+enum ExitCode : int {
+  exitDone = 0,
+  exitFailed = 1,  ///< one line on stderr: what, where, what is allowed
+  exitUsage = 2    ///< wrong usage: unknown or missing options, values of the wrong type
+};
+
+/// \brief Declares `--help`, `--version` and `--quiet`; the program declares the rest on `cli()`.
+///
+/// Use: declare options on `cli()`, then `return line.run(argc, argv, [&] { work(options); });`.
+/// `--quiet` also works behind a subcommand.
+class CommandLine {
+ public:
+  /// \param program Name as the user types it, such as `pole-map`.
+  /// \param description One sentence for `--help`.
+  CommandLine(const std::string& program, const std::string& description);
+
+  /// \brief CLI11's application, to declare options and subcommands on.
+  CLI::App& cli() { return m_cli; }
+  /// \brief True after parsing when the user wants nothing on stdout and no progress bar.
+  bool quiet() const { return m_quiet; }
+
+  /// \brief Parses the arguments, then calls `work` with everything that can throw caught.
+  /// \return An ExitCode. Usage errors and failures are printed on stderr, `--help` and `--version`
+  ///         on stdout; nothing escapes as an exception.
+  int run(int argc, const char* const* argv, const std::function<void()>& work);
+
+ private:
+  int usageError(const std::string& what) const;
+
+  std::string m_program;
+  CLI::App m_cli;
+  bool m_quiet = false;
+};
+
+/// \brief The message of an exception on one line: MRPT's call stacks are left out, other line
+/// breaks become spaces.
+std::string oneLine(const std::string& message);
+
+}  // namespace polemcl::apps

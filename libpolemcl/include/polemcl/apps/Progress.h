@@ -1,0 +1,42 @@
+#pragma once
+/// \file Progress.h
+/// \brief A progress bar for people: on stderr, and only when stderr is a terminal.
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace polemcl::apps {
+
+/// \brief Shows `label  done/total  rate  time left` on one line that rewrites itself.
+class Progress {
+ public:
+  /// \param label What is being done, such as `extract`.
+  /// \param total Number of steps, 0 when not known in advance.
+  /// \param quiet True: nothing is shown, as when stderr is no terminal.
+  Progress(std::string label, std::size_t total, bool quiet);
+  /// \brief Takes the bar off the screen.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// \brief `done` steps are finished. Cheap: redraws at most ten times a second.
+  void update(std::size_t done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string m_label;
+  std::size_t m_total;
+  bool m_shown;
+  bool m_drawn = false;
+  Clock::time_point m_start, m_last;
+};
+
+/// \brief The text of the bar.
+/// \param seconds Since the start.
+/// \return Such as `extract [#####---------------] 25/100  12.5/s  0:06 left`; without `total` no
+///         bar and no time left; no rate before the first step or before any time has passed.
+std::string progressLine(const std::string& label, std::size_t done, std::size_t total,
+                         double seconds);
+
+}  // namespace polemcl::apps

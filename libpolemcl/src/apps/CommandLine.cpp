@@ -1,0 +1,62 @@
+#include <polemcl/apps/CommandLine.h>
+#include <polemcl/apps/Version.h>
+
+#include <exception>
+#include <iostream>
+
+namespace polemcl::apps {
+
+CommandLine::CommandLine(const std::string& program, const std::string& description)
+    : m_program(program), m_cli(description, program) {
+  m_cli.set_version_flag("--version", program + " " + version());
+  m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors");
+  // So that `pole-eval map --quiet` works as well as `pole-eval --quiet map`.
+  m_cli.fallthrough();
+}
+
+int CommandLine::usageError(const std::string& what) const {
+  std::cerr << m_program << ": " << oneLine(what) << "\nTry `" << m_program << " --help`.\n";
+  return exitUsage;
+}
+
+int CommandLine::run(int argc, const char* const* argv, const std::function<void()>& work) {
+  try {
+    m_cli.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usageError(e.what());
+    m_cli.exit(e);  // prints what --help or --version ask for
+    return exitDone;
+  }
+  try {
+    work();
+    return exitDone;
+  } catch (const std::exception& e) {
+    std::cerr << m_program << ": " << oneLine(e.what()) << '\n';
+  } catch (...) {
+    std::cerr << m_program << ": failed for an unknown reason\n";
+  }
+  return exitFailed;
+}
+
+std::string oneLine(const std::string& message) {
+  // MRPT wraps its messages: a banner, `Message:  <text>`, `Location: …`, a call stack.
+  const std::string label = "Message:";
+  std::string text = message;
+  const auto at = text.find(label);
+  if (text.rfind("==== MRPT exception", 0) == 0 && at != std::string::npos) {
+    text = text.substr(at + label.size());
+    text = text.substr(0, text.find("\nLocation:"));
+  }
+  std::string line;
+  for (char c : text) {
+    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+    if (!blank)
+      line += c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  if (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+}  // namespace polemcl::apps
