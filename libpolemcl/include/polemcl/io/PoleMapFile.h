@@ -1,0 +1,38 @@
+#pragma once
+/// \file PoleMapFile.h
+/// \brief The `.polemap` file: poles with all they carry, checksummed.
+///
+/// Little-endian. Header, 24 bytes: magic `89 'P' 'M' 'A' 'P' 0D 0A 1A`, uint32 version (1), uint64
+/// size of the payload, uint32 CRC-32 of the payload; nothing follows the payload. Payload: chunks
+/// of a four-letter tag, uint64 size, content. Readers skip chunks they do not know.
+/// - `INFO`: uint32 count, then key and value of each, as uint32 length and bytes.
+/// - `POLE`: uint32 bytes a record, uint64 count, records: float64 x, y, radius, bottom, top,
+///   confidence, covariance xx, xy, yy; uint32 count. Later writers append fields to the record;
+///   readers use the fields they know and skip the rest.
+///
+/// The version grows only when that is not enough.
+
+#include <polemcl/core/Types.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace polemcl::io {
+
+struct PoleMapData {
+  std::vector<MapPole> poles;
+  std::map<std::string, std::string> info;  ///< how it was made: free keys and values, UTF-8
+};
+
+/// \brief Writes atomically; same data, same bytes.
+/// \throws Error when it cannot be written, or naming the pole whose values are not finite, whose
+///         radius is negative, confidence outside [0, 1], or covariance not positive definite.
+void writePoleMap(const std::filesystem::path& file, const PoleMapData& data);
+
+/// \throws Error when it cannot be read, is no pole map, is cut short or damaged, was written by a
+///         newer version, or holds poles that writePoleMap() would refuse.
+PoleMapData readPoleMap(const std::filesystem::path& file);
+
+}  // namespace polemcl::io

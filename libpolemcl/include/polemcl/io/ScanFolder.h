@@ -1,0 +1,46 @@
+#pragma once
+/// \file ScanFolder.h
+/// \brief Folders of scans with times, poses and odometry: the plain `folder` layout.
+
+#include <polemcl/io/PlanarMotion.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace polemcl::io {
+
+/// \brief One scan of a dataset. The cloud stays on disk.
+struct ScanEntry {
+  std::filesystem::path cloud;                   ///< absolute; KITTI `.bin`, sensor frame
+  double time = 0;                               ///< s; strictly increasing from entry to entry
+  std::optional<Eigen::Isometry3d> T_map_robot;  ///< all entries of a folder have it, or none
+  /// Since the entry before, in the robot frame of that entry. Never in the first entry; all
+  /// others have it, or none.
+  std::optional<PlanarMotion> motion;
+};
+
+struct ScanFolder {
+  std::vector<ScanEntry> scans;    ///< at least one
+  std::vector<std::string> notes;  ///< what the user should know: gaps, empty scans, unused rows
+};
+
+/// \brief Reads the plain layout:
+/// `velodyne/*.bin` in name order · `times.txt`, s, one a scan · `poses.txt`, optional, the sensor
+/// in the map (see readKittiPoses()) · `odometry.txt` or `odom.txt`, optional, a line per scan
+/// after the first: `dx dy dyaw sx sy syaw`, motion in the previous *robot* frame (m, m, rad) and
+/// its standard deviations. `#` starts a comment.
+///
+/// Rows beyond the last scan are left out with a note if the scans are numbered 0, 1, 2, …;
+/// otherwise nobody knows which row belongs to which scan.
+/// \param T_robot_sensor The sensor in the robot frame: turns sensor poses into robot poses.
+/// \throws Error naming the file, with both counts where they disagree: no scan, no usable
+///         (non-empty) scan, fewer times, poses or motions than scans, times not increasing, a
+///         scan cut short, negative deviations, odometry.txt and odom.txt both there, unpadded
+///         numbers as names (10.bin sorts before 2.bin).
+ScanFolder readScanFolder(const std::filesystem::path& folder,
+                          const Eigen::Isometry3d& T_robot_sensor);
+
+}  // namespace polemcl::io
