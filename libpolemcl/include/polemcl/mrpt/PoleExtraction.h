@@ -1,0 +1,59 @@
+#pragma once
+/// \file PoleExtraction.h
+/// \brief The preprocessor: any LiDAR or depth observation of MRPT -> CObservationPoles.
+
+#include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/PoleExtractor.h>
+#include <polemcl/mrpt/CObservationPoles.h>
+
+#include <memory>
+
+namespace polemcl {
+
+struct PoleExtractionOptions {
+  SensorOptions sensor;
+  ExtractionOptions extraction;
+};
+
+/// \brief Extracts the poles of observations; keeps its buffers, so one object serves one thread.
+///
+/// Points go to the *lidar frame* that PoleExtractor takes. Its axes are those of the cloud, so
+/// that beams stay cones around z whatever the mounting's tilt; turned by 180° about x when the
+/// cloud's z axis points down in the robot frame (NCLT's body frame); level with the robot and
+/// turned by the sensor's yaw when the cloud lies on its side (more than 45° off: optical frames of
+/// cameras). Its origin is that of the cloud moved by `SensorOptions::origin`, along the robot's
+/// axes. Nothing is copied when nothing is to be moved. Poles go from there to the planar sensor
+/// frame at their middle height, so that a tilted mounting does not shift them.
+///
+/// | observation | points |
+/// |---|---|
+/// | CObservationPointCloud | as they are; external storage is loaded and unloaded |
+/// | CObservationVelodyneScan | its cloud, generated on a copy when it has none |
+/// | CObservation3DRangeScan | its cloud, unprojected on a copy when it has none. Depth images know
+/// no beams: set `model = uniform` | | CObservationRotatingScan | range image, elevations from
+/// `[sensor]`: refused unless its rows equal the sensor's beams |
+class PoleExtraction {
+ public:
+  /// \throws Error when an option is out of range.
+  explicit PoleExtraction(const PoleExtractionOptions& options);
+  ~PoleExtraction();
+  PoleExtraction(PoleExtraction&&) noexcept;
+  PoleExtraction& operator=(PoleExtraction&&) noexcept;
+
+  /// \brief True for the classes of the table above.
+  static bool canProcess(const mrpt::obs::CObservation& observation);
+
+  /// \brief The poles, with time, label and sensor pose of the observation. A scan without any
+  /// valid point gives no poles and `points` = 0. \throws Error on other classes, on external files
+  /// that cannot be read, on a rotating scan
+  ///         whose elevations are not known.
+  CObservationPoles::Ptr process(const mrpt::obs::CObservation& observation);
+  /// \brief Counters of the last process().
+  const ExtractionReport& report() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace polemcl

@@ -1,0 +1,83 @@
+#pragma once
+/// \file PoleSequence.h
+/// \brief A rawlog of scans or of poles, as poles with the motions between them; extracted in
+/// parallel.
+
+#include <polemcl/io/PlanarMotion.h>
+#include <polemcl/mrpt/CObservationPoles.h>
+#include <polemcl/mrpt/MotionOptions.h>
+#include <polemcl/mrpt/PoleExtraction.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace polemcl {
+
+struct SequenceOptions {
+  PoleExtractionOptions extraction;
+  MotionOptions motion;
+  bool allowTruncated = false;
+  int threads = 0;  ///< extracting; 0: one per core. The result does not depend on it
+};
+
+/// \brief What was in the rawlog.
+struct SequenceCounts {
+  std::size_t scans = 0;          ///< given out, empty ones included
+  std::size_t storedScans = 0;    ///< of these, poles that were read as they are
+  std::size_t emptyScans = 0;     ///< without a valid point (and no poles either)
+  std::size_t points = 0;         ///< valid points, all scans
+  std::size_t invalidPoints = 0;  ///< NaN, infinite or at the sensor: dropped
+  std::size_t poles = 0;
+  std::size_t otherSensors = 0;    ///< scans of another sensor label than the first's: not used
+  std::size_t unknownMotions = 0;  ///< scans after the first without any odometry
+  bool truncated = false;          ///< the file ended too early, and that was allowed
+};
+
+/// \brief One scan as it comes out of the stream.
+struct PoleScan {
+  std::size_t index = 0;  ///< 0-based among the scans of the rawlog
+  double time = 0;        ///< s, of the observation
+  /// Since the scan before, in its robot frame; identity without covariance for the first; none
+  /// when the rawlog has no odometry in between.
+  std::optional<io::PlanarMotion> motion;
+  CObservationPoles::Ptr observation;  ///< never null
+  std::size_t points = 0;              ///< valid points; 0 for stored poles that do not tell
+  std::size_t invalid = 0;             ///< dropped points
+};
+
+/// \brief Streams a rawlog: reads in order, extracts on several threads, hands out in order. At
+/// most a few scans per thread are in memory.
+///
+/// Scans are the observations that PoleExtraction can process, and CObservationPoles; all of the
+/// sensor label that comes first. Motions: the action before the frame (for `emOdometry` the stored
+/// reading; its covariance is the Gaussian model's if it has one, else `[motion]`'s), several
+/// actions composed; else CObservationOdometry, interpolated at the time of the scan, covariance
+/// from `[motion]`.
+/// \param consume Called in order, from one thread at a time.
+/// \throws Error as RawlogReader and PoleExtraction do, naming file and scan; and what consume
+/// throws.
+SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
+                           const std::function<void(const PoleScan&)>& consume);
+
+/// \brief One scan, ready for map and filter.
+struct PoleFrame {
+  double time = 0;                         ///< s
+  std::optional<io::PlanarMotion> motion;  ///< as in PoleScan
+  std::vector<PoleDetection> poles_robot;
+  std::size_t points = 0;  ///< valid points of the scan; 0: none, or not known
+};
+
+struct PoleSequence {
+  std::vector<PoleFrame> frames;
+  SequenceCounts counts;
+};
+
+/// \brief All of a rawlog, poles only.
+/// \param progress Called with the number of scans done so far; may be empty.
+/// \throws Error as streamPoles().
+PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,
+                              const std::function<void(std::size_t)>& progress = {});
+
+}  // namespace polemcl
