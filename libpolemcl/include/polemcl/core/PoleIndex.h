@@ -1,10 +1,12 @@
 #pragma once
 /// \file PoleIndex.h
-/// \brief Nearest pole within a radius, on nanoflann; built eagerly, safe to share between threads.
+/// \brief Nearest pole within a radius: a grid of candidates, and nanoflann beyond its reach. Built
+/// eagerly and never changed, so it is safe to share between threads.
 
+#include <polemcl/core/KdTree2D.h>
+#include <polemcl/core/PoleGrid.h>
 #include <polemcl/core/Types.h>
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,20 +18,34 @@ class PoleIndex {
     std::size_t index;  ///< into the poles given to the constructor
     double distance;    ///< m
   };
-  explicit PoleIndex(const std::vector<MapPole>& poles);
-  ~PoleIndex();
-  PoleIndex(PoleIndex&&) noexcept;
-  PoleIndex& operator=(PoleIndex&&) noexcept;
+  /// \param poles Copied in part; may be empty.
+  /// \param preparedRadius Searches up to it take one look-up, wider ones a k-d tree search, m.
+  /// Give
+  ///        the gate of the likelihood. Memory grows with the poles, not with the area.
+  /// \throws Error on a pole whose centre or covariance is not finite, or a radius that is not
+  ///         finite and positive.
+  explicit PoleIndex(const std::vector<MapPole>& poles, double preparedRadius = 1.0);
 
-  std::size_t size() const;
+  std::size_t size() const { return m_tree.size(); }
+  double preparedRadius() const { return m_grid.radius(); }
   /// \brief The nearest pole with distance < radius, if any. Of equals, the lower index.
+  /// "<" is decided on the squares. A query that is not a number finds nothing.
   std::optional<Neighbour> nearest(double x, double y, double radius) const;
   /// \brief All poles with distance < radius, sorted by distance then index.
   std::vector<Neighbour> within(double x, double y, double radius) const;
 
+  /// \name The parts, for loops that ask thousands of times
+  /// @{
+  const PoleGrid& grid() const { return m_grid; }
+  const KdTree2D& tree() const { return m_tree; }
+  /// \brief Half the trace of a pole's covariance: its mean variance along an axis, m².
+  double variance(std::size_t pole) const { return m_variances[pole]; }
+  /// @}
+
  private:
-  struct Impl;
-  std::unique_ptr<Impl> m_impl;
+  KdTree2D m_tree;
+  PoleGrid m_grid;
+  std::vector<double> m_variances;
 };
 
 }  // namespace polemcl

@@ -1,0 +1,87 @@
+#pragma once
+/// \file PoleGrid.h
+/// \brief Nearest point within a prepared radius in one look-up: a hashed grid of candidates.
+///
+/// Each cell of the plane that some point can be reached from lists every point that can be the
+/// nearest one of any place in the cell. Poles stand metres apart, so a cell mostly lists one point
+/// and most of the plane lists none: a search is one hash and one distance. Exact; the k-d tree is
+/// its oracle in the tests.
+
+#include <polemcl/core/KdTree2D.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace polemcl {
+
+class PoleGrid {
+ public:
+  /// \param points Finite (the k-d tree over them checks). \param radius Largest search radius, >
+  /// 0, m.
+  PoleGrid(const std::vector<Eigen::Vector2d>& points, double radius);
+
+  double radius() const { return m_radius; }
+  /// \brief Nearest point with squared distance < squaredRadius. Of equals, the lower index.
+  /// A query that is not a number finds nothing.
+  /// \param squaredRadius At most radius()², m²; beyond it the answer would not be complete.
+  PointHit nearest(double x, double y, double squaredRadius) const noexcept {
+    PointHit best;
+    if (!(x >= m_minX && x <= m_maxX && y >= m_minY && y <= m_maxY)) return best;
+    const auto column = static_cast<std::int64_t>((x - m_minX) * m_inverseCell);
+    const auto row = static_cast<std::int64_t>((y - m_minY) * m_inverseCell);
+    const std::uint64_t key = keyOf(column, row);
+    for (std::uint64_t slot = slotOf(key);; slot = (slot + 1) & m_mask) {
+      const Cell& cell = m_cells[slot];
+      if (cell.key != key) {
+        if (cell.key == s_noKey) return best;
+        continue;
+      }
+      double limit = squaredRadius;
+      for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+        const double dx = x - m_candidates[i].x, dy = y - m_candidates[i].y;
+        const double squared = dx * dx + dy * dy;
+        if (squared < limit) {
+          limit = squared;
+          best = {m_candidates[i].index, squared};
+        }
+      }
+      return best;
+    }
+  }
+
+ private:
+  struct Cell {
+    std::uint64_t key = s_noKey;
+    std::uint32_t begin = 0, end = 0;  ///< into m_candidates
+  };
+  struct Candidate {
+    double x, y;
+    std::uint32_t index;
+  };
+  struct Entry;
+  static constexpr std::uint64_t s_noKey = ~std::uint64_t{0};
+
+  static std::uint64_t keyOf(std::int64_t column, std::int64_t row) {
+    return static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint64_t>(column);
+  }
+  /// Fibonacci hashing: the high bits of the product mix row and column.
+  std::uint64_t slotOf(std::uint64_t key) const { return key * 0x9E3779B97F4A7C15u >> m_shift; }
+
+  void setBounds(const std::vector<Eigen::Vector2d>& points);
+  std::vector<Entry> entriesOf(const std::vector<Eigen::Vector2d>& points) const;
+  void addCell(const std::vector<Eigen::Vector2d>& points, const Entry* begin, const Entry* end);
+  void reserveCells(std::size_t cells);
+
+  double m_radius;
+  double m_cell = 1, m_inverseCell = 1;
+  double m_margin = 0;  ///< more than rounding can move a query across a cell's border, m
+  double m_minX = 1, m_maxX = 0, m_minY = 1,
+         m_maxY = 0;  ///< places that reach a point; empty at first
+  std::uint64_t m_mask = 0;
+  int m_shift = 63;
+  std::vector<Cell> m_cells;
+  std::vector<Candidate> m_candidates;
+};
+
+}  // namespace polemcl
