@@ -32,43 +32,50 @@ enum class ExtractionMethod { paper, native };
 
 /// \brief The paper's Algorithm 1. `[paper]` in INI files; departures are named options.
 struct PaperOptions {
-  int rows = 64, columns = 500;               ///< range image, px
-  double fovUp = 0.0524, fovDown = -0.4363;   ///< rad
-  double minZ = -1.3, maxZ = 6;               ///< height cut, m; see `heights_above_ground`
-  double maxRange = 50;                       ///< m
-  double epsilon = 0.2;                       ///< ε: range step inside a cluster, m
-  int minPixels = 3;                          ///< ζ: clusters need strictly more pixels
-  int maxWidthPx = 10;                        ///< px
-  double minAspect = 1;                       ///< least h/w, px
-  double foreground = 0.7;                    ///< δ: least share of pixels not behind a side neighbour
-  double minTop = 0.7;                        ///< α, m
-  double maxBottom = 1.5;                     ///< β, m
-  double minHeight = 0.6;                     ///< γ, m
-  double minRadius = 0.02, maxRadius = 0.4;   ///< b, a, m
-  double fitMargin = 0.1;                     ///< box for the fit: ± (R + margin), m
-  double fitMaxZ = 3;                         ///< highest point of the fit, m
+  int rows = 64, columns = 500;              ///< range image, px
+  double fovUp = 0.0524, fovDown = -0.4363;  ///< rad
+  double minZ = -1.3, maxZ = 6;              ///< height cut, m; see `heights_above_ground`
+  double maxRange = 50;                      ///< m
+  double epsilon = 0.2;                      ///< ε: range step inside a cluster, m
+  int minPixels = 3;                         ///< ζ: clusters need strictly more pixels
+  int maxWidthPx = 10;                       ///< px
+  double minAspect = 1;                      ///< least h/w, px
+  double foreground = 0.7;  ///< δ: least share of pixels not behind a side neighbour
+  double minTop = 0.7;      ///< α, m
+  double maxBottom = 1.5;   ///< β, m
+  double minHeight = 0.6;   ///< γ, m
+  double minRadius = 0.02, maxRadius = 0.4;  ///< b, a, m
+  double fitMargin = 0.1;                    ///< box for the fit: ± (R + margin), m
+  double fitMaxZ = 3;                        ///< highest point of the fit, m
   int minFitPoints = 6;
-  double freeRing = 0.5;                      ///< width of the free space, m
-  double freeShare = 0.15;                    ///< μ: allowed points there as a share of the fitted ones
-  bool heightsAboveGround = false;            ///< false: z in the sensor frame, as the paper; true: z + `height_m`
-  bool wrapAround = true;                     ///< false: border columns end the image (first implementation)
-  bool growUpwards = false;                   ///< true: eight-connected growing; false: left, right, below
-  std::string circleFit = "kasa";             ///< `kasa` (paper), `taubin`, `footprint` (not biased on short arcs)
-  std::string freeSpace = "box";              ///< `box` (as the first implementation means it), `ring`
+  double freeRing = 0.5;    ///< width of the free space, m
+  double freeShare = 0.15;  ///< μ: allowed points there as a share of the fitted ones
+  bool heightsAboveGround =
+      false;                 ///< false: z in the sensor frame, as the paper; true: z + `height_m`
+  bool wrapAround = true;    ///< false: border columns end the image (first implementation)
+  bool growUpwards = false;  ///< true: eight-connected growing; false: left, right, below
+  std::string circleFit =
+      "kasa";  ///< `kasa` (paper), `taubin`, `footprint` (not biased on short arcs)
+  std::string freeSpace = "box";  ///< `box` (as the first implementation means it), `ring`
   void validate() const;
 };
 
 /// \brief The native method: scan lines of real beams. `[native]` in INI files.
 struct NativeOptions {
-  double maxWidth = 0.9;        ///< widest slice of a pole on one beam, m
-  double edgeStep = 0.35;       ///< least step in range to what lies behind a slice's edges, m
-  double minTop = 2.0;          ///< least height of the top, m above local ground (`min_top_m`)
-  double maxBottom = 1.6;       ///< greatest height of the lowest return, m
-  double minHeight = 0.5;       ///< least visible height, m
-  double minRadius = 0.02;      ///< m
-  double maxRadius = 0.45;      ///< m
-  double minConfidence = 0.5;   ///< poles below are refused
-  double maxRange = 40;         ///< poles farther away are not looked for, m
+  double maxWidth = 0.9;     ///< widest slice of a pole on one beam, m
+  double connectStep = 0.2;  ///< greatest step in range between neighbours of one slice, m
+  double edgeStep = 0.35;    ///< least step in range to what lies behind a slice's edges, m
+  double stackReach = 0.3;   ///< greatest step in the plane between slices of one pole, m
+  double stackGap = 1.2;     ///< greatest height between them, m (or two beams)
+  double minTop = 2.0;       ///< least height of the top, m above local ground (`min_top_m`)
+  double maxBottom = 1.6;    ///< greatest height of the lowest return, m
+  double minHeight = 0.5;    ///< least visible height, m
+  double minRadius = 0.02;   ///< m
+  double maxRadius = 0.45;   ///< m
+  int minPoints = 5;         ///< least returns of a pole
+  double maxTilt = 0.2;  ///< greatest tilt of the axis against the vertical, rad (`max_tilt_deg`)
+  double minConfidence = 0.5;  ///< poles below are refused
+  double maxRange = 40;        ///< poles farther away are not looked for, m
   void validate() const;
 };
 

@@ -11,22 +11,22 @@ namespace polemcl {
 
 /// \brief Geometry of the paper's spherical image. `[range_image]` in INI files.
 struct RangeImageOptions {
-  int rows = 64;           ///< px
-  int columns = 500;       ///< px over the full turn
-  double fovUp = 0.0524;   ///< elevation of the upper border, rad (`fov_up_deg`)
-  double fovDown = -0.436; ///< elevation of the lower border, rad, negative below the horizon
-  double minRange = 0.5;   ///< m; nearer points are the vehicle itself
-  double maxRange = 50;    ///< m
-  void validate() const;   ///< \throws Error naming the field
+  int rows = 64;            ///< px
+  int columns = 500;        ///< px over the full turn
+  double fovUp = 0.0524;    ///< elevation of the upper border, rad (`fov_up_deg`)
+  double fovDown = -0.436;  ///< elevation of the lower border, rad, negative below the horizon
+  double minRange = 0.5;    ///< m; nearer points are the vehicle itself
+  double maxRange = 50;     ///< m
+  void validate() const;    ///< \throws Error naming the field
 };
 
 /// \brief What happened to the points of one cloud. They add up to the size of the cloud.
 struct PointCounts {
-  std::size_t used = 0;       ///< nearest of their pixel
-  std::size_t hidden = 0;     ///< farther than another point of their pixel
-  std::size_t invalid = 0;    ///< NaN, infinite, or at the origin
-  std::size_t outOfView = 0;  ///< above or below the field of view
-  std::size_t outOfRange = 0; ///< nearer than minRange, farther than maxRange, or cut by height
+  std::size_t used = 0;        ///< nearest of their pixel
+  std::size_t hidden = 0;      ///< farther than another point of their pixel
+  std::size_t invalid = 0;     ///< NaN, infinite, or at the origin
+  std::size_t outOfView = 0;   ///< above or below the field of view
+  std::size_t outOfRange = 0;  ///< nearer than minRange, farther than maxRange, or cut by height
 };
 
 /// \brief The range image. Row 0 is the topmost beam; column 0 looks to -x and azimuth *decreases*
@@ -45,7 +45,9 @@ class RangeImage {
     return static_cast<std::size_t>(row) * m_columns + column;
   }
   /// \brief Column wrapped into [0, columns): the image closes at ±180°.
-  int wrap(int column) const { return column < 0 ? column + m_columns : column >= m_columns ? column - m_columns : column; }
+  int wrap(int column) const {
+    return column < 0 ? column + m_columns : column >= m_columns ? column - m_columns : column;
+  }
   void set(int row, int column, float range, std::int32_t point);
   void clear();
 

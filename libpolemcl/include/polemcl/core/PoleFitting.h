@@ -1,0 +1,35 @@
+#pragma once
+/// \file PoleFitting.h
+/// \brief Step B3, native: centre, radius and covariance of a stack of slices.
+
+#include <polemcl/core/ScanLines.h>
+#include <polemcl/core/Slices.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace polemcl {
+
+/// \brief A vertical cylinder, lidar frame.
+struct PoleFit {
+  float x = 0, y = 0;  ///< centre, m
+  float radius = 0;    ///< m
+  float residual = 0;  ///< robust standard deviation of the ranges against the cylinder, m
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< of (x, y), m²
+};
+
+/// \brief Fits a cylinder by maximum a posteriori: ranges to its front, and the bearings of its
+/// edges.
+///
+/// A circle through the points alone is biased towards the sensor on short arcs (Kåsa 1976; see
+/// Al-Sharadqah and Chernov 2009). The silhouette is not: the true edges lie half a firing step,
+/// less half the footprint, outside the outermost returns, so the width of the run of returns gives
+/// the radius, and ranges plus radius give the centre. Both enter one Gauss-Newton problem in
+/// (lateral, depth, radius).
+/// \param used Which slices to fit (indices into slices).
+/// \return Nothing when the normal equations are degenerate.
+std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
+                               const std::vector<std::uint32_t>& used, float columnAngle);
+
+}  // namespace polemcl

@@ -1,0 +1,64 @@
+#pragma once
+/// \file ScanLines.h
+/// \brief The native range image: one row per real beam, its returns sorted by azimuth.
+///
+/// Nothing is rounded to a pixel and no return is lost to another, so a scan turned about z, or
+/// delivered in another order, gives the same rows. (Scan lines as units of pole detection:
+/// Lehtomäki et al. 2010, "Detection of vertical pole-like objects in a road environment".)
+
+#include <polemcl/core/SensorModel.h>
+#include <polemcl/core/Types.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace polemcl {
+
+/// \brief One return, lidar frame.
+struct Return {
+  float azimuth;        ///< atan2(y, x), rad
+  float rho;            ///< horizontal range hypot(x, y), m
+  float z;              ///< m
+  std::uint32_t point;  ///< index in the cloud
+};
+
+class ScanLines {
+ public:
+  struct Counts {
+    std::size_t used = 0, invalid = 0, outOfView = 0, outOfRange = 0;
+  };
+
+  explicit ScanLines(const SensorModel& sensor);
+
+  /// \brief Sorts the points of one turn into rows. Keeps its buffers between calls.
+  /// \param minRange,maxRange Bounds of the horizontal range, m; points outside are dropped and
+  /// counted.
+  const Counts& build(const PointsView& points, float minRange, float maxRange);
+
+  int rows() const { return m_rows; }
+  /// \brief Returns of one row, azimuth ascending; equal azimuths by range, then height.
+  const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
+  const Return* end(int row) const { return begin(row + 1); }
+  std::size_t size(int row) const { return static_cast<std::size_t>(end(row) - begin(row)); }
+  /// \brief Index within the row of the first return whose azimuth is not less than `azimuth`.
+  std::size_t lowerBound(int row, float azimuth) const;
+
+ private:
+  static constexpr int kBuckets = 512;  ///< per row; a power of two
+  std::size_t bucket(int row, int column) const {
+    return static_cast<std::size_t>(row) * kBuckets + column;
+  }
+  static int bucketColumn(float azimuth);
+  void classify(const PointsView& points, float minRange, float maxRange);
+  void sortBuckets();
+
+  const SensorModel& m_sensor;
+  int m_rows;
+  Counts m_counts;
+  std::vector<Return> m_returns, m_scratch;
+  std::vector<std::int32_t> m_key;  ///< bucket of each point, -1: dropped
+  std::vector<std::uint32_t>
+      m_bucketStart;  ///< rows * kBuckets + 1 (and one more, so that begin(rows()) exists)
+};
+
+}  // namespace polemcl

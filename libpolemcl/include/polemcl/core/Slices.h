@@ -1,0 +1,40 @@
+#pragma once
+/// \file Slices.h
+/// \brief Step B1, native: narrow things that stand before what lies behind them, on one scan line.
+
+#include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/ScanLines.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace polemcl {
+
+/// \brief What lies next to an end of a run of returns, on the same beam.
+enum class Side : std::uint8_t {
+  free,      ///< nothing, or something farther: the thing ends here
+  attached,  ///< something about as far: the thing may go on
+  occluded   ///< something nearer: the thing may go on behind it
+};
+
+/// \brief A run of neighbouring returns on one beam. Indices are within the row and may wrap:
+/// the run is first, first + 1, … (modulo the size of the row), `count` returns.
+struct Slice {
+  std::int32_t row = 0;
+  std::uint32_t first = 0, count = 0;
+  float azimuthBegin = 0,
+        azimuthEnd = 0;     ///< of its end returns, rad; End may exceed pi where it wraps
+  float rho = 0;            ///< nearest horizontal range, m
+  float z = 0;              ///< mean height, lidar frame, m
+  float x = 0, y = 0;       ///< middle of its front: mid azimuth at `rho`, m
+  Side left = Side::free;   ///< at azimuthEnd (left as seen from the sensor)
+  Side right = Side::free;  ///< at azimuthBegin
+  bool whole() const { return left == Side::free && right == Side::free; }
+};
+
+/// \brief Finds all slices no wider than options.maxWidth with at least one free side and none
+/// attached.
+void findSlices(const ScanLines& lines, const SensorModel& sensor, const NativeOptions& options,
+                std::vector<Slice>& slices);
+
+}  // namespace polemcl

@@ -1,0 +1,65 @@
+#include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/Types.h>
+
+#include <sstream>
+
+namespace polemcl {
+namespace {
+
+void require(bool good, const char* section, const char* key, double value, const char* allowed) {
+  if (good) return;
+  std::ostringstream text;
+  text << "[" << section << "] " << key << " = " << value << ": allowed is " << allowed;
+  throw Error(text.str());
+}
+
+}  // namespace
+
+void PaperOptions::validate() const {
+  const auto check = [](bool good, const char* key, double value, const char* allowed) {
+    require(good, "paper", key, value, allowed);
+  };
+  check(rows >= 2 && rows <= 1024, "rows", rows, "2 to 1024");
+  check(columns >= 16 && columns <= 65536, "columns", columns, "16 to 65536");
+  check(fovUp > fovDown, "fov_up_deg", fovUp,
+        "more than fov_down_deg (negative below the horizon)");
+  check(maxZ > minZ, "max_z_m", maxZ, "more than min_z_m");
+  check(maxRange > 0, "max_range_m", maxRange, "more than 0");
+  check(epsilon > 0, "epsilon_m", epsilon, "more than 0");
+  check(minPixels >= 0, "min_pixels", minPixels, "0 or more");
+  check(maxWidthPx >= 1, "max_width_px", maxWidthPx, "1 or more");
+  check(foreground >= 0 && foreground <= 1, "foreground", foreground, "0 to 1");
+  check(maxRadius > minRadius && minRadius >= 0, "max_radius_m", maxRadius,
+        "more than min_radius_m");
+  check(minFitPoints >= 3, "min_fit_points", minFitPoints, "3 or more");
+  check(freeRing >= 0, "free_ring_m", freeRing, "0 or more");
+  check(freeShare >= 0, "free_share", freeShare, "0 or more");
+  if (circleFit != "kasa" && circleFit != "taubin" && circleFit != "footprint")
+    throw Error("[paper] circle_fit = " + circleFit + ": allowed are kasa, taubin, footprint");
+  if (freeSpace != "box" && freeSpace != "ring")
+    throw Error("[paper] free_space = " + freeSpace + ": allowed are box, ring");
+}
+
+void NativeOptions::validate() const {
+  const auto check = [](bool good, const char* key, double value, const char* allowed) {
+    require(good, "native", key, value, allowed);
+  };
+  check(maxWidth > 0, "max_width_m", maxWidth, "more than 0");
+  check(connectStep > 0, "connect_step_m", connectStep, "more than 0");
+  check(edgeStep >= connectStep, "edge_step_m", edgeStep, "connect_step_m or more");
+  check(stackReach > 0, "stack_reach_m", stackReach, "more than 0");
+  check(stackGap >= 0, "stack_gap_m", stackGap, "0 or more");
+  check(minHeight >= 0, "min_height_m", minHeight, "0 or more");
+  check(maxRadius > minRadius && minRadius >= 0, "max_radius_m", maxRadius,
+        "more than min_radius_m");
+  check(minPoints >= 2, "min_points", minPoints, "2 or more");
+  check(minConfidence >= 0 && minConfidence <= 1, "min_confidence", minConfidence, "0 to 1");
+  check(maxRange > 0, "max_range_m", maxRange, "more than 0");
+}
+
+void ExtractionOptions::validate() const {
+  paper.validate();
+  native.validate();
+}
+
+}  // namespace polemcl

@@ -1,0 +1,33 @@
+#pragma once
+/// \file NativeExtractor.h
+/// \brief The native method, A to B3, on one screen. Private to the library; see PoleExtractor.h.
+
+#include <polemcl/core/PoleEvidence.h>
+#include <polemcl/core/PoleExtractor.h>
+
+namespace polemcl {
+
+class NativeExtractor {
+ public:
+  NativeExtractor(const SensorOptions& sensor, const NativeOptions& options);
+  void extract(const PointsView& points, std::vector<PoleDetection>& poles,
+               ExtractionReport& report);
+
+ private:
+  /// \return The reason of the refusal, or Refusal::count_ when `pole` was filled.
+  Refusal examine(const Stack& stack, PoleDetection& pole);
+  void selectForFit(const Stack& stack);
+  double confidence(const PoleEvidence& evidence, const PoleFit& fit) const;
+
+  SensorOptions m_sensorOptions;
+  NativeOptions m_options;
+  SensorModel m_sensor;
+  ScanLines m_lines;
+  GroundGrid m_ground;
+  SliceStacker m_stacker;
+  std::vector<Slice> m_slices;
+  std::vector<std::uint32_t> m_fitSlices;
+  std::vector<float> m_widths;
+};
+
+}  // namespace polemcl

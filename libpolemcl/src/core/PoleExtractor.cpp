@@ -1,0 +1,70 @@
+#include <polemcl/core/PoleExtractor.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "NativeExtractor.h"
+
+namespace polemcl {
+
+const char* name(Refusal reason) {
+  switch (reason) {
+    case Refusal::tooFewPoints:
+      return "too_few_points";
+    case Refusal::tooWide:
+      return "too_wide";
+    case Refusal::notForeground:
+      return "not_foreground";
+    case Refusal::tooLow:
+      return "too_low";
+    case Refusal::startsTooHigh:
+      return "starts_too_high";
+    case Refusal::tooShort:
+      return "too_short";
+    case Refusal::badFit:
+      return "bad_fit";
+    case Refusal::notFree:
+      return "not_free";
+    case Refusal::tilted:
+      return "tilted";
+    case Refusal::lowConfidence:
+      return "low_confidence";
+    case Refusal::count_:
+      break;
+  }
+  return "none";
+}
+
+struct PoleExtractor::Impl {
+  std::optional<NativeExtractor> native;
+  std::vector<PoleDetection> poles;
+  ExtractionReport report;
+};
+
+PoleExtractor::PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction)
+    : m_impl(std::make_unique<Impl>()) {
+  extraction.validate();
+  m_impl->native.emplace(sensor, extraction.native);
+}
+PoleExtractor::~PoleExtractor() = default;
+PoleExtractor::PoleExtractor(PoleExtractor&&) noexcept = default;
+PoleExtractor& PoleExtractor::operator=(PoleExtractor&&) noexcept = default;
+
+const std::vector<PoleDetection>& PoleExtractor::extract(const PointsView& points) {
+  m_impl->poles.clear();
+  m_impl->report = {};
+  m_impl->native->extract(points, m_impl->poles, m_impl->report);
+  std::sort(m_impl->poles.begin(), m_impl->poles.end(),
+            [](const PoleDetection& a, const PoleDetection& b) {
+              const double aa = std::atan2(a.y, a.x), ab = std::atan2(b.y, b.x);
+              return aa != ab ? aa < ab : a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y;
+            });
+  return m_impl->poles;
+}
+
+const ExtractionReport& PoleExtractor::report() const {
+  return m_impl->report;
+}
+
+}  // namespace polemcl
