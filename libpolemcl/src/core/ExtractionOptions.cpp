@@ -34,10 +34,10 @@ void PaperOptions::validate() const {
   check(minFitPoints >= 3, "min_fit_points", minFitPoints, "3 or more");
   check(freeRing >= 0, "free_ring_m", freeRing, "0 or more");
   check(freeShare >= 0, "free_share", freeShare, "0 or more");
-  if (circleFit != "kasa" && circleFit != "taubin" && circleFit != "footprint")
-    throw Error("[paper] circle_fit = " + circleFit + ": allowed are kasa, taubin, footprint");
-  if (freeSpace != "box" && freeSpace != "ring")
-    throw Error("[paper] free_space = " + freeSpace + ": allowed are box, ring");
+  if (circleFit != "kasa" && circleFit != "taubin" && circleFit != "silhouette")
+    throw Error("[paper] circle_fit = " + circleFit + ": allowed are kasa, taubin, silhouette");
+  if (freeSpace != "corners" && freeSpace != "ring")
+    throw Error("[paper] free_space = " + freeSpace + ": allowed are corners, ring");
 }
 
 void NativeOptions::validate() const {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "NativeExtractor.h"
+#include "PaperExtractor.h"
 
 namespace polemcl {
 
@@ -38,6 +39,7 @@ const char* name(Refusal reason) {
 
 struct PoleExtractor::Impl {
   std::optional<NativeExtractor> native;
+  std::optional<PaperExtractor> paper;
   std::vector<PoleDetection> poles;
   ExtractionReport report;
 };
@@ -45,7 +47,11 @@ struct PoleExtractor::Impl {
 PoleExtractor::PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction)
     : m_impl(std::make_unique<Impl>()) {
   extraction.validate();
-  m_impl->native.emplace(sensor, extraction.native);
+  sensor.validate();
+  if (extraction.method == ExtractionMethod::native)
+    m_impl->native.emplace(sensor, extraction.native);
+  else
+    m_impl->paper.emplace(sensor, extraction.paper);
 }
 PoleExtractor::~PoleExtractor() = default;
 PoleExtractor::PoleExtractor(PoleExtractor&&) noexcept = default;
@@ -54,7 +60,10 @@ PoleExtractor& PoleExtractor::operator=(PoleExtractor&&) noexcept = default;
 const std::vector<PoleDetection>& PoleExtractor::extract(const PointsView& points) {
   m_impl->poles.clear();
   m_impl->report = {};
-  m_impl->native->extract(points, m_impl->poles, m_impl->report);
+  if (m_impl->native)
+    m_impl->native->extract(points, m_impl->poles, m_impl->report);
+  else
+    m_impl->paper->extract(points, m_impl->poles, m_impl->report);
   std::sort(m_impl->poles.begin(), m_impl->poles.end(),
             [](const PoleDetection& a, const PoleDetection& b) {
               const double aa = std::atan2(a.y, a.x), ab = std::atan2(b.y, b.x);

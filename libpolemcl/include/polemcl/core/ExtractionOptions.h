@@ -53,10 +53,13 @@ struct PaperOptions {
   bool heightsAboveGround =
       false;                 ///< false: z in the sensor frame, as the paper; true: z + `height_m`
   bool wrapAround = true;    ///< false: border columns end the image (first implementation)
-  bool growUpwards = false;  ///< true: eight-connected growing; false: left, right, below
-  std::string circleFit =
-      "kasa";  ///< `kasa` (paper), `taubin`, `footprint` (not biased on short arcs)
-  std::string freeSpace = "box";  ///< `box` (as the first implementation means it), `ring`
+  bool growUpwards = false;  ///< true: clusters grow up too; false: left, right, below
+  /// `kasa` (the paper's algebraic fit), `taubin` (less biased), `silhouette` (radius from the
+  /// width seen, centre behind the front: not biased on short arcs).
+  std::string circleFit = "kasa";
+  /// `corners`: four squares beside the box of the fit, as the first implementation means it;
+  /// `ring`: all that is nearer than the ring's width to that box's circle.
+  std::string freeSpace = "corners";
   void validate() const;
 };
 

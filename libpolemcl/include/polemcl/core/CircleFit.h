@@ -1,0 +1,29 @@
+#pragma once
+/// \file CircleFit.h
+/// \brief Algebraic circle fits to points in the plane.
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace polemcl {
+
+struct Circle {
+  double x = 0, y = 0, radius = 0;  ///< m
+};
+
+/// \brief Kåsa's fit (1976): least squares on x² + y² + Bx + Cy + D. Biased small on short arcs.
+/// \return Nothing for fewer than 3 points or points on a line.
+std::optional<Circle> fitCircleKasa(const std::vector<Eigen::Vector2d>& points);
+
+/// \brief Taubin's fit (1991): gradient-weighted, nearly unbiased; by Newton's method on the
+/// characteristic polynomial as in Chernov's book (2010).
+std::optional<Circle> fitCircleTaubin(const std::vector<Eigen::Vector2d>& points);
+
+/// \brief Half the width seen from the origin is the radius; the centre lies on the bisector so far
+/// behind the front that the points' mean distance to it is the radius. Not biased on short arcs.
+/// \param extraWidth Added to the width seen, m: a firing step less the beam's footprint.
+std::optional<Circle> fitCircleSilhouette(const std::vector<Eigen::Vector2d>& points,
+                                          double extraWidth);
+
+}  // namespace polemcl
