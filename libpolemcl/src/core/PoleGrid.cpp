@@ -64,7 +64,9 @@ void PoleGrid::setBounds(const std::vector<Eigen::Vector2d>& points) {
     high = high.cwiseMax(p);
   }
   const double extent = (high - low).maxCoeff() + 2 * m_radius;
-  m_cell = std::max(m_radius, extent * 0x1p-30);  // rows and columns have 32 bits of the key each
+  // Twice the radius: a pole is then listed in 4 cells, few enough to stay in the cache, and a cell
+  // still lists hardly more than one. Rows and columns have 32 bits of the key each.
+  m_cell = std::max(2 * m_radius, extent * 0x1p-30);
   m_inverseCell = 1 / m_cell;
   const double magnitude = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) + extent;
   m_margin = 1e-9 * m_cell + 8 * std::numeric_limits<double>::epsilon() * magnitude;
