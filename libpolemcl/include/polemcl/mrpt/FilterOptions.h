@@ -1,0 +1,50 @@
+#pragma once
+/// \file FilterOptions.h
+/// \brief The settings of the particle filter and of its start, with units, defaults and sources.
+
+#include <polemcl/core/Types.h>
+#include <polemcl/mrpt/Config.h>
+
+#include <optional>
+
+namespace polemcl {
+
+enum class Resampling { systematic, stratified, multinomial };
+enum class PoseEstimator { mean, bestShare };
+
+/// \brief `[filter]` in INI files. The paper's filter: `estimate = best_share`, and regularization,
+/// tempering and the extra sigmas 0.
+struct FilterOptions {
+  int particles = 1000;        ///< (paper: 1000 NCLT; first implementation: 500 to 2000)
+  double resampleBelow = 0.5;  ///< resample when the effective share falls below; 0: never (paper)
+  Resampling resampling = Resampling::systematic;
+  /// `mean`: weighted mean of all particles. `best_share`: of the best by weight (paper: 10 %),
+  /// which forgets what earlier scans said about the others.
+  PoseEstimator estimate = PoseEstimator::mean;
+  double bestShare = 0.1;  ///< in (0, 1]; only for `best_share`
+  /// After resampling, particles are moved by a Gaussian whose standard deviations are this share
+  /// of those of the whole set (a regularized filter: Musso, Oudjane, Le Gland 2001), at most
+  /// PoleLocalizer::maxJitterMetres and maxJitterRadians. 0: copies stay where they are.
+  double regularization = 0.2;
+  /// A scan that would leave an effective share below this is used in steps: a power of its
+  /// likelihood that leaves this share, resampling, and on with the rest. 0: at once.
+  double tempering = 0.2;
+  /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry
+  /// whose error grows with the motion knows (nearly) no error across the driving direction.
+  double extraSigma = 0.01;
+  double extraSigmaYaw = 0.0017453292519943296;  ///< 0.1° (`extra_sigma_deg`)
+  void validate() const;                         ///< \throws Error
+};
+
+/// \brief Where the filter starts. `[start]` in INI files.
+struct StartOptions {
+  std::optional<Pose2D> pose;          ///< map frame (`pose = x y yaw_deg`); none: from the truth
+  double radius = 2.5;                 ///< positions uniform in this disc (in its area), m (paper)
+  double heading = 0.087266462599716;  ///< headings uniform in ± this, rad (paper: 5°)
+  void validate() const;               ///< \throws Error
+};
+
+void bind(Binder& binder, FilterOptions& options);  ///< `[filter]`
+void bind(Binder& binder, StartOptions& options);   ///< `[start]`
+
+}  // namespace polemcl

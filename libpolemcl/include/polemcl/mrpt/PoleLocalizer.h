@@ -1,0 +1,93 @@
+#pragma once
+/// \file PoleLocalizer.h
+/// \brief Step D of the paper: Monte Carlo localization in a pole map, on MRPT's particle filter.
+
+#include <mrpt/bayes/CParticleFilter.h>
+#include <mrpt/random/RandomGenerators.h>
+#include <mrpt/slam/CMonteCarloLocalization2D.h>
+#include <polemcl/core/PoseEstimate.h>
+#include <polemcl/mrpt/CPoleMap.h>
+#include <polemcl/mrpt/FilterOptions.h>
+#include <polemcl/mrpt/MotionAction.h>
+#include <polemcl/mrpt/PoleSequence.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace polemcl {
+
+/// \brief What one step did.
+struct StepReport {
+  std::size_t poles = 0;      ///< observed
+  double effectiveShare = 1;  ///< of the particles, after the update and before resampling
+  int temperingStages = 0;    ///< resamplings inside the update (see FilterOptions::tempering)
+  bool resampled = false;     ///< after the update
+};
+
+/// \brief Where the vehicle is in a pole map, by particles. Prediction, normalization and
+/// resampling are MRPT's (CParticleFilter::executeOn); the update is one batch over all particles.
+///
+/// Two defects of MRPT 2.5.8 are worked round: resampling keeps the old weights (here they are
+/// reset), and getCovarianceAndMean() loses the sign of heading errors in the cross terms (here the
+/// covariance is the core's).
+///
+/// Random numbers come from MRPT's generator of the calling thread, which during start() and step()
+/// is replaced by one that belongs to the object. (Seeding MRPT's own does not suffice: it keeps
+/// half of the last pair of normal deviates.) So the same seed gives the same results in any thread
+/// and beside any other user. Objects may run in parallel and share one map.
+class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
+ public:
+  /// Limits of regularization: so that places far apart are not smeared into each other.
+  static constexpr double maxJitterMetres = 0.25, maxJitterRadians = 0.035;
+
+  /// \throws Error when the map has no poles or an option is out of range.
+  PoleLocalizer(std::shared_ptr<const CPoleMap> map, const FilterOptions& filterOptions,
+                std::uint32_t seed);
+
+  /// \brief Draws the particles round a pose: positions uniform in the area of the disc, headings
+  /// uniform.
+  /// \throws Error when `start.pose` is not set, or an option is out of range.
+  void start(const StartOptions& start);
+
+  /// \brief Predicts by the motion of the frame, weighs by its poles, estimates, resamples.
+  /// The first frame after start() is where the start pose is: its motion is not used. Frames
+  /// without poles only predict.
+  /// \return The estimate before resampling, with the covariance of the particles it is made of.
+  /// \throws Error, and changes nothing, before start(); when the time is not later than that of
+  ///         the frame before; when the motion is missing, or refused by makeMotionAction().
+  PoseWithCovariance step(const PoleFrame& frame);
+
+  std::vector<Pose2D> particles() const;
+  std::vector<double> logWeights() const;  ///< natural logarithms, any offset
+  const StepReport& report() const { return m_report; }
+
+  /// \name MRPT's interface
+  /// @{
+  /// \brief MRPT's prediction, then the batched update with all CObservationPoles of the frame.
+  void prediction_and_update_pfStandardProposal(
+      const mrpt::obs::CActionCollection* action, const mrpt::obs::CSensoryFrame* observation,
+      const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions) override;
+  /// \brief MRPT's, then equal weights, then regularization.
+  void performSubstitution(const std::vector<size_t>& indices) override;
+  /// @}
+
+ private:
+  void update(const std::vector<PoleDetection>& poles_robot,
+              const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
+  /// \brief The largest power up to `rest` of the likelihoods at hand that leaves enough particles.
+  double temperedPower(double rest) const;
+  void jitter(const Eigen::Matrix3d& spread);
+
+  std::shared_ptr<const CPoleMap> m_map;
+  FilterOptions m_options;
+  mrpt::bayes::CParticleFilter m_filter;
+  mrpt::random::CRandomGenerator m_generator;
+  bool m_started = false, m_stepped = false;
+  double m_time = 0;  ///< of the last frame, s
+  PoseWithCovariance m_estimate;
+  StepReport m_report;
+  std::vector<double> m_logLikelihoods;  ///< of the particles, at the stage of the update at hand
+};
+
+}  // namespace polemcl
