@@ -1,0 +1,83 @@
+#pragma once
+/// \file Bytes.h
+/// \brief Whole files as bytes, and little-endian values in them, on any machine.
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace polemcl::io {
+
+/// \brief The content of a file. \throws Error with the reason of the system when it cannot be
+/// read.
+std::string readBytes(const std::filesystem::path& file);
+
+/// \brief The little-endian value of type T (integer or float) at `bytes`; no alignment needed.
+template <class T>
+T loadLittleEndian(const char* bytes) {
+  using Bits = std::conditional_t<
+      sizeof(T) == 8, std::uint64_t,
+      std::conditional_t<sizeof(T) == 4, std::uint32_t,
+                         std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
+  static_assert(sizeof(T) == sizeof(Bits));
+  Bits bits = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    bits |= static_cast<Bits>(static_cast<Bits>(static_cast<unsigned char>(bytes[i])) << (8 * i));
+  }
+  T value;
+  std::memcpy(&value, &bits, sizeof(T));
+  return value;
+}
+
+/// \brief Appends values, little-endian, to a string of bytes.
+class ByteWriter {
+ public:
+  template <class T>
+  void put(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    std::uint64_t bits = 0;
+    if constexpr (sizeof(T) == 4) {
+      std::uint32_t narrow;
+      std::memcpy(&narrow, &value, 4);
+      bits = narrow;
+    } else {
+      static_assert(sizeof(T) == 8);
+      std::memcpy(&bits, &value, 8);
+    }
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      m_bytes.push_back(static_cast<char>(bits >> (8 * i) & 0xff));
+    }
+  }
+  void putRaw(std::string_view bytes) { m_bytes.append(bytes); }
+  /// \brief uint32 length and bytes.
+  void putText(std::string_view text);
+  const std::string& bytes() const { return m_bytes; }
+
+ private:
+  std::string m_bytes;
+};
+
+/// \brief Reads values, little-endian, one after the other; never beyond the end.
+class ByteReader {
+ public:
+  /// \param bytes Must outlive the reader. \param where Start of the message of errors.
+  ByteReader(std::string_view bytes, std::string where)
+      : m_bytes(bytes), m_where(std::move(where)) {}
+  /// \throws Error at the end of the bytes, as all of them.
+  template <class T>
+  T get() {
+    return loadLittleEndian<T>(getRaw(sizeof(T)).data());
+  }
+  std::string_view getRaw(std::uint64_t size);
+  std::string_view getText();
+  std::size_t remaining() const { return m_bytes.size(); }
+
+ private:
+  std::string_view m_bytes;  ///< what is left
+  std::string m_where;
+};
+
+}  // namespace polemcl::io

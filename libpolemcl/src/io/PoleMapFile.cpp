@@ -1,0 +1,162 @@
+#include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/Bytes.h>
+#include <polemcl/io/PoleMapFile.h>
+#include <zlib.h>
+
+#include <cmath>
+
+namespace polemcl::io {
+
+namespace {
+
+constexpr std::string_view magic("\x89PMAP\r\n\x1a", 8);
+constexpr std::uint32_t version = 1;
+constexpr std::size_t headerBytes = 8 + 4 + 8 + 4;
+constexpr std::uint32_t recordBytes = 9 * 8 + 4;
+
+std::uint32_t checksum(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+/// Why the pole cannot be kept in a map; null when it can.
+const char* fault(const MapPole& pole) {
+  for (const double value : {pole.x, pole.y, pole.radius, pole.bottom, pole.top, pole.confidence}) {
+    if (!std::isfinite(value)) return "a value is not finite";
+  }
+  if (pole.radius < 0) return "the radius is negative";
+  if (pole.confidence < 0 || pole.confidence > 1) return "the confidence is outside 0 … 1";
+  const Eigen::Matrix2d& c = pole.covariance;
+  if (!c.allFinite()) return "the covariance is not finite";
+  const bool symmetric =
+      std::abs(c(0, 1) - c(1, 0)) <= 1e-9 * (std::abs(c(0, 0)) + std::abs(c(1, 1)));
+  if (!symmetric || !(c(0, 0) > 0) || !(c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1) > 0)) {
+    return "the covariance is not symmetric and positive definite";
+  }
+  return nullptr;
+}
+
+void requireSound(const std::vector<MapPole>& poles, const std::string& where) {
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    if (const char* why = fault(poles[i])) {
+      throw Error(where + "pole " + std::to_string(i) + " (counted from 0): " + why);
+    }
+  }
+}
+
+void putChunk(ByteWriter& payload, std::string_view tag, const ByteWriter& content) {
+  payload.putRaw(tag);
+  payload.put(static_cast<std::uint64_t>(content.bytes().size()));
+  payload.putRaw(content.bytes());
+}
+
+std::string payloadOf(const PoleMapData& data) {
+  ByteWriter info, poles, payload;
+  info.put(static_cast<std::uint32_t>(data.info.size()));
+  for (const auto& [key, value] : data.info) {
+    info.putText(key);
+    info.putText(value);
+  }
+  poles.put(recordBytes);
+  poles.put(static_cast<std::uint64_t>(data.poles.size()));
+  for (const MapPole& p : data.poles) {
+    for (const double value : {p.x, p.y, p.radius, p.bottom, p.top, p.confidence,
+                               p.covariance(0, 0), p.covariance(0, 1), p.covariance(1, 1)}) {
+      poles.put(value);
+    }
+    poles.put(p.count);
+  }
+  putChunk(payload, "INFO", info);
+  putChunk(payload, "POLE", poles);
+  return payload.bytes();
+}
+
+void readInfo(ByteReader& chunk, PoleMapData& data) {
+  const auto count = chunk.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::string key(chunk.getText());
+    data.info[key] = chunk.getText();
+  }
+}
+
+MapPole readRecord(ByteReader& record) {
+  MapPole p;
+  for (double* value : {&p.x, &p.y, &p.radius, &p.bottom, &p.top, &p.confidence,
+                        &p.covariance(0, 0), &p.covariance(0, 1), &p.covariance(1, 1)}) {
+    *value = record.get<double>();
+  }
+  p.covariance(1, 0) = p.covariance(0, 1);
+  p.count = record.get<std::uint32_t>();
+  return p;
+}
+
+void readPoles(ByteReader& chunk, const std::string& where, PoleMapData& data) {
+  const auto size = chunk.get<std::uint32_t>();
+  const auto count = chunk.get<std::uint64_t>();
+  if (size < recordBytes || count > chunk.remaining() / size) {
+    throw Error(where + "damaged: " + std::to_string(count) + " poles of " + std::to_string(size) +
+                " bytes do not fit into " + std::to_string(chunk.remaining()));
+  }
+  data.poles.reserve(count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    ByteReader record(chunk.getRaw(size), where);
+    data.poles.push_back(readRecord(record));
+  }
+}
+
+/// The checked payload of a whole file.
+std::string_view checkedPayload(std::string_view bytes, const std::string& where) {
+  if (bytes.substr(0, magic.size()) != magic) {
+    throw Error(where + "no pole map (it does not start like a .polemap file)");
+  }
+  ByteReader header(bytes.substr(magic.size()), where + "cut short: ");
+  const auto found = header.get<std::uint32_t>();
+  if (found != version) {
+    throw Error(where + "version " + std::to_string(found) + " of the format; this program reads " +
+                std::to_string(version) + ": update polemcl, or the file is damaged");
+  }
+  const auto size = header.get<std::uint64_t>();
+  const auto crc = header.get<std::uint32_t>();
+  if (size != header.remaining()) {
+    throw Error(where + "cut short or damaged: " + std::to_string(header.remaining()) +
+                " bytes after the header, " + std::to_string(size) + " expected");
+  }
+  const std::string_view payload = bytes.substr(headerBytes);
+  if (checksum(payload) != crc) throw Error(where + "damaged: the checksum (CRC-32) is wrong");
+  return payload;
+}
+
+}  // namespace
+
+void writePoleMap(const std::filesystem::path& file, const PoleMapData& data) {
+  requireSound(data.poles, "cannot write " + file.string() + ": ");
+  const std::string payload = payloadOf(data);
+  ByteWriter header;
+  header.putRaw(magic);
+  header.put(version);
+  header.put(static_cast<std::uint64_t>(payload.size()));
+  header.put(checksum(payload));
+  AtomicFile output(file);
+  output.stream() << header.bytes() << payload;
+  output.commit();
+}
+
+PoleMapData readPoleMap(const std::filesystem::path& file) {
+  const std::string bytes = readBytes(file);
+  const std::string where = file.string() + ": ";
+  ByteReader payload(checkedPayload(bytes, where), where);
+  PoleMapData data;
+  bool hasPoles = false;
+  while (payload.remaining() > 0) {
+    const std::string_view tag = payload.getRaw(4);
+    ByteReader chunk(payload.getRaw(payload.get<std::uint64_t>()), where);
+    if (tag == "INFO") readInfo(chunk, data);
+    if (tag == "POLE") readPoles(chunk, where, data);
+    hasPoles = hasPoles || tag == "POLE";
+  }
+  if (!hasPoles) throw Error(where + "damaged: it has no list of poles");
+  requireSound(data.poles, where);
+  return data;
+}
+
+}  // namespace polemcl::io

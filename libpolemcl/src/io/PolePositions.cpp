@@ -1,0 +1,148 @@
+#include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/Npz.h>
+#include <polemcl/io/PoleMapFile.h>
+#include <polemcl/io/PolePositions.h>
+#include <polemcl/io/TextFile.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace polemcl::io {
+
+namespace {
+
+using Positions = std::vector<Eigen::Vector2d>;
+
+/// Fields between commas, without the quotes and spaces around them.
+std::vector<std::string> splitCsv(std::string_view line, const std::string& where) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += line[++i];  // a doubled quote is one
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  if (quoted) throw Error(where + "a quote is not closed");
+  for (std::string& field : fields) field = std::string(trimmed(field));
+  return fields;
+}
+
+/// Indices of the columns x and y.
+struct XyColumns {
+  std::size_t x = 0, y = 0, count = 0;
+};
+
+XyColumns findColumns(const std::vector<std::string>& header, const std::string& where) {
+  const auto find = [&](const char* name) {
+    if (std::count(header.begin(), header.end(), name) != 1) {
+      throw Error(where + "one column named " + name +
+                  " expected; the first line has to name the columns (x,y,…)");
+    }
+    return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
+  };
+  return {find("x"), find("y"), header.size()};
+}
+
+double coordinate(const std::string& field, const std::string& where) {
+  const auto value = parseNumber(field);
+  if (!value || !std::isfinite(*value)) throw Error(where + "'" + field + "' is no finite number");
+  return *value;
+}
+
+Positions readCsv(const std::filesystem::path& file) {
+  const auto lines = readLines(file);
+  std::optional<XyColumns> columns;
+  Positions positions;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string_view line = trimmed(lines[i]);
+    if (line.empty() || line.front() == '#') continue;
+    const std::string where = at(file, i + 1);
+    const auto fields = splitCsv(line, where);
+    if (!columns) {
+      columns = findColumns(fields, where);
+      continue;
+    }
+    if (fields.size() != columns->count) {
+      throw Error(where + std::to_string(fields.size()) + " fields, " +
+                  std::to_string(columns->count) + " expected as in the header");
+    }
+    positions.emplace_back(coordinate(fields[columns->x], where),
+                           coordinate(fields[columns->y], where));
+  }
+  if (!columns) throw Error(file.string() + ": empty; a header with columns x and y expected");
+  return positions;
+}
+
+Positions readNpz(const std::filesystem::path& file) {
+  const NpzFile npz(file);
+  std::string name;
+  for (const char* known : {"polemeans", "poleparams"}) {
+    if (npz.contains(known)) name = known;
+  }
+  if (name.empty()) {
+    std::string found;
+    for (const std::string& other : npz.names()) found += (found.empty() ? "" : ", ") + other;
+    throw Error(file.string() + ": no array poleparams or polemeans in it (found: " +
+                (found.empty() ? "none" : found) + ")");
+  }
+  const NumberArray array = npz.array(name);
+  if (array.shape.size() != 2 || array.shape[1] < 2) {
+    std::string shape;
+    for (const std::size_t size : array.shape)
+      shape += (shape.empty() ? "" : "x") + std::to_string(size);
+    throw Error(file.string() + ": array " + name + " of shape (" + shape +
+                "); one row per pole with x and y first expected");
+  }
+  Positions positions;
+  for (std::size_t row = 0; row < array.shape[0]; ++row) {
+    const double* values = array.values.data() + row * array.shape[1];
+    if (!std::isfinite(values[0]) || !std::isfinite(values[1])) {
+      throw Error(file.string() + ": array " + name + ", row " + std::to_string(row) +
+                  " (counted from 0) is not finite");
+    }
+    positions.emplace_back(values[0], values[1]);
+  }
+  return positions;
+}
+
+}  // namespace
+
+void writePoleCsv(const std::filesystem::path& file, const std::vector<MapPole>& poles) {
+  AtomicFile output(file);
+  output.stream() << "x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy\n";
+  for (const MapPole& p : poles) {
+    output.stream() << fixed(p.x, 6) << ',' << fixed(p.y, 6) << ',' << fixed(p.radius, 6) << ','
+                    << std::to_string(p.count);
+    for (const double value : {p.bottom, p.top, p.confidence, p.covariance(0, 0),
+                               p.covariance(0, 1), p.covariance(1, 1)}) {
+      output.stream() << ',' << significant(value, 9);
+    }
+    output.stream() << '\n';
+  }
+  output.commit();
+}
+
+std::vector<Eigen::Vector2d> readPolePositions(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (ending == ".csv") return readCsv(file);
+  if (ending == ".npz") return readNpz(file);
+  if (ending == ".polemap") {
+    Positions positions;
+    for (const MapPole& pole : readPoleMap(file).poles) positions.emplace_back(pole.x, pole.y);
+    return positions;
+  }
+  throw Error(file.string() + ": unknown kind of file '" + ending +
+              "'; allowed: .polemap, .csv (columns x, y), .npz (poleparams or polemeans)");
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,121 @@
+#include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/TextFile.h>
+#include <polemcl/io/Trajectory.h>
+
+#include <cmath>
+
+namespace polemcl::io {
+
+namespace {
+
+constexpr const char* tumLayout = "time x y z qx qy qz qw (s, m)";
+constexpr int decimals = 9;
+
+void requireFinite(const std::filesystem::path& file, std::size_t row, double time,
+                   const Eigen::Isometry3d& pose) {
+  if (!std::isfinite(time) || !pose.matrix().allFinite()) {
+    throw Error("cannot write " + file.string() + ": pose " + std::to_string(row) +
+                " (counted from 0) is not finite");
+  }
+}
+
+std::string tumRow(double time, const Eigen::Isometry3d& pose) {
+  Eigen::Quaterniond q(pose.linear());
+  q.normalize();
+  std::string row = fixed(time, decimals);
+  for (const double value : {pose.translation().x(), pose.translation().y(), pose.translation().z(),
+                             q.x(), q.y(), q.z(), q.w()}) {
+    row += ' ' + fixed(value, decimals);
+  }
+  return row + '\n';
+}
+
+}  // namespace
+
+Pose2D planar(const Eigen::Isometry3d& pose) {
+  return {pose.translation().x(), pose.translation().y(),
+          wrapAngle(std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)))};
+}
+
+std::vector<StampedPose2D> planar(const std::vector<StampedPose3D>& trajectory) {
+  std::vector<StampedPose2D> result;
+  result.reserve(trajectory.size());
+  for (const StampedPose3D& entry : trajectory) result.push_back({entry.time, planar(entry.pose)});
+  return result;
+}
+
+Eigen::Isometry3d spatial(const Pose2D& pose) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.translation() = Eigen::Vector3d(pose.x, pose.y, 0);
+  result.linear() = Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return result;
+}
+
+std::vector<StampedPose3D> readTum(const std::filesystem::path& file) {
+  std::vector<StampedPose3D> trajectory;
+  for (const NumberRow& row : readNumberRows(file, 8, tumLayout)) {
+    const std::vector<double>& v = row.values;
+    if (!trajectory.empty() && !(v[0] > trajectory.back().time)) {
+      throw Error(at(file, row.line) + "time " + significant(v[0], 17) + " is not after " +
+                  significant(trajectory.back().time, 17) + ", the one before");
+    }
+    const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
+    if (std::abs(q.norm() - 1) > 0.01) {
+      throw Error(at(file, row.line) + "qx qy qz qw have length " + significant(q.norm(), 6) +
+                  ", not 1; expected: " + tumLayout);
+    }
+    StampedPose3D entry;
+    entry.time = v[0];
+    entry.pose.linear() = q.normalized().toRotationMatrix();
+    entry.pose.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+    trajectory.push_back(entry);
+  }
+  if (trajectory.empty()) throw Error(file.string() + ": no pose in it; expected: " + tumLayout);
+  return trajectory;
+}
+
+void writeTum(const std::filesystem::path& file, const std::vector<StampedPose2D>& trajectory) {
+  std::vector<StampedPose3D> poses;
+  poses.reserve(trajectory.size());
+  for (const StampedPose2D& entry : trajectory) poses.push_back({entry.time, spatial(entry.pose)});
+  writeTum(file, poses);
+}
+
+void writeTum(const std::filesystem::path& file, const std::vector<StampedPose3D>& trajectory) {
+  AtomicFile output(file);
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    requireFinite(file, i, trajectory[i].time, trajectory[i].pose);
+    output.stream() << tumRow(trajectory[i].time, trajectory[i].pose);
+  }
+  output.commit();
+}
+
+Eigen::Isometry3d poseFromRows(const std::vector<double>& values, const std::string& where) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) pose(row, column) = values.at(4 * row + column);
+  }
+  const Eigen::Matrix3d rotation = pose.linear();
+  const double off =
+      (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (off > 1e-3 || rotation.determinant() < 0) {
+    throw Error(where + "the 3x3 part is no rotation (RᵀR is off identity by " +
+                significant(off, 3) + ", determinant " + significant(rotation.determinant(), 3) +
+                "); expected: twelve numbers, row-major 3x4 [R|t]");
+  }
+  pose.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+  return pose;
+}
+
+std::vector<Eigen::Isometry3d> readKittiPoses(const std::filesystem::path& file) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const NumberRow& row : readNumberRows(file, 12, "a pose as row-major 3x4 matrix [R|t], m")) {
+    poses.push_back(poseFromRows(row.values, at(file, row.line)));
+  }
+  if (poses.empty()) {
+    throw Error(file.string() + ": no pose in it; expected: twelve numbers a line, row-major 3x4");
+  }
+  return poses;
+}
+
+}  // namespace polemcl::io
