@@ -24,32 +24,46 @@ struct PoseError {
 
 /// \brief Summary over poses. lat/lon/ang means are of absolute values.
 struct TrajectoryErrors {
-  double posMean = 0, posRmse = 0, posMax = 0;
-  double latMean = 0, lonMean = 0;
-  double angMeanDeg = 0, angRmseDeg = 0;
-  std::size_t poses = 0;      ///< compared
-  std::size_t unmatched = 0;  ///< estimates outside the time span of the truth, or in a gap of it
-  std::vector<PoseError> errors;
+  double posMean = 0, posRmse = 0, posMax = 0;  ///< m
+  double latMean = 0, lonMean = 0;              ///< m
+  double angMeanDeg = 0, angRmseDeg = 0;        ///< degrees
+  std::size_t poses = 0;                        ///< compared
+  /// perPose: estimates outside the time span of the truth, or in a gap of it.
+  /// perMetre: metres of the true path, between the first and the last estimate, in a gap of
+  /// either.
+  std::size_t unmatched = 0;
+  std::vector<PoseError> errors;  ///< by time, one for each pose compared
 };
 
-enum class Sampling { perPose, perMetre };  ///< perMetre: every 1 m along the true path (NCLT protocol)
+enum class Sampling {
+  perPose,  ///< at each estimate
+  perMetre  ///< at 0, 1, 2, … m along the true path since the first estimate (NCLT protocol)
+};
 
-/// \brief Compares in 2D, convergence included; truth is interpolated in time.
-/// \param maxTruthGap Truth samples further apart than this are not interpolated across, s.
-/// \throws Error when less than half of the estimates can be matched, or times are not increasing.
+/// \brief Compares in 2D, convergence included. Between its samples the truth is interpolated in
+/// time, linearly in x and y and the shorter way round in heading; so is the estimate for perMetre.
+/// \param truth,estimate Robot poses in the same map frame, finite, times increasing.
+/// \param maxTruthGap Samples further apart than this are not interpolated across, s. At a sample
+///        itself (within 2 µs, as files round times) no neighbour is needed.
+/// \throws Error when either is empty, holds a number that is not finite or times that do not
+///         increase, or when less than half of the estimates (for perMetre, of the metres too) can
+///         be compared.
 TrajectoryErrors evaluateTrajectory(const std::vector<StampedPose2D>& truth,
                                     const std::vector<StampedPose2D>& estimate, Sampling sampling,
                                     double maxTruthGap = 2.0);
 
 struct MapScore {
   std::size_t mapPoles = 0, truthPoles = 0, matches = 0;
-  double precision = 0, recall = 0, f1 = 0;
+  double precision = 0;  ///< matches / mapPoles
+  double recall = 0;     ///< matches / truthPoles
+  double f1 = 0;         ///< harmonic mean of the two; 0 without matches
 };
 /// \brief Matches map poles to truth poles within `radius` (inclusive), m.
 /// \param oneToOne false: TP = map poles whose nearest truth pole lies within the radius, for both
 ///        figures (the authors' way; recall can exceed 1). true: maximum bipartite matching.
-/// \throws Error when either set is empty.
-MapScore scoreMap(const std::vector<Eigen::Vector2d>& truth, const std::vector<Eigen::Vector2d>& map,
-                  double radius, bool oneToOne);
+/// \throws Error when either set is empty or holds a pole that is not finite, or the radius is not
+///         finite and positive.
+MapScore scoreMap(const std::vector<Eigen::Vector2d>& truth,
+                  const std::vector<Eigen::Vector2d>& map, double radius, bool oneToOne);
 
 }  // namespace polemcl
