@@ -1,0 +1,29 @@
+#pragma once
+/// \file Drive.h
+/// \brief The way of the sensor through a world: true poses, times, odometry.
+
+#include <polemcl/sim/World.h>
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace polemcl::sim {
+
+/// \brief Planar motion since the pose before, in its frame, as a wheel odometer reports it.
+struct OdometryStep {
+  double dx = 0, dy = 0, dyaw = 0;  ///< m, m, rad
+  double sx = 0, sy = 0, syaw = 0;  ///< standard deviations
+};
+
+/// \brief One element per scan; odometry one less.
+struct Drive {
+  std::vector<double> time;                     ///< s, from 0
+  std::vector<Eigen::Isometry3d> T_map_sensor;  ///< follows slope and sway
+  std::vector<OdometryStep> odometry;
+};
+
+/// \brief Drives along the street at constant speed.
+/// \throws Error when the street is shorter than two scans.
+Drive makeDrive(const World& world, const SimulationOptions& options);
+
+}  // namespace polemcl::sim

@@ -1,0 +1,50 @@
+#pragma once
+/// \file SimulationOptions.h
+/// \brief The settings of the simulated world and of the drive through it.
+
+#include <cstdint>
+#include <string>
+
+namespace polemcl::sim {
+
+/// \brief What stands along the street. `[world]` in INI files. Shares are in [0, 1].
+struct WorldOptions {
+  std::uint64_t seed = 1;  ///< another seed, another street
+  int day = 0;             ///< 0: the day of the map; other days move what moves
+  double length = 300;     ///< of the generated street, m (`length_m`); a track gives its own
+  /// Road along a track: sensor poses, 12 numbers a line, row-major 3x4, plain or gzip; "" = none.
+  std::string track;
+  double curviness = 1;        ///< scales the bends of the generated street; 0: straight
+  double relief = 1;           ///< scales slopes and undulation of the ground; 0: flat
+  double roadWidth = 10;       ///< kerb to kerb, m (`road_width_m`)
+  double lampSpacing = 28;     ///< mean distance of lamp posts on one side, m (`lamp_spacing_m`)
+  double signSpacing = 24;     ///< mean distance of traffic signs on one side, m (`sign_spacing_m`)
+  double treeShare = 0.4;      ///< share of the street lined with trees (`tree_share`)
+  double parkedShare = 0.5;    ///< share of parking places taken (`parked_share`)
+  double clutter = 1;          ///< scales numbers of people, bins, bicycles, bollards, billboards
+  double removedShare = 0.03;  ///< poles of day 0 that are gone on another day (`removed_share`)
+  double addedShare = 0.02;    ///< new poles on another day, share of all (`added_share`)
+  double foliage = 1;          ///< density of leaves; 0: bare branches
+  bool peopleMove = false;     ///< people walk during the drive (`people_move`)
+  void validate() const;       ///< \throws Error
+};
+
+/// \brief The drive and its LiDAR. `[simulation]` in INI files.
+struct SimulationOptions {
+  WorldOptions world;
+  /// `hdl64e`, `hdl32e`, `vlp16`, `os1_64`, `os1_128`, `os0_64`. Programs take it from `[sensor]`.
+  std::string sensor = "hdl32e";
+  double height = 1.0;      ///< optical centre above ground, m. Programs take it from `[sensor]`.
+  bool upsideDown = false;  ///< the sensor hangs; its beams are given as seen upright, z up
+  double spacing = 0.5;     ///< distance between scans, m (`spacing_m`)
+  double speed = 5;         ///< m/s (`speed_m_s`)
+  double laneOffset =
+      -1.8;  ///< of the drive from the middle of the road, m, + left (`lane_offset_m`)
+  double odometryNoise =
+      0.02;  ///< standard deviation as a share of each component (`odometry_noise`)
+  bool motionDistortion = false;  ///< the sensor moves while it turns (`motion_distortion`)
+  int scans = 0;                  ///< at most so many scans; 0: to the end of the road
+  void validate() const;          ///< \throws Error
+};
+
+}  // namespace polemcl::sim

@@ -1,0 +1,48 @@
+#pragma once
+/// \file Solid.h
+/// \brief The shapes the world is made of, and what a laser pulse meets on them.
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace polemcl::sim {
+
+/// \brief What a surface does to a pulse.
+struct Material {
+  float reflectivity = 0.3f;  ///< diffuse, at 905 nm; above 1: retro-reflecting
+  float roughness = 0.0f;     ///< standard deviation of the surface, m
+  float passes = 0.0f;        ///< probability that a pulse goes through (glass, mesh)
+};
+
+namespace materials {
+constexpr Material asphalt{0.15f, 0.004f, 0}, paving{0.25f, 0.006f, 0}, grass{0.45f, 0.025f, 0},
+    metal{0.35f, 0.001f, 0}, darkMetal{0.12f, 0.001f, 0}, signFace{2.5f, 0.001f, 0},
+    bark{0.28f, 0.008f, 0}, leaves{0.45f, 0.01f, 0}, plaster{0.4f, 0.004f, 0},
+    brick{0.25f, 0.006f, 0}, wood{0.3f, 0.004f, 0}, concrete{0.3f, 0.004f, 0},
+    cloth{0.25f, 0.012f, 0}, skin{0.45f, 0.003f, 0}, rubber{0.05f, 0.004f, 0},
+    carGlass{0.06f, 0.001f, 0.75f}, houseGlass{0.004f, 0.001f, 0}, plastic{0.2f, 0.002f, 0};
+}
+
+enum class Shape : std::uint8_t {
+  frustum,    ///< upright or tilted post: cone between two radii, with caps
+  box,        ///< oriented box
+  ellipsoid,  ///< solid, or porous when `density` > 0
+  thicket     ///< porous oriented box (hedge, mesh)
+};
+
+/// \brief One shape, in the map frame. Units m.
+struct Solid {
+  Shape shape = Shape::box;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< centre; of a frustum: centre of its base
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: own axes; frustum: z along it
+  /// Half extents (box, thicket), half axes (ellipsoid); frustum: radius at base, radius at end,
+  /// length.
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();
+  /// Porous shapes: share of leaf cells that are filled, in (0, 1]; 0 for solid ones.
+  float density = 0;
+  float cell = 0.12f;  ///< edge of a leaf cell, m
+  Material material;
+  std::uint32_t object = 0;  ///< id of the object it belongs to
+};
+
+}  // namespace polemcl::sim

@@ -1,0 +1,45 @@
+#pragma once
+/// \file World.h
+/// \brief The street, its ground and all that stands there on one day.
+
+#include <polemcl/sim/SimulationOptions.h>
+#include <polemcl/sim/Street.h>
+#include <polemcl/sim/Terrain.h>
+#include <polemcl/sim/WorldObject.h>
+
+#include <vector>
+
+namespace polemcl::sim {
+
+/// \brief A world on one day. Immutable once made, safe to share between threads.
+class World {
+ public:
+  World(const WorldOptions& options, Street street, Terrain terrain,
+        std::vector<WorldObject> objects, std::vector<TruePole> poles);
+
+  const WorldOptions& options() const { return m_options; }
+  const Street& street() const { return m_street; }
+  const Terrain& terrain() const { return m_terrain; }
+  const std::vector<WorldObject>& objects() const { return m_objects; }
+  /// \brief The poles that stand on this day, by id.
+  const std::vector<TruePole>& poles() const { return m_poles; }
+  /// \brief Indices of the objects that may reach into a circle, ascending.
+  std::vector<std::uint32_t> objectsWithin(double x, double y, double radius) const;
+
+ private:
+  WorldOptions m_options;
+  Street m_street;
+  Terrain m_terrain;
+  std::vector<WorldObject> m_objects;
+  std::vector<TruePole> m_poles;
+  Eigen::Vector2d m_gridOrigin;
+  int m_gridX = 0, m_gridY = 0;
+  double m_largest = 0;  ///< reach of the largest object, m
+  std::vector<std::vector<std::uint32_t>> m_grid;
+};
+
+/// \brief Builds the world of (seed, day): the same numbers on any machine and number of threads.
+/// \throws Error when an option is out of range or the track cannot be read.
+World makeWorld(const WorldOptions& options);
+
+}  // namespace polemcl::sim

@@ -1,0 +1,135 @@
+#include <polemcl/core/Types.h>
+#include <polemcl/sim/LidarModel.h>
+#include <polemcl/sim/Random.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace polemcl::sim {
+namespace {
+constexpr double kDegree = M_PI / 180;
+
+std::vector<Beam> evenBeams(int count, double topDeg, double stepDeg) {
+  std::vector<Beam> beams(count);
+  for (int i = 0; i < count; ++i) beams[i].elevation = (topDeg - stepDeg * i) * kDegree;
+  return beams;
+}
+
+/// Velodyne HDL-64E: 32 lasers 1/3° apart from +2°, 32 lasers 1/2° apart from -8.83°. The lasers of
+/// the upper block start higher than those of the lower one, as the calibration of real units says;
+/// lasers of one firing look about ±2.5° to the left and right of the rotor's azimuth.
+LidarModel hdl64e() {
+  LidarModel lidar;
+  lidar.beams = evenBeams(32, 2.0, 1.0 / 3);
+  const auto lower = evenBeams(32, -8.0 - 5.0 / 6, 0.5);
+  lidar.beams.insert(lidar.beams.end(), lower.begin(), lower.end());
+  for (int i = 0; i < 64; ++i) {
+    lidar.beams[i].rise = i < 32 ? 0.2 : 0.1;
+    lidar.beams[i].azimuth = (i % 4 - 1.5) * (i < 32 ? 1.3 : 2.2) * kDegree;
+  }
+  lidar.columns = 2083;
+  lidar.calibrated = true;
+  lidar.divergence = 0.0025;
+  lidar.rangeNoise = 0.018;
+  lidar.maxRange = 120;
+  lidar.referenceRange = 75;
+  return lidar;
+}
+
+/// Velodyne HDL-32E: 46.08 µs a firing.
+LidarModel hdl32e() {
+  LidarModel lidar;
+  lidar.beams = evenBeams(32, 10.0 + 2.0 / 3, 4.0 / 3);
+  lidar.columns = 2170;
+  lidar.divergence = 0.003;
+  lidar.maxRange = 100;
+  lidar.referenceRange = 60;
+  return lidar;
+}
+
+/// Velodyne VLP-16: 55.296 µs a firing.
+LidarModel vlp16() {
+  LidarModel lidar;
+  lidar.beams = evenBeams(16, 15, 2);
+  lidar.columns = 1808;
+  lidar.divergence = 0.003;
+  lidar.maxRange = 100;
+  lidar.referenceRange = 60;
+  return lidar;
+}
+
+/// Ouster: beams in four staggered columns; noise of 1 to 3 cm; detectors integrate a short pulse.
+LidarModel ouster(int rows, double halfViewDeg, double staggerDeg, double reference) {
+  LidarModel lidar;
+  lidar.beams = evenBeams(rows, halfViewDeg, 2 * halfViewDeg / (rows - 1));
+  for (int i = 0; i < rows; ++i)
+    lidar.beams[i].azimuth = (1.5 - i % 4) * staggerDeg / 1.5 * kDegree;
+  lidar.columns = 1024;
+  lidar.calibrated = true;
+  lidar.divergence = 0.0031;
+  lidar.rangeNoise = 0.015;
+  lidar.rangeStep = 0.001;
+  lidar.minRange = 0.5;
+  lidar.referenceRange = reference;
+  lidar.pulseLength = 0.8;
+  lidar.dropout = 0.01;
+  return lidar;
+}
+
+using Maker = LidarModel (*)();
+const std::map<std::string, Maker>& makers() {
+  static const std::map<std::string, Maker> table{
+      {"hdl64e", hdl64e},
+      {"hdl32e", hdl32e},
+      {"vlp16", vlp16},
+      {"os1_64", [] { return ouster(64, 16.611, 3.164, 45); }},
+      {"os1_128", [] { return ouster(128, 21.2, 4.23, 50); }},
+      {"os0_64", [] { return ouster(64, 44.6, 4.23, 25); }}};
+  return table;
+}
+}  // namespace
+
+const std::vector<std::string>& lidarNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const auto& maker : makers()) list.push_back(maker.first);
+    return list;
+  }();
+  return names;
+}
+
+LidarModel makeLidar(const std::string& name, bool upsideDown, unsigned unit) {
+  const auto maker = makers().find(name);
+  if (maker == makers().end()) {
+    std::string known;
+    for (const std::string& each : lidarNames()) known += " " + each;
+    throw Error("unknown LiDAR \"" + name + "\": allowed are" + known);
+  }
+  LidarModel lidar = maker->second();
+  lidar.name = name;
+  Random random(hash(0x11da4ull, unit));
+  for (Beam& beam : lidar.beams) {  // what a unit's calibration leaves
+    if (lidar.calibrated)
+      beam.elevation += random.normal(0, 0.05 * kDegree);
+    else
+      beam.elevationError = random.normal(0, 0.03 * kDegree);
+    beam.azimuth += random.normal(0, 0.03 * kDegree);
+    beam.rangeBias = random.normal(0, 0.007);
+    beam.rise += beam.rise > 0 ? random.normal(0, 0.004) : 0.0;
+  }
+  lidar.startAzimuth = M_PI;
+  if (upsideDown) {
+    for (Beam& beam : lidar.beams) {
+      beam.elevation = -beam.elevation;
+      beam.elevationError = -beam.elevationError;
+      beam.azimuth = -beam.azimuth;
+      beam.rise = -beam.rise;
+    }
+    std::reverse(lidar.beams.begin(), lidar.beams.end());
+    lidar.clockwise = !lidar.clockwise;
+  }
+  return lidar;
+}
+
+}  // namespace polemcl::sim

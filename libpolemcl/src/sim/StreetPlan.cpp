@@ -1,0 +1,114 @@
+#include "StreetPlan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl::sim {
+
+std::vector<Crossing> planCrossings(const WorldOptions& options, const Street& street) {
+  Random random(hash(options.seed, 0xc055ull));
+  std::vector<Crossing> crossings;
+  for (double s = random.uniform(30, 90); s < street.length() - 15; s += random.uniform(75, 170)) {
+    const double kind = random.uniform();
+    const Crossing crossing{s, kind<0.7, kind> 0.35, random.uniform(2.8, 4.2)};
+    if (street.fresh(s)) crossings.push_back(crossing);
+  }
+  return crossings;
+}
+
+std::vector<SideRoad> sideRoads(const std::vector<Crossing>& crossings, const Street& street,
+                                const WorldOptions& options) {
+  Random random(hash(options.seed, 0x51deull));
+  std::vector<SideRoad> roads;
+  for (const Crossing& crossing : crossings)
+    for (const int side : {1, -1}) {
+      const double skew = random.normal(0, 0.12);
+      if (!(side > 0 ? crossing.left : crossing.right)) continue;
+      const Pose2D start = street.at(crossing.s);
+      const double heading = start.yaw + side * M_PI / 2 + skew;
+      const Eigen::Vector2d a(start.x, start.y);
+      roads.push_back(
+          {a, a + 70 * Eigen::Vector2d(std::cos(heading), std::sin(heading)), crossing.halfWidth});
+    }
+  return roads;
+}
+
+StreetPlan::StreetPlan(const WorldOptions& options, const Street& street, const Terrain& terrain,
+                       const std::vector<Crossing>& crossings)
+    : m_options(options), m_street(street), m_terrain(terrain), m_crossings(crossings) {}
+
+void StreetPlan::furnish() {
+  crossingFurniture();
+  for (const int side : {1, -1}) {
+    lamps(side);
+    avenue(side);
+    signs(side);
+    smallThings(side);
+    lots(side);
+  }
+  const std::size_t permanent = m_nextId;
+  m_nextId = 1000000;  // things of one day
+  addedPoles(permanent);
+  for (const int side : {1, -1}) {
+    parkedVehicles(side);
+    people(side);
+  }
+  std::sort(poles.begin(), poles.end(),
+            [](const TruePole& a, const TruePole& b) { return a.id < b.id; });
+}
+
+Random StreetPlan::stream(std::uint64_t kind, int side, std::uint64_t index) const {
+  return Random(hash(m_options.seed, kind, side + 2, index));
+}
+
+Random StreetPlan::dayStream(std::uint64_t kind, int side, std::uint64_t index) const {
+  return Random(hash(m_options.seed, kind, side + 2, index, 0xda11ull, m_options.day));
+}
+
+double StreetPlan::pavementWidth(int side, double s) const {
+  return stream(0x9a5e, side, static_cast<std::uint64_t>(s / 150)).uniform(2.2, 4.2);
+}
+
+bool StreetPlan::nearCrossing(int side, double s, double gap) const {
+  for (const Crossing& crossing : m_crossings)
+    if ((side > 0 ? crossing.left : crossing.right) &&
+        std::abs(crossing.s - s) < crossing.halfWidth + gap)
+      return true;
+  return false;
+}
+
+Site StreetPlan::site(int side, double s, double lateral) const {
+  const Pose2D pose = m_street.at(s, side * lateral);
+  return {Eigen::Vector3d(pose.x, pose.y, m_terrain.height(pose.x, pose.y)),
+          pose.yaw + (side > 0 ? 0 : M_PI)};
+}
+
+bool StreetPlan::claim(const Site& place, double gap, Ground ground) {
+  const double x = place.base.x(), y = place.base.y(), edge = m_terrain.edge(x, y);
+  if (ground == Ground::road ? edge < -2.6 || edge > -0.6 : edge < 0.25) return false;
+  constexpr double kCell = 4;
+  const auto cellX = static_cast<std::int64_t>(std::floor(x / kCell));
+  const auto cellY = static_cast<std::int64_t>(std::floor(y / kCell));
+  for (std::int64_t i = cellX - 1; i <= cellX + 1; ++i)
+    for (std::int64_t j = cellY - 1; j <= cellY + 1; ++j) {
+      const auto cell = m_taken.find(i * 0x100000000ll + j);
+      if (cell == m_taken.end()) continue;
+      for (const auto& other : cell->second)
+        if (std::hypot(other.x() - x, other.y() - y) < std::max(gap, other.z())) return false;
+    }
+  m_taken[cellX * 0x100000000ll + cellY].emplace_back(x, y, gap);
+  return true;
+}
+
+bool StreetPlan::goneToday(std::uint32_t id) const {
+  return m_options.day != 0 &&
+         Random(hash(m_options.seed, 0x60ull, m_options.day, id)).chance(m_options.removedShare);
+}
+
+void StreetPlan::add(Piece piece) {
+  if (goneToday(piece.object.id)) return;
+  objects.push_back(std::move(piece.object));
+  if (piece.pole && piece.pole->top >= 2) poles.push_back(*piece.pole);
+}
+
+}  // namespace polemcl::sim
