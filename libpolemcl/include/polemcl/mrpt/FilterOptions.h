@@ -5,6 +5,7 @@
 #include <polemcl/core/Types.h>
 #include <polemcl/mrpt/Config.h>
 
+#include <cstdint>
 #include <optional>
 
 namespace polemcl {
@@ -44,7 +45,15 @@ struct StartOptions {
   void validate() const;               ///< \throws Error
 };
 
+/// \brief How often the same drive is localized. `[runs]` in INI files.
+struct RunOptions {
+  int runs = 1;            ///< (paper: 10)
+  std::uint32_t seed = 1;  ///< of the first run; run i uses seed + i
+  void validate() const;   ///< \throws Error
+};
+
 void bind(Binder& binder, FilterOptions& options);  ///< `[filter]`
 void bind(Binder& binder, StartOptions& options);   ///< `[start]`
+void bind(Binder& binder, RunOptions& options);     ///< `[runs]`
 
 }  // namespace polemcl
