@@ -1,6 +1,10 @@
 #pragma once
 /// \file PoleMapBuilder.h
 /// \brief Step C of the paper: detections at known poses -> poles, with counts.
+///
+/// The path is split into sections of equal length (PathSections); detections of different scans
+/// are merged by gated distance (PoleMerging) and averaged by their certainty (PoleFusion); a pole
+/// stays if enough sections in a continuous run saw it.
 
 #include <polemcl/core/Types.h>
 
@@ -10,30 +14,51 @@ namespace polemcl {
 
 /// \brief `[map]` in INI files.
 struct PoleMapOptions {
-  double sectionLength = 1.5;  ///< length of a section of the path, m (paper: 0.25 NCLT, 1.5 KITTI, MulRan)
-  bool everyScan = false;      ///< true: all scans of a section count as one view each; false: its middle scan (paper)
+  /// Length of a section of the path, m (paper: 0.25 NCLT, 1.5 KITTI and MulRan).
+  double sectionLength = 1.5;
+  /// false: the scan nearest to the middle of a section is its one view (paper); true: every scan
+  /// is a view.
+  bool everyScan = false;
   double mergeDistance = 0.5;  ///< detections of one pole lie within this of its mean, m
-  int minCount = 3;            ///< keep poles seen in at least so many occupied sections
-  int maxGap = 2;              ///< largest gap, in *occupied* sections, inside a continuous run
-  double minConfidence = 0;    ///< detections below are not used
-  void validate() const;       ///< \throws Error
+  /// Poles nearer to each other than mergeDistance stay apart when at least this share of the views
+  /// of the one seen more often shows both; otherwise they are one. In (0, 1].
+  double apartShare = 0.25;
+  int minCount = 3;  ///< keep poles seen in at least so many sections of one continuous run
+  int maxGap = 2;    ///< most *occupied* sections in a row that may miss it inside such a run
+  double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
+  /// Standard deviation of the scans' positions, m: added to each detection, so that the nearest
+  /// one does not count alone.
+  double poseSigma = 0.02;
+  /// Standard deviation of the scans' headings, rad (`heading_sigma_deg`): far detections count
+  /// less across the line of sight.
+  double headingSigma = 0.002;
+  void validate() const;  ///< \throws Error
 };
 
 /// \brief One scan's poles at a known pose.
 struct MappingScan {
   Pose2D pose_map_robot;
   std::vector<PoleDetection> poles_robot;
+  /// Where it differs from the scan before, another drive begins: the way between the two is no
+  /// part of the path, and no run continues across.
+  std::uint32_t drive = 0;
 };
 
 struct PoleMapResult {
   std::vector<MapPole> poles;        ///< map frame, sorted by x then y
+  double pathLength = 0;             ///< over all drives, m
   std::size_t sections = 0;          ///< along the path
   std::size_t occupiedSections = 0;  ///< with at least one scan: only these count and break runs
+  std::size_t views = 0;             ///< scans used: one of each occupied section, or all
   std::size_t detections = 0;        ///< used
   std::size_t clusters = 0;          ///< before counting
+  std::size_t bestCount = 0;  ///< most sections of one run that saw a pole; minCount must be met
 };
 
-/// \brief Builds the map. \throws Error on options out of range. Empty input gives an empty map.
+/// \brief Builds the map from scans in the order they were driven. The result does not depend on
+/// the order of the detections in a scan. Empty input gives an empty map.
+/// \throws Error on options out of range, and on a pose or detection that is not finite, or whose
+///         covariance is not symmetric positive semidefinite, naming scan and detection.
 PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapOptions& options);
 
 }  // namespace polemcl
