@@ -95,7 +95,7 @@ class Binder {
  private:
   void number(const Key& key, double& field, const Range& allowed);
   void integer(const Key& key, long long& field, const Range& allowed);
-  [[noreturn]] void refuse(const Key& key, const std::string& value) const;
+  [[noreturn]] void refuse(const Key& key, const std::string& value, const std::string& type) const;
   [[noreturn]] void refuseStruct(const std::string& what) const;
 };
 
@@ -112,6 +112,7 @@ class ConfigFile {
   const mrpt::config::CConfigFileBase& source() const { return *m_source; }
 
  private:
+  friend class ConfigReader;
   ConfigFile() = default;
   std::string m_name;
   std::shared_ptr<mrpt::config::CConfigFileBase> m_source;
@@ -153,7 +154,7 @@ class ConfigReader : public Binder {
 /// reads back as the same struct, bit for bit.
 class ConfigWriter : public Binder {
  public:
-  std::string text() const { return m_text; }
+  std::string text() const;
   /// \brief Writes the file in one piece. \throws Error when it cannot be written.
   void save(const std::string& path) const;
 
@@ -163,7 +164,11 @@ class ConfigWriter : public Binder {
   std::string place() const override;
 
  private:
-  std::string m_text;
+  struct Section {
+    std::string name, comment, lines;
+  };
+  std::vector<Section> m_sections;
+  std::size_t m_open = 0;  ///< index of the open section
 };
 
 template <class Int>

@@ -1,0 +1,123 @@
+#include <polemcl/mrpt/Bindings.h>
+
+namespace polemcl {
+namespace {
+
+const Range positive = Range::above(0), notNegative = Range::atLeast(0),
+            share = Range::between(0, 1);
+
+void bind(Binder& b, PaperOptions& o) {
+  b.section("paper", "Algorithm 1 of the paper, for method = paper");
+  b.integer("rows", o.rows, Range::between(2, 1024), "px", "height of the range image");
+  b.integer("columns", o.columns, Range::between(16, 65536), "px", "width of the range image");
+  b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90), "elevation of the upper border");
+  b.angleDeg("fov_down_deg", o.fovDown, Range::between(-90, 90),
+             "lower border, negative downwards");
+  b.number("min_z_m", o.minZ, Range::any(), "m", "lower cut, see heights_above_ground");
+  b.number("max_z_m", o.maxZ, Range::any(), "m", "upper cut, see heights_above_ground");
+  b.number("max_range_m", o.maxRange, positive, "m", "farther points are not used");
+  b.number("epsilon_m", o.epsilon, positive, "m", "range step inside a cluster");
+  b.integer("min_pixels", o.minPixels, notNegative, "px", "clusters need strictly more");
+  b.integer("max_width_px", o.maxWidthPx, Range::atLeast(1), "px", "widest cluster");
+  b.number("min_aspect", o.minAspect, notNegative, "", "least height / width of a cluster");
+  b.number("foreground", o.foreground, share, "", "least share of pixels not behind a neighbour");
+  b.number("min_top_m", o.minTop, Range::any(), "m", "least height of the top");
+  b.number("max_bottom_m", o.maxBottom, Range::any(), "m", "greatest height of the bottom");
+  b.number("min_height_m", o.minHeight, notNegative, "m", "least top minus bottom");
+  b.number("min_radius_m", o.minRadius, notNegative, "m", "thinner circles are refused");
+  b.number("max_radius_m", o.maxRadius, positive, "m", "thicker circles are refused");
+  b.number("fit_margin_m", o.fitMargin, notNegative, "m", "box of the fit: radius plus this");
+  b.number("fit_max_z_m", o.fitMaxZ, Range::any(), "m", "highest point of the fit");
+  b.integer("min_fit_points", o.minFitPoints, Range::atLeast(3), "", "least points of the fit");
+  b.number("free_ring_m", o.freeRing, notNegative, "m", "width of the free space around a pole");
+  b.number("free_share", o.freeShare, notNegative, "", "points allowed there, of the fitted ones");
+  b.flag("heights_above_ground", o.heightsAboveGround,
+         "true: z + height_m; false: z of the sensor");
+  b.flag("wrap_around", o.wrapAround, "true: the image closes at +-180 deg");
+  b.flag("grow_upwards", o.growUpwards, "true: eight neighbours; false: left, right, below");
+  b.choice("circle_fit", o.circleFit, {"kasa", "taubin", "footprint"}, "how a circle is fitted");
+  b.choice("free_space", o.freeSpace, {"box", "ring"}, "shape of the free space");
+}
+
+void bind(Binder& b, NativeOptions& o) {
+  b.section("native", "Scan lines of real beams, for method = native");
+  b.number("max_width_m", o.maxWidth, positive, "m", "widest slice of a pole on one beam");
+  b.number("edge_step_m", o.edgeStep, positive, "m", "least step to what is behind the edges");
+  b.number("min_top_m", o.minTop, notNegative, "m", "least height of the top above local ground");
+  b.number("max_bottom_m", o.maxBottom, positive, "m", "greatest height of the lowest return");
+  b.number("min_height_m", o.minHeight, notNegative, "m", "least visible height");
+  b.number("min_radius_m", o.minRadius, notNegative, "m", "thinner poles are refused");
+  b.number("max_radius_m", o.maxRadius, positive, "m", "thicker poles are refused");
+  b.number("min_confidence", o.minConfidence, share, "", "poles below are refused");
+  b.number("max_range_m", o.maxRange, positive, "m", "poles farther away are not looked for");
+}
+
+}  // namespace
+
+void bind(Binder& b, SensorOptions& o) {
+  b.section("sensor", "The LiDAR and how it is mounted");
+  b.choice("model", o.model,
+           {"hdl64e", "hdl32e", "vlp16", "os1_64", "os1_128", "os0_64", "table", "uniform"},
+           "beams of a data sheet, elevations_deg, or rows from fov_up_deg to fov_down_deg");
+  b.flag("upside_down", o.upsideDown, "true: the elevations of the model change sign");
+  b.anglesDeg("elevations_deg", o.elevations, Range::between(-90, 90), "beams of model = table");
+  b.integer("rows", o.rows, Range::between(2, 1024), "", "beams of model = uniform");
+  b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90), "topmost beam of model = uniform");
+  b.angleDeg("fov_down_deg", o.fovDown, Range::between(-90, 90), "lowest beam of model = uniform");
+  b.integer("columns", o.columns, Range::between(0, 65536), "",
+            "firing steps a turn, 0: the model's");
+  b.number("height_m", o.height, Range::any(), "m", "optical centre above ground");
+  b.numbers("origin", {&o.originX, &o.originY, &o.originZ}, Range::any(), "m",
+            "optical centre, x y z along the robot's axes from the origin of the clouds");
+  b.number("min_range_m", o.minRange, notNegative, "m", "nearer returns are the vehicle");
+  b.number("max_range_m", o.maxRange, positive, "m", "farther returns are not used");
+  b.check(o);
+}
+
+void bind(Binder& b, ExtractionOptions& o) {
+  b.section("extraction", "How poles are found");
+  b.choice<ExtractionMethod>(
+      "method", o.method,
+      {{ExtractionMethod::paper, "paper"}, {ExtractionMethod::native, "native"}},
+      "the paper's Algorithm 1, or scan lines of real beams");
+  bind(b, o.paper);
+  bind(b, o.native);
+  b.check(o);
+}
+
+void bind(Binder& b, PoleMapOptions& o) {
+  b.section("map", "How a map is built");
+  b.number("section_length_m", o.sectionLength, positive, "m", "length of a section of the path");
+  b.flag("every_scan", o.everyScan, "true: all scans count; false: the middle one of a section");
+  b.number("merge_distance_m", o.mergeDistance, positive, "m", "detections this near are one pole");
+  b.integer("min_count", o.minCount, Range::atLeast(1), "", "sections a pole must be seen in");
+  b.integer("max_gap", o.maxGap, notNegative, "", "occupied sections a run may miss it");
+  b.number("min_confidence", o.minConfidence, share, "", "detections below are not used");
+  b.check(o);
+}
+
+void bind(Binder& b, LikelihoodOptions& o) {
+  b.section("likelihood", "How well detections fit a map at a pose");
+  b.choice<LikelihoodModel>(
+      "model", o.model, {{LikelihoodModel::paper, "paper"}, {LikelihoodModel::mixture, "mixture"}},
+      "Eq. 3 of the paper, or with a share of outliers");
+  b.number("sigma_m", o.sigma, positive, "m", "deviation of a detection from its map pole");
+  b.number("outlier", o.outlier, Range::inside(0, 1), "", "share of detections not in the map");
+  b.number("gate_m", o.gate, positive, "m", "farther poles are no match");
+  b.flag("weighted", o.weighted, "true: each detection's covariance and confidence count");
+  b.check(o);
+}
+
+void bind(Binder& b, MotionOptions& o) {
+  b.section("motion", "Noise of odometry that comes without a covariance");
+  b.number("xy_per_m", o.xyPerMetre, notNegative, "m/m", "sigma of x, y per metre driven");
+  b.number("xy_per_rad", o.xyPerRadian, notNegative, "m/rad", "sigma of x, y per radian turned");
+  b.angleDeg("yaw_per_m_deg", o.yawPerMetre, notNegative, "sigma of the heading per metre driven");
+  b.number("yaw_per_rad", o.yawPerRadian, notNegative, "rad/rad", "the same per radian turned");
+  b.number("min_xy_m", o.minXy, notNegative, "m", "added to sigma of x, y each time");
+  b.angleDeg("min_yaw_deg", o.minYaw, notNegative, "added to sigma of the heading each time");
+  b.number("covariance_factor", o.covarianceFactor, positive, "", "on all covariances, stored too");
+  b.check(o);
+}
+
+}  // namespace polemcl
