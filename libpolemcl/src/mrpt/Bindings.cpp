@@ -1,3 +1,4 @@
+#include <polemcl/core/SensorModel.h>
 #include <polemcl/mrpt/Bindings.h>
 
 namespace polemcl {
@@ -42,12 +43,18 @@ void bind(Binder& b, PaperOptions& o) {
 void bind(Binder& b, NativeOptions& o) {
   b.section("native", "Scan lines of real beams, for method = native");
   b.number("max_width_m", o.maxWidth, positive, "m", "widest slice of a pole on one beam");
+  b.number("connect_step_m", o.connectStep, positive, "m", "greatest step in range in a slice");
   b.number("edge_step_m", o.edgeStep, positive, "m", "least step to what is behind the edges");
+  b.number("stack_reach_m", o.stackReach, positive, "m",
+           "greatest step in the plane between slices");
+  b.number("stack_gap_m", o.stackGap, notNegative, "m", "greatest height between slices of a pole");
   b.number("min_top_m", o.minTop, notNegative, "m", "least height of the top above local ground");
   b.number("max_bottom_m", o.maxBottom, positive, "m", "greatest height of the lowest return");
   b.number("min_height_m", o.minHeight, notNegative, "m", "least visible height");
   b.number("min_radius_m", o.minRadius, notNegative, "m", "thinner poles are refused");
   b.number("max_radius_m", o.maxRadius, positive, "m", "thicker poles are refused");
+  b.integer("min_points", o.minPoints, Range::atLeast(2), "", "least returns of a pole");
+  b.angleDeg("max_tilt_deg", o.maxTilt, Range::between(0, 90), "greatest tilt of the axis");
   b.number("min_confidence", o.minConfidence, share, "", "poles below are refused");
   b.number("max_range_m", o.maxRange, positive, "m", "poles farther away are not looked for");
 }
@@ -56,8 +63,7 @@ void bind(Binder& b, NativeOptions& o) {
 
 void bind(Binder& b, SensorOptions& o) {
   b.section("sensor", "The LiDAR and how it is mounted");
-  b.choice("model", o.model,
-           {"hdl64e", "hdl32e", "vlp16", "os1_64", "os1_128", "os0_64", "table", "uniform"},
+  b.choice("model", o.model, SensorModel::modelNames(),
            "beams of a data sheet, elevations_deg, or rows from fov_up_deg to fov_down_deg");
   b.flag("upside_down", o.upsideDown, "true: the elevations of the model change sign");
   b.anglesDeg("elevations_deg", o.elevations, Range::between(-90, 90), "beams of model = table");
