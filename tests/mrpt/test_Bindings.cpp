@@ -70,20 +70,34 @@ TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
     const std::string key = name.substr(name.find(']') + 1);
     const std::string section = name.substr(0, name.find(']') + 1);
     std::string other;
-    if (value == "true") other = "false";
-    else if (value == "false") other = "true";
-    else if (key == "model" && section == "[sensor]") other = "os1_64";
-    else if (key == "model") other = "paper";
-    else if (key == "method") other = "paper";
-    else if (key == "circle_fit") other = "taubin";
-    else if (key == "free_space") other = "ring";
-    else if (key == "elevations_deg") other = "1 2";
-    else if (key == "origin") other = "1 2 3";
-    else if (key == "edge_step_m") other = "0.5";
-    else if (key == "columns") other = "1024";
-    else if (value.find('.') == std::string::npos) other = std::to_string(std::stoi(value) + 1);
-    else if (value[0] == '-') other = "-1.125";
-    else other = std::to_string(std::stod(value) * 0.875);
+    if (value == "true")
+      other = "false";
+    else if (value == "false")
+      other = "true";
+    else if (key == "model" && section == "[sensor]")
+      other = "os1_64";
+    else if (key == "model")
+      other = "paper";
+    else if (key == "method")
+      other = "paper";
+    else if (key == "circle_fit")
+      other = "taubin";
+    else if (key == "free_space")
+      other = "ring";
+    else if (key == "elevations_deg")
+      other = "1 2";
+    else if (key == "origin")
+      other = "1 2 3";
+    else if (key == "edge_step_m")
+      other = "0.5";
+    else if (key == "columns")
+      other = "1024";
+    else if (value.find('.') == std::string::npos)
+      other = std::to_string(std::stoi(value) + 1);
+    else if (value[0] == '-')
+      other = "-1.125";
+    else
+      other = std::to_string(std::stod(value) * 0.875);
     const All changed = load(section + "\n" + key + " = " + other + "\n");
     const auto after = keys(written(changed));
     ASSERT_EQ(after.size(), before.size());
@@ -126,9 +140,8 @@ TEST(Bindings, ReadsHandPickedValues) {
 
 // What no single range can say is refused by the struct itself, and the message names the file.
 TEST(Bindings, RefusesStructsThatContradictThemselves) {
-  for (const char* text :
-       {"[sensor]\nmodel = table\n", "[sensor]\nmin_range_m = 70\n",
-        "[paper]\nfov_up_deg = -80\n", "[native]\nmin_radius_m = 0.5\n"}) {
+  for (const char* text : {"[sensor]\nmodel = table\n", "[sensor]\nmin_range_m = 70\n",
+                           "[paper]\nfov_up_deg = -80\n", "[native]\nmin_radius_m = 0.5\n"}) {
     try {
       load(text);
       FAIL() << text;
@@ -139,10 +152,10 @@ TEST(Bindings, RefusesStructsThatContradictThemselves) {
 }
 
 TEST(Bindings, RefusesRanges) {
-  for (const char* text : {"[likelihood]\noutlier = 0\n", "[likelihood]\noutlier = 1\n",
-                           "[likelihood]\nsigma_m = 0\n", "[map]\nmin_count = 0\n",
-                           "[map]\nsection_length_m = 0\n", "[paper]\nrows = 1\n",
-                           "[motion]\nxy_per_m = -0.1\n", "[native]\nmin_confidence = 1.1\n"})
+  for (const char* text :
+       {"[likelihood]\noutlier = 0\n", "[likelihood]\noutlier = 1\n", "[likelihood]\nsigma_m = 0\n",
+        "[map]\nmin_count = 0\n", "[map]\nsection_length_m = 0\n", "[paper]\nrows = 1\n",
+        "[motion]\nxy_per_m = -0.1\n", "[native]\nmin_confidence = 1.1\n"})
     EXPECT_THROW(load(text), Error) << text;
 }
 

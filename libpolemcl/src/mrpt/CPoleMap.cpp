@@ -1,0 +1,163 @@
+#include <mrpt/img/color_maps.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/serialization/CArchive.h>
+#include <mrpt/serialization/stl_serialization.h>
+#include <polemcl/core/PoleMerging.h>
+#include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/PoleMapFile.h>
+#include <polemcl/io/PolePositions.h>
+#include <polemcl/mrpt/CObservationPoles.h>
+#include <polemcl/mrpt/CPoleMap.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "PoleDrawing.h"
+
+IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
+
+namespace polemcl {
+
+using mrpt::serialization::CArchive;
+
+namespace {
+
+void write(CArchive& out, const MapPole& pole) {
+  out << pole.x << pole.y << pole.radius << pole.bottom << pole.top << pole.confidence
+      << pole.covariance(0, 0) << pole.covariance(0, 1) << pole.covariance(1, 1) << pole.count;
+}
+
+MapPole readPole(CArchive& in) {
+  MapPole pole;
+  auto& C = pole.covariance;
+  in >> pole.x >> pole.y >> pole.radius >> pole.bottom >> pole.top >> pole.confidence >> C(0, 0) >>
+      C(0, 1) >> C(1, 1) >> pole.count;
+  C(1, 0) = C(0, 1);
+  return pole;
+}
+
+Pose2D planar(const mrpt::poses::CPose3D& pose) {
+  return {pose.x(), pose.y(), pose.yaw()};
+}
+
+void requireUsable(const MapPole& pole, std::size_t i) {
+  const auto& C = pole.covariance;
+  if (!std::isfinite(pole.x) || !std::isfinite(pole.y) || !C.allFinite())
+    throw Error("pole " + std::to_string(i) + ": position and covariance must be finite numbers");
+  if (!(C(0, 0) >= 0 && C(1, 1) >= 0 && C.determinant() >= -1e-12 * C(0, 0) * C(1, 1)))
+    throw Error("pole " + std::to_string(i) + ": the covariance must be positive semidefinite");
+}
+
+}  // namespace
+
+CPoleMap::CPoleMap() : m_index(std::make_shared<PoleIndex>(m_poles)) {}
+
+void CPoleMap::setPoles(std::vector<MapPole> poles) {
+  for (std::size_t i = 0; i < poles.size(); ++i) requireUsable(poles[i], i);
+  auto index = std::make_shared<PoleIndex>(poles);
+  m_poles = std::move(poles);
+  m_index = std::move(index);
+}
+
+void CPoleMap::loadFromPoleMapFile(const std::string& path) {
+  io::PoleMapData data = io::readPoleMap(path);
+  setPoles(std::move(data.poles));
+  info = std::move(data.info);
+}
+
+void CPoleMap::saveToPoleMapFile(const std::string& path) const {
+  io::writePoleMap(path, {m_poles, info});
+}
+
+uint8_t CPoleMap::serializeGetVersion() const {
+  return 0;
+}
+
+void CPoleMap::serializeTo(CArchive& out) const {
+  out << genericMapParams << insertionOptions.mergeDistance << insertionOptions.minConfidence;
+  const auto& l = likelihoodOptions;
+  out << static_cast<std::uint8_t>(l.model) << l.sigma << l.outlier << l.gate << l.weighted;
+  out << info << static_cast<std::uint32_t>(m_poles.size());
+  for (const auto& pole : m_poles) write(out, pole);
+}
+
+void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
+  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  in >> genericMapParams >> insertionOptions.mergeDistance >> insertionOptions.minConfidence;
+  auto& l = likelihoodOptions;
+  l.model = static_cast<LikelihoodModel>(in.ReadAs<std::uint8_t>());
+  in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
+  insertionOptions.validate();
+  l.validate();
+  in >> info;
+  const auto size = in.ReadAs<std::uint32_t>();
+  std::vector<MapPole> poles;
+  // One by one: the size of a damaged file must not decide how much memory is taken.
+  for (std::uint32_t i = 0; i < size; ++i) poles.push_back(readPole(in));
+  setPoles(std::move(poles));
+}
+
+void CPoleMap::internal_clear() {
+  setPoles({});
+  info.clear();
+}
+
+bool CPoleMap::internal_insertObservation(
+    const mrpt::obs::CObservation& obs,
+    const std::optional<const mrpt::poses::CPose3D>& robotPose) {
+  const auto* scan = dynamic_cast<const CObservationPoles*>(&obs);
+  if (!scan) return false;
+  const Pose2D T_map_robot = robotPose ? planar(*robotPose) : Pose2D();
+  const Pose2D T_map_sensor = compose(T_map_robot, scan->planarSensorPose());
+  std::vector<PoleDetection> detections_map;
+  for (const auto& pole : scan->poles)
+    if (pole.confidence >= insertionOptions.minConfidence)
+      detections_map.push_back(moved(T_map_sensor, pole));
+  if (detections_map.empty()) return false;
+  std::vector<MapPole> poles = m_poles;
+  mergeScan(poles, *m_index, detections_map, insertionOptions.mergeDistance);
+  setPoles(std::move(poles));
+  return true;
+}
+
+double CPoleMap::internal_computeObservationLikelihood(
+    const mrpt::obs::CObservation& obs, const mrpt::poses::CPose3D& takenFrom) const {
+  const auto* scan = dynamic_cast<const CObservationPoles*>(&obs);
+  if (!scan) return 0;
+  // In the sensor's own frame: the same value as in the robot frame, without moving every pole.
+  const Pose2D T_map_sensor = compose(planar(takenFrom), scan->planarSensorPose());
+  return logLikelihood(scan->poles, T_map_sensor, *m_index, likelihoodOptions);
+}
+
+bool CPoleMap::internal_canComputeObservationLikelihood(const mrpt::obs::CObservation& obs) const {
+  return dynamic_cast<const CObservationPoles*>(&obs) != nullptr;
+}
+
+std::string CPoleMap::asString() const {
+  return "polemcl::CPoleMap: " + std::to_string(m_poles.size()) + " poles";
+}
+
+void CPoleMap::saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const {
+  saveToPoleMapFile(filNamePrefix + ".polemap");
+  io::writePoleCsv(filNamePrefix + ".csv", m_poles);
+  mrpt::opengl::COpenGLScene scene;
+  scene.insert(getVisualization());
+  io::AtomicFile file(filNamePrefix + ".3Dscene");
+  if (!scene.saveToFile(file.temporaryPath().string()))
+    throw Error(filNamePrefix + ".3Dscene: cannot be written");
+  file.commit();
+}
+
+void CPoleMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& outObj) const {
+  if (!genericMapParams.enableSaveAs3DObject) return;
+  std::uint32_t most = 1;
+  for (const auto& pole : m_poles) most = std::max(most, pole.count);
+  for (std::size_t i = 0; i < m_poles.size(); ++i) {
+    const auto& pole = m_poles[i];
+    const auto share = static_cast<float>(pole.count) / static_cast<float>(most);
+    drawPole(outObj, pole.x, pole.y, pole.radius, pole.bottom, pole.top,
+             mrpt::img::colormap(mrpt::img::cmJET, share), "pole " + std::to_string(i));
+  }
+}
+
+}  // namespace polemcl
