@@ -19,6 +19,15 @@ std::string nameOf(const Source& source) {
   return file ? file->getAssociatedFile() : "map options";
 }
 
+void bind(Binder& b, CPoleMap::TInsertionOptions& o) {
+  b.section("insertion", "How observations are merged into the pole map");
+  b.number("merge_distance", o.mergeDistance, Range::above(0), "m",
+           "a detection this near to a pole is that pole");
+  b.number("min_confidence", o.minConfidence, Range::between(0, 1), "",
+           "detections below are not inserted");
+  b.check(o);
+}
+
 /// Fills options from one section of a configuration that MRPT hands over.
 template <class Options>
 void load(const Source& source, const std::string& section, Options& options) {
@@ -59,15 +68,6 @@ void dump(std::ostream& out, Options options) {
   ConfigWriter writer;
   bind(writer, options);
   out << writer.text();
-}
-
-void bind(Binder& b, CPoleMap::TInsertionOptions& o) {
-  b.section("insertion", "How observations are merged into the pole map");
-  b.number("merge_distance", o.mergeDistance, Range::above(0), "m",
-           "a detection this near to a pole is that pole");
-  b.number("min_confidence", o.minConfidence, Range::between(0, 1), "",
-           "detections below are not inserted");
-  b.check(o);
 }
 
 }  // namespace
