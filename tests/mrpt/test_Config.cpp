@@ -267,6 +267,12 @@ TEST(Config, RefusesToWriteWhatWouldReadDifferently) {
   }
 }
 
+TEST(Config, RefusesToWriteAWordThatIsNotAllowed) {
+  Sample s;
+  s.word = "other";
+  EXPECT_HAS(refusal([&] { written(s); }), "word = other: allowed is one of kasa | taubin");
+}
+
 TEST(Config, SavesAFile) {
   const auto path = std::filesystem::temp_directory_path() / "polemcl_test_Config.ini";
   ConfigWriter writer;

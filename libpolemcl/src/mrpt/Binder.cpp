@@ -134,11 +134,11 @@ void Binder::choice(const std::string& key, std::string& field,
   std::string list;
   for (const auto& word : allowed) list += (list.empty() ? "" : " | ") + word;
   const Key known{key, "", list, comment};
-  const auto text = exchange(known, field);
-  if (!text) return;
-  if (std::find(allowed.begin(), allowed.end(), *text) == allowed.end())
-    refuse(known, *text, "one of");
-  field = *text;
+  // The default too: a struct must not start with a word that its own file would be refused for.
+  const std::string value = exchange(known, field).value_or(field);
+  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
+    refuse(known, value, "one of");
+  field = value;
 }
 
 void Binder::text(const std::string& key, std::string& field, const std::string& comment) {

@@ -35,9 +35,9 @@ void bind(Binder& b, PaperOptions& o) {
   b.flag("heights_above_ground", o.heightsAboveGround,
          "true: z + height_m; false: z of the sensor");
   b.flag("wrap_around", o.wrapAround, "true: the image closes at +-180 deg");
-  b.flag("grow_upwards", o.growUpwards, "true: eight neighbours; false: left, right, below");
-  b.choice("circle_fit", o.circleFit, {"kasa", "taubin", "footprint"}, "how a circle is fitted");
-  b.choice("free_space", o.freeSpace, {"box", "ring"}, "shape of the free space");
+  b.flag("grow_upwards", o.growUpwards, "true: clusters grow up too; false: left, right, below");
+  b.choice("circle_fit", o.circleFit, {"kasa", "taubin", "silhouette"}, "how a circle is fitted");
+  b.choice("free_space", o.freeSpace, {"corners", "ring"}, "shape of the free space");
 }
 
 void bind(Binder& b, NativeOptions& o) {
@@ -99,7 +99,6 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.integer("min_count", o.minCount, Range::atLeast(1), "", "sections a pole must be seen in");
   b.integer("max_gap", o.maxGap, notNegative, "", "occupied sections a run may miss it");
   b.number("min_confidence", o.minConfidence, share, "", "detections below are not used");
-  b.check(o);
 }
 
 void bind(Binder& b, LikelihoodOptions& o) {

@@ -9,6 +9,7 @@
 #include <polemcl/mrpt/CObservationPoles.h>
 #include <polemcl/mrpt/CPoleMap.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
