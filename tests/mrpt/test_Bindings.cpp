@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <polemcl/io/TextFile.h>
 #include <polemcl/mrpt/Bindings.h>
 
 namespace polemcl {
@@ -48,9 +49,8 @@ std::vector<std::pair<std::string, std::string>> keys(const std::string& text) {
       continue;
     }
     const auto equals = line.find(" = ");
-    const auto comment = line.find("  //");
-    result.emplace_back(section + line.substr(0, equals),
-                        line.substr(equals + 3, comment - equals - 3));
+    const std::string value = line.substr(equals + 3, line.find("  //") - equals - 3);
+    result.emplace_back(section + line.substr(0, equals), io::trimmed(value));
   }
   return result;
 }
@@ -67,6 +67,7 @@ TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
   const auto before = keys(base);
   ASSERT_GT(before.size(), 60u);
   for (const auto& [name, value] : before) {
+    SCOPED_TRACE(name + " = " + value);
     const std::string key = name.substr(name.find(']') + 1);
     const std::string section = name.substr(0, name.find(']') + 1);
     std::string other;
