@@ -13,27 +13,38 @@ int GroundGrid::sector(float azimuth) {
 }
 
 int GroundGrid::ring(float rho) {
-  return std::min(kRings - 1, static_cast<int>(rho / kRingWidth));
+  return std::min(kRings - 1, static_cast<int>(rho * (1 / kRingWidth)));
 }
 
-void GroundGrid::build(const ScanLines& lines, float sensorHeight) {
-  constexpr float kNone = std::numeric_limits<float>::infinity();
-  constexpr int kCandidates = 2;  // the lowest and the second lowest: one stray return is no ground
+namespace {
+constexpr float kNone = std::numeric_limits<float>::infinity();
+constexpr int kCandidates = 2;  // the lowest and the second lowest: one stray return is no ground
+}  // namespace
+
+void GroundGrid::collectLowest(const ScanLines& lines, float sensorHeight) {
+  static_assert(ScanLines::kBuckets % kSectors == 0, "sectors are whole buckets");
+  constexpr int kColumns = ScanLines::kBuckets / kSectors;
   m_lowest.assign(kSectors * kRings * kCandidates, kNone);
+  // Nothing far above the sensor's foot plus what a slope can climb is ground.
   const float highest = 1.0f - 0.5f * sensorHeight;
   for (int row = 0; row < lines.rows(); ++row) {
-    for (const Return* r = lines.begin(row); r != lines.end(row); ++r) {
-      // Nothing far above the sensor's foot plus what a slope can climb is ground.
-      if (r->z > highest + kMaxSlope * r->rho) continue;
-      float* cell = &m_lowest[(sector(r->azimuth) * kRings + ring(r->rho)) * kCandidates];
-      if (r->z < cell[0]) {
-        cell[1] = cell[0];
-        cell[0] = r->z;
-      } else if (r->z < cell[1]) {
-        cell[1] = r->z;
+    for (int s = 0; s < kSectors; ++s) {
+      const Return* end = lines.columnBegin(row, (s + 1) * kColumns);
+      float* cells = &m_lowest[s * kRings * kCandidates];
+      for (const Return* r = lines.columnBegin(row, s * kColumns); r != end; ++r) {
+        if (r->z > highest + kMaxSlope * r->rho) continue;
+        float* cell = cells + ring(r->rho) * kCandidates;
+        if (r->z < cell[1]) {
+          cell[1] = std::max(r->z, cell[0]);
+          cell[0] = std::min(r->z, cell[0]);
+        }
       }
     }
   }
+}
+
+void GroundGrid::build(const ScanLines& lines, float sensorHeight) {
+  collectLowest(lines, sensorHeight);
   for (int s = 0; s < kSectors; ++s) {
     float inner = -sensorHeight;
     float reach = kSlack + 0.35f;  // the mounting height is only nominal, and the vehicle pitches

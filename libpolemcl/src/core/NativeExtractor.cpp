@@ -10,6 +10,7 @@ NativeExtractor::NativeExtractor(const SensorOptions& sensor, const NativeOption
       m_options(options),
       m_sensor(sensor),
       m_lines(m_sensor),
+      m_finder(m_sensor, options),
       m_stacker(m_sensor, options) {}
 
 void NativeExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
@@ -22,11 +23,12 @@ void NativeExtractor::extract(const PointsView& points, std::vector<PoleDetectio
   report.outOfRange = counts.outOfRange;
   m_ground.build(m_lines, static_cast<float>(m_sensorOptions.height));
   report.ground = m_ground.median();
-  findSlices(m_lines, m_sensor, m_options, m_slices);
-  report.candidates = m_stacker.stack(m_slices);
-  for (std::size_t i = 0; i < report.candidates; ++i) {
+  m_finder.find(m_lines, m_slices);
+  const std::vector<Stack>& stacks = m_stacker.stack(m_slices);
+  report.candidates = stacks.size();
+  for (const Stack& stack : stacks) {
     PoleDetection pole;
-    const Refusal refusal = examine(m_stacker.at(i), pole);
+    const Refusal refusal = examine(stack, pole);
     if (refusal == Refusal::count_)
       poles.push_back(pole);
     else
@@ -37,68 +39,71 @@ void NativeExtractor::extract(const PointsView& points, std::vector<PoleDetectio
 /// The slices of the bare trunk: those not much wider than the slimmer ones (a sign is wider).
 void NativeExtractor::selectForFit(const Stack& stack) {
   m_widths.clear();
-  for (auto i : stack.slices)
-    m_widths.push_back(m_slices[i].rho * (m_slices[i].azimuthEnd - m_slices[i].azimuthBegin));
-  std::vector<float>& sorted = m_widths;
-  const std::size_t middle = (sorted.size() - 1) * 4 / 10;
-  std::nth_element(sorted.begin(), sorted.begin() + middle, sorted.end());
-  const float typical = sorted[middle];
+  for (auto i : stack) m_widths.push_back(m_slices[i].width());
+  const std::size_t middle = (m_widths.size() - 1) * 4 / 10;
+  std::nth_element(m_widths.begin(), m_widths.begin() + middle, m_widths.end());
+  const float typical = m_widths[middle];
   m_fitSlices.clear();
-  for (auto i : stack.slices) {
-    const Slice& slice = m_slices[i];
-    const float width = slice.rho * (slice.azimuthEnd - slice.azimuthBegin);
-    const float column = slice.rho * static_cast<float>(m_sensor.columnAngle());
-    if (width <= 1.4f * typical + 1.5f * column) m_fitSlices.push_back(i);
+  for (auto i : stack) {
+    const float column = m_slices[i].rho * static_cast<float>(m_sensor.columnAngle());
+    if (m_slices[i].width() <= 1.4f * typical + 1.5f * column) m_fitSlices.push_back(i);
   }
 }
 
+/// Cheap tests first; the fit, which costs most, comes last.
 Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
-  const Slice& highest = m_slices[stack.slices.front()];
-  const Slice& lowest = m_slices[stack.slices.back()];
-  std::uint32_t points = 0;
-  for (auto i : stack.slices) points += m_slices[i].count;
-  if (points < static_cast<std::uint32_t>(m_options.minPoints)) return Refusal::tooFewPoints;
-  if (highest.z - lowest.z < m_options.minHeight) return Refusal::tooShort;
+  const StackShape shape = measureShape(m_slices, stack);
+  if (shape.points < m_options.minPoints) return Refusal::tooFewPoints;
+  if (shape.high - shape.low < m_options.minHeight) return Refusal::tooShort;
+  const Slice& lowest = m_slices[stack.bottom()];
+  const float ground = m_ground.at(0.5f * (lowest.azimuthBegin + lowest.azimuthEnd), lowest.rho);
+  if (lowest.z - ground > m_options.maxBottom) return Refusal::startsTooHigh;
+  if (shape.tilt > m_options.maxTilt && shape.high - shape.low > 0.8) return Refusal::tilted;
+  if (shape.scatter > m_options.maxScatter) return Refusal::notStraight;
 
   selectForFit(stack);
-  const auto fit =
-      fitPole(m_lines, m_slices, m_fitSlices, static_cast<float>(m_sensor.columnAngle()));
+  const float column = static_cast<float>(m_sensor.columnAngle());
+  const PoleAxis axis = roughAxis(m_slices, m_fitSlices, column);
+  const PoleEvidence evidence =
+      gatherEvidence(m_lines, m_sensor, m_ground, m_slices, stack, shape, axis);
+  // Between the highest return and the first beam that passed over, the top is anywhere.
+  const double top =
+      std::isfinite(evidence.topBound) ? 0.5 * (evidence.top + evidence.topBound) : 1e9;
+  if (std::max<double>(top, evidence.top) < m_options.minTop) return Refusal::tooLow;
+  const double odds = score(stack, shape, evidence);
+  const auto confidence = [](double logOdds) { return 1 / (1 + std::exp(-logOdds)); };
+  if (confidence(odds) < m_options.minConfidence) return Refusal::lowConfidence;
+
+  const auto fit = fitPole(m_lines, m_slices, m_fitSlices, column);
   if (!fit || fit->radius < m_options.minRadius || fit->radius > m_options.maxRadius)
     return Refusal::badFit;
-
-  const PoleEvidence e = gatherEvidence(m_lines, m_sensor, m_ground, m_slices, stack, *fit);
-  // Between the highest return and the first beam that passed over, the top is anywhere.
-  const double top = std::isfinite(e.topBound) ? 0.5 * (e.top + e.topBound) : 1e9;
-  if (std::max<double>(top, e.top) < m_options.minTop) return Refusal::tooLow;
-  if (e.bottom > m_options.maxBottom) return Refusal::startsTooHigh;
-  if (e.tilt > m_options.maxTilt && e.slimHeight > 0.8) return Refusal::tilted;
-
-  pole.confidence = confidence(e, *fit);
+  pole.confidence = confidence(odds - 20 * std::max(0.f, fit->residual - 0.02f));
   if (pole.confidence < m_options.minConfidence) return Refusal::lowConfidence;
   pole.x = fit->x;
   pole.y = fit->y;
   pole.radius = fit->radius;
-  pole.bottom = e.bottom;
-  pole.top = e.top;
+  pole.bottom = evidence.bottom;
+  pole.top = evidence.top;
   pole.covariance = fit->covariance;
-  pole.points = points;
+  pole.points = static_cast<std::uint32_t>(shape.points);
   return Refusal::count_;
 }
 
-double NativeExtractor::confidence(const PoleEvidence& e, const PoleFit& fit) const {
-  const double rows = e.slices + e.rowsPassed + e.rowsWide;
-  double score = 0.5;
-  score += 1.2 * std::log(e.slices) + 0.3 * std::log(e.points);
-  score += 0.6 * std::min(3.f, e.slimHeight);
-  score -= 6.0 * e.rowsPassed / rows;
-  score -= 2.5 * e.rowsWide / rows;
-  score -= 3.0 * e.rowsCluttered / e.slices;
-  score -= 1.5 * (1 - static_cast<double>(e.wholeSlices) / e.slices);
-  score -= 18 * e.scatter;
-  score -= 20 * std::max(0.f, fit.residual - 0.02f);
-  score -= 6 * e.widthSpread;
-  if (e.top < m_options.minTop) score -= 1.0;
-  return 1 / (1 + std::exp(-score));
+double NativeExtractor::score(const Stack& stack, const StackShape& shape,
+                              const PoleEvidence& e) const {
+  const double slices = static_cast<double>(stack.count);
+  const double rows = slices + e.rowsPassed + e.rowsWide;
+  double odds = 0.5;
+  odds += 1.2 * std::log(slices) + 0.3 * std::log(shape.points);
+  odds += 0.6 * std::min(3.f, shape.high - shape.low);
+  odds -= 6.0 * e.rowsPassed / rows;
+  odds -= 2.5 * e.rowsWide / rows;
+  odds -= 3.0 * e.rowsCluttered / slices;
+  odds -= 1.5 * (1 - shape.wholeSlices / slices);
+  odds -= 18 * shape.scatter;
+  odds -= 6 * shape.widthSpread;
+  if (e.top < m_options.minTop) odds -= 1.0;
+  return odds;
 }
 
 }  // namespace polemcl

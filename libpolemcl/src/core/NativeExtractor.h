@@ -17,13 +17,15 @@ class NativeExtractor {
   /// \return The reason of the refusal, or Refusal::count_ when `pole` was filled.
   Refusal examine(const Stack& stack, PoleDetection& pole);
   void selectForFit(const Stack& stack);
-  double confidence(const PoleEvidence& evidence, const PoleFit& fit) const;
+  /// Log odds of a pole from all but the fit.
+  double score(const Stack& stack, const StackShape& shape, const PoleEvidence& evidence) const;
 
   SensorOptions m_sensorOptions;
   NativeOptions m_options;
   SensorModel m_sensor;
   ScanLines m_lines;
   GroundGrid m_ground;
+  SliceFinder m_finder;
   SliceStacker m_stacker;
   std::vector<Slice> m_slices;
   std::vector<std::uint32_t> m_fitSlices;

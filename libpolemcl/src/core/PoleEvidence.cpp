@@ -13,14 +13,22 @@ constexpr float kNear =
 constexpr float kRingInner = 0.15f;  ///< m outside the radius: mixed pixels end here
 constexpr float kRingOuter = 0.55f;  ///< m outside the radius
 
+/// What one beam meets at a candidate's place.
+enum class Meeting {
+  near,      ///< a return at the place
+  passed,    ///< a return from behind: the beam went through
+  empty,     ///< no return at all
+  occluded,  ///< a return from before it
+};
+
 /// The candidate's place, and questions to single rows about it.
 class Place {
  public:
-  Place(const ScanLines& lines, const SensorModel& sensor, const PoleFit& fit)
+  Place(const ScanLines& lines, const SensorModel& sensor, const PoleAxis& axis)
       : m_lines(lines),
-        m_fit(fit),
-        m_rho(std::hypot(fit.x, fit.y)),
-        m_bearing(std::atan2(fit.y, fit.x)),
+        m_axis(axis),
+        m_rho(std::sqrt(axis.x * axis.x + axis.y * axis.y)),
+        m_bearing(std::atan2(axis.y, axis.x)),
         m_column(static_cast<float>(sensor.columnAngle())) {}
   float rho() const { return m_rho; }
   float bearing() const { return m_bearing; }
@@ -38,9 +46,9 @@ class Place {
 
   Meeting meet(int row, float* z) const {
     Meeting meeting = Meeting::empty;
-    around(row, std::max(m_fit.radius, 0.7f * m_column * m_rho),
+    around(row, std::max(m_axis.radius, 0.7f * m_column * m_rho),
            [&](const Return& r, float distance) {
-             if (distance < m_fit.radius + kNear) {
+             if (distance < m_axis.radius + kNear) {
                *z = r.z;
                meeting = Meeting::near;
              } else if (meeting != Meeting::near && r.rho < m_rho) {
@@ -54,8 +62,8 @@ class Place {
 
   bool cluttered(int row) const {
     int found = 0;
-    around(row, m_fit.radius + kRingOuter, [&](const Return&, float distance) {
-      found += distance > m_fit.radius + kRingInner && distance < m_fit.radius + kRingOuter;
+    around(row, m_axis.radius + kRingOuter, [&](const Return&, float distance) {
+      found += distance > m_axis.radius + kRingInner && distance < m_axis.radius + kRingOuter;
     });
     return found > 0;
   }
@@ -66,49 +74,15 @@ class Place {
     const Return* end = m_lines.end(row);
     for (const Return* r = m_lines.begin(row) + m_lines.lowerBound(row, from);
          r < end && r->azimuth <= to; ++r) {
-      const float dx = r->rho * std::cos(r->azimuth) - m_fit.x;
-      const float dy = r->rho * std::sin(r->azimuth) - m_fit.y;
+      const float dx = m_lines.x(*r) - m_axis.x;
+      const float dy = m_lines.y(*r) - m_axis.y;
       f(*r, std::sqrt(dx * dx + dy * dy));
     }
   }
   const ScanLines& m_lines;
-  const PoleFit& m_fit;
+  const PoleAxis& m_axis;
   float m_rho, m_bearing, m_column;
 };
-
-/// Straight line through the slices' middles: scatter and tilt.
-void line(const std::vector<Slice>& slices, const Stack& stack, PoleEvidence& evidence) {
-  const float n = static_cast<float>(stack.slices.size());
-  float mz = 0, mx = 0, my = 0, zz = 0, zx = 0, zy = 0;
-  for (auto i : stack.slices) mz += slices[i].z / n, mx += slices[i].x / n, my += slices[i].y / n;
-  for (auto i : stack.slices) {
-    const float z = slices[i].z - mz;
-    zz += z * z;
-    zx += z * (slices[i].x - mx);
-    zy += z * (slices[i].y - my);
-  }
-  const float ax = zz > 0 ? zx / zz : 0, ay = zz > 0 ? zy / zz : 0;
-  float sum = 0;
-  for (auto i : stack.slices) {
-    const float z = slices[i].z - mz;
-    const float ex = slices[i].x - mx - ax * z, ey = slices[i].y - my - ay * z;
-    sum += ex * ex + ey * ey;
-  }
-  // Two parameters were fitted per axis: with two slices nothing is left to judge by.
-  evidence.scatter = n > 2 ? std::sqrt(sum / (n - 2)) : 0;
-  evidence.tilt = std::atan(std::hypot(ax, ay));
-}
-
-void widths(const std::vector<Slice>& slices, const Stack& stack, PoleEvidence& evidence) {
-  float sum = 0, squares = 0, n = 0;
-  for (auto i : stack.slices) {
-    const float width = slices[i].rho * (slices[i].azimuthEnd - slices[i].azimuthBegin);
-    sum += width;
-    squares += width * width;
-    n += 1;
-  }
-  evidence.widthSpread = std::sqrt(std::max(0.f, squares / n - sum / n * sum / n));
-}
 
 /// Walks up from the topmost slice while something stands there; one silent row may interrupt it.
 void top(const Place& place, const SensorModel& sensor, int row, float ground,
@@ -136,36 +110,61 @@ void top(const Place& place, const SensorModel& sensor, int row, float ground,
 
 }  // namespace
 
+StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack) {
+  StackShape shape;
+  shape.low = slices[stack.bottom()].z;
+  shape.high = slices[stack.top()].z;
+  const float n = static_cast<float>(stack.count);
+  float mz = 0, mx = 0, my = 0, mw = 0;
+  for (auto i : stack) {
+    const Slice& slice = slices[i];
+    shape.points += static_cast<int>(slice.count);
+    shape.wholeSlices += slice.whole();
+    mz += slice.z / n;
+    mx += slice.x / n;
+    my += slice.y / n;
+    mw += slice.width() / n;
+  }
+  float zz = 0, zx = 0, zy = 0, xx = 0, yy = 0, ww = 0;
+  for (auto i : stack) {
+    const Slice& slice = slices[i];
+    const float z = slice.z - mz, x = slice.x - mx, y = slice.y - my, w = slice.width() - mw;
+    zz += z * z;
+    zx += z * x;
+    zy += z * y;
+    xx += x * x;
+    yy += y * y;
+    ww += w * w;
+  }
+  const float ax = zz > 0 ? zx / zz : 0, ay = zz > 0 ? zy / zz : 0;
+  // Two parameters were fitted per axis: with two slices nothing is left to judge by.
+  const float rest = xx + yy - ax * zx - ay * zy;
+  shape.scatter = n > 2 ? std::sqrt(std::max(0.f, rest) / (n - 2)) : 0;
+  shape.tilt = std::atan(std::sqrt(ax * ax + ay * ay));
+  shape.widthSpread = std::sqrt(ww / n);
+  return shape;
+}
+
 PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
                             const GroundGrid& ground, const std::vector<Slice>& slices,
-                            const Stack& stack, const PoleFit& fit) {
-  const Place place(lines, sensor, fit);
+                            const Stack& stack, const StackShape& shape, const PoleAxis& axis) {
+  const Place place(lines, sensor, axis);
   const float groundZ = ground.at(place.bearing(), place.rho());
   PoleEvidence e;
-  e.slices = static_cast<int>(stack.slices.size());
-  float low = kInfinity, high = -kInfinity;
-  int expected = slices[stack.slices.front()].row;
-  for (auto i : stack.slices) {
-    const Slice& slice = slices[i];
-    e.points += static_cast<int>(slice.count);
-    e.wholeSlices += slice.whole();
-    low = std::min(low, slice.z);
-    high = std::max(high, slice.z);
-    for (; expected < slice.row; ++expected) {
+  int expected = slices[stack.top()].row;
+  for (auto i : stack) {
+    for (; expected < slices[i].row; ++expected) {
       float z = 0;
       const Meeting meeting = place.meet(expected, &z);
       e.rowsPassed += meeting == Meeting::passed || meeting == Meeting::empty;
       e.rowsWide += meeting == Meeting::near;
     }
-    expected = slice.row + 1;
-    e.rowsCluttered += place.cluttered(slice.row);
+    ++expected;
+    e.rowsCluttered += place.cluttered(slices[i].row);
   }
-  e.slimHeight = high - low;
-  e.bottom = low - groundZ;
-  e.top = high - groundZ;
-  top(place, sensor, slices[stack.slices.front()].row, groundZ, e);
-  line(slices, stack, e);
-  widths(slices, stack, e);
+  e.bottom = shape.low - groundZ;
+  e.top = shape.high - groundZ;
+  top(place, sensor, slices[stack.top()].row, groundZ, e);
   return e;
 }
 

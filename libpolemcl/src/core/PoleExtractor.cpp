@@ -29,6 +29,8 @@ const char* name(Refusal reason) {
       return "not_free";
     case Refusal::tilted:
       return "tilted";
+    case Refusal::notStraight:
+      return "not_straight";
     case Refusal::lowConfidence:
       return "low_confidence";
     case Refusal::count_:

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ScanKernels.h"
+
 namespace polemcl {
 
 ScanLines::ScanLines(const SensorModel& sensor)
-    : m_sensor(sensor), m_rows(sensor.rows()), m_bucketStart(bucket(m_rows, 0) + 1) {}
+    : m_sensor(sensor), m_rows(sensor.rows()), m_bucketStart(bucket(m_rows, 0) + 2) {}
 
 int ScanLines::bucketColumn(float azimuth) {
   constexpr float kPerRadian = static_cast<float>(kBuckets / (2 * M_PI));
@@ -16,45 +18,29 @@ int ScanLines::bucketColumn(float azimuth) {
 
 const ScanLines::Counts& ScanLines::build(const PointsView& points, float minRange,
                                           float maxRange) {
-  m_counts = {};
-  classify(points, minRange, maxRange);
+  m_points = points;
+  if (m_key.size() < points.size + kKernelPadding) {
+    m_key.resize(points.size + kKernelPadding);
+    m_azimuth.resize(points.size + kKernelPadding);
+    m_rho.resize(points.size + kKernelPadding);
+  }
+  m_counts = classifyPoints(points, m_sensor.lookup(), kBuckets, minRange, maxRange,
+                            {m_key.data(), m_azimuth.data(), m_rho.data()});
 
+  // Counting sort. Counts enter two places late: summed up, a bucket's start stands one place late,
+  // and filling, which moves it on to the next bucket's start, leaves all of them where they
+  // belong.
   std::fill(m_bucketStart.begin(), m_bucketStart.end(), 0u);
   for (std::size_t i = 0; i < points.size; ++i)
-    if (m_key[i] >= 0) ++m_bucketStart[m_key[i] + 1];
+    if (m_key[i] >= 0) ++m_bucketStart[m_key[i] + 2];
   for (std::size_t b = 1; b < m_bucketStart.size(); ++b) m_bucketStart[b] += m_bucketStart[b - 1];
-  m_counts.used = m_bucketStart.back();
-
-  m_returns.resize(m_counts.used);
+  if (m_returns.size() < m_counts.used) m_returns.resize(m_counts.used + m_counts.used / 8);
   for (std::size_t i = 0; i < points.size; ++i)
-    if (m_key[i] >= 0) m_returns[m_bucketStart[m_key[i]]++] = m_scratch[i];
-  // Filling moved every start to its bucket's end, which is the next one's start: shift back.
-  for (std::size_t b = m_bucketStart.size() - 1; b > 0; --b)
-    m_bucketStart[b] = m_bucketStart[b - 1];
-  m_bucketStart[0] = 0;
+    if (m_key[i] >= 0)
+      m_returns[m_bucketStart[m_key[i] + 1]++] = {m_azimuth[i], m_rho[i], points.z[i],
+                                                  static_cast<std::uint32_t>(i)};
   sortBuckets();
   return m_counts;
-}
-
-void ScanLines::classify(const PointsView& points, float minRange, float maxRange) {
-  m_key.resize(points.size);
-  m_scratch.resize(points.size);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const float x = points.x[i], y = points.y[i], z = points.z[i];
-    const float rho = std::sqrt(x * x + y * y);
-    m_key[i] = -1;
-    if (!std::isfinite(rho) || !std::isfinite(z) || (rho == 0.f && z == 0.f)) {
-      ++m_counts.invalid;
-    } else if (rho < minRange || rho > maxRange) {
-      ++m_counts.outOfRange;
-    } else if (const int row = m_sensor.row(rho, z); row < 0) {
-      ++m_counts.outOfView;
-    } else {
-      const float azimuth = std::atan2(y, x);
-      m_key[i] = static_cast<std::int32_t>(bucket(row, bucketColumn(azimuth)));
-      m_scratch[i] = {azimuth, rho, z, static_cast<std::uint32_t>(i)};
-    }
-  }
 }
 
 void ScanLines::sortBuckets() {

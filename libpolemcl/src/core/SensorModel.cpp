@@ -114,40 +114,35 @@ SensorModel::SensorModel(const SensorOptions& options) {
                                     : std::atan(m_beams[a].slope) - std::atan(m_beams[b].slope));
   }
   const int split = static_cast<int>(upper.size());
-  buildBlock(0, split - 1);
-  if (lower.empty()) {
-    m_splitSlope = -1e9f;
-  } else {
-    buildBlock(split, rows() - 1);
-    m_splitSlope = static_cast<float>((m_beams[split - 1].slope + m_beams[split].slope) / 2);
-    m_splitOffset = static_cast<float>((m_beams[split - 1].offset + m_beams[split].offset) / 2);
-  }
+  m_lookup.cellsPerSlope = static_cast<float>(1 / kCellSlope);
+  buildBlock(0, 0, split - 1);
+  if (lower.empty()) return;
+  buildBlock(1, split, rows() - 1);
+  m_lookup.splitSlope = static_cast<float>((m_beams[split - 1].slope + m_beams[split].slope) / 2);
+  m_lookup.splitOffset =
+      static_cast<float>((m_beams[split - 1].offset + m_beams[split].offset) / 2);
 }
 
-void SensorModel::buildBlock(int firstRow, int lastRow) {
+void SensorModel::buildBlock(int block, int firstRow, int lastRow) {
   // The outermost beams accept as much beyond themselves as half their gap to the next, 0.3° at
   // least.
-  const double gap =
-      firstRow == lastRow ? 0.02 : m_beams[firstRow].slope - m_beams[firstRow + 1].slope;
-  const double endGap =
-      firstRow == lastRow ? 0.02 : m_beams[lastRow - 1].slope - m_beams[lastRow].slope;
-  const double top = m_beams[firstRow].slope + std::max(0.5 * gap, 0.005);
-  const double bottom = m_beams[lastRow].slope - std::max(0.5 * endGap, 0.005);
-  Block block;
-  block.offset = static_cast<float>(m_beams[firstRow].offset);
-  block.minSlope = static_cast<float>(bottom);
-  block.cellsPerSlope = static_cast<float>(1 / kCellSlope);
+  const double topGap = m_beams[firstRow].slope - m_beams[firstRow + 1].slope;
+  const double bottomGap = m_beams[lastRow - 1].slope - m_beams[lastRow].slope;
+  const double top = m_beams[firstRow].slope + std::max(0.5 * topGap, 0.005);
+  const double bottom = m_beams[lastRow].slope - std::max(0.5 * bottomGap, 0.005);
   const int cells = static_cast<int>(std::ceil((top - bottom) / kCellSlope));
-  block.row.resize(cells);
+  m_lookup.offset[block] = static_cast<float>(m_beams[firstRow].offset);
+  m_lookup.minSlope[block] = static_cast<float>(bottom);
+  m_lookup.cells[block] = static_cast<float>(cells);
+  m_lookup.base[block] = static_cast<std::int32_t>(m_lookup.row.size());
   int row = lastRow;
   for (int i = 0; i < cells; ++i) {
     const double slope = bottom + (i + 0.5) * kCellSlope;
     while (row > firstRow &&
            std::abs(m_beams[row - 1].slope - slope) <= std::abs(m_beams[row].slope - slope))
       --row;
-    block.row[i] = static_cast<std::int16_t>(row);
+    m_lookup.row.push_back(row);
   }
-  m_blocks.push_back(std::move(block));
 }
 
 void SensorOptions::validate() const {

@@ -1,113 +1,136 @@
 #include <polemcl/core/Slices.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "ScanKernels.h"
 
 namespace polemcl {
 namespace {
 
 constexpr float kTurn = static_cast<float>(2 * M_PI);
 
-/// One row with wrapped indexing and its rules of connection.
-class RowScanner {
+struct Limits {
+  float gap;       ///< rad: neighbours farther apart have missing returns between them
+  float step;      ///< m: greatest step in range inside a run
+  float edge;      ///< m: least step to what lies behind
+  float maxWidth;  ///< m
+  float maxRange;  ///< m
+};
+
+/// One row, its indices wrapped where a run or a neighbour crosses the seam.
+class Row {
  public:
-  RowScanner(const ScanLines& lines, int row, const SensorModel& sensor,
-             const NativeOptions& options)
-      : m_returns(lines.begin(row)),
-        m_size(lines.size(row)),
-        m_row(row),
-        m_gap(2.6f * static_cast<float>(sensor.columnAngle())),
-        m_step(static_cast<float>(options.connectStep)),
-        m_edge(static_cast<float>(options.edgeStep)),
-        m_maxWidth(static_cast<float>(options.maxWidth)),
-        m_maxRange(static_cast<float>(options.maxRange)) {}
+  Row(const ScanLines& lines, int row, const Limits& limits)
+      : m_returns(lines.begin(row)), m_size(lines.size(row)), m_row(row), m_limits(limits) {}
 
-  void scan(std::vector<Slice>& slices) const {
-    if (m_size == 0) return;
-    std::size_t start = 0;  // the first return after a break, so that no run straddles the seam
-    while (start < m_size && connected(start + m_size - 1, start)) ++start;
-    if (start == m_size) return;  // one closed ring: no ends, no pole
-    for (std::size_t i = start; i < start + m_size;) {
-      std::size_t last = i;
-      while (last + 1 < start + m_size && connected(last, last + 1)) ++last;
-      consider(i, last, slices);
-      i = last + 1;
-    }
+  std::size_t size() const { return m_size; }
+  const Return* returns() const { return m_returns; }
+
+  /// True when the last and the first return of the row are neighbours on one surface.
+  bool closed() const {
+    const Return &a = m_returns[m_size - 1], &b = m_returns[0];
+    return std::abs(a.rho - b.rho) < m_limits.step && b.azimuth + kTurn - a.azimuth < m_limits.gap;
   }
 
- private:
-  const Return& at(std::size_t i) const {
-    return m_returns[i < m_size ? i : i < 2 * m_size ? i - m_size : i - 2 * m_size];
-  }
-  /// Azimuth step from return i to its neighbour j >= i, positive across the seam too.
-  float turn(std::size_t i, std::size_t j) const {
-    const float step = at(j).azimuth - at(i).azimuth;
-    return step < 0 || (step == 0 && i != j && at(i).point == at(j).point) ? step + kTurn : step;
-  }
-  bool connected(std::size_t i, std::size_t j) const {
-    const Return &a = at(i), &b = at(j);
-    if (!(std::abs(a.rho - b.rho) < m_step)) return false;
-    const float step = turn(i, j);
-    return step < m_gap || (step < 2 * m_gap && step * a.rho < 0.15f);
-  }
-
-  /// What is beside return `end` when walking outwards with `direction` (+1 left, -1 right).
-  Side side(std::size_t end, int direction) const {
-    const float rho = at(end).rho;
-    std::size_t inner = end;
-    for (int k = 0; k < 2;
-         ++k) {  // a mixed pixel may stand between the edge and what lies behind it
-      const std::size_t next = inner + m_size + direction;
-      const float step =
-          direction > 0 ? turn(inner % m_size, next % m_size) : turn(next % m_size, inner % m_size);
-      if (step > m_gap) return Side::free;
-      const float behind = at(next % m_size).rho - rho;
-      if (behind > m_edge) return Side::free;
-      if (behind < -m_step) return Side::occluded;
-      inner = next % m_size;
-    }
-    return Side::attached;
-  }
-
+  /// Appends the run of returns first..last (last may be size or more: it wraps) if it is a slice.
   void consider(std::size_t first, std::size_t last, std::vector<Slice>& slices) const {
-    const float width = turn(first, last);
-    float rho = at(first).rho, farthest = rho, z = 0;
-    if (rho * width > 1.5f * m_maxWidth || rho > m_maxRange) return;
+    const float begin = m_returns[first].azimuth;
+    const float width = last < m_size ? m_returns[last].azimuth - begin
+                                      : m_returns[last - m_size].azimuth + kTurn - begin;
+    float rho = m_returns[first].rho;
+    if (rho * width > 1.5f * m_limits.maxWidth || rho > m_limits.maxRange) return;
+    float farthest = rho, z = 0;
     for (std::size_t i = first; i <= last; ++i) {
-      rho = std::min(rho, at(i).rho);
-      farthest = std::max(farthest, at(i).rho);
-      z += at(i).z;
+      const Return& r = at(i);
+      rho = std::min(rho, r.rho);
+      farthest = std::max(farthest, r.rho);
+      z += r.z;
     }
-    if (rho * width > m_maxWidth || farthest - rho > m_maxWidth) return;
+    if (rho * width > m_limits.maxWidth || farthest - rho > m_limits.maxWidth) return;
+    const Side left = side(last < m_size ? last : last - m_size, +1);
+    if (left == Side::attached) return;
+    const Side right = side(first, -1);
+    if (right == Side::attached || (left != Side::free && right != Side::free)) return;
     Slice slice;
-    slice.left = side(last % m_size, +1);
-    slice.right = side(first % m_size, -1);
-    if (slice.left == Side::attached || slice.right == Side::attached) return;
-    if (slice.left != Side::free && slice.right != Side::free) return;
+    slice.left = left;
+    slice.right = right;
     slice.row = m_row;
-    slice.first = static_cast<std::uint32_t>(first % m_size);
+    slice.first = static_cast<std::uint32_t>(first);
     slice.count = static_cast<std::uint32_t>(last - first + 1);
-    slice.azimuthBegin = at(first).azimuth;
-    slice.azimuthEnd = slice.azimuthBegin + width;
+    slice.azimuthBegin = begin;
+    slice.azimuthEnd = begin + width;
     slice.rho = rho;
     slice.z = z / static_cast<float>(slice.count);
-    const float middle = slice.azimuthBegin + 0.5f * width;
+    const float middle = begin + 0.5f * width;
     slice.x = rho * std::cos(middle);
     slice.y = rho * std::sin(middle);
     slices.push_back(slice);
   }
 
+ private:
+  const Return& at(std::size_t i) const { return m_returns[i < m_size ? i : i - m_size]; }
+
+  /// What is beside return `end` when walking outwards with `direction` (+1 left, -1 right).
+  Side side(std::size_t end, int direction) const {
+    const float rho = m_returns[end].rho;
+    float azimuth = m_returns[end].azimuth;
+    std::size_t i = end;
+    for (int k = 0; k < 2;
+         ++k) {  // a mixed pixel may stand between the edge and what lies behind it
+      float seam = 0;
+      if (direction > 0 && ++i == m_size) {
+        i = 0;
+        seam = kTurn;
+      } else if (direction < 0 && i-- == 0) {
+        i = m_size - 1;
+        seam = kTurn;
+      }
+      const float step =
+          std::abs(m_returns[i].azimuth - azimuth + static_cast<float>(direction) * seam);
+      if (step > m_limits.gap) return Side::free;
+      const float behind = m_returns[i].rho - rho;
+      if (behind > m_limits.edge) return Side::free;
+      if (behind < -m_limits.step) return Side::occluded;
+      azimuth = m_returns[i].azimuth;
+    }
+    return Side::attached;
+  }
+
   const Return* m_returns;
   std::size_t m_size;
   int m_row;
-  float m_gap, m_step, m_edge, m_maxWidth, m_maxRange;
+  const Limits& m_limits;
 };
 
 }  // namespace
 
-void findSlices(const ScanLines& lines, const SensorModel& sensor, const NativeOptions& options,
-                std::vector<Slice>& slices) {
+SliceFinder::SliceFinder(const SensorModel& sensor, const NativeOptions& options)
+    : m_gap(2.6f * static_cast<float>(sensor.columnAngle())),
+      m_step(static_cast<float>(options.connectStep)),
+      m_edge(static_cast<float>(options.edgeStep)),
+      m_maxWidth(static_cast<float>(options.maxWidth)),
+      m_maxRange(static_cast<float>(options.maxRange)) {}
+
+void SliceFinder::find(const ScanLines& lines, std::vector<Slice>& slices) {
   slices.clear();
-  for (int row = 0; row < lines.rows(); ++row) RowScanner(lines, row, sensor, options).scan(slices);
+  const Limits limits{m_gap, m_step, m_edge, m_maxWidth, m_maxRange};
+  for (int r = 0; r < lines.rows(); ++r) {
+    const Row row(lines, r, limits);
+    if (row.size() < 2) continue;
+    if (m_breaks.size() < row.size() + kKernelPadding)
+      m_breaks.resize(2 * row.size() + kKernelPadding);
+    const std::size_t breaks =
+        findBreaks(row.returns(), row.size(), m_step, m_gap, m_breaks.data());
+    const bool closed = row.closed();
+    if (closed && breaks == 0) continue;  // one closed ring: no ends, no pole
+    std::size_t first = closed ? m_breaks[0] + 1 : 0;
+    for (std::size_t b = closed ? 1 : 0; b < breaks; ++b) {
+      row.consider(first, m_breaks[b], slices);
+      first = m_breaks[b] + 1;
+    }
+    row.consider(first, closed ? row.size() + m_breaks[0] : row.size() - 1, slices);
+  }
 }
 
 }  // namespace polemcl

@@ -25,10 +25,11 @@ class GroundGrid {
   float median() const { return m_median; }
 
  private:
-  static constexpr int kSectors = 72, kRings = 20;
+  static constexpr int kSectors = 64, kRings = 20;
   static constexpr float kRingWidth = 2.5f;  ///< m
   static constexpr float kMaxSlope = 0.15f;  ///< rise over run between neighbouring cells
   static constexpr float kSlack = 0.25f;     ///< m, kerbs and noise
+  void collectLowest(const ScanLines& lines, float sensorHeight);
   static int sector(float azimuth);
   static int ring(float rho);
   float m_height[kSectors * kRings];

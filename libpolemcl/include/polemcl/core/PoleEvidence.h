@@ -9,33 +9,29 @@
 
 namespace polemcl {
 
-/// \brief What one beam meets at a candidate's place.
-enum class Meeting {
-  near,      ///< a return at the place
-  passed,    ///< a return from behind: the beam went through
-  empty,     ///< no return at all
-  occluded,  ///< a return from before it
-};
-
-/// \brief Evidence about one candidate. Heights in m above local ground.
-struct PoleEvidence {
-  int slices = 0;         ///< rows with a slice
-  int points = 0;         ///< returns in them
-  int wholeSlices = 0;    ///< with both sides free
-  int rowsPassed = 0;     ///< rows between bottom and top that saw through it (or nothing)
-  int rowsWide = 0;       ///< rows between bottom and top that met something there that is no slice
-  int rowsCluttered = 0;  ///< rows of slices with other returns in the ring around it
-  float bottom = 0;       ///< lowest return
-  float top = 0;          ///< highest return, whatever stands on it (sign, crown) included
-  float topBound = 0;     ///< height of the lowest beam that passed over it; infinity when none did
-  float slimHeight = 0;   ///< from lowest to highest slice
-  float scatter = 0;      ///< rms distance of the slices' middles from a straight line, m
+/// \brief Shape of a stack, from its slices alone.
+struct StackShape {
+  int points = 0;           ///< returns in the slices
+  int wholeSlices = 0;      ///< slices with both sides free
+  float low = 0, high = 0;  ///< of the slices, lidar frame, m
+  float scatter =
+      0;  ///< rms distance of the slices' middles from a straight line, m; 0 for two slices
   float tilt = 0;         ///< of that line against the vertical, rad
   float widthSpread = 0;  ///< standard deviation of the slices' widths, m
 };
+StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack);
 
+/// \brief What the beams at a candidate's place say. Heights in m above local ground.
+struct PoleEvidence {
+  int rowsPassed = 0;     ///< rows between bottom and top that saw through it (or nothing)
+  int rowsWide = 0;       ///< rows between bottom and top that met something there that is no slice
+  int rowsCluttered = 0;  ///< rows of slices with other returns in the ring around it
+  float bottom = 0;       ///< lowest slice
+  float top = 0;          ///< highest return, whatever stands on it (sign, crown) included
+  float topBound = 0;     ///< height of the lowest beam that passed over it; infinity when none did
+};
 PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
                             const GroundGrid& ground, const std::vector<Slice>& slices,
-                            const Stack& stack, const PoleFit& fit);
+                            const Stack& stack, const StackShape& shape, const PoleAxis& axis);
 
 }  // namespace polemcl

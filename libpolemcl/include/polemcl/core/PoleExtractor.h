@@ -13,16 +13,17 @@ namespace polemcl {
 /// \brief Why a candidate is no pole. Counted per scan, so that a setting can be judged.
 enum class Refusal {
   tooFewPoints,
-  tooWide,       ///< wider than tall, or wider than any pole
-  notForeground, ///< something nearer stands beside it
-  tooLow,        ///< its top is below `min_top_m`
-  startsTooHigh, ///< its bottom is above `max_bottom_m`
-  tooShort,      ///< its visible height is below `min_height_m`
-  badFit,        ///< no circle, or a radius out of range
-  notFree,       ///< its surroundings are not free
-  tilted,
+  tooWide,        ///< wider than tall, or wider than any pole
+  notForeground,  ///< something nearer stands beside it
+  tooLow,         ///< its top is below `min_top_m`
+  startsTooHigh,  ///< its bottom is above `max_bottom_m`
+  tooShort,       ///< its visible height is below `min_height_m`
+  badFit,         ///< no circle, or a radius out of range
+  notFree,        ///< its surroundings are not free
+  tilted,         ///< its axis leans more than `max_tilt_deg`
+  notStraight,    ///< its slices do not stand above one another
   lowConfidence,
-  count_         ///< number of reasons
+  count_  ///< number of reasons
 };
 const char* name(Refusal reason);
 
@@ -34,7 +35,7 @@ struct ExtractionReport {
   std::size_t outOfRange = 0;  ///< dropped
   std::size_t candidates = 0;
   std::size_t refused[static_cast<int>(Refusal::count_)] = {};
-  double ground = 0;           ///< median height of the ground below the sensor origin, m (negative)
+  double ground = 0;  ///< median height of the ground below the sensor origin, m (negative)
 };
 
 /// \brief Extracts poles; keeps its buffers between scans, so one object serves one thread.

@@ -19,6 +19,14 @@ struct PoleFit {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< of (x, y), m²
 };
 
+/// \brief Where a pole stands, roughly: middle of the slices' fronts, half their width behind.
+struct PoleAxis {
+  float x = 0, y = 0;  ///< lidar frame, m
+  float radius = 0;    ///< m
+};
+PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
+                   float columnAngle);
+
 /// \brief Fits a cylinder by maximum a posteriori: ranges to its front, and the bearings of its
 /// edges.
 ///

@@ -9,9 +9,14 @@
 
 namespace polemcl {
 
-/// \brief Slices that stand above one another; indices into the slices, topmost first.
+/// \brief Slices that stand above one another: indices into the slices, topmost first. Borrowed.
 struct Stack {
-  std::vector<std::uint32_t> slices;
+  const std::uint32_t* first = nullptr;
+  std::size_t count = 0;
+  const std::uint32_t* begin() const { return first; }
+  const std::uint32_t* end() const { return first + count; }
+  std::uint32_t top() const { return first[0]; }
+  std::uint32_t bottom() const { return first[count - 1]; }
 };
 
 /// \brief Stacks the slices from the top row down; every slice joins the nearest stack above it
@@ -19,29 +24,36 @@ struct Stack {
 class SliceStacker {
  public:
   SliceStacker(const SensorModel& sensor, const NativeOptions& options);
-  /// \brief Stacks of at least two slices. Valid until the next call.
-  /// \param slices As findSlices() gives them: rows ascending.
-  std::size_t stack(const std::vector<Slice>& slices);
-  const Stack& at(std::size_t i) const { return m_stacks[m_kept[i]]; }
+  /// \brief Stacks of at least two slices, in the order of their topmost slices.
+  /// \param slices As SliceFinder gives them: rows ascending.
+  /// \return Valid until the next call.
+  const std::vector<Stack>& stack(const std::vector<Slice>& slices);
 
  private:
-  static constexpr int kBins = 1024;
-  struct Node {
-    std::uint32_t stack;
-    std::int32_t next;
+  static constexpr std::uint32_t kNone = ~0u;
+  /// The lower end of a growing stack.
+  struct Tip {
+    float x, y, z;
+    std::int32_t row;
+    std::uint32_t first, last, count;  ///< slices
   };
-  int bin(float azimuth) const;
-  std::int32_t nearestStack(const std::vector<Slice>& slices, const Slice& slice) const;
-  void enter(std::uint32_t stack, float azimuth);
-  Stack& open();
+  struct Node {
+    std::uint32_t tip, next;
+  };
+  int cell(float coordinate) const;
+  std::uint32_t nearestTip(const Slice& slice) const;
+  void enter(std::uint32_t tip, const Slice& slice);
+  void collect();
 
-  const SensorModel& m_sensor;
-  NativeOptions m_options;
-  std::vector<Stack> m_stacks;  ///< reused; the first m_used are this scan's
-  std::size_t m_used = 0;
-  std::vector<std::uint32_t> m_kept;
-  std::vector<std::int32_t> m_head;
+  float m_reach, m_gap, m_cellsPerMetre;
+  int m_cells;                   ///< of the square grid, per side
+  std::vector<float> m_beamGap;  ///< per row: two beams apart, as a share of range
+  std::vector<Tip> m_tips;
+  std::vector<std::uint32_t> m_head;  ///< per cell of the plane: its newest node
   std::vector<Node> m_nodes;
+  std::vector<std::uint32_t> m_below;  ///< per slice: the next one down its stack
+  std::vector<std::uint32_t> m_members;
+  std::vector<Stack> m_stacks;
 };
 
 }  // namespace polemcl

@@ -40,25 +40,33 @@ class ScanLines {
   const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
   const Return* end(int row) const { return begin(row + 1); }
   std::size_t size(int row) const { return static_cast<std::size_t>(end(row) - begin(row)); }
+  /// \brief Returns of a row whose azimuth lies in bucket `column` of kBuckets from -pi to pi; the
+  /// bucket ends where the next begins (columnBegin(row, kBuckets) == end(row)).
+  const Return* columnBegin(int row, int column) const {
+    return m_returns.data() + m_bucketStart[bucket(row, column)];
+  }
+  static constexpr int kBuckets = 512;  ///< per row; a power of two
+  /// \brief Coordinates of a return in the cloud last built from, lidar frame, m.
+  float x(const Return& r) const { return m_points.x[r.point]; }
+  float y(const Return& r) const { return m_points.y[r.point]; }
   /// \brief Index within the row of the first return whose azimuth is not less than `azimuth`.
   std::size_t lowerBound(int row, float azimuth) const;
 
  private:
-  static constexpr int kBuckets = 512;  ///< per row; a power of two
   std::size_t bucket(int row, int column) const {
     return static_cast<std::size_t>(row) * kBuckets + column;
   }
   static int bucketColumn(float azimuth);
-  void classify(const PointsView& points, float minRange, float maxRange);
   void sortBuckets();
 
   const SensorModel& m_sensor;
   int m_rows;
   Counts m_counts;
-  std::vector<Return> m_returns, m_scratch;
+  PointsView m_points;
+  std::vector<Return> m_returns;
   std::vector<std::int32_t> m_key;  ///< bucket of each point, -1: dropped
-  std::vector<std::uint32_t>
-      m_bucketStart;  ///< rows * kBuckets + 1 (and one more, so that begin(rows()) exists)
+  std::vector<float> m_azimuth, m_rho;
+  std::vector<std::uint32_t> m_bucketStart;  ///< of every bucket, and the end of the last
 };
 
 }  // namespace polemcl

@@ -19,6 +19,19 @@ struct Beam {
       0;  ///< height of the cone's apex above the origin, m (HDL-64E: two blocks, 0.2 and 0.12 m)
 };
 
+/// \brief From a point's slope to its row: cells of equal slope for each of at most two blocks of
+/// lasers. Block 0 is the upper one; a point belongs to block 1 when z < rho · splitSlope +
+/// splitOffset.
+struct RowLookup {
+  float splitSlope = -1e9f, splitOffset = 0;
+  float offset[2] = {0, 0};       ///< height of the block's apex, m
+  float minSlope[2] = {0, 0};     ///< of its first cell
+  float cells[2] = {0, 0};        ///< number of cells
+  std::int32_t base[2] = {0, 0};  ///< index of its first cell in `row`
+  float cellsPerSlope = 0;
+  std::vector<std::int32_t> row;
+};
+
 /// \brief Beams of one sensor, topmost first, and the lookup from a point to its row.
 ///
 /// All lasers of a block share one offset for the lookup; the HDL-64E has two blocks, the upper one
@@ -38,26 +51,23 @@ class SensorModel {
 
   /// \brief Row of the nearest beam, or -1 when the point lies outside the fan.
   int row(float rho, float z) const {
-    const Block& block = m_blocks[z < rho * m_splitSlope + m_splitOffset ? m_blocks.size() - 1 : 0];
-    const float cell = ((z - block.offset) / rho - block.minSlope) * block.cellsPerSlope;
-    if (!(cell >= 0.f && cell < static_cast<float>(block.row.size()))) return -1;
-    return block.row[static_cast<std::size_t>(cell)];
+    const int block = z < rho * m_lookup.splitSlope + m_lookup.splitOffset ? 1 : 0;
+    const float slope = (z - m_lookup.offset[block]) / rho;
+    const float cell = (slope - m_lookup.minSlope[block]) * m_lookup.cellsPerSlope;
+    if (!(cell >= 0.f && cell < m_lookup.cells[block])) return -1;
+    return m_lookup.row[m_lookup.base[block] + static_cast<int>(cell)];
   }
+  const RowLookup& lookup() const { return m_lookup; }
 
   /// \brief Names `model =` accepts, for error messages.
   static std::vector<std::string> modelNames();
 
  private:
-  struct Block {
-    float offset = 0, minSlope = 0, cellsPerSlope = 0;
-    std::vector<std::int16_t> row;
-  };
-  void buildBlock(int firstRow, int lastRow);
+  void buildBlock(int block, int firstRow, int lastRow);
 
   std::vector<Beam> m_beams;
   std::vector<double> m_spacingAbove;
-  std::vector<Block> m_blocks;  ///< one, or upper and lower
-  float m_splitSlope = 0, m_splitOffset = 0;
+  RowLookup m_lookup;
   int m_columns = 0;
   double m_columnAngle = 0;
 };

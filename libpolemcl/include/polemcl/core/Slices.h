@@ -29,12 +29,21 @@ struct Slice {
   float x = 0, y = 0;       ///< middle of its front: mid azimuth at `rho`, m
   Side left = Side::free;   ///< at azimuthEnd (left as seen from the sensor)
   Side right = Side::free;  ///< at azimuthBegin
+  float width() const { return rho * (azimuthEnd - azimuthBegin); }  ///< between its end returns, m
   bool whole() const { return left == Side::free && right == Side::free; }
 };
 
-/// \brief Finds all slices no wider than options.maxWidth with at least one free side and none
-/// attached.
-void findSlices(const ScanLines& lines, const SensorModel& sensor, const NativeOptions& options,
-                std::vector<Slice>& slices);
+/// \brief Finds slices; keeps its buffer between scans.
+class SliceFinder {
+ public:
+  SliceFinder(const SensorModel& sensor, const NativeOptions& options);
+  /// \brief All slices no wider than maxWidth with at least one free side and none attached, rows
+  /// ascending, in a row by azimuth of their beginning.
+  void find(const ScanLines& lines, std::vector<Slice>& slices);
+
+ private:
+  float m_gap, m_step, m_edge, m_maxWidth, m_maxRange;
+  std::vector<std::uint32_t> m_breaks;
+};
 
 }  // namespace polemcl
