@@ -55,7 +55,7 @@ CPoleMap::CPoleMap() : m_index(std::make_shared<PoleIndex>(m_poles)) {}
 
 void CPoleMap::setPoles(std::vector<MapPole> poles) {
   for (std::size_t i = 0; i < poles.size(); ++i) requireUsable(poles[i], i);
-  auto index = std::make_shared<PoleIndex>(poles);
+  auto index = std::make_shared<PoleIndex>(poles, likelihoodOptions.gate);
   m_poles = std::move(poles);
   m_index = std::move(index);
 }

@@ -28,7 +28,8 @@ class CPoleMap : public mrpt::maps::CMetricMap {
   CPoleMap();
 
   const std::vector<MapPole>& poles() const { return m_poles; }  ///< map frame
-  /// \brief Replaces all poles and builds the index.
+  /// \brief Replaces all poles and builds the index, prepared for `likelihoodOptions.gate`: set the
+  /// options first, or set the poles again (a wider gate later is slower, not wrong).
   /// \throws Error on a position or covariance that is not finite, or a covariance that is not
   ///         positive semidefinite.
   void setPoles(std::vector<MapPole> poles);
