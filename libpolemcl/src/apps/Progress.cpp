@@ -20,6 +20,11 @@ Progress::~Progress() {
   if (m_drawn) std::cerr << "\r\033[K" << std::flush;
 }
 
+void Progress::update(std::size_t done, std::size_t total) {
+  m_total = total;
+  update(done);
+}
+
 void Progress::update(std::size_t done) {
   if (!m_shown) return;
   const auto now = Clock::now();

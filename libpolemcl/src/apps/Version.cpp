@@ -1,5 +1,7 @@
 #include <polemcl/apps/Version.h>
 
 namespace polemcl::apps {
-const char* version() { return POLEMCL_VERSION; }
+const char* version() {
+  return POLEMCL_VERSION;
+}
 }  // namespace polemcl::apps

@@ -22,6 +22,8 @@ class Progress {
 
   /// \brief `done` steps are finished. Cheap: redraws at most ten times a second.
   void update(std::size_t done);
+  /// \brief The same where the total becomes known on the way.
+  void update(std::size_t done, std::size_t total);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -1,0 +1,15 @@
+#pragma once
+/// \file JsonFile.h
+/// \brief Results for scripts: JSON files, keys in the order they were set.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace polemcl::apps {
+
+/// \brief Writes the value, indented by two, atomically: the file is complete or as it was before.
+/// Numbers keep all their digits; what is not finite becomes `null`.
+/// \throws Error when it cannot be written.
+void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& value);
+
+}  // namespace polemcl::apps
