@@ -49,9 +49,11 @@ std::optional<Echo> EchoMaker::make(const SubHit* hits, const Beam& beam,
   }
   if (count == 0) return std::nullopt;
   Group best, group;
+  float total = 0;
   for (int i = 0; i < count; ++i) {
     if (i > 0 && parts[i].range - parts[i - 1].range > m_lidar.pulseLength) group = Group();
     group.add(parts[i]);
+    total += parts[i].power;
     if (group.power > best.power) best = group;
   }
   Random random(seed);
@@ -60,11 +62,12 @@ std::optional<Echo> EchoMaker::make(const SubHit* hits, const Beam& beam,
   const double ratio =
       best.signal / 0.1 * std::pow(m_lidar.referenceRange / std::max(range, 2.0), 2);
   const double cube = ratio * ratio * ratio;
-  if (random.uniform() > cube / (1 + cube) || random.chance(m_lidar.dropout)) return std::nullopt;
+  // Pulses split between near and far are answered less often.
+  const double lost = m_lidar.dropout + 0.5 * (1 - best.power / total);
+  if (random.uniform() > cube / (1 + cube) || random.chance(lost)) return std::nullopt;
   const SubHit& hit = hits[best.subRay];
-  const Material& surface = material(hit);
   const double noise = m_lidar.rangeNoise * std::sqrt(1 + 0.5 / ratio);
-  range += beam.rangeBias + noise * random.normal() + surface.roughness * random.normal();
+  range += beam.rangeBias + std::hypot(noise, material(hit).roughness) * random.normal();
   range = std::round(range / m_lidar.rangeStep) * m_lidar.rangeStep;
   if (range < m_lidar.minRange || range > m_lidar.maxRange) return std::nullopt;
   const double shine = best.signal * (0.85 + 0.3 * random.uniform());

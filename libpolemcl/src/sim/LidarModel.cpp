@@ -16,16 +16,16 @@ std::vector<Beam> evenBeams(int count, double topDeg, double stepDeg) {
   return beams;
 }
 
-/// Velodyne HDL-64E: 32 lasers 1/3° apart from +2°, 32 lasers 1/2° apart from -8.83°. The lasers of
-/// the upper block start higher than those of the lower one, as the calibration of real units says;
-/// lasers of one firing look about ±2.5° to the left and right of the rotor's azimuth.
-LidarModel hdl64e() {
+/// Velodyne HDL-64E: two blocks of 32 lasers, the upper ones start higher than the lower ones, as
+/// the calibration of real units says; lasers of one firing look to the left and right of the
+/// rotor's azimuth.
+LidarModel hdl64e(double topDeg, double upperStepDeg, double lowerTopDeg, double lowerStepDeg) {
   LidarModel lidar;
-  lidar.beams = evenBeams(32, 2.0, 1.0 / 3);
-  const auto lower = evenBeams(32, -8.0 - 5.0 / 6, 0.5);
+  lidar.beams = evenBeams(32, topDeg, upperStepDeg);
+  const auto lower = evenBeams(32, lowerTopDeg, lowerStepDeg);
   lidar.beams.insert(lidar.beams.end(), lower.begin(), lower.end());
   for (int i = 0; i < 64; ++i) {
-    lidar.beams[i].rise = i < 32 ? 0.2 : 0.1;
+    lidar.beams[i].rise = i < 32 ? 0.2 : 0.12;
     lidar.beams[i].azimuth = (i % 4 - 1.5) * (i < 32 ? 1.3 : 2.2) * kDegree;
   }
   lidar.columns = 2083;
@@ -80,12 +80,16 @@ LidarModel ouster(int rows, double halfViewDeg, double staggerDeg, double refere
 using Maker = LidarModel (*)();
 const std::map<std::string, Maker>& makers() {
   static const std::map<std::string, Maker> table{
-      {"hdl64e", hdl64e},
+      // Data sheet: 1/3° apart from +2°, 1/2° apart from -8.83°.
+      {"hdl64e", [] { return hdl64e(2.0, 1.0 / 3, -8.0 - 5.0 / 6, 0.5); }},
+      // The unit of the KITTI recordings spreads its lasers a little wider than the data sheet.
+      {"hdl64e_kitti", [] { return hdl64e(1.95, 0.3435, -9.03, 0.5151); }},
       {"hdl32e", hdl32e},
       {"vlp16", vlp16},
-      {"os1_64", [] { return ouster(64, 16.611, 3.164, 45); }},
-      {"os1_128", [] { return ouster(128, 21.2, 4.23, 50); }},
-      {"os0_64", [] { return ouster(64, 44.6, 4.23, 25); }}};
+      {"os1_64", [] { return ouster(64, 16.611, 3.164, 45); }},    // first generation
+      {"os1_64_gen2", [] { return ouster(64, 21.2, 4.23, 50); }},  // "45°", as real units measure
+      {"os1_128", [] { return ouster(128, 22.5, 4.23, 50); }},
+      {"os0_64", [] { return ouster(64, 45, 4.23, 25); }}};
   return table;
 }
 }  // namespace

@@ -91,7 +91,7 @@ std::vector<SolidView> Scanner::Impl::solidsAround(const Eigen::Isometry3d& T_ma
     const Eigen::Vector2d shift = object.displacement(time);
     for (std::size_t k = 0; k < object.solids.size(); ++k)
       solids.emplace_back(object.solids[k], Eigen::Vector3d(shift.x(), shift.y(), 0), T_sensor_map,
-                          hash(object.id, k));
+                          hash(world.options().seed, world.options().day, object.id, k));
   }
   return solids;
 }

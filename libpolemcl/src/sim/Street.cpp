@@ -1,11 +1,9 @@
+#include <polemcl/io/Trajectory.h>
 #include <polemcl/sim/Random.h>
 #include <polemcl/sim/Street.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <sstream>
 
 namespace polemcl::sim {
 namespace {
@@ -30,24 +28,9 @@ std::vector<Eigen::Vector2d> generate(const WorldOptions& options) {
 }
 
 std::vector<Eigen::Vector2d> readTrack(const std::string& path) {
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-  if (!file) throw Error("[world] track = " + path + ": the file cannot be opened");
   std::vector<Eigen::Vector2d> places;
-  char line[4096];
-  for (int number = 1; gzgets(file.get(), line, sizeof line); ++number) {
-    std::istringstream words(std::string(line).substr(0, std::string(line).find('#')));
-    std::vector<double> values;
-    for (double value; words >> value;) values.push_back(value);
-    if (values.empty() && words.eof()) continue;
-    if (values.size() != 12 || !words.eof())
-      throw Error(path + ":" + std::to_string(number) +
-                  ": a pose of a track has 12 numbers, row-major 3x4");
-    places.emplace_back(values[3], values[7]);
-  }
-  int code = Z_OK;
-  gzerror(file.get(), &code);
-  if (code != Z_OK && code != Z_STREAM_END)
-    throw Error("[world] track = " + path + ": damaged or truncated");
+  for (const Eigen::Isometry3d& pose : io::readKittiPoses(path))
+    places.emplace_back(pose.translation().head<2>());
   return places;
 }
 }  // namespace

@@ -32,7 +32,7 @@ void StreetPlan::parkedVehicles(int side) {
     Random block = stream(0xb10c, side, static_cast<std::uint64_t>(s / kBlock));
     if (!block.chance(0.65) || !own.chance(m_options.parkedShare)) continue;
     if (!m_street.fresh(s) || nearCrossing(1, s, 6) || nearCrossing(-1, s, 6)) continue;
-    Site place = site(side, s, m_options.roadWidth / 2 - 1.1 + own.normal(0, 0.08));
+    Site place = site(side, s, m_options.roadWidth / 2 - 1.05 + own.normal(0, 0.08));
     if (!claim(place, 2.2, Ground::road)) continue;
     place.heading += (own.chance(0.9) ? M_PI : 0.0) + own.normal(0, 0.02);
     add(makeVehicle(place, id, own));

@@ -32,7 +32,10 @@ void StreetPlan::lamps(int side) {
     const LampStyle style(make);
     const std::uint32_t id = m_nextId++;
     Random own(random.next());
-    const Site place = site(side, s, m_options.roadWidth / 2 + own.uniform(0.4, 0.7));
+    // Some streets keep their lamps at the house fronts.
+    const double out =
+        make.chance(0.2) ? pavementWidth(side, s) - own.uniform(0.35, 0.6) : own.uniform(0.4, 0.7);
+    const Site place = site(side, s, m_options.roadWidth / 2 + out);
     if (m_street.fresh(s) && claim(place, 0.7, Ground::pavement))
       add(makeLampPost(place, id, style, own));
   }
