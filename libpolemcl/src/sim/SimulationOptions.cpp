@@ -2,46 +2,49 @@
 #include <polemcl/sim/LidarModel.h>
 #include <polemcl/sim/SimulationOptions.h>
 
-#include <cmath>
 #include <sstream>
+
+#include "SimulationLimits.h"
 
 namespace polemcl::sim {
 namespace {
-void require(const char* section, const char* key, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
+void require(const char* key, double value, const Range& allowed) {
+  if (allowed.contains(value)) return;
   std::ostringstream message;
-  message << '[' << section << "] " << key << " = " << value << ": allowed are " << low << " to "
-          << high;
+  message << key << " = " << value << ": allowed are " << allowed.text();
   throw Error(message.str());
 }
 }  // namespace
 
 void WorldOptions::validate() const {
-  require("world", "day", day, 0, 100000);
-  require("world", "length_m", length, 20, 100000);
-  require("world", "curviness", curviness, 0, 2);
-  require("world", "relief", relief, 0, 3);
-  require("world", "road_width_m", roadWidth, 6, 20);
-  require("world", "lamp_spacing_m", lampSpacing, 8, 1000);
-  require("world", "sign_spacing_m", signSpacing, 8, 1000);
-  require("world", "tree_share", treeShare, 0, 1);
-  require("world", "parked_share", parkedShare, 0, 1);
-  require("world", "clutter", clutter, 0, 3);
-  require("world", "removed_share", removedShare, 0, 1);
-  require("world", "added_share", addedShare, 0, 0.2);
-  require("world", "foliage", foliage, 0, 2);
+  require("[world] seed", static_cast<double>(seed), limits::seed);
+  require("[world] day", day, limits::day);
+  require("[world] length_m", length, limits::length);
+  require("[world] curviness", curviness, limits::curviness);
+  require("[world] relief", relief, limits::relief);
+  require("[world] road_width_m", roadWidth, limits::roadWidth);
+  require("[world] lamp_spacing_m", lampSpacing, limits::lampSpacing);
+  require("[world] sign_spacing_m", signSpacing, limits::signSpacing);
+  require("[world] tree_spacing_m", treeSpacing, limits::treeSpacing);
+  require("[world] tree_share", treeShare, limits::share);
+  require("[world] parked_share", parkedShare, limits::share);
+  require("[world] clutter", clutter, limits::clutter);
+  require("[world] removed_share", removedShare, limits::share);
+  require("[world] added_share", addedShare, limits::share);
+  require("[world] foliage", foliage, limits::foliage);
 }
 
 void SimulationOptions::validate() const {
   world.validate();
   makeLidar(sensor);
-  require("sensor", "height_m", height, 0.3, 5);
-  require("simulation", "spacing_m", spacing, 0.05, 50);
-  require("simulation", "speed_m_s", speed, 0.1, 50);
-  require("simulation", "lane_offset_m", laneOffset, 1.2 - world.roadWidth / 2,
-          world.roadWidth / 2 - 1.2);
-  require("simulation", "odometry_noise", odometryNoise, 0, 1);
-  require("simulation", "scans", scans, 0, 10000000);
+  require("[sensor] height_m", height, limits::height);
+  require("[simulation] spacing_m", spacing, limits::spacing);
+  require("[simulation] speed_m_s", speed, limits::speed);
+  require("[simulation] odometry_noise", odometryNoise, limits::odometryNoise);
+  require("[simulation] scans", scans, limits::scans);
+  // Half of a vehicle has to fit between the sensor and the kerb.
+  const double room = world.roadWidth / 2 - 1.2;
+  require("[simulation] lane_offset_m", laneOffset, Range::between(-room, room));
 }
 
 }  // namespace polemcl::sim

@@ -48,7 +48,8 @@ void StreetPlan::avenue(int side) {
     Random random = stream(0xa7e, side, static_cast<std::uint64_t>(start / kBlock));
     if (!random.chance(m_options.treeShare)) continue;
     const TreeStyle style(random);
-    const double spacing = random.uniform(7, 13), aside = random.uniform(0.6, 1.2);
+    const double spacing = m_options.treeSpacing * random.uniform(0.7, 1.3);
+    const double aside = random.uniform(0.6, 1.2);
     for (double s = start + random.uniform(0, 3); s < std::min(start + kBlock, m_street.length());
          s += spacing * random.uniform(0.85, 1.15)) {
       const std::uint32_t id = m_nextId++;

@@ -19,6 +19,7 @@ struct WorldOptions {
   double roadWidth = 10;       ///< kerb to kerb, m (`road_width_m`)
   double lampSpacing = 28;     ///< mean distance of lamp posts on one side, m (`lamp_spacing_m`)
   double signSpacing = 24;     ///< mean distance of traffic signs on one side, m (`sign_spacing_m`)
+  double treeSpacing = 10;     ///< mean distance of trees in a row, m (`tree_spacing_m`)
   double treeShare = 0.4;      ///< share of the street lined with trees (`tree_share`)
   double parkedShare = 0.5;    ///< share of parking places taken (`parked_share`)
   double clutter = 1;          ///< scales numbers of people, bins, bicycles, bollards, billboards
@@ -38,10 +39,10 @@ struct SimulationOptions {
   bool upsideDown = false;  ///< the sensor hangs; its beams are given as seen upright, z up
   double spacing = 0.5;     ///< distance between scans, m (`spacing_m`)
   double speed = 5;         ///< m/s (`speed_m_s`)
-  double laneOffset =
-      -1.8;  ///< of the drive from the middle of the road, m, + left (`lane_offset_m`)
-  double odometryNoise =
-      0.02;  ///< standard deviation as a share of each component (`odometry_noise`)
+  /// Of the drive from the middle of the road, m, + left (`lane_offset_m`).
+  double laneOffset = -1.5;
+  /// Standard deviation as a share of each component of the motion (`odometry_noise`).
+  double odometryNoise = 0.02;
   bool motionDistortion = false;  ///< the sensor moves while it turns (`motion_distortion`)
   int scans = 0;                  ///< at most so many scans; 0: to the end of the road
   void validate() const;          ///< \throws Error
