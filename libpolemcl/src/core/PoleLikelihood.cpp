@@ -1,7 +1,9 @@
 #include <polemcl/core/PoleLikelihood.h>
+#include <polemcl/core/PrincipalAxes.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace polemcl {
@@ -9,14 +11,12 @@ namespace {
 
 /// One detection, with all that does not depend on the pose.
 struct Term {
-  double x, y;        ///< centre, robot frame
-  double share;       ///< p: probability of belonging to a map pole
-  double floor;       ///< 1 - p, without the rounding of that difference
-  double confidence;  ///< c; 1 unless weighted
-  double cost;        ///< paper: cost of no match
-  double axisX = 1,
-         axisY = 0;  ///< first principal axis of the covariance, robot frame; weighted only
-  double first = 0, second = 0;  ///< variances along and across it, m²; weighted only
+  double x, y;         ///< centre, robot frame
+  double share;        ///< p: probability of belonging to a map pole
+  double floor;        ///< 1 - p, without the rounding of that difference
+  double confidence;   ///< c; 1 unless weighted
+  double cost;         ///< paper: cost of no match
+  PrincipalAxes axes;  ///< of its covariance, robot frame; nothing unless weighted
 };
 
 [[noreturn]] void refuse(const char* field, double value, const char* allowed) {
@@ -28,21 +28,6 @@ struct Term {
 [[noreturn]] void refuseDetection(std::size_t index, const std::string& what) {
   throw Error("pole detection " + std::to_string(index) + " " + what +
               "; correct it or set [likelihood] weighted = false");
-}
-
-/// The principal axes of a covariance, in closed form.
-void setAxes(const Eigen::Matrix2d& covariance, std::size_t index, Term& term) {
-  const double xx = covariance(0, 0), yy = covariance(1, 1), xy = covariance(0, 1);
-  const double mean = 0.5 * (xx + yy), spread = std::hypot(0.5 * (xx - yy), xy);
-  const bool symmetric = std::abs(xy - covariance(1, 0)) <= 1e-9 * mean;
-  if (!(std::isfinite(mean) && symmetric && mean - spread >= -1e-9 * mean)) {
-    refuseDetection(index, "has a covariance that is not symmetric positive semidefinite");
-  }
-  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
-  term.axisX = std::cos(angle);
-  term.axisY = std::sin(angle);
-  term.first = mean + spread;
-  term.second = std::max(0.0, mean - spread);
 }
 
 std::vector<Term> prepare(const std::vector<PoleDetection>& poles,
@@ -60,11 +45,16 @@ std::vector<Term> prepare(const std::vector<PoleDetection>& poles,
         refuseDetection(terms.size(), "has a confidence outside [0, 1]");
       }
       term.confidence = pole.confidence;
-      setAxes(pole.covariance, terms.size(), term);
+      const std::optional<PrincipalAxes> axes = principalAxes(pole.covariance);
+      if (!axes)
+        refuseDetection(terms.size(),
+                        "has a covariance that is not symmetric positive semidefinite");
+      term.axes = *axes;
     }
     term.share = (1 - options.outlier) * term.confidence;
     term.floor = 1 - term.confidence + options.outlier * term.confidence;
-    term.cost = options.gate * options.gate / (2 * squaredSigma + term.first + term.second);
+    term.cost =
+        options.gate * options.gate / (2 * squaredSigma + term.axes.first + term.axes.second);
     terms.push_back(term);
   }
   return terms;
@@ -130,11 +120,12 @@ class Evaluation {
   Bell bell(const Term& term, const PointHit& hit, double x, double y, double c, double s) const {
     if constexpr (!weighted) return {hit.squaredDistance / (2 * m_squaredSigma), 1};
     const Eigen::Vector2d& pole = m_index.tree().point(hit.index);
-    const double axisX = c * term.axisX - s * term.axisY, axisY = s * term.axisX + c * term.axisY;
+    const double axisX = c * term.axes.x - s * term.axes.y,
+                 axisY = s * term.axes.x + c * term.axes.y;
     const double dx = x - pole.x(), dy = y - pole.y();
     const double along = axisX * dx + axisY * dy, across = axisX * dy - axisY * dx;
     const double common = m_squaredSigma + m_index.variance(hit.index);
-    const double first = term.first + common, second = term.second + common;
+    const double first = term.axes.first + common, second = term.axes.second + common;
     const double determinant = first * second;
     return {0.5 * (along * along * second + across * across * first) / determinant,
             m_squaredSigma / std::sqrt(determinant)};

@@ -3,7 +3,7 @@
 /// \brief Step C of the paper: detections at known poses -> poles, with counts.
 ///
 /// The path is split into sections of equal length (PathSections); detections of different scans
-/// are merged by gated distance (PoleMerging) and averaged by their certainty (PoleFusion); a pole
+/// are merged by gated distance (SightingMerging) and averaged by their certainty (PoleFusion); a pole
 /// stays if enough sections in a continuous run saw it.
 
 #include <polemcl/core/Types.h>

@@ -1,0 +1,162 @@
+#include <polemcl/core/PathSections.h>
+#include <polemcl/core/PoleFusion.h>
+#include <polemcl/core/PoleMapBuilder.h>
+#include <polemcl/core/SightingMerging.h>
+#include <polemcl/core/PrincipalAxes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace polemcl {
+namespace {
+
+template <class Value>
+[[noreturn]] void refuse(const char* field, Value value, const char* allowed) {
+  std::ostringstream text;
+  text << "[map] " << field << " = " << value << " is not allowed; it must be " << allowed;
+  throw Error(text.str());
+}
+
+void check(const MappingScan& scan, std::size_t index) {
+  const Pose2D& pose = scan.pose_map_robot;
+  const std::string where = "scan " + std::to_string(index);
+  if (!std::isfinite(pose.x + pose.y + pose.yaw)) {
+    throw Error("the pose of " + where + " is not finite; leave the scan out or correct its pose");
+  }
+  for (std::size_t i = 0; i < scan.poles_robot.size(); ++i) {
+    const PoleDetection& pole = scan.poles_robot[i];
+    const std::string which = "pole " + std::to_string(i) + " of " + where;
+    if (!std::isfinite(pole.x + pole.y + pole.radius + pole.bottom + pole.top)) {
+      throw Error(which + " holds a number that is not finite; extract the scan again");
+    }
+    if (!(pole.confidence >= 0 && pole.confidence <= 1)) {
+      throw Error(which + " has a confidence outside [0, 1]; extract the scan again");
+    }
+    if (!principalAxes(pole.covariance)) {
+      throw Error(
+          which +
+          " has a covariance that is not symmetric positive semidefinite; extract the scan again");
+    }
+  }
+}
+
+/// A scan that is used, and the occupied section it counts for.
+struct View {
+  std::size_t scan;
+  std::uint32_t section;  ///< number among the occupied ones
+};
+
+std::vector<View> chooseViews(const PathSections& sections, bool everyScan) {
+  std::vector<View> views;
+  for (std::uint32_t number = 0; number < sections.occupied.size(); ++number) {
+    const PathSection& section = sections.occupied[number];
+    if (!everyScan) views.push_back({section.middle, number});
+    for (const std::size_t scan : section.scans) {
+      if (everyScan) views.push_back({scan, number});
+    }
+  }
+  return views;
+}
+
+/// A detection in the map frame, made less certain by what the scan's pose is not known to.
+PoleSighting sightingOf(const PoleDetection& pole, const Pose2D& pose, std::uint32_t view,
+                        const PoleMapOptions& options) {
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  Eigen::Matrix2d rotation;
+  rotation << c, -s, s, c;
+  const Eigen::Vector2d offset = rotation * Eigen::Vector2d(pole.x, pole.y);
+  const Eigen::Vector2d swing = options.headingSigma * Eigen::Vector2d(-offset.y(), offset.x());
+  PoleSighting sighting{pole, view};
+  sighting.pole.x = pose.x + offset.x();
+  sighting.pole.y = pose.y + offset.y();
+  sighting.pole.covariance = rotation * pole.covariance * rotation.transpose() +
+                             swing * swing.transpose() +
+                             options.poseSigma * options.poseSigma * Eigen::Matrix2d::Identity();
+  return sighting;
+}
+
+std::vector<PoleSighting> sightingsOf(const std::vector<MappingScan>& scans,
+                                      const std::vector<View>& views,
+                                      const PoleMapOptions& options) {
+  std::vector<PoleSighting> sightings;
+  for (std::uint32_t view = 0; view < views.size(); ++view) {
+    const MappingScan& scan = scans[views[view].scan];
+    for (const PoleDetection& pole : scan.poles_robot) {
+      if (pole.confidence <= 0 || pole.confidence < options.minConfidence) continue;
+      sightings.push_back(sightingOf(pole, scan.pose_map_robot, view, options));
+    }
+  }
+  return sightings;
+}
+
+/// The counting model: most sections that saw the pole in one run of sections, in which at most
+/// `maxGap` occupied ones in a row missed it.
+std::size_t longestRun(std::vector<std::uint32_t> seen, const std::vector<PathSection>& occupied,
+                       int maxGap) {
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  std::size_t longest = 0, run = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const bool continues = i > 0 && occupied[seen[i]].path == occupied[seen[i - 1]].path &&
+                           seen[i] - seen[i - 1] - 1 <= static_cast<std::uint32_t>(maxGap);
+    run = continues ? run + 1 : 1;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
+}  // namespace
+
+void PoleMapOptions::validate() const {
+  if (!(std::isfinite(sectionLength) && sectionLength > 0))
+    refuse("section_length", sectionLength, "above 0 m");
+  if (!(std::isfinite(mergeDistance) && mergeDistance > 0))
+    refuse("merge_distance", mergeDistance, "above 0 m");
+  if (!(apartShare > 0 && apartShare <= 1)) refuse("apart_share", apartShare, "a share in (0, 1]");
+  if (minCount < 1) refuse("min_count", minCount, "at least 1");
+  if (maxGap < 0) refuse("max_gap", maxGap, "at least 0");
+  if (!(minConfidence >= 0 && minConfidence <= 1))
+    refuse("min_confidence", minConfidence, "in [0, 1]");
+  if (!(std::isfinite(poseSigma) && poseSigma >= 0))
+    refuse("pose_sigma", poseSigma, "at least 0 m");
+  if (!(headingSigma >= 0 && headingSigma < M_PI))
+    refuse("heading_sigma", headingSigma, "in [0, pi) rad");
+}
+
+PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapOptions& options) {
+  options.validate();
+  std::vector<Pose2D> poses;
+  std::vector<std::uint32_t> drives;
+  for (const MappingScan& scan : scans) {
+    check(scan, poses.size());
+    poses.push_back(scan.pose_map_robot);
+    drives.push_back(scan.drive);
+  }
+  const PathSections sections = splitPath(poses, drives, options.sectionLength);
+  const std::vector<View> views = chooseViews(sections, options.everyScan);
+  const std::vector<PoleSighting> sightings = sightingsOf(scans, views, options);
+  const auto groups = mergeSightings(sightings, {options.mergeDistance, options.apartShare});
+
+  PoleMapResult result;
+  for (const std::vector<std::uint32_t>& group : groups) {  // sorted by their centres already
+    std::vector<std::uint32_t> seen;
+    for (const std::uint32_t member : group) seen.push_back(views[sightings[member].view].section);
+    const std::size_t count = longestRun(std::move(seen), sections.occupied, options.maxGap);
+    result.bestCount = std::max(result.bestCount, count);
+    if (count >= static_cast<std::size_t>(options.minCount))
+      result.poles.push_back(fuse(sightings, group));
+  }
+  std::stable_sort(
+      result.poles.begin(), result.poles.end(),
+      [](const MapPole& a, const MapPole& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+  result.pathLength = sections.length;
+  result.sections = sections.count;
+  result.occupiedSections = sections.occupied.size();
+  result.views = views.size();
+  result.detections = sightings.size();
+  result.clusters = groups.size();
+  return result;
+}
+
+}  // namespace polemcl
