@@ -20,6 +20,7 @@ using mrpt::opengl::CSetOfLines;
 std::vector<mrpt::opengl::CCylinder::Ptr> cylindersOf(mrpt::opengl::COpenGLScene& scene) {
   auto poles = std::dynamic_pointer_cast<mrpt::opengl::CSetOfObjects>(scene.getByName("poles"));
   std::vector<mrpt::opengl::CCylinder::Ptr> cylinders;
+  if (!poles) return {};
   for (const auto& object : *poles)
     if (auto cylinder = std::dynamic_pointer_cast<mrpt::opengl::CCylinder>(object))
       cylinders.push_back(cylinder);
