@@ -1,19 +1,21 @@
-# Sourced by the scripts here and by the demo: where the programs are, and small helpers.
-# shellcheck shell=sh
+# Sourced by the scripts here and by the demo, which set $top: small helpers.
+# shellcheck shell=sh disable=SC2154
 
-# The folder with the programs: POLEMCL_BIN, else build/bin of the checkout ($top).
+die() {
+  echo "$(basename "$0"): $1" >&2
+  exit 1
+}
+
+# find_programs NAME...: sets $bin to POLEMCL_BIN, else build/bin of the checkout.
 find_programs() {
   bin=${POLEMCL_BIN:-$top/build/bin}
   for program in "$@"; do
-    [ -x "$bin/$program" ] || {
-      echo "$(basename "$0"): no program $bin/$program; build first (share/setup/build.sh release" \
-        "programs) or name the folder in POLEMCL_BIN" >&2
-      exit 1
-    }
+    [ -x "$bin/$program" ] || die "no program $bin/$program: build first \
+(share/setup/build.sh release programs), or name its folder in POLEMCL_BIN"
   done
 }
 
-# set_option FILE SECTION KEY VALUE: changes the value in an INI file, or adds it.
+# set_option FILE SECTION KEY VALUE: changes a value of an INI file, or adds it.
 set_option() {
   awk -v section="[$2]" -v key="$3" -v value="$4" '
     function add() { if (inside && !done) { print key " = " value; done = 1 } }
@@ -28,4 +30,56 @@ set_option() {
 # json_value FILE KEY: the number under a key of a flat JSON object.
 json_value() {
   sed -n "s/.*\"$2\"[ ]*:[ ]*\\([-+.0-9eE]*\\).*/\\1/p" "$1" | head -n 1
+}
+
+error_keys="pos_mean pos_rmse lat_mean lon_mean ang_mean_deg ang_rmse_deg pos_max"
+
+# evaluate_runs FOLDER TRUTH: errors of every FOLDER/run_NN.tum, as run_NN.json and as the table
+# FOLDER/errors.txt, its last row the mean over the runs.
+evaluate_runs() {
+  rows=$1/errors.rows
+  : >"$rows"
+  for estimate in "$1"/run_[0-9]*.tum; do
+    [ -f "$estimate" ] || die "no runs in $1"
+    run=${estimate%.tum}
+    "$bin/pole-eval" trajectory --quiet --truth "$2" --estimate "$estimate" --json "$run.json" \
+      >/dev/null
+    printf '%s' "$(basename "$run")" >>"$rows"
+    for key in $error_keys; do printf ' %s' "$(json_value "$run.json" "$key")" >>"$rows"; done
+    echo >>"$rows"
+  done
+  awk '
+    BEGIN {
+      format = "%-8s %10s %10s %9s %9s %10s %10s %9s\n"
+      printf format, "", "position", "position", "lateral", "longit.", "heading", "heading", "largest"
+      printf format, "run", "mean m", "RMSE m", "mean m", "mean m", "mean deg", "RMSE deg", "m"
+    }
+    function row(name, v) {
+      printf "%-8s %10.4f %10.4f %9.4f %9.4f %10.4f %10.4f %9.4f\n", \
+        name, v[2], v[3], v[4], v[5], v[6], v[7], v[8]
+    }
+    { for (i = 2; i <= NF; ++i) { v[i] = $i; sum[i] += $i } row($1, v) }
+    END { for (i = 2; i <= 8; ++i) v[i] = sum[i] / NR; row("mean", v) }
+  ' "$rows" >"$1/errors.txt"
+  rm "$rows"
+}
+
+# runs_json FOLDER: the errors of all runs and their mean, as JSON on standard output.
+runs_json() {
+  echo '{'
+  echo '  "mean": {'
+  awk -v keys="$error_keys" 'END {
+    n = split(keys, key, " ")
+    for (i = 1; i <= n; ++i) printf "    \"%s\": %s%s\n", key[i], $(i + 1), i < n ? "," : ""
+  }' "$1/errors.txt"
+  echo '  },'
+  echo '  "runs": ['
+  first=yes
+  for run in "$1"/run_[0-9]*.json; do
+    [ "$first" = yes ] || echo '    ,'
+    first=no
+    sed 's/^/    /' "$run"
+  done
+  echo '  ]'
+  echo '}'
 }

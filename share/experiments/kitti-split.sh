@@ -1,0 +1,38 @@
+#!/bin/sh
+# A real drive, split: map from the even scans, localization on the odd ones.
+# Odometry is the true motion with 2 % noise (seed 7); 1000 particles, filter seeds 1 to 5.
+# Usage: share/experiments/kitti-split.sh DATA_DIR OUT [CONFIG]
+#   DATA_DIR  a folder of scans with poses (velodyne/, times.txt, poses.txt)
+#   OUT       gets the map, the trajectories, errors.txt and result.json
+#   CONFIG    settings, config/kitti.ini unless given
+# Programs: build/bin, or POLEMCL_BIN.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+[ $# = 2 ] || [ $# = 3 ] || {
+  sed -n '2,9s/^# //p' "$0" >&2
+  exit 2
+}
+data=$1
+out=$2
+config=${3:-$top/config/kitti.ini}
+find_programs pole-import pole-map pole-localize pole-eval
+[ -d "$data/velodyne" ] || die "no scans in $data/velodyne"
+mkdir -p "$out"
+
+"$bin/pole-import" folder --quiet --input "$data" --output "$out/even.rawlog" --every 2 --offset 0
+"$bin/pole-import" folder --quiet --input "$data" --output "$out/odd.rawlog" --every 2 --offset 1 \
+  --odometry-noise 0.02 --seed 7
+"$bin/pole-map" --quiet --config "$config" --input "$out/even.rawlog" --truth "$out/even.tum" \
+  --output "$out/map.polemap" --csv "$out/map.csv"
+"$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" \
+  --map "$out/map.polemap" --truth "$out/odd.tum" --output "$out/runs" \
+  --particles 1000 --runs 5 --seed 1
+
+evaluate_runs "$out/runs" "$out/odd.tum"
+cp "$out/runs/errors.txt" "$out/errors.txt"
+runs_json "$out/runs" >"$out/result.json"
+echo "Map from the even scans, localized on the odd ones; settings: $config"
+cat "$out/errors.txt"
