@@ -1,0 +1,57 @@
+/// \file bench_map_builder.cpp
+/// \brief Building a map from drives of different length: the work must grow with the detections.
+///
+/// A road with a pole every 10 m on both sides, a scan every 0.5 m that sees 60 % of the poles
+/// within 40 m, and a false detection a scan.
+
+#include <benchmark/benchmark.h>
+#include <polemcl/core/PoleMapBuilder.h>
+
+#include <cmath>
+#include <random>
+
+using namespace polemcl;
+
+namespace {
+
+std::vector<MappingScan> drive(std::size_t scans) {
+  std::mt19937_64 random(1);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * 0x1p-64 * static_cast<double>(random());
+  };
+  std::vector<MappingScan> result(scans);
+  for (std::size_t i = 0; i < scans; ++i) {
+    const double way = 0.5 * static_cast<double>(i);
+    result[i].pose_map_robot = {way, 0, 0};
+    const auto see = [&](double x, double y) {
+      PoleDetection pole;
+      pole.x = x + uniform(-0.05, 0.05);
+      pole.y = y + uniform(-0.05, 0.05);
+      pole.covariance = Eigen::Matrix2d::Identity() * 0.001;
+      result[i].poles_robot.push_back(pole);
+    };
+    for (double x = std::ceil((way - 40) / 10) * 10; x <= way + 40; x += 10) {
+      if (uniform(0, 1) < 0.6) see(x - way, 6);
+      if (uniform(0, 1) < 0.6) see(x - way + 3, -7);
+    }
+    see(uniform(-30, 30), uniform(-30, 30));
+  }
+  return result;
+}
+
+void buildMap(benchmark::State& state) {
+  const std::vector<MappingScan> scans = drive(state.range(0));
+  PoleMapOptions options;
+  options.everyScan = state.range(1) != 0;
+  PoleMapResult result;
+  for (auto _ : state) benchmark::DoNotOptimize(result = buildPoleMap(scans, options));
+  state.counters["detections"] = static_cast<double>(result.detections);
+  state.counters["poles"] = static_cast<double>(result.poles.size());
+  state.SetComplexityN(static_cast<std::int64_t>(result.detections));
+}
+BENCHMARK(buildMap)
+    ->ArgNames({"scans", "everyScan"})
+    ->ArgsProduct({{1000, 4000, 16000}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
