@@ -53,6 +53,7 @@ void NativeOptions::validate() const {
   check(maxRadius > minRadius && minRadius >= 0, "max_radius_m", maxRadius,
         "more than min_radius_m");
   check(maxTilt > 0 && maxTilt < 1.5, "max_tilt_deg", maxTilt, "more than 0, less than 86 degrees");
+  check(minSpacing >= 0, "min_spacing_m", minSpacing, "0 or more");
   check(maxScatter > 0, "max_scatter_m", maxScatter, "more than 0");
   check(minPoints >= 2, "min_points", minPoints, "2 or more");
   check(minConfidence >= 0 && minConfidence <= 1, "min_confidence", minConfidence, "0 to 1");

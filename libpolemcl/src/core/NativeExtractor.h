@@ -16,9 +16,10 @@ class NativeExtractor {
  private:
   /// \return The reason of the refusal, or Refusal::count_ when `pole` was filled.
   Refusal examine(const Stack& stack, PoleDetection& pole);
+  std::size_t dropDuplicates(std::vector<PoleDetection>& poles) const;
   void selectForFit(const Stack& stack);
-  /// Log odds of a pole from all but the fit.
-  double score(const Stack& stack, const StackShape& shape, const PoleEvidence& evidence) const;
+  double score(const Stack& stack, const StackShape& shape, const PoleEvidence& evidence,
+               const PoleAxis& axis) const;
 
   SensorOptions m_sensorOptions;
   NativeOptions m_options;

@@ -60,12 +60,13 @@ class Place {
     return meeting;
   }
 
-  bool cluttered(int row) const {
+  /// Returns of a row in the ring around the place.
+  int ringReturns(int row) const {
     int found = 0;
     around(row, m_axis.radius + kRingOuter, [&](const Return&, float distance) {
       found += distance > m_axis.radius + kRingInner && distance < m_axis.radius + kRingOuter;
     });
-    return found > 0;
+    return found;
   }
 
  private:
@@ -160,7 +161,9 @@ PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
       e.rowsWide += meeting == Meeting::near;
     }
     ++expected;
-    e.rowsCluttered += place.cluttered(slices[i].row);
+    const int clutter = place.ringReturns(slices[i].row);
+    e.rowsCluttered += clutter > 0;
+    e.ringReturns += clutter;
   }
   e.bottom = shape.low - groundZ;
   e.top = shape.high - groundZ;

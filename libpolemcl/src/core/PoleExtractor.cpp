@@ -33,6 +33,8 @@ const char* name(Refusal reason) {
       return "not_straight";
     case Refusal::lowConfidence:
       return "low_confidence";
+    case Refusal::duplicate:
+      return "duplicate";
     case Refusal::count_:
       break;
   }

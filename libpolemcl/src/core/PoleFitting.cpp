@@ -9,7 +9,10 @@ namespace {
 
 constexpr double kRangeSigma = 0.025;  ///< m: noise of one range, and of the surface's roughness
 constexpr double kRobust = 0.06;  ///< m: Cauchy scale of range residuals; mixed pixels lie beyond
-constexpr double kFootprint = 0.0015;  ///< rad: by so much a beam's width widens what it sees
+constexpr double kFootprint = 0.0008;  ///< rad: by so much a beam's width widens what it sees
+constexpr double kDivergence = 0.002;  ///< rad: full width of a beam
+constexpr double kGrazing =
+    0.85;  ///< share of the radius beyond which the front's slope is not used
 constexpr double kRadiusPrior = 0.12;  ///< m: posts and trunks of streets
 constexpr double kRadiusPriorSigma = 0.10;
 constexpr double kFloorSigma =
@@ -93,12 +96,17 @@ class CylinderProblem {
     std::size_t i = slice.first;
     for (std::uint32_t k = 0; k < slice.count; ++k, i = i + 1 == size ? 0 : i + 1) {
       const double x = m_lines.x(row[i]), y = m_lines.y(row[i]);
-      const double lateral = m_cos * y - m_sin * x - s.lateral;
-      const double depth = m_cos * x + m_sin * y - s.depth;
-      const double distance = std::max(1e-3, std::sqrt(lateral * lateral + depth * depth));
-      const double e = distance - s.radius;
+      // A beam that grazes the edge hits it with the inner part of its footprint only: where the
+      // return comes from is the middle of what footprint and cylinder share.
+      const double half = 0.5 * kDivergence * s.depth;
+      const double across = m_cos * y - m_sin * x - s.lateral;
+      const double hit = 0.5 * (std::clamp(across - half, -s.radius, s.radius) +
+                                std::clamp(across + half, -s.radius, s.radius));
+      const double u = std::clamp(hit / s.radius, -kGrazing, kGrazing),
+                   front = std::sqrt(1 - u * u);
+      const double e = s.depth - s.radius * front - (m_cos * x + m_sin * y);
       const double robust = 1 / (1 + e * e / (kRobust * kRobust));
-      n.add(-lateral / distance, -depth / distance, -1, e, robust * kWeight);
+      n.add(-u / front, 1, -front, e, robust * kWeight);
       n.residualSum += robust * e * e;
       n.weightSum += robust;
     }

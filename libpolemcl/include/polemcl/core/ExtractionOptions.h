@@ -78,6 +78,7 @@ struct NativeOptions {
   int minPoints = 5;         ///< least returns of a pole
   double maxTilt = 0.2;  ///< greatest tilt of the axis against the vertical, rad (`max_tilt_deg`)
   double maxScatter = 0.12;    ///< greatest rms distance of slices from the axis, m
+  double minSpacing = 0.4;     ///< of two poles nearer than this the less confident is dropped, m
   double minConfidence = 0.5;  ///< poles below are refused
   double maxRange = 40;        ///< poles farther away are not looked for, m
   void validate() const;

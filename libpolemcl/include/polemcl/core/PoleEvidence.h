@@ -26,6 +26,7 @@ struct PoleEvidence {
   int rowsPassed = 0;     ///< rows between bottom and top that saw through it (or nothing)
   int rowsWide = 0;       ///< rows between bottom and top that met something there that is no slice
   int rowsCluttered = 0;  ///< rows of slices with other returns in the ring around it
+  int ringReturns = 0;    ///< such returns
   float bottom = 0;       ///< lowest slice
   float top = 0;          ///< highest return, whatever stands on it (sign, crown) included
   float topBound = 0;     ///< height of the lowest beam that passed over it; infinity when none did

@@ -23,7 +23,8 @@ enum class Refusal {
   tilted,         ///< its axis leans more than `max_tilt_deg`
   notStraight,    ///< its slices do not stand above one another
   lowConfidence,
-  count_  ///< number of reasons
+  duplicate,  ///< beside a more confident one
+  count_      ///< number of reasons
 };
 const char* name(Refusal reason);
 
