@@ -2,6 +2,7 @@
 #include <polemcl/io/TextFile.h>
 #include <polemcl/io/Trajectory.h>
 
+#include <Eigen/SVD>
 #include <cmath>
 
 namespace polemcl::io {
@@ -47,7 +48,8 @@ std::vector<StampedPose2D> planar(const std::vector<StampedPose3D>& trajectory) 
 Eigen::Isometry3d spatial(const Pose2D& pose) {
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
   result.translation() = Eigen::Vector3d(pose.x, pose.y, 0);
-  result.linear() = Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  result.linear() << c, -s, 0, s, c, 0, 0, 0, 1;
   return result;
 }
 
@@ -103,7 +105,9 @@ Eigen::Isometry3d poseFromRows(const std::vector<double>& values, const std::str
                 significant(off, 3) + ", determinant " + significant(rotation.determinant(), 3) +
                 "); expected: twelve numbers, row-major 3x4 [R|t]");
   }
-  pose.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+  // The nearest rotation.
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  pose.linear() = svd.matrixU() * svd.matrixV().transpose();
   return pose;
 }
 

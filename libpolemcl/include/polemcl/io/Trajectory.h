@@ -34,7 +34,7 @@ void writeTum(const std::filesystem::path& file, const std::vector<StampedPose3D
 
 /// \brief Poses of twelve numbers a line, row-major 3×4, as KITTI odometry and the plain folder
 /// layout have them. `#` starts a comment. Plain or gzip.
-/// Rotations may be off by rounding (1e-3 in any element of RᵀR) and are made orthonormal.
+/// Rotations may be off by rounding (1e-3 in any element of RᵀR) and become the nearest ones.
 /// \throws Error naming file and line: wrong columns, not a number, no rotation; and when there is
 ///         no pose at all.
 std::vector<Eigen::Isometry3d> readKittiPoses(const std::filesystem::path& file);
