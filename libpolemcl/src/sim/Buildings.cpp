@@ -40,9 +40,19 @@ struct Front {
   }
   void windows(double storey) {
     const double spacing = random.uniform(2.0, 3.5), half = random.uniform(0.4, 0.8);
+    const bool sills = random.chance(0.5);
+    const double sillOut = random.uniform(0.05, 0.15);
     for (double x = -length / 2 + spacing / 2; x < length / 2 - half; x += spacing)
-      for (double low = 1.0; low + 1.5 < height; low += storey)
+      for (double low = 1.0; low + 1.5 < height; low += storey) {
         builder.box(V(x, 0, low + 0.75), V(half, 0.012, 0.7), materials::houseGlass);
+        if (sills) builder.box(V(x, 0, low), V(half + 0.06, sillOut, 0.04), materials::concrete);
+      }
+  }
+  void ledges(double storey) {
+    const double out = random.uniform(0.03, 0.12);
+    for (double level = storey; level < height; level += storey)
+      builder.box(V(0, 0, level), V(length / 2, out, random.uniform(0.06, 0.15)), material);
+    builder.box(V(0, 0, 0.2), V(length / 2, 0.5 * out, 0.5), materials::concrete);  // plinth
   }
   void pilasters() {
     const double spacing = random.uniform(2.5, 5), half = random.uniform(0.12, 0.35);
@@ -84,6 +94,7 @@ WorldObject makeHouse(const Site& site, std::uint32_t id, double length, double 
               random.chance(0.4) ? materials::brick : materials::plaster};
   front.body(storey);
   front.windows(storey);
+  if (random.chance(0.5)) front.ledges(storey);
   if (random.chance(0.35)) front.pilasters();
   if (random.chance(0.5)) front.drainPipe(-length / 2 + random.uniform(0.1, 0.4));
   if (random.chance(0.25)) front.drainPipe(random.uniform(-0.4, 0.4) * length);

@@ -31,7 +31,7 @@ LidarModel hdl64e(double topDeg, double upperStepDeg, double lowerTopDeg, double
   lidar.columns = 2083;
   lidar.calibrated = true;
   lidar.divergence = 0.0025;
-  lidar.rangeNoise = 0.018;
+  lidar.rangeNoise = 0.022;
   lidar.maxRange = 120;
   lidar.referenceRange = 75;
   return lidar;
@@ -68,7 +68,7 @@ LidarModel ouster(int rows, double halfViewDeg, double staggerDeg, double refere
   lidar.columns = 1024;
   lidar.calibrated = true;
   lidar.divergence = 0.0031;
-  lidar.rangeNoise = 0.015;
+  lidar.rangeNoise = 0.011;
   lidar.rangeStep = 0.001;
   lidar.minRange = 0.5;
   lidar.referenceRange = reference;
@@ -119,7 +119,7 @@ LidarModel makeLidar(const std::string& name, bool upsideDown, unsigned unit) {
     else
       beam.elevationError = random.normal(0, 0.03 * kDegree);
     beam.azimuth += random.normal(0, 0.03 * kDegree);
-    beam.rangeBias = random.normal(0, 0.007);
+    beam.rangeBias = random.normal(0, 0.4 * lidar.rangeNoise);
     beam.rise += beam.rise > 0 ? random.normal(0, 0.004) : 0.0;
   }
   lidar.startAzimuth = M_PI;

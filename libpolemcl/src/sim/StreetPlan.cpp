@@ -49,6 +49,7 @@ void StreetPlan::furnish() {
   const std::size_t permanent = m_nextId;
   m_nextId = 1000000;  // things of one day
   addedPoles(permanent);
+  vehiclesInYards();
   for (const int side : {1, -1}) {
     parkedVehicles(side);
     people(side);

@@ -37,6 +37,8 @@ class StreetPlan {
   double lot(int side, double s, Random& random);
   void house(int side, double s, double length, double setBack, Random& random);
   void garden(int side, double s, double length, double depth, Random& random);
+  /// \brief Paved ground before a house, where vehicles may stand.
+  void yard(int side, double s, double length, Random& random);
   void park(int side, double s, double length, Random& random);
   // Along the kerb: StreetPlanKerb.cpp
   void crossingFurniture();
@@ -47,6 +49,7 @@ class StreetPlan {
   // Of one day: StreetPlanDay.cpp
   void addedPoles(std::size_t permanentPoles);
   void parkedVehicles(int side);
+  void vehiclesInYards();
   void people(int side);
 
   Random stream(std::uint64_t kind, int side, std::uint64_t index = 0) const;
@@ -64,6 +67,11 @@ class StreetPlan {
   const Street& m_street;
   const Terrain& m_terrain;
   const std::vector<Crossing>& m_crossings;
+  struct Yard {
+    int side;
+    double s, length, border;
+  };
+  std::vector<Yard> m_yards;
   std::uint32_t m_nextId = 1;
   std::unordered_map<std::int64_t, std::vector<Eigen::Vector3d>> m_taken;  ///< x, y, gap
 };

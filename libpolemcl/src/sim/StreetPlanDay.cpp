@@ -39,6 +39,21 @@ void StreetPlan::parkedVehicles(int side) {
   }
 }
 
+void StreetPlan::vehiclesInYards() {
+  for (std::size_t i = 0; i < m_yards.size(); ++i) {
+    const Yard& yard = m_yards[i];
+    Random random = dayStream(0xca6, yard.side, i);
+    for (double along = -yard.length / 2 + 1.5; along < yard.length / 2 - 1; along += 2.7) {
+      const std::uint32_t id = m_nextId++;
+      Random own(random.next());
+      Site place = site(yard.side, yard.s + along, yard.border + own.uniform(2.9, 3.5));
+      if (!own.chance(0.6 * m_options.parkedShare) || !claim(place, 1.4, Ground::lot)) continue;
+      place.heading += (own.chance(0.5) ? M_PI / 2 : -M_PI / 2) + own.normal(0, 0.03);
+      add(makeVehicle(place, id, own));
+    }
+  }
+}
+
 void StreetPlan::people(int side) {
   if (m_options.clutter <= 0) return;
   Random random = dayStream(0x9e0, side);

@@ -37,17 +37,18 @@ double StreetPlan::lot(int side, double s, Random& random) {
   Random own(random.next());  // so that a lot left out leaves the others as they are
   if (middle > m_street.length() || !m_street.fresh(middle)) return length;
   if (nearCrossing(side, middle, length / 2 + 1.0)) return 3;
-  if (kind < 0.42) {
+  if (kind < 0.34) {
     house(side, middle, length - own.uniform(0, 0.4), 0, own);
-  } else if (kind < 0.75) {
+  } else if (kind < 0.62) {
     garden(side, middle, length, depth, own);
     house(side, middle, length - own.uniform(0.5, 5), depth, own);
-  } else if (kind < 0.9) {
+  } else if (kind < 0.74) {
+    yard(side, middle, length, own);
+  } else if (kind < 0.91) {
     park(side, middle, length, own);
   } else {
-    const Site place =
-        site(side, middle, m_options.roadWidth / 2 + pavementWidth(side, middle) + 0.3);
-    add(makeWall(place, m_nextId++, length, own));
+    const double border = m_options.roadWidth / 2 + pavementWidth(side, middle) + 0.3;
+    add(makeWall(site(side, middle, border), m_nextId++, length, own));
     garden(side, middle, length - 2, 8, own);
   }
   return length;
@@ -81,7 +82,7 @@ void StreetPlan::garden(int side, double s, double length, double depth, Random&
     else if (kind < 0.85)
       add(makeWall(edge, id, length, random));
   }
-  const int plants = 1 + random.below(3);
+  const int plants = 1 + random.below(5);
   for (int i = 0; i < plants; ++i) {
     const double along = s + random.uniform(-0.45, 0.45) * length;
     const Site place = site(side, along, border + random.uniform(1, std::max(1.2, depth - 1.5)));
@@ -93,6 +94,24 @@ void StreetPlan::garden(int side, double s, double length, double depth, Random&
       add(makeTree(place, plant, TreeStyle(own), leavesOf(m_options), own));
     else
       add(makeBush(place, plant, leavesOf(m_options), own));
+  }
+}
+
+void StreetPlan::yard(int side, double s, double length, Random& random) {
+  const double border = m_options.roadWidth / 2 + pavementWidth(side, s);
+  const double depth = random.uniform(9, 18);
+  m_yards.push_back({side, s, length, border});
+  house(side, s, length - random.uniform(0, 3), depth, random);
+  for (int i = 0, plants = random.below(4); i < plants; ++i) {
+    const double along = s + random.uniform(-0.5, 0.5) * length;
+    const Site place = site(side, along, border + depth - random.uniform(1.2, 2.5));
+    const std::uint32_t id = m_nextId++;
+    Random own(random.next());
+    if (!claim(place, 1.0, Ground::lot)) continue;
+    if (own.chance(0.4))
+      add(makeTree(place, id, TreeStyle(own), leavesOf(m_options), own));
+    else
+      add(makeBush(place, id, leavesOf(m_options), own));
   }
 }
 
@@ -112,6 +131,7 @@ void StreetPlan::park(int side, double s, double length, Random& random) {
     else
       add(makeBush(place, id, leavesOf(m_options), own));
   }
+  if (random.chance(0.6)) house(side, s, length - 1, random.uniform(15, 20), random);
   const std::uint32_t id = m_nextId++;
   const Site edge = site(side, s, border - 0.2);
   if (random.chance(0.3) && claim(edge, 0.1, Ground::pavement))

@@ -21,7 +21,7 @@ Terrain::Terrain(const WorldOptions& options, const Street& street,
   // Long waves make slopes of up to a few per cent, short ones the humps a car rides over.
   for (const double length : {900.0, 420.0, 230.0, 95.0, 41.0, 17.0}) {
     const double wave = length * random.uniform(0.85, 1.2), turn = random.uniform(0, 2 * M_PI);
-    const double steepest = random.uniform(0.005, 0.013) * (length < 60 ? 0.5 : 1.0);
+    const double steepest = random.uniform(0.006, 0.017) * (length < 60 ? 0.5 : 1.0);
     m_waves.push_back({options.relief * steepest * wave / (2 * M_PI),
                        2 * M_PI / wave * std::cos(turn), 2 * M_PI / wave * std::sin(turn),
                        random.uniform(0, 2 * M_PI)});
@@ -108,10 +108,14 @@ void Terrain::fillHeights() {
         for (int i = 0; i <= kNodes; ++i) {
           const int column = tx * kNodes + i, row = ty * kNodes + j;
           const double x = m_origin.x() + kNode * column, y = m_origin.y() + kNode * row;
+          const double edge = tile.edge[j * (kNodes + 1) + i];
           // Worn ground: centimetres off the road, millimetres on it.
           const double bump = unitFloat(hash(m_seed, column, row)) - 0.5;
-          const double wear = m_relief * (tile.edge[j * (kNodes + 1) + i] > 2.5 ? 0.06 : 0.012);
-          tile.base[j * (kNodes + 1) + i] = static_cast<float>(smooth(x, y) + wear * bump);
+          const double wear = edge > 2.5 ? 0.06 : 0.012;
+          // Roads are cambered, and what lies beside them falls towards them.
+          const double camber = 0.02 * std::abs(edge);
+          tile.base[j * (kNodes + 1) + i] =
+              static_cast<float>(smooth(x, y) + m_relief * (wear * bump + camber));
         }
     }
 }

@@ -28,7 +28,11 @@ inline float unitFloat(std::uint64_t bits) {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : m_state(seed) {}
-  std::uint64_t next() { return hash(m_state += 0x9e3779b97f4a7c15ull); }
+  std::uint64_t next() {
+    const std::uint64_t value = hash(m_state);
+    m_state += 0x9e3779b97f4a7c15ull;
+    return value;
+  }
   /// \brief Uniform in [0, 1).
   double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
