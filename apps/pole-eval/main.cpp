@@ -1,0 +1,3 @@
+#include <polemcl/apps/EvalApp.h>
+
+int main(int argc, char** argv) { return polemcl::apps::evalMain(argc, argv); }

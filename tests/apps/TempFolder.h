@@ -1,0 +1,95 @@
+#pragma once
+/// \file TempFolder.h
+/// \brief A folder of one test, and small things to do with files and programs.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace testing_apps {
+
+namespace fs = std::filesystem;
+
+/// A new, empty folder; removed with all that is in it.
+class TempFolder {
+ public:
+  TempFolder() {
+    std::string name = (fs::temp_directory_path() / "polemcl-apps-XXXXXX").string();
+    m_path = ::mkdtemp(name.data());
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    fs::remove_all(m_path, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  const fs::path& path() const { return m_path; }
+  fs::path operator/(const std::string& name) const { return m_path / name; }
+
+ private:
+  fs::path m_path;
+};
+
+inline void writeText(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
+}
+
+inline std::string readText(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Names of the files in a folder, sorted.
+inline std::vector<std::string> names(const fs::path& folder) {
+  std::vector<std::string> result;
+  for (const auto& entry : fs::directory_iterator(folder))
+    result.push_back(entry.path().filename().string());
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+/// Runs a program in this process.
+inline Outcome runProgram(const std::function<int(int, const char* const*)>& program,
+                          const std::vector<std::string>& arguments) {
+  std::vector<const char*> argv{"program"};
+  for (const auto& argument : arguments) argv.push_back(argument.c_str());
+  Outcome outcome;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  outcome.code = program(static_cast<int>(argv.size()), argv.data());
+  outcome.out = testing::internal::GetCapturedStdout();
+  outcome.err = testing::internal::GetCapturedStderr();
+  return outcome;
+}
+
+/// Exit code 1, and one line on stderr that holds all of these words.
+inline void expectFailure(const Outcome& outcome, const std::vector<std::string>& words) {
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  for (const auto& word : words)
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << word << " is not in: " << outcome.err;
+}
+
+inline void expectUsageError(const Outcome& outcome) {
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("--help"), std::string::npos) << outcome.err;
+}
+
+}  // namespace testing_apps
