@@ -30,14 +30,16 @@ void GroundGrid::collectLowest(const ScanLines& lines, float sensorHeight) {
   for (int row = 0; row < lines.rows(); ++row) {
     for (int s = 0; s < kSectors; ++s) {
       const Return* end = lines.columnBegin(row, (s + 1) * kColumns);
-      float* cells = &m_lowest[s * kRings * kCandidates];
-      for (const Return* r = lines.columnBegin(row, s * kColumns); r != end; ++r) {
-        if (r->z > highest + kMaxSlope * r->rho) continue;
-        float* cell = cells + ring(r->rho) * kCandidates;
-        if (r->z < cell[1]) {
-          cell[1] = std::max(r->z, cell[0]);
-          cell[0] = std::min(r->z, cell[0]);
-        }
+      const Return* r = lines.columnBegin(row, s * kColumns);
+      if (r == end) continue;
+      // On one beam what is lowest is the ground, what stands on it is nearer and higher.
+      const Return* lowest = r;
+      for (; r != end; ++r) lowest = r->z < lowest->z ? r : lowest;
+      if (lowest->z > highest + kMaxSlope * lowest->rho) continue;
+      float* cell = &m_lowest[(s * kRings + ring(lowest->rho)) * kCandidates];
+      if (lowest->z < cell[1]) {
+        cell[1] = std::max(lowest->z, cell[0]);
+        cell[0] = std::min(lowest->z, cell[0]);
       }
     }
   }

@@ -9,6 +9,12 @@ namespace {
 
 /// Log odds lost per metre of the fit's residual beyond 2 cm; from the same regression as score().
 constexpr double kResidualOdds = 68;
+/// Log odds lost when all rows have other returns in the ring around.
+constexpr double kClutterOdds = 5.36;
+
+double confidence(double logOdds) {
+  return 1 / (1 + std::exp(-logOdds));
+}
 
 }  // namespace
 
@@ -97,10 +103,11 @@ Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
   const double top =
       std::isfinite(evidence.topBound) ? 0.5 * (evidence.top + evidence.topBound) : 1e9;
   if (std::max<double>(top, evidence.top) < m_options.minTop) return Refusal::tooLow;
-  const double odds = score(stack, shape, evidence, axis);
-  const auto confidence = [](double logOdds) { return 1 / (1 + std::exp(-logOdds)); };
+  // Clutter and a bad fit can only lower the odds, and cost more to find out.
+  double odds = score(stack, shape, evidence, axis);
   if (confidence(odds) < m_options.minConfidence) return Refusal::lowConfidence;
-
+  odds -= kClutterOdds * clutteredShare(m_lines, m_sensor, m_slices, stack, axis);
+  if (confidence(odds) < m_options.minConfidence) return Refusal::notFree;
   const auto fit = fitPole(m_lines, m_slices, m_fitSlices, column);
   if (!fit || fit->radius < m_options.minRadius || fit->radius > m_options.maxRadius)
     return Refusal::badFit;
@@ -126,7 +133,6 @@ double NativeExtractor::score(const Stack& stack, const StackShape& shape, const
   odds += -1.38 * std::log(slices) + 1.23 * std::log(points);
   odds += 1.97 * std::min(3.f, shape.high - shape.low);
   odds += -3.94 * e.rowsPassed / rows - 3.51 * e.rowsWide / rows;
-  odds += -5.36 * e.rowsCluttered / slices;
   odds += -3.62 * (1 - shape.wholeSlices / slices);
   odds += -3.2 * shape.scatter + 5.7 * shape.widthSpread;
   odds += -1.71 * std::max(0.0, m_options.minTop - e.top);

@@ -60,11 +60,11 @@ class Place {
     return meeting;
   }
 
-  /// Returns of a row in the ring around the place.
-  int ringReturns(int row) const {
-    int found = 0;
+  /// True when a row has returns in the ring around the place.
+  bool cluttered(int row) const {
+    bool found = false;
     around(row, m_axis.radius + kRingOuter, [&](const Return&, float distance) {
-      found += distance > m_axis.radius + kRingInner && distance < m_axis.radius + kRingOuter;
+      found |= distance > m_axis.radius + kRingInner && distance < m_axis.radius + kRingOuter;
     });
     return found;
   }
@@ -161,14 +161,19 @@ PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
       e.rowsWide += meeting == Meeting::near;
     }
     ++expected;
-    const int clutter = place.ringReturns(slices[i].row);
-    e.rowsCluttered += clutter > 0;
-    e.ringReturns += clutter;
   }
   e.bottom = shape.low - groundZ;
   e.top = shape.high - groundZ;
   top(place, sensor, slices[stack.top()].row, groundZ, e);
   return e;
+}
+
+float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
+                     const std::vector<Slice>& slices, const Stack& stack, const PoleAxis& axis) {
+  const Place place(lines, sensor, axis);
+  int cluttered = 0;
+  for (auto i : stack) cluttered += place.cluttered(slices[i].row);
+  return static_cast<float>(cluttered) / static_cast<float>(stack.count);
 }
 
 }  // namespace polemcl

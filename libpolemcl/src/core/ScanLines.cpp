@@ -6,6 +6,23 @@
 #include "ScanKernels.h"
 
 namespace polemcl {
+namespace {
+
+/// Calls f(i) for all i below n, from four places at once: neighbours in the cloud fall into the
+/// same bucket, and would wait for each other's counter.
+template <class F>
+void eachInStreams(std::size_t n, F f) {
+  const std::size_t quarter = n / 4;
+  for (std::size_t i = 0; i < quarter; ++i) {
+    f(i);
+    f(i + quarter);
+    f(i + 2 * quarter);
+    f(i + 3 * quarter);
+  }
+  for (std::size_t i = 4 * quarter; i < n; ++i) f(i);
+}
+
+}  // namespace
 
 ScanLines::ScanLines(const SensorModel& sensor)
     : m_sensor(sensor), m_rows(sensor.rows()), m_bucketStart(bucket(m_rows, 0) + 2) {}
@@ -31,14 +48,16 @@ const ScanLines::Counts& ScanLines::build(const PointsView& points, float minRan
   // and filling, which moves it on to the next bucket's start, leaves all of them where they
   // belong.
   std::fill(m_bucketStart.begin(), m_bucketStart.end(), 0u);
-  for (std::size_t i = 0; i < points.size; ++i)
+  eachInStreams(points.size, [&](std::size_t i) {
     if (m_key[i] >= 0) ++m_bucketStart[m_key[i] + 2];
+  });
   for (std::size_t b = 1; b < m_bucketStart.size(); ++b) m_bucketStart[b] += m_bucketStart[b - 1];
   if (m_returns.size() < m_counts.used) m_returns.resize(m_counts.used + m_counts.used / 8);
-  for (std::size_t i = 0; i < points.size; ++i)
+  eachInStreams(points.size, [&](std::size_t i) {
     if (m_key[i] >= 0)
       m_returns[m_bucketStart[m_key[i] + 1]++] = {m_azimuth[i], m_rho[i], points.z[i],
                                                   static_cast<std::uint32_t>(i)};
+  });
   sortBuckets();
   return m_counts;
 }

@@ -23,16 +23,19 @@ StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack);
 
 /// \brief What the beams at a candidate's place say. Heights in m above local ground.
 struct PoleEvidence {
-  int rowsPassed = 0;     ///< rows between bottom and top that saw through it (or nothing)
-  int rowsWide = 0;       ///< rows between bottom and top that met something there that is no slice
-  int rowsCluttered = 0;  ///< rows of slices with other returns in the ring around it
-  int ringReturns = 0;    ///< such returns
-  float bottom = 0;       ///< lowest slice
-  float top = 0;          ///< highest return, whatever stands on it (sign, crown) included
-  float topBound = 0;     ///< height of the lowest beam that passed over it; infinity when none did
+  int rowsPassed = 0;  ///< rows between bottom and top that saw through it (or nothing)
+  int rowsWide = 0;    ///< rows between bottom and top that met something there that is no slice
+  float bottom = 0;    ///< lowest slice
+  float top = 0;       ///< highest return, whatever stands on it (sign, crown) included
+  float topBound = 0;  ///< height of the lowest beam that passed over it; infinity when none did
 };
 PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
                             const GroundGrid& ground, const std::vector<Slice>& slices,
                             const Stack& stack, const StackShape& shape, const PoleAxis& axis);
+
+/// \brief Share of the stack's rows with other returns in a ring around the place, 0.15 to 0.55 m
+/// outside the radius: free space, as a score.
+float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
+                     const std::vector<Slice>& slices, const Stack& stack, const PoleAxis& axis);
 
 }  // namespace polemcl
