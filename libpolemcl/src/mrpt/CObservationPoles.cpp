@@ -4,6 +4,7 @@
 #include <polemcl/mrpt/CObservationPoles.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <ostream>
 #include <sstream>

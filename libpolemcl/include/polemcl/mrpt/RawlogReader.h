@@ -35,8 +35,8 @@ class RawlogReader {
 
   /// \return false at the end of the file.
   /// \throws Error on a class that is not registered (names it), on an object that cannot be read,
-  ///         and, unless allowed, on a file that ends inside an object, after an action without its
-  ///         frame, or before its first object (names the byte).
+  ///         and, unless allowed, on a file that ends inside an object (names the byte) or is
+  ///         empty. A plain file cut between two objects cannot be told from a whole one.
   bool next(RawlogEntry& entry);
   /// \brief True when the file ended too early and that was allowed.
   bool truncated() const;
