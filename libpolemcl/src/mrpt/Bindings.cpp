@@ -56,7 +56,8 @@ void bind(Binder& b, NativeOptions& o) {
   b.integer("min_points", o.minPoints, Range::atLeast(2), "", "least returns of a pole");
   b.angleDeg("max_tilt_deg", o.maxTilt, Range::between(0, 90), "greatest tilt of the axis");
   b.number("max_scatter_m", o.maxScatter, positive, "m", "greatest rms distance of slices from it");
-  b.number("min_spacing_m", o.minSpacing, notNegative, "m", "nearer poles: the less sure is dropped");
+  b.number("min_spacing_m", o.minSpacing, notNegative, "m",
+           "nearer poles: the less sure is dropped");
   b.number("min_confidence", o.minConfidence, share, "", "poles below are refused");
   b.number("max_range_m", o.maxRange, positive, "m", "poles farther away are not looked for");
 }

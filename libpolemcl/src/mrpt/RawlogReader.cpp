@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "GzReadStream.h"
+#include "MrptReason.h"
 
 namespace polemcl {
 
@@ -48,17 +49,6 @@ bool printable(const std::string& text) {
   return !text.empty();
 }
 
-/// The innermost reason of MRPT's nested messages, on one line.
-std::string reason(const std::string& message) {
-  std::size_t at = message.rfind("Original exception:");
-  std::string text = at == std::string::npos ? message : message.substr(at + 19);
-  at = text.find("Message:");
-  if (at != std::string::npos) text = text.substr(at + 8);
-  at = text.find_first_not_of(" \n\t");
-  text = at == std::string::npos ? "" : text.substr(at);
-  return text.substr(0, text.find('\n'));
-}
-
 }  // namespace
 
 /// The data ends inside the object that starts at `offset`: an Error unless that is allowed.
@@ -77,8 +67,9 @@ void RawlogReader::Impl::explain(std::uint64_t offset, const std::string& what) 
   if (printable(unknown))
     throw Error(name + ": class '" + unknown + "'" + at +
                 " is not known here: it needs the library that defines it");
-  if (objects == 0) throw Error(name + ": is no rawlog: " + reason(what));
-  throw Error(name + ": object " + std::to_string(objects) + at + " is damaged: " + reason(what));
+  if (objects == 0) throw Error(name + ": is no rawlog: " + mrptReason(what));
+  throw Error(name + ": object " + std::to_string(objects) + at +
+              " is damaged: " + mrptReason(what));
 }
 
 /// One object of the file, none at its end.

@@ -45,16 +45,22 @@ struct PoleScan {
   CObservationPoles::Ptr observation;  ///< never null
   std::size_t points = 0;              ///< valid points; 0 for stored poles that do not tell
   std::size_t invalid = 0;             ///< dropped points
+  bool stored = false;                 ///< true: read as poles, not extracted
 };
 
 /// \brief Streams a rawlog: reads in order, extracts on several threads, hands out in order. At
 /// most a few scans per thread are in memory.
 ///
 /// Scans are the observations that PoleExtraction can process, and CObservationPoles; all of the
-/// sensor label that comes first. Motions: the action before the frame (for `emOdometry` the stored
-/// reading; its covariance is the Gaussian model's if it has one, else `[motion]`'s), several
-/// actions composed; else CObservationOdometry, interpolated at the time of the scan, covariance
-/// from `[motion]`.
+/// class and sensor label that come first (of a frame that holds both, the poles). External files
+/// with relative names are looked for in `<rawlog>_Images` if there is one, else beside the rawlog
+/// (MRPT keeps one such folder for the whole program). Motions: the action before the frame (for
+/// `emOdometry` the stored reading; its covariance is the Gaussian model's if it has one, else
+/// `[motion]`'s), several actions composed; else CObservationOdometry, interpolated at the time of
+/// the scan (held for 0.5 s before the first and after the last reading), covariance from
+/// `[motion]`.
+///
+/// An error ends the stream in its place: the scans before it have been handed out.
 /// \param consume Called in order, from one thread at a time.
 /// \throws Error as RawlogReader and PoleExtraction do, naming file and scan; and what consume
 /// throws.

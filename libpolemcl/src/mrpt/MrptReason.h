@@ -1,0 +1,12 @@
+#pragma once
+/// \file MrptReason.h
+
+#include <string>
+
+namespace polemcl {
+
+/// \brief The innermost reason in the message of an exception of MRPT, on one line: without nested
+/// contexts and call stacks. Other messages give their first line.
+std::string mrptReason(const std::string& what);
+
+}  // namespace polemcl

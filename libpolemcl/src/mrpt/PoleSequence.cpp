@@ -1,0 +1,159 @@
+#include <mrpt/io/lazy_load_path.h>
+#include <polemcl/mrpt/PoleSequence.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <exception>
+#include <filesystem>
+
+#include "ScanSource.h"
+
+namespace polemcl {
+
+namespace {
+
+/// One scan on its way through the pipeline; an error travels in its place, so that the first of
+/// the file is the one reported, whatever the threads do.
+struct Task {
+  ScanSource::Scan scan;
+  PoleScan result;
+  std::exception_ptr error;
+};
+using TaskPtr = std::shared_ptr<Task>;
+
+class Stream {
+ public:
+  Stream(const std::string& path, const SequenceOptions& options)
+      : m_path(path),
+        m_source(path, options.motion, options.allowTruncated),
+        m_extractions([options] { return PoleExtraction(options.extraction); }) {
+    m_extractions.local();  // refuses bad options here, whatever the rawlog holds
+  }
+
+  TaskPtr read();
+  void extract(Task& task);
+  void collect(Task& task, const std::function<void(const PoleScan&)>& consume);
+  SequenceCounts counts() const;
+
+ private:
+  std::string m_path;
+  ScanSource m_source;
+  tbb::enumerable_thread_specific<PoleExtraction> m_extractions;
+  SequenceCounts m_counts;
+  bool m_ended = false;
+};
+
+/// The next scan or the error that stands in its place; none at the end.
+TaskPtr Stream::read() {
+  if (m_ended) return nullptr;
+  auto task = std::make_shared<Task>();
+  try {
+    auto scan = m_source.next();
+    m_ended = !scan;
+    if (m_ended) return nullptr;
+    task->scan = std::move(*scan);
+  } catch (...) {
+    m_ended = true;
+    task->error = std::current_exception();
+  }
+  return task;
+}
+
+void Stream::extract(Task& task) {
+  if (task.error) return;
+  const auto observation = std::move(task.scan.observation);
+  PoleScan& result = task.result;
+  result.index = task.scan.index;
+  result.time = task.scan.time;
+  result.motion = task.scan.motion;
+  result.observation = std::dynamic_pointer_cast<CObservationPoles>(observation);
+  result.stored = result.observation != nullptr;
+  if (result.stored) {
+    result.points = result.observation->points;
+    return;
+  }
+  try {
+    PoleExtraction& extraction = m_extractions.local();
+    result.observation = extraction.process(*observation);
+    result.points = result.observation->points;
+    result.invalid = extraction.report().invalid;
+  } catch (const std::exception& error) {
+    task.error = std::make_exception_ptr(
+        Error(m_path + ": scan " + std::to_string(task.scan.index) + ": " + error.what()));
+  }
+}
+
+void Stream::collect(Task& task, const std::function<void(const PoleScan&)>& consume) {
+  if (task.error) std::rethrow_exception(task.error);
+  const PoleScan& scan = task.result;
+  ++m_counts.scans;
+  m_counts.storedScans += scan.stored ? 1 : 0;
+  m_counts.emptyScans += scan.points == 0 && scan.observation->poles.empty() ? 1 : 0;
+  m_counts.points += scan.points;
+  m_counts.invalidPoints += scan.invalid;
+  m_counts.poles += scan.observation->poles.size();
+  consume(scan);
+}
+
+SequenceCounts Stream::counts() const {
+  SequenceCounts counts = m_counts;
+  counts.otherSensors = m_source.otherSensors();
+  counts.unknownMotions = m_source.unknownMotions();
+  counts.truncated = m_source.truncated();
+  return counts;
+}
+
+/// Relative names of external files are meant from the folder MRPT's tools put them in, if there
+/// is one, else from the rawlog's own.
+void findExternals(const std::string& path) {
+  const std::filesystem::path file = std::filesystem::absolute(path);
+  const std::filesystem::path images = file.parent_path() / (file.stem().string() + "_Images");
+  std::error_code none;
+  mrpt::io::setLazyLoadPathBase(
+      (std::filesystem::is_directory(images, none) ? images : file.parent_path()).string());
+}
+
+}  // namespace
+
+SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
+                           const std::function<void(const PoleScan&)>& consume) {
+  if (options.threads < 0)
+    throw Error("threads = " + std::to_string(options.threads) + ": allowed is 0 or more");
+  findExternals(path);
+  Stream stream(path, options);
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    const auto read = [&](tbb::flow_control& control) {
+      TaskPtr task = stream.read();
+      if (!task) control.stop();
+      return task;
+    };
+    const auto extract = [&](TaskPtr task) {
+      stream.extract(*task);
+      return task;
+    };
+    const auto collect = [&](const TaskPtr& task) { stream.collect(*task, consume); };
+    tbb::parallel_pipeline(
+        static_cast<std::size_t>(2 * threads),
+        tbb::make_filter<void, TaskPtr>(tbb::filter_mode::serial_in_order, read) &
+            tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
+            tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));
+  });
+  return stream.counts();
+}
+
+PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,
+                              const std::function<void(std::size_t)>& progress) {
+  PoleSequence sequence;
+  sequence.counts = streamPoles(path, options, [&](const PoleScan& scan) {
+    sequence.frames.push_back(
+        {scan.time, scan.motion, scan.observation->polesInRobotFrame(), scan.points});
+    if (progress) progress(sequence.frames.size());
+  });
+  return sequence;
+}
+
+}  // namespace polemcl
