@@ -102,6 +102,7 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.integer("min_count", o.minCount, Range::atLeast(1), "", "sections a pole must be seen in");
   b.integer("max_gap", o.maxGap, notNegative, "", "occupied sections a run may miss it");
   b.number("min_confidence", o.minConfidence, share, "", "detections below are not used");
+  b.check(o);
 }
 
 void bind(Binder& b, LikelihoodOptions& o) {
