@@ -138,7 +138,9 @@ inline ShapeHit hitLeaves(const LocalRay& ray, float enter, float leave, float d
     };
     const std::uint64_t leaf = hash(seed ^ key(index[0], index[1], index[2]));
     const float draw = unitFloat(leaf);
-    if (draw < 2 * density) {  // clumps have up to twice the mean density, gaps none
+    const bool grazed =
+        std::min(next[axis], leave) - range < 1e-4f;  // a corner, no way through the cell
+    if (draw < 2 * density && !grazed) {  // clumps have up to twice the mean density, gaps none
       const std::uint64_t clump = hash(~seed ^ key(index[0] >> 2, index[1] >> 2, index[2] >> 2));
       if (draw < density * 2 * unitFloat(clump)) {
         const float end = std::min(next[axis], leave);

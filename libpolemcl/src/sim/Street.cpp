@@ -53,7 +53,7 @@ Street::Street(const std::vector<Eigen::Vector2d>& places) {
 void Street::resample(const std::vector<Eigen::Vector2d>& places) {
   m_points.push_back(places.front());
   for (std::size_t i = 1; i < places.size(); ++i) {
-    for (double left = (places[i] - m_points.back()).norm(); left >= step(); left -= step())
+    for (double left = (places[i] - m_points.back()).norm(); left >= step() - 1e-6; left -= step())
       m_points.push_back(m_points.back() + step() * (places[i] - m_points.back()).normalized());
   }
   if (m_points.size() < 2) throw Error("a street must be longer than half a metre");

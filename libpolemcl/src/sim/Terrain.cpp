@@ -111,7 +111,7 @@ void Terrain::fillHeights() {
           const double edge = tile.edge[j * (kNodes + 1) + i];
           // Worn ground: centimetres off the road, millimetres on it.
           const double bump = unitFloat(hash(m_seed, column, row)) - 0.5;
-          const double wear = edge > 2.5 ? 0.06 : 0.012;
+          const double wear = edge > 2.5 ? 0.05 : 0.012;
           // Roads are cambered, and what lies beside them falls towards them.
           const double camber = 0.02 * std::abs(edge);
           tile.base[j * (kNodes + 1) + i] =
