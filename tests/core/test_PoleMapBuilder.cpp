@@ -134,16 +134,15 @@ TEST(PoleMapBuilder, takesTheMiddleScanOfASection) {
 }
 
 TEST(PoleMapBuilder, everyScanIsAViewButSectionsAreCounted) {
-  std::vector<MappingScan> scans;
-  for (int i = 0; i < 20; ++i)
-    scans.push_back(scanAt(0.1 * i, {{5, 3}}));  // 0 to 1.9 m: two sections
-  PoleMapOptions options = sectionsOfOneMetre(2, 0);
+  std::vector<MappingScan> scans;  // 0 to 2.9 m: three sections
+  for (int i = 0; i < 30; ++i) scans.push_back(scanAt(0.1 * i, {{5, 3}}));
+  PoleMapOptions options = sectionsOfOneMetre(3, 0);
   options.everyScan = true;
   const PoleMapResult result = buildPoleMap(scans, options);
   ASSERT_EQ(result.poles.size(), 1u);
-  EXPECT_EQ(result.poles[0].count, 20u);
-  EXPECT_EQ(result.views, 20u);
-  options.minCount = 3;
+  EXPECT_EQ(result.poles[0].count, 30u);
+  EXPECT_EQ(result.views, 30u);
+  options.minCount = 4;
   EXPECT_TRUE(buildPoleMap(scans, options).poles.empty());
 }
 

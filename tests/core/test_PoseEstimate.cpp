@@ -113,10 +113,10 @@ TEST(PoseEstimate, bestShareTakesAtLeastOneAndNoMoreThanTold) {
   const auto all = bestShareMean(particles, logWeights, 1),
              mean = weightedMean(particles, logWeights);
   EXPECT_EQ(all.mean.x, mean.mean.x);
-  // 0.1 times 30 is not 3 in binary.
-  std::vector<Pose2D> thirty(30);
-  for (int i = 0; i < 30; ++i) thirty[i].x = i;
-  expectPose(bestShareMean(thirty, std::vector<double>(30, 0.0), 0.1).mean, 1, 0, 0);
+  // 0.29 times 100 is 28.999999999999996 in binary.
+  std::vector<Pose2D> hundred(100);
+  for (int i = 0; i < 100; ++i) hundred[i].x = i;
+  expectPose(bestShareMean(hundred, std::vector<double>(100, 0.0), 0.29).mean, 14, 0, 0);
 }
 
 TEST(PoseEstimate, aWeightOfZeroCountsForNothing) {

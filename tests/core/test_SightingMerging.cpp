@@ -190,6 +190,22 @@ TEST(SightingMerging, holdsItsInvariantsOnClutter) {
   }
 }
 
+TEST(SightingMerging, holdsItsInvariantsWhereCentresDoNotSettle) {
+  // Few sightings of very different certainty: centres jump, and the dealing may go round in
+  // circles.
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> coordinate(0, 0.8 + 0.007 * seed), sigma(0.001, 0.2);
+    std::vector<PoleSighting> sightings;
+    for (std::uint64_t i = 0; i < 20 + seed % 60; ++i) {
+      PoleSighting s = sighting(coordinate(random), coordinate(random), random() % (5 + seed % 37));
+      s.pole.covariance = std::pow(sigma(random), 2) * Eigen::Matrix2d::Identity();
+      sightings.push_back(s);
+    }
+    expectInvariants(sightings, mergeSightings(sightings, {0.5, 0.25}), {0.5, 0.25});
+  }
+}
+
 TEST(SightingMerging, copesWithPilesOfEqualSightings) {
   std::vector<PoleSighting> sightings;
   for (std::uint32_t i = 0; i < 300; ++i) sightings.push_back(sighting(1, 1, i % 3));

@@ -83,7 +83,7 @@ PoseWithCovariance bestShareMean(const std::vector<Pose2D>& particles,
   const std::vector<double> weights = weightsOf(logWeights);
   std::vector<std::size_t> chosen(particles.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  // 0.1 of 30 is 3.0000000000000004 or 2.9999999999999996: rounded down, but not for that.
+  // 0.29 of 100 is 28.999999999999996: rounded down, but not for that.
   const double wanted = std::floor(share * static_cast<double>(particles.size()) + 1e-9);
   const std::size_t count =
       std::clamp<std::size_t>(static_cast<std::size_t>(wanted), 1, particles.size());
