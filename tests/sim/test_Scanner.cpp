@@ -148,7 +148,8 @@ TEST(Scanner, partsOfAPulseMeltAtNearStepsOnly) {
       const SimulatedScan result = scan(world, pose, makeLidar("os1_64"), 1);
       for (const std::uint32_t id : {1u, 2u})
         for (const V& point : pointsOf(result, id, pose))
-          between += std::abs(point.y()) < 0.3 && point.x() > 11.94 && point.x() < wall - 0.06;
+          between += point.z() > 0.5 && std::abs(point.y()) < 0.3 && point.x() > 11.94 &&
+                     point.x() < wall - 0.06;
     }
     if (wall < 13)
       EXPECT_GT(between, 3);

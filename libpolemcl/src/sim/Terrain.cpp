@@ -141,17 +141,25 @@ Terrain::Sample Terrain::sample(double x, double y) const {
 
 double Terrain::solve(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double lift,
                       double start, double maxRange) const {
-  double range = start;
-  for (int i = 0; i < 8; ++i) {
+  // The slope of the ground is small, so the fall of the ray alone makes a good first step; then
+  // the secant. A ray that hardly falls is given a least fall, lest it be sent away.
+  constexpr double kLeastFall = 0.02;
+  double range = start, fall = std::max(-direction.z(), kLeastFall);
+  double rangeBefore = 0, aboveBefore = 0;
+  for (int i = 0; i < 12; ++i) {
     const Eigen::Vector3d point = origin + range * direction;
     const double above = point.z() - sample(point.x(), point.y()).base - lift;
     if (std::abs(above) < 0.002) return range;
-    // The slope of the ground is small, so the fall of the ray alone makes a good step; a ray that
-    // hardly falls is helped by a least fall, and its next steps correct it.
-    range += above / std::max(-direction.z(), 0.02);
+    if (i > 0 && range != rangeBefore) {
+      const double secant = (aboveBefore - above) / (range - rangeBefore);
+      if (secant > 0.5 * fall && secant < 4 * fall) fall = secant;
+    }
+    rangeBefore = range;
+    aboveBefore = above;
+    range += above / fall;
     if (!(range < 2 * maxRange) || range < 0) break;
   }
-  return range < 0 ? 0 : range;
+  return std::max(range, 0.0);
 }
 
 Terrain::Hit Terrain::intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
