@@ -63,9 +63,12 @@ const ScanLines::Counts& ScanLines::build(const PointsView& points, float minRan
 }
 
 void ScanLines::sortBuckets() {
-  const auto before = [](const Return& a, const Return& b) {
+  // Down to the last bit, so that the order of the points is of no consequence.
+  const auto before = [this](const Return& a, const Return& b) {
     if (a.azimuth != b.azimuth) return a.azimuth < b.azimuth;
-    return a.rho != b.rho ? a.rho < b.rho : a.z < b.z;
+    if (a.rho != b.rho) return a.rho < b.rho;
+    if (a.z != b.z) return a.z < b.z;
+    return x(a) != x(b) ? x(a) < x(b) : y(a) < y(b);
   };
   for (std::size_t b = 0; b + 1 < m_bucketStart.size(); ++b) {
     Return* first = m_returns.data() + m_bucketStart[b];

@@ -36,7 +36,7 @@ class ScanLines {
   const Counts& build(const PointsView& points, float minRange, float maxRange);
 
   int rows() const { return m_rows; }
-  /// \brief Returns of one row, azimuth ascending; equal azimuths by range, then height.
+  /// \brief Returns of one row, azimuth ascending; equal azimuths by range, then height, then x, y.
   const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
   const Return* end(int row) const { return begin(row + 1); }
   std::size_t size(int row) const { return static_cast<std::size_t>(end(row) - begin(row)); }
