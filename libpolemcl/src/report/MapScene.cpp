@@ -26,38 +26,45 @@ mrpt::opengl::CGridPlaneXY::Ptr makeGround(const Bounds& bounds) {
       static_cast<float>(down(bounds.xMin)), static_cast<float>(up(bounds.xMax)),
       static_cast<float>(down(bounds.yMin)), static_cast<float>(up(bounds.yMax)), 0.0f,
       static_cast<float>(step));
-  grid->setName("ground");
   grid->setColor_u8(TColor(0xd0, 0xd5, 0xdb));
   return grid;
 }
 
-mrpt::opengl::CSetOfLines::Ptr makePath(const std::string& name,
-                                        const std::vector<StampedPose2D>& path, double height,
-                                        float width, const TColor& color) {
+/// Lines along the path, each so far to its left, m.
+mrpt::opengl::CSetOfLines::Ptr makeLines(const std::vector<StampedPose2D>& path,
+                                         const std::vector<double>& offsets, const TColor& color) {
+  constexpr double height = 0.05;  // above the grid, which would flicker through
   auto lines = mrpt::opengl::CSetOfLines::Create();
-  lines->setName(name);
-  lines->setLineWidth(width);
+  lines->setLineWidth(2);
   lines->setColor_u8(color);
-  for (std::size_t i = 1; i < path.size(); ++i)
-    lines->appendLine(path[i - 1].pose.x, path[i - 1].pose.y, height, path[i].pose.x,
-                      path[i].pose.y, height);
+  for (double offset : offsets)
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const Pose2D from = compose(path[i - 1].pose, {0, offset, 0});
+      const Pose2D to = compose(path[i].pose, {0, offset, 0});
+      lines->appendLine(from.x, from.y, height, to.x, to.y, height);
+    }
   return lines;
 }
 
 mrpt::opengl::CSetOfObjects::Ptr makePoles(const std::vector<MapPole>& poles) {
   auto objects = mrpt::opengl::CSetOfObjects::Create();
-  objects->setName("poles");
   CPoleMap map;
   map.setPoles(poles);
   map.getVisualizationInto(*objects);
   return objects;
 }
 
+void insert(mrpt::opengl::COpenGLScene& scene, const std::string& name,
+            const mrpt::opengl::CRenderizable::Ptr& object) {
+  object->setName(name);
+  scene.insert(object);
+}
+
 void lookDown(mrpt::opengl::CCamera& camera, const Bounds& bounds) {
   const double extent = std::max({bounds.xMax - bounds.xMin, bounds.yMax - bounds.yMin, 10.0});
   camera.setPointingAt(static_cast<float>(0.5 * (bounds.xMin + bounds.xMax)),
                        static_cast<float>(0.5 * (bounds.yMin + bounds.yMax)), 0.0f);
-  camera.setZoomDistance(static_cast<float>(1.2 * extent));
+  camera.setZoomDistance(static_cast<float>(1.5 * extent));
   camera.setAzimuthDegrees(-90);
   camera.setElevationDegrees(55);
 }
@@ -69,16 +76,14 @@ mrpt::opengl::COpenGLScene::Ptr makeMapScene(const MapView& view) {
   auto scene = mrpt::opengl::COpenGLScene::Create();
   const auto viewport = scene->getViewport();
   viewport->setCustomBackgroundColor({1.0f, 1.0f, 1.0f});
-  const double extent = std::max({bounds.xMax - bounds.xMin, bounds.yMax - bounds.yMin, 10.0});
-  viewport->setViewportClipDistances(0.1f, static_cast<float>(10 * extent));
   lookDown(viewport->getCamera(), bounds);
-  scene->insert(makeGround(bounds));
-  scene->insert(makePoles(view.poles));
-  // Two heights, so that the estimate stays visible on top of a truth it lies upon.
+  insert(*scene, "ground", makeGround(bounds));
+  insert(*scene, "poles", makePoles(view.poles));
+  // Not upon each other: viewers resolve less than the height that would keep them apart.
   if (!view.truth.empty())
-    scene->insert(makePath("truth", view.truth, 0.05, 6, TColor(0x80, 0x88, 0x94)));
+    insert(*scene, "truth", makeLines(view.truth, {-0.5, 0.5}, TColor(0x60, 0x68, 0x74)));
   if (!view.estimate.empty())
-    scene->insert(makePath("estimate", view.estimate, 0.10, 2, TColor(0x00, 0x72, 0xb2)));
+    insert(*scene, "estimate", makeLines(view.estimate, {0}, TColor(0x00, 0x72, 0xb2)));
   return scene;
 }
 

@@ -9,11 +9,11 @@
 
 namespace polemcl::report {
 
-/// \brief Poles as upright cylinders from their bottom to their top, `truth` and `estimate` as
-/// lines just above the ground (z = 0), a ground grid below all of it.
+/// \brief Poles as upright cylinders from their bottom to their top, the estimate as a
+/// line, the truth as two lines 0.5 m to either side of it, a grid on the ground (z = 0).
 ///
-/// Names of the objects: `ground`, `poles`, `truth`, `estimate`. The camera looks down at the
-/// whole. \throws Error when there is nothing to show, or a coordinate is not finite.
+/// Names of the objects: `ground`, `poles`, `truth`, `estimate`. The camera shows all of it.
+/// \throws Error when there is nothing to show, or a coordinate is not finite.
 mrpt::opengl::COpenGLScene::Ptr makeMapScene(const MapView& view);
 
 /// \brief Writes a `.3Dscene`, atomically. \throws Error when it cannot be written.
