@@ -78,7 +78,8 @@ void Stream::extract(Task& task) {
     PoleExtraction& extraction = m_extractions.local();
     result.observation = extraction.process(*observation);
     result.points = result.observation->points;
-    result.invalid = extraction.report().invalid;
+    result.report = extraction.report();
+    result.invalid = result.report.invalid;
   } catch (const std::exception& error) {
     task.error = std::make_exception_ptr(
         Error(m_path + ": scan " + std::to_string(task.scan.index) + ": " + error.what()));

@@ -45,6 +45,7 @@ struct PoleScan {
   CObservationPoles::Ptr observation;  ///< never null
   std::size_t points = 0;              ///< valid points; 0 for stored poles that do not tell
   std::size_t invalid = 0;             ///< dropped points
+  ExtractionReport report;             ///< of the extraction; all zero for stored poles
   bool stored = false;                 ///< true: read as poles, not extracted
 };
 

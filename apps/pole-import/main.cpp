@@ -1,0 +1,3 @@
+#include <polemcl/apps/ImportApp.h>
+
+int main(int argc, char** argv) { return polemcl::apps::importMain(argc, argv); }

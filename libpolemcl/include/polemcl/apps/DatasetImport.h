@@ -1,0 +1,66 @@
+#pragma once
+/// \file DatasetImport.h
+/// \brief From the datasets' own files to a rawlog with the truth beside it.
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace polemcl::apps {
+
+enum class Dataset { folder, kittiOdometry, kittiRaw };
+
+/// \brief What to import, and how.
+struct ImportOptions {
+  Dataset dataset = Dataset::folder;
+  std::filesystem::path input;   ///< folder of the dataset
+  std::filesystem::path output;  ///< `S.rawlog`; the truth goes to `S.tum`
+  /// Folder of calib_imu_to_velo.txt, KITTI raw only; without it the folder that holds `input`.
+  std::optional<std::filesystem::path> calibration;
+  bool embed = false;      ///< clouds inside the rawlog instead of by absolute path
+  std::size_t every = 1;   ///< N: take scans K, K+N, …; at least 1
+  std::size_t offset = 0;  ///< K, from 0, less than the number of scans
+  /// K: odometry is the true motion with noise of σ = K·|component|, instead of the folder's.
+  std::optional<double> odometryNoise;
+  std::uint64_t seed = 0;  ///< of that noise
+  /// The sensor in the robot frame: stored in every observation, turns sensor poses into robot
+  /// poses.
+  Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
+  /// \throws Error naming the option.
+  void validate() const;
+};
+
+/// \brief What an import did.
+struct ImportReport {
+  std::size_t scans = 0;       ///< written
+  std::size_t skipped = 0;     ///< left out by `every` and `offset`
+  std::size_t emptyScans = 0;  ///< dropped: no valid point; their motion went into the next one's
+  std::size_t points = 0;      ///< valid ones, counted with `embed` only
+  std::size_t invalidPoints = 0;  ///< dropped: NaN, infinite or at the sensor, with `embed` only
+  bool hasTruth = false;          ///< `S.tum` was written
+  bool hasMotion = false;         ///< actions carry odometry
+  std::vector<std::string> notes;
+};
+
+/// \brief Imports a dataset.
+///
+/// The rawlog holds pairs: an action with one `CActionRobotMovement2D` (`emScan2DMatching`,
+/// `CPosePDFGaussian`), the first identity, and a frame with one `CObservationPointCloud`, label
+/// `lidar`. Without odometry and noise the later actions are empty. Motions across scans that were
+/// left out are composed, covariances too; noise is put on the true motion between the scans
+/// written. Both files appear once both are complete; until then older ones stay as they are.
+/// \param progress Called with scans done and in all; may be empty.
+/// \throws Error when the dataset cannot be read (see the readers in io/), nothing usable is left,
+///         noise is asked for without poses, or the output cannot be written.
+ImportReport importDataset(const ImportOptions& options,
+                           const std::function<void(std::size_t, std::size_t)>& progress = {});
+
+/// \brief Parses `x y z yaw_deg pitch_deg roll_deg` (m, degrees; rotation Rz·Ry·Rx).
+/// \throws Error unless it is six finite numbers.
+Eigen::Isometry3d parseSensorPose(const std::string& text);
+
+}  // namespace polemcl::apps

@@ -1,0 +1,201 @@
+#include <mrpt/core/Clock.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <polemcl/apps/DatasetImport.h>
+#include <polemcl/apps/RawlogActions.h>
+#include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/Cloud.h>
+#include <polemcl/io/KittiOdometry.h>
+#include <polemcl/io/KittiRaw.h>
+#include <polemcl/io/TextFile.h>
+#include <polemcl/io/Trajectory.h>
+#include <polemcl/mrpt/RawlogWriter.h>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+
+namespace polemcl::apps {
+namespace {
+
+io::ScanFolder readDataset(const ImportOptions& options) {
+  switch (options.dataset) {
+    case Dataset::kittiOdometry:
+      return io::readKittiOdometry(options.input, options.T_robot_sensor);
+    case Dataset::kittiRaw: {
+      const auto drive = std::filesystem::absolute(options.input / "").parent_path();
+      return io::readKittiRaw(options.input, options.calibration.value_or(drive.parent_path()),
+                              options.T_robot_sensor);
+    }
+    case Dataset::folder:
+      break;
+  }
+  return io::readScanFolder(options.input, options.T_robot_sensor);
+}
+
+/// Motions since the last scan that was written: composed odometry, or truth with noise.
+class MotionSource {
+ public:
+  explicit MotionSource(const ImportOptions& options)
+      : m_noise(options.odometryNoise), m_generator(options.seed) {}
+
+  /// \brief To be called for every scan of the dataset in turn, written or not.
+  void pass(const io::ScanEntry& scan) {
+    if (!m_started) return;  // the first scan that is written starts at itself
+    if (m_composed && scan.motion)
+      m_composed = io::composeMotions(*m_composed, *scan.motion);
+    else
+      m_composed = scan.motion;
+  }
+
+  /// \brief The motion since the last scan that was written, up to this one, which gets written.
+  /// None when nothing is known of it.
+  std::optional<io::PlanarMotion> take(const io::ScanEntry& scan) {
+    std::optional<io::PlanarMotion> motion = m_composed;
+    if (!m_started) {
+      motion = standstill();
+    } else if (m_noise) {
+      const auto here = io::planar(*scan.T_map_robot);
+      motion = io::noisyMotion(relative(m_last, here), *m_noise, m_generator);
+    }
+    m_started = true;
+    m_composed.reset();
+    if (scan.T_map_robot) m_last = io::planar(*scan.T_map_robot);
+    return motion;
+  }
+
+ private:
+  std::optional<double> m_noise;
+  std::mt19937_64 m_generator;
+  std::optional<io::PlanarMotion> m_composed;
+  Pose2D m_last;
+  bool m_started = false;
+};
+
+/// The cloud as an observation; none when the scan is empty. Counts points in the report.
+mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanEntry& scan,
+                                                       const ImportOptions& options,
+                                                       ImportReport& report) {
+  auto observation = mrpt::obs::CObservationPointCloud::Create();
+  observation->sensorLabel = "lidar";
+  observation->timestamp = mrpt::Clock::fromDouble(scan.time);
+  observation->sensorPose =
+      mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(options.T_robot_sensor.matrix()));
+  if (!options.embed) {
+    if (std::filesystem::file_size(scan.cloud) == 0) return nullptr;
+    observation->setAsExternalStorage(
+        scan.cloud.lexically_normal().string(),
+        mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+    return observation;
+  }
+  const auto cloud = io::readKittiBin(scan.cloud);
+  report.points += cloud.size();
+  report.invalidPoints += cloud.invalid;
+  if (cloud.size() == 0) return nullptr;
+  auto points = mrpt::maps::CPointsMapXYZI::Create();
+  points->resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    points->setPointFast(i, cloud.x[i], cloud.y[i], cloud.z[i]);
+    points->setPointIntensity(i, cloud.intensity[i]);
+  }
+  observation->pointcloud = points;
+  return observation;
+}
+
+void checkSelection(const ImportOptions& options, const io::ScanFolder& folder) {
+  const std::string where = options.input.string() + ": ";
+  if (options.offset >= folder.scans.size())
+    throw Error(where + "--offset " + std::to_string(options.offset) +
+                " leaves no scan; there are " + std::to_string(folder.scans.size()) +
+                ", numbered from 0");
+  if (options.odometryNoise && !folder.scans.front().T_map_robot)
+    throw Error(where + "--odometry-noise needs true poses (poses.txt), and there are none");
+}
+
+bool selected(std::size_t index, const ImportOptions& options) {
+  return index >= options.offset && (index - options.offset) % options.every == 0;
+}
+
+/// Both files appear together, when both are complete.
+void publish(RawlogWriter& rawlog, std::optional<io::AtomicFile>& truthFile,
+             const std::vector<io::StampedPose3D>& truth) {
+  if (truthFile) io::writeTum(truthFile->temporaryPath(), truth);
+  rawlog.commit();
+  if (truthFile) truthFile->commit();
+}
+
+}  // namespace
+
+void ImportOptions::validate() const {
+  if (every < 1) throw Error("--every 0 takes no scan: a number from 1 on is allowed");
+  if (odometryNoise && !(*odometryNoise >= 0 && std::isfinite(*odometryNoise)))
+    throw Error("--odometry-noise " + io::significant(*odometryNoise, 6) +
+                ": a share of 0 or more is allowed, such as 0.02 for 2 %");
+  const auto extension = output.extension();
+  if (extension != ".rawlog")
+    throw Error("--output " + output.string() +
+                ": the name must end in .rawlog (the truth goes beside it as .tum)");
+}
+
+ImportReport importDataset(const ImportOptions& options,
+                           const std::function<void(std::size_t, std::size_t)>& progress) {
+  options.validate();
+  const auto folder = readDataset(options);
+  checkSelection(options, folder);
+
+  ImportReport report;
+  report.notes = folder.notes;
+  RawlogWriter rawlog(options.output.string());
+  std::optional<io::AtomicFile> truthFile;
+  if (folder.scans.front().T_map_robot)
+    truthFile.emplace(std::filesystem::path(options.output).replace_extension(".tum"));
+  std::vector<io::StampedPose3D> truth;
+  MotionSource motions(options);
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) {
+    const auto& scan = folder.scans[i];
+    motions.pass(scan);
+    if (progress) progress(i, folder.scans.size());
+    if (!selected(i, options)) {
+      ++report.skipped;
+      continue;
+    }
+    const auto observation = makeObservation(scan, options, report);
+    if (!observation) {
+      ++report.emptyScans;
+      continue;
+    }
+    const auto motion = motions.take(scan);
+    if (report.scans > 0 && motion) report.hasMotion = true;
+    rawlog.write(makeActions(motion, observation->timestamp), observation);
+    // The time as the rawlog keeps it (steps of 100 ns), so that both files agree to the digit.
+    const double time = mrpt::Clock::toDouble(observation->timestamp);
+    if (scan.T_map_robot) truth.push_back({time, *scan.T_map_robot});
+    ++report.scans;
+  }
+  if (report.scans == 0)
+    throw Error(options.input.string() + ": no usable scan, all " +
+                std::to_string(report.emptyScans) + " selected ones are empty");
+  publish(rawlog, truthFile, truth);
+  report.hasTruth = truthFile.has_value();
+  return report;
+}
+
+Eigen::Isometry3d parseSensorPose(const std::string& text) {
+  std::istringstream words(text);
+  std::vector<double> values;
+  std::string word;
+  while (words >> word) {
+    const auto value = io::parseNumber(word);
+    if (!value || !std::isfinite(*value)) throw Error("`" + word + "` is not a number");
+    values.push_back(*value);
+  }
+  if (values.size() != 6)
+    throw Error("six numbers are needed, \"x y z yaw_deg pitch_deg roll_deg\", not " +
+                std::to_string(values.size()));
+  const double degree = M_PI / 180;
+  const mrpt::poses::CPose3D pose(values[0], values[1], values[2], values[3] * degree,
+                                  values[4] * degree, values[5] * degree);
+  return Eigen::Isometry3d(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
+}
+
+}  // namespace polemcl::apps

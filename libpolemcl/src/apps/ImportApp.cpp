@@ -1,0 +1,97 @@
+#include <polemcl/apps/CommandLine.h>
+#include <polemcl/apps/DatasetImport.h>
+#include <polemcl/apps/ImportApp.h>
+#include <polemcl/apps/Progress.h>
+#include <polemcl/core/Types.h>
+
+#include <iostream>
+#include <utility>
+
+namespace polemcl::apps {
+namespace {
+
+const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
+    {Dataset::folder, "folder", "velodyne/*.bin, times.txt, poses.txt, odometry.txt"},
+    {Dataset::kittiOdometry, "kitti-odometry", "A sequence of the KITTI odometry benchmark"},
+    {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"}};
+
+/// What is wrong with the text, for CLI11; nothing when it is a pose.
+std::string sensorPoseProblem(const std::string& text) {
+  try {
+    parseSensorPose(text);
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, std::string& sensorPose) {
+  cli.add_option("--input", options.input, "Folder of the dataset")->required();
+  cli.add_option("--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
+      ->required();
+  cli.add_flag("--embed", options.embed, "Store the clouds inside the rawlog");
+  cli.add_option("--every", options.every, "Take scans K, K+N, ...")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--offset", options.offset, "First scan to take, from 0")
+      ->type_name("K")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--odometry-noise", options.odometryNoise,
+                 "Odometry: true motion, noise of this share of each component (0.02 for 2 %)")
+      ->check(CLI::NonNegativeNumber);
+  cli.add_option("--seed", options.seed, "Seed of that noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--sensor-pose", sensorPose,
+                 "Sensor in the robot frame, \"x y z yaw_deg pitch_deg roll_deg\" (default: 0)")
+      ->check(sensorPoseProblem);
+  if (dataset == Dataset::kittiRaw)
+    cli.add_option("--calib", options.calibration,
+                   "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
+}
+
+void print(const ImportReport& report, const ImportOptions& options) {
+  std::cout << options.output.string() << ": " << report.scans << " scans";
+  if (report.skipped > 0) std::cout << ", " << report.skipped << " left out as asked";
+  if (report.emptyScans > 0) std::cout << ", " << report.emptyScans << " empty ones dropped";
+  if (options.embed)
+    std::cout << "; " << report.points << " points, " << report.invalidPoints
+              << " invalid ones dropped";
+  std::cout << '\n'
+            << (report.hasTruth ? "truth: beside it, .tum\n" : "truth: none in the dataset\n")
+            << (report.hasMotion ? options.odometryNoise ? "odometry: true motion with noise\n"
+                                                         : "odometry: from the dataset\n"
+                                 : "odometry: none; good for mapping, not for localization\n");
+  for (const auto& note : report.notes) std::cout << "note: " << note << '\n';
+}
+
+}  // namespace
+
+int importMain(int argc, const char* const* argv) {
+  CommandLine line("pole-import", "Turns a LiDAR dataset into a rawlog, with the truth beside it.");
+  ImportOptions options;
+  std::string sensorPose;
+  line.cli().require_subcommand(1);
+  std::vector<std::pair<const CLI::App*, Dataset>> commands;
+  for (const auto& [dataset, name, description] : datasets) {
+    auto* command = line.cli().add_subcommand(name, description);
+    declare(*command, dataset, options, sensorPose);
+    commands.emplace_back(command, dataset);
+  }
+  return line.run(argc, argv, [&] {
+    for (const auto& [command, dataset] : commands)
+      if (command->parsed()) options.dataset = dataset;
+    if (!sensorPose.empty()) options.T_robot_sensor = parseSensorPose(sensorPose);
+    ImportReport report;
+    {
+      Progress progress("import", 0, line.quiet());
+      report = importDataset(
+          options, [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+    }
+    if (!line.quiet()) print(report, options);
+  });
+}
+
+}  // namespace polemcl::apps
