@@ -49,6 +49,16 @@ TEST(WorldObject, theCircleHoldsAllSolids) {
     }
 }
 
+TEST(WorldObject, crownsAreLabelledApartFromTheTrunk) {
+  ObjectBuilder builder(Kind::tree, Site{});
+  builder.post(V(0, 0, 0), V(0, 0, 3), 0.2, 0.2, materials::bark);
+  builder.startCrown();
+  builder.ellipsoid(V(0, 0, 4), V(1, 1, 1), materials::leaves, 0.1);
+  const WorldObject tree = builder.build(9);
+  EXPECT_EQ(tree.solids[0].object, 9u);
+  EXPECT_EQ(tree.solids[1].object, 9u | kFoliageBit);
+}
+
 TEST(WorldObject, walkersGoThereAndBack) {
   WorldObject person;
   person.walk = {8, 6};  // 10 m

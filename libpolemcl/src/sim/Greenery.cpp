@@ -41,6 +41,7 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
     width = nextWidth;
   }
   const V fork = place;
+  builder.startCrown();
   const int branches = 4 + random.below(4);
   for (int i = 0; i < branches; ++i) {
     const double turn = 2 * M_PI * (i + random.uniform(0, 0.7)) / branches;

@@ -34,6 +34,7 @@ Solid ObjectBuilder::placed(Shape shape, const Eigen::Vector3d& centre, const Ei
   solid.axes = m_turn * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   solid.size = size;
   solid.material = material;
+  solid.object = m_crown ? kFoliageBit : 0;
   return solid;
 }
 
@@ -82,7 +83,7 @@ WorldObject ObjectBuilder::build(std::uint32_t id) {
   m_object.id = id;
   m_object.centre = Eigen::Vector2d::Zero();
   for (Solid& solid : m_object.solids) {
-    solid.object = id;
+    solid.object |= id;
     m_object.centre += solid.position.head<2>() / static_cast<double>(m_object.solids.size());
   }
   m_object.radius = 0;

@@ -17,7 +17,8 @@ namespace polemcl::sim {
 /// sensor frame: origin at the optical centre, x forward, y left, z up, m.
 struct SimulatedScan {
   std::vector<float> x, y, z, intensity;
-  std::vector<std::uint32_t> label;  ///< id of the object hit, 0 the ground
+  /// Id of the object hit, 0 the ground; on the crown of a tree with kFoliageBit set.
+  std::vector<std::uint32_t> label;
   std::size_t size() const { return x.size(); }
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };

@@ -30,6 +30,10 @@ enum class Shape : std::uint8_t {
   thicket     ///< porous oriented box (hedge, mesh)
 };
 
+/// \brief Set in the label of points on branches and leaves of a tree, so that its bare id labels
+/// the trunk.
+constexpr std::uint32_t kFoliageBit = 0x80000000u;
+
 /// \brief One shape, in the map frame. Units m.
 struct Solid {
   Shape shape = Shape::box;
@@ -42,7 +46,7 @@ struct Solid {
   float density = 0;
   float cell = 0.12f;  ///< edge of a leaf cell, m
   Material material;
-  std::uint32_t object = 0;  ///< id of the object it belongs to
+  std::uint32_t object = 0;  ///< label of its points: id of its object, kFoliageBit for a crown
 };
 
 }  // namespace polemcl::sim

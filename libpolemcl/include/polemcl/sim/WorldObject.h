@@ -73,6 +73,8 @@ class ObjectBuilder {
                  const Material& material, double density = 0, double yaw = 0);
   void thicket(const Eigen::Vector3d& centre, const Eigen::Vector3d& half, const Material& material,
                double density, double yaw = 0);
+  /// \brief What follows is crown: its points are labelled with kFoliageBit.
+  void startCrown() { m_crown = true; }
   /// \brief Finishes: bounding circle and ids.
   WorldObject build(std::uint32_t id);
 
@@ -80,6 +82,7 @@ class ObjectBuilder {
   Solid placed(Shape shape, const Eigen::Vector3d& centre, const Eigen::Vector3d& size,
                const Material& material, double yaw) const;
   WorldObject m_object;
+  bool m_crown = false;
   Eigen::Matrix3d m_turn;
   Eigen::Vector3d m_base;
 };
