@@ -129,6 +129,10 @@ TEST_F(AtomicFileTest, refusesAMissingFolder) {
            "No such file or directory");
 }
 
+TEST_F(AtomicFileTest, refusesANameThatIsTooLong) {
+  expectIn(messageOf([&] { AtomicFile file(path(std::string(300, 'x'))); }), "File name too long");
+}
+
 TEST_F(AtomicFileTest, refusesAFolderAsFile) {
   expectIn(messageOf([&] { AtomicFile file(m_folder); }), m_folder.string(), "folder");
   EXPECT_EQ(entries(m_folder), 0u);

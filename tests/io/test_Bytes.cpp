@@ -63,6 +63,10 @@ TEST_F(BytesTest, refusesAMissingFile) {
            "No such file or directory");
 }
 
+TEST_F(BytesTest, refusesANameThatIsTooLong) {
+  expectIn(messageOf([&] { readBytes(path(std::string(300, 'x'))); }), "File name too long");
+}
+
 TEST_F(BytesTest, refusesAFolder) {
   expectIn(messageOf([&] { readBytes(m_folder); }), "folder");
 }

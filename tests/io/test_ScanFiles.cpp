@@ -27,6 +27,14 @@ TEST_F(ScanFilesTest, refusesAMissingOrUselessFolder) {
   expectIn(messageOf([&] { listFiles(m_folder, ".bin"); }), m_folder.string(), "no *.bin");
 }
 
+TEST_F(ScanFilesTest, aLinkToNothingIsThere) {
+  EXPECT_FALSE(isThere(path("f")));
+  EXPECT_FALSE(isThere(path("no/f")));
+  EXPECT_TRUE(isThere(write("f", "")));
+  fs::create_symlink(path("gone"), path("link"));
+  EXPECT_TRUE(isThere(path("link")));
+}
+
 TEST_F(ScanFilesTest, fileNumber) {
   EXPECT_EQ(fileNumber("x/000012.bin"), 12u);
   EXPECT_EQ(fileNumber("1326652795280148.bin"), 1326652795280148u);
@@ -72,6 +80,8 @@ TEST_F(ScanFilesTest, notesEmptyScans) {
 TEST_F(ScanFilesTest, refusesAScanCutShort) {
   std::vector<std::string> notes;
   const fs::path file = write("1.bin", std::string(33, 'x'));
+  expectIn(messageOf([&] { checkScanSizes({path("no.bin")}, notes); }), path("no.bin").string(),
+           "No such file or directory");
   expectIn(messageOf([&] {
              checkScanSizes({write("0.bin", ""), file}, notes);
            }),

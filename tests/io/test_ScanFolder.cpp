@@ -141,6 +141,11 @@ TEST_F(ScanFolderTest, refusesFewerTimesThanScans) {
   expectIn(refusal(), path("times.txt").string(), "2 times for 3 scans");
 }
 
+TEST_F(ScanFolderTest, refusesPosesThatAreALinkToNothing) {
+  fs::create_symlink(path("gone.txt"), path("poses.txt"));
+  expectIn(refusal(), path("poses.txt").string(), "No such file or directory");
+}
+
 TEST_F(ScanFolderTest, refusesMissingTimes) {
   fs::remove(path("times.txt"));
   expectIn(refusal(), path("times.txt").string(), "No such file or directory");
@@ -203,6 +208,12 @@ TEST_F(ScanFolderTest, refusesTwoOdometryFiles) {
 TEST_F(ScanFolderTest, refusesAScanCutShort) {
   write("velodyne/000001.bin", floats({1, 2, 3}));
   expectIn(refusal(), path("velodyne/000001.bin").string(), "cut short", "12 bytes");
+}
+
+TEST_F(ScanFolderTest, refusesAScanThatIsALinkToNothing) {
+  fs::remove(path("velodyne/000001.bin"));
+  fs::create_symlink(path("gone.bin"), path("velodyne/000001.bin"));
+  expectIn(refusal(), path("velodyne/000001.bin").string(), "No such file or directory");
 }
 
 TEST_F(ScanFolderTest, refusesUnpaddedNumbers) {

@@ -60,6 +60,7 @@ TEST_F(TextFileTest, refusesMissingFilesAndFolders) {
   expectIn(messageOf([&] { readLines(path("no")); }), path("no").string(),
            "No such file or directory");
   expectIn(messageOf([&] { readLines(m_folder); }), m_folder.string(), "folder");
+  expectIn(messageOf([&] { readLines(path(std::string(300, 'x'))); }), "File name too long");
 }
 
 TEST_F(TextFileTest, rowsKeepTheirLineNumbers) {

@@ -29,7 +29,10 @@ fs::path checkedTarget(const fs::path& path) {
   if (!fs::is_regular_file(status)) {
     throw cannotWrite(path, "it is a device or pipe; name a regular file");
   }
-  return fs::is_symlink(path) ? fs::canonical(path) : path;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path named = fs::canonical(path, error);
+  if (error) throw cannotWrite(path, error.message());
+  return named;
 }
 
 /// Creates a file that was not there, beside the target.

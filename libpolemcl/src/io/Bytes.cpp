@@ -12,11 +12,11 @@ std::string readBytes(const std::filesystem::path& file) {
     return Error("cannot read " + file.string() + ": " + why);
   };
   // Opening a folder succeeds; only reading it would fail.
-  if (std::filesystem::is_directory(file)) throw fail("it is a folder, not a file");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   if (!stream) throw fail(std::strerror(errno));
-  std::error_code ignored;
   const auto size = std::filesystem::file_size(file, ignored);
   std::string bytes;
   // One byte more than there should be, so that the end is seen without a second round.

@@ -29,12 +29,12 @@ Eigen::Isometry3d readLidarInCamera(const fs::path& file) {
 }
 
 fs::path findPoses(const fs::path& sequence) {
-  if (fs::exists(sequence / "poses.txt")) return sequence / "poses.txt";
+  if (isThere(sequence / "poses.txt")) return sequence / "poses.txt";
   fs::path full = fs::absolute(sequence).lexically_normal();
   if (!full.has_filename()) full = full.parent_path();  // it ended in a slash
   const fs::path beside =
       full.parent_path().parent_path() / "poses" / (full.filename().string() + ".txt");
-  return fs::exists(beside) ? beside : fs::path();
+  return isThere(beside) ? beside : fs::path();
 }
 
 /// Throws unless there is a row for the highest number.

@@ -206,7 +206,7 @@ ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
   const Drive frames = listDrive(drive, result.notes);
   const Eigen::Isometry3d T_imu_robot =
       (T_robot_sensor * readImuInLidar(calibration / "calib_imu_to_velo.txt")).inverse();
-  if (fs::exists(drive / "oxts" / "timestamps.txt")) {
+  if (isThere(drive / "oxts" / "timestamps.txt")) {
     noteOffsets(drive / "oxts" / "timestamps.txt", frames, result.notes);
   }
 

@@ -9,13 +9,14 @@ namespace polemcl::io {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> listFiles(const fs::path& folder, const std::string& ending) {
-  std::error_code error;
+  std::error_code error, ignored;
   std::vector<fs::path> files;
   for (auto entry = fs::directory_iterator(folder, error);
        !error && entry != fs::directory_iterator(); entry.increment(error)) {
     const fs::path name = entry->path().filename();
     const bool wanted = name.extension() == ending && name.native().front() != '.';
-    if (wanted && entry->is_regular_file()) files.push_back(fs::absolute(entry->path()));
+    // A link to nothing is listed too, so that reading it fails aloud.
+    if (wanted && !entry->is_directory(ignored)) files.push_back(fs::absolute(entry->path()));
   }
   if (error) throw Error("cannot read the folder " + folder.string() + ": " + error.message());
   if (files.empty()) throw Error(folder.string() + ": no *" + ending + " file in it");
@@ -23,6 +24,11 @@ std::vector<fs::path> listFiles(const fs::path& folder, const std::string& endin
     return a.filename().native() < b.filename().native();
   });
   return files;
+}
+
+bool isThere(const fs::path& file) {
+  std::error_code ignored;
+  return fs::symlink_status(file, ignored).type() != fs::file_type::not_found;
 }
 
 std::optional<std::uint64_t> fileNumber(const fs::path& file) {
@@ -78,7 +84,9 @@ std::string ranges(const std::vector<std::uint64_t>& numbers, std::size_t most) 
 void checkScanSizes(const std::vector<fs::path>& scans, std::vector<std::string>& notes) {
   std::vector<fs::path> empty;
   for (const fs::path& scan : scans) {
-    const auto size = fs::file_size(scan);
+    std::error_code error;
+    const auto size = fs::file_size(scan, error);
+    if (error) throw Error("cannot read " + scan.string() + ": " + error.message());
     if (size % 16 != 0) {
       throw Error(scan.string() + ": cut short: " + std::to_string(size) +
                   " bytes are no multiple of 16 (float32 x y z intensity a point)");

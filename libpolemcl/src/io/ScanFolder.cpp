@@ -103,15 +103,15 @@ ScanFolder readScanFolder(const fs::path& folder, const Eigen::Isometry3d& T_rob
     result.scans.push_back(std::move(entry));
   }
   readTimes(folder / "times.txt", scans, result);
-  if (fs::exists(folder / "poses.txt")) {
+  if (isThere(folder / "poses.txt")) {
     readPoses(folder / "poses.txt", T_robot_sensor, scans, result);
   }
   const fs::path odometry = folder / "odometry.txt", odom = folder / "odom.txt";
-  if (fs::exists(odometry) && fs::exists(odom)) {
+  if (isThere(odometry) && isThere(odom)) {
     throw Error(folder.string() + ": odometry.txt and odom.txt are both there; remove one of them");
   }
   for (const fs::path& file : {odometry, odom}) {
-    if (fs::exists(file)) readOdometry(file, scans, result);
+    if (isThere(file)) readOdometry(file, scans, result);
   }
   return result;
 }

@@ -17,7 +17,8 @@ std::string readPlainOrGzip(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& why) {
     return Error("cannot read " + file.string() + ": " + why);
   };
-  if (std::filesystem::is_directory(file)) throw fail("it is a folder, not a file");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   errno = 0;
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> stream(gzopen(file.c_str(), "rb"), &gzclose);
   if (!stream) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");

@@ -9,10 +9,14 @@
 
 namespace polemcl::io {
 
-/// \brief Regular files of a folder with the ending, absolute, in the order of their names (bytes).
+/// \brief Files of a folder with the ending, absolute, in the order of their names (bytes).
 /// Hidden files are left out. \throws Error when there is no such folder, or no such file in it.
 std::vector<std::filesystem::path> listFiles(const std::filesystem::path& folder,
                                              const std::string& ending);
+
+/// \brief Whether an optional file is there. A link to nothing, or what cannot be looked at, is: so
+/// reading it fails aloud instead of leaving it out.
+bool isThere(const std::filesystem::path& file);
 
 /// \brief 12 of ".../000012.bin"; none when the name is no number (or has more than 18 digits).
 std::optional<std::uint64_t> fileNumber(const std::filesystem::path& file);
