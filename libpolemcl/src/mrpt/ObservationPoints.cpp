@@ -76,8 +76,8 @@ int usedColumns(const CObservationRotatingScan& scan) {
   return narrow;
 }
 
-/// Made by MRPT from a Velodyne scan: rows in the order the lasers fire, azimuth clockwise from the
-/// back, as the device counts it.
+/// Made by MRPT from a Velodyne scan: rows in the order the lasers fire, azimuth clockwise,
+/// as the device counts it.
 bool isVelodyne(const CObservationRotatingScan& scan) {
   return scan.lidarModel == "VLP-16" || scan.lidarModel == "HDL-32E";
 }
@@ -181,7 +181,7 @@ PointsView ObservationPoints::readRotating(const CObservationRotatingScan& scan)
   const int columns = velodyne ? usedColumns(scan) : static_cast<int>(ranges.cols());
   for (int column = 0; column < columns; ++column) {
     const double turned = scan.startAzimuth + scan.azimuthSpan * column / columns;
-    const double azimuth = velodyne ? M_PI - turned : turned;
+    const double azimuth = velodyne ? -turned : turned;
     const double cosine = std::cos(azimuth), sine = std::sin(azimuth);
     for (std::size_t row = 0; row < elevations.size(); ++row) {
       const auto units = ranges(static_cast<int>(row), column);

@@ -45,12 +45,15 @@ Frames framesOf(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sen
 }
 
 /// Moves a detection from the lidar frame to the planar sensor frame, at its middle height: there
-/// the axis of a pole that stands askew in the lidar frame passes through the centre found.
+/// the axis of a pole that stands askew in the lidar frame passes through the centre found. Heights
+/// are above the ground under the pole, which the robot stands on too: level in its frame.
 void toPlanar(const Frames& f, double ground, PoleDetection& pole) {
   if (f.planarIsLidar) return;
-  const double middle = (pole.bottom + pole.top) / 2 + ground;
+  const double middle = (pole.bottom + pole.top) / 2 + ground;  // above the sensor, along robot z
+  const Eigen::RowVector3d up = f.R_planar_lidar.row(2);
+  const double z = (middle - up.x() * pole.x - up.y() * pole.y) / up.z();
   const Eigen::Vector3d centre =
-      f.R_planar_lidar * Eigen::Vector3d(pole.x, pole.y, middle) + f.t_planar_lidar;
+      f.R_planar_lidar * Eigen::Vector3d(pole.x, pole.y, z) + f.t_planar_lidar;
   const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>();
   const Eigen::Matrix2d covariance = turn * pole.covariance * turn.transpose();
   pole.x = centre.x();

@@ -5,6 +5,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 
@@ -124,7 +125,8 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
     throw Error("threads = " + std::to_string(options.threads) + ": allowed is 0 or more");
   findExternals(path);
   Stream stream(path, options);
-  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const int cores = tbb::info::default_concurrency();  // more threads than that are refused by TBB
+  const int threads = options.threads > 0 ? std::min(options.threads, cores) : cores;
   tbb::task_arena arena(threads);
   arena.execute([&] {
     const auto read = [&](tbb::flow_control& control) {

@@ -156,14 +156,20 @@ ScanSource::Scan ScanSource::release() {
 
 std::optional<ScanSource::Scan> ScanSource::next() {
   RawlogEntry entry;
-  while (!m_ended && (m_waiting.empty() || mustWait(m_waiting.front()))) {
-    if (m_reader.next(entry))
-      take(entry);
-    else
-      m_ended = true;
+  try {
+    while (!m_ended && (m_waiting.empty() || mustWait(m_waiting.front()))) {
+      if (m_reader.next(entry))
+        take(entry);
+      else
+        m_ended = true;
+    }
+  } catch (...) {
+    m_ended = true;
+    m_error = std::current_exception();  // in its place: the scans that wait come before it
   }
-  if (m_waiting.empty()) return std::nullopt;
-  return release();
+  if (!m_waiting.empty()) return release();
+  if (m_error) std::rethrow_exception(m_error);
+  return std::nullopt;
 }
 
 }  // namespace polemcl

@@ -8,6 +8,7 @@
 #include <polemcl/mrpt/RawlogReader.h>
 
 #include <deque>
+#include <exception>
 #include <optional>
 #include <string>
 
@@ -52,6 +53,7 @@ class ScanSource {
   std::deque<Scan> m_waiting;  ///< for odometry later than they are
   std::string m_sensor;        ///< class and label of the scans that are used; empty: none yet
   double m_lastTime = 0;       ///< of the scan released last
+  std::exception_ptr m_error;  ///< why the reading ended
   bool m_ended = false, m_anyAction = false;
   std::size_t m_scans = 0, m_released = 0, m_otherSensors = 0, m_unknownMotions = 0;
 };

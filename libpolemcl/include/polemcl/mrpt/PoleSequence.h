@@ -19,7 +19,7 @@ struct SequenceOptions {
   PoleExtractionOptions extraction;
   MotionOptions motion;
   bool allowTruncated = false;
-  int threads = 0;  ///< extracting; 0: one per core. The result does not depend on it
+  int threads = 0;  ///< extracting, at most one per core; 0: that many. The result is the same
 };
 
 /// \brief What was in the rawlog.
