@@ -6,8 +6,8 @@
 
 namespace polemcl::sim::limits {
 
-inline const Range seed = Range::between(0, 9e15), day = Range::between(0, 100000),
-                   length = Range::between(20, 100000), curviness = Range::between(0, 2),
+inline const Range seed = Range::between(0, 9e15), day = Range::between(0, 36500),
+                   length = Range::between(20, 50000), curviness = Range::between(0, 2),
                    relief = Range::between(0, 3), roadWidth = Range::between(6, 20),
                    lampSpacing = Range::between(8, 1000), signSpacing = Range::between(8, 1000),
                    treeSpacing = Range::between(4, 100), share = Range::between(0, 1),

@@ -1,0 +1,36 @@
+#pragma once
+/// \file OutputFolder.h
+/// \brief Folders of results that are complete or not there.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace polemcl::apps {
+
+/// \brief A folder that appears under its name only once it is complete: filled beside its place
+/// under a temporary name ending in `.tmp`, then renamed. Removed again unless committed.
+class OutputFolder {
+ public:
+  /// \param target Where the folder shall appear. What is there is replaced if it is an empty
+  /// folder
+  ///        or holds nothing but `known` names, `marker` among them: an earlier output.
+  /// \param what What the folder holds, for messages, such as "a simulated drive".
+  /// \throws Error when something else is there (named), or the place is not writable.
+  OutputFolder(const std::filesystem::path& target, std::string what,
+               const std::vector<std::string>& known, const std::string& marker);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// \brief The folder to fill.
+  const std::filesystem::path& temporary() const { return m_temporary; }
+  /// \brief Gives the folder its name; an earlier output is removed.
+  /// \throws Error when it cannot be renamed; what was there stays.
+  void commit();
+
+ private:
+  std::filesystem::path m_target, m_temporary;
+};
+
+}  // namespace polemcl::apps
