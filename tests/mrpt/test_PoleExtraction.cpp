@@ -360,7 +360,8 @@ TEST(PoleExtraction, RotatingScanMatchesTheVelodyneScanItCameFrom) {
 }
 
 /// A rotating scan of the place: rows as given, columns counter-clockwise from the back.
-CObservationRotatingScan rotatingScan(const SensorOptions& sensor, const std::vector<int>& rows) {
+CObservationRotatingScan rotatingScan(const SensorOptions& sensor, const std::vector<int>& rows,
+                                      const CPose3D& pose) {
   const SensorModel model(sensor);
   CObservationRotatingScan scan;
   scan.rowCount = static_cast<std::uint16_t>(rows.size());
@@ -369,23 +370,29 @@ CObservationRotatingScan rotatingScan(const SensorOptions& sensor, const std::ve
   scan.startAzimuth = -M_PI;
   scan.azimuthSpan = 2 * M_PI;
   scan.rangeImage.setZero(scan.rowCount, scan.columnCount);
-  const Eigen::Vector3d up(0, 0, sensor.height);
+  scan.sensorPose = pose;
+  const Eigen::Isometry3d T_robot_sensor = isometry(pose);
   for (int column = 0; column < model.columns(); ++column)
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const auto [start, along] =
           samples::ray(model, rows[i], 2 * M_PI * column / model.columns() - M_PI);
       scan.rangeImage(static_cast<int>(i), column) = static_cast<std::uint16_t>(
-          samples::castRay(start + up, along, samples::testPoles()) / scan.rangeResolution + 0.5);
+          samples::castRay(T_robot_sensor * start, T_robot_sensor.linear() * along,
+                           samples::testPoles()) /
+              scan.rangeResolution +
+          0.5);
     }
   return scan;
 }
+
+const CPose3D up(0, 0, 1.5, 0, 0, 0);
 
 TEST(PoleExtraction, RotatingScanWithKnownElevations) {
   auto options = hdl32(1.5);
   std::vector<int> topDown(32);
   for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
   PoleExtraction byModel(options);
-  EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown)), 0.05), 6);
+  EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown, up)), 0.05), 6);
 
   // Rows in another order: only a table can tell it.
   std::vector<int> mixed;
@@ -397,17 +404,28 @@ TEST(PoleExtraction, RotatingScanWithKnownElevations) {
     mixed.push_back((i * 7) % 32);
     table.sensor.elevations.push_back(std::atan(model.beam(mixed.back()).slope));
   }
-  const auto scan = rotatingScan(options.sensor, mixed);
+  const auto scan = rotatingScan(options.sensor, mixed, up);
   PoleExtraction byTable(table);
   EXPECT_GE(found(*byTable.process(scan), 0.05), 6);
   EXPECT_LT(found(*byModel.process(scan), 0.05), 3);
+}
+
+// Rows keep the elevations of the sensor itself; its pose turns them over.
+TEST(PoleExtraction, RotatingScanUpsideDown) {
+  auto options = hdl32(1.5);
+  std::vector<int> topDown(32);
+  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
+  const auto scan = rotatingScan(options.sensor, topDown, CPose3D(0.5, 0.2, 1.5, 0.3, 0, M_PI));
+  options.sensor.upsideDown = true;
+  PoleExtraction extraction(options);
+  EXPECT_GE(found(*extraction.process(scan), 0.05), 6);
 }
 
 TEST(PoleExtraction, RotatingScanClockwise) {
   const auto options = hdl32(1.5);
   std::vector<int> topDown(32);
   for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
-  const auto ccw = rotatingScan(options.sensor, topDown);
+  const auto ccw = rotatingScan(options.sensor, topDown, up);
   auto cw = ccw;
   cw.azimuthSpan = -2 * M_PI;
   cw.startAzimuth = M_PI;
