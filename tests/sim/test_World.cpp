@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 #include <polemcl/core/Types.h>
 #include <polemcl/sim/World.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -127,7 +130,19 @@ TEST(World, carsAndPeopleAreElsewhereOnAnotherDay) {
 }
 
 TEST(World, noPoleStandsInAHouseOrACar) {
-  const World world = makeWorld(street(6));
+  // A road that comes back 18 m beside itself: houses of one turn lie on the pavement of the other.
+  const std::string track = testing::TempDir() + "hairpin_" + std::to_string(getpid()) + ".txt";
+  {
+    std::ofstream file(track);
+    for (int i = 0; i <= 250; ++i) file << "1 0 0 " << i << " 0 1 0 0 0 0 1 0\n";
+    for (int i = 1; i < 18; ++i) file << "1 0 0 250 0 1 0 " << i << " 0 0 1 0\n";
+    for (int i = 250; i >= 0; --i) file << "1 0 0 " << i << " 0 1 0 18 0 0 1 0\n";
+  }
+  WorldOptions options = street(6);
+  options.track = track;
+  const World world = makeWorld(options);
+  std::remove(track.c_str());
+  EXPECT_GT(world.poles().size(), 50u);
   for (const TruePole& pole : world.poles())
     for (const WorldObject& object : world.objects()) {
       if (object.kind != Kind::house && object.kind != Kind::car) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace polemcl::sim {
 
@@ -54,6 +55,7 @@ void StreetPlan::furnish() {
     parkedVehicles(side);
     people(side);
   }
+  removeBuiltOver();
   std::sort(poles.begin(), poles.end(),
             [](const TruePole& a, const TruePole& b) { return a.id < b.id; });
 }
@@ -104,6 +106,27 @@ bool StreetPlan::claim(const Site& place, double gap, Ground ground) {
 bool StreetPlan::goneToday(std::uint32_t id) const {
   return m_options.day != 0 &&
          Random(hash(m_options.seed, 0x60ull, m_options.day, id)).chance(m_options.removedShare);
+}
+
+void StreetPlan::removeBuiltOver() {
+  std::unordered_set<std::uint32_t> hidden;
+  for (const WorldObject& object : objects) {
+    if (object.kind != Kind::house && object.kind != Kind::wall) continue;
+    for (const Solid& solid : object.solids) {
+      if (solid.shape != Shape::box) continue;
+      for (const TruePole& pole : poles) {
+        const Eigen::Vector3d place(pole.x, pole.y, solid.position.z());
+        const Eigen::Vector3d local = solid.axes.transpose() * (place - solid.position);
+        const double margin = pole.radius;
+        if (std::abs(local.x()) < solid.size.x() + margin &&
+            std::abs(local.y()) < solid.size.y() + margin)
+          hidden.insert(pole.id);
+      }
+    }
+  }
+  const auto isHidden = [&](const auto& thing) { return hidden.count(thing.id) > 0; };
+  objects.erase(std::remove_if(objects.begin(), objects.end(), isHidden), objects.end());
+  poles.erase(std::remove_if(poles.begin(), poles.end(), isHidden), poles.end());
 }
 
 void StreetPlan::add(Piece piece) {

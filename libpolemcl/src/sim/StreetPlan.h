@@ -60,6 +60,8 @@ class StreetPlan {
   /// \brief True and taken when nothing stands within `gap` and the ground is right.
   bool claim(const Site& place, double gap, Ground ground);
   bool goneToday(std::uint32_t id) const;
+  /// \brief Takes away poles that a house or wall of another turn of the road was built over.
+  void removeBuiltOver();
   void add(WorldObject object) { objects.push_back(std::move(object)); }
   void add(Piece piece);
 
