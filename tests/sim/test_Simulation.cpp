@@ -5,7 +5,7 @@
 #include <polemcl/io/ScanFolder.h>
 #include <polemcl/sim/Drive.h>
 #include <polemcl/sim/Simulation.h>
-#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -77,21 +77,16 @@ TEST_F(Simulation, writesAFolderThatReadsBackAsTheDrive) {
 
 TEST_F(Simulation, bytesDoNotDependOnTheNumberOfThreads) {
   const fs::path one = folder("one"), many = folder("many");
-  {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-    simulate(m_options, one);
-  }
-  {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
-    simulate(m_options, many);
-  }
+  m_options.scans = 16;
+  tbb::task_arena(1).execute([&] { simulate(m_options, one); });
+  tbb::task_arena(2).execute([&] { simulate(m_options, many); });
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(one)) {
     if (!entry.is_regular_file()) continue;
     EXPECT_EQ(bytes(entry.path()), bytes(many / fs::relative(entry.path(), one))) << entry.path();
     ++files;
   }
-  EXPECT_EQ(files, 6u + 6u + 4u);
+  EXPECT_EQ(files, 16u + 16u + 4u);
 }
 
 TEST_F(Simulation, refusesAFolderItCannotWriteTo) {

@@ -46,6 +46,9 @@ TEST(Terrain, raysOnFlatGroundByHand) {
   const auto aside = terrain.intersect(eye, Eigen::Vector3d(0, 1, -0.2).normalized(), 100);
   EXPECT_NEAR(aside.range, 9.4 * std::hypot(1, 0.2), 0.02) << "0.12 m up, so 1.88 m down";
   EXPECT_GT(aside.edge, 0);
+  const auto rim = terrain.intersect(eye, Eigen::Vector3d(0, 5.6, -1.88).normalized(), 100);
+  EXPECT_NEAR(rim.range, std::hypot(5.6, 1.88), 0.01) << "on the pavement, close to the kerb";
+  EXPECT_FALSE(rim.kerbFace);
   EXPECT_TRUE(std::isinf(terrain.intersect(eye, {1, 0, 0}, 100).range));
   EXPECT_TRUE(std::isinf(terrain.intersect(eye, Eigen::Vector3d(1, 0, 1).normalized(), 100).range));
   EXPECT_TRUE(

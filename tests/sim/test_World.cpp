@@ -130,13 +130,13 @@ TEST(World, carsAndPeopleAreElsewhereOnAnotherDay) {
 }
 
 TEST(World, noPoleStandsInAHouseOrACar) {
-  // A road that comes back 18 m beside itself: houses of one turn lie on the pavement of the other.
+  // A road that comes back beside itself: houses of one turn reach into the gardens of the other.
   const std::string track = testing::TempDir() + "hairpin_" + std::to_string(getpid()) + ".txt";
   {
     std::ofstream file(track);
     for (int i = 0; i <= 250; ++i) file << "1 0 0 " << i << " 0 1 0 0 0 0 1 0\n";
-    for (int i = 1; i < 18; ++i) file << "1 0 0 250 0 1 0 " << i << " 0 0 1 0\n";
-    for (int i = 250; i >= 0; --i) file << "1 0 0 " << i << " 0 1 0 18 0 0 1 0\n";
+    for (int i = 1; i < 36; ++i) file << "1 0 0 250 0 1 0 " << i << " 0 0 1 0\n";
+    for (int i = 250; i >= 0; --i) file << "1 0 0 " << i << " 0 1 0 36 0 0 1 0\n";
   }
   WorldOptions options = street(6);
   options.track = track;
