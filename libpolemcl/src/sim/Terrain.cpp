@@ -10,7 +10,7 @@ namespace {
 constexpr double kNode = 0.5;  // m between nodes
 constexpr int kNodes = 64;     // intervals of a tile
 constexpr double kTile = kNode * kNodes;
-constexpr double kReach = 110;  // tiles are made this far from the street, m
+constexpr double kReach = 64;   // tiles are made this far from the street, m
 constexpr double kFarEdge = 6;  // the signed distance saturates here, m
 }  // namespace
 
