@@ -129,18 +129,16 @@ std::size_t findBreaks(const Return* returns, std::size_t count, float step, flo
     const auto turn = hn::Sub(nextAzimuth, azimuth);
     const auto near = hn::Lt(hn::Abs(hn::Sub(nextRho, rho)), hn::Set(d, step));
     const auto bridged =
-        hn::And(hn::Lt(turn, hn::Set(d, 2 * gap)), hn::Lt(hn::Mul(turn, rho), hn::Set(d, 0.15f)));
-    const auto joined = hn::And(near, hn::Or(hn::Lt(turn, hn::Set(d, gap)), bridged));
+        hn::And(hn::Lt(turn, hn::Set(d, 2 * gap)), hn::Lt(hn::Mul(turn, rho), hn::Set(d, kBridge)));
+    const auto same = hn::And(near, hn::Or(hn::Lt(turn, hn::Set(d, gap)), bridged));
     const auto here = hn::Iota(du, static_cast<std::uint32_t>(i));
-    found += hn::CompressStore(here, hn::RebindMask(du, hn::Not(joined)), du, breaks + found);
+    found += hn::CompressStore(here, hn::RebindMask(du, hn::Not(same)), du, breaks + found);
   }
   for (; i + 1 < count; ++i) {
     const Return &a = returns[i], &b = returns[i + 1];
-    const float turn = b.azimuth - a.azimuth;
-    const bool joined =
-        std::abs(b.rho - a.rho) < step && (turn < gap || (turn < 2 * gap && turn * a.rho < 0.15f));
+    const bool same = joined(a, b, b.azimuth - a.azimuth, step, gap);
     breaks[found] = static_cast<std::uint32_t>(i);
-    found += !joined;
+    found += !same;
   }
   return found;
 }

@@ -7,6 +7,8 @@
 
 #include <polemcl/core/ScanLines.h>
 
+#include <cmath>
+
 namespace polemcl {
 
 struct PointKeys {
@@ -24,10 +26,18 @@ ScanLines::Counts classifyPoints(const PointsView& points, const RowLookup& look
                                  int bucketsPerRow, float minRange, float maxRange,
                                  const PointKeys& keys);
 
-/// \brief Positions i in [0, count - 1) where returns i and i + 1 are not neighbours on one
-/// surface: ranges differ by `step` or more, or the azimuth by `gap` or more (twice that where it
-/// is < 0.15 m). \param breaks Room for count + kKernelPadding. \return How many were written,
-/// ascending.
+/// \brief Widest gap, m, that neighbours up to two `gap`s apart may have between them.
+constexpr float kBridge = 0.15f;
+
+/// \brief True when returns a and b, `turn` rad apart, are neighbours on one surface: ranges differ
+/// by less than `step`, and the azimuth by less than `gap` (twice that where it is < kBridge).
+inline bool joined(const Return& a, const Return& b, float turn, float step, float gap) {
+  return std::abs(b.rho - a.rho) < step &&
+         (turn < gap || (turn < 2 * gap && turn * a.rho < kBridge));
+}
+
+/// \brief Positions i in [0, count - 1) where returns i and i + 1 are not joined().
+/// \param breaks Room for count + kKernelPadding. \return How many were written, ascending.
 std::size_t findBreaks(const Return* returns, std::size_t count, float step, float gap,
                        std::uint32_t* breaks);
 

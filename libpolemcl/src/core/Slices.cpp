@@ -30,7 +30,7 @@ class Row {
   /// True when the last and the first return of the row are neighbours on one surface.
   bool closed() const {
     const Return &a = m_returns[m_size - 1], &b = m_returns[0];
-    return std::abs(a.rho - b.rho) < m_limits.step && b.azimuth + kTurn - a.azimuth < m_limits.gap;
+    return joined(a, b, b.azimuth + kTurn - a.azimuth, m_limits.step, m_limits.gap);
   }
 
   /// Appends the run of returns first..last (last may be size or more: it wraps) if it is a slice.
