@@ -33,6 +33,8 @@ struct Casting {
   double sigma = 0;      ///< of ranges, m
   double footprint = 0;  ///< full width of a beam, rad; a return needs 30 % of it
   std::uint64_t seed = 1;
+  /// Azimuths cast, rad: bearing ± half. No full turn is needed to look at one thing.
+  double bearing = 0, half = 4;
 };
 
 constexpr double kNothing = 1e9;
@@ -95,6 +97,7 @@ inline PointList cast(const Scene& scene, const SensorModel& sensor, const Casti
     const double phase = random.uniform();
     for (int column = 0; column < sensor.columns(); ++column) {
       const double azimuth = -M_PI + (column + phase) * sensor.columnAngle();
+      if (std::abs(std::remainder(azimuth - casting.bearing, 2 * M_PI)) > casting.half) continue;
       double rho = firstEcho(scene, azimuth, beam, casting.footprint);
       if (rho > 100) continue;
       if (casting.sigma > 0) rho += casting.sigma * random.normal() / std::hypot(1.0, beam.slope);

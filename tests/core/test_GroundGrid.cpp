@@ -91,10 +91,12 @@ TEST(GroundGrid, strayReturnsBelowTheGroundDoNotMoveIt) {
   const SensorModel sensor = sensorModel("hdl64e");
   const GroundPlane plane{-1.73, 0, 0};
   PointList points = cast(onGround(plane), sensor, {0.02, 0, 1});
-  for (int s = 0; s < 64; s += 2)  // one reflection in every other sector, 1.5 m below
-    for (const double rho : {8.7, 21.2})
-      points.addPolar((s + 0.5) * 5.625 * kDegree - M_PI, std::atan2(-3.2, rho),
-                      std::hypot(rho, 3.2));
+  for (int s = 0; s < 64; ++s)  // one reflection in every sector, near and far, some deep below
+    for (const double rho : {8.7, 21.2}) {
+      const double z = s % 2 ? -2.2 : -3.2;
+      points.add(rho * std::cos((s + 0.5) * 5.625 * kDegree),
+                 rho * std::sin((s + 0.5) * 5.625 * kDegree), z);
+    }
   const Built b(points, sensor, 1.73);
   const Errors e = errors(b.ground, plane, 3, 45);
   EXPECT_LT(e.low, 0.06);

@@ -224,6 +224,16 @@ TEST(Slices, aSingleReturnIsASlice) {
   EXPECT_NEAR(slices[0].rho, 30, 1e-4);
 }
 
+// The topmost beams often meet nothing but one lamp post.
+TEST(Slices, theOnlyReturnOfABeamIsASlice) {
+  for (const int step : {0, 300, 719}) {
+    const auto slices = Drawing(0).fill(0, step, step, 20).slices();
+    ASSERT_EQ(slices.size(), 1u);
+    EXPECT_EQ(slices[0].count, 1u);
+    EXPECT_TRUE(slices[0].whole());
+  }
+}
+
 TEST(Slices, aClosedRingHasNone) {
   EXPECT_EQ(Drawing(10).slices().size(), 0u);
 }

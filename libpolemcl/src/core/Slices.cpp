@@ -117,7 +117,7 @@ void SliceFinder::find(const ScanLines& lines, std::vector<Slice>& slices) {
   const Limits limits{m_gap, m_step, m_edge, m_maxWidth, m_maxRange};
   for (int r = 0; r < lines.rows(); ++r) {
     const Row row(lines, r, limits);
-    if (row.size() < 2) continue;
+    if (row.size() == 0) continue;
     if (m_breaks.size() < row.size() + kKernelPadding)
       m_breaks.resize(2 * row.size() + kKernelPadding);
     const std::size_t breaks =
