@@ -27,8 +27,10 @@ struct FilterOptions {
   /// of those of the whole set (a regularized filter: Musso, Oudjane, Le Gland 2001), at most
   /// PoleLocalizer::maxJitterMetres and maxJitterRadians. 0: copies stay where they are.
   double regularization = 0.2;
-  /// A scan that would leave an effective share below this is used in steps: a power of its
-  /// likelihood that leaves this share, resampling, and on with the rest. 0: at once.
+  /// A scan that would leave an effective share below this is used in steps: first with a wider
+  /// likelihood (2, 4 or 8 times the sigma) that leaves this share, resampling, then a narrower
+  /// one, down to the likelihood itself. It is what finds the way from the start disc, where few
+  /// particles are near the truth. 0: at once.
   double tempering = 0.2;
   /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry
   /// whose error grows with the motion knows (nearly) no error across the driving direction.
@@ -39,10 +41,13 @@ struct FilterOptions {
 
 /// \brief Where the filter starts. `[start]` in INI files.
 struct StartOptions {
-  std::optional<Pose2D> pose;          ///< map frame (`pose = x y yaw_deg`); none: from the truth
-  double radius = 2.5;                 ///< positions uniform in this disc (in its area), m (paper)
+  std::optional<Pose2D> pose;  ///< map frame (`position_m`, `yaw_deg`); none: from the truth
+  double radius = 2.5;         ///< positions uniform in this disc (in its area), m (paper)
   double heading = 0.087266462599716;  ///< headings uniform in ± this, rad (paper: 5°)
-  void validate() const;               ///< \throws Error
+  /// Drawn at the start, where few would be near the truth; the first resampling keeps
+  /// FilterOptions::particles of them. Smaller numbers mean that one.
+  int particles = 10000;
+  void validate() const;  ///< \throws Error
 };
 
 /// \brief How often the same drive is localized. `[runs]` in INI files.

@@ -41,6 +41,9 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   /// Limits of regularization: so that places far apart are not smeared into each other.
   static constexpr double maxJitterMetres = 0.25, maxJitterRadians = 0.035;
 
+  /// The widest likelihood that tempering begins with, as a multiple of `[likelihood] sigma_m`.
+  static constexpr double maxWidening = 8;
+
   /// \throws Error when the map has no poles or an option is out of range.
   PoleLocalizer(std::shared_ptr<const CPoleMap> map, const FilterOptions& filterOptions,
                 std::uint32_t seed);
@@ -75,8 +78,9 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
  private:
   void update(const std::vector<PoleDetection>& poles_robot,
               const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
-  /// \brief The largest power up to `rest` of the likelihoods at hand that leaves enough particles.
-  double temperedPower(double rest) const;
+  /// \brief Whether the particles stay many enough when these likelihoods replace those before.
+  bool leavesEnough(const std::vector<double>& logLikelihoods,
+                    const std::vector<double>& before) const;
   void jitter(const Eigen::Matrix3d& spread);
 
   std::shared_ptr<const CPoleMap> m_map;
@@ -87,7 +91,6 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   double m_time = 0;  ///< of the last frame, s
   PoseWithCovariance m_estimate;
   StepReport m_report;
-  std::vector<double> m_logLikelihoods;  ///< of the particles, at the stage of the update at hand
 };
 
 }  // namespace polemcl

@@ -1,0 +1,49 @@
+#pragma once
+/// \file LocalizeApp.h
+/// \brief `pole-localize`: plays a rawlog against a pole map, and says how well it went.
+
+#include <polemcl/apps/FilterRuns.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace polemcl::apps {
+
+/// \brief What the command line says. Values given here take the place of the configuration's.
+struct LocalizeJob {
+  std::filesystem::path config, input, map, output;
+  std::optional<std::filesystem::path> truth;  ///< TUM
+  std::optional<int> runs, particles;
+  std::optional<std::uint32_t> seed;
+  bool allowTruncated = false;
+  bool quiet = false;
+};
+
+struct LocalizeResult {
+  std::vector<FilterRun> runs;
+  std::vector<TrajectoryErrors> errors;  ///< of each run; empty without truth
+};
+
+/// \brief Extracts the poles once, runs the filter, writes the folder `output`:
+/// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;
+/// - `run_NN_errors.csv`, with truth: `scan,timestamp,position_m,lateral_m,longitudinal_m,
+///   heading_deg,poles,effective_share` of each scan that the truth covers; scan is the 0-based
+///   index in the input, lateral + to the left and longitudinal + ahead of the true pose, heading +
+///   counter-clockwise, poles the number observed, effective_share that of the particles;
+/// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
+///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`;
+/// - `config.ini`: the effective configuration;
+/// - `timings.json`: the only file that differs from repetition to repetition.
+///
+/// Files of an earlier call are replaced once everything is complete. Prints a table on stdout
+/// unless quiet.
+/// \throws Error as the readers do, and when the map has no poles, scans lack odometry, no pole is
+///         ever seen, there is no start pose, or the truth covers less than half of the scans.
+LocalizeResult localize(const LocalizeJob& job);
+
+/// \brief The program. \return Its exit code.
+int localizeMain(int argc, const char* const* argv);
+
+}  // namespace polemcl::apps

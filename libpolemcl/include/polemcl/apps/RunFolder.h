@@ -1,0 +1,34 @@
+#pragma once
+/// \file RunFolder.h
+/// \brief A folder of results that changes only when all of the new ones are there.
+
+#include <filesystem>
+#include <string>
+
+namespace polemcl::apps {
+
+/// \brief Collects files in a hidden folder beside the old results; commit() swaps them in. Without
+/// commit() the old results stay as they were, and a folder that was not there is gone again.
+class RunFolder {
+ public:
+  /// \brief Creates the folder, with those above it, where it is missing.
+  /// \throws Error when it cannot be created or written, or is a file.
+  explicit RunFolder(const std::filesystem::path& folder);
+  ~RunFolder();
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+
+  /// \brief Where to write a file that commit() moves into the folder.
+  std::filesystem::path staged(const std::string& name) const { return m_staging / name; }
+
+  /// \brief Takes the summary and the files `run_*` of old results away and moves the new files in,
+  /// `summary.json` last: while it is there, the folder is complete.
+  /// \throws Error when that fails.
+  void commit();
+
+ private:
+  std::filesystem::path m_folder, m_staging;
+  bool m_created = false;  ///< the folder itself
+};
+
+}  // namespace polemcl::apps

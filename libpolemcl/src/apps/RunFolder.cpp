@@ -1,0 +1,62 @@
+#include <polemcl/apps/RunFolder.h>
+#include <polemcl/core/Types.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace polemcl::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* summaryName = "summary.json";
+
+std::vector<fs::path> filesIn(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (!entry.is_directory()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+RunFolder::RunFolder(const fs::path& folder) : m_folder(folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw Error(folder.string() + ": is a file; the results need a folder");
+  m_created = fs::create_directories(folder, error);
+  if (error) throw Error(folder.string() + ": cannot create the folder: " + error.message());
+  std::string pattern = (folder / ".incomplete-XXXXXX").string();
+  if (!::mkdtemp(pattern.data())) {
+    const std::string reason = std::strerror(errno);
+    if (m_created) fs::remove(folder, error);
+    throw Error(folder.string() + ": cannot write into the folder: " + reason);
+  }
+  m_staging = pattern;
+}
+
+RunFolder::~RunFolder() {
+  std::error_code ignored;
+  fs::remove_all(m_staging, ignored);
+  if (m_created) fs::remove(m_folder, ignored);  // only if it is empty
+}
+
+void RunFolder::commit() {
+  try {
+    fs::remove(m_folder / summaryName);
+    for (const auto& file : filesIn(m_folder))
+      if (file.filename().string().rfind("run_", 0) == 0) fs::remove(file);
+    for (const auto& file : filesIn(m_staging))
+      if (file.filename() != summaryName) fs::rename(file, m_folder / file.filename());
+    if (fs::exists(staged(summaryName))) fs::rename(staged(summaryName), m_folder / summaryName);
+  } catch (const fs::filesystem_error& error) {
+    throw Error(m_folder.string() + ": cannot move the results in: " + error.code().message());
+  }
+}
+
+}  // namespace polemcl::apps

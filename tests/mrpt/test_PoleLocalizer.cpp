@@ -1,0 +1,291 @@
+#include <gtest/gtest.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <polemcl/mrpt/PoleLocalizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "PoleStreet.h"
+
+using namespace polemcl;
+using tests::Dice;
+using tests::makeStreet;
+using tests::PoleStreet;
+using tests::StreetOptions;
+
+namespace {
+
+constexpr double degree = M_PI / 180;
+
+/// Particles stay where they are told to: no noise, no resampling.
+FilterOptions still() {
+  FilterOptions options;
+  options.resampleBelow = 0;
+  options.tempering = options.regularization = options.extraSigma = options.extraSigmaYaw = 0;
+  return options;
+}
+
+StartOptions at(const Pose2D& pose, double radius = 2.5, double heading = 5 * degree) {
+  StartOptions start;
+  start.pose = pose;
+  start.radius = radius;
+  start.heading = heading;
+  return start;
+}
+
+/// The map of a small street, for tests that do not need to drive.
+std::shared_ptr<CPoleMap> smallMap() {
+  return makeStreet({}).map;
+}
+
+PoleFrame emptyFrame(double time, const io::PlanarMotion& motion = {}) {
+  PoleFrame frame;
+  frame.time = time;
+  frame.motion = motion;
+  return frame;
+}
+
+struct Errors {
+  double position = 0, heading = 0;  ///< means, m and degrees
+  double worst = 0;                  ///< from the eleventh scan on, m
+};
+
+Errors drive(PoleLocalizer& localizer, const PoleStreet& street) {
+  localizer.start(at(street.truth[0]));
+  Errors errors;
+  for (std::size_t i = 0; i < street.frames.size(); ++i) {
+    const Pose2D estimate = localizer.step(street.frames[i]).mean;
+    const Pose2D error = relative(street.truth[i], estimate);
+    errors.position += std::hypot(error.x, error.y) / street.frames.size();
+    errors.heading += std::abs(error.yaw) / degree / street.frames.size();
+    if (i >= 10) errors.worst = std::max(errors.worst, std::hypot(error.x, error.y));
+  }
+  return errors;
+}
+
+}  // namespace
+
+TEST(PoleLocalizer, FollowsAStreet) {
+  for (std::uint32_t seed : {1, 2, 3}) {
+    StreetOptions options;
+    options.seed = seed;
+    const PoleStreet street = makeStreet(options);
+    PoleLocalizer localizer(street.map, {}, seed);
+    const Errors errors = drive(localizer, street);
+    // One scan alone gives 0.04 m here, a Kalman filter with known associations 0.015 m.
+    EXPECT_LT(errors.position, 0.03) << "seed " << seed;
+    EXPECT_LT(errors.heading, 0.1) << "seed " << seed;
+    EXPECT_LT(errors.worst, 0.15) << "seed " << seed;
+  }
+}
+
+TEST(PoleLocalizer, FollowsAStreetAsThePaperDoes) {
+  FilterOptions paper;
+  paper.estimate = PoseEstimator::bestShare;
+  paper.tempering = paper.regularization = 0;
+  paper.resampling = Resampling::multinomial;
+  const PoleStreet street = makeStreet({});
+  PoleLocalizer localizer(street.map, paper, 4);
+  EXPECT_LT(drive(localizer, street).position, 0.15);
+}
+
+TEST(PoleLocalizer, BatchEqualsTheMapsLikelihood) {
+  const PoleStreet street = makeStreet({});
+  Dice dice(3);
+  auto observation = CObservationPoles::Create();
+  observation->poles = street.frames[50].poles_robot;
+  for (auto& pole : observation->poles)
+    pole.covariance = Eigen::Vector2d(dice.uniform(0.001, 0.02), 0.01).asDiagonal();
+  ASSERT_GE(observation->poles.size(), 3u);
+  for (const bool paper : {true, false})
+    for (const bool weighted : {true, false}) {
+      LikelihoodOptions likelihood;
+      likelihood.model = paper ? LikelihoodModel::paper : LikelihoodModel::mixture;
+      likelihood.weighted = weighted;
+      street.map->likelihoodOptions = likelihood;
+      PoleLocalizer localizer(street.map, still(), 1);
+      localizer.start(at(street.truth[50], 1.5, M_PI));
+      PoleFrame frame;
+      frame.poles_robot = observation->poles;
+      localizer.step(frame);
+      const auto particles = localizer.particles();
+      const auto weights = localizer.logWeights();
+      const auto likelihoodAt = [&](const Pose2D& pose) {
+        return street.map->computeObservationLikelihood(
+            *observation, mrpt::poses::CPose3D(pose.x, pose.y, 0, pose.yaw, 0, 0));
+      };
+      const double offset = weights[0] - likelihoodAt(particles[0]);
+      double span = 0;
+      for (std::size_t i = 0; i < particles.size(); ++i) {
+        EXPECT_NEAR(weights[i] - offset, likelihoodAt(particles[i]), 1e-9);
+        span = std::max(span, std::abs(weights[i] - weights[0]));
+      }
+      EXPECT_GT(span, 1);  // or the comparison says nothing
+    }
+}
+
+TEST(PoleLocalizer, WorksAsAFilterOfMrpt) {
+  const PoleStreet street = makeStreet({});
+  FilterOptions options = still();
+  PoleLocalizer own(street.map, options, 5), mrpts(street.map, options, 5);
+  own.start(at(street.truth[50]));
+  mrpts.start(at(street.truth[50]));
+  own.step(street.frames[50]);
+  // The same poles, as a sensor sees them that is mounted somewhere else.
+  const Pose2D mounting{0.7, -0.2, 0.5};
+  auto observation = CObservationPoles::Create();
+  observation->poles = street.frames[50].poles_robot;
+  for (auto& pole : observation->poles) {
+    const Pose2D seen = relative(mounting, {pole.x, pole.y, 0});
+    pole.x = seen.x, pole.y = seen.y;
+  }
+  observation->setSensorPose(mrpt::poses::CPose3D(0.7, -0.2, 1.7, 0.5, 0, 0));
+  mrpt::obs::CSensoryFrame frame;
+  frame.insert(observation);
+  mrpt::bayes::CParticleFilter filter;
+  filter.m_options.BETA = 0;
+  filter.executeOn(mrpts, nullptr, &frame);
+  const auto expected = own.logWeights(), got = mrpts.logWeights();
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(got[i], expected[i], 1e-9);
+}
+
+TEST(PoleLocalizer, StartIsUniformInTheDiscAndInHeading) {
+  FilterOptions options = still();
+  options.particles = 40000;
+  PoleLocalizer localizer(smallMap(), options, 9);
+  const Pose2D centre{100, -50, 3.1};
+  localizer.start(at(centre, 2.0, 0.2));
+  int inner = 0, left = 0, turned = 0;
+  for (const Pose2D& particle : localizer.particles()) {
+    const double distance = std::hypot(particle.x - centre.x, particle.y - centre.y);
+    const double turn = wrapAngle(particle.yaw - centre.yaw);
+    EXPECT_LE(distance, 2.0);
+    EXPECT_LE(std::abs(turn), 0.2 + 1e-12);
+    EXPECT_LE(std::abs(particle.yaw), M_PI);
+    inner += distance < 1.0;
+    left += particle.x < centre.x;
+    turned += turn < -0.1;
+  }
+  // Four standard deviations of a binomial number: 4·sqrt(40000·¼·¾) = 346, 4·100 = 400.
+  EXPECT_NEAR(inner, 10000, 346) << "half the radius is a quarter of the area";
+  EXPECT_NEAR(left, 20000, 400);
+  EXPECT_NEAR(turned, 10000, 346);
+}
+
+TEST(PoleLocalizer, MotionHasTheGivenCovarianceAndTheExtraNoise) {
+  FilterOptions options = still();
+  options.particles = 100000;
+  options.extraSigma = 0.05;
+  options.extraSigmaYaw = 0.02;
+  PoleLocalizer localizer(smallMap(), options, 2);
+  const Pose2D start{10, 20, M_PI / 2};
+  localizer.start(at(start, 0, 0));
+  localizer.step(emptyFrame(0));
+  io::PlanarMotion motion;
+  motion.mean = {1, 0.5, 0.25};
+  motion.covariance << 0.04, -0.01, 0.004, -0.01, 0.02, 0.001, 0.004, 0.001, 0.0009;
+  const PoseWithCovariance estimate = localizer.step(emptyFrame(1, motion));
+  EXPECT_NEAR(estimate.mean.x, 9.5, 0.003);
+  EXPECT_NEAR(estimate.mean.y, 21, 0.003);
+  EXPECT_NEAR(estimate.mean.yaw, M_PI / 2 + 0.25, 0.0005);
+  // Turned by 90°: x of the map is -y of the robot.
+  Eigen::Matrix3d expected;
+  expected << 0.0225, 0.01, -0.001, 0.01, 0.0425, 0.004, -0.001, 0.004, 0.0013;
+  EXPECT_LT((estimate.covariance - expected).cwiseAbs().maxCoeff(), 6e-4);
+  EXPECT_LT((estimate.covariance - expected).row(2).cwiseAbs().maxCoeff(), 1.2e-4);
+}
+
+TEST(PoleLocalizer, FirstFrameIsWhereTheStartPoseIs) {
+  PoleLocalizer localizer(smallMap(), still(), 1);
+  localizer.start(at({1, 2, 3}, 0, 0));
+  io::PlanarMotion motion;
+  motion.mean = {5, 5, 1};
+  EXPECT_NEAR(localizer.step(emptyFrame(0, motion)).mean.x, 1, 1e-12);
+  EXPECT_GT(std::abs(localizer.step(emptyFrame(1, motion)).mean.x - 1), 1);
+  localizer.start(at({1, 2, 3}, 0, 0));  // anew: time may begin again too
+  EXPECT_NEAR(localizer.step(emptyFrame(0, motion)).mean.x, 1, 1e-12);
+}
+
+TEST(PoleLocalizer, FramesWithoutPolesOnlyPredict) {
+  PoleLocalizer localizer(smallMap(), {}, 1);
+  localizer.start(at({0, 0, 0}, 0, 0));
+  io::PlanarMotion motion;
+  motion.mean = {1, 0, 0};
+  localizer.step(emptyFrame(0));
+  double before = 0;
+  for (int i = 1; i <= 50; ++i) {
+    const auto estimate = localizer.step(emptyFrame(i, motion));
+    EXPECT_NEAR(estimate.mean.x, i, 0.05);
+    EXPECT_GT(estimate.covariance(1, 1), before);
+    before = estimate.covariance(1, 1);
+    EXPECT_DOUBLE_EQ(localizer.report().effectiveShare, 1);
+    EXPECT_FALSE(localizer.report().resampled);
+    EXPECT_EQ(localizer.report().poles, 0u);
+  }
+}
+
+TEST(PoleLocalizer, BestShareIsTheMeanOfTheBest) {
+  FilterOptions options = still();
+  options.particles = 10;
+  options.estimate = PoseEstimator::bestShare;
+  options.bestShare = 0.2;
+  PoleLocalizer localizer(smallMap(), options, 1);
+  localizer.start(at({0, 0, 0}, 0, 0));
+  for (int i = 0; i < 10; ++i) {
+    localizer.m_particles[i].d = {double(i), 0, 0};
+    localizer.m_particles[i].log_w = i == 3 ? std::log(3.0) : i == 7 ? 0.0 : -1.0 - i;
+  }
+  EXPECT_NEAR(localizer.step(emptyFrame(0)).mean.x, 0.75 * 3 + 0.25 * 7, 1e-12);
+}
+
+TEST(PoleLocalizer, TellsWhatAStepDid) {
+  const PoleStreet street = makeStreet({});
+  PoleLocalizer localizer(street.map, {}, 1);
+  localizer.start(at(street.truth[50], 2.5));
+  localizer.step(street.frames[50]);
+  EXPECT_EQ(localizer.report().poles, street.frames[50].poles_robot.size());
+  EXPECT_GT(localizer.report().temperingStages, 0);
+  EXPECT_GT(localizer.report().effectiveShare, 0);
+  EXPECT_EQ(localizer.report().resampled, localizer.report().effectiveShare < 0.5);
+}
+
+TEST(PoleLocalizer, RefusesAMapWithoutPoles) {
+  EXPECT_THROW(PoleLocalizer(nullptr, {}, 1), Error);
+  EXPECT_THROW(PoleLocalizer(std::make_shared<CPoleMap>(), {}, 1), Error);
+}
+
+TEST(PoleLocalizer, RefusesOptionsOutOfRange) {
+  FilterOptions options;
+  options.particles = 0;
+  EXPECT_THROW(PoleLocalizer(smallMap(), options, 1), Error);
+}
+
+TEST(PoleLocalizer, RefusesToStepBeforeTheStart) {
+  PoleLocalizer localizer(smallMap(), {}, 1);
+  EXPECT_THROW(localizer.step(emptyFrame(0)), Error);
+}
+
+TEST(PoleLocalizer, RefusesAStartWithoutAPose) {
+  PoleLocalizer localizer(smallMap(), {}, 1);
+  EXPECT_THROW(localizer.start(StartOptions()), Error);
+  EXPECT_THROW(localizer.start(at({NAN, 0, 0})), Error);
+  EXPECT_THROW(localizer.start(at({0, 0, 0}, -1)), Error);
+}
+
+TEST(PoleLocalizer, RefusesBadFramesAndStaysAsItWas) {
+  PoleLocalizer localizer(smallMap(), {}, 1);
+  localizer.start(at({0, 0, 0}));
+  localizer.step(emptyFrame(5));
+  const auto before = localizer.particles();
+  std::vector<PoleFrame> bad(5, emptyFrame(6));
+  bad[0].time = 5;    // again
+  bad[1].time = 4.5;  // backwards
+  bad[2].time = NAN;
+  bad[3].motion.reset();
+  bad[4].motion->mean.x = NAN;
+  for (const auto& frame : bad) EXPECT_THROW(localizer.step(frame), Error);
+  const auto after = localizer.particles();
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(before[i].x, after[i].x);
+  EXPECT_NO_THROW(localizer.step(emptyFrame(6)));
+}
