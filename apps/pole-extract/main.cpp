@@ -1,0 +1,3 @@
+#include <polemcl/apps/ExtractApp.h>
+
+int main(int argc, char** argv) { return polemcl::apps::extractMain(argc, argv); }

@@ -1,0 +1,3 @@
+#include <polemcl/apps/MapApp.h>
+
+int main(int argc, char** argv) { return polemcl::apps::mapMain(argc, argv); }

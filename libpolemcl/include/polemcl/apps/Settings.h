@@ -1,0 +1,44 @@
+#pragma once
+/// \file Settings.h
+/// \brief One INI serves all programs: the union of all option structs.
+
+#include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/PoleLikelihood.h>
+#include <polemcl/core/PoleMapBuilder.h>
+#include <polemcl/mrpt/FilterOptions.h>
+#include <polemcl/mrpt/MotionOptions.h>
+#include <polemcl/mrpt/PoleExtraction.h>
+#include <polemcl/sim/SimulationOptions.h>
+
+#include <string>
+
+namespace polemcl::apps {
+
+/// \brief All settings of all programs. Sections that a file leaves out keep their defaults.
+struct Settings {
+  SensorOptions sensor;               ///< `[sensor]`
+  ExtractionOptions extraction;       ///< `[extraction]`, `[paper]`, `[native]`
+  PoleMapOptions map;                 ///< `[map]`
+  LikelihoodOptions likelihood;       ///< `[likelihood]`
+  MotionOptions motion;               ///< `[motion]`
+  FilterOptions filter;               ///< `[filter]`
+  StartOptions start;                 ///< `[start]`
+  RunOptions runs;                    ///< `[runs]`
+  sim::SimulationOptions simulation;  ///< `[simulation]`, `[world]`; sensor as in `[sensor]`
+
+  /// \brief What the extraction needs.
+  PoleExtractionOptions poleExtraction() const { return {sensor, extraction}; }
+};
+
+/// \brief Reads an INI file.
+/// \throws Error naming file, section, key, value and what is allowed: unknown sections or keys,
+///         wrong types, values out of range.
+Settings loadSettings(const std::string& path);
+
+/// \brief All settings as an INI file, every key with unit, allowed values and meaning.
+/// Reading it gives the same settings, bit for bit.
+std::string settingsText(const Settings& settings);
+/// \brief Writes settingsText(), atomically. \throws Error when it cannot be written.
+void saveSettings(const Settings& settings, const std::string& path);
+
+}  // namespace polemcl::apps

@@ -1,0 +1,121 @@
+#include <polemcl/apps/CommandLine.h>
+#include <polemcl/apps/ExtractApp.h>
+#include <polemcl/apps/Progress.h>
+#include <polemcl/apps/RawlogActions.h>
+#include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/TextFile.h>
+#include <polemcl/mrpt/RawlogWriter.h>
+
+#include <iostream>
+
+namespace polemcl::apps {
+namespace {
+
+constexpr int reasons = static_cast<int>(Refusal::count_);
+
+void add(const ExtractionReport& scan, ExtractionReport& sum) {
+  sum.points += scan.points;
+  sum.invalid += scan.invalid;
+  sum.outOfView += scan.outOfView;
+  sum.outOfRange += scan.outOfRange;
+  sum.candidates += scan.candidates;
+  for (int i = 0; i < reasons; ++i) sum.refused[i] += scan.refused[i];
+}
+
+void writeRows(std::ostream& out, const PoleScan& scan) {
+  for (const auto& pole : scan.observation->polesInRobotFrame()) {
+    out << scan.index << ',' << io::fixed(scan.time, 6);
+    for (double value : {pole.x, pole.y, pole.radius, pole.bottom, pole.top, pole.confidence})
+      out << ',' << io::fixed(value, 6);
+    out << ',' << pole.points;
+    for (double value : {pole.covariance(0, 0), pole.covariance(0, 1), pole.covariance(1, 1)})
+      out << ',' << io::significant(value, 9);
+    out << '\n';
+  }
+}
+
+void print(const ExtractSummary& summary, const ExtractOptions& options) {
+  const auto& counts = summary.counts;
+  const auto& sum = summary.extraction;
+  std::cout << options.output.string() << ": " << counts.poles << " poles in " << counts.scans
+            << " scans\n";
+  if (counts.emptyScans > 0)
+    std::cout << "scans without a valid point: " << counts.emptyScans << '\n';
+  if (counts.storedScans > 0)
+    std::cout << "scans that were poles already: " << counts.storedScans << '\n';
+  if (counts.otherSensors > 0)
+    std::cout << "scans of other sensors, not used: " << counts.otherSensors << '\n';
+  if (counts.unknownMotions > 0)
+    std::cout << "scans without odometry: " << counts.unknownMotions << '\n';
+  std::cout << "points: " << sum.points << ", invalid " << sum.invalid << ", out of view "
+            << sum.outOfView << ", out of range " << sum.outOfRange << '\n'
+            << "candidates: " << sum.candidates;
+  for (int i = 0; i < reasons; ++i)
+    if (sum.refused[i] > 0)
+      std::cout << ", " << name(static_cast<Refusal>(i)) << ' ' << sum.refused[i];
+  std::cout << '\n';
+  if (counts.truncated) std::cout << "the input ended too early; what could be read was used\n";
+}
+
+}  // namespace
+
+void ExtractOptions::validate() const {
+  if (output.extension() != ".rawlog")
+    throw Error("--output " + output.string() + ": the name must end in .rawlog");
+  std::error_code ignored;
+  if (std::filesystem::equivalent(input, output, ignored))
+    throw Error("--output " + output.string() + ": is the input; give another name");
+}
+
+ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
+                            const std::function<void(std::size_t)>& progress) {
+  options.validate();
+  SequenceOptions sequence{settings.poleExtraction(), settings.motion, options.allowTruncated};
+  // Applied by whoever reads the poles; here it would count twice.
+  sequence.motion.covarianceFactor = 1;
+
+  RawlogWriter rawlog(options.output.string());
+  std::optional<io::AtomicFile> csv;
+  if (options.csv) {
+    csv.emplace(*options.csv);
+    csv->stream() << "scan,timestamp,x,y,radius,bottom,top,confidence,points,cxx,cxy,cyy\n";
+  }
+  ExtractSummary summary;
+  summary.counts = streamPoles(options.input.string(), sequence, [&](const PoleScan& scan) {
+    const auto motion = scan.index == 0 ? standstill() : scan.motion;
+    rawlog.write(makeActions(motion, scan.observation->timestamp), scan.observation);
+    if (csv) writeRows(csv->stream(), scan);
+    add(scan.report, summary.extraction);
+    if (progress) progress(scan.index + 1);
+  });
+  if (summary.counts.scans == summary.counts.emptyScans)
+    throw Error(options.input.string() + ": no usable scan, " +
+                std::to_string(summary.counts.emptyScans) + " scans in it, all without a point");
+  rawlog.commit();
+  if (csv) csv->commit();
+  return summary;
+}
+
+int extractMain(int argc, const char* const* argv) {
+  CommandLine line("pole-extract", "Extracts the poles of every scan of a rawlog.");
+  ExtractOptions options;
+  std::string config;
+  auto& cli = line.cli();
+  cli.add_option("--config", config, "INI file, see config/")->required();
+  cli.add_option("--input", options.input, "Rawlog of scans")->required();
+  cli.add_option("--output", options.output, "Rawlog of poles to write")->required();
+  cli.add_option("--csv", options.csv, "Also write the poles to this table");
+  cli.add_flag("--allow-truncated", options.allowTruncated,
+               "Use the readable part of a rawlog that was cut short");
+  return line.run(argc, argv, [&] {
+    const auto settings = loadSettings(config);
+    ExtractSummary summary;
+    {
+      Progress progress("extract", 0, line.quiet());
+      summary = extractPoles(options, settings, [&](std::size_t done) { progress.update(done); });
+    }
+    if (!line.quiet()) print(summary, options);
+  });
+}
+
+}  // namespace polemcl::apps

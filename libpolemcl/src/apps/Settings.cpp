@@ -1,0 +1,54 @@
+#include <polemcl/apps/Settings.h>
+#include <polemcl/mrpt/Bindings.h>
+#include <polemcl/mrpt/Config.h>
+#include <polemcl/sim/SimulationBindings.h>
+
+namespace polemcl::apps {
+namespace {
+
+void bindAll(Binder& binder, Settings& settings) {
+  bind(binder, settings.sensor);
+  bind(binder, settings.extraction);
+  bind(binder, settings.map);
+  bind(binder, settings.likelihood);
+  bind(binder, settings.motion);
+  bind(binder, settings.filter);
+  bind(binder, settings.start);
+  bind(binder, settings.runs);
+  bind(binder, settings.simulation);
+}
+
+/// The simulated LiDAR is the one that the extraction is told of.
+void shareSensor(Settings& settings) {
+  settings.simulation.sensor = settings.sensor.model;
+  settings.simulation.height = settings.sensor.height;
+  settings.simulation.upsideDown = settings.sensor.upsideDown;
+}
+
+ConfigWriter written(const Settings& settings) {
+  ConfigWriter writer;
+  Settings copy = settings;
+  bindAll(writer, copy);
+  return writer;
+}
+
+}  // namespace
+
+Settings loadSettings(const std::string& path) {
+  Settings settings;
+  ConfigReader reader(ConfigFile::read(path));
+  bindAll(reader, settings);
+  reader.finish();
+  shareSensor(settings);
+  return settings;
+}
+
+std::string settingsText(const Settings& settings) {
+  return written(settings).text();
+}
+
+void saveSettings(const Settings& settings, const std::string& path) {
+  written(settings).save(path);
+}
+
+}  // namespace polemcl::apps

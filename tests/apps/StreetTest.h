@@ -1,0 +1,41 @@
+#pragma once
+/// \file StreetTest.h
+/// \brief What the tests of pole-extract and pole-map share: an imported street.
+
+#include <polemcl/apps/DatasetImport.h>
+#include <polemcl/apps/Settings.h>
+
+#include "PoleStreet.h"
+
+namespace testing_apps {
+
+class StreetTest : public testing::Test {
+ protected:
+  static std::string config() {
+    return (fs::path(POLEMCL_SOURCE_DIR) / "config" / "hdl32e.ini").string();
+  }
+  static polemcl::apps::Settings settings() { return polemcl::apps::loadSettings(config()); }
+  std::string at(const std::string& name) const { return (folder / name).string(); }
+
+  /// Imports `folder/NAME` as `folder/NAME.rawlog` and `folder/NAME.tum`.
+  void import(const std::string& name, bool embed = true, const std::string& sensorPose = "") {
+    polemcl::apps::ImportOptions options;
+    options.input = folder / name;
+    options.output = folder / (name + ".rawlog");
+    options.embed = embed;
+    if (!sensorPose.empty()) options.T_robot_sensor = polemcl::apps::parseSensorPose(sensorPose);
+    polemcl::apps::importDataset(options);
+  }
+
+  /// Replaces a word by another of the same length, everywhere in a file.
+  void replace(const std::string& name, const std::string& word, const std::string& by) const {
+    std::string bytes = readText(folder / name);
+    for (auto p = bytes.find(word); p != std::string::npos; p = bytes.find(word, p + 1))
+      bytes.replace(p, word.size(), by);
+    writeText(folder / name, bytes);
+  }
+
+  TempFolder folder;
+};
+
+}  // namespace testing_apps

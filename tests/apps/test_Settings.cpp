@@ -1,0 +1,113 @@
+#include <polemcl/apps/Settings.h>
+#include <polemcl/core/Types.h>
+
+#include "TempFolder.h"
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+std::vector<fs::path> configurations() {
+  std::vector<fs::path> files;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(fs::path(POLEMCL_SOURCE_DIR) / "config"))
+    if (entry.path().extension() == ".ini") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+fs::path config(const std::string& name) {
+  return fs::path(POLEMCL_SOURCE_DIR) / "config" / name;
+}
+
+std::string errorOf(const std::string& ini) {
+  const TempFolder folder;
+  writeText(folder / "a.ini", ini);
+  try {
+    loadSettings((folder / "a.ini").string());
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST(Settings, EveryConfigurationLoadsAndSurvivesSaving) {
+  const auto files = configurations();
+  EXPECT_GE(files.size(), 9u);
+  const TempFolder folder;
+  for (const auto& file : files) {
+    SCOPED_TRACE(file.string());
+    const auto settings = loadSettings(file.string());
+    saveSettings(settings, (folder / "saved.ini").string());
+    EXPECT_EQ(settingsText(loadSettings((folder / "saved.ini").string())), settingsText(settings));
+  }
+}
+
+TEST(Settings, EveryValueInTheConfigurationsIsExplained) {
+  for (const auto& file : configurations()) {
+    std::istringstream lines(readText(file));
+    std::string line;
+    while (std::getline(lines, line)) {
+      if (line.find(" = ") != std::string::npos && line[0] != ';') {
+        EXPECT_NE(line.find("  ; "), std::string::npos) << file << ": " << line;
+      }
+    }
+  }
+}
+
+TEST(Settings, ConfigurationsSayWhatTheyAreFor) {
+  const auto kitti = loadSettings(config("kitti.ini").string());
+  EXPECT_EQ(kitti.sensor.model, "hdl64e");
+  EXPECT_EQ(kitti.sensor.height, 1.73);
+  EXPECT_EQ(kitti.extraction.method, ExtractionMethod::native);
+  const auto nclt = loadSettings(config("nclt.ini").string());
+  EXPECT_TRUE(nclt.sensor.upsideDown);
+  EXPECT_EQ(nclt.sensor.originZ, 0.957);
+  const auto paper = loadSettings(config("paper/nclt.ini").string());
+  EXPECT_EQ(paper.extraction.method, ExtractionMethod::paper);
+  EXPECT_EQ(paper.extraction.paper.columns, 250);
+  EXPECT_NEAR(paper.extraction.paper.fovUp, 30.67 * M_PI / 180, 1e-12);
+  EXPECT_EQ(paper.map.minCount, 6);
+  EXPECT_EQ(paper.likelihood.model, LikelihoodModel::paper);
+  EXPECT_EQ(paper.filter.estimate, PoseEstimator::bestShare);
+}
+
+TEST(Settings, KnowsEverySection) {
+  const TempFolder folder;
+  const Settings defaults;
+  saveSettings(defaults, (folder / "all.ini").string());
+  const auto text = readText(folder / "all.ini");
+  for (const char* section : {"sensor", "extraction", "paper", "native", "map", "likelihood",
+                              "motion", "filter", "start", "runs", "simulation", "world"})
+    EXPECT_NE(text.find("[" + std::string(section) + "]\n"), std::string::npos) << section;
+}
+
+TEST(Settings, TheSimulatedSensorIsTheConfiguredOne) {
+  const auto settings = loadSettings(config("nclt.ini").string());
+  EXPECT_EQ(settings.simulation.sensor, "hdl32e");
+  EXPECT_EQ(settings.simulation.height, settings.sensor.height);
+  EXPECT_TRUE(settings.simulation.upsideDown);
+}
+
+TEST(Settings, RefusesWhatItDoesNotKnow) {
+  EXPECT_NE(errorOf("[senser]\nmodel = hdl64e\n").find("senser"), std::string::npos);
+  const auto key = errorOf("[sensor]\nheigth_m = 1\n");
+  EXPECT_NE(key.find("heigth_m"), std::string::npos) << key;
+  EXPECT_NE(key.find("a.ini"), std::string::npos) << key;
+}
+
+TEST(Settings, RefusesWrongTypesAndRanges) {
+  const auto type = errorOf("[filter]\nparticles = many\n");
+  for (const char* word : {"a.ini", "filter", "particles", "many"})
+    EXPECT_NE(type.find(word), std::string::npos) << type;
+  const auto range = errorOf("[filter]\nparticles = 0\n");
+  EXPECT_NE(range.find("particles"), std::string::npos) << range;
+}
+
+TEST(Settings, RefusesAMissingFile) {
+  EXPECT_THROW(loadSettings("no/such/file.ini"), Error);
+}
