@@ -68,6 +68,13 @@ TEST_F(ImportApp, ImportsKittiRawWithTheCalibrationOfItsDate) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
+TEST_F(ImportApp, TakesASensorPoseThatStartsWithAMinus) {
+  writeLine(folder / "in", 2);
+  const auto outcome = run("folder", {"--sensor-pose", "-1.5 0 0 0 0 0"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(readText(folder / "out.tum").find(" 1.5"), std::string::npos);
+}
+
 TEST_F(ImportApp, ReportsWhatWasDropped) {
   writeLine(folder / "in", 3);
   writeBin(folder / "in" / "velodyne" / scanName(1), {{0, 0, 0, 0}});

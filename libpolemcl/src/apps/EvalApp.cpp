@@ -8,7 +8,6 @@
 #include <polemcl/report/MapPicture.h>
 #include <polemcl/report/MapScene.h>
 
-#include <cmath>
 #include <iostream>
 
 namespace polemcl::apps {
@@ -125,14 +124,7 @@ void draw(const EvalTrajectoryOptions& options, const report::MapView& view) {
 
 }  // namespace
 
-void EvalMapOptions::validate() const {
-  if (!(radius > 0) || !std::isfinite(radius))
-    throw Error("--radius " + io::significant(radius, 6) +
-                ": a positive number of metres is allowed");
-}
-
 MapScore evalMap(const EvalMapOptions& options) {
-  options.validate();
   const auto truth = readPoles(options.truth);
   const auto map = readPoles(options.map);
   const auto score = comparing(options.map, options.truth, [&] {

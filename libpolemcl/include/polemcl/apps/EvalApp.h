@@ -15,7 +15,6 @@ struct EvalMapOptions {
   double radius = 1.0;                        ///< a map pole is right within it, m, > 0
   bool oneToOne = false;                      ///< maximum matching instead of the authors' count
   std::optional<std::filesystem::path> json;  ///< written when given
-  void validate() const;                      ///< \throws Error on a radius that is not positive
 };
 /// \brief Scores the map and writes the JSON file (keys `precision recall f1 matches` and more).
 /// \throws Error naming the file and what is wrong with it, or the radius.
