@@ -1,5 +1,6 @@
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/Version.h>
+#include <polemcl/mrpt/RegisterClasses.h>
 
 #include <exception>
 #include <iostream>
@@ -27,6 +28,7 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
     m_cli.exit(e);  // prints what --help or --version ask for
     return exitDone;
   }
+  registerClasses();
   try {
     work();
     return exitDone;
