@@ -1,5 +1,7 @@
 #include <polemcl/apps/ImportApp.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdlib>
 
 #include "ScanFolders.h"
@@ -8,6 +10,26 @@ using namespace polemcl::apps;
 using namespace testing_apps;
 
 namespace {
+
+/// While it lives, files can grow to one megabyte, and no further: as on a full disk.
+class SmallDisk {
+ public:
+  SmallDisk() {
+    m_handler = std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &m_limit);
+    rlimit small = m_limit;
+    small.rlim_cur = 1 << 20;
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &m_limit);
+    std::signal(SIGXFSZ, m_handler);
+  }
+
+ private:
+  void (*m_handler)(int);
+  rlimit m_limit{};
+};
 
 class ImportApp : public testing::Test {
  protected:
@@ -100,6 +122,21 @@ TEST_F(ImportApp, FailsWhenTheOutputCannotBeWritten) {
   const auto outcome = runProgram(importMain, {"folder", "--input", (folder / "in").string(),
                                                "--output", (folder / "no/out.rawlog").string()});
   expectFailure(outcome, {"no"});
+}
+
+TEST_F(ImportApp, AFullDiskLeavesTheOldOutput) {
+  writeLine(folder / "in", 3);
+  writeBin(folder / "in" / "velodyne" / scanName(2), Points(100000, {1, 2, 3, 0}));
+  writeText(folder / "out.rawlog", "old");
+  Outcome outcome;
+  {
+    const SmallDisk small;
+    outcome = run("folder", {"--embed"});
+  }
+  expectFailure(outcome, {"out.rawlog"});
+  EXPECT_EQ(readText(folder / "out.rawlog"), "old");
+  EXPECT_EQ(names(folder.path()), std::vector<std::string>({"in", "out.rawlog"}));
+  EXPECT_EQ(run("folder", {"--embed"}).code, 0);
 }
 
 TEST_F(ImportApp, WrongUsage) {
