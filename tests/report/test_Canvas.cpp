@@ -63,6 +63,26 @@ TEST(Canvas, TextEndsWhereItsAlignmentSays) {
   expectInk(90, 116, 150 - width / 2);
 }
 
+TEST(Canvas, AHaloKeepsTextReadableUponADrawing) {
+  Canvas canvas(200, 60);
+  canvas.fill({0, 0, 200, 60}, rgb(0x0000ff));
+  canvas.text("H", {20, 45}, {40, rgb(0x000000)});
+  canvas.text("H", {120, 45}, {40, rgb(0x000000), Align::left, false, false, true});
+  const TestFolder folder;
+  const auto file = folder / "a.png";
+  canvas.writePng(file);
+  const Pixels image(file);
+  const auto count = [&](int left, int right, unsigned color) {
+    int pixels = 0;
+    for (int y = 0; y < 60; ++y)
+      for (int x = left; x < right; ++x) pixels += image.at(x, y) == color;
+    return pixels;
+  };
+  EXPECT_EQ(count(0, 100, 0xffffff), 0);
+  EXPECT_GT(count(100, 200, 0xffffff), 50);
+  EXPECT_EQ(count(0, 100, 0x000000), count(100, 200, 0x000000));
+}
+
 TEST(Canvas, RefusesWhatCairoCannotHold) {
   EXPECT_THROW(Canvas(100000, 100), Error);
 }

@@ -95,10 +95,17 @@ void Canvas::text(const std::string& line, const Eigen::Vector2d& anchor, const 
   const double share = style.align == Align::left ? 0 : style.align == Align::centre ? 0.5 : 1;
   const double shift = -share * textWidth(line, style);
   cairo_save(context);
-  m_impl->source(style.color);
   m_impl->font(style);
   cairo_translate(context, anchor.x(), anchor.y());
   if (style.upwards) cairo_rotate(context, -M_PI / 2);
+  if (style.halo) {
+    cairo_move_to(context, shift, 0);
+    cairo_text_path(context, line.c_str());
+    m_impl->source(rgb(0xffffff));
+    cairo_set_line_width(context, 0.3 * style.size);
+    cairo_stroke(context);
+  }
+  m_impl->source(style.color);
   cairo_move_to(context, shift, 0);
   cairo_show_text(context, line.c_str());
   cairo_restore(context);

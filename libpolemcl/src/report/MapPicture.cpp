@@ -59,10 +59,9 @@ void drawEnds(Canvas& canvas, const PlotAxes& axes, const std::vector<StampedPos
   const auto mark = [&](const StampedPose2D& pose, const char* label, const Color& color) {
     const Eigen::Vector2d at = axes.toPixel(pose.pose.x, pose.pose.y);
     canvas.disc(at, 7, color, ink, 2);
-    const TextStyle style{15, ink, Align::centre, true};
+    const TextStyle style{15, ink, Align::centre, true, false, true};
     const double half = 0.5 * canvas.textWidth(label, style);
     const double x = std::clamp(at.x(), axes.frame.x + half + 6, axes.frame.right() - half - 6);
-    canvas.fill({x - half - 4, at.y() + 13, 2 * half + 8, 20}, rgb(0xffffff, 0.75));
     canvas.text(label, {x, at.y() + 28}, style);
   };
   mark(path.front(), "start", white);
@@ -117,11 +116,11 @@ void drawMap(Canvas& canvas, const Rect& frame, const Bounds& bounds, const MapV
   const double metre = axes.pixelsPerX();
   canvas.line(pixels(axes, view.truth), truthColor, std::clamp(2.5 * metre, 5.0, 9.0));
   canvas.line(pixels(axes, view.estimate), estimateColor, std::clamp(0.8 * metre, 1.8, 2.6));
-  drawEnds(canvas, axes, view.truth.empty() ? view.estimate : view.truth);
   const double smallest = std::clamp(1.5 * metre, 2.6, 4.5);
   for (const MapPole& pole : view.poles)
     canvas.disc(axes.toPixel(pole.x, pole.y), std::max(smallest, pole.radius * metre), poleColor,
                 white, 0.25 * smallest);
+  drawEnds(canvas, axes, view.truth.empty() ? view.estimate : view.truth);
   drawScaleBar(canvas, axes, view);
   canvas.unclip();
   canvas.outline(frame, rgb(0xb8bfc8), 1);

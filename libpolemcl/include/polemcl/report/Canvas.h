@@ -34,6 +34,7 @@ struct TextStyle {
   Align align = Align::left;
   bool bold = false;
   bool upwards = false;  ///< turned by 90°, read from below
+  bool halo = false;     ///< a white edge, for text upon a drawing
 };
 
 /// \brief A white image. Coordinates in px from the upper left corner, x right, y down.
