@@ -1,0 +1,3 @@
+#include <polemcl/apps/LocalizeApp.h>
+
+int main(int argc, char** argv) { return polemcl::apps::localizeMain(argc, argv); }
