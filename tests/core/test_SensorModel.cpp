@@ -238,6 +238,30 @@ TEST(SensorOptions, refusesATurnWithoutColumns) {
   EXPECT_REFUSED(
       table({1, -1}), { o.columns = 0; }, "columns = 0");
 }
+TEST(SensorOptions, refusesElevationsThatHaveNoTangent) {
+  EXPECT_REFUSED(table({1, 90}), {}, "elevations_deg");
+  EXPECT_REFUSED(
+      table({1, -1}), { o.elevations[1] = std::nan(""); }, "elevations_deg");
+  EXPECT_REFUSED(uniform(16, 90, -1), {}, "fov_up_deg");
+  EXPECT_REFUSED(uniform(16, 1, -90), {}, "fov_down_deg");
+  EXPECT_EQ(refusal({}, [](SensorOptions& o) { o.elevations = {90}; }), "accepted");  // not used
+}
+TEST(SensorOptions, refusesTooFewColumnsForAnyModel) {
+  EXPECT_REFUSED(
+      {}, { o.columns = -5; }, "columns = -5");
+  EXPECT_REFUSED(
+      {}, { o.columns = 89; }, "at least 90");
+}
+TEST(SensorOptions, refusesPlacesThatAreNoNumbers) {
+  EXPECT_REFUSED(
+      {}, { o.height = std::nan(""); }, "height_m");
+  EXPECT_REFUSED(
+      {}, { o.originX = std::nan(""); }, "origin");
+  EXPECT_REFUSED(
+      {}, { o.originY = std::numeric_limits<double>::infinity(); }, "origin");
+  EXPECT_REFUSED(
+      {}, { o.originZ = std::nan(""); }, "origin");
+}
 TEST(SensorOptions, refusesRangesTheWrongWayRound) {
   EXPECT_REFUSED(
       {}, { o.maxRange = o.minRange; }, "max_range_m");

@@ -151,15 +151,29 @@ void SensorOptions::validate() const {
     throw Error("[sensor] model = " + model + ": unknown; allowed are " + joined(names));
   if (model == "table" && elevations.size() < 2)
     throw Error("[sensor] elevations_deg: model = table needs the elevations of at least 2 beams");
+  // Rows are looked up by the tangent of their elevation.
+  constexpr double kSteepest = 89 * kDegree;
+  for (const double elevation : model == "table" ? elevations : std::vector<double>())
+    if (!(std::abs(elevation) <= kSteepest))
+      throw Error("[sensor] elevations_deg: " + std::to_string(elevation / kDegree) +
+                  ": allowed are -89 to 89 degrees");
   if (model == "uniform" && (rows < 2 || rows > 1024))
     throw Error("[sensor] rows = " + std::to_string(rows) +
                 ": model = uniform needs 2 to 1024 beams");
   if (model == "uniform" && !(fovUp > fovDown))
     throw Error(
         "[sensor] fov_up_deg must be greater than fov_down_deg (negative below the horizon)");
+  if (model == "uniform" && !(fovUp <= kSteepest && fovDown >= -kSteepest))
+    throw Error("[sensor] fov_up_deg, fov_down_deg: allowed are -89 to 89 degrees");
   if ((model == "table" || model == "uniform") && columns < 90)
     throw Error("[sensor] columns = " + std::to_string(columns) + ": model = " + model +
                 " needs the firing steps of a turn, at least 90");
+  if (columns != 0 && columns < 90)
+    throw Error("[sensor] columns = " + std::to_string(columns) +
+                ": allowed are 0, for those of the model, or at least 90");
+  for (const double length : {height, originX, originY, originZ})
+    if (!std::isfinite(length))
+      throw Error("[sensor] height_m, origin: allowed are finite numbers");
   if (!(maxRange > minRange && minRange >= 0))
     throw Error("[sensor] max_range_m must be greater than min_range_m, and that not negative");
 }
