@@ -74,11 +74,8 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::commit() {
   if (!m_open) throw cannotWrite(m_target, "commit() was called before");
   errno = 0;
-  // Not close() alone: it says nothing about writes that failed earlier.
-  m_stream.flush();
-  const bool complete = m_stream.good();
-  m_stream.close();
-  if (!complete || m_stream.fail()) {
+  m_stream.close();  // writes what is buffered; a failure of earlier writes is still set
+  if (m_stream.fail()) {
     const std::string why = errno != 0 ? std::strerror(errno) : "a write failed";
     throw cannotWrite(m_target, why + " (the disk may be full); nothing was changed");
   }
