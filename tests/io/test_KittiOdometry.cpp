@@ -124,6 +124,13 @@ TEST_F(KittiOdometryTest, refusesScansWithoutNumbers) {
   expectIn(refusal(), "x.bin", "no frame number");
 }
 
+TEST_F(KittiOdometryTest, refusesUnpaddedNumbers) {
+  fs::remove_all(path("sequences/07/velodyne"));
+  write("sequences/07/velodyne/10.bin", "");
+  write("sequences/07/velodyne/9.bin", "");
+  expectIn(refusal(), "9.bin", "same number of digits");
+}
+
 TEST_F(KittiOdometryTest, refusesAMissingCalibration) {
   fs::remove(path("sequences/07/calib.txt"));
   expectIn(refusal(), "calib.txt", "No such file or directory");

@@ -220,6 +220,22 @@ TEST_F(KittiRawTest, refusesTimesThatDoNotIncrease) {
   expectIn(refusal(), "timestamps.txt", "frame 2 is not after that of frame 1");
 }
 
+TEST_F(KittiRawTest, blankLinesAtTheEndOfTheTimesCountForNothing) {
+  const std::string times = read(path("drive/velodyne_points/timestamps.txt"));
+  write("drive/velodyne_points/timestamps.txt", times + "\n \n");
+  EXPECT_EQ(readDrive().scans.size(), 5u);
+}
+
+TEST_F(KittiRawTest, refusesUnpaddedNumbers) {
+  write("drive/oxts/data/10.txt", "");
+  write("drive/oxts/data/9.txt", "");
+  expectIn(refusal(), "9.txt", "same number of digits");
+  fs::remove_all(path("drive/velodyne_points/data"));
+  write("drive/velodyne_points/data/10.bin", "");
+  write("drive/velodyne_points/data/9.bin", "");
+  expectIn(refusal(), "9.bin", "same number of digits");
+}
+
 TEST_F(KittiRawTest, refusesMissingTimes) {
   fs::remove(path("drive/velodyne_points/timestamps.txt"));
   expectIn(refusal(), "timestamps.txt", "No such file or directory");
@@ -232,6 +248,8 @@ TEST_F(KittiRawTest, refusesMalformedOxts) {
   expectIn(refusal(), frameName(3, ".txt"), "2 lines");
   addOxts(3, oxtsRow(90, 8.4, 112, 0, 0, 0));
   expectIn(refusal(), frameName(3, ".txt") + ":1: ", "latitude 90");
+  addOxts(3, oxtsRow(49, 180.1, 112, 0, 0, 0));
+  expectIn(refusal(), frameName(3, ".txt") + ":1: ", "longitude 180.1");
 }
 
 TEST_F(KittiRawTest, refusesADriveWithoutCommonFrames) {

@@ -146,9 +146,12 @@ TEST_F(NpzTest, refusesWhatIsNoZip) {
 }
 
 TEST_F(NpzTest, refusesArchivesBeyond4GB) {
-  std::string bytes = zip({{"a.npy", sample}});
-  bytes.replace(bytes.size() - 12, 2, "\xff\xff");
-  expectIn(openRefusal(bytes), "4 GB");
+  const std::string bytes = zip({{"a.npy", sample}});
+  for (const auto& [fromEnd, size] : {std::pair{12, 2}, std::pair{10, 4}, std::pair{6, 4}}) {
+    std::string changed = bytes;
+    changed.replace(bytes.size() - fromEnd, size, std::string(size, '\xff'));
+    expectIn(openRefusal(changed), "4 GB");
+  }
 }
 
 TEST_F(NpzTest, refusesADirectoryThatIsNone) {
