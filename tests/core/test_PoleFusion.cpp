@@ -151,3 +151,10 @@ TEST(PoleFusion, copesWithACovarianceOfZero) {
   EXPECT_NEAR(fusedCentre(sightings, {0, 1, 2}, &covariance).x(), 1.05, 1e-9);
   EXPECT_TRUE(covariance.allFinite());
 }
+
+TEST(PoleFusion, certainSightingsGiveACertainPole) {
+  for (int n = 1; n < 60; ++n) {
+    const std::vector<PoleSighting> sightings(n, sighting(0, 0));
+    EXPECT_EQ(fuse(sightings, all(sightings)).confidence, 1) << n;
+  }
+}

@@ -160,8 +160,9 @@ MapPole fuse(const std::vector<PoleSighting>& sightings,
   for (const std::uint32_t member : members) {
     bottoms.push_back(sightings[member].pole.bottom);
     tops.push_back(sightings[member].pole.top);
-    pole.confidence += sightings[member].pole.confidence / static_cast<double>(members.size());
+    pole.confidence += sightings[member].pole.confidence;
   }
+  pole.confidence /= static_cast<double>(members.size());  // last: so that all ones give one
   pole.bottom = quantile(std::move(bottoms), 0.1);
   pole.top = quantile(std::move(tops), 0.9);
   return pole;
