@@ -75,6 +75,28 @@ TEST_F(Simulation, writesAFolderThatReadsBackAsTheDrive) {
   EXPECT_NEAR(poles[0].x(), world.poles()[0].x, 1e-4);
 }
 
+TEST_F(Simulation, anOriginMovesCloudsAndPosesButNotTheWorld) {
+  m_options.scans = 2;
+  const fs::path plain = folder("plain"), moved = folder("moved");
+  simulate(m_options, plain);
+  m_options.originX = 0.4;
+  m_options.originZ = 0.9;
+  simulate(m_options, moved);
+  const auto a = io::readScanFolder(plain, Eigen::Isometry3d::Identity()),
+             b = io::readScanFolder(moved, Eigen::Isometry3d::Identity());
+  const io::Cloud there = io::readKittiBin(a.scans[1].cloud),
+                  here = io::readKittiBin(b.scans[1].cloud);
+  ASSERT_EQ(there.x.size(), here.x.size());
+  const auto inMap = [](const io::ScanEntry& scan, const io::Cloud& cloud, std::size_t i) {
+    return Eigen::Vector3d(*scan.T_map_robot * Eigen::Vector3d(cloud.x[i], cloud.y[i], cloud.z[i]));
+  };
+  for (std::size_t i = 0; i < here.x.size(); i += 97) {
+    EXPECT_NEAR(here.x[i] - there.x[i], 0.4, 1e-4);
+    EXPECT_NEAR(here.z[i] - there.z[i], 0.9, 1e-4);
+    EXPECT_LT((inMap(a.scans[1], there, i) - inMap(b.scans[1], here, i)).norm(), 1e-4);
+  }
+}
+
 TEST_F(Simulation, bytesDoNotDependOnTheNumberOfThreads) {
   const fs::path one = folder("one"), many = folder("many");
   m_options.scans = 16;

@@ -63,6 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "relief"},
         Refusal{"sensor", [](auto& o) { o.sensor = "lms200"; }, "lms200"},
         Refusal{"height", [](auto& o) { o.height = 0; }, "height_m"},
+        Refusal{"origin", [](auto& o) { o.originY = 99; }, "[sensor] origin = 99"},
         Refusal{"spacing", [](auto& o) { o.spacing = 0; }, "spacing_m"},
         Refusal{"speed", [](auto& o) { o.speed = 0; }, "speed_m_s"},
         Refusal{"odometryNoise", [](auto& o) { o.odometryNoise = -0.1; }, "odometry_noise"},

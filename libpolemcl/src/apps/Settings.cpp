@@ -23,6 +23,9 @@ void shareSensor(Settings& settings) {
   settings.simulation.sensor = settings.sensor.model;
   settings.simulation.height = settings.sensor.height;
   settings.simulation.upsideDown = settings.sensor.upsideDown;
+  settings.simulation.originX = settings.sensor.originX;
+  settings.simulation.originY = settings.sensor.originY;
+  settings.simulation.originZ = settings.sensor.originZ;
 }
 
 ConfigWriter written(const Settings& settings) {

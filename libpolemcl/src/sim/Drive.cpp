@@ -61,6 +61,11 @@ Pose2D planar(const Eigen::Isometry3d& pose) {
 }
 }  // namespace
 
+Eigen::Isometry3d cloudFrame(const Eigen::Isometry3d& T_map_sensor,
+                             const SimulationOptions& options) {
+  return T_map_sensor * Eigen::Translation3d(-options.originX, -options.originY, -options.originZ);
+}
+
 Drive makeDrive(const World& world, const SimulationOptions& options) {
   options.validate();
   Drive drive;
@@ -74,7 +79,8 @@ Drive makeDrive(const World& world, const SimulationOptions& options) {
     drive.time.push_back(i * options.spacing / options.speed);
     drive.T_map_sensor.push_back(sensorAt(world, options, sways, 1 + i * options.spacing));
     if (i == 0) continue;
-    const Pose2D step = relative(planar(drive.T_map_sensor[i - 1]), planar(drive.T_map_sensor[i]));
+    const Pose2D before = planar(cloudFrame(drive.T_map_sensor[i - 1], options));
+    const Pose2D step = relative(before, planar(cloudFrame(drive.T_map_sensor[i], options)));
     OdometryStep odometry;
     odometry.sx = options.odometryNoise * std::abs(step.x);
     odometry.sy = options.odometryNoise * std::abs(step.y);

@@ -42,13 +42,15 @@ class Output {
   std::ofstream m_stream;
 };
 
-void writeScan(const SimulatedScan& scan, std::size_t index, const fs::path& directory) {
+void writeScan(const SimulatedScan& scan, const Eigen::Vector3f& origin, std::size_t index,
+               const fs::path& directory) {
   char name[32];
   std::snprintf(name, sizeof name, "%06zu", index);
   std::vector<float> points;
   points.reserve(4 * scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i)
-    points.insert(points.end(), {scan.x[i], scan.y[i], scan.z[i], scan.intensity[i]});
+    points.insert(points.end(), {scan.x[i] + origin.x(), scan.y[i] + origin.y(),
+                                 scan.z[i] + origin.z(), scan.intensity[i]});
   Output cloud(directory / "velodyne" / (std::string(name) + ".bin"));
   cloud.write(points.data(), points.size() * sizeof(float));
   cloud.close();
@@ -57,7 +59,7 @@ void writeScan(const SimulatedScan& scan, std::size_t index, const fs::path& dir
   labels.close();
 }
 
-void writeDrive(const Drive& drive, const fs::path& directory) {
+void writeDrive(const Drive& drive, const SimulationOptions& options, const fs::path& directory) {
   Output times(directory / "times.txt"), poses(directory / "poses.txt"),
       odometry(directory / "odometry.txt");
   odometry.line(
@@ -65,7 +67,8 @@ void writeDrive(const Drive& drive, const fs::path& directory) {
       "standard deviations\n");
   for (std::size_t i = 0; i < drive.time.size(); ++i) {
     times.line("%.6f\n", drive.time[i]);
-    const auto& matrix = drive.T_map_sensor[i].matrix();
+    const Eigen::Isometry3d pose = cloudFrame(drive.T_map_sensor[i], options);
+    const auto& matrix = pose.matrix();
     for (int row = 0; row < 3; ++row)
       poses.line("%.9f %.9f %.9f %.9f%s", matrix(row, 0), matrix(row, 1), matrix(row, 2),
                  matrix(row, 3), row == 2 ? "\n" : " ");
@@ -110,9 +113,11 @@ SimulationSummary simulate(const SimulationOptions& options, const fs::path& dir
   for (const char* folder : {"velodyne", "labels"})
     fs::create_directories(directory / folder, failure);
   if (failure) throw Error(directory.string() + ": " + failure.message());
-  writeDrive(drive, directory);
+  writeDrive(drive, options, directory);
   writePoles(world.poles(), directory);
 
+  const Eigen::Vector3f origin =
+      Eigen::Vector3d(options.originX, options.originY, options.originZ).cast<float>();
   SimulationSummary summary;
   summary.scans = drive.time.size();
   summary.poles = world.poles().size();
@@ -124,7 +129,7 @@ SimulationSummary simulate(const SimulationOptions& options, const fs::path& dir
     const std::uint64_t seed = hash(options.world.seed, options.world.day, 0x5ca4ull, i);
     const Motion motion = options.motionDistortion ? motionAt(drive, i) : Motion{};
     const SimulatedScan scan = scanner.scan(drive.T_map_sensor[i], seed, drive.time[i], motion);
-    writeScan(scan, i, directory);
+    writeScan(scan, origin, i, directory);
     points[i] = scan.size();
     const std::lock_guard lock(mutex);
     if (progress) progress(++done, drive.time.size());

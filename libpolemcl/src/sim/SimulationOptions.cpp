@@ -38,6 +38,8 @@ void SimulationOptions::validate() const {
   world.validate();
   makeLidar(sensor);
   require("[sensor] height_m", height, limits::height);
+  for (const double origin : {originX, originY, originZ})
+    require("[sensor] origin", origin, limits::origin);
   require("[simulation] spacing_m", spacing, limits::spacing);
   require("[simulation] speed_m_s", speed, limits::speed);
   require("[simulation] odometry_noise", odometryNoise, limits::odometryNoise);

@@ -19,8 +19,12 @@ struct OdometryStep {
 struct Drive {
   std::vector<double> time;                     ///< s, from 0
   std::vector<Eigen::Isometry3d> T_map_sensor;  ///< follows slope and sway
-  std::vector<OdometryStep> odometry;
+  std::vector<OdometryStep> odometry;           ///< of the frame of the clouds
 };
+
+/// \brief The frame of the written clouds in the map (see SimulationOptions::originX).
+Eigen::Isometry3d cloudFrame(const Eigen::Isometry3d& T_map_sensor,
+                             const SimulationOptions& options);
 
 /// \brief Drives along the street at constant speed.
 /// \throws Error when the street is shorter than two scans.

@@ -37,8 +37,11 @@ struct SimulationOptions {
   std::string sensor = "hdl32e";
   double height = 1.0;      ///< optical centre above ground, m. Programs take it from `[sensor]`.
   bool upsideDown = false;  ///< the sensor hangs; its beams are given as seen upright, z up
-  double spacing = 0.5;     ///< distance between scans, m (`spacing_m`)
-  double speed = 5;         ///< m/s (`speed_m_s`)
+  /// Optical centre in the frame of the written clouds and poses, x forward, z up, m (NCLT's lie
+  /// below the sensor). Programs take it from `[sensor]`.
+  double originX = 0, originY = 0, originZ = 0;
+  double spacing = 0.5;  ///< distance between scans, m (`spacing_m`)
+  double speed = 5;      ///< m/s (`speed_m_s`)
   /// Of the drive from the middle of the road, m, + left (`lane_offset_m`).
   double laneOffset = -1.5;
   /// Standard deviation as a share of each component of the motion (`odometry_noise`).
