@@ -62,7 +62,8 @@ echo "4/4 Evaluating and drawing"
 evaluate_runs "$out/runs" "$out/another_day.tum"
 "$bin/pole-eval" trajectory --quiet --truth "$out/another_day.tum" \
   --estimate "$out/runs/run_00.tum" --map "$out/map.polemap" \
-  --scene "$out/demo.3Dscene" --png "$out/demo.png" >/dev/null
+  --scene "$out/demo.3Dscene" --png "$out/demo.png" \
+  --title "The demo street on another day, run 1 of 10" >/dev/null
 
 echo
 printf 'Map: precision %.2f, recall %.2f, F1 %.2f (one to one within 1 m)\n\n' \

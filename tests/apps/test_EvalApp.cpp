@@ -135,6 +135,20 @@ TEST_F(EvalApp, DrawsSceneAndPicture) {
   EXPECT_GT(fs::file_size(folder / "run.3Dscene"), 1000u);
 }
 
+TEST_F(EvalApp, ThePictureIsNamedAfterTheEstimateUnlessTold) {
+  writeTruth(4);
+  const auto draw = [&](const std::string& file, const std::vector<std::string>& title) {
+    std::vector<std::string> line = {"trajectory",    "--truth", at("truth.tum"), "--estimate",
+                                     at("truth.tum"), "--png",   at(file)};
+    line.insert(line.end(), title.begin(), title.end());
+    EXPECT_EQ(run(line).code, 0);
+    return readText(folder / file);
+  };
+  const std::string named = draw("a.png", {});
+  EXPECT_EQ(named, draw("b.png", {"--title", "truth.tum"}));
+  EXPECT_NE(named, draw("c.png", {"--title", "Another street"}));
+}
+
 TEST_F(EvalApp, RefusesMissingAndEmptyFiles) {
   writePoles();
   expectFailure(run({"map", "--truth", at("none.csv"), "--map", at("map.csv")}), {"none.csv"});

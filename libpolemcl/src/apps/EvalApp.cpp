@@ -83,6 +83,7 @@ void declareTrajectory(CLI::App& cli, EvalTrajectoryOptions& options) {
   cli.add_option("--map", options.map, "Pole map to draw under the trajectories");
   cli.add_option("--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
   cli.add_option("--png", options.png, "Write a picture of map, truth and estimate");
+  cli.add_option("--title", options.title, "Title of the picture (default: the estimate's file)");
 }
 
 std::vector<Eigen::Vector2d> readPoles(const std::filesystem::path& file) {
@@ -142,7 +143,7 @@ TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
   const auto errors = comparing(options.estimate, options.truth, [&] {
     return evaluateTrajectory(view.truth, view.estimate, options.sampling);
   });
-  view.title = options.estimate.filename().string();
+  view.title = options.title.empty() ? options.estimate.filename().string() : options.title;
   draw(options, view);
   if (options.json) writeJson(*options.json, json(options, errors));
   return errors;

@@ -75,7 +75,6 @@ void drawErrorStrip(Canvas& canvas, const Rect& frame, const ErrorSeries& series
   style.yTitle = series.title;
   style.xTitle = withDistances ? "distance driven (m)" : "";
   style.xLabels = withDistances;
-  style.yTicks = frame.height > 160 ? 6 : 4;
   drawGrid(canvas, axes, style);
   drawSeries(canvas, axes, series, color);
   drawNote(canvas, axes, series);

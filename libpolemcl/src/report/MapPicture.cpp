@@ -1,6 +1,7 @@
 #include <polemcl/io/TextFile.h>
 #include <polemcl/report/ErrorStrip.h>
 #include <polemcl/report/MapPicture.h>
+#include <polemcl/report/PictureLayout.h>
 #include <polemcl/report/PlotAxes.h>
 
 #include <algorithm>
@@ -17,29 +18,6 @@ constexpr Color estimateColor = rgb(0x0072b2);
 constexpr Color headingColor = rgb(0x009e73);
 constexpr Color ink = rgb(0x1f2328);
 constexpr Color white = rgb(0xffffff);
-constexpr double left = 92, right = 32, header = 96, footer = 62;
-constexpr double stripGap = 32, axisGap = 78;
-
-/// Where the parts go; strips have no height when there are no errors to show.
-struct Layout {
-  Rect map, position, heading;
-};
-
-Layout makeLayout(int width, int height, const Bounds& bounds, bool withErrors) {
-  const double plotWidth = width - left - right, plotHeight = height - header - footer;
-  Layout layout;
-  layout.map = {left, header, plotWidth, plotHeight};
-  if (!withErrors) return layout;
-  // A long, narrow street leaves height to the strips; a square town takes it.
-  const double wanted =
-      (bounds.yMax - bounds.yMin) / std::max(bounds.xMax - bounds.xMin, 1.0) * plotWidth * 1.15;
-  const double free = plotHeight - axisGap - stripGap;
-  layout.map.height = std::clamp(wanted, 0.45 * free, 0.70 * free);
-  const double strip = 0.5 * (free - layout.map.height);
-  layout.position = {left, layout.map.bottom() + axisGap, plotWidth, strip};
-  layout.heading = {left, layout.position.bottom() + stripGap, plotWidth, strip};
-  return layout;
-}
 
 std::optional<TrajectoryErrors> compared(const MapView& view) {
   if (view.truth.size() < 2 || view.estimate.empty()) return std::nullopt;
@@ -109,7 +87,7 @@ void drawMap(Canvas& canvas, const Rect& frame, const Bounds& bounds, const MapV
   GridStyle style;
   style.xTitle = "x (m)";
   style.yTitle = "y (m)";
-  style.yTicks = std::max(3, static_cast<int>(12 * frame.height / frame.width));
+  style.equalSteps = true;
   drawGrid(canvas, axes, style);
   canvas.clip(frame);
   // Thinner on large maps, so that both sides of a street stay apart.
@@ -170,7 +148,7 @@ std::string summary(const MapView& view, const std::optional<TrajectoryErrors>& 
          io::fixed(errors->angMeanDeg, 3) + "°, RMSE " + io::fixed(errors->angRmseDeg, 3) + "°";
 }
 
-void drawStrips(Canvas& canvas, const Layout& layout, const MapView& view,
+void drawStrips(Canvas& canvas, const PictureLayout& layout, const MapView& view,
                 const TrajectoryErrors& errors) {
   ErrorSeries position{"position", "position (cm)",
                        " cm",      distanceDriven(view.truth, errors.errors),
@@ -192,11 +170,12 @@ void drawMapPng(const MapView& view, const std::filesystem::path& file, int widt
                 std::to_string(height) + " px; at least 1200 x 750 are needed");
   const Bounds bounds = boundsOf(view);
   const std::optional<TrajectoryErrors> errors = compared(view);
-  const Layout layout = makeLayout(width, height, bounds, errors.has_value());
+  const PictureLayout layout = layoutPicture(width, height, bounds, errors.has_value());
   Canvas canvas(width, height);
-  const double legend = drawLegend(canvas, width - right, 42, view);
+  const double left = layout.map.x, right = width - 32;
+  const double legend = drawLegend(canvas, right, 42, view);
   drawFitting(canvas, view.title, {left, 44}, legend - left, {26, ink, Align::left, true});
-  drawFitting(canvas, summary(view, errors), {left, 76}, layout.map.width, {17, rgb(0x5b6470)});
+  drawFitting(canvas, summary(view, errors), {left, 76}, right - left, {17, rgb(0x5b6470)});
   drawMap(canvas, layout.map, bounds, view);
   if (errors) drawStrips(canvas, layout, view, *errors);
   canvas.writePng(file);

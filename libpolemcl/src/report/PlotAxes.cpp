@@ -52,8 +52,11 @@ PlotAxes equalScales(const Rect& frame, const Range& x, const Range& y, double m
 void drawGrid(Canvas& canvas, const PlotAxes& axes, const GridStyle& style) {
   const Rect& frame = axes.frame;
   canvas.fill(frame, panel);
-  const double xStep = tickStep(axes.x.span(), style.xTicks);
-  const double yStep = tickStep(axes.y.span(), style.yTicks);
+  const auto step = [](const Range& range, double pixels) {
+    return tickStep(range.span(), std::max(3, static_cast<int>(pixels)));
+  };
+  double xStep = step(axes.x, frame.width / 80), yStep = step(axes.y, frame.height / 60);
+  if (style.equalSteps) xStep = yStep = std::max(xStep, yStep);
   for (double value : ticks(axes.x, xStep)) {
     const double x = axes.toPixel(value, axes.y.low).x();
     canvas.line({{x, frame.y}, {x, frame.bottom()}}, gridLine, 1);

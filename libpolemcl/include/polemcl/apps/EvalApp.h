@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace polemcl::apps {
 
@@ -28,6 +29,7 @@ struct EvalTrajectoryOptions {
   std::optional<std::filesystem::path> map;    ///< drawn under the trajectories
   std::optional<std::filesystem::path> scene;  ///< `.3Dscene` to write
   std::optional<std::filesystem::path> png;    ///< picture to write, drawn without a display
+  std::string title;  ///< of the picture; empty: the name of the estimate's file
 };
 /// \brief Evaluates in 2D and writes what was asked for: JSON (keys `pos_mean pos_rmse lat_mean
 /// lon_mean ang_mean_deg ang_rmse_deg pos_max poses` and more), scene, picture.

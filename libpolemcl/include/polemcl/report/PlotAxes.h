@@ -42,7 +42,7 @@ PlotAxes equalScales(const Rect& frame, const Range& x, const Range& y, double m
 struct GridStyle {
   std::string xTitle, yTitle;
   bool xLabels = true;
-  int xTicks = 12, yTicks = 8;  ///< at most
+  bool equalSteps = false;  ///< one distance of grid lines for both axes
 };
 /// \brief Background, grid lines, tick labels and titles of the axes.
 void drawGrid(Canvas& canvas, const PlotAxes& axes, const GridStyle& style);
