@@ -79,8 +79,8 @@ TEST_F(MapApp, ScansAndStoredPolesGiveTheSameMap) {
 }
 
 TEST_F(MapApp, SeveralDrivesMakeOneMap) {
-  drive("one", 6);
-  drive("two", 6, 500, 30);  // farther on, another day
+  drive("one", 10);
+  drive("two", 10, 500, 30);  // farther on, another day
   ASSERT_EQ(run({"one"}).code, 0);
   const auto first = io::readPoleMap(folder / "street.polemap").poles.size();
   const auto outcome = run({"one", "two"});
@@ -88,7 +88,7 @@ TEST_F(MapApp, SeveralDrivesMakeOneMap) {
   const auto both = io::readPoleMap(folder / "street.polemap");
   expectTruePoles(both.poles);
   EXPECT_GT(both.poles.size(), first);
-  EXPECT_NE(outcome.out.find("from 12 scans over 10.0 m"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("from 20 scans over 18.0 m"), std::string::npos) << outcome.out;
   EXPECT_EQ(both.info.at("inputs"), "one.rawlog two.rawlog");
 }
 
@@ -107,9 +107,9 @@ TEST_F(MapApp, TruthIsInterpolatedInTime) {
 }
 
 TEST_F(MapApp, ScansWithoutTruthAreCountedAndLeftOut) {
-  drive("in", 8);
+  drive("in", 13);
   auto truth = io::readTum(folder / "in.tum");
-  truth.resize(5);
+  truth.resize(10);
   io::writeTum(folder / "in.tum", truth);
   const auto outcome = run({"in"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
