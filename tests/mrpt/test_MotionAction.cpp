@@ -2,6 +2,7 @@
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/poses/CPoseRandomSampler.h>
 #include <mrpt/serialization/CArchive.h>
 #include <polemcl/mrpt/MotionAction.h>
 
@@ -75,17 +76,18 @@ TEST(MotionAction, TakesNoCovarianceAtAll) {
   EXPECT_NO_THROW(makeMotionAction(motion, extra(0, 0)));
 }
 
-TEST(MotionAction, SamplesOfASingularCovarianceAreFinite) {
+TEST(MotionAction, SamplesOfSingularCovariancesAreFinite) {
   // Rank one: eigenvalues that rounding may push below zero, whose roots are not numbers.
-  io::PlanarMotion motion;
-  const Eigen::Vector3d direction(0.3, 0.1, 0.07);
-  motion.covariance = direction * direction.transpose();
-  const auto action = makeMotionAction(motion, extra(0, 0));
-  const auto movement = action->getBestMovementEstimation();
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 1; i <= 500; ++i) {
+    io::PlanarMotion motion;
+    const Eigen::Vector3d direction(std::sin(i), std::cos(2 * i), 0.1 * std::sin(3 * i));
+    motion.covariance = direction * direction.transpose();
+    const auto action = makeMotionAction(motion, extra(0, 0));
+    mrpt::poses::CPoseRandomSampler sampler;
+    sampler.setPosePDF(*action->getBestMovementEstimation()->poseChange);
     mrpt::poses::CPose2D sample;
-    movement->poseChange->drawSingleSample(sample);
-    ASSERT_TRUE(std::isfinite(sample.x()) && std::isfinite(sample.phi()));
+    sampler.drawSample(sample);
+    ASSERT_TRUE(std::isfinite(sample.x()) && std::isfinite(sample.phi())) << i;
   }
 }
 

@@ -251,3 +251,27 @@ TEST(PoleLocalizerMrpt, TemperingSettlesSooner) {
   EXPECT_LT(tempered, 0.06);
   EXPECT_GT(atOnce, 1.4 * tempered);
 }
+
+TEST(PoleLocalizerMrpt, TemperingKeepsThePosterior) {
+  const PoleStreet street = makeStreet({});
+  const auto posterior = [&](double tempering) {
+    FilterOptions options;
+    options.particles = 60000;
+    options.tempering = tempering;
+    PoleLocalizer localizer(street.map, options, 1);
+    StartOptions start;
+    start.pose = compose(street.truth[50], {0.1, -0.1, 0.002});
+    start.radius = 0.4;
+    start.heading = 0.02;
+    localizer.start(start);
+    const PoseWithCovariance result = localizer.step(street.frames[50]);
+    EXPECT_EQ(localizer.report().temperingStages > 0, tempering > 0);
+    return result;
+  };
+  const PoseWithCovariance atOnce = posterior(0), tempered = posterior(0.2);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(tempered.covariance(i, i) / atOnce.covariance(i, i), 1, 0.08) << i;
+  const double sigma = std::sqrt(atOnce.covariance(0, 0));
+  EXPECT_NEAR(tempered.mean.x, atOnce.mean.x, 0.1 * sigma);
+  EXPECT_NEAR(tempered.mean.y, atOnce.mean.y, 0.1 * sigma);
+}
