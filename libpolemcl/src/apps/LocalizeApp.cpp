@@ -13,67 +13,118 @@
 #include <iostream>
 
 namespace polemcl::apps {
+
 namespace {
 
-constexpr double maxTruthGap = 2.0;  ///< s, as in evaluateTrajectory()
+constexpr double maxTruthGap = 2.0;  // s, as in evaluateTrajectory()
 
-Settings settingsOf(const LocalizeJob& job) {
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+Settings effectiveSettings(const LocalizeJob& job) {
   Settings settings = loadSettings(job.config.string());
-  if (job.particles) settings.filter.particles = *job.particles;
   if (job.runs) settings.runs.runs = *job.runs;
   if (job.seed) settings.runs.seed = *job.seed;
-  settings.filter.validate();
+  if (job.particles) settings.filter.particles = *job.particles;
   settings.runs.validate();
+  settings.filter.validate();
   return settings;
 }
 
-/// What the filter needs of the drive, or an error that says what is missing.
-void requireUsable(const LocalizeJob& job, const PoleSequence& drive) {
-  const std::string file = job.input.string();
-  const auto& counts = drive.counts;
-  if (drive.frames.empty()) throw Error(file + ": no scan and no poles in it");
-  if (counts.unknownMotions > 0)
-    throw Error(file + ": " + std::to_string(counts.unknownMotions) + " of " +
-                std::to_string(counts.scans) +
-                " scans come without odometry, which localization needs; import again with "
-                "odometry.txt in the folder or with --odometry-noise");
-  if (counts.emptyScans == counts.scans)
-    throw Error(file + ": no usable scan, " + std::to_string(counts.emptyScans) +
-                " without a valid point");
-  if (counts.poles == 0)
-    throw Error(file + ": no pole seen in " + std::to_string(counts.scans) +
-                " scans; do [sensor] and [extraction] fit the data?");
+std::shared_ptr<const CPoleMap> loadMap(const std::filesystem::path& file,
+                                        const LikelihoodOptions& likelihood) {
+  auto map = std::make_shared<CPoleMap>();
+  map->likelihoodOptions = likelihood;  // first: loading prepares the index for its gate
+  map->loadFromPoleMapFile(file.string());
+  if (map->poles().empty())
+    throw Error(file.string() + ": the map has no poles: nothing can be localized in it");
+  return map;
 }
 
-/// The start of the configuration, else the first true pose.
-StartOptions startOf(const LocalizeJob& job, const StartOptions& configured,
-                     const std::vector<StampedPose2D>& truth, double time) {
+PoleSequence readPoles(const LocalizeJob& job, const Settings& settings) {
+  SequenceOptions options;
+  options.extraction = settings.poleExtraction();
+  options.motion = settings.motion;
+  options.allowTruncated = job.allowTruncated;
+  Progress progress("read", 0, job.quiet);
+  return readPoleSequence(job.input.string(), options,
+                          [&](std::size_t done) { progress.update(done); });
+}
+
+void requireUsable(const std::string& input, const PoleSequence& sequence) {
+  const auto& counts = sequence.counts;
+  if (sequence.frames.empty())
+    throw Error(input + ": holds no scan and no poles; import or extract them first");
+  for (std::size_t i = 1; i < sequence.frames.size(); ++i)
+    if (!sequence.frames[i].motion)
+      throw Error(input + ": no odometry before scan " + std::to_string(i) + " (" +
+                  std::to_string(counts.unknownMotions) + " of " + std::to_string(counts.scans) +
+                  " scans lack it): the filter needs it; import with an odometry file or with "
+                  "--odometry-noise");
+  if (counts.emptyScans == counts.scans)
+    throw Error(input + ": no usable scan: none of " + std::to_string(counts.scans) +
+                " has a valid point");
+  if (counts.poles == 0)
+    throw Error(input + ": no pole in any of " + std::to_string(counts.scans) + " scans (" +
+                std::to_string(counts.points) + " valid points, " +
+                std::to_string(counts.emptyScans) +
+                " empty scans): check [sensor] and [extraction]");
+}
+
+/// Less than half of the scans covered is an error before the filter runs, not after.
+void requireCoverage(const std::filesystem::path& file, const std::vector<StampedPose2D>& truth,
+                     const std::vector<PoleFrame>& frames) {
+  std::size_t covered = 0;
+  for (const auto& frame : frames) covered += poseAt(truth, frame.time, maxTruthGap).has_value();
+  if (2 * covered < frames.size())
+    throw Error(file.string() + ": the truth covers " + std::to_string(covered) + " of " +
+                std::to_string(frames.size()) + " scans, at least half are needed: does it " +
+                "belong to this rawlog?");
+}
+
+StartOptions startFrom(const StartOptions& configured, const LocalizeJob& job,
+                       const std::vector<StampedPose2D>& truth,
+                       const std::vector<PoleFrame>& frames) {
   StartOptions start = configured;
   if (start.pose) return start;
   if (!job.truth)
-    throw Error(job.config.string() +
-                ": no start: set [start] pose = x y yaw_deg, or give --truth");
-  start.pose = poseAt(truth, time, maxTruthGap);
+    throw Error("no start pose: set position_m and yaw_deg in [start] of " + job.config.string() +
+                ", or give --truth");
+  start.pose = poseAt(truth, frames.front().time, maxTruthGap);
   if (!start.pose)
-    throw Error(job.truth->string() + ": has no pose at the time of the first scan, " +
-                std::to_string(time) + " s; set [start] pose = x y yaw_deg");
+    throw Error(job.truth->string() + ": the truth does not reach the first scan, at " +
+                std::to_string(frames.front().time) + " s: set position_m and yaw_deg in [start]");
   return start;
 }
 
-void write(const LocalizeFacts& facts, const LocalizeResult& result, const Settings& settings,
-           double extractionSeconds) {
-  RunFolder folder(facts.job.output);
-  nlohmann::ordered_json timings;
-  timings["extraction_s"] = extractionSeconds;
+std::vector<FilterRun> runAll(const LocalizeFacts& facts,
+                              const std::shared_ptr<const CPoleMap>& map,
+                              const std::vector<PoleFrame>& frames) {
+  Progress progress("localize", frames.size() * facts.runs.runs, facts.job.quiet);
+  return runFilters(map, frames, facts.filter, facts.start, facts.runs,
+                    [&](std::size_t done) { progress.update(done); });
+}
+
+void writeTimings(const std::filesystem::path& file, double reading,
+                  const std::vector<FilterRun>& runs) {
+  nlohmann::ordered_json json;
+  json["read_and_extract_s"] = reading;
+  for (const auto& run : runs) json["filter_s"].push_back(run.seconds);
+  writeJson(file, json);
+}
+
+void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings& settings,
+                  const LocalizeResult& result, double reading) {
   for (std::size_t i = 0; i < result.runs.size(); ++i) {
-    const FilterRun& run = result.runs[i];
-    io::writeTum(folder.staged(runName(i) + ".tum"), run.trajectory);
+    io::writeTum(folder.staged(runName(i) + ".tum"), result.runs[i].trajectory);
     if (!result.errors.empty())
-      writeErrorsCsv(folder.staged(runName(i) + "_errors.csv"), run, result.errors[i]);
-    timings["filter_s"].push_back(run.seconds);
+      writeErrorsCsv(folder.staged(runName(i) + "_errors.csv"), result.runs[i], result.errors[i]);
   }
   saveSettings(settings, folder.staged("config.ini").string());
-  writeJson(folder.staged("timings.json"), timings);
+  writeTimings(folder.staged("timings.json"), reading, result.runs);
   writeJson(folder.staged("summary.json"), makeSummary(facts, result));
   folder.commit();
 }
@@ -81,62 +132,49 @@ void write(const LocalizeFacts& facts, const LocalizeResult& result, const Setti
 }  // namespace
 
 LocalizeResult localize(const LocalizeJob& job) {
-  LocalizeFacts facts;
-  facts.job = job;
-  Settings settings = settingsOf(job);
+  const Settings settings = effectiveSettings(job);
+  const auto map = loadMap(job.map, settings.likelihood);
   std::vector<StampedPose2D> truth;
   if (job.truth) truth = io::planar(io::readTum(*job.truth));
-  auto map = std::make_shared<CPoleMap>();
-  map->likelihoodOptions = settings.likelihood;  // first: loading prepares the index for its gate
-  map->loadFromPoleMapFile(job.map.string());
-  if (map->isEmpty()) throw Error(job.map.string() + ": the map has no poles");
+  RunFolder folder(job.output);  // before the work, so that a folder that cannot be is known now
 
-  const auto begin = std::chrono::steady_clock::now();
-  const SequenceOptions options{settings.poleExtraction(), settings.motion, job.allowTruncated};
-  PoleSequence drive;
-  {
-    Progress progress("extract", 0, job.quiet);
-    drive = readPoleSequence(job.input.string(), options,
-                             [&](std::size_t done) { progress.update(done); });
-  }
-  requireUsable(job, drive);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-
-  facts.start = settings.start = startOf(job, settings.start, truth, drive.frames.front().time);
-  facts.filter = settings.filter;
-  facts.runs = settings.runs;
-  facts.counts = drive.counts;
-  facts.mapPoles = map->poles().size();
+  const auto begin = Clock::now();
+  const PoleSequence sequence = readPoles(job, settings);
+  const double reading = secondsSince(begin);
+  requireUsable(job.input.string(), sequence);
+  if (job.truth) requireCoverage(*job.truth, truth, sequence.frames);
+  const StartOptions start = startFrom(settings.start, job, truth, sequence.frames);
+  const LocalizeFacts facts{job,           settings.filter, start,
+                            settings.runs, sequence.counts, map->poles().size()};
   LocalizeResult result;
-  {
-    const std::size_t steps = drive.frames.size() * static_cast<std::size_t>(settings.runs.runs);
-    Progress progress("localize", steps, job.quiet);
-    result.runs = runFilters(map, drive.frames, settings.filter, settings.start, settings.runs,
-                             [&](std::size_t done) { progress.update(done); });
-  }
+  result.runs = runAll(facts, map, sequence.frames);
   if (job.truth)
-    for (const FilterRun& run : result.runs)
-      result.errors.push_back(evaluateTrajectory(truth, run.trajectory, Sampling::perPose));
-  write(facts, result, settings, seconds);
-  if (!job.quiet) printTable(std::cout, facts, result);
+    for (const auto& run : result.runs)
+      result.errors.push_back(
+          evaluateTrajectory(truth, run.trajectory, Sampling::perPose, maxTruthGap));
+  writeResults(folder, facts, settings, result, reading);
+  if (!job.quiet) {
+    printTable(std::cout, facts, result);
+    std::cout << "results in " << job.output.string() << '\n';
+  }
   return result;
 }
 
 int localizeMain(int argc, const char* const* argv) {
-  CommandLine line("pole-localize", "Plays a rawlog against a pole map.");
+  CommandLine line("pole-localize", "Localizes a vehicle in a pole map, from a rawlog.");
   LocalizeJob job;
   auto& cli = line.cli();
-  cli.add_option("--config", job.config, "INI file, see config/")->required();
-  cli.add_option("--input", job.input, "Rawlog of scans or poles, with odometry")->required();
-  cli.add_option("--map", job.map, "Pole map, .polemap")->required();
+  cli.add_option("--config", job.config, "Settings (.ini)")->required();
+  cli.add_option("--input", job.input, "Rawlog of scans or of poles, with odometry")->required();
+  cli.add_option("--map", job.map, "Pole map (.polemap)")->required();
   cli.add_option("--output", job.output, "Folder for the results")->required();
-  cli.add_option("--truth", job.truth, "True robot poses, TUM: start and errors");
-  cli.add_option("--runs", job.runs, "How often to localize; run i has seed + i");
-  cli.add_option("--seed", job.seed, "Of the first run");
-  cli.add_option("--particles", job.particles, "Instead of the configuration's");
+  cli.add_option("--truth", job.truth, "True robot poses (.tum): errors, and the start");
+  cli.add_option("--runs", job.runs, "Runs, each with its own seed")->check(CLI::Range(1, 10000));
+  cli.add_option("--seed", job.seed, "Seed of the first run; run i uses seed + i");
+  cli.add_option("--particles", job.particles, "Particles of the filter")
+      ->check(CLI::Range(1, 1000000));
   cli.add_flag("--allow-truncated", job.allowTruncated,
-               "Use the readable part of a rawlog that was cut short");
+               "Use the readable part of a rawlog that ends too early");
   return line.run(argc, argv, [&] {
     job.quiet = line.quiet();
     localize(job);

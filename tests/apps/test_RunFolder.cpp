@@ -1,0 +1,78 @@
+#include <polemcl/apps/RunFolder.h>
+#include <polemcl/core/Types.h>
+
+#include "TempFolder.h"
+
+using polemcl::apps::RunFolder;
+using namespace testing_apps;
+
+namespace {
+using Names = std::vector<std::string>;
+}
+
+TEST(RunFolder, SwapsOldRunsForNewOnesAndKeepsTheRest) {
+  const TempFolder folder;
+  for (const char* name : {"run_00.tum", "run_07_errors.csv", "summary.json", "config.ini", "mine"})
+    writeText(folder / name, "old");
+  {
+    RunFolder results(folder.path());
+    for (const char* name : {"run_00.tum", "config.ini", "summary.json"})
+      writeText(results.staged(name), "new");
+    EXPECT_EQ(readText(folder / "run_00.tum"), "old");
+    EXPECT_EQ(readText(folder / "run_07_errors.csv"), "old");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder.path()), Names({"config.ini", "mine", "run_00.tum", "summary.json"}));
+  EXPECT_EQ(readText(folder / "run_00.tum"), "new");
+  EXPECT_EQ(readText(folder / "config.ini"), "new");
+  EXPECT_EQ(readText(folder / "summary.json"), "new");
+  EXPECT_EQ(readText(folder / "mine"), "old");
+}
+
+TEST(RunFolder, WithoutCommitTheOldStays) {
+  const TempFolder folder;
+  writeText(folder / "run_00.tum", "old");
+  {
+    RunFolder results(folder.path());
+    writeText(results.staged("run_00.tum"), "half");
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_00.tum"}));
+  EXPECT_EQ(readText(folder / "run_00.tum"), "old");
+}
+
+TEST(RunFolder, ANewFolderIsGoneAgainWithoutCommit) {
+  const TempFolder folder;
+  {
+    RunFolder results(folder / "new");
+    writeText(results.staged("run_00.tum"), "half");
+  }
+  EXPECT_EQ(names(folder.path()), Names());
+}
+
+TEST(RunFolder, CreatesFoldersAbove) {
+  const TempFolder folder;
+  {
+    RunFolder results(folder / "a/b");
+    writeText(results.staged("summary.json"), "new");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder / "a/b"), Names({"summary.json"}));
+}
+
+TEST(RunFolder, KeepsFoldersThatOnlySoundLikeRuns) {
+  const TempFolder folder;
+  fs::create_directory(folder / "run_scripts");
+  {
+    RunFolder results(folder.path());
+    writeText(results.staged("summary.json"), "new");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_scripts", "summary.json"}));
+}
+
+TEST(RunFolder, RefusesAFileInItsPlace) {
+  const TempFolder folder;
+  writeText(folder / "file", "");
+  EXPECT_THROW(RunFolder(folder / "file"), polemcl::Error);
+  EXPECT_THROW(RunFolder(folder / "file/below"), polemcl::Error);
+}
