@@ -11,10 +11,14 @@ namespace testing_apps {
 
 class StreetTest : public testing::Test {
  protected:
-  static std::string config() {
-    return (fs::path(POLEMCL_SOURCE_DIR) / "config" / "hdl32e.ini").string();
+  StreetTest() {
+    // Its own, so that tuning config/ changes no test here.
+    writeText(configFolder / "street.ini",
+              "[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\nsection_length_m = 1.5\n"
+              "min_count = 2\n");
   }
-  static polemcl::apps::Settings settings() { return polemcl::apps::loadSettings(config()); }
+  std::string config() const { return (configFolder / "street.ini").string(); }
+  polemcl::apps::Settings settings() const { return polemcl::apps::loadSettings(config()); }
   std::string at(const std::string& name) const { return (folder / name).string(); }
 
   /// Imports `folder/NAME` as `folder/NAME.rawlog` and `folder/NAME.tum`.
@@ -36,6 +40,9 @@ class StreetTest : public testing::Test {
   }
 
   TempFolder folder;
+
+ private:
+  TempFolder configFolder;
 };
 
 }  // namespace testing_apps

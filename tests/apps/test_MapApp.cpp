@@ -20,8 +20,9 @@ class MapApp : public StreetTest {
     import(name);
   }
   Outcome run(const std::vector<std::string>& inputs, const std::vector<std::string>& more = {},
-              const std::string& ini = config()) {
-    std::vector<std::string> arguments{"--config", ini, "--output", at("street.polemap")};
+              const std::string& ini = "") {
+    std::vector<std::string> arguments{"--config", ini.empty() ? config() : ini, "--output",
+                                       at("street.polemap")};
     arguments.push_back("--input");
     for (const auto& name : inputs) arguments.push_back(at(name + ".rawlog"));
     arguments.push_back("--truth");
