@@ -68,6 +68,20 @@ TEST(Drive, anotherDayDrivesAnotherLineOnTheSameRoad) {
   EXPECT_LT(most, 1.0);
 }
 
+TEST(Drive, reverseComesFromTheFarEndInTheOtherLane) {
+  SimulationOptions options;
+  const World world = makeWorld(options.world);
+  const Drive there = makeDrive(world, options);
+  options.reverse = true;
+  const Drive back = makeDrive(world, options);
+  const Pose2D first = planar(back.T_map_sensor.front()), last = planar(there.T_map_sensor.back());
+  const Pose2D seen = relative(last, first);  // about 3 m to the left, looking the other way
+  EXPECT_NEAR(seen.x, 0, 1.5);
+  EXPECT_NEAR(seen.y, 3, 0.8);
+  EXPECT_GT(std::abs(seen.yaw), 3.0);
+  EXPECT_GT(back.odometry[10].dx, 0.4) << "it drives forwards";
+}
+
 TEST(Drive, stopsAfterTheGivenNumberOfScans) {
   SimulationOptions options;
   options.scans = 7;

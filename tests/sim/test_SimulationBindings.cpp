@@ -9,6 +9,7 @@ TEST(SimulationBindings, whatIsWrittenReadsBackTheSame) {
   written.spacing = 0.31;
   written.laneOffset = 1.7;
   written.motionDistortion = true;
+  written.reverse = true;
   written.scans = 12;
   written.world.seed = 987654321;
   written.world.day = 4;
@@ -24,6 +25,7 @@ TEST(SimulationBindings, whatIsWrittenReadsBackTheSame) {
   EXPECT_EQ(read.spacing, written.spacing);
   EXPECT_EQ(read.laneOffset, written.laneOffset);
   EXPECT_TRUE(read.motionDistortion);
+  EXPECT_TRUE(read.reverse);
   EXPECT_EQ(read.scans, 12);
   EXPECT_EQ(read.world.seed, written.world.seed);
   EXPECT_EQ(read.world.day, 4);

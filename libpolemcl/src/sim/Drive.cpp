@@ -32,7 +32,9 @@ struct Sways {
 Eigen::Isometry3d sensorAt(const World& world, const SimulationOptions& options, const Sways& sways,
                            double s) {
   const auto place = [&](double at) {
-    return world.street().at(at, options.laneOffset + sways.lane.at(at));
+    const double lateral = options.laneOffset + sways.lane.at(at);
+    return options.reverse ? world.street().at(world.street().length() - at, -lateral)
+                           : world.street().at(at, lateral);
   };
   const Pose2D here = place(s), ahead = place(s + 1.0), back = place(s - 1.0);
   const double yaw = std::atan2(ahead.y - back.y, ahead.x - back.x);

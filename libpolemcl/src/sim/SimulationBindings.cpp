@@ -34,6 +34,7 @@ void bind(Binder& b, SimulationOptions& o) {
            "of the drive from the middle of the road, + left");
   b.number("odometry_noise", o.odometryNoise, limits::odometryNoise, "",
            "standard deviation as a share of each component of the motion");
+  b.flag("reverse", o.reverse, "true: from the far end of the street, in the other lane");
   b.flag("motion_distortion", o.motionDistortion, "true: the sensor moves while it turns");
   b.integer("scans", o.scans, limits::scans, "", "at most so many; 0: to the end of the road");
   bind(b, o.world);

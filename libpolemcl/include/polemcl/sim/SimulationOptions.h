@@ -46,6 +46,7 @@ struct SimulationOptions {
   double laneOffset = -1.5;
   /// Standard deviation as a share of each component of the motion (`odometry_noise`).
   double odometryNoise = 0.02;
+  bool reverse = false;  ///< from the far end, in the other lane: poles are seen from behind
   bool motionDistortion = false;  ///< the sensor moves while it turns (`motion_distortion`)
   int scans = 0;                  ///< at most so many scans; 0: to the end of the road
   void validate() const;          ///< \throws Error
