@@ -39,6 +39,29 @@ TEST(PoleExtraction, SensorPoseDoesNotChangeWhatTheSensorSees) {
   EXPECT_NEAR(there->sensorPose.yaw(), 0.7, 1e-12);
 }
 
+// The points that the poles come from, to be drawn or turned: extracting them again gives the
+// poles.
+TEST(PoleExtraction, GivesThePointsInTheLidarFrame) {
+  auto options = hdl32(1.257);
+  options.sensor.upsideDown = true;
+  options.sensor.originZ = 0.957;
+  const TestCloud cloud =
+      castScan(options.sensor, isometry(CPose3D(0, 0, 1.257, 0, 0, 0)), testPoles());
+  const CPose3D bodyInRobot(0, 0, 0.3, 0, 0, M_PI);
+  Eigen::Isometry3d T_body_lidar = Eigen::Isometry3d::Identity();
+  T_body_lidar.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  T_body_lidar.translation().z() = -0.957;
+  PoleExtraction extraction(options);
+  const auto points = extraction.lidarPoints(*observationOf(cloud, bodyInRobot, T_body_lidar));
+  ASSERT_EQ(points.size(), cloud.x.size());
+  for (std::size_t i = 0; i < points.size(); i += 97) {
+    EXPECT_NEAR(points.x[i], cloud.x[i], 1e-5);
+    EXPECT_NEAR(points.y[i], cloud.y[i], 1e-5);
+    EXPECT_NEAR(points.z[i], cloud.z[i], 1e-5);
+  }
+  EXPECT_THROW(extraction.lidarPoints(CObservationOdometry()), Error);
+}
+
 TEST(PoleExtraction, FindsPolesFromAPlaceOnTheRobot) {
   const auto options = hdl32(1.8);
   const CPose3D pose(0.8, -0.4, 1.8, 0.5, 0, 0);

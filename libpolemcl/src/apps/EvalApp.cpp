@@ -9,25 +9,33 @@
 #include <polemcl/report/MapScene.h>
 
 #include <iostream>
+#include <memory>
+#include <sstream>
+
+#include "EvalCommands.h"
 
 namespace polemcl::apps {
 namespace {
 
-void print(const MapScore& score) {
-  std::cout << "map poles " << score.mapPoles << ", truth poles " << score.truthPoles
-            << ", matches " << score.matches << '\n'
-            << "precision " << io::fixed(score.precision, 4) << "  recall "
-            << io::fixed(score.recall, 4) << "  F1 " << io::fixed(score.f1, 4) << '\n';
+std::string text(const MapScore& score) {
+  std::ostringstream out;
+  out << "map poles " << score.mapPoles << ", truth poles " << score.truthPoles << ", matches "
+      << score.matches << '\n'
+      << "precision " << io::fixed(score.precision, 4) << "  recall " << io::fixed(score.recall, 4)
+      << "  F1 " << io::fixed(score.f1, 4) << '\n';
+  return out.str();
 }
 
-void print(const TrajectoryErrors& errors) {
-  std::cout << "poses    " << errors.poses << " compared, " << errors.unmatched << " unmatched\n"
-            << "position mean " << io::fixed(errors.posMean, 4) << "  RMSE "
-            << io::fixed(errors.posRmse, 4) << "  max " << io::fixed(errors.posMax, 4) << " m\n"
-            << "lateral  mean " << io::fixed(errors.latMean, 4) << "  longitudinal mean "
-            << io::fixed(errors.lonMean, 4) << " m\n"
-            << "heading  mean " << io::fixed(errors.angMeanDeg, 4) << "  RMSE "
-            << io::fixed(errors.angRmseDeg, 4) << " deg\n";
+std::string text(const TrajectoryErrors& errors) {
+  std::ostringstream out;
+  out << "poses    " << errors.poses << " compared, " << errors.unmatched << " unmatched\n"
+      << "position mean " << io::fixed(errors.posMean, 4) << "  RMSE "
+      << io::fixed(errors.posRmse, 4) << "  max " << io::fixed(errors.posMax, 4) << " m\n"
+      << "lateral  mean " << io::fixed(errors.latMean, 4) << "  longitudinal mean "
+      << io::fixed(errors.lonMean, 4) << " m\n"
+      << "heading  mean " << io::fixed(errors.angMeanDeg, 4) << "  RMSE "
+      << io::fixed(errors.angRmseDeg, 4) << " deg\n";
+  return out.str();
 }
 
 nlohmann::ordered_json json(const EvalMapOptions& options, const MapScore& score) {
@@ -58,7 +66,10 @@ nlohmann::ordered_json json(const EvalTrajectoryOptions& options, const Trajecto
   return out;
 }
 
-void declareMap(CLI::App& cli, EvalMapOptions& options) {
+EvalCommand mapCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("map", "Precision, recall and F1 of a pole map");
+  const auto shared = std::make_shared<EvalMapOptions>();
+  EvalMapOptions& options = *shared;
   cli.add_option("--truth", options.truth, "True poles: .polemap, .csv with x,y columns, or .npz")
       ->required();
   cli.add_option("--map", options.map, "Poles to score, in any of these formats")->required();
@@ -68,9 +79,13 @@ void declareMap(CLI::App& cli, EvalMapOptions& options) {
   cli.add_flag("--one-to-one", options.oneToOne,
                "Match each pole at most once (default: count map poles near any true pole)");
   cli.add_option("--json", options.json, "Write the figures to this file");
+  return {&cli, [shared] { return text(evalMap(*shared)); }};
 }
 
-void declareTrajectory(CLI::App& cli, EvalTrajectoryOptions& options) {
+EvalCommand trajectoryCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("trajectory", "Errors of a trajectory");
+  const auto shared = std::make_shared<EvalTrajectoryOptions>();
+  EvalTrajectoryOptions& options = *shared;
   cli.add_option("--truth", options.truth, "True robot poses, TUM")->required();
   cli.add_option("--estimate", options.estimate, "Estimated robot poses, TUM")->required();
   const std::map<std::string, Sampling> samplings{{"pose", Sampling::perPose},
@@ -84,6 +99,7 @@ void declareTrajectory(CLI::App& cli, EvalTrajectoryOptions& options) {
   cli.add_option("--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
   cli.add_option("--png", options.png, "Write a picture of map, truth and estimate");
   cli.add_option("--title", options.title, "Title of the picture (default: the estimate's file)");
+  return {&cli, [shared] { return text(evalTrajectory(*shared)); }};
 }
 
 std::vector<Eigen::Vector2d> readPoles(const std::filesystem::path& file) {
@@ -150,21 +166,15 @@ TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
 }
 
 int evalMain(int argc, const char* const* argv) {
-  CommandLine line("pole-eval", "Scores a pole map, or the errors of a trajectory.");
-  EvalMapOptions mapOptions;
-  EvalTrajectoryOptions trajectoryOptions;
+  CommandLine line("pole-eval", "Scores pole maps, trajectories and extractors.");
   line.cli().require_subcommand(1);
-  auto* map = line.cli().add_subcommand("map", "Precision, recall and F1 of a pole map");
-  auto* trajectory = line.cli().add_subcommand("trajectory", "Errors of a trajectory");
-  declareMap(*map, mapOptions);
-  declareTrajectory(*trajectory, trajectoryOptions);
+  std::vector<EvalCommand> commands{mapCommand(line.cli()), trajectoryCommand(line.cli())};
+  for (auto& command : extractionCommands(line.cli())) commands.push_back(std::move(command));
   return line.run(argc, argv, [&] {
-    if (map->parsed()) {
-      const auto score = evalMap(mapOptions);
-      if (!line.quiet()) print(score);
-    } else {
-      const auto errors = evalTrajectory(trajectoryOptions);
-      if (!line.quiet()) print(errors);
+    for (const EvalCommand& command : commands) {
+      if (!command.parser->parsed()) continue;
+      const std::string text = command.run();
+      if (!line.quiet()) std::cout << text;
     }
   });
 }

@@ -1,4 +1,5 @@
 #include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/CsvTable.h>
 #include <polemcl/io/Npz.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace polemcl::io {
 
@@ -14,70 +14,12 @@ namespace {
 
 using Positions = std::vector<Eigen::Vector2d>;
 
-/// Fields between commas, without the quotes and spaces around them.
-std::vector<std::string> splitCsv(std::string_view line, const std::string& where) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      fields.back() += line[++i];  // a doubled quote is one
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  if (quoted) throw Error(where + "a quote is not closed");
-  for (std::string& field : fields) field = std::string(trimmed(field));
-  return fields;
-}
-
-/// Indices of the columns x and y.
-struct XyColumns {
-  std::size_t x = 0, y = 0, count = 0;
-};
-
-XyColumns findColumns(const std::vector<std::string>& header, const std::string& where) {
-  const auto find = [&](const char* name) {
-    if (std::count(header.begin(), header.end(), name) != 1) {
-      throw Error(where + "one column named " + name +
-                  " expected; the first line has to name the columns (x,y,…)");
-    }
-    return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
-  };
-  return {find("x"), find("y"), header.size()};
-}
-
-double coordinate(const std::string& field, const std::string& where) {
-  const auto value = parseNumber(field);
-  if (!value || !std::isfinite(*value)) throw Error(where + "'" + field + "' is no finite number");
-  return *value;
-}
-
 Positions readCsv(const std::filesystem::path& file) {
-  const auto lines = readLines(file);
-  std::optional<XyColumns> columns;
+  const CsvTable table(file);
+  const std::size_t x = table.column("x"), y = table.column("y");
   Positions positions;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string_view line = trimmed(lines[i]);
-    if (line.empty() || line.front() == '#') continue;
-    const std::string where = at(file, i + 1);
-    const auto fields = splitCsv(line, where);
-    if (!columns) {
-      columns = findColumns(fields, where);
-      continue;
-    }
-    if (fields.size() != columns->count) {
-      throw Error(where + std::to_string(fields.size()) + " fields, " +
-                  std::to_string(columns->count) + " expected as in the header");
-    }
-    positions.emplace_back(coordinate(fields[columns->x], where),
-                           coordinate(fields[columns->y], where));
-  }
-  if (!columns) throw Error(file.string() + ": empty; a header with columns x and y expected");
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    positions.emplace_back(table.number(row, x), table.number(row, y));
   return positions;
 }
 

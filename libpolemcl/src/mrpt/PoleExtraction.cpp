@@ -61,6 +61,19 @@ void toPlanar(const Frames& f, double ground, PoleDetection& pole) {
   pole.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
 }
 
+/// Runs what reads an observation's points; errors of MRPT name its class.
+template <class Work>
+void readingPoints(const mrpt::obs::CObservation& observation, const Work& work) {
+  try {
+    work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(std::string("points of a ") + observation.GetRuntimeClass()->className +
+                " cannot be had: " + mrptReason(error.what()));
+  }
+}
+
 }  // namespace
 
 struct PoleExtraction::Impl {
@@ -112,7 +125,7 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
   result->sensorLabel = observation.sensorLabel;
   observation.getSensorPose(result->sensorPose);
   m_impl->report = ExtractionReport();
-  try {
+  readingPoints(observation, [&] {
     const ObservationPoints::Loan loan(m_impl->points);
     const PointsView cloud = m_impl->points.read(observation);
     if (cloud.size > 0) {
@@ -123,14 +136,26 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
     }
     m_impl->report.points += m_impl->points.dropped();
     m_impl->report.invalid += m_impl->points.dropped();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(std::string("points of a ") + observation.GetRuntimeClass()->className +
-                " cannot be had: " + mrptReason(error.what()));
-  }
+  });
   result->points = static_cast<std::uint32_t>(m_impl->report.points - m_impl->report.invalid);
   return result;
+}
+
+io::Cloud PoleExtraction::lidarPoints(const mrpt::obs::CObservation& observation) {
+  mrpt::poses::CPose3D sensorPose;
+  observation.getSensorPose(sensorPose);
+  io::Cloud cloud;
+  readingPoints(observation, [&] {
+    const ObservationPoints::Loan loan(m_impl->points);
+    const PointsView points =
+        m_impl->toLidar(m_impl->points.read(observation), framesOf(sensorPose, m_impl->sensor));
+    cloud.x.assign(points.x, points.x + points.size);
+    cloud.y.assign(points.y, points.y + points.size);
+    cloud.z.assign(points.z, points.z + points.size);
+    cloud.intensity.resize(points.size);
+    cloud.invalid = m_impl->points.dropped();
+  });
+  return cloud;
 }
 
 const ExtractionReport& PoleExtraction::report() const {

@@ -78,6 +78,7 @@ void Stream::extract(Task& task) {
   try {
     PoleExtraction& extraction = m_extractions.local();
     result.observation = extraction.process(*observation);
+    result.scan = observation;
     result.points = result.observation->points;
     result.report = extraction.report();
     result.invalid = result.report.invalid;

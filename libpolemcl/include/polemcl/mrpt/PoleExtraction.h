@@ -4,6 +4,7 @@
 
 #include <polemcl/core/ExtractionOptions.h>
 #include <polemcl/core/PoleExtractor.h>
+#include <polemcl/io/Cloud.h>
 #include <polemcl/mrpt/CObservationPoles.h>
 
 #include <memory>
@@ -48,6 +49,9 @@ class PoleExtraction {
   /// that cannot be read, on a rotating scan
   ///         whose elevations are not known.
   CObservationPoles::Ptr process(const mrpt::obs::CObservation& observation);
+  /// \brief The points that process() hands to PoleExtractor: a copy, lidar frame.
+  /// \throws Error as process().
+  io::Cloud lidarPoints(const mrpt::obs::CObservation& observation);
   /// \brief Counters of the last process().
   const ExtractionReport& report() const;
 

@@ -43,10 +43,12 @@ struct PoleScan {
   /// when the rawlog has no odometry in between.
   std::optional<io::PlanarMotion> motion;
   CObservationPoles::Ptr observation;  ///< never null
-  std::size_t points = 0;              ///< valid points; 0 for stored poles that do not tell
-  std::size_t invalid = 0;             ///< dropped points
-  ExtractionReport report;             ///< of the extraction; all zero for stored poles
-  bool stored = false;                 ///< true: read as poles, not extracted
+  /// What the poles were extracted from, its points maybe outside still; null for stored poles.
+  mrpt::obs::CObservation::Ptr scan;
+  std::size_t points = 0;   ///< valid points; 0 for stored poles that do not tell
+  std::size_t invalid = 0;  ///< dropped points
+  ExtractionReport report;  ///< of the extraction; all zero for stored poles
+  bool stored = false;      ///< true: read as poles, not extracted
 };
 
 /// \brief Streams a rawlog: reads in order, extracts on several threads, hands out in order. At

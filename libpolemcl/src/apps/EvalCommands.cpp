@@ -1,0 +1,105 @@
+#include "EvalCommands.h"
+
+#include <polemcl/apps/ExtractionEval.h>
+#include <polemcl/io/TextFile.h>
+
+#include <memory>
+#include <sstream>
+
+namespace polemcl::apps {
+namespace {
+
+std::string shown(const std::optional<double>& value, int decimals, double factor = 1) {
+  return value ? io::fixed(*value * factor, decimals) : "-";
+}
+
+std::string text(const DetectionScore& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", detections " << s.detections << " (" << s.right
+      << " right), visible poles " << s.visible << " (" << s.found << " found)\n"
+      << "precision " << shown(s.precision, 4) << "  recall " << shown(s.recall, 4) << '\n'
+      << "centre error: median " << shown(s.centreMedian, 1, 100) << "  mean "
+      << shown(s.centreMean, 1, 100) << "  90 % " << shown(s.centre90, 1, 100)
+      << " cm; mean along the ray " << shown(s.biasAlong, 1, 100) << "  across "
+      << shown(s.biasAcross, 1, 100) << " cm\n"
+      << "radius error: mean " << shown(s.radiusMean, 1, 100) << "  median of the absolute "
+      << shown(s.radiusMedian, 1, 100) << " cm\n"
+      << "normalised squared error: mean " << shown(s.neesMean, 2) << "  median "
+      << shown(s.neesMedian, 2) << " (2 and 1.39 are right)\n"
+      << "confidence: area under the ROC " << shown(s.auc, 4) << '\n';
+  return out.str();
+}
+
+std::string text(const RepeatabilityScore& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", poles per scan " << io::fixed(s.perScan, 2)
+      << "; found again within 0.25 m in at least 3 of the next 5 scans: " << s.repeated << " of "
+      << s.judged << " = " << io::fixed(s.share, 4) << '\n';
+  return out.str();
+}
+
+std::string text(const RotationScore& s, double radius) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", turned by 30, 60, ... 330 deg; poles found again within "
+      << io::significant(100 * radius, 6) << " cm, one to one: " << s.matched << " of " << s.poles
+      << " = " << io::fixed(s.share, 4) << "; of the turned scans' poles "
+      << io::fixed(s.backShare, 4) << '\n';
+  return out.str();
+}
+
+EvalCommand detectionsCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "detections", "Poles of single scans against the true ones of a simulated folder");
+  const auto options = std::make_shared<EvalDetectionsOptions>();
+  cli.add_option("--scans", options->scans, "Folder that pole-simulate wrote")->required();
+  cli.add_option("--poles", options->poles, "Rawlog of poles extracted from these scans")
+      ->required();
+  cli.add_option("--radius", options->radius, "A pole is right within this distance, m")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--visible", options->visible,
+                 "Write the true poles visible in the scans to this table (CSV)");
+  cli.add_option("--min-scans", options->minScans,
+                 "Poles visible in fewer scans are left out of that table")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  return {&cli, [options] { return text(evalDetections(*options)); }};
+}
+
+EvalCommand repeatabilityCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("repeatability", "Poles found again in the next scans");
+  const auto options = std::make_shared<EvalRepeatabilityOptions>();
+  cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
+  cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options] { return text(evalRepeatability(*options)); }};
+}
+
+EvalCommand rotationCommand(CLI::App& program) {
+  auto& cli =
+      *program.add_subcommand("rotation", "Poles found again when scans are turned about z");
+  const auto options = std::make_shared<EvalRotationOptions>();
+  const auto config = std::make_shared<std::string>();
+  cli.add_option("--config", *config, "INI file, see config/")->required();
+  cli.add_option("--input", options->input, "Rawlog of scans")->required();
+  cli.add_option("--every", options->every, "Turn every N-th scan only")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--radius", options->radius, "A pole is found again within this distance, m")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options, config] {
+            return text(evalRotation(*options, loadSettings(*config)), options->radius);
+          }};
+}
+
+}  // namespace
+
+std::vector<EvalCommand> extractionCommands(CLI::App& program) {
+  return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program)};
+}
+
+}  // namespace polemcl::apps

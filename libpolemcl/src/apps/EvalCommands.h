@@ -1,0 +1,21 @@
+#pragma once
+/// \file EvalCommands.h
+/// \brief The subcommands of `pole-eval`, each with its own options and output.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace polemcl::apps {
+
+/// \brief A declared subcommand and what it does once parsed: returns the text for the user.
+struct EvalCommand {
+  const CLI::App* parser = nullptr;
+  std::function<std::string()> run;
+};
+
+/// \brief Declares `detections`, `repeatability` and `rotation`.
+std::vector<EvalCommand> extractionCommands(CLI::App& program);
+
+}  // namespace polemcl::apps
