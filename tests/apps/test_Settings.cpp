@@ -91,6 +91,8 @@ TEST(Settings, TheSimulatedSensorIsTheConfiguredOne) {
   EXPECT_EQ(settings.simulation.sensor, "hdl32e");
   EXPECT_EQ(settings.simulation.height, settings.sensor.height);
   EXPECT_TRUE(settings.simulation.upsideDown);
+  // The extraction's hdl64e has the angles of KITTI's unit, so has the one that is simulated.
+  EXPECT_EQ(loadSettings(config("kitti.ini").string()).simulation.sensor, "hdl64e_kitti");
 }
 
 TEST(Settings, RefusesWhatItDoesNotKnow) {

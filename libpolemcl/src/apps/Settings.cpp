@@ -20,7 +20,9 @@ void bindAll(Binder& binder, Settings& settings) {
 
 /// The simulated LiDAR is the one that the extraction is told of.
 void shareSensor(Settings& settings) {
-  settings.simulation.sensor = settings.sensor.model;
+  // What the extraction calls hdl64e are the angles of KITTI's unit, not those of the data sheet.
+  settings.simulation.sensor =
+      settings.sensor.model == "hdl64e" ? "hdl64e_kitti" : settings.sensor.model;
   settings.simulation.height = settings.sensor.height;
   settings.simulation.upsideDown = settings.sensor.upsideDown;
   settings.simulation.originX = settings.sensor.originX;

@@ -1,0 +1,170 @@
+# Sourced by extraction.sh, which sets $top, $bin, $out, $length, $spacing: the steps.
+# shellcheck shell=sh disable=SC2154
+
+# native_settings SENSOR: the configuration of that sensor.
+native_settings() {
+  case $1 in
+    hdl64e) echo "$top/config/kitti.ini" ;;
+    os1_64) echo "$top/config/mulran.ini" ;;
+    *) echo "$top/config/$1.ini" ;;
+  esac
+}
+
+# paper_settings DIR: the authors' settings for each sensor; those they had none for get NCLT's, with
+# the sensor and its rows and field of view exchanged.
+paper_settings() {
+  mkdir -p "$1"
+  cp "$top/config/paper/kitti.ini" "$1/hdl64e.ini"
+  cp "$top/config/paper/mulran.ini" "$1/os1_64.ini"
+  for sensor in hdl32e vlp16; do
+    cp "$top/config/paper/nclt.ini" "$1/$sensor.ini"
+    set_option "$1/$sensor.ini" sensor model $sensor
+    set_option "$1/$sensor.ini" sensor upside_down false
+    set_option "$1/$sensor.ini" sensor origin "0 0 0"
+    set_option "$1/$sensor.ini" sensor height_m 1.0
+  done
+  set_option "$1/hdl32e.ini" paper fov_up_deg 10.67
+  set_option "$1/hdl32e.ini" paper fov_down_deg -30.67
+  set_option "$1/vlp16.ini" paper rows 16
+  set_option "$1/vlp16.ini" paper fov_up_deg 15
+  set_option "$1/vlp16.ini" paper fov_down_deg -15
+}
+
+# settings METHOD SENSOR: the file.
+settings() {
+  if [ "$1" = paper ]; then echo "$out/paper/$2.ini"; else native_settings "$2"; fi
+}
+
+# real_drive FOLDER: real_METHOD.json with repeatability and rotation.
+real_drive() {
+  work=$out/real
+  mkdir -p "$work"
+  "$bin/pole-import" folder --quiet --input "$1" --output "$work/scans.rawlog"
+  for method in native paper; do
+    config=$(settings $method hdl64e)
+    "$bin/pole-extract" --quiet --config "$config" --input "$work/scans.rawlog" \
+      --output "$work/$method.rawlog"
+    "$bin/pole-eval" repeatability --quiet --poles "$work/$method.rawlog" \
+      --truth "$work/scans.tum" --json "$work/again.json"
+    "$bin/pole-eval" rotation --quiet --config "$config" --input "$work/scans.rawlog" --every 8 \
+      --json "$work/turned.json"
+    jq -n --slurpfile r "$work/again.json" --slurpfile t "$work/turned.json" \
+      '{repeatability: $r[0], rotation: $t[0]}' >"$out/real_$method.json"
+  done
+}
+
+# map_score METHOD TRUTH FIGURE: precision or recall of the world's map, 0 when there is none.
+map_score() {
+  if [ -f "$work/$1.polemap" ]; then
+    "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$2" \
+      --map "$work/$1.polemap" --json "$work/map.json"
+    json_value "$work/map.json" "$3"
+  else
+    echo 0
+  fi
+}
+
+# simulated_drive SENSOR SEED: SENSOR_METHOD_SEED.json for both methods; the scans are removed again.
+simulated_drive() {
+  work=$out/world
+  rm -rf "$work"
+  mkdir -p "$work"
+  cp "$(native_settings "$1")" "$work/native.ini"
+  set_option "$work/native.ini" world seed "$2"
+  set_option "$work/native.ini" world length_m "$length"
+  set_option "$work/native.ini" simulation spacing_m "$spacing"
+  "$bin/pole-simulate" --quiet --config "$work/native.ini" --output "$work/scans"
+  "$bin/pole-import" folder --quiet --input "$work/scans" --output "$work/scans.rawlog"
+  cp "$out/paper/$1.ini" "$work/paper.ini"
+  for method in native paper; do
+    evaluate_drive "$method"
+    auc_all=null
+    [ "$method" = paper ] || auc_all=$(undecided_auc)
+    "$bin/pole-map" --quiet --config "$work/$method.ini" --input "$work/$method.rawlog" \
+      --truth "$work/scans.tum" --output "$work/$method.polemap" 2>"$work/$method.log" ||
+      grep -q 'no pole' "$work/$method.log" || die "$(cat "$work/$method.log")"
+    jq --argjson seed "$2" --argjson auc "$auc_all" \
+      --argjson p "$(map_score "$method" "$work/scans/poles_gt.csv" precision)" \
+      --argjson r "$(map_score "$method" "$work/visible.csv" recall)" \
+      '{seed: $seed} + . + {auc_all: $auc, map_precision: $p, map_recall: $r,
+        map_f1: (if $p + $r > 0 then 2 * $p * $r / ($p + $r) else 0 end)}' \
+      "$work/score.json" >"$out/$1_${method}_$2.json"
+  done
+  rm -r "$work"
+}
+
+# evaluate_drive METHOD: METHOD.rawlog, score.json, visible.csv.
+evaluate_drive() {
+  "$bin/pole-extract" --quiet --config "$work/$1.ini" --input "$work/scans.rawlog" \
+    --output "$work/$1.rawlog"
+  "$bin/pole-eval" detections --quiet --scans "$work/scans" --poles "$work/$1.rawlog" \
+    --json "$work/score.json" --visible "$work/visible.csv" --min-scans 3
+}
+
+# undecided_auc: area under the ROC of the native confidence when it refuses nothing.
+undecided_auc() {
+  cp "$work/native.ini" "$work/undecided.ini"
+  set_option "$work/undecided.ini" native min_confidence 0.001
+  cp "$work/score.json" "$work/native-score.json"
+  evaluate_drive undecided
+  json_value "$work/score.json" auc
+  mv "$work/native-score.json" "$work/score.json"
+}
+
+# summarize QUICK: all figures as one JSON object on standard output.
+summarize() {
+  for method in native paper; do
+    [ ! -f "$out/real_$method.json" ] || jq --arg m $method '{real: {($m): .}}' "$out/real_$method.json"
+    for sensor in hdl64e hdl32e os1_64 vlp16; do
+      # The mean, least and greatest of every figure over the worlds.
+      jq -s --arg s $sensor --arg m $method '
+        def over(f): . as $worlds | (.[0] | keys_unsorted) - ["seed"]
+          | map({key: ., value: (. as $k | [$worlds[] | .[$k] | numbers]
+                | if length == 0 then null else f end)}) | from_entries;
+        {simulated: {($s): {($m): {mean: over(add / length), min: over(min), max: over(max),
+                                   worlds: .}}}}' "$out/${sensor}_${method}"_*.json
+    done
+  done | jq -s --arg quick "$1" --argjson length "$length" --argjson spacing "$spacing" '
+    {quick: ($quick == "yes"), length_m: $length, spacing_m: $spacing} + reduce .[] as $part ({}; . * $part)'
+}
+
+# table FILE: the figures for people.
+table() {
+  jq -r '
+    def pad(n): tostring | if length < n then . + " " * (n - length) else . end;
+    def lead(n): tostring | if length < n then " " * (n - length) + . else . end;
+    def round_to(d): if . == null then "-" else
+      ((. * pow(10; d) | round / pow(10; d)) + 0 | tostring) as $t
+      | ($t | split(".") | .[1] // "") as $f | if d == 0 then $t
+        else ($t | split(".")[0]) + "." + $f + "0" * (d - ($f | length)) end end;
+    def row(name; key; scale; digits): name as $name | . as $sensor
+      | "  " + ($name | pad(30)) + ([("native", "paper") as $m
+        | [("mean", "min", "max") as $w | $sensor[$m][$w][key]
+           | if . == null then . else . * scale end | round_to(digits) | lead(8)] | add]
+        | join("   "));
+    (if .quick then "QUICK RUN: not to judge by\n" else "" end),
+    (if .real then
+      "Real drive                          native     paper",
+      (.real as $r | [
+        ["poles per scan", "repeatability", "per_scan", 2],
+        ["found again in the next scans", "repeatability", "share", 3],
+        ["found again when turned", "rotation", "share", 3],
+        ["turned poles that were there", "rotation", "back_share", 3]][] as $k
+      | "  " + ($k[0] | pad(30)) + ([("native", "paper") as $m
+        | $r[$m][$k[1]][$k[2]] | round_to($k[3]) | lead(10)] | add)) else empty end),
+    (.simulated | to_entries[] | .key as $name | .value
+      | "", "Simulated " + $name + ", worlds " + ([.native.worlds[].seed | tostring] | join(" ")),
+        "                                  native: mean, least, most    paper: mean, least, most",
+        row("precision"; "precision"; 1; 3), row("recall of visible poles"; "recall"; 1; 3),
+        row("centre error, median (cm)"; "centre_median_m"; 100; 2),
+        row("centre error, mean (cm)"; "centre_mean_m"; 100; 2),
+        row("centre error, 90 % (cm)"; "centre_p90_m"; 100; 2),
+        row("bias along the ray (cm)"; "bias_along_m"; 100; 2),
+        row("bias across (cm)"; "bias_across_m"; 100; 2),
+        row("radius error, median (cm)"; "radius_abs_median_m"; 100; 2),
+        row("squared error, mean (2)"; "nees_mean"; 1; 2),
+        row("squared error, median (1.39)"; "nees_median"; 1; 2),
+        row("auc"; "auc"; 1; 3), row("auc all"; "auc_all"; 1; 3),
+        row("map precision"; "map_precision"; 1; 3), row("map recall"; "map_recall"; 1; 3),
+        row("map F1"; "map_f1"; 1; 3))' "$1"
+}
