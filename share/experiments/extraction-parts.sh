@@ -113,6 +113,7 @@ undecided_auc() {
 
 # summarize QUICK: all figures as one JSON object on standard output.
 summarize() {
+  [ ! -f "$out/pair.json" ] || jq '{pair: .}' "$out/pair.json"
   for method in native paper; do
     [ ! -f "$out/real_$method.json" ] || jq --arg m $method '{real: {($m): .}}' "$out/real_$method.json"
     for sensor in hdl64e hdl32e os1_64 vlp16; do
@@ -152,6 +153,10 @@ table() {
         ["turned poles that were there", "rotation", "back_share", 3]][] as $k
       | "  " + ($k[0] | pad(30)) + ([("native", "paper") as $m
         | $r[$m][$k[1]][$k[2]] | round_to($k[3]) | lead(10)] | add)) else empty end),
+    (if .pair then "", "Pair of real scans: \(.pair.poles[0]) and \(.pair.poles[1]) poles, "
+      + "\(.pair.matched) of them in both, apart by "
+      + "\(.pair.median_m * 100 | round_to(1)) cm (median), \(.pair.p90_m * 100 | round_to(1)) cm (90 %), "
+      + "\(.pair.max_m * 100 | round_to(1)) cm (most); \(.pair.within_10cm) within 10 cm" else empty end),
     (.simulated | to_entries[] | .key as $name | .value
       | "", "Simulated " + $name + ", worlds " + ([.native.worlds[].seed | tostring] | join(" ")),
         "                                  native: mean, least, most    paper: mean, least, most",

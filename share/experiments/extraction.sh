@@ -2,7 +2,7 @@
 # How good the extractor is, the paper's method beside the native one.
 # Usage: share/experiments/extraction.sh [--quick] DATA_DIR OUT [SEED...]
 #   DATA_DIR  folder of real scans (kitti_raw_0005/ in it); what is not there is left out
-#   OUT       gets result.json, table.txt and every world's own figures
+#   OUT       gets result.json, table.txt, pictures and every world's own figures
 #   SEED      of the simulated worlds, 201 to 205 unless given: none of them was tuned on
 #   --quick   streets of 80 m, two worlds: to see that it runs, not to judge by
 # Programs: build/bin, or POLEMCL_BIN. Needs jq, 1 GB of disk while it runs, 10 minutes on 2 cores.
@@ -13,12 +13,16 @@
 # sheet's. Per scan: pole-eval detections. `auc all` is the area under the ROC when nothing is refused
 # for its confidence. Map of one drive, one to one at 0.5 m: precision against all true poles, recall
 # against those visible in 3 scans or more (2.4 m of the way): fewer cannot be confirmed.
+# Single scans: SCAN.png of each with its poles, to be looked at; the poles of hdl32_pair/ under the given
+# transform, each with the nearest of the other scan within half a metre.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 # shellcheck source=share/experiments/extraction-parts.sh
 . "$top/share/experiments/extraction-parts.sh"
+# shellcheck source=share/experiments/single-scans.sh
+. "$top/share/experiments/single-scans.sh"
 
 quick=no
 [ "${1-}" != --quick ] || {
@@ -46,6 +50,7 @@ rm -f "$out"/*.json
 
 paper_settings "$out/paper"
 [ ! -d "$data/kitti_raw_0005" ] || real_drive "$data/kitti_raw_0005"
+single_scans "$data"
 for sensor in hdl64e hdl32e os1_64 vlp16; do
   for seed in "$@"; do simulated_drive "$sensor" "$seed"; done
 done

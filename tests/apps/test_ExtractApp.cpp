@@ -76,6 +76,26 @@ TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
   for (std::size_t count : right) EXPECT_GE(count, 6u);
 }
 
+TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
+  writeStreet(folder / "in", 2);
+  import("in");
+  const std::vector<std::string> arguments{"--config",      config(),       "--input",
+                                           at("in.rawlog"), "--output",     at("poles.rawlog"),
+                                           "--png",         at("scan.png"), "--png-scan"};
+  const auto draw = [&](const std::string& scan) {
+    auto all = arguments;
+    all.push_back(scan);
+    return runProgram(extractMain, all);
+  };
+  const auto outcome = draw("1");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(readText(folder / "scan.png").substr(1, 3), "PNG");
+  expectFailure(draw("2"), {at("in.rawlog"), "no scan 2", "there are 2"});
+  expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("poles.rawlog"),
+                                         "--output", at("again.rawlog"), "--png", at("p.png")}),
+                {at("poles.rawlog"), "holds poles"});
+}
+
 TEST_F(ExtractApp, KeepsMotionsTimesAndSensorPose) {
   writeStreet(folder / "in", 3);
   import("in", true, "0.5 0 0 90 0 0");

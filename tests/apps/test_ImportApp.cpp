@@ -1,4 +1,7 @@
+#include <mrpt/maps/CPointsMap.h>
+#include <mrpt/obs/CObservationPointCloud.h>
 #include <polemcl/apps/ImportApp.h>
+#include <polemcl/mrpt/RawlogReader.h>
 #include <sys/resource.h>
 
 #include <csignal>
@@ -43,6 +46,25 @@ class ImportApp : public testing::Test {
 };
 
 }  // namespace
+
+TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
+  for (const char* name : {"1.pcd", "2.pcd"})
+    writeText(folder / "in" / name,
+              "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\nnan 0 0\n");
+  const auto outcome = run("pcd");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* words : {"2 scans; 2 points, 2 invalid", "truth: none", "0.1 s apart"})
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
+  fs::remove_all(folder / "in");  // the points are inside
+  polemcl::RawlogReader reader((folder / "out.rawlog").string());
+  polemcl::RawlogEntry entry;
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(reader.next(entry));
+    const auto cloud = entry.frame->getObservationByClass<mrpt::obs::CObservationPointCloud>();
+    ASSERT_TRUE(cloud && cloud->pointcloud);
+    EXPECT_EQ(cloud->pointcloud->size(), 1u);
+  }
+}
 
 TEST_F(ImportApp, ImportsAFolder) {
   writeLine(folder / "in", 3);

@@ -67,7 +67,10 @@ TEST_F(MapApp, ScansAndStoredPolesGiveTheSameMap) {
   drive("in", 8);
   ASSERT_EQ(run({"in"}).code, 0);
   const auto fromScans = io::readPoleMap(folder / "street.polemap").poles;
-  extractPoles({folder / "in.rawlog", folder / "poles.rawlog", std::nullopt, false}, settings());
+  ExtractOptions extract;
+  extract.input = folder / "in.rawlog";
+  extract.output = folder / "poles.rawlog";
+  extractPoles(extract, settings());
   fs::copy_file(folder / "in.tum", folder / "poles.tum");
   ASSERT_EQ(run({"poles"}).code, 0);
   const auto fromPoles = io::readPoleMap(folder / "street.polemap").poles;

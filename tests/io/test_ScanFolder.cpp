@@ -252,3 +252,26 @@ TEST_F(ScanFolderTest, readsTheRealScansWithoutOdometry) {
   EXPECT_TRUE(folder.scans[15].T_map_robot);
   EXPECT_FALSE(folder.scans[15].motion);
 }
+
+TEST_F(ScanFolderTest, foldersOfPcdFiles) {
+  fs::remove_all(path("velodyne"));
+  fs::remove(path("times.txt"));
+  for (const char* name : {"0.pcd", "1.pcd", "2.pcd"}) write(name, "");
+  const ScanFolder bare = readPcdFolder(m_folder, identity);
+  ASSERT_EQ(bare.scans.size(), 3u);
+  EXPECT_EQ(bare.scans[2].cloud, path("2.pcd"));
+  EXPECT_DOUBLE_EQ(bare.scans[2].time, 0.2);
+  EXPECT_FALSE(bare.scans[0].T_map_robot);
+  ASSERT_EQ(bare.notes.size(), 1u);
+  EXPECT_NE(bare.notes[0].find("0.1 s"), std::string::npos);
+  write("times.txt", "5\n6\n7.5\n");
+  write("poses.txt", leftAt("10", "20", "3") + leftAt("11", "20", "3") + leftAt("12", "20", "3"));
+  write("odometry.txt", "1 0 0 1 1 1\n1 0 0 1 1 1\n");
+  const ScanFolder full = readPcdFolder(m_folder, identity);
+  EXPECT_TRUE(full.notes.empty());
+  EXPECT_EQ(full.scans[2].time, 7.5);
+  EXPECT_EQ(full.scans[1].T_map_robot->translation().x(), 11);
+  EXPECT_TRUE(full.scans[1].motion);
+  write("times.txt", "5\n6\n");
+  expectIn(messageOf([&] { readPcdFolder(m_folder, identity); }), "2 times for 3 scans");
+}

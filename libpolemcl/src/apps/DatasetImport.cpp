@@ -7,6 +7,7 @@
 #include <polemcl/io/Cloud.h>
 #include <polemcl/io/KittiOdometry.h>
 #include <polemcl/io/KittiRaw.h>
+#include <polemcl/io/PcdFile.h>
 #include <polemcl/io/TextFile.h>
 #include <polemcl/io/Trajectory.h>
 #include <polemcl/mrpt/RawlogWriter.h>
@@ -27,6 +28,8 @@ io::ScanFolder readDataset(const ImportOptions& options) {
       return io::readKittiRaw(options.input, options.calibration.value_or(drive.parent_path()),
                               options.T_robot_sensor);
     }
+    case Dataset::pcd:
+      return io::readPcdFolder(options.input, options.T_robot_sensor);
     case Dataset::folder:
       break;
   }
@@ -81,14 +84,15 @@ mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanEntry& scan
   observation->timestamp = mrpt::Clock::fromDouble(scan.time);
   observation->sensorPose =
       mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(options.T_robot_sensor.matrix()));
-  if (!options.embed) {
+  const bool isPcd = options.dataset == Dataset::pcd;
+  if (!options.embed && !isPcd) {
     if (std::filesystem::file_size(scan.cloud) == 0) return nullptr;
     observation->setAsExternalStorage(
         scan.cloud.lexically_normal().string(),
         mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
     return observation;
   }
-  const auto cloud = io::readKittiBin(scan.cloud);
+  const auto cloud = isPcd ? io::readPcd(scan.cloud) : io::readKittiBin(scan.cloud);
   report.points += cloud.size();
   report.invalidPoints += cloud.invalid;
   if (cloud.size() == 0) return nullptr;

@@ -5,6 +5,7 @@
 #include <polemcl/io/AtomicFile.h>
 #include <polemcl/io/TextFile.h>
 #include <polemcl/mrpt/RawlogWriter.h>
+#include <polemcl/report/ScanPicture.h>
 
 #include <iostream>
 
@@ -32,6 +33,21 @@ void writeRows(std::ostream& out, const PoleScan& scan) {
       out << ',' << io::significant(value, 9);
     out << '\n';
   }
+}
+
+/// The scan as the extractor sees it, in the lidar frame, with the poles found in it.
+void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& options) {
+  const std::string where = options.input.string() + ": scan " + std::to_string(scan.index);
+  if (scan.stored) throw Error(where + " holds poles, no points to draw");
+  const auto cloud = PoleExtraction(settings.poleExtraction()).lidarPoints(*scan.scan);
+  PoleExtractor extractor(settings.sensor, settings.extraction);
+  report::ScanView view;
+  view.title = options.input.filename().string() + ", scan " + std::to_string(scan.index);
+  view.points = cloud.view();
+  if (cloud.size() > 0) view.poles = extractor.extract(cloud.view());
+  const double ground = extractor.report().ground;
+  view.ground = ground < 0 ? ground : -settings.sensor.height;  // the paper's method finds none
+  report::drawScanPng(view, *options.png);
 }
 
 void print(const ExtractSummary& summary, const ExtractOptions& options) {
@@ -86,11 +102,16 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
     rawlog.write(makeActions(motion, scan.observation->timestamp), scan.observation);
     if (csv) writeRows(csv->stream(), scan);
     add(scan.report, summary.extraction);
+    if (options.png && scan.index == options.pngScan) draw(scan, settings, options);
     if (progress) progress(scan.index + 1);
   });
   if (summary.counts.scans == summary.counts.emptyScans)
     throw Error(options.input.string() + ": no usable scan, " +
                 std::to_string(summary.counts.emptyScans) + " scans in it, all without a point");
+  if (options.png && summary.counts.scans <= options.pngScan)
+    throw Error(options.input.string() + ": no scan " + std::to_string(options.pngScan) +
+                " to draw; there are " + std::to_string(summary.counts.scans) +
+                ", numbered from 0");
   rawlog.commit();
   if (csv) csv->commit();
   return summary;
@@ -105,6 +126,11 @@ int extractMain(int argc, const char* const* argv) {
   cli.add_option("--input", options.input, "Rawlog of scans")->required();
   cli.add_option("--output", options.output, "Rawlog of poles to write")->required();
   cli.add_option("--csv", options.csv, "Also write the poles to this table");
+  cli.add_option("--png", options.png, "Draw one scan from above with its poles");
+  cli.add_option("--png-scan", options.pngScan, "The scan to draw, from 0")
+      ->type_name("K")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   cli.add_flag("--allow-truncated", options.allowTruncated,
                "Use the readable part of a rawlog that was cut short");
   return line.run(argc, argv, [&] {

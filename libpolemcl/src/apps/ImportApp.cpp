@@ -13,7 +13,8 @@ namespace {
 const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
     {Dataset::folder, "folder", "velodyne/*.bin, times.txt, poses.txt, odometry.txt"},
     {Dataset::kittiOdometry, "kitti-odometry", "A sequence of the KITTI odometry benchmark"},
-    {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"}};
+    {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"},
+    {Dataset::pcd, "pcd", "*.pcd (ascii or binary), always embedded; text files as for folder"}};
 
 /// What is wrong with the text, for CLI11; nothing when it is a pose.
 std::string sensorPoseProblem(const std::string& text) {
@@ -56,7 +57,7 @@ void print(const ImportReport& report, const ImportOptions& options) {
   std::cout << options.output.string() << ": " << report.scans << " scans";
   if (report.skipped > 0) std::cout << ", " << report.skipped << " left out as asked";
   if (report.emptyScans > 0) std::cout << ", " << report.emptyScans << " empty ones dropped";
-  if (options.embed)
+  if (options.embed || options.dataset == Dataset::pcd)
     std::cout << "; " << report.points << " points, " << report.invalidPoints
               << " invalid ones dropped";
   std::cout << '\n'

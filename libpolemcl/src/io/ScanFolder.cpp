@@ -11,14 +11,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr double nominalPeriod = 0.1;  ///< s, of scans that tell no times
+
 /// The scans of a folder and what is said about the rows that belong to them.
 struct Scans {
   std::vector<fs::path> files;
+  std::string place;              ///< where they are, for messages
   bool numberedFromZero = false;  ///< 0, 1, 2, …: row i belongs to scan i for certain
 };
 
-Scans listScans(const fs::path& folder) {
-  Scans scans{listFiles(folder / "velodyne", ".bin"), true};
+Scans listScans(const fs::path& folder, const std::string& ending, const std::string& place) {
+  Scans scans{listFiles(folder, ending), place, true};
   requirePaddedNames(scans.files);
   for (std::size_t i = 0; i < scans.files.size(); ++i) {
     scans.numberedFromZero = scans.numberedFromZero && fileNumber(scans.files[i]) == i;
@@ -30,7 +33,7 @@ Scans listScans(const fs::path& folder) {
 void checkCount(const fs::path& file, const std::string& what, std::size_t got,
                 std::size_t expected, const Scans& scans, std::vector<std::string>& notes) {
   const std::string counts = std::to_string(got) + " " + what + " for " +
-                             std::to_string(scans.files.size()) + " scans in velodyne/";
+                             std::to_string(scans.files.size()) + " scans" + scans.place;
   if (got < expected) {
     throw Error(file.string() + ": " + counts + ", " + std::to_string(expected) + " expected");
   }
@@ -91,18 +94,17 @@ void readOdometry(const fs::path& file, const Scans& scans, ScanFolder& folder) 
   }
 }
 
-}  // namespace
-
-ScanFolder readScanFolder(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor) {
-  const Scans scans = listScans(folder);
-  ScanFolder result;
-  checkScanSizes(scans.files, result.notes);
+void addScans(const Scans& scans, ScanFolder& folder) {
   for (const fs::path& file : scans.files) {
     ScanEntry entry;
     entry.cloud = file;
-    result.scans.push_back(std::move(entry));
+    folder.scans.push_back(std::move(entry));
   }
-  readTimes(folder / "times.txt", scans, result);
+}
+
+/// True poses and odometry, where there are such files.
+void readMotions(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor,
+                 const Scans& scans, ScanFolder& result) {
   if (isThere(folder / "poses.txt")) {
     readPoses(folder / "poses.txt", T_robot_sensor, scans, result);
   }
@@ -113,6 +115,32 @@ ScanFolder readScanFolder(const fs::path& folder, const Eigen::Isometry3d& T_rob
   for (const fs::path& file : {odometry, odom}) {
     if (isThere(file)) readOdometry(file, scans, result);
   }
+}
+
+}  // namespace
+
+ScanFolder readScanFolder(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor) {
+  const Scans scans = listScans(folder / "velodyne", ".bin", " in velodyne/");
+  ScanFolder result;
+  checkScanSizes(scans.files, result.notes);
+  addScans(scans, result);
+  readTimes(folder / "times.txt", scans, result);
+  readMotions(folder, T_robot_sensor, scans, result);
+  return result;
+}
+
+ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor) {
+  const Scans scans = listScans(folder, ".pcd", "");
+  ScanFolder result;
+  addScans(scans, result);
+  if (isThere(folder / "times.txt")) {
+    readTimes(folder / "times.txt", scans, result);
+  } else {
+    for (std::size_t i = 0; i < result.scans.size(); ++i)
+      result.scans[i].time = nominalPeriod * static_cast<double>(i);
+    result.notes.push_back("no times.txt: scans are taken to be 0.1 s apart");
+  }
+  readMotions(folder, T_robot_sensor, scans, result);
   return result;
 }
 

@@ -12,7 +12,7 @@
 
 namespace polemcl::apps {
 
-enum class Dataset { folder, kittiOdometry, kittiRaw };
+enum class Dataset { folder, kittiOdometry, kittiRaw, pcd };
 
 /// \brief What to import, and how.
 struct ImportOptions {
@@ -21,7 +21,7 @@ struct ImportOptions {
   std::filesystem::path output;  ///< `S.rawlog`; the truth goes to `S.tum`
   /// Folder of calib_imu_to_velo.txt, KITTI raw only; without it the folder that holds `input`.
   std::optional<std::filesystem::path> calibration;
-  bool embed = false;      ///< clouds inside the rawlog instead of by absolute path
+  bool embed = false;      ///< clouds inside the rawlog, not by absolute path; PCD always is
   std::size_t every = 1;   ///< N: take scans K, K+N, …; at least 1
   std::size_t offset = 0;  ///< K, from 0, less than the number of scans
   /// K: odometry is the true motion with noise of σ = K·|component|, instead of the folder's.

@@ -18,6 +18,8 @@ struct ExtractOptions {
   std::filesystem::path output;              ///< rawlog of poles
   std::optional<std::filesystem::path> csv;  ///< poles as a table, when given
   bool allowTruncated = false;               ///< keep the readable part of a damaged rawlog
+  std::optional<std::filesystem::path> png;  ///< picture of one scan with its poles, when given
+  std::size_t pngScan = 0;                   ///< the scan drawn, 0-based
   /// \throws Error when the output is the input, or does not end in .rawlog.
   void validate() const;
 };
@@ -40,7 +42,8 @@ struct ExtractSummary {
 /// support it, covariance of the centre in the robot frame (m²).
 /// Both files appear once both are complete.
 /// \param progress Called with the number of scans done; may be empty.
-/// \throws Error as streamPoles(), and when no scan has a valid point.
+/// \throws Error as streamPoles(), when no scan has a valid point, and when the scan to be drawn is
+///         not there, has no points or is one of poles.
 ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
                             const std::function<void(std::size_t)>& progress = {});
 

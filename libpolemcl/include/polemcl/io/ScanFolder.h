@@ -14,7 +14,7 @@ namespace polemcl::io {
 
 /// \brief One scan of a dataset. The cloud stays on disk.
 struct ScanEntry {
-  std::filesystem::path cloud;                   ///< absolute; KITTI `.bin`, sensor frame
+  std::filesystem::path cloud;                   ///< absolute; KITTI `.bin` or PCD, sensor frame
   double time = 0;                               ///< s; strictly increasing from entry to entry
   std::optional<Eigen::Isometry3d> T_map_robot;  ///< all entries of a folder have it, or none
   /// Since the entry before, in the robot frame of that entry. Never in the first entry; all
@@ -42,5 +42,11 @@ struct ScanFolder {
 ///         numbers as names (10.bin sorts before 2.bin).
 ScanFolder readScanFolder(const std::filesystem::path& folder,
                           const Eigen::Isometry3d& T_robot_sensor);
+
+/// \brief Reads a folder of `*.pcd`, in name order, with the same text files beside them; all are
+/// optional here: without `times.txt` the scans are 0.1 s apart, with a note. The scans are not
+/// looked into. \throws Error as readScanFolder().
+ScanFolder readPcdFolder(const std::filesystem::path& folder,
+                         const Eigen::Isometry3d& T_robot_sensor);
 
 }  // namespace polemcl::io

@@ -1,0 +1,19 @@
+#pragma once
+/// \file PcdFile.h
+/// \brief Point clouds from PCD files, the format of the Point Cloud Library (0.5 to 0.7).
+
+#include <polemcl/io/Cloud.h>
+
+#include <filesystem>
+
+namespace polemcl::io {
+
+/// \brief Reads `DATA ascii` and `DATA binary`. The fields x, y and z are needed, `intensity` is
+/// taken if there is one (else 0), others are passed over. All types and sizes of the format are
+/// read. The view point of the header is not applied: points stay in the frame they are in.
+/// Invalid points are dropped and counted as by readKittiBin().
+/// \throws Error naming the file (and line): cannot be read, no PCD header, no x, y or z, fewer
+///         points than the header says, not a number, `binary_compressed` (which tool converts it).
+Cloud readPcd(const std::filesystem::path& file);
+
+}  // namespace polemcl::io
