@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace polemcl::test {
+namespace polemcl::tests {
 
 using Way = std::vector<Eigen::Vector2d>;
 
@@ -19,6 +19,7 @@ struct CityOptions {
   std::uint64_t seed = 1;
   int streets = 9;           ///< each way
   double block = 120;        ///< mean distance between parallel streets, m
+  double density = 1;        ///< lamps and all that stands between them, so many times as dense
   bool regular = false;      ///< one lamp spacing everywhere, no trees, signs or clutter
   double regularJitter = 0;  ///< of the lamps of a regular city, along an axis, m
   double missing = 0.1;      ///< share of standing poles that are not on the map
@@ -58,6 +59,12 @@ inline Way drivable(const Way& way) {
   return resample(smooth, 1);
 }
 
+/// \brief What a pole detector meets.
+struct Surroundings {
+  std::vector<Eigen::Vector2d> poles;    ///< map frame, m
+  std::vector<Eigen::Vector2d> clutter;  ///< taken for poles, not on any map
+};
+
 class PoleCity {
  public:
   /// \brief Streets on an irregular grid.
@@ -80,8 +87,7 @@ class PoleCity {
     makeMap();
   }
 
-  const std::vector<Eigen::Vector2d>& poles() const { return m_poles; }      ///< standing
-  const std::vector<Eigen::Vector2d>& clutter() const { return m_clutter; }  ///< false, but there
+  const Surroundings& surroundings() const { return m_things; }
   const std::vector<MapPole>& map() const { return m_map; }
 
   /// \brief A way of `length` metres from a random place, turning at some crossings.
@@ -130,19 +136,23 @@ class PoleCity {
           beside = m_random.uniform(4.5, 9);
         }
         if (regular) spacing = 25, beside = 6;
-        put(m_poles, road, along, side * beside, regular ? m_options.regularJitter : 0.4);
+        put(m_things.poles, road, along, side * beside, regular ? m_options.regularJitter : 0.4);
         if (!regular && m_random.chance(0.12)) {  // a row of trees
           const int trees = 3 + m_random.below(6);
           const double step = m_random.uniform(5, 9);
           for (int k = 1; k <= trees; ++k)
-            put(m_poles, road, along + k * step, side * (beside + m_random.uniform(1, 4)), 0.3);
+            put(m_things.poles, road, along + k * step, side * (beside + m_random.uniform(1, 4)),
+                0.3);
         }
         if (!regular && m_random.chance(0.25))
-          put(m_poles, road, along + m_random.uniform(3, 12), side * m_random.uniform(4, 6), 0.5);
-        if (!regular && m_random.chance(0.3))
-          put(m_clutter, road, along + m_random.uniform(0, 20), side * m_random.uniform(5, 14),
+          put(m_things.poles, road, along + m_random.uniform(3, 12), side * m_random.uniform(4, 6),
               0.5);
-        along += regular ? spacing : std::max(10.0, m_random.normal(spacing, 0.06 * spacing));
+        if (!regular && m_random.chance(0.3))
+          put(m_things.clutter, road, along + m_random.uniform(0, 20),
+              side * m_random.uniform(5, 14), 0.5);
+        along += regular
+                     ? spacing
+                     : std::max(10.0, m_random.normal(spacing, 0.06 * spacing)) / m_options.density;
       }
     }
   }
@@ -162,7 +172,7 @@ class PoleCity {
 
   void makeMap() {
     std::vector<Eigen::Vector2d> standing;
-    for (const Eigen::Vector2d& pole : m_poles) {
+    for (const Eigen::Vector2d& pole : m_things.poles) {
       if (!m_random.chance(m_options.vanished)) standing.push_back(pole);
       if (m_random.chance(m_options.missing)) continue;
       MapPole mapped;
@@ -171,13 +181,13 @@ class PoleCity {
       mapped.covariance = m_options.mapNoise * m_options.mapNoise * Eigen::Matrix2d::Identity();
       m_map.push_back(mapped);
     }
-    m_poles = standing;
+    m_things.poles = standing;
   }
 
   CityOptions m_options;
   sim::Random m_random;
   std::vector<double> m_lines[2];
-  std::vector<Eigen::Vector2d> m_poles, m_clutter;
+  Surroundings m_things;
   std::vector<MapPole> m_map;
 };
 
@@ -223,9 +233,24 @@ inline void detect(const std::vector<Eigen::Vector2d>& things, const Pose2D& tru
   }
 }
 
+/// \brief What no other frame repeats.
+inline void addFalse(const DriveOptions& options, sim::Random& random,
+                     std::vector<PoleDetection>& out) {
+  for (double left = options.falsePerFrame; random.chance(std::min(1.0, left)); left -= 1) {
+    const double range = options.range * std::sqrt(random.uniform());
+    const double bearing = random.uniform(-M_PI, M_PI);
+    PoleDetection detection;
+    detection.x = range * std::cos(bearing);
+    detection.y = range * std::sin(bearing);
+    detection.radius = 0.1;
+    detection.covariance *= 0.2;
+    out.push_back(detection);
+  }
+}
+
 /// \brief A frame every metre of the way.
-inline std::vector<Frame> drive(const PoleCity& city, const Way& way, const DriveOptions& options,
-                                sim::Random& random) {
+inline std::vector<Frame> drive(const Surroundings& things, const Way& way,
+                                const DriveOptions& options, sim::Random& random) {
   std::vector<Frame> frames;
   for (std::size_t i = 0; i < way.size(); ++i) {
     Frame frame;
@@ -238,21 +263,12 @@ inline std::vector<Frame> drive(const PoleCity& city, const Way& way, const Driv
       frame.motion = {noisy(step.x), noisy(step.y),
                       step.yaw + random.normal() * options.odometryNoise * step.yaw};
     }
-    detect(city.poles(), frame.truth, options, random, frame.poles_robot);
-    detect(city.clutter(), frame.truth, options, random, frame.poles_robot);
-    for (double left = options.falsePerFrame; random.chance(std::min(1.0, left)); left -= 1) {
-      const double range = options.range * std::sqrt(random.uniform());
-      const double bearing = random.uniform(-M_PI, M_PI);
-      PoleDetection detection;
-      detection.x = range * std::cos(bearing);
-      detection.y = range * std::sin(bearing);
-      detection.radius = 0.1;
-      detection.covariance *= 0.2;
-      frame.poles_robot.push_back(detection);
-    }
+    detect(things.poles, frame.truth, options, random, frame.poles_robot);
+    detect(things.clutter, frame.truth, options, random, frame.poles_robot);
+    addFalse(options, random, frame.poles_robot);
     frames.push_back(frame);
   }
   return frames;
 }
 
-}  // namespace polemcl::test
+}  // namespace polemcl::tests

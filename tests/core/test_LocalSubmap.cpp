@@ -242,19 +242,19 @@ TEST(LocalSubmap, clearStartsAnew) {
 
 /// Against the truth of simulated drives: the covariances must be what the errors are.
 TEST(LocalSubmap, polesLieWhereTheyAreAndAsCertainlyAsItSays) {
-  const test::PoleCity city({11});
+  const tests::PoleCity city({11});
   sim::Random random(12);
   double squared = 0;
   std::size_t count = 0, strays = 0;
   for (int run = 0; run < 10; ++run) {
-    const std::vector<test::Frame> frames =
-        test::drive(city, city.randomWay(random, 60), {}, random);
+    const std::vector<tests::Frame> frames =
+        tests::drive(city.surroundings(), city.randomWay(random, 60), {}, random);
     LocalSubmap submap;
-    for (const test::Frame& frame : frames) submap.add(frame.motion, frame.poles_robot);
+    for (const tests::Frame& frame : frames) submap.add(frame.motion, frame.poles_robot);
     for (const PoleDetection& pole : submap.detections(4)) {
       const Pose2D at = compose(frames.back().truth, {pole.x, pole.y, 0});
       Eigen::Vector2d best(1e9, 0);
-      for (const auto* things : {&city.poles(), &city.clutter()})
+      for (const auto* things : {&city.surroundings().poles, &city.surroundings().clutter})
         for (const Eigen::Vector2d& thing : *things) {
           const Eigen::Vector2d error = thing - Eigen::Vector2d(at.x, at.y);
           if (error.norm() < best.norm()) best = error;

@@ -11,8 +11,9 @@ namespace {
 constexpr double s_sigmas = 2.5;  ///< of tolerances: 96 % of true matches lie within, in the plane
 constexpr int s_mostUses = 4;     ///< of one star in pairs: a false one must not spoil them all
 
-/// Least hits after so many probes; a true place, where six of ten stars find their pole, falls
-/// short once in two hundred times, a chance one at three of a hundred hardly ever passes the last.
+/// Least hits after so many probes. A true place, where six of ten stars find their pole, falls
+/// short once in a hundred times, and up to `maxPairs` pairs can find it; of chance ones, with
+/// three hits in a hundred probes, hardly any gets through.
 constexpr std::uint32_t leastHits(std::uint32_t probes) {
   return probes < 6 ? 0 : probes < 10 ? 1 : probes < 16 ? 2 : probes < 24 ? 5 : 8;
 }

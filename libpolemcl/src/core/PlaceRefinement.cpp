@@ -137,7 +137,9 @@ void PlaceRefinement::judge(const State& state, GlobalHypothesis& out) {
     out.evidence += std::log1p(star.odds * sharpness * std::exp(-0.5 * squared));
   }
   out.unseen = countUnseen(state);
-  out.evidence += out.unseen * std::log1p(-m_map.options().seen);
+  // Where the map is old or full of false poles, these must not outvote the matches.
+  const double doubt = -std::log1p(-m_map.options().seen) * out.unseen;
+  out.evidence -= std::min(doubt, 0.5 * out.evidence);
   out.matchedShare = static_cast<double>(out.matched) / static_cast<double>(m_sky.reliable());
   out.pose_map_robot = state.pose;
   out.pose_map_local = compose(state.pose, relative(m_poseLocal, Pose2D{}));
