@@ -184,6 +184,21 @@ TEST(SensorModel, aTableMayComeInAnyOrder) {
   expectOwnRows(sensor, {1, 30});
 }
 
+// As the HDL-64E: two blocks, each with its own apex.
+TEST(SensorModel, aTableMayHaveALowerBlock) {
+  SensorOptions options = table({2, 0, -4, -2});
+  options.lowerElevations = {-10 * kDegree, -6 * kDegree, -8 * kDegree};
+  options.upperApex = 0.2;
+  options.lowerApex = 0.12;
+  const SensorModel sensor(options);
+  ASSERT_EQ(sensor.rows(), 7);
+  EXPECT_DOUBLE_EQ(sensor.beam(3).slope, std::tan(-4 * kDegree));
+  EXPECT_EQ(sensor.beam(3).offset, 0.2);
+  EXPECT_DOUBLE_EQ(sensor.beam(4).slope, std::tan(-6 * kDegree));
+  EXPECT_EQ(sensor.beam(4).offset, 0.12);
+  expectOwnRows(sensor, {3, 12, 60});
+}
+
 TEST(SensorModel, uniformBeamsAreEvenlySpaced) {
   const SensorModel sensor(uniform(5, 10, -30, 720));
   ASSERT_EQ(sensor.rows(), 5);
@@ -245,6 +260,14 @@ TEST(SensorOptions, refusesElevationsThatHaveNoTangent) {
   EXPECT_REFUSED(uniform(16, 90, -1), {}, "fov_up_deg");
   EXPECT_REFUSED(uniform(16, 1, -90), {}, "fov_down_deg");
   EXPECT_EQ(refusal({}, [](SensorOptions& o) { o.elevations = {90}; }), "accepted");  // not used
+}
+TEST(SensorOptions, refusesALowerBlockThatIsNone) {
+  EXPECT_REFUSED(
+      table({1, -1}), { o.lowerElevations = {-0.2}; }, "lower_elevations_deg");
+  EXPECT_REFUSED(
+      table({1, -1}), { o.lowerElevations.assign(2, 0.0); }, "below all");
+  EXPECT_REFUSED(
+      table({1, -1}), { o.lowerApex = std::nan(""); }, "apex_m");
 }
 TEST(SensorOptions, refusesTooFewColumnsForAnyModel) {
   EXPECT_REFUSED(

@@ -85,7 +85,7 @@ TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
       other = "taubin";
     else if (key == "free_space")
       other = "ring";
-    else if (key == "elevations_deg")
+    else if (key == "elevations_deg" || key == "lower_elevations_deg" || key == "apex_m")
       other = "1 2";
     else if (key == "origin")
       other = "1 2 3";

@@ -1,5 +1,6 @@
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/ExtractApp.h>
+#include <polemcl/apps/InspectApp.h>
 #include <polemcl/apps/Progress.h>
 #include <polemcl/apps/RawlogActions.h>
 #include <polemcl/io/AtomicFile.h>
@@ -117,30 +118,62 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
   return summary;
 }
 
+namespace {
+
+void runExtraction(const ExtractOptions& options, const std::string& config, bool quiet) {
+  const auto settings = loadSettings(config);
+  ExtractSummary summary;
+  {
+    Progress progress("extract", 0, quiet);
+    summary = extractPoles(options, settings, [&](std::size_t done) { progress.update(done); });
+  }
+  if (!quiet) print(summary, options);
+}
+
+void runInspection(const InspectOptions& options, bool quiet) {
+  const RawlogInspection inspection = inspect(options);
+  if (quiet) return;
+  printInspection(std::cout, inspection);
+  if (options.writeConfig)
+    std::cout << "written           " << options.writeConfig->string() << '\n';
+}
+
+}  // namespace
+
 int extractMain(int argc, const char* const* argv) {
-  CommandLine line("pole-extract", "Extracts the poles of every scan of a rawlog.");
+  CommandLine line("pole-extract",
+                   "Extracts the poles of every scan of a rawlog, or inspects its LiDAR.");
   ExtractOptions options;
+  InspectOptions inspection;
   std::string config;
   auto& cli = line.cli();
-  cli.add_option("--config", config, "INI file, see config/")->required();
-  cli.add_option("--input", options.input, "Rawlog of scans")->required();
-  cli.add_option("--output", options.output, "Rawlog of poles to write")->required();
-  cli.add_option("--csv", options.csv, "Also write the poles to this table");
-  cli.add_option("--png", options.png, "Draw one scan from above with its poles");
+  auto* inspected = cli.add_option("--inspect", inspection.input,
+                                   "Rawlog of scans: estimate its LiDAR's beams and mounting");
+  cli.add_option("--write-config", inspection.writeConfig, "INI file to write for that LiDAR")
+      ->needs(inspected);
+  auto* configured = cli.add_option("--config", config, "INI file, see config/");
+  auto* input = cli.add_option("--input", options.input, "Rawlog of scans");
+  auto* output = cli.add_option("--output", options.output, "Rawlog of poles to write");
+  auto* csv = cli.add_option("--csv", options.csv, "Also write the poles to this table");
+  auto* png = cli.add_option("--png", options.png, "Draw one scan from above with its poles");
   cli.add_option("--png-scan", options.pngScan, "The scan to draw, from 0")
       ->type_name("K")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  for (auto* option : {configured, input, output, csv, png}) inspected->excludes(option);
   cli.add_flag("--allow-truncated", options.allowTruncated,
                "Use the readable part of a rawlog that was cut short");
+  cli.parse_complete_callback([&] {
+    if (inspected->count() > 0) return;
+    for (const auto* option : {configured, input, output})
+      if (option->count() == 0) throw CLI::RequiredError(option->get_name());
+  });
   return line.run(argc, argv, [&] {
-    const auto settings = loadSettings(config);
-    ExtractSummary summary;
-    {
-      Progress progress("extract", 0, line.quiet());
-      summary = extractPoles(options, settings, [&](std::size_t done) { progress.update(done); });
-    }
-    if (!line.quiet()) print(summary, options);
+    inspection.allowTruncated = options.allowTruncated;
+    if (inspected->count() > 0)
+      runInspection(inspection, line.quiet());
+    else
+      runExtraction(options, config, line.quiet());
   });
 }
 

@@ -89,6 +89,9 @@ SensorModel::SensorModel(const SensorOptions& options) {
     lowerOffset = preset->lowerOffset;
   } else if (options.model == "table") {
     upper = options.elevations;
+    lower = options.lowerElevations;
+    offset = options.upperApex;
+    lowerOffset = options.lowerApex;
   } else {
     for (double e : fan(options.rows, options.fovUp, options.fovDown)) upper.push_back(e);
   }
@@ -145,6 +148,28 @@ void SensorModel::buildBlock(int block, int firstRow, int lastRow) {
   }
 }
 
+namespace {
+
+void validateTable(const SensorOptions& options, double steepest) {
+  for (const auto* list : {&options.elevations, &options.lowerElevations})
+    for (const double elevation : *list)
+      if (!(std::abs(elevation) <= steepest))
+        throw Error("[sensor] elevations_deg: " + std::to_string(elevation / kDegree) +
+                    ": allowed are -89 to 89 degrees");
+  for (const double apex : {options.upperApex, options.lowerApex})
+    if (!std::isfinite(apex)) throw Error("[sensor] apex_m: allowed are finite numbers");
+  if (options.lowerElevations.empty()) return;
+  if (options.lowerElevations.size() < 2)
+    throw Error("[sensor] lower_elevations_deg: a lower block needs at least 2 beams, or none");
+  const double least = *std::min_element(options.elevations.begin(), options.elevations.end());
+  for (const double elevation : options.lowerElevations)
+    if (elevation >= least)
+      throw Error("[sensor] lower_elevations_deg: " + std::to_string(elevation / kDegree) +
+                  ": allowed are angles below all of elevations_deg");
+}
+
+}  // namespace
+
 void SensorOptions::validate() const {
   const auto names = SensorModel::modelNames();
   if (std::find(names.begin(), names.end(), model) == names.end())
@@ -153,10 +178,7 @@ void SensorOptions::validate() const {
     throw Error("[sensor] elevations_deg: model = table needs the elevations of at least 2 beams");
   // Rows are looked up by the tangent of their elevation.
   constexpr double kSteepest = 89 * kDegree;
-  for (const double elevation : model == "table" ? elevations : std::vector<double>())
-    if (!(std::abs(elevation) <= kSteepest))
-      throw Error("[sensor] elevations_deg: " + std::to_string(elevation / kDegree) +
-                  ": allowed are -89 to 89 degrees");
+  if (model == "table") validateTable(*this, kSteepest);
   if (model == "uniform" && (rows < 2 || rows > 1024))
     throw Error("[sensor] rows = " + std::to_string(rows) +
                 ": model = uniform needs 2 to 1024 beams");

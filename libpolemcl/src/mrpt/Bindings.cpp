@@ -70,6 +70,11 @@ void bind(Binder& b, SensorOptions& o) {
            "beams of a data sheet, elevations_deg, or rows from fov_up_deg to fov_down_deg");
   b.flag("upside_down", o.upsideDown, "true: the elevations of the model change sign");
   b.anglesDeg("elevations_deg", o.elevations, Range::between(-90, 90), "beams of model = table");
+  b.anglesDeg("lower_elevations_deg", o.lowerElevations, Range::between(-90, 90),
+              "lower block of model = table, for sensors of two blocks");
+  b.numbers(
+      "apex_m", {&o.upperApex, &o.lowerApex}, Range::any(), "m",
+      "where the beams of elevations_deg and of lower_elevations_deg start, above the origin");
   b.integer("rows", o.rows, Range::between(2, 1024), "", "beams of model = uniform");
   b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90), "topmost beam of model = uniform");
   b.angleDeg("fov_down_deg", o.fovDown, Range::between(-90, 90), "lowest beam of model = uniform");

@@ -1,9 +1,6 @@
-#include <mrpt/poses/CPose3D.h>
 #include <polemcl/mrpt/PoleExtraction.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
-
+#include "LidarFrame.h"
 #include "MrptReason.h"
 #include "ObservationPoints.h"
 
@@ -11,43 +8,10 @@ namespace polemcl {
 
 namespace {
 
-/// Where the lidar frame is, seen from the cloud and from the planar sensor frame.
-struct Frames {
-  Eigen::Matrix3d R_lidar_cloud = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d t_lidar_cloud = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d R_planar_lidar = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d t_planar_lidar = Eigen::Vector3d::Zero();  ///< z is of no consequence
-  bool cloudIsLidar = true;
-  bool planarIsLidar = true;
-};
-
-Frames framesOf(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor) {
-  Frames f;
-  const Eigen::Vector3d origin(sensor.originX, sensor.originY, sensor.originZ);
-  const Eigen::Matrix3d R_robot_cloud = sensorPose.getRotationMatrix().asEigen();
-  const Eigen::Matrix3d R_robot_planar =
-      Eigen::AngleAxisd(sensorPose.yaw(), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const double upright = R_robot_cloud(2, 2);  // cosine between the two z axes
-  Eigen::Matrix3d R_robot_lidar = R_robot_cloud;
-  if (upright < -M_SQRT1_2) {
-    f.R_lidar_cloud = Eigen::Vector3d(1, -1, -1).asDiagonal();  // half a turn about x
-    R_robot_lidar = R_robot_cloud * f.R_lidar_cloud;
-  } else if (upright < M_SQRT1_2) {
-    f.R_lidar_cloud = R_robot_planar.transpose() * R_robot_cloud;
-    R_robot_lidar = R_robot_planar;
-  }
-  f.t_lidar_cloud = -(R_robot_lidar.transpose() * origin);
-  f.R_planar_lidar = R_robot_planar.transpose() * R_robot_lidar;
-  f.t_planar_lidar = R_robot_planar.transpose() * origin;
-  f.cloudIsLidar = f.R_lidar_cloud.isIdentity(0) && origin.isZero(0);
-  f.planarIsLidar = f.R_planar_lidar.isIdentity(1e-12) && origin.isZero(0);
-  return f;
-}
-
 /// Moves a detection from the lidar frame to the planar sensor frame, at its middle height: there
 /// the axis of a pole that stands askew in the lidar frame passes through the centre found. Heights
 /// are above the ground under the pole, which the robot stands on too: level in its frame.
-void toPlanar(const Frames& f, double ground, PoleDetection& pole) {
+void toPlanar(const LidarFrame& f, double ground, PoleDetection& pole) {
   if (f.planarIsLidar) return;
   const double middle = (pole.bottom + pole.top) / 2 + ground;  // above the sensor, along robot z
   const Eigen::RowVector3d up = f.R_planar_lidar.row(2);
@@ -84,30 +48,8 @@ struct PoleExtraction::Impl {
   ObservationPoints points;
   PoleExtractor extractor;
   ExtractionReport report;
-  std::vector<float> x, y, z;  ///< moved points
-
-  PointsView toLidar(const PointsView& cloud, const Frames& f);
+  MovedPoints moved;
 };
-
-PointsView PoleExtraction::Impl::toLidar(const PointsView& cloud, const Frames& f) {
-  if (f.cloudIsLidar) return cloud;
-  x.resize(cloud.size);
-  y.resize(cloud.size);
-  z.resize(cloud.size);
-  const Eigen::Matrix3f R = f.R_lidar_cloud.cast<float>();
-  const Eigen::Vector3f t = f.t_lidar_cloud.cast<float>();
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    const float px = cloud.x[i], py = cloud.y[i], pz = cloud.z[i];
-    if (px == 0 && py == 0 && pz == 0) {  // no return: must not become a point somewhere else
-      x[i] = y[i] = z[i] = 0;
-      continue;
-    }
-    x[i] = R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x();
-    y[i] = R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y();
-    z[i] = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz + t.z();
-  }
-  return {x.data(), y.data(), z.data(), cloud.size};
-}
 
 PoleExtraction::PoleExtraction(const PoleExtractionOptions& options)
     : m_impl(std::make_unique<Impl>(options)) {}
@@ -129,8 +71,8 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
     const ObservationPoints::Loan loan(m_impl->points);
     const PointsView cloud = m_impl->points.read(observation);
     if (cloud.size > 0) {
-      const Frames frames = framesOf(result->sensorPose, m_impl->sensor);
-      result->poles = m_impl->extractor.extract(m_impl->toLidar(cloud, frames));
+      const LidarFrame frames = lidarFrame(result->sensorPose, m_impl->sensor);
+      result->poles = m_impl->extractor.extract(m_impl->moved.toLidar(cloud, frames));
       m_impl->report = m_impl->extractor.report();
       for (auto& pole : result->poles) toPlanar(frames, m_impl->report.ground, pole);
     }
@@ -147,8 +89,8 @@ io::Cloud PoleExtraction::lidarPoints(const mrpt::obs::CObservation& observation
   io::Cloud cloud;
   readingPoints(observation, [&] {
     const ObservationPoints::Loan loan(m_impl->points);
-    const PointsView points =
-        m_impl->toLidar(m_impl->points.read(observation), framesOf(sensorPose, m_impl->sensor));
+    const PointsView points = m_impl->moved.toLidar(m_impl->points.read(observation),
+                                                    lidarFrame(sensorPose, m_impl->sensor));
     cloud.x.assign(points.x, points.x + points.size);
     cloud.y.assign(points.y, points.y + points.size);
     cloud.z.assign(points.z, points.z + points.size);

@@ -1,4 +1,3 @@
-#include <mrpt/io/lazy_load_path.h>
 #include <polemcl/mrpt/PoleSequence.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/info.h>
@@ -7,8 +6,8 @@
 
 #include <algorithm>
 #include <exception>
-#include <filesystem>
 
+#include "ExternalFiles.h"
 #include "ScanSource.h"
 
 namespace polemcl {
@@ -106,16 +105,6 @@ SequenceCounts Stream::counts() const {
   counts.unknownMotions = m_source.unknownMotions();
   counts.truncated = m_source.truncated();
   return counts;
-}
-
-/// Relative names of external files are meant from the folder MRPT's tools put them in, if there
-/// is one, else from the rawlog's own.
-void findExternals(const std::string& path) {
-  const std::filesystem::path file = std::filesystem::absolute(path);
-  const std::filesystem::path images = file.parent_path() / (file.stem().string() + "_Images");
-  std::error_code none;
-  mrpt::io::setLazyLoadPathBase(
-      (std::filesystem::is_directory(images, none) ? images : file.parent_path()).string());
 }
 
 }  // namespace

@@ -15,11 +15,17 @@ struct SensorOptions {
   /// Upside down mounting: the beams are listed as seen upright, z up (elevations change sign).
   bool upsideDown = false;
   std::vector<double> elevations;  ///< rad, any order, only for `table` (`elevations_deg`)
-  int rows = 64;                   ///< beams, only for `uniform`
-  double fovUp = 0.0349;           ///< rad, only for `uniform` (`fov_up_deg`)
-  double fovDown = -0.4334;        ///< rad, only for `uniform` (`fov_down_deg`)
-  int columns = 0;                 ///< firing steps a turn; 0: the model's
-  double height = 1.73;            ///< optical centre above ground, m (`height_m`)
+  /// Lower block of a two-block sensor (HDL-64E), all below those of `elevations`, rad, only for
+  /// `table` (`lower_elevations_deg`).
+  std::vector<double> lowerElevations;
+  /// Where the beams of `elevations` and of `lowerElevations` start, above the origin, m, only for
+  /// `table` (`apex_m = upper lower`).
+  double upperApex = 0, lowerApex = 0;
+  int rows = 64;             ///< beams, only for `uniform`
+  double fovUp = 0.0349;     ///< rad, only for `uniform` (`fov_up_deg`)
+  double fovDown = -0.4334;  ///< rad, only for `uniform` (`fov_down_deg`)
+  int columns = 0;           ///< firing steps a turn; 0: the model's
+  double height = 1.73;      ///< optical centre above ground, m (`height_m`)
   /// Optical centre in the *robot frame after the sensor pose*, when clouds come in another frame
   /// than the LiDAR's own (NCLT: body frame, 0.957 m above its origin): `origin = x y z`, m.
   double originX = 0, originY = 0, originZ = 0;
