@@ -113,19 +113,21 @@ undecided_auc() {
 
 # summarize QUICK: all figures as one JSON object on standard output.
 summarize() {
-  [ ! -f "$out/pair.json" ] || jq '{pair: .}' "$out/pair.json"
-  for method in native paper; do
-    [ ! -f "$out/real_$method.json" ] || jq --arg m $method '{real: {($m): .}}' "$out/real_$method.json"
-    for sensor in hdl64e hdl32e os1_64 vlp16; do
-      # The mean, least and greatest of every figure over the worlds.
-      jq -s --arg s $sensor --arg m $method '
-        def over(f): . as $worlds | (.[0] | keys_unsorted) - ["seed"]
-          | map({key: ., value: (. as $k | [$worlds[] | .[$k] | numbers]
-                | if length == 0 then null else f end)}) | from_entries;
-        {simulated: {($s): {($m): {mean: over(add / length), min: over(min), max: over(max),
-                                   worlds: .}}}}' "$out/${sensor}_${method}"_*.json
+  {
+    [ ! -f "$out/pair.json" ] || jq '{pair: .}' "$out/pair.json"
+    for method in native paper; do
+      [ ! -f "$out/real_$method.json" ] || jq --arg m $method '{real: {($m): .}}' "$out/real_$method.json"
+      for sensor in hdl64e hdl32e os1_64 vlp16; do
+        # The mean, least and greatest of every figure over the worlds.
+        jq -s --arg s $sensor --arg m $method '
+          def over(f): . as $worlds | (.[0] | keys_unsorted) - ["seed"]
+            | map({key: ., value: (. as $k | [$worlds[] | .[$k] | numbers]
+                  | if length == 0 then null else f end)}) | from_entries;
+          {simulated: {($s): {($m): {mean: over(add / length), min: over(min), max: over(max),
+                                     worlds: .}}}}' "$out/${sensor}_${method}"_*.json
+      done
     done
-  done | jq -s --arg quick "$1" --argjson length "$length" --argjson spacing "$spacing" '
+  } | jq -s --arg quick "$1" --argjson length "$length" --argjson spacing "$spacing" '
     {quick: ($quick == "yes"), length_m: $length, spacing_m: $spacing} + reduce .[] as $part ({}; . * $part)'
 }
 
