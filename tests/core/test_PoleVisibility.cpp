@@ -67,6 +67,20 @@ TEST(PoleVisibility, HeightsAndRangesAreThoseOfTheMap) {
   EXPECT_NEAR(sights[1].range, 4, 1e-12);
 }
 
+TEST(PoleVisibility, ArmsAndSignsDoNotRaiseTheMiddle) {
+  Cloud cloud;
+  cloud.column(9.9, 0, 5, 0.0, 2.0, 1);
+  cloud.column(10, 0.36, 9, 4.0, 4.5, 1);  // beyond 0.1 + 0.25 m
+  const auto sight = sightPoles(cloud.view(), cloud.labels, here, {{1, 10, 0, 0.1}})[0];
+  EXPECT_EQ(sight.returns, 14u);
+  EXPECT_NEAR(sight.middle, 1.0, 1e-6);
+  EXPECT_NEAR(sight.highest, 4.5, 1e-6);
+  // Nothing else to go by: the arm it is.
+  Cloud arm;
+  arm.column(10, 0.36, 3, 4.0, 4.5, 1);
+  EXPECT_NEAR(sightPoles(arm.view(), arm.labels, here, {{1, 10, 0, 0.1}})[0].middle, 4.25, 1e-6);
+}
+
 TEST(PoleVisibility, APoleIsWhereItsReturnsAreInALeaningFrame) {
   // Nose down by 0.05: what stands 2 m above the sensor, 20 m ahead, comes nearer by 2·sin(0.05).
   Eigen::Isometry3d pose(Eigen::Translation3d(1, 2, 10));

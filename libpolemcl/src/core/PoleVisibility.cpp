@@ -6,6 +6,12 @@
 #include <unordered_map>
 
 namespace polemcl {
+namespace {
+
+/// m: what is farther from a pole's surface is an arm or a sign on it.
+constexpr double kTrunkMargin = 0.25;
+
+}  // namespace
 
 std::vector<PoleSight> sightPoles(const PointsView& points,
                                   const std::vector<std::uint32_t>& labels,
@@ -18,7 +24,7 @@ std::vector<PoleSight> sightPoles(const PointsView& points,
   for (std::size_t i = 0; i < poles.size(); ++i)
     if (!indexOf.emplace(poles[i].id, i).second)
       throw Error("two poles have the id " + std::to_string(poles[i].id));
-  std::vector<std::vector<double>> heights(poles.size());
+  std::vector<std::vector<double>> heights(poles.size()), trunk(poles.size());
   const Eigen::RowVector3d up = T_map_cloud.linear().row(2);
   const Eigen::Vector3d sensor = T_map_cloud.translation();
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -33,7 +39,7 @@ std::vector<PoleSight> sightPoles(const PointsView& points,
     const auto& z = heights[i];
     sight.returns = z.size();
     sight.range = std::hypot(poles[i].x - sensor.x(), poles[i].y - sensor.y());
-    sight.middle = quantile(z, 0.5).value_or(sensor.z());
+    sight.middle = quantile(trunk[i].empty() ? z : trunk[i], 0.5).value_or(sensor.z());
     sight.lowest = z.empty() ? sensor.z() : *std::min_element(z.begin(), z.end());
     sight.highest = z.empty() ? sensor.z() : *std::max_element(z.begin(), z.end());
     sight.visible = sight.returns >= rule.returns && sight.highest - sight.lowest >= rule.height &&
