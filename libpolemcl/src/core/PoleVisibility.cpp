@@ -30,8 +30,12 @@ std::vector<PoleSight> sightPoles(const PointsView& points,
   for (std::size_t i = 0; i < points.size; ++i) {
     const auto pole = indexOf.find(labels[i]);
     if (pole == indexOf.end()) continue;
-    heights[pole->second].push_back(up.dot(Eigen::Vector3d(points.x[i], points.y[i], points.z[i])) +
-                                    sensor.z());
+    const Eigen::Vector3d point(points.x[i], points.y[i], points.z[i]);
+    const Eigen::Vector2d place = (T_map_cloud.linear() * point + sensor).head<2>();
+    const WorldPole& known = poles[pole->second];
+    heights[pole->second].push_back(up.dot(point) + sensor.z());
+    if ((place - Eigen::Vector2d(known.x, known.y)).norm() <= known.radius + kTrunkMargin)
+      trunk[pole->second].push_back(heights[pole->second].back());
   }
   std::vector<PoleSight> sights(poles.size());
   for (std::size_t i = 0; i < poles.size(); ++i) {
