@@ -309,6 +309,49 @@ TEST(GlobalLocalizer, holdsUnseenPolesAgainstAPlace) {
   EXPECT_GE(result.hypotheses[1].unseen, result.hypotheses[0].unseen + 18);
 }
 
+/// Nothing false and nothing missing: one pair of poles is mostly enough, whichever way round it
+/// lies.
+TEST(GlobalLocalizer, findsAPlaceByOnePair) {
+  CityOptions options = city(1112);
+  options.missing = options.vanished = 0;
+  const PoleCity world(options);
+  GlobalOptions one;
+  one.maxPairs = 1;
+  const GlobalLocalizer localizer(world.map(), one);
+  DriveOptions clean;
+  clean.falsePerFrame = 0;
+  sim::Random random(3);
+  int right = 0;
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<Frame> frames =
+        tests::drive({world.surroundings().poles, {}}, world.randomWay(random, 40), clean, random);
+    LocalSubmap submap;
+    for (const Frame& frame : frames) submap.add(frame.motion, frame.poles_robot);
+    const GlobalResult result = localizer.localize(submap);
+    right += result.verdict == GlobalVerdict::resolved &&
+             isRight(result.hypotheses[0].pose_map_robot, frames.back().truth);
+  }
+  EXPECT_GE(right, 17);
+}
+
+/// Where two poles stand for each one of a coarse map, half of them match.
+TEST(GlobalLocalizer, creditsAMapPoleOnce) {
+  const PoleCity world(city(1113));
+  std::vector<MapPole> map = world.map();
+  for (MapPole& pole : map) pole.covariance = 0.15 * 0.15 * Eigen::Matrix2d::Identity();
+  tests::Surroundings twins{world.surroundings().poles, {}};
+  for (const Eigen::Vector2d& pole : world.surroundings().poles)
+    twins.poles.emplace_back(pole.x() + 0.3, pole.y());
+  sim::Random random(4);
+  LocalSubmap submap;
+  for (const Frame& frame : tests::drive(twins, world.randomWay(random, 40), {}, random))
+    submap.add(frame.motion, frame.poles_robot);
+  const GlobalResult result = GlobalLocalizer(map).localize(submap);
+  ASSERT_FALSE(result.hypotheses.empty());
+  EXPECT_GT(result.hypotheses[0].matchedShare, 0.35);
+  EXPECT_LT(result.hypotheses[0].matchedShare, 0.55);
+}
+
 /// A map full of poles that stand no more is still the right map.
 TEST(GlobalLocalizer, letsNoUnseenPolesOutvoteTheMatches) {
   const PoleCity world(city(1115));
