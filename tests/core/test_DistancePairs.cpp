@@ -49,7 +49,8 @@ TEST(DistancePairs, holdsEveryPairWithinTheBoundsOnce) {
 
 TEST(DistancePairs, sortsByDistance) {
   const std::vector<Eigen::Vector2d> poles = scatter(2, 100, 100);
-  const DistancePairs::Range all = DistancePairs(poles, 8, 40).between(0, 1000);
+  const DistancePairs pairs(poles, 8, 40);
+  const DistancePairs::Range all = pairs.between(0, 1000);
   ASSERT_GT(all.size(), 100u);
   EXPECT_TRUE(std::is_sorted(all.begin, all.end,
                              [](const auto& a, const auto& b) { return a.distance < b.distance; }));
@@ -63,7 +64,8 @@ TEST(DistancePairs, findsNothingOutsideOrBetweenCrossedBounds) {
   EXPECT_EQ(pairs.between(0, 19.9).size(), 0u);
   EXPECT_EQ(pairs.between(20.1, 90).size(), 0u);
   EXPECT_EQ(pairs.between(20.1, 19.9).size(), 0u);
-  EXPECT_EQ(DistancePairs({}, 8, 40).between(0, 100).size(), 0u);
+  const DistancePairs none({}, 8, 40);
+  EXPECT_EQ(none.between(0, 100).size(), 0u);
 }
 
 /// A park must not blow up the memory, nor lose its far pairs.

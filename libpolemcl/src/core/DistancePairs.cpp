@@ -46,7 +46,7 @@ DistancePairs::DistancePairs(const std::vector<Eigen::Vector2d>& poles, double m
   m_pairs.shrink_to_fit();
 }
 
-DistancePairs::Range DistancePairs::between(double low, double high) const {
+DistancePairs::Range DistancePairs::between(double low, double high) const& {
   const auto below = [](const Pair& pair, double bound) { return pair.distance < bound; };
   const auto above = [](double bound, const Pair& pair) { return bound < pair.distance; };
   const auto begin = std::lower_bound(m_pairs.begin(), m_pairs.end(), low, below);

@@ -27,13 +27,14 @@ class DistancePairs {
   DistancePairs(const std::vector<Eigen::Vector2d>& poles, double minDistance, double maxDistance,
                 std::size_t neighbours = 48);
 
-  /// \brief All pairs with low <= distance <= high, as [begin, end).
+  /// \brief All pairs with low <= distance <= high, as [begin, end) of memory that belongs to this.
   struct Range {
     const Pair* begin;
     const Pair* end;
     std::size_t size() const { return static_cast<std::size_t>(end - begin); }
   };
-  Range between(double low, double high) const;
+  Range between(double low, double high) const&;
+  Range between(double low, double high) const&& = delete;  // it would point into what is gone
   std::size_t size() const { return m_pairs.size(); }
 
  private:
