@@ -125,3 +125,21 @@ TEST_F(InspectApp, UsageNamesWhatIsMissing) {
   EXPECT_EQ(run({"--write-config", "a.ini"}).code, 2);
   EXPECT_EQ(run({"--inspect", "a", "--input", "b"}).code, 2);
 }
+
+// All three programs that extract say it, whatever the threads do, and nothing is written.
+TEST_F(InspectApp, AWrongModelIsRefused) {
+  writeSimulated(folder / "in", "vlp16", 1.0);
+  import("in");
+  const auto outcome =
+      run({"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(has(outcome.err, "scan 0: the cloud contradicts [sensor] model = hdl32e"))
+      << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "as model = vlp16 has")) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder / "poles.rawlog"));
+  writeText(folder / "forced.ini", "[sensor]\nmodel = hdl32e\ncheck_beams = false\n");
+  EXPECT_EQ(run({"--config", at("forced.ini"), "--input", at("in.rawlog"), "--output",
+                 at("poles.rawlog")})
+                .code,
+            0);
+}

@@ -11,6 +11,8 @@ using Part = double BeamOrigin::*;
 
 /// A more complicated explanation must raise the contrast by this much.
 constexpr double kGain = 0.03;
+/// Contrast that leaves nothing to explain.
+constexpr double kSharp = 0.8;
 
 struct Candidate {
   BeamOrigin origin;
@@ -156,9 +158,10 @@ BlockOrigins searchOrigins(BeamSpectrum& spectrum) {
   const auto z = &BeamOrigin::z, x = &BeamOrigin::x, y = &BeamOrigin::y, slide = &BeamOrigin::slide;
   Candidate own;
   own.contrast = spectrum.contrast(own.origin);
-  Candidate high = descend(spectrum, sweep(spectrum, own, z, 2.5, 0.01), std::array{z}, 0.005);
+  Candidate high = descend(spectrum, sweep(spectrum, own, z, 2.5, 0.02), std::array{z}, 0.01);
   if (own.contrast > high.contrast - 0.1 * kGain) high = own;
   Explanation best = explain(spectrum, high.origin);
+  if (best.contrast > kSharp) return best.blocks;
 
   const Candidate slid =
       descend(spectrum, sweep(spectrum, high, slide, 3.0, 0.1), std::array{slide, z}, 0.05);

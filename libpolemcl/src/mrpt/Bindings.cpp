@@ -85,6 +85,8 @@ void bind(Binder& b, SensorOptions& o) {
             "optical centre, x y z along the robot's axes from the origin of the clouds");
   b.number("min_range_m", o.minRange, notNegative, "m", "nearer returns are the vehicle");
   b.number("max_range_m", o.maxRange, positive, "m", "farther returns are not used");
+  b.flag("check_beams", o.checkBeams,
+         "true: a scan that contradicts the above is refused, looked for in the first three");
   b.check(o);
 }
 

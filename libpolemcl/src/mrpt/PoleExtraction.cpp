@@ -1,3 +1,5 @@
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <polemcl/core/SensorCheck.h>
 #include <polemcl/mrpt/PoleExtraction.h>
 
 #include "LidarFrame.h"
@@ -42,14 +44,31 @@ void readingPoints(const mrpt::obs::CObservation& observation, const Work& work)
 
 struct PoleExtraction::Impl {
   explicit Impl(const PoleExtractionOptions& o)
-      : sensor(o.sensor), points(o.sensor), extractor(o.sensor, o.extraction) {}
+      : sensor(o.sensor),
+        points(o.sensor),
+        extractor(o.sensor, o.extraction),
+        check(o.sensor, o.extraction.method == ExtractionMethod::native) {}
 
   SensorOptions sensor;
   ObservationPoints points;
   PoleExtractor extractor;
   ExtractionReport report;
   MovedPoints moved;
+  SensorCheck check;
+  int checksLeft = 3;  ///< scans to compare with the configuration
+
+  void compare(const mrpt::obs::CObservation& observation, const PointsView& points);
 };
+
+void PoleExtraction::Impl::compare(const mrpt::obs::CObservation& observation,
+                                   const PointsView& cloud) {
+  const bool image = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation);
+  if (!sensor.checkBeams || checksLeft <= 0 || image || cloud.size < SensorCheck::kFewestPoints)
+    return;
+  --checksLeft;
+  const std::string contradiction = check.contradiction(cloud);
+  if (!contradiction.empty()) throw Error(contradiction);
+}
 
 PoleExtraction::PoleExtraction(const PoleExtractionOptions& options)
     : m_impl(std::make_unique<Impl>(options)) {}
@@ -72,7 +91,9 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
     const PointsView cloud = m_impl->points.read(observation);
     if (cloud.size > 0) {
       const LidarFrame frames = lidarFrame(result->sensorPose, m_impl->sensor);
-      result->poles = m_impl->extractor.extract(m_impl->moved.toLidar(cloud, frames));
+      const PointsView points = m_impl->moved.toLidar(cloud, frames);
+      m_impl->compare(observation, points);
+      result->poles = m_impl->extractor.extract(points);
       m_impl->report = m_impl->extractor.report();
       for (auto& pole : result->poles) toPlanar(frames, m_impl->report.ground, pole);
     }
@@ -98,6 +119,10 @@ io::Cloud PoleExtraction::lidarPoints(const mrpt::obs::CObservation& observation
     cloud.invalid = m_impl->points.dropped();
   });
   return cloud;
+}
+
+void PoleExtraction::checkNext(bool compare) {
+  m_impl->checksLeft = compare ? 1 : 0;
 }
 
 const ExtractionReport& PoleExtraction::report() const {

@@ -76,6 +76,8 @@ void Stream::extract(Task& task) {
   }
   try {
     PoleExtraction& extraction = m_extractions.local();
+    // By index, so that the threads have no say in it.
+    extraction.checkNext(task.scan.index < 3);
     result.observation = extraction.process(*observation);
     result.scan = observation;
     result.points = result.observation->points;

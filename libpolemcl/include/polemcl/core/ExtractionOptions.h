@@ -31,7 +31,9 @@ struct SensorOptions {
   double originX = 0, originY = 0, originZ = 0;
   double minRange = 1.0;   ///< m, nearer returns are the vehicle
   double maxRange = 60.0;  ///< m
-  void validate() const;   ///< \throws Error
+  /// Compare the first scans with the beams above, and refuse those that contradict them.
+  bool checkBeams = true;
+  void validate() const;  ///< \throws Error
 };
 
 enum class ExtractionMethod { paper, native };

@@ -48,7 +48,14 @@ class PoleExtraction {
   /// valid point gives no poles and `points` = 0. \throws Error on other classes, on external files
   /// that cannot be read, on a rotating scan
   ///         whose elevations are not known.
+  ///
+  /// The first three scans with enough points are compared with the configuration (SensorCheck);
+  /// \throws Error when one contradicts it, unless `SensorOptions::checkBeams` is off. Depth images
+  /// are not compared.
   CObservationPoles::Ptr process(const mrpt::obs::CObservation& observation);
+  /// \brief Whether the next process() compares, instead of counting to three: for those who share
+  /// the scans of one rawlog among several objects.
+  void checkNext(bool compare);
   /// \brief The points that process() hands to PoleExtractor: a copy, lidar frame.
   /// \throws Error as process().
   io::Cloud lidarPoints(const mrpt::obs::CObservation& observation);
