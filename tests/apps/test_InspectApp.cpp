@@ -4,6 +4,8 @@
 #include <polemcl/sim/Drive.h>
 #include <polemcl/sim/Scanner.h>
 
+#include <cstdlib>
+
 #include "StreetTest.h"
 
 using namespace polemcl;
@@ -142,4 +144,19 @@ TEST_F(InspectApp, AWrongModelIsRefused) {
                  at("poles.rawlog")})
                 .code,
             0);
+}
+
+TEST_F(InspectApp, KnowsTheLidarOfKitti) {
+  const char* data = std::getenv("POLEMCL_DATA");
+  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  ImportOptions options;
+  options.input = fs::path(data) / "kitti_raw_0005";
+  options.output = folder / "in.rawlog";
+  options.every = 20;
+  importDataset(options);
+  const auto inspection = inspect({folder / "in.rawlog", std::nullopt, false});
+  EXPECT_EQ(inspection.sensor.beams.beams(), 64);
+  EXPECT_EQ(inspection.options.model, "hdl64e");
+  EXPECT_NEAR(inspection.options.height, 1.73, 0.1);
+  EXPECT_EQ(inspection.options.originZ, 0);
 }

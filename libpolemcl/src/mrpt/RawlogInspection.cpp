@@ -52,7 +52,9 @@ SensorOptions mounted(const SensorInspection& sensor, const mrpt::poses::CPose3D
                                         lidarFrame(pose, SensorOptions()).R_lidar_cloud.transpose();
   const Eigen::Vector3d origin =
       R_robot_lidar * Eigen::Vector3d(options.originX, options.originY, options.originZ);
-  const auto significant = [](double length) { return std::round(length * 1000) / 1000; };
+  const auto significant = [](double length) {
+    return std::round(length * 1000) / 1000 + 0.0;
+  };  // no -0
   options.originX = significant(origin.x());
   options.originY = significant(origin.y());
   options.originZ = significant(origin.z());
