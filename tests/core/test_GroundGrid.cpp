@@ -11,16 +11,11 @@ using namespace polemcl::clouds;
 
 namespace {
 
-struct Built {
-  SensorModel sensor;
-  ScanLines lines;
+GroundGrid built(const PointList& points, double sensorHeight) {
   GroundGrid ground;
-  Built(const PointList& points, const SensorModel& model, double sensorHeight)
-      : sensor(model), lines(sensor) {
-    lines.build(points.view(), 1, 60);
-    ground.build(lines, static_cast<float>(sensorHeight));
-  }
-};
+  ground.build(points.view(), 1, 60, static_cast<float>(sensorHeight));
+  return ground;
+}
 
 SensorModel sensorModel(const std::string& model) {
   SensorOptions options;
@@ -36,7 +31,8 @@ Errors errors(const GroundGrid& ground, const GroundPlane& truth, double from, d
   Errors e;
   for (double azimuth = -3.14; azimuth < 3.14; azimuth += 0.05)
     for (double rho = from; rho <= to; rho += 0.5) {
-      const double error = ground.at(static_cast<float>(azimuth), static_cast<float>(rho)) -
+      const double error = ground.at(static_cast<float>(rho * std::cos(azimuth)),
+                                     static_cast<float>(rho * std::sin(azimuth))) -
                            truth.at(rho * std::cos(azimuth), rho * std::sin(azimuth));
       e.low = std::max(e.low, -error);
       e.high = std::max(e.high, error);
@@ -56,11 +52,11 @@ TEST(GroundGrid, flatGroundIsFlat) {
   for (const std::string model : {"hdl64e", "hdl32e", "vlp16"}) {
     const SensorModel sensor = sensorModel(model);
     const GroundPlane plane{-1.5, 0, 0};
-    const Built b(cast(onGround(plane), sensor, {0.02, 0, 1}), sensor, 1.5);
-    const Errors e = errors(b.ground, plane, 3, 45);
+    const GroundGrid ground = built(cast(onGround(plane), sensor, {0.02, 0, 1}), 1.5);
+    const Errors e = errors(ground, plane, 3, 45);
     EXPECT_LT(e.low, 0.06) << model;
     EXPECT_LT(e.high, 0.06) << model;
-    EXPECT_NEAR(b.ground.median(), -1.5, 0.06) << model;
+    EXPECT_NEAR(ground.median(), -1.5, 0.06) << model;
   }
 }
 
@@ -68,8 +64,8 @@ TEST(GroundGrid, theNominalHeightMayBeOff) {
   const SensorModel sensor = sensorModel("hdl64e");
   const GroundPlane plane{-1.73, 0, 0};
   for (const double nominal : {1.4, 2.1}) {
-    const Built b(cast(onGround(plane), sensor, {0.02, 0, 1}), sensor, nominal);
-    const Errors e = errors(b.ground, plane, 5, 45);
+    const GroundGrid ground = built(cast(onGround(plane), sensor, {0.02, 0, 1}), nominal);
+    const Errors e = errors(ground, plane, 5, 45);
     EXPECT_LT(std::max(e.low, e.high), 0.06) << nominal;
   }
 }
@@ -80,8 +76,8 @@ TEST(GroundGrid, followsASlopeInAnyDirection) {
   const SensorModel sensor = sensorModel("hdl64e");
   for (double direction = 0; direction < 6.2; direction += 0.7) {
     const GroundPlane plane{-1.73, 0.08 * std::cos(direction), 0.08 * std::sin(direction)};
-    const Built b(cast(onGround(plane), sensor, {0.02, 0, 1}), sensor, 1.73);
-    const Errors e = errors(b.ground, plane, 4, 20);
+    const GroundGrid ground = built(cast(onGround(plane), sensor, {0.02, 0, 1}), 1.73);
+    const Errors e = errors(ground, plane, 4, 20);
     EXPECT_LT(e.low, 0.3) << direction;
     EXPECT_LT(e.high, 0.15) << direction;
   }
@@ -97,8 +93,8 @@ TEST(GroundGrid, strayReturnsBelowTheGroundDoNotMoveIt) {
       points.add(rho * std::cos((s + 0.5) * 5.625 * kDegree),
                  rho * std::sin((s + 0.5) * 5.625 * kDegree), z);
     }
-  const Built b(points, sensor, 1.73);
-  const Errors e = errors(b.ground, plane, 3, 45);
+  const GroundGrid ground = built(points, 1.73);
+  const Errors e = errors(ground, plane, 3, 45);
   EXPECT_LT(e.low, 0.06);
   EXPECT_LT(e.high, 0.06);
 }
@@ -108,34 +104,33 @@ TEST(GroundGrid, aWallIsNotTakenForGround) {
   const GroundPlane plane{-1.73, 0, 0};
   Scene scene = onGround(plane);
   scene.walls = {{-30, 7, 30, 7, -1.73, 8}, {-30, -9, 30, -9, -1.2, 8}};
-  const Built b(cast(scene, sensor, {0.02, 0, 1}), sensor, 1.73);
+  const GroundGrid ground = built(cast(scene, sensor, {0.02, 0, 1}), 1.73);
   // Before the walls, and as far behind them as heights are handed on.
-  const Errors e = errors(b.ground, plane, 3, 45);
+  const Errors e = errors(ground, plane, 3, 45);
   EXPECT_LT(e.low, 0.06);
   EXPECT_LT(e.high, 0.06);
 }
 
 TEST(GroundGrid, whereNothingIsSeenTheNominalHeightHolds) {
   const SensorModel sensor = sensorModel("vlp16");
-  const Built b(PointList(), sensor, 1.2);
-  for (const float rho : {0.f, 5.f, 49.f, 500.f}) EXPECT_FLOAT_EQ(b.ground.at(1, rho), -1.2f);
-  EXPECT_FLOAT_EQ(b.ground.median(), -1.2f);
+  const GroundGrid ground = built(PointList(), 1.2);
+  for (const float x : {0.f, 5.f, 49.f, -500.f}) EXPECT_FLOAT_EQ(ground.at(x, 0.1f * x), -1.2f);
+  EXPECT_FLOAT_EQ(ground.median(), -1.2f);
 }
 
 TEST(GroundGrid, theLastKnownHeightIsHandedOn) {
   const SensorModel sensor = sensorModel("vlp16");  // its lowest beams reach 30 m at most
   const GroundPlane plane{-1.0, 0.02, 0};
-  const Built b(cast(onGround(plane), sensor), sensor, 1.0);
-  EXPECT_NEAR(b.ground.at(0, 49), b.ground.at(0, 200), 1e-6);
-  EXPECT_TRUE(std::isfinite(b.ground.at(0, 1e6f)));
+  const GroundGrid ground = built(cast(onGround(plane), sensor), 1.0);
+  EXPECT_NEAR(ground.at(49, 0), ground.at(200, 0), 1e-6);
+  EXPECT_TRUE(std::isfinite(ground.at(1e6f, 0)));
 }
 
 TEST(GroundGrid, keepsNothingOfTheScanBefore) {
   const SensorModel sensor = sensorModel("hdl32e");
   const PointList low = cast(onGround({-2.0, 0, 0}), sensor),
                   high = cast(onGround({-1.0, 0, 0}), sensor);
-  Built b(low, sensor, 1.5);
-  b.lines.build(high.view(), 1, 60);
-  b.ground.build(b.lines, 1.0f);
-  EXPECT_NEAR(b.ground.median(), -1.0, 0.05);
+  GroundGrid ground = built(low, 1.5);
+  ground.build(high.view(), 1, 60, 1.0f);
+  EXPECT_NEAR(ground.median(), -1.0, 0.05);
 }

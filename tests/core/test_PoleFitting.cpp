@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/RayCast.h"
+#include "core/WholeScan.h"
 
 using namespace polemcl;
 using namespace polemcl::clouds;
@@ -52,11 +53,11 @@ struct Scan {
     findSlices(distance);
   }
   float column() const { return static_cast<float>(sensor.columnAngle()); }
-  std::optional<PoleFit> fit() const { return fitPole(lines, slices, used, column()); }
+  std::optional<PoleFit> fit() const { return fitPole(lines, slices, used, -1e3f, column()); }
 
  private:
   void findSlices(double distance) {
-    lines.build(points.view(), 1, 100);
+    buildWhole(lines, points.view(), 1, 100);
     std::vector<Slice> all;
     SliceFinder(sensor, {}).find(lines, all);
     for (const Slice& s : all)
@@ -239,7 +240,7 @@ TEST(PoleFitting, aPoleHalfHiddenIsNotPulledAside) {
 
 TEST(PoleFitting, ofNoSlicesThereIsNoFit) {
   const Scan scan(10, 0, 0.1, 1);
-  EXPECT_FALSE(fitPole(scan.lines, scan.slices, {}, scan.column()));
+  EXPECT_FALSE(fitPole(scan.lines, scan.slices, {}, 0, scan.column()));
 }
 
 TEST(PoleFitting, onlyTheSlicesNamedAreUsed) {

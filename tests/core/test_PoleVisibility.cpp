@@ -61,36 +61,22 @@ TEST(PoleVisibility, HeightsAndRangesAreThoseOfTheMap) {
   const auto sights = sightPoles(cloud.view(), cloud.labels, pose, {{1, 105, 50}, {2, 100, 54}});
   EXPECT_NEAR(sights[0].lowest, 0.5, 1e-6);
   EXPECT_NEAR(sights[0].highest, 4.0, 1e-6);
-  EXPECT_NEAR(sights[0].middle, 2.7, 1e-6);
+  EXPECT_DOUBLE_EQ(sights[0].sensor, 3);
   EXPECT_NEAR(sights[0].range, 5, 1e-12);
-  EXPECT_DOUBLE_EQ(sights[1].middle, 3);
+  EXPECT_DOUBLE_EQ(sights[1].lowest, 3);
   EXPECT_NEAR(sights[1].range, 4, 1e-12);
 }
 
-TEST(PoleVisibility, ArmsAndSignsDoNotRaiseTheMiddle) {
-  Cloud cloud;
-  cloud.column(9.9, 0, 5, 0.0, 2.0, 1);
-  cloud.column(10, 0.36, 9, 4.0, 4.5, 1);  // beyond 0.1 + 0.25 m
-  const auto sight = sightPoles(cloud.view(), cloud.labels, here, {{1, 10, 0, 0.1}})[0];
-  EXPECT_EQ(sight.returns, 14u);
-  EXPECT_NEAR(sight.middle, 1.0, 1e-6);
-  EXPECT_NEAR(sight.highest, 4.5, 1e-6);
-  // Nothing else to go by: the arm it is.
-  Cloud arm;
-  arm.column(10, 0.36, 3, 4.0, 4.5, 1);
-  EXPECT_NEAR(sightPoles(arm.view(), arm.labels, here, {{1, 10, 0, 0.1}})[0].middle, 4.25, 1e-6);
-}
-
-TEST(PoleVisibility, APoleIsWhereItsReturnsAreInALeaningFrame) {
-  // Nose down by 0.05: what stands 2 m above the sensor, 20 m ahead, comes nearer by 2·sin(0.05).
+TEST(PoleVisibility, APoleIsTakenAtTheHeightOfALeaningSensor) {
+  // Nose down by 0.05: the place level with the sensor, 20 m ahead, hardly comes nearer.
   Eigen::Isometry3d pose(Eigen::Translation3d(1, 2, 10));
   pose.rotate(Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitY()));
   PoleSight sight;
-  sight.middle = 12;
+  sight.sensor = 10;
   sight.visible = true;
   const auto poles = polesInScan({{1, 21, 2, 0.2}}, {sight}, pose.inverse());
   ASSERT_EQ(poles.size(), 1u);
-  EXPECT_NEAR(poles[0].x, 20 * std::cos(0.05) - 2 * std::sin(0.05), 1e-12);
+  EXPECT_NEAR(poles[0].x, 20 * std::cos(0.05), 1e-12);
   EXPECT_NEAR(poles[0].y, 0, 1e-12);
   EXPECT_DOUBLE_EQ(poles[0].radius, 0.2);
   EXPECT_TRUE(poles[0].visible);

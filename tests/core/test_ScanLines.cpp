@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/Clouds.h"
+#include "core/WholeScan.h"
 
 using namespace polemcl;
 using namespace polemcl::clouds;
@@ -48,19 +49,19 @@ PointList randomCloud(std::size_t size, std::uint64_t seed) {
 /// Every point looked at alone, with the functions of the standard library.
 struct BruteForce {
   std::vector<std::vector<Return>> rows;
-  ScanLines::Counts counts;
+  WholeScanCounts counts;
   BruteForce(const PointsView& points, const SensorModel& sensor) : rows(sensor.rows()) {
     for (std::size_t i = 0; i < points.size; ++i) {
       const float x = points.x[i], y = points.y[i], z = points.z[i];
       const float rho = std::sqrt(x * x + y * y);
       if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || (rho == 0 && z == 0)) {
-        ++counts.invalid;
+        ++counts.dropped.invalid;
       } else if (rho < kMinRange || rho > kMaxRange) {
-        ++counts.outOfRange;
+        ++counts.dropped.outOfRange;
       } else if (const int row = sensor.row(rho, z); row < 0) {
-        ++counts.outOfView;
+        ++counts.lines.outOfView;
       } else {
-        ++counts.used;
+        ++counts.lines.used;
         rows[row].push_back({std::atan2(y, x), rho, z, static_cast<std::uint32_t>(i)});
       }
     }
@@ -85,13 +86,13 @@ void expectSorted(const ScanLines& lines) {
 }
 
 void expectEqualsBruteForce(const PointsView& points, const SensorModel& sensor, ScanLines& lines) {
-  const ScanLines::Counts& counts = lines.build(points, kMinRange, kMaxRange);
+  const WholeScanCounts counts = buildWhole(lines, points, kMinRange, kMaxRange);
   const BruteForce expected(points, sensor);
-  EXPECT_EQ(counts.used, expected.counts.used);
-  EXPECT_EQ(counts.invalid, expected.counts.invalid);
-  EXPECT_EQ(counts.outOfRange, expected.counts.outOfRange);
-  EXPECT_EQ(counts.outOfView, expected.counts.outOfView);
-  EXPECT_EQ(counts.used + counts.invalid + counts.outOfRange + counts.outOfView, points.size);
+  EXPECT_EQ(counts.lines.used, expected.counts.lines.used);
+  EXPECT_EQ(counts.dropped.invalid, expected.counts.dropped.invalid);
+  EXPECT_EQ(counts.dropped.outOfRange, expected.counts.dropped.outOfRange);
+  EXPECT_EQ(counts.lines.outOfView, expected.counts.lines.outOfView);
+  EXPECT_EQ(counts.lines.onGround, 0u);
   ASSERT_EQ(lines.rows(), sensor.rows());
   for (int row = 0; row < lines.rows(); ++row) {
     std::vector<Return> found(lines.begin(row), lines.end(row));
@@ -164,7 +165,7 @@ TEST(ScanLines, theAxesHaveTheirAzimuths) {
   points.add(0, -10, 0);
   points.add(7, 7, 0);
   ScanLines lines(sensor);
-  lines.build(points.view(), kMinRange, kMaxRange);
+  buildWhole(lines, points.view(), kMinRange, kMaxRange);
   std::vector<float> azimuth(points.size());
   for (int row = 0; row < lines.rows(); ++row)
     for (const Return* r = lines.begin(row); r < lines.end(row); ++r)
@@ -186,10 +187,10 @@ TEST(ScanLines, orderOfPointsIsOfNoConsequence) {
     points.add(2 + i * 0x1p-22, 20, 0.01);  // even when the last bits of x differ
   }
   ScanLines lines(sensor), others(sensor);
-  lines.build(points.view(), kMinRange, kMaxRange);
+  buildWhole(lines, points.view(), kMinRange, kMaxRange);
   for (const std::uint64_t seed : {1, 2, 3}) {
     const PointList mixed = shuffled(points.view(), seed);
-    others.build(mixed.view(), kMinRange, kMaxRange);
+    buildWhole(others, mixed.view(), kMinRange, kMaxRange);
     for (int row = 0; row < lines.rows(); ++row) {
       ASSERT_EQ(lines.size(row), others.size(row));
       for (std::size_t i = 0; i < lines.size(row); ++i) {
@@ -223,11 +224,11 @@ TEST(ScanLines, whatBecomesOfPointsIsCounted) {
   points.add(1, 0, 0.0174533);
   points.add(0, 60, 1.04724);  // used: 2, on the bounds of range
   ScanLines lines(sensor);
-  const ScanLines::Counts& counts = lines.build(points.view(), kMinRange, kMaxRange);
-  EXPECT_EQ(counts.invalid, 7u);
-  EXPECT_EQ(counts.outOfRange, 3u);
-  EXPECT_EQ(counts.outOfView, 2u);
-  EXPECT_EQ(counts.used, 2u);
+  const WholeScanCounts counts = buildWhole(lines, points.view(), kMinRange, kMaxRange);
+  EXPECT_EQ(counts.dropped.invalid, 7u);
+  EXPECT_EQ(counts.dropped.outOfRange, 3u);
+  EXPECT_EQ(counts.lines.outOfView, 2u);
+  EXPECT_EQ(counts.lines.used, 2u);
 }
 
 TEST(ScanLines, withoutALeastRangeAPointStraightAboveIsOutOfView) {
@@ -236,24 +237,30 @@ TEST(ScanLines, withoutALeastRangeAPointStraightAboveIsOutOfView) {
   points.add(0, 0, 5);
   points.add(0, 0, -5);
   ScanLines lines(sensor);
-  EXPECT_EQ(lines.build(points.view(), 0, kMaxRange).outOfView, 2u);
+  EXPECT_EQ(buildWhole(lines, points.view(), 0, kMaxRange).lines.outOfView, 2u);
 }
 
-TEST(ScanLines, bucketsDivideTheTurnEvenly) {
+TEST(ScanLines, whatLiesOnTheGroundIsLeftOut) {
   const SensorModel sensor = sensorModel();
+  GroundGrid ground;
+  PointList points;
+  for (int i = 0; i < 3600; ++i)  // a slope of 5 %, and reflections below it
+    for (const double rho : {6.0, 11.0, 17.0}) {
+      const double azimuth = 0.1 * i * kDegree, x = rho * std::cos(azimuth),
+                   y = rho * std::sin(azimuth);
+      points.add(x, y, -1.7 + 0.05 * x);
+      if (i % 300 == 0) points.add(x, y, -2.4 + 0.05 * x);
+    }
+  const std::size_t onGround = points.size();
+  for (const double azimuth : {0.3, 2.1, -1.0})
+    for (const double height : {0.45, 0.9, 1.5})
+      points.add(10 * std::cos(azimuth), 10 * std::sin(azimuth),
+                 -1.7 + 0.5 * std::cos(azimuth) + height);
+  ground.build(points.view(), kMinRange, kMaxRange, 1.73f);
   ScanLines lines(sensor);
-  const PointList points = randomCloud(50000, 9);
-  lines.build(points.view(), kMinRange, kMaxRange);
-  constexpr double kWidth = 2 * M_PI / ScanLines::kBuckets;
-  for (int row = 0; row < lines.rows(); ++row) {
-    ASSERT_EQ(lines.columnBegin(row, 0), lines.begin(row));
-    ASSERT_EQ(lines.columnBegin(row, ScanLines::kBuckets), lines.end(row));
-    for (int b = 0; b < ScanLines::kBuckets; ++b)
-      for (const Return* r = lines.columnBegin(row, b); r < lines.columnBegin(row, b + 1); ++r) {
-        ASSERT_GE(r->azimuth, -M_PI + kWidth * b - 1e-6);
-        ASSERT_LE(r->azimuth, -M_PI + kWidth * (b + 1) + 1e-6);
-      }
-  }
+  const ScanLines::Counts& counts = lines.build(points.view(), ground, 0.35f);
+  EXPECT_EQ(counts.onGround, onGround);
+  EXPECT_EQ(counts.used, 9u);
 }
 
 TEST(ScanLines, lowerBoundEqualsABinarySearch) {
@@ -262,7 +269,7 @@ TEST(ScanLines, lowerBoundEqualsABinarySearch) {
   for (int b = 0; b <= ScanLines::kBuckets; ++b)  // on the borders of the buckets
     points.addPolar(-M_PI + 2 * M_PI * b / ScanLines::kBuckets, 1 * kDegree, 20);
   ScanLines lines(sensor);
-  lines.build(points.view(), kMinRange, kMaxRange);
+  buildWhole(lines, points.view(), kMinRange, kMaxRange);
   for (int row = 0; row < lines.rows(); ++row) {
     const auto expect = [&](float azimuth) {
       const Return* found =

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/Clouds.h"
+#include "core/WholeScan.h"
 
 using namespace polemcl;
 using namespace polemcl::clouds;
@@ -57,7 +58,7 @@ class Drawing {
         points.add(range * std::cos(azimuth(step)), range * std::sin(azimuth(step)),
                    range * sensor.beam(row).slope);
     ScanLines lines(sensor);
-    lines.build(points.view(), 1, 100);
+    buildWhole(lines, points.view(), 1, 100);
     EXPECT_EQ(lines.size(0) + lines.size(1), points.size());
     std::vector<Slice> found(3);  // what is left of the scan before must go
     SliceFinder(sensor, options).find(lines, found);

@@ -7,10 +7,12 @@
 namespace polemcl {
 namespace {
 
-/// Log odds lost per metre of the fit's residual beyond 2 cm; from the same regression as score().
-constexpr double kResidualOdds = 68;
-/// Log odds lost when all rows have other returns in the ring around.
-constexpr double kClutterOdds = 5.36;
+/// m: points less than this above the ground say little about poles, and are most of a scan.
+constexpr float kClearance = 0.1f;
+/// m above ground: below, a pole's foot is seldom free.
+constexpr float kFirmHeight = 0.6f;
+/// Candidates whose odds are lower before the fit are not fitted: 0.2 % of the poles found.
+constexpr double kHopelessOdds = -3;
 
 double confidence(double logOdds) {
   return 1 / (1 + std::exp(-logOdds));
@@ -21,6 +23,8 @@ double confidence(double logOdds) {
 NativeExtractor::NativeExtractor(const SensorOptions& sensor, const NativeOptions& options)
     : m_sensorOptions(sensor),
       m_options(options),
+      // What stands well behind the farthest pole is as good as nothing.
+      m_farthest(static_cast<float>(std::min(sensor.maxRange, options.maxRange + 1))),
       m_sensor(sensor),
       m_lines(m_sensor),
       m_finder(m_sensor, options),
@@ -28,13 +32,13 @@ NativeExtractor::NativeExtractor(const SensorOptions& sensor, const NativeOption
 
 void NativeExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
                               ExtractionReport& report) {
-  const auto& counts = m_lines.build(points, static_cast<float>(m_sensorOptions.minRange),
-                                     static_cast<float>(m_sensorOptions.maxRange));
+  const auto& dropped = m_ground.build(points, static_cast<float>(m_sensorOptions.minRange),
+                                       m_farthest, static_cast<float>(m_sensorOptions.height));
+  const auto& counts = m_lines.build(points, m_ground, kClearance);
   report.points = points.size;
-  report.invalid = counts.invalid;
+  report.invalid = dropped.invalid;
+  report.outOfRange = dropped.outOfRange;
   report.outOfView = counts.outOfView;
-  report.outOfRange = counts.outOfRange;
-  m_ground.build(m_lines, static_cast<float>(m_sensorOptions.height));
   report.ground = m_ground.median();
   m_finder.find(m_lines, m_slices);
   const std::vector<Stack>& stacks = m_stacker.stack(m_slices);
@@ -83,17 +87,24 @@ void NativeExtractor::selectForFit(const Stack& stack) {
   }
 }
 
-/// Cheap tests first; the fit, which costs most, comes last.
-Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
-  const StackShape shape = measureShape(m_slices, stack);
+/// Refusals that need no more than the slices, the cheapest first.
+Refusal NativeExtractor::judgeShape(const Stack& stack, StackShape& shape) const {
+  const Slice &highest = m_slices[stack.top()], &lowest = m_slices[stack.bottom()];
+  if (highest.z - lowest.z < m_options.minHeight) return Refusal::tooShort;
+  if (lowest.z - m_ground.at(lowest.x, lowest.y) > m_options.maxBottom)
+    return Refusal::startsTooHigh;
+  shape = measureShape(m_slices, stack);
   if (shape.points < m_options.minPoints) return Refusal::tooFewPoints;
-  if (shape.high - shape.low < m_options.minHeight) return Refusal::tooShort;
-  const Slice& lowest = m_slices[stack.bottom()];
-  const float ground = m_ground.at(0.5f * (lowest.azimuthBegin + lowest.azimuthEnd), lowest.rho);
-  if (lowest.z - ground > m_options.maxBottom) return Refusal::startsTooHigh;
   if (shape.tilt > m_options.maxTilt && shape.high - shape.low > 0.8) return Refusal::tilted;
   if (shape.scatter > m_options.maxScatter) return Refusal::notStraight;
+  return Refusal::count_;
+}
 
+/// Cheap tests first; the fit, which costs most, comes last.
+Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
+  StackShape shape;
+  const Refusal early = judgeShape(stack, shape);
+  if (early != Refusal::count_) return early;
   selectForFit(stack);
   const float column = static_cast<float>(m_sensor.columnAngle());
   const PoleAxis axis = roughAxis(m_slices, m_fitSlices, column);
@@ -103,48 +114,65 @@ Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
   const double top =
       std::isfinite(evidence.topBound) ? 0.5 * (evidence.top + evidence.topBound) : 1e9;
   if (std::max<double>(top, evidence.top) < m_options.minTop) return Refusal::tooLow;
-  // Clutter and a bad fit can only lower the odds, and cost more to find out.
-  double odds = score(stack, shape, evidence, axis);
-  if (confidence(odds) < m_options.minConfidence) return Refusal::lowConfidence;
-  odds -= kClutterOdds * clutteredShare(m_lines, m_sensor, m_slices, stack, axis);
-  if (confidence(odds) < m_options.minConfidence) return Refusal::notFree;
-  const auto fit = fitPole(m_lines, m_slices, m_fitSlices, column);
+  PoleFeatures features = describe(stack, shape, evidence, axis);
+  if (roughOdds(features) < kHopelessOdds) return Refusal::lowConfidence;
+  const float ground = m_ground.at(axis.x, axis.y);
+  const auto fit = fitPole(m_lines, m_slices, m_fitSlices, ground + kFirmHeight, column);
   if (!fit || fit->radius < m_options.minRadius || fit->radius > m_options.maxRadius)
     return Refusal::badFit;
-  const double excess = std::max(0.f, fit->residual - 0.02f);
-  odds -= kResidualOdds * excess;
+  features.residual = fit->residual;
+  features.radius = fit->radius;
+  // A place without clutter is the best that can be.
+  if (confidence(poleOdds(features)) < m_options.minConfidence) return Refusal::lowConfidence;
+  features.clutter = clutteredShare(m_lines, m_sensor, m_slices, stack, axis);
+  const double odds = poleOdds(features);
   pole.confidence = confidence(odds);
-  if (pole.confidence < m_options.minConfidence) return Refusal::lowConfidence;
+  if (pole.confidence < m_options.minConfidence) return Refusal::notFree;
   pole.x = fit->x;
   pole.y = fit->y;
   pole.radius = fit->radius;
   pole.bottom = evidence.bottom;
   pole.top = evidence.top;
-  // What the fit's own covariance does not know: crooked, leaning, half hidden and doubtful things
-  // lie farther off. Maximum likelihood on the same worlds as score(); mean normalised squared
-  // error 2.0.
-  pole.covariance = fit->covariance *
-                    std::exp(0.48 - 0.25 * std::clamp(odds, 0.0, 7.0) +
-                             34 * std::min(excess, 0.05) + 7.6 * shape.tilt + 0.022 * lowest.rho);
+  pole.covariance = fit->covariance * covarianceScale(features, odds);
   pole.points = static_cast<std::uint32_t>(shape.points);
   return Refusal::count_;
 }
 
-/// Log odds of a pole, by logistic regression on simulated streets of four sensors (worlds 101 to
-/// 104; area under the ROC on worlds 105 and 106: 0.99). Evidence that the fit adds comes later.
-double NativeExtractor::score(const Stack& stack, const StackShape& shape, const PoleEvidence& e,
-                              const PoleAxis& axis) const {
-  const double slices = static_cast<double>(stack.count), points = shape.points;
-  const double rows = slices + e.rowsPassed + e.rowsWide;
-  double odds = 3.1;
-  odds += -1.38 * std::log(slices) + 1.23 * std::log(points);
-  odds += 1.97 * std::min(3.f, shape.high - shape.low);
-  odds += -3.94 * e.rowsPassed / rows - 3.51 * e.rowsWide / rows;
-  odds += -3.62 * (1 - shape.wholeSlices / slices);
-  odds += -3.2 * shape.scatter + 5.7 * shape.widthSpread;
-  odds += -1.71 * std::max(0.0, m_options.minTop - e.top);
-  odds += -7.93 * axis.radius - 0.89 * std::min(6.f, e.top) + 0.32 * e.bottom;
-  return odds;
+PoleFeatures NativeExtractor::describe(const Stack& stack, const StackShape& shape,
+                                       const PoleEvidence& evidence, const PoleAxis& axis) const {
+  PoleFeatures f;
+  f.slices = static_cast<double>(stack.count);
+  f.points = shape.points;
+  f.extent = shape.high - shape.low;
+  const double rows = f.slices + evidence.rowsPassed + evidence.rowsWide;
+  f.passed = evidence.rowsPassed / rows;
+  f.wide = evidence.rowsWide / rows;
+  f.notWhole = 1 - shape.wholeSlices / f.slices;
+  f.scatter = shape.scatter;
+  f.widthSpread = shape.widthSpread;
+  f.tilt = shape.tilt;
+  f.top = evidence.top;
+  f.missingTop = std::max(0.0, m_options.minTop - evidence.top);
+  f.bottom = evidence.bottom;
+  f.roughRadius = axis.radius;
+  f.range = m_slices[stack.bottom()].rho;
+  f.columnWidth = f.range * m_sensor.columnAngle();
+  int freeEdges = 0;
+  for (auto i : m_fitSlices)
+    freeEdges += (m_slices[i].left == Side::free) + (m_slices[i].right == Side::free);
+  f.hiddenEdges = 1 - 0.5 * freeEdges / static_cast<double>(m_fitSlices.size());
+  return f;
+}
+
+/// What the fit's own covariance does not know: crooked, half hidden and doubtful things lie
+/// farther off, and columns are the same for all beams, so that more slices do not make up for
+/// wide ones. Maximum likelihood on the worlds of the score.
+double NativeExtractor::covarianceScale(const PoleFeatures& f, double odds) const {
+  constexpr double kFineColumns = 0.003;  // rad
+  return std::exp(-1.15 - 0.124 * std::clamp(odds, 0.0, 7.0) +
+                  56.5 * std::clamp(f.residual - 0.02, 0.0, 0.05) + 2.55 * f.tilt +
+                  1.264 * f.range / 40 + 2.34 * f.radius + 0.46 * f.clutter + 2.52 * f.scatter +
+                  1.09 * f.hiddenEdges + 0.851 * std::log(m_sensor.columnAngle() / kFineColumns));
 }
 
 }  // namespace polemcl

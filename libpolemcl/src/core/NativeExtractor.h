@@ -5,6 +5,8 @@
 #include <polemcl/core/PoleEvidence.h>
 #include <polemcl/core/PoleExtractor.h>
 
+#include "PoleScore.h"
+
 namespace polemcl {
 
 class NativeExtractor {
@@ -16,13 +18,16 @@ class NativeExtractor {
  private:
   /// \return The reason of the refusal, or Refusal::count_ when `pole` was filled.
   Refusal examine(const Stack& stack, PoleDetection& pole);
+  Refusal judgeShape(const Stack& stack, StackShape& shape) const;
   std::size_t dropDuplicates(std::vector<PoleDetection>& poles) const;
   void selectForFit(const Stack& stack);
-  double score(const Stack& stack, const StackShape& shape, const PoleEvidence& evidence,
-               const PoleAxis& axis) const;
+  PoleFeatures describe(const Stack& stack, const StackShape& shape, const PoleEvidence& evidence,
+                        const PoleAxis& axis) const;
+  double covarianceScale(const PoleFeatures& features, double odds) const;
 
   SensorOptions m_sensorOptions;
   NativeOptions m_options;
+  float m_farthest;  ///< m
   SensorModel m_sensor;
   ScanLines m_lines;
   GroundGrid m_ground;

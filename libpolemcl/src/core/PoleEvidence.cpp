@@ -33,8 +33,46 @@ class Place {
   float rho() const { return m_rho; }
   float bearing() const { return m_bearing; }
 
-  /// Calls f(return, distance to the axis) for the returns of a row within `halfWidth` m to either
-  /// side.
+  Meeting meet(int row, float* z) const {
+    Meeting meeting = Meeting::empty;
+    const float reach = m_axis.radius + kNear;
+    around(row, std::max(m_axis.radius, 0.7f * m_column * m_rho), [&](const Return& r) {
+      if (squaredDistance(r) < reach * reach) {
+        *z = r.z;
+        meeting = Meeting::near;
+      } else if (meeting != Meeting::near && r.rho < m_rho) {
+        meeting = Meeting::occluded;
+      } else if (meeting == Meeting::empty) {
+        meeting = Meeting::passed;
+      }
+    });
+    return meeting;
+  }
+
+  /// True when a row has returns in the ring around the place.
+  bool cluttered(int row) const {
+    bool found = false;
+    const float inner = m_axis.radius + kRingInner, outer = m_axis.radius + kRingOuter;
+    around(row, outer, [&](const Return& r) {
+      const float d = squaredDistance(r);
+      found |= d > inner * inner && d < outer * outer;
+    });
+    return found;
+  }
+
+ private:
+  /// Of a return from the axis, m², by the law of cosines; the angle between is small.
+  float squaredDistance(const Return& r) const {
+    const float step = r.rho - m_rho, turn = wrapped(r.azimuth - m_bearing);
+    return step * step + r.rho * m_rho * turn * turn * (1 - turn * turn * (1 / 12.f));
+  }
+
+  static float wrapped(float turn) {
+    constexpr float kPi = static_cast<float>(M_PI);
+    return turn > kPi ? turn - 2 * kPi : turn < -kPi ? turn + 2 * kPi : turn;
+  }
+
+  /// Calls f(return) for the returns of a row within `halfWidth` m to either side.
   template <class F>
   void around(int row, float halfWidth, F f) const {
     const float half = std::min(1.f, halfWidth / std::max(m_rho, 0.5f));
@@ -44,42 +82,14 @@ class Place {
     if (m_bearing + half > pi) visit(row, -pi, m_bearing + half - 2 * pi, f);
   }
 
-  Meeting meet(int row, float* z) const {
-    Meeting meeting = Meeting::empty;
-    around(row, std::max(m_axis.radius, 0.7f * m_column * m_rho),
-           [&](const Return& r, float distance) {
-             if (distance < m_axis.radius + kNear) {
-               *z = r.z;
-               meeting = Meeting::near;
-             } else if (meeting != Meeting::near && r.rho < m_rho) {
-               meeting = Meeting::occluded;
-             } else if (meeting == Meeting::empty) {
-               meeting = Meeting::passed;
-             }
-           });
-    return meeting;
-  }
-
-  /// True when a row has returns in the ring around the place.
-  bool cluttered(int row) const {
-    bool found = false;
-    around(row, m_axis.radius + kRingOuter, [&](const Return&, float distance) {
-      found |= distance > m_axis.radius + kRingInner && distance < m_axis.radius + kRingOuter;
-    });
-    return found;
-  }
-
- private:
   template <class F>
   void visit(int row, float from, float to, F f) const {
     const Return* end = m_lines.end(row);
     for (const Return* r = m_lines.begin(row) + m_lines.lowerBound(row, from);
-         r < end && r->azimuth <= to; ++r) {
-      const float dx = m_lines.x(*r) - m_axis.x;
-      const float dy = m_lines.y(*r) - m_axis.y;
-      f(*r, std::sqrt(dx * dx + dy * dy));
-    }
+         r < end && r->azimuth <= to; ++r)
+      f(*r);
   }
+
   const ScanLines& m_lines;
   const PoleAxis& m_axis;
   float m_rho, m_bearing, m_column;
@@ -150,7 +160,7 @@ PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
                             const GroundGrid& ground, const std::vector<Slice>& slices,
                             const Stack& stack, const StackShape& shape, const PoleAxis& axis) {
   const Place place(lines, sensor, axis);
-  const float groundZ = ground.at(place.bearing(), place.rho());
+  const float groundZ = ground.at(axis.x, axis.y);
   PoleEvidence e;
   int expected = slices[stack.top()].row;
   for (auto i : stack) {

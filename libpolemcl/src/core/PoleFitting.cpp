@@ -18,6 +18,11 @@ constexpr double kRadiusPriorSigma = 0.10;
 constexpr double kFloorSigma =
     0.010;  ///< m: what no number of returns averages out (laser biases, shape)
 constexpr int kIterations = 6;
+constexpr double kThinnestBoard = 0.12;  ///< m: half its width
+constexpr double kFlatter = 0.8;         ///< a board's residuals against a cylinder's, at most
+constexpr double kPostRadius = 0.04;     ///< m: of a sign's post
+constexpr std::size_t kMostSlices = 128;
+constexpr std::size_t kGroups = 12;  ///< of neighbouring returns, in a slice that has more
 
 struct State {
   double lateral = 0, depth = 0, radius = kRadiusPrior;
@@ -42,16 +47,64 @@ struct Normal {
   }
 };
 
+/// Returns, or means of neighbouring ones, against the reference bearing: a structure of arrays.
+struct Points {
+  std::size_t count = 0;
+  float along[kMostSlices * kGroups], across[kMostSlices * kGroups];  ///< m
+  float returns[kMostSlices * kGroups];
+};
+struct Residuals {
+  float residual[kMostSlices * kGroups], slope[kMostSlices * kGroups], front[kMostSlices * kGroups],
+      weight[kMostSlices * kGroups];
+};
+
+/// Weight of a slice, 0 to 1: grass and kerbs mix with a pole's foot, and whether a beam there is
+/// taken for ground should not matter.
+float firmness(const Slice& slice, float firmHeight) {
+  constexpr float kFoot = 0.5f, kLeast = 0.02f;
+  return std::clamp(1 - (firmHeight - slice.z) / kFoot, kLeast, 1.f);
+}
+
 class CylinderProblem {
  public:
   CylinderProblem(const ScanLines& lines, const std::vector<Slice>& slices,
-                  const std::vector<std::uint32_t>& used, float columnAngle)
-      : m_lines(lines), m_slices(slices), m_used(used), m_columnAngle(columnAngle) {
+                  const std::vector<std::uint32_t>& used, float firmHeight, float columnAngle)
+      : m_lines(lines),
+        m_slices(slices),
+        m_used(used),
+        // More than these add nothing to what the radius prior and the floor leave.
+        m_stride((used.size() + kMostSlices - 1) / kMostSlices),
+        m_firmHeight(firmHeight),
+        m_columnAngle(columnAngle) {
     const Slice& reference = slices[used[used.size() / 2]];
     m_bearing = 0.5 * (reference.azimuthBegin + reference.azimuthEnd);
     m_cos = std::cos(m_bearing);
     m_sin = std::sin(m_bearing);
+    for (std::size_t i = 0; i < m_used.size(); i += m_stride) gather(m_slices[m_used[i]]);
   }
+  /// Replaces the cylinder by a thin one right behind when the returns lie on a plane across: a
+  /// sign before its post.
+  void considerBoard(State& s) const {
+    if (s.radius < kThinnestBoard) return;
+    double sum = 0, n = 0;
+    for (std::size_t k = 0; k < m_points.count; ++k) {
+      sum += m_points.along[k] * m_points.returns[k];
+      n += m_points.returns[k];
+    }
+    const double plane = sum / n;
+    double flat = 0, round = 0;
+    Residuals r;
+    evaluate(m_points, s, r);
+    for (std::size_t k = 0; k < m_points.count; ++k) {
+      const double across = m_points.along[k] - plane;
+      flat += m_points.returns[k] * across * across;
+      round += m_points.returns[k] * r.residual[k] * r.residual[k];
+    }
+    if (flat > kFlatter * kFlatter * round) return;
+    s.depth = plane + kPostRadius;
+    s.radius = kPostRadius;
+  }
+
   double cosine() const { return m_cos; }
   double sine() const { return m_sin; }
 
@@ -74,10 +127,8 @@ class CylinderProblem {
   Normal normal(const State& s) const {
     Normal n;
     n.add(0, 0, 1, s.radius - kRadiusPrior, 1 / (kRadiusPriorSigma * kRadiusPriorSigma));
-    for (std::uint32_t u : m_used) {
-      addRanges(m_slices[u], s, n);
-      addEdges(m_slices[u], s, n);
-    }
+    addRanges(s, n);
+    for (std::size_t i = 0; i < m_used.size(); i += m_stride) addEdges(m_slices[m_used[i]], s, n);
     return n;
   }
 
@@ -89,26 +140,60 @@ class CylinderProblem {
     return d > M_PI ? d - 2 * M_PI : d < -M_PI ? d + 2 * M_PI : d;
   }
 
-  void addRanges(const Slice& slice, const State& s, Normal& n) const {
+  void addRanges(const State& s, Normal& n) const {
     constexpr double kWeight = 1 / (kRangeSigma * kRangeSigma);
+    Residuals r;
+    evaluate(m_points, s, r);
+    for (std::size_t k = 0; k < m_points.count; ++k) {
+      n.add(r.slope[k], 1, -r.front[k], r.residual[k], r.weight[k] * kWeight);
+      n.residualSum += r.weight[k] * r.residual[k] * r.residual[k];
+      n.weightSum += r.weight[k];
+    }
+  }
+
+  /// Takes up the returns of a slice.
+  void gather(const Slice& slice) {
     const Return* row = m_lines.begin(slice.row);
     const std::size_t size = m_lines.size(slice.row);
-    std::size_t i = slice.first;
-    for (std::uint32_t k = 0; k < slice.count; ++k, i = i + 1 == size ? 0 : i + 1) {
-      const double x = m_lines.x(row[i]), y = m_lines.y(row[i]);
+    const std::size_t groups = std::min<std::size_t>(slice.count, kGroups);
+    for (std::size_t g = 0; g < groups; ++g) {
+      const std::size_t first = g * slice.count / groups, end = (g + 1) * slice.count / groups;
+      float along = 0, across = 0;
+      for (std::size_t k = first; k < end; ++k) {
+        const std::size_t i = slice.first + k;
+        const Return& r = row[i < size ? i : i - size];
+        // Sine and cosine to 1e-7 for half a radian; of all poles but those at arm's length.
+        const float d = static_cast<float>(offset(r.azimuth)), q = d * d;
+        along += r.rho * (1 - q * (1 / 2.f - q * (1 / 24.f - q * (1 / 720.f))));
+        across += r.rho * d * (1 - q * (1 / 6.f - q * (1 / 120.f - q * (1 / 5040.f))));
+      }
+      const float returns = static_cast<float>(end - first);
+      m_points.along[m_points.count] = along / returns;
+      m_points.across[m_points.count] = across / returns;
+      m_points.returns[m_points.count++] = returns * firmness(slice, m_firmHeight);
+    }
+  }
+
+  static void evaluate(const Points& points, const State& s, Residuals& r) {
+    const float lateral = static_cast<float>(s.lateral), depth = static_cast<float>(s.depth);
+    const float radius = static_cast<float>(s.radius), perRadius = 1 / radius;
+    const float half = static_cast<float>(0.5 * kDivergence) * depth;
+    constexpr float kGraze = static_cast<float>(kGrazing);
+    constexpr float kPerScale = static_cast<float>(1 / (kRobust * kRobust));
+    for (std::size_t k = 0; k < points.count; ++k) {
       // A beam that grazes the edge hits it with the inner part of its footprint only: where the
       // return comes from is the middle of what footprint and cylinder share.
-      const double half = 0.5 * kDivergence * s.depth;
-      const double across = m_cos * y - m_sin * x - s.lateral;
-      const double hit = 0.5 * (std::clamp(across - half, -s.radius, s.radius) +
-                                std::clamp(across + half, -s.radius, s.radius));
-      const double u = std::clamp(hit / s.radius, -kGrazing, kGrazing),
-                   front = std::sqrt(1 - u * u);
-      const double e = s.depth - s.radius * front - (m_cos * x + m_sin * y);
-      const double robust = 1 / (1 + e * e / (kRobust * kRobust));
-      n.add(-u / front, 1, -front, e, robust * kWeight);
-      n.residualSum += robust * e * e;
-      n.weightSum += robust;
+      const float across = points.across[k] - lateral;
+      const float inner = std::min(std::max(across - half, -radius), radius);
+      const float outer = std::min(std::max(across + half, -radius), radius);
+      const float hit = 0.5f * (inner + outer) * perRadius;
+      const float u = std::min(std::max(hit, -kGraze), kGraze);
+      const float front = std::sqrt(1 - u * u);
+      const float e = depth - radius * front - points.along[k];
+      r.residual[k] = e;
+      r.slope[k] = -u / front;
+      r.front[k] = front;
+      r.weight[k] = points.returns[k] / (1 + e * e * kPerScale);
     }
   }
 
@@ -116,7 +201,7 @@ class CylinderProblem {
     const double half = 0.5 * (m_columnAngle - kFootprint);
     const double sigma = std::max(0.004, s.depth * std::sqrt(m_columnAngle * m_columnAngle / 12 +
                                                              0.16 * kFootprint * kFootprint));
-    const double weight = 1 / (sigma * sigma);
+    const double weight = firmness(slice, m_firmHeight) / (sigma * sigma);
     if (slice.left == Side::free)
       n.add(1, 0, 1, s.lateral + s.radius - s.depth * (offset(slice.azimuthEnd) + half), weight);
     if (slice.right == Side::free)
@@ -126,6 +211,9 @@ class CylinderProblem {
   const ScanLines& m_lines;
   const std::vector<Slice>& m_slices;
   const std::vector<std::uint32_t>& m_used;
+  std::size_t m_stride;  ///< of the slices used
+  Points m_points;
+  float m_firmHeight;
   double m_columnAngle, m_bearing, m_cos, m_sin;
 };
 
@@ -150,10 +238,63 @@ PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint
   return axis;
 }
 
+namespace {
+
+/// How a pole's place changes with height, from the fronts of its slices; shrunk towards upright.
+struct Lean {
+  double x = 0, y = 0;  ///< m per m of height
+  double height = 0;    ///< mean of the slices, m
+  double variance = 0;  ///< of x and of y
+  double low = 0, high = 0;
+};
+
+Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
+            float firmHeight) {
+  // Ratio of the variances of a front's place and of a pole's lean in the sensor's frame.
+  constexpr double kPrior = 4, kLeanSigma = 0.02;
+  Lean lean;
+  double n = 0, mx = 0, my = 0;
+  for (std::uint32_t u : used) {
+    const double w = firmness(slices[u], firmHeight);
+    n += w;
+    mx += w * slices[u].x;
+    my += w * slices[u].y;
+    lean.height += w * slices[u].z;
+  }
+  mx /= n;
+  my /= n;
+  lean.height /= n;
+  double zz = kPrior;
+  for (std::uint32_t u : used) {
+    const double z = slices[u].z - lean.height, w = firmness(slices[u], firmHeight);
+    zz += w * z * z;
+    lean.x += w * z * (slices[u].x - mx);
+    lean.y += w * z * (slices[u].y - my);
+  }
+  lean.x /= zz;
+  lean.y /= zz;
+  lean.variance = kLeanSigma * kLeanSigma * kPrior / zz;
+  lean.high = slices[used.front()].z;
+  lean.low = slices[used.back()].z;
+  return lean;
+}
+
+/// Moves the fit along the pole to the height of the sensor, as far as the slices reach: there a
+/// roll or pitch of the sensor does not move it.
+void moveToSensorHeight(const Lean& lean, PoleFit& fit) {
+  const double step = std::clamp(0.0, lean.low, lean.high) - lean.height;
+  fit.x += static_cast<float>(lean.x * step);
+  fit.y += static_cast<float>(lean.y * step);
+  fit.covariance += Eigen::Matrix2d::Identity() * (lean.variance * step * step);
+}
+
+}  // namespace
+
 std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
-                               const std::vector<std::uint32_t>& used, float columnAngle) {
+                               const std::vector<std::uint32_t>& used, float firmHeight,
+                               float columnAngle) {
   if (used.empty()) return std::nullopt;
-  const CylinderProblem problem(lines, slices, used, columnAngle);
+  const CylinderProblem problem(lines, slices, used, firmHeight, columnAngle);
   State s = problem.initial();
   Normal n;
   for (int i = 0; i < kIterations; ++i) {
@@ -164,8 +305,9 @@ std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>&
     s.lateral -= step[0];
     s.depth -= step[1];
     s.radius = std::clamp(s.radius - step[2], 0.005, 1.0);
-    if (step.cwiseAbs().maxCoeff() < 1e-4) break;
+    if (step.cwiseAbs().maxCoeff() < 1e-3) break;  // what is left is its square
   }
+  problem.considerBoard(s);
   PoleFit fit;
   const double c = problem.cosine(), sn = problem.sine();
   fit.x = static_cast<float>(s.depth * c - s.lateral * sn);
@@ -177,6 +319,7 @@ std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>&
   const Eigen::Matrix2d local =
       n.H.inverse().topLeftCorner<2, 2>() + kFloorSigma * kFloorSigma * Eigen::Matrix2d::Identity();
   fit.covariance = turn * local * turn.transpose();
+  moveToSensorHeight(leanOf(slices, used, firmHeight), fit);
   return fit;
 }
 

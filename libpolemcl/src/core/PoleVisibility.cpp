@@ -6,13 +6,6 @@
 #include <unordered_map>
 
 namespace polemcl {
-namespace {
-
-/// m: what is farther from a pole's surface is an arm or a sign on it.
-constexpr double kTrunkMargin = 0.25;
-
-}  // namespace
-
 std::vector<PoleSight> sightPoles(const PointsView& points,
                                   const std::vector<std::uint32_t>& labels,
                                   const Eigen::Isometry3d& T_map_cloud,
@@ -24,18 +17,14 @@ std::vector<PoleSight> sightPoles(const PointsView& points,
   for (std::size_t i = 0; i < poles.size(); ++i)
     if (!indexOf.emplace(poles[i].id, i).second)
       throw Error("two poles have the id " + std::to_string(poles[i].id));
-  std::vector<std::vector<double>> heights(poles.size()), trunk(poles.size());
+  std::vector<std::vector<double>> heights(poles.size());
   const Eigen::RowVector3d up = T_map_cloud.linear().row(2);
   const Eigen::Vector3d sensor = T_map_cloud.translation();
   for (std::size_t i = 0; i < points.size; ++i) {
     const auto pole = indexOf.find(labels[i]);
     if (pole == indexOf.end()) continue;
     const Eigen::Vector3d point(points.x[i], points.y[i], points.z[i]);
-    const Eigen::Vector2d place = (T_map_cloud.linear() * point + sensor).head<2>();
-    const WorldPole& known = poles[pole->second];
     heights[pole->second].push_back(up.dot(point) + sensor.z());
-    if ((place - Eigen::Vector2d(known.x, known.y)).norm() <= known.radius + kTrunkMargin)
-      trunk[pole->second].push_back(heights[pole->second].back());
   }
   std::vector<PoleSight> sights(poles.size());
   for (std::size_t i = 0; i < poles.size(); ++i) {
@@ -43,7 +32,7 @@ std::vector<PoleSight> sightPoles(const PointsView& points,
     const auto& z = heights[i];
     sight.returns = z.size();
     sight.range = std::hypot(poles[i].x - sensor.x(), poles[i].y - sensor.y());
-    sight.middle = quantile(trunk[i].empty() ? z : trunk[i], 0.5).value_or(sensor.z());
+    sight.sensor = sensor.z();
     sight.lowest = z.empty() ? sensor.z() : *std::min_element(z.begin(), z.end());
     sight.highest = z.empty() ? sensor.z() : *std::max_element(z.begin(), z.end());
     sight.visible = sight.returns >= rule.returns && sight.highest - sight.lowest >= rule.height &&
@@ -58,7 +47,7 @@ std::vector<TruePoleInScan> polesInScan(const std::vector<WorldPole>& poles,
   std::vector<TruePoleInScan> result;
   for (std::size_t i = 0; i < poles.size(); ++i) {
     const Eigen::Vector3d p =
-        T_scan_map * Eigen::Vector3d(poles[i].x, poles[i].y, sights[i].middle);
+        T_scan_map * Eigen::Vector3d(poles[i].x, poles[i].y, sights[i].sensor);
     result.push_back({p.x(), p.y(), poles[i].radius, sights[i].visible});
   }
   return result;

@@ -1,30 +1,46 @@
 #pragma once
 /// \file ScanKernels.h
-/// \brief The two loops over all points, vectorised and chosen at run time. Private to the library.
+/// \brief The loops over all points, vectorised and chosen at run time. Private to the library.
 ///
 /// Only IEEE-exact operations (no fused multiply-add, no reciprocal estimates), so that every
 /// instruction set gives the same bits.
 
+#include <polemcl/core/GroundGrid.h>
 #include <polemcl/core/ScanLines.h>
 
 #include <cmath>
 
 namespace polemcl {
 
-struct PointKeys {
-  std::int32_t* bucket;  ///< row * buckets + column, -1 when dropped
-  float* azimuth;        ///< rad
-  float* rho;            ///< m
-};
-
 /// \brief Lanes to allow beyond the number of points in the outputs of the kernels.
 constexpr std::size_t kKernelPadding = 64;
 
-/// \brief Row, azimuth column, azimuth and horizontal range of every point.
-/// \param bucketsPerRow Columns of equal azimuth from -pi to pi.
-ScanLines::Counts classifyPoints(const PointsView& points, const RowLookup& lookup,
-                                 int bucketsPerRow, float minRange, float maxRange,
-                                 const PointKeys& keys);
+/// \brief Where the lowest points of a ground grid are collected.
+struct LowestPoints {
+  std::uint16_t* cell;  ///< out, per point; GroundGrid::kNoCell for dropped points
+  float* lowest;        ///< in and out, per cell; infinity at first
+  /// In and out, per cell and one more: the second lowest. At first the height from which on
+  /// points are no ground; that of kNoCell must be -infinity.
+  float* second;
+};
+
+/// \brief Cell of every point of a ground grid, and the two lowest points of every cell.
+GroundGrid::Counts collectLowest(const PointsView& points, float minRange, float maxRange,
+                                 const LowestPoints& out);
+
+/// \brief Returns not yet in rows.
+struct UnsortedReturns {
+  Return* returns;
+  std::int32_t* bucket;  ///< row * buckets + column; rows * buckets when out of view
+};
+
+/// \brief Returns of the points that lie above a limit.
+/// \param limit Per cell of the ground: least z, m.
+/// \param rows,bucketsPerRow Beams, and columns of equal azimuth from -pi to pi.
+/// \return How many were written.
+std::size_t classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
+                           const RowLookup& lookup, int rows, int bucketsPerRow,
+                           const UnsortedReturns& out);
 
 /// \brief Widest gap, m, that neighbours up to two `gap`s apart may have between them.
 constexpr float kBridge = 0.15f;

@@ -22,7 +22,11 @@ struct Limits {
 class Row {
  public:
   Row(const ScanLines& lines, int row, const Limits& limits)
-      : m_returns(lines.begin(row)), m_size(lines.size(row)), m_row(row), m_limits(limits) {}
+      : m_lines(lines),
+        m_returns(lines.begin(row)),
+        m_size(lines.size(row)),
+        m_row(row),
+        m_limits(limits) {}
 
   std::size_t size() const { return m_size; }
   const Return* returns() const { return m_returns; }
@@ -35,37 +39,34 @@ class Row {
 
   /// Appends the run of returns first..last (last may be size or more: it wraps) if it is a slice.
   void consider(std::size_t first, std::size_t last, std::vector<Slice>& slices) const {
-    const float begin = m_returns[first].azimuth;
-    const float width = last < m_size ? m_returns[last].azimuth - begin
-                                      : m_returns[last - m_size].azimuth + kTurn - begin;
-    float rho = m_returns[first].rho;
-    if (rho * width > 1.5f * m_limits.maxWidth || rho > m_limits.maxRange) return;
-    float farthest = rho, z = 0;
+    const Return &begin = m_returns[first], &end = at(last);
+    const float turn = end.azimuth - begin.azimuth + (last < m_size ? 0 : kTurn);
+    if (begin.rho * turn > 1.5f * m_limits.maxWidth || begin.rho > m_limits.maxRange) return;
+    const Side left = side(last < m_size ? last : last - m_size, +1);
+    const Side right = side(first, -1);
+    // One of them free, and none attached.
+    if (static_cast<int>(left) * static_cast<int>(right) != 0 || left == Side::attached ||
+        right == Side::attached)
+      return;
+    float rho = begin.rho, farthest = rho, z = 0;
     for (std::size_t i = first; i <= last; ++i) {
       const Return& r = at(i);
       rho = std::min(rho, r.rho);
       farthest = std::max(farthest, r.rho);
       z += r.z;
     }
-    if (rho * width > m_limits.maxWidth || farthest - rho > m_limits.maxWidth) return;
-    const Side left = side(last < m_size ? last : last - m_size, +1);
-    if (left == Side::attached) return;
-    const Side right = side(first, -1);
-    if (right == Side::attached || (left != Side::free && right != Side::free)) return;
-    Slice slice;
+    if (rho * turn > m_limits.maxWidth || farthest - rho > m_limits.maxWidth) return;
+    Slice& slice = slices.emplace_back();
     slice.left = left;
     slice.right = right;
     slice.row = m_row;
     slice.first = static_cast<std::uint32_t>(first);
     slice.count = static_cast<std::uint32_t>(last - first + 1);
-    slice.azimuthBegin = begin;
-    slice.azimuthEnd = begin + width;
+    slice.azimuthBegin = begin.azimuth;
+    slice.azimuthEnd = begin.azimuth + turn;
     slice.rho = rho;
     slice.z = z / static_cast<float>(slice.count);
-    const float middle = begin + 0.5f * width;
-    slice.x = rho * std::cos(middle);
-    slice.y = rho * std::sin(middle);
-    slices.push_back(slice);
+    placeFront(begin, end, slice);
   }
 
  private:
@@ -76,27 +77,35 @@ class Row {
     const float rho = m_returns[end].rho;
     float azimuth = m_returns[end].azimuth;
     std::size_t i = end;
-    for (int k = 0; k < 2;
-         ++k) {  // a mixed pixel may stand between the edge and what lies behind it
+    // A mixed pixel may stand between the edge and what lies behind it.
+    for (int k = 0; k < 2; ++k) {
       float seam = 0;
       if (direction > 0 && ++i == m_size) {
         i = 0;
         seam = kTurn;
       } else if (direction < 0 && i-- == 0) {
         i = m_size - 1;
-        seam = kTurn;
+        seam = -kTurn;
       }
-      const float step =
-          std::abs(m_returns[i].azimuth - azimuth + static_cast<float>(direction) * seam);
-      if (step > m_limits.gap) return Side::free;
+      const float turn = std::abs(m_returns[i].azimuth - azimuth + seam);
       const float behind = m_returns[i].rho - rho;
-      if (behind > m_limits.edge) return Side::free;
-      if (behind < -m_limits.step) return Side::occluded;
+      const bool free = (turn > m_limits.gap) | (behind > m_limits.edge);
+      if (free | (behind < -m_limits.step)) return free ? Side::free : Side::occluded;
       azimuth = m_returns[i].azimuth;
     }
     return Side::attached;
   }
 
+  /// The bisector of the bearings of both ends, at the slice's range.
+  void placeFront(const Return& a, const Return& b, Slice& slice) const {
+    const float x = m_lines.x(a) * b.rho + m_lines.x(b) * a.rho;
+    const float y = m_lines.y(a) * b.rho + m_lines.y(b) * a.rho;
+    const float scale = slice.rho / std::sqrt(x * x + y * y);
+    slice.x = x * scale;
+    slice.y = y * scale;
+  }
+
+  const ScanLines& m_lines;
   const Return* m_returns;
   std::size_t m_size;
   int m_row;

@@ -79,7 +79,7 @@ struct NativeOptions {
   double stackReach = 0.3;   ///< greatest step in the plane between slices of one pole, m
   double stackGap = 1.2;     ///< greatest height between them, m (or two beams)
   double minTop = 2.0;       ///< least height of the top, m above local ground (`min_top_m`)
-  double maxBottom = 1.6;    ///< greatest height of the lowest return, m
+  double maxBottom = 2.2;    ///< greatest height of the lowest return, m
   double minHeight = 0.5;    ///< least visible height, m
   double minRadius = 0.02;   ///< m
   double maxRadius = 0.45;   ///< m

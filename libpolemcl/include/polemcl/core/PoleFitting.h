@@ -35,9 +35,14 @@ PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint
 /// less half the footprint, outside the outermost returns, so the width of the run of returns gives
 /// the radius, and ranges plus radius give the centre. Both enter one Gauss-Newton problem in
 /// (lateral, depth, radius).
-/// \param used Which slices to fit (indices into slices).
+/// The centre is that at the height of the sensor, or as near to it as the slices reach: there a
+/// roll or pitch of the sensor does not move it.
+/// \param used Which slices to fit (indices into slices), topmost first.
+/// \param firmHeight Slices below weigh less, the less the lower, down to 0.5 m below; lidar frame,
+/// m.
 /// \return Nothing when the normal equations are degenerate.
 std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
-                               const std::vector<std::uint32_t>& used, float columnAngle);
+                               const std::vector<std::uint32_t>& used, float firmHeight,
+                               float columnAngle);
 
 }  // namespace polemcl

@@ -36,21 +36,20 @@ class SliceStacker {
     float x, y, z;
     std::int32_t row;
     std::uint32_t first, last, count;  ///< slices
+    std::int32_t cell;
+    std::uint32_t next;  ///< tip in the same cell
   };
-  struct Node {
-    std::uint32_t tip, next;
-  };
-  int cell(float coordinate) const;
-  std::uint32_t nearestTip(const Slice& slice) const;
-  void enter(std::uint32_t tip, const Slice& slice);
+  std::int32_t cell(float x, float y) const;
+  std::uint32_t nearestTip(const Slice& slice);
+  void enter(std::uint32_t tip);
+  void move(std::uint32_t tip);
   void collect();
 
-  float m_reach, m_gap, m_cellsPerMetre;
-  int m_cells;                   ///< of the square grid, per side
+  float m_reach, m_gap, m_cellsPerMetre, m_middle;
+  std::int32_t m_cells;          ///< of the square grid, per side
   std::vector<float> m_beamGap;  ///< per row: two beams apart, as a share of range
   std::vector<Tip> m_tips;
-  std::vector<std::uint32_t> m_head;  ///< per cell of the plane: its newest node
-  std::vector<Node> m_nodes;
+  std::vector<std::uint32_t> m_head;   ///< per cell of the plane: the tip that entered last
   std::vector<std::uint32_t> m_below;  ///< per slice: the next one down its stack
   std::vector<std::uint32_t> m_members;
   std::vector<Stack> m_stacks;

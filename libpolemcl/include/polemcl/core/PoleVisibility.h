@@ -29,11 +29,10 @@ struct VisibilityRule {
 
 /// \brief What one scan shows of one pole.
 struct PoleSight {
-  std::size_t returns = 0;  ///< that carry its id
-  /// Heights of these, map frame, m; the middle is the median of those within 0.25 m of the trunk,
-  /// not on arms and signs, if there are any. Without returns the sensor's height, all three.
-  double lowest = 0, middle = 0, highest = 0;
-  double range = 0;  ///< from the origin of the cloud, in the plane of the map, m
+  std::size_t returns = 0;         ///< that carry its id
+  double lowest = 0, highest = 0;  ///< of these, map frame, m; without any the sensor's height
+  double sensor = 0;               ///< height of the cloud's origin, map frame, m
+  double range = 0;                ///< from the origin of the cloud, in the plane of the map, m
   bool visible = false;
 };
 
@@ -49,8 +48,8 @@ std::vector<PoleSight> sightPoles(const PointsView& points,
                                   const VisibilityRule& rule = {});
 
 /// \brief The poles where a perfect extractor would see them: axes are upright in the map, not in
-/// the frame of a sensor that leans with the road, so each is taken at the median height of the
-/// returns of its trunk.
+/// the frame of a sensor that leans with the road, so each is taken at the height of the sensor,
+/// where leaning does not move it.
 /// \param T_scan_map From the map to the frame of the detections.
 std::vector<TruePoleInScan> polesInScan(const std::vector<WorldPole>& poles,
                                         const std::vector<PoleSight>& sights,

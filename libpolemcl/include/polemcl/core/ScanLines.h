@@ -6,6 +6,7 @@
 /// delivered in another order, gives the same rows. (Scan lines as units of pole detection:
 /// Lehtomäki et al. 2010, "Detection of vertical pole-like objects in a road environment".)
 
+#include <polemcl/core/GroundGrid.h>
 #include <polemcl/core/SensorModel.h>
 #include <polemcl/core/Types.h>
 
@@ -25,26 +26,25 @@ struct Return {
 class ScanLines {
  public:
   struct Counts {
-    std::size_t used = 0, invalid = 0, outOfView = 0, outOfRange = 0;
+    std::size_t used = 0;      ///< in rows
+    std::size_t onGround = 0;  ///< less than the clearance above the ground, or below it
+    std::size_t outOfView = 0;
   };
 
   explicit ScanLines(const SensorModel& sensor);
 
   /// \brief Sorts the points of one turn into rows. Keeps its buffers between calls.
-  /// \param minRange,maxRange Bounds of the horizontal range, m; points outside are dropped and
-  /// counted.
-  const Counts& build(const PointsView& points, float minRange, float maxRange);
+  ///
+  /// Most points of a street lie on the ground; poles stand on it, so they are left out first.
+  /// \param ground Built from the same points; those it dropped are dropped here, too.
+  /// \param clearance Points less than this above the ground are left out, m.
+  const Counts& build(const PointsView& points, const GroundGrid& ground, float clearance);
 
   int rows() const { return m_rows; }
   /// \brief Returns of one row, azimuth ascending; equal azimuths by range, then height, then x, y.
   const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
   const Return* end(int row) const { return begin(row + 1); }
   std::size_t size(int row) const { return static_cast<std::size_t>(end(row) - begin(row)); }
-  /// \brief Returns of a row whose azimuth lies in bucket `column` of kBuckets from -pi to pi; the
-  /// bucket ends where the next begins (columnBegin(row, kBuckets) == end(row)).
-  const Return* columnBegin(int row, int column) const {
-    return m_returns.data() + m_bucketStart[bucket(row, column)];
-  }
   static constexpr int kBuckets = 512;  ///< per row; a power of two
   /// \brief Coordinates of a return in the cloud last built from, lidar frame, m.
   float x(const Return& r) const { return m_points.x[r.point]; }
@@ -57,16 +57,18 @@ class ScanLines {
     return static_cast<std::size_t>(row) * kBuckets + column;
   }
   static int bucketColumn(float azimuth);
-  void sortBuckets();
+  std::uint32_t sortIntoBuckets(std::size_t count);
+  void sortRow(int row);
+  void sortBuckets(int row);
 
   const SensorModel& m_sensor;
   int m_rows;
   Counts m_counts;
   PointsView m_points;
-  std::vector<Return> m_returns;
-  std::vector<std::int32_t> m_key;  ///< bucket of each point, -1: dropped
-  std::vector<float> m_azimuth, m_rho;
+  std::vector<Return> m_unsorted, m_returns;
+  std::vector<std::int32_t> m_key;           ///< bucket of each unsorted return
   std::vector<std::uint32_t> m_bucketStart;  ///< of every bucket, and the end of the last
+  float m_limit[GroundGrid::kCells + 1];     ///< per cell of the ground
 };
 
 }  // namespace polemcl
