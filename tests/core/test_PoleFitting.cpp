@@ -53,7 +53,7 @@ struct Scan {
     findSlices(distance);
   }
   float column() const { return static_cast<float>(sensor.columnAngle()); }
-  std::optional<PoleFit> fit() const { return fitPole(lines, slices, used, -1e3f, column()); }
+  std::optional<PoleFit> fit() const { return fitPole(lines, slices, used, {column()}); }
 
  private:
   void findSlices(double distance) {
@@ -240,7 +240,7 @@ TEST(PoleFitting, aPoleHalfHiddenIsNotPulledAside) {
 
 TEST(PoleFitting, ofNoSlicesThereIsNoFit) {
   const Scan scan(10, 0, 0.1, 1);
-  EXPECT_FALSE(fitPole(scan.lines, scan.slices, {}, 0, scan.column()));
+  EXPECT_FALSE(fitPole(scan.lines, scan.slices, {}, {scan.column()}));
 }
 
 TEST(PoleFitting, onlyTheSlicesNamedAreUsed) {

@@ -178,7 +178,13 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   const auto scan = rotatingScan(options.sensor, mixed, up);
   PoleExtraction byTable(table);
   EXPECT_GE(found(*byTable.process(scan), 0.05), 6);
-  EXPECT_LT(found(*byModel.process(scan), 0.05), 3);
+  // Beams near the horizon hardly mind; of the others little is left.
+  const auto points = [](const CObservationPoles& poles) {
+    std::size_t sum = 0;
+    for (const auto& pole : poles.poles) sum += pole.points;
+    return sum;
+  };
+  EXPECT_LT(3 * points(*byModel.process(scan)), 2 * points(*byTable.process(scan)));
 }
 
 // Rows keep the elevations of the sensor itself; its pose turns them over.

@@ -30,8 +30,9 @@ NativeExtractor::NativeExtractor(const SensorOptions& sensor, const NativeOption
       m_finder(m_sensor, options),
       m_stacker(m_sensor, options) {}
 
-void NativeExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
-                              ExtractionReport& report) {
+void NativeExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
+                              std::vector<PoleDetection>& poles, ExtractionReport& report) {
+  m_upright = upright;
   const auto& dropped = m_ground.build(points, static_cast<float>(m_sensorOptions.minRange),
                                        m_farthest, static_cast<float>(m_sensorOptions.height));
   const auto& counts = m_lines.build(points, m_ground, kClearance);
@@ -117,7 +118,8 @@ Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
   PoleFeatures features = describe(stack, shape, evidence, axis);
   if (roughOdds(features) < kHopelessOdds) return Refusal::lowConfidence;
   const float ground = m_ground.at(axis.x, axis.y);
-  const auto fit = fitPole(m_lines, m_slices, m_fitSlices, ground + kFirmHeight, column);
+  const auto fit = fitPole(m_lines, m_slices, m_fitSlices,
+                           {column, ground + kFirmHeight, m_upright.x(), m_upright.y()});
   if (!fit || fit->radius < m_options.minRadius || fit->radius > m_options.maxRadius)
     return Refusal::badFit;
   features.residual = fit->residual;

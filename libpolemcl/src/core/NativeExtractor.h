@@ -12,8 +12,9 @@ namespace polemcl {
 class NativeExtractor {
  public:
   NativeExtractor(const SensorOptions& sensor, const NativeOptions& options);
-  void extract(const PointsView& points, std::vector<PoleDetection>& poles,
-               ExtractionReport& report);
+  /// \param upright See PoleExtractor::extract().
+  void extract(const PointsView& points, const Eigen::Vector2f& upright,
+               std::vector<PoleDetection>& poles, ExtractionReport& report);
 
  private:
   /// \return The reason of the refusal, or Refusal::count_ when `pole` was filled.
@@ -27,6 +28,7 @@ class NativeExtractor {
 
   SensorOptions m_sensorOptions;
   NativeOptions m_options;
+  Eigen::Vector2f m_upright = Eigen::Vector2f::Zero();
   float m_farthest;  ///< m
   SensorModel m_sensor;
   ScanLines m_lines;

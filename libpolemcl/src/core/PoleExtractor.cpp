@@ -61,11 +61,12 @@ PoleExtractor::~PoleExtractor() = default;
 PoleExtractor::PoleExtractor(PoleExtractor&&) noexcept = default;
 PoleExtractor& PoleExtractor::operator=(PoleExtractor&&) noexcept = default;
 
-const std::vector<PoleDetection>& PoleExtractor::extract(const PointsView& points) {
+const std::vector<PoleDetection>& PoleExtractor::extract(const PointsView& points,
+                                                         const Eigen::Vector2f& upright) {
   m_impl->poles.clear();
   m_impl->report = {};
   if (m_impl->native)
-    m_impl->native->extract(points, m_impl->poles, m_impl->report);
+    m_impl->native->extract(points, upright, m_impl->poles, m_impl->report);
   else
     m_impl->paper->extract(points, m_impl->poles, m_impl->report);
   std::sort(m_impl->poles.begin(), m_impl->poles.end(),

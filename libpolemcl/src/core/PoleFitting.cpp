@@ -68,14 +68,14 @@ float firmness(const Slice& slice, float firmHeight) {
 class CylinderProblem {
  public:
   CylinderProblem(const ScanLines& lines, const std::vector<Slice>& slices,
-                  const std::vector<std::uint32_t>& used, float firmHeight, float columnAngle)
+                  const std::vector<std::uint32_t>& used, const PoleView& view)
       : m_lines(lines),
         m_slices(slices),
         m_used(used),
         // More than these add nothing to what the radius prior and the floor leave.
         m_stride((used.size() + kMostSlices - 1) / kMostSlices),
-        m_firmHeight(firmHeight),
-        m_columnAngle(columnAngle) {
+        m_firmHeight(view.firmHeight),
+        m_columnAngle(view.columnAngle) {
     const Slice& reference = slices[used[used.size() / 2]];
     m_bearing = 0.5 * (reference.azimuthBegin + reference.azimuthEnd);
     m_cos = std::cos(m_bearing);
@@ -249,13 +249,14 @@ struct Lean {
 };
 
 Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
-            float firmHeight) {
-  // Ratio of the variances of a front's place and of a pole's lean in the sensor's frame.
+            const PoleView& view) {
+  // Poles are upright but for the sway of the sensor. The prior is the ratio of the variances of a
+  // front's place and of the lean.
   constexpr double kPrior = 4, kLeanSigma = 0.02;
   Lean lean;
   double n = 0, mx = 0, my = 0;
   for (std::uint32_t u : used) {
-    const double w = firmness(slices[u], firmHeight);
+    const double w = firmness(slices[u], view.firmHeight);
     n += w;
     mx += w * slices[u].x;
     my += w * slices[u].y;
@@ -264,16 +265,16 @@ Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& 
   mx /= n;
   my /= n;
   lean.height /= n;
-  double zz = kPrior;
+  double zz = 0;
   for (std::uint32_t u : used) {
-    const double z = slices[u].z - lean.height, w = firmness(slices[u], firmHeight);
+    const double z = slices[u].z - lean.height, w = firmness(slices[u], view.firmHeight);
     zz += w * z * z;
     lean.x += w * z * (slices[u].x - mx);
     lean.y += w * z * (slices[u].y - my);
   }
-  lean.x /= zz;
-  lean.y /= zz;
-  lean.variance = kLeanSigma * kLeanSigma * kPrior / zz;
+  lean.x = (lean.x + kPrior * view.uprightX) / (zz + kPrior);
+  lean.y = (lean.y + kPrior * view.uprightY) / (zz + kPrior);
+  lean.variance = kLeanSigma * kLeanSigma * kPrior / (zz + kPrior);
   lean.high = slices[used.front()].z;
   lean.low = slices[used.back()].z;
   return lean;
@@ -291,10 +292,9 @@ void moveToSensorHeight(const Lean& lean, PoleFit& fit) {
 }  // namespace
 
 std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
-                               const std::vector<std::uint32_t>& used, float firmHeight,
-                               float columnAngle) {
+                               const std::vector<std::uint32_t>& used, const PoleView& view) {
   if (used.empty()) return std::nullopt;
-  const CylinderProblem problem(lines, slices, used, firmHeight, columnAngle);
+  const CylinderProblem problem(lines, slices, used, view);
   State s = problem.initial();
   Normal n;
   for (int i = 0; i < kIterations; ++i) {
@@ -319,7 +319,7 @@ std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>&
   const Eigen::Matrix2d local =
       n.H.inverse().topLeftCorner<2, 2>() + kFloorSigma * kFloorSigma * Eigen::Matrix2d::Identity();
   fit.covariance = turn * local * turn.transpose();
-  moveToSensorHeight(leanOf(slices, used, firmHeight), fit);
+  moveToSensorHeight(leanOf(slices, used, view), fit);
   return fit;
 }
 

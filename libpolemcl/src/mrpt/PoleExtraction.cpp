@@ -2,6 +2,8 @@
 #include <polemcl/core/SensorCheck.h>
 #include <polemcl/mrpt/PoleExtraction.h>
 
+#include <algorithm>
+
 #include "LidarFrame.h"
 #include "MrptReason.h"
 #include "ObservationPoints.h"
@@ -10,14 +12,29 @@ namespace polemcl {
 
 namespace {
 
-/// Moves a detection from the lidar frame to the planar sensor frame, at its middle height: there
-/// the axis of a pole that stands askew in the lidar frame passes through the centre found. Heights
-/// are above the ground under the pole, which the robot stands on too: level in its frame.
-void toPlanar(const LidarFrame& f, double ground, PoleDetection& pole) {
-  if (f.planarIsLidar) return;
-  const double middle = (pole.bottom + pole.top) / 2 + ground;  // above the sensor, along robot z
+/// By so much an upright pole moves along the lidar's x and y per height along its z.
+Eigen::Vector2f upright(const LidarFrame& f) {
+  const Eigen::Vector3d up = f.R_planar_lidar.row(2);
+  return (up.head<2>() / up.z()).cast<float>();
+}
+
+/// Height in the lidar frame at which a detection's centre was found; where it stands, heights
+/// above the ground are those along the robot's z. The native method takes the height of the
+/// sensor, or the nearest that it saw of the pole; the paper's the mean of all points.
+double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double ground,
+                      const PoleDetection& pole) {
   const Eigen::RowVector3d up = f.R_planar_lidar.row(2);
-  const double z = (middle - up.x() * pole.x - up.y() * pole.y) / up.z();
+  const auto inLidar = [&](double aboveGround) {
+    return (aboveGround + ground - up.x() * pole.x - up.y() * pole.y) / up.z();
+  };
+  const double low = inLidar(pole.bottom), high = inLidar(pole.top);
+  return method == ExtractionMethod::paper ? 0.5 * (low + high)
+                                           : std::min(std::max(0.0, low), std::max(low, high));
+}
+
+/// Moves a detection from the lidar frame to the planar sensor frame.
+void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
+  if (f.planarIsLidar) return;
   const Eigen::Vector3d centre =
       f.R_planar_lidar * Eigen::Vector3d(pole.x, pole.y, z) + f.t_planar_lidar;
   const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>();
@@ -45,11 +62,13 @@ void readingPoints(const mrpt::obs::CObservation& observation, const Work& work)
 struct PoleExtraction::Impl {
   explicit Impl(const PoleExtractionOptions& o)
       : sensor(o.sensor),
+        method(o.extraction.method),
         points(o.sensor),
         extractor(o.sensor, o.extraction),
         check(o.sensor, o.extraction.method == ExtractionMethod::native) {}
 
   SensorOptions sensor;
+  ExtractionMethod method;
   ObservationPoints points;
   PoleExtractor extractor;
   ExtractionReport report;
@@ -93,9 +112,10 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
       const LidarFrame frames = lidarFrame(result->sensorPose, m_impl->sensor);
       const PointsView points = m_impl->moved.toLidar(cloud, frames);
       m_impl->compare(observation, points);
-      result->poles = m_impl->extractor.extract(points);
+      result->poles = m_impl->extractor.extract(points, upright(frames));
       m_impl->report = m_impl->extractor.report();
-      for (auto& pole : result->poles) toPlanar(frames, m_impl->report.ground, pole);
+      for (auto& pole : result->poles)
+        toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
     }
     m_impl->report.points += m_impl->points.dropped();
     m_impl->report.invalid += m_impl->points.dropped();

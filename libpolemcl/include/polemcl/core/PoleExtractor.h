@@ -51,8 +51,12 @@ class PoleExtractor {
   /// \brief Poles of one full turn, sorted by azimuth then range so that the order is defined.
   /// \param points Cloud in the LiDAR's own frame, origin at its optical centre, z up
   ///        (within the mounting tilt; see SensorOptions). Order of points is of no consequence.
-  /// \return Poles in that same frame; heights above the local ground.
-  const std::vector<PoleDetection>& extract(const PointsView& points);
+  /// \param upright By so much an upright pole moves along x and y per height along z: the known
+  /// lean of the lidar. Used by the native method.
+  /// \return Poles in that same frame; heights above the local ground. Centres of the native method
+  /// are those at the height of the lidar, or the nearest that was seen.
+  const std::vector<PoleDetection>& extract(
+      const PointsView& points, const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
   const ExtractionReport& report() const;
 
  private:

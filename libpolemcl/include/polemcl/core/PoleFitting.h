@@ -27,6 +27,15 @@ struct PoleAxis {
 PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
                    float columnAngle);
 
+/// \brief How poles are looked at.
+struct PoleView {
+  float columnAngle = 0;  ///< one firing step, rad
+  /// Slices below weigh less, the less the lower, down to 0.5 m below; lidar frame, m.
+  float firmHeight = -1e3f;
+  /// By so much an upright pole moves along x and y per height along z: 0 for an upright lidar.
+  float uprightX = 0, uprightY = 0;
+};
+
 /// \brief Fits a cylinder by maximum a posteriori: ranges to its front, and the bearings of its
 /// edges.
 ///
@@ -38,11 +47,8 @@ PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint
 /// The centre is that at the height of the sensor, or as near to it as the slices reach: there a
 /// roll or pitch of the sensor does not move it.
 /// \param used Which slices to fit (indices into slices), topmost first.
-/// \param firmHeight Slices below weigh less, the less the lower, down to 0.5 m below; lidar frame,
-/// m.
 /// \return Nothing when the normal equations are degenerate.
 std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
-                               const std::vector<std::uint32_t>& used, float firmHeight,
-                               float columnAngle);
+                               const std::vector<std::uint32_t>& used, const PoleView& view);
 
 }  // namespace polemcl
