@@ -242,11 +242,13 @@ TEST(ObservationPoints, UnprojectsDepthImagesOnACopy) {
   options.sensor.columns = 2000;
   PoleExtraction extraction(options);
   extraction.process(*depth);
-  EXPECT_EQ(extraction.report().points, 273225u);
+  EXPECT_EQ(extraction.report().points, 640u * 480u);
+  EXPECT_EQ(extraction.report().invalid, 640u * 480u - 273225u);
   depth->hasPoints3D = false;
   depth->resizePoints3DVectors(0);
   extraction.process(*depth);
-  EXPECT_EQ(extraction.report().points, 273225u);
+  EXPECT_EQ(extraction.report().points, 640u * 480u);
+  EXPECT_EQ(extraction.report().invalid, 640u * 480u - 273225u);
   EXPECT_FALSE(depth->hasPoints3D);
 }
 

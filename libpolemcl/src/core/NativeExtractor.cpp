@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace polemcl {
 namespace {
@@ -20,12 +21,13 @@ double confidence(double logOdds) {
 
 }  // namespace
 
-NativeExtractor::NativeExtractor(const SensorOptions& sensor, const NativeOptions& options)
+NativeExtractor::NativeExtractor(SensorModel model, const SensorOptions& sensor,
+                                 const NativeOptions& options)
     : m_sensorOptions(sensor),
       m_options(options),
       // What stands well behind the farthest pole is as good as nothing.
       m_farthest(static_cast<float>(std::min(sensor.maxRange, options.maxRange + 1))),
-      m_sensor(sensor),
+      m_sensor(std::move(model)),
       m_lines(m_sensor),
       m_finder(m_sensor, options),
       m_stacker(m_sensor, options) {}

@@ -11,7 +11,8 @@ namespace polemcl {
 
 class NativeExtractor {
  public:
-  NativeExtractor(const SensorOptions& sensor, const NativeOptions& options);
+  /// \param model Made from the same options, or from a depth camera.
+  NativeExtractor(SensorModel model, const SensorOptions& sensor, const NativeOptions& options);
   /// \param upright See PoleExtractor::extract().
   void extract(const PointsView& points, const Eigen::Vector2f& upright,
                std::vector<PoleDetection>& poles, ExtractionReport& report);

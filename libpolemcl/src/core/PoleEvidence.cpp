@@ -32,6 +32,9 @@ class Place {
         m_column(static_cast<float>(sensor.columnAngle())) {}
   float rho() const { return m_rho; }
   float bearing() const { return m_bearing; }
+  float heightOfRow(const SensorModel& sensor, int row) const {
+    return sensor.heightOver(row, m_axis.x, m_axis.y, m_rho);
+  }
 
   Meeting meet(int row, float* z) const {
     Meeting meeting = Meeting::empty;
@@ -110,10 +113,7 @@ void top(const Place& place, const SensorModel& sensor, int row, float ground,
     } else if (meeting == Meeting::occluded) {
       return;
     } else {
-      const Beam& beam = sensor.beam(r);
-      if (misses++ == 0)
-        bound =
-            place.rho() * static_cast<float>(beam.slope) + static_cast<float>(beam.offset) - ground;
+      if (misses++ == 0) bound = place.heightOfRow(sensor, r) - ground;
     }
   }
   evidence.topBound = bound;

@@ -53,9 +53,16 @@ PoleExtractor::PoleExtractor(const SensorOptions& sensor, const ExtractionOption
   extraction.validate();
   sensor.validate();
   if (extraction.method == ExtractionMethod::native)
-    m_impl->native.emplace(sensor, extraction.native);
+    m_impl->native.emplace(SensorModel(sensor), sensor, extraction.native);
   else
     m_impl->paper.emplace(sensor, extraction.paper);
+}
+PoleExtractor::PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
+                             const NativeOptions& options)
+    : m_impl(std::make_unique<Impl>()) {
+  options.validate();
+  sensor.validate();
+  m_impl->native.emplace(SensorModel(camera), sensor, options);
 }
 PoleExtractor::~PoleExtractor() = default;
 PoleExtractor::PoleExtractor(PoleExtractor&&) noexcept = default;

@@ -205,7 +205,8 @@ class Classifier {
     const auto perRadian = hn::Set(d, static_cast<float>(m_buckets) / (2 * kPi));
     const auto column = hn::ConvertTo(di, hn::Mul(hn::Add(azimuth, hn::Set(d, kPi)), perRadian));
     const auto clamped = hn::Min(hn::Max(column, hn::Zero(di)), hn::Set(di, m_buckets - 1));
-    const auto first = hn::Mul(rowOf(d, rho, vz), hn::Set(di, m_buckets));
+    const auto row = m_lookup.planes ? rowOfPlane(d, vx, vy, vz) : rowOf(d, rho, vz);
+    const auto first = hn::Mul(row, hn::Set(di, m_buckets));
     const auto bucket = hn::Min(hn::Add(first, clamped), hn::Set(di, m_rows * m_buckets));
     hn::StoreU(bucket, di, m_out.bucket + at);
     hn::StoreInterleaved4(azimuth, rho, vz, hn::BitCast(d, index), d, &m_out.returns[at].azimuth);
@@ -230,6 +231,26 @@ class Classifier {
     const auto index = hn::Add(hn::ConvertTo(di, hn::IfThenElseZero(inView, cell)), base);
     return hn::IfThenElse(hn::RebindMask(di, inView),
                           hn::GatherIndex(di, m_lookup.row.data(), index), hn::Set(di, m_rows));
+  }
+
+  /// The same for a depth camera.
+  template <class D>
+  hn::Vec<hn::RebindToSigned<D>> rowOfPlane(D d, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) const {
+    const hn::RebindToSigned<D> di;
+    const auto along = [&](const float* axis) {
+      return hn::Add(hn::Add(hn::Mul(x, hn::Set(d, axis[0])), hn::Mul(y, hn::Set(d, axis[1]))),
+                     hn::Mul(z, hn::Set(d, axis[2])));
+    };
+    const auto ahead = along(m_lookup.ahead);
+    const auto slope = hn::Div(along(m_lookup.up), ahead);
+    const auto cell = hn::Mul(hn::Sub(slope, hn::Set(d, m_lookup.minSlope[0])),
+                              hn::Set(d, m_lookup.cellsPerSlope));
+    const auto inView =
+        hn::And(hn::Gt(ahead, hn::Zero(d)),
+                hn::And(hn::Ge(cell, hn::Zero(d)), hn::Lt(cell, hn::Set(d, m_lookup.cells[0]))));
+    const auto fromBottom = hn::ConvertTo(di, hn::IfThenElseZero(inView, cell));
+    return hn::IfThenElse(hn::RebindMask(di, inView), hn::Sub(hn::Set(di, m_rows - 1), fromBottom),
+                          hn::Set(di, m_rows));
   }
 
   const PointsView& m_points;

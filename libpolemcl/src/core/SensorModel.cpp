@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace polemcl {
 namespace {
@@ -124,6 +125,50 @@ SensorModel::SensorModel(const SensorOptions& options) {
   m_lookup.splitSlope = static_cast<float>((m_beams[split - 1].slope + m_beams[split].slope) / 2);
   m_lookup.splitOffset =
       static_cast<float>((m_beams[split - 1].offset + m_beams[split].offset) / 2);
+}
+
+SensorModel::SensorModel(const PinholeCamera& camera) {
+  camera.validate();
+  const Eigen::Vector3d ahead = camera.R_lidar_camera.col(0);
+  // Poles cross those lines of pixels that lie more level: the columns of a camera on its side.
+  const bool onSide = std::abs(camera.R_lidar_camera(2, 1)) > std::abs(camera.R_lidar_camera(2, 2));
+  Eigen::Vector3d up = camera.R_lidar_camera.col(onSide ? 1 : 2);
+  const int lines = onSide ? camera.width : camera.height;
+  const double focal = onSide ? camera.fx : camera.fy;
+  const double focalAcross = onSide ? camera.fy : camera.fx;
+  double centre = onSide ? camera.cx : camera.cy;
+  if (up.z() < 0) {
+    up = -up;
+    centre = lines - 1 - centre;
+  }
+  for (int row = 0; row < lines; ++row) m_beams.push_back({(centre - row) / focal, 0});
+  for (int row = 0; row < lines; ++row) {
+    const int above = std::max(0, row - 1);
+    m_spacingAbove.push_back(std::atan(m_beams[above].slope) - std::atan(m_beams[above + 1].slope));
+  }
+  // Looking down, the same pixels cover more of a turn.
+  const double level = std::max(0.1, ahead.head<2>().norm());
+  m_columnAngle = std::atan(1 / (focalAcross * level));
+  m_columns = static_cast<int>(std::ceil(2 * M_PI / m_columnAngle));
+  m_lookup.planes = true;
+  m_lookup.cells[0] = static_cast<float>(lines);
+  m_lookup.cellsPerSlope = static_cast<float>(focal);
+  m_lookup.minSlope[0] = static_cast<float>((centre - (lines - 0.5)) / focal);
+  for (int k = 0; k < 3; ++k) {
+    m_lookup.ahead[k] = static_cast<float>(ahead[k]);
+    m_lookup.up[k] = static_cast<float>(up[k]);
+  }
+}
+
+float SensorModel::heightOver(int row, float x, float y, float rho) const {
+  const float slope = static_cast<float>(m_beams[row].slope);
+  if (!m_lookup.planes) return rho * slope + static_cast<float>(m_beams[row].offset);
+  // Where the plane (up - slope * ahead) · p = 0 meets the vertical line over the place.
+  const float* ahead = m_lookup.ahead;
+  const float* up = m_lookup.up;
+  const float steep = up[2] - slope * ahead[2];
+  if (steep < 1e-3f) return std::numeric_limits<float>::infinity();
+  return ((slope * ahead[0] - up[0]) * x + (slope * ahead[1] - up[1]) * y) / steep;
 }
 
 void SensorModel::buildBlock(int block, int firstRow, int lastRow) {

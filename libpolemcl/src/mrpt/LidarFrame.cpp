@@ -5,7 +5,8 @@
 
 namespace polemcl {
 
-LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor) {
+LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor,
+                      bool level) {
   LidarFrame f;
   const Eigen::Vector3d origin(sensor.originX, sensor.originY, sensor.originZ);
   const Eigen::Matrix3d R_robot_cloud = sensorPose.getRotationMatrix().asEigen();
@@ -13,10 +14,10 @@ LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOption
       Eigen::AngleAxisd(sensorPose.yaw(), Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const double upright = R_robot_cloud(2, 2);  // cosine between the two z axes
   Eigen::Matrix3d R_robot_lidar = R_robot_cloud;
-  if (upright < -M_SQRT1_2) {
+  if (!level && upright < -M_SQRT1_2) {
     f.R_lidar_cloud = Eigen::Vector3d(1, -1, -1).asDiagonal();  // half a turn about x
     R_robot_lidar = R_robot_cloud * f.R_lidar_cloud;
-  } else if (upright < M_SQRT1_2) {
+  } else if (level || upright < M_SQRT1_2) {
     f.R_lidar_cloud = R_robot_planar.transpose() * R_robot_cloud;
     R_robot_lidar = R_robot_planar;
   }

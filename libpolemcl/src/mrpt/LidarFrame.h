@@ -22,7 +22,9 @@ struct LidarFrame {
 };
 
 /// \brief The lidar frame of clouds with this sensor pose, as PoleExtraction describes it.
-LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor);
+/// \param level Level with the robot whatever the sensor pose is.
+LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor,
+                      bool level = false);
 
 /// \brief Points in the lidar frame; keeps its buffers.
 class MovedPoints {

@@ -14,6 +14,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "DepthImage.h"
+
 namespace polemcl {
 
 using namespace mrpt::obs;
@@ -28,6 +30,7 @@ bool ObservationPoints::canRead(const CObservation& observation) {
 PointsView ObservationPoints::read(const CObservation& observation) {
   release();
   m_dropped = 0;
+  m_camera.reset();
   if (const auto* cloud = dynamic_cast<const CObservationPointCloud*>(&observation))
     return readCloud(*cloud);
   if (const auto* scan = dynamic_cast<const CObservationVelodyneScan*>(&observation))
@@ -122,16 +125,22 @@ PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& obser
   return owned();
 }
 
+/// The image is what the camera gave; a cloud beside it may be in another frame or thinned out.
 PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observation) {
-  if (observation.hasPoints3D && !observation.points3D_isExternallyStored())
-    return {observation.points3D_x.data(), observation.points3D_y.data(),
-            observation.points3D_z.data(), observation.points3D_x.size()};
-  CObservation3DRangeScan copy = observation;
-  copy.load();
-  if (!copy.hasPoints3D && copy.hasRangeImage) copy.unprojectInto(copy);
-  m_x.swap(copy.points3D_x);
-  m_y.swap(copy.points3D_y);
-  m_z.swap(copy.points3D_z);
+  const bool stored =
+      observation.rangeImage_isExternallyStored() || observation.points3D_isExternallyStored();
+  std::optional<CObservation3DRangeScan> copy;
+  if (stored) copy.emplace(observation).load();
+  const CObservation3DRangeScan& scan = stored ? *copy : observation;
+  if (hasPixels(scan)) {
+    m_camera = cameraOf(scan);
+    m_dropped = unproject(scan, *m_camera, {m_x, m_y, m_z});
+    return owned();
+  }
+  if (!scan.hasPoints3D) return {};
+  m_x.assign(scan.points3D_x.begin(), scan.points3D_x.end());
+  m_y.assign(scan.points3D_y.begin(), scan.points3D_y.end());
+  m_z.assign(scan.points3D_z.begin(), scan.points3D_z.end());
   return owned();
 }
 

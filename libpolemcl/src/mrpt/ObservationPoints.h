@@ -4,8 +4,10 @@
 
 #include <mrpt/obs/CObservation.h>
 #include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/PinholeCamera.h>
 #include <polemcl/core/Types.h>
 
+#include <optional>
 #include <vector>
 
 namespace mrpt::obs {
@@ -31,6 +33,9 @@ class ObservationPoints {
   PointsView read(const mrpt::obs::CObservation& observation);
   /// \brief Invalid points of the last read() that are not in its view any more.
   std::size_t dropped() const { return m_dropped; }
+  /// \brief The camera, with its attitude left as identity, when the points of the last read() are
+  /// the pixels of a depth image.
+  const std::optional<PinholeCamera>& camera() const { return m_camera; }
   /// \brief Unloads what read() loaded from external storage.
   void release() noexcept;
 
@@ -57,6 +62,7 @@ class ObservationPoints {
   SensorOptions m_sensor;
   std::vector<float> m_x, m_y, m_z;
   std::size_t m_dropped = 0;
+  std::optional<PinholeCamera> m_camera;
   const mrpt::obs::CObservation* m_loaded = nullptr;  ///< to be unloaded
 };
 

@@ -3,6 +3,7 @@
 #include <polemcl/mrpt/PoleExtraction.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "LidarFrame.h"
 #include "MrptReason.h"
@@ -63,21 +64,50 @@ struct PoleExtraction::Impl {
   explicit Impl(const PoleExtractionOptions& o)
       : sensor(o.sensor),
         method(o.extraction.method),
+        native(o.extraction.native),
         points(o.sensor),
         extractor(o.sensor, o.extraction),
         check(o.sensor, o.extraction.method == ExtractionMethod::native) {}
 
   SensorOptions sensor;
   ExtractionMethod method;
+  NativeOptions native;
   ObservationPoints points;
   PoleExtractor extractor;
+  std::optional<PoleExtractor> cameraExtractor;  ///< for the camera seen last
+  PinholeCamera camera;
   ExtractionReport report;
   MovedPoints moved;
   SensorCheck check;
   int checksLeft = 3;  ///< scans to compare with the configuration
 
   void compare(const mrpt::obs::CObservation& observation, const PointsView& points);
+  LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
+  PoleExtractor& extractorFor(const LidarFrame& frames);
+  /// The image of the last points read is taken as such: the paper's range image is a sphere.
+  bool pinhole() const { return points.camera() && method == ExtractionMethod::native; }
 };
+
+/// Frame for the points last read. A depth image's points are levelled, as its rows are planes in
+/// whatever frame; its optical centre is the cloud's origin.
+LidarFrame PoleExtraction::Impl::frameOf(const mrpt::poses::CPose3D& sensorPose) const {
+  if (!pinhole()) return lidarFrame(sensorPose, sensor);
+  SensorOptions own = sensor;
+  own.originX = own.originY = own.originZ = 0;
+  return lidarFrame(sensorPose, own, true);
+}
+
+/// Extractor for the points last read.
+PoleExtractor& PoleExtraction::Impl::extractorFor(const LidarFrame& frames) {
+  if (!pinhole()) return extractor;
+  PinholeCamera seen = *points.camera();
+  seen.R_lidar_camera = frames.R_lidar_cloud;
+  if (!cameraExtractor || !(seen == camera)) {
+    cameraExtractor.emplace(seen, sensor, native);
+    camera = seen;
+  }
+  return *cameraExtractor;
+}
 
 void PoleExtraction::Impl::compare(const mrpt::obs::CObservation& observation,
                                    const PointsView& cloud) {
@@ -109,11 +139,12 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
     const ObservationPoints::Loan loan(m_impl->points);
     const PointsView cloud = m_impl->points.read(observation);
     if (cloud.size > 0) {
-      const LidarFrame frames = lidarFrame(result->sensorPose, m_impl->sensor);
+      const LidarFrame frames = m_impl->frameOf(result->sensorPose);
       const PointsView points = m_impl->moved.toLidar(cloud, frames);
       m_impl->compare(observation, points);
-      result->poles = m_impl->extractor.extract(points, upright(frames));
-      m_impl->report = m_impl->extractor.report();
+      PoleExtractor& extractor = m_impl->extractorFor(frames);
+      result->poles = extractor.extract(points, upright(frames));
+      m_impl->report = extractor.report();
       for (auto& pole : result->poles)
         toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
     }
@@ -130,8 +161,8 @@ io::Cloud PoleExtraction::lidarPoints(const mrpt::obs::CObservation& observation
   io::Cloud cloud;
   readingPoints(observation, [&] {
     const ObservationPoints::Loan loan(m_impl->points);
-    const PointsView points = m_impl->moved.toLidar(m_impl->points.read(observation),
-                                                    lidarFrame(sensorPose, m_impl->sensor));
+    const PointsView read = m_impl->points.read(observation);
+    const PointsView points = m_impl->moved.toLidar(read, m_impl->frameOf(sensorPose));
     cloud.x.assign(points.x, points.x + points.size);
     cloud.y.assign(points.y, points.y + points.size);
     cloud.z.assign(points.z, points.z + points.size);

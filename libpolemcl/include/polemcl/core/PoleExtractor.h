@@ -3,6 +3,7 @@
 /// \brief Scan in, poles out: steps A to B3 of the paper on one screen, and the native method.
 
 #include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/PinholeCamera.h>
 #include <polemcl/core/Types.h>
 
 #include <memory>
@@ -44,6 +45,12 @@ class PoleExtractor {
  public:
   /// \throws Error when an option is out of range or the sensor's geometry is unknown.
   explicit PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction);
+  /// \brief For the depth images of one camera, by the native method. Of `sensor` only the height
+  /// and the ranges are used. extract() takes points in a level frame with the origin at the
+  /// optical centre, in which the camera stands as `R_lidar_camera` says.
+  /// \throws Error when an option or an intrinsic is out of range.
+  PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
+                const NativeOptions& options);
   ~PoleExtractor();
   PoleExtractor(PoleExtractor&&) noexcept;
   PoleExtractor& operator=(PoleExtractor&&) noexcept;

@@ -1,8 +1,10 @@
 #pragma once
 /// \file SensorModel.h
-/// \brief The beams of a spinning LiDAR: which row a point belongs to.
+/// \brief The beams of a spinning LiDAR, or the rows of a depth image: which row a point belongs
+/// to.
 
 #include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/PinholeCamera.h>
 #include <polemcl/core/Types.h>
 
 #include <cstdint>
@@ -14,7 +16,7 @@ namespace polemcl {
 /// \brief One laser: its returns lie on z = rho · slope + offset in the lidar frame, rho = hypot(x,
 /// y).
 struct Beam {
-  double slope = 0;  ///< tangent of the elevation
+  double slope = 0;  ///< tangent of the elevation; of a camera: up / ahead in the camera's axes
   double offset =
       0;  ///< height of the cone's apex above the origin, m (HDL-64E: two blocks, 0.2 and 0.12 m)
 };
@@ -30,6 +32,10 @@ struct RowLookup {
   std::int32_t base[2] = {0, 0};  ///< index of its first cell in `row`
   float cellsPerSlope = 0;
   std::vector<std::int32_t> row;
+  /// Depth cameras: rows are planes through the origin. The slope is (up · p) / (ahead · p), one
+  /// cell is one row, and only block 0 is used; `row` is empty.
+  bool planes = false;
+  float ahead[3] = {1, 0, 0}, up[3] = {0, 0, 1};
 };
 
 /// \brief Beams of one sensor, topmost first, and the lookup from a point to its row.
@@ -40,6 +46,9 @@ class SensorModel {
  public:
   /// \throws Error for an unknown model or a table that makes no sense.
   explicit SensorModel(const SensorOptions& options);
+  /// \brief Rows of a depth image: those lines of pixels, rows or columns, that lie more level.
+  /// \throws Error as PinholeCamera::validate().
+  explicit SensorModel(const PinholeCamera& camera);
 
   int rows() const { return static_cast<int>(m_beams.size()); }
   int columns() const { return m_columns; }             ///< firing steps in a full turn
@@ -49,7 +58,11 @@ class SensorModel {
   /// its lower gap.
   double spacingAbove(int row) const { return m_spacingAbove[row]; }
 
-  /// \brief Row of the nearest beam, or -1 when the point lies outside the fan.
+  /// \brief Height, lidar frame, at which the beam of a row passes over the place (x, y), rho =
+  /// hypot(x, y), m; infinity when a camera's row never does.
+  float heightOver(int row, float x, float y, float rho) const;
+
+  /// \brief Row of the nearest beam of a LiDAR, or -1 when the point lies outside the fan.
   int row(float rho, float z) const {
     const int block = z < rho * m_lookup.splitSlope + m_lookup.splitOffset ? 1 : 0;
     const float slope = (z - m_lookup.offset[block]) / rho;

@@ -30,8 +30,10 @@ struct PoleExtractionOptions {
 /// |---|---|
 /// | CObservationPointCloud | as they are; external storage is loaded and unloaded |
 /// | CObservationVelodyneScan | its cloud, generated on a copy when it has none |
-/// | CObservation3DRangeScan | its cloud, unprojected on a copy when it has none. Depth images know
-/// no beams: set `model = uniform` | | CObservationRotatingScan | range image, elevations from
+/// | CObservation3DRangeScan | its depth image, by the camera's intrinsics (without distortion);
+/// the native method takes its rows of pixels for beams, whatever `model` says, in a level frame at
+/// the optical centre (`origin` is not used). Without an image, its cloud, as a LiDAR's | |
+/// CObservationRotatingScan | range image, elevations from
 /// `[sensor]`: refused unless its rows equal the sensor's beams |
 class PoleExtraction {
  public:
@@ -47,7 +49,7 @@ class PoleExtraction {
   /// \brief The poles, with time, label and sensor pose of the observation. A scan without any
   /// valid point gives no poles and `points` = 0. \throws Error on other classes, on external files
   /// that cannot be read, on a rotating scan
-  ///         whose elevations are not known.
+  ///         whose elevations are not known, on a depth image without usable intrinsics.
   ///
   /// The first three scans with enough points are compared with the configuration (SensorCheck);
   /// \throws Error when one contradicts it, unless `SensorOptions::checkBeams` is off. Depth images
