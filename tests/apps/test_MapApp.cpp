@@ -82,6 +82,21 @@ TEST_F(MapApp, ScansAndStoredPolesGiveTheSameMap) {
   }
 }
 
+TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {
+  drive("in", 12);
+  MapOptions options;
+  options.inputs = {folder / "in.rawlog"};
+  options.truths = {folder / "in.tum"};
+  options.output = folder / "street.polemap";
+  Settings settings = loadSettings(config());
+  settings.extraction.native.minConfidence = 1;  // nothing is that sure
+  const auto ignore = [](std::size_t) {};
+  EXPECT_THROW(buildMap(options, settings, ignore), Error);
+  settings.map.minConfidence = 0.3;
+  const MapSummary summary = buildMap(options, settings, ignore);
+  EXPECT_GE(summary.map.poles.size(), 8u);
+}
+
 TEST_F(MapApp, SeveralDrivesMakeOneMap) {
   drive("one", 10);
   drive("two", 10, 500, 30);  // farther on, another day

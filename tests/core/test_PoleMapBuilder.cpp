@@ -192,6 +192,23 @@ TEST(PoleMapBuilder, leavesDoubtfulDetectionsOut) {
   EXPECT_EQ(buildPoleMap(scans, options).poles.at(0).count, 2u);
 }
 
+// The pole stands at (10, 5): of sections with middles 0.5, 1.5, … those at 6.5 to 13.5 pass it
+// nearer than 6.2 m.
+TEST(PoleMapBuilder, whoPassesAPoleMustSeeIt) {
+  PoleMapOptions options = sectionsOfOneMetre(3, 30);
+  options.nearRange = 6.2;
+  const auto poles = [&](const std::string& sees, double share) {
+    options.minShare = share;
+    return buildPoleMap(pattern(sees), options).poles.size();
+  };
+  const std::string half = "......x.x.x.x......";  // 4 of the 8 near ones
+  EXPECT_EQ(poles(half, 0), 1u);
+  EXPECT_EQ(poles(half, 0.5), 1u);
+  EXPECT_EQ(poles(half, 0.51), 0u);
+  EXPECT_EQ(poles("xxxx................", 0.1), 0u) << "seen from afar only";
+  EXPECT_EQ(poles("xxxx..", 1), 1u) << "nothing passes it";
+}
+
 TEST(PoleMapBuilder, tellsWhatItDid) {
   const PoleMapResult result = buildPoleMap(pattern("x.   xx"), sectionsOfOneMetre(4, 2));
   EXPECT_TRUE(result.poles.empty());
@@ -292,6 +309,15 @@ TEST(PoleMapBuilder, noScansNoMap) {
   const PoleMapResult result = buildPoleMap({}, {});
   EXPECT_TRUE(result.poles.empty());
   EXPECT_EQ(result.sections, 0u);
+}
+
+TEST(PoleMapBuilder, refusesSharesAndRangesThatAreNone) {
+  PoleMapOptions options;
+  options.minShare = 1.1;
+  expectRefused(options, "min_share");
+  options.minShare = 0.5;
+  options.nearRange = 0;
+  expectRefused(options, "near_range");
 }
 
 TEST(PoleMapBuilder, refusesOptionsOutOfRange) {

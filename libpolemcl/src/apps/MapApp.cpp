@@ -116,8 +116,10 @@ void MapOptions::validate() const {
 MapSummary buildMap(const MapOptions& options, const Settings& settings,
                     const std::function<void(std::size_t)>& progress) {
   options.validate();
-  const SequenceOptions sequence{settings.poleExtraction(), settings.motion,
-                                 options.allowTruncated};
+  SequenceOptions sequence{settings.poleExtraction(), settings.motion, options.allowTruncated};
+  // A doubtful detection is worth keeping where others can confirm it.
+  if (settings.map.minConfidence > 0)
+    sequence.extraction.extraction.native.minConfidence = settings.map.minConfidence;
   MapSummary summary;
   Survey survey;
   for (std::uint32_t i = 0; i < options.inputs.size(); ++i)

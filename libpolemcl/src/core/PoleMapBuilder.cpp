@@ -1,8 +1,8 @@
 #include <polemcl/core/PathSections.h>
 #include <polemcl/core/PoleFusion.h>
 #include <polemcl/core/PoleMapBuilder.h>
-#include <polemcl/core/SightingMerging.h>
 #include <polemcl/core/PrincipalAxes.h>
+#include <polemcl/core/SightingMerging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,6 +106,21 @@ std::size_t longestRun(std::vector<std::uint32_t> seen, const std::vector<PathSe
   return longest;
 }
 
+/// Whether enough of the sections that pass a place nearby saw what stands there.
+bool seenFromEnough(const MapPole& pole, const std::vector<std::uint32_t>& seen,
+                    const std::vector<PathSection>& occupied, const std::vector<MappingScan>& scans,
+                    const PoleMapOptions& options) {
+  if (options.minShare == 0) return true;
+  std::size_t chances = 0, hits = 0;
+  for (std::uint32_t i = 0; i < occupied.size(); ++i) {
+    const Pose2D& pose = scans[occupied[i].middle].pose_map_robot;
+    if (std::hypot(pose.x - pole.x, pose.y - pole.y) > options.nearRange) continue;
+    ++chances;
+    hits += std::find(seen.begin(), seen.end(), i) != seen.end();
+  }
+  return static_cast<double>(hits) >= options.minShare * static_cast<double>(chances);
+}
+
 }  // namespace
 
 void PoleMapOptions::validate() const {
@@ -118,6 +133,8 @@ void PoleMapOptions::validate() const {
   if (maxGap < 0) refuse("max_gap", maxGap, "at least 0");
   if (!(minConfidence >= 0 && minConfidence <= 1))
     refuse("min_confidence", minConfidence, "in [0, 1]");
+  if (!(minShare >= 0 && minShare <= 1)) refuse("min_share", minShare, "in [0, 1]");
+  if (!(std::isfinite(nearRange) && nearRange > 0)) refuse("near_range", nearRange, "above 0 m");
   if (!(std::isfinite(poseSigma) && poseSigma >= 0))
     refuse("pose_sigma", poseSigma, "at least 0 m");
   if (!(headingSigma >= 0 && headingSigma < M_PI))
@@ -142,10 +159,11 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   for (const std::vector<std::uint32_t>& group : groups) {  // sorted by their centres already
     std::vector<std::uint32_t> seen;
     for (const std::uint32_t member : group) seen.push_back(views[sightings[member].view].section);
-    const std::size_t count = longestRun(std::move(seen), sections.occupied, options.maxGap);
+    const std::size_t count = longestRun(seen, sections.occupied, options.maxGap);
     result.bestCount = std::max(result.bestCount, count);
-    if (count >= static_cast<std::size_t>(options.minCount))
-      result.poles.push_back(fuse(sightings, group));
+    if (count < static_cast<std::size_t>(options.minCount)) continue;
+    const MapPole pole = fuse(sightings, group);
+    if (seenFromEnough(pole, seen, sections.occupied, scans, options)) result.poles.push_back(pole);
   }
   std::stable_sort(
       result.poles.begin(), result.poles.end(),

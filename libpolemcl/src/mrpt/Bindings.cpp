@@ -108,7 +108,11 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.number("merge_distance_m", o.mergeDistance, positive, "m", "detections this near are one pole");
   b.integer("min_count", o.minCount, Range::atLeast(1), "", "sections a pole must be seen in");
   b.integer("max_gap", o.maxGap, notNegative, "", "occupied sections a run may miss it");
-  b.number("min_confidence", o.minConfidence, share, "", "detections below are not used");
+  b.number("min_confidence", o.minConfidence, share, "",
+           "detections below are not used; scans are searched down to it, 0: to that of [native]");
+  b.number("min_share", o.minShare, share, "",
+           "of the sections that pass a pole nearby, so many must have seen it");
+  b.number("near_range_m", o.nearRange, positive, "m", "for min_share");
   b.check(o);
 }
 

@@ -26,6 +26,11 @@ struct PoleMapOptions {
   int minCount = 3;  ///< keep poles seen in at least so many sections of one continuous run
   int maxGap = 2;    ///< most *occupied* sections in a row that may miss it inside such a run
   double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
+  /// A pole must be seen from at least this share of the occupied sections whose middles pass it
+  /// nearer than `nearRange`, in [0, 1]; a pole that none passes needs `minCount` alone. Clutter is
+  /// taken for a pole from here and there, a pole is seen from nearly everywhere.
+  double minShare = 0;
+  double nearRange = 15;  ///< m
   /// Standard deviation of the scans' positions, m: added to each detection, so that the nearest
   /// one does not count alone.
   double poseSigma = 0.02;
