@@ -130,7 +130,7 @@ struct ExactCopy {
 
 TEST(ScanLines, equalsABruteForceOnCloudsOfAnySize) {
   const SensorModel sensor = sensorModel();
-  for (const std::size_t size : {0, 1, 2, 3, 4, 7, 8, 9, 15, 16, 17, 31, 33, 1000, 4097, 50000}) {
+  for (const std::size_t size : {0, 1, 2, 3, 4, 7, 8, 9, 15, 16, 17, 31, 33, 1000, 4097, 50000, 600000}) {
     SCOPED_TRACE(size);
     ScanLines lines(sensor);
     const ExactCopy copy(randomCloud(size, size));

@@ -59,15 +59,28 @@ void insertionSort(Return* first, Return* last, const Before& before) {
 ScanLines::ScanLines(const SensorModel& sensor)
     : m_sensor(sensor), m_rows(sensor.rows()), m_bucketStart(bucket(m_rows, 0) + 3) {}
 
-int ScanLines::bucketColumn(float azimuth) {
-  constexpr float kPerRadian = static_cast<float>(kBuckets / (2 * M_PI));
-  const int column = static_cast<int>((azimuth + static_cast<float>(M_PI)) * kPerRadian);
-  return std::clamp(column, 0, kBuckets - 1);
+int ScanLines::bucketColumn(float azimuth) const {
+  const float perRadian =
+      static_cast<float>(kBuckets / (2 * M_PI)) * static_cast<float>(m_buckets / kBuckets);
+  const int column = static_cast<int>((azimuth + static_cast<float>(M_PI)) * perRadian);
+  return std::clamp(column, 0, m_buckets - 1);
+}
+
+/// So many that returns per bucket stay few, and the work linear. Powers of two only, so that the
+/// kernels and bucketColumn() round alike.
+void ScanLines::chooseBuckets(std::size_t points) {
+  constexpr std::size_t kPerBucket = 8;
+  constexpr int kMost = 1 << 14;
+  m_buckets = kBuckets;
+  while (m_buckets < kMost && points > kPerBucket * m_buckets * static_cast<std::size_t>(m_rows))
+    m_buckets *= 2;
+  m_bucketStart.resize(bucket(m_rows, 0) + 3);
 }
 
 const ScanLines::Counts& ScanLines::build(const PointsView& points, const GroundGrid& ground,
                                           float clearance) {
   m_points = points;
+  chooseBuckets(points.size);
   if (m_key.size() < points.size + kKernelPadding) {
     const std::size_t room = points.size + points.size / 8 + kKernelPadding;
     m_key.resize(room);
@@ -77,7 +90,7 @@ const ScanLines::Counts& ScanLines::build(const PointsView& points, const Ground
   for (int c = 0; c < GroundGrid::kCells; ++c) m_limit[c] = ground.height(c) + clearance;
   m_limit[GroundGrid::kNoCell] = std::numeric_limits<float>::quiet_NaN();  // below which nothing is
   const std::size_t count = classifyPoints(points, ground.cells(), m_limit, m_sensor.lookup(),
-                                           m_rows, kBuckets, {m_unsorted.data(), m_key.data()});
+                                           m_rows, m_buckets, {m_unsorted.data(), m_key.data()});
   const std::uint32_t fullest = sortIntoBuckets(count);
   for (int row = 0; row < m_rows; ++row)
     fullest > static_cast<std::uint32_t>(kFewReturns) ? sortBuckets(row) : sortRow(row);

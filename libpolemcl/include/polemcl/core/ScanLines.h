@@ -45,7 +45,8 @@ class ScanLines {
   const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
   const Return* end(int row) const { return begin(row + 1); }
   std::size_t size(int row) const { return static_cast<std::size_t>(end(row) - begin(row)); }
-  static constexpr int kBuckets = 512;  ///< per row; a power of two
+  /// Buckets of azimuth in a row, for clouds of usual size; large clouds get more.
+  static constexpr int kBuckets = 512;
   /// \brief Coordinates of a return in the cloud last built from, lidar frame, m.
   float x(const Return& r) const { return m_points.x[r.point]; }
   float y(const Return& r) const { return m_points.y[r.point]; }
@@ -54,15 +55,17 @@ class ScanLines {
 
  private:
   std::size_t bucket(int row, int column) const {
-    return static_cast<std::size_t>(row) * kBuckets + column;
+    return static_cast<std::size_t>(row) * m_buckets + column;
   }
-  static int bucketColumn(float azimuth);
+  int bucketColumn(float azimuth) const;
+  void chooseBuckets(std::size_t points);
   std::uint32_t sortIntoBuckets(std::size_t count);
   void sortRow(int row);
   void sortBuckets(int row);
 
   const SensorModel& m_sensor;
   int m_rows;
+  int m_buckets = kBuckets;  ///< per row
   Counts m_counts;
   PointsView m_points;
   std::vector<Return> m_unsorted, m_returns;
