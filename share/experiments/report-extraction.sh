@@ -103,7 +103,7 @@ weak() {
   fitted on such streets (other worlds).
 - The real drive is 30 m of one street, and the settings for KITTI were chosen with it at hand.
 - True poles are those of the simulator: a post that a person would call a pole and the simulator does not counts as
-  wrong. Leaning trunks are compared where their axis is 1.5 m above the ground.
+  wrong. Poles are compared at the height of the sensor.
 TEXT
 }
 

@@ -22,14 +22,17 @@ struct Scan {
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
-Scan simulated(const std::string& sensor, double height) {
+/// \param columns Firing steps a turn, 0: the sensor's own.
+Scan simulated(const std::string& sensor, double height, int columns = 0) {
   sim::SimulationOptions options;
   options.world.length = 120;
   options.sensor = sensor;
   options.height = height;
   const sim::World world = sim::makeWorld(options.world);
   const sim::Drive drive = sim::makeDrive(world, options);
-  const auto scan = sim::scan(world, drive.T_map_sensor[100], sim::makeLidar(sensor), 1);
+  sim::LidarModel lidar = sim::makeLidar(sensor);
+  if (columns > 0) lidar.columns = columns;
+  const auto scan = sim::scan(world, drive.T_map_sensor[100], lidar, 1);
   return {scan.x, scan.y, scan.z};
 }
 
@@ -55,24 +58,10 @@ const Scan& ncltSizedScan() {
   return scan;
 }
 
-/// `count` points: copies of one scan, each turned a little, so that rows fill up evenly.
-Scan turnedCopies(std::size_t count) {
-  const Scan& base = kittiScan();
-  Scan scan;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t k = i % base.x.size();
-    const float angle = 0.0007f * static_cast<float>(i / base.x.size());
-    const float c = std::cos(angle), s = std::sin(angle);
-    scan.x.push_back(c * base.x[k] - s * base.y[k]);
-    scan.y.push_back(s * base.x[k] + c * base.y[k]);
-    scan.z.push_back(base.z[k]);
-  }
-  return scan;
-}
-
 void extract(benchmark::State& state, const Scan& scan, const std::string& model, double height,
-             ExtractionMethod method) {
+             ExtractionMethod method, int columns = 0) {
   SensorOptions sensor;
+  sensor.columns = columns;
   sensor.model = model;
   sensor.height = height;
   ExtractionOptions options;
@@ -107,10 +96,12 @@ void readOnly(benchmark::State& state) {
   }
 }
 
+/// The same street seen by 64 beams that fire so often that a turn has about so many points.
 void nativePoints(benchmark::State& state) {
-  const Scan scan = turnedCopies(static_cast<std::size_t>(state.range(0)));
-  extract(state, scan, "hdl64e", 1.73, ExtractionMethod::native);
-  state.SetComplexityN(state.range(0));
+  const int columns = static_cast<int>(state.range(0) / 64);
+  const Scan scan = simulated("hdl64e_kitti", 1.73, columns);
+  extract(state, scan, "hdl64e", 1.73, ExtractionMethod::native, columns);
+  state.SetComplexityN(static_cast<benchmark::IterationCount>(scan.x.size()));
 }
 
 }  // namespace
