@@ -3,7 +3,7 @@
 # Usage: share/experiments/extraction.sh [--quick] DATA_DIR OUT [SEED...]
 #   DATA_DIR  folder of real scans (kitti_raw_0005/ in it); what is not there is left out
 #   OUT       gets result.json, table.txt, pictures and every world's own figures
-#   SEED      of the simulated worlds, 201 to 205 unless given: none of them was tuned on
+#   SEED      of the simulated worlds, 201 to 205 unless given: not fitted on, but looked at
 #   --quick   streets of 80 m, two worlds: to see that it runs, not to judge by
 # Programs: build/bin, or POLEMCL_BIN. Needs jq, 1 GB of disk while it runs, 10 minutes on 2 cores.
 #
