@@ -173,6 +173,74 @@ TEST(PoleLocalizer, StartIsUniformInTheDiscAndInHeading) {
   EXPECT_NEAR(turned, 10000, 346);
 }
 
+TEST(PoleLocalizer, StartDrawsFromAMixtureOfHypotheses) {
+  PoleLocalizer localizer(smallMap(), {}, 3);
+  std::vector<PoseHypothesis> hypotheses(3);
+  hypotheses[0].pose.mean = {100, 0, 3.1};
+  hypotheses[0].pose.covariance << 0.25, 0.1, 0.02, 0.1, 0.16, 0.01, 0.02, 0.01, 0.01;
+  hypotheses[0].weight = 3;
+  hypotheses[1].pose.mean = {-100, 50, 0};  // no covariance: all in one place
+  hypotheses[2].weight = 0;
+  localizer.start(hypotheses, 40000);
+  std::vector<Pose2D> near;
+  std::size_t exact = 0;
+  for (const Pose2D& pose : localizer.particles()) {
+    if (pose.x > 50) near.push_back(pose);
+    exact += pose.x == -100 && pose.y == 50 && pose.yaw == 0;
+    EXPECT_LE(std::abs(pose.yaw), M_PI);
+  }
+  EXPECT_EQ(near.size(), 30000u);
+  EXPECT_EQ(exact, 10000u);
+  const auto drawn = weightedMean(near, std::vector<double>(near.size(), 0));
+  // Four standard deviations: 4·0.5/sqrt(30000), 4·0.1/sqrt(30000), of variances
+  // 4·0.25·sqrt(2/3e4).
+  EXPECT_NEAR(drawn.mean.x, 100, 0.012);
+  EXPECT_NEAR(drawn.mean.y, 0, 0.012);
+  EXPECT_NEAR(wrapAngle(drawn.mean.yaw - 3.1), 0, 0.0024);
+  const Eigen::Matrix3d off = drawn.covariance - hypotheses[0].pose.covariance;
+  EXPECT_LT(off.cwiseAbs().maxCoeff(), 0.009);
+  EXPECT_LT(off.row(2).cwiseAbs().maxCoeff(), 0.0016);
+}
+
+TEST(PoleLocalizer, StartFromHypothesesKeepsTheUsualNumberAfterwards) {
+  const PoleStreet street = makeStreet({});
+  PoleLocalizer localizer(street.map, {}, 3);
+  PoseHypothesis right, wrong;
+  right.pose.mean = street.truth[0];
+  right.pose.covariance = Eigen::Vector3d(0.04, 0.04, 0.001).asDiagonal();
+  wrong.pose = right.pose;
+  wrong.pose.mean = compose(street.truth[0], {15, 3, 1});
+  wrong.weight = 2;
+  localizer.start({wrong, right}, 3000);
+  EXPECT_EQ(localizer.particles().size(), 3000u);
+  PoseWithCovariance estimate;
+  for (int i = 0; i < 40; ++i) estimate = localizer.step(street.frames[i]);
+  EXPECT_EQ(localizer.particles().size(), 1000u);
+  EXPECT_LT(std::hypot(estimate.mean.x - street.truth[39].x, estimate.mean.y - street.truth[39].y),
+            0.1);
+}
+
+TEST(PoleLocalizer, RefusesBadHypothesesAndStaysAsItWas) {
+  PoleLocalizer localizer(smallMap(), {}, 1);
+  localizer.start(at({7, 0, 0}, 0, 0));
+  PoseHypothesis good;
+  good.pose.covariance = Eigen::Matrix3d::Identity();
+  std::vector<PoseHypothesis> bad(6, good);
+  bad[0].weight = -1;
+  bad[1].weight = NAN;
+  bad[2].pose.mean.yaw = INFINITY;
+  bad[3].pose.covariance(0, 1) = bad[3].pose.covariance(1, 0) = 2;  // indefinite
+  bad[4].pose.covariance(0, 1) = 0.5;                               // not symmetric
+  bad[5].pose.covariance(2, 2) = NAN;
+  for (const auto& hypothesis : bad) EXPECT_THROW(localizer.start({good, hypothesis}, 100), Error);
+  EXPECT_THROW(localizer.start(std::vector<PoseHypothesis>{}, 100), Error);
+  EXPECT_THROW(localizer.start({good}, 0), Error);
+  EXPECT_THROW(localizer.start({good}, 1000001), Error);
+  good.weight = 0;
+  EXPECT_THROW(localizer.start({good, good}, 100), Error);
+  EXPECT_EQ(localizer.step(emptyFrame(0)).mean.x, 7);
+}
+
 TEST(PoleLocalizer, MotionHasTheGivenCovarianceAndTheExtraNoise) {
   FilterOptions options = still();
   options.particles = 100000;

@@ -61,6 +61,55 @@ std::vector<size_t> thinned(const std::vector<size_t>& indices, size_t count) {
   return result;
 }
 
+[[noreturn]] void refuse(const PoseHypothesis& hypothesis, const std::string& what) {
+  throw Error("the start hypothesis at x " + std::to_string(hypothesis.pose.mean.x) + " m, y " +
+              std::to_string(hypothesis.pose.mean.y) + " m has " + what);
+}
+
+/// Shares of the weight up to and with each hypothesis; the last is exactly 1.
+std::vector<double> cumulatedShares(const std::vector<PoseHypothesis>& hypotheses) {
+  if (hypotheses.empty()) throw Error("no hypothesis to start from; there must be at least one");
+  std::vector<double> result;
+  double sum = 0;
+  for (const PoseHypothesis& hypothesis : hypotheses) {
+    if (!(hypothesis.weight >= 0) || !std::isfinite(hypothesis.weight))
+      refuse(hypothesis, "the weight " + std::to_string(hypothesis.weight) +
+                             "; it must be a finite number, 0 or more");
+    result.push_back(sum += hypothesis.weight);
+  }
+  if (!(sum > 0) || !std::isfinite(sum))
+    throw Error("the weights of the start hypotheses sum up to " + std::to_string(sum) +
+                "; the sum must be finite and above 0");
+  for (double& share : result) share /= sum;
+  return result;
+}
+
+/// A matrix R with R·Rᵀ the covariance.
+Eigen::Matrix3d rootOf(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+Eigen::Matrix3d checkedRootOf(const PoseHypothesis& hypothesis) {
+  const Pose2D& mean = hypothesis.pose.mean;
+  const Eigen::Matrix3d& covariance = hypothesis.pose.covariance;
+  if (!std::isfinite(mean.x) || !std::isfinite(mean.y) || !std::isfinite(mean.yaw))
+    refuse(hypothesis, "a pose that is not finite");
+  if (!covariance.allFinite()) refuse(hypothesis, "a covariance that is not finite");
+  const double tolerance = 1e-9 * covariance.cwiseAbs().maxCoeff();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+  if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > tolerance ||
+      solver.eigenvalues()[0] < -tolerance)
+    refuse(hypothesis, "a covariance that is not symmetric positive semidefinite");
+  return rootOf(covariance);
+}
+
+Eigen::Vector3d drawNormals() {
+  Eigen::Vector3d normals;
+  for (int i = 0; i < 3; ++i) normals[i] = getRandomGenerator().drawGaussian1D_normalized();
+  return normals;
+}
+
 }  // namespace
 
 PoleLocalizer::PoleLocalizer(std::shared_ptr<const CPoleMap> map,
@@ -74,12 +123,11 @@ PoleLocalizer::PoleLocalizer(std::shared_ptr<const CPoleMap> map,
 
 void PoleLocalizer::start(const StartOptions& start) {
   start.validate();
-  if (!start.pose) throw Error("no start pose: set position_m and yaw_deg in [start], or give the truth");
+  if (!start.pose)
+    throw Error("no start pose: set position_m and yaw_deg in [start], or give the truth");
+  begin(start.particles);
   const GeneratorLoan loan(m_generator);
   CRandomGenerator& random = getRandomGenerator();
-  const bool thinsOut = m_options.resampleBelow > 0;
-  m_particles.resize(thinsOut ? std::max(start.particles, m_options.particles)
-                              : m_options.particles);
   for (auto& particle : m_particles) {
     // The root makes the density uniform in area instead of crowded at the centre.
     const double distance = start.radius * std::sqrt(random.drawUniform(0.0, 1.0));
@@ -87,8 +135,33 @@ void PoleLocalizer::start(const StartOptions& start) {
     particle.d.x = start.pose->x + distance * std::cos(direction);
     particle.d.y = start.pose->y + distance * std::sin(direction);
     particle.d.phi = wrapAngle(start.pose->yaw + random.drawUniform(-start.heading, start.heading));
-    particle.log_w = 0;
   }
+}
+
+void PoleLocalizer::start(const std::vector<PoseHypothesis>& hypotheses, int particles) {
+  const std::vector<double> shares = cumulatedShares(hypotheses);
+  std::vector<Eigen::Matrix3d> roots;
+  for (const PoseHypothesis& hypothesis : hypotheses) roots.push_back(checkedRootOf(hypothesis));
+  if (particles < 1 || particles > 1000000)
+    throw Error("the filter cannot start with " + std::to_string(particles) +
+                " particles; 1 to 1000000 are allowed");
+  begin(particles);
+  const GeneratorLoan loan(m_generator);
+  const double count = static_cast<double>(m_particles.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const Pose2D& mean = hypotheses[i].pose.mean;
+    for (const double end = std::floor(shares[i] * count + 0.5); next < end; ++next) {
+      const Eigen::Vector3d move = roots[i] * drawNormals();
+      m_particles[next].d = {mean.x + move.x(), mean.y + move.y(), wrapAngle(mean.yaw + move.z())};
+    }
+  }
+}
+
+void PoleLocalizer::begin(int particles) {
+  const bool thinsOut = m_options.resampleBelow > 0;
+  m_particles.resize(thinsOut ? std::max(particles, m_options.particles) : m_options.particles);
+  for (auto& particle : m_particles) particle.log_w = 0;
   m_started = true;
   m_stepped = false;
 }
@@ -187,14 +260,9 @@ void PoleLocalizer::jitter(const Eigen::Matrix3d& spread) {
   double scale = m_options.regularization;
   if (scale * metres > maxJitterMetres) scale = maxJitterMetres / metres;
   if (scale * radians > maxJitterRadians) scale = maxJitterRadians / radians;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const Eigen::Vector3d sigmas = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
-  const Eigen::Matrix3d root = solver.eigenvectors() * (scale * sigmas).asDiagonal();
-  CRandomGenerator& random = getRandomGenerator();
+  const Eigen::Matrix3d root = scale * rootOf(spread);
   for (auto& particle : m_particles) {
-    Eigen::Vector3d normal;
-    for (int i = 0; i < 3; ++i) normal[i] = random.drawGaussian1D_normalized();
-    const Eigen::Vector3d move = root * normal;
+    const Eigen::Vector3d move = root * drawNormals();
     particle.d.x += move.x();
     particle.d.y += move.y();
     particle.d.phi = wrapAngle(particle.d.phi + move.z());

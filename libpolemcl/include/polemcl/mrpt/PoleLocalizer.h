@@ -25,6 +25,12 @@ struct StepReport {
   bool resampled = false;     ///< after the update
 };
 
+/// \brief A pose the vehicle may have, and how much speaks for it.
+struct PoseHypothesis {
+  PoseWithCovariance pose;  ///< map frame
+  double weight = 1;        ///< 0 or more, in any unit: only ratios count
+};
+
 /// \brief Where the vehicle is in a pole map, by particles. Prediction, normalization and
 /// resampling are MRPT's (CParticleFilter::executeOn); the update is one batch over all particles.
 ///
@@ -53,6 +59,15 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   /// \throws Error when `start.pose` is not set, or an option is out of range.
   void start(const StartOptions& start);
 
+  /// \brief Draws the particles from a mixture of Gaussians, each hypothesis its share by weight
+  /// (rounded, so that one below half a particle gets none).
+  /// \param particles Until the first resampling, which keeps as many as the options say; smaller
+  ///        numbers mean that one.
+  /// \throws Error, and changes nothing, without hypotheses; when a weight is negative or not
+  ///         finite or all are 0; when a pose is not finite or its covariance not symmetric
+  ///         positive semidefinite; when `particles` is not 1 to 1000000.
+  void start(const std::vector<PoseHypothesis>& hypotheses, int particles);
+
   /// \brief Predicts by the motion of the frame, weighs by its poles, estimates, resamples.
   /// The first frame after start() is where the start pose is: its motion is not used. Frames
   /// without poles only predict.
@@ -76,6 +91,7 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   /// @}
 
  private:
+  void begin(int particles);
   void update(const std::vector<PoleDetection>& poles_robot,
               const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
   /// \brief Whether the particles stay many enough when these likelihoods replace those before.
