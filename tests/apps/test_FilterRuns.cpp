@@ -12,31 +12,32 @@ namespace {
 class FilterRuns : public testing::Test {
  protected:
   FilterRuns() {
-    tests::StreetOptions options;
-    options.scans = 30;
-    street = tests::makeStreet(options);
+    tests::StreetOptions wanted;
+    wanted.scans = 30;
+    street = tests::makeStreet(wanted);
     start.pose = street.truth[0];
-    filter.particles = 101;  // odd: an odd number of normal deviates a step
+    options.filter.particles = 101;  // odd: an odd number of normal deviates a step
     start.particles = 1;
     runs.runs = 5;
     runs.seed = 40;
   }
   std::vector<FilterRun> run(const RunOptions& which) {
-    return runFilters(street.map, street.frames, filter, start, which);
+    return runFilters({street.map, options.global}, street.frames, options, start, which);
   }
   tests::PoleStreet street;
-  FilterOptions filter;
+  LocalizationOptions options;
   StartOptions start;
   RunOptions runs;
 };
 
 void expectEqual(const FilterRun& a, const FilterRun& b) {
   EXPECT_EQ(a.seed, b.seed);
-  ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
-  for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
-    EXPECT_EQ(a.trajectory[i].time, b.trajectory[i].time);
-    EXPECT_EQ(a.trajectory[i].pose.x, b.trajectory[i].pose.x);
-    EXPECT_EQ(a.trajectory[i].pose.yaw, b.trajectory[i].pose.yaw);
+  ASSERT_EQ(a.updates.size(), b.updates.size());
+  for (std::size_t i = 0; i < a.updates.size(); ++i) {
+    EXPECT_EQ(a.updates[i].time, b.updates[i].time);
+    EXPECT_EQ(a.updates[i].estimate->mean.x, b.updates[i].estimate->mean.x);
+    EXPECT_EQ(a.updates[i].estimate->mean.yaw, b.updates[i].estimate->mean.yaw);
+    EXPECT_EQ(a.updates[i].health.innovation, b.updates[i].health.innovation);
   }
 }
 
@@ -46,11 +47,11 @@ TEST_F(FilterRuns, OnePosePerScanAtItsTime) {
   const auto results = run(runs);
   ASSERT_EQ(results.size(), 5u);
   for (const auto& result : results) {
-    ASSERT_EQ(result.trajectory.size(), street.frames.size());
-    ASSERT_EQ(result.steps.size(), street.frames.size());
+    ASSERT_EQ(result.updates.size(), street.frames.size());
+    ASSERT_EQ(result.trajectory().size(), street.frames.size());
     for (std::size_t i = 0; i < street.frames.size(); ++i) {
-      EXPECT_EQ(result.trajectory[i].time, street.frames[i].time);
-      EXPECT_EQ(result.steps[i].poles, street.frames[i].poles_robot.size());
+      EXPECT_EQ(result.trajectory()[i].time, street.frames[i].time);
+      EXPECT_EQ(result.updates[i].step.poles, street.frames[i].poles_robot.size());
     }
   }
 }
@@ -62,7 +63,7 @@ TEST_F(FilterRuns, RunIHasTheSeedOfItsPlace) {
     one.seed = runs.seed + i;
     expectEqual(all[i], run(one)[0]);
   }
-  EXPECT_NE(all[0].trajectory[5].pose.x, all[1].trajectory[5].pose.x);
+  EXPECT_NE(all[0].trajectory()[5].pose.x, all[1].trajectory()[5].pose.x);
 }
 
 TEST_F(FilterRuns, SameOnAnyNumberOfThreads) {
@@ -78,13 +79,31 @@ TEST_F(FilterRuns, SameOnAnyNumberOfThreads) {
 TEST_F(FilterRuns, TellsProgressFromOneThreadAtATime) {
   std::size_t last = 0;
   int inside = 0;
-  runFilters(street.map, street.frames, filter, start, runs, [&](std::size_t done) {
+  RunWatch watch;
+  watch.progress = [&](std::size_t done) {
     EXPECT_EQ(++inside, 1);
     EXPECT_LE(done, 5 * street.frames.size());
     last = std::max(last, done);
     --inside;
-  });
+  };
+  runFilters({street.map, options.global}, street.frames, options, start, runs, watch);
   EXPECT_GT(last, 0u);
+}
+
+TEST_F(FilterRuns, ShowsEveryStepOfTheFirstRun) {
+  std::vector<double> seen;
+  RunWatch watch;
+  watch.observer = [&](const PoleLocalization& localization, const PoleFrame& frame,
+                       const LocalizationUpdate& update) {
+    EXPECT_TRUE(localization.hasPose());
+    EXPECT_EQ(frame.time, update.time);
+    seen.push_back(update.estimate->mean.x);
+  };
+  const auto results =
+      runFilters({street.map, options.global}, street.frames, options, start, runs, watch);
+  ASSERT_EQ(seen.size(), street.frames.size());
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    EXPECT_EQ(seen[i], results[0].updates[i].estimate->mean.x);
 }
 
 TEST_F(FilterRuns, HandsRefusalsOn) {

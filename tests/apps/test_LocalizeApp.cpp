@@ -86,8 +86,10 @@ TEST_F(LocalizeApp, WritesWhatTheContractSays) {
   const auto outcome = runWithTruth({"--runs", "2"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(names(folder / "out"),
-            std::vector<std::string>({"config.ini", "run_00.tum", "run_00_errors.csv", "run_01.tum",
-                                      "run_01_errors.csv", "summary.json", "timings.json"}));
+            std::vector<std::string>({"config.ini", "run_00.tum", "run_00_cov.csv",
+                                      "run_00_errors.csv", "run_00_health.csv", "run_01.tum",
+                                      "run_01_cov.csv", "run_01_errors.csv", "run_01_health.csv",
+                                      "summary.json", "timings.json"}));
   const auto estimate = io::planar(io::readTum(out("run_01.tum")));
   ASSERT_EQ(estimate.size(), scans);
   for (std::size_t i = 0; i < scans; ++i) {
@@ -157,7 +159,8 @@ TEST_F(LocalizeApp, WithoutTruthThereAreNoErrors) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(names(folder / "out"),
-            std::vector<std::string>({"config.ini", "run_00.tum", "summary.json", "timings.json"}));
+            std::vector<std::string>({"config.ini", "run_00.tum", "run_00_cov.csv",
+                                      "run_00_health.csv", "summary.json", "timings.json"}));
   EXPECT_FALSE(summary().contains("pos_mean"));
   EXPECT_NEAR(summary()["start"]["yaw_deg"], 22.9, 1e-9);
 }

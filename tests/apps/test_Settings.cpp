@@ -73,7 +73,7 @@ TEST(Settings, ConfigurationsSayWhatTheyAreFor) {
   EXPECT_NEAR(paper.extraction.paper.fovUp, 30.67 * M_PI / 180, 1e-12);
   EXPECT_EQ(paper.map.minCount, 6);
   EXPECT_EQ(paper.likelihood.model, LikelihoodModel::paper);
-  EXPECT_EQ(paper.filter.estimate, PoseEstimator::bestShare);
+  EXPECT_EQ(paper.localization.filter.estimate, PoseEstimator::bestShare);
 }
 
 TEST(Settings, KnowsEverySection) {

@@ -9,16 +9,19 @@ namespace polemcl::apps {
 
 namespace {
 
-FilterRun runFilter(PoleLocalizer localizer, const std::vector<PoleFrame>& frames,
-                    const StartOptions& start, const std::function<void()>& stepDone) {
+FilterRun runFilter(PoleLocalization localization, const std::vector<PoleFrame>& frames,
+                    const StartOptions& start, const RunObserver& observer,
+                    const std::function<void()>& stepDone) {
   const auto begin = std::chrono::steady_clock::now();
   FilterRun run;
-  run.trajectory.reserve(frames.size());
-  run.steps.reserve(frames.size());
-  localizer.start(start);
+  run.updates.reserve(frames.size());
+  if (start.anywhere)
+    localization.startAnywhere();
+  else
+    localization.start(start);
   for (const PoleFrame& frame : frames) {
-    run.trajectory.push_back({frame.time, localizer.step(frame).mean});
-    run.steps.push_back(localizer.report());
+    run.updates.push_back(localization.step(frame));
+    if (observer) observer(localization, frame, run.updates.back());
     stepDone();
   }
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -27,10 +30,16 @@ FilterRun runFilter(PoleLocalizer localizer, const std::vector<PoleFrame>& frame
 
 }  // namespace
 
-std::vector<FilterRun> runFilters(const std::shared_ptr<const CPoleMap>& map,
-                                  const std::vector<PoleFrame>& frames, const FilterOptions& filter,
-                                  const StartOptions& start, const RunOptions& runs,
-                                  const std::function<void(std::size_t)>& progress) {
+std::vector<StampedPose2D> FilterRun::trajectory() const {
+  std::vector<StampedPose2D> poses;
+  for (const LocalizationUpdate& update : updates)
+    if (update.estimate) poses.push_back({update.time, update.estimate->mean});
+  return poses;
+}
+
+std::vector<FilterRun> runFilters(const LocalizationMap& map, const std::vector<PoleFrame>& frames,
+                                  const LocalizationOptions& options, const StartOptions& start,
+                                  const RunOptions& runs, const RunWatch& watch) {
   runs.validate();
   std::vector<FilterRun> results(runs.runs);
   std::atomic<std::size_t> done{0};
@@ -38,11 +47,12 @@ std::vector<FilterRun> runFilters(const std::shared_ptr<const CPoleMap>& map,
   const auto stepDone = [&] {
     const std::size_t count = ++done;
     const std::unique_lock<std::mutex> lock(busy, std::try_to_lock);
-    if (progress && lock) progress(count);
+    if (watch.progress && lock) watch.progress(count);
   };
   tbb::parallel_for(0, runs.runs, [&](int i) {
     const std::uint32_t seed = runs.seed + static_cast<std::uint32_t>(i);
-    results[i] = runFilter(PoleLocalizer(map, filter, seed), frames, start, stepDone);
+    results[i] = runFilter(PoleLocalization(map, options, seed), frames, start,
+                           i == 0 ? watch.observer : RunObserver(), stepDone);
     results[i].seed = seed;
   });
   return results;

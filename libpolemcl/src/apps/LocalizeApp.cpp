@@ -24,13 +24,25 @@ double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
+/// X,Y,YAW_DEG,RADIUS,HEADING_DEG of the command line.
+void setStart(StartOptions& start, const std::vector<double>& numbers) {
+  constexpr double degree = M_PI / 180;
+  start.anywhere = false;
+  start.pose = Pose2D{numbers[0], numbers[1], wrapAngle(numbers[2] * degree)};
+  start.radius = numbers[3];
+  start.heading = numbers[4] * degree;
+}
+
 Settings effectiveSettings(const LocalizeJob& job) {
   Settings settings = loadSettings(job.config.string());
   if (job.runs) settings.runs.runs = *job.runs;
   if (job.seed) settings.runs.seed = *job.seed;
-  if (job.particles) settings.filter.particles = *job.particles;
+  if (job.particles) settings.localization.filter.particles = *job.particles;
+  if (job.anywhere) settings.start.anywhere = true;
+  if (!job.start.empty()) setStart(settings.start, job.start);
   settings.runs.validate();
-  settings.filter.validate();
+  settings.localization.validate();
+  settings.start.validate();
   return settings;
 }
 
@@ -89,10 +101,10 @@ StartOptions startFrom(const StartOptions& configured, const LocalizeJob& job,
                        const std::vector<StampedPose2D>& truth,
                        const std::vector<PoleFrame>& frames) {
   StartOptions start = configured;
-  if (start.pose) return start;
+  if (start.anywhere || start.pose) return start;
   if (!job.truth)
     throw Error("no start pose: set position_m and yaw_deg in [start] of " + job.config.string() +
-                ", or give --truth");
+                ", or give --start, --global or --truth");
   start.pose = poseAt(truth, frames.front().time, maxTruthGap);
   if (!start.pose)
     throw Error(job.truth->string() + ": the truth does not reach the first scan, at " +
@@ -100,12 +112,20 @@ StartOptions startFrom(const StartOptions& configured, const LocalizeJob& job,
   return start;
 }
 
-std::vector<FilterRun> runAll(const LocalizeFacts& facts,
-                              const std::shared_ptr<const CPoleMap>& map,
+std::vector<FilterRun> runAll(const LocalizeFacts& facts, const LocalizationMap& map,
                               const std::vector<PoleFrame>& frames) {
   Progress progress("localize", frames.size() * facts.runs.runs, facts.job.quiet);
-  return runFilters(map, frames, facts.filter, facts.start, facts.runs,
-                    [&](std::size_t done) { progress.update(done); });
+  RunWatch watch;
+  watch.progress = [&](std::size_t done) { progress.update(done); };
+  return runFilters(map, frames, facts.localization, facts.start, facts.runs, watch);
+}
+
+/// A run that never knew where it was has no errors, which is not the same as none.
+std::optional<TrajectoryErrors> judge(const FilterRun& run,
+                                      const std::vector<StampedPose2D>& truth) {
+  const auto trajectory = run.trajectory();
+  if (trajectory.empty()) return std::nullopt;
+  return evaluateTrajectory(truth, trajectory, Sampling::perPose, maxTruthGap);
 }
 
 void writeTimings(const std::filesystem::path& file, double reading,
@@ -119,9 +139,12 @@ void writeTimings(const std::filesystem::path& file, double reading,
 void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings& settings,
                   const LocalizeResult& result, double reading) {
   for (std::size_t i = 0; i < result.runs.size(); ++i) {
-    io::writeTum(folder.staged(runName(i) + ".tum"), result.runs[i].trajectory);
-    if (!result.errors.empty())
-      writeErrorsCsv(folder.staged(runName(i) + "_errors.csv"), result.runs[i], result.errors[i]);
+    const FilterRun& run = result.runs[i];
+    io::writeTum(folder.staged(runName(i) + ".tum"), run.trajectory());
+    writeCovarianceCsv(folder.staged(runName(i) + "_cov.csv"), run);
+    writeHealthCsv(folder.staged(runName(i) + "_health.csv"), run);
+    if (!result.errors.empty() && result.errors[i])
+      writeErrorsCsv(folder.staged(runName(i) + "_errors.csv"), run, *result.errors[i]);
   }
   saveSettings(settings, folder.staged("config.ini").string());
   writeTimings(folder.staged("timings.json"), reading, result.runs);
@@ -144,14 +167,12 @@ LocalizeResult localize(const LocalizeJob& job) {
   requireUsable(job.input.string(), sequence);
   if (job.truth) requireCoverage(*job.truth, truth, sequence.frames);
   const StartOptions start = startFrom(settings.start, job, truth, sequence.frames);
-  const LocalizeFacts facts{job,           settings.filter, start,
-                            settings.runs, sequence.counts, map->poles().size()};
+  const LocalizeFacts facts{job,           settings.localization, start,
+                            settings.runs, sequence.counts,       map->poles().size()};
   LocalizeResult result;
-  result.runs = runAll(facts, map, sequence.frames);
+  result.runs = runAll(facts, LocalizationMap(map, settings.localization.global), sequence.frames);
   if (job.truth)
-    for (const auto& run : result.runs)
-      result.errors.push_back(
-          evaluateTrajectory(truth, run.trajectory, Sampling::perPose, maxTruthGap));
+    for (const auto& run : result.runs) result.errors.push_back(judge(run, truth));
   writeResults(folder, facts, settings, result, reading);
   if (!job.quiet) {
     printTable(std::cout, facts, result);
@@ -173,6 +194,12 @@ int localizeMain(int argc, const char* const* argv) {
   cli.add_option("--seed", job.seed, "Seed of the first run; run i uses seed + i");
   cli.add_option("--particles", job.particles, "Particles of the filter")
       ->check(CLI::Range(1, 1000000));
+  auto* start = cli.add_option("--start", job.start,
+                               "X,Y,YAW_DEG,RADIUS,HEADING_DEG: where it starts, m and deg")
+                    ->delimiter(',')
+                    ->expected(5);
+  cli.add_flag("--global", job.anywhere, "No start pose: the whole map is searched on the way")
+      ->excludes(start);
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of a rawlog that ends too early");
   return line.run(argc, argv, [&] {

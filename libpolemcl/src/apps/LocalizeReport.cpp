@@ -29,6 +29,14 @@ struct Spread {
   double mean = 0, deviation = 0, largest = 0;
 };
 
+/// The runs that found their pose.
+std::vector<TrajectoryErrors> known(const LocalizeResult& result) {
+  std::vector<TrajectoryErrors> errors;
+  for (const auto& run : result.errors)
+    if (run) errors.push_back(*run);
+  return errors;
+}
+
 Spread spreadOf(const std::vector<TrajectoryErrors>& errors, double TrajectoryErrors::*figure) {
   Spread spread;
   for (const auto& run : errors) {
@@ -39,6 +47,35 @@ Spread spreadOf(const std::vector<TrajectoryErrors>& errors, double TrajectoryEr
   for (const auto& run : errors) spread.deviation += std::pow(run.*figure - spread.mean, 2);
   spread.deviation = std::sqrt(spread.deviation / (errors.size() - 1));
   return spread;
+}
+
+/// How many scans were in each state, and from when on the pose was known.
+Json healthSummary(const FilterRun& run) {
+  Json json;
+  std::size_t counts[3] = {};
+  for (const auto& update : run.updates) ++counts[static_cast<int>(update.health.state)];
+  for (const auto state : {HealthState::ok, HealthState::degraded, HealthState::lost})
+    json[name(state)] = counts[static_cast<int>(state)];
+  const auto found = std::find_if(run.updates.begin(), run.updates.end(),
+                                  [](const auto& update) { return update.estimate.has_value(); });
+  json["first_pose_scan"] = found == run.updates.end() ? Json() : Json(found - run.updates.begin());
+  json["relocalizations"] = std::count_if(run.updates.begin(), run.updates.end(),
+                                          [](const auto& update) { return update.relocalized; });
+  return json;
+}
+
+void printHealth(std::ostream& out, const LocalizeResult& result) {
+  std::size_t all = 0, counts[3] = {}, unknown = 0;
+  for (const auto& run : result.runs) {
+    all += run.updates.size();
+    unknown += run.trajectory().empty();
+    for (const auto& update : run.updates) ++counts[static_cast<int>(update.health.state)];
+  }
+  char line[200];
+  std::snprintf(line, sizeof line, "health: %.1f %% ok, %.1f %% degraded, %.1f %% lost\n",
+                100.0 * counts[0] / all, 100.0 * counts[1] / all, 100.0 * counts[2] / all);
+  out << line;
+  if (unknown > 0) out << unknown << " of " << result.runs.size() << " runs never found a pose\n";
 }
 
 bool isLargest(const char* name) {
@@ -61,8 +98,12 @@ Json inputs(const LocalizeFacts& facts) {
   json["truncated"] = counts.truncated;
   json["poles_per_scan"] = double(counts.poles) / counts.scans;
   json["map_poles"] = facts.mapPoles;
-  json["particles"] = facts.filter.particles;
+  json["particles"] = facts.localization.filter.particles;
   json["seed"] = facts.runs.seed;
+  if (facts.start.anywhere) {
+    json["start"] = "anywhere";
+    return json;
+  }
   const Pose2D& pose = *facts.start.pose;
   json["start"] = {{"x", pose.x},
                    {"y", pose.y},
@@ -77,13 +118,15 @@ Json runSummary(const LocalizeResult& result, std::size_t i) {
   Json json;
   json["trajectory"] = runName(i) + ".tum";
   json["seed"] = run.seed;
-  if (!result.errors.empty()) {
-    for (const auto& [name, figure] : figures) json[name] = result.errors[i].*figure;
-    json["poses"] = result.errors[i].poses;
-    json["unmatched"] = result.errors[i].unmatched;
+  if (!result.errors.empty() && result.errors[i]) {
+    const TrajectoryErrors& errors = *result.errors[i];
+    for (const auto& [name, figure] : figures) json[name] = errors.*figure;
+    json["poses"] = errors.poses;
+    json["unmatched"] = errors.unmatched;
   }
-  const auto resampled = [](const StepReport& step) { return step.resampled; };
-  json["resampled_scans"] = std::count_if(run.steps.begin(), run.steps.end(), resampled);
+  const auto resampled = [](const LocalizationUpdate& update) { return update.step.resampled; };
+  json["resampled_scans"] = std::count_if(run.updates.begin(), run.updates.end(), resampled);
+  json["health"] = healthSummary(run);
   return json;
 }
 
@@ -96,17 +139,21 @@ std::string runName(std::size_t run) {
 
 Json makeSummary(const LocalizeFacts& facts, const LocalizeResult& result) {
   Json json = inputs(facts);
-  if (!result.errors.empty()) {
+  const std::vector<TrajectoryErrors> errors = known(result);
+  if (!errors.empty()) {
     Json deviations;
     for (const auto& [name, figure] : figures) {
-      const Spread spread = spreadOf(result.errors, figure);
+      const Spread spread = spreadOf(errors, figure);
       json[name] = isLargest(name) ? spread.largest : spread.mean;
       deviations[name] = spread.deviation;
     }
-    json["poses"] = result.errors[0].poses;  // the scans are the same in every run
-    json["unmatched"] = result.errors[0].unmatched;
+    json["poses"] = errors[0].poses;  // the scans are the same in every run with a start pose
+    json["unmatched"] = errors[0].unmatched;
     json["spread"] = deviations;
   }
+  json["runs_without_pose"] =
+      std::count_if(result.runs.begin(), result.runs.end(),
+                    [](const FilterRun& run) { return run.trajectory().empty(); });
   json["runs"] = Json::array();
   for (std::size_t i = 0; i < result.runs.size(); ++i)
     json["runs"].push_back(runSummary(result, i));
@@ -120,12 +167,46 @@ void writeErrorsCsv(const std::filesystem::path& file, const FilterRun& run,
                      "effective_share\n";
   std::size_t scan = 0;
   for (const PoseError& error : errors.errors) {
-    while (run.trajectory[scan].time < error.time) ++scan;
-    const StepReport& step = run.steps[scan];
+    while (run.updates[scan].time < error.time) ++scan;
+    const StepReport& step = run.updates[scan].step;
     char line[200];
     std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.6f,%.6f,%zu,%.6f\n", scan, error.time,
                   error.position, error.lateral, error.longitudinal, error.heading / degree,
                   step.poles, step.effectiveShare);
+    output.stream() << line;
+  }
+  output.commit();
+}
+
+void writeCovarianceCsv(const std::filesystem::path& file, const FilterRun& run) {
+  io::AtomicFile output(file);
+  output.stream() << "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n";
+  for (std::size_t scan = 0; scan < run.updates.size(); ++scan) {
+    if (!run.updates[scan].estimate) continue;
+    const auto& [mean, C] = *run.updates[scan].estimate;
+    char line[300];
+    std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.9f,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
+                  scan, run.updates[scan].time, mean.x, mean.y, mean.yaw, C(0, 0), C(0, 1), C(0, 2),
+                  C(1, 1), C(1, 2), C(2, 2));
+    output.stream() << line;
+  }
+  output.commit();
+}
+
+void writeHealthCsv(const std::filesystem::path& file, const FilterRun& run) {
+  io::AtomicFile output(file);
+  output.stream() << "scan,timestamp,state,reason,matched_share,evidence,innovation,"
+                     "effective_particles,particles,mode_share,spread_m,spread_deg,poles,"
+                     "relocalized\n";
+  for (std::size_t scan = 0; scan < run.updates.size(); ++scan) {
+    const LocalizationUpdate& update = run.updates[scan];
+    const Health& health = update.health;
+    char line[300];
+    std::snprintf(
+        line, sizeof line, "%zu,%.9f,%s,%s,%.4f,%.3f,%.4f,%.1f,%zu,%.4f,%.5f,%.5f,%zu,%d\n", scan,
+        update.time, name(health.state), name(health.reason), health.matchedShare, health.evidence,
+        health.innovation, health.effectiveParticles, update.step.particles, health.modeShare,
+        health.spread, health.spreadHeading / degree, update.step.poles, int(update.relocalized));
     output.stream() << line;
   }
   output.commit();
@@ -137,12 +218,14 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
   std::snprintf(line, sizeof line,
                 "%zu scans, %.1f poles per scan, map of %zu poles, %zu runs of %d particles\n",
                 counts.scans, double(counts.poles) / counts.scans, facts.mapPoles,
-                result.runs.size(), facts.filter.particles);
+                result.runs.size(), facts.localization.filter.particles);
   out << line;
   if (counts.truncated) out << "the rawlog is truncated: only its readable part was used\n";
   if (counts.emptyScans) out << counts.emptyScans << " scans without a valid point\n";
   if (counts.invalidPoints) out << counts.invalidPoints << " invalid points left out\n";
-  if (result.errors.empty()) return;
+  printHealth(out, result);
+  const std::vector<TrajectoryErrors> errors = known(result);
+  if (errors.empty()) return;
   out << "run       pos_mean  pos_rmse  lat_mean  lon_mean  ang_mean_deg  ang_rmse_deg  pos_max\n";
   const auto row = [&](const std::string& name, const auto& value) {
     std::snprintf(line, sizeof line, "%-8s  %8.4f  %8.4f  %8.4f  %8.4f  %12.4f  %12.4f  %7.3f\n",
@@ -150,9 +233,10 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
                   value(6));
     out << line;
   };
-  const auto spread = [&](int k) { return spreadOf(result.errors, figures[k].second); };
+  const auto spread = [&](int k) { return spreadOf(errors, figures[k].second); };
   for (std::size_t i = 0; i < result.errors.size(); ++i)
-    row(runName(i), [&](int k) { return result.errors[i].*figures[k].second; });
+    if (result.errors[i])
+      row(runName(i), [&](int k) { return (*result.errors[i]).*figures[k].second; });
   row("mean", [&](int k) { return spread(k).mean; });
   row("spread", [&](int k) { return spread(k).deviation; });
 }

@@ -12,8 +12,12 @@ void bindAll(Binder& binder, Settings& settings) {
   bind(binder, settings.map);
   bind(binder, settings.likelihood);
   bind(binder, settings.motion);
-  bind(binder, settings.filter);
+  bind(binder, settings.localization.filter);
   bind(binder, settings.start);
+  bind(binder, settings.localization.submap);
+  bind(binder, settings.localization.global);
+  bind(binder, settings.localization.health);
+  bind(binder, settings.localization.search);
   bind(binder, settings.runs);
   bind(binder, settings.simulation);
 }

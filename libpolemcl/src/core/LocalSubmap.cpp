@@ -53,16 +53,20 @@ Placed place(const PoleDetection& detection, const Pose2D& pose, double floor) {
 
 }  // namespace
 
+Eigen::Matrix3d walkCovariance(const Pose2D& motion, const SubmapOptions& options) {
+  const double metres = std::hypot(motion.x, motion.y);
+  const double position = options.positionWalk * options.positionWalk * metres;
+  const double heading = options.headingWalk * options.headingWalk * metres +
+                         options.turnWalk * options.turnWalk * std::abs(motion.yaw);
+  return Eigen::Vector3d(position, position, heading).asDiagonal();
+}
+
 LocalSubmap::LocalSubmap(const SubmapOptions& options) : m_options(options) {
   options.validate();
 }
 
 void LocalSubmap::add(const Pose2D& motion, const std::vector<PoleDetection>& poles_robot) {
-  const double metres = std::hypot(motion.x, motion.y);
-  const double position = m_options.positionWalk * m_options.positionWalk * metres;
-  const double heading = m_options.headingWalk * m_options.headingWalk * metres +
-                         m_options.turnWalk * m_options.turnWalk * std::abs(motion.yaw);
-  add(motion, Eigen::Vector3d(position, position, heading).asDiagonal(), poles_robot);
+  add(motion, walkCovariance(motion, m_options), poles_robot);
 }
 
 void LocalSubmap::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,

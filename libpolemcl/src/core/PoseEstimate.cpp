@@ -53,8 +53,8 @@ Pose2D meanOf(const std::vector<Pose2D>& particles, const std::vector<double>& w
           wrapAngle(cancelled ? particles[heaviest].yaw : std::atan2(sine, cosine))};
 }
 
-Eigen::Matrix3d covarianceAbout(const Pose2D& mean, const std::vector<Pose2D>& particles,
-                                const std::vector<double>& weights) {
+Eigen::Matrix3d spreadAbout(const Pose2D& mean, const std::vector<Pose2D>& particles,
+                            const std::vector<double>& weights) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double sum = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -96,7 +96,13 @@ PoseWithCovariance bestShareMean(const std::vector<Pose2D>& particles,
     std::sort(chosen.begin(), chosen.end());
   }
   const Pose2D mean = meanOf(particles, weights, chosen);
-  return {mean, covarianceAbout(mean, particles, weights)};
+  return {mean, spreadAbout(mean, particles, weights)};
+}
+
+Eigen::Matrix3d covarianceAbout(const Pose2D& pose, const std::vector<Pose2D>& particles,
+                                const std::vector<double>& logWeights) {
+  checkSizes(particles, logWeights);
+  return spreadAbout(pose, particles, weightsOf(logWeights));
 }
 
 double effectiveShare(const std::vector<double>& logWeights) {

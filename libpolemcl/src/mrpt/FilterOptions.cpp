@@ -77,6 +77,8 @@ void bind(Binder& binder, FilterOptions& options) {
 
 void bind(Binder& binder, StartOptions& options) {
   binder.section("start", "Where the filter starts");
+  binder.flag("anywhere", options.anywhere,
+              "true: nowhere in particular, the whole map is searched on the way");
   std::vector<double> position;
   if (options.pose) position = {options.pose->x, options.pose->y};
   double yaw = options.pose ? options.pose->yaw : 0;

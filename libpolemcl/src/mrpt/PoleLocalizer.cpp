@@ -205,6 +205,7 @@ void PoleLocalizer::prediction_and_update_pfStandardProposal(
         update(poles->polesInRobotFrame(), mrptOptions);
   // Now, since executeOn() resamples next, which erases the weights.
   m_report.effectiveShare = effectiveShare(logWeights());
+  m_report.particles = m_particles.size();
   m_report.resampled = false;
   m_estimate = m_options.estimate == PoseEstimator::bestShare
                    ? bestShareMean(particles(), logWeights(), m_options.bestShare)

@@ -3,7 +3,7 @@
 /// \brief The same drive localized several times, in parallel, each run with its own seed.
 
 #include <polemcl/core/Evaluation.h>
-#include <polemcl/mrpt/PoleLocalizer.h>
+#include <polemcl/mrpt/PoleLocalization.h>
 
 #include <functional>
 #include <memory>
@@ -11,22 +11,32 @@
 
 namespace polemcl::apps {
 
-/// \brief One run of the filter over a drive. Element i of each list belongs to scan i.
+/// \brief One run over a drive. Element i of `updates` belongs to scan i.
 struct FilterRun {
   std::uint32_t seed = 0;
-  std::vector<StampedPose2D> trajectory;
-  std::vector<StepReport> steps;
-  double seconds = 0;  ///< spent in the filter
+  std::vector<LocalizationUpdate> updates;
+  double seconds = 0;  ///< spent in the localization
+
+  /// \brief The estimates, one for each scan from the first with a known pose on.
+  std::vector<StampedPose2D> trajectory() const;
 };
 
-/// \brief Runs the filter `runs.runs` times over the frames, on all threads. Run i has the seed
+/// \brief Sees every step of the first run, from the thread that runs it; may be empty.
+using RunObserver = std::function<void(const PoleLocalization& localization, const PoleFrame& frame,
+                                       const LocalizationUpdate& update)>;
+
+/// \brief How runs are watched. Both may be empty.
+struct RunWatch {
+  /// Called with the number of frames done in all runs, from one thread at a time.
+  std::function<void(std::size_t)> progress;
+  RunObserver observer;
+};
+
+/// \brief Localizes the frames `runs.runs` times, on all threads. Run i has the seed
 /// `runs.seed + i` and the same bytes on any number of threads.
-/// \param progress Called with the number of frames done in all runs, from one thread at a time;
-///        may be empty.
-/// \throws Error as PoleLocalizer does.
-std::vector<FilterRun> runFilters(const std::shared_ptr<const CPoleMap>& map,
-                                  const std::vector<PoleFrame>& frames, const FilterOptions& filter,
-                                  const StartOptions& start, const RunOptions& runs,
-                                  const std::function<void(std::size_t)>& progress = {});
+/// \throws Error as PoleLocalization does.
+std::vector<FilterRun> runFilters(const LocalizationMap& map, const std::vector<PoleFrame>& frames,
+                                  const LocalizationOptions& options, const StartOptions& start,
+                                  const RunOptions& runs, const RunWatch& watch = {});
 
 }  // namespace polemcl::apps

@@ -17,17 +17,27 @@ struct LocalizeJob {
   std::optional<std::filesystem::path> truth;  ///< TUM
   std::optional<int> runs, particles;
   std::optional<std::uint32_t> seed;
+  std::vector<double> start;  ///< x, y (m), yaw (deg), radius (m), heading (deg); or empty
+  bool anywhere = false;      ///< no start pose: global search
   bool allowTruncated = false;
   bool quiet = false;
 };
 
 struct LocalizeResult {
   std::vector<FilterRun> runs;
-  std::vector<TrajectoryErrors> errors;  ///< of each run; empty without truth
+  /// Of each run; empty without truth; none for a run that never found its pose.
+  std::vector<std::optional<TrajectoryErrors>> errors;
 };
 
 /// \brief Extracts the poles once, runs the filter, writes the folder `output`:
 /// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;
+///   started anywhere, from the scan on by which the pose is known;
+/// - `run_NN_cov.csv`: `scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw` of the same
+/// poses:
+///   the estimate and its covariance, map frame, m², m·rad, rad²;
+/// - `run_NN_health.csv`: `scan,timestamp,state,reason,matched_share,evidence,innovation,
+///   effective_particles,particles,mode_share,spread_m,spread_deg,poles,relocalized` of every scan
+///   (see LocalizationHealth.h; `relocalized` is 1 where the global search set the pose);
 /// - `run_NN_errors.csv`, with truth: `scan,timestamp,position_m,lateral_m,longitudinal_m,
 ///   heading_deg,poles,effective_share` of each scan that the truth covers; scan is the 0-based
 ///   index in the input, lateral + to the left and longitudinal + ahead of the true pose, heading +

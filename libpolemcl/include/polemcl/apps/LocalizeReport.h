@@ -15,7 +15,7 @@ namespace polemcl::apps {
 /// \brief Everything the summary tells, gathered by localize().
 struct LocalizeFacts {
   LocalizeJob job;
-  FilterOptions filter;
+  LocalizationOptions localization;
   StartOptions start;
   RunOptions runs;
   SequenceCounts counts;
@@ -31,6 +31,10 @@ nlohmann::ordered_json makeSummary(const LocalizeFacts& facts, const LocalizeRes
 /// \brief See LocalizeApp.h for the columns. Atomic. \throws Error when it cannot be written.
 void writeErrorsCsv(const std::filesystem::path& file, const FilterRun& run,
                     const TrajectoryErrors& errors);
+
+/// \brief See LocalizeApp.h for the columns. Atomic. \throws Error when it cannot be written.
+void writeCovarianceCsv(const std::filesystem::path& file, const FilterRun& run);
+void writeHealthCsv(const std::filesystem::path& file, const FilterRun& run);
 
 /// \brief A row per run, mean and spread; without truth the counts alone.
 void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeResult& result);

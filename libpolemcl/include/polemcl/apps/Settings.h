@@ -8,6 +8,7 @@
 #include <polemcl/mrpt/FilterOptions.h>
 #include <polemcl/mrpt/MotionOptions.h>
 #include <polemcl/mrpt/PoleExtraction.h>
+#include <polemcl/mrpt/PoleLocalization.h>
 #include <polemcl/sim/SimulationOptions.h>
 
 #include <string>
@@ -21,7 +22,7 @@ struct Settings {
   PoleMapOptions map;                 ///< `[map]`
   LikelihoodOptions likelihood;       ///< `[likelihood]`
   MotionOptions motion;               ///< `[motion]`
-  FilterOptions filter;               ///< `[filter]`
+  LocalizationOptions localization;   ///< `[filter] [submap] [global] [health] [search]`
   StartOptions start;                 ///< `[start]`
   RunOptions runs;                    ///< `[runs]`
   sim::SimulationOptions simulation;  ///< `[simulation]`, `[world]`; sensor as in `[sensor]`

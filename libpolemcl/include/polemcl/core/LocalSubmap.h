@@ -38,6 +38,10 @@ struct SubmapOptions {
   void validate() const;  ///< \throws Error naming the field
 };
 
+/// \brief Covariance of (x, y, yaw) of a motion by the walks of the options, m², m·rad, rad².
+/// \param motion In the robot frame before it.
+Eigen::Matrix3d walkCovariance(const Pose2D& motion, const SubmapOptions& options);
+
 /// \brief One pole of the submap, local frame.
 struct SubmapPole {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< m

@@ -30,6 +30,10 @@ PoseWithCovariance weightedMean(const std::vector<Pose2D>& particles,
 /// outside (0, 1].
 PoseWithCovariance bestShareMean(const std::vector<Pose2D>& particles,
                                  const std::vector<double>& logWeights, double share);
+/// \brief Covariance of all particles about a pose, m, m, rad; heading differences wrapped.
+/// \throws Error as weightedMean.
+Eigen::Matrix3d covarianceAbout(const Pose2D& pose, const std::vector<Pose2D>& particles,
+                                const std::vector<double>& logWeights);
 /// \brief Effective sample size (Σw)²/Σw² over the number of particles, in (0, 1].
 /// \throws Error on weights as weightedMean.
 double effectiveShare(const std::vector<double>& logWeights);

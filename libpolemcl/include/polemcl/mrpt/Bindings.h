@@ -3,6 +3,9 @@
 /// \brief INI keys of the option structs of `core/` and `mrpt/`: one line per field.
 
 #include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/GlobalLocalizer.h>
+#include <polemcl/core/LocalSubmap.h>
+#include <polemcl/core/LocalizationHealth.h>
 #include <polemcl/core/PoleLikelihood.h>
 #include <polemcl/core/PoleMapBuilder.h>
 #include <polemcl/mrpt/Config.h>
@@ -15,5 +18,8 @@ void bind(Binder& binder, ExtractionOptions& options);  ///< `[extraction]`, `[p
 void bind(Binder& binder, PoleMapOptions& options);     ///< `[map]`
 void bind(Binder& binder, LikelihoodOptions& options);  ///< `[likelihood]`
 void bind(Binder& binder, MotionOptions& options);      ///< `[motion]`
+void bind(Binder& binder, SubmapOptions& options);      ///< `[submap]`
+void bind(Binder& binder, GlobalOptions& options);      ///< `[global]`
+void bind(Binder& binder, HealthOptions& options);      ///< `[health]`
 
 }  // namespace polemcl

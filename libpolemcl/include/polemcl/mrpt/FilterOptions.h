@@ -41,6 +41,7 @@ struct FilterOptions {
 
 /// \brief Where the filter starts. `[start]` in INI files.
 struct StartOptions {
+  bool anywhere = false;       ///< true: no start pose, the global search finds it (`anywhere`)
   std::optional<Pose2D> pose;  ///< map frame (`position_m`, `yaw_deg`); none: from the truth
   double radius = 2.5;         ///< positions uniform in this disc (in its area), m (paper)
   double heading = 0.087266462599716;  ///< headings uniform in ± this, rad (paper: 5°)

@@ -20,6 +20,7 @@ namespace polemcl {
 /// \brief What one step did.
 struct StepReport {
   std::size_t poles = 0;      ///< observed
+  std::size_t particles = 0;  ///< before resampling
   double effectiveShare = 1;  ///< of the particles, after the update and before resampling
   int temperingStages = 0;    ///< resamplings inside the update (see FilterOptions::tempering)
   bool resampled = false;     ///< after the update

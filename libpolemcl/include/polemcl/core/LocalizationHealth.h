@@ -1,0 +1,118 @@
+#pragma once
+/// \file LocalizationHealth.h
+/// \brief Can the pose be trusted? `ok`, `degraded` or `lost`, with the reason.
+
+#include <polemcl/core/PoleMatching.h>
+#include <polemcl/core/PoseEstimate.h>
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+namespace polemcl {
+
+enum class HealthState { ok, degraded, lost };
+
+/// \brief Why the state is not `ok`; the first that applies in this order.
+enum class HealthReason {
+  none,        ///< ok
+  searching,   ///< lost: no pose is known yet
+  elsewhere,   ///< lost: the poles of the last metres fit another place of the map
+  mismatch,    ///< lost or degraded: too few of the observed poles stand on the map
+  spread,      ///< lost or degraded: the pose is too uncertain
+  ambiguous,   ///< degraded: several places are about as likely
+  converging,  ///< degraded: not yet confirmed since the start or since the last search
+  timeGap,     ///< degraded: no scan for longer than `maxGap`, until poles confirm the pose again
+  noPoles,     ///< degraded: no pole was seen for `blindSeconds` or `blindMetres`
+  odometry,    ///< degraded: the poles contradict the odometry
+  innovation,  ///< degraded: matched poles lie farther off than their covariances say
+};
+
+/// \brief The words of the CSV and of the live view.
+const char* name(HealthState state);
+const char* name(HealthReason reason);
+
+/// \brief `[health]` in INI files.
+struct HealthOptions {
+  double window = 8;           ///< metres driven whose scans are judged together
+  double windowSeconds = 1.5;  ///< and at least the scans of these seconds, standing still
+  double minEvidence = 8;      ///< sum of confidences in the window below which shares say nothing
+  double lostShare = 0.22;     ///< lost: a smaller share of the observed poles stands on the map
+  double degradedShare = 0.4;  ///< degraded: a smaller share than this
+  double lostSpread = 5;       ///< lost: standard deviation of the position along its worst axis, m
+  double degradedSpread = 0.5;     ///< degraded, likewise, m
+  double degradedHeading = 0.052;  ///< degraded: standard deviation of the heading, rad
+  double innovation = 4;           ///< degraded: mean m² per degree of freedom of matched poles
+  double modeShare = 0.95;         ///< degraded: less of the particles' weight round the estimate
+  double blindSeconds = 2;         ///< degraded: no pole seen for longer, s
+  double blindMetres = 20;         ///< or farther, m
+  double maxGap = 2;               ///< degraded: a longer time between two scans, s
+  double confirm = 5;              ///< metres of good matches until a new pose is `ok`
+  void validate() const;           ///< \throws Error naming the field
+};
+
+/// \brief What one update brings.
+struct HealthInput {
+  double time = 0;                 ///< s
+  double metres = 0;               ///< driven since the update before
+  std::vector<PoleMatch> matches;  ///< of this scan's poles at the estimate
+  PoseWithCovariance estimate;
+  double effectiveParticles = 0;  ///< number
+  double modeShare = 1;           ///< of the weight of particles round the estimate, in [0, 1]
+  bool odometryContradicted = false;
+};
+
+/// \brief The verdict with what it is made of.
+struct Health {
+  HealthState state = HealthState::lost;
+  HealthReason reason = HealthReason::searching;
+  double matchedShare = 0;  ///< of the window's observed poles, by confidence; 0 without any
+  double evidence = 0;      ///< sum of confidences in the window
+  double innovation = 0;    ///< mean m² per degree of freedom of the window's matches; 1 expected
+  double effectiveParticles = 0;
+  double modeShare = 1;
+  double spread = 0;         ///< standard deviation of the position along its worst axis, m
+  double spreadHeading = 0;  ///< standard deviation of the heading, rad
+};
+
+/// \brief Follows one run. Deterministic.
+class HealthMonitor {
+ public:
+  /// \throws Error on options out of range.
+  explicit HealthMonitor(const HealthOptions& options = {});
+
+  /// \brief No pose is known: `lost`, `searching`.
+  void reset();
+  /// \brief A pose was assumed (a start, a search's answer): forgets the scans before; `degraded`,
+  /// `converging` until matches over `confirm` metres bear it out.
+  void begin();
+  /// \brief One update more. Before begin(): stays `searching`.
+  Health update(const HealthInput& input);
+  /// \brief For one update: the constellation of the last metres lies elsewhere.
+  void reportElsewhere() {
+    m_health.state = HealthState::lost, m_health.reason = HealthReason::elsewhere;
+  }
+  const Health& health() const { return m_health; }
+  const HealthOptions& options() const { return m_options; }
+
+ private:
+  /// One scan's share in the window.
+  struct Scan {
+    double time, driven, evidence, matched, squared;
+    std::size_t matches;
+  };
+  void remember(const HealthInput& input);
+  void judge(const HealthInput& input);
+  bool set(bool applies, HealthState state, HealthReason reason);
+
+  HealthOptions m_options;
+  Health m_health;
+  std::deque<Scan> m_scans;
+  bool m_begun = false, m_confirmed = false;
+  double m_driven = 0, m_time = 0;          ///< at the last update
+  double m_seenDriven = 0, m_seenTime = 0;  ///< when a pole was last seen
+  double m_goodDriven = 0;                  ///< metres in a row with enough matches
+  double m_gapUntil = -1;                   ///< metres driven at which a time gap is forgotten
+};
+
+}  // namespace polemcl

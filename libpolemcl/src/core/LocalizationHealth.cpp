@@ -1,0 +1,198 @@
+#include <polemcl/core/LocalizationHealth.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace polemcl {
+namespace {
+
+void require(bool good, const char* key, double value, const char* allowed) {
+  if (good) return;
+  std::ostringstream text;
+  text << "[health] " << key << " = " << value << ": allowed is " << allowed;
+  throw Error(text.str());
+}
+
+bool isShare(double value) {
+  return value >= 0 && value <= 1;
+}
+
+bool isPositive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+double worstSigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(position, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
+}
+
+}  // namespace
+
+const char* name(HealthState state) {
+  switch (state) {
+    case HealthState::ok:
+      return "ok";
+    case HealthState::degraded:
+      return "degraded";
+    case HealthState::lost:
+      break;
+  }
+  return "lost";
+}
+
+const char* name(HealthReason reason) {
+  switch (reason) {
+    case HealthReason::none:
+      return "none";
+    case HealthReason::searching:
+      return "searching";
+    case HealthReason::elsewhere:
+      return "elsewhere";
+    case HealthReason::mismatch:
+      return "mismatch";
+    case HealthReason::spread:
+      return "spread";
+    case HealthReason::ambiguous:
+      return "ambiguous";
+    case HealthReason::converging:
+      return "converging";
+    case HealthReason::timeGap:
+      return "time_gap";
+    case HealthReason::noPoles:
+      return "no_poles";
+    case HealthReason::odometry:
+      return "odometry";
+    case HealthReason::innovation:
+      break;
+  }
+  return "innovation";
+}
+
+void HealthOptions::validate() const {
+  require(isPositive(window), "window_m", window, "more than 0");
+  require(windowSeconds >= 0 && std::isfinite(windowSeconds), "window_s", windowSeconds,
+          "0 or more");
+  require(isPositive(minEvidence), "min_evidence", minEvidence, "more than 0");
+  require(isShare(lostShare), "lost_share", lostShare, "0 to 1");
+  require(isShare(degradedShare) && degradedShare >= lostShare, "degraded_share", degradedShare,
+          "lost_share to 1");
+  require(isPositive(lostSpread), "lost_spread_m", lostSpread, "more than 0");
+  require(isPositive(degradedSpread) && degradedSpread <= lostSpread, "degraded_spread_m",
+          degradedSpread, "more than 0, at most lost_spread_m");
+  require(isPositive(degradedHeading), "degraded_heading_deg", degradedHeading * 180 / M_PI,
+          "more than 0");
+  require(isPositive(innovation), "innovation", innovation, "more than 0");
+  require(isShare(modeShare), "mode_share", modeShare, "0 to 1");
+  require(isPositive(blindSeconds), "blind_s", blindSeconds, "more than 0");
+  require(isPositive(blindMetres), "blind_m", blindMetres, "more than 0");
+  require(isPositive(maxGap), "max_gap_s", maxGap, "more than 0");
+  require(confirm >= 0 && std::isfinite(confirm), "confirm_m", confirm, "0 or more");
+}
+
+HealthMonitor::HealthMonitor(const HealthOptions& options) : m_options(options) {
+  options.validate();
+}
+
+void HealthMonitor::reset() {
+  *this = HealthMonitor(m_options);
+}
+
+void HealthMonitor::begin() {
+  reset();
+  m_begun = true;
+}
+
+Health HealthMonitor::update(const HealthInput& input) {
+  if (!m_begun) return m_health;
+  const bool first = m_scans.empty();
+  if (!first && input.time - m_time > m_options.maxGap)
+    m_gapUntil = m_driven + input.metres + m_options.confirm;
+  m_driven += input.metres;
+  m_time = input.time;
+  remember(input);
+  if (first || m_scans.back().evidence > 0) {
+    m_seenDriven = m_driven;
+    m_seenTime = m_time;
+  }
+  judge(input);
+  return m_health;
+}
+
+void HealthMonitor::remember(const HealthInput& input) {
+  Scan scan{input.time, m_driven, 0, 0, 0, 0};
+  for (const PoleMatch& match : input.matches) {
+    scan.evidence += match.confidence;
+    if (!match.matched) continue;
+    scan.matched += match.confidence;
+    scan.squared += match.squared;
+    ++scan.matches;
+  }
+  m_scans.push_back(scan);
+  const auto old = [&](const Scan& s) {
+    return m_driven - s.driven > m_options.window && m_time - s.time > m_options.windowSeconds;
+  };
+  while (old(m_scans.front())) m_scans.pop_front();
+
+  double evidence = 0, matched = 0, squared = 0;
+  std::size_t matches = 0;
+  for (const Scan& s : m_scans) {
+    evidence += s.evidence;
+    matched += s.matched;
+    squared += s.squared;
+    matches += s.matches;
+  }
+  m_health.evidence = evidence;
+  m_health.matchedShare = evidence > 0 ? matched / evidence : 0;
+  m_health.innovation = matches > 0 ? squared / (2.0 * static_cast<double>(matches)) : 0;
+  m_health.effectiveParticles = input.effectiveParticles;
+  m_health.modeShare = input.modeShare;
+  m_health.spread = worstSigma(input.estimate.covariance);
+  m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
+}
+
+bool HealthMonitor::set(bool applies, HealthState state, HealthReason reason) {
+  if (applies) {
+    m_health.state = state;
+    m_health.reason = reason;
+  }
+  return applies;
+}
+
+void HealthMonitor::judge(const HealthInput& input) {
+  const HealthOptions& o = m_options;
+  const bool tells = m_health.evidence >= o.minEvidence;
+  const bool enough = m_scans.back().evidence == 0
+                          ? false
+                          : m_scans.back().matched >= o.degradedShare * m_scans.back().evidence;
+  if (enough) m_goodDriven += input.metres;
+  const bool good = tells && m_health.matchedShare >= o.degradedShare &&
+                    m_health.spread < o.degradedSpread &&
+                    m_health.spreadHeading < o.degradedHeading;
+  if (good && m_goodDriven >= o.confirm) m_confirmed = true;
+
+  using State = HealthState;
+  using Reason = HealthReason;
+  if (set(tells && m_health.matchedShare < o.lostShare, State::lost, Reason::mismatch)) return;
+  if (set(m_health.spread > o.lostSpread && m_health.modeShare >= o.modeShare, State::lost,
+          Reason::spread))
+    return;
+  if (set(m_health.modeShare < o.modeShare, State::degraded, Reason::ambiguous)) return;
+  if (set(!m_confirmed, State::degraded, Reason::converging)) return;
+  if (set(tells && m_health.matchedShare < o.degradedShare, State::degraded, Reason::mismatch))
+    return;
+  if (set(m_health.spread > o.degradedSpread || m_health.spreadHeading > o.degradedHeading,
+          State::degraded, Reason::spread))
+    return;
+  if (set(m_driven < m_gapUntil, State::degraded, Reason::timeGap)) return;
+  const bool blind =
+      m_time - m_seenTime > o.blindSeconds || m_driven - m_seenDriven > o.blindMetres;
+  if (set(blind, State::degraded, Reason::noPoles)) return;
+  if (set(input.odometryContradicted, State::degraded, Reason::odometry)) return;
+  if (set(tells && m_health.innovation > o.innovation, State::degraded, Reason::innovation)) return;
+  set(true, State::ok, Reason::none);
+}
+
+}  // namespace polemcl
