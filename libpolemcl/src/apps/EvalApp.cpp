@@ -166,10 +166,11 @@ TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
 }
 
 int evalMain(int argc, const char* const* argv) {
-  CommandLine line("pole-eval", "Scores pole maps, trajectories and extractors.");
+  CommandLine line("pole-eval", "Scores pole maps, trajectories, extractors and localization.");
   line.cli().require_subcommand(1);
   std::vector<EvalCommand> commands{mapCommand(line.cli()), trajectoryCommand(line.cli())};
   for (auto& command : extractionCommands(line.cli())) commands.push_back(std::move(command));
+  for (auto& command : localizationCommands(line.cli())) commands.push_back(std::move(command));
   return line.run(argc, argv, [&] {
     for (const EvalCommand& command : commands) {
       if (!command.parser->parsed()) continue;

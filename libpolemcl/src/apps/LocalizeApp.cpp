@@ -5,6 +5,7 @@
 #include <polemcl/apps/Progress.h>
 #include <polemcl/apps/RunFolder.h>
 #include <polemcl/apps/Settings.h>
+#include <polemcl/apps/TrialDrive.h>
 #include <polemcl/core/PoseInterpolation.h>
 #include <polemcl/io/Trajectory.h>
 #include <polemcl/mrpt/PoleSequence.h>
@@ -44,16 +45,6 @@ Settings effectiveSettings(const LocalizeJob& job) {
   settings.localization.validate();
   settings.start.validate();
   return settings;
-}
-
-std::shared_ptr<const CPoleMap> loadMap(const std::filesystem::path& file,
-                                        const LikelihoodOptions& likelihood) {
-  auto map = std::make_shared<CPoleMap>();
-  map->likelihoodOptions = likelihood;  // first: loading prepares the index for its gate
-  map->loadFromPoleMapFile(file.string());
-  if (map->poles().empty())
-    throw Error(file.string() + ": the map has no poles: nothing can be localized in it");
-  return map;
 }
 
 PoleSequence readPoles(const LocalizeJob& job, const Settings& settings) {
@@ -156,7 +147,7 @@ void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings&
 
 LocalizeResult localize(const LocalizeJob& job) {
   const Settings settings = effectiveSettings(job);
-  const auto map = loadMap(job.map, settings.likelihood);
+  const auto map = loadPoleMap(job.map, settings.likelihood);
   std::vector<StampedPose2D> truth;
   if (job.truth) truth = io::planar(io::readTum(*job.truth));
   RunFolder folder(job.output);  // before the work, so that a folder that cannot be is known now

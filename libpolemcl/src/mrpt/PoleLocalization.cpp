@@ -87,6 +87,8 @@ void PoleLocalization::startAnywhere() {
   m_submap.clear();
   m_monitor.reset();
   m_search = {};
+  m_searches = 0;
+  m_searchedAt = 0;
   m_started = true;
   m_hasPose = m_stepped = m_mistrusted = false;
 }
@@ -119,6 +121,7 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& frame) {
   LocalizationUpdate update;
   update.time = frame.time;
   if (m_hasPose) track(frame, metres, update);
+  if (!m_stepped) m_searchTime = frame.time;
   m_stepped = true;
   m_time = frame.time;
   doubtSubmap();
@@ -156,7 +159,8 @@ void PoleLocalization::doubtSubmap() {
   const bool mismatch = m_hasPose && m_monitor.health().reason == HealthReason::mismatch;
   if (mismatch && !m_mistrusted) {
     m_submap.clear();
-    m_searchedAt = m_searchTime = 0;
+    m_searchedAt = 0;
+    m_searchTime = m_time;
   }
   m_mistrusted = mismatch;
 }
@@ -177,6 +181,7 @@ bool PoleLocalization::searchIsDue() const {
 void PoleLocalization::search(const PoleFrame& frame, LocalizationUpdate& update) {
   m_searchedAt = m_submap.driven();
   m_searchTime = m_time;
+  ++m_searches;
   m_search = m_map.search->localize(m_submap);
   if (m_search.verdict == GlobalVerdict::none) return;
   const bool resolved = m_search.verdict == GlobalVerdict::resolved;

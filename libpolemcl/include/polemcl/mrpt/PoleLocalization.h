@@ -82,6 +82,7 @@ class PoleLocalization {
   const PoleLocalizer& filter() const { return m_filter; }  ///< particles only with a pose
   const LocalSubmap& submap() const { return m_submap; }
   const GlobalResult& lastSearch() const { return m_search; }  ///< empty before the first
+  std::size_t searches() const { return m_searches; }          ///< since the start
   const LocalizationMap& map() const { return m_map; }
   /// @}
 
@@ -103,9 +104,10 @@ class PoleLocalization {
   PoseWithCovariance m_estimate;
   bool m_hasPose = false, m_started = false, m_stepped = false;
   bool m_mistrusted = false;  ///< the submap was begun anew because poles do not match
-  double m_time = 0;          ///< of the last frame, s
-  double m_searchedAt = 0;    ///< metres of the submap at the last search
-  double m_searchTime = 0;    ///< s, of the last search
+  std::size_t m_searches = 0;
+  double m_time = 0;        ///< of the last frame, s
+  double m_searchedAt = 0;  ///< metres of the submap at the last search
+  double m_searchTime = 0;  ///< s, of the last search
 };
 
 void bind(Binder& binder, SearchOptions& options);  ///< `[search]`
