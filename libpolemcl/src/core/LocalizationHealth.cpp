@@ -8,6 +8,8 @@
 namespace polemcl {
 namespace {
 
+constexpr double s_viewpoint = 0.1;  // scans nearer to each other are of one viewpoint, m
+
 void require(bool good, const char* key, double value, const char* allowed) {
   if (good) return;
   std::ostringstream text;
@@ -73,8 +75,6 @@ const char* name(HealthReason reason) {
 
 void HealthOptions::validate() const {
   require(isPositive(window), "window_m", window, "more than 0");
-  require(windowSeconds >= 0 && std::isfinite(windowSeconds), "window_s", windowSeconds,
-          "0 or more");
   require(isPositive(minEvidence), "min_evidence", minEvidence, "more than 0");
   require(isShare(lostShare), "lost_share", lostShare, "0 to 1");
   require(isShare(degradedShare) && degradedShare >= lostShare, "degraded_share", degradedShare,
@@ -107,22 +107,33 @@ void HealthMonitor::begin() {
 
 Health HealthMonitor::update(const HealthInput& input) {
   if (!m_begun) return m_health;
-  const bool first = m_scans.empty();
+  const bool first = m_views.empty();
   if (!first && input.time - m_time > m_options.maxGap)
     m_gapUntil = m_driven + input.metres + m_options.confirm;
   m_driven += input.metres;
   m_time = input.time;
   remember(input);
-  if (first || m_scans.back().evidence > 0) {
+  sumUp();
+  if (first || std::any_of(input.matches.begin(), input.matches.end(),
+                           [](const PoleMatch& match) { return match.confidence > 0; })) {
     m_seenDriven = m_driven;
     m_seenTime = m_time;
   }
+  m_health.effectiveParticles = input.effectiveParticles;
+  m_health.modeShare = input.modeShare;
+  m_health.spread = worstSigma(input.estimate.covariance);
+  m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
   judge(input);
   return m_health;
 }
 
 void HealthMonitor::remember(const HealthInput& input) {
-  Scan scan{input.time, m_driven, 0, 0, 0, 0};
+  if (m_views.empty() || m_driven - m_views.back().driven >= s_viewpoint) {
+    m_views.emplace_back();
+    m_views.back().driven = m_driven;
+  }
+  while (m_driven - m_views.front().driven > m_options.window) m_views.pop_front();
+  Viewpoint scan;
   for (const PoleMatch& match : input.matches) {
     scan.evidence += match.confidence;
     if (!match.matched) continue;
@@ -130,27 +141,25 @@ void HealthMonitor::remember(const HealthInput& input) {
     scan.squared += match.squared;
     ++scan.matches;
   }
-  m_scans.push_back(scan);
-  const auto old = [&](const Scan& s) {
-    return m_driven - s.driven > m_options.window && m_time - s.time > m_options.windowSeconds;
-  };
-  while (old(m_scans.front())) m_scans.pop_front();
+  Viewpoint& view = m_views.back();
+  const double share = 1.0 / ++view.scans;
+  view.evidence += share * (scan.evidence - view.evidence);
+  view.matched += share * (scan.matched - view.matched);
+  view.squared += share * (scan.squared - view.squared);
+  view.matches += share * (scan.matches - view.matches);
+}
 
-  double evidence = 0, matched = 0, squared = 0;
-  std::size_t matches = 0;
-  for (const Scan& s : m_scans) {
-    evidence += s.evidence;
-    matched += s.matched;
-    squared += s.squared;
-    matches += s.matches;
+void HealthMonitor::sumUp() {
+  Viewpoint sum;
+  for (const Viewpoint& view : m_views) {
+    sum.evidence += view.evidence;
+    sum.matched += view.matched;
+    sum.squared += view.squared;
+    sum.matches += view.matches;
   }
-  m_health.evidence = evidence;
-  m_health.matchedShare = evidence > 0 ? matched / evidence : 0;
-  m_health.innovation = matches > 0 ? squared / (2.0 * static_cast<double>(matches)) : 0;
-  m_health.effectiveParticles = input.effectiveParticles;
-  m_health.modeShare = input.modeShare;
-  m_health.spread = worstSigma(input.estimate.covariance);
-  m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
+  m_health.evidence = sum.evidence;
+  m_health.matchedShare = sum.evidence > 0 ? sum.matched / sum.evidence : 0;
+  m_health.innovation = sum.matches > 0 ? sum.squared / (2 * sum.matches) : 0;
 }
 
 bool HealthMonitor::set(bool applies, HealthState state, HealthReason reason) {
@@ -164,10 +173,9 @@ bool HealthMonitor::set(bool applies, HealthState state, HealthReason reason) {
 void HealthMonitor::judge(const HealthInput& input) {
   const HealthOptions& o = m_options;
   const bool tells = m_health.evidence >= o.minEvidence;
-  const bool enough = m_scans.back().evidence == 0
-                          ? false
-                          : m_scans.back().matched >= o.degradedShare * m_scans.back().evidence;
-  if (enough) m_goodDriven += input.metres;
+  const Viewpoint& here = m_views.back();
+  if (here.evidence > 0 && here.matched >= o.degradedShare * here.evidence)
+    m_goodDriven += input.metres;
   const bool good = tells && m_health.matchedShare >= o.degradedShare &&
                     m_health.spread < o.degradedSpread &&
                     m_health.spreadHeading < o.degradedHeading;

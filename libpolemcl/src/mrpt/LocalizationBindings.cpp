@@ -60,7 +60,6 @@ void bind(Binder& b, GlobalOptions& o) {
 void bind(Binder& b, HealthOptions& o) {
   b.section("health", "When the pose is called ok, degraded or lost");
   b.number("window_m", o.window, positive, "m", "scans of so many metres are judged together");
-  b.number("window_s", o.windowSeconds, Range::atLeast(0), "s", "and at least those of so long");
   b.number("min_evidence", o.minEvidence, positive, "",
            "sum of confidences below which matches say nothing");
   b.number("lost_share", o.lostShare, share, "share",

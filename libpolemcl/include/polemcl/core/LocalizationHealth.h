@@ -34,8 +34,9 @@ const char* name(HealthReason reason);
 
 /// \brief `[health]` in INI files.
 struct HealthOptions {
-  double window = 8;           ///< metres driven whose scans are judged together
-  double windowSeconds = 1.5;  ///< and at least the scans of these seconds, standing still
+  /// Metres driven whose scans are judged together. Scans from one viewpoint count as one: a
+  /// vehicle that stands beside something odd is not lost.
+  double window = 8;
   double minEvidence = 8;      ///< sum of confidences in the window below which shares say nothing
   double lostShare = 0.22;     ///< lost: a smaller share of the observed poles stands on the map
   double degradedShare = 0.4;  ///< degraded: a smaller share than this
@@ -96,18 +97,19 @@ class HealthMonitor {
   const HealthOptions& options() const { return m_options; }
 
  private:
-  /// One scan's share in the window.
-  struct Scan {
-    double time, driven, evidence, matched, squared;
-    std::size_t matches;
+  /// Means of the scans from one viewpoint.
+  struct Viewpoint {
+    double driven = 0, evidence = 0, matched = 0, squared = 0, matches = 0;
+    int scans = 0;
   };
   void remember(const HealthInput& input);
+  void sumUp();
   void judge(const HealthInput& input);
   bool set(bool applies, HealthState state, HealthReason reason);
 
   HealthOptions m_options;
   Health m_health;
-  std::deque<Scan> m_scans;
+  std::deque<Viewpoint> m_views;
   bool m_begun = false, m_confirmed = false;
   double m_driven = 0, m_time = 0;          ///< at the last update
   double m_seenDriven = 0, m_seenTime = 0;  ///< when a pole was last seen
