@@ -18,7 +18,7 @@ struct EvalCommand {
 /// \brief Declares `detections`, `repeatability` and `rotation`.
 std::vector<EvalCommand> extractionCommands(CLI::App& program);
 
-/// \brief Declares `global`.
+/// \brief Declares `global` and `consistency`.
 std::vector<EvalCommand> localizationCommands(CLI::App& program);
 
 }  // namespace polemcl::apps

@@ -1,6 +1,9 @@
+#include <polemcl/apps/ConsistencyEval.h>
 #include <polemcl/apps/GlobalTrials.h>
 
+#include <cstdio>
 #include <memory>
+#include <sstream>
 
 #include "EvalCommands.h"
 
@@ -31,10 +34,51 @@ EvalCommand globalCommand(CLI::App& program) {
   return {&cli, [shared] { return evalGlobal(*shared); }};
 }
 
+std::string row(const std::string& name, const ConsistencyScore& s) {
+  char line[200];
+  std::snprintf(line, sizeof line, "%-10s %8zu %8.3f %8.3f %9.3f %8.3f %9.4f\n", name.c_str(),
+                s.samples, s.neesMean, s.neesMedian, s.neesPositionMean, s.neesHeadingMean,
+                s.coverage95);
+  return line;
+}
+
+std::string text(const ConsistencyResult& result) {
+  std::ostringstream out;
+  out << "normalised squared errors; right are 3, 2.37 (median), 2 (x y), 1 (yaw), and 0.95 of the "
+         "true positions within the 95 % ellipses\n"
+      << "run           poses     mean   median  position  heading  coverage\n";
+  for (std::size_t i = 0; i < result.runs.size(); ++i)
+    out << row(std::to_string(i), result.runs[i]);
+  out << row("all", result.all);
+  if (result.notOk > 0) out << result.notOk << " poses that are not ok left out\n";
+  if (result.unmatched > 0) out << result.unmatched << " poses that the truth does not cover\n";
+  return out.str();
+}
+
+EvalCommand consistencyCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("consistency", "Are poses as uncertain as they say?");
+  const auto options = std::make_shared<EvalConsistencyOptions>();
+  cli.add_option("--truth", options->truth,
+                 "True robot poses, TUM: one file for all runs, or one for each")
+      ->required();
+  cli.add_option("--cov", options->cov, "run_NN_cov.csv of pole-localize, one or several")
+      ->required();
+  cli.add_option("--health", options->health,
+                 "run_NN_health.csv of each: only poses that are ok count");
+  cli.add_option("--skip-seconds", options->skipSeconds, "Left out since the first pose, s")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--skip-metres", options->skipMetres, "And along the true path, m")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options] { return text(evalConsistency(*options)); }};
+}
+
 }  // namespace
 
 std::vector<EvalCommand> localizationCommands(CLI::App& program) {
-  return {globalCommand(program)};
+  return {globalCommand(program), consistencyCommand(program)};
 }
 
 }  // namespace polemcl::apps

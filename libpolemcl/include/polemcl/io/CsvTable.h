@@ -21,6 +21,10 @@ class CsvTable {
   std::size_t column(const std::string& name) const;
   /// \brief A field as a number. \throws Error naming file and line unless it is finite.
   double number(std::size_t row, std::size_t column) const;
+  /// \brief A field as it stands, without spaces and quotes round it.
+  const std::string& text(std::size_t row, std::size_t column) const {
+    return m_rows[row].fields[column];
+  }
   /// \brief "FILE:LINE: " of a row, for messages.
   std::string at(std::size_t row) const;
 
