@@ -6,8 +6,10 @@
 #include <tbb/global_control.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "../mrpt/PoleStreet.h"
+#include "CityFiles.h"
 #include "TempFolder.h"
 
 using namespace polemcl;
@@ -195,6 +197,57 @@ TEST_F(LocalizeApp, OldRunsGoWhenNewOnesAreComplete) {
   EXPECT_FALSE(fs::exists(out("run_02_errors.csv")));
 }
 
+TEST_F(LocalizeApp, CovarianceAndHealthOfEveryScan) {
+  ASSERT_EQ(runWithTruth().code, 0);
+  const std::string covariances = readText(out("run_00_cov.csv"));
+  EXPECT_EQ(covariances.substr(0, covariances.find('\n')),
+            "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw");
+  EXPECT_EQ(lines(covariances), scans + 1);
+  const auto estimate = io::planar(io::readTum(out("run_00.tum")));
+  const std::string last = covariances.substr(covariances.rfind('\n', covariances.size() - 2) + 1);
+  double v[11];
+  char comma;
+  std::istringstream row(last);
+  for (double& value : v) row >> value >> comma;
+  EXPECT_EQ(v[0], scans - 1);
+  EXPECT_NEAR(v[2], estimate.back().pose.x, 1e-6);
+  EXPECT_NEAR(v[4], estimate.back().pose.yaw, 1e-6);
+  Eigen::Matrix3d covariance;
+  covariance << v[5], v[6], v[7], v[6], v[8], v[9], v[7], v[9], v[10];
+  EXPECT_GT(covariance.determinant(), 0);
+  EXPECT_LT(std::sqrt(v[5] + v[8]), 0.2);
+
+  const std::string health = readText(out("run_00_health.csv"));
+  EXPECT_EQ(health.substr(0, health.find('\n')),
+            "scan,timestamp,state,reason,matched_share,evidence,innovation,effective_particles,"
+            "particles,mode_share,spread_m,spread_deg,poles,relocalized");
+  EXPECT_EQ(lines(health), scans + 1);
+  EXPECT_NE(health.find("\n0,100.000000000,degraded,converging,"), std::string::npos);
+  EXPECT_NE(health.find(",ok,none,"), std::string::npos);
+  EXPECT_EQ(health.find(",lost,"), std::string::npos);
+  const auto counted = summary()["runs"][0]["health"];
+  EXPECT_EQ(counted["ok"].get<int>() + counted["degraded"].get<int>(), int(scans));
+  EXPECT_EQ(counted["first_pose_scan"], 0);
+}
+
+TEST_F(LocalizeApp, StartsWhereTheCommandLineSays) {
+  const auto outcome = run({"--start", "3.5,-2.2,22.9,1.5,4"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto start = summary()["start"];
+  EXPECT_EQ(start["x"], 3.5);
+  EXPECT_EQ(start["y"], -2.2);
+  EXPECT_NEAR(start["yaw_deg"], 22.9, 1e-9);
+  EXPECT_EQ(start["radius_m"], 1.5);
+  EXPECT_NEAR(start["heading_deg"], 4, 1e-9);
+  const auto first = readText(out("run_00.tum"));
+  fs::copy_file(out("config.ini"), folder / "config.ini", fs::copy_options::overwrite_existing);
+  ASSERT_EQ(run().code, 0);  // the effective configuration holds the start
+  EXPECT_EQ(readText(out("run_00.tum")), first);
+  expectUsageError(run({"--start", "3.5,-2.2"}));
+  expectUsageError(run({"--start", "1,2,3,4,5", "--global"}));
+  expectFailure(run({"--start", "90000,0,0,2,5"}), {"nearest pole", "1000"});
+}
+
 TEST_F(LocalizeApp, RefusesARawlogWithoutOdometry) {
   for (std::size_t i = 1; i < scans; ++i) street.frames[i].motion.reset();
   writeRawlog();
@@ -245,6 +298,48 @@ TEST_F(LocalizeApp, TruncatedRawlogsOnlyWhenAllowed) {
   EXPECT_EQ(io::readTum(out("run_00.tum")).size(), scans - 1);
   EXPECT_EQ(summary()["truncated"], true);
   EXPECT_NE(outcome.out.find("truncated"), std::string::npos);
+}
+
+TEST(LocalizeAppAnywhere, FindsTheVehicleAndTellsFromWhenOn) {
+  registerClasses();
+  const CityFiles city(80);
+  const auto outcome =
+      runProgram(localizeMain, {"--config", city.at("city.ini"), "--input", city.at("drive.rawlog"),
+                                "--map", city.at("city.polemap"), "--truth", city.at("drive.tum"),
+                                "--output", city.at("out"), "--global", "--runs", "2"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(readText(city.folder / "out/summary.json"));
+  EXPECT_EQ(json["start"], "anywhere");
+  EXPECT_EQ(json["runs_without_pose"], 0);
+  const std::size_t first = json["runs"][1]["health"]["first_pose_scan"];
+  EXPECT_GE(first, 2u);
+  const auto estimate = io::planar(io::readTum(city.at("out/run_01.tum")));
+  ASSERT_EQ(estimate.size(), city.frames.size() - first);
+  EXPECT_NEAR(estimate[0].time, CityFiles::time(first), 1e-5);
+  for (std::size_t i = 0; i < estimate.size(); ++i)
+    EXPECT_NEAR(estimate[i].pose.x, city.frames[first + i].truth.x, 0.5);
+  const std::string errors = readText(city.folder / "out/run_01_errors.csv");
+  EXPECT_EQ(errors.substr(errors.find('\n') + 1, std::to_string(first).size() + 1),
+            std::to_string(first) + ",");
+  const std::string health = readText(city.folder / "out/run_01_health.csv");
+  EXPECT_NE(health.find("lost,searching"), std::string::npos);
+  EXPECT_EQ(lines(health), city.frames.size() + 1);
+}
+
+TEST(LocalizeAppAnywhere, ARunThatFindsNothingIsNoErrorButSaysSo) {
+  registerClasses();
+  const CityFiles city(40), other(5, 99);
+  const auto outcome =
+      runProgram(localizeMain, {"--config", city.at("city.ini"), "--input", city.at("drive.rawlog"),
+                                "--map", other.at("city.polemap"), "--truth", city.at("drive.tum"),
+                                "--output", city.at("out"), "--global"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1 of 1 runs never found a pose"), std::string::npos);
+  const auto json = nlohmann::json::parse(readText(city.folder / "out/summary.json"));
+  EXPECT_EQ(json["runs_without_pose"], 1);
+  EXPECT_TRUE(json["runs"][0]["health"]["first_pose_scan"].is_null());
+  EXPECT_FALSE(json.contains("pos_mean"));
+  EXPECT_FALSE(fs::exists(city.folder / "out/run_00_errors.csv"));
 }
 
 TEST_F(LocalizeApp, RefusesMissingFiles) {

@@ -19,6 +19,7 @@ class Feed {
     input.metres = metres;
     for (int i = 0; i < poles; ++i) {
       PoleMatch match;
+      match.confidence = confidence;
       match.matched = i < std::lround(share * poles);
       match.squared = match.matched ? squared : 0;
       input.matches.push_back(match);
@@ -41,7 +42,7 @@ class Feed {
   HealthMonitor monitor;
   Health last;
   double time = 1e9, period = 0.1, metres = 0.5, squared = 2, sigma = 0.02, yaw = 0.001,
-         modeShare = 1;
+         modeShare = 1, confidence = 1;
   bool contradicted = false;
 };
 
@@ -101,7 +102,9 @@ TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
   Feed feed;
   feed.scans(40, 0.9);
   feed.metres = 0;
-  feed.scans(3000, 0.0);  // five minutes beside something odd
+  feed.scan(0.0);
+  EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // means of m² and of matches alike
+  feed.scans(2999, 0.0);                        // five minutes beside something odd
   feed.expect(State::ok, Reason::none);
   EXPECT_NEAR(feed.last.matchedShare, 0.9 * (16 + 1.0 / 3001) / 17, 1e-9);  // 17 viewpoints in 8 m
   feed.metres = 0.5;
@@ -150,6 +153,21 @@ TEST(LocalizationHealth, BlindByTimeOrByMetres) {
   fast.metres = 0.5;
   fast.scans(10, 0.9);
   fast.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, PolesWithoutConfidenceAreNotSeen) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.confidence = 0;
+  feed.scans(25, 1);
+  feed.expect(State::degraded, Reason::noPoles);
+}
+
+TEST(LocalizationHealth, FewMatchesBearNoPoseOut) {
+  Feed feed;
+  feed.confidence = 0.04;  // in 8 m 17 viewpoints of 10 poles: evidence of 6.8
+  feed.scans(100, 0.9);
+  feed.expect(State::degraded, Reason::converging);
 }
 
 TEST(LocalizationHealth, ATimeGapIsNamedUntilMetresAreDriven) {

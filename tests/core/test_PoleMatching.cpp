@@ -64,6 +64,9 @@ TEST(PoleMatching, EachMapPoleCountsOnceAndTheNearerPairWins) {
   EXPECT_EQ(matches[0].pole, 1u);  // the first map pole is taken by the second detection
   EXPECT_TRUE(matches[1].matched);
   EXPECT_EQ(matches[1].pole, 0u);
+  const auto lone = matchPoles({detection(5.05, 0, 0.1)}, {}, index, exact);
+  EXPECT_EQ(lone[0].pole, 0u);  // both are within reach
+  EXPECT_NEAR(lone[0].squared, 0.05 * 0.05 / (0.1 * 0.1 + 0.1 * 0.1 + 0.05 * 0.05), 1e-12);
   const auto crowd = matchPoles({detection(5.01, 0, 0.1), detection(5.02, 0, 0.1)}, {},
                                 PoleIndex({mapPole(5, 0, 0.1)}), exact);
   EXPECT_TRUE(crowd[0].matched);

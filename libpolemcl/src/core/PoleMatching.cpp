@@ -46,7 +46,7 @@ std::vector<PoleMatch> matchPoles(const std::vector<PoleDetection>& poles_robot,
   for (std::size_t i = 0; i < poles_robot.size(); ++i) {
     matches[i].confidence = poles_robot[i].confidence;
     const Placed placed = place(poles_robot[i], robot, options.sigma);
-    if (!placed.centre.allFinite() || !placed.covariance.allFinite()) continue;
+    // NaN fails every comparison below, so what is not a number matches nothing.
     for (const auto& near : index.within(placed.centre.x(), placed.centre.y(), options.reach)) {
       const Eigen::Vector2d error = placed.centre - index.tree().point(near.index);
       const Eigen::Matrix2d sum =
