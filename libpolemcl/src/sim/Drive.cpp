@@ -1,5 +1,4 @@
 #include <polemcl/sim/Drive.h>
-#include <polemcl/sim/Random.h>
 
 #include <cmath>
 
@@ -71,8 +70,9 @@ Eigen::Isometry3d cloudFrame(const Eigen::Isometry3d& T_map_sensor,
 Drive makeDrive(const World& world, const SimulationOptions& options) {
   options.validate();
   Drive drive;
-  const Sways sways(Random(hash(options.world.seed, 0xd21feull, options.world.day)));
-  Random noise(hash(options.world.seed, 0x0d0ull, options.world.day));
+  const Sways sways(
+      Random(driveSeed(options, hash(options.world.seed, 0xd21feull, options.world.day))));
+  Random noise(driveSeed(options, hash(options.world.seed, 0x0d0ull, options.world.day)));
   // A metre is left free at both ends, where the heading needs neighbours.
   const int fits = static_cast<int>((world.street().length() - 2) / options.spacing) + 1;
   const int count = options.scans > 0 ? std::min(options.scans, fits) : fits;

@@ -1,10 +1,8 @@
 #include <polemcl/core/Types.h>
-#include <polemcl/sim/Drive.h>
+#include <polemcl/io/AtomicFile.h>
+#include <polemcl/io/TextFile.h>
 #include <polemcl/sim/LidarModel.h>
-#include <polemcl/sim/Random.h>
-#include <polemcl/sim/Scanner.h>
 #include <polemcl/sim/Simulation.h>
-#include <polemcl/sim/World.h>
 #include <tbb/parallel_for.h>
 
 #include <cstdio>
@@ -42,23 +40,6 @@ class Output {
   std::ofstream m_stream;
 };
 
-void writeScan(const SimulatedScan& scan, const Eigen::Vector3f& origin, std::size_t index,
-               const fs::path& directory) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06zu", index);
-  std::vector<float> points;
-  points.reserve(4 * scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i)
-    points.insert(points.end(), {scan.x[i] + origin.x(), scan.y[i] + origin.y(),
-                                 scan.z[i] + origin.z(), scan.intensity[i]});
-  Output cloud(directory / "velodyne" / (std::string(name) + ".bin"));
-  cloud.write(points.data(), points.size() * sizeof(float));
-  cloud.close();
-  Output labels(directory / "labels" / (std::string(name) + ".label"));
-  labels.write(scan.label.data(), scan.label.size() * sizeof(std::uint32_t));
-  labels.close();
-}
-
 void writeDrive(const Drive& drive, const SimulationOptions& options, const fs::path& directory) {
   Output times(directory / "times.txt"), poses(directory / "poses.txt"),
       odometry(directory / "odometry.txt");
@@ -82,15 +63,6 @@ void writeDrive(const Drive& drive, const SimulationOptions& options, const fs::
   odometry.close();
 }
 
-void writePoles(const std::vector<TruePole>& poles, const fs::path& directory) {
-  Output file(directory / "poles_gt.csv");
-  file.line("id,x,y,radius,top,kind\n");
-  for (const TruePole& pole : poles)
-    file.line("%u,%.4f,%.4f,%.4f,%.3f,%s\n", pole.id, pole.x, pole.y, pole.radius, pole.top,
-              name(pole.kind));
-  file.close();
-}
-
 /// \brief Mean motion of the sensor about a scan, in its own frame.
 Motion motionAt(const Drive& drive, std::size_t i) {
   const std::size_t from = i == 0 ? 0 : i - 1, to = std::min(i + 1, drive.time.size() - 1);
@@ -103,36 +75,83 @@ Motion motionAt(const Drive& drive, std::size_t i) {
 }
 }  // namespace
 
-SimulationSummary simulate(const SimulationOptions& options, const fs::path& directory,
-                           const std::function<void(std::size_t, std::size_t)>& progress) {
-  options.validate();
-  const World world = makeWorld(options.world);
-  const Drive drive = makeDrive(world, options);
-  const Scanner scanner(world, makeLidar(options.sensor, options.upsideDown));
+SimulatedDrive::SimulatedDrive(const SimulationOptions& options)
+    : m_options((options.validate(), options)),
+      m_world(makeWorld(options.world)),
+      m_drive(makeDrive(m_world, options)),
+      m_scanner(m_world, makeLidar(options.sensor, options.upsideDown)) {}
+
+double SimulatedDrive::length() const {
+  return m_options.spacing * static_cast<double>(scans() - 1);
+}
+
+SimulatedScan SimulatedDrive::scan(std::size_t i) const {
+  const WorldOptions& world = m_options.world;
+  const std::uint64_t seed = driveSeed(m_options, hash(world.seed, world.day, 0x5ca4ull, i));
+  const Motion motion = m_options.motionDistortion ? motionAt(m_drive, i) : Motion{};
+  SimulatedScan scan = m_scanner.scan(m_drive.T_map_sensor[i], seed, m_drive.time[i], motion);
+  const Eigen::Vector3f origin =
+      Eigen::Vector3d(m_options.originX, m_options.originY, m_options.originZ).cast<float>();
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    scan.x[k] += origin.x();
+    scan.y[k] += origin.y();
+    scan.z[k] += origin.z();
+  }
+  return scan;
+}
+
+ScanFolderWriter::ScanFolderWriter(const SimulatedDrive& drive, const fs::path& directory)
+    : m_directory(directory) {
   std::error_code failure;
   for (const char* folder : {"velodyne", "labels"})
     fs::create_directories(directory / folder, failure);
   if (failure) throw Error(directory.string() + ": " + failure.message());
-  writeDrive(drive, options, directory);
-  writePoles(world.poles(), directory);
+  writeDrive(drive.drive(), drive.options(), directory);
+  writeTruePoles(directory / "poles_gt.csv", drive.world().poles());
+}
 
-  const Eigen::Vector3f origin =
-      Eigen::Vector3d(options.originX, options.originY, options.originZ).cast<float>();
+void ScanFolderWriter::write(std::size_t i, const SimulatedScan& scan) const {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06zu", i);
+  std::vector<float> points;
+  points.reserve(4 * scan.size());
+  for (std::size_t k = 0; k < scan.size(); ++k)
+    points.insert(points.end(), {scan.x[k], scan.y[k], scan.z[k], scan.intensity[k]});
+  Output cloud(m_directory / "velodyne" / (std::string(name) + ".bin"));
+  cloud.write(points.data(), points.size() * sizeof(float));
+  cloud.close();
+  Output labels(m_directory / "labels" / (std::string(name) + ".label"));
+  labels.write(scan.label.data(), scan.label.size() * sizeof(std::uint32_t));
+  labels.close();
+}
+
+void writeTruePoles(const fs::path& file, const std::vector<TruePole>& poles) {
+  io::AtomicFile out(file);
+  out.stream() << "id,x,y,radius,top,kind\n";
+  for (const TruePole& pole : poles)
+    out.stream() << pole.id << ',' << io::fixed(pole.x, 4) << ',' << io::fixed(pole.y, 4) << ','
+                 << io::fixed(pole.radius, 4) << ',' << io::fixed(pole.top, 3) << ','
+                 << name(pole.kind) << '\n';
+  out.commit();
+}
+
+SimulationSummary simulate(const SimulationOptions& options, const fs::path& directory,
+                           const std::function<void(std::size_t, std::size_t)>& progress) {
+  const SimulatedDrive drive(options);
+  const ScanFolderWriter folder(drive, directory);
   SimulationSummary summary;
-  summary.scans = drive.time.size();
-  summary.poles = world.poles().size();
-  summary.length = options.spacing * static_cast<double>(drive.time.size() - 1);
-  std::vector<std::size_t> points(drive.time.size());
+  summary.scans = drive.scans();
+  summary.poles = drive.world().poles().size();
+  summary.length = drive.length();
+  std::vector<std::size_t> points(drive.scans());
   std::size_t done = 0;
   std::mutex mutex;
-  tbb::parallel_for(std::size_t{0}, drive.time.size(), [&](std::size_t i) {
-    const std::uint64_t seed = hash(options.world.seed, options.world.day, 0x5ca4ull, i);
-    const Motion motion = options.motionDistortion ? motionAt(drive, i) : Motion{};
-    const SimulatedScan scan = scanner.scan(drive.T_map_sensor[i], seed, drive.time[i], motion);
-    writeScan(scan, origin, i, directory);
+  tbb::parallel_for(std::size_t{0}, drive.scans(), [&](std::size_t i) {
+    const SimulatedScan scan = drive.scan(i);
+    folder.write(i, scan);
     points[i] = scan.size();
     const std::lock_guard lock(mutex);
-    if (progress) progress(++done, drive.time.size());
+    if (progress) progress(++done, drive.scans());
   });
   for (const std::size_t count : points) summary.points += count;
   return summary;

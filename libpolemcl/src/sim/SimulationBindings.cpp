@@ -37,6 +37,12 @@ void bind(Binder& b, SimulationOptions& o) {
   b.flag("reverse", o.reverse, "true: from the far end of the street, in the other lane");
   b.flag("motion_distortion", o.motionDistortion, "true: the sensor moves while it turns");
   b.integer("scans", o.scans, limits::scans, "", "at most so many; 0: to the end of the road");
+  b.integer("drive_seed", o.driveSeed, limits::seed, "",
+            "another one: another drive of the same day, with its own noise");
+  b.text("detections", o.detections,
+         "model of detections (JSON) that `--poles` samples; empty: it casts rays");
+  b.number("false_factor", o.falseFactor, limits::falseFactor, "",
+           "scales the false detections of that model");
   bind(b, o.world);
   b.section("simulation", "");
   b.check(o);

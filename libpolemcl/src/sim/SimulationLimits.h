@@ -15,6 +15,6 @@ inline const Range seed = Range::between(0, 9e15), day = Range::between(0, 36500
 inline const Range origin = Range::between(-10, 10), height = Range::between(0.3, 5),
                    spacing = Range::between(0.05, 50), speed = Range::between(0.1, 50),
                    laneOffset = Range::between(-10, 10), odometryNoise = Range::between(0, 1),
-                   scans = Range::between(0, 1e7);
+                   scans = Range::between(0, 1e7), falseFactor = Range::between(0, 10);
 
 }  // namespace polemcl::sim::limits

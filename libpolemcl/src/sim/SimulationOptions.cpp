@@ -44,6 +44,8 @@ void SimulationOptions::validate() const {
   require("[simulation] speed_m_s", speed, limits::speed);
   require("[simulation] odometry_noise", odometryNoise, limits::odometryNoise);
   require("[simulation] scans", scans, limits::scans);
+  require("[simulation] drive_seed", static_cast<double>(driveSeed), limits::seed);
+  require("[simulation] false_factor", falseFactor, limits::falseFactor);
   // Half of a vehicle has to fit between the sensor and the kerb.
   const double room = world.roadWidth / 2 - 1.2;
   require("[simulation] lane_offset_m", laneOffset, Range::between(-room, room));

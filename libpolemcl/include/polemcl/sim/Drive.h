@@ -2,6 +2,7 @@
 /// \file Drive.h
 /// \brief The way of the sensor through a world: true poses, times, odometry.
 
+#include <polemcl/sim/Random.h>
 #include <polemcl/sim/World.h>
 
 #include <Eigen/Geometry>
@@ -21,6 +22,12 @@ struct Drive {
   std::vector<Eigen::Isometry3d> T_map_sensor;  ///< follows slope and sway
   std::vector<OdometryStep> odometry;           ///< of the frame of the clouds
 };
+
+/// \brief Seed of what differs between two drives of one day (noise of scans and odometry, sway)
+/// from the seed it has in the drive 0.
+inline std::uint64_t driveSeed(const SimulationOptions& options, std::uint64_t seed) {
+  return options.driveSeed == 0 ? seed : hash(seed, 0xd21feedull, options.driveSeed);
+}
 
 /// \brief The frame of the written clouds in the map (see SimulationOptions::originX).
 Eigen::Isometry3d cloudFrame(const Eigen::Isometry3d& T_map_sensor,

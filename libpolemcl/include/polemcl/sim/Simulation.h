@@ -2,7 +2,10 @@
 /// \file Simulation.h
 /// \brief A drive through a simulated world, written as a folder of scans.
 
+#include <polemcl/sim/Drive.h>
+#include <polemcl/sim/Scanner.h>
 #include <polemcl/sim/SimulationOptions.h>
+#include <polemcl/sim/World.h>
 
 #include <filesystem>
 #include <functional>
@@ -14,6 +17,43 @@ struct SimulationSummary {
   std::size_t scans = 0, points = 0, poles = 0;
   double length = 0;  ///< driven, m
 };
+
+/// \brief A world, the way through it and the LiDAR that is driven: scans by their index, each cast
+/// when it is asked for. Immutable, safe to share between threads.
+class SimulatedDrive {
+ public:
+  /// \throws Error when an option is out of range or the track cannot be read.
+  explicit SimulatedDrive(const SimulationOptions& options);
+  const SimulationOptions& options() const { return m_options; }
+  const World& world() const { return m_world; }
+  const Drive& drive() const { return m_drive; }
+  std::size_t scans() const { return m_drive.time.size(); }
+  double length() const;  ///< driven, m
+  /// \brief Casts scan i. \return Points in the frame of the written clouds.
+  SimulatedScan scan(std::size_t i) const;
+
+ private:
+  SimulationOptions m_options;
+  World m_world;
+  Drive m_drive;
+  Scanner m_scanner;
+};
+
+/// \brief The folder layout: the drive and the true poles at once, scans one by one.
+class ScanFolderWriter {
+ public:
+  /// \param directory Must exist. \throws Error when a file cannot be written.
+  ScanFolderWriter(const SimulatedDrive& drive, const std::filesystem::path& directory);
+  /// \brief velodyne/ and labels/ of scan i; may be called from several threads.
+  void write(std::size_t i, const SimulatedScan& scan) const;
+
+ private:
+  std::filesystem::path m_directory;
+};
+
+/// \brief `id,x,y,radius,top,kind` of the true poles: map frame, m; x, y, radius of the axis 1.5 m
+/// above the ground. Written atomically. \throws Error when it cannot be written.
+void writeTruePoles(const std::filesystem::path& file, const std::vector<TruePole>& poles);
 
 /// \brief Writes velodyne/*.bin, labels/*.label, times.txt, poses.txt, odometry.txt, poles_gt.csv
 /// into `directory`, which must exist. Scans are cast in parallel; the bytes do not depend on it.

@@ -49,7 +49,13 @@ struct SimulationOptions {
   bool reverse = false;  ///< from the far end, in the other lane: poles are seen from behind
   bool motionDistortion = false;  ///< the sensor moves while it turns (`motion_distortion`)
   int scans = 0;                  ///< at most so many scans; 0: to the end of the road
-  void validate() const;          ///< \throws Error
+  /// Another one, other noise, sway and detections on the same day (`drive_seed`).
+  std::uint64_t driveSeed = 0;
+  /// Detection model (JSON) that stands in for rays where poles are asked for; "": rays are cast
+  /// (`detections`).
+  std::string detections;
+  double falseFactor = 1;  ///< scales the false detections of that model (`false_factor`)
+  void validate() const;   ///< \throws Error
 };
 
 }  // namespace polemcl::sim
