@@ -1,5 +1,6 @@
 #include "EvalCommands.h"
 
+#include <polemcl/apps/DetectionModelApp.h>
 #include <polemcl/apps/ExtractionEval.h>
 #include <polemcl/io/TextFile.h>
 
@@ -96,10 +97,31 @@ EvalCommand rotationCommand(CLI::App& program) {
           }};
 }
 
+std::string text(const sim::DetectionModel& m, const FitModelOptions& options) {
+  std::ostringstream out;
+  out << options.model.string() << ": " << m.sensor << ", " << m.fittedOn
+      << "\nlasting false objects per 100 m: " << io::fixed(100 * m.clutterAlways, 2)
+      << " on all days, " << io::fixed(100 * m.clutterToday, 2)
+      << " on one; passing false detections per scan: " << io::fixed(m.passing, 3) << '\n';
+  return out.str();
+}
+
+EvalCommand modelCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "model", "Fits a model of detections ([simulation] detections) to ray-cast drives");
+  const auto options = std::make_shared<FitModelOptions>();
+  cli.add_option("--drives", options->drives,
+                 "Rawlogs of pole-simulate --poles: two for each street, of two days")
+      ->required();
+  cli.add_option("--model", options->model, "Model to write (JSON)")->required();
+  return {&cli, [options] { return text(fitModel(*options), *options); }};
+}
+
 }  // namespace
 
 std::vector<EvalCommand> extractionCommands(CLI::App& program) {
-  return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program)};
+  return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program),
+          modelCommand(program)};
 }
 
 }  // namespace polemcl::apps

@@ -1,0 +1,33 @@
+#pragma once
+/// \file SightLines.h
+/// \brief Whether houses and walls stand between two places, seen from above.
+
+#include <polemcl/sim/World.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace polemcl::sim {
+
+/// \brief The houses and walls of a world as rectangles. Immutable, safe to share.
+class SightLines {
+ public:
+  explicit SightLines(const World& world);
+
+  /// \brief A rectangle: local = axes (p - centre), inside when |local| <= half.
+  struct Block {
+    Eigen::Vector2d centre, half;
+    Eigen::Matrix2d axes;
+    double reach = 0;  ///< of its corners from the centre, m
+  };
+  /// \brief Those that reach into a circle.
+  std::vector<const Block*> around(const Eigen::Vector2d& place, double radius) const;
+  /// \brief Whether one of them crosses the way between two places.
+  static bool blocked(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
+                      const Eigen::Vector2d& to);
+
+ private:
+  std::vector<Block> m_blocks;
+};
+
+}  // namespace polemcl::sim

@@ -1,0 +1,192 @@
+#include <polemcl/sim/DetectionSampler.h>
+#include <polemcl/sim/NormalDistribution.h>
+#include <polemcl/sim/Random.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl::sim {
+namespace {
+
+/// Number of events of a Poisson process (Knuth 1969), for means of a few.
+int poisson(double mean, Random& random) {
+  const double limit = std::exp(-mean);
+  int count = 0;
+  for (double product = random.uniform(); product > limit; product *= random.uniform()) ++count;
+  return count;
+}
+
+/// Times something happens, when its number is scaled: each whole time, and once more by chance.
+int copies(double factor, Random& random) {
+  const double whole = std::floor(factor);
+  return static_cast<int>(whole) + random.chance(factor - whole);
+}
+
+/// The street in pieces, each with its own stream, so that a longer street begins as a shorter one.
+void placeAlong(const World& world, const DetectionModel& model, double perMetre,
+                std::uint64_t stream, bool today, std::vector<ClutterObject>& objects) {
+  constexpr double kPiece = 20;  // m
+  for (double start = 0; start < world.street().length(); start += kPiece) {
+    const std::uint64_t seed = hash(stream, static_cast<std::uint64_t>(start));
+    Random random(seed);
+    const int count = poisson(perMetre * kPiece, random);
+    for (int i = 0; i < count; ++i) {
+      const double s = start + random.uniform(0, kPiece);
+      const double aside = valueAt(model.clutterLateral, random.normal());
+      const Pose2D place = world.street().at(s, random.chance(0.5) ? aside : -aside);
+      if (s > world.street().length() || !world.street().fresh(s)) continue;
+      objects.push_back({hash(seed, i), place.x, place.y, today});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ClutterObject> placeClutter(const DetectionModel& model, const World& world,
+                                        double factor) {
+  std::vector<ClutterObject> objects;
+  const WorldOptions& options = world.options();
+  for (int copy = 0; copy < factor; ++copy) {
+    const double part = std::min(1.0, factor - copy);
+    std::vector<ClutterObject> more;
+    placeAlong(world, model, model.clutterAlways, hash(options.seed, 0xc1aull, copy), false, more);
+    placeAlong(world, model, model.clutterToday, hash(options.seed, 0xc1bull, copy, options.day),
+               true, more);
+    for (const ClutterObject& object : more)
+      if (Random(hash(object.id, 0xc1cull)).chance(part)) objects.push_back(object);
+  }
+  return objects;
+}
+
+/// What one scan sees from where.
+struct DetectionSampler::View {
+  std::size_t scan;
+  Eigen::Vector2d sensor;  ///< m, map frame
+  double height;           ///< of the sensor, map frame, m
+  Eigen::Isometry3d T_cloud_map;
+  Eigen::Vector2d lidar_cloud;  ///< the optical centre in the cloud frame, m
+  std::vector<const SightLines::Block*> blocks;
+};
+
+DetectionSampler::DetectionSampler(DetectionModel model, const World& world,
+                                   const SimulationOptions& options)
+    : m_model(std::move(model)), m_options(options), m_sight(world) {
+  m_model.validate();
+  constexpr double kHeights = 0.3;
+  if (m_model.sensor != options.sensor)
+    throw Error("the model is of a " + m_model.sensor + ", and [sensor] model is " +
+                options.sensor + "; fit one for it (pole-eval model)");
+  if (std::abs(m_model.height - options.height) > kHeights)
+    throw Error("the model is of a LiDAR " + std::to_string(m_model.height) +
+                " m above ground, and [sensor] height_m is " + std::to_string(options.height) +
+                "; fit one for that height (pole-eval model)");
+  for (const TruePole& pole : world.poles())
+    m_targets.push_back(
+        targetOf(classOf(pole.kind), pole.x, pole.y, pole.radius, pole.id, pole.id >= 1000000));
+  m_clutter = placeClutter(m_model, world, options.falseFactor);
+  for (const ClutterObject& object : m_clutter)
+    m_targets.push_back(
+        targetOf(DetectionClass::clutter, object.x, object.y, 0, object.id, object.today));
+}
+
+DetectionSampler::Target DetectionSampler::targetOf(DetectionClass kind, double x, double y,
+                                                    double radius, std::uint64_t id,
+                                                    bool todayOnly) const {
+  const WorldOptions& world = m_options.world;
+  const std::uint64_t own = hash(world.seed, id, static_cast<int>(kind), 0xde7ull);
+  const std::uint64_t today = hash(own, 0x70da1ull, world.day);
+  return {kind, {x, y}, radius, todayOnly ? hash(today) : own, today};
+}
+
+PoleDetection DetectionSampler::report(const Target& target, const View& view,
+                                       const Eigen::Vector2d& place, std::uint64_t scanSeed) const {
+  const Eigen::Vector2d toPlace = place - view.lidar_cloud;
+  const double range = toPlace.norm();
+  const auto value = [&](Reported r) {
+    const std::uint64_t key = 1 + static_cast<std::uint64_t>(r);
+    const double z = persistentNoise(
+        m_model.noiseOf(r), {target.always + key * 16, target.today + key * 16, scanSeed + key},
+        view.sensor.x(), view.sensor.y());
+    return m_model.value(target.kind, r, range, z);
+  };
+  Eigen::Matrix2d ray;  // columns: along, across
+  ray.col(0) = toPlace / std::max(range, 1e-6);
+  ray.col(1) = Eigen::Vector2d(-ray(1, 0), ray(0, 0));
+  const Eigen::Vector2d sigma(value(Reported::sigmaAlong), value(Reported::sigmaAcross));
+  const Eigen::Vector2d error(value(Reported::errorAlong), value(Reported::errorAcross));
+  const Eigen::Vector2d centre = place + ray * sigma.cwiseProduct(error);
+  PoleDetection pole;
+  pole.x = centre.x();
+  pole.y = centre.y();
+  const Eigen::Matrix2d covariance = ray * sigma.cwiseAbs2().asDiagonal() * ray.transpose();
+  pole.covariance = 0.5 * (covariance + covariance.transpose());
+  pole.confidence = std::clamp(value(Reported::confidence), 0.0, 1.0);
+  pole.radius = std::max(0.01, target.radius + value(Reported::radius));
+  pole.bottom = value(Reported::bottom);
+  pole.top = std::max(pole.bottom, value(Reported::top));
+  pole.points = static_cast<std::uint32_t>(std::max(1.0, std::round(value(Reported::points))));
+  return pole;
+}
+
+void DetectionSampler::addTarget(const Target& target, const View& view,
+                                 std::vector<PoleDetection>& found) const {
+  const double range = (target.place - view.sensor).norm();
+  const bool isClutter = target.kind == DetectionClass::clutter;
+  const double threshold = m_model.detectionScore(target.kind, range);
+  if (threshold < -5) return;
+  const std::uint64_t scanSeed = driveSeed(m_options, hash(target.today, 0x5ca4ull, view.scan));
+  const double z =
+      persistentNoise(isClutter ? m_model.clutterVisibility : m_model.poleVisibility,
+                      {target.always, target.today, scanSeed}, view.sensor.x(), view.sensor.y());
+  const bool hidden = SightLines::blocked(view.blocks, view.sensor, target.place);
+  const double hiddenThreshold = normalQuantile(m_model.behindHouses);
+  if (z >= (hidden ? std::min(hiddenThreshold, threshold) : threshold)) return;
+  // Where a perfect extractor would see it: upright in the map, at the height of the LiDAR.
+  const Eigen::Vector3d place =
+      view.T_cloud_map * Eigen::Vector3d(target.place.x(), target.place.y(), view.height);
+  found.push_back(report(target, view, place.head<2>(), scanSeed));
+}
+
+void DetectionSampler::addPassing(const View& view, std::vector<PoleDetection>& found) const {
+  const WorldOptions& world = m_options.world;
+  const std::uint64_t seed =
+      driveSeed(m_options, hash(world.seed, 0x9a55ull, world.day, view.scan));
+  Random random(seed);
+  double passing = 0;
+  for (int k = poisson(m_model.passing, random); k > 0; --k)
+    passing += copies(m_options.falseFactor, random);
+  for (int k = 0; k < passing; ++k) {
+    const double range = valueAt(m_model.passingRange, random.normal());
+    const double azimuth = random.uniform(-M_PI, M_PI);
+    const std::uint64_t own = random.next();
+    const Target target{DetectionClass::passing, {0, 0}, 0, own, own};
+    const Eigen::Vector2d place =
+        view.lidar_cloud + range * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
+    found.push_back(report(target, view, place, own));
+  }
+}
+
+std::vector<PoleDetection> DetectionSampler::sample(std::size_t i,
+                                                    const Eigen::Isometry3d& T_map_sensor) const {
+  const Eigen::Vector3d sensor = T_map_sensor.translation();
+  View view{i,
+            sensor.head<2>(),
+            sensor.z(),
+            cloudFrame(T_map_sensor, m_options).inverse(),
+            Eigen::Vector2d(m_options.originX, m_options.originY),
+            {}};
+  view.blocks = m_sight.around(view.sensor, m_model.maxRange);
+  std::vector<PoleDetection> found;
+  const double limit = m_model.maxRange * m_model.maxRange;
+  for (const Target& target : m_targets)
+    if ((target.place - view.sensor).squaredNorm() < limit) addTarget(target, view, found);
+  addPassing(view, found);
+  const auto polar = [](const PoleDetection& pole) {
+    return std::make_pair(std::atan2(pole.y, pole.x), std::hypot(pole.x, pole.y));
+  };
+  std::sort(found.begin(), found.end(),
+            [&](const PoleDetection& a, const PoleDetection& b) { return polar(a) < polar(b); });
+  return found;
+}
+
+}  // namespace polemcl::sim

@@ -1,0 +1,50 @@
+#include <polemcl/sim/SightLines.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl::sim {
+
+SightLines::SightLines(const World& world) {
+  constexpr double kSmallest = 0.5;  // m; drain pipes, sills and the like hide nothing
+  for (const WorldObject& object : world.objects()) {
+    if (object.kind != Kind::house && object.kind != Kind::wall) continue;
+    for (const Solid& solid : object.solids) {
+      if (solid.shape != Shape::box || solid.size.head<2>().maxCoeff() < kSmallest) continue;
+      // Lower than that they do not hide what stands behind.
+      if (solid.size.z() < 1) continue;
+      m_blocks.push_back({solid.position.head<2>(), solid.size.head<2>(),
+                          solid.axes.topLeftCorner<2, 2>().transpose(),
+                          solid.size.head<2>().norm()});
+    }
+  }
+}
+
+std::vector<const SightLines::Block*> SightLines::around(const Eigen::Vector2d& place,
+                                                         double radius) const {
+  std::vector<const Block*> found;
+  for (const Block& block : m_blocks)
+    if ((block.centre - place).squaredNorm() < (radius + block.reach) * (radius + block.reach))
+      found.push_back(&block);
+  return found;
+}
+
+bool SightLines::blocked(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
+                         const Eigen::Vector2d& to) {
+  for (const Block* block : blocks) {
+    const Eigen::Vector2d start = block->axes * (from - block->centre),
+                          step = block->axes * (to - from);
+    double enter = 0, leave = 1;  // shares of the way, cut by the slabs of the rectangle
+    for (int i = 0; i < 2 && enter < leave; ++i) {
+      const double inverse = 1 / (std::abs(step(i)) > 1e-12 ? step(i) : 1e-12);
+      const double a = (-block->half(i) - start(i)) * inverse,
+                   b = (block->half(i) - start(i)) * inverse;
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (enter < leave) return true;
+  }
+  return false;
+}
+
+}  // namespace polemcl::sim

@@ -1,0 +1,167 @@
+#include <gtest/gtest.h>
+#include <polemcl/core/PolePairs.h>
+#include <polemcl/sim/DetectionSampler.h>
+
+#include <set>
+
+#include "DetectionModels.h"
+
+using namespace polemcl;
+using namespace polemcl::sim;
+using testing_sim::plainModel;
+
+namespace {
+class DetectionSamplerTest : public testing::Test {
+ protected:
+  DetectionSamplerTest() {
+    m_options.world.length = 400;
+    m_options.world.relief = 0;
+  }
+  /// Sampled scans, and where the poles within 40 m that no house hides are in each.
+  void sample(const DetectionModel& model) {
+    const World world = makeWorld(m_options.world);
+    const Drive drive = makeDrive(world, m_options);
+    const DetectionSampler sampler(model, world, m_options);
+    const SightLines sight(world);
+    for (std::size_t i = 0; i < drive.time.size(); ++i) {
+      const Eigen::Isometry3d& T = drive.T_map_sensor[i];
+      const Eigen::Vector2d sensor = T.translation().head<2>();
+      scans.push_back(sampler.sample(i, T));
+      truth.emplace_back();
+      const auto blocks = sight.around(sensor, 40);
+      for (const TruePole& pole : world.poles()) {
+        const Eigen::Vector3d place(pole.x, pole.y, T.translation().z());
+        if ((place.head<2>() - sensor).norm() < 40 &&
+            !SightLines::blocked(blocks, sensor, place.head<2>()))
+          truth.back().push_back((T.inverse() * place).head<2>());
+      }
+    }
+  }
+  static std::vector<Eigen::Vector2d> centres(const std::vector<PoleDetection>& poles) {
+    std::vector<Eigen::Vector2d> result;
+    for (const auto& pole : poles) result.emplace_back(pole.x, pole.y);
+    return result;
+  }
+  SimulationOptions m_options;
+  std::vector<std::vector<PoleDetection>> scans;
+  std::vector<std::vector<Eigen::Vector2d>> truth;
+};
+}  // namespace
+
+TEST_F(DetectionSamplerTest, findsPolesAsOftenAndAsFarOffAsTheModelSays) {
+  sample(plainModel());
+  double chances = 0, found = 0, along = 0, across = 0, sum = 0, detections = 0;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    chances += static_cast<double>(truth[i].size());
+    detections += static_cast<double>(scans[i].size());
+    const auto places = centres(scans[i]);
+    for (const PolePair& pair : pairClosest(truth[i], places, 0.3)) {
+      const Eigen::Vector2d ray = truth[i][pair.first].normalized(),
+                            error = places[pair.second] - truth[i][pair.first];
+      found += 1;
+      sum += error.dot(ray);
+      along += std::pow(error.dot(ray), 2);
+      across += error.squaredNorm() - std::pow(error.dot(ray), 2);
+    }
+  }
+  ASSERT_GT(chances, 5000);
+  EXPECT_EQ(found, detections) << "nothing is false, nothing is farther off than 6 sigma";
+  EXPECT_NEAR(found / chances, 0.6, 0.02);
+  EXPECT_NEAR(std::sqrt(along / found), 0.05, 0.0015);
+  EXPECT_NEAR(std::sqrt(across / found), 0.05, 0.0015);
+  EXPECT_NEAR(sum / found, 0, 0.003);
+}
+
+TEST_F(DetectionSamplerTest, reportsTheCovarianceAlongTheRay) {
+  DetectionModel model = plainModel();
+  for (auto& own : model.classes) own.reported[0][0].fill(0.2);
+  sample(model);
+  std::size_t seen = 0;
+  for (const auto& scan : scans)
+    for (const PoleDetection& pole : scan) {
+      const Eigen::Vector2d ray = Eigen::Vector2d(pole.x, pole.y).normalized();
+      EXPECT_NEAR(std::sqrt(ray.dot(pole.covariance * ray)), 0.2, 0.01);
+      EXPECT_NEAR(pole.covariance.determinant(), 0.04 * 0.0025, 1e-8);
+      EXPECT_EQ(pole.confidence, 0.7);
+      EXPECT_EQ(pole.points, 20u);
+      ++seen;
+    }
+  EXPECT_GT(seen, 1000u);
+}
+
+TEST_F(DetectionSamplerTest, whatLastsKeepsAPoleHiddenOrFoundForTheWholeDrive) {
+  DetectionModel model = plainModel();
+  model.poleVisibility.today[4] = 1;
+  sample(model);
+  std::size_t flips = 0, stays = 0;
+  for (std::size_t i = 1; i < scans.size(); ++i) {
+    const auto before = pairClosest(truth[i - 1], centres(scans[i - 1]), 0.3);
+    stays += before.size();
+    const auto now = pairClosest(truth[i], centres(scans[i]), 0.3);
+    flips += now.size() > before.size() ? now.size() - before.size() : before.size() - now.size();
+  }
+  EXPECT_LT(static_cast<double>(flips), 0.05 * static_cast<double>(stays));
+}
+
+TEST_F(DetectionSamplerTest, isBlindBehindHouses) {
+  DetectionModel model = plainModel();
+  for (auto& own : model.classes)
+    if (!own.detected.empty()) own.detected = {1, 1};
+  model.poleVisibility.always[4] = 1;
+  sample(model);
+  std::size_t visible = 0, found = 0;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    visible += truth[i].size();
+    found += scans[i].size();
+  }
+  EXPECT_EQ(found, visible);
+}
+
+TEST_F(DetectionSamplerTest, falseDetectionsComeAsOftenAsTheModelSaysTimesTheFactor) {
+  DetectionModel model = plainModel();
+  for (auto& own : model.classes)
+    if (!own.detected.empty()) own.detected = {0, 0};
+  model.passing = 0.5;
+  for (const double factor : {0.5, 1.0, 2.0}) {
+    m_options.falseFactor = factor;
+    scans.clear();
+    sample(model);
+    double count = 0;
+    for (const auto& scan : scans) {
+      for (const PoleDetection& pole : scan) EXPECT_NEAR(std::hypot(pole.x, pole.y), 15, 0.2);
+      count += static_cast<double>(scan.size());
+    }
+    EXPECT_NEAR(count / static_cast<double>(scans.size()), 0.5 * factor, 0.12 * std::sqrt(factor));
+  }
+}
+
+TEST_F(DetectionSamplerTest, lastingFalseObjectsStandOnAllDaysOrOnOne) {
+  DetectionModel model = plainModel();
+  model.clutterAlways = 0.05;
+  model.clutterToday = 0.03;
+  m_options.world.length = 4000;
+  const auto placesOn = [&](int day, double factor) {
+    m_options.world.day = day;
+    std::set<std::pair<double, double>> places;
+    for (const auto& object : placeClutter(model, makeWorld(m_options.world), factor))
+      places.emplace(object.x, object.y);
+    return places;
+  };
+  const auto first = placesOn(0, 1), second = placesOn(1, 1), twice = placesOn(1, 2);
+  EXPECT_NEAR(static_cast<double>(first.size()), 0.08 * 4000, 4 * std::sqrt(0.08 * 4000));
+  double common = 0;
+  for (const auto& place : first) common += static_cast<double>(second.count(place));
+  EXPECT_NEAR(common, 0.05 * 4000, 4 * std::sqrt(0.05 * 4000));
+  EXPECT_NEAR(static_cast<double>(twice.size()), 0.16 * 4000, 4 * std::sqrt(0.16 * 4000));
+  for (const auto& place : second) EXPECT_EQ(twice.count(place), 1u);
+}
+
+TEST_F(DetectionSamplerTest, refusesAnotherLidarOrHeight) {
+  const World world = makeWorld(m_options.world);
+  m_options.sensor = "vlp16";
+  EXPECT_THROW(DetectionSampler(plainModel(), world, m_options), Error);
+  m_options.sensor = "hdl32e";
+  EXPECT_NO_THROW(DetectionSampler(plainModel(), world, m_options));
+  m_options.height = 1.8;
+  EXPECT_THROW(DetectionSampler(plainModel(), world, m_options), Error);
+}
