@@ -176,6 +176,28 @@ TEST(PoleLikelihood, batchGivesTheSameNumbersAsTheSingleCall) {
   }
 }
 
+TEST(PoleLikelihood, severalSigmasAtOnceGiveWhatEachGivesAlone) {
+  const Scene scene = randomScene(11);
+  const PoleIndex index(scene.map);
+  const std::vector<double> widenings{1, 2, 0.5, 8};
+  for (LikelihoodModel model : s_models) {
+    for (bool weighted : {false, true}) {
+      const LikelihoodOptions options = optionsOf(model, weighted);
+      std::vector<std::vector<double>> batch;
+      widenedLogLikelihoods(scene.poles, scene.poses, index, options, widenings, batch);
+      ASSERT_EQ(batch.size(), widenings.size());
+      for (std::size_t k = 0; k < widenings.size(); ++k) {
+        LikelihoodOptions alone = options;
+        alone.sigma *= widenings[k];
+        for (std::size_t i = 0; i < scene.poses.size(); ++i)
+          EXPECT_EQ(batch[k][i], logLikelihood(scene.poles, scene.poses[i], index, alone));
+      }
+    }
+  }
+  std::vector<std::vector<double>> out;
+  EXPECT_THROW(widenedLogLikelihoods({}, {}, index, {}, std::vector<double>(9, 1.0), out), Error);
+}
+
 TEST(PoleLikelihood, noDetectionsSayNothing) {
   const PoleIndex index({mapPole(0, 0)});
   for (LikelihoodModel model : s_models)

@@ -226,7 +226,7 @@ TEST(PoleLocalizer, RefusesBadHypothesesAndStaysAsItWas) {
   PoseHypothesis good;
   good.pose.covariance = Eigen::Matrix3d::Identity();
   std::vector<PoseHypothesis> bad(6, good);
-  bad[0].weight = -1;
+  bad[0].weight = -0.5;
   bad[1].weight = NAN;
   bad[2].pose.mean.yaw = INFINITY;
   bad[3].pose.covariance(0, 1) = bad[3].pose.covariance(1, 0) = 2;  // indefinite

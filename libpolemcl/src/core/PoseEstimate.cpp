@@ -1,3 +1,4 @@
+#include <polemcl/core/BatchMath.h>
 #include <polemcl/core/PoseEstimate.h>
 
 #include <algorithm>
@@ -21,9 +22,9 @@ std::vector<double> weightsOf(const std::vector<double>& logWeights) {
   }
   if (greatest == -INFINITY)
     throw Error("all particles have a weight of zero; at least one must count");
-  std::vector<double> weights;
-  weights.reserve(logWeights.size());
-  for (const double logWeight : logWeights) weights.push_back(std::exp(logWeight - greatest));
+  std::vector<double> weights = logWeights;
+  for (double& weight : weights) weight -= greatest;
+  exponentials(weights.data(), weights.size(), weights.data());
   return weights;
 }
 
@@ -39,13 +40,17 @@ Pose2D meanOf(const std::vector<Pose2D>& particles, const std::vector<double>& w
   // Summed up relative to one particle: no digits are lost far from the map's origin.
   const Pose2D origin = particles[chosen.front()];
   double sum = 0, x = 0, y = 0, sine = 0, cosine = 0;
-  std::size_t heaviest = chosen.front();
+  std::size_t heaviest = chosen.front(), next = 0;
+  std::vector<double> yaws, sines(chosen.size()), cosines(chosen.size());
+  yaws.reserve(chosen.size());
+  for (const std::size_t i : chosen) yaws.push_back(particles[i].yaw);
+  sinesAndCosines(yaws.data(), yaws.size(), sines.data(), cosines.data());
   for (const std::size_t i : chosen) {
     sum += weights[i];
     x += weights[i] * (particles[i].x - origin.x);
     y += weights[i] * (particles[i].y - origin.y);
-    sine += weights[i] * std::sin(particles[i].yaw);
-    cosine += weights[i] * std::cos(particles[i].yaw);
+    sine += weights[i] * sines[next];
+    cosine += weights[i] * cosines[next++];
     if (weights[i] > weights[heaviest]) heaviest = i;
   }
   const bool cancelled = std::hypot(sine, cosine) <= 1e-12 * sum;

@@ -5,6 +5,7 @@
 namespace polemcl {
 
 double wrapAngle(double angle) {
+  if (angle > -M_PI && angle <= M_PI) return angle;
   const double wrapped = std::remainder(angle, 2 * M_PI);
   return wrapped <= -M_PI ? wrapped + 2 * M_PI : wrapped;
 }

@@ -1,13 +1,15 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
+#include <polemcl/core/BatchMath.h>
 #include <polemcl/core/PoleLikelihood.h>
 #include <polemcl/mrpt/PoleLocalizer.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "ParticleDraws.h"
 
 namespace polemcl {
 
@@ -17,20 +19,7 @@ using mrpt::random::getRandomGenerator;
 
 namespace {
 
-/// Lends a generator to MRPT's code in this thread. Swapping the whole object matters: seeding
-/// alone leaves the spare deviate of its normal distribution in place.
-class GeneratorLoan {
- public:
-  explicit GeneratorLoan(CRandomGenerator& generator) : m_generator(generator) {
-    std::swap(getRandomGenerator(), m_generator);
-  }
-  ~GeneratorLoan() { std::swap(getRandomGenerator(), m_generator); }
-  GeneratorLoan(const GeneratorLoan&) = delete;
-  GeneratorLoan& operator=(const GeneratorLoan&) = delete;
-
- private:
-  CRandomGenerator& m_generator;
-};
+constexpr int s_mostParticles = 1000000;
 
 CParticleFilter::TParticleFilterOptions toMrpt(const FilterOptions& options) {
   CParticleFilter::TParticleFilterOptions result;
@@ -61,53 +50,13 @@ std::vector<size_t> thinned(const std::vector<size_t>& indices, size_t count) {
   return result;
 }
 
-[[noreturn]] void refuse(const PoseHypothesis& hypothesis, const std::string& what) {
-  throw Error("the start hypothesis at x " + std::to_string(hypothesis.pose.mean.x) + " m, y " +
-              std::to_string(hypothesis.pose.mean.y) + " m has " + what);
-}
-
-/// Shares of the weight up to and with each hypothesis; the last is exactly 1.
-std::vector<double> cumulatedShares(const std::vector<PoseHypothesis>& hypotheses) {
-  if (hypotheses.empty()) throw Error("no hypothesis to start from; there must be at least one");
-  std::vector<double> result;
-  double sum = 0;
-  for (const PoseHypothesis& hypothesis : hypotheses) {
-    if (!(hypothesis.weight >= 0) || !std::isfinite(hypothesis.weight))
-      refuse(hypothesis, "the weight " + std::to_string(hypothesis.weight) +
-                             "; it must be a finite number, 0 or more");
-    result.push_back(sum += hypothesis.weight);
-  }
-  if (!(sum > 0) || !std::isfinite(sum))
-    throw Error("the weights of the start hypotheses sum up to " + std::to_string(sum) +
-                "; the sum must be finite and above 0");
-  for (double& share : result) share /= sum;
-  return result;
-}
-
-/// A matrix R with R·Rᵀ the covariance.
-Eigen::Matrix3d rootOf(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-}
-
-Eigen::Matrix3d checkedRootOf(const PoseHypothesis& hypothesis) {
-  const Pose2D& mean = hypothesis.pose.mean;
-  const Eigen::Matrix3d& covariance = hypothesis.pose.covariance;
-  if (!std::isfinite(mean.x) || !std::isfinite(mean.y) || !std::isfinite(mean.yaw))
-    refuse(hypothesis, "a pose that is not finite");
-  if (!covariance.allFinite()) refuse(hypothesis, "a covariance that is not finite");
-  const double tolerance = 1e-9 * covariance.cwiseAbs().maxCoeff();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-  if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > tolerance ||
-      solver.eigenvalues()[0] < -tolerance)
-    refuse(hypothesis, "a covariance that is not symmetric positive semidefinite");
-  return rootOf(covariance);
-}
-
-Eigen::Vector3d drawNormals() {
-  Eigen::Vector3d normals;
-  for (int i = 0; i < 3; ++i) normals[i] = getRandomGenerator().drawGaussian1D_normalized();
-  return normals;
+/// The Gaussian motion of an action; null if it has another, or a distribution of another kind.
+std::shared_ptr<const mrpt::poses::CPosePDFGaussian> gaussianMotion(
+    const mrpt::obs::CActionCollection& action) {
+  const auto movement = action.getBestMovementEstimation();
+  if (!movement || !movement->poseChange) return nullptr;
+  return std::dynamic_pointer_cast<const mrpt::poses::CPosePDFGaussian>(
+      movement->poseChange.get_ptr());
 }
 
 }  // namespace
@@ -139,22 +88,19 @@ void PoleLocalizer::start(const StartOptions& start) {
 }
 
 void PoleLocalizer::start(const std::vector<PoseHypothesis>& hypotheses, int particles) {
-  const std::vector<double> shares = cumulatedShares(hypotheses);
-  std::vector<Eigen::Matrix3d> roots;
-  for (const PoseHypothesis& hypothesis : hypotheses) roots.push_back(checkedRootOf(hypothesis));
-  if (particles < 1 || particles > 1000000)
-    throw Error("the filter cannot start with " + std::to_string(particles) +
-                " particles; 1 to 1000000 are allowed");
+  particlesPerHypothesis(hypotheses, 1);  // refuses bad ones before anything changes
+  if (particles < 1 || particles > s_mostParticles)
+    throw Error("the filter cannot start with " + std::to_string(particles) + " particles; 1 to " +
+                std::to_string(s_mostParticles) + " are allowed");
   begin(particles);
   const GeneratorLoan loan(m_generator);
-  const double count = static_cast<double>(m_particles.size());
-  std::size_t next = 0;
+  const auto counts = particlesPerHypothesis(hypotheses, m_particles.size());
+  auto next = m_particles.begin();
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const Pose2D& mean = hypotheses[i].pose.mean;
-    for (const double end = std::floor(shares[i] * count + 0.5); next < end; ++next) {
-      const Eigen::Vector3d move = roots[i] * drawNormals();
-      m_particles[next].d = {mean.x + move.x(), mean.y + move.y(), wrapAngle(mean.yaw + move.z())};
-    }
+    PoseNoise noise(hypotheses[i].pose.covariance);
+    for (const Eigen::Vector3d& move : noise.draw(counts[i]))
+      (next++)->d = {mean.x + move.x(), mean.y + move.y(), wrapAngle(mean.yaw + move.z())};
   }
 }
 
@@ -197,60 +143,108 @@ PoseWithCovariance PoleLocalizer::step(const PoleFrame& frame) {
 void PoleLocalizer::prediction_and_update_pfStandardProposal(
     const mrpt::obs::CActionCollection* action, const mrpt::obs::CSensoryFrame* observation,
     const CParticleFilter::TParticleFilterOptions& mrptOptions) {
-  CMonteCarloLocalization2D::prediction_and_update_pfStandardProposal(action, nullptr, mrptOptions);
+  if (action) predict(*action, mrptOptions);
   m_report = {};
   if (observation)
     for (const auto& part : *observation)
       if (const auto* poles = dynamic_cast<const CObservationPoles*>(part.get()))
         update(poles->polesInRobotFrame(), mrptOptions);
   // Now, since executeOn() resamples next, which erases the weights.
-  m_report.effectiveShare = effectiveShare(logWeights());
+  const std::vector<double> weights = logWeights();
+  m_report.effectiveShare = effectiveShare(weights);
   m_report.particles = m_particles.size();
   m_report.resampled = false;
   m_estimate = m_options.estimate == PoseEstimator::bestShare
-                   ? bestShareMean(particles(), logWeights(), m_options.bestShare)
-                   : weightedMean(particles(), logWeights());
+                   ? bestShareMean(particles(), weights, m_options.bestShare)
+                   : weightedMean(particles(), weights);
+}
+
+void PoleLocalizer::predict(const mrpt::obs::CActionCollection& action,
+                            const CParticleFilter::TParticleFilterOptions& mrptOptions) {
+  const auto motion = gaussianMotion(action);
+  if (!motion)  // MRPT knows many more kinds
+    return CMonteCarloLocalization2D::prediction_and_update_pfStandardProposal(&action, nullptr,
+                                                                               mrptOptions);
+  std::vector<double> yaw;
+  yaw.reserve(m_particles.size());
+  for (const auto& particle : m_particles) yaw.push_back(particle.d.phi);
+  std::vector<double> sine(yaw.size()), cosine(yaw.size());
+  sinesAndCosines(yaw.data(), yaw.size(), sine.data(), cosine.data());
+  PoseNoise noise(Eigen::Matrix3d(motion->cov.asEigen()));
+  const auto& moves = noise.draw(yaw.size());
+  std::size_t i = 0;
+  for (auto& particle : m_particles) {
+    const double x = motion->mean.x() + moves[i].x(), y = motion->mean.y() + moves[i].y();
+    particle.d.x += cosine[i] * x - sine[i] * y;
+    particle.d.y += sine[i] * x + cosine[i] * y;
+    particle.d.phi = wrapAngle(yaw[i] + (motion->mean.phi() + moves[i].z()));
+    ++i;
+  }
 }
 
 void PoleLocalizer::update(const std::vector<PoleDetection>& poles_robot,
                            const CParticleFilter::TParticleFilterOptions& mrptOptions) {
   m_report.poles += poles_robot.size();
-  const auto likelihoods = [&](double widening) {
-    LikelihoodOptions widened = m_map->likelihoodOptions;
-    widened.sigma *= widening;
-    std::vector<double> result;
-    logLikelihoods(poles_robot, particles(), m_map->index(), widened, result);
-    return result;
+  std::vector<std::vector<double>> values;  // by widening
+  const auto evaluate = [&](const std::vector<double>& widenings) {
+    widenedLogLikelihoods(poles_robot, particles(), m_map->index(), m_map->likelihoodOptions,
+                          widenings, values);
   };
+  const auto weigh = [&](std::vector<double> ratios, const std::vector<double>& before) {
+    for (std::size_t i = 0; i < before.size(); ++i) ratios[i] -= before[i];
+    return ratios;
+  };
+  evaluate({1});
+  if (leavesEnough(values[0])) return addToLogWeights(values[0]);
   // From the prior to the posterior over posteriors of wider likelihoods. The weights of a stage
   // are the ratio of its likelihood to the one the particles have been weighed by already.
-  std::vector<double> before(m_particles.size(), 0.0);
-  for (double last = 2 * maxWidening;;) {
-    double widening = 1;
-    std::vector<double> values = likelihoods(widening);
-    while (2 * widening < last && !leavesEnough(values, before))
-      values = likelihoods(widening *= 2);
-    for (std::size_t i = 0; i < values.size(); ++i) m_particles[i].log_w += values[i] - before[i];
-    if (widening == 1) return;
+  std::vector<double> widenings;
+  for (double widening = 1; widening <= maxWidening; widening *= 2) widenings.push_back(widening);
+  bool first = true;
+  while (true) {
+    evaluate(widenings);
+    const std::vector<double> before =
+        first ? std::vector<double>(m_particles.size(), 0.0) : values.back();
+    const std::size_t narrowest = 0, widest = widenings.size() - (first ? 1 : 2);
+    std::size_t k = narrowest;
+    while (k < widest && !leavesEnough(weigh(values[k], before))) ++k;
+    addToLogWeights(weigh(values[k], before));
+    if (k == narrowest) return;
     performResampling(mrptOptions);
     ++m_report.temperingStages;
-    before = likelihoods(widening);
-    last = widening;
+    widenings.resize(k + 1);
+    first = false;
   }
 }
 
-bool PoleLocalizer::leavesEnough(const std::vector<double>& logLikelihoods,
-                                 const std::vector<double>& before) const {
+void PoleLocalizer::addToLogWeights(const std::vector<double>& values) {
+  std::size_t i = 0;
+  for (auto& particle : m_particles) particle.log_w += values[i++];
+}
+
+bool PoleLocalizer::leavesEnough(const std::vector<double>& logLikelihoods) const {
   std::vector<double> weights = logWeights();
-  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += logLikelihoods[i] - before[i];
+  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += logLikelihoods[i];
   // Measured by what the filter keeps: after the start there may be many more.
   return effectiveShare(weights) * weights.size() >= m_options.tempering * m_options.particles;
 }
 
+double PoleLocalizer::ESS() const {
+  return effectiveShare(logWeights());
+}
+
 void PoleLocalizer::performSubstitution(const std::vector<size_t>& indices) {
-  const Eigen::Matrix3d spread = weightedMean(particles(), logWeights()).covariance;
-  CMonteCarloLocalization2D::performSubstitution(thinned(indices, m_options.particles));
-  for (auto& particle : m_particles) particle.log_w = 0;
+  std::vector<size_t> chosen = thinned(indices, m_options.particles);
+  std::sort(chosen.begin(), chosen.end());
+  const std::vector<Pose2D> before = particles();
+  const Eigen::Matrix3d spread = weightedMean(before, logWeights()).covariance;
+  m_particles.resize(chosen.size());
+  auto next = chosen.begin();
+  for (auto& particle : m_particles) {
+    const Pose2D& pose = before[*next++];
+    particle.d = {pose.x, pose.y, pose.yaw};
+    particle.log_w = 0;
+  }
   if (m_options.regularization > 0) jitter(spread);
   m_report.resampled = true;
 }
@@ -261,12 +255,13 @@ void PoleLocalizer::jitter(const Eigen::Matrix3d& spread) {
   double scale = m_options.regularization;
   if (scale * metres > maxJitterMetres) scale = maxJitterMetres / metres;
   if (scale * radians > maxJitterRadians) scale = maxJitterRadians / radians;
-  const Eigen::Matrix3d root = scale * rootOf(spread);
+  PoseNoise noise(scale * scale * spread);
+  auto move = noise.draw(m_particles.size()).begin();
   for (auto& particle : m_particles) {
-    const Eigen::Vector3d move = root * drawNormals();
-    particle.d.x += move.x();
-    particle.d.y += move.y();
-    particle.d.phi = wrapAngle(particle.d.phi + move.z());
+    particle.d.x += move->x();
+    particle.d.y += move->y();
+    particle.d.phi = wrapAngle(particle.d.phi + move->z());
+    ++move;
   }
 }
 

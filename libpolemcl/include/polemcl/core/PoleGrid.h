@@ -22,32 +22,38 @@ class PoleGrid {
   PoleGrid(const std::vector<Eigen::Vector2d>& points, double radius);
 
   double radius() const { return m_radius; }
-  /// \brief Nearest point with squared distance < squaredRadius. Of equals, the lower index.
-  /// A query that is not a number finds nothing.
+  /// \brief A point of the grid.
+  struct Place {
+    double x, y;          ///< m
+    std::uint32_t index;  ///< into the points given to the constructor
+  };
+  /// \brief Nearest point with squared distance < squaredRadius; null if there is none. Of equals,
+  /// the lower index. A query that is not a number finds nothing.
   /// \param squaredRadius At most radius()², m²; beyond it the answer would not be complete.
-  PointHit nearest(double x, double y, double squaredRadius) const noexcept {
-    PointHit best;
-    if (!(x >= m_minX && x <= m_maxX && y >= m_minY && y <= m_maxY)) return best;
+  const Place* find(double x, double y, double squaredRadius) const noexcept {
+    if (!(x >= m_minX && x <= m_maxX && y >= m_minY && y <= m_maxY)) return nullptr;
     const auto column = static_cast<std::int64_t>((x - m_minX) * m_inverseCell);
     const auto row = static_cast<std::int64_t>((y - m_minY) * m_inverseCell);
     const std::uint64_t key = keyOf(column, row);
-    for (std::uint64_t slot = slotOf(key);; slot = (slot + 1) & m_mask) {
-      const Cell& cell = m_cells[slot];
-      if (cell.key != key) {
-        if (cell.key == s_noKey) return best;
-        continue;
-      }
-      double limit = squaredRadius;
-      for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-        const double dx = x - m_candidates[i].x, dy = y - m_candidates[i].y;
-        const double squared = dx * dx + dy * dy;
-        if (squared < limit) {
-          limit = squared;
-          best = {m_candidates[i].index, squared};
-        }
-      }
-      return best;
+    std::uint64_t slot = slotOf(key);
+    while (m_cells[slot].key != key) {
+      if (m_cells[slot].key == s_noKey) return nullptr;
+      slot = (slot + 1) & m_mask;
     }
+    const Place* best = nullptr;
+    for (std::uint32_t i = m_cells[slot].begin; i < m_cells[slot].end; ++i) {
+      const double squared = squaredDistance(m_candidates[i], x, y);
+      if (squared < squaredRadius) {
+        squaredRadius = squared;
+        best = &m_candidates[i];
+      }
+    }
+    return best;
+  }
+  /// \brief The same as index and squared distance.
+  PointHit nearest(double x, double y, double squaredRadius) const noexcept {
+    const Place* place = find(x, y, squaredRadius);
+    return place ? PointHit{place->index, squaredDistance(*place, x, y)} : PointHit{};
   }
 
  private:
@@ -55,13 +61,13 @@ class PoleGrid {
     std::uint64_t key = s_noKey;
     std::uint32_t begin = 0, end = 0;  ///< into m_candidates
   };
-  struct Candidate {
-    double x, y;
-    std::uint32_t index;
-  };
   struct Entry;
   static constexpr std::uint64_t s_noKey = ~std::uint64_t{0};
 
+  static double squaredDistance(const Place& place, double x, double y) noexcept {
+    const double dx = x - place.x, dy = y - place.y;
+    return dx * dx + dy * dy;
+  }
   static std::uint64_t keyOf(std::int64_t column, std::int64_t row) {
     return static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint64_t>(column);
   }
@@ -81,7 +87,7 @@ class PoleGrid {
   std::uint64_t m_mask = 0;
   int m_shift = 63;
   std::vector<Cell> m_cells;
-  std::vector<Candidate> m_candidates;
+  std::vector<Place> m_candidates;
 };
 
 }  // namespace polemcl

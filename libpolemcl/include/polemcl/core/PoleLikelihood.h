@@ -48,4 +48,14 @@ void logLikelihoods(const std::vector<PoleDetection>& poles_robot, const std::ve
                     const PoleIndex& index, const LikelihoodOptions& options,
                     std::vector<double>& out);
 
+/// \brief How many sigmas widenedLogLikelihoods() takes at once.
+constexpr std::size_t maxWidenings = 8;
+/// \brief The same for several sigmas at once, which share the search for the nearest pole:
+/// out[k][i] belongs to poses[i] with widenings[k] times `options.sigma`. \throws Error as
+/// logLikelihood(), and on more than maxWidenings.
+void widenedLogLikelihoods(const std::vector<PoleDetection>& poles_robot,
+                           const std::vector<Pose2D>& poses, const PoleIndex& index,
+                           const LikelihoodOptions& options, const std::vector<double>& widenings,
+                           std::vector<std::vector<double>>& out);
+
 }  // namespace polemcl

@@ -83,21 +83,27 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
 
   /// \name MRPT's interface
   /// @{
-  /// \brief MRPT's prediction, then the batched update with all CObservationPoles of the frame.
+  /// \brief Prediction, then the batched update with all CObservationPoles of the frame. Gaussian
+  /// motions are predicted in a batch, with MRPT's maths and generator; others by MRPT.
   void prediction_and_update_pfStandardProposal(
       const mrpt::obs::CActionCollection* action, const mrpt::obs::CSensoryFrame* observation,
       const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions) override;
-  /// \brief MRPT's, then equal weights, then regularization.
+  /// \brief What MRPT's does, then equal weights, then regularization.
   void performSubstitution(const std::vector<size_t>& indices) override;
+  /// \brief The effective share of the particles. (MRPT's casts dynamically for each particle.)
+  double ESS() const override;
+  double getW(size_t i) const override { return m_particles[i].log_w; }
   /// @}
 
  private:
   void begin(int particles);
+  void predict(const mrpt::obs::CActionCollection& action,
+               const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
   void update(const std::vector<PoleDetection>& poles_robot,
               const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
-  /// \brief Whether the particles stay many enough when these likelihoods replace those before.
-  bool leavesEnough(const std::vector<double>& logLikelihoods,
-                    const std::vector<double>& before) const;
+  void addToLogWeights(const std::vector<double>& values);
+  /// \brief Whether the particles stay many enough with these added to their weights.
+  bool leavesEnough(const std::vector<double>& logLikelihoods) const;
   void jitter(const Eigen::Matrix3d& spread);
 
   std::shared_ptr<const CPoleMap> m_map;
