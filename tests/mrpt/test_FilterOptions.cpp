@@ -129,6 +129,24 @@ TEST(FilterOptions, ValidateRefusesEachFieldOutOfRange) {
   }
 }
 
+TEST(FilterOptions, ReadsAdaptiveSampling) {
+  const All all = load(
+      "[filter]\nadaptive = true\nkld_epsilon = 0.02\nkld_delta = 0.05\nkld_bin_m = 0.25\n"
+      "kld_bin_deg = 2\nmin_particles = 50\nmax_particles = 3000\n");
+  EXPECT_TRUE(all.filter.adaptive);
+  EXPECT_EQ(all.filter.kld.epsilon, 0.02);
+  EXPECT_EQ(all.filter.kld.delta, 0.05);
+  EXPECT_EQ(all.filter.kld.bin, 0.25);
+  EXPECT_NEAR(all.filter.kld.binYaw, 2 * M_PI / 180, 1e-15);
+  EXPECT_EQ(all.filter.kld.minParticles, 50);
+  EXPECT_EQ(all.filter.kld.maxParticles, 3000);
+  const auto never =
+      refusal([] { load("[filter]\nadaptive = true\nresample_below = 0\ntempering = 0\n"); });
+  EXPECT_NE(never.find("adaptive needs a resample_below"), std::string::npos) << never;
+  const auto crossed = refusal([] { load("[filter]\nmin_particles = 20000\n"); });
+  EXPECT_NE(crossed.find("the least not above the most"), std::string::npos) << crossed;
+}
+
 TEST(FilterOptions, ValidateRefusesBadStartsAndRuns) {
   EXPECT_EQ(refusal([] { StartOptions().validate(); }), "");
   EXPECT_NE(refusalOf(&StartOptions::radius, -1.0), "");

@@ -318,6 +318,44 @@ TEST(PoleLocalizer, TellsWhatAStepDid) {
   EXPECT_EQ(localizer.report().resampled, localizer.report().effectiveShare < 0.5);
 }
 
+TEST(PoleLocalizer, AdaptsTheNumberOfParticles) {
+  for (const auto resampling : {Resampling::systematic, Resampling::multinomial}) {
+    const PoleStreet street = makeStreet({});
+    FilterOptions options;
+    options.adaptive = true;
+    options.resampling = resampling;
+    PoleLocalizer localizer(street.map, options, 4);
+    localizer.start(at(street.truth[0]));
+    std::vector<std::size_t> counts;
+    double error = 0;
+    for (std::size_t i = 0; i < street.frames.size(); ++i) {
+      const Pose2D estimate = localizer.step(street.frames[i]).mean;
+      counts.push_back(localizer.particles().size());
+      EXPECT_GE(counts.back(), 200u);
+      EXPECT_LE(counts.back(), 10000u);
+      if (i >= 20)
+        error += std::hypot(estimate.x - street.truth[i].x, estimate.y - street.truth[i].y) /
+                 (street.frames.size() - 20);
+    }
+    EXPECT_GT(counts[0], 1000u);  // the start disc
+    EXPECT_LT(*std::max_element(counts.begin() + 50, counts.end()), 700u);
+    EXPECT_LT(error, 0.03);
+    // Several hypotheses need more than one.
+    std::vector<PoseHypothesis> hypotheses(4);
+    for (int i = 0; i < 4; ++i) {
+      hypotheses[i].pose.mean = compose(street.truth[50], {5.0 * i, 0, 0});
+      hypotheses[i].pose.covariance = Eigen::Vector3d(0.04, 0.04, 1e-4).asDiagonal();
+    }
+    const auto resampledFrom = [&](const std::vector<PoseHypothesis>& from) {
+      localizer.start(from, 4000);
+      localizer.performResampling(mrpt::bayes::CParticleFilter::TParticleFilterOptions());
+      return localizer.particles().size();
+    };
+    const std::size_t one = resampledFrom({hypotheses[0]}), four = resampledFrom(hypotheses);
+    EXPECT_GT(four, 2 * one);
+  }
+}
+
 TEST(PoleLocalizer, RefusesAMapWithoutPoles) {
   EXPECT_THROW(PoleLocalizer(nullptr, {}, 1), Error);
   EXPECT_THROW(PoleLocalizer(std::make_shared<CPoleMap>(), {}, 1), Error);

@@ -30,6 +30,9 @@ void FilterOptions::validate() const {
   require(tempering == 0 || regularization > 0,
           "tempering needs a regularization above 0: copies that stay where they are gain nothing");
   require(extraSigma >= 0 && extraSigma <= 10, "extra_sigma_m must be 0 to 10 m");
+  kld.validate();
+  require(!adaptive || resampleBelow > 0,
+          "adaptive needs a resample_below above 0: the number changes when resampling");
   require(extraSigmaYaw >= 0 && extraSigmaYaw <= 1, "extra_sigma_deg must be 0 to 57 degrees");
 }
 
@@ -51,6 +54,20 @@ void RunOptions::validate() const {
 void bind(Binder& binder, FilterOptions& options) {
   binder.section("filter", "The particle filter that localizes");
   binder.integer("particles", options.particles, Range::between(1, 1000000), "", "Particles");
+  binder.flag("adaptive", options.adaptive,
+              "Keep as many particles as the posterior needs (KLD sampling), not always as many");
+  binder.number("kld_epsilon", options.kld.epsilon, {0, 1, true, false}, "nat",
+                "Adaptive: greatest distance to the posterior in bins (Kullback, Leibler)");
+  binder.number("kld_delta", options.kld.delta, {0, 0.5, true, false}, "probability",
+                "Adaptive: of exceeding it");
+  binder.number("kld_bin_m", options.kld.bin, Range::between(0.001, 100), "m",
+                "Adaptive: size of a bin in x and y");
+  binder.angleDeg("kld_bin_deg", options.kld.binYaw, Range::between(0.001, 180),
+                  "Adaptive: size of a bin in heading");
+  binder.integer("min_particles", options.kld.minParticles, Range::between(1, 1000000), "",
+                 "Adaptive: never fewer");
+  binder.integer("max_particles", options.kld.maxParticles, Range::between(1, 1000000), "",
+                 "Adaptive: never more");
   binder.number("resample_below", options.resampleBelow, Range::between(0, 1), "share",
                 "Resample when the effective share of the particles falls below; 0: never");
   binder.choice("resampling", options.resampling,

@@ -3,7 +3,9 @@
 #include <polemcl/core/BatchMath.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -60,6 +62,32 @@ const std::vector<Eigen::Vector3d>& PoseNoise::draw(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     m_moves[i] = m_root * Eigen::Map<const Eigen::Vector3d>(&normals[3 * i]);
   return m_moves;
+}
+
+std::vector<std::size_t> drawIndices(Resampling method, const std::vector<double>& logWeights,
+                                     std::size_t count) {
+  const double greatest = *std::max_element(logWeights.begin(), logWeights.end());
+  std::vector<double> sums = logWeights;
+  for (double& sum : sums) sum -= greatest;
+  exponentials(sums.data(), sums.size(), sums.data());
+  std::partial_sum(sums.begin(), sums.end(), sums.begin());
+  auto& generator = getRandomGenerator();
+  const double common = generator.drawUniform(0.0, 1.0);
+  std::vector<double> places(count);  // in the cumulated weight, as shares
+  for (std::size_t i = 0; i < count; ++i) {
+    const double own = method == Resampling::systematic ? common : generator.drawUniform(0.0, 1.0);
+    places[i] = method == Resampling::multinomial
+                    ? own
+                    : (static_cast<double>(i) + own) / static_cast<double>(count);
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<std::size_t> result(count);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    while (next + 1 < sums.size() && sums[next] <= places[i] * sums.back()) ++next;
+    result[i] = next;
+  }
+  return result;
 }
 
 std::vector<std::size_t> particlesPerHypothesis(const std::vector<PoseHypothesis>& hypotheses,

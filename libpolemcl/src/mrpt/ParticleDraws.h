@@ -34,6 +34,11 @@ class PoseNoise {
   std::vector<Eigen::Vector3d> m_moves;
 };
 
+/// \brief Resamples any number of particles: ascending indices. (MRPT's computeResampling() never
+/// returns when multinomial resampling is asked for fewer than there are.)
+std::vector<std::size_t> drawIndices(Resampling method, const std::vector<double>& logWeights,
+                                     std::size_t count);
+
 /// \brief Particles that each hypothesis gets of so many: the rounded share of its weight.
 /// \throws Error as PoleLocalizer::start() does about hypotheses.
 std::vector<std::size_t> particlesPerHypothesis(const std::vector<PoseHypothesis>& hypotheses,

@@ -106,7 +106,8 @@ void PoleLocalizer::start(const std::vector<PoseHypothesis>& hypotheses, int par
 
 void PoleLocalizer::begin(int particles) {
   const bool thinsOut = m_options.resampleBelow > 0;
-  m_particles.resize(thinsOut ? std::max(particles, m_options.particles) : m_options.particles);
+  const int least = m_options.adaptive ? m_options.kld.minParticles : m_options.particles;
+  m_particles.resize(thinsOut ? std::max(particles, least) : least);
   for (auto& particle : m_particles) particle.log_w = 0;
   m_started = true;
   m_stepped = false;
@@ -226,7 +227,8 @@ bool PoleLocalizer::leavesEnough(const std::vector<double>& logLikelihoods) cons
   std::vector<double> weights = logWeights();
   for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += logLikelihoods[i];
   // Measured by what the filter keeps: after the start there may be many more.
-  return effectiveShare(weights) * weights.size() >= m_options.tempering * m_options.particles;
+  const auto kept = std::min<std::size_t>(weights.size(), m_options.particles);
+  return effectiveShare(weights) * weights.size() >= m_options.tempering * kept;
 }
 
 double PoleLocalizer::ESS() const {
@@ -234,9 +236,10 @@ double PoleLocalizer::ESS() const {
 }
 
 void PoleLocalizer::performSubstitution(const std::vector<size_t>& indices) {
-  std::vector<size_t> chosen = thinned(indices, m_options.particles);
-  std::sort(chosen.begin(), chosen.end());
   const std::vector<Pose2D> before = particles();
+  std::vector<size_t> chosen =
+      m_options.adaptive ? drawAdaptively(before) : thinned(indices, m_options.particles);
+  std::sort(chosen.begin(), chosen.end());
   const Eigen::Matrix3d spread = weightedMean(before, logWeights()).covariance;
   m_particles.resize(chosen.size());
   auto next = chosen.begin();
@@ -247,6 +250,19 @@ void PoleLocalizer::performSubstitution(const std::vector<size_t>& indices) {
   }
   if (m_options.regularization > 0) jitter(spread);
   m_report.resampled = true;
+}
+
+std::vector<size_t> PoleLocalizer::drawAdaptively(const std::vector<Pose2D>& poses) const {
+  const std::vector<double> weights = logWeights();
+  std::vector<size_t> chosen;
+  std::size_t wanted = m_options.kld.minParticles;
+  // Fox draws one by one until there are enough for the bins met so far. Systematic resampling has
+  // to know the number first: it is drawn anew with what the bins of the last draw ask for.
+  do {
+    chosen = drawIndices(m_options.resampling, weights, wanted);
+    wanted = kldSampleSize(occupiedBins(poses, chosen, m_options.kld), m_options.kld);
+  } while (wanted > chosen.size());
+  return chosen;
 }
 
 void PoleLocalizer::jitter(const Eigen::Matrix3d& spread) {

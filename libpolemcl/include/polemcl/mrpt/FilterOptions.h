@@ -2,6 +2,7 @@
 /// \file FilterOptions.h
 /// \brief The settings of the particle filter and of its start, with units, defaults and sources.
 
+#include <polemcl/core/KldSampleSize.h>
 #include <polemcl/core/Types.h>
 #include <polemcl/mrpt/Config.h>
 
@@ -16,7 +17,12 @@ enum class PoseEstimator { mean, bestShare };
 /// \brief `[filter]` in INI files. The paper's filter: `estimate = best_share`, and regularization,
 /// tempering and the extra sigmas 0.
 struct FilterOptions {
-  int particles = 1000;        ///< (paper: 1000 NCLT; first implementation: 500 to 2000)
+  int particles = 1000;  ///< (paper: 1000 NCLT; first implementation: 500 to 2000)
+  /// Each resampling keeps as many particles as the posterior needs, by the bins it covers: many
+  /// while it is spread, few once it has converged. `particles` is then only the yardstick of
+  /// `tempering`.
+  bool adaptive = false;
+  KldOptions kld;              ///< of `adaptive`
   double resampleBelow = 0.5;  ///< resample when the effective share falls below; 0: never (paper)
   Resampling resampling = Resampling::systematic;
   /// `mean`: weighted mean of all particles. `best_share`: of the best by weight (paper: 10 %),

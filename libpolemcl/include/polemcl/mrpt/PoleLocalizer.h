@@ -104,6 +104,8 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   void addToLogWeights(const std::vector<double>& values);
   /// \brief Whether the particles stay many enough with these added to their weights.
   bool leavesEnough(const std::vector<double>& logLikelihoods) const;
+  /// \brief Indices, as many as KLD sampling asks for.
+  std::vector<size_t> drawAdaptively(const std::vector<Pose2D>& poses) const;
   void jitter(const Eigen::Matrix3d& spread);
 
   std::shared_ptr<const CPoleMap> m_map;
