@@ -186,6 +186,26 @@ TEST_F(LocalizeApp, EffectiveConfigurationGivesTheSameResult) {
   EXPECT_EQ(readText(out("run_01.tum")), first);
 }
 
+TEST_F(LocalizeApp, FramesAndScenesByCommandLineAndByConfiguration) {
+  const std::string frames = (folder / "frames").string();
+  ASSERT_EQ(runWithTruth({"--frames", frames, "--frame-every", "30", "--scenes", "25"}).code, 0);
+  EXPECT_EQ(names(frames), std::vector<std::string>({"000000.png", "000030.png"}));
+  EXPECT_EQ(names(out("run_00_scenes")),
+            std::vector<std::string>({"000000.3Dscene", "000025.3Dscene"}));
+  fs::remove_all(frames);
+  fs::copy_file(out("config.ini"), folder / "config.ini", fs::copy_options::overwrite_existing);
+  ASSERT_EQ(runWithTruth().code, 0);
+  EXPECT_EQ(names(frames).size(), 2u);
+  EXPECT_EQ(names(out("run_00_scenes")).size(), 2u);
+}
+
+TEST_F(LocalizeApp, RefusesAWindowWithoutADisplay) {
+  if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY"))
+    GTEST_SKIP() << "there is a display";
+  expectFailure(runWithTruth({"--live"}), {"no display", "--frames"});
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
 TEST_F(LocalizeApp, OldRunsGoWhenNewOnesAreComplete) {
   ASSERT_EQ(runWithTruth({"--runs", "3"}).code, 0);
   const std::string before = bytes();
@@ -362,4 +382,8 @@ TEST_F(LocalizeApp, WrongUsage) {
   expectUsageError(run({"--runs", "0"}));
   expectUsageError(run({"--particles", "many"}));
   expectUsageError(run({"--seed", "-1"}));
+  expectUsageError(run({"--rate", "soon"}));
+  expectUsageError(run({"--rate", "0x"}));
+  expectUsageError(run({"--scenes", "-1"}));
+  expectUsageError(run({"--frame-every", "0"}));
 }

@@ -29,6 +29,19 @@ TEST(RunFolder, SwapsOldRunsForNewOnesAndKeepsTheRest) {
   EXPECT_EQ(readText(folder / "mine"), "old");
 }
 
+TEST(RunFolder, ScenesOfOldRunsGoAndOtherFoldersStay) {
+  const TempFolder folder;
+  for (const char* name : {"run_00_scenes/000007.3Dscene", "run_03_scenes/a", "run_mine/a"})
+    writeText(folder / name, "old");
+  {
+    RunFolder results(folder.path());
+    writeText(results.staged("run_00_scenes") / "000001.3Dscene", "new");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_00_scenes", "run_mine"}));
+  EXPECT_EQ(names(folder / "run_00_scenes"), Names({"000001.3Dscene"}));
+}
+
 TEST(RunFolder, WithoutCommitTheOldStays) {
   const TempFolder folder;
   writeText(folder / "run_00.tum", "old");

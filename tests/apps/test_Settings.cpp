@@ -82,7 +82,7 @@ TEST(Settings, KnowsEverySection) {
   saveSettings(defaults, (folder / "all.ini").string());
   const auto text = readText(folder / "all.ini");
   for (const char* section : {"sensor", "extraction", "paper", "native", "map", "likelihood",
-                              "motion", "filter", "start", "runs", "simulation", "world"})
+                              "motion", "filter", "start", "runs", "view", "simulation", "world"})
     EXPECT_NE(text.find("[" + std::string(section) + "]\n"), std::string::npos) << section;
 }
 

@@ -4,6 +4,7 @@
 #include <polemcl/apps/LocalizeReport.h>
 #include <polemcl/apps/Progress.h>
 #include <polemcl/apps/RunFolder.h>
+#include <polemcl/apps/RunView.h>
 #include <polemcl/apps/Settings.h>
 #include <polemcl/apps/TrialDrive.h>
 #include <polemcl/core/PoseInterpolation.h>
@@ -34,6 +35,16 @@ void setStart(StartOptions& start, const std::vector<double>& numbers) {
   start.heading = numbers[4] * degree;
 }
 
+void setView(report::ViewOptions& view, const LocalizeJob& job) {
+  if (job.live) view.live = true;
+  if (job.hold) view.live = view.hold = true;
+  if (job.rate) view.rate = *job.rate;
+  if (job.scenes) view.scenes = *job.scenes;
+  if (job.frames) view.frames = *job.frames;
+  if (job.frameEvery) view.frameEvery = *job.frameEvery;
+  view.validate();
+}
+
 Settings effectiveSettings(const LocalizeJob& job) {
   Settings settings = loadSettings(job.config.string());
   if (job.runs) settings.runs.runs = *job.runs;
@@ -41,6 +52,7 @@ Settings effectiveSettings(const LocalizeJob& job) {
   if (job.particles) settings.localization.filter.particles = *job.particles;
   if (job.anywhere) settings.start.anywhere = true;
   if (!job.start.empty()) setStart(settings.start, job.start);
+  setView(settings.view, job);
   settings.runs.validate();
   settings.localization.validate();
   settings.start.validate();
@@ -104,9 +116,10 @@ StartOptions startFrom(const StartOptions& configured, const LocalizeJob& job,
 }
 
 std::vector<FilterRun> runAll(const LocalizeFacts& facts, const LocalizationMap& map,
-                              const std::vector<PoleFrame>& frames) {
+                              const std::vector<PoleFrame>& frames, RunView& view) {
   Progress progress("localize", frames.size() * facts.runs.runs, facts.job.quiet);
   RunWatch watch;
+  watch.observer = view.observer();
   watch.progress = [&](std::size_t done) { progress.update(done); };
   return runFilters(map, frames, facts.localization, facts.start, facts.runs, watch);
 }
@@ -150,7 +163,9 @@ LocalizeResult localize(const LocalizeJob& job) {
   const auto map = loadPoleMap(job.map, settings.likelihood);
   std::vector<StampedPose2D> truth;
   if (job.truth) truth = io::planar(io::readTum(*job.truth));
-  RunFolder folder(job.output);  // before the work, so that a folder that cannot be is known now
+  // Before the work, so that folders and windows that cannot be are known now.
+  RunFolder folder(job.output);
+  RunView view(settings.view, map->poles(), job.input.filename().string(), folder);
 
   const auto begin = Clock::now();
   const PoleSequence sequence = readPoles(job, settings);
@@ -161,16 +176,44 @@ LocalizeResult localize(const LocalizeJob& job) {
   const LocalizeFacts facts{job,           settings.localization, start,
                             settings.runs, sequence.counts,       map->poles().size()};
   LocalizeResult result;
-  result.runs = runAll(facts, LocalizationMap(map, settings.localization.global), sequence.frames);
+  result.runs =
+      runAll(facts, LocalizationMap(map, settings.localization.global), sequence.frames, view);
+  view.finish();
   if (job.truth)
     for (const auto& run : result.runs) result.errors.push_back(judge(run, truth));
   writeResults(folder, facts, settings, result, reading);
   if (!job.quiet) {
     printTable(std::cout, facts, result);
-    std::cout << "results in " << job.output.string() << '\n';
+    std::cout << "results in " << job.output.string() << std::endl;
   }
+  view.waitForWindow();
   return result;
 }
+
+namespace {
+
+std::string wrongRate(const std::string& text) {
+  try {
+    report::parseRate(text);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+void addViewOptions(CLI::App& cli, LocalizeJob& job) {
+  cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
+  cli.add_flag("--hold", job.hold, "--live, and the window stays until it is closed");
+  cli.add_option("--rate", job.rate, "Of the window: 1x as it was driven (default), 2.5x, max")
+      ->check(wrongRate);
+  cli.add_option("--scenes", job.scenes, "A .3Dscene every N scans, in OUTPUT/run_00_scenes")
+      ->check(CLI::Range(0, 1000000000));
+  cli.add_option("--frames", job.frames, "Folder for PNG frames; needs no display");
+  cli.add_option("--frame-every", job.frameEvery, "A frame every N scans")
+      ->check(CLI::Range(1, 1000000000));
+}
+
+}  // namespace
 
 int localizeMain(int argc, const char* const* argv) {
   CommandLine line("pole-localize", "Localizes a vehicle in a pole map, from a rawlog.");
@@ -191,6 +234,7 @@ int localizeMain(int argc, const char* const* argv) {
                     ->expected(5);
   cli.add_flag("--global", job.anywhere, "No start pose: the whole map is searched on the way")
       ->excludes(start);
+  addViewOptions(cli, job);
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of a rawlog that ends too early");
   return line.run(argc, argv, [&] {

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <regex>
 #include <vector>
 
 namespace polemcl::apps {
@@ -15,12 +16,19 @@ namespace {
 
 constexpr const char* summaryName = "summary.json";
 
-std::vector<fs::path> filesIn(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (!entry.is_directory()) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
+std::vector<fs::path> entriesOf(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+/// Files `run_*`, and folders `run_NN_scenes`: what else is called so, others may have put there.
+bool isOfARun(const fs::path& entry) {
+  const std::string name = entry.filename().string();
+  if (!fs::is_directory(fs::symlink_status(entry))) return name.rfind("run_", 0) == 0;
+  static const std::regex folder("run_[0-9]+_scenes");
+  return std::regex_match(name, folder);
 }
 
 }  // namespace
@@ -49,10 +57,10 @@ RunFolder::~RunFolder() {
 void RunFolder::commit() {
   try {
     fs::remove(m_folder / summaryName);
-    for (const auto& file : filesIn(m_folder))
-      if (file.filename().string().rfind("run_", 0) == 0) fs::remove(file);
-    for (const auto& file : filesIn(m_staging))
-      if (file.filename() != summaryName) fs::rename(file, m_folder / file.filename());
+    for (const auto& entry : entriesOf(m_folder))
+      if (isOfARun(entry)) fs::remove_all(entry);
+    for (const auto& entry : entriesOf(m_staging))
+      if (entry.filename() != summaryName) fs::rename(entry, m_folder / entry.filename());
     if (fs::exists(staged(summaryName))) fs::rename(staged(summaryName), m_folder / summaryName);
   } catch (const fs::filesystem_error& error) {
     throw Error(m_folder.string() + ": cannot move the results in: " + error.code().message());

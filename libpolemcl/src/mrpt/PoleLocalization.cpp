@@ -89,6 +89,7 @@ void PoleLocalization::startAnywhere() {
   m_search = {};
   m_searches = 0;
   m_searchedAt = 0;
+  m_matches.clear();
   m_started = true;
   m_hasPose = m_stepped = m_mistrusted = false;
 }
@@ -145,8 +146,9 @@ void PoleLocalization::track(const PoleFrame& frame, double metres, Localization
   HealthInput input;
   input.time = frame.time;
   input.metres = metres;
-  input.matches = matchPoles(frame.poles_robot, estimate, m_map.poles->index(),
-                             {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
+  m_matches = matchPoles(frame.poles_robot, estimate, m_map.poles->index(),
+                         {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
+  input.matches = m_matches;
   input.estimate = estimate;
   input.effectiveParticles =
       m_filter.report().effectiveShare * static_cast<double>(m_filter.report().particles);

@@ -19,6 +19,12 @@ struct LocalizeJob {
   std::optional<std::uint32_t> seed;
   std::vector<double> start;  ///< x, y (m), yaw (deg), radius (m), heading (deg); or empty
   bool anywhere = false;      ///< no start pose: global search
+  /// \name How the first run is watched, as in `[view]`
+  /// @{
+  bool live = false, hold = false;
+  std::optional<std::string> rate, frames;
+  std::optional<int> scenes, frameEvery;
+  /// @}
   bool allowTruncated = false;
   bool quiet = false;
 };
@@ -42,6 +48,8 @@ struct LocalizeResult {
 ///   heading_deg,poles,effective_share` of each scan that the truth covers; scan is the 0-based
 ///   index in the input, lateral + to the left and longitudinal + ahead of the true pose, heading +
 ///   counter-clockwise, poles the number observed, effective_share that of the particles;
+/// - `run_00_scenes/NNNNNN.3Dscene`, if asked for: the first run after scan NNNNNN (see
+///   report/LiveScene.h; stock objects, the vehicle at the origin);
 /// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
 ///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`;
 /// - `config.ini`: the effective configuration;

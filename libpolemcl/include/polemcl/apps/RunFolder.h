@@ -18,12 +18,12 @@ class RunFolder {
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
-  /// \brief Where to write a file that commit() moves into the folder.
+  /// \brief Where to write a file, or make a folder of files, that commit() moves into the folder.
   std::filesystem::path staged(const std::string& name) const { return m_staging / name; }
 
-  /// \brief Takes the summary and the files `run_*` of old results away and moves the new files in,
-  /// `summary.json` last: while it is there, the folder is complete.
-  /// \throws Error when that fails.
+  /// \brief Takes the summary, the files `run_*` and the folders `run_NN_scenes` of old results
+  /// away and moves the new files in, `summary.json` last: while it is there, the folder is
+  /// complete. \throws Error when that fails.
   void commit();
 
  private:

@@ -9,6 +9,7 @@
 #include <polemcl/mrpt/MotionOptions.h>
 #include <polemcl/mrpt/PoleExtraction.h>
 #include <polemcl/mrpt/PoleLocalization.h>
+#include <polemcl/report/ViewOptions.h>
 #include <polemcl/sim/SimulationOptions.h>
 
 #include <string>
@@ -25,6 +26,7 @@ struct Settings {
   LocalizationOptions localization;   ///< `[filter] [submap] [global] [health] [search]`
   StartOptions start;                 ///< `[start]`
   RunOptions runs;                    ///< `[runs]`
+  report::ViewOptions view;           ///< `[view]`
   sim::SimulationOptions simulation;  ///< `[simulation]`, `[world]`; sensor as in `[sensor]`
 
   /// \brief What the extraction needs.

@@ -83,6 +83,8 @@ class PoleLocalization {
   const LocalSubmap& submap() const { return m_submap; }
   const GlobalResult& lastSearch() const { return m_search; }  ///< empty before the first
   std::size_t searches() const { return m_searches; }          ///< since the start
+  /// \brief Of the last frame's poles at the estimate, in their order; empty without a pose.
+  const std::vector<PoleMatch>& matches() const { return m_matches; }
   const LocalizationMap& map() const { return m_map; }
   /// @}
 
@@ -101,6 +103,7 @@ class PoleLocalization {
   LocalSubmap m_submap;
   HealthMonitor m_monitor;
   GlobalResult m_search;
+  std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;
   bool m_hasPose = false, m_started = false, m_stepped = false;
   bool m_mistrusted = false;  ///< the submap was begun anew because poles do not match

@@ -1,0 +1,56 @@
+#pragma once
+/// \file RunView.h
+/// \brief Shows a run as it goes: in a window, as scenes and as frames.
+
+#include <polemcl/apps/FilterRuns.h>
+#include <polemcl/apps/RunFolder.h>
+#include <polemcl/report/LiveMoment.h>
+#include <polemcl/report/ViewOptions.h>
+
+#include <memory>
+#include <string>
+
+namespace polemcl::apps {
+
+/// \brief What `[view]` asks for. Everything is opened and refused here, before the run.
+///
+/// The window is drawn by the thread of the run, which waits for the time of each scan (gaps longer
+/// than `longestWait` are cut short); closed by the user, the run goes on without it at full speed.
+/// Scenes and frames are made by a thread of their own, from copies.
+class RunView {
+ public:
+  static constexpr double longestWait = 2;  ///< s, between two scans
+
+  /// \param map Drawn. \param name Of the input, for the title.
+  /// \param folder Gets `run_00_scenes/NNNNNN.3Dscene`, NNNNNN the scan; must outlive this object.
+  /// \throws Error without a display for the window; when the folder of frames holds other files.
+  RunView(const report::ViewOptions& options, const std::vector<MapPole>& map,
+          const std::string& name, const RunFolder& folder);
+  ~RunView();
+  RunView(const RunView&) = delete;
+  RunView& operator=(const RunView&) = delete;
+
+  /// \brief To be called with each step of one run; empty when nothing is to be shown.
+  RunObserver observer();
+
+  /// \brief Once the run is over: waits until all scenes and frames are written, then puts the
+  /// frames in the place of earlier ones. \throws Error when any could not be written.
+  void finish();
+  /// \brief `hold`: returns when the user has closed the window.
+  void waitForWindow() const;
+
+ private:
+  class Screen;
+  class Recorder;
+  void see(const PoleLocalization& localization, const PoleFrame& frame,
+           const LocalizationUpdate& update);
+
+  report::ViewOptions m_options;
+  std::unique_ptr<Screen> m_screen;
+  std::unique_ptr<Recorder> m_recorder;
+  report::Way m_way;
+  std::size_t m_scan = 0;
+  double m_start = 0;  ///< time of the first scan, s
+};
+
+}  // namespace polemcl::apps

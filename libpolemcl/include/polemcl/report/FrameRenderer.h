@@ -1,0 +1,34 @@
+#pragma once
+/// \file FrameRenderer.h
+/// \brief A scene as a PNG, without a display.
+
+#include <mrpt/opengl/COpenGLScene.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace polemcl::report {
+
+/// \brief Renders at twice the size and halves the picture, for smooth edges. To be made, used and
+/// destroyed in one thread: OpenGL's contexts belong to threads.
+class FrameRenderer {
+ public:
+  /// \brief How many times larger letters and points of scenes for it must be: as large a part of
+  /// any picture as of one of 720 rows.
+  static constexpr double textScale(unsigned height) { return 2 * height / 720.0; }
+  /// \param width,height Of the pictures, pixels.
+  /// \throws Error when OpenGL cannot be had off-screen.
+  FrameRenderer(unsigned width, unsigned height);
+  ~FrameRenderer();
+  FrameRenderer(const FrameRenderer&) = delete;
+  FrameRenderer& operator=(const FrameRenderer&) = delete;
+
+  /// \throws Error when the file, a `.png`, cannot be written. It is written in place.
+  void render(const mrpt::opengl::COpenGLScene& scene, const std::filesystem::path& file);
+
+ private:
+  struct Buffer;
+  std::unique_ptr<Buffer> m_buffer;
+};
+
+}  // namespace polemcl::report

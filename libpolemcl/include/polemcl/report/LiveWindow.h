@@ -1,0 +1,35 @@
+#pragma once
+/// \file LiveWindow.h
+/// \brief A window on the desktop that shows scenes: MRPT's CDisplayWindow3D.
+///
+/// MRPT's windows bring wxWidgets and GTK along, which would slow the start of every program. So
+/// the window is a module of its own, `libpolemcl-window.so`, loaded when the first one is opened.
+
+#include <mrpt/opengl/CCamera.h>
+#include <mrpt/opengl/COpenGLScene.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace polemcl::report {
+
+class LiveWindow {
+ public:
+  virtual ~LiveWindow() = default;
+  /// \brief False once the user has closed it.
+  virtual bool isOpen() const = 0;
+  /// \brief Changes the scene that the window shows. The camera goes along as that of the scene
+  /// moves, from wherever the user has turned it to.
+  /// \param change Called with the window's drawing stopped.
+  /// \param camera That of the scene, read after the change.
+  virtual void update(const std::function<void()>& change, const mrpt::opengl::CCamera& camera) = 0;
+};
+
+/// \brief Opens a window that shows this scene. \param width,height Pixels.
+/// \throws Error without a display, or when the module is missing.
+std::unique_ptr<LiveWindow> openLiveWindow(const std::string& title, unsigned width,
+                                           unsigned height,
+                                           const mrpt::opengl::COpenGLScene::Ptr& scene);
+
+}  // namespace polemcl::report
