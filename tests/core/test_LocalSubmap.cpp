@@ -311,3 +311,36 @@ TEST(LocalSubmap, refusesOptionsOutOfRange) {
   options.sureHits = 0;
   expectRefused([&] { options.validate(); }, "sure_hits");
 }
+
+TEST(LocalSubmap, takesEachDetectionOnceAveraged) {
+  LocalSubmap submap(exact());
+  submap.add({}, {seen(10, 2, 0.01)});
+  EXPECT_TRUE(submap.take(2, 1).empty());  // one hit may be nothing
+  submap.add({}, {seen(10.2, 2, 0.03)});
+  const auto first = submap.take(2, 1);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_NEAR(first[0].x, 10.05, 1e-6);
+  EXPECT_NEAR(first[0].covariance(0, 0), 0.0075, 1e-6);
+  EXPECT_EQ(first[0].points, 2u);
+  EXPECT_TRUE(submap.take(2, 1).empty());  // given out already
+
+  // Half a metre on, too soon; a metre on, the mean of what came since and of nothing before.
+  const Eigen::Matrix3d sure = Eigen::Matrix3d::Zero();
+  submap.add({0.5, 0, 0}, sure, {seen(9.4, 2, 0.02)});
+  EXPECT_TRUE(submap.take(2, 1).empty());
+  submap.add({0.5, 0, 0}, sure, {seen(9.0, 2, 0.02)});
+  const auto second = submap.take(2, 1);
+  ASSERT_EQ(second.size(), 1u);
+  EXPECT_NEAR(second[0].x, 8.95, 1e-6);  // of 9.4 - 0.5 and 9.0, from here
+  EXPECT_NEAR(second[0].covariance(0, 0), 0.01, 1e-6);
+}
+
+TEST(LocalSubmap, takesOnlyWhatIsSeenNow) {
+  LocalSubmap submap(exact());
+  submap.add({}, {seen(10, 2)});
+  submap.add({}, {seen(10, 2)});
+  submap.add({}, {});
+  EXPECT_TRUE(submap.take(2, 0).empty());
+  submap.add({}, {seen(10, 2)});
+  EXPECT_EQ(submap.take(2, 0).size(), 1u);
+}

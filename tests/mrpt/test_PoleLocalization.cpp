@@ -186,6 +186,29 @@ TEST_F(RegularCity, WhereAllLooksAlikeSeveralPlacesAreKept) {
   EXPECT_TRUE(adopted);
 }
 
+TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {
+  driveFrom(1, 40);
+  const auto used = [&](bool average, double every) {
+    options.tracking.average = average;
+    options.tracking.every = every;
+    PoleLocalization localization = chain();
+    localization.start(atTruth());
+    std::vector<std::size_t> poles;
+    for (const PoleFrame& frame : frames) poles.push_back(localization.step(frame).step.poles);
+    return poles;
+  };
+  const auto all = used(false, 1), every = used(true, 1), seldom = used(true, 5);
+  std::size_t sums[3] = {};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(all[i], frames[i].poles_robot.size());
+    EXPECT_LE(every[i], all[i]);
+    sums[0] += all[i], sums[1] += every[i], sums[2] += seldom[i];
+  }
+  EXPECT_EQ(every[0], all[0]);  // at the start there is nothing to wait for
+  EXPECT_LT(sums[1], 0.95 * sums[0]);
+  EXPECT_LT(sums[2], 0.5 * sums[1]);
+}
+
 TEST_F(PoleLocalizationTest, SameSeedSameBytes) {
   driveFrom(9, 40);
   const auto run = [&](std::uint32_t seed) {
@@ -235,6 +258,16 @@ TEST_F(PoleLocalizationTest, RefusesFramesBeforeTheStartAndBadFramesWithoutChang
 TEST(LocalizationMap, RefusesAMapWithoutPoles) {
   EXPECT_THROW(LocalizationMap(std::make_shared<CPoleMap>(), {}), Error);
   EXPECT_THROW(LocalizationMap(nullptr, {}), Error);
+}
+
+TEST(TrackingOptions, RefusesValuesOutOfRange) {
+  TrackingOptions options;
+  EXPECT_NO_THROW(options.validate());
+  options.minHits = 0;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.every = -1;
+  EXPECT_THROW(options.validate(), Error);
 }
 
 TEST(SearchOptions, RefusesValuesOutOfRange) {

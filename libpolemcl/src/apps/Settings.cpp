@@ -14,6 +14,7 @@ void bindAll(Binder& binder, Settings& settings) {
   bind(binder, settings.motion);
   bind(binder, settings.localization.filter);
   bind(binder, settings.start);
+  bind(binder, settings.localization.tracking);
   bind(binder, settings.localization.submap);
   bind(binder, settings.localization.global);
   bind(binder, settings.localization.health);

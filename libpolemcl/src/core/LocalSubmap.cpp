@@ -163,7 +163,7 @@ void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {
 void LocalSubmap::update(SubmapPole& pole, const PoleDetection& detection,
                          const Eigen::Vector2d& centre, const Eigen::Matrix2d& covariance) const {
   const Eigen::Matrix2d floor = m_options.floor * m_options.floor * Eigen::Matrix2d::Identity();
-  if (pole.hits == 0) {
+  if (pole.hits == 0 || pole.taken) {
     pole.centre = centre;
     pole.covariance = covariance;
   } else {
@@ -178,6 +178,8 @@ void LocalSubmap::update(SubmapPole& pole, const PoleDetection& detection,
   }
   ++pole.hits;
   ++pole.chances;
+  pole.taken = false;
+  pole.seenFrame = m_frames;
   pole.radius += (detection.radius - pole.radius) / pole.hits;
   pole.confidence += (detection.confidence - pole.confidence) / pole.hits;
   pole.bottom = std::min(pole.bottom, detection.bottom);
@@ -213,22 +215,37 @@ Eigen::Matrix2d LocalSubmap::presentCovariance(const SubmapPole& pole, bool with
   return covariance;
 }
 
-std::vector<PoleDetection> LocalSubmap::detections(std::uint32_t minHits) const {
+PoleDetection LocalSubmap::seenNow(const SubmapPole& pole) const {
   const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(-m_pose.yaw).toRotationMatrix();
+  const Eigen::Vector2d centre = rotation * (pole.centre - Eigen::Vector2d(m_pose.x, m_pose.y));
+  PoleDetection detection;
+  detection.x = centre.x();
+  detection.y = centre.y();
+  detection.radius = pole.radius;
+  detection.bottom = pole.bottom;
+  detection.top = pole.top;
+  detection.confidence = pole.confidence;
+  detection.covariance = rotation * presentCovariance(pole) * rotation.transpose();
+  detection.points = pole.hits;
+  return detection;
+}
+
+std::vector<PoleDetection> LocalSubmap::detections(std::uint32_t minHits) const {
   std::vector<PoleDetection> poles_robot;
-  for (const SubmapPole& pole : m_poles) {
-    if (pole.hits < minHits) continue;
-    const Eigen::Vector2d centre = rotation * (pole.centre - Eigen::Vector2d(m_pose.x, m_pose.y));
-    PoleDetection detection;
-    detection.x = centre.x();
-    detection.y = centre.y();
-    detection.radius = pole.radius;
-    detection.bottom = pole.bottom;
-    detection.top = pole.top;
-    detection.confidence = pole.confidence;
-    detection.covariance = rotation * presentCovariance(pole) * rotation.transpose();
-    detection.points = pole.hits;
-    poles_robot.push_back(detection);
+  for (const SubmapPole& pole : m_poles)
+    if (pole.hits >= minHits) poles_robot.push_back(seenNow(pole));
+  return poles_robot;
+}
+
+std::vector<PoleDetection> LocalSubmap::take(std::uint32_t minHits, double metres) {
+  std::vector<PoleDetection> poles_robot;
+  for (SubmapPole& pole : m_poles) {
+    const bool now = pole.seenFrame == m_frames && !pole.taken && pole.hits >= minHits;
+    const bool waited = pole.hits == minHits || m_driven - pole.takenAt >= metres;
+    if (!now || !waited) continue;
+    poles_robot.push_back(seenNow(pole));
+    pole.taken = true;
+    pole.takenAt = m_driven;
   }
   return poles_robot;
 }

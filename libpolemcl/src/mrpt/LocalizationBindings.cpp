@@ -82,6 +82,15 @@ void bind(Binder& b, HealthOptions& o) {
   b.check(o);
 }
 
+void bind(Binder& b, TrackingOptions& o) {
+  b.section("tracking", "What of the detections the filter is given");
+  b.flag("average", o.average,
+         "true: detections of a pole are averaged and used together; false: each for itself");
+  b.integer("min_hits", o.minHits, Range::atLeast(1), "", "poles seen less often are not used");
+  b.number("every_m", o.every, Range::atLeast(0), "m", "metres until a pole is used again");
+  b.check(o);
+}
+
 void bind(Binder& b, SearchOptions& o) {
   b.section("search", "When the whole map is searched for the vehicle");
   b.flag("recover", o.recover, "true: a vehicle that is lost is looked for");

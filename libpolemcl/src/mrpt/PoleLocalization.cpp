@@ -34,6 +34,13 @@ bool isWide(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
+void TrackingOptions::validate() const {
+  if (minHits < 1)
+    throw Error("[tracking] min_hits = " + std::to_string(minHits) + ": allowed is 1 or more");
+  if (!(every >= 0 && std::isfinite(every)))
+    throw Error("[tracking] every_m = " + std::to_string(every) + ": allowed is 0 or more");
+}
+
 void SearchOptions::validate() const {
   require(every > 0 && std::isfinite(every), "every_m", every, "more than 0");
   require(everySeconds > 0 && std::isfinite(everySeconds), "every_s", everySeconds, "more than 0");
@@ -43,6 +50,7 @@ void SearchOptions::validate() const {
 
 void LocalizationOptions::validate() const {
   filter.validate();
+  tracking.validate();
   submap.validate();
   global.validate();
   health.validate();
@@ -63,6 +71,7 @@ PoleLocalization::PoleLocalization(LocalizationMap map, const LocalizationOption
       m_options(checked(options)),
       m_filter(m_map.poles, options.filter, seed),
       m_submap(options.submap),
+      m_tracks(options.submap),
       m_monitor(options.health) {}
 
 void PoleLocalization::start(const StartOptions& start) {
@@ -85,6 +94,7 @@ void PoleLocalization::start(const StartOptions& start) {
 
 void PoleLocalization::startAnywhere() {
   m_submap.clear();
+  m_tracks.clear();
   m_monitor.reset();
   m_search = {};
   m_searches = 0;
@@ -118,6 +128,14 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& frame) {
   Eigen::Matrix3d covariance = walkCovariance(motion, m_options.submap);
   if (m_stepped) covariance += frame.motion->covariance;
   m_submap.add(motion, covariance, frame.poles_robot);
+  m_tracked = frame;
+  if (m_options.tracking.average) {
+    m_tracks.add(motion, covariance, frame.poles_robot);
+    // At the start every scan counts: there is nothing to average yet.
+    if (m_tracks.frames() > 1)
+      m_tracked.poles_robot = m_tracks.take(static_cast<std::uint32_t>(m_options.tracking.minHits),
+                                            m_options.tracking.every);
+  }
 
   LocalizationUpdate update;
   update.time = frame.time;
@@ -132,7 +150,7 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& frame) {
 }
 
 void PoleLocalization::track(const PoleFrame& frame, double metres, LocalizationUpdate& update) {
-  PoseWithCovariance estimate = m_filter.step(frame);
+  PoseWithCovariance estimate = m_filter.step(m_tracked);
   double modeShare = 1;
   if (isWide(estimate.covariance)) {
     const PoseMode mode = heaviestMode(m_filter.particles(), m_filter.logWeights());

@@ -53,10 +53,13 @@ struct SubmapPole {
   double confidence = 0;      ///< mean of the detections, in [0, 1]
   std::uint32_t hits = 0;     ///< frames that detected it
   std::uint32_t chances = 0;  ///< frames that detected it or had it within `viewRange`
+  double takenAt = 0;         ///< metres driven when take() last gave it out
+  bool taken = false;         ///< take() gave it out and it was not detected since
   /// \name When it was last detected
   /// @{
   Eigen::Vector2d seenFrom = Eigen::Vector2d::Zero();  ///< where the robot was, local frame, m
   double seenAt = 0;                                   ///< metres driven by then
+  std::size_t seenFrame = 0;                           ///< number of frames by then
   OdometryDrift drift;                                 ///< what the odometry had gathered by then
   /// @}
 };
@@ -106,7 +109,14 @@ class LocalSubmap {
   /// covariance with the odometry's part, `points` the number of hits.
   std::vector<PoleDetection> detections(std::uint32_t minHits) const;
 
+  /// \brief Gives each detection out once, averaged: the poles detected in the latest frame that
+  /// have `minHits` and were not given out for `metres`, as the mean of their detections since
+  /// then. Robot frame, covariance with `floor`, `points` the number of hits. Afterwards these
+  /// poles begin anew: their place is that of the next detection.
+  std::vector<PoleDetection> take(std::uint32_t minHits, double metres);
+
  private:
+  PoleDetection seenNow(const SubmapPole& pole) const;
   void check(const std::vector<PoleDetection>& poles_robot) const;
   void move(const Pose2D& motion, const Eigen::Matrix3d& covariance);
   void associate(const std::vector<PoleDetection>& poles_robot);

@@ -27,9 +27,20 @@ struct SearchOptions {
   void validate() const;  ///< \throws Error naming the field
 };
 
+/// \brief What of the detections the filter is given. `[tracking]` in INI files.
+struct TrackingOptions {
+  /// Detections of a pole are averaged in the odometry frame and used together: what is wrong with
+  /// one is wrong with the next in much the same way, so each for itself would count too much.
+  bool average = true;
+  int minHits = 2;   ///< poles seen less often are not used
+  double every = 0.5;  ///< a pole is used again after so many driven metres, m
+  void validate() const;  ///< \throws Error naming the field
+};
+
 /// \brief All settings of the chain.
 struct LocalizationOptions {
   FilterOptions filter;
+  TrackingOptions tracking;
   SubmapOptions submap;
   GlobalOptions global;
   HealthOptions health;
@@ -100,8 +111,10 @@ class PoleLocalization {
   LocalizationMap m_map;
   LocalizationOptions m_options;
   PoleLocalizer m_filter;
-  LocalSubmap m_submap;
+  LocalSubmap m_submap;  ///< for the search
+  LocalSubmap m_tracks;  ///< for the filter
   HealthMonitor m_monitor;
+  PoleFrame m_tracked;  ///< this frame as the filter gets it
   GlobalResult m_search;
   std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;
@@ -113,6 +126,7 @@ class PoleLocalization {
   double m_searchTime = 0;  ///< s, of the last search
 };
 
-void bind(Binder& binder, SearchOptions& options);  ///< `[search]`
+void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`
+void bind(Binder& binder, SearchOptions& options);    ///< `[search]`
 
 }  // namespace polemcl

@@ -1,0 +1,66 @@
+#!/bin/sh
+# No start pose: random starts in simulated cities of 6 km, on the map of another day.
+# Usage: share/experiments/global.sh TRACKS OUT [--quick]
+#   TRACKS   folder of the roads kaist01.txt.gz and kaist02.txt.gz (sensor poses, 12 numbers a line)
+#   OUT      gets maps, drives, one JSON file a city and result.json
+#   --quick  one city, 40 starts
+# The poles that scans report are drawn from share/models/hdl32e.json. Worlds 601 to 604; settings
+# were chosen on others. Programs: build/bin, or POLEMCL_BIN.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+usage() {
+  sed -n '2,8s/^# //p' "$0" >&2
+  exit 2
+}
+case $#:${3-} in
+  2:) cities="601:kaist01 602:kaist02 603:kaist01 604:kaist02" trials=50 ;;
+  3:--quick) cities=602:kaist02 trials=40 ;;
+  *) usage ;;
+esac
+tracks=$1
+out=$2
+find_programs pole-simulate pole-map pole-eval
+mkdir -p "$out"
+
+# drive CITY DAY TRACK: OUT/CITY-DAY.ini .rawlog .tum
+drive() {
+  config=$out/$1-$2.ini
+  cp "$top/config/hdl32e.ini" "$config"
+  set_option "$config" simulation detections "$top/share/models/hdl32e.json"
+  set_option "$config" simulation spacing_m 0.5
+  set_option "$config" simulation speed_m_s 5
+  set_option "$config" world track "$tracks/$3.txt.gz"
+  set_option "$config" world tree_share 0.8
+  set_option "$config" world lamp_spacing_m 20
+  set_option "$config" world sign_spacing_m 16
+  set_option "$config" world seed "$1"
+  set_option "$config" world day "$2"
+  "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1-$2.rawlog"
+}
+
+printf '%-6s %9s %6s %6s %6s %10s %9s %9s %11s %9s\n' city map_poles starts right wrong undecided \
+  'metres' '95 %' 'error m' 'query ms'
+files=
+for city in $cities; do
+  seed=${city%%:*}
+  for day in 0 1; do drive "$seed" "$day" "${city#*:}"; done
+  "$bin/pole-map" --quiet --config "$out/$seed-0.ini" --input "$out/$seed-0.rawlog" \
+    --truth "$out/$seed-0.tum" --output "$out/$seed.polemap"
+  "$bin/pole-eval" global --quiet --config "$out/$seed-1.ini" --map "$out/$seed.polemap" \
+    --input "$out/$seed-1.rawlog" --truth "$out/$seed-1.tum" --trials "$trials" --seed "$seed" \
+    --json "$out/$seed.json"
+  files="$files $out/$seed.json"
+  jq -r --arg city "$seed" '[$city, .map_poles, .trials, .right, .wrong, .undecided, .metres_median,
+    .metres_p95, .error_median_m, .query_max_ms] | @tsv' "$out/$seed.json" |
+    awk '{ printf "%-6s %9d %6d %6d %6d %10d %9.1f %9.1f %11.3f %9.1f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }'
+done
+# shellcheck disable=SC2086 # word splitting wanted: a list of files
+jq -s '{cities: ., starts: (map(.trials) | add), right: (map(.right) | add),
+  wrong: (map(.wrong) | add), undecided: (map(.undecided) | add), ok_wrong: (map(.ok_wrong) | add),
+  query_max_ms: (map(.query_max_ms) | max)}
+  | .right_share = .right / .starts | .wrong_share = .wrong / .starts' $files >"$out/result.json"
+jq -r '"\(.starts) starts: right \(.right), wrong \(.wrong), undecided \(.undecided); ok said of a wrong pose \(.ok_wrong); longest step with a search \(.query_max_ms * 10 | round / 10) ms"' \
+  "$out/result.json"
