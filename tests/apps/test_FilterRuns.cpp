@@ -51,7 +51,7 @@ TEST_F(FilterRuns, OnePosePerScanAtItsTime) {
     ASSERT_EQ(result.trajectory().size(), street.frames.size());
     for (std::size_t i = 0; i < street.frames.size(); ++i) {
       EXPECT_EQ(result.trajectory()[i].time, street.frames[i].time);
-      EXPECT_EQ(result.updates[i].step.poles, street.frames[i].poles_robot.size());
+      EXPECT_EQ(result.updates[i].poles, street.frames[i].poles_robot.size());
     }
   }
 }

@@ -168,11 +168,11 @@ void writeErrorsCsv(const std::filesystem::path& file, const FilterRun& run,
   std::size_t scan = 0;
   for (const PoseError& error : errors.errors) {
     while (run.updates[scan].time < error.time) ++scan;
-    const StepReport& step = run.updates[scan].step;
+    const LocalizationUpdate& update = run.updates[scan];
     char line[200];
     std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.6f,%.6f,%zu,%.6f\n", scan, error.time,
                   error.position, error.lateral, error.longitudinal, error.heading / degree,
-                  step.poles, step.effectiveShare);
+                  update.poles, update.step.effectiveShare);
     output.stream() << line;
   }
   output.commit();
@@ -206,7 +206,7 @@ void writeHealthCsv(const std::filesystem::path& file, const FilterRun& run) {
         line, sizeof line, "%zu,%.9f,%s,%s,%.4f,%.3f,%.4f,%.1f,%zu,%.4f,%.5f,%.5f,%zu,%d\n", scan,
         update.time, name(health.state), name(health.reason), health.matchedShare, health.evidence,
         health.innovation, health.effectiveParticles, update.step.particles, health.modeShare,
-        health.spread, health.spreadHeading / degree, update.step.poles, int(update.relocalized));
+        health.spread, health.spreadHeading / degree, update.poles, int(update.relocalized));
     output.stream() << line;
   }
   output.commit();

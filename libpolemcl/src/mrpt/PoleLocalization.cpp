@@ -139,6 +139,7 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& frame) {
 
   LocalizationUpdate update;
   update.time = frame.time;
+  update.poles = frame.poles_robot.size();
   if (m_hasPose) track(frame, metres, update);
   if (!m_stepped) m_searchTime = frame.time;
   m_stepped = true;

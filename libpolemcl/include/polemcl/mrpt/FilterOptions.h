@@ -42,7 +42,7 @@ struct FilterOptions {
   /// whose error grows with the motion knows (nearly) no error across the driving direction.
   double extraSigma = 0.003;
   double extraSigmaYaw = 0.00034906585039887;  ///< 0.02° (`extra_sigma_deg`)
-  void validate() const;                         ///< \throws Error
+  void validate() const;                       ///< \throws Error
 };
 
 /// \brief Where the filter starts. `[start]` in INI files.

@@ -32,8 +32,8 @@ struct TrackingOptions {
   /// Detections of a pole are averaged in the odometry frame and used together: what is wrong with
   /// one is wrong with the next in much the same way, so each for itself would count too much.
   bool average = true;
-  int minHits = 2;   ///< poles seen less often are not used
-  double every = 0.5;  ///< a pole is used again after so many driven metres, m
+  int minHits = 2;        ///< poles seen less often are not used
+  double every = 0.5;     ///< a pole is used again after so many driven metres, m
   void validate() const;  ///< \throws Error naming the field
 };
 
@@ -53,7 +53,9 @@ struct LocalizationUpdate {
   double time = 0;                             ///< s, of the scan
   std::optional<PoseWithCovariance> estimate;  ///< map frame; none while no pose is known
   Health health;
-  StepReport step;           ///< of the filter; all zero without a pose
+  std::size_t poles = 0;  ///< observed in the scan
+  /// Of the filter, all zero without a pose; its `poles` are those it was given.
+  StepReport step;
   bool relocalized = false;  ///< the global search put the filter here in this step
 };
 
