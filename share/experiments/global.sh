@@ -33,9 +33,10 @@ drive() {
   set_option "$config" simulation spacing_m 0.5
   set_option "$config" simulation speed_m_s 5
   set_option "$config" world track "$tracks/$3.txt.gz"
-  set_option "$config" world tree_share 0.8
-  set_option "$config" world lamp_spacing_m 20
-  set_option "$config" world sign_spacing_m 16
+  set_option "$config" world tree_share 1
+  set_option "$config" world tree_spacing_m 4
+  set_option "$config" world lamp_spacing_m 9
+  set_option "$config" world sign_spacing_m 8
   set_option "$config" world seed "$1"
   set_option "$config" world day "$2"
   "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1-$2.rawlog"

@@ -113,6 +113,9 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.number("min_share", o.minShare, share, "",
            "of the sections that pass a pole nearby, so many must have seen it");
   b.number("near_range_m", o.nearRange, positive, "m", "for min_share");
+  b.number("pose_sigma_m", o.poseSigma, notNegative, "m", "sigma of the true positions");
+  b.angleDeg("heading_sigma_deg", o.headingSigma, Range::between(0, 57),
+             "sigma of the true headings: far detections count less");
   b.check(o);
 }
 
