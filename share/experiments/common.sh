@@ -32,6 +32,27 @@ json_value() {
   sed -n "s/.*\"$2\"[ ]*:[ ]*\\([-+.0-9eE]*\\).*/\\1/p" "$1" | head -n 1
 }
 
+# simulate_day SETTINGS FOLDER WORLD LENGTH DAY: a day of a simulated street, a scan every 0.5 m, odometry
+# with 2 % noise. Leaves dayN.ini, dayN.rawlog (poles), dayN.tum, poles_dayN.csv in the folder; the scans
+# are removed.
+simulate_day() {
+  config=$2/day$5.ini
+  mkdir -p "$2"
+  cp "$1" "$config"
+  set_option "$config" simulation spacing_m 0.5
+  set_option "$config" simulation odometry_noise 0.02
+  set_option "$config" world length_m "$4"
+  set_option "$config" world seed "$3"
+  set_option "$config" world day "$5"
+  "$bin/pole-simulate" --quiet --config "$config" --output "$2/scans"
+  "$bin/pole-import" folder --quiet --input "$2/scans" --output "$2/scans.rawlog"
+  "$bin/pole-extract" --quiet --config "$config" --input "$2/scans.rawlog" \
+    --output "$2/day$5.rawlog"
+  mv "$2/scans.tum" "$2/day$5.tum"
+  mv "$2/scans/poles_gt.csv" "$2/poles_day$5.csv"
+  rm -r "$2/scans" "$2/scans.rawlog"
+}
+
 error_keys="pos_mean pos_rmse lat_mean lon_mean ang_mean_deg ang_rmse_deg pos_max"
 
 # evaluate_runs FOLDER TRUTH: errors of every FOLDER/run_NN.tum, as run_NN.json and as the table

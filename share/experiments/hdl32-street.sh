@@ -24,25 +24,8 @@ settings=${3:-$top/config/hdl32e.ini}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 mkdir -p "$out"
 
-# One day: simulate, extract, remove the scans. Leaves dayN.rawlog (poles), dayN.tum, poles_dayN.csv.
-drive() {
-  config=$out/day$1.ini
-  cp "$settings" "$config"
-  set_option "$config" simulation spacing_m 0.5
-  set_option "$config" simulation odometry_noise 0.02
-  set_option "$config" world length_m 1500
-  set_option "$config" world seed "$seed"
-  set_option "$config" world day "$1"
-  "$bin/pole-simulate" --quiet --config "$config" --output "$out/scans"
-  "$bin/pole-import" folder --quiet --input "$out/scans" --output "$out/scans.rawlog"
-  "$bin/pole-extract" --quiet --config "$config" --input "$out/scans.rawlog" \
-    --output "$out/day$1.rawlog"
-  mv "$out/scans.tum" "$out/day$1.tum"
-  mv "$out/scans/poles_gt.csv" "$out/poles_day$1.csv"
-  rm -r "$out/scans" "$out/scans.rawlog"
-}
-drive 0
-drive 1
+simulate_day "$settings" "$out" "$seed" 1500 0
+simulate_day "$settings" "$out" "$seed" 1500 1
 
 "$bin/pole-map" --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
   --truth "$out/day0.tum" --output "$out/map.polemap" --csv "$out/map.csv"

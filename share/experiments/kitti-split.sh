@@ -1,30 +1,40 @@
 #!/bin/sh
 # A real drive, split: map from the even scans, localization on the odd ones.
 # Odometry is the true motion with 2 % noise (seed 7); 1000 particles, filter seeds 1 to 5.
-# Usage: share/experiments/kitti-split.sh DATA_DIR OUT [CONFIG]
+# Usage: share/experiments/kitti-split.sh DATA_DIR OUT [CONFIG [ODOMETRY]]
 #   DATA_DIR  a folder of scans with poses (velodyne/, times.txt, poses.txt)
 #   OUT       gets the map, the trajectories, errors.txt and result.json
 #   CONFIG    settings, config/kitti.ini unless given
+#   ODOMETRY  "visual": that of DATA_DIR/odometry.txt instead of the noisy truth
 # Programs: build/bin, or POLEMCL_BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-[ $# = 2 ] || [ $# = 3 ] || {
-  sed -n '2,9s/^# //p' "$0" >&2
-  exit 2
-}
+case $# in
+  2 | 3 | 4) ;;
+  *)
+    sed -n '2,10s/^# //p' "$0" >&2
+    exit 2
+    ;;
+esac
 data=$1
 out=$2
 config=${3:-$top/config/kitti.ini}
+case ${4:-noisy} in
+  noisy) odometry="--odometry-noise 0.02 --seed 7" ;;
+  visual) odometry="" ;;
+  *) die "odometry must be noisy or visual, not $4" ;;
+esac
 find_programs pole-import pole-map pole-localize pole-eval
 [ -d "$data/velodyne" ] || die "no scans in $data/velodyne"
 mkdir -p "$out"
 
 "$bin/pole-import" folder --quiet --input "$data" --output "$out/even.rawlog" --every 2 --offset 0
+# shellcheck disable=SC2086
 "$bin/pole-import" folder --quiet --input "$data" --output "$out/odd.rawlog" --every 2 --offset 1 \
-  --odometry-noise 0.02 --seed 7
+  $odometry # options: several words
 "$bin/pole-map" --quiet --config "$config" --input "$out/even.rawlog" --truth "$out/even.tum" \
   --output "$out/map.polemap" --csv "$out/map.csv"
 "$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" \

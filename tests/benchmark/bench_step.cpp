@@ -82,10 +82,15 @@ void reset(Filter& filter, const std::vector<mrpt::math::TPose2D>& particles) {
 
 /// range(0): particles over the whole map. What only the benchmark does, putting the particles back,
 /// is part of both figures; it is measured by putBack.
-void step(benchmark::State& state) {
+/// \param tempering As in the options of the filter. 0: one update and one resampling, as MRPT's
+/// step; else particles that are spread far wider than the likelihood, as after a start, are weighed
+/// and resampled several times within the step.
+void step(benchmark::State& state, double tempering) {
   Scene scene;
   const auto particles = scene.particles(1000, state.range(0) != 0);
-  PoleLocalizer localizer(scene.map, {}, 1);
+  FilterOptions options;
+  options.tempering = tempering;
+  PoleLocalizer localizer(scene.map, options, 1);
   StartOptions start;
   start.pose = scene.truth;
   localizer.start(start);
@@ -141,7 +146,8 @@ void putBack(benchmark::State& state) {
 void places(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"overTheMap"})->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 }
-BENCHMARK(step)->Apply(places);
+BENCHMARK_CAPTURE(step, once, 0)->Apply(places);
+BENCHMARK_CAPTURE(step, tempered, FilterOptions().tempering)->Apply(places);
 BENCHMARK(stepOfMrpt)->Apply(places);
 BENCHMARK(putBack)->Unit(benchmark::kMicrosecond);
 

@@ -103,6 +103,21 @@ TEST(PoleLocalizerMrpt, WeightsAreResetAfterResampling) {
   EXPECT_TRUE(localizer.report().resampled);
 }
 
+TEST(PoleLocalizerMrpt, NormalizesAndCountsLikeMrpt) {
+  mrpt::slam::CMonteCarloLocalization2D stock(100);
+  PoleLocalizer localizer(makeStreet({}).map, withoutJitter(), 1);
+  localizer.start(atOrigin());
+  spread(stock);
+  spread(localizer);
+  for (auto* filter : {&stock, static_cast<decltype(&stock)>(&localizer)})
+    for (auto& particle : filter->m_particles) particle.log_w += 3;
+  double expected = 0, got = 0;
+  EXPECT_NEAR(localizer.normalizeWeights(&got) / stock.normalizeWeights(&expected), 1, 1e-12);
+  EXPECT_EQ(got, expected);
+  EXPECT_NEAR(localizer.ESS(), stock.ESS(), 1e-12);
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(localizer.getW(i), stock.getW(i));
+}
+
 TEST(PoleLocalizerMrpt, ResamplesNowAndThenNotAlways) {
   const PoleStreet street = makeStreet({});
   PoleLocalizer localizer(street.map, {}, 1);

@@ -136,8 +136,9 @@ class Evaluation {
     const V determinant = hn::Mul(first, second);
     const V squares =
         hn::Add(hn::Mul(hn::Mul(along, along), second), hn::Mul(hn::Mul(across, across), first));
-    exponent = hn::Div(hn::Mul(hn::Set(m_d, 0.5), squares), determinant);
-    height = hn::Div(hn::Set(m_d, squaredSigma), hn::Sqrt(determinant));
+    const V inverse = hn::Div(hn::Set(m_d, 1.0), determinant);
+    exponent = hn::Mul(hn::Mul(hn::Set(m_d, 0.5), squares), inverse);
+    height = hn::Mul(hn::Set(m_d, squaredSigma), hn::Sqrt(inverse));
   }
 
   HWY_INLINE void addTerm(const LikelihoodTerm& term, std::size_t i) {

@@ -235,6 +235,17 @@ double PoleLocalizer::ESS() const {
   return effectiveShare(logWeights());
 }
 
+double PoleLocalizer::normalizeWeights(double* out_max_log_w) {
+  double least = INFINITY, greatest = -INFINITY;
+  for (const auto& particle : m_particles) {
+    least = std::min(least, particle.log_w);
+    greatest = std::max(greatest, particle.log_w);
+  }
+  for (auto& particle : m_particles) particle.log_w -= greatest;
+  if (out_max_log_w) *out_max_log_w = greatest;
+  return std::exp(greatest - least);
+}
+
 void PoleLocalizer::performSubstitution(const std::vector<size_t>& indices) {
   const std::vector<Pose2D> before = particles();
   std::vector<size_t> chosen =

@@ -92,6 +92,8 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   void performSubstitution(const std::vector<size_t>& indices) override;
   /// \brief The effective share of the particles. (MRPT's casts dynamically for each particle.)
   double ESS() const override;
+  /// \brief Greatest weight 1. \return Greatest over least, as MRPT's.
+  double normalizeWeights(double* out_max_log_w = nullptr) override;
   double getW(size_t i) const override { return m_particles[i].log_w; }
   /// @}
 

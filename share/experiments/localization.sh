@@ -1,0 +1,46 @@
+#!/bin/sh
+# Localization in one table: a simulated HDL-32E street of 1.5 km, the real KITTI drive split with
+# true odometry + 2 %, and the same with the independent visual odometry that comes with it.
+# Usage: share/experiments/localization.sh DATA_DIR OUT [SEED]
+#   DATA_DIR  a folder of real scans with poses and odometry.txt (kitti_raw_0005)
+#   OUT       gets street/, split/, visual/, table.txt and result.json
+#   SEED      of the street's world, 7 unless given
+# Programs: build/bin, or POLEMCL_BIN. Needs jq and 8 GB of disk while it runs; 15 minutes on 2 cores.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+[ $# = 2 ] || [ $# = 3 ] || {
+  sed -n '2,8s/^# //p' "$0" >&2
+  exit 2
+}
+data=$1
+out=$2
+seed=${3:-7}
+find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
+command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+[ -f "$data/odometry.txt" ] || die "no odometry in $data/odometry.txt"
+mkdir -p "$out"
+
+"$top/share/experiments/hdl32-street.sh" "$out/street" "$seed" >/dev/null
+"$top/share/experiments/kitti-split.sh" "$data" "$out/split" >/dev/null
+"$top/share/experiments/kitti-split.sh" "$data" "$out/visual" "$top/config/kitti.ini" visual \
+  >/dev/null
+
+jq -n --slurpfile street "$out/street/result.json" --slurpfile split "$out/split/result.json" \
+  --slurpfile visual "$out/visual/result.json" \
+  '{street: ($street[0].localization + {world_seed: $street[0].world_seed, map: $street[0].map}),
+    split: $split[0], visual: $visual[0]}' >"$out/result.json"
+jq -r --arg street "street, world $seed, 1.5 km" '
+  def shown($digits): . * pow(10; $digits) | round / pow(10; $digits) | tostring;
+  . as $all
+  | ["drive", "position m", "RMSE m", "heading deg", "RMSE deg", "largest m"],
+    (([$street, "street"], ["KITTI split, truth + 2 %", "split"],
+      ["KITTI split, visual odometry", "visual"]) as [$name, $key]
+     | $all[$key].mean as $m
+     | [$name, ($m.pos_mean | shown(4)), ($m.pos_rmse | shown(4)), ($m.ang_mean_deg | shown(3)),
+        ($m.ang_rmse_deg | shown(3)), ($m.pos_max | shown(3))])
+  | @tsv' "$out/result.json" >"$out/table.txt" || die "cannot read $out/result.json"
+echo "Localization, mean of 5 runs of 1000 particles each"
+awk -F '\t' '{ printf "%-32s %11s %9s %12s %9s %10s\n", $1, $2, $3, $4, $5, $6 }' "$out/table.txt"
