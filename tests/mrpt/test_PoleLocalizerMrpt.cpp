@@ -107,6 +107,7 @@ TEST(PoleLocalizerMrpt, NormalizesAndCountsLikeMrpt) {
   mrpt::slam::CMonteCarloLocalization2D stock(100);
   PoleLocalizer localizer(makeStreet({}).map, withoutJitter(), 1);
   localizer.start(atOrigin());
+  localizer.m_particles.resize(100);
   spread(stock);
   spread(localizer);
   for (auto* filter : {&stock, static_cast<decltype(&stock)>(&localizer)})
