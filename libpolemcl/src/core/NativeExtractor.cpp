@@ -46,15 +46,30 @@ void NativeExtractor::extract(const PointsView& points, const Eigen::Vector2f& u
   m_finder.find(m_lines, m_slices);
   const std::vector<Stack>& stacks = m_stacker.stack(m_slices);
   report.candidates = stacks.size();
+  m_leans.clear();
   for (const Stack& stack : stacks) {
     PoleDetection pole;
-    const Refusal refusal = examine(stack, pole);
-    if (refusal == Refusal::count_)
+    PoleLean lean;
+    const Refusal refusal = examine(stack, pole, lean);
+    if (refusal == Refusal::count_) {
       poles.push_back(pole);
-    else
+      m_leans.push_back(lean);
+    } else {
       ++report.refused[static_cast<int>(refusal)];
+    }
   }
+  setUpright(poles);
   report.refused[static_cast<int>(Refusal::duplicate)] = dropDuplicates(poles);
+}
+
+/// The sensor's tilt, which the fits did not know, moves poles whose own lean is not well seen.
+void NativeExtractor::setUpright(std::vector<PoleDetection>& poles) const {
+  const Eigen::Vector2f common = commonLean(m_leans, m_upright);
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    const Eigen::Vector2f shift = shiftBy(m_leans[i], m_upright, common);
+    poles[i].x += shift.x();
+    poles[i].y += shift.y();
+  }
 }
 
 /// Two stacks can stand on one thing (a sign's edge beside its post): the more confident one stays.
@@ -104,7 +119,7 @@ Refusal NativeExtractor::judgeShape(const Stack& stack, StackShape& shape) const
 }
 
 /// Cheap tests first; the fit, which costs most, comes last.
-Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
+Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole, PoleLean& lean) {
   StackShape shape;
   const Refusal early = judgeShape(stack, shape);
   if (early != Refusal::count_) return early;
@@ -135,6 +150,8 @@ Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole) {
   pole.x = fit->x;
   pole.y = fit->y;
   pole.radius = fit->radius;
+  lean = fit->lean;
+  lean.weight = static_cast<float>(pole.confidence - m_options.minConfidence);
   pole.bottom = evidence.bottom;
   pole.top = evidence.top;
   pole.covariance = fit->covariance * covarianceScale(features, odds);

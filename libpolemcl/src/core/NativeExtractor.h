@@ -18,8 +18,9 @@ class NativeExtractor {
                std::vector<PoleDetection>& poles, ExtractionReport& report);
 
  private:
-  /// \return The reason of the refusal, or Refusal::count_ when `pole` was filled.
-  Refusal examine(const Stack& stack, PoleDetection& pole);
+  /// \return The reason of the refusal, or Refusal::count_ when `pole` and `lean` were filled.
+  Refusal examine(const Stack& stack, PoleDetection& pole, PoleLean& lean);
+  void setUpright(std::vector<PoleDetection>& poles) const;
   Refusal judgeShape(const Stack& stack, StackShape& shape) const;
   std::size_t dropDuplicates(std::vector<PoleDetection>& poles) const;
   void selectForFit(const Stack& stack);
@@ -39,6 +40,7 @@ class NativeExtractor {
   std::vector<Slice> m_slices;
   std::vector<std::uint32_t> m_fitSlices;
   std::vector<float> m_widths;
+  std::vector<PoleLean> m_leans;  ///< of the poles found, in the order they were found
 };
 
 }  // namespace polemcl

@@ -244,7 +244,7 @@ namespace {
 struct Lean {
   double x = 0, y = 0;  ///< m per m of height
   double height = 0;    ///< mean of the slices, m
-  double variance = 0;  ///< of x and of y
+  double prior = 1;     ///< share of the prior in x and y
   double low = 0, high = 0;
 };
 
@@ -252,7 +252,7 @@ Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& 
             const PoleView& view) {
   // Poles are upright but for the sway of the sensor. The prior is the ratio of the variances of a
   // front's place and of the lean.
-  constexpr double kPrior = 4, kLeanSigma = 0.02;
+  constexpr double kPrior = 4;
   Lean lean;
   double n = 0, mx = 0, my = 0;
   for (std::uint32_t u : used) {
@@ -274,7 +274,7 @@ Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& 
   }
   lean.x = (lean.x + kPrior * view.uprightX) / (zz + kPrior);
   lean.y = (lean.y + kPrior * view.uprightY) / (zz + kPrior);
-  lean.variance = kLeanSigma * kLeanSigma * kPrior / (zz + kPrior);
+  lean.prior = kPrior / (zz + kPrior);
   lean.high = slices[used.front()].z;
   lean.low = slices[used.back()].z;
   return lean;
@@ -283,10 +283,16 @@ Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& 
 /// Moves the fit along the pole to the height of the sensor, as far as the slices reach: there a
 /// roll or pitch of the sensor does not move it.
 void moveToSensorHeight(const Lean& lean, PoleFit& fit) {
-  const double step = std::clamp(0.0, lean.low, lean.high) - lean.height;
+  const double reached = std::clamp(0.0, lean.low, lean.high);
+  const double step = reached - lean.height;
   fit.x += static_cast<float>(lean.x * step);
   fit.y += static_cast<float>(lean.y * step);
-  fit.covariance += Eigen::Matrix2d::Identity() * (lean.variance * step * step);
+  fit.covariance +=
+      Eigen::Matrix2d::Identity() * (leanSigma * leanSigma * lean.prior * step * step);
+  fit.lean.lean = {static_cast<float>(lean.x), static_cast<float>(lean.y)};
+  fit.lean.prior = static_cast<float>(lean.prior);
+  fit.lean.step = static_cast<float>(step);
+  fit.lean.gap = static_cast<float>(-reached);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// \file PoleFitting.h
 /// \brief Step B3, native: centre, radius and covariance of a stack of slices.
 
+#include <polemcl/core/CommonLean.h>
 #include <polemcl/core/ScanLines.h>
 #include <polemcl/core/Slices.h>
 
@@ -17,6 +18,7 @@ struct PoleFit {
   float radius = 0;    ///< m
   float residual = 0;  ///< robust standard deviation of the ranges against the cylinder, m
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< of (x, y), m²
+  PoleLean lean;
 };
 
 /// \brief Where a pole stands, roughly: middle of the slices' fronts, half their width behind.

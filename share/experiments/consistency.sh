@@ -1,0 +1,84 @@
+#!/bin/sh
+# Are poses as uncertain as they say? Simulated streets of 600 m, an HDL-32E, the map of one day, drives on
+# another: one in each direction for each world, each with its own detections, odometry noise and filter seed.
+# Usage: share/experiments/consistency.sh OUT [FIRST [WORLDS]]
+#   OUT      gets maps, drives, runs, forward.json, reverse.json and all.json
+#   FIRST    first world, 701 unless given; WORLDS: how many, 30 unless given
+# Poles are drawn by the model of share/models/hdl32e.json. Programs: build/bin, or POLEMCL_BIN.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+case $# in
+  1 | 2 | 3) ;;
+  *)
+    sed -n '2,8s/^# //p' "$0" >&2
+    exit 2
+    ;;
+esac
+out=$1
+first=${2:-701}
+worlds=${3:-30}
+find_programs pole-simulate pole-map pole-localize pole-eval
+mkdir -p "$out"
+
+# drive NAME WORLD DAY REVERSE: NAME.ini .rawlog .tum
+drive() {
+  config=$out/$1.ini
+  cp "$top/config/hdl32e.ini" "$config"
+  set_option "$config" simulation detections "$top/share/models/hdl32e.json"
+  set_option "$config" simulation spacing_m 0.5
+  set_option "$config" simulation odometry_noise 0.02
+  set_option "$config" simulation reverse "$4"
+  set_option "$config" simulation drive_seed "$2"
+  set_option "$config" world length_m 600
+  set_option "$config" world seed "$2"
+  set_option "$config" world day "$3"
+  "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1.rawlog"
+}
+
+# localize WORLD DIRECTION: OUT/WORLD-DIRECTION/run_00_cov.csv
+localize() {
+  "$bin/pole-localize" --quiet --config "$out/$1-$2.ini" --input "$out/$1-$2.rawlog" \
+    --map "$out/$1.polemap" --truth "$out/$1-$2.tum" --output "$out/$1-$2" --seed "$1"
+}
+
+forward=
+reverse=
+forward_truth=
+reverse_truth=
+world=$first
+while [ "$world" -lt $((first + worlds)) ]; do
+  drive "$world-map" "$world" 0 false
+  drive "$world-forward" "$world" 1 false
+  drive "$world-reverse" "$world" 1 true
+  "$bin/pole-map" --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
+    --truth "$out/$world-map.tum" --output "$out/$world.polemap"
+  localize "$world" forward
+  localize "$world" reverse
+  forward="$forward $out/$world-forward/run_00_cov.csv"
+  reverse="$reverse $out/$world-reverse/run_00_cov.csv"
+  forward_truth="$forward_truth $out/$world-forward.tum"
+  reverse_truth="$reverse_truth $out/$world-reverse.tum"
+  world=$((world + 1))
+done
+
+# score NAME TRUTH... --cov CSV...: the last line of the table, and NAME.json
+score() {
+  name=$1
+  shift
+  "$bin/pole-eval" consistency --json "$out/$name.json" --truth "$@" >"$out/$name.txt"
+  printf '%-8s ' "$name"
+  tail -n 1 "$out/$name.txt"
+}
+sed -n 2p "$(
+  # shellcheck disable=SC2086 # word splitting wanted: lists of files
+  score forward $forward_truth --cov $forward >"$out/table.txt"
+  # shellcheck disable=SC2086
+  score reverse $reverse_truth --cov $reverse >>"$out/table.txt"
+  # shellcheck disable=SC2086
+  score all $forward_truth $reverse_truth --cov $forward $reverse >>"$out/table.txt"
+  echo "$out/all.txt"
+)"
+cat "$out/table.txt"
