@@ -1,4 +1,5 @@
 #include <polemcl/apps/DatasetImport.h>
+#include <polemcl/apps/EvalApp.h>
 #include <polemcl/apps/ExtractApp.h>
 #include <polemcl/apps/SimulateApp.h>
 #include <polemcl/io/PolePositions.h>
@@ -151,4 +152,29 @@ TEST_F(SimulatedPoles, RefusesANameThatIsNoRawlog) {
 TEST_F(SimulatedPoles, WantsToKnowWhatToWrite) {
   configure("");
   expectUsageError(runProgram(simulateMain, {"--config", at("street.ini")}));
+}
+
+TEST_F(SimulatedPoles, GiveAModelAndFiguresWithoutTheirScans) {
+  configure("detections = " + s_model + "\n", "length_m = 150\n");
+  ASSERT_EQ(run("a0.rawlog").code, 0);
+  ASSERT_EQ(run("a1.rawlog", {"--day", "1"}).code, 0);
+  const Outcome fitted = runProgram(
+      evalMain, {"model", "--drives", at("a0.rawlog"), at("a1.rawlog"), "--model", at("m.json")});
+  EXPECT_EQ(fitted.code, 0) << fitted.err;
+  EXPECT_NE(fitted.out.find("hdl32e"), std::string::npos) << fitted.out;
+  configure("detections = " + at("m.json") + "\n");
+  EXPECT_EQ(run("b.rawlog").code, 0);
+  const Outcome seen =
+      runProgram(evalMain, {"sightings", "--poles", at("a0.rawlog"), "--json", at("a0.json")});
+  EXPECT_EQ(seen.code, 0) << seen.err;
+  EXPECT_NE(readText(folder / "a0.json").find("\"found_run_m\""), std::string::npos);
+
+  expectFailure(
+      runProgram(evalMain, {"model", "--drives", at("a0.rawlog"), "--model", at("m.json")}),
+      {"--drives", "1 are given", "two for each street"});
+  fs::copy(folder / "a0.rawlog", folder / "b.rawlog", fs::copy_options::overwrite_existing);
+  expectFailure(runProgram(evalMain, {"sightings", "--poles", at("b.rawlog")}),
+                {"b.rawlog", "scans"});
+  fs::remove(folder / "b_config.ini");
+  expectFailure(runProgram(evalMain, {"sightings", "--poles", at("b.rawlog")}), {"b_config.ini"});
 }

@@ -1,4 +1,5 @@
 #include <polemcl/apps/DetectionModelApp.h>
+#include <polemcl/apps/JsonFile.h>
 #include <polemcl/apps/SimulatedPoles.h>
 #include <polemcl/mrpt/PoleSequence.h>
 #include <polemcl/sim/DetectionModelFile.h>
@@ -60,6 +61,33 @@ sim::DetectionModel fitModel(const FitModelOptions& options) {
   const auto model = sim::fitDetectionModel(streets, maxRange, describe(drives));
   sim::writeDetectionModel(options.model, model);
   return model;
+}
+
+sim::DetectionSummary evalSightings(const EvalSightingsOptions& options) {
+  const LoadedDrive drive(options.poles);
+  const auto s =
+      sim::summarizeDetections(drive.observed, drive.settings.extraction.native.maxRange);
+  if (!options.json) return s;
+  const auto number = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  nlohmann::ordered_json recall = nlohmann::ordered_json::array();
+  for (const auto& share : s.recall) recall.push_back(number(share));
+  writeJson(*options.json, {{"scans", s.scans},
+                            {"detections", s.detections},
+                            {"per_scan", s.perScan},
+                            {"false_per_scan", s.falsePerScan},
+                            {"lasting_false_per_scan", s.lastingFalsePerScan},
+                            {"centre_median_m", number(s.centreMedian)},
+                            {"centre_p90_m", number(s.centre90)},
+                            {"nees_mean", number(s.neesMean)},
+                            {"nees_median", number(s.neesMedian)},
+                            {"found_run_m", number(s.foundRun)},
+                            {"missed_run_m", number(s.missedRun)},
+                            {"confidence", number(s.confidence)},
+                            {"range_edges_m", s.rangeEdges},
+                            {"recall", recall}});
+  return s;
 }
 
 }  // namespace polemcl::apps

@@ -117,11 +117,36 @@ EvalCommand modelCommand(CLI::App& program) {
   return {&cli, [options] { return text(fitModel(*options), *options); }};
 }
 
+std::string text(const sim::DetectionSummary& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", detections per scan " << io::fixed(s.perScan, 2) << ", false "
+      << io::fixed(s.falsePerScan, 3) << " (" << io::fixed(s.lastingFalsePerScan, 3)
+      << " of lasting objects)\nfound of the poles within";
+  for (std::size_t i = 0; i < s.recall.size(); ++i)
+    out << ' ' << io::significant(s.rangeEdges[i + 1], 3) << " m: " << shown(s.recall[i], 3)
+        << (i + 1 < s.recall.size() ? "," : "\n");
+  out << "centre error: median " << shown(s.centreMedian, 1, 100) << "  90 % "
+      << shown(s.centre90, 1, 100) << " cm; normalised squared error: mean " << shown(s.neesMean, 2)
+      << "  median " << shown(s.neesMedian, 2) << "; confidence: mean " << shown(s.confidence, 3)
+      << "\nmean way found without a break " << shown(s.foundRun, 2) << " m, missed "
+      << shown(s.missedRun, 2) << " m\n";
+  return out.str();
+}
+
+EvalCommand sightingsCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "sightings", "Poles of a simulated drive against the true ones, without its scans");
+  const auto options = std::make_shared<EvalSightingsOptions>();
+  cli.add_option("--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options] { return text(evalSightings(*options)); }};
+}
+
 }  // namespace
 
 std::vector<EvalCommand> extractionCommands(CLI::App& program) {
   return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program),
-          modelCommand(program)};
+          modelCommand(program), sightingsCommand(program)};
 }
 
 }  // namespace polemcl::apps

@@ -15,7 +15,7 @@ struct EvalCommand {
   std::function<std::string()> run;
 };
 
-/// \brief Declares `detections`, `repeatability`, `rotation` and `model`.
+/// \brief Declares `detections`, `repeatability`, `rotation`, `model` and `sightings`.
 std::vector<EvalCommand> extractionCommands(CLI::App& program);
 
 /// \brief Declares `global` and `consistency`.

@@ -138,11 +138,18 @@ double DetectionModel::value(DetectionClass c, Reported r, double range, double 
   return place.mix(valueAt(table[place.low], z), valueAt(table[place.high], z));
 }
 
+double DetectionModel::errorScale(DetectionClass c, Reported sigma, double range,
+                                  double reported) const {
+  const double usual = value(c, sigma, range, 0);
+  return usual * std::pow(reported / usual, errorExponent);
+}
+
 void DetectionModel::validate() const {
   if (sensor.empty()) refuse("sensor", "the model of the LiDAR is missing");
   requireIn("height_m", height, 0.1, 10);
   requireIn("max_range_m", maxRange, 1, 500);
   requireIn("behind_houses", behindHouses, 0, 1);
+  requireIn("error_exponent", errorExponent, 0, 1);
   requireIn("clutter_per_m.always", clutterAlways, 0, 10);
   requireIn("clutter_per_m.today", clutterToday, 0, 10);
   requireIn("passing_per_scan", passing, 0, 1000);

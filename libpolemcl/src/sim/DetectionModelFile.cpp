@@ -108,6 +108,7 @@ DetectionModel fromJson(const Json& json, const std::string& where) {
   if (!(points >= 0 && points <= 1e9)) throw Error(where + "points_per_scan: 0 to 1e9 is allowed");
   model.points = static_cast<std::uint32_t>(points);
   model.behindHouses = file.number("behind_houses");
+  model.errorExponent = file.number("error_exponent");
   model.detectedRange = file.numbers("detected_range_m");
   model.reportedRange = file.numbers("reported_range_m");
   if (file.array<kQuantileLevels.size()>("levels") != kQuantileLevels)
@@ -179,6 +180,7 @@ Json toJson(const DetectionModel& model) {
           {"max_range_m", rounded(model.maxRange)},
           {"points_per_scan", model.points},
           {"behind_houses", rounded(model.behindHouses)},
+          {"error_exponent", rounded(model.errorExponent)},
           {"detected_range_m", numbers(model.detectedRange)},
           {"reported_range_m", numbers(model.reportedRange)},
           {"levels", Json(kQuantileLevels)},

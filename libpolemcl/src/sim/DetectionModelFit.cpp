@@ -45,6 +45,9 @@ class Fit {
 
   DetectionModel run(const std::vector<ObservedStreet>& streets) {
     fitDetected();
+    fitReported();  // for the usual sigmas
+    fitErrorExponent();
+    scaleErrors();
     fitReported();
     fitNoise();
     fitFalse(streets);
@@ -52,6 +55,45 @@ class Fit {
   }
 
  private:
+  /// Slope of the logarithm of errors over that of sigmas, both against what is usual at that
+  /// range (Harvey 1976).
+  void fitErrorExponent() {
+    double count = 0, x = 0, y = 0, xx = 0, xy = 0;
+    forTracks([&](const Track& track) {
+      if (!isPole(track.kind)) return;
+      for (const Chance& chance : track.chances)
+        for (int i = 0; i < 2 && chance.detection; ++i) {
+          const double usual = m_model.value(track.kind, static_cast<Reported>(i), chance.range, 0);
+          const double error = std::abs(chance.reported[i] * chance.reported[i + 2]);
+          if (error < 1e-6) continue;
+          const double a = std::log(chance.reported[i] / usual), b = std::log(error / usual);
+          count += 1;
+          x += a;
+          y += b;
+          xx += a * a;
+          xy += a * b;
+        }
+    });
+    const double spread = count * xx - x * x;
+    if (spread > 0) m_model.errorExponent = std::clamp((count * xy - x * y) / spread, 0.0, 1.0);
+  }
+
+  /// Errors as multiples of what the model has them multiples of.
+  void scaleErrors() {
+    const auto scale = [&](DetectionClass kind, Chance& chance) {
+      for (int i = 0; i < 2 && chance.detection; ++i)
+        chance.reported[i + 2] *=
+            chance.reported[i] /
+            m_model.errorScale(kind, static_cast<Reported>(i), chance.range, chance.reported[i]);
+    };
+    for (TrackedStreet& street : m_streets)
+      for (TrackedDrive* drive : {&street.first, &street.second}) {
+        for (Track& track : drive->tracks)
+          for (Chance& chance : track.chances) scale(track.kind, chance);
+        for (Chance& chance : drive->passing) scale(DetectionClass::passing, chance);
+      }
+  }
+
   template <class Work>
   void forTracks(const Work& work) const {
     for (const TrackedStreet& street : m_streets)
@@ -147,6 +189,7 @@ class Fit {
                      [nearest(kReportedRange, chance.range)],
               chance);
     for (int c = 0; c < kDetectionClasses; ++c) {
+      m_model.classes[c].reported = {};
       Samples pooled;  // over all ranges, for what is seldom
       for (const Samples& row : samples[c])
         for (int r = 0; r < kReported; ++r)
@@ -257,7 +300,8 @@ class Fit {
       for (const TrackedDrive* drive : {&tracked.first, &tracked.second}) {
         scans += static_cast<double>(drive->scans);
         passing += static_cast<double>(drive->passing.size());
-        for (const Chance& chance : drive->passing) ranges.push_back(std::min(chance.range, m_model.maxRange));
+        for (const Chance& chance : drive->passing)
+          ranges.push_back(std::min(chance.range, m_model.maxRange));
         for (const Track& track : drive->tracks) {
           if (track.kind != DetectionClass::clutter) continue;
           lasting += 0.5;

@@ -113,8 +113,13 @@ PoleDetection DetectionSampler::report(const Target& target, const View& view,
   ray.col(0) = toPlace / std::max(range, 1e-6);
   ray.col(1) = Eigen::Vector2d(-ray(1, 0), ray(0, 0));
   const Eigen::Vector2d sigma(value(Reported::sigmaAlong), value(Reported::sigmaAcross));
-  const Eigen::Vector2d error(value(Reported::errorAlong), value(Reported::errorAcross));
-  const Eigen::Vector2d centre = place + ray * sigma.cwiseProduct(error);
+  const auto scale = [&](Reported which, double reported) {
+    return m_model.errorScale(target.kind, which, range, reported);
+  };
+  const Eigen::Vector2d error(
+      scale(Reported::sigmaAlong, sigma.x()) * value(Reported::errorAlong),
+      scale(Reported::sigmaAcross, sigma.y()) * value(Reported::errorAcross));
+  const Eigen::Vector2d centre = place + ray * error;
   PoleDetection pole;
   pole.x = centre.x();
   pole.y = centre.y();

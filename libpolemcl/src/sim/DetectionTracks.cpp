@@ -186,6 +186,11 @@ class Tracker {
 
 }  // namespace
 
+TrackedDrive trackDrive(const ObservedDrive& drive, double maxRange) {
+  std::vector<Track> clutter;
+  return Tracker(drive, maxRange).run(clutter);
+}
+
 TrackedStreet trackStreet(const ObservedStreet& street, double maxRange) {
   TrackedStreet tracked;
   std::vector<Track> clutter;

@@ -14,7 +14,8 @@ struct Chance {
   double range = 0;                          ///< m
   bool hidden = false;                       ///< behind a house
   const PoleDetection* detection = nullptr;  ///< none: not found
-  std::array<double, kReported> reported{};  ///< as the model has it; of a detection
+  /// As the model has it with errorExponent 1; of a detection.
+  std::array<double, kReported> reported{};
 };
 
 struct Track {
@@ -31,6 +32,8 @@ struct TrackedDrive {
   std::vector<Chance> passing;  ///< false detections that belong to nothing lasting
   std::size_t scans = 0;
 };
+
+TrackedDrive trackDrive(const ObservedDrive& drive, double maxRange);
 
 /// \brief Both days of a street; lasting false objects found on both have one id.
 struct TrackedStreet {

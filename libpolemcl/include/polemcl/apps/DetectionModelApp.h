@@ -1,10 +1,13 @@
 #pragma once
 /// \file DetectionModelApp.h
-/// \brief `pole-eval model`: fits a detection model to ray-cast drives.
+/// \brief `pole-eval model` and `sightings`: fits a detection model to ray-cast drives, and says
+/// what the detections of a simulated drive are like.
 
 #include <polemcl/sim/DetectionModel.h>
+#include <polemcl/sim/DetectionSummary.h>
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace polemcl::apps {
@@ -21,5 +24,13 @@ struct FitModelOptions {
 /// \throws Error naming the file: no P_config.ini, another number of scans than its drive has, an
 ///         odd number of drives, drives that do not belong together.
 sim::DetectionModel fitModel(const FitModelOptions& options);
+
+/// \brief `pole-eval sightings`.
+struct EvalSightingsOptions {
+  std::filesystem::path poles;  ///< rawlog of `pole-simulate --poles`, P_config.ini beside it
+  std::optional<std::filesystem::path> json;
+};
+/// \brief Figures of one simulated drive, cast or drawn. \throws Error as fitModel().
+sim::DetectionSummary evalSightings(const EvalSightingsOptions& options);
 
 }  // namespace polemcl::apps

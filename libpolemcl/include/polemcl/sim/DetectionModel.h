@@ -24,8 +24,8 @@ DetectionClass classOf(Kind kind);
 enum class Reported {
   sigmaAlong,   ///< reported standard deviation along the ray, m
   sigmaAcross,  ///< and across, m
-  errorAlong,   ///< error along the ray, + beyond, as a multiple of sigmaAlong
-  errorAcross,  ///< and across, + left, as a multiple of sigmaAcross
+  errorAlong,   ///< error along the ray, + beyond, as a multiple of errorScale()
+  errorAcross,  ///< and across, + left, likewise
   confidence,
   radius,  ///< reported minus true, m; of what is no pole the reported one
   bottom,  ///< m above ground
@@ -62,13 +62,15 @@ struct DetectionModel {
   std::string fittedOn;      ///< for people
   double behindHouses = 0;   ///< probability that a pole hidden by a house is detected all the same
   std::vector<double> detectedRange, reportedRange;  ///< ascending, m
+  /// How far errors grow with the sigma reported: 1, as they should; 0, not at all.
+  double errorExponent = 1;
   std::array<ClassModel, kDetectionClasses> classes;
   NoiseSpectrum poleVisibility, clutterVisibility;
   std::array<NoiseSpectrum, kReported> noise;
   double clutterAlways = 0, clutterToday = 0;  ///< lasting false objects per metre of road
-  Quantiles clutterLateral{};                  ///< of these, distance from the middle of the road, m
-  double passing = 0;                          ///< passing false detections per scan
-  Quantiles passingRange{};                    ///< of these, m
+  Quantiles clutterLateral{};  ///< of these, distance from the middle of the road, m
+  double passing = 0;          ///< passing false detections per scan
+  Quantiles passingRange{};    ///< of these, m
 
   const ClassModel& of(DetectionClass c) const { return classes[static_cast<int>(c)]; }
   const NoiseSpectrum& noiseOf(Reported r) const { return noise[static_cast<int>(r)]; }
@@ -76,6 +78,11 @@ struct DetectionModel {
   double detectionScore(DetectionClass c, double range) const;
   /// \brief What is reported at a range, for a standard normal number.
   double value(DetectionClass c, Reported r, double range, double z) const;
+
+  /// \brief What errors are multiples of, m: the reported sigma to the power of errorExponent,
+  /// times the usual sigma at that range to the power of what is left of 1. \param sigma Which:
+  /// sigmaAlong or sigmaAcross. \param reported Its value, m.
+  double errorScale(DetectionClass c, Reported sigma, double range, double reported) const;
 
   /// \throws Error naming the key as it is in the file and what is allowed.
   void validate() const;
