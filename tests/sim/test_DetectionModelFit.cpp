@@ -16,9 +16,9 @@ struct Drawn {
   std::vector<std::unique_ptr<SimulatedDrive>> drives;
   std::vector<ObservedDrive> observed;
 
-  void add(const DetectionModel& model, std::uint64_t seed, int day) {
+  void add(const DetectionModel& model, std::uint64_t seed, int day, double length = 60) {
     SimulationOptions options;
-    options.world.length = 1200;
+    options.world.length = length;
     options.world.seed = seed;
     options.world.day = day;
     options.world.removedShare = 0;
@@ -54,8 +54,8 @@ TEST(DetectionModelFit, findsTheModelThatTheDetectionsAreDrawnFrom) {
   truth.clutterToday = 0.02;
   truth.passing = 0.2;
   Drawn drawn;
-  drawn.add(truth, 11, 0);
-  drawn.add(truth, 11, 1);
+  drawn.add(truth, 11, 0, 1200);
+  drawn.add(truth, 11, 1, 1200);
   const DetectionModel fitted = drawn.fit();
 
   EXPECT_EQ(fitted.sensor, "hdl32e");

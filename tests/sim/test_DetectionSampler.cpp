@@ -139,7 +139,7 @@ TEST_F(DetectionSamplerTest, lastingFalseObjectsStandOnAllDaysOrOnOne) {
   DetectionModel model = plainModel();
   model.clutterAlways = 0.05;
   model.clutterToday = 0.03;
-  m_options.world.length = 4000;
+  m_options.world.length = 1500;
   const auto placesOn = [&](int day, double factor) {
     m_options.world.day = day;
     std::set<std::pair<double, double>> places;
@@ -148,11 +148,11 @@ TEST_F(DetectionSamplerTest, lastingFalseObjectsStandOnAllDaysOrOnOne) {
     return places;
   };
   const auto first = placesOn(0, 1), second = placesOn(1, 1), twice = placesOn(1, 2);
-  EXPECT_NEAR(static_cast<double>(first.size()), 0.08 * 4000, 4 * std::sqrt(0.08 * 4000));
+  EXPECT_NEAR(static_cast<double>(first.size()), 0.08 * 1500, 4 * std::sqrt(0.08 * 1500));
   double common = 0;
   for (const auto& place : first) common += static_cast<double>(second.count(place));
-  EXPECT_NEAR(common, 0.05 * 4000, 4 * std::sqrt(0.05 * 4000));
-  EXPECT_NEAR(static_cast<double>(twice.size()), 0.16 * 4000, 4 * std::sqrt(0.16 * 4000));
+  EXPECT_NEAR(common, 0.05 * 1500, 4 * std::sqrt(0.05 * 1500));
+  EXPECT_NEAR(static_cast<double>(twice.size()), 0.16 * 1500, 4 * std::sqrt(0.16 * 1500));
   for (const auto& place : second) EXPECT_EQ(twice.count(place), 1u);
 }
 
