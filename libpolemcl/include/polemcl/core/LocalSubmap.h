@@ -22,7 +22,7 @@ struct SubmapOptions {
   double gate = 3.5;   ///< greatest Mahalanobis distance of a detection from its pole
   /// Error that all detections of a pole share and that does not average out, added to each
   /// detection's standard deviation (and never below it in a pole's), m.
-  double floor = 0.02;
+  double floor = 0.01;
   double viewRange = 25;  ///< a pole nearer than this that is not detected is a missed chance, m
   /// Drops a pole that was seen in less than this share of its chances, once it had ten, unless it
   /// has `sureHits`. In [0, 1].

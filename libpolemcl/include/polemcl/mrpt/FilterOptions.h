@@ -34,14 +34,14 @@ struct FilterOptions {
   /// PoleLocalizer::maxJitterMetres and maxJitterRadians. 0: copies stay where they are.
   double regularization = 0.2;
   /// A scan that would leave an effective share below this is used in steps: first with a wider
-  /// likelihood (2, 4 or 8 times the sigma) that leaves this share, resampling, then a narrower
+  /// likelihood (2 to 32 times the sigma) that leaves this share, resampling, then a narrower
   /// one, down to the likelihood itself. It is what finds the way from the start disc, where few
   /// particles are near the truth. 0: at once.
   double tempering = 0.2;
   /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry
   /// whose error grows with the motion knows (nearly) no error across the driving direction.
-  double extraSigma = 0.003;
-  double extraSigmaYaw = 0.00034906585039887;  ///< 0.02° (`extra_sigma_deg`)
+  double extraSigma = 0.001;
+  double extraSigmaYaw = 0.00010471975511966;  ///< 0.006° (`extra_sigma_deg`)
   void validate() const;                       ///< \throws Error
 };
 

@@ -49,7 +49,7 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   static constexpr double maxJitterMetres = 0.25, maxJitterRadians = 0.035;
 
   /// The widest likelihood that tempering begins with, as a multiple of `[likelihood] sigma_m`.
-  static constexpr double maxWidening = 8;
+  static constexpr double maxWidening = 32;
 
   /// \throws Error when the map has no poles or an option is out of range.
   PoleLocalizer(std::shared_ptr<const CPoleMap> map, const FilterOptions& filterOptions,
