@@ -40,8 +40,8 @@ struct FilterOptions {
   double tempering = 0.2;
   /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry
   /// whose error grows with the motion knows (nearly) no error across the driving direction.
-  double extraSigma = 0.001;
-  double extraSigmaYaw = 0.00010471975511966;  ///< 0.006° (`extra_sigma_deg`)
+  double extraSigma = 0.003;
+  double extraSigmaYaw = 0.00034906585039887;  ///< 0.02° (`extra_sigma_deg`)
   void validate() const;                       ///< \throws Error
 };
 
