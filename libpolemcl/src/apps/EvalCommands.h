@@ -18,7 +18,7 @@ struct EvalCommand {
 /// \brief Declares `detections`, `repeatability`, `rotation`, `model` and `sightings`.
 std::vector<EvalCommand> extractionCommands(CLI::App& program);
 
-/// \brief Declares `global` and `consistency`.
+/// \brief Declares `global`, `consistency` and `faults`.
 std::vector<EvalCommand> localizationCommands(CLI::App& program);
 
 }  // namespace polemcl::apps

@@ -1,4 +1,5 @@
 #include <polemcl/apps/ConsistencyEval.h>
+#include <polemcl/apps/FaultTrials.h>
 #include <polemcl/apps/GlobalTrials.h>
 
 #include <cstdio>
@@ -75,10 +76,42 @@ EvalCommand consistencyCommand(CLI::App& program) {
   return {&cli, [options] { return text(evalConsistency(*options)); }};
 }
 
+EvalCommand faultsCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("faults", "Faults in a drive: noticed, and recovered from?");
+  const auto shared = std::make_shared<FaultTrialsOptions>();
+  FaultTrialsOptions& options = *shared;
+  declareFiles(cli, options.files);
+  std::map<std::string, Fault> faults;
+  for (const Fault fault :
+       {Fault::none, Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck, Fault::slip})
+    faults[name(fault)] = fault;
+  cli.add_option("--fault", options.fault.fault, "What goes wrong; none: the whole drive as it is")
+      ->required()
+      ->transform(CLI::CheckedTransformer(faults))
+      ->type_name("none|kidnap|wrong-map|blind|stuck|slip");
+  cli.add_option("--other-map", options.otherMap, "The wrong map (.polemap), for wrong-map");
+  cli.add_option("--trials", options.trials, "Places of the fault; of none, runs of the drive")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  cli.add_option("--seed", options.seed, "Of the faults; trial i filters with seed + i")
+      ->capture_default_str();
+  const auto number = [&](const char* flag, double& value, const char* meaning) {
+    cli.add_option(flag, value, meaning)->check(CLI::PositiveNumber)->capture_default_str();
+  };
+  number("--lead", options.fault.lead, "Driven before the fault, s");
+  number("--duration", options.fault.duration, "Of blind, stuck and slip, s");
+  number("--tail", options.fault.tail, "Driven after the fault, m");
+  cli.add_option("--slip", options.fault.slip, "Error of the slipping odometry's scale")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  cli.add_option("--json", options.json, "Write the figures to this file");
+  return {&cli, [shared] { return evalFaults(*shared); }};
+}
+
 }  // namespace
 
 std::vector<EvalCommand> localizationCommands(CLI::App& program) {
-  return {globalCommand(program), consistencyCommand(program)};
+  return {globalCommand(program), consistencyCommand(program), faultsCommand(program)};
 }
 
 }  // namespace polemcl::apps

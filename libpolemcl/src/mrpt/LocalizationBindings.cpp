@@ -91,6 +91,31 @@ void bind(Binder& b, TrackingOptions& o) {
   b.check(o);
 }
 
+void bind(Binder& b, MotionCheckOptions& o) {
+  b.section("motion_check", "Do the poles contradict the odometry? Then their motion replaces it");
+  b.flag("enabled", o.enabled, "false: the odometry is always believed");
+  b.number("window_s", o.window, positive, "s", "longest time over which scans are compared");
+  b.number("scale", o.scale, {0, 1, false, true}, "",
+           "tolerated error of the odometry, share of the way");
+  b.number("tolerance_m", o.metres, Range::atLeast(0), "m", "tolerated beside it");
+  b.angleDeg("tolerance_deg", o.turn, Range::between(0, 180), "tolerated error of a turn");
+  b.number("sigmas", o.sigmas, positive, "",
+           "so many standard deviations beyond the tolerance contradict");
+  b.integer("min_pairs", o.minPairs, Range::atLeast(3), "", "fewer poles in common say nothing");
+  b.number("min_share", o.minShare, share, "share", "least share of the poles in common");
+  b.number("margin", o.margin, Range::atLeast(0), "poles",
+           "so much better must another motion fit");
+  b.number("settle_s", o.settle, positive, "s", "agreement until the odometry is believed again");
+  b.number("hold_s", o.hold, Range::atLeast(0), "s", "the last speed is kept without poles");
+  b.number("max_speed_m_s", o.maxSpeed, positive, "m/s", "no vehicle is faster");
+  b.angleDeg("max_turn_rate_deg_s", o.maxTurnRate, positive, "deg/s: or turns faster");
+  b.number("sigma_m", o.alignment.sigma, {0, 1, true, false}, "m",
+           "added to each detection's standard deviation");
+  b.number("gate", o.alignment.gate, positive, "", "greatest Mahalanobis distance of a pair");
+  b.number("reach_m", o.alignment.reach, positive, "m", "greatest distance of a pair at first");
+  b.check(o);
+}
+
 void bind(Binder& b, SearchOptions& o) {
   b.section("search", "When the whole map is searched for the vehicle");
   b.flag("recover", o.recover, "true: a vehicle that is lost is looked for");

@@ -55,6 +55,7 @@ void LocalizationOptions::validate() const {
   global.validate();
   health.validate();
   search.validate();
+  motionCheck.validate();
 }
 
 LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
@@ -72,6 +73,7 @@ PoleLocalization::PoleLocalization(LocalizationMap map, const LocalizationOption
       m_filter(m_map.poles, options.filter, seed),
       m_submap(options.submap),
       m_tracks(options.submap),
+      m_motionCheck(options.motionCheck),
       m_monitor(options.health) {}
 
 void PoleLocalization::start(const StartOptions& start) {
@@ -95,6 +97,7 @@ void PoleLocalization::start(const StartOptions& start) {
 void PoleLocalization::startAnywhere() {
   m_submap.clear();
   m_tracks.clear();
+  m_motionCheck.clear();
   m_monitor.reset();
   m_search = {};
   m_searches = 0;
@@ -121,8 +124,11 @@ void PoleLocalization::checkFrame(const PoleFrame& frame) const {
   }
 }
 
-LocalizationUpdate PoleLocalization::step(const PoleFrame& frame) {
-  checkFrame(frame);
+LocalizationUpdate PoleLocalization::step(const PoleFrame& seen) {
+  checkFrame(seen);
+  LocalizationUpdate update;
+  update.time = seen.time;
+  const PoleFrame frame = checkedMotion(seen, update);
   const Pose2D motion = m_stepped ? frame.motion->mean : Pose2D();
   const double metres = std::hypot(motion.x, motion.y);
   Eigen::Matrix3d covariance = walkCovariance(motion, m_options.submap);
@@ -137,8 +143,6 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& frame) {
                                             m_options.tracking.every);
   }
 
-  LocalizationUpdate update;
-  update.time = frame.time;
   update.poles = frame.poles_robot.size();
   if (m_hasPose) track(frame, metres, update);
   if (!m_stepped) m_searchTime = frame.time;
@@ -148,6 +152,17 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& frame) {
   if (searchIsDue()) search(frame, update);
   update.health = m_monitor.health();
   return update;
+}
+
+/// The frame, its motion replaced where the poles contradict it.
+PoleFrame PoleLocalization::checkedMotion(const PoleFrame& frame, LocalizationUpdate& update) {
+  const io::PlanarMotion odometry = m_stepped ? *frame.motion : io::PlanarMotion();
+  const CheckedMotion checked =
+      m_motionCheck.add(frame.time, odometry.mean, odometry.covariance, frame.poles_robot);
+  update.motion = checked.verdict;
+  PoleFrame result = frame;
+  if (checked.replaced) result.motion = io::PlanarMotion{checked.motion, checked.covariance};
+  return result;
 }
 
 void PoleLocalization::track(const PoleFrame& frame, double metres, LocalizationUpdate& update) {
@@ -172,6 +187,7 @@ void PoleLocalization::track(const PoleFrame& frame, double metres, Localization
   input.effectiveParticles =
       m_filter.report().effectiveShare * static_cast<double>(m_filter.report().particles);
   input.modeShare = modeShare;
+  input.odometryContradicted = update.motion == MotionVerdict::contradicted;
   m_monitor.update(input);
 }
 

@@ -23,7 +23,8 @@ struct Settings {
   PoleMapOptions map;                 ///< `[map]`
   LikelihoodOptions likelihood;       ///< `[likelihood]`
   MotionOptions motion;               ///< `[motion]`
-  LocalizationOptions localization;   ///< `[filter] [submap] [global] [health] [search]`
+  /// `[filter] [submap] [global] [health] [search] [motion_check]`
+  LocalizationOptions localization;
   StartOptions start;                 ///< `[start]`
   RunOptions runs;                    ///< `[runs]`
   report::ViewOptions view;           ///< `[view]`

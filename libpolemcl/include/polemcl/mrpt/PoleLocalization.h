@@ -1,11 +1,12 @@
 #pragma once
 /// \file PoleLocalization.h
 /// \brief The whole chain behind one call per scan: particle filter, submap of the last metres,
-/// global search, health.
+/// global search, health, and a check of the odometry by the poles.
 
 #include <polemcl/core/GlobalLocalizer.h>
 #include <polemcl/core/LocalSubmap.h>
 #include <polemcl/core/LocalizationHealth.h>
+#include <polemcl/core/MotionCheck.h>
 #include <polemcl/mrpt/Config.h>
 #include <polemcl/mrpt/PoleLocalizer.h>
 
@@ -45,6 +46,7 @@ struct LocalizationOptions {
   GlobalOptions global;
   HealthOptions health;
   SearchOptions search;
+  MotionCheckOptions motionCheck;
   void validate() const;  ///< \throws Error
 };
 
@@ -57,6 +59,7 @@ struct LocalizationUpdate {
   /// Of the filter, all zero without a pose; its `poles` are those it was given.
   StepReport step;
   bool relocalized = false;  ///< the global search put the filter here in this step
+  MotionVerdict motion = MotionVerdict::unknown;  ///< of the poles about the odometry
 };
 
 /// \brief The map as the chain needs it, prepared once and shared by many runs.
@@ -103,6 +106,7 @@ class PoleLocalization {
 
  private:
   void checkFrame(const PoleFrame& frame) const;
+  PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
   void track(const PoleFrame& frame, double metres, LocalizationUpdate& update);
   void doubtSubmap();
   bool searchIsDue() const;
@@ -115,6 +119,7 @@ class PoleLocalization {
   PoleLocalizer m_filter;
   LocalSubmap m_submap;  ///< for the search
   LocalSubmap m_tracks;  ///< for the filter
+  MotionCheck m_motionCheck;
   HealthMonitor m_monitor;
   PoleFrame m_tracked;  ///< this frame as the filter gets it
   GlobalResult m_search;
