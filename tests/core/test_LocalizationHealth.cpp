@@ -87,7 +87,26 @@ TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {
   feed.scans(60, 0.9);
   double driven = 0;
   while (feed.scan(0.1).state != State::lost && driven < 100) driven += feed.metres;
-  EXPECT_LE(driven, feed.monitor.options().window);
+  EXPECT_LE(driven, feed.monitor.options().lostWindow);
+}
+
+TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
+  Feed feed;
+  feed.scans(60, 0.9);
+  for (int i = 0; i < 20; ++i) {  // 10 m, longer than the window of 8 m
+    feed.scan(0);
+    EXPECT_NE(feed.last.state, State::lost) << i;
+  }
+  feed.expect(State::degraded, Reason::mismatch);
+}
+
+TEST(LocalizationHealth, ANewPoseThatIsNeverBorneOutIsLost) {
+  Feed feed;
+  // Above lost_share, so only the lack of a confirmation tells.
+  for (int i = 1; i < 30; ++i) feed.scan(0.3);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.3);  // 15 m
+  feed.expect(State::lost, Reason::mismatch);
 }
 
 TEST(LocalizationHealth, FewPolesSayNothingAgainstThePose) {
@@ -108,7 +127,7 @@ TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
   feed.expect(State::ok, Reason::none);
   EXPECT_NEAR(feed.last.matchedShare, 0.9 * (16 + 1.0 / 3001) / 17, 1e-9);  // 17 viewpoints in 8 m
   feed.metres = 0.5;
-  feed.scans(17, 0.0);  // driving on, it is
+  feed.scans(33, 0.0);  // driving on, it is
   feed.expect(State::lost, Reason::mismatch);
 }
 

@@ -79,6 +79,10 @@ Json summary(const std::vector<FaultTrial>& trials, const FaultTrialsOptions& op
   json["error_largest_median_m"] = quantile(largest, 0.5);
   json["ok_wrong_median_m"] = quantile(wrong, 0.5);
   json["ok_wrong_max_m"] = quantile(wrong, 1);
+  std::map<std::string, int> reasons;
+  for (const FaultTrial& trial : trials)
+    if (trial.lost) ++reasons[trial.lostReason];
+  json["lost_reasons"] = reasons;
   json["failed"] = failed(trials);
   return json;
 }
@@ -102,7 +106,8 @@ std::string table(const Json& json) {
       << "          trials median s    95 %s    max s median m    95 %m    max m\n"
       << shown(json["degraded"], "degraded") << shown(json["lost"], "lost")
       << shown(json["right"], "right") << shown(json["ok"], "ok")
-      << "degraded and lost since the fault began, right and ok since it ended\n"
+      << "degraded and lost since the fault began, right and ok since it ended; lost first for "
+      << json["lost_reasons"].dump() << '\n'
       << "mean error over 20 m after ok: median " << number("error_after_median_m", 3)
       << " m, worst " << number("error_after_max_m", 3) << " m; ok said of a wrong pose over "
       << number("ok_wrong_median_m", 1) << " m in the median, " << number("ok_wrong_max_m", 1)
@@ -127,6 +132,7 @@ Json summary(const std::vector<HealthyRun>& runs, const FaultTrialsOptions& opti
     all.errorMax = std::max(all.errorMax, run.errorMax);
     all.wrongOk += run.wrongOk;
     all.relocalized += run.relocalized;
+    all.lostBefore += run.lostBefore;
   }
   const auto scans = static_cast<double>(all.scans);
   return {{"fault", "none"},
@@ -138,6 +144,7 @@ Json summary(const std::vector<HealthyRun>& runs, const FaultTrialsOptions& opti
           {"ok_share", static_cast<double>(all.ok) / scans},
           {"lost_times", all.lostTimes},
           {"lost_scans", all.lost},
+          {"lost_scans_before_ok", all.lostBefore},
           {"degraded_times", all.degradedTimes},
           {"degraded_scans", all.degraded},
           {"longest_not_ok_s", all.longestSeconds},

@@ -15,6 +15,7 @@ constexpr double s_withinSeconds = 5, s_withinMetres = 20;
 struct Judged {
   double time, driven, error;
   HealthState state;
+  HealthReason reason;
   bool right;
 };
 
@@ -29,7 +30,7 @@ PoleLocalization started(const TrialDrive& drive, const LocalizationMap& map, co
 }
 
 Judged judge(const LocalizationUpdate& update, const Pose2D& truth, double driven) {
-  Judged judged{update.time, driven, INFINITY, update.health.state, false};
+  Judged judged{update.time, driven, INFINITY, update.health.state, update.health.reason, false};
   if (!update.estimate) return judged;
   const PlanarError error = errorOf(update.estimate->mean, truth);
   judged.error = error.metres;
@@ -78,6 +79,8 @@ FaultTrial summarize(const std::vector<Judged>& scans, const FaultyDrive& faulty
   trial.right = firstSince(scans, end, [&](std::size_t i) { return staysRight(scans, i); });
   trial.ok = firstSince(
       scans, end, [&](std::size_t i) { return scans[i].state == State::ok && scans[i].right; });
+  for (std::size_t i = begin; i < scans.size() && trial.lostReason.empty(); ++i)
+    if (scans[i].state == State::lost) trial.lostReason = name(scans[i].reason);
   for (std::size_t i = begin; i < scans.size(); ++i) {
     if (std::isfinite(scans[i].error)) trial.errorMax = std::max(trial.errorMax, scans[i].error);
     if (i > begin && scans[i].state == State::ok && !scans[i].right)
@@ -108,7 +111,10 @@ class HealthyCounter {
  public:
   void add(const LocalizationUpdate& update, const Pose2D& truth, double metres) {
     const HealthState state = update.health.state;
-    if (!m_begun && state != HealthState::ok) return;
+    if (!m_begun && state != HealthState::ok) {
+      run.lostBefore += state == HealthState::lost;
+      return;
+    }
     const Judged scan = judge(update, truth, 0);
     if (m_begun) {
       run.seconds += update.time - m_time;

@@ -75,6 +75,8 @@ const char* name(HealthReason reason) {
 
 void HealthOptions::validate() const {
   require(isPositive(window), "window_m", window, "more than 0");
+  require(isPositive(lostWindow) && lostWindow >= window, "lost_window_m", lostWindow,
+          "window_m or more");
   require(isPositive(minEvidence), "min_evidence", minEvidence, "more than 0");
   require(isShare(lostShare), "lost_share", lostShare, "0 to 1");
   require(isShare(degradedShare) && degradedShare >= lostShare, "degraded_share", degradedShare,
@@ -89,6 +91,8 @@ void HealthOptions::validate() const {
   require(isPositive(blindSeconds), "blind_s", blindSeconds, "more than 0");
   require(isPositive(blindMetres), "blind_m", blindMetres, "more than 0");
   require(isPositive(maxGap), "max_gap_s", maxGap, "more than 0");
+  require(confirmWithin >= confirm && std::isfinite(confirmWithin), "confirm_within_m",
+          confirmWithin, "confirm_m or more");
   require(confirm >= 0 && std::isfinite(confirm), "confirm_m", confirm, "0 or more");
 }
 
@@ -132,7 +136,7 @@ void HealthMonitor::remember(const HealthInput& input) {
     m_views.emplace_back();
     m_views.back().driven = m_driven;
   }
-  while (m_driven - m_views.front().driven > m_options.window) m_views.pop_front();
+  while (m_driven - m_views.front().driven > m_options.lostWindow) m_views.pop_front();
   Viewpoint scan;
   for (const PoleMatch& match : input.matches) {
     scan.evidence += match.confidence;
@@ -149,17 +153,25 @@ void HealthMonitor::remember(const HealthInput& input) {
   view.matches += share * (scan.matches - view.matches);
 }
 
-void HealthMonitor::sumUp() {
+HealthMonitor::Viewpoint HealthMonitor::sumOver(double metres) const {
   Viewpoint sum;
   for (const Viewpoint& view : m_views) {
+    if (m_driven - view.driven > metres) continue;
     sum.evidence += view.evidence;
     sum.matched += view.matched;
     sum.squared += view.squared;
     sum.matches += view.matches;
   }
+  return sum;
+}
+
+void HealthMonitor::sumUp() {
+  const Viewpoint sum = sumOver(m_options.window), all = sumOver(m_options.lostWindow);
   m_health.evidence = sum.evidence;
   m_health.matchedShare = sum.evidence > 0 ? sum.matched / sum.evidence : 0;
   m_health.innovation = sum.matches > 0 ? sum.squared / (2 * sum.matches) : 0;
+  m_longEvidence = all.evidence;
+  m_longShare = all.evidence > 0 ? all.matched / all.evidence : 0;
 }
 
 bool HealthMonitor::set(bool applies, HealthState state, HealthReason reason) {
@@ -183,14 +195,17 @@ void HealthMonitor::judge(const HealthInput& input) {
 
   using State = HealthState;
   using Reason = HealthReason;
-  if (set(tells && m_health.matchedShare < o.lostShare, State::lost, Reason::mismatch)) return;
+  const bool few = tells && m_health.matchedShare < o.degradedShare;
+  const bool bareLong = m_longEvidence >= o.minEvidence * o.lostWindow / o.window &&
+                        m_longShare < o.lostShare && m_health.matchedShare < o.degradedShare;
+  const bool unproven = few && !m_confirmed && m_driven >= o.confirmWithin;
+  if (set(bareLong || unproven, State::lost, Reason::mismatch)) return;
   if (set(m_health.spread > o.lostSpread && m_health.modeShare >= o.modeShare, State::lost,
           Reason::spread))
     return;
   if (set(m_health.modeShare < o.modeShare, State::degraded, Reason::ambiguous)) return;
   if (set(!m_confirmed, State::degraded, Reason::converging)) return;
-  if (set(tells && m_health.matchedShare < o.degradedShare, State::degraded, Reason::mismatch))
-    return;
+  if (set(few, State::degraded, Reason::mismatch)) return;
   if (set(m_health.spread > o.degradedSpread || m_health.spreadHeading > o.degradedHeading,
           State::degraded, Reason::spread))
     return;

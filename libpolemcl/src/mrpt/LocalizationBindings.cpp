@@ -60,6 +60,7 @@ void bind(Binder& b, GlobalOptions& o) {
 void bind(Binder& b, HealthOptions& o) {
   b.section("health", "When the pose is called ok, degraded or lost");
   b.number("window_m", o.window, positive, "m", "scans of so many metres are judged together");
+  b.number("lost_window_m", o.lostWindow, positive, "m", "over so many before it is called lost");
   b.number("min_evidence", o.minEvidence, positive, "",
            "sum of confidences below which matches say nothing");
   b.number("lost_share", o.lostShare, share, "share",
@@ -79,6 +80,8 @@ void bind(Binder& b, HealthOptions& o) {
   b.number("max_gap_s", o.maxGap, positive, "s", "degraded: a longer time between two scans");
   b.number("confirm_m", o.confirm, Range::atLeast(0), "m",
            "metres of good matches until a new pose is ok");
+  b.number("confirm_within_m", o.confirmWithin, positive, "m",
+           "lost: a new pose not borne out after so many metres");
   b.check(o);
 }
 

@@ -37,6 +37,7 @@ struct FaultTrial {
   double jump = 0;                      ///< kidnapped by, m
   bool okBefore = false;                ///< in the scan before the fault
   std::optional<Delay> degraded, lost;  ///< first `degraded` or `lost`; first `lost`
+  std::string lostReason;               ///< then; empty if never
   std::optional<Delay> right;           ///< the pose is right, and stays so over the next 5 m
   std::optional<Delay> ok;              ///< `ok`, with the right pose
   double okWrongMetres = 0;  ///< driven since the beginning, `ok` being said of a wrong pose
@@ -59,6 +60,7 @@ struct HealthyRun {
   double errorSum = 0, errorMax = 0;             ///< m, over all scans
   std::size_t wrongOk = 0;                       ///< `ok` with a wrong pose
   std::size_t relocalized = 0;
+  std::size_t lostBefore = 0;  ///< scans called lost before the first `ok`
 };
 
 /// \brief Runs the trials in parallel; the same figures on any number of threads.

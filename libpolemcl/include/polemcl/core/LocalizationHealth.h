@@ -37,8 +37,11 @@ struct HealthOptions {
   /// Metres driven whose scans are judged together. Scans from one viewpoint count as one: a
   /// vehicle that stands beside something odd is not lost.
   double window = 8;
+  /// A window this long and as much evidence more must agree before the pose is called lost: on a
+  /// stretch where most poles are gone or new, little else is seen for some metres.
+  double lostWindow = 16;
   double minEvidence = 8;      ///< sum of confidences in the window below which shares say nothing
-  double lostShare = 0.22;     ///< lost: a smaller share of the observed poles stands on the map
+  double lostShare = 0.15;     ///< lost: a smaller share of the observed poles stands on the map
   double degradedShare = 0.4;  ///< degraded: a smaller share than this
   double lostSpread = 5;       ///< lost: standard deviation of the position along its worst axis, m
   double degradedSpread = 0.5;     ///< degraded, likewise, m
@@ -49,6 +52,7 @@ struct HealthOptions {
   double blindMetres = 20;         ///< or farther, m
   double maxGap = 2;               ///< degraded: a longer time between two scans, s
   double confirm = 5;              ///< metres of good matches until a new pose is `ok`
+  double confirmWithin = 15;       ///< lost: a new pose not borne out after so many metres
   void validate() const;           ///< \throws Error naming the field
 };
 
@@ -103,6 +107,7 @@ class HealthMonitor {
     int scans = 0;
   };
   void remember(const HealthInput& input);
+  Viewpoint sumOver(double metres) const;
   void sumUp();
   void judge(const HealthInput& input);
   bool set(bool applies, HealthState state, HealthReason reason);
@@ -111,10 +116,11 @@ class HealthMonitor {
   Health m_health;
   std::deque<Viewpoint> m_views;
   bool m_begun = false, m_confirmed = false;
-  double m_driven = 0, m_time = 0;          ///< at the last update
-  double m_seenDriven = 0, m_seenTime = 0;  ///< when a pole was last seen
-  double m_goodDriven = 0;                  ///< metres in a row with enough matches
-  double m_gapUntil = -1;                   ///< metres driven at which a time gap is forgotten
+  double m_driven = 0, m_time = 0;             ///< at the last update
+  double m_longShare = 0, m_longEvidence = 0;  ///< over `lostWindow`
+  double m_seenDriven = 0, m_seenTime = 0;     ///< when a pole was last seen
+  double m_goodDriven = 0;                     ///< metres in a row with enough matches
+  double m_gapUntil = -1;                      ///< metres driven at which a time gap is forgotten
 };
 
 }  // namespace polemcl

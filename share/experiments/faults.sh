@@ -1,0 +1,145 @@
+#!/bin/sh
+# Does the localization notice when something is wrong, and recover? Faults put into simulated drives
+# at 10 Hz and 7 m/s along a 6 km road (poles drawn by the model of share/models/hdl32e.json, another
+# day and another drive than the map's, odometry with 2 % noise), 200 trials each on five worlds:
+# kidnapped, wrong map, blind, odometry stuck, odometry slipping; half of the poles gone with twice the
+# false detections; and healthy drives of 10 h.
+# Usage: share/experiments/faults.sh [--quick] OUT [TRACK]
+#   OUT      gets maps, drives, one JSON and one text for each fault, table.txt and faults.json
+#   TRACK    the road as poses, 12 numbers a line, plain or gzip; $POLEMCL_DATA/tracks/kaist01.txt.gz unless
+#            given; without either, the simulator's own street of 3 km
+#   --quick  one world, 20 trials each, one healthy drive
+# Worlds 511 to 515 (--quick: 511), faults seeded 501. Programs: build/bin, or POLEMCL_BIN.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+worlds="511 512 513 514 515"
+trials=40
+healthy=9 # drives of each world; 45 of 0.24 h are 10.8 h
+if [ "${1:-}" = --quick ]; then
+  worlds=511
+  trials=20
+  healthy=1
+  shift
+fi
+case $# in
+  1 | 2) ;;
+  *)
+    sed -n '2,15s/^# //p' "$0" >&2
+    exit 2
+    ;;
+esac
+out=$1
+track=${2:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
+find_programs pole-simulate pole-map pole-eval
+mkdir -p "$out"
+: >"$out/table.txt"
+
+# drive NAME WORLD DAY DRIVE: NAME.rawlog, NAME.tum, with the settings NAME.ini.
+drive() {
+  config=$out/$1.ini
+  [ -f "$config" ] || cp "$top/config/hdl32e.ini" "$config"
+  set_option "$config" simulation spacing_m 0.7
+  set_option "$config" simulation speed_m_s 7
+  set_option "$config" simulation odometry_noise 0.02
+  set_option "$config" simulation detections "$top/share/models/hdl32e.json"
+  set_option "$config" simulation drive_seed "$4"
+  if [ -n "$track" ]; then
+    set_option "$config" world track "$track"
+  else
+    set_option "$config" world length_m 3000
+  fi
+  set_option "$config" world seed "$2"
+  set_option "$config" world day "$3"
+  "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1.rawlog"
+}
+
+# map_of WORLD: the map of day 0, mapWORLD.polemap.
+map_of() {
+  drive "map$1" "$1" 0 1
+  "$bin/pole-map" --quiet --config "$out/map$1.ini" --input "$out/map$1.rawlog" \
+    --truth "$out/map$1.tum" --output "$out/map$1.polemap"
+}
+
+# faults WORLD DRIVE FAULT TRIALS SEED OPTIONS...: appends to FAULT.txt, writes FAULT_WORLD_DRIVE.json.
+faults() {
+  world=$1 drive=$2 fault=$3 count=$4 from=$5
+  shift 5
+  name=$drive.$fault
+  echo "world $world" >>"$out/$fault.txt"
+  "$bin/pole-eval" faults --config "$top/config/hdl32e.ini" --map "$out/map$world.polemap" \
+    --input "$out/$drive.rawlog" --truth "$out/$drive.tum" --fault "$fault" --trials "$count" \
+    --seed "$from" --json "$out/$name.json" "$@" >>"$out/$fault.txt"
+}
+
+rm -f "$out"/*.kidnap.json "$out"/*.wrong-map.json "$out"/*.blind.json "$out"/*.stuck.json \
+  "$out"/*.slip.json "$out"/*.none.json "$out"/kidnap.txt "$out"/wrong-map.txt "$out"/blind.txt \
+  "$out"/stuck.txt "$out"/slip.txt "$out"/none.txt
+
+map_of 599 # the wrong map: another town on the same road
+seed=501
+for world in $worlds; do
+  map_of "$world"
+  drive "day$world" "$world" 1 2
+  for fault in kidnap blind stuck slip; do
+    faults "$world" "day$world" "$fault" "$trials" "$seed"
+  done
+  faults "$world" "day$world" wrong-map "$trials" "$seed" --other-map "$out/map599.polemap" --tail 60
+  # Half of the poles gone, twice the false detections.
+  cp "$top/config/hdl32e.ini" "$out/half$world.ini"
+  set_option "$out/half$world.ini" world removed_share 0.5
+  set_option "$out/half$world.ini" simulation false_factor 2
+  drive "half$world" "$world" 1 2
+  faults "$world" "half$world" none 1 "$seed"
+  i=0
+  while [ "$i" -lt "$healthy" ]; do
+    i=$((i + 1))
+    drive "healthy" "$world" "$i" $((10 + i))
+    faults "$world" "healthy" none 1 $((seed + i))
+    mv "$out/healthy.none.json" "$out/healthy$world-$i.none.json"
+    rm "$out"/healthy.*
+  done
+  seed=$((seed + 1000))
+done
+
+# One line for each fault over all worlds, and faults.json.
+row() {
+  jq -rs --arg name "$1" '[$name, (map(.trials) | add), (map(.passed) | add),
+    (map(.ok_before) | add), (map(.degraded.max_s) | max), (map(.lost.max_s) | max),
+    (map(.lost.max_m) | max), (map(.ok.max_m) | max), (map(.error_after_max_m) | max)] | @tsv' \
+    "$out"/*."$1".json
+}
+healthy_row() {
+  jq -rs --arg name "$1" '(map(.scans) | add) as $scans | [$name, (map(.hours) | add),
+    $scans, (map(.lost_times) | add), (map(.degraded_times) | add),
+    (map(.ok_share * .scans) | add) / $scans, (map(.longest_not_ok_s) | max),
+    (map(.ok_with_wrong_pose) | add), (map(.error_mean_m * .scans) | add) / $scans,
+    (map(.error_max_m) | max)] | @tsv' "$out/$1"*.none.json
+}
+{
+  echo "fault      trials  as demanded  ok before  degraded max s  lost max s  lost max m  ok max m  \
+error after max m"
+  for fault in kidnap wrong-map blind stuck slip; do row "$fault"; done |
+    awk -F '\t' '{ printf "%-10s %6d %12d %10d %15.1f %11.1f %11.1f %9.1f %18.3f\n", \
+      $1, $2, $3, $4, $5, $6, $7, $8, $9 }'
+  echo
+  echo "drives     hours   scans  lost  degraded  ok share  longest s  wrong ok  mean m  max m"
+  for kind in healthy half; do healthy_row "$kind"; done |
+    awk -F '\t' '{ printf "%-10s %5.2f %7d %5d %9d %9.5f %10.1f %9d %7.4f %6.3f\n", \
+      $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }'
+} >"$out/table.txt"
+collected() {
+  jq -s 'map(del(.failed))' "$@"
+}
+{
+  echo '{'
+  for fault in kidnap wrong-map blind stuck slip; do
+    echo "\"$fault\": $(collected "$out"/*."$fault".json),"
+  done
+  echo "\"healthy\": $(collected "$out"/healthy*.none.json),"
+  echo "\"half\": $(collected "$out"/half*.none.json)"
+  echo '}'
+} | jq . >"$out/faults.json"
+cat "$out/table.txt"
