@@ -48,7 +48,8 @@ class CityFiles {
       poles->points = 1000;
       io::PlanarMotion motion;
       motion.mean = frames[i].motion;
-      motion.covariance = Eigen::Vector3d(4e-4, 1e-6, 1e-6).asDiagonal();
+      const Eigen::Vector3d moved(motion.mean.x, motion.mean.y, motion.mean.yaw);
+      motion.covariance = (0.02 * moved).cwiseAbs2().asDiagonal();  // as the drive draws it
       writer.write(apps::makeActions(motion, poles->timestamp), poles);
       truth.push_back({time(i), frames[i].truth});
     }

@@ -23,13 +23,18 @@ struct CheckedDrive {
     options.density = density;
     const tests::PoleCity city(options);
     sim::Random random(seed + 100);
-    const tests::Way way = tests::resample(city.randomWay(random, metres), step);
+    tests::Way way;
+    do way = tests::resample(city.randomWay(random, metres), step);
+    while (turnsBack(way));
     tests::DriveOptions driving;
     driving.falsePerFrame = falsePerFrame;
     frames = tests::drive(city.surroundings(), way, driving, random);
   }
-  Pose2D trueMotion(std::size_t i) const {
-    return i == 0 ? Pose2D() : relative(frames[i - 1].truth, frames[i].truth);
+  /// At the city's edge ways turn round on the spot, which no vehicle does.
+  static bool turnsBack(const tests::Way& way) {
+    for (std::size_t i = 2; i < way.size(); ++i)
+      if ((way[i] - way[i - 1]).dot(way[i - 1] - way[i - 2]) < 0) return true;
+    return false;
   }
   static Eigen::Matrix3d covarianceOf(const Pose2D& motion) {
     const auto variance = [](double value, double floor) {
@@ -85,7 +90,7 @@ TEST(MotionCheck, LeavesAHealthyOdometryAlone) {
 TEST(MotionCheck, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
   for (const double step : {0.5, 1.5})
     for (const std::uint64_t seed : {4, 5, 6}) {
-      const CheckedDrive drive(seed, 300 * step, step);
+      const CheckedDrive drive(seed, 300 * step, step, 2);
       MotionCheck check;
       const auto results = drive.run(check, [](std::size_t i, const Pose2D& motion) {
         return i >= 50 && i < 150 ? Pose2D() : motion;
@@ -106,7 +111,7 @@ TEST(MotionCheck, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
 TEST(MotionCheck, ASlippingOdometryIsReplacedWithinASecond) {
   for (const double factor : {0.8, 1.2})
     for (const std::uint64_t seed : {7, 8, 9}) {
-      const CheckedDrive drive(seed, 210);
+      const CheckedDrive drive(seed, 210, 0.7, 2);
       MotionCheck check;
       const auto results = drive.run(check, [&](std::size_t i, const Pose2D& motion) {
         return i >= 50 && i < 200 ? scaled(motion, factor) : motion;
@@ -125,7 +130,7 @@ TEST(MotionCheck, ASlippingOdometryIsReplacedWithinASecond) {
 }
 
 TEST(MotionCheck, AStandingVehicleWithSpinningWheelsIsNoticed) {
-  const CheckedDrive drive(10, 40, 0.01);
+  const CheckedDrive drive(10, 8, 0.01, 2);
   MotionCheck check;
   const auto results = drive.run(check, [](std::size_t i, const Pose2D& motion) {
     return i >= 100 ? Pose2D{0.4, 0, 0} : motion;

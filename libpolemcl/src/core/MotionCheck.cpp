@@ -39,6 +39,14 @@ Eigen::Vector3d vectorOf(const Pose2D& pose) {
   return {pose.x, pose.y, pose.yaw};
 }
 
+Pose2D scaled(const Pose2D& motion, double factor) {
+  return {factor * motion.x, factor * motion.y, factor * motion.yaw};
+}
+
+Pose2D middle(const Pose2D& a, const Pose2D& b) {
+  return {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.yaw + b.yaw)};
+}
+
 /// The pairs pin the motion down.
 bool isCertain(const Eigen::Matrix3d& covariance) {
   return covariance.allFinite() && covariance(0, 0) + covariance(1, 1) < s_mostVariance &&
@@ -96,6 +104,7 @@ CheckedMotion MotionCheck::add(double time, const Pose2D& motion, const Eigen::M
   result.motion = motion;
   result.covariance = covariance;
   if (!m_options.enabled) return result;
+  while (!m_past.empty() && m_past.back().time >= time) m_past.pop_back();
   if (!m_past.empty() && time - m_past.back().time > m_options.window) clear();
   Reference now;
   now.time = time;
@@ -106,8 +115,7 @@ CheckedMotion MotionCheck::add(double time, const Pose2D& motion, const Eigen::M
     now.used = compose(last.used, motion);
     now.spent = last.spent + covariance;
     result = m_contradicted ? replace(now, result) : watch(now, result);
-    const double seconds = time - last.time;
-    m_speed = {result.motion.x / seconds, result.motion.y / seconds, result.motion.yaw / seconds};
+    if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
   }
   m_past.push_back(now);
   // One older than the window stays, so that the window is filled.
@@ -217,7 +225,7 @@ CheckedMotion MotionCheck::watch(Reference& now, const CheckedMotion& odometry) 
     result.covariance += doubt(before, change, 0.5);
     if (sure) {
       m_contradicted = true;
-      m_knownTime = now.time;
+      m_knownTime = m_keyTime = now.time;
       return result;
     }
     result.verdict = MotionVerdict::unknown;
@@ -237,6 +245,10 @@ CheckedMotion MotionCheck::take(Reference& now, const Reference& reference,
   result.verdict = MotionVerdict::contradicted;
   result.replaced = true;
   result.pairs = alignment.pairs;
+  // The step to come may make up for earlier ones: the speed is that of the whole way. Smoothed,
+  // since it is what is left where poles are missing.
+  const Pose2D speed = scaled(alignment.motion, 1 / (now.time - reference.time));
+  m_speed = m_contradicted ? middle(m_speed, speed) : speed;
   now.used = compose(reference.used, alignment.motion);
   result.motion = relative(m_past.back().used, now.used);
   const double turn = relative(reference.used, m_past.back().used).yaw;
@@ -256,15 +268,16 @@ CheckedMotion MotionCheck::replace(Reference& now, const CheckedMotion& odometry
   const Reference& last = m_past.back();
   CheckedMotion result;
   bool found = false;
-  const std::vector<std::size_t> compared = chosen(now.time);
-  for (const std::size_t i :
-       {compared[std::min<std::size_t>(1, compared.size() - 1)], compared[0]}) {
+  const std::size_t key = keyScan(), latest = m_past.size() - 1;
+  for (const std::size_t i : {key, latest}) {
     Reference coasting = now;
     coasting.used = compose(last.used, coast(now.time - last.time));
-    const PoleAlignment alignment = align(m_past[i], coasting, i == compared[0]);
+    const PoleAlignment alignment = align(m_past[i], coasting, i == latest);
     if (!suffices(alignment, m_past[i], now)) continue;
     result = take(now, m_past[i], alignment);
     m_knownTime = now.time;
+    const bool old = now.time - m_past[i].time >= s_lags[1] * m_options.window - 1e-6;
+    m_keyTime = old ? now.time : m_past[i].time;
     found = true;
     break;
   }
@@ -286,6 +299,13 @@ CheckedMotion MotionCheck::replace(Reference& now, const CheckedMotion& odometry
   return result;
 }
 
+/// The scan to align with, or the one after it where it is gone.
+std::size_t MotionCheck::keyScan() const {
+  std::size_t i = m_past.size() - 1;
+  while (i > 0 && m_past[i - 1].time >= m_keyTime - 1e-6) --i;
+  return i;
+}
+
 /// Odometry and poles say the same of the last moments.
 bool MotionCheck::hasSettled(const Reference& now) const {
   std::size_t i = m_past.size() - 1;
@@ -303,7 +323,7 @@ bool MotionCheck::hasSettled(const Reference& now) const {
 }
 
 Pose2D MotionCheck::coast(double seconds) const {
-  return {m_speed.x * seconds, m_speed.y * seconds, m_speed.yaw * seconds};
+  return scaled(m_speed, seconds);
 }
 
 }  // namespace polemcl

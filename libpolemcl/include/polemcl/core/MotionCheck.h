@@ -60,7 +60,8 @@ class MotionCheck {
 
   /// \brief One scan more. After a gap longer than the window, and for the first scan, there is
   /// nothing to compare with.
-  /// \param time Of the scan, s; later than the one before. \param motion, covariance Odometry
+  /// \param time Of the scan, s; scans that are not earlier are forgotten, so that one that was
+  /// refused elsewhere can be given again. \param motion, covariance Odometry
   /// since the scan before; finite. \param poles_robot Detections, robot frame; those that are not
   /// finite or have no confidence are not used.
   CheckedMotion add(double time, const Pose2D& motion, const Eigen::Matrix3d& covariance,
@@ -97,12 +98,16 @@ class MotionCheck {
   CheckedMotion take(Reference& now, const Reference& reference, const PoleAlignment& alignment);
   bool hasSettled(const Reference& now) const;
   Pose2D coast(double seconds) const;
+  std::size_t keyScan() const;
 
   MotionCheckOptions m_options;
   std::deque<Reference> m_past;
   bool m_contradicted = false, m_suspected = false;
   Pose2D m_speed;          ///< of the last motion handed out, per second
   double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s
+  /// Of the scan that those after it are aligned with while contradicted, s. One for several, not
+  /// each with its own: chains of every third scan would drift apart.
+  double m_keyTime = 0;
 };
 
 }  // namespace polemcl
