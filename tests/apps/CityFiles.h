@@ -25,7 +25,9 @@ class CityFiles {
     map.saveToPoleMapFile(at("city.polemap"));
     polemcl::sim::Random random(seed + 1);
     const auto way = city.randomWay(random, metres);
-    frames = polemcl::tests::drive(city.surroundings(), way, {}, random);
+    polemcl::tests::DriveOptions driving;
+    driving.falsePerFrame = 0.5;
+    frames = polemcl::tests::drive(city.surroundings(), way, driving, random);
     write();
     writeText(folder / "city.ini", "[likelihood]\nsigma_m = 0.05\nweighted = true\n");
   }

@@ -200,7 +200,13 @@ void PoleLocalizer::update(const std::vector<PoleDetection>& poles_robot,
   // From the prior to the posterior over posteriors of wider likelihoods. The weights of a stage
   // are the ratio of its likelihood to the one the particles have been weighed by already.
   std::vector<double> widenings;
-  for (double widening = 1; widening <= maxWidening; widening *= 2) widenings.push_back(widening);
+  // Wider than half the gate a bell is cut off at the gate, and draws towards chance matches.
+  const LikelihoodOptions& likelihood = m_map->likelihoodOptions;
+  const double widestSigma = std::max(8 * likelihood.sigma, 0.5 * likelihood.gate);
+  for (double widening = 1;
+       widening <= maxWidening && widening * likelihood.sigma <= widestSigma * (1 + 1e-9);
+       widening *= 2)
+    widenings.push_back(widening);
   bool first = true;
   while (true) {
     evaluate(widenings);
