@@ -89,3 +89,50 @@ TEST(PoleGrid, emptyAndAQueryThatIsNotANumberFindNothing) {
   EXPECT_FALSE(grid.nearest(0, nan, 1));
   EXPECT_FALSE(grid.nearest(infinity, -infinity, 1));
 }
+
+TEST(PoleGrid, candidatesOfARectangleHoldTheNearestOfEachPlaceInIt) {
+  std::mt19937_64 random(11);
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < 400; ++i)
+    points.emplace_back(uniform(random, 0, 100), uniform(random, 0, 100));
+  const PoleGrid grid(points, 1);
+  std::vector<PoleGrid::Place> candidates;
+  int listed = 0, filled = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double lowX = uniform(random, -5, 105), lowY = uniform(random, -5, 105);
+    const double width = uniform(random, 0, 10), height = uniform(random, 0, 10);
+    if (!grid.candidatesIn(lowX, lowY, lowX + width, lowY + height, candidates)) continue;
+    ++listed;
+    filled += !candidates.empty();
+    for (std::size_t k = 1; k < candidates.size(); ++k)
+      ASSERT_LT(candidates[k - 1].index, candidates[k].index);
+    for (int j = 0; j < 50; ++j) {
+      const double x = lowX + width * (j < 2 ? j : uniform(random, 0, 1));
+      const double y = lowY + height * (j < 2 ? j : uniform(random, 0, 1));
+      const PoleGrid::Place* expected = grid.find(x, y, 1);
+      double least = 1;
+      std::uint32_t nearest = 400;
+      for (const PoleGrid::Place& place : candidates) {
+        const double squared = (place.x - x) * (place.x - x) + (place.y - y) * (place.y - y);
+        if (squared < least) least = squared, nearest = place.index;
+      }
+      ASSERT_EQ(nearest, expected ? expected->index : 400u) << x << ' ' << y;
+    }
+  }
+  EXPECT_GT(listed, 2000);
+  EXPECT_GT(filled, 1000);
+}
+
+TEST(PoleGrid, candidatesOfARectangleThatIsTooWideOrNoneAreNotListed) {
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < 30; ++i) points.emplace_back(0.1 * i, 0);
+  const PoleGrid grid(points, 1);
+  std::vector<PoleGrid::Place> candidates;
+  EXPECT_FALSE(grid.candidatesIn(0, 0, 3, 0, candidates));    // too many of them
+  EXPECT_FALSE(grid.candidatesIn(std::nan(""), 0, 1, 1, candidates));
+  EXPECT_FALSE(PoleGrid({{0, 0}, {1000, 1000}}, 1).candidatesIn(0, 0, 999, 999, candidates));
+  EXPECT_TRUE(grid.candidatesIn(50, 50, 51, 51, candidates));  // beyond reach
+  EXPECT_TRUE(candidates.empty());
+  EXPECT_TRUE(PoleGrid({}, 1).candidatesIn(0, 0, 1, 1, candidates));
+  EXPECT_TRUE(candidates.empty());
+}

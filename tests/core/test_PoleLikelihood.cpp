@@ -176,6 +176,19 @@ TEST(PoleLikelihood, batchGivesTheSameNumbersAsTheSingleCall) {
   }
 }
 
+TEST(PoleLikelihood, posesNearEachOtherAreSearchedTogetherToTheSameNumbers) {
+  Scene scene = randomScene(13);
+  for (Pose2D& pose : scene.poses) pose = {0.2 * pose.x, 0.2 * pose.y, 1 + 0.01 * pose.yaw};
+  const PoleIndex index(scene.map);
+  const LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, true);
+  std::vector<double> together, apart;
+  logLikelihoods(scene.poles, scene.poses, index, options, together);
+  scene.poses.push_back({1e5, -1e5, 0});  // too far to be searched with the others
+  logLikelihoods(scene.poles, scene.poses, index, options, apart);
+  apart.pop_back();
+  EXPECT_EQ(together, apart);
+}
+
 TEST(PoleLikelihood, severalSigmasAtOnceGiveWhatEachGivesAlone) {
   const Scene scene = randomScene(11);
   const PoleIndex index(scene.map);

@@ -1,6 +1,7 @@
 #include "LikelihoodKernels.h"
 
 #include <algorithm>
+#include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "LikelihoodKernels.cpp"
@@ -90,10 +91,12 @@ class Evaluation {
     }
   }
 
+  /// The nearest map pole within the gate of each place.
   void search(std::size_t count) {
     const PoleIndex& index = m_batch.index;
     const double gate = m_batch.options.gate;
     const bool prepared = gate <= index.preparedRadius();
+    if (prepared && searchTogether()) return;
     Block& b = m_block;
     for (std::size_t i = 0; i < m_size; ++i) {
       b.dx[i] = b.dy[i] = 0;
@@ -108,6 +111,49 @@ class Evaluation {
         set(i, x - pole.x(), y - pole.y(), index.variance(hit.index));
       }
     }
+  }
+
+  /// The same in vectors, if the places lie so near to each other that few poles are near any of
+  /// them, as they do once the pose is known. Else false.
+  bool searchTogether() {
+    Block& b = m_block;
+    V lowX = hn::Load(m_d, b.placeX), highX = lowX, lowY = hn::Load(m_d, b.placeY), highY = lowY;
+    V sum = hn::Add(lowX, lowY);
+    for (std::size_t i = m_lanes; i < m_size; i += m_lanes) {
+      const V x = hn::Load(m_d, b.placeX + i), y = hn::Load(m_d, b.placeY + i);
+      lowX = hn::Min(lowX, x), highX = hn::Max(highX, x);
+      lowY = hn::Min(lowY, y), highY = hn::Max(highY, y);
+      sum = hn::Add(sum, hn::Add(x, y));
+    }
+    // Extremes may pass over what is not a number, their sum does not.
+    if (!std::isfinite(hn::GetLane(hn::SumOfLanes(m_d, sum)))) return false;
+    const auto least = [&](V v) { return hn::GetLane(hn::MinOfLanes(m_d, v)); };
+    const auto greatest = [&](V v) { return hn::GetLane(hn::MaxOfLanes(m_d, v)); };
+    if (!m_batch.index.grid().candidatesIn(least(lowX), least(lowY), greatest(highX),
+                                           greatest(highY), m_candidates))
+      return false;
+    for (std::size_t i = 0; i < m_size; i += m_lanes) chooseNearest(i);
+    return true;
+  }
+
+  HWY_INLINE void chooseNearest(std::size_t i) {
+    Block& b = m_block;
+    const V x = hn::Load(m_d, b.placeX + i), y = hn::Load(m_d, b.placeY + i);
+    V dx = hn::Zero(m_d), dy = dx, variance = hn::Set(m_d, -1.0);
+    V least = hn::Set(m_d, m_batch.options.gate * m_batch.options.gate);
+    for (const PoleGrid::Place& pole : m_candidates) {  // of equals, the first stays
+      const V offX = hn::Sub(x, hn::Set(m_d, pole.x)), offY = hn::Sub(y, hn::Set(m_d, pole.y));
+      const V squared = hn::Add(hn::Mul(offX, offX), hn::Mul(offY, offY));
+      const auto nearer = hn::Lt(squared, least);
+      least = hn::IfThenElse(nearer, squared, least);
+      dx = hn::IfThenElse(nearer, offX, dx);
+      dy = hn::IfThenElse(nearer, offY, dy);
+      const V its = hn::Set(m_d, m_batch.index.variance(pole.index));
+      variance = hn::IfThenElse(nearer, its, variance);
+    }
+    hn::Store(dx, m_d, b.dx + i);
+    hn::Store(dy, m_d, b.dy + i);
+    hn::Store(variance, m_d, b.variance + i);
   }
 
   HWY_INLINE void set(std::size_t i, double dx, double dy, double variance) {
@@ -189,6 +235,7 @@ class Evaluation {
   const std::size_t m_lanes, m_levels;
   std::size_t m_size = 0;  ///< poses in the block, filled up to whole vectors
   double m_squaredSigma[maxWidenings];
+  std::vector<PoleGrid::Place> m_candidates;
   Block m_block;
 };
 

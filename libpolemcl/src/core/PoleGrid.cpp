@@ -34,6 +34,34 @@ std::vector<std::uint32_t> distinct(const std::vector<Eigen::Vector2d>& points) 
 
 }  // namespace
 
+bool PoleGrid::candidatesIn(double lowX, double lowY, double highX, double highY,
+                            std::vector<Place>& candidates) const {
+  constexpr std::int64_t mostCells = 64;
+  constexpr std::size_t mostCandidates = 12;
+  candidates.clear();
+  if (!(lowX <= highX && lowY <= highY)) return false;  // not numbers, for one
+  lowX = std::max(lowX, m_minX), highX = std::min(highX, m_maxX);
+  lowY = std::max(lowY, m_minY), highY = std::min(highY, m_maxY);
+  if (!(lowX <= highX && lowY <= highY)) return true;  // beyond reach of every point
+  const auto cell = [&](double from, double to) {
+    return static_cast<std::int64_t>((to - from) * m_inverseCell);
+  };
+  const std::int64_t firstColumn = cell(m_minX, lowX), lastColumn = cell(m_minX, highX);
+  const std::int64_t firstRow = cell(m_minY, lowY), lastRow = cell(m_minY, highY);
+  const std::int64_t columns = lastColumn - firstColumn + 1, rows = lastRow - firstRow + 1;
+  if (columns > mostCells || rows > mostCells || columns * rows > mostCells) return false;
+  for (std::int64_t row = firstRow; row <= lastRow; ++row)
+    for (std::int64_t column = firstColumn; column <= lastColumn; ++column)
+      if (const Cell* listed = cellOf(keyOf(column, row)))
+        candidates.insert(candidates.end(), m_candidates.begin() + listed->begin,
+                          m_candidates.begin() + listed->end);
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Place& a, const Place& b) { return a.index < b.index; });
+  const auto same = [](const Place& a, const Place& b) { return a.index == b.index; };
+  candidates.erase(std::unique(candidates.begin(), candidates.end(), same), candidates.end());
+  return candidates.size() <= mostCandidates;
+}
+
 /// A point that can be reached from a cell.
 struct PoleGrid::Entry {
   std::uint64_t key;

@@ -60,14 +60,17 @@ Pose2D meanOf(const std::vector<Pose2D>& particles, const std::vector<double>& w
 
 Eigen::Matrix3d spreadAbout(const Pose2D& mean, const std::vector<Pose2D>& particles,
                             const std::vector<double>& weights) {
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double sum = 0;
+  double sum = 0, xx = 0, xy = 0, yy = 0, xa = 0, ya = 0, aa = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    const Eigen::Vector3d error(particles[i].x - mean.x, particles[i].y - mean.y,
-                                wrapAngle(particles[i].yaw - mean.yaw));
-    covariance += weights[i] * error * error.transpose();
+    const double x = particles[i].x - mean.x, y = particles[i].y - mean.y;
+    const double a = wrapAngle(particles[i].yaw - mean.yaw);
+    const double wx = weights[i] * x, wy = weights[i] * y, wa = weights[i] * a;
+    xx += wx * x, xy += wx * y, yy += wy * y;
+    xa += wx * a, ya += wy * a, aa += wa * a;
     sum += weights[i];
   }
+  Eigen::Matrix3d covariance;
+  covariance << xx, xy, xa, xy, yy, ya, xa, ya, aa;
   return covariance / sum;
 }
 

@@ -34,14 +34,10 @@ class PoleGrid {
     if (!(x >= m_minX && x <= m_maxX && y >= m_minY && y <= m_maxY)) return nullptr;
     const auto column = static_cast<std::int64_t>((x - m_minX) * m_inverseCell);
     const auto row = static_cast<std::int64_t>((y - m_minY) * m_inverseCell);
-    const std::uint64_t key = keyOf(column, row);
-    std::uint64_t slot = slotOf(key);
-    while (m_cells[slot].key != key) {
-      if (m_cells[slot].key == s_noKey) return nullptr;
-      slot = (slot + 1) & m_mask;
-    }
+    const Cell* cell = cellOf(keyOf(column, row));
+    if (!cell) return nullptr;
     const Place* best = nullptr;
-    for (std::uint32_t i = m_cells[slot].begin; i < m_cells[slot].end; ++i) {
+    for (std::uint32_t i = cell->begin; i < cell->end; ++i) {
       const double squared = squaredDistance(m_candidates[i], x, y);
       if (squared < squaredRadius) {
         squaredRadius = squared;
@@ -50,6 +46,12 @@ class PoleGrid {
     }
     return best;
   }
+  /// \brief Every point that can be the nearest one, within radius(), of a place in a rectangle.
+  /// \param candidates Gets them, each once, by ascending index.
+  /// \return False for a rectangle that has too many of them, or spans too many cells, for one list
+  ///         to be better than a look-up for each place: `candidates` then means nothing.
+  bool candidatesIn(double lowX, double lowY, double highX, double highY,
+                    std::vector<Place>& candidates) const;
   /// \brief The same as index and squared distance.
   PointHit nearest(double x, double y, double squaredRadius) const noexcept {
     const Place* place = find(x, y, squaredRadius);
@@ -73,6 +75,16 @@ class PoleGrid {
   }
   /// Fibonacci hashing: the high bits of the product mix row and column.
   std::uint64_t slotOf(std::uint64_t key) const { return key * 0x9E3779B97F4A7C15u >> m_shift; }
+
+  /// Null if nothing can be reached from the cell.
+  const Cell* cellOf(std::uint64_t key) const noexcept {
+    std::uint64_t slot = slotOf(key);
+    while (m_cells[slot].key != key) {
+      if (m_cells[slot].key == s_noKey) return nullptr;
+      slot = (slot + 1) & m_mask;
+    }
+    return &m_cells[slot];
+  }
 
   void setBounds(const std::vector<Eigen::Vector2d>& points);
   std::vector<Entry> entriesOf(const std::vector<Eigen::Vector2d>& points) const;
