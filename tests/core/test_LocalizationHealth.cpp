@@ -76,8 +76,10 @@ TEST(LocalizationHealth, TooFewMatchesDegradeThenLose) {
   feed.scans(40, 0.3);
   feed.expect(State::degraded, Reason::mismatch);
   feed.scans(40, 0.1);
-  feed.expect(State::lost, Reason::mismatch);
+  feed.expect(State::degraded, Reason::mismatch);
   EXPECT_NEAR(feed.last.matchedShare, 0.1, 1e-12);
+  feed.scans(40, 0);
+  feed.expect(State::lost, Reason::mismatch);
   feed.scans(40, 0.9);
   feed.expect(State::ok, Reason::none);
 }
@@ -86,7 +88,7 @@ TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {
   Feed feed;
   feed.scans(60, 0.9);
   double driven = 0;
-  while (feed.scan(0.1).state != State::lost && driven < 100) driven += feed.metres;
+  while (feed.scan(0).state != State::lost && driven < 100) driven += feed.metres;
   EXPECT_LE(driven, feed.monitor.options().lostWindow);
 }
 
@@ -109,6 +111,18 @@ TEST(LocalizationHealth, ANewPoseThatIsNeverBorneOutIsLost) {
   feed.expect(State::lost, Reason::mismatch);
 }
 
+TEST(LocalizationHealth, ANewPoseIsHeldToAGreaterShareThanOneThatHasBeenOk) {
+  Feed feed;
+  feed.scans(29, 0.45, 20);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.45, 20);  // 15 m
+  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(60, 0.9);
+  feed.expect(State::ok, Reason::none);
+  feed.scans(60, 0.45, 20);
+  feed.expect(State::ok, Reason::none);
+}
+
 TEST(LocalizationHealth, FewPolesSayNothingAgainstThePose) {
   Feed feed;
   feed.scans(40, 0.9);
@@ -127,7 +141,7 @@ TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
   feed.expect(State::ok, Reason::none);
   EXPECT_NEAR(feed.last.matchedShare, 0.9 * (16 + 1.0 / 3001) / 17, 1e-9);  // 17 viewpoints in 8 m
   feed.metres = 0.5;
-  feed.scans(33, 0.0);  // driving on, it is
+  feed.scans(37, 0.0);  // driving on, it is
   feed.expect(State::lost, Reason::mismatch);
 }
 

@@ -91,6 +91,8 @@ void HealthOptions::validate() const {
   require(isPositive(blindSeconds), "blind_s", blindSeconds, "more than 0");
   require(isPositive(blindMetres), "blind_m", blindMetres, "more than 0");
   require(isPositive(maxGap), "max_gap_s", maxGap, "more than 0");
+  require(isShare(confirmShare) && confirmShare >= degradedShare, "confirm_share", confirmShare,
+          "degraded_share to 1");
   require(confirmWithin >= confirm && std::isfinite(confirmWithin), "confirm_within_m",
           confirmWithin, "confirm_m or more");
   require(confirm >= 0 && std::isfinite(confirm), "confirm_m", confirm, "0 or more");
@@ -189,7 +191,7 @@ void HealthMonitor::judge(const HealthInput& input) {
   if (here.evidence > 0 && here.matched >= o.degradedShare * here.evidence)
     m_goodDriven += input.metres;
   const bool good = tells && m_health.matchedShare >= o.degradedShare &&
-                    m_health.spread < o.degradedSpread &&
+                    m_longShare >= o.confirmShare && m_health.spread < o.degradedSpread &&
                     m_health.spreadHeading < o.degradedHeading;
   if (good && m_goodDriven >= o.confirm) m_confirmed = true;
 
@@ -198,7 +200,8 @@ void HealthMonitor::judge(const HealthInput& input) {
   const bool few = tells && m_health.matchedShare < o.degradedShare;
   const bool bareLong = m_longEvidence >= o.minEvidence * o.lostWindow / o.window &&
                         m_longShare < o.lostShare && m_health.matchedShare < o.degradedShare;
-  const bool unproven = few && !m_confirmed && m_driven >= o.confirmWithin;
+  const bool unproven =
+      tells && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
   if (set(bareLong || unproven, State::lost, Reason::mismatch)) return;
   if (set(m_health.spread > o.lostSpread && m_health.modeShare >= o.modeShare, State::lost,
           Reason::spread))

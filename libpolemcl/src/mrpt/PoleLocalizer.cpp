@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "ParticleDraws.h"
@@ -195,13 +196,13 @@ void PoleLocalizer::update(const std::vector<PoleDetection>& poles_robot,
     for (std::size_t i = 0; i < before.size(); ++i) ratios[i] -= before[i];
     return ratios;
   };
+  const LikelihoodOptions& likelihood = m_map->likelihoodOptions;
   evaluate({1});
-  if (leavesEnough(values[0])) return addToLogWeights(values[0]);
+  if (leavesEnough(values[0]) && areDense(likelihood.sigma)) return addToLogWeights(values[0]);
   // From the prior to the posterior over posteriors of wider likelihoods. The weights of a stage
   // are the ratio of its likelihood to the one the particles have been weighed by already.
   std::vector<double> widenings;
   // Wider than half the gate a bell is cut off at the gate, and draws towards chance matches.
-  const LikelihoodOptions& likelihood = m_map->likelihoodOptions;
   const double widestSigma = std::max(8 * likelihood.sigma, 0.5 * likelihood.gate);
   for (double widening = 1;
        widening <= maxWidening && widening * likelihood.sigma <= widestSigma * (1 + 1e-9);
@@ -214,6 +215,9 @@ void PoleLocalizer::update(const std::vector<PoleDetection>& poles_robot,
         first ? std::vector<double>(m_particles.size(), 0.0) : values.back();
     const std::size_t narrowest = 0, widest = widenings.size() - (first ? 1 : 2);
     std::size_t k = narrowest;
+    while (k < widest && !areDense(widenings[k] * likelihood.sigma)) ++k;
+    // Narrower ones would fall between the particles; the next scans will tell.
+    if (!first && !areDense(widenings[k] * likelihood.sigma)) return;
     while (k < widest && !leavesEnough(weigh(values[k], before))) ++k;
     addToLogWeights(weigh(values[k], before));
     if (k == narrowest) return;
@@ -235,6 +239,16 @@ bool PoleLocalizer::leavesEnough(const std::vector<double>& logLikelihoods) cons
   // Measured by what the filter keeps: after the start there may be many more.
   const auto kept = std::min<std::size_t>(weights.size(), m_options.particles);
   return effectiveShare(weights) * weights.size() >= m_options.tempering * kept;
+}
+
+bool PoleLocalizer::areDense(double sigma) const {
+  if (m_options.tempering == 0) return true;
+  KldOptions bins;
+  bins.bin = 2 * sigma;
+  bins.binYaw = bins.bin / leverMetres;
+  std::vector<std::size_t> all(m_particles.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return 2 * occupiedBins(particles(), all, bins) <= all.size();
 }
 
 double PoleLocalizer::ESS() const {

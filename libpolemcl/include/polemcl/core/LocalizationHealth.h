@@ -39,9 +39,11 @@ struct HealthOptions {
   double window = 8;
   /// A window this long and as much evidence more must agree before the pose is called lost: on a
   /// stretch where most poles are gone or new, little else is seen for some metres.
-  double lostWindow = 16;
+  double lostWindow = 18;
   double minEvidence = 8;      ///< sum of confidences in the window below which shares say nothing
-  double lostShare = 0.15;     ///< lost: a smaller share of the observed poles stands on the map
+  /// Lost: a smaller share of the observed poles stands on the map. A pose that was right and is so
+  /// no longer is known so well that chance leaves next to nothing: 0.002 for 20 cm round each pole.
+  double lostShare = 0.05;
   double degradedShare = 0.4;  ///< degraded: a smaller share than this
   double lostSpread = 5;       ///< lost: standard deviation of the position along its worst axis, m
   double degradedSpread = 0.5;     ///< degraded, likewise, m
@@ -52,6 +54,8 @@ struct HealthOptions {
   double blindMetres = 20;         ///< or farther, m
   double maxGap = 2;               ///< degraded: a longer time between two scans, s
   double confirm = 5;              ///< metres of good matches until a new pose is `ok`
+  /// A new pose is borne out by this share; particles drawn over metres find chance matches.
+  double confirmShare = 0.5;
   double confirmWithin = 15;       ///< lost: a new pose not borne out after so many metres
   void validate() const;           ///< \throws Error naming the field
 };

@@ -51,6 +51,9 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   /// The widest likelihood that tempering begins with, as a multiple of `[likelihood] sigma_m`.
   static constexpr double maxWidening = 32;
 
+  /// Distance of poles at which turning by a bin moves them by a bin, m; see areDense().
+  static constexpr double leverMetres = 20;
+
   /// \throws Error when the map has no poles or an option is out of range.
   PoleLocalizer(std::shared_ptr<const CPoleMap> map, const FilterOptions& filterOptions,
                 std::uint32_t seed);
@@ -106,6 +109,9 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   void addToLogWeights(const std::vector<double>& values);
   /// \brief Whether the particles stay many enough with these added to their weights.
   bool leavesEnough(const std::vector<double>& logLikelihoods) const;
+  /// \brief Whether two particles or more share a bin as wide as a bell of this sigma, m. If they are
+  /// sparser it falls between them: whichever is nearest wins, or none, whatever lies there.
+  bool areDense(double sigma) const;
   /// \brief Indices, as many as KLD sampling asks for.
   std::vector<size_t> drawAdaptively(const std::vector<Pose2D>& poses) const;
   void jitter(const Eigen::Matrix3d& spread);
