@@ -138,6 +138,27 @@ TEST_F(PoleLocalizationTest, AKidnappedVehicleIsLostAndFoundAgain) {
   EXPECT_LE(found - jump, 60u);
 }
 
+TEST_F(PoleLocalizationTest, AFilterThatSettledBesideTheTruthIsPutRightByTheSearch) {
+  driveFrom(9, 80);
+  for (PoleFrame& frame : frames)  // far too sure of the odometry to move by itself
+    frame.motion->covariance = Eigen::Vector3d(1e-8, 1e-10, 1e-10).asDiagonal();
+  options.filter.extraSigma = options.filter.extraSigmaYaw = 1e-6;
+  options.motionCheck.enabled = false;
+  PoleLocalization localization = chain();
+  StartOptions start = atTruth();
+  start.radius = start.heading = 1e-3;
+  start.pose->y += 0.4;
+  localization.start(start);
+  bool putRight = false;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_NE(update.health.reason, HealthReason::elsewhere);
+    if (update.relocalized) EXPECT_NE(update.health.state, HealthState::lost);
+    putRight |= update.relocalized;
+  }
+  EXPECT_TRUE(putRight);
+}
+
 TEST_F(PoleLocalizationTest, AnotherCitysMapIsLost) {
   driveFrom(8, 60);
   auto poles = std::make_shared<CPoleMap>(*map->poles);

@@ -180,8 +180,7 @@ void PoleLocalization::track(const PoleFrame& frame, double metres, Localization
   HealthInput input;
   input.time = frame.time;
   input.metres = metres;
-  m_matches = matchPoles(frame.poles_robot, estimate, m_map.poles->index(),
-                         {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
+  m_matches = match(frame, estimate);
   input.matches = m_matches;
   input.estimate = estimate;
   input.effectiveParticles =
@@ -226,10 +225,11 @@ void PoleLocalization::search(const PoleFrame& frame, LocalizationUpdate& update
     // The filter keeps several places already, or a few metres more may tell.
     if (m_hasPose && m_monitor.health().state != HealthState::lost) return;
     if (m_submap.driven() < m_options.search.patience) return;
-  } else if (m_hasPose && agrees(m_search.hypotheses[0])) {
+  } else if (m_hasPose && agrees(m_search.hypotheses[0]) &&
+             !fitsBetter(m_search.hypotheses[0], frame)) {
     return;
   }
-  const bool wasElsewhere = m_hasPose;
+  const bool wasElsewhere = m_hasPose && !(resolved && agrees(m_search.hypotheses[0]));
   adopt(frame, resolved, update);
   if (wasElsewhere) m_monitor.reportElsewhere();
 }
@@ -239,6 +239,23 @@ bool PoleLocalization::agrees(const GlobalHypothesis& place) const {
   const Pose2D& estimate = m_estimate.mean;
   return std::hypot(found.x - estimate.x, found.y - estimate.y) <= sameMetres &&
          std::abs(wrapAngle(found.yaw - estimate.yaw)) <= sameRadians;
+}
+
+/// A filter that has settled beside the truth, on poles that happened to fit, is too sure to leave.
+bool PoleLocalization::fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const {
+  const auto sum = [](const std::vector<PoleMatch>& matches) {
+    double matched = 0;
+    for (const PoleMatch& match : matches) matched += match.matched ? match.confidence : 0;
+    return matched;
+  };
+  const PoseWithCovariance pose{place.pose_map_robot, place.covariance};
+  return sum(match(frame, pose)) > sum(m_matches) + betterPoles;
+}
+
+std::vector<PoleMatch> PoleLocalization::match(const PoleFrame& frame,
+                                               const PoseWithCovariance& pose) const {
+  return matchPoles(frame.poles_robot, pose, m_map.poles->index(),
+                    {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
 }
 
 void PoleLocalization::adopt(const PoleFrame& frame, bool resolved, LocalizationUpdate& update) {

@@ -89,6 +89,8 @@ class PoleLocalization {
   static constexpr double maxStartDistance = 1000;  ///< m
   /// A search's answer this near to the estimate is the same place, m and rad.
   static constexpr double sameMetres = 0.5, sameRadians = 0.035;
+  /// There, it is taken all the same if so many poles of the scan more stand on the map.
+  static constexpr double betterPoles = 2;
   /// Particles whose standard deviation is above may be in several places, m and rad.
   static constexpr double wideMetres = 0.3, wideRadians = 0.1;
 
@@ -112,6 +114,8 @@ class PoleLocalization {
   bool searchIsDue() const;
   void search(const PoleFrame& frame, LocalizationUpdate& update);
   bool agrees(const GlobalHypothesis& place) const;
+  bool fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const;
+  std::vector<PoleMatch> match(const PoleFrame& frame, const PoseWithCovariance& pose) const;
   void adopt(const PoleFrame& frame, bool resolved, LocalizationUpdate& update);
 
   LocalizationMap m_map;
