@@ -2,8 +2,11 @@
 
 #include <polemcl/apps/DetectionModelApp.h>
 #include <polemcl/apps/ExtractionEval.h>
+#include <polemcl/apps/MotionEval.h>
 #include <polemcl/io/TextFile.h>
 
+#include <cmath>
+#include <iomanip>
 #include <memory>
 #include <sstream>
 
@@ -142,11 +145,53 @@ EvalCommand sightingsCommand(CLI::App& program) {
   return {&cli, [options] { return text(evalSightings(*options)); }};
 }
 
+std::string cells(const Pose2D& motion) {
+  std::ostringstream out;
+  out << std::setw(9) << io::fixed(std::hypot(motion.x, motion.y), 3) << std::setw(8)
+      << io::fixed(motion.yaw * 180 / M_PI, 2);
+  return out.str();
+}
+
+std::string text(const std::vector<MotionComparison>& stretches) {
+  std::ostringstream out;
+  const std::string none = std::string(16, ' ') + '-';
+  out << " scan  truth m     deg  odom. m     deg  poles m     deg  pairs\n";
+  double metres = 0, radians = 0, way = 0;
+  for (const MotionComparison& stretch : stretches) {
+    const Pose2D &truth = stretch.truth, &poles = stretch.poles.motion;
+    const bool tell = stretch.poles.pairs >= 3;
+    out << std::setw(5) << stretch.scan << cells(truth)
+        << (stretch.odometry ? cells(*stretch.odometry) : none) << (tell ? cells(poles) : none)
+        << std::setw(7) << stretch.poles.pairs << '\n';
+    if (!tell) continue;
+    way += std::hypot(truth.x, truth.y);
+    metres += std::hypot(poles.x, poles.y) - std::hypot(truth.x, truth.y);
+    radians += wrapAngle(poles.yaw - truth.yaw);
+  }
+  out << "the poles say " << io::fixed(metres, 3) << " m and " << io::fixed(radians * 180 / M_PI, 2)
+      << " deg more than the truth, over " << io::fixed(way, 1) << " m\n";
+  return out.str();
+}
+
+EvalCommand motionCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "motion", "Do the true poses agree with how the poles move from scan to scan?");
+  const auto options = std::make_shared<EvalMotionOptions>();
+  cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
+  cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
+  cli.add_option("--every", options->every, "Compare each scan with the N-th after it")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options] { return text(evalMotion(*options)); }};
+}
+
 }  // namespace
 
 std::vector<EvalCommand> extractionCommands(CLI::App& program) {
   return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program),
-          modelCommand(program), sightingsCommand(program)};
+          modelCommand(program),      sightingsCommand(program),     motionCommand(program)};
 }
 
 }  // namespace polemcl::apps

@@ -15,7 +15,7 @@ struct EvalCommand {
   std::function<std::string()> run;
 };
 
-/// \brief Declares `detections`, `repeatability`, `rotation`, `model` and `sightings`.
+/// \brief Declares `detections`, `repeatability`, `rotation`, `model`, `sightings` and `motion`.
 std::vector<EvalCommand> extractionCommands(CLI::App& program);
 
 /// \brief Declares `global`, `consistency` and `faults`.
