@@ -51,6 +51,35 @@ std::vector<size_t> thinned(const std::vector<size_t>& indices, size_t count) {
   return result;
 }
 
+/// Bins as wide as a bell of this sigma, in x, y and heading.
+KldOptions binsOf(double sigma) {
+  KldOptions bins;
+  bins.bin = 2 * sigma;
+  bins.binYaw = bins.bin / PoleLocalizer::leverMetres;
+  return bins;
+}
+
+/// Whether two particles or more share a bin as wide as a bell of this sigma. If they are sparser it
+/// falls between them: whichever is nearest wins, or none, whatever lies there.
+bool areDense(const std::vector<Pose2D>& poses, double sigma) {
+  std::vector<std::size_t> all(poses.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return 2 * occupiedBins(poses, all, binsOf(sigma)) <= all.size();
+}
+
+/// Particles are dense, at any rate, where the box round them holds so few bins. Quicker to tell.
+bool lieWithinFewBins(const std::vector<Pose2D>& poses, double sigma) {
+  Eigen::Array3d low = Eigen::Array3d::Constant(INFINITY), high = -low;
+  for (const Pose2D& pose : poses) {
+    const Eigen::Array3d place(pose.x, pose.y, pose.yaw);
+    low = low.min(place);
+    high = high.max(place);
+  }
+  const KldOptions bins = binsOf(sigma);
+  const Eigen::Array3d size(bins.bin, bins.bin, bins.binYaw);
+  return 2 * ((high - low) / size + 2).prod() <= static_cast<double>(poses.size());
+}
+
 /// The Gaussian motion of an action; null if it has another, or a distribution of another kind.
 std::shared_ptr<const mrpt::poses::CPosePDFGaussian> gaussianMotion(
     const mrpt::obs::CActionCollection& action) {
@@ -196,36 +225,58 @@ void PoleLocalizer::update(const std::vector<PoleDetection>& poles_robot,
     for (std::size_t i = 0; i < before.size(); ++i) ratios[i] -= before[i];
     return ratios;
   };
-  const LikelihoodOptions& likelihood = m_map->likelihoodOptions;
-  evaluate({1});
-  if (leavesEnough(values[0]) && areDense(likelihood.sigma)) return addToLogWeights(values[0]);
+  const auto addAtOnce = [&](bool always) {
+    evaluate({1});
+    const bool adds = always || leavesEnough(values[0]);
+    if (adds) addToLogWeights(values[0]);
+    return adds;
+  };
+  if (m_options.tempering == 0) return void(addAtOnce(true));
   // From the prior to the posterior over posteriors of wider likelihoods. The weights of a stage
   // are the ratio of its likelihood to the one the particles have been weighed by already.
-  std::vector<double> widenings;
+  const std::vector<double> widenings = temperingWidenings();
+  std::optional<std::size_t> weighed;
+  while (true) {
+    const std::optional<std::size_t> dense = narrowestDense(widenings);
+    // Narrower ones would fall between the particles; the next scans will tell.
+    if (weighed && (!dense || *dense >= *weighed)) return;
+    const std::size_t widest = weighed.value_or(widenings.size() - 1);
+    const std::size_t narrowest = dense.value_or(widest);
+    if (!weighed && narrowest == 0 && addAtOnce(false)) return;
+    evaluate({widenings.begin() + narrowest, widenings.begin() + widest + 1});
+    const std::vector<double> before =
+        weighed ? values.back() : std::vector<double>(m_particles.size(), 0.0);
+    const std::size_t most = widest - narrowest - (weighed ? 1 : 0);
+    std::size_t k = 0;
+    while (k < most && !leavesEnough(weigh(values[k], before))) ++k;
+    addToLogWeights(weigh(values[k], before));
+    if (narrowest + k == 0 || !dense) return;
+    performResampling(mrptOptions);
+    ++m_report.temperingStages;
+    weighed = narrowest + k;
+  }
+}
+
+std::vector<double> PoleLocalizer::temperingWidenings() const {
+  const LikelihoodOptions& likelihood = m_map->likelihoodOptions;
   // Wider than half the gate a bell is cut off at the gate, and draws towards chance matches.
   const double widestSigma = std::max(8 * likelihood.sigma, 0.5 * likelihood.gate);
+  std::vector<double> widenings;
   for (double widening = 1;
        widening <= maxWidening && widening * likelihood.sigma <= widestSigma * (1 + 1e-9);
        widening *= 2)
     widenings.push_back(widening);
-  bool first = true;
-  while (true) {
-    evaluate(widenings);
-    const std::vector<double> before =
-        first ? std::vector<double>(m_particles.size(), 0.0) : values.back();
-    const std::size_t narrowest = 0, widest = widenings.size() - (first ? 1 : 2);
-    std::size_t k = narrowest;
-    while (k < widest && !areDense(widenings[k] * likelihood.sigma)) ++k;
-    // Narrower ones would fall between the particles; the next scans will tell.
-    if (!first && !areDense(widenings[k] * likelihood.sigma)) return;
-    while (k < widest && !leavesEnough(weigh(values[k], before))) ++k;
-    addToLogWeights(weigh(values[k], before));
-    if (k == narrowest) return;
-    performResampling(mrptOptions);
-    ++m_report.temperingStages;
-    widenings.resize(k + 1);
-    first = false;
-  }
+  return widenings;
+}
+
+std::optional<std::size_t> PoleLocalizer::narrowestDense(
+    const std::vector<double>& widenings) const {
+  const std::vector<Pose2D> poses = particles();
+  const double sigma = m_map->likelihoodOptions.sigma;
+  if (lieWithinFewBins(poses, sigma * widenings[0])) return 0;
+  std::size_t k = widenings.size();
+  while (k > 0 && areDense(poses, sigma * widenings[k - 1])) --k;
+  return k < widenings.size() ? std::optional(k) : std::nullopt;
 }
 
 void PoleLocalizer::addToLogWeights(const std::vector<double>& values) {
@@ -239,16 +290,6 @@ bool PoleLocalizer::leavesEnough(const std::vector<double>& logLikelihoods) cons
   // Measured by what the filter keeps: after the start there may be many more.
   const auto kept = std::min<std::size_t>(weights.size(), m_options.particles);
   return effectiveShare(weights) * weights.size() >= m_options.tempering * kept;
-}
-
-bool PoleLocalizer::areDense(double sigma) const {
-  if (m_options.tempering == 0) return true;
-  KldOptions bins;
-  bins.bin = 2 * sigma;
-  bins.binYaw = bins.bin / leverMetres;
-  std::vector<std::size_t> all(m_particles.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return 2 * occupiedBins(particles(), all, bins) <= all.size();
 }
 
 double PoleLocalizer::ESS() const {

@@ -36,7 +36,7 @@ struct FilterOptions {
   /// A scan that would leave an effective share below this is used in steps: first with a wider
   /// likelihood (2 to 32 times the sigma) that leaves this share, resampling, then a narrower
   /// one, down to the likelihood itself, or to the narrowest that does not fall between the
-  /// particles (PoleLocalizer::areDense). It is what finds the way from the start disc, where few
+  /// particles (PoleLocalizer::narrowestDense). It is what finds the way from the start disc, where few
   /// particles are near the truth. 0: at once.
   double tempering = 0.2;
   /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace polemcl {
@@ -51,7 +52,7 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   /// The widest likelihood that tempering begins with, as a multiple of `[likelihood] sigma_m`.
   static constexpr double maxWidening = 32;
 
-  /// Distance of poles at which turning by a bin moves them by a bin, m; see areDense().
+  /// Distance of poles at which turning by a bin moves them by a bin, m; see narrowestDense().
   static constexpr double leverMetres = 20;
 
   /// \throws Error when the map has no poles or an option is out of range.
@@ -109,9 +110,11 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   void addToLogWeights(const std::vector<double>& values);
   /// \brief Whether the particles stay many enough with these added to their weights.
   bool leavesEnough(const std::vector<double>& logLikelihoods) const;
-  /// \brief Whether two particles or more share a bin as wide as a bell of this sigma, m. If they are
-  /// sparser it falls between them: whichever is nearest wins, or none, whatever lies there.
-  bool areDense(double sigma) const;
+  /// \brief Factors on sigma that tempering steps through, ascending from 1.
+  std::vector<double> temperingWidenings() const;
+  /// \brief Index of the narrowest that does not fall between the particles: where two or more of
+  /// them share a bin as wide as its bell. None: all of them do.
+  std::optional<std::size_t> narrowestDense(const std::vector<double>& widenings) const;
   /// \brief Indices, as many as KLD sampling asks for.
   std::vector<size_t> drawAdaptively(const std::vector<Pose2D>& poses) const;
   void jitter(const Eigen::Matrix3d& spread);
