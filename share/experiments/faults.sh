@@ -9,17 +9,17 @@
 #   TRACK    the road as poses, 12 numbers a line, plain or gzip; $POLEMCL_DATA/tracks/kaist01.txt.gz unless
 #            given; without either, the simulator's own street of 3 km
 #   --quick  one world, 20 trials each, one healthy drive
-# Worlds 511 to 515 (--quick: 511), faults seeded 501. Programs: build/bin, or POLEMCL_BIN.
+# Worlds 521 to 525 (--quick: 521), faults seeded 501. Programs: build/bin, or POLEMCL_BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-worlds="511 512 513 514 515"
+worlds="521 522 523 524 525"
 trials=40
 healthy=9 # drives of each world; 45 of 0.24 h are 10.8 h
 if [ "${1:-}" = --quick ]; then
-  worlds=511
+  worlds=521
   trials=20
   healthy=1
   shift

@@ -102,6 +102,16 @@ TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
   feed.expect(State::degraded, Reason::mismatch);
 }
 
+TEST(LocalizationHealth, AFewNewPolesWhereTheMappedAreGoneDegradeOnly) {
+  Feed few, more;
+  few.scans(60, 0.9);
+  more.scans(60, 0.9);
+  few.scans(80, 0, 1);  // 37 scans in 18 m
+  few.expect(State::degraded, Reason::mismatch);
+  more.scans(80, 0, 2);
+  more.expect(State::lost, Reason::mismatch);
+}
+
 TEST(LocalizationHealth, ANewPoseThatIsNeverBorneOutIsLost) {
   Feed feed;
   // Above lost_share, so only the lack of a confirmation tells.
@@ -249,6 +259,8 @@ TEST(LocalizationHealth, RefusesOptionsOutOfRange) {
   refused([](HealthOptions& o) { o.minEvidence = NAN; });
   refused([](HealthOptions& o) { o.lostShare = 1.1; });
   refused([](HealthOptions& o) { o.degradedShare = o.lostShare / 2; });
+  refused([](HealthOptions& o) { o.confirmShare = o.degradedShare / 2; });
+  refused([](HealthOptions& o) { o.lostEvidence = 0; });
   refused([](HealthOptions& o) { o.lostSpread = INFINITY; });
   refused([](HealthOptions& o) { o.degradedSpread = o.lostSpread * 2; });
   refused([](HealthOptions& o) { o.degradedHeading = 0; });

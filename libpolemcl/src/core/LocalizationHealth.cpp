@@ -78,6 +78,7 @@ void HealthOptions::validate() const {
   require(isPositive(lostWindow) && lostWindow >= window, "lost_window_m", lostWindow,
           "window_m or more");
   require(isPositive(minEvidence), "min_evidence", minEvidence, "more than 0");
+  require(isPositive(lostEvidence), "lost_evidence", lostEvidence, "more than 0");
   require(isShare(lostShare), "lost_share", lostShare, "0 to 1");
   require(isShare(degradedShare) && degradedShare >= lostShare, "degraded_share", degradedShare,
           "lost_share to 1");
@@ -198,8 +199,8 @@ void HealthMonitor::judge(const HealthInput& input) {
   using State = HealthState;
   using Reason = HealthReason;
   const bool few = tells && m_health.matchedShare < o.degradedShare;
-  const bool bareLong = m_longEvidence >= o.minEvidence * o.lostWindow / o.window &&
-                        m_longShare < o.lostShare && m_health.matchedShare < o.degradedShare;
+  const bool bareLong = m_longEvidence >= o.lostEvidence && m_longShare < o.lostShare &&
+                        m_health.matchedShare < o.degradedShare;
   const bool unproven =
       tells && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
   if (set(bareLong || unproven, State::lost, Reason::mismatch)) return;

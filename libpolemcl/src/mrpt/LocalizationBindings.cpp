@@ -63,6 +63,8 @@ void bind(Binder& b, HealthOptions& o) {
   b.number("lost_window_m", o.lostWindow, positive, "m", "over so many before it is called lost");
   b.number("min_evidence", o.minEvidence, positive, "",
            "sum of confidences below which matches say nothing");
+  b.number("lost_evidence", o.lostEvidence, positive, "",
+           "lost: only with this sum of confidences in the longer window");
   b.number("lost_share", o.lostShare, share, "share",
            "lost: fewer of the observed poles stand on the map");
   b.number("degraded_share", o.degradedShare, share, "share", "degraded: fewer than this");

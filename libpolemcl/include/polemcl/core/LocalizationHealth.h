@@ -37,13 +37,15 @@ struct HealthOptions {
   /// Metres driven whose scans are judged together. Scans from one viewpoint count as one: a
   /// vehicle that stands beside something odd is not lost.
   double window = 8;
-  /// A window this long and as much evidence more must agree before the pose is called lost: on a
-  /// stretch where most poles are gone or new, little else is seen for some metres.
+  /// A window this long must agree before the pose is called lost: on a stretch where most poles are
+  /// gone or new, little else is seen for some metres.
   double lostWindow = 18;
-  double minEvidence = 8;      ///< sum of confidences in the window below which shares say nothing
+  double minEvidence = 8;  ///< sum of confidences in the window below which shares say nothing
+  /// Likewise in the long one: where the poles of the map are gone, the few new ones prove nothing.
+  double lostEvidence = 40;
   /// Lost: a smaller share of the observed poles stands on the map. A pose that was right and is so
   /// no longer is known so well that chance leaves next to nothing: 0.002 for 20 cm round each pole.
-  double lostShare = 0.05;
+  double lostShare = 0.03;
   double degradedShare = 0.4;  ///< degraded: a smaller share than this
   double lostSpread = 5;       ///< lost: standard deviation of the position along its worst axis, m
   double degradedSpread = 0.5;     ///< degraded, likewise, m
