@@ -178,7 +178,8 @@ TEST(PoleLikelihood, batchGivesTheSameNumbersAsTheSingleCall) {
 
 TEST(PoleLikelihood, posesNearEachOtherAreSearchedTogetherToTheSameNumbers) {
   Scene scene = randomScene(13);
-  for (Pose2D& pose : scene.poses) pose = {0.2 * pose.x, 0.2 * pose.y, 1 + 0.01 * pose.yaw};
+  for (MapPole& pole : scene.map) pole.x *= 0.4, pole.y *= 0.4;  // several within the gate
+  for (Pose2D& pose : scene.poses) pose = {0.05 * pose.x, 0.05 * pose.y, 1 + 0.002 * pose.yaw};
   const PoleIndex index(scene.map);
   const LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, true);
   std::vector<double> together, apart;
