@@ -69,6 +69,15 @@ TEST(LocalizationHealth, OkOnceMatchesOverSomeMetresBearThePoseOut) {
   EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // m² of 2 over 2 degrees of freedom
 }
 
+TEST(LocalizationHealth, APoseThatASearchFoundIsBorneOutSooner) {
+  Feed feed;
+  feed.monitor.begin(true);
+  feed.scans(3, 0.9);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.9);  // 2 m
+  feed.expect(State::ok, Reason::none);
+}
+
 TEST(LocalizationHealth, TooFewMatchesDegradeThenLose) {
   Feed feed;
   feed.scans(40, 0.9);
@@ -131,6 +140,14 @@ TEST(LocalizationHealth, ANewPoseIsHeldToAGreaterShareThanOneThatHasBeenOk) {
   feed.expect(State::ok, Reason::none);
   feed.scans(60, 0.45, 20);
   feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, ANewPoseThatHardlyAnythingSpeaksForIsLostAtOnce) {
+  Feed feed;
+  feed.scans(3, 0.1);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.1);  // evidence of 40
+  feed.expect(State::lost, Reason::mismatch);
 }
 
 TEST(LocalizationHealth, FewPolesSayNothingAgainstThePose) {
@@ -270,4 +287,5 @@ TEST(LocalizationHealth, RefusesOptionsOutOfRange) {
   refused([](HealthOptions& o) { o.blindMetres = 0; });
   refused([](HealthOptions& o) { o.maxGap = 0; });
   refused([](HealthOptions& o) { o.confirm = -1; });
+  refused([](HealthOptions& o) { o.confirmFound = o.confirm * 2; });
 }

@@ -80,7 +80,7 @@ TEST_F(PoleLocalizationTest, TracksFromAStartPoseAndSaysOk) {
     ASSERT_TRUE(update.estimate);
     EXPECT_NE(update.health.state, HealthState::lost);
     if (i < 20) continue;
-    EXPECT_LT(error(update, i), 0.2);
+    EXPECT_LT(error(update, i), 0.1);
     EXPECT_EQ(update.health.state, HealthState::ok) << i << ' ' << name(update.health.reason);
   }
   EXPECT_EQ(localization.searches(), 0u);

@@ -8,6 +8,7 @@
 namespace polemcl {
 namespace {
 
+constexpr double s_hopeless = 0.3;   // a new pose is not waited for below this part of its share
 constexpr double s_viewpoint = 0.1;  // scans nearer to each other are of one viewpoint, m
 
 void require(bool good, const char* key, double value, const char* allowed) {
@@ -97,6 +98,8 @@ void HealthOptions::validate() const {
   require(confirmWithin >= confirm && std::isfinite(confirmWithin), "confirm_within_m",
           confirmWithin, "confirm_m or more");
   require(confirm >= 0 && std::isfinite(confirm), "confirm_m", confirm, "0 or more");
+  require(confirmFound >= 0 && confirmFound <= confirm, "confirm_found_m", confirmFound,
+          "0 to confirm_m");
 }
 
 HealthMonitor::HealthMonitor(const HealthOptions& options) : m_options(options) {
@@ -107,9 +110,10 @@ void HealthMonitor::reset() {
   *this = HealthMonitor(m_options);
 }
 
-void HealthMonitor::begin() {
+void HealthMonitor::begin(bool found) {
   reset();
   m_begun = true;
+  m_found = found;
 }
 
 Health HealthMonitor::update(const HealthInput& input) {
@@ -194,12 +198,13 @@ void HealthMonitor::judge(const HealthInput& input) {
   const bool good = tells && m_health.matchedShare >= o.degradedShare &&
                     m_longShare >= o.confirmShare && m_health.spread < o.degradedSpread &&
                     m_health.spreadHeading < o.degradedHeading;
-  if (good && m_goodDriven >= o.confirm) m_confirmed = true;
+  if (good && m_goodDriven >= (m_found ? o.confirmFound : o.confirm)) m_confirmed = true;
 
   using State = HealthState;
   using Reason = HealthReason;
   const bool few = tells && m_health.matchedShare < o.degradedShare;
-  const bool bareLong = m_longEvidence >= o.lostEvidence && m_longShare < o.lostShare &&
+  const double lostShare = m_confirmed ? o.lostShare : s_hopeless * o.confirmShare;
+  const bool bareLong = m_longEvidence >= o.lostEvidence && m_longShare < lostShare &&
                         m_health.matchedShare < o.degradedShare;
   const bool unproven =
       tells && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;

@@ -82,7 +82,10 @@ void bind(Binder& b, HealthOptions& o) {
   b.number("max_gap_s", o.maxGap, positive, "s", "degraded: a longer time between two scans");
   b.number("confirm_m", o.confirm, Range::atLeast(0), "m",
            "metres of good matches until a new pose is ok");
-  b.number("confirm_share", o.confirmShare, share, "share", "a new pose is borne out by so many matches");
+  b.number("confirm_found_m", o.confirmFound, Range::atLeast(0), "m",
+           "likewise of a pose that a search found");
+  b.number("confirm_share", o.confirmShare, share, "share",
+           "a new pose is borne out by so many matches");
   b.number("confirm_within_m", o.confirmWithin, positive, "m",
            "lost: a new pose not borne out after so many metres");
   b.check(o);

@@ -266,7 +266,7 @@ void PoleLocalization::adopt(const PoleFrame& frame, bool resolved, Localization
   }
   m_filter.start(places, m_options.search.particles);
   m_hasPose = true;
-  m_monitor.begin();
+  m_monitor.begin(resolved);
   track(frame, 0, update);
   update.relocalized = true;
 }

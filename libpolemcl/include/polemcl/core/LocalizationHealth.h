@@ -37,14 +37,15 @@ struct HealthOptions {
   /// Metres driven whose scans are judged together. Scans from one viewpoint count as one: a
   /// vehicle that stands beside something odd is not lost.
   double window = 8;
-  /// A window this long must agree before the pose is called lost: on a stretch where most poles are
-  /// gone or new, little else is seen for some metres.
+  /// A window this long must agree before the pose is called lost: on a stretch where most poles
+  /// are gone or new, little else is seen for some metres.
   double lostWindow = 18;
   double minEvidence = 8;  ///< sum of confidences in the window below which shares say nothing
   /// Likewise in the long one: where the poles of the map are gone, the few new ones prove nothing.
   double lostEvidence = 40;
   /// Lost: a smaller share of the observed poles stands on the map. A pose that was right and is so
-  /// no longer is known so well that chance leaves next to nothing: 0.002 for 20 cm round each pole.
+  /// no longer is known so well that chance leaves next to nothing: 0.002 for 20 cm round each
+  /// pole.
   double lostShare = 0.03;
   double degradedShare = 0.4;  ///< degraded: a smaller share than this
   double lostSpread = 5;       ///< lost: standard deviation of the position along its worst axis, m
@@ -56,10 +57,12 @@ struct HealthOptions {
   double blindMetres = 20;         ///< or farther, m
   double maxGap = 2;               ///< degraded: a longer time between two scans, s
   double confirm = 5;              ///< metres of good matches until a new pose is `ok`
-  /// A new pose is borne out by this share; particles drawn over metres find chance matches.
+  double confirmFound = 2;  ///< likewise after a search, which the poles of its submap bear out
+  /// A new pose is borne out by this share; particles drawn over metres find chance matches. With
+  /// less than 0.3 of it the pose is lost as soon as there is `lostEvidence`.
   double confirmShare = 0.5;
-  double confirmWithin = 15;       ///< lost: a new pose not borne out after so many metres
-  void validate() const;           ///< \throws Error naming the field
+  double confirmWithin = 15;  ///< lost: a new pose not borne out after so many metres
+  void validate() const;      ///< \throws Error naming the field
 };
 
 /// \brief What one update brings.
@@ -96,7 +99,8 @@ class HealthMonitor {
   void reset();
   /// \brief A pose was assumed (a start, a search's answer): forgets the scans before; `degraded`,
   /// `converging` until matches over `confirm` metres bear it out.
-  void begin();
+  /// \param found By a search that is sure of it: `confirmFound` metres do.
+  void begin(bool found = false);
   /// \brief One update more. Before begin(): stays `searching`.
   Health update(const HealthInput& input);
   /// \brief For one update: the constellation of the last metres lies elsewhere.
@@ -121,7 +125,7 @@ class HealthMonitor {
   HealthOptions m_options;
   Health m_health;
   std::deque<Viewpoint> m_views;
-  bool m_begun = false, m_confirmed = false;
+  bool m_begun = false, m_found = false, m_confirmed = false;
   double m_driven = 0, m_time = 0;             ///< at the last update
   double m_longShare = 0, m_longEvidence = 0;  ///< over `lostWindow`
   double m_seenDriven = 0, m_seenTime = 0;     ///< when a pole was last seen
