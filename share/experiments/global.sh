@@ -53,9 +53,10 @@ for city in $cities; do
   "$bin/pole-eval" global --quiet --config "$out/$seed-1.ini" --map "$out/$seed.polemap" \
     --input "$out/$seed-1.rawlog" --truth "$out/$seed-1.tum" --trials "$trials" --seed "$seed" \
     --json "$out/$seed.json"
-  files="$files $out/$seed.json"
+  jq -s '.[0] + .[1]' "$out/$seed.json" "$out/${seed}_timings.json" >"$out/$seed.all"
+  files="$files $out/$seed.all"
   jq -r --arg city "$seed" '[$city, .map_poles, .trials, .right, .wrong, .undecided, .metres_median,
-    .metres_p95, .error_median_m, .query_max_ms] | @tsv' "$out/$seed.json" |
+    .metres_p95, .error_median_m, .query_max_ms] | @tsv' "$out/$seed.all" |
     awk '{ printf "%-6s %9d %6d %6d %6d %10d %9.1f %9.1f %11.3f %9.1f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }'
 done
 # shellcheck disable=SC2086 # word splitting wanted: a list of files

@@ -182,6 +182,8 @@ TEST_F(FaultTrials, TheProgramWritesTableAndJson) {
   EXPECT_EQ(nlohmann::json::parse(readText(city.folder / "none.json"))["lost_times"], 0);
   expectFailure(with({"--fault", "wrong-map", "--trials", "1"}), {"--other-map"});
   expectFailure(with({"--fault", "blind", "--tail", "4000"}), {"too short"});
+  for (const char* bad : {"nan", "0", "-1", "inf", "1e7"})
+    expectUsageError(with({"--fault", "blind", "--duration", bad}));
   expectUsageError(with({"--fault", "flood"}));
   expectUsageError(with({}));
 }

@@ -89,3 +89,28 @@ TEST(RunFolder, RefusesAFileInItsPlace) {
   EXPECT_THROW(RunFolder(folder / "file"), polemcl::Error);
   EXPECT_THROW(RunFolder(folder / "file/below"), polemcl::Error);
 }
+
+TEST(RunFolder, WhatOthersCalledLikeARunStays) {
+  const TempFolder folder;
+  for (const char* name : {"run_00.rawlog", "run_map.polemap", "run_1_notes.txt", "run_00.png"})
+    writeText(folder / name, "mine");
+  RunFolder(folder.path()).commit();
+  EXPECT_EQ(names(folder.path()),
+            Names({"run_00.png", "run_00.rawlog", "run_1_notes.txt", "run_map.polemap"}));
+}
+
+TEST(RunFolder, RefusesToReplaceAnInput) {
+  const TempFolder folder, other;
+  const RunFolder results(folder.path());
+  for (const char* name : {"run_00.tum", "config.ini", "summary.json", "timings.json"}) {
+    try {
+      results.protect(folder / name);
+      ADD_FAILURE() << name << " was accepted";
+    } catch (const polemcl::Error& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+    }
+    EXPECT_NO_THROW(results.protect(other / name));
+  }
+  EXPECT_NO_THROW(results.protect(folder / "run_00.rawlog"));
+  EXPECT_NO_THROW(results.protect(""));
+}

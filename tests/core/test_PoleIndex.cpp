@@ -106,6 +106,20 @@ TEST(PoleIndex, refusesAPoleThatIsNotFinite) {
   EXPECT_THROW(PoleIndex({pole}), Error);
 }
 
+TEST(PoleIndex, refusesAPoleOutOfThisWorld) {
+  MapPole pole;
+  pole.y = -1.01e9;
+  try {
+    PoleIndex({MapPole(), pole});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("pole 1"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("1e+09"), std::string::npos) << error.what();
+  }
+  pole.y = -0.99e9;
+  EXPECT_NO_THROW(PoleIndex({MapPole(), pole}));
+}
+
 TEST(PoleIndex, refusesARadiusThatIsNotPositive) {
   EXPECT_THROW(PoleIndex({poleAt(0, 0)}, 0), Error);
   EXPECT_THROW(PoleIndex({poleAt(0, 0)}, std::nan("")), Error);

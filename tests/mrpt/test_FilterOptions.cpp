@@ -151,6 +151,7 @@ TEST(FilterOptions, ValidateRefusesBadStartsAndRuns) {
   EXPECT_EQ(refusal([] { StartOptions().validate(); }), "");
   EXPECT_NE(refusalOf(&StartOptions::radius, -1.0), "");
   EXPECT_NE(refusalOf(&StartOptions::radius, double(INFINITY)), "");
+  EXPECT_NE(refusalOf(&StartOptions::radius, 10001.0), "");
   EXPECT_NE(refusalOf(&StartOptions::heading, 3.2), "");
   EXPECT_NE(refusalOf(&StartOptions::heading, double(NAN)), "");
   EXPECT_NE(refusalOf(&StartOptions::particles, 0), "");

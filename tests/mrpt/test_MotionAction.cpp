@@ -101,6 +101,11 @@ TEST(MotionAction, RefusesWhatIsNotFinite) {
   }
 }
 
+TEST(MotionAction, RefusesALeap) {
+  EXPECT_TRUE(holds(refusal([](auto& m) { m.mean.x = 8000, m.mean.y = -8000; }), "11313.7 m long"));
+  EXPECT_EQ(refusal([](auto& m) { m.mean.x = 9999; }), "");
+}
+
 TEST(MotionAction, RefusesACovarianceThatIsNotSymmetric) {
   EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(0, 1) += 1e-6; }), "not symmetric"));
 }

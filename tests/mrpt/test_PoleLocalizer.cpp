@@ -367,6 +367,26 @@ TEST(PoleLocalizer, RefusesOptionsOutOfRange) {
   EXPECT_THROW(PoleLocalizer(smallMap(), options, 1), Error);
 }
 
+TEST(PoleLocalizer, WhatTheLikelihoodRefusesIsSaidInFull) {
+  const PoleStreet street = makeStreet({});
+  const auto map = std::make_shared<CPoleMap>(*street.map);
+  map->likelihoodOptions.weighted = true;
+  PoleLocalizer localizer(map, {}, 1);
+  StartOptions start;
+  start.pose = street.truth[0];
+  localizer.start(start);
+  PoleFrame frame = street.frames[0];
+  frame.poles_robot[0].confidence = 2;
+  try {
+    localizer.step(frame);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find("pole detection 0 has a confidence outside [0, 1]"),
+              0u)
+        << error.what();
+  }
+}
+
 TEST(PoleLocalizer, RefusesToStepBeforeTheStart) {
   PoleLocalizer localizer(smallMap(), {}, 1);
   EXPECT_THROW(localizer.step(emptyFrame(0)), Error);

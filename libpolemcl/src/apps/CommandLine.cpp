@@ -6,6 +6,11 @@
 #include <iostream>
 
 namespace polemcl::apps {
+namespace {
+
+constexpr double s_largest = 1e6;  // of metres, seconds and the like
+
+}  // namespace
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
     : m_program(program), m_cli(description, program) {
@@ -38,6 +43,16 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
     std::cerr << m_program << ": failed for an unknown reason\n";
   }
   return exitFailed;
+}
+
+CLI::Validator positiveNumber() {
+  return {
+      [](std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= s_largest;
+        return good ? std::string() : "allowed is a number above 0, up to 1e6, not '" + text + "'";
+      },
+      "above 0"};
 }
 
 std::string oneLine(const std::string& message) {

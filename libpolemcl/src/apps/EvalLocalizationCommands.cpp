@@ -1,3 +1,4 @@
+#include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/ConsistencyEval.h>
 #include <polemcl/apps/FaultTrials.h>
 #include <polemcl/apps/GlobalTrials.h>
@@ -29,7 +30,7 @@ EvalCommand globalCommand(CLI::App& program) {
   cli.add_option("--seed", options.seed, "Of the starts; trial i filters with seed + i")
       ->capture_default_str();
   cli.add_option("--metres", options.metres, "Driven in each trial, at most, m")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->capture_default_str();
   cli.add_option("--json", options.json, "Write the figures to this file");
   return {&cli, [shared] { return evalGlobal(*shared); }};
@@ -96,13 +97,13 @@ EvalCommand faultsCommand(CLI::App& program) {
   cli.add_option("--seed", options.seed, "Of the faults; trial i filters with seed + i")
       ->capture_default_str();
   const auto number = [&](const char* flag, double& value, const char* meaning) {
-    cli.add_option(flag, value, meaning)->check(CLI::PositiveNumber)->capture_default_str();
+    cli.add_option(flag, value, meaning)->check(positiveNumber())->capture_default_str();
   };
   number("--lead", options.fault.lead, "Driven before the fault, s");
   number("--duration", options.fault.duration, "Of blind, stuck and slip, s");
   number("--tail", options.fault.tail, "Driven after the fault, m");
   cli.add_option("--slip", options.fault.slip, "Error of the slipping odometry's scale")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(positiveNumber() & CLI::Range(0.0, 1.0))
       ->capture_default_str();
   cli.add_option("--json", options.json, "Write the figures to this file");
   return {&cli, [shared] { return evalFaults(*shared); }};

@@ -165,6 +165,8 @@ LocalizeResult localize(const LocalizeJob& job) {
   if (job.truth) truth = io::planar(io::readTum(*job.truth));
   // Before the work, so that folders and windows that cannot be are known now.
   RunFolder folder(job.output);
+  for (const auto& input : {job.config, job.input, job.map, job.truth.value_or("")})
+    folder.protect(input);
   RunView view(settings.view, map->poles(), job.input.filename().string(), folder);
 
   const auto begin = Clock::now();

@@ -23,12 +23,17 @@ std::vector<fs::path> entriesOf(const fs::path& folder) {
   return entries;
 }
 
-/// Files `run_*`, and folders `run_NN_scenes`: what else is called so, others may have put there.
+/// What runs write, by name; what else is called `run_...`, others may have put there.
 bool isOfARun(const fs::path& entry) {
   const std::string name = entry.filename().string();
-  if (!fs::is_directory(fs::symlink_status(entry))) return name.rfind("run_", 0) == 0;
-  static const std::regex folder("run_[0-9]+_scenes");
-  return std::regex_match(name, folder);
+  static const std::regex folder("run_[0-9]+_scenes"),
+      file(R"(run_[0-9]+(\.tum|\.json|_errors\.csv|_cov\.csv|_health\.csv))");
+  return std::regex_match(name, fs::is_directory(fs::symlink_status(entry)) ? folder : file);
+}
+
+bool isReplaced(const fs::path& file) {
+  const fs::path name = file.filename();
+  return isOfARun(file) || name == summaryName || name == "config.ini" || name == "timings.json";
 }
 
 }  // namespace
@@ -52,6 +57,15 @@ RunFolder::~RunFolder() {
   std::error_code ignored;
   fs::remove_all(m_staging, ignored);
   if (m_created) fs::remove(m_folder, ignored);  // only if it is empty
+}
+
+void RunFolder::protect(const fs::path& input) const {
+  std::error_code error;
+  if (!isReplaced(input) ||
+      !fs::equivalent(input.parent_path().empty() ? "." : input.parent_path(), m_folder, error))
+    return;
+  throw Error(input.string() + ": is an input, and the results in " + m_folder.string() +
+              " would replace it; choose another folder for them");
 }
 
 void RunFolder::commit() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace polemcl {
 namespace {
@@ -14,6 +15,13 @@ std::vector<Eigen::Vector2d> centres(const std::vector<MapPole>& poles) {
       throw Error(
           "pole " + std::to_string(points.size()) +
           " of the map has a centre or covariance that is not finite; remove it from the map");
+    }
+    if (std::abs(pole.x) > PoleIndex::farthest || std::abs(pole.y) > PoleIndex::farthest) {
+      std::ostringstream text;
+      text << "pole " << points.size() << " of the map lies at (" << pole.x << ", " << pole.y
+           << "); coordinates up to " << PoleIndex::farthest
+           << " m are allowed: remove it from the map";
+      throw Error(text.str());
     }
     points.emplace_back(pole.x, pole.y);
   }

@@ -39,7 +39,7 @@ void FilterOptions::validate() const {
 void StartOptions::validate() const {
   require(!pose || (std::isfinite(pose->x) && std::isfinite(pose->y) && std::isfinite(pose->yaw)),
           "the start pose must be finite");
-  require(radius >= 0 && std::isfinite(radius), "radius_m must be 0 m or more");
+  require(radius >= 0 && radius <= maxRadius, "radius_m must be 0 to 10000 m");
   require(heading >= 0 && heading <= M_PI, "heading_deg must be 0 to 180 degrees");
   require(particles >= 1 && particles <= 1000000, "particles must be 1 to 1000000");
 }
@@ -105,7 +105,7 @@ void bind(Binder& binder, StartOptions& options) {
   binder.check(Position{position.size()});
   options.pose.reset();
   if (!position.empty()) options.pose = Pose2D{position[0], position[1], wrapAngle(yaw)};
-  binder.number("radius_m", options.radius, Range::atLeast(0), "m",
+  binder.number("radius_m", options.radius, {0, StartOptions::maxRadius}, "m",
                 "Positions are uniform in this disc (paper: 2.5)");
   binder.angleDeg("heading_deg", options.heading, Range::between(0, 180),
                   "Headings are uniform in plus or minus this (paper: 5)");

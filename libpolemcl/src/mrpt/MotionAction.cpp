@@ -15,6 +15,12 @@ void requireFinite(const io::PlanarMotion& motion) {
   if (!std::isfinite(motion.mean.x) || !std::isfinite(motion.mean.y) ||
       !std::isfinite(motion.mean.yaw) || !motion.covariance.allFinite())
     throw Error("the motion is not finite: check the odometry");
+  const double metres = std::hypot(motion.mean.x, motion.mean.y);
+  if (metres <= maxMotionStep) return;
+  std::ostringstream text;
+  text << "the motion is " << metres << " m long; at most " << maxMotionStep
+       << " m from one scan to the next are allowed: check the odometry";
+  throw Error(text.str());
 }
 
 void requireCovariance(const Eigen::Matrix3d& covariance) {

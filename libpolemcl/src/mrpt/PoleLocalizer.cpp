@@ -59,8 +59,8 @@ KldOptions binsOf(double sigma) {
   return bins;
 }
 
-/// Whether two particles or more share a bin as wide as a bell of this sigma. If they are sparser it
-/// falls between them: whichever is nearest wins, or none, whatever lies there.
+/// Whether two particles or more share a bin as wide as a bell of this sigma. If they are sparser
+/// it falls between them: whichever is nearest wins, or none, whatever lies there.
 bool areDense(const std::vector<Pose2D>& poses, double sigma) {
   std::vector<std::size_t> all(poses.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -165,7 +165,13 @@ PoseWithCovariance PoleLocalizer::step(const PoleFrame& frame) {
   scan.insert(observation);
 
   const GeneratorLoan loan(m_generator);
-  m_filter.executeOn(*this, action.get(), &scan);
+  m_failure = nullptr;
+  try {
+    m_filter.executeOn(*this, action.get(), &scan);
+  } catch (...) {  // MRPT replaces what its steps throw by a text that has lost its beginning
+    if (m_failure) std::rethrow_exception(m_failure);
+    throw;
+  }
   m_stepped = true;
   m_time = frame.time;
   return m_estimate;
@@ -179,7 +185,7 @@ void PoleLocalizer::prediction_and_update_pfStandardProposal(
   if (observation)
     for (const auto& part : *observation)
       if (const auto* poles = dynamic_cast<const CObservationPoles*>(part.get()))
-        update(poles->polesInRobotFrame(), mrptOptions);
+        updateRemembering(poles->polesInRobotFrame(), mrptOptions);
   // Now, since executeOn() resamples next, which erases the weights.
   const std::vector<double> weights = logWeights();
   m_report.effectiveShare = effectiveShare(weights);
@@ -277,6 +283,16 @@ std::optional<std::size_t> PoleLocalizer::narrowestDense(
   std::size_t k = widenings.size();
   while (k > 0 && areDense(poses, sigma * widenings[k - 1])) --k;
   return k < widenings.size() ? std::optional(k) : std::nullopt;
+}
+
+void PoleLocalizer::updateRemembering(const std::vector<PoleDetection>& poles_robot,
+                                      const CParticleFilter::TParticleFilterOptions& options) {
+  try {
+    update(poles_robot, options);
+  } catch (...) {
+    m_failure = std::current_exception();
+    throw;
+  }
 }
 
 void PoleLocalizer::addToLogWeights(const std::vector<double>& values) {

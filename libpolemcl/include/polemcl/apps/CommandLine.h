@@ -43,6 +43,9 @@ class CommandLine {
   bool m_quiet = false;
 };
 
+/// \brief Check of an option: a number above 0 and up to 1e6. (CLI11's own takes nan.)
+CLI::Validator positiveNumber();
+
 /// \brief The message of an exception on one line: MRPT's call stacks are left out, other line
 /// breaks become spaces.
 std::string oneLine(const std::string& message);

@@ -40,7 +40,7 @@ std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
 
 /// \brief The table, and the JSON file if one is wanted (keys `trials right wrong undecided
 /// right_share wrong_share metres_median metres_p95 metres_max error_median_m error_max_m ok_wrong
-/// query_median_ms query_max_ms map_poles`).
+/// map_poles`); beside it `<name>_timings.json` (`query_median_ms query_max_ms`).
 std::string evalGlobal(const GlobalTrialsOptions& options);
 
 }  // namespace polemcl::apps

@@ -21,8 +21,12 @@ class RunFolder {
   /// \brief Where to write a file, or make a folder of files, that commit() moves into the folder.
   std::filesystem::path staged(const std::string& name) const { return m_staging / name; }
 
-  /// \brief Takes the summary, the files `run_*` and the folders `run_NN_scenes` of old results
-  /// away and moves the new files in, `summary.json` last: while it is there, the folder is
+  /// \brief \throws Error if commit() would take this file away or replace it.
+  void protect(const std::filesystem::path& input) const;
+
+  /// \brief Takes the summary and what runs wrote (`run_NN.tum`, `run_NN.json`,
+  /// `run_NN_errors.csv`, `run_NN_cov.csv`, `run_NN_health.csv`, folders `run_NN_scenes`) of old
+  /// results away and moves the new files in, `summary.json` last: while it is there, the folder is
   /// complete. \throws Error when that fails.
   void commit();
 

@@ -14,6 +14,9 @@ namespace polemcl {
 
 class PoleIndex {
  public:
+  /// Greatest coordinate of a pole, m. One pole far off would make all others share one cell.
+  static constexpr double farthest = 1e9;
+
   struct Neighbour {
     std::size_t index;  ///< into the poles given to the constructor
     double distance;    ///< m
@@ -22,8 +25,9 @@ class PoleIndex {
   /// \param preparedRadius Searches up to it take one look-up, wider ones a k-d tree search, m.
   /// Give
   ///        the gate of the likelihood. Memory grows with the poles, not with the area.
-  /// \throws Error on a pole whose centre or covariance is not finite, or a radius that is not
-  ///         finite and positive.
+  /// \throws Error on a pole whose centre or covariance is not finite or that lies beyond
+  /// `farthest`,
+  ///         or a radius that is not finite and positive.
   explicit PoleIndex(const std::vector<MapPole>& poles, double preparedRadius = 1.0);
 
   std::size_t size() const { return m_tree.size(); }

@@ -36,8 +36,8 @@ struct FilterOptions {
   /// A scan that would leave an effective share below this is used in steps: first with a wider
   /// likelihood (2 to 32 times the sigma) that leaves this share, resampling, then a narrower
   /// one, down to the likelihood itself, or to the narrowest that does not fall between the
-  /// particles (PoleLocalizer::narrowestDense). It is what finds the way from the start disc, where few
-  /// particles are near the truth. 0: at once.
+  /// particles (PoleLocalizer::narrowestDense). It is what finds the way from the start disc, where
+  /// few particles are near the truth. 0: at once.
   double tempering = 0.2;
   /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry
   /// whose error grows with the motion knows (nearly) no error across the driving direction.
@@ -50,7 +50,8 @@ struct FilterOptions {
 struct StartOptions {
   bool anywhere = false;       ///< true: no start pose, the global search finds it (`anywhere`)
   std::optional<Pose2D> pose;  ///< map frame (`position_m`, `yaw_deg`); none: from the truth
-  double radius = 2.5;         ///< positions uniform in this disc (in its area), m (paper)
+  static constexpr double maxRadius = 10000;  ///< m; farther off the search (`anywhere`) is better
+  double radius = 2.5;                 ///< positions uniform in this disc (in its area), m (paper)
   double heading = 0.087266462599716;  ///< headings uniform in ± this, rad (paper: 5°)
   /// Drawn at the start, where few would be near the truth; the first resampling keeps
   /// FilterOptions::particles of them. Smaller numbers mean that one.

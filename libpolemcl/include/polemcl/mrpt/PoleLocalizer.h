@@ -12,6 +12,7 @@
 #include <polemcl/mrpt/PoleSequence.h>
 
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -107,6 +108,9 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
                const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
   void update(const std::vector<PoleDetection>& poles_robot,
               const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
+  /// \brief The same; what it throws is kept for step().
+  void updateRemembering(const std::vector<PoleDetection>& poles_robot,
+                         const mrpt::bayes::CParticleFilter::TParticleFilterOptions& options);
   void addToLogWeights(const std::vector<double>& values);
   /// \brief Whether the particles stay many enough with these added to their weights.
   bool leavesEnough(const std::vector<double>& logLikelihoods) const;
@@ -127,6 +131,7 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   double m_time = 0;  ///< of the last frame, s
   PoseWithCovariance m_estimate;
   StepReport m_report;
+  std::exception_ptr m_failure;
 };
 
 }  // namespace polemcl
