@@ -9,7 +9,7 @@
 #   TRACK    the road as poses, 12 numbers a line, plain or gzip; $POLEMCL_DATA/tracks/kaist01.txt.gz unless
 #            given; without either, the simulator's own street of 3 km
 #   --quick  one world, 20 trials each, one healthy drive
-# Worlds 521 to 525 (--quick: 521), faults seeded 501. Programs: build/bin, or POLEMCL_BIN.
+# 10 minutes on 2 cores. Worlds 521 to 525 (--quick: 521), faults seeded 501. Programs: build/bin, or POLEMCL_BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh

@@ -6,7 +6,7 @@
 #   DATA_DIR  a folder of real scans with poses (kitti_raw_0005)
 #   OUT       gets the poles of the drives (used again if they are there), table.md, sweep.svg, sweep.json
 #   LENGTH    of each street, 400 m unless given; WORLD: seeds, 21 22 unless given
-# Programs: build/bin, or POLEMCL_BIN. Needs jq. About an hour on 2 cores, most of it simulation.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq. 10 minutes on 2 cores, half of it simulation.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
