@@ -1,3 +1,4 @@
+#include <liblzf/lzf.h>
 #include <polemcl/io/Bytes.h>
 #include <polemcl/io/PcdFile.h>
 #include <polemcl/io/TextFile.h>
@@ -25,7 +26,7 @@ struct Header {
   std::vector<Field> fields;
   std::size_t pointBytes = 0, columns = 0, points = 0;
   std::size_t lines = 0, bytes = 0;  ///< of the header itself
-  bool binary = false;
+  enum class Data { ascii, binary, compressed } data = Data::ascii;
 };
 
 std::vector<std::string> wordsOf(std::string_view line) {
@@ -98,13 +99,11 @@ class HeaderReader {
 
   void startData(const std::vector<std::string>& words, const std::string& where) {
     const std::string kind = words.size() == 2 ? words[1] : "";
-    if (kind == "binary_compressed")
-      throw Error(where +
-                  "DATA binary_compressed is not read here; convert it with "
-                  "`pcl_convert_pcd_ascii_binary IN OUT 1`");
-    if (kind != "ascii" && kind != "binary")
-      throw Error(where + "DATA must be ascii or binary, not '" + kind + "'");
-    m_header.binary = kind == "binary";
+    if (kind != "ascii" && kind != "binary" && kind != "binary_compressed")
+      throw Error(where + "DATA must be ascii, binary or binary_compressed, not '" + kind + "'");
+    m_header.data = kind == "ascii"    ? Header::Data::ascii
+                    : kind == "binary" ? Header::Data::binary
+                                       : Header::Data::compressed;
     m_ended = true;
   }
 
@@ -181,21 +180,70 @@ void add(Cloud& cloud, const std::array<double, 4>& point) {
   cloud.intensity.push_back(static_cast<float>(intensity));
 }
 
+/// Where the values of a field lie in binary data.
+struct Column {
+  const Field* field = nullptr;  ///< null: there is no such field
+  std::size_t begin = 0;         ///< of the first point's value, bytes
+  std::size_t step = 0;          ///< from one point's to the next one's, bytes
+};
+
+Cloud readColumns(const std::array<Column, 4>& columns, std::size_t points, const char* data) {
+  Cloud cloud;
+  for (std::size_t i = 0; i < points; ++i) {
+    std::array<double, 4> point{};
+    for (std::size_t k = 0; k < 4; ++k)
+      if (columns[k].field)
+        point[k] = binaryValue(data + columns[k].begin + i * columns[k].step, *columns[k].field);
+    add(cloud, point);
+  }
+  return cloud;
+}
+
+/// Point after point.
 Cloud readBinary(const Header& header, std::string_view data, const std::filesystem::path& file) {
   const auto fields = wantedFields(header, file);
   if (data.size() / header.pointBytes < header.points)
     throw Error(file.string() + ": cut short: " + std::to_string(data.size()) +
                 " bytes of points, " + std::to_string(header.points) + " points of " +
                 std::to_string(header.pointBytes) + " bytes expected");
-  Cloud cloud;
-  for (std::size_t i = 0; i < header.points; ++i) {
-    std::array<double, 4> point{};
-    for (std::size_t k = 0; k < 4; ++k)
-      if (fields[k])
-        point[k] = binaryValue(data.data() + i * header.pointBytes + fields[k]->offset, *fields[k]);
-    add(cloud, point);
-  }
-  return cloud;
+  std::array<Column, 4> columns;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (fields[k]) columns[k] = {fields[k], fields[k]->offset, header.pointBytes};
+  return readColumns(columns, header.points, data.data());
+}
+
+/// uint32 sizes, compressed and not, then LZF data.
+std::string decompress(const Header& header, std::string_view data,
+                       const std::filesystem::path& file) {
+  constexpr std::size_t sizes = 8;
+  const std::size_t packed = data.size() < sizes ? 0 : loadLittleEndian<std::uint32_t>(data.data());
+  if (data.size() < sizes || data.size() - sizes < packed)
+    throw Error(file.string() + ": cut short: " + std::to_string(data.size()) +
+                " bytes of compressed points, " + std::to_string(sizes + packed) + " expected");
+  const std::size_t size = loadLittleEndian<std::uint32_t>(data.data() + 4);
+  // Not multiplied: the header may say anything.
+  if (size / header.pointBytes != header.points || size % header.pointBytes != 0)
+    throw Error(file.string() + ": " + std::to_string(size) + " bytes of points, " +
+                std::to_string(header.points) + " points of " + std::to_string(header.pointBytes) +
+                " bytes expected");
+  std::string points(size, '\0');
+  if (size > 0 && lzf_decompress(data.data() + sizes, static_cast<unsigned>(packed), points.data(),
+                                 static_cast<unsigned>(size)) != size)
+    throw Error(file.string() + ": its compressed points are damaged (LZF)");
+  return points;
+}
+
+/// Field after field.
+Cloud readCompressed(const Header& header, std::string_view data,
+                     const std::filesystem::path& file) {
+  const auto fields = wantedFields(header, file);
+  const std::string points = decompress(header, data, file);
+  std::array<Column, 4> columns;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (fields[k])
+      columns[k] = {fields[k], fields[k]->offset * header.points,
+                    fields[k]->size * fields[k]->count};
+  return readColumns(columns, header.points, points.data());
 }
 
 Cloud readAscii(const Header& header, std::string_view data, const std::filesystem::path& file) {
@@ -233,7 +281,14 @@ Cloud readPcd(const std::filesystem::path& file) {
   const std::string bytes = readBytes(file);
   const Header header = HeaderReader(file, bytes).read();
   const std::string_view data = std::string_view(bytes).substr(header.bytes);
-  return header.binary ? readBinary(header, data, file) : readAscii(header, data, file);
+  switch (header.data) {
+    case Header::Data::ascii:
+      return readAscii(header, data, file);
+    case Header::Data::binary:
+      return readBinary(header, data, file);
+    default:
+      return readCompressed(header, data, file);
+  }
 }
 
 }  // namespace polemcl::io

@@ -8,12 +8,13 @@
 
 namespace polemcl::io {
 
-/// \brief Reads `DATA ascii` and `DATA binary`. The fields x, y and z are needed, `intensity` is
+/// \brief Reads `DATA ascii`, `binary` and `binary_compressed` (LZF, as PCL writes it: field after
+/// field). The fields x, y and z are needed, `intensity` is
 /// taken if there is one (else 0), others are passed over. All types and sizes of the format are
 /// read. The view point of the header is not applied: points stay in the frame they are in.
 /// Invalid points are dropped and counted as by readKittiBin().
 /// \throws Error naming the file (and line): cannot be read, no PCD header, no x, y or z, fewer
-///         points than the header says, not a number, `binary_compressed` (which tool converts it).
+///         points than the header says, not a number, compressed points that are damaged.
 Cloud readPcd(const std::filesystem::path& file);
 
 }  // namespace polemcl::io
