@@ -38,7 +38,8 @@ TEST_F(ScanFilesTest, aLinkToNothingIsThere) {
 TEST_F(ScanFilesTest, fileNumber) {
   EXPECT_EQ(fileNumber("x/000012.bin"), 12u);
   EXPECT_EQ(fileNumber("1326652795280148.bin"), 1326652795280148u);
-  for (const char* name : {"a.bin", "12a.bin", "-1.bin", ".bin", "1234567890123456789.bin"}) {
+  EXPECT_EQ(fileNumber("1561000444390857630.bin"), 1561000444390857630u);
+  for (const char* name : {"a.bin", "12a.bin", "-1.bin", ".bin", "12345678901234567890.bin"}) {
     EXPECT_FALSE(fileNumber(name)) << name;
   }
 }

@@ -34,7 +34,7 @@ bool isThere(const fs::path& file) {
 std::optional<std::uint64_t> fileNumber(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::uint64_t number = 0;
-  if (stem.size() > 18) return std::nullopt;
+  if (stem.size() > 19) return std::nullopt;
   const auto result = std::from_chars(stem.data(), stem.data() + stem.size(), number);
   if (result.ec != std::errc() || result.ptr != stem.data() + stem.size()) return std::nullopt;
   return number;
@@ -81,15 +81,17 @@ std::string ranges(const std::vector<std::uint64_t>& numbers, std::size_t most) 
   return text;
 }
 
-void checkScanSizes(const std::vector<fs::path>& scans, std::vector<std::string>& notes) {
+void checkScanSizes(const std::vector<fs::path>& scans, std::vector<std::string>& notes,
+                    const PointLayout& point) {
   std::vector<fs::path> empty;
   for (const fs::path& scan : scans) {
     std::error_code error;
     const auto size = fs::file_size(scan, error);
     if (error) throw Error("cannot read " + scan.string() + ": " + error.message());
-    if (size % 16 != 0) {
+    if (size % point.bytes != 0) {
       throw Error(scan.string() + ": cut short: " + std::to_string(size) +
-                  " bytes are no multiple of 16 (float32 x y z intensity a point)");
+                  " bytes are no multiple of " + std::to_string(point.bytes) + " (" + point.fields +
+                  " a point)");
     }
     if (size == 0) empty.push_back(scan);
   }

@@ -1,3 +1,4 @@
+#include <polemcl/io/PcdFile.h>
 #include <polemcl/io/ScanFiles.h>
 #include <polemcl/io/ScanFolder.h>
 #include <polemcl/io/TextFile.h>
@@ -132,12 +133,14 @@ ScanFolder readScanFolder(const fs::path& folder, const Eigen::Isometry3d& T_rob
 ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor) {
   const Scans scans = listScans(folder, ".pcd", "");
   ScanFolder result;
+  result.read = [](const ScanEntry& entry) { return readPcd(entry.cloud); };
   addScans(scans, result);
   if (isThere(folder / "times.txt")) {
     readTimes(folder / "times.txt", scans, result);
   } else {
     for (std::size_t i = 0; i < result.scans.size(); ++i)
       result.scans[i].time = nominalPeriod * static_cast<double>(i);
+    result.nominalTimes = true;
     result.notes.push_back("no times.txt: scans are taken to be 0.1 s apart");
   }
   readMotions(folder, T_robot_sensor, scans, result);

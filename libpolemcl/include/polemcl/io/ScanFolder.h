@@ -2,10 +2,13 @@
 /// \file ScanFolder.h
 /// \brief Folders of scans with times, poses and odometry: the plain `folder` layout.
 
+#include <polemcl/io/Cloud.h>
 #include <polemcl/io/PlanarMotion.h>
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +17,8 @@ namespace polemcl::io {
 
 /// \brief One scan of a dataset. The cloud stays on disk.
 struct ScanEntry {
-  std::filesystem::path cloud;                   ///< absolute; KITTI `.bin` or PCD, sensor frame
+  std::filesystem::path cloud;                   ///< absolute; see ScanFolder::read
+  std::uint64_t offset = 0;                      ///< where it begins, in files of many scans, bytes
   double time = 0;                               ///< s; strictly increasing from entry to entry
   std::optional<Eigen::Isometry3d> T_map_robot;  ///< all entries of a folder have it, or none
   /// Since the entry before, in the robot frame of that entry. Never in the first entry; all
@@ -25,6 +29,10 @@ struct ScanEntry {
 struct ScanFolder {
   std::vector<ScanEntry> scans;    ///< at least one
   std::vector<std::string> notes;  ///< what the user should know: gaps, empty scans, unused rows
+  /// Reads the cloud of an entry, in the sensor frame. Without it `cloud` is a KITTI `.bin`, which
+  /// rawlogs can refer to by its path.
+  std::function<Cloud(const ScanEntry&)> read;
+  bool nominalTimes = false;  ///< the dataset tells no times: the entries have made up ones
 };
 
 /// \brief Reads the plain layout:

@@ -1,0 +1,49 @@
+#include <polemcl/io/CsvRows.h>
+
+#include <cmath>
+
+#include "Support.h"
+
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+
+namespace {
+
+class CsvRowsTest : public FolderTest {
+ protected:
+  std::string refusal(const std::string& content) const {
+    const fs::path file = write("a.csv", content);
+    return messageOf([&] {
+      CsvRows rows(file, 3, "time, x, y");
+      for (std::vector<double> row; rows.next(row);) {
+      }
+    });
+  }
+};
+
+}  // namespace
+
+TEST_F(CsvRowsTest, readsRowAfterRow) {
+  CsvRows rows(write("a.csv", "# t,x,y\n1326652795280148,-2.5, 3e2\r\n\n4,NaN,nan\n5,6,7"), 3, "");
+  std::vector<double> row;
+  ASSERT_TRUE(rows.next(row));
+  EXPECT_EQ(row, (std::vector<double>{1326652795280148, -2.5, 300}));
+  EXPECT_NE(rows.at().find("a.csv:2: "), std::string::npos);
+  ASSERT_TRUE(rows.next(row));
+  EXPECT_TRUE(row[0] == 4 && std::isnan(row[1]) && std::isnan(row[2]));
+  ASSERT_TRUE(rows.next(row));
+  EXPECT_EQ(row, (std::vector<double>{5, 6, 7}));
+  EXPECT_FALSE(rows.next(row));
+}
+
+TEST_F(CsvRowsTest, refusesRowsThatAreShortOrNoNumbers) {
+  expectIn(refusal("1,2,3\n1,2\n"), "a.csv:2: ", "2 numbers, 3 expected", "time, x, y");
+  expectIn(refusal("1,2,3,4\n"), "a.csv:1: ", "4 numbers, 3 expected");
+  expectIn(refusal("1,2,\n"), "a.csv:1: ", "'' is no number");
+  expectIn(refusal("time,x,y\n"), "a.csv:1: ", "'time' is no number");
+}
+
+TEST_F(CsvRowsTest, refusesFilesThatCannotBeRead) {
+  expectIn(messageOf([&] { CsvRows(path("no.csv"), 3, ""); }), "no.csv", "No such file");
+  expectIn(messageOf([&] { CsvRows(m_folder, 3, ""); }), "it is a folder");
+}
