@@ -7,7 +7,9 @@
 #include <polemcl/io/Cloud.h>
 #include <polemcl/io/KittiOdometry.h>
 #include <polemcl/io/KittiRaw.h>
-#include <polemcl/io/PcdFile.h>
+#include <polemcl/io/Mulran.h>
+#include <polemcl/io/Nclt.h>
+#include <polemcl/io/ScanPoses.h>
 #include <polemcl/io/TextFile.h>
 #include <polemcl/io/Trajectory.h>
 #include <polemcl/mrpt/RawlogWriter.h>
@@ -19,21 +21,26 @@
 namespace polemcl::apps {
 namespace {
 
-io::ScanFolder readDataset(const ImportOptions& options) {
+io::ScanFolder readDataset(const ImportOptions& options, const Eigen::Isometry3d& T_robot_sensor,
+                           const io::ReadProgress& progress) {
   switch (options.dataset) {
     case Dataset::kittiOdometry:
-      return io::readKittiOdometry(options.input, options.T_robot_sensor);
+      return io::readKittiOdometry(options.input, T_robot_sensor);
     case Dataset::kittiRaw: {
       const auto drive = std::filesystem::absolute(options.input / "").parent_path();
       return io::readKittiRaw(options.input, options.calibration.value_or(drive.parent_path()),
-                              options.T_robot_sensor);
+                              T_robot_sensor);
     }
+    case Dataset::nclt:
+      return io::readNclt(options.input, T_robot_sensor, progress);
+    case Dataset::mulran:
+      return io::readMulran(options.input, T_robot_sensor);
     case Dataset::pcd:
-      return io::readPcdFolder(options.input, options.T_robot_sensor);
+      return io::readPcdFolder(options.input, T_robot_sensor);
     case Dataset::folder:
       break;
   }
-  return io::readScanFolder(options.input, options.T_robot_sensor);
+  return io::readScanFolder(options.input, T_robot_sensor);
 }
 
 /// Motions since the last scan that was written: composed odometry, or truth with noise.
@@ -76,23 +83,23 @@ class MotionSource {
 };
 
 /// The cloud as an observation; none when the scan is empty. Counts points in the report.
-mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanEntry& scan,
-                                                       const ImportOptions& options,
+mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanFolder& folder,
+                                                       const io::ScanEntry& scan,
+                                                       const Eigen::Isometry3d& T_robot_sensor,
                                                        ImportReport& report) {
   auto observation = mrpt::obs::CObservationPointCloud::Create();
   observation->sensorLabel = "lidar";
   observation->timestamp = mrpt::Clock::fromDouble(scan.time);
   observation->sensorPose =
-      mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(options.T_robot_sensor.matrix()));
-  const bool isPcd = options.dataset == Dataset::pcd;
-  if (!options.embed && !isPcd) {
+      mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_robot_sensor.matrix()));
+  if (!report.embedded) {
     if (std::filesystem::file_size(scan.cloud) == 0) return nullptr;
     observation->setAsExternalStorage(
         scan.cloud.lexically_normal().string(),
         mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
     return observation;
   }
-  const auto cloud = isPcd ? io::readPcd(scan.cloud) : io::readKittiBin(scan.cloud);
+  const auto cloud = folder.read ? folder.read(scan) : io::readKittiBin(scan.cloud);
   report.points += cloud.size();
   report.invalidPoints += cloud.invalid;
   if (cloud.size() == 0) return nullptr;
@@ -113,11 +120,25 @@ void checkSelection(const ImportOptions& options, const io::ScanFolder& folder) 
                 " leaves no scan; there are " + std::to_string(folder.scans.size()) +
                 ", numbered from 0");
   if (options.odometryNoise && !folder.scans.front().T_map_robot)
-    throw Error(where + "--odometry-noise needs true poses (poses.txt), and there are none");
+    throw Error(where +
+                "--odometry-noise needs true poses, and there are none; --poses gives some");
 }
 
 bool selected(std::size_t index, const ImportOptions& options) {
   return index >= options.offset && (index - options.offset) % options.every == 0;
+}
+
+/// The truth goes beside the rawlog, whatever it is called.
+std::filesystem::path truthBeside(std::filesystem::path rawlog) {
+  return rawlog.replace_extension(".tum");
+}
+
+void protectPoses(const ImportOptions& options) {
+  std::error_code notThere;
+  if (options.poses &&
+      std::filesystem::equivalent(*options.poses, truthBeside(options.output), notThere))
+    throw Error(options.poses->string() + ": is an input, and the truth beside " +
+                options.output.string() + " would replace it; choose another name for --output");
 }
 
 /// Both files appear together, when both are complete.
@@ -141,18 +162,32 @@ void ImportOptions::validate() const {
                 ": the name must end in .rawlog (the truth goes beside it as .tum)");
 }
 
+Eigen::Isometry3d datasetSensorPose(Dataset dataset) {
+  if (dataset == Dataset::nclt) return io::ncltRobotBody();
+  if (dataset == Dataset::mulran) return io::mulranBaseLidar();
+  return Eigen::Isometry3d::Identity();
+}
+
 ImportReport importDataset(const ImportOptions& options,
                            const std::function<void(std::size_t, std::size_t)>& progress) {
   options.validate();
-  const auto folder = readDataset(options);
+  protectPoses(options);
+  const Eigen::Isometry3d T_robot_sensor =
+      options.T_robot_sensor.value_or(datasetSensorPose(options.dataset));
+  auto folder = readDataset(options, T_robot_sensor, progress);
+  if (options.poses) {
+    const Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
+    io::takeTumPoses(folder, *options.poses,
+                     options.posesOfSensor ? T_robot_sensor.inverse() : robot);
+  }
   checkSelection(options, folder);
 
   ImportReport report;
   report.notes = folder.notes;
+  report.embedded = options.embed || folder.read;
   RawlogWriter rawlog(options.output.string());
   std::optional<io::AtomicFile> truthFile;
-  if (folder.scans.front().T_map_robot)
-    truthFile.emplace(std::filesystem::path(options.output).replace_extension(".tum"));
+  if (folder.scans.front().T_map_robot) truthFile.emplace(truthBeside(options.output));
   std::vector<io::StampedPose3D> truth;
   MotionSource motions(options);
   for (std::size_t i = 0; i < folder.scans.size(); ++i) {
@@ -163,7 +198,7 @@ ImportReport importDataset(const ImportOptions& options,
       ++report.skipped;
       continue;
     }
-    const auto observation = makeObservation(scan, options, report);
+    const auto observation = makeObservation(folder, scan, T_robot_sensor, report);
     if (!observation) {
       ++report.emptyScans;
       continue;

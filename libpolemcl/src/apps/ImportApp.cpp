@@ -5,6 +5,8 @@
 #include <polemcl/core/Types.h>
 
 #include <iostream>
+#include <map>
+#include <string>
 #include <utility>
 
 namespace polemcl::apps {
@@ -14,7 +16,9 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
     {Dataset::folder, "folder", "velodyne/*.bin, times.txt, poses.txt, odometry.txt"},
     {Dataset::kittiOdometry, "kitti-odometry", "A sequence of the KITTI odometry benchmark"},
     {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"},
-    {Dataset::pcd, "pcd", "*.pcd (ascii or binary), always embedded; text files as for folder"}};
+    {Dataset::nclt, "nclt", "A session of NCLT: velodyne_sync/ or velodyne_hits.bin, *.csv"},
+    {Dataset::mulran, "mulran", "A sequence of MulRan: Ouster/*.bin, global_pose.csv"},
+    {Dataset::pcd, "pcd", "*.pcd (also compressed), always embedded; text files as for folder"}};
 
 /// What is wrong with the text, for CLI11; nothing when it is a pose.
 std::string sensorPoseProblem(const std::string& text) {
@@ -24,6 +28,13 @@ std::string sensorPoseProblem(const std::string& text) {
   } catch (const Error& error) {
     return error.what();
   }
+}
+
+std::string ownSensorPose(Dataset dataset) {
+  return dataset == Dataset::nclt ? "the body, turned upright, 0 0 0 0 0 180"
+         : dataset == Dataset::mulran
+             ? "its calibration, 1.7042 -0.021 1.8047 179.6654 0.0003 0.0001"
+             : "0";
 }
 
 void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, std::string& sensorPose) {
@@ -45,9 +56,18 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, std::string
   cli.add_option("--seed", options.seed, "Seed of that noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  cli.add_option("--sensor-pose", sensorPose,
-                 "Sensor in the robot frame, \"x y z yaw_deg pitch_deg roll_deg\" (default: 0)")
+  cli.add_option(
+         "--sensor-pose", sensorPose,
+         "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\" (default: " +
+             ownSensorPose(dataset) + ")")
       ->check(sensorPoseProblem);
+  auto* poses = cli.add_option("--poses", options.poses,
+                               "TUM file of true poses, instead of those of the dataset");
+  cli.add_option("--poses-of", options.posesOfSensor, "What has these poses: robot, sensor")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, bool>{{"robot", false}, {"sensor", true}}))
+      ->default_str("robot")
+      ->needs(poses);
   if (dataset == Dataset::kittiRaw)
     cli.add_option("--calib", options.calibration,
                    "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
@@ -57,7 +77,7 @@ void print(const ImportReport& report, const ImportOptions& options) {
   std::cout << options.output.string() << ": " << report.scans << " scans";
   if (report.skipped > 0) std::cout << ", " << report.skipped << " left out as asked";
   if (report.emptyScans > 0) std::cout << ", " << report.emptyScans << " empty ones dropped";
-  if (options.embed || options.dataset == Dataset::pcd)
+  if (report.embedded)
     std::cout << "; " << report.points << " points, " << report.invalidPoints
               << " invalid ones dropped";
   std::cout << '\n'

@@ -28,6 +28,8 @@ void Progress::update(std::size_t done, std::size_t total) {
 void Progress::update(std::size_t done) {
   if (!m_shown) return;
   const auto now = Clock::now();
+  if (done < m_done) m_start = now;
+  m_done = done;
   if (m_drawn && now - m_last < std::chrono::milliseconds(100)) return;
   m_last = now;
   m_drawn = true;

@@ -12,7 +12,7 @@
 
 namespace polemcl::apps {
 
-enum class Dataset { folder, kittiOdometry, kittiRaw, pcd };
+enum class Dataset { folder, kittiOdometry, kittiRaw, nclt, mulran, pcd };
 
 /// \brief What to import, and how.
 struct ImportOptions {
@@ -21,26 +21,34 @@ struct ImportOptions {
   std::filesystem::path output;  ///< `S.rawlog`; the truth goes to `S.tum`
   /// Folder of calib_imu_to_velo.txt, KITTI raw only; without it the folder that holds `input`.
   std::optional<std::filesystem::path> calibration;
-  bool embed = false;      ///< clouds inside the rawlog, not by absolute path; PCD always is
+  /// TUM file of poses that replace those of the dataset; see io::takeTumPoses().
+  std::optional<std::filesystem::path> poses;
+  bool posesOfSensor = false;  ///< they are of the sensor, not of the robot
+  bool embed = false;  ///< clouds inside the rawlog, not by absolute path; PCD and NCLT always are
   std::size_t every = 1;   ///< N: take scans K, K+N, …; at least 1
   std::size_t offset = 0;  ///< K, from 0, less than the number of scans
   /// K: odometry is the true motion with noise of σ = K·|component|, instead of the folder's.
   std::optional<double> odometryNoise;
   std::uint64_t seed = 0;  ///< of that noise
   /// The sensor in the robot frame: stored in every observation, turns sensor poses into robot
-  /// poses.
-  Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
+  /// poses. Without it the dataset's own, see datasetSensorPose().
+  std::optional<Eigen::Isometry3d> T_robot_sensor;
   /// \throws Error naming the option.
   void validate() const;
 };
+
+/// \brief Where the frame of the clouds is on the robot if nobody says so: NCLT's body, turned
+/// upright; MulRan's Ouster on the vehicle; else identity.
+Eigen::Isometry3d datasetSensorPose(Dataset dataset);
 
 /// \brief What an import did.
 struct ImportReport {
   std::size_t scans = 0;       ///< written
   std::size_t skipped = 0;     ///< left out by `every` and `offset`
   std::size_t emptyScans = 0;  ///< dropped: no valid point; their motion went into the next one's
-  std::size_t points = 0;      ///< valid ones, counted with `embed` only
-  std::size_t invalidPoints = 0;  ///< dropped: NaN, infinite or at the sensor, with `embed` only
+  std::size_t points = 0;      ///< valid ones, counted when embedded only
+  std::size_t invalidPoints = 0;  ///< dropped: NaN, infinite or at the sensor; embedded only
+  bool embedded = false;          ///< clouds are inside the rawlog
   bool hasTruth = false;          ///< `S.tum` was written
   bool hasMotion = false;         ///< actions carry odometry
   std::vector<std::string> notes;
@@ -53,7 +61,9 @@ struct ImportReport {
 /// `lidar`. Without odometry and noise the later actions are empty. Motions across scans that were
 /// left out are composed, covariances too; noise is put on the true motion between the scans
 /// written. Both files appear once both are complete; until then older ones stay as they are.
-/// \param progress Called with scans done and in all; may be empty.
+/// One cloud is in memory at a time.
+/// \param progress Called with scans done and in all, before that with MB where a large file is
+///        searched for scans; may be empty.
 /// \throws Error when the dataset cannot be read (see the readers in io/), nothing usable is left,
 ///         noise is asked for without poses, or the output cannot be written.
 ImportReport importDataset(const ImportOptions& options,

@@ -20,7 +20,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// \brief `done` steps are finished. Cheap: redraws at most ten times a second.
+  /// \brief `done` steps are finished. Cheap: redraws at most ten times a second. Fewer than before
+  /// begin another stretch of work, whose rate counts from then on.
   void update(std::size_t done);
   /// \brief The same where the total becomes known on the way.
   void update(std::size_t done, std::size_t total);
@@ -28,7 +29,7 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   std::string m_label;
-  std::size_t m_total;
+  std::size_t m_total, m_done = 0;
   bool m_shown;
   bool m_drawn = false;
   Clock::time_point m_start, m_last;
