@@ -1,18 +1,6 @@
 # Sourced by extraction.sh, which sets $top, $bin, $out: single real scans, drawn, and a pair of them.
 # shellcheck shell=sh disable=SC2154
 
-# nclt_to_pcd FILE FOLDER: one velodyne_sync scan (uint16 x y z in steps of 5 mm from -100 m, uint8
-# intensity, uint8 laser) as PCD.
-nclt_to_pcd() {
-  mkdir -p "$2"
-  points=$(($(wc -c <"$1") / 8))
-  {
-    printf 'FIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nWIDTH %d\nDATA ascii\n' "$points"
-    od -An -v -t u2 -w8 "$1" |
-      awk '{ printf "%.3f %.3f %.3f %d\n", $1 * 0.005 - 100, $2 * 0.005 - 100, $3 * 0.005 - 100, $4 % 256 }'
-  } >"$2/0.pcd"
-}
-
 # draw NAME CONFIG RAWLOG: NAME.png and NAME.csv.
 draw() {
   "$bin/pole-extract" --quiet --config "$2" --input "$3" --output "$out/singles/$1.poles.rawlog" \
@@ -49,9 +37,7 @@ pair_agreement() {
 single_scans() {
   mkdir -p "$out/singles"
   if [ -d "$1/nclt_scan" ]; then
-    for scan in "$1"/nclt_scan/*.bin; do nclt_to_pcd "$scan" "$out/singles/nclt"; done
-    "$bin/pole-import" pcd --quiet --input "$out/singles/nclt" --output "$out/singles/nclt.rawlog" \
-      --sensor-pose "0 0 0 0 0 180"
+    "$bin/pole-import" nclt --quiet --input "$1/nclt_scan" --output "$out/singles/nclt.rawlog"
     draw nclt_scan "$top/config/nclt.ini" "$out/singles/nclt.rawlog"
   fi
   if [ -d "$1/os1_64" ]; then

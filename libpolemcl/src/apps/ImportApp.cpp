@@ -5,7 +5,6 @@
 #include <polemcl/core/Types.h>
 
 #include <iostream>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -19,6 +18,11 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
     {Dataset::nclt, "nclt", "A session of NCLT: velodyne_sync/ or velodyne_hits.bin, *.csv"},
     {Dataset::mulran, "mulran", "A sequence of MulRan: Ouster/*.bin, global_pose.csv"},
     {Dataset::pcd, "pcd", "*.pcd (also compressed), always embedded; text files as for folder"}};
+
+/// Options as they are typed.
+struct Texts {
+  std::string sensorPose, posesOf = "robot";
+};
 
 /// What is wrong with the text, for CLI11; nothing when it is a pose.
 std::string sensorPoseProblem(const std::string& text) {
@@ -37,7 +41,7 @@ std::string ownSensorPose(Dataset dataset) {
              : "0";
 }
 
-void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, std::string& sensorPose) {
+void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
   cli.add_option("--input", options.input, "Folder of the dataset")->required();
   cli.add_option("--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
       ->required();
@@ -57,16 +61,15 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, std::string
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   cli.add_option(
-         "--sensor-pose", sensorPose,
+         "--sensor-pose", texts.sensorPose,
          "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\" (default: " +
              ownSensorPose(dataset) + ")")
       ->check(sensorPoseProblem);
   auto* poses = cli.add_option("--poses", options.poses,
                                "TUM file of true poses, instead of those of the dataset");
-  cli.add_option("--poses-of", options.posesOfSensor, "What has these poses: robot, sensor")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, bool>{{"robot", false}, {"sensor", true}}))
-      ->default_str("robot")
+  cli.add_option("--poses-of", texts.posesOf, "What has these poses")
+      ->check(CLI::IsMember({"robot", "sensor"}))
+      ->capture_default_str()
       ->needs(poses);
   if (dataset == Dataset::kittiRaw)
     cli.add_option("--calib", options.calibration,
@@ -93,18 +96,19 @@ void print(const ImportReport& report, const ImportOptions& options) {
 int importMain(int argc, const char* const* argv) {
   CommandLine line("pole-import", "Turns a LiDAR dataset into a rawlog, with the truth beside it.");
   ImportOptions options;
-  std::string sensorPose;
+  Texts texts;
   line.cli().require_subcommand(1);
   std::vector<std::pair<const CLI::App*, Dataset>> commands;
   for (const auto& [dataset, name, description] : datasets) {
     auto* command = line.cli().add_subcommand(name, description);
-    declare(*command, dataset, options, sensorPose);
+    declare(*command, dataset, options, texts);
     commands.emplace_back(command, dataset);
   }
   return line.run(argc, argv, [&] {
     for (const auto& [command, dataset] : commands)
       if (command->parsed()) options.dataset = dataset;
-    if (!sensorPose.empty()) options.T_robot_sensor = parseSensorPose(sensorPose);
+    if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);
+    options.posesOfSensor = texts.posesOf == "sensor";
     ImportReport report;
     {
       Progress progress("import", 0, line.quiet());
