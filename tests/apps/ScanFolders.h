@@ -44,4 +44,13 @@ inline void writeLine(const fs::path& folder, std::size_t scans, bool poses = tr
   if (poses) writeText(folder / "poses.txt", rows);
 }
 
+/// Of pole-import, from `in` to `out.rawlog`.
+inline std::vector<std::string> importArguments(const TempFolder& folder,
+                                                const std::string& dataset,
+                                                std::vector<std::string> more) {
+  more.insert(more.begin(), {dataset, "--input", (folder / "in").string(), "--output",
+                             (folder / "out.rawlog").string()});
+  return more;
+}
+
 }  // namespace testing_apps

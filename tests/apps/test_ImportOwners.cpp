@@ -27,10 +27,7 @@ namespace {
 class ImportOwners : public testing::Test {
  protected:
   Outcome run(const std::string& dataset, std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments{dataset, "--input", (folder / "in").string(), "--output",
-                                       (folder / "out.rawlog").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(importMain, arguments);
+    return runProgram(importMain, importArguments(folder, dataset, std::move(more)));
   }
   /// Clouds of the rawlog, loaded.
   std::vector<mrpt::obs::CObservationPointCloud::Ptr> clouds() {

@@ -43,13 +43,7 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot, ScanF
   if (unused > 0)
     result.notes.push_back(file.filename().string() + ": " + std::to_string(unused) +
                            " rows that are not finite or not after the row before, not used");
-  requireOverlap(result, track, file, "truth");
-  std::vector<bool> keep;
-  for (std::size_t i = 0; i < result.scans.size(); ++i) {
-    result.scans[i].T_map_robot = track.poses()[i];
-    keep.push_back(track.poses()[i].has_value());
-  }
-  keepScans(result, keep, "at times without truth");
+  takePoses(result, track, file, "truth", "at times without truth");
 }
 
 /// Tells of scans that were recorded, but are not there.

@@ -218,13 +218,7 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body, ScanF
   if (disordered > 0)
     result.notes.push_back(name + ": " + std::to_string(disordered) +
                            " rows not after the row before, not used");
-  requireOverlap(result, track, file, "truth");
-  std::vector<bool> keep;
-  for (std::size_t i = 0; i < result.scans.size(); ++i) {
-    result.scans[i].T_map_robot = track.poses()[i];
-    keep.push_back(track.poses()[i].has_value());
-  }
-  keepScans(result, keep, "at times without truth");
+  takePoses(result, track, file, "truth", "at times without truth");
 }
 
 /// Tells how far the truth itself may be off, as its owners say.

@@ -68,6 +68,17 @@ void requireOverlap(const ScanFolder& folder, const TrackSampler& track, const f
               "; take the files of one and the same session");
 }
 
+void takePoses(ScanFolder& folder, const TrackSampler& track, const fs::path& file,
+               const std::string& what, const std::string& why) {
+  requireOverlap(folder, track, file, what);
+  std::vector<bool> keep;
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) {
+    folder.scans[i].T_map_robot = track.poses()[i];
+    keep.push_back(track.poses()[i].has_value());
+  }
+  keepScans(folder, keep, why);
+}
+
 void takeTumPoses(ScanFolder& folder, const fs::path& file, const Eigen::Isometry3d& T_pose_robot) {
   std::vector<StampedPose3D> rows = readTum(file);
   for (StampedPose3D& row : rows) row.pose = row.pose * T_pose_robot;
@@ -75,13 +86,7 @@ void takeTumPoses(ScanFolder& folder, const fs::path& file, const Eigen::Isometr
 
   TrackSampler track(timesOf(folder), trackGap);
   for (const StampedPose3D& row : rows) track.add(row.time, row.pose);
-  requireOverlap(folder, track, file, "pose");
-  std::vector<bool> keep;
-  for (std::size_t i = 0; i < folder.scans.size(); ++i) {
-    folder.scans[i].T_map_robot = track.poses()[i];
-    keep.push_back(track.poses()[i].has_value());
-  }
-  keepScans(folder, keep, "at times without a pose in " + file.filename().string());
+  takePoses(folder, track, file, "pose", "at times without a pose in " + file.filename().string());
 }
 
 }  // namespace polemcl::io

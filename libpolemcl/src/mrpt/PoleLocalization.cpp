@@ -221,15 +221,15 @@ void PoleLocalization::search(const PoleFrame& frame, LocalizationUpdate& update
   m_search = m_map.search->localize(m_submap);
   if (m_search.verdict == GlobalVerdict::none) return;
   const bool resolved = m_search.verdict == GlobalVerdict::resolved;
+  const bool here = resolved && m_hasPose && agrees(m_search.hypotheses[0]);
   if (!resolved) {
     // The filter keeps several places already, or a few metres more may tell.
     if (m_hasPose && m_monitor.health().state != HealthState::lost) return;
     if (m_submap.driven() < m_options.search.patience) return;
-  } else if (m_hasPose && agrees(m_search.hypotheses[0]) &&
-             !fitsBetter(m_search.hypotheses[0], frame)) {
+  } else if (here && !fitsBetter(m_search.hypotheses[0], frame)) {
     return;
   }
-  const bool wasElsewhere = m_hasPose && !(resolved && agrees(m_search.hypotheses[0]));
+  const bool wasElsewhere = m_hasPose && !here;
   adopt(frame, resolved, update);
   if (wasElsewhere) m_monitor.reportElsewhere();
 }

@@ -23,6 +23,11 @@ void keepScans(ScanFolder& folder, const std::vector<bool>& keep, const std::str
 void requireOverlap(const ScanFolder& folder, const TrackSampler& track,
                     const std::filesystem::path& file, const std::string& what);
 
+/// \brief Gives the scans the poses of a sampled track; those without one are left out.
+/// \param why As of keepScans(). \throws Error as requireOverlap(), whose the other arguments are.
+void takePoses(ScanFolder& folder, const TrackSampler& track, const std::filesystem::path& file,
+               const std::string& what, const std::string& why);
+
 /// \brief Gives the scans the poses of a TUM file, instead of those they had, at their times.
 /// Scans at times without a pose are left out, with a note. Scans without times of their own
 /// (`nominalTimes`) are paired with the rows in turn, and take their times.
