@@ -30,7 +30,8 @@ NativeExtractor::NativeExtractor(SensorModel model, const SensorOptions& sensor,
       m_sensor(std::move(model)),
       m_lines(m_sensor),
       m_finder(m_sensor, options),
-      m_stacker(m_sensor, options) {}
+      m_stacker(m_sensor, options),
+      m_freeFinder(m_sensor, sensor.height, options.maxRange) {}
 
 void NativeExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
                               std::vector<PoleDetection>& poles, ExtractionReport& report) {
@@ -58,6 +59,7 @@ void NativeExtractor::extract(const PointsView& points, const Eigen::Vector2f& u
       ++report.refused[static_cast<int>(refusal)];
     }
   }
+  m_freeFinder.find(m_lines, m_ground, m_freeRange);
   setUpright(poles);
   report.refused[static_cast<int>(Refusal::duplicate)] = dropDuplicates(poles);
 }

@@ -2,6 +2,7 @@
 /// \file NativeExtractor.h
 /// \brief The native method, A to B3, on one screen. Private to the library; see PoleExtractor.h.
 
+#include <polemcl/core/FreeRange.h>
 #include <polemcl/core/PoleEvidence.h>
 #include <polemcl/core/PoleExtractor.h>
 
@@ -16,6 +17,8 @@ class NativeExtractor {
   /// \param upright See PoleExtractor::extract().
   void extract(const PointsView& points, const Eigen::Vector2f& upright,
                std::vector<PoleDetection>& poles, ExtractionReport& report);
+  /// \brief Of the last scan, as FreeRangeFinder gives it.
+  const std::vector<float>& freeRange() const { return m_freeRange; }
 
  private:
   /// \return The reason of the refusal, or Refusal::count_ when `pole` and `lean` were filled.
@@ -37,6 +40,8 @@ class NativeExtractor {
   GroundGrid m_ground;
   SliceFinder m_finder;
   SliceStacker m_stacker;
+  FreeRangeFinder m_freeFinder;
+  std::vector<float> m_freeRange;
   std::vector<Slice> m_slices;
   std::vector<std::uint32_t> m_fitSlices;
   std::vector<float> m_widths;

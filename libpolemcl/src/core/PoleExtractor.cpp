@@ -84,6 +84,11 @@ const std::vector<PoleDetection>& PoleExtractor::extract(const PointsView& point
   return m_impl->poles;
 }
 
+const std::vector<float>& PoleExtractor::freeRange() const {
+  static const std::vector<float> none;
+  return m_impl->native ? m_impl->native->freeRange() : none;
+}
+
 const ExtractionReport& PoleExtractor::report() const {
   return m_impl->report;
 }

@@ -1,8 +1,10 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <polemcl/core/FreeRange.h>
 #include <polemcl/core/SensorCheck.h>
 #include <polemcl/mrpt/PoleExtraction.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "LidarFrame.h"
@@ -43,6 +45,27 @@ void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
   pole.x = centre.x();
   pole.y = centre.y();
   pole.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
+}
+
+/// The free ranges of the lidar frame, seen from the planar sensor frame: of the sectors that one
+/// reaches into the nearer, and an origin aside of the lidar's costs its distance.
+std::vector<float> planarFreeRange(const LidarFrame& f, const std::vector<float>& freeRange) {
+  if (f.planarIsLidar || freeRange.empty()) return freeRange;
+  const std::size_t n = freeRange.size();
+  const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>().transpose();
+  const double aside = f.t_planar_lidar.head<2>().norm();
+  const auto from = [&](double part) {
+    const double azimuth = part * 2 * M_PI / static_cast<double>(n) - M_PI;
+    const Eigen::Vector2d d = turn * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
+    return freeRange[freeRangeSector(std::atan2(d.y(), d.x()), n)];
+  };
+  std::vector<float> planar(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto part = static_cast<double>(i);
+    const float seen = std::min(from(part + 0.01), from(part + 0.99));
+    planar[i] = std::max(0.f, seen - static_cast<float>(aside));
+  }
+  return planar;
 }
 
 /// Runs what reads an observation's points; errors of MRPT name its class.
@@ -145,6 +168,7 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
       PoleExtractor& extractor = m_impl->extractorFor(frames);
       result->poles = extractor.extract(points, upright(frames));
       m_impl->report = extractor.report();
+      result->freeRange = planarFreeRange(frames, extractor.freeRange());
       for (auto& pole : result->poles)
         toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
     }

@@ -5,6 +5,7 @@
 
 #include <polemcl/core/Types.h>
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -43,6 +44,8 @@ class GroundGrid {
   const std::uint16_t* cells() const { return m_cell.data(); }
   /// \brief Height of a cell, 0 to kCells - 1.
   float height(int cell) const { return m_height[cell]; }
+  /// \brief Whether a point fell into a cell.
+  bool hasPoints(int cell) const { return std::isfinite(m_lowest[cell]); }
   /// \brief The cell of a place.
   static int cell(float x, float y);
 

@@ -65,6 +65,9 @@ class PoleExtractor {
   const std::vector<PoleDetection>& extract(
       const PointsView& points, const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
   const ExtractionReport& report() const;
+  /// \brief Of the last scan: FreeRangeFinder::kSectors free ranges (see there), m, in the frame of
+  /// the points. Empty by the paper's method and of depth cameras: not known.
+  const std::vector<float>& freeRange() const;
 
  private:
   struct Impl;

@@ -44,6 +44,11 @@ class ScanLines {
   /// \brief Returns of one row, azimuth ascending; equal azimuths by range, then height, then x, y.
   const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
   const Return* end(int row) const { return begin(row + 1); }
+  /// \brief First return of one of so many equal parts of a row, from -pi on; `part` may be
+  /// `parts`: the end of the last. \param parts A power of two, at most kBuckets.
+  const Return* begin(int row, int part, int parts) const {
+    return m_returns.data() + m_bucketStart[bucket(row, part * (m_buckets / parts))];
+  }
   std::size_t size(int row) const { return static_cast<std::size_t>(end(row) - begin(row)); }
   /// Buckets of azimuth in a row, for clouds of usual size; large clouds get more.
   static constexpr int kBuckets = 512;
