@@ -2,6 +2,8 @@
 #include <polemcl/core/PolePairs.h>
 #include <polemcl/sim/DetectionSampler.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "DetectionModels.h"
@@ -164,4 +166,39 @@ TEST_F(DetectionSamplerTest, refusesAnotherLidarOrHeight) {
   EXPECT_NO_THROW(DetectionSampler(plainModel(), world, m_options));
   m_options.height = 1.8;
   EXPECT_THROW(DetectionSampler(plainModel(), world, m_options), Error);
+}
+
+TEST_F(DetectionSamplerTest, freeRangesEndAtHousesInTheFrameOfTheClouds) {
+  const World world = makeWorld(m_options.world);
+  const Drive drive = makeDrive(world, m_options);
+  const DetectionSampler sampler(plainModel(), world, m_options);
+  const SightLines sight(world);
+  std::size_t hidden = 0, all = 0;
+  for (std::size_t i = 0; i < drive.time.size(); i += 40) {
+    const Eigen::Isometry3d& T = drive.T_map_sensor[i];
+    const std::vector<float> ranges = sampler.freeRange(T);
+    ASSERT_EQ(ranges.size(), 256u);
+    const Eigen::Vector2d sensor = T.translation().head<2>();
+    const auto blocks = sight.around(sensor, 40);
+    for (const TruePole& pole : world.poles()) {
+      const Eigen::Vector2d place(pole.x, pole.y);
+      const double range = (place - sensor).norm();
+      if (range > 39) continue;
+      const Eigen::Vector3d seen =
+          T.inverse() * Eigen::Vector3d(pole.x, pole.y, T.translation().z());
+      const double bearing = std::atan2(seen.y(), seen.x());
+      const auto sector = static_cast<std::size_t>((bearing + M_PI) / (2 * M_PI) * 256);
+      const bool blocked = SightLines::blocked(blocks, sensor, place);
+      ++all;
+      hidden += blocked;
+      // Sectors are coarse: one that an edge crosses ends at the edge.
+      if (blocked) {
+        EXPECT_LT(ranges.at(sector), range + 0.3) << i << ' ' << pole.id;
+      }
+    }
+    EXPECT_GT(*std::max_element(ranges.begin(), ranges.end()), 20) << "the street is open";
+    for (const float range : ranges) EXPECT_EQ(range, std::floor(range * 2) / 2);
+  }
+  EXPECT_GT(hidden, 20u);
+  EXPECT_GT(all, 2 * hidden);
 }

@@ -151,6 +151,7 @@ PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const Settings& s
     observation->sensorLabel = "lidar";
     observation->points = sampler.model().points;
     observation->poles = sampler.sample(i, drive.drive().T_map_sensor[i]);
+    observation->freeRange = sampler.freeRange(drive.drive().T_map_sensor[i]);
     return observation;
   };
   writeInBlocks(drive.drive(), writer, polesOf, progress);

@@ -1,3 +1,4 @@
+#include <polemcl/core/FreeRange.h>
 #include <polemcl/sim/DetectionSampler.h>
 #include <polemcl/sim/NormalDistribution.h>
 #include <polemcl/sim/Random.h>
@@ -192,6 +193,27 @@ std::vector<PoleDetection> DetectionSampler::sample(std::size_t i,
   std::sort(found.begin(), found.end(),
             [&](const PoleDetection& a, const PoleDetection& b) { return polar(a) < polar(b); });
   return found;
+}
+
+std::vector<float> DetectionSampler::freeRange(const Eigen::Isometry3d& T_map_sensor) const {
+  constexpr int kSectors = FreeRangeFinder::kSectors;
+  const Eigen::Vector2d sensor = T_map_sensor.translation().head<2>();
+  const Eigen::Vector3d ahead = cloudFrame(T_map_sensor, m_options).linear().col(0);
+  const double yaw = std::atan2(ahead.y(), ahead.x());
+  const auto blocks = m_sight.around(sensor, m_model.maxRange);
+  std::vector<float> border(kSectors);  // between the sectors, from -pi on
+  for (int i = 0; i < kSectors; ++i) {
+    const double azimuth = yaw - M_PI + i * 2 * M_PI / kSectors;
+    const Eigen::Vector2d way(std::cos(azimuth), std::sin(azimuth));
+    border[i] =
+        static_cast<float>(SightLines::freeWay(blocks, sensor, sensor + m_model.maxRange * way));
+  }
+  std::vector<float> ranges(kSectors);
+  for (int i = 0; i < kSectors; ++i) {
+    const float least = std::min(border[i], border[(i + 1) % kSectors]);
+    ranges[i] = FreeRangeFinder::kStep * std::floor(least / FreeRangeFinder::kStep);
+  }
+  return ranges;
 }
 
 }  // namespace polemcl::sim

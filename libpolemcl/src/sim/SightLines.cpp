@@ -4,6 +4,24 @@
 #include <cmath>
 
 namespace polemcl::sim {
+namespace {
+
+/// The share of a way at which it enters a block; 1 if it does not.
+double entry(const SightLines::Block& block, const Eigen::Vector2d& from,
+             const Eigen::Vector2d& to) {
+  const Eigen::Vector2d start = block.axes * (from - block.centre), step = block.axes * (to - from);
+  double enter = 0, leave = 1;  // shares of the way, cut by the slabs of the rectangle
+  for (int i = 0; i < 2 && enter < leave; ++i) {
+    const double inverse = 1 / (std::abs(step(i)) > 1e-12 ? step(i) : 1e-12);
+    const double a = (-block.half(i) - start(i)) * inverse,
+                 b = (block.half(i) - start(i)) * inverse;
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter < leave ? enter : 1;
+}
+
+}  // namespace
 
 SightLines::SightLines(const World& world) {
   constexpr double kSmallest = 0.5;  // m; drain pipes, sills and the like hide nothing
@@ -31,20 +49,16 @@ std::vector<const SightLines::Block*> SightLines::around(const Eigen::Vector2d& 
 
 bool SightLines::blocked(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
                          const Eigen::Vector2d& to) {
-  for (const Block* block : blocks) {
-    const Eigen::Vector2d start = block->axes * (from - block->centre),
-                          step = block->axes * (to - from);
-    double enter = 0, leave = 1;  // shares of the way, cut by the slabs of the rectangle
-    for (int i = 0; i < 2 && enter < leave; ++i) {
-      const double inverse = 1 / (std::abs(step(i)) > 1e-12 ? step(i) : 1e-12);
-      const double a = (-block->half(i) - start(i)) * inverse,
-                   b = (block->half(i) - start(i)) * inverse;
-      enter = std::max(enter, std::min(a, b));
-      leave = std::min(leave, std::max(a, b));
-    }
-    if (enter < leave) return true;
-  }
+  for (const Block* block : blocks)
+    if (entry(*block, from, to) < 1) return true;
   return false;
+}
+
+double SightLines::freeWay(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
+                           const Eigen::Vector2d& to) {
+  double share = 1;
+  for (const Block* block : blocks) share = std::min(share, entry(*block, from, to));
+  return share * (to - from).norm();
 }
 
 }  // namespace polemcl::sim

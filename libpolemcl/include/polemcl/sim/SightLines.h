@@ -25,6 +25,10 @@ class SightLines {
   /// \brief Whether one of them crosses the way between two places.
   static bool blocked(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
                       const Eigen::Vector2d& to);
+  /// \brief Distance from a place to the first of them on the way to another, m; the whole way if
+  /// there is none.
+  static double freeWay(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
+                        const Eigen::Vector2d& to);
 
  private:
   std::vector<Block> m_blocks;
