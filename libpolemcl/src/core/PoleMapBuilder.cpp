@@ -1,7 +1,7 @@
+#include <polemcl/core/MapSightings.h>
 #include <polemcl/core/PathSections.h>
 #include <polemcl/core/PoleFusion.h>
 #include <polemcl/core/PoleMapBuilder.h>
-#include <polemcl/core/PrincipalAxes.h>
 #include <polemcl/core/SightingMerging.h>
 
 #include <algorithm>
@@ -16,29 +16,6 @@ template <class Value>
   std::ostringstream text;
   text << "[map] " << field << " = " << value << " is not allowed; it must be " << allowed;
   throw Error(text.str());
-}
-
-void check(const MappingScan& scan, std::size_t index) {
-  const Pose2D& pose = scan.pose_map_robot;
-  const std::string where = "scan " + std::to_string(index);
-  if (!std::isfinite(pose.x + pose.y + pose.yaw)) {
-    throw Error("the pose of " + where + " is not finite; leave the scan out or correct its pose");
-  }
-  for (std::size_t i = 0; i < scan.poles_robot.size(); ++i) {
-    const PoleDetection& pole = scan.poles_robot[i];
-    const std::string which = "pole " + std::to_string(i) + " of " + where;
-    if (!std::isfinite(pole.x + pole.y + pole.radius + pole.bottom + pole.top)) {
-      throw Error(which + " holds a number that is not finite; extract the scan again");
-    }
-    if (!(pole.confidence >= 0 && pole.confidence <= 1)) {
-      throw Error(which + " has a confidence outside [0, 1]; extract the scan again");
-    }
-    if (!principalAxes(pole.covariance)) {
-      throw Error(
-          which +
-          " has a covariance that is not symmetric positive semidefinite; extract the scan again");
-    }
-  }
 }
 
 /// A scan that is used, and the occupied section it counts for.
@@ -59,32 +36,16 @@ std::vector<View> chooseViews(const PathSections& sections, bool everyScan) {
   return views;
 }
 
-/// A detection in the map frame, made less certain by what the scan's pose is not known to.
-PoleSighting sightingOf(const PoleDetection& pole, const Pose2D& pose, std::uint32_t view,
-                        const PoleMapOptions& options) {
-  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
-  Eigen::Matrix2d rotation;
-  rotation << c, -s, s, c;
-  const Eigen::Vector2d offset = rotation * Eigen::Vector2d(pole.x, pole.y);
-  const Eigen::Vector2d swing = options.headingSigma * Eigen::Vector2d(-offset.y(), offset.x());
-  PoleSighting sighting{pole, view};
-  sighting.pole.x = pose.x + offset.x();
-  sighting.pole.y = pose.y + offset.y();
-  sighting.pole.covariance = rotation * pole.covariance * rotation.transpose() +
-                             swing * swing.transpose() +
-                             options.poseSigma * options.poseSigma * Eigen::Matrix2d::Identity();
-  return sighting;
-}
-
 std::vector<PoleSighting> sightingsOf(const std::vector<MappingScan>& scans,
                                       const std::vector<View>& views,
                                       const PoleMapOptions& options) {
   std::vector<PoleSighting> sightings;
+  const PoseTrust trust{options.poseSigma, options.headingSigma};
   for (std::uint32_t view = 0; view < views.size(); ++view) {
     const MappingScan& scan = scans[views[view].scan];
     for (const PoleDetection& pole : scan.poles_robot) {
       if (pole.confidence <= 0 || pole.confidence < options.minConfidence) continue;
-      sightings.push_back(sightingOf(pole, scan.pose_map_robot, view, options));
+      sightings.push_back(sightingOf(pole, scan.pose_map_robot, view, trust));
     }
   }
   return sightings;
@@ -146,7 +107,7 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   std::vector<Pose2D> poses;
   std::vector<std::uint32_t> drives;
   for (const MappingScan& scan : scans) {
-    check(scan, poses.size());
+    checkScan(scan.pose_map_robot, scan.poles_robot, "scan " + std::to_string(poses.size()));
     poses.push_back(scan.pose_map_robot);
     drives.push_back(scan.drive);
   }
