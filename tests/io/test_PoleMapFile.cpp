@@ -119,6 +119,81 @@ TEST_F(PoleMapFileTest, readsWhatLaterVersionsAppend) {
   expectSame(data.poles[0], pole(1, 2));
 }
 
+TEST_F(PoleMapFileTest, historiesAndCandidatesComeBack) {
+  PoleMapData data;
+  data.poles = {pole(1, 2), pole(3, 4)};
+  data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}, {0, 0, 0.5, 0, 0}};
+  data.candidates = {{pole(5, 6), {2, 1, 0.25, 1.35e9, 1.35e9}, false}};
+  writePoleMap(path("m.polemap"), data);
+  const PoleMapData back = readPoleMap(path("m.polemap"));
+  ASSERT_EQ(back.poles.size(), 2u);
+  expectSame(back.poles[1], pole(3, 4));
+  ASSERT_EQ(back.histories.size(), 2u);
+  EXPECT_EQ(back.histories[0].seen, 7u);
+  EXPECT_EQ(back.histories[0].missed, 3u);
+  EXPECT_EQ(back.histories[0].existence, 0.875);
+  EXPECT_EQ(back.histories[0].firstSeen, 1.3e9);
+  EXPECT_EQ(back.histories[0].lastSeen, 1.4e9);
+  ASSERT_EQ(back.candidates.size(), 1u);
+  expectSame(back.candidates[0].pole, pole(5, 6));
+  EXPECT_EQ(back.candidates[0].history.existence, 0.25);
+  EXPECT_FALSE(back.candidates[0].present);
+}
+
+TEST_F(PoleMapFileTest, historyByHand) {
+  PoleMapData data;
+  data.poles = {pole(1, 2)};
+  data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}};
+  writePoleMap(path("m.polemap"), data);
+  // Behind the fields that older programs know: they read 108 bytes a record and skip 32.
+  const std::string info("\0\0\0\0", 4);
+  const std::string history = doubles({0.875, 1.3e9, 1.4e9}) + std::string("\7\0\0\0\3\0\0\0", 8);
+  EXPECT_EQ(read(path("m.polemap")),
+            wrapped(chunk("INFO", info) + poleChunk(fieldsByHand, 1, history)));
+}
+
+TEST_F(PoleMapFileTest, keptMapsGoThereAndBack) {
+  PoleMapData data;
+  data.poles = {pole(1, 2)};
+  data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}};
+  data.candidates = {{pole(5, 6), {2, 1, 0.25, 1.35e9, 1.35e9}, false}};
+  const KeptMap map = keptMap(data);
+  ASSERT_EQ(map.poles.size(), 2u);
+  EXPECT_TRUE(map.poles[0].present);
+  EXPECT_FALSE(map.poles[1].present);
+  const PoleMapData back = mapData(map, {{"k", "v"}});
+  EXPECT_EQ(back.info.at("k"), "v");
+  ASSERT_EQ(back.poles.size(), 1u);
+  expectSame(back.poles[0], data.poles[0]);
+  EXPECT_EQ(back.histories[0].seen, 7u);
+  ASSERT_EQ(back.candidates.size(), 1u);
+  expectSame(back.candidates[0].pole, data.candidates[0].pole);
+  // A map of an earlier version: its count stands for what was seen.
+  data.histories.clear();
+  data.candidates.clear();
+  const KeptMap old = keptMap(data);
+  ASSERT_EQ(old.poles.size(), 1u);
+  EXPECT_TRUE(old.poles[0].present);
+  EXPECT_EQ(old.poles[0].history.seen, 17u);
+}
+
+TEST_F(PoleMapFileTest, refusesHistoriesThatCannotBe) {
+  PoleMapData data;
+  data.poles = {pole(0, 0)};
+  data.histories = {{}, {}};
+  const auto refused = [&] { return messageOf([&] { writePoleMap(path("m.polemap"), data); }); };
+  expectIn(refused(), "2 histories for 1 poles");
+  data.histories = {{1, 1, 1.5, 0, 0}};
+  expectIn(refused(), "pole 0", "existence");
+  data.histories = {{1, 1, 0.5, -1, 0}};
+  expectIn(refused(), "pole 0", "date");
+  data.histories.clear();
+  data.candidates = {{pole(0, 0), {}, false}};
+  data.candidates[0].pole.radius = -1;
+  expectIn(refused(), "candidate 0", "radius");
+  EXPECT_FALSE(fs::exists(path("m.polemap")));
+}
+
 TEST_F(PoleMapFileTest, refusesAMissingFile) {
   expectIn(messageOf([&] { readPoleMap(path("no.polemap")); }), path("no.polemap").string(),
            "No such file or directory");

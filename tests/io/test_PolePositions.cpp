@@ -42,6 +42,18 @@ TEST_F(PolePositionsTest, writesCsvByHand) {
   EXPECT_EQ(readPolePositions(path("m.csv")), (Positions{{1.5, -2}}));
 }
 
+TEST_F(PolePositionsTest, writesHistories) {
+  MapPole p;
+  p.x = 1;
+  p.radius = 0.1;
+  writePoleCsv(path("m.csv"), {p, p}, {{7, 3, 0.875, 951782400, 1331942400}, {0, 0, 0.5, 0, 0}});
+  const std::string text = read(path("m.csv"));
+  EXPECT_NE(text.find("cov_yy,existence,seen,missed,first_seen,last_seen\n"), std::string::npos);
+  EXPECT_NE(text.find(",0.875,7,3,2000-02-29,2012-03-17\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(",0.5,0,0,,\n"), std::string::npos) << text;
+  EXPECT_EQ(readPolePositions(path("m.csv")).size(), 2u);
+}
+
 TEST_F(PolePositionsTest, readsCsvByTheNamesOfItsColumns) {
   EXPECT_EQ(readPolePositions(write("m.csv", "id,x,y,radius,top\n0,1,2,0.1,5\n1,-3e1,4.5,0.1,5\n")),
             (Positions{{1, 2}, {-30, 4.5}}));

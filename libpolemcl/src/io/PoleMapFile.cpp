@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <cmath>
+#include <utility>
 
 namespace polemcl::io {
 
@@ -13,6 +14,7 @@ constexpr std::string_view magic("\x89PMAP\r\n\x1a", 8);
 constexpr std::uint32_t version = 1;
 constexpr std::size_t headerBytes = 8 + 4 + 8 + 4;
 constexpr std::uint32_t recordBytes = 9 * 8 + 4;
+constexpr std::uint32_t historyBytes = 3 * 8 + 2 * 4;
 
 std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -36,11 +38,31 @@ const char* fault(const MapPole& pole) {
   return nullptr;
 }
 
-void requireSound(const std::vector<MapPole>& poles, const std::string& where) {
-  for (std::size_t i = 0; i < poles.size(); ++i) {
-    if (const char* why = fault(poles[i])) {
-      throw Error(where + "pole " + std::to_string(i) + " (counted from 0): " + why);
-    }
+/// Why the history cannot be; null when it can.
+const char* fault(const PoleHistory& history) {
+  if (!(history.existence >= 0 && history.existence <= 1)) return "the existence is outside 0 … 1";
+  for (const double time : {history.firstSeen, history.lastSeen}) {
+    if (!(std::isfinite(time) && time >= 0)) return "a date is before 1970 or not finite";
+  }
+  return nullptr;
+}
+
+void require(const char* why, const std::string& where, const char* what, std::size_t i) {
+  if (why) throw Error(where + what + std::to_string(i) + " (counted from 0): " + why);
+}
+
+void requireSound(const PoleMapData& data, const std::string& where) {
+  if (!data.histories.empty() && data.histories.size() != data.poles.size()) {
+    throw Error(where + std::to_string(data.histories.size()) + " histories for " +
+                std::to_string(data.poles.size()) + " poles; there must be one for each, or none");
+  }
+  for (std::size_t i = 0; i < data.poles.size(); ++i)
+    require(fault(data.poles[i]), where, "pole ", i);
+  for (std::size_t i = 0; i < data.histories.size(); ++i)
+    require(fault(data.histories[i]), where, "pole ", i);
+  for (std::size_t i = 0; i < data.candidates.size(); ++i) {
+    require(fault(data.candidates[i].pole), where, "candidate ", i);
+    require(fault(data.candidates[i].history), where, "candidate ", i);
   }
 }
 
@@ -50,24 +72,44 @@ void putChunk(ByteWriter& payload, std::string_view tag, const ByteWriter& conte
   payload.putRaw(content.bytes());
 }
 
+void putPole(ByteWriter& record, const MapPole& p) {
+  for (const double value : {p.x, p.y, p.radius, p.bottom, p.top, p.confidence, p.covariance(0, 0),
+                             p.covariance(0, 1), p.covariance(1, 1)}) {
+    record.put(value);
+  }
+  record.put(p.count);
+}
+
+void putHistory(ByteWriter& record, const PoleHistory& history) {
+  for (const double value : {history.existence, history.firstSeen, history.lastSeen}) {
+    record.put(value);
+  }
+  record.put(history.seen);
+  record.put(history.missed);
+}
+
 std::string payloadOf(const PoleMapData& data) {
-  ByteWriter info, poles, payload;
+  ByteWriter info, poles, candidates, payload;
   info.put(static_cast<std::uint32_t>(data.info.size()));
   for (const auto& [key, value] : data.info) {
     info.putText(key);
     info.putText(value);
   }
-  poles.put(recordBytes);
+  poles.put(recordBytes + (data.histories.empty() ? 0 : historyBytes));
   poles.put(static_cast<std::uint64_t>(data.poles.size()));
-  for (const MapPole& p : data.poles) {
-    for (const double value : {p.x, p.y, p.radius, p.bottom, p.top, p.confidence,
-                               p.covariance(0, 0), p.covariance(0, 1), p.covariance(1, 1)}) {
-      poles.put(value);
-    }
-    poles.put(p.count);
+  for (std::size_t i = 0; i < data.poles.size(); ++i) {
+    putPole(poles, data.poles[i]);
+    if (!data.histories.empty()) putHistory(poles, data.histories[i]);
+  }
+  candidates.put(recordBytes + historyBytes);
+  candidates.put(static_cast<std::uint64_t>(data.candidates.size()));
+  for (const KeptPole& kept : data.candidates) {
+    putPole(candidates, kept.pole);
+    putHistory(candidates, kept.history);
   }
   putChunk(payload, "INFO", info);
   putChunk(payload, "POLE", poles);
+  if (!data.candidates.empty()) putChunk(payload, "CAND", candidates);
   return payload.bytes();
 }
 
@@ -90,18 +132,47 @@ MapPole readRecord(ByteReader& record) {
   return p;
 }
 
-void readPoles(ByteReader& chunk, const std::string& where, PoleMapData& data) {
+PoleHistory readHistory(ByteReader& record) {
+  PoleHistory history;
+  for (double* value : {&history.existence, &history.firstSeen, &history.lastSeen}) {
+    *value = record.get<double>();
+  }
+  history.seen = record.get<std::uint32_t>();
+  history.missed = record.get<std::uint32_t>();
+  return history;
+}
+
+/// The records of a chunk. \return Whether they have histories.
+bool readRecords(ByteReader& chunk, const std::string& where, std::vector<KeptPole>& records) {
   const auto size = chunk.get<std::uint32_t>();
   const auto count = chunk.get<std::uint64_t>();
   if (size < recordBytes || count > chunk.remaining() / size) {
     throw Error(where + "damaged: " + std::to_string(count) + " poles of " + std::to_string(size) +
                 " bytes do not fit into " + std::to_string(chunk.remaining()));
   }
-  data.poles.reserve(count);
+  const bool withHistory = size >= recordBytes + historyBytes;
+  records.reserve(count);
   for (std::uint64_t i = 0; i < count; ++i) {
     ByteReader record(chunk.getRaw(size), where);
-    data.poles.push_back(readRecord(record));
+    KeptPole& kept = records.emplace_back();
+    kept.pole = readRecord(record);
+    if (withHistory) kept.history = readHistory(record);
   }
+  return withHistory;
+}
+
+void readPoles(ByteReader& chunk, const std::string& where, PoleMapData& data) {
+  std::vector<KeptPole> records;
+  const bool withHistory = readRecords(chunk, where, records);
+  for (const KeptPole& record : records) {
+    data.poles.push_back(record.pole);
+    if (withHistory) data.histories.push_back(record.history);
+  }
+}
+
+void readCandidates(ByteReader& chunk, const std::string& where, PoleMapData& data) {
+  if (!readRecords(chunk, where, data.candidates))
+    throw Error(where + "damaged: its candidates have no histories");
 }
 
 /// The checked payload of a whole file.
@@ -128,8 +199,31 @@ std::string_view checkedPayload(std::string_view bytes, const std::string& where
 
 }  // namespace
 
+KeptMap keptMap(const PoleMapData& data) {
+  KeptMap map;
+  if (data.histories.empty()) map = keptFrom(data.poles);
+  for (std::size_t i = 0; i < data.histories.size(); ++i)
+    map.poles.push_back({data.poles[i], data.histories[i], true});
+  map.poles.insert(map.poles.end(), data.candidates.begin(), data.candidates.end());
+  return map;
+}
+
+PoleMapData mapData(const KeptMap& map, std::map<std::string, std::string> info) {
+  PoleMapData data;
+  data.info = std::move(info);
+  for (const KeptPole& kept : map.poles) {
+    if (!kept.present) {
+      data.candidates.push_back(kept);
+      continue;
+    }
+    data.poles.push_back(kept.pole);
+    data.histories.push_back(kept.history);
+  }
+  return data;
+}
+
 void writePoleMap(const std::filesystem::path& file, const PoleMapData& data) {
-  requireSound(data.poles, "cannot write " + file.string() + ": ");
+  requireSound(data, "cannot write " + file.string() + ": ");
   const std::string payload = payloadOf(data);
   ByteWriter header;
   header.putRaw(magic);
@@ -152,10 +246,11 @@ PoleMapData readPoleMap(const std::filesystem::path& file) {
     ByteReader chunk(payload.getRaw(payload.get<std::uint64_t>()), where);
     if (tag == "INFO") readInfo(chunk, data);
     if (tag == "POLE") readPoles(chunk, where, data);
+    if (tag == "CAND") readCandidates(chunk, where, data);
     hasPoles = hasPoles || tag == "POLE";
   }
   if (!hasPoles) throw Error(where + "damaged: it has no list of poles");
-  requireSound(data.poles, where);
+  requireSound(data, where);
   return data;
 }
 

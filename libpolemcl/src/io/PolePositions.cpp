@@ -1,5 +1,6 @@
 #include <polemcl/io/AtomicFile.h>
 #include <polemcl/io/CsvTable.h>
+#include <polemcl/io/Date.h>
 #include <polemcl/io/Npz.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
@@ -57,15 +58,24 @@ Positions readNpz(const std::filesystem::path& file) {
 
 }  // namespace
 
-void writePoleCsv(const std::filesystem::path& file, const std::vector<MapPole>& poles) {
+void writePoleCsv(const std::filesystem::path& file, const std::vector<MapPole>& poles,
+                  const std::vector<PoleHistory>& histories) {
   AtomicFile output(file);
-  output.stream() << "x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy\n";
-  for (const MapPole& p : poles) {
+  output.stream() << "x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy"
+                  << (histories.empty() ? "\n" : ",existence,seen,missed,first_seen,last_seen\n");
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    const MapPole& p = poles[i];
     output.stream() << fixed(p.x, 6) << ',' << fixed(p.y, 6) << ',' << fixed(p.radius, 6) << ','
                     << std::to_string(p.count);
     for (const double value : {p.bottom, p.top, p.confidence, p.covariance(0, 0),
                                p.covariance(0, 1), p.covariance(1, 1)}) {
       output.stream() << ',' << significant(value, 9);
+    }
+    if (!histories.empty()) {
+      const PoleHistory& h = histories.at(i);
+      output.stream() << ',' << significant(h.existence, 6) << ',' << std::to_string(h.seen) << ','
+                      << std::to_string(h.missed) << ',' << dateText(h.firstSeen) << ','
+                      << dateText(h.lastSeen);
     }
     output.stream() << '\n';
   }

@@ -2,6 +2,7 @@
 /// \file PolePositions.h
 /// \brief Poles to CSV, and positions of poles from whatever file holds them.
 
+#include <polemcl/core/PoleExistence.h>
 #include <polemcl/core/Types.h>
 
 #include <Eigen/Core>
@@ -11,8 +12,11 @@
 namespace polemcl::io {
 
 /// \brief CSV with the header `x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy`: map
-/// frame, m and m². Written atomically. \throws Error when it cannot be written.
-void writePoleCsv(const std::filesystem::path& file, const std::vector<MapPole>& poles);
+/// frame, m and m². With histories `,existence,seen,missed,first_seen,last_seen` follow, the last
+/// two as dateText(). Written atomically. \param histories One for each pole, or none. \throws
+/// Error when it cannot be written.
+void writePoleCsv(const std::filesystem::path& file, const std::vector<MapPole>& poles,
+                  const std::vector<PoleHistory>& histories = {});
 
 /// \brief Positions of the poles in a file, in its order, map frame, m:
 /// `.polemap`; `.csv` with columns named x and y; `.npz` with the array `poleparams` or
