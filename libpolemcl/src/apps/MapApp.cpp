@@ -1,57 +1,41 @@
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/MapApp.h>
+#include <polemcl/apps/MapDiffApp.h>
+#include <polemcl/apps/MapUpdateApp.h>
 #include <polemcl/apps/Progress.h>
 #include <polemcl/apps/Version.h>
-#include <polemcl/core/PoseInterpolation.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
 #include <polemcl/io/TextFile.h>
-#include <polemcl/io/Trajectory.h>
-#include <polemcl/mrpt/PoleSequence.h>
 #include <polemcl/report/MapScene.h>
 
 #include <algorithm>
 #include <iostream>
 
+#include "MapSurvey.h"
+
 namespace polemcl::apps {
 namespace {
-
-constexpr double maxTruthGap = 2.0;  ///< s, as in evaluateTrajectory()
 
 /// Scans of all inputs with their true poses, in the order of the inputs.
 struct Survey {
   std::vector<MappingScan> scans;
+  std::vector<SessionScan> session;
   std::vector<StampedPose2D> path;  ///< of the scans, by position in `scans`
 };
 
-void addDrive(const MapOptions& options, std::uint32_t drive, const PoleSequence& sequence,
-              Survey& survey, MapSummary& summary) {
-  const auto &input = options.inputs[drive], &truthFile = options.truths[drive];
-  const auto truth = io::planar(io::readTum(truthFile));
-  std::size_t matched = 0, unmatched = 0;
-  for (const auto& frame : sequence.frames) {
-    if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
-    const auto pose = poseAt(truth, frame.time, maxTruthGap);
-    if (!pose) {
-      ++unmatched;
-      continue;
-    }
-    ++matched;
-    survey.scans.push_back({*pose, frame.poles_robot, drive});
-    survey.path.push_back({frame.time, *pose});
-  }
-  if (unmatched > matched)
-    throw Error(truthFile.string() + ": has a pose at the time of only " + std::to_string(matched) +
-                " of the " + std::to_string(matched + unmatched) + " scans of " + input.string() +
-                " (" + io::fixed(sequence.frames.front().time, 3) + " to " +
-                io::fixed(sequence.frames.back().time, 3) +
-                " s), at least half are needed; is it "
-                "the truth of this rawlog?");
-  summary.scans += matched;
-  summary.unmatched += unmatched;
-  summary.emptyScans += sequence.counts.emptyScans;
-  summary.invalidPoints += sequence.counts.invalidPoints;
-  if (sequence.counts.truncated) ++summary.truncated;
+void addDrive(const MapOptions& options, std::uint32_t drive, DriveSurvey found, Survey& survey,
+              MapSummary& summary) {
+  for (const SessionScan& scan : found.scans)
+    survey.scans.push_back({scan.pose_map_robot, scan.poles_robot, drive});
+  if (!options.dates.empty()) setDate(found.scans, options.dates[drive]);
+  survey.session.insert(survey.session.end(), found.scans.begin(), found.scans.end());
+  survey.path.insert(survey.path.end(), found.path.begin(), found.path.end());
+  summary.scans += found.scans.size();
+  summary.unmatched += found.unmatched;
+  summary.emptyScans += found.emptyScans;
+  summary.invalidPoints += found.invalidPoints;
+  summary.truncated += found.truncated;
 }
 
 std::string noPoles(const MapSummary& summary, const MapOptions& files,
@@ -109,6 +93,9 @@ void MapOptions::validate() const {
   if (inputs.size() != truths.size())
     throw Error("--truth: one file per --input is needed, " + std::to_string(inputs.size()) +
                 ", not " + std::to_string(truths.size()));
+  if (!dates.empty() && dates.size() != inputs.size())
+    throw Error("--date: one day per --input is needed, or none; " + std::to_string(inputs.size()) +
+                ", not " + std::to_string(dates.size()));
   if (output.extension() != ".polemap")
     throw Error("--output " + output.string() + ": the name must end in .polemap");
 }
@@ -116,22 +103,23 @@ void MapOptions::validate() const {
 MapSummary buildMap(const MapOptions& options, const Settings& settings,
                     const std::function<void(std::size_t)>& progress) {
   options.validate();
-  SequenceOptions sequence{settings.poleExtraction(), settings.motion, options.allowTruncated};
-  // A doubtful detection is worth keeping where others can confirm it.
-  if (settings.map.minConfidence > 0)
-    sequence.extraction.extraction.native.minConfidence = settings.map.minConfidence;
   MapSummary summary;
   Survey survey;
   for (std::uint32_t i = 0; i < options.inputs.size(); ++i)
-    addDrive(options, i, readPoleSequence(options.inputs[i].string(), sequence, progress), survey,
-             summary);
+    addDrive(options, i,
+             surveyDrive(options.inputs[i], options.truths[i], settings, options.allowTruncated,
+                         progress),
+             survey, summary);
   if (survey.scans.empty())
     throw Error(options.inputs.front().string() + ": no usable scan, " +
                 std::to_string(summary.emptyScans) + " without a valid point");
   summary.map = buildPoleMap(survey.scans, settings.map);
   if (summary.map.poles.empty()) throw Error(noPoles(summary, options, settings.map));
 
-  if (options.csv) io::writePoleCsv(*options.csv, summary.map.poles);
+  const io::PoleMapData map =
+      io::mapData(withHistory(summary.map.poles, survey.session, settings.map, settings.upkeep),
+                  facts(options, settings, summary));
+  if (options.csv) io::writePoleCsv(*options.csv, map.poles, map.histories);
   if (options.scene) {
     report::MapView view;
     view.title = options.output.filename().string();
@@ -139,36 +127,105 @@ MapSummary buildMap(const MapOptions& options, const Settings& settings,
     view.truth = survey.path;
     report::saveScene(*report::makeMapScene(view), *options.scene);
   }
-  io::writePoleMap(options.output, {summary.map.poles, facts(options, settings, summary)});
+  io::writePoleMap(options.output, map);
   return summary;
 }
 
-int mapMain(int argc, const char* const* argv) {
-  CommandLine line("pole-map", "Builds a pole map from scans, or poles, at known poses.");
-  MapOptions options;
+namespace {
+
+/// All that the command line of `pole-map` says.
+struct MapLine {
+  MapOptions build;
   std::string config;
-  auto& cli = line.cli();
-  cli.add_option("--config", config, "INI file, see config/")->required();
-  cli.add_option("--input", options.inputs, "Rawlogs of scans or poles")->required();
-  cli.add_option("--truth", options.truths, "True robot poses, TUM, one file per rawlog")
-      ->required();
-  cli.add_option("--output", options.output, "Map to write, .polemap")->required();
-  cli.add_option("--scene", options.scene, "Also write a .3Dscene of the map");
-  cli.add_option("--csv", options.csv, "Also write the poles to this table");
-  cli.add_flag("--allow-truncated", options.allowTruncated,
+  std::optional<std::filesystem::path> update, png;
+  std::vector<std::filesystem::path> diff;
+};
+
+void addOptions(CLI::App& cli, MapLine& line) {
+  cli.add_option("--config", line.config, "INI file, see config/");
+  cli.add_option("--input", line.build.inputs, "Rawlogs of scans or poles");
+  cli.add_option("--truth", line.build.truths, "True robot poses, TUM, one file per rawlog");
+  cli.add_option("--output", line.build.output, "Map to write, .polemap");
+  cli.add_option("--date", line.build.dates,
+                 "Day of each rawlog, YYYY-MM-DD, where its times do not tell");
+  cli.add_option("--update", line.update,
+                 "Map to begin with: each rawlog is a session that keeps it true, see [upkeep]");
+  auto* diff = cli.add_option("--diff", line.diff, "List what changed from one map to another")
+                   ->expected(2)
+                   ->type_name("A B");
+  cli.add_option("--scene", line.build.scene, "Also write a .3Dscene of the map, or the changes");
+  cli.add_option("--csv", line.build.csv, "Also write the poles, or the changes, to this table");
+  cli.add_option("--png", line.png, "With --diff: draw the changes")->needs(diff);
+  cli.add_flag("--allow-truncated", line.build.allowTruncated,
                "Use the readable part of rawlogs that were cut short");
-  cli.parse_complete_callback([&] {
-    if (options.inputs.size() != options.truths.size())
-      throw CLI::ValidationError("--truth", "one file per --input is needed");
-  });
+}
+
+/// What CLI11 cannot know: --diff needs nothing else, all others need four options.
+void requireUsage(const MapLine& line) {
+  const MapOptions& build = line.build;
+  if (!line.diff.empty()) {
+    if (line.update || !build.inputs.empty() || !build.output.empty())
+      throw CLI::ValidationError("--diff", "compares two maps; it takes no other input or output");
+    return;
+  }
+  if (line.config.empty()) throw CLI::RequiredError("--config");
+  if (build.inputs.empty()) throw CLI::RequiredError("--input");
+  if (build.truths.empty()) throw CLI::RequiredError("--truth");
+  if (build.output.empty()) throw CLI::RequiredError("--output");
+  if (build.inputs.size() != build.truths.size())
+    throw CLI::ValidationError("--truth", "one file per --input is needed");
+  if (!build.dates.empty() && build.dates.size() != build.inputs.size())
+    throw CLI::ValidationError("--date", "one day per --input is needed, or none");
+}
+
+void runDiff(const MapLine& line, bool quiet) {
+  const UpkeepOptions upkeep =
+      line.config.empty() ? UpkeepOptions() : loadSettings(line.config).upkeep;
+  const MapDiff diff =
+      diffMapFiles({line.diff[0], line.diff[1], line.build.csv, line.png, line.build.scene},
+                   {upkeep.moved, upkeep.ghost});
+  if (!quiet) apps::print(diff, std::cout);
+}
+
+void runUpdate(const MapLine& line, bool quiet) {
+  const MapOptions& o = line.build;
+  const MapUpdateOptions options{*line.update, o.inputs, o.truths, o.dates,
+                                 o.output,     o.scene,  o.csv,    o.allowTruncated};
+  const auto settings = loadSettings(line.config);
+  MapUpdateSummary summary;
+  {
+    Progress progress("update", 0, quiet);
+    summary = updateMapFile(options, settings, [&](std::size_t done) { progress.update(done); });
+  }
+  if (!quiet) apps::print(summary, options);
+}
+
+void runBuild(const MapLine& line, bool quiet) {
+  const auto settings = loadSettings(line.config);
+  MapSummary summary;
+  {
+    Progress progress("map", 0, quiet);
+    summary = buildMap(line.build, settings, [&](std::size_t done) { progress.update(done); });
+  }
+  if (!quiet) print(summary, line.build);
+}
+
+}  // namespace
+
+int mapMain(int argc, const char* const* argv) {
+  CommandLine line("pole-map",
+                   "Builds a pole map from scans, or poles, at known poses; keeps it true; "
+                   "compares two.");
+  MapLine options;
+  addOptions(line.cli(), options);
+  line.cli().parse_complete_callback([&] { requireUsage(options); });
   return line.run(argc, argv, [&] {
-    const auto settings = loadSettings(config);
-    MapSummary summary;
-    {
-      Progress progress("map", 0, line.quiet());
-      summary = buildMap(options, settings, [&](std::size_t done) { progress.update(done); });
-    }
-    if (!line.quiet()) print(summary, options);
+    if (!options.diff.empty())
+      runDiff(options, line.quiet());
+    else if (options.update)
+      runUpdate(options, line.quiet());
+    else
+      runBuild(options, line.quiet());
   });
 }
 

@@ -1,6 +1,7 @@
 #include <polemcl/apps/Settings.h>
 #include <polemcl/mrpt/Bindings.h>
 #include <polemcl/mrpt/Config.h>
+#include <polemcl/mrpt/UpkeepBindings.h>
 #include <polemcl/sim/SimulationBindings.h>
 
 namespace polemcl::apps {
@@ -10,6 +11,7 @@ void bindAll(Binder& binder, Settings& settings) {
   bind(binder, settings.sensor);
   bind(binder, settings.extraction);
   bind(binder, settings.map);
+  bind(binder, settings.upkeep);
   bind(binder, settings.likelihood);
   bind(binder, settings.motion);
   bind(binder, settings.localization.filter);

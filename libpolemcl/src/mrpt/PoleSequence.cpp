@@ -144,8 +144,9 @@ PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& op
                               const std::function<void(std::size_t)>& progress) {
   PoleSequence sequence;
   sequence.counts = streamPoles(path, options, [&](const PoleScan& scan) {
-    sequence.frames.push_back(
-        {scan.time, scan.motion, scan.observation->polesInRobotFrame(), scan.points});
+    sequence.frames.push_back({scan.time, scan.motion, scan.observation->polesInRobotFrame(),
+                               scan.points, scan.observation->freeRange,
+                               scan.observation->planarSensorPose()});
     if (progress) progress(sequence.frames.size());
   });
   return sequence;

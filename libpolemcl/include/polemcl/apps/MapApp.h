@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace polemcl::apps {
@@ -20,6 +21,7 @@ struct MapOptions {
   std::optional<std::filesystem::path> scene;  ///< `.3Dscene` of map and path, when given
   std::optional<std::filesystem::path> csv;    ///< poles as a table, when given
   bool allowTruncated = false;                 ///< use the readable part of damaged rawlogs
+  std::vector<std::string> dates = {};         ///< YYYY-MM-DD, one per input, or none
   /// \throws Error naming the option.
   void validate() const;
 };
@@ -34,8 +36,8 @@ struct MapSummary {
   PoleMapResult map;
 };
 
-/// \brief Builds the map and writes what was asked for. The truth is interpolated at the time of
-/// each scan, not across gaps of more than 2 s.
+/// \brief Builds the map, with a history of each pole for later upkeep, and writes what was asked
+/// for. The truth is interpolated at the time of each scan, not across gaps of more than 2 s.
 /// \param progress Called with the number of scans of the current input; may be empty.
 /// \throws Error as readPoleSequence() and readTum(); when the truth covers less than half of the
 ///         scans of an input; when no scan is usable; when no pole was found (names the section
@@ -43,7 +45,8 @@ struct MapSummary {
 MapSummary buildMap(const MapOptions& options, const Settings& settings,
                     const std::function<void(std::size_t)>& progress = {});
 
-/// \brief The program. \return An ExitCode.
+/// \brief The program, with `--update` (MapUpdateApp.h) and `--diff` (MapDiffApp.h). \return An
+/// ExitCode.
 int mapMain(int argc, const char* const* argv);
 
 }  // namespace polemcl::apps

@@ -3,6 +3,7 @@
 /// \brief One INI serves all programs: the union of all option structs.
 
 #include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/core/MapUpkeep.h>
 #include <polemcl/core/PoleLikelihood.h>
 #include <polemcl/core/PoleMapBuilder.h>
 #include <polemcl/mrpt/FilterOptions.h>
@@ -18,11 +19,12 @@ namespace polemcl::apps {
 
 /// \brief All settings of all programs. Sections that a file leaves out keep their defaults.
 struct Settings {
-  SensorOptions sensor;               ///< `[sensor]`
-  ExtractionOptions extraction;       ///< `[extraction]`, `[paper]`, `[native]`
-  PoleMapOptions map;                 ///< `[map]`
-  LikelihoodOptions likelihood;       ///< `[likelihood]`
-  MotionOptions motion;               ///< `[motion]`
+  SensorOptions sensor;          ///< `[sensor]`
+  ExtractionOptions extraction;  ///< `[extraction]`, `[paper]`, `[native]`
+  PoleMapOptions map;            ///< `[map]`
+  UpkeepOptions upkeep;          ///< `[upkeep]`
+  LikelihoodOptions likelihood;  ///< `[likelihood]`
+  MotionOptions motion;          ///< `[motion]`
   /// `[filter] [submap] [global] [health] [search] [motion_check]`
   LocalizationOptions localization;
   StartOptions start;                 ///< `[start]`

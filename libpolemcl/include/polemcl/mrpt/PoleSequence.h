@@ -75,7 +75,9 @@ struct PoleFrame {
   double time = 0;                         ///< s
   std::optional<io::PlanarMotion> motion;  ///< as in PoleScan
   std::vector<PoleDetection> poles_robot;
-  std::size_t points = 0;  ///< valid points of the scan; 0: none, or not known
+  std::size_t points = 0;             ///< valid points of the scan; 0: none, or not known
+  std::vector<float> freeRange = {};  ///< as CObservationPoles carries it; maybe empty
+  Pose2D pose_robot_sensor = {};      ///< of the frame of freeRange
 };
 
 struct PoleSequence {

@@ -1,0 +1,116 @@
+#include <polemcl/apps/MapUpdateApp.h>
+#include <polemcl/apps/Version.h>
+#include <polemcl/io/PoleMapFile.h>
+#include <polemcl/io/PolePositions.h>
+#include <polemcl/report/MapScene.h>
+
+#include <iostream>
+
+#include "MapSurvey.h"
+
+namespace polemcl::apps {
+namespace {
+
+constexpr std::size_t enoughExpected = 10;  ///< poles; fewer tell nothing of the place
+constexpr double leastFound = 0.2;          ///< share; half a map does not vanish over night
+
+void requireSamePlace(const UpkeepCounts& counts, const std::filesystem::path& input,
+                      const std::filesystem::path& map) {
+  if (counts.expectedOnMap < enoughExpected ||
+      static_cast<double>(counts.foundOnMap) >=
+          leastFound * static_cast<double>(counts.expectedOnMap))
+    return;
+  throw Error(input.string() + ": only " + std::to_string(counts.foundOnMap) + " of " +
+              std::to_string(counts.expectedOnMap) + " poles of " + map.string() +
+              " in its view were found; is its truth of the same place and datum? A new place "
+              "needs a new map");
+}
+
+std::map<std::string, std::string> facts(std::map<std::string, std::string> info,
+                                         const MapUpdateOptions& options,
+                                         const Settings& settings) {
+  std::string& updates = info["updates"];
+  for (const auto& input : options.inputs)
+    updates += (updates.empty() ? "" : " ") + input.filename().string();
+  info["program"] = std::string("pole-map ") + version();
+  info["config"] = settingsText(settings);
+  return info;
+}
+
+}  // namespace
+
+void MapUpdateOptions::validate() const {
+  if (inputs.empty()) throw Error("--input: at least one rawlog is needed");
+  if (inputs.size() != truths.size())
+    throw Error("--truth: one file per --input is needed, " + std::to_string(inputs.size()) +
+                ", not " + std::to_string(truths.size()));
+  if (!dates.empty() && dates.size() != inputs.size())
+    throw Error("--date: one day per --input is needed, or none; " + std::to_string(inputs.size()) +
+                ", not " + std::to_string(dates.size()));
+  if (output.extension() != ".polemap")
+    throw Error("--output " + output.string() + ": the name must end in .polemap");
+}
+
+MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& settings,
+                               const std::function<void(std::size_t)>& progress) {
+  options.validate();
+  const io::PoleMapData before = io::readPoleMap(options.map);
+  MapUpdateSummary summary;
+  summary.before = before.poles.size();
+  KeptMap map = io::keptMap(before);
+  report::MapView view;
+  for (std::size_t i = 0; i < options.inputs.size(); ++i) {
+    DriveSurvey survey = surveyDrive(options.inputs[i], options.truths[i], settings,
+                                     options.allowTruncated, progress);
+    if (survey.scans.empty())
+      throw Error(options.inputs[i].string() + ": no usable scan, " +
+                  std::to_string(survey.emptyScans) + " without a valid point");
+    if (!options.dates.empty()) setDate(survey.scans, options.dates[i]);
+    UpkeepCounts counts;
+    map = updateMap(map, survey.scans, settings.map, settings.upkeep, &counts);
+    requireSamePlace(counts, options.inputs[i], options.map);
+    summary.sessions.push_back(counts);
+    summary.emptyScans += survey.emptyScans;
+    summary.unmatched += survey.unmatched;
+    summary.invalidPoints += survey.invalidPoints;
+    summary.truncated += survey.truncated;
+    view.truth.insert(view.truth.end(), survey.path.begin(), survey.path.end());
+  }
+  const io::PoleMapData after = io::mapData(map, facts(before.info, options, settings));
+  summary.poles = after.poles.size();
+  if (after.poles.empty())
+    throw Error(options.map.string() + ": no pole is left on the map; see [upkeep]");
+  if (options.csv) io::writePoleCsv(*options.csv, after.poles, after.histories);
+  if (options.scene) {
+    view.title = options.output.filename().string();
+    view.poles = after.poles;
+    report::saveScene(*report::makeMapScene(view), *options.scene);
+  }
+  io::writePoleMap(options.output, after);
+  return summary;
+}
+
+void print(const MapUpdateSummary& summary, const MapUpdateOptions& options) {
+  std::cout << options.output.string() << ": " << summary.poles << " poles, " << summary.before
+            << " before\n";
+  for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
+    const UpkeepCounts& c = summary.sessions[i];
+    std::cout << options.inputs[i].string() << ": " << c.scans << " scans; of " << c.expectedOnMap
+              << " poles in view " << c.foundOnMap << " found; " << c.entered << " new, " << c.left
+              << " vanished, " << c.moved << " moved; " << c.candidates << " candidates\n";
+    if (c.withoutFreeRange > 0)
+      std::cout << "scans without free ranges, in which nothing counts as missed: "
+                << c.withoutFreeRange << '\n';
+  }
+  if (summary.emptyScans > 0)
+    std::cout << "scans without a valid point, not used: " << summary.emptyScans << '\n';
+  if (summary.unmatched > 0)
+    std::cout << "scans without a true pose, not used: " << summary.unmatched << '\n';
+  if (summary.invalidPoints > 0)
+    std::cout << "invalid points dropped: " << summary.invalidPoints << '\n';
+  if (summary.truncated > 0)
+    std::cout << "inputs that ended too early: " << summary.truncated
+              << "; what could be read was used\n";
+}
+
+}  // namespace polemcl::apps
