@@ -3,6 +3,7 @@
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/Version.h>
 #include <polemcl/core/Types.h>
+#include <tbb/global_control.h>
 
 #include <string>
 #include <vector>
@@ -52,6 +53,29 @@ TEST(CommandLine, RunsTheWorkAndReturnsZero) {
 
 TEST(CommandLine, KnowsQuiet) {
   EXPECT_TRUE(runWith({"--input", "a", "--quiet"}).quiet);
+}
+
+TEST(CommandLine, LimitsTheThreads) {
+  using tbb::global_control;
+  const auto allowed = [] {
+    return global_control::active_value(global_control::max_allowed_parallelism);
+  };
+  std::size_t threads = 0;
+  runWith({"--input", "a", "--threads", "1"}, [&] { threads = allowed(); });
+  EXPECT_EQ(threads, 1u);
+  const std::size_t all = allowed();
+  runWith({"--input", "a"}, [&] { threads = allowed(); });
+  EXPECT_EQ(threads, all);
+  EXPECT_EQ(runWith({"--input", "a", "--threads", "-1"}).code, 2);
+}
+
+TEST(CommandLine, AssignmentsMayBeRepeated) {
+  CommandLine line("pole-test", "Tries things.");
+  std::vector<std::string> set;
+  addSetOption(line.cli(), set);
+  const char* arguments[] = {"pole-test", "--set", "a.b=1", "--set", "a.c=x y"};
+  EXPECT_EQ(line.run(5, arguments, [] {}), 0);
+  EXPECT_EQ(set, (std::vector<std::string>{"a.b=1", "a.c=x y"}));
 }
 
 TEST(CommandLine, HelpAndVersionAreNoErrors) {

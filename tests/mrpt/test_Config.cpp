@@ -101,6 +101,33 @@ TEST(Config, ReadsEveryType) {
   EXPECT_DOUBLE_EQ(s.beams[1], -M_PI / 4);
 }
 
+Sample loadWith(const std::string& text, const std::vector<std::string>& assignments) {
+  ConfigFile file = ConfigFile::fromText(text, "test.ini");
+  for (const auto& assignment : assignments) file.set(assignment);
+  ConfigReader reader(file);
+  Sample sample;
+  bind(reader, sample);
+  reader.finish();
+  return sample;
+}
+
+TEST(Config, AssignmentsReplaceAndAddValues) {
+  const Sample s = loadWith("[sample]\ncount = 4\nlength_m = 3\n",
+                            {"sample.count=5", "Sample.path = a=b.c ", "sample.count=6"});
+  EXPECT_EQ(s.count, 6);
+  EXPECT_EQ(s.path, "a=b.c");
+  EXPECT_EQ(s.length, 3);
+  EXPECT_EQ(loadWith("", {"sample.count=5"}).count, 5);
+}
+
+TEST(Config, AssignmentsAreAsStrictAsFiles) {
+  for (const char* wrong : {"count=5", "sample.count", ".count=5", "sample.=5", "=", "a=b.c"})
+    EXPECT_HAS(refusal([&] { loadWith("", {wrong}); }), "write section.key=value");
+  EXPECT_HAS(refusal([&] { loadWith("", {"sample.cuont=5"}); }), "key is not known");
+  EXPECT_HAS(refusal([&] { loadWith("", {"simple.count=5"}); }), "section [simple] is not known");
+  EXPECT_HAS(refusal([&] { loadWith("", {"sample.count=many"}); }), "count = many");
+}
+
 TEST(Config, KeepsDefaultsOfMissingKeys) {
   const Sample s = load("[sample]\ncount = 4\nlist =\n");
   EXPECT_EQ(s.count, 4);

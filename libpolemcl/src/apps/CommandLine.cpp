@@ -1,9 +1,11 @@
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/Version.h>
 #include <polemcl/mrpt/RegisterClasses.h>
+#include <tbb/global_control.h>
 
 #include <exception>
 #include <iostream>
+#include <optional>
 
 namespace polemcl::apps {
 namespace {
@@ -16,6 +18,8 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
     : m_program(program), m_cli(description, program) {
   m_cli.set_version_flag("--version", program + " " + version());
   m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors");
+  m_cli.add_option("--threads", m_threads, "At most so many threads; 0: one for each core")
+      ->check(CLI::Range(0, 10000));
   // So that `pole-eval map --quiet` works as well as `pole-eval --quiet map`.
   m_cli.fallthrough();
 }
@@ -34,6 +38,10 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
     return exitDone;
   }
   registerClasses();
+  std::optional<tbb::global_control> limit;
+  if (m_threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(m_threads));
   try {
     work();
     return exitDone;
@@ -43,6 +51,13 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
     std::cerr << m_program << ": failed for an unknown reason\n";
   }
   return exitFailed;
+}
+
+void addSetOption(CLI::App& cli, std::vector<std::string>& assignments) {
+  cli.add_option("--set", assignments, "A setting in place of the INI file's; may be repeated")
+      ->type_name("SECTION.KEY=VALUE")
+      ->take_all()
+      ->expected(1);
 }
 
 CLI::Validator positiveNumber() {

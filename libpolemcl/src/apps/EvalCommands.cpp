@@ -1,5 +1,6 @@
 #include "EvalCommands.h"
 
+#include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/DetectionModelApp.h>
 #include <polemcl/apps/ExtractionEval.h>
 #include <polemcl/apps/MotionEval.h>
@@ -86,6 +87,8 @@ EvalCommand rotationCommand(CLI::App& program) {
   const auto options = std::make_shared<EvalRotationOptions>();
   const auto config = std::make_shared<std::string>();
   cli.add_option("--config", *config, "INI file, see config/")->required();
+  const auto set = std::make_shared<std::vector<std::string>>();
+  addSetOption(cli, *set);
   cli.add_option("--input", options->input, "Rawlog of scans")->required();
   cli.add_option("--every", options->every, "Turn every N-th scan only")
       ->type_name("N")
@@ -95,8 +98,8 @@ EvalCommand rotationCommand(CLI::App& program) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options, config] {
-            return text(evalRotation(*options, loadSettings(*config)), options->radius);
+  return {&cli, [options, config, set] {
+            return text(evalRotation(*options, loadSettings(*config, *set)), options->radius);
           }};
 }
 

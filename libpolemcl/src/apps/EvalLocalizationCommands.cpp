@@ -14,6 +14,7 @@ namespace {
 
 void declareFiles(CLI::App& cli, TrialDriveFiles& files) {
   cli.add_option("--config", files.config, "Settings (.ini)")->required();
+  addSetOption(cli, files.set);
   cli.add_option("--map", files.map, "Pole map (.polemap)")->required();
   cli.add_option("--input", files.input, "Rawlog of poles, with odometry")->required();
   cli.add_option("--truth", files.truth, "True robot poses of the drive (.tum)")->required();

@@ -120,8 +120,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
 
 namespace {
 
-void runExtraction(const ExtractOptions& options, const std::string& config, bool quiet) {
-  const auto settings = loadSettings(config);
+void runExtraction(const ExtractOptions& options, const Settings& settings, bool quiet) {
   ExtractSummary summary;
   {
     Progress progress("extract", 0, quiet);
@@ -146,7 +145,9 @@ int extractMain(int argc, const char* const* argv) {
   ExtractOptions options;
   InspectOptions inspection;
   std::string config;
+  std::vector<std::string> set;
   auto& cli = line.cli();
+  addSetOption(cli, set);
   auto* inspected = cli.add_option("--inspect", inspection.input,
                                    "Rawlog of scans: estimate its LiDAR's beams and mounting");
   cli.add_option("--write-config", inspection.writeConfig, "INI file to write for that LiDAR")
@@ -173,7 +174,7 @@ int extractMain(int argc, const char* const* argv) {
     if (inspected->count() > 0)
       runInspection(inspection, line.quiet());
     else
-      runExtraction(options, config, line.quiet());
+      runExtraction(options, loadSettings(config, set), line.quiet());
   });
 }
 

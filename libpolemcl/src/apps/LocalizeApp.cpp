@@ -46,7 +46,7 @@ void setView(report::ViewOptions& view, const LocalizeJob& job) {
 }
 
 Settings effectiveSettings(const LocalizeJob& job) {
-  Settings settings = loadSettings(job.config.string());
+  Settings settings = loadSettings(job.config.string(), job.set);
   if (job.runs) settings.runs.runs = *job.runs;
   if (job.seed) settings.runs.seed = *job.seed;
   if (job.particles) settings.localization.filter.particles = *job.particles;
@@ -222,6 +222,7 @@ int localizeMain(int argc, const char* const* argv) {
   LocalizeJob job;
   auto& cli = line.cli();
   cli.add_option("--config", job.config, "Settings (.ini)")->required();
+  addSetOption(cli, job.set);
   cli.add_option("--input", job.input, "Rawlog of scans or of poles, with odometry")->required();
   cli.add_option("--map", job.map, "Pole map (.polemap)")->required();
   cli.add_option("--output", job.output, "Folder for the results")->required();

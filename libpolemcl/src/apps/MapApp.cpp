@@ -137,11 +137,13 @@ namespace {
 struct MapLine {
   MapOptions build;
   std::string config;
+  std::vector<std::string> set;
   std::optional<std::filesystem::path> update, png;
   std::vector<std::filesystem::path> diff;
 };
 
 void addOptions(CLI::App& cli, MapLine& line) {
+  addSetOption(cli, line.set);
   cli.add_option("--config", line.config, "INI file, see config/");
   cli.add_option("--input", line.build.inputs, "Rawlogs of scans or poles");
   cli.add_option("--truth", line.build.truths, "True robot poses, TUM, one file per rawlog");
@@ -180,7 +182,7 @@ void requireUsage(const MapLine& line) {
 
 void runDiff(const MapLine& line, bool quiet) {
   const UpkeepOptions upkeep =
-      line.config.empty() ? UpkeepOptions() : loadSettings(line.config).upkeep;
+      line.config.empty() ? UpkeepOptions() : loadSettings(line.config, line.set).upkeep;
   const MapDiff diff =
       diffMapFiles({line.diff[0], line.diff[1], line.build.csv, line.png, line.build.scene},
                    {upkeep.moved, upkeep.ghost});
@@ -191,7 +193,7 @@ void runUpdate(const MapLine& line, bool quiet) {
   const MapOptions& o = line.build;
   const MapUpdateOptions options{*line.update, o.inputs, o.truths, o.dates,
                                  o.output,     o.scene,  o.csv,    o.allowTruncated};
-  const auto settings = loadSettings(line.config);
+  const auto settings = loadSettings(line.config, line.set);
   MapUpdateSummary summary;
   {
     Progress progress("update", 0, quiet);
@@ -201,7 +203,7 @@ void runUpdate(const MapLine& line, bool quiet) {
 }
 
 void runBuild(const MapLine& line, bool quiet) {
-  const auto settings = loadSettings(line.config);
+  const auto settings = loadSettings(line.config, line.set);
   MapSummary summary;
   {
     Progress progress("map", 0, quiet);

@@ -48,9 +48,11 @@ ConfigWriter written(const Settings& settings) {
 
 }  // namespace
 
-Settings loadSettings(const std::string& path) {
+Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
   Settings settings;
-  ConfigReader reader(ConfigFile::read(path));
+  ConfigFile file = ConfigFile::read(path);
+  for (const auto& assignment : assignments) file.set(assignment);
+  ConfigReader reader(file);
   bindAll(reader, settings);
   reader.finish();
   shareSensor(settings);

@@ -14,7 +14,7 @@ namespace polemcl::apps {
 namespace {
 
 Settings effectiveSettings(const SimulateOptions& options) {
-  Settings settings = loadSettings(options.config.string());
+  Settings settings = loadSettings(options.config.string(), options.set);
   sim::SimulationOptions& simulation = settings.simulation;
   if (options.seed) simulation.world.seed = *options.seed;
   if (options.day) simulation.world.day = *options.day;
@@ -109,6 +109,7 @@ int simulateMain(int argc, const char* const* argv) {
                    "rawlog of their poles.");
   SimulateOptions options;
   line.cli().add_option("--config", options.config, "Settings (INI)")->required();
+  addSetOption(line.cli(), options.set);
   const auto* output = line.cli().add_option(
       "--output", options.output, "Folder of scans to write; an earlier simulation is replaced");
   const auto* poles = line.cli().add_option(

@@ -23,7 +23,7 @@ std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
 }
 
 TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
-  const Settings settings = loadSettings(files.config.string());
+  const Settings settings = loadSettings(files.config.string(), files.set);
   SequenceOptions reading;
   reading.extraction = settings.poleExtraction();
   reading.motion = settings.motion;

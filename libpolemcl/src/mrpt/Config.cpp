@@ -102,6 +102,19 @@ ConfigFile ConfigFile::read(const std::string& path) {
   return fromText(text, path);
 }
 
+void ConfigFile::set(const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  const auto dot = assignment.find('.');
+  const auto part = [&](std::size_t from, std::size_t to) {
+    return std::string(io::trimmed(assignment.substr(from, to - from)));
+  };
+  if (equals == std::string::npos || dot >= equals || part(0, dot).empty() ||
+      part(dot + 1, equals).empty())
+    throw Error("'" + assignment + "' sets nothing; write section.key=value, as in " +
+                "filter.particles=500");
+  m_source->write(part(0, dot), part(dot + 1, equals), part(equals + 1, assignment.size()));
+}
+
 ConfigReader::ConfigReader(const ConfigFile& file)
     : m_owned(std::shared_ptr<const mrpt::config::CConfigFileBase>(file.m_source)),
       m_source(&file.source()),

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace polemcl::apps {
 
@@ -15,7 +16,8 @@ enum ExitCode : int {
   exitUsage = 2    ///< wrong usage: unknown or missing options, values of the wrong type
 };
 
-/// \brief Declares `--help`, `--version` and `--quiet`; the program declares the rest on `cli()`.
+/// \brief Declares `--help`, `--version`, `--quiet` and `--threads`; the program declares the rest
+/// on `cli()`.
 ///
 /// Use: declare options on `cli()`, then `return line.run(argc, argv, [&] { work(options); });`.
 /// `--quiet` also works behind a subcommand.
@@ -41,7 +43,11 @@ class CommandLine {
   std::string m_program;
   CLI::App m_cli;
   bool m_quiet = false;
+  int m_threads = 0;  ///< at most; 0: one for each core
 };
+
+/// \brief Declares `--set SECTION.KEY=VALUE`, which may be given several times.
+void addSetOption(CLI::App& cli, std::vector<std::string>& assignments);
 
 /// \brief Check of an option: a number above 0 and up to 1e6. (CLI11's own takes nan.)
 CLI::Validator positiveNumber();

@@ -14,6 +14,7 @@ namespace polemcl::apps {
 /// \brief What the command line says. Values given here take the place of the configuration's.
 struct LocalizeJob {
   std::filesystem::path config, input, map, output;
+  std::vector<std::string> set;                ///< `section.key=value`, see loadSettings()
   std::optional<std::filesystem::path> truth;  ///< TUM
   std::optional<int> runs, particles;
   std::optional<std::uint32_t> seed;

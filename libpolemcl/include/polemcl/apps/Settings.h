@@ -14,6 +14,7 @@
 #include <polemcl/sim/SimulationOptions.h>
 
 #include <string>
+#include <vector>
 
 namespace polemcl::apps {
 
@@ -37,9 +38,11 @@ struct Settings {
 };
 
 /// \brief Reads an INI file.
+/// \param assignments Values that take the place of the file's, each `section.key=value`: what
+/// `--set` of the programs gives.
 /// \throws Error naming file, section, key, value and what is allowed: unknown sections or keys,
 ///         wrong types, values out of range.
-Settings loadSettings(const std::string& path);
+Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments = {});
 
 /// \brief All settings as an INI file, every key with unit, allowed values and meaning.
 /// Reading it gives the same settings, bit for bit.

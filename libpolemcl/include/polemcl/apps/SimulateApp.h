@@ -16,6 +16,7 @@ namespace polemcl::apps {
 /// \brief What the command line says; unset values are those of the configuration.
 struct SimulateOptions {
   std::filesystem::path config;  ///< INI
+  std::vector<std::string> set;  ///< `section.key=value`, see loadSettings()
   /// Folder of scans to write, when given; with `poles` as well, the same scans give both.
   std::optional<std::filesystem::path> output;
   std::optional<std::filesystem::path> poles;  ///< rawlog of poles to write, when given

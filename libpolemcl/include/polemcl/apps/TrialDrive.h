@@ -12,6 +12,7 @@ namespace polemcl::apps {
 
 struct TrialDriveFiles {
   std::filesystem::path config, map, input, truth;  ///< INI, .polemap, rawlog of poles, TUM
+  std::vector<std::string> set = {};                ///< `section.key=value`, see loadSettings()
 };
 
 struct TrialDrive {

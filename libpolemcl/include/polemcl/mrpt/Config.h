@@ -108,6 +108,12 @@ class ConfigFile {
   /// \param name Stands for the file in messages.
   static ConfigFile fromText(const std::string& text, const std::string& name);
 
+  /// \brief Puts a value in place of the file's, or adds it. \param assignment
+  /// `section.key=value`, the key without a dot.
+  /// \throws Error when it is not of that form; whether section and key are known, and the value is
+  ///         allowed, is found out when the file is bound.
+  void set(const std::string& assignment);
+
   const std::string& name() const { return m_name; }
   const mrpt::config::CConfigFileBase& source() const { return *m_source; }
 
