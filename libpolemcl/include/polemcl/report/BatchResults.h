@@ -121,7 +121,8 @@ struct FailedTask {
 struct BatchResults {
   std::string name;     ///< "nclt"
   std::string title;    ///< "NCLT: 27 sessions over 15 months"
-  std::string dataset;  ///< key of published figures (PublishedFigures.h); empty for none
+  /// Key of published figures: "nclt", "kitti-0009", "mulran-kaist" (PublishedFigures.h), or empty.
+  std::string dataset;
   std::string date;     ///< only if the caller gives one
   std::string command;  ///< that makes the batch again
   BatchVersions versions;

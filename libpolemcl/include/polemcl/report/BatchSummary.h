@@ -31,7 +31,7 @@ struct RunCounts {
 
 /// \brief Figures that are summed up; lost runs with a pose count in all of them.
 struct FigureSpreads {
-  Spread posMean, posRmse, posMax, latMean, latStd, lonMean, lonStd, xRmse, yRmse;
+  Spread posMean, posRmse, posMax, posEnd, latMean, latStd, lonMean, lonStd, xRmse, yRmse;
   Spread axisRmse;  ///< root of the mean of x² and y²: the position RMSE per axis, posRmse / √2
   Spread angMeanDeg, angStdDeg, angRmseDeg;
   Spread ok, degraded, lost;  ///< shares of scans
@@ -53,7 +53,8 @@ struct SettingSummary {
   RunCounts counts;
   std::size_t localized = 0;     ///< sessions with at least one run that has figures
   std::size_t lostSessions = 0;  ///< sessions with runs, all of which were lost or failed
-  /// Over the sessions' means: every session has the same weight, as in the paper.
+  /// Over the sessions' means: every session has the same weight, as in the paper. `largest` is
+  /// that of all runs.
   FigureSpreads figures;
   Spread mapShare;
   /// posMean of the last localized session over that of the first; none with less than two.
