@@ -1,0 +1,3 @@
+#include <polemcl/apps/BatchApp.h>
+
+int main(int argc, char** argv) { return polemcl::apps::batchMain(argc, argv); }

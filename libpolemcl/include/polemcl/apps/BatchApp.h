@@ -1,0 +1,30 @@
+#pragma once
+/// \file BatchApp.h
+/// \brief `pole-batch`: sessions x settings x runs, from the datasets to the report.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace polemcl::apps {
+
+/// \brief What the command line says.
+struct BatchOptions {
+  std::filesystem::path batch;   ///< INI, see BatchSpec.h
+  std::filesystem::path output;  ///< folder of the batch, see BatchFolder.h
+  std::filesystem::path data;    ///< stands for `{data}`; may be empty
+  std::size_t jobs = 0;          ///< tasks at the same time; 0: one for each core
+  bool resume = false, slurm = false, quiet = false;
+  std::vector<std::string> sbatch;  ///< more arguments for it
+};
+
+/// \brief Does what is open of the batch, and writes the report of all that is done.
+/// \throws Error as readBatchSpec(), planBatch() and BatchFolder; and after all that could be done
+/// is
+///         done and reported, when tasks failed: how many, and the first reason.
+void doBatch(const BatchOptions& options);
+
+/// \brief The program. \return An ExitCode.
+int batchMain(int argc, const char* const* argv);
+
+}  // namespace polemcl::apps

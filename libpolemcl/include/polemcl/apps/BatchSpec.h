@@ -1,0 +1,79 @@
+#pragma once
+/// \file BatchSpec.h
+/// \brief What a batch is: sessions, settings and runs, from an INI file.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace polemcl::apps {
+
+/// \brief One drive: where it comes from. `[sessions]` holds what all have in common, a section
+/// `[session NAME]` what is different. In all values `{session}` stands for the name, `{data}` for
+/// what `--data` gives; paths are relative to the batch file.
+struct BatchSession {
+  std::string name;
+  /// `simulated` (input: its INI), `poles` or `scans` (input: a rawlog, the truth beside it), or a
+  /// dataset of `pole-import` (input: its folder).
+  std::string source;
+  std::string input;
+  std::string date;                   ///< YYYY-MM-DD; "": as the times of its scans say
+  std::vector<std::string> set;       ///< of `simulated`: `section.key=value`, see loadSettings()
+  std::size_t every = 1, offset = 0;  ///< scans taken, as `pole-import` has it
+  double odometryNoise = 0;           ///< share of the true motion; 0: odometry of the dataset
+  std::string sensorPose, poses, posesOf = "robot", calib;  ///< as `pole-import` has them
+};
+
+/// \brief How maps come about.
+enum class MapProtocol {
+  together,  ///< all sessions driven so far make one map, as `[map]` says (`unvisited_m`)
+  upkeep     ///< the first makes the map, each later one keeps it true (`pole-map --update`)
+};
+
+/// \brief Which map a session is localized in.
+enum class MapTime {
+  before,   ///< the one that earlier map sessions left: the session's own data is not in it
+  finished  ///< the one that all map sessions left, its own data among them, as the paper does
+};
+
+/// \brief One way to map and to localize. `[setting NAME]`.
+struct BatchSetting {
+  std::string name;
+  std::string title;                     ///< a sentence for the report
+  std::string config;                    ///< INI of all programs
+  std::vector<std::string> set;          ///< values in place of its own
+  std::vector<std::string> mapSessions;  ///< names, in the order of the sessions
+  std::vector<std::string> sessions;     ///< names of those that are localized
+  MapProtocol protocol = MapProtocol::together;
+  MapTime map = MapTime::before;
+};
+
+struct BatchSpec {
+  std::string name;   ///< of the batch: letters, digits, `_`, `-` and `.`
+  std::string title;  ///< for the report
+  /// Published figures to show beside: `none`, `nclt`, `kitti-0009`, `mulran`.
+  std::string published = "none";
+  int runs = 10;  ///< of each session under each setting
+  std::uint32_t seed = 1;
+  bool perMetre = false;  ///< errors at each metre of the way, not at each scan (`errors = metre`)
+  std::vector<BatchSession> sessions;  ///< in the order they were driven
+  std::vector<BatchSetting> settings;
+
+  const BatchSession& session(const std::string& name) const;  ///< \throws Error
+};
+
+/// \brief Reads a batch file.
+/// \param data What stands for `{data}`; empty: not given.
+/// \throws Error naming file, section and key: what ConfigReader refuses, names that are given
+/// twice
+///         or have other characters, sessions and settings that nobody knows, `{data}` without
+///         `--data`, a session localized in the map before it where there is none.
+BatchSpec readBatchSpec(const std::filesystem::path& file, const std::filesystem::path& data = {});
+
+/// \brief A seed from names: the same whatever else is in the batch, and in whatever order.
+/// \param name Of what draws, such as "month_03/run 4".
+std::uint32_t seedOf(std::uint32_t seed, const std::string& name);
+
+}  // namespace polemcl::apps

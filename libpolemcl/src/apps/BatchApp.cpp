@@ -1,0 +1,151 @@
+#include <polemcl/apps/BatchApp.h>
+#include <polemcl/apps/BatchCollect.h>
+#include <polemcl/apps/BatchFolder.h>
+#include <polemcl/apps/BatchPlan.h>
+#include <polemcl/apps/BatchRunner.h>
+#include <polemcl/apps/BatchSlurm.h>
+#include <polemcl/apps/BatchSpec.h>
+#include <polemcl/apps/CommandLine.h>
+#include <polemcl/apps/Progress.h>
+#include <polemcl/core/Types.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+namespace polemcl::apps {
+namespace {
+
+using Failures = std::map<std::string, std::string>;
+
+std::size_t jobsOf(const BatchOptions& options) {
+  if (options.jobs > 0) return options.jobs;
+  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan) {
+  Progress progress("batch", plan.tasks.size(), options.quiet);
+  return runBatch(folder, plan, jobsOf(options),
+                  [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
+                    if (!outcome.failure.empty())
+                      std::cerr << "\rpole-batch: " << task.id << " failed: " << outcome.failure
+                                << "\033[K" << std::endl;
+                    progress.update(now.done + now.failed);
+                  });
+}
+
+Failures runThere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
+                  const std::vector<const BatchTask*>& open) {
+  SlurmOptions slurm;
+  slurm.arguments = options.sbatch;
+  Progress progress("batch on Slurm", open.size(), options.quiet);
+  runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) { progress.update(done); });
+  Failures failures;
+  for (const auto* task : open) {
+    if (folder.isDone(*task)) continue;
+    const std::string reason = folder.failure(task->id);
+    failures[task->id] = reason.empty() ? "did not end; see slurm/" : reason;
+    std::cerr << "pole-batch: " << task->id << " failed: " << failures[task->id] << '\n';
+  }
+  return failures;
+}
+
+/// The command that does it again, without where it lies on this machine.
+std::string commandOf(const BatchOptions& options) {
+  return "pole-batch " + options.batch.filename().string() +
+         (options.data.empty() ? "" : " --data DATA") + " --output OUT";
+}
+
+void printOpen(const BatchPlan& plan, const std::vector<const BatchTask*>& open,
+               const std::vector<std::string>& notes) {
+  for (const auto& note : notes) std::cerr << "pole-batch: " << note << '\n';
+  std::cout << plan.name << ": " << plan.tasks.size() << " tasks, " << open.size() << " to be done"
+            << std::endl;
+}
+
+/// One task of a batch that was begun elsewhere.
+void doTaskOf(const BatchOptions& options, const std::string& id) {
+  const BatchFolder folder(options.output);
+  const BatchPlan plan = readPlan(options.output / "plan.json");
+  const TaskOutcome outcome = runTask(folder, plan.task(id));
+  if (!outcome.failure.empty()) throw Error(id + ": " + outcome.failure);
+}
+
+void printPlan(const BatchPlan& plan) {
+  for (const auto& task : plan.tasks) {
+    std::cout << task.id << '\n';
+    for (const auto& need : task.needs) std::cout << "  after " << need << '\n';
+    for (const auto& command : task.commands) {
+      std::cout << "  $";
+      for (const auto& argument : command) std::cout << ' ' << argument;
+      std::cout << '\n';
+    }
+  }
+}
+
+}  // namespace
+
+void doBatch(const BatchOptions& options) {
+  const BatchSpec spec = readBatchSpec(options.batch, options.data);
+  const BatchPlan plan = planBatch(spec);
+  BatchFolder folder(options.output);
+  folder.take(spec.name, options.resume);
+  folder.store(plan, options.batch);
+  std::vector<std::string> notes;
+  const auto open = openTasks(folder, plan, notes);
+  if (!options.quiet) printOpen(plan, open, notes);
+
+  const auto begin = std::chrono::steady_clock::now();
+  const Failures failures =
+      options.slurm ? runThere(options, folder, plan, open) : runHere(options, folder, plan);
+  folder.sweep();
+  report::BatchTimings timings = collectTimings(folder, plan);
+  if (open.size() == plan.tasks.size()) {
+    timings.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    timings.jobs = options.slurm ? 0 : jobsOf(options);
+  }
+  writeBatchFiles(folder, collectBatch(folder, plan, spec, failures, commandOf(options)), timings);
+  if (!options.quiet)
+    std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
+  if (failures.empty()) return;
+  throw Error(std::to_string(failures.size()) + " of " + std::to_string(plan.tasks.size()) +
+              " tasks failed, the first: " + failures.begin()->first + ": " +
+              failures.begin()->second + "; all others are done, --resume tries these again");
+}
+
+int batchMain(int argc, const char* const* argv) {
+  CommandLine line("pole-batch",
+                   "Sessions x settings x runs: imports, maps, localizes, and reports on it.");
+  BatchOptions options;
+  std::string task;
+  bool dry = false;
+  auto& cli = line.cli();
+  auto* batch = cli.add_option("batch", options.batch, "Batch (.ini), see config/batches/");
+  cli.add_option("--output", options.output, "Folder of the batch: intermediate files, report");
+  cli.add_option("--data", options.data, "Folder of the dataset: {data} in the batch");
+  cli.add_option("--jobs", options.jobs, "Tasks at the same time; 0: one for each core")
+      ->check(CLI::Range(0, 4096));
+  cli.add_flag("--resume", options.resume, "Go on with the batch that is in the folder");
+  auto* slurm = cli.add_flag("--slurm", options.slurm, "On a cluster, as job arrays");
+  cli.add_option("--sbatch", options.sbatch, "One more argument for sbatch; may be repeated")
+      ->type_name("ARGUMENT")
+      ->take_all()
+      ->expected(1)
+      ->needs(slurm);
+  cli.add_flag("--dry-run", dry, "Only print the tasks and their commands");
+  auto* one = cli.add_option("--task", task, "Do this one task of the batch in --output");
+  batch->excludes(one);
+  cli.parse_complete_callback([&] {
+    if (task.empty() && batch->count() == 0) throw CLI::RequiredError("batch");
+    if (!dry && options.output.empty()) throw CLI::RequiredError("--output");
+  });
+  return line.run(argc, argv, [&] {
+    options.quiet = line.quiet();
+    if (!task.empty()) return doTaskOf(options, task);
+    if (dry) return printPlan(planBatch(readBatchSpec(options.batch, options.data)));
+    doBatch(options);
+  });
+}
+
+}  // namespace polemcl::apps

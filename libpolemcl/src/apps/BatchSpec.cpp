@@ -1,0 +1,240 @@
+#include <polemcl/apps/BatchSpec.h>
+#include <polemcl/mrpt/Config.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <sstream>
+
+namespace polemcl::apps {
+namespace fs = std::filesystem;
+namespace {
+
+const std::vector<std::string> sources{"simulated", "poles", "scans",  "folder", "kitti-odometry",
+                                       "kitti-raw", "nclt",  "mulran", "pcd"};
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> all;
+  for (std::string word; stream >> word;) all.push_back(word);
+  return all;
+}
+
+/// Names become names of files and jobs.
+void requireName(const std::string& name, const std::string& where) {
+  const bool good = !name.empty() && name.size() <= 64 && name.front() != '.' &&
+                    std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                      return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+                    });
+  if (!good)
+    throw Error(where + ": '" + name +
+                "' is no name; allowed are up to 64 letters, digits, _ - and ., no . in front");
+}
+
+void requireNames(const std::vector<std::string>& names, const std::string& where) {
+  if (names.empty()) throw Error(where + ": at least one name is needed");
+  std::set<std::string> seen;
+  for (const auto& name : names) {
+    requireName(name, where);
+    if (!seen.insert(name).second) throw Error(where + ": '" + name + "' is given twice");
+  }
+}
+
+/// What the values of a session or setting may refer to.
+class Placeholders {
+ public:
+  Placeholders(const fs::path& file, fs::path data)
+      : m_file(file.string()),
+        m_folder(fs::absolute(file).parent_path()),
+        m_data(data.empty() ? data : fs::absolute(data)) {}
+
+  std::string filled(std::string text, const std::string& session) const {
+    if (text.find("{data}") != std::string::npos && m_data.empty())
+      throw Error(m_file + ": '" + text +
+                  "' needs the folder of the dataset: give --data DIR (see share/doc/batch.md)");
+    replace(text, "{data}", m_data.string());
+    replace(text, "{session}", session);
+    return text;
+  }
+  std::string path(const std::string& text, const std::string& session) const {
+    const std::string full = filled(text, session);
+    return full.empty() ? full : (m_folder / full).lexically_normal().string();
+  }
+
+ private:
+  static void replace(std::string& text, const std::string& what, const std::string& with) {
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
+      text.replace(at, what.size(), with);
+  }
+  std::string m_file;
+  fs::path m_folder, m_data;
+};
+
+/// Texts of a session as they stand in the file.
+struct SessionText {
+  BatchSession session;
+  std::string set;
+};
+
+void bindSession(Binder& b, SessionText& text) {
+  BatchSession& s = text.session;
+  b.choice("source", s.source, sources, "where the sessions come from");
+  b.text("input", s.input, "folder, rawlog or INI, relative to this file");
+  b.text("date", s.date, "YYYY-MM-DD, where the times of the scans do not tell");
+  b.text("set", text.set, "settings of a simulated session, section.key=value …");
+  b.integer("every", s.every, Range::atLeast(1), "", "take every N-th scan");
+  b.integer("offset", s.offset, Range::atLeast(0), "", "first scan taken");
+  b.number("odometry_noise", s.odometryNoise, Range::between(0, 1), "",
+           "share of the true motion; 0: the dataset's own odometry");
+  b.text("sensor_pose", s.sensorPose, "of pole-import");
+  b.text("poses", s.poses, "TUM file of true poses instead of the dataset's");
+  b.choice("poses_of", s.posesOf, {"robot", "sensor"}, "what has these poses");
+  b.text("calib", s.calib, "folder of KITTI's calibration");
+}
+
+BatchSession finished(const SessionText& text, const std::string& name, const Placeholders& fill,
+                      const std::string& where) {
+  BatchSession s = text.session;
+  s.name = name;
+  s.input = fill.path(s.input, name);
+  s.poses = fill.path(s.poses, name);
+  s.calib = fill.path(s.calib, name);
+  s.date = fill.filled(s.date, name);
+  s.set = words(fill.filled(text.set, name));
+  if (s.input.empty()) throw Error(where + "session " + name + ": input is missing");
+  if (s.source != "simulated" && !s.set.empty())
+    throw Error(where + "session " + name + ": set is for simulated sessions only");
+  return s;
+}
+
+std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders& fill,
+                                       const std::string& where) {
+  SessionText common;
+  common.session.source = "folder";
+  std::string text;
+  reader.section("sessions", "What all sessions have in common");
+  reader.text("names", text, "in the order they were driven");
+  bindSession(reader, common);
+  const auto names = words(text);
+  requireNames(names, where + "[sessions] names");
+  std::vector<BatchSession> sessions;
+  for (const auto& name : names) {
+    SessionText own = common;
+    reader.section("session " + name, "What is different");
+    bindSession(reader, own);
+    sessions.push_back(finished(own, name, fill, where));
+  }
+  return sessions;
+}
+
+/// `all`, `first`, or names; always in the order of the sessions.
+std::vector<std::string> chosen(const std::string& text, const std::vector<BatchSession>& sessions,
+                                const std::string& where) {
+  if (text == "first") return {sessions.front().name};
+  std::vector<std::string> names = words(text);
+  if (text == "all") {
+    names.clear();
+    for (const auto& session : sessions) names.push_back(session.name);
+  }
+  requireNames(names, where);
+  const auto placeOf = [&](const std::string& name) {
+    const auto found = std::find_if(sessions.begin(), sessions.end(),
+                                    [&](const BatchSession& s) { return s.name == name; });
+    if (found == sessions.end())
+      throw Error(where + ": no session '" + name + "' in [sessions] names; allowed are these, " +
+                  "all, first");
+    return found;
+  };
+  std::sort(names.begin(), names.end(),
+            [&](const std::string& a, const std::string& b) { return placeOf(a) < placeOf(b); });
+  if (names.size() == 1) placeOf(names.front());
+  return names;
+}
+
+/// Each session that is localized in the map before it needs a map session before it.
+void requireMaps(const BatchSetting& setting, const std::vector<BatchSession>& sessions,
+                 const std::string& where) {
+  if (setting.map == MapTime::finished) return;
+  for (const auto& session : sessions) {
+    if (session.name == setting.mapSessions.front()) {
+      const auto& s = setting.sessions;
+      if (std::find(s.begin(), s.end(), session.name) == s.end()) return;
+    }
+    const auto& s = setting.sessions;
+    if (std::find(s.begin(), s.end(), session.name) != s.end())
+      throw Error(where + ": session " + session.name +
+                  " has no map session before it; leave it out of sessions, or set map = finished");
+  }
+}
+
+BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Placeholders& fill,
+                         const std::vector<BatchSession>& sessions, const std::string& where) {
+  BatchSetting setting;
+  setting.name = name;
+  std::string set, mapSessions = "first", localized = "all";
+  const std::string here = where + "[setting " + name + "] ";
+  reader.section("setting " + name, "One way to map and to localize");
+  reader.text("title", setting.title, "a sentence for the report");
+  reader.text("config", setting.config, "INI file, relative to this file");
+  reader.text("set", set, "settings in place of those of config, section.key=value …");
+  reader.text("map_sessions", mapSessions, "names, all, or first");
+  reader.text("sessions", localized, "those localized: names, or all");
+  reader.choice<MapProtocol>("maps", setting.protocol,
+                             {{MapProtocol::together, "together"}, {MapProtocol::upkeep, "upkeep"}},
+                             "how they come about");
+  reader.choice<MapTime>("map", setting.map,
+                         {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
+                         "the one that sessions are localized in");
+  if (setting.config.empty()) throw Error(here + "config is missing");
+  setting.config = fill.path(setting.config, "");
+  setting.set = words(set);
+  setting.mapSessions = chosen(mapSessions, sessions, here + "map_sessions");
+  setting.sessions = chosen(localized, sessions, here + "sessions");
+  return setting;
+}
+
+}  // namespace
+
+const BatchSession& BatchSpec::session(const std::string& wanted) const {
+  for (const auto& session : sessions)
+    if (session.name == wanted) return session;
+  throw Error("no session '" + wanted + "' in batch " + name);
+}
+
+BatchSpec readBatchSpec(const fs::path& file, const fs::path& data) {
+  const ConfigFile source = ConfigFile::read(file.string());
+  const std::string where = file.string() + ": ";
+  const Placeholders fill(file, data);
+  ConfigReader reader(source);
+  BatchSpec spec;
+  spec.name = file.stem().string();
+  std::string settings;
+  reader.section("batch", "What is done");
+  reader.text("name", spec.name, "of the batch; the file's unless given");
+  reader.text("title", spec.title, "for the report");
+  reader.choice("published", spec.published, {"none", "nclt", "kitti-0009", "mulran"},
+                "published figures shown beside");
+  reader.integer("runs", spec.runs, Range::between(1, 10000), "", "of each session and setting");
+  reader.integer("seed", spec.seed, Range::atLeast(0), "", "of all random numbers");
+  reader.choice<bool>("errors", spec.perMetre, {{false, "scan"}, {true, "metre"}},
+                      "where they are taken");
+  reader.text("settings", settings, "names; each has a section of its own");
+  requireName(spec.name, where + "[batch] name");
+  requireNames(words(settings), where + "[batch] settings");
+  spec.sessions = readSessions(reader, fill, where);
+  for (const auto& name : words(settings))
+    spec.settings.push_back(readSetting(reader, name, fill, spec.sessions, where));
+  reader.finish();
+  for (const auto& setting : spec.settings)
+    requireMaps(setting, spec.sessions, where + "[setting " + setting.name + "] sessions");
+  return spec;
+}
+
+std::uint32_t seedOf(std::uint32_t seed, const std::string& name) {
+  const std::string text = std::to_string(seed) + "/" + name;
+  return static_cast<std::uint32_t>(
+      ::crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
+}
+
+}  // namespace polemcl::apps

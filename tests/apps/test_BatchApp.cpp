@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+#include <polemcl/apps/BatchApp.h>
+#include <polemcl/apps/BatchFolder.h>
+#include <polemcl/report/BatchFiles.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <thread>
+
+#include "BatchFiles.h"
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+const std::string program = std::string(POLEMCL_BIN_DIR) + "/pole-batch";
+
+/// A street's batch, done once for all tests.
+class BatchApp : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    s_folder = new TempFolder;
+    writeStreetBatch(*s_folder);
+    BatchOptions options = optionsFor("done");
+    options.jobs = 2;
+    doBatch(options);
+  }
+  static void TearDownTestSuite() {
+    delete s_folder;
+    s_folder = nullptr;
+  }
+
+  static BatchOptions optionsFor(const std::string& output) {
+    BatchOptions options;
+    options.batch = *s_folder / "street-batch.ini";
+    options.output = *s_folder / output;
+    options.quiet = true;
+    return options;
+  }
+  /// All that a batch leaves but for what may differ: times, logs, locks.
+  static std::map<std::string, std::string> left(const std::string& output) {
+    auto all = contents(*s_folder / output, "times/");
+    for (auto file = all.begin(); file != all.end();)
+      file = file->first.rfind("logs/", 0) == 0 || file->first.rfind("slurm/", 0) == 0 ||
+                     file->first == ".lock" || file->first == "report.html"
+                 ? all.erase(file)
+                 : std::next(file);
+    return all;
+  }
+
+  static TempFolder* s_folder;
+};
+
+TempFolder* BatchApp::s_folder = nullptr;
+
+}  // namespace
+
+TEST_F(BatchApp, ReportsAllRuns) {
+  const auto results = report::readResultsJson(*s_folder / "done/results.json");
+  EXPECT_EQ(results.name, "street-batch");
+  ASSERT_EQ(results.settings.size(), 2u);
+  ASSERT_EQ(results.sessions.size(), 3u);
+  EXPECT_TRUE(results.failures.empty());
+  EXPECT_EQ(results.sessions[1].date, "2026-02-01");
+  EXPECT_NEAR(results.sessions[0].length, 120, 5);  // in one lane of a bent street
+  for (std::size_t setting : {0, 1})
+    for (std::size_t session : {1, 2}) {
+      const auto* result = results.find(setting, session);
+      ASSERT_NE(result, nullptr);
+      ASSERT_EQ(result->runs.size(), 2u);
+      EXPECT_GT(result->mapPoles, 10u);
+      EXPECT_GT(result->plots.truth.size(), 1u);
+      for (const auto& run : result->runs) {
+        EXPECT_EQ(run.failure, "");
+        EXPECT_GT(run.errors.posMean, 0);
+        EXPECT_LT(run.errors.posMean, 0.1);
+        EXPECT_EQ(run.health.ok + run.health.degraded + run.health.lost, 1);
+      }
+      EXPECT_NE(result->runs[0].seed, result->runs[1].seed);
+      EXPECT_EQ(result->plots.positionErrors.total(),
+                result->runs[0].errors.poses + result->runs[1].errors.poses);
+    }
+  EXPECT_TRUE(results.find(0, 0)->runs.empty());  // the map's own session
+  for (const char* file : {"report.html", "runs.csv", "sessions.csv", "table.tex"})
+    EXPECT_GT(fs::file_size(*s_folder / "done" / file), 100u) << file;
+}
+
+TEST_F(BatchApp, FiguresAreThoseOfTheRuns) {
+  const auto results = report::readResultsJson(*s_folder / "done/results.json");
+  const std::string summary = readText(*s_folder / "done/work/run.kept.s2.01/out/summary.json");
+  const auto at = summary.find("\"pos_mean\": ");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_NEAR(results.find(0, 2)->runs[1].errors.posMean, std::stod(summary.substr(at + 12)), 1e-6);
+}
+
+TEST_F(BatchApp, BytesDependOnNothingElse) {
+  BatchOptions options = optionsFor("other");
+  options.jobs = 3;
+  doBatch(options);
+  EXPECT_EQ(left("other"), left("done"));
+}
+
+TEST_F(BatchApp, GoesOnAfterItWasKilled) {
+  const fs::path output = *s_folder / "killed";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::setpgid(0, 0);
+    ::execl(program.c_str(), "pole-batch", (*s_folder / "street-batch.ini").c_str(), "--output",
+            output.c_str(), "--jobs", "1", "--quiet", nullptr);
+    ::_exit(127);
+  }
+  const auto doneTasks = [&] {
+    std::size_t done = 0;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(output / "work", none))
+      done += entry.path().extension() != ".part";
+    return done;
+  };
+  while (doneTasks() < 4) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ::kill(-child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_FALSE(fs::exists(output / "results.json"));
+  const auto before = contents(output / "work", ".part");
+  ASSERT_LT(before.size(), contents(*s_folder / "done/work").size());
+  BatchOptions options = optionsFor("killed");
+  EXPECT_NE(messageOf([&] { doBatch(options); }).find("--resume"), std::string::npos);
+  options.resume = true;
+  doBatch(options);
+  EXPECT_EQ(left("killed"), left("done"));
+}
+
+TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
+  std::string text = readText(*s_folder / "street-batch.ini");
+  const std::string good = "set = world.day=2";
+  text.replace(text.find(good), good.size(), "source = poles\ninput = broken.rawlog");
+  writeText(*s_folder / "broken.rawlog", "nothing");
+  writeText(*s_folder / "broken.tum", "0 0 0 0 0 0 0 1\n");
+  writeText(*s_folder / "broken.ini", text);
+  BatchOptions options = optionsFor("broken");
+  options.batch = *s_folder / "broken.ini";
+  testing::internal::CaptureStderr();
+  const std::string message = messageOf([&] { doBatch(options); });
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(message.find("4 of 14 tasks failed"), std::string::npos) << message;
+  EXPECT_NE(said.find("run.once.s2.00 failed: "), std::string::npos) << said;
+  const auto results = report::readResultsJson(*s_folder / "broken/results.json");
+  EXPECT_EQ(results.failures.size(), 4u);
+  EXPECT_NE(results.find(1, 2)->runs[0].failure, "");
+  EXPECT_EQ(results.find(1, 1)->runs[0].failure, "");
+}
+
+TEST_F(BatchApp, RefusesWrongUsage) {
+  expectUsageError(runProgram(batchMain, {}));
+  expectUsageError(runProgram(batchMain, {"a.ini"}));
+  expectUsageError(runProgram(batchMain, {"a.ini", "--output", "o", "--task", "x"}));
+  expectUsageError(runProgram(batchMain, {"a.ini", "--output", "o", "--sbatch", "x"}));
+  expectFailure(runProgram(batchMain, {"/not/there.ini", "--output", "o"}), {"/not/there.ini"});
+  expectFailure(runProgram(batchMain, {"--output", (*s_folder / "done").string(), "--task", "x"}),
+                {"no task 'x'"});
+}
+
+TEST_F(BatchApp, PrintsItsPlan) {
+  const auto outcome =
+      runProgram(batchMain, {(*s_folder / "street-batch.ini").string(), "--dry-run"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("run.once.s2.01\n  after poles.s2\n  after map.once.s0\n  $ "
+                             "pole-localize"),
+            std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(BatchApp, AFullDiskLosesNothing) {
+  // Files of at most 64 kB stand in for it: rawlogs are larger, and their writers are told so.
+  const fs::path output = *s_folder / "full";
+  const std::string run = " \"" + program + "\" \"" + (*s_folder / "street-batch.ini").string() +
+                          "\" --quiet --output \"" + output.string() + "\" 2>/dev/null";
+  EXPECT_NE(std::system(("trap '' XFSZ; ulimit -f 64;" + run).c_str()), 0);
+  for (const auto& entry : fs::directory_iterator(output / "work"))
+    EXPECT_TRUE(fs::exists(entry.path() / "done.json")) << entry.path();
+  EXPECT_EQ(std::system((run + " --resume").c_str()), 0);
+  EXPECT_EQ(left("full"), left("done"));
+}

@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+#include <polemcl/apps/BatchSpec.h>
+
+#include "BatchFiles.h"
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+BatchSpec read(const std::string& text, const fs::path& data = {}) {
+  const TempFolder folder;
+  writeText(folder / "a.ini", text);
+  return readBatchSpec(folder / "a.ini", data);
+}
+
+std::string refusal(const std::string& text) {
+  return messageOf([&] { read(text); });
+}
+
+const std::string sessions = "[sessions]\nnames = a b c\ninput = x\n";
+const std::string setting = "[setting one]\nconfig = c.ini\n";
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+}  // namespace
+
+TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
+  const BatchSpec spec = read(
+      "[batch]\nname = n-1\ntitle = A b\nruns = 3\nseed = 9\nerrors = metre\nsettings = one\n"
+      "[sessions]\nnames = a b\nsource = nclt\ninput = {data}/s/{session}\ndate = "
+      "2012-01-0{session}\n"
+      "odometry_noise = 0.02\n"
+      "[session b]\ninput = other/{session}.ini\nsource = simulated\nset = world.day=3 "
+      "world.seed=4\n"
+      "[setting one]\nconfig = c.ini\nset = filter.particles=5\nsessions = b\nmaps = upkeep\n",
+      "/d");
+  EXPECT_EQ(spec.name, "n-1");
+  EXPECT_EQ(spec.runs, 3);
+  EXPECT_EQ(spec.seed, 9u);
+  EXPECT_TRUE(spec.perMetre);
+  ASSERT_EQ(spec.sessions.size(), 2u);
+  EXPECT_EQ(spec.session("a").input, "/d/s/a");
+  EXPECT_EQ(spec.session("a").source, "nclt");
+  EXPECT_EQ(spec.session("a").date, "2012-01-0a");
+  EXPECT_EQ(spec.session("b").odometryNoise, 0.02);
+  EXPECT_EQ(spec.session("b").set, (std::vector<std::string>{"world.day=3", "world.seed=4"}));
+  EXPECT_EQ(fs::path(spec.session("b").input).filename(), "b.ini");
+  EXPECT_EQ(fs::path(spec.session("b").input).parent_path().filename(), "other");
+  ASSERT_EQ(spec.settings.size(), 1u);
+  EXPECT_EQ(spec.settings[0].mapSessions, std::vector<std::string>{"a"});
+  EXPECT_EQ(spec.settings[0].sessions, std::vector<std::string>{"b"});
+  EXPECT_EQ(spec.settings[0].protocol, MapProtocol::upkeep);
+  EXPECT_EQ(spec.settings[0].map, MapTime::before);
+}
+
+TEST(BatchSpec, SessionsOfASettingComeInTheOrderOfTheBatch) {
+  const auto spec = read("[batch]\nsettings = one\n" + sessions + setting +
+                         "map_sessions = b a\nsessions = c b\n");
+  EXPECT_EQ(spec.settings[0].mapSessions, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(spec.settings[0].sessions, (std::vector<std::string>{"b", "c"}));
+}
+
+TEST(BatchSpec, NamesWhatIsWrong) {
+  const std::string head = "[batch]\nsettings = one\n";
+  EXPECT_HAS(refusal("[batch]\nsettings =\n" + sessions), "[batch] settings: at least one name");
+  EXPECT_HAS(refusal("[batch]\nsettings = one one\n" + sessions + setting), "'one' is given twice");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a a\ninput = x\n" + setting),
+             "'a' is given twice");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a/b\ninput = x\n" + setting), "'a/b' is no name");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\n" + setting), "session a: input is missing");
+  EXPECT_HAS(refusal(head + sessions), "config is missing");
+  EXPECT_HAS(refusal(head + sessions + setting + "sessions = d\n"), "no session 'd'");
+  EXPECT_HAS(refusal(head + sessions + setting + "sessions = b d\n"), "no session 'd'");
+  EXPECT_HAS(refusal(head + sessions + setting + "[session d]\ninput = y\n"),
+             "[session d] is not known");
+  EXPECT_HAS(refusal(head + sessions + setting + "mapps = upkeep\n"), "mapps");
+  EXPECT_HAS(refusal(head + sessions + setting + "[setting two]\nconfig = c\n"),
+             "[setting two] is not known");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\ninput = {data}/x\n" + setting), "--data");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a b\ninput = x\nset = world.day=1\n" + setting),
+             "simulated");
+}
+
+TEST(BatchSpec, ASessionInTheMapBeforeItNeedsOne) {
+  const std::string head = "[batch]\nsettings = one\n" + sessions + setting;
+  EXPECT_HAS(refusal(head + "map_sessions = b\nsessions = all\n"),
+             "session a has no map session before it");
+  EXPECT_HAS(refusal(head + "map_sessions = b\nsessions = b c\n"),
+             "session b has no map session before it");
+  EXPECT_NO_THROW(read(head + "map_sessions = b\nsessions = c\n"));
+  EXPECT_NO_THROW(read(head + "map_sessions = b\nsessions = all\nmap = finished\n"));
+}
+
+TEST(BatchSpec, SeedsComeFromNamesAlone) {
+  EXPECT_EQ(seedOf(1, "a/run 0"), seedOf(1, "a/run 0"));
+  // CRC-32 of "1/a/run 0", computed with another program.
+  EXPECT_EQ(seedOf(1, "a/run 0"), 0xac95152u);
+  EXPECT_NE(seedOf(1, "a/run 0"), seedOf(1, "a/run 1"));
+  EXPECT_NE(seedOf(1, "a/run 0"), seedOf(2, "a/run 0"));
+}
