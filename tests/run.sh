@@ -1,7 +1,8 @@
 #!/bin/sh
 # Installs what is missing, builds, and runs every test.
 # Usage: tests/run.sh [--full]
-#   --full  then builds with the address and undefined-behaviour sanitizers and runs the tests again
+#   --full  then tries batches on a Slurm cluster of its own (as root), builds with the address and
+#           undefined-behaviour sanitizers and runs the tests again
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
@@ -11,7 +12,7 @@ case "$#:${1-}" in
   0:) ;;
   1:--full) full=yes ;;
   1:-h | 1:--help)
-    sed -n '2,5s/^# //p' "$0"
+    sed -n '2,6s/^# //p' "$0"
     exit 0
     ;;
   *)
@@ -39,6 +40,8 @@ run_tests() {
 run_tests "$top/build"
 
 if [ "$full" = yes ]; then
+  "$top/share/setup/install.sh" full
+  "$top/tests/slurm/run.sh"
   "$top/share/setup/build.sh" sanitize all
   run_tests "$top/build-sanitize"
 fi

@@ -1,8 +1,11 @@
 #!/bin/sh
 # Installs the packages of packages.txt that are missing; does nothing when none is.
+# Usage: install.sh [full]   full: also what only tests/run.sh --full needs, the lines "#full NAME"
 # Needs Debian 12 (or another system with these packages) and root, or sudo.
 set -eu
 list=$(dirname "$0")/packages.txt
+wanted='s/#.*//'
+[ "${1-}" != full ] || wanted="s/^#full //;$wanted"
 
 fail() {
   echo "install.sh: $1" >&2
@@ -16,7 +19,7 @@ done
 
 missing=
 # shellcheck disable=SC2013 # words, one or none a line
-for package in $(sed 's/#.*//' "$list"); do
+for package in $(sed "$wanted" "$list"); do
   status=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null) || status=
   case $status in
     ?i\ *) ;;
