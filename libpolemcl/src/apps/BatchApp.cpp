@@ -28,11 +28,16 @@ Failures runHere(const BatchOptions& options, const BatchFolder& folder, const B
   Progress progress("batch", plan.tasks.size(), options.quiet);
   return runBatch(folder, plan, jobsOf(options),
                   [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
-                    if (!outcome.failure.empty())
-                      std::cerr << "\rpole-batch: " << task.id << " failed: " << outcome.failure
-                                << "\033[K" << std::endl;
+                    if (!outcome.failure.empty() && !outcome.blocked)
+                      progress.say("pole-batch: " + task.id + " failed: " + outcome.failure);
                     progress.update(now.done + now.failed);
                   });
+}
+
+/// What it needs is not done: not its own failure.
+bool isBlocked(const BatchFolder& folder, const BatchPlan& plan, const BatchTask& task) {
+  return std::any_of(task.needs.begin(), task.needs.end(),
+                     [&](const std::string& need) { return !folder.isDone(plan.task(need)); });
 }
 
 Failures runThere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
@@ -43,10 +48,10 @@ Failures runThere(const BatchOptions& options, const BatchFolder& folder, const 
   runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) { progress.update(done); });
   Failures failures;
   for (const auto* task : open) {
-    if (folder.isDone(*task)) continue;
+    if (folder.isDone(*task) || isBlocked(folder, plan, *task)) continue;
     const std::string reason = folder.failure(task->id);
     failures[task->id] = reason.empty() ? "did not end; see slurm/" : reason;
-    std::cerr << "pole-batch: " << task->id << " failed: " << failures[task->id] << '\n';
+    progress.say("pole-batch: " + task->id + " failed: " + failures[task->id]);
   }
   return failures;
 }
@@ -109,9 +114,13 @@ void doBatch(const BatchOptions& options) {
   if (!options.quiet)
     std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
   if (failures.empty()) return;
+  const auto undone = static_cast<std::size_t>(
+      std::count_if(plan.tasks.begin(), plan.tasks.end(),
+                    [&](const BatchTask& task) { return !folder.isDone(task); }));
   throw Error(std::to_string(failures.size()) + " of " + std::to_string(plan.tasks.size()) +
-              " tasks failed, the first: " + failures.begin()->first + ": " +
-              failures.begin()->second + "; all others are done, --resume tries these again");
+              " tasks failed (" + failures.begin()->first + ": " + failures.begin()->second +
+              "), " + std::to_string(undone - failures.size()) +
+              " more need them; all others are done, --resume tries these again");
 }
 
 int batchMain(int argc, const char* const* argv) {

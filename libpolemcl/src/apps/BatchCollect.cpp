@@ -75,9 +75,8 @@ class Collector {
   report::BatchResults collect() {
     addFacts();
     for (const auto& cell : m_plan.cells) addCell(cell);
-    for (const auto& task : m_plan.tasks)
-      if (const std::string reason = failureOf(task.id); !reason.empty())
-        m_results.failures.push_back({task.id, reason, "logs/" + task.id + ".log"});
+    for (const auto& [task, reason] : m_failures)
+      m_results.failures.push_back({task, reason, "logs/" + task + ".log"});
     return std::move(m_results);
   }
 
@@ -118,7 +117,7 @@ class Collector {
   std::string failureOf(const std::string& task) const {
     const auto known = m_failures.find(task);
     if (known != m_failures.end()) return known->second;
-    return isDone(task) ? "" : "not done";
+    return isDone(task) ? "" : "not done, as what it needs failed";
   }
 
   /// True poses of a session; null while its poles are not done.

@@ -113,6 +113,8 @@ void doTask(const BatchFolder& folder, const BatchTask& task) {
   const fs::path log = fs::absolute(folder.log(task.id));
   fs::remove(log, none);
   const Staging staging(folder, task);
+  for (const auto& output : task.outputs)
+    fs::create_directories((staging.path() / output).parent_path());
   for (const auto& command : task.commands) runCommand(command, staging.path(), log);
   folder.commit(task, staging.path());
 }
@@ -141,13 +143,13 @@ class Queue {
       const std::string blocked = blockedBy(*task);
       lock.unlock();
       const TaskOutcome outcome =
-          blocked.empty() ? runTask(m_folder, *task) : TaskOutcome{blocked, 0};
+          blocked.empty() ? runTask(m_folder, *task) : TaskOutcome{blocked, 0, true};
       lock.lock();
       finish(*task, outcome);
     }
   }
 
-  std::map<std::string, std::string> failures() const { return m_failures; }
+  const std::map<std::string, std::string>& failures() const { return m_failures; }
 
  private:
   const BatchTask* takeReady() {
@@ -164,7 +166,7 @@ class Queue {
 
   std::string blockedBy(const BatchTask& task) const {
     for (const auto& need : task.needs)
-      if (m_failures.count(need)) return "not done, as it needs " + need + ", which failed";
+      if (m_failed.count(need)) return "needs " + need + ", which is not done";
     return {};
   }
 
@@ -173,7 +175,8 @@ class Queue {
     if (outcome.failure.empty()) {
       ++m_progress.done;
     } else {
-      m_failures[task.id] = outcome.failure;
+      if (!outcome.blocked) m_failures[task.id] = outcome.failure;
+      m_failed.insert(task.id);
       ++m_progress.failed;
     }
     if (m_report) m_report(task, outcome, m_progress);
@@ -183,7 +186,8 @@ class Queue {
   const BatchFolder& m_folder;
   std::vector<const BatchTask*> m_waiting;
   const Report& m_report;
-  std::set<std::string> m_open;  ///< ids of tasks that are not done yet
+  std::set<std::string> m_open;    ///< ids of tasks that are not done yet
+  std::set<std::string> m_failed;  ///< blocked ones too
   std::map<std::string, std::string> m_failures;
   BatchProgress m_progress;
   std::mutex m_mutex;

@@ -37,6 +37,11 @@ void Progress::update(std::size_t done) {
   std::cerr << '\r' << progressLine(m_label, done, m_total, seconds) << "\033[K" << std::flush;
 }
 
+void Progress::say(const std::string& line) {
+  std::cerr << (m_drawn ? "\r\033[K" : "") << line << std::endl;
+  m_drawn = false;
+}
+
 std::string progressLine(const std::string& label, std::size_t done, std::size_t total,
                          double seconds) {
   std::string line = label + ' ';

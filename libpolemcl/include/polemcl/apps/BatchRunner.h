@@ -17,8 +17,9 @@ namespace polemcl::apps {
 
 /// \brief How a task ended.
 struct TaskOutcome {
-  std::string failure;  ///< why it failed, one line; empty: it is done
-  double seconds = 0;   ///< it took; 0: nothing was to do
+  std::string failure;   ///< why it failed, one line; empty: it is done
+  double seconds = 0;    ///< it took; 0: nothing was to do
+  bool blocked = false;  ///< it was not tried, as it needs one that failed
 };
 
 /// \brief Folder of the programs: POLEMCL_BIN, or where this program lies.
@@ -29,13 +30,14 @@ std::filesystem::path programFolder();
 TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task);
 
 struct BatchProgress {
-  std::size_t done = 0, failed = 0, all = 0;  ///< tasks; those that were done before count as done
+  /// Tasks; those that were done before count as done, blocked ones as failed.
+  std::size_t done = 0, failed = 0, all = 0;
 };
 
 /// \brief Does all tasks that are open, `jobs` at a time. A task that needs one that failed fails
 /// as well; all others are done. Tasks whose outputs were damaged are done again, and so are those
 /// that need them. \param jobs At least 1. \param report Called after each task, one call at a
-/// time, with the task and its outcome. \return The failures, by task.
+/// time, with the task and its outcome. \return The failures by task, blocked ones left out.
 std::map<std::string, std::string> runBatch(
     const BatchFolder& folder, const BatchPlan& plan, std::size_t jobs,
     const std::function<void(const BatchTask&, const TaskOutcome&, const BatchProgress&)>& report);

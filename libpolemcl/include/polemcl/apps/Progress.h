@@ -25,6 +25,9 @@ class Progress {
   void update(std::size_t done);
   /// \brief The same where the total becomes known on the way.
   void update(std::size_t done, std::size_t total);
+  /// \brief A line of its own on stderr, quiet or not; the bar, if there is one, comes again after
+  /// it.
+  void say(const std::string& line);
 
  private:
   using Clock = std::chrono::steady_clock;
