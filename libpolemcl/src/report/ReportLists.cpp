@@ -1,0 +1,191 @@
+#include <polemcl/io/TextFile.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "FigureText.h"
+#include "Html.h"
+#include "ReportTables.h"
+
+namespace polemcl::report {
+namespace {
+
+std::string number(double value) {
+  return figureText(value, 3);
+}
+
+std::string percent(double share) {
+  return figureText(100 * share, 1);
+}
+
+std::vector<std::string> runCells(const BatchRun& run, const std::string& session, RunState state) {
+  const ErrorFigures& errors = run.errors;
+  return {session + ", " + std::to_string(run.run),
+          std::to_string(run.seed),
+          number(errors.posMean),
+          number(errors.posRmse),
+          number(errors.posMax),
+          number(errors.latMean),
+          number(errors.lonMean),
+          number(errors.angMeanDeg),
+          number(errors.angRmseDeg),
+          countText(errors.poses),
+          percent(run.health.ok),
+          percent(run.health.degraded),
+          percent(run.health.lost),
+          run.health.firstPoseScan ? std::to_string(*run.health.firstPoseScan) : enDash,
+          std::to_string(run.health.relocalizations),
+          name(state)};
+}
+
+std::string failedTasks(const std::vector<FailedTask>& failures) {
+  if (failures.empty()) return "";
+  HtmlTable table("Tasks that failed.");
+  table.head({{"Task"}, {"Reason"}, {"Log"}});
+  for (const FailedTask& task : failures)
+    table.row({escaped(task.task), escaped(task.reason),
+               task.log.empty() ? enDash : element("code", escaped(task.log))});
+  return table.str("words");
+}
+
+/// "section.key" -> value of an INI text, without comments; in the order of the keys.
+std::map<std::string, std::string> valuesOf(const std::string& ini) {
+  std::map<std::string, std::string> values;
+  std::string section;
+  for (std::size_t begin = 0; begin < ini.size();) {
+    const std::size_t end = std::min(ini.find('\n', begin), ini.size());
+    const std::string line = ini.substr(begin, end - begin);
+    begin = end + 1;
+    const std::string text(io::trimmed(line.substr(0, line.find_first_of(";#"))));
+    const std::size_t equals = text.find('=');
+    if (!text.empty() && text.front() == '[' && text.back() == ']')
+      section = text.substr(1, text.size() - 2) + '.';
+    else if (equals != std::string::npos)
+      values[section + std::string(io::trimmed(text.substr(0, equals)))] =
+          std::string(io::trimmed(text.substr(equals + 1)));
+  }
+  return values;
+}
+
+}  // namespace
+
+std::string runsTable(const BatchResults& results, std::size_t setting) {
+  HtmlTable table("Setting " + results.settings[setting].name + ": every run.");
+  table.head({{"Session, run"},
+              {"Seed"},
+              {"Δ<sub>pos</sub> (m)"},
+              {"RMSE<sub>pos</sub> (m)"},
+              {"Largest (m)"},
+              {"Δ<sub>lat</sub> (m)"},
+              {"Δ<sub>lon</sub> (m)"},
+              {"Δ<sub>ang</sub> (°)"},
+              {"RMSE<sub>ang</sub> (°)"},
+              {"Poses"},
+              {"ok (%)"},
+              {"degraded (%)"},
+              {"lost (%)"},
+              {"First pose at scan"},
+              {"Relocalizations"},
+              {"State"}});
+  bool any = false;
+  for (std::size_t k = 0; k < results.sessions.size(); ++k)
+    if (const SessionResult* result = results.find(setting, k))
+      for (const BatchRun& run : result->runs) {
+        const RunState state = stateOf(run, results.lostBound);
+        table.row(runCells(run, escaped(results.sessions[k].name), state),
+                  state == RunState::ok ? "" : "bad");
+        any = true;
+      }
+  return any ? table.str() : "";
+}
+
+std::string troublesTables(const BatchResults& results) {
+  HtmlTable table("Runs that failed or were lost.");
+  table.head({{"Session"},
+              {"Setting"},
+              {"Run"},
+              {"Seed"},
+              {"Δ<sub>pos</sub> (m)"},
+              {"At the end (m)"},
+              {"What happened"}});
+  bool any = false;
+  for (std::size_t k = 0; k < results.sessions.size(); ++k)
+    for (std::size_t i = 0; i < results.settings.size(); ++i) {
+      const SessionResult* result = results.find(i, k);
+      if (!result) continue;
+      for (const BatchRun& run : result->runs) {
+        const RunState state = stateOf(run, results.lostBound);
+        if (state == RunState::ok) continue;
+        any = true;
+        table.row({escaped(results.sessions[k].name), escaped(results.settings[i].name),
+                   std::to_string(run.run), std::to_string(run.seed), number(run.errors.posMean),
+                   number(run.errors.posEnd),
+                   state == RunState::failed ? "failed: " + escaped(run.failure)
+                   : run.errors.poses == 0   ? "lost: never knew a pose"
+                                             : "lost"});
+      }
+    }
+  return (any ? table.str("words") : "") + failedTasks(results.failures);
+}
+
+std::string sessionsTable(const BatchResults& results) {
+  HtmlTable table("Sessions, in the order they were driven.");
+  table.head({{"Session"}, {"Date"}, {"Length (m)"}, {"Scans"}, {"Poles per scan"}});
+  for (const BatchSession& session : results.sessions)
+    table.row({escaped(session.name), session.date.empty() ? enDash : escaped(session.date),
+               figureText(session.length, 0), countText(session.scans),
+               figureText(session.polesPerScan, 1)});
+  return table.str();
+}
+
+std::string timingsTable(const BatchTimings& timings) {
+  HtmlTable table("Times of the tasks, each on one process.");
+  table.head({{"Task"}, {"Number"}, {"Total"}, {"Median"}, {"Longest"}});
+  double all = 0;
+  std::size_t count = 0;
+  for (const TaskTimes& task : timings.tasks) {
+    std::vector<double> seconds = task.seconds;
+    if (seconds.empty()) continue;
+    std::sort(seconds.begin(), seconds.end());
+    double total = 0;
+    for (double one : seconds) total += one;
+    all += total;
+    count += seconds.size();
+    table.row({escaped(task.kind), countText(seconds.size()), durationText(total),
+               durationText(seconds[(seconds.size() - 1) / 2]), durationText(seconds.back())});
+  }
+  table.foot({"All", countText(count), durationText(all), "", ""});
+  return table.str();
+}
+
+std::string differencesTable(const BatchResults& results) {
+  std::vector<std::map<std::string, std::string>> values;
+  std::map<std::string, bool> differs;
+  for (const BatchSetting& setting : results.settings) values.push_back(valuesOf(setting.config));
+  for (const auto& one : values)
+    for (const auto& [key, value] : one)
+      differs[key] |= std::any_of(values.begin(), values.end(),
+                                  [&, &key = key, &value = value](const auto& other) {
+                                    const auto found = other.find(key);
+                                    return found == other.end() || found->second != value;
+                                  });
+  HtmlTable table("Keys whose values are not the same in all settings.");
+  std::vector<HeadCell> head{{"Key"}};
+  for (const BatchSetting& setting : results.settings) head.push_back({escaped(setting.name)});
+  table.head(head);
+  bool any = false;
+  for (const auto& [key, different] : differs) {
+    if (!different) continue;
+    any = true;
+    std::vector<std::string> cells{element("code", escaped(key))};
+    for (const auto& one : values) {
+      const auto found = one.find(key);
+      cells.push_back(found == one.end() ? enDash : element("code", escaped(found->second)));
+    }
+    table.row(cells);
+  }
+  return any ? table.str("words") : "";
+}
+
+}  // namespace polemcl::report

@@ -1,0 +1,175 @@
+#include "ReportSentences.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "FigureText.h"
+#include "Html.h"
+#include "ReportTables.h"
+#include "SvgPlot.h"
+
+namespace polemcl::report {
+namespace {
+
+std::string emphasized(const BatchSetting& setting) {
+  return element("em", escaped(setting.name));
+}
+
+std::string metres(double value) {
+  return figureText(value, 3) + "\xC2\xA0m";
+}
+std::string degrees(double value) {
+  return figureText(value, 3) + "°";
+}
+
+/// "A, B and C".
+std::string listed(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+  return text;
+}
+
+/// The setting with the smallest mean error first.
+std::vector<std::size_t> byError(const std::vector<SettingSummary>& summaries) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < summaries.size(); ++i)
+    if (summaries[i].localized > 0) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return summaries[a].figures.posMean.mean < summaries[b].figures.posMean.mean;
+  });
+  return order;
+}
+
+std::string errorSentence(const BatchResults& results, const std::vector<SettingSummary>& summaries,
+                          const std::vector<std::size_t>& order) {
+  std::vector<std::string> parts;
+  for (std::size_t i : order) {
+    const FigureSpreads& figures = summaries[i].figures;
+    const std::string with =
+        results.settings.size() > 1 ? " with " + emphasized(results.settings[i]) : std::string();
+    parts.push_back(element("strong", metres(figures.posMean.mean)) + with + " (RMSE " +
+                    metres(figures.posRmse.mean) + ", heading " + degrees(figures.angMeanDeg.mean) +
+                    ", largest " + metres(figures.posMax.largest) + ")");
+  }
+  std::size_t sessions = 0;
+  for (std::size_t i : order) sessions = std::max(sessions, summaries[i].localized);
+  return "The position error is " + listed(parts) + ", on average over " +
+         plural(sessions, "session") + ".";
+}
+
+std::string changeSentence(const BatchResults& results,
+                           const std::vector<SettingSummary>& summaries,
+                           const std::vector<std::size_t>& order) {
+  std::vector<std::string> parts;
+  for (std::size_t i : order)
+    if (std::isfinite(summaries[i].lastOverFirst))
+      parts.push_back(changeText(summaries[i].lastOverFirst) +
+                      (results.settings.size() > 1 ? " with " + emphasized(results.settings[i])
+                                                   : std::string()));
+  if (parts.empty()) return "";
+  return element(
+      "p", "From the first localized session to the last, it changes by " + listed(parts) + ".");
+}
+
+RunCounts countsOf(const std::vector<SettingSummary>& summaries) {
+  RunCounts counts;
+  for (const SettingSummary& summary : summaries) {
+    counts.runs += summary.counts.runs;
+    counts.lost += summary.counts.lost;
+    counts.failed += summary.counts.failed;
+  }
+  return counts;
+}
+
+/// Sessions that no run of a setting could follow.
+std::string lostSessions(const BatchResults& results,
+                         const std::vector<SettingSummary>& summaries) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < summaries.size(); ++i)
+    for (const SessionSummary& session : summaries[i].sessions)
+      if (session.counts.runs > 0 &&
+          session.counts.lost + session.counts.failed == session.counts.runs)
+        names.push_back(escaped(results.sessions[session.session].name) + " (" +
+                        emphasized(results.settings[i]) + ")");
+  if (names.empty()) return "";
+  return (names.size() == 1 ? " No run got through session " : " No run got through sessions ") +
+         listed(names) + ".";
+}
+
+std::string troubleSentence(const BatchResults& results,
+                            const std::vector<SettingSummary>& summaries) {
+  const RunCounts counts = countsOf(summaries);
+  if (counts.runs == 0) return element("p", "class=\"alarm\"", "No session was localized.");
+  if (counts.lost + counts.failed == 0 && results.failures.empty())
+    return element("p", (counts.runs == 1 ? "The only run" : "All " + plural(counts.runs, "run")) +
+                            " kept " + (counts.runs == 1 ? "its" : "their") +
+                            " pose; none failed.");
+  std::string text = "Of " + plural(counts.runs, "run") + ", " + countText(counts.lost) +
+                     " lost the pose and " + countText(counts.failed) + " failed.";
+  text += lostSessions(results, summaries);
+  if (counts.lost > 0)
+    text += " Means include lost runs as far as they had a pose; failed runs have no figures.";
+  if (!results.failures.empty())
+    text += ' ' + plural(results.failures.size(), "task") + " of the batch failed.";
+  return element("p", "class=\"alarm\"", text + " <a href=\"#troubles\">What went wrong</a>");
+}
+
+std::string fact(const std::string& name, const std::string& value) {
+  return element("dt", name) + element("dd", value);
+}
+
+}  // namespace
+
+std::string headlines(const BatchResults& results, const std::vector<SettingSummary>& summaries) {
+  const std::vector<std::size_t> order = byError(summaries);
+  std::string text;
+  if (!order.empty()) text += element("p", errorSentence(results, summaries, order)) + '\n';
+  text += changeSentence(results, summaries, order) + '\n';
+  return element("div", "class=\"lead\"",
+                 '\n' + text + troubleSentence(results, summaries) + '\n') +
+         '\n';
+}
+
+std::string settingCards(const BatchResults& results,
+                         const std::vector<SettingSummary>& summaries) {
+  std::string cards;
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    const SettingSummary& summary = summaries[i];
+    const FigureSpreads& figures = summary.figures;
+    const bool bad = summary.counts.lost + summary.counts.failed > 0;
+    std::string card =
+        element("h3", escaped(results.settings[i].name)) +
+        element("p", "class=\"big\"", figureText(figures.posMean.mean, 3) + element("span", " m")) +
+        element("p", "class=\"what\"", "mean position error");
+    card +=
+        element("dl", "class=\"facts\"",
+                fact("RMSE", metres(figures.posRmse.mean)) +
+                    fact("heading", degrees(figures.angMeanDeg.mean) + " mean, " +
+                                        degrees(figures.angRmseDeg.mean) + " RMSE") +
+                    fact("largest", metres(figures.posMax.largest)) +
+                    fact("last / first", changeText(summary.lastOverFirst)) +
+                    fact("runs", bad ? element("span", "class=\"bad\"", runsText(summary.counts))
+                                     : runsText(summary.counts)));
+    cards += element("section", "class=\"card " + seriesClass(i) + '"', card) + '\n';
+  }
+  return element("div", "class=\"cards\"", '\n' + cards) + '\n';
+}
+
+std::string sessionLine(const BatchResults& results, const std::vector<SettingSummary>& summaries,
+                        std::size_t session) {
+  std::string line = element("strong", escaped(results.sessions[session].name));
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < summaries.size(); ++i)
+    for (const SessionSummary& one : summaries[i].sessions) {
+      if (one.session != session || one.counts.runs == 0) continue;
+      std::string part = escaped(results.settings[i].name) + ' ' + metres(one.figures.posMean.mean);
+      if (one.counts.lost + one.counts.failed > 0)
+        part += element("span", "class=\"bad\"", " (runs: " + runsText(one.counts) + ")");
+      parts.push_back(part);
+    }
+  for (const std::string& part : parts) line += element("span", "class=\"figures\"", " · " + part);
+  return line;
+}
+
+}  // namespace polemcl::report
