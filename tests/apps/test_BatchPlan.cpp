@@ -169,6 +169,25 @@ TEST(BatchPlan, NamesAllInputsThatAreMissing) {
   }));
 }
 
+TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
+  std::size_t batches = 0;
+  for (const auto& entry : fs::directory_iterator(source + "/config/batches")) {
+    SCOPED_TRACE(entry.path().string());
+    const TempFolder data;
+    const BatchSpec spec = readBatchSpec(entry.path(), data.path());
+    for (const auto& session : spec.sessions) fs::create_directories(session.input);
+    const BatchPlan plan = planBatch(spec);
+    std::size_t runs = 0;
+    for (const auto& setting : spec.settings) runs += setting.sessions.size() * spec.runs;
+    EXPECT_EQ(std::count_if(plan.tasks.begin(), plan.tasks.end(),
+                            [](const BatchTask& task) { return task.kind == "run"; }),
+              static_cast<std::ptrdiff_t>(runs));
+    EXPECT_FALSE(spec.title.empty());
+    ++batches;
+  }
+  EXPECT_GE(batches, 3u);
+}
+
 TEST(BatchPlan, LevelsHoldWhatCanBeDoneAtOnce) {
   const auto all = levels(planOf());
   ASSERT_EQ(all.size(), 3u);

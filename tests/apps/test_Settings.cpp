@@ -13,7 +13,8 @@ std::vector<fs::path> configurations() {
   std::vector<fs::path> files;
   for (const auto& entry :
        fs::recursive_directory_iterator(fs::path(POLEMCL_SOURCE_DIR) / "config"))
-    if (entry.path().extension() == ".ini") files.push_back(entry.path());
+    if (entry.path().extension() == ".ini" && entry.path().parent_path().filename() != "batches")
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
