@@ -52,6 +52,7 @@ TEST_F(DetectionModelFile, readsBackWhatWasWritten) {
   model.poleVisibility.today = {0.1, 0.2, 0, 0, 0.3};
   model.noise[3].always = {0, 0, 0.25, 0, 0};
   model.clutterAlways = 0.0625;
+  model.season = {{0, -0.1, -0.2, -0.3}, {0.1, 0.2, 0.3, 0.4}, -1.5, 0.25};
   writeDetectionModel(file, model);
   const DetectionModel read = readDetectionModel(file);
   EXPECT_EQ(read.fittedOn, "by hand");
@@ -59,10 +60,28 @@ TEST_F(DetectionModelFile, readsBackWhatWasWritten) {
   EXPECT_EQ(read.poleVisibility.today, model.poleVisibility.today);
   EXPECT_EQ(read.noise[3].always, model.noise[3].always);
   EXPECT_EQ(read.clutterAlways, 0.0625);
+  EXPECT_EQ(read.season.snow, model.season.snow);
+  EXPECT_EQ(read.season.bare, model.season.bare);
+  EXPECT_EQ(read.season.fence, -1.5);
+  EXPECT_EQ(read.season.siteClutter, 0.25);
   EXPECT_EQ(read.of(DetectionClass::tree).reported[7], model.of(DetectionClass::tree).reported[7]);
   const std::string first = textOf(file);
   writeDetectionModel(file, read);
   EXPECT_EQ(textOf(file), first);
+}
+
+TEST_F(DetectionModelFile, withoutSeasonsTheyChangeNothing) {
+  DetectionModel model = testing_sim::plainModel();
+  model.season.fence = -1;
+  writeDetectionModel(file, model);
+  std::string text = textOf(file);
+  const auto from = text.find("  \"season\": {"), to = text.find("  \"persistence\"");
+  ASSERT_LT(from, to);
+  std::ofstream(file) << text.erase(from, to - from);
+  const SeasonModel read = readDetectionModel(file).season;
+  EXPECT_EQ(read.fence, 0);
+  EXPECT_EQ(read.siteClutter, 0);
+  EXPECT_EQ(read.bare, SeasonModel().bare);
 }
 
 TEST_F(DetectionModelFile, shippedModelsCanBeRead) {
@@ -90,6 +109,7 @@ TEST_F(DetectionModelFile, namesFileKeyAndWhatIsAllowed) {
   expect("[0.7,0.7,", "[1.7,0.7,", "confidence: the values must ascend");
   expect("[5.0,35.0]", "[35.0,5.0]", "detected_range_m: the values must ascend");
   expect("\"always\": [0.0,0.0", "\"always\": [0.8,0.8", "persistence.poles: the shares");
+  expect("\"fence\": 0.0", "\"fence\": 9", "season.fence: 9 is not allowed");
   expect("\"always\": [0.0,", "\"always\": [", "5 numbers are needed, 4");
   expect("0.002,", "0.003,", "levels: other quantiles");
   expect("{", "", "no JSON");

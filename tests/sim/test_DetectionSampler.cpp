@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "DetectionModels.h"
@@ -201,4 +202,110 @@ TEST_F(DetectionSamplerTest, freeRangesEndAtHousesInTheFrameOfTheClouds) {
   }
   EXPECT_GT(hidden, 20u);
   EXPECT_GT(all, 2 * hidden);
+}
+
+namespace {
+/// Share of the chances to see a pole of a sort that a drive took.
+template <class Sort>
+double shareSeen(const DetectionModel& model, const SimulationOptions& options, const Sort& isA) {
+  const World world = makeWorld(options.world);
+  const Drive drive = makeDrive(world, options);
+  const DetectionSampler sampler(model, world, options);
+  const SightLines sight(world), fences(world, Obstacle::mesh);
+  double chances = 0, found = 0;
+  for (std::size_t i = 0; i < drive.time.size(); i += 2) {
+    const Eigen::Isometry3d& T = drive.T_map_sensor[i];
+    const Eigen::Vector2d sensor = T.translation().head<2>();
+    const auto scan = sampler.sample(i, T);
+    const auto blocks = sight.around(sensor, 40), meshes = fences.around(sensor, 40);
+    for (const TruePole& pole : world.poles()) {
+      const Eigen::Vector2d place(pole.x, pole.y);
+      if ((place - sensor).norm() > 39 || SightLines::blocked(blocks, sensor, place) ||
+          !isA(world, pole, SightLines::blocked(meshes, sensor, place)))
+        continue;
+      const Eigen::Vector3d here =
+          T.inverse() * Eigen::Vector3d(pole.x, pole.y, T.translation().z());
+      ++chances;
+      found += std::any_of(scan.begin(), scan.end(), [&](const PoleDetection& seen) {
+        return std::hypot(seen.x - here.x(), seen.y - here.y()) < 0.3;
+      });
+    }
+  }
+  EXPECT_GT(chances, 300);
+  return found / chances;
+}
+}  // namespace
+
+TEST_F(DetectionSamplerTest, snowHidesPolesThatStandInIt) {
+  DetectionModel model = plainModel();
+  model.season.snow.fill(-4);
+  m_options.world.dayOfYear = 15;
+  const auto inSnow = [](const World& world, const TruePole& pole, bool) {
+    return world.snowAt(pole.x, pole.y) > 0.4;
+  };
+  const auto outside = [](const World& world, const TruePole& pole, bool) {
+    return world.snowAt(pole.x, pole.y) == 0;
+  };
+  EXPECT_LT(shareSeen(model, m_options, inSnow), 0.03);
+  EXPECT_NEAR(shareSeen(model, m_options, outside), 0.6, 0.05);
+  model.season.snow.fill(0);
+  EXPECT_NEAR(shareSeen(model, m_options, inSnow), 0.6, 0.05);
+}
+
+TEST_F(DetectionSamplerTest, bareTreesAreSeenMoreOften) {
+  DetectionModel model = plainModel();
+  model.season.bare = {0, 0, 0, 0.8};  // P(z < 0.253 + 0.8) = 0.854
+  const auto trees = [](const World&, const TruePole& pole, bool) {
+    return pole.kind == Kind::tree;
+  };
+  const auto others = [](const World&, const TruePole& pole, bool) {
+    return pole.kind != Kind::tree;
+  };
+  m_options.world.dayOfYear = 15;
+  EXPECT_NEAR(shareSeen(model, m_options, trees), 0.854, 0.03);
+  EXPECT_NEAR(shareSeen(model, m_options, others), 0.6, 0.04);
+  m_options.world.dayOfYear = 196;
+  EXPECT_NEAR(shareSeen(model, m_options, trees), 0.6, 0.04);
+  m_options.world.dayOfYear = 0;
+  EXPECT_NEAR(shareSeen(model, m_options, trees), 0.6, 0.04);
+}
+
+TEST_F(DetectionSamplerTest, fencesOfMeshLetSomePolesThrough) {
+  DetectionModel model = plainModel();
+  model.season.fence = -1;  // P(z < 0.253 - 1) = 0.227
+  m_options.world.buildingSites = 6;
+  m_options.world.length = 800;
+  const auto behind = [](const World&, const TruePole&, bool mesh) { return mesh; };
+  const auto free = [](const World&, const TruePole&, bool mesh) { return !mesh; };
+  EXPECT_NEAR(shareSeen(model, m_options, behind), 0.227, 0.06);
+  EXPECT_NEAR(shareSeen(model, m_options, free), 0.6, 0.03);
+}
+
+TEST_F(DetectionSamplerTest, buildingSitesLookLikePolesWhileTheyStand) {
+  DetectionModel model = plainModel();
+  model.season.siteClutter = 0.2;
+  m_options.world.buildingSites = 5;
+  m_options.world.length = 1000;
+  double metres = 0, objects = 0;
+  std::map<std::uint64_t, std::set<std::uint64_t>> known;  // by site
+  for (const int day : {0, 10, 20, 150, 300}) {
+    m_options.world.day = day;
+    const World world = makeWorld(m_options.world);
+    const auto clutter = placeClutter(model, world, 1);
+    objects += static_cast<double>(clutter.size());
+    std::size_t placed = 0;
+    for (const BuildingSite& site : world.buildingSites()) {
+      metres += site.to - site.from;
+      std::set<std::uint64_t> here;
+      for (const ClutterObject& object : clutter)
+        for (const auto& place : site.kerb)
+          if (std::hypot(place.x() - object.x, place.y() - object.y) < 0.6) here.insert(object.id);
+      placed += here.size();
+      const auto [before, isNew] = known.emplace(site.seed, here);
+      EXPECT_EQ(before->second, here) << "the same on all days of the site";
+    }
+    EXPECT_EQ(placed, clutter.size()) << "all of it at fences";
+  }
+  EXPECT_GT(known.size(), 5u);
+  EXPECT_NEAR(objects, 0.2 * metres, 4 * std::sqrt(2.5 * 0.2 * metres));
 }

@@ -44,3 +44,30 @@ TEST(SightLines, blockedAgreesWithTheFreeWay) {
     EXPECT_EQ(SightLines::blocked({&near}, {0, 0}, to), blocked) << angle;
   }
 }
+
+TEST(SightLines, boardsAndContainersHideAndMeshIsToldApart) {
+  WorldOptions options;
+  options.length = 60;
+  options.relief = 0;
+  const Street street = Street::make(options);
+  const auto world = [&](Kind kind) {
+    ObjectBuilder builder(kind, Site{{10, 0, 0}, 0});
+    if (kind == Kind::siteFence)
+      builder.thicket({0, 0, 1}, {0.01, 3, 0.9}, materials::metal, 0.2);
+    else
+      builder.box({0, 0, 1.1}, {0.02, 3, 1.1}, materials::wood);
+    return World(options, street, Terrain(options, street, {}), {builder.build(1)}, {});
+  };
+  const auto blocked = [&](Kind kind, Obstacle obstacle) {
+    const World here = world(kind);
+    const SightLines lines(here, obstacle);
+    return SightLines::blocked(lines.around({0, 0}, 40), {0, 0}, {20, 0});
+  };
+  for (const Kind kind : {Kind::house, Kind::wall, Kind::hoarding, Kind::container}) {
+    EXPECT_TRUE(blocked(kind, Obstacle::opaque)) << name(kind);
+    EXPECT_FALSE(blocked(kind, Obstacle::mesh)) << name(kind);
+  }
+  EXPECT_FALSE(blocked(Kind::siteFence, Obstacle::opaque));
+  EXPECT_TRUE(blocked(Kind::siteFence, Obstacle::mesh));
+  EXPECT_FALSE(blocked(Kind::car, Obstacle::opaque)) << "the model's rates hold what cars hide";
+}

@@ -16,6 +16,12 @@ TEST(SimulationBindings, whatIsWrittenReadsBackTheSame) {
   written.world.track = "road.txt.gz";
   written.world.treeSpacing = 6.5;
   written.world.peopleMove = true;
+  written.world.replacedPerYear = 0.1;
+  written.world.dayOfYear = 135;
+  written.world.snowBank = 0.4;
+  written.world.buildingSites = 2.5;
+  written.world.sideStreets = 2;
+  written.detour = 2;
   ConfigWriter writer;
   bind(writer, written);
   ConfigReader reader(ConfigFile::fromText(writer.text(), "test"));
@@ -32,6 +38,12 @@ TEST(SimulationBindings, whatIsWrittenReadsBackTheSame) {
   EXPECT_EQ(read.world.track, "road.txt.gz");
   EXPECT_EQ(read.world.treeSpacing, 6.5);
   EXPECT_TRUE(read.world.peopleMove);
+  EXPECT_EQ(read.world.replacedPerYear, 0.1);
+  EXPECT_EQ(read.world.dayOfYear, 135);
+  EXPECT_EQ(read.world.snowBank, 0.4);
+  EXPECT_EQ(read.world.buildingSites, 2.5);
+  EXPECT_EQ(read.world.sideStreets, 2);
+  EXPECT_EQ(read.detour, 2);
 }
 
 TEST(SimulationBindings, refusesWhatIsOutOfRangeWithFileSectionAndKey) {

@@ -153,6 +153,11 @@ void DetectionModel::validate() const {
   requireIn("clutter_per_m.always", clutterAlways, 0, 10);
   requireIn("clutter_per_m.today", clutterToday, 0, 10);
   requireIn("passing_per_scan", passing, 0, 1000);
+  for (const auto* scores : {&season.snow, &season.bare})
+    for (const double score : *scores)
+      requireIn(scores == &season.snow ? "season.snow" : "season.bare", score, -5, 5);
+  requireIn("season.fence", season.fence, -5, 5);
+  requireIn("season.site_clutter_per_m", season.siteClutter, 0, 10);
   for (const auto* ranges : {&detectedRange, &reportedRange}) {
     const char* key = ranges == &detectedRange ? "detected_range_m" : "reported_range_m";
     if (ranges->empty()) refuse(key, "at least one range is needed");

@@ -26,6 +26,7 @@ class Section {
     if (found == m_json.end()) throw Error(m_where + key + ": is missing");
     return *found;
   }
+  bool has(const std::string& key) const { return m_json.contains(key); }
   double number(const std::string& key) {
     const Json& value = get(key);
     if (!value.is_number()) throw Error(m_where + key + ": a number is needed");
@@ -95,6 +96,16 @@ void readClass(Section section, ClassModel& model, bool lasts) {
   section.finish();
 }
 
+SeasonModel readSeason(Section section) {
+  SeasonModel season;
+  season.snow = section.array<4>("snow");
+  season.bare = section.array<4>("bare");
+  season.fence = section.number("fence");
+  season.siteClutter = section.number("site_clutter_per_m");
+  section.finish();
+  return season;
+}
+
 DetectionModel fromJson(const Json& json, const std::string& where) {
   Section file(json, where);
   if (file.text("format") != kFormat)
@@ -122,6 +133,7 @@ DetectionModel fromJson(const Json& json, const std::string& where) {
   model.clutterLateral = file.array<kQuantileLevels.size()>("clutter_lateral_m");
   model.passing = file.number("passing_per_scan");
   model.passingRange = file.array<kQuantileLevels.size()>("passing_range_m");
+  if (file.has("season")) model.season = readSeason(file.section("season"));
   Section persistence = file.section("persistence");
   model.poleVisibility = persistence.spectrum("poles");
   model.clutterVisibility = persistence.spectrum("clutter");
@@ -190,6 +202,11 @@ Json toJson(const DetectionModel& model) {
           {"clutter_lateral_m", numbers(model.clutterLateral)},
           {"passing_per_scan", rounded(model.passing)},
           {"passing_range_m", numbers(model.passingRange)},
+          {"season",
+           {{"snow", numbers(model.season.snow)},
+            {"bare", numbers(model.season.bare)},
+            {"fence", rounded(model.season.fence)},
+            {"site_clutter_per_m", rounded(model.season.siteClutter)}}},
           {"persistence", persistence},
           {"classes", classes}};
 }

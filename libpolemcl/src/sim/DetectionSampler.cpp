@@ -2,6 +2,7 @@
 #include <polemcl/sim/DetectionSampler.h>
 #include <polemcl/sim/NormalDistribution.h>
 #include <polemcl/sim/Random.h>
+#include <polemcl/sim/Season.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,20 +25,35 @@ int copies(double factor, Random& random) {
 }
 
 /// The street in pieces, each with its own stream, so that a longer street begins as a shorter one.
-void placeAlong(const World& world, const DetectionModel& model, double perMetre,
+void placeAlong(const Street& street, const DetectionModel& model, double perMetre,
                 std::uint64_t stream, bool today, std::vector<ClutterObject>& objects) {
   constexpr double kPiece = 20;  // m
-  for (double start = 0; start < world.street().length(); start += kPiece) {
+  for (double start = 0; start < street.length(); start += kPiece) {
     const std::uint64_t seed = hash(stream, static_cast<std::uint64_t>(start));
     Random random(seed);
     const int count = poisson(perMetre * kPiece, random);
     for (int i = 0; i < count; ++i) {
       const double s = start + random.uniform(0, kPiece);
       const double aside = valueAt(model.clutterLateral, random.normal());
-      const Pose2D place = world.street().at(s, random.chance(0.5) ? aside : -aside);
-      if (s > world.street().length() || !world.street().fresh(s)) continue;
+      const Pose2D place = street.at(s, random.chance(0.5) ? aside : -aside);
+      if (s > street.length() || !street.fresh(s)) continue;
       objects.push_back({hash(seed, i), place.x, place.y, today});
     }
+  }
+}
+
+/// What looks like a pole at the fence of a building site, the same on all its days.
+void placeAtSite(const BuildingSite& site, const DetectionModel& model, int copy,
+                 std::vector<ClutterObject>& objects) {
+  const std::uint64_t seed = hash(site.seed, 0xc1dull, copy);
+  Random random(seed);
+  const Eigen::Vector2d along = (site.kerb.back() - site.kerb.front()).normalized();
+  const Eigen::Vector2d toRoad = site.side * Eigen::Vector2d(along.y(), -along.x());
+  const int count = poisson(model.season.siteClutter * (site.to - site.from), random);
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d place = site.kerb[random.below(static_cast<int>(site.kerb.size()))] +
+                                  random.uniform(0.03, 0.2) * toRoad;
+    objects.push_back({hash(seed, i), place.x(), place.y(), false});
   }
 }
 
@@ -50,9 +66,15 @@ std::vector<ClutterObject> placeClutter(const DetectionModel& model, const World
   for (int copy = 0; copy < factor; ++copy) {
     const double part = std::min(1.0, factor - copy);
     std::vector<ClutterObject> more;
-    placeAlong(world, model, model.clutterAlways, hash(options.seed, 0xc1aull, copy), false, more);
-    placeAlong(world, model, model.clutterToday, hash(options.seed, 0xc1bull, copy, options.day),
-               true, more);
+    const auto place = [&](const Street& street, std::uint64_t seed) {
+      placeAlong(street, model, model.clutterAlways, hash(seed, 0xc1aull, copy), false, more);
+      placeAlong(street, model, model.clutterToday, hash(seed, 0xc1bull, copy, options.day), true,
+                 more);
+    };
+    place(world.street(), options.seed);
+    for (std::size_t k = 0; k < world.detours().size(); ++k)
+      place(world.detours()[k].street, hash(options.seed, 0xc1eull, k));
+    for (const BuildingSite& site : world.buildingSites()) placeAtSite(site, model, copy, more);
     for (const ClutterObject& object : more)
       if (Random(hash(object.id, 0xc1cull)).chance(part)) objects.push_back(object);
   }
@@ -66,12 +88,15 @@ struct DetectionSampler::View {
   double height;           ///< of the sensor, map frame, m
   Eigen::Isometry3d T_cloud_map;
   Eigen::Vector2d lidar_cloud;  ///< the optical centre in the cloud frame, m
-  std::vector<const SightLines::Block*> blocks;
+  std::vector<const SightLines::Block*> blocks, fences;
 };
 
 DetectionSampler::DetectionSampler(DetectionModel model, const World& world,
                                    const SimulationOptions& options)
-    : m_model(std::move(model)), m_options(options), m_sight(world) {
+    : m_model(std::move(model)),
+      m_options(options),
+      m_sight(world),
+      m_fences(world, Obstacle::mesh) {
   m_model.validate();
   constexpr double kHeights = 0.3;
   if (m_model.sensor != options.sensor)
@@ -81,13 +106,25 @@ DetectionSampler::DetectionSampler(DetectionModel model, const World& world,
     throw Error("the model is of a LiDAR " + std::to_string(m_model.height) +
                 " m above ground, and [sensor] height_m is " + std::to_string(options.height) +
                 "; fit one for that height (pole-eval model)");
-  for (const TruePole& pole : world.poles())
-    m_targets.push_back(
-        targetOf(classOf(pole.kind), pole.x, pole.y, pole.radius, pole.id, pole.id >= 1000000));
+  addPoles(world);
   m_clutter = placeClutter(m_model, world, options.falseFactor);
   for (const ClutterObject& object : m_clutter)
     m_targets.push_back(
         targetOf(DetectionClass::clutter, object.x, object.y, 0, object.id, object.today));
+}
+
+void DetectionSampler::addPoles(const World& world) {
+  const WorldOptions& options = world.options();
+  const double bare =
+      options.dayOfYear > 0 ? 1 - seasonOf(options.dayOfYear + options.day).foliage : 0;
+  for (const TruePole& pole : world.poles()) {
+    Target target =
+        targetOf(classOf(pole.kind), pole.x, pole.y, pole.radius, pole.id, ofOneDay(pole.id));
+    const auto c = static_cast<std::size_t>(target.kind);
+    target.snow = world.snowAt(pole.x, pole.y);
+    target.shift = m_model.season.snow[c] * target.snow / 0.5 + m_model.season.bare[c] * bare;
+    m_targets.push_back(target);
+  }
 }
 
 DetectionSampler::Target DetectionSampler::targetOf(DetectionClass kind, double x, double y,
@@ -128,25 +165,31 @@ PoleDetection DetectionSampler::report(const Target& target, const View& view,
   pole.covariance = 0.5 * (covariance + covariance.transpose());
   pole.confidence = std::clamp(value(Reported::confidence), 0.0, 1.0);
   pole.radius = std::max(0.01, target.radius + value(Reported::radius));
-  pole.bottom = value(Reported::bottom);
+  pole.bottom = std::max(value(Reported::bottom), target.snow);
   pole.top = std::max(pole.bottom, value(Reported::top));
   pole.points = static_cast<std::uint32_t>(std::max(1.0, std::round(value(Reported::points))));
   return pole;
+}
+
+double DetectionSampler::threshold(const Target& target, const View& view) const {
+  const double range = (target.place - view.sensor).norm();
+  double score = m_model.detectionScore(target.kind, range) + target.shift;
+  if (!view.fences.empty() && SightLines::blocked(view.fences, view.sensor, target.place))
+    score += m_model.season.fence;
+  const bool hidden = SightLines::blocked(view.blocks, view.sensor, target.place);
+  return hidden ? std::min(normalQuantile(m_model.behindHouses), score) : score;
 }
 
 void DetectionSampler::addTarget(const Target& target, const View& view,
                                  std::vector<PoleDetection>& found) const {
   const double range = (target.place - view.sensor).norm();
   const bool isClutter = target.kind == DetectionClass::clutter;
-  const double threshold = m_model.detectionScore(target.kind, range);
-  if (threshold < -5) return;
+  if (m_model.detectionScore(target.kind, range) < -5) return;
   const std::uint64_t scanSeed = driveSeed(m_options, hash(target.today, 0x5ca4ull, view.scan));
   const double z =
       persistentNoise(isClutter ? m_model.clutterVisibility : m_model.poleVisibility,
                       {target.always, target.today, scanSeed}, view.sensor.x(), view.sensor.y());
-  const bool hidden = SightLines::blocked(view.blocks, view.sensor, target.place);
-  const double hiddenThreshold = normalQuantile(m_model.behindHouses);
-  if (z >= (hidden ? std::min(hiddenThreshold, threshold) : threshold)) return;
+  if (z >= threshold(target, view)) return;
   // Where a perfect extractor would see it: upright in the map, at the height of the LiDAR.
   const Eigen::Vector3d place =
       view.T_cloud_map * Eigen::Vector3d(target.place.x(), target.place.y(), view.height);
@@ -180,8 +223,10 @@ std::vector<PoleDetection> DetectionSampler::sample(std::size_t i,
             sensor.z(),
             cloudFrame(T_map_sensor, m_options).inverse(),
             Eigen::Vector2d(m_options.originX, m_options.originY),
+            {},
             {}};
   view.blocks = m_sight.around(view.sensor, m_model.maxRange);
+  view.fences = m_fences.around(view.sensor, m_model.maxRange);
   std::vector<PoleDetection> found;
   const double limit = m_model.maxRange * m_model.maxRange;
   for (const Target& target : m_targets)

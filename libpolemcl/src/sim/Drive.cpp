@@ -27,13 +27,13 @@ struct Sways {
       : lane(0.12, 60, random), roll(0.004, 14, random), pitch(0.004, 11, random) {}
 };
 
-/// \brief The sensor over the place s of the street: upright on the slope, and a little sway.
+/// \brief The sensor over the place s of the way: upright on the slope, and a little sway.
 Eigen::Isometry3d sensorAt(const World& world, const SimulationOptions& options, const Sways& sways,
                            double s) {
   const auto place = [&](double at) {
     const double lateral = options.laneOffset + sways.lane.at(at);
-    return options.reverse ? world.street().at(world.street().length() - at, -lateral)
-                           : world.street().at(at, lateral);
+    const Street& way = world.path(options.detour);
+    return options.reverse ? way.at(way.length() - at, -lateral) : way.at(at, lateral);
   };
   const Pose2D here = place(s), ahead = place(s + 1.0), back = place(s - 1.0);
   const double yaw = std::atan2(ahead.y - back.y, ahead.x - back.x);
@@ -74,7 +74,8 @@ Drive makeDrive(const World& world, const SimulationOptions& options) {
       Random(driveSeed(options, hash(options.world.seed, 0xd21feull, options.world.day))));
   Random noise(driveSeed(options, hash(options.world.seed, 0x0d0ull, options.world.day)));
   // A metre is left free at both ends, where the heading needs neighbours.
-  const int fits = static_cast<int>((world.street().length() - 2) / options.spacing) + 1;
+  const int fits =
+      static_cast<int>((world.path(options.detour).length() - 2) / options.spacing) + 1;
   const int count = options.scans > 0 ? std::min(options.scans, fits) : fits;
   if (count < 2) throw Error("[world] length_m: the street is shorter than two scans");
   for (int i = 0; i < count; ++i) {

@@ -21,16 +21,24 @@ double entry(const SightLines::Block& block, const Eigen::Vector2d& from,
   return enter < leave ? enter : 1;
 }
 
+bool isA(Kind kind, Obstacle obstacle) {
+  if (obstacle == Obstacle::mesh) return kind == Kind::siteFence;
+  return kind == Kind::house || kind == Kind::wall || kind == Kind::hoarding ||
+         kind == Kind::container;
+}
+
 }  // namespace
 
-SightLines::SightLines(const World& world) {
+SightLines::SightLines(const World& world, Obstacle obstacle) {
+  const Shape shape = obstacle == Obstacle::mesh ? Shape::thicket : Shape::box;
+  // Lower than that they do not hide what stands behind; fences are looked through higher up.
+  const double lowest = obstacle == Obstacle::mesh ? 0.8 : 1;
   constexpr double kSmallest = 0.5;  // m; drain pipes, sills and the like hide nothing
   for (const WorldObject& object : world.objects()) {
-    if (object.kind != Kind::house && object.kind != Kind::wall) continue;
+    if (!isA(object.kind, obstacle)) continue;
     for (const Solid& solid : object.solids) {
-      if (solid.shape != Shape::box || solid.size.head<2>().maxCoeff() < kSmallest) continue;
-      // Lower than that they do not hide what stands behind.
-      if (solid.size.z() < 1) continue;
+      if (solid.shape != shape || solid.size.head<2>().maxCoeff() < kSmallest) continue;
+      if (solid.size.z() < lowest) continue;
       m_blocks.push_back({solid.position.head<2>(), solid.size.head<2>(),
                           solid.axes.topLeftCorner<2, 2>().transpose(),
                           solid.size.head<2>().norm()});

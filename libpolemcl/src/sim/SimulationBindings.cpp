@@ -22,6 +22,15 @@ void bind(Binder& b, WorldOptions& o) {
   b.number("removed_share", o.removedShare, limits::share, "", "poles gone on another day");
   b.number("added_share", o.addedShare, limits::share, "", "poles new on another day");
   b.number("foliage", o.foliage, limits::foliage, "", "density of leaves; 0: bare branches");
+  b.number("replaced_per_year", o.replacedPerYear, limits::replacedPerYear, "",
+           "poles gone for good after 365 days; as many come");
+  b.integer("day_of_year", o.dayOfYear, limits::dayOfYear, "",
+            "of day 0, 1: 1 January, leaves and snow follow; 0: no seasons");
+  b.number("snow_bank_m", o.snowBank, limits::snowBank, "m",
+           "what midwinter's banks along the kerb hide of things there");
+  b.number("building_sites", o.buildingSites, limits::buildingSites, "1/km",
+           "of street, at any time");
+  b.integer("side_streets", o.sideStreets, limits::sideStreets, "", "that detours can take");
   b.flag("people_move", o.peopleMove, "true: people walk during the drive");
   b.check(o);
 }
@@ -39,6 +48,8 @@ void bind(Binder& b, SimulationOptions& o) {
   b.integer("scans", o.scans, limits::scans, "", "at most so many; 0: to the end of the road");
   b.integer("drive_seed", o.driveSeed, limits::seed, "",
             "another one: another drive of the same day, with its own noise");
+  b.integer("detour", o.detour, limits::detour, "",
+            "goes round through this side street of the world; 0: straight on");
   b.text("detections", o.detections,
          "model of detections (JSON) that `--poles` samples; empty: it casts rays");
   b.number("false_factor", o.falseFactor, limits::falseFactor, "",

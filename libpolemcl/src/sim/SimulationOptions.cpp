@@ -32,6 +32,11 @@ void WorldOptions::validate() const {
   require("[world] removed_share", removedShare, limits::share);
   require("[world] added_share", addedShare, limits::share);
   require("[world] foliage", foliage, limits::foliage);
+  require("[world] replaced_per_year", replacedPerYear, limits::replacedPerYear);
+  require("[world] day_of_year", dayOfYear, limits::dayOfYear);
+  require("[world] snow_bank_m", snowBank, limits::snowBank);
+  require("[world] building_sites", buildingSites, limits::buildingSites);
+  require("[world] side_streets", sideStreets, limits::sideStreets);
 }
 
 void SimulationOptions::validate() const {
@@ -46,6 +51,7 @@ void SimulationOptions::validate() const {
   require("[simulation] scans", scans, limits::scans);
   require("[simulation] drive_seed", static_cast<double>(driveSeed), limits::seed);
   require("[simulation] false_factor", falseFactor, limits::falseFactor);
+  require("[simulation] detour", detour, Range::between(0, world.sideStreets));
   // Half of a vehicle has to fit between the sensor and the kerb.
   const double room = world.roadWidth / 2 - 1.2;
   require("[simulation] lane_offset_m", laneOffset, Range::between(-room, room));

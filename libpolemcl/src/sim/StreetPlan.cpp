@@ -1,12 +1,29 @@
 #include "StreetPlan.h"
 
+#include <polemcl/sim/Season.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
 
 namespace polemcl::sim {
 
-std::vector<Crossing> planCrossings(const WorldOptions& options, const Street& street) {
+namespace {
+/// \brief The mouths of side streets are crossings, and no other road is near them or between.
+void makeMouths(const Detour& detour, double halfWidth, std::vector<Crossing>& crossings) {
+  constexpr double kApart = 40;  // m
+  for (Crossing& crossing : crossings)
+    if (crossing.s > detour.leave - kApart && crossing.s < detour.back + kApart)
+      (detour.side > 0 ? crossing.left : crossing.right) = false;
+  const auto isNone = [](const Crossing& c) { return !c.left && !c.right; };
+  crossings.erase(std::remove_if(crossings.begin(), crossings.end(), isNone), crossings.end());
+  for (const double s : {detour.leave, detour.back})
+    crossings.push_back({s, detour.side > 0, detour.side < 0, halfWidth, false});
+}
+}  // namespace
+
+std::vector<Crossing> planCrossings(const WorldOptions& options, const Street& street,
+                                    const std::vector<Detour>& detours) {
   Random random(hash(options.seed, 0xc055ull));
   std::vector<Crossing> crossings;
   for (double s = random.uniform(30, 90); s < street.length() - 15; s += random.uniform(75, 170)) {
@@ -14,6 +31,7 @@ std::vector<Crossing> planCrossings(const WorldOptions& options, const Street& s
     const Crossing crossing{s, kind<0.7, kind> 0.35, random.uniform(2.8, 4.2)};
     if (street.fresh(s)) crossings.push_back(crossing);
   }
+  for (const Detour& detour : detours) makeMouths(detour, options.roadWidth / 2, crossings);
   return crossings;
 }
 
@@ -24,7 +42,7 @@ std::vector<SideRoad> sideRoads(const std::vector<Crossing>& crossings, const St
   for (const Crossing& crossing : crossings)
     for (const int side : {1, -1}) {
       const double skew = random.normal(0, 0.12);
-      if (!(side > 0 ? crossing.left : crossing.right)) continue;
+      if (!crossing.straight || !(side > 0 ? crossing.left : crossing.right)) continue;
       const Pose2D start = street.at(crossing.s);
       const double heading = start.yaw + side * M_PI / 2 + skew;
       const Eigen::Vector2d a(start.x, start.y);
@@ -35,8 +53,14 @@ std::vector<SideRoad> sideRoads(const std::vector<Crossing>& crossings, const St
 }
 
 StreetPlan::StreetPlan(const WorldOptions& options, const Street& street, const Terrain& terrain,
-                       const std::vector<Crossing>& crossings)
-    : m_options(options), m_street(street), m_terrain(terrain), m_crossings(crossings) {}
+                       const std::vector<Crossing>& crossings, StreetPart part)
+    : m_options(options),
+      m_street(street),
+      m_terrain(terrain),
+      m_crossings(crossings),
+      m_street0(part.index * kIdsPerStreet),
+      m_open(part.index > 0),
+      m_nextId(m_street0 + 1) {}
 
 void StreetPlan::furnish() {
   crossingFurniture();
@@ -47,15 +71,21 @@ void StreetPlan::furnish() {
     smallThings(side);
     lots(side);
   }
-  const std::size_t permanent = m_nextId;
-  m_nextId = 1000000;  // things of one day
+  const std::size_t permanent = m_nextId - m_street0;
+  m_permanent = false;
+  replacedPoles();
+  planSites();
+  m_nextId = m_street0 + kFirstIdOfOneDay;
   addedPoles(permanent);
   vehiclesInYards();
   for (const int side : {1, -1}) {
     parkedVehicles(side);
     people(side);
   }
-  removeBuiltOver();
+  clearSites();
+  if (m_options.dayOfYear > 0)
+    snowBanks(m_options.snowBank * seasonOf(m_options.dayOfYear + m_options.day).snow);
+  removeBuiltOver(objects, poles);
   std::sort(poles.begin(), poles.end(),
             [](const TruePole& a, const TruePole& b) { return a.id < b.id; });
 }
@@ -108,10 +138,11 @@ bool StreetPlan::goneToday(std::uint32_t id) const {
          Random(hash(m_options.seed, 0x60ull, m_options.day, id)).chance(m_options.removedShare);
 }
 
-void StreetPlan::removeBuiltOver() {
+void removeBuiltOver(std::vector<WorldObject>& objects, std::vector<TruePole>& poles) {
   std::unordered_set<std::uint32_t> hidden;
   for (const WorldObject& object : objects) {
-    if (object.kind != Kind::house && object.kind != Kind::wall) continue;
+    if (object.kind != Kind::house && object.kind != Kind::wall && object.kind != Kind::container)
+      continue;
     for (const Solid& solid : object.solids) {
       if (solid.shape != Shape::box) continue;
       for (const TruePole& pole : poles) {
@@ -129,8 +160,10 @@ void StreetPlan::removeBuiltOver() {
   poles.erase(std::remove_if(poles.begin(), poles.end(), isHidden), poles.end());
 }
 
-void StreetPlan::add(Piece piece) {
-  if (goneToday(piece.object.id)) return;
+void StreetPlan::add(Piece piece, const Site& place) {
+  const std::uint32_t id = piece.object.id;
+  if (m_permanent && piece.pole) m_planned.push_back({id, piece.object.kind, place});
+  if (goneToday(id) || (m_permanent && lastDayOf(id) <= m_options.day)) return;
   objects.push_back(std::move(piece.object));
   if (piece.pole && piece.pole->top >= 2) poles.push_back(*piece.pole);
 }

@@ -17,9 +17,9 @@ void StreetPlan::addedPoles(std::size_t permanentPoles) {
     const Site place = site(side, s, m_options.roadWidth / 2 + random.uniform(0.4, 0.9));
     if (!m_street.fresh(s) || !claim(place, 0.7, Ground::pavement)) continue;
     if (random.chance(0.7))
-      add(makeSign(place, id, random));
+      add(makeSign(place, id, random), place);
     else
-      add(makeLampPost(place, id, LampStyle(random), random));
+      add(makeLampPost(place, id, LampStyle(random), random), place);
   }
 }
 

@@ -18,7 +18,7 @@ void StreetPlan::crossingFurniture() {
         const double s = crossing.s + end * (crossing.halfWidth + own.uniform(0.9, 2.5));
         const Site place = site(side, s, m_options.roadWidth / 2 + own.uniform(0.4, 1.0));
         if (!own.chance(lights ? 0.85 : 0.5) || !claim(place, 0.8, Ground::pavement)) continue;
-        add(lights ? makeTrafficLight(place, id, own) : makeSign(place, id, own));
+        add(lights ? makeTrafficLight(place, id, own) : makeSign(place, id, own), place);
       }
   }
 }
@@ -37,7 +37,7 @@ void StreetPlan::lamps(int side) {
         make.chance(0.2) ? pavementWidth(side, s) - own.uniform(0.35, 0.6) : own.uniform(0.4, 0.7);
     const Site place = site(side, s, m_options.roadWidth / 2 + out);
     if (m_street.fresh(s) && claim(place, 0.7, Ground::pavement))
-      add(makeLampPost(place, id, style, own));
+      add(makeLampPost(place, id, style, own), place);
   }
 }
 
@@ -56,7 +56,7 @@ void StreetPlan::avenue(int side) {
       Random own(random.next());
       const Site place = site(side, s, m_options.roadWidth / 2 + aside + own.normal(0, 0.06));
       if (m_street.fresh(s) && !nearCrossing(side, s, 2) && claim(place, 1.2, Ground::pavement))
-        add(makeTree(place, id, style, leaves, own));
+        add(makeTree(place, id, style, leaves, own), place);
     }
   }
 }
@@ -71,7 +71,8 @@ void StreetPlan::signs(int side) {
     const double out =
         rear ? pavementWidth(side, s) - own.uniform(0.3, 0.6) : own.uniform(0.35, 0.8);
     const Site place = site(side, s, m_options.roadWidth / 2 + out);
-    if (m_street.fresh(s) && claim(place, 0.5, Ground::pavement)) add(makeSign(place, id, own));
+    if (m_street.fresh(s) && claim(place, 0.5, Ground::pavement))
+      add(makeSign(place, id, own), place);
   }
 }
 

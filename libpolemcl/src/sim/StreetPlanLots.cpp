@@ -16,6 +16,7 @@ double leavesOf(const WorldOptions& options) {
 void StreetPlan::lots(int side) {
   Random random = stream(0x107, side);
   for (double s = 0; s < m_street.length();) s += lot(side, s, random);
+  if (m_open) return;
   // Both ends of the street are not the end of the town.
   for (const double s : {-12.0, m_street.length() + 12.0}) {
     const Pose2D end = m_street.at(s);
@@ -60,9 +61,12 @@ void StreetPlan::house(int side, double s, double length, double setBack, Random
   const std::uint32_t id = m_nextId++;
   const Site place = site(side, s, front);
   const double c = std::cos(place.heading), n = std::sin(place.heading);
-  for (const double along : {-0.5, 0.0, 0.5})  // never on a road, be it another turn of this one
-    for (const double away : {0.0, 0.5, 1.0}) {
-      const double x = along * length, y = away * depth;
+  // Never on a road, be it another turn of this one. Side streets come close from behind, too.
+  const int steps = m_options.sideStreets > 0 ? 8 : 2;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; j <= steps; ++j) {
+      const double x = (i / static_cast<double>(steps) - 0.5) * length,
+                   y = j / static_cast<double>(steps) * depth;
       if (m_terrain.edge(place.base.x() + c * x - n * y, place.base.y() + n * x + c * y) < 1.0)
         return;
     }
@@ -91,7 +95,7 @@ void StreetPlan::garden(int side, double s, double length, double depth, Random&
     const bool tree = own.chance(0.3);
     if (!claim(place, tree ? 1.5 : 0.9, Ground::lot)) continue;
     if (tree)
-      add(makeTree(place, plant, TreeStyle(own), leavesOf(m_options), own));
+      add(makeTree(place, plant, TreeStyle(own), leavesOf(m_options), own), place);
     else
       add(makeBush(place, plant, leavesOf(m_options), own));
   }
@@ -109,7 +113,7 @@ void StreetPlan::yard(int side, double s, double length, Random& random) {
     Random own(random.next());
     if (!claim(place, 1.0, Ground::lot)) continue;
     if (own.chance(0.4))
-      add(makeTree(place, id, TreeStyle(own), leavesOf(m_options), own));
+      add(makeTree(place, id, TreeStyle(own), leavesOf(m_options), own), place);
     else
       add(makeBush(place, id, leavesOf(m_options), own));
   }
@@ -127,7 +131,8 @@ void StreetPlan::park(int side, double s, double length, Random& random) {
     const bool tree = own.chance(0.5);
     if (!claim(place, tree ? 2.2 : 1.0, Ground::lot)) continue;
     if (tree)
-      add(makeTree(place, id, own.chance(0.7) ? style : TreeStyle(own), leavesOf(m_options), own));
+      add(makeTree(place, id, own.chance(0.7) ? style : TreeStyle(own), leavesOf(m_options), own),
+          place);
     else
       add(makeBush(place, id, leavesOf(m_options), own));
   }

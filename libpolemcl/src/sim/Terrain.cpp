@@ -15,7 +15,7 @@ constexpr double kFarEdge = 6;  // the signed distance saturates here, m
 }  // namespace
 
 Terrain::Terrain(const WorldOptions& options, const Street& street,
-                 const std::vector<SideRoad>& sideRoads)
+                 const std::vector<SideRoad>& sideRoads, const std::vector<Detour>& detours)
     : m_seed(hash(options.seed, 0x7e44ull)), m_relief(options.relief) {
   Random random(m_seed);
   // Long waves make slopes of up to a few per cent, short ones the humps a car rides over.
@@ -26,9 +26,12 @@ Terrain::Terrain(const WorldOptions& options, const Street& street,
                        2 * M_PI / wave * std::cos(turn), 2 * M_PI / wave * std::sin(turn),
                        random.uniform(0, 2 * M_PI)});
   }
-  allocate(street);
-  for (std::size_t i = 0; i + 1 < street.points().size(); ++i)
-    paintRoad(street.points()[i], street.points()[i + 1], options.roadWidth / 2);
+  std::vector<const Street*> streets{&street};
+  for (const Detour& detour : detours) streets.push_back(&detour.path);
+  allocate(streets);
+  for (const Street* each : streets)
+    for (std::size_t i = 0; i + 1 < each->points().size(); ++i)
+      paintRoad(each->points()[i], each->points()[i + 1], options.roadWidth / 2);
   for (const SideRoad& road : sideRoads) paintRoad(road.a, road.b, road.halfWidth);
   fillHeights();
 }
@@ -40,31 +43,34 @@ double Terrain::smooth(double x, double y) const {
   return height;
 }
 
-void Terrain::allocate(const Street& street) {
-  Eigen::Vector2d low = street.points().front(), high = low;
-  for (const auto& point : street.points()) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
+void Terrain::allocate(const std::vector<const Street*>& streets) {
+  Eigen::Vector2d low = streets.front()->points().front(), high = low;
+  for (const Street* street : streets)
+    for (const auto& point : street->points()) {
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
   m_origin = low.array() - kReach - kTile;
   m_tilesX = static_cast<int>(std::ceil((high.x() - m_origin.x() + kReach) / kTile)) + 1;
   m_tilesY = static_cast<int>(std::ceil((high.y() - m_origin.y() + kReach) / kTile)) + 1;
   m_tileOf.assign(static_cast<std::size_t>(m_tilesX) * m_tilesY, -1);
+  for (const Street* street : streets)
+    for (std::size_t i = 0; i < street->points().size(); i += 20) allocate(street->points()[i]);
+}
+
+void Terrain::allocate(const Eigen::Vector2d& place) {
   const int reach = static_cast<int>(std::ceil(kReach / kTile));
-  for (std::size_t i = 0; i < street.points().size(); i += 20) {
-    const Eigen::Vector2d cell = (street.points()[i] - m_origin) / kTile;
-    for (int tx = static_cast<int>(cell.x()) - reach; tx <= static_cast<int>(cell.x()) + reach;
-         ++tx)
-      for (int ty = static_cast<int>(cell.y()) - reach; ty <= static_cast<int>(cell.y()) + reach;
-           ++ty) {
-        if (tx < 0 || ty < 0 || tx >= m_tilesX || ty >= m_tilesY) continue;
-        auto& tile = m_tileOf[static_cast<std::size_t>(ty) * m_tilesX + tx];
-        if (tile >= 0) continue;
-        tile = static_cast<std::int32_t>(m_tiles.size());
-        m_tiles.emplace_back();
-        m_tiles.back().edge.assign((kNodes + 1) * (kNodes + 1), static_cast<float>(kFarEdge));
-      }
-  }
+  const Eigen::Vector2d cell = (place - m_origin) / kTile;
+  for (int tx = static_cast<int>(cell.x()) - reach; tx <= static_cast<int>(cell.x()) + reach; ++tx)
+    for (int ty = static_cast<int>(cell.y()) - reach; ty <= static_cast<int>(cell.y()) + reach;
+         ++ty) {
+      if (tx < 0 || ty < 0 || tx >= m_tilesX || ty >= m_tilesY) continue;
+      auto& tile = m_tileOf[static_cast<std::size_t>(ty) * m_tilesX + tx];
+      if (tile >= 0) continue;
+      tile = static_cast<std::int32_t>(m_tiles.size());
+      m_tiles.emplace_back();
+      m_tiles.back().edge.assign((kNodes + 1) * (kNodes + 1), static_cast<float>(kFarEdge));
+    }
 }
 
 void Terrain::paintRoad(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double halfWidth) {

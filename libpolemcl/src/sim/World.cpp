@@ -1,3 +1,4 @@
+#include <polemcl/sim/Season.h>
 #include <polemcl/sim/World.h>
 
 #include <algorithm>
@@ -11,12 +12,15 @@ constexpr double kCell = 10;  // of the index of objects, m
 }
 
 World::World(const WorldOptions& options, Street street, Terrain terrain,
-             std::vector<WorldObject> objects, std::vector<TruePole> poles)
+             std::vector<WorldObject> objects, std::vector<TruePole> poles,
+             std::vector<BuildingSite> sites, std::vector<Detour> detours)
     : m_options(options),
       m_street(std::move(street)),
       m_terrain(std::move(terrain)),
       m_objects(std::move(objects)),
-      m_poles(std::move(poles)) {
+      m_poles(std::move(poles)),
+      m_sites(std::move(sites)),
+      m_detours(std::move(detours)) {
   Eigen::Vector2d low(0, 0), high(0, 0);
   for (std::size_t i = 0; i < m_objects.size(); ++i) {
     low = i == 0 ? m_objects[i].centre : low.cwiseMin(m_objects[i].centre).eval();
@@ -56,15 +60,67 @@ std::vector<std::uint32_t> World::objectsWithin(double x, double y, double radiu
   return found;
 }
 
+double World::snowAt(double x, double y) const {
+  double top = 0;
+  for (const std::uint32_t i : objectsWithin(x, y, 0)) {
+    if (m_objects[i].kind != Kind::snowBank) continue;
+    for (const Solid& heap : m_objects[i].solids) {
+      const Eigen::Vector3d offset(x - heap.position.x(), y - heap.position.y(), 0);
+      const Eigen::Vector3d local = (heap.axes.transpose() * offset).cwiseQuotient(heap.size);
+      const double rest = 1 - local.head<2>().squaredNorm();
+      if (rest <= 0) continue;
+      const double height = heap.position.z() + heap.size.z() * std::sqrt(rest);
+      top = std::max(top, height - m_terrain.height(x, y));
+    }
+  }
+  return top;
+}
+
+namespace {
+/// \brief What plans of all streets add up to.
+struct Furnished {
+  std::vector<WorldObject> objects;
+  std::vector<TruePole> poles;
+  std::vector<BuildingSite> sites;
+  void add(StreetPlan plan) {
+    objects.insert(objects.end(), plan.objects.begin(), plan.objects.end());
+    poles.insert(poles.end(), plan.poles.begin(), plan.poles.end());
+    sites.insert(sites.end(), plan.sites.begin(), plan.sites.end());
+  }
+};
+
+Furnished furnish(const WorldOptions& options, const Street& street, const Terrain& terrain,
+                  const std::vector<Crossing>& crossings, const std::vector<Detour>& detours) {
+  WorldOptions today = options;
+  if (options.dayOfYear > 0) today.foliage *= seasonOf(options.dayOfYear + options.day).foliage;
+  Furnished all;
+  StreetPlan plan(today, street, terrain, crossings);
+  plan.furnish();
+  all.add(std::move(plan));
+  for (std::size_t k = 0; k < detours.size(); ++k) {
+    WorldOptions own = today;
+    own.seed = hash(options.seed, 0x51de2ull, k);
+    std::vector<Crossing> bends;  // nothing wide fits into a bend
+    for (const double s : detours[k].bends) bends.push_back({s, true, true, 12, false});
+    StreetPlan sidePlan(own, detours[k].street, terrain, bends,
+                        StreetPart{static_cast<std::uint32_t>(k + 1)});
+    sidePlan.furnish();
+    all.add(std::move(sidePlan));
+  }
+  if (!detours.empty()) removeBuiltOver(all.objects, all.poles);
+  return all;
+}
+}  // namespace
+
 World makeWorld(const WorldOptions& options) {
   options.validate();
   Street street = Street::make(options);
-  const auto crossings = planCrossings(options, street);
-  Terrain terrain(options, street, sideRoads(crossings, street, options));
-  StreetPlan plan(options, street, terrain, crossings);
-  plan.furnish();
-  return World(options, std::move(street), std::move(terrain), std::move(plan.objects),
-               std::move(plan.poles));
+  auto detours = planDetours(options, street);
+  const auto crossings = planCrossings(options, street, detours);
+  Terrain terrain(options, street, sideRoads(crossings, street, options), detours);
+  Furnished all = furnish(options, street, terrain, crossings, detours);
+  return World(options, std::move(street), std::move(terrain), std::move(all.objects),
+               std::move(all.poles), std::move(all.sites), std::move(detours));
 }
 
 }  // namespace polemcl::sim

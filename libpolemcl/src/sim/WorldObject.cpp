@@ -7,10 +7,11 @@
 namespace polemcl::sim {
 
 const char* name(Kind kind) {
-  static const char* const names[] = {"lamp post", "sign",  "traffic light", "tree",      "bush",
-                                      "hedge",     "house", "wall",          "car",       "person",
-                                      "bicycle",   "fence", "bollard",       "billboard", "bin",
-                                      "cabinet",   "column"};
+  static const char* const names[] = {
+      "lamp post", "sign",       "traffic light", "tree",    "bush",    "hedge",
+      "house",     "wall",       "car",           "person",  "bicycle", "fence",
+      "bollard",   "billboard",  "bin",           "cabinet", "column",  "snow bank",
+      "hoarding",  "site fence", "container",     "beacon"};
   return names[static_cast<int>(kind)];
 }
 

@@ -54,6 +54,15 @@ struct ClassModel {
   std::array<std::vector<Quantiles>, kReported> reported;
 };
 
+/// \brief What seasons and building sites change. Scores are added to the threshold of visibility,
+/// by class of poles: lamp post, sign, traffic light, tree. All 0: nothing changes.
+struct SeasonModel {
+  std::array<double, 4> snow{};  ///< score of poles in a snow bank, for each 0.5 m it is high
+  std::array<double, 4> bare{};  ///< score when no leaves are out
+  double fence = 0;              ///< score behind a fence of mesh
+  double siteClutter = 0;        ///< lasting false objects per metre of building site
+};
+
 struct DetectionModel {
   std::string sensor;        ///< `[sensor] model` it was fitted for
   double height = 1;         ///< of the sensor above ground, m
@@ -71,6 +80,7 @@ struct DetectionModel {
   Quantiles clutterLateral{};  ///< of these, distance from the middle of the road, m
   double passing = 0;          ///< passing false detections per scan
   Quantiles passingRange{};    ///< of these, m
+  SeasonModel season;
 
   const ClassModel& of(DetectionClass c) const { return classes[static_cast<int>(c)]; }
   const NoiseSpectrum& noiseOf(Reported r) const { return noise[static_cast<int>(r)]; }

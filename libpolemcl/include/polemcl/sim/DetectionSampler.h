@@ -19,7 +19,8 @@ struct ClutterObject {
   bool today = false;   ///< on this day only
 };
 
-/// \brief What looks like a pole along the road, the same for the same world, day and factor.
+/// \brief What looks like a pole along the roads and at the fences of building sites (there as long
+/// as the site stands), the same for the same world, day and factor.
 /// \param factor Scales the numbers; up to 1 they are a part of those of 1, beyond that come
 /// others.
 std::vector<ClutterObject> placeClutter(const DetectionModel& model, const World& world,
@@ -39,9 +40,9 @@ class DetectionSampler {
   std::vector<PoleDetection> sample(std::size_t i, const Eigen::Isometry3d& T_map_sensor) const;
 
   /// \brief How far a pole could have been seen in each direction, as FreeRangeFinder gives it: to
-  /// the nearest house or wall, at most to the model's greatest range, in its steps. Cars, hedges
-  /// and crowns hide nothing here; the model's detection rates hold what they hide.
-  /// \return FreeRangeFinder::kSectors ranges, m, in the frame of the written clouds.
+  /// the nearest house, wall, hoarding or container, at most to the model's greatest range, in its
+  /// steps. Cars, hedges and crowns hide nothing here; the model's detection rates hold what they
+  /// hide. \return FreeRangeFinder::kSectors ranges, m, in the frame of the written clouds.
   std::vector<float> freeRange(const Eigen::Isometry3d& T_map_sensor) const;
 
   const DetectionModel& model() const { return m_model; }
@@ -54,10 +55,15 @@ class DetectionSampler {
     Eigen::Vector2d place;        ///< m, map frame
     double radius;                ///< m; 0 of what is no pole
     std::uint64_t always, today;  ///< where its noise begins
+    double snow = 0;              ///< of the snow bank it stands in, m
+    double shift = 0;             ///< of its threshold, by the season
   };
   struct View;
   Target targetOf(DetectionClass kind, double x, double y, double radius, std::uint64_t id,
                   bool todayOnly) const;
+  /// \brief Threshold on its visibility, below which a target is detected.
+  double threshold(const Target& target, const View& view) const;
+  void addPoles(const World& world);
   void addTarget(const Target& target, const View& view, std::vector<PoleDetection>& found) const;
   void addPassing(const View& view, std::vector<PoleDetection>& found) const;
   PoleDetection report(const Target& target, const View& view, const Eigen::Vector2d& place,
@@ -65,7 +71,7 @@ class DetectionSampler {
 
   DetectionModel m_model;
   SimulationOptions m_options;
-  SightLines m_sight;
+  SightLines m_sight, m_fences;
   std::vector<ClutterObject> m_clutter;
   std::vector<Target> m_targets;
 };

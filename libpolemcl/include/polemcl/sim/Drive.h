@@ -33,7 +33,7 @@ inline std::uint64_t driveSeed(const SimulationOptions& options, std::uint64_t s
 Eigen::Isometry3d cloudFrame(const Eigen::Isometry3d& T_map_sensor,
                              const SimulationOptions& options);
 
-/// \brief Drives along the street at constant speed.
+/// \brief Drives along the street, or round by the detour of the options, at constant speed.
 /// \throws Error when the street is shorter than two scans.
 Drive makeDrive(const World& world, const SimulationOptions& options);
 

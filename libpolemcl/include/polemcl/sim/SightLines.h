@@ -1,6 +1,6 @@
 #pragma once
 /// \file SightLines.h
-/// \brief Whether houses and walls stand between two places, seen from above.
+/// \brief Whether something stands between two places, seen from above.
 
 #include <polemcl/sim/World.h>
 
@@ -9,10 +9,16 @@
 
 namespace polemcl::sim {
 
-/// \brief The houses and walls of a world as rectangles. Immutable, safe to share.
+/// \brief What hides things behind it.
+enum class Obstacle {
+  opaque,  ///< houses, walls, hoardings, containers
+  mesh     ///< fences of building sites: some pulses pass
+};
+
+/// \brief The obstacles of one sort in a world as rectangles. Immutable, safe to share.
 class SightLines {
  public:
-  explicit SightLines(const World& world);
+  explicit SightLines(const World& world, Obstacle obstacle = Obstacle::opaque);
 
   /// \brief A rectangle: local = axes (p - centre), inside when |local| <= half.
   struct Block {

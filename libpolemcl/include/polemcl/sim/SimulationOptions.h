@@ -27,7 +27,16 @@ struct WorldOptions {
   double addedShare = 0.02;    ///< new poles on another day, share of all (`added_share`)
   double foliage = 1;          ///< density of leaves; 0: bare branches
   bool peopleMove = false;     ///< people walk during the drive (`people_move`)
-  void validate() const;       ///< \throws Error
+  /// Share of the poles that go for good within 365 days, each on a day of its own, while as many
+  /// new ones come to stay (`replaced_per_year`); 0: none.
+  double replacedPerYear = 0;
+  /// Day of the year of day 0, 1: 1 January (`day_of_year`); 0: no seasons, leaves and no snow.
+  int dayOfYear = 0;
+  /// Midwinter's snow banks hide what stands along the kerb up to this height, m (`snow_bank_m`).
+  double snowBank = 0.5;
+  double buildingSites = 0;  ///< per km of street, at any time (`building_sites`)
+  int sideStreets = 0;       ///< side streets for detours, 0 to 2 (`side_streets`)
+  void validate() const;     ///< \throws Error
 };
 
 /// \brief The drive and its LiDAR. `[simulation]` in INI files.
@@ -54,6 +63,8 @@ struct SimulationOptions {
   /// Detection model (JSON) that stands in for rays where poles are asked for; "": rays are cast
   /// (`detections`).
   std::string detections;
+  /// The drive goes round through this side street; 0: straight on (`detour`).
+  int detour = 0;
   double falseFactor = 1;  ///< scales the false detections of that model (`false_factor`)
   void validate() const;   ///< \throws Error
 };

@@ -2,6 +2,7 @@
 /// \file Terrain.h
 /// \brief The ground: slopes, undulation, and roads lowered by a kerb.
 
+#include <polemcl/sim/Detour.h>
 #include <polemcl/sim/Street.h>
 
 #include <Eigen/Core>
@@ -19,8 +20,8 @@ struct SideRoad {
 /// \brief Ground height over the plane. Immutable once built, safe to share.
 class Terrain {
  public:
-  Terrain(const WorldOptions& options, const Street& street,
-          const std::vector<SideRoad>& sideRoads);
+  Terrain(const WorldOptions& options, const Street& street, const std::vector<SideRoad>& sideRoads,
+          const std::vector<Detour>& detours = {});
 
   /// \brief Height of the ground, m, map frame.
   double height(double x, double y) const {
@@ -53,7 +54,8 @@ class Terrain {
   double smooth(double x, double y) const;
   double solve(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double lift,
                double start, double maxRange) const;
-  void allocate(const Street& street);
+  void allocate(const std::vector<const Street*>& streets);
+  void allocate(const Eigen::Vector2d& place);
   void paintRoad(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double halfWidth);
   void fillHeights();
 

@@ -2,6 +2,8 @@
 /// \file World.h
 /// \brief The street, its ground and all that stands there on one day.
 
+#include <polemcl/sim/BuildingSite.h>
+#include <polemcl/sim/Detour.h>
 #include <polemcl/sim/SimulationOptions.h>
 #include <polemcl/sim/Street.h>
 #include <polemcl/sim/Terrain.h>
@@ -15,7 +17,8 @@ namespace polemcl::sim {
 class World {
  public:
   World(const WorldOptions& options, Street street, Terrain terrain,
-        std::vector<WorldObject> objects, std::vector<TruePole> poles);
+        std::vector<WorldObject> objects, std::vector<TruePole> poles,
+        std::vector<BuildingSite> sites = {}, std::vector<Detour> detours = {});
 
   const WorldOptions& options() const { return m_options; }
   const Street& street() const { return m_street; }
@@ -23,6 +26,15 @@ class World {
   const std::vector<WorldObject>& objects() const { return m_objects; }
   /// \brief The poles that stand on this day, by id.
   const std::vector<TruePole>& poles() const { return m_poles; }
+  /// \brief The building sites of this day.
+  const std::vector<BuildingSite>& buildingSites() const { return m_sites; }
+  const std::vector<Detour>& detours() const { return m_detours; }
+  /// \brief The way of a drive: the street, or with a detour (from 1).
+  const Street& path(int detour) const {
+    return detour == 0 ? m_street : m_detours.at(static_cast<std::size_t>(detour - 1)).path;
+  }
+  /// \brief Height of the snow banks at a place, m above ground; 0 where none is.
+  double snowAt(double x, double y) const;
   /// \brief Indices of the objects that may reach into a circle, ascending.
   std::vector<std::uint32_t> objectsWithin(double x, double y, double radius) const;
 
@@ -32,6 +44,8 @@ class World {
   Terrain m_terrain;
   std::vector<WorldObject> m_objects;
   std::vector<TruePole> m_poles;
+  std::vector<BuildingSite> m_sites;
+  std::vector<Detour> m_detours;
   Eigen::Vector2d m_gridOrigin;
   int m_gridX = 0, m_gridY = 0;
   double m_largest = 0;  ///< reach of the largest object, m

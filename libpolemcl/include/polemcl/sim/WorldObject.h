@@ -27,9 +27,24 @@ enum class Kind : std::uint8_t {
   billboard,
   bin,
   cabinet,
-  column
+  column,
+  // of a season or for some weeks
+  snowBank,
+  hoarding,   ///< boards
+  siteFence,  ///< mesh
+  container,
+  beacon
 };
 const char* name(Kind kind);
+
+/// Ids of the things of one street; those of the next begin there.
+inline constexpr std::uint32_t kIdsPerStreet = 2000000;
+/// Where ids of a street begin that mean another thing on another day.
+inline constexpr std::uint32_t kFirstIdOfOneDay = 1000000;
+/// \brief True when the thing of this id stands on one day only.
+constexpr bool ofOneDay(std::uint32_t id) {
+  return id % kIdsPerStreet >= kFirstIdOfOneDay;
+}
 
 /// \brief A true pole: slim, upright, its top at least 2 m above ground.
 struct TruePole {
