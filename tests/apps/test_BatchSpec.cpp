@@ -100,3 +100,17 @@ TEST(BatchSpec, SeedsComeFromNamesAlone) {
   EXPECT_NE(seedOf(1, "a/run 0"), seedOf(1, "a/run 1"));
   EXPECT_NE(seedOf(1, "a/run 0"), seedOf(2, "a/run 0"));
 }
+
+TEST(BatchSpec, WhatASessionSetsComesAfterWhatAllSet) {
+  const TempFolder folder;
+  writeText(folder / "a.ini",
+            "[batch]\nsettings = one\n[sessions]\nnames = a b\nsource = simulated\ninput = x.ini\n"
+            "set = world.seed=5 simulation.detections={here}/m.json\n"
+            "[session b]\nset = world.seed=6\n" +
+                setting + "sessions = b\n");
+  const BatchSpec spec = readBatchSpec(folder / "a.ini");
+  const std::string model = "simulation.detections=" + folder.path().string() + "/m.json";
+  EXPECT_EQ(spec.session("a").set, (std::vector<std::string>{"world.seed=5", model}));
+  EXPECT_EQ(spec.session("b").set,
+            (std::vector<std::string>{"world.seed=5", model, "world.seed=6"}));
+}

@@ -54,6 +54,7 @@ class Placeholders {
       throw Error(m_file + ": '" + text +
                   "' needs the folder of the dataset: give --data DIR (see share/doc/batch.md)");
     replace(text, "{data}", m_data.string());
+    replace(text, "{here}", m_folder.string());
     replace(text, "{session}", session);
     return text;
   }
@@ -121,8 +122,10 @@ std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders&
   std::vector<BatchSession> sessions;
   for (const auto& name : names) {
     SessionText own = common;
+    own.set.clear();
     reader.section("session " + name, "What is different");
     bindSession(reader, own);
+    own.set = common.set + " " + own.set;
     sessions.push_back(finished(own, name, fill, where));
   }
   return sessions;

@@ -12,15 +12,16 @@ namespace polemcl::apps {
 
 /// \brief One drive: where it comes from. `[sessions]` holds what all have in common, a section
 /// `[session NAME]` what is different. In all values `{session}` stands for the name, `{data}` for
-/// what `--data` gives; paths are relative to the batch file.
+/// what `--data` gives, `{here}` for the folder of the batch file; paths are relative to that.
 struct BatchSession {
   std::string name;
   /// `simulated` (input: its INI), `poles` or `scans` (input: a rawlog, the truth beside it), or a
   /// dataset of `pole-import` (input: its folder).
   std::string source;
   std::string input;
-  std::string date;                   ///< YYYY-MM-DD; "": as the times of its scans say
-  std::vector<std::string> set;       ///< of `simulated`: `section.key=value`, see loadSettings()
+  std::string date;  ///< YYYY-MM-DD; "": as the times of its scans say
+  /// Of `simulated`: `section.key=value`, see loadSettings(); those of all, then its own.
+  std::vector<std::string> set;
   std::size_t every = 1, offset = 0;  ///< scans taken, as `pole-import` has it
   double odometryNoise = 0;           ///< share of the true motion; 0: odometry of the dataset
   std::string sensorPose, poses, posesOf = "robot", calib;  ///< as `pole-import` has them
