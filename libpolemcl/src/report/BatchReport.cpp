@@ -38,14 +38,18 @@ std::string sideBySide(const std::string& content) {
   return content.empty() ? "" : element("div", "class=\"two\"", '\n' + content) + '\n';
 }
 
+std::string sessionFigures(Page& page) {
+  return sessionsFigure(page.results, page.summaries,
+                        {"mean position error", "m", &FigureSpreads::posMean}, page.ids) +
+         sessionsFigure(page.results, page.summaries,
+                        {"mean heading error", "°", &FigureSpreads::angMeanDeg}, page.ids);
+}
+
 Section settingsSection(Page& page) {
   const BatchResults& results = page.results;
   std::string content;
   if (results.settings.size() > 1) content += settingsTable(results, page.summaries);
-  content += sessionsFigure(results, page.summaries,
-                            {"mean position error", "m", &FigureSpreads::posMean}, page.ids);
-  content += sessionsFigure(results, page.summaries,
-                            {"mean heading error", "°", &FigureSpreads::angMeanDeg}, page.ids);
+  if (results.sessions.size() > 1) content += sessionFigures(page);
   if (results.settings.size() > 1)
     content += foldable("Sessions with all settings side by side",
                         sideBySideTable(results, page.summaries), false);
@@ -88,15 +92,18 @@ Section histograms(Page& page) {
 Section paths(Page& page) {
   const BatchResults& results = page.results;
   std::string content;
+  bool opened = false;
   for (std::size_t k = 0; k < results.sessions.size(); ++k) {
     std::string maps;
     for (std::size_t i = 0; i < results.settings.size(); ++i)
       if (const SessionResult* result = results.find(i, k))
         maps += mapFigure(results, *result, page.ids);
-    const std::string plots = sideBySide(maps) + distanceFigure(results, k, page.ids);
-    // The first is open, to show what the others hold.
-    if (!plots.empty())
-      content += foldable(sessionLine(results, page.summaries, k), plots, content.empty());
+    const std::string errors = distanceFigure(results, k, page.ids);
+    if (maps.empty() && errors.empty()) continue;
+    // The first that was localized is open, to show what the others hold.
+    content += foldable(sessionLine(results, page.summaries, k), sideBySide(maps) + errors,
+                        !opened && !errors.empty());
+    opened |= !errors.empty();
   }
   return {"paths", "Paths and maps", content.empty() ? "" : mapLegend() + content};
 }

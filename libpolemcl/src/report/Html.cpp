@@ -108,7 +108,7 @@ void HtmlTable::foot(const std::vector<std::string>& content) {
 }
 
 std::string HtmlTable::str(const std::string& className) const {
-  std::string table = element("caption", escaped(m_caption)) + '\n';
+  std::string table = element("caption", element("span", escaped(m_caption))) + '\n';
   if (!m_head.empty()) table += element("thead", '\n' + m_head) + '\n';
   table += element("tbody", '\n' + m_body) + '\n';
   if (!m_foot.empty()) table += element("tfoot", '\n' + m_foot) + '\n';

@@ -11,6 +11,8 @@
 namespace polemcl::report {
 namespace {
 
+constexpr std::size_t mostOpenRows = 20;  // a longer list of troubles is folded away
+
 std::string number(double value) {
   return figureText(value, 3);
 }
@@ -109,7 +111,7 @@ std::string troublesTables(const BatchResults& results) {
               {"Δ<sub>pos</sub> (m)"},
               {"At the end (m)"},
               {"What happened"}});
-  bool any = false;
+  std::size_t count = 0;
   for (std::size_t k = 0; k < results.sessions.size(); ++k)
     for (std::size_t i = 0; i < results.settings.size(); ++i) {
       const SessionResult* result = results.find(i, k);
@@ -117,7 +119,7 @@ std::string troublesTables(const BatchResults& results) {
       for (const BatchRun& run : result->runs) {
         const RunState state = stateOf(run, results.lostBound);
         if (state == RunState::ok) continue;
-        any = true;
+        ++count;
         table.row({escaped(results.sessions[k].name), escaped(results.settings[i].name),
                    std::to_string(run.run), std::to_string(run.seed), number(run.errors.posMean),
                    number(run.errors.posEnd),
@@ -126,7 +128,11 @@ std::string troublesTables(const BatchResults& results) {
                                              : "lost"});
       }
     }
-  return (any ? table.str("words") : "") + failedTasks(results.failures);
+  const std::string failed = failedTasks(results.failures);
+  if (count == 0) return failed;
+  return failed + (count <= mostOpenRows ? table.str("remark")
+                                         : foldable(plural(count, "run") + " failed or lost",
+                                                    table.str("remark"), false));
 }
 
 std::string sessionsTable(const BatchResults& results) {

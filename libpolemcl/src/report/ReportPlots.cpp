@@ -24,7 +24,7 @@ std::vector<std::string> settingNames(const BatchResults& results) {
 std::string figure(const std::string& plot, const std::string& legend, const std::string& caption,
                    const std::string& className = "") {
   return element("figure", className.empty() ? "" : "class=\"" + className + '"',
-                 element("div", "class=\"scroll\"", '\n' + plot) + '\n' + legend +
+                 element("div", "class=\"scroll\" tabindex=\"0\"", '\n' + plot) + '\n' + legend +
                      element("figcaption", caption)) +
          '\n';
 }
@@ -40,12 +40,17 @@ std::string shortName(const std::string& name) {
   return end == name.size() ? name : name.substr(0, end) + "\xE2\x80\xA6";
 }
 
-/// Width of the longest label when it is turned by 45 degrees, pixels.
-double turnedExtent(const BatchResults& results) {
+/// Width of the longest label, pixels.
+double labelWidth(const BatchResults& results) {
   std::size_t longest = 0;
   for (const BatchSession& session : results.sessions)
     longest = std::max(longest, std::min(session.name.size(), longestLabel + 1));
-  return 0.71 * 7.4 * longest;
+  return 7.4 * longest;
+}
+
+/// Whether the labels have to be turned by 45 degrees on an axis that long.
+bool turned(const BatchResults& results, double pixels) {
+  return labelWidth(results) + 12 > pixels / results.sessions.size();
 }
 
 /// The sessions x settings plot, drawn part by part.
@@ -59,7 +64,8 @@ class SessionsPlot {
         m_plot(id, width, heightOf(results), quantity.name + " per session",
                "Mean over the runs of each session, bars of one standard deviation, for " +
                    plural(results.settings.size(), "setting") + ".") {
-    const double left = std::max(64.0, turnedExtent(results) - 10);
+    const double left =
+        turned(results, plotWidth) ? std::max(64.0, 0.71 * labelWidth(results) - 10) : 64;
     m_axes.frame = {left, 12, width - left - 14, plotHeight};
     m_axes.x = {-0.5, results.sessions.size() - 0.5};
     m_axes.y = {0, limit()};
@@ -73,9 +79,10 @@ class SessionsPlot {
   const std::vector<std::string>& beyond() const { return m_beyond; }
 
  private:
-  static constexpr double width = 960, plotHeight = 270;
+  static constexpr double width = 960, plotWidth = 880, plotHeight = 270;
   static double heightOf(const BatchResults& results) {
-    return 12 + plotHeight + 24 + turnedExtent(results) + 22;
+    const double labels = turned(results, plotWidth) ? 16 + 0.71 * labelWidth(results) : 20;
+    return 12 + plotHeight + labels + 26;
   }
   const Spread& spreadOf(const SessionSummary& session) const {
     return session.figures.*m_quantity.spread;
@@ -93,14 +100,15 @@ class SessionsPlot {
   void drawAxes() {
     const std::size_t count = m_results.sessions.size();
     const std::size_t every = (count + mostLabels - 1) / mostLabels;
+    const bool isTurned = turned(m_results, plotWidth);
     std::vector<SvgTick> lines, labels;
     for (std::size_t i = 0; i < count; i += every) {
-      lines.push_back({double(i), ""});
       labels.push_back({double(i), shortName(m_results.sessions[i].name)});
+      lines.push_back({double(i), isTurned ? "" : labels.back().label});
     }
     m_plot.axes(m_axes, lines, roundTicks(m_axes.y, m_axes.frame.height, false), "session",
                 m_quantity.name + " (" + m_quantity.unit + ")");
-    m_plot.turnedLabels(m_axes, labels);
+    if (isTurned) m_plot.turnedLabels(m_axes, labels);
   }
   /// Settings stand side by side within a session.
   double offset(std::size_t setting) const {
@@ -120,7 +128,7 @@ class SessionsPlot {
     m_plot.beginClip(m_axes.frame);
     m_plot.line(means, "line thin " + seriesClass(index));
     for (const SessionSummary& session : m_summaries[index].sessions)
-      if (spreadOf(session).count > 1)
+      if (spreadOf(session).count > 1 && spreadOf(session).mean <= m_axes.y.high)
         drawSpread(index, spreadOf(session), means[session.session].x());
     m_plot.endClip();
     for (const SessionSummary& session : m_summaries[index].sessions)
@@ -212,7 +220,7 @@ std::string sessionsFigure(const BatchResults& results,
 std::string histogramFigure(const BatchResults& results, const HistogramQuantity& quantity,
                             PlotIds& ids) {
   const std::vector<ErrorHistogram> histograms = histogramsOf(results, quantity.histogram);
-  PlotAxes axes{{58, 12, 408, 240}, exponentsOf(histograms), {0, 0}};
+  PlotAxes axes{{58, 12, 398, 240}, exponentsOf(histograms), {0, 0}};
   if (!(axes.x.span() > 0)) return "";
   std::vector<std::string> counted;
   for (std::size_t i = 0; i < histograms.size(); ++i) {
@@ -268,7 +276,8 @@ std::string distanceFigure(const BatchResults& results, std::size_t session, Plo
   std::string caption = "Position error of run 0, the largest in every " + figureText(bin, 0) +
                         " m driven; at most " + figureText(largest, 3) + " m";
   caption += largest > axes.y.high ? ", which is above the plot." : ".";
-  return figure(plot.str("plot wide"), seriesLegend(settingNames(results), false), caption);
+  return figure(plot.str("plot wide"), seriesLegend(settingNames(results), false, "line fine"),
+                caption);
 }
 
 }  // namespace polemcl::report

@@ -139,7 +139,7 @@ std::string settingCards(const BatchResults& results,
     const FigureSpreads& figures = summary.figures;
     const bool bad = summary.counts.lost + summary.counts.failed > 0;
     std::string card =
-        element("h3", escaped(results.settings[i].name)) +
+        element("h2", escaped(results.settings[i].name)) +
         element("p", "class=\"big\"", figureText(figures.posMean.mean, 3) + element("span", " m")) +
         element("p", "class=\"what\"", "mean position error");
     card +=
@@ -148,7 +148,9 @@ std::string settingCards(const BatchResults& results,
                     fact("heading", degrees(figures.angMeanDeg.mean) + " mean, " +
                                         degrees(figures.angRmseDeg.mean) + " RMSE") +
                     fact("largest", metres(figures.posMax.largest)) +
-                    fact("last / first", changeText(summary.lastOverFirst)) +
+                    (std::isfinite(summary.lastOverFirst)
+                         ? fact("last / first", changeText(summary.lastOverFirst))
+                         : "") +
                     fact("runs", bad ? element("span", "class=\"bad\"", runsText(summary.counts))
                                      : runsText(summary.counts)));
     cards += element("section", "class=\"card " + seriesClass(i) + '"', card) + '\n';
@@ -163,7 +165,8 @@ std::string sessionLine(const BatchResults& results, const std::vector<SettingSu
   for (std::size_t i = 0; i < summaries.size(); ++i)
     for (const SessionSummary& one : summaries[i].sessions) {
       if (one.session != session || one.counts.runs == 0) continue;
-      std::string part = escaped(results.settings[i].name) + ' ' + metres(one.figures.posMean.mean);
+      std::string part =
+          escaped(results.settings[i].name) + "\xC2\xA0" + metres(one.figures.posMean.mean);
       if (one.counts.lost + one.counts.failed > 0)
         part += element("span", "class=\"bad\"", " (runs: " + runsText(one.counts) + ")");
       parts.push_back(part);

@@ -21,7 +21,7 @@ const char* const reportStyle = R"css(
     --paper: #15171a; --ink: #e7e5df; --muted: #a4a8af; --rule: #363a40; --panel: #1d2024;
     --link: #7cc0ee; --bad: #ff8f85; --bad-paper: #3a201e; --good: #4fd1a5; --fair: #e5b94b;
     --s0: #5ab4ec; --s1: #ff9a52; --s2: #3fce9f; --s3: #e49ac8; --s4: #e2cb52; --s5: #a3adff;
-    --pole: #ff9a52; --truth: #5b6169; --estimate: #5ab4ec;
+    --pole: #ff9a52; --truth: #767d87; --estimate: #5ab4ec;
   }
 }
 * { box-sizing: border-box; }
@@ -53,9 +53,10 @@ nav a:hover { text-decoration: underline; }
 .lead p { font-size: 19px; line-height: 1.5; }
 .alarm { border-left: 4px solid var(--bad); background: var(--bad-paper); padding: 10px 14px; }
 .note { color: var(--muted); font-size: 15.5px; }
+ul.note { padding-left: 18px; margin: 0 0 14px; }
 .cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(270px, 1fr)); gap: 16px; margin: 26px 0; }
-.card { border: 1px solid var(--rule); border-top: 4px solid var(--c); border-radius: 3px; padding: 12px 18px 14px; min-width: 0; }
-.card h3 { margin: 0; font-size: 17px; }
+.card { border: 1px solid var(--rule); border-top: 4px solid var(--c); border-radius: 3px; padding: 12px 18px 14px; min-width: 0; max-width: 512px; }
+.card h2 { margin: 0; padding: 0; border: 0; font-size: 17px; }
 .card .big { font-size: 40px; line-height: 1.2; margin: 4px 0 0; font-variant-numeric: lining-nums tabular-nums; }
 .card .big span { font-size: 18px; color: var(--muted); }
 .card .what { font: 13.5px/1.4 var(--sans); color: var(--muted); margin: 0 0 10px; }
@@ -71,7 +72,8 @@ table {
   border-top: 2px solid var(--ink); border-bottom: 2px solid var(--ink); margin: 8px 0 20px;
 }
 caption { caption-side: top; text-align: left; color: var(--muted); font: 15.5px/1.4 var(--serif); padding: 6px 0 8px; }
-th, td { padding: 5px 12px; text-align: right; white-space: nowrap; font-weight: 400; }
+caption span { display: inline-block; position: sticky; left: 0; max-width: min(46em, 100vw - 40px); }
+th, td { padding: 5px 10px; text-align: right; white-space: nowrap; font-weight: 400; }
 thead th { font-weight: 600; vertical-align: bottom; }
 thead tr:last-child > * { border-bottom: 1px solid var(--ink); }
 thead th[scope="colgroup"] { text-align: center; border-bottom: 1px solid var(--rule); }
@@ -80,10 +82,11 @@ tfoot tr:first-child > * { border-top: 1px solid var(--ink); }
 tfoot th, tfoot td { font-weight: 600; }
 th:first-child, td:first-child { text-align: left; padding-left: 2px; }
 tbody th, tfoot th, thead tr > :first-child { position: sticky; left: 0; background: var(--paper); max-width: 15em; overflow: hidden; text-overflow: ellipsis; }
-table.words td { text-align: left; white-space: normal; min-width: 8em; }
-table.words thead th { text-align: left; }
-table.words tbody th { white-space: normal; }
-tr.bad td:last-child, .bad { color: var(--bad); }
+table.words td, table.words thead th { text-align: left; }
+table.words td { white-space: normal; min-width: 8em; }
+table.words tbody th { white-space: normal; min-width: 11em; }
+table.remark tr > :last-child { text-align: left; white-space: normal; min-width: 14em; }
+tr.bad td:last-child, span.bad { color: var(--bad); }
 tr.ours > * { font-weight: 600; }
 .sd { color: var(--muted); }
 sub { line-height: 0; }
@@ -94,7 +97,7 @@ figure { margin: 18px 0 24px; min-width: 0; }
 figcaption { color: var(--muted); font-size: 15.5px; line-height: 1.45; margin-top: 4px; max-width: 46em; }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 330px), 1fr)); gap: 0 28px; align-items: start; }
 svg.plot { display: block; width: 100%; height: auto; }
-svg.wide { min-width: 640px; }
+svg.wide { min-width: 780px; }
 svg.key { width: 34px; height: 14px; flex: none; }
 .legend { list-style: none; display: flex; flex-wrap: wrap; gap: 2px 20px; margin: 4px 0; padding: 0; font: 14px/1.5 var(--sans); }
 .legend li { display: flex; align-items: center; gap: 7px; min-width: 0; }
@@ -109,6 +112,7 @@ svg.key { width: 34px; height: 14px; flex: none; }
 .line.c3 { stroke-dasharray: 9 3 2 3; } .line.c4 { stroke-dasharray: 12 4; } .line.c5 { stroke-dasharray: 4 2; }
 .line.thin { stroke-width: 1.4; opacity: .75; }
 .line.fine { stroke-width: 1.3; stroke-dasharray: none; }
+.key .line.fine { stroke-width: 2.4; }
 .spread { stroke: var(--c); stroke-width: 2; opacity: .5; }
 .area { fill: var(--c); opacity: .13; }
 .mark { fill: var(--c); stroke: var(--paper); stroke-width: 1; }
@@ -130,7 +134,7 @@ code { font: 14px/1.5 ui-monospace, "SF Mono", "DejaVu Sans Mono", Menlo, Consol
   h1 { font-size: 27px; } h2 { font-size: 22px; margin-top: 44px; }
   .lead p { font-size: 17px; }
   th, td { padding: 5px 9px; }
-  tbody th, tfoot th { max-width: 9.5em; }
+  tbody th, tfoot th { max-width: 11.5em; }
 }
 @media print {
   :root { --paper: #fff; }

@@ -153,23 +153,27 @@ std::string publishedTable(const BatchResults& results,
   HtmlTable table(dataset->title + ": published figures, and ours below.");
   std::vector<HeadCell> head{{"System"}};
   for (const ComparedColumn& column : columns) head.push_back({column.html});
-  head.push_back({"Remark"});
   table.head(head);
+  std::string remarks;
+  const auto remark = [&](const std::string& system, const std::string& text) {
+    if (!text.empty()) remarks += element("li", sentence(system + ": " + text)) + '\n';
+  };
   for (const PublishedFigure& system : dataset->figures) {
     std::vector<std::string> cells{escaped(system.system)};
     for (const ComparedColumn& column : columns) cells.push_back(number(system.*column.published));
-    cells.push_back(escaped(system.remark));
     table.row(cells);
+    remark(escaped(system.system), escaped(system.remark));
   }
   for (std::size_t i = 0; i < summaries.size(); ++i) {
-    std::vector<std::string> cells{"polemcl, " + escaped(results.settings[i].name)};
+    const std::string ours = "polemcl, " + escaped(results.settings[i].name);
+    std::vector<std::string> cells{ours};
     for (const ComparedColumn& column : columns)
       cells.push_back(number((summaries[i].figures.*column.ours).mean));
-    cells.push_back(plural(summaries[i].localized, "session") +
-                    ", runs: " + runsText(summaries[i].counts));
     table.row(cells, "ours");
+    remark(ours,
+           plural(summaries[i].localized, "session") + ", runs: " + runsText(summaries[i].counts));
   }
-  return table.str();
+  return table.str() + element("ul", "class=\"note\"", '\n' + remarks) + '\n';
 }
 
 std::string healthTable(const BatchResults& results, std::size_t setting,

@@ -49,7 +49,7 @@ std::string seriesClass(std::size_t series) {
 }
 
 std::vector<SvgTick> roundTicks(const Range& range, double pixels, bool horizontal) {
-  double step = tickStep(range.span(), std::max(2, static_cast<int>(pixels / 45)));
+  double step = tickStep(range.span(), std::max(2, static_cast<int>(pixels / 36)));
   const auto widest = [&] {
     return std::max(tickLabel(range.low, step).size(), tickLabel(range.high, step).size());
   };
@@ -187,11 +187,12 @@ std::string SvgPlot::str(const std::string& className) const {
          escaped(m_description) + "</desc>\n" + m_shapes + "</svg>\n";
 }
 
-std::string seriesLegend(const std::vector<std::string>& names, bool marks) {
+std::string seriesLegend(const std::vector<std::string>& names, bool marks,
+                         const std::string& line) {
   std::string items;
   for (std::size_t i = 0; i < names.size(); ++i) {
     SvgPlot key("", 34, 14, "", "");
-    key.segment({2, 7}, {32, 7}, "line " + seriesClass(i));
+    key.segment({2, 7}, {32, 7}, line + ' ' + seriesClass(i));
     if (marks) key.mark(i, {17, 7});
     // Hidden from readers aloud: it says nothing that the name beside it does not say.
     const std::string svg = element(

@@ -74,6 +74,8 @@ class SvgPlot {
 
 /// \brief Keys of series with their names, to stand below a plot. \param marks With the marks of
 /// the series, not only lines.
-std::string seriesLegend(const std::vector<std::string>& names, bool marks);
+/// \param line As the lines of the plot: "line" or "line fine".
+std::string seriesLegend(const std::vector<std::string>& names, bool marks,
+                         const std::string& line = "line");
 
 }  // namespace polemcl::report
