@@ -64,7 +64,14 @@ class StreetPlan {
   void vehiclesInYards();
   void people(int side);
   // Of the year: StreetPlanYear.cpp
+  struct Planned {
+    std::uint32_t id;
+    Kind kind;
+    Site place;
+  };
   void replacedPoles();
+  /// \brief A pole comes for good, beside the one whose number it keeps up or anywhere.
+  void settle(const Planned& old, bool beside);
   void snowBanks(double height);
   // Of some weeks: StreetPlanSites.cpp
   void planSites();
@@ -99,11 +106,6 @@ class StreetPlan {
     double s, length, border;
   };
   std::vector<Yard> m_yards;
-  struct Planned {
-    std::uint32_t id;
-    Kind kind;
-    Site place;
-  };
   std::vector<Planned> m_planned;  ///< permanent poles, those that are gone by now too
   const std::uint32_t m_street0;   ///< where the ids of this street begin
   const bool m_open;               ///< houses do not close the ends

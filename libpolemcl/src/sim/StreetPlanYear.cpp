@@ -17,14 +17,6 @@ double waiting(double share, std::uint64_t seed) {
   return std::log1p(-Random(seed).uniform()) / std::log1p(-share) * 365;
 }
 
-/// \brief A pole that comes in the course of time.
-struct NewPole {
-  double day;
-  std::uint32_t id;  ///< its own
-  std::size_t old;   ///< whose number it keeps up
-  bool beside;       ///< it takes the place of that one, or comes anywhere
-};
-
 /// \brief A new one of a kind; of trees a young one.
 Piece makeAgain(Kind kind, const Site& place, std::uint32_t id, double foliage, Random& random) {
   switch (kind) {
@@ -55,38 +47,43 @@ void StreetPlan::replacedPoles() {
   if (m_options.replacedPerYear <= 0) return;
   // Whoever goes leaves a successor beside it at once, or nothing; then another one comes somewhere
   // else, some time. Who came first has the first choice, so that no later day moves a pole.
-  const std::vector<Planned> planned = m_planned;
-  std::vector<NewPole> arrivals;
-  for (std::size_t i = 0; i < planned.size(); ++i) {
-    const std::uint32_t id = planned[i].id;
-    const bool beside = Random(hash(m_options.seed, 0xbe51deull, id)).chance(0.5);
-    const double day =
-        beside ? lastDayOf(id)
-               : waiting(m_options.replacedPerYear, hash(m_options.seed, 0xa4417eull, id));
-    if (day <= m_options.day) arrivals.push_back({day, id + kFirstReplaced, i, beside});
+  struct Arrival {
+    double day;
+    const Planned* old;  ///< whose number it keeps up
+    bool beside;
+  };
+  std::vector<Arrival> arrivals;
+  for (const Planned& old : m_planned) {
+    const bool beside = Random(hash(m_options.seed, 0xbe51deull, old.id)).chance(0.5);
+    const std::uint64_t seed = hash(m_options.seed, 0xa4417eull, old.id);
+    const double day = beside ? lastDayOf(old.id) : waiting(m_options.replacedPerYear, seed);
+    if (day <= m_options.day) arrivals.push_back({day, &old, beside});
   }
-  std::sort(arrivals.begin(), arrivals.end(), [](const NewPole& a, const NewPole& b) {
-    return std::make_pair(a.day, a.id) < std::make_pair(b.day, b.id);
+  std::sort(arrivals.begin(), arrivals.end(), [](const Arrival& a, const Arrival& b) {
+    return std::make_pair(a.day, a.old->id) < std::make_pair(b.day, b.old->id);
   });
-  for (const NewPole& arrival : arrivals) {
-    Random random(hash(m_options.seed, 0x4e3ull, arrival.id));
-    const Planned& old = planned[arrival.old];
-    const Kind kind = arrival.beside ? old.kind : random.chance(0.7) ? Kind::sign : Kind::lampPost;
-    for (int attempt = 0; attempt < 12; ++attempt) {
-      Site place = old.place;
-      if (arrival.beside && attempt < 8) {
-        const double along = (random.chance(0.5) ? 1 : -1) * random.uniform(1.5, 5);
-        place.base.x() += along * std::cos(place.heading);
-        place.base.y() += along * std::sin(place.heading);
-        place.base.z() = m_terrain.height(place.base.x(), place.base.y());
-      } else {
-        place = site(random.chance(0.5) ? 1 : -1, random.uniform(0, m_street.length()),
-                     m_options.roadWidth / 2 + random.uniform(0.4, 0.9));
-      }
-      if (!claim(place, 0.7, Ground::pavement)) continue;
-      add(makeAgain(kind, place, arrival.id, m_options.foliage, random), place);
-      break;
+  for (const Arrival& arrival : arrivals) settle(*arrival.old, arrival.beside);
+}
+
+void StreetPlan::settle(const Planned& old, bool beside) {
+  const std::uint32_t id = old.id + kFirstReplaced;
+  Random random(hash(m_options.seed, 0x4e3ull, id));
+  const Kind kind = beside ? old.kind : random.chance(0.7) ? Kind::sign : Kind::lampPost;
+  for (int attempt = 0; attempt < 12; ++attempt) {
+    Site place = old.place;
+    if (beside && attempt < 8) {
+      const double along = (random.chance(0.5) ? 1 : -1) * random.uniform(1.5, 5);
+      place.base.x() += along * std::cos(place.heading);
+      place.base.y() += along * std::sin(place.heading);
+      place.base.z() = m_terrain.height(place.base.x(), place.base.y());
+    } else {
+      const int side = random.chance(0.5) ? 1 : -1;
+      const double s = random.uniform(0, m_street.length());
+      place = site(side, s, m_options.roadWidth / 2 + random.uniform(0.4, 0.9));
     }
+    if (!claim(place, 0.7, Ground::pavement)) continue;
+    add(makeAgain(kind, place, id, m_options.foliage, random), place);
+    return;
   }
 }
 
