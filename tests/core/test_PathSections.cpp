@@ -101,3 +101,16 @@ TEST(PathSections, noPosesNoSections) {
   EXPECT_TRUE(result.occupied.empty());
   EXPECT_EQ(result.count, 0u);
 }
+
+TEST(PathSections, whatIsNotUsedIsWayButNoScan) {
+  const auto poses = straight({0, 0.4, 0.8, 1.0, 1.7, 2.2, 3.9});
+  const std::vector<std::uint32_t> drives(poses.size(), 0);
+  const auto result = splitPath(poses, drives, 1, {true, false, true, false, false, true, false});
+  ASSERT_EQ(result.occupied.size(), 2u);
+  EXPECT_EQ(result.count, 4u);
+  EXPECT_NEAR(result.length, 3.9, 1e-12);
+  EXPECT_EQ(result.occupied[0].scans, (Scans{0, 2}));
+  EXPECT_EQ(result.occupied[0].middle, 2u);  // 0.8 is nearer to 0.5 than 0.0
+  EXPECT_EQ(result.occupied[1].index, 2u);
+  EXPECT_EQ(result.occupied[1].scans, (Scans{5}));
+}

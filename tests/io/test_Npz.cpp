@@ -269,3 +269,29 @@ TEST_F(NpzTest, manyFlippedBytesNeverCrash) {
   }
   EXPECT_GT(refused, 1000);
 }
+
+TEST(Npy, writesWhatItsDocumentSays) {
+  EXPECT_EQ(npyBytes({{3, 2}, {1, 2, 3, 4, 5, 6}}), sample);
+  EXPECT_EQ(npyBytes({{2}, {1, 2}}), npy(dictionary("<f8", "False", "(2, )"), doubles({1, 2})));
+  EXPECT_EQ(npyBytes({{}, {7}}), npy(dictionary("<f8", "False", "()"), doubles({7})));
+  EXPECT_THROW(npyBytes({{3, 2}, {1, 2, 3}}), Error);
+}
+
+TEST_F(NpzTest, writesWhatItReads) {
+  const std::map<std::string, NumberArray> arrays{
+      {"polemeans", {{2, 3}, {1, 2, 3, 4, 5, 6}}}, {"empty", {{0, 3}, {}}}, {"one", {{}, {7}}}};
+  writeNpz(path("w.npz"), arrays);
+  const NpzFile npz(path("w.npz"));
+  EXPECT_EQ(npz.names(), (std::vector<std::string>{"empty", "one", "polemeans"}));
+  for (const auto& [name, array] : arrays) {
+    EXPECT_EQ(npz.array(name).shape, array.shape);
+    EXPECT_EQ(npz.array(name).values, array.values);
+  }
+  // A program that is not ours finds nothing wrong with it.
+  const std::string check = "python3 -m zipfile -t " + path("w.npz").string() + " > " +
+                            path("out.txt").string() + " 2>&1 && grep -q 'Done testing' " +
+                            path("out.txt").string();
+  if (std::system("python3 -c pass 2> /dev/null") == 0) {
+    EXPECT_EQ(std::system(check.c_str()), 0);
+  }
+}

@@ -422,8 +422,27 @@ TEST(PoleSequence, ReportsProgress) {
   const Bench bench;
   bench.read(frame(poles(1)) + frame(poles(2)) + frame(poles(3)));
   std::vector<std::size_t> calls;
-  readPoleSequence(bench.path, options(), [&](std::size_t done) { calls.push_back(done); });
+  readPoleSequence(bench.path, options(),
+                   [&](std::size_t done, std::size_t) { calls.push_back(done); });
   EXPECT_EQ(calls, (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST(PoleSequence, ExpectsAsManyScansAsTheFileIsLong) {
+  const Bench bench;
+  const std::string one = frame(poles(1));
+  const std::size_t scans = 8'000'000 / one.size();
+  std::string bytes;
+  for (std::size_t i = 0; i < scans; ++i) bytes += one;
+  bench.read(bytes);
+  std::size_t atHalf = 0, atEnd = 0;
+  readPoleSequence(bench.path, options(), [&](std::size_t done, std::size_t total) {
+    if (2 * done == scans || 2 * done == scans + 1) atHalf = total;
+    atEnd = total;
+  });
+  // What is read ahead, 0.5 MB at most, makes it a little too few.
+  EXPECT_GT(atHalf, scans * 8 / 10);
+  EXPECT_LE(atHalf, scans * 11 / 10);
+  EXPECT_EQ(atEnd, scans);
 }
 
 }  // namespace

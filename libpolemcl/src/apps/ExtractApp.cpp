@@ -85,7 +85,7 @@ void ExtractOptions::validate() const {
 }
 
 ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
-                            const std::function<void(std::size_t)>& progress) {
+                            const ScanProgress& progress) {
   options.validate();
   SequenceOptions sequence{settings.poleExtraction(), settings.motion, options.allowTruncated};
   // Applied by whoever reads the poles; here it would count twice.
@@ -104,7 +104,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
     if (csv) writeRows(csv->stream(), scan);
     add(scan.report, summary.extraction);
     if (options.png && scan.index == options.pngScan) draw(scan, settings, options);
-    if (progress) progress(scan.index + 1);
+    if (progress) progress(scan.index + 1, scan.expected);
   });
   if (summary.counts.scans == summary.counts.emptyScans)
     throw Error(options.input.string() + ": no usable scan, " +
@@ -124,7 +124,9 @@ void runExtraction(const ExtractOptions& options, const Settings& settings, bool
   ExtractSummary summary;
   {
     Progress progress("extract", 0, quiet);
-    summary = extractPoles(options, settings, [&](std::size_t done) { progress.update(done); });
+    summary = extractPoles(options, settings, [&](std::size_t done, std::size_t total) {
+      progress.update(done, total);
+    });
   }
   if (!quiet) print(summary, options);
 }

@@ -65,8 +65,9 @@ PoleSequence readPoles(const LocalizeJob& job, const Settings& settings) {
   options.motion = settings.motion;
   options.allowTruncated = job.allowTruncated;
   Progress progress("read", 0, job.quiet);
-  return readPoleSequence(job.input.string(), options,
-                          [&](std::size_t done) { progress.update(done); });
+  return readPoleSequence(job.input.string(), options, [&](std::size_t done, std::size_t total) {
+    progress.update(done, total);
+  });
 }
 
 void requireUsable(const std::string& input, const PoleSequence& sequence) {

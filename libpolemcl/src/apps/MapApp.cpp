@@ -1,5 +1,6 @@
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/MapApp.h>
+#include <polemcl/apps/MapConvertApp.h>
 #include <polemcl/apps/MapDiffApp.h>
 #include <polemcl/apps/MapUpdateApp.h>
 #include <polemcl/apps/Progress.h>
@@ -17,31 +18,58 @@
 namespace polemcl::apps {
 namespace {
 
-/// Scans of all inputs with their true poses, in the order of the inputs.
-struct Survey {
-  std::vector<MappingScan> scans;
-  std::vector<SessionScan> session;
-  std::vector<StampedPose2D> path;  ///< of the scans, by position in `scans`
-};
+/// Sessions before, none unless `add` is given.
+MapAccumulator accumulator(const MapOptions& options, const Settings& settings) {
+  if (!options.add) return {settings.map, settings.upkeep};
+  auto scans = io::readMapScans(*options.add);
+  if (!scans)
+    throw Error(options.add->string() +
+                ": keeps no scans, so none can be added; build it with --keep-scans");
+  try {
+    return {settings.map, settings.upkeep, std::move(*scans)};
+  } catch (const Error& error) {
+    throw Error(options.add->string() + ": " + error.what());
+  }
+}
 
-void addDrive(const MapOptions& options, std::uint32_t drive, DriveSurvey found, Survey& survey,
-              MapSummary& summary) {
-  for (const SessionScan& scan : found.scans)
-    survey.scans.push_back({scan.pose_map_robot, scan.poles_robot, drive});
+/// That of the options, or of the map that is added to: both must be the same.
+std::optional<io::Datum> datumFor(const MapOptions& options) {
+  if (!options.add) return options.datum;
+  const std::string where = options.add->string() + ": ";
+  auto info = io::readPoleMap(*options.add).info;
+  if (options.datum) io::setDatum(info, *options.datum, where);
+  return io::datumOf(info, where);
+}
+
+void addDrive(const MapOptions& options, std::size_t drive, DriveSurvey found,
+              MapAccumulator& sessions, MapSummary& summary) {
   if (!options.dates.empty()) setDate(found.scans, options.dates[drive]);
-  survey.session.insert(survey.session.end(), found.scans.begin(), found.scans.end());
-  survey.path.insert(survey.path.end(), found.path.begin(), found.path.end());
-  summary.scans += found.scans.size();
+  sessions.add(options.inputs[drive].filename().string(), std::move(found.scans));
   summary.unmatched += found.unmatched;
   summary.emptyScans += found.emptyScans;
   summary.invalidPoints += found.invalidPoints;
   summary.truncated += found.truncated;
 }
 
-std::string noPoles(const MapSummary& summary, const MapOptions& files,
-                    const PoleMapOptions& options) {
+void countSessions(const AddedSessions& added, MapSummary& summary) {
+  for (const AddedSession& session : added.sessions) {
+    summary.sessions.push_back(
+        {session.name, session.scans.size(), session.usedCount(), session.usedShare()});
+    summary.visited += session.scans.size();
+    summary.scans += session.usedCount();
+  }
+}
+
+std::vector<StampedPose2D> pathOf(const AddedSessions& added) {
+  std::vector<StampedPose2D> path;
+  for (const AddedSession& session : added.sessions)
+    for (const SessionScan& scan : session.scans) path.push_back({scan.time, scan.pose_map_robot});
+  return path;
+}
+
+std::string noPoles(const MapSummary& summary, const PoleMapOptions& options) {
   const auto& map = summary.map;
-  const std::size_t steps = summary.scans - std::min(summary.scans, files.inputs.size());
+  const std::size_t steps = summary.visited - std::min(summary.visited, summary.sessions.size());
   const double spacing = steps > 0 ? map.pathLength / static_cast<double>(steps) : 0;
   return "no pole found: " + std::to_string(summary.scans) + " scans " + io::fixed(spacing, 2) +
          " m apart on average; sections of section_length_m = " +
@@ -54,19 +82,33 @@ std::string noPoles(const MapSummary& summary, const MapOptions& files,
          (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]");
 }
 
-std::map<std::string, std::string> facts(const MapOptions& options, const Settings& settings,
-                                         const MapSummary& summary) {
+/// `f_map.NAME` of each session; of equal names the second is `f_map.NAME.2`.
+void addShares(const MapSummary& summary, std::map<std::string, std::string>& info) {
+  for (const MapSummary::Session& session : summary.sessions) {
+    const std::string key = "f_map." + std::filesystem::path(session.name).stem().string();
+    std::string unique = key;
+    for (int n = 2; info.count(unique) > 0; ++n) unique = key + '.' + std::to_string(n);
+    info[unique] = io::fixed(session.share, 6);
+  }
+}
+
+std::map<std::string, std::string> facts(const Settings& settings, const MapSummary& summary,
+                                         const std::optional<io::Datum>& datum) {
   std::string names;
-  for (const auto& input : options.inputs)
-    names += (names.empty() ? "" : " ") + input.filename().string();
-  return {{"program", std::string("pole-map ") + version()},
-          {"inputs", names},
-          {"scans", std::to_string(summary.scans)},
-          {"path_length_m", io::fixed(summary.map.pathLength, 3)},
-          {"sections", std::to_string(summary.map.sections)},
-          {"occupied_sections", std::to_string(summary.map.occupiedSections)},
-          {"detections", std::to_string(summary.map.detections)},
-          {"config", settingsText(settings)}};
+  for (const MapSummary::Session& session : summary.sessions)
+    names += (names.empty() ? "" : " ") + session.name;
+  std::map<std::string, std::string> info{
+      {"program", std::string("pole-map ") + version()},
+      {"inputs", names},
+      {"scans", std::to_string(summary.scans)},
+      {"path_length_m", io::fixed(summary.map.pathLength, 3)},
+      {"sections", std::to_string(summary.map.sections)},
+      {"occupied_sections", std::to_string(summary.map.occupiedSections)},
+      {"detections", std::to_string(summary.map.detections)},
+      {"config", settingsText(settings)}};
+  addShares(summary, info);
+  if (datum) info[io::kDatumKey] = io::datumText(*datum);
+  return info;
 }
 
 void print(const MapSummary& summary, const MapOptions& options) {
@@ -75,6 +117,10 @@ void print(const MapSummary& summary, const MapOptions& options) {
             << "sections: " << summary.map.occupiedSections << " of " << summary.map.sections
             << " with a scan; detections " << summary.map.detections << " in "
             << summary.map.clusters << " places\n";
+  if (summary.sessions.size() > 1)
+    for (const MapSummary::Session& session : summary.sessions)
+      std::cout << session.name << ": " << session.used << " of " << session.scans
+                << " scans used, f_map " << io::fixed(session.share, 4) << '\n';
   if (summary.emptyScans > 0)
     std::cout << "scans without a valid point, not used: " << summary.emptyScans << '\n';
   if (summary.unmatched > 0)
@@ -101,33 +147,35 @@ void MapOptions::validate() const {
 }
 
 MapSummary buildMap(const MapOptions& options, const Settings& settings,
-                    const std::function<void(std::size_t)>& progress) {
+                    const ScanProgress& progress) {
   options.validate();
   MapSummary summary;
-  Survey survey;
-  for (std::uint32_t i = 0; i < options.inputs.size(); ++i)
+  const auto datum = datumFor(options);
+  MapAccumulator sessions = accumulator(options, settings);
+  for (std::size_t i = 0; i < options.inputs.size(); ++i)
     addDrive(options, i,
              surveyDrive(options.inputs[i], options.truths[i], settings, options.allowTruncated,
                          progress),
-             survey, summary);
-  if (survey.scans.empty())
+             sessions, summary);
+  countSessions(sessions.added(), summary);
+  if (summary.scans == 0)
     throw Error(options.inputs.front().string() + ": no usable scan, " +
                 std::to_string(summary.emptyScans) + " without a valid point");
-  summary.map = buildPoleMap(survey.scans, settings.map);
-  if (summary.map.poles.empty()) throw Error(noPoles(summary, options, settings.map));
+  summary.map = sessions.build();
+  if (summary.map.poles.empty()) throw Error(noPoles(summary, settings.map));
 
   const io::PoleMapData map =
-      io::mapData(withHistory(summary.map.poles, survey.session, settings.map, settings.upkeep),
-                  facts(options, settings, summary));
+      io::mapData(sessions.withHistories(summary.map.poles), facts(settings, summary, datum));
   if (options.csv) io::writePoleCsv(*options.csv, map.poles, map.histories);
   if (options.scene) {
     report::MapView view;
     view.title = options.output.filename().string();
     view.poles = summary.map.poles;
-    view.truth = survey.path;
+    view.truth = pathOf(sessions.added());
     report::saveScene(*report::makeMapScene(view), *options.scene);
   }
-  io::writePoleMap(options.output, map);
+  io::writePoleMap(options.output, map,
+                   options.keepScans || options.add ? &sessions.added() : nullptr);
   return summary;
 }
 
@@ -138,7 +186,8 @@ struct MapLine {
   MapOptions build;
   std::string config;
   std::vector<std::string> set;
-  std::optional<std::filesystem::path> update, png;
+  std::optional<std::filesystem::path> update, png, convert;
+  std::string datum;
   std::vector<std::filesystem::path> diff;
 };
 
@@ -152,9 +201,23 @@ void addOptions(CLI::App& cli, MapLine& line) {
                  "Day of each rawlog, YYYY-MM-DD, where its times do not tell");
   cli.add_option("--update", line.update,
                  "Map to begin with: each rawlog is a session that keeps it true, see [upkeep]");
+  auto* add = cli.add_option("--add", line.build.add,
+                             "Map that keeps its scans: each rawlog is a session after those it "
+                             "was made from");
+  cli.add_flag("--keep-scans", line.build.keepScans,
+               "Keep the used scans' poles in the map, so that --add can go on from it");
+  cli.add_option("--datum", line.datum,
+                 "Of the truth: LAT,LON of the origin, and the heading of x from east")
+      ->type_name("LAT,LON[,YAW_DEG]");
+  cli.get_option("--update")->excludes(add);
   auto* diff = cli.add_option("--diff", line.diff, "List what changed from one map to another")
                    ->expected(2)
                    ->type_name("A B");
+  auto* convert = cli.add_option("--convert", line.convert,
+                                 "Map to write as another kind of file, by the endings: .polemap, "
+                                 ".csv, .npz, .geojson");
+  for (auto* option : {diff, add, cli.get_option("--update"), cli.get_option("--input")})
+    convert->excludes(option);
   cli.add_option("--scene", line.build.scene, "Also write a .3Dscene of the map, or the changes");
   cli.add_option("--csv", line.build.csv, "Also write the poles, or the changes, to this table");
   cli.add_option("--png", line.png, "With --diff: draw the changes")->needs(diff);
@@ -166,8 +229,12 @@ void addOptions(CLI::App& cli, MapLine& line) {
 void requireUsage(const MapLine& line) {
   const MapOptions& build = line.build;
   if (!line.diff.empty()) {
-    if (line.update || !build.inputs.empty() || !build.output.empty())
+    if (line.update || build.add || !build.inputs.empty() || !build.output.empty())
       throw CLI::ValidationError("--diff", "compares two maps; it takes no other input or output");
+    return;
+  }
+  if (line.convert) {
+    if (build.output.empty()) throw CLI::RequiredError("--output");
     return;
   }
   if (line.config.empty()) throw CLI::RequiredError("--config");
@@ -189,15 +256,23 @@ void runDiff(const MapLine& line, bool quiet) {
   if (!quiet) apps::print(diff, std::cout);
 }
 
+void runConvert(const MapLine& line, bool quiet) {
+  const MapConvertOptions options{*line.convert, line.build.output, line.build.datum};
+  const auto summary = convertMap(options);
+  if (!quiet) apps::print(summary, options);
+}
+
 void runUpdate(const MapLine& line, bool quiet) {
   const MapOptions& o = line.build;
-  const MapUpdateOptions options{*line.update, o.inputs, o.truths, o.dates,
-                                 o.output,     o.scene,  o.csv,    o.allowTruncated};
+  const MapUpdateOptions options{*line.update, o.inputs, o.truths,         o.dates, o.output,
+                                 o.scene,      o.csv,    o.allowTruncated, o.datum};
   const auto settings = loadSettings(line.config, line.set);
   MapUpdateSummary summary;
   {
     Progress progress("update", 0, quiet);
-    summary = updateMapFile(options, settings, [&](std::size_t done) { progress.update(done); });
+    summary = updateMapFile(options, settings, [&](std::size_t done, std::size_t total) {
+      progress.update(done, total);
+    });
   }
   if (!quiet) apps::print(summary, options);
 }
@@ -207,7 +282,8 @@ void runBuild(const MapLine& line, bool quiet) {
   MapSummary summary;
   {
     Progress progress("map", 0, quiet);
-    summary = buildMap(line.build, settings, [&](std::size_t done) { progress.update(done); });
+    summary = buildMap(line.build, settings,
+                       [&](std::size_t done, std::size_t total) { progress.update(done, total); });
   }
   if (!quiet) print(summary, line.build);
 }
@@ -217,13 +293,16 @@ void runBuild(const MapLine& line, bool quiet) {
 int mapMain(int argc, const char* const* argv) {
   CommandLine line("pole-map",
                    "Builds a pole map from scans, or poles, at known poses; keeps it true; "
-                   "compares two.");
+                   "compares two; converts them.");
   MapLine options;
   addOptions(line.cli(), options);
   line.cli().parse_complete_callback([&] { requireUsage(options); });
   return line.run(argc, argv, [&] {
+    if (!options.datum.empty()) options.build.datum = io::parseDatum(options.datum, "--datum: ");
     if (!options.diff.empty())
       runDiff(options, line.quiet());
+    else if (options.convert)
+      runConvert(options, line.quiet());
     else if (options.update)
       runUpdate(options, line.quiet());
     else

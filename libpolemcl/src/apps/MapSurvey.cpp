@@ -15,7 +15,7 @@ constexpr double maxTruthGap = 2.0;  ///< s, as in evaluateTrajectory()
 
 DriveSurvey surveyDrive(const std::filesystem::path& input, const std::filesystem::path& truthFile,
                         const Settings& settings, bool allowTruncated,
-                        const std::function<void(std::size_t)>& progress) {
+                        const ScanProgress& progress) {
   SequenceOptions options{settings.poleExtraction(), settings.motion, allowTruncated};
   // A doubtful detection is worth keeping where others can confirm it.
   if (settings.map.minConfidence > 0)

@@ -5,6 +5,7 @@
 #include <polemcl/apps/Settings.h>
 #include <polemcl/core/Evaluation.h>
 #include <polemcl/core/MapUpkeep.h>
+#include <polemcl/mrpt/PoleSequence.h>
 
 #include <filesystem>
 #include <functional>
@@ -23,12 +24,12 @@ struct DriveSurvey {
 };
 
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.
-/// \param progress Called with the number of scans so far; may be empty.
+/// \param progress May be empty.
 /// \throws Error as readPoleSequence() and readTum(); when the truth covers less than half of the
 ///         scans.
 DriveSurvey surveyDrive(const std::filesystem::path& input, const std::filesystem::path& truth,
                         const Settings& settings, bool allowTruncated,
-                        const std::function<void(std::size_t)>& progress);
+                        const ScanProgress& progress);
 
 /// \brief The scans on another day: their times count from the first one.
 /// \param date YYYY-MM-DD. \throws Error when it is none.

@@ -32,6 +32,7 @@ std::map<std::string, std::string> facts(std::map<std::string, std::string> info
   std::string& updates = info["updates"];
   for (const auto& input : options.inputs)
     updates += (updates.empty() ? "" : " ") + input.filename().string();
+  if (options.datum) io::setDatum(info, *options.datum, options.map.string() + ": ");
   info["program"] = std::string("pole-map ") + version();
   info["config"] = settingsText(settings);
   return info;
@@ -52,9 +53,10 @@ void MapUpdateOptions::validate() const {
 }
 
 MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& settings,
-                               const std::function<void(std::size_t)>& progress) {
+                               const ScanProgress& progress) {
   options.validate();
   const io::PoleMapData before = io::readPoleMap(options.map);
+  const auto info = facts(before.info, options, settings);
   MapUpdateSummary summary;
   summary.before = before.poles.size();
   KeptMap map = io::keptMap(before);
@@ -76,7 +78,7 @@ MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& 
     summary.truncated += survey.truncated;
     view.truth.insert(view.truth.end(), survey.path.begin(), survey.path.end());
   }
-  const io::PoleMapData after = io::mapData(map, facts(before.info, options, settings));
+  const io::PoleMapData after = io::mapData(map, info);
   summary.poles = after.poles.size();
   if (after.poles.empty())
     throw Error(options.map.string() + ": no pole is left on the map; see [upkeep]");

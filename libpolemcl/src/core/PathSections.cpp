@@ -34,7 +34,7 @@ class Odometer {
 }  // namespace
 
 PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::uint32_t>& drives,
-                       double sectionLength) {
+                       double sectionLength, const std::vector<bool>& used) {
   // A quarter of a section: far above the jitter of poses, far below the bends of roads.
   const double step = sectionLength / 4;
   PathSections result;
@@ -53,6 +53,9 @@ PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::
     // Whole numbers of sections may come out a rounding short.
     const auto index = static_cast<std::size_t>(std::floor(way + 1e-9));
     const double fromMiddle = std::abs(way - (static_cast<double>(index) + 0.5));
+    result.count = sectionsBefore + index + 1;
+    result.length = lengthBefore + way * sectionLength;
+    if (!used.empty() && !used[i]) continue;
     const bool opens = result.occupied.empty() || result.occupied.back().path != path ||
                        result.occupied.back().index != index;
     if (opens) result.occupied.push_back({path, index, {}, i});
@@ -62,8 +65,6 @@ PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::
       section.middle = i;
     }
     section.scans.push_back(i);
-    result.count = sectionsBefore + index + 1;
-    result.length = lengthBefore + way * sectionLength;
   }
   return result;
 }

@@ -100,18 +100,21 @@ void PoleMapOptions::validate() const {
     refuse("pose_sigma", poseSigma, "at least 0 m");
   if (!(headingSigma >= 0 && headingSigma < M_PI))
     refuse("heading_sigma", headingSigma, "in [0, pi) rad");
+  if (!(std::isfinite(unvisited) && unvisited >= 0)) refuse("unvisited", unvisited, "at least 0 m");
 }
 
 PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapOptions& options) {
   options.validate();
   std::vector<Pose2D> poses;
   std::vector<std::uint32_t> drives;
+  std::vector<bool> used;
   for (const MappingScan& scan : scans) {
     checkScan(scan.pose_map_robot, scan.poles_robot, "scan " + std::to_string(poses.size()));
     poses.push_back(scan.pose_map_robot);
     drives.push_back(scan.drive);
+    used.push_back(scan.used);
   }
-  const PathSections sections = splitPath(poses, drives, options.sectionLength);
+  const PathSections sections = splitPath(poses, drives, options.sectionLength, used);
   const std::vector<View> views = chooseViews(sections, options.everyScan);
   const std::vector<PoleSighting> sightings = sightingsOf(scans, views, options);
   const auto groups = mergeSightings(sightings, {options.mergeDistance, options.apartShare});

@@ -60,6 +60,12 @@ std::size_t CsvTable::column(const std::string& name) const {
   return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
 }
 
+std::optional<std::size_t> CsvTable::find(const std::string& name) const {
+  const auto& header = m_header.fields;
+  if (std::count(header.begin(), header.end(), name) == 0) return std::nullopt;
+  return column(name);
+}
+
 double CsvTable::number(std::size_t row, std::size_t column) const {
   const std::string& field = m_rows[row].fields[column];
   const auto value = parseNumber(field);

@@ -1,5 +1,6 @@
 #include <polemcl/io/AtomicFile.h>
 #include <polemcl/io/Bytes.h>
+#include <polemcl/io/MapScans.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <zlib.h>
 
@@ -88,7 +89,7 @@ void putHistory(ByteWriter& record, const PoleHistory& history) {
   record.put(history.missed);
 }
 
-std::string payloadOf(const PoleMapData& data) {
+std::string payloadOf(const PoleMapData& data, const AddedSessions* scans) {
   ByteWriter info, poles, candidates, payload;
   info.put(static_cast<std::uint32_t>(data.info.size()));
   for (const auto& [key, value] : data.info) {
@@ -110,6 +111,11 @@ std::string payloadOf(const PoleMapData& data) {
   putChunk(payload, "INFO", info);
   putChunk(payload, "POLE", poles);
   if (!data.candidates.empty()) putChunk(payload, "CAND", candidates);
+  if (scans) {
+    ByteWriter content;
+    content.putRaw(packMapScans(*scans));
+    putChunk(payload, "SCAN", content);
+  }
   return payload.bytes();
 }
 
@@ -222,9 +228,10 @@ PoleMapData mapData(const KeptMap& map, std::map<std::string, std::string> info)
   return data;
 }
 
-void writePoleMap(const std::filesystem::path& file, const PoleMapData& data) {
+void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
+                  const AddedSessions* scans) {
   requireSound(data, "cannot write " + file.string() + ": ");
-  const std::string payload = payloadOf(data);
+  const std::string payload = payloadOf(data, scans);
   ByteWriter header;
   header.putRaw(magic);
   header.put(version);
@@ -233,6 +240,18 @@ void writePoleMap(const std::filesystem::path& file, const PoleMapData& data) {
   AtomicFile output(file);
   output.stream() << header.bytes() << payload;
   output.commit();
+}
+
+std::optional<AddedSessions> readMapScans(const std::filesystem::path& file) {
+  const std::string bytes = readBytes(file);
+  const std::string where = file.string() + ": ";
+  ByteReader payload(checkedPayload(bytes, where), where);
+  while (payload.remaining() > 0) {
+    const std::string_view tag = payload.getRaw(4);
+    const std::string_view chunk = payload.getRaw(payload.get<std::uint64_t>());
+    if (tag == "SCAN") return unpackMapScans(chunk, where);
+  }
+  return std::nullopt;
 }
 
 PoleMapData readPoleMap(const std::filesystem::path& file) {

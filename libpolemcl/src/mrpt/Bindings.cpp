@@ -116,6 +116,8 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.number("pose_sigma_m", o.poseSigma, notNegative, "m", "sigma of the true positions");
   b.angleDeg("heading_sigma_deg", o.headingSigma, Range::between(0, 57),
              "sigma of the true headings: far detections count less");
+  b.number("unvisited_m", o.unvisited, notNegative, "m",
+           "later sessions: only scans this far from all places visited before, 0: all");
   b.check(o);
 }
 

@@ -23,6 +23,12 @@ struct Task {
 };
 using TaskPtr = std::shared_ptr<Task>;
 
+/// Scans in all when so many came from this share of a file.
+std::size_t expectedScans(std::size_t done, double share) {
+  if (!(share > 0)) return 0;
+  return std::max(done, static_cast<std::size_t>(static_cast<double>(done) / share + 0.5));
+}
+
 class Stream {
  public:
   Stream(const std::string& path, const SequenceOptions& options)
@@ -54,6 +60,7 @@ TaskPtr Stream::read() {
     m_ended = !scan;
     if (m_ended) return nullptr;
     task->scan = std::move(*scan);
+    task->result.expected = expectedScans(task->scan.index + 1, m_source.progress());
   } catch (...) {
     m_ended = true;
     task->error = std::current_exception();
@@ -141,13 +148,13 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
 }
 
 PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,
-                              const std::function<void(std::size_t)>& progress) {
+                              const ScanProgress& progress) {
   PoleSequence sequence;
   sequence.counts = streamPoles(path, options, [&](const PoleScan& scan) {
     sequence.frames.push_back({scan.time, scan.motion, scan.observation->polesInRobotFrame(),
                                scan.points, scan.observation->freeRange,
                                scan.observation->planarSensorPose()});
-    if (progress) progress(sequence.frames.size());
+    if (progress) progress(sequence.frames.size(), scan.expected);
   });
   return sequence;
 }

@@ -7,7 +7,6 @@
 #include <polemcl/mrpt/PoleSequence.h>
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 
 namespace polemcl::apps {
@@ -41,11 +40,11 @@ struct ExtractSummary {
 /// radius (m), lowest and highest return above local ground (m), confidence in [0, 1], returns that
 /// support it, covariance of the centre in the robot frame (m²).
 /// Both files appear once both are complete.
-/// \param progress Called with the number of scans done; may be empty.
+/// \param progress May be empty.
 /// \throws Error as streamPoles(), when no scan has a valid point, and when the scan to be drawn is
 ///         not there, has no points or is one of poles.
 ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
-                            const std::function<void(std::size_t)>& progress = {});
+                            const ScanProgress& progress = {});
 
 /// \brief The program. \return An ExitCode.
 int extractMain(int argc, const char* const* argv);

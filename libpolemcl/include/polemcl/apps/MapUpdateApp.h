@@ -4,9 +4,10 @@
 
 #include <polemcl/apps/Settings.h>
 #include <polemcl/core/MapUpkeep.h>
+#include <polemcl/io/Datum.h>
+#include <polemcl/mrpt/PoleSequence.h>
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct MapUpdateOptions {
   std::optional<std::filesystem::path> scene;  ///< `.3Dscene` of map and paths, when given
   std::optional<std::filesystem::path> csv;    ///< poles as a table, when given
   bool allowTruncated = false;                 ///< use the readable part of damaged rawlogs
+  std::optional<io::Datum> datum = {};         ///< of the truths; must be that of the map
   /// \throws Error naming the option.
   void validate() const;
 };
@@ -36,13 +38,15 @@ struct MapUpdateSummary {
 };
 
 /// \brief Updates the map by one session after the other, in the order given, and writes what was
-/// asked for. Candidates are kept in the file, beside the map.
-/// \param progress Called with the number of scans of the current input; may be empty.
-/// \throws Error as surveyDrive(), updateMap(), readPoleMap(); when a session has no usable scan;
-///         when fewer than a fifth of at least ten map poles in free view were found: a session of
-///         another place, or of another datum, must not spoil a map.
+/// asked for. Candidates are kept in the file, beside the map; scans kept for `--add` are not: the
+/// map is no longer what they say.
+/// \param progress Of the current input; may be empty.
+/// \throws Error as surveyDrive(), updateMap(), readPoleMap(); when the datum is another one than
+///         the map's; when a session has no usable scan; when fewer than a fifth of at least ten
+///         map poles in free view were found: a session of another place, or of another datum, must
+///         not spoil a map.
 MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& settings,
-                               const std::function<void(std::size_t)>& progress = {});
+                               const ScanProgress& progress = {});
 
 /// \brief What the program tells of it.
 void print(const MapUpdateSummary& summary, const MapUpdateOptions& options);

@@ -31,7 +31,8 @@ struct PathSections {
 /// \param poses Finite, in the order travelled.
 /// \param drives One a pose: where it changes, a new path begins with a section of its own.
 /// \param sectionLength > 0, m.
+/// \param used One a pose, or empty for all: the others are part of the way only, no scan.
 PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::uint32_t>& drives,
-                       double sectionLength);
+                       double sectionLength, const std::vector<bool>& used = {});
 
 }  // namespace polemcl

@@ -3,8 +3,8 @@
 /// \brief Step C of the paper: detections at known poses -> poles, with counts.
 ///
 /// The path is split into sections of equal length (PathSections); detections of different scans
-/// are merged by gated distance (SightingMerging) and averaged by their certainty (PoleFusion); a pole
-/// stays if enough sections in a continuous run saw it.
+/// are merged by gated distance (SightingMerging) and averaged by their certainty (PoleFusion); a
+/// pole stays if enough sections in a continuous run saw it.
 
 #include <polemcl/core/Types.h>
 
@@ -37,6 +37,9 @@ struct PoleMapOptions {
   /// Standard deviation of the scans' headings, rad (`heading_sigma_deg`): far detections count
   /// less across the line of sight.
   double headingSigma = 0.002;
+  /// Of the second and later sessions, only scans at least so far from every place that earlier
+  /// ones visited are used, m (`unvisited_m`, paper: 10); 0: all. See MapAccumulator.
+  double unvisited = 0;
   void validate() const;  ///< \throws Error
 };
 
@@ -47,11 +50,13 @@ struct MappingScan {
   /// Where it differs from the scan before, another drive begins: the way between the two is no
   /// part of the path, and no run continues across.
   std::uint32_t drive = 0;
+  /// false: the way leads here, but nothing is taken from this scan. Its detections are ignored.
+  bool used = true;
 };
 
 struct PoleMapResult {
   std::vector<MapPole> poles;        ///< map frame, sorted by x then y
-  double pathLength = 0;             ///< over all drives, m
+  double pathLength = 0;             ///< over all drives, scans not used included, m
   std::size_t sections = 0;          ///< along the path
   std::size_t occupiedSections = 0;  ///< with at least one scan: only these count and break runs
   std::size_t views = 0;             ///< scans used: one of each occupied section, or all

@@ -3,6 +3,7 @@
 /// \brief Tables with named columns: CSV with a header line.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ class CsvTable {
   std::size_t rows() const { return m_rows.size(); }
   /// \brief Index of the column of that name. \throws Error unless there is exactly one.
   std::size_t column(const std::string& name) const;
+  /// \brief The same where it may be missing. \throws Error when there are several.
+  std::optional<std::size_t> find(const std::string& name) const;
   /// \brief A field as a number. \throws Error naming file and line unless it is finite.
   double number(std::size_t row, std::size_t column) const;
   /// \brief A field as it stands, without spaces and quotes round it.

@@ -48,4 +48,12 @@ class NpzFile {
   std::map<std::string, Member> m_members;
 };
 
+/// \brief One array as `.npy`, float64, C order; parseNpy() reads it. \throws Error when there are
+/// more or fewer values than the shape says.
+std::string npyBytes(const NumberArray& array);
+
+/// \brief Writes arrays by name, not compressed, atomically; same arrays, same bytes. What NumPy's
+/// `load` reads. \throws Error when it cannot be written, or would need more than 4 GB.
+void writeNpz(const std::filesystem::path& file, const std::map<std::string, NumberArray>& arrays);
+
 }  // namespace polemcl::io

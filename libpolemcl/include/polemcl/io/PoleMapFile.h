@@ -11,15 +11,18 @@
 ///   existence, first seen, last seen (s since 1970, 0 = not known); uint32 seen, missed. Later
 ///   writers append fields to the record; readers use the fields they know and skip the rest.
 /// - `CAND`, where there are any: as `POLE`, always with histories: poles that are not on the map.
+/// - `SCAN`, where that was asked for: the scans the map was made from, see MapScans.h.
 ///
 /// The version grows only when that is not enough: programs that know no histories read these maps,
 /// and leave out the candidates as they should.
 
+#include <polemcl/core/MapAccumulator.h>
 #include <polemcl/core/MapUpkeep.h>
 #include <polemcl/core/Types.h>
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,11 +43,16 @@ KeptMap keptMap(const PoleMapData& data);
 PoleMapData mapData(const KeptMap& map, std::map<std::string, std::string> info);
 
 /// \brief Writes atomically; same data, same bytes.
+/// \param scans If given: kept in the file, so that sessions can be added.
 /// \throws Error when it cannot be written, or naming the pole whose values are not finite, whose
 ///         radius is negative, confidence outside [0, 1], or covariance not positive definite; or
 ///         whose history has an existence outside [0, 1] or a time that is negative or not finite;
 ///         or when there are histories, but not one for each pole.
-void writePoleMap(const std::filesystem::path& file, const PoleMapData& data);
+void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
+                  const AddedSessions* scans = nullptr);
+
+/// \brief The scans that the file keeps; none when it keeps none. \throws Error as readPoleMap().
+std::optional<AddedSessions> readMapScans(const std::filesystem::path& file);
 
 /// \throws Error when it cannot be read, is no pole map, is cut short or damaged, was written by a
 ///         newer version, or holds poles that writePoleMap() would refuse.

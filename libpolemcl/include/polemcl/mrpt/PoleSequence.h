@@ -49,7 +49,12 @@ struct PoleScan {
   std::size_t invalid = 0;  ///< dropped points
   ExtractionReport report;  ///< of the extraction; all zero for stored poles
   bool stored = false;      ///< true: read as poles, not extracted
+  /// Scans of the whole rawlog, judged from the share of the file read so far; 0: not known yet.
+  std::size_t expected = 0;
 };
+
+/// \brief Called with the scans done so far and those expected in all, 0: not known.
+using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// \brief Streams a rawlog: reads in order, extracts on several threads, hands out in order. At
 /// most a few scans per thread are in memory.
@@ -86,9 +91,9 @@ struct PoleSequence {
 };
 
 /// \brief All of a rawlog, poles only.
-/// \param progress Called with the number of scans done so far; may be empty.
+/// \param progress May be empty.
 /// \throws Error as streamPoles().
 PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,
-                              const std::function<void(std::size_t)>& progress = {});
+                              const ScanProgress& progress = {});
 
 }  // namespace polemcl
