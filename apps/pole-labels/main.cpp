@@ -1,0 +1,3 @@
+#include <polemcl/apps/LabelsApp.h>
+
+int main(int argc, char** argv) { return polemcl::apps::labelsMain(argc, argv); }
