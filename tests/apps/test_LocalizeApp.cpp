@@ -288,6 +288,13 @@ TEST_F(LocalizeApp, RefusesToStartNowhere) {
   expectFailure(runWithTruth(), {"truth.tum", "first scan"});
 }
 
+TEST_F(LocalizeApp, RefusesAStartInAnotherFrame) {
+  auto truth = io::planar(io::readTum(folder / "truth.tum"));
+  for (auto& pose : truth) pose.pose.x += 5000;
+  io::writeTum(folder / "truth.tum", truth);
+  expectFailure(runWithTruth(), {"km from the nearest pole of", "map.polemap", "datum"});
+}
+
 TEST_F(LocalizeApp, RefusesATruthOfAnotherDrive) {
   auto truth = io::planar(io::readTum(folder / "truth.tum"));
   truth.resize(scans / 2 - 1);

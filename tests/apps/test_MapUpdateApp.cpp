@@ -2,6 +2,7 @@
 #include <polemcl/apps/MapDiffApp.h>
 #include <polemcl/apps/MapUpdateApp.h>
 #include <polemcl/io/PoleMapFile.h>
+#include <polemcl/io/Trajectory.h>
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,15 @@ TEST_F(MapUpdateApp, RefusesASessionOfAnotherPlace) {
   writeText(folder / "day1.polemap", "old");
   expectFailure(update(), {"day1.rawlog", "poles of", "were found", "datum"});
   EXPECT_EQ(readText(folder / "day1.polemap"), "old");
+}
+
+TEST_F(MapUpdateApp, RefusesASessionInAnotherFrame) {
+  mapYesterday();
+  drive("day1", today);
+  auto truth = io::planar(io::readTum(folder / "day1.tum"));
+  for (auto& pose : truth) pose.pose.y += 20000;
+  io::writeTum(folder / "day1.tum", truth);
+  expectFailure(update(), {"day1.rawlog", "20 km from the poles of", "datum"});
 }
 
 TEST_F(MapUpdateApp, RefusesBadFilesAndDates) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 using namespace polemcl;
 
@@ -202,4 +203,19 @@ TEST(MapAccumulator, refusesWhatItCannotGoOnFrom) {
   EXPECT_THROW(fresh(kNan), Error);
   MapAccumulator map = fresh(10);
   EXPECT_THROW(map.add("s", {scanAt(0, kNan, {})}), Error);
+}
+
+TEST(MapAccumulator, refusesASessionInAnotherFrame) {
+  MapAccumulator map = fresh(0);
+  map.add("one", drive(0, 100, 0));
+  map.add("near", drive(9000, 9100, 0));
+  try {
+    map.add("utm", drive(9000, 9100, 25000));
+    FAIL() << "taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("session utm: its poses are 25 km"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(map.added().sessions.size(), 2u);
+  EXPECT_NO_THROW(map.add("farther", drive(19000, 19050, 0)));  // near one of them
 }

@@ -4,6 +4,8 @@
 #include <polemcl/io/PolePositions.h>
 #include <polemcl/report/MapScene.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <iostream>
 
 #include "MapSurvey.h"
@@ -24,6 +26,20 @@ void requireSamePlace(const UpkeepCounts& counts, const std::filesystem::path& i
               std::to_string(counts.expectedOnMap) + " poles of " + map.string() +
               " in its view were found; is its truth of the same place and datum? A new place "
               "needs a new map");
+}
+
+/// Sessions of a map lie near it; one in another frame mostly does not.
+void requireNear(const std::vector<StampedPose2D>& path, const KeptMap& map,
+                 const std::filesystem::path& input, const std::filesystem::path& file) {
+  constexpr double farthest = 10000;  // m
+  Eigen::AlignedBox2d driven, mapped;
+  for (const auto& [time, pose] : path) driven.extend(Eigen::Vector2d(pose.x, pose.y));
+  for (const KeptPole& kept : map.poles) mapped.extend(Eigen::Vector2d(kept.pole.x, kept.pole.y));
+  if (mapped.isEmpty() || driven.exteriorDistance(mapped) <= farthest) return;
+  throw Error(input.string() + ": its poses are " +
+              std::to_string(std::lround(driven.exteriorDistance(mapped) / 1000)) +
+              " km from the poles of " + file.string() +
+              " (10 km are allowed): do they share a datum?");
 }
 
 std::map<std::string, std::string> facts(std::map<std::string, std::string> info,
@@ -67,6 +83,7 @@ MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& 
     if (survey.scans.empty())
       throw Error(options.inputs[i].string() + ": no usable scan, " +
                   std::to_string(survey.emptyScans) + " without a valid point");
+    requireNear(survey.path, map, options.inputs[i], options.map);
     if (!options.dates.empty()) setDate(survey.scans, options.dates[i]);
     UpkeepCounts counts;
     map = updateMap(map, survey.scans, settings.map, settings.upkeep, &counts);

@@ -1,6 +1,7 @@
 #include <polemcl/core/KdTree2D.h>
 #include <polemcl/core/MapAccumulator.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,6 +26,27 @@ void requireFinitePoses(const AddedSession& session) {
       throw Error("session " + session.name + ": the pose of scan " + std::to_string(i) +
                   " is not finite; leave the scan out or correct its pose");
   }
+}
+
+Eigen::AlignedBox2d boxOf(const AddedSession& session) {
+  Eigen::AlignedBox2d box;
+  for (const SessionScan& scan : session.scans)
+    box.extend(Eigen::Vector2d(scan.pose_map_robot.x, scan.pose_map_robot.y));
+  return box;
+}
+
+/// Sessions of one map lie near each other; one in another frame mostly does not.
+void requireOneDatum(const AddedSession& session, const std::vector<AddedSession>& before) {
+  constexpr double farthest = 10000;  // m
+  const Eigen::AlignedBox2d box = boxOf(session);
+  double gap = std::numeric_limits<double>::infinity();
+  for (const AddedSession& other : before)
+    if (!other.scans.empty()) gap = std::min(gap, box.exteriorDistance(boxOf(other)));
+  if (box.isEmpty() || std::isinf(gap) || gap <= farthest) return;
+  throw Error("session " + session.name + ": its poses are " +
+              std::to_string(std::lround(gap / 1000)) +
+              " km from those of all sessions before (10 km are allowed): do they share a datum? " +
+              "Bring all into one frame, or map them apart");
 }
 
 }  // namespace
@@ -66,6 +88,7 @@ MapAccumulator::MapAccumulator(const PoleMapOptions& mapping, const UpkeepOption
 const AddedSession& MapAccumulator::add(std::string name, std::vector<SessionScan> scans) {
   AddedSession session{std::move(name), std::move(scans), {}};
   requireFinitePoses(session);
+  requireOneDatum(session, m_added.sessions);
   session.used.assign(session.scans.size(), true);
   if (m_added.unvisited > 0) {
     const KdTree2D visited = placesOf(m_added.sessions);

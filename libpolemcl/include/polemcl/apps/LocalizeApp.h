@@ -59,7 +59,8 @@ struct LocalizeResult {
 /// Files of an earlier call are replaced once everything is complete. Prints a table on stdout
 /// unless quiet.
 /// \throws Error as the readers do, and when the map has no poles, scans lack odometry, no pole is
-///         ever seen, there is no start pose, or the truth covers less than half of the scans.
+///         ever seen, there is no start pose or it is more than 1 km from all poles of the map, or
+///         the truth covers less than half of the scans.
 LocalizeResult localize(const LocalizeJob& job);
 
 /// \brief The program. \return Its exit code.

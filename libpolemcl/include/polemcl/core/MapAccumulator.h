@@ -44,7 +44,8 @@ class MapAccumulator {
   /// \brief The next session. Its scans are used unless a scan of an earlier session, used or not,
   /// stood within `unvisited` of them. The session itself does not count, so loops of it are used.
   /// \param scans In the order driven. \return The session with what is kept of it; valid until the
-  ///         next call. \throws Error on a pose that is not finite, naming session and scan.
+  ///         next call. \throws Error on a pose that is not finite, naming session and scan, and on a
+  ///         session more than 10 km from all before: it is in another frame.
   const AddedSession& add(std::string name, std::vector<SessionScan> scans);
 
   /// \brief buildPoleMap() on the scans used. \throws Error as buildPoleMap().
