@@ -25,6 +25,7 @@ std::vector<std::string> runCells(const BatchRun& run, const std::string& sessio
   const ErrorFigures& errors = run.errors;
   return {session + ", " + std::to_string(run.run),
           std::to_string(run.seed),
+          state == RunState::ok ? name(state) : element("span", "class=\"bad\"", name(state)),
           number(errors.posMean),
           number(errors.posRmse),
           number(errors.posMax),
@@ -37,8 +38,7 @@ std::vector<std::string> runCells(const BatchRun& run, const std::string& sessio
           percent(run.health.degraded),
           percent(run.health.lost),
           run.health.firstPoseScan ? std::to_string(*run.health.firstPoseScan) : enDash,
-          std::to_string(run.health.relocalizations),
-          name(state)};
+          std::to_string(run.health.relocalizations)};
 }
 
 std::string failedTasks(const std::vector<FailedTask>& failures) {
@@ -76,6 +76,7 @@ std::string runsTable(const BatchResults& results, std::size_t setting) {
   HtmlTable table("Setting " + results.settings[setting].name + ": every run.");
   table.head({{"Session, run"},
               {"Seed"},
+              {"State"},
               {"Δ<sub>pos</sub> (m)"},
               {"RMSE<sub>pos</sub> (m)"},
               {"Largest (m)"},
@@ -88,15 +89,13 @@ std::string runsTable(const BatchResults& results, std::size_t setting) {
               {"degraded (%)"},
               {"lost (%)"},
               {"First pose at scan"},
-              {"Relocalizations"},
-              {"State"}});
+              {"Relocalizations"}});
   bool any = false;
   for (std::size_t k = 0; k < results.sessions.size(); ++k)
     if (const SessionResult* result = results.find(setting, k))
       for (const BatchRun& run : result->runs) {
         const RunState state = stateOf(run, results.lostBound);
-        table.row(runCells(run, escaped(results.sessions[k].name), state),
-                  state == RunState::ok ? "" : "bad");
+        table.row(runCells(run, escaped(results.sessions[k].name), state));
         any = true;
       }
   return any ? table.str() : "";
