@@ -134,6 +134,11 @@ TEST(BatchPlan, ImportsAsTheSessionSays) {
   EXPECT_EQ(argument(command, "--calib"), "/calibration");
   // Only if all of its sessions have one.
   EXPECT_EQ(argument(plan.task("map.one.b").commands.at(0), "--date"), "none");
+  const BatchPlan dated = planOf([](BatchSpec& spec) {
+    spec.sessions[0].date = "2011-09-25";
+    spec.sessions[1].date = "2011-09-26";
+  });
+  EXPECT_EQ(argument(dated.task("map.one.a").commands.at(0), "--date"), "2011-09-25");
 }
 
 TEST(BatchPlan, KeysChangeWithWhatTheOutputsDependOn) {

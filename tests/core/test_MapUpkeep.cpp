@@ -279,6 +279,30 @@ TEST(MapUpkeep, timeMakesUnsure) {
       << "clamped by no evidence, decayed by a year";
 }
 
+TEST(MapUpkeep, timeCountsOnce) {
+  // A year in twelve sessions is no longer than a year in one.
+  KeptMap map = kept({{10, 5}, {300, 5}});
+  for (KeptPole& pole : map.poles) pole.history.lastSeen = 86400 * 10;
+  UpkeepOptions upkeep;
+  upkeep.existence.lifetimeDays = 365;
+  upkeep.forget = 0.01;
+  for (int month = 1; month <= 12; ++month)
+    map = updateMap(map, drive({{10, 5}}, 10 + month * 365.0 / 12), {}, upkeep);
+  ASSERT_TRUE(find(map, 300, 5));
+  EXPECT_NEAR(find(map, 300, 5)->history.existence, 0.9 / M_E, 0.001);
+}
+
+TEST(MapUpkeep, clocksOfDrivesAreNoDates) {
+  // Simulated drives begin at 0; a later one with a date does not make the map 50 years old.
+  KeptMap map = updatedBy(kept({{10, 5}, {300, 5}}), drive({{10, 5}}, 0));
+  EXPECT_EQ(find(map, 10, 5)->history.lastSeen, 0);
+  EXPECT_EQ(find(map, 10, 5)->history.firstSeen, 0);
+  const double before = find(map, 300, 5)->history.existence;
+  map = updatedBy(map, drive({{10, 5}}, 20000));
+  EXPECT_EQ(find(map, 300, 5)->history.existence, before);
+  EXPECT_EQ(find(map, 10, 5)->history.firstSeen, 86400.0 * 20000);
+}
+
 TEST(MapUpkeep, theOrderOfDetectionsDoesNotMatter) {
   const KeptMap before = kept({{10, 5}, {30, -6}, {25, 7}});
   std::vector<SessionScan> scans = drive({{10, 5}, {30.4, -6}, {20, -8}, {20.45, -8}});

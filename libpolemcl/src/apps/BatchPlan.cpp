@@ -204,6 +204,12 @@ class Planner {
       if (chain || wanted.count(n)) addMap(setting, n, chain);
   }
 
+  /// Dates that some have and others have not would be years apart.
+  bool allDated(const BatchSetting& setting) const {
+    return std::none_of(setting.mapSessions.begin(), setting.mapSessions.end(),
+                        [&](const std::string& name) { return m_spec.session(name).date.empty(); });
+  }
+
   /// The map of the first n map sessions.
   void addMap(const BatchSetting& setting, std::size_t n, bool chain) {
     const auto& names = setting.mapSessions;
@@ -223,13 +229,12 @@ class Planner {
     for (std::size_t i = first; i < n; ++i) {
       inputs.push_back(rawlogOf(setting, names[i]));
       truths.push_back(truthOf(names[i]));
-      const std::string& date = m_spec.session(names[i]).date;
-      if (!date.empty()) dates.push_back(date);
+      dates.push_back(m_spec.session(names[i]).date);
       task.needs.push_back("poles." + names[i]);
     }
     append(command, inputs);
     append(command, truths);
-    if (dates.size() == inputs.size()) append(command, dates);
+    if (allDated(setting)) append(command, dates);
     task.commands = {command};
     task.outputs = {"map.polemap"};
     m_plan.tasks.push_back(std::move(task));

@@ -72,13 +72,15 @@ class Update {
   UpkeepCounts m_counts;
 };
 
-/// To the time of the session: nothing stands for ever.
+/// To the time of the session: nothing stands for ever. All of the map is as of the last session,
+/// of which some pole was seen last.
 void Update::bringForward() {
-  for (KeptPole& kept : m_poles) {
-    if (kept.history.lastSeen <= 0) continue;
-    kept.history.existence = survived(
-        kept.history.existence, m_session.firstTime() - kept.history.lastSeen, m_options.existence);
-  }
+  double last = 0;
+  for (const KeptPole& kept : m_poles) last = std::max(last, kept.history.lastSeen);
+  if (!isDate(last) || !isDate(m_session.firstTime())) return;
+  for (KeptPole& kept : m_poles)
+    kept.history.existence =
+        survived(kept.history.existence, m_session.firstTime() - last, m_options.existence);
 }
 
 /// What no kept pole took, merged to new ones.
@@ -106,12 +108,8 @@ void Update::applyEvidence() {
         updated(kept.history.existence, evidence.logRatio(), m_options.existence);
     kept.history.seen += evidence.found();
     kept.history.missed += evidence.missed();
-    for (const std::uint32_t sighting : today.sightings) {
-      const double time = m_session.time(m_session.sightings()[sighting].view);
-      kept.history.lastSeen = std::max(kept.history.lastSeen, time);
-      if (kept.history.firstSeen <= 0) kept.history.firstSeen = time;
-      kept.history.firstSeen = std::min(kept.history.firstSeen, time);
-    }
+    for (const std::uint32_t sighting : today.sightings)
+      noteSeen(kept.history, m_session.time(m_session.sightings()[sighting].view));
   }
 }
 
@@ -150,7 +148,8 @@ void Update::movePlaces() {
     const auto& members = m_session.poles()[i].sightings;
     if (members.empty()) continue;
     const bool moved = movePlace(m_poles[i], fuse(m_session.sightings(), members));
-    if (moved) m_poles[i].history.firstSeen = m_session.firstTime();
+    if (moved) m_poles[i].history.firstSeen = 0;
+    if (moved) noteSeen(m_poles[i].history, m_session.firstTime());
     m_counts.moved += moved && m_poles[i].present;
   }
 }
@@ -288,11 +287,8 @@ KeptMap withHistory(const std::vector<MapPole>& poles, const std::vector<Session
     history.missed = seen.evidence.missed();
     history.existence =
         std::max(upkeep.present, updated(0.5, seen.evidence.logRatio(), upkeep.existence));
-    for (const std::uint32_t sighting : seen.sightings) {
-      const double time = session.time(session.sightings()[sighting].view);
-      history.firstSeen = history.firstSeen > 0 ? std::min(history.firstSeen, time) : time;
-      history.lastSeen = std::max(history.lastSeen, time);
-    }
+    for (const std::uint32_t sighting : seen.sightings)
+      noteSeen(history, session.time(session.sightings()[sighting].view));
   }
   return map;
 }

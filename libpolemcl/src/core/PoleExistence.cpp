@@ -34,6 +34,17 @@ void ExistenceOptions::validate() const {
     refuse("lifetime_days", lifetimeDays, "above 0 days");
 }
 
+bool isDate(double seconds) {
+  constexpr double day = 86400;  // s
+  return seconds >= day;
+}
+
+void noteSeen(PoleHistory& history, double seconds) {
+  if (!isDate(seconds)) return;
+  history.firstSeen = history.firstSeen > 0 ? std::min(history.firstSeen, seconds) : seconds;
+  history.lastSeen = std::max(history.lastSeen, seconds);
+}
+
 double detectionChance(const PoleHistory& history, const ExistenceOptions& options) {
   const double chances = static_cast<double>(history.seen) + history.missed;
   const double own = (kPriorScans * options.detection + history.seen) / (kPriorScans + chances);

@@ -41,6 +41,12 @@ struct PoleHistory {
   double lastSeen = 0;       ///< s since 1970; 0: not known
 };
 
+/// \brief True for a time of the calendar. Earlier ones, of the first day of 1970, are those of a
+/// drive that has a clock of its own; they do not tell when a pole was seen.
+bool isDate(double seconds);
+/// \brief Notes that the pole was seen, unless the time is no date.
+void noteSeen(PoleHistory& history, double seconds);
+
 /// \brief Chance that a pole is found in a scan that could see it: from its counts, with
 /// `detection` counting as 20 scans; at most `detection`, and at least twice `falseDetection`, so
 /// that misses always count against it.
