@@ -225,6 +225,25 @@ TEST(BatchReport, HeadlinesTellWhatWasLost) {
   EXPECT_EQ(page2.find("What went wrong"), std::string::npos);
 }
 
+TEST(BatchReport, OfManySettingsTheBestAndTheWorstAreNamed) {
+  BatchResults batch = smallBatch();
+  const double errors[] = {0.3, 0.2, 0.5, 0.4};
+  batch.settings = {{"A", "", "", ""}, {"B", "", "", ""}, {"C", "", "", ""}, {"D", "", "", ""}};
+  batch.results.clear();
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < 2; ++k) {
+      SessionResult result;
+      result.setting = i, result.session = k;
+      result.runs = {runWith(0, errors[i] * (k == 0 ? 0.9 : 1.1), 0.1)};
+      batch.results.push_back(result);
+    }
+  const Element page = parsePage(batchReport(batch));
+  const Element& lead = only(page.all([](const Element& e) { return e.hasClass("lead"); }));
+  std::set<std::string> named;
+  for (const Element* name : lead.named("em")) named.insert(name->text);
+  EXPECT_EQ(named, (std::set<std::string>{"B", "C"}));
+}
+
 TEST(BatchReport, PublishedFiguresStandBesideOursOnlyForTheirDataset) {
   BatchResults batch = smallBatch();
   EXPECT_EQ(batchReport(batch).find("Schaefer"), std::string::npos);

@@ -23,7 +23,8 @@ std::string percent(double share) {
 
 std::vector<std::string> runCells(const BatchRun& run, const std::string& session, RunState state) {
   const ErrorFigures& errors = run.errors;
-  return {session + ", " + std::to_string(run.run),
+  return {session,
+          std::to_string(run.run),
           std::to_string(run.seed),
           state == RunState::ok ? name(state) : element("span", "class=\"bad\"", name(state)),
           number(errors.posMean),
@@ -74,7 +75,8 @@ std::map<std::string, std::string> valuesOf(const std::string& ini) {
 
 std::string runsTable(const BatchResults& results, std::size_t setting) {
   HtmlTable table("Setting " + results.settings[setting].name + ": every run.");
-  table.head({{"Session, run"},
+  table.head({{"Session"},
+              {"Run"},
               {"Seed"},
               {"State"},
               {"Δ<sub>pos</sub> (m)"},

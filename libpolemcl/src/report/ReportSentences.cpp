@@ -30,6 +30,8 @@ std::string listed(const std::vector<std::string>& parts) {
   return text;
 }
 
+constexpr std::size_t mostNamed = 3;  // of more settings, sentences name the best and the worst
+
 /// The setting with the smallest mean error first.
 std::vector<std::size_t> byError(const std::vector<SettingSummary>& summaries) {
   std::vector<std::size_t> order;
@@ -39,6 +41,10 @@ std::vector<std::size_t> byError(const std::vector<SettingSummary>& summaries) {
     return summaries[a].figures.posMean.mean < summaries[b].figures.posMean.mean;
   });
   return order;
+}
+
+bool isNamed(const std::vector<std::size_t>& order, std::size_t setting) {
+  return order.size() <= mostNamed || setting == order.front() || setting == order.back();
 }
 
 std::string errorSentence(const BatchResults& results, const std::vector<SettingSummary>& summaries,
@@ -52,6 +58,7 @@ std::string errorSentence(const BatchResults& results, const std::vector<Setting
                     metres(figures.posRmse.mean) + ", heading " + degrees(figures.angMeanDeg.mean) +
                     ", largest " + metres(figures.posMax.largest) + ")");
   }
+  if (parts.size() > mostNamed) parts = {"from " + parts.front() + " to " + parts.back()};
   std::size_t sessions = 0;
   for (std::size_t i : order) sessions = std::max(sessions, summaries[i].localized);
   return "The position error is " + listed(parts) + ", on average over " +
@@ -63,7 +70,7 @@ std::string changeSentence(const BatchResults& results,
                            const std::vector<std::size_t>& order) {
   std::vector<std::string> parts;
   for (std::size_t i : order)
-    if (std::isfinite(summaries[i].lastOverFirst))
+    if (isNamed(order, i) && std::isfinite(summaries[i].lastOverFirst))
       parts.push_back(changeText(summaries[i].lastOverFirst) +
                       (results.settings.size() > 1 ? " with " + emphasized(results.settings[i])
                                                    : std::string()));

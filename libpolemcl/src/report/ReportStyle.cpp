@@ -100,7 +100,7 @@ svg.plot { display: block; width: 100%; height: auto; }
 svg.wide { min-width: 780px; }
 svg.key { width: 34px; height: 14px; flex: none; }
 .legend { list-style: none; display: flex; flex-wrap: wrap; gap: 2px 20px; margin: 4px 0; padding: 0; font: 14px/1.5 var(--sans); }
-.legend li { display: flex; align-items: center; gap: 7px; min-width: 0; }
+.legend li { display: flex; align-items: center; gap: 7px; min-width: 0; overflow-wrap: anywhere; }
 .label { font: 13px var(--sans); fill: var(--muted); font-variant-numeric: tabular-nums; }
 .label.title { fill: var(--ink); }
 .panel { fill: var(--panel); }
