@@ -131,6 +131,24 @@ TEST(BatchMeasures, BinsKeepTheirLargestError) {
   EXPECT_DOUBLE_EQ(bins.largest[10], 0.2);
 }
 
+TEST(BatchMeasures, ScansFartherApartThanAMetreLeaveNoGaps) {
+  for (double spacing : {0.4, 1.0, 1.37, 4.9}) {
+    std::vector<StampedPose2D> truth;
+    TrajectoryErrors errors;
+    for (int i = 0; i < 200; ++i) {
+      truth.push_back({double(i), {i * spacing, 0, 0}});
+      PoseError error;
+      error.time = i;
+      if (i < 80 || i > 120) errors.errors.push_back(error);
+    }
+    const std::vector<double> largest = positionOverDistance(errors, truth, 500).largest;
+    int gaps = 0;
+    for (std::size_t i = 1; i < largest.size(); ++i)
+      gaps += std::isnan(largest[i]) && !std::isnan(largest[i - 1]);
+    EXPECT_EQ(gaps, 1) << spacing;  // only the one where the pose was not known
+  }
+}
+
 TEST(BatchMeasures, NeverMoreBinsThanAllowed) {
   for (int length : {1, 7, 99, 100, 499, 500, 1234, 20000}) {
     TrajectoryErrors errors;

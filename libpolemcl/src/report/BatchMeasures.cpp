@@ -61,6 +61,18 @@ Eigen::Vector2d roundedToCentimetres(const Eigen::Vector2d& point) {
   return {std::round(point.x() * 100) / 100 + 0.0, std::round(point.y() * 100) / 100 + 0.0};
 }
 
+/// Nearly all errors are no farther apart than this, m. Bins must not be narrower than the scans
+/// are apart, or the curve would be full of gaps.
+double usualSpacing(const std::vector<double>& distance) {
+  std::vector<double> spacing;
+  for (std::size_t i = 1; i < distance.size(); ++i)
+    spacing.push_back(distance[i] - distance[i - 1]);
+  if (spacing.empty()) return 0;
+  const auto rank = spacing.begin() + static_cast<std::ptrdiff_t>(0.95 * (spacing.size() - 1));
+  std::nth_element(spacing.begin(), rank, spacing.end());
+  return *rank;
+}
+
 }  // namespace
 
 ErrorFigures errorFigures(const TrajectoryErrors& errors, const std::vector<StampedPose2D>& truth) {
@@ -135,9 +147,9 @@ BinnedMaxima positionOverDistance(const TrajectoryErrors& errors,
   const std::vector<double> distance = distanceDriven(truth, errors.errors);
   const double length = *std::max_element(distance.begin(), distance.end());
   // One bin less than allowed: the end of the drive opens another.
-  if (length > 0)
-    bins.binWidth =
-        std::max(1.0, tickStep(length, static_cast<int>(std::max<std::size_t>(mostBins, 2) - 1)));
+  const double most = static_cast<double>(std::max<std::size_t>(mostBins, 2) - 1);
+  const double least = std::max({1.0, length / most, 1.5 * usualSpacing(distance)});
+  bins.binWidth = tickStep(least, 1);
   bins.largest.assign(static_cast<std::size_t>(length / bins.binWidth) + 1, noFigure);
   for (std::size_t i = 0; i < distance.size(); ++i) {
     double& largest = bins.largest[static_cast<std::size_t>(distance[i] / bins.binWidth)];

@@ -55,7 +55,7 @@ std::vector<SvgTick> roundTicks(const Range& range, double pixels, bool horizont
   };
   if (horizontal)
     while (step / range.span() * pixels < characterWidth * widest() + 14)
-      step = tickStep(2.1 * step, 1);
+      step = tickStep(1.5 * step, 1);
   std::vector<SvgTick> all;
   for (double value : ticks(range, step)) all.push_back({value, tickLabel(value, step)});
   return all;

@@ -28,8 +28,8 @@ std::vector<Eigen::Vector2d> thinPath(const std::vector<StampedPose2D>& path, do
 
 /// \brief Position errors over the distance driven, the largest of each bin.
 /// \param truth See errorFigures().
-/// \param mostBins The bin width is 1, 2 or 5 times a power of ten, at least 1 m, such that there
-///        are not more bins.
+/// \param mostBins The bin width is 1, 2 or 5 times a power of ten, at least 1 m and 1.5 times the
+///        usual distance between two errors, such that there are not more bins.
 BinnedMaxima positionOverDistance(const TrajectoryErrors& errors,
                                   const std::vector<StampedPose2D>& truth,
                                   std::size_t mostBins = 500);
