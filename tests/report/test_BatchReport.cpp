@@ -343,6 +343,31 @@ TEST(BatchReport, LabelsOfAnAxisDoNotTouch) {
   EXPECT_GT(pairs, 10u);
 }
 
+TEST(BatchReport, LabelsStayInsideTheirPlotAndOffTheTitleOfTheAxis) {
+  BatchResults batch = smallBatch();
+  for (double shift : {0.0, 1.3, 7.7, 12.9})
+    for (auto* points : {&batch.results[0].plots.truth, &batch.results[0].plots.estimate}) {
+      for (Eigen::Vector2d& point : *points)
+        point += Eigen::Vector2d(shift, shift == 0 ? 4026000 : shift);
+      const Element page = parsePage(batchReport(batch));
+      for (const Element* svg : page.named("svg")) {
+        if (!svg->hasClass("plot")) continue;
+        std::istringstream box(svg->at("viewBox"));
+        double x = 0, y = 0, width = 0;
+        box >> x >> y >> width;
+        for (const Element* text : svg->named("text")) {
+          if (!text->at("transform").empty()) continue;
+          const double at = std::stod(text->at("x")), size = 8.3 * text->text.size();
+          if (text->at("text-anchor") == "end") {
+            EXPECT_GT(at - size, 19) << text->text;
+          } else {
+            EXPECT_LT(at + size / 2, width + 1) << text->text;
+          }
+        }
+      }
+    }
+}
+
 TEST(BatchReport, ChangedKeysAreShownSideBySide) {
   BatchResults batch = smallBatch();
   batch.settings[0].config = "[map]\ncount = 6 ; detections\nsame = 1\n[filter]\ncount = 500\n";

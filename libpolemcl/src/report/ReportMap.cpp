@@ -9,7 +9,7 @@
 namespace polemcl::report {
 namespace {
 
-constexpr double width = 480, left = 66, right = 12, top = 12, bottom = 46;
+constexpr double width = 480, right = 12, top = 12, bottom = 46;
 constexpr double margin = 14;  // between the content and the frame, pixels
 constexpr double leastHeight = 180, mostHeight = 440;
 
@@ -38,7 +38,14 @@ Box boxOf(const SessionPlots& plots) {
   return box;
 }
 
-double frameHeight(const Box& box) {
+/// Room for the title and the labels of the y axis: northings have seven digits.
+double leftMargin(const Box& box) {
+  const std::size_t digits =
+      std::max(figureText(box.y.low, 0).size(), figureText(box.y.high, 0).size());
+  return std::max(66.0, 30 + 8.3 * digits);
+}
+
+double frameHeight(const Box& box, double left) {
   const double inner = width - left - right - 2 * margin;
   return std::clamp(inner * box.y.span() / box.x.span() + 2 * margin, leastHeight, mostHeight);
 }
@@ -77,7 +84,7 @@ std::string mapFigure(const BatchResults& results, const SessionResult& result, 
   if (box.empty()) return "";
   const std::string& session = results.sessions[result.session].name;
   const std::string& setting = results.settings[result.setting].name;
-  const double height = frameHeight(box);
+  const double left = leftMargin(box), height = frameHeight(box, left);
   const PlotAxes axes =
       equalScales({left, top, width - left - right, height}, box.x, box.y, margin);
   SvgPlot plot(ids.next(), width, top + height + bottom, "Map and paths of " + session,

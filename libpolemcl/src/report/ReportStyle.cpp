@@ -98,6 +98,7 @@ figcaption { color: var(--muted); font-size: 15.5px; line-height: 1.45; margin-t
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 330px), 1fr)); gap: 0 28px; align-items: start; }
 svg.plot { display: block; width: 100%; height: auto; }
 svg.wide { min-width: 780px; }
+.two figure { max-width: 640px; }
 svg.key { width: 34px; height: 14px; flex: none; }
 .legend { list-style: none; display: flex; flex-wrap: wrap; gap: 2px 20px; margin: 4px 0; padding: 0; font: 14px/1.5 var(--sans); }
 .legend li { display: flex; align-items: center; gap: 7px; min-width: 0; overflow-wrap: anywhere; }

@@ -11,7 +11,7 @@ namespace polemcl::report {
 namespace {
 
 constexpr double labelSize = 13;
-constexpr double characterWidth = 7.4;  // of a digit, with room to spare in any sans serif
+constexpr double characterWidth = 8.3;  // of a digit in a wide sans serif
 
 /// A tenth of a pixel is enough: "12.3", "12", "-0.4".
 std::string px(double value) {
@@ -89,9 +89,12 @@ void SvgPlot::axes(const PlotAxes& axes, const std::vector<SvgTick>& x,
   for (const SvgTick& tick : y)
     grid += 'M' + at({frame.x, axes.toPixel(axes.x.low, tick.at).y()}) + 'h' + px(frame.width);
   m_shapes += path(grid, "grid");
-  for (const SvgTick& tick : x)
-    if (!tick.label.empty())
-      text({axes.toPixel(tick.at, axes.y.low).x(), frame.bottom() + 18}, tick.label, "middle");
+  for (const SvgTick& tick : x) {
+    const double place = axes.toPixel(tick.at, axes.y.low).x();
+    // At the end of the axis there may be no room for half a label.
+    const bool fits = place + characterWidth * tick.label.size() / 2 <= m_width;
+    if (fits && !tick.label.empty()) text({place, frame.bottom() + 18}, tick.label, "middle");
+  }
   for (const SvgTick& tick : y)
     text({frame.x - 7, axes.toPixel(axes.x.low, tick.at).y() + 0.35 * labelSize}, tick.label,
          "end");
