@@ -119,8 +119,8 @@ struct FailedTask {
 
 /// \brief A whole batch.
 struct BatchResults {
-  std::string name;     ///< "nclt"
-  std::string title;    ///< "NCLT: 27 sessions over 15 months"
+  std::string name;   ///< "nclt"
+  std::string title;  ///< "NCLT: 27 sessions over 15 months"
   /// Key of published figures: "nclt", "kitti-0009", "mulran-kaist" (PublishedFigures.h), or empty.
   std::string dataset;
   std::string date;     ///< only if the caller gives one
