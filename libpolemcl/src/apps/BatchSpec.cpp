@@ -216,7 +216,7 @@ BatchSpec readBatchSpec(const fs::path& file, const fs::path& data) {
   reader.section("batch", "What is done");
   reader.text("name", spec.name, "of the batch; the file's unless given");
   reader.text("title", spec.title, "for the report");
-  reader.choice("published", spec.published, {"none", "nclt", "kitti-0009", "mulran"},
+  reader.choice("published", spec.published, {"none", "nclt", "kitti-0009", "mulran-kaist"},
                 "published figures shown beside");
   reader.integer("runs", spec.runs, Range::between(1, 10000), "", "of each session and setting");
   reader.integer("seed", spec.seed, Range::atLeast(0), "", "of all random numbers");

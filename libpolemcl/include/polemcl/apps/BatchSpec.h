@@ -54,7 +54,7 @@ struct BatchSetting {
 struct BatchSpec {
   std::string name;   ///< of the batch: letters, digits, `_`, `-` and `.`
   std::string title;  ///< for the report
-  /// Published figures to show beside: `none`, `nclt`, `kitti-0009`, `mulran`.
+  /// Published figures to show beside: `none`, `nclt`, `kitti-0009`, `mulran-kaist`.
   std::string published = "none";
   int runs = 10;  ///< of each session under each setting
   std::uint32_t seed = 1;
