@@ -66,10 +66,11 @@ TEST(WorldYear, polesThatGoStayGoneAndThoseThatComeStay) {
 }
 
 TEST(WorldYear, theGivenShareIsReplacedInAYear) {
+  constexpr double kShare = 0.4;
   double all = 0, gone = 0, come = 0, beside = 0;
   for (std::uint64_t seed = 41; seed <= 44; ++seed) {
     WorldOptions options = street(seed, 0, 600);
-    options.replacedPerYear = 0.1;
+    options.replacedPerYear = kShare;
     const auto first = byId(makeWorld(options));
     options.day = 365;
     const auto last = byId(makeWorld(options));
@@ -86,9 +87,9 @@ TEST(WorldYear, theGivenShareIsReplacedInAYear) {
     }
   }
   ASSERT_GT(all, 700);
-  const double sigma = std::sqrt(all * 0.1 * 0.9);
-  EXPECT_NEAR(gone, 0.1 * all, 4 * sigma);
-  EXPECT_NEAR(come, 0.1 * all, 4 * sigma);
+  const double sigma = std::sqrt(all * kShare * (1 - kShare));
+  EXPECT_NEAR(gone, kShare * all, 4 * sigma);
+  EXPECT_NEAR(come, kShare * all, 4 * sigma);
   EXPECT_GT(beside, 0.3 * come);
   EXPECT_LT(beside, 0.8 * come);
 }
