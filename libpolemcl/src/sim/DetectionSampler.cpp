@@ -165,7 +165,8 @@ PoleDetection DetectionSampler::report(const Target& target, const View& view,
   pole.covariance = 0.5 * (covariance + covariance.transpose());
   pole.confidence = std::clamp(value(Reported::confidence), 0.0, 1.0);
   pole.radius = std::max(0.01, target.radius + value(Reported::radius));
-  pole.bottom = std::max(value(Reported::bottom), target.snow);
+  pole.bottom = value(Reported::bottom);
+  if (target.snow > 0) pole.bottom = std::max(pole.bottom, target.snow);
   pole.top = std::max(pole.bottom, value(Reported::top));
   pole.points = static_cast<std::uint32_t>(std::max(1.0, std::round(value(Reported::points))));
   return pole;
