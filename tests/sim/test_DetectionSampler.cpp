@@ -252,6 +252,26 @@ TEST_F(DetectionSamplerTest, snowHidesPolesThatStandInIt) {
   EXPECT_NEAR(shareSeen(model, m_options, inSnow), 0.6, 0.05);
 }
 
+TEST_F(DetectionSamplerTest, bottomsLieOnTheSnowAndElsewhereWhereTheModelHasThem) {
+  DetectionModel model = plainModel();
+  for (auto& own : model.classes)
+    for (Quantiles& row : own.reported[static_cast<int>(Reported::bottom)]) row.fill(-0.2);
+  sample(model);
+  for (const auto& scan : scans)
+    for (const PoleDetection& pole : scan) ASSERT_EQ(pole.bottom, -0.2);
+  scans.clear();
+  m_options.world.dayOfYear = 15;
+  sample(model);
+  double inSnow = 0, all = 0;
+  for (const auto& scan : scans)
+    for (const PoleDetection& pole : scan) {
+      EXPECT_TRUE(pole.bottom == -0.2 || (pole.bottom > 0 && pole.bottom < 0.75)) << pole.bottom;
+      inSnow += pole.bottom > 0.4;
+      ++all;
+    }
+  EXPECT_GT(inSnow, 0.3 * all);
+}
+
 TEST_F(DetectionSamplerTest, bareTreesAreSeenMoreOften) {
   DetectionModel model = plainModel();
   model.season.bare = {0, 0, 0, 0.8};  // P(z < 0.253 + 0.8) = 0.854
