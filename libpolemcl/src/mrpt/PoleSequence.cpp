@@ -23,12 +23,6 @@ struct Task {
 };
 using TaskPtr = std::shared_ptr<Task>;
 
-/// Scans in all when so many came from this share of a file.
-std::size_t expectedScans(std::size_t done, double share) {
-  if (!(share > 0)) return 0;
-  return std::max(done, static_cast<std::size_t>(static_cast<double>(done) / share + 0.5));
-}
-
 class Stream {
  public:
   Stream(const std::string& path, const SequenceOptions& options)
@@ -60,7 +54,7 @@ TaskPtr Stream::read() {
     m_ended = !scan;
     if (m_ended) return nullptr;
     task->scan = std::move(*scan);
-    task->result.expected = expectedScans(task->scan.index + 1, m_source.progress());
+    task->result.expected = m_source.expected();
   } catch (...) {
     m_ended = true;
     task->error = std::current_exception();

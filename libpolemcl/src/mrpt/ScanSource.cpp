@@ -8,6 +8,7 @@
 #include <polemcl/mrpt/PoleExtraction.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace polemcl {
 
@@ -132,6 +133,12 @@ void ScanSource::take(const RawlogEntry& entry) {
 bool ScanSource::mustWait(const Scan& scan) const {
   return !m_ended && !m_anyAction && !m_odometry.reaches(scan.time) &&
          m_waiting.size() < mostWaiting;
+}
+
+std::size_t ScanSource::expected() const {
+  const double share = m_reader.progress();
+  if (!(share > 0)) return 0;
+  return std::max(m_scans, static_cast<std::size_t>(static_cast<double>(m_scans) / share + 0.5));
 }
 
 ScanSource::Scan ScanSource::release() {

@@ -38,8 +38,8 @@ class ScanSource {
   std::size_t otherSensors() const { return m_otherSensors; }
   std::size_t unknownMotions() const { return m_unknownMotions; }
   bool truncated() const { return m_reader.truncated(); }
-  /// \brief Share of the file read so far, 0 to 1.
-  double progress() const { return m_reader.progress(); }
+  /// \brief Scans of the whole file, judged from those in the share read so far; 0: not known.
+  std::size_t expected() const;
 
  private:
   void take(const RawlogEntry& entry);
