@@ -43,6 +43,22 @@ TEST_F(CsvRowsTest, refusesRowsThatAreShortOrNoNumbers) {
   expectIn(refusal("time,x,y\n"), "a.csv:1: ", "'time' is no number");
 }
 
+TEST_F(CsvRowsTest, tellsHowFarItIs) {
+  std::string text;
+  for (int i = 0; i < 300000; ++i) text += "1,2,3.5\n";  // 2.4 MB
+  std::vector<std::size_t> done;
+  CsvRows rows(write("a.csv", text), 3, "", [&](std::size_t now, std::size_t total) {
+    EXPECT_EQ(total, 2u);
+    done.push_back(now);
+  });
+  for (std::vector<double> row; rows.next(row);) {
+  }
+  ASSERT_EQ(done.size(), 30u);
+  EXPECT_EQ(done.front(), 0u);
+  EXPECT_EQ(done[14], 1u);  // 150,000 rows are 1.2 MB
+  EXPECT_EQ(done.back(), 2u);
+}
+
 TEST_F(CsvRowsTest, refusesFilesThatCannotBeRead) {
   expectIn(messageOf([&] { CsvRows(path("no.csv"), 3, ""); }), "no.csv", "No such file");
   expectIn(messageOf([&] { CsvRows(m_folder, 3, ""); }), "it is a folder");

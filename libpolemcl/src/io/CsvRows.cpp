@@ -8,9 +8,19 @@
 #include <utility>
 
 namespace polemcl::io {
+namespace {
 
-CsvRows::CsvRows(const std::filesystem::path& file, std::size_t columns, std::string layout)
-    : m_file(file), m_columns(columns), m_layout(std::move(layout)) {
+constexpr std::size_t linesPerReport = 10000;
+constexpr std::uint64_t megabyte = 1000000;
+
+}  // namespace
+
+CsvRows::CsvRows(const std::filesystem::path& file, std::size_t columns, std::string layout,
+                 ReadProgress progress)
+    : m_file(file),
+      m_columns(columns),
+      m_layout(std::move(layout)),
+      m_progress(std::move(progress)) {
   std::error_code ignored;
   // Opening a folder succeeds; only reading it would fail.
   if (std::filesystem::is_directory(file, ignored))
@@ -18,6 +28,8 @@ CsvRows::CsvRows(const std::filesystem::path& file, std::size_t columns, std::st
   errno = 0;
   m_stream.open(file, std::ios::binary);
   if (!m_stream) throw Error("cannot read " + file.string() + ": " + std::strerror(errno));
+  const auto size = std::filesystem::file_size(file, ignored);
+  if (!ignored) m_size = size;
 }
 
 std::string CsvRows::at() const {
@@ -28,6 +40,9 @@ bool CsvRows::next(std::vector<double>& values) {
   values.clear();
   while (std::getline(m_stream, m_text)) {
     ++m_line;
+    m_read += m_text.size() + 1;
+    if (m_progress && m_line % linesPerReport == 0)
+      m_progress(m_read / megabyte, m_size / megabyte);
     std::string_view rest = trimmed(m_text);
     if (rest.empty() || rest.front() == '#') continue;
     for (bool more = true; more;) {

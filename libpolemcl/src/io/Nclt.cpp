@@ -195,12 +195,13 @@ void addMotions(const NcltOdometry& odometry, const fs::path& file, std::size_t 
   keepScans(result, keep, "at times without odometry");
 }
 
-void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body, ScanFolder& result) {
+void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body,
+              const ReadProgress& progress, ScanFolder& result) {
   Eigen::Isometry3d T_map_truth = Eigen::Isometry3d::Identity();  // x north y east z down to ENU
   T_map_truth.linear() << 0, 1, 0, 1, 0, 0, 0, 0, -1;
   const Eigen::Isometry3d T_body_robot = T_robot_body.inverse();
   TrackSampler track(timesOf(result), trackGap);
-  CsvRows rows(file, 7, "utime, x, y, z, roll, pitch, heading (us, m, rad)");
+  CsvRows rows(file, 7, "utime, x, y, z, roll, pitch, heading (us, m, rad)", progress);
   std::vector<double> row;
   std::size_t unknown = 0, disordered = 0;
   while (rows.next(row)) {
@@ -222,8 +223,9 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body, ScanF
 }
 
 /// Tells how far the truth itself may be off, as its owners say.
-void noteTruthAccuracy(const fs::path& file, ScanFolder& result) {
-  CsvRows rows(file, 22, "utime, 21 numbers: the upper triangle of the covariance of the pose");
+void noteTruthAccuracy(const fs::path& file, const ReadProgress& progress, ScanFolder& result) {
+  CsvRows rows(file, 22, "utime, 21 numbers: the upper triangle of the covariance of the pose",
+               progress);
   std::vector<double> row;
   double sum = 0, worst = 0;
   std::size_t count = 0;
@@ -267,7 +269,7 @@ ScanFolder readNclt(const fs::path& session, const Eigen::Isometry3d& T_robot_bo
   const fs::path& means =
       files.odometry.track.empty() ? files.odometry.steps : files.odometry.track;
   if (!means.empty()) {
-    odometry.emplace(files.odometry, wantedTimes(result, turns), result.notes);
+    odometry.emplace(files.odometry, wantedTimes(result, turns), result.notes, progress);
     addMotions(*odometry, means, turns.empty() ? 1 : 3, T_robot_body, result);
   }
   if (!turns.empty()) {
@@ -277,8 +279,8 @@ ScanFolder readNclt(const fs::path& session, const Eigen::Isometry3d& T_robot_bo
   if (files.truth.empty()) {
     result.notes.push_back("no groundtruth_DATE.csv");
   } else {
-    addTruth(files.truth, T_robot_body, result);
-    if (!files.covariances.empty()) noteTruthAccuracy(files.covariances, result);
+    addTruth(files.truth, T_robot_body, progress, result);
+    if (!files.covariances.empty()) noteTruthAccuracy(files.covariances, progress, result);
   }
   return result;
 }

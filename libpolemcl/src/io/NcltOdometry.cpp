@@ -63,18 +63,19 @@ Eigen::Isometry3d ncltPose(const double* values) {
 }
 
 NcltOdometry::NcltOdometry(const NcltOdometryFiles& files, std::vector<double> times,
-                           std::vector<std::string>& notes)
+                           std::vector<std::string>& notes, const ReadProgress& progress)
     : m_track(std::move(times), trackGap) {
-  if (!files.track.empty()) readTrack(files.track, notes);
-  if (!files.steps.empty()) readSteps(files, notes);
+  if (!files.track.empty()) readTrack(files.track, notes, progress);
+  if (!files.steps.empty()) readSteps(files, notes, progress);
   if (files.steps.empty() || files.covariances.empty())
     notes.push_back(
         "no odometry_mu.csv with odometry_cov.csv: standard deviations of the odometry are taken "
         "to be 5 % of each motion");
 }
 
-void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& notes) {
-  CsvRows rows(file, 7, poseLayout);
+void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& notes,
+                             const ReadProgress& progress) {
+  CsvRows rows(file, 7, poseLayout, progress);
   std::vector<double> row;
   std::size_t unused = 0;
   while (rows.next(row)) {
@@ -83,8 +84,9 @@ void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& not
   noteUnused(unused, file, notes);
 }
 
-void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes) {
-  CsvRows rows(files.steps, 7, poseLayout);
+void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
+                             const ReadProgress& progress) {
+  CsvRows rows(files.steps, 7, poseLayout, progress);
   std::optional<CsvRows> covariances;
   if (!files.covariances.empty()) covariances.emplace(files.covariances, 22, covarianceLayout);
   std::vector<double> row, covariance;

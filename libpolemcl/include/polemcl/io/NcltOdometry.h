@@ -3,6 +3,7 @@
 /// \brief The odometry of NCLT: where the body went, and how far that may be off.
 
 #include <polemcl/io/PlanarMotion.h>
+#include <polemcl/io/ReadProgress.h>
 #include <polemcl/io/TrackSampler.h>
 
 #include <filesystem>
@@ -35,7 +36,7 @@ class NcltOdometry {
   /// \throws Error naming file and line: cannot be read, short rows, not a number, covariances of
   ///         other times than the steps.
   NcltOdometry(const NcltOdometryFiles& files, std::vector<double> times,
-               std::vector<std::string>& notes);
+               std::vector<std::string>& notes, const ReadProgress& progress = {});
 
   /// \brief The body in the odometry frame at the wanted times; none outside the track.
   const TrackSampler& track() const { return m_track; }
@@ -53,8 +54,10 @@ class NcltOdometry {
     double begin = 0, end = 0;  ///< s
     PlanarMotion motion;
   };
-  void readTrack(const std::filesystem::path& file, std::vector<std::string>& notes);
-  void readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes);
+  void readTrack(const std::filesystem::path& file, std::vector<std::string>& notes,
+                 const ReadProgress& progress);
+  void readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
+                 const ReadProgress& progress);
   std::optional<Eigen::Matrix3d> covarianceBetween(double begin, double end) const;
 
   TrackSampler m_track;

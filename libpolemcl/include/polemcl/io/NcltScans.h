@@ -6,19 +6,16 @@
 /// intensity, uint8 laser, as in read_vel_sync.py and read_vel_hits.py of the dataset.
 
 #include <polemcl/io/Cloud.h>
+#include <polemcl/io/ReadProgress.h>
 
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace polemcl::io {
-
-/// \brief Told how much is read and how much there is, both in one unit.
-using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// \brief One scan of velodyne_sync, in the body frame: x ahead, y right, z down.
 /// Intensity 0 … 255. Points at the origin are dropped and counted.
