@@ -3,6 +3,7 @@
 #include <polemcl/mrpt/RegisterClasses.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <nlohmann/json.hpp>
 
 #include "CityFiles.h"
@@ -108,7 +109,10 @@ TEST_F(FaultTrials, AWrongMapIsNoticed) {
 }
 
 TEST_F(FaultTrials, AHealthyDriveIsOk) {
+  std::atomic<std::size_t> told{0};
+  options.progress = [&] { ++told; };
   const auto runs = runHealthy(drive(), options);
+  EXPECT_EQ(told, runs.size());
   ASSERT_EQ(runs.size(), 6u);
   for (const HealthyRun& run : runs) {
     EXPECT_EQ(run.lostTimes, 0u);

@@ -3,6 +3,7 @@
 #include <polemcl/mrpt/RegisterClasses.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <nlohmann/json.hpp>
 
 #include "CityFiles.h"
@@ -44,7 +45,10 @@ using Answer = GlobalTrial::Outcome;
 }  // namespace
 
 TEST_F(GlobalTrials, FindsAVehicleInItsCity) {
+  std::atomic<std::size_t> told{0};
+  options.progress = [&] { ++told; };
   const auto trials = runGlobalTrials(loadTrialDrive(options.files), options);
+  EXPECT_EQ(told, trials.size());
   ASSERT_EQ(trials.size(), 12u);
   for (const GlobalTrial& trial : trials) {
     EXPECT_EQ(trial.outcome, Answer::right);

@@ -79,7 +79,7 @@ EvalCommand mapCommand(CLI::App& program) {
   cli.add_flag("--one-to-one", options.oneToOne,
                "Match each pole at most once (default: count map poles near any true pole)");
   cli.add_option("--json", options.json, "Write the figures to this file");
-  return {&cli, [shared] { return text(evalMap(*shared)); }};
+  return {&cli, [shared](bool) { return text(evalMap(*shared)); }};
 }
 
 EvalCommand trajectoryCommand(CLI::App& program) {
@@ -99,7 +99,7 @@ EvalCommand trajectoryCommand(CLI::App& program) {
   cli.add_option("--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
   cli.add_option("--png", options.png, "Write a picture of map, truth and estimate");
   cli.add_option("--title", options.title, "Title of the picture (default: the estimate's file)");
-  return {&cli, [shared] { return text(evalTrajectory(*shared)); }};
+  return {&cli, [shared](bool) { return text(evalTrajectory(*shared)); }};
 }
 
 std::vector<Eigen::Vector2d> readPoles(const std::filesystem::path& file) {
@@ -174,7 +174,7 @@ int evalMain(int argc, const char* const* argv) {
   return line.run(argc, argv, [&] {
     for (const EvalCommand& command : commands) {
       if (!command.parser->parsed()) continue;
-      const std::string text = command.run();
+      const std::string text = command.run(line.quiet());
       if (!line.quiet()) std::cout << text;
     }
   });

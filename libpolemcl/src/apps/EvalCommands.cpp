@@ -4,6 +4,7 @@
 #include <polemcl/apps/DetectionModelApp.h>
 #include <polemcl/apps/ExtractionEval.h>
 #include <polemcl/apps/MotionEval.h>
+#include <polemcl/apps/Progress.h>
 #include <polemcl/io/TextFile.h>
 
 #include <cmath>
@@ -69,7 +70,7 @@ EvalCommand detectionsCommand(CLI::App& program) {
                  "Poles visible in fewer scans are left out of that table")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  return {&cli, [options] { return text(evalDetections(*options)); }};
+  return {&cli, [options](bool) { return text(evalDetections(*options)); }};
 }
 
 EvalCommand repeatabilityCommand(CLI::App& program) {
@@ -78,7 +79,7 @@ EvalCommand repeatabilityCommand(CLI::App& program) {
   cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
   cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options] { return text(evalRepeatability(*options)); }};
+  return {&cli, [options](bool) { return text(evalRepeatability(*options)); }};
 }
 
 EvalCommand rotationCommand(CLI::App& program) {
@@ -98,7 +99,11 @@ EvalCommand rotationCommand(CLI::App& program) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options, config, set] {
+  return {&cli, [options, config, set](bool quiet) {
+            Progress progress("turn", 0, quiet);
+            options->progress = [&](std::size_t done, std::size_t total) {
+              progress.update(done, total);
+            };
             return text(evalRotation(*options, loadSettings(*config, *set)), options->radius);
           }};
 }
@@ -120,7 +125,7 @@ EvalCommand modelCommand(CLI::App& program) {
                  "Rawlogs of pole-simulate --poles: two for each street, of two days")
       ->required();
   cli.add_option("--model", options->model, "Model to write (JSON)")->required();
-  return {&cli, [options] { return text(fitModel(*options), *options); }};
+  return {&cli, [options](bool) { return text(fitModel(*options), *options); }};
 }
 
 std::string text(const sim::DetectionSummary& s) {
@@ -145,7 +150,7 @@ EvalCommand sightingsCommand(CLI::App& program) {
   const auto options = std::make_shared<EvalSightingsOptions>();
   cli.add_option("--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options] { return text(evalSightings(*options)); }};
+  return {&cli, [options](bool) { return text(evalSightings(*options)); }};
 }
 
 std::string cells(const Pose2D& motion) {
@@ -187,7 +192,7 @@ EvalCommand motionCommand(CLI::App& program) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options] { return text(evalMotion(*options)); }};
+  return {&cli, [options](bool) { return text(evalMotion(*options)); }};
 }
 
 }  // namespace

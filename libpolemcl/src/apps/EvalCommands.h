@@ -9,10 +9,11 @@
 
 namespace polemcl::apps {
 
-/// \brief A declared subcommand and what it does once parsed: returns the text for the user.
+/// \brief A declared subcommand and what it does once parsed: returns the text for the user, shows
+/// its progress unless quiet.
 struct EvalCommand {
   const CLI::App* parser = nullptr;
-  std::function<std::string()> run;
+  std::function<std::string(bool quiet)> run;
 };
 
 /// \brief Declares `detections`, `repeatability`, `rotation`, `model`, `sightings` and `motion`.

@@ -2,6 +2,7 @@
 #include <polemcl/apps/ConsistencyEval.h>
 #include <polemcl/apps/FaultTrials.h>
 #include <polemcl/apps/GlobalTrials.h>
+#include <polemcl/apps/Progress.h>
 
 #include <cstdio>
 #include <memory>
@@ -34,7 +35,11 @@ EvalCommand globalCommand(CLI::App& program) {
       ->check(positiveNumber())
       ->capture_default_str();
   cli.add_option("--json", options.json, "Write the figures to this file");
-  return {&cli, [shared] { return evalGlobal(*shared); }};
+  return {&cli, [shared](bool quiet) {
+            Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
+            shared->progress = [&] { progress.step(); };
+            return evalGlobal(*shared);
+          }};
 }
 
 std::string row(const std::string& name, const ConsistencyScore& s) {
@@ -75,7 +80,7 @@ EvalCommand consistencyCommand(CLI::App& program) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options] { return text(evalConsistency(*options)); }};
+  return {&cli, [options](bool) { return text(evalConsistency(*options)); }};
 }
 
 EvalCommand faultsCommand(CLI::App& program) {
@@ -107,7 +112,11 @@ EvalCommand faultsCommand(CLI::App& program) {
       ->check(positiveNumber() & CLI::Range(0.0, 1.0))
       ->capture_default_str();
   cli.add_option("--json", options.json, "Write the figures to this file");
-  return {&cli, [shared] { return evalFaults(*shared); }};
+  return {&cli, [shared](bool quiet) {
+            Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
+            shared->progress = [&] { progress.step(); };
+            return evalFaults(*shared);
+          }};
 }
 
 }  // namespace

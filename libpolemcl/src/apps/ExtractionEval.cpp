@@ -177,6 +177,7 @@ RotationScore evalRotation(const EvalRotationOptions& options, const Settings& s
   streamPoles(options.input.string(), sequence, [&](const PoleScan& scan) {
     if (scan.stored)
       throw Error(options.input.string() + ": holds poles, not scans; only scans can be turned");
+    if (options.progress) options.progress(scan.index + 1, scan.expected);
     if (scan.index % options.every != 0 || scan.points == 0) return;
     const auto cloud = source.lidarPoints(*scan.scan);
     addRotations(extractor, cloud.view(), options.radius, score);

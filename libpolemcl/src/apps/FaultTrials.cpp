@@ -179,6 +179,7 @@ std::vector<FaultTrial> runFaultTrials(const TrialDrive& drive, const FaultTrial
   std::vector<FaultTrial> trials(options.trials);
   tbb::parallel_for(0, options.trials, [&](int i) {
     trials[i] = runTrial(drive, map, options, static_cast<std::uint32_t>(i));
+    if (options.progress) options.progress();
   });
   return trials;
 }
@@ -197,6 +198,7 @@ std::vector<HealthyRun> runHealthy(const TrialDrive& drive, const FaultTrialsOpt
       throw Error("run " + std::to_string(i) + " was never ok in " +
                   std::to_string(drive.frames.size()) + " scans");
     runs[i] = counter.run;
+    if (options.progress) options.progress();
   });
   return runs;
 }

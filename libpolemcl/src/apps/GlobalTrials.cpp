@@ -130,6 +130,7 @@ std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
   tbb::parallel_for(0, options.trials, [&](int i) {
     trials[i] = runTrial(drive, driven, first[i], options.metres,
                          options.seed + static_cast<std::uint32_t>(i));
+    if (options.progress) options.progress();
   });
   return trials;
 }

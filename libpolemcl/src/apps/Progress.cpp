@@ -37,6 +37,11 @@ void Progress::update(std::size_t done) {
   std::cerr << '\r' << progressLine(m_label, done, m_total, seconds) << "\033[K" << std::flush;
 }
 
+void Progress::step() {
+  const std::lock_guard lock(m_mutex);
+  update(m_done + 1);
+}
+
 void Progress::say(const std::string& line) {
   std::cerr << (m_drawn ? "\r\033[K" : "") << line << std::endl;
   m_drawn = false;

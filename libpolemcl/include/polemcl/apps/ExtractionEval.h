@@ -5,6 +5,7 @@
 #include <polemcl/apps/Settings.h>
 #include <polemcl/core/DetectionEvaluation.h>
 #include <polemcl/core/Repeatability.h>
+#include <polemcl/mrpt/PoleSequence.h>
 
 #include <filesystem>
 #include <optional>
@@ -44,6 +45,7 @@ struct EvalRotationOptions {
   std::size_t every = 1;        ///< N: scans 0, N, 2N, … are turned; at least 1
   double radius = 0.01;         ///< of matching, m
   std::optional<std::filesystem::path> json;
+  ScanProgress progress = {};  ///< may be empty
 };
 /// \brief Poles found again when a scan is turned about the vertical.
 /// \throws Error naming the file: a rawlog of poles instead of scans.

@@ -5,6 +5,7 @@
 #include <polemcl/apps/FaultInjection.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,6 +20,8 @@ struct FaultTrialsOptions {
   int trials = 200;
   std::uint32_t seed = 1;  ///< of the faults; trial i filters with seed + i
   std::optional<std::filesystem::path> json;
+  /// Called after each trial, from any thread; may be empty.
+  std::function<void()> progress = {};
 };
 
 /// \brief A pose this good is right, as for global starts: m and rad.

@@ -5,6 +5,7 @@
 #include <polemcl/apps/TrialDrive.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct GlobalTrialsOptions {
   std::uint32_t seed = 1;  ///< of the starts; trial i filters with seed + i
   double metres = 60;      ///< driven in each trial, at most
   std::optional<std::filesystem::path> json;
+  /// Called after each trial, from any thread; may be empty.
+  std::function<void()> progress = {};
 };
 
 /// \brief One random start.

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <mutex>
 #include <string>
 
 namespace polemcl::apps {
@@ -25,6 +26,8 @@ class Progress {
   void update(std::size_t done);
   /// \brief The same where the total becomes known on the way.
   void update(std::size_t done, std::size_t total);
+  /// \brief One more step is finished; from any thread.
+  void step();
   /// \brief A line of its own on stderr, quiet or not; the bar, if there is one, comes again after
   /// it.
   void say(const std::string& line);
@@ -36,6 +39,7 @@ class Progress {
   bool m_shown;
   bool m_drawn = false;
   Clock::time_point m_start, m_last;
+  std::mutex m_mutex;  ///< of step()
 };
 
 /// \brief The text of the bar.
