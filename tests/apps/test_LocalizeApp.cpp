@@ -292,7 +292,7 @@ TEST_F(LocalizeApp, RefusesAStartInAnotherFrame) {
   auto truth = io::planar(io::readTum(folder / "truth.tum"));
   for (auto& pose : truth) pose.pose.x += 5000;
   io::writeTum(folder / "truth.tum", truth);
-  expectFailure(runWithTruth(), {"km from the nearest pole of", "map.polemap", "datum"});
+  expectFailure(runWithTruth(), {"from the nearest pole", "1000"});
 }
 
 TEST_F(LocalizeApp, RefusesATruthOfAnotherDrive) {

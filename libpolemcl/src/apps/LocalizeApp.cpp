@@ -8,15 +8,11 @@
 #include <polemcl/apps/Settings.h>
 #include <polemcl/apps/TrialDrive.h>
 #include <polemcl/core/PoseInterpolation.h>
-#include <polemcl/io/TextFile.h>
 #include <polemcl/io/Trajectory.h>
 #include <polemcl/mrpt/PoleSequence.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iostream>
-#include <limits>
 
 namespace polemcl::apps {
 
@@ -120,18 +116,6 @@ StartOptions startFrom(const StartOptions& configured, const LocalizeJob& job,
   return start;
 }
 
-/// A start far from all poles is one of another map, or in another frame.
-void requireNear(const Pose2D& start, const std::vector<MapPole>& poles, const LocalizeJob& job) {
-  constexpr double farthest = 1000;  // m
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const MapPole& pole : poles)
-    nearest = std::min(nearest, std::hypot(pole.x - start.x, pole.y - start.y));
-  if (nearest > farthest)
-    throw Error("the start at x " + io::fixed(start.x, 1) + ", y " + io::fixed(start.y, 1) +
-                " m is " + io::fixed(nearest / 1000, 1) + " km from the nearest pole of " +
-                job.map.string() + ": do map, start and truth share a datum?");
-}
-
 std::vector<FilterRun> runAll(const LocalizeFacts& facts, const LocalizationMap& map,
                               const std::vector<PoleFrame>& frames, RunView& view) {
   Progress progress("localize", frames.size() * facts.runs.runs, facts.job.quiet);
@@ -192,7 +176,6 @@ LocalizeResult localize(const LocalizeJob& job) {
   requireUsable(job.input.string(), sequence);
   if (job.truth) requireCoverage(*job.truth, truth, sequence.frames);
   const StartOptions start = startFrom(settings.start, job, truth, sequence.frames);
-  if (start.pose) requireNear(*start.pose, map->poles(), job);
   const LocalizeFacts facts{job,           settings.localization, start,
                             settings.runs, sequence.counts,       map->poles().size()};
   LocalizeResult result;
