@@ -50,6 +50,21 @@ class BatchApp : public testing::Test {
     return all;
   }
 
+  /// No process works in the folder, or none does soon.
+  static bool nobodyWorksIn(const fs::path& folder) {
+    const auto works = [&] {
+      std::error_code none;
+      for (const auto& process : fs::directory_iterator("/proc", none)) {
+        const std::string place = fs::read_symlink(process.path() / "cwd", none).string();
+        if (place.rfind(folder.string() + "/", 0) == 0) return true;
+      }
+      return false;
+    };
+    for (int i = 0; i < 20 && works(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return !works();
+  }
+
   static TempFolder* s_folder;
 };
 
@@ -119,8 +134,9 @@ TEST_F(BatchApp, GoesOnAfterItWasKilled) {
     return done;
   };
   while (doneTasks() < 4) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  ::kill(-child, SIGKILL);
+  ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
+  EXPECT_TRUE(nobodyWorksIn(output)) << "a child goes on";
   EXPECT_FALSE(fs::exists(output / "results.json"));
   const auto before = contents(output / "work", ".part");
   ASSERT_LT(before.size(), contents(*s_folder / "done/work").size());
@@ -144,12 +160,53 @@ TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
   const std::string message = messageOf([&] { doBatch(options); });
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(message.find("4 of 14 tasks failed (run.kept.s2.00: "), std::string::npos) << message;
-  EXPECT_NE(message.find("0 more need them"), std::string::npos) << message;
+  EXPECT_NE(message.find("with those that need them 4 are not done"), std::string::npos) << message;
   EXPECT_NE(said.find("run.once.s2.00 failed: "), std::string::npos) << said;
   const auto results = report::readResultsJson(*s_folder / "broken/results.json");
   EXPECT_EQ(results.failures.size(), 4u);
   EXPECT_NE(results.find(1, 2)->runs[0].failure, "");
   EXPECT_EQ(results.find(1, 1)->runs[0].failure, "");
+}
+
+TEST_F(BatchApp, ASessionWithoutReadableTruthIsReportedAlone) {
+  for (const char* name : {"s0", "s1", "s2"}) {
+    const fs::path from = *s_folder / "done/work" / (std::string("poles.") + name);
+    for (const char* end : {".rawlog", ".tum"})
+      fs::copy_file(from / (std::string(name) + end), *s_folder / (std::string(name) + end),
+                    fs::copy_options::overwrite_existing);
+  }
+  std::string truth = readText(*s_folder / "s2.tum");
+  truth.replace(truth.find('\n') + 1, 3, "nan");
+  writeText(*s_folder / "s2.tum", truth);
+  std::string text = readText(*s_folder / "street-batch.ini");
+  for (const char* gone : {"set = world.day=1\n", "set = world.day=2\n"})
+    text.erase(text.find(gone), std::string(gone).size());
+  const std::string source = "source = simulated\ninput = street.ini";
+  text.replace(text.find(source), source.size(), "source = poles\ninput = {session}.rawlog");
+  writeText(*s_folder / "truth.ini", text);
+  BatchOptions options = optionsFor("truth");
+  options.batch = *s_folder / "truth.ini";
+  testing::internal::CaptureStderr();
+  const std::string message = messageOf([&] { doBatch(options); });
+  testing::internal::GetCapturedStderr();
+  EXPECT_NE(message.find("s2.tum:2: 'nan"), std::string::npos) << message;
+  const auto results = report::readResultsJson(*s_folder / "truth/results.json");
+  EXPECT_NE(results.find(1, 2)->runs[0].failure, "");
+  EXPECT_EQ(results.find(1, 1)->runs[0].failure, "");
+  EXPECT_TRUE(fs::exists(*s_folder / "truth/report.html"));
+}
+
+TEST_F(BatchApp, TasksDoneByHandNeedTheSettingsOfTheBatch) {
+  fs::copy(*s_folder / "done", *s_folder / "hand", fs::copy_options::recursive);
+  fs::remove_all(*s_folder / "hand/work/run.once.s1.00");
+  const std::vector<std::string> task{"--output", (*s_folder / "hand").string(), "--task",
+                                      "run.once.s1.00"};
+  const std::string settings = readText(*s_folder / "hand/settings/once.ini");
+  writeText(*s_folder / "hand/settings/once.ini", settings + "\n# edited\n");
+  expectFailure(runProgram(batchMain, task), {"once.ini", "not what the batch was begun with"});
+  writeText(*s_folder / "hand/settings/once.ini", settings);
+  EXPECT_EQ(runProgram(batchMain, task).code, 0);
+  EXPECT_EQ(left("hand"), left("done"));
 }
 
 TEST_F(BatchApp, RefusesWrongUsage) {

@@ -158,6 +158,11 @@ TEST_F(BatchRunner, DamagedOutputsAreDoneAgain) {
   EXPECT_EQ(out("b"), "B\nA\n");
   fs::remove(m_batch.work("c") / "out");
   EXPECT_EQ(run(), Names{"c"});
+  writeText(m_batch.work("c") / "done.json", "{\"key\": \"key of c\", \"outputs\": []}");
+  EXPECT_EQ(run(), Names{"c"});
+  fs::remove(m_batch.work("c") / "done.json");
+  fs::create_directories(m_batch.work("c") / "done.json");
+  EXPECT_EQ(run(), Names{"c"});
   writeText(m_batch.work("c") / "done.json", "{");
   EXPECT_EQ(m_batch.state(m_plan.task("c")), State::damaged);
   EXPECT_EQ(run(), Names{"c"});
@@ -219,6 +224,10 @@ TEST(BatchFolder, IsForOneBatchAlone) {
             }).find("holds the batch 'one', not 'two'"),
             std::string::npos);
   EXPECT_NO_THROW(BatchFolder(path).take("one", true));
+  // Cut short before its plan was written, and one that lost it.
+  fs::remove(path / "plan.json");
+  EXPECT_NO_THROW(BatchFolder(path).take("one", true));
+  EXPECT_NO_THROW(BatchFolder(path).take("one", false));
   writeText(path / "plan.json", "nonsense");
   EXPECT_NO_THROW(BatchFolder(path).take("one", true));
 }

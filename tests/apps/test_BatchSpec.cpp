@@ -43,7 +43,7 @@ TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
   ASSERT_EQ(spec.sessions.size(), 2u);
   EXPECT_EQ(spec.session("a").input, "/d/s/a");
   EXPECT_EQ(spec.session("a").source, "nclt");
-  EXPECT_EQ(spec.session("a").date, "2012-01-0a");
+  EXPECT_EQ(spec.session("a").date, "2012-01-08");
   EXPECT_EQ(spec.session("b").odometryNoise, 0.02);
   EXPECT_EQ(spec.session("b").set, (std::vector<std::string>{"world.day=3", "world.seed=4"}));
   EXPECT_EQ(fs::path(spec.session("b").input).filename(), "b.ini");
@@ -69,6 +69,12 @@ TEST(BatchSpec, NamesWhatIsWrong) {
   EXPECT_HAS(refusal(head + "[sessions]\nnames = a a\ninput = x\n" + setting),
              "'a' is given twice");
   EXPECT_HAS(refusal(head + "[sessions]\nnames = a/b\ninput = x\n" + setting), "'a/b' is no name");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a.b\ninput = x\n" + setting), "'a.b' is no name");
+  EXPECT_HAS(refusal(head + sessions + "date = 2026-13-01\n" + setting),
+             "session a: date: '2026-13-01' is no date");
+  EXPECT_HAS(refusal(head + sessions + "date = 2026-02-01\n[session b]\ndate = 2026-01-31\n" +
+                     setting + "map_sessions = all\nsessions = c\nmaps = upkeep\n"),
+             "session b of 2026-01-31 comes after one of 2026-02-01");
   EXPECT_HAS(refusal(head + "[sessions]\nnames = a\n" + setting), "session a: input is missing");
   EXPECT_HAS(refusal(head + sessions), "config is missing");
   EXPECT_HAS(refusal(head + sessions + setting + "sessions = d\n"), "no session 'd'");

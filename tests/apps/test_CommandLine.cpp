@@ -120,3 +120,10 @@ TEST(CommandLine, CatchesWhatIsNoException) {
   EXPECT_EQ(result.code, 1);
   EXPECT_EQ(result.err, "pole-test: failed for an unknown reason\n");
 }
+
+TEST(CommandLine, MessagesHoldNoRawBytes) {
+  EXPECT_EQ(oneLine("a \xff\xfe\x1b[2J b"), "a ???[2J b");
+  EXPECT_EQ(oneLine("l\xc3\xa4nge 5 m\xc2\xb2 \xe2\x80\xa6 \xf0\x9f\x9a\x97"),
+            "l\xc3\xa4nge 5 m\xc2\xb2 \xe2\x80\xa6 \xf0\x9f\x9a\x97");
+  EXPECT_EQ(oneLine("cut \xe2\x80"), "cut ??");
+}

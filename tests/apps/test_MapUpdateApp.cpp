@@ -125,6 +125,14 @@ TEST_F(MapUpdateApp, RefusesASessionInAnotherFrame) {
   expectFailure(update(), {"day1.rawlog", "20 km from the poles of", "datum"});
 }
 
+TEST_F(MapUpdateApp, RefusesASessionOfAnEarlierDay) {
+  mapYesterday();
+  drive("day1", today);
+  expectFailure(update({"--date", "2026-02-28"}),
+                {"day1.rawlog", "is of 2026-02-28", "day0.polemap of 2026-03-01", "--date"});
+  EXPECT_EQ(update({"--date", "2026-03-01"}).code, 0);
+}
+
 TEST_F(MapUpdateApp, RefusesBadFilesAndDates) {
   drive("day1", today);
   expectFailure(update(), {"day0.polemap"});
@@ -138,6 +146,12 @@ TEST_F(MapUpdateApp, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"--diff", "a.polemap"}));
   expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--update", "c"}));
   expectUsageError(runProgram(mapMain, {"--png", "a.png"}));
+  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--set", "upkeep.moved_m=1"}));
+  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--csv", "c", "--png", "./c"}));
+  expectUsageError(
+      runProgram(mapMain, {"--convert", "a.csv", "--output", "b.csv", "--config", "c"}));
+  expectUsageError(runProgram(mapMain, {"--config", "c", "--update", "m", "--input", "a", "--truth",
+                                        "a", "--output", "m.polemap", "--keep-scans"}));
   expectUsageError(
       runProgram(mapMain, {"--config", "c", "--update", "m", "--input", "a", "--truth", "a"}));
   expectUsageError(runProgram(mapMain, {"--config", "c", "--input", "a", "--truth", "a", "--date",

@@ -1,3 +1,4 @@
+#include <mrpt/system/md5.h>
 #include <polemcl/apps/BatchApp.h>
 #include <polemcl/apps/BatchCollect.h>
 #include <polemcl/apps/BatchFolder.h>
@@ -8,10 +9,14 @@
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/Progress.h>
 #include <polemcl/core/Types.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <thread>
 
 namespace polemcl::apps {
@@ -69,12 +74,39 @@ void printOpen(const BatchPlan& plan, const std::vector<const BatchTask*>& open,
             << std::endl;
 }
 
+/// Tasks take their settings from files that the plan's keys stand for.
+void requireFrozen(const BatchFolder& folder, const BatchPlan& plan) {
+  for (const auto& [name, sum] : plan.sums) {
+    std::ifstream stream(folder.path() / name, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(stream), {}};
+    if (mrpt::system::md5(content) != sum)
+      throw Error((folder.path() / name).string() +
+                  " is not what the batch was begun with; begin it again with --resume");
+  }
+}
+
 /// One task of a batch that was begun elsewhere.
 void doTaskOf(const BatchOptions& options, const std::string& id) {
   const BatchFolder folder(options.output);
   const BatchPlan plan = readPlan(options.output / "plan.json");
-  const TaskOutcome outcome = runTask(folder, plan.task(id));
+  const BatchTask& task = plan.task(id);
+  requireFrozen(folder, plan);
+  const TaskOutcome outcome = runTask(folder, task);
   if (!outcome.failure.empty()) throw Error(id + ": " + outcome.failure);
+}
+
+void requireAllDone(const BatchFolder& folder, const BatchPlan& plan,
+                    const report::BatchResults& results) {
+  const auto undone = static_cast<std::size_t>(
+      std::count_if(plan.tasks.begin(), plan.tasks.end(),
+                    [&](const BatchTask& task) { return !folder.isDone(task); }));
+  const auto& failures = results.failures;
+  if (failures.empty() && undone == 0) return;
+  std::string text = std::to_string(failures.size()) + " of " + std::to_string(plan.tasks.size()) +
+                     " tasks failed";
+  if (!failures.empty())
+    text += " (" + failures.front().task + ": " + failures.front().reason + ")";
+  throw Error(text + "; with those that need them " + std::to_string(undone) + " are not done");
 }
 
 void printPlan(const BatchPlan& plan) {
@@ -110,18 +142,28 @@ void doBatch(const BatchOptions& options) {
     timings.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     timings.jobs = options.slurm ? 0 : jobsOf(options);
   }
-  writeBatchFiles(folder, collectBatch(folder, plan, spec, failures, commandOf(options)), timings);
-  if (!options.quiet)
-    std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
-  if (failures.empty()) return;
-  const auto undone = static_cast<std::size_t>(
-      std::count_if(plan.tasks.begin(), plan.tasks.end(),
-                    [&](const BatchTask& task) { return !folder.isDone(task); }));
-  throw Error(std::to_string(failures.size()) + " of " + std::to_string(plan.tasks.size()) +
-              " tasks failed (" + failures.begin()->first + ": " + failures.begin()->second +
-              "), " + std::to_string(undone - failures.size()) +
-              " more need them; all others are done, --resume tries these again");
+  try {
+    const auto results = collectBatch(folder, plan, spec, failures, commandOf(options));
+    writeBatchFiles(folder, results, timings);
+    if (!options.quiet)
+      std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
+    requireAllDone(folder, plan, results);
+  } catch (const Error& error) {
+    throw Error(std::string(error.what()) + "; what is done stays, --resume goes on");
+  }
 }
+
+namespace {
+
+/// With a word on how to go on; the children end with this process.
+void endWithAWord(int signal) {
+  constexpr char word[] = "pole-batch: interrupted; what is done stays, --resume goes on\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, word, sizeof word - 1);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+}  // namespace
 
 int batchMain(int argc, const char* const* argv) {
   CommandLine line("pole-batch",
@@ -152,6 +194,7 @@ int batchMain(int argc, const char* const* argv) {
   return line.run(argc, argv, [&] {
     options.quiet = line.quiet();
     if (!task.empty()) return doTaskOf(options, task);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, endWithAWord);
     if (dry) return printPlan(planBatch(readBatchSpec(options.batch, options.data)));
     doBatch(options);
   });

@@ -15,6 +15,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <thread>
 
 namespace polemcl::apps {
@@ -125,8 +126,15 @@ class Collector {
     const auto known = m_truth.find(session);
     if (known != m_truth.end()) return &known->second;
     const std::string task = "poles." + session;
-    if (!isDone(task)) return nullptr;
-    return &(m_truth[session] = io::planar(io::readTum(m_folder.work(task) / (session + ".tum"))));
+    if (!isDone(task) || m_broken.count(session)) return nullptr;
+    try {
+      return &(m_truth[session] =
+                   io::planar(io::readTum(m_folder.work(task) / (session + ".tum"))));
+    } catch (const Error& error) {
+      m_broken.insert(session);
+      m_results.failures.push_back({task, error.what(), "logs/" + task + ".log"});
+      return nullptr;
+    }
   }
 
   const io::PoleMapData& mapOf(const std::string& task) {
@@ -178,6 +186,7 @@ class Collector {
     run.run = i;
     run.seed = cell.seeds[i];
     run.failure = failureOf(cell.runs[i]);
+    if (run.failure.empty() && !truthOf(cell.session)) run.failure = "no true poses";
     if (!run.failure.empty()) return run;
     const fs::path out = m_folder.work(cell.runs[i]) / "out";
     const Json summary = readJson(out / "summary.json");
@@ -221,6 +230,7 @@ class Collector {
   const std::map<std::string, std::string>& m_failures;
   report::BatchResults m_results;
   std::map<std::string, std::vector<StampedPose2D>> m_truth;
+  std::set<std::string> m_broken;  ///< sessions whose true poses cannot be read
   std::map<std::string, io::PoleMapData> m_maps;
 };
 

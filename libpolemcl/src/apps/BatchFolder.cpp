@@ -20,6 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr const char* s_marker = "plan.json";
+constexpr const char* s_lock = ".lock";
 
 std::uint32_t checksumOf(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -33,6 +34,8 @@ std::uint32_t checksumOf(const fs::path& file) {
 }
 
 Json readJson(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return Json::value_t::discarded;
   std::ifstream stream(file);
   return Json::parse(stream, nullptr, false);  // discarded when it is none
 }
@@ -71,14 +74,16 @@ BatchFolder::~BatchFolder() {
 
 void BatchFolder::take(const std::string& name, bool resume) {
   const bool known = fs::exists(m_path / s_marker);
-  if (!known && fs::exists(m_path) && (!fs::is_directory(m_path) || !fs::is_empty(m_path)))
+  // Begun, but cut short before its plan was written: ours as well.
+  const bool begun = known || fs::exists(m_path / s_lock);
+  if (!begun && fs::exists(m_path) && (!fs::is_directory(m_path) || !fs::is_empty(m_path)))
     throw Error(m_path.string() + ": is there and holds no batch; choose another --output");
   if (known && !resume)
     throw Error(m_path.string() +
                 ": holds a batch already; --resume does what is missing of it, or choose another "
                 "--output");
   createFolder(m_path);
-  const fs::path lock = m_path / ".lock";
+  const fs::path lock = m_path / s_lock;
   m_lock = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (m_lock < 0) throw Error(lock.string() + ": cannot be written: " + std::strerror(errno));
   if (::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
@@ -132,6 +137,10 @@ BatchFolder::State BatchFolder::state(const BatchTask& task, std::string* why) c
     return State::damaged;
   }
   if (done.at("key") != task.key) return State::open;
+  if (done.at("outputs").size() != task.outputs.size()) {
+    if (why) *why = (folder / "done.json").string() + " is not what was written";
+    return State::damaged;
+  }
   for (const auto& output : done.at("outputs")) {
     const std::string wrong = damage(folder, output);
     if (wrong.empty()) continue;

@@ -53,6 +53,7 @@ class Planner {
       addMaps(setting);
       addCells(setting);
     }
+    for (const auto& [name, content] : m_plan.files) m_plan.sums[name] = mrpt::system::md5(content);
     setKeys();
     return std::move(m_plan);
   }
@@ -67,14 +68,29 @@ class Planner {
     });
   }
 
+  /// What is wrong with a session's input; empty when nothing is.
+  static std::string obstacle(const BatchSession& session) {
+    const bool isFile =
+        session.source == "simulated" || session.source == "poles" || session.source == "scans";
+    if (!fs::exists(session.input)) return session.input + " is not there";
+    if (isFile && !fs::is_regular_file(session.input)) return session.input + " is no file";
+    if (!isFile && !fs::is_directory(session.input)) return session.input + " is no folder";
+    const fs::path truth = fs::path(session.input).replace_extension(".tum");
+    if (isFile && session.source != "simulated" && !fs::is_regular_file(truth))
+      return truth.string() + ", its true poses, is not there";
+    return {};
+  }
+
   void requireInputs() const {
     std::string missing;
-    for (const auto& session : m_spec.sessions)
-      if (isUsed(session.name) && !fs::exists(session.input))
-        missing += (missing.empty() ? "" : ", ") + session.name + " (" + session.input + ")";
+    for (const auto& session : m_spec.sessions) {
+      if (!isUsed(session.name)) continue;
+      const std::string what = obstacle(session);
+      if (!what.empty()) missing += (missing.empty() ? "" : "; ") + session.name + ": " + what;
+    }
     if (!missing.empty())
-      throw Error("batch " + m_spec.name + ": the input of these sessions is not there: " +
-                  missing + "; check --data and [sessions] input, or leave them out of names");
+      throw Error("batch " + m_spec.name + ": inputs are missing: " + missing +
+                  "; check --data and [sessions] input, or leave these sessions out");
   }
 
   /// A file that settings name, copied into the batch's folder; the name it has from a task's.

@@ -52,6 +52,7 @@ void writePlan(const std::filesystem::path& file, const BatchPlan& plan) {
   json["format"] = s_format;
   json["name"] = plan.name;
   json["tasks"] = json["cells"] = Json::array();
+  json["files"] = plan.sums;
   for (const auto& task : plan.tasks) json["tasks"].push_back(toJson(task));
   for (const auto& cell : plan.cells) json["cells"].push_back(toJson(cell));
   writeJson(file, json);
@@ -67,6 +68,7 @@ BatchPlan readPlan(const std::filesystem::path& file) {
                   "\"");
     BatchPlan plan;
     json.at("name").get_to(plan.name);
+    json.at("files").get_to(plan.sums);
     for (const auto& task : json.at("tasks")) plan.tasks.push_back(taskFrom(task));
     for (const auto& cell : json.at("cells")) plan.cells.push_back(cellFrom(cell));
     return plan;

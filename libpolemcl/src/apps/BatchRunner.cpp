@@ -2,13 +2,14 @@
 #include <polemcl/apps/BatchRunner.h>
 #include <polemcl/core/Types.h>
 #include <polemcl/io/TextFile.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr int s_notStarted = 127;  ///< exit code of a child that could not become its program
 
 /// Files that the commands leave beside their outputs would be found by the next attempt.
 class Staging {
@@ -59,27 +61,36 @@ std::string lastLine(const fs::path& log) {
   return last;
 }
 
+/// In the child: becomes the program, or ends. Only calls that are safe after a fork of a program
+/// with threads.
+[[noreturn]] void become(const char* program, char* const* arguments, const char* folder,
+                         const char* log, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG,
+          SIGKILL);  // nobody would wait for it, and the batch may go on elsewhere
+  const int in = ::open("/dev/null", O_RDONLY);
+  const int out = ::open(log, O_WRONLY | O_CREAT | O_APPEND, 0666);
+  if (::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
+      ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(out, STDERR_FILENO) >= 0 && ::chdir(folder) == 0)
+    ::execv(program, arguments);
+  ::_exit(s_notStarted);
+}
+
 /// Runs a program in `folder`. \return What it ended with, as waitpid() has it.
 int spawn(const std::vector<std::string>& command, const fs::path& folder, const fs::path& log) {
   const std::string program = (programFolder() / command.front()).string();
+  if (::access(program.c_str(), X_OK) != 0)
+    throw Error(program + ": cannot be started: " + std::strerror(errno));
   std::vector<char*> arguments;
   for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_APPEND, 0666);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  pid_t child = 0;
-  const int failure =
-      ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) throw Error(program + ": cannot be started: " + std::strerror(failure));
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child < 0) throw Error(program + ": cannot be started: " + std::strerror(errno));
+  if (child == 0) become(program.c_str(), arguments.data(), folder.c_str(), log.c_str(), parent);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0)
     if (errno != EINTR) throw Error(program + ": cannot be waited for: " + std::strerror(errno));
+  if (WIFEXITED(status) && WEXITSTATUS(status) == s_notStarted)
+    throw Error(program + ": cannot be started in " + folder.string());
   return status;
 }
 

@@ -1,4 +1,5 @@
 #include <polemcl/apps/BatchSpec.h>
+#include <polemcl/io/Date.h>
 #include <polemcl/mrpt/Config.h>
 #include <zlib.h>
 
@@ -21,15 +22,15 @@ std::vector<std::string> words(const std::string& text) {
   return all;
 }
 
-/// Names become names of files and jobs.
+/// Names become names of files and jobs, joined by dots.
 void requireName(const std::string& name, const std::string& where) {
-  const bool good = !name.empty() && name.size() <= 64 && name.front() != '.' &&
+  const bool good = !name.empty() && name.size() <= 64 &&
                     std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                      return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+                      return std::isalnum(c) || c == '_' || c == '-';
                     });
   if (!good)
     throw Error(where + ": '" + name +
-                "' is no name; allowed are up to 64 letters, digits, _ - and ., no . in front");
+                "' is no name; allowed are up to 64 letters, digits, _ and -");
 }
 
 void requireNames(const std::vector<std::string>& names, const std::string& where) {
@@ -104,6 +105,11 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
   s.date = fill.filled(s.date, name);
   s.set = words(fill.filled(text.set, name));
   if (s.input.empty()) throw Error(where + "session " + name + ": input is missing");
+  try {
+    if (!s.date.empty()) io::secondsOfDate(s.date);
+  } catch (const Error& error) {
+    throw Error(where + "session " + name + ": date: " + error.what());
+  }
   if (s.source != "simulated" && !s.set.empty())
     throw Error(where + "session " + name + ": set is for simulated sessions only");
   return s;
@@ -197,6 +203,19 @@ BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Pl
   return setting;
 }
 
+/// A map is kept up from day to day, not back.
+void requireOrder(const BatchSetting& setting, const BatchSpec& spec, const std::string& where) {
+  if (setting.protocol != MapProtocol::upkeep) return;
+  std::string last;
+  for (const auto& name : setting.mapSessions) {
+    const std::string& date = spec.session(name).date;
+    if (!date.empty() && date < last)
+      throw Error(where + ": session " + name + " of " + date + " comes after one of " + last +
+                  "; maps = upkeep takes sessions in the order of their dates");
+    last = std::max(last, date);
+  }
+}
+
 }  // namespace
 
 const BatchSession& BatchSpec::session(const std::string& wanted) const {
@@ -223,14 +242,16 @@ BatchSpec readBatchSpec(const fs::path& file, const fs::path& data) {
   reader.choice<bool>("errors", spec.perMetre, {{false, "scan"}, {true, "metre"}},
                       "where they are taken");
   reader.text("settings", settings, "names; each has a section of its own");
-  requireName(spec.name, where + "[batch] name");
+  requireName(spec.name, where + "[batch] name (the file's unless given)");
   requireNames(words(settings), where + "[batch] settings");
   spec.sessions = readSessions(reader, fill, where);
   for (const auto& name : words(settings))
     spec.settings.push_back(readSetting(reader, name, fill, spec.sessions, where));
   reader.finish();
-  for (const auto& setting : spec.settings)
+  for (const auto& setting : spec.settings) {
     requireMaps(setting, spec.sessions, where + "[setting " + setting.name + "] sessions");
+    requireOrder(setting, spec, where + "[setting " + setting.name + "] map_sessions");
+  }
   return spec;
 }
 

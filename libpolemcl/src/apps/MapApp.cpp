@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <set>
 
 #include "MapSurvey.h"
 
@@ -225,15 +226,32 @@ void addOptions(CLI::App& cli, MapLine& line) {
                "Use the readable part of rawlogs that were cut short");
 }
 
+/// Of two outputs with one name, one would be lost.
+void requireApart(const MapLine& line) {
+  std::set<std::filesystem::path> names;
+  for (const auto& output :
+       {std::optional(line.build.output), line.build.csv, line.build.scene, line.png})
+    if (output && !output->empty() && !names.insert(output->lexically_normal()).second)
+      throw CLI::ValidationError(output->string(), "is given for two outputs");
+}
+
 /// What CLI11 cannot know: --diff needs nothing else, all others need four options.
 void requireUsage(const MapLine& line) {
   const MapOptions& build = line.build;
+  requireApart(line);
+  if (!line.set.empty() && line.config.empty())
+    throw CLI::ValidationError("--set",
+                               "takes the place of settings of --config, which is missing");
+  if (build.keepScans && line.update)
+    throw CLI::ValidationError("--keep-scans", "an updated map keeps no scans; leave it out");
   if (!line.diff.empty()) {
     if (line.update || build.add || !build.inputs.empty() || !build.output.empty())
       throw CLI::ValidationError("--diff", "compares two maps; it takes no other input or output");
     return;
   }
   if (line.convert) {
+    if (!line.config.empty())
+      throw CLI::ValidationError("--convert", "takes no --config: it has no settings");
     if (build.output.empty()) throw CLI::RequiredError("--output");
     return;
   }

@@ -1,10 +1,12 @@
 #include <polemcl/apps/MapUpdateApp.h>
 #include <polemcl/apps/Version.h>
+#include <polemcl/io/Date.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
 #include <polemcl/report/MapScene.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -26,6 +28,18 @@ void requireSamePlace(const UpkeepCounts& counts, const std::filesystem::path& i
               std::to_string(counts.expectedOnMap) + " poles of " + map.string() +
               " in its view were found; is its truth of the same place and datum? A new place "
               "needs a new map");
+}
+
+/// A map is kept up from day to day. Within a day the order is not looked at: dates tell no more.
+void requireOrder(const std::vector<SessionScan>& scans, const KeptMap& map,
+                  const std::filesystem::path& input, const std::filesystem::path& file) {
+  double last = 0;
+  for (const KeptPole& kept : map.poles) last = std::max(last, kept.history.lastSeen);
+  const double now = scans.front().time;
+  if (!isDate(now) || !isDate(last) || io::dateText(now) >= io::dateText(last)) return;
+  throw Error(input.string() + ": is of " + io::dateText(now) + ", but the last session of " +
+              file.string() + " of " + io::dateText(last) +
+              ": sessions must come in the order of their days; see --date");
 }
 
 /// Sessions of a map lie near it; one in another frame mostly does not.
@@ -85,6 +99,7 @@ MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& 
                   std::to_string(survey.emptyScans) + " without a valid point");
     requireNear(survey.path, map, options.inputs[i], options.map);
     if (!options.dates.empty()) setDate(survey.scans, options.dates[i]);
+    requireOrder(survey.scans, map, options.inputs[i], options.map);
     UpkeepCounts counts;
     map = updateMap(map, survey.scans, settings.map, settings.upkeep, &counts);
     requireSamePlace(counts, options.inputs[i], options.map);

@@ -44,6 +44,8 @@ struct BatchPlan {
   std::vector<BatchCell> cells;
   /// Frozen copies of what INI files say, relative to the batch's folder: settings, models.
   std::map<std::string, std::string> files;
+  /// MD5 of each of them: what a stored plan has instead of their content.
+  std::map<std::string, std::string> sums;
 
   const BatchTask& task(const std::string& id) const;  ///< \throws Error
 };

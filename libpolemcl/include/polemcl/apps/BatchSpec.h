@@ -52,7 +52,7 @@ struct BatchSetting {
 };
 
 struct BatchSpec {
-  std::string name;   ///< of the batch: letters, digits, `_`, `-` and `.`
+  std::string name;   ///< of the batch: letters, digits, `_` and `-`
   std::string title;  ///< for the report
   /// Published figures to show beside: `none`, `nclt`, `kitti-0009`, `mulran-kaist`.
   std::string published = "none";

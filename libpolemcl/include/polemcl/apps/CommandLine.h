@@ -53,7 +53,7 @@ void addSetOption(CLI::App& cli, std::vector<std::string>& assignments);
 CLI::Validator positiveNumber();
 
 /// \brief The message of an exception on one line: MRPT's call stacks are left out, other line
-/// breaks become spaces.
+/// breaks become spaces, what is no UTF-8 or controls terminals question marks.
 std::string oneLine(const std::string& message);
 
 }  // namespace polemcl::apps
