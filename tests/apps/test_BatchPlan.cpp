@@ -115,6 +115,23 @@ TEST(BatchPlan, SettingsWithTheSameExtractionShareTheirPoles) {
   EXPECT_NE(plan.files.at("settings/two.ini").find("particles = 7"), std::string::npos);
 }
 
+TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
+  const BatchPlan plan = planOf([](BatchSpec& spec) {
+    spec.settings[0].set = {"map.min_confidence=0.3"};
+    spec.settings.push_back(spec.settings[0]);
+    spec.settings[1].name = "two";
+    spec.settings[1].set.clear();
+  });
+  const BatchTask& poles = plan.task("poles.a");
+  EXPECT_EQ(poles.outputs, (Names{"a.tum", "one/a.rawlog", "one.map/a.rawlog", "two/a.rawlog"}));
+  ASSERT_EQ(poles.commands.size(), 4u);
+  EXPECT_EQ(argument(poles.commands[2], "--set"), "native.min_confidence=0.3");
+  EXPECT_EQ(argument(poles.commands[2], "--output"), "one.map/a.rawlog");
+  EXPECT_EQ(argument(plan.task("map.one.a").commands[0], "--input"), "../poles.a/one.map/a.rawlog");
+  EXPECT_EQ(argument(plan.task("run.one.b.00").commands[0], "--input"), "../poles.b/one/b.rawlog");
+  EXPECT_EQ(argument(plan.task("map.two.a").commands[0], "--input"), "../poles.a/two/a.rawlog");
+}
+
 TEST(BatchPlan, ImportsAsTheSessionSays) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
     BatchSession& session = spec.sessions[1];

@@ -30,7 +30,7 @@ TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
   const BatchSpec spec = read(
       "[batch]\nname = n-1\ntitle = A b\nruns = 3\nseed = 9\nerrors = metre\nsettings = one\n"
       "[sessions]\nnames = a b\nsource = nclt\ninput = {data}/s/{session}\ndate = "
-      "2012-01-0{session}\n"
+      "2012-01-08\n"
       "odometry_noise = 0.02\n"
       "[session b]\ninput = other/{session}.ini\nsource = simulated\nset = world.day=3 "
       "world.seed=4\n"

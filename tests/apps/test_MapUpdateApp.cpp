@@ -81,6 +81,7 @@ TEST_F(MapUpdateApp, TheMapFollowsTheStreet) {
   EXPECT_TRUE(has(after.poles, 5, 9));
   EXPECT_TRUE(has(after.poles, 4, -7)) << "it stands";
   EXPECT_EQ(after.info.at("updates"), "day1.rawlog");
+  EXPECT_EQ(after.info.at("f_map.day1"), "1.000000");  // all its scans count
   EXPECT_NE(outcome.out.find("1 vanished, 1 moved"), std::string::npos) << outcome.out;
   EXPECT_TRUE(fs::exists(folder / "new.3Dscene"));
   EXPECT_NE(readText(folder / "new.csv").find(",2026-03-01,2026-03-02\n"), std::string::npos);

@@ -40,6 +40,20 @@ std::string contentOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Without the sections that tell of simulation, views and numbers of runs: a batch has its own.
+std::string settingsShown(const std::string& ini) {
+  std::string shown;
+  for (std::size_t begin = 0; begin < ini.size();) {  // sections are apart by an empty line
+    const std::size_t end = std::min(ini.find("\n\n", begin), ini.size());
+    const std::string section = ini.substr(begin, end - begin);
+    begin = end + 2;
+    const auto is = [&](const char* name) { return section.find(name) != std::string::npos; };
+    if (!is("[world]\n") && !is("[simulation]\n") && !is("[view]\n") && !is("[runs]\n"))
+      shown += (shown.empty() ? "" : "\n\n") + section;
+  }
+  return shown;
+}
+
 std::string protocolOf(const BatchSetting& setting) {
   const auto& maps = setting.mapSessions;
   const std::string sessions =
@@ -49,14 +63,14 @@ std::string protocolOf(const BatchSetting& setting) {
       const auto& s = setting.sessions;
       return std::find(s.begin(), s.end(), name) != s.end();
     });
-    return "one map of " + sessions + " for all" +
+    return "One map of " + sessions + " for all" +
            (own ? "; sessions that made it are localized in it as well (their own data is in it)"
                 : "; no session is localized in its own data");
   }
-  if (maps.size() == 1) return "one map of " + sessions + ", never changed; later sessions in it";
+  if (maps.size() == 1) return "One map of " + sessions + ", never changed; later sessions in it";
   return setting.protocol == MapProtocol::upkeep
-             ? "each session in the map as earlier ones left it, kept up session by session"
-             : "each session in one map of all earlier ones";
+             ? "Each session in the map as earlier ones left it, kept up session by session"
+             : "Each session in one map of all earlier ones";
 }
 
 double lengthOf(const std::vector<StampedPose2D>& path) {
@@ -90,7 +104,7 @@ class Collector {
     for (const auto& setting : m_spec.settings) {
       const fs::path config = m_folder.path() / "settings" / (setting.name + ".ini");
       m_results.settings.push_back(
-          {setting.name, setting.title, protocolOf(setting), contentOf(config)});
+          {setting.name, setting.title, protocolOf(setting), settingsShown(contentOf(config))});
     }
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;

@@ -2,6 +2,7 @@
 #include <polemcl/apps/BatchPlan.h>
 #include <polemcl/apps/Settings.h>
 #include <polemcl/apps/Version.h>
+#include <polemcl/io/TextFile.h>
 #include <polemcl/mrpt/Bindings.h>
 #include <polemcl/mrpt/Config.h>
 
@@ -31,12 +32,18 @@ std::string contentOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Least confidence of poles for maps where it is another than for localization, see surveyDrive().
+std::string mapConfidence(const Settings& settings) {
+  const double map = settings.map.minConfidence, native = settings.extraction.native.minConfidence;
+  return map > 0 && map != native ? io::significant(map, 9) : "";
+}
+
 /// What the extraction depends on: settings with the same text share their poles.
 std::string extractionText(Settings settings) {
   ConfigWriter writer;
   bind(writer, settings.sensor);
   bind(writer, settings.extraction);
-  return writer.text();
+  return writer.text() + mapConfidence(settings);
 }
 
 /// Puts together one plan.
@@ -107,9 +114,9 @@ class Planner {
 
   void freeze(const BatchSetting& setting) {
     const Settings settings = loadSettings(setting.config, setting.set);
-    const auto [group, isNew] = m_groups.emplace(extractionText(settings), setting.name);
+    const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), setting.name);
     m_group[setting.name] = group->second;
-    if (isNew) m_groupNames.push_back(setting.name);
+    if (isNew) m_groups.push_back({setting.name, mapConfidence(settings)});
     m_plan.files["settings/" + setting.name + ".ini"] = settingsText(settings);
   }
 
@@ -127,7 +134,11 @@ class Planner {
       import(session, task);
     task.outputs.push_back(truth);
     if (hasGroups(session)) {
-      for (const auto& group : m_groupNames) task.outputs.push_back(group + "/" + rawlog);
+      for (const auto& group : m_groups) {
+        task.outputs.push_back(group.name + "/" + rawlog);
+        if (!group.mapConfidence.empty())
+          task.outputs.push_back(group.name + mapFolder + "/" + rawlog);
+      }
     } else {
       task.outputs.push_back(rawlog);
     }
@@ -155,11 +166,17 @@ class Planner {
     } else {
       task.commands = {importCommand(session)};
     }
-    for (const auto& group : m_groupNames) {
+    for (const auto& group : m_groups) {
+      const std::string rawlog = "/" + session.name + ".rawlog";
       Command command = program("pole-extract");
-      append(command, {"--config", "../../settings/" + group + ".ini", "--input", scans, "--output",
-                       group + "/" + session.name + ".rawlog"});
+      append(command, {"--config", "../../settings/" + group.name + ".ini", "--input", scans});
+      Command forMaps = command;
+      append(command, {"--output", group.name + rawlog});
       task.commands.push_back(command);
+      if (group.mapConfidence.empty()) continue;
+      append(forMaps, {"--set", "native.min_confidence=" + group.mapConfidence, "--output",
+                       group.name + mapFolder + rawlog});
+      task.commands.push_back(forMaps);
     }
   }
 
@@ -185,10 +202,16 @@ class Planner {
     return session.source != "simulated" && session.source != "poles";
   }
 
-  std::string rawlogOf(const BatchSetting& setting, const std::string& session) const {
-    const bool groups = hasGroups(m_spec.session(session));
-    return "../poles." + session + "/" + (groups ? m_group.at(setting.name) + "/" : "") + session +
-           ".rawlog";
+  std::string rawlogOf(const BatchSetting& setting, const std::string& session,
+                       bool forMaps = false) const {
+    std::string folder = "../poles." + session + "/";
+    if (hasGroups(m_spec.session(session))) {
+      const std::string& name = m_group.at(setting.name);
+      const auto group = std::find_if(m_groups.begin(), m_groups.end(),
+                                      [&](const Group& entry) { return entry.name == name; });
+      folder += name + (forMaps && !group->mapConfidence.empty() ? mapFolder : "") + "/";
+    }
+    return folder + session + ".rawlog";
   }
   static std::string truthOf(const std::string& session) {
     return "../poles." + session + "/" + session + ".tum";
@@ -243,7 +266,7 @@ class Planner {
     }
     Command inputs{"--input"}, truths{"--truth"}, dates{"--date"};
     for (std::size_t i = first; i < n; ++i) {
-      inputs.push_back(rawlogOf(setting, names[i]));
+      inputs.push_back(rawlogOf(setting, names[i], true));
       truths.push_back(truthOf(names[i]));
       dates.push_back(m_spec.session(names[i]).date);
       task.needs.push_back("poles." + names[i]);
@@ -335,9 +358,16 @@ class Planner {
 
   const BatchSpec& m_spec;
   BatchPlan m_plan;
-  std::map<std::string, std::string> m_groups;  ///< text of the extraction -> name of the group
-  std::map<std::string, std::string> m_group;   ///< setting -> group
-  std::vector<std::string> m_groupNames;
+  /// Settings that share their poles.
+  struct Group {
+    std::string name;           ///< of the first of them
+    std::string mapConfidence;  ///< of poles for maps; empty: that of all
+  };
+  static constexpr const char* mapFolder = ".map";
+
+  std::map<std::string, std::string> m_groupOf;  ///< text of the extraction -> name of the group
+  std::map<std::string, std::string> m_group;    ///< setting -> group
+  std::vector<Group> m_groups;
 };
 
 }  // namespace

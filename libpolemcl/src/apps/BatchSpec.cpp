@@ -195,7 +195,8 @@ BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Pl
   reader.choice<MapTime>("map", setting.map,
                          {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
                          "the one that sessions are localized in");
-  if (setting.config.empty()) throw Error(here + "config is missing");
+  if (setting.config.empty())
+    throw Error(here + "config is missing (each of [batch] settings has a section of its own)");
   setting.config = fill.path(setting.config, "");
   setting.set = words(set);
   setting.mapSessions = chosen(mapSessions, sessions, here + "map_sessions");

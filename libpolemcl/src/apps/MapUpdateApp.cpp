@@ -3,6 +3,7 @@
 #include <polemcl/io/Date.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
+#include <polemcl/io/TextFile.h>
 #include <polemcl/report/MapScene.h>
 
 #include <Eigen/Geometry>
@@ -62,6 +63,7 @@ std::map<std::string, std::string> facts(std::map<std::string, std::string> info
   std::string& updates = info["updates"];
   for (const auto& input : options.inputs)
     updates += (updates.empty() ? "" : " ") + input.filename().string();
+  for (const auto& input : options.inputs) info["f_map." + input.stem().string()] = io::fixed(1, 6);
   if (options.datum) io::setDatum(info, *options.datum, options.map.string() + ": ");
   info["program"] = std::string("pole-map ") + version();
   info["config"] = settingsText(settings);

@@ -46,8 +46,9 @@ void writeRun(std::ostream& out, const BatchRun& run, double lostBound) {
 }
 
 void writeSession(std::ostream& out, const SessionSummary& summary) {
-  out << ',' << field(summary.mapShare) << ',' << summary.mapPoles << ',' << summary.counts.runs
-      << ',' << summary.counts.lost << ',' << summary.counts.failed;
+  out << ',' << field(summary.mapShare) << ',';
+  if (summary.counts.runs > 0) out << summary.mapPoles;
+  out << ',' << summary.counts.runs << ',' << summary.counts.lost << ',' << summary.counts.failed;
   const auto both = [&](const Spread& spread) {
     out << ',' << field(spread.mean) << ',' << field(spread.deviation);
   };

@@ -60,7 +60,8 @@ std::map<std::string, std::string> valuesOf(const std::string& ini) {
     const std::size_t end = std::min(ini.find('\n', begin), ini.size());
     const std::string line = ini.substr(begin, end - begin);
     begin = end + 1;
-    const std::string text(io::trimmed(line.substr(0, line.find_first_of(";#"))));
+    const std::size_t comment = std::min(line.find_first_of(";#"), line.find("//"));
+    const std::string text(io::trimmed(line.substr(0, comment)));
     const std::size_t equals = text.find('=');
     if (!text.empty() && text.front() == '[' && text.back() == ']')
       section = text.substr(1, text.size() - 2) + '.';
