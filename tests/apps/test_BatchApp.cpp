@@ -104,7 +104,7 @@ TEST_F(BatchApp, ReportsAllRuns) {
 
 TEST_F(BatchApp, FiguresAreThoseOfTheRuns) {
   const auto results = report::readResultsJson(*s_folder / "done/results.json");
-  const std::string summary = readText(*s_folder / "done/work/run.kept.s2.01/out/summary.json");
+  const std::string summary = readText(*s_folder / "done/tasks/run.kept.s2.01/out/summary.json");
   const auto at = summary.find("\"pos_mean\": ");
   ASSERT_NE(at, std::string::npos);
   EXPECT_NEAR(results.find(0, 2)->runs[1].errors.posMean, std::stod(summary.substr(at + 12)), 1e-6);
@@ -129,7 +129,7 @@ TEST_F(BatchApp, GoesOnAfterItWasKilled) {
   const auto doneTasks = [&] {
     std::size_t done = 0;
     std::error_code none;
-    for (const auto& entry : fs::directory_iterator(output / "work", none))
+    for (const auto& entry : fs::directory_iterator(output / "tasks", none))
       done += entry.path().extension() != ".part";
     return done;
   };
@@ -138,8 +138,8 @@ TEST_F(BatchApp, GoesOnAfterItWasKilled) {
   ::waitpid(child, nullptr, 0);
   EXPECT_TRUE(nobodyWorksIn(output)) << "a child goes on";
   EXPECT_FALSE(fs::exists(output / "results.json"));
-  const auto before = contents(output / "work", ".part");
-  ASSERT_LT(before.size(), contents(*s_folder / "done/work").size());
+  const auto before = contents(output / "tasks", ".part");
+  ASSERT_LT(before.size(), contents(*s_folder / "done/tasks").size());
   BatchOptions options = optionsFor("killed");
   EXPECT_NE(messageOf([&] { doBatch(options); }).find("--resume"), std::string::npos);
   options.resume = true;
@@ -170,7 +170,7 @@ TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
 
 TEST_F(BatchApp, ASessionWithoutReadableTruthIsReportedAlone) {
   for (const char* name : {"s0", "s1", "s2"}) {
-    const fs::path from = *s_folder / "done/work" / (std::string("poles.") + name);
+    const fs::path from = *s_folder / "done/tasks" / (std::string("poles.") + name);
     for (const char* end : {".rawlog", ".tum"})
       fs::copy_file(from / (std::string(name) + end), *s_folder / (std::string(name) + end),
                     fs::copy_options::overwrite_existing);
@@ -198,7 +198,7 @@ TEST_F(BatchApp, ASessionWithoutReadableTruthIsReportedAlone) {
 
 TEST_F(BatchApp, TasksDoneByHandNeedTheSettingsOfTheBatch) {
   fs::copy(*s_folder / "done", *s_folder / "hand", fs::copy_options::recursive);
-  fs::remove_all(*s_folder / "hand/work/run.once.s1.00");
+  fs::remove_all(*s_folder / "hand/tasks/run.once.s1.00");
   const std::vector<std::string> task{"--output", (*s_folder / "hand").string(), "--task",
                                       "run.once.s1.00"};
   const std::string settings = readText(*s_folder / "hand/settings/once.ini");
@@ -235,7 +235,7 @@ TEST_F(BatchApp, AFullDiskLosesNothing) {
   const std::string run = " \"" + program + "\" \"" + (*s_folder / "street-batch.ini").string() +
                           "\" --quiet --output \"" + output.string() + "\" 2>/dev/null";
   EXPECT_NE(std::system(("trap '' XFSZ; ulimit -f 64;" + run).c_str()), 0);
-  for (const auto& entry : fs::directory_iterator(output / "work"))
+  for (const auto& entry : fs::directory_iterator(output / "tasks"))
     EXPECT_TRUE(fs::exists(entry.path() / "done.json")) << entry.path();
   EXPECT_EQ(std::system((run + " --resume").c_str()), 0);
   EXPECT_EQ(left("full"), left("done"));

@@ -90,7 +90,7 @@ TEST_F(BatchRunner, KeepsOutputsAlone) {
   run();
   EXPECT_TRUE(fs::exists(m_batch.work("a") / "out"));
   EXPECT_FALSE(fs::exists(m_batch.work("a") / "other"));
-  for (const auto& entry : fs::directory_iterator(m_batch.path() / "work"))
+  for (const auto& entry : fs::directory_iterator(m_batch.path() / "tasks"))
     EXPECT_EQ(entry.path().filename(), "a");
 }
 
@@ -153,7 +153,7 @@ TEST_F(BatchRunner, DamagedOutputsAreDoneAgain) {
   writeText(m_batch.work("a") / "out", "B\n");  // as long as it was
   std::string why;
   EXPECT_EQ(m_batch.state(m_plan.task("a"), &why), State::damaged);
-  EXPECT_NE(why.find("/work/a/out is not what was written"), std::string::npos);
+  EXPECT_NE(why.find("/tasks/a/out is not what was written"), std::string::npos);
   EXPECT_EQ(run(), (Names{"a", "b"}));
   EXPECT_EQ(out("b"), "B\nA\n");
   fs::remove(m_batch.work("c") / "out");
@@ -170,9 +170,9 @@ TEST_F(BatchRunner, DamagedOutputsAreDoneAgain) {
 
 TEST_F(BatchRunner, RemainsOfTasksCutShortGo) {
   add("a", {{"write", "out", "A"}});
-  fs::create_directories(m_batch.path() / "work" / "a.elsewhere-12.part");
+  fs::create_directories(m_batch.path() / "tasks" / "a.elsewhere-12.part");
   run();
-  EXPECT_FALSE(fs::exists(m_batch.path() / "work" / "a.elsewhere-12.part"));
+  EXPECT_FALSE(fs::exists(m_batch.path() / "tasks" / "a.elsewhere-12.part"));
   EXPECT_EQ(out("a"), "A\n");
 }
 

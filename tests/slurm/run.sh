@@ -66,7 +66,7 @@ submitter=$!
 
 # In mid-run: some of its runs are done, the node is at work on another.
 runs_done() {
-  find "$folder/there/work" -maxdepth 1 -name 'run.*' ! -name '*.part' 2>/dev/null | wc -l
+  find "$folder/there/tasks" -maxdepth 1 -name 'run.*' ! -name '*.part' 2>/dev/null | wc -l
 }
 until [ "$(runs_done)" -ge 2 ] &&
   squeue --noheader --nodelist=node1 --states=RUNNING --format=%j 2>/dev/null | grep -q .; do
@@ -81,7 +81,7 @@ wait "$submitter" || fail "the batch failed"
 restarts=$(scontrol show job "$lost" 2>/dev/null | sed -n 's/.*Restarts=\([0-9]*\).*/\1/p' | head -n 1)
 grep -Eiq "requeu.*JobId=|JobId=.*requeu" "$folder/cluster/slurmctld.log" ||
   [ "${restarts:-0}" -gt 0 ] || fail "job $lost was not requeued"
-for result in work results.json runs.csv sessions.csv table.tex; do
+for result in tasks results.json runs.csv sessions.csv table.tex; do
   diff -r "$folder/here/$result" "$folder/there/$result" >/dev/null ||
     fail "$result differs from that without Slurm"
 done

@@ -101,7 +101,7 @@ void BatchFolder::take(const std::string& name, bool resume) {
 }
 
 void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
-  for (const char* folder : {"work", "logs", "failed", "times", "settings", "files"})
+  for (const char* folder : {"tasks", "logs", "failed", "times", "settings", "files"})
     createFolder(m_path / folder);
   sweep();
   for (const auto& [name, content] : plan.files) {
@@ -123,7 +123,7 @@ bool BatchFolder::isDone(const BatchTask& task) const {
 
 void BatchFolder::sweep() const {
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(m_path / "work", none))
+  for (const auto& entry : fs::directory_iterator(m_path / "tasks", none))
     if (entry.path().extension() == ".part") fs::remove_all(entry.path(), none);
 }
 

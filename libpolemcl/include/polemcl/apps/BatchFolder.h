@@ -4,9 +4,9 @@
 /// one.
 ///
 /// - `plan.json`, `batch.ini`, `settings/`, `files/`: what is done, frozen when it was begun;
-/// - `work/TASK/`: the outputs of a task that is done, with `done.json`: its key, and size and
+/// - `tasks/TASK/`: the outputs of a task that is done, with `done.json`: its key, and size and
 /// CRC-32
-///   of each output. It appears in one piece. `work/TASK.…part` is one under way, or left behind;
+///   of each output. It appears in one piece. `tasks/TASK.…part` is one under way, or left behind;
 /// - `failed/TASK.json`: why the last attempt failed; `logs/TASK.log`: commands and what they said;
 /// - `times/TASK`: seconds that it took: all else is the same whenever the batch is done;
 /// - what writeBatchFiles() writes.
@@ -26,7 +26,7 @@ class BatchFolder {
   BatchFolder& operator=(const BatchFolder&) = delete;
 
   const std::filesystem::path& path() const { return m_path; }
-  std::filesystem::path work(const std::string& task) const { return m_path / "work" / task; }
+  std::filesystem::path work(const std::string& task) const { return m_path / "tasks" / task; }
   std::filesystem::path log(const std::string& task) const {
     return m_path / "logs" / (task + ".log");
   }
