@@ -194,7 +194,8 @@ int batchMain(int argc, const char* const* argv) {
   return line.run(argc, argv, [&] {
     options.quiet = line.quiet();
     if (!task.empty()) return doTaskOf(options, task);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, endWithAWord);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+      if (std::signal(signal, endWithAWord) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
     if (dry) return printPlan(planBatch(readBatchSpec(options.batch, options.data)));
     doBatch(options);
   });
