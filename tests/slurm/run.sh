@@ -31,7 +31,7 @@ fail() {
 
 {
   cat "$top/config/hdl32e.ini"
-  printf '\n[world]\nseed = 31\nlength_m = 400\n[simulation]\ndetections = %s\n' \
+  printf '\n[world]\nseed = 31\nlength_m = 1000\n[simulation]\ndetections = %s\n' \
     "$top/share/models/hdl32e.json"
 } >"$folder/street.ini"
 cat >"$folder/try.ini" <<END
@@ -68,12 +68,14 @@ submitter=$!
 runs_done() {
   find "$folder/there/tasks" -maxdepth 1 -name 'run.*' ! -name '*.part' 2>/dev/null | wc -l
 }
-until [ "$(runs_done)" -ge 2 ] &&
-  squeue --noheader --nodelist=node1 --states=RUNNING --format=%j 2>/dev/null | grep -q .; do
+job_on_node1() {
+  squeue --noheader --nodelist=node1 --states=RUNNING --format=%i 2>/dev/null | head -n 1
+}
+lost=
+until [ "$(runs_done)" -ge 2 ] && lost=$(job_on_node1) && [ -n "$lost" ]; do
   kill -0 "$submitter" 2>/dev/null || fail "the batch ended before a node could be"
   sleep 0.1
 done
-lost=$(squeue --noheader --nodelist=node1 --states=RUNNING --format=%i)
 end_node node1
 echo "Slurm test: node1 ended while it did job $lost; $(runs_done) of 12 runs were done"
 
