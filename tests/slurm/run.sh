@@ -71,8 +71,19 @@ runs_done() {
 job_on_node1() {
   squeue --noheader --nodelist=node1 --states=RUNNING --format=%i 2>/dev/null | head -n 1
 }
-lost=
-until [ "$(runs_done)" -ge 2 ] && lost=$(job_on_node1) && [ -n "$lost" ]; do
+# Held still, it cannot end before its node does.
+hold_job_on_node1() {
+  held=$(job_processes_of node1)
+  [ -n "$held" ] || return 1
+  # shellcheck disable=SC2086 # several processes
+  kill -STOP $held 2>/dev/null || true
+  lost=$(job_on_node1)
+  [ -n "$lost" ] && [ -n "$(job_processes_of node1)" ] && return 0
+  # shellcheck disable=SC2086
+  kill -CONT $held 2>/dev/null || true
+  return 1
+}
+until [ "$(runs_done)" -ge 2 ] && hold_job_on_node1; do
   kill -0 "$submitter" 2>/dev/null || fail "the batch ended before a node could be"
   sleep 0.1
 done
