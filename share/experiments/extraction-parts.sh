@@ -15,6 +15,7 @@ native_settings() {
 paper_settings() {
   mkdir -p "$1"
   cp "$top/config/paper/kitti.ini" "$1/hdl64e.ini"
+  cp "$top/config/paper/kitti-mended.ini" "$1/hdl64e-mended.ini"
   cp "$top/config/paper/mulran.ini" "$1/os1_64.ini"
   for sensor in hdl32e vlp16; do
     cp "$top/config/paper/nclt.ini" "$1/$sensor.ini"
@@ -30,9 +31,19 @@ paper_settings() {
   set_option "$1/vlp16.ini" paper fov_down_deg -15
 }
 
+# methods SENSOR: those to compare. For the HDL-64E the authors' settings come twice: as they are, and with
+# the height of the top counted from the ground (mended).
+methods() {
+  if [ "$1" = hdl64e ]; then echo native mended paper; else echo native paper; fi
+}
+
 # settings METHOD SENSOR: the file.
 settings() {
-  if [ "$1" = paper ]; then echo "$out/paper/$2.ini"; else native_settings "$2"; fi
+  case $1 in
+    paper) echo "$out/paper/$2.ini" ;;
+    mended) echo "$out/paper/$2-mended.ini" ;;
+    *) native_settings "$2" ;;
+  esac
 }
 
 # real_drive FOLDER: real_METHOD.json with repeatability and rotation.
@@ -40,8 +51,8 @@ real_drive() {
   work=$out/real
   mkdir -p "$work"
   "$bin/pole-import" folder --quiet --input "$1" --output "$work/scans.rawlog"
-  for method in native paper; do
-    config=$(settings $method hdl64e)
+  for method in $(methods hdl64e); do
+    config=$(settings "$method" hdl64e)
     "$bin/pole-extract" --quiet --config "$config" --input "$work/scans.rawlog" \
       --output "$work/$method.rawlog"
     "$bin/pole-eval" repeatability --quiet --poles "$work/$method.rawlog" \
@@ -64,7 +75,7 @@ map_score() {
   fi
 }
 
-# simulated_drive SENSOR SEED: SENSOR_METHOD_SEED.json for both methods; the scans are removed again.
+# simulated_drive SENSOR SEED: SENSOR_METHOD_SEED.json for each method; the scans are removed again.
 simulated_drive() {
   work=$out/world
   rm -rf "$work"
@@ -75,11 +86,11 @@ simulated_drive() {
   set_option "$work/native.ini" simulation spacing_m "$spacing"
   "$bin/pole-simulate" --quiet --config "$work/native.ini" --output "$work/scans"
   "$bin/pole-import" folder --quiet --input "$work/scans" --output "$work/scans.rawlog"
-  cp "$out/paper/$1.ini" "$work/paper.ini"
-  for method in native paper; do
+  for method in $(methods "$1"); do
+    [ "$method" = native ] || cp "$(settings "$method" "$1")" "$work/$method.ini"
     evaluate_drive "$method"
     auc_all=null
-    [ "$method" = paper ] || auc_all=$(undecided_auc)
+    [ "$method" != native ] || auc_all=$(undecided_auc)
     "$bin/pole-map" --quiet --config "$work/$method.ini" --input "$work/$method.rawlog" \
       --truth "$work/scans.tum" --output "$work/$method.polemap" 2>"$work/$method.log" ||
       grep -q 'no pole' "$work/$method.log" || die "$(cat "$work/$method.log")"
@@ -115,11 +126,13 @@ undecided_auc() {
 summarize() {
   {
     [ ! -f "$out/pair.json" ] || jq '{pair: .}' "$out/pair.json"
-    for method in native paper; do
-      [ ! -f "$out/real_$method.json" ] || jq --arg m $method '{real: {($m): .}}' "$out/real_$method.json"
-      for sensor in hdl64e hdl32e os1_64 vlp16; do
+    for method in $(methods hdl64e); do
+      [ ! -f "$out/real_$method.json" ] || jq --arg m "$method" '{real: {($m): .}}' "$out/real_$method.json"
+    done
+    for sensor in hdl64e hdl32e os1_64 vlp16; do
+      for method in $(methods $sensor); do
         # The mean, least and greatest of every figure over the worlds.
-        jq -s --arg s $sensor --arg m $method '
+        jq -s --arg s $sensor --arg m "$method" '
           def over(f): . as $worlds | (.[0] | keys_unsorted) - ["seed"]
             | map({key: ., value: (. as $k | [$worlds[] | .[$k] | numbers]
                   | if length == 0 then null else f end)}) | from_entries;
@@ -140,28 +153,30 @@ table() {
       ((. * pow(10; d) | round / pow(10; d)) + 0 | tostring) as $t
       | ($t | split(".") | .[1] // "") as $f | if d == 0 then $t
         else ($t | split(".")[0]) + "." + $f + "0" * (d - ($f | length)) end end;
+    def methods: . as $sensor | ["native", "mended", "paper"] | map(select($sensor[.]));
+    def title: {native: "native", mended: "paper mended", paper: "paper"}[.];
     def row(name; key; scale; digits): name as $name | . as $sensor
-      | "  " + ($name | pad(30)) + ([("native", "paper") as $m
+      | "  " + ($name | pad(30)) + ([methods[] as $m
         | [("mean", "min", "max") as $w | $sensor[$m][$w][key]
            | if . == null then . else . * scale end | round_to(digits) | lead(8)] | add]
         | join("   "));
     (if .quick then "QUICK RUN: not to judge by\n" else "" end),
     (if .real then
-      "Real drive                          native     paper",
+      ("Real drive" | pad(32)) + ([.real | methods[] | title | lead(14)] | add),
       (.real as $r | [
         ["poles per scan", "repeatability", "per_scan", 2],
         ["found again in the next scans", "repeatability", "share", 3],
         ["found again when turned", "rotation", "share", 3],
         ["turned poles that were there", "rotation", "back_share", 3]][] as $k
-      | "  " + ($k[0] | pad(30)) + ([("native", "paper") as $m
-        | $r[$m][$k[1]][$k[2]] | round_to($k[3]) | lead(10)] | add)) else empty end),
+      | "  " + ($k[0] | pad(30)) + ([($r | methods[]) as $m
+        | $r[$m][$k[1]][$k[2]] | round_to($k[3]) | lead(14)] | add)) else empty end),
     (if .pair then "", "Pair of real scans: \(.pair.poles[0]) and \(.pair.poles[1]) poles, "
       + "\(.pair.matched) of them in both, apart by "
       + "\(.pair.median_m * 100 | round_to(1)) cm (median), \(.pair.p90_m * 100 | round_to(1)) cm (90 %), "
       + "\(.pair.max_m * 100 | round_to(1)) cm (most); \(.pair.within_10cm) within 10 cm" else empty end),
     (.simulated | to_entries[] | .key as $name | .value
       | "", "Simulated " + $name + ", worlds " + ([.native.worlds[].seed | tostring] | join(" ")),
-        "                                  native: mean, least, most    paper: mean, least, most",
+        (" " * 32) + ([methods[] | (title + ": mean, least, most") | lead(24) | pad(27)] | add),
         row("precision"; "precision"; 1; 3), row("recall of visible poles"; "recall"; 1; 3),
         row("centre error, median (cm)"; "centre_median_m"; 100; 2),
         row("centre error, mean (cm)"; "centre_mean_m"; 100; 2),

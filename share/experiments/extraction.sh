@@ -1,5 +1,6 @@
 #!/bin/sh
-# How good the extractor is, the paper's method beside the native one.
+# How good the extractor is, the paper's method beside the native one (for the HDL-64E, also with its
+# height error mended).
 # Usage: share/experiments/extraction.sh [--quick] DATA_DIR OUT [SEED...]
 #   DATA_DIR  folder of real scans (kitti_raw_0005/ in it); what is not there is left out
 #   OUT       gets result.json, table.txt, pictures and every world's own figures
@@ -30,7 +31,7 @@ quick=no
   shift
 }
 [ $# -ge 2 ] || {
-  sed -n '2,9s/^# //p' "$0" >&2
+  sed -n '2,10s/^# //p' "$0" >&2
   exit 2
 }
 data=$1

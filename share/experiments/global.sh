@@ -1,8 +1,9 @@
 #!/bin/sh
 # No start pose: random starts in simulated cities of 6 km, on the map of another day.
-# Usage: share/experiments/global.sh TRACKS OUT [--quick]
+# Usage: share/experiments/global.sh TRACKS OUT [--dense] [--quick]
 #   TRACKS   folder of the roads kaist01.txt.gz and kaist02.txt.gz (sensor poses, 12 numbers a line)
 #   OUT      gets maps, drives, one JSON file a city and result.json
+#   --dense  about three times the simulator's default number of poles
 #   --quick  one city, 40 starts
 # The poles that scans report are drawn from share/models/hdl32e.json. Worlds 601 to 604; settings
 # were chosen on others. Programs: build/bin, or POLEMCL_BIN.
@@ -12,16 +13,21 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/share/experiments/common.sh"
 
 usage() {
-  sed -n '2,8s/^# //p' "$0" >&2
+  sed -n '2,9s/^# //p' "$0" >&2
   exit 2
 }
-case $#:${3-} in
-  2:) cities="601:kaist01 602:kaist02 603:kaist01 604:kaist02" trials=50 ;;
-  3:--quick) cities=602:kaist02 trials=40 ;;
-  *) usage ;;
-esac
+[ $# -ge 2 ] || usage
 tracks=$1
 out=$2
+shift 2
+cities="601:kaist01 602:kaist02 603:kaist01 604:kaist02" trials=50 dense=no
+for option in "$@"; do
+  case $option in
+    --dense) dense=yes ;;
+    --quick) cities=602:kaist02 trials=40 ;;
+    *) usage ;;
+  esac
+done
 find_programs pole-simulate pole-map pole-eval
 mkdir -p "$out"
 
@@ -33,10 +39,12 @@ drive() {
   set_option "$config" simulation spacing_m 0.5
   set_option "$config" simulation speed_m_s 5
   set_option "$config" world track "$tracks/$3.txt.gz"
-  set_option "$config" world tree_share 1
-  set_option "$config" world tree_spacing_m 4
-  set_option "$config" world lamp_spacing_m 9
-  set_option "$config" world sign_spacing_m 8
+  if [ "$dense" = yes ]; then
+    set_option "$config" world tree_share 1
+    set_option "$config" world tree_spacing_m 4
+    set_option "$config" world lamp_spacing_m 9
+    set_option "$config" world sign_spacing_m 8
+  fi
   set_option "$config" world seed "$1"
   set_option "$config" world day "$2"
   "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1-$2.rawlog"

@@ -1,0 +1,69 @@
+#!/bin/sh
+# Maps of the beginning of KITTI odometry 00 against the published poles of that sequence (labelled in
+# SemanticKITTI): ours, and the paper's method with the authors' settings, mended and as they are.
+# Usage: share/experiments/kitti-00.sh DATA_DIR OUT
+#   DATA_DIR  folder with kitti_odom_00/ (16 scans), kitti_odom_00_long/ (51 scans) and
+#             published/kitti_truth_00.npz
+#   OUT       gets the maps, result.json and table.txt
+# One to one within 1 m. Precision: map poles with a labelled pole, of all map poles. Recall: labelled
+# poles within 20 m of the path that are on the map.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; one minute.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+[ $# = 2 ] || {
+  sed -n '2,10s/^# //p' "$0" >&2
+  exit 2
+}
+data=$1
+out=$2
+find_programs pole-import pole-map pole-eval
+command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+truth=$data/published/kitti_truth_00.npz
+[ -f "$truth" ] || die "no labelled poles in $truth"
+mkdir -p "$out"
+
+"$bin/pole-map" --quiet --convert "$truth" --output "$out/truth.csv"
+
+# near TUM: the labelled poles within 20 m of the path.
+near() {
+  awk -F '[ ,]+' 'NR == FNR { if ($0 !~ /^#/) { x[++n] = $2; y[n] = $3 } next }
+    FNR == 1 { print; next }
+    { for (i = 1; i <= n; ++i) if (($1 - x[i]) ^ 2 + ($2 - y[i]) ^ 2 <= 400) { print; next } }' \
+    "$1" "$out/truth.csv"
+}
+
+# score DRIVE NAME CONFIG: one JSON object.
+score() {
+  map=$out/$1-$2.polemap
+  "$bin/pole-map" --quiet --config "$3" --input "$out/$1.rawlog" --truth "$out/$1.tum" \
+    --output "$map"
+  "$bin/pole-eval" map --quiet --one-to-one --truth "$truth" --map "$map" \
+    --json "$out/all.json" >/dev/null
+  "$bin/pole-eval" map --quiet --one-to-one --truth "$out/$1-near.csv" --map "$map" \
+    --json "$out/near.json" >/dev/null
+  jq -n --arg drive "$1" --arg method "$2" --slurpfile a "$out/all.json" \
+    --slurpfile n "$out/near.json" --argjson labelled "$(($(wc -l <"$out/$1-near.csv") - 1))" \
+    '{drive: $drive, method: $method, true: $a[0].matches, precision: $a[0].precision,
+      map_poles: ($a[0].matches / $a[0].precision | round), found_near: $n[0].matches,
+      labelled_near: $labelled, recall: $n[0].recall}'
+}
+
+for drive in kitti_odom_00 kitti_odom_00_long; do
+  [ -d "$data/$drive" ] || die "no scans in $data/$drive"
+  "$bin/pole-import" folder --quiet --input "$data/$drive" --output "$out/$drive.rawlog"
+  near "$out/$drive.tum" >"$out/$drive-near.csv"
+  score "$drive" polemcl "$top/config/kitti.ini"
+  score "$drive" paper-mended "$top/config/paper/kitti-mended.ini"
+  score "$drive" paper "$top/config/paper/kitti.ini"
+done | jq -s . >"$out/result.json"
+rm "$out/all.json" "$out/near.json"
+
+jq -r '["drive", "method", "map poles", "true", "precision", "labelled within 20 m", "of these found",
+    "recall"], (.[] | [.drive, .method, .map_poles, .true, (.precision * 100 | round / 100),
+    .labelled_near, .found_near, (.recall * 100 | round / 100)]) | @tsv' "$out/result.json" |
+  awk -F '\t' '{ printf "%-19s %-13s %9s %5s %10s %21s %15s %7s\n", $1, $2, $3, $4, $5, $6, $7, $8 }' \
+    >"$out/table.txt"
+cat "$out/table.txt"
