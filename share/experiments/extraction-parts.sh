@@ -23,6 +23,9 @@ paper_settings() {
     set_option "$1/$sensor.ini" sensor upside_down false
     set_option "$1/$sensor.ini" sensor origin "0 0 0"
     set_option "$1/$sensor.ini" sensor height_m 1.0
+    set_option "$1/$sensor.ini" paper heights_above_ground true
+    set_option "$1/$sensor.ini" paper mirrored false
+    set_option "$1/$sensor.ini" paper coordinate_step_m 0
   done
   set_option "$1/hdl32e.ini" paper fov_up_deg 10.67
   set_option "$1/hdl32e.ini" paper fov_down_deg -30.67

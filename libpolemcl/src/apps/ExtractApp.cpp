@@ -47,7 +47,7 @@ void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& 
   view.points = cloud.view();
   if (cloud.size() > 0) view.poles = extractor.extract(cloud.view());
   const double ground = extractor.report().ground;
-  view.ground = ground < 0 ? ground : -settings.sensor.height;  // the paper's method finds none
+  view.ground = ground != 0 ? ground : -settings.sensor.height;
   report::drawScanPng(view, *options.png);
 }
 

@@ -50,6 +50,49 @@ std::optional<Circle> fitCircleKasa(const std::vector<Eigen::Vector2d>& points) 
   return solve(moments(points), 0);
 }
 
+namespace {
+
+template <class Real>
+std::optional<Circle> fitKasaMean(const std::vector<Eigen::Vector2d>& points) {
+  if (points.empty()) return std::nullopt;
+  const double n = static_cast<double>(points.size());
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const auto& p : points) sum += p;
+  const Eigen::Vector2d mean = sum / n;
+  Eigen::Matrix2d a = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  for (const auto& p : points) {
+    const Real u = static_cast<Real>(p.x()) - static_cast<Real>(mean.x());
+    const Real v = static_cast<Real>(p.y()) - static_cast<Real>(mean.y());
+    const Real uu = u * u, vv = v * v;
+    a(0, 0) += uu;
+    a(0, 1) += u * v;
+    a(1, 1) += vv;
+    b += 0.5 * Eigen::Vector2d(static_cast<double>(uu * u) + static_cast<double>(u * vv),
+                               static_cast<double>(vv * v) + static_cast<double>(uu * v));
+  }
+  a(1, 0) = a(0, 1);
+  const Eigen::PartialPivLU<Eigen::Matrix2d> lu(a);
+  if (lu.determinant() == 0) return std::nullopt;
+  const Eigen::Vector2d centre = mean + lu.solve(b);
+  const Real x = static_cast<Real>(centre.x()), y = static_cast<Real>(centre.y());
+  double distances = 0;
+  for (const auto& p : points) {
+    const Real dx = static_cast<Real>(p.x()) - x, dy = static_cast<Real>(p.y()) - y;
+    distances += std::sqrt(dx * dx + dy * dy);
+  }
+  const Circle circle{centre.x(), centre.y(), static_cast<Real>(distances / n)};
+  if (!std::isfinite(circle.radius)) return std::nullopt;
+  return circle;
+}
+
+}  // namespace
+
+std::optional<Circle> fitCircleKasaMean(const std::vector<Eigen::Vector2d>& points,
+                                        bool singlePrecision) {
+  return singlePrecision ? fitKasaMean<float>(points) : fitKasaMean<double>(points);
+}
+
 std::optional<Circle> fitCircleTaubin(const std::vector<Eigen::Vector2d>& points) {
   if (points.size() < 3) return std::nullopt;
   const Moments m = moments(points);

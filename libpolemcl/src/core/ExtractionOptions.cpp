@@ -1,6 +1,7 @@
 #include <polemcl/core/ExtractionOptions.h>
 #include <polemcl/core/Types.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -14,6 +15,14 @@ void require(bool good, const char* section, const char* key, double value, cons
   std::ostringstream text;
   text << "[" << section << "] " << key << " = " << value << ": allowed is " << allowed;
   throw Error(text.str());
+}
+
+void requireOneOf(const std::string& key, const std::string& value,
+                  const std::vector<std::string>& allowed) {
+  if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return;
+  std::string text = "[paper] " + key + " = " + value + ": allowed are ";
+  for (const auto& one : allowed) text += (one == allowed.front() ? "" : ", ") + one;
+  throw Error(text);
 }
 
 }  // namespace
@@ -44,10 +53,12 @@ void PaperOptions::validate() const {
   check(minFitPoints >= 3, "min_fit_points", minFitPoints, "3 or more");
   check(freeRing >= 0, "free_ring_m", freeRing, "0 or more");
   check(freeShare >= 0, "free_share", freeShare, "0 or more");
-  if (circleFit != "kasa" && circleFit != "taubin" && circleFit != "silhouette")
-    throw Error("[paper] circle_fit = " + circleFit + ": allowed are kasa, taubin, silhouette");
-  if (freeSpace != "corners" && freeSpace != "ring")
-    throw Error("[paper] free_space = " + freeSpace + ": allowed are corners, ring");
+  check(coordinateStep >= 0 && coordinateStep <= 0.1, "coordinate_step_m", coordinateStep,
+        "0 to 0.1");
+  requireOneOf("project_from", projectFrom, {"sensor", "cloud"});
+  requireOneOf("foreground_test", foregroundTest, {"not_behind", "in_front"});
+  requireOneOf("circle_fit", circleFit, {"kasa", "kasa_mean", "taubin", "silhouette"});
+  requireOneOf("free_space", freeSpace, {"ring", "corners", "cut_corners"});
 }
 
 void NativeOptions::validate() const {

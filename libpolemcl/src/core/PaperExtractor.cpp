@@ -8,28 +8,37 @@
 namespace polemcl {
 
 PaperExtractor::PaperExtractor(const SensorOptions& sensor, const PaperOptions& options)
-    : m_sensor(sensor),
-      m_options(options),
-      m_heightOffset(options.heightsAboveGround ? sensor.height : 0),
+    : m_options(options),
+      m_minRange(sensor.minRange),
+      m_height(sensor.height - (options.projectFrom == "cloud" ? sensor.originZ : 0)),
+      m_heightOffset(options.heightsAboveGround ? m_height : 0),
       m_image(options.rows, options.columns),
       m_cells(2 * (static_cast<int>(std::ceil(options.maxRange)) + 1)) {}
 
-void PaperExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
-                             ExtractionReport& report) {
+RangeImageOptions PaperExtractor::projection() const {
   RangeImageOptions projection;
   projection.rows = m_options.rows;
   projection.columns = m_options.columns;
   projection.fovUp = m_options.fovUp;
   projection.fovDown = m_options.fovDown;
-  projection.minRange = m_sensor.minRange;
+  projection.minRange = m_minRange;
   projection.maxRange = m_options.maxRange;
-  const PointCounts counts = project(points, projection, m_options.minZ - m_heightOffset,
+  projection.clampToView = m_options.clampToView;
+  projection.mirrored = m_options.mirrored;
+  projection.singlePrecision = m_options.singlePrecision;
+  projection.coordinateStep = m_options.coordinateStep;
+  return projection;
+}
+
+void PaperExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
+                             ExtractionReport& report) {
+  const PointCounts counts = project(points, projection(), m_options.minZ - m_heightOffset,
                                      m_options.maxZ - m_heightOffset, m_image);
   report.points = points.size;
   report.invalid = counts.invalid;
   report.outOfView = counts.outOfView;
   report.outOfRange = counts.outOfRange;
-  report.ground = -m_sensor.height;
+  report.ground = -m_height;
 
   SegmentationOptions growing;
   growing.epsilon = m_options.epsilon;
@@ -62,65 +71,88 @@ std::vector<Eigen::Vector2d> PaperExtractor::segmentPoints(const Segment& segmen
   return xy;
 }
 
-std::optional<Circle> PaperExtractor::fit(const std::vector<Eigen::Vector2d>& points) const {
+std::optional<Circle> PaperExtractor::fit(const std::vector<Eigen::Vector2d>& points,
+                                          bool singlePrecision) const {
+  if (m_options.circleFit == "kasa_mean") return fitCircleKasaMean(points, singlePrecision);
   if (m_options.circleFit == "taubin") return fitCircleTaubin(points);
   if (m_options.circleFit == "silhouette") return fitCircleSilhouette(points, 0);
   return fitCircleKasa(points);
 }
 
-/// A coarse circle from the segment's pixels, then the circle of all points in a box around it.
+/// A coarse circle from the segment's pixels, which hold floats, then the circle of all points in a
+/// box around it.
 Refusal PaperExtractor::fitPole(const Segment& segment, const HeightRange& heights,
                                 const PointsView& points, PoleDetection& pole) const {
-  const auto coarse = fit(segmentPoints(segment, points));
-  if (!coarse || coarse->radius > m_options.maxRange) return Refusal::badFit;
-  const double half = coarse->radius + m_options.fitMargin;
-  if (half > 2) return Refusal::badFit;
-  const double low = heights.low - m_heightOffset;
-  const double high = std::min(heights.high, m_options.fitMaxZ) - m_heightOffset;
-  std::vector<Eigen::Vector2d> xy;
-  eachInBox(*coarse, half, [&](std::uint32_t i) {
-    const double dx = std::abs(points.x[i] - coarse->x), dy = std::abs(points.y[i] - coarse->y);
-    if (dx < half && dy < half && points.z[i] > low && points.z[i] < high)
-      xy.emplace_back(points.x[i], points.y[i]);
-  });
+  const auto coarse = fit(segmentPoints(segment, points), true);
+  if (!coarse) return Refusal::badFit;
+  Box box;
+  box.centre = *coarse;
+  box.half = coarse->radius + m_options.fitMargin;
+  box.low = heights.low - m_heightOffset;
+  box.high = std::min(heights.high, m_options.fitMaxZ) - m_heightOffset;
+  const auto xy = pointsInside(box, points);
   if (xy.size() < static_cast<std::size_t>(m_options.minFitPoints)) return Refusal::tooFewPoints;
-  const auto circle = fit(xy);
+  const auto circle = fit(xy, m_options.singlePrecision);
   if (!circle || !(circle->radius > m_options.minRadius && circle->radius < m_options.maxRadius))
     return Refusal::badFit;
-  if (!isFree(*coarse, half, low, high, xy.size(), points)) return Refusal::notFree;
+  if (!isFree(box, xy.size(), points)) return Refusal::notFree;
   pole.x = circle->x;
   pole.y = circle->y;
   pole.radius = circle->radius;
-  pole.bottom = heights.low - m_heightOffset + m_sensor.height;
-  pole.top = heights.high - m_heightOffset + m_sensor.height;
+  pole.bottom = heights.low - m_heightOffset + m_height;
+  pole.top = heights.high - m_heightOffset + m_height;
   pole.points = static_cast<std::uint32_t>(xy.size());
   return Refusal::count_;
 }
 
-bool PaperExtractor::isFree(const Circle& coarse, double half, double low, double high,
-                            std::size_t fitted, const PointsView& points) const {
-  const double outer = half + m_options.freeRing;
-  const bool ring = m_options.freeSpace == "ring";
+std::vector<Eigen::Vector2d> PaperExtractor::pointsInside(const Box& box,
+                                                          const PointsView& points) const {
+  std::vector<Eigen::Vector2d> xy;
+  eachNear(box, box.half, points, [&](const Point& p) {
+    if (between(p.x, box.centre.x - box.half, box.centre.x + box.half) &&
+        between(p.y, box.centre.y - box.half, box.centre.y + box.half))
+      xy.emplace_back(p.x, p.y);
+  });
+  return xy;
+}
+
+bool PaperExtractor::isFree(const Box& box, std::size_t fitted, const PointsView& points) const {
+  const double outer = box.half + m_options.freeRing;
+  const double side = m_options.mirrored ? -1 : 1;
+  const double x = box.centre.x, y = side * box.centre.y;
+  const bool cut = m_options.freeSpace == "cut_corners", ring = m_options.freeSpace == "ring";
+  const double lowest = cut ? y + box.half - m_options.freeRing : y - outer;
   std::size_t intruders = 0;
-  eachInBox(coarse, outer, [&](std::uint32_t i) {
-    if (!(points.z[i] > low && points.z[i] < high)) return;
-    const double dx = std::abs(points.x[i] - coarse.x), dy = std::abs(points.y[i] - coarse.y);
+  eachNear(box, outer, points, [&](const Point& p) {
+    const double py = side * p.y;
     if (ring) {
-      const double distance = std::hypot(dx, dy);
-      intruders += distance > half && distance < outer;
+      const double distance = std::hypot(p.x - x, py - y);
+      intruders += distance > box.half && distance < outer;
     } else {
-      intruders += dx > half && dx < outer && dy > half && dy < outer;
+      intruders +=
+          (between(p.x, x - outer, x - box.half) || between(p.x, x + box.half, x + outer)) &&
+          (between(py, lowest, y - box.half) || between(py, y + box.half, y + outer));
     }
   });
   return static_cast<double>(intruders) < m_options.freeShare * static_cast<double>(fitted);
 }
 
+/// Strictly between; in single precision the bounds are rounded, as the points are.
+bool PaperExtractor::between(double value, double low, double high) const {
+  if (m_options.singlePrecision)
+    return value > static_cast<float>(low) && value < static_cast<float>(high);
+  return value > low && value < high;
+}
+
+int PaperExtractor::cellAlong(double coordinate) const {
+  const double cell = std::floor(coordinate) + m_cells / 2;
+  return static_cast<int>(std::clamp(cell, 0.0, m_cells - 1.0));
+}
+
 void PaperExtractor::sortIntoCells(const PointsView& points) {
   const auto cell = [&](std::size_t i) -> std::ptrdiff_t {
-    const double cx = std::floor(points.x[i]) + m_cells / 2,
-                 cy = std::floor(points.y[i]) + m_cells / 2;
-    if (!(cx >= 0 && cx < m_cells && cy >= 0 && cy < m_cells)) return -1;
-    return static_cast<std::ptrdiff_t>(cy) * m_cells + static_cast<std::ptrdiff_t>(cx);
+    if (!std::isfinite(points.x[i]) || !std::isfinite(points.y[i])) return -1;
+    return static_cast<std::ptrdiff_t>(cellAlong(points.y[i])) * m_cells + cellAlong(points.x[i]);
   };
   m_cellStart.assign(static_cast<std::size_t>(m_cells) * m_cells + 1, 0);
   for (std::size_t i = 0; i < points.size; ++i)
@@ -133,14 +165,19 @@ void PaperExtractor::sortIntoCells(const PointsView& points) {
 }
 
 template <class F>
-void PaperExtractor::eachInBox(const Circle& centre, double half, F f) const {
-  const auto column = [&](double v) {
-    return std::clamp(static_cast<int>(std::floor(v)) + m_cells / 2, 0, m_cells - 1);
-  };
-  for (int cy = column(centre.y - half); cy <= column(centre.y + half); ++cy)
-    for (int cx = column(centre.x - half); cx <= column(centre.x + half); ++cx) {
+void PaperExtractor::eachNear(const Box& box, double reach, const PointsView& points, F f) const {
+  const double step = m_options.coordinateStep;
+  const int fromX = cellAlong(box.centre.x - reach), toX = cellAlong(box.centre.x + reach);
+  const int fromY = cellAlong(box.centre.y - reach), toY = cellAlong(box.centre.y + reach);
+  for (int cy = fromY; cy <= toY; ++cy)
+    for (int cx = fromX; cx <= toX; ++cx) {
       const std::size_t c = static_cast<std::size_t>(cy) * m_cells + cx;
-      for (std::uint32_t k = m_cellStart[c]; k < m_cellStart[c + 1]; ++k) f(m_cellPoints[k]);
+      for (std::uint32_t k = m_cellStart[c]; k < m_cellStart[c + 1]; ++k) {
+        const std::uint32_t i = m_cellPoints[k];
+        const double z = exactCoordinate(points.z[i], step);
+        if (between(z, box.low, box.high))
+          f(Point{exactCoordinate(points.x[i], step), exactCoordinate(points.y[i], step), z});
+      }
     }
 }
 

@@ -6,22 +6,25 @@
 namespace polemcl {
 namespace {
 
-/// Share of pixels that no valid pixel outside the segment, to their left or right, is nearer than.
+/// Share of pixels that count: see PaperOptions::foregroundTest.
 double foregroundShare(const RangeImage& image, const Segmentation& segmentation,
-                       std::int32_t label) {
+                       std::int32_t label, bool inFront) {
   const Segment& segment = segmentation.segments()[label];
-  std::size_t before = 0;
+  std::size_t counted = 0;
   for (const Pixel& pixel : segment.pixels) {
-    bool behind = false;
+    bool behind = false, atEdge = false;
     for (const int step : {-1, 1}) {
       const int column = image.wrap(pixel.column + step);
       if (!image.valid(pixel.row, column) || segmentation.label(pixel.row, column) == label)
         continue;
-      behind |= image.range(pixel.row, column) < image.range(pixel.row, pixel.column);
+      const float beside = image.range(pixel.row, column);
+      const float own = image.range(pixel.row, pixel.column);
+      atEdge = true;
+      behind |= inFront ? beside <= own : beside < own;
     }
-    before += !behind;
+    counted += !behind && (atEdge || !inFront);
   }
-  return static_cast<double>(before) / static_cast<double>(segment.pixels.size());
+  return static_cast<double>(counted) / static_cast<double>(segment.pixels.size());
 }
 
 }  // namespace
@@ -34,7 +37,8 @@ Refusal testCandidate(const RangeImage& image, const Segmentation& segmentation,
     return Refusal::tooFewPoints;
   if (segment.height() < options.minAspect * segment.width || segment.width > options.maxWidthPx)
     return Refusal::tooWide;
-  if (foregroundShare(image, segmentation, label) < options.foreground)
+  if (foregroundShare(image, segmentation, label, options.foregroundTest == "in_front") <
+      options.foreground)
     return Refusal::notForeground;
 
   heights = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};

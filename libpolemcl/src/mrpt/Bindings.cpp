@@ -21,7 +21,7 @@ void bind(Binder& b, PaperOptions& o) {
   b.integer("min_pixels", o.minPixels, notNegative, "px", "clusters need strictly more");
   b.integer("max_width_px", o.maxWidthPx, Range::atLeast(1), "px", "widest cluster");
   b.number("min_aspect", o.minAspect, notNegative, "", "least height / width of a cluster");
-  b.number("foreground", o.foreground, share, "", "least share of pixels not behind a neighbour");
+  b.number("foreground", o.foreground, share, "", "least share of pixels, see foreground_test");
   b.number("min_top_m", o.minTop, Range::any(), "m", "least height of the top");
   b.number("max_bottom_m", o.maxBottom, Range::any(), "m", "greatest height of the bottom");
   b.number("min_height_m", o.minHeight, notNegative, "m", "least top minus bottom");
@@ -34,10 +34,24 @@ void bind(Binder& b, PaperOptions& o) {
   b.number("free_share", o.freeShare, notNegative, "", "points allowed there, of the fitted ones");
   b.flag("heights_above_ground", o.heightsAboveGround,
          "true: z + height_m; false: z of the sensor");
-  b.flag("wrap_around", o.wrapAround, "true: the image closes at +-180 deg");
+  b.choice("project_from", o.projectFrom, {"sensor", "cloud"},
+           "origin of the image: the optical centre, or the origin of the clouds");
+  b.flag("mirrored", o.mirrored, "true: y counts to the right in the image");
+  b.number("coordinate_step_m", o.coordinateStep, Range::between(0, 0.1), "m",
+           "the files hold multiples of this, which are used exactly; 0: as read");
+  b.flag("single_precision", o.singlePrecision, "true: projection and fit in float");
+  b.flag("clamp_to_view", o.clampToView,
+         "true: points outside the image go to its border pixels; false: dropped");
+  b.flag(
+      "wrap_around", o.wrapAround,
+      "true: the image closes at +-180 deg; false: open, no clusters in border rows and columns");
   b.flag("grow_upwards", o.growUpwards, "true: clusters grow up too; false: left, right, below");
-  b.choice("circle_fit", o.circleFit, {"kasa", "taubin", "silhouette"}, "how a circle is fitted");
-  b.choice("free_space", o.freeSpace, {"corners", "ring"}, "shape of the free space");
+  b.choice("foreground_test", o.foregroundTest, {"not_behind", "in_front"},
+           "pixels that count for foreground: none beside is nearer, or some are and all farther");
+  b.choice("circle_fit", o.circleFit, {"kasa", "kasa_mean", "taubin", "silhouette"},
+           "how a circle is fitted");
+  b.choice("free_space", o.freeSpace, {"ring", "corners", "cut_corners"},
+           "shape of the free space; cut_corners: the lower two cut, as by the authors' code");
 }
 
 void bind(Binder& b, NativeOptions& o) {

@@ -88,6 +88,8 @@ struct PoleExtraction::Impl {
       : sensor(o.sensor),
         method(o.extraction.method),
         native(o.extraction.native),
+        fromCloud(o.extraction.method == ExtractionMethod::paper &&
+                  o.extraction.paper.projectFrom == "cloud"),
         points(o.sensor),
         extractor(o.sensor, o.extraction),
         check(o.sensor, o.extraction.method == ExtractionMethod::native) {}
@@ -95,6 +97,7 @@ struct PoleExtraction::Impl {
   SensorOptions sensor;
   ExtractionMethod method;
   NativeOptions native;
+  bool fromCloud;  ///< the range image is seen from the origin of the clouds
   ObservationPoints points;
   PoleExtractor extractor;
   std::optional<PoleExtractor> cameraExtractor;  ///< for the camera seen last
@@ -104,7 +107,8 @@ struct PoleExtraction::Impl {
   SensorCheck check;
   int checksLeft = 3;  ///< scans to compare with the configuration
 
-  void compare(const mrpt::obs::CObservation& observation, const PointsView& points);
+  void compare(const mrpt::obs::CObservation& observation, const PointsView& cloud,
+               const mrpt::poses::CPose3D& sensorPose);
   LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
   PoleExtractor& extractorFor(const LidarFrame& frames);
   /// The image of the last points read is taken as such: the paper's range image is a sphere.
@@ -114,10 +118,10 @@ struct PoleExtraction::Impl {
 /// Frame for the points last read. A depth image's points are levelled, as its rows are planes in
 /// whatever frame; its optical centre is the cloud's origin.
 LidarFrame PoleExtraction::Impl::frameOf(const mrpt::poses::CPose3D& sensorPose) const {
-  if (!pinhole()) return lidarFrame(sensorPose, sensor);
+  if (!pinhole() && !fromCloud) return lidarFrame(sensorPose, sensor);
   SensorOptions own = sensor;
   own.originX = own.originY = own.originZ = 0;
-  return lidarFrame(sensorPose, own, true);
+  return lidarFrame(sensorPose, own, pinhole());
 }
 
 /// Extractor for the points last read.
@@ -133,12 +137,14 @@ PoleExtractor& PoleExtraction::Impl::extractorFor(const LidarFrame& frames) {
 }
 
 void PoleExtraction::Impl::compare(const mrpt::obs::CObservation& observation,
-                                   const PointsView& cloud) {
+                                   const PointsView& cloud,
+                                   const mrpt::poses::CPose3D& sensorPose) {
   const bool image = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation);
   if (!sensor.checkBeams || checksLeft <= 0 || image || cloud.size < SensorCheck::kFewestPoints)
     return;
   --checksLeft;
-  const std::string contradiction = check.contradiction(cloud);
+  const std::string contradiction =
+      check.contradiction(moved.toLidar(cloud, lidarFrame(sensorPose, sensor)));
   if (!contradiction.empty()) throw Error(contradiction);
 }
 
@@ -163,8 +169,8 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
     const PointsView cloud = m_impl->points.read(observation);
     if (cloud.size > 0) {
       const LidarFrame frames = m_impl->frameOf(result->sensorPose);
+      m_impl->compare(observation, cloud, result->sensorPose);
       const PointsView points = m_impl->moved.toLidar(cloud, frames);
-      m_impl->compare(observation, points);
       PoleExtractor& extractor = m_impl->extractorFor(frames);
       result->poles = extractor.extract(points, upright(frames));
       m_impl->report = extractor.report();

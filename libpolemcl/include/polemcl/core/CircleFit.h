@@ -16,6 +16,13 @@ struct Circle {
 /// \return Nothing for fewer than 3 points or points on a line.
 std::optional<Circle> fitCircleKasa(const std::vector<Eigen::Vector2d>& points);
 
+/// \brief Kåsa's centre with the mean distance of the points to it as radius, as the paper's
+/// authors compute it. Points nearly on a line give a very large circle. \param singlePrecision
+/// true: offsets from the mean and their products are computed in float, sums in double. \return
+/// Nothing for no points, and where the system is exactly singular.
+std::optional<Circle> fitCircleKasaMean(const std::vector<Eigen::Vector2d>& points,
+                                        bool singlePrecision);
+
 /// \brief Taubin's fit (1991): gradient-weighted, nearly unbiased; by Newton's method on the
 /// characteristic polynomial as in Chernov's book (2010).
 std::optional<Circle> fitCircleTaubin(const std::vector<Eigen::Vector2d>& points);

@@ -59,14 +59,34 @@ struct PaperOptions {
   double freeRing = 0.5;    ///< width of the free space, m
   double freeShare = 0.15;  ///< μ: allowed points there as a share of the fitted ones
   bool heightsAboveGround =
-      false;                 ///< false: z in the sensor frame, as the paper; true: z + `height_m`
-  bool wrapAround = true;    ///< false: border columns end the image (first implementation)
+      false;  ///< false: z in the sensor frame, as the paper; true: z + `height_m`
+  /// Origin of the range image. `sensor`: the optical centre, as in the paper; `cloud`: the origin
+  /// of the clouds, whatever `[sensor] origin` says (authors' code: NCLT's body frame).
+  std::string projectFrom = "sensor";
+  /// true: y counts to the right in the image (authors' code for NCLT, which turns z over only).
+  bool mirrored = false;
+  /// m; the files hold multiples of this, and the exact ones are used instead of those rounded to
+  /// float (NCLT: 0.005); 0: coordinates as they are.
+  double coordinateStep = 0;
+  /// true: projection and fit in float (authors' code for KITTI); false: in double.
+  bool singlePrecision = false;
+  /// true: points outside the image go to its border pixels (authors' code); false: dropped.
+  bool clampToView = false;
+  /// true: the image closes at +-180 deg; false: it is open, and its first and last rows and
+  /// columns hold no pixels of clusters (authors' code).
+  bool wrapAround = true;
   bool growUpwards = false;  ///< true: clusters grow up too; false: left, right, below
-  /// `kasa` (the paper's algebraic fit), `taubin` (less biased), `silhouette` (radius from the
-  /// width seen, centre behind the front: not biased on short arcs).
+  /// Which pixels count for `foreground`. `not_behind`: those without a nearer side neighbour
+  /// outside the cluster (authors' code); `in_front`: those with side neighbours outside the
+  /// cluster, all farther (paper).
+  std::string foregroundTest = "not_behind";
+  /// `kasa` (the paper's algebraic fit), `kasa_mean` (its centre, the mean distance of the points
+  /// as radius: authors' code), `taubin` (less biased), `silhouette` (radius from the width seen,
+  /// centre behind the front: not biased on short arcs).
   std::string circleFit = "kasa";
-  /// `corners`: four squares beside the box of the fit, as the first implementation means it;
-  /// `ring`: all that is nearer than the ring's width to that box's circle.
+  /// `ring`: all that is nearer than the ring's width to the circle around the box of the fit
+  /// (paper); `corners`: four squares at the corners of that box; `cut_corners`: the same, but the
+  /// two at lower y are cut to the height `ring - 2 (R + margin)` by a sign slip (authors' code).
   std::string freeSpace = "corners";
   void validate() const;
 };

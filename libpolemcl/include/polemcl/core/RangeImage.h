@@ -4,6 +4,7 @@
 
 #include <polemcl/core/Types.h>
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -11,13 +12,17 @@ namespace polemcl {
 
 /// \brief Geometry of the paper's spherical image. `[range_image]` in INI files.
 struct RangeImageOptions {
-  int rows = 64;            ///< px
-  int columns = 500;        ///< px over the full turn
-  double fovUp = 0.0524;    ///< elevation of the upper border, rad (`fov_up_deg`)
-  double fovDown = -0.436;  ///< elevation of the lower border, rad, negative below the horizon
-  double minRange = 0.5;    ///< m; nearer points are the vehicle itself
-  double maxRange = 50;     ///< m
-  void validate() const;    ///< \throws Error naming the field
+  int rows = 64;             ///< px
+  int columns = 500;         ///< px over the full turn
+  double fovUp = 0.0524;     ///< elevation of the upper border, rad (`fov_up_deg`)
+  double fovDown = -0.436;   ///< elevation of the lower border, rad, negative below the horizon
+  double minRange = 0.5;     ///< m; nearer points are the vehicle itself
+  double maxRange = 50;      ///< m; points must be nearer
+  bool clampToView = false;  ///< points outside the image go to its border pixels; false: dropped
+  bool mirrored = false;     ///< y counts to the right in the image, as in the authors' NCLT frame
+  bool singlePrecision = false;  ///< Eq. 1 is computed in float
+  double coordinateStep = 0;     ///< m; see exactCoordinate()
+  void validate() const;         ///< \throws Error naming the field
 };
 
 /// \brief What happened to the points of one cloud. They add up to the size of the cloud.
@@ -57,9 +62,16 @@ class RangeImage {
   std::vector<std::int32_t> m_point;
 };
 
-/// \brief Projects the points (Eq. 1 with f_up + f_down = fovUp - fovDown); the nearest point wins.
-/// \param points In the frame of the projection: origin at the sensor, z up.
-/// \param minZ,maxZ Points outside [minZ, maxZ] (same frame) are cut; pass ∓infinity for no cut.
+/// \brief A coordinate (m) before it was rounded to float: the nearest multiple of `step`, for
+/// files that hold such multiples (NCLT: 0.005 m). Step 0: the coordinate as it is.
+inline double exactCoordinate(float value, double step) {
+  return step > 0 ? std::nearbyint(value / step) * step : value;
+}
+
+/// \brief Projects the points (Eq. 1 with f_up + f_down = fovUp - fovDown); the nearest point wins,
+/// of equally near ones the first.
+/// \param points In the frame of the projection, z up.
+/// \param minZ,maxZ Points must lie strictly between (same frame); pass ∓infinity for no cut.
 PointCounts project(const PointsView& points, const RangeImageOptions& options, double minZ,
                     double maxZ, RangeImage& image);
 
