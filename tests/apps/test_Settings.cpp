@@ -72,9 +72,19 @@ TEST(Settings, ConfigurationsSayWhatTheyAreFor) {
   EXPECT_EQ(paper.extraction.method, ExtractionMethod::paper);
   EXPECT_EQ(paper.extraction.paper.columns, 250);
   EXPECT_NEAR(paper.extraction.paper.fovUp, 30.67 * M_PI / 180, 1e-12);
+  EXPECT_EQ(paper.extraction.paper.projectFrom, "cloud");
   EXPECT_EQ(paper.map.minCount, 6);
   EXPECT_EQ(paper.likelihood.model, LikelihoodModel::paper);
   EXPECT_EQ(paper.localization.filter.estimate, PoseEstimator::bestShare);
+}
+
+TEST(Settings, TheMendedPaperDiffersInOneHeight) {
+  auto kitti = loadSettings(config("paper/kitti.ini").string());
+  const auto mended = loadSettings(config("paper/kitti-mended.ini").string());
+  EXPECT_EQ(kitti.extraction.paper.minTop, 0.7);
+  EXPECT_EQ(mended.extraction.paper.minTop, 0);
+  kitti.extraction.paper.minTop = 0;
+  EXPECT_EQ(settingsText(mended), settingsText(kitti));
 }
 
 TEST(Settings, KnowsEverySection) {

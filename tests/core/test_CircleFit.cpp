@@ -120,6 +120,7 @@ TEST(CircleFit, pointsOnACircleGiveThatCircle) {
   for (const double to : {1.0, 2.5, 6.0}) {
     const Points points = arc(3, -2, 0.7, 0.2, 0.2 + to, 12);
     expectCircle(fitCircleKasa(points), 3, -2, 0.7, 1e-9);
+    expectCircle(fitCircleKasaMean(points, false), 3, -2, 0.7, 1e-9);
     expectCircle(fitCircleTaubin(points), 3, -2, 0.7, 1e-9);
   }
 }
@@ -150,6 +151,40 @@ TEST(CircleFit, taubinEqualsTheGeneralizedEigenvalueProblem) {
     const Circle expected = taubinOracle(points);
     expectCircle(fitCircleTaubin(points), expected.x, expected.y, expected.radius, 1e-6);
   }
+}
+
+TEST(CircleFit, kasaMeanHasKasasCentreAndTheMeanDistanceToIt) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const Points points = noisyCircle(seed);
+    const auto kasa = fitCircleKasa(points);
+    ASSERT_TRUE(kasa);
+    double mean = 0;
+    for (const auto& p : points)
+      mean += std::hypot(p.x() - kasa->x, p.y() - kasa->y) / static_cast<double>(points.size());
+    expectCircle(fitCircleKasaMean(points, false), kasa->x, kasa->y, mean, 1e-8);
+    expectCircle(fitCircleKasaMean(points, true), kasa->x, kasa->y, mean, 2e-3);
+    EXPECT_GT(kasa->radius - mean, 1e-5);  // the root of the mean square is the greater one
+  }
+}
+
+TEST(CircleFit, kasaMeanInSinglePrecisionRoundsOffsets) {
+  const Points points = noisyCircle(1);
+  const auto exact = fitCircleKasaMean(points, false), rounded = fitCircleKasaMean(points, true);
+  ASSERT_TRUE(exact && rounded);
+  EXPECT_NE(exact->x, rounded->x);
+  EXPECT_EQ(rounded->radius, static_cast<float>(rounded->radius));
+}
+
+TEST(CircleFit, kasaMeanRefusesOnlyWhatIsExactlySingular) {
+  Points line;  // on a line but for the last bits
+  for (int i = 0; i < 9; ++i) line.emplace_back(7.3 + 0.1 * i, 0.7 - 0.13 * i);
+  const auto circle = fitCircleKasaMean(line, false);
+  ASSERT_TRUE(circle);
+  EXPECT_GT(circle->radius, 10);
+  EXPECT_FALSE(fitCircleKasaMean({}, false));
+  EXPECT_FALSE(fitCircleKasaMean(Points(5, Eigen::Vector2d(4, 3)), false));
+  EXPECT_FALSE(fitCircleKasaMean({{4, 1}, {4, 2}, {4, 5}}, false));
+  EXPECT_FALSE(fitCircleKasaMean({{4, 1}, {4, 2}, {4, 5}}, true));
 }
 
 TEST(CircleFit, noCircleThroughPointsOnALine) {

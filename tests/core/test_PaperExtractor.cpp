@@ -59,7 +59,7 @@ TEST(PaperExtractor, findsThePolesOfAKnownScene) {
 }
 
 TEST(PaperExtractor, everyCircleFitFindsThem) {
-  for (const std::string fit : {"kasa", "taubin", "silhouette"}) {
+  for (const std::string fit : {"kasa", "kasa_mean", "taubin", "silhouette"}) {
     SCOPED_TRACE(fit);
     ExtractionOptions options = paperOptions();
     options.paper.circleFit = fit;
@@ -124,6 +124,99 @@ TEST(PaperExtractor, cornersLookBesideTheBoxOnly) {
   EXPECT_TRUE(nearest(extract(points, options).poles, 8, 3, 0.1));
   options.paper.freeSpace = "ring";
   EXPECT_FALSE(nearest(extract(points, options).poles, 8, 3, 0.1));
+}
+
+// Sticks 0.45 m farther and 0.5 m aside: in a corner, but at lower y beyond the cut one, which is
+// 0.1 m high for this pole.
+TEST(PaperExtractor, cutCornersMissHalfOfWhatStandsInCorners) {
+  const auto finds = [](double aside, const std::string& freeSpace, bool mirrored) {
+    Scene scene = yard();
+    scene.cylinders.push_back({8 + (aside < 0 ? 0.45 : -0.45), 3 + aside, 0.06, -3, 1.7});
+    ExtractionOptions options = paperOptions();
+    options.paper.freeSpace = freeSpace;
+    options.paper.mirrored = mirrored;
+    const Result result = extract(castYard(sensorOptions("os1_64"), scene), options);
+    return nearest(result.poles, 8, 3, 0.1) != nullptr;
+  };
+  for (const double aside : {-0.5, 0.5})
+    for (const bool mirrored : {false, true}) {
+      SCOPED_TRACE(aside);
+      EXPECT_FALSE(finds(aside, "corners", mirrored));
+      EXPECT_EQ(finds(aside, "cut_corners", mirrored), mirrored == (aside > 0));
+    }
+}
+
+TEST(PaperExtractor, aMirroredImageFindsTheSamePoles) {
+  ExtractionOptions options = paperOptions();
+  options.paper.mirrored = true;
+  expectYard(extract(yardPoints(), options), 0.06);
+}
+
+namespace {
+
+constexpr int kRingRows = 21, kRingPoints = 18;
+
+/// A pole of 0.05 m at 10 m in one column of the image: 21 rows from -0.6 to 1.2 m, in each 17
+/// points of its near half. The foremost of a row lie on a circle of 3 m instead, and those are the
+/// points of the image.
+PointList flatFront() {
+  PointList points;
+  const double y0 = -10 * M_PI / 500;  // middle of the column
+  for (int row = 0; row < kRingRows; ++row) {
+    const double z = -0.6 + 0.09 * row;
+    for (int i = -8; i <= 8; ++i)
+      points.add(10 - 0.05 * std::cos(0.18 * i), y0 + 0.05 * std::sin(0.18 * i), z);
+    const double across = 0.002 * (row - 10);
+    points.add(9.94 + across * across / 6, y0 + across, z);
+  }
+  return points;
+}
+
+}  // namespace
+
+TEST(PaperExtractor, theFirstCircleMayBeOfAnySize) {
+  ExtractionOptions options = paperOptions();
+  options.paper.circleFit = "kasa_mean";
+  const Result result = extract(flatFront(), options);
+  ASSERT_EQ(result.poles.size(), 1u);
+  EXPECT_NEAR(result.poles[0].radius, 0.05, 0.01);
+  EXPECT_EQ(result.poles[0].points, (kRingRows - 2u) * kRingPoints);  // strictly between z's
+  options.paper.fitMargin = 0;  // the coarse circle's box holds them without a margin, too
+  EXPECT_EQ(extract(flatFront(), options).poles.size(), 1u);
+}
+
+TEST(PaperExtractor, theFitTakesPointsBeyondTheRange) {
+  PointList points = flatFront();
+  ExtractionOptions options = paperOptions();
+  options.paper.circleFit = "kasa_mean";
+  options.paper.maxRange = 10.2;
+  for (int i = 0; i < 2000; ++i) points.add(12.6, 0.1 * (i % 20) - 1, 0.3);  // a wall behind
+  const Result result = extract(points, options);
+  EXPECT_TRUE(result.poles.empty());
+  EXPECT_EQ(result.of(Refusal::badFit), 1u);
+}
+
+// Floats of -0.6 and 1.2 lie beyond these: as exact multiples of the step they are between.
+TEST(PaperExtractor, exactCoordinatesPutTheOutermostRowsIntoTheFit) {
+  ExtractionOptions options = paperOptions();
+  options.paper.circleFit = "kasa_mean";
+  options.paper.coordinateStep = 0.0001;
+  const Result result = extract(flatFront(), options);
+  ASSERT_EQ(result.poles.size(), 1u);
+  EXPECT_EQ(result.poles[0].points, kRingRows * kRingPoints);
+}
+
+TEST(PaperExtractor, heightsCountFromTheOriginOfTheProjection) {
+  SensorOptions sensor = sensorOptions("os1_64");
+  sensor.originZ = 0.4;  // above the origin of the clouds
+  for (const bool fromCloud : {false, true}) {
+    ExtractionOptions options = paperOptions();
+    options.paper.projectFrom = fromCloud ? "cloud" : "sensor";
+    PoleExtractor extractor(sensor, options);
+    for (const PoleDetection& pole : extractor.extract(yardPoints().view()))
+      EXPECT_NEAR(pole.top, fromCloud ? 2.8 : 3.2, 0.2);
+    EXPECT_NEAR(extractor.report().ground, fromCloud ? -1.1 : -1.5, 1e-12);
+  }
 }
 
 TEST(PaperExtractor, growingUpwardsFindsNoFewer) {

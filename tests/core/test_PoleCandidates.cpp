@@ -90,6 +90,33 @@ TEST(PoleCandidates, aPixelWithNearerThingsOnBothSidesCountsOnce) {
   EXPECT_EQ(scene.test(), Refusal::count_);
 }
 
+// Of three columns only the outer two have neighbours outside: 12 of 18 pixels, 0.67.
+TEST(PoleCandidates, inFrontOnlyPixelsAtTheEdgeCount) {
+  Scene scene(2.5, 3);
+  EXPECT_EQ(scene.test(), Refusal::count_);
+  scene.options.foregroundTest = "in_front";
+  EXPECT_EQ(scene.test(), Refusal::notForeground);
+  scene.options.foreground = 0.66;
+  EXPECT_EQ(scene.test(), Refusal::count_);
+}
+
+TEST(PoleCandidates, inFrontWhatHasNothingBesideItIsNotInTheForeground) {
+  Scene scene;
+  for (int r = 0; r < Scene::kRows + Scene::kTopRow; ++r)
+    for (const int c : {Scene::kColumn - 1, Scene::kColumn + 1}) scene.image.set(r, c, 0, -1);
+  EXPECT_EQ(scene.test(), Refusal::count_);
+  scene.options.foregroundTest = "in_front";
+  EXPECT_EQ(scene.test(), Refusal::notForeground);
+}
+
+TEST(PoleCandidates, inFrontANearerNeighbourCountsAgainstAPixel) {
+  Scene scene;
+  scene.options.foregroundTest = "in_front";
+  EXPECT_EQ(scene.test(), Refusal::count_);
+  for (const int row : {0, 3}) scene.set(Scene::kTopRow + row, Scene::kColumn - 1, 5, 0);
+  EXPECT_EQ(scene.test(), Refusal::notForeground);  // 4 of 6: 0.67
+}
+
 TEST(PoleCandidates, whatIsBesideIsSeenAcrossTheSeam) {
   Scene scene;
   for (int r = Scene::kTopRow; r < Scene::kTopRow + Scene::kRows; ++r) {

@@ -238,23 +238,115 @@ TEST(RangeImage, aPointBetweenTwoRowsOrColumnsGoesToTheLaterOne) {
   EXPECT_EQ(image.point(1, 12), 2);
 }
 
-TEST(RangeImage, boundsOfRangeAndHeightAreInclusive) {
+TEST(RangeImage, pointsLieStrictlyWithinTheBoundsOfRangeAndHeight) {
   RangeImageOptions options = exactBorders();
   options.minRange = 5;
   options.maxRange = 10;
   PointList points;
-  points.add(4, 0, 3 - 1e-6);   // nearer than 5 m
-  points.add(3, 4, 0);          // 5 m
-  points.add(-6, -8, 0);        // 10 m
-  points.add(0, -10.00001, 0);  // farther than 10 m
-  points.add(-8, 0, 1);         // upper bound of height
-  points.add(0, 8, -1);         // lower bound
-  points.add(-7, 2, 1.0001);    // above
-  points.add(-7, -2, -1.0001);  // below
+  points.add(4, 0, 3 - 1e-6);  // nearer than 5 m
+  points.add(3, 4, 0);         // 5 m: no nearer than that
+  points.add(-6, -8, 0);       // 10 m
+  points.add(0, -9.99999, 0);  // nearer
+  points.add(-8, 0, 1);        // upper bound of height
+  points.add(0, 8, -1);        // lower bound
+  points.add(-7, 2, 0.9999);   // below the upper one
+  points.add(-7, -2, -0.9999);
   RangeImage image(2, 16);
   const PointCounts counts = project(points.view(), options, -1, 1, image);
   EXPECT_EQ(counts.used, 4u);
   EXPECT_EQ(counts.outOfRange, 4u);
+}
+
+TEST(RangeImage, clampedPointsOutsideTheViewGoToTheBorderRows) {
+  PointList points;
+  points.addPolar(0.1, 40 * kDegree, 10);
+  points.addPolar(-0.1, -60 * kDegree, 11);
+  RangeImageOptions options = smallImage();
+  RangeImage image(4, 16);
+  EXPECT_EQ(projectInto(image, points, options).outOfView, 2u);
+  options.clampToView = true;
+  const PointCounts counts = projectInto(image, points, options);
+  EXPECT_EQ(counts.used, 2u);
+  EXPECT_EQ(counts.outOfView, 0u);
+  EXPECT_EQ(image.point(0, 7), 0);
+  EXPECT_EQ(image.point(3, 8), 1);
+}
+
+TEST(RangeImage, clampedTheSeamBelongsToTheLastColumn) {
+  PointList points;
+  points.add(-10, -0.f, 1);  // azimuth -180°: u = columns
+  RangeImageOptions options = smallImage();
+  RangeImage image(4, 16);
+  projectInto(image, points, options);
+  EXPECT_TRUE(image.valid(1, 0));
+  options.clampToView = true;
+  projectInto(image, points, options);
+  EXPECT_TRUE(image.valid(1, 15));
+  EXPECT_FALSE(image.valid(1, 0));
+}
+
+TEST(RangeImage, mirroredColumnsCountTheOtherWay) {
+  RangeImageOptions options = smallImage();
+  options.mirrored = true;
+  PointList points;
+  points.addPolar(30 * kDegree, 0.01, 10);
+  RangeImage image(4, 16), mirror(4, 16);
+  projectInto(image, points, smallImage());
+  projectInto(mirror, points, options);
+  for (int c = 0; c < 16; ++c) EXPECT_EQ(mirror.point(1, c), image.point(1, 15 - c)) << c;
+  EXPECT_TRUE(mirror.valid(1, 9));
+}
+
+// 10 m and 10.0000002 m: one float, two doubles.
+TEST(RangeImage, inSinglePrecisionRangesAreFloats) {
+  PointList points;
+  points.add(10, -0.002, 0);
+  points.add(10, 0, 0);
+  RangeImageOptions options = exactBorders();
+  RangeImage image(2, 16);
+  projectInto(image, points, options);
+  EXPECT_EQ(image.point(1, 8), 1);
+  options.singlePrecision = true;
+  projectInto(image, points, options);
+  EXPECT_EQ(image.point(1, 8), 0);  // of equals the first
+}
+
+TEST(RangeImage, singlePrecisionMovesFewPoints) {
+  sim::Random random(3);
+  RangeImageOptions options;
+  options.fovUp = 3 * kDegree;
+  options.fovDown = -25 * kDegree;
+  RangeImageOptions single = options;
+  single.singlePrecision = true;
+  RangeImage a(64, 500), b(64, 500);
+  int moved = 0;
+  for (int i = 0; i < 20000; ++i) {
+    PointList point;
+    point.addPolar(random.uniform(-3, 3), random.uniform(-24, 2) * kDegree, random.uniform(1, 49));
+    projectInto(a, point, options);
+    projectInto(b, point, single);
+    int same = 0;
+    for (int r = 0; r < 64; ++r)
+      for (int c = 0; c < 500; ++c) same += a.valid(r, c) && b.valid(r, c);
+    moved += !same;
+  }
+  EXPECT_GT(moved, 0);
+  EXPECT_LT(moved, 20);
+}
+
+TEST(RangeImage, coordinatesOfAGridAreTakenExactly) {
+  for (const int steps : {1, 247, -247, 9999}) {
+    const double exact = steps * 0.005;
+    EXPECT_EQ(exactCoordinate(static_cast<float>(exact), 0.005), exact);
+    EXPECT_EQ(exactCoordinate(static_cast<float>(exact), 0), static_cast<float>(exact));
+  }
+  PointList points;
+  points.add(10, 0, 0.1);  // the float is more than 0.1
+  RangeImageOptions options = smallImage();
+  RangeImage image(4, 16);
+  EXPECT_EQ(project(points.view(), options, 0.1, 1, image).used, 1u);
+  options.coordinateStep = 0.005;
+  EXPECT_EQ(project(points.view(), options, 0.1, 1, image).outOfRange, 1u);
 }
 
 TEST(RangeImage, isEmptiedBeforeEachProjection) {

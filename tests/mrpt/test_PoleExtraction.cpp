@@ -90,6 +90,39 @@ TEST(PoleExtraction, BodyFrameWithZDown) {
   EXPECT_NEAR(extraction.report().ground, -1.257, 0.05);  // below the sensor, not the body
 }
 
+// The authors' program sees NCLT's clouds from the origin of the body frame, 0.957 m below the
+// sensor and here 0.3 m above the ground.
+TEST(PoleExtraction, PaperMayProjectFromTheOriginOfClouds) {
+  auto options = hdl32(0.957 + 0.3);
+  options.sensor.upsideDown = true;
+  options.sensor.originZ = 0.957;
+  options.extraction.method = ExtractionMethod::paper;
+  auto& paper = options.extraction.paper;
+  paper.rows = 32;
+  paper.columns = 250;
+  paper.fovUp = mrpt::DEG2RAD(30.67);
+  paper.fovDown = mrpt::DEG2RAD(-10.67);
+  paper.heightsAboveGround = true;
+  paper.minZ = 0.3;
+  const Eigen::Isometry3d T_robot_lidar(Eigen::Translation3d(0, 0, 1.257));
+  const TestCloud cloud = castScan(options.sensor, T_robot_lidar, testPoles());
+  const CPose3D bodyInRobot(0, 0, 0.3, 0, 0, M_PI);
+  const Eigen::Isometry3d T_body_lidar = isometry(bodyInRobot).inverse() * T_robot_lidar;
+  const auto scan = observationOf(cloud, bodyInRobot, T_body_lidar);
+  for (const bool fromCloud : {false, true}) {
+    paper.projectFrom = fromCloud ? "cloud" : "sensor";
+    PoleExtraction extraction(options);
+    const auto points = extraction.lidarPoints(*scan);
+    for (std::size_t i = 0; i < points.size(); i += 97) {
+      EXPECT_NEAR(points.x[i], cloud.x[i], 1e-5);
+      EXPECT_NEAR(points.y[i], cloud.y[i], 1e-5);
+      EXPECT_NEAR(points.z[i] - cloud.z[i], fromCloud ? 0.957 : 0, 1e-5);
+    }
+    EXPECT_GE(found(*extraction.process(*scan), 0.1), 3);
+    EXPECT_NEAR(extraction.report().ground, fromCloud ? -0.3 : -1.257, 1e-9);
+  }
+}
+
 TEST(PoleExtraction, OriginIsAlongTheRobotsAxes) {
   auto options = hdl32(1.5);
   options.sensor.originX = 0.6;
