@@ -114,4 +114,4 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(DataSet{"kitti_raw_0005", "folder", "/config/paper/kitti.ini", 905},
                     DataSet{"kitti_odom_00", "folder", "/config/paper/kitti.ini", 130},
                     DataSet{"nclt_scan", "nclt", "/config/paper/nclt.ini", 4}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& i) { return std::string(i.param.name); });

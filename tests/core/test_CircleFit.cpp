@@ -176,8 +176,9 @@ TEST(CircleFit, kasaMeanInSinglePrecisionRoundsOffsets) {
 }
 
 TEST(CircleFit, kasaMeanRefusesOnlyWhatIsExactlySingular) {
-  Points line;  // on a line but for the last bits
-  for (int i = 0; i < 9; ++i) line.emplace_back(7.3 + 0.1 * i, 0.7 - 0.13 * i);
+  Points line;  // on a line but for 1e-9 m
+  for (int i = 0; i < 9; ++i) line.emplace_back(7.3 + 0.1 * i + 1e-9 * i * i, 0.7 - 0.13 * i);
+  EXPECT_FALSE(fitCircleKasa(line));
   const auto circle = fitCircleKasaMean(line, false);
   ASSERT_TRUE(circle);
   EXPECT_GT(circle->radius, 10);

@@ -63,7 +63,7 @@ const std::vector<Bad> kBad = {
     BAD("paperSpace", "[paper]", "free_space = box", o.paper.freeSpace = "box"),
     BAD("paperOrigin", "[paper]", "project_from = robot", o.paper.projectFrom = "robot"),
     BAD("paperForegroundTest", "[paper]", "foreground_test = all", o.paper.foregroundTest = "all"),
-    BAD("paperStep", "[paper]", "coordinate_step_m = 0.2", o.paper.coordinateStep = 0.2),
+    BAD("paperStep", "[paper]", "coordinate_step_m = 2", o.paper.coordinateStep = 2),
     BAD("paperStepNan", "[paper]", "coordinate_step_m", o.paper.coordinateStep = kNan),
     BAD("nativeWidth", "[native]", "max_width_m = 0", o.native.maxWidth = 0),
     BAD("nativeConnect", "[native]", "connect_step_m = 0", o.native.connectStep = 0),

@@ -2,6 +2,8 @@
 #include <polemcl/io/TextFile.h>
 #include <polemcl/mrpt/Bindings.h>
 
+#include <map>
+
 namespace polemcl {
 namespace {
 
@@ -66,6 +68,10 @@ TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
   const std::string base = written(All());
   const auto before = keys(base);
   ASSERT_GT(before.size(), 60u);
+  const std::map<std::string, std::string> otherChoices = {{"circle_fit", "taubin"},
+                                                           {"free_space", "ring"},
+                                                           {"project_from", "cloud"},
+                                                           {"foreground_test", "in_front"}};
   for (const auto& [name, value] : before) {
     SCOPED_TRACE(name + " = " + value);
     const std::string key = name.substr(name.find(']') + 1);
@@ -81,10 +87,8 @@ TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
       other = "paper";
     else if (key == "method")
       other = "paper";
-    else if (key == "circle_fit")
-      other = "taubin";
-    else if (key == "free_space")
-      other = "ring";
+    else if (const auto choice = otherChoices.find(key); choice != otherChoices.end())
+      other = choice->second;
     else if (key == "elevations_deg" || key == "lower_elevations_deg" || key == "apex_m")
       other = "1 2";
     else if (key == "origin")

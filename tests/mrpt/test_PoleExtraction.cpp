@@ -99,7 +99,7 @@ TEST(PoleExtraction, PaperMayProjectFromTheOriginOfClouds) {
   options.extraction.method = ExtractionMethod::paper;
   auto& paper = options.extraction.paper;
   paper.rows = 32;
-  paper.columns = 250;
+  paper.columns = 1000;
   paper.fovUp = mrpt::DEG2RAD(30.67);
   paper.fovDown = mrpt::DEG2RAD(-10.67);
   paper.heightsAboveGround = true;

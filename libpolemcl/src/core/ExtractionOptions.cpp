@@ -53,8 +53,7 @@ void PaperOptions::validate() const {
   check(minFitPoints >= 3, "min_fit_points", minFitPoints, "3 or more");
   check(freeRing >= 0, "free_ring_m", freeRing, "0 or more");
   check(freeShare >= 0, "free_share", freeShare, "0 or more");
-  check(coordinateStep >= 0 && coordinateStep <= 0.1, "coordinate_step_m", coordinateStep,
-        "0 to 0.1");
+  check(coordinateStep >= 0 && coordinateStep <= 1, "coordinate_step_m", coordinateStep, "0 to 1");
   requireOneOf("project_from", projectFrom, {"sensor", "cloud"});
   requireOneOf("foreground_test", foregroundTest, {"not_behind", "in_front"});
   requireOneOf("circle_fit", circleFit, {"kasa", "kasa_mean", "taubin", "silhouette"});

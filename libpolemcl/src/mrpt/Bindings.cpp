@@ -37,7 +37,7 @@ void bind(Binder& b, PaperOptions& o) {
   b.choice("project_from", o.projectFrom, {"sensor", "cloud"},
            "origin of the image: the optical centre, or the origin of the clouds");
   b.flag("mirrored", o.mirrored, "true: y counts to the right in the image");
-  b.number("coordinate_step_m", o.coordinateStep, Range::between(0, 0.1), "m",
+  b.number("coordinate_step_m", o.coordinateStep, Range::between(0, 1), "m",
            "the files hold multiples of this, which are used exactly; 0: as read");
   b.flag("single_precision", o.singlePrecision, "true: projection and fit in float");
   b.flag("clamp_to_view", o.clampToView,
