@@ -114,3 +114,73 @@ TEST(PathSections, whatIsNotUsedIsWayButNoScan) {
   EXPECT_EQ(result.occupied[1].index, 2u);
   EXPECT_EQ(result.occupied[1].scans, (Scans{5}));
 }
+
+namespace {
+
+/// The rule written down as lists over the whole way, one after the other.
+struct Lists {
+  std::vector<std::size_t> middles, ends;
+  Lists(const std::vector<double>& ways, double length) {
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      if (ways[i] >= static_cast<double>(middles.size()) * length + 0.5 * length)
+        middles.push_back(i);
+      if (ways[i] > static_cast<double>(ends.size()) * length + length) ends.push_back(i);
+    }
+    middles.resize(ends.size());
+  }
+};
+
+Scans middlesOf(const PathSections& sections) {
+  Scans result;
+  for (const PathSection& section : sections.occupied) result.push_back(section.middle);
+  return result;
+}
+
+PathSections pass(const std::vector<Pose2D>& poses, double length) {
+  return passSections(poses, std::vector<std::uint32_t>(poses.size(), 0), length);
+}
+
+}  // namespace
+
+TEST(PathSections, passedMiddlesByHand) {
+  // 0.4 is nearer to 0.5, but 0.75 is the first past it; the end of section 1 is the first past 2.
+  const auto result = pass(straight({0, 0.4, 0.75, 1.125, 1.5, 2, 2.25, 2.5, 3}), 1);
+  EXPECT_EQ(middlesOf(result), (Scans{2, 4}));
+  EXPECT_EQ(result.count, 2u);  // the way ends at 3, not past it
+  EXPECT_NEAR(result.length, 3, 1e-12);
+  EXPECT_EQ(result.occupied[1].index, 1u);
+}
+
+TEST(PathSections, scansFarApartAreAllMiddlesAndAStandingVehicleMakesUp) {
+  // After 4 m in two scans four sections are behind, two of them made up for while standing.
+  const auto result = pass(straight({0, 2, 4.25, 4.25, 4.25, 4.25, 4.25}), 1);
+  EXPECT_EQ(middlesOf(result), (Scans{1, 2, 3, 4}));
+}
+
+TEST(PathSections, passedMiddlesEqualTheLists) {
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 50; ++round) {
+    std::uniform_real_distribution<double> step(0, round % 2 ? 0.4 : 2.5);
+    std::vector<double> ways{0};
+    for (int i = 0; i < 200; ++i) ways.push_back(ways.back() + (i % 40 < 30 ? step(random) : 0));
+    std::vector<Pose2D> poses;
+    for (const double way : ways) poses.push_back({way, 0, 0});
+    EXPECT_EQ(middlesOf(pass(poses, 1)), Lists(ways, 1).middles);
+  }
+}
+
+TEST(PathSections, passedDrivesCountForThemselvesAndUnusedMiddlesAreLeftOut) {
+  const std::vector<Pose2D> poses = straight({0, 0.625, 1.25, 1.625, 2.25, 500, 500.625, 501.25});
+  const std::vector<std::uint32_t> drives{0, 0, 0, 0, 0, 1, 1, 1};
+  const auto all = passSections(poses, drives, 1);
+  EXPECT_EQ(middlesOf(all), (Scans{1, 3, 6}));
+  EXPECT_EQ(all.count, 3u);
+  EXPECT_NEAR(all.length, 2.25 + 1.25, 1e-9);
+  EXPECT_EQ(all.occupied[2].path, 1u);
+  EXPECT_EQ(all.occupied[2].index, 0u);
+  const auto some =
+      passSections(poses, drives, 1, {true, false, true, true, true, true, true, true});
+  EXPECT_EQ(middlesOf(some), (Scans{3, 6}));
+  EXPECT_EQ(some.count, 3u);
+  EXPECT_TRUE(passSections({}, {}, 1).occupied.empty());
+}

@@ -140,6 +140,75 @@ TEST(PoleLikelihood, mixtureByHand) {
               matched + std::log(0.1), 1e-12);
 }
 
+TEST(PoleLikelihood, flooredByHand) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
+  options.sigma = 1;
+  const PoleIndex index({mapPole(5, 5)});
+  // A constant apart: the densities of the standard normal distribution at 0, 0.5 and 1, from a
+  // table, and 0.2. A pole without a match counts as one at the gate of 1 m.
+  const double exact = logLikelihood({detection(5, 5)}, {}, index, options);
+  const double half = logLikelihood({detection(5.5, 5)}, {}, index, options);
+  const double none = logLikelihood({detection(9, 5)}, {}, index, options);
+  EXPECT_NEAR(half - exact, std::log((0.352065 + 0.2) / (0.398942 + 0.2)), 1e-5);
+  EXPECT_NEAR(none - exact, std::log((0.241971 + 0.2) / (0.398942 + 0.2)), 1e-5);
+  EXPECT_NEAR(logLikelihood({detection(5, 5.999999)}, {}, index, options), none, 1e-5);
+  EXPECT_NEAR(logLikelihood({detection(9, 5), detection(5.5, 5)}, {}, index, options), none + half,
+              1e-12);
+}
+
+TEST(PoleLikelihood, flooredEqualsItsFormula) {
+  const Scene scene = randomScene(5);
+  for (const double gate : {0.4, 1.0, 3.0})
+    for (const double sigma : {0.05, 1.0, 1.2247})
+      for (const double floor : {1e-6, 0.2, 5.0}) {
+        LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
+        options.gate = gate, options.sigma = sigma, options.floor = floor;
+        const PoleIndex index(scene.map, 1.0);
+        const auto expected = [&](const Pose2D& pose) {
+          double sum = 0;
+          for (const PoleDetection& pole : scene.poles) {
+            const Pose2D seen = compose(pose, {pole.x, pole.y, 0});
+            double d = gate;
+            for (const MapPole& other : scene.map)
+              d = std::min(d, std::hypot(seen.x - other.x, seen.y - other.y));
+            sum += std::log(std::exp(-d * d / (2 * sigma * sigma)) / sigma / std::sqrt(2 * M_PI) +
+                            floor);
+          }
+          return sum;
+        };
+        const double offset =
+            logLikelihood(scene.poles, scene.poses[0], index, options) - expected(scene.poses[0]);
+        for (const Pose2D& pose : scene.poses)
+          ASSERT_NEAR(logLikelihood(scene.poles, pose, index, options) - offset, expected(pose),
+                      1e-8 * (1 + std::abs(expected(pose))));
+      }
+}
+
+TEST(PoleLikelihood, flooredRefusesWhatItCannotDo) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::floored, true);
+  expectRefused(options, "weighted");
+  options.weighted = false;
+  options.validate();
+  for (const double bad : {0.0, -0.2, std::nan(""), HUGE_VAL, 1e-12}) {
+    options.floor = bad;
+    expectRefused(options, "floor");
+  }
+}
+
+TEST(PoleLikelihood, flooredBatchesGiveTheSameNumbers) {
+  const Scene scene = randomScene(7);
+  const PoleIndex index(scene.map);
+  const LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
+  std::vector<std::vector<double>> batch;
+  widenedLogLikelihoods(scene.poles, scene.poses, index, options, {1, 4}, batch);
+  LikelihoodOptions wide = options;
+  wide.sigma *= 4;
+  for (std::size_t i = 0; i < scene.poses.size(); ++i) {
+    EXPECT_EQ(batch[0][i], logLikelihood(scene.poles, scene.poses[i], index, options));
+    EXPECT_EQ(batch[1][i], logLikelihood(scene.poles, scene.poses[i], index, wide));
+  }
+}
+
 TEST(PoleLikelihood, equalsTheFormulasWordByWord) {
   for (std::uint64_t seed : {1, 2, 3}) {
     const Scene scene = randomScene(seed);

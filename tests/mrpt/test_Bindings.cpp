@@ -68,10 +68,10 @@ TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
   const std::string base = written(All());
   const auto before = keys(base);
   ASSERT_GT(before.size(), 60u);
-  const std::map<std::string, std::string> otherChoices = {{"circle_fit", "taubin"},
-                                                           {"free_space", "ring"},
-                                                           {"project_from", "cloud"},
-                                                           {"foreground_test", "in_front"}};
+  const std::map<std::string, std::string> otherChoices = {
+      {"circle_fit", "taubin"},        {"free_space", "ring"}, {"project_from", "cloud"},
+      {"foreground_test", "in_front"}, {"middle", "passed"},   {"merging", "boxes"},
+      {"counting", "members"}};
   for (const auto& [name, value] : before) {
     SCOPED_TRACE(name + " = " + value);
     const std::string key = name.substr(name.find(']') + 1);
@@ -159,8 +159,10 @@ TEST(Bindings, RefusesStructsThatContradictThemselves) {
 TEST(Bindings, RefusesRanges) {
   for (const char* text :
        {"[likelihood]\noutlier = 0\n", "[likelihood]\noutlier = 1\n", "[likelihood]\nsigma_m = 0\n",
-        "[map]\nmin_count = 0\n", "[map]\nsection_length_m = 0\n", "[paper]\nrows = 1\n",
-        "[motion]\nxy_per_m = -0.1\n", "[native]\nmin_confidence = 1.1\n"})
+        "[likelihood]\nmodel = floored\nweighted = true\n",
+        "[map]\nevery_scan = true\nmiddle = passed\n", "[map]\nmin_count = 0\n",
+        "[map]\nsection_length_m = 0\n", "[paper]\nrows = 1\n", "[motion]\nxy_per_m = -0.1\n",
+        "[native]\nmin_confidence = 1.1\n"})
     EXPECT_THROW(load(text), Error) << text;
 }
 

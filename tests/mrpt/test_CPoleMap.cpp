@@ -245,6 +245,7 @@ TEST(CPoleMap, SurvivesSerialization) {
   map.likelihoodOptions.sigma = 0.5;
   map.likelihoodOptions.outlier = 0.125;
   map.likelihoodOptions.gate = 2;
+  map.likelihoodOptions.floor = 0.375;
   map.likelihoodOptions.weighted = !LikelihoodOptions().weighted;
   const std::string bytes = samples::bytesOf(map);
   const auto read = std::dynamic_pointer_cast<CPoleMap>(samples::objectFrom(bytes));
@@ -257,16 +258,34 @@ TEST(CPoleMap, SurvivesSerialization) {
   EXPECT_EQ(read->likelihoodOptions.sigma, 0.5);
   EXPECT_EQ(read->likelihoodOptions.outlier, 0.125);
   EXPECT_EQ(read->likelihoodOptions.gate, 2);
+  EXPECT_EQ(read->likelihoodOptions.floor, 0.375);
   EXPECT_EQ(read->likelihoodOptions.weighted, map.likelihoodOptions.weighted);
   EXPECT_EQ(read->index().nearest(10, 0, 1)->index, 1u);
   EXPECT_EQ(samples::bytesOf(*read), bytes);
+}
+
+TEST(CPoleMap, ReadsMapsFromBeforeTheFloor) {
+  CPoleMap map = sampleMap();
+  map.info.clear();
+  map.likelihoodOptions.floor = 0.375;
+  std::string bytes = samples::bytesOf(map);
+  const double value = 0.375;
+  const std::string floor(reinterpret_cast<const char*>(&value), sizeof value);
+  const std::size_t at = bytes.find(floor);
+  ASSERT_NE(at, std::string::npos);
+  bytes.erase(at, floor.size());
+  bytes[1 + std::string("polemcl::CPoleMap").size()] = 0;
+  const auto read = std::dynamic_pointer_cast<CPoleMap>(samples::objectFrom(bytes));
+  ASSERT_TRUE(read);
+  expectEqual(*read, map);
+  EXPECT_EQ(read->likelihoodOptions.floor, LikelihoodOptions().floor);
 }
 
 TEST(CPoleMap, RefusesNewerVersions) {
   std::string bytes = samples::bytesOf(sampleMap());
   const std::string name = "polemcl::CPoleMap";
   ASSERT_EQ(bytes.substr(1, name.size()), name);
-  bytes[1 + name.size()] = 1;
+  bytes[1 + name.size()] = 2;
   EXPECT_ANY_THROW(samples::objectFrom(bytes));
 }
 

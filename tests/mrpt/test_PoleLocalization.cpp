@@ -230,6 +230,46 @@ TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {
   EXPECT_LT(sums[2], 0.5 * sums[1]);
 }
 
+TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
+  driveFrom(9, 60);  // a scan a metre
+  options.tracking.average = false;
+  options.tracking.cadence = Cadence::section;
+  options.tracking.localMaps.sectionLength = 5;
+  PoleLocalization localization = chain();
+  localization.start(atTruth());
+  std::size_t updates = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_EQ(update.poles, frames[i].poles_robot.size());
+    if (update.step.poles == 0) continue;
+    ++updates;
+    EXPECT_TRUE(i % 5 <= 1 && i > 0) << i;  // the odometry errs by less than a metre
+    EXPECT_LT(error(update, i), 0.3);
+  }
+  EXPECT_NEAR(static_cast<double>(updates), 11.5, 1);
+}
+
+TEST_F(PoleLocalizationTest, TheHeaviestPlaceMayReplaceTheEstimate) {
+  driveFrom(9, 1);
+  frames[0].poles_robot.clear();  // the particles stay as drawn
+  const auto estimate = [&](bool heaviest) {
+    options.filter.heaviestPlace = heaviest;
+    options.filter.estimate = PoseEstimator::bestShare;
+    PoleLocalization localization = chain();
+    StartOptions start = atTruth();
+    localization.start(start);
+    return localization.step(frames[0]).estimate->mean;
+  };
+  // Equal weights: the best tenth is an arbitrary one, the heaviest place is all.
+  const Pose2D all = estimate(true), tenth = estimate(false);
+  PoleLocalizer filter(map->poles, options.filter, 1);
+  filter.start(atTruth());
+  const std::vector<double> equal(filter.particles().size(), 0);
+  EXPECT_NEAR(all.x, weightedMean(filter.particles(), equal).mean.x, 1e-9);
+  EXPECT_NEAR(tenth.x, bestShareMean(filter.particles(), equal, 0.1).mean.x, 1e-9);
+  EXPECT_GT(std::hypot(all.x - tenth.x, all.y - tenth.y), 1e-3);
+}
+
 TEST_F(PoleLocalizationTest, SameSeedSameBytes) {
   driveFrom(9, 40);
   const auto run = [&](std::uint32_t seed) {
@@ -288,6 +328,13 @@ TEST(TrackingOptions, RefusesValuesOutOfRange) {
   EXPECT_THROW(options.validate(), Error);
   options = {};
   options.every = -1;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.cadence = Cadence::section;
+  EXPECT_THROW(options.validate(), Error);  // averaging needs every scan
+  options.average = false;
+  EXPECT_NO_THROW(options.validate());
+  options.localMaps.maps = 0;
   EXPECT_THROW(options.validate(), Error);
 }
 

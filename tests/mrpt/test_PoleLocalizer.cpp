@@ -51,8 +51,12 @@ struct Errors {
   double worst = 0;                  ///< from the eleventh scan on, m
 };
 
-Errors drive(PoleLocalizer& localizer, const PoleStreet& street) {
-  localizer.start(at(street.truth[0]));
+Errors drive(PoleLocalizer& localizer, const PoleStreet& street,
+             StartPositions positions = StartPositions::area) {
+  StartOptions start = at(street.truth[0]);
+  start.positions = positions;
+  if (positions == StartPositions::radius) start.particles = 1000;
+  localizer.start(start);
   Errors errors;
   for (std::size_t i = 0; i < street.frames.size(); ++i) {
     const Pose2D estimate = localizer.step(street.frames[i]).mean;
@@ -83,11 +87,26 @@ TEST(PoleLocalizer, FollowsAStreet) {
 TEST(PoleLocalizer, FollowsAStreetAsThePaperDoes) {
   FilterOptions paper;
   paper.estimate = PoseEstimator::bestShare;
-  paper.tempering = paper.regularization = 0;
-  paper.resampling = Resampling::multinomial;
-  const PoleStreet street = makeStreet({});
-  PoleLocalizer localizer(street.map, paper, 4);
-  EXPECT_LT(drive(localizer, street).position, 0.15);
+  paper.tempering = paper.regularization = paper.extraSigma = paper.extraSigmaYaw = 0;
+  for (const auto model : {LikelihoodModel::paper, LikelihoodModel::floored}) {
+    double sum = 0;
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+      StreetOptions options;
+      options.seed = seed;
+      const PoleStreet street = makeStreet(options);
+      LikelihoodOptions likelihood;
+      likelihood.model = model;
+      likelihood.sigma = likelihood.gate = 1;
+      street.map->likelihoodOptions = likelihood;
+      street.map->setPoles(street.map->poles());
+      paper.estimateTime = model == LikelihoodModel::paper ? EstimateTime::beforeResampling
+                                                           : EstimateTime::afterResampling;
+      PoleLocalizer localizer(street.map, paper, seed);
+      sum += drive(localizer, street, StartPositions::radius).position;
+      std::printf("%d %f\n", seed, sum / seed);
+    }
+    EXPECT_LT(sum / 10, 0.15);
+  }
 }
 
 TEST(PoleLocalizer, BatchEqualsTheMapsLikelihood) {
@@ -171,6 +190,47 @@ TEST(PoleLocalizer, StartIsUniformInTheDiscAndInHeading) {
   EXPECT_NEAR(inner, 10000, 346) << "half the radius is a quarter of the area";
   EXPECT_NEAR(left, 20000, 400);
   EXPECT_NEAR(turned, 10000, 346);
+}
+
+TEST(PoleLocalizer, StartCanBeUniformInTheDistanceFromTheCentre) {
+  FilterOptions options = still();
+  options.particles = 40000;
+  PoleLocalizer localizer(smallMap(), options, 9);
+  StartOptions start = at({100, -50, 3.1}, 2.0, 0.2);
+  start.positions = StartPositions::radius;
+  localizer.start(start);
+  int inner = 0, left = 0;
+  for (const Pose2D& particle : localizer.particles()) {
+    const double distance = std::hypot(particle.x - 100, particle.y + 50);
+    EXPECT_LE(distance, 2.0);
+    inner += distance < 0.5;
+    left += particle.x < 100;
+  }
+  EXPECT_NEAR(inner, 10000, 346) << "a quarter of the radius has a quarter of the particles";
+  EXPECT_NEAR(left, 20000, 400);
+}
+
+TEST(PoleLocalizer, TheEstimateIsTakenBeforeOrAfterResampling) {
+  const PoleStreet street = makeStreet({});
+  FilterOptions options = still();
+  options.resampleBelow = 0.5;
+  options.estimate = PoseEstimator::bestShare;
+  PoleLocalizer before(street.map, options, 5);
+  options.estimateTime = EstimateTime::afterResampling;
+  PoleLocalizer after(street.map, options, 5);
+  before.start(at(street.truth[50]));
+  after.start(at(street.truth[50]));
+  const Pose2D early = before.step(street.frames[50]).mean;
+  const Pose2D late = after.step(street.frames[50]).mean;
+  ASSERT_TRUE(after.report().resampled);
+  // The particles are the same; the late estimate is the mean of the first tenth of them.
+  const std::vector<Pose2D> particles = after.particles(), same = before.particles();
+  for (std::size_t i = 0; i < same.size(); ++i) ASSERT_EQ(particles[i].x, same[i].x);
+  double x = 0, y = 0;
+  for (int i = 0; i < 100; ++i) x += particles[i].x / 100, y += particles[i].y / 100;
+  EXPECT_NEAR(late.x, x, 1e-9);
+  EXPECT_NEAR(late.y, y, 1e-9);
+  EXPECT_GT(std::hypot(early.x - late.x, early.y - late.y), 1e-3);
 }
 
 TEST(PoleLocalizer, StartDrawsFromAMixtureOfHypotheses) {

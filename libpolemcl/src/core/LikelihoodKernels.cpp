@@ -39,6 +39,9 @@ class Evaluation {
     for (std::size_t k = 0; k < m_levels; ++k) {
       const double sigma = batch.options.sigma * batch.widenings[k];
       m_squaredSigma[k] = sigma * sigma;
+      const double peak = 1 / (sigma * std::sqrt(2 * M_PI));
+      m_bellShare[k] = peak / (peak + batch.options.floor);
+      m_floorShare[k] = batch.options.floor / (peak + batch.options.floor);
     }
   }
 
@@ -196,7 +199,13 @@ class Evaluation {
     for (std::size_t k = 0; k < m_levels; ++k) {
       V exponent = hn::Zero(m_d), height = exponent;
       if (!none) bell(term, i, dx, dy, variance, m_squaredSigma[k], exponent, height);
-      if constexpr (model == LikelihoodModel::mixture) {
+      if constexpr (model == LikelihoodModel::floored) {
+        const V clipped = hn::Set(m_d, costOfNoMatch(term, k));
+        const V value = exponential(m_d, hn::Neg(hn::IfThenElse(found, exponent, clipped)));
+        const V bellShare = hn::Set(m_d, m_bellShare[k]), rest = hn::Set(m_d, m_floorShare[k]);
+        const V factor = hn::Add(hn::Mul(bellShare, value), rest);
+        hn::Store(hn::Mul(hn::Load(m_d, b.product[k] + i), factor), m_d, b.product[k] + i);
+      } else if constexpr (model == LikelihoodModel::mixture) {
         V factor = hn::Set(m_d, term.floor);
         if (!none) {
           const V value = exponential(m_d, hn::Neg(exponent));
@@ -235,6 +244,8 @@ class Evaluation {
   const std::size_t m_lanes, m_levels;
   std::size_t m_size = 0;  ///< poses in the block, filled up to whole vectors
   double m_squaredSigma[maxWidenings];
+  /// The density's peak and the floor as shares of their sum; floored only.
+  double m_bellShare[maxWidenings], m_floorShare[maxWidenings];
   std::vector<PoleGrid::Place> m_candidates;
   Block m_block;
 };
@@ -253,6 +264,8 @@ void likelihoods(const LikelihoodBatch& batch, const std::vector<Pose2D>& poses,
   if (batch.options.model == LikelihoodModel::mixture)
     weighted ? evaluate<LikelihoodModel::mixture, true>(batch, poses, out)
              : evaluate<LikelihoodModel::mixture, false>(batch, poses, out);
+  else if (batch.options.model == LikelihoodModel::floored)
+    evaluate<LikelihoodModel::floored, false>(batch, poses, out);
   else
     weighted ? evaluate<LikelihoodModel::paper, true>(batch, poses, out)
              : evaluate<LikelihoodModel::paper, false>(batch, poses, out);

@@ -33,6 +33,45 @@ class Odometer {
 
 }  // namespace
 
+void SectionMarks::pass(double way) {
+  m_middle = way >= static_cast<double>(m_middles) * m_length + 0.5 * m_length;
+  m_end = way > static_cast<double>(m_ends) * m_length + m_length;
+  m_middles += m_middle;
+  m_ends += m_end;
+}
+
+PathSections passSections(const std::vector<Pose2D>& poses,
+                          const std::vector<std::uint32_t>& drives, double sectionLength,
+                          const std::vector<bool>& used) {
+  PathSections result;
+  std::uint32_t path = 0;
+  std::vector<std::size_t> middles;
+  const auto finish = [&](const SectionMarks& marks, double way) {
+    for (std::size_t k = 0; k < marks.ends(); ++k)
+      if (used.empty() || used[middles[k]])
+        result.occupied.push_back({path, k, {middles[k]}, middles[k]});
+    result.count += marks.ends();
+    result.length += way;
+    middles.clear();
+    ++path;
+  };
+  SectionMarks marks(sectionLength);
+  double way = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0 && drives[i] != drives[i - 1]) {
+      finish(marks, way);
+      marks = SectionMarks(sectionLength);
+      way = 0;
+    } else if (i > 0) {
+      way += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
+    }
+    marks.pass(way);
+    if (marks.middle()) middles.push_back(i);
+  }
+  finish(marks, way);
+  return result;
+}
+
 PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::uint32_t>& drives,
                        double sectionLength, const std::vector<bool>& used) {
   // A quarter of a section: far above the jitter of poses, far below the bends of roads.

@@ -10,7 +10,8 @@
 namespace polemcl {
 namespace {
 
-[[noreturn]] void refuse(const char* field, double value, const char* allowed) {
+template <class Value>
+[[noreturn]] void refuse(const char* field, Value value, const char* allowed) {
   std::ostringstream text;
   text << "[likelihood] " << field << " = " << value << " is not allowed; it must be " << allowed;
   throw Error(text.str());
@@ -54,6 +55,13 @@ void LikelihoodOptions::validate() const {
   if (!(std::isfinite(sigma) && sigma > 0)) refuse("sigma", sigma, "above 0 m");
   if (!(outlier >= 1e-9 && outlier < 1)) refuse("outlier", outlier, "a share in [1e-9, 1)");
   if (!(std::isfinite(gate) && gate > 0)) refuse("gate", gate, "above 0 m");
+  // Against the peak of the density, so that products of many factors do not underflow.
+  const double peak = 1 / (sigma * std::sqrt(2 * M_PI));
+  if (!(std::isfinite(floor) && floor > 0)) refuse("floor", floor, "above 0");
+  if (model == LikelihoodModel::floored && floor < 1e-9 * (peak + floor))
+    refuse("floor", floor, "at least 1e-9 of the density's peak");
+  if (model == LikelihoodModel::floored && weighted)
+    refuse("weighted", "true", "false with model = floored, which takes all detections alike");
 }
 
 double logLikelihood(const std::vector<PoleDetection>& poles_robot, const Pose2D& pose_map_robot,

@@ -1,3 +1,4 @@
+#include <polemcl/core/BoxMerging.h>
 #include <polemcl/core/MapSightings.h>
 #include <polemcl/core/PathSections.h>
 #include <polemcl/core/PoleFusion.h>
@@ -87,6 +88,8 @@ bool seenFromEnough(const MapPole& pole, const std::vector<std::uint32_t>& seen,
 void PoleMapOptions::validate() const {
   if (!(std::isfinite(sectionLength) && sectionLength > 0))
     refuse("section_length", sectionLength, "above 0 m");
+  if (everyScan && middle == SectionMiddle::passed)
+    refuse("middle", "passed", "nearest where every_scan = true: all scans are views then");
   if (!(std::isfinite(mergeDistance) && mergeDistance > 0))
     refuse("merge_distance", mergeDistance, "above 0 m");
   if (!(apartShare > 0 && apartShare <= 1)) refuse("apart_share", apartShare, "a share in (0, 1]");
@@ -114,19 +117,25 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
     drives.push_back(scan.drive);
     used.push_back(scan.used);
   }
-  const PathSections sections = splitPath(poses, drives, options.sectionLength, used);
+  const auto split = options.middle == SectionMiddle::passed ? passSections : splitPath;
+  const PathSections sections = split(poses, drives, options.sectionLength, used);
   const std::vector<View> views = chooseViews(sections, options.everyScan);
   const std::vector<PoleSighting> sightings = sightingsOf(scans, views, options);
-  const auto groups = mergeSightings(sightings, {options.mergeDistance, options.apartShare});
+  const bool boxes = options.merging == MapMerging::boxes;
+  const auto groups = boxes
+                          ? joinOverlappingBoxes(sightings)
+                          : mergeSightings(sightings, {options.mergeDistance, options.apartShare});
 
   PoleMapResult result;
-  for (const std::vector<std::uint32_t>& group : groups) {  // sorted by their centres already
+  for (const std::vector<std::uint32_t>& group : groups) {
     std::vector<std::uint32_t> seen;
     for (const std::uint32_t member : group) seen.push_back(views[sightings[member].view].section);
-    const std::size_t count = longestRun(seen, sections.occupied, options.maxGap);
+    const std::size_t count = options.counting == PoleCounting::members
+                                  ? group.size()
+                                  : longestRun(seen, sections.occupied, options.maxGap);
     result.bestCount = std::max(result.bestCount, count);
     if (count < static_cast<std::size_t>(options.minCount)) continue;
-    const MapPole pole = fuse(sightings, group);
+    const MapPole pole = boxes ? plainMean(sightings, group) : fuse(sightings, group);
     if (seenFromEnough(pole, seen, sections.occupied, scans, options)) result.poles.push_back(pole);
   }
   std::stable_sort(

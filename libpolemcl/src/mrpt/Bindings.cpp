@@ -119,8 +119,19 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.section("map", "How a map is built");
   b.number("section_length_m", o.sectionLength, positive, "m", "length of a section of the path");
   b.flag("every_scan", o.everyScan, "true: all scans count; false: the middle one of a section");
-  b.number("merge_distance_m", o.mergeDistance, positive, "m", "detections this near are one pole");
-  b.integer("min_count", o.minCount, Range::atLeast(1), "", "sections a pole must be seen in");
+  b.choice<SectionMiddle>(
+      "middle", o.middle, {{SectionMiddle::nearest, "nearest"}, {SectionMiddle::passed, "passed"}},
+      "scan nearest to the middle of a section, or the first past it (first implementation)");
+  b.choice<MapMerging>("merging", o.merging,
+                       {{MapMerging::gated, "gated"}, {MapMerging::boxes, "boxes"}},
+                       "by distance to a pole, or all whose boxes overlap and their plain mean "
+                       "(first implementation)");
+  b.number("merge_distance_m", o.mergeDistance, positive, "m",
+           "merging = gated: detections this near are one pole");
+  b.choice<PoleCounting>("counting", o.counting,
+                         {{PoleCounting::run, "run"}, {PoleCounting::members, "members"}},
+                         "sections of one run (paper), or detections (first implementation)");
+  b.integer("min_count", o.minCount, Range::atLeast(1), "", "least count of a pole");
   b.integer("max_gap", o.maxGap, notNegative, "", "occupied sections a run may miss it");
   b.number("min_confidence", o.minConfidence, share, "",
            "detections below are not used; scans are searched down to it, 0: to that of [native]");
@@ -138,10 +149,14 @@ void bind(Binder& b, PoleMapOptions& o) {
 void bind(Binder& b, LikelihoodOptions& o) {
   b.section("likelihood", "How well detections fit a map at a pose");
   b.choice<LikelihoodModel>(
-      "model", o.model, {{LikelihoodModel::paper, "paper"}, {LikelihoodModel::mixture, "mixture"}},
-      "Eq. 3 of the paper, or with a share of outliers");
+      "model", o.model,
+      {{LikelihoodModel::paper, "paper"},
+       {LikelihoodModel::mixture, "mixture"},
+       {LikelihoodModel::floored, "floored"}},
+      "Eq. 3 of the paper, with a share of outliers, or with a floor (first implementation)");
   b.number("sigma_m", o.sigma, positive, "m", "deviation of a detection from its map pole");
   b.number("outlier", o.outlier, Range::inside(0, 1), "", "share of detections not in the map");
+  b.number("floor", o.floor, positive, "1/m", "model = floored: added to the normal density");
   b.number("gate_m", o.gate, positive, "m", "farther poles are no match");
   b.flag("weighted", o.weighted, "true: each detection's covariance and confidence count");
   b.check(o);

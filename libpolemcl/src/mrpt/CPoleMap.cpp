@@ -71,23 +71,25 @@ void CPoleMap::saveToPoleMapFile(const std::string& path) const {
 }
 
 uint8_t CPoleMap::serializeGetVersion() const {
-  return 0;
+  return 1;  // 1: the floor of the likelihood
 }
 
 void CPoleMap::serializeTo(CArchive& out) const {
   out << genericMapParams << insertionOptions.mergeDistance << insertionOptions.minConfidence;
   const auto& l = likelihoodOptions;
   out << static_cast<std::uint8_t>(l.model) << l.sigma << l.outlier << l.gate << l.weighted;
+  out << l.floor;
   out << info << static_cast<std::uint32_t>(m_poles.size());
   for (const auto& pole : m_poles) write(out, pole);
 }
 
 void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> genericMapParams >> insertionOptions.mergeDistance >> insertionOptions.minConfidence;
   auto& l = likelihoodOptions;
   l.model = static_cast<LikelihoodModel>(in.ReadAs<std::uint8_t>());
   in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
+  if (version >= 1) in >> l.floor;
   insertionOptions.validate();
   l.validate();
   in >> info;

@@ -80,6 +80,14 @@ void bind(Binder& binder, FilterOptions& options) {
                 "Weighted mean of all particles, or of the best by weight (paper)");
   binder.number("best_share", options.bestShare, {0, 1, true, false}, "share",
                 "The best by weight, for estimate = best_share (paper: 0.1)");
+  binder.choice("estimate_time", options.estimateTime,
+                {{EstimateTime::beforeResampling, "before_resampling"},
+                 {EstimateTime::afterResampling, "after_resampling"}},
+                "By the weights of the scan, or of equal copies where it led to resampling (first "
+                "implementation)");
+  binder.flag("heaviest_place", options.heaviestPlace,
+              "true: of particles spread wide, the mean of the heaviest place; false: always as "
+              "estimate says (paper)");
   binder.number("regularization", options.regularization, Range::between(0, 1), "share",
                 "Resampled particles are moved by this share of the spread of all; 0: not at all "
                 "(paper)");
@@ -106,7 +114,11 @@ void bind(Binder& binder, StartOptions& options) {
   options.pose.reset();
   if (!position.empty()) options.pose = Pose2D{position[0], position[1], wrapAngle(yaw)};
   binder.number("radius_m", options.radius, {0, StartOptions::maxRadius}, "m",
-                "Positions are uniform in this disc (paper: 2.5)");
+                "Radius of the disc of positions (paper: 2.5)");
+  binder.choice("positions", options.positions,
+                {{StartPositions::area, "area"}, {StartPositions::radius, "radius"}},
+                "Uniform in the area of the disc, or in the distance from its centre (first "
+                "implementation)");
   binder.angleDeg("heading_deg", options.heading, Range::between(0, 180),
                   "Headings are uniform in plus or minus this (paper: 5)");
   binder.integer("particles", options.particles, Range::between(1, 1000000), "",

@@ -97,6 +97,16 @@ void bind(Binder& b, TrackingOptions& o) {
          "true: detections of a pole are averaged and used together; false: each for itself");
   b.integer("min_hits", o.minHits, Range::atLeast(1), "", "poles seen less often are not used");
   b.number("every_m", o.every, Range::atLeast(0), "m", "metres until a pole is used again");
+  b.choice<Cadence>(
+      "cadence", o.cadence, {{Cadence::scan, "scan"}, {Cadence::section, "section"}},
+      "detections are used at every scan, or those of the middle scan of each section "
+      "at its end (first implementation)");
+  b.number("section_length_m", o.localMaps.sectionLength, positive, "m",
+           "cadence = section: length of a section");
+  b.integer("local_maps", o.localMaps.maps, Range::atLeast(1), "",
+            "cadence = section: newest sections that confirm poles");
+  b.integer("local_hits", o.localMaps.minHits, Range::atLeast(1), "",
+            "cadence = section: overlapping poles in them that a pole needs, itself included");
   b.check(o);
 }
 

@@ -39,6 +39,9 @@ void TrackingOptions::validate() const {
     throw Error("[tracking] min_hits = " + std::to_string(minHits) + ": allowed is 1 or more");
   if (!(every >= 0 && std::isfinite(every)))
     throw Error("[tracking] every_m = " + std::to_string(every) + ": allowed is 0 or more");
+  if (average && cadence == Cadence::section)
+    throw Error("[tracking] cadence = section: allowed is scan where average = true");
+  localMaps.validate();
 }
 
 void SearchOptions::validate() const {
@@ -73,6 +76,7 @@ PoleLocalization::PoleLocalization(LocalizationMap map, const LocalizationOption
       m_filter(m_map.poles, options.filter, seed),
       m_submap(options.submap),
       m_tracks(options.submap),
+      m_localMaps(options.tracking.localMaps),
       m_motionCheck(options.motionCheck),
       m_monitor(options.health) {}
 
@@ -97,6 +101,7 @@ void PoleLocalization::start(const StartOptions& start) {
 void PoleLocalization::startAnywhere() {
   m_submap.clear();
   m_tracks.clear();
+  m_localMaps.clear();
   m_motionCheck.clear();
   m_monitor.reset();
   m_search = {};
@@ -135,13 +140,7 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& seen) {
   if (m_stepped) covariance += frame.motion->covariance;
   m_submap.add(motion, covariance, frame.poles_robot);
   m_tracked = frame;
-  if (m_options.tracking.average) {
-    m_tracks.add(motion, covariance, frame.poles_robot);
-    // At the start every scan counts: there is nothing to average yet.
-    if (m_tracks.frames() > 1)
-      m_tracked.poles_robot = m_tracks.take(static_cast<std::uint32_t>(m_options.tracking.minHits),
-                                            m_options.tracking.every);
-  }
+  m_tracked.poles_robot = polesForFilter(motion, covariance, frame.poles_robot);
 
   update.poles = frame.poles_robot.size();
   if (m_hasPose) track(frame, metres, update);
@@ -152,6 +151,18 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& seen) {
   if (searchIsDue()) search(frame, update);
   update.health = m_monitor.health();
   return update;
+}
+
+std::vector<PoleDetection> PoleLocalization::polesForFilter(
+    const Pose2D& motion, const Eigen::Matrix3d& covariance,
+    const std::vector<PoleDetection>& poles_robot) {
+  const TrackingOptions& tracking = m_options.tracking;
+  if (tracking.cadence == Cadence::section) return m_localMaps.add(motion, poles_robot);
+  if (!tracking.average) return poles_robot;
+  m_tracks.add(motion, covariance, poles_robot);
+  // At the start every scan counts: there is nothing to average yet.
+  if (m_tracks.frames() == 1) return poles_robot;
+  return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), tracking.every);
 }
 
 /// The frame, its motion replaced where the poles contradict it.
@@ -170,7 +181,7 @@ void PoleLocalization::track(const PoleFrame& frame, double metres, Localization
   double modeShare = 1;
   if (isWide(estimate.covariance)) {
     const PoseMode mode = heaviestMode(m_filter.particles(), m_filter.logWeights());
-    estimate = mode.estimate;
+    if (m_options.filter.heaviestPlace) estimate = mode.estimate;
     modeShare = mode.share;
   }
   m_estimate = estimate;

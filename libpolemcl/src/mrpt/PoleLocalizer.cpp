@@ -108,8 +108,10 @@ void PoleLocalizer::start(const StartOptions& start) {
   const GeneratorLoan loan(m_generator);
   CRandomGenerator& random = getRandomGenerator();
   for (auto& particle : m_particles) {
+    const double share = random.drawUniform(0.0, 1.0);
     // The root makes the density uniform in area instead of crowded at the centre.
-    const double distance = start.radius * std::sqrt(random.drawUniform(0.0, 1.0));
+    const bool crowded = start.positions == StartPositions::radius;
+    const double distance = start.radius * (crowded ? share : std::sqrt(share));
     const double direction = random.drawUniform(-M_PI, M_PI);
     particle.d.x = start.pose->x + distance * std::cos(direction);
     particle.d.y = start.pose->y + distance * std::sin(direction);
@@ -191,9 +193,13 @@ void PoleLocalizer::prediction_and_update_pfStandardProposal(
   m_report.effectiveShare = effectiveShare(weights);
   m_report.particles = m_particles.size();
   m_report.resampled = false;
-  m_estimate = m_options.estimate == PoseEstimator::bestShare
-                   ? bestShareMean(particles(), weights, m_options.bestShare)
-                   : weightedMean(particles(), weights);
+  m_estimate = estimate(weights);
+}
+
+PoseWithCovariance PoleLocalizer::estimate(const std::vector<double>& weights) const {
+  return m_options.estimate == PoseEstimator::bestShare
+             ? bestShareMean(particles(), weights, m_options.bestShare)
+             : weightedMean(particles(), weights);
 }
 
 void PoleLocalizer::predict(const mrpt::obs::CActionCollection& action,
@@ -337,6 +343,7 @@ void PoleLocalizer::performSubstitution(const std::vector<size_t>& indices) {
     particle.log_w = 0;
   }
   if (m_options.regularization > 0) jitter(spread);
+  if (m_options.estimateTime == EstimateTime::afterResampling) m_estimate = estimate(logWeights());
   m_report.resampled = true;
 }
 

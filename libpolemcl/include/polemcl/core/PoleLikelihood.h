@@ -12,7 +12,8 @@ namespace polemcl {
 enum class LikelihoodModel {
   paper,  ///< Eq. 3: product of exp(-d²/(2σ²)), d clipped at `gate` (a pole without a match costs
           ///< the gate)
-  mixture  ///< (1-w)·exp(-d²/(2σ²)) + w per pole, w the outlier share: bounded, not flat
+  mixture,  ///< (1-w)·exp(-d²/(2σ²)) + w per pole, w the outlier share: bounded, not flat
+  floored   ///< N(d; 0, σ²) + floor per pole, d clipped at `gate` (first implementation)
 };
 
 /// \brief `[likelihood]` in INI files.
@@ -28,8 +29,10 @@ struct LikelihoodOptions {
   double sigma = 0.15;  ///< σ_d: standard deviation of a detection against its map pole, m
   double outlier =
       0.05;  ///< w: share of detections that belong to no map pole, in [1e-9, 1); mixture only
+  double floor = 0.2;     ///< added to the density, 1/m, > 0; floored only
   double gate = 1.0;      ///< d_max: beyond it a pole has no match, m
-  bool weighted = false;  ///< true: each detection counts by its covariance and confidence
+  bool weighted = false;  ///< true: each detection counts by its covariance and confidence; not
+                          ///< with `floored`
   void validate() const;  ///< \throws Error
 };
 

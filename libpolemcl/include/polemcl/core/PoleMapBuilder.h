@@ -4,13 +4,32 @@
 ///
 /// The path is split into sections of equal length (PathSections); detections of different scans
 /// are merged by gated distance (SightingMerging) and averaged by their certainty (PoleFusion); a
-/// pole stays if enough sections in a continuous run saw it.
+/// pole stays if enough sections in a continuous run saw it. The options have the first
+/// implementation's way of each step as well.
 
 #include <polemcl/core/Types.h>
 
 #include <vector>
 
 namespace polemcl {
+
+/// \brief Which scan is the view of a section.
+enum class SectionMiddle {
+  nearest,  ///< the one nearest to the middle of the section
+  passed    ///< the first at or past the middle (first implementation, see SectionMarks)
+};
+
+/// \brief Which detections are one pole, and what becomes of them.
+enum class MapMerging {
+  gated,  ///< by distance to the pole's centre, one a view; mean by certainty, without outliers
+  boxes   ///< all whose boxes overlap, chains too; plain mean (first implementation)
+};
+
+/// \brief What is counted against PoleMapOptions::minCount.
+enum class PoleCounting {
+  run,     ///< sections of one continuous run that saw the pole (paper)
+  members  ///< detections of the pole, wherever they were made (first implementation)
+};
 
 /// \brief `[map]` in INI files.
 struct PoleMapOptions {
@@ -19,11 +38,14 @@ struct PoleMapOptions {
   /// false: the scan nearest to the middle of a section is its one view (paper); true: every scan
   /// is a view.
   bool everyScan = false;
+  SectionMiddle middle = SectionMiddle::nearest;
+  MapMerging merging = MapMerging::gated;
+  PoleCounting counting = PoleCounting::run;
   double mergeDistance = 0.5;  ///< detections of one pole lie within this of its mean, m
   /// Poles nearer to each other than mergeDistance stay apart when at least this share of the views
   /// of the one seen more often shows both; otherwise they are one. In (0, 1].
   double apartShare = 0.25;
-  int minCount = 3;  ///< keep poles seen in at least so many sections of one continuous run
+  int minCount = 3;  ///< keep poles with at least this `counting`
   int maxGap = 2;    ///< most *occupied* sections in a row that may miss it inside such a run
   double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
   /// A pole must be seen from at least this share of the occupied sections whose middles pass it
@@ -62,7 +84,7 @@ struct PoleMapResult {
   std::size_t views = 0;             ///< scans used: one of each occupied section, or all
   std::size_t detections = 0;        ///< used
   std::size_t clusters = 0;          ///< before counting
-  std::size_t bestCount = 0;  ///< most sections of one run that saw a pole; minCount must be met
+  std::size_t bestCount = 0;         ///< greatest `counting` of a pole; minCount must be met
 };
 
 /// \brief Builds the map from scans in the order they were driven. The result does not depend on

@@ -13,9 +13,16 @@ namespace polemcl {
 
 enum class Resampling { systematic, stratified, multinomial };
 enum class PoseEstimator { mean, bestShare };
+/// \brief When the estimate of a scan is taken.
+enum class EstimateTime {
+  beforeResampling,
+  /// Where the scan led to resampling, of equally weighted copies: the best by weight are then an
+  /// arbitrary share of them (first implementation).
+  afterResampling
+};
 
-/// \brief `[filter]` in INI files. The paper's filter: `estimate = best_share`, and regularization,
-/// tempering and the extra sigmas 0.
+/// \brief `[filter]` in INI files. The paper's filter: `estimate = best_share`, heaviest_place
+/// false, and regularization, tempering and the extra sigmas 0.
 struct FilterOptions {
   int particles = 1000;  ///< (paper: 1000 NCLT; first implementation: 500 to 2000)
   /// Each resampling keeps as many particles as the posterior needs, by the bins it covers: many
@@ -28,7 +35,11 @@ struct FilterOptions {
   /// `mean`: weighted mean of all particles. `best_share`: of the best by weight (paper: 10 %),
   /// which forgets what earlier scans said about the others.
   PoseEstimator estimate = PoseEstimator::mean;
-  double bestShare = 0.1;  ///< in (0, 1]; only for `best_share`
+  double bestShare = 0.1;                                      ///< in (0, 1]; only for `best_share`
+  EstimateTime estimateTime = EstimateTime::beforeResampling;  ///< `estimate_time`
+  /// Where the particles are spread wide (PoleLocalization::wideMetres), the estimate is the mean
+  /// of the heaviest of the places they are in, instead of the above. Used by PoleLocalization.
+  bool heaviestPlace = true;
   /// After resampling, particles are moved by a Gaussian whose standard deviations are this share
   /// of those of the whole set (a regularized filter: Musso, Oudjane, Le Gland 2001), at most
   /// PoleLocalizer::maxJitterMetres and maxJitterRadians. 0: copies stay where they are.
@@ -46,12 +57,19 @@ struct FilterOptions {
   void validate() const;                       ///< \throws Error
 };
 
+/// \brief How positions are drawn in the disc of the start.
+enum class StartPositions {
+  area,   ///< uniform in its area
+  radius  ///< distance from its centre uniform, so crowded there (first implementation)
+};
+
 /// \brief Where the filter starts. `[start]` in INI files.
 struct StartOptions {
   bool anywhere = false;       ///< true: no start pose, the global search finds it (`anywhere`)
   std::optional<Pose2D> pose;  ///< map frame (`position_m`, `yaw_deg`); none: from the truth
   static constexpr double maxRadius = 10000;  ///< m; farther off the search (`anywhere`) is better
-  double radius = 2.5;                 ///< positions uniform in this disc (in its area), m (paper)
+  double radius = 2.5;                        ///< of the disc of positions, m (paper)
+  StartPositions positions = StartPositions::area;
   double heading = 0.087266462599716;  ///< headings uniform in ± this, rad (paper: 5°)
   /// Drawn at the start, where few would be near the truth; the first resampling keeps
   /// FilterOptions::particles of them. Smaller numbers mean that one.

@@ -4,6 +4,7 @@
 /// global search, health, and a check of the odometry by the poles.
 
 #include <polemcl/core/GlobalLocalizer.h>
+#include <polemcl/core/LocalMaps.h>
 #include <polemcl/core/LocalSubmap.h>
 #include <polemcl/core/LocalizationHealth.h>
 #include <polemcl/core/MotionCheck.h>
@@ -28,14 +29,22 @@ struct SearchOptions {
   void validate() const;  ///< \throws Error naming the field
 };
 
+/// \brief When the filter gets detections.
+enum class Cadence {
+  scan,    ///< at every scan
+  section  ///< at the end of each section, those of its middle scan (first implementation)
+};
+
 /// \brief What of the detections the filter is given. `[tracking]` in INI files.
 struct TrackingOptions {
   /// Detections of a pole are averaged in the odometry frame and used together: what is wrong with
   /// one is wrong with the next in much the same way, so each for itself would count too much.
   bool average = true;
-  int minHits = 2;        ///< poles seen less often are not used
-  double every = 0.5;     ///< a pole is used again after so many driven metres, m
-  void validate() const;  ///< \throws Error naming the field
+  int minHits = 2;                  ///< poles seen less often are not used
+  double every = 0.5;               ///< a pole is used again after so many driven metres, m
+  Cadence cadence = Cadence::scan;  ///< `section` needs `average` to be false
+  LocalMapOptions localMaps;        ///< of Cadence::section
+  void validate() const;            ///< \throws Error naming the field
 };
 
 /// \brief All settings of the chain.
@@ -109,6 +118,8 @@ class PoleLocalization {
  private:
   void checkFrame(const PoleFrame& frame) const;
   PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
+  std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                                            const std::vector<PoleDetection>& poles_robot);
   void track(const PoleFrame& frame, double metres, LocalizationUpdate& update);
   void doubtSubmap();
   bool searchIsDue() const;
@@ -121,8 +132,9 @@ class PoleLocalization {
   LocalizationMap m_map;
   LocalizationOptions m_options;
   PoleLocalizer m_filter;
-  LocalSubmap m_submap;  ///< for the search
-  LocalSubmap m_tracks;  ///< for the filter
+  LocalSubmap m_submap;   ///< for the search
+  LocalSubmap m_tracks;   ///< for the filter
+  LocalMaps m_localMaps;  ///< for the filter, of Cadence::section
   MotionCheck m_motionCheck;
   HealthMonitor m_monitor;
   PoleFrame m_tracked;  ///< this frame as the filter gets it

@@ -77,7 +77,8 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   /// \brief Predicts by the motion of the frame, weighs by its poles, estimates, resamples.
   /// The first frame after start() is where the start pose is: its motion is not used. Frames
   /// without poles only predict.
-  /// \return The estimate before resampling, with the covariance of the particles it is made of.
+  /// \return The estimate, of FilterOptions::estimateTime, with the covariance of the particles it
+  /// is made of.
   /// \throws Error, and changes nothing, before start(); when the time is not later than that of
   ///         the frame before; when the motion is missing, or refused by makeMotionAction().
   PoseWithCovariance step(const PoleFrame& frame);
@@ -111,6 +112,7 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   /// \brief The same; what it throws is kept for step().
   void updateRemembering(const std::vector<PoleDetection>& poles_robot,
                          const mrpt::bayes::CParticleFilter::TParticleFilterOptions& options);
+  PoseWithCovariance estimate(const std::vector<double>& weights) const;
   void addToLogWeights(const std::vector<double>& values);
   /// \brief Whether the particles stay many enough with these added to their weights.
   bool leavesEnough(const std::vector<double>& logLikelihoods) const;
