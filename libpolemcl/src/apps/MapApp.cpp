@@ -76,10 +76,12 @@ std::string noPoles(const MapSummary& summary, const PoleMapOptions& options) {
          " m apart on average; sections of section_length_m = " +
          io::significant(options.sectionLength, 6) + ", " + std::to_string(map.occupiedSections) +
          " of " + std::to_string(map.sections) + " with a scan; " + std::to_string(map.detections) +
-         " detections in " + std::to_string(map.clusters) + " places, the best seen in " +
+         " detections in " + std::to_string(map.clusters) + " places, the best with " +
          std::to_string(map.bestCount) +
-         " sections of one run, min_count = " + std::to_string(options.minCount) +
-         " are needed, max_gap = " + std::to_string(options.maxGap) +
+         (options.counting == PoleCounting::members
+              ? " detections, min_count = " + std::to_string(options.minCount) + " are needed"
+              : " sections of one run, min_count = " + std::to_string(options.minCount) +
+                    " are needed, max_gap = " + std::to_string(options.maxGap)) +
          (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]");
 }
 
