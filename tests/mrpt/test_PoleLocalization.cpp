@@ -252,12 +252,12 @@ TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
 TEST_F(PoleLocalizationTest, TheHeaviestPlaceMayReplaceTheEstimate) {
   driveFrom(9, 1);
   frames[0].poles_robot.clear();  // the particles stay as drawn
+  options.filter.tempering = 0;
   const auto estimate = [&](bool heaviest) {
     options.filter.heaviestPlace = heaviest;
     options.filter.estimate = PoseEstimator::bestShare;
     PoleLocalization localization = chain();
-    StartOptions start = atTruth();
-    localization.start(start);
+    localization.start(atTruth());
     return localization.step(frames[0]).estimate->mean;
   };
   // Equal weights: the best tenth is an arbitrary one, the heaviest place is all.
