@@ -88,13 +88,22 @@ TEST(Settings, TheMendedPaperDiffersInOneHeight) {
 }
 
 TEST(Settings, KnowsEverySection) {
-  const TempFolder folder;
-  const Settings defaults;
-  saveSettings(defaults, (folder / "all.ini").string());
-  const auto text = readText(folder / "all.ini");
-  for (const char* section : {"sensor", "extraction", "paper", "native", "map", "likelihood",
-                              "motion", "filter", "start", "runs", "view", "simulation", "world"})
-    EXPECT_NE(text.find("[" + std::string(section) + "]\n"), std::string::npos) << section;
+  std::istringstream lines(settingsText({}));
+  std::vector<std::string> sections;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty() && line[0] == '[') sections.push_back(line);
+  const std::vector<std::string> expected{
+      "[sensor]",       "[extraction]", "[paper]",  "[native]",     "[map]",
+      "[upkeep]",       "[likelihood]", "[motion]", "[filter]",     "[start]",
+      "[tracking]",     "[submap]",     "[global]", "[health]",     "[search]",
+      "[motion_check]", "[runs]",       "[view]",   "[simulation]", "[world]"};
+  EXPECT_TRUE(
+      std::is_permutation(sections.begin(), sections.end(), expected.begin(), expected.end()))
+      << testing::PrintToString(sections);
+  for (const std::string& section : expected) {  // each is read: a key it does not know is refused
+    const std::string error = errorOf(section + "\nno_such_key = 1\n");
+    EXPECT_NE(error.find("no_such_key"), std::string::npos) << section << ' ' << error;
+  }
 }
 
 TEST(Settings, TheSimulatedSensorIsTheConfiguredOne) {

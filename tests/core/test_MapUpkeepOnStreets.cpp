@@ -6,6 +6,7 @@
 #include <polemcl/core/MapUpkeep.h>
 #include <polemcl/sim/DetectionModelFile.h>
 #include <polemcl/sim/DetectionSampler.h>
+#include <polemcl/sim/Random.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +62,27 @@ Day drive(std::uint64_t seed, int day) {
   return result;
 }
 
+/// The poses as a survey gives them: 2 cm and 0.1° off in all of a session, another 3 cm and 0.2°
+/// in each scan (standard deviations).
+void err(Day& day, std::uint64_t seed) {
+  sim::Random random(seed);
+  const auto draw = [&](double metres, double radians) {
+    return Pose2D{random.normal(0, metres), random.normal(0, metres), random.normal(0, radians)};
+  };
+  const Pose2D common = draw(0.02, 0.0017);
+  for (SessionScan& scan : day.scans) {
+    const Pose2D own = draw(0.03, 0.0035);
+    Pose2D& pose = scan.pose_map_robot;
+    pose = {pose.x + common.x + own.x, pose.y + common.y + own.y, pose.yaw + common.yaw + own.yaw};
+  }
+}
+
+Day driveErring(std::uint64_t world, int day) {
+  Day result = drive(world, day);
+  err(result, 10 * world + static_cast<std::uint64_t>(day));
+  return result;
+}
+
 std::vector<MapPole> built(const Day& day) {
   std::vector<MappingScan> scans;
   for (const SessionScan& scan : day.scans)
@@ -76,20 +98,34 @@ MapScore score(const Day& day, const std::vector<MapPole>& poles) {
 
 }  // namespace
 
-TEST(MapUpkeepOnStreets, keepsAMapAsGoodAsOnItsFirstDay) {
-  const Day first = drive(31, 0);
-  const std::vector<MapPole> old = built(first);
-  KeptMap kept = withHistory(old, first.scans, mapping(), {});
-  const double asNew = score(first, old).f1;
-  for (int day = 1; day <= 2; ++day) {
-    SCOPED_TRACE("day " + std::to_string(day));
-    const Day today = drive(31, day);
-    kept = updateMap(kept, today.scans, mapping(), {});
-    const MapScore without = score(today, old), with = score(today, presentPoles(kept));
-    RecordProperty("precision", std::to_string(with.precision));
-    RecordProperty("recall", std::to_string(with.recall));
-    EXPECT_GT(with.precision, without.precision + 0.03);
-    EXPECT_GT(with.recall, without.recall + 0.03);
-    EXPECT_GT(with.f1, asNew - 0.04);
+// The mean of four worlds, each day with 15 % of the poles gone and as many new ones. Measured:
+// day 1 and 2, kept F1 0.93 and 0.91, not kept 0.82 and 0.81, built anew that day 0.93 and 0.94.
+TEST(MapUpkeepOnStreets, keepsAMapNearlyAsGoodAsOneBuiltThatDay) {
+  struct Mean {
+    double precision = 0, recall = 0, f1 = 0;
+    void add(const MapScore& score) {
+      precision += score.precision / 4, recall += score.recall / 4, f1 += score.f1 / 4;
+    }
+  };
+  Mean unkept[2], kept[2], anew[2];
+  for (const std::uint64_t world : {31, 32, 33, 34}) {
+    const Day first = driveErring(world, 0);
+    const std::vector<MapPole> old = built(first);
+    KeptMap map = withHistory(old, first.scans, mapping(), {});
+    for (int day = 1; day <= 2; ++day) {
+      const Day today = driveErring(world, day);
+      map = updateMap(map, today.scans, mapping(), {});
+      unkept[day - 1].add(score(today, old));
+      kept[day - 1].add(score(today, presentPoles(map)));
+      anew[day - 1].add(score(today, built(today)));
+    }
+  }
+  for (int i = 0; i < 2; ++i) {
+    SCOPED_TRACE("day " + std::to_string(i + 1) + ", F1 not kept " + std::to_string(unkept[i].f1) +
+                 ", kept " + std::to_string(kept[i].f1) + ", anew " + std::to_string(anew[i].f1));
+    EXPECT_GT(kept[i].precision, unkept[i].precision + 0.10);
+    EXPECT_GT(kept[i].recall, unkept[i].recall + 0.05);
+    EXPECT_GT(kept[i].f1, 0.90);
+    EXPECT_GT(kept[i].f1, anew[i].f1 - 0.03);
   }
 }

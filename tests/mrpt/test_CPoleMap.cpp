@@ -160,6 +160,53 @@ TEST(CPoleMap, LikelihoodIsTheCores) {
   EXPECT_GT(matched, 10);  // not only poles without a match
 }
 
+// Enough poses for several blocks of the batch, near each other and far apart; gates that the grid
+// answers and, after setPoles(), one that nanoflann's tree answers.
+TEST(CPoleMap, ManyPosesGetTheSameBitsAsEachAlone) {
+  std::mt19937_64 generator(4);
+  const auto uniform = [&](double half) {
+    return (static_cast<double>(generator() >> 11) * 0x1p-53 - 0.5) * 2 * half;
+  };
+  const std::vector<double> widenings{1, 2, 8};
+  for (const auto model : {LikelihoodModel::paper, LikelihoodModel::mixture})
+    for (const bool weighted : {false, true})
+      for (const double gate : {1.0, 3.0})
+        for (const CPose3D& mounting : {CPose3D(), CPose3D(0.7, -0.2, 1.7, 0.5, 0.1, 0)}) {
+          CPoleMap map = sampleMap();
+          map.likelihoodOptions.model = model;
+          map.likelihoodOptions.weighted = weighted;
+          map.likelihoodOptions.gate = gate;
+          CObservationPoles scan;
+          scan.setSensorPose(mounting);
+          scan.poles = {samples::pole(10, 0), samples::pole(0, 9.8), samples::pole(-30, 0)};
+          std::vector<CPose3D> alone;
+          std::vector<Pose2D> together;
+          for (int i = 0; i < 300; ++i) {
+            const double half = i < 200 ? 0.5 : 10;
+            alone.emplace_back(uniform(half), uniform(half), 0.3, uniform(i < 200 ? 0.1 : 3.1), 0,
+                               0);
+            together.push_back({alone[i].x(), alone[i].y(), alone[i].yaw()});
+          }
+          std::vector<double> many;
+          std::vector<std::vector<double>> widened;
+          map.logLikelihoods(scan, together, many);
+          map.widenedLogLikelihoods(scan, together, widenings, widened);
+          ASSERT_EQ(many.size(), together.size());
+          ASSERT_EQ(widened.size(), widenings.size());
+          EXPECT_EQ(widened[0], many);
+          const double sigma = map.likelihoodOptions.sigma;
+          for (std::size_t k = 0; k < widenings.size(); ++k) {
+            map.likelihoodOptions.sigma = sigma * widenings[k];
+            std::vector<double> one;
+            for (const CPose3D& pose : alone)
+              one.push_back(map.computeObservationLikelihood(scan, pose));
+            EXPECT_EQ(widened[k], one) << k;
+            const auto [least, most] = std::minmax_element(one.begin(), one.end());
+            EXPECT_GT(*most - *least, 0.1) << "or the comparison says nothing";
+          }
+        }
+}
+
 TEST(CPoleMap, ForeignObservationsSayNothing) {
   CPoleMap map = sampleMap();
   const mrpt::obs::CObservationOdometry odometry;
@@ -168,6 +215,9 @@ TEST(CPoleMap, ForeignObservationsSayNothing) {
   EXPECT_FALSE(map.insertObservation(odometry, CPose3D()));
   EXPECT_EQ(map.poles().size(), 3u);
   EXPECT_TRUE(map.canComputeObservationLikelihood(samples::observation()));
+  std::vector<double> many{3};
+  map.logLikelihoods(odometry, {{0, 0, 0}, {1, 0, 0}}, many);
+  EXPECT_EQ(many, (std::vector<double>{0, 0}));
 }
 
 TEST(CPoleMap, HonoursTheGenericSwitches) {
@@ -175,8 +225,13 @@ TEST(CPoleMap, HonoursTheGenericSwitches) {
   CObservationPoles scan;
   scan.poles = {samples::pole(0.3, 0)};
   EXPECT_LT(map.computeObservationLikelihood(scan, CPose3D()), 0);
+  std::vector<double> many;
+  map.logLikelihoods(scan, {{0, 0, 0}}, many);
+  EXPECT_EQ(many, std::vector<double>{map.computeObservationLikelihood(scan, CPose3D())});
   map.genericMapParams.enableObservationLikelihood = false;
   EXPECT_EQ(map.computeObservationLikelihood(scan, CPose3D()), 0);
+  map.logLikelihoods(scan, {{0, 0, 0}}, many);
+  EXPECT_EQ(many, std::vector<double>{0});
   map.genericMapParams.enableObservationInsertion = false;
   EXPECT_FALSE(map.insertObservation(scan));
 }

@@ -167,6 +167,31 @@ TEST(PoleLocalizer, WorksAsAFilterOfMrpt) {
   filter.executeOn(mrpts, nullptr, &frame);
   const auto expected = own.logWeights(), got = mrpts.logWeights();
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(got[i], expected[i], 1e-9);
+  // MRPT's exponent of the likelihood.
+  mrpts.start(at(street.truth[50]));
+  const auto particles = mrpts.particles();
+  filter.m_options.powFactor = 0.25;
+  filter.executeOn(mrpts, nullptr, &frame);
+  std::vector<double> values;
+  street.map->logLikelihoods(*observation, particles, values);
+  const double greatest = *std::max_element(values.begin(), values.end());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    EXPECT_NEAR(mrpts.logWeights()[i], 0.25 * (values[i] - greatest), 1e-12);
+}
+
+TEST(PoleLocalizer, AsksTheMapNotTheCore) {
+  const PoleStreet street = makeStreet({});
+  const auto silent = std::make_shared<CPoleMap>(*street.map);
+  silent->genericMapParams.enableObservationLikelihood = false;  // as with any map of MRPT
+  for (const double tempering : {0.0, 0.2}) {
+    FilterOptions options = still();
+    options.tempering = tempering;
+    PoleLocalizer localizer(silent, options, 1);
+    localizer.start(at(street.truth[50]));
+    localizer.step(street.frames[50]);
+    EXPECT_EQ(localizer.report().effectiveShare, 1);
+    EXPECT_GT(localizer.report().poles, 3u);
+  }
 }
 
 TEST(PoleLocalizer, StartIsUniformInTheDiscAndInHeading) {

@@ -103,6 +103,36 @@ TEST(PoleLocalizerMrpt, WeightsAreResetAfterResampling) {
   EXPECT_TRUE(localizer.report().resampled);
 }
 
+TEST(PoleLocalizerMrpt, FewerIndicesThanParticlesComeFromTheFrontInMrpt) {
+  mrpt::slam::CMonteCarloLocalization2D stock(100);
+  for (const auto method :
+       {mrpt::bayes::CParticleFilter::prMultinomial, mrpt::bayes::CParticleFilter::prStratified,
+        mrpt::bayes::CParticleFilter::prSystematic}) {
+    std::vector<size_t> indices;
+    stock.computeResampling(method, std::vector<double>(100, 0), indices, 20);
+    EXPECT_LT(*std::max_element(indices.begin(), indices.end()), 60u);  // of 100 with equal weights
+  }
+}
+
+TEST(PoleLocalizerMrpt, FewerParticlesAreDrawnFromAll) {
+  for (const auto method :
+       {Resampling::systematic, Resampling::stratified, Resampling::multinomial}) {
+    FilterOptions options = withoutJitter();
+    options.adaptive = true;
+    options.resampling = method;
+    PoleLocalizer localizer(makeStreet({}).map, options, 1);
+    localizer.start({PoseHypothesis{}}, 4000);
+    for (std::size_t i = 0; i < 4000; ++i) localizer.m_particles[i].d = {1e-5 * i, 0, 0};
+    localizer.performResampling(systematic());
+    const auto kept = localizer.particles();
+    ASSERT_LE(kept.size(), 400u);
+    const auto estimate = weightedMean(kept, localizer.logWeights());
+    const double sigma = 0.04 / std::sqrt(12);
+    EXPECT_NEAR(estimate.mean.x, 0.02, 4 * sigma / std::sqrt(kept.size()));
+    EXPECT_NEAR(std::sqrt(estimate.covariance(0, 0)) / sigma, 1, 0.2);
+  }
+}
+
 TEST(PoleLocalizerMrpt, NormalizesAndCountsLikeMrpt) {
   mrpt::slam::CMonteCarloLocalization2D stock(100);
   PoleLocalizer localizer(makeStreet({}).map, withoutJitter(), 1);

@@ -123,13 +123,48 @@ bool CPoleMap::internal_insertObservation(
   return true;
 }
 
+void CPoleMap::evaluate(const CObservationPoles& scan, const std::vector<Pose2D>& robotPoses,
+                        const std::vector<double>& widenings,
+                        std::vector<std::vector<double>>& out) const {
+  const Pose2D T_robot_sensor = scan.planarSensorPose();
+  // In the sensor's own frame: the same value as in the robot frame, without moving every pole.
+  const bool sameFrame = T_robot_sensor.x == 0 && T_robot_sensor.y == 0 && T_robot_sensor.yaw == 0;
+  std::vector<Pose2D> sensorPoses;
+  if (!sameFrame) {
+    sensorPoses.reserve(robotPoses.size());
+    for (const Pose2D& pose : robotPoses) sensorPoses.push_back(compose(pose, T_robot_sensor));
+  }
+  polemcl::widenedLogLikelihoods(scan.poles, sameFrame ? robotPoses : sensorPoses, *m_index,
+                                 likelihoodOptions, widenings, out);
+}
+
+void CPoleMap::widenedLogLikelihoods(const mrpt::obs::CObservation& observation,
+                                     const std::vector<Pose2D>& robotPoses,
+                                     const std::vector<double>& widenings,
+                                     std::vector<std::vector<double>>& out) const {
+  const auto* scan = dynamic_cast<const CObservationPoles*>(&observation);
+  if (scan && genericMapParams.enableObservationLikelihood)
+    evaluate(*scan, robotPoses, widenings, out);
+  else
+    out.assign(widenings.size(), std::vector<double>(robotPoses.size(), 0.0));
+}
+
+void CPoleMap::logLikelihoods(const mrpt::obs::CObservation& observation,
+                              const std::vector<Pose2D>& robotPoses,
+                              std::vector<double>& out) const {
+  std::vector<std::vector<double>> widened(1);
+  widened[0].swap(out);
+  widenedLogLikelihoods(observation, robotPoses, {1}, widened);
+  out.swap(widened[0]);
+}
+
 double CPoleMap::internal_computeObservationLikelihood(
     const mrpt::obs::CObservation& obs, const mrpt::poses::CPose3D& takenFrom) const {
   const auto* scan = dynamic_cast<const CObservationPoles*>(&obs);
   if (!scan) return 0;
-  // In the sensor's own frame: the same value as in the robot frame, without moving every pole.
-  const Pose2D T_map_sensor = compose(planar(takenFrom), scan->planarSensorPose());
-  return logLikelihood(scan->poles, T_map_sensor, *m_index, likelihoodOptions);
+  std::vector<std::vector<double>> out;
+  evaluate(*scan, {planar(takenFrom)}, {1}, out);
+  return out[0][0];
 }
 
 bool CPoleMap::internal_canComputeObservationLikelihood(const mrpt::obs::CObservation& obs) const {

@@ -22,7 +22,9 @@ class GeneratorLoan {
   mrpt::random::CRandomGenerator& m_generator;
 };
 
-/// \brief Draws from N(0, covariance), from the generator of the thread.
+/// \brief Draws from N(0, covariance): the root of the covariance as MRPT's CPoseRandomSampler has
+/// it, normal deviates of our own (core/BatchMath.h) from 32-bit numbers of MRPT's generator in
+/// this thread.
 class PoseNoise {
  public:
   explicit PoseNoise(const Eigen::Matrix3d& covariance);
@@ -34,8 +36,9 @@ class PoseNoise {
   std::vector<Eigen::Vector3d> m_moves;
 };
 
-/// \brief Resamples any number of particles: ascending indices. (MRPT's computeResampling() never
-/// returns when multinomial resampling is asked for fewer than there are.)
+/// \brief Resamples any number of particles: ascending indices. (MRPT's computeResampling(), asked
+/// for fewer than there are, draws only from those in front: the thresholds of all, the first of
+/// them used.)
 std::vector<std::size_t> drawIndices(Resampling method, const std::vector<double>& logWeights,
                                      std::size_t count);
 

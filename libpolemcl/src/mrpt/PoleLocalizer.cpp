@@ -2,7 +2,6 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <polemcl/core/BatchMath.h>
-#include <polemcl/core/PoleLikelihood.h>
 #include <polemcl/mrpt/PoleLocalizer.h>
 
 #include <algorithm>
@@ -187,7 +186,7 @@ void PoleLocalizer::prediction_and_update_pfStandardProposal(
   if (observation)
     for (const auto& part : *observation)
       if (const auto* poles = dynamic_cast<const CObservationPoles*>(part.get()))
-        updateRemembering(poles->polesInRobotFrame(), mrptOptions);
+        updateRemembering(*poles, mrptOptions);
   // Now, since executeOn() resamples next, which erases the weights.
   const std::vector<double> weights = logWeights();
   m_report.effectiveShare = effectiveShare(weights);
@@ -225,13 +224,15 @@ void PoleLocalizer::predict(const mrpt::obs::CActionCollection& action,
   }
 }
 
-void PoleLocalizer::update(const std::vector<PoleDetection>& poles_robot,
+void PoleLocalizer::update(const CObservationPoles& scan,
                            const CParticleFilter::TParticleFilterOptions& mrptOptions) {
-  m_report.poles += poles_robot.size();
+  m_report.poles += scan.poles.size();
   std::vector<std::vector<double>> values;  // by widening
   const auto evaluate = [&](const std::vector<double>& widenings) {
-    widenedLogLikelihoods(poles_robot, particles(), m_map->index(), m_map->likelihoodOptions,
-                          widenings, values);
+    m_map->widenedLogLikelihoods(scan, particles(), widenings, values);
+    if (mrptOptions.powFactor == 1) return;
+    for (auto& ofOneWidening : values)
+      for (double& value : ofOneWidening) value *= mrptOptions.powFactor;
   };
   const auto weigh = [&](std::vector<double> ratios, const std::vector<double>& before) {
     for (std::size_t i = 0; i < before.size(); ++i) ratios[i] -= before[i];
@@ -291,10 +292,10 @@ std::optional<std::size_t> PoleLocalizer::narrowestDense(
   return k < widenings.size() ? std::optional(k) : std::nullopt;
 }
 
-void PoleLocalizer::updateRemembering(const std::vector<PoleDetection>& poles_robot,
+void PoleLocalizer::updateRemembering(const CObservationPoles& scan,
                                       const CParticleFilter::TParticleFilterOptions& options) {
   try {
-    update(poles_robot, options);
+    update(scan, options);
   } catch (...) {
     m_failure = std::current_exception();
     throw;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file KdTree2D.h
-/// \brief Exact searches over points of the plane, on nanoflann; never changes once built.
+/// \brief Exact searches over points of the plane, on nanoflann; never changes once built. All
+/// searches but those of PoleGrid.h.
 
 #include <Eigen/Core>
 #include <cstdint>

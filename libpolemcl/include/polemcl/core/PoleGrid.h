@@ -5,7 +5,8 @@
 /// Each cell of the plane that some point can be reached from lists every point that can be the
 /// nearest one of any place in the cell. Poles stand metres apart, so a cell mostly lists one point
 /// and most of the plane lists none: a search is one hash and one distance. Exact; the k-d tree is
-/// its oracle in the tests.
+/// its oracle in the tests. Who asks it in place of the tree: PoleIndex (likelihood, nearest pole
+/// within the prepared radius) and the global search.
 
 #include <polemcl/core/KdTree2D.h>
 

@@ -1,7 +1,11 @@
 #pragma once
 /// \file PoleIndex.h
-/// \brief Nearest pole within a radius: a grid of candidates, and nanoflann beyond its reach. Built
-/// eagerly and never changed, so it is safe to share between threads.
+/// \brief Nearest pole within a radius: a grid of candidates, and nanoflann beyond its reach.
+///
+/// Both are exact and give the same pole. nearest() and the likelihood (PoleLikelihood.h) ask the
+/// grid up to preparedRadius() and nanoflann's tree beyond it; within() always asks the tree.
+/// CPoleMap prepares for the gate of its likelihood, so the particle filter asks the grid only.
+/// Built eagerly and never changed, so it is safe to share between threads.
 
 #include <polemcl/core/KdTree2D.h>
 #include <polemcl/core/PoleGrid.h>
@@ -22,9 +26,9 @@ class PoleIndex {
     double distance;    ///< m
   };
   /// \param poles Copied in part; may be empty.
-  /// \param preparedRadius Searches up to it take one look-up, wider ones a k-d tree search, m.
-  /// Give
-  ///        the gate of the likelihood. Memory grows with the poles, not with the area.
+  /// \param preparedRadius Searches up to it take one look-up in the grid, wider ones a search of
+  ///        nanoflann's tree, m. Give the gate of the likelihood. Memory grows with the poles, not
+  ///        with the area.
   /// \throws Error on a pole whose centre or covariance is not finite or that lies beyond
   /// `farthest`,
   ///         or a radius that is not finite and positive.

@@ -38,9 +38,9 @@ struct LikelihoodOptions {
 
 /// \brief log p(z | pose) up to a constant; finite; 0 for no detections.
 ///
-/// Each detection counts for itself, by its nearest map pole within the gate (strictly). Of the
-/// index, prepare it for the gate: wider gates are searched by its slower tree.
-/// A detection or pose that is not a number matches nothing.
+/// Each detection counts for itself, by its nearest map pole within the gate (strictly). The grid
+/// of the index finds it if the index is prepared for the gate, else nanoflann's tree, which is
+/// slower; the numbers are the same. A detection or pose that is not a number matches nothing.
 /// \throws Error on options out of range; with `weighted` also on a detection whose covariance is
 ///         not symmetric positive semidefinite, or whose confidence is outside [0, 1].
 double logLikelihood(const std::vector<PoleDetection>& poles_robot, const Pose2D& pose_map_robot,

@@ -15,6 +15,8 @@
 
 namespace polemcl {
 
+class CObservationPoles;
+
 /// \brief Poles in the map frame, with an index that is built whenever the poles change. A const
 /// map may be shared between threads; copies are independent.
 ///
@@ -28,9 +30,10 @@ class CPoleMap : public mrpt::maps::CMetricMap {
   CPoleMap();
 
   const std::vector<MapPole>& poles() const { return m_poles; }  ///< map frame
-  /// \brief Replaces all poles and builds the index, prepared for `likelihoodOptions.gate`: set the
-  /// options first, or set the poles again (a wider gate later is slower, not wrong).
-  /// \throws Error on a position or covariance that is not finite, or a covariance that is not
+  /// \brief Replaces all poles and builds the index, its grid prepared for
+  /// `likelihoodOptions.gate`: set the options first, or set the poles again. (With a wider gate
+  /// later nanoflann's tree answers in place of the grid: slower, the same numbers.) \throws Error
+  /// on a position or covariance that is not finite, or a covariance that is not
   ///         positive semidefinite.
   void setPoles(std::vector<MapPole> poles);
   /// \brief Index i is poles()[i].
@@ -71,6 +74,28 @@ class CPoleMap : public mrpt::maps::CMetricMap {
     void dumpToTextStream(std::ostream& out) const override;
   } likelihoodOptions;
 
+  /// \name Likelihood of many poses at once
+  /// One definition, the core's (core/PoleLikelihood.h) with `likelihoodOptions`: MRPT asks for one
+  /// pose by computeObservationLikelihood(), the filter of this library for all its particles by
+  /// these. The same planar pose gets the same number, bit for bit.
+  /// @{
+  /// \brief log p(observation | pose) up to a constant, finite. All 0 for observations that are not
+  /// CObservationPoles (they say nothing), and when `genericMapParams.enableObservationLikelihood`
+  /// is false, as with MRPT's own.
+  /// \param robotPoses Map frame.
+  /// \param out Element i belongs to robotPoses[i].
+  /// \throws Error as logLikelihood() of the core.
+  void logLikelihoods(const mrpt::obs::CObservation& observation,
+                      const std::vector<Pose2D>& robotPoses, std::vector<double>& out) const;
+  /// \brief The same with several sigmas at once, which share the search for the nearest pole:
+  /// out[k][i] belongs to robotPoses[i] with widenings[k] times `likelihoodOptions.sigma`.
+  /// \throws Error also on more than `maxWidenings`.
+  void widenedLogLikelihoods(const mrpt::obs::CObservation& observation,
+                             const std::vector<Pose2D>& robotPoses,
+                             const std::vector<double>& widenings,
+                             std::vector<std::vector<double>>& out) const;
+  /// @}
+
   bool isEmpty() const override { return m_poles.empty(); }
   std::string asString() const override;
   /// \brief Writes `<prefix>.polemap`, `<prefix>.csv` and `<prefix>.3Dscene`.
@@ -91,13 +116,15 @@ class CPoleMap : public mrpt::maps::CMetricMap {
   bool internal_insertObservation(
       const mrpt::obs::CObservation& obs,
       const std::optional<const mrpt::poses::CPose3D>& robotPose = std::nullopt) override;
-  /// \brief logLikelihood() of the core for CObservationPoles at the planar part of the pose;
-  /// 0 for other observations: they say nothing.
+  /// \brief What logLikelihoods() gives for the planar part (x, y, yaw) of this one pose.
   double internal_computeObservationLikelihood(
       const mrpt::obs::CObservation& obs, const mrpt::poses::CPose3D& takenFrom) const override;
   bool internal_canComputeObservationLikelihood(const mrpt::obs::CObservation& obs) const override;
 
  private:
+  void evaluate(const CObservationPoles& scan, const std::vector<Pose2D>& robotPoses,
+                const std::vector<double>& widenings, std::vector<std::vector<double>>& out) const;
+
   std::vector<MapPole> m_poles;
   std::shared_ptr<const PoleIndex> m_index;  ///< immutable, so copies may share it
 };

@@ -34,12 +34,13 @@ struct PoseHypothesis {
   double weight = 1;        ///< 0 or more, in any unit: only ratios count
 };
 
-/// \brief Where the vehicle is in a pole map, by particles. Prediction, normalization and
-/// resampling are MRPT's (CParticleFilter::executeOn); the update is one batch over all particles.
+/// \brief Where the vehicle is in a pole map, by particles.
 ///
-/// Two defects of MRPT 2.5.8 are worked round: resampling keeps the old weights (here they are
-/// reset), and getCovarianceAndMean() loses the sign of heading errors in the cross terms (here the
-/// covariance is the core's).
+/// MRPT's are the sequence (CParticleFilter::executeOn), the decision to resample and the indices
+/// drawn; the update asks the map (CPoleMap) once for all particles, as does the prediction by a
+/// Gaussian motion. Two defects of MRPT 2.5.8 are worked round: resampling keeps the old weights
+/// (here they are reset), and getCovarianceAndMean() loses the sign of heading errors in the cross
+/// terms (here the covariance is the core's). share/doc/architecture.md has each step.
 ///
 /// Random numbers come from MRPT's generator of the calling thread, which during start() and step()
 /// is replaced by one that belongs to the object. (Seeding MRPT's own does not suffice: it keeps
@@ -89,12 +90,14 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
 
   /// \name MRPT's interface
   /// @{
-  /// \brief Prediction, then the batched update with all CObservationPoles of the frame. Gaussian
-  /// motions are predicted in a batch, with MRPT's maths and generator; others by MRPT.
+  /// \brief Prediction, then the update with all CObservationPoles of the frame by the map's
+  /// batched likelihood, times MRPT's `powFactor`. Gaussian motions are predicted in a batch, with
+  /// MRPT's maths and normal deviates made of the numbers of its generator; others by MRPT.
   void prediction_and_update_pfStandardProposal(
       const mrpt::obs::CActionCollection* action, const mrpt::obs::CSensoryFrame* observation,
       const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions) override;
-  /// \brief What MRPT's does, then equal weights, then regularization.
+  /// \brief Copies by index as MRPT's does (with FilterOptions::adaptive by indices of its own;
+  /// after a start with more particles by every n-th), then equal weights, then regularization.
   void performSubstitution(const std::vector<size_t>& indices) override;
   /// \brief The effective share of the particles. (MRPT's casts dynamically for each particle.)
   double ESS() const override;
@@ -107,10 +110,10 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   void begin(int particles);
   void predict(const mrpt::obs::CActionCollection& action,
                const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
-  void update(const std::vector<PoleDetection>& poles_robot,
+  void update(const CObservationPoles& scan,
               const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
   /// \brief The same; what it throws is kept for step().
-  void updateRemembering(const std::vector<PoleDetection>& poles_robot,
+  void updateRemembering(const CObservationPoles& scan,
                          const mrpt::bayes::CParticleFilter::TParticleFilterOptions& options);
   PoseWithCovariance estimate(const std::vector<double>& weights) const;
   void addToLogWeights(const std::vector<double>& values);
