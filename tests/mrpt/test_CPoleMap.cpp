@@ -178,7 +178,10 @@ TEST(CPoleMap, ManyPosesGetTheSameBitsAsEachAlone) {
           map.likelihoodOptions.gate = gate;
           CObservationPoles scan;
           scan.setSensorPose(mounting);
-          scan.poles = {samples::pole(10, 0), samples::pole(0, 9.8), samples::pole(-30, 0)};
+          for (const Pose2D& place : {Pose2D{10, 0, 0}, Pose2D{0, 9.8, 0}, Pose2D{-30, 0, 0}}) {
+            const Pose2D seen = relative(scan.planarSensorPose(), place);
+            scan.poles.push_back(samples::pole(seen.x, seen.y));
+          }
           std::vector<CPose3D> alone;
           std::vector<Pose2D> together;
           for (int i = 0; i < 300; ++i) {

@@ -185,7 +185,7 @@ TEST(PoleLocalizer, AsksTheMapNotTheCore) {
   silent->genericMapParams.enableObservationLikelihood = false;  // as with any map of MRPT
   for (const double tempering : {0.0, 0.2}) {
     FilterOptions options = still();
-    options.tempering = tempering;
+    options.resampleBelow = options.regularization = options.tempering = tempering;
     PoleLocalizer localizer(silent, options, 1);
     localizer.start(at(street.truth[50]));
     localizer.step(street.frames[50]);
