@@ -9,9 +9,11 @@ using namespace polemcl::apps;
 
 namespace {
 
-class FilterRuns : public testing::Test {
+using Updates = std::vector<LocalizationUpdate>;
+
+class FilterRunsTest : public testing::Test {
  protected:
-  FilterRuns() {
+  FilterRunsTest() {
     tests::StreetOptions wanted;
     wanted.scans = 30;
     street = tests::makeStreet(wanted);
@@ -21,53 +23,62 @@ class FilterRuns : public testing::Test {
     runs.runs = 5;
     runs.seed = 40;
   }
-  std::vector<FilterRun> run(const RunOptions& which) {
-    return runFilters({street.map, options.global}, street.frames, options, start, which);
+  /// Element [i][k]: what run i made of scan k.
+  std::vector<Updates> run(const RunOptions& which) {
+    FilterRuns filters({street.map, options.global}, options, start, which);
+    std::vector<Updates> results(filters.size());
+    for (const PoleFrame& frame : street.frames) {
+      const auto& steps = filters.step(frame);
+      for (std::size_t i = 0; i < steps.size(); ++i) results[i].push_back(steps[i].update);
+    }
+    figures = filters.results();
+    return results;
   }
   tests::PoleStreet street;
   LocalizationOptions options;
   StartOptions start;
   RunOptions runs;
+  std::vector<FilterRun> figures;  ///< of the last run()
 };
 
-void expectEqual(const FilterRun& a, const FilterRun& b) {
-  EXPECT_EQ(a.seed, b.seed);
-  ASSERT_EQ(a.updates.size(), b.updates.size());
-  for (std::size_t i = 0; i < a.updates.size(); ++i) {
-    EXPECT_EQ(a.updates[i].time, b.updates[i].time);
-    EXPECT_EQ(a.updates[i].estimate->mean.x, b.updates[i].estimate->mean.x);
-    EXPECT_EQ(a.updates[i].estimate->mean.yaw, b.updates[i].estimate->mean.yaw);
-    EXPECT_EQ(a.updates[i].health.innovation, b.updates[i].health.innovation);
+void expectEqual(const Updates& a, const Updates& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].time, b[i].time);
+    EXPECT_EQ(a[i].estimate->mean.x, b[i].estimate->mean.x);
+    EXPECT_EQ(a[i].estimate->mean.yaw, b[i].estimate->mean.yaw);
+    EXPECT_EQ(a[i].health.innovation, b[i].health.innovation);
   }
 }
 
 }  // namespace
 
-TEST_F(FilterRuns, OnePosePerScanAtItsTime) {
+TEST_F(FilterRunsTest, OneUpdatePerScanAtItsTime) {
   const auto results = run(runs);
   ASSERT_EQ(results.size(), 5u);
   for (const auto& result : results) {
-    ASSERT_EQ(result.updates.size(), street.frames.size());
-    ASSERT_EQ(result.trajectory().size(), street.frames.size());
+    ASSERT_EQ(result.size(), street.frames.size());
     for (std::size_t i = 0; i < street.frames.size(); ++i) {
-      EXPECT_EQ(result.trajectory()[i].time, street.frames[i].time);
-      EXPECT_EQ(result.updates[i].poles, street.frames[i].poles_robot.size());
+      EXPECT_EQ(result[i].time, street.frames[i].time);
+      EXPECT_EQ(result[i].poles, street.frames[i].poles_robot.size());
     }
   }
 }
 
-TEST_F(FilterRuns, RunIHasTheSeedOfItsPlace) {
+TEST_F(FilterRunsTest, RunIHasTheSeedOfItsPlace) {
   const auto all = run(runs);
+  const auto seeds = figures;
   RunOptions one;
   for (int i = 0; i < runs.runs; ++i) {
     one.seed = runs.seed + i;
     expectEqual(all[i], run(one)[0]);
+    EXPECT_EQ(seeds[i].seed, one.seed);
   }
-  EXPECT_NE(all[0].trajectory()[5].pose.x, all[1].trajectory()[5].pose.x);
+  EXPECT_NE(all[0][5].estimate->mean.x, all[1][5].estimate->mean.x);
 }
 
-TEST_F(FilterRuns, SameOnAnyNumberOfThreads) {
-  std::vector<FilterRun> alone;
+TEST_F(FilterRunsTest, SameOnAnyNumberOfThreads) {
+  std::vector<Updates> alone;
   {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
     alone = run(runs);
@@ -76,37 +87,31 @@ TEST_F(FilterRuns, SameOnAnyNumberOfThreads) {
   for (int i = 0; i < runs.runs; ++i) expectEqual(alone[i], together[i]);
 }
 
-TEST_F(FilterRuns, TellsProgressFromOneThreadAtATime) {
-  std::size_t last = 0;
-  int inside = 0;
-  RunWatch watch;
-  watch.progress = [&](std::size_t done) {
-    EXPECT_EQ(++inside, 1);
-    EXPECT_LE(done, 5 * street.frames.size());
-    last = std::max(last, done);
-    --inside;
-  };
-  runFilters({street.map, options.global}, street.frames, options, start, runs, watch);
-  EXPECT_GT(last, 0u);
+TEST_F(FilterRunsTest, CountsWhatTheUpdatesSay) {
+  start.anywhere = true;
+  const auto results = run(runs);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    FilterRun counted;
+    std::size_t scan = 0;
+    for (const auto& update : results[i]) {
+      if (update.estimate && !counted.firstPose) counted.firstPose = scan;
+      counted.resampled += update.step.resampled;
+      counted.relocalizations += update.relocalized;
+      ++counted.states[static_cast<int>(update.health.state)];
+      ++scan;
+    }
+    EXPECT_EQ(figures[i].scans, results[i].size());
+    EXPECT_EQ(figures[i].firstPose, counted.firstPose);
+    EXPECT_EQ(figures[i].resampled, counted.resampled);
+    EXPECT_EQ(figures[i].relocalizations, counted.relocalizations);
+    for (int state = 0; state < 3; ++state)
+      EXPECT_EQ(figures[i].states[state], counted.states[state]) << state;
+  }
 }
 
-TEST_F(FilterRuns, ShowsEveryStepOfTheFirstRun) {
-  std::vector<double> seen;
-  RunWatch watch;
-  watch.observer = [&](const PoleLocalization& localization, const PoleFrame& frame,
-                       const LocalizationUpdate& update) {
-    EXPECT_TRUE(localization.hasPose());
-    EXPECT_EQ(frame.time, update.time);
-    seen.push_back(update.estimate->mean.x);
-  };
-  const auto results =
-      runFilters({street.map, options.global}, street.frames, options, start, runs, watch);
-  ASSERT_EQ(seen.size(), street.frames.size());
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    EXPECT_EQ(seen[i], results[0].updates[i].estimate->mean.x);
-}
-
-TEST_F(FilterRuns, HandsRefusalsOn) {
+TEST_F(FilterRunsTest, HandsRefusalsOn) {
   street.frames[7].motion.reset();
+  EXPECT_THROW(run(runs), Error);
+  runs.runs = 0;
   EXPECT_THROW(run(runs), Error);
 }

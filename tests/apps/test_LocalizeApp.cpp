@@ -1,16 +1,9 @@
-#include <polemcl/apps/LocalizeApp.h>
-#include <polemcl/apps/RawlogActions.h>
-#include <polemcl/io/Trajectory.h>
-#include <polemcl/mrpt/RawlogWriter.h>
-#include <polemcl/mrpt/RegisterClasses.h>
 #include <tbb/global_control.h>
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "../mrpt/PoleStreet.h"
 #include "CityFiles.h"
-#include "TempFolder.h"
+#include "LocalizeTest.h"
 
 using namespace polemcl;
 using namespace polemcl::apps;
@@ -18,65 +11,7 @@ using namespace testing_apps;
 
 namespace {
 
-constexpr std::size_t scans = 40;
-
-/// A street as files: `in.rawlog` of stored poles, `map.polemap`, `truth.tum`, `config.ini`.
-class LocalizeApp : public testing::Test {
- protected:
-  LocalizeApp() {
-    registerClasses();
-    tests::StreetOptions options;
-    options.scans = scans;
-    street = tests::makeStreet(options);
-    street.map->saveToPoleMapFile((folder / "map.polemap").string());
-    writeRawlog();
-    std::vector<StampedPose2D> truth;
-    for (std::size_t i = 0; i < scans; ++i)
-      truth.push_back({street.frames[i].time, street.truth[i]});
-    io::writeTum(folder / "truth.tum", truth);
-    writeText(folder / "config.ini",
-              "[likelihood]\nsigma_m = 0.1\n[filter]\nparticles = 200\n[start]\nparticles = 1\n");
-  }
-
-  void writeRawlog() {
-    RawlogWriter writer((folder / "in.rawlog").string());
-    for (const auto& frame : street.frames) {
-      auto poles = CObservationPoles::Create();
-      poles->timestamp = mrpt::Clock::fromDouble(frame.time);
-      poles->poles = frame.poles_robot;
-      poles->points = static_cast<std::uint32_t>(frame.points);
-      writer.write(makeActions(frame.motion, poles->timestamp), poles);
-    }
-    writer.commit();
-  }
-
-  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{
-        "--config", (folder / "config.ini").string(),  "--input",  (folder / "in.rawlog").string(),
-        "--map",    (folder / "map.polemap").string(), "--output", (folder / "out").string()};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-  Outcome run(const std::vector<std::string>& more = {}) const {
-    return runProgram(localizeMain, arguments(more));
-  }
-  Outcome runWithTruth(std::vector<std::string> more = {}) const {
-    more.insert(more.end(), {"--truth", (folder / "truth.tum").string()});
-    return run(more);
-  }
-  nlohmann::json summary() const { return nlohmann::json::parse(readText(out("summary.json"))); }
-  fs::path out(const std::string& name) const { return folder / "out" / name; }
-  /// All results but the timings.
-  std::string bytes() const {
-    std::string all;
-    for (const auto& name : names(folder / "out"))
-      if (name != "timings.json") all += name + "\n" + readText(out(name));
-    return all;
-  }
-
-  TempFolder folder;
-  tests::PoleStreet street;
-};
+class LocalizeApp : public LocalizeTest {};
 
 std::size_t lines(const std::string& text) {
   return std::count(text.begin(), text.end(), '\n');

@@ -1,6 +1,6 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <polemcl/apps/LocalizeApp.h>
+#include <polemcl/apps/FilterRuns.h>
 #include <polemcl/apps/RunView.h>
 
 #include <cstdlib>
@@ -16,6 +16,7 @@ namespace {
 
 constexpr int scans = 12;
 using Names = std::vector<std::string>;
+using Updates = std::vector<LocalizationUpdate>;
 
 class RunViewTest : public testing::Test {
  protected:
@@ -27,21 +28,27 @@ class RunViewTest : public testing::Test {
     view.height = 240;
     localization.filter.particles = 50;
   }
-  /// Two runs, the first of them watched.
-  std::vector<FilterRun> run() {
-    StartOptions start;
-    start.pose = street.truth[0];
-    RunOptions runs;
-    runs.runs = 2;
+  /// Two runs, the first of them watched. \return What it found.
+  Updates run() {
     RunFolder results(folder / "out");
     RunView watched(view, street.map->poles(), "drive", results);
-    RunWatch watch;
-    watch.observer = watched.observer();
-    auto done = runFilters({street.map, localization.global}, street.frames, localization, start,
-                           runs, watch);
+    const Updates done = play(watched);
     watched.finish();
     writeText(results.staged("summary.json"), "done");
     results.commit();
+    return done;
+  }
+  Updates play(RunView& watched) {
+    StartOptions start;
+    start.pose = street.truth[0];
+    RunOptions two;
+    two.runs = 2;
+    FilterRuns runs({street.map, localization.global}, localization, start, two);
+    Updates done;
+    for (const PoleFrame& frame : street.frames) {
+      done.push_back(runs.step(frame)[0].update);
+      watched.show(runs.localization(0), frame, done.back());
+    }
     return done;
   }
   std::string errorOf() {
@@ -61,11 +68,11 @@ class RunViewTest : public testing::Test {
 
 }  // namespace
 
-TEST_F(RunViewTest, WithoutAnythingToShowThereIsNoObserver) {
+TEST_F(RunViewTest, WithoutAnythingToShowNothingIsWritten) {
+  run();
+  EXPECT_EQ(names(folder / "out"), Names({"summary.json"}));
   RunFolder results(folder / "out");
-  RunView watched(view, street.map->poles(), "drive", results);
-  EXPECT_FALSE(watched.observer());
-  watched.finish();
+  EXPECT_FALSE(RunView(view, street.map->poles(), "drive", results).isOpen());
 }
 
 TEST_F(RunViewTest, WritesFramesEverySoManyScans) {
@@ -119,12 +126,11 @@ TEST_F(RunViewTest, WatchingChangesNothing) {
   view.frames = (folder / "frames").string();
   view.scenes = 3;
   const auto watched = run();
-  for (std::size_t i = 0; i < alone.size(); ++i)
-    for (std::size_t k = 0; k < alone[i].updates.size(); ++k) {
-      EXPECT_EQ(watched[i].updates[k].estimate->mean.x, alone[i].updates[k].estimate->mean.x);
-      EXPECT_EQ(watched[i].updates[k].estimate->covariance,
-                alone[i].updates[k].estimate->covariance);
-    }
+  ASSERT_EQ(watched.size(), alone.size());
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    EXPECT_EQ(watched[k].estimate->mean.x, alone[k].estimate->mean.x);
+    EXPECT_EQ(watched[k].estimate->covariance, alone[k].estimate->covariance);
+  }
 }
 
 TEST_F(RunViewTest, AFrameThatCannotBeWrittenEndsTheRun) {
@@ -134,12 +140,8 @@ TEST_F(RunViewTest, AFrameThatCannotBeWrittenEndsTheRun) {
   RunView watched(view, street.map->poles(), "drive", results);
   for (const auto& name : names(folder.path()))  // the folder under its temporary name
     if (name.rfind("frames", 0) == 0) fs::remove_all(folder / name);
-  RunWatch watch;
-  watch.observer = watched.observer();
-  StartOptions start;
-  start.pose = street.truth[0];
   try {
-    runFilters({street.map, localization.global}, street.frames, localization, start, {}, watch);
+    play(watched);
     watched.finish();
     FAIL();
   } catch (const Error& error) {  // of the frame, not only of the folder that is missing at the end

@@ -102,6 +102,52 @@ TEST(Evaluation, estimatesOutsideTheTruthOrInItsGapsAreCounted) {
   EXPECT_EQ(evaluateTrajectory(truth, estimate, Sampling::perPose, 10.0).unmatched, 2u);
 }
 
+TEST(TrajectoryEvaluator, PoseByPoseIsTheSameAsAllAtOnce) {
+  auto truth = straightTruth(60);
+  truth.erase(truth.begin() + 20, truth.begin() + 25);  // a gap
+  std::vector<StampedPose2D> estimate;
+  std::mt19937 generator(5);
+  for (double t = -3.5; t < 63; t += 0.7) {
+    const auto off = [&] { return 1e-3 * (double(generator() % 1000) - 500); };
+    estimate.push_back({t, {t + off(), off(), off()}});
+  }
+  const auto expected = evaluateTrajectory(truth, estimate, Sampling::perPose);
+  TrajectoryEvaluator evaluator(truth);
+  std::size_t compared = 0;
+  for (const auto& pose : estimate)
+    if (const auto error = evaluator.add(pose)) {
+      EXPECT_EQ(error->time, expected.errors[compared].time);
+      EXPECT_EQ(error->lateral, expected.errors[compared].lateral);
+      ++compared;
+    }
+  const auto summary = evaluator.finish();
+  EXPECT_EQ(evaluator.estimates(), estimate.size());
+  EXPECT_EQ(compared, expected.errors.size());
+  EXPECT_EQ(summary.poses, expected.poses);
+  EXPECT_EQ(summary.unmatched, expected.unmatched);
+  EXPECT_GT(summary.unmatched, 5u);
+  EXPECT_TRUE(summary.errors.empty());
+  for (const auto figure :
+       {&TrajectoryErrors::posMean, &TrajectoryErrors::posRmse, &TrajectoryErrors::posMax,
+        &TrajectoryErrors::latMean, &TrajectoryErrors::lonMean, &TrajectoryErrors::angMeanDeg,
+        &TrajectoryErrors::angRmseDeg})
+    EXPECT_EQ(summary.*figure, expected.*figure);
+}
+
+TEST(TrajectoryEvaluator, RefusesWhatEvaluateTrajectoryRefuses) {
+  const auto truth = straightTruth(10);
+  EXPECT_THROW(TrajectoryEvaluator({}), Error);
+  EXPECT_THROW(TrajectoryEvaluator(truth).finish(), Error);
+  TrajectoryEvaluator evaluator(truth);
+  evaluator.add({1, {}});
+  EXPECT_THROW(evaluator.add({1, {}}), Error);
+  EXPECT_THROW(evaluator.add({2, {NAN, 0, 0}}), Error);
+  evaluator.add({20, {}});
+  evaluator.finish();  // one of two
+  evaluator.add({21, {}});
+  EXPECT_THROW(evaluator.finish(), Error);
+}
+
 TEST(Evaluation, perMetreComparesAtWholeMetresOfTheTruePath) {
   // A corner: 2.5 m along x in 5 s, then 2.5 m along y in 2.5 s.
   const std::vector<StampedPose2D> truth{{0, {0, 0, 0}}, {5, {2.5, 0, 0}}, {7.5, {2.5, 2.5, 0}}};

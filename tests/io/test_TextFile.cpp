@@ -40,6 +40,20 @@ TEST_F(TextFileTest, linesOfGzip) {
   EXPECT_EQ(lines[19999], "19999");
 }
 
+// Blocks of the reader end inside lines, between the two bytes of a line end, and at its end.
+TEST_F(TextFileTest, linesAcrossBlocks) {
+  std::vector<std::string> lines;
+  for (const std::size_t length : {65535u, 1u, 65533u, 0u, 65536u, 200000u, 7u})
+    lines.emplace_back(length, static_cast<char>('a' + lines.size()));
+  for (const std::string end : {"\n", "\r\n"}) {
+    std::string text;
+    for (const auto& line : lines) text += line + end;
+    EXPECT_EQ(readLines(write("f", text)), lines);
+    text.resize(text.size() - end.size());
+    EXPECT_EQ(readLines(write("f", text)), lines);
+  }
+}
+
 TEST_F(TextFileTest, refusesGzipCutShort) {
   std::string text;
   for (int i = 0; i < 20000; ++i) text += std::to_string(i * 7919L) + "\n";

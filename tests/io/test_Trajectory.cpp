@@ -93,6 +93,26 @@ TEST_F(TrajectoryTest, tumComesBack) {
   }
 }
 
+TEST_F(TrajectoryTest, planarTumIsTheSameInThePlane) {
+  const auto file = write("t.tum",
+                          "# t x y z q\n1.5 10 -20 3 0 0 0 1\n\n"
+                          "2 1e5 0.25 -1 0.1 0.2 0.3 0.927361849549570\n");
+  const auto expected = planar(readTum(file)), read = readPlanarTum(file);
+  ASSERT_EQ(read.size(), 2u);
+  std::string rows;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read[i].time, expected[i].time);
+    EXPECT_EQ(read[i].pose.x, expected[i].pose.x);
+    EXPECT_EQ(read[i].pose.y, expected[i].pose.y);
+    EXPECT_EQ(read[i].pose.yaw, expected[i].pose.yaw);
+    rows += tumRow(read[i]);
+  }
+  writeTum(path("u.tum"), read);
+  EXPECT_EQ(test::read(path("u.tum")), rows);
+  expectIn(messageOf([&] { tumRow({1, {NAN, 0, 0}}); }), "not finite");
+  expectIn(messageOf([&] { readPlanarTum(write("t.tum", "1 2\n")); }), "t.tum:1");
+}
+
 TEST_F(TrajectoryTest, refusesTumWithWrongColumns) {
   const fs::path file = write("t.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 1\n");
   expectIn(messageOf([&] { readTum(file); }), file.string() + ":2: ", "7 numbers", "8 expected");

@@ -337,6 +337,51 @@ TEST(PoleSequence, TruncatedFiles) {
   EXPECT_FALSE(bench.read(bytes, o).counts.truncated);
 }
 
+// Whatever the length of the rawlog, only the scans that the threads work on are in memory.
+TEST(PoleSequence, ScansAreLetGoOnceTheyAreConsumed) {
+  const Bench bench;
+  std::string bytes;
+  for (int i = 0; i < 300; ++i)
+    bytes += action({0.1, 0, 0}) + (i % 2 ? frame(poles(i + 1)) : frame(poles(i + 1, 7)));
+  bench.read(bytes);
+  for (const int threads : {1, 2}) {
+    auto o = options();
+    o.threads = threads;
+    std::vector<std::weak_ptr<CObservationPoles>> consumed;
+    std::size_t alive = 0;
+    streamPoles(bench.path, o, [&](const PoleScan& scan) {
+      // One may still be on its way out of the pipeline.
+      for (std::size_t i = 0; i + 1 < consumed.size(); ++i) alive += !consumed[i].expired();
+      consumed.push_back(scan.observation);
+    });
+    EXPECT_EQ(consumed.size(), 300u);
+    EXPECT_EQ(alive, 0u);
+  }
+}
+
+TEST(PoleSequence, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
+  const Bench bench;
+  std::string bytes;
+  for (int i = 0; i < 20; ++i) bytes += frame(poles(i + 1));
+  bench.read(bytes);
+  std::vector<double> asked;
+  const ScanClock::time_point begin = ScanClock::now();
+  auto o = options();
+  o.pace = [&](double time) {
+    asked.push_back(time);
+    return begin + std::chrono::seconds(asked.size());
+  };
+  std::size_t consumed = 0;
+  streamPoles(bench.path, o, [&](const PoleScan& scan) {
+    EXPECT_EQ(scan.arrival, begin + std::chrono::seconds(++consumed));
+    EXPECT_GE(scan.readSeconds, 0);
+  });
+  ASSERT_EQ(asked.size(), 20u);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(asked[i], double(i + 1), 1e-6);
+  o.pace = [](double) -> ScanClock::time_point { throw std::domain_error("enough"); };
+  EXPECT_THROW(streamPoles(bench.path, o, [](const PoleScan&) {}), std::domain_error);
+}
+
 // The first error of the file is the one reported, after the scans before it, on any threads.
 TEST(PoleSequence, ErrorsComeInTheirPlace) {
   using Format = CObservationPointCloud::ExternalStorageFormat;

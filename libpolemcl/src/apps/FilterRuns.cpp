@@ -1,61 +1,64 @@
 #include <polemcl/apps/FilterRuns.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
-#include <atomic>
 #include <chrono>
-#include <mutex>
 
 namespace polemcl::apps {
 
 namespace {
 
-FilterRun runFilter(PoleLocalization localization, const std::vector<PoleFrame>& frames,
-                    const StartOptions& start, const RunObserver& observer,
-                    const std::function<void()>& stepDone) {
-  const auto begin = std::chrono::steady_clock::now();
-  FilterRun run;
-  run.updates.reserve(frames.size());
-  if (start.anywhere)
-    localization.startAnywhere();
-  else
-    localization.start(start);
-  for (const PoleFrame& frame : frames) {
-    run.updates.push_back(localization.step(frame));
-    if (observer) observer(localization, frame, run.updates.back());
-    stepDone();
-  }
-  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return run;
+/// Calls work(i) for each run. The thread that calls helps with the runs and with nothing else, so
+/// that a scan does not wait for the extraction of a later one.
+template <class Work>
+void forEachRun(std::size_t runs, const Work& work) {
+  if (runs == 1) return work(0);
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, runs, work); });
+}
+
+double secondsSince(ScanClock::time_point begin) {
+  return std::chrono::duration<double>(ScanClock::now() - begin).count();
 }
 
 }  // namespace
 
-std::vector<StampedPose2D> FilterRun::trajectory() const {
-  std::vector<StampedPose2D> poses;
-  for (const LocalizationUpdate& update : updates)
-    if (update.estimate) poses.push_back({update.time, update.estimate->mean});
-  return poses;
+void FilterRun::add(const LocalizationUpdate& update) {
+  ++states[static_cast<int>(update.health.state)];
+  if (update.estimate && !firstPose) firstPose = scans;
+  relocalizations += update.relocalized ? 1 : 0;
+  resampled += update.step.resampled ? 1 : 0;
+  ++scans;
 }
 
-std::vector<FilterRun> runFilters(const LocalizationMap& map, const std::vector<PoleFrame>& frames,
-                                  const LocalizationOptions& options, const StartOptions& start,
-                                  const RunOptions& runs, const RunWatch& watch) {
+FilterRuns::FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
+                       const StartOptions& start, const RunOptions& runs) {
   runs.validate();
-  std::vector<FilterRun> results(runs.runs);
-  std::atomic<std::size_t> done{0};
-  std::mutex busy;
-  const auto stepDone = [&] {
-    const std::size_t count = ++done;
-    const std::unique_lock<std::mutex> lock(busy, std::try_to_lock);
-    if (watch.progress && lock) watch.progress(count);
-  };
-  tbb::parallel_for(0, runs.runs, [&](int i) {
+  const auto count = static_cast<std::size_t>(runs.runs);
+  m_filters.resize(count);
+  m_results.resize(count);
+  m_steps.resize(count);
+  forEachRun(count, [&](std::size_t i) {
+    const auto begin = ScanClock::now();
     const std::uint32_t seed = runs.seed + static_cast<std::uint32_t>(i);
-    results[i] = runFilter(PoleLocalization(map, options, seed), frames, start,
-                           i == 0 ? watch.observer : RunObserver(), stepDone);
-    results[i].seed = seed;
+    m_filters[i] = std::make_unique<PoleLocalization>(map, options, seed);
+    if (start.anywhere)
+      m_filters[i]->startAnywhere();
+    else
+      m_filters[i]->start(start);
+    m_results[i].seed = seed;
+    m_results[i].seconds = secondsSince(begin);
   });
-  return results;
+}
+
+const std::vector<FilterStep>& FilterRuns::step(const PoleFrame& frame) {
+  forEachRun(m_filters.size(), [&](std::size_t i) {
+    const auto begin = ScanClock::now();
+    m_steps[i].update = m_filters[i]->step(frame);
+    m_steps[i].seconds = secondsSince(begin);
+    m_results[i].seconds += m_steps[i].seconds;
+    m_results[i].add(m_steps[i].update);
+  });
+  return m_steps;
 }
 
 }  // namespace polemcl::apps

@@ -1,6 +1,5 @@
 #include <polemcl/apps/LocalizeReport.h>
 #include <polemcl/apps/Version.h>
-#include <polemcl/io/AtomicFile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,24 +51,19 @@ Spread spreadOf(const std::vector<TrajectoryErrors>& errors, double TrajectoryEr
 /// How many scans were in each state, and from when on the pose was known.
 Json healthSummary(const FilterRun& run) {
   Json json;
-  std::size_t counts[3] = {};
-  for (const auto& update : run.updates) ++counts[static_cast<int>(update.health.state)];
   for (const auto state : {HealthState::ok, HealthState::degraded, HealthState::lost})
-    json[name(state)] = counts[static_cast<int>(state)];
-  const auto found = std::find_if(run.updates.begin(), run.updates.end(),
-                                  [](const auto& update) { return update.estimate.has_value(); });
-  json["first_pose_scan"] = found == run.updates.end() ? Json() : Json(found - run.updates.begin());
-  json["relocalizations"] = std::count_if(run.updates.begin(), run.updates.end(),
-                                          [](const auto& update) { return update.relocalized; });
+    json[name(state)] = run.states[static_cast<int>(state)];
+  json["first_pose_scan"] = run.firstPose ? Json(*run.firstPose) : Json();
+  json["relocalizations"] = run.relocalizations;
   return json;
 }
 
 void printHealth(std::ostream& out, const LocalizeResult& result) {
   std::size_t all = 0, counts[3] = {}, unknown = 0;
   for (const auto& run : result.runs) {
-    all += run.updates.size();
-    unknown += run.trajectory().empty();
-    for (const auto& update : run.updates) ++counts[static_cast<int>(update.health.state)];
+    all += run.scans;
+    unknown += !run.firstPose;
+    for (int state = 0; state < 3; ++state) counts[state] += run.states[state];
   }
   char line[200];
   std::snprintf(line, sizeof line, "health: %.1f %% ok, %.1f %% degraded, %.1f %% lost\n",
@@ -102,6 +96,7 @@ Json inputs(const LocalizeFacts& facts) {
   json["seed"] = facts.runs.seed;
   if (facts.start.anywhere) {
     json["start"] = "anywhere";
+    json["start_source"] = facts.startSource;
     return json;
   }
   const Pose2D& pose = *facts.start.pose;
@@ -110,6 +105,7 @@ Json inputs(const LocalizeFacts& facts) {
                    {"yaw_deg", pose.yaw / degree},
                    {"radius_m", facts.start.radius},
                    {"heading_deg", facts.start.heading / degree}};
+  json["start_source"] = facts.startSource;
   return json;
 }
 
@@ -124,8 +120,7 @@ Json runSummary(const LocalizeResult& result, std::size_t i) {
     json["poses"] = errors.poses;
     json["unmatched"] = errors.unmatched;
   }
-  const auto resampled = [](const LocalizationUpdate& update) { return update.step.resampled; };
-  json["resampled_scans"] = std::count_if(run.updates.begin(), run.updates.end(), resampled);
+  json["resampled_scans"] = run.resampled;
   json["health"] = healthSummary(run);
   return json;
 }
@@ -151,65 +146,12 @@ Json makeSummary(const LocalizeFacts& facts, const LocalizeResult& result) {
     json["unmatched"] = errors[0].unmatched;
     json["spread"] = deviations;
   }
-  json["runs_without_pose"] =
-      std::count_if(result.runs.begin(), result.runs.end(),
-                    [](const FilterRun& run) { return run.trajectory().empty(); });
+  json["runs_without_pose"] = std::count_if(result.runs.begin(), result.runs.end(),
+                                            [](const FilterRun& run) { return !run.firstPose; });
   json["runs"] = Json::array();
   for (std::size_t i = 0; i < result.runs.size(); ++i)
     json["runs"].push_back(runSummary(result, i));
   return json;
-}
-
-void writeErrorsCsv(const std::filesystem::path& file, const FilterRun& run,
-                    const TrajectoryErrors& errors) {
-  io::AtomicFile output(file);
-  output.stream() << "scan,timestamp,position_m,lateral_m,longitudinal_m,heading_deg,poles,"
-                     "effective_share\n";
-  std::size_t scan = 0;
-  for (const PoseError& error : errors.errors) {
-    while (run.updates[scan].time < error.time) ++scan;
-    const LocalizationUpdate& update = run.updates[scan];
-    char line[200];
-    std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.6f,%.6f,%zu,%.6f\n", scan, error.time,
-                  error.position, error.lateral, error.longitudinal, error.heading / degree,
-                  update.poles, update.step.effectiveShare);
-    output.stream() << line;
-  }
-  output.commit();
-}
-
-void writeCovarianceCsv(const std::filesystem::path& file, const FilterRun& run) {
-  io::AtomicFile output(file);
-  output.stream() << "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n";
-  for (std::size_t scan = 0; scan < run.updates.size(); ++scan) {
-    if (!run.updates[scan].estimate) continue;
-    const auto& [mean, C] = *run.updates[scan].estimate;
-    char line[300];
-    std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.9f,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
-                  scan, run.updates[scan].time, mean.x, mean.y, mean.yaw, C(0, 0), C(0, 1), C(0, 2),
-                  C(1, 1), C(1, 2), C(2, 2));
-    output.stream() << line;
-  }
-  output.commit();
-}
-
-void writeHealthCsv(const std::filesystem::path& file, const FilterRun& run) {
-  io::AtomicFile output(file);
-  output.stream() << "scan,timestamp,state,reason,matched_share,evidence,innovation,"
-                     "effective_particles,particles,mode_share,spread_m,spread_deg,poles,"
-                     "relocalized\n";
-  for (std::size_t scan = 0; scan < run.updates.size(); ++scan) {
-    const LocalizationUpdate& update = run.updates[scan];
-    const Health& health = update.health;
-    char line[300];
-    std::snprintf(
-        line, sizeof line, "%zu,%.9f,%s,%s,%.4f,%.3f,%.4f,%.1f,%zu,%.4f,%.5f,%.5f,%zu,%d\n", scan,
-        update.time, name(health.state), name(health.reason), health.matchedShare, health.evidence,
-        health.innovation, health.effectiveParticles, update.step.particles, health.modeShare,
-        health.spread, health.spreadHeading / degree, update.poles, int(update.relocalized));
-    output.stream() << line;
-  }
-  output.commit();
 }
 
 void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeResult& result) {

@@ -13,34 +13,17 @@ namespace polemcl::apps {
 using SteadyClock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-/// The window and the clock it is played by.
+/// The window and what is drawn in it.
 class RunView::Screen {
  public:
   Screen(const report::ViewOptions& options, const std::vector<MapPole>& map,
          const std::string& title)
-      : m_rate(report::parseRate(options.rate)),
-        m_scene(map, title),
+      : m_scene(map, title),
         m_window(report::openLiveWindow("pole-localize: " + title,
                                         static_cast<unsigned>(options.width),
                                         static_cast<unsigned>(options.height), m_scene.scene())) {}
 
   bool isOpen() const { return m_window->isOpen(); }
-
-  /// Waits until the scan of this time is due.
-  void waitFor(double time) {
-    const auto now = SteadyClock::now();
-    if (!m_rate || !m_shown) m_due = now;
-    if (m_rate && m_shown)
-      m_due += std::chrono::duration_cast<SteadyClock::duration>(
-          Seconds(std::min(time - m_time, longestWait) / *m_rate));
-    // A run that is slower than the rate does not hurry afterwards.
-    m_due = std::max(m_due, now);
-    m_time = time, m_shown = true;
-    // In short pieces: a window that is closed ends the waiting.
-    while (isOpen() && SteadyClock::now() < m_due)
-      std::this_thread::sleep_for(std::min<SteadyClock::duration>(m_due - SteadyClock::now(),
-                                                                  std::chrono::milliseconds(50)));
-  }
 
   /// More often than so the eye sees nothing new, and the run would only wait.
   bool isDue() const { return Seconds(SteadyClock::now() - m_drawn).count() > 1.0 / 30; }
@@ -51,12 +34,9 @@ class RunView::Screen {
   }
 
  private:
-  std::optional<double> m_rate;
   report::LiveScene m_scene;
   std::unique_ptr<report::LiveWindow> m_window;
-  SteadyClock::time_point m_due, m_drawn;
-  double m_time = 0;  ///< of the last scan, s
-  bool m_shown = false;
+  SteadyClock::time_point m_drawn;
 };
 
 class RunView::Recorder : public SceneRecorder {
@@ -75,20 +55,17 @@ RunView::RunView(const report::ViewOptions& options, const std::vector<MapPole>&
 
 RunView::~RunView() = default;
 
-RunObserver RunView::observer() {
-  if (!m_screen && !m_recorder) return {};
-  return [this](const PoleLocalization& localization, const PoleFrame& frame,
-                const LocalizationUpdate& update) { see(localization, frame, update); };
+bool RunView::isOpen() const {
+  return m_screen && m_screen->isOpen();
 }
 
-void RunView::see(const PoleLocalization& localization, const PoleFrame& frame,
-                  const LocalizationUpdate& update) {
+void RunView::show(const PoleLocalization& localization, const PoleFrame& frame,
+                   const LocalizationUpdate& update) {
+  if (!m_screen && !m_recorder) return;
   if (m_scan == 0) m_start = frame.time;
   m_way.add(update);
   const bool recorded = m_recorder && m_recorder->wants(m_scan);
-  const bool watched = m_screen && m_screen->isOpen();
-  if (watched) m_screen->waitFor(frame.time);
-  const bool drawn = watched && m_screen->isDue();
+  const bool drawn = isOpen() && m_screen->isDue();
   if (recorded || drawn) {
     auto moment = report::momentOf(localization, frame, update, m_scan, m_start, m_way);
     if (drawn) m_screen->draw(moment);
@@ -102,8 +79,7 @@ void RunView::finish() {
 }
 
 void RunView::waitForWindow() const {
-  while (m_options.hold && m_screen && m_screen->isOpen())
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  while (m_options.hold && isOpen()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 
 }  // namespace polemcl::apps

@@ -6,25 +6,33 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace polemcl {
 namespace {
 
-void check(const std::vector<StampedPose2D>& trajectory, const std::string& name) {
-  if (trajectory.empty()) throw Error("the " + name + " holds no pose; there must be at least one");
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const StampedPose2D& at = trajectory[i];
-    if (!std::isfinite(at.time + at.pose.x + at.pose.y + at.pose.yaw)) {
-      throw Error("pose " + std::to_string(i) + " of the " + name +
-                  " holds a number that is not finite");
-    }
-    if (i > 0 && !(at.time > trajectory[i - 1].time)) {
-      throw Error("pose " + std::to_string(i) + " of the " + name + ", at " +
-                  std::to_string(at.time) +
-                  " s, is not later than the one before; times must increase");
-    }
+/// \param before The pose before, null for the first.
+void check(const StampedPose2D& at, const StampedPose2D* before, std::size_t index,
+           const std::string& name) {
+  if (!std::isfinite(at.time + at.pose.x + at.pose.y + at.pose.yaw)) {
+    throw Error("pose " + std::to_string(index) + " of the " + name +
+                " holds a number that is not finite");
+  }
+  if (before && !(at.time > before->time)) {
+    throw Error("pose " + std::to_string(index) + " of the " + name + ", at " +
+                std::to_string(at.time) +
+                " s, is not later than the one before; times must increase");
   }
 }
+
+void check(const std::vector<StampedPose2D>& trajectory, const std::string& name) {
+  if (trajectory.empty()) throw Error("the " + name + " holds no pose; there must be at least one");
+  for (std::size_t i = 0; i < trajectory.size(); ++i)
+    check(trajectory[i], i > 0 ? &trajectory[i - 1] : nullptr, i, name);
+}
+
+constexpr const char* trueName = "true trajectory";
+constexpr const char* estimatedName = "estimated trajectory";
 
 PoseError errorOf(double time, const Pose2D& truth, const Pose2D& estimate) {
   const Pose2D error = relative(truth, estimate);
@@ -54,34 +62,35 @@ std::vector<double> metreTimes(const std::vector<StampedPose2D>& truth, double s
 
 /// Half of them must be found again: less says more about the clocks than about the trajectory.
 void requireHalf(std::size_t matched, std::size_t all, const std::vector<StampedPose2D>& truth,
-                 const std::vector<StampedPose2D>& estimate) {
+                 const StampedPose2D& first, const StampedPose2D& last) {
   if (matched > 0 && 2 * matched >= all) return;
   throw Error("only " + std::to_string(matched) + " of " + std::to_string(all) +
               " poses can be compared, at least half must; the truth spans " +
               std::to_string(truth.front().time) + " to " + std::to_string(truth.back().time) +
-              " s, the estimate " + std::to_string(estimate.front().time) + " to " +
-              std::to_string(estimate.back().time) + " s: check that they belong together");
+              " s, the estimate " + std::to_string(first.time) + " to " +
+              std::to_string(last.time) + " s: check that they belong together");
 }
 
-void summarize(TrajectoryErrors& summary) {
-  double squares = 0, angle = 0, squaredAngles = 0;
-  for (const PoseError& e : summary.errors) {
-    summary.posMean += e.position;
-    summary.posMax = std::max(summary.posMax, e.position);
-    summary.latMean += std::abs(e.lateral);
-    summary.lonMean += std::abs(e.longitudinal);
-    squares += e.position * e.position;
-    angle += std::abs(e.heading);
-    squaredAngles += e.heading * e.heading;
-  }
-  summary.poses = summary.errors.size();
-  const double n = static_cast<double>(summary.poses);
-  summary.posMean /= n;
-  summary.latMean /= n;
-  summary.lonMean /= n;
-  summary.posRmse = std::sqrt(squares / n);
-  summary.angMeanDeg = angle / n * 180 / M_PI;
-  summary.angRmseDeg = std::sqrt(squaredAngles / n) * 180 / M_PI;
+void addTo(TrajectoryErrors& sums, const PoseError& e) {
+  ++sums.poses;
+  sums.posMean += e.position;
+  sums.posMax = std::max(sums.posMax, e.position);
+  sums.latMean += std::abs(e.lateral);
+  sums.lonMean += std::abs(e.longitudinal);
+  sums.posRmse += e.position * e.position;
+  sums.angMeanDeg += std::abs(e.heading);
+  sums.angRmseDeg += e.heading * e.heading;
+}
+
+/// Turns sums of radians into means of degrees, those of squares into their roots.
+void divide(TrajectoryErrors& sums) {
+  const double n = static_cast<double>(sums.poses);
+  sums.posMean /= n;
+  sums.latMean /= n;
+  sums.lonMean /= n;
+  sums.posRmse = std::sqrt(sums.posRmse / n);
+  sums.angMeanDeg = sums.angMeanDeg / n * 180 / M_PI;
+  sums.angRmseDeg = std::sqrt(sums.angRmseDeg / n) * 180 / M_PI;
 }
 
 void checkPoles(const std::vector<Eigen::Vector2d>& poles, const std::string& name) {
@@ -109,32 +118,68 @@ std::vector<std::vector<std::uint32_t>> edgesWithin(const std::vector<Eigen::Vec
 
 }  // namespace
 
-TrajectoryErrors evaluateTrajectory(const std::vector<StampedPose2D>& truth,
-                                    const std::vector<StampedPose2D>& estimate, Sampling sampling,
-                                    double maxTruthGap) {
-  check(truth, "true trajectory");
-  check(estimate, "estimated trajectory");
-  std::vector<double> times;
-  for (const StampedPose2D& e : estimate) {
-    if (poseAt(truth, e.time, maxTruthGap)) times.push_back(e.time);
+TrajectoryEvaluator::TrajectoryEvaluator(const std::vector<StampedPose2D>& truth,
+                                         double maxTruthGap)
+    : m_truth(truth), m_maxTruthGap(maxTruthGap) {
+  check(truth, trueName);
+}
+
+std::optional<PoseError> TrajectoryEvaluator::add(const StampedPose2D& estimate) {
+  check(estimate, m_estimates > 0 ? &m_last : nullptr, m_estimates, estimatedName);
+  if (m_estimates++ == 0) m_first = estimate;
+  m_last = estimate;
+  const auto truth = poseAt(m_truth, estimate.time, m_maxTruthGap);
+  if (!truth) {
+    ++m_sums.unmatched;
+    return std::nullopt;
   }
-  requireHalf(times.size(), estimate.size(), truth, estimate);
+  const PoseError error = errorOf(estimate.time, *truth, estimate.pose);
+  addTo(m_sums, error);
+  return error;
+}
+
+TrajectoryErrors TrajectoryEvaluator::finish() const {
+  if (m_estimates == 0) check({}, estimatedName);
+  requireHalf(m_sums.poses, m_estimates, m_truth, m_first, m_last);
+  TrajectoryErrors summary = m_sums;
+  divide(summary);
+  return summary;
+}
+
+namespace {
+
+/// At each metre of the true path since the first estimate.
+TrajectoryErrors evaluateMetres(const std::vector<StampedPose2D>& truth,
+                                const std::vector<StampedPose2D>& estimate, double maxTruthGap) {
+  const auto times = metreTimes(truth, estimate.front().time, estimate.back().time);
   TrajectoryErrors summary;
-  summary.unmatched = estimate.size() - times.size();
-  if (sampling == Sampling::perMetre) {
-    times = metreTimes(truth, estimate.front().time, estimate.back().time);
-    summary.unmatched = 0;
-  }
   for (const double time : times) {
     const auto is = poseAt(truth, time, maxTruthGap), said = poseAt(estimate, time, maxTruthGap);
     if (is && said) {
       summary.errors.push_back(errorOf(time, *is, *said));
+      addTo(summary, summary.errors.back());
     } else {
       ++summary.unmatched;
     }
   }
-  requireHalf(summary.errors.size(), times.size(), truth, estimate);
-  summarize(summary);
+  requireHalf(summary.poses, times.size(), truth, estimate.front(), estimate.back());
+  divide(summary);
+  return summary;
+}
+
+}  // namespace
+
+TrajectoryErrors evaluateTrajectory(const std::vector<StampedPose2D>& truth,
+                                    const std::vector<StampedPose2D>& estimate, Sampling sampling,
+                                    double maxTruthGap) {
+  TrajectoryEvaluator poses(truth, maxTruthGap);
+  check(estimate, estimatedName);
+  std::vector<PoseError> errors;
+  for (const StampedPose2D& e : estimate)
+    if (const auto error = poses.add(e)) errors.push_back(*error);
+  TrajectoryErrors summary = poses.finish();
+  if (sampling == Sampling::perMetre) return evaluateMetres(truth, estimate, maxTruthGap);
+  summary.errors = std::move(errors);
   return summary;
 }
 

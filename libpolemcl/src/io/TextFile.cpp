@@ -7,39 +7,66 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <memory>
+#include <utility>
 
 namespace polemcl::io {
 
-namespace {
+struct LineReader::Stream {
+  gzFile_s* file = nullptr;
+  ~Stream() {
+    if (file) gzclose(file);
+  }
+};
 
-std::string readPlainOrGzip(const std::filesystem::path& file) {
+LineReader::LineReader(const std::filesystem::path& file)
+    : m_file(file), m_stream(std::make_unique<Stream>()) {
   const auto fail = [&](const std::string& why) {
     return Error("cannot read " + file.string() + ": " + why);
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   errno = 0;
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> stream(gzopen(file.c_str(), "rb"), &gzclose);
-  if (!stream) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");
-  std::string text;
-  std::array<char, 65536> block;
-  int got = 0;
-  while ((got = gzread(stream.get(), block.data(), block.size())) > 0) {
-    text.append(block.data(), static_cast<std::size_t>(got));
-  }
-  // A gzip file that is cut short reads to its end first and is reported here only.
-  int code = Z_OK;
-  const char* message = gzerror(stream.get(), &code);
-  if (got < 0 || code != Z_OK) {
-    throw fail(code == Z_ERRNO       ? std::strerror(errno)
-               : code == Z_BUF_ERROR ? "the gzip data is cut short"
-                                     : message);
-  }
-  return text;
+  m_stream->file = gzopen(file.c_str(), "rb");
+  if (!m_stream->file) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");
+  readBlock();
+  if (std::string_view(m_text).substr(0, 3) == "\xEF\xBB\xBF") m_begin = 3;
 }
 
-}  // namespace
+LineReader::~LineReader() = default;
+
+void LineReader::readBlock() {
+  std::array<char, 65536> block;
+  const int got = gzread(m_stream->file, block.data(), block.size());
+  if (got > 0) {
+    m_text.erase(0, m_begin);
+    m_begin = 0;
+    m_text.append(block.data(), static_cast<std::size_t>(got));
+    return;
+  }
+  m_ended = true;
+  // A gzip file that is cut short reads to its end first and is reported here only.
+  int code = Z_OK;
+  const char* message = gzerror(m_stream->file, &code);
+  if (got < 0 || code != Z_OK)
+    throw Error("cannot read " + m_file.string() + ": " +
+                (code == Z_ERRNO       ? std::strerror(errno)
+                 : code == Z_BUF_ERROR ? "the gzip data is cut short"
+                                       : message));
+}
+
+bool LineReader::next(std::string& line) {
+  std::size_t end = m_text.find('\n', m_begin);
+  while (end == std::string::npos && !m_ended) {
+    const std::size_t seen = m_text.size() - m_begin;
+    readBlock();
+    end = m_text.find('\n', m_begin + (m_ended ? 0 : seen));
+  }
+  if (m_begin == m_text.size()) return false;
+  line.assign(m_text, m_begin, end == std::string::npos ? end : end - m_begin);
+  m_begin = end == std::string::npos ? m_text.size() : end + 1;
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  return true;
+}
 
 std::string at(const std::filesystem::path& file, std::size_t line) {
   return file.string() + ":" + std::to_string(line) + ": ";
@@ -52,17 +79,9 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::vector<std::string> readLines(const std::filesystem::path& file) {
-  const std::string text = readPlainOrGzip(file);
-  std::string_view rest = text;
-  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+  LineReader reader(file);
   std::vector<std::string> lines;
-  while (!rest.empty()) {
-    const auto end = rest.find('\n');
-    std::string_view line = rest.substr(0, end);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    lines.emplace_back(line);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  }
+  for (std::string line; reader.next(line);) lines.push_back(line);
   return lines;
 }
 
@@ -93,20 +112,29 @@ std::vector<double> parseNumbers(std::string_view text, const std::filesystem::p
   return values;
 }
 
+NumberRowReader::NumberRowReader(const std::filesystem::path& file, std::size_t columns,
+                                 std::string layout)
+    : m_lines(file), m_file(file), m_columns(columns), m_layout(std::move(layout)) {}
+
+bool NumberRowReader::next(NumberRow& row) {
+  while (m_lines.next(m_text)) {
+    ++m_line;
+    const std::string_view line = std::string_view(m_text).substr(0, m_text.find('#'));
+    if (trimmed(line).empty()) continue;
+    row = {m_line, parseNumbers(line, m_file, m_line)};
+    if (row.values.size() != m_columns)
+      throw Error(at(m_file, m_line) + std::to_string(row.values.size()) + " numbers, " +
+                  std::to_string(m_columns) + " expected: " + m_layout);
+    return true;
+  }
+  return false;
+}
+
 std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::size_t columns,
                                       const std::string& layout) {
+  NumberRowReader reader(file, columns, layout);
   std::vector<NumberRow> rows;
-  const std::vector<std::string> lines = readLines(file);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string_view line = std::string_view(lines[i]).substr(0, lines[i].find('#'));
-    if (trimmed(line).empty()) continue;
-    NumberRow row{i + 1, parseNumbers(line, file, i + 1)};
-    if (row.values.size() != columns) {
-      throw Error(at(file, row.line) + std::to_string(row.values.size()) + " numbers, " +
-                  std::to_string(columns) + " expected: " + layout);
-    }
-    rows.push_back(std::move(row));
-  }
+  for (NumberRow row; reader.next(row);) rows.push_back(std::move(row));
   return rows;
 }
 

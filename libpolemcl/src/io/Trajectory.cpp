@@ -4,6 +4,7 @@
 
 #include <Eigen/SVD>
 #include <cmath>
+#include <functional>
 
 namespace polemcl::io {
 
@@ -11,6 +12,31 @@ namespace {
 
 constexpr const char* tumLayout = "time x y z qx qy qz qw (s, m)";
 constexpr int decimals = 9;
+
+/// Reads a TUM file, handing each pose on.
+void readTumRows(const std::filesystem::path& file,
+                 const std::function<void(const StampedPose3D&)>& consume) {
+  NumberRowReader rows(file, 8, tumLayout);
+  StampedPose3D entry;
+  std::size_t count = 0;
+  for (NumberRow row; rows.next(row); ++count) {
+    const std::vector<double>& v = row.values;
+    if (count > 0 && !(v[0] > entry.time)) {
+      throw Error(at(file, row.line) + "time " + significant(v[0], 17) + " is not after " +
+                  significant(entry.time, 17) + ", the one before");
+    }
+    const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
+    if (std::abs(q.norm() - 1) > 0.01) {
+      throw Error(at(file, row.line) + "qx qy qz qw have length " + significant(q.norm(), 6) +
+                  ", not 1; expected: " + tumLayout);
+    }
+    entry.time = v[0];
+    entry.pose.linear() = q.normalized().toRotationMatrix();
+    entry.pose.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+    consume(entry);
+  }
+  if (count == 0) throw Error(file.string() + ": no pose in it; expected: " + tumLayout);
+}
 
 void requireFinite(const std::filesystem::path& file, std::size_t row, double time,
                    const Eigen::Isometry3d& pose) {
@@ -55,25 +81,23 @@ Eigen::Isometry3d spatial(const Pose2D& pose) {
 
 std::vector<StampedPose3D> readTum(const std::filesystem::path& file) {
   std::vector<StampedPose3D> trajectory;
-  for (const NumberRow& row : readNumberRows(file, 8, tumLayout)) {
-    const std::vector<double>& v = row.values;
-    if (!trajectory.empty() && !(v[0] > trajectory.back().time)) {
-      throw Error(at(file, row.line) + "time " + significant(v[0], 17) + " is not after " +
-                  significant(trajectory.back().time, 17) + ", the one before");
-    }
-    const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-    if (std::abs(q.norm() - 1) > 0.01) {
-      throw Error(at(file, row.line) + "qx qy qz qw have length " + significant(q.norm(), 6) +
-                  ", not 1; expected: " + tumLayout);
-    }
-    StampedPose3D entry;
-    entry.time = v[0];
-    entry.pose.linear() = q.normalized().toRotationMatrix();
-    entry.pose.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
-    trajectory.push_back(entry);
-  }
-  if (trajectory.empty()) throw Error(file.string() + ": no pose in it; expected: " + tumLayout);
+  readTumRows(file, [&](const StampedPose3D& entry) { trajectory.push_back(entry); });
   return trajectory;
+}
+
+std::vector<StampedPose2D> readPlanarTum(const std::filesystem::path& file) {
+  std::vector<StampedPose2D> trajectory;
+  readTumRows(file, [&](const StampedPose3D& entry) {
+    trajectory.push_back({entry.time, planar(entry.pose)});
+  });
+  return trajectory;
+}
+
+std::string tumRow(const StampedPose2D& pose) {
+  const Eigen::Isometry3d spatialPose = spatial(pose.pose);
+  if (!std::isfinite(pose.time) || !spatialPose.matrix().allFinite())
+    throw Error("the pose at " + std::to_string(pose.time) + " s is not finite");
+  return tumRow(pose.time, spatialPose);
 }
 
 void writeTum(const std::filesystem::path& file, const std::vector<StampedPose2D>& trajectory) {

@@ -14,6 +14,10 @@ namespace polemcl {
 
 namespace {
 
+double secondsSince(ScanClock::time_point begin) {
+  return std::chrono::duration<double>(ScanClock::now() - begin).count();
+}
+
 /// One scan on its way through the pipeline; an error travels in its place, so that the first of
 /// the file is the one reported, whatever the threads do.
 struct Task {
@@ -27,6 +31,7 @@ class Stream {
  public:
   Stream(const std::string& path, const SequenceOptions& options)
       : m_path(path),
+        m_pace(options.pace),
         m_source(path, options.motion, options.allowTruncated),
         m_extractions([options] { return PoleExtraction(options.extraction); }) {
     m_extractions.local();  // refuses bad options here, whatever the rawlog holds
@@ -39,6 +44,7 @@ class Stream {
 
  private:
   std::string m_path;
+  std::function<ScanClock::time_point(double)> m_pace;
   ScanSource m_source;
   tbb::enumerable_thread_specific<PoleExtraction> m_extractions;
   SequenceCounts m_counts;
@@ -50,11 +56,14 @@ TaskPtr Stream::read() {
   if (m_ended) return nullptr;
   auto task = std::make_shared<Task>();
   try {
+    const auto begin = ScanClock::now();
     auto scan = m_source.next();
     m_ended = !scan;
     if (m_ended) return nullptr;
     task->scan = std::move(*scan);
     task->result.expected = m_source.expected();
+    task->result.readSeconds = secondsSince(begin);
+    task->result.arrival = m_pace ? m_pace(task->scan.time) : ScanClock::now();
   } catch (...) {
     m_ended = true;
     task->error = std::current_exception();
@@ -75,6 +84,7 @@ void Stream::extract(Task& task) {
     result.points = result.observation->points;
     return;
   }
+  const auto begin = ScanClock::now();
   try {
     PoleExtraction& extraction = m_extractions.local();
     // By index, so that the threads have no say in it.
@@ -84,6 +94,7 @@ void Stream::extract(Task& task) {
     result.points = result.observation->points;
     result.report = extraction.report();
     result.invalid = result.report.invalid;
+    result.extractSeconds = secondsSince(begin);
   } catch (const std::exception& error) {
     task.error = std::make_exception_ptr(
         Error(m_path + ": scan " + std::to_string(task.scan.index) + ": " + error.what()));
@@ -141,13 +152,20 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
   return stream.counts();
 }
 
+PoleFrame frameOf(const PoleScan& scan) {
+  return {scan.time,
+          scan.motion,
+          scan.observation->polesInRobotFrame(),
+          scan.points,
+          scan.observation->freeRange,
+          scan.observation->planarSensorPose()};
+}
+
 PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,
                               const ScanProgress& progress) {
   PoleSequence sequence;
   sequence.counts = streamPoles(path, options, [&](const PoleScan& scan) {
-    sequence.frames.push_back({scan.time, scan.motion, scan.observation->polesInRobotFrame(),
-                               scan.points, scan.observation->freeRange,
-                               scan.observation->planarSensorPose()});
+    sequence.frames.push_back(frameOf(scan));
     if (progress) progress(sequence.frames.size(), scan.expected);
   });
   return sequence;

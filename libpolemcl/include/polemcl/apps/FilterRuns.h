@@ -1,42 +1,56 @@
 #pragma once
 /// \file FilterRuns.h
-/// \brief The same drive localized several times, in parallel, each run with its own seed.
+/// \brief The same drive localized several times, side by side, each run with its own seed.
 
-#include <polemcl/core/Evaluation.h>
 #include <polemcl/mrpt/PoleLocalization.h>
 
-#include <functional>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace polemcl::apps {
 
-/// \brief One run over a drive. Element i of `updates` belongs to scan i.
+/// \brief What is kept of a run: figures of all its scans, none of a single one.
 struct FilterRun {
   std::uint32_t seed = 0;
-  std::vector<LocalizationUpdate> updates;
-  double seconds = 0;  ///< spent in the localization
+  std::size_t scans = 0;
+  std::size_t states[3] = {};            ///< scans in each HealthState
+  std::optional<std::size_t> firstPose;  ///< 0-based scan from which on the pose was known
+  std::size_t relocalizations = 0;       ///< scans at which the global search set the pose
+  std::size_t resampled = 0;             ///< scans after which the filter resampled
+  double seconds = 0;                    ///< spent in the localization
 
-  /// \brief The estimates, one for each scan from the first with a known pose on.
-  std::vector<StampedPose2D> trajectory() const;
+  /// \brief One scan more.
+  void add(const LocalizationUpdate& update);
 };
 
-/// \brief Sees every step of the first run, from the thread that runs it; may be empty.
-using RunObserver = std::function<void(const PoleLocalization& localization, const PoleFrame& frame,
-                                       const LocalizationUpdate& update)>;
-
-/// \brief How runs are watched. Both may be empty.
-struct RunWatch {
-  /// Called with the number of frames done in all runs, from one thread at a time.
-  std::function<void(std::size_t)> progress;
-  RunObserver observer;
+/// \brief One scan of one run.
+struct FilterStep {
+  LocalizationUpdate update;
+  double seconds = 0;  ///< spent on it
 };
 
-/// \brief Localizes the frames `runs.runs` times, on all threads. Run i has the seed
-/// `runs.seed + i` and the same bytes on any number of threads.
-/// \throws Error as PoleLocalization does.
-std::vector<FilterRun> runFilters(const LocalizationMap& map, const std::vector<PoleFrame>& frames,
-                                  const LocalizationOptions& options, const StartOptions& start,
-                                  const RunOptions& runs, const RunWatch& watch = {});
+/// \brief Filters that take each scan of a drive together, on all threads. Run i has the seed
+/// `runs.seed + i`, and the same bytes as alone and on any number of threads.
+class FilterRuns {
+ public:
+  /// \throws Error as PoleLocalization does, on its options and on the start.
+  FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
+             const StartOptions& start, const RunOptions& runs);
+
+  /// \brief One scan more. \return What each run made of it, until the next call.
+  /// \throws Error as PoleLocalization::step(); the runs are of no use then.
+  const std::vector<FilterStep>& step(const PoleFrame& frame);
+
+  std::size_t size() const { return m_filters.size(); }
+  const std::vector<FilterRun>& results() const { return m_results; }
+  const PoleLocalization& localization(std::size_t run) const { return *m_filters[run]; }
+
+ private:
+  std::vector<std::unique_ptr<PoleLocalization>> m_filters;
+  std::vector<FilterRun> m_results;
+  std::vector<FilterStep> m_steps;  ///< of the last scan, element i of run i
+};
 
 }  // namespace polemcl::apps

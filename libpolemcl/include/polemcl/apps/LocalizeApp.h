@@ -3,6 +3,8 @@
 /// \brief `pole-localize`: plays a rawlog against a pole map, and says how well it went.
 
 #include <polemcl/apps/FilterRuns.h>
+#include <polemcl/apps/LocalizeTimings.h>
+#include <polemcl/core/Evaluation.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -20,7 +22,7 @@ struct LocalizeJob {
   std::optional<std::uint32_t> seed;
   std::vector<double> start;  ///< x, y (m), yaw (deg), radius (m), heading (deg); or empty
   bool anywhere = false;      ///< no start pose: global search
-  /// \name How the first run is watched, as in `[view]`
+  /// \name How the drive is played and its first run watched, as in `[view]`
   /// @{
   bool live = false, hold = false;
   std::optional<std::string> rate, frames;
@@ -32,11 +34,21 @@ struct LocalizeJob {
 
 struct LocalizeResult {
   std::vector<FilterRun> runs;
-  /// Of each run; empty without truth; none for a run that never found its pose.
+  /// Of each run, without those of single poses; empty without truth; none for a run that never
+  /// found its pose.
   std::vector<std::optional<TrajectoryErrors>> errors;
+  LocalizeTimings timings;
 };
 
-/// \brief Extracts the poles once, runs the filter, writes the folder `output`:
+/// \brief Plays the rawlog: reads, extracts, filters, shows and writes scan by scan. All runs take
+/// each scan side by side, with the same bytes as one by one.
+///
+/// Memory does not grow with the length of the drive, but for the truth (32 bytes a pose) and,
+/// while the run is watched, the path of the estimate (24 bytes a metre). By default a scan follows
+/// the one before as fast as it goes; `[view] rate` or `--rate` sets a pace (see Pace.h), which a
+/// window has by default (1x).
+///
+/// The folder `output` gets:
 /// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;
 ///   started anywhere, from the scan on by which the pose is known;
 /// - `run_NN_cov.csv`: `scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw` of the same
@@ -53,14 +65,22 @@ struct LocalizeResult {
 ///   report/LiveScene.h; stock objects, the vehicle at the origin);
 /// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
 ///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`;
+///   `start_source` says who gave the start pose: the `truth` (at the first scan), the
+///   `configuration`, the `command line`, or nobody: the start is `anywhere`;
 /// - `config.ini`: the effective configuration;
-/// - `timings.json`: the only file that differs from repetition to repetition.
+/// - `timings.json`: the only file that differs from repetition to repetition. `wall_s`, `rate`
+///   (times the pace of the recording, or `max`), `filter_s` of each run, and in `latency_ms` for
+///   each stage `median p99 worst count` (see LocalizeTimings.h; to 0.5 %, `worst` exactly):
+///   `read`, `extract` (not for stored poles), `step` of each run, `write` with the view, and
+///   `total`, from the moment a scan is there until all runs have its pose. At a rate that is the
+///   moment at which the scan is due. At full speed it is the one at which it has been read, so
+///   that `total` contains the wait for the scans before it.
 ///
-/// Files of an earlier call are replaced once everything is complete. Prints a table on stdout
-/// unless quiet.
+/// Results grow in a hidden folder beside files of an earlier call, which they replace once
+/// everything is complete. Prints a table on stdout unless quiet.
 /// \throws Error as the readers do, and when the map has no poles, scans lack odometry, no pole is
 ///         ever seen, there is no start pose or it is more than 1 km from all poles of the map, or
-///         the truth covers less than half of the scans.
+///         the truth covers less than half of the scans. The folder is as it was before then.
 LocalizeResult localize(const LocalizeJob& job);
 
 /// \brief The program. \return Its exit code.

@@ -3,12 +3,11 @@
 /// \brief What `pole-localize` writes and prints about its runs.
 
 #include <polemcl/apps/LocalizeApp.h>
-#include <polemcl/core/Evaluation.h>
+#include <polemcl/mrpt/PoleSequence.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <vector>
+#include <string>
 
 namespace polemcl::apps {
 
@@ -17,6 +16,7 @@ struct LocalizeFacts {
   LocalizeJob job;
   LocalizationOptions localization;
   StartOptions start;
+  std::string startSource;  ///< `truth`, `configuration`, `command line` or `anywhere`
   RunOptions runs;
   SequenceCounts counts;
   std::size_t mapPoles = 0;
@@ -27,14 +27,6 @@ std::string runName(std::size_t run);
 
 /// \brief See LocalizeApp.h for the layout.
 nlohmann::ordered_json makeSummary(const LocalizeFacts& facts, const LocalizeResult& result);
-
-/// \brief See LocalizeApp.h for the columns. Atomic. \throws Error when it cannot be written.
-void writeErrorsCsv(const std::filesystem::path& file, const FilterRun& run,
-                    const TrajectoryErrors& errors);
-
-/// \brief See LocalizeApp.h for the columns. Atomic. \throws Error when it cannot be written.
-void writeCovarianceCsv(const std::filesystem::path& file, const FilterRun& run);
-void writeHealthCsv(const std::filesystem::path& file, const FilterRun& run);
 
 /// \brief A row per run, mean and spread; without truth the counts alone.
 void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeResult& result);

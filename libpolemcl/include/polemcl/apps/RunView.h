@@ -2,7 +2,6 @@
 /// \file RunView.h
 /// \brief Shows a run as it goes: in a window, as scenes and as frames.
 
-#include <polemcl/apps/FilterRuns.h>
 #include <polemcl/apps/RunFolder.h>
 #include <polemcl/report/LiveMoment.h>
 #include <polemcl/report/ViewOptions.h>
@@ -14,13 +13,10 @@ namespace polemcl::apps {
 
 /// \brief What `[view]` asks for. Everything is opened and refused here, before the run.
 ///
-/// The window is drawn by the thread of the run, which waits for the time of each scan (gaps longer
-/// than `longestWait` are cut short); closed by the user, the run goes on without it at full speed.
+/// The window is drawn by the thread that shows; closed by the user, the run goes on without it.
 /// Scenes and frames are made by a thread of their own, from copies.
 class RunView {
  public:
-  static constexpr double longestWait = 2;  ///< s, between two scans
-
   /// \param map Drawn. \param name Of the input, for the title.
   /// \param folder Gets `run_00_scenes/NNNNNN.3Dscene`, NNNNNN the scan; must outlive this object.
   /// \throws Error without a display for the window; when the folder of frames holds other files.
@@ -30,8 +26,12 @@ class RunView {
   RunView(const RunView&) = delete;
   RunView& operator=(const RunView&) = delete;
 
-  /// \brief To be called with each step of one run; empty when nothing is to be shown.
-  RunObserver observer();
+  /// \brief To be called with each step of one run, in order, from one thread at a time.
+  /// \throws Error when an earlier scene or frame could not be written.
+  void show(const PoleLocalization& localization, const PoleFrame& frame,
+            const LocalizationUpdate& update);
+  /// \brief A window is there, and the user has not closed it. From any thread.
+  bool isOpen() const;
 
   /// \brief Once the run is over: waits until all scenes and frames are written, then puts the
   /// frames in the place of earlier ones. \throws Error when any could not be written.
@@ -42,9 +42,6 @@ class RunView {
  private:
   class Screen;
   class Recorder;
-  void see(const PoleLocalization& localization, const PoleFrame& frame,
-           const LocalizationUpdate& update);
-
   report::ViewOptions m_options;
   std::unique_ptr<Screen> m_screen;
   std::unique_ptr<Recorder> m_recorder;

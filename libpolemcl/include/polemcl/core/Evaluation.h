@@ -5,6 +5,7 @@
 #include <polemcl/core/Types.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace polemcl {
@@ -51,6 +52,29 @@ enum class Sampling {
 TrajectoryErrors evaluateTrajectory(const std::vector<StampedPose2D>& truth,
                                     const std::vector<StampedPose2D>& estimate, Sampling sampling,
                                     double maxTruthGap = 2.0);
+
+/// \brief evaluateTrajectory() with Sampling::perPose, one estimate at a time, in constant memory.
+class TrajectoryEvaluator {
+ public:
+  /// \param truth Must outlive this object. \throws Error as evaluateTrajectory().
+  explicit TrajectoryEvaluator(const std::vector<StampedPose2D>& truth, double maxTruthGap = 2.0);
+
+  /// \brief The next estimate. \return Its error; none where the truth says nothing.
+  /// \throws Error when it is not finite, or not later than the one before.
+  std::optional<PoseError> add(const StampedPose2D& estimate);
+  /// \brief Estimates taken so far.
+  std::size_t estimates() const { return m_estimates; }
+  /// \brief The summary; its `errors` stay empty.
+  /// \throws Error without an estimate, or when less than half of them can be compared.
+  TrajectoryErrors finish() const;
+
+ private:
+  const std::vector<StampedPose2D>& m_truth;
+  double m_maxTruthGap;
+  TrajectoryErrors m_sums;  ///< not yet divided; of squares, where it will hold a root
+  StampedPose2D m_first, m_last;
+  std::size_t m_estimates = 0;
+};
 
 struct MapScore {
   std::size_t mapPoles = 0, truthPoles = 0, matches = 0;

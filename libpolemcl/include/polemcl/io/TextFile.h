@@ -3,6 +3,7 @@
 /// \brief Strict tables of numbers, and numbers to text and back, in no locale but "C".
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,14 +17,51 @@ struct NumberRow {
   std::vector<double> values;
 };
 
-/// \brief All lines of a text file, without line ends (`\n` or `\r\n`), blank ones included. Plain
-/// or gzip. A byte order mark is dropped. \throws Error when it cannot be read or is cut short.
+/// \brief The lines of a text file one by one, without line ends (`\n` or `\r\n`), blank ones
+/// included. Plain or gzip. A byte order mark is dropped.
+class LineReader {
+ public:
+  /// \throws Error when the file cannot be opened.
+  explicit LineReader(const std::filesystem::path& file);
+  ~LineReader();
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+
+  /// \return False at the end. \throws Error when it cannot be read or is cut short.
+  bool next(std::string& line);
+
+ private:
+  struct Stream;
+  void readBlock();
+
+  std::filesystem::path m_file;
+  std::unique_ptr<Stream> m_stream;
+  std::string m_text;  ///< read, not yet given out from m_begin on
+  std::size_t m_begin = 0;
+  bool m_ended = false;
+};
+
+/// \brief All lines, see LineReader. \throws Error as LineReader does.
 std::vector<std::string> readLines(const std::filesystem::path& file);
 
 /// \brief Lines of exactly `columns` numbers between spaces or tabs. `#` starts a comment; blank
 /// lines are skipped.
 /// \param layout The columns, for messages: "time x y".
 /// \throws Error naming file and line: another count of columns, no number, NaN or infinite.
+class NumberRowReader {
+ public:
+  NumberRowReader(const std::filesystem::path& file, std::size_t columns, std::string layout);
+  /// \return False at the end.
+  bool next(NumberRow& row);
+
+ private:
+  LineReader m_lines;
+  std::filesystem::path m_file;
+  std::size_t m_columns, m_line = 0;
+  std::string m_layout, m_text;
+};
+
+/// \brief All rows, see NumberRowReader.
 std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::size_t columns,
                                       const std::string& layout);
 

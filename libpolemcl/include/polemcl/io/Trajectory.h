@@ -26,6 +26,12 @@ Eigen::Isometry3d spatial(const Pose2D& pose);
 /// \throws Error naming file and line: wrong columns, not a number, no unit quaternion, times not
 ///         increasing; and when there is no pose at all.
 std::vector<StampedPose3D> readTum(const std::filesystem::path& file);
+/// \brief The same, planar: no more than 100 bytes a pose are in memory at any time.
+std::vector<StampedPose2D> readPlanarTum(const std::filesystem::path& file);
+
+/// \brief One row of a TUM file, with its line end: 9 decimals, z = 0.
+/// \throws Error when a value is not finite.
+std::string tumRow(const StampedPose2D& pose);
 
 /// \brief Writes a TUM file with 9 decimals, atomically. Planar poses get z = 0.
 /// \throws Error when it cannot be written, or a value is not finite.

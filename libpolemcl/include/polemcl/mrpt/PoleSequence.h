@@ -8,6 +8,7 @@
 #include <polemcl/mrpt/MotionOptions.h>
 #include <polemcl/mrpt/PoleExtraction.h>
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,11 +16,18 @@
 
 namespace polemcl {
 
+/// \brief The clock by which latencies are measured.
+using ScanClock = std::chrono::steady_clock;
+
 struct SequenceOptions {
   PoleExtractionOptions extraction;
   MotionOptions motion;
   bool allowTruncated = false;
   int threads = 0;  ///< extracting, at most one per core; 0: that many. The result is the same
+  /// Sets the pace of the input. Called in order with the time (s) of each scan that has been read,
+  /// from one thread at a time; may wait. Returns the moment at which the scan counts as there.
+  /// Empty: no scan waits.
+  std::function<ScanClock::time_point(double)> pace = {};
 };
 
 /// \brief What was in the rawlog.
@@ -45,10 +53,13 @@ struct PoleScan {
   CObservationPoles::Ptr observation;  ///< never null
   /// What the poles were extracted from, its points maybe outside still; null for stored poles.
   mrpt::obs::CObservation::Ptr scan;
-  std::size_t points = 0;   ///< valid points; 0 for stored poles that do not tell
-  std::size_t invalid = 0;  ///< dropped points
-  ExtractionReport report;  ///< of the extraction; all zero for stored poles
-  bool stored = false;      ///< true: read as poles, not extracted
+  std::size_t points = 0;         ///< valid points; 0 for stored poles that do not tell
+  std::size_t invalid = 0;        ///< dropped points
+  ExtractionReport report;        ///< of the extraction; all zero for stored poles
+  bool stored = false;            ///< true: read as poles, not extracted
+  ScanClock::time_point arrival;  ///< when it was there: read, or due by SequenceOptions::pace
+  double readSeconds = 0;         ///< spent on reading it
+  double extractSeconds = 0;      ///< spent on its points and poles
   /// Scans of the whole rawlog, judged from the share of the file read so far; 0: not known yet.
   std::size_t expected = 0;
 };
@@ -68,6 +79,8 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// the scan (held for 0.5 s before the first and after the last reading), covariance from
 /// `[motion]`.
 ///
+/// While a scan is extracted and consumed, the next ones are read and extracted.
+///
 /// An error ends the stream in its place: the scans before it have been handed out.
 /// \param consume Called in order, from one thread at a time.
 /// \throws Error as RawlogReader and PoleExtraction do, naming file and scan; and what consume
@@ -84,6 +97,9 @@ struct PoleFrame {
   std::vector<float> freeRange = {};  ///< as CObservationPoles carries it; maybe empty
   Pose2D pose_robot_sensor = {};      ///< of the frame of freeRange
 };
+
+/// \brief What map and filter need of a scan. \param scan Of streamPoles().
+PoleFrame frameOf(const PoleScan& scan);
 
 struct PoleSequence {
   std::vector<PoleFrame> frames;
