@@ -15,19 +15,6 @@ TEST(ViewOptions, RefusesOtherRates) {
     EXPECT_THROW(parseRate(wrong), Error) << wrong;
 }
 
-TEST(ViewOptions, OnlyAWindowHasAPaceUnlessOneIsGiven) {
-  ViewOptions options;
-  EXPECT_EQ(options.pace(), std::nullopt);
-  options.live = true;
-  EXPECT_EQ(options.pace(), 1.0);
-  options.rate = "max";
-  EXPECT_EQ(options.pace(), std::nullopt);
-  options.rate = "2x";
-  EXPECT_EQ(options.pace(), 2.0);
-  options.live = false;
-  EXPECT_EQ(options.pace(), 2.0);
-}
-
 TEST(ViewOptions, RefusesWhatIsOutOfRange) {
   const auto refused = [](void (*spoil)(ViewOptions&)) {
     ViewOptions options;

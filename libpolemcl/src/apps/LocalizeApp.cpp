@@ -73,16 +73,19 @@ LocalizeFacts factsOf(const LocalizeJob& job, const Settings& settings, std::siz
   return facts;
 }
 
-/// Streams the rawlog to the player, at the pace of the settings.
+/// Times as fast as it was recorded; none: full speed. `[view] rate` is for windows only.
+std::optional<double> rateOf(const LocalizeJob& job, const Settings& settings) {
+  return job.rate || settings.view.live ? report::parseRate(settings.view.rate) : std::nullopt;
+}
+
+/// Streams the rawlog to the player.
 SequenceCounts play(const LocalizeJob& job, const Settings& settings, const RunView& view,
                     LocalizePlayer& player) {
   SequenceOptions options;
   options.extraction = settings.poleExtraction();
   options.motion = settings.motion;
   options.allowTruncated = job.allowTruncated;
-  Pace pace(settings.view.pace(), settings.view.autoRate()
-                                      ? std::function<bool()>([&] { return view.isOpen(); })
-                                      : nullptr);
+  Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });
   options.pace = [&](double time) { return pace.waitFor(time); };
   Progress progress("localize", 0, job.quiet);
   return streamPoles(job.input.string(), options, [&](const PoleScan& scan) {
@@ -119,7 +122,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   facts.counts = play(job, settings, view, player);
   LocalizeResult result = player.finish();
   result.timings.wallSeconds = std::chrono::duration<double>(ScanClock::now() - begin).count();
-  result.timings.rate = settings.view.pace();
+  result.timings.rate = rateOf(job, settings);
   writeResults(folder, facts, settings, result);
   if (!job.quiet) {
     printTable(std::cout, facts, result);
@@ -133,9 +136,7 @@ namespace {
 
 std::string wrongRate(const std::string& text) {
   try {
-    report::ViewOptions options;
-    options.rate = text;
-    options.validate();
+    report::parseRate(text);
     return "";
   } catch (const Error& error) {
     return error.what();
@@ -146,8 +147,8 @@ void addViewOptions(CLI::App& cli, LocalizeJob& job) {
   cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
   cli.add_flag("--hold", job.hold, "--live, and the window stays until it is closed");
   cli.add_option("--rate", job.rate,
-                 "Pace of the input: 1x as it was driven, 2.5x, max; unless given, 1x in a window, "
-                 "else max")
+                 "Pace of the input: 1x as it was driven, 2.5x, max. Default: max; with a window "
+                 "[view] rate")
       ->check(wrongRate);
   cli.add_option("--scenes", job.scenes, "A .3Dscene every N scans, in OUTPUT/run_00_scenes")
       ->check(CLI::Range(0, 1000000000));

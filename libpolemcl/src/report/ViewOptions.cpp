@@ -22,19 +22,13 @@ std::optional<double> parseRate(const std::string& text) {
   double rate = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + length, rate);
   if (error != std::errc{} || stop != text.data() + length || !std::isfinite(rate) || rate <= 0)
-    throw Error(
-        "rate " + text +
-        ": allowed is max, auto, or how many times as fast as it was driven, such as 1x or 2.5x");
+    throw Error("rate " + text +
+                ": allowed is max, or how many times as fast as it was driven, such as 1x or 2.5x");
   return rate;
 }
 
-std::optional<double> ViewOptions::pace() const {
-  if (autoRate()) return live ? std::optional(1.0) : std::nullopt;
-  return parseRate(rate);
-}
-
 void ViewOptions::validate() const {
-  if (!autoRate()) parseRate(rate);
+  parseRate(rate);
   require(scenes >= 0, "scenes", scenes, "0 or more");
   require(frameEvery >= 1, "frame_every", frameEvery, "1 or more");
   for (const auto& [key, side] : {std::pair{"width", width}, {"height", height}})
@@ -42,11 +36,10 @@ void ViewOptions::validate() const {
 }
 
 void bind(Binder& b, ViewOptions& o) {
-  b.section("view", "How the drive is played and watched; nothing of it changes the results");
+  b.section("view", "How the first run is watched; nothing of it changes the results");
   b.flag("live", o.live, "true: a window shows the run as it goes");
   b.flag("hold", o.hold, "true: the window stays until it is closed");
-  b.text("rate", o.rate,
-         "of the input: 1x as it was driven, 2.5x, max; auto: 1x in a window, else max");
+  b.text("rate", o.rate, "with a window: 1x as it was driven, 2.5x faster, max");
   b.integer("scenes", o.scenes, Range::atLeast(0), "scans", "a .3Dscene every so many; 0: none");
   b.text("frames", o.frames, "folder of PNG frames; empty: none");
   b.integer("frame_every", o.frameEvery, Range::atLeast(1), "scans", "a frame every so many");

@@ -25,7 +25,8 @@ struct LocalizeJob {
   /// \name How the drive is played and its first run watched, as in `[view]`
   /// @{
   bool live = false, hold = false;
-  std::optional<std::string> rate, frames;
+  std::optional<std::string> rate;  ///< of the input, with a window or without
+  std::optional<std::string> frames;
   std::optional<int> scenes, frameEvery;
   /// @}
   bool allowTruncated = false;
@@ -45,8 +46,8 @@ struct LocalizeResult {
 ///
 /// Memory does not grow with the length of the drive, but for the truth (32 bytes a pose) and,
 /// while the run is watched, the path of the estimate (24 bytes a metre). By default a scan follows
-/// the one before as fast as it goes; `[view] rate` or `--rate` sets a pace (see Pace.h), which a
-/// window has by default (1x).
+/// the one before as fast as it goes. `--rate` sets a pace (see Pace.h); with a window `[view]
+/// rate` does (1x by default), until the user closes it.
 ///
 /// The folder `output` gets:
 /// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;

@@ -9,22 +9,17 @@
 
 namespace polemcl::report {
 
-/// \brief Of the first run, but for the rate; nothing of it changes the results.
+/// \brief Of the first run; nothing of it changes the results.
 struct ViewOptions {
-  bool live = false;  ///< a window that shows the run as it goes
-  bool hold = false;  ///< the window stays after the run, until it is closed
-  /// Pace of the input: as parseRate() takes it, or `auto`: 1x while a window is open, else max.
-  std::string rate = "auto";
-  int scenes = 0;         ///< a `.3Dscene` every so many scans; 0: none
-  std::string frames;     ///< folder of PNG frames; empty: none
-  int frameEvery = 1;     ///< a frame every so many scans
-  int width = 1280;       ///< of the frames, and of the window at first, pixels
-  int height = 720;       ///< likewise
-  void validate() const;  ///< \throws Error naming the field
-
-  bool autoRate() const { return rate == "auto"; }
-  /// \brief Times as fast as it was recorded; none: as fast as it goes.
-  std::optional<double> pace() const;
+  bool live = false;        ///< a window that shows the run as it goes
+  bool hold = false;        ///< the window stays after the run, until it is closed
+  std::string rate = "1x";  ///< of the input while a window shows it: as parseRate() takes it
+  int scenes = 0;           ///< a `.3Dscene` every so many scans; 0: none
+  std::string frames;       ///< folder of PNG frames; empty: none
+  int frameEvery = 1;       ///< a frame every so many scans
+  int width = 1280;         ///< of the frames, and of the window at first, pixels
+  int height = 720;         ///< likewise
+  void validate() const;    ///< \throws Error naming the field
 };
 
 /// \brief `1x`, `2.5x`, `0.5`: times as fast as it was driven; `max`: as fast as it goes.
