@@ -12,11 +12,10 @@ using namespace testing_apps;
 namespace {
 class SimulateApp : public testing::Test {
  protected:
-  SimulateApp() { configure("vlp16"); }
+  SimulateApp() { configure("vlp16\nheight_m = 1.2"); }
   void configure(const std::string& model) {
     writeText(folder / "street.ini",
-              "[sensor]\nmodel = " + model +
-                  "\nheight_m = 1.2\n[simulation]\nscans = 3\n[world]\nlength_m = 40\n");
+              "[sensor]\nmodel = " + model + "\n[simulation]\nscans = 3\n[world]\nlength_m = 40\n");
   }
   Outcome run(std::vector<std::string> extra = {}) {
     std::vector<std::string> arguments{"--config", at("street.ini"), "--output", at("drive")};
@@ -63,11 +62,20 @@ TEST_F(SimulateApp, RefusesToReplaceWhatItDidNotWrite) {
 }
 
 TEST_F(SimulateApp, RefusesALidarItDoesNotKnowAndListsThoseItDoes) {
-  configure("uniform\ncolumns = 1000");
-  expectFailure(run(), {"street.ini", "uniform", "hdl32e"});
-  configure("vlp16");
   expectFailure(run({"--sensor", "lms200"}), {"lms200", "vlp16"});
   EXPECT_FALSE(fs::exists(folder / "drive"));
+}
+
+TEST_F(SimulateApp, RefusesBeamsThatAreNotListed) {
+  expectFailure(run({"--sensor", "table"}), {"street.ini", "elevations_deg", "at least 2 beams"});
+  EXPECT_FALSE(fs::exists(folder / "drive"));
+}
+
+// Other programs take a sensor at any height.
+TEST_F(SimulateApp, RefusesAHeightThatNoVehicleHas) {
+  configure("vlp16\nheight_m = 9");
+  expectFailure(run(), {"street.ini", "height_m = 9", "0.3 to 5"});
+  EXPECT_NO_THROW(saveSettings(loadSettings(at("street.ini")), at("saved.ini")));
 }
 
 TEST_F(SimulateApp, RefusesASettingOutOfRange) {

@@ -55,6 +55,46 @@ TEST(LidarModel, hangingItKeepsBeamsFromTopToBottom) {
                      [](const Beam& a, const Beam& b) { return a.elevation > b.elevation; }));
 }
 
+TEST(LidarModel, listedBeamsAreSimulatedAsTheyAreListed) {
+  SimulationOptions options;
+  SensorOptions beams;
+  options.sensor = "table";
+  beams.elevations = {0.1, -0.05, 0.02};
+  beams.lowerElevations = {-0.2, -0.1};
+  beams.upperApex = 0.2;
+  beams.lowerApex = 0.12;
+  beams.columns = 900;
+  const LidarModel lidar = makeLidar(options, beams);
+  const std::vector<double> elevations{0.1, 0.02, -0.05, -0.1, -0.2};
+  ASSERT_EQ(lidar.beams.size(), elevations.size());
+  for (std::size_t i = 0; i < elevations.size(); ++i) {
+    EXPECT_NEAR(lidar.beams[i].elevation, elevations[i], 1e-12);
+    EXPECT_NEAR(lidar.beams[i].rise, i < 3 ? 0.2 : 0.12, 0.02);
+    EXPECT_NE(lidar.beams[i].elevationError, 0);
+  }
+  EXPECT_EQ(lidar.columns, 900);
+  EXPECT_EQ(lidar.name, "table of 5 beams from 5.7296 to -11.459 deg");
+
+  options.upsideDown = true;
+  const LidarModel hanging = makeLidar(options, beams);
+  EXPECT_NEAR(hanging.beams.front().elevation, 0.2, 1e-12);
+  EXPECT_NEAR(hanging.beams.front().rise, -0.12, 1e-12);
+  EXPECT_NE(hanging.clockwise, lidar.clockwise);
+}
+
+TEST(LidarModel, uniformBeamsAreEvenlySpread) {
+  SimulationOptions options;
+  SensorOptions beams;
+  options.sensor = "uniform";
+  beams.rows = 5;
+  beams.fovUp = 0.2;
+  beams.fovDown = -0.2;
+  beams.columns = 500;
+  const LidarModel lidar = makeLidar(options, beams);
+  ASSERT_EQ(lidar.beams.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(lidar.beams[i].elevation, 0.2 - 0.1 * i, 1e-12);
+}
+
 TEST(LidarModel, refusesAnUnknownNameAndListsTheKnownOnes) {
   try {
     makeLidar("hdl65");

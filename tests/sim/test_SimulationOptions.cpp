@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <polemcl/core/Types.h>
+#include <polemcl/sim/LidarModel.h>
 #include <polemcl/sim/SimulationOptions.h>
 
 #include <functional>
@@ -20,6 +21,7 @@ class SimulationOptionsRefusal : public testing::TestWithParam<Refusal> {};
 std::string messageOf(const SimulationOptions& options) {
   try {
     options.validate();
+    makeLidar(options);
   } catch (const Error& error) {
     return error.what();
   }

@@ -19,7 +19,7 @@ struct LoadedDrive {
 
   explicit LoadedDrive(const std::filesystem::path& rawlog)
       : settings(loadSettings(poleDriveFiles(rawlog).config.string())),
-        drive(std::make_unique<sim::SimulatedDrive>(settings.simulation)) {
+        drive(std::make_unique<sim::SimulatedDrive>(settings.simulation, settings.sensor)) {
     observed.drive = drive.get();
     streamPoles(rawlog.string(), {}, [&](const PoleScan& scan) {
       if (!scan.stored) throw Error(rawlog.string() + ": holds scans, not poles");

@@ -28,6 +28,7 @@ Settings effectiveSettings(const SimulateOptions& options) {
   }
   try {
     simulation.validate();
+    sim::makeLidar(simulation, settings.sensor);
   } catch (const Error& error) {
     throw Error(options.config.string() + " and command line: " + error.what());
   }
@@ -72,9 +73,9 @@ sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet)
   OutputFolder folder(*options.output, "a simulated drive", folderNames, folderMarker);
   saveSettings(settings, (folder.temporary() / "config.ini").string());
   LateProgress bar(quiet);
-  const auto summary =
-      sim::simulate(settings.simulation, folder.temporary(),
-                    [&](std::size_t done, std::size_t total) { bar.update(done, total); });
+  const auto summary = sim::simulate(
+      settings.simulation, folder.temporary(),
+      [&](std::size_t done, std::size_t total) { bar.update(done, total); }, settings.sensor);
   folder.commit();
   return summary;
 }
@@ -91,7 +92,7 @@ PoleDriveSummary simulatePoles(const SimulateOptions& options, bool quiet) {
     folder.emplace(*options.output, "a simulated drive", folderNames, folderMarker);
     saveSettings(settings, (folder->temporary() / "config.ini").string());
   }
-  const sim::SimulatedDrive drive(settings.simulation);
+  const sim::SimulatedDrive drive(settings.simulation, settings.sensor);
   std::optional<sim::ScanFolderWriter> scans;
   if (folder) scans.emplace(drive, folder->temporary());
   LateProgress bar(quiet);

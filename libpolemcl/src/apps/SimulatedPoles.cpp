@@ -137,10 +137,12 @@ PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const Settings& s
                              const PoleDriveFiles& files,
                              const std::function<void(std::size_t)>& progress) {
   const std::string& file = drive.options().detections;
+  auto options = drive.options();
+  options.sensor = drive.lidar().name;  // more exact than "table"
   const auto sampler = [&] {
     const auto model = sim::readDetectionModel(file);
     try {
-      return sim::DetectionSampler(model, drive.world(), drive.options());
+      return sim::DetectionSampler(model, drive.world(), options);
     } catch (const Error& error) {
       throw Error(file + ": " + error.what());
     }

@@ -339,7 +339,8 @@ void requireTwoDays(const ObservedStreet& street) {
     throw Error(
         "the two drives of a pair are on one day; each pair must be one street on two days");
   if (a.spacing != b.spacing) throw Error("the two drives of a pair differ in spacing_m");
-  if (a.sensor != b.sensor) throw Error("the two drives of a pair differ in [sensor] model");
+  if (street.first.drive->lidar().name != street.second.drive->lidar().name)
+    throw Error("the two drives of a pair differ in [sensor] model");
 }
 
 }  // namespace
@@ -355,7 +356,7 @@ DetectionModel fitDetectionModel(const std::vector<ObservedStreet>& streets, dou
   }
   DetectionModel model = Fit(streets, maxRange).run(streets);
   const SimulationOptions& options = streets.front().first.drive->options();
-  model.sensor = options.sensor;
+  model.sensor = streets.front().first.drive->lidar().name;
   model.height = options.height;
   model.points = static_cast<std::uint32_t>(quantile(points, 0.5).value_or(0));
   model.fittedOn = fittedOn;

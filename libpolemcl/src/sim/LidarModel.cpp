@@ -1,3 +1,4 @@
+#include <polemcl/core/SensorModel.h>
 #include <polemcl/core/Types.h>
 #include <polemcl/sim/LidarModel.h>
 #include <polemcl/sim/Random.h>
@@ -5,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
+
+#include "SimulationLimits.h"
 
 namespace polemcl::sim {
 namespace {
@@ -45,6 +49,27 @@ LidarModel hdl32e() {
   lidar.divergence = 0.003;
   lidar.maxRange = 100;
   lidar.referenceRange = 60;
+  return lidar;
+}
+
+/// Beams that someone lists or has measured, on the rotor and the ranging of an HDL-32E.
+LidarModel listed(const SensorOptions& options) {
+  const SensorModel model(options);
+  LidarModel lidar = hdl32e();
+  lidar.beams.clear();
+  for (int row = 0; row < model.rows(); ++row) {
+    Beam beam;
+    beam.elevation = std::atan(model.beam(row).slope);
+    beam.rise = model.beam(row).offset;
+    lidar.beams.push_back(beam);
+  }
+  lidar.columns = model.columns();
+  std::ostringstream name;
+  name.precision(5);
+  name << options.model << " of " << lidar.beams.size() << " beams from "
+       << lidar.beams.front().elevation / kDegree << " to "
+       << lidar.beams.back().elevation / kDegree << " deg";
+  lidar.name = name.str();
   return lidar;
 }
 
@@ -92,6 +117,20 @@ const std::map<std::string, Maker>& makers() {
       {"os0_64", [] { return ouster(64, 45, 4.23, 25); }}};
   return table;
 }
+
+/// What the calibration of a unit leaves.
+void addOffsets(LidarModel& lidar, unsigned unit) {
+  Random random(hash(0x11da4ull, unit));
+  for (Beam& beam : lidar.beams) {
+    if (lidar.calibrated)
+      beam.elevation += random.normal(0, 0.05 * kDegree);
+    else
+      beam.elevationError = random.normal(0, 0.03 * kDegree);
+    beam.azimuth += random.normal(0, 0.03 * kDegree);
+    beam.rangeBias = random.normal(0, 0.4 * lidar.rangeNoise);
+    beam.rise += beam.rise > 0 ? random.normal(0, 0.004) : 0.0;
+  }
+}
 }  // namespace
 
 const std::vector<std::string>& lidarNames() {
@@ -108,20 +147,11 @@ LidarModel makeLidar(const std::string& name, bool upsideDown, unsigned unit) {
   if (maker == makers().end()) {
     std::string known;
     for (const std::string& each : lidarNames()) known += " " + each;
-    throw Error("unknown LiDAR \"" + name + "\": allowed are" + known);
+    throw Error("unknown LiDAR \"" + name + "\": allowed are" + known + " table uniform");
   }
   LidarModel lidar = maker->second();
   lidar.name = name;
-  Random random(hash(0x11da4ull, unit));
-  for (Beam& beam : lidar.beams) {  // what a unit's calibration leaves
-    if (lidar.calibrated)
-      beam.elevation += random.normal(0, 0.05 * kDegree);
-    else
-      beam.elevationError = random.normal(0, 0.03 * kDegree);
-    beam.azimuth += random.normal(0, 0.03 * kDegree);
-    beam.rangeBias = random.normal(0, 0.4 * lidar.rangeNoise);
-    beam.rise += beam.rise > 0 ? random.normal(0, 0.004) : 0.0;
-  }
+  addOffsets(lidar, unit);
   lidar.startAzimuth = M_PI;
   if (upsideDown) {
     for (Beam& beam : lidar.beams) {
@@ -133,6 +163,22 @@ LidarModel makeLidar(const std::string& name, bool upsideDown, unsigned unit) {
     std::reverse(lidar.beams.begin(), lidar.beams.end());
     lidar.clockwise = !lidar.clockwise;
   }
+  return lidar;
+}
+
+LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beams) {
+  limits::require("[sensor] height_m", options.height, limits::height);
+  for (const double origin : {options.originX, options.originY, options.originZ})
+    limits::require("[sensor] origin", origin, limits::origin);
+  if (options.sensor != "table" && options.sensor != "uniform")
+    return makeLidar(options.sensor, options.upsideDown);
+  SensorOptions mounted = beams;
+  mounted.model = options.sensor;
+  mounted.upsideDown = options.upsideDown;
+  LidarModel lidar = listed(mounted);  // as they hang, from top to bottom
+  addOffsets(lidar, 1);
+  lidar.startAzimuth = M_PI;
+  if (options.upsideDown) lidar.clockwise = !lidar.clockwise;
   return lidar;
 }
 

@@ -75,11 +75,12 @@ Motion motionAt(const Drive& drive, std::size_t i) {
 }
 }  // namespace
 
-SimulatedDrive::SimulatedDrive(const SimulationOptions& options)
+SimulatedDrive::SimulatedDrive(const SimulationOptions& options, const SensorOptions& beams)
     : m_options((options.validate(), options)),
+      m_lidar(makeLidar(options, beams)),
       m_world(makeWorld(options.world)),
       m_drive(makeDrive(m_world, options)),
-      m_scanner(m_world, makeLidar(options.sensor, options.upsideDown)) {}
+      m_scanner(m_world, m_lidar) {}
 
 double SimulatedDrive::length() const {
   return m_options.spacing * static_cast<double>(scans() - 1);
@@ -136,8 +137,9 @@ void writeTruePoles(const fs::path& file, const std::vector<TruePole>& poles) {
 }
 
 SimulationSummary simulate(const SimulationOptions& options, const fs::path& directory,
-                           const std::function<void(std::size_t, std::size_t)>& progress) {
-  const SimulatedDrive drive(options);
+                           const std::function<void(std::size_t, std::size_t)>& progress,
+                           const SensorOptions& beams) {
+  const SimulatedDrive drive(options, beams);
   const ScanFolderWriter folder(drive, directory);
   SimulationSummary summary;
   summary.scans = drive.scans();

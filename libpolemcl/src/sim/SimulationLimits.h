@@ -2,7 +2,10 @@
 /// \file SimulationLimits.h
 /// \brief What the settings of the simulation may be: for the INI and for validate().
 
+#include <polemcl/core/Types.h>
 #include <polemcl/mrpt/Config.h>
+
+#include <sstream>
 
 namespace polemcl::sim::limits {
 
@@ -20,5 +23,13 @@ inline const Range origin = Range::between(-10, 10), height = Range::between(0.3
                    laneOffset = Range::between(-10, 10), odometryNoise = Range::between(0, 1),
                    scans = Range::between(0, 1e7), falseFactor = Range::between(0, 10),
                    detour = Range::between(0, 2);
+
+/// \throws Error that names the key, unless its value is allowed.
+inline void require(const char* key, double value, const Range& allowed) {
+  if (allowed.contains(value)) return;
+  std::ostringstream message;
+  message << key << " = " << value << ": allowed are " << allowed.text();
+  throw Error(message.str());
+}
 
 }  // namespace polemcl::sim::limits

@@ -1,20 +1,10 @@
-#include <polemcl/core/Types.h>
-#include <polemcl/sim/LidarModel.h>
 #include <polemcl/sim/SimulationOptions.h>
-
-#include <sstream>
 
 #include "SimulationLimits.h"
 
 namespace polemcl::sim {
-namespace {
-void require(const char* key, double value, const Range& allowed) {
-  if (allowed.contains(value)) return;
-  std::ostringstream message;
-  message << key << " = " << value << ": allowed are " << allowed.text();
-  throw Error(message.str());
-}
-}  // namespace
+
+using limits::require;
 
 void WorldOptions::validate() const {
   require("[world] seed", static_cast<double>(seed), limits::seed);
@@ -41,10 +31,6 @@ void WorldOptions::validate() const {
 
 void SimulationOptions::validate() const {
   world.validate();
-  makeLidar(sensor);
-  require("[sensor] height_m", height, limits::height);
-  for (const double origin : {originX, originY, originZ})
-    require("[sensor] origin", origin, limits::origin);
   require("[simulation] spacing_m", spacing, limits::spacing);
   require("[simulation] speed_m_s", speed, limits::speed);
   require("[simulation] odometry_noise", odometryNoise, limits::odometryNoise);

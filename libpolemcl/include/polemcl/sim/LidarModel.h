@@ -3,6 +3,9 @@
 /// \brief Spinning LiDARs as their data sheets describe them, with the small offsets real ones
 /// have.
 
+#include <polemcl/core/ExtractionOptions.h>
+#include <polemcl/sim/SimulationOptions.h>
+
 #include <Eigen/Core>
 #include <string>
 #include <vector>
@@ -45,5 +48,12 @@ const std::vector<std::string>& lidarNames();
 /// \param upsideDown It hangs; beams are given as seen upright, so elevations change sign.
 /// \throws Error for an unknown name.
 LidarModel makeLidar(const std::string& name, bool upsideDown = false, unsigned unit = 1);
+/// \brief The LiDAR of a simulation. `table` and `uniform` have the beams and firing steps of
+/// `beams` and measure as an HDL-32E does; their name tells the number of beams and the field of
+/// view. \param beams `[sensor]`; looked at for these two only, its mounting is that of `options`.
+/// \throws Error for an unknown name, beams that make no sense, a height or place that no
+/// simulation
+///         has. Programs that do not simulate take such sensors.
+LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beams = {});
 
 }  // namespace polemcl::sim

@@ -22,9 +22,11 @@ struct SimulationSummary {
 /// when it is asked for. Immutable, safe to share between threads.
 class SimulatedDrive {
  public:
+  /// \param beams `[sensor]`, for LiDARs whose beams are listed there, see makeLidar().
   /// \throws Error when an option is out of range or the track cannot be read.
-  explicit SimulatedDrive(const SimulationOptions& options);
+  explicit SimulatedDrive(const SimulationOptions& options, const SensorOptions& beams = {});
   const SimulationOptions& options() const { return m_options; }
+  const LidarModel& lidar() const { return m_lidar; }
   const World& world() const { return m_world; }
   const Drive& drive() const { return m_drive; }
   std::size_t scans() const { return m_drive.time.size(); }
@@ -34,6 +36,7 @@ class SimulatedDrive {
 
  private:
   SimulationOptions m_options;
+  LidarModel m_lidar;
   World m_world;
   Drive m_drive;
   Scanner m_scanner;
@@ -58,8 +61,10 @@ void writeTruePoles(const std::filesystem::path& file, const std::vector<TruePol
 /// \brief Writes velodyne/*.bin, labels/*.label, times.txt, poses.txt, odometry.txt, poles_gt.csv
 /// into `directory`, which must exist. Scans are cast in parallel; the bytes do not depend on it.
 /// \param progress Called after each scan with (done, total), from one thread at a time.
+/// \param beams As for SimulatedDrive.
 /// \throws Error when an option is out of range or a file cannot be written.
 SimulationSummary simulate(const SimulationOptions& options, const std::filesystem::path& directory,
-                           const std::function<void(std::size_t, std::size_t)>& progress = {});
+                           const std::function<void(std::size_t, std::size_t)>& progress = {},
+                           const SensorOptions& beams = {});
 
 }  // namespace polemcl::sim
