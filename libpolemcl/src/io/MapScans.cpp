@@ -1,12 +1,11 @@
 #include <polemcl/io/Bytes.h>
+#include <polemcl/io/Inflate.h>
 #include <polemcl/io/MapScans.h>
 #include <zlib.h>
 
 namespace polemcl::io {
 namespace {
 
-/// Deflate makes nothing smaller than by this; a larger claim is a damaged or hostile one.
-constexpr std::uint64_t greatestRatio = 1032;
 constexpr std::uint64_t scanBytes = 4 * 8 + 4, poleBytes = 10 * 8 + 4;  ///< least of each
 
 void put(ByteWriter& writer, const Pose2D& pose) {
@@ -40,20 +39,6 @@ std::string deflated(const std::string& bytes) {
                 reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 6) != Z_OK)
     throw Error("no memory left to compress the scans of a map");
   result.resize(size);
-  return result;
-}
-
-std::string inflated(std::string_view bytes, std::uint64_t size, const std::string& where) {
-  if (size > greatestRatio * bytes.size() + 64)
-    throw Error(where + "damaged: " + std::to_string(bytes.size()) + " bytes cannot hold " +
-                std::to_string(size));
-  std::string result(size, '\0');
-  uLongf found = size;
-  const int code =
-      uncompress(reinterpret_cast<Bytef*>(result.data()), &found,
-                 reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()));
-  if (code != Z_OK || found != size)
-    throw Error(where + "damaged: its scans cannot be decompressed");
   return result;
 }
 
@@ -119,7 +104,8 @@ std::string packMapScans(const AddedSessions& added) {
 AddedSessions unpackMapScans(std::string_view content, const std::string& where) {
   ByteReader packed(content, where);
   const auto size = packed.get<std::uint64_t>();
-  const std::string bytes = inflated(packed.getRaw(packed.remaining()), size, where);
+  const std::string bytes =
+      inflated(packed.getRaw(packed.remaining()), size, Deflated::zlib, where);
   ByteReader reader(bytes, where);
   AddedSessions added;
   added.unvisited = reader.get<double>();

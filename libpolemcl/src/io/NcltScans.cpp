@@ -1,5 +1,6 @@
 #include <polemcl/io/Bytes.h>
 #include <polemcl/io/NcltScans.h>
+#include <polemcl/io/ReadLimits.h>
 #include <polemcl/io/TrackSampler.h>
 
 #include <array>
@@ -15,10 +16,9 @@ namespace {
 
 constexpr std::size_t pointBytes = 8, headerBytes = 24;
 constexpr std::uint16_t magic = 44444;
-constexpr std::uint32_t mostPoints = 100000;  ///< of a packet; an HDL-32E has 384
-constexpr double nearest = 0.5;               ///< m; nearer points are no returns
-constexpr double longestPause = 0.05;         ///< s between packets; they come every 0.55 ms
-constexpr double widestStep = M_PI / 4;       ///< between packets; they are 2° wide
+constexpr double nearest = 0.5;          ///< m; nearer points are no returns
+constexpr double longestPause = 0.05;    ///< s between packets; they come every 0.55 ms
+constexpr double widestStep = M_PI / 4;  ///< between packets; they are 2° wide
 
 double metres(const char* value) {
   return loadLittleEndian<std::uint16_t>(value) * 0.005 - 100.0;
@@ -73,9 +73,9 @@ class PacketReader {
                     "no packet of velodyne_hits.bin begins here (four times 44444 expected)");
     }
     const auto count = loadLittleEndian<std::uint32_t>(header.data() + 8);
-    if (count > mostPoints)
+    if (count > mostPacketPoints)
       throw Error(where(packet.offset) + "a packet of " + std::to_string(count) +
-                  " points; at most " + std::to_string(mostPoints) + " are allowed");
+                  " points; at most " + std::to_string(mostPacketPoints) + " are allowed");
     packet.time = static_cast<double>(loadLittleEndian<std::uint64_t>(header.data() + 12)) * 1e-6;
     packet.points.resize(count * pointBytes);
     take(packet.points.data(), packet.points.size());

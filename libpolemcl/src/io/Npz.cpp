@@ -1,5 +1,6 @@
 #include <polemcl/core/Types.h>
 #include <polemcl/io/Bytes.h>
+#include <polemcl/io/Inflate.h>
 #include <polemcl/io/Npz.h>
 #include <zlib.h>
 
@@ -13,8 +14,6 @@ constexpr std::uint32_t localSignature = 0x04034b50, entrySignature = 0x02014b50
 constexpr std::size_t localBytes = 30, entryBytes = 46, endBytes = 22, longestComment = 65535;
 constexpr std::uint32_t encrypted = 1;
 constexpr std::uint32_t stored = 0, deflated = 8;
-/// Deflate makes nothing smaller than by this; a larger claim is a damaged or hostile one.
-constexpr std::uint64_t greatestRatio = 1032;
 
 std::uint64_t at16(std::string_view record, std::size_t offset) {
   return loadLittleEndian<std::uint16_t>(record.data() + offset);
@@ -40,26 +39,6 @@ std::string_view findEnd(std::string_view bytes, const std::string& where) {
     if (at32(record, 0) == endSignature && at16(record, 20) == tail - endBytes) return record;
   }
   throw Error(where + "no .npz file (zip archive), or cut short: it has no directory at its end");
-}
-
-std::string inflated(std::string_view data, std::uint64_t size, const std::string& where) {
-  if (size > greatestRatio * data.size() + 64) {
-    throw Error(where + "damaged: " + std::to_string(data.size()) + " bytes cannot hold " +
-                std::to_string(size));
-  }
-  std::string result(size, '\0');
-  z_stream stream = {};
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data()));
-  stream.avail_in = static_cast<uInt>(data.size());
-  stream.next_out = reinterpret_cast<Bytef*>(result.data());
-  stream.avail_out = static_cast<uInt>(size);
-  // Negative: a bare deflate stream, as zip has it.
-  if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) throw Error(where + "out of memory");
-  const int code = inflate(&stream, Z_FINISH);
-  const bool complete = code == Z_STREAM_END && stream.avail_in == 0 && stream.avail_out == 0;
-  inflateEnd(&stream);
-  if (!complete) throw Error(where + "damaged: it cannot be decompressed");
-  return result;
 }
 
 }  // namespace
@@ -112,8 +91,9 @@ std::string NpzFile::extract(const Member& member, const std::string& where) con
   if (member.method == stored && member.compressed != member.size) {
     throw Error(where + "damaged: stored, but of two sizes");
   }
-  std::string content =
-      member.method == stored ? std::string(data) : inflated(data, member.size, where);
+  std::string content = member.method == stored
+                            ? std::string(data)
+                            : inflated(data, member.size, Deflated::bare, where);
   const auto crc = crc32_z(0, reinterpret_cast<const Bytef*>(content.data()), content.size());
   if (crc != member.crc) throw Error(where + "damaged: the checksum (CRC-32) is wrong");
   return content;

@@ -1,6 +1,7 @@
 #include <liblzf/lzf.h>
 #include <polemcl/io/Bytes.h>
 #include <polemcl/io/PcdFile.h>
+#include <polemcl/io/ReadLimits.h>
 #include <polemcl/io/TextFile.h>
 
 #include <algorithm>
@@ -221,6 +222,9 @@ std::string decompress(const Header& header, std::string_view data,
     throw Error(file.string() + ": cut short: " + std::to_string(data.size()) +
                 " bytes of compressed points, " + std::to_string(sizes + packed) + " expected");
   const std::size_t size = loadLittleEndian<std::uint32_t>(data.data() + 4);
+  if (size > greatestLzfRatio * packed)
+    throw Error(file.string() + ": damaged: " + std::to_string(packed) +
+                " bytes of compressed points cannot hold " + std::to_string(size));
   // Not multiplied: the header may say anything.
   if (size / header.pointBytes != header.points || size % header.pointBytes != 0)
     throw Error(file.string() + ": " + std::to_string(size) + " bytes of points, " +

@@ -1,4 +1,5 @@
 #include <polemcl/core/Types.h>
+#include <polemcl/io/ReadLimits.h>
 #include <polemcl/io/TextFile.h>
 #include <zlib.h>
 
@@ -41,6 +42,11 @@ void LineReader::readBlock() {
     m_text.erase(0, m_begin);
     m_begin = 0;
     m_text.append(block.data(), static_cast<std::size_t>(got));
+    m_read += static_cast<std::size_t>(got);
+    if (m_read > mostTextBytes)
+      throw Error("cannot read " + m_file.string() + ": it holds more than " +
+                  std::to_string(mostTextBytes >> 20) +
+                  " MB of text, uncompressed; that is no table of this program");
     return;
   }
   m_ended = true;

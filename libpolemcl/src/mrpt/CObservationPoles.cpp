@@ -1,6 +1,6 @@
 #include <mrpt/serialization/CArchive.h>
-#include <mrpt/serialization/stl_serialization.h>
 #include <polemcl/core/PoleMerging.h>
+#include <polemcl/io/ReadLimits.h>
 #include <polemcl/mrpt/CObservationPoles.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "BoundedRead.h"
 #include "PoleDrawing.h"
 
 IMPLEMENTS_SERIALIZABLE(CObservationPoles, CObservation, polemcl)
@@ -40,6 +41,11 @@ uint8_t CObservationPoles::serializeGetVersion() const {
 }
 
 void CObservationPoles::serializeTo(CArchive& out) const {
+  for (const std::size_t count : {sensorLabel.size(), poles.size(), freeRange.size()})
+    if (count > io::mostOfAScan)
+      throw Error("a scan with " + std::to_string(count) +
+                  " poles, free ranges or bytes of its label cannot be stored; at most " +
+                  std::to_string(io::mostOfAScan) + " are allowed of each");
   out << timestamp << sensorLabel << sensorPose << points;
   out << static_cast<std::uint32_t>(poles.size());
   for (const auto& pole : poles) write(out, pole);
@@ -48,13 +54,14 @@ void CObservationPoles::serializeTo(CArchive& out) const {
 
 void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
-  in >> timestamp >> sensorLabel >> sensorPose >> points;
-  std::uint32_t size = 0;
-  in >> size;
+  in >> timestamp;
+  sensorLabel = readText(in, io::mostOfAScan, "sensor label");
+  in >> sensorPose >> points;
   poles.clear();
-  // One by one: the size of a damaged file must not decide how much memory is taken.
-  for (std::uint32_t i = 0; i < size; ++i) poles.push_back(readPole(in));
-  in >> freeRange;
+  // One by one: the count in a damaged file must not decide how much memory is taken.
+  for (std::uint32_t left = readCount(in, io::mostOfAScan, "poles"); left > 0; --left)
+    poles.push_back(readPole(in));
+  freeRange = readFloats(in, io::mostOfAScan, "free ranges");
 }
 
 Pose2D CObservationPoles::planarSensorPose() const {

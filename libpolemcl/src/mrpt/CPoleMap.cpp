@@ -1,11 +1,12 @@
 #include <mrpt/img/color_maps.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/serialization/CArchive.h>
-#include <mrpt/serialization/stl_serialization.h>
+#include <mrpt/serialization/stl_serialization.h>  // to write std::map
 #include <polemcl/core/PoleMerging.h>
 #include <polemcl/io/AtomicFile.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
+#include <polemcl/io/ReadLimits.h>
 #include <polemcl/mrpt/CObservationPoles.h>
 #include <polemcl/mrpt/CPoleMap.h>
 
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "BoundedRead.h"
 #include "PoleDrawing.h"
 
 IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
@@ -39,6 +41,16 @@ MapPole readPole(CArchive& in) {
 
 Pose2D planar(const mrpt::poses::CPose3D& pose) {
   return {pose.x(), pose.y(), pose.yaw()};
+}
+
+void requireStorable(const CPoleMap& map) {
+  bool fits = map.poles().size() <= io::mostMapPoles && map.info.size() <= io::mostMapFacts;
+  for (const auto& [key, value] : map.info)
+    fits = fits && std::max(key.size(), value.size()) <= io::longestMapFact;
+  if (!fits)
+    throw Error("a map of more than " + std::to_string(io::mostMapPoles) + " poles or " +
+                std::to_string(io::mostMapFacts) + " facts, or with one of more than " +
+                std::to_string(io::longestMapFact) + " bytes, fits into no archive of MRPT");
 }
 
 void requireUsable(const MapPole& pole, std::size_t i) {
@@ -75,6 +87,7 @@ uint8_t CPoleMap::serializeGetVersion() const {
 }
 
 void CPoleMap::serializeTo(CArchive& out) const {
+  requireStorable(*this);
   out << genericMapParams << insertionOptions.mergeDistance << insertionOptions.minConfidence;
   const auto& l = likelihoodOptions;
   out << static_cast<std::uint8_t>(l.model) << l.sigma << l.outlier << l.gate << l.weighted;
@@ -92,11 +105,11 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   if (version >= 1) in >> l.floor;
   insertionOptions.validate();
   l.validate();
-  in >> info;
-  const auto size = in.ReadAs<std::uint32_t>();
+  info = readTexts(in, io::mostMapFacts, io::longestMapFact, "facts about the map");
   std::vector<MapPole> poles;
-  // One by one: the size of a damaged file must not decide how much memory is taken.
-  for (std::uint32_t i = 0; i < size; ++i) poles.push_back(readPole(in));
+  // One by one: the count in a damaged file must not decide how much memory is taken.
+  for (std::uint32_t left = readCount(in, io::mostMapPoles, "poles"); left > 0; --left)
+    poles.push_back(readPole(in));
   setPoles(std::move(poles));
 }
 

@@ -1,6 +1,7 @@
 #include "GzReadStream.h"
 
 #include <polemcl/core/Types.h>
+#include <polemcl/io/ReadLimits.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -10,12 +11,15 @@
 #include <stdexcept>
 #include <vector>
 
+#include "PointCountGuard.h"
+
 namespace polemcl {
 
 struct GzReadStream::Impl {
   gzFile file = nullptr;
   std::vector<unsigned char> buffer = std::vector<unsigned char>(1 << 18);
   std::size_t begin = 0, end = 0;  ///< of what is not consumed yet
+  PointCountGuard points;
 };
 
 GzReadStream::GzReadStream(const std::string& path)
@@ -48,6 +52,14 @@ bool GzReadStream::refill() {
   return got > 0;
 }
 
+/// Bytes that can still come, at most.
+std::uint64_t GzReadStream::mostLeft() const {
+  if (gzdirect(m_impl->file)) return m_fileSize - std::min(m_fileSize, m_position);
+  constexpr std::uint64_t buffered = 1 << 20;  // by zlib, and here
+  const auto at = static_cast<std::uint64_t>(std::max<z_off_t>(0, gzoffset(m_impl->file)));
+  return buffered + io::greatestDeflateRatio * (m_fileSize - std::min(m_fileSize, at));
+}
+
 bool GzReadStream::atCleanEnd() {
   return !refill() && !m_cutShort;
 }
@@ -65,6 +77,11 @@ std::size_t GzReadStream::Read(void* buffer, std::size_t count) {
     m_impl->begin += piece;
     m_position += piece;
     done += piece;
+  }
+  const auto points = m_impl->points.see(buffer, count);
+  if (points && *points > mostLeft() / PointCountGuard::pointBytes) {
+    m_cutShort = true;
+    throw std::runtime_error("the data ends before its " + std::to_string(*points) + " points");
   }
   return done;
 }

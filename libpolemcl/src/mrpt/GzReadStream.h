@@ -11,7 +11,8 @@
 namespace polemcl {
 
 /// \brief Reads whole pieces or throws. MRPT's own stream hands out less than was asked for at the
-/// end of a file, and calls a damaged gzip file ended.
+/// end of a file, and calls a damaged gzip file ended. Refuses the count of a map of points that
+/// the rest of the file cannot hold, before MRPT takes memory for it.
 class GzReadStream : public mrpt::io::CStream {
  public:
   /// \throws Error when the file cannot be opened.
@@ -21,7 +22,8 @@ class GzReadStream : public mrpt::io::CStream {
   /// \brief True when no byte is left, and the file ended as it should.
   /// \throws Error when it cannot be read; damaged gzip data sets cutShort() and is no clean end.
   bool atCleanEnd();
-  /// \brief True after a read that found fewer bytes than asked for, or damaged gzip data.
+  /// \brief True after a read that found fewer bytes than asked for, a count of points that the
+  /// rest cannot hold, or damaged gzip data.
   bool cutShort() const { return m_cutShort; }
   /// \brief Share of the file consumed, 0 to 1.
   double progress() const;
@@ -37,6 +39,7 @@ class GzReadStream : public mrpt::io::CStream {
  private:
   struct Impl;
   bool refill();
+  std::uint64_t mostLeft() const;
   std::string m_path;
   std::unique_ptr<Impl> m_impl;
   std::uint64_t m_position = 0, m_fileSize = 0;

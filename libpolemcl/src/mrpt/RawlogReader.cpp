@@ -91,10 +91,9 @@ std::optional<RawlogReader::Impl::Object> RawlogReader::Impl::readObject() {
     if (!object.object) throw std::runtime_error("an object of no class");
     ++objects;
     return object;
-  } catch (const Error&) {
-    throw;
   } catch (const std::exception& error) {
     what = error.what();
+    if (what.rfind(name + ": ", 0) == 0) throw;  // of the file itself, not of what is in it
   }
   // A class that is not known may also be the first to run into the end of the data.
   if (!stream.cutShort() || !unregisteredClass(what).empty()) explain(offset, what);

@@ -27,7 +27,8 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  /// \return False at the end. \throws Error when it cannot be read or is cut short.
+  /// \return False at the end. \throws Error when it cannot be read, is cut short, or holds more
+  /// than `mostTextBytes` (ReadLimits.h).
   bool next(std::string& line);
 
  private:
@@ -38,6 +39,7 @@ class LineReader {
   std::unique_ptr<Stream> m_stream;
   std::string m_text;  ///< read, not yet given out from m_begin on
   std::size_t m_begin = 0;
+  std::size_t m_read = 0;  ///< bytes, uncompressed
   bool m_ended = false;
 };
 
