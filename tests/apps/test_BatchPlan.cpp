@@ -213,6 +213,18 @@ TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
   EXPECT_GE(batches, 4u);
 }
 
+TEST(BatchPlan, KeysStandForTheBuild) {
+  const TempFolder folder;
+  const BatchSpec spec = readBatchSpec(writeStreetBatch(folder), "");
+  const BatchPlan here = planBatch(spec), again = planBatch(spec),
+                  other = planBatch(spec, "0123456789ab, GNU 12.2.0, Debug, -g");
+  ASSERT_EQ(ids(here), ids(other));
+  for (std::size_t i = 0; i < here.tasks.size(); ++i) {
+    EXPECT_EQ(here.tasks[i].key, again.tasks[i].key);
+    EXPECT_NE(here.tasks[i].key, other.tasks[i].key) << here.tasks[i].id;
+  }
+}
+
 TEST(BatchPlan, LevelsHoldWhatCanBeDoneAtOnce) {
   const auto all = levels(planOf());
   ASSERT_EQ(all.size(), 3u);
@@ -227,6 +239,7 @@ TEST(BatchPlan, SurvivesItsFile) {
   writePlan(folder / "plan.json", plan);
   const BatchPlan read = readPlan(folder / "plan.json");
   EXPECT_EQ(read.name, plan.name);
+  EXPECT_EQ(read.build, buildIdentity());
   ASSERT_EQ(ids(read), ids(plan));
   for (std::size_t i = 0; i < plan.tasks.size(); ++i) {
     EXPECT_EQ(read.tasks[i].commands, plan.tasks[i].commands);

@@ -243,3 +243,22 @@ TEST(BatchFolder, LeavesForeignFoldersAlone) {
             std::string::npos);
   EXPECT_EQ(readText(folder / "letter.txt"), "Dear");
 }
+
+TEST_F(BatchRunner, SaysWhichBuildDidWhatIsDoneAgain) {
+  add("a", {{"write", "out", "A"}});
+  add("b", {{"write", "out", "B"}});
+  m_plan.build = buildIdentity();
+  EXPECT_EQ(run(1), (Names{"a", "b"}));
+  EXPECT_EQ(m_batch.buildOf(m_plan.tasks[0]), buildIdentity());
+  std::vector<std::string> notes;
+  EXPECT_TRUE(openTasks(m_batch, m_plan, notes).empty());
+
+  // Another build gives the tasks other keys, see BatchPlan.
+  m_plan.build = "0123456789ab, GNU 12.2.0, Debug, -g";
+  for (BatchTask& task : m_plan.tasks) task.key += " of another build";
+  EXPECT_EQ(openTasks(m_batch, m_plan, notes).size(), 2u);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], std::string("2 tasks were done by another build (") + buildIdentity() +
+                          ") and are done again; this is " + m_plan.build);
+  EXPECT_EQ(run(1), (Names{"a", "b"}));
+}

@@ -5,6 +5,7 @@
 #include <polemcl/core/Types.h>
 #include <tbb/global_control.h>
 
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -87,7 +88,13 @@ TEST(CommandLine, HelpAndVersionAreNoErrors) {
   const auto shown = runWith({"--version"});
   EXPECT_EQ(shown.code, 0);
   EXPECT_FALSE(shown.worked);
-  EXPECT_EQ(shown.out, std::string("pole-test ") + version() + "\n");
+  EXPECT_EQ(shown.out,
+            std::string("pole-test ") + version() + " (build " + buildIdentity() + ")\n");
+  EXPECT_TRUE(std::regex_match(
+      buildIdentity(),
+      std::regex("([0-9a-f]{12}(\\+[0-9a-f]{12})?|sources-[0-9a-f]{12}), [A-Za-z]+ [0-9.]+, "
+                 "[A-Za-z]+, .*-ffp-contract=off.*")))
+      << buildIdentity();
 }
 
 TEST(CommandLine, WrongUsageIsTwoWithAHint) {

@@ -91,6 +91,10 @@ void doTaskOf(const BatchOptions& options, const std::string& id) {
   const BatchPlan plan = readPlan(options.output / "plan.json");
   const BatchTask& task = plan.task(id);
   requireFrozen(folder, plan);
+  if (plan.build != buildIdentity())
+    throw Error("the batch was begun by another build (" + plan.build + "), this is " +
+                buildIdentity() +
+                "; use one build on all machines, or begin it again with --resume");
   const TaskOutcome outcome = runTask(folder, task);
   if (!outcome.failure.empty()) throw Error(id + ": " + outcome.failure);
 }

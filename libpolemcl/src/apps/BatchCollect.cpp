@@ -100,7 +100,8 @@ class Collector {
     m_results.name = m_spec.name;
     m_results.title = m_spec.title.empty() ? m_spec.name : m_spec.title;
     m_results.dataset = m_spec.published == "none" ? "" : m_spec.published;
-    m_results.versions = {version(), mrpt::system::MRPT_getVersion(), "GCC " __VERSION__};
+    m_results.versions = {std::string(version()) + " (build " + buildIdentity() + ")",
+                          mrpt::system::MRPT_getVersion(), "GCC " __VERSION__};
     for (const auto& setting : m_spec.settings) {
       const fs::path config = m_folder.path() / "settings" / (setting.name + ".ini");
       m_results.settings.push_back(

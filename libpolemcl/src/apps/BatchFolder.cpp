@@ -121,6 +121,11 @@ bool BatchFolder::isDone(const BatchTask& task) const {
   return done.is_object() && done.value("key", "") == task.key;
 }
 
+std::string BatchFolder::buildOf(const BatchTask& task) const {
+  const Json done = readJson(work(task.id) / "done.json");
+  return done.is_object() ? done.value("build", "an earlier version") : "";
+}
+
 void BatchFolder::sweep() const {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(m_path / "tasks", none))

@@ -1,7 +1,6 @@
 #include <mrpt/system/md5.h>
 #include <polemcl/apps/BatchPlan.h>
 #include <polemcl/apps/Settings.h>
-#include <polemcl/apps/Version.h>
 #include <polemcl/io/TextFile.h>
 #include <polemcl/mrpt/Bindings.h>
 #include <polemcl/mrpt/Config.h>
@@ -49,7 +48,10 @@ std::string extractionText(Settings settings) {
 /// Puts together one plan.
 class Planner {
  public:
-  explicit Planner(const BatchSpec& spec) : m_spec(spec) { m_plan.name = spec.name; }
+  Planner(const BatchSpec& spec, const std::string& build) : m_spec(spec) {
+    m_plan.name = spec.name;
+    m_plan.build = build;
+  }
 
   BatchPlan plan() {
     requireInputs();
@@ -340,7 +342,7 @@ class Planner {
   void setKeys() {
     std::map<std::string, std::string> keys;
     for (auto& task : m_plan.tasks) {
-      std::string text = std::string("polemcl ") + version() + "\n";
+      std::string text = std::string("polemcl ") + version() + "\n" + m_plan.build + "\n";
       for (const auto& command : task.commands)
         for (const auto& argument : command) {
           text += argument + "\n" + stamp(argument);
@@ -372,8 +374,8 @@ class Planner {
 
 }  // namespace
 
-BatchPlan planBatch(const BatchSpec& spec) {
-  return Planner(spec).plan();
+BatchPlan planBatch(const BatchSpec& spec, const std::string& build) {
+  return Planner(spec, build).plan();
 }
 
 const BatchTask& BatchPlan::task(const std::string& id) const {

@@ -51,6 +51,7 @@ void writePlan(const std::filesystem::path& file, const BatchPlan& plan) {
   Json json;
   json["format"] = s_format;
   json["name"] = plan.name;
+  json["build"] = plan.build;
   json["tasks"] = json["cells"] = Json::array();
   json["files"] = plan.sums;
   for (const auto& task : plan.tasks) json["tasks"].push_back(toJson(task));
@@ -68,6 +69,7 @@ BatchPlan readPlan(const std::filesystem::path& file) {
                   "\"");
     BatchPlan plan;
     json.at("name").get_to(plan.name);
+    json.at("build").get_to(plan.build);
     json.at("files").get_to(plan.sums);
     for (const auto& task : json.at("tasks")) plan.tasks.push_back(taskFrom(task));
     for (const auto& cell : json.at("cells")) plan.cells.push_back(cellFrom(cell));

@@ -232,6 +232,7 @@ std::vector<const BatchTask*> openTasks(const BatchFolder& folder, const BatchPl
                                         std::vector<std::string>& notes) {
   std::vector<const BatchTask*> open;
   std::set<std::string> ids;
+  std::map<std::string, std::size_t> doneByOthers;
   for (const auto& task : plan.tasks) {
     bool again = false;
     for (const auto& need : task.needs) again = again || ids.count(need);
@@ -240,10 +241,16 @@ std::vector<const BatchTask*> openTasks(const BatchFolder& folder, const BatchPl
     if (state == BatchFolder::State::damaged)
       notes.push_back(task.id + ": " + why + "; it is done again");
     if (state == BatchFolder::State::done && !again) continue;
+    const std::string build = folder.buildOf(task);
+    if (state == BatchFolder::State::open && !build.empty() && build != plan.build)
+      ++doneByOthers[build];
     if (state != BatchFolder::State::open || again) folder.remove(task);
     open.push_back(&task);
     ids.insert(task.id);
   }
+  for (const auto& [build, count] : doneByOthers)
+    notes.push_back(std::to_string(count) + " tasks were done by another build (" + build +
+                    ") and are done again; this is " + plan.build);
   return open;
 }
 

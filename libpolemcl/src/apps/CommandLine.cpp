@@ -46,7 +46,8 @@ std::string printable(const std::string& text) {
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
     : m_program(program), m_cli(description, program) {
-  m_cli.set_version_flag("--version", program + " " + version());
+  m_cli.set_version_flag("--version",
+                         program + " " + version() + " (build " + buildIdentity() + ")");
   m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors");
   m_cli.add_option("--threads", m_threads, "At most so many threads; 0: one for each core")
       ->check(CLI::Range(0, 10000));

@@ -25,6 +25,7 @@ void write(const LabelsOptions& options, const LabelsSummary& summary,
   io::PoleMapData map;
   map.poles = poles;
   map.info = {{"program", std::string("pole-labels ") + version()},
+              {"build", buildIdentity()},
               {"inputs", std::filesystem::absolute(options.input / "").parent_path().filename()},
               {"scans", std::to_string(summary.scans)},
               {"points", std::to_string(summary.points)}};

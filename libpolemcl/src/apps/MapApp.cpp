@@ -102,6 +102,7 @@ std::map<std::string, std::string> facts(const Settings& settings, const MapSumm
     names += (names.empty() ? "" : " ") + session.name;
   std::map<std::string, std::string> info{
       {"program", std::string("pole-map ") + version()},
+      {"build", buildIdentity()},
       {"inputs", names},
       {"scans", std::to_string(summary.scans)},
       {"path_length_m", io::fixed(summary.map.pathLength, 3)},

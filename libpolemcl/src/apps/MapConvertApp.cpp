@@ -63,6 +63,7 @@ MapConvertSummary convertMap(const MapConvertOptions& options) {
   if (options.datum) io::setDatum(map.info, *options.datum, options.input.string() + ": ");
   if (map.info.count("program") == 0) {
     map.info["program"] = std::string("pole-map ") + version();
+    map.info["build"] = buildIdentity();
     map.info["converted_from"] = options.input.filename().string();
   }
   writeMap(options, map);

@@ -66,6 +66,7 @@ std::map<std::string, std::string> facts(std::map<std::string, std::string> info
   for (const auto& input : options.inputs) info["f_map." + input.stem().string()] = io::fixed(1, 6);
   if (options.datum) io::setDatum(info, *options.datum, options.map.string() + ": ");
   info["program"] = std::string("pole-map ") + version();
+  info["build"] = buildIdentity();
   info["config"] = settingsText(settings);
   return info;
 }

@@ -4,9 +4,9 @@
 /// one.
 ///
 /// - `plan.json`, `batch.ini`, `settings/`, `files/`: what is done, frozen when it was begun;
-/// - `tasks/TASK/`: the outputs of a task that is done, with `done.json`: its key, and size and
-/// CRC-32
-///   of each output. It appears in one piece. `tasks/TASK.…part` is one under way, or left behind;
+/// - `tasks/TASK/`: the outputs of a task that is done, with `done.json`: its key, size and CRC-32
+///   of each output, the build that did it. It appears in one piece. `tasks/TASK.…part` is one
+///   under way, or left behind;
 /// - `failed/TASK.json`: why the last attempt failed; `logs/TASK.log`: commands and what they said;
 /// - `times/TASK`: seconds that it took: all else is the same whenever the batch is done;
 /// - what writeBatchFiles() writes.
@@ -50,6 +50,8 @@ class BatchFolder {
   };
   /// \param why For damaged ones: the file and what is wrong with it.
   State state(const BatchTask& task, std::string* why = nullptr) const;
+  /// \brief The build that did what is there of a task; "" when nothing is there.
+  std::string buildOf(const BatchTask& task) const;
   /// \brief Done with these settings; its outputs are not looked at.
   bool isDone(const BatchTask& task) const;
 

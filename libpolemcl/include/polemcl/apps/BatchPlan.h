@@ -8,6 +8,7 @@
 /// `../poles.month_03/month_03.rawlog` is what the task `poles.month_03` left.
 
 #include <polemcl/apps/BatchSpec.h>
+#include <polemcl/apps/Version.h>
 
 #include <filesystem>
 #include <map>
@@ -24,7 +25,8 @@ struct BatchTask {
   /// One after the other: program and arguments. The program `copy` takes files here (FROM TO …).
   std::vector<std::vector<std::string>> commands;
   std::vector<std::string> outputs;  ///< files kept, relative to the task's folder; others go
-  /// Stands for all that its outputs depend on: commands, settings, program, the keys of its needs.
+  /// Stands for all that its outputs depend on: commands, settings, the build of the programs, the
+  /// keys of its needs.
   std::string key;
 };
 
@@ -40,6 +42,7 @@ struct BatchCell {
 
 struct BatchPlan {
   std::string name;
+  std::string build;             ///< of the programs that planned it, see buildIdentity()
   std::vector<BatchTask> tasks;  ///< none needs a later one
   std::vector<BatchCell> cells;
   /// Frozen copies of what INI files say, relative to the batch's folder: settings, models.
@@ -54,7 +57,8 @@ struct BatchPlan {
 /// `[sensor] [extraction] [paper] [native]`; maps are built once for all sessions and runs.
 /// \throws Error as loadSettings(), and when the input of a session is not there (all that are
 ///         missing are named).
-BatchPlan planBatch(const BatchSpec& spec);
+/// \param build Of the programs that do the tasks: tasks that another build has done are open.
+BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());
 
 /// \brief Tasks that can be done at the same time, the first need nothing: ids by level.
 std::vector<std::vector<std::string>> levels(const BatchPlan& plan);

@@ -43,7 +43,8 @@ std::map<std::string, std::string> runBatch(
     const std::function<void(const BatchTask&, const TaskOutcome&, const BatchProgress&)>& report);
 
 /// \brief Tasks that have to be done: those not done, those damaged (removed here), and all that
-/// need one of them. \param notes One line for each that was damaged.
+/// need one of them. \param notes One line for each that was damaged, and for each other build that
+/// did some.
 std::vector<const BatchTask*> openTasks(const BatchFolder& folder, const BatchPlan& plan,
                                         std::vector<std::string>& notes);
 

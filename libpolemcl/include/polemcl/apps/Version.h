@@ -1,7 +1,13 @@
 #pragma once
 /// \file Version.h
+/// \brief Which polemcl this is.
 
 namespace polemcl::apps {
-/// \brief Version of polemcl, as `--version` prints it.
+/// \brief Version of polemcl, as `--version` prints it first: "0.1.0".
 const char* version();
+/// \brief What this library was built from and how, on one line: the commit, with "+" and a hash of
+/// the sources when they are not as committed ("sources-" and that hash without git), the compiler,
+/// the build type, the options of the compiler. Another identity, possibly other results: it stands
+/// in the keys of a batch's tasks and in JSON files and maps.
+const char* buildIdentity();
 }  // namespace polemcl::apps
