@@ -193,6 +193,17 @@ TEST(BatchPlan, NamesAllInputsThatAreMissing) {
   }));
 }
 
+TEST(BatchPlan, TakesSessionsOfNcltAsItsDownloaderLaysThemOut) {
+  const TempFolder data;
+  const BatchSpec spec = readBatchSpec(source + "/config/batches/nclt.ini", data.path());
+  EXPECT_NE(messageOf([&] { planBatch(spec); }).find("2012-01-08 is not there"), std::string::npos);
+  for (const auto& session : spec.sessions)
+    fs::create_directories(data / "velodyne_data" / session.name / "velodyne_sync");
+  const BatchPlan plan = planBatch(spec);
+  const Names& import = plan.task("poles.2012-01-08").commands[0];
+  EXPECT_NE(std::find(import.begin(), import.end(), (data / "2012-01-08").string()), import.end());
+}
+
 TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
   std::size_t batches = 0;
   for (const auto& entry : fs::directory_iterator(source + "/config/batches")) {

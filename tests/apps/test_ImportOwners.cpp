@@ -61,6 +61,31 @@ class ImportOwners : public testing::Test {
 
 }  // namespace
 
+TEST_F(ImportOwners, NcltTakesOneSessionOfSeveral) {
+  writeNclt();
+  for (const char* date : {"2012-01-15", "2012-01-22"}) {
+    fs::create_directories(folder / "all" / "velodyne_data" / date);
+    fs::copy(folder / "in" / "velodyne_sync",
+             folder / "all" / "velodyne_data" / date / "velodyne_sync",
+             fs::copy_options::recursive);
+    fs::create_directories(folder / "all" / "ground_truth");
+    fs::copy(folder / "in" / "groundtruth_2012-01-15.csv",
+             folder / "all" / "ground_truth" / ("groundtruth_" + std::string(date) + ".csv"));
+  }
+  const auto from = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"nclt", "--input", (folder / "all").string(), "--output",
+                               (folder / "out.rawlog").string()});
+    return runProgram(importMain, more);
+  };
+  const Outcome outcome = from({"--session", "2012-01-22"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("3 scans"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(fs::exists(folder / "out.tum"));
+  expectFailure(from({}), {"velodyne_data", "--session", "2012-01-15 2012-01-22"});
+  expectFailure(from({"--session", "2013-01-10"}), {"2013-01-10", "no such folder"});
+  expectUsageError(run("folder", {"--session", "2012-01-22"}));
+}
+
 TEST_F(ImportOwners, Nclt) {
   writeNclt();
   const auto outcome = run("nclt");

@@ -208,9 +208,39 @@ TEST_F(NcltTest, refusesShortRowsAndCutScans) {
   expectIn(refusal(), "odometry_cov.csv:1: ", "2 numbers, 22 expected");
 }
 
-TEST_F(NcltTest, refusesCovariancesOfOtherTimes) {
+// The mean goes on from odometry_mu.csv whatever its covariances are.
+TEST_F(NcltTest, covariancesOfOtherTimesAreDoneWithout) {
   write("2012-01-15/odometry_cov.csv", covarianceRow(5, Eigen::Matrix<double, 6, 6>::Identity()));
-  expectIn(refusal(), "odometry_cov.csv:1: ", "odometry_mu.csv:1: ");
+  const ScanFolder session = load();
+  EXPECT_NEAR(session.scans[2].motion->mean.x, 1, 1e-6);
+  EXPECT_NEAR(session.scans[2].motion->covariance(0, 0), 0.05 * 0.05 + 1e-6, 2e-7);
+  expectIn(notes(session), "odometry_cov.csv does not go row by row", "of 6 motions 0 take",
+           "6 have none");
+}
+
+TEST_F(NcltTest, covariancesAreFoundByTheirTimes) {
+  // As the owners' files may be: rows that odometry_mu.csv has not, rows missing, times a little
+  // off, not in order, not finite.
+  const auto c = [](double xx) {
+    Eigen::Matrix<double, 6, 6> all = Eigen::Matrix<double, 6, 6>::Zero();
+    all.diagonal() << xx, 0.01, 1, 1, 1, 0.0025;
+    return all;
+  };
+  const auto stepTime = [](int i) { return scanTime(i) - period / 2; };
+  std::string rows = covarianceRow(stepTime(0) - 90 * period, c(9));
+  rows += covarianceRow(stepTime(1) - 3000, c(0.04));  // 3 ms early
+  rows += covarianceRow(stepTime(1) + 97000, c(7));    // between two steps
+  rows += covarianceRow(stepTime(2) + 5000, c(0.16));  // 5 ms late
+  rows += covarianceRow(stepTime(1), c(8));            // out of order
+  rows += covarianceRow(stepTime(3), c(std::nan("")));
+  rows += covarianceRow(stepTime(5), c(0.36));
+  write("2012-01-15/odometry_cov.csv", rows);
+  const ScanFolder session = load();
+  // From scan 0 to 1: half of the first step and half of the second.
+  EXPECT_NEAR(session.scans[1].motion->covariance(0, 0), (0.04 + 0.16) / 2 + 1e-6, 1e-3);
+  // From scan 2 to 3: neither of the two steps has one.
+  EXPECT_NEAR(session.scans[3].motion->covariance(0, 0), 0.05 * 0.05 + 1e-6, 2e-7);
+  expectIn(notes(session), "of 6 motions 2 take the covariance of the nearest time, 3 have none");
 }
 
 TEST_F(NcltTest, refusesSeveralSessionsInOneFolder) {

@@ -1,6 +1,7 @@
 #include <mrpt/system/md5.h>
 #include <polemcl/apps/BatchPlan.h>
 #include <polemcl/apps/Settings.h>
+#include <polemcl/io/Nclt.h>
 #include <polemcl/io/TextFile.h>
 #include <polemcl/mrpt/Bindings.h>
 #include <polemcl/mrpt/Config.h>
@@ -81,6 +82,7 @@ class Planner {
   static std::string obstacle(const BatchSession& session) {
     const bool isFile =
         session.source == "simulated" || session.source == "poles" || session.source == "scans";
+    if (session.source == "nclt" && io::isNcltSession(session.input)) return {};
     if (!fs::exists(session.input)) return session.input + " is not there";
     if (isFile && !fs::is_regular_file(session.input)) return session.input + " is no file";
     if (!isFile && !fs::is_directory(session.input)) return session.input + " is no folder";

@@ -15,13 +15,13 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
     {Dataset::folder, "folder", "velodyne/*.bin, times.txt, poses.txt, odometry.txt"},
     {Dataset::kittiOdometry, "kitti-odometry", "A sequence of the KITTI odometry benchmark"},
     {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"},
-    {Dataset::nclt, "nclt", "A session of NCLT: velodyne_sync/ or velodyne_hits.bin, *.csv"},
+    {Dataset::nclt, "nclt", "A session of NCLT, in a folder or as its downloader lays it out"},
     {Dataset::mulran, "mulran", "A sequence of MulRan: Ouster/*.bin, global_pose.csv"},
     {Dataset::pcd, "pcd", "*.pcd (also compressed), always embedded; text files as for folder"}};
 
 /// Options as they are typed.
 struct Texts {
-  std::string sensorPose, posesOf = "robot";
+  std::string sensorPose, posesOf = "robot", session;
 };
 
 /// What is wrong with the text, for CLI11; nothing when it is a pose.
@@ -71,6 +71,10 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
       ->check(CLI::IsMember({"robot", "sensor"}))
       ->capture_default_str()
       ->needs(poses);
+  if (dataset == Dataset::nclt)
+    cli.add_option("--session", texts.session,
+                   "Session of --input where that holds several: 2012-01-15")
+        ->type_name("DATE");
   if (dataset == Dataset::kittiRaw)
     cli.add_option("--calib", options.calibration,
                    "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
@@ -108,6 +112,7 @@ int importMain(int argc, const char* const* argv) {
     for (const auto& [command, dataset] : commands)
       if (command->parsed()) options.dataset = dataset;
     if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);
+    if (!texts.session.empty()) options.input /= texts.session;
     options.posesOfSensor = texts.posesOf == "sensor";
     ImportReport report;
     {

@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <regex>
 #include <utility>
+
+#include "NcltFiles.h"
 
 namespace polemcl::io {
 
@@ -18,97 +19,6 @@ namespace {
 
 using Turns = std::vector<NcltTurn>;
 using TurnMotions = std::vector<std::optional<TurnMotion>>;
-
-/// The folder and those right below it, in the order of their names.
-std::vector<fs::path> placesIn(const fs::path& folder) {
-  std::error_code error, ignored;
-  std::vector<fs::path> places;
-  for (auto entry = fs::directory_iterator(folder, error);
-       !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    if (entry->is_directory(ignored)) places.push_back(entry->path());
-  }
-  if (error) throw Error("cannot read the folder " + folder.string() + ": " + error.message());
-  std::sort(places.begin(), places.end());
-  places.insert(places.begin(), folder);
-  return places;
-}
-
-/// The one place that has the name; an empty path when none has.
-fs::path findNamed(const std::vector<fs::path>& places, const std::string& name) {
-  fs::path found;
-  for (const fs::path& place : places) {
-    if (!isThere(place / name)) continue;
-    if (!found.empty())
-      throw Error(found.string() + " and " + (place / name).string() +
-                  ": several of these; give the folder of one session");
-    found = place / name;
-  }
-  return found;
-}
-
-/// "2012-01-15" in the last part of a path that has such a thing.
-std::string dateOf(const fs::path& folder) {
-  static const std::regex date("\\d{4}-\\d{2}-\\d{2}");
-  std::smatch match;
-  const std::string name = fs::absolute(folder / "").parent_path().filename().string();
-  return std::regex_search(name, match, date) ? match.str() : std::string();
-}
-
-/// groundtruth_DATE.csv or cov_DATE.csv: of the folder's own date if it has one, else the only one.
-fs::path findDated(const std::vector<fs::path>& places, const std::string& prefix) {
-  const std::string date = dateOf(places.front());
-  if (!date.empty()) {
-    const std::string name = prefix + "_" + date + ".csv";
-    fs::path found = findNamed(places, name);
-    const fs::path parent = fs::absolute(places.front() / "").parent_path().parent_path();
-    if (found.empty())
-      found = findNamed({parent, parent / "ground_truth", parent / "ground_truth_cov"}, name);
-    if (!found.empty()) return found;
-  }
-  const std::regex pattern(prefix + "(_.*)?\\.csv");
-  fs::path found;
-  std::error_code ignored;
-  for (const fs::path& place : places) {
-    for (const auto& entry : fs::directory_iterator(place, ignored)) {
-      if (!std::regex_match(entry.path().filename().string(), pattern)) continue;
-      if (!found.empty())
-        throw Error(found.string() + " and " + entry.path().string() +
-                    ": several of these; keep that of the session");
-      found = entry.path();
-    }
-  }
-  return found;
-}
-
-struct SessionFiles {
-  fs::path sync, hits;  ///< folder of scans; file of packets
-  fs::path truth, covariances;
-  NcltOdometryFiles odometry;
-};
-
-bool hasScans(const fs::path& folder) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().extension() == ".bin" && fileNumber(entry.path())) return true;
-  }
-  return false;
-}
-
-SessionFiles findFiles(const fs::path& session) {
-  const auto places = placesIn(session);
-  SessionFiles files;
-  files.sync = findNamed(places, "velodyne_sync");
-  if (files.sync.empty() && hasScans(session)) files.sync = session;
-  files.hits = findNamed(places, "velodyne_hits.bin");
-  files.truth = findDated(places, "groundtruth");
-  files.covariances = findDated(places, "cov");
-  files.odometry = {findNamed(places, "odometry_mu_100hz.csv"),
-                    findNamed(places, "odometry_mu.csv"), findNamed(places, "odometry_cov.csv")};
-  if (files.sync.empty() && files.hits.empty())
-    throw Error(session.string() +
-                ": neither velodyne_sync/ nor velodyne_hits.bin in it (DATE_vel.tar.gz of NCLT)");
-  return files;
-}
 
 void addSync(const fs::path& folder, ScanFolder& result) {
   const auto files = listFiles(folder, ".bin");
@@ -253,7 +163,7 @@ Eigen::Isometry3d ncltRobotBody() {
 
 ScanFolder readNclt(const fs::path& session, const Eigen::Isometry3d& T_robot_body,
                     const ReadProgress& progress) {
-  const SessionFiles files = findFiles(session);
+  const NcltFiles files = findNcltFiles(session);
   ScanFolder result;
   Turns turns;
   if (!files.sync.empty()) {

@@ -1,3 +1,4 @@
+#include <polemcl/core/PoseInterpolation.h>
 #include <polemcl/io/CsvRows.h>
 #include <polemcl/io/NcltOdometry.h>
 #include <polemcl/io/ScanPoses.h>
@@ -44,6 +45,56 @@ PlanarMotion shareOf(const PlanarMotion& motion, double share) {
           share * motion.covariance};
 }
 
+/// The covariances of the steps, looked up by time.
+class CovarianceRows {
+ public:
+  explicit CovarianceRows(const fs::path& file) : m_rows(file, 22, covarianceLayout) { advance(); }
+
+  /// That of the row nearest to `time`, unless it is farther than `reach`, s. Times must rise.
+  std::optional<Eigen::Matrix3d> at(double time, double reach) {
+    while (m_next && m_next->time <= time) advance();
+    const Row* nearest = m_before ? &*m_before : nullptr;
+    if (m_next && (!nearest || m_next->time - time < time - nearest->time)) nearest = &*m_next;
+    if (!nearest || std::abs(nearest->time - time) > reach) {
+      ++m_missing;
+      return std::nullopt;
+    }
+    if (std::abs(nearest->time - time) > sampleTolerance) ++m_shifted;
+    return nearest->covariance;
+  }
+
+  void noteMismatch(std::size_t steps, std::vector<std::string>& notes) const {
+    if (m_missing + m_shifted == 0) return;
+    notes.push_back("odometry_cov.csv does not go row by row with odometry_mu.csv: of " +
+                    std::to_string(steps) + " motions " + std::to_string(m_shifted) +
+                    " take the covariance of the nearest time, " + std::to_string(m_missing) +
+                    " have none (there it is that of the motions beside them, or of 5 % of each "
+                    "motion)");
+  }
+
+ private:
+  struct Row {
+    double time = 0;  ///< s
+    Eigen::Matrix3d covariance;
+  };
+
+  /// To the next row that is finite and later.
+  void advance() {
+    m_before = m_next;
+    m_next.reset();
+    std::vector<double> row;
+    while (!m_next && m_rows.next(row)) {
+      const double time = row[0] * 1e-6;
+      if (allFinite(row) && (!m_before || time > m_before->time))
+        m_next = Row{time, planarCovariance(row.data() + 1)};
+    }
+  }
+
+  CsvRows m_rows;
+  std::optional<Row> m_before, m_next;
+  std::size_t m_shifted = 0, m_missing = 0;  ///< steps with a covariance of another time, with none
+};
+
 void noteUnused(std::size_t rows, const fs::path& file, std::vector<std::string>& notes) {
   if (rows > 0)
     notes.push_back(file.filename().string() + ": " + std::to_string(rows) +
@@ -87,30 +138,32 @@ void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& not
 void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
                              const ReadProgress& progress) {
   CsvRows rows(files.steps, 7, poseLayout, progress);
-  std::optional<CsvRows> covariances;
-  if (!files.covariances.empty()) covariances.emplace(files.covariances, 22, covarianceLayout);
-  std::vector<double> row, covariance;
-  std::size_t unused = 0;
+  std::optional<CovarianceRows> covariances;
+  if (!files.covariances.empty()) covariances.emplace(files.covariances);
+  std::vector<double> row;
+  std::size_t unused = 0, steps = 0;
   std::optional<double> last;
   Eigen::Isometry3d T_odom_body = Eigen::Isometry3d::Identity();
   while (rows.next(row)) {
-    if (covariances && (!covariances->next(covariance) || covariance[0] != row[0]))
-      throw Error(covariances->at() + "no covariance for the time of " + rows.at() +
-                  "the two files must have the same rows; expected: " + covarianceLayout);
     const double time = row[0] * 1e-6;
-    if (!allFinite(row) || !allFinite(covariance) || (last && time <= *last)) {
+    if (!allFinite(row) || (last && time <= *last)) {
       ++unused;
       continue;
     }
     const Eigen::Isometry3d step = ncltPose(row.data() + 1);
     // The first row's motion began before the session.
-    if (last) T_odom_body = T_odom_body * step;
-    if (last && covariances)
-      m_steps.push_back({*last, time, {planar(step), planarCovariance(covariance.data() + 1)}});
+    if (last) {
+      ++steps;
+      T_odom_body = T_odom_body * step;
+      const auto covariance =
+          covariances ? covariances->at(time, (time - *last) / 2) : std::nullopt;
+      if (covariance) m_steps.push_back({*last, time, {planar(step), *covariance}});
+    }
     if (files.track.empty()) m_track.add(time, T_odom_body);
     last = time;
   }
   noteUnused(unused, files.steps, notes);
+  if (covariances) covariances->noteMismatch(steps, notes);
 }
 
 std::optional<Eigen::Matrix3d> NcltOdometry::covarianceBetween(double begin, double end) const {

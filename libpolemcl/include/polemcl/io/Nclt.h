@@ -16,6 +16,11 @@ Eigen::Isometry3d ncltRobotBody();
 /// the folder or one below it; the truth also beside the folder or in `../ground_truth`, of the
 /// date in the folder's name.
 ///
+/// The folders of NCLT's own downloader are known as well: ROOT/velodyne_data/DATE (or DATE_vel),
+/// ROOT/sensor_data/DATE (or DATE_sen), ROOT/ground_truth, ROOT/ground_truth_cov. The session is
+/// then ROOT/DATE, though there is no such folder, or ROOT/velodyne_data/DATE; or ROOT when it
+/// holds one session only.
+///
 /// Clouds are in the body frame (z down), as velodyne_sync has them. Whole turns of
 /// velodyne_hits.bin are brought there, with the body's motion during the turn taken out where
 /// there is odometry. Map frame: x east, y north, z up, the origin that of the dataset, as in the
@@ -28,5 +33,8 @@ Eigen::Isometry3d ncltRobotBody();
 ///         files that may be meant, times of the files that do not overlap.
 ScanFolder readNclt(const std::filesystem::path& session, const Eigen::Isometry3d& T_robot_body,
                     const ReadProgress& progress = {});
+
+/// \brief Whether there is anything of a session by that name, see readNclt().
+bool isNcltSession(const std::filesystem::path& session);
 
 }  // namespace polemcl::io

@@ -28,13 +28,14 @@ struct NcltOdometryFiles {
 ///
 /// The means come from the track, or without it from the steps joined together; the covariances
 /// from those of the steps between, composed; a step that is only partly between counts in
-/// proportion. Frame: the body, x ahead, y right, z down.
+/// proportion. A covariance belongs to the step of its time, or of the nearest time within half a
+/// step: the two files need not go row by row. Frame: the body, x ahead, y right, z down.
 class NcltOdometry {
  public:
   /// \param times At which the body's pose is wanted, s, not falling.
-  /// \param notes Gets a line when covariances are missing or rows are out of order.
-  /// \throws Error naming file and line: cannot be read, short rows, not a number, covariances of
-  ///         other times than the steps.
+  /// \param notes Gets a line when covariances are missing or of other times, or rows are out of
+  ///        order.
+  /// \throws Error naming file and line: cannot be read, short rows, not a number.
   NcltOdometry(const NcltOdometryFiles& files, std::vector<double> times,
                std::vector<std::string>& notes, const ReadProgress& progress = {});
 
