@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs what is missing, builds, and runs every test.
 # Usage: tests/run.sh [--full]
-#   --full  then tries batches on a Slurm cluster of its own (as root), builds with the address and
-#           undefined-behaviour sanitizers and runs the tests again
+#   --full  then opens scenes in MRPT's viewer, tries batches on a Slurm cluster of its own (as
+#           root), builds with the address and undefined-behaviour sanitizers and runs the tests again
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
@@ -41,6 +41,7 @@ run_tests "$top/build"
 
 if [ "$full" = yes ]; then
   "$top/share/setup/install.sh" full
+  "$top/tests/viewers/run.sh"
   "$top/tests/slurm/run.sh"
   "$top/share/setup/build.sh" sanitize all
   run_tests "$top/build-sanitize"

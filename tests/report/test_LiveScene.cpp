@@ -1,43 +1,19 @@
 #include <gtest/gtest.h>
-#include <mrpt/opengl/CCylinder.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
-#include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/opengl/CText.h>
+#include <polemcl/mrpt/SceneParts.h>
 #include <polemcl/report/LiveScene.h>
-#include <polemcl/report/MapScene.h>
 
 #include <Eigen/LU>
 #include <fstream>
 #include <iterator>
 
 #include "LiveMoments.h"
+#include "scenes.h"
 #include "views.h"
 
 namespace polemcl::report {
 namespace {
-
-using mrpt::opengl::CCylinder;
-
-std::vector<CCylinder::Ptr> cylindersOf(const LiveScene& scene, const std::string& name) {
-  std::vector<CCylinder::Ptr> cylinders;
-  const auto set = std::dynamic_pointer_cast<mrpt::opengl::CSetOfObjects>(
-      scene.scene()->getViewport()->getByName(name));
-  if (!set) return cylinders;
-  for (const auto& object : *set)
-    if (auto cylinder = std::dynamic_pointer_cast<CCylinder>(object)) cylinders.push_back(cylinder);
-  return cylinders;
-}
-
-mrpt::math::TBoundingBox boxOf(const LiveScene& scene, const std::string& name) {
-  return scene.scene()->getViewport()->getByName(name)->getBoundingBox();
-}
-
-std::string textOf(const LiveScene& scene) {
-  std::string all;
-  for (const auto& [index, text] : scene.scene()->getViewport("text")->getTextMessages().messages)
-    all += text.text + "\n";
-  return all;
-}
 
 std::string shareOf(const mrpt::opengl::CRenderizable& object) {
   const auto* text = dynamic_cast<const mrpt::opengl::CText*>(&object);
@@ -54,9 +30,10 @@ std::string bytesOf(const std::filesystem::path& file) {
 TEST(LiveScene, ShowsTheMapAndWhatWasObservedWhereItStands) {
   LiveScene scene(smallMap(), "drive");
   scene.show(knownMoment());
-  ASSERT_EQ(cylindersOf(scene, "map").size(), 4u);
-  EXPECT_NEAR(cylindersOf(scene, "map")[1]->getPoseX(), 20, 1e-6);
-  const auto matched = cylindersOf(scene, "matched"), unmatched = cylindersOf(scene, "unmatched");
+  ASSERT_EQ(cylindersOf(scene.scene(), "map").size(), 4u);
+  EXPECT_NEAR(cylindersOf(scene.scene(), "map")[1]->getPoseX(), 20, 1e-6);
+  const auto matched = cylindersOf(scene.scene(), "matched"),
+             unmatched = cylindersOf(scene.scene(), "unmatched");
   ASSERT_EQ(matched.size(), 1u);  // robot (-5, -10), turned by 90 degrees, from (10, 0)
   EXPECT_NEAR(matched[0]->getPoseX(), 20, 1e-6);
   EXPECT_NEAR(matched[0]->getPoseY(), -5, 1e-6);
@@ -65,7 +42,7 @@ TEST(LiveScene, ShowsTheMapAndWhatWasObservedWhereItStands) {
   EXPECT_NEAR(unmatched[0]->getPoseX(), 10, 1e-6);
   EXPECT_NEAR(unmatched[0]->getPoseY(), 3, 1e-6);
   EXPECT_NE(matched[0]->getColor_u8(), unmatched[0]->getColor_u8());
-  EXPECT_NE(matched[0]->getColor_u8(), cylindersOf(scene, "map")[0]->getColor_u8());
+  EXPECT_NE(matched[0]->getColor_u8(), cylindersOf(scene.scene(), "map")[0]->getColor_u8());
 }
 
 TEST(LiveScene, HeavyParticlesAreDarkAndOnTop) {
@@ -103,7 +80,7 @@ TEST(LiveScene, TheEllipseHolds95PercentOfAGaussian) {
 TEST(LiveScene, WayAndVehicleLieWhereTheEstimateWasAndIs) {
   LiveScene scene(smallMap(), "");
   scene.show(knownMoment());
-  const auto way = boxOf(scene, "way"), vehicle = boxOf(scene, "vehicle");
+  const auto way = boxOf(scene.scene(), "way"), vehicle = boxOf(scene.scene(), "vehicle");
   EXPECT_NEAR(way.min.x, 8, 1e-4);
   EXPECT_NEAR(way.max.x, 10, 1e-4);
   EXPECT_NEAR(vehicle.max.y, 1.5, 1e-4);  // 3 m long, along +y
@@ -116,7 +93,7 @@ TEST(LiveScene, AJumpLeavesNoLine) {
   moment.way = {{8, 0, false}, {9, 0, true}, {500, 0, false}};
   LiveScene scene(smallMap(), "");
   scene.show(moment);
-  EXPECT_NEAR(boxOf(scene, "way").max.x, 9, 1e-4);
+  EXPECT_NEAR(boxOf(scene.scene(), "way").max.x, 9, 1e-4);
 }
 
 TEST(LiveScene, WithoutAPoseItShowsThePlacesSupposedAndTheWholeMap) {
@@ -136,15 +113,15 @@ TEST(LiveScene, WithoutAPoseItShowsThePlacesSupposedAndTheWholeMap) {
   EXPECT_NEAR((*(places->begin() + 3))->getPoseX(), 40, 1e-6);
   EXPECT_NEAR(scene.camera().getPointingAtX(), 30, 1e-3);
   EXPECT_GT(scene.camera().getZoomDistance(), 60);
-  EXPECT_NE(textOf(scene).find("lost: searching"), std::string::npos);
-  EXPECT_NE(textOf(scene).find("observed poles 3, places 2"), std::string::npos);
+  EXPECT_NE(legendOf(scene.scene()).find("lost: searching"), std::string::npos);
+  EXPECT_NE(legendOf(scene.scene()).find("observed poles 3, places 2"), std::string::npos);
 }
 
 TEST(LiveScene, TheTextTellsTheHealth) {
   LiveScene scene(smallMap(), "the drive");
   LiveMoment moment = knownMoment();
   scene.show(moment);
-  std::string text = textOf(scene);
+  std::string text = legendOf(scene.scene());
   for (const char* part :
        {"ok\n", "the drive\n", "time 1.2 s, scan 12\n", "matched 75 %, now 1 of 2\n",
         "spread 0.100 m", "particles 3, effective 2\n", "10.00 0.00 m, 90.0 deg"})
@@ -152,7 +129,7 @@ TEST(LiveScene, TheTextTellsTheHealth) {
   moment.health.state = HealthState::degraded;
   moment.health.reason = HealthReason::noPoles;
   scene.show(moment);
-  text = textOf(scene);
+  text = legendOf(scene.scene());
   EXPECT_NE(text.find(std::string("degraded: ") + name(HealthReason::noPoles)), std::string::npos);
   EXPECT_EQ(text.find("ok\n"), std::string::npos);
 }
@@ -173,13 +150,10 @@ TEST(LiveScene, TheCameraFollowsFromBehindAndTurnsGently) {
   EXPECT_GT(scene.camera().getAzimuthDegrees(), 190);
 }
 
-TEST(LiveScene, CentredOnTheVehicleAllMovesAlong) {
-  LiveScene scene(smallMap(), "", 1, LiveScene::Centre::vehicle);
+TEST(LiveScene, ViewersTakeItsCamera) {
+  LiveScene scene(smallMap(), "");
   scene.show(knownMoment());
-  EXPECT_NEAR(scene.scene()->getViewport()->getByName("map")->getPoseX(), -10, 1e-6);
-  EXPECT_NEAR(cylindersOf(scene, "matched")[0]->getPoseX(), 10, 1e-6);
-  EXPECT_NEAR((boxOf(scene, "vehicle").min.x + boxOf(scene, "vehicle").max.x) / 2, 0, 1e-4);
-  EXPECT_NE(textOf(scene).find("10.00 0.00 m"), std::string::npos);
+  EXPECT_TRUE(scene.scene()->followCamera());
 }
 
 TEST(LiveScene, MapsInUtmKeepTheirCentimetres) {
@@ -187,18 +161,27 @@ TEST(LiveScene, MapsInUtmKeepTheirCentimetres) {
   for (MapPole& pole : map) pole.x += 352000.25, pole.y += 4027000.5;
   LiveMoment moment = knownMoment();
   moment.estimate->mean.x += 352000.25, moment.estimate->mean.y += 4027000.5;
-  LiveScene scene(map, "drive");
-  scene.show(moment);
-  EXPECT_NEAR(cylindersOf(scene, "map")[1]->getPoseX(), 20.25, 1e-4);
-  EXPECT_NEAR(cylindersOf(scene, "matched")[0]->getPoseY(), -4.5, 1e-4);
-  EXPECT_NE(textOf(scene).find("352000 4027000"), std::string::npos);
+  for (Pose2D& particle : moment.particles) particle.x += 352000.25, particle.y += 4027000.5;
+  for (WayPoint& point : moment.way) point.x += 352000.25, point.y += 4027000.5;
+  LiveScene near(smallMap(), "drive"), far(map, "drive");
+  near.show(knownMoment());
+  far.show(moment);
+  for (const char* name : {"way", "vehicle", "ellipse", "particles"}) {
+    EXPECT_NEAR(boxOf(far.scene(), name).min.x, boxOf(near.scene(), name).min.x + 0.25, 1e-3)
+        << name;
+    EXPECT_NEAR(boxOf(far.scene(), name).max.y, boxOf(near.scene(), name).max.y + 0.5, 1e-3)
+        << name;
+  }
+  EXPECT_NEAR(cylindersOf(far.scene(), "map")[1]->getPoseX(), 20.25, 1e-4);
+  EXPECT_NEAR(cylindersOf(far.scene(), "matched")[0]->getPoseY(), -4.5, 1e-4);
+  EXPECT_NE(legendOf(far.scene()).find("x 352000, y 4027000"), std::string::npos);
 }
 
 TEST(LiveScene, TheFileHoldsStockObjectsAndComesBack) {
   const TestFolder folder;
   LiveScene scene(smallMap(), "drive");
   scene.show(knownMoment());
-  saveScene(*scene.scene(), folder / "a.3Dscene");
+  polemcl::scene::save(*scene.scene(), folder / "a.3Dscene");
   EXPECT_EQ(bytesOf(folder / "a.3Dscene").find("polemcl"), std::string::npos);
   mrpt::opengl::COpenGLScene loaded;
   ASSERT_TRUE(loaded.loadFromFile((folder / "a.3Dscene").string()));

@@ -1,34 +1,9 @@
 #include <gtest/gtest.h>
-#include <polemcl/core/Types.h>
 #include <polemcl/report/PlotAxes.h>
 
 #include <cmath>
 
 namespace polemcl::report {
-
-TEST(PlotAxes, StepsAreOneTwoOrFiveTimesAPowerOfTen) {
-  EXPECT_DOUBLE_EQ(tickStep(10, 10), 1);
-  EXPECT_DOUBLE_EQ(tickStep(11, 10), 2);
-  EXPECT_DOUBLE_EQ(tickStep(41, 10), 5);
-  EXPECT_DOUBLE_EQ(tickStep(51, 10), 10);
-  EXPECT_DOUBLE_EQ(tickStep(0.03, 3), 0.01);
-}
-
-TEST(PlotAxes, NeverMoreStepsThanAllowed) {
-  for (double span = 1e-4; span < 1e5; span *= 1.37)
-    for (int most = 1; most < 15; ++most) {
-      const double step = tickStep(span, most);
-      EXPECT_LE(span / step, most * (1 + 1e-9)) << span << " in " << most;
-      EXPECT_GE(span / step, most / 2.5 * (1 - 1e-9)) << span << " in " << most;
-    }
-}
-
-TEST(PlotAxes, RefusesAnEmptyOrEndlessRange) {
-  EXPECT_THROW(tickStep(0, 5), Error);
-  EXPECT_THROW(tickStep(-1, 5), Error);
-  EXPECT_THROW(tickStep(HUGE_VAL, 5), Error);
-  EXPECT_THROW(tickStep(1, 0), Error);
-}
 
 TEST(PlotAxes, TicksIncludeBothEnds) {
   EXPECT_EQ(ticks({-1, 1}, 0.5), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));

@@ -135,7 +135,7 @@ auto comparing(const std::filesystem::path& result, const std::filesystem::path&
 }
 
 void draw(const EvalTrajectoryOptions& options, const report::MapView& view) {
-  if (options.scene) report::saveScene(*report::makeMapScene(view), *options.scene);
+  if (options.scene) scene::save(*report::makeMapScene(view), *options.scene);
   if (options.png) report::drawMapPng(view, *options.png);
 }
 

@@ -176,7 +176,7 @@ MapSummary buildMap(const MapOptions& options, const Settings& settings,
     view.title = options.output.filename().string();
     view.poles = summary.map.poles;
     view.truth = pathOf(sessions.added());
-    report::saveScene(*report::makeMapScene(view), *options.scene);
+    scene::save(*report::makeMapScene(view), *options.scene);
   }
   io::writePoleMap(options.output, map,
                    options.keepScans || options.add ? &sessions.added() : nullptr);

@@ -2,9 +2,9 @@
 #include <polemcl/io/AtomicFile.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/TextFile.h>
+#include <polemcl/mrpt/SceneParts.h>
 #include <polemcl/report/DiffPicture.h>
 #include <polemcl/report/DiffScene.h>
-#include <polemcl/report/MapScene.h>
 
 #include <ostream>
 
@@ -33,11 +33,11 @@ void writeCsv(const MapDiff& diff, const std::filesystem::path& file) {
 MapDiff diffMapFiles(const MapDiffFiles& files, const MapDiffOptions& options) {
   const MapDiff diff =
       diffMaps(io::readPoleMap(files.before).poles, io::readPoleMap(files.after).poles, options);
-  const std::string title =
-      files.before.filename().string() + " → " + files.after.filename().string();
+  const std::string before = files.before.filename().string(),
+                    after = files.after.filename().string();
   if (files.csv) writeCsv(diff, *files.csv);
-  if (files.png) report::drawDiffPng(diff, title, *files.png);
-  if (files.scene) report::saveScene(*report::makeDiffScene(diff), *files.scene);
+  if (files.png) report::drawDiffPng(diff, before + " → " + after, *files.png);
+  if (files.scene) scene::save(*report::makeDiffScene(diff, before + " to " + after), *files.scene);
   return diff;
 }
 

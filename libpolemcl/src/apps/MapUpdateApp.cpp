@@ -121,7 +121,7 @@ MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& 
   if (options.scene) {
     view.title = options.output.filename().string();
     view.poles = after.poles;
-    report::saveScene(*report::makeMapScene(view), *options.scene);
+    scene::save(*report::makeMapScene(view), *options.scene);
   }
   io::writePoleMap(options.output, after);
   return summary;

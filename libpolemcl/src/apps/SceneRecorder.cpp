@@ -1,8 +1,8 @@
 #include "SceneRecorder.h"
 
+#include <polemcl/mrpt/SceneParts.h>
 #include <polemcl/report/FrameRenderer.h>
 #include <polemcl/report/LiveScene.h>
-#include <polemcl/report/MapScene.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -106,15 +106,14 @@ void SceneRecorder::writeAll() {
                      static_cast<unsigned>(m_options.height));
   // Two, as letters of frames are made larger before the picture is halved.
   std::optional<report::LiveScene> forScenes, forFrames;
-  if (m_options.scenes > 0)
-    forScenes.emplace(m_map, m_title, 1.0, report::LiveScene::Centre::vehicle);
+  if (m_options.scenes > 0) forScenes.emplace(m_map, m_title);
   if (m_frames)
     forFrames.emplace(m_map, m_title,
                       report::FrameRenderer::textScale(static_cast<unsigned>(m_options.height)));
   while (const auto moment = next()) {
     if (wantsScene(moment->scan)) {
       forScenes->show(*moment);
-      report::saveScene(*forScenes->scene(), m_scenes / numbered(moment->scan, ".3Dscene"));
+      scene::save(*forScenes->scene(), m_scenes / numbered(moment->scan, ".3Dscene"));
     }
     if (wantsFrame(moment->scan)) {
       forFrames->show(*moment);

@@ -2,6 +2,7 @@
 #include <polemcl/core/PoleMerging.h>
 #include <polemcl/io/ReadLimits.h>
 #include <polemcl/mrpt/CObservationPoles.h>
+#include <polemcl/mrpt/SceneParts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 #include <sstream>
 
 #include "BoundedRead.h"
-#include "PoleDrawing.h"
 
 IMPLEMENTS_SERIALIZABLE(CObservationPoles, CObservation, polemcl)
 
@@ -120,8 +120,8 @@ void CObservationPoles::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) con
   for (const auto& pole : polesInRobotFrame()) {
     const double sure = std::clamp(pole.confidence, 0.0, 1.0);
     const auto strength = static_cast<std::uint8_t>(80 + 175 * sure);
-    drawPole(o, pole.x, pole.y, pole.radius, pole.bottom, pole.top,
-             mrpt::img::TColor(strength, 60, 30), "pole");
+    scene::drawPole(o, pole.x, pole.y, pole.radius, pole.bottom, pole.top,
+                    mrpt::img::TColor(strength, 60, 30), "pole");
   }
 }
 

@@ -1,21 +1,18 @@
-#include <mrpt/img/color_maps.h>
-#include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/stl_serialization.h>  // to write std::map
 #include <polemcl/core/PoleMerging.h>
-#include <polemcl/io/AtomicFile.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
 #include <polemcl/io/ReadLimits.h>
 #include <polemcl/mrpt/CObservationPoles.h>
 #include <polemcl/mrpt/CPoleMap.h>
+#include <polemcl/mrpt/OverviewScene.h>
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "BoundedRead.h"
-#include "PoleDrawing.h"
 
 IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
 
@@ -191,23 +188,21 @@ std::string CPoleMap::asString() const {
 void CPoleMap::saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const {
   saveToPoleMapFile(filNamePrefix + ".polemap");
   io::writePoleCsv(filNamePrefix + ".csv", m_poles);
-  mrpt::opengl::COpenGLScene scene;
-  scene.insert(getVisualization());
-  io::AtomicFile file(filNamePrefix + ".3Dscene");
-  if (!scene.saveToFile(file.temporaryPath().string()))
-    throw Error(filNamePrefix + ".3Dscene: cannot be written");
-  file.commit();
+  scene::Path places;
+  for (const MapPole& pole : m_poles) places.emplace_back(pole.x, pole.y);
+  OverviewScene overview(places, std::filesystem::path(filNamePrefix).filename().string());
+  overview.addPoles("poles", m_poles,
+                    [](const MapPole& pole) { return scene::colorOfCount(pole.count); });
+  overview.addLegend(scene::countLegend(m_poles));
+  scene::save(*overview.finish(), filNamePrefix + ".3Dscene");
 }
 
 void CPoleMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& outObj) const {
   if (!genericMapParams.enableSaveAs3DObject) return;
-  std::uint32_t most = 1;
-  for (const auto& pole : m_poles) most = std::max(most, pole.count);
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
     const auto& pole = m_poles[i];
-    const auto share = static_cast<float>(pole.count) / static_cast<float>(most);
-    drawPole(outObj, pole.x, pole.y, pole.radius, pole.bottom, pole.top,
-             mrpt::img::colormap(mrpt::img::cmJET, share), "pole " + std::to_string(i));
+    scene::drawPole(outObj, pole.x, pole.y, pole.radius, pole.bottom, pole.top,
+                    scene::colorOfCount(pole.count), "pole " + std::to_string(i));
   }
 }
 

@@ -1,74 +1,46 @@
-#include <mrpt/opengl/CCylinder.h>
-#include <mrpt/opengl/CSetOfLines.h>
-#include <mrpt/opengl/CSetOfObjects.h>
+#include <polemcl/mrpt/OverviewScene.h>
 #include <polemcl/report/DiffScene.h>
-
-#include <algorithm>
 
 namespace polemcl::report {
 namespace {
 
-using mrpt::img::TColor;
+using scene::TColor;
 
-constexpr double thin = 0.1;    ///< m: thinner poles are not seen from afar
-constexpr double lowest = 0.5;  ///< m: of a cylinder
-
-void addPole(mrpt::opengl::CSetOfObjects& objects, const MapPole& pole, const TColor& color) {
-  const auto radius = static_cast<float>(std::max(thin, pole.radius));
-  auto cylinder = mrpt::opengl::CCylinder::Create(
-      radius, radius, static_cast<float>(std::max(lowest, pole.top - pole.bottom)), 12);
-  cylinder->setLocation(pole.x, pole.y, pole.bottom);
-  cylinder->setColor_u8(color);
-  objects.insert(cylinder);
-}
-
-mrpt::opengl::CSetOfObjects::Ptr group(mrpt::opengl::COpenGLScene& scene, const char* name) {
-  auto objects = mrpt::opengl::CSetOfObjects::Create();
-  objects->setName(name);
-  scene.insert(objects);
-  return objects;
-}
-
-void lookAt(mrpt::opengl::CCamera& camera, const std::vector<MapPole>& poles) {
-  const auto [west, east] = std::minmax_element(
-      poles.begin(), poles.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-  const auto [south, north] = std::minmax_element(
-      poles.begin(), poles.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
-  camera.setPointingAt(static_cast<float>(0.5 * (west->x + east->x)),
-                       static_cast<float>(0.5 * (south->y + north->y)), 0.0f);
-  const double extent = std::max({east->x - west->x, north->y - south->y, 10.0});
-  camera.setZoomDistance(static_cast<float>(1.5 * extent));
-  camera.setAzimuthDegrees(-90);
-  camera.setElevationDegrees(55);
+std::vector<MapPole> laterOf(const std::vector<MapDiff::Pair>& pairs) {
+  std::vector<MapPole> poles;
+  for (const MapDiff::Pair& pair : pairs) poles.push_back(pair.after);
+  return poles;
 }
 
 }  // namespace
 
-mrpt::opengl::COpenGLScene::Ptr makeDiffScene(const MapDiff& diff) {
-  auto scene = mrpt::opengl::COpenGLScene::Create();
-  std::vector<MapPole> all = diff.appeared;
-  all.insert(all.end(), diff.vanished.begin(), diff.vanished.end());
-  const auto same = group(*scene, "same"), appeared = group(*scene, "new"),
-             vanished = group(*scene, "vanished"), moved = group(*scene, "moved");
-  for (const MapPole& pole : diff.appeared) addPole(*appeared, pole, TColor(0x00, 0x9e, 0x73));
-  for (const MapPole& pole : diff.vanished) addPole(*vanished, pole, TColor(0xd5, 0x5e, 0x00));
-  for (const MapDiff::Pair& pair : diff.same) {
-    addPole(*same, pair.after, TColor(0xaa, 0xb2, 0xbd));
-    all.push_back(pair.after);
+mrpt::opengl::COpenGLScene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title) {
+  struct Kind {
+    const char *name, *text;
+    std::vector<MapPole> poles;
+    TColor color;
+  };
+  const TColor movedColor(0x00, 0x72, 0xb2);
+  const Kind kinds[] = {
+      {"same", "on both maps", laterOf(diff.same), {0x9a, 0xa2, 0xad}},
+      {"new", "new, on the later map only", diff.appeared, {0x00, 0x9e, 0x73}},
+      {"vanished", "vanished, on the earlier map only", diff.vanished, {0xd5, 0x5e, 0x00}},
+      {"moved", "moved, with a ribbon from the old place", laterOf(diff.moved), movedColor}};
+  scene::Path places;
+  for (const Kind& kind : kinds)
+    for (const MapPole& pole : kind.poles) places.emplace_back(pole.x, pole.y);
+  if (places.empty()) throw Error("nothing to show: both maps are empty");
+
+  OverviewScene overview(places, title);
+  for (const Kind& kind : kinds) {
+    overview.addPoles(kind.name, kind.poles, [&](const MapPole&) { return kind.color; });
+    overview.addLegend({{std::to_string(kind.poles.size()) + " " + kind.text, kind.color}});
   }
-  auto ways = mrpt::opengl::CSetOfLines::Create();
-  ways->setColor_u8(TColor(0x00, 0x72, 0xb2));
-  ways->setLineWidth(3);
-  for (const MapDiff::Pair& pair : diff.moved) {
-    addPole(*moved, pair.after, TColor(0x00, 0x72, 0xb2));
-    ways->appendLine(pair.before.x, pair.before.y, 1.0, pair.after.x, pair.after.y, 1.0);
-    all.push_back(pair.after);
-  }
-  moved->insert(ways);
-  if (all.empty()) throw Error("nothing to show: both maps are empty");
-  scene->getViewport()->setCustomBackgroundColor({1.0f, 1.0f, 1.0f});
-  lookAt(scene->getViewport()->getCamera(), all);
-  return scene;
+  std::vector<scene::Path> moves;
+  for (const MapDiff::Pair& pair : diff.moved)
+    moves.push_back({{pair.before.x, pair.before.y}, {pair.after.x, pair.after.y}});
+  overview.addRibbons("moves", moves, {movedColor, false, 0.3});
+  return overview.finish();
 }
 
 }  // namespace polemcl::report

@@ -51,7 +51,12 @@ void FrameRenderer::render(const mrpt::opengl::COpenGLScene& scene,
                            const std::filesystem::path& file) {
   Buffer& b = *m_buffer;
   b.render(scene, *scene.getViewport(), b.large);
-  // CFBORender looks at all viewports with one camera: those over the main one, once more.
+  // CFBORender looks at all viewports with one camera: those over the main one, once more, and
+  // without the main one's objects, which would take the time again.
+  const auto show = [&](bool visible) {
+    for (const auto& object : *scene.getViewport()) object->setVisibility(visible);
+  };
+  show(false);
   for (const auto& viewport : scene.viewports()) {
     if (viewport->getName() == "main" || viewport->empty()) continue;
     const Rectangle part = pixelsOf(*viewport, static_cast<int>(b.large.getWidth()),
@@ -61,6 +66,7 @@ void FrameRenderer::render(const mrpt::opengl::COpenGLScene& scene,
                           static_cast<unsigned>(part.width), static_cast<unsigned>(part.height));
     b.large.drawImage(part.x, part.y, b.patch);
   }
+  show(true);
   b.large.scaleHalf(b.small, mrpt::img::IMG_INTERP_AREA);
   if (!b.small.saveToFile(file.string()))
     throw Error(file.string() + ": cannot be written: is the disk full?");

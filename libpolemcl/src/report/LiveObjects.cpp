@@ -1,6 +1,5 @@
 #include "LiveObjects.h"
 
-#include <mrpt/opengl/CCylinder.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CText.h>
 #include <polemcl/report/LiveScene.h>
@@ -16,49 +15,11 @@ using mrpt::opengl::CSetOfLines;
 using mrpt::opengl::CSetOfObjects;
 using mrpt::opengl::CSetOfTriangles;
 
-constexpr double aboveGround = 0.06;  // m; the grid would flicker through
+constexpr double aboveGround = 0.05;  // m; the grid would flicker through
 
-mrpt::opengl::CCylinder::Ptr makePole(double x, double y, double radius, double bottom, double top,
-                                      const TColor& color) {
-  const auto drawn = static_cast<float>(radius);
-  const auto height = static_cast<float>(std::max(top - bottom, 0.1));
-  auto cylinder = mrpt::opengl::CCylinder::Create(drawn, drawn, height);
-  cylinder->setSlicesCount(10);
-  cylinder->setLocation(x, y, bottom);
-  cylinder->setColor_u8(color);
-  return cylinder;
-}
-
-mrpt::math::TPoint3Df corner(const Pose2D& pose, double ahead, double left, double z) {
+Eigen::Vector3d corner(const Pose2D& pose, double ahead, double left, double z) {
   const Pose2D place = compose(pose, {ahead, left, 0});
-  return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(z)};
-}
-
-void insertFace(CSetOfTriangles& triangles, const mrpt::math::TPoint3Df& a,
-                const mrpt::math::TPoint3Df& b, const mrpt::math::TPoint3Df& c,
-                const TColor& color) {
-  mrpt::opengl::TTriangle triangle(a, b, c);
-  triangle.computeNormals();
-  triangle.setColor(color);
-  triangles.insertTriangle(triangle);
-}
-
-/// A flat band along the points, its edges joined at the bends.
-void insertBand(CSetOfTriangles& triangles, const std::vector<Eigen::Vector2d>& points,
-                double height, double width, const TColor& color) {
-  const auto edge = [&](std::size_t i, double side) {
-    const Eigen::Vector2d along =
-        points[std::min(i + 1, points.size() - 1)] - points[i > 0 ? i - 1 : 0];
-    const double length = along.norm();
-    const Eigen::Vector2d left(-along.y(), along.x());
-    const Eigen::Vector2d place = points[i] + (length > 0 ? side * width / 2 / length : 0) * left;
-    return mrpt::math::TPoint3Df(static_cast<float>(place.x()), static_cast<float>(place.y()),
-                                 static_cast<float>(height));
-  };
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    insertFace(triangles, edge(i - 1, -1), edge(i, -1), edge(i, 1), color);
-    insertFace(triangles, edge(i - 1, -1), edge(i, 1), edge(i - 1, 1), color);
-  }
+  return {place.x, place.y, z};
 }
 
 TColor mixed(const TColor& a, const TColor& b, double share) {
@@ -78,19 +39,16 @@ TColor colorOf(HealthState state) {
 CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles) {
   auto objects = CSetOfObjects::Create();
   for (const MapPole& pole : poles)
-    objects->insert(
-        makePole(pole.x, pole.y, std::max(pole.radius, 0.08), pole.bottom, pole.top, mapColor));
+    scene::drawPole(*objects, pole.x, pole.y, std::max(pole.radius, 0.08), pole.bottom, pole.top,
+                    mapColor);
   return objects;
 }
 
 mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& poles,
                                                 double pointSize) {
-  auto points = mrpt::opengl::CPointCloudColoured::Create();
-  for (const MapPole& pole : poles)
-    points->insertPoint({static_cast<float>(pole.x), static_cast<float>(pole.y), 0.1f, mapColor.R,
-                         mapColor.G, mapColor.B, 0xff});
-  points->setPointSize(static_cast<float>(pointSize));
-  return points;
+  std::vector<scene::Dot> dots;
+  for (const MapPole& pole : poles) dots.push_back({{pole.x, pole.y, 0.1}, mapColor});
+  return scene::makeDots(dots, pointSize);
 }
 
 CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched) {
@@ -108,7 +66,7 @@ CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched) {
     const PoleDetection& pole = moment.poles_robot[i];
     const Pose2D place = compose(robot, {pole.x, pole.y, 0});
     if (!std::isfinite(place.x) || !std::isfinite(place.y)) continue;
-    objects->insert(makePole(place.x, place.y, pole.radius + sleeve, pole.bottom, pole.top, color));
+    scene::drawPole(*objects, place.x, place.y, pole.radius + sleeve, pole.bottom, pole.top, color);
     sights->appendLine(robot.x, robot.y, eye, place.x, place.y, eye);
   }
   if (sights->empty()) return nullptr;
@@ -117,11 +75,11 @@ CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched) {
 }
 
 CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way) {
-  constexpr double width = 0.3;  // m
+  constexpr double width = 0.6;  // m
   auto bands = CSetOfTriangles::Create();
-  std::vector<Eigen::Vector2d> line;
+  scene::Path line;
   const auto finish = [&] {
-    insertBand(*bands, line, aboveGround, width, wayColor);
+    scene::insertRibbon(*bands, line, aboveGround, width, scene::estimateColor);
     line.clear();
   };
   for (const WayPoint& point : way) {
@@ -130,7 +88,7 @@ CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way) {
   }
   finish();
   if (bands->getTrianglesCount() == 0) return nullptr;
-  bands->setColor_u8(wayColor);
+  bands->setColor_u8(scene::estimateColor);
   return bands;
 }
 
@@ -141,10 +99,10 @@ CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& co
              left = corner(pose, -half, wide, 0.1), right = corner(pose, -half, -wide, 0.1),
              ridge = corner(pose, -0.4 * half, 0, 0.1 + high);
   auto triangles = CSetOfTriangles::Create();
-  insertFace(*triangles, tip, left, ridge, color);
-  insertFace(*triangles, tip, ridge, right, color);
-  insertFace(*triangles, notch, ridge, left, color);
-  insertFace(*triangles, notch, right, ridge, color);
+  scene::insertFace(*triangles, tip, left, ridge, color);
+  scene::insertFace(*triangles, tip, ridge, right, color);
+  scene::insertFace(*triangles, notch, ridge, left, color);
+  scene::insertFace(*triangles, notch, right, ridge, color);
   triangles->setColor_u8(color);
   auto arrow = CSetOfObjects::Create();
   arrow->insert(triangles);
@@ -177,23 +135,17 @@ mrpt::opengl::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, d
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return moment.weights[a] < moment.weights[b];
   });
-  auto points = mrpt::opengl::CPointCloudColoured::Create();
-  points->reserve(order.size());
-  for (std::size_t i : order) {
-    const TColor color = mixed(particleLight, particleColor, moment.weights[i]);
-    points->insertPoint({static_cast<float>(moment.particles[i].x),
-                         static_cast<float>(moment.particles[i].y), static_cast<float>(height),
-                         color.R, color.G, color.B, 0xff});
-  }
-  points->setPointSize(static_cast<float>(pointSize));
-  return points;
+  std::vector<scene::Dot> dots;
+  for (std::size_t i : order)
+    dots.push_back({{moment.particles[i].x, moment.particles[i].y, height},
+                    mixed(particleLight, particleColor, moment.weights[i])});
+  return scene::makeDots(dots, pointSize);
 }
 
 CSetOfTriangles::Ptr makeEllipse(const PoseWithCovariance& pose, double height, double width) {
-  const TColor color(0x10, 0x10, 0x10);
   auto band = CSetOfTriangles::Create();
-  insertBand(*band, ellipse95(pose), height, width, color);
-  band->setColor_u8(color);
+  scene::insertRibbon(*band, ellipse95(pose), height, width, ellipseColor);
+  band->setColor_u8(ellipseColor);
   return band;
 }
 

@@ -2,22 +2,20 @@
 /// \file LiveObjects.h
 /// \brief The single objects of a LiveScene.
 
-#include <mrpt/opengl/CPointCloudColoured.h>
-#include <mrpt/opengl/CSetOfObjects.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
+#include <polemcl/mrpt/SceneParts.h>
 #include <polemcl/report/LiveMoment.h>
 
 #include <vector>
 
 namespace polemcl::report::live {
 
-using mrpt::img::TColor;
+using scene::TColor;
 
 /// Told apart by lightness too, for those who do not see all colours.
-const TColor mapColor(0x8a, 0x93, 0x9f), groundColor(0xb4, 0xba, 0xc2), wayColor(0x00, 0x72, 0xb2),
-    matchedColor(0x00, 0x9e, 0x63), unmatchedColor(0xe0, 0x4f, 0x10),
-    hypothesisColor(0x8e, 0x44, 0xad), textColor(0x20, 0x26, 0x2e), particleColor(0x6a, 0x1b, 0x9a),
-    particleLight(0xe9, 0xa8, 0xd8);
+inline const TColor mapColor(0x8a, 0x93, 0x9f), matchedColor(0x00, 0x9e, 0x63),
+    unmatchedColor(0xe0, 0x4f, 0x10), hypothesisColor(0x8e, 0x44, 0xad),
+    particleColor(0x6a, 0x1b, 0x9a), particleLight(0xe9, 0xa8, 0xd8),
+    ellipseColor(0x10, 0x10, 0x10);
 
 /// Of the words and of the vehicle: blue, amber, red.
 TColor colorOf(HealthState state);
@@ -28,7 +26,7 @@ mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& pole
                                                 double pointSize);
 /// Observed poles whose match is `matched`, at the estimate.
 mrpt::opengl::CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched);
-/// Bands on the ground: software renderers draw lines of a pixel only. Null without a way.
+/// A ribbon; null without a way.
 mrpt::opengl::CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way);
 /// An arrow of so many metres that points where the pose does, its middle on it.
 mrpt::opengl::CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& color);

@@ -1,7 +1,6 @@
-#include <mrpt/opengl/CGridPlaneXY.h>
+#include <polemcl/core/TickStep.h>
 #include <polemcl/report/LiveScene.h>
 #include <polemcl/report/MapView.h>
-#include <polemcl/report/PlotAxes.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -17,6 +16,7 @@ namespace {
 
 using namespace live;
 using mrpt::opengl::COpenGLViewport;
+using scene::put;
 
 constexpr double degree = M_PI / 180;
 
@@ -30,52 +30,9 @@ __attribute__((format(printf, 1, 2))) std::string line(const char* format, ...) 
   return text;
 }
 
-/// Takes the place of the object of that name; nothing: the object goes.
-void put(COpenGLViewport& viewport, const std::string& name,
-         const mrpt::opengl::CRenderizable::Ptr& object) {
-  if (auto old = viewport.getByName(name)) viewport.removeObject(old);
-  if (!object) return;
-  object->setName(name);
-  viewport.insert(object);
-}
-
-/// A viewport over the main one; made when it is first asked for.
-COpenGLViewport& panelOf(mrpt::opengl::COpenGLScene& scene, const std::string& name) {
-  for (const auto& viewport : scene.viewports())
-    if (viewport->getName() == name) return *viewport;
-  return *scene.createViewport(name);
-}
-
 mrpt::opengl::CGridPlaneXY::Ptr makeGrid(double x, double y, double half, double step) {
-  const auto down = [&](double value) {
-    return static_cast<float>(std::floor(value / step) * step);
-  };
-  const auto up = [&](double value) { return static_cast<float>(std::ceil(value / step) * step); };
-  auto grid = mrpt::opengl::CGridPlaneXY::Create(down(x - half), up(x + half), down(y - half),
-                                                 up(y + half), 0.0f, static_cast<float>(step));
-  grid->setColor_u8(groundColor);
-  return grid;
-}
-
-/// Colours as the legend has them: more from all sides than MRPT's lights give.
-void light(COpenGLViewport& viewport) {
-  auto& lights = viewport.lightParameters();
-  lights.ambient = {0.7f, 0.7f, 0.7f, 1.0f};
-  lights.diffuse = {0.45f, 0.45f, 0.45f, 1.0f};
-  lights.specular = {0.0f, 0.0f, 0.0f, 1.0f};
-}
-
-void frame(COpenGLViewport& viewport, double width) {
-  viewport.setCustomBackgroundColor({0.97f, 0.975f, 0.98f});
-  viewport.setBorderSize(static_cast<unsigned>(std::lround(width)));
-  viewport.setBorderColor(TColor(0x90, 0x98, 0xa4));
-  light(viewport);
-}
-
-/// OpenGL has single precision only: far from the origin (UTM) poles would dance.
-double roundOrigin(double centre) {
-  constexpr double far = 10000, step = 1000;  // m
-  return std::abs(centre) > far ? std::round(centre / step) * step : 0;
+  const Eigen::Vector2d centre(x, y), reach(half, half);
+  return scene::makeGround({centre - reach, centre + reach}, step);
 }
 
 /// As seen from another origin; the axes stay.
@@ -134,30 +91,25 @@ std::vector<std::string> describe(const LiveMoment& moment) {
   return lines;
 }
 
-LiveScene::LiveScene(const std::vector<MapPole>& map, std::string title, double textScale,
-                     Centre centre)
+LiveScene::LiveScene(const std::vector<MapPole>& map, std::string title, double textScale)
     : m_title(std::move(title)),
       m_textScale(textScale),
-      m_centre(centre),
+      m_map(map),
       m_scene(mrpt::opengl::COpenGLScene::Create()) {
   MapView view;
   view.poles = map;
-  const Bounds map_m = boundsOf(view);
-  m_origin = {roundOrigin((map_m.xMin + map_m.xMax) / 2),
-              roundOrigin((map_m.yMin + map_m.yMax) / 2)};
-  if (m_origin.x() != 0 || m_origin.y() != 0)
-    m_title += line(", less %.0f %.0f m", m_origin.x(), m_origin.y());
-  for (MapPole& pole : view.poles) pole.x -= m_origin.x(), pole.y -= m_origin.y();
-  m_map = view.poles;
   const Bounds bounds = boundsOf(view);
-  m_centreX = (bounds.xMin + bounds.xMax) / 2;
-  m_centreY = (bounds.yMin + bounds.yMax) / 2;
-  m_extent = std::max({bounds.xMax - bounds.xMin, bounds.yMax - bounds.yMin, 20.0});
+  const Eigen::AlignedBox2d box_map(Eigen::Vector2d(bounds.xMin, bounds.yMin),
+                                    Eigen::Vector2d(bounds.xMax, bounds.yMax));
+  m_origin = scene::originFor(box_map);
+  for (MapPole& pole : m_map) pole.x -= m_origin.x(), pole.y -= m_origin.y();
+  m_centre = box_map.center() - m_origin;
+  m_extent = std::max(box_map.sizes().maxCoeff(), 20.0);
   const auto viewport = m_scene->getViewport();
-  viewport->setCustomBackgroundColor({1.0f, 1.0f, 1.0f});
-  light(*viewport);
+  scene::prepare(*viewport);
   viewport->setViewportClipDistances(0.5f, static_cast<float>(std::max(6 * m_extent, 2000.0)));
   put(*viewport, "map", makeMap(m_map));
+  m_scene->enableFollowCamera(true);
 }
 
 const mrpt::opengl::CCamera& LiveScene::camera() const {
@@ -165,27 +117,25 @@ const mrpt::opengl::CCamera& LiveScene::camera() const {
 }
 
 void LiveScene::show(const LiveMoment& moment) {
-  Eigen::Vector2d origin = m_origin;
-  if (m_centre == Centre::vehicle && moment.estimate)
-    origin = {moment.estimate->mean.x, moment.estimate->mean.y};
-  const Eigen::Vector2d map = m_origin - origin;
-  aim(movedBy(moment, m_origin), map);
-  showObjects(movedBy(moment, origin), map);
+  const LiveMoment moved = movedBy(moment, m_origin);
+  aim(moved);
+  showObjects(moved);
   showClose(moment);
   showText(moment);
 }
 
-void LiveScene::aim(const LiveMoment& moment, const Eigen::Vector2d& map) {
+void LiveScene::aim(const LiveMoment& moment) {
   auto& camera = m_scene->getViewport()->getCamera();
   if (!moment.estimate) {
     m_aimed.reset();
-    camera.setPointingAt(static_cast<float>(m_centreX), static_cast<float>(m_centreY), 0);
-    camera.setZoomDistance(static_cast<float>(2.1 * m_extent));
+    camera.setPointingAt(static_cast<float>(m_centre.x()), static_cast<float>(m_centre.y()), 0);
+    constexpr double farthest = 8000;  // m; SceneViewer3D draws up to 10 km
+    camera.setZoomDistance(static_cast<float>(std::min(2.1 * m_extent, farthest)));
     camera.setAzimuthDegrees(-90);
     camera.setElevationDegrees(80);
     return;
   }
-  constexpr double ahead = 14, gentle = 12;  // m
+  constexpr double ahead = 7, gentle = 12;  // m
   const Pose2D& pose = moment.estimate->mean;
   double heading = pose.yaw;
   if (m_aimed && !moment.relocalized) {
@@ -194,26 +144,24 @@ void LiveScene::aim(const LiveMoment& moment, const Eigen::Vector2d& map) {
   }
   m_aimed = Pose2D{pose.x, pose.y, wrapAngle(heading)};
   const Pose2D target = compose(*m_aimed, {ahead, 0, 0});
-  camera.setPointingAt(static_cast<float>(target.x + map.x()),
-                       static_cast<float>(target.y + map.y()), 1);
-  camera.setZoomDistance(52);
+  camera.setPointingAt(static_cast<float>(target.x), static_cast<float>(target.y), 1);
+  camera.setZoomDistance(56);
   camera.setAzimuthDegrees(static_cast<float>(heading / degree + 180));
-  camera.setElevationDegrees(24);
+  camera.setElevationDegrees(28);
 }
 
-void LiveScene::showObjects(const LiveMoment& moment, const Eigen::Vector2d& map) {
+void LiveScene::showObjects(const LiveMoment& moment) {
   COpenGLViewport& viewport = *m_scene->getViewport();
   const bool known = moment.estimate.has_value();
-  const Pose2D pose = known ? moment.estimate->mean : Pose2D{m_centreX, m_centreY, 0};
+  const Pose2D pose = known ? moment.estimate->mean : Pose2D{m_centre.x(), m_centre.y(), 0};
   put(viewport, "ground",
       known ? makeGrid(pose.x, pose.y, 150, 5)
             : makeGrid(pose.x, pose.y, 0.6 * m_extent, tickStep(m_extent, 40)));
-  viewport.getByName("map")->setLocation(map.x(), map.y(), 0);
   put(viewport, "dots", known ? nullptr : makeDots(m_map, 4 * m_textScale));
   put(viewport, "way", makeWay(moment.way));
   put(viewport, "vehicle", known ? makeArrow(pose, 3, colorOf(moment.health.state)) : nullptr);
-  put(viewport, "ellipse", known ? makeEllipse(*moment.estimate, 0.08, 0.08) : nullptr);
-  put(viewport, "particles", makeParticles(moment, 0.1, 3 * m_textScale));
+  put(viewport, "ellipse", known ? makeEllipse(*moment.estimate, 0.1, 0.08) : nullptr);
+  put(viewport, "particles", makeParticles(moment, 0.15, 3 * m_textScale));
   put(viewport, "matched", makeObserved(moment, true));
   put(viewport, "unmatched", makeObserved(moment, false));
   const double length = known ? 5 : std::max(0.04 * m_extent, 5.0);
@@ -222,12 +170,12 @@ void LiveScene::showObjects(const LiveMoment& moment, const Eigen::Vector2d& map
 }
 
 void LiveScene::showClose(const LiveMoment& moment) {
-  auto* viewport = &panelOf(*m_scene, "close");
-  auto& caption = panelOf(*m_scene, "caption");
+  COpenGLViewport& viewport = scene::panelOf(*m_scene, "close", m_textScale);
+  COpenGLViewport& caption = scene::panelOf(*m_scene, "caption", m_textScale);
   if (!moment.estimate) {  // viewports cannot be taken away: this one is a dot without content
-    viewport->clear();
+    viewport.clear();
     caption.clearTextMessages();
-    for (COpenGLViewport* panel : {viewport, &caption}) {
+    for (COpenGLViewport* panel : {&viewport, &caption}) {
       panel->setBorderSize(0);
       panel->setViewportPosition(0, 0, 0.001, 0.001);
     }
@@ -237,12 +185,10 @@ void LiveScene::showClose(const LiveMoment& moment) {
   const double half = tickStep(3 * std::max(spreadOf(*moment.estimate), 0.005), 1);
   const double step = tickStep(2 * half, 8);
   caption.setViewportPosition(0.75, 0.02, 0.24, 0.05);
-  viewport->setViewportPosition(0.75, 0.07, 0.24, 0.34);
-  viewport->setViewportClipDistances(static_cast<float>(0.01 * half),
-                                     static_cast<float>(100 * half));
-  frame(caption, m_textScale);
-  frame(*viewport, m_textScale);
-  auto& camera = viewport->getCamera();
+  viewport.setViewportPosition(0.75, 0.07, 0.24, 0.34);
+  viewport.setViewportClipDistances(static_cast<float>(0.01 * half),
+                                    static_cast<float>(100 * half));
+  auto& camera = viewport.getCamera();
   camera.setOrthogonal();
   camera.setPointingAt(0, 0, 0);
   // MRPT's orthogonal cameras show 0.27 of this to either side.
@@ -251,50 +197,32 @@ void LiveScene::showClose(const LiveMoment& moment) {
   camera.setElevationDegrees(90);
   const Pose2D& pose = moment.estimate->mean;
   const LiveMoment near = movedBy(moment, {pose.x, pose.y});
-  put(*viewport, "ground", makeGrid(0, 0, 2 * half, step));
-  put(*viewport, "particles", makeParticles(near, 0.01 * half, 3 * m_textScale));
-  put(*viewport, "ellipse", makeEllipse(*near.estimate, 0.02 * half, 0.015 * half));
+  put(viewport, "ground", makeGrid(0, 0, 2 * half, step));
+  put(viewport, "particles", makeParticles(near, 0.01 * half, 3 * m_textScale));
+  put(viewport, "ellipse", makeEllipse(*near.estimate, 0.02 * half, 0.015 * half));
   mrpt::opengl::TFontParams font;
   font.vfont_name = "sans";
   font.vfont_scale = static_cast<float>(11 * m_textScale);
-  font.color = mrpt::img::TColorf(textColor);
+  font.color = mrpt::img::TColorf(scene::textColor);
   caption.addTextMessage(8 * m_textScale, 12 * m_textScale,
                          line("particles, y up, grid %g m", step), 0, font);
 }
 
 void LiveScene::showText(const LiveMoment& moment) {
-  const std::vector<std::pair<TColor, std::string>> legend{
-      {mapColor, "map poles"},
-      {matchedColor, "observed poles on the map"},
-      {unmatchedColor, "observed poles not on the map"},
-      {wayColor, "way of the estimate"},
-      {particleColor, "particles, the heavier the darker"},
-      {hypothesisColor, "places supposed by the search"}};
-  const auto lines = describe(moment);
-  constexpr double left = 12, row = 19, large = 18, small = 12;  // pixels
-  double y = 12;                                                 // from the bottom
-  const double height = y + row * static_cast<double>(legend.size() + lines.size() + 1) + 2 * large;
-  COpenGLViewport& panel = panelOf(*m_scene, "text");
-  panel.setViewportPosition(10 * m_textScale, 10 * m_textScale, 330 * m_textScale,
-                            height * m_textScale);
-  frame(panel, m_textScale);
-  panel.clearTextMessages();
-  std::size_t index = 0;
-  const auto write = [&](double size, const TColor& color, const std::string& text) {
-    mrpt::opengl::TFontParams font;
-    font.vfont_name = "sans";
-    font.vfont_scale = static_cast<float>(size * m_textScale);
-    font.color = mrpt::img::TColorf(color);
-    panel.addTextMessage(left * m_textScale, y * m_textScale, text, index++, font);
-    y += row;
-  };
-  for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry)
-    write(small, entry->first, entry->second);
-  y += large / 2;
-  for (std::size_t i = lines.size() - 1; i >= 1; --i) write(small + 1, textColor, lines[i]);
-  write(small + 1, textColor, m_title);
-  y += large / 4;
-  write(large, colorOf(moment.health.state), lines[0]);
+  std::vector<scene::LegendLine> lines;
+  for (const std::string& text : describe(moment)) lines.push_back({text, {}, 13});
+  lines.front().size = 18;
+  lines.front().color = colorOf(moment.health.state);
+  lines.insert(lines.begin() + 1, {m_title, {}, 13});
+  lines.insert(lines.end(), {{"map poles", mapColor},
+                             {"observed poles on the map", matchedColor},
+                             {"observed poles not on the map", unmatchedColor},
+                             {"path of the estimate", scene::estimateColor},
+                             {"particles, the heavier the darker", particleColor},
+                             {"95 % of the estimate's positions", ellipseColor},
+                             {"places supposed by the search", hypothesisColor}});
+  if (!m_origin.isZero()) lines.push_back({scene::originText(m_origin)});
+  scene::showLegend(*m_scene, lines, m_textScale);
 }
 
 }  // namespace polemcl::report

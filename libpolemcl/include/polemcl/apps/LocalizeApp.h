@@ -63,7 +63,7 @@ struct LocalizeResult {
 ///   index in the input, lateral + to the left and longitudinal + ahead of the true pose, heading +
 ///   counter-clockwise, poles the number observed, effective_share that of the particles;
 /// - `run_00_scenes/NNNNNN.3Dscene`, if asked for: the first run after scan NNNNNN (see
-///   report/LiveScene.h; stock objects, the vehicle at the origin);
+///   report/LiveScene.h; stock objects);
 /// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
 ///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`;
 ///   `start_source` says who gave the start pose: the `truth` (at the first scan), the

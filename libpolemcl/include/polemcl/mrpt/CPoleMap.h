@@ -98,10 +98,11 @@ class CPoleMap : public mrpt::maps::CMetricMap {
 
   bool isEmpty() const override { return m_poles.empty(); }
   std::string asString() const override;
-  /// \brief Writes `<prefix>.polemap`, `<prefix>.csv` and `<prefix>.3Dscene`.
+  /// \brief Writes `<prefix>.polemap`, `<prefix>.csv` and `<prefix>.3Dscene` (an OverviewScene).
   void saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const override;
-  /// \brief A cylinder from bottom to top for each pole, ground at z = 0, coloured by count;
-  /// nothing when `genericMapParams.enableSaveAs3DObject` is false.
+  /// \brief A cylinder from bottom to top for each pole, map frame, ground at z = 0, coloured by
+  /// count; nothing when `genericMapParams.enableSaveAs3DObject` is false. OpenGL draws none of
+  /// them at UTM coordinates.
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& outObj) const override;
 
   MAP_DEFINITION_START(CPoleMap)

@@ -5,13 +5,15 @@
 #include <mrpt/opengl/COpenGLScene.h>
 #include <polemcl/core/MapDiff.h>
 
+#include <string>
+
 namespace polemcl::report {
 
-/// \brief Upright cylinders from bottom to top, ground at z = 0: grey what stayed, green what is
-/// new, orange what vanished, blue what moved, with a line from its old place.
+/// \brief An OverviewScene: grey what stayed, green what is new, orange what vanished, blue what
+/// moved, with a ribbon from its old place; a legend with the number of each.
 ///
-/// Names of the objects: `same`, `new`, `vanished`, `moved`. Write it with saveScene().
+/// Names of the objects: `same`, `new`, `vanished`, `moved`, each with `<name> dots`; `moves`.
 /// \throws Error when both maps are empty.
-mrpt::opengl::COpenGLScene::Ptr makeDiffScene(const MapDiff& diff);
+mrpt::opengl::COpenGLScene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title = "");
 
 }  // namespace polemcl::report

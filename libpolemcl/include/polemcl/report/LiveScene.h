@@ -21,22 +21,18 @@ namespace polemcl::report {
 /// - `hypotheses`: arrows where the last search supposes the vehicle, while the pose is in doubt.
 ///
 /// What there is nothing of is left out. The camera follows from behind; without a pose it shows
-/// the whole map, with `dots` for the poles. Viewport `text`: health, matched share, spread,
-/// particles, legend. Viewport `close`, with a pose: particles and ellipse from above, relative to
-/// the estimate, magnified as their spread asks for.
+/// the whole map, with `dots` for the poles. Viewers of `.3Dscene` files take this camera. Viewport
+/// `text`: health, matched share, spread, particles, legend. Viewport `close`, with a pose:
+/// particles and ellipse from above, relative to the estimate, magnified as their spread asks for.
 ///
-/// Maps more than 10 km off the origin (UTM) are drawn less whole kilometres, which the text tells:
-/// OpenGL's numbers are of single precision.
+/// Far from the map's origin the scene has one of its own (scene::originFor), which the legend
+/// names.
 class LiveScene {
  public:
-  /// \brief Where the origin of the scene is. SceneViewer3D always looks there: `vehicle` moves all
-  /// by the estimate's position, the axes stay those of the map.
-  enum class Centre { map, vehicle };
   /// \param map As drawn all the time. \param title One line, for the text. \param textScale
   /// Letters and points are so many times larger: 2 for pictures that are halved afterwards.
   /// \throws Error on a map without poles or with a coordinate that is not finite.
-  LiveScene(const std::vector<MapPole>& map, std::string title, double textScale = 1,
-            Centre centre = Centre::map);
+  LiveScene(const std::vector<MapPole>& map, std::string title, double textScale = 1);
 
   /// \brief Shows this moment in place of the one before. Moments must come in order of time: the
   /// camera turns with the vehicle gently, by the metres between two of them.
@@ -48,16 +44,16 @@ class LiveScene {
 
  private:
   void showText(const LiveMoment& moment);
-  void showObjects(const LiveMoment& moment, const Eigen::Vector2d& map);
+  void showObjects(const LiveMoment& moment);
   void showClose(const LiveMoment& moment);
-  void aim(const LiveMoment& moment, const Eigen::Vector2d& map);
+  void aim(const LiveMoment& moment);
 
   std::string m_title;
   double m_textScale;
-  Centre m_centre;
   Eigen::Vector2d m_origin = Eigen::Vector2d::Zero();  ///< of the scene, map frame, m
   std::vector<MapPole> m_map;                          ///< in the scene's frame
-  double m_centreX = 0, m_centreY = 0, m_extent = 0;   ///< of the map, m
+  Eigen::Vector2d m_centre;                            ///< of the map, in the scene's frame, m
+  double m_extent = 0;                                 ///< of the map, m
   std::optional<Pose2D> m_aimed;                       ///< the camera's heading is its yaw
   mrpt::opengl::COpenGLScene::Ptr m_scene;
 };

@@ -2,6 +2,7 @@
 /// \file PlotAxes.h
 /// \brief Coordinate axes of a plot: from values to pixels, round ticks, grid and labels.
 
+#include <polemcl/core/TickStep.h>
 #include <polemcl/report/Canvas.h>
 
 #include <string>
@@ -15,9 +16,6 @@ struct Range {
   double span() const { return high - low; }
 };
 
-/// \brief 1, 2 or 5 times a power of ten, such that a range of `span` has at most `most` steps.
-/// \throws Error unless span > 0 and most >= 1.
-double tickStep(double span, int most);
 /// \brief The multiples of `step` within the range, ends included (to a rounding error).
 std::vector<double> ticks(const Range& range, double step);
 /// \brief A tick as text, with the decimals its step needs: (0.5, 0.25) -> "0.50".
