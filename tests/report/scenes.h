@@ -6,6 +6,7 @@
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,9 @@ inline std::vector<mrpt::opengl::CCylinder::Ptr> cylindersOf(
 /// In metres, in the frame of the object that holds it.
 inline mrpt::math::TBoundingBox boxOf(const mrpt::opengl::COpenGLScene::Ptr& scene,
                                       const std::string& name) {
-  return scene->getViewport()->getByName(name)->getBoundingBox();
+  const auto object = scene->getViewport()->getByName(name);
+  if (!object) throw std::runtime_error("no " + name + " in the scene");
+  return object->getBoundingBox();
 }
 
 /// All lines of the legend.
