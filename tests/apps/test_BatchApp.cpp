@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <polemcl/apps/BatchApp.h>
 #include <polemcl/apps/BatchFolder.h>
+#include <polemcl/io/PoleMapFile.h>
+#include <polemcl/io/TextFile.h>
 #include <polemcl/report/BatchFiles.h>
 #include <sys/wait.h>
 
@@ -227,6 +229,45 @@ TEST_F(BatchApp, PrintsItsPlan) {
                              "pole-localize"),
             std::string::npos)
       << outcome.out;
+}
+
+TEST_F(BatchApp, ScoresItsMaps) {
+  BatchOptions options = optionsFor("scored");
+  // Poles where the first map has them, but for one; and one that it has not.
+  const auto map = io::readPoleMap(*s_folder / "done/tasks/map.once.s0/map.polemap").poles;
+  std::string truth = "x,y\n1000,1000\n";
+  for (std::size_t i = 1; i < map.size(); ++i)
+    truth += io::fixed(map[i].x, 3) + ',' + io::fixed(map[i].y, 3) + '\n';
+  writeText(*s_folder / "truth.csv", truth);
+  options.set = {"sessions.truth_map=truth.csv", "batch.runs=1", "batch.settings=once"};
+  std::string text = readText(*s_folder / "street-batch.ini");
+  const auto kept = text.find("[setting kept]");
+  text.erase(kept, text.find("[setting once]") - kept);
+  writeText(*s_folder / "once.ini", text);
+  options.batch = *s_folder / "once.ini";
+  doBatch(options);
+  const auto results = report::readResultsJson(*s_folder / "scored/results.json");
+  ASSERT_TRUE(results.find(0, 0)->score);
+  const auto& score = *results.find(0, 0)->score;
+  EXPECT_EQ(score.truth, "truth.csv");
+  EXPECT_EQ(score.oneToOne.mapPoles, map.size());
+  EXPECT_EQ(score.oneToOne.truthPoles, map.size());
+  EXPECT_EQ(score.oneToOne.matches, map.size() - 1);
+  EXPECT_NEAR(score.oneToOneHalf.f1, 1 - 1.0 / static_cast<double>(map.size()), 1e-9);
+  EXPECT_NE(results.command.find("--set 'batch.runs=1'"), std::string::npos) << results.command;
+}
+
+TEST_F(BatchApp, WritesLinesOfProgressWithoutATerminal) {
+  BatchOptions options = optionsFor("told");
+  options.set = {"batch.runs=1"};
+  options.quiet = false;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  doBatch(options);
+  testing::internal::GetCapturedStdout();
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("batch: 10 of 10 tasks done (100 %), 0:00:"), std::string::npos) << said;
+  EXPECT_GE(std::count(said.begin(), said.end(), '\n'), 9) << said;
 }
 
 TEST_F(BatchApp, AFullDiskLosesNothing) {

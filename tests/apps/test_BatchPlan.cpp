@@ -122,14 +122,99 @@ TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
     spec.settings[1].name = "two";
     spec.settings[1].set.clear();
   });
-  const BatchTask& poles = plan.task("poles.a");
-  EXPECT_EQ(poles.outputs, (Names{"a.tum", "one/a.rawlog", "one.map/a.rawlog", "two/a.rawlog"}));
+  const BatchTask& poles = plan.task("poles.b");  // mapped and localized
+  EXPECT_EQ(poles.outputs, (Names{"b.tum", "one/b.rawlog", "one.map/b.rawlog", "two/b.rawlog"}));
   ASSERT_EQ(poles.commands.size(), 4u);
   EXPECT_EQ(argument(poles.commands[2], "--set"), "native.min_confidence=0.3");
-  EXPECT_EQ(argument(poles.commands[2], "--output"), "one.map/a.rawlog");
+  EXPECT_EQ(argument(poles.commands[2], "--output"), "one.map/b.rawlog");
   EXPECT_EQ(argument(plan.task("map.one.a").commands[0], "--input"), "../poles.a/one.map/a.rawlog");
   EXPECT_EQ(argument(plan.task("run.one.b.00").commands[0], "--input"), "../poles.b/one/b.rawlog");
   EXPECT_EQ(argument(plan.task("map.two.a").commands[0], "--input"), "../poles.a/two/a.rawlog");
+}
+
+TEST(BatchPlan, SessionsHaveThePolesOfTheSettingsThatUseThem) {
+  const BatchPlan plan = planOf([](BatchSpec& spec) {
+    spec.settings[0].set = {"map.min_confidence=0.3"};
+    spec.settings.push_back(spec.settings[0]);
+    spec.settings[1].name = "paper";
+    spec.settings[1].config = source + "/config/paper/nclt.ini";
+    spec.settings[1].set.clear();
+    spec.settings[1].mapSessions = spec.settings[1].sessions = {"b"};
+    spec.settings[1].map = MapTime::finished;
+  });
+  // a is only mapped, and by the first setting alone; c is only localized, by the same.
+  EXPECT_EQ(plan.task("poles.a").outputs, (Names{"a.tum", "one.map/a.rawlog"}));
+  EXPECT_EQ(plan.task("poles.b").outputs,
+            (Names{"b.tum", "one/b.rawlog", "one.map/b.rawlog", "paper/b.rawlog"}));
+  EXPECT_EQ(plan.task("poles.c").outputs, (Names{"c.tum", "one/c.rawlog"}));
+  for (const char* id : {"poles.a", "poles.b", "poles.c"})
+    EXPECT_EQ(plan.task(id).commands.size(), plan.task(id).outputs.size()) << id;
+}
+
+TEST(BatchPlan, FinishedMapsAreScoredAgainstTruePoles) {
+  static const TempFolder folder;
+  writeText(folder / "truth.csv", "x,y\n1,2\n");
+  const auto scored = [&](const std::function<void(BatchSpec&)>& more) {
+    return planOf([&](BatchSpec& spec) {
+      for (auto& session : spec.sessions) session.truthMap = (folder / "truth.csv").string();
+      more(spec);
+    });
+  };
+  const BatchPlan plan = scored([](BatchSpec&) {});
+  // Of the maps of a, and of a and b, the last one.
+  EXPECT_EQ(ids(plan).size(), 3u + 2 + 1 + 4);
+  const BatchTask& score = plan.task("score.one.b");
+  EXPECT_EQ(score.kind, "score");
+  EXPECT_EQ(score.needs, Names{"map.one.b"});
+  EXPECT_EQ(score.outputs, (Names{"near_1m.json", "one_to_one_1m.json", "one_to_one_0.5m.json"}));
+  ASSERT_EQ(score.commands.size(), 3u);
+  EXPECT_EQ(argument(score.commands[0], "--map"), "../map.one.b/map.polemap");
+  EXPECT_EQ(argument(score.commands[0], "--truth"), (folder / "truth.csv").string());
+  const auto oneToOne = [&](std::size_t i) {
+    const auto& command = score.commands[i];
+    return std::find(command.begin(), command.end(), "--one-to-one") != command.end();
+  };
+  EXPECT_FALSE(oneToOne(0));
+  EXPECT_TRUE(oneToOne(1) && oneToOne(2));
+  EXPECT_EQ(argument(score.commands[2], "--radius"), "0.5");
+  ASSERT_EQ(plan.cells.size(), 3u);
+  EXPECT_EQ(plan.cells[0].score, "");
+  EXPECT_EQ(plan.cells[1].score, "score.one.b");
+  // A map that no session is localized in is made for its score.
+  const BatchPlan strict = scored([](BatchSpec& spec) {
+    spec.settings[0].mapSessions = {"a", "b", "c"};
+    spec.settings[0].sessions = {"b"};
+  });
+  EXPECT_EQ(strict.task("score.one.c").needs, Names{"map.one.c"});
+  EXPECT_EQ(strict.task("map.one.c").needs, (Names{"poles.a", "poles.b", "poles.c"}));
+}
+
+TEST(BatchPlan, EachSessionMayHaveItsOwnMapAndTruth) {
+  const BatchPlan plan = planOf([](BatchSpec& spec) {
+    for (auto& session : spec.sessions) {
+      session.source = "kitti-odometry";
+      session.truthMap = truthFromLabels;
+      fs::create_directories(session.input + "/labels");
+    }
+    spec.settings[0].protocol = MapProtocol::each;
+    spec.settings[0].mapSessions = {"a", "b"};
+    spec.settings[0].sessions.clear();
+  });
+  EXPECT_EQ(ids(plan), (Names{"poles.a", "poles.b", "truth.a", "truth.b", "map.one.a", "map.one.b",
+                              "score.one.a", "score.one.b"}));
+  EXPECT_EQ(plan.task("map.one.b").needs, Names{"poles.b"});
+  EXPECT_EQ(plan.task("score.one.b").needs, (Names{"map.one.b", "truth.b"}));
+  EXPECT_EQ(argument(plan.task("score.one.b").commands[0], "--truth"), "../truth.b/truth.polemap");
+  EXPECT_EQ(plan.task("truth.a").commands[0][0], "pole-labels");
+  EXPECT_EQ(plan.cells[1].ownMap, "map.one.b");
+  // Localized, it is in its own map.
+  const BatchPlan localized = planOf([](BatchSpec& spec) {
+    spec.settings[0].protocol = MapProtocol::each;
+    spec.settings[0].map = MapTime::finished;
+    spec.settings[0].sessions = {"a", "b"};
+  });
+  EXPECT_EQ(localized.task("run.one.a.00").needs, (Names{"poles.a", "map.one.a"}));
+  EXPECT_EQ(localized.task("run.one.b.00").needs, (Names{"poles.b", "map.one.b"}));
 }
 
 TEST(BatchPlan, ImportsAsTheSessionSays) {
@@ -186,6 +271,12 @@ TEST(BatchPlan, NamesAllInputsThatAreMissing) {
   EXPECT_NE(message.find("a: /not/there is not there; c: /not/there is not there"),
             std::string::npos)
       << message;
+  EXPECT_NE(messageOf([] {
+              planOf([](BatchSpec& spec) { spec.sessions[1].truthMap = "/not/there.npz"; });
+            }).find("b: /not/there.npz, its truth_map, is not there"),
+            std::string::npos);
+  // True poles that no map is scored against need not be there.
+  EXPECT_NO_THROW(planOf([](BatchSpec& spec) { spec.sessions[0].truthMap = "/not/there.npz"; }));
   // Sessions that no setting uses need not be there.
   EXPECT_NO_THROW(planOf([](BatchSpec& spec) {
     spec.sessions[2].input = "/not/there";
@@ -211,7 +302,11 @@ TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
     const TempFolder data;
     const BatchSpec spec = readBatchSpec(entry.path(), data.path());
     for (const auto& session : spec.sessions)
-      if (session.source != "simulated") fs::create_directories(session.input);
+      if (session.source != "simulated") {
+        fs::create_directories(session.input + "/labels");
+        if (!session.truthMap.empty() && session.truthMap != truthFromLabels)
+          writeText(session.truthMap, "");
+      }
     const BatchPlan plan = planBatch(spec);
     std::size_t runs = 0;
     for (const auto& setting : spec.settings) runs += setting.sessions.size() * spec.runs;
@@ -221,7 +316,7 @@ TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
     EXPECT_FALSE(spec.title.empty());
     ++batches;
   }
-  EXPECT_GE(batches, 4u);
+  EXPECT_GE(batches, 6u);
 }
 
 TEST(BatchPlan, KeysStandForTheBuild) {
@@ -246,7 +341,10 @@ TEST(BatchPlan, LevelsHoldWhatCanBeDoneAtOnce) {
 
 TEST(BatchPlan, SurvivesItsFile) {
   const TempFolder folder;
-  const BatchPlan plan = planOf();
+  writeText(folder / "truth.csv", "x,y\n1,2\n");
+  const BatchPlan plan =
+      planOf([&](BatchSpec& spec) { spec.sessions[1].truthMap = (folder / "truth.csv").string(); });
+  EXPECT_EQ(plan.cells[1].score, "score.one.b");
   writePlan(folder / "plan.json", plan);
   const BatchPlan read = readPlan(folder / "plan.json");
   EXPECT_EQ(read.name, plan.name);
@@ -262,6 +360,7 @@ TEST(BatchPlan, SurvivesItsFile) {
   ASSERT_EQ(read.cells.size(), plan.cells.size());
   EXPECT_EQ(read.cells[1].seeds, plan.cells[1].seeds);
   EXPECT_EQ(read.cells[1].map, plan.cells[1].map);
+  EXPECT_EQ(read.cells[1].score, plan.cells[1].score);
   writeText(folder / "plan.json", readText(folder / "plan.json").substr(0, 100));
   EXPECT_NE(messageOf([&] { readPlan(folder / "plan.json"); }).find("is no plan of a batch"),
             std::string::npos);

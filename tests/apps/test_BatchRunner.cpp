@@ -55,7 +55,7 @@ class BatchRunner : public testing::Test {
   Names run(std::size_t jobs = 2) {
     m_batch.store(m_plan, m_temporary / "batch.ini");
     Names worked;
-    m_failures = runBatch(m_batch, m_plan, jobs,
+    m_failures = runBatch(m_batch, m_plan, {jobs, m_imports},
                           [&](const BatchTask& task, const TaskOutcome&, const BatchProgress& now) {
                             worked.push_back(task.id);
                             m_last = now;
@@ -68,6 +68,7 @@ class BatchRunner : public testing::Test {
   TempFolder m_temporary;
   BatchFolder m_batch;
   BatchPlan m_plan;
+  std::size_t m_imports = 0;
   std::map<std::string, std::string> m_failures;
   BatchProgress m_last;
 };
@@ -199,6 +200,22 @@ TEST_F(BatchRunner, TasksRunAtTheSameTime) {
   add("b", {{"meet", "y", "x"}});
   run(2);
   EXPECT_TRUE(m_failures.empty());
+}
+
+TEST_F(BatchRunner, AsManyImportsAsAllowed) {
+  // Each looks whether another one is under way, and leaves what it found.
+  addProgram("alone",
+             "ls ../.. | grep -c under_way_ > out; touch ../../under_way_$1; sleep 0.2; "
+             "rm ../../under_way_$1");
+  for (const char* id : {"a", "b", "c"}) {
+    add(id, {{"alone", id}});
+    m_plan.tasks.back().kind = "poles";
+  }
+  add("d", {{"write", "out", "D"}});
+  m_imports = 1;
+  EXPECT_EQ(run(3).front(), "d");  // others need not wait
+  EXPECT_TRUE(m_failures.empty());
+  for (const char* id : {"a", "b", "c"}) EXPECT_EQ(out(id), "0\n") << id;
 }
 
 TEST(BatchFolder, IsForOneBatchAlone) {

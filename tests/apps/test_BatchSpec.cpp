@@ -99,6 +99,62 @@ TEST(BatchSpec, ASessionInTheMapBeforeItNeedsOne) {
   EXPECT_NO_THROW(read(head + "map_sessions = b\nsessions = all\nmap = finished\n"));
 }
 
+TEST(BatchSpec, ReadsTruePolesAndPublishedFigures) {
+  const BatchSpec spec = read(
+      "[batch]\nsettings = one\npublished = semantickitti\npublished_sessions = {here}/p.csv\n"
+      "[sessions]\nnames = 00 01\nsource = kitti-odometry\ninput = {data}/{session}\n"
+      "truth_map = labels\n[session 01]\ntruth_map = {data}/t_{session}.npz\n" +
+          setting + "maps = each\nmap_sessions = all\nsessions = none\n",
+      "/d");
+  EXPECT_EQ(spec.session("00").truthMap, truthFromLabels);
+  EXPECT_EQ(spec.session("01").truthMap, "/d/t_01.npz");
+  EXPECT_EQ(spec.published, "semantickitti");
+  EXPECT_EQ(fs::path(spec.publishedSessions).filename(), "p.csv");
+  EXPECT_EQ(spec.settings[0].protocol, MapProtocol::each);
+  EXPECT_TRUE(spec.settings[0].sessions.empty());
+  EXPECT_EQ(spec.settings[0].mapSessions, (std::vector<std::string>{"00", "01"}));
+}
+
+TEST(BatchSpec, LaterSessionsAreAllButTheFirst) {
+  const auto spec = read("[batch]\nsettings = one\n" + sessions + setting + "sessions = later\n");
+  EXPECT_EQ(spec.settings[0].sessions, (std::vector<std::string>{"b", "c"}));
+  EXPECT_HAS(refusal("[batch]\nsettings = one\n[sessions]\nnames = a\ninput = x\n" + setting +
+                     "sessions = later\n"),
+             "sessions: at least one name");
+}
+
+TEST(BatchSpec, MapsAloneAndMapsOfEachNeedSense) {
+  const std::string head = "[batch]\nsettings = one\n" + sessions;
+  EXPECT_HAS(refusal(head + setting + "sessions = none\n"), "sessions = none leaves nothing");
+  EXPECT_HAS(refusal(head + setting + "maps = each\nmap_sessions = all\n"),
+             "maps = each has no map before a session");
+  EXPECT_HAS(refusal(head + setting + "maps = each\nmap_sessions = a b\nmap = finished\n"),
+             "session c has no map");
+  EXPECT_HAS(refusal(head + "truth_map = labels\n" + setting), "needs source = kitti-odometry");
+  EXPECT_HAS(refusal(head + "truth_map = {data}/x\n" + setting), "--data");
+  EXPECT_HAS(refusal("[batch]\nsettings = one\npublished = all\n" + sessions + setting),
+             "semantickitti");
+}
+
+TEST(BatchSpec, ValuesCanBePutInPlaceOfTheFiles) {
+  const TempFolder folder;
+  writeText(folder / "a.ini", "[batch]\nsettings = one\n" + sessions + setting +
+                                  "map_sessions = first\nsessions = later\n");
+  const auto with = [&](const std::vector<std::string>& set) {
+    return readBatchSpec(folder / "a.ini", "/d", set);
+  };
+  const BatchSpec spec =
+      with({"batch.runs=2", "sessions.names=a b", "sessions.input={data}/{session}",
+            "setting one.set=filter.particles=7 map.min_count=2"});
+  EXPECT_EQ(spec.runs, 2);
+  ASSERT_EQ(spec.sessions.size(), 2u);
+  EXPECT_EQ(spec.sessions[1].input, "/d/b");
+  EXPECT_EQ(spec.settings[0].set,
+            (std::vector<std::string>{"filter.particles=7", "map.min_count=2"}));
+  EXPECT_HAS(messageOf([&] { with({"batch.run=2"}); }), "run");
+  EXPECT_HAS(messageOf([&] { with({"runs=2"}); }), "section.key=value");
+}
+
 TEST(BatchSpec, SeedsComeFromNamesAlone) {
   EXPECT_EQ(seedOf(1, "a/run 0"), seedOf(1, "a/run 0"));
   // CRC-32 of "1/a/run 0", computed with another program.

@@ -1,6 +1,5 @@
 #include <polemcl/apps/LabelsApp.h>
 #include <polemcl/core/Evaluation.h>
-#include <polemcl/io/Bytes.h>
 #include <polemcl/io/LabelledScans.h>
 #include <polemcl/io/PoleMapFile.h>
 #include <polemcl/io/PolePositions.h>
@@ -11,6 +10,7 @@
 #include <set>
 
 #include "ScanFolders.h"
+#include "StreetDatasets.h"
 
 using namespace polemcl;
 using namespace polemcl::apps;
@@ -18,7 +18,7 @@ using namespace testing_apps;
 
 namespace {
 
-constexpr std::uint32_t vegetation = 70, trunk = 71, pole = 80, building = 50;
+constexpr std::uint32_t trunk = 71, pole = 80, building = 50;
 
 std::string bytesOf(const std::vector<std::uint32_t>& labels) {
   return {reinterpret_cast<const char*>(labels.data()), labels.size() * 4};
@@ -63,22 +63,6 @@ class LabelsApp : public testing::Test {
   TempFolder folder;
 };
 
-/// Labels of object ids become SemanticKITTI's classes, as its owners would have drawn them.
-void relabel(const fs::path& sequence, const std::set<std::uint32_t>& poles) {
-  for (const auto& entry : fs::directory_iterator(sequence / "labels")) {
-    const std::string bytes = readText(entry.path());
-    std::vector<std::uint32_t> labels;
-    for (std::size_t i = 0; i < bytes.size(); i += 4) {
-      const auto id = io::loadLittleEndian<std::uint32_t>(bytes.data() + i);
-      const bool crown = (id & sim::kFoliageBit) != 0;
-      const bool isPole = poles.count(id & ~sim::kFoliageBit) > 0;
-      labels.push_back(crown ? vegetation : isPole ? pole : building);
-    }
-    writeText(entry.path(), bytesOf(labels));
-  }
-  writeText(sequence / "calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
-}
-
 }  // namespace
 
 TEST_F(LabelsApp, MapsTheLabelsOfASequence) {
@@ -120,6 +104,7 @@ TEST_F(LabelsApp, FindsThePolesOfASimulatedDrive) {
   std::set<std::uint32_t> ids;
   for (const auto& truePole : poles) ids.insert(truePole.id);
   relabel(folder / "00", ids);
+  writeText(folder / "00/calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
   ASSERT_EQ(run().code, 0);
   const auto way = io::readKittiPoses(folder / "00/poses.txt");
   std::vector<Eigen::Vector2d> truth;

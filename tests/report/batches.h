@@ -43,6 +43,30 @@ inline SessionPlots smallPlots() {
   return plots;
 }
 
+/// A map of 8 poles against 10, of which 6 are right; one to one 5, and 4 within half a metre.
+inline MapScores smallScores() {
+  const auto score = [](std::size_t matches) {
+    MapScore one{8, 10, matches, matches / 8.0, matches / 10.0, 0};
+    one.f1 = 2 * one.precision * one.recall / (one.precision + one.recall);
+    return one;
+  };
+  return {"truth.csv", score(6), score(5), score(4)};
+}
+
+/// The small batch with a score of its first setting's map, and figures published for sessions.
+inline BatchResults smallBatch();
+inline BatchResults scoredBatch() {
+  BatchResults batch = smallBatch();
+  batch.results[2].score = smallScores();
+  batch.results[3].score = smallScores();
+  batch.results[3].score->near = {8, 10, 8, 1.0, 0.8, 16 / 18.0};
+  batch.published = {{"Dong et al. 2021", "two_2", 0.5, 0.12, 0.146, 0.626, 0.81},
+                     {"Dong et al. 2021", "three", 0.25, 0.246, 0.354, 0.75, 0.982},
+                     {"Dong et al. 2021", "another", 0.1, 9, 9, 9, 9},
+                     {"Schaefer et al. 2019", "two_2", noFigure, 0.13, 0.178, 0.663, 0.857}};
+  return batch;
+}
+
 /// Setting 0: two runs in session 0, one of two failed in session 1, both lost in session 2.
 /// Setting 1: session 1 only.
 inline BatchResults smallBatch() {

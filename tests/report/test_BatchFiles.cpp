@@ -36,6 +36,20 @@ std::string refusal(const std::filesystem::path& file) {
   return "";
 }
 
+/// Every row has as many cells as its table has columns.
+void expectFullRows(const std::filesystem::path& file) {
+  const std::regex begin(R"(\\begin\{tabular\}\{([lr]+)\})");
+  std::size_t columns = 0;
+  for (const std::string& line : io::readLines(file)) {
+    std::smatch match;
+    if (std::regex_search(line, match, begin)) columns = match[1].length();
+    if (line.size() < 3 || line.substr(line.size() - 3) != " \\\\") continue;
+    std::size_t cells = 1;
+    for (std::size_t i = 1; i < line.size(); ++i) cells += line[i] == '&' && line[i - 1] != '\\';
+    EXPECT_EQ(cells, columns) << line;
+  }
+}
+
 }  // namespace
 
 TEST(BatchFiles, WhatIsReadBackIsWhatWasWritten) {
@@ -70,6 +84,45 @@ TEST(BatchFiles, WhatIsReadBackIsWhatWasWritten) {
   EXPECT_EQ(read.failures[0].log, "logs/a<b.log");
 }
 
+TEST(BatchFiles, ScoresAndPublishedSessionsAreReadBack) {
+  const TempFolder folder;
+  const BatchResults batch = scoredBatch();
+  writeResultsJson(folder / "a.json", batch);
+  const BatchResults read = readResultsJson(folder / "a.json");
+  writeResultsJson(folder / "b.json", read);
+  EXPECT_EQ(readText(folder / "a.json"), readText(folder / "b.json"));
+  EXPECT_FALSE(read.results[0].score);
+  ASSERT_TRUE(read.results[2].score);
+  EXPECT_EQ(read.results[2].score->truth, "truth.csv");
+  EXPECT_EQ(read.results[2].score->near.matches, 6u);
+  EXPECT_EQ(read.results[2].score->oneToOne.precision, 5 / 8.0);
+  EXPECT_EQ(read.results[2].score->oneToOneHalf.truthPoles, 10u);
+  ASSERT_EQ(read.published.size(), 4u);
+  EXPECT_EQ(read.published[1].session, "three");
+  EXPECT_EQ(read.published[1].posRmse, 0.354);
+  EXPECT_TRUE(std::isnan(read.published[3].mapShare));
+  const auto json = nlohmann::json::parse(readText(folder / "a.json"));
+  EXPECT_EQ(json["summary"][0]["scored_maps"], 1);
+  EXPECT_EQ(json["summary"][0]["map_score"]["near_1m"]["recall"], 0.6);
+}
+
+TEST(BatchFiles, MapsAsATable) {
+  const TempFolder folder;
+  writeMapsCsv(folder / "maps.csv", scoredBatch());
+  const io::CsvTable table(folder / "maps.csv");
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.text(0, table.column("setting")), "plain");
+  EXPECT_EQ(table.text(0, table.column("session")), "three");
+  EXPECT_EQ(table.text(0, table.column("truth")), "truth.csv");
+  EXPECT_EQ(table.number(0, table.column("truth_poles")), 10);
+  EXPECT_EQ(table.number(0, table.column("near_1m_precision")), 0.75);
+  EXPECT_EQ(table.number(0, table.column("one_to_one_1m_matches")), 5);
+  EXPECT_EQ(table.number(0, table.column("one_to_one_0.5m_recall")), 0.4);
+  EXPECT_EQ(table.number(1, table.column("near_1m_recall")), 0.8);
+  writeMapsCsv(folder / "none.csv", smallBatch());
+  EXPECT_EQ(io::readLines(folder / "none.csv").size(), 1u);
+}
+
 TEST(BatchFiles, ScriptsFindTheSummaries) {
   const TempFolder folder;
   writeResultsJson(folder / "a.json", smallBatch());
@@ -99,7 +152,7 @@ TEST(BatchFiles, RefusesWhatIsNoResults) {
   expectRefusal("\"seed\": 1001", "\"seed\": -1", "results[0].runs[1].seed");
   expectRefusal("\"pos_rmse\": 0.8,", "\"pos_rmse\": \"0.8\",", "errors.pos_rmse");
   expectRefusal("\"failures\"", "\"failings\"", "'failures' is missing");
-  expectRefusal("\"format_version\": 1", "\"format_version\": 2", "version is 2");
+  expectRefusal("\"format_version\": 2", "\"format_version\": 1", "version is 1");
   expectRefusal("\"session\": \"two_2\",\n      \"f_map\": 0.25", "\"session\": \"four\"",
                 "results[1].session");
   expectRefusal("\"map_poles_xy\": [1.0,", "\"map_poles_xy\": [", "pairs of x and y");
@@ -157,21 +210,31 @@ TEST(BatchFiles, LatexTableHoldsThePapersColumns) {
       << text;
   EXPECT_NE(text.find("two\\_2 & 25.0 & 0.400 & 0.800 & 0.800 & 1.600 \\\\\n"), std::string::npos);
   EXPECT_NE(text.find("6 runs, 2 lost, 1 failed."), std::string::npos);
-  EXPECT_NE(text.find("Dong et al. 2021 & -- & 0.480 & 0.270 \\\\\n"), std::string::npos);
-  EXPECT_NE(text.find("polemcl, up\\_keep 100 \\% & 0.400 & 0.071 & 1.000 \\\\\n"),
-            std::string::npos)
+  EXPECT_NE(text.find("Dong et al. 2021 & -- & 48.0 & 0.270 \\\\\n"), std::string::npos);
+  EXPECT_NE(text.find("polemcl, up\\_keep 100 \\% & 0.400 & 7.1 & 1.000 \\\\\n"), std::string::npos)
       << text;
-  // Every row has as many cells as its table has columns.
-  const std::regex begin(R"(\\begin\{tabular\}\{([lr]+)\})");
-  std::size_t columns = 0;
-  for (const std::string& line : io::readLines(folder / "table.tex")) {
-    std::smatch match;
-    if (std::regex_search(line, match, begin)) columns = match[1].length();
-    if (line.size() < 3 || line.substr(line.size() - 3) != " \\\\") continue;
-    std::size_t cells = 1;
-    for (std::size_t i = 1; i < line.size(); ++i) cells += line[i] == '&' && line[i - 1] != '\\';
-    EXPECT_EQ(cells, columns) << line;
-  }
+  EXPECT_NE(text.find("$\\mathrm{RMSE}_\\mathrm{axis}$ [cm]"), std::string::npos);
+  EXPECT_NE(text.find("$\\mathrm{RMSE}_\\mathrm{pos}$ [m]"), std::string::npos);
+  expectFullRows(folder / "table.tex");
+}
+
+TEST(BatchFiles, LatexTablesHoldScoresAndPublishedSessions) {
+  const TempFolder folder;
+  BatchResults batch = scoredBatch();
+  batch.dataset = "nclt";
+  writeLatexTable(folder / "table.tex", batch);
+  const std::string text = readText(folder / "table.tex");
+  const auto expectRow = [&](const std::string& row) {
+    EXPECT_NE(text.find("    " + row + " \\\\\n"), std::string::npos) << row << " is not in\n"
+                                                                      << text;
+  };
+  expectRow("Dong et al. 2021 & 0.525 & 0.713 & 0.605 & -- & -- & -- & -- & -- & --");
+  expectRow(
+      "polemcl, plain & 0.750 & 0.600 & 0.667 & 0.625 & 0.500 & 0.556 & 0.500 & 0.400 & 0.444");
+  expectRow(
+      "two\\_2 & 25.0 & 0.400 & 0.120 & 0.130 & 0.800 & 0.146 & 0.178 & 0.800 & 0.626 & 0.663 & "
+      "1.600 & 0.810 & 0.857");
+  expectFullRows(folder / "table.tex");
 }
 
 TEST(BatchFiles, NoFigureIsNeverPrinted) {

@@ -25,7 +25,8 @@ BatchTimings someTimings(double factor) {
 
 /// All sorts of pages.
 std::vector<std::string> pages() {
-  std::vector<BatchResults> batches{smallBatch(), smallBatch(), smallBatch(), smallBatch()};
+  std::vector<BatchResults> batches{smallBatch(), smallBatch(),  smallBatch(),
+                                    smallBatch(), scoredBatch(), scoredBatch()};
   batches[1].dataset = "nclt";
   batches[2].results.clear();
   batches[2].failures.clear();
@@ -34,6 +35,10 @@ std::vector<std::string> pages() {
   batches[3].results.resize(1);
   batches[3].failures.clear();
   batches[3].dataset = "kitti-0009";
+  batches[4].dataset = "nclt";
+  batches[5].dataset = "semantickitti";
+  for (SessionResult& result : batches[5].results) result.runs.clear();  // maps alone
+  batches[5].failures.clear();
   std::vector<std::string> all;
   const BatchTimings timings = someTimings(1);
   for (const BatchResults& batch : batches) {
@@ -255,6 +260,84 @@ TEST(BatchReport, PublishedFiguresStandBesideOursOnlyForTheirDataset) {
   EXPECT_EQ(
       cellsOf(section, "polemcl, up_keep 100 %"),
       (std::vector<std::string>{"polemcl, up_keep 100 %", "0.200", "0.400", "0.500", "1.000"}));
+}
+
+TEST(BatchReport, PublishedFiguresOfASessionStandBesideOurs) {
+  const Element page = parsePage(batchReport(scoredBatch()));
+  const Element& section = sectionOf(page, "sessions");
+  const std::string dash = "\xE2\x80\x93";
+  EXPECT_EQ(cellsOf(section, "two_2"),
+            (std::vector<std::string>{"two_2", "25.0", "50.0",    //
+                                      "0.400", "0.120", "0.130",  //
+                                      "0.800", "0.146", "0.178",  //
+                                      "0.800", "0.626", "0.663",  //
+                                      "1.600", "0.810", "0.857", "2, 1 failed"}));
+  EXPECT_EQ(cellsOf(section, "one<&\">")[4], dash);
+  // Below, the means of theirs over the sessions that they have and we have figures of.
+  const auto mean = cellsOf(section, "Mean of sessions");
+  EXPECT_EQ(mean[2], "37.5");
+  EXPECT_EQ(mean[4], "0.183");  // 0.120 and 0.246
+  EXPECT_EQ(mean[5], "0.130");
+}
+
+TEST(BatchReport, ShortErrorsAreInCentimetres) {
+  BatchResults batch = scoredBatch();
+  batch.results[1].runs = {runWith(0, 0.006, 0.2), runWith(1, 0.0084, 0.2)};
+  batch.results[1].score.reset();
+  const std::string text = batchReport(batch);
+  const Element page = parsePage(text);
+  const Element& section = sectionOf(page, "sessions");
+  // Mean of 0.6 and 0.84 cm, deviation 0.24/√2 cm.
+  EXPECT_EQ(cellsOf(section, "two_2")[3], "0.72 ± 0.17");
+  EXPECT_EQ(cellsOf(section, "two_2")[4], "12.0");
+  EXPECT_EQ(cellsOf(section, "three")[3], "400.0");
+  EXPECT_NE(text.find("Δ<sub>pos</sub> (cm)"), std::string::npos);
+  EXPECT_NE(cellsOf(section, "two_2")[6], "");
+  BatchResults one = batch;
+  one.results = {batch.results[1]};
+  one.failures.clear();
+  const std::string alone = batchReport(one);
+  EXPECT_NE(alone.find("The position error is <strong>0.72\xC2\xA0"
+                       "cm</strong>"),
+            std::string::npos);
+  EXPECT_NE(alone.find("<p class=\"big\">0.72<span> cm</span></p>"), std::string::npos);
+}
+
+TEST(BatchReport, ScoresOfMapsStandBelowThosePublished) {
+  BatchResults batch = scoredBatch();
+  EXPECT_EQ(batchReport(smallBatch()).find("Map scores"), std::string::npos);
+  batch.dataset = "semantickitti";
+  const std::string dash = "\xE2\x80\x93";
+  const Element page = parsePage(batchReport(batch));
+  const Element& section = sectionOf(page, "scores");
+  EXPECT_EQ(cellsOf(section, "Dong et al. 2021"),
+            (std::vector<std::string>{"Dong et al. 2021", "0.687", "0.439", "0.515", dash, dash,
+                                      dash, dash, dash, dash, dash}));
+  EXPECT_EQ(cellsOf(section, "polemcl, plain"),
+            (std::vector<std::string>{"polemcl, plain", "0.750", "0.600", "0.667", "0.625", "0.500",
+                                      "0.556", "0.500", "0.400", "0.444", "1"}));
+  EXPECT_TRUE(cellsOf(section, "three").empty());  // one map each: nothing more to tell
+  batch.results[0].score = smallScores();
+  const Element more = parsePage(batchReport(batch));
+  EXPECT_EQ(cellsOf(sectionOf(more, "scores"), "three"),
+            (std::vector<std::string>{"three", "plain", "0.750", "0.600", "0.667", "0.625", "0.500",
+                                      "0.556", "0.500", "0.400", "0.444", "8", "10", "truth.csv"}));
+}
+
+TEST(BatchReport, MapsAloneAreNoTrouble) {
+  BatchResults batch = scoredBatch();
+  for (SessionResult& result : batch.results) result.runs.clear();
+  batch.failures.clear();
+  const std::string text = batchReport(batch);
+  EXPECT_NE(text.find("The F1 of the maps is <strong>0.667</strong> with <em>plain</em>"),
+            std::string::npos);
+  EXPECT_NE(text.find("Maps only: no session was to be localized."), std::string::npos);
+  EXPECT_NE(text.find("<p class=\"big\">0.667</p>"), std::string::npos);
+  EXPECT_EQ(text.find("alarm\">"), std::string::npos);
+  EXPECT_EQ(text.find("id=\"settings\""), std::string::npos);
+  // Where a map failed, that is told.
+  batch.failures = {{"map.plain.three", "no pole found", ""}};
+  EXPECT_NE(batchReport(batch).find("alarm\">"), std::string::npos);
 }
 
 TEST(BatchReport, OnlyTheTimingsChangeWithTheTime) {

@@ -69,6 +69,22 @@ TEST(BatchSummary, SettingsAreMeansOverTheirSessions) {
   EXPECT_EQ(plain.lostSessions, 1u);
 }
 
+TEST(BatchSummary, ScoresAreMeansOverTheMaps) {
+  BatchResults batch = scoredBatch();
+  batch.results[0].score = batch.results[3].score;  // P 1, R 0.8, F1 16/18
+  const auto summaries = summarize(batch);
+  EXPECT_EQ(summaries[0].scores.maps, 2u);
+  EXPECT_NEAR(summaries[0].scores.near.precision, (0.75 + 1) / 2, 1e-12);
+  EXPECT_NEAR(summaries[0].scores.near.recall, (0.6 + 0.8) / 2, 1e-12);
+  // 6 of 8 and of 10: F1 = 12/18. A mean of F1, not the F1 of the means.
+  EXPECT_NEAR(summaries[0].scores.near.f1, (12 / 18.0 + 16 / 18.0) / 2, 1e-12);
+  EXPECT_NEAR(summaries[0].scores.oneToOne.precision, 5 / 8.0, 1e-12);
+  EXPECT_NEAR(summaries[0].scores.oneToOneHalf.recall, 0.4, 1e-12);
+  EXPECT_EQ(summaries[1].scores.maps, 1u);
+  EXPECT_EQ(summarize(smallBatch())[0].scores.maps, 0u);
+  EXPECT_TRUE(std::isnan(summarize(smallBatch())[0].scores.near.f1));
+}
+
 TEST(BatchSummary, OneSessionHasNothingToCompareTheLastWith) {
   const SettingSummary upkeep = summarize(smallBatch())[1];
   ASSERT_EQ(upkeep.sessions.size(), 1u);

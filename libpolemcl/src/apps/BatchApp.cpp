@@ -8,6 +8,7 @@
 #include <polemcl/apps/BatchSpec.h>
 #include <polemcl/apps/CommandLine.h>
 #include <polemcl/apps/Progress.h>
+#include <polemcl/apps/ProgressLog.h>
 #include <polemcl/core/Types.h>
 #include <unistd.h>
 
@@ -29,13 +30,17 @@ std::size_t jobsOf(const BatchOptions& options) {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
-Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan) {
-  Progress progress("batch", plan.tasks.size(), options.quiet);
-  return runBatch(folder, plan, jobsOf(options),
+Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
+                 std::size_t open) {
+  const std::size_t all = plan.tasks.size();
+  Progress progress("batch", all, options.quiet);
+  ProgressLogger log("batch", all, all - open, options.quiet);
+  return runBatch(folder, plan, {jobsOf(options), options.imports},
                   [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
                     if (!outcome.failure.empty() && !outcome.blocked)
                       progress.say("pole-batch: " + task.id + " failed: " + outcome.failure);
                     progress.update(now.done + now.failed);
+                    log.update(now.done, now.failed);
                   });
 }
 
@@ -50,7 +55,11 @@ Failures runThere(const BatchOptions& options, const BatchFolder& folder, const 
   SlurmOptions slurm;
   slurm.arguments = options.sbatch;
   Progress progress("batch on Slurm", open.size(), options.quiet);
-  runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) { progress.update(done); });
+  ProgressLogger log("batch on Slurm", open.size(), 0, options.quiet);
+  runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) {
+    progress.update(done);
+    log.update(done, 0);
+  });
   Failures failures;
   for (const auto* task : open) {
     if (folder.isDone(*task) || isBlocked(folder, plan, *task)) continue;
@@ -63,8 +72,10 @@ Failures runThere(const BatchOptions& options, const BatchFolder& folder, const 
 
 /// The command that does it again, without where it lies on this machine.
 std::string commandOf(const BatchOptions& options) {
-  return "pole-batch " + options.batch.filename().string() +
-         (options.data.empty() ? "" : " --data DATA") + " --output OUT";
+  std::string command = "pole-batch " + options.batch.filename().string() +
+                        (options.data.empty() ? "" : " --data DATA") + " --output OUT";
+  for (const auto& assignment : options.set) command += " --set '" + assignment + "'";
+  return command;
 }
 
 void printOpen(const BatchPlan& plan, const std::vector<const BatchTask*>& open,
@@ -128,7 +139,7 @@ void printPlan(const BatchPlan& plan) {
 }  // namespace
 
 void doBatch(const BatchOptions& options) {
-  const BatchSpec spec = readBatchSpec(options.batch, options.data);
+  const BatchSpec spec = readBatchSpec(options.batch, options.data, options.set);
   const BatchPlan plan = planBatch(spec);
   BatchFolder folder(options.output);
   folder.take(spec.name, options.resume);
@@ -138,8 +149,8 @@ void doBatch(const BatchOptions& options) {
   if (!options.quiet) printOpen(plan, open, notes);
 
   const auto begin = std::chrono::steady_clock::now();
-  const Failures failures =
-      options.slurm ? runThere(options, folder, plan, open) : runHere(options, folder, plan);
+  const Failures failures = options.slurm ? runThere(options, folder, plan, open)
+                                          : runHere(options, folder, plan, open.size());
   folder.sweep();
   report::BatchTimings timings = collectTimings(folder, plan);
   if (open.size() == plan.tasks.size()) {
@@ -181,6 +192,11 @@ int batchMain(int argc, const char* const* argv) {
   cli.add_option("--data", options.data, "Folder of the dataset: {data} in the batch");
   cli.add_option("--jobs", options.jobs, "Tasks at the same time; 0: one for each core")
       ->check(CLI::Range(0, 4096));
+  cli.add_option("--imports", options.imports,
+                 "Of these, sessions imported at the same time; 0: any. Their scans lie on disk "
+                 "meanwhile")
+      ->check(CLI::Range(0, 4096));
+  addSetOption(cli, options.set);
   cli.add_flag("--resume", options.resume, "Go on with the batch that is in the folder");
   auto* slurm = cli.add_flag("--slurm", options.slurm, "On a cluster, as job arrays");
   cli.add_option("--sbatch", options.sbatch, "One more argument for sbatch; may be repeated")
@@ -200,7 +216,7 @@ int batchMain(int argc, const char* const* argv) {
     if (!task.empty()) return doTaskOf(options, task);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
       if (std::signal(signal, endWithAWord) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
-    if (dry) return printPlan(planBatch(readBatchSpec(options.batch, options.data)));
+    if (dry) return printPlan(planBatch(readBatchSpec(options.batch, options.data, options.set)));
     doBatch(options);
   });
 }

@@ -8,6 +8,7 @@
 #include <polemcl/report/BatchFiles.h>
 #include <polemcl/report/BatchMeasures.h>
 #include <polemcl/report/BatchReport.h>
+#include <polemcl/report/PublishedFigures.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,8 @@
 #include <optional>
 #include <set>
 #include <thread>
+
+#include "BatchCommands.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -58,6 +61,11 @@ std::string protocolOf(const BatchSetting& setting) {
   const auto& maps = setting.mapSessions;
   const std::string sessions =
       maps.size() == 1 ? "session " + maps.front() : std::to_string(maps.size()) + " sessions";
+  if (setting.protocol == MapProtocol::each)
+    return setting.sessions.empty()
+               ? "A map of each session"
+               : "A map of each session, which is localized in it (its own data is in it)";
+  if (setting.sessions.empty()) return "One map of " + sessions;
   if (setting.map == MapTime::finished) {
     const bool own = std::any_of(maps.begin(), maps.end(), [&](const std::string& name) {
       const auto& s = setting.sessions;
@@ -100,6 +108,8 @@ class Collector {
     m_results.name = m_spec.name;
     m_results.title = m_spec.title.empty() ? m_spec.name : m_spec.title;
     m_results.dataset = m_spec.published == "none" ? "" : m_spec.published;
+    if (!m_spec.publishedSessions.empty())
+      m_results.published = report::readPublishedSessions(m_spec.publishedSessions);
     m_results.versions = {std::string(version()) + " (build " + buildIdentity() + ")",
                           mrpt::system::MRPT_getVersion(), "GCC " __VERSION__};
     for (const auto& setting : m_spec.settings) {
@@ -180,11 +190,31 @@ class Collector {
     return io::parseNumber(share->second).value_or(noFigure);
   }
 
+  /// Scores of the map that the session completes; none when there are none.
+  std::optional<report::MapScores> scoresOf(const BatchCell& cell) const {
+    if (!isDone(cell.score)) return {};
+    report::MapScores scores;
+    const std::string& truth = m_spec.session(cell.session).truthMap;
+    scores.truth = truth == truthFromLabels ? truth : fs::path(truth).filename().string();
+    MapScore* const all[] = {&scores.near, &scores.oneToOne, &scores.oneToOneHalf};
+    for (std::size_t i = 0; i < std::size(scoreFiles); ++i) {
+      const Json json = readJson(m_folder.work(cell.score) / scoreFiles[i]);
+      json.at("precision").get_to(all[i]->precision);
+      json.at("recall").get_to(all[i]->recall);
+      json.at("f1").get_to(all[i]->f1);
+      json.at("matches").get_to(all[i]->matches);
+      json.at("map_poles").get_to(all[i]->mapPoles);
+      json.at("truth_poles").get_to(all[i]->truthPoles);
+    }
+    return scores;
+  }
+
   void addCell(const BatchCell& cell) {
     report::SessionResult result;
     result.setting = settingIndex(cell.setting);
     result.session = indexOf(cell.session);
     result.mapShare = mapShare(cell);
+    result.score = scoresOf(cell);
     if (isDone(cell.map)) {
       const auto& map = mapOf(cell.map);
       result.mapPoles = map.poles.size();
@@ -292,6 +322,7 @@ void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& resu
   report::writeResultsJson(path / "results.json", results);
   report::writeRunsCsv(path / "runs.csv", results);
   report::writeSessionsCsv(path / "sessions.csv", results);
+  report::writeMapsCsv(path / "maps.csv", results);
   report::writeLatexTable(path / "table.tex", results);
   report::writeBatchReport(results, &timings, path / "report.html");
 }

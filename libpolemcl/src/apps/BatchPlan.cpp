@@ -5,6 +5,7 @@
 #include <polemcl/io/TextFile.h>
 #include <polemcl/mrpt/Bindings.h>
 #include <polemcl/mrpt/Config.h>
+#include <polemcl/report/PublishedFigures.h>
 
 #include <algorithm>
 #include <fstream>
@@ -12,19 +13,11 @@
 #include <optional>
 #include <set>
 
+#include "BatchCommands.h"
+
 namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
-
-using Command = std::vector<std::string>;
-
-Command program(const std::string& name) {
-  return {name, "--quiet", "--threads", "1"};  // one process for each core
-}
-
-void append(Command& command, const Command& more) {
-  command.insert(command.end(), more.begin(), more.end());
-}
 
 std::string contentOf(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -46,6 +39,10 @@ std::string extractionText(Settings settings) {
   return writer.text() + mapConfidence(settings);
 }
 
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 /// Puts together one plan.
 class Planner {
  public:
@@ -59,8 +56,12 @@ class Planner {
     for (const auto& setting : m_spec.settings) freeze(setting);
     for (const auto& session : m_spec.sessions)
       if (isUsed(session.name)) addPoles(session);
+    for (const auto& session : m_spec.sessions)
+      if (session.truthMap == truthFromLabels && isScored(session)) addTruth(session);
     for (const auto& setting : m_spec.settings) {
       addMaps(setting);
+      for (const auto& session : m_spec.sessions)
+        if (isScored(setting, session)) addScore(setting, session);
       addCells(setting);
     }
     for (const auto& [name, content] : m_plan.files) m_plan.sums[name] = mrpt::system::md5(content);
@@ -70,12 +71,21 @@ class Planner {
 
  private:
   bool isUsed(const std::string& session) const {
-    const auto has = [&](const std::vector<std::string>& names) {
-      return std::find(names.begin(), names.end(), session) != names.end();
-    };
     return std::any_of(m_spec.settings.begin(), m_spec.settings.end(), [&](const auto& setting) {
-      return has(setting.sessions) || has(setting.mapSessions);
+      return has(setting.sessions, session) || has(setting.mapSessions, session);
     });
+  }
+
+  /// Whether a session completes a map of the setting, and its true poles are known.
+  static bool isScored(const BatchSetting& setting, const BatchSession& session) {
+    const auto& names = setting.mapSessions;
+    return !session.truthMap.empty() &&
+           (setting.protocol == MapProtocol::each ? has(names, session.name)
+                                                  : names.back() == session.name);
+  }
+  bool isScored(const BatchSession& session) const {
+    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(),
+                       [&](const auto& setting) { return isScored(setting, session); });
   }
 
   /// What is wrong with a session's input; empty when nothing is.
@@ -92,16 +102,28 @@ class Planner {
     return {};
   }
 
+  /// The same for its true poles.
+  static std::string truthObstacle(const BatchSession& session) {
+    if (session.truthMap != truthFromLabels)
+      return fs::is_regular_file(session.truthMap)
+                 ? ""
+                 : session.truthMap + ", its truth_map, is not there";
+    const fs::path labels = fs::path(session.input) / "labels";
+    return fs::is_directory(labels) ? "" : labels.string() + " is not there";
+  }
+
   void requireInputs() const {
     std::string missing;
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;
-      const std::string what = obstacle(session);
+      std::string what = obstacle(session);
+      if (what.empty() && isScored(session)) what = truthObstacle(session);
       if (!what.empty()) missing += (missing.empty() ? "" : "; ") + session.name + ": " + what;
     }
     if (!missing.empty())
       throw Error("batch " + m_spec.name + ": inputs are missing: " + missing +
-                  "; check --data and [sessions] input, or leave these sessions out");
+                  "; check --data, [sessions] input and truth_map, or leave these sessions out");
+    if (!m_spec.publishedSessions.empty()) report::readPublishedSessions(m_spec.publishedSessions);
   }
 
   /// A file that settings name, copied into the batch's folder; the name it has from a task's.
@@ -139,13 +161,22 @@ class Planner {
     task.outputs.push_back(truth);
     if (hasGroups(session)) {
       for (const auto& group : m_groups) {
-        task.outputs.push_back(group.name + "/" + rawlog);
-        if (!group.mapConfidence.empty())
+        if (hasPoles(group, session.name)) task.outputs.push_back(group.name + "/" + rawlog);
+        if (hasMapPoles(group, session.name))
           task.outputs.push_back(group.name + mapFolder + "/" + rawlog);
       }
     } else {
       task.outputs.push_back(rawlog);
     }
+    m_plan.tasks.push_back(std::move(task));
+  }
+
+  void addTruth(const BatchSession& session) {
+    BatchTask task;
+    task.id = truthId(session);
+    task.kind = "truth";
+    task.commands = {labelsCommand(session)};
+    task.outputs = {"truth.polemap"};
     m_plan.tasks.push_back(std::move(task));
   }
 
@@ -168,7 +199,7 @@ class Planner {
       scans = session.input;
       task.commands = {{"copy", fs::path(session.input).replace_extension(".tum"), truth}};
     } else {
-      task.commands = {importCommand(session)};
+      task.commands = {importCommand(session, m_spec.seed)};
     }
     for (const auto& group : m_groups) {
       const std::string rawlog = "/" + session.name + ".rawlog";
@@ -176,34 +207,25 @@ class Planner {
       append(command, {"--config", "../../settings/" + group.name + ".ini", "--input", scans});
       Command forMaps = command;
       append(command, {"--output", group.name + rawlog});
-      task.commands.push_back(command);
-      if (group.mapConfidence.empty()) continue;
+      if (hasPoles(group, session.name)) task.commands.push_back(command);
+      if (!hasMapPoles(group, session.name)) continue;
       append(forMaps, {"--set", "native.min_confidence=" + group.mapConfidence, "--output",
                        group.name + mapFolder + rawlog});
       task.commands.push_back(forMaps);
     }
   }
 
-  Command importCommand(const BatchSession& session) const {
-    Command command = program("pole-import");
-    append(command,
-           {session.source, "--input", session.input, "--output", session.name + ".rawlog",
-            "--every", std::to_string(session.every), "--offset", std::to_string(session.offset)});
-    if (session.odometryNoise > 0) {
-      const auto seed = seedOf(m_spec.seed, session.name + "/odometry");
-      append(command, {"--odometry-noise", std::to_string(session.odometryNoise), "--seed",
-                       std::to_string(seed)});
-    }
-    if (!session.sensorPose.empty()) append(command, {"--sensor-pose", session.sensorPose});
-    if (!session.poses.empty())
-      append(command, {"--poses", session.poses, "--poses-of", session.posesOf});
-    if (!session.calib.empty()) append(command, {"--calib", session.calib});
-    return command;
-  }
-
   /// Stored and simulated poles are those of all settings.
   static bool hasGroups(const BatchSession& session) {
     return session.source != "simulated" && session.source != "poles";
+  }
+
+  static std::string truthId(const BatchSession& session) { return "truth." + session.name; }
+  static std::string scoreId(const BatchSetting& setting, const std::string& session) {
+    return "score." + setting.name + "." + session;
+  }
+  static std::string mapId(const BatchSetting& setting, const std::string& session) {
+    return "map." + setting.name + "." + session;
   }
 
   std::string rawlogOf(const BatchSetting& setting, const std::string& session,
@@ -220,9 +242,6 @@ class Planner {
   static std::string truthOf(const std::string& session) {
     return "../poles." + session + "/" + session + ".tum";
   }
-  static std::string mapId(const BatchSetting& setting, const std::string& session) {
-    return "map." + setting.name + "." + session;
-  }
 
   std::size_t placeOf(const std::string& session) const {
     for (std::size_t i = 0; i < m_spec.sessions.size(); ++i)
@@ -230,9 +249,12 @@ class Planner {
     return m_spec.sessions.size();
   }
 
-  /// The map that a session is localized in: how many of the map sessions went into it.
+  /// The map that a session is localized in: the number of its last map session, from 1.
   std::size_t mapFor(const BatchSetting& setting, const std::string& session) const {
     const auto& maps = setting.mapSessions;
+    if (setting.protocol == MapProtocol::each)
+      return static_cast<std::size_t>(std::find(maps.begin(), maps.end(), session) - maps.begin()) +
+             1;
     if (setting.map == MapTime::finished) return maps.size();
     return static_cast<std::size_t>(
         std::count_if(maps.begin(), maps.end(),
@@ -242,9 +264,13 @@ class Planner {
   void addMaps(const BatchSetting& setting) {
     std::set<std::size_t> wanted;
     for (const auto& session : setting.sessions) wanted.insert(mapFor(setting, session));
+    for (const auto& session : m_spec.sessions)
+      if (isScored(setting, session))
+        wanted.insert(setting.protocol == MapProtocol::each ? mapFor(setting, session.name)
+                                                            : setting.mapSessions.size());
     const bool chain = setting.protocol == MapProtocol::upkeep;
     for (std::size_t n = 1; n <= *wanted.rbegin(); ++n)
-      if (chain || wanted.count(n)) addMap(setting, n, chain);
+      if (chain || wanted.count(n)) addMap(setting, n);
   }
 
   /// Dates that some have and others have not would be years apart.
@@ -253,8 +279,8 @@ class Planner {
                         [&](const std::string& name) { return m_spec.session(name).date.empty(); });
   }
 
-  /// The map of the first n map sessions.
-  void addMap(const BatchSetting& setting, std::size_t n, bool chain) {
+  /// The map of the first n map sessions, or of the n-th alone.
+  void addMap(const BatchSetting& setting, std::size_t n) {
     const auto& names = setting.mapSessions;
     BatchTask task;
     task.id = mapId(setting, names[n - 1]);
@@ -262,8 +288,8 @@ class Planner {
     Command command = program("pole-map");
     append(command,
            {"--config", "../../settings/" + setting.name + ".ini", "--output", "map.polemap"});
-    const std::size_t first = chain ? n - 1 : 0;
-    if (chain && n > 1) {
+    const std::size_t first = setting.protocol == MapProtocol::together ? 0 : n - 1;
+    if (setting.protocol == MapProtocol::upkeep && n > 1) {
       const std::string before = mapId(setting, names[n - 2]);
       append(command, {"--update", "../" + before + "/map.polemap"});
       task.needs.push_back(before);
@@ -283,18 +309,35 @@ class Planner {
     m_plan.tasks.push_back(std::move(task));
   }
 
+  /// Scores the map that the session completes.
+  void addScore(const BatchSetting& setting, const BatchSession& session) {
+    BatchTask task;
+    task.id = scoreId(setting, session.name);
+    task.kind = "score";
+    const std::string map = mapId(setting, session.name);
+    task.needs = {map};
+    std::string truth = session.truthMap;
+    if (truth == truthFromLabels) {
+      task.needs.push_back(truthId(session));
+      truth = "../" + truthId(session) + "/truth.polemap";
+    }
+    task.commands = scoreCommands("../" + map + "/map.polemap", truth);
+    task.outputs.assign(std::begin(scoreFiles), std::end(scoreFiles));
+    m_plan.tasks.push_back(std::move(task));
+  }
+
   void addCells(const BatchSetting& setting) {
     for (const auto& session : m_spec.sessions) {
-      const auto has = [&](const std::vector<std::string>& names) {
-        return std::find(names.begin(), names.end(), session.name) != names.end();
-      };
-      if (!has(setting.sessions) && !has(setting.mapSessions)) continue;
+      const bool mapped = has(setting.mapSessions, session.name);
+      const bool localized = has(setting.sessions, session.name);
+      if (!localized && !mapped) continue;
       BatchCell cell;
       cell.setting = setting.name;
       cell.session = session.name;
-      cell.poles = rawlogOf(setting, session.name).substr(3);
-      if (has(setting.mapSessions)) cell.ownMap = lastMapOf(setting, session.name);
-      if (has(setting.sessions)) addRuns(setting, cell);
+      cell.poles = rawlogOf(setting, session.name, !localized).substr(3);
+      if (mapped) cell.ownMap = lastMapOf(setting, session.name);
+      if (isScored(setting, session)) cell.score = scoreId(setting, session.name);
+      if (localized) addRuns(setting, cell);
       m_plan.cells.push_back(std::move(cell));
     }
   }
@@ -368,6 +411,22 @@ class Planner {
     std::string mapConfidence;  ///< of poles for maps; empty: that of all
   };
   static constexpr const char* mapFolder = ".map";
+
+  /// Whether any setting of the group takes the session's poles for that.
+  bool isFor(const Group& group, const std::string& session,
+             std::vector<std::string> BatchSetting::*purpose) const {
+    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(), [&](const auto& setting) {
+      return m_group.at(setting.name) == group.name && has(setting.*purpose, session);
+    });
+  }
+  /// Poles for maps are those of localization, unless the group has others for maps.
+  bool hasMapPoles(const Group& group, const std::string& session) const {
+    return !group.mapConfidence.empty() && isFor(group, session, &BatchSetting::mapSessions);
+  }
+  bool hasPoles(const Group& group, const std::string& session) const {
+    return isFor(group, session, &BatchSetting::sessions) ||
+           (group.mapConfidence.empty() && isFor(group, session, &BatchSetting::mapSessions));
+  }
 
   std::map<std::string, std::string> m_groupOf;  ///< text of the extraction -> name of the group
   std::map<std::string, std::string> m_group;    ///< setting -> group

@@ -8,7 +8,7 @@ namespace polemcl::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr const char* s_format = "polemcl batch plan 1";
+constexpr const char* s_format = "polemcl batch plan 2";
 
 Json toJson(const BatchTask& task) {
   return {{"id", task.id},           {"kind", task.kind},
@@ -18,8 +18,8 @@ Json toJson(const BatchTask& task) {
 
 Json toJson(const BatchCell& cell) {
   return {{"setting", cell.setting}, {"session", cell.session}, {"poles", cell.poles},
-          {"map", cell.map},         {"own_map", cell.ownMap},  {"runs", cell.runs},
-          {"seeds", cell.seeds}};
+          {"map", cell.map},         {"own_map", cell.ownMap},  {"score", cell.score},
+          {"runs", cell.runs},       {"seeds", cell.seeds}};
 }
 
 BatchTask taskFrom(const Json& json) {
@@ -40,6 +40,7 @@ BatchCell cellFrom(const Json& json) {
   json.at("poles").get_to(cell.poles);
   json.at("map").get_to(cell.map);
   json.at("own_map").get_to(cell.ownMap);
+  json.at("score").get_to(cell.score);
   json.at("runs").get_to(cell.runs);
   json.at("seeds").get_to(cell.seeds);
   return cell;

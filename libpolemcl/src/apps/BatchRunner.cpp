@@ -136,8 +136,8 @@ class Queue {
   using Report = std::function<void(const BatchTask&, const TaskOutcome&, const BatchProgress&)>;
 
   Queue(const BatchFolder& folder, std::vector<const BatchTask*> open, std::size_t all,
-        const Report& report)
-      : m_folder(folder), m_waiting(std::move(open)), m_report(report) {
+        std::size_t imports, const Report& report)
+      : m_folder(folder), m_waiting(std::move(open)), m_mostImports(imports), m_report(report) {
     for (const auto* task : m_waiting) m_open.insert(task->id);
     m_progress.all = all;
     m_progress.done = all - m_waiting.size();
@@ -163,12 +163,15 @@ class Queue {
   const std::map<std::string, std::string>& failures() const { return m_failures; }
 
  private:
+  static bool isImport(const BatchTask& task) { return task.kind == "poles"; }
+
   const BatchTask* takeReady() {
     for (auto task = m_waiting.begin(); task != m_waiting.end(); ++task) {
       bool ready = true;
       for (const auto& need : (*task)->needs) ready = ready && !m_open.count(need);
-      if (!ready) continue;
+      if (!ready || (isImport(**task) && m_mostImports > 0 && m_imports >= m_mostImports)) continue;
       const BatchTask* found = *task;
+      m_imports += isImport(*found);
       m_waiting.erase(task);
       return found;
     }
@@ -183,6 +186,7 @@ class Queue {
 
   void finish(const BatchTask& task, const TaskOutcome& outcome) {
     m_open.erase(task.id);
+    m_imports -= isImport(task);
     if (outcome.failure.empty()) {
       ++m_progress.done;
     } else {
@@ -196,6 +200,8 @@ class Queue {
 
   const BatchFolder& m_folder;
   std::vector<const BatchTask*> m_waiting;
+  const std::size_t m_mostImports;
+  std::size_t m_imports = 0;  ///< under way
   const Report& m_report;
   std::set<std::string> m_open;    ///< ids of tasks that are not done yet
   std::set<std::string> m_failed;  ///< blocked ones too
@@ -255,11 +261,12 @@ std::vector<const BatchTask*> openTasks(const BatchFolder& folder, const BatchPl
 }
 
 std::map<std::string, std::string> runBatch(const BatchFolder& folder, const BatchPlan& plan,
-                                            std::size_t jobs, const Queue::Report& report) {
+                                            const BatchLimits& limits,
+                                            const Queue::Report& report) {
   std::vector<std::string> notes;
-  Queue queue(folder, openTasks(folder, plan, notes), plan.tasks.size(), report);
+  Queue queue(folder, openTasks(folder, plan, notes), plan.tasks.size(), limits.imports, report);
   std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < jobs; ++i) threads.emplace_back([&queue] { queue.work(); });
+  for (std::size_t i = 0; i < limits.jobs; ++i) threads.emplace_back([&queue] { queue.work(); });
   for (auto& thread : threads) thread.join();
   return queue.failures();
 }

@@ -1,6 +1,7 @@
 #include <polemcl/apps/BatchSpec.h>
 #include <polemcl/io/Date.h>
 #include <polemcl/mrpt/Config.h>
+#include <polemcl/report/PublishedFigures.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -93,6 +94,7 @@ void bindSession(Binder& b, SessionText& text) {
   b.text("poses", s.poses, "TUM file of true poses instead of the dataset's");
   b.choice("poses_of", s.posesOf, {"robot", "sensor"}, "what has these poses");
   b.text("calib", s.calib, "folder of KITTI's calibration");
+  b.text("truth_map", s.truthMap, "true poles: a file, or labels (SemanticKITTI's)");
 }
 
 BatchSession finished(const SessionText& text, const std::string& name, const Placeholders& fill,
@@ -102,6 +104,7 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
   s.input = fill.path(s.input, name);
   s.poses = fill.path(s.poses, name);
   s.calib = fill.path(s.calib, name);
+  if (s.truthMap != truthFromLabels) s.truthMap = fill.path(s.truthMap, name);
   s.date = fill.filled(s.date, name);
   s.set = words(fill.filled(text.set, name));
   if (s.input.empty()) throw Error(where + "session " + name + ": input is missing");
@@ -112,6 +115,9 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
   }
   if (s.source != "simulated" && !s.set.empty())
     throw Error(where + "session " + name + ": set is for simulated sessions only");
+  if (s.source != "kitti-odometry" && s.truthMap == truthFromLabels)
+    throw Error(where + "session " + name +
+                ": truth_map = labels needs source = kitti-odometry; name a file of poles instead");
   return s;
 }
 
@@ -137,14 +143,15 @@ std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders&
   return sessions;
 }
 
-/// `all`, `first`, or names; always in the order of the sessions.
+/// `all`, `first`, `later` or names; always in the order of the sessions.
 std::vector<std::string> chosen(const std::string& text, const std::vector<BatchSession>& sessions,
                                 const std::string& where) {
   if (text == "first") return {sessions.front().name};
   std::vector<std::string> names = words(text);
-  if (text == "all") {
+  if (text == "all" || text == "later") {
     names.clear();
     for (const auto& session : sessions) names.push_back(session.name);
+    if (text == "later") names.erase(names.begin());
   }
   requireNames(names, where);
   const auto placeOf = [&](const std::string& name) {
@@ -152,7 +159,7 @@ std::vector<std::string> chosen(const std::string& text, const std::vector<Batch
                                     [&](const BatchSession& s) { return s.name == name; });
     if (found == sessions.end())
       throw Error(where + ": no session '" + name + "' in [sessions] names; allowed are these, " +
-                  "all, first");
+                  "all, first, later");
     return found;
   };
   std::sort(names.begin(), names.end(),
@@ -187,10 +194,12 @@ BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Pl
   reader.text("title", setting.title, "a sentence for the report");
   reader.text("config", setting.config, "INI file, relative to this file");
   reader.text("set", set, "settings in place of those of config, section.key=value …");
-  reader.text("map_sessions", mapSessions, "names, all, or first");
-  reader.text("sessions", localized, "those localized: names, or all");
+  reader.text("map_sessions", mapSessions, "names, all, first, or later (all but the first)");
+  reader.text("sessions", localized, "those localized: names, all, later, or none");
   reader.choice<MapProtocol>("maps", setting.protocol,
-                             {{MapProtocol::together, "together"}, {MapProtocol::upkeep, "upkeep"}},
+                             {{MapProtocol::together, "together"},
+                              {MapProtocol::upkeep, "upkeep"},
+                              {MapProtocol::each, "each"}},
                              "how they come about");
   reader.choice<MapTime>("map", setting.map,
                          {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
@@ -200,8 +209,31 @@ BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Pl
   setting.config = fill.path(setting.config, "");
   setting.set = words(set);
   setting.mapSessions = chosen(mapSessions, sessions, here + "map_sessions");
-  setting.sessions = chosen(localized, sessions, here + "sessions");
+  if (localized != "none") setting.sessions = chosen(localized, sessions, here + "sessions");
   return setting;
+}
+
+/// Sessions with maps of their own are localized in these.
+void requireOwnMaps(const BatchSetting& setting, const std::string& where) {
+  if (setting.protocol != MapProtocol::each) return;
+  if (!setting.sessions.empty() && setting.map == MapTime::before)
+    throw Error(where + "maps = each has no map before a session; set map = finished");
+  for (const auto& name : setting.sessions)
+    if (std::find(setting.mapSessions.begin(), setting.mapSessions.end(), name) ==
+        setting.mapSessions.end())
+      throw Error(where + "session " + name + " has no map; with maps = each, it must be one of " +
+                  "map_sessions");
+}
+
+/// Maps alone are of use if they get a score.
+void requireUse(const BatchSetting& setting, const BatchSpec& spec, const std::string& where) {
+  const auto hasTruth = [&](const std::string& name) {
+    return !spec.session(name).truthMap.empty();
+  };
+  if (setting.sessions.empty() &&
+      std::none_of(setting.mapSessions.begin(), setting.mapSessions.end(), hasTruth))
+    throw Error(where + "sessions = none leaves nothing to report; name sessions, or give " +
+                "[sessions] truth_map");
 }
 
 /// A map is kept up from day to day, not back.
@@ -225,8 +257,10 @@ const BatchSession& BatchSpec::session(const std::string& wanted) const {
   throw Error("no session '" + wanted + "' in batch " + name);
 }
 
-BatchSpec readBatchSpec(const fs::path& file, const fs::path& data) {
-  const ConfigFile source = ConfigFile::read(file.string());
+BatchSpec readBatchSpec(const fs::path& file, const fs::path& data,
+                        const std::vector<std::string>& set) {
+  ConfigFile source = ConfigFile::read(file.string());
+  for (const auto& assignment : set) source.set(assignment);
   const std::string where = file.string() + ": ";
   const Placeholders fill(file, data);
   ConfigReader reader(source);
@@ -236,8 +270,11 @@ BatchSpec readBatchSpec(const fs::path& file, const fs::path& data) {
   reader.section("batch", "What is done");
   reader.text("name", spec.name, "of the batch; the file's unless given");
   reader.text("title", spec.title, "for the report");
-  reader.choice("published", spec.published, {"none", "nclt", "kitti-0009", "mulran-kaist"},
-                "published figures shown beside");
+  std::vector<std::string> published{"none"};
+  for (const auto& dataset : report::publishedDatasets()) published.push_back(dataset.key);
+  reader.choice("published", spec.published, published, "published figures shown beside");
+  reader.text("published_sessions", spec.publishedSessions,
+              "CSV of such figures by session, relative to this file");
   reader.integer("runs", spec.runs, Range::between(1, 10000), "", "of each session and setting");
   reader.integer("seed", spec.seed, Range::atLeast(0), "", "of all random numbers");
   reader.choice<bool>("errors", spec.perMetre, {{false, "scan"}, {true, "metre"}},
@@ -245,13 +282,17 @@ BatchSpec readBatchSpec(const fs::path& file, const fs::path& data) {
   reader.text("settings", settings, "names; each has a section of its own");
   requireName(spec.name, where + "[batch] name (the file's unless given)");
   requireNames(words(settings), where + "[batch] settings");
+  spec.publishedSessions = fill.path(spec.publishedSessions, "");
   spec.sessions = readSessions(reader, fill, where);
   for (const auto& name : words(settings))
     spec.settings.push_back(readSetting(reader, name, fill, spec.sessions, where));
   reader.finish();
   for (const auto& setting : spec.settings) {
-    requireMaps(setting, spec.sessions, where + "[setting " + setting.name + "] sessions");
-    requireOrder(setting, spec, where + "[setting " + setting.name + "] map_sessions");
+    const std::string here = where + "[setting " + setting.name + "] ";
+    requireUse(setting, spec, here);
+    requireOwnMaps(setting, here);
+    requireMaps(setting, spec.sessions, here + "sessions");
+    requireOrder(setting, spec, here + "map_sessions");
   }
   return spec;
 }

@@ -77,6 +77,31 @@ void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results
   out.commit();
 }
 
+void writeMapsCsv(const std::filesystem::path& file, const BatchResults& results) {
+  results.validate();
+  io::AtomicFile out(file);
+  out.stream() << "setting,session,truth,map_poles,truth_poles";
+  for (const ScoreName& name : scoreNames)
+    for (const char* figure : {"precision", "recall", "f1", "matches"})
+      out.stream() << ',' << name.key << '_' << figure;
+  out.stream() << '\n';
+  for (std::size_t i = 0; i < results.settings.size(); ++i)
+    for (std::size_t k = 0; k < results.sessions.size(); ++k) {
+      const SessionResult* result = results.find(i, k);
+      if (!result || !result->score) continue;
+      const MapScores& scores = *result->score;
+      out.stream() << place(results, *result) << ',' << field(scores.truth) << ','
+                   << scores.near.mapPoles << ',' << scores.near.truthPoles;
+      for (const ScoreName& name : scoreNames) {
+        const MapScore& score = scores.*name.score;
+        out.stream() << ',' << field(score.precision) << ',' << field(score.recall) << ','
+                     << field(score.f1) << ',' << score.matches;
+      }
+      out.stream() << '\n';
+    }
+  out.commit();
+}
+
 void writeSessionsCsv(const std::filesystem::path& file, const BatchResults& results) {
   results.validate();
   io::AtomicFile out(file);

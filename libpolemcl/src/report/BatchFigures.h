@@ -38,6 +38,17 @@ inline constexpr ShareName shareNames[] = {
     {"degraded", &HealthShares::degraded, &FigureSpreads::degraded},
     {"lost", &HealthShares::lost, &FigureSpreads::lost}};
 
+/// \brief A way to count the score of a map.
+struct ScoreName {
+  const char* key;
+  MapScore MapScores::*score;
+  ScoreMeans ScoreSummary::*means;
+};
+inline constexpr ScoreName scoreNames[] = {
+    {"near_1m", &MapScores::near, &ScoreSummary::near},
+    {"one_to_one_1m", &MapScores::oneToOne, &ScoreSummary::oneToOne},
+    {"one_to_one_0.5m", &MapScores::oneToOneHalf, &ScoreSummary::oneToOneHalf}};
+
 /// \brief The position RMSE per axis, as MulRan's published figures give it, m.
 double axisRmse(const ErrorFigures& errors);
 

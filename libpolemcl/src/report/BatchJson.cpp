@@ -64,12 +64,29 @@ Json jsonOf(const SessionPlots& plots) {
   return json;
 }
 
+Json jsonOf(const MapScore& score) {
+  return {{"precision", score.precision},
+          {"recall", score.recall},
+          {"f1", score.f1},
+          {"matches", score.matches},
+          {"map_poles", score.mapPoles},
+          {"truth_poles", score.truthPoles}};
+}
+
+Json jsonOf(const MapScores& scores) {
+  Json json;
+  json["truth"] = scores.truth;
+  for (const ScoreName& name : scoreNames) json[name.key] = jsonOf(scores.*name.score);
+  return json;
+}
+
 Json jsonOf(const SessionResult& result, const BatchResults& batch) {
   Json json;
   json["setting"] = batch.settings[result.setting].name;
   json["session"] = batch.sessions[result.session].name;
   json["f_map"] = result.mapShare;
   json["map_poles"] = result.mapPoles;
+  json["map_score"] = result.score ? jsonOf(*result.score) : Json();
   json["runs"] = Json::array();
   for (const BatchRun& run : result.runs) json["runs"].push_back(jsonOf(run, batch.lostBound));
   json["plots"] = jsonOf(result.plots);
@@ -106,6 +123,12 @@ Json jsonOf(const SettingSummary& summary, const BatchResults& batch, std::size_
   json["lost_sessions"] = summary.lostSessions;
   json["last_over_first"] = summary.lastOverFirst;
   json["f_map"] = jsonOf(summary.mapShare);
+  json["scored_maps"] = summary.scores.maps;
+  for (const ScoreName& name : scoreNames) {
+    const ScoreMeans& means = summary.scores.*name.means;
+    json["map_score"][name.key] = {
+        {"precision", means.precision}, {"recall", means.recall}, {"f1", means.f1}};
+  }
   json["figures"] = jsonOf(summary.figures);
   json["sessions"] = Json::array();
   for (const SessionSummary& session : summary.sessions) {
@@ -147,6 +170,15 @@ Json jsonOf(const BatchResults& batch) {
                                 {"length_m", session.length},
                                 {"scans", session.scans},
                                 {"poles_per_scan", session.polesPerScan}});
+  json["published_sessions"] = Json::array();
+  for (const PublishedSession& one : batch.published)
+    json["published_sessions"].push_back({{"system", one.system},
+                                          {"session", one.session},
+                                          {"f_map", one.mapShare},
+                                          {"pos_mean", one.posMean},
+                                          {"pos_rmse", one.posRmse},
+                                          {"ang_mean_deg", one.angMeanDeg},
+                                          {"ang_rmse_deg", one.angRmseDeg}});
   json["failures"] = Json::array();
   for (const FailedTask& task : batch.failures)
     json["failures"].push_back({{"task", task.task}, {"reason", task.reason}, {"log", task.log}});

@@ -5,6 +5,6 @@
 namespace polemcl::report {
 
 inline constexpr const char* resultsFormat = "polemcl batch results";
-inline constexpr unsigned resultsVersion = 1;
+inline constexpr unsigned resultsVersion = 2;
 
 }  // namespace polemcl::report

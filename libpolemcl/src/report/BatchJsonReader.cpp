@@ -25,6 +25,7 @@ class Node {
     if (found == m_value.end()) throw Error("key '" + path + "' is missing");
     return {*found, path};
   }
+  bool isNull() const { return m_value.is_null(); }
   std::vector<Node> elements() const {
     if (!m_value.is_array()) throw expected("a list");
     std::vector<Node> all;
@@ -98,6 +99,25 @@ BatchRun run(const Node& node) {
   return run;
 }
 
+MapScore mapScore(const Node& node) {
+  MapScore score;
+  score.precision = node["precision"].figure();
+  score.recall = node["recall"].figure();
+  score.f1 = node["f1"].figure();
+  score.matches = node["matches"].count();
+  score.mapPoles = node["map_poles"].count();
+  score.truthPoles = node["truth_poles"].count();
+  return score;
+}
+
+std::optional<MapScores> mapScores(const Node& node) {
+  if (node.isNull()) return {};
+  MapScores scores;
+  scores.truth = node["truth"].text();
+  for (const ScoreName& name : scoreNames) scores.*name.score = mapScore(node[name.key]);
+  return scores;
+}
+
 SessionPlots plots(const Node& node) {
   SessionPlots plots;
   plots.mapPoles = node["map_poles_xy"].points();
@@ -117,6 +137,11 @@ void readLists(BatchResults& batch, const Node& root) {
   for (const Node& node : root["sessions"].elements())
     batch.sessions.push_back({node["name"].text(), node["date"].text(), node["length_m"].figure(),
                               node["scans"].count(), node["poles_per_scan"].figure()});
+  for (const Node& node : root["published_sessions"].elements())
+    batch.published.push_back({node["system"].text(), node["session"].text(),
+                               node["f_map"].figure(), node["pos_mean"].figure(),
+                               node["pos_rmse"].figure(), node["ang_mean_deg"].figure(),
+                               node["ang_rmse_deg"].figure()});
   for (const Node& node : root["failures"].elements())
     batch.failures.push_back({node["task"].text(), node["reason"].text(), node["log"].text()});
 }
@@ -131,6 +156,7 @@ void readResults(BatchResults& batch, const Node& root) {
     result.session = node["session"].indexIn(sessions);
     result.mapShare = node["f_map"].figure();
     result.mapPoles = node["map_poles"].count();
+    result.score = mapScores(node["map_score"]);
     for (const Node& one : node["runs"].elements()) result.runs.push_back(run(one));
     result.plots = plots(node["plots"]);
     batch.results.push_back(std::move(result));

@@ -2,6 +2,7 @@
 #include <polemcl/report/BatchReport.h>
 #include <polemcl/report/PublishedFigures.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "FigureText.h"
@@ -26,6 +27,11 @@ struct Page {
   const std::vector<SettingSummary> summaries;
   PlotIds ids;
   const BatchSetting& setting(std::size_t i) const { return results.settings[i]; }
+  /// Whether any session was localized, or ought to have been.
+  bool localized() const {
+    return std::any_of(summaries.begin(), summaries.end(),
+                       [](const SettingSummary& summary) { return summary.counts.runs > 0; });
+  }
 };
 
 std::string paragraph(const std::string& text, const std::string& className = "") {
@@ -47,6 +53,7 @@ std::string sessionFigures(Page& page) {
 
 Section settingsSection(Page& page) {
   const BatchResults& results = page.results;
+  if (!page.localized()) return {};
   std::string content;
   if (results.settings.size() > 1) content += settingsTable(results, page.summaries);
   if (results.sessions.size() > 1) content += sessionFigures(page);
@@ -59,12 +66,33 @@ Section settingsSection(Page& page) {
 
 Section publishedSection(const Page& page) {
   const PublishedDataset* dataset = publishedFigures(page.results.dataset);
-  if (!dataset) return {};
+  if (!dataset || dataset->figures.empty() || !page.localized()) return {};
   return {"published", "Published figures beside ours",
           paragraph(escaped(dataset->protocol)) + publishedTable(page.results, page.summaries) +
               paragraph("A dash: not published. Figures are comparable only under the same "
                         "protocol; ours is named with each setting below.",
                         "note")};
+}
+
+/// The paper's first table.
+Section scoresSection(const Page& page) {
+  const std::string table = mapScoresTable(page.results, page.summaries);
+  if (table.empty()) return {};
+  const PublishedDataset* dataset = publishedFigures(page.results.dataset);
+  std::string content;
+  if (dataset && !dataset->maps.empty())
+    content += paragraph("Published: " + escaped(dataset->mapProtocol));
+  content +=
+      table + paragraph(
+                  "P is the share of a map's poles that are true ones, R the share of the true "
+                  "ones that it has, F1 their harmonic mean. The authors count a map pole with "
+                  "a true one within 1\xC2\xA0m as found, in P and in R, so that two map poles "
+                  "may share a true one. One to one, each pole is matched at most once. A "
+                  "dash: not published.",
+                  "note");
+  const std::string every = everyScoreTable(page.results);
+  if (!every.empty()) content += foldable("Map by map", every, true);
+  return {"scores", "Map scores", content};
 }
 
 Section sessionTables(const Page& page) {
@@ -75,7 +103,8 @@ Section sessionTables(const Page& page) {
     content += paragraph(escaped(sentence(setting.description)));
     if (!setting.protocol.empty())
       content += paragraph("Protocol: " + escaped(sentence(setting.protocol)));
-    content += paperTable(page.results, i, page.summaries[i]);
+    if (page.summaries[i].counts.runs > 0)
+      content += paperTable(page.results, i, page.summaries[i]);
   }
   return {"sessions", "Sessions", content};
 }
@@ -203,6 +232,9 @@ Section terms(const Page& page) {
                                    figureText(page.results.lostBound, 1) +
                                    "\xC2\xA0m on average or at the end of the run. In the table of "
                                    "health: what the run said of itself, scan by scan.") +
+                  term("m, cm",
+                       "A column of position errors is in centimetres if any of them is below "
+                       "0.1\xC2\xA0m: these have two significant digits.") +
                   term("failed", "The run has no result: its task ended with an error."))};
 }
 
@@ -236,6 +268,7 @@ std::vector<Section> sectionsOf(Page& page, const BatchTimings* times) {
   add({"troubles", "What went wrong", troublesTables(page.results)});
   add(settingsSection(page));
   add(publishedSection(page));
+  add(scoresSection(page));
   add(sessionTables(page));
   add(histograms(page));
   add(paths(page));

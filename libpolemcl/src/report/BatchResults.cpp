@@ -43,6 +43,13 @@ void requireValid(const SessionResult& result, const std::string& where) {
       if (!isShare(share))
         throw Error(where + "run " + std::to_string(run.run) +
                     " has a share of scans outside 0 to 1");
+  if (result.score)
+    for (const MapScore* score :
+         {&result.score->near, &result.score->oneToOne, &result.score->oneToOneHalf})
+      if (!isShare(score->precision) || !(score->recall >= 0) || !isShare(score->f1 / 2))
+        throw Error(where + "the score of its map is not one: precision " +
+                    std::to_string(score->precision) + ", recall " + std::to_string(score->recall) +
+                    ", F1 " + std::to_string(score->f1));
   const SessionPlots& plots = result.plots;
   if (!allFinite(plots.mapPoles) || !allFinite(plots.truth) || !allFinite(plots.estimate))
     throw Error(where + "a coordinate of its plots is not finite; check the trajectories and map");

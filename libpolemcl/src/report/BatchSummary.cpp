@@ -40,6 +40,23 @@ SessionSummary summaryOf(const SessionResult& result, double lostBound) {
   return summary;
 }
 
+void sumUpScores(SettingSummary& setting, const BatchResults& results, std::size_t index) {
+  for (const ScoreName& name : scoreNames) {
+    std::vector<double> precision, recall, f1;
+    for (std::size_t k = 0; k < results.sessions.size(); ++k) {
+      const SessionResult* result = results.find(index, k);
+      if (!result || !result->score) continue;
+      const MapScore& one = (*result->score).*name.score;
+      precision.push_back(one.precision);
+      recall.push_back(one.recall);
+      f1.push_back(one.f1);
+    }
+    setting.scores.maps = f1.size();
+    setting.scores.*
+        name.means = {spreadOf(precision).mean, spreadOf(recall).mean, spreadOf(f1).mean};
+  }
+}
+
 Spread overSessions(const std::vector<SessionSummary>& sessions, Spread FigureSpreads::*figure) {
   std::vector<double> means, largest;
   for (const SessionSummary& session : sessions) {
@@ -115,6 +132,7 @@ std::vector<SettingSummary> summarize(const BatchResults& results) {
       if (const SessionResult* result = results.find(i, k))
         summaries[i].sessions.push_back(summaryOf(*result, results.lostBound));
     sumUp(summaries[i]);
+    sumUpScores(summaries[i], results, i);
   }
   return summaries;
 }

@@ -13,33 +13,46 @@ namespace {
 
 constexpr std::size_t mostOpenRows = 20;  // a longer list of troubles is folded away
 
-std::string number(double value) {
-  return figureText(value, 3);
-}
-
 std::string percent(double share) {
   return figureText(100 * share, 1);
 }
 
-std::vector<std::string> runCells(const BatchRun& run, const std::string& session, RunState state) {
-  const ErrorFigures& errors = run.errors;
-  return {session,
-          std::to_string(run.run),
-          std::to_string(run.seed),
-          state == RunState::ok ? name(state) : element("span", "class=\"bad\"", name(state)),
-          number(errors.posMean),
-          number(errors.posRmse),
-          number(errors.posMax),
-          number(errors.latMean),
-          number(errors.lonMean),
-          number(errors.angMeanDeg),
-          number(errors.angRmseDeg),
-          countText(errors.poses),
-          percent(run.health.ok),
-          percent(run.health.degraded),
-          percent(run.health.lost),
-          run.health.firstPoseScan ? std::to_string(*run.health.firstPoseScan) : enDash,
-          std::to_string(run.health.relocalizations)};
+/// A figure of a run in a list of runs.
+struct RunColumn {
+  const char* html;  ///< without its unit
+  Quantity quantity;
+  double ErrorFigures::*figure;
+};
+constexpr RunColumn runColumns[] = {
+    {"Δ<sub>pos</sub>", Quantity::length, &ErrorFigures::posMean},
+    {"RMSE<sub>pos</sub>", Quantity::length, &ErrorFigures::posRmse},
+    {"Largest", Quantity::length, &ErrorFigures::posMax},
+    {"Δ<sub>lat</sub>", Quantity::length, &ErrorFigures::latMean},
+    {"Δ<sub>lon</sub>", Quantity::length, &ErrorFigures::lonMean},
+    {"Δ<sub>ang</sub>", Quantity::angle, &ErrorFigures::angMeanDeg},
+    {"RMSE<sub>ang</sub>", Quantity::angle, &ErrorFigures::angRmseDeg}};
+
+FigureColumn unitOf(const RunColumn& column, const BatchResults& results, std::size_t setting) {
+  std::vector<double> values;
+  for (const SessionResult& result : results.results)
+    if (result.setting == setting)
+      for (const BatchRun& run : result.runs) values.push_back(run.errors.*column.figure);
+  return {column.quantity, values};
+}
+
+std::vector<std::string> runCells(const BatchRun& run, const std::string& session, RunState state,
+                                  const std::vector<FigureColumn>& units) {
+  std::vector<std::string> cells{
+      session, std::to_string(run.run), std::to_string(run.seed),
+      state == RunState::ok ? name(state) : element("span", "class=\"bad\"", name(state))};
+  for (std::size_t i = 0; i < units.size(); ++i)
+    cells.push_back(units[i].figure(run.errors.*runColumns[i].figure));
+  const HealthShares& health = run.health;
+  cells.insert(cells.end(), {countText(run.errors.poses), percent(health.ok),
+                             percent(health.degraded), percent(health.lost),
+                             health.firstPoseScan ? std::to_string(*health.firstPoseScan) : enDash,
+                             std::to_string(health.relocalizations)});
+  return cells;
 }
 
 std::string failedTasks(const std::vector<FailedTask>& failures) {
@@ -76,29 +89,25 @@ std::map<std::string, std::string> valuesOf(const std::string& ini) {
 
 std::string runsTable(const BatchResults& results, std::size_t setting) {
   HtmlTable table("Setting " + results.settings[setting].name + ": every run.");
-  table.head({{"Session"},
-              {"Run"},
-              {"Seed"},
-              {"State"},
-              {"Δ<sub>pos</sub> (m)"},
-              {"RMSE<sub>pos</sub> (m)"},
-              {"Largest (m)"},
-              {"Δ<sub>lat</sub> (m)"},
-              {"Δ<sub>lon</sub> (m)"},
-              {"Δ<sub>ang</sub> (°)"},
-              {"RMSE<sub>ang</sub> (°)"},
-              {"Poses"},
-              {"ok (%)"},
-              {"degraded (%)"},
-              {"lost (%)"},
-              {"First pose at scan"},
-              {"Relocalizations"}});
+  std::vector<HeadCell> head{{"Session"}, {"Run"}, {"Seed"}, {"State"}};
+  std::vector<FigureColumn> units;
+  for (const RunColumn& column : runColumns) {
+    units.push_back(unitOf(column, results, setting));
+    head.push_back({units.back().head(column.html)});
+  }
+  head.insert(head.end(), {{"Poses"},
+                           {"ok (%)"},
+                           {"degraded (%)"},
+                           {"lost (%)"},
+                           {"First pose at scan"},
+                           {"Relocalizations"}});
+  table.head(head);
   bool any = false;
   for (std::size_t k = 0; k < results.sessions.size(); ++k)
     if (const SessionResult* result = results.find(setting, k))
       for (const BatchRun& run : result->runs) {
         const RunState state = stateOf(run, results.lostBound);
-        table.row(runCells(run, escaped(results.sessions[k].name), state));
+        table.row(runCells(run, escaped(results.sessions[k].name), state, units));
         any = true;
       }
   return any ? table.str() : "";
@@ -110,8 +119,8 @@ std::string troublesTables(const BatchResults& results) {
               {"Setting"},
               {"Run"},
               {"Seed"},
-              {"Δ<sub>pos</sub> (m)"},
-              {"At the end (m)"},
+              {"Δ<sub>pos</sub>"},
+              {"At the end"},
               {"What happened"}});
   std::size_t count = 0;
   for (std::size_t k = 0; k < results.sessions.size(); ++k)
@@ -123,8 +132,8 @@ std::string troublesTables(const BatchResults& results) {
         if (state == RunState::ok) continue;
         ++count;
         table.row({escaped(results.sessions[k].name), escaped(results.settings[i].name),
-                   std::to_string(run.run), std::to_string(run.seed), number(run.errors.posMean),
-                   number(run.errors.posEnd),
+                   std::to_string(run.run), std::to_string(run.seed),
+                   lengthText(run.errors.posMean), lengthText(run.errors.posEnd),
                    state == RunState::failed ? "failed: " + escaped(run.failure)
                    : run.errors.poses == 0   ? "lost: never knew a pose"
                                              : "lost"});

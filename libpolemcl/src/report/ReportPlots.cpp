@@ -53,6 +53,20 @@ bool turned(const BatchResults& results, double pixels) {
   return labelWidth(results) + 12 > pixels / results.sessions.size();
 }
 
+/// Ticks of an axis of errors, and their unit: centimetres for lengths below 0.1 m.
+struct ErrorTicks {
+  std::vector<SvgTick> ticks;
+  std::string unit;
+};
+ErrorTicks errorTicks(const PlotAxes& axes, const std::string& unit) {
+  const bool isShort = unit == "m" && axes.y.high <= 0.1;
+  const double scale = isShort ? 100 : 1;
+  ErrorTicks result{roundTicks({scale * axes.y.low, scale * axes.y.high}, axes.frame.height, false),
+                    isShort ? "cm" : unit};
+  for (SvgTick& tick : result.ticks) tick.at /= scale;
+  return result;
+}
+
 /// The sessions x settings plot, drawn part by part.
 class SessionsPlot {
  public:
@@ -106,8 +120,8 @@ class SessionsPlot {
       labels.push_back({double(i), shortName(m_results.sessions[i].name)});
       lines.push_back({double(i), isTurned ? "" : labels.back().label});
     }
-    m_plot.axes(m_axes, lines, roundTicks(m_axes.y, m_axes.frame.height, false), "session",
-                m_quantity.name + " (" + m_quantity.unit + ")");
+    const ErrorTicks errors = errorTicks(m_axes, m_quantity.unit);
+    m_plot.axes(m_axes, lines, errors.ticks, "session", m_quantity.name + " (" + errors.unit + ")");
     if (isTurned) m_plot.turnedLabels(m_axes, labels);
   }
   /// Settings stand side by side within a session.
@@ -141,9 +155,10 @@ class SessionsPlot {
   }
   void drawMark(std::size_t index, const SessionSummary& session, const Eigen::Vector2d& at) {
     const Spread& spread = spreadOf(session);
-    const std::string hint = m_results.sessions[session.session].name + ", " +
-                             m_results.settings[index].name + ": " + figureText(spread.mean, 3) +
-                             ' ' + m_quantity.unit;
+    const std::string hint =
+        m_results.sessions[session.session].name + ", " + m_results.settings[index].name + ": " +
+        (m_quantity.unit == "m" ? lengthText(spread.mean, " ")
+                                : figureText(spread.mean, 3) + ' ' + m_quantity.unit);
     if (spread.mean <= m_axes.y.high) return m_plot.mark(index, at, hint);
     m_plot.beyond(index, {at.x(), m_axes.frame.y + 4}, hint);
     m_beyond.push_back(hint);
@@ -265,16 +280,16 @@ std::string distanceFigure(const BatchResults& results, std::size_t session, Plo
   SvgPlot plot(ids.next(), 960, 252, "Position error over distance",
                "Position error of run 0 over the distance driven, the largest in every " +
                    figureText(bin, 0) + " m.");
-  plot.axes(axes, roundTicks(axes.x, axes.frame.width, true),
-            roundTicks(axes.y, axes.frame.height, false), "distance driven (m)",
-            "position error (m)");
+  const ErrorTicks errors = errorTicks(axes, "m");
+  plot.axes(axes, roundTicks(axes.x, axes.frame.width, true), errors.ticks, "distance driven (m)",
+            "position error (" + errors.unit + ")");
   plot.beginClip(axes.frame);
   for (std::size_t i = 0; i < results.settings.size(); ++i)
     if (const SessionResult* result = results.find(i, session))
       plot.line(steps(axes, result->plots.position), "line fine " + seriesClass(i));
   plot.endClip();
   std::string caption = "Position error of run 0, the largest in every " + figureText(bin, 0) +
-                        " m driven; at most " + figureText(largest, 3) + " m";
+                        " m driven; at most " + lengthText(largest);
   caption += largest > axes.y.high ? ", which is above the plot." : ".";
   return figure(plot.str("plot wide"), seriesLegend(settingNames(results), false, "line fine"),
                 caption);

@@ -15,9 +15,6 @@ std::string emphasized(const BatchSetting& setting) {
   return element("em", escaped(setting.name));
 }
 
-std::string metres(double value) {
-  return figureText(value, 3) + "\xC2\xA0m";
-}
 std::string degrees(double value) {
   return figureText(value, 3) + "°";
 }
@@ -54,9 +51,10 @@ std::string errorSentence(const BatchResults& results, const std::vector<Setting
     const FigureSpreads& figures = summaries[i].figures;
     const std::string with =
         results.settings.size() > 1 ? " with " + emphasized(results.settings[i]) : std::string();
-    parts.push_back(element("strong", metres(figures.posMean.mean)) + with + " (RMSE " +
-                    metres(figures.posRmse.mean) + ", heading " + degrees(figures.angMeanDeg.mean) +
-                    ", largest " + metres(figures.posMax.largest) + ")");
+    parts.push_back(element("strong", lengthText(figures.posMean.mean)) + with + " (RMSE " +
+                    lengthText(figures.posRmse.mean) + ", heading " +
+                    degrees(figures.angMeanDeg.mean) + ", largest " +
+                    lengthText(figures.posMax.largest) + ")");
   }
   if (parts.size() > mostNamed) parts = {"from " + parts.front() + " to " + parts.back()};
   std::size_t sessions = 0;
@@ -77,6 +75,34 @@ std::string changeSentence(const BatchResults& results,
   if (parts.empty()) return "";
   return element(
       "p", "From the first localized session to the last, it changes by " + listed(parts) + ".");
+}
+
+std::string fact(const std::string& name, const std::string& value) {
+  return element("dt", name) + element("dd", value);
+}
+
+/// The number large, its unit small.
+std::string bigLength(double metres) {
+  const std::string text = lengthText(metres, " ");
+  const std::size_t space = text.find(' ');
+  return text.substr(0, space) + element("span", text.substr(space));
+}
+
+std::string shares(const ScoreMeans& means) {
+  return "precision " + figureText(means.precision, 3) + ", recall " + figureText(means.recall, 3);
+}
+
+/// The F1 of each setting's maps; empty when none was scored.
+std::string scoreSentence(const BatchResults& results,
+                          const std::vector<SettingSummary>& summaries) {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < summaries.size(); ++i)
+    if (summaries[i].scores.maps > 0)
+      parts.push_back(element("strong", figureText(summaries[i].scores.near.f1, 3)) + " with " +
+                      emphasized(results.settings[i]) + " (" + shares(summaries[i].scores.near) +
+                      ")");
+  if (parts.empty()) return "";
+  return "The F1 of the maps is " + listed(parts) + ", by the authors' count within 1\xC2\xA0m.";
 }
 
 RunCounts countsOf(const std::vector<SettingSummary>& summaries) {
@@ -107,6 +133,8 @@ std::string lostSessions(const BatchResults& results,
 std::string troubleSentence(const BatchResults& results,
                             const std::vector<SettingSummary>& summaries) {
   const RunCounts counts = countsOf(summaries);
+  if (counts.runs == 0 && results.failures.empty() && !scoreSentence(results, summaries).empty())
+    return element("p", "Maps only: no session was to be localized.");
   if (counts.runs == 0) return element("p", "class=\"alarm\"", "No session was localized.");
   if (counts.lost + counts.failed == 0 && results.failures.empty())
     return element("p", (counts.runs == 1 ? "The only run" : "All " + plural(counts.runs, "run")) +
@@ -122,10 +150,6 @@ std::string troubleSentence(const BatchResults& results,
   return element("p", "class=\"alarm\"", text + " <a href=\"#troubles\">What went wrong</a>");
 }
 
-std::string fact(const std::string& name, const std::string& value) {
-  return element("dt", name) + element("dd", value);
-}
-
 }  // namespace
 
 std::string headlines(const BatchResults& results, const std::vector<SettingSummary>& summaries) {
@@ -133,35 +157,59 @@ std::string headlines(const BatchResults& results, const std::vector<SettingSumm
   std::string text;
   if (!order.empty()) text += element("p", errorSentence(results, summaries, order)) + '\n';
   text += changeSentence(results, summaries, order) + '\n';
+  const std::string scores = scoreSentence(results, summaries);
+  if (!scores.empty()) text += element("p", scores) + '\n';
   return element("div", "class=\"lead\"",
                  '\n' + text + troubleSentence(results, summaries) + '\n') +
          '\n';
 }
 
+namespace {
+
+std::string big(const std::string& html, const std::string& what) {
+  return element("p", "class=\"big\"", html) + element("p", "class=\"what\"", what);
+}
+
+std::string scoreFacts(const ScoreSummary& scores) {
+  return fact("maps", countText(scores.maps)) + fact("authors' count", shares(scores.near)) +
+         fact("one to one", shares(scores.oneToOne) + ", F1 " + figureText(scores.oneToOne.f1, 3));
+}
+
+std::string errorFacts(const SettingSummary& summary) {
+  const FigureSpreads& figures = summary.figures;
+  const bool bad = summary.counts.lost + summary.counts.failed > 0;
+  return fact("RMSE", lengthText(figures.posRmse.mean)) +
+         fact("heading", degrees(figures.angMeanDeg.mean) + " mean, " +
+                             degrees(figures.angRmseDeg.mean) + " RMSE") +
+         fact("largest", lengthText(figures.posMax.largest)) +
+         (std::isfinite(summary.lastOverFirst)
+              ? fact("last / first", changeText(summary.lastOverFirst))
+              : "") +
+         (summary.scores.maps > 0 ? fact("F1 of its map", figureText(summary.scores.near.f1, 3))
+                                  : "") +
+         fact("runs", bad ? element("span", "class=\"bad\"", runsText(summary.counts))
+                          : runsText(summary.counts));
+}
+
+/// Of a setting whose maps were scored, with no session to localize, the score.
+std::string cardOf(const SettingSummary& summary) {
+  if (summary.counts.runs == 0 && summary.scores.maps > 0)
+    return big(figureText(summary.scores.near.f1, 3),
+               "F1 of the maps, authors' count within 1\xC2\xA0m") +
+           element("dl", "class=\"facts\"", scoreFacts(summary.scores));
+  return big(bigLength(summary.figures.posMean.mean), "mean position error") +
+         element("dl", "class=\"facts\"", errorFacts(summary));
+}
+
+}  // namespace
+
 std::string settingCards(const BatchResults& results,
                          const std::vector<SettingSummary>& summaries) {
   std::string cards;
-  for (std::size_t i = 0; i < summaries.size(); ++i) {
-    const SettingSummary& summary = summaries[i];
-    const FigureSpreads& figures = summary.figures;
-    const bool bad = summary.counts.lost + summary.counts.failed > 0;
-    std::string card =
-        element("h2", escaped(results.settings[i].name)) +
-        element("p", "class=\"big\"", figureText(figures.posMean.mean, 3) + element("span", " m")) +
-        element("p", "class=\"what\"", "mean position error");
-    card +=
-        element("dl", "class=\"facts\"",
-                fact("RMSE", metres(figures.posRmse.mean)) +
-                    fact("heading", degrees(figures.angMeanDeg.mean) + " mean, " +
-                                        degrees(figures.angRmseDeg.mean) + " RMSE") +
-                    fact("largest", metres(figures.posMax.largest)) +
-                    (std::isfinite(summary.lastOverFirst)
-                         ? fact("last / first", changeText(summary.lastOverFirst))
-                         : "") +
-                    fact("runs", bad ? element("span", "class=\"bad\"", runsText(summary.counts))
-                                     : runsText(summary.counts)));
-    cards += element("section", "class=\"card " + seriesClass(i) + '"', card) + '\n';
-  }
+  for (std::size_t i = 0; i < summaries.size(); ++i)
+    cards += element("section", "class=\"card " + seriesClass(i) + '"',
+                     element("h2", escaped(results.settings[i].name)) + cardOf(summaries[i])) +
+             '\n';
   return element("div", "class=\"cards\"", '\n' + cards) + '\n';
 }
 
@@ -173,7 +221,7 @@ std::string sessionLine(const BatchResults& results, const std::vector<SettingSu
     for (const SessionSummary& one : summaries[i].sessions) {
       if (one.session != session || one.counts.runs == 0) continue;
       std::string part =
-          escaped(results.settings[i].name) + "\xC2\xA0" + metres(one.figures.posMean.mean);
+          escaped(results.settings[i].name) + "\xC2\xA0" + lengthText(one.figures.posMean.mean);
       if (one.counts.lost + one.counts.failed > 0)
         part += element("span", "class=\"bad\"", " (runs: " + runsText(one.counts) + ")");
       parts.push_back(part);

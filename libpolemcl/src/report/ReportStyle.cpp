@@ -82,6 +82,8 @@ tfoot tr:first-child > * { border-top: 1px solid var(--ink); }
 tfoot th, tfoot td { font-weight: 600; }
 th:first-child, td:first-child { text-align: left; padding-left: 2px; }
 tbody th, tfoot th, thead tr > :first-child { position: sticky; left: 0; background: var(--paper); max-width: 15em; overflow: hidden; text-overflow: ellipsis; }
+table.dense th, table.dense td { padding: 4px 3px; font-size: 12.3px; letter-spacing: -.01em; }
+table.dense tfoot th, table.dense td:last-child { white-space: normal; }
 table.words td, table.words thead th { text-align: left; }
 table.words td { white-space: normal; min-width: 8em; }
 table.words tbody th { white-space: normal; min-width: 11em; }

@@ -15,12 +15,18 @@ std::string settingsTable(const BatchResults& results,
 /// \brief Sessions with all settings side by side.
 std::string sideBySideTable(const BatchResults& results,
                             const std::vector<SettingSummary>& summaries);
-/// \brief The paper's table: f_map, mean and RMSE of position and heading for each session.
+/// \brief The paper's table: f_map, mean and RMSE of position and heading for each session, with
+/// the figures published for it beside ours.
 std::string paperTable(const BatchResults& results, std::size_t setting,
                        const SettingSummary& summary);
 /// \brief Published figures and ours; empty when none are known for the dataset.
 std::string publishedTable(const BatchResults& results,
                            const std::vector<SettingSummary>& summaries);
+/// \brief Scores of the maps of each setting, below published ones; empty when none was scored.
+std::string mapScoresTable(const BatchResults& results,
+                           const std::vector<SettingSummary>& summaries);
+/// \brief The score of every map; empty when no setting has more than one.
+std::string everyScoreTable(const BatchResults& results);
 /// \brief What the runs said of themselves, for each session.
 std::string healthTable(const BatchResults& results, std::size_t setting,
                         const SettingSummary& summary);

@@ -24,8 +24,8 @@ report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& pl
 /// \brief How long the tasks took, each the last time that it was done.
 report::BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan);
 
-/// \brief Writes `report.html`, `results.json`, `runs.csv`, `sessions.csv`, `table.tex` into the
-/// batch's folder. \throws Error when one cannot be written.
+/// \brief Writes `report.html`, `results.json`, `runs.csv`, `sessions.csv`, `maps.csv`, `table.tex`
+/// into the batch's folder. \throws Error when one cannot be written.
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
                      const report::BatchTimings& timings);
 

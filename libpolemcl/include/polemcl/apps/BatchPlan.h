@@ -19,8 +19,9 @@ namespace polemcl::apps {
 
 /// \brief A piece of work that is done, or not: never half.
 struct BatchTask {
-  std::string id;                  ///< `poles.SESSION`, `map.SETTING.SESSION`, `run.SETTING.…`
-  std::string kind;                ///< `poles`, `map`, `run`
+  std::string id;    ///< `poles.SESSION`, `map.SETTING.SESSION`, `run.SETTING.SESSION.NN`,
+                     ///< `truth.SESSION`, `score.SETTING.SESSION`
+  std::string kind;  ///< its first word
   std::vector<std::string> needs;  ///< ids of tasks that must be done before
   /// One after the other: program and arguments. The program `copy` takes files here (FROM TO …).
   std::vector<std::vector<std::string>> commands;
@@ -36,6 +37,7 @@ struct BatchCell {
   std::string poles;              ///< its rawlog of poles, relative to the folder of tasks
   std::string map;                ///< id of the map it is localized in; empty: not localized
   std::string ownMap;             ///< id of the map that it went into; empty: none
+  std::string score;              ///< id of the score of the map it completes; empty: none
   std::vector<std::string> runs;  ///< ids, by index
   std::vector<std::uint32_t> seeds;
 };
@@ -53,10 +55,12 @@ struct BatchPlan {
   const BatchTask& task(const std::string& id) const;  ///< \throws Error
 };
 
-/// \brief Plans a batch. Sessions are imported and extracted once for all settings with the same
-/// `[sensor] [extraction] [paper] [native]`; maps are built once for all sessions and runs.
-/// \throws Error as loadSettings(), and when the input of a session is not there (all that are
-///         missing are named).
+/// \brief Plans a batch. Sessions are imported once and extracted once for all settings that use
+/// them and have the same `[sensor] [extraction] [paper] [native]`; maps are built once for all
+/// sessions and runs. Maps that a setting's last map session completes (with `maps = each`: all)
+/// are scored where that session has a truthMap.
+/// \throws Error as loadSettings() and readPublishedSessions(), and when the input or the true
+///         poles of a session are not there (all that are missing are named).
 /// \param build Of the programs that do the tasks: tasks that another build has done are open.
 BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());
 

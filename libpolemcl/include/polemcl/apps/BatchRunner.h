@@ -34,12 +34,18 @@ struct BatchProgress {
   std::size_t done = 0, failed = 0, all = 0;
 };
 
-/// \brief Does all tasks that are open, `jobs` at a time. A task that needs one that failed fails
+/// \brief How many tasks may be under way at the same time.
+struct BatchLimits {
+  std::size_t jobs = 1;     ///< at least 1
+  std::size_t imports = 0;  ///< of the kind `poles`, which hold a session's scans; 0: any
+};
+
+/// \brief Does all tasks that are open, several at a time. A task that needs one that failed fails
 /// as well; all others are done. Tasks whose outputs were damaged are done again, and so are those
-/// that need them. \param jobs At least 1. \param report Called after each task, one call at a
-/// time, with the task and its outcome. \return The failures by task, blocked ones left out.
+/// that need them. \param report Called after each task, one call at a time, with the task and its
+/// outcome. \return The failures by task, blocked ones left out.
 std::map<std::string, std::string> runBatch(
-    const BatchFolder& folder, const BatchPlan& plan, std::size_t jobs,
+    const BatchFolder& folder, const BatchPlan& plan, const BatchLimits& limits,
     const std::function<void(const BatchTask&, const TaskOutcome&, const BatchProgress&)>& report);
 
 /// \brief Tasks that have to be done: those not done, those damaged (removed here), and all that

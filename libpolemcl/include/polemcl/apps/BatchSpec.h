@@ -25,12 +25,19 @@ struct BatchSession {
   std::size_t every = 1, offset = 0;  ///< scans taken, as `pole-import` has it
   double odometryNoise = 0;           ///< share of the true motion; 0: odometry of the dataset
   std::string sensorPose, poses, posesOf = "robot", calib;  ///< as `pole-import` has them
+  /// True poles, in the frame of the map that this session completes: a file for `pole-eval map`,
+  /// or `labels`: made from the session's labels by `pole-labels`; empty: that map gets no score.
+  std::string truthMap;
 };
+
+/// \brief The truthMap that stands for SemanticKITTI's labels.
+inline constexpr const char* truthFromLabels = "labels";
 
 /// \brief How maps come about.
 enum class MapProtocol {
   together,  ///< all sessions driven so far make one map, as `[map]` says (`unvisited_m`)
-  upkeep     ///< the first makes the map, each later one keeps it true (`pole-map --update`)
+  upkeep,    ///< the first makes the map, each later one keeps it true (`pole-map --update`)
+  each       ///< each session makes a map of its own: they show different places
 };
 
 /// \brief Which map a session is localized in.
@@ -46,7 +53,7 @@ struct BatchSetting {
   std::string config;                    ///< INI of all programs
   std::vector<std::string> set;          ///< values in place of its own
   std::vector<std::string> mapSessions;  ///< names, in the order of the sessions
-  std::vector<std::string> sessions;     ///< names of those that are localized
+  std::vector<std::string> sessions;     ///< names of those that are localized; may be empty
   MapProtocol protocol = MapProtocol::together;
   MapTime map = MapTime::before;
 };
@@ -54,9 +61,10 @@ struct BatchSetting {
 struct BatchSpec {
   std::string name;   ///< of the batch: letters, digits, `_` and `-`
   std::string title;  ///< for the report
-  /// Published figures to show beside: `none`, `nclt`, `kitti-0009`, `mulran-kaist`.
+  /// Published figures to show beside: `none`, or a key of PublishedFigures.h.
   std::string published = "none";
-  int runs = 10;  ///< of each session under each setting
+  std::string publishedSessions;  ///< CSV of published figures by session; empty: none
+  int runs = 10;                  ///< of each session under each setting
   std::uint32_t seed = 1;
   bool perMetre = false;  ///< errors at each metre of the way, not at each scan (`errors = metre`)
   std::vector<BatchSession> sessions;  ///< in the order they were driven
@@ -67,11 +75,14 @@ struct BatchSpec {
 
 /// \brief Reads a batch file.
 /// \param data What stands for `{data}`; empty: not given.
+/// \param set Values in place of the file's, `section.key=value`, as ConfigFile::set() takes them.
 /// \throws Error naming file, section and key: what ConfigReader refuses, names that are given
-/// twice
-///         or have other characters, sessions and settings that nobody knows, `{data}` without
-///         `--data`, a session localized in the map before it where there is none.
-BatchSpec readBatchSpec(const std::filesystem::path& file, const std::filesystem::path& data = {});
+///         twice or have other characters, sessions and settings that nobody knows, `{data}`
+///         without
+///         `--data`, a session localized in the map before it where there is none, a setting that
+///         neither localizes nor scores.
+BatchSpec readBatchSpec(const std::filesystem::path& file, const std::filesystem::path& data = {},
+                        const std::vector<std::string>& set = {});
 
 /// \brief A seed from names: the same whatever else is in the batch, and in whatever order.
 /// \param name Of what draws, such as "month_03/run 4".

@@ -7,6 +7,8 @@
 /// same batch gives the same bytes. A figure that does not exist is NaN; it is shown as a dash, an
 /// empty field or `null`.
 
+#include <polemcl/core/Evaluation.h>
+
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
@@ -101,11 +103,29 @@ struct SessionPlots {
   ErrorHistogram headingErrors;                  ///< degrees, absolute, of all runs
 };
 
+/// \brief A map against true poles, counted in three ways; see scoreMap().
+struct MapScores {
+  std::string truth;      ///< name of the file of true poles, or "labels"
+  MapScore near;          ///< map poles with a true one within 1 m, as the authors count
+  MapScore oneToOne;      ///< pairs within 1 m
+  MapScore oneToOneHalf;  ///< pairs within 0.5 m
+};
+
+/// \brief What a paper reports for one session; noFigure where it gives none.
+struct PublishedSession {
+  std::string system;   ///< "Dong et al. 2021"
+  std::string session;  ///< name of a BatchSession
+  double mapShare = noFigure;
+  double posMean = noFigure, posRmse = noFigure;        ///< m
+  double angMeanDeg = noFigure, angRmseDeg = noFigure;  ///< degrees
+};
+
 /// \brief One session under one setting.
 struct SessionResult {
   std::size_t setting = 0, session = 0;  ///< indices in the batch
   double mapShare = noFigure;            ///< f_map: share of the session's scans used for the map
   std::size_t mapPoles = 0;              ///< of the map it was localized in
+  std::optional<MapScores> score;        ///< of the map that the session completes
   std::vector<BatchRun> runs;            ///< by index; empty for a session that was only mapped
   SessionPlots plots;
 };
@@ -119,12 +139,12 @@ struct FailedTask {
 
 /// \brief A whole batch.
 struct BatchResults {
-  std::string name;   ///< "nclt"
-  std::string title;  ///< "NCLT: 27 sessions over 15 months"
-  /// Key of published figures: "nclt", "kitti-0009", "mulran-kaist" (PublishedFigures.h), or empty.
-  std::string dataset;
-  std::string date;     ///< only if the caller gives one
-  std::string command;  ///< that makes the batch again
+  std::string name;     ///< "nclt"
+  std::string title;    ///< "NCLT: 27 sessions over 15 months"
+  std::string dataset;  ///< key of published figures (PublishedFigures.h), or empty
+  std::vector<PublishedSession> published;  ///< figures by session, system after system
+  std::string date;                         ///< only if the caller gives one
+  std::string command;                      ///< that makes the batch again
   BatchVersions versions;
   /// A run is lost when no pose could be compared, or when its position error is larger than this
   /// on average or at the end, m.
@@ -137,7 +157,7 @@ struct BatchResults {
   /// \brief The result of a session under a setting, or null.
   const SessionResult* find(std::size_t setting, std::size_t session) const;
   /// \throws Error: nothing to report, indices out of range, a name or a pair that appears twice, a
-  ///         share outside [0, 1], plots with coordinates that are not finite.
+  ///         share or a precision outside [0, 1], plots with coordinates that are not finite.
   void validate() const;
 };
 

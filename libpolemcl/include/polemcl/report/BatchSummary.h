@@ -47,6 +47,16 @@ struct SessionSummary {
   double relocalizations = noFigure;  ///< mean over the runs
 };
 
+/// \brief Means over maps, each with the same weight.
+struct ScoreMeans {
+  double precision = noFigure, recall = noFigure, f1 = noFigure;
+};
+/// \brief The scored maps of a setting; see MapScores.
+struct ScoreSummary {
+  std::size_t maps = 0;
+  ScoreMeans near, oneToOne, oneToOneHalf;
+};
+
 /// \brief A setting over its sessions.
 struct SettingSummary {
   std::vector<SessionSummary> sessions;  ///< in the order of the batch; those with a result
@@ -57,6 +67,7 @@ struct SettingSummary {
   /// that of all runs.
   FigureSpreads figures;
   Spread mapShare;
+  ScoreSummary scores;
   /// posMean of the last localized session over that of the first; none with less than two.
   double lastOverFirst = noFigure;
 };
