@@ -41,22 +41,34 @@ class FaultTrials : public testing::Test {
 }  // namespace
 
 TEST_F(FaultTrials, WindowsHoldLeadFaultAndTail) {
+  const TrialDrive whole = drive();
+  int longer = 0;
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    const FaultyDrive slip = inject(Fault::slip, seed);
+    options.fault.fault = Fault::slip;
+    std::mt19937_64 random(seed);
+    const FaultyDrive slip = injectFault(whole, options.fault, random);
     EXPECT_EQ(slip.begin, 40u);  // 8 s of 0.2 s
     EXPECT_EQ(slip.end, 70u);
-    EXPECT_EQ(slip.frames.size(), slip.truth.size());
+    ASSERT_EQ(slip.frames.size(), slip.truth.size());
     EXPECT_NEAR(slip.driven.back() - slip.driven[slip.end], 60, 2.5);
+    const auto factorOf = [&](std::size_t i) {
+      return slip.frames[i].motion->mean.x / whole.frames[slip.origin + i].motion->mean.x;
+    };
+    const double slipping = factorOf(slip.begin);
+    EXPECT_NEAR(std::abs(slipping - 1), 0.2, 1e-6);
+    longer += slipping > 1;
     for (std::size_t i = 1; i < slip.frames.size(); ++i) {
-      const tests::Frame& original = city.frames[slip.origin + i];
-      const bool faulty = i >= slip.begin && i < slip.end;
-      const double factor = slip.frames[i].motion->mean.x / original.motion.x;
-      EXPECT_NEAR(std::abs(factor - 1), faulty ? 0.2 : 0, 1e-6) << i;
+      const double factor = i >= slip.begin && i < slip.end ? slipping : 1;
+      EXPECT_NEAR(factorOf(i), factor, 1e-6) << i;
+      const io::PlanarMotion& before = *whole.frames[slip.origin + i].motion;
+      EXPECT_TRUE(slip.frames[i].motion->covariance.isApprox(factor * factor * before.covariance))
+          << i;
       EXPECT_NEAR(slip.frames[i].time - slip.frames[i - 1].time, 0.2, 1e-5);
-      EXPECT_EQ(slip.truth[i].x, drive().truth[slip.origin + i].x);
-      if (i > 3) break;  // the drive is read each time
+      EXPECT_EQ(slip.truth[i].x, whole.truth[slip.origin + i].x);
     }
   }
+  EXPECT_GT(longer, 3);  // of 19: half, by chance
+  EXPECT_LT(longer, 16);
 }
 
 TEST_F(FaultTrials, EachFaultSpoilsItsOwn) {
@@ -68,6 +80,9 @@ TEST_F(FaultTrials, EachFaultSpoilsItsOwn) {
   for (std::size_t i = 1; i < stuck.frames.size(); ++i) {
     const bool faulty = i >= stuck.begin && i < stuck.end;
     EXPECT_EQ(stuck.frames[i].motion->mean.x == 0, faulty) << i;
+    // It is sure of standing still.
+    const double sigma = std::sqrt(stuck.frames[i].motion->covariance(0, 0));
+    EXPECT_EQ(sigma <= io::motionFloorMetres * (1 + 1e-9), faulty) << i << ' ' << sigma;
   }
 }
 

@@ -65,10 +65,14 @@ TEST_F(GlobalTrials, FindsAVehicleInItsCity) {
 TEST_F(GlobalTrials, AWrongAnswerIsCalledWrong) {
   TrialDrive drive = loadTrialDrive(options.files);
   for (Pose2D& pose : drive.truth) pose.x += 1;  // so that no answer can be right
+  int ok = 0;
   for (const GlobalTrial& trial : runGlobalTrials(drive, options)) {
     EXPECT_EQ(trial.outcome, Answer::wrong);
     EXPECT_NEAR(trial.error.metres, 1, 0.5);
+    EXPECT_EQ(trial.okWrong, trial.okMetres.has_value());
+    ok += trial.okWrong;
   }
+  EXPECT_GT(ok, 6);  // said ok in the belief of a true map
 }
 
 TEST_F(GlobalTrials, OnAnotherCitysMapNothingIsFound) {

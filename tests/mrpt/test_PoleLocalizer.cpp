@@ -403,6 +403,32 @@ TEST(PoleLocalizer, TellsWhatAStepDid) {
   EXPECT_EQ(localizer.report().resampled, localizer.report().effectiveShare < 0.5);
 }
 
+// 1000 particles over 900 m² and all headings: a bell of half the gate's width still falls between
+// them, so it is the only one that is used.
+TEST(PoleLocalizer, TemperingStopsWhereBellsFallBetweenTheParticles) {
+  const PoleStreet street = makeStreet({});
+  PoleLocalizer localizer(street.map, {}, 1);
+  PoseHypothesis anywhere;
+  anywhere.pose.mean = street.truth[50];
+  anywhere.pose.covariance = Eigen::Vector3d(225, 225, 9).asDiagonal();
+  localizer.start({anywhere}, 1000);
+  localizer.step(street.frames[50]);
+  EXPECT_EQ(localizer.report().temperingStages, 0);
+  EXPECT_LT(localizer.report().effectiveShare, 0.9) << "it is used";
+}
+
+// 10000 particles at the start, of which 1000 are kept: a fifth of these is enough.
+TEST(PoleLocalizer, TemperingIsMeasuredByTheParticlesThatAreKept) {
+  const PoleStreet street = makeStreet({});
+  PoleLocalizer localizer(street.map, {}, 1);
+  localizer.start(at(street.truth[50], 0.3, 0.02));
+  localizer.step(street.frames[50]);
+  ASSERT_EQ(localizer.report().particles, 10000u);
+  EXPECT_EQ(localizer.report().temperingStages, 0);
+  EXPECT_GT(localizer.report().effectiveShare, 0.02);
+  EXPECT_LT(localizer.report().effectiveShare, 0.2) << "or it is no test";
+}
+
 TEST(PoleLocalizer, AdaptsTheNumberOfParticles) {
   for (const auto resampling : {Resampling::systematic, Resampling::multinomial}) {
     const PoleStreet street = makeStreet({});

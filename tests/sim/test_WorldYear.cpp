@@ -142,8 +142,14 @@ TEST(WorldYear, snowBanksHideWhatStandsAlongTheKerb) {
     }
     EXPECT_GT(along, 40);
     EXPECT_GT(hidden, 0.7 * along);
+    const auto banks = [](const World& world) {
+      return std::count_if(world.objects().begin(), world.objects().end(),
+                           [](const WorldObject& object) { return object.kind == Kind::snowBank; });
+    };
+    EXPECT_GT(banks(winter), 0.5 * 2 * options.length / 4.5);  // of 4.5 m, on both sides
     options.dayOfYear = 196;
     const World summer = makeWorld(options);
+    EXPECT_EQ(banks(summer), 0);
     for (const TruePole& pole : summer.poles()) EXPECT_EQ(summer.snowAt(pole.x, pole.y), 0);
   }
 }
