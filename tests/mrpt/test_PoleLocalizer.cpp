@@ -403,20 +403,6 @@ TEST(PoleLocalizer, TellsWhatAStepDid) {
   EXPECT_EQ(localizer.report().resampled, localizer.report().effectiveShare < 0.5);
 }
 
-// 1000 particles over 900 m² and all headings: a bell of half the gate's width still falls between
-// them, so it is the only one that is used.
-TEST(PoleLocalizer, TemperingStopsWhereBellsFallBetweenTheParticles) {
-  const PoleStreet street = makeStreet({});
-  PoleLocalizer localizer(street.map, {}, 1);
-  PoseHypothesis anywhere;
-  anywhere.pose.mean = street.truth[50];
-  anywhere.pose.covariance = Eigen::Vector3d(225, 225, 9).asDiagonal();
-  localizer.start({anywhere}, 1000);
-  localizer.step(street.frames[50]);
-  EXPECT_EQ(localizer.report().temperingStages, 0);
-  EXPECT_LT(localizer.report().effectiveShare, 0.9) << "it is used";
-}
-
 // 10000 particles at the start, of which 1000 are kept: a fifth of these is enough.
 TEST(PoleLocalizer, TemperingIsMeasuredByTheParticlesThatAreKept) {
   const PoleStreet street = makeStreet({});
