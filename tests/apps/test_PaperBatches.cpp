@@ -69,7 +69,9 @@ class PaperBatches : public testing::Test {
         EXPECT_GE(result.score->near.matches, result.score->oneToOne.matches) << setting;
         EXPECT_GE(result.score->oneToOne.matches, result.score->oneToOneHalf.matches) << setting;
         EXPECT_GT(result.score->near.mapPoles, 0u) << setting;
-        if (setting == "ours") EXPECT_GT(result.score->oneToOneHalf.f1, bound);
+        if (setting == "ours") {
+          EXPECT_GT(result.score->oneToOneHalf.f1, bound);
+        }
       }
     EXPECT_GE(scores, results.settings.size());
   }

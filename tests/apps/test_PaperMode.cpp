@@ -2,11 +2,11 @@
 /// \brief config/paper is the first implementation: nothing beyond it is on, a kidnapped vehicle
 /// stays lost, and on its own detections of a real drive the errors are those it has.
 
-#include <polemcl/apps/FilterRuns.h>
 #include <polemcl/apps/ImportApp.h>
 #include <polemcl/apps/Settings.h>
 #include <polemcl/io/CsvTable.h>
 #include <polemcl/io/Trajectory.h>
+#include <polemcl/mrpt/PoleLocalization.h>
 #include <polemcl/mrpt/PoleSequence.h>
 
 #include <cstdlib>
@@ -31,6 +31,19 @@ std::shared_ptr<CPoleMap> mapOf(const std::vector<MapPole>& poles, const Setting
   map->likelihoodOptions = settings.likelihood;
   map->setPoles(poles);
   return map;
+}
+
+/// The estimates of one run, one a frame.
+std::vector<StampedPose2D> localized(const LocalizationMap& map,
+                                     const std::vector<PoleFrame>& frames,
+                                     const LocalizationOptions& options, const StartOptions& start,
+                                     std::uint32_t seed) {
+  PoleLocalization localization(map, options, seed);
+  localization.start(start);
+  std::vector<StampedPose2D> poses;
+  for (const PoleFrame& frame : frames)
+    poses.push_back({frame.time, localization.step(frame).estimate->mean});
+  return poses;
 }
 
 /// How many of 20 kidnapped vehicles are within 2 m of the truth at the end of the drive.
@@ -59,10 +72,9 @@ int recovered(const Settings& settings) {
     }
     StartOptions start = settings.start;
     start.pose = first;
-    RunOptions runs;
-    runs.seed = run;
-    const auto results = runFilters(map, frames, settings.localization, start, runs);
-    const Pose2D end = results[0].updates.back().estimate->mean;
+    const auto poses =
+        localized(map, frames, settings.localization, start, static_cast<std::uint32_t>(run));
+    const Pose2D end = poses.back().pose;
     count += std::hypot(end.x - last.x, end.y - last.y) < 2;
   }
   return count;
@@ -118,11 +130,9 @@ class Parity {
     StartOptions start = m_settings.start;
     start.pose = m_poses[1];
     start.radius = radius;
-    RunOptions runs;
-    runs.seed = seed;
     const LocalizationMap map(m_map, m_settings.localization.global);
-    const auto results = runFilters(map, frames, m_settings.localization, start, runs);
-    return evaluateTrajectory(truth, results[0].trajectory(), Sampling::perPose);
+    return evaluateTrajectory(truth, localized(map, frames, m_settings.localization, start, seed),
+                              Sampling::perPose);
   }
 
   std::vector<Pose2D> m_poses;

@@ -74,7 +74,7 @@ TEST(Settings, ConfigurationsSayWhatTheyAreFor) {
   EXPECT_NEAR(paper.extraction.paper.fovUp, 30.67 * M_PI / 180, 1e-12);
   EXPECT_EQ(paper.extraction.paper.projectFrom, "cloud");
   EXPECT_EQ(paper.map.minCount, 6);
-  EXPECT_EQ(paper.likelihood.model, LikelihoodModel::paper);
+  EXPECT_EQ(paper.likelihood.model, LikelihoodModel::floored);
   EXPECT_EQ(paper.localization.filter.estimate, PoseEstimator::bestShare);
 }
 
@@ -88,7 +88,8 @@ TEST(Settings, TheMendedPaperDiffersInOneHeight) {
 }
 
 TEST(Settings, KnowsEverySection) {
-  std::istringstream lines(settingsText({}));
+  const Settings defaults;
+  std::istringstream lines(settingsText(defaults));
   std::vector<std::string> sections;
   for (std::string line; std::getline(lines, line);)
     if (!line.empty() && line[0] == '[') sections.push_back(line);

@@ -200,11 +200,11 @@ TEST(CPoleMap, ManyPosesGetTheSameBitsAsEachAlone) {
           const double sigma = map.likelihoodOptions.sigma;
           for (std::size_t k = 0; k < widenings.size(); ++k) {
             map.likelihoodOptions.sigma = sigma * widenings[k];
-            std::vector<double> one;
+            std::vector<double> single;
             for (const CPose3D& pose : alone)
-              one.push_back(map.computeObservationLikelihood(scan, pose));
-            EXPECT_EQ(widened[k], one) << k;
-            const auto [least, most] = std::minmax_element(one.begin(), one.end());
+              single.push_back(map.computeObservationLikelihood(scan, pose));
+            EXPECT_EQ(widened[k], single) << k;
+            const auto [least, most] = std::minmax_element(single.begin(), single.end());
             EXPECT_GT(*most - *least, 0.1) << "or the comparison says nothing";
           }
         }

@@ -153,7 +153,9 @@ TEST_F(PoleLocalizationTest, AFilterThatSettledBesideTheTruthIsPutRightByTheSear
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const LocalizationUpdate update = localization.step(frames[i]);
     EXPECT_NE(update.health.reason, HealthReason::elsewhere);
-    if (update.relocalized) EXPECT_NE(update.health.state, HealthState::lost);
+    if (update.relocalized) {
+      EXPECT_NE(update.health.state, HealthState::lost);
+    }
     putRight |= update.relocalized;
   }
   EXPECT_TRUE(putRight);
