@@ -14,8 +14,7 @@
 namespace polemcl::report {
 namespace {
 
-using testing_xml::Element;
-using testing_xml::parsePage;
+using testing_xml::Element, testing_xml::parsePage;
 
 BatchTimings someTimings(double factor) {
   BatchTimings timings{"2 cores & more", 100 * factor, 2, {}};
