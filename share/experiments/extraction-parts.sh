@@ -179,7 +179,7 @@ table() {
       + "\(.pair.max_m * 100 | round_to(1)) cm (most); \(.pair.within_10cm) within 10 cm" else empty end),
     (.simulated | to_entries[] | .key as $name | .value
       | "", "Simulated " + $name + ", worlds " + ([.native.worlds[].seed | tostring] | join(" ")),
-        (" " * 32) + ([methods[] | (title + ": mean, least, most") | lead(24) | pad(27)] | add),
+        ("  mean, least and most of" | pad(32)) + ([methods[] | title | lead(24) | pad(27)] | add),
         row("precision"; "precision"; 1; 3), row("recall of visible poles"; "recall"; 1; 3),
         row("centre error, median (cm)"; "centre_median_m"; 100; 2),
         row("centre error, mean (cm)"; "centre_mean_m"; 100; 2),
