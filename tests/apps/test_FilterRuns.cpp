@@ -115,3 +115,15 @@ TEST_F(FilterRunsTest, HandsRefusalsOn) {
   runs.runs = 0;
   EXPECT_THROW(run(runs), Error);
 }
+
+TEST_F(FilterRunsTest, RefusesMoreParticlesThanFitSideBySide) {
+  runs.runs = 51;
+  start.particles = 1000000;
+  try {
+    FilterRuns({street.map, options.global}, options, start, runs);
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("51 runs of 1000000 particles"), std::string::npos)
+        << error.what();
+  }
+}

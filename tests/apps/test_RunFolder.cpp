@@ -114,3 +114,24 @@ TEST(RunFolder, RefusesToReplaceAnInput) {
   EXPECT_NO_THROW(results.protect(folder / "run_00.rawlog"));
   EXPECT_NO_THROW(results.protect(""));
 }
+
+TEST(RunFolder, FoldersInThePlaceOfResultsAreRefusedBeforeAnythingGoes) {
+  const TempFolder folder;
+  for (const char* name : {"run_00.tum", "summary.json", "run_01.tum/mine"})
+    writeText(folder / name, "old");
+  {
+    RunFolder results(folder.path());
+    for (const char* name : {"run_00.tum", "run_01.tum", "summary.json"})
+      writeText(results.staged(name), "new");
+    try {
+      results.commit();
+      ADD_FAILURE() << "not refused";
+    } catch (const polemcl::Error& error) {
+      EXPECT_NE(std::string(error.what()).find("run_01.tum: is a folder"), std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_00.tum", "run_01.tum", "summary.json"}));
+  EXPECT_EQ(readText(folder / "run_00.tum"), "old");
+  EXPECT_EQ(readText(folder / "summary.json"), "old");
+}

@@ -11,7 +11,8 @@ TEST(ViewOptions, RatesAreTimesOrMax) {
 }
 
 TEST(ViewOptions, RefusesOtherRates) {
-  for (const char* wrong : {"", "x", "0x", "-1x", "fast", "1xx", "1 x", "nan", "inf", "maxx"})
+  for (const char* wrong :
+       {"", "x", "0x", "-1x", "fast", "1xx", "1 x", "nan", "inf", "maxx", "1e-300"})
     EXPECT_THROW(parseRate(wrong), Error) << wrong;
 }
 

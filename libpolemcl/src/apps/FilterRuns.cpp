@@ -2,7 +2,9 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
+#include <string>
 
 namespace polemcl::apps {
 
@@ -34,6 +36,12 @@ FilterRuns::FilterRuns(const LocalizationMap& map, const LocalizationOptions& op
                        const StartOptions& start, const RunOptions& runs) {
   runs.validate();
   const auto count = static_cast<std::size_t>(runs.runs);
+  const auto particles =
+      static_cast<std::size_t>(std::max(start.particles, options.filter.particles));
+  if (count * particles > mostParticles)
+    throw Error(std::to_string(count) + " runs of " + std::to_string(particles) +
+                " particles side by side: at most " + std::to_string(mostParticles) +
+                " particles are allowed; localize in several calls, each with its own seed");
   m_filters.resize(count);
   m_results.resize(count);
   m_steps.resize(count);

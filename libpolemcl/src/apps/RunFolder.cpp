@@ -68,7 +68,18 @@ void RunFolder::protect(const fs::path& input) const {
               " would replace it; choose another folder for them");
 }
 
+void RunFolder::requireFreeNames() const {
+  for (const auto& entry : entriesOf(m_staging)) {
+    const fs::path target = m_folder / entry.filename();
+    if (fs::is_directory(fs::symlink_status(target)) && !isOfARun(target))
+      throw Error(
+          target.string() +
+          ": is a folder, and a result has to go there; move it away. Nothing was replaced");
+  }
+}
+
 void RunFolder::commit() {
+  requireFreeNames();
   try {
     fs::remove(m_folder / summaryName);
     for (const auto& entry : entriesOf(m_folder))

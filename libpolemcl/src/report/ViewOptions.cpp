@@ -8,6 +8,8 @@ namespace {
 
 constexpr double minSide = 160, maxSide = 8192;  // pixels; what OpenGL's textures take, halved
 
+constexpr double minRate = 0.001;  // slower ones never end
+
 void require(bool good, const char* key, int value, const std::string& allowed) {
   if (!good)
     throw Error(std::string("[view] ") + key + " = " + std::to_string(value) + ": allowed is " +
@@ -21,9 +23,11 @@ std::optional<double> parseRate(const std::string& text) {
   const std::size_t length = text.size() - (!text.empty() && text.back() == 'x');
   double rate = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + length, rate);
-  if (error != std::errc{} || stop != text.data() + length || !std::isfinite(rate) || rate <= 0)
+  if (error != std::errc{} || stop != text.data() + length || !std::isfinite(rate) ||
+      rate < minRate)
     throw Error("rate " + text +
-                ": allowed is max, or how many times as fast as it was driven, such as 1x or 2.5x");
+                ": allowed is max, or how many times as fast as it was driven, such as 1x or 2.5x, "
+                "at least 0.001x");
   return rate;
 }
 
@@ -44,7 +48,7 @@ void bind(Binder& b, ViewOptions& o) {
   b.text("frames", o.frames, "folder of PNG frames; empty: none");
   b.integer("frame_every", o.frameEvery, Range::atLeast(1), "scans", "a frame every so many");
   b.integer("width", o.width, Range::between(minSide, maxSide), "pixels", "of frames and window");
-  b.integer("height", o.height, Range::between(minSide, maxSide), "pixels", "likewise");
+  b.integer("height", o.height, Range::between(minSide, maxSide), "pixels", "of frames and window");
   b.check(o);
 }
 

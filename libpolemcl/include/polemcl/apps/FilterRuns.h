@@ -35,7 +35,10 @@ struct FilterStep {
 /// `runs.seed + i`, and the same bytes as alone and on any number of threads.
 class FilterRuns {
  public:
-  /// \throws Error as PoleLocalization does, on its options and on the start.
+  static constexpr std::size_t mostParticles = 50000000;  ///< in all runs, some 40 bytes each
+
+  /// \throws Error as PoleLocalization does, on its options and on the start, and on more than
+  /// `mostParticles`.
   FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
              const StartOptions& start, const RunOptions& runs);
 

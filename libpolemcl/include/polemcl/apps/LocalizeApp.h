@@ -35,7 +35,7 @@ struct LocalizeJob {
 
 struct LocalizeResult {
   std::vector<FilterRun> runs;
-  /// Of each run, without those of single poses; empty without truth; none for a run that never
+  /// Errors of each run, without those of single poses; empty without truth; none for a run that never
   /// found its pose.
   std::vector<std::optional<TrajectoryErrors>> errors;
   LocalizeTimings timings;

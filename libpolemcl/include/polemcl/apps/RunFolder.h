@@ -27,10 +27,13 @@ class RunFolder {
   /// \brief Takes the summary and what runs wrote (`run_NN.tum`, `run_NN.json`,
   /// `run_NN_errors.csv`, `run_NN_cov.csv`, `run_NN_health.csv`, folders `run_NN_scenes`) of old
   /// results away and moves the new files in, `summary.json` last: while it is there, the folder is
-  /// complete. \throws Error when that fails.
+  /// complete. \throws Error when that fails; before anything is taken away where a folder stands
+  /// in the place of a result.
   void commit();
 
  private:
+  void requireFreeNames() const;
+
   std::filesystem::path m_folder, m_staging;
   bool m_created = false;  ///< the folder itself
 };
