@@ -161,7 +161,7 @@ TEST(BatchPlan, FinishedMapsAreScoredAgainstTruePoles) {
     });
   };
   const BatchPlan plan = scored([](BatchSpec&) {});
-  // Of the maps of a, and of a and b, the last one.
+  // Two maps are made, of a, and of a and b; the last one is scored.
   EXPECT_EQ(ids(plan).size(), 3u + 2 + 1 + 4);
   const BatchTask& score = plan.task("score.one.b");
   EXPECT_EQ(score.kind, "score");

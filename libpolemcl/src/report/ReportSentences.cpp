@@ -191,7 +191,7 @@ std::string errorFacts(const SettingSummary& summary) {
                           : runsText(summary.counts));
 }
 
-/// Of a setting whose maps were scored, with no session to localize, the score.
+/// Score of a setting whose maps were scored and that localizes no session.
 std::string cardOf(const SettingSummary& summary) {
   if (summary.counts.runs == 0 && summary.scores.maps > 0)
     return big(figureText(summary.scores.near.f1, 3),

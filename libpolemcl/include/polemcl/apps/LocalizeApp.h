@@ -35,8 +35,8 @@ struct LocalizeJob {
 
 struct LocalizeResult {
   std::vector<FilterRun> runs;
-  /// Errors of each run, without those of single poses; empty without truth; none for a run that never
-  /// found its pose.
+  /// Errors of each run, without those of single poses; empty without truth; none for a run that
+  /// never found its pose.
   std::vector<std::optional<TrajectoryErrors>> errors;
   LocalizeTimings timings;
 };

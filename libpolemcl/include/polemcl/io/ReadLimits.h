@@ -18,9 +18,11 @@ inline constexpr std::uint64_t greatestLzfRatio = 88;
 /// Points of one packet of NCLT's velodyne_hits.bin; an HDL-32E sends 384.
 inline constexpr std::uint32_t mostPacketPoints = 100'000;
 
-/// Limits of one CObservationPoles in an archive of MRPT: poles, free ranges, bytes of the label, each.
+/// Limits of one CObservationPoles in an archive of MRPT: poles, free ranges, bytes of the label,
+/// each.
 inline constexpr std::uint32_t mostOfAScan = 1 << 16;
-/// Limits of a CPoleMap in an archive of MRPT: poles, facts of `info`, bytes of a fact's name or value.
+/// Limits of a CPoleMap in an archive of MRPT: poles, facts of `info`, bytes of a fact's name or
+/// value.
 inline constexpr std::uint32_t mostMapPoles = 10'000'000, mostMapFacts = 1 << 16,
                                longestMapFact = 1 << 24;
 
