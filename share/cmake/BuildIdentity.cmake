@@ -48,7 +48,7 @@ endif()
 string(REGEX REPLACE "[ ]+" " " identity "${revision}, ${COMPILER}, ${TYPE}, ${OPTIONS}")
 string(STRIP "${identity}" identity)
 set(content "// Written by share/cmake/BuildIdentity.cmake.
-#include <polemcl/apps/Version.h>
+#include \"cli/Version.h\"
 
 namespace polemcl::apps {
 const char* buildIdentity() {

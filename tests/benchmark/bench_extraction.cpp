@@ -3,15 +3,16 @@
 /// data, else a simulated HDL-64E one.
 
 #include <benchmark/benchmark.h>
-#include <polemcl/core/PoleExtractor.h>
-#include <polemcl/io/Cloud.h>
-#include <polemcl/sim/Drive.h>
-#include <polemcl/sim/Scanner.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
+
+#include "core/extraction/PoleExtractor.h"
+#include "io/data/Cloud.h"
+#include "sim/drive/Drive.h"
+#include "sim/lidar/Scanner.h"
 
 using namespace polemcl;
 

@@ -3,9 +3,9 @@
 /// the submap. One thread.
 
 #include <benchmark/benchmark.h>
-#include <polemcl/core/GlobalLocalizer.h>
 
-#include "../core/PoleCity.h"
+#include "core/global_localization/GlobalLocalizer.h"
+#include "support/PoleCity.h"
 
 using namespace polemcl;
 using namespace polemcl::tests;

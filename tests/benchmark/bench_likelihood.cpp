@@ -4,10 +4,11 @@
 /// 2000 poles along a road of 6 km, particles within 1 m of the truth or all over the map.
 
 #include <benchmark/benchmark.h>
-#include <polemcl/core/PoleLikelihood.h>
 
 #include <cmath>
 #include <random>
+
+#include "core/localization/PoleLikelihood.h"
 
 using namespace polemcl;
 

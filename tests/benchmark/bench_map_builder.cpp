@@ -5,10 +5,11 @@
 /// within 40 m, and a false detection a scan.
 
 #include <benchmark/benchmark.h>
-#include <polemcl/core/PoleMapBuilder.h>
 
 #include <cmath>
 #include <random>
+
+#include "core/mapping/PoleMapBuilder.h"
 
 using namespace polemcl;
 

@@ -10,6 +10,8 @@
 #include <regex>
 #include <sstream>
 
+namespace polemcl::test_build_identity {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -115,3 +117,5 @@ TEST_F(BuildIdentity, TouchesItsFileOnlyWhenItChanges) {
   identity();
   EXPECT_NE(fs::last_write_time(source()), old);
 }
+
+}  // namespace polemcl::test_build_identity

@@ -1,0 +1,226 @@
+#include "batch/BatchApp.h"
+
+#include <mrpt/system/md5.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <thread>
+
+#include "batch/BatchCollect.h"
+#include "batch/BatchFolder.h"
+#include "batch/BatchPlan.h"
+#include "batch/BatchRunner.h"
+#include "batch/BatchSlurm.h"
+#include "batch/BatchSpec.h"
+#include "cli/CommandLine.h"
+#include "cli/Progress.h"
+#include "cli/ProgressLog.h"
+#include "core/common/Types.h"
+
+namespace polemcl::apps {
+namespace {
+
+using Failures = std::map<std::string, std::string>;
+
+std::size_t jobsOf(const BatchOptions& options) {
+  if (options.jobs > 0) return options.jobs;
+  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
+                 std::size_t open) {
+  const std::size_t all = plan.tasks.size();
+  Progress progress("batch", all, options.quiet);
+  ProgressLogger log("batch", all, all - open, options.quiet);
+  return runBatch(folder, plan, {jobsOf(options), options.imports},
+                  [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
+                    if (!outcome.failure.empty() && !outcome.blocked)
+                      progress.say("pole-batch: " + task.id + " failed: " + outcome.failure);
+                    progress.update(now.done + now.failed);
+                    log.update(now.done, now.failed);
+                  });
+}
+
+/// What it needs is not done: not its own failure.
+bool isBlocked(const BatchFolder& folder, const BatchPlan& plan, const BatchTask& task) {
+  return std::any_of(task.needs.begin(), task.needs.end(),
+                     [&](const std::string& need) { return !folder.isDone(plan.task(need)); });
+}
+
+Failures runThere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
+                  const std::vector<const BatchTask*>& open) {
+  SlurmOptions slurm;
+  slurm.arguments = options.sbatch;
+  Progress progress("batch on Slurm", open.size(), options.quiet);
+  ProgressLogger log("batch on Slurm", open.size(), 0, options.quiet);
+  runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) {
+    progress.update(done);
+    log.update(done, 0);
+  });
+  Failures failures;
+  for (const auto* task : open) {
+    if (folder.isDone(*task) || isBlocked(folder, plan, *task)) continue;
+    const std::string reason = folder.failure(task->id);
+    failures[task->id] = reason.empty() ? "did not end; see slurm/" : reason;
+    progress.say("pole-batch: " + task->id + " failed: " + failures[task->id]);
+  }
+  return failures;
+}
+
+/// The command that does it again, without where it lies on this machine.
+std::string commandOf(const BatchOptions& options) {
+  std::string command = "pole-batch " + options.batch.filename().string() +
+                        (options.data.empty() ? "" : " --data DATA") + " --output OUT";
+  for (const auto& assignment : options.set) command += " --set '" + assignment + "'";
+  return command;
+}
+
+void printOpen(const BatchPlan& plan, const std::vector<const BatchTask*>& open,
+               const std::vector<std::string>& notes) {
+  for (const auto& note : notes) std::cerr << "pole-batch: " << note << '\n';
+  std::cout << plan.name << ": " << plan.tasks.size() << " tasks, " << open.size() << " to be done"
+            << std::endl;
+}
+
+/// Tasks take their settings from files that the plan's keys stand for.
+void requireFrozen(const BatchFolder& folder, const BatchPlan& plan) {
+  for (const auto& [name, sum] : plan.sums) {
+    std::ifstream stream(folder.path() / name, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(stream), {}};
+    if (mrpt::system::md5(content) != sum)
+      throw Error((folder.path() / name).string() +
+                  " is not what the batch was begun with; begin it again with --resume");
+  }
+}
+
+/// One task of a batch that was begun elsewhere.
+void doTaskOf(const BatchOptions& options, const std::string& id) {
+  const BatchFolder folder(options.output);
+  const BatchPlan plan = readPlan(options.output / "plan.json");
+  const BatchTask& task = plan.task(id);
+  requireFrozen(folder, plan);
+  if (plan.build != buildIdentity())
+    throw Error("the batch was begun by another build (" + plan.build + "), this is " +
+                buildIdentity() +
+                "; use one build on all machines, or begin it again with --resume");
+  const TaskOutcome outcome = runTask(folder, task);
+  if (!outcome.failure.empty()) throw Error(id + ": " + outcome.failure);
+}
+
+void requireAllDone(const BatchFolder& folder, const BatchPlan& plan,
+                    const report::BatchResults& results) {
+  const auto undone = static_cast<std::size_t>(
+      std::count_if(plan.tasks.begin(), plan.tasks.end(),
+                    [&](const BatchTask& task) { return !folder.isDone(task); }));
+  const auto& failures = results.failures;
+  if (failures.empty() && undone == 0) return;
+  std::string text = std::to_string(failures.size()) + " of " + std::to_string(plan.tasks.size()) +
+                     " tasks failed";
+  if (!failures.empty())
+    text += " (" + failures.front().task + ": " + failures.front().reason + ")";
+  throw Error(text + "; with those that need them " + std::to_string(undone) + " are not done");
+}
+
+void printPlan(const BatchPlan& plan) {
+  for (const auto& task : plan.tasks) {
+    std::cout << task.id << '\n';
+    for (const auto& need : task.needs) std::cout << "  after " << need << '\n';
+    for (const auto& command : task.commands) {
+      std::cout << "  $";
+      for (const auto& argument : command) std::cout << ' ' << argument;
+      std::cout << '\n';
+    }
+  }
+}
+
+}  // namespace
+
+void doBatch(const BatchOptions& options) {
+  const BatchSpec spec = readBatchSpec(options.batch, options.data, options.set);
+  const BatchPlan plan = planBatch(spec);
+  BatchFolder folder(options.output);
+  folder.take(spec.name, options.resume);
+  folder.store(plan, options.batch);
+  std::vector<std::string> notes;
+  const auto open = openTasks(folder, plan, notes);
+  if (!options.quiet) printOpen(plan, open, notes);
+
+  const auto begin = std::chrono::steady_clock::now();
+  const Failures failures = options.slurm ? runThere(options, folder, plan, open)
+                                          : runHere(options, folder, plan, open.size());
+  folder.sweep();
+  report::BatchTimings timings = collectTimings(folder, plan);
+  if (open.size() == plan.tasks.size()) {
+    timings.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    timings.jobs = options.slurm ? 0 : jobsOf(options);
+  }
+  try {
+    const auto results = collectBatch(folder, plan, spec, failures, commandOf(options));
+    writeBatchFiles(folder, results, timings);
+    if (!options.quiet)
+      std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
+    requireAllDone(folder, plan, results);
+  } catch (const Error& error) {
+    throw Error(std::string(error.what()) + "; what is done stays, --resume goes on");
+  }
+}
+
+namespace {
+
+/// With a word on how to go on; the children end with this process.
+void endWithAWord(int signal) {
+  constexpr char word[] = "pole-batch: interrupted; what is done stays, --resume goes on\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, word, sizeof word - 1);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+}  // namespace
+
+int batchMain(int argc, const char* const* argv) {
+  CommandLine line("pole-batch",
+                   "Sessions x settings x runs: imports, maps, localizes, and reports on it.");
+  BatchOptions options;
+  std::string task;
+  bool dry = false;
+  auto& cli = line.cli();
+  auto* batch = cli.add_option("batch", options.batch, "Batch (.ini), see config/batches/");
+  cli.add_option("--output", options.output, "Folder of the batch: intermediate files, report");
+  cli.add_option("--data", options.data, "Folder of the dataset: {data} in the batch");
+  cli.add_option("--jobs", options.jobs, "Tasks at the same time; 0: one for each core")
+      ->check(CLI::Range(0, 4096));
+  cli.add_option("--imports", options.imports,
+                 "Of these, sessions imported at the same time; 0: any. Their scans lie on disk "
+                 "meanwhile")
+      ->check(CLI::Range(0, 4096));
+  addSetOption(cli, options.set);
+  cli.add_flag("--resume", options.resume, "Go on with the batch that is in the folder");
+  auto* slurm = cli.add_flag("--slurm", options.slurm, "On a cluster, as job arrays");
+  cli.add_option("--sbatch", options.sbatch, "One more argument for sbatch; may be repeated")
+      ->type_name("ARGUMENT")
+      ->take_all()
+      ->expected(1)
+      ->needs(slurm);
+  cli.add_flag("--dry-run", dry, "Only print the tasks and their commands");
+  auto* one = cli.add_option("--task", task, "Do this one task of the batch in --output");
+  batch->excludes(one);
+  cli.parse_complete_callback([&] {
+    if (task.empty() && batch->count() == 0) throw CLI::RequiredError("batch");
+    if (!dry && options.output.empty()) throw CLI::RequiredError("--output");
+  });
+  return line.run(argc, argv, [&] {
+    options.quiet = line.quiet();
+    if (!task.empty()) return doTaskOf(options, task);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+      if (std::signal(signal, endWithAWord) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+    if (dry) return printPlan(planBatch(readBatchSpec(options.batch, options.data, options.set)));
+    doBatch(options);
+  });
+}
+
+}  // namespace polemcl::apps

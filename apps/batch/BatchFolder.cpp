@@ -1,0 +1,226 @@
+#include "batch/BatchFolder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "cli/JsonFile.h"
+#include "core/common/Types.h"
+#include "io/file/AtomicFile.h"
+
+namespace polemcl::apps {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* s_marker = "plan.json";
+constexpr const char* s_lock = ".lock";
+
+std::uint32_t checksumOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(file.string() + ": cannot be read");
+  std::array<char, 1 << 16> block;
+  uLong crc = 0;
+  while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
+    crc = ::crc32(crc, reinterpret_cast<const Bytef*>(block.data()),
+                  static_cast<uInt>(stream.gcount()));
+  return static_cast<std::uint32_t>(crc);
+}
+
+Json readJson(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return Json::value_t::discarded;
+  std::ifstream stream(file);
+  return Json::parse(stream, nullptr, false);  // discarded when it is none
+}
+
+/// What is wrong with an output; empty when nothing is.
+std::string damage(const fs::path& folder, const Json& output) {
+  const fs::path file = folder / output.at("file").get<std::string>();
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return file.string() + " is missing";
+  if (fs::file_size(file, none) != output.at("bytes").get<std::uintmax_t>() ||
+      checksumOf(file) != output.at("crc32").get<std::uint32_t>())
+    return file.string() + " is not what was written";
+  return {};
+}
+
+void createFolder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw Error(folder.string() + ": cannot be created: " + failure.message());
+}
+
+/// Names of computers in names of files.
+std::string host() {
+  std::array<char, 256> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+}  // namespace
+
+BatchFolder::BatchFolder(fs::path path) : m_path(fs::absolute(path).lexically_normal()) {}
+
+BatchFolder::~BatchFolder() {
+  if (m_lock >= 0) ::close(m_lock);
+}
+
+void BatchFolder::take(const std::string& name, bool resume) {
+  const bool known = fs::exists(m_path / s_marker);
+  // Begun, but cut short before its plan was written: ours as well.
+  const bool begun = known || fs::exists(m_path / s_lock);
+  if (!begun && fs::exists(m_path) && (!fs::is_directory(m_path) || !fs::is_empty(m_path)))
+    throw Error(m_path.string() + ": is there and holds no batch; choose another --output");
+  if (known && !resume)
+    throw Error(m_path.string() +
+                ": holds a batch already; --resume does what is missing of it, or choose another "
+                "--output");
+  createFolder(m_path);
+  const fs::path lock = m_path / s_lock;
+  m_lock = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (m_lock < 0) throw Error(lock.string() + ": cannot be written: " + std::strerror(errno));
+  if (::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
+    throw Error(m_path.string() + ": a batch is under way in this folder; wait for it, or end it");
+  if (!known) return;
+  std::string there;
+  try {
+    there = readPlan(m_path / s_marker).name;
+  } catch (const Error&) {
+    return;  // a plan that was damaged is written anew
+  }
+  if (there != name)
+    throw Error(m_path.string() + ": holds the batch '" + there + "', not '" + name +
+                "'; choose another --output");
+}
+
+void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
+  for (const char* folder : {"tasks", "logs", "failed", "times", "settings", "files"})
+    createFolder(m_path / folder);
+  sweep();
+  for (const auto& [name, content] : plan.files) {
+    io::AtomicFile file(m_path / name);
+    file.stream() << content;
+    file.commit();
+  }
+  std::ifstream source(batchFile, std::ios::binary);
+  io::AtomicFile copy(m_path / "batch.ini");
+  copy.stream() << source.rdbuf();
+  copy.commit();
+  writePlan(m_path / s_marker, plan);
+}
+
+bool BatchFolder::isDone(const BatchTask& task) const {
+  const Json done = readJson(work(task.id) / "done.json");
+  return done.is_object() && done.value("key", "") == task.key;
+}
+
+std::string BatchFolder::buildOf(const BatchTask& task) const {
+  const Json done = readJson(work(task.id) / "done.json");
+  return done.is_object() ? done.value("build", "an earlier version") : "";
+}
+
+void BatchFolder::sweep() const {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(m_path / "tasks", none))
+    if (entry.path().extension() == ".part") fs::remove_all(entry.path(), none);
+}
+
+BatchFolder::State BatchFolder::state(const BatchTask& task, std::string* why) const {
+  const fs::path folder = work(task.id);
+  std::error_code none;
+  if (!fs::exists(folder, none)) return State::open;
+  const Json done = readJson(folder / "done.json");
+  if (!done.is_object() || !done.contains("key") || !done.contains("outputs")) {
+    if (why) *why = (folder / "done.json").string() + " is not what was written";
+    return State::damaged;
+  }
+  if (done.at("key") != task.key) return State::open;
+  if (done.at("outputs").size() != task.outputs.size()) {
+    if (why) *why = (folder / "done.json").string() + " is not what was written";
+    return State::damaged;
+  }
+  for (const auto& output : done.at("outputs")) {
+    const std::string wrong = damage(folder, output);
+    if (wrong.empty()) continue;
+    if (why) *why = wrong;
+    return State::damaged;
+  }
+  return State::done;
+}
+
+fs::path BatchFolder::stage(const BatchTask& task) const {
+  fs::path folder = work(task.id);
+  folder += "." + host() + "-" + std::to_string(::getpid()) + ".part";
+  std::error_code none;
+  fs::remove_all(folder, none);
+  createFolder(folder);
+  return folder;
+}
+
+void BatchFolder::commit(const BatchTask& task, const fs::path& staged) const {
+  const fs::path kept = staged / ".kept";  // so that what is not an output goes
+  Json done;
+  done["key"] = task.key;
+  done["outputs"] = Json::array();
+  for (const auto& output : task.outputs) {
+    if (!fs::is_regular_file(staged / output))
+      throw Error("it did not write " + output +
+                  (fs::path(output).extension() == ".tum"
+                       ? ": no true poses are known; give them with [sessions] poses"
+                       : ""));
+    createFolder((kept / output).parent_path());
+    fs::rename(staged / output, kept / output);
+    done["outputs"].push_back({{"file", output},
+                               {"bytes", fs::file_size(kept / output)},
+                               {"crc32", checksumOf(kept / output)}});
+  }
+  writeJson(kept / "done.json", done);
+  std::error_code failure;
+  fs::rename(kept, work(task.id), failure);
+  // On a cluster, a task that was taken for dead may have ended after all: the bytes are the same.
+  if (failure && state(task) != State::done)
+    throw Error(work(task.id).string() + ": cannot be completed: " + failure.message());
+  std::error_code none;
+  fs::remove_all(staged, none);
+  fs::remove(m_path / "failed" / (task.id + ".json"), none);
+}
+
+void BatchFolder::remove(const BatchTask& task) const {
+  std::error_code failure;
+  fs::remove_all(work(task.id), failure);
+  if (failure) throw Error(work(task.id).string() + ": cannot be removed: " + failure.message());
+}
+
+void BatchFolder::noteFailure(const BatchTask& task, const std::string& reason) const {
+  try {
+    writeJson(m_path / "failed" / (task.id + ".json"), Json{{"task", task.id}, {"reason", reason}});
+  } catch (const Error&) {
+    // A full disk: the one who asked has been told, and the task counts as open.
+  }
+}
+
+void BatchFolder::noteTime(const std::string& task, double seconds) const {
+  std::ofstream(m_path / "times" / task) << seconds << '\n';
+}
+
+double BatchFolder::seconds(const std::string& task) const {
+  double seconds = 0;
+  const bool known = static_cast<bool>(std::ifstream(m_path / "times" / task) >> seconds);
+  return known ? seconds : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string BatchFolder::failure(const std::string& task) const {
+  const Json note = readJson(m_path / "failed" / (task + ".json"));
+  return note.is_object() ? note.value("reason", "") : "";
+}
+
+}  // namespace polemcl::apps

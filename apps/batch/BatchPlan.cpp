@@ -1,0 +1,462 @@
+#include "batch/BatchPlan.h"
+
+#include <mrpt/system/md5.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <set>
+
+#include "batch/BatchCommands.h"
+#include "cli/Settings.h"
+#include "config/Bindings.h"
+#include "config/Config.h"
+#include "io/dataset/Nclt.h"
+#include "io/file/TextFile.h"
+#include "report/batch/PublishedResults.h"
+
+namespace polemcl::apps {
+namespace fs = std::filesystem;
+namespace {
+
+std::string plannedContentOf(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(file + ": cannot be read");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Least confidence of poles for maps where it is another than for localization, see surveyDrive().
+std::string mapConfidence(const Settings& settings) {
+  const double map = settings.map.minConfidence, native = settings.extraction.native.minConfidence;
+  return map > 0 && map != native ? io::significant(map, 9) : "";
+}
+
+/// What the extraction depends on: settings with the same text share their poles.
+std::string extractionText(Settings settings) {
+  ConfigWriter writer;
+  bind(writer, settings.sensor);
+  bind(writer, settings.extraction);
+  return writer.text() + mapConfidence(settings);
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Puts together one plan.
+class Planner {
+ public:
+  Planner(const BatchSpec& spec, const std::string& build) : m_spec(spec) {
+    m_plan.name = spec.name;
+    m_plan.build = build;
+  }
+
+  BatchPlan plan() {
+    requireInputs();
+    for (const auto& setting : m_spec.settings) freeze(setting);
+    for (const auto& session : m_spec.sessions)
+      if (isUsed(session.name)) addPoles(session);
+    for (const auto& session : m_spec.sessions)
+      if (session.truthMap == truthFromLabels && isScored(session)) addTruth(session);
+    for (const auto& setting : m_spec.settings) {
+      addMaps(setting);
+      for (const auto& session : m_spec.sessions)
+        if (isScored(setting, session)) addScore(setting, session);
+      addCells(setting);
+    }
+    for (const auto& [name, content] : m_plan.files) m_plan.sums[name] = mrpt::system::md5(content);
+    setKeys();
+    return std::move(m_plan);
+  }
+
+ private:
+  bool isUsed(const std::string& session) const {
+    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(), [&](const auto& setting) {
+      return has(setting.sessions, session) || has(setting.mapSessions, session);
+    });
+  }
+
+  /// Whether a session completes a map of the setting, and its true poles are known.
+  static bool isScored(const BatchSetting& setting, const BatchSession& session) {
+    const auto& names = setting.mapSessions;
+    return !session.truthMap.empty() &&
+           (setting.protocol == MapProtocol::each ? has(names, session.name)
+                                                  : names.back() == session.name);
+  }
+  bool isScored(const BatchSession& session) const {
+    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(),
+                       [&](const auto& setting) { return isScored(setting, session); });
+  }
+
+  /// What is wrong with a session's input; empty when nothing is.
+  static std::string obstacle(const BatchSession& session) {
+    const bool isFile =
+        session.source == "simulated" || session.source == "poles" || session.source == "scans";
+    if (session.source == "nclt" && io::isNcltSession(session.input)) return {};
+    if (!fs::exists(session.input)) return session.input + " is not there";
+    if (isFile && !fs::is_regular_file(session.input)) return session.input + " is no file";
+    if (!isFile && !fs::is_directory(session.input)) return session.input + " is no folder";
+    const fs::path truth = fs::path(session.input).replace_extension(".tum");
+    if (isFile && session.source != "simulated" && !fs::is_regular_file(truth))
+      return truth.string() + ", its true poses, is not there";
+    return {};
+  }
+
+  /// The same for its true poles.
+  static std::string truthObstacle(const BatchSession& session) {
+    if (session.truthMap != truthFromLabels)
+      return fs::is_regular_file(session.truthMap)
+                 ? ""
+                 : session.truthMap + ", its truth_map, is not there";
+    const fs::path labels = fs::path(session.input) / "labels";
+    return fs::is_directory(labels) ? "" : labels.string() + " is not there";
+  }
+
+  void requireInputs() const {
+    std::string missing;
+    for (const auto& session : m_spec.sessions) {
+      if (!isUsed(session.name)) continue;
+      std::string what = obstacle(session);
+      if (what.empty() && isScored(session)) what = truthObstacle(session);
+      if (!what.empty()) missing += (missing.empty() ? "" : "; ") + session.name + ": " + what;
+    }
+    if (!missing.empty())
+      throw Error("batch " + m_spec.name + ": inputs are missing: " + missing +
+                  "; check --data, [sessions] input and truth_map, or leave these sessions out");
+    if (!m_spec.publishedSessions.empty()) report::readPublishedSessions(m_spec.publishedSessions);
+  }
+
+  /// A file that settings name, copied into the batch's folder; the name it has from a task's.
+  std::string frozen(const std::string& file) {
+    if (file.empty()) return file;
+    const std::string name = "files/" + fs::path(file).filename().string();
+    const std::string content = plannedContentOf(file);
+    const auto [entry, isNew] = m_plan.files.emplace(name, content);
+    if (!isNew && entry->second != content)
+      throw Error("batch " + m_spec.name + ": two different files are called " +
+                  fs::path(file).filename().string() + "; rename one of them");
+    return "../../" + name;
+  }
+
+  void freeze(const BatchSetting& setting) {
+    const Settings settings = loadSettings(setting.config, setting.set);
+    const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), setting.name);
+    m_group[setting.name] = group->second;
+    if (isNew) m_groups.push_back({setting.name, mapConfidence(settings)});
+    m_plan.files["settings/" + setting.name + ".ini"] = settingsText(settings);
+  }
+
+  void addPoles(const BatchSession& session) {
+    BatchTask task;
+    task.id = "poles." + session.name;
+    task.kind = "poles";
+    const std::string rawlog = session.name + ".rawlog", truth = session.name + ".tum";
+    if (session.source == "simulated")
+      simulate(session, task);
+    else if (session.source == "poles")
+      task.commands = {{"copy", session.input, rawlog},
+                       {"copy", fs::path(session.input).replace_extension(".tum"), truth}};
+    else
+      import(session, task);
+    task.outputs.push_back(truth);
+    if (hasGroups(session)) {
+      for (const auto& group : m_groups) {
+        if (hasPoles(group, session.name)) task.outputs.push_back(group.name + "/" + rawlog);
+        if (hasMapPoles(group, session.name))
+          task.outputs.push_back(group.name + mapFolder + "/" + rawlog);
+      }
+    } else {
+      task.outputs.push_back(rawlog);
+    }
+    m_plan.tasks.push_back(std::move(task));
+  }
+
+  void addTruth(const BatchSession& session) {
+    BatchTask task;
+    task.id = truthId(session);
+    task.kind = "truth";
+    task.commands = {labelsCommand(session)};
+    task.outputs = {"truth.polemap"};
+    m_plan.tasks.push_back(std::move(task));
+  }
+
+  void simulate(const BatchSession& session, BatchTask& task) {
+    Settings settings = loadSettings(session.input, session.set);
+    settings.simulation.detections = frozen(settings.simulation.detections);
+    settings.simulation.world.track = frozen(settings.simulation.world.track);
+    const std::string file = "settings/simulate." + session.name + ".ini";
+    m_plan.files[file] = settingsText(settings);
+    Command command = program("pole-simulate");
+    append(command, {"--config", "../../" + file, "--poles", session.name + ".rawlog"});
+    task.commands = {command};
+    task.outputs = {session.name + "_poles_gt.csv"};
+  }
+
+  void import(const BatchSession& session, BatchTask& task) {
+    const std::string truth = session.name + ".tum";
+    std::string scans = session.name + ".rawlog";
+    if (session.source == "scans") {
+      scans = session.input;
+      task.commands = {{"copy", fs::path(session.input).replace_extension(".tum"), truth}};
+    } else {
+      task.commands = {importCommand(session, m_spec.seed)};
+    }
+    for (const auto& group : m_groups) {
+      const std::string rawlog = "/" + session.name + ".rawlog";
+      Command command = program("pole-extract");
+      append(command, {"--config", "../../settings/" + group.name + ".ini", "--input", scans});
+      Command forMaps = command;
+      append(command, {"--output", group.name + rawlog});
+      if (hasPoles(group, session.name)) task.commands.push_back(command);
+      if (!hasMapPoles(group, session.name)) continue;
+      append(forMaps, {"--set", "native.min_confidence=" + group.mapConfidence, "--output",
+                       group.name + mapFolder + rawlog});
+      task.commands.push_back(forMaps);
+    }
+  }
+
+  /// Stored and simulated poles are those of all settings.
+  static bool hasGroups(const BatchSession& session) {
+    return session.source != "simulated" && session.source != "poles";
+  }
+
+  static std::string truthId(const BatchSession& session) { return "truth." + session.name; }
+  static std::string scoreId(const BatchSetting& setting, const std::string& session) {
+    return "score." + setting.name + "." + session;
+  }
+  static std::string mapId(const BatchSetting& setting, const std::string& session) {
+    return "map." + setting.name + "." + session;
+  }
+
+  std::string rawlogOf(const BatchSetting& setting, const std::string& session,
+                       bool forMaps = false) const {
+    std::string folder = "../poles." + session + "/";
+    if (hasGroups(m_spec.session(session))) {
+      const std::string& name = m_group.at(setting.name);
+      const auto group = std::find_if(m_groups.begin(), m_groups.end(),
+                                      [&](const Group& entry) { return entry.name == name; });
+      folder += name + (forMaps && !group->mapConfidence.empty() ? mapFolder : "") + "/";
+    }
+    return folder + session + ".rawlog";
+  }
+  static std::string truthOf(const std::string& session) {
+    return "../poles." + session + "/" + session + ".tum";
+  }
+
+  std::size_t placeOf(const std::string& session) const {
+    for (std::size_t i = 0; i < m_spec.sessions.size(); ++i)
+      if (m_spec.sessions[i].name == session) return i;
+    return m_spec.sessions.size();
+  }
+
+  /// The map that a session is localized in: the number of its last map session, from 1.
+  std::size_t mapFor(const BatchSetting& setting, const std::string& session) const {
+    const auto& maps = setting.mapSessions;
+    if (setting.protocol == MapProtocol::each)
+      return static_cast<std::size_t>(std::find(maps.begin(), maps.end(), session) - maps.begin()) +
+             1;
+    if (setting.map == MapTime::finished) return maps.size();
+    return static_cast<std::size_t>(
+        std::count_if(maps.begin(), maps.end(),
+                      [&](const std::string& name) { return placeOf(name) < placeOf(session); }));
+  }
+
+  void addMaps(const BatchSetting& setting) {
+    std::set<std::size_t> wanted;
+    for (const auto& session : setting.sessions) wanted.insert(mapFor(setting, session));
+    for (const auto& session : m_spec.sessions)
+      if (isScored(setting, session))
+        wanted.insert(setting.protocol == MapProtocol::each ? mapFor(setting, session.name)
+                                                            : setting.mapSessions.size());
+    const bool chain = setting.protocol == MapProtocol::upkeep;
+    for (std::size_t n = 1; n <= *wanted.rbegin(); ++n)
+      if (chain || wanted.count(n)) addMap(setting, n);
+  }
+
+  /// Dates that some have and others have not would be years apart.
+  bool allDated(const BatchSetting& setting) const {
+    return std::none_of(setting.mapSessions.begin(), setting.mapSessions.end(),
+                        [&](const std::string& name) { return m_spec.session(name).date.empty(); });
+  }
+
+  /// The map of the first n map sessions, or of the n-th alone.
+  void addMap(const BatchSetting& setting, std::size_t n) {
+    const auto& names = setting.mapSessions;
+    BatchTask task;
+    task.id = mapId(setting, names[n - 1]);
+    task.kind = "map";
+    Command command = program("pole-map");
+    append(command,
+           {"--config", "../../settings/" + setting.name + ".ini", "--output", "map.polemap"});
+    const std::size_t first = setting.protocol == MapProtocol::together ? 0 : n - 1;
+    if (setting.protocol == MapProtocol::upkeep && n > 1) {
+      const std::string before = mapId(setting, names[n - 2]);
+      append(command, {"--update", "../" + before + "/map.polemap"});
+      task.needs.push_back(before);
+    }
+    Command inputs{"--input"}, truths{"--truth"}, dates{"--date"};
+    for (std::size_t i = first; i < n; ++i) {
+      inputs.push_back(rawlogOf(setting, names[i], true));
+      truths.push_back(truthOf(names[i]));
+      dates.push_back(m_spec.session(names[i]).date);
+      task.needs.push_back("poles." + names[i]);
+    }
+    append(command, inputs);
+    append(command, truths);
+    if (allDated(setting)) append(command, dates);
+    task.commands = {command};
+    task.outputs = {"map.polemap"};
+    m_plan.tasks.push_back(std::move(task));
+  }
+
+  /// Scores the map that the session completes.
+  void addScore(const BatchSetting& setting, const BatchSession& session) {
+    BatchTask task;
+    task.id = scoreId(setting, session.name);
+    task.kind = "score";
+    const std::string map = mapId(setting, session.name);
+    task.needs = {map};
+    std::string truth = session.truthMap;
+    if (truth == truthFromLabels) {
+      task.needs.push_back(truthId(session));
+      truth = "../" + truthId(session) + "/truth.polemap";
+    }
+    task.commands = scoreCommands("../" + map + "/map.polemap", truth);
+    task.outputs.assign(std::begin(scoreFiles), std::end(scoreFiles));
+    m_plan.tasks.push_back(std::move(task));
+  }
+
+  void addCells(const BatchSetting& setting) {
+    for (const auto& session : m_spec.sessions) {
+      const bool mapped = has(setting.mapSessions, session.name);
+      const bool localized = has(setting.sessions, session.name);
+      if (!localized && !mapped) continue;
+      BatchCell cell;
+      cell.setting = setting.name;
+      cell.session = session.name;
+      cell.poles = rawlogOf(setting, session.name, !localized).substr(3);
+      if (mapped) cell.ownMap = lastMapOf(setting, session.name);
+      if (isScored(setting, session)) cell.score = scoreId(setting, session.name);
+      if (localized) addRuns(setting, cell);
+      m_plan.cells.push_back(std::move(cell));
+    }
+  }
+
+  /// A map that the session went into: the first there is.
+  std::string lastMapOf(const BatchSetting& setting, const std::string& session) const {
+    const auto& names = setting.mapSessions;
+    const auto at = std::find(names.begin(), names.end(), session);
+    for (auto name = at; name != names.end(); ++name)
+      for (const auto& task : m_plan.tasks)
+        if (task.id == mapId(setting, *name)) return task.id;
+    return {};
+  }
+
+  void addRuns(const BatchSetting& setting, BatchCell& cell) {
+    cell.map = mapId(setting, setting.mapSessions[mapFor(setting, cell.session) - 1]);
+    for (int run = 0; run < m_spec.runs; ++run) {
+      BatchTask task;
+      const std::string number = std::to_string(run);
+      task.id = "run." + setting.name + "." + cell.session + "." +
+                std::string(number.size() < 2 ? 1 : 0, '0') + number;
+      task.kind = "run";
+      task.needs = {"poles." + cell.session, cell.map};
+      const auto seed = seedOf(m_spec.seed, cell.session + "/run " + number);
+      Command command = program("pole-localize");
+      append(command, {"--config", "../../settings/" + setting.name + ".ini", "--input",
+                       rawlogOf(setting, cell.session), "--truth", truthOf(cell.session), "--map",
+                       "../" + cell.map + "/map.polemap", "--output", "out", "--runs", "1",
+                       "--seed", std::to_string(seed)});
+      task.commands = {command};
+      task.outputs = {"out/run_00.tum", "out/run_00_health.csv", "out/summary.json"};
+      cell.runs.push_back(task.id);
+      cell.seeds.push_back(seed);
+      m_plan.tasks.push_back(std::move(task));
+    }
+  }
+
+  /// Size and time of a file from outside, so that another one in its place is noticed.
+  static std::string stamp(const std::string& argument) {
+    std::error_code none;
+    if (!fs::path(argument).is_absolute() || !fs::is_regular_file(argument, none)) return {};
+    const auto size = fs::file_size(argument, none);
+    const auto time = fs::last_write_time(argument, none).time_since_epoch().count();
+    return std::to_string(size) + "@" + std::to_string(time);
+  }
+
+  void setKeys() {
+    std::map<std::string, std::string> keys;
+    for (auto& task : m_plan.tasks) {
+      std::string text = std::string("polemcl ") + version() + "\n" + m_plan.build + "\n";
+      for (const auto& command : task.commands)
+        for (const auto& argument : command) {
+          text += argument + "\n" + stamp(argument);
+          const std::string prefix = "../../";
+          if (argument.rfind(prefix, 0) == 0) text += m_plan.files.at(argument.substr(6));
+        }
+      // Files that frozen settings name belong to all that is simulated.
+      if (task.commands.front().front() == "pole-simulate")
+        for (const auto& [name, content] : m_plan.files)
+          if (name.rfind("files/", 0) == 0) text += content;
+      for (const auto& need : task.needs) text += keys.at(need) + "\n";
+      task.key = keys[task.id] = mrpt::system::md5(text);
+    }
+  }
+
+  const BatchSpec& m_spec;
+  BatchPlan m_plan;
+  /// Settings that share their poles.
+  struct Group {
+    std::string name;           ///< of the first of them
+    std::string mapConfidence;  ///< of poles for maps; empty: that of all
+  };
+  static constexpr const char* mapFolder = ".map";
+
+  /// Whether any setting of the group takes the session's poles for that.
+  bool isFor(const Group& group, const std::string& session,
+             std::vector<std::string> BatchSetting::*purpose) const {
+    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(), [&](const auto& setting) {
+      return m_group.at(setting.name) == group.name && has(setting.*purpose, session);
+    });
+  }
+  /// Poles for maps are those of localization, unless the group has others for maps.
+  bool hasMapPoles(const Group& group, const std::string& session) const {
+    return !group.mapConfidence.empty() && isFor(group, session, &BatchSetting::mapSessions);
+  }
+  bool hasPoles(const Group& group, const std::string& session) const {
+    return isFor(group, session, &BatchSetting::sessions) ||
+           (group.mapConfidence.empty() && isFor(group, session, &BatchSetting::mapSessions));
+  }
+
+  std::map<std::string, std::string> m_groupOf;  ///< text of the extraction -> name of the group
+  std::map<std::string, std::string> m_group;    ///< setting -> group
+  std::vector<Group> m_groups;
+};
+
+}  // namespace
+
+BatchPlan planBatch(const BatchSpec& spec, const std::string& build) {
+  return Planner(spec, build).plan();
+}
+
+const BatchTask& BatchPlan::task(const std::string& id) const {
+  for (const auto& task : tasks)
+    if (task.id == id) return task;
+  throw Error("batch " + name + " has no task '" + id + "'");
+}
+
+std::vector<std::vector<std::string>> levels(const BatchPlan& plan) {
+  std::map<std::string, std::size_t> level;
+  std::vector<std::vector<std::string>> result;
+  for (const auto& task : plan.tasks) {
+    std::size_t own = 0;
+    for (const auto& need : task.needs) own = std::max(own, level.at(need) + 1);
+    level[task.id] = own;
+    if (result.size() <= own) result.resize(own + 1);
+    result[own].push_back(task.id);
+  }
+  return result;
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,74 @@
+#pragma once
+/// \file BatchPlan.h
+/// \brief What has to be done for a batch: tasks, each a few commands, and what they need.
+///
+/// A plan is plain data and can be stored, so that a task can be done by another process, on
+/// another machine. Commands name files relative to the folder they run in; tasks lie beside each
+/// other:
+/// `../poles.month_03/month_03.rawlog` is what the task `poles.month_03` left.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "batch/BatchSpec.h"
+#include "cli/Version.h"
+
+namespace polemcl::apps {
+
+/// \brief A piece of work that is done, or not: never half.
+struct BatchTask {
+  std::string id;    ///< `poles.SESSION`, `map.SETTING.SESSION`, `run.SETTING.SESSION.NN`,
+                     ///< `truth.SESSION`, `score.SETTING.SESSION`
+  std::string kind;  ///< its first word
+  std::vector<std::string> needs;  ///< ids of tasks that must be done before
+  /// One after the other: program and arguments. The program `copy` takes files here (FROM TO …).
+  std::vector<std::vector<std::string>> commands;
+  std::vector<std::string> outputs;  ///< files kept, relative to the task's folder; others go
+  /// Stands for all that its outputs depend on: commands, settings, the build of the programs, the
+  /// keys of its needs.
+  std::string key;
+};
+
+/// \brief Where the results of one session under one setting come from.
+struct BatchCell {
+  std::string setting, session;
+  std::string poles;              ///< its rawlog of poles, relative to the folder of tasks
+  std::string map;                ///< id of the map it is localized in; empty: not localized
+  std::string ownMap;             ///< id of the map that it went into; empty: none
+  std::string score;              ///< id of the score of the map it completes; empty: none
+  std::vector<std::string> runs;  ///< ids, by index
+  std::vector<std::uint32_t> seeds;
+};
+
+struct BatchPlan {
+  std::string name;
+  std::string build;             ///< of the programs that planned it, see buildIdentity()
+  std::vector<BatchTask> tasks;  ///< none needs a later one
+  std::vector<BatchCell> cells;
+  /// Frozen copies of what INI files say, relative to the batch's folder: settings, models.
+  std::map<std::string, std::string> files;
+  /// MD5 of each of them: what a stored plan has instead of their content.
+  std::map<std::string, std::string> sums;
+
+  const BatchTask& task(const std::string& id) const;  ///< \throws Error
+};
+
+/// \brief Plans a batch. Sessions are imported once and extracted once for all settings that use
+/// them and have the same `[sensor] [extraction] [paper] [native]`; maps are built once for all
+/// sessions and runs. Maps that a setting's last map session completes (with `maps = each`: all)
+/// are scored where that session has a truthMap.
+/// \throws Error as loadSettings() and readPublishedSessions(), and when the input or the true
+///         poles of a session are not there (all that are missing are named).
+/// \param build Of the programs that do the tasks: tasks that another build has done are open.
+BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());
+
+/// \brief Tasks that can be done at the same time, the first need nothing: ids by level.
+std::vector<std::vector<std::string>> levels(const BatchPlan& plan);
+
+void writePlan(const std::filesystem::path& file, const BatchPlan& plan);
+/// \throws Error when it cannot be read or is no plan of this version.
+BatchPlan readPlan(const std::filesystem::path& file);
+
+}  // namespace polemcl::apps

@@ -1,0 +1,276 @@
+#include "batch/BatchRunner.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "core/common/Types.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int s_notStarted = 127;  ///< exit code of a child that could not become its program
+
+/// Files that the commands leave beside their outputs would be found by the next attempt.
+class Staging {
+ public:
+  Staging(const BatchFolder& folder, const BatchTask& task) : m_path(folder.stage(task)) {}
+  ~Staging() {
+    std::error_code none;
+    fs::remove_all(m_path, none);
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+  const fs::path& path() const { return m_path; }
+
+ private:
+  fs::path m_path;
+};
+
+void copyFiles(const std::vector<std::string>& command, const fs::path& folder) {
+  std::error_code failure;
+  fs::copy_file(command.at(1), folder / command.at(2), failure);
+  if (failure) throw Error(command.at(1) + ": cannot be copied: " + failure.message());
+}
+
+std::string quoted(const std::string& argument) {
+  const bool plain =
+      !argument.empty() && argument.find_first_of(" '\"\\$&|;<>()*?") == std::string::npos;
+  return plain ? argument : "'" + argument + "'";
+}
+
+/// The last line that a command wrote: its error.
+std::string lastLine(const fs::path& log) {
+  std::ifstream stream(log);
+  std::string line, last;
+  while (std::getline(stream, line))
+    if (!line.empty()) last = line;
+  return last;
+}
+
+/// In the child: becomes the program, or ends. Only calls that are safe after a fork of a program
+/// with threads.
+[[noreturn]] void become(const char* program, char* const* arguments, const char* folder,
+                         const char* log, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG,
+          SIGKILL);  // nobody would wait for it, and the batch may go on elsewhere
+  const int in = ::open("/dev/null", O_RDONLY);
+  const int out = ::open(log, O_WRONLY | O_CREAT | O_APPEND, 0666);
+  if (::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
+      ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(out, STDERR_FILENO) >= 0 && ::chdir(folder) == 0)
+    ::execv(program, arguments);
+  ::_exit(s_notStarted);
+}
+
+/// Runs a program in `folder`. \return What it ended with, as waitpid() has it.
+int spawn(const std::vector<std::string>& command, const fs::path& folder, const fs::path& log) {
+  const std::string program = (programFolder() / command.front()).string();
+  if (::access(program.c_str(), X_OK) != 0)
+    throw Error(program + ": cannot be started: " + std::strerror(errno));
+  std::vector<char*> arguments;
+  for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child < 0) throw Error(program + ": cannot be started: " + std::strerror(errno));
+  if (child == 0) become(program.c_str(), arguments.data(), folder.c_str(), log.c_str(), parent);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw Error(program + ": cannot be waited for: " + std::strerror(errno));
+  if (WIFEXITED(status) && WEXITSTATUS(status) == s_notStarted)
+    throw Error(program + ": cannot be started in " + folder.string());
+  return status;
+}
+
+void runCommand(const std::vector<std::string>& command, const fs::path& folder,
+                const fs::path& log) {
+  {
+    std::ofstream stream(log, std::ios::app);
+    stream << "$";
+    for (const auto& argument : command) stream << ' ' << quoted(argument);
+    stream << '\n';
+    if (!stream.flush()) throw Error(log.string() + ": cannot be written; is the disk full?");
+  }
+  if (command.front() == "copy") return copyFiles(command, folder);
+  const int status = spawn(command, folder, log);
+  if (WIFSIGNALED(status))
+    throw Error(command.front() + " was ended by signal " + std::to_string(WTERMSIG(status)) +
+                " (" + strsignal(WTERMSIG(status)) + ")");
+  if (WEXITSTATUS(status) == 0) return;
+  const std::string said = lastLine(log);
+  throw Error(said.empty() || said[0] == '$'
+                  ? command.front() + " ended with exit code " + std::to_string(WEXITSTATUS(status))
+                  : said);
+}
+
+void doTask(const BatchFolder& folder, const BatchTask& task) {
+  for (const auto& need : task.needs)
+    if (!fs::exists(folder.work(need) / "done.json"))
+      throw Error("needs " + need + ", which is not done");
+  folder.remove(task);  // an older one, with other settings
+  std::error_code none;
+  const fs::path log = fs::absolute(folder.log(task.id));
+  fs::remove(log, none);
+  const Staging staging(folder, task);
+  for (const auto& output : task.outputs)
+    fs::create_directories((staging.path() / output).parent_path());
+  for (const auto& command : task.commands) runCommand(command, staging.path(), log);
+  folder.commit(task, staging.path());
+}
+
+/// Hands out tasks whose needs are done, to several threads.
+class Queue {
+ public:
+  using Report = std::function<void(const BatchTask&, const TaskOutcome&, const BatchProgress&)>;
+
+  Queue(const BatchFolder& folder, std::vector<const BatchTask*> open, std::size_t all,
+        std::size_t imports, const Report& report)
+      : m_folder(folder), m_waiting(std::move(open)), m_mostImports(imports), m_report(report) {
+    for (const auto* task : m_waiting) m_open.insert(task->id);
+    m_progress.all = all;
+    m_progress.done = all - m_waiting.size();
+  }
+
+  void work() {
+    std::unique_lock lock(m_mutex);
+    while (!m_waiting.empty()) {
+      const BatchTask* task = takeReady();
+      if (!task) {
+        m_changed.wait(lock);
+        continue;
+      }
+      const std::string blocked = blockedBy(*task);
+      lock.unlock();
+      const TaskOutcome outcome =
+          blocked.empty() ? runTask(m_folder, *task) : TaskOutcome{blocked, 0, true};
+      lock.lock();
+      finish(*task, outcome);
+    }
+  }
+
+  const std::map<std::string, std::string>& failures() const { return m_failures; }
+
+ private:
+  static bool isImport(const BatchTask& task) { return task.kind == "poles"; }
+
+  const BatchTask* takeReady() {
+    for (auto task = m_waiting.begin(); task != m_waiting.end(); ++task) {
+      bool ready = true;
+      for (const auto& need : (*task)->needs) ready = ready && !m_open.count(need);
+      if (!ready || (isImport(**task) && m_mostImports > 0 && m_imports >= m_mostImports)) continue;
+      const BatchTask* found = *task;
+      m_imports += isImport(*found);
+      m_waiting.erase(task);
+      return found;
+    }
+    return nullptr;
+  }
+
+  std::string blockedBy(const BatchTask& task) const {
+    for (const auto& need : task.needs)
+      if (m_failed.count(need)) return "needs " + need + ", which is not done";
+    return {};
+  }
+
+  void finish(const BatchTask& task, const TaskOutcome& outcome) {
+    m_open.erase(task.id);
+    m_imports -= isImport(task);
+    if (outcome.failure.empty()) {
+      ++m_progress.done;
+    } else {
+      if (!outcome.blocked) m_failures[task.id] = outcome.failure;
+      m_failed.insert(task.id);
+      ++m_progress.failed;
+    }
+    if (m_report) m_report(task, outcome, m_progress);
+    m_changed.notify_all();
+  }
+
+  const BatchFolder& m_folder;
+  std::vector<const BatchTask*> m_waiting;
+  const std::size_t m_mostImports;
+  std::size_t m_imports = 0;  ///< under way
+  const Report& m_report;
+  std::set<std::string> m_open;    ///< ids of tasks that are not done yet
+  std::set<std::string> m_failed;  ///< blocked ones too
+  std::map<std::string, std::string> m_failures;
+  BatchProgress m_progress;
+  std::mutex m_mutex;
+  std::condition_variable m_changed;
+};
+
+}  // namespace
+
+fs::path programFolder() {
+  if (const char* folder = std::getenv("POLEMCL_BIN"); folder && *folder)
+    return fs::absolute(folder);
+  return fs::read_symlink("/proc/self/exe").parent_path();
+}
+
+TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {
+  TaskOutcome outcome;
+  const auto begin = Clock::now();
+  try {
+    if (folder.state(task) == BatchFolder::State::done) return outcome;
+    doTask(folder, task);
+  } catch (const std::exception& error) {
+    outcome.failure = error.what();
+    folder.noteFailure(task, outcome.failure);
+  }
+  outcome.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  if (outcome.failure.empty()) folder.noteTime(task.id, outcome.seconds);
+  return outcome;
+}
+
+std::vector<const BatchTask*> openTasks(const BatchFolder& folder, const BatchPlan& plan,
+                                        std::vector<std::string>& notes) {
+  std::vector<const BatchTask*> open;
+  std::set<std::string> ids;
+  std::map<std::string, std::size_t> doneByOthers;
+  for (const auto& task : plan.tasks) {
+    bool again = false;
+    for (const auto& need : task.needs) again = again || ids.count(need);
+    std::string why;
+    const auto state = folder.state(task, &why);
+    if (state == BatchFolder::State::damaged)
+      notes.push_back(task.id + ": " + why + "; it is done again");
+    if (state == BatchFolder::State::done && !again) continue;
+    const std::string build = folder.buildOf(task);
+    if (state == BatchFolder::State::open && !build.empty() && build != plan.build)
+      ++doneByOthers[build];
+    if (state != BatchFolder::State::open || again) folder.remove(task);
+    open.push_back(&task);
+    ids.insert(task.id);
+  }
+  for (const auto& [build, count] : doneByOthers)
+    notes.push_back(std::to_string(count) + " tasks were done by another build (" + build +
+                    ") and are done again; this is " + plan.build);
+  return open;
+}
+
+std::map<std::string, std::string> runBatch(const BatchFolder& folder, const BatchPlan& plan,
+                                            const BatchLimits& limits,
+                                            const Queue::Report& report) {
+  std::vector<std::string> notes;
+  Queue queue(folder, openTasks(folder, plan, notes), plan.tasks.size(), limits.imports, report);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < limits.jobs; ++i) threads.emplace_back([&queue] { queue.work(); });
+  for (auto& thread : threads) thread.join();
+  return queue.failures();
+}
+
+}  // namespace polemcl::apps

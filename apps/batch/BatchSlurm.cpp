@@ -1,0 +1,147 @@
+#include "batch/BatchSlurm.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <set>
+#include <thread>
+
+#include "batch/BatchRunner.h"
+#include "core/common/Types.h"
+#include "io/file/AtomicFile.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace fs = std::filesystem;
+namespace {
+
+std::string shellQuoted(const std::string& text) {
+  std::string quote = "'";
+  for (const char c : text) quote += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quote + "'";
+}
+
+/// What a command prints. \throws Error with it when the command fails.
+std::string outputOf(const std::string& command) {
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  if (!pipe) throw Error(command + ": cannot be run");
+  std::string text;
+  std::array<char, 4096> block;
+  while (const std::size_t size = std::fread(block.data(), 1, block.size(), pipe))
+    text.append(block.data(), size);
+  const int status = ::pclose(pipe);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    throw Error(command.substr(0, command.find(' ')) +
+                " failed: " + std::string(io::trimmed(text)) +
+                "; is Slurm installed, and its controller running?");
+  return text;
+}
+
+void writeText(const fs::path& file, const std::string& text) {
+  io::AtomicFile output(file);
+  output.stream() << text;
+  output.commit();
+}
+
+/// One array of tasks that can be done at the same time.
+class JobArray {
+ public:
+  JobArray(const BatchFolder& folder, std::string name, std::vector<std::string> tasks)
+      : m_folder(folder), m_name(std::move(name)), m_tasks(std::move(tasks)) {}
+
+  /// \param after Jobs that must have ended. \return The number of the job.
+  std::string submit(const SlurmOptions& options, const std::vector<std::string>& after) const {
+    const fs::path here = m_folder.path() / "slurm";
+    std::string list;
+    for (const auto& task : m_tasks) list += task + "\n";
+    writeText(here / (m_name + ".txt"), list);
+    writeText(here / (m_name + ".sh"), script(here));
+    std::string command =
+        "sbatch --parsable --requeue --job-name=" + shellQuoted(m_name) + " --array=1-" +
+        std::to_string(m_tasks.size()) + " --chdir=" + shellQuoted(m_folder.path().string()) +
+        " --output=" + shellQuoted((here / (m_name + "_%a.log")).string()) + " --open-mode=append";
+    for (std::size_t i = 0; i < after.size(); ++i)
+      command += (i == 0 ? " --dependency=afterany:" : ":") + after[i];
+    for (const auto& argument : options.arguments) command += " " + shellQuoted(argument);
+    const std::string said =
+        outputOf(command + " " + shellQuoted((here / (m_name + ".sh")).string()));
+    return std::string(io::trimmed(said.substr(0, said.find_first_of(";\n"))));
+  }
+
+ private:
+  std::string script(const fs::path& here) const {
+    return "#!/bin/sh\n# One task of a batch: the line of " + m_name +
+           ".txt that has the number of this array task.\n"
+           "export POLEMCL_BIN=" +
+           shellQuoted(programFolder().string()) + "\ntask=$(sed -n \"${SLURM_ARRAY_TASK_ID}p\" " +
+           shellQuoted((here / (m_name + ".txt")).string()) +
+           ")\nexec \"$POLEMCL_BIN/pole-batch\" --quiet --output " +
+           shellQuoted(m_folder.path().string()) + " --task \"$task\"\n";
+  }
+
+  const BatchFolder& m_folder;
+  std::string m_name;
+  std::vector<std::string> m_tasks;
+};
+
+/// The open tasks by level, in arrays that Slurm takes.
+std::vector<std::vector<std::vector<std::string>>> arraysOf(
+    const BatchPlan& plan, const std::vector<const BatchTask*>& open, std::size_t largest) {
+  std::set<std::string> ids;
+  for (const auto* task : open) ids.insert(task->id);
+  std::vector<std::vector<std::vector<std::string>>> result;
+  for (const auto& level : levels(plan)) {
+    std::vector<std::vector<std::string>> arrays;
+    for (const auto& id : level) {
+      if (!ids.count(id)) continue;
+      if (arrays.empty() || arrays.back().size() == largest) arrays.emplace_back();
+      arrays.back().push_back(id);
+    }
+    if (!arrays.empty()) result.push_back(arrays);
+  }
+  return result;
+}
+
+bool isQueued(const std::vector<std::string>& jobs) {
+  std::string list;
+  for (const auto& job : jobs) list += (list.empty() ? "" : ",") + job;
+  // Jobs that ended long ago are forgotten, which squeue calls an error if all of them are.
+  try {
+    return !io::trimmed(outputOf("squeue --noheader --jobs=" + list + " --format=%i")).empty();
+  } catch (const Error& error) {
+    if (std::string(error.what()).find("Invalid job id") != std::string::npos) return false;
+    throw;
+  }
+}
+
+}  // namespace
+
+void runOnSlurm(const BatchFolder& folder, const BatchPlan& plan,
+                const std::vector<const BatchTask*>& open, const SlurmOptions& options,
+                const std::function<void(std::size_t)>& progress) {
+  fs::create_directories(folder.path() / "slurm");
+  std::vector<std::string> jobs, before;
+  std::size_t number = 0;
+  for (const auto& level : arraysOf(plan, open, options.largestArray)) {
+    std::vector<std::string> submitted;
+    for (const auto& tasks : level) {
+      const std::string name = plan.name + "." + std::to_string(++number);
+      submitted.push_back(JobArray(folder, name, tasks).submit(options, before));
+    }
+    jobs.insert(jobs.end(), submitted.begin(), submitted.end());
+    before = submitted;
+  }
+  const auto done = [&] {
+    return static_cast<std::size_t>(std::count_if(
+        open.begin(), open.end(), [&](const BatchTask* task) { return folder.isDone(*task); }));
+  };
+  while (!jobs.empty() && isQueued(jobs)) {
+    if (progress) progress(done());
+    std::this_thread::sleep_for(std::chrono::duration<double>(options.pollSeconds));
+  }
+}
+
+}  // namespace polemcl::apps

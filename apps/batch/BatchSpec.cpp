@@ -1,0 +1,308 @@
+#include "batch/BatchSpec.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <sstream>
+
+#include "config/Config.h"
+#include "io/file/Date.h"
+#include "report/batch/PublishedResults.h"
+
+namespace polemcl::apps {
+namespace fs = std::filesystem;
+namespace {
+
+const std::vector<std::string> sources{"simulated", "poles", "scans",  "folder", "kitti-odometry",
+                                       "kitti-raw", "nclt",  "mulran", "pcd"};
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> all;
+  for (std::string word; stream >> word;) all.push_back(word);
+  return all;
+}
+
+/// Names become names of files and jobs, joined by dots.
+void requireName(const std::string& name, const std::string& where) {
+  const bool good = !name.empty() && name.size() <= 64 &&
+                    std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                      return std::isalnum(c) || c == '_' || c == '-';
+                    });
+  if (!good)
+    throw Error(where + ": '" + name +
+                "' is no name; allowed are up to 64 letters, digits, _ and -");
+}
+
+void requireNames(const std::vector<std::string>& names, const std::string& where) {
+  if (names.empty()) throw Error(where + ": at least one name is needed");
+  std::set<std::string> seen;
+  for (const auto& name : names) {
+    requireName(name, where);
+    if (!seen.insert(name).second) throw Error(where + ": '" + name + "' is given twice");
+  }
+}
+
+/// What the values of a session or setting may refer to.
+class Placeholders {
+ public:
+  Placeholders(const fs::path& file, fs::path data)
+      : m_file(file.string()),
+        m_folder(fs::absolute(file).parent_path()),
+        m_data(data.empty() ? data : fs::absolute(data)) {}
+
+  std::string filled(std::string text, const std::string& session) const {
+    if (text.find("{data}") != std::string::npos && m_data.empty())
+      throw Error(m_file + ": '" + text +
+                  "' needs the folder of the dataset: give --data DIR (see share/doc/batch.md)");
+    replace(text, "{data}", m_data.string());
+    replace(text, "{here}", m_folder.string());
+    replace(text, "{session}", session);
+    return text;
+  }
+  std::string path(const std::string& text, const std::string& session) const {
+    const std::string full = filled(text, session);
+    return full.empty() ? full : (m_folder / full).lexically_normal().string();
+  }
+
+ private:
+  static void replace(std::string& text, const std::string& what, const std::string& with) {
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
+      text.replace(at, what.size(), with);
+  }
+  std::string m_file;
+  fs::path m_folder, m_data;
+};
+
+/// Texts of a session as they stand in the file.
+struct SessionText {
+  BatchSession session;
+  std::string set;
+};
+
+void bindSession(Binder& b, SessionText& text) {
+  BatchSession& s = text.session;
+  b.choice("source", s.source, sources, "where the sessions come from");
+  b.text("input", s.input, "folder, rawlog or INI, relative to this file");
+  b.text("date", s.date, "YYYY-MM-DD, where the times of the scans do not tell");
+  b.text("set", text.set, "settings of a simulated session, section.key=value …");
+  b.integer("every", s.every, Range::atLeast(1), "", "take every N-th scan");
+  b.integer("offset", s.offset, Range::atLeast(0), "", "first scan taken");
+  b.number("odometry_noise", s.odometryNoise, Range::between(0, 1), "",
+           "share of the true motion; 0: the dataset's own odometry");
+  b.text("sensor_pose", s.sensorPose, "of pole-import");
+  b.text("poses", s.poses, "TUM file of true poses instead of the dataset's");
+  b.choice("poses_of", s.posesOf, {"robot", "sensor"}, "what has these poses");
+  b.text("calib", s.calib, "folder of KITTI's calibration");
+  b.text("truth_map", s.truthMap, "true poles: a file, or labels (SemanticKITTI's)");
+}
+
+BatchSession finished(const SessionText& text, const std::string& name, const Placeholders& fill,
+                      const std::string& where) {
+  BatchSession s = text.session;
+  s.name = name;
+  s.input = fill.path(s.input, name);
+  s.poses = fill.path(s.poses, name);
+  s.calib = fill.path(s.calib, name);
+  if (s.truthMap != truthFromLabels) s.truthMap = fill.path(s.truthMap, name);
+  s.date = fill.filled(s.date, name);
+  s.set = words(fill.filled(text.set, name));
+  if (s.input.empty()) throw Error(where + "session " + name + ": input is missing");
+  try {
+    if (!s.date.empty()) io::secondsOfDate(s.date);
+  } catch (const Error& error) {
+    throw Error(where + "session " + name + ": date: " + error.what());
+  }
+  if (s.source != "simulated" && !s.set.empty())
+    throw Error(where + "session " + name + ": set is for simulated sessions only");
+  if (s.source != "kitti-odometry" && s.truthMap == truthFromLabels)
+    throw Error(where + "session " + name +
+                ": truth_map = labels needs source = kitti-odometry; name a file of poles instead");
+  return s;
+}
+
+std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders& fill,
+                                       const std::string& where) {
+  SessionText common;
+  common.session.source = "folder";
+  std::string text;
+  reader.section("sessions", "What all sessions have in common");
+  reader.text("names", text, "in the order they were driven");
+  bindSession(reader, common);
+  const auto names = words(text);
+  requireNames(names, where + "[sessions] names");
+  std::vector<BatchSession> sessions;
+  for (const auto& name : names) {
+    SessionText own = common;
+    own.set.clear();
+    reader.section("session " + name, "What is different");
+    bindSession(reader, own);
+    own.set = common.set + " " + own.set;
+    sessions.push_back(finished(own, name, fill, where));
+  }
+  return sessions;
+}
+
+/// `all`, `first`, `later` or names; always in the order of the sessions.
+std::vector<std::string> chosen(const std::string& text, const std::vector<BatchSession>& sessions,
+                                const std::string& where) {
+  if (text == "first") return {sessions.front().name};
+  std::vector<std::string> names = words(text);
+  if (text == "all" || text == "later") {
+    names.clear();
+    for (const auto& session : sessions) names.push_back(session.name);
+    if (text == "later") names.erase(names.begin());
+  }
+  requireNames(names, where);
+  const auto placeOf = [&](const std::string& name) {
+    const auto found = std::find_if(sessions.begin(), sessions.end(),
+                                    [&](const BatchSession& s) { return s.name == name; });
+    if (found == sessions.end())
+      throw Error(where + ": no session '" + name + "' in [sessions] names; allowed are these, " +
+                  "all, first, later");
+    return found;
+  };
+  std::sort(names.begin(), names.end(),
+            [&](const std::string& a, const std::string& b) { return placeOf(a) < placeOf(b); });
+  if (names.size() == 1) placeOf(names.front());
+  return names;
+}
+
+/// Each session that is localized in the map before it needs a map session before it.
+void requireMaps(const BatchSetting& setting, const std::vector<BatchSession>& sessions,
+                 const std::string& where) {
+  if (setting.map == MapTime::finished) return;
+  for (const auto& session : sessions) {
+    if (session.name == setting.mapSessions.front()) {
+      const auto& s = setting.sessions;
+      if (std::find(s.begin(), s.end(), session.name) == s.end()) return;
+    }
+    const auto& s = setting.sessions;
+    if (std::find(s.begin(), s.end(), session.name) != s.end())
+      throw Error(where + ": session " + session.name +
+                  " has no map session before it; leave it out of sessions, or set map = finished");
+  }
+}
+
+BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Placeholders& fill,
+                         const std::vector<BatchSession>& sessions, const std::string& where) {
+  BatchSetting setting;
+  setting.name = name;
+  std::string set, mapSessions = "first", localized = "all";
+  const std::string here = where + "[setting " + name + "] ";
+  reader.section("setting " + name, "One way to map and to localize");
+  reader.text("title", setting.title, "a sentence for the report");
+  reader.text("config", setting.config, "INI file, relative to this file");
+  reader.text("set", set, "settings in place of those of config, section.key=value …");
+  reader.text("map_sessions", mapSessions, "names, all, first, or later (all but the first)");
+  reader.text("sessions", localized, "those localized: names, all, later, or none");
+  reader.choice<MapProtocol>("maps", setting.protocol,
+                             {{MapProtocol::together, "together"},
+                              {MapProtocol::upkeep, "upkeep"},
+                              {MapProtocol::each, "each"}},
+                             "how they come about");
+  reader.choice<MapTime>("map", setting.map,
+                         {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
+                         "the one that sessions are localized in");
+  if (setting.config.empty())
+    throw Error(here + "config is missing (each of [batch] settings has a section of its own)");
+  setting.config = fill.path(setting.config, "");
+  setting.set = words(set);
+  setting.mapSessions = chosen(mapSessions, sessions, here + "map_sessions");
+  if (localized != "none") setting.sessions = chosen(localized, sessions, here + "sessions");
+  return setting;
+}
+
+/// Sessions with maps of their own are localized in these.
+void requireOwnMaps(const BatchSetting& setting, const std::string& where) {
+  if (setting.protocol != MapProtocol::each) return;
+  if (!setting.sessions.empty() && setting.map == MapTime::before)
+    throw Error(where + "maps = each has no map before a session; set map = finished");
+  for (const auto& name : setting.sessions)
+    if (std::find(setting.mapSessions.begin(), setting.mapSessions.end(), name) ==
+        setting.mapSessions.end())
+      throw Error(where + "session " + name + " has no map; with maps = each, it must be one of " +
+                  "map_sessions");
+}
+
+/// Maps alone are of use if they get a score.
+void requireUse(const BatchSetting& setting, const BatchSpec& spec, const std::string& where) {
+  const auto hasTruth = [&](const std::string& name) {
+    return !spec.session(name).truthMap.empty();
+  };
+  if (setting.sessions.empty() &&
+      std::none_of(setting.mapSessions.begin(), setting.mapSessions.end(), hasTruth))
+    throw Error(where + "sessions = none leaves nothing to report; name sessions, or give " +
+                "[sessions] truth_map");
+}
+
+/// A map is kept up from day to day, not back.
+void requireOrder(const BatchSetting& setting, const BatchSpec& spec, const std::string& where) {
+  if (setting.protocol != MapProtocol::upkeep) return;
+  std::string last;
+  for (const auto& name : setting.mapSessions) {
+    const std::string& date = spec.session(name).date;
+    if (!date.empty() && date < last)
+      throw Error(where + ": session " + name + " of " + date + " comes after one of " + last +
+                  "; maps = upkeep takes sessions in the order of their dates");
+    last = std::max(last, date);
+  }
+}
+
+}  // namespace
+
+const BatchSession& BatchSpec::session(const std::string& wanted) const {
+  for (const auto& session : sessions)
+    if (session.name == wanted) return session;
+  throw Error("no session '" + wanted + "' in batch " + name);
+}
+
+BatchSpec readBatchSpec(const fs::path& file, const fs::path& data,
+                        const std::vector<std::string>& set) {
+  ConfigFile source = ConfigFile::read(file.string());
+  for (const auto& assignment : set) source.set(assignment);
+  const std::string where = file.string() + ": ";
+  const Placeholders fill(file, data);
+  ConfigReader reader(source);
+  BatchSpec spec;
+  spec.name = file.stem().string();
+  std::string settings;
+  reader.section("batch", "What is done");
+  reader.text("name", spec.name, "of the batch; the file's unless given");
+  reader.text("title", spec.title, "for the report");
+  std::vector<std::string> published{"none"};
+  for (const auto& dataset : report::publishedDatasets()) published.push_back(dataset.key);
+  reader.choice("published", spec.published, published, "published figures shown beside");
+  reader.text("published_sessions", spec.publishedSessions,
+              "CSV of such figures by session, relative to this file");
+  reader.integer("runs", spec.runs, Range::between(1, 10000), "", "of each session and setting");
+  reader.integer("seed", spec.seed, Range::atLeast(0), "", "of all random numbers");
+  reader.choice<bool>("errors", spec.perMetre, {{false, "scan"}, {true, "metre"}},
+                      "where they are taken");
+  reader.text("settings", settings, "names; each has a section of its own");
+  requireName(spec.name, where + "[batch] name (the file's unless given)");
+  requireNames(words(settings), where + "[batch] settings");
+  spec.publishedSessions = fill.path(spec.publishedSessions, "");
+  spec.sessions = readSessions(reader, fill, where);
+  for (const auto& name : words(settings))
+    spec.settings.push_back(readSetting(reader, name, fill, spec.sessions, where));
+  reader.finish();
+  for (const auto& setting : spec.settings) {
+    const std::string here = where + "[setting " + setting.name + "] ";
+    requireUse(setting, spec, here);
+    requireOwnMaps(setting, here);
+    requireMaps(setting, spec.sessions, here + "sessions");
+    requireOrder(setting, spec, here + "map_sessions");
+  }
+  return spec;
+}
+
+std::uint32_t seedOf(std::uint32_t seed, const std::string& name) {
+  const std::string text = std::to_string(seed) + "/" + name;
+  return static_cast<std::uint32_t>(
+      ::crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,127 @@
+#include "cli/CommandLine.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <optional>
+
+#include "cli/Version.h"
+#include "mrpt/map/RegisterClasses.h"
+
+namespace polemcl::apps {
+namespace {
+
+constexpr double s_largest = 1e6;  // of metres, seconds and the like
+
+/// Length of the UTF-8 character that begins at `at`; 0 when none does, or one that controls the
+/// terminal.
+std::size_t characterAt(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const unsigned first = byte(at);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f;
+  const std::size_t length = first >= 0xf5   ? 0
+                             : first >= 0xf0 ? 4
+                             : first >= 0xe0 ? 3
+                             : first >= 0xc2 ? 2
+                                             : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(at + i) & 0xc0) != 0x80) return 0;
+  return length;
+}
+
+/// What broken files bring into messages becomes question marks.
+std::string printable(const std::string& text) {
+  std::string clean;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = characterAt(text, at);
+    clean += length > 0 ? text.substr(at, length) : "?";
+    at += std::max<std::size_t>(1, length);
+  }
+  return clean;
+}
+
+}  // namespace
+
+CommandLine::CommandLine(const std::string& program, const std::string& description)
+    : m_program(program), m_cli(description, program) {
+  m_cli.set_version_flag("--version",
+                         program + " " + version() + " (build " + buildIdentity() + ")");
+  m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors");
+  m_cli.add_option("--threads", m_threads, "At most so many threads; 0: one for each core")
+      ->check(CLI::Range(0, 10000));
+  // So that `pole-eval map --quiet` works as well as `pole-eval --quiet map`.
+  m_cli.fallthrough();
+}
+
+int CommandLine::usageError(const std::string& what) const {
+  std::cerr << m_program << ": " << oneLine(what) << "\nTry `" << m_program << " --help`.\n";
+  return exitUsage;
+}
+
+int CommandLine::run(int argc, const char* const* argv, const std::function<void()>& work) {
+  try {
+    m_cli.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usageError(e.what());
+    m_cli.exit(e);  // prints what --help or --version ask for
+    return exitDone;
+  }
+  registerClasses();
+  std::optional<tbb::global_control> limit;
+  if (m_threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(m_threads));
+  try {
+    work();
+    return exitDone;
+  } catch (const std::exception& e) {
+    std::cerr << m_program << ": " << oneLine(e.what()) << '\n';
+  } catch (...) {
+    std::cerr << m_program << ": failed for an unknown reason\n";
+  }
+  return exitFailed;
+}
+
+void addSetOption(CLI::App& cli, std::vector<std::string>& assignments) {
+  cli.add_option("--set", assignments, "A setting in place of the INI file's; may be repeated")
+      ->type_name("SECTION.KEY=VALUE")
+      ->take_all()
+      ->expected(1);
+}
+
+CLI::Validator positiveNumber() {
+  return {
+      [](std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= s_largest;
+        return good ? std::string() : "allowed is a number above 0, up to 1e6, not '" + text + "'";
+      },
+      "above 0"};
+}
+
+std::string oneLine(const std::string& message) {
+  // MRPT wraps its messages: a banner, `Message:  <text>`, `Location: …`, a call stack.
+  const std::string label = "Message:";
+  std::string text = message;
+  const auto at = text.find(label);
+  if (text.rfind("==== MRPT exception", 0) == 0 && at != std::string::npos) {
+    text = text.substr(at + label.size());
+    text = text.substr(0, text.find("\nLocation:"));
+  }
+  std::string line;
+  for (char c : text) {
+    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+    if (!blank)
+      line += c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  if (!line.empty() && line.back() == ' ') line.pop_back();
+  return printable(line);
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,71 @@
+#include "cli/Settings.h"
+
+#include "config/Bindings.h"
+#include "config/Config.h"
+#include "config/MapUpdateBindings.h"
+#include "sim/common/SimulationBindings.h"
+
+namespace polemcl::apps {
+namespace {
+
+void bindAll(Binder& binder, Settings& settings) {
+  bind(binder, settings.sensor);
+  bind(binder, settings.extraction);
+  bind(binder, settings.map);
+  bind(binder, settings.upkeep);
+  bind(binder, settings.likelihood);
+  bind(binder, settings.motion);
+  bind(binder, settings.localization.filter);
+  bind(binder, settings.start);
+  bind(binder, settings.localization.tracking);
+  bind(binder, settings.localization.submap);
+  bind(binder, settings.localization.global);
+  bind(binder, settings.localization.health);
+  bind(binder, settings.localization.search);
+  bind(binder, settings.localization.motionCheck);
+  bind(binder, settings.runs);
+  bind(binder, settings.view);
+  bind(binder, settings.simulation);
+}
+
+/// The simulated LiDAR is the one that the extraction is told of.
+void shareSensor(Settings& settings) {
+  // What the extraction calls hdl64e are the angles of KITTI's unit, not those of the data sheet.
+  settings.simulation.sensor =
+      settings.sensor.model == "hdl64e" ? "hdl64e_kitti" : settings.sensor.model;
+  settings.simulation.height = settings.sensor.height;
+  settings.simulation.upsideDown = settings.sensor.upsideDown;
+  settings.simulation.originX = settings.sensor.originX;
+  settings.simulation.originY = settings.sensor.originY;
+  settings.simulation.originZ = settings.sensor.originZ;
+}
+
+ConfigWriter written(const Settings& settings) {
+  ConfigWriter writer;
+  Settings copy = settings;
+  bindAll(writer, copy);
+  return writer;
+}
+
+}  // namespace
+
+Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
+  Settings settings;
+  ConfigFile file = ConfigFile::read(path);
+  for (const auto& assignment : assignments) file.set(assignment);
+  ConfigReader reader(file);
+  bindAll(reader, settings);
+  reader.finish();
+  shareSensor(settings);
+  return settings;
+}
+
+std::string settingsText(const Settings& settings) {
+  return written(settings).text();
+}
+
+void saveSettings(const Settings& settings, const std::string& path) {
+  written(settings).save(path);
+}
+
+}  // namespace polemcl::apps

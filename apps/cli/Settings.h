@@ -1,0 +1,54 @@
+#pragma once
+/// \file Settings.h
+/// \brief One INI serves all programs: the union of all option structs.
+
+#include <string>
+#include <vector>
+
+#include "core/extraction/ExtractionOptions.h"
+#include "core/localization/PoleLikelihood.h"
+#include "core/mapping/MapUpdater.h"
+#include "core/mapping/PoleMapBuilder.h"
+#include "core/sensor/SensorOptions.h"
+#include "mrpt/filter/FilterOptions.h"
+#include "mrpt/filter/LocalizationPipeline.h"
+#include "mrpt/observation/ObservationPoleExtractor.h"
+#include "mrpt/rawlog/MotionOptions.h"
+#include "report/scene/ViewOptions.h"
+#include "sim/common/SimulationOptions.h"
+
+namespace polemcl::apps {
+
+/// \brief All settings of all programs. Sections that a file leaves out keep their defaults.
+struct Settings {
+  SensorOptions sensor;          ///< `[sensor]`
+  ExtractionOptions extraction;  ///< `[extraction]`, `[paper]`, `[native]`
+  PoleMapOptions map;            ///< `[map]`
+  UpkeepOptions upkeep;          ///< `[upkeep]`
+  LikelihoodOptions likelihood;  ///< `[likelihood]`
+  MotionOptions motion;          ///< `[motion]`
+  /// `[filter] [submap] [global] [health] [search] [motion_check]`
+  LocalizationOptions localization;
+  StartOptions start;                 ///< `[start]`
+  RunOptions runs;                    ///< `[runs]`
+  report::ViewOptions view;           ///< `[view]`
+  sim::SimulationOptions simulation;  ///< `[simulation]`, `[world]`; sensor as in `[sensor]`
+
+  /// \brief What the extraction needs.
+  PoleExtractionOptions poleExtraction() const { return {sensor, extraction}; }
+};
+
+/// \brief Reads an INI file.
+/// \param assignments Values that take the place of the file's, each `section.key=value`: what
+/// `--set` of the programs gives.
+/// \throws Error naming file, section, key, value and what is allowed: unknown sections or keys,
+///         wrong types, values out of range.
+Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments = {});
+
+/// \brief All settings as an INI file, every key with unit, allowed values and meaning.
+/// Reading it gives the same settings, bit for bit.
+std::string settingsText(const Settings& settings);
+/// \brief Writes settingsText(), atomically. \throws Error when it cannot be written.
+void saveSettings(const Settings& settings, const std::string& path);
+
+}  // namespace polemcl::apps

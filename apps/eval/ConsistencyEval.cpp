@@ -1,0 +1,170 @@
+#include "eval/ConsistencyEval.h"
+
+#include <cmath>
+
+#include "cli/JsonFile.h"
+#include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
+#include "io/data/Trajectory.h"
+#include "io/file/CsvTable.h"
+
+namespace polemcl::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CovarianceRow {
+  double scan = 0, time = 0;
+  PoseWithCovariance estimate;
+};
+
+std::vector<CovarianceRow> readRows(const fs::path& file) {
+  const io::CsvTable table(file);
+  const char* names[] = {"scan", "timestamp", "x_m", "y_m",  "yaw_rad", "xx",
+                         "xy",   "xyaw",      "yy",  "yyaw", "yawyaw"};
+  std::vector<std::size_t> columns;
+  for (const char* name : names) columns.push_back(table.column(name));
+  std::vector<CovarianceRow> rows;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto at = [&](int k) { return table.number(i, columns[k]); };
+    CovarianceRow row;
+    row.scan = at(0);
+    row.time = at(1);
+    row.estimate.mean = {at(2), at(3), at(4)};
+    row.estimate.covariance << at(5), at(6), at(7), at(6), at(8), at(9), at(7), at(9), at(10);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Element i: is scan i `ok`?
+std::vector<char> readOk(const fs::path& file) {
+  const io::CsvTable table(file);
+  const std::size_t scan = table.column("scan"), state = table.column("state");
+  std::vector<char> ok;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    if (table.number(i, scan) != static_cast<double>(i))
+      throw Error(table.at(i) + "scan " + std::to_string(i) + " expected: one row for each scan");
+    ok.push_back(table.text(i, state) == "ok");
+  }
+  return ok;
+}
+
+bool isOk(const std::vector<char>& ok, double scan, const fs::path& file) {
+  if (scan < 0 || scan >= static_cast<double>(ok.size()))
+    throw Error(file.string() + ": no scan " + std::to_string(std::llround(scan)) +
+                "; does it belong to the same run as the covariances?");
+  return ok[static_cast<std::size_t>(scan)];
+}
+
+class RunReader {
+ public:
+  RunReader(const EvalConsistencyOptions& options, ConsistencyResult& result)
+      : m_options(options), m_result(result) {}
+
+  std::vector<ConsistencySample> samples(std::size_t run) {
+    const fs::path& cov = m_options.cov[run];
+    const auto truth = io::planar(
+        io::readTum(m_options.truth.size() == 1 ? m_options.truth[0] : m_options.truth[run]));
+    const bool judged = !m_options.health.empty();
+    const auto ok = judged ? readOk(m_options.health[run]) : std::vector<char>();
+    std::vector<ConsistencySample> samples;
+    std::optional<Pose2D> last;
+    double begin = 0, metres = 0;
+    for (const CovarianceRow& row : readRows(cov)) {
+      const auto pose = poseAt(truth, row.time, longestTruthGap);
+      if (!pose) {
+        ++m_result.unmatched;
+        continue;
+      }
+      if (!last) begin = row.time;
+      if (last) metres += std::hypot(pose->x - last->x, pose->y - last->y);
+      last = pose;
+      if (row.time - begin < m_options.skipSeconds || metres < m_options.skipMetres) continue;
+      if (judged && !isOk(ok, row.scan, m_options.health[run])) {
+        ++m_result.notOk;
+        continue;
+      }
+      samples.push_back({row.estimate, *pose});
+    }
+    if (samples.empty())
+      throw Error(cov.string() + ": no pose is left to judge after the first " +
+                  std::to_string(m_options.skipSeconds) + " s and " +
+                  std::to_string(m_options.skipMetres) + " m" +
+                  (judged ? ", of those that are ok" : "") + " and covered by the truth");
+    return samples;
+  }
+
+ private:
+  const EvalConsistencyOptions& m_options;
+  ConsistencyResult& m_result;
+};
+
+void requireFitting(const EvalConsistencyOptions& options) {
+  const std::size_t runs = options.cov.size();
+  if (runs == 0) throw Error("no covariances to judge: give --cov");
+  if (options.truth.size() != 1 && options.truth.size() != runs)
+    throw Error(std::to_string(options.truth.size()) + " truths for " + std::to_string(runs) +
+                " runs: give one for all, or one for each");
+  if (!options.health.empty() && options.health.size() != runs)
+    throw Error(std::to_string(options.health.size()) + " health files for " +
+                std::to_string(runs) + " runs: give one for each, or none");
+  if (!(options.skipSeconds >= 0) || !(options.skipMetres >= 0))
+    throw Error("what is skipped must be 0 s and 0 m or more");
+}
+
+nlohmann::ordered_json consistencyJson(const ConsistencyScore& score) {
+  nlohmann::ordered_json out;
+  out["nees_mean"] = score.neesMean;
+  out["nees_median"] = score.neesMedian;
+  out["nees_position_mean"] = score.neesPositionMean;
+  out["nees_heading_mean"] = score.neesHeadingMean;
+  out["coverage_95"] = score.coverage95;
+  out["poses"] = score.samples;
+  return out;
+}
+
+nlohmann::ordered_json consistencyJson(const EvalConsistencyOptions& options,
+                                       const ConsistencyResult& result) {
+  nlohmann::ordered_json out = consistencyJson(result.all);
+  out["not_ok"] = result.notOk;
+  out["unmatched"] = result.unmatched;
+  out["skip_s"] = options.skipSeconds;
+  out["skip_m"] = options.skipMetres;
+  out["runs"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < result.runs.size(); ++i) {
+    nlohmann::ordered_json run;
+    run["file"] = options.cov[i].string();
+    run.update(consistencyJson(result.runs[i]));
+    out["runs"].push_back(run);
+  }
+  return out;
+}
+
+template <class Score>
+auto naming(const fs::path& file, const Score& score) {
+  try {
+    return score();
+  } catch (const Error& error) {
+    throw Error(file.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+ConsistencyResult evalConsistency(const EvalConsistencyOptions& options) {
+  requireFitting(options);
+  ConsistencyResult result;
+  RunReader reader(options, result);
+  std::vector<ConsistencySample> all;
+  for (std::size_t run = 0; run < options.cov.size(); ++run) {
+    const auto samples = reader.samples(run);
+    result.runs.push_back(naming(options.cov[run], [&] { return scoreConsistency(samples); }));
+    all.insert(all.end(), samples.begin(), samples.end());
+  }
+  result.all = scoreConsistency(all);
+  if (options.json) writeJson(*options.json, consistencyJson(options, result));
+  return result;
+}
+
+}  // namespace polemcl::apps

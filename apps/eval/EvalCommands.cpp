@@ -1,0 +1,205 @@
+#include "eval/EvalCommands.h"
+
+#include <cmath>
+#include <iomanip>
+#include <memory>
+#include <sstream>
+
+#include "cli/CommandLine.h"
+#include "cli/Progress.h"
+#include "eval/DetectionModelApp.h"
+#include "eval/ExtractionEval.h"
+#include "eval/MotionEval.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace {
+
+std::string shownText(const std::optional<double>& value, int decimals, double factor = 1) {
+  return value ? io::fixed(*value * factor, decimals) : "-";
+}
+
+std::string helpText(const DetectionScore& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", detections " << s.detections << " (" << s.right
+      << " right), visible poles " << s.visible << " (" << s.found << " found)\n"
+      << "precision " << shownText(s.precision, 4) << "  recall " << shownText(s.recall, 4) << '\n'
+      << "centre error: median " << shownText(s.centreMedian, 1, 100) << "  mean "
+      << shownText(s.centreMean, 1, 100) << "  90 % " << shownText(s.centre90, 1, 100)
+      << " cm; mean along the ray " << shownText(s.biasAlong, 1, 100) << "  across "
+      << shownText(s.biasAcross, 1, 100) << " cm\n"
+      << "radius error: mean " << shownText(s.radiusMean, 1, 100) << "  median of the absolute "
+      << shownText(s.radiusMedian, 1, 100) << " cm\n"
+      << "normalised squared error: mean " << shownText(s.neesMean, 2) << "  median "
+      << shownText(s.neesMedian, 2) << " (2 and 1.39 are right)\n"
+      << "confidence: area under the ROC " << shownText(s.auc, 4) << '\n';
+  return out.str();
+}
+
+std::string helpText(const RepeatabilityScore& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", poles per scan " << io::fixed(s.perScan, 2)
+      << "; found again within 0.25 m in at least 3 of the next 5 scans: " << s.repeated << " of "
+      << s.judged << " = " << io::fixed(s.share, 4) << '\n';
+  return out.str();
+}
+
+std::string helpText(const RotationScore& s, double radius) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", turned by 30, 60, ... 330 deg; poles found again within "
+      << io::significant(100 * radius, 6) << " cm, one to one: " << s.matched << " of " << s.poles
+      << " = " << io::fixed(s.share, 4) << "; of the turned scans' poles "
+      << io::fixed(s.backShare, 4) << '\n';
+  return out.str();
+}
+
+EvalCommand detectionsCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "detections", "Poles of single scans against the true ones of a simulated folder");
+  const auto options = std::make_shared<EvalDetectionsOptions>();
+  cli.add_option("--scans", options->scans, "Folder that pole-simulate wrote")->required();
+  cli.add_option("--poles", options->poles, "Rawlog of poles extracted from these scans")
+      ->required();
+  cli.add_option("--radius", options->radius, "A pole is right within this distance, m")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--visible", options->visible,
+                 "Write the true poles visible in the scans to this table (CSV)");
+  cli.add_option("--min-scans", options->minScans,
+                 "Poles visible in fewer scans are left out of that table")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  return {&cli, [options](bool) { return helpText(evalDetections(*options)); }};
+}
+
+EvalCommand repeatabilityCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("repeatability", "Poles found again in the next scans");
+  const auto options = std::make_shared<EvalRepeatabilityOptions>();
+  cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
+  cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options](bool) { return helpText(evalRepeatability(*options)); }};
+}
+
+EvalCommand rotationCommand(CLI::App& program) {
+  auto& cli =
+      *program.add_subcommand("rotation", "Poles found again when scans are turned about z");
+  const auto options = std::make_shared<EvalRotationOptions>();
+  const auto config = std::make_shared<std::string>();
+  cli.add_option("--config", *config, "INI file, see config/")->required();
+  const auto set = std::make_shared<std::vector<std::string>>();
+  addSetOption(cli, *set);
+  cli.add_option("--input", options->input, "Rawlog of scans")->required();
+  cli.add_option("--every", options->every, "Turn every N-th scan only")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--radius", options->radius, "A pole is found again within this distance, m")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options, config, set](bool quiet) {
+            Progress progress("turn", 0, quiet);
+            options->progress = [&](std::size_t done, std::size_t total) {
+              progress.update(done, total);
+            };
+            return helpText(evalRotation(*options, loadSettings(*config, *set)), options->radius);
+          }};
+}
+
+std::string helpText(const sim::DetectionModel& m, const FitModelOptions& options) {
+  std::ostringstream out;
+  out << options.model.string() << ": " << m.sensor << ", " << m.fittedOn
+      << "\nlasting false objects per 100 m: " << io::fixed(100 * m.clutterAlways, 2)
+      << " on all days, " << io::fixed(100 * m.clutterToday, 2)
+      << " on one; passing false detections per scan: " << io::fixed(m.passing, 3) << '\n';
+  return out.str();
+}
+
+EvalCommand modelCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "model", "Fits a model of detections ([simulation] detections) to ray-cast drives");
+  const auto options = std::make_shared<FitModelOptions>();
+  cli.add_option("--drives", options->drives,
+                 "Rawlogs of pole-simulate --poles: two for each street, of two days")
+      ->required();
+  cli.add_option("--model", options->model, "Model to write (JSON)")->required();
+  return {&cli, [options](bool) { return helpText(fitModel(*options), *options); }};
+}
+
+std::string helpText(const sim::DetectionSummary& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", detections per scan " << io::fixed(s.perScan, 2) << ", false "
+      << io::fixed(s.falsePerScan, 3) << " (" << io::fixed(s.lastingFalsePerScan, 3)
+      << " of lasting objects)\nfound of the poles within";
+  for (std::size_t i = 0; i < s.recall.size(); ++i)
+    out << ' ' << io::significant(s.rangeEdges[i + 1], 3) << " m: " << shownText(s.recall[i], 3)
+        << (i + 1 < s.recall.size() ? "," : "\n");
+  out << "centre error: median " << shownText(s.centreMedian, 1, 100) << "  90 % "
+      << shownText(s.centre90, 1, 100) << " cm; normalised squared error: mean "
+      << shownText(s.neesMean, 2) << "  median " << shownText(s.neesMedian, 2)
+      << "; confidence: mean " << shownText(s.confidence, 3) << "\nmean way found without a break "
+      << shownText(s.foundRun, 2) << " m, missed " << shownText(s.missedRun, 2) << " m\n";
+  return out.str();
+}
+
+EvalCommand sightingsCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "sightings", "Poles of a simulated drive against the true ones, without its scans");
+  const auto options = std::make_shared<EvalSightingsOptions>();
+  cli.add_option("--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options](bool) { return helpText(evalSightings(*options)); }};
+}
+
+std::string cells(const Pose2D& motion) {
+  std::ostringstream out;
+  out << std::setw(9) << io::fixed(std::hypot(motion.x, motion.y), 3) << std::setw(8)
+      << io::fixed(motion.yaw * 180 / M_PI, 2);
+  return out.str();
+}
+
+std::string helpText(const std::vector<MotionComparison>& stretches) {
+  std::ostringstream out;
+  const std::string none = std::string(16, ' ') + '-';
+  out << " scan  truth m     deg  odom. m     deg  poles m     deg  pairs\n";
+  double metres = 0, radians = 0, way = 0;
+  for (const MotionComparison& stretch : stretches) {
+    const Pose2D &truth = stretch.truth, &poles = stretch.poles.motion;
+    const bool tell = stretch.poles.pairs >= 3;
+    out << std::setw(5) << stretch.scan << cells(truth)
+        << (stretch.odometry ? cells(*stretch.odometry) : none) << (tell ? cells(poles) : none)
+        << std::setw(7) << stretch.poles.pairs << '\n';
+    if (!tell) continue;
+    way += std::hypot(truth.x, truth.y);
+    metres += std::hypot(poles.x, poles.y) - std::hypot(truth.x, truth.y);
+    radians += wrapAngle(poles.yaw - truth.yaw);
+  }
+  out << "the poles say " << io::fixed(metres, 3) << " m and " << io::fixed(radians * 180 / M_PI, 2)
+      << " deg more than the truth, over " << io::fixed(way, 1) << " m\n";
+  return out.str();
+}
+
+EvalCommand motionCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "motion", "Do the true poses agree with how the poles move from scan to scan?");
+  const auto options = std::make_shared<EvalMotionOptions>();
+  cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
+  cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
+  cli.add_option("--every", options->every, "Compare each scan with the N-th after it")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options](bool) { return helpText(evalMotion(*options)); }};
+}
+
+}  // namespace
+
+std::vector<EvalCommand> extractionCommands(CLI::App& program) {
+  return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program),
+          modelCommand(program),      sightingsCommand(program),     motionCommand(program)};
+}
+
+}  // namespace polemcl::apps

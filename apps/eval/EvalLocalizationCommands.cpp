@@ -1,0 +1,127 @@
+#include <cstdio>
+#include <memory>
+#include <sstream>
+
+#include "cli/CommandLine.h"
+#include "cli/Progress.h"
+#include "eval/ConsistencyEval.h"
+#include "eval/EvalCommands.h"
+#include "eval/FaultTrials.h"
+#include "eval/GlobalTrials.h"
+
+namespace polemcl::apps {
+namespace {
+
+void declareFiles(CLI::App& cli, TrialDriveFiles& files) {
+  cli.add_option("--config", files.config, "Settings (.ini)")->required();
+  addSetOption(cli, files.set);
+  cli.add_option("--map", files.map, "Pole map (.polemap)")->required();
+  cli.add_option("--input", files.input, "Rawlog of poles, with odometry")->required();
+  cli.add_option("--truth", files.truth, "True robot poses of the drive (.tum)")->required();
+}
+
+EvalCommand globalCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("global", "Random starts without a pose: are they found?");
+  const auto shared = std::make_shared<GlobalTrialsOptions>();
+  GlobalTrialsOptions& options = *shared;
+  declareFiles(cli, options.files);
+  cli.add_option("--trials", options.trials, "Random starts")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  cli.add_option("--seed", options.seed, "Of the starts; trial i filters with seed + i")
+      ->capture_default_str();
+  cli.add_option("--metres", options.metres, "Driven in each trial, at most, m")
+      ->check(positiveNumber())
+      ->capture_default_str();
+  cli.add_option("--json", options.json, "Write the figures to this file");
+  return {&cli, [shared](bool quiet) {
+            Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
+            shared->progress = [&] { progress.step(); };
+            return evalGlobal(*shared);
+          }};
+}
+
+std::string row(const std::string& name, const ConsistencyScore& s) {
+  char line[200];
+  std::snprintf(line, sizeof line, "%-10s %8zu %8.3f %8.3f %9.3f %8.3f %9.4f\n", name.c_str(),
+                s.samples, s.neesMean, s.neesMedian, s.neesPositionMean, s.neesHeadingMean,
+                s.coverage95);
+  return line;
+}
+
+std::string localizationText(const ConsistencyResult& result) {
+  std::ostringstream out;
+  out << "normalised squared errors; right are 3, 2.37 (median), 2 (x y), 1 (yaw), and 0.95 of the "
+         "true positions within the 95 % ellipses\n"
+      << "run           poses     mean   median  position  heading  coverage\n";
+  for (std::size_t i = 0; i < result.runs.size(); ++i)
+    out << row(std::to_string(i), result.runs[i]);
+  out << row("all", result.all);
+  if (result.notOk > 0) out << result.notOk << " poses that are not ok left out\n";
+  if (result.unmatched > 0) out << result.unmatched << " poses that the truth does not cover\n";
+  return out.str();
+}
+
+EvalCommand consistencyCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("consistency", "Are poses as uncertain as they say?");
+  const auto options = std::make_shared<EvalConsistencyOptions>();
+  cli.add_option("--truth", options->truth,
+                 "True robot poses, TUM: one file for all runs, or one for each")
+      ->required();
+  cli.add_option("--cov", options->cov, "run_NN_cov.csv of pole-localize, one or several")
+      ->required();
+  cli.add_option("--health", options->health,
+                 "run_NN_health.csv of each: only poses that are ok count");
+  cli.add_option("--skip-seconds", options->skipSeconds, "Left out since the first pose, s")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--skip-metres", options->skipMetres, "And along the true path, m")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--json", options->json, "Write the figures to this file");
+  return {&cli, [options](bool) { return localizationText(evalConsistency(*options)); }};
+}
+
+EvalCommand faultsCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand("faults", "Faults in a drive: noticed, and recovered from?");
+  const auto shared = std::make_shared<FaultTrialsOptions>();
+  FaultTrialsOptions& options = *shared;
+  declareFiles(cli, options.files);
+  std::map<std::string, Fault> faults;
+  for (const Fault fault :
+       {Fault::none, Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck, Fault::slip})
+    faults[name(fault)] = fault;
+  cli.add_option("--fault", options.fault.fault, "What goes wrong; none: the whole drive as it is")
+      ->required()
+      ->transform(CLI::CheckedTransformer(faults))
+      ->type_name("none|kidnap|wrong-map|blind|stuck|slip");
+  cli.add_option("--other-map", options.otherMap, "The wrong map (.polemap), for wrong-map");
+  cli.add_option("--trials", options.trials, "Places of the fault; of none, runs of the drive")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  cli.add_option("--seed", options.seed, "Of the faults; trial i filters with seed + i")
+      ->capture_default_str();
+  const auto number = [&](const char* flag, double& value, const char* meaning) {
+    cli.add_option(flag, value, meaning)->check(positiveNumber())->capture_default_str();
+  };
+  number("--lead", options.fault.lead, "Driven before the fault, s");
+  number("--duration", options.fault.duration, "Of blind, stuck and slip, s");
+  number("--tail", options.fault.tail, "Driven after the fault, m");
+  cli.add_option("--slip", options.fault.slip, "Error of the slipping odometry's scale")
+      ->check(positiveNumber() & CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  cli.add_option("--json", options.json, "Write the figures to this file");
+  return {&cli, [shared](bool quiet) {
+            Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
+            shared->progress = [&] { progress.step(); };
+            return evalFaults(*shared);
+          }};
+}
+
+}  // namespace
+
+std::vector<EvalCommand> localizationCommands(CLI::App& program) {
+  return {globalCommand(program), consistencyCommand(program), faultsCommand(program)};
+}
+
+}  // namespace polemcl::apps

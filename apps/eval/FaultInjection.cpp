@@ -1,0 +1,189 @@
+#include "eval/FaultInjection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace {
+
+/// Metres driven from the first scan to each.
+std::vector<double> drivenAlong(const std::vector<Pose2D>& truth) {
+  std::vector<double> driven(truth.size(), 0);
+  for (std::size_t i = 1; i < truth.size(); ++i)
+    driven[i] = driven[i - 1] + errorOf(truth[i], truth[i - 1]).metres;
+  return driven;
+}
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+class Injector {
+ public:
+  Injector(const TrialDrive& drive, const FaultOptions& options, std::mt19937_64& random)
+      : m_drive(drive), m_options(options), m_random(random), m_driven(drivenAlong(drive.truth)) {}
+
+  FaultyDrive inject() {
+    FaultyDrive result;
+    if (m_options.fault == Fault::none) {
+      append(result, 0, m_drive.frames.size());
+      result.begin = result.end = result.frames.size();
+      return finished(result);
+    }
+    if (m_options.fault == Fault::wrongMap) {
+      result.origin = drawStart(0, 0);
+      append(result, result.origin, scanAfterMetres(result.origin));
+      return finished(result);
+    }
+    if (m_options.fault == Fault::kidnap) return kidnapped();
+    const bool lasts = m_options.fault != Fault::kidnap;
+    result.origin = drawStart(m_options.lead, lasts ? m_options.duration : 0);
+    const std::size_t begin = scanAfterSeconds(result.origin, m_options.lead);
+    const std::size_t end = scanAfterSeconds(begin, m_options.duration);
+    append(result, result.origin, scanAfterMetres(end));
+    result.begin = begin - result.origin;
+    result.end = end - result.origin;
+    spoil(result);
+    return finished(result);
+  }
+
+ private:
+  double time(std::size_t i) const { return m_drive.frames[i].time; }
+
+  std::size_t scanAfterSeconds(std::size_t from, double seconds) const {
+    std::size_t i = from;
+    while (i < m_drive.frames.size() && time(i) - time(from) < seconds - 1e-6) ++i;
+    return i;
+  }
+  /// The scan that is the tail's length farther along, or the end.
+  std::size_t scanAfterMetres(std::size_t from) const {
+    const auto at = std::lower_bound(m_driven.begin() + static_cast<std::ptrdiff_t>(from),
+                                     m_driven.end(), m_driven[from] + m_options.tail);
+    return static_cast<std::size_t>(at - m_driven.begin());
+  }
+  bool fits(std::size_t start, double lead, double lasting) const {
+    const std::size_t begin = scanAfterSeconds(start, lead);
+    if (begin >= m_drive.frames.size()) return false;
+    const std::size_t end = scanAfterSeconds(begin, lasting);
+    return end < m_drive.frames.size() && m_driven.back() - m_driven[end] >= m_options.tail;
+  }
+  /// A scan from which lead, fault and tail fit into the drive, uniform among them.
+  std::size_t drawStart(double lead, double lasting) const {
+    // The later the start, the less is left: bisection finds the last that fits.
+    if (m_drive.frames.empty() || !fits(0, lead, lasting))
+      throw Error("the drive of " + std::to_string(m_drive.frames.size()) +
+                  " scans is too short: lead " + io::fixed(lead, 1) + " s, fault " +
+                  io::fixed(lasting, 1) + " s and tail " + io::fixed(m_options.tail, 1) +
+                  " m must fit into it");
+    std::size_t good = 0, bad = m_drive.frames.size();
+    while (bad - good > 1) {
+      const std::size_t middle = (good + bad) / 2;
+      (fits(middle, lead, lasting) ? good : bad) = middle;
+    }
+    return m_random() % (good + 1);
+  }
+
+  void append(FaultyDrive& result, std::size_t from, std::size_t to) const {
+    for (std::size_t i = from; i < to; ++i) {
+      const bool first = result.frames.empty();
+      const double step = i > 0 ? time(i) - time(i - 1) : 0;
+      const double way = first || i == from ? 0 : m_driven[i] - m_driven[i - 1];
+      result.driven.push_back(first ? 0 : result.driven.back() + way);
+      result.frames.push_back(m_drive.frames[i]);
+      if (!first && i == from) {
+        // After a jump the clock goes on as before.
+        const std::size_t before = result.frames.size() - 2;
+        result.frames.back().time = result.frames[before].time + std::max(step, 1e-3);
+      } else if (!first) {
+        result.frames.back().time = result.frames[result.frames.size() - 2].time + step;
+      }
+      result.truth.push_back(m_drive.truth[i]);
+    }
+  }
+
+  FaultyDrive kidnapped() const {
+    FaultyDrive result;
+    result.origin = drawStart(m_options.lead, 0);
+    const std::size_t from = scanAfterSeconds(result.origin, m_options.lead);
+    const std::size_t to = drawJump(from);
+    append(result, result.origin, from);
+    result.begin = result.end = result.frames.size();
+    append(result, to, scanAfterMetres(to));
+    result.jump = errorOf(m_drive.truth[to], m_drive.truth[from]).metres;
+    return finished(result);
+  }
+
+  /// A scan as far away as drawn, within 5 m; from it, the tail fits in.
+  std::size_t drawJump(std::size_t from) const {
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      const double wanted = uniform(m_random, m_options.minJump, m_options.maxJump);
+      std::vector<std::size_t> places;
+      for (std::size_t i = 1; i < m_drive.frames.size(); ++i) {
+        if (m_driven.back() - m_driven[i] < m_options.tail) break;
+        const double distance = errorOf(m_drive.truth[i], m_drive.truth[from]).metres;
+        if (std::abs(distance - wanted) < 5 && distance >= m_options.minJump &&
+            distance <= m_options.maxJump)
+          places.push_back(i);
+      }
+      if (!places.empty()) return places[m_random() % places.size()];
+    }
+    throw Error("no place of the drive lies " + io::fixed(m_options.minJump, 0) + " to " +
+                io::fixed(m_options.maxJump, 0) + " m from its scan " + std::to_string(from));
+  }
+
+  void spoil(FaultyDrive& result) const {
+    const bool longer = m_random() % 2 == 0;
+    const double factor = 1 + (longer ? m_options.slip : -m_options.slip);
+    for (std::size_t i = result.begin; i < result.end; ++i) {
+      PoleFrame& frame = result.frames[i];
+      if (m_options.fault == Fault::blind) frame.poles_robot.clear();
+      if (!frame.motion) continue;
+      if (m_options.fault == Fault::stuck) {
+        frame.motion->mean = {};
+        const double xy = io::motionFloorMetres * io::motionFloorMetres;
+        const double yaw = io::motionFloorRadians * io::motionFloorRadians;
+        frame.motion->covariance = Eigen::Vector3d(xy, xy, yaw).asDiagonal();
+      } else if (m_options.fault == Fault::slip) {
+        Pose2D& mean = frame.motion->mean;
+        mean = {factor * mean.x, factor * mean.y, factor * mean.yaw};
+        frame.motion->covariance *= factor * factor;
+      }
+    }
+  }
+
+  FaultyDrive finished(FaultyDrive& result) const { return std::move(result); }
+
+  const TrialDrive& m_drive;
+  const FaultOptions& m_options;
+  std::mt19937_64& m_random;
+  std::vector<double> m_driven;
+};
+
+}  // namespace
+
+const char* name(Fault fault) {
+  switch (fault) {
+    case Fault::kidnap:
+      return "kidnap";
+    case Fault::wrongMap:
+      return "wrong-map";
+    case Fault::blind:
+      return "blind";
+    case Fault::stuck:
+      return "stuck";
+    case Fault::slip:
+      return "slip";
+    case Fault::none:
+      break;
+  }
+  return "none";
+}
+
+FaultyDrive injectFault(const TrialDrive& drive, const FaultOptions& options,
+                        std::mt19937_64& random) {
+  return Injector(drive, options, random).inject();
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,160 @@
+#include "eval/GlobalTrials.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include "cli/JsonFile.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+
+namespace {
+
+using Outcome = GlobalTrial::Outcome;
+
+constexpr double rightMetres = 0.5, rightRadians = 2 * M_PI / 180;
+
+bool isRight(const PlanarError& error) {
+  return error.metres <= rightMetres && error.radians <= rightRadians;
+}
+
+/// Metres driven from the first scan to each.
+std::vector<double> distanceAlong(const std::vector<Pose2D>& truth) {
+  std::vector<double> driven(truth.size(), 0);
+  for (std::size_t i = 1; i < truth.size(); ++i)
+    driven[i] = driven[i - 1] + errorOf(truth[i], truth[i - 1]).metres;
+  return driven;
+}
+
+GlobalTrial runGlobalTrial(const TrialDrive& drive, const std::vector<double>& driven,
+                           std::size_t first, double metres, std::uint32_t seed) {
+  GlobalTrial trial;
+  trial.scan = first;
+  PoleLocalization localization(drive.map, drive.settings.localization, seed);
+  localization.startAnywhere();
+  std::size_t searches = 0;
+  for (std::size_t i = first; i < drive.frames.size() && driven[i] - driven[first] <= metres; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    const LocalizationUpdate update = localization.step(drive.frames[i]);
+    const auto end = std::chrono::steady_clock::now();
+    if (localization.searches() > searches)
+      trial.querySeconds.push_back(std::chrono::duration<double>(end - begin).count());
+    searches = localization.searches();
+    if (!update.estimate || update.health.state == HealthState::lost) continue;
+    const PlanarError error = errorOf(update.estimate->mean, drive.truth[i]);
+    if (trial.outcome == Outcome::undecided && update.health.reason != HealthReason::ambiguous) {
+      trial.outcome = isRight(error) ? Outcome::right : Outcome::wrong;
+      trial.metres = driven[i] - driven[first];
+      trial.error = error;
+    }
+    if (update.health.state != HealthState::ok) continue;
+    if (!trial.okMetres) trial.okMetres = driven[i] - driven[first];
+    trial.okWrong = trial.okWrong || !isRight(error);
+  }
+  return trial;
+}
+
+/// Of sorted values, 0 for none.
+double trialQuantile(const std::vector<double>& sorted, double share) {
+  if (sorted.empty()) return 0;
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
+}
+
+nlohmann::ordered_json globalSummary(const std::vector<GlobalTrial>& trials,
+                                     const TrialDrive& drive) {
+  std::vector<double> metres, errors;
+  int counts[3] = {}, okWrong = 0;
+  for (const GlobalTrial& trial : trials) {
+    ++counts[static_cast<int>(trial.outcome)];
+    okWrong += trial.okWrong;
+    if (trial.outcome != Outcome::right) continue;
+    metres.push_back(trial.metres);
+    errors.push_back(trial.error.metres);
+  }
+  for (auto* values : {&metres, &errors}) std::sort(values->begin(), values->end());
+  const auto all = static_cast<double>(trials.size());
+  return {{"trials", trials.size()},
+          {"map_poles", drive.map.poles->poles().size()},
+          {"right", counts[0]},
+          {"wrong", counts[1]},
+          {"undecided", counts[2]},
+          {"right_share", counts[0] / all},
+          {"wrong_share", counts[1] / all},
+          {"ok_wrong", okWrong},
+          {"metres_median", trialQuantile(metres, 0.5)},
+          {"metres_p95", trialQuantile(metres, 0.95)},
+          {"metres_max", trialQuantile(metres, 1)},
+          {"error_median_m", trialQuantile(errors, 0.5)},
+          {"error_max_m", trialQuantile(errors, 1)}};
+}
+
+nlohmann::ordered_json timings(const std::vector<GlobalTrial>& trials) {
+  std::vector<double> seconds;
+  for (const GlobalTrial& trial : trials)
+    seconds.insert(seconds.end(), trial.querySeconds.begin(), trial.querySeconds.end());
+  std::sort(seconds.begin(), seconds.end());
+  return {{"query_median_ms", 1e3 * trialQuantile(seconds, 0.5)},
+          {"query_max_ms", 1e3 * trialQuantile(seconds, 1)}};
+}
+
+/// Timings lie apart, so that the figures are the same bytes each time.
+void writeFigures(const std::filesystem::path& file, const nlohmann::ordered_json& figures,
+                  const nlohmann::ordered_json& times) {
+  writeJson(file, figures);
+  const std::string beside = file.stem().string() + "_timings" + file.extension().string();
+  writeJson(file.parent_path() / beside, times);
+}
+
+void requireUsable(const GlobalTrialsOptions& options, double length) {
+  if (options.trials < 1) throw Error("at least 1 trial is needed");
+  if (!(options.metres > 0)) throw Error("a trial must be longer than 0 m");
+  if (length <= options.metres)
+    throw Error("the drive is " + io::fixed(length, 1) + " m long, but each trial takes " +
+                io::fixed(options.metres, 1) + " m: give a longer one or fewer metres");
+}
+
+}  // namespace
+
+std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
+                                         const GlobalTrialsOptions& options) {
+  const std::vector<double> driven = distanceAlong(drive.truth);
+  requireUsable(options, driven.empty() ? 0 : driven.back());
+  const auto last = std::upper_bound(driven.begin(), driven.end(), driven.back() - options.metres);
+  const auto starts = static_cast<std::uint64_t>(last - driven.begin());
+  std::mt19937_64 random(options.seed);
+  std::vector<std::size_t> first;
+  for (int i = 0; i < options.trials; ++i) first.push_back(random() % starts);
+  std::vector<GlobalTrial> trials(options.trials);
+  tbb::parallel_for(0, options.trials, [&](int i) {
+    trials[i] = runGlobalTrial(drive, driven, first[i], options.metres,
+                               options.seed + static_cast<std::uint32_t>(i));
+    if (options.progress) options.progress();
+  });
+  return trials;
+}
+
+std::string evalGlobal(const GlobalTrialsOptions& options) {
+  const TrialDrive drive = loadTrialDrive(options.files);
+  const auto trials = runGlobalTrials(drive, options);
+  const auto json = globalSummary(trials, drive), times = timings(trials);
+  if (options.json) writeFigures(*options.json, json, times);
+  std::ostringstream out;
+  out << trials.size() << " random starts, map of " << json["map_poles"] << " poles, "
+      << io::fixed(options.metres, 0) << " m each\n"
+      << "right " << json["right"] << ", wrong " << json["wrong"] << ", undecided "
+      << json["undecided"] << "; ok said of a wrong pose: " << json["ok_wrong"] << '\n'
+      << "found after " << io::fixed(json["metres_median"], 1)
+      << " m (95 %: " << io::fixed(json["metres_p95"], 1) << " m), error then "
+      << io::fixed(json["error_median_m"], 3) << " m, at most " << io::fixed(json["error_max_m"], 3)
+      << " m\n"
+      << "a step with a search: " << io::fixed(times["query_median_ms"], 1) << " ms, at most "
+      << io::fixed(times["query_max_ms"], 1) << " ms\n";
+  return out.str();
+}
+
+}  // namespace polemcl::apps

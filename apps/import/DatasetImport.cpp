@@ -1,0 +1,242 @@
+#include "import/DatasetImport.h"
+
+#include <mrpt/core/Clock.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include "cli/RawlogActions.h"
+#include "core/common/Angles.h"
+#include "io/data/Cloud.h"
+#include "io/data/Trajectory.h"
+#include "io/dataset/KittiOdometry.h"
+#include "io/dataset/KittiRaw.h"
+#include "io/dataset/Mulran.h"
+#include "io/dataset/Nclt.h"
+#include "io/dataset/ScanPoses.h"
+#include "io/file/AtomicFile.h"
+#include "io/file/TextFile.h"
+#include "mrpt/rawlog/RawlogWriter.h"
+
+namespace polemcl::apps {
+namespace {
+
+io::ScanFolder readDataset(const ImportOptions& options, const Eigen::Isometry3d& T_robot_sensor,
+                           const io::ReadProgress& progress) {
+  switch (options.dataset) {
+    case Dataset::kittiOdometry:
+      return io::readKittiOdometry(options.input, T_robot_sensor);
+    case Dataset::kittiRaw: {
+      const auto drive = std::filesystem::absolute(options.input / "").parent_path();
+      return io::readKittiRaw(options.input, options.calibration.value_or(drive.parent_path()),
+                              T_robot_sensor);
+    }
+    case Dataset::nclt:
+      return io::readNclt(options.input, T_robot_sensor, progress);
+    case Dataset::mulran:
+      return io::readMulran(options.input, T_robot_sensor);
+    case Dataset::pcd:
+      return io::readPcdFolder(options.input, T_robot_sensor);
+    case Dataset::folder:
+      break;
+  }
+  return io::readScanFolder(options.input, T_robot_sensor);
+}
+
+/// Motions since the last scan that was written: composed odometry, or truth with noise.
+class MotionSource {
+ public:
+  explicit MotionSource(const ImportOptions& options)
+      : m_noise(options.odometryNoise), m_generator(options.seed) {}
+
+  /// \brief To be called for every scan of the dataset in turn, written or not.
+  void pass(const io::ScanEntry& scan) {
+    if (!m_started) return;  // the first scan that is written starts at itself
+    if (m_composed && scan.motion)
+      m_composed = io::composeMotions(*m_composed, *scan.motion);
+    else
+      m_composed = scan.motion;
+  }
+
+  /// \brief The motion since the last scan that was written, up to this one, which gets written.
+  /// None when nothing is known of it.
+  std::optional<io::PlanarMotion> take(const io::ScanEntry& scan) {
+    std::optional<io::PlanarMotion> motion = m_composed;
+    if (!m_started) {
+      motion = standstill();
+    } else if (m_noise) {
+      const auto here = io::planar(*scan.T_map_robot);
+      motion = io::noisyMotion(relative(m_last, here), *m_noise, m_generator);
+    }
+    m_started = true;
+    m_composed.reset();
+    if (scan.T_map_robot) m_last = io::planar(*scan.T_map_robot);
+    return motion;
+  }
+
+ private:
+  std::optional<double> m_noise;
+  std::mt19937_64 m_generator;
+  std::optional<io::PlanarMotion> m_composed;
+  Pose2D m_last;
+  bool m_started = false;
+};
+
+/// The cloud as an observation; none when the scan is empty. Counts points in the report.
+mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanFolder& folder,
+                                                       const io::ScanEntry& scan,
+                                                       const Eigen::Isometry3d& T_robot_sensor,
+                                                       ImportReport& report) {
+  auto observation = mrpt::obs::CObservationPointCloud::Create();
+  observation->sensorLabel = "lidar";
+  observation->timestamp = mrpt::Clock::fromDouble(scan.time);
+  observation->sensorPose =
+      mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_robot_sensor.matrix()));
+  if (!report.embedded) {
+    if (std::filesystem::file_size(scan.cloud) == 0) return nullptr;
+    observation->setAsExternalStorage(
+        scan.cloud.lexically_normal().string(),
+        mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+    return observation;
+  }
+  const auto cloud = folder.read ? folder.read(scan) : io::readKittiBin(scan.cloud);
+  report.points += cloud.size();
+  report.invalidPoints += cloud.invalid;
+  if (cloud.size() == 0) return nullptr;
+  auto points = mrpt::maps::CPointsMapXYZI::Create();
+  points->resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    points->setPointFast(i, cloud.x[i], cloud.y[i], cloud.z[i]);
+    points->setPointIntensity(i, cloud.intensity[i]);
+  }
+  observation->pointcloud = points;
+  return observation;
+}
+
+void checkSelection(const ImportOptions& options, const io::ScanFolder& folder) {
+  const std::string where = options.input.string() + ": ";
+  if (options.offset >= folder.scans.size())
+    throw Error(where + "--offset " + std::to_string(options.offset) +
+                " leaves no scan; there are " + std::to_string(folder.scans.size()) +
+                ", numbered from 0");
+  if (options.odometryNoise && !folder.scans.front().T_map_robot)
+    throw Error(where +
+                "--odometry-noise needs true poses, and there are none; --poses gives some");
+}
+
+bool selected(std::size_t index, const ImportOptions& options) {
+  return index >= options.offset && (index - options.offset) % options.every == 0;
+}
+
+/// The truth goes beside the rawlog, whatever it is called.
+std::filesystem::path truthBeside(std::filesystem::path rawlog) {
+  return rawlog.replace_extension(".tum");
+}
+
+void protectPoses(const ImportOptions& options) {
+  std::error_code notThere;
+  if (options.poses &&
+      std::filesystem::equivalent(*options.poses, truthBeside(options.output), notThere))
+    throw Error(options.poses->string() + ": is an input, and the truth beside " +
+                options.output.string() + " would replace it; choose another name for --output");
+}
+
+/// Both files appear together, when both are complete.
+void publish(RawlogWriter& rawlog, std::optional<io::AtomicFile>& truthFile,
+             const std::vector<io::StampedPose3D>& truth) {
+  if (truthFile) io::writeTum(truthFile->temporaryPath(), truth);
+  rawlog.commit();
+  if (truthFile) truthFile->commit();
+}
+
+}  // namespace
+
+void ImportOptions::validate() const {
+  if (every < 1) throw Error("--every 0 takes no scan: a number from 1 on is allowed");
+  if (odometryNoise && !(*odometryNoise >= 0 && std::isfinite(*odometryNoise)))
+    throw Error("--odometry-noise " + io::significant(*odometryNoise, 6) +
+                ": a share of 0 or more is allowed, such as 0.02 for 2 %");
+  const auto extension = output.extension();
+  if (extension != ".rawlog")
+    throw Error("--output " + output.string() +
+                ": the name must end in .rawlog (the truth goes beside it as .tum)");
+}
+
+Eigen::Isometry3d datasetSensorPose(Dataset dataset) {
+  if (dataset == Dataset::nclt) return io::ncltRobotBody();
+  if (dataset == Dataset::mulran) return io::mulranBaseLidar();
+  return Eigen::Isometry3d::Identity();
+}
+
+ImportReport importDataset(const ImportOptions& options,
+                           const std::function<void(std::size_t, std::size_t)>& progress) {
+  options.validate();
+  protectPoses(options);
+  const Eigen::Isometry3d T_robot_sensor =
+      options.T_robot_sensor.value_or(datasetSensorPose(options.dataset));
+  auto folder = readDataset(options, T_robot_sensor, progress);
+  if (options.poses) {
+    const Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
+    io::takeTumPoses(folder, *options.poses,
+                     options.posesOfSensor ? T_robot_sensor.inverse() : robot);
+  }
+  checkSelection(options, folder);
+
+  ImportReport report;
+  report.notes = folder.notes;
+  report.embedded = options.embed || folder.read;
+  RawlogWriter rawlog(options.output.string());
+  std::optional<io::AtomicFile> truthFile;
+  if (folder.scans.front().T_map_robot) truthFile.emplace(truthBeside(options.output));
+  std::vector<io::StampedPose3D> truth;
+  MotionSource motions(options);
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) {
+    const auto& scan = folder.scans[i];
+    motions.pass(scan);
+    if (progress) progress(i, folder.scans.size());
+    if (!selected(i, options)) {
+      ++report.skipped;
+      continue;
+    }
+    const auto observation = makeObservation(folder, scan, T_robot_sensor, report);
+    if (!observation) {
+      ++report.emptyScans;
+      continue;
+    }
+    const auto motion = motions.take(scan);
+    if (report.scans > 0 && motion) report.hasMotion = true;
+    rawlog.write(makeActions(motion, observation->timestamp), observation);
+    // The time as the rawlog keeps it (steps of 100 ns), so that both files agree to the digit.
+    const double time = mrpt::Clock::toDouble(observation->timestamp);
+    if (scan.T_map_robot) truth.push_back({time, *scan.T_map_robot});
+    ++report.scans;
+  }
+  if (report.scans == 0)
+    throw Error(options.input.string() + ": no usable scan, all " +
+                std::to_string(report.emptyScans) + " selected ones are empty");
+  publish(rawlog, truthFile, truth);
+  report.hasTruth = truthFile.has_value();
+  return report;
+}
+
+Eigen::Isometry3d parseSensorPose(const std::string& text) {
+  std::istringstream words(text);
+  std::vector<double> values;
+  std::string word;
+  while (words >> word) {
+    const auto value = io::parseNumber(word);
+    if (!value || !std::isfinite(*value)) throw Error("`" + word + "` is not a number");
+    values.push_back(*value);
+  }
+  if (values.size() != 6)
+    throw Error("six numbers are needed, \"x y z yaw_deg pitch_deg roll_deg\", not " +
+                std::to_string(values.size()));
+  const mrpt::poses::CPose3D pose(values[0], values[1], values[2], values[3] * degree,
+                                  values[4] * degree, values[5] * degree);
+  return Eigen::Isometry3d(pose.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen());
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,128 @@
+#include "import/ImportApp.h"
+
+#include <iostream>
+#include <string>
+#include <utility>
+
+#include "cli/CommandLine.h"
+#include "cli/Progress.h"
+#include "core/common/Types.h"
+#include "import/DatasetImport.h"
+
+namespace polemcl::apps {
+namespace {
+
+const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
+    {Dataset::folder, "folder", "velodyne/*.bin, times.txt, poses.txt, odometry.txt"},
+    {Dataset::kittiOdometry, "kitti-odometry", "A sequence of the KITTI odometry benchmark"},
+    {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"},
+    {Dataset::nclt, "nclt", "A session of NCLT, in a folder or as its downloader lays it out"},
+    {Dataset::mulran, "mulran", "A sequence of MulRan: Ouster/*.bin, global_pose.csv"},
+    {Dataset::pcd, "pcd", "*.pcd (also compressed), always embedded; text files as for folder"}};
+
+/// Options as they are typed.
+struct Texts {
+  std::string sensorPose, posesOf = "robot", session;
+};
+
+/// What is wrong with the text, for CLI11; nothing when it is a pose.
+std::string sensorPoseProblem(const std::string& text) {
+  try {
+    parseSensorPose(text);
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+std::string ownSensorPose(Dataset dataset) {
+  return dataset == Dataset::nclt ? "the body, turned upright, 0 0 0 0 0 180"
+         : dataset == Dataset::mulran
+             ? "its calibration, 1.7042 -0.021 1.8047 179.6654 0.0003 0.0001"
+             : "0";
+}
+
+void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
+  cli.add_option("--input", options.input, "Folder of the dataset")->required();
+  cli.add_option("--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
+      ->required();
+  cli.add_flag("--embed", options.embed, "Store the clouds inside the rawlog");
+  cli.add_option("--every", options.every, "Take scans K, K+N, ...")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  cli.add_option("--offset", options.offset, "First scan to take, from 0")
+      ->type_name("K")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--odometry-noise", options.odometryNoise,
+                 "Odometry: true motion, noise of this share of each component (0.02 for 2 %)")
+      ->check(CLI::NonNegativeNumber);
+  cli.add_option("--seed", options.seed, "Seed of that noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option(
+         "--sensor-pose", texts.sensorPose,
+         "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\" (default: " +
+             ownSensorPose(dataset) + ")")
+      ->check(sensorPoseProblem);
+  auto* poses = cli.add_option("--poses", options.poses,
+                               "TUM file of true poses, instead of those of the dataset");
+  cli.add_option("--poses-of", texts.posesOf, "What has these poses")
+      ->check(CLI::IsMember({"robot", "sensor"}))
+      ->capture_default_str()
+      ->needs(poses);
+  if (dataset == Dataset::nclt)
+    cli.add_option("--session", texts.session,
+                   "Session of --input where that holds several: 2012-01-15")
+        ->type_name("DATE");
+  if (dataset == Dataset::kittiRaw)
+    cli.add_option("--calib", options.calibration,
+                   "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
+}
+
+void printImport(const ImportReport& report, const ImportOptions& options) {
+  std::cout << options.output.string() << ": " << report.scans << " scans";
+  if (report.skipped > 0) std::cout << ", " << report.skipped << " left out as asked";
+  if (report.emptyScans > 0) std::cout << ", " << report.emptyScans << " empty ones dropped";
+  if (report.embedded)
+    std::cout << "; " << report.points << " points, " << report.invalidPoints
+              << " invalid ones dropped";
+  std::cout << '\n'
+            << (report.hasTruth ? "truth: beside it, .tum\n" : "truth: none in the dataset\n")
+            << (report.hasMotion ? options.odometryNoise ? "odometry: true motion with noise\n"
+                                                         : "odometry: from the dataset\n"
+                                 : "odometry: none; good for mapping, not for localization\n");
+  for (const auto& note : report.notes) std::cout << "note: " << note << '\n';
+}
+
+}  // namespace
+
+int importMain(int argc, const char* const* argv) {
+  CommandLine line("pole-import", "Turns a LiDAR dataset into a rawlog, with the truth beside it.");
+  ImportOptions options;
+  Texts texts;
+  line.cli().require_subcommand(1);
+  std::vector<std::pair<const CLI::App*, Dataset>> commands;
+  for (const auto& [dataset, name, description] : datasets) {
+    auto* command = line.cli().add_subcommand(name, description);
+    declare(*command, dataset, options, texts);
+    commands.emplace_back(command, dataset);
+  }
+  return line.run(argc, argv, [&] {
+    for (const auto& [command, dataset] : commands)
+      if (command->parsed()) options.dataset = dataset;
+    if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);
+    if (!texts.session.empty()) options.input /= texts.session;
+    options.posesOfSensor = texts.posesOf == "sensor";
+    ImportReport report;
+    {
+      Progress progress("import", 0, line.quiet());
+      report = importDataset(
+          options, [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+    }
+    if (!line.quiet()) printImport(report, options);
+  });
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,73 @@
+#include "localize/FilterRuns.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+namespace polemcl::apps {
+
+namespace {
+
+/// Calls work(i) for each run. The thread that calls helps with the runs and with nothing else, so
+/// that a scan does not wait for the extraction of a later one.
+template <class Work>
+void forEachRun(std::size_t runs, const Work& work) {
+  if (runs == 1) return work(0);
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, runs, work); });
+}
+
+double secondsSince(ScanClock::time_point begin) {
+  return std::chrono::duration<double>(ScanClock::now() - begin).count();
+}
+
+}  // namespace
+
+void FilterRun::add(const LocalizationUpdate& update) {
+  ++states[static_cast<int>(update.health.state)];
+  if (update.estimate && !firstPose) firstPose = scans;
+  relocalizations += update.relocalized ? 1 : 0;
+  resampled += update.step.resampled ? 1 : 0;
+  ++scans;
+}
+
+FilterRuns::FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
+                       const StartOptions& start, const RunOptions& runs) {
+  runs.validate();
+  const auto count = static_cast<std::size_t>(runs.runs);
+  const auto particles =
+      static_cast<std::size_t>(std::max(start.particles, options.filter.particles));
+  if (count * particles > mostParticles)
+    throw Error(std::to_string(count) + " runs of " + std::to_string(particles) +
+                " particles side by side: at most " + std::to_string(mostParticles) +
+                " particles are allowed; localize in several calls, each with its own seed");
+  m_filters.resize(count);
+  m_results.resize(count);
+  m_steps.resize(count);
+  forEachRun(count, [&](std::size_t i) {
+    const auto begin = ScanClock::now();
+    const std::uint32_t seed = runs.seed + static_cast<std::uint32_t>(i);
+    m_filters[i] = std::make_unique<PoleLocalization>(map, options, seed);
+    if (start.anywhere)
+      m_filters[i]->startAnywhere();
+    else
+      m_filters[i]->start(start);
+    m_results[i].seed = seed;
+    m_results[i].seconds = secondsSince(begin);
+  });
+}
+
+const std::vector<FilterStep>& FilterRuns::step(const PoleFrame& frame) {
+  forEachRun(m_filters.size(), [&](std::size_t i) {
+    const auto begin = ScanClock::now();
+    m_steps[i].update = m_filters[i]->step(frame);
+    m_steps[i].seconds = secondsSince(begin);
+    m_results[i].seconds += m_steps[i].seconds;
+    m_results[i].add(m_steps[i].update);
+  });
+  return m_steps;
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,191 @@
+#include "localize/LocalizeApp.h"
+
+#include <iostream>
+
+#include "cli/CommandLine.h"
+#include "cli/JsonFile.h"
+#include "cli/Progress.h"
+#include "cli/RunFolder.h"
+#include "cli/Settings.h"
+#include "core/common/Angles.h"
+#include "io/data/Trajectory.h"
+#include "localize/LocalizePlayer.h"
+#include "localize/LocalizeReport.h"
+#include "localize/Pace.h"
+#include "localize/RunView.h"
+#include "localize/TrialDrive.h"
+
+namespace polemcl::apps {
+
+namespace {
+
+/// X,Y,YAW_DEG,RADIUS,HEADING_DEG of the command line.
+void setStart(StartOptions& start, const std::vector<double>& numbers) {
+  start.anywhere = false;
+  start.pose = Pose2D{numbers[0], numbers[1], wrapAngle(numbers[2] * degree)};
+  start.radius = numbers[3];
+  start.heading = numbers[4] * degree;
+}
+
+void setView(report::ViewOptions& view, const LocalizeJob& job) {
+  if (job.live) view.live = true;
+  if (job.hold) view.live = view.hold = true;
+  if (job.rate) view.rate = *job.rate;
+  if (job.scenes) view.scenes = *job.scenes;
+  if (job.frames) view.frames = *job.frames;
+  if (job.frameEvery) view.frameEvery = *job.frameEvery;
+  view.validate();
+}
+
+Settings effectiveSettings(const LocalizeJob& job) {
+  Settings settings = loadSettings(job.config.string(), job.set);
+  if (job.runs) settings.runs.runs = *job.runs;
+  if (job.seed) settings.runs.seed = *job.seed;
+  if (job.particles) settings.localization.filter.particles = *job.particles;
+  if (job.anywhere) settings.start.anywhere = true;
+  if (!job.start.empty()) setStart(settings.start, job.start);
+  setView(settings.view, job);
+  settings.runs.validate();
+  settings.localization.validate();
+  settings.start.validate();
+  return settings;
+}
+
+/// What is known before the first scan; the truth gives the start where nothing else does.
+LocalizeFacts factsOf(const LocalizeJob& job, const Settings& settings, std::size_t mapPoles) {
+  LocalizeFacts facts;
+  facts.job = job;
+  facts.localization = settings.localization;
+  facts.start = settings.start;
+  facts.runs = settings.runs;
+  facts.mapPoles = mapPoles;
+  if (facts.start.anywhere)
+    facts.startSource = "anywhere";
+  else if (!job.start.empty())
+    facts.startSource = "command line";
+  else if (facts.start.pose)
+    facts.startSource = "configuration";
+  else if (job.truth)
+    facts.startSource = "truth";
+  else
+    throw Error("no start pose: set position_m and yaw_deg in [start] of " + job.config.string() +
+                ", or give --start, --global or --truth");
+  return facts;
+}
+
+/// Times as fast as it was recorded; none: full speed. `[view] rate` is for windows only.
+std::optional<double> rateOf(const LocalizeJob& job, const Settings& settings) {
+  return job.rate || settings.view.live ? report::parseRate(settings.view.rate) : std::nullopt;
+}
+
+/// Streams the rawlog to the player.
+SequenceCounts play(const LocalizeJob& job, const Settings& settings, const RunView& view,
+                    LocalizePlayer& player) {
+  SequenceOptions options;
+  options.extraction = settings.poleExtraction();
+  options.motion = settings.motion;
+  options.allowTruncated = job.allowTruncated;
+  Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });
+  options.pace = [&](double time) { return pace.waitFor(time); };
+  Progress progress("localize", 0, job.quiet);
+  return streamPoles(job.input.string(), options, [&](const PoleScan& scan) {
+    player.take(scan);
+    progress.update(scan.index + 1, scan.expected);
+  });
+}
+
+void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings& settings,
+                  const LocalizeResult& result) {
+  saveSettings(settings, folder.staged("config.ini").string());
+  writeJson(folder.staged("timings.json"), timingsJson(result.timings));
+  writeJson(folder.staged("summary.json"), makeSummary(facts, result));
+  folder.commit();
+}
+
+}  // namespace
+
+LocalizeResult localize(const LocalizeJob& job) {
+  const Settings settings = effectiveSettings(job);
+  const auto map = loadPoleMap(job.map, settings.likelihood);
+  std::vector<StampedPose2D> truth;
+  if (job.truth) truth = io::readPlanarTum(*job.truth);
+  LocalizeFacts facts = factsOf(job, settings, map->poles().size());
+  // Before the work, so that folders and windows that cannot be are known now.
+  RunFolder folder(job.output);
+  for (const auto& input : {job.config, job.input, job.map, job.truth.value_or("")})
+    folder.protect(input);
+  RunView view(settings.view, map->poles(), job.input.filename().string(), folder);
+
+  const LocalizationMap prepared(map, settings.localization.global);
+  const auto begin = ScanClock::now();
+  LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view);
+  facts.counts = play(job, settings, view, player);
+  LocalizeResult result = player.finish();
+  result.timings.wallSeconds = std::chrono::duration<double>(ScanClock::now() - begin).count();
+  result.timings.rate = rateOf(job, settings);
+  writeResults(folder, facts, settings, result);
+  if (!job.quiet) {
+    printTable(std::cout, facts, result);
+    std::cout << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
+  }
+  view.waitForWindow();
+  return result;
+}
+
+namespace {
+
+std::string wrongRate(const std::string& text) {
+  try {
+    report::parseRate(text);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+void addViewOptions(CLI::App& cli, LocalizeJob& job) {
+  cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
+  cli.add_flag("--hold", job.hold, "--live, and the window stays until it is closed");
+  cli.add_option("--rate", job.rate,
+                 "Pace of the input: 1x as it was driven, 2.5x, max. Default: max; with a window "
+                 "[view] rate")
+      ->check(wrongRate);
+  cli.add_option("--scenes", job.scenes, "A .3Dscene every N scans, in OUTPUT/run_00_scenes")
+      ->check(CLI::Range(0, 1000000000));
+  cli.add_option("--frames", job.frames, "Folder for PNG frames; needs no display");
+  cli.add_option("--frame-every", job.frameEvery, "A frame every N scans")
+      ->check(CLI::Range(1, 1000000000));
+}
+
+}  // namespace
+
+int localizeMain(int argc, const char* const* argv) {
+  CommandLine line("pole-localize", "Localizes a vehicle in a pole map, from a rawlog.");
+  LocalizeJob job;
+  auto& cli = line.cli();
+  cli.add_option("--config", job.config, "Settings (.ini)")->required();
+  addSetOption(cli, job.set);
+  cli.add_option("--input", job.input, "Rawlog of scans or of poles, with odometry")->required();
+  cli.add_option("--map", job.map, "Pole map (.polemap)")->required();
+  cli.add_option("--output", job.output, "Folder for the results")->required();
+  cli.add_option("--truth", job.truth, "True robot poses (.tum): errors, and the start");
+  cli.add_option("--runs", job.runs, "Runs, each with its own seed")->check(CLI::Range(1, 10000));
+  cli.add_option("--seed", job.seed, "Seed of the first run; run i uses seed + i");
+  cli.add_option("--particles", job.particles, "Particles of the filter")
+      ->check(CLI::Range(1, 1000000));
+  auto* start = cli.add_option("--start", job.start,
+                               "X,Y,YAW_DEG,RADIUS,HEADING_DEG: where it starts, m and deg")
+                    ->delimiter(',')
+                    ->expected(5);
+  cli.add_flag("--global", job.anywhere, "No start pose: the whole map is searched on the way")
+      ->excludes(start);
+  addViewOptions(cli, job);
+  cli.add_flag("--allow-truncated", job.allowTruncated,
+               "Use the readable part of a rawlog that ends too early");
+  return line.run(argc, argv, [&] {
+    job.quiet = line.quiet();
+    localize(job);
+  });
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,90 @@
+#pragma once
+/// \file LocalizeApp.h
+/// \brief `pole-localize`: plays a rawlog against a pole map, and says how well it went.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "core/evaluation/TrajectoryEvaluation.h"
+#include "localize/FilterRuns.h"
+#include "localize/LocalizeTimings.h"
+
+namespace polemcl::apps {
+
+/// \brief What the command line says. Values given here take the place of the configuration's.
+struct LocalizeJob {
+  std::filesystem::path config, input, map, output;
+  std::vector<std::string> set;                ///< `section.key=value`, see loadSettings()
+  std::optional<std::filesystem::path> truth;  ///< TUM
+  std::optional<int> runs, particles;
+  std::optional<std::uint32_t> seed;
+  std::vector<double> start;  ///< x, y (m), yaw (deg), radius (m), heading (deg); or empty
+  bool anywhere = false;      ///< no start pose: global search
+  /// \name How the drive is played and its first run watched, as in `[view]`
+  /// @{
+  bool live = false, hold = false;
+  std::optional<std::string> rate;  ///< of the input, with a window or without
+  std::optional<std::string> frames;
+  std::optional<int> scenes, frameEvery;
+  /// @}
+  bool allowTruncated = false;
+  bool quiet = false;
+};
+
+struct LocalizeResult {
+  std::vector<FilterRun> runs;
+  /// Errors of each run, without those of single poses; empty without truth; none for a run that
+  /// never found its pose.
+  std::vector<std::optional<TrajectoryErrors>> errors;
+  LocalizeTimings timings;
+};
+
+/// \brief Plays the rawlog: reads, extracts, filters, shows and writes scan by scan. All runs take
+/// each scan side by side, with the same bytes as one by one.
+///
+/// Memory does not grow with the length of the drive, but for the truth (32 bytes a pose) and,
+/// while the run is watched, the path of the estimate (24 bytes a metre). By default a scan follows
+/// the one before as fast as it goes. `--rate` sets a pace (see Pace.h); with a window `[view]
+/// rate` does (1x by default), until the user closes it.
+///
+/// The folder `output` gets:
+/// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;
+///   started anywhere, from the scan on by which the pose is known;
+/// - `run_NN_cov.csv`: `scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw` of the same
+/// poses:
+///   the estimate and its covariance, map frame, m², m·rad, rad²;
+/// - `run_NN_health.csv`: `scan,timestamp,state,reason,matched_share,evidence,innovation,
+///   effective_particles,particles,mode_share,spread_m,spread_deg,poles,relocalized` of every scan
+///   (see LocalizationHealth.h; `relocalized` is 1 where the global search set the pose);
+/// - `run_NN_errors.csv`, with truth: `scan,timestamp,position_m,lateral_m,longitudinal_m,
+///   heading_deg,poles,effective_share` of each scan that the truth covers; scan is the 0-based
+///   index in the input, lateral + to the left and longitudinal + ahead of the true pose, heading +
+///   counter-clockwise, poles the number observed, effective_share that of the particles;
+/// - `run_00_scenes/NNNNNN.3Dscene`, if asked for: the first run after scan NNNNNN (see
+///   report/LiveScene.h; stock objects);
+/// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
+///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`;
+///   `start_source` says who gave the start pose: the `truth` (at the first scan), the
+///   `configuration`, the `command line`, or nobody: the start is `anywhere`;
+/// - `config.ini`: the effective configuration;
+/// - `timings.json`: the only file that differs from repetition to repetition. `wall_s`, `rate`
+///   (times the pace of the recording, or `max`), `filter_s` of each run, and in `latency_ms` for
+///   each stage `median p99 worst count` (see LocalizeTimings.h; to 0.5 %, `worst` exactly):
+///   `read`, `extract` (not for stored poles), `step` of each run, `write` with the view, and
+///   `total`, from the moment a scan is there until all runs have its pose. At a rate that is the
+///   moment at which the scan is due. At full speed it is the one at which it has been read, so
+///   that `total` contains the wait for the scans before it.
+///
+/// Results grow in a hidden folder beside files of an earlier call, which they replace once
+/// everything is complete. Prints a table on stdout unless quiet.
+/// \throws Error as the readers do, and when the map has no poles, scans lack odometry, no pole is
+///         ever seen, there is no start pose or it is more than 1 km from all poles of the map, or
+///         the truth covers less than half of the scans. The folder is as it was before then.
+LocalizeResult localize(const LocalizeJob& job);
+
+/// \brief The program. \return Its exit code.
+int localizeMain(int argc, const char* const* argv);
+
+}  // namespace polemcl::apps

@@ -1,0 +1,87 @@
+#include "localize/LocalizePlayer.h"
+
+#include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
+
+namespace polemcl::apps {
+
+namespace {
+
+double secondsFrom(ScanClock::time_point begin) {
+  return std::chrono::duration<double>(ScanClock::now() - begin).count();
+}
+
+}  // namespace
+
+LocalizePlayer::LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
+                               const std::vector<StampedPose2D>* truth, const RunFolder& folder,
+                               RunView& view)
+    : m_facts(facts), m_map(map), m_truth(truth), m_folder(folder), m_view(view) {}
+
+void LocalizePlayer::take(const PoleScan& scan) {
+  if (scan.index > 0 && !scan.motion)
+    throw Error(m_facts.job.input.string() + ": no odometry before scan " +
+                std::to_string(scan.index) +
+                ": the filter needs it; import with an odometry file or with --odometry-noise");
+  const PoleFrame frame = frameOf(scan);
+  if (!m_runs) begin(frame);
+  const std::vector<FilterStep>& steps = m_runs->step(frame);
+  m_timings.total.add(secondsFrom(scan.arrival));
+
+  const auto found = ScanClock::now();
+  if (m_truth) m_covered += poseAt(*m_truth, frame.time, longestTruthGap).has_value();
+  for (std::size_t i = 0; i < steps.size(); ++i) m_files[i].add(steps[i].update);
+  m_view.show(m_runs->localization(0), frame, steps[0].update);
+  m_timings.write.add(secondsFrom(found));
+  for (const FilterStep& step : steps) m_timings.step.add(step.seconds);
+  m_timings.read.add(scan.readSeconds);
+  if (!scan.stored) m_timings.extract.add(scan.extractSeconds);
+}
+
+void LocalizePlayer::begin(const PoleFrame& first) {
+  StartOptions& start = m_facts.start;
+  if (!start.anywhere && !start.pose) {
+    start.pose = poseAt(*m_truth, first.time, longestTruthGap);
+    if (!start.pose)
+      throw Error(m_facts.job.truth->string() + ": the truth does not reach the first scan, at " +
+                  std::to_string(first.time) + " s: set position_m and yaw_deg in [start]");
+  }
+  m_runs = std::make_unique<FilterRuns>(m_map, m_facts.localization, start, m_facts.runs);
+  m_files.reserve(m_runs->size());
+  for (std::size_t i = 0; i < m_runs->size(); ++i) m_files.emplace_back(m_folder, i, m_truth);
+}
+
+void LocalizePlayer::requireUsable() const {
+  const std::string input = m_facts.job.input.string();
+  const SequenceCounts& counts = m_facts.counts;
+  const std::string scans = std::to_string(counts.scans);
+  if (counts.scans == 0)
+    throw Error(input + ": holds no scan and no poles; import or extract them first");
+  if (counts.emptyScans == counts.scans)
+    throw Error(input + ": no usable scan: none of " + scans + " has a valid point");
+  if (counts.poles == 0)
+    throw Error(input + ": no pole in any of " + scans + " scans (" +
+                std::to_string(counts.points) + " valid points, " +
+                std::to_string(counts.emptyScans) +
+                " empty scans): check [sensor] and [extraction]");
+  if (m_truth && 2 * m_covered < counts.scans)
+    throw Error(m_facts.job.truth->string() + ": the truth covers " + std::to_string(m_covered) +
+                " of " + scans + " scans, at least half are needed: does it " +
+                "belong to this rawlog?");
+}
+
+LocalizeResult LocalizePlayer::finish() {
+  requireUsable();
+  LocalizeResult result;
+  for (RunFiles& files : m_files) {
+    const auto errors = files.finish();
+    if (m_truth) result.errors.push_back(errors);
+  }
+  m_view.finish();
+  result.runs = m_runs->results();
+  for (const FilterRun& run : result.runs) m_timings.filterSeconds.push_back(run.seconds);
+  result.timings = m_timings;
+  return result;
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,52 @@
+#pragma once
+/// \file LocalizePlayer.h
+/// \brief Plays a drive to the filters of `pole-localize`, scan by scan. Private to the library.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/RunFolder.h"
+#include "localize/FilterRuns.h"
+#include "localize/LocalizeReport.h"
+#include "localize/RunFiles.h"
+#include "localize/RunView.h"
+
+namespace polemcl::apps {
+
+/// \brief What each scan goes through: the filters of all runs, the view, the files of results.
+/// Nothing of a scan is kept.
+class LocalizePlayer {
+ public:
+  /// \param facts Its start may be without a pose: the truth gives it then, at the first scan.
+  /// \param truth Null without. All must outlive this object.
+  LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
+                 const std::vector<StampedPose2D>* truth, const RunFolder& folder, RunView& view);
+
+  /// \brief The next scan of the drive.
+  /// \throws Error when it has no odometry, when there is no start pose, and as FilterRuns,
+  ///         RunFiles and RunView do.
+  void take(const PoleScan& scan);
+
+  /// \brief After the last scan; `facts.counts` are known now. Completes the files.
+  /// \throws Error when nothing could be localized: no scan, no valid point, no pole in any scan;
+  ///         when the truth covers less than half of the scans.
+  LocalizeResult finish();
+
+ private:
+  void begin(const PoleFrame& first);
+  void requireUsable() const;
+
+  LocalizeFacts& m_facts;
+  const LocalizationMap& m_map;
+  const std::vector<StampedPose2D>* m_truth;
+  const RunFolder& m_folder;
+  RunView& m_view;
+  std::unique_ptr<FilterRuns> m_runs;  ///< from the first scan on
+  std::vector<RunFiles> m_files;
+  std::size_t m_covered = 0;  ///< scans at whose time there is a true pose
+  LocalizeTimings m_timings;
+};
+
+}  // namespace polemcl::apps

@@ -1,0 +1,79 @@
+#include "localize/RunFiles.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/common/Angles.h"
+#include "io/data/Trajectory.h"
+#include "localize/LocalizeReport.h"
+
+namespace polemcl::apps {
+
+namespace {}  // namespace
+
+RunFiles::RunFiles(const RunFolder& folder, std::size_t run,
+                   const std::vector<StampedPose2D>* truth)
+    : m_errorsFile(folder.staged(runName(run) + "_errors.csv")),
+      m_trajectory(folder.staged(runName(run) + ".tum")),
+      m_covariances(folder.staged(runName(run) + "_cov.csv")),
+      m_health(folder.staged(runName(run) + "_health.csv")) {
+  if (truth) m_evaluator.emplace(*truth);
+  m_covariances.add("scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n");
+  m_health.add(
+      "scan,timestamp,state,reason,matched_share,evidence,innovation,effective_particles,particles,"
+      "mode_share,spread_m,spread_deg,poles,relocalized\n");
+}
+
+void RunFiles::add(const LocalizationUpdate& update) {
+  addHealth(update);
+  if (update.estimate) addPose(update);
+  ++m_scan;
+}
+
+std::optional<TrajectoryErrors> RunFiles::finish() {
+  m_trajectory.flush();
+  m_covariances.flush();
+  m_health.flush();
+  if (m_errors) m_errors->flush();
+  if (!m_evaluator || m_evaluator->estimates() == 0) return std::nullopt;
+  return m_evaluator->finish();
+}
+
+void RunFiles::addPose(const LocalizationUpdate& update) {
+  const auto& [mean, C] = *update.estimate;
+  const StampedPose2D pose{update.time, mean};
+  m_trajectory.add(io::tumRow(pose));
+  char line[300];
+  std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.9f,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
+                m_scan, update.time, mean.x, mean.y, mean.yaw, C(0, 0), C(0, 1), C(0, 2), C(1, 1),
+                C(1, 2), C(2, 2));
+  m_covariances.add(line);
+  if (!m_evaluator) return;
+  if (const auto error = m_evaluator->add(pose)) addError(*error, update);
+}
+
+void RunFiles::addHealth(const LocalizationUpdate& update) {
+  const Health& health = update.health;
+  char line[300];
+  std::snprintf(line, sizeof line, "%zu,%.9f,%s,%s,%.4f,%.3f,%.4f,%.1f,%zu,%.4f,%.5f,%.5f,%zu,%d\n",
+                m_scan, update.time, name(health.state), name(health.reason), health.matchedShare,
+                health.evidence, health.innovation, health.effectiveParticles,
+                update.step.particles, health.modeShare, health.spread,
+                health.spreadHeading / degree, update.poles, int(update.relocalized));
+  m_health.add(line);
+}
+
+void RunFiles::addError(const PoseError& error, const LocalizationUpdate& update) {
+  if (!m_errors) {
+    m_errors.emplace(m_errorsFile);
+    m_errors->add(
+        "scan,timestamp,position_m,lateral_m,longitudinal_m,heading_deg,poles,effective_share\n");
+  }
+  char line[200];
+  std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.6f,%.6f,%zu,%.6f\n", m_scan, error.time,
+                error.position, error.lateral, error.longitudinal, error.heading / degree,
+                update.poles, update.step.effectiveShare);
+  m_errors->add(line);
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,43 @@
+#pragma once
+/// \file RunFiles.h
+/// \brief The files of one run of `pole-localize`, written scan by scan. Private to the library.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/RunFolder.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
+#include "io/file/GrowingFile.h"
+#include "mrpt/filter/LocalizationPipeline.h"
+
+namespace polemcl::apps {
+
+/// \brief `run_NN.tum`, `run_NN_cov.csv`, `run_NN_health.csv` and, with truth, `run_NN_errors.csv`:
+/// see LocalizeApp.h.
+class RunFiles {
+ public:
+  /// \param truth Null, or must outlive this object.
+  /// \throws Error when a file cannot be created.
+  RunFiles(const RunFolder& folder, std::size_t run, const std::vector<StampedPose2D>* truth);
+
+  /// \brief The next scan. \throws Error when it cannot be written, or a pose is not finite.
+  void add(const LocalizationUpdate& update);
+  /// \brief After the last scan: completes the files.
+  /// \return The errors; none without truth, or when no pose was ever known.
+  /// \throws Error when a file cannot be written, or the truth covers less than half of the poses.
+  std::optional<TrajectoryErrors> finish();
+
+ private:
+  void addPose(const LocalizationUpdate& update);
+  void addHealth(const LocalizationUpdate& update);
+  void addError(const PoseError& error, const LocalizationUpdate& update);
+
+  std::filesystem::path m_errorsFile;
+  io::GrowingFile m_trajectory, m_covariances, m_health;
+  std::optional<io::GrowingFile> m_errors;  ///< from the first error on
+  std::optional<TrajectoryEvaluator> m_evaluator;
+  std::size_t m_scan = 0;  ///< taken so far
+};
+
+}  // namespace polemcl::apps

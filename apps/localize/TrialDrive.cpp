@@ -1,0 +1,53 @@
+#include "localize/TrialDrive.h"
+
+#include <cmath>
+
+#include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
+#include "io/data/Trajectory.h"
+
+namespace polemcl::apps {
+
+namespace {}  // namespace
+
+std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
+                                            const LikelihoodOptions& likelihood) {
+  auto map = std::make_shared<CPoleMap>();
+  map->likelihoodOptions = likelihood;  // first: loading prepares the index for its gate
+  map->loadFromPoleMapFile(file.string());
+  if (map->poles().empty())
+    throw Error(file.string() + ": the map has no poles: nothing can be localized in it");
+  return map;
+}
+
+TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
+  const Settings settings = loadSettings(files.config.string(), files.set);
+  SequenceOptions reading;
+  reading.extraction = settings.poleExtraction();
+  reading.motion = settings.motion;
+  TrialDrive drive{
+      settings,
+      LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.localization.global),
+      readPoleSequence(files.input.string(), reading).frames,
+      {}};
+  const auto truth = io::planar(io::readTum(files.truth));
+  for (std::size_t i = 0; i < drive.frames.size(); ++i) {
+    const PoleFrame& frame = drive.frames[i];
+    const auto pose = poseAt(truth, frame.time, longestTruthGap);
+    if (!pose)
+      throw Error(files.truth.string() + ": no true pose at " + std::to_string(frame.time) +
+                  " s, the time of scan " + std::to_string(i) + " of " + files.input.string());
+    if (i > 0 && !frame.motion)
+      throw Error(files.input.string() + ": no odometry before scan " + std::to_string(i) +
+                  ": the filter needs it");
+    drive.truth.push_back(*pose);
+  }
+  return drive;
+}
+
+PlanarError errorOf(const Pose2D& estimate, const Pose2D& truth) {
+  return {std::hypot(estimate.x - truth.x, estimate.y - truth.y),
+          std::abs(wrapAngle(estimate.yaw - truth.yaw))};
+}
+
+}  // namespace polemcl::apps

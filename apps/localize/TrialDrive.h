@@ -1,0 +1,39 @@
+#pragma once
+/// \file TrialDrive.h
+/// \brief A drive of stored poles with its truth and a map: what experiments on the localization
+/// take their trials from.
+
+#include <filesystem>
+#include <vector>
+
+#include "cli/Settings.h"
+
+namespace polemcl::apps {
+
+struct TrialDriveFiles {
+  std::filesystem::path config, map, input, truth;  ///< INI, .polemap, rawlog of poles, TUM
+  std::vector<std::string> set = {};                ///< `section.key=value`, see loadSettings()
+};
+
+struct TrialDrive {
+  Settings settings;
+  LocalizationMap map;
+  std::vector<PoleFrame> frames;
+  std::vector<Pose2D> truth;  ///< of each frame
+};
+
+/// \brief Reads everything. \throws Error naming the file: a scan without motion (but the first) or
+/// without a true pose at its time, and as the readers do.
+TrialDrive loadTrialDrive(const TrialDriveFiles& files);
+
+/// \brief Position and heading error, m and rad, both 0 or more.
+struct PlanarError {
+  double metres, radians;
+};
+PlanarError errorOf(const Pose2D& estimate, const Pose2D& truth);
+
+/// \brief A map for `settings` from a file. \throws Error when it cannot be read or has no poles.
+std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
+                                            const LikelihoodOptions& likelihood);
+
+}  // namespace polemcl::apps

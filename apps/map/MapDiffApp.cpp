@@ -1,0 +1,55 @@
+#include "map/MapDiffApp.h"
+
+#include <ostream>
+
+#include "io/file/AtomicFile.h"
+#include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
+#include "mrpt/drawing/SceneParts.h"
+#include "report/picture/DiffPicture.h"
+#include "report/scene/DiffScene.h"
+
+namespace polemcl::apps {
+namespace {
+
+std::string place(const MapPole& pole, const char* between) {
+  return io::fixed(pole.x, 3) + between + io::fixed(pole.y, 3);
+}
+
+void writeCsv(const MapDiff& diff, const std::filesystem::path& file) {
+  io::AtomicFile output(file);
+  output.stream() << "change,x,y,x_before,y_before,distance\n";
+  for (const MapPole& pole : diff.appeared)
+    output.stream() << "new," << place(pole, ",") << ",,,\n";
+  for (const MapPole& pole : diff.vanished)
+    output.stream() << "vanished," << place(pole, ",") << ",,,\n";
+  for (const MapDiff::Pair& pair : diff.moved)
+    output.stream() << "moved," << place(pair.after, ",") << ',' << place(pair.before, ",") << ','
+                    << io::fixed(pair.distance, 3) << '\n';
+  output.commit();
+}
+
+}  // namespace
+
+MapDiff diffMapFiles(const MapDiffFiles& files, const MapDiffOptions& options) {
+  const MapDiff diff =
+      diffMaps(io::readPoleMap(files.before).poles, io::readPoleMap(files.after).poles, options);
+  const std::string before = files.before.filename().string(),
+                    after = files.after.filename().string();
+  if (files.csv) writeCsv(diff, *files.csv);
+  if (files.png) report::drawDiffPng(diff, before + " → " + after, *files.png);
+  if (files.scene) scene::save(*report::makeDiffScene(diff, before + " to " + after), *files.scene);
+  return diff;
+}
+
+void print(const MapDiff& diff, std::ostream& out) {
+  for (const MapPole& pole : diff.appeared) out << "new       " << place(pole, " ") << '\n';
+  for (const MapPole& pole : diff.vanished) out << "vanished  " << place(pole, " ") << '\n';
+  for (const MapDiff::Pair& pair : diff.moved)
+    out << "moved     " << place(pair.before, " ") << " -> " << place(pair.after, " ") << " ("
+        << io::fixed(pair.distance, 2) << " m)\n";
+  out << diff.appeared.size() << " new, " << diff.vanished.size() << " vanished, "
+      << diff.moved.size() << " moved, " << diff.same.size() << " the same\n";
+}
+
+}  // namespace polemcl::apps

@@ -1,3 +1,0 @@
-#include <polemcl/apps/BatchApp.h>
-
-int main(int argc, char** argv) { return polemcl::apps::batchMain(argc, argv); }

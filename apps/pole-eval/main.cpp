@@ -1,3 +1,0 @@
-#include <polemcl/apps/EvalApp.h>
-
-int main(int argc, char** argv) { return polemcl::apps::evalMain(argc, argv); }

@@ -1,3 +1,0 @@
-#include <polemcl/apps/ExtractApp.h>
-
-int main(int argc, char** argv) { return polemcl::apps::extractMain(argc, argv); }

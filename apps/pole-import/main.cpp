@@ -1,3 +1,0 @@
-#include <polemcl/apps/ImportApp.h>
-
-int main(int argc, char** argv) { return polemcl::apps::importMain(argc, argv); }

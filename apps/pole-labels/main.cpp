@@ -1,3 +1,0 @@
-#include <polemcl/apps/LabelsApp.h>
-
-int main(int argc, char** argv) { return polemcl::apps::labelsMain(argc, argv); }

@@ -1,3 +1,0 @@
-#include <polemcl/apps/LocalizeApp.h>
-
-int main(int argc, char** argv) { return polemcl::apps::localizeMain(argc, argv); }

@@ -1,3 +1,0 @@
-#include <polemcl/apps/MapApp.h>
-
-int main(int argc, char** argv) { return polemcl::apps::mapMain(argc, argv); }

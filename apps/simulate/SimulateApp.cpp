@@ -1,0 +1,138 @@
+#include "simulate/SimulateApp.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "cli/CommandLine.h"
+#include "cli/OutputFolder.h"
+#include "cli/Progress.h"
+#include "cli/Settings.h"
+#include "core/sensor/SensorModel.h"
+#include "io/file/TextFile.h"
+#include "sim/drive/Drive.h"
+
+namespace polemcl::apps {
+namespace {
+
+Settings simulationSettings(const SimulateOptions& options) {
+  Settings settings = loadSettings(options.config.string(), options.set);
+  sim::SimulationOptions& simulation = settings.simulation;
+  if (options.seed) simulation.world.seed = *options.seed;
+  if (options.day) simulation.world.day = *options.day;
+  if (options.length) simulation.world.length = *options.length;
+  if (options.sensor) {
+    simulation.sensor = *options.sensor;
+    // The simulator knows more units than the extraction has presets.
+    const auto presets = SensorModel::modelNames();
+    if (std::find(presets.begin(), presets.end(), *options.sensor) != presets.end())
+      settings.sensor.model = *options.sensor;
+  }
+  try {
+    simulation.validate();
+    sim::makeLidar(simulation, settings.sensor);
+  } catch (const Error& error) {
+    throw Error(options.config.string() + " and command line: " + error.what());
+  }
+  return settings;
+}
+
+void printDrive(const sim::SimulationSummary& summary, const SimulateOptions& options) {
+  std::cout << summary.scans << " scans over " << io::fixed(summary.length, 1) << " m, "
+            << summary.points << " points, " << summary.poles
+            << " true poles: " << options.output->string() << '\n';
+}
+
+void printDrive(const PoleDriveSummary& summary, const SimulateOptions& options) {
+  std::cout << summary.poles << " poles in " << summary.scans << " scans ("
+            << io::fixed(static_cast<double>(summary.poles) / static_cast<double>(summary.scans), 2)
+            << " per scan) over " << io::fixed(summary.length, 1) << " m, " << summary.truePoles
+            << " true poles: " << options.poles->string() << '\n';
+}
+
+const std::vector<std::string> folderNames{"velodyne",     "labels",       "times.txt", "poses.txt",
+                                           "odometry.txt", "poles_gt.csv", "config.ini"};
+const std::string folderMarker = "poles_gt.csv";
+
+/// A progress bar that knows its length from its first update on.
+class LateProgress {
+ public:
+  explicit LateProgress(bool quiet) : m_quiet(quiet) {}
+  void update(std::size_t done, std::size_t total) {
+    if (!m_bar) m_bar.emplace("simulate", total, m_quiet);
+    m_bar->update(done);
+  }
+
+ private:
+  std::optional<Progress> m_bar;
+  bool m_quiet;
+};
+
+}  // namespace
+
+sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet) {
+  const Settings settings = simulationSettings(options);
+  OutputFolder folder(*options.output, "a simulated drive", folderNames, folderMarker);
+  saveSettings(settings, (folder.temporary() / "config.ini").string());
+  LateProgress bar(quiet);
+  const auto summary = sim::simulate(
+      settings.simulation, folder.temporary(),
+      [&](std::size_t done, std::size_t total) { bar.update(done, total); }, settings.sensor);
+  folder.commit();
+  return summary;
+}
+
+PoleDriveSummary simulatePoles(const SimulateOptions& options, bool quiet) {
+  const PoleDriveFiles files = poleDriveFiles(*options.poles);
+  const Settings settings = simulationSettings(options);
+  if (options.output && !settings.simulation.detections.empty())
+    throw Error(options.config.string() +
+                ": [simulation] detections samples poles without scans, so --output has nothing to "
+                "hold; leave one of them out");
+  std::optional<OutputFolder> folder;
+  if (options.output) {
+    folder.emplace(*options.output, "a simulated drive", folderNames, folderMarker);
+    saveSettings(settings, (folder->temporary() / "config.ini").string());
+  }
+  const sim::SimulatedDrive drive(settings.simulation, settings.sensor);
+  std::optional<sim::ScanFolderWriter> scans;
+  if (folder) scans.emplace(drive, folder->temporary());
+  LateProgress bar(quiet);
+  const auto progress = [&](std::size_t done) { bar.update(done, drive.scans()); };
+  const auto summary = settings.simulation.detections.empty()
+                           ? castPoles(drive, settings, files, scans ? &*scans : nullptr, progress)
+                           : samplePoles(drive, settings, files, progress);
+  if (folder) folder->commit();
+  return summary;
+}
+
+int simulateMain(int argc, const char* const* argv) {
+  CommandLine line("pole-simulate",
+                   "Simulates a drive through an urban street, as a folder of LiDAR scans or a "
+                   "rawlog of their poles.");
+  SimulateOptions options;
+  line.cli().add_option("--config", options.config, "Settings (INI)")->required();
+  addSetOption(line.cli(), options.set);
+  const auto* output = line.cli().add_option(
+      "--output", options.output, "Folder of scans to write; an earlier simulation is replaced");
+  const auto* poles = line.cli().add_option(
+      "--poles", options.poles,
+      "Rawlog of poles to write, with P.tum, P_poles_gt.csv, P_config.ini beside it");
+  line.cli().add_option("--seed", options.seed, "Another seed, another street ([world] seed)");
+  line.cli().add_option("--day", options.day, "0: the day of the map ([world] day)");
+  line.cli().add_option("--length", options.length, "Length of the street, m ([world] length_m)");
+  line.cli().add_option("--sensor", options.sensor, "LiDAR, instead of [sensor] model");
+  line.cli().parse_complete_callback([&] {
+    if (output->count() + poles->count() == 0) throw CLI::RequiredError("--output or --poles");
+  });
+  return line.run(argc, argv, [&] {
+    if (options.poles) {
+      const auto summary = simulatePoles(options, line.quiet());
+      if (!line.quiet()) printDrive(summary, options);
+    } else {
+      const auto summary = simulateDrive(options, line.quiet());
+      if (!line.quiet()) printDrive(summary, options);
+    }
+  });
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,212 @@
+#include "config/Config.h"
+
+#include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/config/config_parser.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "io/file/AtomicFile.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl {
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Cuts a comment off: `#`, `;` or `//` at the start or after a blank.
+std::string withoutComment(const std::string& line) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (i > 0 && line[i - 1] != ' ' && line[i - 1] != '\t') continue;
+    if (line[i] == '#' || line[i] == ';' || line.compare(i, 2, "//") == 0)
+      return std::string(io::trimmed(line.substr(0, i)));
+  }
+  return std::string(io::trimmed(line));
+}
+
+std::string joined(const std::set<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// Reads the lines MRPT's parser would be given, refusing those it would pass over in silence.
+class Lint {
+ public:
+  explicit Lint(std::string name) : m_name(std::move(name)) {}
+
+  void line(std::size_t number, const std::string& raw) {
+    const std::string text = withoutComment(raw);
+    if (text.empty()) return;
+    const std::string where = m_name + ":" + std::to_string(number) + ": ";
+    if (text.front() == '[') return section(text, number, where);
+    const auto equals = text.find('=');
+    const std::string key(io::trimmed(text.substr(0, equals)));
+    if (equals == std::string::npos || key.empty())
+      throw Error(where + "'" + text + "' is neither [section], key = value, nor a # comment");
+    if (m_section.empty())
+      throw Error(where + "key '" + key + "' stands before the first [section]");
+    once(m_keys, lower(m_section + "]" + key), number,
+         where + "key '" + key + "' of [" + m_section + "]");
+    m_clean += text + "\n";
+  }
+  const std::string& clean() const { return m_clean; }
+
+ private:
+  void section(const std::string& text, std::size_t number, const std::string& where) {
+    if (text.back() != ']' || text.size() < 3)
+      throw Error(where + "'" + text + "' is no section; write [name]");
+    m_section = std::string(io::trimmed(text.substr(1, text.size() - 2)));
+    once(m_sections, lower(m_section), number, where + "section [" + m_section + "]");
+    m_clean += "[" + m_section + "]\n";
+  }
+  static void once(std::map<std::string, std::size_t>& seen, const std::string& what,
+                   std::size_t number, const std::string& message) {
+    const auto [entry, isNew] = seen.emplace(what, number);
+    if (!isNew)
+      throw Error(message + " is given twice, first in line " + std::to_string(entry->second) +
+                  "; remove one");
+  }
+
+  std::string m_name, m_section, m_clean;
+  std::map<std::string, std::size_t> m_sections, m_keys;  ///< lower case -> line
+};
+
+}  // namespace
+
+ConfigFile ConfigFile::fromText(const std::string& text, const std::string& name) {
+  Lint lint(name);
+  try {
+    const std::string expanded = mrpt::config::config_parser(text);  // @define, $env{}, ...
+    std::size_t number = 0;
+    for (std::size_t at = 0; at < expanded.size();) {
+      const std::size_t end = std::min(expanded.find('\n', at), expanded.size());
+      lint.line(++number, expanded.substr(at, end - at));
+      at = end + 1;
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(name + ": " + error.what());
+  }
+  ConfigFile file;
+  file.m_name = name;
+  file.m_source = std::make_shared<mrpt::config::CConfigFileMemory>(lint.clean());
+  return file;
+}
+
+ConfigFile ConfigFile::read(const std::string& path) {
+  std::string text;
+  for (const auto& line : io::readLines(path)) text += line + "\n";
+  return fromText(text, path);
+}
+
+void ConfigFile::set(const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  const auto dot = assignment.find('.');
+  const auto part = [&](std::size_t from, std::size_t to) {
+    return std::string(io::trimmed(assignment.substr(from, to - from)));
+  };
+  if (equals == std::string::npos || dot >= equals || part(0, dot).empty() ||
+      part(dot + 1, equals).empty())
+    throw Error("'" + assignment + "' sets nothing; write section.key=value, as in " +
+                "filter.particles=500");
+  m_source->write(part(0, dot), part(dot + 1, equals), part(equals + 1, assignment.size()));
+}
+
+ConfigReader::ConfigReader(const ConfigFile& file)
+    : m_owned(std::shared_ptr<const mrpt::config::CConfigFileBase>(file.m_source)),
+      m_source(&file.source()),
+      m_name(file.name()) {}
+
+ConfigReader::ConfigReader(const mrpt::config::CConfigFileBase& source, const std::string& name,
+                           const std::string& fixedSection)
+    : m_source(&source), m_name(name), m_fixedSection(fixedSection) {
+  if (!fixedSection.empty()) openSection({});
+}
+
+void ConfigReader::openSection(const std::string&) {
+  if (!m_fixedSection.empty()) m_section = m_fixedSection;
+  m_known[lower(m_section)];
+}
+
+void ConfigReader::knownElsewhere(std::initializer_list<std::string> keys) {
+  for (const auto& key : keys) m_known[lower(m_section)].insert(lower(key));
+}
+
+std::optional<std::string> ConfigReader::exchange(const Key& key, const std::string&) {
+  m_known[lower(m_section)].insert(lower(key.name));
+  if (!m_source->keyExists(m_section, key.name)) return std::nullopt;
+  return withoutComment(m_source->read_string(m_section, key.name, ""));
+}
+
+std::string ConfigReader::place() const {
+  return m_name + ": ";
+}
+
+void ConfigReader::finish() const {
+  std::vector<std::string> sections;
+  m_source->getAllSections(sections);
+  std::set<std::string> knownSections;
+  for (const auto& [section, keys] : m_known) knownSections.insert(section);
+  for (const auto& section : sections) {
+    const auto known = m_known.find(lower(section));
+    if (known == m_known.end()) {
+      if (!m_fixedSection.empty()) continue;  // the others belong to others
+      throw Error(place() + "section [" + section +
+                  "] is not known; known are: " + joined(knownSections));
+    }
+    std::vector<std::string> keys;
+    m_source->getAllKeys(section, keys);
+    for (const auto& key : keys)
+      if (!known->second.count(lower(key)))
+        throw Error(place() + "[" + section + "] " + key + " = " +
+                    withoutComment(m_source->read_string(section, key, "")) +
+                    ": key is not known; known are: " + joined(known->second));
+  }
+}
+
+void ConfigWriter::openSection(const std::string& comment) {
+  const auto same = [this](const Section& section) { return section.name == m_section; };
+  auto found = std::find_if(m_sections.begin(), m_sections.end(), same);
+  if (found == m_sections.end())
+    found = m_sections.insert(m_sections.end(), {m_section, comment, {}});
+  m_open = static_cast<std::size_t>(found - m_sections.begin());
+}
+
+std::optional<std::string> ConfigWriter::exchange(const Key& key, const std::string& current) {
+  if (withoutComment(current) != current || current.find_first_of("\n\r$\\") != std::string::npos)
+    throw Error(
+        place() + "[" + m_section + "] " + key.name + " = " + current +
+        ": cannot be written to an INI file (comment marks, line breaks, $, \\ or blanks at "
+        "its ends)");
+  std::string line = key.name + " = " + current;
+  if (line.size() < 32) line.resize(32, ' ');
+  line += "  // " + key.comment;
+  const std::string unit = key.unit.empty() ? "" : key.unit + "; ";
+  m_sections.at(m_open).lines += line + " [" + unit + key.allowed + "]\n";
+  return std::nullopt;
+}
+
+std::string ConfigWriter::place() const {
+  return "settings: ";
+}
+
+std::string ConfigWriter::text() const {
+  std::string text;
+  for (const auto& section : m_sections)
+    text += (text.empty() ? "# " : "\n# ") + section.comment + "\n[" + section.name + "]\n" +
+            section.lines;
+  return text;
+}
+
+void ConfigWriter::save(const std::string& path) const {
+  io::AtomicFile file(path);
+  file.stream() << text();
+  file.commit();
+}
+
+}  // namespace polemcl

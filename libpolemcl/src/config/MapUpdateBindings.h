@@ -1,0 +1,12 @@
+#pragma once
+/// \file MapUpdateBindings.h
+/// \brief INI keys of the upkeep of maps.
+
+#include "config/Config.h"
+#include "core/mapping/MapUpdater.h"
+
+namespace polemcl {
+
+void bind(Binder& binder, UpkeepOptions& options);  ///< `[upkeep]`
+
+}  // namespace polemcl

@@ -1,0 +1,44 @@
+#include "core/common/GreedyAssignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "core/common/KdTree2D.h"
+#include "core/common/Types.h"
+
+namespace polemcl {
+
+std::vector<PolePair> pairClosest(const std::vector<Eigen::Vector2d>& first,
+                                  const std::vector<Eigen::Vector2d>& second, double radius) {
+  if (!(std::isfinite(radius) && radius > 0))
+    throw Error("the matching radius is " + std::to_string(radius) +
+                " m; it must be finite and above 0");
+  const KdTree2D tree(second);
+  std::vector<PolePair> pairs;
+  std::vector<PointHit> hits;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (!first[i].allFinite())
+      throw Error("point " + std::to_string(i) + " has a coordinate that is not finite");
+    tree.within(first[i].x(), first[i].y(), 1.001 * radius, hits);  // the tree leaves the rim out
+    for (const PointHit& hit : hits)
+      if (hit.squaredDistance <= radius * radius)
+        pairs.push_back({i, hit.index, std::sqrt(hit.squaredDistance)});
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const PolePair& a, const PolePair& b) {
+    return std::tie(a.distance, a.first, a.second) < std::tie(b.distance, b.first, b.second);
+  });
+  std::vector<char> firstTaken(first.size(), 0), secondTaken(second.size(), 0);
+  std::vector<PolePair> chosen;
+  for (const PolePair& pair : pairs) {
+    if (firstTaken[pair.first] || secondTaken[pair.second]) continue;
+    firstTaken[pair.first] = secondTaken[pair.second] = 1;
+    chosen.push_back(pair);
+  }
+  std::sort(chosen.begin(), chosen.end(),
+            [](const PolePair& a, const PolePair& b) { return a.first < b.first; });
+  return chosen;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,111 @@
+#include "core/common/PathSections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl {
+namespace {
+
+/// Way travelled at each pose of one path, never decreasing.
+class Odometer {
+ public:
+  explicit Odometer(double step) : m_step(step) {}
+  double at(const Pose2D& pose) {
+    if (!m_started) {
+      m_started = true;
+      m_anchor = pose;
+    }
+    const double away = std::hypot(pose.x - m_anchor.x, pose.y - m_anchor.y);
+    m_way = std::max(m_way, m_wayOfAnchor + away);
+    if (away >= m_step) {
+      m_anchor = pose;
+      m_wayOfAnchor = m_way;
+    }
+    return m_way;
+  }
+
+ private:
+  double m_step;
+  bool m_started = false;
+  Pose2D m_anchor;
+  double m_wayOfAnchor = 0, m_way = 0;
+};
+
+}  // namespace
+
+void SectionMarks::pass(double way) {
+  m_middle = way >= static_cast<double>(m_middles) * m_length + 0.5 * m_length;
+  m_end = way > static_cast<double>(m_ends) * m_length + m_length;
+  m_middles += m_middle;
+  m_ends += m_end;
+}
+
+PathSections passSections(const std::vector<Pose2D>& poses,
+                          const std::vector<std::uint32_t>& drives, double sectionLength,
+                          const std::vector<bool>& used) {
+  PathSections result;
+  std::uint32_t path = 0;
+  std::vector<std::size_t> middles;
+  const auto finish = [&](const SectionMarks& marks, double way) {
+    for (std::size_t k = 0; k < marks.ends(); ++k)
+      if (used.empty() || used[middles[k]])
+        result.occupied.push_back({path, k, {middles[k]}, middles[k]});
+    result.count += marks.ends();
+    result.length += way;
+    middles.clear();
+    ++path;
+  };
+  SectionMarks marks(sectionLength);
+  double way = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0 && drives[i] != drives[i - 1]) {
+      finish(marks, way);
+      marks = SectionMarks(sectionLength);
+      way = 0;
+    } else if (i > 0) {
+      way += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
+    }
+    marks.pass(way);
+    if (marks.middle()) middles.push_back(i);
+  }
+  finish(marks, way);
+  return result;
+}
+
+PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::uint32_t>& drives,
+                       double sectionLength, const std::vector<bool>& used) {
+  // A quarter of a section: far above the jitter of poses, far below the bends of roads.
+  const double step = sectionLength / 4;
+  PathSections result;
+  Odometer odometer(step);
+  std::uint32_t path = 0;
+  std::size_t sectionsBefore = 0;  // of the paths completed
+  double lengthBefore = 0, nearest = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0 && drives[i] != drives[i - 1]) {
+      ++path;
+      sectionsBefore = result.count;
+      lengthBefore = result.length;
+      odometer = Odometer(step);
+    }
+    const double way = odometer.at(poses[i]) / sectionLength;
+    // Whole numbers of sections may come out a rounding short.
+    const auto index = static_cast<std::size_t>(std::floor(way + 1e-9));
+    const double fromMiddle = std::abs(way - (static_cast<double>(index) + 0.5));
+    result.count = sectionsBefore + index + 1;
+    result.length = lengthBefore + way * sectionLength;
+    if (!used.empty() && !used[i]) continue;
+    const bool opens = result.occupied.empty() || result.occupied.back().path != path ||
+                       result.occupied.back().index != index;
+    if (opens) result.occupied.push_back({path, index, {}, i});
+    PathSection& section = result.occupied.back();
+    if (opens || fromMiddle < nearest - 1e-9) {
+      nearest = fromMiddle;
+      section.middle = i;
+    }
+    section.scans.push_back(i);
+  }
+  return result;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,70 @@
+#include "core/evaluation/Consistency.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace polemcl {
+namespace {
+
+[[noreturn]] void refuseSample(std::size_t sample, const char* what) {
+  throw Error("sample " + std::to_string(sample) + " of the consistency has " + what);
+}
+
+Eigen::Vector3d sampleError(const ConsistencySample& sample) {
+  const Pose2D &estimate = sample.estimate.mean, &truth = sample.truth;
+  return {estimate.x - truth.x, estimate.y - truth.y, wrapAngle(estimate.yaw - truth.yaw)};
+}
+
+void checkSample(const ConsistencySample& sample, std::size_t index) {
+  const Eigen::Matrix3d& covariance = sample.estimate.covariance;
+  if (!sampleError(sample).allFinite()) refuseSample(index, "a pose that is not finite");
+  if (!covariance.allFinite() || (covariance - covariance.transpose()).cwiseAbs().maxCoeff() >
+                                     1e-9 * covariance.cwiseAbs().maxCoeff())
+    refuseSample(index, "a covariance that is not finite and symmetric");
+  if (Eigen::LLT<Eigen::Matrix3d>(covariance).info() != Eigen::Success)
+    refuseSample(index, "a covariance that is not positive definite");
+}
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+}  // namespace
+
+ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples) {
+  if (samples.empty()) throw Error("no pose to score the consistency of");
+  ConsistencyScore score;
+  score.samples = samples.size();
+  std::vector<double> all;
+  all.reserve(samples.size());
+  double sum = 0, position = 0, heading = 0;
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    checkSample(samples[i], i);
+    const Eigen::Matrix3d& covariance = samples[i].estimate.covariance;
+    const Eigen::Vector3d error = sampleError(samples[i]);
+    const Eigen::Vector2d offset = error.head<2>();
+    const Eigen::Matrix2d ofPosition = covariance.topLeftCorner<2, 2>();
+    all.push_back(error.dot(covariance.inverse() * error));
+    const double planar = offset.dot(ofPosition.inverse() * offset);
+    sum += all.back();
+    position += planar;
+    heading += error.z() * error.z() / covariance(2, 2);
+    covered += planar <= chiSquare95of2 ? 1 : 0;
+  }
+  const double count = static_cast<double>(samples.size());
+  score.neesMean = sum / count;
+  score.neesMedian = medianOf(std::move(all));
+  score.neesPositionMean = position / count;
+  score.neesHeadingMean = heading / count;
+  score.coverage95 = static_cast<double>(covered) / count;
+  return score;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,35 @@
+#pragma once
+/// \file Consistency.h
+/// \brief Are poses as uncertain as their covariances say? Normalised errors and coverage.
+
+#include <vector>
+
+#include "core/common/PoseEstimate.h"
+
+namespace polemcl {
+
+/// \brief An estimate beside the truth, both in the map frame.
+struct ConsistencySample {
+  PoseWithCovariance estimate;
+  Pose2D truth;
+};
+
+/// \brief Figures over samples. Right, for Gaussian errors: 3, 2, 1 and 0.95.
+struct ConsistencyScore {
+  std::size_t samples = 0;
+  double neesMean = 0;          ///< mean of eᵀC⁻¹e over x, y, yaw: 3 degrees of freedom
+  double neesMedian = 0;        ///< of the same; 2.37 expected
+  double neesPositionMean = 0;  ///< over x, y
+  double neesHeadingMean = 0;   ///< over yaw
+  double coverage95 = 0;        ///< share of samples whose 95 % position ellipse holds the truth
+};
+
+/// Square of the 95 % quantile of a two-dimensional Gaussian's Mahalanobis distance (χ², 2).
+constexpr double chiSquare95of2 = 5.991464547107979;
+
+/// \brief Normalised estimation error squared (Bar-Shalom, Li, Kirubarajan 2001, 5.4.2).
+/// \throws Error without samples, and naming the sample whose pose is not finite or whose
+///         covariance is not symmetric positive definite.
+ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples);
+
+}  // namespace polemcl

@@ -1,0 +1,64 @@
+#pragma once
+/// \file VisibilityRange.h
+/// \brief How far a pole could have been seen in each direction: what tells "not there" from "not
+/// to be seen from here".
+
+#include <cstdint>
+#include <vector>
+
+#include "core/extraction/scan_line/GroundGrid.h"
+#include "core/extraction/scan_line/ScanLines.h"
+#include "core/sensor/SensorModel.h"
+
+namespace polemcl {
+
+/// \brief The sector of n that an azimuth falls into: sector i spans -pi + i·2pi/n to
+/// -pi + (i + 1)·2pi/n. \param azimuth rad, any turn; must be finite. \param sectors At least 1.
+std::size_t freeRangeSector(double azimuth, std::size_t sectors);
+
+/// \brief Free range towards a thing so wide: the least of the sectors it reaches into, so that an
+/// edge beside it is not seen through.
+/// \param freeRange As FreeRangeFinder gives it; may be empty.
+/// \param halfWidth Of the thing across the line of sight, m.
+/// \return m; 0 where one of the sectors, or all, are unknown.
+double freeRangeTowards(const std::vector<float>& freeRange, double x, double y, double halfWidth);
+
+/// \brief Judges the free range from the beams at pole heights (0.5 to 3 m above the ground).
+///
+/// At a range, the beams that pass there at pole heights are counted (ground taken as level at the
+/// lidar's nominal height; those that reach the ground within 5 m or so are left out, of
+/// 32 and more every second, third … is taken). A beam that met something nearer in the sector is
+/// blocked. The free range is the last of steps of 0.5 m before which at least half of the beams,
+/// and two, are free; it ends where fewer than two beams pass at pole heights at all, and at the
+/// extractor's greatest range. A pole ends the free range of its own direction at its front. Beams
+/// without a return count as free; a direction in which not a single point was seen is unknown.
+class FreeRangeFinder {
+ public:
+  static constexpr int kSectors = 256;     ///< 1.4° each
+  static constexpr float kStep = 0.5f;     ///< m
+  static constexpr float kLowest = 0.5f;   ///< of pole heights, m above ground
+  static constexpr float kHighest = 3.0f;  ///< m above ground
+  /// \param sensorHeight Of the lidar above ground, m. \param maxRange Of poles, m.
+  FreeRangeFinder(const SensorModel& sensor, double sensorHeight, double maxRange);
+  /// \param freeRange Becomes kSectors ranges, m, horizontal, lidar frame; sector i as
+  /// freeRangeSector(). 0: unknown. Of depth cameras: empty.
+  void find(const ScanLines& lines, const GroundGrid& ground, std::vector<float>& freeRange);
+
+ private:
+  /// \brief Steps of range at which a beam passes at pole heights: first to last.
+  struct Span {
+    int row, first, last;
+  };
+  void chooseBeams(const SensorModel& sensor, float sensorHeight);
+  void countBlocked(const ScanLines& lines, const Span& span);
+  void countFree(std::int16_t* reached) const;
+
+  std::vector<Span> m_spans;
+  std::vector<std::int16_t> m_mostBlocked;  ///< beams that may be blocked, by step
+  /// step * kSectors + sector: blocked beams more than at the step before.
+  std::vector<std::int16_t> m_change;
+  std::uint16_t m_groundSector[kSectors] = {};  ///< of GroundGrid, by sector
+  int m_steps = 0, m_firstJudged = 0;
+};
+
+}  // namespace polemcl

@@ -1,0 +1,127 @@
+#include "core/extraction/range_image/RangeImage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace polemcl {
+
+RangeImage::RangeImage(int rows, int columns)
+    : m_rows(rows),
+      m_columns(columns),
+      m_range(static_cast<std::size_t>(rows) * columns, 0.f),
+      m_point(static_cast<std::size_t>(rows) * columns, -1) {}
+
+void RangeImage::set(int row, int column, float range, std::int32_t point) {
+  m_range[index(row, column)] = range;
+  m_point[index(row, column)] = point;
+}
+
+void RangeImage::clear() {
+  std::fill(m_range.begin(), m_range.end(), 0.f);
+  std::fill(m_point.begin(), m_point.end(), -1);
+}
+
+namespace {
+
+/// Eq. 1 in the precision `Real`.
+template <class Real>
+class Projection {
+ public:
+  Projection(const RangeImageOptions& options, double minZ, double maxZ)
+      : m_options(options),
+        m_minZ(static_cast<Real>(minZ)),
+        m_maxZ(static_cast<Real>(maxZ)),
+        m_fovDown(static_cast<Real>(-options.fovDown)),
+        m_fov(static_cast<Real>(options.fovUp - options.fovDown)) {}
+
+  struct Point {
+    Real x, y, z, range;
+  };
+  Point point(const PointsView& points, std::size_t i) const {
+    const auto real = [&](float v) {
+      return static_cast<Real>(exactCoordinate(v, m_options.coordinateStep));
+    };
+    Point p{real(points.x[i]), real(points.y[i]), real(points.z[i]), 0};
+    if (m_options.mirrored) p.y = -p.y;
+    p.range = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+    return p;
+  }
+  bool inRange(const Point& p) const {
+    return p.range >= static_cast<Real>(m_options.minRange) &&
+           p.range < static_cast<Real>(m_options.maxRange) && p.z > m_minZ && p.z < m_maxZ;
+  }
+  /// Row and column; may lie outside the image.
+  std::pair<double, double> pixel(const Point& p) const {
+    const Real pi = static_cast<Real>(M_PI);
+    const Real u = Real(0.5) * (1 - std::atan2(p.y, p.x) / pi);
+    // The angle added is the one below the horizon, so that row 0 is the topmost beam.
+    const Real v = 1 - (std::asin(p.z / p.range) + m_fovDown) / m_fov;
+    return {std::floor(v * static_cast<Real>(m_options.rows)),
+            std::floor(u * static_cast<Real>(m_options.columns))};
+  }
+
+ private:
+  const RangeImageOptions& m_options;
+  Real m_minZ, m_maxZ, m_fovDown, m_fov;
+};
+
+template <class Real>
+PointCounts projectIn(const PointsView& points, const RangeImageOptions& options, double minZ,
+                      double maxZ, RangeImage& image) {
+  const Projection<Real> projection(options, minZ, maxZ);
+  PointCounts counts;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const auto p = projection.point(points, i);
+    if (!std::isfinite(p.range) || p.range == 0) {
+      ++counts.invalid;
+      continue;
+    }
+    if (!projection.inRange(p)) {
+      ++counts.outOfRange;
+      continue;
+    }
+    auto [v, u] = projection.pixel(p);
+    if (options.clampToView) {
+      v = std::clamp(v, 0.0, image.rows() - 1.0);
+      u = std::min(u, image.columns() - 1.0);
+    } else if (v < 0 || v >= image.rows()) {
+      ++counts.outOfView;
+      continue;
+    }
+    const int row = static_cast<int>(v);
+    const int column = static_cast<int>(u) % image.columns();  // azimuth -pi is azimuth pi
+    if (image.valid(row, column)) {
+      ++counts.hidden;
+      if (p.range >= projection.point(points, image.point(row, column)).range) continue;
+    } else {
+      ++counts.used;
+    }
+    image.set(row, column, static_cast<float>(p.range), static_cast<std::int32_t>(i));
+  }
+  return counts;
+}
+
+}  // namespace
+
+PointCounts project(const PointsView& points, const RangeImageOptions& options, double minZ,
+                    double maxZ, RangeImage& image) {
+  options.validate();
+  image.clear();
+  return options.singlePrecision ? projectIn<float>(points, options, minZ, maxZ, image)
+                                 : projectIn<double>(points, options, minZ, maxZ, image);
+}
+
+void RangeImageOptions::validate() const {
+  if (rows < 2 || rows > 1024 || columns < 16 || columns > 65536)
+    throw Error("range image of " + std::to_string(rows) + " x " + std::to_string(columns) +
+                ": allowed are 2 to 1024 rows and 16 to 65536 columns");
+  if (!(fovUp > fovDown))
+    throw Error(
+        "range image: fov_up_deg must be more than fov_down_deg (negative below the horizon)");
+  if (!(minRange >= 0 && maxRange > minRange))
+    throw Error("range image: max_range_m must be more than min_range_m, and that not negative");
+}
+
+}  // namespace polemcl

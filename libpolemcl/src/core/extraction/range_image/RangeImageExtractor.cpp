@@ -1,0 +1,184 @@
+#include "core/extraction/range_image/RangeImageExtractor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/extraction/range_image/Segmentation.h"
+
+namespace polemcl {
+
+PaperExtractor::PaperExtractor(const SensorOptions& sensor, const PaperOptions& options)
+    : m_options(options),
+      m_minRange(sensor.minRange),
+      m_height(sensor.height - (options.projectFrom == "cloud" ? sensor.originZ : 0)),
+      m_heightOffset(options.heightsAboveGround ? m_height : 0),
+      m_image(options.rows, options.columns),
+      m_cells(2 * (static_cast<int>(std::ceil(options.maxRange)) + 1)) {}
+
+RangeImageOptions PaperExtractor::projection() const {
+  RangeImageOptions projection;
+  projection.rows = m_options.rows;
+  projection.columns = m_options.columns;
+  projection.fovUp = m_options.fovUp;
+  projection.fovDown = m_options.fovDown;
+  projection.minRange = m_minRange;
+  projection.maxRange = m_options.maxRange;
+  projection.clampToView = m_options.clampToView;
+  projection.mirrored = m_options.mirrored;
+  projection.singlePrecision = m_options.singlePrecision;
+  projection.coordinateStep = m_options.coordinateStep;
+  return projection;
+}
+
+void PaperExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
+                             ExtractionReport& report) {
+  const PointCounts counts = project(points, projection(), m_options.minZ - m_heightOffset,
+                                     m_options.maxZ - m_heightOffset, m_image);
+  report.points = points.size;
+  report.invalid = counts.invalid;
+  report.outOfView = counts.outOfView;
+  report.outOfRange = counts.outOfRange;
+  report.ground = -m_height;
+
+  SegmentationOptions growing;
+  growing.epsilon = m_options.epsilon;
+  growing.wrapAround = m_options.wrapAround;
+  growing.growUpwards = m_options.growUpwards;
+  const Segmentation segmentation(m_image, growing);
+  report.candidates = segmentation.segments().size();
+  sortIntoCells(points);
+  for (std::size_t i = 0; i < segmentation.segments().size(); ++i) {
+    HeightRange heights;
+    PoleDetection pole;
+    Refusal refusal = testCandidate(m_image, segmentation, static_cast<std::int32_t>(i), points,
+                                    m_options, m_heightOffset, heights);
+    if (refusal == Refusal::count_)
+      refusal = fitPole(segmentation.segments()[i], heights, points, pole);
+    if (refusal == Refusal::count_)
+      poles.push_back(pole);
+    else
+      ++report.refused[static_cast<int>(refusal)];
+  }
+}
+
+std::vector<Eigen::Vector2d> PaperExtractor::segmentPoints(const Segment& segment,
+                                                           const PointsView& points) const {
+  std::vector<Eigen::Vector2d> xy;
+  for (const Pixel& pixel : segment.pixels) {
+    const auto i = m_image.point(pixel.row, pixel.column);
+    xy.emplace_back(points.x[i], points.y[i]);
+  }
+  return xy;
+}
+
+std::optional<Circle> PaperExtractor::fit(const std::vector<Eigen::Vector2d>& points,
+                                          bool singlePrecision) const {
+  if (m_options.circleFit == "kasa_mean") return fitCircleKasaMean(points, singlePrecision);
+  if (m_options.circleFit == "taubin") return fitCircleTaubin(points);
+  if (m_options.circleFit == "silhouette") return fitCircleSilhouette(points, 0);
+  return fitCircleKasa(points);
+}
+
+/// A coarse circle from the segment's pixels, which hold floats, then the circle of all points in a
+/// box around it.
+Refusal PaperExtractor::fitPole(const Segment& segment, const HeightRange& heights,
+                                const PointsView& points, PoleDetection& pole) const {
+  const auto coarse = fit(segmentPoints(segment, points), true);
+  if (!coarse) return Refusal::badFit;
+  Box box;
+  box.centre = *coarse;
+  box.half = coarse->radius + m_options.fitMargin;
+  box.low = heights.low - m_heightOffset;
+  box.high = std::min(heights.high, m_options.fitMaxZ) - m_heightOffset;
+  const auto xy = pointsInside(box, points);
+  if (xy.size() < static_cast<std::size_t>(m_options.minFitPoints)) return Refusal::tooFewPoints;
+  const auto circle = fit(xy, m_options.singlePrecision);
+  if (!circle || !(circle->radius > m_options.minRadius && circle->radius < m_options.maxRadius))
+    return Refusal::badFit;
+  if (!isFree(box, xy.size(), points)) return Refusal::notFree;
+  pole.x = circle->x;
+  pole.y = circle->y;
+  pole.radius = circle->radius;
+  pole.bottom = heights.low - m_heightOffset + m_height;
+  pole.top = heights.high - m_heightOffset + m_height;
+  pole.points = static_cast<std::uint32_t>(xy.size());
+  return Refusal::count_;
+}
+
+std::vector<Eigen::Vector2d> PaperExtractor::pointsInside(const Box& box,
+                                                          const PointsView& points) const {
+  std::vector<Eigen::Vector2d> xy;
+  eachNear(box, box.half, points, [&](const Point& p) {
+    if (between(p.x, box.centre.x - box.half, box.centre.x + box.half) &&
+        between(p.y, box.centre.y - box.half, box.centre.y + box.half))
+      xy.emplace_back(p.x, p.y);
+  });
+  return xy;
+}
+
+bool PaperExtractor::isFree(const Box& box, std::size_t fitted, const PointsView& points) const {
+  const double outer = box.half + m_options.freeRing;
+  const double side = m_options.mirrored ? -1 : 1;
+  const double x = box.centre.x, y = side * box.centre.y;
+  const bool cut = m_options.freeSpace == "cut_corners", ring = m_options.freeSpace == "ring";
+  const double lowest = cut ? y + box.half - m_options.freeRing : y - outer;
+  std::size_t intruders = 0;
+  eachNear(box, outer, points, [&](const Point& p) {
+    const double py = side * p.y;
+    if (ring) {
+      const double distance = std::hypot(p.x - x, py - y);
+      intruders += distance > box.half && distance < outer;
+    } else {
+      intruders +=
+          (between(p.x, x - outer, x - box.half) || between(p.x, x + box.half, x + outer)) &&
+          (between(py, lowest, y - box.half) || between(py, y + box.half, y + outer));
+    }
+  });
+  return static_cast<double>(intruders) < m_options.freeShare * static_cast<double>(fitted);
+}
+
+/// Strictly between; in single precision the bounds are rounded, as the points are.
+bool PaperExtractor::between(double value, double low, double high) const {
+  if (m_options.singlePrecision)
+    return value > static_cast<float>(low) && value < static_cast<float>(high);
+  return value > low && value < high;
+}
+
+int PaperExtractor::cellAlong(double coordinate) const {
+  const double cell = std::floor(coordinate) + m_cells / 2;
+  return static_cast<int>(std::clamp(cell, 0.0, m_cells - 1.0));
+}
+
+void PaperExtractor::sortIntoCells(const PointsView& points) {
+  const auto cell = [&](std::size_t i) -> std::ptrdiff_t {
+    if (!std::isfinite(points.x[i]) || !std::isfinite(points.y[i])) return -1;
+    return static_cast<std::ptrdiff_t>(cellAlong(points.y[i])) * m_cells + cellAlong(points.x[i]);
+  };
+  m_cellStart.assign(static_cast<std::size_t>(m_cells) * m_cells + 1, 0);
+  for (std::size_t i = 0; i < points.size; ++i)
+    if (const auto c = cell(i); c >= 0) ++m_cellStart[c + 1];
+  for (std::size_t c = 1; c < m_cellStart.size(); ++c) m_cellStart[c] += m_cellStart[c - 1];
+  m_cellPoints.resize(m_cellStart.back());
+  std::vector<std::uint32_t> next(m_cellStart.begin(), m_cellStart.end() - 1);
+  for (std::size_t i = 0; i < points.size; ++i)
+    if (const auto c = cell(i); c >= 0) m_cellPoints[next[c]++] = static_cast<std::uint32_t>(i);
+}
+
+template <class F>
+void PaperExtractor::eachNear(const Box& box, double reach, const PointsView& points, F f) const {
+  const double step = m_options.coordinateStep;
+  const int fromX = cellAlong(box.centre.x - reach), toX = cellAlong(box.centre.x + reach);
+  const int fromY = cellAlong(box.centre.y - reach), toY = cellAlong(box.centre.y + reach);
+  for (int cy = fromY; cy <= toY; ++cy)
+    for (int cx = fromX; cx <= toX; ++cx) {
+      const std::size_t c = static_cast<std::size_t>(cy) * m_cells + cx;
+      for (std::uint32_t k = m_cellStart[c]; k < m_cellStart[c + 1]; ++k) {
+        const std::uint32_t i = m_cellPoints[k];
+        const double z = exactCoordinate(points.z[i], step);
+        if (between(z, box.low, box.high))
+          f(Point{exactCoordinate(points.x[i], step), exactCoordinate(points.y[i], step), z});
+      }
+    }
+}
+
+}  // namespace polemcl

@@ -1,0 +1,59 @@
+#include "core/extraction/range_image/Segmentation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl {
+
+Segmentation::Segmentation(const RangeImage& image, const SegmentationOptions& options)
+    : m_image(image),
+      m_options(options),
+      m_label(static_cast<std::size_t>(image.rows()) * image.columns(), -1) {
+  const int border = options.wrapAround ? 0 : 1;
+  for (int row = border; row < image.rows() - border; ++row)
+    for (int column = border; column < image.columns() - border; ++column)
+      if (image.valid(row, column) && label(row, column) < 0)
+        grow(row, column, static_cast<std::int32_t>(m_segments.size()));
+}
+
+void Segmentation::grow(int row, int column, std::int32_t label) {
+  Segment segment;
+  segment.pixels.push_back({static_cast<std::int16_t>(row), column});
+  m_unwrapped.assign(1, column);
+  m_label[m_image.index(row, column)] = label;
+  segment.minRow = segment.maxRow = row;
+  int minColumn = column, maxColumn = column;
+
+  static constexpr int kSteps[4][2] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}};
+  const int directions = m_options.growUpwards ? 4 : 3;
+  for (std::size_t i = 0; i < segment.pixels.size(); ++i) {
+    const Pixel pixel = segment.pixels[i];
+    const int unwrapped = m_unwrapped[i];
+    for (int d = 0; d < directions; ++d) {
+      const int r = pixel.row + kSteps[d][0];
+      int c = pixel.column + kSteps[d][1];
+      if (m_options.wrapAround) {
+        if (r < 0 || r >= m_image.rows()) continue;
+        c = m_image.wrap(c);
+      } else if (r < 1 || r >= m_image.rows() - 1 || c < 1 || c >= m_image.columns() - 1) {
+        continue;
+      }
+      const std::size_t index = m_image.index(r, c);
+      if (!m_image.valid(r, c) || m_label[index] >= 0) continue;
+      if (!(std::abs(m_image.range(r, c) - m_image.range(pixel.row, pixel.column)) <
+            m_options.epsilon))
+        continue;
+      m_label[index] = label;
+      segment.pixels.push_back({static_cast<std::int16_t>(r), c});
+      m_unwrapped.push_back(unwrapped + kSteps[d][1]);
+      segment.minRow = std::min(segment.minRow, r);
+      segment.maxRow = std::max(segment.maxRow, r);
+      minColumn = std::min(minColumn, m_unwrapped.back());
+      maxColumn = std::max(maxColumn, m_unwrapped.back());
+    }
+  }
+  segment.width = maxColumn - minColumn + 1;
+  m_segments.push_back(std::move(segment));
+}
+
+}  // namespace polemcl

@@ -1,0 +1,53 @@
+#pragma once
+/// \file Segmentation.h
+/// \brief Step B1 of the paper: neighbouring pixels of like range -> segments (Algorithm 1), in
+/// linear time.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/extraction/range_image/RangeImage.h"
+
+namespace polemcl {
+
+struct SegmentationOptions {
+  double epsilon = 0.2;  ///< ε: greatest difference in range between neighbours, m
+  bool wrapAround =
+      true;  ///< column 0 neighbours the last; false: the image ends there, borders left out
+  bool growUpwards = false;  ///< false: left, right and below (the paper); true: above too
+};
+
+struct Pixel {
+  std::int16_t row;
+  std::int32_t column;  ///< in [0, columns)
+};
+
+/// \brief One segment: pixels in the order they were reached, and its bounding box.
+struct Segment {
+  std::vector<Pixel> pixels;
+  int minRow = 0, maxRow = 0;
+  int width = 0;  ///< columns it spans, counted across the seam
+  int height() const { return maxRow - minRow + 1; }
+};
+
+/// \brief Segments of an image, and the label of every pixel.
+class Segmentation {
+ public:
+  /// \brief Seeds are taken row by row from the top, in a row by column, as the open set is read.
+  Segmentation(const RangeImage& image, const SegmentationOptions& options);
+  const std::vector<Segment>& segments() const { return m_segments; }
+  /// \brief Index of the segment a pixel belongs to, -1 for none.
+  std::int32_t label(int row, int column) const { return m_label[m_image.index(row, column)]; }
+
+ private:
+  void grow(int row, int column, std::int32_t label);
+
+  const RangeImage& m_image;
+  SegmentationOptions m_options;
+  std::vector<std::int32_t> m_label;
+  std::vector<Segment> m_segments;
+  std::vector<std::int32_t>
+      m_unwrapped;  ///< column of each reached pixel, counted on across the seam
+};
+
+}  // namespace polemcl

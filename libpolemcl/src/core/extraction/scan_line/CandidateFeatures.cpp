@@ -1,0 +1,189 @@
+#include "core/extraction/scan_line/CandidateFeatures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace polemcl {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNear =
+    0.35f;  ///< m: what stands this near (outside the radius) belongs to the thing
+constexpr float kRingInner = 0.15f;  ///< m outside the radius: mixed pixels end here
+constexpr float kRingOuter = 0.55f;  ///< m outside the radius
+
+/// What one beam meets at a candidate's place.
+enum class Meeting {
+  near,      ///< a return at the place
+  passed,    ///< a return from behind: the beam went through
+  empty,     ///< no return at all
+  occluded,  ///< a return from before it
+};
+
+/// The candidate's place, and questions to single rows about it.
+class Place {
+ public:
+  Place(const ScanLines& lines, const SensorModel& sensor, const PoleAxis& axis)
+      : m_lines(lines),
+        m_axis(axis),
+        m_rho(std::sqrt(axis.x * axis.x + axis.y * axis.y)),
+        m_bearing(std::atan2(axis.y, axis.x)),
+        m_column(static_cast<float>(sensor.columnAngle())) {}
+  float rho() const { return m_rho; }
+  float bearing() const { return m_bearing; }
+  float heightOfRow(const SensorModel& sensor, int row) const {
+    return sensor.heightOver(row, m_axis.x, m_axis.y, m_rho);
+  }
+
+  Meeting meet(int row, float* z) const {
+    Meeting meeting = Meeting::empty;
+    const float reach = m_axis.radius + kNear;
+    around(row, std::max(m_axis.radius, 0.7f * m_column * m_rho), [&](const Return& r) {
+      if (squaredDistance(r) < reach * reach) {
+        *z = r.z;
+        meeting = Meeting::near;
+      } else if (meeting != Meeting::near && r.rho < m_rho) {
+        meeting = Meeting::occluded;
+      } else if (meeting == Meeting::empty) {
+        meeting = Meeting::passed;
+      }
+    });
+    return meeting;
+  }
+
+  /// True when a row has returns in the ring around the place.
+  bool cluttered(int row) const {
+    bool found = false;
+    const float inner = m_axis.radius + kRingInner, outer = m_axis.radius + kRingOuter;
+    around(row, outer, [&](const Return& r) {
+      const float d = squaredDistance(r);
+      found |= d > inner * inner && d < outer * outer;
+    });
+    return found;
+  }
+
+ private:
+  /// Of a return from the axis, m², by the law of cosines; the angle between is small.
+  float squaredDistance(const Return& r) const {
+    const float step = r.rho - m_rho, turn = wrapped(r.azimuth - m_bearing);
+    return step * step + r.rho * m_rho * turn * turn * (1 - turn * turn * (1 / 12.f));
+  }
+
+  static float wrapped(float turn) {
+    constexpr float kPi = static_cast<float>(M_PI);
+    return turn > kPi ? turn - 2 * kPi : turn < -kPi ? turn + 2 * kPi : turn;
+  }
+
+  /// Calls f(return) for the returns of a row within `halfWidth` m to either side.
+  template <class F>
+  void around(int row, float halfWidth, F f) const {
+    const float half = std::min(1.f, halfWidth / std::max(m_rho, 0.5f));
+    const float pi = static_cast<float>(M_PI);
+    visit(row, std::max(m_bearing - half, -pi), std::min(m_bearing + half, pi), f);
+    if (m_bearing - half < -pi) visit(row, m_bearing - half + 2 * pi, pi, f);
+    if (m_bearing + half > pi) visit(row, -pi, m_bearing + half - 2 * pi, f);
+  }
+
+  template <class F>
+  void visit(int row, float from, float to, F f) const {
+    const Return* end = m_lines.end(row);
+    for (const Return* r = m_lines.begin(row) + m_lines.lowerBound(row, from);
+         r < end && r->azimuth <= to; ++r)
+      f(*r);
+  }
+
+  const ScanLines& m_lines;
+  const PoleAxis& m_axis;
+  float m_rho, m_bearing, m_column;
+};
+
+/// Walks up from the topmost slice while something stands there; one silent row may interrupt it.
+void top(const Place& place, const SensorModel& sensor, int row, float ground,
+         PoleEvidence& evidence) {
+  evidence.topBound = kInfinity;
+  float bound = kInfinity;
+  for (int misses = 0, r = row - 1; r >= 0 && misses < 2; --r) {
+    float z = 0;
+    const Meeting meeting = place.meet(r, &z);
+    if (meeting == Meeting::near) {
+      evidence.top = std::max(evidence.top, z - ground);
+      misses = 0;
+      bound = kInfinity;
+    } else if (meeting == Meeting::occluded) {
+      return;
+    } else {
+      if (misses++ == 0) bound = place.heightOfRow(sensor, r) - ground;
+    }
+  }
+  evidence.topBound = bound;
+}
+
+}  // namespace
+
+StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack) {
+  StackShape shape;
+  shape.low = slices[stack.bottom()].z;
+  shape.high = slices[stack.top()].z;
+  const float n = static_cast<float>(stack.count);
+  float mz = 0, mx = 0, my = 0, mw = 0;
+  for (auto i : stack) {
+    const Slice& slice = slices[i];
+    shape.points += static_cast<int>(slice.count);
+    shape.wholeSlices += slice.whole();
+    mz += slice.z / n;
+    mx += slice.x / n;
+    my += slice.y / n;
+    mw += slice.width() / n;
+  }
+  float zz = 0, zx = 0, zy = 0, xx = 0, yy = 0, ww = 0;
+  for (auto i : stack) {
+    const Slice& slice = slices[i];
+    const float z = slice.z - mz, x = slice.x - mx, y = slice.y - my, w = slice.width() - mw;
+    zz += z * z;
+    zx += z * x;
+    zy += z * y;
+    xx += x * x;
+    yy += y * y;
+    ww += w * w;
+  }
+  const float ax = zz > 0 ? zx / zz : 0, ay = zz > 0 ? zy / zz : 0;
+  // Two parameters were fitted per axis: with two slices nothing is left to judge by.
+  const float rest = xx + yy - ax * zx - ay * zy;
+  shape.scatter = n > 2 ? std::sqrt(std::max(0.f, rest) / (n - 2)) : 0;
+  shape.tilt = std::atan(std::sqrt(ax * ax + ay * ay));
+  shape.widthSpread = std::sqrt(ww / n);
+  return shape;
+}
+
+PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
+                            const GroundGrid& ground, const std::vector<Slice>& slices,
+                            const Stack& stack, const StackShape& shape, const PoleAxis& axis) {
+  const Place place(lines, sensor, axis);
+  const float groundZ = ground.at(axis.x, axis.y);
+  PoleEvidence e;
+  int expected = slices[stack.top()].row;
+  for (auto i : stack) {
+    for (; expected < slices[i].row; ++expected) {
+      float z = 0;
+      const Meeting meeting = place.meet(expected, &z);
+      e.rowsPassed += meeting == Meeting::passed || meeting == Meeting::empty;
+      e.rowsWide += meeting == Meeting::near;
+    }
+    ++expected;
+  }
+  e.bottom = shape.low - groundZ;
+  e.top = shape.high - groundZ;
+  top(place, sensor, slices[stack.top()].row, groundZ, e);
+  return e;
+}
+
+float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
+                     const std::vector<Slice>& slices, const Stack& stack, const PoleAxis& axis) {
+  const Place place(lines, sensor, axis);
+  int cluttered = 0;
+  for (auto i : stack) cluttered += place.cluttered(slices[i].row);
+  return static_cast<float>(cluttered) / static_cast<float>(stack.count);
+}
+
+}  // namespace polemcl

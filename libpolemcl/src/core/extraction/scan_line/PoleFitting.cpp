@@ -1,0 +1,332 @@
+#include "core/extraction/scan_line/PoleFitting.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl {
+namespace {
+
+constexpr double kRangeSigma = 0.025;  ///< m: noise of one range, and of the surface's roughness
+constexpr double kRobust = 0.06;  ///< m: Cauchy scale of range residuals; mixed pixels lie beyond
+constexpr double kFootprint = 0.0008;  ///< rad: by so much a beam's width widens what it sees
+constexpr double kDivergence = 0.002;  ///< rad: full width of a beam
+constexpr double kGrazing =
+    0.85;  ///< share of the radius beyond which the front's slope is not used
+constexpr double kRadiusPrior = 0.12;  ///< m: posts and trunks of streets
+constexpr double kRadiusPriorSigma = 0.10;
+constexpr double kFloorSigma =
+    0.010;  ///< m: what no number of returns averages out (laser biases, shape)
+constexpr int kIterations = 6;
+constexpr double kThinnestBoard = 0.12;  ///< m: half its width
+constexpr double kFlatter = 0.8;         ///< a board's residuals against a cylinder's, at most
+constexpr double kPostRadius = 0.04;     ///< m: of a sign's post
+constexpr std::size_t kMostSlices = 128;
+constexpr std::size_t kGroups = 12;  ///< of neighbouring returns, in a slice that has more
+
+struct State {
+  double lateral = 0, depth = 0, radius = kRadiusPrior;
+};
+
+/// Normal equations of the cylinder in (lateral, depth, radius), seen along a reference bearing.
+struct Normal {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();  ///< lower triangle
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  double residualSum = 0, weightSum = 0;
+  void add(double lateral, double depth, double radius, double residual, double weight) {
+    const double wl = weight * lateral, wd = weight * depth, wr = weight * radius;
+    H(0, 0) += wl * lateral;
+    H(1, 0) += wd * lateral;
+    H(1, 1) += wd * depth;
+    H(2, 0) += wr * lateral;
+    H(2, 1) += wr * depth;
+    H(2, 2) += wr * radius;
+    g[0] += wl * residual;
+    g[1] += wd * residual;
+    g[2] += wr * residual;
+  }
+};
+
+/// Returns, or means of neighbouring ones, against the reference bearing: a structure of arrays.
+struct FitPoints {
+  std::size_t count = 0;
+  float along[kMostSlices * kGroups], across[kMostSlices * kGroups];  ///< m
+  float returns[kMostSlices * kGroups];
+};
+struct Residuals {
+  float residual[kMostSlices * kGroups], slope[kMostSlices * kGroups], front[kMostSlices * kGroups],
+      weight[kMostSlices * kGroups];
+};
+
+/// Weight of a slice, 0 to 1: grass and kerbs mix with a pole's foot, and whether a beam there is
+/// taken for ground should not matter.
+float firmness(const Slice& slice, float firmHeight) {
+  constexpr float kFoot = 0.5f, kLeast = 0.02f;
+  return std::clamp(1 - (firmHeight - slice.z) / kFoot, kLeast, 1.f);
+}
+
+class CylinderProblem {
+ public:
+  CylinderProblem(const ScanLines& lines, const std::vector<Slice>& slices,
+                  const std::vector<std::uint32_t>& used, const PoleView& view)
+      : m_lines(lines),
+        m_slices(slices),
+        m_used(used),
+        // More than these add nothing to what the radius prior and the floor leave.
+        m_stride((used.size() + kMostSlices - 1) / kMostSlices),
+        m_firmHeight(view.firmHeight),
+        m_columnAngle(view.columnAngle) {
+    const Slice& reference = slices[used[used.size() / 2]];
+    m_bearing = 0.5 * (reference.azimuthBegin + reference.azimuthEnd);
+    m_cos = std::cos(m_bearing);
+    m_sin = std::sin(m_bearing);
+    for (std::size_t i = 0; i < m_used.size(); i += m_stride) gather(m_slices[m_used[i]]);
+  }
+  /// Replaces the cylinder by a thin one right behind when the returns lie on a plane across: a
+  /// sign before its post.
+  void considerBoard(State& s) const {
+    if (s.radius < kThinnestBoard) return;
+    double sum = 0, n = 0;
+    for (std::size_t k = 0; k < m_points.count; ++k) {
+      sum += m_points.along[k] * m_points.returns[k];
+      n += m_points.returns[k];
+    }
+    const double plane = sum / n;
+    double flat = 0, round = 0;
+    Residuals r;
+    evaluate(m_points, s, r);
+    for (std::size_t k = 0; k < m_points.count; ++k) {
+      const double across = m_points.along[k] - plane;
+      flat += m_points.returns[k] * across * across;
+      round += m_points.returns[k] * r.residual[k] * r.residual[k];
+    }
+    if (flat > kFlatter * kFlatter * round) return;
+    s.depth = plane + kPostRadius;
+    s.radius = kPostRadius;
+  }
+
+  double cosine() const { return m_cos; }
+  double sine() const { return m_sin; }
+
+  State initial() const {
+    State s;
+    double sumLateral = 0, sumDepth = 0, sumWidth = 0;
+    for (std::uint32_t u : m_used) {
+      const Slice& slice = m_slices[u];
+      sumLateral += slice.rho * offset(0.5 * (slice.azimuthBegin + slice.azimuthEnd));
+      sumDepth += slice.rho;
+      sumWidth += slice.rho * (slice.azimuthEnd - slice.azimuthBegin + m_columnAngle - kFootprint);
+    }
+    const double n = static_cast<double>(m_used.size());
+    s.radius = std::clamp(0.5 * sumWidth / n, 0.02, 0.5);
+    s.lateral = sumLateral / n;
+    s.depth = sumDepth / n + s.radius;
+    return s;
+  }
+
+  Normal normal(const State& s) const {
+    Normal n;
+    n.add(0, 0, 1, s.radius - kRadiusPrior, 1 / (kRadiusPriorSigma * kRadiusPriorSigma));
+    addRanges(s, n);
+    for (std::size_t i = 0; i < m_used.size(); i += m_stride) addEdges(m_slices[m_used[i]], s, n);
+    return n;
+  }
+
+ private:
+  /// Azimuth against the reference bearing; a slice's azimuths differ from it by less than a turn
+  /// and a half.
+  double offset(double azimuth) const {
+    const double d = azimuth - m_bearing;
+    return d > M_PI ? d - 2 * M_PI : d < -M_PI ? d + 2 * M_PI : d;
+  }
+
+  void addRanges(const State& s, Normal& n) const {
+    constexpr double kWeight = 1 / (kRangeSigma * kRangeSigma);
+    Residuals r;
+    evaluate(m_points, s, r);
+    for (std::size_t k = 0; k < m_points.count; ++k) {
+      n.add(r.slope[k], 1, -r.front[k], r.residual[k], r.weight[k] * kWeight);
+      n.residualSum += r.weight[k] * r.residual[k] * r.residual[k];
+      n.weightSum += r.weight[k];
+    }
+  }
+
+  /// Takes up the returns of a slice.
+  void gather(const Slice& slice) {
+    const Return* row = m_lines.begin(slice.row);
+    const std::size_t size = m_lines.size(slice.row);
+    const std::size_t groups = std::min<std::size_t>(slice.count, kGroups);
+    for (std::size_t g = 0; g < groups; ++g) {
+      const std::size_t first = g * slice.count / groups, end = (g + 1) * slice.count / groups;
+      float along = 0, across = 0;
+      for (std::size_t k = first; k < end; ++k) {
+        const std::size_t i = slice.first + k;
+        const Return& r = row[i < size ? i : i - size];
+        // Sine and cosine to 1e-7 for half a radian; of all poles but those at arm's length.
+        const float d = static_cast<float>(offset(r.azimuth)), q = d * d;
+        along += r.rho * (1 - q * (1 / 2.f - q * (1 / 24.f - q * (1 / 720.f))));
+        across += r.rho * d * (1 - q * (1 / 6.f - q * (1 / 120.f - q * (1 / 5040.f))));
+      }
+      const float returns = static_cast<float>(end - first);
+      m_points.along[m_points.count] = along / returns;
+      m_points.across[m_points.count] = across / returns;
+      m_points.returns[m_points.count++] = returns * firmness(slice, m_firmHeight);
+    }
+  }
+
+  static void evaluate(const FitPoints& points, const State& s, Residuals& r) {
+    const float lateral = static_cast<float>(s.lateral), depth = static_cast<float>(s.depth);
+    const float radius = static_cast<float>(s.radius), perRadius = 1 / radius;
+    const float half = static_cast<float>(0.5 * kDivergence) * depth;
+    constexpr float kGraze = static_cast<float>(kGrazing);
+    constexpr float kPerScale = static_cast<float>(1 / (kRobust * kRobust));
+    for (std::size_t k = 0; k < points.count; ++k) {
+      // A beam that grazes the edge hits it with the inner part of its footprint only: where the
+      // return comes from is the middle of what footprint and cylinder share.
+      const float across = points.across[k] - lateral;
+      const float inner = std::min(std::max(across - half, -radius), radius);
+      const float outer = std::min(std::max(across + half, -radius), radius);
+      const float hit = 0.5f * (inner + outer) * perRadius;
+      const float u = std::min(std::max(hit, -kGraze), kGraze);
+      const float front = std::sqrt(1 - u * u);
+      const float e = depth - radius * front - points.along[k];
+      r.residual[k] = e;
+      r.slope[k] = -u / front;
+      r.front[k] = front;
+      r.weight[k] = points.returns[k] / (1 + e * e * kPerScale);
+    }
+  }
+
+  void addEdges(const Slice& slice, const State& s, Normal& n) const {
+    const double half = 0.5 * (m_columnAngle - kFootprint);
+    const double sigma = std::max(0.004, s.depth * std::sqrt(m_columnAngle * m_columnAngle / 12 +
+                                                             0.16 * kFootprint * kFootprint));
+    const double weight = firmness(slice, m_firmHeight) / (sigma * sigma);
+    if (slice.left == Side::free)
+      n.add(1, 0, 1, s.lateral + s.radius - s.depth * (offset(slice.azimuthEnd) + half), weight);
+    if (slice.right == Side::free)
+      n.add(1, 0, -1, s.lateral - s.radius - s.depth * (offset(slice.azimuthBegin) - half), weight);
+  }
+
+  const ScanLines& m_lines;
+  const std::vector<Slice>& m_slices;
+  const std::vector<std::uint32_t>& m_used;
+  std::size_t m_stride;  ///< of the slices used
+  FitPoints m_points;
+  float m_firmHeight;
+  double m_columnAngle, m_bearing, m_cos, m_sin;
+};
+
+}  // namespace
+
+PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
+                   float columnAngle) {
+  float x = 0, y = 0, width = 0, n = 0;
+  for (std::uint32_t u : used) {
+    const Slice& slice = slices[u];
+    x += slice.x;
+    y += slice.y;
+    width += slice.rho *
+             (slice.azimuthEnd - slice.azimuthBegin + columnAngle - static_cast<float>(kFootprint));
+    n += 1;
+  }
+  PoleAxis axis;
+  axis.radius = std::clamp(0.5f * width / n, 0.02f, 0.5f);
+  const float rho = std::sqrt(x * x + y * y) / n;
+  axis.x = x / n * (1 + axis.radius / rho);
+  axis.y = y / n * (1 + axis.radius / rho);
+  return axis;
+}
+
+namespace {
+
+/// How a pole's place changes with height, from the fronts of its slices; shrunk towards upright.
+struct Lean {
+  double x = 0, y = 0;  ///< m per m of height
+  double height = 0;    ///< mean of the slices, m
+  double prior = 1;     ///< share of the prior in x and y
+  double low = 0, high = 0;
+};
+
+Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
+            const PoleView& view) {
+  // Poles are upright but for the sway of the sensor. The prior is the ratio of the variances of a
+  // front's place and of the lean.
+  constexpr double kPrior = 4;
+  Lean lean;
+  double n = 0, mx = 0, my = 0;
+  for (std::uint32_t u : used) {
+    const double w = firmness(slices[u], view.firmHeight);
+    n += w;
+    mx += w * slices[u].x;
+    my += w * slices[u].y;
+    lean.height += w * slices[u].z;
+  }
+  mx /= n;
+  my /= n;
+  lean.height /= n;
+  double zz = 0;
+  for (std::uint32_t u : used) {
+    const double z = slices[u].z - lean.height, w = firmness(slices[u], view.firmHeight);
+    zz += w * z * z;
+    lean.x += w * z * (slices[u].x - mx);
+    lean.y += w * z * (slices[u].y - my);
+  }
+  lean.x = (lean.x + kPrior * view.uprightX) / (zz + kPrior);
+  lean.y = (lean.y + kPrior * view.uprightY) / (zz + kPrior);
+  lean.prior = kPrior / (zz + kPrior);
+  lean.high = slices[used.front()].z;
+  lean.low = slices[used.back()].z;
+  return lean;
+}
+
+/// Moves the fit along the pole to the height of the sensor, as far as the slices reach: there a
+/// roll or pitch of the sensor does not move it.
+void moveToSensorHeight(const Lean& lean, PoleFit& fit) {
+  const double reached = std::clamp(0.0, lean.low, lean.high);
+  const double step = reached - lean.height;
+  fit.x += static_cast<float>(lean.x * step);
+  fit.y += static_cast<float>(lean.y * step);
+  fit.covariance +=
+      Eigen::Matrix2d::Identity() * (leanSigma * leanSigma * lean.prior * step * step);
+  fit.lean.lean = {static_cast<float>(lean.x), static_cast<float>(lean.y)};
+  fit.lean.prior = static_cast<float>(lean.prior);
+  fit.lean.step = static_cast<float>(step);
+  fit.lean.gap = static_cast<float>(-reached);
+}
+
+}  // namespace
+
+std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
+                               const std::vector<std::uint32_t>& used, const PoleView& view) {
+  if (used.empty()) return std::nullopt;
+  const CylinderProblem problem(lines, slices, used, view);
+  State s = problem.initial();
+  Normal n;
+  for (int i = 0; i < kIterations; ++i) {
+    n = problem.normal(s);
+    n.H.triangularView<Eigen::StrictlyUpper>() = n.H.transpose();
+    const Eigen::Vector3d step = n.H.inverse() * n.g;
+    if (!step.allFinite()) return std::nullopt;
+    s.lateral -= step[0];
+    s.depth -= step[1];
+    s.radius = std::clamp(s.radius - step[2], 0.005, 1.0);
+    if (step.cwiseAbs().maxCoeff() < 1e-3) break;  // what is left is its square
+  }
+  problem.considerBoard(s);
+  PoleFit fit;
+  const double c = problem.cosine(), sn = problem.sine();
+  fit.x = static_cast<float>(s.depth * c - s.lateral * sn);
+  fit.y = static_cast<float>(s.depth * sn + s.lateral * c);
+  fit.radius = static_cast<float>(s.radius);
+  fit.residual = static_cast<float>(std::sqrt(n.residualSum / std::max(1e-9, n.weightSum)));
+  Eigen::Matrix2d turn;
+  turn << -sn, c, c, sn;  // columns: lateral and depth axes in the lidar frame
+  const Eigen::Matrix2d local =
+      n.H.inverse().topLeftCorner<2, 2>() + kFloorSigma * kFloorSigma * Eigen::Matrix2d::Identity();
+  fit.covariance = turn * local * turn.transpose();
+  moveToSensorHeight(leanOf(slices, used, view), fit);
+  return fit;
+}
+
+}  // namespace polemcl

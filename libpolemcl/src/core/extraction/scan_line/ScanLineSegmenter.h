@@ -1,0 +1,49 @@
+#pragma once
+/// \file ScanLineSegmenter.h
+/// \brief Step B1, native: narrow things that stand before what lies behind them, on one scan line.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/extraction/ExtractionOptions.h"
+#include "core/extraction/scan_line/ScanLines.h"
+
+namespace polemcl {
+
+/// \brief What lies next to an end of a run of returns, on the same beam.
+enum class Side : std::uint8_t {
+  free,      ///< nothing, or something farther: the thing ends here
+  attached,  ///< something about as far: the thing may go on
+  occluded   ///< something nearer: the thing may go on behind it
+};
+
+/// \brief A run of neighbouring returns on one beam. Indices are within the row and may wrap:
+/// the run is first, first + 1, … (modulo the size of the row), `count` returns.
+struct Slice {
+  std::int32_t row = 0;
+  std::uint32_t first = 0, count = 0;
+  float azimuthBegin = 0,
+        azimuthEnd = 0;     ///< of its end returns, rad; End may exceed pi where it wraps
+  float rho = 0;            ///< nearest horizontal range, m
+  float z = 0;              ///< mean height, lidar frame, m
+  float x = 0, y = 0;       ///< middle of its front: mid azimuth at `rho`, m
+  Side left = Side::free;   ///< at azimuthEnd (left as seen from the sensor)
+  Side right = Side::free;  ///< at azimuthBegin
+  float width() const { return rho * (azimuthEnd - azimuthBegin); }  ///< between its end returns, m
+  bool whole() const { return left == Side::free && right == Side::free; }
+};
+
+/// \brief Finds slices; keeps its buffer between scans.
+class SliceFinder {
+ public:
+  SliceFinder(const SensorModel& sensor, const NativeOptions& options);
+  /// \brief All slices no wider than maxWidth with at least one free side and none attached, rows
+  /// ascending, in a row by azimuth of their beginning.
+  void find(const ScanLines& lines, std::vector<Slice>& slices);
+
+ private:
+  float m_gap, m_step, m_edge, m_maxWidth, m_maxRange;
+  std::vector<std::uint32_t> m_breaks;
+};
+
+}  // namespace polemcl

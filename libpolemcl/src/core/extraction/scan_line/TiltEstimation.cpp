@@ -1,0 +1,43 @@
+#include "core/extraction/scan_line/TiltEstimation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl {
+namespace {
+
+constexpr float s_mostPrior = 0.4f;  // of a lean that is mostly the prior, too little is known
+constexpr double s_own = 0.03;       // standard deviation of a pole's own lean, m per m
+constexpr double s_sensor = 0.04;    // and of the sensor's
+constexpr double s_outlier = 2;      // a pole that leans off by more sigmas counts less and less
+constexpr int s_tiltRounds = 3;
+
+}  // namespace
+
+Eigen::Vector2f commonLean(const std::vector<PoleLean>& poles, const Eigen::Vector2f& upright) {
+  const Eigen::Vector2d before = upright.cast<double>();
+  Eigen::Vector2d common = before;
+  for (int round = 0; round < s_tiltRounds; ++round) {
+    double weights = 1 / (s_sensor * s_sensor);
+    Eigen::Vector2d sum = weights * before;
+    for (const PoleLean& pole : poles) {
+      if (pole.prior > s_mostPrior) continue;
+      const double prior = pole.prior;
+      const Eigen::Vector2d seen = (pole.lean.cast<double>() - prior * before) / (1 - prior);
+      const double variance = leanSigma * leanSigma * prior / (1 - prior) + s_own * s_own;
+      const double off = (seen - common).squaredNorm() / (s_outlier * s_outlier * variance);
+      const double weight = pole.weight / (variance * (1 + off * off));
+      weights += weight;
+      sum += weight * seen;
+    }
+    common = sum / weights;
+  }
+  return common.cast<float>();
+}
+
+Eigen::Vector2f shiftBy(const PoleLean& pole, const Eigen::Vector2f& upright,
+                        const Eigen::Vector2f& common) {
+  return pole.prior * pole.step * (common - upright) + pole.gap * common;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,55 @@
+#include "core/global_localization/Constellation.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl {
+namespace {
+
+constexpr double s_pathStep = 4;            ///< m
+constexpr std::size_t s_mostReliable = 80;  ///< the best seen; more would only cost time
+constexpr std::size_t s_mostStars = 300;
+
+/// Odds that a pole with so many hits stands on the map. One hit more halves the doubt whether it
+/// is a pole at all, less the more chances it missed.
+double oddsOf(const SubmapPole& pole, const GlobalOptions& options) {
+  if (pole.hits < static_cast<std::uint32_t>(options.minHits)) return 0;
+  const double real = 1 - std::pow(0.5, std::min<double>(pole.hits, 30));
+  const double p = options.mapped * real;
+  return p / (1 - p);
+}
+
+}  // namespace
+
+Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& options)
+    : m_scale(submap.options().scale) {
+  const Pose2D& pose = submap.pose();
+  const Eigen::Vector2d here(pose.x, pose.y);
+  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(-pose.yaw).toRotationMatrix();
+  for (const SubmapPole& pole : submap.poles()) {
+    m_stars.push_back({rotation * (pole.centre - here),
+                       rotation * submap.presentCovariance(pole, false) * rotation.transpose(),
+                       rotation * (pole.seenFrom - here), oddsOf(pole, options), &pole});
+  }
+  // Of equals the later seen: it has drifted less.
+  std::stable_sort(m_stars.begin(), m_stars.end(), [](const Star& a, const Star& b) {
+    return a.odds != b.odds ? a.odds > b.odds : a.pole->seenAt > b.pole->seenAt;
+  });
+  if (m_stars.size() > s_mostStars) m_stars.resize(s_mostStars);
+  while (m_reliable < m_stars.size() && m_stars[m_reliable].odds > 0) ++m_reliable;
+  for (; m_reliable > s_mostReliable; --m_reliable) m_stars[m_reliable - 1].odds = 0;
+  for (const Eigen::Vector2d& place : submap.path()) {
+    const Eigen::Vector2d seen = rotation * (place - here);
+    if (m_path.empty() || (seen - m_path.back()).norm() >= s_pathStep) m_path.push_back(seen);
+  }
+}
+
+double Constellation::driftVariance(const Star& a, const Star& b) const {
+  const bool aFirst = a.pole->seenAt <= b.pole->seenAt;
+  const SubmapPole &then = aFirst ? *a.pole : *b.pole, &now = aFirst ? *b.pole : *a.pole;
+  return 0.5 * OdometryDrift::between(then.drift, now.drift, then.centre).trace() +
+         0.5 * m_scale * m_scale * (a.way - b.way).squaredNorm();
+}
+
+}  // namespace polemcl

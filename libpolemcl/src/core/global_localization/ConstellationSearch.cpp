@@ -1,0 +1,158 @@
+#include "core/global_localization/ConstellationSearch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+namespace polemcl {
+namespace {
+
+constexpr double s_sigmas = 2.5;  ///< of tolerances: 96 % of true matches lie within, in the plane
+constexpr int s_mostUses = 4;     ///< of one star in pairs: a false one must not spoil them all
+
+/// Least hits after so many probes. A true place, where six of ten stars find their pole, falls
+/// short once in a hundred times, and up to `maxPairs` pairs can find it; of chance ones, with
+/// three hits in a hundred probes, hardly any gets through.
+constexpr std::uint32_t leastHits(std::uint32_t probes) {
+  return probes < 6 ? 0 : probes < 10 ? 1 : probes < 16 ? 2 : probes < 24 ? 5 : 8;
+}
+
+}  // namespace
+
+PairTolerance::PairTolerance(const GlobalLocalizer& map, const Constellation& sky,
+                             const Star& first, const Star& second)
+    : m_map(map),
+      m_sky(sky),
+      m_first(first),
+      m_second(second),
+      m_middle(0.5 * (first.centre + second.centre)),
+      m_squaredLength((second.centre - first.centre).squaredNorm()) {
+  const double sigma = map.options().sigma;
+  m_variance = sky.relativeVariance(first, second) + 2 * (sigma * sigma + map.meanVariance());
+}
+
+double PairTolerance::of(const Star& star) const {
+  // The pair's middle is off by a quarter of the sum of both variances, its direction by the whole
+  // over the squared length.
+  const double lever = (star.centre - m_middle).squaredNorm() / m_squaredLength;
+  const double sigma = m_map.options().sigma;
+  const double own = 0.5 * star.pole->covariance.trace() + sigma * sigma + m_map.meanVariance();
+  const double drift =
+      std::min(m_sky.driftVariance(star, m_first), m_sky.driftVariance(star, m_second));
+  const double variance = m_variance * (0.25 + lever) + own + drift;
+  return std::min(m_map.options().maxTolerance, s_sigmas * std::sqrt(variance));
+}
+
+ConstellationSearch::ConstellationSearch(const GlobalLocalizer& map, const Constellation& sky)
+    : m_map(map), m_sky(sky) {}
+
+std::vector<PlaceSeed> ConstellationSearch::run() {
+  for (const StarPair& pair : choosePairs()) tryPair(pair);
+  return bestSeeds();
+}
+
+/// Rare distances first: they cost least and say most.
+std::vector<ConstellationSearch::StarPair> ConstellationSearch::choosePairs() const {
+  const GlobalOptions& options = m_map.options();
+  const std::vector<Star>& stars = m_sky.stars();
+  std::vector<StarPair> all;
+  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
+    for (std::uint32_t j = i + 1; j < m_sky.reliable(); ++j) {
+      const double length = (stars[i].centre - stars[j].centre).norm();
+      if (length < options.minBaseline || length > options.maxBaseline) continue;
+      const double variance = m_sky.relativeVariance(stars[i], stars[j]) +
+                              2 * (options.sigma * options.sigma + m_map.meanVariance());
+      const double tolerance = std::min(options.maxTolerance, s_sigmas * std::sqrt(variance));
+      const DistancePairs::Range range =
+          m_map.pairs().between(length - tolerance, length + tolerance);
+      // A short or a doubtful pair is worth less: many places fit it badly.
+      const double doubt = (1 + 1 / stars[i].odds) * (1 + 1 / stars[j].odds);
+      const double cost =
+          (1.0 + static_cast<double>(range.size())) * (1 + 100 / (length * length)) * doubt * doubt;
+      all.push_back({cost, i, j, range});
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const StarPair& a, const StarPair& b) {
+    if (a.cost != b.cost) return a.cost < b.cost;
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  });
+  std::vector<StarPair> chosen;
+  std::vector<int> uses(m_sky.reliable(), 0);
+  std::size_t candidates = 0;
+  for (const StarPair& pair : all) {
+    if (uses[pair.first] >= s_mostUses || uses[pair.second] >= s_mostUses) continue;
+    candidates += 2 * pair.range.size();
+    if (chosen.size() >= static_cast<std::size_t>(options.maxPairs) ||
+        (!chosen.empty() && candidates > static_cast<std::size_t>(options.maxCandidates)))
+      break;
+    ++uses[pair.first];
+    ++uses[pair.second];
+    chosen.push_back(pair);
+  }
+  return chosen;
+}
+
+void ConstellationSearch::tryPair(const StarPair& pair) {
+  const std::vector<Star>& stars = m_sky.stars();
+  const PairTolerance tolerance(m_map, m_sky, stars[pair.first], stars[pair.second]);
+  m_probes.clear();
+  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
+    if (i == pair.first || i == pair.second) continue;
+    const double t = tolerance.of(stars[i]);
+    m_probes.push_back({stars[i].centre.x(), stars[i].centre.y(), t * t});
+  }
+  std::stable_sort(m_probes.begin(), m_probes.end(), [](const Probe& a, const Probe& b) {
+    return a.squaredTolerance < b.squaredTolerance;
+  });
+  for (const DistancePairs::Pair* p = pair.range.begin; p != pair.range.end; ++p) {
+    const Eigen::Vector2d &a = m_map.tree().point(p->first), &b = m_map.tree().point(p->second);
+    tryPlace(pair, a, b);
+    tryPlace(pair, b, a);
+  }
+}
+
+void ConstellationSearch::tryPlace(const StarPair& pair, const Eigen::Vector2d& first,
+                                   const Eigen::Vector2d& second) {
+  ++m_candidates;
+  const Eigen::Vector2d &a = m_sky.stars()[pair.first].centre,
+                        &b = m_sky.stars()[pair.second].centre;
+  const Eigen::Vector2d seen = b - a, mapped = second - first;
+  const double norm = std::sqrt(seen.squaredNorm() * mapped.squaredNorm());
+  const double c = seen.dot(mapped) / norm;
+  const double s = (seen.x() * mapped.y() - seen.y() * mapped.x()) / norm;
+  const Eigen::Vector2d middle = 0.5 * (a + b);
+  const double x = 0.5 * (first.x() + second.x()) - (c * middle.x() - s * middle.y());
+  const double y = 0.5 * (first.y() + second.y()) - (s * middle.x() + c * middle.y());
+  std::uint32_t hits = 0, tried = 0;
+  for (const Probe& probe : m_probes) {
+    hits += static_cast<bool>(m_map.grid().nearest(
+        x + c * probe.x - s * probe.y, y + s * probe.x + c * probe.y, probe.squaredTolerance));
+    if (hits < leastHits(++tried)) return;
+  }
+  if (hits < 2) return;
+  m_seeds.push_back({{x, y, std::atan2(s, c)}, hits, pair.first, pair.second});
+}
+
+std::vector<PlaceSeed> ConstellationSearch::bestSeeds() {
+  std::stable_sort(m_seeds.begin(), m_seeds.end(),
+                   [](const PlaceSeed& a, const PlaceSeed& b) { return a.hits > b.hits; });
+  const auto cellOf = [](const Pose2D& pose) {
+    const auto column = static_cast<std::int64_t>(std::floor(pose.x / 2));
+    const auto row = static_cast<std::int64_t>(std::floor(pose.y / 2));
+    const auto turn = static_cast<std::uint64_t>((pose.yaw + M_PI) / (2 * M_PI) * 60);
+    return (static_cast<std::uint64_t>(column) * 0x9E3779B97F4A7C15u ^
+            static_cast<std::uint64_t>(row)) *
+               64 +
+           turn % 60;
+  };
+  std::unordered_set<std::uint64_t> taken;
+  std::vector<PlaceSeed> best;
+  for (const PlaceSeed& seed : m_seeds) {
+    if (best.size() >= static_cast<std::size_t>(m_map.options().maxRefined)) break;
+    if (taken.insert(cellOf(seed.pose_map_robot)).second) best.push_back(seed);
+  }
+  return best;
+}
+
+}  // namespace polemcl

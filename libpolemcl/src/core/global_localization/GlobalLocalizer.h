@@ -1,0 +1,117 @@
+#pragma once
+/// \file GlobalLocalizer.h
+/// \brief Where on the map is this constellation of poles? No start pose at all.
+///
+/// The poles of a LocalSubmap are matched against the whole map: pairs of them by their distance
+/// (geometric hashing, DistancePairs), each candidate tried on its other poles and given up early,
+/// the best refined by least squares and judged on all poles: those matched speak for it, map poles
+/// beside the way that were never seen speak against it. See share/doc/global.md.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/common/KdTree2D.h"
+#include "core/common/PoleGrid.h"
+#include "core/common/Types.h"
+#include "core/global_localization/PairDistanceIndex.h"
+#include "core/localization/LocalSubmap.h"
+
+namespace polemcl {
+
+/// \brief `[global]` in INI files.
+struct GlobalOptions {
+  int minHits = 2;  ///< submap poles with fewer hits give no evidence
+  /// Chance that a pole of the submap that is no false one stands on the map, in (0, 1).
+  double mapped = 0.9;
+  double sigma = 0.05;        ///< of a pole against its map pole, beyond both covariances, m
+  double maxTolerance = 1.0;  ///< a pole never matches one farther away than this, m
+  double minBaseline = 8, maxBaseline = 40;  ///< of pole pairs that give a candidate, m
+  double corridor = 15;  ///< map poles this near to the way should have been seen, m
+  double seen = 0.5;     ///< chance that such a pole is in the submap, in [0, 1)
+  /// \name Verdict
+  /// @{
+  int minMatched = 6;         ///< fewer matched poles never decide
+  double minShare = 0.4;      ///< least share of the submap's poles that must be matched, in [0, 1]
+  double margin = 7;          ///< least lead in evidence over every other place, nats
+  double distinct = 2;        ///< places farther apart than this are different ones, m
+  double distinctYaw = 0.17;  ///< or turned by more than this, rad (`distinct_yaw_deg`)
+  /// @}
+  int maxPairs = 40;           ///< most pole pairs of the submap that are looked up
+  int maxCandidates = 100000;  ///< most candidate places that are tried, bounds the time
+  int maxRefined = 64;         ///< most of them that are refined
+  int maxHypotheses = 20;      ///< most that are handed out
+  void validate() const;       ///< \throws Error naming the field
+};
+
+/// \brief A place where the submap may lie.
+struct GlobalHypothesis {
+  Pose2D pose_map_robot;  ///< the robot now, m, rad
+  Pose2D pose_map_local;  ///< the submap's local frame
+  /// Covariance of pose_map_robot's (x, y, yaw), m², m·rad, rad²: of the least squares, scaled by
+  /// its residuals where these are larger than expected.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  double scale = 0;     ///< error of the odometry's scale: true way = (1 + scale)·driven way
+  double evidence = 0;  ///< log of the odds this place has against a place with no match, nats
+  double weight = 0;    ///< share of exp(evidence) among the hypotheses handed out
+  std::uint32_t matched = 0;  ///< map poles matched, each once
+  double matchedShare = 0;    ///< of the submap's poles with `minHits`
+  std::uint32_t unseen = 0;   ///< map poles beside the way that are not in the submap
+};
+
+enum class GlobalVerdict {
+  resolved,   ///< the first hypothesis, clearly better than all other places
+  ambiguous,  ///< several about as good: keep all, drive on
+  none        ///< nothing that holds: too few poles, or not on this map
+};
+
+/// \brief Why the verdict is what it is.
+enum class GlobalReason {
+  clear,       ///< resolved
+  rivals,      ///< ambiguous: another place is within the margin
+  fewPoles,    ///< none: the submap has fewer than `minMatched` poles with `minHits`
+  noPlace,     ///< none: no candidate survived
+  fewMatched,  ///< none: the best has fewer than `minMatched`
+  smallShare   ///< none: the best has less than `minShare`
+};
+
+struct GlobalResult {
+  GlobalVerdict verdict = GlobalVerdict::none;
+  GlobalReason reason = GlobalReason::fewPoles;
+  std::vector<GlobalHypothesis> hypotheses;  ///< by falling evidence; may be empty
+  std::size_t poles = 0;                     ///< submap poles that gave evidence
+  std::size_t candidates = 0;                ///< places tried
+};
+
+/// \brief The map, prepared once. Const calls may run in parallel; the answer depends on nothing
+/// but map, options and submap.
+class GlobalLocalizer {
+ public:
+  /// \throws Error on options out of range or a map pole whose centre or covariance is not finite.
+  explicit GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOptions& options = {});
+
+  GlobalResult localize(const LocalSubmap& submap) const;
+
+  /// \name The prepared map, for the steps of the search
+  /// @{
+  const GlobalOptions& options() const { return m_options; }
+  const KdTree2D& tree() const { return m_tree; }
+  const PoleGrid& grid() const { return m_grid; }
+  const DistancePairs& pairs() const { return m_pairs; }
+  /// \brief Half the trace of a pole's covariance, m².
+  double variance(std::size_t pole) const { return m_variances[pole]; }
+  double meanVariance() const {
+    return m_meanVariance;
+  }  ///< m²
+     /// @}
+
+ private:
+  GlobalOptions m_options;
+  KdTree2D m_tree;
+  PoleGrid m_grid;
+  DistancePairs m_pairs;
+  std::vector<double> m_variances;
+  double m_meanVariance = 0;
+};
+
+}  // namespace polemcl

@@ -1,0 +1,170 @@
+#include "core/global_localization/PoseRefinement.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl {
+namespace {
+
+constexpr int s_refinements = 4;
+constexpr double s_gate = 3;  ///< standard deviations
+/// A match of a pole known worse than this counts for less, m: it could be had by chance.
+constexpr double s_sharp = 0.3;
+
+Eigen::Matrix2d rotationOf(double yaw) {
+  return Eigen::Rotation2Dd(yaw).toRotationMatrix();
+}
+
+/// J·v, a quarter turn to the left.
+Eigen::Vector2d turnedBy(const Eigen::Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+}  // namespace
+
+PlaceRefinement::PlaceRefinement(const GlobalLocalizer& map, const Constellation& sky,
+                                 const Pose2D& pose_local)
+    : m_map(map), m_sky(sky), m_poseLocal(pose_local), m_claimed(map.tree().size(), 0) {}
+
+bool PlaceRefinement::run(const PlaceSeed& seed, GlobalHypothesis& out) {
+  State state;
+  state.pose = seed.pose_map_robot;
+  matchSeed(seed, state);
+  if (!solve(state)) return false;
+  for (int round = 1; round < s_refinements; ++round) {
+    matchGated(state);
+    if (!solve(state)) return false;
+  }
+  judge(state, out);
+  return true;
+}
+
+Eigen::Vector2d PlaceRefinement::seenAt(const Star& star, const State& state) const {
+  return Eigen::Vector2d(state.pose.x, state.pose.y) +
+         rotationOf(state.pose.yaw) * (star.centre + state.scale * star.way);
+}
+
+Eigen::Matrix2d PlaceRefinement::uncertainty(const Star& star, std::size_t pole,
+                                             const State& state) const {
+  const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
+  const double sigma = m_map.options().sigma;
+  return rotation * star.covariance * rotation.transpose() +
+         (sigma * sigma + m_map.variance(pole)) * Eigen::Matrix2d::Identity();
+}
+
+void PlaceRefinement::matchSeed(const PlaceSeed& seed, const State& state) {
+  const std::vector<Star>& stars = m_sky.stars();
+  const PairTolerance tolerance(m_map, m_sky, stars[seed.first], stars[seed.second]);
+  m_matches.clear();
+  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
+    const Eigen::Vector2d at = seenAt(stars[i], state);
+    const double t = tolerance.of(stars[i]);
+    const PointHit hit = m_map.grid().nearest(at.x(), at.y(), t * t);
+    if (hit) m_matches.push_back({i, hit.index});
+  }
+}
+
+void PlaceRefinement::matchGated(const State& state) {
+  const double most = m_map.options().maxTolerance;
+  m_matches.clear();
+  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
+    const Star& star = m_sky.stars()[i];
+    const Eigen::Vector2d at = seenAt(star, state);
+    const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
+    if (!hit) continue;
+    Eigen::Matrix<double, 2, 4> jacobian;
+    const Eigen::Vector2d arm = at - Eigen::Vector2d(state.pose.x, state.pose.y);
+    jacobian << Eigen::Matrix2d::Identity(), turnedBy(arm), rotationOf(state.pose.yaw) * star.way;
+    const Eigen::Matrix2d S =
+        uncertainty(star, hit.index, state) + jacobian * state.covariance * jacobian.transpose();
+    const Eigen::Vector2d error = m_map.tree().point(hit.index) - at;
+    if (error.dot(S.inverse() * error) <= s_gate * s_gate) m_matches.push_back({i, hit.index});
+  }
+}
+
+/// One Gauss-Newton step on the matches, with the odometry's scale known beforehand to be near 0.
+bool PlaceRefinement::solve(State& state) const {
+  if (m_matches.size() < 3) return false;
+  Matrix4 normal = Matrix4::Zero();
+  Vector4 right = Vector4::Zero();
+  const double scaleSigma = std::max(m_sky.scaleSigma(), 1e-6);
+  normal(3, 3) = 1 / (scaleSigma * scaleSigma);
+  right(3) = -state.scale * normal(3, 3);
+  const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
+  double squared = 0;
+  for (const Match& match : m_matches) {
+    const Star& star = m_sky.stars()[match.star];
+    const Eigen::Vector2d at = seenAt(star, state);
+    Eigen::Matrix<double, 2, 4> jacobian;
+    const Eigen::Vector2d arm = at - Eigen::Vector2d(state.pose.x, state.pose.y);
+    jacobian << Eigen::Matrix2d::Identity(), turnedBy(arm), rotation * star.way;
+    const Eigen::Matrix2d weight = uncertainty(star, match.pole, state).inverse();
+    const Eigen::Vector2d error = m_map.tree().point(match.pole) - at;
+    normal += jacobian.transpose() * weight * jacobian;
+    right += jacobian.transpose() * weight * error;
+    squared += error.dot(weight * error);
+  }
+  const Eigen::LDLT<Matrix4> factors(normal);
+  if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > 0)) return false;
+  const Vector4 step = factors.solve(right);
+  state.covariance = factors.solve(Matrix4::Identity());
+  if (!step.allFinite() || !state.covariance.allFinite()) return false;
+  state.squaredResiduals = std::max(0.0, squared - step.dot(right));
+  state.pose.x += step(0);
+  state.pose.y += step(1);
+  state.pose.yaw = wrapAngle(state.pose.yaw + step(2));
+  state.scale += step(3);
+  return true;
+}
+
+void PlaceRefinement::judge(const State& state, GlobalHypothesis& out) {
+  const double most = m_map.options().maxTolerance;
+  const double sharp = s_sharp * s_sharp;
+  newRound();
+  out = {};
+  for (const Star& star : m_sky.stars()) {
+    const Eigen::Vector2d at = seenAt(star, state);
+    const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
+    if (!hit) continue;
+    const Eigen::Matrix2d S = uncertainty(star, hit.index, state);
+    const Eigen::Vector2d error = m_map.tree().point(hit.index) - at;
+    const double squared = error.dot(S.inverse() * error);
+    // Reliable stars come first, so none loses its map pole to a doubtful one.
+    if (squared > s_gate * s_gate || !claim(hit.index) || star.odds <= 0) continue;
+    ++out.matched;
+    const double sharpness = std::min(1.0, sharp / std::sqrt(S.determinant()));
+    out.evidence += std::log1p(star.odds * sharpness * std::exp(-0.5 * squared));
+  }
+  out.unseen = countUnseen(state);
+  // Where the map is old or full of false poles, these must not outvote the matches.
+  const double doubt = -std::log1p(-m_map.options().seen) * out.unseen;
+  out.evidence -= std::min(doubt, 0.5 * out.evidence);
+  out.matchedShare = static_cast<double>(out.matched) / static_cast<double>(m_sky.reliable());
+  out.pose_map_robot = state.pose;
+  out.pose_map_local = compose(state.pose, relative(m_poseLocal, Pose2D{}));
+  out.scale = state.scale;
+  const double freedom = 2 * static_cast<double>(m_matches.size()) - 3;
+  const double inflation = std::max(1.0, state.squaredResiduals / freedom);
+  out.covariance = inflation * state.covariance.topLeftCorner<3, 3>();
+}
+
+/// Map poles beside the way that no pole of the submap claimed in this round.
+std::uint32_t PlaceRefinement::countUnseen(const State& state) {
+  std::uint32_t unseen = 0;
+  const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
+  for (const Eigen::Vector2d& place : m_sky.path()) {
+    const Eigen::Vector2d at = Eigen::Vector2d(state.pose.x, state.pose.y) + rotation * place;
+    m_map.tree().within(at.x(), at.y(), m_map.options().corridor, m_hits);
+    for (const PointHit& hit : m_hits) unseen += claim(hit.index);
+  }
+  return unseen;
+}
+
+bool PlaceRefinement::claim(std::uint32_t pole) {
+  if (m_claimed[pole] == m_round) return false;
+  m_claimed[pole] = m_round;
+  return true;
+}
+
+}  // namespace polemcl

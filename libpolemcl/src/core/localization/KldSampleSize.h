@@ -1,0 +1,35 @@
+#pragma once
+/// \file KldSampleSize.h
+/// \brief How many particles a posterior needs (KLD sampling: Fox, "Adapting the sample size in
+/// particle filters through KLD-sampling", IJRR 2003).
+
+#include <cstddef>
+#include <vector>
+
+#include "core/common/Types.h"
+
+namespace polemcl {
+
+/// \brief Settings of KLD sampling, part of `[filter]`.
+struct KldOptions {
+  double epsilon = 0.05;  ///< greatest Kullback-Leibler distance to the posterior in bins, nat
+  double delta = 0.01;    ///< probability of exceeding it, in (0, 0.5]
+  double bin = 0.1;       ///< size of a bin in x and y, m
+  double binYaw = 0.017453292519943296;  ///< in heading, rad (`kld_bin_deg`, 1°)
+  int minParticles = 200;
+  int maxParticles = 10000;
+  void validate() const;  ///< \throws Error
+};
+
+/// \brief Bins that hold at least one of the chosen particles. Poses must be finite.
+std::size_t occupiedBins(const std::vector<Pose2D>& particles,
+                         const std::vector<std::size_t>& chosen, const KldOptions& options);
+
+/// \brief n = χ²(k-1, 1-δ) / (2ε), by the approximation of Wilson and Hilferty, rounded up and
+/// within the limits of the options. \param bins k; 0 and 1 need no more than the least number.
+std::size_t kldSampleSize(std::size_t bins, const KldOptions& options);
+
+/// \brief z with P(Z < z) = p of a standard normal number. \throws Error outside (0, 1).
+double normalQuantile(double p);
+
+}  // namespace polemcl

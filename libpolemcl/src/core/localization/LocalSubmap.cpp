@@ -1,0 +1,254 @@
+#include "core/localization/LocalSubmap.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace polemcl {
+namespace {
+
+constexpr double s_submapStep = 1;               ///< m
+constexpr double s_farthest = 5;                 ///< no detection belongs to a pole beyond, m
+constexpr std::uint32_t s_fewChances = 10;       ///< before them nothing is dropped for its misses
+constexpr std::size_t s_mostSubmapPoles = 2000;  ///< the oldest go first; a real drive has a tenth
+
+Eigen::Vector2d toLocal(const Pose2D& pose, double x, double y) {
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  return {pose.x + c * x - s * y, pose.y + s * x + c * y};
+}
+
+template <int size>
+bool isCovariance(const Eigen::Matrix<double, size, size>& matrix) {
+  if (!matrix.allFinite()) return false;
+  const double scale = matrix.cwiseAbs().maxCoeff(), tolerance = 1e-9 * scale;
+  if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > tolerance) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>> solver(
+      matrix, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().minCoeff() >= -tolerance;
+}
+
+/// A detection and a pole it may belong to.
+struct Pairing {
+  double squared;  ///< Mahalanobis
+  std::size_t detection, pole;
+  bool operator<(const Pairing& other) const {
+    if (squared != other.squared) return squared < other.squared;
+    return detection != other.detection ? detection < other.detection : pole < other.pole;
+  }
+};
+
+/// A detection in the local frame.
+struct Placed {
+  Eigen::Vector2d centre;
+  Eigen::Matrix2d covariance;
+};
+
+Placed placePole(const PoleDetection& detection, const Pose2D& pose, double floor) {
+  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(pose.yaw).toRotationMatrix();
+  return {toLocal(pose, detection.x, detection.y),
+          rotation * detection.covariance * rotation.transpose() +
+              floor * floor * Eigen::Matrix2d::Identity()};
+}
+
+}  // namespace
+
+Eigen::Matrix3d walkCovariance(const Pose2D& motion, const SubmapOptions& options) {
+  const double metres = std::hypot(motion.x, motion.y);
+  const double position = options.positionWalk * options.positionWalk * metres;
+  const double heading = options.headingWalk * options.headingWalk * metres +
+                         options.turnWalk * options.turnWalk * std::abs(motion.yaw);
+  return Eigen::Vector3d(position, position, heading).asDiagonal();
+}
+
+LocalSubmap::LocalSubmap(const SubmapOptions& options) : m_options(options) {
+  options.validate();
+}
+
+void LocalSubmap::add(const Pose2D& motion, const std::vector<PoleDetection>& poles_robot) {
+  add(motion, walkCovariance(motion, m_options), poles_robot);
+}
+
+void LocalSubmap::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                      const std::vector<PoleDetection>& poles_robot) {
+  check(poles_robot);
+  if (m_frames > 0) {
+    if (!std::isfinite(motion.x) || !std::isfinite(motion.y) || !std::isfinite(motion.yaw))
+      throw Error("the motion before frame " + std::to_string(m_frames) +
+                  " of the submap is not finite; leave the frame out or start a new submap");
+    if (!isCovariance<3>(covariance))
+      throw Error("the covariance of the motion before frame " + std::to_string(m_frames) +
+                  " of the submap is not symmetric positive semidefinite");
+    move(motion, covariance);
+  } else {
+    m_path = {Eigen::Vector2d::Zero()};
+    m_pathDriven = {0};
+  }
+  ++m_frames;
+  associate(poles_robot);
+  drop();
+}
+
+void LocalSubmap::clear() {
+  *this = LocalSubmap(m_options);
+}
+
+void LocalSubmap::check(const std::vector<PoleDetection>& poles_robot) const {
+  for (std::size_t i = 0; i < poles_robot.size(); ++i) {
+    const PoleDetection& pole = poles_robot[i];
+    const char* fault = nullptr;
+    if (!std::isfinite(pole.x) || !std::isfinite(pole.y)) fault = "a place that is not finite";
+    if (!isCovariance<2>(pole.covariance))
+      fault = "a covariance that is not symmetric positive semidefinite";
+    if (!(pole.confidence >= 0 && pole.confidence <= 1)) fault = "a confidence outside [0, 1]";
+    if (fault)
+      throw Error("pole " + std::to_string(i) + " of frame " + std::to_string(m_frames) +
+                  " of the submap has " + fault);
+  }
+}
+
+void LocalSubmap::move(const Pose2D& motion, const Eigen::Matrix3d& covariance) {
+  const double yaw = m_pose.yaw;
+  m_pose = compose(m_pose, motion);
+  m_driven += std::hypot(motion.x, motion.y);
+  const Eigen::Vector2d here(m_pose.x, m_pose.y);
+  m_drift.add(here, yaw, covariance);
+  // The last place is always the present one; it stays when the one before is far enough away.
+  const std::size_t count = m_path.size();
+  if (count < 2 || m_pathDriven[count - 1] - m_pathDriven[count - 2] >= s_submapStep) {
+    m_path.push_back(here);
+    m_pathDriven.push_back(m_driven);
+  } else {
+    m_path.back() = here;
+    m_pathDriven.back() = m_driven;
+  }
+}
+
+void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {
+  std::vector<Placed> placed;
+  placed.reserve(poles_robot.size());
+  for (const PoleDetection& d : poles_robot)
+    placed.push_back(placePole(d, m_pose, m_options.floor));
+  std::vector<Pairing> pairings;
+  for (std::size_t p = 0; p < m_poles.size(); ++p) {
+    const Eigen::Matrix2d present = presentCovariance(m_poles[p]);
+    for (std::size_t d = 0; d < placed.size(); ++d) {
+      const Eigen::Vector2d error = placed[d].centre - m_poles[p].centre;
+      if (poles_robot[d].confidence <= 0 || error.squaredNorm() > s_farthest * s_farthest) continue;
+      const Eigen::Matrix2d sum = present + placed[d].covariance;
+      const double squared = error.dot(sum.inverse() * error);
+      if (squared <= m_options.gate * m_options.gate) pairings.push_back({squared, d, p});
+    }
+  }
+  std::sort(pairings.begin(), pairings.end());
+  std::vector<char> poleTaken(m_poles.size(), 0), detectionTaken(placed.size(), 0);
+  for (const Pairing& pair : pairings) {
+    if (poleTaken[pair.pole] || detectionTaken[pair.detection]) continue;
+    poleTaken[pair.pole] = detectionTaken[pair.detection] = 1;
+    update(m_poles[pair.pole], poles_robot[pair.detection], placed[pair.detection].centre,
+           placed[pair.detection].covariance);
+  }
+  const Eigen::Vector2d here(m_pose.x, m_pose.y);
+  for (std::size_t p = 0; p < m_poles.size(); ++p)
+    if (!poleTaken[p] && (m_poles[p].centre - here).norm() < m_options.viewRange)
+      ++m_poles[p].chances;
+  for (std::size_t d = 0; d < placed.size(); ++d) {
+    if (detectionTaken[d] || poles_robot[d].confidence <= 0) continue;
+    m_poles.emplace_back();
+    m_poles.back().bottom = poles_robot[d].bottom;
+    m_poles.back().top = poles_robot[d].top;
+    update(m_poles.back(), poles_robot[d], placed[d].centre, placed[d].covariance);
+  }
+}
+
+void LocalSubmap::update(SubmapPole& pole, const PoleDetection& detection,
+                         const Eigen::Vector2d& centre, const Eigen::Matrix2d& covariance) const {
+  const Eigen::Matrix2d floor = m_options.floor * m_options.floor * Eigen::Matrix2d::Identity();
+  if (pole.hits == 0 || pole.taken) {
+    pole.centre = centre;
+    pole.covariance = covariance;
+  } else {
+    // A Kalman update of what the robot now knows of the pole. The floor is common to all
+    // detections of it: taken off before and put back after, so that it does not average out.
+    const Eigen::Matrix2d before = presentCovariance(pole) - floor, detected = covariance - floor;
+    const Eigen::Matrix2d sum = before + detected + 1e-12 * Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d gain = before * sum.inverse();
+    pole.centre += gain * (centre - pole.centre);
+    const Eigen::Matrix2d after = before - gain * before;
+    pole.covariance = 0.5 * (after + after.transpose()) + floor;
+  }
+  ++pole.hits;
+  ++pole.chances;
+  pole.taken = false;
+  pole.seenFrame = m_frames;
+  pole.radius += (detection.radius - pole.radius) / pole.hits;
+  pole.confidence += (detection.confidence - pole.confidence) / pole.hits;
+  pole.bottom = std::min(pole.bottom, detection.bottom);
+  pole.top = std::max(pole.top, detection.top);
+  pole.seenFrom = Eigen::Vector2d(m_pose.x, m_pose.y);
+  pole.seenAt = m_driven;
+  pole.drift = m_drift;
+}
+
+void LocalSubmap::drop() {
+  const double oldest = m_driven - m_options.length;
+  const auto unwanted = [&](const SubmapPole& pole) {
+    if (pole.seenAt < oldest) return true;
+    return pole.hits < static_cast<std::uint32_t>(m_options.sureHits) &&
+           pole.chances >= s_fewChances && pole.hits < m_options.minShare * pole.chances;
+  };
+  m_poles.erase(std::remove_if(m_poles.begin(), m_poles.end(), unwanted), m_poles.end());
+  if (m_poles.size() > s_mostSubmapPoles)
+    m_poles.erase(m_poles.begin(), m_poles.end() - static_cast<std::ptrdiff_t>(s_mostSubmapPoles));
+  const auto first = std::lower_bound(m_pathDriven.begin(), m_pathDriven.end() - 1, oldest);
+  const auto count = first - m_pathDriven.begin();
+  m_pathDriven.erase(m_pathDriven.begin(), first);
+  m_path.erase(m_path.begin(), m_path.begin() + count);
+}
+
+Eigen::Matrix2d LocalSubmap::presentCovariance(const SubmapPole& pole, bool withScale) const {
+  Eigen::Matrix2d covariance =
+      pole.covariance + OdometryDrift::between(pole.drift, m_drift, pole.centre);
+  if (withScale) {
+    const Eigen::Vector2d way = Eigen::Vector2d(m_pose.x, m_pose.y) - pole.seenFrom;
+    covariance += m_options.scale * m_options.scale * way * way.transpose();
+  }
+  return covariance;
+}
+
+PoleDetection LocalSubmap::seenNow(const SubmapPole& pole) const {
+  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(-m_pose.yaw).toRotationMatrix();
+  const Eigen::Vector2d centre = rotation * (pole.centre - Eigen::Vector2d(m_pose.x, m_pose.y));
+  PoleDetection detection;
+  detection.x = centre.x();
+  detection.y = centre.y();
+  detection.radius = pole.radius;
+  detection.bottom = pole.bottom;
+  detection.top = pole.top;
+  detection.confidence = pole.confidence;
+  detection.covariance = rotation * presentCovariance(pole) * rotation.transpose();
+  detection.points = pole.hits;
+  return detection;
+}
+
+std::vector<PoleDetection> LocalSubmap::detections(std::uint32_t minHits) const {
+  std::vector<PoleDetection> poles_robot;
+  for (const SubmapPole& pole : m_poles)
+    if (pole.hits >= minHits) poles_robot.push_back(seenNow(pole));
+  return poles_robot;
+}
+
+std::vector<PoleDetection> LocalSubmap::take(std::uint32_t minHits, double metres) {
+  std::vector<PoleDetection> poles_robot;
+  for (SubmapPole& pole : m_poles) {
+    const bool now = pole.seenFrame == m_frames && !pole.taken && pole.hits >= minHits;
+    const bool waited = pole.hits == minHits || m_driven - pole.takenAt >= metres;
+    if (!now || !waited) continue;
+    poles_robot.push_back(seenNow(pole));
+    pole.taken = true;
+    pole.takenAt = m_driven;
+  }
+  return poles_robot;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,230 @@
+#include "core/localization/LocalizationHealth.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace polemcl {
+namespace {
+
+constexpr double s_hopeless = 0.3;   // a new pose is not waited for below this part of its share
+constexpr double s_viewpoint = 0.1;  // scans nearer to each other are of one viewpoint, m
+
+void require(bool good, const char* key, double value, const char* allowed) {
+  if (good) return;
+  std::ostringstream text;
+  text << "[health] " << key << " = " << value << ": allowed is " << allowed;
+  throw Error(text.str());
+}
+
+bool isShare(double value) {
+  return value >= 0 && value <= 1;
+}
+
+bool isPositive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+double worstSigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(position, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
+}
+
+}  // namespace
+
+const char* name(HealthState state) {
+  switch (state) {
+    case HealthState::ok:
+      return "ok";
+    case HealthState::degraded:
+      return "degraded";
+    case HealthState::lost:
+      break;
+  }
+  return "lost";
+}
+
+const char* name(HealthReason reason) {
+  switch (reason) {
+    case HealthReason::none:
+      return "none";
+    case HealthReason::searching:
+      return "searching";
+    case HealthReason::elsewhere:
+      return "elsewhere";
+    case HealthReason::mismatch:
+      return "mismatch";
+    case HealthReason::spread:
+      return "spread";
+    case HealthReason::ambiguous:
+      return "ambiguous";
+    case HealthReason::converging:
+      return "converging";
+    case HealthReason::timeGap:
+      return "time_gap";
+    case HealthReason::noPoles:
+      return "no_poles";
+    case HealthReason::odometry:
+      return "odometry";
+    case HealthReason::innovation:
+      break;
+  }
+  return "innovation";
+}
+
+void HealthOptions::validate() const {
+  require(isPositive(window), "window_m", window, "more than 0");
+  require(isPositive(lostWindow) && lostWindow >= window, "lost_window_m", lostWindow,
+          "window_m or more");
+  require(isPositive(minEvidence), "min_evidence", minEvidence, "more than 0");
+  require(isPositive(lostEvidence), "lost_evidence", lostEvidence, "more than 0");
+  require(isShare(lostShare), "lost_share", lostShare, "0 to 1");
+  require(isShare(degradedShare) && degradedShare >= lostShare, "degraded_share", degradedShare,
+          "lost_share to 1");
+  require(isPositive(lostSpread), "lost_spread_m", lostSpread, "more than 0");
+  require(isPositive(degradedSpread) && degradedSpread <= lostSpread, "degraded_spread_m",
+          degradedSpread, "more than 0, at most lost_spread_m");
+  require(isPositive(degradedHeading), "degraded_heading_deg", degradedHeading * 180 / M_PI,
+          "more than 0");
+  require(isPositive(innovation), "innovation", innovation, "more than 0");
+  require(isShare(modeShare), "mode_share", modeShare, "0 to 1");
+  require(isPositive(blindSeconds), "blind_s", blindSeconds, "more than 0");
+  require(isPositive(blindMetres), "blind_m", blindMetres, "more than 0");
+  require(isPositive(maxGap), "max_gap_s", maxGap, "more than 0");
+  require(isShare(confirmShare) && confirmShare >= degradedShare, "confirm_share", confirmShare,
+          "degraded_share to 1");
+  require(confirmWithin >= confirm && std::isfinite(confirmWithin), "confirm_within_m",
+          confirmWithin, "confirm_m or more");
+  require(confirm >= 0 && std::isfinite(confirm), "confirm_m", confirm, "0 or more");
+  require(confirmFound >= 0 && confirmFound <= confirm, "confirm_found_m", confirmFound,
+          "0 to confirm_m");
+}
+
+HealthMonitor::HealthMonitor(const HealthOptions& options) : m_options(options) {
+  options.validate();
+}
+
+void HealthMonitor::reset() {
+  *this = HealthMonitor(m_options);
+}
+
+void HealthMonitor::begin(bool found) {
+  reset();
+  m_begun = true;
+  m_found = found;
+}
+
+Health HealthMonitor::update(const HealthInput& input) {
+  if (!m_begun) return m_health;
+  const bool first = m_views.empty();
+  if (!first && input.time - m_time > m_options.maxGap)
+    m_gapUntil = m_driven + input.metres + m_options.confirm;
+  m_driven += input.metres;
+  m_time = input.time;
+  remember(input);
+  sumUp();
+  if (first || std::any_of(input.matches.begin(), input.matches.end(),
+                           [](const PoleMatch& match) { return match.confidence > 0; })) {
+    m_seenDriven = m_driven;
+    m_seenTime = m_time;
+  }
+  m_health.effectiveParticles = input.effectiveParticles;
+  m_health.modeShare = input.modeShare;
+  m_health.spread = worstSigma(input.estimate.covariance);
+  m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
+  judge(input);
+  return m_health;
+}
+
+void HealthMonitor::remember(const HealthInput& input) {
+  if (m_views.empty() || m_driven - m_views.back().driven >= s_viewpoint) {
+    m_views.emplace_back();
+    m_views.back().driven = m_driven;
+  }
+  while (m_driven - m_views.front().driven > m_options.lostWindow) m_views.pop_front();
+  Viewpoint scan;
+  for (const PoleMatch& match : input.matches) {
+    scan.evidence += match.confidence;
+    if (!match.matched) continue;
+    scan.matched += match.confidence;
+    scan.squared += match.squared;
+    ++scan.matches;
+  }
+  Viewpoint& view = m_views.back();
+  const double share = 1.0 / ++view.scans;
+  view.evidence += share * (scan.evidence - view.evidence);
+  view.matched += share * (scan.matched - view.matched);
+  view.squared += share * (scan.squared - view.squared);
+  view.matches += share * (scan.matches - view.matches);
+}
+
+HealthMonitor::Viewpoint HealthMonitor::sumOver(double metres) const {
+  Viewpoint sum;
+  for (const Viewpoint& view : m_views) {
+    if (m_driven - view.driven > metres) continue;
+    sum.evidence += view.evidence;
+    sum.matched += view.matched;
+    sum.squared += view.squared;
+    sum.matches += view.matches;
+  }
+  return sum;
+}
+
+void HealthMonitor::sumUp() {
+  const Viewpoint sum = sumOver(m_options.window), all = sumOver(m_options.lostWindow);
+  m_health.evidence = sum.evidence;
+  m_health.matchedShare = sum.evidence > 0 ? sum.matched / sum.evidence : 0;
+  m_health.innovation = sum.matches > 0 ? sum.squared / (2 * sum.matches) : 0;
+  m_longEvidence = all.evidence;
+  m_longShare = all.evidence > 0 ? all.matched / all.evidence : 0;
+}
+
+bool HealthMonitor::set(bool applies, HealthState state, HealthReason reason) {
+  if (applies) {
+    m_health.state = state;
+    m_health.reason = reason;
+  }
+  return applies;
+}
+
+void HealthMonitor::judge(const HealthInput& input) {
+  const HealthOptions& o = m_options;
+  const bool tells = m_health.evidence >= o.minEvidence;
+  const Viewpoint& here = m_views.back();
+  if (here.evidence > 0 && here.matched >= o.degradedShare * here.evidence)
+    m_goodDriven += input.metres;
+  const bool good = tells && m_health.matchedShare >= o.degradedShare &&
+                    m_longShare >= o.confirmShare && m_health.spread < o.degradedSpread &&
+                    m_health.spreadHeading < o.degradedHeading;
+  if (good && m_goodDriven >= (m_found ? o.confirmFound : o.confirm)) m_confirmed = true;
+
+  using State = HealthState;
+  using Reason = HealthReason;
+  const bool few = tells && m_health.matchedShare < o.degradedShare;
+  const double lostShare = m_confirmed ? o.lostShare : s_hopeless * o.confirmShare;
+  const bool bareLong = m_longEvidence >= o.lostEvidence && m_longShare < lostShare &&
+                        m_health.matchedShare < o.degradedShare;
+  const bool unproven =
+      tells && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
+  if (set(bareLong || unproven, State::lost, Reason::mismatch)) return;
+  if (set(m_health.spread > o.lostSpread && m_health.modeShare >= o.modeShare, State::lost,
+          Reason::spread))
+    return;
+  if (set(m_health.modeShare < o.modeShare, State::degraded, Reason::ambiguous)) return;
+  if (set(!m_confirmed, State::degraded, Reason::converging)) return;
+  if (set(few, State::degraded, Reason::mismatch)) return;
+  if (set(m_health.spread > o.degradedSpread || m_health.spreadHeading > o.degradedHeading,
+          State::degraded, Reason::spread))
+    return;
+  if (set(m_driven < m_gapUntil, State::degraded, Reason::timeGap)) return;
+  const bool blind =
+      m_time - m_seenTime > o.blindSeconds || m_driven - m_seenDriven > o.blindMetres;
+  if (set(blind, State::degraded, Reason::noPoles)) return;
+  if (set(input.odometryContradicted, State::degraded, Reason::odometry)) return;
+  if (set(tells && m_health.innovation > o.innovation, State::degraded, Reason::innovation)) return;
+  set(true, State::ok, Reason::none);
+}
+
+}  // namespace polemcl

@@ -1,0 +1,330 @@
+#include "core/localization/OdometryMonitor.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace polemcl {
+namespace {
+
+constexpr double s_lags[] = {0, 0.3, 1};  // of the window: the scans compared with
+constexpr int s_surePairs = 5;            // so many contradict at once, fewer in two scans running
+constexpr double s_leastSigma = 0.02;     // of a motion by poles, m
+constexpr double s_leastTurn = 0.002;     // rad
+constexpr double s_mostVariance = 1;      // m²; more, and the poles do not say what the motion was
+constexpr double s_mostDoubt = 5;         // m
+
+void requireMonitor(bool good, const char* key, double value, const char* allowed) {
+  if (good) return;
+  std::ostringstream text;
+  text << "[motion_check] " << key << " = " << value << ": allowed is " << allowed;
+  throw Error(text.str());
+}
+
+bool isAboveZero(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+std::vector<PoleDetection> usable(const std::vector<PoleDetection>& poles) {
+  std::vector<PoleDetection> result;
+  for (const PoleDetection& pole : poles)
+    if (std::isfinite(pole.x) && std::isfinite(pole.y) && pole.covariance.allFinite() &&
+        pole.confidence > 0)
+      result.push_back(pole);
+  return result;
+}
+
+Eigen::Vector3d vectorOf(const Pose2D& pose) {
+  return {pose.x, pose.y, pose.yaw};
+}
+
+Pose2D scaled(const Pose2D& motion, double factor) {
+  return {factor * motion.x, factor * motion.y, factor * motion.yaw};
+}
+
+Pose2D middle(const Pose2D& a, const Pose2D& b) {
+  return {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.yaw + b.yaw)};
+}
+
+/// The pairs pin the motion down.
+bool isCertain(const Eigen::Matrix3d& covariance) {
+  return covariance.allFinite() && covariance(0, 0) + covariance(1, 1) < s_mostVariance &&
+         covariance(2, 2) < s_mostVariance / 100;
+}
+
+/// Half of what is made up for, as a standard deviation; bounded, as the filter's motions are.
+Eigen::Matrix3d doubt(const Pose2D& from, const Pose2D& to, double share) {
+  const Pose2D change = relative(from, to);
+  const double length = std::hypot(change.x, change.y);
+  const double shorter = length > s_mostDoubt ? s_mostDoubt / length : 1;
+  const Eigen::Vector3d vector(shorter * change.x, shorter * change.y,
+                               std::clamp(change.yaw, -0.1 * s_mostDoubt, 0.1 * s_mostDoubt));
+  return share * share * vector * vector.transpose();
+}
+
+/// `value`, nearer to 0 by the tolerance.
+double outside(double value, double tolerance) {
+  return value > tolerance ? value - tolerance : value < -tolerance ? value + tolerance : 0;
+}
+
+}  // namespace
+
+void MotionCheckOptions::validate() const {
+  requireMonitor(isAboveZero(window), "window_s", window, "more than 0");
+  requireMonitor(scale >= 0 && scale < 1, "scale", scale, "0 or more, below 1");
+  requireMonitor(metres >= 0 && std::isfinite(metres), "tolerance_m", metres, "0 or more");
+  requireMonitor(turn >= 0 && turn <= M_PI, "tolerance_deg", turn * 180 / M_PI, "0 to 180");
+  requireMonitor(isAboveZero(sigmas), "sigmas", sigmas, "more than 0");
+  requireMonitor(minPairs >= 3, "min_pairs", minPairs, "3 or more");
+  requireMonitor(minShare >= 0 && minShare <= 1, "min_share", minShare, "0 to 1");
+  requireMonitor(margin >= 0 && std::isfinite(margin), "margin", margin, "0 or more");
+  requireMonitor(isAboveZero(settle) && settle <= window, "settle_s", settle,
+                 "more than 0, at most window_s");
+  requireMonitor(hold >= 0 && std::isfinite(hold), "hold_s", hold, "0 or more");
+  requireMonitor(isAboveZero(maxSpeed), "max_speed_m_s", maxSpeed, "more than 0");
+  requireMonitor(isAboveZero(maxTurnRate), "max_turn_rate_deg_s", maxTurnRate * 180 / M_PI,
+                 "more than 0");
+  requireMonitor(isAboveZero(alignment.sigma) && alignment.sigma <= 1, "sigma_m", alignment.sigma,
+                 "more than 0, at most 1");
+  requireMonitor(isAboveZero(alignment.gate), "gate", alignment.gate, "more than 0");
+  requireMonitor(isAboveZero(alignment.reach), "reach_m", alignment.reach, "more than 0");
+}
+
+MotionCheck::MotionCheck(const MotionCheckOptions& options) : m_options(options) {
+  options.validate();
+}
+
+void MotionCheck::clear() {
+  *this = MotionCheck(m_options);
+}
+
+CheckedMotion MotionCheck::add(double time, const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                               const std::vector<PoleDetection>& poles_robot) {
+  CheckedMotion result;
+  result.motion = motion;
+  result.covariance = covariance;
+  if (!m_options.enabled) return result;
+  while (!m_past.empty() && m_past.back().time >= time) m_past.pop_back();
+  if (!m_past.empty() && time - m_past.back().time > m_options.window) clear();
+  Reference now;
+  now.time = time;
+  now.poles = usable(poles_robot);
+  if (!m_past.empty()) {
+    const Reference& last = m_past.back();
+    now.odometry = compose(last.odometry, motion);
+    now.used = compose(last.used, motion);
+    now.spent = last.spent + covariance;
+    result = m_contradicted ? replace(now, result) : watch(now, result);
+    if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
+  }
+  m_past.push_back(now);
+  // One older than the window stays, so that the window is filled.
+  while (m_past.size() > 2 && time - m_past[1].time >= m_options.window) m_past.pop_front();
+  return result;
+}
+
+/// Indices of the scans to compare with, the latest first.
+std::vector<std::size_t> MotionCheck::chosen(double time) const {
+  std::vector<std::size_t> result;
+  for (const double lag : s_lags) {
+    std::size_t i = m_past.size() - 1;
+    while (i > 0 && time - m_past[i].time < lag * m_options.window - 1e-6) --i;
+    if (result.empty() || result.back() != i) result.push_back(i);
+  }
+  return result;
+}
+
+/// The motion that most poles bear out: near what has been used, or near the speed before; from
+/// nowhere if neither holds.
+PoleAlignment MotionCheck::align(const Reference& reference, const Reference& now,
+                                 bool search) const {
+  const Reference& last = m_past.back();
+  const double seconds = now.time - reference.time;
+  const Pose2D coasted = compose(last.used, coast(now.time - last.time));
+  PoleAlignment best = refineMotion(reference.poles, now.poles, relative(reference.used, now.used),
+                                    m_options.alignment);
+  const auto keep = [&](const PoleAlignment& other) {
+    if (other.score > best.score + 0.5) best = other;
+  };
+  const double possible =
+      m_options.minShare * static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
+  const auto poor = [&] { return best.pairs < m_options.minPairs || best.score < possible; };
+  if (poor())
+    keep(refineMotion(reference.poles, now.poles, relative(reference.used, coasted),
+                      m_options.alignment));
+  if (!search || !poor()) return best;
+  AlignmentOptions wide = m_options.alignment;
+  wide.maxMetres = m_options.maxSpeed * seconds;
+  wide.maxRadians = m_options.maxTurnRate * seconds + 0.05;
+  keep(searchMotion(reference.poles, now.poles, relative(reference.used, coasted), wide));
+  return best;
+}
+
+bool MotionCheck::suffices(const PoleAlignment& alignment, const Reference& reference,
+                           const Reference& now) const {
+  const auto fewer = static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
+  return alignment.pairs >= m_options.minPairs && alignment.pairs >= m_options.minShare * fewer &&
+         isCertain(alignment.covariance);
+}
+
+/// How far another motion lies outside what the odometry allows, in standard deviations.
+double MotionCheck::beyondTolerance(const Pose2D& odometry, const Pose2D& other,
+                                    const Eigen::Matrix3d& covariance) const {
+  const Pose2D difference = relative(odometry, other);
+  const double way = std::hypot(odometry.x, odometry.y);
+  const double length = std::hypot(difference.x, difference.y);
+  const double left = outside(length, m_options.metres + m_options.scale * way);
+  Eigen::Vector3d rest = vectorOf(difference);
+  rest.head<2>() *= length > 0 ? left / length : 0;
+  rest.z() = outside(difference.yaw, m_options.turn + m_options.scale * std::abs(odometry.yaw));
+  return std::sqrt(std::max(0.0, rest.dot(covariance.inverse() * rest)));
+}
+
+MotionCheck::Finding MotionCheck::compare(const Reference& reference, const Reference& now,
+                                          bool search) const {
+  Finding finding;
+  finding.alignment = align(reference, now, search);
+  const PoleAlignment& found = finding.alignment;
+  if (!suffices(found, reference, now)) return finding;
+  const Pose2D odometry = relative(reference.odometry, now.odometry);
+  Eigen::Matrix3d covariance = found.covariance + now.spent - reference.spent;
+  // Headings in between carry their error to the end.
+  const double carried =
+      (now.spent - reference.spent)(2, 2) * (odometry.x * odometry.x + odometry.y * odometry.y) / 3;
+  covariance += Eigen::Vector3d(s_leastSigma * s_leastSigma + carried,
+                                s_leastSigma * s_leastSigma + carried, s_leastTurn * s_leastTurn)
+                    .asDiagonal();
+  finding.beyond = beyondTolerance(odometry, found.motion, covariance);
+  const PoleAlignment stated =
+      judgeMotion(reference.poles, now.poles, odometry, m_options.alignment);
+  const bool contradicts =
+      finding.beyond > m_options.sigmas && found.score >= stated.score + m_options.margin;
+  finding.verdict = contradicts ? MotionVerdict::contradicted : MotionVerdict::agrees;
+  return finding;
+}
+
+/// While the odometry is believed.
+CheckedMotion MotionCheck::watch(Reference& now, const CheckedMotion& odometry) {
+  CheckedMotion result = odometry;
+  bool first = true;
+  for (const std::size_t i : chosen(now.time)) {
+    const Finding finding = compare(m_past[i], now, first);
+    first = false;
+    if (finding.verdict == MotionVerdict::unknown) continue;
+    if (finding.verdict == MotionVerdict::agrees) {
+      result.verdict = MotionVerdict::agrees;
+      result.pairs = std::max(result.pairs, finding.alignment.pairs);
+      continue;
+    }
+    const bool sure = m_suspected || finding.alignment.pairs >= s_surePairs;
+    m_suspected = true;
+    const Pose2D before = odometry.motion;
+    result = take(now, m_past[i], finding.alignment);
+    // The filter may have seen through a part of what is made up for now, or all of this is wrong.
+    const Pose2D change = result.motion;
+    result.covariance += doubt(before, change, 0.5);
+    if (sure) {
+      m_contradicted = true;
+      m_knownTime = m_keyTime = now.time;
+      return result;
+    }
+    result.verdict = MotionVerdict::unknown;
+    result.motion = before;
+    result.covariance = odometry.covariance + doubt(before, change, 1);
+    now.used = compose(m_past.back().used, before);
+    return result;
+  }
+  m_suspected = false;
+  return result;
+}
+
+/// The motion from the scan before that ends where the alignment says.
+CheckedMotion MotionCheck::take(Reference& now, const Reference& reference,
+                                const PoleAlignment& alignment) {
+  CheckedMotion result;
+  result.verdict = MotionVerdict::contradicted;
+  result.replaced = true;
+  result.pairs = alignment.pairs;
+  // The step to come may make up for earlier ones: the speed is that of the whole way. Smoothed,
+  // since it is what is left where poles are missing.
+  const Pose2D speed = scaled(alignment.motion, 1 / (now.time - reference.time));
+  m_speed = m_contradicted ? middle(m_speed, speed) : speed;
+  now.used = compose(reference.used, alignment.motion);
+  result.motion = relative(m_past.back().used, now.used);
+  const double turn = relative(reference.used, m_past.back().used).yaw;
+  const double c = std::cos(turn), s = std::sin(turn);
+  Eigen::Matrix3d rotation;  // into the robot frame before this step
+  rotation << c, s, 0, -s, c, 0, 0, 0, 1;
+  const Eigen::Matrix3d turned = rotation * alignment.covariance * rotation.transpose();
+  result.covariance = 0.5 * (turned + turned.transpose());
+  result.covariance += Eigen::Vector3d(s_leastSigma * s_leastSigma, s_leastSigma * s_leastSigma,
+                                       s_leastTurn * s_leastTurn)
+                           .asDiagonal();
+  return result;
+}
+
+/// While it is not.
+CheckedMotion MotionCheck::replace(Reference& now, const CheckedMotion& odometry) {
+  const Reference& last = m_past.back();
+  CheckedMotion result;
+  bool found = false;
+  const std::size_t key = keyScan(), latest = m_past.size() - 1;
+  for (const std::size_t i : {key, latest}) {
+    Reference coasting = now;
+    coasting.used = compose(last.used, coast(now.time - last.time));
+    const PoleAlignment alignment = align(m_past[i], coasting, i == latest);
+    if (!suffices(alignment, m_past[i], now)) continue;
+    result = take(now, m_past[i], alignment);
+    m_knownTime = now.time;
+    const bool old = now.time - m_past[i].time >= s_lags[1] * m_options.window - 1e-6;
+    m_keyTime = old ? now.time : m_past[i].time;
+    found = true;
+    break;
+  }
+  if (!found) {
+    result = odometry;
+    result.verdict = MotionVerdict::contradicted;
+    result.replaced = true;
+    result.motion = coast(now.time - last.time);
+    now.used = compose(last.used, result.motion);
+    now.known = false;
+    result.covariance += doubt(result.motion, odometry.motion, 0.5);
+  }
+  if (hasSettled(now) || now.time - m_knownTime > m_options.hold) {
+    m_contradicted = m_suspected = false;
+    // What was before is not compared with any more: the odometry was wrong then.
+    while (m_past.size() > 1 && now.time - m_past.front().time > m_options.settle)
+      m_past.pop_front();
+  }
+  return result;
+}
+
+/// The scan to align with, or the one after it where it is gone.
+std::size_t MotionCheck::keyScan() const {
+  std::size_t i = m_past.size() - 1;
+  while (i > 0 && m_past[i - 1].time >= m_keyTime - 1e-6) --i;
+  return i;
+}
+
+/// Odometry and poles say the same of the last moments.
+bool MotionCheck::hasSettled(const Reference& now) const {
+  std::size_t i = m_past.size() - 1;
+  while (i > 0 && now.time - m_past[i].time < m_options.settle - 1e-6) --i;
+  if (!now.known || now.time - m_past[i].time < m_options.settle - 1e-6) return false;
+  for (std::size_t k = i; k < m_past.size(); ++k)
+    if (!m_past[k].known) return false;
+  const Reference& then = m_past[i];
+  const double sigma = 2 * m_options.alignment.sigma;
+  const Eigen::Matrix3d covariance =
+      now.spent - then.spent +
+      Eigen::Matrix3d(Eigen::Vector3d(sigma * sigma, sigma * sigma, 1e-4).asDiagonal());
+  return beyondTolerance(relative(then.odometry, now.odometry), relative(then.used, now.used),
+                         covariance) < 1;
+}
+
+Pose2D MotionCheck::coast(double seconds) const {
+  return scaled(m_speed, seconds);
+}
+
+}  // namespace polemcl

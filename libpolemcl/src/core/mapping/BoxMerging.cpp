@@ -1,0 +1,102 @@
+#include "core/mapping/BoxMerging.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "core/common/KdTree2D.h"
+
+namespace polemcl {
+namespace {
+
+/// Disjoint sets; the root of a set is its lowest index.
+class Sets {
+ public:
+  explicit Sets(std::size_t size) : m_parent(size) {
+    std::iota(m_parent.begin(), m_parent.end(), std::uint32_t{0});
+  }
+  std::uint32_t root(std::uint32_t i) {
+    while (m_parent[i] != i) i = m_parent[i] = m_parent[m_parent[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    const auto [low, high] = std::minmax({root(a), root(b)});
+    m_parent[high] = low;
+  }
+
+ private:
+  std::vector<std::uint32_t> m_parent;
+};
+
+/// The same sums of coordinates and radii as the boxes are made of, so that rounding decides alike.
+bool overlap(const PoleDetection& a, const PoleDetection& b) {
+  return a.x - a.radius <= b.x + b.radius && a.x + a.radius >= b.x - b.radius &&
+         a.y - a.radius <= b.y + b.radius && a.y + a.radius >= b.y - b.radius;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
+    const std::vector<PoleSighting>& sightings) {
+  std::vector<Eigen::Vector2d> centres;
+  double widest = 0;
+  for (const PoleSighting& sighting : sightings) {
+    centres.emplace_back(sighting.pole.x, sighting.pole.y);
+    widest = std::max(widest, sighting.pole.radius);
+  }
+  const KdTree2D tree(std::move(centres));
+  Sets sets(sightings.size());
+  std::vector<PointHit> near;
+  for (std::uint32_t i = 0; i < sightings.size(); ++i) {
+    const PoleDetection& pole = sightings[i].pole;
+    // Corners of boxes that touch are the farthest; the margin is for rounding, and radii of 0.
+    const double reach = 1.415 * std::max(0.0, pole.radius + widest) + 1e-6;
+    tree.within(pole.x, pole.y, reach, near);
+    for (const PointHit& hit : near)
+      if (hit.index < i && overlap(sightings[hit.index].pole, pole)) sets.join(hit.index, i);
+  }
+  std::vector<std::vector<std::uint32_t>> groups;
+  std::vector<std::size_t> groupOf(sightings.size());
+  for (std::uint32_t i = 0; i < sightings.size(); ++i) {
+    const std::uint32_t root = sets.root(i);
+    if (root == i) {
+      groupOf[i] = groups.size();
+      groups.emplace_back();
+    }
+    groups[groupOf[root]].push_back(i);
+  }
+  return groups;
+}
+
+MapPole plainMean(const std::vector<PoleSighting>& sightings,
+                  const std::vector<std::uint32_t>& members) {
+  std::vector<const PoleDetection*> poles;
+  for (const std::uint32_t member : members) poles.push_back(&sightings[member].pole);
+  // Sums round by their order: this one does not depend on that of the detections.
+  std::sort(poles.begin(), poles.end(), [](const PoleDetection* a, const PoleDetection* b) {
+    return std::tie(a->x, a->y, a->radius, a->bottom, a->top, a->confidence) <
+           std::tie(b->x, b->y, b->radius, b->bottom, b->top, b->confidence);
+  });
+  const PoleDetection& first = *poles.front();  // no digits are lost far from the origin
+  const double share = 1 / static_cast<double>(poles.size());
+  MapPole mean;
+  mean.x = first.x;
+  mean.y = first.y;
+  mean.radius = mean.bottom = mean.top = mean.confidence = 0;
+  mean.covariance.setZero();
+  for (const PoleDetection* pole : poles) {
+    mean.x += share * (pole->x - first.x);
+    mean.y += share * (pole->y - first.y);
+    mean.radius += share * pole->radius;
+    mean.bottom += share * pole->bottom;
+    mean.top += share * pole->top;
+    mean.confidence += share * pole->confidence;
+    mean.covariance += share * share * pole->covariance;
+  }
+  mean.confidence = std::min(mean.confidence, 1.0);
+  mean.count = static_cast<std::uint32_t>(poles.size());
+  return mean;
+}
+
+}  // namespace polemcl

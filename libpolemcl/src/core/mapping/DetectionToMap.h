@@ -1,0 +1,30 @@
+#pragma once
+/// \file DetectionToMap.h
+/// \brief A scan's detections at a known pose -> sightings in the map frame.
+
+#include <string>
+#include <vector>
+
+#include "core/common/Types.h"
+#include "core/mapping/LandmarkFusion.h"
+
+namespace polemcl {
+
+/// \brief How far poses of scans can be trusted.
+struct PoseTrust {
+  double sigma = 0;         ///< of the position, m
+  double headingSigma = 0;  ///< rad
+};
+
+/// \brief A detection in the map frame, made less certain by what the scan's pose is not known to.
+/// \param pole Robot frame. \param pose Robot in the map frame. \param view Number of the scan.
+PoleSighting sightingOf(const PoleDetection& pole, const Pose2D& pose, std::uint32_t view,
+                        const PoseTrust& trust);
+
+/// \throws Error on a pose or detection that is not finite, a confidence outside [0, 1], or a
+///         covariance that is not symmetric positive semidefinite, naming the detection.
+/// \param where Names the scan, e.g. "scan 12".
+void checkScan(const Pose2D& pose, const std::vector<PoleDetection>& poles,
+               const std::string& where);
+
+}  // namespace polemcl

@@ -1,0 +1,76 @@
+#include "core/mapping/IncrementalMerge.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <tuple>
+
+namespace polemcl {
+namespace {
+
+struct MergePair {
+  double distance;
+  std::size_t detection, pole;
+  bool operator<(const MergePair& other) const {
+    return std::tie(distance, detection, pole) <
+           std::tie(other.distance, other.detection, other.pole);
+  }
+};
+
+void absorb(MapPole& pole, const PoleDetection& seen) {
+  const double n = pole.count, all = n + 1;
+  pole.x += (seen.x - pole.x) / all;
+  pole.y += (seen.y - pole.y) / all;
+  pole.radius += (seen.radius - pole.radius) / all;
+  pole.confidence += (seen.confidence - pole.confidence) / all;
+  pole.bottom = std::min(pole.bottom, seen.bottom);
+  pole.top = std::max(pole.top, seen.top);
+  // Of the mean of n + 1 independent detections, n of them summed up in the pole's covariance.
+  pole.covariance = (n * n * pole.covariance + seen.covariance) / (all * all);
+  ++pole.count;
+}
+
+MapPole newPole(const PoleDetection& seen) {
+  MapPole pole;
+  pole.x = seen.x;
+  pole.y = seen.y;
+  pole.radius = seen.radius;
+  pole.bottom = seen.bottom;
+  pole.top = seen.top;
+  pole.confidence = seen.confidence;
+  pole.covariance = seen.covariance;
+  pole.count = 1;
+  return pole;
+}
+
+}  // namespace
+
+PoleDetection moved(const Pose2D& base, const PoleDetection& pole) {
+  PoleDetection result = pole;
+  const Pose2D centre = compose(base, {pole.x, pole.y, 0});
+  result.x = centre.x;
+  result.y = centre.y;
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(base.yaw).toRotationMatrix();
+  const Eigen::Matrix2d covariance = turn * pole.covariance * turn.transpose();
+  result.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
+  return result;
+}
+
+void mergeScan(std::vector<MapPole>& poles, const PoleIndex& index,
+               const std::vector<PoleDetection>& detections_map, double mergeDistance) {
+  std::vector<MergePair> pairs;
+  for (std::size_t i = 0; i < detections_map.size(); ++i)
+    for (const auto& near : index.within(detections_map[i].x, detections_map[i].y, mergeDistance))
+      pairs.push_back({near.distance, i, near.index});
+  std::sort(pairs.begin(), pairs.end());
+
+  std::vector<bool> detectionTaken(detections_map.size()), poleTaken(poles.size());
+  for (const MergePair& pair : pairs) {
+    if (detectionTaken[pair.detection] || poleTaken[pair.pole]) continue;
+    detectionTaken[pair.detection] = poleTaken[pair.pole] = true;
+    absorb(poles[pair.pole], detections_map[pair.detection]);
+  }
+  for (std::size_t i = 0; i < detections_map.size(); ++i)
+    if (!detectionTaken[i]) poles.push_back(newPole(detections_map[i]));
+}
+
+}  // namespace polemcl

@@ -1,0 +1,27 @@
+#pragma once
+/// \file IncrementalMerge.h
+/// \brief Detections moved between planar frames, and merged into a map scan by scan.
+
+#include <vector>
+
+#include "core/common/PoleIndex.h"
+#include "core/common/Types.h"
+
+namespace polemcl {
+
+/// \brief A detection given in the frame of `base`, expressed in base's parent frame: centre moved,
+/// covariance turned, the rest as it is.
+PoleDetection moved(const Pose2D& base, const PoleDetection& pole);
+
+/// \brief Merges the detections of one scan into a map, each pole with at most one of them: pairs
+/// nearer than `mergeDistance` (m, > 0) are taken nearest first, ties by index; what is left
+/// becomes new poles of count 1, in the order of the detections.
+///
+/// A merged pole has the mean of its detections as centre, radius and confidence, their lowest
+/// bottom and highest top, and the covariance of that mean.
+/// \param poles Map frame. \param index Of exactly these poles.
+/// \param detections_map Map frame.
+void mergeScan(std::vector<MapPole>& poles, const PoleIndex& index,
+               const std::vector<PoleDetection>& detections_map, double mergeDistance);
+
+}  // namespace polemcl

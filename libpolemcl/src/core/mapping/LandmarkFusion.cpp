@@ -1,0 +1,171 @@
+#include "core/mapping/LandmarkFusion.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace polemcl {
+namespace {
+
+constexpr double s_medianOfTwo = 1.386;  ///< median of chi² with two degrees of freedom
+constexpr double s_ellipse = 9.21;       ///< its 99 % quantile
+
+struct Weighted {
+  std::uint32_t member;
+  Eigen::Vector2d offset;       ///< from the first member: no digits are lost far from the origin
+  Eigen::Matrix2d information;  ///< inverse covariance times confidence
+};
+
+std::vector<Weighted> weigh(const std::vector<PoleSighting>& sightings,
+                            const std::vector<std::uint32_t>& members,
+                            const Eigen::Vector2d& origin) {
+  std::vector<Weighted> weighted;
+  weighted.reserve(members.size());
+  for (const std::uint32_t member : members) {
+    const PoleDetection& pole = sightings[member].pole;
+    // A tenth of a millimetre: a covariance of zero would be an infinite weight.
+    const Eigen::Matrix2d covariance = pole.covariance + 1e-8 * Eigen::Matrix2d::Identity();
+    weighted.push_back(
+        {member, Eigen::Vector2d(pole.x, pole.y) - origin, pole.confidence * covariance.inverse()});
+  }
+  return weighted;
+}
+
+/// Weighted median of each coordinate: the start that outliers cannot move far.
+Eigen::Vector2d median(const std::vector<Weighted>& weighted) {
+  Eigen::Vector2d result;
+  std::vector<std::pair<double, double>> values(weighted.size());
+  for (int axis = 0; axis < 2; ++axis) {
+    double half = 0;
+    for (std::size_t i = 0; i < weighted.size(); ++i) {
+      values[i] = {weighted[i].offset[axis], weighted[i].information.trace()};
+      half += 0.5 * values[i].second;
+    }
+    std::sort(values.begin(), values.end());
+    std::size_t i = 0;
+    for (double sum = values[0].second; sum < half && i + 1 < values.size();
+         sum += values[i].second)
+      ++i;
+    result[axis] = values[i].first;
+  }
+  return result;
+}
+
+struct Mean {
+  Eigen::Vector2d centre;
+  Eigen::Matrix2d covariance;
+};
+
+Mean fusedMeanOf(const std::vector<Weighted>& weighted, const std::vector<bool>& kept) {
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < weighted.size(); ++i) {
+    if (!kept[i]) continue;
+    information += weighted[i].information;
+    sum += weighted[i].information * weighted[i].offset;
+  }
+  const Eigen::Matrix2d covariance = information.inverse();
+  return {covariance * sum, covariance};
+}
+
+std::vector<double> squaredDistances(const std::vector<Weighted>& weighted,
+                                     const Eigen::Vector2d& centre) {
+  std::vector<double> squared;
+  squared.reserve(weighted.size());
+  for (const Weighted& w : weighted) {
+    const Eigen::Vector2d e = w.offset - centre;
+    squared.push_back(e.dot(w.information * e));
+  }
+  return squared;
+}
+
+/// Who lies inside the 99 % ellipse. The median of the distances tells how much wider than promised
+/// the ellipses really are (with the correction for few of them of Rousseeuw and Leroy 1987, as
+/// that median varies much); they are never narrowed.
+std::vector<bool> inside(const std::vector<double>& squared) {
+  std::vector<double> ordered = squared;
+  const auto middle = ordered.begin() + ordered.size() / 2;
+  std::nth_element(ordered.begin(), middle, ordered.end());
+  const double few = 1 + 5 / (2.0 * static_cast<double>(squared.size()) - 2);
+  const double limit = s_ellipse * std::max(1.0, few * few * *middle / s_medianOfTwo);
+  std::vector<bool> kept(squared.size());
+  for (std::size_t i = 0; i < squared.size(); ++i) kept[i] = squared[i] <= limit;
+  return kept;
+}
+
+/// How much larger than promised the scatter of the kept ones is, never below 1.
+double excess(const std::vector<double>& squared, const std::vector<bool>& kept) {
+  double sum = 0, freedom = -2;
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    if (!kept[i]) continue;
+    sum += squared[i];
+    freedom += 2;
+  }
+  return freedom > 0 ? std::max(1.0, sum / freedom) : 1.0;
+}
+
+double quantile(std::vector<double> values, double share) {
+  const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+Eigen::Vector2d fusedCentre(const std::vector<PoleSighting>& sightings,
+                            const std::vector<std::uint32_t>& members, Eigen::Matrix2d* covariance,
+                            std::vector<std::uint32_t>* kept) {
+  const PoleDetection& first = sightings[members.front()].pole;
+  const Eigen::Vector2d origin(first.x, first.y);
+  const std::vector<Weighted> weighted = weigh(sightings, members, origin);
+  std::vector<bool> taken(weighted.size(), true);
+  Mean mean = fusedMeanOf(weighted, taken);
+  if (weighted.size() > 2) {  // of two none can be told to be the outlier
+    std::vector<bool> next = inside(squaredDistances(weighted, median(weighted)));
+    for (int round = 0; round < 10 && next != taken; ++round) {
+      taken = std::move(next);
+      mean = fusedMeanOf(weighted, taken);
+      next = inside(squaredDistances(weighted, mean.centre));
+    }
+  }
+  if (covariance)
+    *covariance = mean.covariance * excess(squaredDistances(weighted, mean.centre), taken);
+  if (kept) {
+    kept->clear();
+    for (std::size_t i = 0; i < weighted.size(); ++i) {
+      if (taken[i]) kept->push_back(weighted[i].member);
+    }
+  }
+  return origin + mean.centre;
+}
+
+MapPole fuse(const std::vector<PoleSighting>& sightings,
+             const std::vector<std::uint32_t>& members) {
+  MapPole pole;
+  std::vector<std::uint32_t> kept;
+  const Eigen::Vector2d centre = fusedCentre(sightings, members, &pole.covariance, &kept);
+  pole.x = centre.x();
+  pole.y = centre.y();
+  pole.count = static_cast<std::uint32_t>(members.size());
+  double weight = 0, radius = 0;
+  for (const std::uint32_t member : kept) {
+    const PoleDetection& seen = sightings[member].pole;
+    const double w = seen.confidence / (seen.covariance.trace() + 1e-8);
+    weight += w;
+    radius += w * seen.radius;
+  }
+  pole.radius = radius / weight;
+  std::vector<double> bottoms, tops;
+  pole.confidence = 0;
+  for (const std::uint32_t member : members) {
+    bottoms.push_back(sightings[member].pole.bottom);
+    tops.push_back(sightings[member].pole.top);
+    pole.confidence += sightings[member].pole.confidence;
+  }
+  pole.confidence /= static_cast<double>(members.size());  // last: so that all ones give one
+  pole.bottom = quantile(std::move(bottoms), 0.1);
+  pole.top = quantile(std::move(tops), 0.9);
+  return pole;
+}
+
+}  // namespace polemcl

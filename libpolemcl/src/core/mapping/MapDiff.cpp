@@ -1,0 +1,84 @@
+#include "core/mapping/MapDiff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "core/common/KdTree2D.h"
+
+namespace polemcl {
+namespace {
+
+using Poles = std::vector<MapPole>;
+
+std::vector<Eigen::Vector2d> placesOf(const Poles& poles) {
+  std::vector<Eigen::Vector2d> places;
+  for (const MapPole& pole : poles) places.emplace_back(pole.x, pole.y);
+  return places;
+}
+
+bool byPlace(const MapPole& a, const MapPole& b) {
+  return std::tie(a.x, a.y) < std::tie(b.x, b.y);
+}
+
+/// Takes the pairs nearer than the gate out of both lists, nearest first.
+std::vector<MapDiff::Pair> takePairs(Poles& before, Poles& after, double gate) {
+  struct Match {
+    double squaredDistance;
+    std::size_t before, after;
+  };
+  const KdTree2D tree(placesOf(before));
+  std::vector<Match> matches;
+  std::vector<PointHit> hits;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    tree.within(after[i].x, after[i].y, gate, hits);
+    for (const PointHit& hit : hits) matches.push_back({hit.squaredDistance, hit.index, i});
+  }
+  std::sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
+    return std::tie(a.squaredDistance, a.before, a.after) <
+           std::tie(b.squaredDistance, b.before, b.after);
+  });
+  std::vector<bool> takenBefore(before.size()), takenAfter(after.size());
+  std::vector<MapDiff::Pair> pairs;
+  for (const Match& match : matches) {
+    if (takenBefore[match.before] || takenAfter[match.after]) continue;
+    takenBefore[match.before] = takenAfter[match.after] = true;
+    pairs.push_back({before[match.before], after[match.after], std::sqrt(match.squaredDistance)});
+  }
+  const auto rest = [](const Poles& all, const std::vector<bool>& taken) {
+    Poles left;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (!taken[i]) left.push_back(all[i]);
+    return left;
+  };
+  before = rest(before, takenBefore);
+  after = rest(after, takenAfter);
+  std::sort(pairs.begin(), pairs.end(), [](const MapDiff::Pair& a, const MapDiff::Pair& b) {
+    return byPlace(a.after, b.after);
+  });
+  return pairs;
+}
+
+}  // namespace
+
+void MapDiffOptions::validate() const {
+  if (!(std::isfinite(same) && same > 0))
+    throw Error("same = " + std::to_string(same) + " is not allowed; it must be above 0 m");
+  if (!(std::isfinite(moved) && moved >= 0))
+    throw Error("moved = " + std::to_string(moved) + " is not allowed; it must be at least 0 m");
+}
+
+MapDiff diffMaps(const Poles& before, const Poles& after, const MapDiffOptions& options) {
+  options.validate();
+  MapDiff diff;
+  diff.vanished = before;
+  diff.appeared = after;
+  std::sort(diff.vanished.begin(), diff.vanished.end(), byPlace);
+  std::sort(diff.appeared.begin(), diff.appeared.end(), byPlace);
+  diff.same = takePairs(diff.vanished, diff.appeared, options.same);
+  diff.moved = takePairs(diff.vanished, diff.appeared, options.moved);
+  return diff;
+}
+
+}  // namespace polemcl

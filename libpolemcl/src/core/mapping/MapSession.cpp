@@ -1,0 +1,132 @@
+#include "core/mapping/MapSession.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/common/KdTree2D.h"
+#include "core/extraction/VisibilityRange.h"
+#include "core/mapping/DetectionToMap.h"
+
+namespace polemcl {
+namespace {
+
+constexpr std::uint32_t kNone = PointHit::none;
+/// m beside a pole: what stands there may hide it.
+constexpr double kBeside = 0.15;
+/// m: a pole's own front ends the free range, a step of it is 0.5 m, and maps err.
+constexpr double kOwnFront = 0.75;
+
+void checkFreeRange(const SessionScan& scan, const std::string& where) {
+  for (const float range : scan.freeRange)
+    if (!(std::isfinite(range) && range >= 0))
+      throw Error("a free range of " + where +
+                  " is negative or not finite; extract the scan again");
+}
+
+/// Whether a scan could have found the pole: nothing stands before it.
+bool inView(const SessionScan& scan, const MapPole& pole) {
+  const Pose2D sensor = compose(scan.pose_map_robot, scan.pose_robot_sensor);
+  const Pose2D seen = relative(sensor, {pole.x, pole.y, 0});
+  const double front = std::hypot(seen.x, seen.y) - pole.radius - kOwnFront;
+  return freeRangeTowards(scan.freeRange, seen.x, seen.y, pole.radius + kBeside) >=
+         std::max(front, 1e-3);
+}
+
+std::vector<Eigen::Vector2d> polePlaces(const std::vector<KeptPole>& poles) {
+  std::vector<Eigen::Vector2d> places;
+  places.reserve(poles.size());
+  for (const KeptPole& kept : poles) places.emplace_back(kept.pole.x, kept.pole.y);
+  return places;
+}
+
+}  // namespace
+
+Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& mapping,
+                 const UpkeepOptions& upkeep)
+    : m_scans(scans), m_mapping(mapping), m_upkeep(upkeep), m_firstOfView{0} {
+  const PoseTrust trust{mapping.poseSigma, mapping.headingSigma};
+  double along = 0;
+  for (std::uint32_t view = 0; view < scans.size(); ++view) {
+    const SessionScan& scan = scans[view];
+    const std::string where = "scan " + std::to_string(view);
+    checkScan(scan.pose_map_robot, scan.poles_robot, where);
+    checkFreeRange(scan, where);
+    if (view > 0) {
+      const Pose2D &a = scans[view - 1].pose_map_robot, &b = scan.pose_map_robot;
+      along += std::hypot(b.x - a.x, b.y - a.y);
+    }
+    m_along.push_back(along);
+    m_firstTime = view == 0 ? scan.time : std::min(m_firstTime, scan.time);
+    m_lastTime = view == 0 ? scan.time : std::max(m_lastTime, scan.time);
+    for (const PoleDetection& pole : scan.poles_robot) {
+      if (pole.confidence <= 0 || pole.confidence < mapping.minConfidence) continue;
+      m_sightings.push_back(sightingOf(pole, scan.pose_map_robot, view, trust));
+    }
+    m_firstOfView.push_back(m_sightings.size());
+  }
+}
+
+void Session::observe(const std::vector<KeptPole>& poles) {
+  m_owner.assign(m_sightings.size(), kNone);
+  m_poles.assign(poles.size(), {});
+  const KdTree2D tree(polePlaces(poles));
+  for (std::size_t view = 0; view < m_scans.size(); ++view) {
+    deal(view, tree);
+    expect(view, tree, poles);
+  }
+}
+
+/// The sightings of one scan to the poles in their gates, nearest pair first.
+void Session::deal(std::size_t view, const KdTree2D& tree) {
+  struct Pair {
+    double squaredDistance, x, y;
+    std::uint32_t sighting, pole;
+  };
+  std::vector<Pair> pairs;
+  std::vector<PointHit> hits;
+  for (std::size_t i = m_firstOfView[view]; i < m_firstOfView[view + 1]; ++i) {
+    const PoleDetection& seen = m_sightings[i].pole;
+    tree.within(seen.x, seen.y, m_mapping.mergeDistance, hits);
+    for (const PointHit& hit : hits)
+      pairs.push_back(
+          {hit.squaredDistance, seen.x, seen.y, static_cast<std::uint32_t>(i), hit.index});
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+    return std::tie(a.squaredDistance, a.x, a.y, a.pole) <
+           std::tie(b.squaredDistance, b.x, b.y, b.pole);
+  });
+  std::vector<std::uint32_t> taken;
+  for (const Pair& pair : pairs) {
+    if (m_owner[pair.sighting] != kNone ||
+        std::find(taken.begin(), taken.end(), pair.pole) != taken.end())
+      continue;
+    m_owner[pair.sighting] = pair.pole;
+    taken.push_back(pair.pole);
+    m_poles[pair.pole].sightings.push_back(pair.sighting);
+  }
+}
+
+/// Which of the poles in range one scan found, and which it could have.
+void Session::expect(std::size_t view, const KdTree2D& tree, const std::vector<KeptPole>& poles) {
+  const SessionScan& scan = m_scans[view];
+  const Pose2D sensor = compose(scan.pose_map_robot, scan.pose_robot_sensor);
+  std::vector<PointHit> near;
+  tree.within(sensor.x, sensor.y, m_upkeep.range, near);
+  for (const PointHit& hit : near) {
+    SessionPole& own = m_poles[hit.index];
+    const bool found = !own.sightings.empty() && m_sightings[own.sightings.back()].view == view;
+    if (!found && !inView(scan, poles[hit.index].pole)) continue;
+    own.evidence.add(found, m_along[view], m_upkeep.existence,
+                     detectionChance(poles[hit.index].history, m_upkeep.existence));
+  }
+}
+
+std::vector<PoleSighting> Session::loose() const {
+  std::vector<PoleSighting> loose;
+  for (std::size_t i = 0; i < m_sightings.size(); ++i)
+    if (m_owner[i] == kNone) loose.push_back(m_sightings[i]);
+  return loose;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,94 @@
+#pragma once
+/// \file MapUpdater.h
+/// \brief Keeps a pole map true: one session of scans at known poses -> the map of the day after.
+///
+/// Each scan's detections go to the kept poles by gated distance, one detection a scan and pole,
+/// nearest pairs first; what is left over is merged as buildPoleMap() does and becomes new poles.
+/// Whether a pole stands is told by PoleExistence, from the scans that found it and those that
+/// could have (in range and, by their free range, in view).
+
+#include <vector>
+
+#include "core/common/Types.h"
+#include "core/mapping/PoleExistence.h"
+#include "core/mapping/PoleMapBuilder.h"
+
+namespace polemcl {
+
+/// \brief `[upkeep]` in INI files. Gates and pose errors are those of `[map]`.
+struct UpkeepOptions {
+  ExistenceOptions existence;
+  double range = 20;     ///< poles nearer than this are expected to be found, m (`range_m`)
+  int minSeen = 5;       ///< scans that must have found a pole before it enters the map
+  double present = 0.9;  ///< a pole enters the map from this probability on
+  double absent = 0.4;   ///< and leaves it below this one; it is remembered
+  double forget = 0.05;  ///< below this it is forgotten
+  /// Standard deviation of a session's places against those of others, m (`session_sigma_m`).
+  double sessionSigma = 0.02;
+  /// A pole that all of a session's scans put farther than this from its place, beyond its 99.9 %
+  /// ellipse, has been moved, m (`moved_m`): its place is the new one, nothing is averaged.
+  double moved = 0.25;
+  /// A pole that was missed all session, while a new one came up nearer than this, has been moved
+  /// there, m (`ghost_m`): it leaves no ghost.
+  double ghost = 1.5;
+  void validate() const;  ///< \throws Error
+};
+
+/// \brief A pole of a kept map.
+struct KeptPole {
+  MapPole pole;
+  PoleHistory history;
+  /// On the map; otherwise a candidate: a new one that has not earned its place, or one that faded.
+  bool present = false;
+};
+
+/// \brief One scan of a session.
+struct SessionScan {
+  double time = 0;  ///< s since 1970
+  Pose2D pose_map_robot;
+  std::vector<PoleDetection> poles_robot;
+  /// As CObservationPoles carries it. Empty: poles that this scan does not find are not missed.
+  std::vector<float> freeRange;
+  Pose2D pose_robot_sensor;  ///< of the frame of freeRange
+};
+
+/// \brief What a session changed.
+struct UpkeepCounts {
+  std::size_t scans = 0;
+  std::size_t withoutFreeRange = 0;  ///< of these: nothing is missed in them
+  std::size_t expectedOnMap = 0;     ///< poles on the map before that a scan could see
+  std::size_t foundOnMap = 0;        ///< of these, found at least once
+  std::size_t entered = 0;           ///< new on the map
+  std::size_t left = 0;              ///< gone from the map, those moved away not counted
+  std::size_t moved = 0;             ///< in place, or a stride away
+  std::size_t candidates = 0;        ///< kept beside the map
+  std::size_t forgotten = 0;
+};
+
+/// \brief A map with what is known of its poles, sorted by x then y.
+struct KeptMap {
+  std::vector<KeptPole> poles;
+};
+
+/// \brief Poles of a map without a history: they are on the map with existence 0.9, their `count`
+/// stands for the scans that saw them, nothing is known of missed ones.
+KeptMap keptFrom(const std::vector<MapPole>& poles);
+
+/// \brief Histories for a map just built from the same scans: places stay as they are, and all of
+/// it stays on the map, whatever the evidence.
+KeptMap withHistory(const std::vector<MapPole>& poles, const std::vector<SessionScan>& scans,
+                    const PoleMapOptions& mapping, const UpkeepOptions& upkeep);
+
+/// \brief Updates a map by one session. Scans in the order they were driven; the result does not
+/// depend on the order of the detections in a scan.
+/// \param counts If given: what changed.
+/// \throws Error on options out of range, on scans as buildPoleMap(), and on a free range that is
+///         negative or not finite.
+KeptMap updateMap(const KeptMap& map, const std::vector<SessionScan>& scans,
+                  const PoleMapOptions& mapping, const UpkeepOptions& upkeep,
+                  UpkeepCounts* counts = nullptr);
+
+/// \brief The poles that are on the map, in its order.
+std::vector<MapPole> presentPoles(const KeptMap& map);
+
+}  // namespace polemcl

@@ -1,0 +1,81 @@
+#pragma once
+/// \file PoleExistence.h
+/// \brief Whether a mapped pole still stands: its probability, from scans that saw it and scans
+/// that should have.
+///
+/// A binary Bayes filter in log-odds with a survival prior between sessions, as the persistence
+/// filter has it for features of semi-static maps (Rosen, Mason and Leonard 2016, "Towards lifelong
+/// feature-based mapping in semi-static environments": detections with a chance of a miss and of a
+/// false alarm, a prior on how long a feature lasts). Unlike there, scans are not taken for
+/// independent: one metre farther on, the same car stands before the same pole.
+
+#include <cstdint>
+
+#include "core/common/Types.h"
+
+namespace polemcl {
+
+/// \brief The part of `[upkeep]` in INI files that tells what scans say.
+struct ExistenceOptions {
+  /// Chance that a pole that could be seen is found in a scan (`detection`). What a pole's own
+  /// counts say beyond that is used where it is less.
+  double detection = 0.75;
+  /// Chance that something is found where no pole is, in one scan (`false_detection`). A place
+  /// stays a pole's if it is found in more than about 0.37 of the scans that could see it, by these
+  /// two.
+  double falseDetection = 0.08;
+  double look = 5;  ///< scans over so many metres of the way count as one, m (`look_m`)
+  /// That what is new at its first sight is a pole (`prior`).
+  double prior = 0.2;
+  double certain = 0.99;       ///< never surer than this, nor surer of the opposite (`certain`)
+  double lifetimeDays = 3650;  ///< mean time that a pole stands, days (`lifetime_days`)
+  void validate() const;       ///< \throws Error
+};
+
+/// \brief What is known of a pole over the sessions.
+struct PoleHistory {
+  std::uint32_t seen = 0;    ///< scans within `range_m` that found it
+  std::uint32_t missed = 0;  ///< scans within `range_m` that should have: in free view, not found
+  double existence = 0.5;    ///< probability that it stands, in (0, 1)
+  double firstSeen = 0;      ///< s since 1970; 0: not known
+  double lastSeen = 0;       ///< s since 1970; 0: not known
+};
+
+/// \brief True for a time of the calendar. Earlier ones, of the first day of 1970, are those of a
+/// drive that has a clock of its own; they do not tell when a pole was seen.
+bool isDate(double seconds);
+/// \brief Notes that the pole was seen, unless the time is no date.
+void noteSeen(PoleHistory& history, double seconds);
+
+/// \brief Chance that a pole is found in a scan that could see it: from its counts, with
+/// `detection` counting as 20 scans; at most `detection`, and at least twice `falseDetection`, so
+/// that misses always count against it.
+double detectionChance(const PoleHistory& history, const ExistenceOptions& options);
+
+/// \brief Probability after a time without news: it decays as exp(-days / lifetime).
+/// \param seconds Since it was last updated; negative ones count as 0.
+double survived(double existence, double seconds, const ExistenceOptions& options);
+
+/// \brief Collects what the scans of a session say of one pole, look by look.
+class ExistenceEvidence {
+ public:
+  /// \param along Way travelled to the scan, m; never less than before.
+  void add(bool found, double along, const ExistenceOptions& options, double chance);
+  std::uint32_t found() const { return m_found; }
+  std::uint32_t missed() const { return m_missed; }
+  /// \brief Log of the ratio of likelihoods, of a pole to none: the mean over the scans of a look,
+  /// summed over the looks.
+  double logRatio() const;
+
+ private:
+  std::uint32_t m_found = 0, m_missed = 0;
+  double m_done = 0;           ///< of the looks before
+  double m_sum = 0;            ///< of the look under way
+  std::uint32_t m_inLook = 0;  ///< scans in it
+  std::int64_t m_look = -1;    ///< its number
+};
+
+/// \brief Probability after evidence, kept within `certain`.
+double updated(double existence, double logRatio, const ExistenceOptions& options);
+
+}  // namespace polemcl

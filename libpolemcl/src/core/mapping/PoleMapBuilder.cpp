@@ -1,0 +1,154 @@
+#include "core/mapping/PoleMapBuilder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/common/PathSections.h"
+#include "core/mapping/BoxMerging.h"
+#include "core/mapping/DetectionToMap.h"
+#include "core/mapping/LandmarkFusion.h"
+#include "core/mapping/ObservationClustering.h"
+
+namespace polemcl {
+namespace {
+
+template <class Value>
+[[noreturn]] void refuse(const char* field, Value value, const char* allowed) {
+  std::ostringstream text;
+  text << "[map] " << field << " = " << value << " is not allowed; it must be " << allowed;
+  throw Error(text.str());
+}
+
+/// A scan that is used, and the occupied section it counts for.
+struct View {
+  std::size_t scan;
+  std::uint32_t section;  ///< number among the occupied ones
+};
+
+std::vector<View> chooseViews(const PathSections& sections, bool everyScan) {
+  std::vector<View> views;
+  for (std::uint32_t number = 0; number < sections.occupied.size(); ++number) {
+    const PathSection& section = sections.occupied[number];
+    if (!everyScan) views.push_back({section.middle, number});
+    for (const std::size_t scan : section.scans) {
+      if (everyScan) views.push_back({scan, number});
+    }
+  }
+  return views;
+}
+
+std::vector<PoleSighting> sightingsOf(const std::vector<MappingScan>& scans,
+                                      const std::vector<View>& views,
+                                      const PoleMapOptions& options) {
+  std::vector<PoleSighting> sightings;
+  const PoseTrust trust{options.poseSigma, options.headingSigma};
+  for (std::uint32_t view = 0; view < views.size(); ++view) {
+    const MappingScan& scan = scans[views[view].scan];
+    for (const PoleDetection& pole : scan.poles_robot) {
+      if (pole.confidence <= 0 || pole.confidence < options.minConfidence) continue;
+      sightings.push_back(sightingOf(pole, scan.pose_map_robot, view, trust));
+    }
+  }
+  return sightings;
+}
+
+/// The counting model: most sections that saw the pole in one run of sections, in which at most
+/// `maxGap` occupied ones in a row missed it.
+std::size_t longestRun(std::vector<std::uint32_t> seen, const std::vector<PathSection>& occupied,
+                       int maxGap) {
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  std::size_t longest = 0, run = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const bool continues = i > 0 && occupied[seen[i]].path == occupied[seen[i - 1]].path &&
+                           seen[i] - seen[i - 1] - 1 <= static_cast<std::uint32_t>(maxGap);
+    run = continues ? run + 1 : 1;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
+/// Whether enough of the sections that pass a place nearby saw what stands there.
+bool seenFromEnough(const MapPole& pole, const std::vector<std::uint32_t>& seen,
+                    const std::vector<PathSection>& occupied, const std::vector<MappingScan>& scans,
+                    const PoleMapOptions& options) {
+  if (options.minShare == 0) return true;
+  std::size_t chances = 0, hits = 0;
+  for (std::uint32_t i = 0; i < occupied.size(); ++i) {
+    const Pose2D& pose = scans[occupied[i].middle].pose_map_robot;
+    if (std::hypot(pose.x - pole.x, pose.y - pole.y) > options.nearRange) continue;
+    ++chances;
+    hits += std::find(seen.begin(), seen.end(), i) != seen.end();
+  }
+  return static_cast<double>(hits) >= options.minShare * static_cast<double>(chances);
+}
+
+}  // namespace
+
+void PoleMapOptions::validate() const {
+  if (!(std::isfinite(sectionLength) && sectionLength > 0))
+    refuse("section_length", sectionLength, "above 0 m");
+  if (everyScan && middle == SectionMiddle::passed)
+    refuse("middle", "passed", "nearest where every_scan = true: all scans are views then");
+  if (!(std::isfinite(mergeDistance) && mergeDistance > 0))
+    refuse("merge_distance", mergeDistance, "above 0 m");
+  if (!(apartShare > 0 && apartShare <= 1)) refuse("apart_share", apartShare, "a share in (0, 1]");
+  if (minCount < 1) refuse("min_count", minCount, "at least 1");
+  if (maxGap < 0) refuse("max_gap", maxGap, "at least 0");
+  if (!(minConfidence >= 0 && minConfidence <= 1))
+    refuse("min_confidence", minConfidence, "in [0, 1]");
+  if (!(minShare >= 0 && minShare <= 1)) refuse("min_share", minShare, "in [0, 1]");
+  if (!(std::isfinite(nearRange) && nearRange > 0)) refuse("near_range", nearRange, "above 0 m");
+  if (!(std::isfinite(poseSigma) && poseSigma >= 0))
+    refuse("pose_sigma", poseSigma, "at least 0 m");
+  if (!(headingSigma >= 0 && headingSigma < M_PI))
+    refuse("heading_sigma", headingSigma, "in [0, pi) rad");
+  if (!(std::isfinite(unvisited) && unvisited >= 0)) refuse("unvisited", unvisited, "at least 0 m");
+}
+
+PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapOptions& options) {
+  options.validate();
+  std::vector<Pose2D> poses;
+  std::vector<std::uint32_t> drives;
+  std::vector<bool> used;
+  for (const MappingScan& scan : scans) {
+    checkScan(scan.pose_map_robot, scan.poles_robot, "scan " + std::to_string(poses.size()));
+    poses.push_back(scan.pose_map_robot);
+    drives.push_back(scan.drive);
+    used.push_back(scan.used);
+  }
+  const auto split = options.middle == SectionMiddle::passed ? passSections : splitPath;
+  const PathSections sections = split(poses, drives, options.sectionLength, used);
+  const std::vector<View> views = chooseViews(sections, options.everyScan);
+  const std::vector<PoleSighting> sightings = sightingsOf(scans, views, options);
+  const bool boxes = options.merging == MapMerging::boxes;
+  const auto groups = boxes
+                          ? joinOverlappingBoxes(sightings)
+                          : mergeSightings(sightings, {options.mergeDistance, options.apartShare});
+
+  PoleMapResult result;
+  for (const std::vector<std::uint32_t>& group : groups) {
+    std::vector<std::uint32_t> seen;
+    for (const std::uint32_t member : group) seen.push_back(views[sightings[member].view].section);
+    const std::size_t count = options.counting == PoleCounting::members
+                                  ? group.size()
+                                  : longestRun(seen, sections.occupied, options.maxGap);
+    result.bestCount = std::max(result.bestCount, count);
+    if (count < static_cast<std::size_t>(options.minCount)) continue;
+    const MapPole pole = boxes ? plainMean(sightings, group) : fuse(sightings, group);
+    if (seenFromEnough(pole, seen, sections.occupied, scans, options)) result.poles.push_back(pole);
+  }
+  std::stable_sort(
+      result.poles.begin(), result.poles.end(),
+      [](const MapPole& a, const MapPole& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+  result.pathLength = sections.length;
+  result.sections = sections.count;
+  result.occupiedSections = sections.occupied.size();
+  result.views = views.size();
+  result.detections = sightings.size();
+  result.clusters = groups.size();
+  return result;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,13 @@
+#pragma once
+/// \file AzimuthResolution.h
+/// \brief How often a spinning LiDAR fires in a turn. Private to the library.
+
+#include "core/sensor/BeamTableEstimator.h"
+
+namespace polemcl {
+
+/// \brief Firing steps in a full turn: the commonest step of azimuth between neighbours on a beam.
+/// \param beams Of these scans. \return 0 when no step stands out.
+int firingSteps(const std::vector<PointsView>& scans, const BeamEstimate& beams);
+
+}  // namespace polemcl

@@ -1,0 +1,227 @@
+#include "core/sensor/SensorIdentification.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sensor/AzimuthResolution.h"
+#include "core/sensor/ElevationHistogram.h"
+#include "core/sensor/SensorModel.h"
+
+namespace polemcl {
+namespace {
+
+/// A cloud on its head, turned about x.
+BeamEstimate turnedOver(BeamEstimate beams) {
+  beams.origin.y = -beams.origin.y;
+  // Time runs the other way round.
+  beams.origin.slide = -beams.origin.slide;
+  for (BeamBlock& block : beams.blocks) {
+    block.apex = -block.apex;
+    for (double& elevation : block.elevations) elevation = -elevation;
+    std::reverse(block.elevations.begin(), block.elevations.end());
+  }
+  std::reverse(beams.blocks.begin(), beams.blocks.end());
+  beams.origin.z = beams.blocks.front().apex;
+  return beams;
+}
+
+GroundPlane turnedOver(GroundPlane ground) {
+  ground.normal.y() = -ground.normal.y();
+  ground.normal.z() = -ground.normal.z();
+  ground.above = false;
+  return ground;
+}
+
+/// Angle between a beam and its nearer neighbour, rad.
+double gapAt(const std::vector<double>& elevations, std::size_t i) {
+  double gap = M_PI;
+  if (i > 0) gap = std::min(gap, elevations[i - 1] - elevations[i]);
+  if (i + 1 < elevations.size()) gap = std::min(gap, elevations[i] - elevations[i + 1]);
+  return gap;
+}
+
+/// The preset's beams as blocks, each from its apex.
+std::vector<BeamBlock> blocksOf(const SensorModel& model) {
+  std::vector<BeamBlock> blocks;
+  for (int row = 0; row < model.rows(); ++row) {
+    const Beam& beam = model.beam(row);
+    if (blocks.empty() || blocks.back().apex != beam.offset) blocks.push_back({beam.offset, {}});
+    blocks.back().elevations.push_back(std::atan(beam.slope));
+  }
+  return blocks;
+}
+
+/// Matches the beams of one block: each to the nearest of the preset's, one to one.
+void matchBlock(const std::vector<double>& found, const std::vector<double>& wanted, PresetFit& fit,
+                double& squares, double& gaps) {
+  std::vector<char> taken(wanted.size(), 0);
+  for (const double elevation : found) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < wanted.size(); ++i)
+      if (std::abs(wanted[i] - elevation) < std::abs(wanted[nearest] - elevation)) nearest = i;
+    const double gap = gapAt(wanted, nearest), difference = elevation - wanted[nearest];
+    if (taken[nearest] || std::abs(difference) > 0.4 * gap) continue;
+    taken[nearest] = 1;
+    ++fit.matched;
+    squares += difference * difference;
+    gaps += gap;
+  }
+}
+
+PresetFit fitPreset(const std::string& name, bool upsideDown, const BeamEstimate& beams) {
+  SensorOptions options;
+  options.model = name;
+  options.upsideDown = upsideDown;
+  const SensorModel model(options);
+  const std::vector<BeamBlock> blocks = blocksOf(model);
+  PresetFit fit;
+  fit.model = name;
+  fit.upsideDown = upsideDown;
+  fit.rows = model.rows();
+  fit.found = beams.beams();
+  fit.originZ = beams.blocks.front().apex - blocks.front().apex;
+  if (blocks.size() != beams.blocks.size()) return fit;
+  const double apart = fit.originZ - (beams.blocks.back().apex - blocks.back().apex);
+  double squares = 0, gaps = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    matchBlock(beams.blocks[b].elevations, blocks[b].elevations, fit, squares, gaps);
+  if (fit.matched == 0) return fit;
+  fit.rms = std::sqrt(squares / fit.matched);
+  fit.rmsShare = fit.rms / (gaps / fit.matched);
+  // Clouds that were corrected for motion have lost some of their sharpness.
+  const bool blurred = beams.origin.slide != 0;
+  fit.fits = std::abs(apart) < 0.03 && fit.matched >= (blurred ? 0.9 : 0.97) * fit.found &&
+             fit.found >= 0.6 * fit.rows && fit.rmsShare < (blurred ? 0.25 : 0.15);
+  return fit;
+}
+
+bool symmetrical(const SensorModel& model) {
+  return std::abs(model.beam(0).slope + model.beam(model.rows() - 1).slope) < 0.01;
+}
+
+std::vector<PresetFit> fitPresets(const BeamEstimate& beams) {
+  std::vector<PresetFit> fits;
+  SensorOptions options;
+  for (const std::string& name : SensorModel::modelNames()) {
+    if (name == "table" || name == "uniform") continue;
+    options.model = name;
+    const bool same = symmetrical(SensorModel(options));
+    fits.push_back(fitPreset(name, false, beams));
+    if (!same) fits.push_back(fitPreset(name, true, beams));
+  }
+  const auto quality = [](const PresetFit& f) {
+    return (f.fits ? 1 : 0) + static_cast<double>(f.matched) / std::max(f.rows, f.found) -
+           0.5 * f.rmsShare;
+  };
+  std::stable_sort(fits.begin(), fits.end(),
+                   [&](const PresetFit& a, const PresetFit& b) { return quality(a) > quality(b); });
+  return fits;
+}
+
+double rounded(double value, double unit) {
+  return std::round(value / unit) * unit;
+}
+
+void measureRanges(const std::vector<PointsView>& scans, SensorInspection& result) {
+  std::vector<float> ranges;
+  std::vector<char> degrees(360, 0);
+  for (const PointsView& scan : scans)
+    for (std::size_t i = 0; i < scan.size; ++i) {
+      const double x = scan.x[i] - result.beams.origin.x, y = scan.y[i] - result.beams.origin.y;
+      const bool zero = scan.x[i] == 0 && scan.y[i] == 0 && scan.z[i] == 0;
+      if (zero || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(scan.z[i])) {
+        ++result.invalid;
+        continue;
+      }
+      ranges.push_back(static_cast<float>(std::hypot(x, y)));
+      const double turn = (std::atan2(y, x) + M_PI) / (2 * M_PI);
+      degrees[std::min(359, static_cast<int>(turn * 360))] = 1;
+    }
+  result.points = ranges.size();
+  result.covered = static_cast<double>(std::count(degrees.begin(), degrees.end(), 1)) / 360;
+  const auto rank = [&](double share) {
+    const auto at = ranges.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(ranges.size() - 1));
+    std::nth_element(ranges.begin(), at, ranges.end());
+    return static_cast<double>(*at);
+  };
+  result.nearest = rank(0.01);
+  result.farthest = rank(0.99);
+}
+
+void findGround(const std::vector<PointsView>& scans, SensorInspection& result) {
+  const BeamOrigin& origin = result.beams.origin;
+  const Eigen::Vector3d sensor(origin.x, origin.y, origin.z);
+  std::vector<GroundPlane> grounds;
+  std::size_t above = 0;
+  for (const PointsView& scan : scans)
+    if (const auto ground = findGroundPlane(scan, sensor)) {
+      grounds.push_back(*ground);
+      above += ground->above;
+    }
+  result.onItsHead = 2 * above > grounds.size();
+  grounds.erase(std::remove_if(grounds.begin(), grounds.end(),
+                               [&](const GroundPlane& g) { return g.above != result.onItsHead; }),
+                grounds.end());
+  if (grounds.empty()) return;
+  std::stable_sort(grounds.begin(), grounds.end(), [&](const GroundPlane& a, const GroundPlane& b) {
+    return a.heightOf(sensor) < b.heightOf(sensor);
+  });
+  result.ground = grounds[grounds.size() / 2];
+}
+
+}  // namespace
+
+const PresetFit* SensorInspection::preset() const {
+  return !presets.empty() && presets.front().fits ? &presets.front() : nullptr;
+}
+
+SensorOptions SensorInspection::options() const {
+  SensorOptions options;
+  const auto significant = [](double length) {
+    return std::abs(length) < 0.01 ? 0 : rounded(length, 0.001);
+  };
+  options.originX = significant(beams.origin.x);
+  options.originY = significant(beams.origin.y);
+  if (const PresetFit* fit = preset()) {
+    options.model = fit->model;
+    options.upsideDown = fit->upsideDown;
+    options.originZ = significant(fit->originZ);
+    const int nominal = SensorModel(options).columns();
+    if (columns > 0 && std::abs(columns - nominal) > 0.04 * nominal) options.columns = columns;
+  } else {
+    options.model = "table";
+    options.elevations = beams.blocks.front().elevations;
+    const bool two = beams.blocks.size() > 1;
+    // Two blocks start a little above and below an origin that the maker chose.
+    const double apex = beams.blocks.front().apex;
+    options.originZ = significant(two && std::abs(apex) < 0.5 ? 0 : apex);
+    if (two) {
+      options.lowerElevations = beams.blocks.back().elevations;
+      options.upperApex = rounded(apex - options.originZ, 0.001);
+      options.lowerApex = rounded(beams.blocks.back().apex - options.originZ, 0.001);
+    }
+    options.columns = std::max(90, columns);
+  }
+  if (ground)
+    options.height =
+        rounded(ground->heightOf({options.originX, options.originY, options.originZ}), 0.01);
+  return options;
+}
+
+SensorInspection inspectSensor(const std::vector<PointsView>& scans) {
+  SensorInspection result;
+  result.scans = scans.size();
+  result.beams = findBeams(scans);
+  measureRanges(scans, result);
+  result.columns = firingSteps(scans, result.beams);
+  findGround(scans, result);
+  if (result.onItsHead) {
+    result.beams = turnedOver(result.beams);
+    if (result.ground) result.ground = turnedOver(*result.ground);
+  }
+  result.presets = fitPresets(result.beams);
+  return result;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,60 @@
+#include "io/data/PlanarMotion.h"
+
+#include <array>
+#include <cmath>
+
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+
+PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b) {
+  const double c = std::cos(a.mean.yaw), s = std::sin(a.mean.yaw);
+  const double x = b.mean.x, y = b.mean.y;
+  // Derivatives of a ⊕ b by a and by b.
+  Eigen::Matrix3d byA, byB;
+  byA << 1, 0, -s * x - c * y,  //
+      0, 1, c * x - s * y,      //
+      0, 0, 1;
+  byB << c, -s, 0,  //
+      s, c, 0,      //
+      0, 0, 1;
+  PlanarMotion result;
+  result.mean = compose(a.mean, b.mean);
+  const Eigen::Matrix3d sum =
+      byA * a.covariance * byA.transpose() + byB * b.covariance * byB.transpose();
+  // Rounding leaves the two triangles a bit apart.
+  result.covariance = 0.5 * (sum + sum.transpose());
+  return result;
+}
+
+namespace {
+
+/// Two independent standard normal deviates from two draws (Box and Muller 1958).
+std::array<double, 2> normalPair(std::mt19937_64& generator) {
+  const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };
+  const double radius = std::sqrt(-2 * std::log(1 - uniform()));  // 1 - u is in (0, 1]
+  const double angle = 2 * M_PI * uniform();
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+}  // namespace
+
+PlanarMotion noisyMotion(const Pose2D& trueMotion, double k, std::mt19937_64& generator) {
+  if (!(k >= 0) || !std::isfinite(k)) {
+    throw Error("odometry noise " + significant(k, 6) +
+                " is not allowed: a relative standard deviation >= 0 is (0.02 for 2 %)");
+  }
+  const auto [n0, n1] = normalPair(generator);
+  const auto [n2, unused] = normalPair(generator);
+  static_cast<void>(unused);
+  const Eigen::Vector3d sigma =
+      k * Eigen::Vector3d(trueMotion.x, trueMotion.y, trueMotion.yaw).cwiseAbs();
+  const Eigen::Vector3d floor(motionFloorMetres, motionFloorMetres, motionFloorRadians);
+  PlanarMotion motion;
+  motion.mean = {trueMotion.x + sigma[0] * n0, trueMotion.y + sigma[1] * n1,
+                 wrapAngle(trueMotion.yaw + sigma[2] * n2)};
+  motion.covariance = (sigma.cwiseAbs2() + floor.cwiseAbs2()).asDiagonal();
+  return motion;
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,238 @@
+#include "io/dataset/KittiRaw.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "io/data/Trajectory.h"
+#include "io/dataset/ScanFiles.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double earthRadius = 6378137;  ///< m, as the devkit has it
+constexpr std::size_t oxtsFields = 30;
+
+double radians(double degrees) {
+  return degrees * M_PI / 180;
+}
+
+/// Days from 1970-01-01 in the Gregorian calendar; years are counted from March, so that the leap
+/// day comes last.
+long daysSinceEpoch(int year, int month, int day) {
+  const long y = month > 2 ? year : year - 1;
+  const long monthFromMarch = (month + 9) % 12;
+  const long dayOfYear = (153 * monthFromMarch + 2) / 5 + day - 1;
+  return 365 * y + y / 4 - y / 100 + y / 400 + dayOfYear - 719468;
+}
+
+int daysInMonth(int year, int month) {
+  const bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+  return month == 2                                              ? (leap ? 29 : 28)
+         : month == 4 || month == 6 || month == 9 || month == 11 ? 30
+                                                                 : 31;
+}
+
+/// Times of the frames with these numbers: by line, or in order when lines of missing frames are
+/// missing too.
+std::vector<double> readStamps(const fs::path& file, const std::vector<std::uint64_t>& numbers) {
+  std::vector<std::string> lines = readLines(file);
+  const auto blank = [](const std::string& line) { return trimmed(line).empty(); };
+  while (!lines.empty() && blank(lines.back())) lines.pop_back();
+  const bool byNumber = lines.size() > numbers.back();
+  const bool inOrder =
+      lines.size() == numbers.size() && std::none_of(lines.begin(), lines.end(), blank);
+  if (!byNumber && !inOrder) {
+    throw Error(file.string() + ": " + std::to_string(lines.size()) + " times for " +
+                std::to_string(numbers.size()) + " frames up to number " +
+                std::to_string(numbers.back()));
+  }
+  std::vector<double> times;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::size_t line = byNumber ? numbers[i] : i;
+    times.push_back(parseKittiTime(lines[line], at(file, line + 1)));
+  }
+  return times;
+}
+
+OxtsPose readOxts(const fs::path& file) {
+  const auto rows = readNumberRows(file, oxtsFields, "lat lon alt roll pitch yaw … of one frame");
+  if (rows.size() != 1) {
+    throw Error(file.string() + ": " + std::to_string(rows.size()) +
+                " lines of numbers, 1 expected");
+  }
+  const std::vector<double>& v = rows.front().values;
+  if (std::abs(v[0]) >= 90 || std::abs(v[1]) > 180) {
+    throw Error(at(file, rows.front().line) + "latitude " + significant(v[0], 12) + ", longitude " +
+                significant(v[1], 12) + " are out of range");
+  }
+  return {v[0], v[1], v[2], v[3], v[4], v[5]};
+}
+
+/// The IMU in the LiDAR frame, from the lines "R: nine numbers" and "T: three numbers".
+Eigen::Isometry3d readImuInLidar(const fs::path& file) {
+  std::map<std::string, std::vector<double>> fields;
+  const auto lines = readLines(file);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string_view line = lines[i];
+    const auto colon = line.find(':');
+    if (colon == std::string_view::npos) continue;
+    const std::string key(trimmed(line.substr(0, colon)));
+    if (key == "R" || key == "T") fields[key] = parseNumbers(line.substr(colon + 1), file, i + 1);
+  }
+  const auto &r = fields["R"], &t = fields["T"];
+  if (r.size() != 9 || t.size() != 3) {
+    throw Error(file.string() + ": lines R: with nine and T: with three numbers expected, " +
+                std::to_string(r.size()) + " and " + std::to_string(t.size()) + " found");
+  }
+  return poseFromRows({r[0], r[1], r[2], t[0], r[3], r[4], r[5], t[1], r[6], r[7], r[8], t[2]},
+                      file.string() + ": ");
+}
+
+/// Frames of both kinds, by number.
+struct Drive {
+  std::vector<fs::path> scans;
+  std::vector<std::uint64_t> scanNumbers, oxtsNumbers;
+  std::vector<double> scanTimes;
+  std::map<std::uint64_t, fs::path> oxts;
+};
+
+std::vector<std::uint64_t> missingFrom(const std::vector<std::uint64_t>& all,
+                                       const std::vector<std::uint64_t>& some) {
+  std::vector<std::uint64_t> missing;
+  std::set_difference(all.begin(), all.end(), some.begin(), some.end(),
+                      std::back_inserter(missing));
+  return missing;
+}
+
+Drive listDrive(const fs::path& folder, std::vector<std::string>& notes) {
+  Drive drive;
+  drive.scans = listFiles(folder / "velodyne_points" / "data", ".bin");
+  const auto oxtsFiles = listFiles(folder / "oxts" / "data", ".txt");
+  requirePaddedNames(drive.scans);
+  requirePaddedNames(oxtsFiles);
+  drive.scanNumbers = fileNumbers(drive.scans);
+  drive.oxtsNumbers = fileNumbers(oxtsFiles);
+  for (std::size_t i = 0; i < oxtsFiles.size(); ++i) {
+    drive.oxts[drive.oxtsNumbers[i]] = oxtsFiles[i];
+  }
+  checkScanSizes(drive.scans, notes);
+  drive.scanTimes = readStamps(folder / "velodyne_points" / "timestamps.txt", drive.scanNumbers);
+  for (std::size_t i = 1; i < drive.scanTimes.size(); ++i) {
+    if (!(drive.scanTimes[i] > drive.scanTimes[i - 1])) {
+      throw Error((folder / "velodyne_points" / "timestamps.txt").string() + ": the time of " +
+                  "frame " + std::to_string(drive.scanNumbers[i]) + " is not after that of frame " +
+                  std::to_string(drive.scanNumbers[i - 1]));
+    }
+  }
+  const auto lost = missingFrom(drive.oxtsNumbers, drive.scanNumbers);
+  const auto unplaced = missingFrom(drive.scanNumbers, drive.oxtsNumbers);
+  if (!lost.empty()) notes.push_back("no scan for the oxts frames " + ranges(lost));
+  if (!unplaced.empty()) {
+    notes.push_back("left out, for want of an oxts frame: scans " + ranges(unplaced));
+  }
+  return drive;
+}
+
+/// Says how far apart in time the two halves of the pairs are, if it is more than half a turn.
+void noteOffsets(const fs::path& file, const Drive& drive, std::vector<std::string>& notes) {
+  const auto times = readStamps(file, drive.oxtsNumbers);
+  double worst = 0;
+  std::uint64_t worstNumber = 0;
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    const auto found =
+        std::lower_bound(drive.oxtsNumbers.begin(), drive.oxtsNumbers.end(), drive.scanNumbers[i]);
+    if (found == drive.oxtsNumbers.end() || *found != drive.scanNumbers[i]) continue;
+    const double offset = std::abs(times[found - drive.oxtsNumbers.begin()] - drive.scanTimes[i]);
+    if (offset <= worst) continue;
+    worst = offset;
+    worstNumber = drive.scanNumbers[i];
+  }
+  if (worst <= 0.05) return;
+  notes.push_back("scan and oxts frame are up to " + fixed(worst, 3) + " s apart (frame " +
+                  std::to_string(worstNumber) + ")");
+}
+
+}  // namespace
+
+Eigen::Isometry3d mercatorPose(const OxtsPose& measurement, double scale) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() << scale * earthRadius * radians(measurement.longitude),
+      scale * earthRadius * std::log(std::tan(M_PI / 4 + radians(measurement.latitude) / 2)),
+      measurement.altitude;
+  pose.linear() = (Eigen::AngleAxisd(measurement.yaw, Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(measurement.pitch, Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(measurement.roll, Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  return pose;
+}
+
+double parseKittiTime(std::string_view text, const std::string& where) {
+  text = trimmed(text);
+  const Error error(where + "'" + std::string(text.substr(0, 40)) +
+                    "' is no time; expected: YYYY-MM-DD hh:mm:ss.fraction");
+  if (text.size() < 19 || text[4] != '-' || text[7] != '-' || text[10] != ' ' || text[13] != ':' ||
+      text[16] != ':') {
+    throw error;
+  }
+  const auto field = [&](std::size_t begin, std::size_t size) {
+    int value = 0;
+    for (const char c : text.substr(begin, size)) {
+      if (c < '0' || c > '9') throw error;
+      value = 10 * value + (c - '0');
+    }
+    return value;
+  };
+  const int year = field(0, 4), month = field(5, 2), day = field(8, 2);
+  const int hour = field(11, 2), minute = field(14, 2), second = field(17, 2);
+  const std::string_view tail = text.substr(19);
+  const bool digits = tail.find_first_not_of("0123456789", 1) == std::string_view::npos;
+  if (!tail.empty() && (tail.front() != '.' || tail.size() < 2 || !digits)) throw error;
+  if (month < 1 || month > 12 || day < 1 || day > daysInMonth(year, month) || hour > 23 ||
+      minute > 59 || second > 60) {
+    throw error;
+  }
+  const double fraction = tail.empty() ? 0 : *parseNumber("0" + std::string(tail));
+  return 86400.0 * daysSinceEpoch(year, month, day) + 3600 * hour + 60 * minute + second + fraction;
+}
+
+ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
+                        const Eigen::Isometry3d& T_robot_sensor) {
+  ScanFolder result;
+  const Drive frames = listDrive(drive, result.notes);
+  const Eigen::Isometry3d T_imu_robot =
+      (T_robot_sensor * readImuInLidar(calibration / "calib_imu_to_velo.txt")).inverse();
+  if (isThere(drive / "oxts" / "timestamps.txt")) {
+    noteOffsets(drive / "oxts" / "timestamps.txt", frames, result.notes);
+  }
+
+  const OxtsPose first = readOxts(frames.oxts.begin()->second);
+  const double scale = std::cos(radians(first.latitude));
+  const Eigen::Isometry3d T_world_first = mercatorPose(first, scale);
+  // Levelled: only the heading of the first frame, so that the map's z points up.
+  Eigen::Isometry3d T_world_map = spatial(planar(T_world_first));
+  T_world_map.translation().z() = first.altitude;
+
+  for (std::size_t i = 0; i < frames.scans.size(); ++i) {
+    const auto oxts = frames.oxts.find(frames.scanNumbers[i]);
+    if (oxts == frames.oxts.end()) continue;
+    ScanEntry entry;
+    entry.cloud = frames.scans[i];
+    entry.time = frames.scanTimes[i];
+    entry.T_map_robot =
+        T_world_map.inverse() * mercatorPose(readOxts(oxts->second), scale) * T_imu_robot;
+    result.scans.push_back(std::move(entry));
+  }
+  if (result.scans.empty()) {
+    throw Error(drive.string() + ": no scan has the number of an oxts frame (scans " +
+                ranges(frames.scanNumbers) + ", oxts " + ranges(frames.oxtsNumbers) + ")");
+  }
+  return result;
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,106 @@
+#include "io/dataset/Mulran.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/common/Angles.h"
+#include "io/data/Trajectory.h"
+#include "io/dataset/ScanFiles.h"
+#include "io/dataset/ScanPoses.h"
+#include "io/file/CsvRows.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// In the folder, else in its sensor_data/.
+fs::path findIn(const fs::path& sequence, const std::string& name) {
+  const fs::path below = sequence / "sensor_data" / name;
+  return isThere(sequence / name) || !isThere(below) ? sequence / name : below;
+}
+
+/// Nanoseconds as seconds; the whole part apart, as together they have too many digits.
+double seconds(std::uint64_t nanoseconds) {
+  constexpr std::uint64_t second = 1000000000;
+  return static_cast<double>(nanoseconds / second) +
+         static_cast<double>(nanoseconds % second) * 1e-9;
+}
+
+void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
+                    ScanFolder& result) {
+  TrackSampler track(timesOf(result), trackGap);
+  CsvRows rows(file, 13, "time in ns, the vehicle's pose as row-major 3x4 matrix [R|t], m");
+  std::vector<double> row, matrix;
+  std::size_t unused = 0;
+  while (rows.next(row)) {
+    matrix.assign(row.begin() + 1, row.end());
+    if (!std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); })) {
+      ++unused;
+    } else if (!track.add(row[0] * 1e-9, poseFromRows(matrix, rows.at()) * T_base_robot)) {
+      ++unused;
+    }
+  }
+  if (unused > 0)
+    result.notes.push_back(file.filename().string() + ": " + std::to_string(unused) +
+                           " rows that are not finite or not after the row before, not used");
+  takePoses(result, track, file, "truth", "at times without truth");
+}
+
+/// Tells of scans that were recorded, but are not there.
+void noteMissing(const fs::path& file, const std::vector<std::uint64_t>& names,
+                 ScanFolder& result) {
+  const auto lines = readLines(file);
+  std::size_t missing = 0, all = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string_view word = trimmed(lines[i]);
+    if (word.empty()) continue;
+    const auto stamp = fileNumber(fs::path(std::string(word) + ".bin"));
+    if (!stamp)
+      throw Error(at(file, i + 1) + "'" + std::string(word.substr(0, 40)) +
+                  "' is no time; expected: one time in ns a line");
+    ++all;
+    if (!std::binary_search(names.begin(), names.end(), *stamp)) ++missing;
+  }
+  if (missing > 0)
+    result.notes.push_back(file.filename().string() + ": " + std::to_string(missing) + " of its " +
+                           std::to_string(all) + " times have no scan in Ouster/");
+}
+
+}  // namespace
+
+Eigen::Isometry3d mulranBaseLidar() {
+  Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();
+  T_base_lidar.translation() = Eigen::Vector3d(1.7042, -0.021, 1.8047);
+  T_base_lidar.linear() = (Eigen::AngleAxisd(179.6654 * degree, Eigen::Vector3d::UnitZ()) *
+                           Eigen::AngleAxisd(0.0003 * degree, Eigen::Vector3d::UnitY()) *
+                           Eigen::AngleAxisd(0.0001 * degree, Eigen::Vector3d::UnitX()))
+                              .toRotationMatrix();
+  return T_base_lidar;
+}
+
+ScanFolder readMulran(const fs::path& sequence, const Eigen::Isometry3d& T_robot_lidar) {
+  const auto files = listFiles(findIn(sequence, "Ouster"), ".bin");
+  requirePaddedNames(files);
+  const auto names = fileNumbers(files);
+  ScanFolder result;
+  checkScanSizes(files, result.notes);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    ScanEntry entry;
+    entry.cloud = files[i];
+    entry.time = seconds(names[i]);
+    result.scans.push_back(std::move(entry));
+  }
+  const fs::path stamps = findIn(sequence, "ouster_front_stamp.csv");
+  if (isThere(stamps)) noteMissing(stamps, names, result);
+  const fs::path truth = findIn(sequence, "global_pose.csv");
+  if (isThere(truth))
+    addMulranTruth(truth, mulranBaseLidar() * T_robot_lidar.inverse(), result);
+  else
+    result.notes.push_back("no global_pose.csv");
+  return result;
+}
+
+}  // namespace polemcl::io

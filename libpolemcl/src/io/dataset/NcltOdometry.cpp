@@ -1,0 +1,200 @@
+#include "io/dataset/NcltOdometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/common/PoseInterpolation.h"
+#include "io/data/Trajectory.h"
+#include "io/dataset/ScanPoses.h"
+#include "io/file/CsvRows.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double relativeNoise = 0.05;  ///< of each component, without covariances; own choice
+constexpr const char* poseLayout = "utime, x, y, z, roll, pitch, heading (us, m, rad)";
+constexpr const char* covarianceLayout =
+    "utime, 21 numbers: the upper triangle of the covariance of x y z roll pitch heading";
+
+bool allFinite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+/// x, y and heading out of the 21 numbers of an upper triangle that begins at `values`.
+Eigen::Matrix3d planarCovariance(const double* values) {
+  const double xx = values[0], xy = values[1], xh = values[5], yy = values[6], yh = values[10],
+               hh = values[20];
+  Eigen::Matrix3d covariance;
+  covariance << xx, xy, xh, xy, yy, yh, xh, yh, hh;
+  return covariance;
+}
+
+/// How small motions in the plane of the body look in the plane of the robot.
+Eigen::Matrix3d planeChange(const Eigen::Isometry3d& T_robot_body) {
+  Eigen::Matrix3d change = Eigen::Matrix3d::Zero();
+  change.topLeftCorner<2, 2>() = T_robot_body.linear().topLeftCorner<2, 2>();
+  change(2, 2) = T_robot_body.linear()(2, 2);
+  return change;
+}
+
+PlanarMotion shareOf(const PlanarMotion& motion, double share) {
+  return {{share * motion.mean.x, share * motion.mean.y, share * motion.mean.yaw},
+          share * motion.covariance};
+}
+
+/// The covariances of the steps, looked up by time.
+class CovarianceRows {
+ public:
+  explicit CovarianceRows(const fs::path& file) : m_rows(file, 22, covarianceLayout) { advance(); }
+
+  /// That of the row nearest to `time`, unless it is farther than `reach`, s. Times must rise.
+  std::optional<Eigen::Matrix3d> at(double time, double reach) {
+    while (m_next && m_next->time <= time) advance();
+    const Row* nearest = m_before ? &*m_before : nullptr;
+    if (m_next && (!nearest || m_next->time - time < time - nearest->time)) nearest = &*m_next;
+    if (!nearest || std::abs(nearest->time - time) > reach) {
+      ++m_missing;
+      return std::nullopt;
+    }
+    if (std::abs(nearest->time - time) > sampleTolerance) ++m_shifted;
+    return nearest->covariance;
+  }
+
+  void noteMismatch(std::size_t steps, std::vector<std::string>& notes) const {
+    if (m_missing + m_shifted == 0) return;
+    notes.push_back("odometry_cov.csv does not go row by row with odometry_mu.csv: of " +
+                    std::to_string(steps) + " motions " + std::to_string(m_shifted) +
+                    " take the covariance of the nearest time, " + std::to_string(m_missing) +
+                    " have none (there it is that of the motions beside them, or of 5 % of each "
+                    "motion)");
+  }
+
+ private:
+  struct Row {
+    double time = 0;  ///< s
+    Eigen::Matrix3d covariance;
+  };
+
+  /// To the next row that is finite and later.
+  void advance() {
+    m_before = m_next;
+    m_next.reset();
+    std::vector<double> row;
+    while (!m_next && m_rows.next(row)) {
+      const double time = row[0] * 1e-6;
+      if (allFinite(row) && (!m_before || time > m_before->time))
+        m_next = Row{time, planarCovariance(row.data() + 1)};
+    }
+  }
+
+  CsvRows m_rows;
+  std::optional<Row> m_before, m_next;
+  std::size_t m_shifted = 0, m_missing = 0;  ///< steps with a covariance of another time, with none
+};
+
+void noteUnused(std::size_t rows, const fs::path& file, std::vector<std::string>& notes) {
+  if (rows > 0)
+    notes.push_back(file.filename().string() + ": " + std::to_string(rows) +
+                    " rows that are not finite or not after the row before, not used");
+}
+
+}  // namespace
+
+Eigen::Isometry3d ncltPose(const double* values) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(values[0], values[1], values[2]);
+  pose.linear() = (Eigen::AngleAxisd(values[5], Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(values[4], Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(values[3], Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  return pose;
+}
+
+NcltOdometry::NcltOdometry(const NcltOdometryFiles& files, std::vector<double> times,
+                           std::vector<std::string>& notes, const ReadProgress& progress)
+    : m_track(std::move(times), trackGap) {
+  if (!files.track.empty()) readTrack(files.track, notes, progress);
+  if (!files.steps.empty()) readSteps(files, notes, progress);
+  if (files.steps.empty() || files.covariances.empty())
+    notes.push_back(
+        "no odometry_mu.csv with odometry_cov.csv: standard deviations of the odometry are taken "
+        "to be 5 % of each motion");
+}
+
+void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& notes,
+                             const ReadProgress& progress) {
+  CsvRows rows(file, 7, poseLayout, progress);
+  std::vector<double> row;
+  std::size_t unused = 0;
+  while (rows.next(row)) {
+    if (!allFinite(row) || !m_track.add(row[0] * 1e-6, ncltPose(row.data() + 1))) ++unused;
+  }
+  noteUnused(unused, file, notes);
+}
+
+void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
+                             const ReadProgress& progress) {
+  CsvRows rows(files.steps, 7, poseLayout, progress);
+  std::optional<CovarianceRows> covariances;
+  if (!files.covariances.empty()) covariances.emplace(files.covariances);
+  std::vector<double> row;
+  std::size_t unused = 0, steps = 0;
+  std::optional<double> last;
+  Eigen::Isometry3d T_odom_body = Eigen::Isometry3d::Identity();
+  while (rows.next(row)) {
+    const double time = row[0] * 1e-6;
+    if (!allFinite(row) || (last && time <= *last)) {
+      ++unused;
+      continue;
+    }
+    const Eigen::Isometry3d step = ncltPose(row.data() + 1);
+    // The first row's motion began before the session.
+    if (last) {
+      ++steps;
+      T_odom_body = T_odom_body * step;
+      const auto covariance =
+          covariances ? covariances->at(time, (time - *last) / 2) : std::nullopt;
+      if (covariance) m_steps.push_back({*last, time, {planar(step), *covariance}});
+    }
+    if (files.track.empty()) m_track.add(time, T_odom_body);
+    last = time;
+  }
+  noteUnused(unused, files.steps, notes);
+  if (covariances) covariances->noteMismatch(steps, notes);
+}
+
+std::optional<Eigen::Matrix3d> NcltOdometry::covarianceBetween(double begin, double end) const {
+  auto step = std::upper_bound(m_steps.begin(), m_steps.end(), begin,
+                               [](double time, const Step& s) { return time < s.end; });
+  PlanarMotion sum;
+  double covered = 0;
+  for (; step != m_steps.end() && step->begin < end; ++step) {
+    const double between = std::min(end, step->end) - std::max(begin, step->begin);
+    sum = composeMotions(sum, shareOf(step->motion, between / (step->end - step->begin)));
+    covered += between;
+  }
+  if (covered < (end - begin) / 2) return std::nullopt;
+  return sum.covariance * ((end - begin) / covered);
+}
+
+PlanarMotion NcltOdometry::motion(const Eigen::Isometry3d& T_begin_end, double begin, double end,
+                                  const Eigen::Isometry3d& T_robot_body) const {
+  PlanarMotion motion;
+  motion.mean = planar(T_robot_body * T_begin_end * T_robot_body.inverse());
+  if (const auto covariance = covarianceBetween(begin, end)) {
+    const Eigen::Matrix3d change = planeChange(T_robot_body);
+    motion.covariance = change * *covariance * change.transpose();
+  } else {
+    const Eigen::Vector3d components(motion.mean.x, motion.mean.y, motion.mean.yaw);
+    motion.covariance = (relativeNoise * components).cwiseAbs2().asDiagonal();
+  }
+  const Eigen::Vector3d floor(motionFloorMetres, motionFloorMetres, motionFloorRadians);
+  motion.covariance += Eigen::Matrix3d(floor.cwiseAbs2().asDiagonal());
+  return motion;
+}
+
+}  // namespace polemcl::io

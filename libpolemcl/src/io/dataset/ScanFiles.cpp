@@ -1,0 +1,119 @@
+#include "io/dataset/ScanFiles.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/common/Types.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> listFiles(const fs::path& folder, const std::string& ending) {
+  std::error_code error, ignored;
+  std::vector<fs::path> files;
+  for (auto entry = fs::directory_iterator(folder, error);
+       !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const fs::path name = entry->path().filename();
+    const bool wanted = name.extension() == ending && name.native().front() != '.';
+    // A link to nothing is listed too, so that reading it fails aloud.
+    if (wanted && !entry->is_directory(ignored)) files.push_back(fs::absolute(entry->path()));
+  }
+  if (error) throw Error("cannot read the folder " + folder.string() + ": " + error.message());
+  if (files.empty()) throw Error(folder.string() + ": no *" + ending + " file in it");
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return a.filename().native() < b.filename().native();
+  });
+  return files;
+}
+
+bool isThere(const fs::path& file) {
+  std::error_code ignored;
+  return fs::symlink_status(file, ignored).type() != fs::file_type::not_found;
+}
+
+std::optional<std::uint64_t> fileNumber(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  std::uint64_t number = 0;
+  if (stem.size() > 19) return std::nullopt;
+  const auto result = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+  if (result.ec != std::errc() || result.ptr != stem.data() + stem.size()) return std::nullopt;
+  return number;
+}
+
+std::vector<std::uint64_t> fileNumbers(const std::vector<fs::path>& files) {
+  std::vector<std::uint64_t> numbers;
+  for (const fs::path& file : files) {
+    const auto number = fileNumber(file);
+    if (!number) {
+      throw Error(file.string() + ": the name is no frame number; names like 000012" +
+                  file.extension().string() + " are expected here");
+    }
+    if (!numbers.empty() && *number == numbers.back()) {
+      throw Error(file.string() + ": frame " + std::to_string(*number) + " is there twice");
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+void requirePaddedNames(const std::vector<fs::path>& files) {
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const auto before = fileNumber(files[i - 1]), number = fileNumber(files[i]);
+    if (before && number && *number < *before) {
+      throw Error(files[i].string() + ": sorts after " + files[i - 1].filename().string() +
+                  " by name but before it by number; give all names the same number of digits");
+    }
+  }
+}
+
+std::string ranges(const std::vector<std::uint64_t>& numbers, std::size_t most) {
+  std::string text;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++count) {
+    if (count > 0) text += ", ";
+    if (count == most) return text + "…";
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += std::to_string(numbers[i]);
+    if (last > i) text += "-" + std::to_string(numbers[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+void checkScanSizes(const std::vector<fs::path>& scans, std::vector<std::string>& notes,
+                    const PointLayout& point) {
+  std::vector<fs::path> empty;
+  for (const fs::path& scan : scans) {
+    std::error_code error;
+    const auto size = fs::file_size(scan, error);
+    if (error) throw Error("cannot read " + scan.string() + ": " + error.message());
+    if (size % point.bytes != 0) {
+      throw Error(scan.string() + ": cut short: " + std::to_string(size) +
+                  " bytes are no multiple of " + std::to_string(point.bytes) + " (" + point.fields +
+                  " a point)");
+    }
+    if (size == 0) empty.push_back(scan);
+  }
+  if (empty.size() == scans.size()) {
+    throw Error(scans.front().parent_path().string() + ": no usable scan: all " +
+                std::to_string(scans.size()) + " are empty");
+  }
+  if (!empty.empty()) {
+    notes.push_back(std::to_string(empty.size()) + " of " + std::to_string(scans.size()) +
+                    " scans are empty, the first is " + empty.front().filename().string());
+  }
+}
+
+void requireIncreasing(const fs::path& file, const std::vector<NumberRow>& rows) {
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double before = rows[i - 1].values[0], time = rows[i].values[0];
+    if (!(time > before)) {
+      throw Error(at(file, rows[i].line) + "time " + significant(time, 17) + " is not after " +
+                  significant(before, 17) + ", the one before");
+    }
+  }
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,151 @@
+#include "io/dataset/ScanFolder.h"
+
+#include <cmath>
+
+#include "io/data/PcdFile.h"
+#include "io/data/Trajectory.h"
+#include "io/dataset/ScanFiles.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double nominalPeriod = 0.1;  ///< s, of scans that tell no times
+
+/// The scans of a folder and what is said about the rows that belong to them.
+struct Scans {
+  std::vector<fs::path> files;
+  std::string place;              ///< where they are, for messages
+  bool numberedFromZero = false;  ///< 0, 1, 2, …: row i belongs to scan i for certain
+};
+
+Scans listScans(const fs::path& folder, const std::string& ending, const std::string& place) {
+  Scans scans{listFiles(folder, ending), place, true};
+  requirePaddedNames(scans.files);
+  for (std::size_t i = 0; i < scans.files.size(); ++i) {
+    scans.numberedFromZero = scans.numberedFromZero && fileNumber(scans.files[i]) == i;
+  }
+  return scans;
+}
+
+/// One row per scan, or per scan after the first: throws on fewer, notes more or throws.
+void checkCount(const fs::path& file, const std::string& what, std::size_t got,
+                std::size_t expected, const Scans& scans, std::vector<std::string>& notes) {
+  const std::string counts = std::to_string(got) + " " + what + " for " +
+                             std::to_string(scans.files.size()) + " scans" + scans.place;
+  if (got < expected) {
+    throw Error(file.string() + ": " + counts + ", " + std::to_string(expected) + " expected");
+  }
+  if (got == expected) return;
+  // As many motions as scans is more likely a list that starts otherwise than one that goes on.
+  const bool shifted = expected + 1 == scans.files.size() && got == scans.files.size();
+  if (shifted || !scans.numberedFromZero) {
+    throw Error(file.string() + ": " + counts + ", " + std::to_string(expected) +
+                " expected; which belongs to which scan is not clear" +
+                (shifted ? " (the first line is the motion to the second scan)"
+                         : " (scans are not numbered 0, 1, 2, …)"));
+  }
+  notes.push_back(file.filename().string() + ": " + counts + "; the last " +
+                  std::to_string(got - expected) + " are not used");
+}
+
+void readTimes(const fs::path& file, const Scans& scans, ScanFolder& folder) {
+  const auto rows = readNumberRows(file, 1, "one time a line, s");
+  checkCount(file, "times", rows.size(), scans.files.size(), scans, folder.notes);
+  requireIncreasing(file, rows);
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) folder.scans[i].time = rows[i].values[0];
+}
+
+void readPoses(const fs::path& file, const Eigen::Isometry3d& T_robot_sensor, const Scans& scans,
+               ScanFolder& folder) {
+  const auto T_map_sensor = readKittiPoses(file);
+  checkCount(file, "poses", T_map_sensor.size(), scans.files.size(), scans, folder.notes);
+  const Eigen::Isometry3d T_sensor_robot = T_robot_sensor.inverse();
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) {
+    folder.scans[i].T_map_robot = T_map_sensor[i] * T_sensor_robot;
+  }
+}
+
+PlanarMotion motionFromRow(const fs::path& file, const NumberRow& row) {
+  const std::vector<double>& v = row.values;
+  for (int i = 3; i < 6; ++i) {
+    if (v[i] < 0) {
+      throw Error(at(file, row.line) + "standard deviation " + significant(v[i], 9) +
+                  " is negative; expected: dx dy dyaw sx sy syaw");
+    }
+  }
+  // Room for a half turn that was rounded upwards.
+  if (std::abs(v[2]) > M_PI + 1e-3) {
+    throw Error(at(file, row.line) + "turn of " + significant(v[2], 9) +
+                " rad between two scans; radians within -pi ... pi are expected");
+  }
+  PlanarMotion motion;
+  motion.mean = {v[0], v[1], wrapAngle(v[2])};
+  motion.covariance = Eigen::Vector3d(v[3] * v[3], v[4] * v[4], v[5] * v[5]).asDiagonal();
+  return motion;
+}
+
+void readOdometry(const fs::path& file, const Scans& scans, ScanFolder& folder) {
+  const auto rows = readNumberRows(file, 6, "dx dy dyaw sx sy syaw (m, m, rad)");
+  checkCount(file, "motions", rows.size(), scans.files.size() - 1, scans, folder.notes);
+  for (std::size_t i = 1; i < folder.scans.size(); ++i) {
+    folder.scans[i].motion = motionFromRow(file, rows[i - 1]);
+  }
+}
+
+void addScans(const Scans& scans, ScanFolder& folder) {
+  for (const fs::path& file : scans.files) {
+    ScanEntry entry;
+    entry.cloud = file;
+    folder.scans.push_back(std::move(entry));
+  }
+}
+
+/// True poses and odometry, where there are such files.
+void readMotions(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor,
+                 const Scans& scans, ScanFolder& result) {
+  if (isThere(folder / "poses.txt")) {
+    readPoses(folder / "poses.txt", T_robot_sensor, scans, result);
+  }
+  const fs::path odometry = folder / "odometry.txt", odom = folder / "odom.txt";
+  if (isThere(odometry) && isThere(odom)) {
+    throw Error(folder.string() + ": odometry.txt and odom.txt are both there; remove one of them");
+  }
+  for (const fs::path& file : {odometry, odom}) {
+    if (isThere(file)) readOdometry(file, scans, result);
+  }
+}
+
+}  // namespace
+
+ScanFolder readScanFolder(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor) {
+  const Scans scans = listScans(folder / "velodyne", ".bin", " in velodyne/");
+  ScanFolder result;
+  checkScanSizes(scans.files, result.notes);
+  addScans(scans, result);
+  readTimes(folder / "times.txt", scans, result);
+  readMotions(folder, T_robot_sensor, scans, result);
+  return result;
+}
+
+ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor) {
+  const Scans scans = listScans(folder, ".pcd", "");
+  ScanFolder result;
+  result.read = [](const ScanEntry& entry) { return readPcd(entry.cloud); };
+  addScans(scans, result);
+  if (isThere(folder / "times.txt")) {
+    readTimes(folder / "times.txt", scans, result);
+  } else {
+    for (std::size_t i = 0; i < result.scans.size(); ++i)
+      result.scans[i].time = nominalPeriod * static_cast<double>(i);
+    result.nominalTimes = true;
+    result.notes.push_back("no times.txt: scans are taken to be 0.1 s apart");
+  }
+  readMotions(folder, T_robot_sensor, scans, result);
+  return result;
+}
+
+}  // namespace polemcl::io

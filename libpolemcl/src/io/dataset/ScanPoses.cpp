@@ -1,0 +1,93 @@
+#include "io/dataset/ScanPoses.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "io/data/Trajectory.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string span(const ScanFolder& folder) {
+  return fixed(folder.scans.front().time, 3) + " ... " + fixed(folder.scans.back().time, 3) + " s";
+}
+
+/// Row i is scan i: both counts must agree.
+void pairInTurn(ScanFolder& folder, const fs::path& file, const std::vector<StampedPose3D>& rows) {
+  if (rows.size() != folder.scans.size())
+    throw Error(file.string() + ": " + std::to_string(rows.size()) + " poses for " +
+                std::to_string(folder.scans.size()) +
+                " scans that have no times of their own; give them a times.txt");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    folder.scans[i].time = rows[i].time;
+    folder.scans[i].T_map_robot = rows[i].pose;
+  }
+  folder.nominalTimes = false;
+  folder.notes.push_back("times of the scans: those of " + file.filename().string() +
+                         ", which has as many rows");
+}
+
+}  // namespace
+
+std::vector<double> timesOf(const ScanFolder& folder) {
+  std::vector<double> times;
+  times.reserve(folder.scans.size());
+  for (const ScanEntry& scan : folder.scans) times.push_back(scan.time);
+  return times;
+}
+
+void keepScans(ScanFolder& folder, const std::vector<bool>& keep, const std::string& why) {
+  std::vector<ScanEntry> kept;
+  std::optional<PlanarMotion> pending;  // into the scans left out since the last one kept
+  const std::size_t all = folder.scans.size();
+  for (std::size_t i = 0; i < all; ++i) {
+    ScanEntry& scan = folder.scans[i];
+    if (pending && scan.motion) scan.motion = composeMotions(*pending, *scan.motion);
+    pending.reset();
+    if (keep[i]) {
+      if (kept.empty()) scan.motion.reset();  // the first scan starts at itself
+      kept.push_back(std::move(scan));
+    } else if (!kept.empty()) {
+      pending = scan.motion;
+    }
+  }
+  folder.scans = std::move(kept);
+  if (folder.scans.size() < all)
+    folder.notes.push_back(std::to_string(all - folder.scans.size()) + " of " +
+                           std::to_string(all) + " scans left out, " + why);
+}
+
+void requireOverlap(const ScanFolder& folder, const TrackSampler& track, const fs::path& file,
+                    const std::string& what) {
+  if (track.found() > 0) return;
+  throw Error(file.string() + ": no " + what + " at the time of any scan: " + what + " " +
+              track.span() + ", scans " + span(folder) +
+              "; take the files of one and the same session");
+}
+
+void takePoses(ScanFolder& folder, const TrackSampler& track, const fs::path& file,
+               const std::string& what, const std::string& why) {
+  requireOverlap(folder, track, file, what);
+  std::vector<bool> keep;
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) {
+    folder.scans[i].T_map_robot = track.poses()[i];
+    keep.push_back(track.poses()[i].has_value());
+  }
+  keepScans(folder, keep, why);
+}
+
+void takeTumPoses(ScanFolder& folder, const fs::path& file, const Eigen::Isometry3d& T_pose_robot) {
+  std::vector<StampedPose3D> rows = readTum(file);
+  for (StampedPose3D& row : rows) row.pose = row.pose * T_pose_robot;
+  if (folder.nominalTimes) return pairInTurn(folder, file, rows);
+
+  TrackSampler track(timesOf(folder), trackGap);
+  for (const StampedPose3D& row : rows) track.add(row.time, row.pose);
+  takePoses(folder, track, file, "pose", "at times without a pose in " + file.filename().string());
+}
+
+}  // namespace polemcl::io

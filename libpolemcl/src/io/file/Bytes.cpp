@@ -1,0 +1,55 @@
+#include "io/file/Bytes.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+
+#include "core/common/Types.h"
+
+namespace polemcl::io {
+
+std::string readBytes(const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& why) {
+    return Error("cannot read " + file.string() + ": " + why);
+  };
+  // Opening a folder succeeds; only reading it would fail.
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
+                                                               &std::fclose);
+  if (!stream) throw fail(std::strerror(errno));
+  const auto size = std::filesystem::file_size(file, ignored);
+  std::string bytes;
+  // One byte more than there should be, so that the end is seen without a second round.
+  bytes.resize(ignored ? 65536 : size + 1);
+  std::size_t used = 0;
+  while (true) {
+    used += std::fread(bytes.data() + used, 1, bytes.size() - used, stream.get());
+    if (used < bytes.size()) break;
+    bytes.resize(2 * bytes.size());
+  }
+  if (std::ferror(stream.get())) throw fail(std::strerror(errno));
+  bytes.resize(used);
+  return bytes;
+}
+
+void ByteWriter::putText(std::string_view text) {
+  put(static_cast<std::uint32_t>(text.size()));
+  putRaw(text);
+}
+
+std::string_view ByteReader::getRaw(std::uint64_t size) {
+  if (size > m_bytes.size()) {
+    throw Error(m_where + "ends in mid-value: " + std::to_string(size) + " bytes expected, " +
+                std::to_string(m_bytes.size()) + " left");
+  }
+  const std::string_view result = m_bytes.substr(0, size);
+  m_bytes.remove_prefix(size);
+  return result;
+}
+
+std::string_view ByteReader::getText() {
+  return getRaw(get<std::uint32_t>());
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,41 @@
+#pragma once
+/// \file CsvRows.h
+/// \brief Long tables of numbers between commas, without a header, row by row.
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "io/file/ReadProgress.h"
+
+namespace polemcl::io {
+
+/// \brief Reads one row at a time and keeps none, so that files may be of any length. Blank lines
+/// and lines that start with `#` are skipped; `nan` and `inf` are numbers.
+class CsvRows {
+ public:
+  /// \param layout The columns, for messages: "utime, x, y".
+  /// \param progress Told the megabytes read and those of the file, now and then; may be empty.
+  /// \throws Error when the file cannot be read.
+  CsvRows(const std::filesystem::path& file, std::size_t columns, std::string layout,
+          ReadProgress progress = {});
+
+  /// \brief The next row. \return False at the end.
+  /// \throws Error naming file and line: another number of columns, not a number, a read that
+  ///         failed.
+  bool next(std::vector<double>& values);
+  /// \brief "FILE:LINE: " of the row last read, for messages.
+  std::string at() const;
+
+ private:
+  std::filesystem::path m_file;
+  std::size_t m_columns, m_line = 0;
+  std::string m_layout, m_text;
+  ReadProgress m_progress;
+  std::uint64_t m_size = 0, m_read = 0;  ///< bytes
+  std::ifstream m_stream;
+};
+
+}  // namespace polemcl::io

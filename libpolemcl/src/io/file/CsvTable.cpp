@@ -1,0 +1,82 @@
+#include "io/file/CsvTable.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/common/Types.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+namespace {
+
+/// Fields between commas, without the quotes and spaces around them.
+std::vector<std::string> splitCsv(std::string_view line, const std::string& where) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += line[++i];  // a doubled quote is one
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  if (quoted) throw Error(where + "a quote is not closed");
+  for (std::string& field : fields) field = std::string(trimmed(field));
+  return fields;
+}
+
+}  // namespace
+
+CsvTable::CsvTable(const std::filesystem::path& file) : m_file(file) {
+  const auto lines = readLines(file);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string_view line = trimmed(lines[i]);
+    if (line.empty() || line.front() == '#') continue;
+    const std::string where = io::at(file, i + 1);
+    Row row{i + 1, splitCsv(line, where)};
+    if (m_header.fields.empty()) {
+      m_header = std::move(row);
+    } else if (row.fields.size() != m_header.fields.size()) {
+      throw Error(where + std::to_string(row.fields.size()) + " fields, " +
+                  std::to_string(m_header.fields.size()) + " expected as in the header");
+    } else {
+      m_rows.push_back(std::move(row));
+    }
+  }
+  if (m_header.fields.empty())
+    throw Error(file.string() + ": empty; a header that names the columns (x,y,…) expected");
+}
+
+std::size_t CsvTable::column(const std::string& name) const {
+  const auto& header = m_header.fields;
+  if (std::count(header.begin(), header.end(), name) != 1) {
+    throw Error(io::at(m_file, m_header.line) + "one column named " + name +
+                " expected; the first line has to name the columns (x,y,…)");
+  }
+  return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
+}
+
+std::optional<std::size_t> CsvTable::find(const std::string& name) const {
+  const auto& header = m_header.fields;
+  if (std::count(header.begin(), header.end(), name) == 0) return std::nullopt;
+  return column(name);
+}
+
+double CsvTable::number(std::size_t row, std::size_t column) const {
+  const std::string& field = m_rows[row].fields[column];
+  const auto value = parseNumber(field);
+  if (!value || !std::isfinite(*value))
+    throw Error(at(row) + "'" + field + "' is no finite number");
+  return *value;
+}
+
+std::string CsvTable::at(std::size_t row) const {
+  return io::at(m_file, m_rows[row].line);
+}
+
+}  // namespace polemcl::io

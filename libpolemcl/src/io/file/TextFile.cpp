@@ -1,0 +1,169 @@
+#include "io/file/TextFile.h"
+
+#include <zlib.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "core/common/Types.h"
+#include "io/file/ReadLimits.h"
+
+namespace polemcl::io {
+
+struct LineReader::Stream {
+  gzFile_s* file = nullptr;
+  ~Stream() {
+    if (file) gzclose(file);
+  }
+};
+
+LineReader::LineReader(const std::filesystem::path& file)
+    : m_file(file), m_stream(std::make_unique<Stream>()) {
+  const auto fail = [&](const std::string& why) {
+    return Error("cannot read " + file.string() + ": " + why);
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
+  errno = 0;
+  m_stream->file = gzopen(file.c_str(), "rb");
+  if (!m_stream->file) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");
+  readBlock();
+  if (std::string_view(m_text).substr(0, 3) == "\xEF\xBB\xBF") m_begin = 3;
+}
+
+LineReader::~LineReader() = default;
+
+void LineReader::readBlock() {
+  std::array<char, 65536> block;
+  const int got = gzread(m_stream->file, block.data(), block.size());
+  if (got > 0) {
+    m_text.erase(0, m_begin);
+    m_begin = 0;
+    m_text.append(block.data(), static_cast<std::size_t>(got));
+    m_read += static_cast<std::size_t>(got);
+    if (m_read > mostTextBytes)
+      throw Error("cannot read " + m_file.string() + ": it holds more than " +
+                  std::to_string(mostTextBytes >> 20) +
+                  " MB of text, uncompressed; that is no table of this program");
+    return;
+  }
+  m_ended = true;
+  // A gzip file that is cut short reads to its end first and is reported here only.
+  int code = Z_OK;
+  const char* message = gzerror(m_stream->file, &code);
+  if (got < 0 || code != Z_OK)
+    throw Error("cannot read " + m_file.string() + ": " +
+                (code == Z_ERRNO       ? std::strerror(errno)
+                 : code == Z_BUF_ERROR ? "the gzip data is cut short"
+                                       : message));
+}
+
+bool LineReader::next(std::string& line) {
+  std::size_t end = m_text.find('\n', m_begin);
+  while (end == std::string::npos && !m_ended) {
+    const std::size_t seen = m_text.size() - m_begin;
+    readBlock();
+    end = m_text.find('\n', m_begin + (m_ended ? 0 : seen));
+  }
+  if (m_begin == m_text.size()) return false;
+  line.assign(m_text, m_begin, end == std::string::npos ? end : end - m_begin);
+  m_begin = end == std::string::npos ? m_text.size() : end + 1;
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  return true;
+}
+
+std::string at(const std::filesystem::path& file, std::size_t line) {
+  return file.string() + ":" + std::to_string(line) + ": ";
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> readLines(const std::filesystem::path& file) {
+  LineReader reader(file);
+  std::vector<std::string> lines;
+  for (std::string line; reader.next(line);) lines.push_back(line);
+  return lines;
+}
+
+std::optional<double> parseNumber(std::string_view text) {
+  text = trimmed(text);
+  if (!text.empty() && text.front() == '+') {
+    text.remove_prefix(1);
+    if (!text.empty() && text.front() == '-') return std::nullopt;
+  }
+  double value = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::vector<double> parseNumbers(std::string_view text, const std::filesystem::path& file,
+                                 std::size_t line) {
+  std::vector<double> values;
+  while (!(text = trimmed(text)).empty()) {
+    const std::string_view word = text.substr(0, text.find_first_of(" \t"));
+    const auto value = parseNumber(word);
+    if (!value || !std::isfinite(*value)) {
+      throw Error(at(file, line) + "'" + std::string(word.substr(0, 40)) + "' is no finite number");
+    }
+    values.push_back(*value);
+    text.remove_prefix(word.size());
+  }
+  return values;
+}
+
+NumberRowReader::NumberRowReader(const std::filesystem::path& file, std::size_t columns,
+                                 std::string layout)
+    : m_lines(file), m_file(file), m_columns(columns), m_layout(std::move(layout)) {}
+
+bool NumberRowReader::next(NumberRow& row) {
+  while (m_lines.next(m_text)) {
+    ++m_line;
+    const std::string_view line = std::string_view(m_text).substr(0, m_text.find('#'));
+    if (trimmed(line).empty()) continue;
+    row = {m_line, parseNumbers(line, m_file, m_line)};
+    if (row.values.size() != m_columns)
+      throw Error(at(m_file, m_line) + std::to_string(row.values.size()) + " numbers, " +
+                  std::to_string(m_columns) + " expected: " + m_layout);
+    return true;
+  }
+  return false;
+}
+
+std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::size_t columns,
+                                      const std::string& layout) {
+  NumberRowReader reader(file, columns, layout);
+  std::vector<NumberRow> rows;
+  for (NumberRow row; reader.next(row);) rows.push_back(std::move(row));
+  return rows;
+}
+
+namespace {
+
+std::string formatted(double value, std::chars_format format, int precision) {
+  // Room for the largest double in fixed notation.
+  std::array<char, 512> buffer;
+  const auto result =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format, precision);
+  return std::string(buffer.data(), result.ptr);
+}
+
+}  // namespace
+
+std::string fixed(double value, int decimals) {
+  return formatted(value, std::chars_format::fixed, decimals);
+}
+
+std::string significant(double value, int digits) {
+  return formatted(value, std::chars_format::general, digits);
+}
+
+}  // namespace polemcl::io

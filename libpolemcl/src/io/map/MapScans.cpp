@@ -1,0 +1,126 @@
+#include "io/map/MapScans.h"
+
+#include <zlib.h>
+
+#include "io/file/Bytes.h"
+#include "io/file/Inflate.h"
+
+namespace polemcl::io {
+namespace {
+
+constexpr std::uint64_t scanBytes = 4 * 8 + 4, poleBytes = 10 * 8 + 4;  ///< least of each
+
+void put(ByteWriter& writer, const Pose2D& pose) {
+  for (const double value : {pose.x, pose.y, pose.yaw}) writer.put(value);
+}
+
+void put(ByteWriter& writer, const PoleDetection& p) {
+  const Eigen::Matrix2d& c = p.covariance;
+  for (const double value :
+       {p.x, p.y, p.radius, p.bottom, p.top, p.confidence, c(0, 0), c(0, 1), c(1, 0), c(1, 1)})
+    writer.put(value);
+  writer.put(p.points);
+}
+
+void put(ByteWriter& writer, const SessionScan& scan, bool used) {
+  writer.put(scan.time);
+  put(writer, scan.pose_map_robot);
+  writer.put(static_cast<std::uint32_t>(used));
+  if (!used) return;
+  put(writer, scan.pose_robot_sensor);
+  writer.put(static_cast<std::uint32_t>(scan.poles_robot.size()));
+  for (const PoleDetection& pole : scan.poles_robot) put(writer, pole);
+  writer.put(static_cast<std::uint32_t>(scan.freeRange.size()));
+  for (const float range : scan.freeRange) writer.put(range);
+}
+
+std::string deflated(const std::string& bytes) {
+  std::string result(compressBound(bytes.size()), '\0');
+  uLongf size = result.size();
+  if (compress2(reinterpret_cast<Bytef*>(result.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 6) != Z_OK)
+    throw Error("no memory left to compress the scans of a map");
+  result.resize(size);
+  return result;
+}
+
+/// A count of things that take at least so many bytes each.
+template <class Count>
+Count countOf(ByteReader& reader, std::uint64_t bytes, const std::string& where) {
+  const auto count = reader.get<Count>();
+  if (count > reader.remaining() / bytes)
+    throw Error(where + "damaged: " + std::to_string(count) + " entries do not fit into its scans");
+  return count;
+}
+
+Pose2D getPose(ByteReader& reader) {
+  Pose2D pose;
+  for (double* value : {&pose.x, &pose.y, &pose.yaw}) *value = reader.get<double>();
+  return pose;
+}
+
+PoleDetection getPole(ByteReader& reader) {
+  PoleDetection p;
+  Eigen::Matrix2d& c = p.covariance;
+  for (double* value : {&p.x, &p.y, &p.radius, &p.bottom, &p.top, &p.confidence, &c(0, 0), &c(0, 1),
+                        &c(1, 0), &c(1, 1)})
+    *value = reader.get<double>();
+  p.points = reader.get<std::uint32_t>();
+  return p;
+}
+
+/// \return Whether it is used.
+bool getScan(ByteReader& reader, const std::string& where, SessionScan& scan) {
+  scan.time = reader.get<double>();
+  scan.pose_map_robot = getPose(reader);
+  const auto used = reader.get<std::uint32_t>();
+  if (used > 1) throw Error(where + "damaged: a scan is neither used nor not");
+  if (used == 0) return false;
+  scan.pose_robot_sensor = getPose(reader);
+  const auto poles = countOf<std::uint32_t>(reader, poleBytes, where);
+  scan.poles_robot.reserve(poles);
+  for (std::uint32_t i = 0; i < poles; ++i) scan.poles_robot.push_back(getPole(reader));
+  scan.freeRange.resize(countOf<std::uint32_t>(reader, 4, where));
+  for (float& range : scan.freeRange) range = reader.get<float>();
+  return true;
+}
+
+}  // namespace
+
+std::string packMapScans(const AddedSessions& added) {
+  ByteWriter writer;
+  writer.put(added.unvisited);
+  writer.put(static_cast<std::uint32_t>(added.sessions.size()));
+  for (const AddedSession& session : added.sessions) {
+    writer.putText(session.name);
+    writer.put(static_cast<std::uint64_t>(session.scans.size()));
+    for (std::size_t i = 0; i < session.scans.size(); ++i)
+      put(writer, session.scans[i], session.used.at(i));
+  }
+  ByteWriter content;
+  content.put(static_cast<std::uint64_t>(writer.bytes().size()));
+  content.putRaw(deflated(writer.bytes()));
+  return content.bytes();
+}
+
+AddedSessions unpackMapScans(std::string_view content, const std::string& where) {
+  ByteReader packed(content, where);
+  const auto size = packed.get<std::uint64_t>();
+  const std::string bytes =
+      inflated(packed.getRaw(packed.remaining()), size, Deflated::zlib, where);
+  ByteReader reader(bytes, where);
+  AddedSessions added;
+  added.unvisited = reader.get<double>();
+  const auto sessions = countOf<std::uint32_t>(reader, 4 + 8, where);
+  for (std::uint32_t i = 0; i < sessions; ++i) {
+    AddedSession& session = added.sessions.emplace_back();
+    session.name = reader.getText();
+    const auto scans = countOf<std::uint64_t>(reader, scanBytes, where);
+    session.scans.resize(scans);
+    session.used.reserve(scans);
+    for (SessionScan& scan : session.scans) session.used.push_back(getScan(reader, where, scan));
+  }
+  return added;
+}
+
+}  // namespace polemcl::io

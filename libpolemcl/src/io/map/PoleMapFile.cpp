@@ -1,0 +1,278 @@
+#include "io/map/PoleMapFile.h"
+
+#include <zlib.h>
+
+#include <cmath>
+#include <utility>
+
+#include "io/file/AtomicFile.h"
+#include "io/file/Bytes.h"
+#include "io/map/MapScans.h"
+
+namespace polemcl::io {
+
+namespace {
+
+constexpr std::string_view polemapMagic("\x89PMAP\r\n\x1a", 8);
+constexpr std::uint32_t version = 1;
+constexpr std::size_t headerBytes = 8 + 4 + 8 + 4;
+constexpr std::uint32_t recordBytes = 9 * 8 + 4;
+constexpr std::uint32_t historyBytes = 3 * 8 + 2 * 4;
+
+std::uint32_t checksum(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+/// Why the pole cannot be kept in a map; null when it can.
+const char* fault(const MapPole& pole) {
+  for (const double value : {pole.x, pole.y, pole.radius, pole.bottom, pole.top, pole.confidence}) {
+    if (!std::isfinite(value)) return "a value is not finite";
+  }
+  if (pole.radius < 0) return "the radius is negative";
+  if (pole.confidence < 0 || pole.confidence > 1) return "the confidence is outside 0 … 1";
+  const Eigen::Matrix2d& c = pole.covariance;
+  if (!c.allFinite()) return "the covariance is not finite";
+  const bool symmetric =
+      std::abs(c(0, 1) - c(1, 0)) <= 1e-9 * (std::abs(c(0, 0)) + std::abs(c(1, 1)));
+  if (!symmetric || !(c(0, 0) > 0) || !(c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1) > 0)) {
+    return "the covariance is not symmetric and positive definite";
+  }
+  return nullptr;
+}
+
+/// Why the history cannot be; null when it can.
+const char* fault(const PoleHistory& history) {
+  if (!(history.existence >= 0 && history.existence <= 1)) return "the existence is outside 0 … 1";
+  for (const double time : {history.firstSeen, history.lastSeen}) {
+    if (!(std::isfinite(time) && time >= 0)) return "a date is before 1970 or not finite";
+  }
+  return nullptr;
+}
+
+void require(const char* why, const std::string& where, const char* what, std::size_t i) {
+  if (why) throw Error(where + what + std::to_string(i) + " (counted from 0): " + why);
+}
+
+void requireSound(const PoleMapData& data, const std::string& where) {
+  if (!data.histories.empty() && data.histories.size() != data.poles.size()) {
+    throw Error(where + std::to_string(data.histories.size()) + " histories for " +
+                std::to_string(data.poles.size()) + " poles; there must be one for each, or none");
+  }
+  for (std::size_t i = 0; i < data.poles.size(); ++i)
+    require(fault(data.poles[i]), where, "pole ", i);
+  for (std::size_t i = 0; i < data.histories.size(); ++i)
+    require(fault(data.histories[i]), where, "pole ", i);
+  for (std::size_t i = 0; i < data.candidates.size(); ++i) {
+    require(fault(data.candidates[i].pole), where, "candidate ", i);
+    require(fault(data.candidates[i].history), where, "candidate ", i);
+  }
+}
+
+void putChunk(ByteWriter& payload, std::string_view tag, const ByteWriter& content) {
+  payload.putRaw(tag);
+  payload.put(static_cast<std::uint64_t>(content.bytes().size()));
+  payload.putRaw(content.bytes());
+}
+
+void putPole(ByteWriter& record, const MapPole& p) {
+  for (const double value : {p.x, p.y, p.radius, p.bottom, p.top, p.confidence, p.covariance(0, 0),
+                             p.covariance(0, 1), p.covariance(1, 1)}) {
+    record.put(value);
+  }
+  record.put(p.count);
+}
+
+void putHistory(ByteWriter& record, const PoleHistory& history) {
+  for (const double value : {history.existence, history.firstSeen, history.lastSeen}) {
+    record.put(value);
+  }
+  record.put(history.seen);
+  record.put(history.missed);
+}
+
+std::string payloadOf(const PoleMapData& data, const AddedSessions* scans) {
+  ByteWriter info, poles, candidates, payload;
+  info.put(static_cast<std::uint32_t>(data.info.size()));
+  for (const auto& [key, value] : data.info) {
+    info.putText(key);
+    info.putText(value);
+  }
+  poles.put(recordBytes + (data.histories.empty() ? 0 : historyBytes));
+  poles.put(static_cast<std::uint64_t>(data.poles.size()));
+  for (std::size_t i = 0; i < data.poles.size(); ++i) {
+    putPole(poles, data.poles[i]);
+    if (!data.histories.empty()) putHistory(poles, data.histories[i]);
+  }
+  candidates.put(recordBytes + historyBytes);
+  candidates.put(static_cast<std::uint64_t>(data.candidates.size()));
+  for (const KeptPole& kept : data.candidates) {
+    putPole(candidates, kept.pole);
+    putHistory(candidates, kept.history);
+  }
+  putChunk(payload, "INFO", info);
+  putChunk(payload, "POLE", poles);
+  if (!data.candidates.empty()) putChunk(payload, "CAND", candidates);
+  if (scans) {
+    ByteWriter content;
+    content.putRaw(packMapScans(*scans));
+    putChunk(payload, "SCAN", content);
+  }
+  return payload.bytes();
+}
+
+void readInfo(ByteReader& chunk, PoleMapData& data) {
+  const auto count = chunk.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::string key(chunk.getText());
+    data.info[key] = chunk.getText();
+  }
+}
+
+MapPole readRecord(ByteReader& record) {
+  MapPole p;
+  for (double* value : {&p.x, &p.y, &p.radius, &p.bottom, &p.top, &p.confidence,
+                        &p.covariance(0, 0), &p.covariance(0, 1), &p.covariance(1, 1)}) {
+    *value = record.get<double>();
+  }
+  p.covariance(1, 0) = p.covariance(0, 1);
+  p.count = record.get<std::uint32_t>();
+  return p;
+}
+
+PoleHistory readHistory(ByteReader& record) {
+  PoleHistory history;
+  for (double* value : {&history.existence, &history.firstSeen, &history.lastSeen}) {
+    *value = record.get<double>();
+  }
+  history.seen = record.get<std::uint32_t>();
+  history.missed = record.get<std::uint32_t>();
+  return history;
+}
+
+/// The records of a chunk. \return Whether they have histories.
+bool readRecords(ByteReader& chunk, const std::string& where, std::vector<KeptPole>& records) {
+  const auto size = chunk.get<std::uint32_t>();
+  const auto count = chunk.get<std::uint64_t>();
+  if (size < recordBytes || count > chunk.remaining() / size) {
+    throw Error(where + "damaged: " + std::to_string(count) + " poles of " + std::to_string(size) +
+                " bytes do not fit into " + std::to_string(chunk.remaining()));
+  }
+  const bool withHistory = size >= recordBytes + historyBytes;
+  records.reserve(count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    ByteReader record(chunk.getRaw(size), where);
+    KeptPole& kept = records.emplace_back();
+    kept.pole = readRecord(record);
+    if (withHistory) kept.history = readHistory(record);
+  }
+  return withHistory;
+}
+
+void readPoles(ByteReader& chunk, const std::string& where, PoleMapData& data) {
+  std::vector<KeptPole> records;
+  const bool withHistory = readRecords(chunk, where, records);
+  for (const KeptPole& record : records) {
+    data.poles.push_back(record.pole);
+    if (withHistory) data.histories.push_back(record.history);
+  }
+}
+
+void readCandidates(ByteReader& chunk, const std::string& where, PoleMapData& data) {
+  if (!readRecords(chunk, where, data.candidates))
+    throw Error(where + "damaged: its candidates have no histories");
+}
+
+/// The checked payload of a whole file.
+std::string_view checkedPayload(std::string_view bytes, const std::string& where) {
+  if (bytes.substr(0, polemapMagic.size()) != polemapMagic) {
+    throw Error(where + "no pole map (it does not start like a .polemap file)");
+  }
+  ByteReader header(bytes.substr(polemapMagic.size()), where + "cut short: ");
+  const auto found = header.get<std::uint32_t>();
+  if (found != version) {
+    throw Error(where + "version " + std::to_string(found) + " of the format; this program reads " +
+                std::to_string(version) + ": update polemcl, or the file is damaged");
+  }
+  const auto size = header.get<std::uint64_t>();
+  const auto crc = header.get<std::uint32_t>();
+  if (size != header.remaining()) {
+    throw Error(where + "cut short or damaged: " + std::to_string(header.remaining()) +
+                " bytes after the header, " + std::to_string(size) + " expected");
+  }
+  const std::string_view payload = bytes.substr(headerBytes);
+  if (checksum(payload) != crc) throw Error(where + "damaged: the checksum (CRC-32) is wrong");
+  return payload;
+}
+
+}  // namespace
+
+KeptMap keptMap(const PoleMapData& data) {
+  KeptMap map;
+  if (data.histories.empty()) map = keptFrom(data.poles);
+  for (std::size_t i = 0; i < data.histories.size(); ++i)
+    map.poles.push_back({data.poles[i], data.histories[i], true});
+  map.poles.insert(map.poles.end(), data.candidates.begin(), data.candidates.end());
+  return map;
+}
+
+PoleMapData mapData(const KeptMap& map, std::map<std::string, std::string> info) {
+  PoleMapData data;
+  data.info = std::move(info);
+  for (const KeptPole& kept : map.poles) {
+    if (!kept.present) {
+      data.candidates.push_back(kept);
+      continue;
+    }
+    data.poles.push_back(kept.pole);
+    data.histories.push_back(kept.history);
+  }
+  return data;
+}
+
+void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
+                  const AddedSessions* scans) {
+  requireSound(data, "cannot write " + file.string() + ": ");
+  const std::string payload = payloadOf(data, scans);
+  ByteWriter header;
+  header.putRaw(polemapMagic);
+  header.put(version);
+  header.put(static_cast<std::uint64_t>(payload.size()));
+  header.put(checksum(payload));
+  AtomicFile output(file);
+  output.stream() << header.bytes() << payload;
+  output.commit();
+}
+
+std::optional<AddedSessions> readMapScans(const std::filesystem::path& file) {
+  const std::string bytes = readBytes(file);
+  const std::string where = file.string() + ": ";
+  ByteReader payload(checkedPayload(bytes, where), where);
+  while (payload.remaining() > 0) {
+    const std::string_view tag = payload.getRaw(4);
+    const std::string_view chunk = payload.getRaw(payload.get<std::uint64_t>());
+    if (tag == "SCAN") return unpackMapScans(chunk, where);
+  }
+  return std::nullopt;
+}
+
+PoleMapData readPoleMap(const std::filesystem::path& file) {
+  const std::string bytes = readBytes(file);
+  const std::string where = file.string() + ": ";
+  ByteReader payload(checkedPayload(bytes, where), where);
+  PoleMapData data;
+  bool hasPoles = false;
+  while (payload.remaining() > 0) {
+    const std::string_view tag = payload.getRaw(4);
+    ByteReader chunk(payload.getRaw(payload.get<std::uint64_t>()), where);
+    if (tag == "INFO") readInfo(chunk, data);
+    if (tag == "POLE") readPoles(chunk, where, data);
+    if (tag == "CAND") readCandidates(chunk, where, data);
+    hasPoles = hasPoles || tag == "POLE";
+  }
+  if (!hasPoles) throw Error(where + "damaged: it has no list of poles");
+  requireSound(data, where);
+  return data;
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,227 @@
+#include "mrpt/drawing/SceneParts.h"
+
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/opengl/CCylinder.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/file/AtomicFile.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::scene {
+namespace {
+
+using mrpt::opengl::COpenGLScene;
+using mrpt::opengl::COpenGLViewport;
+using mrpt::opengl::CSetOfTriangles;
+
+double roundOrigin(double centre) {
+  constexpr double far = 10000, step = 1000;  // m
+  return std::abs(centre) > far ? std::round(centre / step) * step : 0;
+}
+
+mrpt::math::TPoint3Df pointOf(const Eigen::Vector3d& p) {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+void light(COpenGLViewport& viewport) {
+  auto& lights = viewport.lightParameters();
+  lights.ambient = {0.8f, 0.8f, 0.8f, 1.0f};
+  lights.diffuse = {0.28f, 0.28f, 0.28f, 1.0f};
+  lights.specular = {0.0f, 0.0f, 0.0f, 1.0f};
+}
+
+struct CountClass {
+  std::uint32_t least;
+  TColor color;
+  const char* text;
+};
+constexpr std::size_t countClasses = 6;
+/// Light to dark, and none of it the blue or the grey of the paths.
+const CountClass& classOf(std::uint32_t count) {
+  static const CountClass classes[countClasses] = {
+      {100, {0x46, 0x03, 0x9f}, "100 or more"}, {30, {0x9c, 0x17, 0x9e}, "30 to 99"},
+      {10, {0xd8, 0x45, 0x6c}, "10 to 29"},     {3, {0xed, 0x79, 0x33}, "3 to 9"},
+      {1, {0xf5, 0xb7, 0x00}, "1 or 2"},        {0, {0x8a, 0x93, 0x9f}, "not stated"}};
+  return *std::find_if(std::begin(classes), std::end(classes),
+                       [&](const CountClass& c) { return count >= c.least; });
+}
+
+/// MRPT's letters are those of ASCII: one `?` for each other character of UTF-8.
+std::string asciiOf(const std::string& text) {
+  std::string ascii;
+  for (unsigned char c : text)
+    if ((c & 0xc0) != 0x80) ascii += c < 0x80 ? static_cast<char>(c) : '?';
+  return ascii;
+}
+
+}  // namespace
+
+Eigen::Vector2d originFor(const Eigen::AlignedBox2d& box_map) {
+  if (box_map.isEmpty()) return Eigen::Vector2d::Zero();
+  const Eigen::Vector2d centre = box_map.center();
+  return {roundOrigin(centre.x()), roundOrigin(centre.y())};
+}
+
+std::string originText(const Eigen::Vector2d& origin_map) {
+  if (origin_map.isZero()) return "";
+  return "origin: x " + io::fixed(origin_map.x(), 0) + ", y " + io::fixed(origin_map.y(), 0) +
+         " m of the map";
+}
+
+void prepare(COpenGLViewport& viewport) {
+  viewport.setCustomBackgroundColor({1.0f, 1.0f, 1.0f});
+  light(viewport);
+}
+
+void put(COpenGLViewport& viewport, const std::string& name,
+         const mrpt::opengl::CRenderizable::Ptr& object) {
+  if (auto old = viewport.getByName(name)) viewport.removeObject(old);
+  if (!object) return;
+  object->setName(name);
+  viewport.insert(object);
+}
+
+COpenGLViewport& panelOf(COpenGLScene& scene, const std::string& name, double border) {
+  COpenGLViewport* panel = nullptr;
+  for (const auto& viewport : scene.viewports())
+    if (viewport->getName() == name) panel = viewport.get();
+  if (!panel) panel = scene.createViewport(name).get();
+  panel->setCustomBackgroundColor({0.97f, 0.975f, 0.98f});
+  panel->setBorderSize(static_cast<unsigned>(std::lround(border)));
+  panel->setBorderColor(TColor(0x90, 0x98, 0xa4));
+  light(*panel);
+  return *panel;
+}
+
+mrpt::opengl::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step) {
+  const auto down = [&](double value) {
+    return static_cast<float>(std::floor(value / step) * step);
+  };
+  const auto up = [&](double value) { return static_cast<float>(std::ceil(value / step) * step); };
+  auto grid = mrpt::opengl::CGridPlaneXY::Create(down(box.min().x()), up(box.max().x()),
+                                                 down(box.min().y()), up(box.max().y()), 0.0f,
+                                                 static_cast<float>(step));
+  grid->setColor_u8(groundColor);
+  return grid;
+}
+
+void drawPole(mrpt::opengl::CSetOfObjects& objects, double x, double y, double radius,
+              double bottom, double top, const TColor& color, const std::string& name) {
+  const auto drawn = static_cast<float>(std::max(radius, 0.05));
+  const auto height = static_cast<float>(std::max(top - bottom, 0.1));
+  auto cylinder = mrpt::opengl::CCylinder::Create(drawn, drawn, height);
+  cylinder->setSlicesCount(12);
+  cylinder->setLocation(x, y, bottom);
+  cylinder->setColor_u8(color);
+  cylinder->setName(name);
+  objects.insert(cylinder);
+}
+
+mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<Dot>& dots, double pixels) {
+  auto points = mrpt::opengl::CPointCloudColoured::Create();
+  points->reserve(dots.size());
+  for (const Dot& dot : dots) {
+    const auto p = pointOf(dot.place);
+    points->insertPoint({p.x, p.y, p.z, dot.color.R, dot.color.G, dot.color.B, 0xff});
+  }
+  points->setPointSize(static_cast<float>(pixels));
+  points->enableVariablePointSize(false);
+  return points;
+}
+
+void insertFace(CSetOfTriangles& triangles, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                const Eigen::Vector3d& c, const TColor& color) {
+  mrpt::opengl::TTriangle triangle(pointOf(a), pointOf(b), pointOf(c));
+  triangle.computeNormals();
+  triangle.setColor(color);
+  triangles.insertTriangle(triangle);
+}
+
+void insertRibbon(CSetOfTriangles& triangles, const Path& path, double height, double width,
+                  const TColor& color, double left) {
+  const auto edge = [&](std::size_t i, double side) -> Eigen::Vector3d {
+    const Eigen::Vector2d along = path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0];
+    const double length = along.norm();
+    const Eigen::Vector2d across(-along.y(), along.x());
+    const Eigen::Vector2d place =
+        path[i] + (length > 0 ? (left + side * width / 2) / length : 0) * across;
+    return {place.x(), place.y(), height};
+  };
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    insertFace(triangles, edge(i - 1, -1), edge(i, -1), edge(i, 1), color);
+    insertFace(triangles, edge(i - 1, -1), edge(i, 1), edge(i - 1, 1), color);
+  }
+}
+
+TColor colorOfCount(std::uint32_t count) {
+  return classOf(count).color;
+}
+
+std::vector<LegendLine> countLegend(const std::vector<MapPole>& poles) {
+  std::vector<LegendLine> lines{{std::to_string(poles.size()) + " poles, coloured by detections"}};
+  for (std::uint32_t least : {100, 30, 10, 3, 1, 0}) {
+    const CountClass& wanted = classOf(least);
+    const auto found = std::count_if(poles.begin(), poles.end(), [&](const MapPole& pole) {
+      return classOf(pole.count).least == least;
+    });
+    if (found > 0)
+      lines.push_back({std::string(wanted.text) + ": " + std::to_string(found), wanted.color});
+  }
+  return lines;
+}
+
+void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, double scale,
+                Corner corner) {
+  constexpr double margin = 10, spacing = 6, mark = 10, indent = 18;  // pixels
+  constexpr double letter = 0.82;                                     // its width by its size
+  double height = 2 * margin - spacing, width = 0;
+  for (const LegendLine& line : lines) {
+    height += line.size + spacing;
+    width = std::max(width, letter * line.size * static_cast<double>(line.text.size()) +
+                                (line.mark ? indent : 0));
+  }
+  width += 2 * margin;
+  const auto place = [&](bool far, double length) {  // MRPT counts negative ones from the far side
+    constexpr double off = 10;
+    return far ? -(off + length) * scale : off * scale;
+  };
+  COpenGLViewport& panel = panelOf(scene, "text", scale);
+  panel.setViewportPosition(place(corner.right, width), place(corner.top, height), width * scale,
+                            height * scale);
+  panel.getCamera().setNoProjection();
+  panel.clearTextMessages();
+  std::vector<Dot> marks;
+  double y = height - margin;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const LegendLine& line = lines[i];
+    y -= line.size;
+    // Without projection a viewport reaches from -1 to 1.
+    if (line.mark)
+      marks.push_back(
+          {{2 * (margin + mark / 2) / width - 1, 2 * (y + line.size / 2) / height - 1, 0},
+           *line.mark});
+    mrpt::opengl::TFontParams font;
+    font.vfont_name = "sans";
+    font.vfont_scale = static_cast<float>(line.size * scale);
+    font.color = mrpt::img::TColorf(line.color);
+    panel.addTextMessage((margin + (line.mark ? indent : 0)) * scale, y * scale, asciiOf(line.text),
+                         i, font);
+    y -= spacing;
+  }
+  put(panel, "marks", makeDots(marks, mark * scale));
+}
+
+void save(const COpenGLScene& scene, const std::filesystem::path& file) {
+  // Through memory: MRPT's file streams do not tell when the disk is full.
+  mrpt::io::CMemoryStream bytes;
+  mrpt::serialization::archiveFrom(bytes) << scene;
+  io::AtomicFile output(file);
+  output.stream().write(static_cast<const char*>(bytes.getRawBufferData()),
+                        static_cast<std::streamsize>(bytes.getTotalBytesCount()));
+  output.commit();
+}
+
+}  // namespace polemcl::scene

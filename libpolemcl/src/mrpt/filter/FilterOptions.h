@@ -1,0 +1,91 @@
+#pragma once
+/// \file FilterOptions.h
+/// \brief The settings of the particle filter and of its start, with units, defaults and sources.
+
+#include <cstdint>
+#include <optional>
+
+#include "config/Config.h"
+#include "core/common/Types.h"
+#include "core/localization/KldSampleSize.h"
+
+namespace polemcl {
+
+enum class Resampling { systematic, stratified, multinomial };
+enum class PoseEstimator { mean, bestShare };
+/// \brief When the estimate of a scan is taken.
+enum class EstimateTime {
+  beforeResampling,
+  /// Where the scan led to resampling, of equally weighted copies: the best by weight are then an
+  /// arbitrary share of them (first implementation).
+  afterResampling
+};
+
+/// \brief `[filter]` in INI files. The paper's filter: `estimate = best_share`, heaviest_place
+/// false, and regularization, tempering and the extra sigmas 0.
+struct FilterOptions {
+  int particles = 1000;  ///< (paper: 1000 NCLT; first implementation: 500 to 2000)
+  /// Each resampling keeps as many particles as the posterior needs, by the bins it covers: many
+  /// while it is spread, few once it has converged. `particles` is then only the yardstick of
+  /// `tempering`.
+  bool adaptive = false;
+  KldOptions kld;              ///< of `adaptive`
+  double resampleBelow = 0.5;  ///< resample when the effective share falls below; 0: never (paper)
+  Resampling resampling = Resampling::systematic;
+  /// `mean`: weighted mean of all particles. `best_share`: of the best by weight (paper: 10 %),
+  /// which forgets what earlier scans said about the others.
+  PoseEstimator estimate = PoseEstimator::mean;
+  double bestShare = 0.1;                                      ///< in (0, 1]; only for `best_share`
+  EstimateTime estimateTime = EstimateTime::beforeResampling;  ///< `estimate_time`
+  /// Where the particles are spread wide (PoleLocalization::wideMetres), the estimate is the mean
+  /// of the heaviest of the places they are in, instead of the above. Used by PoleLocalization.
+  bool heaviestPlace = true;
+  /// After resampling, particles are moved by a Gaussian whose standard deviations are this share
+  /// of those of the whole set (a regularized filter: Musso, Oudjane, Le Gland 2001), at most
+  /// PoleLocalizer::maxJitterMetres and maxJitterRadians. 0: copies stay where they are.
+  double regularization = 0.2;
+  /// A scan that would leave an effective share below this is used in steps: first with a wider
+  /// likelihood (2 to 32 times the sigma) that leaves this share, resampling, then a narrower
+  /// one, down to the likelihood itself, or to the narrowest that does not fall between the
+  /// particles (PoleLocalizer::narrowestDense). It is what finds the way from the start disc, where
+  /// few particles are near the truth. 0: at once.
+  double tempering = 0.2;
+  /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry
+  /// whose error grows with the motion knows (nearly) no error across the driving direction.
+  double extraSigma = 0.003;
+  double extraSigmaYaw = 0.00034906585039887;  ///< 0.02° (`extra_sigma_deg`)
+  void validate() const;                       ///< \throws Error
+};
+
+/// \brief How positions are drawn in the disc of the start.
+enum class StartPositions {
+  area,   ///< uniform in its area
+  radius  ///< distance from its centre uniform, so crowded there (first implementation)
+};
+
+/// \brief Where the filter starts. `[start]` in INI files.
+struct StartOptions {
+  bool anywhere = false;       ///< true: no start pose, the global search finds it (`anywhere`)
+  std::optional<Pose2D> pose;  ///< map frame (`position_m`, `yaw_deg`); none: from the truth
+  static constexpr double maxRadius = 10000;  ///< m; farther off the search (`anywhere`) is better
+  double radius = 2.5;                        ///< of the disc of positions, m (paper)
+  StartPositions positions = StartPositions::area;
+  double heading = 0.087266462599716;  ///< headings uniform in ± this, rad (paper: 5°)
+  /// Drawn at the start, where few would be near the truth; the first resampling keeps
+  /// FilterOptions::particles of them. Smaller numbers mean that one.
+  int particles = 10000;
+  void validate() const;  ///< \throws Error
+};
+
+/// \brief How often the same drive is localized. `[runs]` in INI files.
+struct RunOptions {
+  int runs = 1;            ///< (paper: 10)
+  std::uint32_t seed = 1;  ///< of the first run; run i uses seed + i
+  void validate() const;   ///< \throws Error
+};
+
+void bind(Binder& binder, FilterOptions& options);  ///< `[filter]`
+void bind(Binder& binder, StartOptions& options);   ///< `[start]`
+void bind(Binder& binder, RunOptions& options);     ///< `[runs]`
+
+}  // namespace polemcl

@@ -1,0 +1,287 @@
+#include "mrpt/filter/LocalizationPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "core/localization/PoseModes.h"
+
+namespace polemcl {
+namespace {
+
+void requireSearch(bool good, const char* key, double value, const char* allowed) {
+  if (good) return;
+  std::ostringstream text;
+  text << "[search] " << key << " = " << value << ": allowed is " << allowed;
+  throw Error(text.str());
+}
+
+const LocalizationOptions& checked(const LocalizationOptions& options) {
+  options.validate();
+  return options;
+}
+
+/// A search's place as the filter takes it.
+PoseHypothesis toFilter(const GlobalHypothesis& place) {
+  return {{place.pose_map_robot, place.covariance}, place.weight};
+}
+
+bool isWide(const Eigen::Matrix3d& covariance) {
+  const double square = PoleLocalization::wideMetres * PoleLocalization::wideMetres;
+  return covariance(0, 0) > square || covariance(1, 1) > square ||
+         covariance(2, 2) > PoleLocalization::wideRadians * PoleLocalization::wideRadians;
+}
+
+}  // namespace
+
+void TrackingOptions::validate() const {
+  if (minHits < 1)
+    throw Error("[tracking] min_hits = " + std::to_string(minHits) + ": allowed is 1 or more");
+  if (!(every >= 0 && std::isfinite(every)))
+    throw Error("[tracking] every_m = " + std::to_string(every) + ": allowed is 0 or more");
+  if (average && cadence == Cadence::section)
+    throw Error("[tracking] cadence = section: allowed is scan where average = true");
+  localMaps.validate();
+}
+
+void SearchOptions::validate() const {
+  requireSearch(every > 0 && std::isfinite(every), "every_m", every, "more than 0");
+  requireSearch(everySeconds > 0 && std::isfinite(everySeconds), "every_s", everySeconds,
+                "more than 0");
+  requireSearch(patience >= 0 && std::isfinite(patience), "patience_m", patience, "0 or more");
+  requireSearch(particles >= 1 && particles <= 1000000, "particles", particles, "1 to 1000000");
+}
+
+void LocalizationOptions::validate() const {
+  filter.validate();
+  tracking.validate();
+  submap.validate();
+  global.validate();
+  health.validate();
+  search.validate();
+  motionCheck.validate();
+}
+
+LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
+                                 const GlobalOptions& options)
+    : poles(std::move(poleMap)) {
+  if (!poles || poles->poles().empty())
+    throw Error("the map has no poles: nothing can be localized in it");
+  search = std::make_shared<GlobalLocalizer>(poles->poles(), options);
+}
+
+PoleLocalization::PoleLocalization(LocalizationMap map, const LocalizationOptions& options,
+                                   std::uint32_t seed)
+    : m_map(std::move(map)),
+      m_options(checked(options)),
+      m_filter(m_map.poles, options.filter, seed),
+      m_submap(options.submap),
+      m_tracks(options.submap),
+      m_localMaps(options.tracking.localMaps),
+      m_motionCheck(options.motionCheck),
+      m_monitor(options.health) {}
+
+void PoleLocalization::start(const StartOptions& start) {
+  if (start.pose) {
+    const auto nearest = m_map.poles->index().nearest(start.pose->x, start.pose->y, INFINITY);
+    const double distance = nearest ? nearest->distance - start.radius : INFINITY;
+    if (!(distance <= maxStartDistance)) {
+      std::ostringstream text;
+      text << "the start at " << start.pose->x << ' ' << start.pose->y << " m lies " << distance
+           << " m from the nearest pole of the map, allowed are " << maxStartDistance
+           << " m: is it in the frame of this map?";
+      throw Error(text.str());
+    }
+  }
+  m_filter.start(start);
+  startAnywhere();
+  m_hasPose = true;
+  m_monitor.begin();
+}
+
+void PoleLocalization::startAnywhere() {
+  m_submap.clear();
+  m_tracks.clear();
+  m_localMaps.clear();
+  m_motionCheck.clear();
+  m_monitor.reset();
+  m_search = {};
+  m_searches = 0;
+  m_searchedAt = 0;
+  m_matches.clear();
+  m_started = true;
+  m_hasPose = m_stepped = m_mistrusted = false;
+}
+
+void PoleLocalization::checkFrame(const PoleFrame& frame) const {
+  if (!m_started)
+    throw Error("the localization has not been started: call start() or startAnywhere() first");
+  const std::string when = std::to_string(frame.time) + " s";
+  if (!std::isfinite(frame.time) || (m_stepped && frame.time <= m_time))
+    throw Error("time does not move on: a scan at " + when + " comes after one at " +
+                std::to_string(m_time) + " s");
+  if (!m_stepped) return;
+  if (!frame.motion)
+    throw Error("no motion leads to the scan at " + when + ": the filter needs odometry");
+  try {
+    makeMotionAction(*frame.motion, m_options.filter);
+  } catch (const Error& error) {
+    throw Error("scan at " + when + ": " + error.what());
+  }
+}
+
+LocalizationUpdate PoleLocalization::step(const PoleFrame& seen) {
+  checkFrame(seen);
+  LocalizationUpdate update;
+  update.time = seen.time;
+  const PoleFrame frame = checkedMotion(seen, update);
+  const Pose2D motion = m_stepped ? frame.motion->mean : Pose2D();
+  const double metres = std::hypot(motion.x, motion.y);
+  Eigen::Matrix3d covariance = walkCovariance(motion, m_options.submap);
+  if (m_stepped) covariance += frame.motion->covariance;
+  m_submap.add(motion, covariance, frame.poles_robot);
+  m_tracked = frame;
+  m_tracked.poles_robot = polesForFilter(motion, covariance, frame.poles_robot);
+
+  update.poles = frame.poles_robot.size();
+  if (m_hasPose) track(frame, metres, update);
+  if (!m_stepped) m_searchTime = frame.time;
+  m_stepped = true;
+  m_time = frame.time;
+  doubtSubmap();
+  if (searchIsDue()) search(frame, update);
+  update.health = m_monitor.health();
+  return update;
+}
+
+std::vector<PoleDetection> PoleLocalization::polesForFilter(
+    const Pose2D& motion, const Eigen::Matrix3d& covariance,
+    const std::vector<PoleDetection>& poles_robot) {
+  const TrackingOptions& tracking = m_options.tracking;
+  if (tracking.cadence == Cadence::section) return m_localMaps.add(motion, poles_robot);
+  if (!tracking.average) return poles_robot;
+  m_tracks.add(motion, covariance, poles_robot);
+  // At the start every scan counts: there is nothing to average yet.
+  if (m_tracks.frames() == 1) return poles_robot;
+  return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), tracking.every);
+}
+
+/// The frame, its motion replaced where the poles contradict it.
+PoleFrame PoleLocalization::checkedMotion(const PoleFrame& frame, LocalizationUpdate& update) {
+  const io::PlanarMotion odometry = m_stepped ? *frame.motion : io::PlanarMotion();
+  const CheckedMotion checked =
+      m_motionCheck.add(frame.time, odometry.mean, odometry.covariance, frame.poles_robot);
+  update.motion = checked.verdict;
+  PoleFrame result = frame;
+  if (checked.replaced) result.motion = io::PlanarMotion{checked.motion, checked.covariance};
+  return result;
+}
+
+void PoleLocalization::track(const PoleFrame& frame, double metres, LocalizationUpdate& update) {
+  PoseWithCovariance estimate = m_filter.step(m_tracked);
+  double modeShare = 1;
+  if (isWide(estimate.covariance)) {
+    const PoseMode mode = heaviestMode(m_filter.particles(), m_filter.logWeights());
+    if (m_options.filter.heaviestPlace) estimate = mode.estimate;
+    modeShare = mode.share;
+  }
+  m_estimate = estimate;
+  update.estimate = estimate;
+  update.step = m_filter.report();
+
+  HealthInput input;
+  input.time = frame.time;
+  input.metres = metres;
+  m_matches = match(frame, estimate);
+  input.matches = m_matches;
+  input.estimate = estimate;
+  input.effectiveParticles =
+      m_filter.report().effectiveShare * static_cast<double>(m_filter.report().particles);
+  input.modeShare = modeShare;
+  input.odometryContradicted = update.motion == MotionVerdict::contradicted;
+  m_monitor.update(input);
+}
+
+/// After a jump the submap holds poles from before it, which fit the old place.
+void PoleLocalization::doubtSubmap() {
+  const bool mismatch = m_hasPose && m_monitor.health().reason == HealthReason::mismatch;
+  if (mismatch && !m_mistrusted) {
+    m_submap.clear();
+    m_searchedAt = 0;
+    m_searchTime = m_time;
+  }
+  m_mistrusted = mismatch;
+}
+
+bool PoleLocalization::searchIsDue() const {
+  if (m_hasPose) {
+    if (!m_options.search.recover) return false;
+    const Health& health = m_monitor.health();
+    const bool doubtful =
+        health.state == HealthState::lost || health.reason == HealthReason::mismatch ||
+        health.reason == HealthReason::ambiguous || health.reason == HealthReason::spread;
+    if (!doubtful) return false;
+  }
+  return m_submap.driven() - m_searchedAt >= m_options.search.every ||
+         m_time - m_searchTime >= m_options.search.everySeconds;
+}
+
+void PoleLocalization::search(const PoleFrame& frame, LocalizationUpdate& update) {
+  m_searchedAt = m_submap.driven();
+  m_searchTime = m_time;
+  ++m_searches;
+  m_search = m_map.search->localize(m_submap);
+  if (m_search.verdict == GlobalVerdict::none) return;
+  const bool resolved = m_search.verdict == GlobalVerdict::resolved;
+  const bool here = resolved && m_hasPose && agrees(m_search.hypotheses[0]);
+  if (!resolved) {
+    // The filter keeps several places already, or a few metres more may tell.
+    if (m_hasPose && m_monitor.health().state != HealthState::lost) return;
+    if (m_submap.driven() < m_options.search.patience) return;
+  } else if (here && !fitsBetter(m_search.hypotheses[0], frame)) {
+    return;
+  }
+  const bool wasElsewhere = m_hasPose && !here;
+  adopt(frame, resolved, update);
+  if (wasElsewhere) m_monitor.reportElsewhere();
+}
+
+bool PoleLocalization::agrees(const GlobalHypothesis& place) const {
+  const Pose2D& found = place.pose_map_robot;
+  const Pose2D& estimate = m_estimate.mean;
+  return std::hypot(found.x - estimate.x, found.y - estimate.y) <= sameMetres &&
+         std::abs(wrapAngle(found.yaw - estimate.yaw)) <= sameRadians;
+}
+
+/// A filter that has settled beside the truth, on poles that happened to fit, is too sure to leave.
+bool PoleLocalization::fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const {
+  const auto sum = [](const std::vector<PoleMatch>& matches) {
+    double matched = 0;
+    for (const PoleMatch& match : matches) matched += match.matched ? match.confidence : 0;
+    return matched;
+  };
+  const PoseWithCovariance pose{place.pose_map_robot, place.covariance};
+  return sum(match(frame, pose)) > sum(m_matches) + betterPoles;
+}
+
+std::vector<PoleMatch> PoleLocalization::match(const PoleFrame& frame,
+                                               const PoseWithCovariance& pose) const {
+  return matchPoles(frame.poles_robot, pose, m_map.poles->index(),
+                    {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
+}
+
+void PoleLocalization::adopt(const PoleFrame& frame, bool resolved, LocalizationUpdate& update) {
+  std::vector<PoseHypothesis> places;
+  for (const GlobalHypothesis& place : m_search.hypotheses) {
+    places.push_back(toFilter(place));
+    if (resolved) break;
+  }
+  m_filter.start(places, m_options.search.particles);
+  m_hasPose = true;
+  m_monitor.begin(resolved);
+  track(frame, 0, update);
+  update.relocalized = true;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,155 @@
+#pragma once
+/// \file LocalizationPipeline.h
+/// \brief The whole chain behind one call per scan: particle filter, submap of the last metres,
+/// global search, health, and a check of the odometry by the poles.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "config/Config.h"
+#include "core/global_localization/GlobalLocalizer.h"
+#include "core/localization/LocalMaps.h"
+#include "core/localization/LocalSubmap.h"
+#include "core/localization/LocalizationHealth.h"
+#include "core/localization/OdometryMonitor.h"
+#include "mrpt/filter/PoleParticleFilter.h"
+
+namespace polemcl {
+
+/// \brief When the global search is asked. `[search]` in INI files.
+struct SearchOptions {
+  bool recover = true;      ///< a vehicle that is lost is looked for on the whole map
+  double every = 4;         ///< metres driven between two searches, m
+  double everySeconds = 5;  ///< or after so long, standing still, s
+  /// Without a pose: several places that are about as likely are handed to the filter after so many
+  /// metres; before, a few metres more may tell, m.
+  double patience = 30;
+  int particles = 4000;   ///< drawn round the places that a search hands to the filter
+  void validate() const;  ///< \throws Error naming the field
+};
+
+/// \brief When the filter gets detections.
+enum class Cadence {
+  scan,    ///< at every scan
+  section  ///< at the end of each section, those of its middle scan (first implementation)
+};
+
+/// \brief What of the detections the filter is given. `[tracking]` in INI files.
+struct TrackingOptions {
+  /// Detections of a pole are averaged in the odometry frame and used together: what is wrong with
+  /// one is wrong with the next in much the same way, so each for itself would count too much.
+  bool average = true;
+  int minHits = 2;                  ///< poles seen less often are not used
+  double every = 0.5;               ///< a pole is used again after so many driven metres, m
+  Cadence cadence = Cadence::scan;  ///< `section` needs `average` to be false
+  LocalMapOptions localMaps;        ///< of Cadence::section
+  void validate() const;            ///< \throws Error naming the field
+};
+
+/// \brief All settings of the chain.
+struct LocalizationOptions {
+  FilterOptions filter;
+  TrackingOptions tracking;
+  SubmapOptions submap;
+  GlobalOptions global;
+  HealthOptions health;
+  SearchOptions search;
+  MotionCheckOptions motionCheck;
+  void validate() const;  ///< \throws Error
+};
+
+/// \brief What is known after one scan.
+struct LocalizationUpdate {
+  double time = 0;                             ///< s, of the scan
+  std::optional<PoseWithCovariance> estimate;  ///< map frame; none while no pose is known
+  Health health;
+  std::size_t poles = 0;  ///< observed in the scan
+  /// Of the filter, all zero without a pose; its `poles` are those it was given.
+  StepReport step;
+  bool relocalized = false;  ///< the global search put the filter here in this step
+  MotionVerdict motion = MotionVerdict::unknown;  ///< of the poles about the odometry
+};
+
+/// \brief The map as the chain needs it, prepared once and shared by many runs.
+struct LocalizationMap {
+  /// \throws Error on a map without poles, or options out of range.
+  LocalizationMap(std::shared_ptr<const CPoleMap> poleMap, const GlobalOptions& options);
+  std::shared_ptr<const CPoleMap> poles;
+  std::shared_ptr<const GlobalLocalizer> search;
+};
+
+/// \brief Localizes one drive. Deterministic by its seed; objects may run in parallel on one map.
+class PoleLocalization {
+ public:
+  /// \throws Error on options out of range.
+  PoleLocalization(LocalizationMap map, const LocalizationOptions& options, std::uint32_t seed);
+
+  /// \brief Starts round a pose. \throws Error as PoleLocalizer::start(), and when the disc lies
+  /// farther than `maxStartDistance` from every pole of the map.
+  void start(const StartOptions& start);
+  /// \brief Starts without any idea of the pose: the global search finds it on the way.
+  void startAnywhere();
+
+  /// \brief One scan more. Of the first frame the motion is not used.
+  /// \throws Error as PoleLocalizer::step(); nothing has changed then.
+  LocalizationUpdate step(const PoleFrame& frame);
+
+  static constexpr double maxStartDistance = 1000;  ///< m
+  /// A search's answer this near to the estimate is the same place, m and rad.
+  static constexpr double sameMetres = 0.5, sameRadians = 0.035;
+  /// There, it is taken all the same if so many poles of the scan more stand on the map.
+  static constexpr double betterPoles = 2;
+  /// Particles whose standard deviation is above may be in several places, m and rad.
+  static constexpr double wideMetres = 0.3, wideRadians = 0.1;
+
+  /// \name For those who draw it
+  /// @{
+  bool hasPose() const { return m_hasPose; }
+  const PoleLocalizer& filter() const { return m_filter; }  ///< particles only with a pose
+  const LocalSubmap& submap() const { return m_submap; }
+  const GlobalResult& lastSearch() const { return m_search; }  ///< empty before the first
+  std::size_t searches() const { return m_searches; }          ///< since the start
+  /// \brief Of the last frame's poles at the estimate, in their order; empty without a pose.
+  const std::vector<PoleMatch>& matches() const { return m_matches; }
+  const LocalizationMap& map() const { return m_map; }
+  /// @}
+
+ private:
+  void checkFrame(const PoleFrame& frame) const;
+  PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
+  std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                                            const std::vector<PoleDetection>& poles_robot);
+  void track(const PoleFrame& frame, double metres, LocalizationUpdate& update);
+  void doubtSubmap();
+  bool searchIsDue() const;
+  void search(const PoleFrame& frame, LocalizationUpdate& update);
+  bool agrees(const GlobalHypothesis& place) const;
+  bool fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const;
+  std::vector<PoleMatch> match(const PoleFrame& frame, const PoseWithCovariance& pose) const;
+  void adopt(const PoleFrame& frame, bool resolved, LocalizationUpdate& update);
+
+  LocalizationMap m_map;
+  LocalizationOptions m_options;
+  PoleLocalizer m_filter;
+  LocalSubmap m_submap;   ///< for the search
+  LocalSubmap m_tracks;   ///< for the filter
+  LocalMaps m_localMaps;  ///< for the filter, of Cadence::section
+  MotionCheck m_motionCheck;
+  HealthMonitor m_monitor;
+  PoleFrame m_tracked;  ///< this frame as the filter gets it
+  GlobalResult m_search;
+  std::vector<PoleMatch> m_matches;
+  PoseWithCovariance m_estimate;
+  bool m_hasPose = false, m_started = false, m_stepped = false;
+  bool m_mistrusted = false;  ///< the submap was begun anew because poles do not match
+  std::size_t m_searches = 0;
+  double m_time = 0;        ///< of the last frame, s
+  double m_searchedAt = 0;  ///< metres of the submap at the last search
+  double m_searchTime = 0;  ///< s, of the last search
+};
+
+void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`
+void bind(Binder& binder, SearchOptions& options);    ///< `[search]`
+
+}  // namespace polemcl

@@ -1,0 +1,74 @@
+#include "mrpt/filter/MotionAction.h"
+
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace polemcl {
+
+namespace {
+
+void requireFinite(const io::PlanarMotion& motion) {
+  if (!std::isfinite(motion.mean.x) || !std::isfinite(motion.mean.y) ||
+      !std::isfinite(motion.mean.yaw) || !motion.covariance.allFinite())
+    throw Error("the motion is not finite: check the odometry");
+  const double metres = std::hypot(motion.mean.x, motion.mean.y);
+  if (metres <= maxMotionStep) return;
+  std::ostringstream text;
+  text << "the motion is " << metres << " m long; at most " << maxMotionStep
+       << " m from one scan to the next are allowed: check the odometry";
+  throw Error(text.str());
+}
+
+void requireCovariance(const Eigen::Matrix3d& covariance) {
+  constexpr double rounding = 1e-9;
+  const double size = covariance.cwiseAbs().maxCoeff();
+  if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > rounding * size)
+    throw Error("the covariance of the motion is not symmetric: check the odometry");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+  if (solver.eigenvalues()[0] < -rounding * size) {
+    std::ostringstream text;
+    text << "the covariance of the motion has the negative eigenvalue " << solver.eigenvalues()[0]
+         << ": check the odometry";
+    throw Error(text.str());
+  }
+}
+
+void requireCertain(const Eigen::Matrix3d& covariance) {
+  const double metres = std::sqrt(std::max({0.0, covariance(0, 0), covariance(1, 1)}));
+  const double radians = std::sqrt(std::max(0.0, covariance(2, 2)));
+  if (metres <= maxMotionMetres && radians <= maxMotionRadians) return;
+  std::ostringstream text;
+  text << "the motion is too uncertain, with standard deviations of " << metres << " m and "
+       << radians << " rad; at most " << maxMotionMetres << " m and " << maxMotionRadians
+       << " rad are allowed: check the odometry, or [motion]";
+  throw Error(text.str());
+}
+
+}  // namespace
+
+mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motion,
+                                                   const FilterOptions& options) {
+  requireFinite(motion);
+  requireCovariance(motion.covariance);
+  requireCertain(motion.covariance);
+  // The floor of 1 µm and 1 µrad keeps MRPT's sampler, which takes the roots of eigenvalues, away
+  // from those that rounding has made negative.
+  const double xy = options.extraSigma * options.extraSigma + 1e-12;
+  const double yaw = options.extraSigmaYaw * options.extraSigmaYaw + 1e-12;
+  const Eigen::Matrix3d extra = Eigen::Vector3d(xy, xy, yaw).asDiagonal();
+  mrpt::obs::CActionRobotMovement2D movement;
+  movement.estimationMethod = mrpt::obs::CActionRobotMovement2D::emScan2DMatching;
+  movement.poseChange = mrpt::poses::CPosePDFGaussian::Create(
+      mrpt::poses::CPose2D(motion.mean.x, motion.mean.y, motion.mean.yaw),
+      mrpt::math::CMatrixDouble33(Eigen::Matrix3d(motion.covariance + extra)));
+  auto action = mrpt::obs::CActionCollection::Create();
+  action->insert(movement);
+  return action;
+}
+
+}  // namespace polemcl

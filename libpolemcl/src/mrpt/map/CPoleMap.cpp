@@ -1,0 +1,210 @@
+#include "mrpt/map/CPoleMap.h"
+
+#include <mrpt/serialization/CArchive.h>
+#include <mrpt/serialization/stl_serialization.h>  // to write std::map
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/mapping/IncrementalMerge.h"
+#include "io/file/ReadLimits.h"
+#include "io/map/PoleMapFile.h"
+#include "io/map/PolePositions.h"
+#include "mrpt/common/BoundedRead.h"
+#include "mrpt/drawing/OverviewScene.h"
+#include "mrpt/observation/CObservationPoles.h"
+
+IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
+
+namespace polemcl {
+
+using mrpt::serialization::CArchive;
+
+namespace {
+
+void writeMapPole(CArchive& out, const MapPole& pole) {
+  out << pole.x << pole.y << pole.radius << pole.bottom << pole.top << pole.confidence
+      << pole.covariance(0, 0) << pole.covariance(0, 1) << pole.covariance(1, 1) << pole.count;
+}
+
+MapPole readMapPole(CArchive& in) {
+  MapPole pole;
+  auto& C = pole.covariance;
+  in >> pole.x >> pole.y >> pole.radius >> pole.bottom >> pole.top >> pole.confidence >> C(0, 0) >>
+      C(0, 1) >> C(1, 1) >> pole.count;
+  C(1, 0) = C(0, 1);
+  return pole;
+}
+
+Pose2D planarPose(const mrpt::poses::CPose3D& pose) {
+  return {pose.x(), pose.y(), pose.yaw()};
+}
+
+void requireStorable(const CPoleMap& map) {
+  bool fits = map.poles().size() <= io::mostMapPoles && map.info.size() <= io::mostMapFacts;
+  for (const auto& [key, value] : map.info)
+    fits = fits && std::max(key.size(), value.size()) <= io::longestMapFact;
+  if (!fits)
+    throw Error("a map of more than " + std::to_string(io::mostMapPoles) + " poles or " +
+                std::to_string(io::mostMapFacts) + " facts, or with one of more than " +
+                std::to_string(io::longestMapFact) + " bytes, fits into no archive of MRPT");
+}
+
+void requireUsableMap(const MapPole& pole, std::size_t i) {
+  const auto& C = pole.covariance;
+  if (!std::isfinite(pole.x) || !std::isfinite(pole.y) || !C.allFinite())
+    throw Error("pole " + std::to_string(i) + ": position and covariance must be finite numbers");
+  if (!(C(0, 0) >= 0 && C(1, 1) >= 0 && C.determinant() >= -1e-12 * C(0, 0) * C(1, 1)))
+    throw Error("pole " + std::to_string(i) + ": the covariance must be positive semidefinite");
+}
+
+}  // namespace
+
+CPoleMap::CPoleMap() : m_index(std::make_shared<PoleIndex>(m_poles)) {}
+
+void CPoleMap::setPoles(std::vector<MapPole> poles) {
+  for (std::size_t i = 0; i < poles.size(); ++i) requireUsableMap(poles[i], i);
+  auto index = std::make_shared<PoleIndex>(poles, likelihoodOptions.gate);
+  m_poles = std::move(poles);
+  m_index = std::move(index);
+}
+
+void CPoleMap::loadFromPoleMapFile(const std::string& path) {
+  io::PoleMapData data = io::readPoleMap(path);
+  setPoles(std::move(data.poles));
+  info = std::move(data.info);
+}
+
+void CPoleMap::saveToPoleMapFile(const std::string& path) const {
+  io::writePoleMap(path, {m_poles, info});
+}
+
+uint8_t CPoleMap::serializeGetVersion() const {
+  return 1;  // 1: the floor of the likelihood
+}
+
+void CPoleMap::serializeTo(CArchive& out) const {
+  requireStorable(*this);
+  out << genericMapParams << insertionOptions.mergeDistance << insertionOptions.minConfidence;
+  const auto& l = likelihoodOptions;
+  out << static_cast<std::uint8_t>(l.model) << l.sigma << l.outlier << l.gate << l.weighted;
+  out << l.floor;
+  out << info << static_cast<std::uint32_t>(m_poles.size());
+  for (const auto& pole : m_poles) writeMapPole(out, pole);
+}
+
+void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
+  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  in >> genericMapParams >> insertionOptions.mergeDistance >> insertionOptions.minConfidence;
+  auto& l = likelihoodOptions;
+  l.model = static_cast<LikelihoodModel>(in.ReadAs<std::uint8_t>());
+  in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
+  if (version >= 1) in >> l.floor;
+  insertionOptions.validate();
+  l.validate();
+  info = readTexts(in, io::mostMapFacts, io::longestMapFact, "facts about the map");
+  std::vector<MapPole> poles;
+  // One by one: the count in a damaged file must not decide how much memory is taken.
+  for (std::uint32_t left = readCount(in, io::mostMapPoles, "poles"); left > 0; --left)
+    poles.push_back(readMapPole(in));
+  setPoles(std::move(poles));
+}
+
+void CPoleMap::internal_clear() {
+  setPoles({});
+  info.clear();
+}
+
+bool CPoleMap::internal_insertObservation(
+    const mrpt::obs::CObservation& obs,
+    const std::optional<const mrpt::poses::CPose3D>& robotPose) {
+  const auto* scan = dynamic_cast<const CObservationPoles*>(&obs);
+  if (!scan) return false;
+  const Pose2D T_map_robot = robotPose ? planarPose(*robotPose) : Pose2D();
+  const Pose2D T_map_sensor = compose(T_map_robot, scan->planarSensorPose());
+  std::vector<PoleDetection> detections_map;
+  for (const auto& pole : scan->poles)
+    if (pole.confidence >= insertionOptions.minConfidence)
+      detections_map.push_back(moved(T_map_sensor, pole));
+  if (detections_map.empty()) return false;
+  std::vector<MapPole> poles = m_poles;
+  mergeScan(poles, *m_index, detections_map, insertionOptions.mergeDistance);
+  setPoles(std::move(poles));
+  return true;
+}
+
+void CPoleMap::evaluate(const CObservationPoles& scan, const std::vector<Pose2D>& robotPoses,
+                        const std::vector<double>& widenings,
+                        std::vector<std::vector<double>>& out) const {
+  const Pose2D T_robot_sensor = scan.planarSensorPose();
+  // In the sensor's own frame: the same value as in the robot frame, without moving every pole.
+  const bool sameFrame = T_robot_sensor.x == 0 && T_robot_sensor.y == 0 && T_robot_sensor.yaw == 0;
+  std::vector<Pose2D> sensorPoses;
+  if (!sameFrame) {
+    sensorPoses.reserve(robotPoses.size());
+    for (const Pose2D& pose : robotPoses) sensorPoses.push_back(compose(pose, T_robot_sensor));
+  }
+  polemcl::widenedLogLikelihoods(scan.poles, sameFrame ? robotPoses : sensorPoses, *m_index,
+                                 likelihoodOptions, widenings, out);
+}
+
+void CPoleMap::widenedLogLikelihoods(const mrpt::obs::CObservation& observation,
+                                     const std::vector<Pose2D>& robotPoses,
+                                     const std::vector<double>& widenings,
+                                     std::vector<std::vector<double>>& out) const {
+  const auto* scan = dynamic_cast<const CObservationPoles*>(&observation);
+  if (scan && genericMapParams.enableObservationLikelihood)
+    evaluate(*scan, robotPoses, widenings, out);
+  else
+    out.assign(widenings.size(), std::vector<double>(robotPoses.size(), 0.0));
+}
+
+void CPoleMap::logLikelihoods(const mrpt::obs::CObservation& observation,
+                              const std::vector<Pose2D>& robotPoses,
+                              std::vector<double>& out) const {
+  std::vector<std::vector<double>> widened(1);
+  widened[0].swap(out);
+  widenedLogLikelihoods(observation, robotPoses, {1}, widened);
+  out.swap(widened[0]);
+}
+
+double CPoleMap::internal_computeObservationLikelihood(
+    const mrpt::obs::CObservation& obs, const mrpt::poses::CPose3D& takenFrom) const {
+  const auto* scan = dynamic_cast<const CObservationPoles*>(&obs);
+  if (!scan) return 0;
+  std::vector<std::vector<double>> out;
+  evaluate(*scan, {planarPose(takenFrom)}, {1}, out);
+  return out[0][0];
+}
+
+bool CPoleMap::internal_canComputeObservationLikelihood(const mrpt::obs::CObservation& obs) const {
+  return dynamic_cast<const CObservationPoles*>(&obs) != nullptr;
+}
+
+std::string CPoleMap::asString() const {
+  return "polemcl::CPoleMap: " + std::to_string(m_poles.size()) + " poles";
+}
+
+void CPoleMap::saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const {
+  saveToPoleMapFile(filNamePrefix + ".polemap");
+  io::writePoleCsv(filNamePrefix + ".csv", m_poles);
+  scene::Path places;
+  for (const MapPole& pole : m_poles) places.emplace_back(pole.x, pole.y);
+  OverviewScene overview(places, std::filesystem::path(filNamePrefix).filename().string());
+  overview.addPoles("poles", m_poles,
+                    [](const MapPole& pole) { return scene::colorOfCount(pole.count); });
+  overview.addLegend(scene::countLegend(m_poles));
+  scene::save(*overview.finish(), filNamePrefix + ".3Dscene");
+}
+
+void CPoleMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& outObj) const {
+  if (!genericMapParams.enableSaveAs3DObject) return;
+  for (std::size_t i = 0; i < m_poles.size(); ++i) {
+    const auto& pole = m_poles[i];
+    scene::drawPole(outObj, pole.x, pole.y, pole.radius, pole.bottom, pole.top,
+                    scene::colorOfCount(pole.count), "pole " + std::to_string(i));
+  }
+}
+
+}  // namespace polemcl

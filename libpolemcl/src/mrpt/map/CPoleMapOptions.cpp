@@ -1,0 +1,146 @@
+#include <mrpt/config/CConfigFile.h>
+
+#include <cmath>
+#include <ostream>
+
+#include "config/Bindings.h"
+#include "mrpt/common/MrptCompatibility.h"
+#include "mrpt/map/CPoleMap.h"
+
+MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)
+
+namespace polemcl {
+
+namespace {
+
+using Source = mrpt::config::CConfigFileBase;
+
+std::string nameOf(const Source& source) {
+  const auto* file = dynamic_cast<const mrpt::config::CConfigFile*>(&source);
+  return file ? file->getAssociatedFile() : "map options";
+}
+
+void bind(Binder& b, CPoleMap::TInsertionOptions& o) {
+  b.section("insertion", "How observations are merged into the pole map");
+  b.number("merge_distance", o.mergeDistance, Range::above(0), "m",
+           "a detection this near to a pole is that pole");
+  b.number("min_confidence", o.minConfidence, Range::between(0, 1), "",
+           "detections below are not inserted");
+  b.check(o);
+}
+
+/// Fills options from one section of a configuration that MRPT hands over.
+template <class Options>
+void load(const Source& source, const std::string& section, Options& options) {
+  ConfigReader reader(source, nameOf(source), section);
+  bind(reader, options);
+  reader.finish();
+}
+
+/// Writes options into one section of a configuration of MRPT.
+class SourceWriter : public Binder {
+ public:
+  SourceWriter(Source& target, std::string section)
+      : m_target(target), m_fixedSection(std::move(section)) {}
+
+ protected:
+  void openSection(const std::string&) override { m_section = m_fixedSection; }
+  std::optional<std::string> exchange(const Key& key, const std::string& current) override {
+    const std::string unit = key.unit.empty() ? "" : key.unit + "; ";
+    m_target.write(m_section, key.name, current, -1, -1,
+                   key.comment + " [" + unit + key.allowed + "]");
+    return std::nullopt;
+  }
+  std::string place() const override { return nameOf(m_target) + ": "; }
+
+ private:
+  Source& m_target;
+  std::string m_fixedSection;
+};
+
+template <class Options>
+void save(Source& target, const std::string& section, Options options) {
+  SourceWriter writer(target, section);
+  bind(writer, options);
+}
+
+template <class Options>
+void dump(std::ostream& out, Options options) {
+  ConfigWriter writer;
+  bind(writer, options);
+  out << writer.text();
+}
+
+}  // namespace
+
+void CPoleMap::TInsertionOptions::validate() const {
+  if (!(std::isfinite(mergeDistance) && mergeDistance > 0))
+    throw Error("merge_distance is " + std::to_string(mergeDistance) + "; allowed is > 0 m");
+  if (!(minConfidence >= 0 && minConfidence <= 1))
+    throw Error("min_confidence is " + std::to_string(minConfidence) + "; allowed is 0 to 1");
+}
+
+void CPoleMap::TInsertionOptions::loadFromConfigFile(const Source& source,
+                                                     const std::string& section) {
+  load(source, section, *this);
+}
+void CPoleMap::TInsertionOptions::saveToConfigFile(Source& target,
+                                                   const std::string& section) const {
+  save(target, section, *this);
+}
+void CPoleMap::TInsertionOptions::dumpToTextStream(std::ostream& out) const {
+  dump(out, *this);
+}
+
+CPoleMap::TLikelihoodOptions& CPoleMap::TLikelihoodOptions::operator=(
+    const LikelihoodOptions& options) {
+  LikelihoodOptions::operator=(options);
+  return *this;
+}
+void CPoleMap::TLikelihoodOptions::loadFromConfigFile(const Source& source,
+                                                      const std::string& section) {
+  load(source, section, static_cast<LikelihoodOptions&>(*this));
+}
+void CPoleMap::TLikelihoodOptions::saveToConfigFile(Source& target,
+                                                    const std::string& section) const {
+  save(target, section, static_cast<const LikelihoodOptions&>(*this));
+}
+void CPoleMap::TLikelihoodOptions::dumpToTextStream(std::ostream& out) const {
+  dump(out, static_cast<const LikelihoodOptions&>(*this));
+}
+
+CPoleMap::TMapDefinition::TMapDefinition() = default;
+
+void CPoleMap::TMapDefinition::loadFromConfigFile_map_specific(
+    const Source& source, const std::string& sectionNamePrefix) {
+  ConfigReader reader(source, nameOf(source), sectionNamePrefix + "_creationOpts");
+  reader.section("creation", "");
+  reader.text("map_file", mapFile, "a .polemap to load");
+  reader.knownElsewhere({"enableSaveAs3DObject", "enableObservationLikelihood",
+                         "enableObservationInsertion"});  // genericMapParams, read by MRPT
+  reader.finish();
+  insertionOpts.loadFromConfigFile(source, sectionNamePrefix + "_insertOpts");
+  likelihoodOpts.loadFromConfigFile(source, sectionNamePrefix + "_likelihoodOpts");
+}
+
+void CPoleMap::TMapDefinition::dumpToTextStream_map_specific(std::ostream& out) const {
+  out << "map_file = " << mapFile << "\n";
+  insertionOpts.dumpToTextStream(out);
+  likelihoodOpts.dumpToTextStream(out);
+}
+
+CreatedMap CPoleMap::internal_CreateFromMapDefinition(
+    const mrpt::maps::TMetricMapInitializer& def) {
+  const auto& own = dynamic_cast<const CPoleMap::TMapDefinition&>(def);
+  auto map = std::make_unique<CPoleMap>();
+  map->insertionOptions = own.insertionOpts;
+  map->likelihoodOptions = own.likelihoodOpts;
+  if (!own.mapFile.empty()) map->loadFromPoleMapFile(own.mapFile);
+#if MRPT_VERSION >= 0x020B03
+  return CreatedMap(std::move(map));
+#else
+  return map.release();
+#endif
+}
+
+}  // namespace polemcl

@@ -1,0 +1,21 @@
+#include "mrpt/map/RegisterClasses.h"
+
+#include <mrpt/core/initializer.h>
+#include <mrpt/rtti/CObject.h>
+
+#include "mrpt/map/CPoleMap.h"
+#include "mrpt/observation/CObservationPoles.h"
+
+namespace polemcl {
+
+void registerClasses() {
+  mrpt::rtti::registerClass(CLASS_ID(CObservationPoles));
+  mrpt::rtti::registerClass(CLASS_ID(CPoleMap));
+}
+
+}  // namespace polemcl
+
+// When the library is loaded as a plugin.
+MRPT_INITIALIZER(registerPolemclClasses) {
+  polemcl::registerClasses();
+}

@@ -1,0 +1,129 @@
+#include "mrpt/observation/CObservationPoles.h"
+
+#include <mrpt/serialization/CArchive.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+
+#include "core/mapping/IncrementalMerge.h"
+#include "io/file/ReadLimits.h"
+#include "mrpt/common/BoundedRead.h"
+#include "mrpt/drawing/SceneParts.h"
+
+IMPLEMENTS_SERIALIZABLE(CObservationPoles, CObservation, polemcl)
+
+namespace polemcl {
+
+using mrpt::serialization::CArchive;
+
+namespace {
+
+void write(CArchive& out, const PoleDetection& pole) {
+  out << pole.x << pole.y << pole.radius << pole.bottom << pole.top << pole.confidence
+      << pole.covariance(0, 0) << pole.covariance(0, 1) << pole.covariance(1, 1) << pole.points;
+}
+
+PoleDetection readPole(CArchive& in) {
+  PoleDetection pole;
+  auto& C = pole.covariance;
+  in >> pole.x >> pole.y >> pole.radius >> pole.bottom >> pole.top >> pole.confidence >> C(0, 0) >>
+      C(0, 1) >> C(1, 1) >> pole.points;
+  C(1, 0) = C(0, 1);
+  return pole;
+}
+
+}  // namespace
+
+uint8_t CObservationPoles::serializeGetVersion() const {
+  return 0;
+}
+
+void CObservationPoles::serializeTo(CArchive& out) const {
+  for (const std::size_t count : {sensorLabel.size(), poles.size(), freeRange.size()})
+    if (count > io::mostOfAScan)
+      throw Error("a scan with " + std::to_string(count) +
+                  " poles, free ranges or bytes of its label cannot be stored; at most " +
+                  std::to_string(io::mostOfAScan) + " are allowed of each");
+  out << timestamp << sensorLabel << sensorPose << points;
+  out << static_cast<std::uint32_t>(poles.size());
+  for (const auto& pole : poles) write(out, pole);
+  out << freeRange;
+}
+
+void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
+  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  in >> timestamp;
+  sensorLabel = readText(in, io::mostOfAScan, "sensor label");
+  in >> sensorPose >> points;
+  poles.clear();
+  // One by one: the count in a damaged file must not decide how much memory is taken.
+  for (std::uint32_t left = readCount(in, io::mostOfAScan, "poles"); left > 0; --left)
+    poles.push_back(readPole(in));
+  freeRange = readFloats(in, io::mostOfAScan, "free ranges");
+}
+
+Pose2D CObservationPoles::planarSensorPose() const {
+  return {sensorPose.x(), sensorPose.y(), sensorPose.yaw()};
+}
+
+std::vector<PoleDetection> CObservationPoles::polesInRobotFrame() const {
+  std::vector<PoleDetection> poles_robot;
+  poles_robot.reserve(poles.size());
+  const Pose2D T_robot_sensor = planarSensorPose();
+  for (const auto& pole : poles) poles_robot.push_back(moved(T_robot_sensor, pole));
+  return poles_robot;
+}
+
+void CObservationPoles::getSensorPose(mrpt::poses::CPose3D& out_sensorPose) const {
+  out_sensorPose = sensorPose;
+}
+
+void CObservationPoles::setSensorPose(const mrpt::poses::CPose3D& newSensorPose) {
+  sensorPose = newSensorPose;
+}
+
+void CObservationPoles::getDescriptionAsText(std::ostream& o) const {
+  CObservation::getDescriptionAsText(o);
+  o << "Sensor pose on the robot: " << sensorPose << "\n"
+    << "Valid points of the scan: " << points << "\n"
+    << "Directions with a free range: " << freeRange.size() << "\n"
+    << "Poles: " << poles.size() << " (planar sensor frame, m)\n";
+  if (poles.empty()) return;
+  std::ostringstream table;
+  table << std::fixed << std::setprecision(3)
+        << "        x         y   radius   bottom      top  confidence  std_x  std_y  points\n";
+  for (const auto& pole : poles)
+    table << std::setw(9) << pole.x << ' ' << std::setw(9) << pole.y << ' ' << std::setw(8)
+          << pole.radius << ' ' << std::setw(8) << pole.bottom << ' ' << std::setw(8) << pole.top
+          << ' ' << std::setw(11) << pole.confidence << ' ' << std::setw(6)
+          << std::sqrt(pole.covariance(0, 0)) << ' ' << std::setw(6)
+          << std::sqrt(pole.covariance(1, 1)) << ' ' << std::setw(7) << pole.points << "\n";
+  o << table.str();
+}
+
+std::string CObservationPoles::exportTxtHeader() const {
+  return "NUM_POLES then for each X_M Y_M RADIUS_M BOTTOM_M TOP_M CONFIDENCE";
+}
+
+std::string CObservationPoles::exportTxtDataRow() const {
+  std::ostringstream row;
+  row << poles.size() << std::fixed << std::setprecision(5);
+  for (const auto& pole : poles)
+    row << ' ' << pole.x << ' ' << pole.y << ' ' << pole.radius << ' ' << pole.bottom << ' '
+        << pole.top << ' ' << pole.confidence;
+  return row.str();
+}
+
+void CObservationPoles::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const {
+  for (const auto& pole : polesInRobotFrame()) {
+    const double sure = std::clamp(pole.confidence, 0.0, 1.0);
+    const auto strength = static_cast<std::uint8_t>(80 + 175 * sure);
+    scene::drawPole(o, pole.x, pole.y, pole.radius, pole.bottom, pole.top,
+                    mrpt::img::TColor(strength, 60, 30), "pole");
+  }
+}
+
+}  // namespace polemcl

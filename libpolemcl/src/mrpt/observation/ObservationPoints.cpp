@@ -1,0 +1,208 @@
+#include "mrpt/observation/ObservationPoints.h"
+
+#include <mrpt/io/lazy_load_path.h>
+#include <mrpt/maps/CPointsMap.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CObservationRotatingScan.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
+#include <mrpt/obs/VelodyneCalibration.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/sensor/SensorModel.h"
+#include "io/data/Cloud.h"
+#include "mrpt/observation/DepthImage.h"
+
+namespace polemcl {
+
+using namespace mrpt::obs;
+
+bool ObservationPoints::canRead(const CObservation& observation) {
+  return dynamic_cast<const CObservationPointCloud*>(&observation) ||
+         dynamic_cast<const CObservationVelodyneScan*>(&observation) ||
+         dynamic_cast<const CObservation3DRangeScan*>(&observation) ||
+         dynamic_cast<const CObservationRotatingScan*>(&observation);
+}
+
+PointsView ObservationPoints::read(const CObservation& observation) {
+  release();
+  m_dropped = 0;
+  m_camera.reset();
+  if (const auto* cloud = dynamic_cast<const CObservationPointCloud*>(&observation))
+    return readCloud(*cloud);
+  if (const auto* scan = dynamic_cast<const CObservationVelodyneScan*>(&observation))
+    return readVelodyne(*scan);
+  if (const auto* depth = dynamic_cast<const CObservation3DRangeScan*>(&observation))
+    return readDepth(*depth);
+  if (const auto* scan = dynamic_cast<const CObservationRotatingScan*>(&observation))
+    return readRotating(*scan);
+  throw Error(std::string("no poles can be extracted from a ") +
+              observation.GetRuntimeClass()->className +
+              "; allowed are CObservationPointCloud, CObservationVelodyneScan, "
+              "CObservation3DRangeScan and CObservationRotatingScan");
+}
+
+void ObservationPoints::release() noexcept {
+  try {
+    if (m_loaded) m_loaded->unload();
+  } catch (const std::exception&) {
+    // It only gives memory back; what could not be read has been reported by read().
+  }
+  m_loaded = nullptr;
+}
+
+namespace {
+
+/// The class hides its format, but shows it to classes derived from it.
+struct StorageFormat : CObservationPointCloud {
+  static ExternalStorageFormat of(const CObservationPointCloud& observation) {
+    return observation.*(&StorageFormat::m_externally_stored);
+  }
+};
+
+bool endsIn(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Columns of a rotating scan that hold data. MRPT 2.5.8 converts Velodyne scans into images that
+/// are as many times too wide as there are lasers, the rest being empty.
+int usedColumns(const CObservationRotatingScan& scan) {
+  const auto& ranges = scan.rangeImage;
+  const int columns = static_cast<int>(ranges.cols()), rows = static_cast<int>(ranges.rows());
+  const int narrow = columns / rows;
+  for (int column = narrow; column < columns; ++column)
+    for (int row = 0; row < rows; ++row)
+      if (ranges(row, column) != 0) return columns;
+  return narrow;
+}
+
+/// Made by MRPT from a Velodyne scan: rows in the order the lasers fire, azimuth clockwise,
+/// as the device counts it.
+bool isVelodyne(const CObservationRotatingScan& scan) {
+  return scan.lidarModel == "VLP-16" || scan.lidarModel == "HDL-32E";
+}
+
+}  // namespace
+
+PointsView ObservationPoints::readCloud(const CObservationPointCloud& observation) {
+  if (!observation.pointcloud && observation.isExternallyStored()) {
+    const std::string file =
+        mrpt::io::lazy_load_absolute_path(observation.getExternalStorageFile());
+    const auto format = StorageFormat::of(observation);
+    if (format == CObservationPointCloud::ExternalStorageFormat::KittiBinFile &&
+        !endsIn(file, ".gz")) {
+      io::Cloud cloud = io::readKittiBin(file);  // strict, and three times as fast
+      m_x.swap(cloud.x);
+      m_y.swap(cloud.y);
+      m_z.swap(cloud.z);
+      m_dropped = cloud.invalid;
+      return owned();
+    }
+    m_loaded = &observation;
+    observation.load();
+  }
+  if (!observation.pointcloud) return {};
+  const auto& points = *observation.pointcloud;
+  const auto& x = points.getPointsBufferRef_x();
+  return {x.data(), points.getPointsBufferRef_y().data(), points.getPointsBufferRef_z().data(),
+          x.size()};
+}
+
+PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& observation) {
+  const auto& own = observation.point_cloud;
+  if (own.size() > 0 || observation.scan_packets.empty())
+    return {own.x.data(), own.y.data(), own.z.data(), own.size()};
+  CObservationVelodyneScan copy = observation;
+  CObservationVelodyneScan::TGeneratePointCloudParameters parameters;
+  parameters.minDistance = 0;  // `[sensor] min_range_m` decides
+  copy.generatePointCloud(parameters);
+  m_x.swap(copy.point_cloud.x);
+  m_y.swap(copy.point_cloud.y);
+  m_z.swap(copy.point_cloud.z);
+  return owned();
+}
+
+/// The image is what the camera gave; a cloud beside it may be in another frame or thinned out.
+PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observation) {
+  const bool stored =
+      observation.rangeImage_isExternallyStored() || observation.points3D_isExternallyStored();
+  std::optional<CObservation3DRangeScan> copy;
+  if (stored) copy.emplace(observation).load();
+  const CObservation3DRangeScan& scan = stored ? *copy : observation;
+  if (hasPixels(scan)) {
+    m_camera = cameraOf(scan);
+    m_dropped = unproject(scan, *m_camera, {m_x, m_y, m_z});
+    return owned();
+  }
+  if (!scan.hasPoints3D) return {};
+  m_x.assign(scan.points3D_x.begin(), scan.points3D_x.end());
+  m_y.assign(scan.points3D_y.begin(), scan.points3D_y.end());
+  m_z.assign(scan.points3D_z.begin(), scan.points3D_z.end());
+  return owned();
+}
+
+std::vector<double> ObservationPoints::rowElevations(const CObservationRotatingScan& scan) const {
+  const int rows = static_cast<int>(scan.rangeImage.rows());
+  SensorOptions upright = m_sensor;
+  upright.upsideDown = false;                           // the sensor pose turns the points over
+  std::vector<double> elevations = upright.elevations;  // `table`: in the order of the rows
+  if (upright.model != "table") {
+    const SensorModel model(upright);  // topmost first
+    elevations.resize(static_cast<std::size_t>(model.rows()));
+    for (int row = 0; row < model.rows(); ++row)
+      elevations[static_cast<std::size_t>(row)] = std::atan(model.beam(row).slope);
+  }
+  if (static_cast<int>(elevations.size()) != rows)
+    throw Error("a rotating scan of " + std::to_string(rows) + " rows (" + scan.lidarModel +
+                ") tells no elevations, and [sensor] model = " + m_sensor.model + " has " +
+                std::to_string(elevations.size()) +
+                " beams; set the model, or model = table with elevations_deg in the order of the "
+                "rows");
+  if (!isVelodyne(scan) || upright.model == "table") return elevations;
+  const auto& lasers =
+      VelodyneCalibration::LoadDefaultCalibration(scan.lidarModel == "VLP-16" ? "VLP16" : "HDL32")
+          .laser_corrections;
+  if (lasers.size() != elevations.size())
+    throw Error("a rotating scan says it is of a " + scan.lidarModel + " but has " +
+                std::to_string(rows) + " rows");
+  // The configuration gives the elevations, the calibration only says which laser is how high.
+  std::vector<std::size_t> order(lasers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return lasers[a].verticalCorrection > lasers[b].verticalCorrection;
+  });
+  std::vector<double> byLaser(lasers.size());
+  for (std::size_t i = 0; i < order.size(); ++i) byLaser[order[i]] = elevations[i];
+  return byLaser;
+}
+
+PointsView ObservationPoints::readRotating(const CObservationRotatingScan& scan) {
+  m_x.clear();
+  m_y.clear();
+  m_z.clear();
+  const auto& ranges = scan.rangeImage;
+  if (ranges.rows() == 0 || ranges.cols() == 0) return owned();
+  const std::vector<double> elevations = rowElevations(scan);
+  const bool velodyne = isVelodyne(scan);
+  const int columns = velodyne ? usedColumns(scan) : static_cast<int>(ranges.cols());
+  for (int column = 0; column < columns; ++column) {
+    const double turned = scan.startAzimuth + scan.azimuthSpan * column / columns;
+    const double azimuth = velodyne ? -turned : turned;
+    const double cosine = std::cos(azimuth), sine = std::sin(azimuth);
+    for (std::size_t row = 0; row < elevations.size(); ++row) {
+      const auto units = ranges(static_cast<int>(row), column);
+      if (units == 0) continue;  // no return
+      const double range = units * scan.rangeResolution;
+      const double rho = range * std::cos(elevations[row]);
+      m_x.push_back(static_cast<float>(rho * cosine));
+      m_y.push_back(static_cast<float>(rho * sine));
+      m_z.push_back(static_cast<float>(range * std::sin(elevations[row])));
+    }
+  }
+  return owned();
+}
+
+}  // namespace polemcl

@@ -1,0 +1,214 @@
+#include "mrpt/observation/ObservationPoleExtractor.h"
+
+#include <mrpt/obs/CObservation3DRangeScan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/extraction/VisibilityRange.h"
+#include "core/sensor/SensorConfigCheck.h"
+#include "mrpt/common/MrptReason.h"
+#include "mrpt/observation/LidarFrame.h"
+#include "mrpt/observation/ObservationPoints.h"
+
+namespace polemcl {
+
+namespace {
+
+/// By so much an upright pole moves along the lidar's x and y per height along its z.
+Eigen::Vector2f upright(const LidarFrame& f) {
+  const Eigen::Vector3d up = f.R_planar_lidar.row(2);
+  return (up.head<2>() / up.z()).cast<float>();
+}
+
+/// Height in the lidar frame at which a detection's centre was found; where it stands, heights
+/// above the ground are those along the robot's z. The native method takes the height of the
+/// sensor, or the nearest that it saw of the pole; the paper's the mean of all points.
+double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double ground,
+                      const PoleDetection& pole) {
+  const Eigen::RowVector3d up = f.R_planar_lidar.row(2);
+  const auto inLidar = [&](double aboveGround) {
+    return (aboveGround + ground - up.x() * pole.x - up.y() * pole.y) / up.z();
+  };
+  const double low = inLidar(pole.bottom), high = inLidar(pole.top);
+  return method == ExtractionMethod::paper ? 0.5 * (low + high)
+                                           : std::min(std::max(0.0, low), std::max(low, high));
+}
+
+/// Moves a detection from the lidar frame to the planar sensor frame.
+void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
+  if (f.planarIsLidar) return;
+  const Eigen::Vector3d centre =
+      f.R_planar_lidar * Eigen::Vector3d(pole.x, pole.y, z) + f.t_planar_lidar;
+  const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>();
+  const Eigen::Matrix2d covariance = turn * pole.covariance * turn.transpose();
+  pole.x = centre.x();
+  pole.y = centre.y();
+  pole.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
+}
+
+/// The free ranges of the lidar frame, seen from the planar sensor frame: of the sectors that one
+/// reaches into the nearer, and an origin aside of the lidar's costs its distance.
+std::vector<float> planarFreeRange(const LidarFrame& f, const std::vector<float>& freeRange) {
+  if (f.planarIsLidar || freeRange.empty()) return freeRange;
+  const std::size_t n = freeRange.size();
+  const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>().transpose();
+  const double aside = f.t_planar_lidar.head<2>().norm();
+  const auto from = [&](double part) {
+    const double azimuth = part * 2 * M_PI / static_cast<double>(n) - M_PI;
+    const Eigen::Vector2d d = turn * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
+    return freeRange[freeRangeSector(std::atan2(d.y(), d.x()), n)];
+  };
+  std::vector<float> planar(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto part = static_cast<double>(i);
+    const float seen = std::min(from(part + 0.01), from(part + 0.99));
+    planar[i] = std::max(0.f, seen - static_cast<float>(aside));
+  }
+  return planar;
+}
+
+/// Runs what reads an observation's points; errors of MRPT name its class.
+template <class Work>
+void readingPoints(const mrpt::obs::CObservation& observation, const Work& work) {
+  try {
+    work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(std::string("points of a ") + observation.GetRuntimeClass()->className +
+                " cannot be had: " + mrptReason(error.what()));
+  }
+}
+
+}  // namespace
+
+struct PoleExtraction::Impl {
+  explicit Impl(const PoleExtractionOptions& o)
+      : sensor(o.sensor),
+        method(o.extraction.method),
+        native(o.extraction.native),
+        fromCloud(o.extraction.method == ExtractionMethod::paper &&
+                  o.extraction.paper.projectFrom == "cloud"),
+        points(o.sensor),
+        extractor(o.sensor, o.extraction),
+        check(o.sensor, o.extraction.method == ExtractionMethod::native) {}
+
+  SensorOptions sensor;
+  ExtractionMethod method;
+  NativeOptions native;
+  bool fromCloud;  ///< the range image is seen from the origin of the clouds
+  ObservationPoints points;
+  PoleExtractor extractor;
+  std::optional<PoleExtractor> cameraExtractor;  ///< for the camera seen last
+  PinholeCamera camera;
+  ExtractionReport report;
+  MovedPoints moved;
+  SensorCheck check;
+  int checksLeft = 3;  ///< scans to compare with the configuration
+
+  void compare(const mrpt::obs::CObservation& observation, const PointsView& cloud,
+               const mrpt::poses::CPose3D& sensorPose);
+  LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
+  PoleExtractor& extractorFor(const LidarFrame& frames);
+  /// The image of the last points read is taken as such: the paper's range image is a sphere.
+  bool pinhole() const { return points.camera() && method == ExtractionMethod::native; }
+};
+
+/// Frame for the points last read. A depth image's points are levelled, as its rows are planes in
+/// whatever frame; its optical centre is the cloud's origin.
+LidarFrame PoleExtraction::Impl::frameOf(const mrpt::poses::CPose3D& sensorPose) const {
+  if (!pinhole() && !fromCloud) return lidarFrame(sensorPose, sensor);
+  SensorOptions own = sensor;
+  own.originX = own.originY = own.originZ = 0;
+  return lidarFrame(sensorPose, own, pinhole());
+}
+
+/// Extractor for the points last read.
+PoleExtractor& PoleExtraction::Impl::extractorFor(const LidarFrame& frames) {
+  if (!pinhole()) return extractor;
+  PinholeCamera seen = *points.camera();
+  seen.R_lidar_camera = frames.R_lidar_cloud;
+  if (!cameraExtractor || !(seen == camera)) {
+    cameraExtractor.emplace(seen, sensor, native);
+    camera = seen;
+  }
+  return *cameraExtractor;
+}
+
+void PoleExtraction::Impl::compare(const mrpt::obs::CObservation& observation,
+                                   const PointsView& cloud,
+                                   const mrpt::poses::CPose3D& sensorPose) {
+  const bool image = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation);
+  if (!sensor.checkBeams || checksLeft <= 0 || image || cloud.size < SensorCheck::kFewestPoints)
+    return;
+  --checksLeft;
+  const std::string contradiction =
+      check.contradiction(moved.toLidar(cloud, lidarFrame(sensorPose, sensor)));
+  if (!contradiction.empty()) throw Error(contradiction);
+}
+
+PoleExtraction::PoleExtraction(const PoleExtractionOptions& options)
+    : m_impl(std::make_unique<Impl>(options)) {}
+PoleExtraction::~PoleExtraction() = default;
+PoleExtraction::PoleExtraction(PoleExtraction&&) noexcept = default;
+PoleExtraction& PoleExtraction::operator=(PoleExtraction&&) noexcept = default;
+
+bool PoleExtraction::canProcess(const mrpt::obs::CObservation& observation) {
+  return ObservationPoints::canRead(observation);
+}
+
+CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& observation) {
+  auto result = std::make_shared<CObservationPoles>();
+  result->timestamp = observation.timestamp;
+  result->sensorLabel = observation.sensorLabel;
+  observation.getSensorPose(result->sensorPose);
+  m_impl->report = ExtractionReport();
+  readingPoints(observation, [&] {
+    const ObservationPoints::Loan loan(m_impl->points);
+    const PointsView cloud = m_impl->points.read(observation);
+    if (cloud.size > 0) {
+      const LidarFrame frames = m_impl->frameOf(result->sensorPose);
+      m_impl->compare(observation, cloud, result->sensorPose);
+      const PointsView points = m_impl->moved.toLidar(cloud, frames);
+      PoleExtractor& extractor = m_impl->extractorFor(frames);
+      result->poles = extractor.extract(points, upright(frames));
+      m_impl->report = extractor.report();
+      result->freeRange = planarFreeRange(frames, extractor.freeRange());
+      for (auto& pole : result->poles)
+        toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
+    }
+    m_impl->report.points += m_impl->points.dropped();
+    m_impl->report.invalid += m_impl->points.dropped();
+  });
+  result->points = static_cast<std::uint32_t>(m_impl->report.points - m_impl->report.invalid);
+  return result;
+}
+
+io::Cloud PoleExtraction::lidarPoints(const mrpt::obs::CObservation& observation) {
+  mrpt::poses::CPose3D sensorPose;
+  observation.getSensorPose(sensorPose);
+  io::Cloud cloud;
+  readingPoints(observation, [&] {
+    const ObservationPoints::Loan loan(m_impl->points);
+    const PointsView read = m_impl->points.read(observation);
+    const PointsView points = m_impl->moved.toLidar(read, m_impl->frameOf(sensorPose));
+    cloud.x.assign(points.x, points.x + points.size);
+    cloud.y.assign(points.y, points.y + points.size);
+    cloud.z.assign(points.z, points.z + points.size);
+    cloud.intensity.resize(points.size);
+    cloud.invalid = m_impl->points.dropped();
+  });
+  return cloud;
+}
+
+void PoleExtraction::checkNext(bool compare) {
+  m_impl->checksLeft = compare ? 1 : 0;
+}
+
+const ExtractionReport& PoleExtraction::report() const {
+  return m_impl->report;
+}
+
+}  // namespace polemcl

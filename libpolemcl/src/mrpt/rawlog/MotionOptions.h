@@ -1,0 +1,32 @@
+#pragma once
+/// \file MotionOptions.h
+/// \brief How far odometry is trusted when a rawlog does not say so itself.
+
+#include <Eigen/Core>
+
+#include "config/Config.h"
+#include "core/common/Types.h"
+
+namespace polemcl {
+
+/// \brief Noise of odometry. `[motion]` in INI files. The first five describe readings that come
+/// without a covariance (`CObservationOdometry`); the last scales every covariance.
+struct MotionOptions {
+  double xyPerMetre = 0.05;     ///< σ of x and y per metre driven, m/m (`xy_per_m`)
+  double xyPerRadian = 0.05;    ///< σ of x and y per radian turned, m/rad (`xy_per_rad`)
+  double yawPerMetre = 0.0035;  ///< σ of the heading per metre driven, rad/m (`yaw_per_m_deg`)
+  double yawPerRadian = 0.05;   ///< σ of the heading per radian turned, rad/rad (`yaw_per_rad`)
+  double minXy = 0.005;         ///< added to σ of x and y for each motion, m (`min_xy_m`)
+  double minYaw = 0.00087;      ///< added to σ of the heading for each motion, rad (`min_yaw_deg`)
+  double covarianceFactor = 1;  ///< on all covariances, also those of the rawlog (paper, NCLT: 4)
+  void validate() const;        ///< \throws Error
+};
+
+/// \brief Covariance of (x, y, yaw), m, m, rad, diagonal, of a motion that came without one:
+/// σ_xy = minXy + xyPerMetre·d + xyPerRadian·|yaw|, σ_yaw likewise, times covarianceFactor.
+/// \param motion In the robot frame before it.
+Eigen::Matrix3d motionCovariance(const Pose2D& motion, const MotionOptions& options);
+
+void bind(Binder& binder, MotionOptions& options);  ///< `[motion]`
+
+}  // namespace polemcl

@@ -1,0 +1,175 @@
+#include "mrpt/rawlog/PoleSequence.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "mrpt/rawlog/ExternalFiles.h"
+#include "mrpt/rawlog/ScanSource.h"
+
+namespace polemcl {
+
+namespace {
+
+double secondsSince(ScanClock::time_point begin) {
+  return std::chrono::duration<double>(ScanClock::now() - begin).count();
+}
+
+/// One scan on its way through the pipeline; an error travels in its place, so that the first of
+/// the file is the one reported, whatever the threads do.
+struct Task {
+  ScanSource::Scan scan;
+  PoleScan result;
+  std::exception_ptr error;
+};
+using TaskPtr = std::shared_ptr<Task>;
+
+class Stream {
+ public:
+  Stream(const std::string& path, const SequenceOptions& options)
+      : m_path(path),
+        m_pace(options.pace),
+        m_source(path, options.motion, options.allowTruncated),
+        m_extractions([options] { return PoleExtraction(options.extraction); }) {
+    m_extractions.local();  // refuses bad options here, whatever the rawlog holds
+  }
+
+  TaskPtr read();
+  void extract(Task& task);
+  void collect(Task& task, const std::function<void(const PoleScan&)>& consume);
+  SequenceCounts counts() const;
+
+ private:
+  std::string m_path;
+  std::function<ScanClock::time_point(double)> m_pace;
+  ScanSource m_source;
+  tbb::enumerable_thread_specific<PoleExtraction> m_extractions;
+  SequenceCounts m_counts;
+  bool m_ended = false;
+};
+
+/// The next scan or the error that stands in its place; none at the end.
+TaskPtr Stream::read() {
+  if (m_ended) return nullptr;
+  auto task = std::make_shared<Task>();
+  try {
+    const auto begin = ScanClock::now();
+    auto scan = m_source.next();
+    m_ended = !scan;
+    if (m_ended) return nullptr;
+    task->scan = std::move(*scan);
+    task->result.expected = m_source.expected();
+    task->result.readSeconds = secondsSince(begin);
+    task->result.arrival = m_pace ? m_pace(task->scan.time) : ScanClock::now();
+  } catch (...) {
+    m_ended = true;
+    task->error = std::current_exception();
+  }
+  return task;
+}
+
+void Stream::extract(Task& task) {
+  if (task.error) return;
+  const auto observation = std::move(task.scan.observation);
+  PoleScan& result = task.result;
+  result.index = task.scan.index;
+  result.time = task.scan.time;
+  result.motion = task.scan.motion;
+  result.observation = std::dynamic_pointer_cast<CObservationPoles>(observation);
+  result.stored = result.observation != nullptr;
+  if (result.stored) {
+    result.points = result.observation->points;
+    return;
+  }
+  const auto begin = ScanClock::now();
+  try {
+    PoleExtraction& extraction = m_extractions.local();
+    // By index, so that the threads have no say in it.
+    extraction.checkNext(task.scan.index < 3);
+    result.observation = extraction.process(*observation);
+    result.scan = observation;
+    result.points = result.observation->points;
+    result.report = extraction.report();
+    result.invalid = result.report.invalid;
+    result.extractSeconds = secondsSince(begin);
+  } catch (const std::exception& error) {
+    task.error = std::make_exception_ptr(
+        Error(m_path + ": scan " + std::to_string(task.scan.index) + ": " + error.what()));
+  }
+}
+
+void Stream::collect(Task& task, const std::function<void(const PoleScan&)>& consume) {
+  if (task.error) std::rethrow_exception(task.error);
+  const PoleScan& scan = task.result;
+  ++m_counts.scans;
+  m_counts.storedScans += scan.stored ? 1 : 0;
+  m_counts.emptyScans += scan.points == 0 && scan.observation->poles.empty() ? 1 : 0;
+  m_counts.points += scan.points;
+  m_counts.invalidPoints += scan.invalid;
+  m_counts.poles += scan.observation->poles.size();
+  consume(scan);
+}
+
+SequenceCounts Stream::counts() const {
+  SequenceCounts counts = m_counts;
+  counts.otherSensors = m_source.otherSensors();
+  counts.unknownMotions = m_source.unknownMotions();
+  counts.truncated = m_source.truncated();
+  return counts;
+}
+
+}  // namespace
+
+SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
+                           const std::function<void(const PoleScan&)>& consume) {
+  if (options.threads < 0)
+    throw Error("threads = " + std::to_string(options.threads) + ": allowed is 0 or more");
+  findExternals(path);
+  Stream stream(path, options);
+  const int cores = tbb::info::default_concurrency();  // more threads than that are refused by TBB
+  const int threads = options.threads > 0 ? std::min(options.threads, cores) : cores;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    const auto read = [&](tbb::flow_control& control) {
+      TaskPtr task = stream.read();
+      if (!task) control.stop();
+      return task;
+    };
+    const auto extract = [&](TaskPtr task) {
+      stream.extract(*task);
+      return task;
+    };
+    const auto collect = [&](const TaskPtr& task) { stream.collect(*task, consume); };
+    tbb::parallel_pipeline(
+        static_cast<std::size_t>(2 * threads),
+        tbb::make_filter<void, TaskPtr>(tbb::filter_mode::serial_in_order, read) &
+            tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
+            tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));
+  });
+  return stream.counts();
+}
+
+PoleFrame frameOf(const PoleScan& scan) {
+  return {scan.time,
+          scan.motion,
+          scan.observation->polesInRobotFrame(),
+          scan.points,
+          scan.observation->freeRange,
+          scan.observation->planarSensorPose()};
+}
+
+PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,
+                              const ScanProgress& progress) {
+  PoleSequence sequence;
+  sequence.counts = streamPoles(path, options, [&](const PoleScan& scan) {
+    sequence.frames.push_back(frameOf(scan));
+    if (progress) progress(sequence.frames.size(), scan.expected);
+  });
+  return sequence;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,99 @@
+#include "mrpt/rawlog/RawlogInspection.h"
+
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationRotatingScan.h>
+
+#include <cmath>
+
+#include "mrpt/observation/CObservationPoles.h"
+#include "mrpt/observation/LidarFrame.h"
+#include "mrpt/observation/ObservationPoleExtractor.h"
+#include "mrpt/rawlog/ExternalFiles.h"
+#include "mrpt/rawlog/ScanSource.h"
+
+namespace polemcl {
+namespace {
+
+constexpr std::size_t kMostScans = 8;
+
+/// Scans spread evenly over the rawlog, read once: when there are too many, every second is dropped
+/// and from then on twice as many are passed over.
+std::vector<ScanSource::Scan> spreadScans(ScanSource& source, std::size_t& count) {
+  std::vector<ScanSource::Scan> kept;
+  std::size_t stride = 1;
+  while (auto scan = source.next()) {
+    ++count;
+    if (scan->index % stride != 0) continue;
+    kept.push_back(std::move(*scan));
+    if (kept.size() <= kMostScans) continue;
+    stride *= 2;
+    std::vector<ScanSource::Scan> half;
+    for (auto& each : kept)
+      if (each.index % stride == 0) half.push_back(std::move(each));
+    kept.swap(half);
+  }
+  return kept;
+}
+
+void requireBeams(const mrpt::obs::CObservation& scan) {
+  if (dynamic_cast<const CObservationPoles*>(&scan))
+    throw Error("holds poles, not scans; give the rawlog that they were extracted from");
+  if (dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&scan))
+    throw Error("is of a depth camera, which has an image and no beams: it needs no inspection");
+  if (dynamic_cast<const mrpt::obs::CObservationRotatingScan*>(&scan))
+    throw Error(
+        "holds rotating scans, which do not tell the elevations of their rows; name the model in "
+        "[sensor], or give elevations_deg in the order of the rows");
+}
+
+/// The options of a sensor that is known in its own axes, for clouds with this sensor pose.
+SensorOptions mounted(const SensorInspection& sensor, const mrpt::poses::CPose3D& pose) {
+  SensorOptions options = sensor.options();
+  const Eigen::Matrix3d R_robot_lidar = pose.getRotationMatrix().asEigen() *
+                                        lidarFrame(pose, SensorOptions()).R_lidar_cloud.transpose();
+  const Eigen::Vector3d origin =
+      R_robot_lidar * Eigen::Vector3d(options.originX, options.originY, options.originZ);
+  const auto significant = [](double length) {
+    return std::round(length * 1000) / 1000 + 0.0;
+  };  // no -0
+  options.originX = significant(origin.x());
+  options.originY = significant(origin.y());
+  options.originZ = significant(origin.z());
+  return options;
+}
+
+}  // namespace
+
+RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
+  findExternals(path);
+  RawlogInspection result;
+  ScanSource source(path, MotionOptions(), allowTruncated);
+  const auto scans = spreadScans(source, result.scans);
+  if (scans.empty()) throw Error(path + ": there is no scan in it");
+  PoleExtraction reader{PoleExtractionOptions()};  // without an origin: from that of the clouds
+  std::vector<io::Cloud> clouds;
+  std::vector<PointsView> views;
+  for (const auto& scan : scans) {
+    try {
+      requireBeams(*scan.observation);
+      clouds.push_back(reader.lidarPoints(*scan.observation));
+    } catch (const Error& error) {
+      throw Error(path + ": scan " + std::to_string(scan.index) + ": " + error.what());
+    }
+    result.used.push_back(scan.index);
+  }
+  for (const io::Cloud& cloud : clouds) views.push_back(cloud.view());
+  const auto& first = *scans.front().observation;
+  result.label = std::string(first.GetRuntimeClass()->className) +
+                 (first.sensorLabel.empty() ? "" : " " + first.sensorLabel);
+  first.getSensorPose(result.sensorPose);
+  try {
+    result.sensor = inspectSensor(views);
+  } catch (const Error& error) {
+    throw Error(path + ": " + error.what());
+  }
+  result.options = mounted(result.sensor, result.sensorPose);
+  return result;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,86 @@
+#include "mrpt/rawlog/RawlogWriter.h"
+
+#include <mrpt/io/CStream.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <stdexcept>
+
+#include "core/common/Types.h"
+#include "io/file/AtomicFile.h"
+
+namespace polemcl {
+
+namespace {
+
+/// MRPT's interface to a stream of the standard library.
+class OutputStream : public mrpt::io::CStream {
+ public:
+  explicit OutputStream(std::ostream& stream) : m_stream(stream) {}
+  std::size_t Write(const void* buffer, std::size_t count) override {
+    m_stream.write(static_cast<const char*>(buffer), static_cast<std::streamsize>(count));
+    m_position += count;
+    return count;  // failures (disk full) are kept by the stream, and reported by commit()
+  }
+  std::size_t Read(void*, std::size_t) override {
+    throw std::logic_error("a stream for writing only");
+  }
+  std::uint64_t Seek(std::int64_t, TSeekOrigin) override {
+    throw std::logic_error("a stream without seeking");
+  }
+  std::uint64_t getTotalBytesCount() const override { return m_position; }
+  std::uint64_t getPosition() const override { return m_position; }
+
+ private:
+  std::ostream& m_stream;
+  std::uint64_t m_position = 0;
+};
+
+void requireSurvives(const mrpt::obs::CActionCollection& actions) {
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    const auto* move = dynamic_cast<const mrpt::obs::CActionRobotMovement2D*>(&actions.get(i));
+    if (move && move->estimationMethod == mrpt::obs::CActionRobotMovement2D::emOdometry)
+      throw Error("action " + std::to_string(i) +
+                  ": emOdometry would lose its poseChange in a file; set estimationMethod = "
+                  "emScan2DMatching");
+  }
+}
+
+}  // namespace
+
+struct RawlogWriter::Impl {
+  explicit Impl(const std::string& path) : file(path), stream(file.stream()) {}
+  io::AtomicFile file;
+  OutputStream stream;
+
+  void write(const mrpt::serialization::CSerializable& object) {
+    auto archive = mrpt::serialization::archiveFrom(stream);
+    archive << object;
+    if (!file.stream()) file.commit();  // throws: do not go on for hours with a full disk
+  }
+};
+
+RawlogWriter::RawlogWriter(const std::string& path) : m_impl(std::make_unique<Impl>(path)) {}
+RawlogWriter::~RawlogWriter() = default;
+RawlogWriter::RawlogWriter(RawlogWriter&&) noexcept = default;
+RawlogWriter& RawlogWriter::operator=(RawlogWriter&&) noexcept = default;
+
+void RawlogWriter::write(const mrpt::obs::CActionCollection& action,
+                         const mrpt::obs::CObservation::Ptr& observation) {
+  if (!observation) throw Error("a frame cannot be written without its observation");
+  requireSurvives(action);
+  m_impl->write(action);
+  mrpt::obs::CSensoryFrame frame;
+  frame.insert(observation);
+  m_impl->write(frame);
+}
+
+void RawlogWriter::write(const mrpt::obs::CObservation& observation) {
+  m_impl->write(observation);
+}
+
+void RawlogWriter::commit() {
+  m_impl->file.commit();
+}
+
+}  // namespace polemcl

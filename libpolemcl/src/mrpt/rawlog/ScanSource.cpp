@@ -1,0 +1,183 @@
+#include "mrpt/rawlog/ScanSource.h"
+
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CActionRobotMovement3D.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "mrpt/observation/CObservationPoles.h"
+#include "mrpt/observation/ObservationPoleExtractor.h"
+
+namespace polemcl {
+
+using namespace mrpt::obs;
+
+namespace {
+
+/// Scans that may wait for later odometry: bounds the memory, and the harm of a rawlog without any.
+constexpr std::size_t mostWaiting = 32;
+
+Pose2D planar(const mrpt::poses::CPose2D& pose) {
+  return {pose.x(), pose.y(), pose.phi()};
+}
+
+std::optional<io::PlanarMotion> motionOf2D(const CActionRobotMovement2D& action,
+                                           const MotionOptions& options) {
+  const bool isGaussian =
+      dynamic_cast<const mrpt::poses::CPosePDFGaussian*>(action.poseChange.get()) != nullptr;
+  io::PlanarMotion motion;
+  if (action.estimationMethod == CActionRobotMovement2D::emOdometry) {
+    // The reading itself: what the motion model made of it may be random samples.
+    motion.mean = planar(action.rawOdometryIncrementReading);
+    motion.covariance = motionCovariance(motion.mean, options);
+    if (!isGaussian) return motion;
+  } else if (!action.poseChange) {
+    return std::nullopt;
+  }
+  const auto [covariance, mean] = action.poseChange->getCovarianceAndMean();
+  if (action.estimationMethod != CActionRobotMovement2D::emOdometry) motion.mean = planar(mean);
+  motion.covariance = covariance.asEigen() * options.covarianceFactor;
+  return motion;
+}
+
+io::PlanarMotion motionOf3D(const CActionRobotMovement3D& action, const MotionOptions& options) {
+  const auto& pose = action.poseChange;
+  const int use[] = {0, 1, 3};  // x, y, yaw of x, y, z, yaw, pitch, roll
+  io::PlanarMotion motion;
+  motion.mean = {pose.mean.x(), pose.mean.y(), pose.mean.yaw()};
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      motion.covariance(i, k) = pose.cov(use[i], use[k]) * options.covarianceFactor;
+  return motion;
+}
+
+void requireUsable(const io::PlanarMotion& motion) {
+  const Eigen::Vector3d mean(motion.mean.x, motion.mean.y, motion.mean.yaw);
+  if (!mean.allFinite() || !motion.covariance.allFinite())
+    throw Error("the odometry is not finite");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(motion.covariance,
+                                                              Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d eigenvalues = solver.eigenvalues();
+  if (eigenvalues.minCoeff() < -1e-9 * std::max(1e-6, eigenvalues.maxCoeff()))
+    throw Error("the covariance of the odometry is not positive semidefinite");
+}
+
+bool isScan(const CObservation& observation) {
+  return dynamic_cast<const CObservationPoles*>(&observation) ||
+         PoleExtraction::canProcess(observation);
+}
+
+std::string sensorOf(const CObservation& observation) {
+  return std::string(observation.GetRuntimeClass()->className) + " " + observation.sensorLabel;
+}
+
+}  // namespace
+
+std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
+                                         const MotionOptions& options) {
+  std::optional<io::PlanarMotion> motion;
+  if (const auto best = actions.getBestMovementEstimation())
+    motion = motionOf2D(*best, options);
+  else
+    for (std::size_t i = 0; i < actions.size() && !motion; ++i)
+      if (const auto* move = dynamic_cast<const CActionRobotMovement3D*>(&actions.get(i)))
+        motion = motionOf3D(*move, options);
+  if (motion) requireUsable(*motion);
+  return motion;
+}
+
+ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated)
+    : m_path(path), m_options(motion), m_reader(path, allowTruncated) {
+  m_options.validate();
+}
+
+void ScanSource::take(const CObservation::Ptr& observation) {
+  const double time = mrpt::Clock::toDouble(observation->timestamp);
+  if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
+    m_odometry.add(time, planar(odometry->odometry));
+    return;
+  }
+  if (!isScan(*observation)) return;
+  if (m_sensor.empty()) m_sensor = sensorOf(*observation);
+  if (sensorOf(*observation) != m_sensor) {
+    ++m_otherSensors;
+    return;
+  }
+  if (observation->timestamp == INVALID_TIMESTAMP)
+    throw Error(m_path + ": scan " + std::to_string(m_scans) + " has no time");
+  m_waiting.push_back({m_scans++, time, m_moved, observation});
+  m_moved.reset();
+}
+
+void ScanSource::take(const RawlogEntry& entry) {
+  if (entry.action) {
+    m_anyAction = true;
+    try {
+      if (const auto motion = motionOf(*entry.action, m_options))
+        m_moved = m_moved ? io::composeMotions(*m_moved, *motion) : *motion;
+    } catch (const Error& error) {
+      throw Error(m_path + ": before scan " + std::to_string(m_scans) + ": " + error.what());
+    }
+  }
+  if (entry.observation) take(entry.observation);
+  if (!entry.frame) return;
+  if (m_sensor.empty())  // of several scans in one frame, the one that is ready
+    if (const auto poles = entry.frame->getObservationByClass<CObservationPoles>())
+      m_sensor = sensorOf(*poles);
+  for (const auto& observation : *entry.frame) take(observation);
+}
+
+/// Without actions, a scan waits until odometry has come that is later than itself.
+bool ScanSource::mustWait(const Scan& scan) const {
+  return !m_ended && !m_anyAction && !m_odometry.reaches(scan.time) &&
+         m_waiting.size() < mostWaiting;
+}
+
+std::size_t ScanSource::expected() const {
+  const double share = m_reader.progress();
+  if (!(share > 0)) return 0;
+  return std::max(m_scans, static_cast<std::size_t>(static_cast<double>(m_scans) / share + 0.5));
+}
+
+ScanSource::Scan ScanSource::release() {
+  Scan scan = std::move(m_waiting.front());
+  m_waiting.pop_front();
+  if (m_released == 0) {
+    scan.motion = io::PlanarMotion();
+  } else if (!scan.motion) {
+    const auto from = m_odometry.at(m_lastTime), to = m_odometry.at(scan.time);
+    if (from && to) {
+      const Pose2D mean = relative(*from, *to);
+      scan.motion = io::PlanarMotion{mean, motionCovariance(mean, m_options)};
+    } else {
+      ++m_unknownMotions;
+    }
+  }
+  if (scan.time > m_lastTime) m_odometry.forgetBefore(scan.time);
+  m_lastTime = scan.time;
+  ++m_released;
+  return scan;
+}
+
+std::optional<ScanSource::Scan> ScanSource::next() {
+  RawlogEntry entry;
+  try {
+    while (!m_ended && (m_waiting.empty() || mustWait(m_waiting.front()))) {
+      if (m_reader.next(entry))
+        take(entry);
+      else
+        m_ended = true;
+    }
+  } catch (...) {
+    m_ended = true;
+    m_error = std::current_exception();  // in its place: the scans that wait come before it
+  }
+  if (!m_waiting.empty()) return release();
+  if (m_error) std::rethrow_exception(m_error);
+  return std::nullopt;
+}
+
+}  // namespace polemcl

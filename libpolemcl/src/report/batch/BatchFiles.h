@@ -1,0 +1,38 @@
+#pragma once
+/// \file BatchFiles.h
+/// \brief Results of a batch for other programs: JSON (also read back), CSV, LaTeX.
+///
+/// All are written atomically and hold no timing: the same results give the same bytes.
+
+#include <filesystem>
+#include <string>
+
+#include "report/batch/BatchResults.h"
+
+namespace polemcl::report {
+
+/// \brief Everything, with the summaries of BatchSummary.h under `summary` for scripts. Numbers
+/// keep all their digits; what does not exist is `null`.
+/// \throws Error when the results are not valid or the file cannot be written.
+void writeResultsJson(const std::filesystem::path& file, const BatchResults& results);
+/// \brief Reads what writeResultsJson() wrote; `summary` is computed again when it is needed.
+/// \throws Error naming the file, and key or byte: cannot be read, no JSON, a key is missing or of
+///         another type, another format version, results that are not valid.
+BatchResults readResultsJson(const std::filesystem::path& file);
+
+/// \brief One row for each run: setting, session, run, seed, state, reason, figures, health.
+void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results);
+/// \brief One row for each session under each setting: mean and standard deviation over its runs.
+void writeSessionsCsv(const std::filesystem::path& file, const BatchResults& results);
+
+/// \brief One row for each map that was scored: poles, then precision, recall, F1 and matches in
+/// three ways to count, see MapScores. Without any, the header alone.
+void writeMapsCsv(const std::filesystem::path& file, const BatchResults& results);
+
+/// \brief The paper's tables (booktabs), to be \input into a document: sessions of each setting,
+/// scores of maps, published figures beside ours.
+void writeLatexTable(const std::filesystem::path& file, const BatchResults& results);
+/// \brief Text as LaTeX shows it letter by letter.
+std::string latexText(const std::string& text);
+
+}  // namespace polemcl::report

@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "io/file/AtomicFile.h"
+#include "report/batch/BatchFiles.h"
+#include "report/batch/ComparedResults.h"
+#include "report/batch/NumberFormat.h"
+
+namespace polemcl::report {
+namespace {
+
+/// "0.174", "--" for none.
+std::string number(const FigureColumn& column, double value) {
+  return column.figure(value, "--");
+}
+
+std::string latexWithSpread(const FigureColumn& column, const Spread& spread) {
+  if (!std::isfinite(spread.deviation)) return number(column, spread.mean);
+  return '$' + number(column, spread.mean) + " \\pm " + number(column, spread.deviation) + '$';
+}
+
+std::string latexPercent(double share) {
+  return figureText(100 * share, 1, "--");
+}
+
+/// What went wrong, for the caption; figures without it would flatter.
+std::string losses(const RunCounts& counts) {
+  return std::to_string(counts.runs) + " runs, " + std::to_string(counts.lost) + " lost, " +
+         std::to_string(counts.failed) + " failed.";
+}
+
+void beginTable(std::ostream& out, const std::string& caption, const std::string& columns) {
+  out << "\\begin{table}\n  \\centering\n  \\caption{" << caption << "}\n  \\begin{tabular}{"
+      << columns << "}\n    \\toprule\n";
+}
+
+void endTable(std::ostream& out) {
+  out << "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+}
+
+/// The paper's table of sessions, with what was published for each beside.
+void writeSetting(std::ostream& out, const BatchResults& results, std::size_t index,
+                  const SettingSummary& summary) {
+  const BatchSetting& setting = results.settings[index];
+  const PublishedRows published = publishedRows(results);
+  const std::size_t systems = published.systems.size();
+  std::string caption = latexText(results.title) + ", setting \\emph{" + latexText(setting.name) +
+                        "}. Mean and standard deviation over the runs of each session. ";
+  if (!setting.protocol.empty()) caption += latexText(sentence(setting.protocol)) + " ";
+  if (systems > 0) caption += "Published means beside ours, and below over the same sessions. ";
+  beginTable(out, caption + losses(summary.counts), "lr" + std::string(4 * (1 + systems), 'r'));
+  out << "    Session & $f_\\mathrm{map}$ [\\%]";
+  std::vector<FigureColumn> units;
+  for (const SessionColumn& column : sessionColumns) {
+    units.push_back(unitOf(column, summary, published));
+    out << " & " << units.back().latexHead(column.latex);
+    for (const std::string& system : published.systems) out << " & " << latexText(system);
+  }
+  out << " \\\\\n    \\midrule\n";
+  for (const SessionSummary& session : summary.sessions) {
+    out << "    " << latexText(results.sessions[session.session].name) << " & "
+        << latexPercent(session.mapShare);
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      const SessionColumn& column = sessionColumns[i];
+      out << " & " << latexWithSpread(units[i], session.figures.*column.ours);
+      for (std::size_t k = 0; k < systems; ++k)
+        out << " & " << number(units[i], published.figure(k, session, column.published));
+    }
+    out << " \\\\\n";
+  }
+  out << "    \\midrule\n    Mean & " << latexPercent(summary.mapShare.mean);
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const SessionColumn& column = sessionColumns[i];
+    out << " & " << number(units[i], (summary.figures.*column.ours).mean);
+    for (std::size_t k = 0; k < systems; ++k)
+      out << " & " << number(units[i], published.mean(k, summary, column.published));
+  }
+  out << " \\\\\n";
+  endTable(out);
+}
+
+void writeShares(std::ostream& out, const PublishedMapScore& scores) {
+  for (double value : {scores.precision, scores.recall, scores.f1})
+    out << " & " << figureText(value, 3, "--");
+}
+
+/// The paper's first table: scores of maps.
+void writeScores(std::ostream& out, const BatchResults& results, const PublishedDataset* dataset,
+                 const std::vector<SettingSummary>& summaries) {
+  if (std::none_of(summaries.begin(), summaries.end(),
+                   [](const SettingSummary& summary) { return summary.scores.maps > 0; }))
+    return;
+  std::string caption = latexText(results.title) +
+                        ": precision, recall and F1 of the maps, by the authors' count (a true "
+                        "pole within 1 m) and one to one within 1 m and 0.5 m.";
+  if (dataset && !dataset->maps.empty())
+    caption += " Published: " + latexText(dataset->mapProtocol);
+  beginTable(out, caption, 'l' + std::string(9, 'r'));
+  out << "    System & P & R & F1 & P & R & F1 & P & R & F1 \\\\\n    \\midrule\n";
+  if (dataset)
+    for (const PublishedMapScore& system : dataset->maps) {
+      out << "    " << latexText(system.system);
+      for (const PublishedMapScore& scores : {system, PublishedMapScore(), PublishedMapScore()})
+        writeShares(out, scores);
+      out << " \\\\\n";
+    }
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    const ScoreSummary& scores = summaries[i].scores;
+    if (scores.maps == 0) continue;
+    out << "    polemcl, " << latexText(results.settings[i].name);
+    for (const ScoreMeans& one : {scores.near, scores.oneToOne, scores.oneToOneHalf})
+      writeShares(out, {"", one.precision, one.recall, one.f1});
+    out << " \\\\\n";
+  }
+  endTable(out);
+}
+
+void writeComparison(std::ostream& out, const BatchResults& results,
+                     const PublishedDataset& dataset,
+                     const std::vector<SettingSummary>& summaries) {
+  const std::vector<ComparedColumn> columns = comparedColumns(dataset);
+  beginTable(
+      out,
+      latexText(dataset.title) + ": published figures and ours. " + latexText(dataset.protocol),
+      'l' + std::string(columns.size(), 'r'));
+  out << "    System";
+  std::vector<FigureColumn> units;
+  for (const ComparedColumn& column : columns) {
+    units.push_back(unitOf(column, dataset, summaries));
+    out << " & " << units.back().latexHead(column.latex);
+  }
+  out << " \\\\\n    \\midrule\n";
+  for (const PublishedFigure& system : dataset.figures) {
+    out << "    " << latexText(system.system);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      out << " & " << number(units[k], system.*columns[k].published);
+    out << " \\\\\n";
+  }
+  out << "    \\midrule\n";
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    out << "    polemcl, " << latexText(results.settings[i].name);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      out << " & " << number(units[k], (summaries[i].figures.*columns[k].ours).mean);
+    out << " \\\\\n";
+  }
+  endTable(out);
+}
+
+/// What LaTeX reads as something else, as the letter it is; empty for all others.
+std::string latexLetter(char c) {
+  switch (c) {
+    case '\\':
+      return "\\textbackslash{}";
+    case '~':
+      return "\\textasciitilde{}";
+    case '^':
+      return "\\textasciicircum{}";
+    case '<':
+      return "\\textless{}";
+    case '>':
+      return "\\textgreater{}";
+    case '|':
+      return "\\textbar{}";
+    case '\n':
+    case '\r':
+    case '\t':
+      return " ";
+    case '{':
+    case '}':
+    case '%':
+    case '$':
+    case '#':
+    case '&':
+    case '_':
+      return std::string("\\") + c;
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+std::string latexText(const std::string& text) {
+  std::string escaped;
+  char before = 0;
+  for (char c : text) {
+    // Two of these would join: -- to a dash, '' to a quotation mark.
+    if (c == before && (c == '-' || c == '\'' || c == '`')) escaped += "{}";
+    const std::string letter = latexLetter(c);
+    escaped += letter.empty() ? std::string(1, c) : letter;
+    before = c;
+  }
+  return escaped;
+}
+
+void writeLatexTable(const std::filesystem::path& file, const BatchResults& results) {
+  results.validate();
+  const std::vector<SettingSummary> summaries = summarize(results);
+  io::AtomicFile out(file);
+  out.stream() << "% Needs \\usepackage{booktabs}. A column of lengths is in centimetres\n"
+                  "% if any of them is below 0.1 m; these have two significant digits.\n";
+  for (std::size_t i = 0; i < summaries.size(); ++i)
+    if (summaries[i].counts.runs > 0) writeSetting(out.stream(), results, i, summaries[i]);
+  const PublishedDataset* dataset = publishedFigures(results.dataset);
+  writeScores(out.stream(), results, dataset, summaries);
+  if (dataset && !dataset->figures.empty())
+    writeComparison(out.stream(), results, *dataset, summaries);
+  out.commit();
+}
+
+}  // namespace polemcl::report

@@ -1,0 +1,64 @@
+#pragma once
+/// \file ComparedResults.h
+/// \brief The columns in which ours and published figures stand beside each other.
+
+#include <vector>
+
+#include "report/batch/BatchSummary.h"
+#include "report/batch/NumberFormat.h"
+#include "report/batch/PublishedResults.h"
+
+namespace polemcl::report {
+
+/// \brief A column of the comparison.
+struct ComparedColumn {
+  const char* html;   ///< without its unit
+  const char* latex;  ///< the same
+  Quantity quantity;  ///< m or degrees
+  double PublishedFigure::*published;
+  Spread FigureSpreads::*ours;
+};
+
+/// \brief The columns for which any system has a published figure, in the papers' order; the RMSE
+/// in the plane stands before one per axis, which is no measure by itself.
+std::vector<ComparedColumn> comparedColumns(const PublishedDataset& dataset);
+
+/// \brief A column of the paper's table of sessions.
+struct SessionColumn {
+  const char* html;   ///< without its unit
+  const char* latex;  ///< the same
+  Quantity quantity;  ///< m or degrees
+  double PublishedSession::*published;
+  Spread FigureSpreads::*ours;
+};
+inline constexpr SessionColumn sessionColumns[] = {
+    {"Δ<sub>pos</sub>", "$\\Delta_\\mathrm{pos}$", Quantity::length, &PublishedSession::posMean,
+     &FigureSpreads::posMean},
+    {"RMSE<sub>pos</sub>", "$\\mathrm{RMSE}_\\mathrm{pos}$", Quantity::length,
+     &PublishedSession::posRmse, &FigureSpreads::posRmse},
+    {"Δ<sub>ang</sub>", "$\\Delta_\\mathrm{ang}$", Quantity::angle, &PublishedSession::angMeanDeg,
+     &FigureSpreads::angMeanDeg},
+    {"RMSE<sub>ang</sub>", "$\\mathrm{RMSE}_\\mathrm{ang}$", Quantity::angle,
+     &PublishedSession::angRmseDeg, &FigureSpreads::angRmseDeg}};
+
+/// \brief What was published for the sessions of a setting, system by system; sessions that were
+/// not localized have no figures.
+struct PublishedRows {
+  std::vector<std::string> systems;
+  /// \brief A figure of a system for one of the setting's sessions; noFigure where there is none.
+  double figure(std::size_t system, const SessionSummary& session,
+                double PublishedSession::*figure) const;
+  /// \brief Its mean over the sessions of which ours has a figure as well.
+  double mean(std::size_t system, const SettingSummary& setting,
+              double PublishedSession::*figure) const;
+  const BatchResults& results;
+};
+PublishedRows publishedRows(const BatchResults& results);
+
+/// \brief The figures of a column that decide on its unit: ours and those published.
+FigureColumn unitOf(const SessionColumn& column, const SettingSummary& setting,
+                    const PublishedRows& published);
+FigureColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
+                    const std::vector<SettingSummary>& summaries);
+
+}  // namespace polemcl::report

@@ -1,0 +1,124 @@
+#include "report/batch/Html.h"
+
+namespace polemcl::report {
+namespace {
+
+constexpr const char* replacement = "\xEF\xBF\xBD";
+
+bool continues(const std::string& text, std::size_t at) {
+  return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+}
+
+/// Length of the UTF-8 character that begins there, 0 when there is none.
+std::size_t characterLength(const std::string& text, std::size_t at) {
+  const auto first = static_cast<unsigned char>(text[at]);
+  if (first < 0x80) return 1;
+  if (first < 0xC2 || first > 0xF4 || !continues(text, at + 1)) return 0;
+  if (first < 0xE0) return 2;
+  const auto second = static_cast<unsigned char>(text[at + 1]);
+  if (first < 0xF0) {
+    // Neither too long a form nor half of a pair (UTF-16).
+    const bool allowed = (first != 0xE0 || second >= 0xA0) && (first != 0xED || second < 0xA0);
+    return allowed && continues(text, at + 2) ? 3 : 0;
+  }
+  const bool allowed = (first != 0xF0 || second >= 0x90) && (first != 0xF4 || second < 0x90);
+  return allowed && continues(text, at + 2) && continues(text, at + 3) ? 4 : 0;
+}
+
+std::string escapedCharacter(char c) {
+  switch (c) {
+    case '&':
+      return "&amp;";
+    case '<':
+      return "&lt;";
+    case '>':
+      return "&gt;";
+    case '"':
+      return "&quot;";
+    case '\'':
+      return "&#39;";
+    default:
+      const bool control = (c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
+      return control ? replacement : std::string(1, c);
+  }
+}
+
+std::string cells(const std::vector<std::string>& content) {
+  std::string row;
+  for (std::size_t i = 0; i < content.size(); ++i)
+    row += i == 0 ? element("th", "scope=\"row\"", content[i]) : element("td", content[i]);
+  return row;
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = characterLength(text, i);
+    if (length == 0)
+      result += replacement;
+    else if (length == 1)
+      result += escapedCharacter(text[i]);
+    else
+      result += text.substr(i, length);
+    i += length == 0 ? 1 : length;
+  }
+  return result;
+}
+
+std::string element(const std::string& name, const std::string& attributes,
+                    const std::string& content) {
+  return '<' + name + (attributes.empty() ? "" : ' ' + attributes) + '>' + content + "</" + name +
+         '>';
+}
+
+std::string element(const std::string& name, const std::string& content) {
+  return element(name, "", content);
+}
+
+std::string foldable(const std::string& summary, const std::string& content, bool open) {
+  return element("details", open ? "open=\"\"" : "", element("summary", summary) + '\n' + content) +
+         '\n';
+}
+
+void HtmlTable::head(const std::vector<HeadCell>& head) {
+  std::string row;
+  for (const HeadCell& cell : head) {
+    if (cell.html.empty()) {
+      row += element("td", "");  // a corner: it heads nothing
+      continue;
+    }
+    row += cell.columns == 1
+               ? element("th", "scope=\"col\"", cell.html)
+               : element("th", "scope=\"colgroup\" colspan=\"" + std::to_string(cell.columns) + '"',
+                         cell.html);
+  }
+  m_head += element("tr", row) + '\n';
+}
+
+void HtmlTable::row(const std::vector<std::string>& content, const std::string& className) {
+  m_body +=
+      element("tr", className.empty() ? "" : "class=\"" + className + '"', cells(content)) + '\n';
+}
+
+void HtmlTable::foot(const std::vector<std::string>& content) {
+  m_foot += element("tr", cells(content)) + '\n';
+}
+
+std::string HtmlTable::str(const std::string& className) const {
+  std::string table = element("caption", element("span", escaped(m_caption))) + '\n';
+  if (!m_head.empty()) table += element("thead", '\n' + m_head) + '\n';
+  table += element("tbody", '\n' + m_body) + '\n';
+  if (!m_foot.empty()) table += element("tfoot", '\n' + m_foot) + '\n';
+  // Focusable, so that the box can be scrolled with the keyboard.
+  return element("div",
+                 "class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" +
+                     escaped(m_caption) + '"',
+                 element("table", className.empty() ? "" : "class=\"" + className + '"',
+                         '\n' + table)) +
+         '\n';
+}
+
+}  // namespace polemcl::report

@@ -1,0 +1,48 @@
+#pragma once
+/// \file ReportTables.h
+/// \brief The tables of a batch's report.
+
+#include <string>
+#include <vector>
+
+#include "report/batch/BatchSummary.h"
+
+namespace polemcl::report {
+
+/// \brief One row for each setting: what it comes to.
+std::string settingsTable(const BatchResults& results,
+                          const std::vector<SettingSummary>& summaries);
+/// \brief Sessions with all settings side by side.
+std::string sideBySideTable(const BatchResults& results,
+                            const std::vector<SettingSummary>& summaries);
+/// \brief The paper's table: f_map, mean and RMSE of position and heading for each session, with
+/// the figures published for it beside ours.
+std::string paperTable(const BatchResults& results, std::size_t setting,
+                       const SettingSummary& summary);
+/// \brief Published figures and ours; empty when none are known for the dataset.
+std::string publishedTable(const BatchResults& results,
+                           const std::vector<SettingSummary>& summaries);
+/// \brief Scores of the maps of each setting, below published ones; empty when none was scored.
+std::string mapScoresTable(const BatchResults& results,
+                           const std::vector<SettingSummary>& summaries);
+/// \brief The score of every map; empty when no setting has more than one.
+std::string everyScoreTable(const BatchResults& results);
+/// \brief What the runs said of themselves, for each session.
+std::string healthTable(const BatchResults& results, std::size_t setting,
+                        const SettingSummary& summary);
+/// \brief Every run of a setting, with its seed.
+std::string runsTable(const BatchResults& results, std::size_t setting);
+/// \brief Tasks that failed and runs that were lost; empty without any.
+std::string troublesTables(const BatchResults& results);
+std::string sessionsTable(const BatchResults& results);
+std::string timingsTable(const BatchTimings& timings);
+/// \brief Keys of the effective INI texts whose values are not the same in all settings; empty
+/// when there are none.
+std::string differencesTable(const BatchResults& results);
+
+/// \brief "+8 %" for 1.08, "−3 %" for 0.97.
+std::string changeText(double ratio);
+/// \brief "10", "10, 1 lost", "10, 2 failed".
+std::string runsText(const RunCounts& counts);
+
+}  // namespace polemcl::report

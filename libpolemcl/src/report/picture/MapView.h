@@ -1,0 +1,29 @@
+#pragma once
+/// \file MapView.h
+/// \brief What a picture of a localized drive shows: map, truth, estimate. All in the map frame.
+
+#include <string>
+#include <vector>
+
+#include "core/common/Types.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
+
+namespace polemcl::report {
+
+/// \brief Any part may be empty; what is empty is not drawn. Poses in time order, m, rad, s.
+struct MapView {
+  std::string title;  ///< one line, UTF-8
+  std::vector<MapPole> poles;
+  std::vector<StampedPose2D> truth;
+  std::vector<StampedPose2D> estimate;
+};
+
+/// \brief What the view covers, m.
+struct Bounds {
+  double xMin = 0, xMax = 0, yMin = 0, yMax = 0;
+};
+/// \brief The smallest rectangle round all poles and poses.
+/// \throws Error when there is nothing to show, or naming the first value that is not finite.
+Bounds boundsOf(const MapView& view);
+
+}  // namespace polemcl::report

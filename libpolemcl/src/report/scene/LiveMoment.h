@@ -1,0 +1,56 @@
+#pragma once
+/// \file LiveMoment.h
+/// \brief All that a picture of a running localization shows, at one moment.
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/localization/MapAssociation.h"
+#include "mrpt/filter/LocalizationPipeline.h"
+
+namespace polemcl::report {
+
+/// \brief A place the estimate has been at, map frame, m.
+struct WayPoint {
+  double x = 0;
+  double y = 0;
+  bool joined = false;  ///< false: the estimate jumped here, no line leads from the point before
+};
+
+/// \brief The places of a run, thinned as they come: a long drive stays drawable.
+class Way {
+ public:
+  static constexpr double spacing = 1.0;  ///< least distance between two points but the last, m
+  /// \brief One update more; without an estimate the line is broken.
+  void add(const LocalizationUpdate& update);
+  const std::vector<WayPoint>& points() const { return m_points; }
+
+ private:
+  std::vector<WayPoint> m_points;
+  bool m_broken = true;        ///< the next point begins a line
+  bool m_provisional = false;  ///< the last point is too near to the one before to stay
+};
+
+/// \brief A copy: the localization may go on while it is drawn.
+struct LiveMoment {
+  std::size_t scan = 0;                        ///< 0-based index in the input
+  double elapsed = 0;                          ///< since the first scan, s
+  std::optional<PoseWithCovariance> estimate;  ///< map frame
+  std::vector<Pose2D> particles;               ///< map frame; empty without a pose
+  std::vector<double> weights;                 ///< of the particles, the greatest is 1
+  std::vector<PoleDetection> poles_robot;      ///< observed in this scan
+  std::vector<PoleMatch> matches;              ///< of the observed poles; empty without a pose
+  std::vector<GlobalHypothesis> hypotheses;    ///< of the last search, while the pose is in doubt
+  Health health;
+  StepReport step;
+  bool relocalized = false;
+  std::vector<WayPoint> way;  ///< up to here
+};
+
+/// \brief \param start Time of the first scan, s. \param way Up to this update.
+LiveMoment momentOf(const PoleLocalization& localization, const PoleFrame& frame,
+                    const LocalizationUpdate& update, std::size_t scan, double start,
+                    const Way& way);
+
+}  // namespace polemcl::report

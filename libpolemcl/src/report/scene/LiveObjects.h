@@ -1,0 +1,42 @@
+#pragma once
+/// \file LiveObjects.h
+/// \brief The single objects of a LiveScene.
+
+#include <vector>
+
+#include "mrpt/drawing/SceneParts.h"
+#include "report/scene/LiveMoment.h"
+
+namespace polemcl::report::live {
+
+using scene::TColor;
+
+/// Told apart by lightness too, for those who do not see all colours.
+inline const TColor mapColor(0x8a, 0x93, 0x9f), matchedColor(0x00, 0x9e, 0x63),
+    unmatchedColor(0xe0, 0x4f, 0x10), hypothesisColor(0x8e, 0x44, 0xad),
+    particleColor(0x6a, 0x1b, 0x9a), particleLight(0xe9, 0xa8, 0xd8),
+    ellipseColor(0x10, 0x10, 0x10);
+
+/// Of the words and of the vehicle: blue, amber, red.
+TColor colorOf(HealthState state);
+
+mrpt::opengl::CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles);
+/// For views from far above, where cylinders are thinner than a pixel.
+mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& poles,
+                                                double pointSize);
+/// Observed poles whose match is `matched`, at the estimate.
+mrpt::opengl::CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched);
+/// A ribbon; null without a way.
+mrpt::opengl::CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way);
+/// An arrow of so many metres that points where the pose does, its middle on it.
+mrpt::opengl::CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& color);
+mrpt::opengl::CSetOfObjects::Ptr makeHypotheses(const std::vector<GlobalHypothesis>& places,
+                                                double length, int letters);
+/// Light ones first, so that heavy ones are not hidden.
+mrpt::opengl::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, double height,
+                                                     double pointSize);
+/// \param width Of the band, m.
+mrpt::opengl::CSetOfTriangles::Ptr makeEllipse(const PoseWithCovariance& pose, double height,
+                                               double width);
+
+}  // namespace polemcl::report::live

@@ -1,0 +1,227 @@
+#include "report/scene/LiveScene.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <utility>
+
+#include "core/common/Angles.h"
+#include "core/common/TickStep.h"
+#include "report/picture/MapView.h"
+#include "report/scene/LiveObjects.h"
+
+namespace polemcl::report {
+namespace {
+
+using namespace live;
+using mrpt::opengl::COpenGLViewport;
+using scene::put;
+
+/// As printf, for short lines.
+__attribute__((format(printf, 1, 2))) std::string line(const char* format, ...) {
+  char text[160];
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(text, sizeof text, format, values);
+  va_end(values);
+  return text;
+}
+
+mrpt::opengl::CGridPlaneXY::Ptr makeGrid(double x, double y, double half, double step) {
+  const Eigen::Vector2d centre(x, y), reach(half, half);
+  return scene::makeGround({centre - reach, centre + reach}, step);
+}
+
+/// As seen from another origin; the axes stay.
+LiveMoment movedBy(LiveMoment moment, const Eigen::Vector2d& origin) {
+  const auto move = [&](auto& place) { place.x -= origin.x(), place.y -= origin.y(); };
+  if (moment.estimate) move(moment.estimate->mean);
+  for (Pose2D& particle : moment.particles) move(particle);
+  for (GlobalHypothesis& place : moment.hypotheses) move(place.pose_map_robot);
+  for (WayPoint& point : moment.way) move(point);
+  return moment;
+}
+
+/// Standard deviation of the position along its worst axis, m.
+double spreadOf(const PoseWithCovariance& pose) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pose.covariance.topLeftCorner<2, 2>(),
+                                                            Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(axes.eigenvalues()[1], 0.0));
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> ellipse95(const PoseWithCovariance& pose, int corners) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pose.covariance.topLeftCorner<2, 2>());
+  const Eigen::Vector2d lengths = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
+  const double radius = std::sqrt(-2 * std::log(0.05));  // of 95 %, two degrees of freedom
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i <= corners; ++i) {
+    const double angle = 2 * M_PI * (i % corners) / corners;
+    const Eigen::Vector2d unit(std::cos(angle), std::sin(angle));
+    points.emplace_back(Eigen::Vector2d(pose.mean.x, pose.mean.y) +
+                        radius * axes.eigenvectors() * lengths.cwiseProduct(unit));
+  }
+  return points;
+}
+
+std::vector<std::string> describe(const LiveMoment& moment) {
+  const Health& health = moment.health;
+  std::string state = name(health.state);
+  if (health.state != HealthState::ok) state += std::string(": ") + name(health.reason);
+  if (moment.relocalized) state += " (found by the search)";
+  const auto onMap = std::count_if(moment.matches.begin(), moment.matches.end(),
+                                   [](const PoleMatch& match) { return match.matched; });
+  std::vector<std::string> lines{state, line("time %.1f s, scan %zu", moment.elapsed, moment.scan)};
+  if (!moment.estimate) {
+    lines.push_back(line("observed poles %zu, places %zu", moment.poles_robot.size(),
+                         moment.hypotheses.size()));
+    return lines;
+  }
+  const Pose2D& pose = moment.estimate->mean;
+  lines.push_back(line("at %.2f %.2f m, %.1f deg", pose.x, pose.y, pose.yaw / degree));
+  lines.push_back(line("matched %.0f %%, now %d of %zu", 100 * health.matchedShare,
+                       static_cast<int>(onMap), moment.poles_robot.size()));
+  lines.push_back(line("spread %.3f m, %.2f deg", health.spread, health.spreadHeading / degree));
+  lines.push_back(
+      line("particles %zu, effective %.0f", moment.step.particles, health.effectiveParticles));
+  return lines;
+}
+
+LiveScene::LiveScene(const std::vector<MapPole>& map, std::string title, double textScale)
+    : m_title(std::move(title)),
+      m_textScale(textScale),
+      m_map(map),
+      m_scene(mrpt::opengl::COpenGLScene::Create()) {
+  MapView view;
+  view.poles = map;
+  const Bounds bounds = boundsOf(view);
+  const Eigen::AlignedBox2d box_map(Eigen::Vector2d(bounds.xMin, bounds.yMin),
+                                    Eigen::Vector2d(bounds.xMax, bounds.yMax));
+  m_origin = scene::originFor(box_map);
+  for (MapPole& pole : m_map) pole.x -= m_origin.x(), pole.y -= m_origin.y();
+  m_centre = box_map.center() - m_origin;
+  m_extent = std::max(box_map.sizes().maxCoeff(), 20.0);
+  const auto viewport = m_scene->getViewport();
+  scene::prepare(*viewport);
+  viewport->setViewportClipDistances(0.5f, static_cast<float>(std::max(6 * m_extent, 2000.0)));
+  put(*viewport, "map", makeMap(m_map));
+  m_scene->enableFollowCamera(true);
+}
+
+const mrpt::opengl::CCamera& LiveScene::camera() const {
+  return m_scene->getViewport()->getCamera();
+}
+
+void LiveScene::show(const LiveMoment& moment) {
+  const LiveMoment moved = movedBy(moment, m_origin);
+  aim(moved);
+  showObjects(moved);
+  showClose(moment);
+  showText(moment);
+}
+
+void LiveScene::aim(const LiveMoment& moment) {
+  auto& camera = m_scene->getViewport()->getCamera();
+  if (!moment.estimate) {
+    m_aimed.reset();
+    camera.setPointingAt(static_cast<float>(m_centre.x()), static_cast<float>(m_centre.y()), 0);
+    constexpr double farthest = 8000;  // m; SceneViewer3D draws up to 10 km
+    camera.setZoomDistance(static_cast<float>(std::min(2.1 * m_extent, farthest)));
+    camera.setAzimuthDegrees(-90);
+    camera.setElevationDegrees(80);
+    return;
+  }
+  constexpr double ahead = 7, gentle = 12;  // m
+  const Pose2D& pose = moment.estimate->mean;
+  double heading = pose.yaw;
+  if (m_aimed && !moment.relocalized) {
+    const double driven = std::hypot(pose.x - m_aimed->x, pose.y - m_aimed->y);
+    heading = m_aimed->yaw + wrapAngle(pose.yaw - m_aimed->yaw) * (1 - std::exp(-driven / gentle));
+  }
+  m_aimed = Pose2D{pose.x, pose.y, wrapAngle(heading)};
+  const Pose2D target = compose(*m_aimed, {ahead, 0, 0});
+  camera.setPointingAt(static_cast<float>(target.x), static_cast<float>(target.y), 1);
+  camera.setZoomDistance(56);
+  camera.setAzimuthDegrees(static_cast<float>(heading / degree + 180));
+  camera.setElevationDegrees(28);
+}
+
+void LiveScene::showObjects(const LiveMoment& moment) {
+  COpenGLViewport& viewport = *m_scene->getViewport();
+  const bool known = moment.estimate.has_value();
+  const Pose2D pose = known ? moment.estimate->mean : Pose2D{m_centre.x(), m_centre.y(), 0};
+  put(viewport, "ground",
+      known ? makeGrid(pose.x, pose.y, 150, 5)
+            : makeGrid(pose.x, pose.y, 0.6 * m_extent, tickStep(m_extent, 40)));
+  put(viewport, "dots", known ? nullptr : makeDots(m_map, 4 * m_textScale));
+  put(viewport, "way", makeWay(moment.way));
+  put(viewport, "vehicle", known ? makeArrow(pose, 3, colorOf(moment.health.state)) : nullptr);
+  put(viewport, "ellipse", known ? makeEllipse(*moment.estimate, 0.1, 0.08) : nullptr);
+  put(viewport, "particles", makeParticles(moment, 0.15, 3 * m_textScale));
+  put(viewport, "matched", makeObserved(moment, true));
+  put(viewport, "unmatched", makeObserved(moment, false));
+  const double length = known ? 5 : std::max(0.04 * m_extent, 5.0);
+  put(viewport, "hypotheses",
+      makeHypotheses(moment.hypotheses, length, static_cast<int>(16 * m_textScale)));
+}
+
+void LiveScene::showClose(const LiveMoment& moment) {
+  COpenGLViewport& viewport = scene::panelOf(*m_scene, "close", m_textScale);
+  COpenGLViewport& caption = scene::panelOf(*m_scene, "caption", m_textScale);
+  if (!moment.estimate) {  // viewports cannot be taken away: this one is a dot without content
+    viewport.clear();
+    caption.clearTextMessages();
+    for (COpenGLViewport* panel : {&viewport, &caption}) {
+      panel->setBorderSize(0);
+      panel->setViewportPosition(0, 0, 0.001, 0.001);
+    }
+    return;
+  }
+  // Steps, so that it does not breathe with every update.
+  const double half = tickStep(3 * std::max(spreadOf(*moment.estimate), 0.005), 1);
+  const double step = tickStep(2 * half, 8);
+  caption.setViewportPosition(0.75, 0.02, 0.24, 0.05);
+  viewport.setViewportPosition(0.75, 0.07, 0.24, 0.34);
+  viewport.setViewportClipDistances(static_cast<float>(0.01 * half),
+                                    static_cast<float>(100 * half));
+  auto& camera = viewport.getCamera();
+  camera.setOrthogonal();
+  camera.setPointingAt(0, 0, 0);
+  // MRPT's orthogonal cameras show 0.27 of this to either side.
+  camera.setZoomDistance(static_cast<float>(half / 0.27));
+  camera.setAzimuthDegrees(-90);
+  camera.setElevationDegrees(90);
+  const Pose2D& pose = moment.estimate->mean;
+  const LiveMoment near = movedBy(moment, {pose.x, pose.y});
+  put(viewport, "ground", makeGrid(0, 0, 2 * half, step));
+  put(viewport, "particles", makeParticles(near, 0.01 * half, 3 * m_textScale));
+  put(viewport, "ellipse", makeEllipse(*near.estimate, 0.02 * half, 0.015 * half));
+  mrpt::opengl::TFontParams font;
+  font.vfont_name = "sans";
+  font.vfont_scale = static_cast<float>(11 * m_textScale);
+  font.color = mrpt::img::TColorf(scene::textColor);
+  caption.addTextMessage(8 * m_textScale, 12 * m_textScale,
+                         line("particles, y up, grid %g m", step), 0, font);
+}
+
+void LiveScene::showText(const LiveMoment& moment) {
+  std::vector<scene::LegendLine> lines;
+  for (const std::string& text : describe(moment)) lines.push_back({text, {}, 13});
+  lines.front().size = 18;
+  lines.front().color = colorOf(moment.health.state);
+  lines.insert(lines.begin() + 1, {m_title, {}, 13});
+  lines.insert(lines.end(), {{"map poles", mapColor},
+                             {"observed poles on the map", matchedColor},
+                             {"observed poles not on the map", unmatchedColor},
+                             {"path of the estimate", scene::estimateColor},
+                             {"particles, the heavier the darker", particleColor},
+                             {"95 % of the estimate's positions", ellipseColor},
+                             {"places supposed by the search", hypothesisColor}});
+  if (!m_origin.isZero()) lines.push_back({scene::originText(m_origin)});
+  scene::showLegend(*m_scene, lines, m_textScale);
+}
+
+}  // namespace polemcl::report

@@ -1,0 +1,31 @@
+#pragma once
+/// \file ViewOptions.h
+/// \brief How a localization is watched. `[view]` in INI files.
+
+#include <optional>
+#include <string>
+
+#include "config/Config.h"
+
+namespace polemcl::report {
+
+/// \brief Of the first run; nothing of it changes the results.
+struct ViewOptions {
+  bool live = false;        ///< a window that shows the run as it goes
+  bool hold = false;        ///< the window stays after the run, until it is closed
+  std::string rate = "1x";  ///< of the input while a window shows it: as parseRate() takes it
+  int scenes = 0;           ///< a `.3Dscene` every so many scans; 0: none
+  std::string frames;       ///< folder of PNG frames; empty: none
+  int frameEvery = 1;       ///< a frame every so many scans
+  int width = 1280;         ///< of the frames, and of the window at first, pixels
+  int height = 720;         ///< likewise
+  void validate() const;    ///< \throws Error naming the field
+};
+
+/// \brief `1x`, `2.5x`, `0.5`: times as fast as it was driven; `max`: as fast as it goes.
+/// \return None for `max`. \throws Error on anything else, on zero and negative numbers.
+std::optional<double> parseRate(const std::string& text);
+
+void bind(Binder& binder, ViewOptions& options);  ///< `[view]`
+
+}  // namespace polemcl::report

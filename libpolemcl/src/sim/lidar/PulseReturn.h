@@ -1,0 +1,41 @@
+#pragma once
+/// \file PulseReturn.h
+/// \brief What a receiver makes of a pulse whose parts met different things.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/lidar/LidarModel.h"
+#include "sim/lidar/SolidView.h"
+
+namespace polemcl::sim {
+
+/// \brief What one sub-ray met.
+struct SubHit {
+  float range, cosine;
+  std::int32_t solid;  ///< index of the solid, or one of the following
+  static constexpr std::int32_t kNothing = -1, kRoad = -2, kPavement = -3, kGrass = -4;
+};
+
+struct Echo {
+  double range;
+  float intensity;  ///< in [0, 1]
+  std::uint32_t label;
+};
+
+/// \brief Melts sub-rays into echoes of one LiDAR.
+class EchoMaker {
+ public:
+  EchoMaker(const LidarModel& lidar, const std::vector<SolidView>& solids)
+      : m_lidar(lidar), m_solids(solids) {}
+  /// \brief The strongest echo, if it is seen at all.
+  std::optional<Echo> make(const SubHit* hits, const Beam& beam, std::uint64_t seed) const;
+
+ private:
+  const Material& material(const SubHit& hit) const;
+  const LidarModel& m_lidar;
+  const std::vector<SolidView>& m_solids;
+};
+
+}  // namespace polemcl::sim

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <cmath>
+
+#include "sim/world/Buildings.h"
+#include "sim/world/StreetLayout.h"
+#include "sim/world/Vegetation.h"
+
+namespace polemcl::sim {
+namespace {
+/// \brief Leaves of one day: a little denser or thinner than the year's mean.
+double leavesOf(const WorldOptions& options) {
+  return options.foliage * Random(hash(options.seed, 0x1eafull, options.day)).uniform(0.85, 1.15);
+}
+}  // namespace
+
+void StreetPlan::lots(int side) {
+  Random random = stream(0x107, side);
+  for (double s = 0; s < m_street.length();) s += lot(side, s, random);
+  if (m_open) return;
+  // Both ends of the street are not the end of the town.
+  for (const double s : {-12.0, m_street.length() + 12.0}) {
+    const Pose2D end = m_street.at(s);
+    const double along = s < 0 ? s : s - m_street.length();
+    const double lateral = side * (m_options.roadWidth / 2 + pavementWidth(side, s));
+    const double x = end.x + along * std::cos(end.yaw) - lateral * std::sin(end.yaw);
+    const double y = end.y + along * std::sin(end.yaw) + lateral * std::cos(end.yaw);
+    const Site place{{x, y, m_terrain.height(x, y)}, end.yaw + (side > 0 ? 0 : M_PI)};
+    const std::uint32_t id = m_nextId++;
+    if (m_terrain.edge(x, y) > 1) add(makeHouse(place, id, 20, 9, random));
+  }
+}
+
+/// \return The length used, m.
+double StreetPlan::lot(int side, double s, Random& random) {
+  const double length = random.uniform(9, 26), kind = random.uniform(),
+               depth = random.uniform(3.5, 8);
+  const double middle = s + length / 2;
+  Random own(random.next());  // so that a lot left out leaves the others as they are
+  if (middle > m_street.length() || !m_street.fresh(middle)) return length;
+  if (nearCrossing(side, middle, length / 2 + 1.0)) return 3;
+  if (kind < 0.34) {
+    house(side, middle, length - own.uniform(0, 0.4), 0, own);
+  } else if (kind < 0.62) {
+    garden(side, middle, length, depth, own);
+    house(side, middle, length - own.uniform(0.5, 5), depth, own);
+  } else if (kind < 0.74) {
+    yard(side, middle, length, own);
+  } else if (kind < 0.91) {
+    park(side, middle, length, own);
+  } else {
+    const double border = m_options.roadWidth / 2 + pavementWidth(side, middle) + 0.3;
+    add(makeWall(site(side, middle, border), m_nextId++, length, own));
+    garden(side, middle, length - 2, 8, own);
+  }
+  return length;
+}
+
+void StreetPlan::house(int side, double s, double length, double setBack, Random& random) {
+  const double front = m_options.roadWidth / 2 + pavementWidth(side, s) + setBack;
+  const double depth = random.uniform(8, 12);
+  const std::uint32_t id = m_nextId++;
+  const Site place = site(side, s, front);
+  const double c = std::cos(place.heading), n = std::sin(place.heading);
+  // Never on a road, be it another turn of this one. Side streets come close from behind, too.
+  const int steps = m_options.sideStreets > 0 ? 8 : 2;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; j <= steps; ++j) {
+      const double x = (i / static_cast<double>(steps) - 0.5) * length,
+                   y = j / static_cast<double>(steps) * depth;
+      if (m_terrain.edge(place.base.x() + c * x - n * y, place.base.y() + n * x + c * y) < 1.0)
+        return;
+    }
+  add(makeHouse(place, id, length, depth, random));
+}
+
+void StreetPlan::garden(int side, double s, double length, double depth, Random& random) {
+  const double border = m_options.roadWidth / 2 + pavementWidth(side, s) + 0.1;
+  const double kind = random.uniform();
+  const Site edge = site(side, s, border);
+  const std::uint32_t id = m_nextId++;
+  if (claim(edge, 0.1, Ground::pavement)) {
+    if (kind < 0.4)
+      add(makeFence(edge, id, length, random));
+    else if (kind < 0.7)
+      add(makeHedge(edge, id, length, leavesOf(m_options), random));
+    else if (kind < 0.85)
+      add(makeWall(edge, id, length, random));
+  }
+  const int plants = 1 + random.below(5);
+  for (int i = 0; i < plants; ++i) {
+    const double along = s + random.uniform(-0.45, 0.45) * length;
+    const Site place = site(side, along, border + random.uniform(1, std::max(1.2, depth - 1.5)));
+    const std::uint32_t plant = m_nextId++;
+    Random own(random.next());
+    const bool tree = own.chance(0.3);
+    if (!claim(place, tree ? 1.5 : 0.9, Ground::lot)) continue;
+    if (tree)
+      add(makeTree(place, plant, TreeStyle(own), leavesOf(m_options), own), place);
+    else
+      add(makeBush(place, plant, leavesOf(m_options), own));
+  }
+}
+
+void StreetPlan::yard(int side, double s, double length, Random& random) {
+  const double border = m_options.roadWidth / 2 + pavementWidth(side, s);
+  const double depth = random.uniform(9, 18);
+  m_yards.push_back({side, s, length, border});
+  house(side, s, length - random.uniform(0, 3), depth, random);
+  for (int i = 0, plants = random.below(4); i < plants; ++i) {
+    const double along = s + random.uniform(-0.5, 0.5) * length;
+    const Site place = site(side, along, border + depth - random.uniform(1.2, 2.5));
+    const std::uint32_t id = m_nextId++;
+    Random own(random.next());
+    if (!claim(place, 1.0, Ground::lot)) continue;
+    if (own.chance(0.4))
+      add(makeTree(place, id, TreeStyle(own), leavesOf(m_options), own), place);
+    else
+      add(makeBush(place, id, leavesOf(m_options), own));
+  }
+}
+
+void StreetPlan::park(int side, double s, double length, Random& random) {
+  const double border = m_options.roadWidth / 2 + pavementWidth(side, s) + 0.4;
+  const TreeStyle style(random);
+  const int plants = static_cast<int>(length * random.uniform(0.25, 0.5));
+  for (int i = 0; i < plants; ++i) {
+    const double along = s + random.uniform(-0.5, 0.5) * length;
+    const Site place = site(side, along, border + random.uniform(0.3, 13));
+    const std::uint32_t id = m_nextId++;
+    Random own(random.next());
+    const bool tree = own.chance(0.5);
+    if (!claim(place, tree ? 2.2 : 1.0, Ground::lot)) continue;
+    if (tree)
+      add(makeTree(place, id, own.chance(0.7) ? style : TreeStyle(own), leavesOf(m_options), own),
+          place);
+    else
+      add(makeBush(place, id, leavesOf(m_options), own));
+  }
+  if (random.chance(0.6)) house(side, s, length - 1, random.uniform(15, 20), random);
+  const std::uint32_t id = m_nextId++;
+  const Site edge = site(side, s, border - 0.2);
+  if (random.chance(0.3) && claim(edge, 0.1, Ground::pavement))
+    add(makeFence(edge, id, length, random));
+}
+
+}  // namespace polemcl::sim

@@ -1,0 +1,18 @@
+# A room is a folder of sources with one internal static library. Private headers are included by
+# their path from the folder of the rooms, always in quotes: "core/common/Types.h".
+#   polemcl_room(NAME [sources...])
+function(polemcl_room name)
+  add_library(${name} STATIC ${ARGN})
+  polemcl_private_headers(${name} PUBLIC)
+endfunction()
+
+# The flag -iquote keeps the room mrpt/ apart from the headers of MRPT, which are in angle brackets.
+function(polemcl_private_headers name scope)
+  target_compile_options(${name} ${scope} "SHELL:-iquote ${PROJECT_SOURCE_DIR}/libpolemcl/src"
+                         "SHELL:-iquote ${PROJECT_SOURCE_DIR}/apps")
+endfunction()
+
+# Sources that must be compiled alone: Highway includes them once for each instruction set.
+function(polemcl_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+endfunction()

@@ -1,0 +1,287 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <thread>
+
+#include "batch/BatchApp.h"
+#include "batch/BatchFolder.h"
+#include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
+#include "report/batch/BatchFiles.h"
+#include "support/BatchTestFiles.h"
+
+namespace polemcl::test_batch_app {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+const std::string program = std::string(POLEMCL_BIN_DIR) + "/pole-batch";
+
+/// A street's batch, done once for all tests.
+class BatchApp : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    s_folder = new TempFolder;
+    writeStreetBatch(*s_folder);
+    BatchOptions options = optionsFor("done");
+    options.jobs = 2;
+    doBatch(options);
+  }
+  static void TearDownTestSuite() {
+    delete s_folder;
+    s_folder = nullptr;
+  }
+
+  static BatchOptions optionsFor(const std::string& output) {
+    BatchOptions options;
+    options.batch = *s_folder / "street-batch.ini";
+    options.output = *s_folder / output;
+    options.quiet = true;
+    return options;
+  }
+  /// All that a batch leaves but for what may differ: times, logs, locks.
+  static std::map<std::string, std::string> left(const std::string& output) {
+    auto all = contents(*s_folder / output, "times/");
+    for (auto file = all.begin(); file != all.end();)
+      file = file->first.rfind("logs/", 0) == 0 || file->first.rfind("slurm/", 0) == 0 ||
+                     file->first == ".lock" || file->first == "report.html"
+                 ? all.erase(file)
+                 : std::next(file);
+    return all;
+  }
+
+  /// No process works in the folder, or none does soon.
+  static bool nobodyWorksIn(const fs::path& folder) {
+    const auto works = [&] {
+      std::error_code none;
+      for (const auto& process : fs::directory_iterator("/proc", none)) {
+        const std::string place = fs::read_symlink(process.path() / "cwd", none).string();
+        if (place.rfind(folder.string() + "/", 0) == 0) return true;
+      }
+      return false;
+    };
+    for (int i = 0; i < 20 && works(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return !works();
+  }
+
+  static TempFolder* s_folder;
+};
+
+TempFolder* BatchApp::s_folder = nullptr;
+
+}  // namespace
+
+TEST_F(BatchApp, ReportsAllRuns) {
+  const auto results = report::readResultsJson(*s_folder / "done/results.json");
+  EXPECT_EQ(results.name, "street-batch");
+  ASSERT_EQ(results.settings.size(), 2u);
+  ASSERT_EQ(results.sessions.size(), 3u);
+  EXPECT_TRUE(results.failures.empty());
+  EXPECT_EQ(results.sessions[1].date, "2026-02-01");
+  EXPECT_NEAR(results.sessions[0].length, 120, 5);  // in one lane of a bent street
+  for (std::size_t setting : {0, 1})
+    for (std::size_t session : {1, 2}) {
+      const auto* result = results.find(setting, session);
+      ASSERT_NE(result, nullptr);
+      ASSERT_EQ(result->runs.size(), 2u);
+      EXPECT_GT(result->mapPoles, 10u);
+      EXPECT_GT(result->plots.truth.size(), 1u);
+      for (const auto& run : result->runs) {
+        EXPECT_EQ(run.failure, "");
+        EXPECT_GT(run.errors.posMean, 0);
+        EXPECT_LT(run.errors.posMean, 0.1);
+        EXPECT_EQ(run.health.ok + run.health.degraded + run.health.lost, 1);
+      }
+      EXPECT_NE(result->runs[0].seed, result->runs[1].seed);
+      EXPECT_EQ(result->plots.positionErrors.total(),
+                result->runs[0].errors.poses + result->runs[1].errors.poses);
+    }
+  EXPECT_TRUE(results.find(0, 0)->runs.empty());  // the map's own session
+  for (const char* file : {"report.html", "runs.csv", "sessions.csv", "table.tex"})
+    EXPECT_GT(fs::file_size(*s_folder / "done" / file), 100u) << file;
+}
+
+TEST_F(BatchApp, FiguresAreThoseOfTheRuns) {
+  const auto results = report::readResultsJson(*s_folder / "done/results.json");
+  const std::string summary = readText(*s_folder / "done/tasks/run.kept.s2.01/out/summary.json");
+  const auto at = summary.find("\"pos_mean\": ");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_NEAR(results.find(0, 2)->runs[1].errors.posMean, std::stod(summary.substr(at + 12)), 1e-6);
+}
+
+TEST_F(BatchApp, BytesDependOnNothingElse) {
+  BatchOptions options = optionsFor("other");
+  options.jobs = 3;
+  doBatch(options);
+  EXPECT_EQ(left("other"), left("done"));
+}
+
+TEST_F(BatchApp, GoesOnAfterItWasKilled) {
+  const fs::path output = *s_folder / "killed";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::setpgid(0, 0);
+    ::execl(program.c_str(), "pole-batch", (*s_folder / "street-batch.ini").c_str(), "--output",
+            output.c_str(), "--jobs", "1", "--quiet", nullptr);
+    ::_exit(127);
+  }
+  const auto doneTasks = [&] {
+    std::size_t done = 0;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(output / "tasks", none))
+      done += entry.path().extension() != ".part";
+    return done;
+  };
+  while (doneTasks() < 4) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_TRUE(nobodyWorksIn(output)) << "a child goes on";
+  EXPECT_FALSE(fs::exists(output / "results.json"));
+  const auto before = contents(output / "tasks", ".part");
+  ASSERT_LT(before.size(), contents(*s_folder / "done/tasks").size());
+  BatchOptions options = optionsFor("killed");
+  EXPECT_NE(messageOf([&] { doBatch(options); }).find("--resume"), std::string::npos);
+  options.resume = true;
+  doBatch(options);
+  EXPECT_EQ(left("killed"), left("done"));
+}
+
+TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
+  std::string text = readText(*s_folder / "street-batch.ini");
+  const std::string good = "set = world.day=2";
+  text.replace(text.find(good), good.size(), "source = poles\ninput = broken.rawlog");
+  writeText(*s_folder / "broken.rawlog", "nothing");
+  writeText(*s_folder / "broken.tum", "0 0 0 0 0 0 0 1\n");
+  writeText(*s_folder / "broken.ini", text);
+  BatchOptions options = optionsFor("broken");
+  options.batch = *s_folder / "broken.ini";
+  testing::internal::CaptureStderr();
+  const std::string message = messageOf([&] { doBatch(options); });
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(message.find("4 of 14 tasks failed (run.kept.s2.00: "), std::string::npos) << message;
+  EXPECT_NE(message.find("with those that need them 4 are not done"), std::string::npos) << message;
+  EXPECT_NE(said.find("run.once.s2.00 failed: "), std::string::npos) << said;
+  const auto results = report::readResultsJson(*s_folder / "broken/results.json");
+  EXPECT_EQ(results.failures.size(), 4u);
+  EXPECT_NE(results.find(1, 2)->runs[0].failure, "");
+  EXPECT_EQ(results.find(1, 1)->runs[0].failure, "");
+}
+
+TEST_F(BatchApp, ASessionWithoutReadableTruthIsReportedAlone) {
+  for (const char* name : {"s0", "s1", "s2"}) {
+    const fs::path from = *s_folder / "done/tasks" / (std::string("poles.") + name);
+    for (const char* end : {".rawlog", ".tum"})
+      fs::copy_file(from / (std::string(name) + end), *s_folder / (std::string(name) + end),
+                    fs::copy_options::overwrite_existing);
+  }
+  std::string truth = readText(*s_folder / "s2.tum");
+  truth.replace(truth.find('\n') + 1, 3, "nan");
+  writeText(*s_folder / "s2.tum", truth);
+  std::string text = readText(*s_folder / "street-batch.ini");
+  for (const char* gone : {"set = world.day=1\n", "set = world.day=2\n"})
+    text.erase(text.find(gone), std::string(gone).size());
+  const std::string source = "source = simulated\ninput = street.ini";
+  text.replace(text.find(source), source.size(), "source = poles\ninput = {session}.rawlog");
+  writeText(*s_folder / "truth.ini", text);
+  BatchOptions options = optionsFor("truth");
+  options.batch = *s_folder / "truth.ini";
+  testing::internal::CaptureStderr();
+  const std::string message = messageOf([&] { doBatch(options); });
+  testing::internal::GetCapturedStderr();
+  EXPECT_NE(message.find("s2.tum:2: 'nan"), std::string::npos) << message;
+  const auto results = report::readResultsJson(*s_folder / "truth/results.json");
+  EXPECT_NE(results.find(1, 2)->runs[0].failure, "");
+  EXPECT_EQ(results.find(1, 1)->runs[0].failure, "");
+  EXPECT_TRUE(fs::exists(*s_folder / "truth/report.html"));
+}
+
+TEST_F(BatchApp, TasksDoneByHandNeedTheSettingsOfTheBatch) {
+  fs::copy(*s_folder / "done", *s_folder / "hand", fs::copy_options::recursive);
+  fs::remove_all(*s_folder / "hand/tasks/run.once.s1.00");
+  const std::vector<std::string> task{"--output", (*s_folder / "hand").string(), "--task",
+                                      "run.once.s1.00"};
+  const std::string settings = readText(*s_folder / "hand/settings/once.ini");
+  writeText(*s_folder / "hand/settings/once.ini", settings + "\n# edited\n");
+  expectFailure(runProgram(batchMain, task), {"once.ini", "not what the batch was begun with"});
+  writeText(*s_folder / "hand/settings/once.ini", settings);
+  EXPECT_EQ(runProgram(batchMain, task).code, 0);
+  EXPECT_EQ(left("hand"), left("done"));
+}
+
+TEST_F(BatchApp, RefusesWrongUsage) {
+  expectUsageError(runProgram(batchMain, {}));
+  expectUsageError(runProgram(batchMain, {"a.ini"}));
+  expectUsageError(runProgram(batchMain, {"a.ini", "--output", "o", "--task", "x"}));
+  expectUsageError(runProgram(batchMain, {"a.ini", "--output", "o", "--sbatch", "x"}));
+  expectFailure(runProgram(batchMain, {"/not/there.ini", "--output", "o"}), {"/not/there.ini"});
+  expectFailure(runProgram(batchMain, {"--output", (*s_folder / "done").string(), "--task", "x"}),
+                {"no task 'x'"});
+}
+
+TEST_F(BatchApp, PrintsItsPlan) {
+  const auto outcome =
+      runProgram(batchMain, {(*s_folder / "street-batch.ini").string(), "--dry-run"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("run.once.s2.01\n  after poles.s2\n  after map.once.s0\n  $ "
+                             "pole-localize"),
+            std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(BatchApp, ScoresItsMaps) {
+  BatchOptions options = optionsFor("scored");
+  // Poles where the first map has them, but for one; and one that it has not.
+  const auto map = io::readPoleMap(*s_folder / "done/tasks/map.once.s0/map.polemap").poles;
+  std::string truth = "x,y\n1000,1000\n";
+  for (std::size_t i = 1; i < map.size(); ++i)
+    truth += io::fixed(map[i].x, 3) + ',' + io::fixed(map[i].y, 3) + '\n';
+  writeText(*s_folder / "truth.csv", truth);
+  options.set = {"sessions.truth_map=truth.csv", "batch.runs=1", "batch.settings=once"};
+  std::string text = readText(*s_folder / "street-batch.ini");
+  const auto kept = text.find("[setting kept]");
+  text.erase(kept, text.find("[setting once]") - kept);
+  writeText(*s_folder / "once.ini", text);
+  options.batch = *s_folder / "once.ini";
+  doBatch(options);
+  const auto results = report::readResultsJson(*s_folder / "scored/results.json");
+  ASSERT_TRUE(results.find(0, 0)->score);
+  const auto& score = *results.find(0, 0)->score;
+  EXPECT_EQ(score.truth, "truth.csv");
+  EXPECT_EQ(score.oneToOne.mapPoles, map.size());
+  EXPECT_EQ(score.oneToOne.truthPoles, map.size());
+  EXPECT_EQ(score.oneToOne.matches, map.size() - 1);
+  EXPECT_NEAR(score.oneToOneHalf.f1, 1 - 1.0 / static_cast<double>(map.size()), 1e-9);
+  EXPECT_NE(results.command.find("--set 'batch.runs=1'"), std::string::npos) << results.command;
+}
+
+TEST_F(BatchApp, WritesLinesOfProgressWithoutATerminal) {
+  BatchOptions options = optionsFor("told");
+  options.set = {"batch.runs=1"};
+  options.quiet = false;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  doBatch(options);
+  testing::internal::GetCapturedStdout();
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("batch: 10 of 10 tasks done (100 %), 0:00:"), std::string::npos) << said;
+  EXPECT_GE(std::count(said.begin(), said.end(), '\n'), 9) << said;
+}
+
+TEST_F(BatchApp, AFullDiskLosesNothing) {
+  // Files of at most 64 kB stand in for it: rawlogs are larger, and their writers are told so.
+  const fs::path output = *s_folder / "full";
+  const std::string run = " \"" + program + "\" \"" + (*s_folder / "street-batch.ini").string() +
+                          "\" --quiet --output \"" + output.string() + "\" 2>/dev/null";
+  EXPECT_NE(std::system(("trap '' XFSZ; ulimit -f 64;" + run).c_str()), 0);
+  for (const auto& entry : fs::directory_iterator(output / "tasks"))
+    EXPECT_TRUE(fs::exists(entry.path() / "done.json")) << entry.path();
+  EXPECT_EQ(std::system((run + " --resume").c_str()), 0);
+  EXPECT_EQ(left("full"), left("done"));
+}
+
+}  // namespace polemcl::test_batch_app

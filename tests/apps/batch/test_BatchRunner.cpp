@@ -1,0 +1,285 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <set>
+#include <thread>
+
+#include "batch/BatchRunner.h"
+#include "support/BatchTestFiles.h"
+
+namespace polemcl::test_batch_runner {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+using Names = std::vector<std::string>;
+using State = BatchFolder::State;
+
+/// Tasks of shell scripts that stand in for the programs, in a batch of their own.
+class BatchRunner : public testing::Test {
+ protected:
+  BatchRunner() : m_batch(m_temporary / "batch") {
+    fs::create_directories(m_temporary / "bin");
+    // Writes its second argument, and what the file of the third holds, to the first.
+    addProgram("write",
+               "echo \"$2\" > \"$1\"; [ -z \"$3\" ] || cat \"$3\" >> \"$1\"; echo aside > other");
+    addProgram("fail", "echo one; echo 'no scan in it' >&2; exit 1");
+    addProgram("die", "kill -9 $$");
+    addProgram("silent", "exit 3");
+    ::setenv("POLEMCL_BIN", (m_temporary / "bin").c_str(), 1);
+    writeText(m_temporary / "batch.ini", "[batch]\n");
+    m_plan.name = "made-up";
+    m_batch.take("made-up", false);
+  }
+  ~BatchRunner() override { ::unsetenv("POLEMCL_BIN"); }
+
+  void addProgram(const std::string& name, const std::string& script) {
+    writeText(m_temporary / "bin" / name, "#!/bin/sh\n" + script + "\n");
+    fs::permissions(m_temporary / "bin" / name, fs::perms::owner_all);
+  }
+
+  void add(const std::string& id, const std::vector<Names>& commands, const Names& needs = {}) {
+    BatchTask task;
+    task.id = id;
+    task.kind = "made";
+    task.commands = commands;
+    task.needs = needs;
+    task.outputs = {"out"};
+    task.key = "key of " + id;
+    m_plan.tasks.push_back(task);
+  }
+
+  /// \return The ids of the tasks that were worked on, in that order.
+  Names run(std::size_t jobs = 2) {
+    m_batch.store(m_plan, m_temporary / "batch.ini");
+    Names worked;
+    m_failures = runBatch(m_batch, m_plan, {jobs, m_imports},
+                          [&](const BatchTask& task, const TaskOutcome&, const BatchProgress& now) {
+                            worked.push_back(task.id);
+                            m_last = now;
+                          });
+    return worked;
+  }
+
+  std::string out(const std::string& id) const { return readText(m_batch.work(id) / "out"); }
+
+  TempFolder m_temporary;
+  BatchFolder m_batch;
+  BatchPlan m_plan;
+  std::size_t m_imports = 0;
+  std::map<std::string, std::string> m_failures;
+  BatchProgress m_last;
+};
+
+}  // namespace
+
+TEST_F(BatchRunner, DoesWhatIsNeededFirst) {
+  add("a", {{"write", "out", "A"}});
+  add("b", {{"write", "out", "B", "../a/out"}}, {"a"});
+  add("c", {{"write", "out", "C", "../b/out"}}, {"b", "a"});
+  EXPECT_EQ(run(4), (Names{"a", "b", "c"}));
+  EXPECT_TRUE(m_failures.empty());
+  EXPECT_EQ(out("c"), "C\nB\nA\n");
+  EXPECT_EQ(m_last.done, 3u);
+  EXPECT_EQ(m_last.all, 3u);
+}
+
+TEST_F(BatchRunner, KeepsOutputsAlone) {
+  add("a", {{"write", "out", "A"}});
+  run();
+  EXPECT_TRUE(fs::exists(m_batch.work("a") / "out"));
+  EXPECT_FALSE(fs::exists(m_batch.work("a") / "other"));
+  for (const auto& entry : fs::directory_iterator(m_batch.path() / "tasks"))
+    EXPECT_EQ(entry.path().filename(), "a");
+}
+
+TEST_F(BatchRunner, AFailureStopsOnlyWhatNeedsIt) {
+  add("a", {{"write", "out", "A"}, {"fail"}});
+  add("b", {{"write", "out", "B", "../a/out"}}, {"a"});
+  add("c", {{"write", "out", "C", "../b/out"}}, {"b"});
+  add("d", {{"write", "out", "D"}});
+  run(1);
+  EXPECT_EQ(m_failures.size(), 1u);
+  EXPECT_EQ(m_last.failed, 3u);
+  EXPECT_EQ(m_failures["a"], "no scan in it");
+  EXPECT_EQ(out("d"), "D\n");
+  EXPECT_FALSE(fs::exists(m_batch.work("a")));
+  EXPECT_EQ(m_batch.failure("a"), "no scan in it");
+  EXPECT_NE(readText(m_batch.log("a")).find("$ fail\none\n"), std::string::npos);
+  // Mended, it is done, and what needs it.
+  m_plan.tasks[0].commands = {{"write", "out", "A"}};
+  EXPECT_EQ(run(1), (Names{"a", "b", "c"}));
+  EXPECT_TRUE(m_failures.empty());
+  EXPECT_EQ(m_batch.failure("a"), "");
+}
+
+TEST_F(BatchRunner, SaysHowProgramsEnded) {
+  add("killed", {{"die"}});
+  add("silent", {{"silent"}});
+  add("none", {{"no-such-program"}});
+  add("lazy", {{"write", "somewhere", "A"}});
+  run();
+  EXPECT_NE(m_failures["killed"].find("ended by signal 9"), std::string::npos);
+  EXPECT_EQ(m_failures["silent"], "silent ended with exit code 3");
+  EXPECT_NE(m_failures["none"].find("no-such-program: cannot be started"), std::string::npos);
+  EXPECT_EQ(m_failures["lazy"], "it did not write out");
+}
+
+TEST_F(BatchRunner, DoesNothingTwice) {
+  add("a", {{"write", "out", "A"}});
+  add("b", {{"write", "out", "B", "../a/out"}}, {"a"});
+  run();
+  EXPECT_EQ(run(), Names{});
+  EXPECT_EQ(m_last.done, 2u);
+}
+
+TEST_F(BatchRunner, OtherSettingsAreDoneAgain) {
+  add("a", {{"write", "out", "A"}});
+  add("b", {{"write", "out", "B", "../a/out"}}, {"a"});
+  add("c", {{"write", "out", "C"}});
+  run();
+  m_plan.tasks[0].key = "another";
+  m_plan.tasks[0].commands = {{"write", "out", "other"}};
+  EXPECT_EQ(run(), (Names{"a", "b"}));
+  EXPECT_EQ(out("b"), "B\nother\n");
+}
+
+TEST_F(BatchRunner, DamagedOutputsAreDoneAgain) {
+  add("a", {{"write", "out", "A"}});
+  add("b", {{"write", "out", "B", "../a/out"}}, {"a"});
+  add("c", {{"write", "out", "C"}});
+  run();
+  writeText(m_batch.work("a") / "out", "B\n");  // as long as it was
+  std::string why;
+  EXPECT_EQ(m_batch.state(m_plan.task("a"), &why), State::damaged);
+  EXPECT_NE(why.find("/tasks/a/out is not what was written"), std::string::npos);
+  EXPECT_EQ(run(), (Names{"a", "b"}));
+  EXPECT_EQ(out("b"), "B\nA\n");
+  fs::remove(m_batch.work("c") / "out");
+  EXPECT_EQ(run(), Names{"c"});
+  writeText(m_batch.work("c") / "done.json", "{\"key\": \"key of c\", \"outputs\": []}");
+  EXPECT_EQ(run(), Names{"c"});
+  fs::remove(m_batch.work("c") / "done.json");
+  fs::create_directories(m_batch.work("c") / "done.json");
+  EXPECT_EQ(run(), Names{"c"});
+  writeText(m_batch.work("c") / "done.json", "{");
+  EXPECT_EQ(m_batch.state(m_plan.task("c")), State::damaged);
+  EXPECT_EQ(run(), Names{"c"});
+}
+
+TEST_F(BatchRunner, RemainsOfTasksCutShortGo) {
+  add("a", {{"write", "out", "A"}});
+  fs::create_directories(m_batch.path() / "tasks" / "a.elsewhere-12.part");
+  run();
+  EXPECT_FALSE(fs::exists(m_batch.path() / "tasks" / "a.elsewhere-12.part"));
+  EXPECT_EQ(out("a"), "A\n");
+}
+
+TEST_F(BatchRunner, ATaskDoneElsewhereMeanwhileStays) {
+  add("a", {{"write", "out", "A"}});
+  m_batch.store(m_plan, m_temporary / "batch.ini");
+  const auto staged = m_batch.stage(m_plan.tasks[0]);
+  writeText(staged / "out", "A\n");
+  run();
+  EXPECT_TRUE(fs::exists(m_batch.work("a") / "out"));
+  const auto late = m_batch.stage(m_plan.tasks[0]);
+  writeText(late / "out", "A\n");
+  EXPECT_NO_THROW(m_batch.commit(m_plan.tasks[0], late));
+  EXPECT_EQ(m_batch.state(m_plan.tasks[0]), State::done);
+  EXPECT_FALSE(fs::exists(late));
+}
+
+TEST_F(BatchRunner, TasksRunAtTheSameTime) {
+  // Each waits for the other one's file.
+  addProgram("meet",
+             "touch ../../$1; i=0; while [ ! -e ../../$2 ] && [ $i -lt 100 ]; do sleep 0.1; "
+             "i=$((i+1)); done; [ -e ../../$2 ] && echo met > out");
+  add("a", {{"meet", "x", "y"}});
+  add("b", {{"meet", "y", "x"}});
+  run(2);
+  EXPECT_TRUE(m_failures.empty());
+}
+
+TEST_F(BatchRunner, AsManyImportsAsAllowed) {
+  // Each looks whether another one is under way, and leaves what it found.
+  addProgram("alone",
+             "ls ../.. | grep -c under_way_ > out; touch ../../under_way_$1; sleep 0.2; "
+             "rm ../../under_way_$1");
+  for (const char* id : {"a", "b", "c"}) {
+    add(id, {{"alone", id}});
+    m_plan.tasks.back().kind = "poles";
+  }
+  add("d", {{"write", "out", "D"}});
+  m_imports = 1;
+  EXPECT_EQ(run(3).front(), "d");  // others need not wait
+  EXPECT_TRUE(m_failures.empty());
+  for (const char* id : {"a", "b", "c"}) EXPECT_EQ(out(id), "0\n") << id;
+}
+
+TEST(BatchFolder, IsForOneBatchAlone) {
+  const TempFolder folder;
+  const fs::path path = folder / "batch";
+  writeText(folder / "batch.ini", "[batch]\n");
+  BatchPlan plan;
+  plan.name = "one";
+  BatchTask task;
+  task.id = "a";
+  plan.tasks = {task};
+  {
+    BatchFolder first(path);
+    first.take("one", false);
+    first.store(plan, folder / "batch.ini");
+    EXPECT_NE(messageOf([&] { BatchFolder(path).take("one", true); }).find("is under way"),
+              std::string::npos);
+  }
+  EXPECT_NE(messageOf([&] { BatchFolder(path).take("one", false); }).find("--resume"),
+            std::string::npos);
+  EXPECT_NE(messageOf([&] {
+              BatchFolder(path).take("two", true);
+            }).find("holds the batch 'one', not 'two'"),
+            std::string::npos);
+  EXPECT_NO_THROW(BatchFolder(path).take("one", true));
+  // Cut short before its plan was written, and one that lost it.
+  fs::remove(path / "plan.json");
+  EXPECT_NO_THROW(BatchFolder(path).take("one", true));
+  EXPECT_NO_THROW(BatchFolder(path).take("one", false));
+  writeText(path / "plan.json", "nonsense");
+  EXPECT_NO_THROW(BatchFolder(path).take("one", true));
+}
+
+TEST(BatchFolder, LeavesForeignFoldersAlone) {
+  const TempFolder folder;
+  writeText(folder / "letter.txt", "Dear");
+  EXPECT_NE(messageOf([&] { BatchFolder(folder.path()).take("one", true); }).find("holds no batch"),
+            std::string::npos);
+  EXPECT_NE(messageOf([&] {
+              BatchFolder(folder / "letter.txt").take("one", true);
+            }).find("holds no batch"),
+            std::string::npos);
+  EXPECT_EQ(readText(folder / "letter.txt"), "Dear");
+}
+
+TEST_F(BatchRunner, SaysWhichBuildDidWhatIsDoneAgain) {
+  add("a", {{"write", "out", "A"}});
+  add("b", {{"write", "out", "B"}});
+  m_plan.build = buildIdentity();
+  EXPECT_EQ(run(1), (Names{"a", "b"}));
+  EXPECT_EQ(m_batch.buildOf(m_plan.tasks[0]), buildIdentity());
+  std::vector<std::string> notes;
+  EXPECT_TRUE(openTasks(m_batch, m_plan, notes).empty());
+
+  // Another build gives the tasks other keys, see BatchPlan.
+  m_plan.build = "0123456789ab, GNU 12.2.0, Debug, -g";
+  for (BatchTask& task : m_plan.tasks) task.key += " of another build";
+  EXPECT_EQ(openTasks(m_batch, m_plan, notes).size(), 2u);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], std::string("2 tasks were done by another build (") + buildIdentity() +
+                          ") and are done again; this is " + m_plan.build);
+  EXPECT_EQ(run(1), (Names{"a", "b"}));
+}
+
+}  // namespace polemcl::test_batch_runner

@@ -1,0 +1,182 @@
+#include <gtest/gtest.h>
+
+#include "batch/BatchSpec.h"
+#include "support/BatchTestFiles.h"
+
+namespace polemcl::test_batch_spec {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+BatchSpec read(const std::string& text, const fs::path& data = {}) {
+  const TempFolder folder;
+  writeText(folder / "a.ini", text);
+  return readBatchSpec(folder / "a.ini", data);
+}
+
+std::string refusal(const std::string& text) {
+  return messageOf([&] { read(text); });
+}
+
+const std::string sessions = "[sessions]\nnames = a b c\ninput = x\n";
+const std::string setting = "[setting one]\nconfig = c.ini\n";
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+}  // namespace
+
+TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
+  const BatchSpec spec = read(
+      "[batch]\nname = n-1\ntitle = A b\nruns = 3\nseed = 9\nerrors = metre\nsettings = one\n"
+      "[sessions]\nnames = a b\nsource = nclt\ninput = {data}/s/{session}\ndate = "
+      "2012-01-08\n"
+      "odometry_noise = 0.02\n"
+      "[session b]\ninput = other/{session}.ini\nsource = simulated\nset = world.day=3 "
+      "world.seed=4\n"
+      "[setting one]\nconfig = c.ini\nset = filter.particles=5\nsessions = b\nmaps = upkeep\n",
+      "/d");
+  EXPECT_EQ(spec.name, "n-1");
+  EXPECT_EQ(spec.runs, 3);
+  EXPECT_EQ(spec.seed, 9u);
+  EXPECT_TRUE(spec.perMetre);
+  ASSERT_EQ(spec.sessions.size(), 2u);
+  EXPECT_EQ(spec.session("a").input, "/d/s/a");
+  EXPECT_EQ(spec.session("a").source, "nclt");
+  EXPECT_EQ(spec.session("a").date, "2012-01-08");
+  EXPECT_EQ(spec.session("b").odometryNoise, 0.02);
+  EXPECT_EQ(spec.session("b").set, (std::vector<std::string>{"world.day=3", "world.seed=4"}));
+  EXPECT_EQ(fs::path(spec.session("b").input).filename(), "b.ini");
+  EXPECT_EQ(fs::path(spec.session("b").input).parent_path().filename(), "other");
+  ASSERT_EQ(spec.settings.size(), 1u);
+  EXPECT_EQ(spec.settings[0].mapSessions, std::vector<std::string>{"a"});
+  EXPECT_EQ(spec.settings[0].sessions, std::vector<std::string>{"b"});
+  EXPECT_EQ(spec.settings[0].protocol, MapProtocol::upkeep);
+  EXPECT_EQ(spec.settings[0].map, MapTime::before);
+}
+
+TEST(BatchSpec, SessionsOfASettingComeInTheOrderOfTheBatch) {
+  const auto spec = read("[batch]\nsettings = one\n" + sessions + setting +
+                         "map_sessions = b a\nsessions = c b\n");
+  EXPECT_EQ(spec.settings[0].mapSessions, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(spec.settings[0].sessions, (std::vector<std::string>{"b", "c"}));
+}
+
+TEST(BatchSpec, NamesWhatIsWrong) {
+  const std::string head = "[batch]\nsettings = one\n";
+  EXPECT_HAS(refusal("[batch]\nsettings =\n" + sessions), "[batch] settings: at least one name");
+  EXPECT_HAS(refusal("[batch]\nsettings = one one\n" + sessions + setting), "'one' is given twice");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a a\ninput = x\n" + setting),
+             "'a' is given twice");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a/b\ninput = x\n" + setting), "'a/b' is no name");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a.b\ninput = x\n" + setting), "'a.b' is no name");
+  EXPECT_HAS(refusal(head + sessions + "date = 2026-13-01\n" + setting),
+             "session a: date: '2026-13-01' is no date");
+  EXPECT_HAS(refusal(head + sessions + "date = 2026-02-01\n[session b]\ndate = 2026-01-31\n" +
+                     setting + "map_sessions = all\nsessions = c\nmaps = upkeep\n"),
+             "session b of 2026-01-31 comes after one of 2026-02-01");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\n" + setting), "session a: input is missing");
+  EXPECT_HAS(refusal(head + sessions), "config is missing");
+  EXPECT_HAS(refusal(head + sessions + setting + "sessions = d\n"), "no session 'd'");
+  EXPECT_HAS(refusal(head + sessions + setting + "sessions = b d\n"), "no session 'd'");
+  EXPECT_HAS(refusal(head + sessions + setting + "[session d]\ninput = y\n"),
+             "[session d] is not known");
+  EXPECT_HAS(refusal(head + sessions + setting + "mapps = upkeep\n"), "mapps");
+  EXPECT_HAS(refusal(head + sessions + setting + "[setting two]\nconfig = c\n"),
+             "[setting two] is not known");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\ninput = {data}/x\n" + setting), "--data");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a b\ninput = x\nset = world.day=1\n" + setting),
+             "simulated");
+}
+
+TEST(BatchSpec, ASessionInTheMapBeforeItNeedsOne) {
+  const std::string head = "[batch]\nsettings = one\n" + sessions + setting;
+  EXPECT_HAS(refusal(head + "map_sessions = b\nsessions = all\n"),
+             "session a has no map session before it");
+  EXPECT_HAS(refusal(head + "map_sessions = b\nsessions = b c\n"),
+             "session b has no map session before it");
+  EXPECT_NO_THROW(read(head + "map_sessions = b\nsessions = c\n"));
+  EXPECT_NO_THROW(read(head + "map_sessions = b\nsessions = all\nmap = finished\n"));
+}
+
+TEST(BatchSpec, ReadsTruePolesAndPublishedFigures) {
+  const BatchSpec spec = read(
+      "[batch]\nsettings = one\npublished = semantickitti\npublished_sessions = {here}/p.csv\n"
+      "[sessions]\nnames = 00 01\nsource = kitti-odometry\ninput = {data}/{session}\n"
+      "truth_map = labels\n[session 01]\ntruth_map = {data}/t_{session}.npz\n" +
+          setting + "maps = each\nmap_sessions = all\nsessions = none\n",
+      "/d");
+  EXPECT_EQ(spec.session("00").truthMap, truthFromLabels);
+  EXPECT_EQ(spec.session("01").truthMap, "/d/t_01.npz");
+  EXPECT_EQ(spec.published, "semantickitti");
+  EXPECT_EQ(fs::path(spec.publishedSessions).filename(), "p.csv");
+  EXPECT_EQ(spec.settings[0].protocol, MapProtocol::each);
+  EXPECT_TRUE(spec.settings[0].sessions.empty());
+  EXPECT_EQ(spec.settings[0].mapSessions, (std::vector<std::string>{"00", "01"}));
+}
+
+TEST(BatchSpec, LaterSessionsAreAllButTheFirst) {
+  const auto spec = read("[batch]\nsettings = one\n" + sessions + setting + "sessions = later\n");
+  EXPECT_EQ(spec.settings[0].sessions, (std::vector<std::string>{"b", "c"}));
+  EXPECT_HAS(refusal("[batch]\nsettings = one\n[sessions]\nnames = a\ninput = x\n" + setting +
+                     "sessions = later\n"),
+             "sessions: at least one name");
+}
+
+TEST(BatchSpec, MapsAloneAndMapsOfEachNeedSense) {
+  const std::string head = "[batch]\nsettings = one\n" + sessions;
+  EXPECT_HAS(refusal(head + setting + "sessions = none\n"), "sessions = none leaves nothing");
+  EXPECT_HAS(refusal(head + setting + "maps = each\nmap_sessions = all\n"),
+             "maps = each has no map before a session");
+  EXPECT_HAS(refusal(head + setting + "maps = each\nmap_sessions = a b\nmap = finished\n"),
+             "session c has no map");
+  EXPECT_HAS(refusal(head + "truth_map = labels\n" + setting), "needs source = kitti-odometry");
+  EXPECT_HAS(refusal(head + "truth_map = {data}/x\n" + setting), "--data");
+  EXPECT_HAS(refusal("[batch]\nsettings = one\npublished = all\n" + sessions + setting),
+             "semantickitti");
+}
+
+TEST(BatchSpec, ValuesCanBePutInPlaceOfTheFiles) {
+  const TempFolder folder;
+  writeText(folder / "a.ini", "[batch]\nsettings = one\n" + sessions + setting +
+                                  "map_sessions = first\nsessions = later\n");
+  const auto with = [&](const std::vector<std::string>& set) {
+    return readBatchSpec(folder / "a.ini", "/d", set);
+  };
+  const BatchSpec spec =
+      with({"batch.runs=2", "sessions.names=a b", "sessions.input={data}/{session}",
+            "setting one.set=filter.particles=7 map.min_count=2"});
+  EXPECT_EQ(spec.runs, 2);
+  ASSERT_EQ(spec.sessions.size(), 2u);
+  EXPECT_EQ(spec.sessions[1].input, "/d/b");
+  EXPECT_EQ(spec.settings[0].set,
+            (std::vector<std::string>{"filter.particles=7", "map.min_count=2"}));
+  EXPECT_HAS(messageOf([&] { with({"batch.run=2"}); }), "run");
+  EXPECT_HAS(messageOf([&] { with({"runs=2"}); }), "section.key=value");
+}
+
+TEST(BatchSpec, SeedsComeFromNamesAlone) {
+  EXPECT_EQ(seedOf(1, "a/run 0"), seedOf(1, "a/run 0"));
+  // CRC-32 of "1/a/run 0", computed with another program.
+  EXPECT_EQ(seedOf(1, "a/run 0"), 0xac95152u);
+  EXPECT_NE(seedOf(1, "a/run 0"), seedOf(1, "a/run 1"));
+  EXPECT_NE(seedOf(1, "a/run 0"), seedOf(2, "a/run 0"));
+}
+
+TEST(BatchSpec, WhatASessionSetsComesAfterWhatAllSet) {
+  const TempFolder folder;
+  writeText(folder / "a.ini",
+            "[batch]\nsettings = one\n[sessions]\nnames = a b\nsource = simulated\ninput = x.ini\n"
+            "set = world.seed=5 simulation.detections={here}/m.json\n"
+            "[session b]\nset = world.seed=6\n" +
+                setting + "sessions = b\n");
+  const BatchSpec spec = readBatchSpec(folder / "a.ini");
+  const std::string model = "simulation.detections=" + folder.path().string() + "/m.json";
+  EXPECT_EQ(spec.session("a").set, (std::vector<std::string>{"world.seed=5", model}));
+  EXPECT_EQ(spec.session("b").set,
+            (std::vector<std::string>{"world.seed=5", model, "world.seed=6"}));
+}
+
+}  // namespace polemcl::test_batch_spec

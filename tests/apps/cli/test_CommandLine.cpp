@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+#include <mrpt/core/exceptions.h>
+#include <tbb/global_control.h>
+
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "cli/CommandLine.h"
+#include "cli/Version.h"
+#include "core/common/Types.h"
+
+namespace polemcl::test_command_line {
+
+using namespace polemcl::apps;
+
+namespace {
+
+struct Result {
+  int code = -1;
+  std::string out, err;
+  double radius = 1.0;
+  bool quiet = false, worked = false;
+};
+
+/// A program with one required and one optional argument, whose work is `body`.
+Result runWith(
+    std::vector<const char*> arguments, const std::function<void()>& body = [] {}) {
+  Result result;
+  CommandLine line("pole-test", "Tries things.");
+  std::string input;
+  line.cli().add_option("--input", input, "A file")->required();
+  line.cli().add_option("--radius", result.radius, "Metres");
+  arguments.insert(arguments.begin(), "pole-test");
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  result.code = line.run(static_cast<int>(arguments.size()), arguments.data(), [&] {
+    result.worked = true;
+    result.quiet = line.quiet();
+    body();
+  });
+  result.out = testing::internal::GetCapturedStdout();
+  result.err = testing::internal::GetCapturedStderr();
+  return result;
+}
+
+}  // namespace
+
+TEST(CommandLine, RunsTheWorkAndReturnsZero) {
+  const auto result = runWith({"--input", "a", "--radius", "2.5"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_TRUE(result.worked);
+  EXPECT_FALSE(result.quiet);
+  EXPECT_EQ(result.radius, 2.5);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST(CommandLine, KnowsQuiet) {
+  EXPECT_TRUE(runWith({"--input", "a", "--quiet"}).quiet);
+}
+
+TEST(CommandLine, LimitsTheThreads) {
+  using tbb::global_control;
+  const auto allowed = [] {
+    return global_control::active_value(global_control::max_allowed_parallelism);
+  };
+  std::size_t threads = 0;
+  runWith({"--input", "a", "--threads", "1"}, [&] { threads = allowed(); });
+  EXPECT_EQ(threads, 1u);
+  const std::size_t all = allowed();
+  runWith({"--input", "a"}, [&] { threads = allowed(); });
+  EXPECT_EQ(threads, all);
+  EXPECT_EQ(runWith({"--input", "a", "--threads", "-1"}).code, 2);
+}
+
+TEST(CommandLine, AssignmentsMayBeRepeated) {
+  CommandLine line("pole-test", "Tries things.");
+  std::vector<std::string> set;
+  addSetOption(line.cli(), set);
+  const char* arguments[] = {"pole-test", "--set", "a.b=1", "--set", "a.c=x y"};
+  EXPECT_EQ(line.run(5, arguments, [] {}), 0);
+  EXPECT_EQ(set, (std::vector<std::string>{"a.b=1", "a.c=x y"}));
+}
+
+TEST(CommandLine, HelpAndVersionAreNoErrors) {
+  const auto help = runWith({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_FALSE(help.worked);
+  EXPECT_NE(help.out.find("Tries things."), std::string::npos);
+  EXPECT_NE(help.out.find("--radius"), std::string::npos);
+  const auto shown = runWith({"--version"});
+  EXPECT_EQ(shown.code, 0);
+  EXPECT_FALSE(shown.worked);
+  EXPECT_EQ(shown.out,
+            std::string("pole-test ") + version() + " (build " + buildIdentity() + ")\n");
+  EXPECT_TRUE(std::regex_match(
+      buildIdentity(),
+      std::regex("([0-9a-f]{12}(\\+[0-9a-f]{12})?|sources-[0-9a-f]{12}), [A-Za-z]+ [0-9.]+, "
+                 "[A-Za-z]+, .*-ffp-contract=off.*")))
+      << buildIdentity();
+}
+
+TEST(CommandLine, WrongUsageIsTwoWithAHint) {
+  for (const auto& arguments : std::vector<std::vector<const char*>>{
+           {}, {"--input"}, {"--input", "a", "--raduis", "1"}, {"--input", "a", "--radius", "x"}}) {
+    const auto result = runWith(arguments);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_FALSE(result.worked);
+    EXPECT_EQ(result.err.rfind("pole-test: ", 0), 0u) << result.err;
+    EXPECT_NE(result.err.find("\nTry `pole-test --help`.\n"), std::string::npos) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST(CommandLine, ErrorsAreOneWithOneLine) {
+  const auto result =
+      runWith({"--input", "a"}, [] { throw polemcl::Error("a.rawlog: no such file"); });
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.err, "pole-test: a.rawlog: no such file\n");
+}
+
+TEST(CommandLine, MrptErrorsLoseTheirCallStack) {
+  const auto result = runWith({"--input", "a"}, [] { THROW_EXCEPTION("the cloud\n is   gone"); });
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.err, "pole-test: the cloud is gone\n");
+}
+
+TEST(CommandLine, CatchesWhatIsNoException) {
+  const auto result = runWith({"--input", "a"}, [] { throw 7; });
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.err, "pole-test: failed for an unknown reason\n");
+}
+
+TEST(CommandLine, MessagesHoldNoRawBytes) {
+  EXPECT_EQ(oneLine("a \xff\xfe\x1b[2J b"), "a ???[2J b");
+  EXPECT_EQ(oneLine("l\xc3\xa4nge 5 m\xc2\xb2 \xe2\x80\xa6 \xf0\x9f\x9a\x97"),
+            "l\xc3\xa4nge 5 m\xc2\xb2 \xe2\x80\xa6 \xf0\x9f\x9a\x97");
+  EXPECT_EQ(oneLine("cut \xe2\x80"), "cut ??");
+}
+
+}  // namespace polemcl::test_command_line

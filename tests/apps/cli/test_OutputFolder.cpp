@@ -1,0 +1,87 @@
+#include "cli/OutputFolder.h"
+#include "core/common/Types.h"
+#include "support/TempFolder.h"
+
+namespace polemcl::test_output_folder {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+class OutputFolderTest : public testing::Test {
+ protected:
+  OutputFolder open(const std::string& name) {
+    return OutputFolder(folder / name, "a drive", {"mark", "data"}, "mark");
+  }
+  /// The message of the refusal, empty when accepted.
+  std::string refusal(const std::string& name) {
+    try {
+      open(name);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  TempFolder folder;
+};
+}  // namespace
+
+TEST_F(OutputFolderTest, AppearsOnlyWhenCommitted) {
+  {
+    OutputFolder out = open("out");
+    writeText(out.temporary() / "mark", "1");
+    EXPECT_FALSE(fs::exists(folder / "out"));
+    out.commit();
+  }
+  EXPECT_EQ(readText(folder / "out" / "mark"), "1");
+  EXPECT_EQ(names(folder.path()), std::vector<std::string>{"out"});
+}
+
+TEST_F(OutputFolderTest, LeavesNothingWithoutCommit) {
+  { writeText(open("out").temporary() / "mark", "1"); }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST_F(OutputFolderTest, ReplacesAnEarlierOutputAndAnEmptyFolder) {
+  writeText(folder / "out" / "mark", "old");
+  writeText(folder / "out" / "data", "old");
+  fs::create_directory(folder / "empty");
+  for (const char* name : {"out", "empty", "out/"}) {
+    OutputFolder out = open(name);
+    writeText(out.temporary() / "mark", "new");
+    out.commit();
+    EXPECT_EQ(names(folder / name), std::vector<std::string>{"mark"});
+    EXPECT_EQ(readText(folder / name / "mark"), "new");
+  }
+  EXPECT_EQ(names(folder.path()), (std::vector<std::string>{"empty", "out"}));
+}
+
+TEST_F(OutputFolderTest, KeepsTheEarlierOutputWhenTheNewOneFails) {
+  writeText(folder / "out" / "mark", "old");
+  { writeText(open("out").temporary() / "mark", "half"); }
+  EXPECT_EQ(readText(folder / "out" / "mark"), "old");
+}
+
+TEST_F(OutputFolderTest, RefusesAFolderWithForeignFiles) {
+  writeText(folder / "out" / "mark", "old");
+  writeText(folder / "out" / "thesis.tex", "years of work");
+  EXPECT_NE(refusal("out").find("thesis.tex"), std::string::npos) << refusal("out");
+  EXPECT_TRUE(fs::exists(folder / "out" / "thesis.tex"));
+}
+
+TEST_F(OutputFolderTest, RefusesAFolderWithoutTheMarker) {
+  writeText(folder / "out" / "data", "of another program");
+  EXPECT_NE(refusal("out").find("mark"), std::string::npos) << refusal("out");
+}
+
+TEST_F(OutputFolderTest, RefusesAFileInItsPlace) {
+  writeText(folder / "out", "a file");
+  EXPECT_NE(refusal("out").find("no folder"), std::string::npos) << refusal("out");
+}
+
+TEST_F(OutputFolderTest, RefusesAMissingParent) {
+  EXPECT_NE(refusal("missing/out").find("cannot be created"), std::string::npos);
+}
+
+}  // namespace polemcl::test_output_folder

@@ -1,0 +1,140 @@
+#include "cli/RunFolder.h"
+#include "core/common/Types.h"
+#include "support/TempFolder.h"
+
+namespace polemcl::test_run_folder {
+
+using polemcl::apps::RunFolder;
+using namespace testing_apps;
+
+namespace {
+using Names = std::vector<std::string>;
+}
+
+TEST(RunFolder, SwapsOldRunsForNewOnesAndKeepsTheRest) {
+  const TempFolder folder;
+  for (const char* name : {"run_00.tum", "run_07_errors.csv", "summary.json", "config.ini", "mine"})
+    writeText(folder / name, "old");
+  {
+    RunFolder results(folder.path());
+    for (const char* name : {"run_00.tum", "config.ini", "summary.json"})
+      writeText(results.staged(name), "new");
+    EXPECT_EQ(readText(folder / "run_00.tum"), "old");
+    EXPECT_EQ(readText(folder / "run_07_errors.csv"), "old");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder.path()), Names({"config.ini", "mine", "run_00.tum", "summary.json"}));
+  EXPECT_EQ(readText(folder / "run_00.tum"), "new");
+  EXPECT_EQ(readText(folder / "config.ini"), "new");
+  EXPECT_EQ(readText(folder / "summary.json"), "new");
+  EXPECT_EQ(readText(folder / "mine"), "old");
+}
+
+TEST(RunFolder, ScenesOfOldRunsGoAndOtherFoldersStay) {
+  const TempFolder folder;
+  for (const char* name : {"run_00_scenes/000007.3Dscene", "run_03_scenes/a", "run_mine/a"})
+    writeText(folder / name, "old");
+  {
+    RunFolder results(folder.path());
+    writeText(results.staged("run_00_scenes") / "000001.3Dscene", "new");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_00_scenes", "run_mine"}));
+  EXPECT_EQ(names(folder / "run_00_scenes"), Names({"000001.3Dscene"}));
+}
+
+TEST(RunFolder, WithoutCommitTheOldStays) {
+  const TempFolder folder;
+  writeText(folder / "run_00.tum", "old");
+  {
+    RunFolder results(folder.path());
+    writeText(results.staged("run_00.tum"), "half");
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_00.tum"}));
+  EXPECT_EQ(readText(folder / "run_00.tum"), "old");
+}
+
+TEST(RunFolder, ANewFolderIsGoneAgainWithoutCommit) {
+  const TempFolder folder;
+  {
+    RunFolder results(folder / "new");
+    writeText(results.staged("run_00.tum"), "half");
+  }
+  EXPECT_EQ(names(folder.path()), Names());
+}
+
+TEST(RunFolder, CreatesFoldersAbove) {
+  const TempFolder folder;
+  {
+    RunFolder results(folder / "a/b");
+    writeText(results.staged("summary.json"), "new");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder / "a/b"), Names({"summary.json"}));
+}
+
+TEST(RunFolder, KeepsFoldersThatOnlySoundLikeRuns) {
+  const TempFolder folder;
+  fs::create_directory(folder / "run_scripts");
+  {
+    RunFolder results(folder.path());
+    writeText(results.staged("summary.json"), "new");
+    results.commit();
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_scripts", "summary.json"}));
+}
+
+TEST(RunFolder, RefusesAFileInItsPlace) {
+  const TempFolder folder;
+  writeText(folder / "file", "");
+  EXPECT_THROW(RunFolder(folder / "file"), polemcl::Error);
+  EXPECT_THROW(RunFolder(folder / "file/below"), polemcl::Error);
+}
+
+TEST(RunFolder, WhatOthersCalledLikeARunStays) {
+  const TempFolder folder;
+  for (const char* name : {"run_00.rawlog", "run_map.polemap", "run_1_notes.txt", "run_00.png"})
+    writeText(folder / name, "mine");
+  RunFolder(folder.path()).commit();
+  EXPECT_EQ(names(folder.path()),
+            Names({"run_00.png", "run_00.rawlog", "run_1_notes.txt", "run_map.polemap"}));
+}
+
+TEST(RunFolder, RefusesToReplaceAnInput) {
+  const TempFolder folder, other;
+  const RunFolder results(folder.path());
+  for (const char* name : {"run_00.tum", "config.ini", "summary.json", "timings.json"}) {
+    try {
+      results.protect(folder / name);
+      ADD_FAILURE() << name << " was accepted";
+    } catch (const polemcl::Error& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+    }
+    EXPECT_NO_THROW(results.protect(other / name));
+  }
+  EXPECT_NO_THROW(results.protect(folder / "run_00.rawlog"));
+  EXPECT_NO_THROW(results.protect(""));
+}
+
+TEST(RunFolder, FoldersInThePlaceOfResultsAreRefusedBeforeAnythingGoes) {
+  const TempFolder folder;
+  for (const char* name : {"run_00.tum", "summary.json", "run_01.tum/mine"})
+    writeText(folder / name, "old");
+  {
+    RunFolder results(folder.path());
+    for (const char* name : {"run_00.tum", "run_01.tum", "summary.json"})
+      writeText(results.staged(name), "new");
+    try {
+      results.commit();
+      ADD_FAILURE() << "not refused";
+    } catch (const polemcl::Error& error) {
+      EXPECT_NE(std::string(error.what()).find("run_01.tum: is a folder"), std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_EQ(names(folder.path()), Names({"run_00.tum", "run_01.tum", "summary.json"}));
+  EXPECT_EQ(readText(folder / "run_00.tum"), "old");
+  EXPECT_EQ(readText(folder / "summary.json"), "old");
+}
+
+}  // namespace polemcl::test_run_folder

@@ -1,0 +1,139 @@
+#include "cli/Settings.h"
+#include "core/common/Types.h"
+#include "support/TempFolder.h"
+
+namespace polemcl::test_settings {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+std::vector<fs::path> configurations() {
+  std::vector<fs::path> files;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(fs::path(POLEMCL_SOURCE_DIR) / "config"))
+    if (entry.path().extension() == ".ini" && entry.path().parent_path().filename() != "batches")
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+fs::path config(const std::string& name) {
+  return fs::path(POLEMCL_SOURCE_DIR) / "config" / name;
+}
+
+std::string errorOf(const std::string& ini) {
+  const TempFolder folder;
+  writeText(folder / "a.ini", ini);
+  try {
+    loadSettings((folder / "a.ini").string());
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST(Settings, EveryConfigurationLoadsAndSurvivesSaving) {
+  const auto files = configurations();
+  EXPECT_GE(files.size(), 9u);
+  const TempFolder folder;
+  for (const auto& file : files) {
+    SCOPED_TRACE(file.string());
+    const auto settings = loadSettings(file.string());
+    saveSettings(settings, (folder / "saved.ini").string());
+    EXPECT_EQ(settingsText(loadSettings((folder / "saved.ini").string())), settingsText(settings));
+  }
+}
+
+TEST(Settings, EveryValueInTheConfigurationsIsExplained) {
+  for (const auto& file : configurations()) {
+    std::istringstream lines(readText(file));
+    std::string line;
+    while (std::getline(lines, line)) {
+      if (line.find(" = ") != std::string::npos && line[0] != ';') {
+        EXPECT_NE(line.find("  ; "), std::string::npos) << file << ": " << line;
+      }
+    }
+  }
+}
+
+TEST(Settings, ConfigurationsSayWhatTheyAreFor) {
+  const auto kitti = loadSettings(config("kitti.ini").string());
+  EXPECT_EQ(kitti.sensor.model, "hdl64e");
+  EXPECT_EQ(kitti.sensor.height, 1.73);
+  EXPECT_EQ(kitti.extraction.method, ExtractionMethod::native);
+  const auto nclt = loadSettings(config("nclt.ini").string());
+  EXPECT_TRUE(nclt.sensor.upsideDown);
+  EXPECT_EQ(nclt.sensor.originZ, 0.957);
+  const auto paper = loadSettings(config("paper/nclt.ini").string());
+  EXPECT_EQ(paper.extraction.method, ExtractionMethod::paper);
+  EXPECT_EQ(paper.extraction.paper.columns, 250);
+  EXPECT_NEAR(paper.extraction.paper.fovUp, 30.67 * M_PI / 180, 1e-12);
+  EXPECT_EQ(paper.extraction.paper.projectFrom, "cloud");
+  EXPECT_EQ(paper.map.minCount, 6);
+  EXPECT_EQ(paper.likelihood.model, LikelihoodModel::floored);
+  EXPECT_EQ(paper.localization.filter.estimate, PoseEstimator::bestShare);
+}
+
+TEST(Settings, TheMendedPaperDiffersInOneHeight) {
+  auto kitti = loadSettings(config("paper/kitti.ini").string());
+  const auto mended = loadSettings(config("paper/kitti-mended.ini").string());
+  EXPECT_EQ(kitti.extraction.paper.minTop, 0.7);
+  EXPECT_EQ(mended.extraction.paper.minTop, 0);
+  kitti.extraction.paper.minTop = 0;
+  EXPECT_EQ(settingsText(mended), settingsText(kitti));
+}
+
+TEST(Settings, KnowsEverySection) {
+  const Settings defaults;
+  std::istringstream lines(settingsText(defaults));
+  std::vector<std::string> sections;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty() && line[0] == '[') sections.push_back(line);
+  const std::vector<std::string> expected{
+      "[sensor]",       "[extraction]", "[paper]",  "[native]",     "[map]",
+      "[upkeep]",       "[likelihood]", "[motion]", "[filter]",     "[start]",
+      "[tracking]",     "[submap]",     "[global]", "[health]",     "[search]",
+      "[motion_check]", "[runs]",       "[view]",   "[simulation]", "[world]"};
+  EXPECT_TRUE(
+      std::is_permutation(sections.begin(), sections.end(), expected.begin(), expected.end()))
+      << testing::PrintToString(sections);
+  for (const std::string& section : expected) {  // each is read: a key it does not know is refused
+    const std::string error = errorOf(section + "\nno_such_key = 1\n");
+    EXPECT_NE(error.find("no_such_key"), std::string::npos) << section << ' ' << error;
+  }
+}
+
+TEST(Settings, TheSimulatedSensorIsTheConfiguredOne) {
+  const auto settings = loadSettings(config("nclt.ini").string());
+  EXPECT_EQ(settings.simulation.sensor, "hdl32e");
+  EXPECT_EQ(settings.simulation.height, settings.sensor.height);
+  EXPECT_TRUE(settings.simulation.upsideDown);
+  // The extraction's hdl64e has the angles of KITTI's unit, so has the one that is simulated.
+  EXPECT_EQ(loadSettings(config("kitti.ini").string()).simulation.sensor, "hdl64e_kitti");
+}
+
+TEST(Settings, RefusesWhatItDoesNotKnow) {
+  EXPECT_NE(errorOf("[senser]\nmodel = hdl64e\n").find("senser"), std::string::npos);
+  const auto key = errorOf("[sensor]\nheigth_m = 1\n");
+  EXPECT_NE(key.find("heigth_m"), std::string::npos) << key;
+  EXPECT_NE(key.find("a.ini"), std::string::npos) << key;
+}
+
+TEST(Settings, RefusesWrongTypesAndRanges) {
+  const auto type = errorOf("[filter]\nparticles = many\n");
+  for (const char* word : {"a.ini", "filter", "particles", "many"})
+    EXPECT_NE(type.find(word), std::string::npos) << type;
+  const auto range = errorOf("[filter]\nparticles = 0\n");
+  EXPECT_NE(range.find("particles"), std::string::npos) << range;
+}
+
+TEST(Settings, RefusesAMissingFile) {
+  EXPECT_THROW(loadSettings("no/such/file.ini"), Error);
+}
+
+}  // namespace polemcl::test_settings

@@ -1,0 +1,165 @@
+#include <cstdlib>
+
+#include "core/common/Types.h"
+#include "extract/ExtractApp.h"
+#include "extract/InspectApp.h"
+#include "sim/drive/Drive.h"
+#include "sim/lidar/Scanner.h"
+#include "support/StreetTest.h"
+
+namespace polemcl::test_inspect_app {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+/// A few scans of a simulated street as `folder/in`; `flipped`: in axes turned by 180° about x.
+void writeSimulated(const fs::path& folder, const std::string& lidar, double height,
+                    bool flipped = false) {
+  sim::SimulationOptions options;
+  options.world.length = 100;
+  options.sensor = lidar;
+  options.height = height;
+  options.spacing = 30;
+  const sim::World street = sim::makeWorld(options.world);
+  const sim::Drive drive = sim::makeDrive(street, options);
+  const sim::Scanner scanner(street, sim::makeLidar(lidar));
+  std::string times, poses;
+  for (std::size_t i = 0; i < drive.T_map_sensor.size(); ++i) {
+    const auto scan = scanner.scan(drive.T_map_sensor[i], i);
+    const float side = flipped ? -1.f : 1.f;
+    Points points;
+    for (std::size_t k = 0; k < scan.size(); ++k)
+      points.push_back({scan.x[k], side * scan.y[k], side * scan.z[k], 0.5f});
+    writeBin(folder / "velodyne" / scanName(i), points);
+    times += std::to_string(i) + '\n';
+    poses += poseRow(30.0 * static_cast<double>(i), 0, 0);
+  }
+  writeText(folder / "times.txt", times);
+  writeText(folder / "poses.txt", poses);
+}
+
+class InspectApp : public StreetTest {
+ protected:
+  Outcome run(const std::vector<std::string>& arguments) {
+    return runProgram(extractMain, arguments);
+  }
+  Outcome inspectInput(std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{"--inspect", at("in.rawlog")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+};
+
+bool has(const std::string& text, const std::string& word) {
+  return text.find(word) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
+  writeSimulated(folder / "in", "hdl32e", 1.0);
+  import("in");
+  const auto outcome = inspectInput({"--write-config", at("found.ini")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "beams             32")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "fits              model = hdl32e")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "tilt")) << outcome.out;
+  const Settings settings = loadSettings(at("found.ini"));
+  EXPECT_EQ(settings.sensor.model, "hdl32e");
+  EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
+  const auto extracted = run(
+      {"--config", at("found.ini"), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
+  EXPECT_EQ(extracted.code, 0) << extracted.err;
+}
+
+TEST_F(InspectApp, WritesATableOfTwoBlocks) {
+  writeSimulated(folder / "in", "hdl64e", 1.73);
+  import("in");
+  const auto outcome = inspectInput({"--write-config", at("found.ini")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "block of 32 starting")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "no preset")) << outcome.out;
+  const Settings settings = loadSettings(at("found.ini"));
+  EXPECT_EQ(settings.sensor.elevations.size(), 32u);
+  EXPECT_EQ(settings.sensor.lowerElevations.size(), 32u);
+  EXPECT_NEAR(settings.sensor.upperApex, 0.2, 0.01);
+}
+
+// NCLT's way: z points down in the clouds, the sensor pose says so, and the optical centre is a
+// metre over their origin.
+TEST_F(InspectApp, UnderstandsASensorPoseThatTurnsCloudsOver) {
+  writeSimulated(folder / "in", "hdl32e", 1.0, true);
+  import("in", true, "0 0 0 0 0 180");
+  const auto outcome = inspectInput({"--write-config", at("found.ini")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_FALSE(has(outcome.out, "upside down       ")) << outcome.out;
+  const Settings settings = loadSettings(at("found.ini"));
+  EXPECT_EQ(settings.sensor.model, "hdl32e");
+  EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
+}
+
+TEST_F(InspectApp, SaysWhenCloudsStandOnTheirHead) {
+  writeSimulated(folder / "in", "hdl32e", 1.0, true);
+  import("in");
+  const auto outcome = inspectInput();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "--sensor-pose whose roll is 180 deg")) << outcome.out;
+}
+
+TEST_F(InspectApp, RefusesPolesAndEmptyRawlogs) {
+  writeStreet(folder / "in", 2);
+  import("in");
+  ASSERT_EQ(
+      run({"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")}).code,
+      0);
+  const auto poles = run({"--inspect", at("poles.rawlog"), "--write-config", at("none.ini")});
+  EXPECT_EQ(poles.code, 1);
+  EXPECT_TRUE(has(poles.err, "holds poles")) << poles.err;
+  EXPECT_FALSE(fs::exists(folder / "none.ini"));
+  EXPECT_EQ(run({"--inspect", at("missing.rawlog")}).code, 1);
+}
+
+TEST_F(InspectApp, UsageNamesWhatIsMissing) {
+  EXPECT_EQ(run({}).code, 2);
+  EXPECT_TRUE(has(run({"--config", "a", "--input", "b"}).err, "--output"));
+  EXPECT_EQ(run({"--write-config", "a.ini"}).code, 2);
+  EXPECT_EQ(run({"--inspect", "a", "--input", "b"}).code, 2);
+}
+
+// All three programs that extract say it, whatever the threads do, and nothing is written.
+TEST_F(InspectApp, AWrongModelIsRefused) {
+  writeSimulated(folder / "in", "vlp16", 1.0);
+  import("in");
+  const auto outcome =
+      run({"--config", config(), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(has(outcome.err, "scan 0: the cloud contradicts [sensor] model = hdl32e"))
+      << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "as model = vlp16 has")) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder / "poles.rawlog"));
+  writeText(folder / "forced.ini", "[sensor]\nmodel = hdl32e\ncheck_beams = false\n");
+  EXPECT_EQ(run({"--config", at("forced.ini"), "--input", at("in.rawlog"), "--output",
+                 at("poles.rawlog")})
+                .code,
+            0);
+}
+
+TEST_F(InspectApp, KnowsTheLidarOfKitti) {
+  const char* data = std::getenv("POLEMCL_DATA");
+  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  ImportOptions options;
+  options.input = fs::path(data) / "kitti_raw_0005";
+  options.output = folder / "in.rawlog";
+  options.every = 20;
+  importDataset(options);
+  const auto inspection = inspect({folder / "in.rawlog", std::nullopt, false});
+  EXPECT_EQ(inspection.sensor.beams.beams(), 64);
+  EXPECT_EQ(inspection.options.model, "hdl64e");
+  EXPECT_NEAR(inspection.options.height, 1.73, 0.1);
+  EXPECT_EQ(inspection.options.originZ, 0);
+}
+
+}  // namespace polemcl::test_inspect_app

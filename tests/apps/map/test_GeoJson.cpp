@@ -1,0 +1,220 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "map/GeoJson.h"
+#include "support/Samples.h"
+
+namespace polemcl::test_geo_json {
+
+using namespace polemcl;
+
+namespace {
+
+constexpr double degree = M_PI / 180;
+
+/// WGS 84 by its definition: the axes of the ellipsoid, and nothing of MRPT.
+Eigen::Vector3d upAt(double lat, double lon) {
+  return {std::cos(lat * degree) * std::cos(lon * degree),
+          std::cos(lat * degree) * std::sin(lon * degree), std::sin(lat * degree)};
+}
+Eigen::Vector3d surfaceAt(double lat, double lon) {
+  const double a = 6378137, f = 1 / 298.257223563, e2 = f * (2 - f);
+  const Eigen::Vector3d up = upAt(lat, lon);
+  const double n = a / std::sqrt(1 - e2 * up.z() * up.z());
+  return {n * up.x(), n * up.y(), n * (1 - e2) * up.z()};
+}
+
+/// A place of the map, in space: x turned by yaw from east.
+Eigen::Vector3d inSpace(const Eigen::Vector2d& place, const io::Datum& datum) {
+  const Eigen::Vector3d up = upAt(datum.latitude, datum.longitude);
+  const Eigen::Vector3d east = Eigen::Vector3d::UnitZ().cross(up).normalized();
+  const Eigen::Vector3d north = up.cross(east);
+  const double c = std::cos(datum.yawDeg * degree), s = std::sin(datum.yawDeg * degree);
+  return surfaceAt(datum.latitude, datum.longitude) + (c * place.x() - s * place.y()) * east +
+         (s * place.x() + c * place.y()) * north;
+}
+
+const std::vector<io::Datum> datums{
+    {42.293227, -83.709657, 0}, {0, 0, 0},        {50.7, 7.1, 90},
+    {-33.9, 151.2, -137.5},     {78.2, 15.6, 12}, {36.37, 127.36, 1}};
+
+io::PoleMapData sample() {
+  io::PoleMapData map;
+  std::mt19937 random(4);
+  for (int i = 0; i < 50; ++i) {
+    MapPole pole;
+    pole.x = static_cast<double>(random()) / 1e6 - 2000;
+    pole.y = static_cast<double>(random()) / 1e6 - 2000;
+    pole.radius = 0.05 + static_cast<double>(random() % 100) / 700;
+    pole.bottom = 0.25;
+    pole.top = 2 + static_cast<double>(random() % 100) / 30;
+    pole.confidence = static_cast<double>(random() % 100) / 99;
+    pole.covariance << 0.04, 0.01, 0.01, 0.09;
+    pole.count = static_cast<std::uint32_t>(random());
+    map.poles.push_back(pole);
+    map.histories.push_back({static_cast<std::uint32_t>(random() % 99), 7,
+                             static_cast<double>(random() % 100) / 99, i == 3 ? 0 : 1326652795.25,
+                             1.4e9 + 1.0 / 3});
+  }
+  map.info = {{"program", "pole-map 1"}, {"datum", "42.293227,-83.709657,30"}, {"odd \"", "\n ü"}};
+  return map;
+}
+
+class GeoJson : public testing::Test {
+ protected:
+  std::string write(const std::string& text) const {
+    const std::string file = folder / "m.geojson";
+    std::ofstream(file) << text;
+    return file;
+  }
+  std::string refusal(const std::string& text,
+                      const std::optional<io::Datum>& datum = std::nullopt) const {
+    const std::string file = write(text);
+    try {
+      readGeoJson(file, datum);
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(file, 0), 0u) << error.what();
+      return error.what();
+    }
+    return "accepted";
+  }
+  samples::Folder folder{"GeoJson"};
+};
+
+std::string points(const std::string& features) {
+  return R"({"type":"FeatureCollection","features":[)" + features + "]}";
+}
+std::string point(const std::string& coordinates, const std::string& properties = "null") {
+  return R"({"type":"Feature","geometry":{"type":"Point","coordinates":[)" + coordinates +
+         R"(]},"properties":)" + properties + "}";
+}
+
+const io::Datum home{50, 8, 0};
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+}  // namespace
+
+TEST_F(GeoJson, placesStandAboveTheirLongitudeAndLatitude) {
+  for (const io::Datum& datum : datums)
+    for (const Eigen::Vector2d& place :
+         {Eigen::Vector2d(0, 0), Eigen::Vector2d(10, 0), Eigen::Vector2d(0, 10),
+          Eigen::Vector2d(-3000, 2000), Eigen::Vector2d(30000, -40000)}) {
+      SCOPED_TRACE(io::datumText(datum) + " " + std::to_string(place.x()));
+      const Eigen::Vector2d found = geographic(place, datum);
+      const Eigen::Vector3d up = upAt(found.y(), found.x());
+      const Eigen::Vector3d off = inSpace(place, datum) - surfaceAt(found.y(), found.x());
+      EXPECT_LT(off.cross(up).norm(), 1e-6);  // nothing but height is between
+      const Eigen::Vector2d back = onMap(found, datum);
+      EXPECT_LT((back - place).norm(), 1e-6);
+    }
+}
+
+TEST_F(GeoJson, eastIsEastAndNorthIsNorth) {
+  const Eigen::Vector2d east = geographic({100, 0}, {50, 8, 0}),
+                        turned = geographic({100, 0}, {50, 8, 90});
+  EXPECT_NEAR(east.x() - 8, 100 / (111320 * std::cos(50 * degree)), 1e-5);
+  EXPECT_NEAR(east.y(), 50, 1e-7);
+  EXPECT_NEAR(turned.x(), 8, 1e-9);
+  EXPECT_NEAR(turned.y() - 50, 100 / 111229.0, 1e-5);
+}
+
+TEST_F(GeoJson, mapsComeBackBelowAMillimetre) {
+  const io::PoleMapData before = sample();
+  const std::string file = folder / "m.geojson";
+  writeGeoJson(file, before);
+  const io::PoleMapData after = readGeoJson(file);
+  EXPECT_EQ(after.info, before.info);
+  ASSERT_EQ(after.poles.size(), before.poles.size());
+  ASSERT_EQ(after.histories.size(), before.histories.size());
+  for (std::size_t i = 0; i < after.poles.size(); ++i) {
+    const MapPole &a = after.poles[i], &b = before.poles[i];
+    EXPECT_LT(std::hypot(a.x - b.x, a.y - b.y), 2e-5);
+    EXPECT_EQ(a.radius, b.radius);
+    EXPECT_EQ(a.bottom, b.bottom);
+    EXPECT_EQ(a.top, b.top);
+    EXPECT_EQ(a.confidence, b.confidence);
+    EXPECT_EQ(a.covariance, b.covariance);
+    EXPECT_EQ(a.count, b.count);
+    EXPECT_EQ(after.histories[i].seen, before.histories[i].seen);
+    EXPECT_EQ(after.histories[i].missed, before.histories[i].missed);
+    EXPECT_EQ(after.histories[i].existence, before.histories[i].existence);
+    EXPECT_EQ(after.histories[i].firstSeen, before.histories[i].firstSeen);
+    EXPECT_EQ(after.histories[i].lastSeen, before.histories[i].lastSeen);
+  }
+}
+
+TEST_F(GeoJson, isWhatRfc7946Asks) {
+  writeGeoJson(folder / "m.geojson", sample());
+  std::ifstream stream(folder / "m.geojson");
+  const auto json = nlohmann::json::parse(stream);
+  EXPECT_EQ(json["type"], "FeatureCollection");
+  EXPECT_FALSE(json.contains("crs"));  // it is WGS 84, and nothing else may be said
+  ASSERT_EQ(json["features"].size(), 50u);
+  const auto& feature = json["features"][7];
+  EXPECT_EQ(feature["type"], "Feature");
+  EXPECT_EQ(feature["geometry"]["type"], "Point");
+  ASSERT_EQ(feature["geometry"]["coordinates"].size(), 2u);
+  EXPECT_NEAR(feature["geometry"]["coordinates"][0].get<double>(), -83.7, 0.1);  // longitude first
+  EXPECT_EQ(feature["properties"]["first_seen"], "2012-01-15");
+  EXPECT_FALSE(json["features"][3]["properties"].contains("first_seen"));
+  EXPECT_EQ(json["polemcl"]["datum"], "42.293227,-83.709657,30");
+}
+
+TEST_F(GeoJson, readsPointsOfOthers) {
+  const std::string file = write(
+      points(point("8.001, 50.001, 120") + "," +
+             R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]}})" +
+             "," + R"({"type":"Feature","geometry":null,"properties":{}},)" +
+             point("8, 50", R"({"radius":0.25,"top":5,"name":"lamp","first_seen":"2020-02-03"})")));
+  std::size_t left = 0;
+  const auto map = readGeoJson(file, home, &left);
+  EXPECT_EQ(left, 2u);
+  ASSERT_EQ(map.poles.size(), 2u);
+  EXPECT_NEAR(map.poles[0].x, 71.7, 0.1);
+  EXPECT_NEAR(map.poles[0].y, 111.2, 0.1);
+  EXPECT_EQ(map.poles[0].radius, 0.1);
+  EXPECT_EQ(map.poles[0].count, 1u);
+  EXPECT_NEAR(map.poles[1].x, 0, 1e-6);
+  EXPECT_EQ(map.poles[1].radius, 0.25);
+  EXPECT_EQ(map.poles[1].top, 5);
+  EXPECT_TRUE(map.histories.empty());
+  EXPECT_EQ(map.info.at("datum"), "50,8,0");
+}
+
+TEST_F(GeoJson, refusesWhatItCannotPlace) {
+  EXPECT_HAS(refusal(points(point("8, 50"))), "--datum");
+  writeGeoJson(folder / "m.geojson", sample());
+  EXPECT_THROW(readGeoJson(folder / "m.geojson", home), Error);  // it has another one
+  EXPECT_HAS(refusal(points(point("50, 8")), home), "km from the datum");
+  EXPECT_HAS(refusal(points(point("8, 91")), home), "feature 0: longitude or latitude");
+  auto map = sample();
+  map.info.erase("datum");
+  EXPECT_THROW(writeGeoJson(folder / "n.geojson", map), Error);
+  map.info["datum"] = "90,0,0";
+  EXPECT_THROW(writeGeoJson(folder / "n.geojson", map), Error);
+  EXPECT_FALSE(std::ifstream(folder / "n.geojson").good());
+}
+
+TEST_F(GeoJson, refusesWhatIsNone) {
+  EXPECT_HAS(refusal(""), "is no JSON");
+  EXPECT_HAS(refusal("[1]"), "FeatureCollection");
+  EXPECT_HAS(refusal(R"({"type":"FeatureCollection"})"), "FeatureCollection");
+  EXPECT_HAS(refusal(points(""), home), "no point in it");
+  EXPECT_HAS(refusal(points("3"), home), "feature 0");
+  EXPECT_HAS(refusal(points(point("8")), home), "[longitude, latitude]");
+  EXPECT_HAS(refusal(points(point("8,\"50\"")), home), "[longitude, latitude]");
+  EXPECT_HAS(refusal(points(point("8,50", R"({"radius":"x"})")), home), "radius is no number");
+  EXPECT_HAS(refusal(points(point("8,50", R"({"count":-1})")), home), "count is no whole number");
+  EXPECT_HAS(refusal(points(point("8,50", R"({"covariance":[1,2]})")), home), "three numbers");
+  EXPECT_HAS(refusal(points(point("8,50", R"({"existence":1,"last_seen":5})")), home), "no day");
+  EXPECT_HAS(refusal(R"({"type":"FeatureCollection","polemcl":{"a":1},"features":[]})", home),
+             "texts by name");
+}
+
+}  // namespace polemcl::test_geo_json

@@ -1,0 +1,205 @@
+#include "core/common/Types.h"
+#include "extract/ExtractApp.h"
+#include "io/data/Trajectory.h"
+#include "io/map/PoleMapFile.h"
+#include "io/map/PolePositions.h"
+#include "map/MapApp.h"
+#include "support/StreetTest.h"
+
+namespace polemcl::test_map_app {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+class MapApp : public StreetTest {
+ protected:
+  void drive(const std::string& name, std::size_t scans, double startTime = 50, double startX = 0) {
+    writeStreet(folder / name, scans, streetPoles(), startTime, startX);
+    import(name);
+  }
+  Outcome run(const std::vector<std::string>& inputs, const std::vector<std::string>& more = {},
+              const std::string& ini = "") {
+    std::vector<std::string> arguments{"--config", ini.empty() ? config() : ini, "--output",
+                                       at("street.polemap")};
+    arguments.push_back("--input");
+    for (const auto& name : inputs) arguments.push_back(at(name + ".rawlog"));
+    arguments.push_back("--truth");
+    for (const auto& name : inputs) arguments.push_back(at(name + ".tum"));
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  bool hasMap() const { return fs::exists(folder / "street.polemap"); }
+};
+
+/// Every pole is a true one, within 5 cm.
+void expectTruePoles(const std::vector<MapPole>& poles) {
+  for (const auto& pole : poles) {
+    double nearest = 1e9;
+    for (const auto& truth : streetPoles())
+      nearest = std::min(nearest, std::hypot(pole.x - truth.x, pole.y - truth.y));
+    EXPECT_LT(nearest, 0.05) << pole.x << ' ' << pole.y;
+  }
+}
+
+}  // namespace
+
+TEST_F(MapApp, MapsTheStreet) {
+  drive("in", 12);
+  const auto outcome = run({"in"}, {"--csv", at("street.csv"), "--scene", at("street.3Dscene")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto map = io::readPoleMap(folder / "street.polemap");
+  expectTruePoles(map.poles);
+  EXPECT_GE(map.poles.size(), 8u);
+  EXPECT_EQ(map.info.at("scans"), "12");
+  EXPECT_EQ(map.info.at("inputs"), "in.rawlog");
+  EXPECT_NE(map.info.at("config").find("section_length_m"), std::string::npos);
+  EXPECT_NE(outcome.out.find(std::to_string(map.poles.size()) + " poles from 12 scans over 11.0 m"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(io::readPolePositions(folder / "street.csv").size(), map.poles.size());
+  EXPECT_EQ(readText(folder / "street.csv").rfind("x,y,radius,count,", 0), 0u);
+  EXPECT_GT(fs::file_size(folder / "street.3Dscene"), 1000u);
+}
+
+TEST_F(MapApp, ScansAndStoredPolesGiveTheSameMap) {
+  drive("in", 8);
+  ASSERT_EQ(run({"in"}).code, 0);
+  const auto fromScans = io::readPoleMap(folder / "street.polemap").poles;
+  ExtractOptions extract;
+  extract.input = folder / "in.rawlog";
+  extract.output = folder / "poles.rawlog";
+  extractPoles(extract, settings());
+  fs::copy_file(folder / "in.tum", folder / "poles.tum");
+  ASSERT_EQ(run({"poles"}).code, 0);
+  const auto fromPoles = io::readPoleMap(folder / "street.polemap").poles;
+  ASSERT_EQ(fromPoles.size(), fromScans.size());
+  for (std::size_t i = 0; i < fromPoles.size(); ++i) {
+    EXPECT_EQ(fromPoles[i].x, fromScans[i].x);
+    EXPECT_EQ(fromPoles[i].y, fromScans[i].y);
+    EXPECT_EQ(fromPoles[i].count, fromScans[i].count);
+  }
+}
+
+TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {
+  drive("in", 12);
+  MapOptions options;
+  options.inputs = {folder / "in.rawlog"};
+  options.truths = {folder / "in.tum"};
+  options.output = folder / "street.polemap";
+  Settings settings = loadSettings(config());
+  settings.extraction.native.minConfidence = 1;  // nothing is that sure
+  const auto ignore = [](std::size_t, std::size_t) {};
+  EXPECT_THROW(buildMap(options, settings, ignore), Error);
+  settings.map.minConfidence = 0.3;
+  const MapSummary summary = buildMap(options, settings, ignore);
+  EXPECT_GE(summary.map.poles.size(), 8u);
+}
+
+TEST_F(MapApp, SeveralDrivesMakeOneMap) {
+  drive("one", 10);
+  drive("two", 10, 500, 30);  // farther on, another day
+  ASSERT_EQ(run({"one"}).code, 0);
+  const auto first = io::readPoleMap(folder / "street.polemap").poles.size();
+  const auto outcome = run({"one", "two"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto both = io::readPoleMap(folder / "street.polemap");
+  expectTruePoles(both.poles);
+  EXPECT_GT(both.poles.size(), first);
+  EXPECT_NE(outcome.out.find("from 20 scans over 18.0 m"), std::string::npos) << outcome.out;
+  EXPECT_EQ(both.info.at("inputs"), "one.rawlog two.rawlog");
+}
+
+TEST_F(MapApp, TruthIsInterpolatedInTime) {
+  drive("in", 8);
+  // Half of the rows are gone; along x the street is driven evenly.
+  const auto truth = io::readTum(folder / "in.tum");
+  std::vector<io::StampedPose3D> thin;
+  for (std::size_t i = 0; i < truth.size(); i += 7) thin.push_back(truth[i]);
+  io::writeTum(folder / "in.tum", thin);
+  MapOptions options{{folder / "in.rawlog"}, {folder / "in.tum"}, folder / "street.polemap",
+                     std::nullopt,           std::nullopt,        false};
+  const auto summary = buildMap(options, settings());
+  EXPECT_EQ(summary.scans, 8u);
+  EXPECT_NEAR(summary.map.pathLength, 7, 1e-6);
+}
+
+TEST_F(MapApp, ScansWithoutTruthAreCountedAndLeftOut) {
+  drive("in", 13);
+  auto truth = io::readTum(folder / "in.tum");
+  truth.resize(10);
+  io::writeTum(folder / "in.tum", truth);
+  const auto outcome = run({"in"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("without a true pose, not used: 3"), std::string::npos) << outcome.out;
+}
+
+TEST_F(MapApp, RefusesTheTruthOfAnotherDrive) {
+  drive("in", 6);
+  drive("other", 6, 500);
+  fs::copy_file(folder / "other.tum", folder / "in.tum", fs::copy_options::overwrite_existing);
+  expectFailure(run({"in"}), {"in.tum", "0 of the 6 scans", "in.rawlog"});
+  EXPECT_FALSE(hasMap());
+}
+
+TEST_F(MapApp, RefusesWhenNoPoleIsFound) {
+  writeStreet(folder / "in", 6, {});
+  import("in");
+  writeText(folder / "street.polemap", "old");
+  expectFailure(run({"in"}), {"no pole", "6 scans", "1.00 m apart", "section_length_m = 1.5",
+                              "0 detections", "[extraction]"});
+  EXPECT_EQ(readText(folder / "street.polemap"), "old");
+}
+
+TEST_F(MapApp, NamesTheCountWhenNoPoleIsSeenOftenEnough) {
+  drive("in", 6);
+  writeText(folder / "strict.ini",
+            "[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\nmin_count = 50\n");
+  expectFailure(run({"in"}, {"--csv", at("street.csv")}, at("strict.ini")),
+                {"no pole", "min_count = 50", "[map]"});
+  EXPECT_FALSE(hasMap());
+  EXPECT_FALSE(fs::exists(folder / "street.csv"));
+}
+
+TEST_F(MapApp, RefusesWhenNoScanHasAPoint) {
+  writeStreet(folder / "in", 2);
+  for (std::size_t i : {0, 1}) writeBin(folder / "in" / "velodyne" / scanName(i), {{0, 0, 0, 0}});
+  import("in", false);
+  expectFailure(run({"in"}), {"in.rawlog", "no usable scan"});
+}
+
+TEST_F(MapApp, RefusesATruncatedRawlogUnlessAllowed) {
+  drive("in", 8);
+  fs::resize_file(folder / "in.rawlog", fs::file_size(folder / "in.rawlog") - 1000);
+  expectFailure(run({"in"}), {"in.rawlog"});
+  EXPECT_FALSE(hasMap());
+  const auto outcome = run({"in"}, {"--allow-truncated"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("from 7 scans"), std::string::npos) << outcome.out;
+}
+
+TEST_F(MapApp, RefusesUnknownClasses) {
+  drive("in", 2);
+  replace("in.rawlog", "CObservationPointCloud", "CObservationPointClown");
+  expectFailure(run({"in"}), {"in.rawlog", "CObservationPointClown"});
+}
+
+TEST_F(MapApp, RefusesMissingFilesAndOtherEndings) {
+  expectFailure(run({"in"}), {"in.rawlog"});
+  drive("in", 2);
+  fs::remove(folder / "in.tum");
+  expectFailure(run({"in"}), {"in.tum"});
+  expectFailure(runProgram(mapMain, {"--config", config(), "--input", at("in.rawlog"), "--truth",
+                                     at("in.tum"), "--output", at("street.csv")}),
+                {"street.csv", ".polemap"});
+}
+
+TEST_F(MapApp, WrongUsage) {
+  expectUsageError(runProgram(mapMain, {}));
+  expectUsageError(runProgram(
+      mapMain, {"--config", "c", "--input", "a", "b", "--truth", "a", "--output", "m.polemap"}));
+}
+
+}  // namespace polemcl::test_map_app

@@ -1,0 +1,117 @@
+#include <cmath>
+
+#include "io/map/PoleMapFile.h"
+#include "io/map/PolePositions.h"
+#include "map/MapApp.h"
+#include "map/MapConvertApp.h"
+#include "support/TempFolder.h"
+
+namespace polemcl::test_map_convert_app {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+class MapConvertApp : public testing::Test {
+ protected:
+  MapConvertApp() {
+    io::PoleMapData map;
+    for (int i = 0; i < 5; ++i) {
+      MapPole pole;
+      pole.x = 10.5 * i;
+      pole.y = 3.25 - i;
+      pole.radius = 0.125;
+      pole.top = 4;
+      pole.count = 7;
+      map.poles.push_back(pole);
+      map.histories.push_back({7, 1, 0.9375, 1326585600, 1331942400});
+    }
+    map.candidates.push_back({map.poles.front(), map.histories.front(), false});
+    map.info = {{"program", "pole-map 1"}};
+    scans.sessions.push_back({"one.rawlog", {SessionScan()}, {true}});
+    io::writePoleMap(folder / "m.polemap", map, &scans);
+  }
+  Outcome convert(const std::string& from, const std::string& to,
+                  const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"--convert", (folder / from).string(), "--output",
+                                       (folder / to).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  TempFolder folder;
+  AddedSessions scans;
+};
+
+}  // namespace
+
+TEST_F(MapConvertApp, GoesThroughEveryKindOfFile) {
+  const std::vector<std::string> datum{"--datum", "42.25,-83.5,12"};
+  std::string from = "m.polemap";
+  for (const std::string to :
+       {"a.geojson", "b.csv", "c.polemap", "d.npz", "e.csv", "f.geojson", "g.npz", "h.polemap"}) {
+    SCOPED_TRACE(to);
+    const bool needsDatum = to == "a.geojson" || to == "f.geojson";
+    const auto outcome = convert(from, to, needsDatum ? datum : std::vector<std::string>());
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(to + ": 5 poles"), std::string::npos) << outcome.out;
+    from = to;
+  }
+  for (const char* name : {"c.polemap", "d.npz", "g.npz", "h.polemap"}) {
+    const auto places = io::readPolePositions(folder / name);
+    ASSERT_EQ(places.size(), 5u);
+    for (int i = 0; i < 5; ++i)
+      EXPECT_LT(std::hypot(places[i].x() - 10.5 * i, places[i].y() - 3.25 + i), 1e-4) << name;
+  }
+  const auto map = io::readPoleMap(folder / "c.polemap");  // through GeoJSON and CSV
+  ASSERT_EQ(map.histories.size(), 5u);
+  EXPECT_EQ(map.histories[2].existence, 0.9375);
+  EXPECT_EQ(map.histories[2].lastSeen, 1331942400);
+  EXPECT_EQ(map.poles[2].radius, 0.125);
+  EXPECT_EQ(map.poles[2].count, 7u);
+  EXPECT_EQ(map.info.at("converted_from"), "b.csv");
+  EXPECT_EQ(io::readPoleMap(folder / "h.polemap").poles[2].radius, 0.125);
+}
+
+TEST_F(MapConvertApp, GivesAMapItsDatumAndKeepsTheRest) {
+  const auto outcome = convert("m.polemap", "m.polemap", {"--datum", "50,8"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto map = io::readPoleMap(folder / "m.polemap");
+  EXPECT_EQ(map.info.at("datum"), "50,8,0");
+  EXPECT_EQ(map.info.at("program"), "pole-map 1");
+  EXPECT_EQ(map.info.count("converted_from"), 0u);
+  EXPECT_EQ(map.candidates.size(), 1u);
+  ASSERT_TRUE(io::readMapScans(folder / "m.polemap"));
+  EXPECT_EQ(convert("m.polemap", "m.geojson").code, 0);  // it knows where it is now
+  expectFailure(convert("m.polemap", "n.polemap", {"--datum", "50,9"}), {"m.polemap", "50,8,0"});
+}
+
+TEST_F(MapConvertApp, TellsWhatIsLeftOut) {
+  const auto outcome = convert("m.polemap", "m.csv");
+  EXPECT_NE(outcome.out.find("candidates, which are not on the map, left out: 1"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(convert("m.polemap", "m.csv", {"--quiet"}).out, "");
+}
+
+TEST_F(MapConvertApp, RefusesWhatItCannotConvert) {
+  expectFailure(convert("m.polemap", "m.geojson"), {"m.geojson", "--datum"});
+  expectFailure(convert("m.polemap", "m.kml"), {"m.kml", ".geojson"});
+  expectFailure(convert("m.kml", "m.csv"), {"m.kml", ".geojson"});
+  expectFailure(convert("none.npz", "m.csv"), {"none.npz"});
+  writeText(folder / "empty.csv", "x,y\n");
+  expectFailure(convert("empty.csv", "m.polemap"), {"empty.csv", "no pole"});
+  writeText(folder / "bad.csv", "x,y,radius\n1,2,3\n1,2,-3\n");
+  expectFailure(convert("bad.csv", "new.polemap"), {"new.polemap", "pole 1", "radius"});
+  EXPECT_FALSE(fs::exists(folder / "new.polemap"));
+  EXPECT_FALSE(fs::exists(folder / "m.geojson"));
+}
+
+TEST_F(MapConvertApp, WrongUsage) {
+  expectUsageError(runProgram(mapMain, {"--convert", "a.csv"}));
+  expectUsageError(runProgram(mapMain, {"--convert", "a.csv", "--update", "b", "--output", "c"}));
+  expectUsageError(runProgram(mapMain, {"--convert", "a.csv", "--input", "b", "--output", "c"}));
+}
+
+}  // namespace polemcl::test_map_convert_app

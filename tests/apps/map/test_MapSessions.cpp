@@ -1,0 +1,144 @@
+/// \file test_MapSessions.cpp
+/// \brief pole-map with several sessions: the paper's protocol, and sessions added one by one.
+
+#include "extract/ExtractApp.h"
+#include "io/file/Bytes.h"
+#include "io/map/PoleMapFile.h"
+#include "map/MapApp.h"
+#include "support/StreetTest.h"
+
+namespace polemcl::test_map_sessions {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+/// Three sessions on one street: along half of it, a bit farther, all of it and beyond.
+class MapSessions : public StreetTest {
+ protected:
+  MapSessions() {
+    for (const auto& [name, text] :
+         {std::pair("all.ini", ""), std::pair("paper.ini", "unvisited_m = 10\n"),
+          std::pair("near.ini", "unvisited_m = 4\n")})
+      writeText(folder / name, std::string("[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\n"
+                                           "section_length_m = 1.5\nmin_count = 2\n") +
+                                   text);
+    drive("one", 12, 0);
+    drive("two", 10, 8);    // 8 … 17 m
+    drive("three", 20, 8);  // 8 … 27 m
+  }
+  /// Scans become poles at once: what is tested here does not depend on it, and is quicker so.
+  void drive(const std::string& name, std::size_t scans, double startX) {
+    writeStreet(folder / (name + "-scans"), scans, streetPoles(), 50, startX);
+    import(name + "-scans");
+    ExtractOptions extract;
+    extract.input = folder / (name + "-scans.rawlog");
+    extract.output = folder / (name + ".rawlog");
+    extractPoles(extract, settings());
+    fs::rename(folder / (name + "-scans.tum"), folder / (name + ".tum"));
+  }
+  Outcome map(const std::string& ini, const std::vector<std::string>& inputs,
+              const std::string& output, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"--config", at(ini), "--output", at(output), "--input"};
+    for (const auto& name : inputs) arguments.push_back(at(name + ".rawlog"));
+    arguments.push_back("--truth");
+    for (const auto& name : inputs) arguments.push_back(at(name + ".tum"));
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  /// The bytes of a chunk of a map.
+  std::string chunk(const std::string& name, const std::string& wanted) const {
+    const std::string bytes = readText(folder / name);
+    io::ByteReader payload(std::string_view(bytes).substr(24), name);
+    while (payload.remaining() > 0) {
+      const std::string tag(payload.getRaw(4));
+      const auto size = payload.get<std::uint64_t>();
+      const std::string content(payload.getRaw(size));
+      if (tag == wanted) return content;
+    }
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_F(MapSessions, ThePaperTakesLaterSessionsWhereNobodyHasBeen) {
+  const auto outcome = map("paper.ini", {"one", "two", "three"}, "m.polemap");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto info = io::readPoleMap(folder / "m.polemap").info;
+  // One ends at 11 m: two has nothing beyond 21 m; two ends at 17 m: three is new beyond 27 m.
+  EXPECT_EQ(info.at("f_map.one"), "1.000000");
+  EXPECT_EQ(info.at("f_map.two"), "0.000000");
+  EXPECT_EQ(info.at("f_map.three"), "0.000000");
+  EXPECT_EQ(info.at("scans"), "12");
+  EXPECT_NE(outcome.out.find("two.rawlog: 0 of 10 scans used, f_map 0.0000"), std::string::npos)
+      << outcome.out;
+  ASSERT_EQ(map("paper.ini", {"one", "three"}, "m.polemap").code, 0);
+  // 22 … 27 m of 20 scans, whose first is at 8 m.
+  EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("f_map.three"), "0.300000");
+  EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("scans"), "18");
+}
+
+TEST_F(MapSessions, EverythingIsUsedUnlessAsked) {
+  const auto outcome = map("all.ini", {"one", "three"}, "m.polemap");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("f_map.three"), "1.000000");
+  EXPECT_EQ(chunk("m.polemap", "SCAN"), "");
+}
+
+TEST_F(MapSessions, AddedOneByOneTheyGiveTheMapOfAllAtOnce) {
+  for (const std::string ini : {"all.ini", "near.ini", "paper.ini"}) {
+    SCOPED_TRACE(ini);
+    const std::vector<std::string> days{"--date", "2026-03-01", "2026-03-02", "2026-04-01"};
+    ASSERT_EQ(map(ini, {"one", "three", "two"}, "all.polemap", days).code, 0);
+    ASSERT_EQ(map(ini, {"one"}, "m.polemap", {"--keep-scans", "--date", days[1]}).code, 0);
+    ASSERT_EQ(map(ini, {"three"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[2]}).code,
+              0);
+    const auto last = map(ini, {"two"}, "m.polemap", {"--add", at("m.polemap"), "--date", days[3]});
+    ASSERT_EQ(last.code, 0) << last.err;
+    EXPECT_EQ(chunk("m.polemap", "POLE"), chunk("all.polemap", "POLE"));
+    EXPECT_EQ(chunk("m.polemap", "INFO"), chunk("all.polemap", "INFO"));
+    EXPECT_GT(chunk("m.polemap", "POLE").size(), 500u);
+    ASSERT_EQ(map(ini, {"one", "three", "two"}, "all.polemap",
+                  {"--keep-scans", days[0], days[1], days[2], days[3]})
+                  .code,
+              0);
+    EXPECT_EQ(readText(folder / "m.polemap"), readText(folder / "all.polemap"));
+  }
+}
+
+TEST_F(MapSessions, RefusesWhatItCannotAddTo) {
+  ASSERT_EQ(map("paper.ini", {"one"}, "bare.polemap").code, 0);
+  expectFailure(map("paper.ini", {"two"}, "m.polemap", {"--add", at("bare.polemap")}),
+                {"bare.polemap", "keeps no scans", "--keep-scans"});
+  ASSERT_EQ(map("paper.ini", {"one"}, "kept.polemap", {"--keep-scans"}).code, 0);
+  expectFailure(map("all.ini", {"two"}, "m.polemap", {"--add", at("kept.polemap")}),
+                {"kept.polemap", "unvisited_m = 0", "10"});
+  EXPECT_FALSE(fs::exists(folder / "m.polemap"));
+}
+
+TEST_F(MapSessions, SessionsThatDisagreeOnTheDatumAreRefused) {
+  const std::vector<std::string> here{"--keep-scans", "--datum", "42.25,-83.5,-1"};
+  ASSERT_EQ(map("all.ini", {"one"}, "m.polemap", here).code, 0);
+  EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("datum"), "42.25,-83.5,-1");
+  for (const std::string option : {"--add", "--update"}) {
+    SCOPED_TRACE(option);
+    expectFailure(
+        map("all.ini", {"two"}, "n.polemap", {option, at("m.polemap"), "--datum", "42.25,-83.5,0"}),
+        {"m.polemap", "42.25,-83.5,-1", "42.25,-83.5,0"});
+    EXPECT_FALSE(fs::exists(folder / "n.polemap"));
+    ASSERT_EQ(map("all.ini", {"two"}, "o.polemap", {option, at("m.polemap")}).code, 0);
+    EXPECT_EQ(io::readPoleMap(folder / "o.polemap").info.at("datum"), "42.25,-83.5,-1");
+  }
+  EXPECT_EQ(chunk("o.polemap", "SCAN"), "");  // an updated map is not what its scans say
+  expectFailure(map("all.ini", {"one"}, "n.polemap", {"--datum", "91,0"}), {"--datum", "91,0"});
+}
+
+TEST_F(MapSessions, WrongUsage) {
+  expectUsageError(map("all.ini", {"one"}, "m.polemap", {"--add", "a", "--update", "b"}));
+  expectUsageError(runProgram(mapMain, {"--add", "a.polemap"}));
+}
+
+}  // namespace polemcl::test_map_sessions

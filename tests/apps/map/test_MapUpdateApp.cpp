@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cmath>
+
+#include "io/data/Trajectory.h"
+#include "io/map/PoleMapFile.h"
+#include "map/MapApp.h"
+#include "map/MapDiffApp.h"
+#include "map/MapUpdateApp.h"
+#include "support/StreetTest.h"
+
+namespace polemcl::test_map_update_app {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+/// A street on the day of the map; on the next day one pole is gone, one has come, one has moved.
+class MapUpdateApp : public StreetTest {
+ protected:
+  MapUpdateApp() {
+    yesterday = streetPoles();
+    today = yesterday;
+    for (auto& pole : today)
+      if (pole.x == 9 && pole.y == 6) pole.y = 7;  // moved by a metre
+    today.erase(std::find_if(today.begin(), today.end(),
+                             [](const auto& p) { return p.x == 13 && p.y == -7; }));
+    today.push_back({5, 9});
+  }
+  void drive(const std::string& name, const std::vector<StreetPole>& poles) {
+    writeStreet(folder / name, 25, poles, 50, 0);
+    import(name);
+  }
+  void mapYesterday() {
+    drive("day0", yesterday);
+    const auto outcome = runProgram(
+        mapMain, {"--config", config(), "--input", at("day0.rawlog"), "--truth", at("day0.tum"),
+                  "--date", "2026-03-01", "--output", at("day0.polemap"), "--csv", at("m.csv")});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  Outcome update(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{
+        "--config",        config(),  "--update",     at("day0.polemap"), "--input",
+        at("day1.rawlog"), "--truth", at("day1.tum"), "--output",         at("day1.polemap")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  static bool has(const std::vector<MapPole>& poles, double x, double y) {
+    return std::any_of(poles.begin(), poles.end(), [&](const MapPole& pole) {
+      return std::hypot(pole.x - x, pole.y - y) < 0.1;
+    });
+  }
+  std::vector<StreetPole> yesterday, today;
+};
+
+}  // namespace
+
+TEST_F(MapUpdateApp, AFreshMapTellsWhenItsPolesWereSeen) {
+  mapYesterday();
+  const auto map = io::readPoleMap(folder / "day0.polemap");
+  ASSERT_EQ(map.histories.size(), map.poles.size());
+  for (const auto& history : map.histories) {
+    EXPECT_NEAR(history.firstSeen, 1772323200, 100);  // date -u -d 2026-03-01 +%s
+    EXPECT_GE(history.lastSeen, history.firstSeen);
+  }
+  EXPECT_NE(readText(folder / "m.csv").find(",2026-03-01,2026-03-01\n"), std::string::npos);
+}
+
+TEST_F(MapUpdateApp, TheMapFollowsTheStreet) {
+  mapYesterday();
+  drive("day1", today);
+  const auto outcome =
+      update({"--date", "2026-03-02", "--csv", at("new.csv"), "--scene", at("new.3Dscene")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto before = io::readPoleMap(folder / "day0.polemap").poles;
+  const auto after = io::readPoleMap(folder / "day1.polemap");
+  ASSERT_TRUE(has(before, 9, 6) && has(before, 13, -7));
+  EXPECT_TRUE(has(after.poles, 9, 7));
+  EXPECT_FALSE(has(after.poles, 9, 6)) << "a ghost";
+  EXPECT_FALSE(has(after.poles, 13, -7)) << "it is gone";
+  EXPECT_TRUE(has(after.poles, 5, 9));
+  EXPECT_TRUE(has(after.poles, 4, -7)) << "it stands";
+  EXPECT_EQ(after.info.at("updates"), "day1.rawlog");
+  EXPECT_EQ(after.info.at("f_map.day1"), "1.000000");  // all its scans count
+  EXPECT_NE(outcome.out.find("1 vanished, 1 moved"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(fs::exists(folder / "new.3Dscene"));
+  EXPECT_NE(readText(folder / "new.csv").find(",2026-03-01,2026-03-02\n"), std::string::npos);
+}
+
+TEST_F(MapUpdateApp, ListsAndDrawsWhatChanged) {
+  mapYesterday();
+  drive("day1", today);
+  ASSERT_EQ(update().code, 0);
+  const auto outcome =
+      runProgram(mapMain, {"--diff", at("day0.polemap"), at("day1.polemap"), "--png", at("d.png"),
+                           "--scene", at("d.3Dscene"), "--csv", at("d.csv")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1 vanished, 1 moved"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("(1.0"), std::string::npos) << outcome.out;
+  const std::string csv = readText(folder / "d.csv");
+  EXPECT_EQ(csv.rfind("change,x,y,x_before,y_before,distance\n", 0), 0u);
+  EXPECT_NE(csv.find("\nvanished,"), std::string::npos);
+  EXPECT_NE(csv.find("\nmoved,"), std::string::npos);
+  EXPECT_NE(csv.find("\nnew,"), std::string::npos);
+  EXPECT_GT(fs::file_size(folder / "d.png"), 5000u);
+  EXPECT_GT(fs::file_size(folder / "d.3Dscene"), 1000u);
+}
+
+TEST_F(MapUpdateApp, RefusesASessionOfAnotherPlace) {
+  mapYesterday();
+  auto elsewhere = yesterday;
+  for (auto& pole : elsewhere) pole.x += 3.3;
+  for (auto& pole : elsewhere) pole.y += pole.y > 0 ? 3 : -3;
+  drive("day1", elsewhere);
+  writeText(folder / "day1.polemap", "old");
+  expectFailure(update(), {"day1.rawlog", "poles of", "were found", "datum"});
+  EXPECT_EQ(readText(folder / "day1.polemap"), "old");
+}
+
+TEST_F(MapUpdateApp, RefusesASessionInAnotherFrame) {
+  mapYesterday();
+  drive("day1", today);
+  auto truth = io::planar(io::readTum(folder / "day1.tum"));
+  for (auto& pose : truth) pose.pose.y += 20000;
+  io::writeTum(folder / "day1.tum", truth);
+  expectFailure(update(), {"day1.rawlog", "20 km from the poles of", "datum"});
+}
+
+TEST_F(MapUpdateApp, RefusesASessionOfAnEarlierDay) {
+  mapYesterday();
+  drive("day1", today);
+  expectFailure(update({"--date", "2026-02-28"}),
+                {"day1.rawlog", "is of 2026-02-28", "day0.polemap of 2026-03-01", "--date"});
+  EXPECT_EQ(update({"--date", "2026-03-01"}).code, 0);
+}
+
+TEST_F(MapUpdateApp, RefusesBadFilesAndDates) {
+  drive("day1", today);
+  expectFailure(update(), {"day0.polemap"});
+  mapYesterday();
+  expectFailure(update({"--date", "2026-02-30"}), {"2026-02-30", "YYYY-MM-DD"});
+  expectFailure(runProgram(mapMain, {"--diff", at("day0.polemap"), at("no.polemap")}),
+                {"no.polemap"});
+}
+
+TEST_F(MapUpdateApp, WrongUsage) {
+  expectUsageError(runProgram(mapMain, {"--diff", "a.polemap"}));
+  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--update", "c"}));
+  expectUsageError(runProgram(mapMain, {"--png", "a.png"}));
+  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--set", "upkeep.moved_m=1"}));
+  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--csv", "c", "--png", "./c"}));
+  expectUsageError(
+      runProgram(mapMain, {"--convert", "a.csv", "--output", "b.csv", "--config", "c"}));
+  expectUsageError(runProgram(mapMain, {"--config", "c", "--update", "m", "--input", "a", "--truth",
+                                        "a", "--output", "m.polemap", "--keep-scans"}));
+  expectUsageError(
+      runProgram(mapMain, {"--config", "c", "--update", "m", "--input", "a", "--truth", "a"}));
+  expectUsageError(runProgram(mapMain, {"--config", "c", "--input", "a", "--truth", "a", "--date",
+                                        "2026-03-01", "2026-03-02", "--output", "m.polemap"}));
+}
+
+}  // namespace polemcl::test_map_update_app

@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/common/GreedyAssignment.h"
+#include "core/common/Types.h"
+
+namespace polemcl::test_greedy_assignment {
+
+using namespace polemcl;
+using Points = std::vector<Eigen::Vector2d>;
+
+TEST(PolePairs, TakesTheClosestPairFirst) {
+  // The second of `a` is nearer to the only point of `b`; the first gets nothing.
+  const auto pairs = pairClosest({{0, 0}, {0.5, 0}}, {{0.4, 0}}, 1);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].first, 1u);
+  EXPECT_EQ(pairs[0].second, 0u);
+  EXPECT_NEAR(pairs[0].distance, 0.1, 1e-12);
+}
+
+TEST(PolePairs, GivesUpMorePairsForACloserOne) {
+  // Two pairs would be possible (0-0, 1-1); the closest, 1-0, leaves the others 1.1 m apart.
+  const auto pairs = pairClosest({{-0.5, 0}, {0.1, 0}}, {{0, 0}, {0.6, 0}}, 0.8);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].first, 1u);
+  EXPECT_EQ(pairs[0].second, 0u);
+}
+
+TEST(PolePairs, TheRadiusIsInclusiveAndOrderIsByFirst) {
+  const auto pairs = pairClosest({{10, 0}, {0, 0}}, {{0.5, 0}, {10, 0.25}}, 0.5);
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_EQ(pairs[0].first, 0u);
+  EXPECT_EQ(pairs[0].second, 1u);
+  EXPECT_EQ(pairs[1].first, 1u);
+  EXPECT_EQ(pairs[1].second, 0u);
+  EXPECT_TRUE(pairClosest({{0, 0}}, {{0.5001, 0}}, 0.5).empty());
+}
+
+TEST(PolePairs, EqualDistancesGoToTheLowerIndex) {
+  const auto pairs = pairClosest({{0, 0}}, {{0.25, 0}, {-0.25, 0}}, 1);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].second, 0u);
+}
+
+TEST(PolePairs, AgreesWithTakingTheSmallestOfATable) {
+  std::mt19937 random(5);
+  const auto points = [&](std::size_t count) {
+    Points result;
+    for (std::size_t i = 0; i < count; ++i)
+      result.emplace_back(static_cast<double>(random() % 1000) / 100,
+                          static_cast<double>(random() % 1000) / 100);
+    return result;
+  };
+  for (int round = 0; round < 20; ++round) {
+    const Points a = points(40), b = points(30);
+    std::vector<char> usedA(a.size(), 0), usedB(b.size(), 0);
+    std::vector<std::pair<std::size_t, std::size_t>> expected(a.size(), {0, b.size()});
+    for (;;) {
+      double best = 1.0;
+      std::size_t bestA = a.size(), bestB = 0;
+      for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t k = 0; k < b.size(); ++k)
+          if (!usedA[i] && !usedB[k] && (a[i] - b[k]).norm() < best) {
+            best = (a[i] - b[k]).norm();
+            bestA = i;
+            bestB = k;
+          }
+      if (bestA == a.size()) break;
+      usedA[bestA] = usedB[bestB] = 1;
+      expected[bestA].second = bestB;
+    }
+    std::vector<std::size_t> partner(a.size(), b.size());
+    for (const PolePair& pair : pairClosest(a, b, 1.0)) partner[pair.first] = pair.second;
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(partner[i], expected[i].second) << i;
+  }
+}
+
+TEST(PolePairs, RefusesWhatMakesNoSense) {
+  EXPECT_THROW(pairClosest({{0, 0}}, {{0, 0}}, 0), Error);
+  EXPECT_THROW(pairClosest({{0, 0}}, {{0, 0}}, NAN), Error);
+  EXPECT_THROW(pairClosest({{NAN, 0}}, {{0, 0}}, 1), Error);
+  EXPECT_THROW(pairClosest({{0, 0}}, {{0, INFINITY}}, 1), Error);
+  EXPECT_TRUE(pairClosest({}, {}, 1).empty());
+}
+
+}  // namespace polemcl::test_greedy_assignment

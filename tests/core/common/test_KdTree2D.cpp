@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/common/KdTree2D.h"
+#include "core/common/Types.h"
+
+namespace polemcl::test_kd_tree2_d {
+
+using namespace polemcl;
+
+namespace {
+
+std::vector<Eigen::Vector2d> randomPoints(std::mt19937_64& random, std::size_t count,
+                                          double extent) {
+  std::uniform_real_distribution<double> coordinate(-extent, extent);
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.emplace_back(coordinate(random), coordinate(random));
+  return points;
+}
+
+/// Points of a grid: many exact duplicates and many queries at exactly the same distance of
+/// several.
+std::vector<Eigen::Vector2d> latticePoints(std::mt19937_64& random, std::size_t count) {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.emplace_back(double(random() % 9), double(random() % 9));
+  return points;
+}
+
+std::vector<PointHit> bruteWithin(const std::vector<Eigen::Vector2d>& points, double x, double y,
+                                  double radius) {
+  std::vector<PointHit> hits;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const double dx = x - points[i].x(), dy = y - points[i].y();
+    if (dx * dx + dy * dy < radius * radius) hits.push_back({i, dx * dx + dy * dy});
+  }
+  return hits;
+}
+
+void expectEqualsBruteForce(const std::vector<Eigen::Vector2d>& points, double x, double y,
+                            double radius) {
+  const KdTree2D tree(points);
+  const std::vector<PointHit> expected = bruteWithin(points, x, y, radius);
+  std::vector<PointHit> found;
+  tree.within(x, y, radius, found);
+  ASSERT_EQ(found.size(), expected.size());
+  PointHit best;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(found[i].index, expected[i].index);
+    EXPECT_EQ(found[i].squaredDistance, expected[i].squaredDistance);
+    if (!best || expected[i].squaredDistance < best.squaredDistance) best = expected[i];
+  }
+  const PointHit nearest = tree.nearest(x, y, radius);
+  EXPECT_EQ(nearest.index, best.index);
+  EXPECT_EQ(nearest.squaredDistance, best.squaredDistance);
+}
+
+}  // namespace
+
+TEST(KdTree2D, equalsBruteForceOnRandomPoints) {
+  std::mt19937_64 random(1);
+  const auto points = randomPoints(random, 300, 20);
+  for (int i = 0; i < 200; ++i) {
+    const auto query = randomPoints(random, 1, 25).front();
+    expectEqualsBruteForce(points, query.x(), query.y(), 0.1 + 0.05 * i);
+  }
+}
+
+TEST(KdTree2D, equalsBruteForceOnDuplicatesAndTies) {
+  std::mt19937_64 random(2);
+  const auto points = latticePoints(random, 400);
+  for (int i = 0; i < 200; ++i) {
+    const double x = 0.5 * (random() % 18), y = 0.5 * (random() % 18);
+    expectEqualsBruteForce(points, x, y, 0.5 * (1 + random() % 6));
+  }
+}
+
+TEST(KdTree2D, radiusIsStrict) {
+  const KdTree2D tree({{3, 4}});
+  EXPECT_FALSE(tree.nearest(0, 0, 5));
+  EXPECT_TRUE(tree.nearest(0, 0, std::nextafter(5.0, 6.0)));
+}
+
+TEST(KdTree2D, emptyFindsNothing) {
+  const KdTree2D tree({});
+  std::vector<PointHit> hits(3);
+  tree.within(0, 0, 10, hits);
+  EXPECT_TRUE(hits.empty());
+  EXPECT_FALSE(tree.nearest(0, 0, 10));
+  EXPECT_EQ(tree.size(), 0u);
+}
+
+TEST(KdTree2D, queryThatIsNotANumberFindsNothing) {
+  const KdTree2D tree({{0, 0}});
+  const double nan = std::nan("");
+  EXPECT_FALSE(tree.nearest(nan, 0, 10));
+  EXPECT_FALSE(tree.nearest(0, std::numeric_limits<double>::infinity(), 10));
+  EXPECT_FALSE(tree.nearest(0, 0, nan));
+  EXPECT_FALSE(tree.nearest(0, 0, -1));
+}
+
+TEST(KdTree2D, refusesPointsThatAreNotFinite) {
+  EXPECT_THROW(KdTree2D({{0, 0}, {std::nan(""), 1}}), Error);
+  EXPECT_THROW(KdTree2D({{0, std::numeric_limits<double>::infinity()}}), Error);
+}
+
+}  // namespace polemcl::test_kd_tree2_d

@@ -1,0 +1,293 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/evaluation/TrajectoryEvaluation.h"
+
+namespace polemcl::test_trajectory_evaluation {
+
+using namespace polemcl;
+using Points = std::vector<Eigen::Vector2d>;
+
+namespace {
+
+/// 1 m/s along x, a sample a second, from 0 to `last` seconds.
+std::vector<StampedPose2D> straightTruth(int last) {
+  std::vector<StampedPose2D> truth;
+  for (int t = 0; t <= last; ++t) truth.push_back({double(t), {double(t), 0, 0}});
+  return truth;
+}
+
+constexpr double s_degree = M_PI / 180;
+
+/// By trying every pair: the two ways of counting matches.
+std::size_t bruteMatches(const Points& truth, const Points& map, double radius) {
+  std::size_t matches = 0;
+  for (const auto& m : map) {
+    bool found = false;
+    for (const auto& t : truth) found = found || (m - t).squaredNorm() <= radius * radius;
+    matches += found;
+  }
+  return matches;
+}
+std::size_t bruteOneToOne(const Points& truth, const Points& map, double radius, std::size_t i,
+                          unsigned taken) {
+  if (i == map.size()) return 0;
+  std::size_t best = bruteOneToOne(truth, map, radius, i + 1, taken);
+  for (std::size_t t = 0; t < truth.size(); ++t) {
+    if ((taken >> t & 1) || (map[i] - truth[t]).squaredNorm() > radius * radius) continue;
+    best = std::max(best, 1 + bruteOneToOne(truth, map, radius, i + 1, taken | 1u << t));
+  }
+  return best;
+}
+
+}  // namespace
+
+TEST(Evaluation, errorsByHand) {
+  // At 1 s 0.3 m ahead, 0.4 m to the left, 2° to the left; at 2 s 0.5 m behind, 4° to the right.
+  const auto e = evaluateTrajectory(straightTruth(3),
+                                    {{1, {1.3, 0.4, 2 * s_degree}}, {2, {1.5, 0, -4 * s_degree}}},
+                                    Sampling::perPose);
+  ASSERT_EQ(e.errors.size(), 2u);
+  EXPECT_NEAR(e.errors[0].longitudinal, 0.3, 1e-12);
+  EXPECT_NEAR(e.errors[0].lateral, 0.4, 1e-12);
+  EXPECT_NEAR(e.errors[0].position, 0.5, 1e-12);
+  EXPECT_NEAR(e.errors[0].heading, 2 * s_degree, 1e-12);
+  EXPECT_NEAR(e.errors[1].longitudinal, -0.5, 1e-12);
+  EXPECT_NEAR(e.errors[1].heading, -4 * s_degree, 1e-12);
+  EXPECT_EQ(e.errors[1].time, 2);
+  EXPECT_EQ(e.poses, 2u);
+  EXPECT_EQ(e.unmatched, 0u);
+  EXPECT_NEAR(e.posMean, 0.5, 1e-12);
+  EXPECT_NEAR(e.posRmse, 0.5, 1e-12);
+  EXPECT_NEAR(e.posMax, 0.5, 1e-12);
+  EXPECT_NEAR(e.latMean, 0.2, 1e-12);
+  EXPECT_NEAR(e.lonMean, 0.4, 1e-12);
+  EXPECT_NEAR(e.angMeanDeg, 3, 1e-9);
+  EXPECT_NEAR(e.angRmseDeg, std::sqrt(10.0), 1e-9);
+}
+
+TEST(Evaluation, lateralAndLongitudinalTurnWithTheTruth) {
+  // Looking to -y: ahead is -y, left is +x.
+  const std::vector<StampedPose2D> truth{{0, {5, 5, -M_PI / 2}}};
+  const auto e = evaluateTrajectory(truth, {{0, {5.1, 4.8, M_PI / 2 + 0.1}}}, Sampling::perPose);
+  EXPECT_NEAR(e.errors[0].longitudinal, 0.2, 1e-12);
+  EXPECT_NEAR(e.errors[0].lateral, 0.1, 1e-12);
+  EXPECT_NEAR(e.errors[0].heading, -M_PI + 0.1, 1e-12);
+}
+
+TEST(Evaluation, rmseWeighsTheLargeError) {
+  const auto e =
+      evaluateTrajectory(straightTruth(3), {{1, {1, 3, 0}}, {2, {2, 1, 0}}}, Sampling::perPose);
+  EXPECT_NEAR(e.posMean, 2, 1e-12);
+  EXPECT_NEAR(e.posRmse, std::sqrt(5.0), 1e-12);
+  EXPECT_NEAR(e.posMax, 3, 1e-12);
+}
+
+TEST(Evaluation, truthIsInterpolatedInTimeAcrossTheTurnOfTheCircle) {
+  const std::vector<StampedPose2D> truth{{0, {0, 0, M_PI - 0.1}}, {1, {4, 2, -M_PI + 0.3}}};
+  const auto e = evaluateTrajectory(truth, {{0.25, {1, 0.5, M_PI}}}, Sampling::perPose);
+  EXPECT_NEAR(e.errors[0].position, 0, 1e-12);
+  EXPECT_NEAR(e.errors[0].heading, 0, 1e-12);
+}
+
+TEST(Evaluation, estimatesOutsideTheTruthOrInItsGapsAreCounted) {
+  std::vector<StampedPose2D> truth = straightTruth(4);
+  truth.push_back({14, {14, 0, 0}});  // 10 s without a sample
+  truth.push_back({15, {15, 0, 0}});
+  std::vector<StampedPose2D> estimate;
+  for (double t : {-1.0, 0.0, 1.5, 4.0, 9.0, 14.0, 14.5, 15.5}) estimate.push_back({t, {t, 0, 0}});
+  const auto e = evaluateTrajectory(truth, estimate, Sampling::perPose);
+  EXPECT_EQ(e.poses, 5u);
+  EXPECT_EQ(e.unmatched, 3u);  // -1, 9 and 15.5
+  EXPECT_EQ(evaluateTrajectory(truth, estimate, Sampling::perPose, 10.0).unmatched, 2u);
+}
+
+TEST(TrajectoryEvaluator, PoseByPoseIsTheSameAsAllAtOnce) {
+  auto truth = straightTruth(60);
+  truth.erase(truth.begin() + 20, truth.begin() + 25);  // a gap
+  std::vector<StampedPose2D> estimate;
+  std::mt19937 generator(5);
+  for (double t = -3.5; t < 63; t += 0.7) {
+    const auto off = [&] { return 1e-3 * (double(generator() % 1000) - 500); };
+    estimate.push_back({t, {t + off(), off(), off()}});
+  }
+  const auto expected = evaluateTrajectory(truth, estimate, Sampling::perPose);
+  TrajectoryEvaluator evaluator(truth);
+  std::size_t compared = 0;
+  for (const auto& pose : estimate)
+    if (const auto error = evaluator.add(pose)) {
+      EXPECT_EQ(error->time, expected.errors[compared].time);
+      EXPECT_EQ(error->lateral, expected.errors[compared].lateral);
+      ++compared;
+    }
+  const auto summary = evaluator.finish();
+  EXPECT_EQ(evaluator.estimates(), estimate.size());
+  EXPECT_EQ(compared, expected.errors.size());
+  EXPECT_EQ(summary.poses, expected.poses);
+  EXPECT_EQ(summary.unmatched, expected.unmatched);
+  EXPECT_GT(summary.unmatched, 5u);
+  EXPECT_TRUE(summary.errors.empty());
+  for (const auto figure :
+       {&TrajectoryErrors::posMean, &TrajectoryErrors::posRmse, &TrajectoryErrors::posMax,
+        &TrajectoryErrors::latMean, &TrajectoryErrors::lonMean, &TrajectoryErrors::angMeanDeg,
+        &TrajectoryErrors::angRmseDeg})
+    EXPECT_EQ(summary.*figure, expected.*figure);
+}
+
+TEST(TrajectoryEvaluator, RefusesWhatEvaluateTrajectoryRefuses) {
+  const auto truth = straightTruth(10);
+  EXPECT_THROW(TrajectoryEvaluator({}), Error);
+  EXPECT_THROW(TrajectoryEvaluator(truth).finish(), Error);
+  TrajectoryEvaluator evaluator(truth);
+  evaluator.add({1, {}});
+  EXPECT_THROW(evaluator.add({1, {}}), Error);
+  EXPECT_THROW(evaluator.add({2, {NAN, 0, 0}}), Error);
+  evaluator.add({20, {}});
+  evaluator.finish();  // one of two
+  evaluator.add({21, {}});
+  EXPECT_THROW(evaluator.finish(), Error);
+}
+
+TEST(Evaluation, perMetreComparesAtWholeMetresOfTheTruePath) {
+  // A corner: 2.5 m along x in 5 s, then 2.5 m along y in 2.5 s.
+  const std::vector<StampedPose2D> truth{{0, {0, 0, 0}}, {5, {2.5, 0, 0}}, {7.5, {2.5, 2.5, 0}}};
+  // The estimate is off by 0.1·t in y.
+  std::vector<StampedPose2D> estimate;
+  for (double t : {0.0, 5.0, 7.5}) {
+    estimate.push_back({t, {t < 5 ? t / 2 : 2.5, (t < 5 ? 0 : t - 5) + 0.1 * t, 0}});
+  }
+  const auto e = evaluateTrajectory(truth, estimate, Sampling::perMetre, 10);
+  const std::vector<double> times{0, 2, 4, 5.5, 6.5, 7.5};
+  ASSERT_EQ(e.errors.size(), times.size());
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_NEAR(e.errors[i].time, times[i], 1e-9);
+    EXPECT_NEAR(e.errors[i].position, 0.1 * times[i], 1e-9);
+  }
+  EXPECT_EQ(e.poses, 6u);
+}
+
+TEST(Evaluation, perMetreDoesNotCountStandingTwice) {
+  std::vector<StampedPose2D> truth, estimate;
+  for (int t = 0; t <= 100;
+       ++t) {  // 1 m/s, but standing from 10 s to 90 s where the estimate is bad
+    const double x = t < 10 ? t : t < 90 ? 10 : t - 80;
+    truth.push_back({double(t), {x, 0, 0}});
+    estimate.push_back({double(t), {x, t > 10 && t < 90 ? 5.0 : 0.0, 0}});
+  }
+  EXPECT_NEAR(evaluateTrajectory(truth, estimate, Sampling::perMetre).posMean, 0, 1e-12);
+  EXPECT_GT(evaluateTrajectory(truth, estimate, Sampling::perPose).posMean, 3);
+}
+
+TEST(Evaluation, perMetreStartsAtTheFirstEstimateAndEndsWithTheLast) {
+  const auto e = evaluateTrajectory(
+      straightTruth(100), {{10.5, {10.5, 0, 0}}, {11.5, {11.5, 0, 0}}, {12.6, {12.6, 0, 0}}},
+      Sampling::perMetre);
+  ASSERT_EQ(e.errors.size(), 3u);
+  EXPECT_NEAR(e.errors[0].time, 10.5, 1e-12);
+  EXPECT_NEAR(e.errors[2].time, 12.5, 1e-12);
+}
+
+TEST(Evaluation, perMetreCountsTheMetresOfAGap) {
+  std::vector<StampedPose2D> estimate;
+  for (int t : {0, 1, 2, 3, 4, 5, 6, 10, 11, 12})
+    estimate.push_back({double(t), {double(t), 0, 0}});
+  const auto e = evaluateTrajectory(straightTruth(12), estimate, Sampling::perMetre);
+  EXPECT_EQ(e.poses, 10u);
+  EXPECT_EQ(e.unmatched, 3u);  // 7, 8, 9
+}
+
+TEST(Evaluation, refusesWhenLessThanHalfCanBeCompared) {
+  const auto truth = straightTruth(3);
+  const auto at = [](double t) { return StampedPose2D{t, {t, 0, 0}}; };
+  EXPECT_EQ(evaluateTrajectory(truth, {at(2), at(3), at(4), at(5)}, Sampling::perPose).poses, 2u);
+  for (Sampling sampling : {Sampling::perPose, Sampling::perMetre}) {
+    EXPECT_THROW(evaluateTrajectory(truth, {at(3), at(4), at(5)}, sampling), Error);
+    EXPECT_THROW(evaluateTrajectory(truth, {at(100)}, sampling), Error);
+  }
+  // Ten estimates, but the metres lie in the gaps of the estimate.
+  EXPECT_THROW(evaluateTrajectory(straightTruth(20), {at(0), at(1), at(20)}, Sampling::perMetre),
+               Error);
+}
+
+TEST(Evaluation, refusesEmptyTrajectories) {
+  EXPECT_THROW(evaluateTrajectory({}, {{0, {}}}, Sampling::perPose), Error);
+  EXPECT_THROW(evaluateTrajectory({{0, {}}}, {}, Sampling::perPose), Error);
+}
+
+TEST(Evaluation, refusesTimesThatDoNotIncrease) {
+  const auto truth = straightTruth(3);
+  EXPECT_THROW(evaluateTrajectory(truth, {{1, {}}, {1, {}}}, Sampling::perPose), Error);
+  EXPECT_THROW(evaluateTrajectory({{2, {}}, {1, {}}}, {{1, {}}}, Sampling::perPose), Error);
+}
+
+TEST(Evaluation, refusesNumbersThatAreNotFinite) {
+  const double nan = std::nan("");
+  EXPECT_THROW(evaluateTrajectory(straightTruth(3), {{1, {0, nan, 0}}}, Sampling::perPose), Error);
+  EXPECT_THROW(evaluateTrajectory({{nan, {}}}, {{1, {}}}, Sampling::perPose), Error);
+}
+
+TEST(Evaluation, mapScoreByHand) {
+  // Two poles of the map at the first true pole, none at the second, one far from all.
+  const Points truth{{0, 0}, {10, 0}}, map{{0.5, 0}, {-0.5, 0}, {20, 0}};
+  const MapScore authors = scoreMap(truth, map, 1, false);
+  EXPECT_EQ(authors.matches, 2u);
+  EXPECT_EQ(authors.mapPoles, 3u);
+  EXPECT_EQ(authors.truthPoles, 2u);
+  EXPECT_NEAR(authors.precision, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(authors.recall, 1, 1e-12);
+  EXPECT_NEAR(authors.f1, 0.8, 1e-12);
+  const MapScore oneToOne = scoreMap(truth, map, 1, true);
+  EXPECT_EQ(oneToOne.matches, 1u);
+  EXPECT_NEAR(oneToOne.precision, 1.0 / 3, 1e-12);
+  EXPECT_NEAR(oneToOne.recall, 0.5, 1e-12);
+  EXPECT_NEAR(oneToOne.f1, 0.4, 1e-12);
+}
+
+TEST(Evaluation, theAuthorsRecallCanExceedOne) {
+  EXPECT_NEAR(scoreMap({{0, 0}}, {{0, 0.1}, {0, 0.2}, {0, 0.3}}, 1, false).recall, 3, 1e-12);
+}
+
+TEST(Evaluation, theRadiusIsInclusive) {
+  EXPECT_EQ(scoreMap({{0, 0}}, {{3, 4}}, 5, false).matches, 1u);
+  EXPECT_EQ(scoreMap({{0, 0}}, {{3, 4}}, std::nextafter(5.0, 0.0), false).matches, 0u);
+}
+
+TEST(Evaluation, noMatchesScoreZero) {
+  const MapScore score = scoreMap({{0, 0}}, {{9, 9}}, 1, true);
+  EXPECT_EQ(score.matches, 0u);
+  EXPECT_EQ(score.f1, 0);
+}
+
+TEST(Evaluation, mapScoreEqualsTryingEveryPair) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> coordinate(0, 4);
+  for (int i = 0; i < 100; ++i) {
+    Points truth(1 + random() % 7), map(1 + random() % 7);
+    for (auto& p : truth) p = {coordinate(random), coordinate(random)};
+    for (auto& p : map) p = {coordinate(random), coordinate(random)};
+    ASSERT_EQ(scoreMap(truth, map, 1, false).matches, bruteMatches(truth, map, 1));
+    ASSERT_EQ(scoreMap(truth, map, 1, true).matches, bruteOneToOne(truth, map, 1, 0, 0));
+  }
+}
+
+TEST(Evaluation, mapScoreRefusesEmptyMaps) {
+  EXPECT_THROW(scoreMap({}, {{0, 0}}, 1, false), Error);
+  EXPECT_THROW(scoreMap({{0, 0}}, {}, 1, true), Error);
+}
+
+TEST(Evaluation, mapScoreRefusesARadiusThatIsNotPositive) {
+  for (double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(scoreMap({{0, 0}}, {{0, 0}}, radius, false), Error);
+  }
+}
+
+TEST(Evaluation, mapScoreRefusesPolesThatAreNotFinite) {
+  const Eigen::Vector2d bad(std::nan(""), 0);
+  EXPECT_THROW(scoreMap({bad}, {{0, 0}}, 1, false), Error);
+  EXPECT_THROW(scoreMap({{0, 0}}, {bad}, 1, false), Error);
+}
+
+}  // namespace polemcl::test_trajectory_evaluation

@@ -1,0 +1,273 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "core/extraction/range_image/Segmentation.h"
+#include "sim/common/Random.h"
+
+namespace polemcl::test_segmentation {
+
+using namespace polemcl;
+
+namespace {
+
+/// One string a row; '.' is no return, a digit a range of as many metres.
+RangeImage draw(const std::vector<std::string>& rows) {
+  RangeImage image(static_cast<int>(rows.size()), static_cast<int>(rows[0].size()));
+  for (int r = 0; r < image.rows(); ++r)
+    for (int c = 0; c < image.columns(); ++c)
+      if (rows[r][c] != '.')
+        image.set(r, c, static_cast<float>(rows[r][c] - '0'),
+                  static_cast<std::int32_t>(image.index(r, c)));
+  return image;
+}
+
+SegmentationOptions growing(double epsilon, bool wrap, bool upwards) {
+  SegmentationOptions options;
+  options.epsilon = epsilon;
+  options.wrapAround = wrap;
+  options.growUpwards = upwards;
+  return options;
+}
+
+/// Labels as one string a row, segment 0 is 'a', no segment '.'.
+std::vector<std::string> labels(const RangeImage& image, const Segmentation& segmentation) {
+  std::vector<std::string> out(image.rows());
+  for (int r = 0; r < image.rows(); ++r)
+    for (int c = 0; c < image.columns(); ++c) {
+      const auto label = segmentation.label(r, c);
+      out[r] += label < 0 ? '.' : static_cast<char>('a' + label);
+    }
+  return out;
+}
+
+std::vector<std::string> segment(const std::vector<std::string>& rows, bool wrap, bool upwards,
+                                 double epsilon = 0.5) {
+  const RangeImage image = draw(rows);
+  return labels(image, Segmentation(image, growing(epsilon, wrap, upwards)));
+}
+
+using Rows = std::vector<std::string>;
+
+/// Holes and steps of a quarter metre, so that chains, forks and unreachable pixels all occur.
+RangeImage randomImage(std::uint64_t seed, int rows, int columns) {
+  sim::Random random(seed);
+  RangeImage image(rows, columns);
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c)
+      if (random.chance(0.75))
+        image.set(r, c, 2 + 0.25f * static_cast<float>(random.below(5)),
+                  static_cast<std::int32_t>(image.index(r, c)));
+  return image;
+}
+
+bool inside(const RangeImage& image, bool wrap, int row, int column) {
+  const int border = wrap ? 0 : 1;
+  return row >= border && row < image.rows() - border &&
+         (wrap || (column >= 1 && column < image.columns() - 1));
+}
+
+/// Connected components by union-find over left and upper neighbours; numbered in reading order.
+std::vector<int> components(const RangeImage& image, double epsilon, bool wrap) {
+  std::vector<int> parent(static_cast<std::size_t>(image.rows()) * image.columns());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i];
+    return i;
+  };
+  const auto join = [&](int r, int c, int r2, int c2) {
+    if (!inside(image, wrap, r2, c2) || !image.valid(r2, c2)) return;
+    if (std::abs(image.range(r, c) - image.range(r2, c2)) >= epsilon) return;
+    const int a = root(static_cast<int>(image.index(r, c)));
+    const int b = root(static_cast<int>(image.index(r2, c2)));
+    parent[std::max(a, b)] = std::min(a, b);
+  };
+  for (int r = 0; r < image.rows(); ++r)
+    for (int c = 0; c < image.columns(); ++c) {
+      if (!inside(image, wrap, r, c) || !image.valid(r, c)) continue;
+      if (wrap || c > 0) join(r, c, r, (c + image.columns() - 1) % image.columns());
+      if (r > 0) join(r, c, r - 1, c);
+    }
+  std::vector<int> number(parent.size(), -1);
+  int next = 0;
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    const int r = static_cast<int>(i) / image.columns(), c = static_cast<int>(i) % image.columns();
+    if (!inside(image, wrap, r, c) || !image.valid(r, c)) continue;
+    const int top = root(static_cast<int>(i));
+    number[i] = top == static_cast<int>(i) ? next++ : number[top];
+  }
+  return number;
+}
+
+/// Algorithm 1 as it is written: an open set, and clusters that take from it whatever lies left of,
+/// right of or below any of their members.
+std::vector<int> algorithmOne(const RangeImage& image, double epsilon, bool wrap) {
+  std::set<std::pair<int, int>> open;
+  for (int r = 0; r < image.rows(); ++r)
+    for (int c = 0; c < image.columns(); ++c)
+      if (inside(image, wrap, r, c) && image.valid(r, c)) open.insert({r, c});
+  std::vector<int> number(static_cast<std::size_t>(image.rows()) * image.columns(), -1);
+  const int n = image.columns();
+  for (int cluster = 0; !open.empty(); ++cluster) {
+    std::vector<std::pair<int, int>> members = {*open.begin()};
+    open.erase(open.begin());
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (auto o = open.begin(); o != open.end();) {
+        bool touches = false;
+        for (const auto& [r, c] : members) {
+          const int apart = std::abs(o->second - c);
+          const bool beside = o->first == r && (apart == 1 || (wrap && apart == n - 1));
+          const bool below = o->first == r + 1 && apart == 0;
+          touches |= (beside || below) &&
+                     std::abs(image.range(r, c) - image.range(o->first, o->second)) < epsilon;
+        }
+        if (touches) {
+          members.push_back(*o);
+          o = open.erase(o);
+          grown = true;
+        } else {
+          ++o;
+        }
+      }
+    }
+    for (const auto& [r, c] : members) number[image.index(r, c)] = cluster;
+  }
+  return number;
+}
+
+void expectLabels(const RangeImage& image, const Segmentation& segmentation,
+                  const std::vector<int>& expected) {
+  std::vector<std::size_t> pixels(segmentation.segments().size());
+  for (int r = 0; r < image.rows(); ++r)
+    for (int c = 0; c < image.columns(); ++c) {
+      ASSERT_EQ(segmentation.label(r, c), expected[image.index(r, c)]) << r << ' ' << c;
+      if (segmentation.label(r, c) >= 0) ++pixels[segmentation.label(r, c)];
+    }
+  for (std::size_t s = 0; s < pixels.size(); ++s) {
+    const Segment& segment = segmentation.segments()[s];
+    ASSERT_EQ(segment.pixels.size(), pixels[s]);
+    for (const Pixel& p : segment.pixels) {
+      ASSERT_EQ(segmentation.label(p.row, p.column), static_cast<int>(s));
+      ASSERT_GE(p.row, segment.minRow);
+      ASSERT_LE(p.row, segment.maxRow);
+    }
+  }
+}
+
+}  // namespace
+
+TEST(Segmentation, likeNeighboursMakeOneSegment) {
+  EXPECT_EQ(segment({"1122..",  //
+                     "1.22.4",  //
+                     "333344"},
+                    true, true),
+            (Rows{"aabb..",  //
+                  "a.bb.c",  //
+                  "ddddcc"}));
+}
+
+TEST(Segmentation, seedsAreTakenInReadingOrder) {
+  EXPECT_EQ(segment({".5.3.",  //
+                     "..4..",  //
+                     ".1.2."},
+                    true, true),
+            (Rows{".a.b.", "..c..", ".d.e."}));
+}
+
+TEST(Segmentation, growsAcrossTheSeamWhenWrapped) {
+  const Rows image = {"......", ".7..7.", "77..77", "......"};
+  EXPECT_EQ(segment(image, true, false), (Rows{"......", ".a..b.", "aa..aa", "......"}));
+}
+
+TEST(Segmentation, withoutWrapTheBordersAreLeftOut) {
+  EXPECT_EQ(segment({"777777", "777.77", "77..77", "777777"}, false, false),
+            (Rows{"......", ".aa.b.", ".a..b.", "......"}));
+}
+
+TEST(Segmentation, aPieceThatOnlyConnectsUpwardsIsItsOwn) {
+  const Rows hook = {".4...",  //
+                     ".4.4.",  // the right arm is above what the left one reaches
+                     ".444.",  //
+                     "....."};
+  EXPECT_EQ(segment(hook, true, true), (Rows{".a...", ".a.a.", ".aaa.", "....."}));
+  EXPECT_EQ(segment(hook, true, false), (Rows{".a...", ".a.b.", ".aaa.", "....."}));
+}
+
+TEST(Segmentation, epsilonIsStrict) {
+  RangeImage image(2, 16);
+  image.set(0, 3, 5.f, 0);
+  image.set(0, 4, 5.25f, 1);
+  const Segmentation strict(image, growing(0.25, true, true));
+  EXPECT_EQ(strict.segments().size(), 2u);
+  const Segmentation wider(image, growing(0.2500001, true, true));
+  EXPECT_EQ(wider.segments().size(), 1u);
+}
+
+TEST(Segmentation, aSlopeOfSmallStepsIsOneSegment) {
+  EXPECT_EQ(segment({".123456789."}, true, false, 1.5), (Rows{".aaaaaaaaa."}));
+}
+
+TEST(Segmentation, boxIsCountedAcrossTheSeam) {
+  const RangeImage image = draw({"......", "7....7", "77...7", "......"});
+  const Segmentation segmentation(image, growing(0.5, true, false));
+  ASSERT_EQ(segmentation.segments().size(), 1u);
+  const Segment& s = segmentation.segments()[0];
+  EXPECT_EQ(s.width, 3);
+  EXPECT_EQ(s.minRow, 1);
+  EXPECT_EQ(s.maxRow, 2);
+  EXPECT_EQ(s.height(), 2);
+  EXPECT_EQ(s.pixels.size(), 5u);
+  EXPECT_EQ(s.pixels[0].row, 1);
+  EXPECT_EQ(s.pixels[0].column, 0);
+}
+
+TEST(Segmentation, aClosedRingIsAsWideAsTheImage) {
+  for (const int columns : {16, 17}) {
+    const RangeImage image = draw({std::string(columns, '3'), std::string(columns, '.')});
+    const Segmentation segmentation(image, growing(0.5, true, false));
+    ASSERT_EQ(segmentation.segments().size(), 1u);
+    EXPECT_EQ(segmentation.segments()[0].width, columns);
+    EXPECT_EQ(segmentation.segments()[0].height(), 1);
+  }
+}
+
+TEST(Segmentation, anEmptyImageHasNoSegments) {
+  const RangeImage image(4, 16);
+  EXPECT_TRUE(Segmentation(image, growing(0.5, true, true)).segments().empty());
+}
+
+TEST(Segmentation, growingUpwardsGivesConnectedComponents) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const RangeImage image = randomImage(seed, 12, 20);
+    for (const bool wrap : {true, false})
+      expectLabels(image, Segmentation(image, growing(0.3, wrap, true)),
+                   components(image, 0.3, wrap));
+  }
+}
+
+TEST(Segmentation, otherwiseItEqualsAlgorithmOneAsWritten) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const RangeImage image = randomImage(seed, 12, 20);
+    for (const bool wrap : {true, false})
+      expectLabels(image, Segmentation(image, growing(0.3, wrap, false)),
+                   algorithmOne(image, 0.3, wrap));
+  }
+}
+
+// An open set searched again for every pixel would not get through this.
+TEST(Segmentation, takesALargeImageOfOneSegment) {
+  RangeImage image(512, 8192);
+  for (int r = 0; r < image.rows(); ++r)
+    for (int c = 0; c < image.columns(); ++c) image.set(r, c, 10, 0);
+  const Segmentation segmentation(image, growing(0.2, true, false));
+  ASSERT_EQ(segmentation.segments().size(), 1u);
+  EXPECT_EQ(segmentation.segments()[0].pixels.size(), 512u * 8192u);
+  EXPECT_EQ(segmentation.segments()[0].height(), 512);
+}
+
+}  // namespace polemcl::test_segmentation

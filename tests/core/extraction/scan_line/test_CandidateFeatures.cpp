@@ -1,0 +1,229 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "core/extraction/scan_line/CandidateFeatures.h"
+#include "support/RayCast.h"
+
+namespace polemcl::test_candidate_features {
+
+using namespace polemcl;
+using namespace polemcl::clouds;
+
+namespace {
+
+Slice sliceAt(double x, double y, double z, double width = 0.2) {
+  Slice s;
+  s.x = static_cast<float>(x);
+  s.y = static_cast<float>(y);
+  s.z = static_cast<float>(z);
+  s.rho = static_cast<float>(std::hypot(x, y));
+  s.azimuthEnd = static_cast<float>(width / s.rho);
+  s.count = 3;
+  return s;
+}
+
+StackShape shapeOf(const std::vector<Slice>& slices) {
+  std::vector<std::uint32_t> indices(slices.size());
+  std::iota(indices.begin(), indices.end(), 0u);
+  return measureShape(slices, {indices.data(), indices.size()});
+}
+
+constexpr double kHeight = 1.0;     ///< of the sensor above ground
+constexpr float kClearance = 0.1f;  ///< of the returns used above ground
+constexpr double kDistance = 8.0;   ///< of the pole
+constexpr double kRadius = 0.1;
+
+/// The stack of the pole at (kDistance, 0) in a scene, scanned by an HDL-32E, and its evidence.
+struct Look {
+  SensorModel sensor;
+  ScanLines lines;
+  GroundGrid ground;
+  std::vector<Slice> slices;
+  std::vector<std::uint32_t> members;
+  StackShape shape;
+  PoleAxis axis;
+  PoleEvidence evidence;
+  explicit Look(Scene scene, const GroundPlane& plane = {-kHeight, 0, 0})
+      : sensor(hdl32e()), lines(sensor) {
+    scene.ground = plane;
+    scene.walls.push_back({30, -40, 30, 40, -5, 20});
+    const PointList points = cast(scene, sensor, {0.01, 0, 3});
+    ground.build(points.view(), 1, 60, kHeight);
+    lines.build(points.view(), ground, kClearance);
+    const NativeOptions options;
+    SliceFinder(sensor, options).find(lines, slices);
+    SliceStacker stacker(sensor, options);
+    for (const Stack& s : stacker.stack(slices))
+      if (std::hypot(slices[s.top()].x - kDistance, slices[s.top()].y) < 0.5 &&
+          s.count > members.size())
+        members.assign(s.begin(), s.end());
+    EXPECT_GE(members.size(), 2u);
+    shape = measureShape(slices, stack());
+    axis = {static_cast<float>(kDistance), 0, static_cast<float>(kRadius)};
+    evidence = gatherEvidence(lines, sensor, ground, slices, stack(), shape, axis);
+  }
+  Stack stack() const { return {members.data(), members.size()}; }
+  float clutter() const { return clutteredShare(lines, sensor, slices, stack(), axis); }
+  /// Of the rows, the lowest may meet the ground in the ring.
+  float groundShare() const { return 1.01f / static_cast<float>(members.size()); }
+  /// Beams that meet the front of the pole between two heights, lidar frame.
+  int beamsBetween(double low, double high) const {
+    int n = 0;
+    for (int row = 0; row < sensor.rows(); ++row) {
+      const double z = (kDistance - kRadius) * sensor.beam(row).slope;
+      n += z > low && z < high;
+    }
+    return n;
+  }
+  static SensorModel hdl32e() {
+    SensorOptions options;
+    options.model = "hdl32e";
+    return SensorModel(options);
+  }
+};
+
+/// A part of the pole, heights in the lidar frame.
+Cylinder part(double low, double high) {
+  return {kDistance, 0, kRadius, low, high};
+}
+/// A board across the pole, a little before its middle.
+Wall board(double low, double high, double halfWidth) {
+  return {kDistance - 0.05, -halfWidth, kDistance - 0.05, halfWidth, low, high};
+}
+constexpr double kBeamGap = kDistance * 1.4 * kDegree;  ///< a little more than between two beams
+
+}  // namespace
+
+TEST(StackShape, ofAnUprightStackIsStraight) {
+  const StackShape s = shapeOf({sliceAt(5, 1, 2), sliceAt(5, 1, 1), sliceAt(5, 1, -1)});
+  EXPECT_EQ(s.points, 9);
+  EXPECT_EQ(s.wholeSlices, 3);
+  EXPECT_FLOAT_EQ(s.high, 2);
+  EXPECT_FLOAT_EQ(s.low, -1);
+  EXPECT_NEAR(s.scatter, 0, 1e-6);
+  EXPECT_NEAR(s.tilt, 0, 1e-6);
+  EXPECT_NEAR(s.widthSpread, 0, 1e-6);
+}
+
+TEST(StackShape, aLeaningStackIsStraightButTilted) {
+  std::vector<Slice> slices;
+  for (int i = 0; i < 6; ++i) slices.push_back(sliceAt(5 - 0.06 * i, 1 - 0.08 * i, 2 - 0.5 * i));
+  const StackShape s = shapeOf(slices);
+  EXPECT_NEAR(s.tilt, std::atan(0.2), 1e-4);  // 0.1 m aside per 0.5 m
+  EXPECT_NEAR(s.scatter, 0, 1e-4);
+}
+
+TEST(StackShape, scatterIsTheRmsDistanceFromTheLine) {
+  // Of 0, 0.1, 0 the line leaves -1/30, 2/30, -1/30; one degree of freedom is left.
+  const StackShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5, 0.1, 0), sliceAt(5, 0, -1)});
+  EXPECT_NEAR(s.scatter, std::sqrt(6.0 / 900), 1e-5);
+  EXPECT_NEAR(s.tilt, 0, 1e-6);
+}
+
+TEST(StackShape, twoSlicesAreAlwaysStraight) {
+  EXPECT_EQ(shapeOf({sliceAt(5, 0, 1), sliceAt(5.2, 0.1, 0)}).scatter, 0);
+}
+
+TEST(StackShape, slicesOfOneHeightHaveNoTilt) {
+  const StackShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5.2, 0.1, 1)});
+  EXPECT_EQ(s.tilt, 0);
+  EXPECT_EQ(s.high, s.low);
+}
+
+TEST(StackShape, widthSpreadIsTheStandardDeviation) {
+  const StackShape s =
+      shapeOf({sliceAt(5, 0, 2, 0.1), sliceAt(5, 0, 1, 0.1), sliceAt(5, 0, 0, 0.4)});
+  EXPECT_NEAR(s.widthSpread, std::sqrt(0.02), 1e-5);
+}
+
+TEST(StackShape, wholeSlicesHaveBothSidesFree) {
+  std::vector<Slice> slices = {sliceAt(5, 0, 2), sliceAt(5, 0, 1), sliceAt(5, 0, 0)};
+  slices[1].left = Side::occluded;
+  EXPECT_EQ(shapeOf(slices).wholeSlices, 2);
+}
+
+TEST(PoleEvidence, ofAPostAlone) {
+  const Look look({{part(-1, 0.9)}, {}, {}});
+  // Where the ground is is known to a few centimetres.
+  EXPECT_GE(static_cast<int>(look.members.size()), look.beamsBetween(-1 + kClearance + 0.05, 0.9));
+  EXPECT_LE(static_cast<int>(look.members.size()), look.beamsBetween(-1 + kClearance - 0.05, 0.9));
+  EXPECT_EQ(look.evidence.rowsPassed, 0);
+  EXPECT_EQ(look.evidence.rowsWide, 0);
+  EXPECT_LE(look.clutter(), look.groundShare());
+  EXPECT_GE(look.evidence.bottom, -0.02);
+  EXPECT_LE(look.evidence.bottom, kClearance + kBeamGap);
+  EXPECT_LE(look.evidence.top, 1.9);
+  EXPECT_GE(look.evidence.top, 1.9 - kBeamGap);
+  // The first beam that passed over it.
+  EXPECT_GT(look.evidence.topBound, 1.9);
+  EXPECT_LT(look.evidence.topBound, 1.9 + 1.05 * kBeamGap);
+}
+
+TEST(PoleEvidence, ofAPostThatLeavesTheView) {
+  const Look look({{part(-1, 5)}, {}, {}});
+  EXPECT_NEAR(look.evidence.top, kHeight + (kDistance - kRadius) * look.sensor.beam(0).slope, 0.05);
+  EXPECT_TRUE(std::isinf(look.evidence.topBound));
+}
+
+TEST(PoleEvidence, rowsThatSeeThroughAreCounted) {
+  const Look look({{part(-1, 0), part(0.6, 1.4)}, {}, {}});
+  const int through = look.beamsBetween(0, 0.6);
+  EXPECT_GE(through, 2);
+  EXPECT_EQ(look.evidence.rowsPassed, through);
+  EXPECT_EQ(look.evidence.rowsWide, 0);
+}
+
+TEST(PoleEvidence, rowsThatMeetABoardAreWide) {
+  const Look look({{part(-1, 1.4)}, {board(0, 0.6, 1.0)}, {}});
+  EXPECT_EQ(look.evidence.rowsWide, look.beamsBetween(0, 0.6));
+  EXPECT_EQ(look.evidence.rowsPassed, 0);
+}
+
+TEST(PoleEvidence, whatStandsOnThePoleIsItsTop) {
+  const Look look({{part(-1, 0.5)}, {board(0.5, 1.2, 0.8)}, {}});
+  EXPECT_LE(look.shape.high, 0.5);
+  EXPECT_LE(look.evidence.top, 2.2);
+  EXPECT_GE(look.evidence.top, 2.2 - kBeamGap);
+  EXPECT_GT(look.evidence.topBound, 2.2);
+}
+
+TEST(PoleEvidence, oneSilentRowDoesNotEndThePole) {
+  // A slit that one beam looks through; above it a board.
+  const SensorModel sensor = Look::hdl32e();
+  int row = 0;
+  while (kDistance * sensor.beam(row).slope > 0.5) ++row;
+  const double slit = (kDistance - kRadius) * sensor.beam(row).slope;
+  const Look look({{part(-1, slit - 0.03)}, {board(slit + 0.03, 1.2, 0.8)}, {}});
+  EXPECT_GE(look.evidence.top, 2.2 - kBeamGap);
+}
+
+TEST(PoleEvidence, whereSomethingHidesTheTopItIsUnknown) {
+  const Look look({{part(-1, 1.4)}, {{4, -1, 4, 1, 0.3, 3}}, {}});
+  EXPECT_LT(look.evidence.top, 1.75);
+  EXPECT_TRUE(std::isinf(look.evidence.topBound));
+}
+
+TEST(PoleEvidence, heightsAreAboveTheLocalGround) {
+  const GroundPlane slope{-kHeight, 0.07, 0};
+  const double base = slope.at(kDistance, 0);  // 0.56 m above the ground below the sensor
+  const Look look({{part(base, base + 1.5)}, {}, {}}, slope);
+  EXPECT_NEAR(look.evidence.top, 1.5, kBeamGap + 0.25);
+  EXPECT_NEAR(look.evidence.bottom, 0, kBeamGap + 0.25);
+}
+
+TEST(PoleEvidence, otherThingsInTheRingClutter) {
+  // A second post 0.45 m beside, up to half the height.
+  const Look look({{part(-1, 1.4), {kDistance, 0.45, 0.05, -1, 0.2}}, {}, {}});
+  const double expected =
+      static_cast<double>(look.beamsBetween(-1, 0.2)) / look.beamsBetween(-1, 1.4);
+  EXPECT_NEAR(look.clutter(), expected, 0.08);
+}
+
+TEST(PoleEvidence, whatIsOutsideTheRingDoesNotClutter) {
+  const Look look({{part(-1, 1.4), {kDistance, 0.85, 0.05, -1, 1.4}}, {}, {}});
+  EXPECT_LE(look.clutter(), look.groundShare());
+}
+
+}  // namespace polemcl::test_candidate_features

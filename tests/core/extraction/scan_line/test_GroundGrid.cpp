@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/extraction/scan_line/GroundGrid.h"
+#include "support/RayCast.h"
+
+namespace polemcl::test_ground_grid {
+
+using namespace polemcl;
+using namespace polemcl::clouds;
+
+namespace {
+
+GroundGrid built(const PointList& points, double sensorHeight) {
+  GroundGrid ground;
+  ground.build(points.view(), 1, 60, static_cast<float>(sensorHeight));
+  return ground;
+}
+
+SensorModel sensorModel(const std::string& model) {
+  SensorOptions options;
+  options.model = model;
+  return SensorModel(options);
+}
+
+/// Greatest errors of the grid below and above the true ground, over places `from` to `to` away.
+struct Errors {
+  double low = 0, high = 0;
+};
+Errors errors(const GroundGrid& ground, const GroundPlane& truth, double from, double to) {
+  Errors e;
+  for (double azimuth = -3.14; azimuth < 3.14; azimuth += 0.05)
+    for (double rho = from; rho <= to; rho += 0.5) {
+      const double error = ground.at(static_cast<float>(rho * std::cos(azimuth)),
+                                     static_cast<float>(rho * std::sin(azimuth))) -
+                           truth.at(rho * std::cos(azimuth), rho * std::sin(azimuth));
+      e.low = std::max(e.low, -error);
+      e.high = std::max(e.high, error);
+    }
+  return e;
+}
+
+Scene onGround(const GroundPlane& ground) {
+  Scene scene;
+  scene.ground = ground;
+  return scene;
+}
+
+}  // namespace
+
+TEST(GroundGrid, flatGroundIsFlat) {
+  for (const std::string model : {"hdl64e", "hdl32e", "vlp16"}) {
+    const SensorModel sensor = sensorModel(model);
+    const GroundPlane plane{-1.5, 0, 0};
+    const GroundGrid ground = built(cast(onGround(plane), sensor, {0.02, 0, 1}), 1.5);
+    const Errors e = errors(ground, plane, 3, 45);
+    EXPECT_LT(e.low, 0.06) << model;
+    EXPECT_LT(e.high, 0.06) << model;
+    EXPECT_NEAR(ground.median(), -1.5, 0.06) << model;
+  }
+}
+
+TEST(GroundGrid, theNominalHeightMayBeOff) {
+  const SensorModel sensor = sensorModel("hdl64e");
+  const GroundPlane plane{-1.73, 0, 0};
+  for (const double nominal : {1.4, 2.1}) {
+    const GroundGrid ground = built(cast(onGround(plane), sensor, {0.02, 0, 1}), nominal);
+    const Errors e = errors(ground, plane, 5, 45);
+    EXPECT_LT(std::max(e.low, e.high), 0.06) << nominal;
+  }
+}
+
+// A cell keeps its lowest return, so on a slope it lies too low by up to what the slope falls
+// across a cell: 2.5 m · 8 % along the ray, and 5.6° of the turn across it.
+TEST(GroundGrid, followsASlopeInAnyDirection) {
+  const SensorModel sensor = sensorModel("hdl64e");
+  for (double direction = 0; direction < 6.2; direction += 0.7) {
+    const GroundPlane plane{-1.73, 0.08 * std::cos(direction), 0.08 * std::sin(direction)};
+    const GroundGrid ground = built(cast(onGround(plane), sensor, {0.02, 0, 1}), 1.73);
+    const Errors e = errors(ground, plane, 4, 20);
+    EXPECT_LT(e.low, 0.3) << direction;
+    EXPECT_LT(e.high, 0.15) << direction;
+  }
+}
+
+TEST(GroundGrid, strayReturnsBelowTheGroundDoNotMoveIt) {
+  const SensorModel sensor = sensorModel("hdl64e");
+  const GroundPlane plane{-1.73, 0, 0};
+  PointList points = cast(onGround(plane), sensor, {0.02, 0, 1});
+  for (int s = 0; s < 64; ++s)  // one reflection in every sector, near and far, some deep below
+    for (const double rho : {8.7, 21.2}) {
+      const double z = s % 2 ? -2.2 : -3.2;
+      points.add(rho * std::cos((s + 0.5) * 5.625 * kDegree),
+                 rho * std::sin((s + 0.5) * 5.625 * kDegree), z);
+    }
+  const GroundGrid ground = built(points, 1.73);
+  const Errors e = errors(ground, plane, 3, 45);
+  EXPECT_LT(e.low, 0.06);
+  EXPECT_LT(e.high, 0.06);
+}
+
+TEST(GroundGrid, aWallIsNotTakenForGround) {
+  const SensorModel sensor = sensorModel("hdl64e");
+  const GroundPlane plane{-1.73, 0, 0};
+  Scene scene = onGround(plane);
+  scene.walls = {{-30, 7, 30, 7, -1.73, 8}, {-30, -9, 30, -9, -1.2, 8}};
+  const GroundGrid ground = built(cast(scene, sensor, {0.02, 0, 1}), 1.73);
+  // Before the walls, and as far behind them as heights are handed on.
+  const Errors e = errors(ground, plane, 3, 45);
+  EXPECT_LT(e.low, 0.06);
+  EXPECT_LT(e.high, 0.06);
+}
+
+TEST(GroundGrid, whereNothingIsSeenTheNominalHeightHolds) {
+  const SensorModel sensor = sensorModel("vlp16");
+  const GroundGrid ground = built(PointList(), 1.2);
+  for (const float x : {0.f, 5.f, 49.f, -500.f}) EXPECT_FLOAT_EQ(ground.at(x, 0.1f * x), -1.2f);
+  EXPECT_FLOAT_EQ(ground.median(), -1.2f);
+}
+
+TEST(GroundGrid, theLastKnownHeightIsHandedOn) {
+  const SensorModel sensor = sensorModel("vlp16");  // its lowest beams reach 30 m at most
+  const GroundPlane plane{-1.0, 0.02, 0};
+  const GroundGrid ground = built(cast(onGround(plane), sensor), 1.0);
+  EXPECT_NEAR(ground.at(49, 0), ground.at(200, 0), 1e-6);
+  EXPECT_TRUE(std::isfinite(ground.at(1e6f, 0)));
+}
+
+TEST(GroundGrid, keepsNothingOfTheScanBefore) {
+  const SensorModel sensor = sensorModel("hdl32e");
+  const PointList low = cast(onGround({-2.0, 0, 0}), sensor),
+                  high = cast(onGround({-1.0, 0, 0}), sensor);
+  GroundGrid ground = built(low, 1.5);
+  ground.build(high.view(), 1, 60, 1.0f);
+  EXPECT_NEAR(ground.median(), -1.0, 0.05);
+}
+
+}  // namespace polemcl::test_ground_grid

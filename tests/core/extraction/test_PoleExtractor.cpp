@@ -1,0 +1,287 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <thread>
+
+#include "core/extraction/PoleExtractor.h"
+#include "support/KnownScene.h"
+
+namespace polemcl::test_pole_extractor {
+
+using namespace polemcl;
+using namespace polemcl::clouds;
+
+namespace {
+
+std::vector<PoleDetection> extract(const PointList& points, const SensorOptions& sensor,
+                                   const ExtractionOptions& options = {},
+                                   ExtractionReport* report = nullptr) {
+  PoleExtractor extractor(sensor, options);
+  const auto poles = extractor.extract(points.view());
+  if (report) *report = extractor.report();
+  return poles;
+}
+
+void expectYard(const std::vector<PoleDetection>& poles, const Scene& scene = yard()) {
+  EXPECT_EQ(poles.size(), scene.cylinders.size());
+  for (const Cylinder& c : scene.cylinders) {
+    SCOPED_TRACE(std::to_string(c.x) + ", " + std::to_string(c.y));
+    const PoleDetection* pole = nearest(poles, c.x, c.y, 0.04);
+    ASSERT_TRUE(pole);
+    EXPECT_NEAR(pole->radius, c.radius, 0.03);
+    EXPECT_GE(pole->points, 5u);
+    EXPECT_GT(pole->confidence, 0.5);
+    EXPECT_LE(pole->confidence, 1);
+    const Eigen::Vector2d variances =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(pole->covariance).eigenvalues();
+    EXPECT_GT(variances[0], 0);
+    EXPECT_LT(variances[1], 0.1);
+  }
+}
+
+}  // namespace
+
+TEST(PoleExtractor, findsThePolesOfAKnownScene) {
+  for (const auto& sensor :
+       {sensorOptions("hdl64e"), sensorOptions("hdl32e"), sensorOptions("hdl32e", true),
+        sensorOptions("os1_64"), sensorOptions("os1_128"), sensorOptions("vlp16")}) {
+    SCOPED_TRACE(sensor.model);
+    ExtractionReport report;
+    const PointList points = castYard(sensor);
+    const auto poles = extract(points, sensor, {}, &report);
+    expectYard(poles);
+    EXPECT_EQ(report.points, points.size());
+    EXPECT_EQ(report.invalid, 0u);
+    EXPECT_EQ(report.outOfView, 0u);
+    EXPECT_EQ(report.candidates, poles.size() + refused(report));
+    EXPECT_NEAR(report.ground, -kSensorHeight, 0.1);
+  }
+}
+
+TEST(PoleExtractor, heightsAreAboveGround) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  for (const PoleDetection& pole : extract(castYard(sensor), sensor)) {
+    EXPECT_NEAR(pole.top, 3.2, 0.15);
+    EXPECT_NEAR(pole.bottom, 0.15, 0.15);  // the lowest beam that is not taken for the ground
+  }
+}
+
+TEST(PoleExtractor, onASlopeHeightsAreAboveTheLocalGround) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  Scene scene = yard();
+  scene.ground->slopeX = 0.08;
+  for (Cylinder& c : scene.cylinders) {
+    c.bottom = scene.ground->at(c.x, c.y);
+    c.top = c.bottom + 3;
+  }
+  const auto poles = extract(castYard(sensor, scene), sensor);
+  expectYard(poles, scene);
+  for (const PoleDetection& pole : poles) {
+    EXPECT_NEAR(pole.top, 3, 0.35);
+    EXPECT_NEAR(pole.bottom, 0, 0.35);
+  }
+}
+
+TEST(PoleExtractor, bollardsAreNoPoles) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  Scene scene = yard();
+  for (Cylinder& c : scene.cylinders) c.top = 1.2 - kSensorHeight;
+  ExtractionReport report;
+  EXPECT_TRUE(extract(castYard(sensor, scene), sensor, {}, &report).empty());
+  EXPECT_EQ(report.refused[static_cast<int>(Refusal::tooLow)], 4u);
+}
+
+TEST(PoleExtractor, wallsAndPilastersAreNoPoles) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  Scene scene = yard();
+  scene.cylinders.clear();
+  scene.walls.push_back({10, -5, 10, 5, -3, 3});
+  for (double y = -4; y < 5; y += 2) scene.cylinders.push_back({10, y, 0.25, -3, 3});
+  EXPECT_TRUE(extract(castYard(sensor, scene), sensor).empty());
+}
+
+TEST(PoleExtractor, polesAreSortedByAzimuth) {
+  const SensorOptions sensor = sensorOptions("hdl64e");
+  const auto poles = extract(castYard(sensor), sensor);
+  for (std::size_t i = 1; i < poles.size(); ++i)
+    EXPECT_LT(std::atan2(poles[i - 1].y, poles[i - 1].x), std::atan2(poles[i].y, poles[i].x));
+}
+
+TEST(PoleExtractor, polesBeyondTheRangeAreNotLookedFor) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  ExtractionOptions options;
+  options.native.maxRange = 9.3;  // two of four stand nearer: 8.5 and 9.0 m; the others 9.2, 11.4
+  EXPECT_EQ(extract(castYard(sensor), sensor, options).size(), 3u);
+}
+
+TEST(PoleExtractor, orderOfPointsIsOfNoConsequence) {
+  const SensorOptions sensor = sensorOptions("hdl64e");
+  const PointList points = castYard(sensor);
+  const auto poles = extract(points, sensor);
+  for (const std::uint64_t seed : {1, 2, 3})
+    EXPECT_TRUE(same(poles, extract(shuffled(points.view(), seed), sensor)));
+}
+
+TEST(PoleExtractor, oneObjectServesManyScans) {
+  const SensorOptions sensor = sensorOptions("hdl32e");
+  const PointList points = castYard(sensor), others = turned(points.view(), 1);
+  PoleExtractor extractor(sensor, {});
+  const auto first = extractor.extract(points.view());
+  EXPECT_FALSE(same(first, extractor.extract(others.view())));
+  EXPECT_TRUE(extractor.extract(PointsView()).empty());
+  EXPECT_EQ(extractor.report().candidates, 0u);
+  EXPECT_TRUE(same(first, extractor.extract(points.view())));
+  PoleExtractor moved = std::move(extractor);
+  EXPECT_TRUE(same(first, moved.extract(points.view())));
+}
+
+TEST(PoleExtractor, objectsInSeveralThreadsGiveTheSameBytes) {
+  const SensorOptions sensor = sensorOptions("hdl64e");
+  const PointList points = castYard(sensor);
+  std::vector<std::vector<PoleDetection>> results(4);
+  std::vector<std::thread> threads;
+  for (auto& result : results) threads.emplace_back([&] { result = extract(points, sensor); });
+  for (auto& thread : threads) thread.join();
+  EXPECT_FALSE(results[0].empty());
+  for (const auto& result : results) EXPECT_TRUE(same(result, results[0]));
+}
+
+TEST(PoleExtractor, pointsThatAreNoPointsAreDroppedAndCounted) {
+  const SensorOptions sensor = sensorOptions("hdl64e");
+  const PointList clean = castYard(sensor);
+  const auto poles = extract(clean, sensor);
+  PointList points;
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 100; ++i) {
+    points.add(nan, 1, 1);
+    points.add(8, nan, 0);
+    points.add(8, 3, nan);
+    points.add(inf, -inf, 0);
+    points.add(8, 3, inf);
+    points.add(0, 0, 0);
+    points.add(8, 3, 50);   // out of view
+    points.add(0.5, 0, 0);  // out of range
+    points.add(900, 0, 0);
+  }
+  points.append(clean.view());
+  ExtractionReport report;
+  EXPECT_TRUE(same(poles, extract(shuffled(points.view(), 4), sensor, {}, &report)));
+  EXPECT_EQ(report.points, points.size());
+  EXPECT_EQ(report.invalid, 600u);
+  EXPECT_EQ(report.outOfView, 100u);
+  std::size_t far = 0;  // what stands well behind the farthest pole is not looked at
+  for (std::size_t i = 0; i < clean.size(); ++i)
+    far += std::hypot(clean.x[i], clean.y[i]) > NativeOptions().maxRange + 1;
+  EXPECT_EQ(report.outOfRange, 200u + far);
+}
+
+TEST(PoleExtractor, pointsThatComeTwiceAddNoPoles) {
+  const SensorOptions sensor = sensorOptions("hdl64e");
+  PointList points = castYard(sensor);
+  points.append(castYard(sensor).view());
+  expectYard(extract(points, sensor));
+}
+
+TEST(PoleExtractor, fromNothingComesNothing) {
+  const SensorOptions sensor = sensorOptions("hdl32e");
+  EXPECT_TRUE(extract(PointList(), sensor).empty());
+  PointList points;
+  points.add(8, 3, 0);
+  EXPECT_TRUE(extract(points, sensor).empty());
+  for (int i = 0; i < 5000; ++i) points.add(8, 3, 0);
+  EXPECT_TRUE(extract(points, sensor).empty());
+  PointList onOneRay;
+  for (int i = 1; i < 5000; ++i) onOneRay.add(0.01 * i, 0.003 * i, -0.001 * i);
+  EXPECT_TRUE(extract(onOneRay, sensor).empty());
+}
+
+TEST(PoleExtractor, hugeAndTinyCoordinatesAreNoPoles) {
+  const SensorOptions sensor = sensorOptions("hdl32e");
+  PointList points;
+  for (const double size : {3.4e38, 1e30, 1e19, 1e10, 1e-10, 1e-30, 1e-44})
+    for (int i = 0; i < 64; ++i) {
+      const double angle = 0.1 * i;
+      points.add(size * std::cos(angle), size * std::sin(angle), 0.1 * size * std::cos(7 * angle));
+    }
+  ExtractionReport report;
+  EXPECT_TRUE(extract(points, sensor, {}, &report).empty());
+  EXPECT_EQ(report.invalid + report.outOfRange + report.outOfView, points.size());
+}
+
+TEST(PoleExtractor, scatteredPointsMakeAPoleInAThousandAtMost) {
+  const SensorOptions sensor = sensorOptions("hdl64e");
+  sim::Random random(6);
+  PointList points;
+  for (int i = 0; i < 100000; ++i)
+    points.add(random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-2, 2));
+  ExtractionReport report;
+  const auto poles = extract(points, sensor, {}, &report);
+  EXPECT_GT(report.candidates, 10000u);
+  EXPECT_LT(poles.size(), report.candidates / 1000);
+}
+
+TEST(PoleExtractor, everyReasonHasItsName) {
+  std::set<std::string> names;
+  for (int i = 0; i < static_cast<int>(Refusal::count_); ++i)
+    names.insert(name(static_cast<Refusal>(i)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(Refusal::count_));
+  EXPECT_EQ(names.count(name(Refusal::count_)), 0u);
+}
+
+TEST(PoleExtractor, refusesBadOptions) {
+  ExtractionOptions options;
+  options.native.maxWidth = 0;
+  EXPECT_THROW(PoleExtractor(SensorOptions(), options), Error);
+  EXPECT_THROW(PoleExtractor(sensorOptions("no such sensor"), {}), Error);
+}
+
+namespace {
+
+/// What makes the yard's poles be refused, and with which reason.
+struct Spoiled {
+  Refusal reason;
+  std::function<void(NativeOptions&)> spoil;
+};
+class PoleExtractorRefusal : public ::testing::TestWithParam<Spoiled> {};
+const std::vector<Spoiled> kSpoiled = {
+    {Refusal::tooFewPoints, [](NativeOptions& o) { o.minPoints = 10000; }},
+    {Refusal::tooShort, [](NativeOptions& o) { o.minHeight = 10; }},
+    {Refusal::startsTooHigh, [](NativeOptions& o) { o.maxBottom = -1; }},
+    {Refusal::tilted, [](NativeOptions& o) { o.maxTilt = 1e-7; }},
+    {Refusal::notStraight, [](NativeOptions& o) { o.maxScatter = 1e-7; }},
+    {Refusal::tooLow, [](NativeOptions& o) { o.minTop = 4; }},
+    {Refusal::lowConfidence, [](NativeOptions& o) { o.minConfidence = 1; }},
+    {Refusal::badFit, [](NativeOptions& o) { o.maxRadius = 0.03; }}};
+
+}  // namespace
+
+TEST_P(PoleExtractorRefusal, isCounted) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  ExtractionOptions options;
+  GetParam().spoil(options.native);
+  ExtractionReport report;
+  EXPECT_TRUE(extract(castYard(sensor), sensor, options, &report).empty());
+  EXPECT_GE(report.refused[static_cast<int>(GetParam().reason)], 4u);
+  EXPECT_EQ(report.candidates, refused(report));
+}
+INSTANTIATE_TEST_SUITE_P(Each, PoleExtractorRefusal, ::testing::ValuesIn(kSpoiled),
+                         [](const auto& i) { return std::string(name(i.param.reason)); });
+
+TEST(PoleExtractorRefusal, ofPolesTooNearToEachOtherTheMostConfidentStays) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  const PointList points = castYard(sensor);
+  const auto all = extract(points, sensor);
+  ExtractionOptions options;
+  options.native.minSpacing = 100;
+  ExtractionReport report;
+  const auto kept = extract(points, sensor, options, &report);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(report.refused[static_cast<int>(Refusal::duplicate)], 3u);
+  for (const PoleDetection& pole : all) EXPECT_LE(pole.confidence, kept[0].confidence);
+}
+
+}  // namespace polemcl::test_pole_extractor

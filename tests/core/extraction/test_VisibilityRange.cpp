@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/extraction/PoleExtractor.h"
+#include "core/extraction/VisibilityRange.h"
+#include "support/KnownScene.h"
+
+namespace polemcl::test_visibility_range {
+
+using namespace polemcl;
+using namespace polemcl::clouds;
+
+namespace {
+
+constexpr double kTurn = 2 * M_PI;
+
+/// Ground only, but for what the test adds.
+Scene plain() {
+  Scene scene;
+  scene.ground = GroundPlane{-kSensorHeight, 0, 0};
+  return scene;
+}
+
+/// Upright board across the line of sight: bearing, distance, half width, top above ground.
+Wall board(double bearing, double distance, double half, double top) {
+  const double c = std::cos(bearing), s = std::sin(bearing);
+  return {distance * c - half * -s, distance * s - half * c, distance * c + half * -s,
+          distance * s + half * c,  -kSensorHeight,          top - kSensorHeight};
+}
+
+std::vector<float> freeRangeOf(const PointList& points, const SensorOptions& sensor) {
+  PoleExtractor extractor(sensor, {});
+  extractor.extract(points.view());
+  return extractor.freeRange();
+}
+
+float at(const std::vector<float>& ranges, double bearing) {
+  return ranges[freeRangeSector(bearing, ranges.size())];
+}
+
+}  // namespace
+
+TEST(FreeRange, sectorsCountFromBehindToTheLeft) {
+  EXPECT_EQ(freeRangeSector(-M_PI, 256), 0u);
+  EXPECT_EQ(freeRangeSector(-M_PI + 0.99 * kTurn / 256, 256), 0u);
+  EXPECT_EQ(freeRangeSector(-M_PI + 1.01 * kTurn / 256, 256), 1u);
+  EXPECT_EQ(freeRangeSector(0.001, 256), 128u);
+  EXPECT_EQ(freeRangeSector(M_PI - 0.001, 256), 255u);
+  EXPECT_EQ(freeRangeSector(M_PI / 2 + 3 * kTurn + 0.001, 4), 3u);
+}
+
+TEST(FreeRange, towardsSomethingWideTheNearestSectorDecides) {
+  std::vector<float> ranges(8, 20);  // of 45°
+  ranges[4] = 7;                     // 0° to 45°
+  EXPECT_EQ(freeRangeTowards(ranges, 10, 5, 0.1), 7);
+  EXPECT_EQ(freeRangeTowards(ranges, 10, -5, 0.1), 20);
+  EXPECT_EQ(freeRangeTowards(ranges, 10, -0.05, 0.1), 7);  // reaches across
+  EXPECT_EQ(freeRangeTowards(ranges, 10, -0.15, 0.1), 20);
+  ranges[0] = 3;  // beyond the seam
+  EXPECT_EQ(freeRangeTowards(ranges, -10, 0.05, 0.1), 3);
+  EXPECT_EQ(freeRangeTowards({}, 1, 0, 0.1), 0);
+}
+
+TEST(FreeRange, endsAtWallsAndGoesOnOverWhatIsLow) {
+  for (const char* model : {"hdl64e", "hdl32e", "os1_64"}) {
+    SCOPED_TRACE(model);
+    Scene scene = plain();
+    scene.walls.push_back(board(0.5, 12.2, 3, 6));     // a house
+    scene.walls.push_back(board(2.0, 8.0, 3, 0.45));   // a kerb's planter
+    scene.walls.push_back(board(-1.5, 25.3, 4, 2.9));  // as high as poles
+    const auto ranges = freeRangeOf(castYard(sensorOptions(model), scene), sensorOptions(model));
+    ASSERT_EQ(ranges.size(), 256u);
+    EXPECT_EQ(at(ranges, 0.5), 12.0f);
+    EXPECT_EQ(at(ranges, -1.5), 25.0f);
+    EXPECT_EQ(at(ranges, 2.0), 40.0f) << "the extractor looks no farther";
+    EXPECT_EQ(at(ranges, -3.0), 40.0f);
+    EXPECT_EQ(at(ranges, 0.5 + std::atan(3 / 12.2) + 0.04), 40.0f) << "beside the house";
+  }
+}
+
+TEST(FreeRange, aPoleEndsItAtItsFrontAndNothingElse) {
+  Scene scene = plain();
+  scene.cylinders.push_back({10, 4, 0.15, -kSensorHeight, 3});
+  const auto ranges =
+      freeRangeOf(castYard(sensorOptions("hdl64e"), scene), sensorOptions("hdl64e"));
+  const double bearing = std::atan2(4, 10), front = std::hypot(10, 4) - 0.15;
+  EXPECT_LE(at(ranges, bearing), front);
+  EXPECT_GT(at(ranges, bearing), front - 0.55);
+  EXPECT_LE(std::count_if(ranges.begin(), ranges.end(), [](float r) { return r < 40; }), 3);
+}
+
+TEST(FreeRange, sparseBeamsEndItWhereFewerThanTwoMeetPoles) {
+  SensorOptions sensor = sensorOptions("uniform");
+  sensor.rows = 5;  // at +10°, +5°, 0°, -5°, -10°
+  sensor.fovUp = 10 * kDegree;
+  sensor.fovDown = -10 * kDegree;
+  sensor.columns = 1800;
+  sensor.checkBeams = false;
+  const auto ranges = freeRangeOf(castYard(sensor, plain()), sensor);
+  // 1.5 m up: the level beam always passes at 1.5 m; +5° reaches 3 m after 17.1 m, -5° 0.5 m after
+  // 11.4 m. The last step with two beams is at 17.0 m.
+  EXPECT_EQ(at(ranges, 1.0), 17.0f);
+}
+
+TEST(FreeRange, isUnknownWhereNothingWasSeen) {
+  const SensorOptions sensor = sensorOptions("hdl32e");
+  const auto ranges =
+      freeRangeOf(cast(plain(), SensorModel(sensor), {0, 0, 5, 0.0, M_PI / 2}), sensor);
+  EXPECT_EQ(at(ranges, 0), 40.0f);
+  EXPECT_EQ(at(ranges, 1.4), 40.0f);
+  EXPECT_EQ(at(ranges, 2.0), 0.0f);
+  EXPECT_EQ(at(ranges, -3.0), 0.0f);
+}
+
+TEST(FreeRange, turnsWithTheScan) {
+  Scene scene = plain();
+  scene.walls.push_back(board(0.5, 12.2, 3, 6));
+  const SensorOptions sensor = sensorOptions("hdl64e");
+  const PointList points = castYard(sensor, scene);
+  const auto before = freeRangeOf(points, sensor);
+  const auto after = freeRangeOf(turned(points.view(), kTurn * 32 / 256), sensor);
+  int different = 0;
+  for (int i = 0; i < 256; ++i) different += before[i] != after[(i + 32) % 256];
+  EXPECT_LE(different, 4) << "edges of sectors may round";
+}
+
+TEST(FreeRange, isEmptyByThePapersMethodAndOfCameras) {
+  ExtractionOptions paper;
+  paper.method = ExtractionMethod::paper;
+  PoleExtractor extractor(sensorOptions("hdl64e"), paper);
+  extractor.extract(castYard(sensorOptions("hdl64e")).view());
+  EXPECT_TRUE(extractor.freeRange().empty());
+  PinholeCamera camera;
+  camera.width = 320;
+  camera.height = 240;
+  camera.fx = camera.fy = 250;
+  camera.cx = 160;
+  camera.cy = 120;
+  const SensorModel model(camera);
+  ScanLines lines(model);
+  GroundGrid ground;
+  std::vector<float> ranges{1, 2};
+  FreeRangeFinder(model, 1.5, 40).find(lines, ground, ranges);
+  EXPECT_TRUE(ranges.empty());
+}
+
+}  // namespace polemcl::test_visibility_range

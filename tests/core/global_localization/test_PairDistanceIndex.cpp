@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/global_localization/PairDistanceIndex.h"
+#include "sim/common/Random.h"
+
+namespace polemcl::test_pair_distance_index {
+
+using namespace polemcl;
+
+namespace {
+
+std::vector<Eigen::Vector2d> scatter(std::uint64_t seed, int count, double extent) {
+  sim::Random random(seed);
+  std::vector<Eigen::Vector2d> poles;
+  for (int i = 0; i < count; ++i)
+    poles.emplace_back(random.uniform(0, extent), random.uniform(0, extent));
+  return poles;
+}
+
+using Names = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+Names namesOf(DistancePairs::Range range) {
+  Names names;
+  for (const DistancePairs::Pair* p = range.begin; p != range.end; ++p)
+    names.insert({p->first, p->second});
+  return names;
+}
+
+}  // namespace
+
+TEST(DistancePairs, holdsEveryPairWithinTheBoundsOnce) {
+  const std::vector<Eigen::Vector2d> poles = scatter(1, 200, 200);
+  const DistancePairs pairs(poles, 8, 40, 200);
+  for (const auto& [low, high] : {std::pair{0.0, 100.0}, {8.0, 12.0}, {20.0, 20.5}, {39.0, 60.0}}) {
+    Names expected;
+    for (std::uint32_t i = 0; i < poles.size(); ++i)
+      for (std::uint32_t j = i + 1; j < poles.size(); ++j) {
+        const double d = (poles[i] - poles[j]).norm();
+        if (d >= std::max(8.0, low) && d <= std::min(40.0, high)) expected.insert({i, j});
+      }
+    const DistancePairs::Range range = pairs.between(low, high);
+    EXPECT_EQ(namesOf(range), expected) << low << " to " << high;
+    EXPECT_EQ(range.size(), expected.size());
+  }
+}
+
+TEST(DistancePairs, sortsByDistance) {
+  const std::vector<Eigen::Vector2d> poles = scatter(2, 100, 100);
+  const DistancePairs pairs(poles, 8, 40);
+  const DistancePairs::Range all = pairs.between(0, 1000);
+  ASSERT_GT(all.size(), 100u);
+  EXPECT_TRUE(std::is_sorted(all.begin, all.end,
+                             [](const auto& a, const auto& b) { return a.distance < b.distance; }));
+  for (const DistancePairs::Pair* p = all.begin; p != all.end; ++p)
+    EXPECT_NEAR(p->distance, (poles[p->first] - poles[p->second]).norm(), 1e-5);
+}
+
+TEST(DistancePairs, findsNothingOutsideOrBetweenCrossedBounds) {
+  const DistancePairs pairs({{0, 0}, {20, 0}}, 8, 40);
+  EXPECT_EQ(pairs.between(19.9, 20.1).size(), 1u);
+  EXPECT_EQ(pairs.between(0, 19.9).size(), 0u);
+  EXPECT_EQ(pairs.between(20.1, 90).size(), 0u);
+  EXPECT_EQ(pairs.between(20.1, 19.9).size(), 0u);
+  const DistancePairs none({}, 8, 40);
+  EXPECT_EQ(none.between(0, 100).size(), 0u);
+}
+
+/// A park must not blow up the memory, nor lose its far pairs.
+TEST(DistancePairs, keepsAShareOfEveryDistanceInACrowd) {
+  const std::vector<Eigen::Vector2d> poles = scatter(3, 1500, 60);
+  const DistancePairs pairs(poles, 8, 40, 20);
+  EXPECT_LE(pairs.size(), 1500u * 20u);
+  for (double low = 8; low < 40; low += 4)
+    EXPECT_GT(pairs.between(low, low + 4).size(), 500u) << low;
+}
+
+}  // namespace polemcl::test_pair_distance_index

@@ -1,0 +1,296 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/localization/LocalizationHealth.h"
+
+namespace polemcl::test_localization_health {
+
+using namespace polemcl;
+
+namespace {
+
+/// Feeds a monitor with scans of ten poles, half a metre and a tenth of a second apart.
+class Feed {
+ public:
+  explicit Feed(const HealthOptions& options = {}) : monitor(options) { monitor.begin(); }
+
+  /// \param share Of the poles that match. \param poles Of the scan.
+  Health scan(double share, int poles = 10) {
+    HealthInput input;
+    input.time = time += period;
+    input.metres = metres;
+    for (int i = 0; i < poles; ++i) {
+      PoleMatch match;
+      match.confidence = confidence;
+      match.matched = i < std::lround(share * poles);
+      match.squared = match.matched ? squared : 0;
+      input.matches.push_back(match);
+    }
+    input.estimate.covariance = Eigen::Vector3d(sigma * sigma, 1e-4, yaw * yaw).asDiagonal();
+    input.effectiveParticles = 500;
+    input.modeShare = modeShare;
+    input.odometryContradicted = contradicted;
+    return last = monitor.update(input);
+  }
+  Health scans(int count, double share, int poles = 10) {
+    for (int i = 0; i < count; ++i) scan(share, poles);
+    return last;
+  }
+  void expect(HealthState state, HealthReason reason) const {
+    EXPECT_STREQ(name(last.state), name(state));
+    EXPECT_STREQ(name(last.reason), name(reason));
+  }
+
+  HealthMonitor monitor;
+  Health last;
+  double time = 1e9, period = 0.1, metres = 0.5, squared = 2, sigma = 0.02, yaw = 0.001,
+         modeShare = 1, confidence = 1;
+  bool contradicted = false;
+};
+
+using State = HealthState;
+using Reason = HealthReason;
+
+}  // namespace
+
+TEST(LocalizationHealth, SearchingUntilAPoseIsAssumed) {
+  HealthMonitor monitor;
+  EXPECT_EQ(monitor.health().state, State::lost);
+  EXPECT_EQ(monitor.health().reason, Reason::searching);
+  HealthInput input;
+  EXPECT_EQ(monitor.update(input).reason, Reason::searching);
+}
+
+TEST(LocalizationHealth, OkOnceMatchesOverSomeMetresBearThePoseOut) {
+  Feed feed;
+  feed.scans(5, 0.9);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scans(6, 0.9);  // 5.5 m
+  feed.expect(State::ok, Reason::none);
+  EXPECT_NEAR(feed.last.matchedShare, 0.9, 1e-12);
+  EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // m² of 2 over 2 degrees of freedom
+}
+
+TEST(LocalizationHealth, APoseThatASearchFoundIsBorneOutSooner) {
+  Feed feed;
+  feed.monitor.begin(true);
+  feed.scans(3, 0.9);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.9);  // 2 m
+  feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, TooFewMatchesDegradeThenLose) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.expect(State::ok, Reason::none);
+  feed.scans(40, 0.3);
+  feed.expect(State::degraded, Reason::mismatch);
+  feed.scans(40, 0.1);
+  feed.expect(State::degraded, Reason::mismatch);
+  EXPECT_NEAR(feed.last.matchedShare, 0.1, 1e-12);
+  feed.scans(40, 0);
+  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(40, 0.9);
+  feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {
+  Feed feed;
+  feed.scans(60, 0.9);
+  double driven = 0;
+  while (feed.scan(0).state != State::lost && driven < 100) driven += feed.metres;
+  EXPECT_LE(driven, feed.monitor.options().lostWindow);
+}
+
+TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
+  Feed feed;
+  feed.scans(60, 0.9);
+  for (int i = 0; i < 20; ++i) {  // 10 m, longer than the window of 8 m
+    feed.scan(0);
+    EXPECT_NE(feed.last.state, State::lost) << i;
+  }
+  feed.expect(State::degraded, Reason::mismatch);
+}
+
+TEST(LocalizationHealth, AFewNewPolesWhereTheMappedAreGoneDegradeOnly) {
+  Feed few, more;
+  few.scans(60, 0.9);
+  more.scans(60, 0.9);
+  few.scans(80, 0, 1);  // 37 scans in 18 m
+  few.expect(State::degraded, Reason::mismatch);
+  more.scans(80, 0, 2);
+  more.expect(State::lost, Reason::mismatch);
+}
+
+TEST(LocalizationHealth, ANewPoseThatIsNeverBorneOutIsLost) {
+  Feed feed;
+  // Above lost_share, so only the lack of a confirmation tells.
+  for (int i = 1; i < 30; ++i) feed.scan(0.3);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.3);  // 15 m
+  feed.expect(State::lost, Reason::mismatch);
+}
+
+TEST(LocalizationHealth, ANewPoseIsHeldToAGreaterShareThanOneThatHasBeenOk) {
+  Feed feed;
+  feed.scans(29, 0.45, 20);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.45, 20);  // 15 m
+  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(60, 0.9);
+  feed.expect(State::ok, Reason::none);
+  feed.scans(60, 0.45, 20);
+  feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, ANewPoseThatHardlyAnythingSpeaksForIsLostAtOnce) {
+  Feed feed;
+  feed.scans(3, 0.1);
+  feed.expect(State::degraded, Reason::converging);
+  feed.scan(0.1);  // evidence of 40
+  feed.expect(State::lost, Reason::mismatch);
+}
+
+TEST(LocalizationHealth, FewPolesSayNothingAgainstThePose) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.scans(17, 0, 0);  // the window of 8 m is empty
+  feed.scan(0, 1);
+  feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, ScansFromOneViewpointCountAsOne) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.metres = 0;
+  feed.scan(0.0);
+  EXPECT_NEAR(feed.last.innovation, 1, 1e-12);  // means of m² and of matches alike
+  feed.scans(2999, 0.0);                        // five minutes beside something odd
+  feed.expect(State::ok, Reason::none);
+  EXPECT_NEAR(feed.last.matchedShare, 0.9 * (16 + 1.0 / 3001) / 17, 1e-9);  // 17 viewpoints in 8 m
+  feed.metres = 0.5;
+  feed.scans(37, 0.0);  // driving on, it is
+  feed.expect(State::lost, Reason::mismatch);
+}
+
+TEST(LocalizationHealth, SpreadDegradesThenLoses) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.sigma = 0.8;
+  feed.scan(0.9);
+  feed.expect(State::degraded, Reason::spread);
+  EXPECT_NEAR(feed.last.spread, 0.8, 1e-12);
+  feed.sigma = 6;
+  feed.scan(0.9);
+  feed.expect(State::lost, Reason::spread);
+  feed.sigma = 0.02;
+  feed.yaw = 0.1;
+  feed.scan(0.9);
+  feed.expect(State::degraded, Reason::spread);
+}
+
+TEST(LocalizationHealth, SeveralPlacesAreAmbiguousNotLost) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.modeShare = 0.6;
+  feed.sigma = 60;
+  feed.scan(0.9);
+  feed.expect(State::degraded, Reason::ambiguous);
+}
+
+TEST(LocalizationHealth, BlindByTimeOrByMetres) {
+  Feed standing;
+  standing.scans(40, 0.9);
+  standing.metres = 0;
+  standing.scans(19, 0, 0);
+  standing.expect(State::ok, Reason::none);
+  standing.scans(3, 0, 0);  // 2.2 s
+  standing.expect(State::degraded, Reason::noPoles);
+  Feed fast;
+  fast.scans(40, 0.9);
+  fast.metres = 3;
+  fast.scans(7, 0, 0);  // 0.7 s, 21 m
+  fast.expect(State::degraded, Reason::noPoles);
+  fast.metres = 0.5;
+  fast.scans(10, 0.9);
+  fast.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, PolesWithoutConfidenceAreNotSeen) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.confidence = 0;
+  feed.scans(25, 1);
+  feed.expect(State::degraded, Reason::noPoles);
+}
+
+TEST(LocalizationHealth, FewMatchesBearNoPoseOut) {
+  Feed feed;
+  feed.confidence = 0.04;  // in 8 m 17 viewpoints of 10 poles: evidence of 6.8
+  feed.scans(100, 0.9);
+  feed.expect(State::degraded, Reason::converging);
+}
+
+TEST(LocalizationHealth, ATimeGapIsNamedUntilMetresAreDriven) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.time += 120;
+  feed.scan(0.9);
+  feed.expect(State::degraded, Reason::timeGap);
+  feed.scans(11, 0.9);
+  feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, OdometryAndInnovationDegrade) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.contradicted = true;
+  feed.scan(0.9);
+  feed.expect(State::degraded, Reason::odometry);
+  feed.contradicted = false;
+  feed.squared = 10;
+  feed.scans(40, 0.9);
+  feed.expect(State::degraded, Reason::innovation);
+  EXPECT_NEAR(feed.last.innovation, 5, 1e-12);
+}
+
+TEST(LocalizationHealth, ElsewhereIsLostAndANewPoseMustProveItself) {
+  Feed feed;
+  feed.scans(40, 0.9);
+  feed.monitor.reportElsewhere();
+  EXPECT_EQ(feed.monitor.health().state, State::lost);
+  EXPECT_EQ(feed.monitor.health().reason, Reason::elsewhere);
+  feed.monitor.begin();
+  feed.scan(0.9);
+  feed.expect(State::degraded, Reason::converging);
+}
+
+TEST(LocalizationHealth, RefusesOptionsOutOfRange) {
+  const auto refused = [](auto change) {
+    HealthOptions options;
+    change(options);
+    EXPECT_THROW(options.validate(), Error);
+    EXPECT_THROW(HealthMonitor{options}, Error);
+  };
+  EXPECT_NO_THROW(HealthOptions().validate());
+  refused([](HealthOptions& o) { o.window = 0; });
+  refused([](HealthOptions& o) { o.minEvidence = NAN; });
+  refused([](HealthOptions& o) { o.lostShare = 1.1; });
+  refused([](HealthOptions& o) { o.degradedShare = o.lostShare / 2; });
+  refused([](HealthOptions& o) { o.confirmShare = o.degradedShare / 2; });
+  refused([](HealthOptions& o) { o.lostEvidence = 0; });
+  refused([](HealthOptions& o) { o.lostSpread = INFINITY; });
+  refused([](HealthOptions& o) { o.degradedSpread = o.lostSpread * 2; });
+  refused([](HealthOptions& o) { o.degradedHeading = 0; });
+  refused([](HealthOptions& o) { o.innovation = 0; });
+  refused([](HealthOptions& o) { o.modeShare = -0.1; });
+  refused([](HealthOptions& o) { o.blindSeconds = 0; });
+  refused([](HealthOptions& o) { o.blindMetres = 0; });
+  refused([](HealthOptions& o) { o.maxGap = 0; });
+  refused([](HealthOptions& o) { o.confirm = -1; });
+  refused([](HealthOptions& o) { o.confirmFound = o.confirm * 2; });
+}
+
+}  // namespace polemcl::test_localization_health

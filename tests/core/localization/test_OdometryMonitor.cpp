@@ -1,0 +1,237 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/localization/OdometryMonitor.h"
+#include "support/PoleCity.h"
+
+namespace polemcl::test_odometry_monitor {
+
+using namespace polemcl;
+
+namespace {
+
+/// A drive through a city at 10 Hz, `step` metres a scan, odometry off by 2 % of each component.
+struct CheckedDrive {
+  std::vector<tests::Frame> frames;
+  double step = 0.7;
+
+  CheckedDrive(std::uint64_t seed, double metres, double stepMetres = 0.7, double density = 1,
+               double falsePerFrame = 1.5)
+      : step(stepMetres) {
+    tests::CityOptions options;
+    options.seed = seed;
+    options.density = density;
+    const tests::PoleCity city(options);
+    sim::Random random(seed + 100);
+    tests::Way way;
+    do way = tests::resample(city.randomWay(random, metres), step);
+    while (turnsBack(way));
+    tests::DriveOptions driving;
+    driving.falsePerFrame = falsePerFrame;
+    frames = tests::drive(city.surroundings(), way, driving, random);
+  }
+  /// At the city's edge ways turn round on the spot, which no vehicle does.
+  static bool turnsBack(const tests::Way& way) {
+    for (std::size_t i = 2; i < way.size(); ++i)
+      if ((way[i] - way[i - 1]).dot(way[i - 1] - way[i - 2]) < 0) return true;
+    return false;
+  }
+  static Eigen::Matrix3d covarianceOf(const Pose2D& motion) {
+    const auto variance = [](double value, double floor) {
+      return 4e-4 * value * value + floor * floor;
+    };
+    return Eigen::Vector3d(variance(motion.x, 1e-3), variance(motion.y, 1e-3),
+                           variance(motion.yaw, 1e-4))
+        .asDiagonal();
+  }
+  /// `spoilt` makes the odometry of a scan.
+  std::vector<CheckedMotion> run(
+      MotionCheck& check, const std::function<Pose2D(std::size_t, const Pose2D&)>& spoilt) const {
+    std::vector<CheckedMotion> results;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const Pose2D motion = spoilt(i, frames[i].motion);
+      results.push_back(check.add(100 + 0.1 * static_cast<double>(i), motion, covarianceOf(motion),
+                                  frames[i].poles_robot));
+    }
+    return results;
+  }
+};
+
+Pose2D scaled(const Pose2D& motion, double factor) {
+  return {factor * motion.x, factor * motion.y, factor * motion.yaw};
+}
+
+/// Error of the way composed from scan `from` to `to`, m.
+double drift(const CheckedDrive& drive, const std::vector<CheckedMotion>& motions, std::size_t from,
+             std::size_t to) {
+  Pose2D pose = drive.frames[from].truth;
+  for (std::size_t i = from + 1; i <= to; ++i) pose = compose(pose, motions[i].motion);
+  return std::hypot(pose.x - drive.frames[to].truth.x, pose.y - drive.frames[to].truth.y);
+}
+
+}  // namespace
+
+TEST(MotionCheck, LeavesAHealthyOdometryAlone) {
+  for (const double step : {0.02, 0.3, 0.7, 1.5})
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const CheckedDrive drive(seed, step < 0.1 ? 30 : 400, step);
+      MotionCheck check;
+      std::size_t agreed = 0;
+      const auto results = drive.run(check, [](std::size_t, const Pose2D& m) { return m; });
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        EXPECT_FALSE(results[i].replaced) << step << ' ' << seed << ' ' << i;
+        EXPECT_EQ(results[i].motion.x, drive.frames[i].motion.x);
+        agreed += results[i].verdict == MotionVerdict::agrees;
+      }
+      EXPECT_GT(agreed, results.size() / 2);
+    }
+}
+
+TEST(MotionCheck, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
+  for (const double step : {0.5, 1.5})
+    for (const std::uint64_t seed : {4, 5, 6}) {
+      const CheckedDrive drive(seed, 300 * step, step, 2);
+      MotionCheck check;
+      const auto results = drive.run(check, [](std::size_t i, const Pose2D& motion) {
+        return i >= 50 && i < 150 ? Pose2D() : motion;
+      });
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        const bool contradicted = results[i].verdict == MotionVerdict::contradicted;
+        if (i < 50 || i > 165) {
+          EXPECT_FALSE(contradicted) << i;
+        }
+        if (i >= 53 && i < 150) {
+          EXPECT_TRUE(contradicted) << i;
+        }
+      }
+      EXPECT_LT(drift(drive, results, 49, 160), 0.03 * 110 * step) << step << ' ' << seed;
+    }
+}
+
+TEST(MotionCheck, ASlippingOdometryIsReplacedWithinASecond) {
+  for (const double factor : {0.8, 1.2})
+    for (const std::uint64_t seed : {7, 8, 9}) {
+      const CheckedDrive drive(seed, 210, 0.7, 2);
+      MotionCheck check;
+      const auto results = drive.run(check, [&](std::size_t i, const Pose2D& motion) {
+        return i >= 50 && i < 200 ? scaled(motion, factor) : motion;
+      });
+      std::size_t contradicted = 0;
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        const bool is = results[i].verdict == MotionVerdict::contradicted;
+        contradicted += is && i >= 60 && i < 200;
+        if (i < 50 || i > 215) {
+          EXPECT_FALSE(is) << i;
+        }
+      }
+      EXPECT_GE(contradicted, 133u);
+      EXPECT_LT(drift(drive, results, 49, 210), 4) << factor << ' ' << seed;  // slipped: 21 m
+    }
+}
+
+TEST(MotionCheck, AStandingVehicleWithSpinningWheelsIsNoticed) {
+  const CheckedDrive drive(10, 8, 0.01, 2);
+  MotionCheck check;
+  const auto results = drive.run(check, [](std::size_t i, const Pose2D& motion) {
+    return i >= 100 ? Pose2D{0.4, 0, 0} : motion;
+  });
+  for (std::size_t i = 105; i < results.size(); ++i) {
+    EXPECT_EQ(results[i].verdict, MotionVerdict::contradicted) << i;
+    EXPECT_NEAR(results[i].motion.x, 0, 0.2) << i;
+  }
+}
+
+TEST(MotionCheck, AJumpToAnotherPlaceIsNotTakenForAMotion) {
+  const CheckedDrive before(11, 100), later(12, 100);
+  MotionCheck check;
+  CheckedDrive both = before;
+  both.frames.insert(both.frames.end(), later.frames.begin(), later.frames.end());
+  const auto results = both.run(check, [](std::size_t, const Pose2D& motion) { return motion; });
+  for (std::size_t i = 0; i < before.frames.size() + 40; ++i) {
+    const Pose2D& motion = results[i].motion;
+    EXPECT_LT(std::hypot(motion.x, motion.y), 5);
+  }
+  EXPECT_EQ(results.back().verdict, MotionVerdict::agrees);
+}
+
+TEST(MotionCheck, WithoutPolesTheOdometryIsAllThereIs) {
+  MotionCheck check;
+  for (int i = 0; i < 50; ++i) {
+    const auto result =
+        check.add(0.1 * i, {i > 20 ? 0.0 : 0.7, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), {});
+    EXPECT_EQ(result.verdict, MotionVerdict::unknown);
+    EXPECT_FALSE(result.replaced);
+  }
+}
+
+TEST(MotionCheck, BlindAmidAFaultItKeepsTheSpeedForAWhile) {
+  const CheckedDrive drive(13, 210);
+  MotionCheckOptions options;
+  options.hold = 2;
+  MotionCheck check(options);
+  CheckedDrive blinded = drive;
+  for (std::size_t i = 100; i < 200; ++i) blinded.frames[i].poles_robot.clear();
+  const auto results = blinded.run(
+      check, [](std::size_t i, const Pose2D& motion) { return i >= 50 ? Pose2D() : motion; });
+  for (std::size_t i = 100; i < 119; ++i) {
+    EXPECT_TRUE(results[i].replaced);
+    EXPECT_NEAR(results[i].motion.x, 0.7, 0.25) << i;
+    EXPECT_GT(results[i].covariance(0, 0), 0.01);
+  }
+  for (std::size_t i = 125; i < 200; ++i) EXPECT_FALSE(results[i].replaced) << i;
+}
+
+TEST(MotionCheck, AnUncertainOdometryIsNotContradictedForWhatItAdmits) {
+  const CheckedDrive drive(14, 140);
+  MotionCheck check;
+  for (std::size_t i = 0; i < drive.frames.size(); ++i) {
+    const Pose2D motion = scaled(drive.frames[i].motion, i >= 50 ? 1.2 : 1);
+    // It says 1.2 m a step: 0.14 m is nothing.
+    const auto result =
+        check.add(0.1 * static_cast<double>(i), motion,
+                  Eigen::Vector3d(1.44, 1.44, 0.01).asDiagonal(), drive.frames[i].poles_robot);
+    EXPECT_FALSE(result.replaced) << i;
+  }
+}
+
+TEST(MotionCheck, AGapEndsTheComparison) {
+  const CheckedDrive drive(15, 70);
+  MotionCheck check;
+  for (std::size_t i = 0; i < drive.frames.size(); ++i) {
+    const double time = 0.1 * static_cast<double>(i) + (i >= 50 ? 120 : 0);
+    const Pose2D motion = i == 50 ? Pose2D{90, 0, 1} : drive.frames[i].motion;
+    const auto result =
+        check.add(time, motion, CheckedDrive::covarianceOf(motion), drive.frames[i].poles_robot);
+    EXPECT_FALSE(result.replaced) << i;
+    if (i == 50) {
+      EXPECT_EQ(result.verdict, MotionVerdict::unknown);
+    }
+  }
+}
+
+TEST(MotionCheck, RefusesOptionsOutOfRange) {
+  const auto refuses = [](const std::function<void(MotionCheckOptions&)>& change) {
+    MotionCheckOptions options;
+    change(options);
+    EXPECT_THROW(MotionCheck{options}, Error);
+  };
+  refuses([](auto& o) { o.window = 0; });
+  refuses([](auto& o) { o.scale = 1; });
+  refuses([](auto& o) { o.metres = -1; });
+  refuses([](auto& o) { o.turn = NAN; });
+  refuses([](auto& o) { o.sigmas = 0; });
+  refuses([](auto& o) { o.minPairs = 2; });
+  refuses([](auto& o) { o.minShare = 1.1; });
+  refuses([](auto& o) { o.margin = -1; });
+  refuses([](auto& o) { o.settle = 2; });
+  refuses([](auto& o) { o.hold = -1; });
+  refuses([](auto& o) { o.maxSpeed = 0; });
+  refuses([](auto& o) { o.maxTurnRate = 0; });
+  refuses([](auto& o) { o.alignment.sigma = 0; });
+  refuses([](auto& o) { o.alignment.gate = 0; });
+  refuses([](auto& o) { o.alignment.reach = 0; });
+}
+
+}  // namespace polemcl::test_odometry_monitor

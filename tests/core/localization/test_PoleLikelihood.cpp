@@ -1,0 +1,408 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/localization/PoleLikelihood.h"
+
+namespace polemcl::test_pole_likelihood {
+
+using namespace polemcl;
+
+namespace {
+
+MapPole mapPole(double x, double y, double variance = 0) {
+  MapPole pole;
+  pole.x = x;
+  pole.y = y;
+  pole.covariance = variance * Eigen::Matrix2d::Identity();
+  return pole;
+}
+
+PoleDetection detection(double x, double y) {
+  PoleDetection pole;
+  pole.x = x;
+  pole.y = y;
+  pole.covariance.setZero();
+  return pole;
+}
+
+LikelihoodOptions optionsOf(LikelihoodModel model, bool weighted) {
+  LikelihoodOptions options;
+  options.model = model;
+  options.weighted = weighted;
+  return options;
+}
+
+struct Scene {
+  std::vector<MapPole> map;
+  std::vector<PoleDetection> poles;
+  std::vector<Pose2D> poses;
+};
+
+Scene randomScene(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Scene scene;
+  for (int i = 0; i < 200; ++i)
+    scene.map.push_back(mapPole(uniform(-40, 40), uniform(-40, 40), uniform(0, 0.02)));
+  for (int i = 0; i < 12; ++i) {
+    PoleDetection pole = detection(uniform(-30, 30), uniform(-30, 30));
+    Eigen::Matrix2d root;
+    root << uniform(0, 0.3), uniform(-0.2, 0.2), 0, uniform(0.01, 0.2);
+    pole.covariance = root * root.transpose();
+    pole.confidence = uniform(0, 1);
+    scene.poles.push_back(pole);
+  }
+  for (int i = 0; i < 100; ++i)
+    scene.poses.push_back({uniform(-5, 5), uniform(-5, 5), uniform(-4, 4)});
+  return scene;
+}
+
+/// The formulas of the header word by word: all poles searched, covariances rotated and inverted.
+double oracle(const Scene& scene, const Pose2D& pose, const LikelihoodOptions& o) {
+  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(pose.yaw).toRotationMatrix();
+  const double squaredSigma = o.sigma * o.sigma;
+  double sum = 0;
+  for (const PoleDetection& pole : scene.poles) {
+    const Eigen::Vector2d centre =
+        Eigen::Vector2d(pose.x, pose.y) + rotation * Eigen::Vector2d(pole.x, pole.y);
+    const MapPole* best = nullptr;
+    double least = o.gate;
+    for (const MapPole& candidate : scene.map) {
+      const double d = (centre - Eigen::Vector2d(candidate.x, candidate.y)).norm();
+      if (d < least) {
+        least = d;
+        best = &candidate;
+      }
+    }
+    Eigen::Matrix2d S = squaredSigma * Eigen::Matrix2d::Identity();
+    double confidence = 1, cost = o.gate * o.gate / (2 * squaredSigma);
+    if (o.weighted) {
+      S += rotation * pole.covariance * rotation.transpose();
+      if (best) S += 0.5 * best->covariance.trace() * Eigen::Matrix2d::Identity();
+      confidence = pole.confidence;
+      cost = o.gate * o.gate / (2 * squaredSigma + pole.covariance.trace());
+    }
+    const Eigen::Vector2d e =
+        best ? Eigen::Vector2d(centre - Eigen::Vector2d(best->x, best->y)) : Eigen::Vector2d(0, 0);
+    const double m2 = e.dot(S.inverse() * e);
+    if (o.model == LikelihoodModel::paper) {
+      sum -= confidence * (best ? std::min(0.5 * m2, cost) : cost);
+    } else {
+      const double p = (1 - o.outlier) * confidence;
+      sum += std::log(
+          (best ? p * squaredSigma / std::sqrt(S.determinant()) * std::exp(-0.5 * m2) : 0) + 1 - p);
+    }
+  }
+  return sum;
+}
+
+constexpr LikelihoodModel s_models[] = {LikelihoodModel::paper, LikelihoodModel::mixture};
+
+void expectRefused(const LikelihoodOptions& options, const std::string& field) {
+  try {
+    options.validate();
+    FAIL() << field << " was accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+
+TEST(PoleLikelihood, paperByHand) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::paper, false);
+  options.sigma = 0.5;
+  options.gate = 2;
+  const PoleIndex index({mapPole(10, 0), mapPole(0, 10)}, 2);
+  // Seen from (1, 0) looking to +y: (0, -9) lies at (10, 0), off by 0; (10.6, 1) at (0, 10.6), off
+  // by 0.6.
+  const Pose2D pose{1, 0, M_PI / 2};
+  EXPECT_NEAR(logLikelihood({detection(0, -9)}, pose, index, options), 0, 1e-12);
+  EXPECT_NEAR(logLikelihood({detection(0, -9), detection(10.6, 1)}, pose, index, options),
+              -0.36 / 0.5, 1e-12);
+  // Without a match a pole costs the gate, 2²/(2·0.5²) = 8, as one just inside it does.
+  EXPECT_NEAR(logLikelihood({detection(50, 50)}, pose, index, options), -8, 1e-12);
+  EXPECT_NEAR(logLikelihood({detection(0, -10.999999)}, pose, index, options), -8, 1e-4);
+}
+
+TEST(PoleLikelihood, mixtureByHand) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
+  options.sigma = 0.2;
+  options.outlier = 0.1;
+  const PoleIndex index({mapPole(5, 5)});
+  const double matched = std::log(0.9 * std::exp(-0.125) + 0.1);  // off by 0.1 m: half a σ
+  EXPECT_NEAR(logLikelihood({detection(5.1, 5)}, {}, index, options), matched, 1e-12);
+  EXPECT_NEAR(logLikelihood({detection(5.1, 5), detection(20, 5)}, {}, index, options),
+              matched + std::log(0.1), 1e-12);
+}
+
+TEST(PoleLikelihood, flooredByHand) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
+  options.sigma = 1;
+  const PoleIndex index({mapPole(5, 5)});
+  // A constant apart: the densities of the standard normal distribution at 0, 0.5 and 1, from a
+  // table, and 0.2. A pole without a match counts as one at the gate of 1 m.
+  const double exact = logLikelihood({detection(5, 5)}, {}, index, options);
+  const double half = logLikelihood({detection(5.5, 5)}, {}, index, options);
+  const double none = logLikelihood({detection(9, 5)}, {}, index, options);
+  EXPECT_NEAR(half - exact, std::log((0.352065 + 0.2) / (0.398942 + 0.2)), 1e-5);
+  EXPECT_NEAR(none - exact, std::log((0.241971 + 0.2) / (0.398942 + 0.2)), 1e-5);
+  EXPECT_NEAR(logLikelihood({detection(5, 5.999999)}, {}, index, options), none, 1e-5);
+  EXPECT_NEAR(logLikelihood({detection(9, 5), detection(5.5, 5)}, {}, index, options), none + half,
+              1e-12);
+}
+
+TEST(PoleLikelihood, flooredEqualsItsFormula) {
+  const Scene scene = randomScene(5);
+  for (const double gate : {0.4, 1.0, 3.0})
+    for (const double sigma : {0.05, 1.0, 1.2247})
+      for (const double floor : {1e-6, 0.2, 5.0}) {
+        LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
+        options.gate = gate, options.sigma = sigma, options.floor = floor;
+        const PoleIndex index(scene.map, 1.0);
+        const auto expected = [&](const Pose2D& pose) {
+          double sum = 0;
+          for (const PoleDetection& pole : scene.poles) {
+            const Pose2D seen = compose(pose, {pole.x, pole.y, 0});
+            double d = gate;
+            for (const MapPole& other : scene.map)
+              d = std::min(d, std::hypot(seen.x - other.x, seen.y - other.y));
+            sum += std::log(std::exp(-d * d / (2 * sigma * sigma)) / sigma / std::sqrt(2 * M_PI) +
+                            floor);
+          }
+          return sum;
+        };
+        const double offset =
+            logLikelihood(scene.poles, scene.poses[0], index, options) - expected(scene.poses[0]);
+        for (const Pose2D& pose : scene.poses)
+          ASSERT_NEAR(logLikelihood(scene.poles, pose, index, options) - offset, expected(pose),
+                      1e-8 * (1 + std::abs(expected(pose))));
+      }
+}
+
+TEST(PoleLikelihood, flooredRefusesWhatItCannotDo) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::floored, true);
+  expectRefused(options, "weighted");
+  options.weighted = false;
+  options.validate();
+  for (const double bad : {0.0, -0.2, std::nan(""), HUGE_VAL, 1e-12}) {
+    options.floor = bad;
+    expectRefused(options, "floor");
+  }
+}
+
+TEST(PoleLikelihood, flooredBatchesGiveTheSameNumbers) {
+  const Scene scene = randomScene(7);
+  const PoleIndex index(scene.map);
+  const LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
+  std::vector<std::vector<double>> batch;
+  widenedLogLikelihoods(scene.poles, scene.poses, index, options, {1, 4}, batch);
+  LikelihoodOptions wide = options;
+  wide.sigma *= 4;
+  for (std::size_t i = 0; i < scene.poses.size(); ++i) {
+    EXPECT_EQ(batch[0][i], logLikelihood(scene.poles, scene.poses[i], index, options));
+    EXPECT_EQ(batch[1][i], logLikelihood(scene.poles, scene.poses[i], index, wide));
+  }
+}
+
+TEST(PoleLikelihood, equalsTheFormulasWordByWord) {
+  for (std::uint64_t seed : {1, 2, 3}) {
+    const Scene scene = randomScene(seed);
+    for (LikelihoodModel model : s_models) {
+      for (bool weighted : {false, true}) {
+        for (double gate : {0.4, 1.0, 3.0}) {  // the last beyond what the index is prepared for
+          LikelihoodOptions options = optionsOf(model, weighted);
+          options.gate = gate;
+          const PoleIndex index(scene.map, 1.0);
+          for (const Pose2D& pose : scene.poses) {
+            const double expected = oracle(scene, pose, options);
+            ASSERT_NEAR(logLikelihood(scene.poles, pose, index, options), expected,
+                        1e-9 * (1 + std::abs(expected)));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(PoleLikelihood, batchGivesTheSameNumbersAsTheSingleCall) {
+  const Scene scene = randomScene(7);
+  const PoleIndex index(scene.map);
+  for (LikelihoodModel model : s_models) {
+    for (bool weighted : {false, true}) {
+      const LikelihoodOptions options = optionsOf(model, weighted);
+      std::vector<double> batch(3, 42);
+      logLikelihoods(scene.poles, scene.poses, index, options, batch);
+      ASSERT_EQ(batch.size(), scene.poses.size());
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        EXPECT_EQ(batch[i], logLikelihood(scene.poles, scene.poses[i], index, options));
+      }
+    }
+  }
+}
+
+TEST(PoleLikelihood, posesNearEachOtherAreSearchedTogetherToTheSameNumbers) {
+  Scene scene = randomScene(13);
+  for (MapPole& pole : scene.map) pole.x *= 0.4, pole.y *= 0.4;  // several within the gate
+  for (Pose2D& pose : scene.poses) pose = {0.05 * pose.x, 0.05 * pose.y, 1 + 0.002 * pose.yaw};
+  const PoleIndex index(scene.map);
+  const LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, true);
+  std::vector<double> together, apart;
+  logLikelihoods(scene.poles, scene.poses, index, options, together);
+  scene.poses.push_back({1e5, -1e5, 0});  // too far to be searched with the others
+  logLikelihoods(scene.poles, scene.poses, index, options, apart);
+  apart.pop_back();
+  EXPECT_EQ(together, apart);
+}
+
+TEST(PoleLikelihood, severalSigmasAtOnceGiveWhatEachGivesAlone) {
+  const Scene scene = randomScene(11);
+  const PoleIndex index(scene.map);
+  const std::vector<double> widenings{1, 2, 0.5, 8};
+  for (LikelihoodModel model : s_models) {
+    for (bool weighted : {false, true}) {
+      const LikelihoodOptions options = optionsOf(model, weighted);
+      std::vector<std::vector<double>> batch;
+      widenedLogLikelihoods(scene.poles, scene.poses, index, options, widenings, batch);
+      ASSERT_EQ(batch.size(), widenings.size());
+      for (std::size_t k = 0; k < widenings.size(); ++k) {
+        LikelihoodOptions alone = options;
+        alone.sigma *= widenings[k];
+        for (std::size_t i = 0; i < scene.poses.size(); ++i)
+          EXPECT_EQ(batch[k][i], logLikelihood(scene.poles, scene.poses[i], index, alone));
+      }
+    }
+  }
+  std::vector<std::vector<double>> out;
+  EXPECT_THROW(widenedLogLikelihoods({}, {}, index, {}, std::vector<double>(9, 1.0), out), Error);
+}
+
+TEST(PoleLikelihood, noDetectionsSayNothing) {
+  const PoleIndex index({mapPole(0, 0)});
+  for (LikelihoodModel model : s_models)
+    EXPECT_EQ(logLikelihood({}, {}, index, optionsOf(model, true)), 0);
+}
+
+TEST(PoleLikelihood, anEmptyMapCostsTheFloorForEachDetection) {
+  const PoleIndex index({});
+  const std::vector<PoleDetection> poles{detection(1, 2), detection(3, 4)};
+  EXPECT_NEAR(logLikelihood(poles, {}, index, optionsOf(LikelihoodModel::mixture, false)),
+              2 * std::log(0.05), 1e-12);
+  EXPECT_NEAR(logLikelihood(poles, {}, index, optionsOf(LikelihoodModel::paper, false)),
+              -2 / (2 * 0.15 * 0.15), 1e-9);
+}
+
+TEST(PoleLikelihood, staysFiniteWithThousandsOfUnmatchedPoles) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
+  options.outlier = 1e-9;
+  const std::vector<PoleDetection> poles(5000, detection(1, 2));
+  EXPECT_NEAR(logLikelihood(poles, {}, PoleIndex({}), options), 5000 * std::log(1e-9), 1e-6);
+}
+
+TEST(PoleLikelihood, staysFiniteWithNumbersThatAreNone) {
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  const PoleIndex index({mapPole(0, 0)});
+  for (LikelihoodModel model : s_models) {
+    for (bool weighted : {false, true}) {
+      const LikelihoodOptions options = optionsOf(model, weighted);
+      const double unmatched = logLikelihood({detection(50, 50)}, {}, index, options);
+      EXPECT_EQ(logLikelihood({detection(0, 0)}, {nan, 0, 0}, index, options), unmatched);
+      EXPECT_EQ(logLikelihood({detection(0, 0)}, {0, infinity, 0}, index, options), unmatched);
+      EXPECT_EQ(logLikelihood({detection(0, 0)}, {0, 0, nan}, index, options), unmatched);
+      EXPECT_EQ(logLikelihood({detection(nan, 0)}, {}, index, options), unmatched);
+    }
+  }
+}
+
+TEST(PoleLikelihood, theMixtureIsNotFlat) {
+  const PoleIndex index({mapPole(10, 0)});
+  const LikelihoodOptions options;
+  const double right = logLikelihood({detection(10, 0)}, {}, index, options);
+  const double off = logLikelihood({detection(10, 0)}, {0.3, 0, 0}, index, options);
+  const double lost = logLikelihood({detection(10, 0)}, {5, 0, 0}, index, options);
+  EXPECT_GT(right - off, std::log(4));
+  EXPECT_GT(off - lost, std::log(2));
+  EXPECT_NEAR(lost, std::log(options.outlier), 1e-12);
+}
+
+TEST(PoleLikelihood, weightsAnErrorByTheCovarianceAlongIt) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::paper, true);
+  options.sigma = 0.1;
+  const PoleIndex index({mapPole(0, 20)});
+  PoleDetection pole = detection(20, 0);
+  pole.covariance << 0.08, 0, 0, 0;  // 0.28 m along the line of sight, certain across it
+  // The robot looks to +y, so along the line of sight is along the map's y.
+  const double along = logLikelihood({pole}, {0, 0.3, M_PI / 2}, index, options);
+  const double across = logLikelihood({pole}, {0.3, 0, M_PI / 2}, index, options);
+  EXPECT_NEAR(along, -0.5 * 0.09 / 0.09, 1e-9);
+  EXPECT_NEAR(across, -0.5 * 0.09 / 0.01, 1e-9);
+}
+
+TEST(PoleLikelihood, anUncertainMapPoleCountsForLess) {
+  LikelihoodOptions options = optionsOf(LikelihoodModel::paper, true);
+  options.sigma = 0.1;
+  EXPECT_NEAR(logLikelihood({detection(1.2, 1)}, {}, PoleIndex({mapPole(1, 1, 0.03)}), options),
+              -0.5 * 0.04 / 0.04, 1e-9);
+}
+
+TEST(PoleLikelihood, aDetectionWithoutConfidenceHasNoInfluence) {
+  PoleDetection doubtful = detection(3, 3);
+  doubtful.confidence = 0;
+  const PoleIndex index({mapPole(3, 3)});
+  for (LikelihoodModel model : s_models) {
+    const LikelihoodOptions options = optionsOf(model, true);
+    for (double x : {0.0, 0.2, 9.0})
+      EXPECT_NEAR(logLikelihood({doubtful}, {x, 0, 0}, index, options), 0, 1e-15);
+    EXPECT_LT(logLikelihood({doubtful}, {9, 0, 0}, index, optionsOf(model, false)), -1);
+  }
+}
+
+TEST(PoleLikelihood, refusesOptionsOutOfRange) {
+  for (double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    LikelihoodOptions options;
+    options.sigma = bad;
+    expectRefused(options, "sigma");
+    options = {};
+    options.gate = bad;
+    expectRefused(options, "gate");
+    options = {};
+    options.outlier = bad;
+    expectRefused(options, "outlier");
+  }
+  LikelihoodOptions options;
+  options.outlier = 1;
+  expectRefused(options, "outlier");
+  std::vector<double> out;
+  EXPECT_THROW(logLikelihood({}, {}, PoleIndex({}), options), Error);
+  EXPECT_THROW(logLikelihoods({}, {}, PoleIndex({}), options, out), Error);
+}
+
+TEST(PoleLikelihood, refusesWeightsThatAreNone) {
+  const PoleIndex index({});
+  const auto refuses = [&](const PoleDetection& pole) {
+    logLikelihood({pole}, {}, index, LikelihoodOptions{});  // of no account unless weighted
+    EXPECT_THROW(logLikelihood({pole}, {}, index, optionsOf(LikelihoodModel::mixture, true)),
+                 Error);
+  };
+  PoleDetection pole = detection(1, 1);
+  pole.covariance << 0.01, 0.02, 0.02, 0.01;  // indefinite
+  refuses(pole);
+  pole.covariance << 0.01, 0.001, 0, 0.01;  // not symmetric
+  refuses(pole);
+  pole.covariance << std::nan(""), 0, 0, 0.01;
+  refuses(pole);
+  for (double confidence : {-0.1, 1.1, std::nan("")}) {
+    pole = detection(1, 1);
+    pole.confidence = confidence;
+    refuses(pole);
+  }
+}
+
+}  // namespace polemcl::test_pole_likelihood

@@ -1,0 +1,226 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "core/mapping/MapAccumulator.h"
+
+namespace polemcl::test_map_accumulator {
+
+using namespace polemcl;
+
+namespace {
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A scan at (x, y) that sees the poles within 12 m, without error.
+SessionScan scanAt(double x, double y, const std::vector<Eigen::Vector2d>& poles, double time = 0) {
+  SessionScan scan;
+  scan.time = time;
+  scan.pose_map_robot = {x, y, 0};
+  scan.freeRange.assign(256, 12.0f);
+  for (const Eigen::Vector2d& p : poles) {
+    if (std::hypot(p.x() - x, p.y() - y) > 12) continue;
+    PoleDetection pole;
+    pole.x = p.x() - x;
+    pole.y = p.y() - y;
+    pole.radius = 0.1;
+    pole.top = 4;
+    scan.poles_robot.push_back(pole);
+  }
+  return scan;
+}
+
+/// One scan a metre along y = `y`.
+std::vector<SessionScan> drive(double fromX, double toX, double y,
+                               const std::vector<Eigen::Vector2d>& poles = {}) {
+  std::vector<SessionScan> scans;
+  for (double x = fromX; x <= toX; x += 1)
+    scans.push_back(scanAt(x, y, poles, 1000 + static_cast<double>(scans.size())));
+  return scans;
+}
+
+std::vector<Eigen::Vector2d> somePoles() {
+  std::mt19937 random(3);
+  std::vector<Eigen::Vector2d> poles;
+  for (int i = 0; i < 60; ++i)
+    poles.emplace_back(static_cast<double>(random() % 1000) / 5,
+                       static_cast<double>(random() % 300) / 5 - 20);
+  return poles;
+}
+
+PoleMapOptions mapping(double unvisited) {
+  PoleMapOptions options;
+  options.sectionLength = 1;
+  options.minCount = 2;
+  options.unvisited = unvisited;
+  return options;
+}
+
+MapAccumulator fresh(double unvisited) {
+  return {mapping(unvisited), {}};
+}
+
+std::vector<bool> chosen(MapAccumulator& map, const std::vector<SessionScan>& scans) {
+  return map.add("s", scans).used;
+}
+
+void expectSame(const std::vector<MapPole>& a, const std::vector<MapPole>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].x, b[i].x);
+    EXPECT_EQ(a[i].y, b[i].y);
+    EXPECT_EQ(a[i].count, b[i].count);
+    EXPECT_EQ(a[i].covariance, b[i].covariance);
+  }
+}
+
+}  // namespace
+
+TEST(MapAccumulator, usesEverythingUnlessAsked) {
+  const auto poles = somePoles();
+  const auto first = drive(0, 100, 0, poles), second = drive(50, 150, 2, poles);
+  MapAccumulator map = fresh(0);
+  EXPECT_EQ(map.add("one", first).usedShare(), 1);
+  EXPECT_EQ(map.add("two", second).usedShare(), 1);
+  std::vector<MappingScan> scans;
+  std::vector<SessionScan> all;
+  for (const auto& scan : first) scans.push_back({scan.pose_map_robot, scan.poles_robot, 4});
+  for (const auto& scan : second) scans.push_back({scan.pose_map_robot, scan.poles_robot, 9});
+  for (const auto& scan : first) all.push_back(scan);
+  for (const auto& scan : second) all.push_back(scan);
+  const PoleMapResult expected = buildPoleMap(scans, mapping(0));
+  ASSERT_GT(expected.poles.size(), 20u);
+  expectSame(map.build().poles, expected.poles);
+  const KeptMap histories = withHistory(expected.poles, all, mapping(0), {});
+  const KeptMap found = map.withHistories(expected.poles);
+  ASSERT_EQ(found.poles.size(), histories.poles.size());
+  for (std::size_t i = 0; i < found.poles.size(); ++i) {
+    EXPECT_EQ(found.poles[i].history.seen, histories.poles[i].history.seen);
+    EXPECT_EQ(found.poles[i].history.lastSeen, histories.poles[i].history.lastSeen);
+  }
+}
+
+TEST(MapAccumulator, laterSessionsCountWhereNobodyHasBeen) {
+  std::mt19937 random(5);
+  const auto walk = [&] {
+    std::vector<SessionScan> scans;
+    double x = random() % 100, y = random() % 100;
+    for (int i = 0; i < 150; ++i) {
+      x += static_cast<double>(random() % 200) / 100 - 0.7;
+      y += static_cast<double>(random() % 200) / 100 - 0.9;
+      scans.push_back(scanAt(x, y, {}));
+    }
+    return scans;
+  };
+  MapAccumulator map = fresh(10);
+  std::vector<Pose2D> visited;
+  std::size_t left = 0, taken = 0;
+  for (int session = 0; session < 6; ++session) {
+    const auto scans = walk();
+    const auto used = chosen(map, scans);
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      double nearest = 1e9;
+      for (const Pose2D& place : visited)
+        nearest = std::min(nearest, std::hypot(place.x - scans[i].pose_map_robot.x,
+                                               place.y - scans[i].pose_map_robot.y));
+      ASSERT_EQ(used[i], nearest > 10) << session << ' ' << i << ' ' << nearest;
+      (used[i] ? taken : left) += session > 0;
+    }
+    for (const auto& scan : scans) visited.push_back(scan.pose_map_robot);
+  }
+  EXPECT_GT(left, 100u);  // both happen
+  EXPECT_GT(taken, 100u);
+}
+
+TEST(MapAccumulator, placesOfScansThatAreNotUsedAreVisitedToo) {
+  MapAccumulator map = fresh(10);
+  chosen(map, {scanAt(0, 0, {})});
+  EXPECT_EQ(chosen(map, {scanAt(8, 0, {})}), std::vector<bool>{false});
+  EXPECT_EQ(chosen(map, {scanAt(16, 0, {})}), std::vector<bool>{false});  // 8 m from the second
+  EXPECT_EQ(chosen(map, {scanAt(27, 0, {})}), std::vector<bool>{true});
+}
+
+TEST(MapAccumulator, asFarAsThatIsNotFarther) {
+  for (const double distance : {10.0, 0.1, 7.3}) {
+    MapAccumulator map = fresh(distance);
+    chosen(map, {scanAt(0, 0, {})});
+    EXPECT_EQ(chosen(map, {scanAt(distance, 0, {}), scanAt(0, distance * (1 + 1e-12), {})}),
+              (std::vector<bool>{false, true}));
+  }
+}
+
+TEST(MapAccumulator, whatIsLeftOutChangesNothing) {
+  const auto poles = somePoles();
+  MapAccumulator map = fresh(10), other = fresh(10);
+  map.add("one", drive(0, 80, 0, poles));
+  other.add("one", drive(0, 80, 0, poles));
+  auto second = drive(20, 160, 1, poles);
+  map.add("two", second);
+  for (auto& scan : second)
+    if (scan.pose_map_robot.x < 85) scan.poles_robot.clear();
+  const AddedSession& added = other.add("two", second);
+  EXPECT_EQ(added.usedCount(), 71u);  // from x = 90 on, 10.05 m from the end of the first
+  EXPECT_NEAR(added.usedShare(), 71.0 / 141, 1e-12);
+  EXPECT_TRUE(added.scans.front().poles_robot.empty() && added.scans.front().freeRange.empty());
+  ASSERT_GT(map.build().poles.size(), 20u);
+  expectSame(map.build().poles, other.build().poles);
+}
+
+TEST(MapAccumulator, goesOnAsIfItHadNeverStopped) {
+  const auto poles = somePoles();
+  const std::vector<std::vector<SessionScan>> sessions{
+      drive(0, 80, 0, poles), drive(40, 130, 3, poles), drive(0, 190, 14, poles)};
+  MapAccumulator whole = fresh(10);
+  AddedSessions kept;
+  kept.unvisited = 10;
+  for (const auto& session : sessions) {
+    whole.add("s", session);
+    MapAccumulator today(mapping(10), {}, kept);
+    today.add("s", session);
+    kept = today.added();
+    expectSame(today.build().poles, whole.build().poles);
+  }
+  EXPECT_EQ(kept.scans(), 81u + 91u + 191u);
+}
+
+TEST(MapAccumulator, refusesWhatItCannotGoOnFrom) {
+  AddedSessions kept;
+  kept.unvisited = 10;
+  const auto message = [&](double unvisited) -> std::string {
+    try {
+      MapAccumulator map(mapping(unvisited), {}, kept);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message(5).find("unvisited_m = 5, but the scans of the map were chosen with 10"),
+            std::string::npos)
+      << message(5);
+  EXPECT_EQ(message(10), "");
+  EXPECT_THROW(fresh(-1), Error);
+  EXPECT_THROW(fresh(kNan), Error);
+  MapAccumulator map = fresh(10);
+  EXPECT_THROW(map.add("s", {scanAt(0, kNan, {})}), Error);
+}
+
+TEST(MapAccumulator, refusesASessionInAnotherFrame) {
+  MapAccumulator map = fresh(0);
+  map.add("one", drive(0, 100, 0));
+  map.add("near", drive(9000, 9100, 0));
+  try {
+    map.add("utm", drive(9000, 9100, 25000));
+    FAIL() << "taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("session utm: its poses are 25 km"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(map.added().sessions.size(), 2u);
+  EXPECT_NO_THROW(map.add("farther", drive(19000, 19050, 0)));  // near one of them
+}
+
+}  // namespace polemcl::test_map_accumulator

@@ -1,0 +1,391 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/mapping/PoleMapBuilder.h"
+
+namespace polemcl::test_pole_map_builder {
+
+using namespace polemcl;
+
+namespace {
+
+/// A scan at (x, 0) looking along x that sees poles at the given places of the map, without error.
+MappingScan scanAt(double x, const std::vector<Eigen::Vector2d>& seen, std::uint32_t drive = 0) {
+  MappingScan scan;
+  scan.pose_map_robot = {x, 0, 0};
+  scan.drive = drive;
+  for (const Eigen::Vector2d& p : seen) {
+    PoleDetection pole;
+    pole.x = p.x() - x;
+    pole.y = p.y();
+    pole.radius = 0.1;
+    pole.bottom = 0.2;
+    pole.top = 4;
+    scan.poles_robot.push_back(pole);
+  }
+  return scan;
+}
+
+/// One scan in the middle of each section of 1 m; `sees` has 'x' where it sees the pole, '.' where
+/// it does not, and ' ' where the section has no scan.
+std::vector<MappingScan> pattern(const std::string& sees) {
+  std::vector<MappingScan> scans{scanAt(0, {})};  // makes the path start at a border
+  for (std::size_t i = 0; i < sees.size(); ++i) {
+    if (sees[i] == ' ') continue;
+    scans.push_back(scanAt(0.5 + static_cast<double>(i), {}));
+    if (sees[i] == 'x') scans.back() = scanAt(0.5 + static_cast<double>(i), {{10, 5}});
+  }
+  return scans;
+}
+
+PoleMapOptions sectionsOfOneMetre(int minCount, int maxGap) {
+  PoleMapOptions options;
+  options.sectionLength = 1;
+  options.minCount = minCount;
+  options.maxGap = maxGap;
+  return options;
+}
+
+std::size_t polesOf(const std::string& sees, int minCount, int maxGap) {
+  return buildPoleMap(pattern(sees), sectionsOfOneMetre(minCount, maxGap)).poles.size();
+}
+
+void expectRefused(const PoleMapOptions& options, const std::string& field) {
+  try {
+    buildPoleMap({}, options);
+    FAIL() << field << " was accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+
+TEST(PoleMapBuilder, keepsAPoleSeenOftenEnough) {
+  EXPECT_EQ(polesOf("xxx", 3, 0), 1u);
+  EXPECT_EQ(polesOf("xx.", 3, 0), 0u);
+}
+
+TEST(PoleMapBuilder, aGapUpToTheLargestContinuesTheRun) {
+  EXPECT_EQ(polesOf("x..x..x", 3, 2), 1u);
+  EXPECT_EQ(polesOf("x..x...x", 3, 2), 0u);
+  EXPECT_EQ(polesOf("x.xx", 3, 0), 0u);
+  EXPECT_EQ(polesOf("x.xx", 3, 1), 1u);
+}
+
+TEST(PoleMapBuilder, sectionsWithoutAScanNeitherCountNorBreak) {
+  EXPECT_EQ(polesOf("x    x      x", 3, 0), 1u);
+  EXPECT_EQ(polesOf("x  .    .x  x", 3, 2), 1u);
+  EXPECT_EQ(polesOf("x  .    .  .x  x", 3, 2), 0u);
+  EXPECT_EQ(polesOf("x         x", 3, 2), 0u);
+}
+
+TEST(PoleMapBuilder, oneRunMustSufficeByItself) {
+  EXPECT_EQ(polesOf("xx......xx", 3, 2), 0u);
+  EXPECT_EQ(polesOf("xx......xxx", 3, 2), 1u);
+  // All views that saw it count for the pole itself, of whatever run.
+  EXPECT_EQ(buildPoleMap(pattern("xx......xxx"), sectionsOfOneMetre(3, 2)).poles.at(0).count, 5u);
+}
+
+TEST(PoleMapBuilder, countingEqualsTryingAllRuns) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 200; ++i) {
+    std::string sees;
+    for (int k = 0; k < 14; ++k) sees += "x.. "[random() % 4];
+    const int minCount = 1 + static_cast<int>(random() % 4),
+              maxGap = static_cast<int>(random() % 3);
+    // Only occupied sections matter. A run: a stretch without more than maxGap misses in a row.
+    std::string occupied;
+    for (char c : sees) occupied += c == ' ' ? std::string() : std::string(1, c);
+    int best = 0;
+    for (std::size_t from = 0; from < occupied.size(); ++from) {
+      for (std::size_t to = from; to < occupied.size(); ++to) {
+        const std::string run = occupied.substr(from, to - from + 1);
+        if (run.find(std::string(maxGap + 1, '.')) != std::string::npos) continue;
+        best = std::max(best, static_cast<int>(std::count(run.begin(), run.end(), 'x')));
+      }
+    }
+    ASSERT_EQ(polesOf(sees, minCount, maxGap), best >= minCount ? 1u : 0u) << '"' << sees << '"';
+  }
+}
+
+TEST(PoleMapBuilder, aRunDoesNotContinueInAnotherDrive) {
+  std::vector<MappingScan> scans;
+  for (double x : {0.5, 1.5}) scans.push_back(scanAt(x, {{10, 5}}, 0));
+  for (double x : {0.5, 1.5}) scans.push_back(scanAt(x, {{10, 5}}, 1));
+  EXPECT_TRUE(buildPoleMap(scans, sectionsOfOneMetre(3, 2)).poles.empty());
+  scans.push_back(scanAt(2.5, {{10, 5}}, 1));
+  const PoleMapResult result = buildPoleMap(scans, sectionsOfOneMetre(3, 2));
+  ASSERT_EQ(result.poles.size(), 1u);
+  EXPECT_EQ(result.poles[0].count, 5u);
+}
+
+TEST(PoleMapBuilder, takesTheMiddleScanOfASection) {
+  // Of the scans at 0, 0.4 and 0.9 m only the one at 0.4 m counts; its pole is the map.
+  const std::vector<MappingScan> scans{scanAt(0, {{5, 1}}), scanAt(0.4, {{5, 3}}),
+                                       scanAt(0.9, {{5, 6}})};
+  const PoleMapResult result = buildPoleMap(scans, sectionsOfOneMetre(1, 0));
+  ASSERT_EQ(result.poles.size(), 1u);
+  EXPECT_NEAR(result.poles[0].y, 3, 1e-12);
+  EXPECT_EQ(result.views, 1u);
+  EXPECT_EQ(result.detections, 1u);
+}
+
+TEST(PoleMapBuilder, everyScanIsAViewButSectionsAreCounted) {
+  std::vector<MappingScan> scans;  // 0 to 2.9 m: three sections
+  for (int i = 0; i < 30; ++i) scans.push_back(scanAt(0.1 * i, {{5, 3}}));
+  PoleMapOptions options = sectionsOfOneMetre(3, 0);
+  options.everyScan = true;
+  const PoleMapResult result = buildPoleMap(scans, options);
+  ASSERT_EQ(result.poles.size(), 1u);
+  EXPECT_EQ(result.poles[0].count, 30u);
+  EXPECT_EQ(result.views, 30u);
+  options.minCount = 4;
+  EXPECT_TRUE(buildPoleMap(scans, options).poles.empty());
+}
+
+TEST(PoleMapBuilder, aStandingVehicleCountsOnce) {
+  std::vector<MappingScan> scans;
+  for (int i = 0; i < 500; ++i) scans.push_back(scanAt(7 + 0.005 * (i % 2), {{10, 5}}));
+  for (bool everyScan : {false, true}) {
+    PoleMapOptions options = sectionsOfOneMetre(2, 2);
+    options.everyScan = everyScan;
+    EXPECT_TRUE(buildPoleMap(scans, options).poles.empty());
+  }
+}
+
+TEST(PoleMapBuilder, movesDetectionsByTheRobotsPose) {
+  MappingScan scan;
+  scan.pose_map_robot = {10, 20, M_PI / 2};
+  PoleDetection pole;
+  pole.x = 3;  // ahead, which is +y of the map
+  pole.y = 1;  // left, which is -x
+  pole.covariance << 0.04, 0, 0, 0.01;
+  scan.poles_robot = {pole};
+  PoleMapOptions options = sectionsOfOneMetre(1, 0);
+  options.poseSigma = 0.1;
+  options.headingSigma = 0.02;
+  const PoleMapResult result = buildPoleMap({scan}, options);
+  ASSERT_EQ(result.poles.size(), 1u);
+  EXPECT_NEAR(result.poles[0].x, 9, 1e-9);
+  EXPECT_NEAR(result.poles[0].y, 23, 1e-9);
+  // Turned, plus 0.1² each, plus the swing of 0.02 rad at the offset (-1, 3): ±0.06 in x, ±0.02 in
+  // y.
+  const Eigen::Matrix2d& c = result.poles[0].covariance;
+  EXPECT_NEAR(c(0, 0), 0.01 + 0.01 + 0.0036, 1e-6);
+  EXPECT_NEAR(c(1, 1), 0.04 + 0.01 + 0.0004, 1e-6);
+  EXPECT_NEAR(c(0, 1), 0.06 * 0.02, 1e-6);
+}
+
+TEST(PoleMapBuilder, leavesDoubtfulDetectionsOut) {
+  std::vector<MappingScan> scans = pattern("xxx");
+  scans[2].poles_robot[0].confidence = 0.4;
+  PoleMapOptions options = sectionsOfOneMetre(1, 2);
+  options.minConfidence = 0.5;
+  EXPECT_EQ(buildPoleMap(scans, options).poles.at(0).count, 2u);
+  options.minConfidence = 0.4;
+  EXPECT_EQ(buildPoleMap(scans, options).poles.at(0).count, 3u);
+  scans[2].poles_robot[0].confidence = 0;
+  options.minConfidence = 0;
+  EXPECT_EQ(buildPoleMap(scans, options).poles.at(0).count, 2u);
+}
+
+// The pole stands at (10, 5): of sections with middles 0.5, 1.5, … those at 6.5 to 13.5 pass it
+// nearer than 6.2 m.
+TEST(PoleMapBuilder, whoPassesAPoleMustSeeIt) {
+  PoleMapOptions options = sectionsOfOneMetre(3, 30);
+  options.nearRange = 6.2;
+  const auto poles = [&](const std::string& sees, double share) {
+    options.minShare = share;
+    return buildPoleMap(pattern(sees), options).poles.size();
+  };
+  const std::string half = "......x.x.x.x......";  // 4 of the 8 near ones
+  EXPECT_EQ(poles(half, 0), 1u);
+  EXPECT_EQ(poles(half, 0.5), 1u);
+  EXPECT_EQ(poles(half, 0.51), 0u);
+  EXPECT_EQ(poles("xxxx................", 0.1), 0u) << "seen from afar only";
+  EXPECT_EQ(poles("xxxx..", 1), 1u) << "nothing passes it";
+}
+
+TEST(PoleMapBuilder, tellsWhatItDid) {
+  const PoleMapResult result = buildPoleMap(pattern("x.   xx"), sectionsOfOneMetre(4, 2));
+  EXPECT_TRUE(result.poles.empty());
+  EXPECT_EQ(result.sections, 7u);
+  EXPECT_EQ(result.occupiedSections, 4u);
+  EXPECT_EQ(result.views, 4u);
+  EXPECT_EQ(result.detections, 3u);
+  EXPECT_EQ(result.clusters, 1u);
+  EXPECT_EQ(result.bestCount, 3u);
+  EXPECT_NEAR(result.pathLength, 6.5, 1e-9);
+}
+
+namespace {
+
+/// A street of 200 m up and down, poles on both sides, detections and poses with noise, clutter.
+struct Street {
+  std::vector<Eigen::Vector2d> truth;
+  std::vector<MappingScan> scans;
+};
+Street noisyStreet(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Street street;
+  for (int i = 0; i < 40; ++i)
+    street.truth.emplace_back(5 * i + uniform(-1, 1), i % 2 ? 6.0 : -7.0);
+  for (int k = 0; k < 800; ++k) {
+    const bool back = k >= 400;
+    const Pose2D at{back ? 400 - 0.5 * k : 0.5 * k, back ? 1.5 : -1.5, back ? M_PI : 0};
+    MappingScan scan;
+    scan.pose_map_robot = {at.x + 0.02 * normal(random), at.y + 0.02 * normal(random),
+                           at.yaw + 0.002 * normal(random)};
+    for (const Eigen::Vector2d& p : street.truth) {
+      const Pose2D seen = relative(at, {p.x(), p.y(), 0});
+      const double range = std::hypot(seen.x, seen.y);
+      if (range > 30 || uniform(0, 1) < 0.3) continue;
+      PoleDetection pole;
+      const double sigma = 0.01 + 0.002 * range;
+      pole.x = seen.x + sigma * normal(random);
+      pole.y = seen.y + sigma * normal(random);
+      pole.covariance = sigma * sigma * Eigen::Matrix2d::Identity();
+      scan.poles_robot.push_back(pole);
+    }
+    PoleDetection clutter;
+    clutter.x = uniform(-30, 30);
+    clutter.y = uniform(-30, 30);
+    scan.poles_robot.push_back(clutter);
+    street.scans.push_back(scan);
+  }
+  return street;
+}
+
+}  // namespace
+
+TEST(PoleMapBuilder, mapsStreetsDrivenTwiceToTheCentimetre) {
+  for (bool everyScan : {false, true}) {
+    std::size_t all = 0;
+    double squared = 0;  // in units of the covariances
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const Street street = noisyStreet(seed);
+      PoleMapOptions options;
+      options.everyScan = everyScan;
+      const PoleMapResult result = buildPoleMap(street.scans, options);
+      std::size_t found = 0;
+      double sum = 0;
+      for (const MapPole& pole : result.poles) {
+        for (const Eigen::Vector2d& p : street.truth) {
+          const Eigen::Vector2d error = Eigen::Vector2d(pole.x, pole.y) - p;
+          if (error.norm() > 0.2) continue;
+          ++found;
+          sum += error.norm();
+          squared += error.dot(pole.covariance.inverse() * error);
+        }
+      }
+      EXPECT_EQ(found, street.truth.size()) << "seed " << seed;
+      EXPECT_LE(result.poles.size(), street.truth.size() + 2) << "seed " << seed;
+      EXPECT_LT(sum / found, everyScan ? 0.006 : 0.011) << "seed " << seed;
+      all += found;
+    }
+    // Chi-square with 1600 degrees of freedom, over its 800 poles: 2, and in 99 of 100 cases within
+    // 2.58·sqrt(4/800).
+    ASSERT_EQ(all, 800u);
+    EXPECT_NEAR(squared / all, 2, 0.182);
+  }
+}
+
+TEST(PoleMapBuilder, theOrderOfDetectionsInAScanIsOfNoConsequence) {
+  Street street = noisyStreet(2);
+  const PoleMapResult expected = buildPoleMap(street.scans, {});
+  std::mt19937_64 random(3);
+  for (MappingScan& scan : street.scans)
+    std::shuffle(scan.poles_robot.begin(), scan.poles_robot.end(), random);
+  const PoleMapResult result = buildPoleMap(street.scans, {});
+  ASSERT_EQ(result.poles.size(), expected.poles.size());
+  for (std::size_t i = 0; i < result.poles.size(); ++i) {
+    EXPECT_EQ(result.poles[i].x, expected.poles[i].x);
+    EXPECT_EQ(result.poles[i].y, expected.poles[i].y);
+    EXPECT_EQ(result.poles[i].covariance, expected.poles[i].covariance);
+    EXPECT_EQ(result.poles[i].count, expected.poles[i].count);
+  }
+}
+
+TEST(PoleMapBuilder, noScansNoMap) {
+  const PoleMapResult result = buildPoleMap({}, {});
+  EXPECT_TRUE(result.poles.empty());
+  EXPECT_EQ(result.sections, 0u);
+}
+
+TEST(PoleMapBuilder, refusesSharesAndRangesThatAreNone) {
+  PoleMapOptions options;
+  options.minShare = 1.1;
+  expectRefused(options, "min_share");
+  options.minShare = 0.5;
+  options.nearRange = 0;
+  expectRefused(options, "near_range");
+}
+
+TEST(PoleMapBuilder, refusesOptionsOutOfRange) {
+  const double nan = std::nan("");
+  PoleMapOptions options;
+  for (double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    options.sectionLength = bad;
+    expectRefused(options, "section_length");
+    options = {};
+    options.mergeDistance = bad;
+    expectRefused(options, "merge_distance");
+    options = {};
+  }
+  for (double bad : {-0.1, 1.1, nan}) {
+    options.minConfidence = bad;
+    expectRefused(options, "min_confidence");
+    options = {};
+    options.apartShare = bad;
+    expectRefused(options, "apart_share");
+    options = {};
+  }
+  for (double bad : {-0.1, 4.0, nan}) {
+    options.headingSigma = bad;
+    expectRefused(options, "heading_sigma");
+    options = {};
+  }
+  options.poseSigma = -0.1;
+  expectRefused(options, "pose_sigma");
+  options = {};
+  options.minCount = 0;
+  expectRefused(options, "min_count");
+  options = {};
+  options.maxGap = -1;
+  expectRefused(options, "max_gap");
+}
+
+TEST(PoleMapBuilder, refusesWhatIsNotFiniteAndSaysWhere) {
+  const auto refuses = [](const std::vector<MappingScan>& scans, const std::string& what) {
+    try {
+      buildPoleMap(scans, {});
+      FAIL() << what << " was accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  auto scans = pattern("xxx");
+  scans[1].pose_map_robot.yaw = std::nan("");
+  refuses(scans, "pose of scan 1");
+  scans = pattern("xxx");
+  scans[2].poles_robot[0].x = std::numeric_limits<double>::infinity();
+  refuses(scans, "pole 0 of scan 2");
+  scans = pattern("xxx");
+  scans[2].poles_robot[0].confidence = 2;
+  refuses(scans, "pole 0 of scan 2");
+  scans = pattern("xxx");
+  scans[3].poles_robot[0].covariance << 0.01, 0.02, 0.02, 0.01;
+  refuses(scans, "pole 0 of scan 3");
+}
+
+}  // namespace polemcl::test_pole_map_builder

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/mapping/PoleMapBuilder.h"
+
+namespace polemcl::test_pole_map_paper {
+
+using namespace polemcl;
+
+namespace {
+
+/// The first implementation's map, with sections of 1 m.
+PoleMapOptions authors(int minCount) {
+  PoleMapOptions options;
+  options.sectionLength = 1;
+  options.middle = SectionMiddle::passed;
+  options.merging = MapMerging::boxes;
+  options.counting = PoleCounting::members;
+  options.minCount = minCount;
+  return options;
+}
+
+/// A scan a metre from 0.5 on, after one at the origin: the middle of each section. Each sees what
+/// is given for it, map frame; a last scan ends the last section.
+std::vector<MappingScan> drive(const std::vector<std::vector<Eigen::Vector2d>>& seen) {
+  std::vector<MappingScan> scans(1);
+  for (const auto& poles : seen) {
+    MappingScan scan;
+    scan.pose_map_robot = {scans.size() - 0.5, 0, 0};
+    for (const Eigen::Vector2d& p : poles) {
+      PoleDetection pole;
+      pole.x = p.x() - scan.pose_map_robot.x;
+      pole.y = p.y();
+      pole.radius = 0.125;
+      scan.poles_robot.push_back(pole);
+    }
+    scans.push_back(scan);
+  }
+  MappingScan last;
+  last.pose_map_robot = {static_cast<double>(seen.size()) + 0.25, 0, 0};
+  scans.push_back(last);
+  return scans;
+}
+
+const Eigen::Vector2d pole(10, 5);
+
+}  // namespace
+
+TEST(PoleMapPaper, aChainIsOnePoleOfPlainMean) {
+  // Neighbours 0.2 m apart overlap, the ends, 0.8 m apart, do not.
+  std::vector<std::vector<Eigen::Vector2d>> seen;
+  for (int i = 0; i < 5; ++i) seen.push_back({{10 + 0.2 * i, 5}});
+  auto options = authors(5);
+  const PoleMapResult map = buildPoleMap(drive(seen), options);
+  ASSERT_EQ(map.poles.size(), 1u);
+  EXPECT_NEAR(map.poles[0].x, 10.4, 1e-12);
+  EXPECT_EQ(map.poles[0].count, 5u);
+  options.merging = MapMerging::gated;  // no detection farther than 0.3 m from its pole
+  options.mergeDistance = 0.3;
+  EXPECT_TRUE(buildPoleMap(drive(seen), options).poles.empty());
+}
+
+TEST(PoleMapPaper, theMeanKnowsNoOutliersAndNoCertainty) {
+  auto scans = drive({{pole}, {pole}, {pole}, {pole}, {{10.2, 5}}});
+  for (std::size_t i = 1; i < 5; ++i) scans[i].poles_robot[0].covariance *= 1e-6;
+  EXPECT_NEAR(buildPoleMap(scans, authors(5)).poles.at(0).x, 10.04, 1e-12);
+  auto ours = authors(1);
+  ours.merging = MapMerging::gated;
+  EXPECT_NEAR(buildPoleMap(scans, ours).poles.at(0).x, 10, 5e-3);
+}
+
+TEST(PoleMapPaper, membersCountWhereverTheyWereMade) {
+  // Seen twice, missed in six sections, seen twice: four members, runs of two.
+  const auto scans = drive({{pole}, {pole}, {}, {}, {}, {}, {}, {}, {pole}, {pole}});
+  EXPECT_EQ(buildPoleMap(scans, authors(4)).poles.size(), 1u);
+  EXPECT_TRUE(buildPoleMap(scans, authors(5)).poles.empty());
+  EXPECT_EQ(buildPoleMap(scans, authors(5)).bestCount, 4u);
+  auto paper = authors(3);
+  paper.counting = PoleCounting::run;
+  EXPECT_TRUE(buildPoleMap(scans, paper).poles.empty());
+  paper.minCount = 2;
+  EXPECT_EQ(buildPoleMap(scans, paper).poles.size(), 1u);
+}
+
+TEST(PoleMapPaper, twoMembersOfOneScanCountTwice) {
+  const auto scans = drive({{pole, {10.1, 5}}});
+  EXPECT_EQ(buildPoleMap(scans, authors(2)).poles.size(), 1u);
+  auto paper = authors(2);
+  paper.counting = PoleCounting::run;
+  EXPECT_TRUE(buildPoleMap(scans, paper).poles.empty());
+}
+
+TEST(PoleMapPaper, onlyMiddlesOfSectionsThatEndAreUsed) {
+  auto scans = drive({{pole}, {{20, 5}}});
+  scans.pop_back();  // section 1 does not end
+  const PoleMapResult map = buildPoleMap(scans, authors(1));
+  ASSERT_EQ(map.poles.size(), 1u);
+  EXPECT_NEAR(map.poles[0].x, 10, 1e-12);
+  EXPECT_EQ(map.views, 1u);
+  EXPECT_EQ(map.sections, 1u);
+  auto nearest = authors(1);
+  nearest.middle = SectionMiddle::nearest;
+  EXPECT_EQ(buildPoleMap(scans, nearest).poles.size(), 2u);
+}
+
+TEST(PoleMapPaper, theOrderOfDetectionsDoesNotMatter) {
+  std::vector<std::vector<Eigen::Vector2d>> seen;
+  for (int i = 0; i < 8; ++i) seen.push_back({{10.013 * i, 3}, {10 + 0.017 * i, 5}, {3, 0.37 * i}});
+  auto scans = drive(seen);
+  const auto before = buildPoleMap(scans, authors(1)).poles;
+  for (auto& scan : scans) std::reverse(scan.poles_robot.begin(), scan.poles_robot.end());
+  const auto after = buildPoleMap(scans, authors(1)).poles;
+  ASSERT_EQ(before.size(), after.size());
+  ASSERT_GT(before.size(), 5u);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(before[i].x, after[i].x);
+    EXPECT_EQ(before[i].y, after[i].y);
+  }
+}
+
+TEST(PoleMapPaper, everyScanHasNoPassedMiddles) {
+  auto options = authors(1);
+  options.everyScan = true;
+  EXPECT_THROW(options.validate(), Error);
+}
+
+}  // namespace polemcl::test_pole_map_paper

@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include "core/sensor/BeamTableEstimator.h"
+#include "support/Clouds.h"
+#include "support/SimulatedScans.h"
+
+namespace polemcl::test_beam_table_estimator {
+
+using namespace polemcl;
+using polemcl::clouds::kDegree;
+using polemcl::clouds::PointList;
+
+namespace {
+
+PointList street(const std::string& lidar, double height, std::uint64_t world = 3) {
+  PointList points;
+  points.append(clouds::streetScans(world, lidar, height, 1).front().scan.view());
+  return points;
+}
+
+/// Every beam of the list lies beside a true one, and at least `share` of the true ones is there.
+void expectBeams(const BeamEstimate& estimate, const sim::LidarModel& lidar, double share) {
+  const auto found = estimate.elevations();
+  for (const double elevation : found) {
+    double nearest = 1;
+    for (const sim::Beam& beam : lidar.beams)
+      nearest = std::min(nearest, std::abs(beam.elevation - elevation));
+    EXPECT_LT(nearest, 0.06 * kDegree) << elevation / kDegree;
+  }
+  EXPECT_LE(found.size(), lidar.beams.size());
+  EXPECT_GE(static_cast<double>(found.size()), share * static_cast<double>(lidar.beams.size()));
+}
+
+void expectSame(const BeamEstimate& a, const BeamEstimate& b) {
+  EXPECT_EQ(a.elevations(), b.elevations());
+  EXPECT_EQ(a.origin.z, b.origin.z);
+  EXPECT_EQ(a.sharpness, b.sharpness);
+  EXPECT_EQ(a.spread, b.spread);
+}
+
+std::string refusal(const PointsView& points) {
+  try {
+    findBeams({points});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+class BeamFinderOnStreets : public ::testing::TestWithParam<std::pair<const char*, double>> {};
+
+TEST_P(BeamFinderOnStreets, findsTheBeamsOfTheLidar) {
+  const auto [name, height] = GetParam();
+  const BeamEstimate estimate = findBeams({street(name, height).view()});
+  expectBeams(estimate, sim::makeLidar(name), 0.9);
+  EXPECT_EQ(estimate.blocks.size(), 1u);
+  EXPECT_EQ(estimate.origin.x, 0);
+  EXPECT_EQ(estimate.origin.z, 0);
+  EXPECT_EQ(estimate.origin.slide, 0);
+  EXPECT_GT(estimate.sharpness, 0.98);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lidars, BeamFinderOnStreets,
+                         ::testing::Values(std::pair{"hdl32e", 1.0}, std::pair{"vlp16", 1.0},
+                                           std::pair{"os1_64", 1.8}, std::pair{"os1_128", 1.8},
+                                           std::pair{"os0_64", 1.0}));
+
+// Upper lasers of the HDL-64E start at 0.2 m, lower ones at 0.12 m.
+TEST(BeamFinder, tellsTwoBlocksApart) {
+  const BeamEstimate estimate = findBeams({street("hdl64e", 1.73).view()});
+  ASSERT_EQ(estimate.blocks.size(), 2u);
+  EXPECT_EQ(estimate.blocks[0].elevations.size(), 32u);
+  EXPECT_EQ(estimate.blocks[1].elevations.size(), 32u);
+  EXPECT_NEAR(estimate.blocks[0].apex, 0.2, 0.005);
+  EXPECT_NEAR(estimate.blocks[1].apex, 0.12, 0.015);
+  // An apex that is a little off moves elevations of ground rings by as much, seen from 5 m.
+  for (const auto& beam : sim::makeLidar("hdl64e").beams) {
+    double nearest = 1;
+    for (const double elevation : estimate.elevations())
+      nearest = std::min(nearest, std::abs(beam.elevation - elevation));
+    EXPECT_LT(nearest, 0.15 * kDegree) << beam.elevation / kDegree;
+  }
+}
+
+TEST(BeamFinder, orderAndInvalidPointsAreOfNoConsequence) {
+  const PointList points = street("hdl32e", 1.0);
+  const BeamEstimate estimate = findBeams({points.view()});
+  expectSame(findBeams({clouds::shuffled(points.view(), 5).view()}), estimate);
+  PointList spoilt;
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 500; ++i) {
+    spoilt.add(0, 0, 0);
+    spoilt.add(nan, 1, 1);
+    spoilt.add(9, inf, 0);
+    spoilt.add(9, 0, -inf);
+  }
+  spoilt.append(points.view());
+  expectSame(findBeams({spoilt.view()}), estimate);
+}
+
+TEST(BeamFinder, aTenthOfTheReturnsIsEnough) {
+  const PointList points = street("os1_64", 1.8);
+  PointList few;
+  sim::Random random(4);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (random.uniform(0, 1) < 0.1) few.add(points.x[i], points.y[i], points.z[i]);
+  expectBeams(findBeams({few.view()}), sim::makeLidar("os1_64"), 0.95);
+}
+
+TEST(BeamFinder, findsTheOriginOfCloudsInAnotherFrame) {
+  const PointList points = street("hdl32e", 1.0);
+  PointList moved;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    moved.add(points.x[i] + 0.9, points.y[i] - 0.2, points.z[i] + 1.2);
+  const BeamEstimate estimate = findBeams({moved.view()});
+  EXPECT_NEAR(estimate.origin.x, 0.9, 0.01);
+  EXPECT_NEAR(estimate.origin.y, -0.2, 0.01);
+  EXPECT_NEAR(estimate.origin.z, 1.2, 0.005);
+  expectBeams(estimate, sim::makeLidar("hdl32e"), 0.95);
+}
+
+// Points moved to where the sensor was in the middle of a turn that began at the rear.
+TEST(BeamFinder, seesThroughMotionCorrection) {
+  const PointList points = street("os1_64", 1.8);
+  PointList corrected;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double azimuth = std::atan2(points.y[i], points.x[i]);
+    corrected.add(points.x[i] - 0.8 * azimuth / (2 * M_PI), points.y[i], points.z[i]);
+  }
+  const BeamEstimate estimate = findBeams({corrected.view()});
+  EXPECT_NEAR(estimate.origin.slide, 0.8, 0.1);
+  expectBeams(estimate, sim::makeLidar("os1_64"), 0.95);
+}
+
+TEST(BeamFinder, refusesCloudsWithoutBeams) {
+  const PointList points = street("hdl32e", 1.0);
+  PointList merged, thinned, tilted;
+  std::set<std::tuple<long, long, long>> voxels;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = points.x[i], y = points.y[i], z = points.z[i];
+    merged.add(x, y, z);
+    merged.add(x + 1.3, y + 0.1, z + 0.02 * x + 0.1);
+    const auto cell = [](double v) { return std::lround(v / 0.2); };
+    if (voxels.emplace(cell(x), cell(y), cell(z)).second)
+      thinned.add(0.2 * cell(x), 0.2 * cell(y), 0.2 * cell(z));
+    tilted.add(x, y, z + std::tan(3 * kDegree) * x);
+  }
+  sim::Random random(1);
+  PointList blob;
+  for (int i = 0; i < 20000; ++i)
+    blob.add(20 * random.normal(), 20 * random.normal(), 2 * random.normal());
+  for (const PointList* cloud : {&merged, &thinned, &tilted, &blob})
+    EXPECT_NE(refusal(cloud->view()).find("no beams"), std::string::npos) << refusal(cloud->view());
+}
+
+TEST(BeamFinder, refusesTooFewPoints) {
+  PointList few;
+  for (int i = 0; i < 1999; ++i) few.addPolar(0.003 * i, 0.01 * (i % 5), 10);
+  EXPECT_NE(refusal(few.view()).find("1999"), std::string::npos);
+  EXPECT_NE(refusal({}).find("2000 are needed"), std::string::npos);
+}
+
+}  // namespace polemcl::test_beam_table_estimator

@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/sensor/SensorIdentification.h"
+#include "core/sensor/SensorModel.h"
+#include "support/Clouds.h"
+#include "support/SimulatedScans.h"
+
+namespace polemcl::test_sensor_identification {
+
+using namespace polemcl;
+using polemcl::clouds::kDegree;
+using polemcl::clouds::PointList;
+
+namespace {
+
+PointList scanOf(const std::string& lidar, double height, bool upsideDown = false) {
+  sim::SimulationOptions options;
+  options.world.seed = 3;
+  options.world.length = 120;
+  options.sensor = lidar;
+  options.height = height;
+  options.spacing = 5;
+  const sim::World street = sim::makeWorld(options.world);
+  const sim::Drive drive = sim::makeDrive(street, options);
+  const sim::Scanner scanner(street, sim::makeLidar(lidar, upsideDown));
+  PointList points;
+  points.append(scanner.scan(drive.T_map_sensor[drive.T_map_sensor.size() / 2], 9).view());
+  return points;
+}
+
+struct Expected {
+  const char* lidar;
+  double height;
+  bool upsideDown;
+  const char* model;  ///< that fits
+};
+
+}  // namespace
+
+class SensorInspectionOnStreets : public ::testing::TestWithParam<Expected> {};
+
+TEST_P(SensorInspectionOnStreets, namesThePreset) {
+  const Expected& expected = GetParam();
+  const PointList points = scanOf(expected.lidar, expected.height, expected.upsideDown);
+  const SensorInspection inspection = inspectSensor({points.view()});
+  const auto lidar = sim::makeLidar(expected.lidar);
+  EXPECT_FALSE(inspection.onItsHead);
+  EXPECT_NEAR(inspection.columns, lidar.columns, 0.01 * lidar.columns);
+  EXPECT_GT(inspection.covered, 0.95);
+  ASSERT_TRUE(inspection.ground);
+  EXPECT_LT(std::abs(inspection.ground->roll()), 3 * kDegree);
+
+  ASSERT_TRUE(inspection.preset());
+  const SensorOptions options = inspection.options();
+  EXPECT_EQ(options.model, expected.model);
+  EXPECT_EQ(options.upsideDown, expected.upsideDown);
+  EXPECT_EQ(options.columns, 0);
+  EXPECT_EQ(options.originZ, 0);
+  EXPECT_NEAR(options.height, expected.height, 0.1);
+  EXPECT_NO_THROW(SensorModel{options});
+}
+
+INSTANTIATE_TEST_SUITE_P(Lidars, SensorInspectionOnStreets,
+                         ::testing::Values(Expected{"hdl32e", 1.0, false, "hdl32e"},
+                                           Expected{"hdl32e", 1.0, true, "hdl32e"},
+                                           Expected{"vlp16", 1.2, false, "vlp16"},
+                                           Expected{"os1_64", 1.8, false, "os1_64"},
+                                           Expected{"os1_128", 1.8, false, "os1_128"},
+                                           Expected{"os0_64", 1.0, false, "os0_64"}));
+
+// Data-sheet angles lie up to 0.4° beside those of KITTI's unit: a table, in two blocks.
+TEST(SensorInspection, givesATableWhenNoPresetFits) {
+  const PointList points = scanOf("hdl64e", 1.73);
+  const SensorInspection inspection = inspectSensor({points.view()});
+  EXPECT_FALSE(inspection.preset());
+  const SensorOptions options = inspection.options();
+  EXPECT_EQ(options.model, "table");
+  EXPECT_NEAR(options.height, 1.73, 0.1);
+  ASSERT_NO_THROW(SensorModel{options});
+  const SensorModel model(options);
+  ASSERT_EQ(model.rows(), 64);
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float rho = std::hypot(points.x[i], points.y[i]);
+    const int row = model.row(rho, points.z[i]);
+    if (row < 0) continue;
+    const Beam& beam = model.beam(row);
+    near += std::abs(points.z[i] - beam.offset - rho * beam.slope) < 0.0015 * rho;  // 0.09°
+  }
+  EXPECT_GT(static_cast<double>(near), 0.97 * static_cast<double>(points.size()));
+}
+
+TEST(SensorInspection, turnsACloudOverThatStandsOnItsHead) {
+  const PointList points = scanOf("hdl32e", 1.0);
+  PointList hanging;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    hanging.add(points.x[i], -points.y[i], -points.z[i]);
+  const SensorInspection inspection = inspectSensor({hanging.view()});
+  EXPECT_TRUE(inspection.onItsHead);
+  ASSERT_TRUE(inspection.preset());
+  EXPECT_EQ(inspection.options().model, "hdl32e");
+  EXPECT_FALSE(inspection.options().upsideDown);
+  EXPECT_NEAR(inspection.options().height, 1.0, 0.1);
+}
+
+TEST(SensorInspection, findsTheOriginOverACloudsOwn) {
+  const PointList points = scanOf("vlp16", 1.0);
+  PointList moved;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    moved.add(points.x[i], points.y[i], points.z[i] + 0.957);
+  const SensorOptions options = inspectSensor({moved.view()}).options();
+  EXPECT_EQ(options.model, "vlp16");
+  EXPECT_NEAR(options.originZ, 0.957, 0.003);
+  EXPECT_NEAR(options.height, 1.0, 0.1);
+}
+
+TEST(SensorInspection, countsAndShuffles) {
+  const PointList a = scanOf("vlp16", 1.0);
+  PointList b = clouds::shuffled(a.view(), 2);
+  for (int i = 0; i < 50; ++i) b.add(i % 2 ? std::nan("") : 0, 0, 0);
+  const SensorInspection one = inspectSensor({a.view(), a.view()});
+  const SensorInspection two = inspectSensor({b.view(), b.view()});
+  EXPECT_EQ(two.invalid, one.invalid + 100);
+  EXPECT_EQ(two.points, 2 * a.size() - one.invalid);
+  EXPECT_EQ(two.scans, 2u);
+  EXPECT_EQ(one.columns, two.columns);
+  EXPECT_EQ(one.beams.elevations(), two.beams.elevations());
+  EXPECT_EQ(one.options().height, two.options().height);
+}
+
+TEST(SensorInspection, refusesWhatHasNoBeams) {
+  EXPECT_THROW(inspectSensor({}), Error);
+  EXPECT_THROW(inspectSensor({PointsView()}), Error);
+}
+
+}  // namespace polemcl::test_sensor_identification

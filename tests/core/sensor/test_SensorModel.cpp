@@ -1,0 +1,299 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/sensor/SensorModel.h"
+#include "support/Clouds.h"
+
+namespace polemcl::test_sensor_model {
+
+using namespace polemcl;
+using polemcl::clouds::kDegree;
+
+namespace {
+
+SensorOptions preset(const std::string& model, bool upsideDown = false) {
+  SensorOptions options;
+  options.model = model;
+  options.upsideDown = upsideDown;
+  return options;
+}
+
+SensorOptions uniform(int rows, double upDeg, double downDeg, int columns = 1000) {
+  SensorOptions options = preset("uniform");
+  options.rows = rows;
+  options.fovUp = upDeg * kDegree;
+  options.fovDown = downDeg * kDegree;
+  options.columns = columns;
+  return options;
+}
+
+SensorOptions table(const std::vector<double>& degrees) {
+  SensorOptions options = preset("table");
+  for (const double d : degrees) options.elevations.push_back(d * kDegree);
+  options.columns = 1000;
+  return options;
+}
+
+/// A point made by each beam is given back to that beam, near and far.
+void expectOwnRows(const SensorModel& sensor, std::initializer_list<double> ranges) {
+  for (const double rho : ranges)
+    for (int row = 0; row < sensor.rows(); ++row) {
+      const Beam& beam = sensor.beam(row);
+      const double z = rho * beam.slope + beam.offset;
+      ASSERT_EQ(sensor.row(static_cast<float>(rho), static_cast<float>(z)), row) << rho;
+    }
+}
+
+std::string refusal(SensorOptions options, const std::function<void(SensorOptions&)>& spoil) {
+  spoil(options);
+  try {
+    options.validate();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+#define EXPECT_REFUSED(options, spoil, word)                                           \
+  EXPECT_NE(refusal(options, []([[maybe_unused]] SensorOptions & o) spoil).find(word), \
+            std::string::npos)
+
+const std::vector<std::pair<std::string, int>> kBeams = {
+    {"hdl64e", 64},      {"hdl32e", 32},   {"vlp16", 16}, {"os1_64", 64},
+    {"os1_64_gen2", 64}, {"os1_128", 128}, {"os0_64", 64}};
+
+}  // namespace
+
+TEST(SensorModel, presetsHaveTheBeamsOfTheirNames) {
+  for (const auto& [model, beams] : kBeams)
+    EXPECT_EQ(SensorModel(preset(model)).rows(), beams) << model;
+}
+
+TEST(SensorModel, namesAreWhatModelAccepts) {
+  const auto names = SensorModel::modelNames();
+  EXPECT_EQ(names.size(), kBeams.size() + 2);
+  for (const auto& name : names) {
+    SensorOptions options = preset(name);
+    options.elevations = {-0.1, 0.1};
+    options.columns = 500;
+    EXPECT_NO_THROW(SensorModel{options}) << name;
+  }
+}
+
+TEST(SensorModel, outermostBeamsAreThoseOfTheDataSheets) {
+  const auto expectFan = [](const std::string& model, double topDeg, double bottomDeg) {
+    const SensorModel sensor(preset(model));
+    EXPECT_NEAR(std::atan(sensor.beam(0).slope), topDeg * kDegree, 0.002 * kDegree) << model;
+    EXPECT_NEAR(std::atan(sensor.beam(sensor.rows() - 1).slope), bottomDeg * kDegree,
+                0.002 * kDegree);
+  };
+  expectFan("hdl32e", 10.667, -30.667);
+  expectFan("vlp16", 15, -15);
+  expectFan("os1_64", 16.611, -16.611);
+  expectFan("os1_128", 22.5, -22.5);
+  expectFan("os0_64", 45, -45);
+}
+
+TEST(SensorModel, beamsAreOrderedFromTheTop) {
+  for (const auto& [model, beams] : kBeams)
+    for (const bool upsideDown : {false, true}) {
+      const SensorModel sensor(preset(model, upsideDown));
+      for (int row = 1; row < beams; ++row)
+        EXPECT_LT(sensor.beam(row).slope, sensor.beam(row - 1).slope) << model << row;
+    }
+}
+
+TEST(SensorModel, aPointOfEachBeamIsGivenToThatBeam) {
+  for (const auto& [model, beams] : kBeams)
+    for (const bool upsideDown : {false, true}) {
+      SCOPED_TRACE(model);
+      expectOwnRows(SensorModel(preset(model, upsideDown)), {1, 3, 12, 60});
+    }
+}
+
+// The lower block of the HDL-64E starts 8 cm below the upper one: 1.5° at 3 m, 0.08° at 60 m.
+TEST(SensorModel, blocksOfTheHdl64eHaveTheirOwnOffsets) {
+  const SensorModel sensor(preset("hdl64e"));
+  EXPECT_GT(sensor.beam(0).offset, sensor.beam(63).offset + 0.05);
+  EXPECT_EQ(sensor.beam(0).offset, sensor.beam(31).offset);
+  EXPECT_EQ(sensor.beam(32).offset, sensor.beam(63).offset);
+  // Seen from the origin, a point of beam 40 at 3 m lies where beam 36 would be without offsets.
+  const float rho = 3, z = static_cast<float>(rho * sensor.beam(40).slope + sensor.beam(40).offset);
+  EXPECT_GT(z / rho, sensor.beam(37).slope);
+  EXPECT_EQ(sensor.row(rho, z), 40);
+}
+
+TEST(SensorModel, aPointBetweenTwoBeamsIsGivenToTheNearer) {
+  sim::Random random(1);
+  for (const SensorOptions& options :
+       {preset("hdl32e"), preset("os1_64_gen2"), table({5, -1, 0.3})}) {
+    const SensorModel sensor(options);
+    for (int i = 0; i < 5000; ++i) {
+      const double slope =
+          random.uniform(sensor.beam(sensor.rows() - 1).slope, sensor.beam(0).slope);
+      std::vector<double> distance;
+      for (int row = 0; row < sensor.rows(); ++row)
+        distance.push_back(std::abs(sensor.beam(row).slope - slope));
+      const auto nearest = std::min_element(distance.begin(), distance.end());
+      const int row = sensor.row(20, static_cast<float>(20 * slope));
+      ASSERT_GE(row, 0);
+      EXPECT_LT(distance[row], *nearest + 0.0006) << slope;  // lookup cells are 0.0005 wide
+    }
+  }
+}
+
+TEST(SensorModel, outsideTheFanThereIsNoRow) {
+  const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
+  for (const auto& [model, beams] : kBeams) {
+    const SensorModel sensor(preset(model));
+    const Beam &top = sensor.beam(0), &bottom = sensor.beam(beams - 1);
+    for (const double rho : {3.0, 60.0}) {
+      const double over = rho * std::tan(std::atan(top.slope) + 1.5 * kDegree) + top.offset;
+      const double under = rho * std::tan(std::atan(bottom.slope) - 1.5 * kDegree) + bottom.offset;
+      EXPECT_EQ(sensor.row(static_cast<float>(rho), static_cast<float>(over)), -1) << model;
+      EXPECT_EQ(sensor.row(static_cast<float>(rho), static_cast<float>(under)), -1) << model;
+    }
+    EXPECT_EQ(sensor.row(1, 1e20f), -1);
+    EXPECT_EQ(sensor.row(1, -1e20f), -1);
+    EXPECT_EQ(sensor.row(1, nan), -1);
+    EXPECT_EQ(sensor.row(1, inf), -1);
+    EXPECT_EQ(sensor.row(0, 1), -1);
+  }
+}
+
+TEST(SensorModel, upsideDownTheFanIsMirrored) {
+  for (const std::string model : {"hdl32e", "hdl64e", "vlp16"}) {
+    const SensorModel upright(preset(model)), hanging(preset(model, true));
+    for (int row = 0; row < upright.rows(); ++row) {
+      const Beam &a = upright.beam(row), &b = hanging.beam(upright.rows() - 1 - row);
+      EXPECT_DOUBLE_EQ(b.slope, -a.slope) << model;
+      EXPECT_DOUBLE_EQ(b.offset, -a.offset) << model;
+    }
+  }
+  EXPECT_NEAR(std::atan(SensorModel(preset("hdl32e", true)).beam(0).slope), 30.667 * kDegree, 1e-6);
+}
+
+TEST(SensorModel, aTableMayComeInAnyOrder) {
+  const SensorModel sensor(table({-5, 10, 2}));
+  ASSERT_EQ(sensor.rows(), 3);
+  EXPECT_DOUBLE_EQ(sensor.beam(0).slope, std::tan(10 * kDegree));
+  EXPECT_DOUBLE_EQ(sensor.beam(1).slope, std::tan(2 * kDegree));
+  EXPECT_DOUBLE_EQ(sensor.beam(2).slope, std::tan(-5 * kDegree));
+  EXPECT_EQ(sensor.beam(1).offset, 0);
+  expectOwnRows(sensor, {1, 30});
+}
+
+// As the HDL-64E: two blocks, each with its own apex.
+TEST(SensorModel, aTableMayHaveALowerBlock) {
+  SensorOptions options = table({2, 0, -4, -2});
+  options.lowerElevations = {-10 * kDegree, -6 * kDegree, -8 * kDegree};
+  options.upperApex = 0.2;
+  options.lowerApex = 0.12;
+  const SensorModel sensor(options);
+  ASSERT_EQ(sensor.rows(), 7);
+  EXPECT_DOUBLE_EQ(sensor.beam(3).slope, std::tan(-4 * kDegree));
+  EXPECT_EQ(sensor.beam(3).offset, 0.2);
+  EXPECT_DOUBLE_EQ(sensor.beam(4).slope, std::tan(-6 * kDegree));
+  EXPECT_EQ(sensor.beam(4).offset, 0.12);
+  expectOwnRows(sensor, {3, 12, 60});
+}
+
+TEST(SensorModel, uniformBeamsAreEvenlySpaced) {
+  const SensorModel sensor(uniform(5, 10, -30, 720));
+  ASSERT_EQ(sensor.rows(), 5);
+  for (int row = 0; row < 5; ++row)
+    EXPECT_NEAR(std::atan(sensor.beam(row).slope), (10 - 10 * row) * kDegree, 1e-12);
+  EXPECT_EQ(sensor.columns(), 720);
+  EXPECT_NEAR(sensor.columnAngle(), 0.5 * kDegree, 1e-12);
+  expectOwnRows(sensor, {1, 30});
+}
+
+TEST(SensorModel, spacingIsTheAngleToTheBeamAbove) {
+  const SensorModel sensor(table({10, 7, 2, -5}));
+  EXPECT_NEAR(sensor.spacingAbove(0), 3 * kDegree, 1e-12);  // repeats its lower gap
+  EXPECT_NEAR(sensor.spacingAbove(1), 3 * kDegree, 1e-12);
+  EXPECT_NEAR(sensor.spacingAbove(2), 5 * kDegree, 1e-12);
+  EXPECT_NEAR(sensor.spacingAbove(3), 7 * kDegree, 1e-12);
+}
+
+TEST(SensorModel, columnsOfAPresetCanBeSet) {
+  SensorOptions options = preset("os1_64");
+  EXPECT_EQ(SensorModel(options).columns(), 1024);
+  options.columns = 2048;
+  EXPECT_EQ(SensorModel(options).columns(), 2048);
+}
+
+TEST(SensorOptions, defaultsAreAccepted) {
+  EXPECT_EQ(refusal({}, [](SensorOptions&) {}), "accepted");
+  EXPECT_EQ(refusal(uniform(2, 1, -1), [](SensorOptions&) {}), "accepted");
+  EXPECT_EQ(refusal(table({1, -1}), [](SensorOptions&) {}), "accepted");
+}
+TEST(SensorOptions, refusesAnUnknownModelAndNamesTheKnown) {
+  EXPECT_REFUSED(
+      {}, { o.model = "hdl128"; }, "model = hdl128");
+  EXPECT_REFUSED(
+      {}, { o.model = "hdl128"; }, "vlp16");
+  EXPECT_THROW(SensorModel{preset("")}, Error);
+}
+TEST(SensorOptions, refusesATableOfOneBeam) {
+  EXPECT_REFUSED(table({1}), {}, "elevations_deg");
+}
+TEST(SensorOptions, refusesAUniformFanOfTooFewOrTooManyBeams) {
+  EXPECT_REFUSED(uniform(1, 1, -1), {}, "rows = 1");
+  EXPECT_REFUSED(uniform(1025, 1, -1), {}, "rows = 1025");
+}
+TEST(SensorOptions, refusesAUniformFanTheWrongWayRound) {
+  EXPECT_REFUSED(uniform(16, -1, -1), {}, "fov_up_deg");
+  EXPECT_REFUSED(
+      uniform(16, 1, -1), { o.fovDown = std::nan(""); }, "fov_up_deg");
+}
+TEST(SensorOptions, refusesATurnWithoutColumns) {
+  EXPECT_REFUSED(uniform(16, 1, -1, 89), {}, "columns = 89");
+  EXPECT_REFUSED(
+      table({1, -1}), { o.columns = 0; }, "columns = 0");
+}
+TEST(SensorOptions, refusesElevationsThatHaveNoTangent) {
+  EXPECT_REFUSED(table({1, 90}), {}, "elevations_deg");
+  EXPECT_REFUSED(
+      table({1, -1}), { o.elevations[1] = std::nan(""); }, "elevations_deg");
+  EXPECT_REFUSED(uniform(16, 90, -1), {}, "fov_up_deg");
+  EXPECT_REFUSED(uniform(16, 1, -90), {}, "fov_down_deg");
+  EXPECT_EQ(refusal({}, [](SensorOptions& o) { o.elevations = {90}; }), "accepted");  // not used
+}
+TEST(SensorOptions, refusesALowerBlockThatIsNone) {
+  EXPECT_REFUSED(
+      table({1, -1}), { o.lowerElevations = {-0.2}; }, "lower_elevations_deg");
+  EXPECT_REFUSED(
+      table({1, -1}), { o.lowerElevations.assign(2, 0.0); }, "below all");
+  EXPECT_REFUSED(
+      table({1, -1}), { o.lowerApex = std::nan(""); }, "apex_m");
+}
+TEST(SensorOptions, refusesTooFewColumnsForAnyModel) {
+  EXPECT_REFUSED(
+      {}, { o.columns = -5; }, "columns = -5");
+  EXPECT_REFUSED(
+      {}, { o.columns = 89; }, "at least 90");
+}
+TEST(SensorOptions, refusesPlacesThatAreNoNumbers) {
+  EXPECT_REFUSED(
+      {}, { o.height = std::nan(""); }, "height_m");
+  EXPECT_REFUSED(
+      {}, { o.originX = std::nan(""); }, "origin");
+  EXPECT_REFUSED(
+      {}, { o.originY = std::numeric_limits<double>::infinity(); }, "origin");
+  EXPECT_REFUSED(
+      {}, { o.originZ = std::nan(""); }, "origin");
+}
+TEST(SensorOptions, refusesRangesTheWrongWayRound) {
+  EXPECT_REFUSED(
+      {}, { o.maxRange = o.minRange; }, "max_range_m");
+  EXPECT_REFUSED(
+      {}, { o.minRange = -0.1; }, "min_range_m");
+  EXPECT_REFUSED(
+      {}, { o.minRange = std::nan(""); }, "min_range_m");
+}
+
+}  // namespace polemcl::test_sensor_model

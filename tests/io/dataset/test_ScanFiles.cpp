@@ -1,0 +1,107 @@
+#include "io/dataset/ScanFiles.h"
+#include "support/IoFiles.h"
+
+namespace polemcl::test_scan_files {
+
+using namespace polemcl;
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+
+using ScanFilesTest = FolderTest;
+
+TEST_F(ScanFilesTest, listsInOrderOfNames) {
+  for (const char* name : {"d/b.bin", "d/a.bin", "d/c.txt", "d/.a.bin", "d/B.bin", "d/e.bin/f"}) {
+    write(name, "");
+  }
+  const auto files = listFiles(path("d"), ".bin");
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files[0].filename(), "B.bin");
+  EXPECT_EQ(files[1].filename(), "a.bin");
+  EXPECT_EQ(files[2].filename(), "b.bin");
+  EXPECT_TRUE(files[0].is_absolute());
+}
+
+TEST_F(ScanFilesTest, refusesAMissingOrUselessFolder) {
+  expectIn(messageOf([&] { listFiles(path("no"), ".bin"); }), path("no").string(),
+           "No such file or directory");
+  expectIn(messageOf([&] { listFiles(write("f", ""), ".bin"); }), "Not a directory");
+  expectIn(messageOf([&] { listFiles(m_folder, ".bin"); }), m_folder.string(), "no *.bin");
+}
+
+TEST_F(ScanFilesTest, aLinkToNothingIsThere) {
+  EXPECT_FALSE(isThere(path("f")));
+  EXPECT_FALSE(isThere(path("no/f")));
+  EXPECT_TRUE(isThere(write("f", "")));
+  fs::create_symlink(path("gone"), path("link"));
+  EXPECT_TRUE(isThere(path("link")));
+}
+
+TEST_F(ScanFilesTest, fileNumber) {
+  EXPECT_EQ(fileNumber("x/000012.bin"), 12u);
+  EXPECT_EQ(fileNumber("1326652795280148.bin"), 1326652795280148u);
+  EXPECT_EQ(fileNumber("1561000444390857630.bin"), 1561000444390857630u);
+  for (const char* name : {"a.bin", "12a.bin", "-1.bin", ".bin", "12345678901234567890.bin"}) {
+    EXPECT_FALSE(fileNumber(name)) << name;
+  }
+}
+
+TEST_F(ScanFilesTest, refusesNamesThatAreNoNumbers) {
+  EXPECT_EQ(fileNumbers({"0.bin", "2.bin"}), (std::vector<std::uint64_t>{0, 2}));
+  expectIn(messageOf([] { fileNumbers({"0.bin", "x.bin"}); }), "x.bin", "000012.bin");
+}
+
+TEST_F(ScanFilesTest, refusesANumberThatIsThereTwice) {
+  expectIn(messageOf([] { fileNumbers({"01.bin", "1.bin"}); }), "1.bin", "twice");
+}
+
+TEST_F(ScanFilesTest, refusesNamesThatDoNotSortAsNumbers) {
+  requirePaddedNames({"08.bin", "09.bin", "10.bin", "a.bin"});
+  expectIn(messageOf([] {
+             requirePaddedNames({"1.bin", "10.bin", "2.bin"});
+           }),
+           "2.bin", "10.bin", "same number of digits");
+}
+
+TEST_F(ScanFilesTest, ranges) {
+  EXPECT_EQ(ranges({}), "");
+  EXPECT_EQ(ranges({5}), "5");
+  EXPECT_EQ(ranges({177, 178, 179, 180, 200, 202, 203}), "177-180, 200, 202-203");
+  EXPECT_EQ(ranges({1, 3, 5, 6}, 2), "1, 3, …");
+  EXPECT_EQ(ranges({1, 3, 5, 6}, 3), "1, 3, 5-6");
+}
+
+TEST_F(ScanFilesTest, notesEmptyScans) {
+  std::vector<std::string> notes;
+  checkScanSizes({write("0.bin", std::string(32, 'x'))}, notes);
+  EXPECT_TRUE(notes.empty());
+  checkScanSizes({path("0.bin"), write("1.bin", ""), write("2.bin", "")}, notes);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "2 of 3 scans are empty, the first is 1.bin");
+}
+
+TEST_F(ScanFilesTest, refusesAScanCutShort) {
+  std::vector<std::string> notes;
+  const fs::path file = write("1.bin", std::string(33, 'x'));
+  expectIn(messageOf([&] { checkScanSizes({path("no.bin")}, notes); }), path("no.bin").string(),
+           "No such file or directory");
+  expectIn(messageOf([&] {
+             checkScanSizes({write("0.bin", ""), file}, notes);
+           }),
+           file.string(), "cut short", "33 bytes");
+}
+
+TEST_F(ScanFilesTest, refusesWhenAllScansAreEmpty) {
+  std::vector<std::string> notes;
+  expectIn(messageOf([&] { checkScanSizes({write("0.bin", "")}, notes); }), m_folder.string(),
+           "no usable scan");
+}
+
+TEST_F(ScanFilesTest, refusesTimesThatDoNotIncrease) {
+  requireIncreasing("t", {{1, {-1}}, {2, {0}}, {5, {0.5}}});
+  expectIn(messageOf([] {
+             requireIncreasing("t", {{1, {0}}, {4, {0}}});
+           }),
+           "t:4: ", "0 is not after 0");
+}
+
+}  // namespace polemcl::test_scan_files

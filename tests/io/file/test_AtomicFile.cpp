@@ -1,0 +1,160 @@
+#include <sys/stat.h>
+
+#include "io/file/AtomicFile.h"
+#include "support/IoFiles.h"
+
+namespace polemcl::test_atomic_file {
+
+using namespace polemcl;
+using namespace polemcl::io::test;
+using polemcl::io::AtomicFile;
+
+using AtomicFileTest = FolderTest;
+
+namespace {
+
+std::size_t entries(const fs::path& folder) {
+  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+}
+
+}  // namespace
+
+TEST_F(AtomicFileTest, appearsOnlyWhenCommitted) {
+  AtomicFile file(path("out.bin"));
+  file.stream() << "new\r\n";
+  file.stream().flush();
+  EXPECT_FALSE(fs::exists(path("out.bin")));
+  EXPECT_EQ(file.temporaryPath().parent_path(), m_folder);
+  EXPECT_EQ(file.temporaryPath().extension(), ".tmp");
+  file.commit();
+  EXPECT_EQ(read(path("out.bin")), "new\r\n");
+  EXPECT_EQ(entries(m_folder), 1u);
+}
+
+TEST_F(AtomicFileTest, replacesWhatWasThere) {
+  write("out", "a longer text of before");
+  AtomicFile file(path("out"));
+  file.stream() << "new";
+  EXPECT_EQ(read(path("out")), "a longer text of before");
+  file.commit();
+  EXPECT_EQ(read(path("out")), "new");
+}
+
+TEST_F(AtomicFileTest, leavesNothingBehindWhenNotCommitted) {
+  write("out", "before");
+  {
+    AtomicFile file(path("out"));
+    file.stream() << "half";
+  }
+  EXPECT_EQ(read(path("out")), "before");
+  EXPECT_EQ(entries(m_folder), 1u);
+}
+
+TEST_F(AtomicFileTest, twoWritersOfOneNameDoNotMix) {
+  AtomicFile first(path("out")), second(path("out"));
+  EXPECT_NE(first.temporaryPath(), second.temporaryPath());
+  first.stream() << "first";
+  second.stream() << "second";
+  second.commit();
+  first.commit();
+  EXPECT_EQ(read(path("out")), "first");
+  EXPECT_EQ(entries(m_folder), 1u);
+}
+
+TEST_F(AtomicFileTest, passesOverALeftoverTemporary) {
+  // The next name is that of the last one with its number plus one.
+  fs::path next;
+  {
+    AtomicFile probe(path("out"));
+    const std::string name = probe.temporaryPath().string();
+    const auto dash = name.rfind('-');
+    const int number = std::stoi(name.substr(dash + 1));
+    next = name.substr(0, dash + 1) + std::to_string(number + 1) + ".tmp";
+  }
+  std::ofstream(next) << "of another";
+  AtomicFile file(path("out"));
+  EXPECT_NE(file.temporaryPath(), next);
+  EXPECT_EQ(read(next), "of another");
+}
+
+TEST_F(AtomicFileTest, keepsALinkAndReplacesWhatItNames) {
+  write("real/out", "before");
+  fs::create_symlink(path("real/out"), path("link"));
+  AtomicFile file(path("link"));
+  file.stream() << "new";
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  EXPECT_EQ(read(path("real/out")), "new");
+  EXPECT_EQ(entries(path("real")), 1u);
+}
+
+TEST_F(AtomicFileTest, permissionsFollowTheUmask) {
+  const mode_t before = ::umask(027);
+  AtomicFile file(path("out"));
+  file.commit();
+  ::umask(before);
+  struct stat status {};
+  ASSERT_EQ(::stat(path("out").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
+}
+
+TEST_F(AtomicFileTest, otherWritersMayUseTheTemporary) {
+  AtomicFile file(path("out"));
+  std::ofstream(file.temporaryPath(), std::ios::binary) << "by another";
+  file.commit();
+  EXPECT_EQ(read(path("out")), "by another");
+}
+
+TEST_F(AtomicFileTest, refusesAMissingFolder) {
+  expectIn(messageOf([&] { AtomicFile file(path("no/out")); }), path("no/out").string(),
+           "No such file or directory");
+}
+
+TEST_F(AtomicFileTest, refusesANameThatIsTooLong) {
+  expectIn(messageOf([&] { AtomicFile file(path(std::string(300, 'x'))); }), "File name too long");
+}
+
+TEST_F(AtomicFileTest, refusesAFolderAsFile) {
+  expectIn(messageOf([&] { AtomicFile file(m_folder); }), m_folder.string(), "folder");
+  EXPECT_EQ(entries(m_folder), 0u);
+}
+
+TEST_F(AtomicFileTest, refusesANameThatEndsInASlash) {
+  expectIn(messageOf([&] { AtomicFile file(path("no") / ""); }), "names no file");
+}
+
+TEST_F(AtomicFileTest, refusesDevicesInsteadOfReplacingThem) {
+  expectIn(messageOf([&] { AtomicFile file("/dev/null"); }), "/dev/null", "device");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFileTest, refusesASecondCommit) {
+  AtomicFile file(path("out"));
+  file.commit();
+  expectIn(messageOf([&] { file.commit(); }), path("out").string(), "commit");
+}
+
+TEST_F(AtomicFileTest, fullDiskIsAnErrorAndChangesNothing) {
+  write("out", "before");
+  {
+    AtomicFile file(path("out"));
+    const FileSizeLimit limit(4096);
+    file.stream() << std::string(100000, 'x');
+    expectIn(messageOf([&] { file.commit(); }), path("out").string(), "nothing was changed");
+  }
+  EXPECT_EQ(read(path("out")), "before");
+  EXPECT_EQ(entries(m_folder), 1u);
+}
+
+TEST_F(AtomicFileTest, fullDiskIsNoticedWhenOnlyTheLastBytesDoNotFit) {
+  {
+    AtomicFile file(path("out"));
+    const FileSizeLimit limit(2);
+    file.stream() << "abc";  // still in the buffer
+    EXPECT_TRUE(file.stream().good());
+    expectIn(messageOf([&] { file.commit(); }), "File too large");
+  }
+  EXPECT_EQ(entries(m_folder), 0u);
+}
+
+}  // namespace polemcl::test_atomic_file

@@ -1,0 +1,75 @@
+#include "io/file/Bytes.h"
+#include "support/IoFiles.h"
+
+namespace polemcl::test_bytes {
+
+using namespace polemcl;
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+
+using BytesTest = FolderTest;
+
+TEST_F(BytesTest, loadsLittleEndianByHand) {
+  EXPECT_EQ(loadLittleEndian<std::uint16_t>("\x02\x01"), 0x0102);
+  EXPECT_EQ(loadLittleEndian<std::uint32_t>("\x04\x03\x02\xf1"), 0xf1020304u);
+  EXPECT_EQ(loadLittleEndian<std::uint64_t>("\x08\x07\x06\x05\x04\x03\x02\x81"),
+            0x8102030405060708u);
+  // IEEE 754: 1.5 is 3fc00000 and 3ff8000000000000.
+  EXPECT_EQ(loadLittleEndian<float>(std::string("\0\0\xc0\x3f", 4).data()), 1.5f);
+  EXPECT_EQ(loadLittleEndian<double>(std::string("\0\0\0\0\0\0\xf8\xbf", 8).data()), -1.5);
+}
+
+TEST_F(BytesTest, writesLittleEndianByHand) {
+  ByteWriter writer;
+  writer.put(std::uint32_t{0x01020304});
+  writer.put(1.5);
+  writer.putText("ab");
+  EXPECT_EQ(writer.bytes(), std::string("\x04\x03\x02\x01\0\0\0\0\0\0\xf8\x3f\x02\0\0\0ab", 18));
+}
+
+TEST_F(BytesTest, readsInOrderAndCountsWhatIsLeft) {
+  ByteWriter writer;
+  writer.put(std::uint64_t{7});
+  writer.putText("pole");
+  ByteReader reader(writer.bytes(), "");
+  EXPECT_EQ(reader.get<std::uint64_t>(), 7u);
+  EXPECT_EQ(reader.remaining(), 8u);
+  EXPECT_EQ(reader.getText(), "pole");
+  EXPECT_EQ(reader.remaining(), 0u);
+}
+
+TEST_F(BytesTest, refusesToReadBeyondTheEnd) {
+  ByteReader reader("abc", "file: ");
+  expectIn(messageOf([&] { reader.get<std::uint32_t>(); }), "file: ", "4 bytes expected", "3 left");
+}
+
+TEST_F(BytesTest, refusesATextLongerThanWhatIsLeft) {
+  ByteWriter writer;
+  writer.put(std::uint32_t{0xffffffff});
+  writer.putRaw("abc");
+  ByteReader reader(writer.bytes(), "");
+  expectIn(messageOf([&] { reader.getText(); }), "4294967295");
+}
+
+TEST_F(BytesTest, readsWholeFiles) {
+  const std::string content("\0a\r\n\xff", 5);
+  EXPECT_EQ(readBytes(write("f", content)), content);
+  EXPECT_EQ(readBytes(write("empty", "")), "");
+  // Files that do not tell their size.
+  EXPECT_NE(readBytes("/proc/self/status").find("Name:"), std::string::npos);
+}
+
+TEST_F(BytesTest, refusesAMissingFile) {
+  expectIn(messageOf([&] { readBytes(path("no")); }), path("no").string(),
+           "No such file or directory");
+}
+
+TEST_F(BytesTest, refusesANameThatIsTooLong) {
+  expectIn(messageOf([&] { readBytes(path(std::string(300, 'x'))); }), "File name too long");
+}
+
+TEST_F(BytesTest, refusesAFolder) {
+  expectIn(messageOf([&] { readBytes(m_folder); }), "folder");
+}
+
+}  // namespace polemcl::test_bytes

@@ -1,0 +1,51 @@
+#include "io/file/GrowingFile.h"
+#include "support/IoFiles.h"
+
+namespace polemcl::test_growing_file {
+
+using namespace polemcl;
+using namespace polemcl::io::test;
+using polemcl::io::GrowingFile;
+
+using GrowingFileTest = FolderTest;
+
+TEST_F(GrowingFileTest, holdsAllThatWasAdded) {
+  write("f", "what was there before");
+  GrowingFile file(path("f"));
+  EXPECT_EQ(read(path("f")), "");
+  std::string all;
+  for (int i = 0; i < 3000; ++i) {
+    const std::string row = std::to_string(i * 7919) + "\n";
+    file.add(row);
+    all += row;
+    // Nothing but the last piece waits.
+    ASSERT_GE(fs::file_size(path("f")) + GrowingFile::piece, all.size());
+  }
+  file.flush();
+  file.flush();
+  EXPECT_EQ(read(path("f")), all);
+}
+
+TEST_F(GrowingFileTest, anyNumberGrowAtATime) {
+  std::vector<GrowingFile> files;
+  for (int i = 0; i < 3000; ++i) files.emplace_back(path(std::to_string(i)));
+  for (auto& file : files) file.add("row\n"), file.flush();
+  EXPECT_EQ(read(path("2999")), "row\n");
+}
+
+TEST_F(GrowingFileTest, refusesWhatCannotBeWritten) {
+  expectIn(messageOf([&] { GrowingFile(path("none/f")); }), path("none/f").string());
+  GrowingFile file(path("f"));
+  fs::remove(path("f"));
+  fs::create_directory(path("f"));
+  file.add("row\n");
+  expectIn(messageOf([&] { file.flush(); }), "cannot write " + path("f").string());
+}
+
+TEST_F(GrowingFileTest, refusesWhenTheDiskIsFull) {
+  GrowingFile file(path("f"));
+  const FileSizeLimit limit(GrowingFile::piece / 2);
+  expectIn(messageOf([&] { file.add(std::string(GrowingFile::piece, 'a')); }), "cannot write");
+}
+
+}  // namespace polemcl::test_growing_file

@@ -1,0 +1,131 @@
+#include <zlib.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/file/TextFile.h"
+#include "support/IoFiles.h"
+
+namespace polemcl::test_text_file {
+
+using namespace polemcl;
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+
+using TextFileTest = FolderTest;
+
+namespace {
+
+void writeGzip(const fs::path& file, const std::string& text) {
+  gzFile stream = gzopen(file.c_str(), "wb");
+  ASSERT_NE(stream, nullptr);
+  ASSERT_EQ(gzwrite(stream, text.data(), text.size()), static_cast<int>(text.size()));
+  ASSERT_EQ(gzclose(stream), Z_OK);
+}
+
+}  // namespace
+
+TEST_F(TextFileTest, linesOfAnyEnd) {
+  const auto lines = readLines(write("f",
+                                     "\xEF\xBB\xBF"
+                                     "a\r\n\n b \nlast"));
+  EXPECT_EQ(lines, (std::vector<std::string>{"a", "", " b ", "last"}));
+  EXPECT_TRUE(readLines(write("empty", "")).empty());
+}
+
+TEST_F(TextFileTest, linesOfGzip) {
+  std::string text;
+  for (int i = 0; i < 20000; ++i) text += std::to_string(i) + "\n";
+  writeGzip(path("f.gz"), text);
+  const auto lines = readLines(path("f.gz"));
+  ASSERT_EQ(lines.size(), 20000u);
+  EXPECT_EQ(lines[19999], "19999");
+}
+
+// Blocks of the reader end inside lines, between the two bytes of a line end, and at its end.
+TEST_F(TextFileTest, linesAcrossBlocks) {
+  std::vector<std::string> lines;
+  for (const std::size_t length : {65535u, 1u, 65533u, 0u, 65536u, 200000u, 7u})
+    lines.emplace_back(length, static_cast<char>('a' + lines.size()));
+  for (const std::string end : {"\n", "\r\n"}) {
+    std::string text;
+    for (const auto& line : lines) text += line + end;
+    EXPECT_EQ(readLines(write("f", text)), lines);
+    text.resize(text.size() - end.size());
+    EXPECT_EQ(readLines(write("f", text)), lines);
+  }
+}
+
+TEST_F(TextFileTest, refusesGzipCutShort) {
+  std::string text;
+  for (int i = 0; i < 20000; ++i) text += std::to_string(i * 7919L) + "\n";
+  writeGzip(path("f.gz"), text);
+  fs::resize_file(path("f.gz"), fs::file_size(path("f.gz")) / 2);
+  expectIn(messageOf([&] { readLines(path("f.gz")); }), path("f.gz").string(), "cut short");
+}
+
+TEST_F(TextFileTest, refusesDamagedGzip) {
+  writeGzip(path("f.gz"), std::string(1000, 'a') + std::string(1000, 'b'));
+  std::string bytes = read(path("f.gz"));
+  bytes[bytes.size() - 6] ^= 1;  // in the checksum
+  write("f.gz", bytes);
+  expectIn(messageOf([&] { readLines(path("f.gz")); }), path("f.gz").string());
+}
+
+TEST_F(TextFileTest, refusesMissingFilesAndFolders) {
+  expectIn(messageOf([&] { readLines(path("no")); }), path("no").string(),
+           "No such file or directory");
+  expectIn(messageOf([&] { readLines(m_folder); }), m_folder.string(), "folder");
+  expectIn(messageOf([&] { readLines(path(std::string(300, 'x'))); }), "File name too long");
+}
+
+TEST_F(TextFileTest, rowsKeepTheirLineNumbers) {
+  const auto rows =
+      readNumberRows(write("f", "# head\n1 -2.5\n\n\t+3e2   .5 # tail\r\n"), 2, "a b");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].line, 2u);
+  EXPECT_EQ(rows[0].values, (std::vector<double>{1, -2.5}));
+  EXPECT_EQ(rows[1].line, 4u);
+  EXPECT_EQ(rows[1].values, (std::vector<double>{300, 0.5}));
+}
+
+TEST_F(TextFileTest, refusesAnotherCountOfColumns) {
+  const fs::path file = write("f", "1 2\n1 2 3\n");
+  expectIn(messageOf([&] { readNumberRows(file, 2, "a b"); }), file.string() + ":2: ", "3 numbers",
+           "2 expected", "a b");
+}
+
+TEST_F(TextFileTest, refusesWhatIsNoNumber) {
+  for (const char* word :
+       {"x", "1,5", "0x10", "1.5m", "+-1", "--1", "nan", "inf", "-Infinity", "1e999"}) {
+    const fs::path file = write("f", std::string("1\n") + word + "\n");
+    expectIn(messageOf([&] { readNumberRows(file, 1, "a"); }), file.string() + ":2: ", word);
+  }
+}
+
+TEST_F(TextFileTest, parseNumber) {
+  EXPECT_EQ(parseNumber(" 1.5\t"), 1.5);
+  EXPECT_EQ(parseNumber("+2"), 2.0);
+  EXPECT_EQ(parseNumber("1e-3"), 1e-3);
+  EXPECT_TRUE(std::isnan(*parseNumber("nan")));
+  EXPECT_EQ(parseNumber("-inf"), -std::numeric_limits<double>::infinity());
+  for (const char* text : {"", " ", "+", "1 2", "1.2.3", "e5"})
+    EXPECT_FALSE(parseNumber(text)) << text;
+}
+
+TEST_F(TextFileTest, trimmed) {
+  EXPECT_EQ(trimmed(" \ta b\r "), "a b");
+  EXPECT_EQ(trimmed(" \t\r"), "");
+}
+
+TEST_F(TextFileTest, formats) {
+  EXPECT_EQ(fixed(1.5, 6), "1.500000");
+  EXPECT_EQ(fixed(-0.0000004, 6), "-0.000000");
+  EXPECT_EQ(fixed(1317042145.964389324, 6), "1317042145.964389");
+  EXPECT_EQ(fixed(std::numeric_limits<double>::max(), 9).size(), 309u + 10u);
+  EXPECT_EQ(significant(0.01, 9), "0.01");
+  EXPECT_EQ(significant(1e-7, 9), "1e-07");
+  EXPECT_EQ(significant(2.0 / 3, 4), "0.6667");
+}
+
+}  // namespace polemcl::test_text_file

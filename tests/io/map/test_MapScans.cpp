@@ -1,0 +1,134 @@
+#include <random>
+
+#include "io/map/MapScans.h"
+#include "io/map/PoleMapFile.h"
+#include "support/IoFiles.h"
+
+namespace polemcl::test_map_scans {
+
+using namespace polemcl;
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+
+namespace {
+
+class MapScans : public FolderTest {};
+
+/// Numbers without any pattern, each to be kept to the last bit.
+AddedSessions sample() {
+  std::mt19937 random(7);
+  const auto number = [&] { return static_cast<double>(random()) / 3e8 - 7; };
+  AddedSessions added;
+  added.unvisited = number();
+  for (const char* name : {"one.rawlog", "", "zwei.rawlog"}) {
+    AddedSession& session = added.sessions.emplace_back();
+    session.name = name;
+    for (int i = 0; i < 40 && !session.name.empty(); ++i) {
+      const bool used = random() % 3 > 0;
+      SessionScan scan;
+      scan.time = 1e9 + number();
+      scan.pose_map_robot = {number(), number(), number()};
+      if (used) {
+        scan.pose_robot_sensor = {number(), number(), number()};
+        for (unsigned k = random() % 4; k > 0; --k) {
+          PoleDetection pole{number(), number(), number(), number(), number(), number(), {}, 0};
+          pole.covariance << number(), number(), number(), number();
+          pole.points = static_cast<std::uint32_t>(random());
+          scan.poles_robot.push_back(pole);
+        }
+        for (unsigned k = random() % 3 * 128; k > 0; --k)
+          scan.freeRange.push_back(0.5f * static_cast<float>(random() % 100));
+      }
+      session.scans.push_back(scan);
+      session.used.push_back(used);
+    }
+  }
+  return added;
+}
+
+void expectSame(const PoleDetection& a, const PoleDetection& b) {
+  EXPECT_EQ(a.x, b.x);
+  EXPECT_EQ(a.y, b.y);
+  EXPECT_EQ(a.radius, b.radius);
+  EXPECT_EQ(a.bottom, b.bottom);
+  EXPECT_EQ(a.top, b.top);
+  EXPECT_EQ(a.confidence, b.confidence);
+  EXPECT_EQ(a.covariance, b.covariance);
+  EXPECT_EQ(a.points, b.points);
+}
+
+void expectSame(const Pose2D& a, const Pose2D& b) {
+  EXPECT_EQ(a.x, b.x);
+  EXPECT_EQ(a.y, b.y);
+  EXPECT_EQ(a.yaw, b.yaw);
+}
+
+void expectSame(const AddedSessions& a, const AddedSessions& b) {
+  EXPECT_EQ(a.unvisited, b.unvisited);
+  ASSERT_EQ(a.sessions.size(), b.sessions.size());
+  for (std::size_t s = 0; s < a.sessions.size(); ++s) {
+    const AddedSession &one = a.sessions[s], &two = b.sessions[s];
+    EXPECT_EQ(one.name, two.name);
+    EXPECT_EQ(one.used, two.used);
+    ASSERT_EQ(one.scans.size(), two.scans.size());
+    for (std::size_t i = 0; i < one.scans.size(); ++i) {
+      EXPECT_EQ(one.scans[i].time, two.scans[i].time);
+      expectSame(one.scans[i].pose_map_robot, two.scans[i].pose_map_robot);
+      expectSame(one.scans[i].pose_robot_sensor, two.scans[i].pose_robot_sensor);
+      EXPECT_EQ(one.scans[i].freeRange, two.scans[i].freeRange);
+      ASSERT_EQ(one.scans[i].poles_robot.size(), two.scans[i].poles_robot.size());
+      for (std::size_t k = 0; k < one.scans[i].poles_robot.size(); ++k)
+        expectSame(one.scans[i].poles_robot[k], two.scans[i].poles_robot[k]);
+    }
+  }
+}
+
+PoleMapData onePole() {
+  PoleMapData data;
+  MapPole pole;
+  pole.x = 3;
+  data.poles.push_back(pole);
+  data.info["a"] = "b";
+  return data;
+}
+
+}  // namespace
+
+TEST_F(MapScans, comeBackToTheLastBit) {
+  const AddedSessions before = sample();
+  expectSame(unpackMapScans(packMapScans(before), "x: "), before);
+  EXPECT_EQ(packMapScans(before), packMapScans(sample()));
+}
+
+TEST_F(MapScans, travelInTheMapBesideItsPoles) {
+  const fs::path with = path("with.polemap"), without = path("without.polemap");
+  const AddedSessions scans = sample();
+  writePoleMap(with, onePole(), &scans);
+  writePoleMap(without, onePole());
+  EXPECT_FALSE(readMapScans(without));
+  const auto found = readMapScans(with);
+  ASSERT_TRUE(found);
+  expectSame(*found, scans);
+  EXPECT_EQ(readPoleMap(with).poles.size(), 1u);
+  EXPECT_EQ(readPoleMap(with).info, onePole().info);
+}
+
+TEST_F(MapScans, refuseToBeDamaged) {
+  const std::string good = packMapScans(sample());
+  EXPECT_THROW(unpackMapScans("", "x: "), Error);
+  for (std::size_t size = 0; size < good.size(); size += 97)
+    EXPECT_THROW(unpackMapScans(good.substr(0, size), "x: "), Error) << size;
+  std::mt19937 random(1);
+  for (int i = 0; i < 300; ++i) {
+    std::string bad = good;
+    bad[random() % bad.size()] ^= static_cast<char>(1 + random() % 255);
+    try {
+      unpackMapScans(bad, "x: ");
+      FAIL() << "damage was not noticed";  // zlib's own checksum, or the size
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).rfind("x: ", 0), 0u) << error.what();
+    }
+  }
+}
+
+}  // namespace polemcl::test_map_scans

@@ -1,0 +1,174 @@
+#include <cmath>
+
+#include "io/file/Npz.h"
+#include "io/map/PoleMapFile.h"
+#include "io/map/PolePositions.h"
+#include "support/IoFiles.h"
+#include "support/NumpyFiles.h"
+
+namespace polemcl::test_pole_positions {
+
+using namespace polemcl;
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+
+namespace {
+
+using Positions = std::vector<Eigen::Vector2d>;
+
+class PolePositionsTest : public FolderTest {
+ protected:
+  std::string refusal(const std::string& name, const std::string& content) const {
+    const fs::path file = write(name, content);
+    return messageOf([&] { readPolePositions(file); });
+  }
+};
+
+}  // namespace
+
+TEST_F(PolePositionsTest, writesCsvByHand) {
+  MapPole p;
+  p.x = 1.5;
+  p.y = -2;
+  p.radius = 0.1;
+  p.bottom = 0.3;
+  p.top = 5;
+  p.confidence = 0.9;
+  p.covariance << 0.0004, -0.0001, -0.0001, 1e-7;
+  p.count = 12;
+  writePoleCsv(path("m.csv"), {p});
+  EXPECT_EQ(read(path("m.csv")),
+            "x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy\n"
+            "1.500000,-2.000000,0.100000,12,0.3,5,0.9,0.0004,-0.0001,1e-07\n");
+  EXPECT_EQ(readPolePositions(path("m.csv")), (Positions{{1.5, -2}}));
+}
+
+TEST_F(PolePositionsTest, writesHistories) {
+  MapPole p;
+  p.x = 1;
+  p.radius = 0.1;
+  writePoleCsv(path("m.csv"), {p, p}, {{7, 3, 0.875, 951782400, 1331942400}, {0, 0, 0.5, 0, 0}});
+  const std::string text = read(path("m.csv"));
+  EXPECT_NE(text.find("cov_yy,existence,seen,missed,first_seen,last_seen\n"), std::string::npos);
+  EXPECT_NE(text.find(",0.875,7,3,2000-02-29,2012-03-17\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(",0.5,0,0,,\n"), std::string::npos) << text;
+  EXPECT_EQ(readPolePositions(path("m.csv")).size(), 2u);
+}
+
+TEST_F(PolePositionsTest, readsCsvByTheNamesOfItsColumns) {
+  EXPECT_EQ(readPolePositions(write("m.csv", "id,x,y,radius,top\n0,1,2,0.1,5\n1,-3e1,4.5,0.1,5\n")),
+            (Positions{{1, 2}, {-30, 4.5}}));
+  EXPECT_EQ(readPolePositions(write(
+                "M.CSV", "# made by hand\r\n \"y\" , name,x\r\n\r\n2,\"a, \"\"b\"\"\",1\r\n")),
+            (Positions{{1, 2}}));
+  EXPECT_TRUE(readPolePositions(write("m.csv", "x,y\n")).empty());
+}
+
+TEST_F(PolePositionsTest, readsPoleMaps) {
+  PoleMapData data;
+  data.poles.resize(2);
+  data.poles[1].x = 3;
+  data.poles[1].y = 4;
+  writePoleMap(path("m.polemap"), data);
+  EXPECT_EQ(readPolePositions(path("m.polemap")), (Positions{{0, 0}, {3, 4}}));
+}
+
+TEST_F(PolePositionsTest, readsArraysOfBothNames) {
+  for (const char* name : {"poleparams.npy", "polemeans.npy"}) {
+    const std::string three =
+        npy(dictionary("<f8", "False", "(2, 3)"), doubles({1, 2, 9, 3, 4, 9}));
+    EXPECT_EQ(readPolePositions(write("m.npz", zip({{"other.npy", "x"}, {name, three, true}}))),
+              (Positions{{1, 2}, {3, 4}}));
+  }
+  const std::string fortran = npy(dictionary("<f4", "True", "(2, 2)"), floats({1, 3, 2, 4}));
+  EXPECT_EQ(readPolePositions(write("m.npz", zip({{"polemeans.npy", fortran}}))),
+            (Positions{{1, 2}, {3, 4}}));
+}
+
+TEST_F(PolePositionsTest, refusesUnknownEndings) {
+  expectIn(refusal("m.txt", "1 2\n"), path("m.txt").string(), "'.txt'", ".polemap", ".csv", ".npz");
+  expectIn(refusal("m", ""), "unknown kind");
+}
+
+TEST_F(PolePositionsTest, refusesMissingFiles) {
+  for (const char* name : {"no.csv", "no.npz", "no.polemap"}) {
+    expectIn(messageOf([&] { readPolePositions(path(name)); }), name, "No such file or directory");
+  }
+}
+
+TEST_F(PolePositionsTest, refusesCsvWithoutNamedColumns) {
+  expectIn(refusal("m.csv", "1,2\n3,4\n"), path("m.csv").string() + ":1: ", "named x");
+  expectIn(refusal("m.csv", "x,z\n3,4\n"), "named y");
+  expectIn(refusal("m.csv", "x,y,x\n3,4,5\n"), "one column named x");
+  expectIn(refusal("m.csv", "# only this\n"), "empty");
+}
+
+TEST_F(PolePositionsTest, refusesCsvRowsOfOtherLength) {
+  expectIn(refusal("m.csv", "x,y\n1,2\n1,2,3\n"), path("m.csv").string() + ":3: ", "3 fields");
+  expectIn(refusal("m.csv", "x,y\n1\n"), path("m.csv").string() + ":2: ", "1 fields");
+}
+
+TEST_F(PolePositionsTest, refusesCsvThatIsNoNumber) {
+  for (const char* word : {"a", "", "nan", "inf", "1.2.3"}) {
+    expectIn(refusal("m.csv", std::string("x,y\n1,") + word + "\n"),
+             path("m.csv").string() + ":2: ", "no finite number");
+  }
+}
+
+TEST_F(PolePositionsTest, refusesCsvWithAnOpenQuote) {
+  expectIn(refusal("m.csv", "x,y,name\n1,2,\"a\n"), path("m.csv").string() + ":2: ", "quote");
+}
+
+TEST_F(PolePositionsTest, refusesNpzWithoutPoles) {
+  expectIn(refusal("m.npz", zip({{"walls.npy", ""}, {"mappos.npy", ""}})), path("m.npz").string(),
+           "poleparams or polemeans", "mappos, walls");
+  expectIn(refusal("m.npz", zip({})), "none");
+}
+
+TEST_F(PolePositionsTest, refusesArraysOfOtherShape) {
+  for (const auto& [shape, told] : std::vector<std::pair<std::string, std::string>>{
+           {"(4,)", "(4)"}, {"(4, 1)", "(4x1)"}, {"(2, 2, 1)", "(2x2x1)"}}) {
+    const std::string array = npy(dictionary("<f8", "False", shape), doubles({1, 2, 3, 4}));
+    expectIn(refusal("m.npz", zip({{"poleparams.npy", array}})), "poleparams", told);
+  }
+}
+
+TEST_F(PolePositionsTest, refusesArraysThatAreNotFinite) {
+  const std::string array =
+      npy(dictionary("<f8", "False", "(2, 2)"), doubles({1, 2, 3, std::nan("")}));
+  expectIn(refusal("m.npz", zip({{"poleparams.npy", array}})), "row 1", "not finite");
+}
+
+TEST_F(PolePositionsTest, readsThePublishedMaps) {
+  POLEMCL_NEEDS_DATA();
+  const fs::path folder = dataFolder() / "published";
+  const Positions truth = readPolePositions(folder / "nclt_truth.npz");
+  const Positions map = readPolePositions(folder / "nclt_map_8_0.50_0.08.npz");
+  ASSERT_EQ(truth.size(), 1205u);
+  ASSERT_EQ(map.size(), 1635u);
+  // By brute force: 859 map poles have a truth pole within 1 m, as the paper's figures imply.
+  int matches = 0;
+  for (const auto& pole : map) {
+    bool matched = false;
+    for (const auto& other : truth) matched = matched || (pole - other).norm() <= 1.0;
+    matches += matched;
+  }
+  EXPECT_EQ(matches, 859);
+  const NpzFile npz(folder / "nclt_map_8_0.50_0.08.npz");
+  EXPECT_EQ(npz.names(),
+            (std::vector<std::string>{"mapfactors", "mappos", "polemeans", "wallmeans"}));
+  EXPECT_EQ(npz.array("mappos").shape, (std::vector<std::size_t>{12999, 2}));
+  EXPECT_EQ(npz.array("wallmeans").shape, (std::vector<std::size_t>{0, 2}));
+}
+
+TEST_F(PolePositionsTest, readsTheTruthOfAllKittiSequences) {
+  POLEMCL_NEEDS_DATA();
+  const std::size_t expected[] = {598, 419, 783, 163, 205, 321, 236, 136, 846, 382, 194};
+  for (int i = 0; i < 11; ++i) {
+    const std::string name =
+        std::string("kitti_truth_") + (i < 10 ? "0" : "") + std::to_string(i) + ".npz";
+    EXPECT_EQ(readPolePositions(dataFolder() / "published" / name).size(), expected[i]) << name;
+  }
+}
+
+}  // namespace polemcl::test_pole_positions

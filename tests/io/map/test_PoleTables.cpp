@@ -1,0 +1,117 @@
+#include "io/map/PolePositions.h"
+#include "io/map/PoleTables.h"
+#include "support/IoFiles.h"
+#include "support/NumpyFiles.h"
+
+namespace polemcl::test_pole_tables {
+
+using namespace polemcl;
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+
+namespace {
+
+class PoleTables : public FolderTest {};
+
+PoleMapData sample() {
+  PoleMapData map;
+  for (int i = 0; i < 3; ++i) {
+    MapPole pole;
+    pole.x = 1.5 + i;
+    pole.y = -2.25 * i;
+    pole.radius = 0.125;
+    pole.bottom = 0.25;
+    pole.top = 4.5;
+    pole.confidence = 0.75;
+    pole.covariance << 0.04, 0.01, 0.01, 0.09;
+    pole.count = 17u + static_cast<unsigned>(i);
+    map.poles.push_back(pole);
+    map.histories.push_back({12, 3, 0.875, 1326585600, i == 1 ? 0.0 : 1331942400});
+  }
+  return map;
+}
+
+}  // namespace
+
+TEST_F(PoleTables, csvComesBack) {
+  const PoleMapData before = sample();
+  writePoleCsv(path("m.csv"), before.poles, before.histories);
+  const PoleMapData after = readPoleCsv(path("m.csv"));
+  ASSERT_EQ(after.poles.size(), 3u);
+  ASSERT_EQ(after.histories.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(after.poles[i].x, before.poles[i].x);
+    EXPECT_EQ(after.poles[i].y, before.poles[i].y);
+    EXPECT_EQ(after.poles[i].radius, 0.125);
+    EXPECT_EQ(after.poles[i].bottom, 0.25);
+    EXPECT_EQ(after.poles[i].top, 4.5);
+    EXPECT_EQ(after.poles[i].confidence, 0.75);
+    EXPECT_EQ(after.poles[i].covariance, before.poles[i].covariance);
+    EXPECT_EQ(after.poles[i].count, before.poles[i].count);
+    EXPECT_EQ(after.histories[i].existence, 0.875);
+    EXPECT_EQ(after.histories[i].seen, 12u);
+    EXPECT_EQ(after.histories[i].missed, 3u);
+    EXPECT_EQ(after.histories[i].firstSeen, 1326585600);  // midnights, as days go
+    EXPECT_EQ(after.histories[i].lastSeen, before.histories[i].lastSeen);
+  }
+}
+
+TEST_F(PoleTables, csvOfOthersNeedsOnlyPlaces) {
+  const auto map = readPoleCsv(write("o.csv", "name,y,x\nlamp,2,1\nsign,4,3\n"));
+  ASSERT_EQ(map.poles.size(), 2u);
+  EXPECT_EQ(map.poles[1].x, 3);
+  EXPECT_EQ(map.poles[1].y, 4);
+  EXPECT_EQ(map.poles[1].radius, 0.1);
+  EXPECT_EQ(map.poles[1].count, 1u);
+  EXPECT_TRUE(map.histories.empty());
+}
+
+TEST_F(PoleTables, csvRefusesWhatIsWrong) {
+  const auto refusal = [&](const std::string& text) {
+    return messageOf([&] { readPoleCsv(write("bad.csv", text)); });
+  };
+  expectIn(refusal("x,z\n1,2\n"), "bad.csv:1", "column named y");
+  expectIn(refusal("x,y,count\n1,2,3\n1,2,-3\n"), "bad.csv:3", "count");
+  expectIn(refusal("x,y,count\n1,2,0.5\n"), "bad.csv:2", "count");
+  expectIn(refusal("x,y,radius\n1,2,a\n"), "bad.csv:2", "'a'");
+  expectIn(refusal("x,y,existence,last_seen\n1,2,0.5,2020-13-01\n"), "bad.csv:2", "2020-13-01");
+  expectIn(refusal("x,y,radius,radius\n1,2,3,4\n"), "radius");
+}
+
+TEST_F(PoleTables, npzComesBack) {
+  const PoleMapData before = sample();
+  writePoleNpz(path("m.npz"), before.poles);
+  const auto places = readPolePositions(path("m.npz"));  // as pole-eval reads it
+  const PoleMapData after = readPoleNpz(path("m.npz"));
+  ASSERT_EQ(after.poles.size(), 3u);
+  ASSERT_EQ(places.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(after.poles[i].x, before.poles[i].x);
+    EXPECT_EQ(after.poles[i].y, before.poles[i].y);
+    EXPECT_EQ(after.poles[i].radius, 0.125);
+    EXPECT_EQ(places[i].x(), before.poles[i].x);
+  }
+}
+
+TEST_F(PoleTables, npzRadiiMustBeRadii) {
+  MapPole pole;
+  pole.radius = -1;
+  writePoleNpz(path("m.npz"), {MapPole(), pole});
+  expectIn(messageOf([&] { readPoleNpz(path("m.npz")); }), "m.npz", "row 1", "no radius");
+}
+
+TEST_F(PoleTables, readsTheAuthorsFiles) {
+  POLEMCL_NEEDS_DATA();
+  const auto map = readPoleNpz(dataFolder() / "published" / "nclt_map_8_0.50_0.08.npz");
+  ASSERT_EQ(map.poles.size(), 1635u);
+  for (const MapPole& pole : map.poles) {
+    EXPECT_GT(pole.radius, 0.01);
+    EXPECT_LT(pole.radius, 1);
+  }
+  // Its third column is no radius.
+  const auto truth = readPoleNpz(dataFolder() / "published" / "nclt_truth.npz");
+  ASSERT_EQ(truth.poles.size(), 1205u);
+  EXPECT_EQ(truth.poles.front().radius, 0.1);
+}
+
+}  // namespace polemcl::test_pole_tables

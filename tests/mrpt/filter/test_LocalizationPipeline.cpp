@@ -1,0 +1,358 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mrpt/filter/LocalizationPipeline.h"
+#include "support/PoleCity.h"
+
+namespace polemcl::test_localization_pipeline {
+
+using namespace polemcl;
+
+namespace {
+
+/// A city and drives through it, as the chain takes them: a frame a metre.
+class PoleLocalizationTest : public testing::Test {
+ protected:
+  explicit PoleLocalizationTest(const tests::CityOptions& cityOptions = cityOf(31))
+      : city(cityOptions) {
+    auto poles = std::make_shared<CPoleMap>();
+    poles->likelihoodOptions.sigma = 0.05;
+    poles->likelihoodOptions.weighted = true;
+    poles->setPoles(city.map());
+    map = std::make_unique<LocalizationMap>(poles, options.global);
+  }
+  static tests::CityOptions cityOf(std::uint64_t seed) {
+    tests::CityOptions options;
+    options.seed = seed;
+    return options;
+  }
+  void driveFrom(std::uint64_t seed, double metres) {
+    sim::Random random(seed);
+    const auto drive =
+        tests::drive(city.surroundings(), city.randomWay(random, metres), {}, random);
+    for (const tests::Frame& seen : drive) {
+      PoleFrame frame;
+      frame.time = 1e9 + 0.2 * static_cast<double>(frames.size());
+      io::PlanarMotion motion;
+      motion.mean = seen.motion;
+      motion.covariance = Eigen::Vector3d(4e-4, 1e-6, 1e-6).asDiagonal();
+      frame.motion = motion;
+      frame.poles_robot = seen.poles_robot;
+      frames.push_back(frame);
+      truth.push_back(seen.truth);
+    }
+  }
+  PoleLocalization chain(std::uint32_t seed = 1) const { return {*map, options, seed}; }
+  StartOptions atTruth(std::size_t i = 0) const {
+    StartOptions start;
+    start.pose = truth[i];
+    return start;
+  }
+  double error(const LocalizationUpdate& update, std::size_t i) const {
+    return std::hypot(update.estimate->mean.x - truth[i].x, update.estimate->mean.y - truth[i].y);
+  }
+
+  LocalizationOptions options;
+  tests::PoleCity city;
+  std::unique_ptr<LocalizationMap> map;
+  std::vector<PoleFrame> frames;
+  std::vector<Pose2D> truth;
+};
+
+class RegularCity : public PoleLocalizationTest {
+ protected:
+  RegularCity() : PoleLocalizationTest(regular()) {}
+  static tests::CityOptions regular() {
+    tests::CityOptions options = cityOf(5);
+    options.regular = true;
+    options.missing = options.vanished = options.mapNoise = 0;
+    return options;
+  }
+};
+
+}  // namespace
+
+TEST_F(PoleLocalizationTest, TracksFromAStartPoseAndSaysOk) {
+  driveFrom(1, 150);
+  PoleLocalization localization = chain();
+  localization.start(atTruth());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    ASSERT_TRUE(update.estimate);
+    EXPECT_NE(update.health.state, HealthState::lost);
+    if (i < 20) continue;
+    EXPECT_LT(error(update, i), 0.1);
+    EXPECT_EQ(update.health.state, HealthState::ok) << i << ' ' << name(update.health.reason);
+  }
+  EXPECT_EQ(localization.searches(), 0u);
+}
+
+TEST_F(PoleLocalizationTest, FoundWithoutAStartPose) {
+  for (const std::uint64_t seed : {2, 3, 4}) {
+    frames.clear();
+    truth.clear();
+    driveFrom(seed, 100);
+    PoleLocalization localization = chain();
+    localization.startAnywhere();
+    std::size_t known = frames.size();
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const LocalizationUpdate update = localization.step(frames[i]);
+      if (!update.estimate) {
+        EXPECT_EQ(update.health.reason, HealthReason::searching);
+        continue;
+      }
+      EXPECT_TRUE(known < i || update.relocalized);
+      known = std::min(known, i);
+      EXPECT_LT(error(update, i), 0.5);
+      EXPECT_TRUE(i <= known + 10 || update.health.state == HealthState::ok);
+    }
+    EXPECT_LE(known, 60u);
+  }
+}
+
+TEST_F(PoleLocalizationTest, AKidnappedVehicleIsLostAndFoundAgain) {
+  driveFrom(6, 120);
+  const std::size_t jump = frames.size();
+  driveFrom(7, 120);  // somewhere else; its odometry knows of no jump
+  PoleLocalization localization = chain();
+  localization.start(atTruth());
+  std::size_t lost = 0, found = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    const bool isLost = update.health.state == HealthState::lost;
+    if (i < jump) {
+      EXPECT_FALSE(isLost);
+      continue;
+    }
+    if (lost == 0 && isLost) lost = i;
+    if (lost == 0 && static_cast<double>(i - jump) > options.health.window) {
+      EXPECT_NE(update.health.state, HealthState::ok) << i - jump;
+    }
+    if (found == 0 && update.relocalized) found = i;
+    if (found != 0) {
+      EXPECT_LT(error(update, i), 0.5);
+    }
+  }
+  ASSERT_GT(lost, 0u);
+  EXPECT_LE(lost - jump, 20u);
+  ASSERT_GT(found, 0u);
+  EXPECT_LE(found - jump, 60u);
+}
+
+TEST_F(PoleLocalizationTest, AFilterThatSettledBesideTheTruthIsPutRightByTheSearch) {
+  driveFrom(9, 80);
+  for (PoleFrame& frame : frames)  // far too sure of the odometry to move by itself
+    frame.motion->covariance = Eigen::Vector3d(1e-8, 1e-10, 1e-10).asDiagonal();
+  options.filter.extraSigma = options.filter.extraSigmaYaw = 1e-6;
+  options.motionCheck.enabled = false;
+  PoleLocalization localization = chain();
+  StartOptions start = atTruth();
+  start.radius = start.heading = 1e-3;
+  start.pose->y += 0.4;
+  localization.start(start);
+  bool putRight = false;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_NE(update.health.reason, HealthReason::elsewhere);
+    if (update.relocalized) {
+      EXPECT_NE(update.health.state, HealthState::lost);
+    }
+    putRight |= update.relocalized;
+  }
+  EXPECT_TRUE(putRight);
+}
+
+TEST_F(PoleLocalizationTest, AnotherCitysMapIsLost) {
+  driveFrom(8, 60);
+  auto poles = std::make_shared<CPoleMap>(*map->poles);
+  poles->setPoles(tests::PoleCity(cityOf(77)).map());
+  PoleLocalization localization(LocalizationMap(poles, options.global), options, 1);
+  localization.start(atTruth());
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_NE(update.health.state, HealthState::ok);
+    if (lost == 0 && update.health.state == HealthState::lost) lost = i;
+    if (lost > 0 && i > lost) {
+      EXPECT_EQ(update.health.state, HealthState::lost);
+    }
+  }
+  EXPECT_GT(lost, 0u);
+  EXPECT_LE(lost, 20u);
+}
+
+TEST_F(PoleLocalizationTest, WithoutRecoveryItStaysLost) {
+  options.search.recover = false;
+  driveFrom(6, 60);
+  driveFrom(7, 90);
+  PoleLocalization localization = chain();
+  localization.start(atTruth());
+  LocalizationUpdate last;
+  for (const PoleFrame& frame : frames) last = localization.step(frame);
+  EXPECT_EQ(last.health.state, HealthState::lost);
+  EXPECT_EQ(localization.searches(), 0u);
+}
+
+TEST_F(RegularCity, WhereAllLooksAlikeSeveralPlacesAreKept) {
+  driveFrom(3, 55);
+  PoleLocalization localization = chain();
+  localization.startAnywhere();
+  bool adopted = false;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_NE(update.health.state, HealthState::ok);
+    if (!update.estimate) continue;
+    adopted = true;
+    EXPECT_EQ(update.health.reason, HealthReason::ambiguous);
+    EXPECT_LT(update.health.modeShare, options.health.modeShare);
+    EXPECT_GT(update.health.spread, 10);  // the covariance owns up to the other places
+  }
+  EXPECT_TRUE(adopted);
+}
+
+TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {
+  driveFrom(1, 40);
+  const auto used = [&](bool average, double every) {
+    options.tracking.average = average;
+    options.tracking.every = every;
+    PoleLocalization localization = chain();
+    localization.start(atTruth());
+    std::vector<std::size_t> poles;
+    for (const PoleFrame& frame : frames) poles.push_back(localization.step(frame).step.poles);
+    return poles;
+  };
+  const auto all = used(false, 1), every = used(true, 1), seldom = used(true, 5);
+  std::size_t sums[3] = {};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(all[i], frames[i].poles_robot.size());
+    EXPECT_LE(every[i], all[i]);
+    sums[0] += all[i], sums[1] += every[i], sums[2] += seldom[i];
+  }
+  EXPECT_EQ(every[0], all[0]);  // at the start there is nothing to wait for
+  EXPECT_LT(sums[1], 0.95 * sums[0]);
+  EXPECT_LT(sums[2], 0.5 * sums[1]);
+}
+
+TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
+  driveFrom(9, 60);  // a scan a metre
+  options.tracking.average = false;
+  options.tracking.cadence = Cadence::section;
+  options.tracking.localMaps.sectionLength = 5;
+  PoleLocalization localization = chain();
+  localization.start(atTruth());
+  std::size_t updates = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    EXPECT_EQ(update.poles, frames[i].poles_robot.size());
+    if (update.step.poles == 0) continue;
+    ++updates;
+    EXPECT_TRUE(i % 5 <= 1 && i > 0) << i;  // the odometry errs by less than a metre
+    EXPECT_LT(error(update, i), 0.3);
+  }
+  EXPECT_NEAR(static_cast<double>(updates), 11.5, 1);
+}
+
+TEST_F(PoleLocalizationTest, TheHeaviestPlaceMayReplaceTheEstimate) {
+  driveFrom(9, 1);
+  frames[0].poles_robot.clear();  // the particles stay as drawn
+  options.filter.tempering = 0;
+  const auto estimate = [&](bool heaviest) {
+    options.filter.heaviestPlace = heaviest;
+    options.filter.estimate = PoseEstimator::bestShare;
+    PoleLocalization localization = chain();
+    localization.start(atTruth());
+    return localization.step(frames[0]).estimate->mean;
+  };
+  // Equal weights: the best tenth is an arbitrary one, the heaviest place is all.
+  const Pose2D all = estimate(true), tenth = estimate(false);
+  PoleLocalizer filter(map->poles, options.filter, 1);
+  filter.start(atTruth());
+  const std::vector<double> equal(filter.particles().size(), 0);
+  EXPECT_NEAR(all.x, weightedMean(filter.particles(), equal).mean.x, 1e-9);
+  EXPECT_NEAR(tenth.x, bestShareMean(filter.particles(), equal, 0.1).mean.x, 1e-9);
+  EXPECT_GT(std::hypot(all.x - tenth.x, all.y - tenth.y), 1e-3);
+}
+
+TEST_F(PoleLocalizationTest, SameSeedSameBytes) {
+  driveFrom(9, 40);
+  const auto run = [&](std::uint32_t seed) {
+    PoleLocalization localization = chain(seed);
+    localization.start(atTruth());
+    std::vector<double> values;
+    for (const PoleFrame& frame : frames)
+      values.push_back(localization.step(frame).estimate->mean.x);
+    return values;
+  };
+  EXPECT_EQ(run(4), run(4));
+  EXPECT_NE(run(4), run(5));
+}
+
+TEST_F(PoleLocalizationTest, RefusesAStartFarFromTheMap) {
+  driveFrom(1, 5);
+  PoleLocalization localization = chain();
+  StartOptions far = atTruth();
+  far.pose->x += 5000;
+  try {
+    localization.start(far);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("from the nearest pole"), std::string::npos);
+  }
+}
+
+TEST_F(PoleLocalizationTest, RefusesFramesBeforeTheStartAndBadFramesWithoutChange) {
+  driveFrom(1, 30);
+  PoleLocalization localization = chain(), untouched = chain();
+  EXPECT_THROW(localization.step(frames[0]), Error);
+  localization.startAnywhere();
+  untouched.startAnywhere();
+  localization.step(frames[0]);
+  untouched.step(frames[0]);
+  EXPECT_THROW(localization.step(frames[0]), Error);  // time stands still
+  PoleFrame bad = frames[1];
+  bad.motion.reset();
+  EXPECT_THROW(localization.step(bad), Error);
+  bad.motion = frames[1].motion;
+  bad.motion->mean.x = NAN;
+  EXPECT_THROW(localization.step(bad), Error);
+  EXPECT_EQ(localization.submap().frames(), untouched.submap().frames());
+  EXPECT_NO_THROW(localization.step(frames[1]));
+}
+
+TEST(LocalizationMap, RefusesAMapWithoutPoles) {
+  EXPECT_THROW(LocalizationMap(std::make_shared<CPoleMap>(), {}), Error);
+  EXPECT_THROW(LocalizationMap(nullptr, {}), Error);
+}
+
+TEST(TrackingOptions, RefusesValuesOutOfRange) {
+  TrackingOptions options;
+  EXPECT_NO_THROW(options.validate());
+  options.minHits = 0;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.every = -1;
+  EXPECT_THROW(options.validate(), Error);
+  options = {};
+  options.cadence = Cadence::section;
+  EXPECT_THROW(options.validate(), Error);  // averaging needs every scan
+  options.average = false;
+  EXPECT_NO_THROW(options.validate());
+  options.localMaps.maps = 0;
+  EXPECT_THROW(options.validate(), Error);
+}
+
+TEST(SearchOptions, RefusesValuesOutOfRange) {
+  const auto refused = [](auto change) {
+    SearchOptions options;
+    change(options);
+    EXPECT_THROW(options.validate(), Error);
+  };
+  EXPECT_NO_THROW(SearchOptions().validate());
+  refused([](SearchOptions& o) { o.every = 0; });
+  refused([](SearchOptions& o) { o.everySeconds = INFINITY; });
+  refused([](SearchOptions& o) { o.patience = -1; });
+  refused([](SearchOptions& o) { o.particles = 0; });
+}
+
+}  // namespace polemcl::test_localization_pipeline

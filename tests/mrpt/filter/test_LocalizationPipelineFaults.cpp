@@ -1,0 +1,173 @@
+// What the chain does when odometry, clock or poles fail. Recovery from kidnapping and wrong maps:
+// test_PoleLocalization.cpp; figures over many trials: share/experiments/faults.sh.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mrpt/filter/LocalizationPipeline.h"
+#include "support/PoleCity.h"
+
+namespace polemcl::test_localization_pipeline_faults {
+
+using namespace polemcl;
+
+namespace {
+
+class PoleLocalizationFaults : public testing::Test {
+ protected:
+  void drive(double metres, double step = 0.7) {
+    const tests::PoleCity city({});
+    auto poles = std::make_shared<CPoleMap>();
+    poles->likelihoodOptions.sigma = 0.05;
+    poles->likelihoodOptions.weighted = true;
+    poles->setPoles(city.map());
+    map = std::make_unique<LocalizationMap>(poles, options.global);
+    sim::Random random(3);
+    const auto way = tests::resample(city.randomWay(random, metres), step);
+    for (const tests::Frame& seen : tests::drive(city.surroundings(), way, {}, random)) {
+      PoleFrame frame;
+      frame.time = 1e9 + 0.1 * static_cast<double>(frames.size());
+      frame.motion = io::PlanarMotion{seen.motion, covarianceOf(seen.motion)};
+      frame.poles_robot = seen.poles_robot;
+      frames.push_back(frame);
+      truth.push_back(seen.truth);
+    }
+  }
+  static Eigen::Matrix3d covarianceOf(const Pose2D& motion) {
+    return Eigen::Vector3d(4e-4 * motion.x * motion.x + 1e-6, 4e-4 * motion.y * motion.y + 1e-6,
+                           4e-4 * motion.yaw * motion.yaw + 1e-8)
+        .asDiagonal();
+  }
+  PoleLocalization started() const {
+    PoleLocalization localization(*map, options, 1);
+    StartOptions start;
+    start.pose = truth[0];
+    localization.start(start);
+    return localization;
+  }
+  std::vector<LocalizationUpdate> run() const {
+    PoleLocalization localization = started();
+    std::vector<LocalizationUpdate> updates;
+    for (const PoleFrame& frame : frames) updates.push_back(localization.step(frame));
+    return updates;
+  }
+  double error(const LocalizationUpdate& update, std::size_t i) const {
+    return std::hypot(update.estimate->mean.x - truth[i].x, update.estimate->mean.y - truth[i].y);
+  }
+  /// From scan `from` on, `ok` with a right pose.
+  void expectOkFrom(const std::vector<LocalizationUpdate>& updates, std::size_t from) const {
+    for (std::size_t i = from; i < updates.size(); ++i) {
+      EXPECT_EQ(updates[i].health.state, HealthState::ok)
+          << i << ' ' << name(updates[i].health.reason);
+      EXPECT_LT(error(updates[i], i), 0.3) << i;
+    }
+  }
+
+  LocalizationOptions options;
+  std::unique_ptr<LocalizationMap> map;
+  std::vector<PoleFrame> frames;
+  std::vector<Pose2D> truth;
+};
+
+}  // namespace
+
+TEST_F(PoleLocalizationFaults, AStuckOdometryIsDegradedAndThePoseStaysRight) {
+  drive(210);
+  for (std::size_t i = 100; i < 200; ++i) frames[i].motion = io::PlanarMotion{{}, covarianceOf({})};
+  const auto updates = run();
+  for (std::size_t i = 105; i < 200; ++i) {
+    EXPECT_EQ(updates[i].health.state, HealthState::degraded) << i;
+    EXPECT_EQ(updates[i].motion, MotionVerdict::contradicted) << i;
+    EXPECT_LT(error(updates[i], i), 0.5) << i;
+  }
+  expectOkFrom(updates, 200 + 28);  // 20 m
+}
+
+TEST_F(PoleLocalizationFaults, ASlippingOdometryIsDegradedAndThePoseStaysRight) {
+  drive(210);
+  for (std::size_t i = 100; i < 200; ++i) {
+    Pose2D& motion = frames[i].motion->mean;
+    motion = {1.2 * motion.x, 1.2 * motion.y, 1.2 * motion.yaw};
+  }
+  const auto updates = run();
+  for (std::size_t i = 115; i < 200; ++i) {
+    EXPECT_EQ(updates[i].health.state, HealthState::degraded) << i;
+    EXPECT_LT(error(updates[i], i), 0.5) << i;
+  }
+  expectOkFrom(updates, 200 + 28);
+}
+
+TEST_F(PoleLocalizationFaults, TheCheckChangesNothingWhilePolesAgree) {
+  drive(140);
+  const auto checked = run();
+  options.motionCheck.enabled = false;
+  const auto unchecked = run();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(checked[i].estimate->mean.x, unchecked[i].estimate->mean.x);
+    EXPECT_EQ(checked[i].health.state, unchecked[i].health.state);
+  }
+}
+
+TEST_F(PoleLocalizationFaults, NoPoleOverKilometresIsDegradedUntilPolesReturn) {
+  drive(2300);
+  const std::size_t blind = 200, back = frames.size() - 150;
+  for (std::size_t i = blind; i < back; ++i) frames[i].poles_robot.clear();
+  const auto updates = run();
+  for (std::size_t i = blind + 25; i < back; ++i)
+    ASSERT_NE(updates[i].health.state, HealthState::ok) << i;
+  EXPECT_EQ(updates[blind + 40].health.reason, HealthReason::noPoles);
+  expectOkFrom(updates, back + 100);
+}
+
+TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {
+  drive(210);
+  // Five minutes and 70 m without a scan; the odometry has gone on.
+  const std::size_t gap = 100, later = 200;
+  io::PlanarMotion across = *frames[gap].motion;
+  for (std::size_t i = gap + 1; i <= later; ++i)
+    across = io::composeMotions(across, *frames[i].motion);
+  frames.erase(frames.begin() + gap, frames.begin() + later);
+  truth.erase(truth.begin() + gap, truth.begin() + later);
+  frames[gap].motion = across;
+  for (std::size_t i = gap; i < frames.size(); ++i) frames[i].time += 300;
+  const auto updates = run();
+  EXPECT_EQ(updates[gap - 1].health.state, HealthState::ok);
+  for (std::size_t i = gap; i < gap + 6; ++i)
+    EXPECT_EQ(updates[i].health.state, HealthState::degraded) << i;
+  EXPECT_EQ(updates[gap + 3].health.reason, HealthReason::timeGap);
+  expectOkFrom(updates, gap + 28);
+}
+
+TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
+  drive(20);
+  PoleLocalization localization = started(), untouched = started();
+  const auto refused = [&](const io::PlanarMotion& motion, const char* word) {
+    PoleFrame bad = frames[10];
+    bad.motion = motion;
+    try {
+      localization.step(bad);
+      FAIL() << word;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("scan at"), std::string::npos) << error.what();
+    }
+  };
+  for (std::size_t i = 0; i < 10; ++i) localization.step(frames[i]), untouched.step(frames[i]);
+  io::PlanarMotion indefinite = *frames[10].motion, huge = indefinite, notANumber = indefinite;
+  indefinite.covariance(0, 1) = indefinite.covariance(1, 0) = 1;
+  huge.covariance(1, 1) = 1e6;
+  notANumber.mean.yaw = NAN;
+  refused(indefinite, "negative eigenvalue");
+  refused(huge, "too uncertain");
+  refused(notANumber, "not finite");
+  PoleFrame early = frames[10];
+  early.time = frames[8].time;
+  EXPECT_THROW(localization.step(early), Error);
+  for (std::size_t i = 10; i < frames.size(); ++i) {
+    const auto a = localization.step(frames[i]), b = untouched.step(frames[i]);
+    EXPECT_EQ(a.estimate->mean.x, b.estimate->mean.x);
+    EXPECT_EQ(a.motion, b.motion);
+  }
+}
+
+}  // namespace polemcl::test_localization_pipeline_faults

@@ -1,0 +1,243 @@
+// The library inside MRPT's own programs (Debian package mrpt-apps), which know nothing of it.
+#include <gtest/gtest.h>
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "core/common/PoseEstimate.h"
+#include "mrpt/map/CPoleMap.h"
+#include "mrpt/rawlog/RawlogReader.h"
+#include "mrpt/rawlog/RawlogWriter.h"
+#include "support/Samples.h"
+
+namespace polemcl::test_plugin {
+namespace {
+
+using namespace mrpt::obs;
+
+constexpr int scans = 20;
+
+/// A street of poles, driven along its middle, one scan a metre.
+struct Street {
+  samples::Folder folder{"Plugin"};
+  Street() {
+    std::vector<MapPole> poles;
+    for (int i = 0; i < 8; ++i) {
+      MapPole pole;
+      pole.x = 5 * i;
+      pole.y = i % 2 ? 4 : -4;
+      pole.radius = 0.1;
+      pole.top = 3;
+      pole.count = 3;
+      poles.push_back(pole);
+    }
+    CPoleMap map;
+    map.setPoles(poles);
+    map.saveToPoleMapFile(folder / "m.polemap");
+    RawlogWriter rawlog(folder / "p.rawlog");
+    mrpt::maps::CSimpleMap simple;
+    for (int x = 0; x < scans; ++x) drive(x, poles, rawlog, simple);
+    rawlog.commit();
+    simple.saveToFile(folder / "p.simplemap");
+  }
+
+  void drive(int x, const std::vector<MapPole>& poles, RawlogWriter& rawlog,
+             mrpt::maps::CSimpleMap& simple) const {
+    auto scan = std::make_shared<CObservationPoles>();
+    scan->sensorLabel = "LIDAR";
+    scan->timestamp = mrpt::Clock::fromDouble(1000.5 + x);
+    for (const auto& pole : poles)
+      if (std::abs(pole.x - x) < 12) scan->poles.push_back(samples::pole(pole.x - x, pole.y));
+    CActionRobotMovement2D move;
+    move.estimationMethod = CActionRobotMovement2D::emScan2DMatching;
+    mrpt::math::CMatrixDouble33 C;
+    C.setDiagonal(std::vector<double>{0.0025, 0.0025, 0.0002});
+    // Off by 4 cm, 2 cm and 0.4 degrees in each metre, as the covariance allows.
+    const mrpt::poses::CPose2D motion(0.96, 0.02, 0.007);
+    move.poseChange =
+        mrpt::poses::CPosePDFGaussian::Create(x > 0 ? motion : mrpt::poses::CPose2D(), C);
+    move.timestamp = scan->timestamp;
+    CActionCollection actions;
+    actions.insert(move);
+    rawlog.write(actions, scan);
+    auto frame = CSensoryFrame::Create();
+    frame->insert(scan);
+    simple.insert(mrpt::poses::CPose3DPDFGaussian::Create(mrpt::poses::CPose3D(x, 0, 0, 0, 0, 0)),
+                  frame);
+  }
+
+  /// What a command prints, both streams; run in the folder of the street.
+  std::string run(const std::string& command) const {
+    const std::string line = "cd '" + (folder / "") + "' && " + command + " </dev/null 2>&1";
+    FILE* pipe = popen(line.c_str(), "r");
+    std::string text;
+    char buffer[4096];
+    while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
+    const int status = pclose(pipe);
+    EXPECT_EQ(status, 0) << command << "\n" << text;
+    return text;
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+  }
+};
+
+bool has(const char* program) {
+  return std::system((std::string("command -v ") + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+#define NEEDS(program) \
+  if (!has(program)) GTEST_SKIP() << program << " (Debian package mrpt-apps) is not installed"
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+const std::string plugin = std::string(" -p '") + POLEMCL_LIB + "' ";
+const std::string preload = std::string("LD_PRELOAD='") + POLEMCL_LIB + "' ";
+
+long objects(const std::string& info) {
+  const auto at = info.find("Overall number of objects");
+  return at == std::string::npos ? -1 : std::stol(info.substr(info.find(':', at) + 1));
+}
+
+TEST(Plugin, RawlogEditReadsPoles) {
+  NEEDS("rawlog-edit");
+  const Street street;
+  const std::string info = street.run("rawlog-edit" + plugin + "--info -i p.rawlog");
+  EXPECT_EQ(objects(info), 2 * scans) << info;
+  EXPECT_HAS(info, "LIDAR");
+  // Why it is needed: without it, the program stops at the first pole observation and says nothing.
+  EXPECT_EQ(objects(street.run("rawlog-edit --info -i p.rawlog")), 1);
+}
+
+TEST(Plugin, RawlogEditDescribesAndExportsPoles) {
+  NEEDS("rawlog-edit");
+  const Street street;
+  EXPECT_HAS(street.run("rawlog-edit" + plugin + "--describe -i p.rawlog"),
+             "Poles: 3 (planar sensor frame, m)");
+  street.run("rawlog-edit" + plugin + "--export-txt -i p.rawlog");
+  std::ifstream file(street.folder / "p_LIDAR.txt");
+  int rows = 0;
+  for (std::string line; std::getline(file, line);) rows += line.find('%') == std::string::npos;
+  EXPECT_EQ(rows, scans);
+}
+
+TEST(Plugin, RawlogEditCutsRawlogsOfPoles) {
+  NEEDS("rawlog-edit");
+  const Street street;
+  street.run("rawlog-edit" + plugin + "--cut --to-index 9 -i p.rawlog -o cut.rawlog");
+  RawlogReader reader(street.folder / "cut.rawlog");
+  RawlogEntry entry;
+  int frames = 0;
+  while (reader.next(entry))
+    frames += entry.frame && entry.frame->getObservationByClass<CObservationPoles>();
+  EXPECT_GE(frames, 4);  // entries 0 to 9 are five pairs; MRPT counts generously
+  EXPECT_LE(frames, 6);
+}
+
+TEST(Plugin, Observations2mapBuildsAPoleMap) {
+  NEEDS("observations2map");
+  const Street street;
+  street.write("c.ini",
+               "[Maps]\npoleMap_count = 1\n"
+               "[Maps_poleMap_00_insertOpts]\nmerge_distance = 0.4\n");
+  street.run(preload + "observations2map c.ini p.simplemap out -s Maps");
+  CPoleMap built, truth;
+  built.loadFromPoleMapFile(street.folder / "out_polemcl__CPoleMap_00.polemap");
+  truth.loadFromPoleMapFile(street.folder / "m.polemap");
+  ASSERT_EQ(built.poles().size(), 7u);     // the eighth is never nearer than 12 m
+  EXPECT_EQ(built.poles()[0].count, 12u);  // the first is within reach from x = 0 to 11
+  for (const auto& pole : built.poles()) {
+    EXPECT_TRUE(truth.index().nearest(pole.x, pole.y, 1e-6));
+    EXPECT_GE(pole.count, 1u);
+    EXPECT_LE(pole.count, 20u);
+  }
+}
+
+/// What pf-localization writes about a run.
+struct Outcome {
+  double error = 0;              ///< of the weighted mean after the last scan, m
+  double nees = 0;               ///< of that mean in x, y and heading, by its covariance
+  double spread = 0;             ///< root of the determinant of that covariance, m² rad
+  std::vector<double> distance;  ///< of the particles from the truth after each scan, mean, m
+};
+
+/// All numbers of a file, row by row, without its heading.
+std::vector<double> numbersIn(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<double> values;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream row(line[0] == '%' ? "" : line);
+    for (double value = 0; row >> value;) values.push_back(value);
+  }
+  return values;
+}
+
+/// MRPT's own filter, from a start whose middle lies 1.2 m from the truth, on odometry that is off
+/// by 3.5 m at the end.
+Outcome localize(const Street& street, const std::string& likelihood) {
+  std::string truth;
+  for (int x = 0; x < scans; ++x)
+    truth += std::to_string(1000.5 + x) + " " + std::to_string(x) + " 0 0\n";
+  street.write("truth.txt", truth);
+  street.write("c.ini",
+               "[PF_options]\nPF_algorithm = 0\nadaptiveSampleSize = false\nsampleSize = 1\n"
+               "resamplingMethod = 3\nBETA = 0.5\n"
+               "[LocalizationExperiment]\nlogOutput_dir = LOG\nrawlog_file = p.rawlog\n"
+               "ground_truth_path_file = truth.txt\n"
+               "particles_count = 2000\n3DSceneFrequency = " +
+                   std::to_string(scans) +
+                   "\n"
+                   "init_PDF_mode = 1\ninit_PDF_min_x = -2.2\ninit_PDF_max_x = 0.4\n"
+                   "init_PDF_min_y = -0.5\ninit_PDF_max_y = 2.1\n"
+                   "init_PDF_min_yaw_deg = -3\ninit_PDF_max_yaw_deg = 7\n"
+                   "[MetricMap]\npoleMap_count = 1\n"
+                   "[MetricMap_poleMap_00_creationOpts]\nmap_file = m.polemap\n"
+                   "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0.2\n" +
+                   likelihood);
+  street.run(preload + "pf-localization c.ini");
+  const std::string log = street.folder / "LOG_000_0002000/";
+  Outcome run;
+  run.distance = numbersIn(log + "GT_error.txt");
+  run.spread = numbersIn(log + "cov_est.txt").back();
+  const std::vector<double> numbers = numbersIn(log + "particles/particles_00019.txt");
+  std::vector<Pose2D> poses;
+  std::vector<double> logWeights;
+  for (std::size_t i = 0; i + 3 < numbers.size(); i += 4) {
+    poses.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+    logWeights.push_back(numbers[i + 3]);
+  }
+  const PoseWithCovariance estimate = weightedMean(poses, logWeights);
+  const Eigen::Vector3d error(estimate.mean.x - (scans - 1), estimate.mean.y, estimate.mean.yaw);
+  run.error = error.head<2>().norm();
+  run.nees = error.dot(estimate.covariance.inverse() * error);
+  return run;
+}
+
+TEST(Plugin, PfLocalizationFindsItsWayOnAPoleMap) {
+  NEEDS("pf-localization");
+  const Street street;
+  constexpr double nearby = 0.1, sure = 5e-5;  // m, m² rad
+  const Outcome found = localize(street, "");
+  ASSERT_EQ(found.distance.size(), scans - 1u);  // the first scan is not filtered
+  EXPECT_LT(found.error, nearby);
+  EXPECT_LT(found.spread, sure);
+  EXPECT_LT(found.nees, 11.3);  // 99 % of chi-square with 3 degrees of freedom
+  EXPECT_LT(*std::max_element(found.distance.begin() + 3, found.distance.end()), 2 * nearby);
+  // With a likelihood that matches nothing the same run misses these bounds by far.
+  const Outcome dead = localize(street, "gate_m = 1e-6\n");
+  ASSERT_EQ(dead.distance.size(), scans - 1u);
+  EXPECT_GT(dead.error, 20 * nearby);
+  EXPECT_GT(dead.spread, 500 * sure);
+  EXPECT_GT(dead.distance.back(), 20 * nearby);
+}
+
+}  // namespace
+}  // namespace polemcl::test_plugin

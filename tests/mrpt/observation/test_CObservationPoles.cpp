@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/opengl/CCylinder.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "support/Samples.h"
+
+namespace polemcl::test_cobservation_poles {
+namespace {
+
+void expectEqual(const CObservationPoles& a, const CObservationPoles& b) {
+  EXPECT_EQ(a.timestamp, b.timestamp);
+  EXPECT_EQ(a.sensorLabel, b.sensorLabel);
+  EXPECT_EQ(a.sensorPose, b.sensorPose);
+  EXPECT_EQ(a.freeRange, b.freeRange);
+  EXPECT_EQ(a.points, b.points);
+  ASSERT_EQ(a.poles.size(), b.poles.size());
+  for (std::size_t i = 0; i < a.poles.size(); ++i) {
+    EXPECT_EQ(a.poles[i].x, b.poles[i].x);
+    EXPECT_EQ(a.poles[i].y, b.poles[i].y);
+    EXPECT_EQ(a.poles[i].radius, b.poles[i].radius);
+    EXPECT_EQ(a.poles[i].bottom, b.poles[i].bottom);
+    EXPECT_EQ(a.poles[i].top, b.poles[i].top);
+    EXPECT_EQ(a.poles[i].confidence, b.poles[i].confidence);
+    EXPECT_EQ(a.poles[i].covariance, b.poles[i].covariance);
+    EXPECT_EQ(a.poles[i].points, b.poles[i].points);
+  }
+}
+
+TEST(CObservationPoles, IsRegistered) {
+  const auto* id = mrpt::rtti::findRegisteredClass("polemcl::CObservationPoles");
+  ASSERT_NE(id, nullptr);
+  EXPECT_TRUE(id->derivedFrom("mrpt::obs::CObservation"));
+  EXPECT_NE(std::dynamic_pointer_cast<CObservationPoles>(
+                mrpt::rtti::classFactory("polemcl::CObservationPoles")),
+            nullptr);
+}
+
+TEST(CObservationPoles, SurvivesSerialization) {
+  const CObservationPoles scan = samples::observation();
+  const std::string bytes = samples::bytesOf(scan);
+  const auto read = std::dynamic_pointer_cast<CObservationPoles>(samples::objectFrom(bytes));
+  ASSERT_TRUE(read);
+  expectEqual(*read, scan);
+  EXPECT_EQ(samples::bytesOf(*read), bytes);
+}
+
+TEST(CObservationPoles, SurvivesInsideAFrame) {
+  mrpt::obs::CSensoryFrame frame;
+  frame.insert(std::make_shared<CObservationPoles>(samples::observation()));
+  const auto read = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(
+      samples::objectFrom(samples::bytesOf(frame)));
+  ASSERT_TRUE(read);
+  const auto scan = read->getObservationByClass<CObservationPoles>();
+  ASSERT_TRUE(scan);
+  expectEqual(*scan, samples::observation());
+}
+
+TEST(CObservationPoles, ReadingReplacesWhatWasThere) {
+  CObservationPoles scan = samples::observation();
+  CObservationPoles empty;
+  empty.timestamp = scan.timestamp;
+  mrpt::io::CMemoryStream memory;
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  archive << empty;
+  memory.Seek(0);
+  archive >> scan;
+  expectEqual(scan, empty);
+}
+
+TEST(CObservationPoles, RefusesNewerVersions) {
+  std::string bytes = samples::bytesOf(samples::observation());
+  const std::string name = "polemcl::CObservationPoles";
+  ASSERT_EQ(bytes.substr(1, name.size()), name);
+  ASSERT_EQ(bytes[1 + name.size()], 0);  // the version of today
+  bytes[1 + name.size()] = 1;
+  EXPECT_ANY_THROW(samples::objectFrom(bytes));
+}
+
+TEST(CObservationPoles, CutShortIsRefused) {
+  const std::string bytes = samples::bytesOf(samples::observation());
+  for (const std::size_t size : {bytes.size() - 1, bytes.size() / 2, std::size_t{40}})
+    EXPECT_ANY_THROW(samples::objectFrom(bytes.substr(0, size))) << size;
+}
+
+TEST(CObservationPoles, ClonesAreIndependent) {
+  CObservationPoles scan = samples::observation();
+  const auto clone = std::dynamic_pointer_cast<CObservationPoles>(scan.duplicateGetSmartPtr());
+  ASSERT_TRUE(clone);
+  expectEqual(*clone, scan);
+  scan.poles[0].x = 99;
+  EXPECT_EQ(clone->poles[0].x, 5);
+}
+
+// Sensor at (1, 2), turned left by a quarter: what is 5 m ahead of it is at (1, 7) of the robot.
+TEST(CObservationPoles, MovesPolesToTheRobotFrame) {
+  const CObservationPoles scan = samples::observation();
+  const auto poles_robot = scan.polesInRobotFrame();
+  ASSERT_EQ(poles_robot.size(), 2u);
+  EXPECT_NEAR(poles_robot[0].x, 1, 1e-12);
+  EXPECT_NEAR(poles_robot[0].y, 7, 1e-12);
+  EXPECT_NEAR(poles_robot[1].x, -3, 1e-12);
+  EXPECT_NEAR(poles_robot[1].y, -1, 1e-12);
+  EXPECT_NEAR(poles_robot[0].covariance(0, 0), 0.09, 1e-12);
+  EXPECT_NEAR(poles_robot[0].covariance(0, 1), -0.01, 1e-12);
+  EXPECT_EQ(poles_robot[0].top, 3.5);
+}
+
+// Roll and pitch say nothing about the planar frame.
+TEST(CObservationPoles, OnlyThePlanarPartOfTheSensorPoseCounts) {
+  CObservationPoles scan = samples::observation();
+  scan.setSensorPose(mrpt::poses::CPose3D(1, 2, 9, M_PI / 2, 0.1, M_PI));
+  EXPECT_NEAR(scan.polesInRobotFrame()[0].y, 7, 1e-12);
+}
+
+TEST(CObservationPoles, SensorPoseInAllItsForms) {
+  CObservationPoles scan;
+  scan.setSensorPose(mrpt::math::TPose3D(1, 2, 3, 0.5, 0, 0));
+  mrpt::poses::CPose3D pose;
+  scan.getSensorPose(pose);
+  EXPECT_NEAR(pose.yaw(), 0.5, 1e-12);
+  mrpt::math::TPose3D flat;
+  scan.getSensorPose(flat);
+  EXPECT_EQ(flat.z, 3);
+}
+
+TEST(CObservationPoles, DescribesItself) {
+  std::ostringstream text;
+  samples::observation().getDescriptionAsText(text);
+  for (const char* part :
+       {"LIDAR", "polemcl::CObservationPoles", "Poles: 2", "1234", "5.000", "3.500", "0.200", "42"})
+    EXPECT_NE(text.str().find(part), std::string::npos) << part << " in\n" << text.str();
+}
+
+TEST(CObservationPoles, ExportsOneRow) {
+  const CObservationPoles scan = samples::observation();
+  ASSERT_TRUE(scan.exportTxtSupported());
+  EXPECT_FALSE(scan.exportTxtHeader().empty());
+  EXPECT_EQ(scan.exportTxtHeader().find('\n'), std::string::npos);
+  EXPECT_EQ(scan.exportTxtDataRow(),
+            "2 5.00000 0.00000 0.12500 0.25000 3.50000 0.75000"
+            " -3.00000 4.00000 0.20000 0.25000 3.50000 0.75000");
+  EXPECT_EQ(CObservationPoles().exportTxtDataRow(), "0");
+}
+
+TEST(CObservationPoles, DrawsACylinderForEachPole) {
+  mrpt::opengl::CSetOfObjects scene;
+  samples::observation().getVisualizationInto(scene);
+  ASSERT_EQ(scene.size(), 2u);
+  const auto cylinder = scene.getByClass<mrpt::opengl::CCylinder>(0);
+  ASSERT_TRUE(cylinder);
+  EXPECT_NEAR(cylinder->getPoseX(), 1, 1e-6);
+  EXPECT_NEAR(cylinder->getPoseY(), 7, 1e-6);
+  EXPECT_NEAR(cylinder->getPoseZ(), 0.25, 1e-6);
+  EXPECT_NEAR(cylinder->getHeight(), 3.25, 1e-6);
+  EXPECT_NEAR(cylinder->getTopRadius(), 0.125, 1e-6);
+}
+
+}  // namespace
+}  // namespace polemcl::test_cobservation_poles

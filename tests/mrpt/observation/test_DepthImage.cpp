@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+
+#include "support/ExtractionSamples.h"
+
+namespace polemcl::test_depth_image {
+namespace {
+
+using mrpt::obs::CObservation3DRangeScan;
+using mrpt::poses::CPose3D;
+using namespace samples;
+
+constexpr double kDegree = M_PI / 180;
+const std::vector<TestPole> kPoles = {{7, 0.4, 0.10, 4}, {9, -2.5, 0.15, 4}, {12, 3, 0.12, 4}};
+
+/// Rays cast through every pixel: poles before a wall, on flat ground.
+/// \param mount Camera in the robot frame, ground at z = 0.
+CObservation3DRangeScan depthImage(const CPose3D& mount, bool rangeIsDepth = true, int height = 480,
+                                   int width = 640) {
+  CObservation3DRangeScan scan;
+  scan.sensorPose = mount;
+  scan.hasRangeImage = true;
+  scan.range_is_depth = rangeIsDepth;
+  scan.rangeUnits = 0.001f;
+  scan.cameraParams.setIntrinsicParamsFromValues(525, 520, 0.5 * width - 3, 0.5 * height + 2);
+  scan.rangeImage.resize(height, width);
+  const auto& camera = scan.cameraParams;
+  const Eigen::Isometry3d T = isometry(mount);
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      Eigen::Vector3d along(1, (camera.cx() - column) / camera.fx(),
+                            (camera.cy() - row) / camera.fy());
+      if (!rangeIsDepth) along.normalize();
+      const double depth = castRay(T.translation(), T.linear() * along, kPoles);
+      scan.rangeImage(row, column) = static_cast<std::uint16_t>(std::lround(depth * 1000));
+    }
+  return scan;
+}
+
+/// Nothing in `[sensor]` fits a camera but the height.
+PoleExtractionOptions options() {
+  PoleExtractionOptions o;
+  o.sensor.height = 1.5;
+  o.extraction.native.maxRange = 30;
+  return o;
+}
+
+/// The detection nearest to a pole, robot frame.
+PoleDetection nearest(const CObservationPoles& scan, const TestPole& pole) {
+  PoleDetection best;
+  best.x = 1e6;
+  for (const auto& p : scan.polesInRobotFrame())
+    if (std::hypot(p.x - pole.x, p.y - pole.y) < std::hypot(best.x - pole.x, best.y - pole.y))
+      best = p;
+  return best;
+}
+
+void expectAllPoles(const CPose3D& mount, bool rangeIsDepth = true) {
+  PoleExtraction extraction(options());
+  const auto scan = extraction.process(depthImage(mount, rangeIsDepth));
+  EXPECT_EQ(scan->poles.size(), kPoles.size());
+  EXPECT_EQ(extraction.report().outOfView, 0u);
+  for (const auto& pole : kPoles) {
+    const PoleDetection p = nearest(*scan, pole);
+    EXPECT_LT(std::hypot(p.x - pole.x, p.y - pole.y), 0.02) << pole.x << " " << p.x << " " << p.y;
+    EXPECT_NEAR(p.radius, pole.radius, 0.02) << pole.x;
+  }
+}
+
+TEST(DepthImage, LevelCamera) {
+  expectAllPoles(CPose3D(0.5, 0.1, 1.5, 0, 0, 0));
+}
+TEST(DepthImage, RangesAlongTheRay) {
+  expectAllPoles(CPose3D(0.5, 0.1, 1.5, 0, 0, 0), false);
+}
+TEST(DepthImage, PitchedDown) {
+  expectAllPoles(CPose3D(0, 0, 1.5, 0.05, 10 * kDegree, 0));
+}
+TEST(DepthImage, Rolled) {
+  expectAllPoles(CPose3D(0, 0, 1.5, 0, 0, 3 * kDegree));
+}
+TEST(DepthImage, PitchedAndRolled) {
+  expectAllPoles(CPose3D(0, 0, 1.5, -0.05, 10 * kDegree, 3 * kDegree));
+}
+TEST(DepthImage, UpsideDown) {
+  expectAllPoles(CPose3D(0, 0, 1.5, 0, 0, M_PI));
+}
+TEST(DepthImage, OnItsSide) {
+  expectAllPoles(CPose3D(0, 0, 1.5, 0, 0, M_PI / 2));
+  expectAllPoles(CPose3D(0, 0, 1.5, 0, 0, -M_PI / 2));
+}
+
+// Through the beams of a LiDAR the same points lose what lies beside the fan, and several rows of
+// pixels become one.
+TEST(DepthImage, SeesMoreOfPolesThanTheBeamsOfALidar) {
+  const auto scan = depthImage(CPose3D(0, 0, 1.5, 0, 10 * kDegree, 0));
+  PoleExtraction extraction(options());
+  const auto image = extraction.process(scan);
+  const auto cloud = extraction.lidarPoints(scan);
+  PoleExtractor lidar(options().sensor, options().extraction);  // the default, an HDL-64E
+  CObservationPoles beams;
+  beams.poles = lidar.extract({cloud.x.data(), cloud.y.data(), cloud.z.data(), cloud.size()});
+  EXPECT_EQ(extraction.report().outOfView, 0u);
+  EXPECT_GT(lidar.report().outOfView, 1000u);
+  for (const auto& pole : kPoles) {
+    const PoleDetection asImage = nearest(*image, pole), asBeams = nearest(beams, pole);
+    EXPECT_LT(std::hypot(asImage.x - pole.x, asImage.y - pole.y), 0.02);
+    EXPECT_GT(asImage.points, asBeams.points);
+  }
+}
+
+TEST(DepthImage, CountsPixelsWithoutDepth) {
+  auto scan = depthImage(CPose3D(0, 0, 1.5, 0, 0, 0));
+  std::size_t empty = 0;
+  for (int row = 0; row < 480; ++row)
+    for (int column = 0; column < 640; ++column) {
+      if (row % 7 == 3 || (row + column) % 11 == 0) scan.rangeImage(row, column) = 0;
+      empty += scan.rangeImage(row, column) == 0;
+    }
+  PoleExtraction extraction(options());
+  const auto poles = extraction.process(scan);
+  EXPECT_EQ(extraction.report().points, 640u * 480u);
+  EXPECT_EQ(extraction.report().invalid, empty);
+  EXPECT_EQ(poles->poles.size(), kPoles.size());
+}
+
+TEST(DepthImage, ImagesOfAnySize) {
+  PoleExtraction extraction(options());
+  for (const auto& [height, width] : {std::pair{2, 2}, {3, 500}, {301, 417}, {480, 640}}) {
+    const auto poles =
+        extraction.process(depthImage(CPose3D(0, 0, 1.5, 0, 0, 0), true, height, width));
+    EXPECT_EQ(extraction.report().points, static_cast<std::size_t>(height) * width);
+    if (height > 300) {
+      EXPECT_GE(poles->poles.size(), 2u);
+    } else {
+      EXPECT_TRUE(poles->poles.empty());
+    }
+  }
+  CObservation3DRangeScan empty;
+  EXPECT_TRUE(extraction.process(empty)->poles.empty());
+  auto blank = depthImage(CPose3D(), true, 20, 30);
+  blank.rangeImage.fill(0);
+  EXPECT_TRUE(extraction.process(blank)->poles.empty());
+  EXPECT_EQ(extraction.report().invalid, 600u);
+}
+
+std::string refusalOf(const CObservation3DRangeScan& scan) {
+  PoleExtraction extraction(options());
+  try {
+    extraction.process(scan);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(DepthImage, RefusesBadIntrinsics) {
+  const auto good = depthImage(CPose3D(), true, 20, 30);
+  EXPECT_EQ(refusalOf(good), "accepted");
+  for (const double bad : {0.0, -525.0, std::nan("")}) {
+    auto scan = good;
+    scan.cameraParams.fx(bad);
+    EXPECT_NE(refusalOf(scan).find("fx"), std::string::npos) << refusalOf(scan);
+    scan = good;
+    scan.cameraParams.fy(bad);
+    EXPECT_NE(refusalOf(scan).find("fy"), std::string::npos);
+  }
+  auto scan = good;
+  scan.cameraParams.cx(INFINITY);
+  EXPECT_NE(refusalOf(scan).find("principal point"), std::string::npos);
+  scan = good;
+  scan.rangeUnits = 0;
+  EXPECT_NE(refusalOf(scan).find("rangeUnits"), std::string::npos);
+  EXPECT_NE(refusalOf(depthImage(CPose3D(), true, 1, 30)).find("30 x 1"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace polemcl::test_depth_image

@@ -1,0 +1,268 @@
+#include <gtest/gtest.h>
+#include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationRotatingScan.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "mrpt/rawlog/RawlogReader.h"
+#include "support/ExtractionSamples.h"
+
+namespace polemcl::test_observation_points {
+namespace {
+
+using mrpt::poses::CPose3D;
+using namespace mrpt::obs;
+using namespace samples;
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+void writeKitti(const std::string& path, const TestCloud& cloud) {
+  std::ofstream out(path, std::ios::binary);
+  for (std::size_t i = 0; i < cloud.x.size(); ++i) {
+    const float xyzi[4] = {cloud.x[i], cloud.y[i], cloud.z[i], 0.5F};
+    out.write(reinterpret_cast<const char*>(xyzi), sizeof xyzi);
+  }
+}
+
+TEST(ObservationPoints, ReadsExternalKittiFiles) {
+  using Format = CObservationPointCloud::ExternalStorageFormat;
+  const Folder folder("PoleExtraction");
+  const auto options = hdl32(1.5);
+  TestCloud cloud = plainCloud(options);
+  const auto expected = corePoles(options, cloud.view());
+  cloud.x.push_back(std::nanf(""));
+  cloud.y.push_back(0);
+  cloud.z.push_back(0);
+  writeKitti(folder / "0.bin", cloud);
+  CObservationPointCloud observation;
+  observation.setAsExternalStorage(folder / "0.bin", Format::KittiBinFile);
+  PoleExtraction extraction(options);
+  const auto scan = extraction.process(observation);
+  expectSamePoles(scan->poles, expected, 0);
+  EXPECT_EQ(extraction.report().invalid, 1u);
+  EXPECT_EQ(scan->points, cloud.x.size() - 1);
+  EXPECT_FALSE(observation.pointcloud);  // nothing stays in memory
+
+  std::filesystem::resize_file(folder / "0.bin", 16 * 100 + 5);
+  EXPECT_HAS(refusal(extraction, observation), "0.bin");
+  std::filesystem::remove(folder / "0.bin");
+  EXPECT_HAS(refusal(extraction, observation), "0.bin");
+}
+
+TEST(ObservationPoints, LoadsAndUnloadsOtherExternalFiles) {
+  using Format = CObservationPointCloud::ExternalStorageFormat;
+  const Folder folder("PoleExtractionGz");
+  const auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  {
+    mrpt::io::CFileGZOutputStream file(folder / "0.gz");
+    auto archive = mrpt::serialization::archiveFrom(file);
+    archive << *observationOf(cloud, CPose3D())->pointcloud;
+  }
+  CObservationPointCloud observation;
+  observation.setAsExternalStorage(folder / "0.gz", Format::MRPT_Serialization);
+  PoleExtraction extraction(options);
+  expectSamePoles(extraction.process(observation)->poles, corePoles(options, cloud.view()), 0);
+  EXPECT_FALSE(observation.pointcloud);
+  observation.load();  // what the caller loaded stays loaded
+  extraction.process(observation);
+  EXPECT_TRUE(observation.pointcloud);
+
+  CObservationPointCloud missing;
+  missing.setAsExternalStorage(folder / "1.gz", Format::MRPT_Serialization);
+  EXPECT_HAS(refusal(extraction, missing), "1.gz");
+}
+
+const std::string datasets = "/usr/share/mrpt/datasets/";
+
+CObservation::Ptr firstOf(const std::string& file) {
+  RawlogReader reader(datasets + file);
+  RawlogEntry entry;
+  while (reader.next(entry))
+    if (entry.observation && PoleExtraction::canProcess(*entry.observation))
+      return entry.observation;
+  return nullptr;
+}
+
+PoleExtractionOptions vlp16() {
+  PoleExtractionOptions options;
+  options.sensor.model = "vlp16";
+  options.sensor.height = 1;
+  return options;
+}
+
+TEST(ObservationPoints, GeneratesVelodyneCloudsOnACopy) {
+  if (!std::filesystem::exists(datasets)) GTEST_SKIP() << datasets << " is not there";
+  const auto scan =
+      std::dynamic_pointer_cast<CObservationVelodyneScan>(firstOf("test_velodyne_VLP16.rawlog"));
+  ASSERT_TRUE(scan);
+  ASSERT_EQ(scan->point_cloud.size(), 0u);
+  PoleExtraction extraction(vlp16());
+  const auto poles = extraction.process(*scan);
+  EXPECT_EQ(scan->point_cloud.size(), 0u);
+  EXPECT_EQ(extraction.report().points, 11305u);  // all its returns, as MRPT counts them
+  EXPECT_EQ(extraction.report().outOfView, 0u);
+  scan->generatePointCloud();
+  EXPECT_EQ(extraction.process(*scan)->poles.size(), poles->poles.size());
+}
+
+// MRPT's sample of a rotating scan is the same scan as its Velodyne sample, sparse and with its
+// rows in firing order: range and height of what is found must agree with the Velodyne cloud.
+TEST(ObservationPoints, RotatingScanMatchesTheVelodyneScanItCameFrom) {
+  if (!std::filesystem::exists(datasets)) GTEST_SKIP() << datasets << " is not there";
+  const auto velodyne = firstOf("test_velodyne_VLP16.rawlog");
+  const auto rotating = firstOf("rot_scan_velodyne.rawlog");
+  ASSERT_TRUE(velodyne && rotating);
+  PoleExtraction extraction(vlp16());
+  const auto expected = extraction.process(*velodyne);
+  const auto scan = extraction.process(*rotating);
+  EXPECT_EQ(extraction.report().points, 11305u);
+  EXPECT_EQ(extraction.report().outOfView, 0u);
+  ASSERT_GT(expected->poles.size(), 0u);
+  std::size_t matched = 0;
+  for (const auto& a : expected->poles)
+    for (const auto& b : scan->poles)
+      if (std::hypot(a.x - b.x, a.y - b.y) < 0.1) {
+        ++matched;
+        break;
+      }
+  EXPECT_GE(matched * 10, expected->poles.size() * 8);
+}
+
+/// A rotating scan of the place: rows as given, columns counter-clockwise from the back.
+CObservationRotatingScan rotatingScan(const SensorOptions& sensor, const std::vector<int>& rows,
+                                      const CPose3D& pose) {
+  const SensorModel model(sensor);
+  CObservationRotatingScan scan;
+  scan.rowCount = static_cast<std::uint16_t>(rows.size());
+  scan.columnCount = static_cast<std::uint16_t>(model.columns());
+  scan.rangeResolution = 0.002;
+  scan.startAzimuth = -M_PI;
+  scan.azimuthSpan = 2 * M_PI;
+  scan.rangeImage.setZero(scan.rowCount, scan.columnCount);
+  scan.sensorPose = pose;
+  const Eigen::Isometry3d T_robot_sensor = isometry(pose);
+  for (int column = 0; column < model.columns(); ++column)
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto [start, along] = ray(model, rows[i], 2 * M_PI * column / model.columns() - M_PI);
+      scan.rangeImage(static_cast<int>(i), column) = static_cast<std::uint16_t>(
+          castRay(T_robot_sensor * start, T_robot_sensor.linear() * along, testPoles()) /
+              scan.rangeResolution +
+          0.5);
+    }
+  return scan;
+}
+
+const CPose3D up(0, 0, 1.5, 0, 0, 0);
+
+TEST(ObservationPoints, RotatingScanWithKnownElevations) {
+  auto options = hdl32(1.5);
+  std::vector<int> topDown(32);
+  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
+  PoleExtraction byModel(options);
+  EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown, up)), 0.05), 6);
+
+  // Rows in another order: only a table can tell it.
+  std::vector<int> mixed;
+  auto table = options;
+  table.sensor.model = "table";
+  table.sensor.columns = SensorModel(options.sensor).columns();
+  const SensorModel model(options.sensor);
+  for (int i = 0; i < 32; ++i) {
+    mixed.push_back((i * 7) % 32);
+    table.sensor.elevations.push_back(std::atan(model.beam(mixed.back()).slope));
+  }
+  const auto scan = rotatingScan(options.sensor, mixed, up);
+  PoleExtraction byTable(table);
+  EXPECT_GE(found(*byTable.process(scan), 0.05), 6);
+  // Beams near the horizon hardly mind; of the others little is left.
+  const auto points = [](const CObservationPoles& poles) {
+    std::size_t sum = 0;
+    for (const auto& pole : poles.poles) sum += pole.points;
+    return sum;
+  };
+  EXPECT_LT(3 * points(*byModel.process(scan)), 2 * points(*byTable.process(scan)));
+}
+
+// Rows keep the elevations of the sensor itself; its pose turns them over.
+TEST(ObservationPoints, RotatingScanUpsideDown) {
+  auto options = hdl32(1.5);
+  std::vector<int> topDown(32);
+  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
+  const auto scan = rotatingScan(options.sensor, topDown, CPose3D(0.5, 0.2, 1.5, 0.3, 0, M_PI));
+  options.sensor.upsideDown = true;
+  PoleExtraction extraction(options);
+  EXPECT_GE(found(*extraction.process(scan), 0.05), 6);
+}
+
+TEST(ObservationPoints, RotatingScanClockwise) {
+  const auto options = hdl32(1.5);
+  std::vector<int> topDown(32);
+  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
+  const auto ccw = rotatingScan(options.sensor, topDown, up);
+  auto cw = ccw;
+  cw.azimuthSpan = -2 * M_PI;
+  cw.startAzimuth = M_PI;
+  const int n = cw.columnCount;
+  for (int column = 0; column < n; ++column)
+    for (int row = 0; row < 32; ++row)
+      cw.rangeImage(row, column) = ccw.rangeImage(row, (n - column) % n);
+  PoleExtraction extraction(options);
+  const auto expected = extraction.process(ccw)->poles;
+  expectSamePoles(extraction.process(cw)->poles, expected, 1e-4);
+}
+
+TEST(ObservationPoints, RefusesRotatingScansOfUnknownElevations) {
+  CObservationRotatingScan scan;
+  scan.rowCount = 40;
+  scan.columnCount = 100;
+  scan.rangeResolution = 0.01;
+  scan.rangeImage.setZero(40, 100);
+  scan.rangeImage(0, 0) = 500;
+  PoleExtraction extraction(hdl32(1.5));
+  const std::string text = refusal(extraction, scan);
+  EXPECT_HAS(text, "40 rows");
+  EXPECT_HAS(text, "model = hdl32e has 32 beams");
+  EXPECT_HAS(text, "elevations_deg");
+}
+
+TEST(ObservationPoints, UnprojectsDepthImagesOnACopy) {
+  if (!std::filesystem::exists(datasets)) GTEST_SKIP() << datasets << " is not there";
+  const auto depth =
+      std::dynamic_pointer_cast<CObservation3DRangeScan>(firstOf("tests_rgbd.rawlog"));
+  ASSERT_TRUE(depth && depth->hasRangeImage);
+  PoleExtractionOptions options;
+  options.sensor.model = "uniform";
+  options.sensor.rows = 240;
+  options.sensor.fovUp = 0.5;
+  options.sensor.fovDown = -0.5;
+  options.sensor.columns = 2000;
+  PoleExtraction extraction(options);
+  extraction.process(*depth);
+  EXPECT_EQ(extraction.report().points, 640u * 480u);
+  EXPECT_EQ(extraction.report().invalid, 640u * 480u - 273225u);
+  depth->hasPoints3D = false;
+  depth->resizePoints3DVectors(0);
+  extraction.process(*depth);
+  EXPECT_EQ(extraction.report().points, 640u * 480u);
+  EXPECT_EQ(extraction.report().invalid, 640u * 480u - 273225u);
+  EXPECT_FALSE(depth->hasPoints3D);
+}
+
+TEST(ObservationPoints, RealKittiScan) {
+  const char* data = std::getenv("POLEMCL_DATA");
+  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  CObservationPointCloud observation;
+  observation.setAsExternalStorage(std::string(data) + "/kitti_raw_0005/velodyne/0000000000.bin",
+                                   CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+  PoleExtraction extraction(PoleExtractionOptions{});
+  const auto scan = extraction.process(observation);
+  EXPECT_GE(scan->poles.size(), 8u);
+  EXPECT_GT(scan->points, 100000u);
+}
+
+}  // namespace
+}  // namespace polemcl::test_observation_points

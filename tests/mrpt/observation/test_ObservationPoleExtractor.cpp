@@ -1,0 +1,218 @@
+#include <gtest/gtest.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationRotatingScan.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
+
+#include "support/ExtractionSamples.h"
+
+namespace polemcl::test_observation_pole_extractor {
+namespace {
+
+using mrpt::poses::CPose3D;
+using namespace mrpt::obs;
+using namespace samples;
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+// Sensor at the robot's origin, level: nothing is moved, and the poles are the core's, bit for bit.
+TEST(PoleExtraction, LevelCloudsGoThroughUntouched) {
+  const auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  PoleExtraction extraction(options);
+  const auto scan = extraction.process(*observationOf(cloud, CPose3D()));
+  expectSamePoles(scan->poles, corePoles(options, cloud.view()), 0);
+  EXPECT_EQ(scan->sensorLabel, "TEST");
+  EXPECT_EQ(scan->timestamp, mrpt::Clock::fromDouble(1000.5));
+  EXPECT_EQ(scan->points, cloud.x.size());
+  EXPECT_EQ(extraction.report().points, cloud.x.size());
+  EXPECT_GE(found(*scan, 0.05), 6);
+}
+
+// The planar sensor frame moves with the sensor pose; what is seen in it stays the same.
+TEST(PoleExtraction, SensorPoseDoesNotChangeWhatTheSensorSees) {
+  const auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  PoleExtraction extraction(options);
+  const auto there = extraction.process(*observationOf(cloud, CPose3D(1, -2, 1.5, 0.7, 0, 0)));
+  expectSamePoles(there->poles, corePoles(options, cloud.view()), 1e-9);
+  EXPECT_NEAR(there->sensorPose.yaw(), 0.7, 1e-12);
+}
+
+// The points that the poles come from, to be drawn or turned: extracting them again gives the
+// poles.
+TEST(PoleExtraction, GivesThePointsInTheLidarFrame) {
+  auto options = hdl32(1.257);
+  options.sensor.upsideDown = true;
+  options.sensor.originZ = 0.957;
+  const TestCloud cloud =
+      castScan(options.sensor, isometry(CPose3D(0, 0, 1.257, 0, 0, 0)), testPoles());
+  const CPose3D bodyInRobot(0, 0, 0.3, 0, 0, M_PI);
+  Eigen::Isometry3d T_body_lidar = Eigen::Isometry3d::Identity();
+  T_body_lidar.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  T_body_lidar.translation().z() = -0.957;
+  PoleExtraction extraction(options);
+  const auto points = extraction.lidarPoints(*observationOf(cloud, bodyInRobot, T_body_lidar));
+  ASSERT_EQ(points.size(), cloud.x.size());
+  for (std::size_t i = 0; i < points.size(); i += 97) {
+    EXPECT_NEAR(points.x[i], cloud.x[i], 1e-5);
+    EXPECT_NEAR(points.y[i], cloud.y[i], 1e-5);
+    EXPECT_NEAR(points.z[i], cloud.z[i], 1e-5);
+  }
+  EXPECT_THROW(extraction.lidarPoints(CObservationOdometry()), Error);
+}
+
+TEST(PoleExtraction, FindsPolesFromAPlaceOnTheRobot) {
+  const auto options = hdl32(1.8);
+  const CPose3D pose(0.8, -0.4, 1.8, 0.5, 0, 0);
+  const TestCloud cloud = castScan(options.sensor, isometry(pose), testPoles());
+  PoleExtraction extraction(options);
+  EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.05), 6);
+}
+
+// NCLT: points in a body frame with z down; the sensor hangs upside down 0.957 m above its origin.
+TEST(PoleExtraction, BodyFrameWithZDown) {
+  auto options = hdl32(0.957 + 0.3);
+  options.sensor.upsideDown = true;
+  options.sensor.originZ = 0.957;
+  const Eigen::Isometry3d T_robot_lidar(Eigen::Translation3d(0, 0, 1.257));
+  const TestCloud cloud = castScan(options.sensor, T_robot_lidar, testPoles());
+  const CPose3D bodyInRobot(0, 0, 0, 0, 0, M_PI);
+  // The body frame's origin is 0.957 m below the lidar, 0.3 m above the ground.
+  Eigen::Isometry3d T_body_lidar = isometry(bodyInRobot).inverse();
+  T_body_lidar = T_body_lidar * Eigen::Translation3d(0, 0, 0.957);
+  PoleExtraction extraction(options);
+  const auto scan = extraction.process(*observationOf(cloud, bodyInRobot, T_body_lidar));
+  EXPECT_GE(found(*scan, 0.05), 6);
+  expectSamePoles(scan->poles, corePoles(options, cloud.view()),
+                  1e-3);  // but for rounding to floats
+
+  EXPECT_NEAR(extraction.report().ground, -1.257, 0.05);  // below the sensor, not the body
+}
+
+// The authors' program sees NCLT's clouds from the origin of the body frame, 0.957 m below the
+// sensor and here 0.3 m above the ground.
+TEST(PoleExtraction, PaperMayProjectFromTheOriginOfClouds) {
+  auto options = hdl32(0.957 + 0.3);
+  options.sensor.upsideDown = true;
+  options.sensor.originZ = 0.957;
+  options.extraction.method = ExtractionMethod::paper;
+  auto& paper = options.extraction.paper;
+  paper.rows = 32;
+  paper.columns = 1000;
+  paper.fovUp = mrpt::DEG2RAD(30.67);
+  paper.fovDown = mrpt::DEG2RAD(-10.67);
+  paper.heightsAboveGround = true;
+  paper.minZ = 0.3;
+  const Eigen::Isometry3d T_robot_lidar(Eigen::Translation3d(0, 0, 1.257));
+  const TestCloud cloud = castScan(options.sensor, T_robot_lidar, testPoles());
+  const CPose3D bodyInRobot(0, 0, 0.3, 0, 0, M_PI);
+  const Eigen::Isometry3d T_body_lidar = isometry(bodyInRobot).inverse() * T_robot_lidar;
+  const auto scan = observationOf(cloud, bodyInRobot, T_body_lidar);
+  for (const bool fromCloud : {false, true}) {
+    paper.projectFrom = fromCloud ? "cloud" : "sensor";
+    PoleExtraction extraction(options);
+    const auto points = extraction.lidarPoints(*scan);
+    for (std::size_t i = 0; i < points.size(); i += 97) {
+      EXPECT_NEAR(points.x[i], cloud.x[i], 1e-5);
+      EXPECT_NEAR(points.y[i], cloud.y[i], 1e-5);
+      EXPECT_NEAR(points.z[i] - cloud.z[i], fromCloud ? 0.957 : 0, 1e-5);
+    }
+    EXPECT_GE(found(*extraction.process(*scan), 0.1), 3);
+    EXPECT_NEAR(extraction.report().ground, fromCloud ? -0.3 : -1.257, 1e-9);
+  }
+}
+
+TEST(PoleExtraction, OriginIsAlongTheRobotsAxes) {
+  auto options = hdl32(1.5);
+  options.sensor.originX = 0.6;
+  options.sensor.originY = -0.3;
+  // Clouds in a frame turned by 90° at the robot's origin; the lidar stands at (0.6, -0.3).
+  const CPose3D cloudInRobot(0, 0, 0, M_PI / 2, 0, 0);
+  const Eigen::Isometry3d T_robot_lidar =
+      Eigen::Translation3d(0.6, -0.3, 1.5) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  const TestCloud cloud = castScan(options.sensor, T_robot_lidar, testPoles());
+  Eigen::Isometry3d T_cloud_lidar = isometry(cloudInRobot).inverse() * T_robot_lidar;
+  T_cloud_lidar.translation().z() = 0;
+  PoleExtraction extraction(options);
+  EXPECT_GE(found(*extraction.process(*observationOf(cloud, cloudInRobot, T_cloud_lidar)), 0.05),
+            6);
+}
+
+// Poles stand upright in the robot frame, askew in the lidar's. What is seen at 13 m is 1 m higher
+// or lower there than it would be level; taken for that height, poles would be off by 7 cm.
+TEST(PoleExtraction, TiltedMounting) {
+  const auto options = hdl32(1.5);
+  const CPose3D pose(0, 0, 1.5, 0, mrpt::DEG2RAD(4.0), mrpt::DEG2RAD(-2.0));
+  const TestCloud cloud = castScan(options.sensor, isometry(pose), testPoles());
+  PoleExtraction extraction(options);
+  EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.03), 8);
+}
+
+// A camera's optical frame: z ahead, x to the right. It is stood up before extraction.
+TEST(PoleExtraction, CloudOnItsSide) {
+  const auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  const CPose3D optical(0, 0, 1.5, -M_PI / 2, 0, -M_PI / 2);
+  PoleExtraction extraction(options);
+  Eigen::Isometry3d T_optical_lidar = Eigen::Isometry3d::Identity();
+  T_optical_lidar.linear() = isometry(optical).linear().transpose();
+  const auto scan = extraction.process(*observationOf(cloud, optical, T_optical_lidar));
+  EXPECT_GE(found(*scan, 0.05), 6);
+}
+
+TEST(PoleExtraction, CountsInvalidPoints) {
+  const auto options = hdl32(1.5);
+  TestCloud cloud = plainCloud(options);
+  const auto clean = corePoles(options, cloud.view());
+  const float nan = std::nanf("");
+  for (int i = 0; i < 10; ++i) {
+    cloud.x.push_back(i % 2 ? nan : 0);
+    cloud.y.push_back(i % 2 ? 1 : 0);
+    cloud.z.push_back(i == 9 ? INFINITY : 0);
+  }
+  PoleExtraction extraction(options);
+  for (const double originX : {0.0, 0.5}) {  // as it is, and moved: zeros stay no returns
+    auto moved = options;
+    moved.sensor.originX = originX;
+    PoleExtraction other(moved);
+    const auto scan = other.process(*observationOf(cloud, CPose3D()));
+    EXPECT_EQ(other.report().invalid, 10u);
+    EXPECT_EQ(scan->points, cloud.x.size() - 10);
+    if (originX == 0) expectSamePoles(scan->poles, clean, 0);
+  }
+}
+
+TEST(PoleExtraction, EmptyScansGiveNoPoles) {
+  PoleExtraction extraction(hdl32(1.5));
+  const auto plain = extraction.process(*observationOf(plainCloud(hdl32(1.5)), CPose3D()));
+  EXPECT_GT(plain->points, 0u);
+  const auto none = extraction.process(CObservationPointCloud());  // no cloud at all
+  EXPECT_TRUE(none->poles.empty());
+  EXPECT_EQ(none->points, 0u);
+  const auto empty = extraction.process(*observationOf(TestCloud(), CPose3D()));
+  EXPECT_TRUE(empty->poles.empty());
+  EXPECT_EQ(empty->points, 0u);
+  EXPECT_EQ(extraction.report().points, 0u);  // not those of the scan before
+}
+
+TEST(PoleExtraction, RefusesOtherObservations) {
+  PoleExtraction extraction(hdl32(1.5));
+  const CObservationOdometry odometry;
+  EXPECT_FALSE(PoleExtraction::canProcess(odometry));
+  EXPECT_FALSE(PoleExtraction::canProcess(samples::observation()));
+  EXPECT_HAS(refusal(extraction, odometry), "mrpt::obs::CObservationOdometry");
+  EXPECT_TRUE(PoleExtraction::canProcess(CObservationPointCloud()));
+  EXPECT_TRUE(PoleExtraction::canProcess(CObservationVelodyneScan()));
+  EXPECT_TRUE(PoleExtraction::canProcess(CObservation3DRangeScan()));
+  EXPECT_TRUE(PoleExtraction::canProcess(CObservationRotatingScan()));
+}
+
+TEST(PoleExtraction, RefusesBadOptions) {
+  auto options = hdl32(1.5);
+  options.sensor.model = "hdl3000";
+  EXPECT_THROW(PoleExtraction{options}, Error);
+}
+
+}  // namespace
+}  // namespace polemcl::test_observation_pole_extractor

@@ -1,0 +1,192 @@
+/// \file test_ForgedLengthsInRawlogs.cpp
+/// \brief Lengths and counts that an archive claims and does not hold: an error, and no memory for
+/// them.
+
+#include <gtest/gtest.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <zlib.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "io/file/ReadLimits.h"
+#include "mrpt/map/CPoleMap.h"
+#include "mrpt/rawlog/RawlogReader.h"
+#include "support/MemoryTaken.h"
+#include "support/Samples.h"
+
+namespace polemcl::test_forged_lengths_in_rawlogs {
+namespace {
+
+using samples::bytesOf;
+using samples::objectFrom;
+
+constexpr std::size_t megabyte = 1 << 20;
+
+std::string number(std::uint32_t value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+/// The archive with another number in the place of this one, which stands there once.
+std::string forged(std::string bytes, const std::string& there, const std::string& instead) {
+  const auto at = bytes.find(there);
+  EXPECT_NE(at, std::string::npos);
+  EXPECT_EQ(bytes.find(there, at + 1), std::string::npos);
+  return bytes.replace(at, there.size(), instead);
+}
+
+/// What MRPT says of an archive that must be refused without much memory.
+std::string refusal(const std::string& bytes) {
+  std::string message;
+  const std::size_t taken = tests::memoryTakenBy([&] {
+    try {
+      objectFrom(bytes);
+      ADD_FAILURE() << "accepted";
+    } catch (const std::exception& error) {
+      message = error.what();
+    }
+  });
+  EXPECT_LT(taken, megabyte) << message;
+  return message;
+}
+
+/// That of a rawlog of these bytes.
+std::string rawlogRefusal(const samples::Folder& folder, const std::string& bytes,
+                          bool compressed = false) {
+  const std::string path = folder / "s.rawlog";
+  const gzFile file = gzopen(path.c_str(), compressed ? "wb" : "wbT");
+  gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
+  gzclose(file);
+  std::string message;
+  const std::size_t taken = tests::memoryTakenBy([&] {
+    try {
+      RawlogReader reader(path);
+      RawlogEntry entry;
+      while (reader.next(entry)) {
+      }
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      message = error.what();
+    }
+  });
+  EXPECT_LT(taken, 2 * megabyte) << message;
+  return message;
+}
+
+CObservationPoles scanOf(std::size_t poles) {
+  CObservationPoles scan = samples::observation();
+  scan.sensorLabel = "LIDAR of a forger";
+  scan.poles.assign(poles, samples::pole(5, 0));
+  scan.freeRange.assign(128, 7.f);
+  return scan;
+}
+
+const std::vector<std::uint32_t> claims{70000, 220'000'000, 0xffffffff};
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST(ForgedLengths, OfFreeRanges) {
+  const std::string ranges(number(128) + number(0x40e00000));  // 7
+  for (const std::uint32_t claim : claims) {
+    const std::string bytes =
+        forged(bytesOf(scanOf(2)), ranges, number(claim) + number(0x40e00000));
+    EXPECT_HAS(refusal(bytes), std::to_string(claim) + " free ranges");
+  }
+  // Within what is allowed, and more than there is.
+  refusal(forged(bytesOf(scanOf(2)), ranges, number(65536) + number(0x40e00000)));
+}
+
+TEST(ForgedLengths, OfPoles) {
+  CObservationPoles scan = scanOf(2);
+  scan.points = 0x01020304;
+  for (const std::uint32_t claim : claims) {
+    const std::string bytes =
+        forged(bytesOf(scan), number(scan.points) + number(2), number(scan.points) + number(claim));
+    EXPECT_HAS(refusal(bytes), std::to_string(claim) + " poles");
+  }
+}
+
+TEST(ForgedLengths, OfALabel) {
+  const std::string label = "LIDAR of a forger";
+  for (const std::uint32_t claim : claims) {
+    const std::string bytes =
+        forged(bytesOf(scanOf(2)), number(static_cast<std::uint32_t>(label.size())) + label,
+               number(claim) + label);
+    EXPECT_HAS(refusal(bytes), std::to_string(claim) + " bytes of sensor label");
+  }
+}
+
+TEST(ForgedLengths, WhatCannotBeReadIsNotWritten) {
+  EXPECT_NO_THROW(bytesOf(scanOf(io::mostOfAScan)));
+  EXPECT_ANY_THROW(bytesOf(scanOf(io::mostOfAScan + 1)));
+  CPoleMap map;
+  map.info["config"] = std::string(io::longestMapFact + 1, 'x');
+  EXPECT_ANY_THROW(bytesOf(map));
+}
+
+TEST(ForgedLengths, OfAMap) {
+  CPoleMap map;
+  MapPole pole;
+  pole.x = 3;
+  map.setPoles({pole});
+  map.info = {{"program", "pole-map"}, {"scans", "12"}};
+  const std::string good = bytesOf(map);
+  const auto read = std::dynamic_pointer_cast<CPoleMap>(objectFrom(good));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->info, map.info);
+  EXPECT_EQ(read->poles().size(), 1u);
+
+  const std::string facts = number(2) + number(7) + "program", last = number(2) + "12" + number(1);
+  for (const std::uint32_t claim : {0x0fffffffu, 0xffffffffu}) {
+    EXPECT_HAS(refusal(forged(good, facts, number(claim) + number(7) + "program")),
+               std::to_string(claim) + " facts");
+    EXPECT_HAS(refusal(forged(good, facts, number(2) + number(claim) + "program")),
+               std::to_string(claim) + " bytes of facts");
+    EXPECT_HAS(refusal(forged(good, last, number(claim) + "12" + number(1))),
+               std::to_string(claim) + " bytes of facts");
+    EXPECT_HAS(refusal(forged(good, last, number(2) + "12" + number(claim))),
+               std::to_string(claim) + " poles");
+    EXPECT_HAS(refusal(forged(good, number(8) + "std::map", number(claim) + "std::map")),
+               std::to_string(claim) + " bytes of facts");
+  }
+}
+
+TEST(ForgedLengths, InARawlogOfPoles) {
+  const samples::Folder folder("ForgedLengths");
+  mrpt::obs::CSensoryFrame frame;
+  frame.insert(std::make_shared<CObservationPoles>(scanOf(10)));
+  const std::string good = bytesOf(frame);
+  const std::string bad =
+      forged(good, number(128) + number(0x40e00000), number(220'000'000) + number(0x40e00000));
+  for (const bool compressed : {false, true}) {
+    const std::string message = rawlogRefusal(folder, good + bad, compressed);
+    EXPECT_HAS(message, "s.rawlog: object 1 at byte " + std::to_string(good.size()));
+    EXPECT_HAS(message, "220000000 free ranges");
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+// MRPT takes memory for the points before it reads them: the reader has to be there first.
+TEST(ForgedLengths, InARawlogOfScans) {
+  const samples::Folder folder("ForgedLengths");
+  auto cloud = mrpt::obs::CObservationPointCloud::Create();
+  auto points = mrpt::maps::CPointsMapXYZI::Create();
+  for (int i = 0; i < 200; ++i) points->insertPoint(1.5f, 0.5f, 1.f);
+  cloud->pointcloud = points;
+  mrpt::obs::CSensoryFrame frame;
+  frame.insert(cloud);
+  const std::string good = bytesOf(frame);
+  for (const std::uint32_t claim : {400u, 3'000'000'000u}) {
+    const std::string bad =
+        forged(good, number(200) + number(0x3fc00000), number(claim) + number(0x3fc00000));
+    EXPECT_HAS(rawlogRefusal(folder, good + bad), "truncated: the file ends inside an object");
+  }
+  const std::string bad =
+      forged(good, number(200) + number(0x3fc00000), number(3'000'000'000) + number(0x3fc00000));
+  EXPECT_HAS(rawlogRefusal(folder, good + bad, true), "truncated: the file ends inside");
+}
+
+}  // namespace
+}  // namespace polemcl::test_forged_lengths_in_rawlogs

@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mrpt/rawlog/MotionOptions.h"
+
+namespace polemcl::test_motion_options {
+namespace {
+
+MotionOptions sample() {
+  MotionOptions options;
+  options.xyPerMetre = 0.1;
+  options.xyPerRadian = 0.2;
+  options.yawPerMetre = 0.01;
+  options.yawPerRadian = 0.05;
+  options.minXy = 0.001;
+  options.minYaw = 0.002;
+  options.covarianceFactor = 4;
+  return options;
+}
+
+TEST(MotionOptions, CovarianceByHand) {
+  // d = 5, |yaw| = 0.5: σ_xy = 0.001 + 0.5 + 0.1 = 0.601, σ_yaw = 0.002 + 0.05 + 0.025 = 0.077.
+  const Eigen::Matrix3d C = motionCovariance({3, -4, -0.5}, sample());
+  EXPECT_NEAR(C(0, 0), 4 * 0.601 * 0.601, 1e-12);
+  EXPECT_NEAR(C(1, 1), 4 * 0.601 * 0.601, 1e-12);
+  EXPECT_NEAR(C(2, 2), 4 * 0.077 * 0.077, 1e-12);
+  EXPECT_EQ(C(0, 1), 0);
+  EXPECT_EQ(C(0, 2), 0);
+  EXPECT_EQ(C(1, 2), 0);
+}
+
+TEST(MotionOptions, StandingStillKeepsTheFloor) {
+  const Eigen::Matrix3d C = motionCovariance({}, sample());
+  EXPECT_NEAR(C(0, 0), 4e-6, 1e-15);
+  EXPECT_NEAR(C(2, 2), 16e-6, 1e-15);
+}
+
+TEST(MotionOptions, RefusesEachBadField) {
+  EXPECT_NO_THROW(MotionOptions().validate());
+  for (double MotionOptions::*field :
+       {&MotionOptions::xyPerMetre, &MotionOptions::xyPerRadian, &MotionOptions::yawPerMetre,
+        &MotionOptions::yawPerRadian, &MotionOptions::minXy, &MotionOptions::minYaw,
+        &MotionOptions::covarianceFactor})
+    for (const double bad : {-0.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
+      MotionOptions options;
+      options.*field = bad;
+      EXPECT_THROW(options.validate(), Error);
+    }
+  MotionOptions options;
+  options.covarianceFactor = 0;
+  EXPECT_THROW(options.validate(), Error);
+}
+
+}  // namespace
+}  // namespace polemcl::test_motion_options

@@ -1,0 +1,498 @@
+#include <gtest/gtest.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CActionRobotMovement3D.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "mrpt/rawlog/PoleSequence.h"
+#include "support/Samples.h"
+#include "support/TestClouds.h"
+
+namespace polemcl::test_pole_sequence {
+namespace {
+
+using namespace mrpt::obs;
+using mrpt::poses::CPose2D;
+
+SequenceOptions options() {
+  SequenceOptions o;
+  o.extraction.sensor.model = "vlp16";
+  o.extraction.sensor.height = 1.2;
+  o.extraction.sensor.columns = 900;
+  return o;
+}
+
+mrpt::math::CMatrixDouble33 diagonal(double xx, double yy, double aa) {
+  mrpt::math::CMatrixDouble33 C;
+  C.setDiagonal(std::vector<double>{xx, yy, aa});
+  return C;
+}
+
+std::string action(const CPose2D& pose, double variance = 0.01) {
+  CActionRobotMovement2D move;
+  move.estimationMethod = CActionRobotMovement2D::emScan2DMatching;
+  move.poseChange =
+      mrpt::poses::CPosePDFGaussian::Create(pose, diagonal(variance, 2 * variance, 3 * variance));
+  CActionCollection actions;
+  actions.insert(move);
+  return samples::bytesOf(actions);
+}
+
+template <class Observation>
+std::string frame(const Observation& observation) {
+  CSensoryFrame frame;
+  frame.insert(std::make_shared<Observation>(observation));
+  return samples::bytesOf(frame);
+}
+
+CObservationPoles poles(double time, double x = 5) {
+  CObservationPoles scan = samples::observation();
+  scan.timestamp = mrpt::Clock::fromDouble(time);
+  scan.poles[0].x = x;
+  return scan;
+}
+
+/// The made-up place, seen from (x, 0).
+CObservationPointCloud cloud(double time, double x) {
+  const Eigen::Isometry3d T_robot_lidar(Eigen::Translation3d(x, 0, 1.2));
+  const auto cast =
+      samples::castScan(options().extraction.sensor, T_robot_lidar, samples::testPoles());
+  CObservationPointCloud observation;
+  observation.timestamp = mrpt::Clock::fromDouble(time);
+  auto points = mrpt::maps::CPointsMapXYZI::Create();
+  points->resize(cast.x.size());
+  for (std::size_t i = 0; i < cast.x.size(); ++i)
+    points->setPointFast(i, cast.x[i], cast.y[i], cast.z[i]);
+  observation.pointcloud = points;
+  return observation;
+}
+
+CObservationPointCloud emptyCloud(double time) {
+  CObservationPointCloud observation;
+  observation.timestamp = mrpt::Clock::fromDouble(time);
+  return observation;
+}
+
+std::string odometry(double time, const CPose2D& pose) {
+  CObservationOdometry odo;
+  odo.timestamp = mrpt::Clock::fromDouble(time);
+  odo.odometry = pose;
+  return samples::bytesOf(odo);
+}
+
+struct Bench {
+  samples::Folder folder{"PoleSequence"};
+  std::string path = folder / "s.rawlog";
+  PoleSequence read(const std::string& bytes, const SequenceOptions& o = options()) const {
+    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));
+    return readPoleSequence(path, o);
+  }
+  std::string refusal(const std::string& bytes, const SequenceOptions& o = options()) const {
+    try {
+      read(bytes, o);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+void expectMotion(const PoleFrame& frame, double x, double y, double yaw) {
+  ASSERT_TRUE(frame.motion);
+  EXPECT_NEAR(frame.motion->mean.x, x, 1e-6);
+  EXPECT_NEAR(frame.motion->mean.y, y, 1e-6);
+  EXPECT_NEAR(frame.motion->mean.yaw, yaw, 1e-6);
+}
+
+TEST(PoleSequence, StoredPolesWithActions) {
+  const Bench bench;
+  const auto sequence = bench.read(action({9, 9, 1}) + frame(poles(10.5)) + action({1, 0.5, 0.1}) +
+                                   frame(poles(11, 6)));
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  expectMotion(sequence.frames[0], 0, 0, 0);  // what was before the first scan is of no interest
+  EXPECT_TRUE(sequence.frames[0].motion->covariance.isZero());
+  expectMotion(sequence.frames[1], 1, 0.5, 0.1);
+  EXPECT_NEAR(sequence.frames[1].motion->covariance(1, 1), 0.02, 1e-12);
+  EXPECT_NEAR(sequence.frames[1].time, 11, 1e-6);
+  ASSERT_EQ(sequence.frames[1].poles_robot.size(), 2u);
+  EXPECT_NEAR(sequence.frames[1].poles_robot[0].y, 8, 1e-9);  // 2 + 6 to the left
+  EXPECT_EQ(sequence.frames[1].points, 1234u);
+  EXPECT_EQ(sequence.counts.scans, 2u);
+  EXPECT_EQ(sequence.counts.storedScans, 2u);
+  EXPECT_EQ(sequence.counts.poles, 4u);
+  EXPECT_EQ(sequence.counts.emptyScans, 0u);
+  EXPECT_EQ(sequence.counts.unknownMotions, 0u);
+}
+
+TEST(PoleSequence, SeveralActionsAreComposed) {
+  const Bench bench;
+  const auto sequence =
+      bench.read(frame(poles(1)) + action({1, 0, M_PI / 2}) + action({2, 0, 0}) + frame(poles(2)));
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  expectMotion(sequence.frames[1], 1, 2, M_PI / 2);
+  const io::PlanarMotion a{{1, 0, M_PI / 2}, Eigen::Vector3d(0.01, 0.02, 0.03).asDiagonal()};
+  const io::PlanarMotion b{{2, 0, 0}, Eigen::Vector3d(0.01, 0.02, 0.03).asDiagonal()};
+  EXPECT_NEAR((sequence.frames[1].motion->covariance - io::composeMotions(a, b).covariance).norm(),
+              0, 1e-9);
+}
+
+TEST(PoleSequence, CovarianceFactorAppliesToActions) {
+  const Bench bench;
+  auto o = options();
+  o.motion.covarianceFactor = 4;
+  const auto sequence = bench.read(frame(poles(1)) + action({1, 0, 0}) + frame(poles(2)), o);
+  EXPECT_NEAR(sequence.frames[1].motion->covariance(0, 0), 0.04, 1e-12);
+}
+
+// The default emOdometry comes back from a file as a motion model makes it; the reading is kept.
+TEST(PoleSequence, OdometryActionsGiveTheirReading) {
+  const Bench bench;
+  for (const auto model : {CActionRobotMovement2D::mmGaussian, CActionRobotMovement2D::mmThrun}) {
+    CActionRobotMovement2D::TMotionModelOptions motionModel;
+    motionModel.modelSelection = model;
+    motionModel.thrunModel.nParticlesCount = 20;
+    CActionRobotMovement2D move;
+    move.computeFromOdometry(CPose2D(0.8, 0.1, 0.2), motionModel);
+    CActionCollection actions;
+    actions.insert(move);
+    const auto sequence = bench.read(frame(poles(1)) + samples::bytesOf(actions) + frame(poles(2)));
+    expectMotion(sequence.frames[1], 0.8, 0.1, 0.2);
+    const Eigen::Matrix3d C = sequence.frames[1].motion->covariance;
+    if (model == CActionRobotMovement2D::mmGaussian) {
+      const auto stored = std::get<0>(move.poseChange->getCovarianceAndMean());
+      EXPECT_NEAR((C - stored.asEigen()).norm(), 0, 1e-9);
+    } else {  // samples: their covariance would be another one each time
+      EXPECT_NEAR((C - motionCovariance({0.8, 0.1, 0.2}, MotionOptions())).norm(), 0, 1e-12);
+    }
+  }
+}
+
+TEST(PoleSequence, SpatialActionsArePlanar) {
+  const Bench bench;
+  CActionRobotMovement3D move;
+  move.estimationMethod = CActionRobotMovement3D::emVisualOdometry;
+  move.poseChange.mean = mrpt::poses::CPose3D(1, 2, 3, 0.4, 0, 0);
+  move.poseChange.cov.setZero();
+  for (int i = 0; i < 6; ++i) move.poseChange.cov(i, i) = 0.01 * (i + 1);
+  CActionCollection actions;
+  actions.insert(move);
+  const auto sequence = bench.read(frame(poles(1)) + samples::bytesOf(actions) + frame(poles(2)));
+  expectMotion(sequence.frames[1], 1, 2, 0.4);
+  EXPECT_NEAR(sequence.frames[1].motion->covariance(2, 2), 0.04, 1e-9);  // of the yaw
+}
+
+TEST(PoleSequence, WithoutOdometryTheMotionIsUnknown) {
+  const Bench bench;
+  const auto sequence =
+      bench.read(frame(poles(1)) + frame(poles(2)) + action({1, 0, 0}) + frame(poles(3)));
+  ASSERT_EQ(sequence.frames.size(), 3u);
+  EXPECT_TRUE(sequence.frames[0].motion);
+  EXPECT_FALSE(sequence.frames[1].motion);
+  expectMotion(sequence.frames[2], 1, 0, 0);
+  EXPECT_EQ(sequence.counts.unknownMotions, 1u);
+}
+
+// A straight drive at 2 m/s, odometry at 10 Hz, scans out of step with it.
+TEST(PoleSequence, BareOdometryIsInterpolated) {
+  const Bench bench;
+  std::string bytes;
+  for (int i = 0; i < 30; ++i) {
+    bytes += odometry(100 + 0.1 * i, {0.2 * i, 1, 0});
+    if (i % 10 == 4) bytes += samples::bytesOf(poles(100 + 0.1 * i + 0.003 * i));
+  }
+  const auto sequence = bench.read(bytes);
+  ASSERT_EQ(sequence.frames.size(), 3u);  // at 100.412, 101.442 and 102.472 s
+  expectMotion(sequence.frames[1], 2.06, 0, 0);
+  expectMotion(sequence.frames[2], 2.06, 0, 0);
+  const Eigen::Matrix3d expected = motionCovariance({2.06, 0, 0}, MotionOptions());
+  EXPECT_NEAR((sequence.frames[1].motion->covariance - expected).norm(), 0, 1e-6);
+}
+
+TEST(PoleSequence, OdometryThatTurns) {
+  const Bench bench;
+  const auto sequence = bench.read(odometry(0, {3, 4, M_PI / 2}) + samples::bytesOf(poles(0)) +
+                                   odometry(2, {3, 6, M_PI}) + samples::bytesOf(poles(2)));
+  expectMotion(sequence.frames[1], 2, 0, M_PI / 2);
+}
+
+TEST(PoleSequence, OdometryFarFromTheScanIsUnknown) {
+  const Bench bench;
+  const auto sequence = bench.read(samples::bytesOf(poles(1)) + samples::bytesOf(poles(2)) +
+                                   odometry(2.4, {0, 0, 0}) + odometry(3, {1, 0, 0}) +
+                                   samples::bytesOf(poles(3)) + samples::bytesOf(poles(5)));
+  ASSERT_EQ(sequence.frames.size(), 4u);
+  EXPECT_FALSE(sequence.frames[1].motion);
+  expectMotion(sequence.frames[2], 1, 0, 0);  // held for 0.4 s before the first reading
+  EXPECT_FALSE(sequence.frames[3].motion);
+  EXPECT_EQ(sequence.counts.unknownMotions, 2u);
+}
+
+TEST(PoleSequence, ManyScansWithoutOdometryDoNotPileUp) {
+  const Bench bench;
+  std::string bytes;
+  for (int i = 0; i < 100; ++i) bytes += samples::bytesOf(poles(i));
+  const auto sequence = bench.read(bytes);
+  EXPECT_EQ(sequence.frames.size(), 100u);
+  EXPECT_EQ(sequence.counts.unknownMotions, 99u);
+}
+
+TEST(PoleSequence, ExtractsClouds) {
+  const Bench bench;
+  const auto sequence = bench.read(action({0, 0, 0}) + frame(cloud(1, 0)) + action({0.5, 0, 0}) +
+                                   frame(cloud(2, 0.5)));
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.counts.storedScans, 0u);
+  PoleExtraction extraction(options().extraction);
+  const auto expected = extraction.process(cloud(2, 0.5))->polesInRobotFrame();
+  ASSERT_GE(expected.size(), 4u);
+  ASSERT_EQ(sequence.frames[1].poles_robot.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(sequence.frames[1].poles_robot[i].x, expected[i].x);
+  EXPECT_EQ(sequence.frames[1].points, extraction.report().points);
+}
+
+// Scans of very different cost, on any number of threads: the same frames in the same order.
+TEST(PoleSequence, ThreadsDoNotMatter) {
+  const Bench bench;
+  std::string bytes;
+  for (int i = 0; i < 24; ++i)
+    bytes += action({0.1, 0, 0}) +
+             (i % 3 == 1 ? frame(emptyCloud(i + 1)) : frame(cloud(i + 1, 0.1 * i)));
+  std::vector<PoleSequence> results;
+  for (const int threads : {1, 2, 5}) {
+    auto o = options();
+    o.threads = threads;
+    results.push_back(bench.read(bytes, o));
+  }
+  for (const auto& result : results) {
+    ASSERT_EQ(result.frames.size(), 24u);
+    EXPECT_EQ(result.counts.emptyScans, 8u);
+    EXPECT_EQ(result.counts.poles, results[0].counts.poles);
+    for (std::size_t i = 0; i < 24; ++i) {
+      const auto &a = result.frames[i], &b = results[0].frames[i];
+      EXPECT_NEAR(a.time, static_cast<double>(i) + 1, 1e-6);
+      ASSERT_EQ(a.poles_robot.size(), b.poles_robot.size());
+      for (std::size_t k = 0; k < a.poles_robot.size(); ++k) {
+        EXPECT_EQ(a.poles_robot[k].x, b.poles_robot[k].x);
+        EXPECT_EQ(a.poles_robot[k].covariance, b.poles_robot[k].covariance);
+      }
+    }
+  }
+}
+
+TEST(PoleSequence, EmptyScansStayFrames) {
+  const Bench bench;
+  CObservationPointCloud nothing;
+  nothing.timestamp = mrpt::Clock::fromDouble(7);
+  CObservationPointCloud invalid = nothing;
+  auto points = mrpt::maps::CPointsMapXYZI::Create();
+  for (int i = 0; i < 5; ++i) points->insertPoint(0, 0, 0);
+  invalid.pointcloud = points;
+  const auto sequence = bench.read(frame(nothing) + frame(invalid));
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.counts.emptyScans, 2u);
+  EXPECT_EQ(sequence.counts.invalidPoints, 5u);
+  EXPECT_EQ(sequence.counts.points, 0u);
+  EXPECT_TRUE(sequence.frames[1].poles_robot.empty());
+}
+
+TEST(PoleSequence, OneSensorOnly) {
+  const Bench bench;
+  CObservationPoles other = poles(1.5);
+  other.sensorLabel = "REAR";
+  const auto sequence = bench.read(frame(poles(1)) + frame(other) + frame(poles(2)));
+  EXPECT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.counts.otherSensors, 1u);
+}
+
+TEST(PoleSequence, PrefersPolesToTheCloudTheyCameFrom) {
+  const Bench bench;
+  CSensoryFrame both;
+  both.insert(std::make_shared<CObservationPointCloud>(cloud(1, 0)));
+  both.insert(std::make_shared<CObservationPoles>(poles(1)));
+  const auto sequence = bench.read(samples::bytesOf(both));
+  ASSERT_EQ(sequence.frames.size(), 1u);
+  EXPECT_EQ(sequence.counts.storedScans, 1u);
+  EXPECT_EQ(sequence.counts.otherSensors, 1u);
+}
+
+TEST(PoleSequence, TruncatedFiles) {
+  const Bench bench;
+  const std::string bytes = frame(poles(1)) + frame(poles(2));
+  EXPECT_HAS(bench.refusal(bytes.substr(0, bytes.size() - 10)), "truncated");
+  auto o = options();
+  o.allowTruncated = true;
+  const auto sequence = bench.read(bytes.substr(0, bytes.size() - 10), o);
+  EXPECT_EQ(sequence.frames.size(), 1u);
+  EXPECT_TRUE(sequence.counts.truncated);
+  EXPECT_FALSE(bench.read(bytes, o).counts.truncated);
+}
+
+// Whatever the length of the rawlog, only the scans that the threads work on are in memory.
+TEST(PoleSequence, ScansAreLetGoOnceTheyAreConsumed) {
+  const Bench bench;
+  std::string bytes;
+  for (int i = 0; i < 300; ++i)
+    bytes += action({0.1, 0, 0}) + (i % 2 ? frame(poles(i + 1)) : frame(poles(i + 1, 7)));
+  bench.read(bytes);
+  for (const int threads : {1, 2}) {
+    auto o = options();
+    o.threads = threads;
+    std::vector<std::weak_ptr<CObservationPoles>> consumed;
+    std::size_t alive = 0;
+    streamPoles(bench.path, o, [&](const PoleScan& scan) {
+      // One may still be on its way out of the pipeline.
+      for (std::size_t i = 0; i + 1 < consumed.size(); ++i) alive += !consumed[i].expired();
+      consumed.push_back(scan.observation);
+    });
+    EXPECT_EQ(consumed.size(), 300u);
+    EXPECT_EQ(alive, 0u);
+  }
+}
+
+TEST(PoleSequence, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
+  const Bench bench;
+  std::string bytes;
+  for (int i = 0; i < 20; ++i) bytes += frame(poles(i + 1));
+  bench.read(bytes);
+  std::vector<double> asked;
+  const ScanClock::time_point begin = ScanClock::now();
+  auto o = options();
+  o.pace = [&](double time) {
+    asked.push_back(time);
+    return begin + std::chrono::seconds(asked.size());
+  };
+  std::size_t consumed = 0;
+  streamPoles(bench.path, o, [&](const PoleScan& scan) {
+    EXPECT_EQ(scan.arrival, begin + std::chrono::seconds(++consumed));
+    EXPECT_GE(scan.readSeconds, 0);
+  });
+  ASSERT_EQ(asked.size(), 20u);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(asked[i], double(i + 1), 1e-6);
+  o.pace = [](double) -> ScanClock::time_point { throw std::domain_error("enough"); };
+  EXPECT_THROW(streamPoles(bench.path, o, [](const PoleScan&) {}), std::domain_error);
+}
+
+// The first error of the file is the one reported, after the scans before it, on any threads.
+TEST(PoleSequence, ErrorsComeInTheirPlace) {
+  using Format = CObservationPointCloud::ExternalStorageFormat;
+  const Bench bench;
+  CObservationPointCloud first, second;
+  first.setAsExternalStorage(bench.folder / "first.bin", Format::KittiBinFile);
+  second.setAsExternalStorage(bench.folder / "second.bin", Format::KittiBinFile);
+  std::string bytes = frame(cloud(1, 0)) + frame(first) + frame(second);
+  for (int i = 0; i < 10; ++i) bytes += frame(second);
+  bytes.resize(bytes.size() - 5);
+  std::ofstream(bench.path, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));
+  for (const int threads : {1, 4}) {
+    auto o = options();
+    o.threads = threads;
+    std::size_t handedOut = 0;
+    std::string text;
+    try {
+      streamPoles(bench.path, o, [&](const PoleScan&) { ++handedOut; });
+    } catch (const Error& error) {
+      text = error.what();
+    }
+    EXPECT_EQ(handedOut, 1u);
+    EXPECT_HAS(text, "s.rawlog: scan 1: ");
+    EXPECT_HAS(text, "first.bin");
+  }
+}
+
+TEST(PoleSequence, WhatTheConsumerThrowsComesThrough) {
+  const Bench bench;
+  bench.read(frame(poles(1)) + frame(poles(2)));
+  EXPECT_THROW(streamPoles(bench.path, options(),
+                           [](const PoleScan&) { throw std::domain_error("enough"); }),
+               std::domain_error);
+}
+
+TEST(PoleSequence, RelativeExternalFiles) {
+  using Format = CObservationPointCloud::ExternalStorageFormat;
+  const Bench bench;
+  std::filesystem::create_directory(bench.folder / "s_Images");
+  CObservationPointCloud external;
+  external.setAsExternalStorage("0.bin", Format::KittiBinFile);
+  for (const char* place : {"0.bin", "s_Images/0.bin"}) {
+    std::filesystem::remove_all(bench.folder / "s_Images");
+    std::filesystem::create_directories(std::filesystem::path(bench.folder / place).parent_path());
+    const float point[4] = {5, 0, 0, 0};
+    std::ofstream(bench.folder / place, std::ios::binary)
+        .write(reinterpret_cast<const char*>(point), sizeof point);
+    EXPECT_EQ(bench.read(frame(external)).counts.points, 1u) << place;
+    std::filesystem::remove(bench.folder / place);
+  }
+}
+
+TEST(PoleSequence, RefusesBadMotions) {
+  const Bench bench;
+  EXPECT_HAS(bench.refusal(frame(poles(1)) + action({std::nan(""), 0, 0}) + frame(poles(2))),
+             "before scan 1: the odometry is not finite");
+  EXPECT_HAS(bench.refusal(frame(poles(1)) + action({1, 0, 0}, -0.01) + frame(poles(2))),
+             "before scan 1: the covariance of the odometry is not positive semidefinite");
+}
+
+TEST(PoleSequence, RefusesScansWithoutTime) {
+  const Bench bench;
+  CObservationPoles scan = poles(1);
+  scan.timestamp = INVALID_TIMESTAMP;
+  EXPECT_HAS(bench.refusal(frame(scan)), "scan 0 has no time");
+}
+
+TEST(PoleSequence, RefusesBadOptions) {
+  const Bench bench;
+  const std::string bytes = frame(poles(1));
+  auto o = options();
+  o.threads = -1;
+  EXPECT_HAS(bench.refusal(bytes, o), "threads = -1");
+  o = options();
+  o.motion.minXy = -1;
+  EXPECT_HAS(bench.refusal(bytes, o), "min_xy_m");
+  o = options();
+  o.extraction.sensor.model = "none";
+  EXPECT_HAS(bench.refusal(bytes, o), "model");
+}
+
+TEST(PoleSequence, ReportsProgress) {
+  const Bench bench;
+  bench.read(frame(poles(1)) + frame(poles(2)) + frame(poles(3)));
+  std::vector<std::size_t> calls;
+  readPoleSequence(bench.path, options(),
+                   [&](std::size_t done, std::size_t) { calls.push_back(done); });
+  EXPECT_EQ(calls, (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST(PoleSequence, ExpectsAsManyScansAsTheFileIsLong) {
+  const Bench bench;
+  CObservationPoles large = poles(1);
+  large.freeRange.resize(20000);  // so that few are read ahead by bytes, but many by number
+  for (std::size_t i = 0; i < large.freeRange.size(); ++i)
+    large.freeRange[i] = static_cast<float>(i);
+  const std::string one = samples::bytesOf(large);
+  const std::size_t scans = 8'000'000 / one.size();
+  std::string bytes;
+  for (std::size_t i = 0; i < scans; ++i) bytes += one;
+  bench.read(bytes);
+  std::size_t atHalf = 0, atEnd = 0;
+  readPoleSequence(bench.path, options(), [&](std::size_t done, std::size_t total) {
+    if (2 * done == scans || 2 * done == scans + 1) atHalf = total;
+    atEnd = total;
+  });
+  // What is read ahead, 0.5 MB at most, makes it a little too few.
+  EXPECT_GT(atHalf, scans * 8 / 10);
+  EXPECT_LE(atHalf, scans * 11 / 10);
+  EXPECT_EQ(atEnd, scans);
+}
+
+}  // namespace
+}  // namespace polemcl::test_pole_sequence

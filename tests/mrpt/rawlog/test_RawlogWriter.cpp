@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CRawlog.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "mrpt/rawlog/RawlogReader.h"
+#include "mrpt/rawlog/RawlogWriter.h"
+#include "support/Samples.h"
+
+namespace polemcl::test_rawlog_writer {
+namespace {
+
+using namespace mrpt::obs;
+
+CActionCollection move(CActionRobotMovement2D::TEstimationMethod method) {
+  CActionRobotMovement2D movement;
+  movement.estimationMethod = method;
+  mrpt::math::CMatrixDouble33 C;
+  C.setDiagonal(std::vector<double>{0.01, 0.02, 0.003});
+  C(0, 1) = C(1, 0) = 0.005;
+  movement.poseChange =
+      mrpt::poses::CPosePDFGaussian::Create(mrpt::poses::CPose2D(1, -0.5, 0.25), C);
+  CActionCollection actions;
+  actions.insert(movement);
+  return actions;
+}
+
+TEST(RawlogWriter, PairsAndObservationsSurvive) {
+  const samples::Folder folder("RawlogWriter");
+  RawlogWriter writer(folder / "s.rawlog");
+  writer.write(move(CActionRobotMovement2D::emScan2DMatching),
+               std::make_shared<CObservationPoles>(samples::observation()));
+  writer.write(samples::observation());
+  EXPECT_FALSE(std::filesystem::exists(folder / "s.rawlog"));
+  writer.commit();
+
+  RawlogReader reader(folder / "s.rawlog");
+  RawlogEntry entry;
+  ASSERT_TRUE(reader.next(entry));
+  ASSERT_TRUE(entry.action && entry.frame);
+  const auto pose = entry.action->getBestMovementEstimation()->poseChange;
+  const auto [C, mean] = pose->getCovarianceAndMean();
+  EXPECT_EQ(mean.x(), 1);
+  EXPECT_EQ(mean.y(), -0.5);
+  EXPECT_EQ(mean.phi(), 0.25);
+  EXPECT_EQ(C(1, 1), 0.02);
+  EXPECT_EQ(C(0, 1), 0.005);
+  EXPECT_EQ(entry.frame->getObservationByClass<CObservationPoles>()->poles.size(), 2u);
+  ASSERT_TRUE(reader.next(entry));
+  EXPECT_TRUE(entry.observation);
+  EXPECT_FALSE(reader.next(entry));
+
+  CRawlog log;  // MRPT's own reader, too
+  ASSERT_TRUE(log.loadFromRawLogFile(folder / "s.rawlog"));
+  EXPECT_EQ(log.size(), 3u);
+}
+
+// The trap: what is written as emOdometry comes back with another mean and covariance.
+TEST(RawlogWriter, RefusesMovementsThatWouldBeLost) {
+  const samples::Folder folder("RawlogWriterLost");
+  CActionCollection odometry = move(CActionRobotMovement2D::emOdometry);
+  const auto read =
+      std::dynamic_pointer_cast<CActionCollection>(samples::objectFrom(samples::bytesOf(odometry)));
+  EXPECT_EQ(read->getBestMovementEstimation()->poseChange->getMeanVal().x(), 0);
+
+  RawlogWriter writer(folder / "s.rawlog");
+  EXPECT_THROW(writer.write(odometry, std::make_shared<CObservationPoles>()), Error);
+  EXPECT_THROW(writer.write(CActionCollection(), nullptr), Error);
+}
+
+TEST(RawlogWriter, LeavesNothingUnlessCommitted) {
+  const samples::Folder folder("RawlogWriterNothing");
+  { RawlogWriter(folder / "s.rawlog").write(samples::observation()); }
+  EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+}
+
+TEST(RawlogWriter, SameBytesEachTime) {
+  const samples::Folder folder("RawlogWriterBytes");
+  std::string first;
+  for (const char* name : {"a", "b"}) {
+    RawlogWriter writer(folder / name);
+    writer.write(move(CActionRobotMovement2D::emScan2DMatching),
+                 std::make_shared<CObservationPoles>(samples::observation()));
+    writer.commit();
+    std::ifstream in(folder / name, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    if (first.empty()) first = bytes;
+    EXPECT_EQ(bytes, first);
+  }
+}
+
+TEST(RawlogWriter, RefusesAFolderThatIsNotThere) {
+  EXPECT_THROW(RawlogWriter("/no/such/folder/s.rawlog"), Error);
+}
+
+// A limit on the size of files stands for a full disk: writes fail in mid-file.
+TEST(RawlogWriter, ReportsAFullDisk) {
+  const samples::Folder folder("RawlogWriterFull");
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{20000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  int written = 0;
+  std::string error;
+  try {
+    RawlogWriter writer(folder / "s.rawlog");
+    for (; written < 1000; ++written) writer.write(samples::observation());
+    writer.commit();
+  } catch (const Error& e) {
+    error = e.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(error.find("s.rawlog"), std::string::npos) << error;
+  EXPECT_LT(written, 1000);  // not only noticed at the end
+  EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+}
+
+}  // namespace
+}  // namespace polemcl::test_rawlog_writer

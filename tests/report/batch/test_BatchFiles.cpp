@@ -1,0 +1,251 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "core/common/Types.h"
+#include "io/file/CsvTable.h"
+#include "io/file/TextFile.h"
+#include "report/batch/BatchFiles.h"
+#include "report/batch/BatchSummary.h"
+#include "support/SampleBatches.h"
+#include "support/TempFolder.h"
+
+namespace polemcl::report::test_batch_files {
+namespace {
+
+using testing_apps::readText;
+using testing_apps::TempFolder;
+using testing_apps::writeText;
+
+/// Replaces one text by another in a file.
+void damage(const std::filesystem::path& file, const std::string& from, const std::string& to) {
+  std::string text = readText(file);
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  writeText(file, text.replace(at, from.size(), to));
+}
+
+std::string refusal(const std::filesystem::path& file) {
+  try {
+    readResultsJson(file);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Every row has as many cells as its table has columns.
+void expectFullRows(const std::filesystem::path& file) {
+  const std::regex begin(R"(\\begin\{tabular\}\{([lr]+)\})");
+  std::size_t columns = 0;
+  for (const std::string& line : io::readLines(file)) {
+    std::smatch match;
+    if (std::regex_search(line, match, begin)) columns = match[1].length();
+    if (line.size() < 3 || line.substr(line.size() - 3) != " \\\\") continue;
+    std::size_t cells = 1;
+    for (std::size_t i = 1; i < line.size(); ++i) cells += line[i] == '&' && line[i - 1] != '\\';
+    EXPECT_EQ(cells, columns) << line;
+  }
+}
+
+}  // namespace
+
+TEST(BatchFiles, WhatIsReadBackIsWhatWasWritten) {
+  const TempFolder folder;
+  const BatchResults batch = smallBatch();
+  writeResultsJson(folder / "a.json", batch);
+  const BatchResults read = readResultsJson(folder / "a.json");
+  writeResultsJson(folder / "b.json", read);
+  EXPECT_EQ(readText(folder / "a.json"), readText(folder / "b.json"));
+  // The writer could leave out the same thing twice, so the parts are compared too.
+  EXPECT_EQ(read.title, batch.title);
+  EXPECT_EQ(read.command, batch.command);
+  EXPECT_EQ(read.versions.compiler, "GCC 12.2");
+  EXPECT_EQ(read.settings[0].config, batch.settings[0].config);
+  EXPECT_EQ(read.sessions[2].length, 1480.5);
+  EXPECT_TRUE(std::isnan(read.sessions[1].length));
+  ASSERT_EQ(read.results.size(), 4u);
+  const BatchRun& run = read.results[1].runs[0];
+  EXPECT_EQ(run.errors.posRmse, batch.results[1].runs[0].errors.posRmse);
+  EXPECT_EQ(run.errors.yRmse, batch.results[1].runs[0].errors.yRmse);
+  EXPECT_EQ(run.errors.unmatched, 3u);
+  EXPECT_EQ(run.health.degraded, 0.1);
+  EXPECT_EQ(run.health.firstPoseScan, 0u);
+  EXPECT_FALSE(read.results[2].runs[1].health.firstPoseScan);
+  EXPECT_EQ(read.results[1].runs[1].failure, "disk full, \"really\"");
+  const SessionPlots plots = smallPlots();
+  EXPECT_EQ(read.results[0].plots.mapPoles, plots.mapPoles);
+  EXPECT_EQ(read.results[0].plots.estimate, plots.estimate);
+  EXPECT_EQ(read.results[0].plots.position.largest[2], 0.35);
+  EXPECT_TRUE(std::isnan(read.results[0].plots.position.largest[1]));
+  EXPECT_EQ(read.results[0].plots.headingErrors.counts, plots.headingErrors.counts);
+  EXPECT_EQ(read.failures[0].log, "logs/a<b.log");
+}
+
+TEST(BatchFiles, ScoresAndPublishedSessionsAreReadBack) {
+  const TempFolder folder;
+  const BatchResults batch = scoredBatch();
+  writeResultsJson(folder / "a.json", batch);
+  const BatchResults read = readResultsJson(folder / "a.json");
+  writeResultsJson(folder / "b.json", read);
+  EXPECT_EQ(readText(folder / "a.json"), readText(folder / "b.json"));
+  EXPECT_FALSE(read.results[0].score);
+  ASSERT_TRUE(read.results[2].score);
+  EXPECT_EQ(read.results[2].score->truth, "truth.csv");
+  EXPECT_EQ(read.results[2].score->near.matches, 6u);
+  EXPECT_EQ(read.results[2].score->oneToOne.precision, 5 / 8.0);
+  EXPECT_EQ(read.results[2].score->oneToOneHalf.truthPoles, 10u);
+  ASSERT_EQ(read.published.size(), 4u);
+  EXPECT_EQ(read.published[1].session, "three");
+  EXPECT_EQ(read.published[1].posRmse, 0.354);
+  EXPECT_TRUE(std::isnan(read.published[3].mapShare));
+  const auto json = nlohmann::json::parse(readText(folder / "a.json"));
+  EXPECT_EQ(json["summary"][0]["scored_maps"], 1);
+  EXPECT_EQ(json["summary"][0]["map_score"]["near_1m"]["recall"], 0.6);
+}
+
+TEST(BatchFiles, MapsAsATable) {
+  const TempFolder folder;
+  writeMapsCsv(folder / "maps.csv", scoredBatch());
+  const io::CsvTable table(folder / "maps.csv");
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.text(0, table.column("setting")), "plain");
+  EXPECT_EQ(table.text(0, table.column("session")), "three");
+  EXPECT_EQ(table.text(0, table.column("truth")), "truth.csv");
+  EXPECT_EQ(table.number(0, table.column("truth_poles")), 10);
+  EXPECT_EQ(table.number(0, table.column("near_1m_precision")), 0.75);
+  EXPECT_EQ(table.number(0, table.column("one_to_one_1m_matches")), 5);
+  EXPECT_EQ(table.number(0, table.column("one_to_one_0.5m_recall")), 0.4);
+  EXPECT_EQ(table.number(1, table.column("near_1m_recall")), 0.8);
+  writeMapsCsv(folder / "none.csv", smallBatch());
+  EXPECT_EQ(io::readLines(folder / "none.csv").size(), 1u);
+}
+
+TEST(BatchFiles, ScriptsFindTheSummaries) {
+  const TempFolder folder;
+  writeResultsJson(folder / "a.json", smallBatch());
+  const auto json = nlohmann::json::parse(readText(folder / "a.json"));
+  const auto& plain = json["summary"][0];
+  EXPECT_EQ(plain["setting"], "plain");
+  EXPECT_EQ(plain["lost"], 2);
+  EXPECT_NEAR(plain["figures"]["pos_mean"]["mean"], 4.6 / 3, 1e-12);
+  EXPECT_NEAR(plain["sessions"][0]["figures"]["ang_mean_deg"]["mean"], 0.3, 1e-12);
+  EXPECT_TRUE(json["summary"][1]["last_over_first"].is_null());
+  EXPECT_EQ(json["results"][2]["runs"][1]["state"], "lost");
+}
+
+TEST(BatchFiles, RefusesWhatIsNoResults) {
+  const TempFolder folder;
+  const auto file = folder / "a.json";
+  EXPECT_NE(refusal(file).find("cannot be read"), std::string::npos);
+  const auto expectRefusal = [&](const std::string& from, const std::string& to,
+                                 const std::string& why) {
+    writeResultsJson(file, smallBatch());
+    damage(file, from, to);
+    const std::string message = refusal(file);
+    EXPECT_NE(message.find(why), std::string::npos) << message;
+    EXPECT_EQ(message.rfind(file.string(), 0), 0u) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  };
+  expectRefusal("\"seed\": 1001", "\"seed\": -1", "results[0].runs[1].seed");
+  expectRefusal("\"pos_rmse\": 0.8,", "\"pos_rmse\": \"0.8\",", "errors.pos_rmse");
+  expectRefusal("\"failures\"", "\"failings\"", "'failures' is missing");
+  expectRefusal("\"format_version\": 2", "\"format_version\": 1", "version is 1");
+  expectRefusal("\"session\": \"two_2\",\n      \"f_map\": 0.25", "\"session\": \"four\"",
+                "results[1].session");
+  expectRefusal("\"map_poles_xy\": [1.0,", "\"map_poles_xy\": [", "pairs of x and y");
+  writeResultsJson(file, smallBatch());
+  const std::string text = readText(file);
+  writeText(file, text.substr(0, text.size() / 2));
+  EXPECT_NE(refusal(file).find("no complete JSON file"), std::string::npos);
+}
+
+TEST(BatchFiles, RunsAsATable) {
+  const TempFolder folder;
+  writeRunsCsv(folder / "runs.csv", smallBatch());
+  EXPECT_EQ(io::readLines(folder / "runs.csv")[4],
+            "plain,two_2,1,1001,failed,\"disk full, \"\"really\"\"\",,,,,,,,,,,,,,0,0,,,,,0");
+  const io::CsvTable table(folder / "runs.csv");
+  ASSERT_EQ(table.rows(), 7u);
+  EXPECT_EQ(table.text(0, table.column("session")), "one<&\">");
+  EXPECT_EQ(table.text(5, table.column("state")), "lost");
+  EXPECT_EQ(table.number(2, table.column("pos_rmse")), 0.8);
+  EXPECT_EQ(table.number(2, table.column("first_pose_scan")), 0);
+  EXPECT_EQ(table.text(6, table.column("setting")), "up_keep 100 %");
+}
+
+TEST(BatchFiles, SessionsAsATable) {
+  const TempFolder folder;
+  writeSessionsCsv(folder / "sessions.csv", smallBatch());
+  const io::CsvTable table(folder / "sessions.csv");
+  ASSERT_EQ(table.rows(), 4u);
+  EXPECT_NEAR(table.number(0, table.column("pos_mean")), 0.2, 1e-8);
+  EXPECT_NEAR(table.number(0, table.column("pos_mean_sd")), std::sqrt(0.02), 1e-8);
+  EXPECT_EQ(table.text(1, table.column("pos_mean_sd")), "");
+  EXPECT_EQ(table.number(1, table.column("failed")), 1);
+  EXPECT_EQ(table.text(1, table.column("length_m")), "");
+  EXPECT_EQ(table.number(3, table.column("f_map")), 0);
+}
+
+TEST(BatchFiles, LatexShowsEveryLetter) {
+  EXPECT_EQ(latexText("a_b & 5 % #1 $x$ {y}"), "a\\_b \\& 5 \\% \\#1 \\$x\\$ \\{y\\}");
+  EXPECT_EQ(latexText("\\~^<>|"),
+            "\\textbackslash{}\\textasciitilde{}\\textasciicircum{}\\textless{}\\textgreater{}"
+            "\\textbar{}");
+  EXPECT_EQ(latexText("--jobs ''"), "-{}-jobs '{}'");
+  EXPECT_EQ(latexText("two\nlines"), "two lines");
+}
+
+TEST(BatchFiles, LatexTableHoldsThePapersColumns) {
+  const TempFolder folder;
+  BatchResults batch = smallBatch();
+  batch.dataset = "mulran-kaist";
+  writeLatexTable(folder / "table.tex", batch);
+  const std::string text = readText(folder / "table.tex");
+  EXPECT_NE(text.find("one\\textless{}\\&\"\\textgreater{} & 100.0 & $0.200 \\pm 0.141$ & "
+                      "$0.400 \\pm 0.283$ & $0.300 \\pm 0.141$ & $0.600 \\pm 0.283$ \\\\\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("two\\_2 & 25.0 & 0.400 & 0.800 & 0.800 & 1.600 \\\\\n"), std::string::npos);
+  EXPECT_NE(text.find("6 runs, 2 lost, 1 failed."), std::string::npos);
+  EXPECT_NE(text.find("Dong et al. 2021 & -- & 48.0 & 0.270 \\\\\n"), std::string::npos);
+  EXPECT_NE(text.find("polemcl, up\\_keep 100 \\% & 0.400 & 7.1 & 1.000 \\\\\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("$\\mathrm{RMSE}_\\mathrm{axis}$ [cm]"), std::string::npos);
+  EXPECT_NE(text.find("$\\mathrm{RMSE}_\\mathrm{pos}$ [m]"), std::string::npos);
+  expectFullRows(folder / "table.tex");
+}
+
+TEST(BatchFiles, LatexTablesHoldScoresAndPublishedSessions) {
+  const TempFolder folder;
+  BatchResults batch = scoredBatch();
+  batch.dataset = "nclt";
+  writeLatexTable(folder / "table.tex", batch);
+  const std::string text = readText(folder / "table.tex");
+  const auto expectRow = [&](const std::string& row) {
+    EXPECT_NE(text.find("    " + row + " \\\\\n"), std::string::npos) << row << " is not in\n"
+                                                                      << text;
+  };
+  expectRow("Dong et al. 2021 & 0.525 & 0.713 & 0.605 & -- & -- & -- & -- & -- & --");
+  expectRow(
+      "polemcl, plain & 0.750 & 0.600 & 0.667 & 0.625 & 0.500 & 0.556 & 0.500 & 0.400 & 0.444");
+  expectRow(
+      "two\\_2 & 25.0 & 0.400 & 0.120 & 0.130 & 0.800 & 0.146 & 0.178 & 0.800 & 0.626 & 0.663 & "
+      "1.600 & 0.810 & 0.857");
+  expectFullRows(folder / "table.tex");
+}
+
+TEST(BatchFiles, NoFigureIsNeverPrinted) {
+  const TempFolder folder;
+  writeRunsCsv(folder / "runs.csv", smallBatch());
+  writeSessionsCsv(folder / "sessions.csv", smallBatch());
+  writeLatexTable(folder / "table.tex", smallBatch());
+  writeResultsJson(folder / "results.json", smallBatch());
+  const std::regex notANumber("\\b(nan|inf)\\b", std::regex::icase);
+  for (const std::string& name : testing_apps::names(folder.path()))
+    EXPECT_FALSE(std::regex_search(readText(folder / name), notANumber)) << name;
+}
+
+}  // namespace polemcl::report::test_batch_files

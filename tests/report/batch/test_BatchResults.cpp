@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/common/Types.h"
+#include "report/batch/BatchResults.h"
+#include "support/SampleBatches.h"
+
+namespace polemcl::report::test_batch_results {
+
+TEST(BatchResults, HistogramEdgesAreTenToAFactorOfTen) {
+  EXPECT_NEAR(ErrorHistogram::edge(0), 1e-3, 1e-15);
+  EXPECT_NEAR(ErrorHistogram::edge(10), 1e-2, 1e-14);
+  EXPECT_NEAR(ErrorHistogram::edge(23), 0.199526231, 1e-8);
+  EXPECT_NEAR(ErrorHistogram::edge(ErrorHistogram::bins), 100, 1e-9);
+}
+
+TEST(BatchResults, EachValueFallsBetweenTheEdgesOfItsBin) {
+  for (double value = 1.01e-3; value < 99; value *= 1.07) {
+    ErrorHistogram histogram;
+    histogram.add(value);
+    for (std::size_t i = 0; i < ErrorHistogram::bins; ++i) {
+      const bool within = ErrorHistogram::edge(i) <= value && value < ErrorHistogram::edge(i + 1);
+      EXPECT_EQ(histogram.counts[i], within ? 1u : 0u) << value << " in bin " << i;
+    }
+  }
+}
+
+TEST(BatchResults, ValuesBeyondTheHistogramAreCountedAtItsEnds) {
+  ErrorHistogram histogram;
+  for (double value : {0.0, 1e-5, 1e4}) histogram.add(value);
+  EXPECT_EQ(histogram.counts.front(), 2u);
+  EXPECT_EQ(histogram.counts.back(), 1u);
+  histogram.add(histogram);
+  EXPECT_EQ(histogram.total(), 6u);
+  EXPECT_THROW(histogram.add(-0.1), Error);
+  EXPECT_THROW(histogram.add(noFigure), Error);
+}
+
+TEST(BatchResults, FindsAPairAndNothingElse) {
+  const BatchResults batch = smallBatch();
+  EXPECT_EQ(batch.find(1, 1), &batch.results[3]);
+  EXPECT_EQ(batch.find(1, 0), nullptr);
+}
+
+TEST(BatchResults, RefusesWhatCannotBeTrue) {
+  EXPECT_NO_THROW(smallBatch().validate());
+  const std::function<void(BatchResults&)> breakages[] = {
+      [](BatchResults& b) { b.settings.clear(); },
+      [](BatchResults& b) { b.sessions.clear(); },
+      [](BatchResults& b) { b.sessions[1].name = b.sessions[0].name; },
+      [](BatchResults& b) { b.settings[1].name = ""; },
+      [](BatchResults& b) { b.results[3].setting = 2; },
+      [](BatchResults& b) { b.results[3].session = 3; },
+      [](BatchResults& b) { b.results[3] = b.results[0]; },
+      [](BatchResults& b) { b.results[0].mapShare = 1.01; },
+      [](BatchResults& b) { b.results[0].runs[1].health.lost = -0.1; },
+      [](BatchResults& b) { b.results[0].plots.truth[1].x() = NAN; },
+      [](BatchResults& b) { b.results[0].plots.mapPoles[0].y() = HUGE_VAL; },
+      [](BatchResults& b) { b.results[0].plots.position.binWidth = 0; },
+      [](BatchResults& b) { b.results[0].plots.headingErrors.counts.pop_back(); },
+      [](BatchResults& b) { b.lostBound = NAN; },
+  };
+  int index = 0;
+  for (const auto& damage : breakages) {
+    BatchResults batch = smallBatch();
+    damage(batch);
+    EXPECT_THROW(batch.validate(), Error) << "breakage " << index;
+    ++index;
+  }
+}
+
+}  // namespace polemcl::report::test_batch_results

@@ -1,0 +1,57 @@
+#pragma once
+/// \file BatchTestFiles.h
+/// \brief Batches for tests: files of simulated sessions, plans of made-up tasks.
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "batch/BatchPlan.h"
+#include "core/common/Types.h"
+#include "support/TempFolder.h"
+
+namespace testing_apps {
+
+inline std::string messageOf(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const polemcl::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A batch of three short simulated drives of drawn poles, two runs under two settings.
+inline fs::path writeStreetBatch(const TempFolder& folder) {
+  const std::string source = POLEMCL_SOURCE_DIR;
+  writeText(folder / "street.ini", readText(source + "/config/hdl32e.ini") +
+                                       "\n[world]\nseed = 31\nlength_m = 120\n[simulation]\n"
+                                       "detections = " +
+                                       source + "/share/models/hdl32e.json\n");
+  writeText(folder / "street-batch.ini",
+            "[batch]\nruns = 2\nsettings = kept once\n"
+            "[sessions]\nnames = s0 s1 s2\nsource = simulated\ninput = street.ini\n"
+            "[session s1]\nset = world.day=1\ndate = 2026-02-01\n"
+            "[session s2]\nset = world.day=2\n"
+            "[setting kept]\nconfig = " +
+                source +
+                "/config/hdl32e.ini\nset = filter.particles=200\nmap_sessions = all\n"
+                "sessions = s1 s2\nmaps = upkeep\n"
+                "[setting once]\nconfig = " +
+                source + "/config/hdl32e.ini\nset = filter.particles=200\nsessions = s1 s2\n");
+  return folder / "street-batch.ini";
+}
+
+/// The files of a folder and what is in them, by path, but for those whose path holds `except`.
+inline std::map<std::string, std::string> contents(const fs::path& folder,
+                                                   const std::string& except = "\n") {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = fs::relative(entry.path(), folder).string();
+    if (entry.is_regular_file() && name.find(except) == std::string::npos)
+      all[name] = readText(entry.path());
+  }
+  return all;
+}
+
+}  // namespace testing_apps

@@ -1,0 +1,42 @@
+// Options, starts and frames that tests of the particle filter share.
+#pragma once
+
+#include <cmath>
+#include <memory>
+
+#include "mrpt/filter/PoleParticleFilter.h"
+#include "support/PoleStreet.h"
+
+namespace polemcl::tests {
+
+inline constexpr double degree = M_PI / 180;
+
+/// Particles stay where they are told to: no noise, no resampling.
+inline FilterOptions still() {
+  FilterOptions options;
+  options.resampleBelow = 0;
+  options.tempering = options.regularization = options.extraSigma = options.extraSigmaYaw = 0;
+  return options;
+}
+
+inline StartOptions at(const Pose2D& pose, double radius = 2.5, double heading = 5 * degree) {
+  StartOptions start;
+  start.pose = pose;
+  start.radius = radius;
+  start.heading = heading;
+  return start;
+}
+
+/// The map of a small street, for tests that do not need to drive.
+inline std::shared_ptr<CPoleMap> smallMap() {
+  return makeStreet({}).map;
+}
+
+inline PoleFrame emptyFrame(double time, const io::PlanarMotion& motion = {}) {
+  PoleFrame frame;
+  frame.time = time;
+  frame.motion = motion;
+  return frame;
+}
+
+}  // namespace polemcl::tests

@@ -1,0 +1,54 @@
+#pragma once
+/// \file SampleViews.h
+/// \brief A small drive to draw: along x from 0 to 20 m, four poles beside it.
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "report/picture/MapView.h"
+
+namespace polemcl::report {
+
+inline MapPole poleAt(double x, double y) {
+  MapPole pole;
+  pole.x = x;
+  pole.y = y;
+  pole.radius = 0.15;
+  pole.bottom = 0.5;
+  pole.top = 4.5;
+  pole.count = 3;
+  return pole;
+}
+
+/// Truth along the x axis at 1 m/s; the estimate lies `offset` to its left, heading `turn` off.
+inline MapView smallDrive(double offset = 0.1, double turn = 0.01) {
+  MapView view;
+  view.title = "A small drive";
+  view.poles = {poleAt(2, 6), poleAt(8, -6), poleAt(14, 6), poleAt(20, -6)};
+  for (int i = 0; i <= 20; ++i) {
+    view.truth.push_back({static_cast<double>(i), {static_cast<double>(i), 0, 0}});
+    view.estimate.push_back({static_cast<double>(i), {static_cast<double>(i), offset, turn}});
+  }
+  return view;
+}
+
+/// An empty folder of its own for the files of one test; gone with it.
+class TestFolder {
+ public:
+  TestFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "polemcl_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no folder for the test");
+    m_path = name;
+  }
+  ~TestFolder() { std::filesystem::remove_all(m_path); }
+  TestFolder(const TestFolder&) = delete;
+  TestFolder& operator=(const TestFolder&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return m_path / name; }
+
+ private:
+  std::filesystem::path m_path;
+};
+
+}  // namespace polemcl::report

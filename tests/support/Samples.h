@@ -1,0 +1,76 @@
+#pragma once
+/// \file Samples.h
+/// \brief Poles and clouds for the tests, made up but plausible; and archives in memory.
+
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/serialization/CArchive.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "mrpt/observation/CObservationPoles.h"
+
+namespace polemcl::samples {
+
+/// \brief A detection whose fields all differ, so that a mix-up shows.
+inline PoleDetection pole(double x, double y) {
+  PoleDetection p;
+  p.x = x;
+  p.y = y;
+  p.radius = 0.125;
+  p.bottom = 0.25;
+  p.top = 3.5;
+  p.confidence = 0.75;
+  p.covariance << 0.04, 0.01, 0.01, 0.09;
+  p.points = 42;
+  return p;
+}
+
+/// \brief Two poles seen by a sensor 1 m ahead, 2 m to the left, turned by a quarter.
+inline CObservationPoles observation() {
+  CObservationPoles scan;
+  scan.timestamp = mrpt::Clock::fromDouble(1326653000.25);
+  scan.sensorLabel = "LIDAR";
+  scan.sensorPose = mrpt::poses::CPose3D(1, 2, 1.5, M_PI / 2, 0.0, 0.0);
+  scan.poles = {pole(5, 0), pole(-3, 4)};
+  scan.poles[1].radius = 0.2;
+  scan.freeRange = {1, 2.5, 0, 4};
+  scan.points = 1234;
+  return scan;
+}
+
+inline std::string bytesOf(const mrpt::serialization::CSerializable& object) {
+  mrpt::io::CMemoryStream memory;
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  archive << object;
+  return {static_cast<const char*>(memory.getRawBufferData()),
+          static_cast<std::size_t>(memory.getTotalBytesCount())};
+}
+
+inline mrpt::serialization::CSerializable::Ptr objectFrom(const std::string& bytes) {
+  mrpt::io::CMemoryStream memory(bytes.data(), bytes.size());
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  return archive.ReadObject();
+}
+
+/// \brief A folder of its own for one test, removed afterwards.
+class Folder {
+ public:
+  explicit Folder(const std::string& name)
+      : m_path(std::filesystem::temp_directory_path() /
+               ("polemcl_" + name + "_" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(m_path);
+    std::filesystem::create_directories(m_path);
+  }
+  ~Folder() { std::filesystem::remove_all(m_path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string operator/(const std::string& name) const { return (m_path / name).string(); }
+
+ private:
+  std::filesystem::path m_path;
+};
+
+}  // namespace polemcl::samples

@@ -1,0 +1,47 @@
+#pragma once
+/// \file StreetTest.h
+/// \brief What the tests of pole-extract and pole-map share: an imported street.
+
+#include "cli/Settings.h"
+#include "import/DatasetImport.h"
+#include "support/PoleStreetFiles.h"
+
+namespace testing_apps {
+
+class StreetTest : public testing::Test {
+ protected:
+  StreetTest() {
+    // Its own, so that tuning config/ changes no test here.
+    writeText(configFolder / "street.ini",
+              "[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\nsection_length_m = 1.5\n"
+              "min_count = 2\n");
+  }
+  std::string config() const { return (configFolder / "street.ini").string(); }
+  polemcl::apps::Settings settings() const { return polemcl::apps::loadSettings(config()); }
+  std::string at(const std::string& name) const { return (folder / name).string(); }
+
+  /// Imports `folder/NAME` as `folder/NAME.rawlog` and `folder/NAME.tum`.
+  void import(const std::string& name, bool embed = true, const std::string& sensorPose = "") {
+    polemcl::apps::ImportOptions options;
+    options.input = folder / name;
+    options.output = folder / (name + ".rawlog");
+    options.embed = embed;
+    if (!sensorPose.empty()) options.T_robot_sensor = polemcl::apps::parseSensorPose(sensorPose);
+    polemcl::apps::importDataset(options);
+  }
+
+  /// Replaces a word by another of the same length, everywhere in a file.
+  void replace(const std::string& name, const std::string& word, const std::string& by) const {
+    std::string bytes = readText(folder / name);
+    for (auto p = bytes.find(word); p != std::string::npos; p = bytes.find(word, p + 1))
+      bytes.replace(p, word.size(), by);
+    writeText(folder / name, bytes);
+  }
+
+  TempFolder folder;
+
+ private:
+  TempFolder configFolder;
+};
+
+}  // namespace testing_apps

@@ -1,0 +1,23 @@
+#pragma once
+/// \file WholeScan.h
+/// \brief Scan lines of all points of a cloud, those on the ground included.
+
+#include "core/extraction/scan_line/ScanLines.h"
+
+namespace polemcl::clouds {
+
+/// \brief What became of the points: the counts of both steps.
+struct WholeScanCounts {
+  ScanLines::Counts lines;
+  GroundGrid::Counts dropped;
+};
+
+inline WholeScanCounts buildWhole(ScanLines& lines, const PointsView& points, float minRange,
+                                  float maxRange) {
+  constexpr float kAbyss = 1e6f;  // m: a ground so low that nothing lies on it
+  GroundGrid ground;
+  ground.build(points, minRange, maxRange, kAbyss);
+  return {lines.build(points, ground, 0), ground.counts()};
+}
+
+}  // namespace polemcl::clouds
