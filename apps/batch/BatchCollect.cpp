@@ -58,7 +58,7 @@ std::string settingsShown(const std::string& ini) {
   return shown;
 }
 
-std::string protocolOf(const BatchSetting& setting) {
+std::string protocolOf(const BatchConfiguration& setting) {
   const auto& maps = setting.mapSessions;
   const std::string sessions =
       maps.size() == 1 ? "session " + maps.front() : std::to_string(maps.size()) + " sessions";
@@ -134,7 +134,7 @@ class Collector {
 
   bool isUsed(const std::string& session) const {
     return std::any_of(m_plan.cells.begin(), m_plan.cells.end(),
-                       [&](const BatchCell& cell) { return cell.session == session; });
+                       [&](const Experiment& cell) { return cell.session == session; });
   }
 
   bool isDone(const std::string& task) const {
@@ -183,7 +183,7 @@ class Collector {
   }
 
   /// Share of a session's scans that its map used, as pole-map noted it.
-  double mapShare(const BatchCell& cell) {
+  double mapShare(const Experiment& cell) {
     if (!isDone(cell.ownMap)) return noFigure;
     const auto& info = mapOf(cell.ownMap).info;
     const auto share = info.find("f_map." + cell.session);
@@ -192,7 +192,7 @@ class Collector {
   }
 
   /// Scores of the map that the session completes; none when there are none.
-  std::optional<report::MapScores> scoresOf(const BatchCell& cell) const {
+  std::optional<report::MapScores> scoresOf(const Experiment& cell) const {
     if (!isDone(cell.score)) return {};
     report::MapScores scores;
     const std::string& truth = m_spec.session(cell.session).truthMap;
@@ -210,7 +210,7 @@ class Collector {
     return scores;
   }
 
-  void addCell(const BatchCell& cell) {
+  void addCell(const Experiment& cell) {
     report::SessionResult result;
     result.setting = settingIndex(cell.setting);
     result.session = indexOf(cell.session);
@@ -227,7 +227,7 @@ class Collector {
     m_results.results.push_back(std::move(result));
   }
 
-  report::BatchRun readRun(const BatchCell& cell, std::size_t i, report::SessionResult& result) {
+  report::BatchRun readRun(const Experiment& cell, std::size_t i, report::SessionResult& result) {
     report::BatchRun run;
     run.run = i;
     run.seed = cell.seeds[i];
@@ -263,7 +263,7 @@ class Collector {
     const auto estimate = io::planar(io::readTum(file));
     const auto sampling = m_spec.perMetre ? Sampling::perMetre : Sampling::perPose;
     const TrajectoryErrors errors = evaluateTrajectory(truth, estimate, sampling);
-    run.errors = report::errorFigures(errors, truth);
+    run.errors = report::errorMetrics(errors, truth);
     report::addErrors(plots, errors);
     if (run.run > 0) return;
     plots.estimate = report::thinPath(estimate);

@@ -26,9 +26,11 @@ std::string plannedContentOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Least confidence of poles for maps where it is another than for localization, see surveyDrive().
+/// Least confidence of poles for maps where it is another than for localization, see
+/// loadMappingSession().
 std::string mapConfidence(const Settings& settings) {
-  const double map = settings.map.minConfidence, native = settings.extraction.native.minConfidence;
+  const double map = settings.map.minConfidence,
+               native = settings.extraction.scanLine.minConfidence;
   return map > 0 && map != native ? io::significant(map, 9) : "";
 }
 
@@ -78,7 +80,7 @@ class Planner {
   }
 
   /// Whether a session completes a map of the setting, and its true poles are known.
-  static bool isScored(const BatchSetting& setting, const BatchSession& session) {
+  static bool isScored(const BatchConfiguration& setting, const BatchSession& session) {
     const auto& names = setting.mapSessions;
     return !session.truthMap.empty() &&
            (setting.protocol == MapProtocol::each ? has(names, session.name)
@@ -139,7 +141,7 @@ class Planner {
     return "../../" + name;
   }
 
-  void freeze(const BatchSetting& setting) {
+  void freeze(const BatchConfiguration& setting) {
     const Settings settings = loadSettings(setting.config, setting.set);
     const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), setting.name);
     m_group[setting.name] = group->second;
@@ -210,7 +212,7 @@ class Planner {
       append(command, {"--output", group.name + rawlog});
       if (hasPoles(group, session.name)) task.commands.push_back(command);
       if (!hasMapPoles(group, session.name)) continue;
-      append(forMaps, {"--set", "native.min_confidence=" + group.mapConfidence, "--output",
+      append(forMaps, {"--set", "scan_line.min_confidence=" + group.mapConfidence, "--output",
                        group.name + mapFolder + rawlog});
       task.commands.push_back(forMaps);
     }
@@ -222,14 +224,14 @@ class Planner {
   }
 
   static std::string truthId(const BatchSession& session) { return "truth." + session.name; }
-  static std::string scoreId(const BatchSetting& setting, const std::string& session) {
+  static std::string scoreId(const BatchConfiguration& setting, const std::string& session) {
     return "score." + setting.name + "." + session;
   }
-  static std::string mapId(const BatchSetting& setting, const std::string& session) {
+  static std::string mapId(const BatchConfiguration& setting, const std::string& session) {
     return "map." + setting.name + "." + session;
   }
 
-  std::string rawlogOf(const BatchSetting& setting, const std::string& session,
+  std::string rawlogOf(const BatchConfiguration& setting, const std::string& session,
                        bool forMaps = false) const {
     std::string folder = "../poles." + session + "/";
     if (hasGroups(m_spec.session(session))) {
@@ -251,7 +253,7 @@ class Planner {
   }
 
   /// The map that a session is localized in: the number of its last map session, from 1.
-  std::size_t mapFor(const BatchSetting& setting, const std::string& session) const {
+  std::size_t mapFor(const BatchConfiguration& setting, const std::string& session) const {
     const auto& maps = setting.mapSessions;
     if (setting.protocol == MapProtocol::each)
       return static_cast<std::size_t>(std::find(maps.begin(), maps.end(), session) - maps.begin()) +
@@ -262,7 +264,7 @@ class Planner {
                       [&](const std::string& name) { return placeOf(name) < placeOf(session); }));
   }
 
-  void addMaps(const BatchSetting& setting) {
+  void addMaps(const BatchConfiguration& setting) {
     std::set<std::size_t> wanted;
     for (const auto& session : setting.sessions) wanted.insert(mapFor(setting, session));
     for (const auto& session : m_spec.sessions)
@@ -275,13 +277,13 @@ class Planner {
   }
 
   /// Dates that some have and others have not would be years apart.
-  bool allDated(const BatchSetting& setting) const {
+  bool allDated(const BatchConfiguration& setting) const {
     return std::none_of(setting.mapSessions.begin(), setting.mapSessions.end(),
                         [&](const std::string& name) { return m_spec.session(name).date.empty(); });
   }
 
   /// The map of the first n map sessions, or of the n-th alone.
-  void addMap(const BatchSetting& setting, std::size_t n) {
+  void addMap(const BatchConfiguration& setting, std::size_t n) {
     const auto& names = setting.mapSessions;
     BatchTask task;
     task.id = mapId(setting, names[n - 1]);
@@ -311,7 +313,7 @@ class Planner {
   }
 
   /// Scores the map that the session completes.
-  void addScore(const BatchSetting& setting, const BatchSession& session) {
+  void addScore(const BatchConfiguration& setting, const BatchSession& session) {
     BatchTask task;
     task.id = scoreId(setting, session.name);
     task.kind = "score";
@@ -327,12 +329,12 @@ class Planner {
     m_plan.tasks.push_back(std::move(task));
   }
 
-  void addCells(const BatchSetting& setting) {
+  void addCells(const BatchConfiguration& setting) {
     for (const auto& session : m_spec.sessions) {
       const bool mapped = has(setting.mapSessions, session.name);
       const bool localized = has(setting.sessions, session.name);
       if (!localized && !mapped) continue;
-      BatchCell cell;
+      Experiment cell;
       cell.setting = setting.name;
       cell.session = session.name;
       cell.poles = rawlogOf(setting, session.name, !localized).substr(3);
@@ -344,7 +346,7 @@ class Planner {
   }
 
   /// A map that the session went into: the first there is.
-  std::string lastMapOf(const BatchSetting& setting, const std::string& session) const {
+  std::string lastMapOf(const BatchConfiguration& setting, const std::string& session) const {
     const auto& names = setting.mapSessions;
     const auto at = std::find(names.begin(), names.end(), session);
     for (auto name = at; name != names.end(); ++name)
@@ -353,7 +355,7 @@ class Planner {
     return {};
   }
 
-  void addRuns(const BatchSetting& setting, BatchCell& cell) {
+  void addRuns(const BatchConfiguration& setting, Experiment& cell) {
     cell.map = mapId(setting, setting.mapSessions[mapFor(setting, cell.session) - 1]);
     for (int run = 0; run < m_spec.runs; ++run) {
       BatchTask task;
@@ -415,18 +417,18 @@ class Planner {
 
   /// Whether any setting of the group takes the session's poles for that.
   bool isFor(const Group& group, const std::string& session,
-             std::vector<std::string> BatchSetting::*purpose) const {
+             std::vector<std::string> BatchConfiguration::*purpose) const {
     return std::any_of(m_spec.settings.begin(), m_spec.settings.end(), [&](const auto& setting) {
       return m_group.at(setting.name) == group.name && has(setting.*purpose, session);
     });
   }
   /// Poles for maps are those of localization, unless the group has others for maps.
   bool hasMapPoles(const Group& group, const std::string& session) const {
-    return !group.mapConfidence.empty() && isFor(group, session, &BatchSetting::mapSessions);
+    return !group.mapConfidence.empty() && isFor(group, session, &BatchConfiguration::mapSessions);
   }
   bool hasPoles(const Group& group, const std::string& session) const {
-    return isFor(group, session, &BatchSetting::sessions) ||
-           (group.mapConfidence.empty() && isFor(group, session, &BatchSetting::mapSessions));
+    return isFor(group, session, &BatchConfiguration::sessions) ||
+           (group.mapConfidence.empty() && isFor(group, session, &BatchConfiguration::mapSessions));
   }
 
   std::map<std::string, std::string> m_groupOf;  ///< text of the extraction -> name of the group

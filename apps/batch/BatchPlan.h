@@ -32,7 +32,7 @@ struct BatchTask {
 };
 
 /// \brief Where the results of one session under one setting come from.
-struct BatchCell {
+struct Experiment {
   std::string setting, session;
   std::string poles;              ///< its rawlog of poles, relative to the folder of tasks
   std::string map;                ///< id of the map it is localized in; empty: not localized
@@ -46,7 +46,7 @@ struct BatchPlan {
   std::string name;
   std::string build;             ///< of the programs that planned it, see buildIdentity()
   std::vector<BatchTask> tasks;  ///< none needs a later one
-  std::vector<BatchCell> cells;
+  std::vector<Experiment> cells;
   /// Frozen copies of what INI files say, relative to the batch's folder: settings, models.
   std::map<std::string, std::string> files;
   /// MD5 of each of them: what a stored plan has instead of their content.
@@ -56,10 +56,10 @@ struct BatchPlan {
 };
 
 /// \brief Plans a batch. Sessions are imported once and extracted once for all settings that use
-/// them and have the same `[sensor] [extraction] [paper] [native]`; maps are built once for all
-/// sessions and runs. Maps that a setting's last map session completes (with `maps = each`: all)
-/// are scored where that session has a truthMap.
-/// \throws Error as loadSettings() and readPublishedSessions(), and when the input or the true
+/// them and have the same `[sensor] [extraction] [range_image] [scan_line]`; maps are built once
+/// for all sessions and runs. Maps that a setting's last map session completes (with `maps = each`:
+/// all) are scored where that session has a truthMap. \throws Error as loadSettings() and
+/// readPublishedSessions(), and when the input or the true
 ///         poles of a session are not there (all that are missing are named).
 /// \param build Of the programs that do the tasks: tasks that another build has done are open.
 BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());

@@ -16,7 +16,7 @@ Json toJson(const BatchTask& task) {
           {"outputs", task.outputs}, {"key", task.key}};
 }
 
-Json toJson(const BatchCell& cell) {
+Json toJson(const Experiment& cell) {
   return {{"setting", cell.setting}, {"session", cell.session}, {"poles", cell.poles},
           {"map", cell.map},         {"own_map", cell.ownMap},  {"score", cell.score},
           {"runs", cell.runs},       {"seeds", cell.seeds}};
@@ -33,8 +33,8 @@ BatchTask taskFrom(const Json& json) {
   return task;
 }
 
-BatchCell cellFrom(const Json& json) {
-  BatchCell cell;
+Experiment cellFrom(const Json& json) {
+  Experiment cell;
   json.at("setting").get_to(cell.setting);
   json.at("session").get_to(cell.session);
   json.at("poles").get_to(cell.poles);

@@ -171,7 +171,7 @@ std::vector<std::string> chosen(const std::string& text, const std::vector<Batch
 }
 
 /// Each session that is localized in the map before it needs a map session before it.
-void requireMaps(const BatchSetting& setting, const std::vector<BatchSession>& sessions,
+void requireMaps(const BatchConfiguration& setting, const std::vector<BatchSession>& sessions,
                  const std::string& where) {
   if (setting.map == MapTime::finished) return;
   for (const auto& session : sessions) {
@@ -186,9 +186,10 @@ void requireMaps(const BatchSetting& setting, const std::vector<BatchSession>& s
   }
 }
 
-BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Placeholders& fill,
-                         const std::vector<BatchSession>& sessions, const std::string& where) {
-  BatchSetting setting;
+BatchConfiguration readSetting(ConfigReader& reader, const std::string& name,
+                               const Placeholders& fill, const std::vector<BatchSession>& sessions,
+                               const std::string& where) {
+  BatchConfiguration setting;
   setting.name = name;
   std::string set, mapSessions = "first", localized = "all";
   const std::string here = where + "[setting " + name + "] ";
@@ -216,7 +217,7 @@ BatchSetting readSetting(ConfigReader& reader, const std::string& name, const Pl
 }
 
 /// Sessions with maps of their own are localized in these.
-void requireOwnMaps(const BatchSetting& setting, const std::string& where) {
+void requireOwnMaps(const BatchConfiguration& setting, const std::string& where) {
   if (setting.protocol != MapProtocol::each) return;
   if (!setting.sessions.empty() && setting.map == MapTime::before)
     throw Error(where + "maps = each has no map before a session; set map = finished");
@@ -228,7 +229,8 @@ void requireOwnMaps(const BatchSetting& setting, const std::string& where) {
 }
 
 /// Maps alone are of use if they get a score.
-void requireUse(const BatchSetting& setting, const BatchSpec& spec, const std::string& where) {
+void requireUse(const BatchConfiguration& setting, const BatchSpec& spec,
+                const std::string& where) {
   const auto hasTruth = [&](const std::string& name) {
     return !spec.session(name).truthMap.empty();
   };
@@ -239,7 +241,8 @@ void requireUse(const BatchSetting& setting, const BatchSpec& spec, const std::s
 }
 
 /// A map is kept up from day to day, not back.
-void requireOrder(const BatchSetting& setting, const BatchSpec& spec, const std::string& where) {
+void requireOrder(const BatchConfiguration& setting, const BatchSpec& spec,
+                  const std::string& where) {
   if (setting.protocol != MapProtocol::upkeep) return;
   std::string last;
   for (const auto& name : setting.mapSessions) {

@@ -47,7 +47,7 @@ enum class MapTime {
 };
 
 /// \brief One way to map and to localize. `[setting NAME]`.
-struct BatchSetting {
+struct BatchConfiguration {
   std::string name;
   std::string title;                     ///< a sentence for the report
   std::string config;                    ///< INI of all programs
@@ -61,14 +61,14 @@ struct BatchSetting {
 struct BatchSpec {
   std::string name;   ///< of the batch: letters, digits, `_` and `-`
   std::string title;  ///< for the report
-  /// Published figures to show beside: `none`, or a key of PublishedFigures.h.
+  /// Published figures to show beside: `none`, or a key of PublishedResults.h.
   std::string published = "none";
   std::string publishedSessions;  ///< CSV of published figures by session; empty: none
   int runs = 10;                  ///< of each session under each setting
   std::uint32_t seed = 1;
   bool perMetre = false;  ///< errors at each metre of the way, not at each scan (`errors = metre`)
   std::vector<BatchSession> sessions;  ///< in the order they were driven
-  std::vector<BatchSetting> settings;
+  std::vector<BatchConfiguration> settings;
 
   const BatchSession& session(const std::string& name) const;  ///< \throws Error
 };

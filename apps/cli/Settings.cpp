@@ -22,7 +22,7 @@ void bindAll(Binder& binder, Settings& settings) {
   bind(binder, settings.localization.global);
   bind(binder, settings.localization.health);
   bind(binder, settings.localization.search);
-  bind(binder, settings.localization.motionCheck);
+  bind(binder, settings.localization.odometryMonitor);
   bind(binder, settings.runs);
   bind(binder, settings.view);
   bind(binder, settings.simulation);

@@ -22,12 +22,12 @@ namespace polemcl::apps {
 /// \brief All settings of all programs. Sections that a file leaves out keep their defaults.
 struct Settings {
   SensorOptions sensor;          ///< `[sensor]`
-  ExtractionOptions extraction;  ///< `[extraction]`, `[paper]`, `[native]`
+  ExtractionOptions extraction;  ///< `[extraction]`, `[range_image]`, `[scan_line]`
   PoleMapOptions map;            ///< `[map]`
-  UpkeepOptions upkeep;          ///< `[upkeep]`
+  MapUpdateOptions upkeep;       ///< `[map_update]`
   LikelihoodOptions likelihood;  ///< `[likelihood]`
   MotionOptions motion;          ///< `[motion]`
-  /// `[filter] [submap] [global] [health] [search] [motion_check]`
+  /// `[filter] [submap] [global] [health] [search] [odometry_monitor]`
   LocalizationOptions localization;
   StartOptions start;                 ///< `[start]`
   RunOptions runs;                    ///< `[runs]`
@@ -35,7 +35,7 @@ struct Settings {
   sim::SimulationOptions simulation;  ///< `[simulation]`, `[world]`; sensor as in `[sensor]`
 
   /// \brief What the extraction needs.
-  PoleExtractionOptions poleExtraction() const { return {sensor, extraction}; }
+  ObservationPoleExtractorOptions poleExtraction() const { return {sensor, extraction}; }
 };
 
 /// \brief Reads an INI file.

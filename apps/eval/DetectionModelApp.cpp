@@ -58,16 +58,16 @@ sim::DetectionModel fitModel(const FitModelOptions& options) {
   std::vector<sim::ObservedStreet> streets;
   for (std::size_t i = 0; i < drives.size(); i += 2)
     streets.push_back({drives[i].observed, drives[i + 1].observed});
-  const double maxRange = drives.front().settings.extraction.native.maxRange;
+  const double maxRange = drives.front().settings.extraction.scanLine.maxRange;
   const auto model = sim::fitDetectionModel(streets, maxRange, describe(drives));
   sim::writeDetectionModel(options.model, model);
   return model;
 }
 
-sim::DetectionSummary evalSightings(const EvalSightingsOptions& options) {
+sim::DetectionSummary evalObservations(const EvalObservationsOptions& options) {
   const LoadedDrive drive(options.poles);
   const auto s =
-      sim::summarizeDetections(drive.observed, drive.settings.extraction.native.maxRange);
+      sim::summarizeDetections(drive.observed, drive.settings.extraction.scanLine.maxRange);
   if (!options.json) return s;
   const auto number = [](const std::optional<double>& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();

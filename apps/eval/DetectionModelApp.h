@@ -26,11 +26,11 @@ struct FitModelOptions {
 sim::DetectionModel fitModel(const FitModelOptions& options);
 
 /// \brief `pole-eval sightings`.
-struct EvalSightingsOptions {
+struct EvalObservationsOptions {
   std::filesystem::path poles;  ///< rawlog of `pole-simulate --poles`, P_config.ini beside it
   std::optional<std::filesystem::path> json;
 };
 /// \brief Figures of one simulated drive, cast or drawn. \throws Error as fitModel().
-sim::DetectionSummary evalSightings(const EvalSightingsOptions& options);
+sim::DetectionSummary evalObservations(const EvalObservationsOptions& options);
 
 }  // namespace polemcl::apps

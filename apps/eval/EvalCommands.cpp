@@ -147,10 +147,10 @@ std::string helpText(const sim::DetectionSummary& s) {
 EvalCommand sightingsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "sightings", "Poles of a simulated drive against the true ones, without its scans");
-  const auto options = std::make_shared<EvalSightingsOptions>();
+  const auto options = std::make_shared<EvalObservationsOptions>();
   cli.add_option("--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options](bool) { return helpText(evalSightings(*options)); }};
+  return {&cli, [options](bool) { return helpText(evalObservations(*options)); }};
 }
 
 std::string cells(const Pose2D& motion) {

@@ -169,7 +169,7 @@ RepeatabilityScore evalRepeatability(const EvalRepeatabilityOptions& options) {
 
 RotationScore evalRotation(const EvalRotationOptions& options, const Settings& settings) {
   if (options.every < 1) throw Error("--every 0 takes no scan: a number from 1 on is allowed");
-  PoleExtraction source(settings.poleExtraction());
+  ObservationPoleExtractor source(settings.poleExtraction());
   PoleExtractor extractor(settings.sensor, settings.extraction);
   RotationScore score;
   SequenceOptions sequence;

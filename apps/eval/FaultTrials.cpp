@@ -20,9 +20,9 @@ struct Judged {
   bool right;
 };
 
-PoleLocalization started(const TrialDrive& drive, const LocalizationMap& map, const Pose2D& pose,
-                         std::uint32_t seed) {
-  PoleLocalization localization(map, drive.settings.localization, seed);
+LocalizationPipeline started(const TrialDrive& drive, const LocalizationMap& map,
+                             const Pose2D& pose, std::uint32_t seed) {
+  LocalizationPipeline localization(map, drive.settings.localization, seed);
   StartOptions start = drive.settings.start;
   start.anywhere = false;
   start.pose = pose;
@@ -98,7 +98,7 @@ FaultTrial runTrial(const TrialDrive& drive, const LocalizationMap& map,
                     const FaultTrialsOptions& options, std::uint32_t index) {
   std::mt19937_64 random((static_cast<std::uint64_t>(options.seed) << 32) + index);
   const FaultyDrive faulty = injectFault(drive, options.fault, random);
-  PoleLocalization localization = started(drive, map, faulty.truth[0], options.seed + index);
+  LocalizationPipeline localization = started(drive, map, faulty.truth[0], options.seed + index);
   std::vector<Judged> scans;
   scans.reserve(faulty.frames.size());
   for (std::size_t i = 0; i < faulty.frames.size(); ++i)
@@ -189,7 +189,7 @@ std::vector<HealthyRun> runHealthy(const TrialDrive& drive, const FaultTrialsOpt
   if (options.trials < 1) throw Error("at least 1 trial is needed");
   std::vector<HealthyRun> runs(options.trials);
   tbb::parallel_for(0, options.trials, [&](int i) {
-    PoleLocalization localization =
+    LocalizationPipeline localization =
         started(drive, drive.map, drive.truth[0], options.seed + static_cast<std::uint32_t>(i));
     HealthyCounter counter;
     for (std::size_t k = 0; k < drive.frames.size(); ++k)

@@ -35,8 +35,8 @@ GlobalTrial runGlobalTrial(const TrialDrive& drive, const std::vector<double>& d
                            std::size_t first, double metres, std::uint32_t seed) {
   GlobalTrial trial;
   trial.scan = first;
-  PoleLocalization localization(drive.map, drive.settings.localization, seed);
-  localization.startAnywhere();
+  LocalizationPipeline localization(drive.map, drive.settings.localization, seed);
+  localization.initializeGlobally();
   std::size_t searches = 0;
   for (std::size_t i = first; i < drive.frames.size() && driven[i] - driven[first] <= metres; ++i) {
     const auto begin = std::chrono::steady_clock::now();

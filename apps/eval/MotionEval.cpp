@@ -54,7 +54,7 @@ std::vector<MotionComparison> evalMotion(const EvalMotionOptions& options) {
     if (scan.index > 0) {
       const Pose2D motion = relative(poseBefore, *pose);
       result.push_back({scan.index - options.every, motion, odometry,
-                        refineMotion(before, poles, motion, AlignmentOptions())});
+                        refineMotion(before, poles, motion, RegistrationOptions())});
     }
     before = poles;
     poseBefore = *pose;

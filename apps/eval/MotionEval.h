@@ -25,7 +25,7 @@ struct MotionComparison {
   std::size_t scan = 0;  ///< 0-based index of the first scan
   Pose2D truth;
   std::optional<Pose2D> odometry;  ///< none where the rawlog has none
-  PoleAlignment poles;  ///< from the true motion on; fewer than 3 pairs: the poles do not tell
+  ScanRegistration poles;  ///< from the true motion on; fewer than 3 pairs: the poles do not tell
 };
 
 /// \brief \throws Error naming the file: a scan at a time without a true pose, fewer than two scans

@@ -14,7 +14,7 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr int reasons = static_cast<int>(Refusal::count_);
+constexpr int reasons = static_cast<int>(RejectionReason::count_);
 
 void add(const ExtractionReport& scan, ExtractionReport& sum) {
   sum.points += scan.points;
@@ -41,7 +41,7 @@ void writeRows(std::ostream& out, const PoleScan& scan) {
 void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& options) {
   const std::string where = options.input.string() + ": scan " + std::to_string(scan.index);
   if (scan.stored) throw Error(where + " holds poles, no points to draw");
-  const auto cloud = PoleExtraction(settings.poleExtraction()).lidarPoints(*scan.scan);
+  const auto cloud = ObservationPoleExtractor(settings.poleExtraction()).lidarPoints(*scan.scan);
   PoleExtractor extractor(settings.sensor, settings.extraction);
   report::ScanView view;
   view.title = options.input.filename().string() + ", scan " + std::to_string(scan.index);
@@ -70,7 +70,7 @@ void print(const ExtractSummary& summary, const ExtractOptions& options) {
             << "candidates: " << sum.candidates;
   for (int i = 0; i < reasons; ++i)
     if (sum.refused[i] > 0)
-      std::cout << ", " << name(static_cast<Refusal>(i)) << ' ' << sum.refused[i];
+      std::cout << ", " << name(static_cast<RejectionReason>(i)) << ' ' << sum.refused[i];
   std::cout << '\n';
   if (counts.truncated) std::cout << "the input ended too early; what could be read was used\n";
 }

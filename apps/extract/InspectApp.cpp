@@ -12,8 +12,8 @@ std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians * 180 / M_PI, digits);
 }
 
-void printBeams(std::ostream& out, const SensorInspection& sensor) {
-  const BeamEstimate& beams = sensor.beams;
+void printBeams(std::ostream& out, const SensorIdentification& sensor) {
+  const BeamTableEstimate& beams = sensor.beams;
   const auto all = beams.elevations();
   out << "beams             " << beams.beams() << '\n';
   for (const BeamBlock& block : beams.blocks) {
@@ -35,7 +35,7 @@ void printBeams(std::ostream& out, const SensorInspection& sensor) {
 }
 
 void printMounting(std::ostream& out, const RawlogInspection& inspection) {
-  const SensorInspection& sensor = inspection.sensor;
+  const SensorIdentification& sensor = inspection.sensor;
   const SensorOptions& options = inspection.options;
   out << "firing steps      ";
   if (sensor.columns > 0)
@@ -62,7 +62,7 @@ void printMounting(std::ostream& out, const RawlogInspection& inspection) {
 }
 
 void printPresets(std::ostream& out, const RawlogInspection& inspection) {
-  const SensorInspection& sensor = inspection.sensor;
+  const SensorIdentification& sensor = inspection.sensor;
   out << "presets           ";
   for (std::size_t i = 0; i < std::min<std::size_t>(3, sensor.presets.size()); ++i) {
     const PresetFit& fit = sensor.presets[i];
@@ -96,7 +96,7 @@ RawlogInspection inspect(const InspectOptions& options) {
 }
 
 void printInspection(std::ostream& out, const RawlogInspection& inspection) {
-  const SensorInspection& sensor = inspection.sensor;
+  const SensorIdentification& sensor = inspection.sensor;
   out << "scans             " << inspection.used.size() << " of " << inspection.scans << " ("
       << inspection.label << "), " << sensor.points << " points, " << sensor.invalid
       << " invalid\n";

@@ -49,9 +49,9 @@ FilterRuns::FilterRuns(const LocalizationMap& map, const LocalizationOptions& op
   forEachRun(count, [&](std::size_t i) {
     const auto begin = ScanClock::now();
     const std::uint32_t seed = runs.seed + static_cast<std::uint32_t>(i);
-    m_filters[i] = std::make_unique<PoleLocalization>(map, options, seed);
+    m_filters[i] = std::make_unique<LocalizationPipeline>(map, options, seed);
     if (start.anywhere)
-      m_filters[i]->startAnywhere();
+      m_filters[i]->initializeGlobally();
     else
       m_filters[i]->start(start);
     m_results[i].seed = seed;

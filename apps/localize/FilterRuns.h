@@ -37,21 +37,21 @@ class FilterRuns {
  public:
   static constexpr std::size_t mostParticles = 50000000;  ///< in all runs, some 40 bytes each
 
-  /// \throws Error as PoleLocalization does, on its options and on the start, and on more than
+  /// \throws Error as LocalizationPipeline does, on its options and on the start, and on more than
   /// `mostParticles`.
   FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
              const StartOptions& start, const RunOptions& runs);
 
   /// \brief One scan more. \return What each run made of it, until the next call.
-  /// \throws Error as PoleLocalization::step(); the runs are of no use then.
+  /// \throws Error as LocalizationPipeline::step(); the runs are of no use then.
   const std::vector<FilterStep>& step(const PoleFrame& frame);
 
   std::size_t size() const { return m_filters.size(); }
   const std::vector<FilterRun>& results() const { return m_results; }
-  const PoleLocalization& localization(std::size_t run) const { return *m_filters[run]; }
+  const LocalizationPipeline& localization(std::size_t run) const { return *m_filters[run]; }
 
  private:
-  std::vector<std::unique_ptr<PoleLocalization>> m_filters;
+  std::vector<std::unique_ptr<LocalizationPipeline>> m_filters;
   std::vector<FilterRun> m_results;
   std::vector<FilterStep> m_steps;  ///< of the last scan, element i of run i
 };

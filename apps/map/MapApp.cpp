@@ -42,7 +42,7 @@ std::optional<io::Datum> datumFor(const MapOptions& options) {
   return io::datumOf(info, where);
 }
 
-void addDrive(const MapOptions& options, std::size_t drive, DriveSurvey found,
+void addDrive(const MapOptions& options, std::size_t drive, MappingSession found,
               MapAccumulator& sessions, MapSummary& summary) {
   if (!options.dates.empty()) setDate(found.scans, options.dates[drive]);
   sessions.add(options.inputs[drive].filename().string(), std::move(found.scans));
@@ -158,8 +158,8 @@ MapSummary buildMap(const MapOptions& options, const Settings& settings,
   MapAccumulator sessions = accumulator(options, settings);
   for (std::size_t i = 0; i < options.inputs.size(); ++i)
     addDrive(options, i,
-             surveyDrive(options.inputs[i], options.truths[i], settings, options.allowTruncated,
-                         progress),
+             loadMappingSession(options.inputs[i], options.truths[i], settings,
+                                options.allowTruncated, progress),
              sessions, summary);
   countSessions(sessions.added(), summary);
   if (summary.scans == 0)
@@ -203,8 +203,9 @@ void addOptions(CLI::App& cli, MapLine& line) {
   cli.add_option("--output", line.build.output, "Map to write, .polemap");
   cli.add_option("--date", line.build.dates,
                  "Day of each rawlog, YYYY-MM-DD, where its times do not tell");
-  cli.add_option("--update", line.update,
-                 "Map to begin with: each rawlog is a session that keeps it true, see [upkeep]");
+  cli.add_option(
+      "--update", line.update,
+      "Map to begin with: each rawlog is a session that keeps it true, see [map_update]");
   auto* add = cli.add_option("--add", line.build.add,
                              "Map that keeps its scans: each rawlog is a session after those it "
                              "was made from");
@@ -269,8 +270,8 @@ void requireUsage(const MapLine& line) {
 }
 
 void runDiff(const MapLine& line, bool quiet) {
-  const UpkeepOptions upkeep =
-      line.config.empty() ? UpkeepOptions() : loadSettings(line.config, line.set).upkeep;
+  const MapUpdateOptions upkeep =
+      line.config.empty() ? MapUpdateOptions() : loadSettings(line.config, line.set).upkeep;
   const MapDiff diff =
       diffMapFiles({line.diff[0], line.diff[1], line.build.csv, line.png, line.build.scene},
                    {upkeep.moved, upkeep.ghost});
@@ -285,8 +286,8 @@ void runConvert(const MapLine& line, bool quiet) {
 
 void runUpdate(const MapLine& line, bool quiet) {
   const MapOptions& o = line.build;
-  const MapUpdateOptions options{*line.update, o.inputs, o.truths,         o.dates, o.output,
-                                 o.scene,      o.csv,    o.allowTruncated, o.datum};
+  const MapUpdateJob options{*line.update, o.inputs, o.truths,         o.dates, o.output,
+                             o.scene,      o.csv,    o.allowTruncated, o.datum};
   const auto settings = loadSettings(line.config, line.set);
   MapUpdateSummary summary;
   {

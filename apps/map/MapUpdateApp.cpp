@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t enoughExpected = 10;  ///< poles; fewer tell nothing of the place
 constexpr double leastFound = 0.2;          ///< share; half a map does not vanish over night
 
-void requireSamePlace(const UpkeepCounts& counts, const std::filesystem::path& input,
+void requireSamePlace(const MapUpdateCounts& counts, const std::filesystem::path& input,
                       const std::filesystem::path& map) {
   if (counts.expectedOnMap < enoughExpected ||
       static_cast<double>(counts.foundOnMap) >=
@@ -32,10 +32,10 @@ void requireSamePlace(const UpkeepCounts& counts, const std::filesystem::path& i
 }
 
 /// A map is kept up from day to day. Within a day the order is not looked at: dates tell no more.
-void requireDateOrder(const std::vector<SessionScan>& scans, const KeptMap& map,
+void requireDateOrder(const std::vector<SessionScan>& scans, const LandmarkMap& map,
                       const std::filesystem::path& input, const std::filesystem::path& file) {
   double last = 0;
-  for (const KeptPole& kept : map.poles) last = std::max(last, kept.history.lastSeen);
+  for (const LandmarkRecord& kept : map.poles) last = std::max(last, kept.history.lastSeen);
   const double now = scans.front().time;
   if (!isDate(now) || !isDate(last) || io::dateText(now) >= io::dateText(last)) return;
   throw Error(input.string() + ": is of " + io::dateText(now) + ", but the last session of " +
@@ -44,12 +44,13 @@ void requireDateOrder(const std::vector<SessionScan>& scans, const KeptMap& map,
 }
 
 /// Sessions of a map lie near it; one in another frame mostly does not.
-void requireNearMap(const std::vector<StampedPose2D>& path, const KeptMap& map,
+void requireNearMap(const std::vector<StampedPose2D>& path, const LandmarkMap& map,
                     const std::filesystem::path& input, const std::filesystem::path& file) {
   constexpr double farthest = 10000;  // m
   Eigen::AlignedBox2d driven, mapped;
   for (const auto& [time, pose] : path) driven.extend(Eigen::Vector2d(pose.x, pose.y));
-  for (const KeptPole& kept : map.poles) mapped.extend(Eigen::Vector2d(kept.pole.x, kept.pole.y));
+  for (const LandmarkRecord& kept : map.poles)
+    mapped.extend(Eigen::Vector2d(kept.pole.x, kept.pole.y));
   if (mapped.isEmpty() || driven.exteriorDistance(mapped) <= farthest) return;
   throw Error(input.string() + ": its poses are " +
               std::to_string(std::lround(driven.exteriorDistance(mapped) / 1000)) +
@@ -58,7 +59,7 @@ void requireNearMap(const std::vector<StampedPose2D>& path, const KeptMap& map,
 }
 
 std::map<std::string, std::string> updateFacts(std::map<std::string, std::string> info,
-                                               const MapUpdateOptions& options,
+                                               const MapUpdateJob& options,
                                                const Settings& settings) {
   std::string& updates = info["updates"];
   for (const auto& input : options.inputs)
@@ -73,7 +74,7 @@ std::map<std::string, std::string> updateFacts(std::map<std::string, std::string
 
 }  // namespace
 
-void MapUpdateOptions::validate() const {
+void MapUpdateJob::validate() const {
   if (inputs.empty()) throw Error("--input: at least one rawlog is needed");
   if (inputs.size() != truths.size())
     throw Error("--truth: one file per --input is needed, " + std::to_string(inputs.size()) +
@@ -85,25 +86,25 @@ void MapUpdateOptions::validate() const {
     throw Error("--output " + output.string() + ": the name must end in .polemap");
 }
 
-MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& settings,
+MapUpdateSummary updateMapFile(const MapUpdateJob& options, const Settings& settings,
                                const ScanProgress& progress) {
   options.validate();
   const io::PoleMapData before = io::readPoleMap(options.map);
   const auto info = updateFacts(before.info, options, settings);
   MapUpdateSummary summary;
   summary.before = before.poles.size();
-  KeptMap map = io::keptMap(before);
+  LandmarkMap map = io::landmarkMap(before);
   report::MapView view;
   for (std::size_t i = 0; i < options.inputs.size(); ++i) {
-    DriveSurvey survey = surveyDrive(options.inputs[i], options.truths[i], settings,
-                                     options.allowTruncated, progress);
+    MappingSession survey = loadMappingSession(options.inputs[i], options.truths[i], settings,
+                                               options.allowTruncated, progress);
     if (survey.scans.empty())
       throw Error(options.inputs[i].string() + ": no usable scan, " +
                   std::to_string(survey.emptyScans) + " without a valid point");
     requireNearMap(survey.path, map, options.inputs[i], options.map);
     if (!options.dates.empty()) setDate(survey.scans, options.dates[i]);
     requireDateOrder(survey.scans, map, options.inputs[i], options.map);
-    UpkeepCounts counts;
+    MapUpdateCounts counts;
     map = updateMap(map, survey.scans, settings.map, settings.upkeep, &counts);
     requireSamePlace(counts, options.inputs[i], options.map);
     summary.sessions.push_back(counts);
@@ -116,7 +117,7 @@ MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& 
   const io::PoleMapData after = io::mapData(map, info);
   summary.poles = after.poles.size();
   if (after.poles.empty())
-    throw Error(options.map.string() + ": no pole is left on the map; see [upkeep]");
+    throw Error(options.map.string() + ": no pole is left on the map; see [map_update]");
   if (options.csv) io::writePoleCsv(*options.csv, after.poles, after.histories);
   if (options.scene) {
     view.title = options.output.filename().string();
@@ -127,11 +128,11 @@ MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& 
   return summary;
 }
 
-void print(const MapUpdateSummary& summary, const MapUpdateOptions& options) {
+void print(const MapUpdateSummary& summary, const MapUpdateJob& options) {
   std::cout << options.output.string() << ": " << summary.poles << " poles, " << summary.before
             << " before\n";
   for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
-    const UpkeepCounts& c = summary.sessions[i];
+    const MapUpdateCounts& c = summary.sessions[i];
     std::cout << options.inputs[i].string() << ": " << c.scans << " scans; of " << c.expectedOnMap
               << " poles in view " << c.foundOnMap << " found; " << c.entered << " new, " << c.left
               << " vanished, " << c.moved << " moved; " << c.candidates << " candidates\n";

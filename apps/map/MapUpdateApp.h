@@ -15,7 +15,7 @@
 namespace polemcl::apps {
 
 /// \brief Files of `pole-map --update`.
-struct MapUpdateOptions {
+struct MapUpdateJob {
   std::filesystem::path map;                   ///< `.polemap` to begin with
   std::vector<std::filesystem::path> inputs;   ///< rawlogs of scans or poles, one a session
   std::vector<std::filesystem::path> truths;   ///< TUM, robot poses, one file per input
@@ -31,9 +31,9 @@ struct MapUpdateOptions {
 
 /// \brief What upkeep did.
 struct MapUpdateSummary {
-  std::vector<UpkeepCounts> sessions;  ///< one per input
-  std::size_t before = 0;              ///< poles on the map to begin with
-  std::size_t poles = 0;               ///< now
+  std::vector<MapUpdateCounts> sessions;  ///< one per input
+  std::size_t before = 0;                 ///< poles on the map to begin with
+  std::size_t poles = 0;                  ///< now
   std::size_t emptyScans = 0, unmatched = 0, invalidPoints = 0, truncated = 0;
 };
 
@@ -41,14 +41,15 @@ struct MapUpdateSummary {
 /// asked for. Candidates are kept in the file, beside the map; scans kept for `--add` are not: the
 /// map is no longer what they say.
 /// \param progress Of the current input; may be empty.
-/// \throws Error as surveyDrive(), updateMap(), readPoleMap(); when the datum is another one than
+/// \throws Error as loadMappingSession(), updateMap(), readPoleMap(); when the datum is another one
+/// than
 ///         the map's; when a session has no usable scan; when fewer than a fifth of at least ten
 ///         map poles in free view were found: a session of another place, or of another datum, must
 ///         not spoil a map.
-MapUpdateSummary updateMapFile(const MapUpdateOptions& options, const Settings& settings,
+MapUpdateSummary updateMapFile(const MapUpdateJob& options, const Settings& settings,
                                const ScanProgress& progress = {});
 
 /// \brief What the program tells of it.
-void print(const MapUpdateSummary& summary, const MapUpdateOptions& options);
+void print(const MapUpdateSummary& summary, const MapUpdateJob& options);
 
 }  // namespace polemcl::apps

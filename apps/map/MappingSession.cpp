@@ -10,16 +10,16 @@
 namespace polemcl::apps {
 namespace {}  // namespace
 
-DriveSurvey surveyDrive(const std::filesystem::path& input, const std::filesystem::path& truthFile,
-                        const Settings& settings, bool allowTruncated,
-                        const ScanProgress& progress) {
+MappingSession loadMappingSession(const std::filesystem::path& input,
+                                  const std::filesystem::path& truthFile, const Settings& settings,
+                                  bool allowTruncated, const ScanProgress& progress) {
   SequenceOptions options{settings.poleExtraction(), settings.motion, allowTruncated};
   // A doubtful detection is worth keeping where others can confirm it.
   if (settings.map.minConfidence > 0)
-    options.extraction.extraction.native.minConfidence = settings.map.minConfidence;
+    options.extraction.extraction.scanLine.minConfidence = settings.map.minConfidence;
   const PoleSequence sequence = readPoleSequence(input.string(), options, progress);
   const auto truth = io::planar(io::readTum(truthFile));
-  DriveSurvey survey;
+  MappingSession survey;
   for (const auto& frame : sequence.frames) {
     if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
     const auto pose = poseAt(truth, frame.time, longestTruthGap);
@@ -28,7 +28,7 @@ DriveSurvey surveyDrive(const std::filesystem::path& input, const std::filesyste
       continue;
     }
     survey.scans.push_back(
-        {frame.time, *pose, frame.poles_robot, frame.freeRange, frame.pose_robot_sensor});
+        {frame.time, *pose, frame.poles_robot, frame.visibilityRange, frame.pose_robot_sensor});
     survey.path.push_back({frame.time, *pose});
   }
   if (survey.unmatched > survey.scans.size())

@@ -14,7 +14,7 @@
 namespace polemcl::apps {
 
 /// \brief The scans of one drive that have a true pose and a point.
-struct DriveSurvey {
+struct MappingSession {
   std::vector<SessionScan> scans;
   std::vector<StampedPose2D> path;  ///< of the scans
   std::size_t unmatched = 0;        ///< scans at whose time the truth says nothing
@@ -27,9 +27,9 @@ struct DriveSurvey {
 /// \param progress May be empty.
 /// \throws Error as readPoleSequence() and readTum(); when the truth covers less than half of the
 ///         scans.
-DriveSurvey surveyDrive(const std::filesystem::path& input, const std::filesystem::path& truth,
-                        const Settings& settings, bool allowTruncated,
-                        const ScanProgress& progress);
+MappingSession loadMappingSession(const std::filesystem::path& input,
+                                  const std::filesystem::path& truth, const Settings& settings,
+                                  bool allowTruncated, const ScanProgress& progress);
 
 /// \brief The scans on another day: their times count from the first one.
 /// \param date YYYY-MM-DD. \throws Error when it is none.

@@ -115,15 +115,15 @@ PoleDriveFiles poleDriveFiles(const std::filesystem::path& rawlog) {
 PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const Settings& settings,
                            const PoleDriveFiles& files, const sim::ScanFolderWriter* folder,
                            const std::function<void(std::size_t)>& progress) {
-  const PoleExtractionOptions options = settings.poleExtraction();
-  tbb::enumerable_thread_specific<PoleExtraction> extractions(
-      [&options] { return PoleExtraction(options); });
+  const ObservationPoleExtractorOptions options = settings.poleExtraction();
+  tbb::enumerable_thread_specific<ObservationPoleExtractor> extractions(
+      [&options] { return ObservationPoleExtractor(options); });
   extractions.local();  // refuses bad options before anything is written
   PoleDriveWriter writer(drive.options(), files);
   const auto polesOf = [&](std::size_t i) {
     const sim::SimulatedScan scan = drive.scan(i);
     if (folder) folder->write(i, scan);
-    PoleExtraction& extraction = extractions.local();
+    ObservationPoleExtractor& extraction = extractions.local();
     extraction.checkNext(i < 3);  // by index, so that the threads have no say in it
     try {
       return extraction.process(cloudOf(scan));
@@ -155,7 +155,7 @@ PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const Settings& s
     observation->sensorLabel = "lidar";
     observation->points = sampler.model().points;
     observation->poles = sampler.sample(i, drive.drive().T_map_sensor[i]);
-    observation->freeRange = sampler.freeRange(drive.drive().T_map_sensor[i]);
+    observation->visibilityRange = sampler.visibilityRange(drive.drive().T_map_sensor[i]);
     return observation;
   };
   writeInBlocks(drive.drive(), writer, polesOf, progress);

@@ -23,15 +23,15 @@ paper_settings() {
     set_option "$1/$sensor.ini" sensor upside_down false
     set_option "$1/$sensor.ini" sensor origin "0 0 0"
     set_option "$1/$sensor.ini" sensor height_m 1.0
-    set_option "$1/$sensor.ini" paper heights_above_ground true
-    set_option "$1/$sensor.ini" paper mirrored false
-    set_option "$1/$sensor.ini" paper coordinate_step_m 0
+    set_option "$1/$sensor.ini" range_image heights_above_ground true
+    set_option "$1/$sensor.ini" range_image mirrored false
+    set_option "$1/$sensor.ini" range_image coordinate_step_m 0
   done
-  set_option "$1/hdl32e.ini" paper fov_up_deg 10.67
-  set_option "$1/hdl32e.ini" paper fov_down_deg -30.67
-  set_option "$1/vlp16.ini" paper rows 16
-  set_option "$1/vlp16.ini" paper fov_up_deg 15
-  set_option "$1/vlp16.ini" paper fov_down_deg -15
+  set_option "$1/hdl32e.ini" range_image fov_up_deg 10.67
+  set_option "$1/hdl32e.ini" range_image fov_down_deg -30.67
+  set_option "$1/vlp16.ini" range_image rows 16
+  set_option "$1/vlp16.ini" range_image fov_up_deg 15
+  set_option "$1/vlp16.ini" range_image fov_down_deg -15
 }
 
 # methods SENSOR: those to compare. For the HDL-64E the authors' settings come twice: as they are, and with
@@ -118,7 +118,7 @@ evaluate_drive() {
 # undecided_auc: area under the ROC of the native confidence when it refuses nothing.
 undecided_auc() {
   cp "$work/native.ini" "$work/undecided.ini"
-  set_option "$work/undecided.ini" native min_confidence 0.001
+  set_option "$work/undecided.ini" scan_line min_confidence 0.001
   cp "$work/score.json" "$work/native-score.json"
   evaluate_drive undecided
   json_value "$work/score.json" auc

@@ -46,7 +46,7 @@ first=$(awk '!/^#/ { printf "%.9g,%.9g,%.9g", $2, $3,
   atan2(2 * ($8 * $7 + $5 * $6), 1 - 2 * ($6 * $6 + $7 * $7)) * 57.29577951308232; exit }' "$out/odd.tum")
 "$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" --map "$out/map.polemap" \
   --truth "$out/odd.tum" --output "$out/odometry" --start "$first,0,0" --particles 1000 --seed 1 \
-  --set likelihood.gate_m=1e-9 --set search.recover=false --set motion_check.enabled=false
+  --set likelihood.gate_m=1e-9 --set search.recover=false --set odometry_monitor.enabled=false
 
 evaluate_runs "$out/odometry" "$out/odd.tum"
 evaluate_runs "$out/runs" "$out/odd.tum"

@@ -75,13 +75,13 @@ void extract(benchmark::State& state, const Scan& scan, const std::string& model
 }
 
 void nativeKitti(benchmark::State& state) {
-  extract(state, kittiScan(), "hdl64e", 1.73, ExtractionMethod::native);
+  extract(state, kittiScan(), "hdl64e", 1.73, ExtractionMethod::scanLine);
 }
 void paperKitti(benchmark::State& state) {
-  extract(state, kittiScan(), "hdl64e", 1.73, ExtractionMethod::paper);
+  extract(state, kittiScan(), "hdl64e", 1.73, ExtractionMethod::rangeImage);
 }
 void nativeNcltSized(benchmark::State& state) {
-  extract(state, ncltSizedScan(), "hdl32e", 1.0, ExtractionMethod::native);
+  extract(state, ncltSizedScan(), "hdl32e", 1.0, ExtractionMethod::scanLine);
 }
 
 /// The limit: every point read once, its range computed.
@@ -101,7 +101,7 @@ void readOnly(benchmark::State& state) {
 void nativePoints(benchmark::State& state) {
   const int columns = static_cast<int>(state.range(0) / 64);
   const Scan scan = simulated("hdl64e_kitti", 1.73, columns);
-  extract(state, scan, "hdl64e", 1.73, ExtractionMethod::native, columns);
+  extract(state, scan, "hdl64e", 1.73, ExtractionMethod::scanLine, columns);
   state.SetComplexityN(static_cast<benchmark::IterationCount>(scan.x.size()));
 }
 

@@ -91,7 +91,7 @@ void step(benchmark::State& state, double tempering) {
   const auto particles = scene.particles(1000, state.range(0) != 0);
   FilterOptions options;
   options.tempering = tempering;
-  PoleLocalizer localizer(scene.map, options, 1);
+  PoleParticleFilter localizer(scene.map, options, 1);
   StartOptions start;
   start.pose = scene.truth;
   localizer.start(start);
@@ -137,7 +137,7 @@ void stepOfMrpt(benchmark::State& state) {
 void putBack(benchmark::State& state) {
   Scene scene;
   const auto particles = scene.particles(1000, false);
-  PoleLocalizer localizer(scene.map, {}, 1);
+  PoleParticleFilter localizer(scene.map, {}, 1);
   for (auto _ : state) {
     reset(localizer, particles);
     benchmark::ClobberMemory();

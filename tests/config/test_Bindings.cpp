@@ -88,7 +88,7 @@ TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
     else if (key == "model")
       other = "paper";
     else if (key == "method")
-      other = "paper";
+      other = "range_image";
     else if (const auto choice = otherChoices.find(key); choice != otherChoices.end())
       other = choice->second;
     else if (key == "elevations_deg" || key == "lower_elevations_deg" || key == "apex_m")
@@ -122,9 +122,9 @@ TEST(Bindings, ReadsHandPickedValues) {
   const All all = load(
       "[sensor]\nmodel = table\nelevations_deg = 10 0 -10\ncolumns = 900\nheight_m = 1.2\n"
       "origin = 0 0 0.957\nupside_down = true\n"
-      "[extraction]\nmethod = paper\n"
-      "[paper]\nepsilon_m = 0.08\nmax_bottom_m = 1.4\n"
-      "[native]\nmin_top_m = 2.5\nmax_tilt_deg = 10\n"
+      "[extraction]\nmethod = range_image\n"
+      "[range_image]\nepsilon_m = 0.08\nmax_bottom_m = 1.4\n"
+      "[scan_line]\nmin_top_m = 2.5\nmax_tilt_deg = 10\n"
       "[map]\nsection_length_m = 0.25\nmin_count = 6\n"
       "[likelihood]\nmodel = paper\nsigma_m = 1.2247\n"
       "[motion]\ncovariance_factor = 4\nmin_yaw_deg = 0.1\n");
@@ -132,11 +132,11 @@ TEST(Bindings, ReadsHandPickedValues) {
   EXPECT_NEAR(all.sensor.elevations[2], -0.17453293, 1e-8);
   EXPECT_EQ(all.sensor.originZ, 0.957);
   EXPECT_TRUE(all.sensor.upsideDown);
-  EXPECT_EQ(all.extraction.method, ExtractionMethod::paper);
-  EXPECT_EQ(all.extraction.paper.epsilon, 0.08);
-  EXPECT_EQ(all.extraction.paper.maxBottom, 1.4);
-  EXPECT_EQ(all.extraction.native.minTop, 2.5);
-  EXPECT_NEAR(all.extraction.native.maxTilt, 0.17453293, 1e-8);
+  EXPECT_EQ(all.extraction.method, ExtractionMethod::rangeImage);
+  EXPECT_EQ(all.extraction.rangeImage.epsilon, 0.08);
+  EXPECT_EQ(all.extraction.rangeImage.maxBottom, 1.4);
+  EXPECT_EQ(all.extraction.scanLine.minTop, 2.5);
+  EXPECT_NEAR(all.extraction.scanLine.maxTilt, 0.17453293, 1e-8);
   EXPECT_EQ(all.map.sectionLength, 0.25);
   EXPECT_EQ(all.map.minCount, 6);
   EXPECT_EQ(all.likelihood.model, LikelihoodModel::paper);
@@ -147,8 +147,9 @@ TEST(Bindings, ReadsHandPickedValues) {
 
 // What no single range can say is refused by the struct itself, and the message names the file.
 TEST(Bindings, RefusesStructsThatContradictThemselves) {
-  for (const char* text : {"[sensor]\nmodel = table\n", "[sensor]\nmin_range_m = 70\n",
-                           "[paper]\nfov_up_deg = -80\n", "[native]\nmin_radius_m = 0.5\n"}) {
+  for (const char* text :
+       {"[sensor]\nmodel = table\n", "[sensor]\nmin_range_m = 70\n",
+        "[range_image]\nfov_up_deg = -80\n", "[scan_line]\nmin_radius_m = 0.5\n"}) {
     try {
       load(text);
       FAIL() << text;
@@ -163,8 +164,8 @@ TEST(Bindings, RefusesRanges) {
        {"[likelihood]\noutlier = 0\n", "[likelihood]\noutlier = 1\n", "[likelihood]\nsigma_m = 0\n",
         "[likelihood]\nmodel = floored\nweighted = true\n",
         "[map]\nevery_scan = true\nmiddle = passed\n", "[map]\nmin_count = 0\n",
-        "[map]\nsection_length_m = 0\n", "[paper]\nrows = 1\n", "[motion]\nxy_per_m = -0.1\n",
-        "[native]\nmin_confidence = 1.1\n"})
+        "[map]\nsection_length_m = 0\n", "[range_image]\nrows = 1\n", "[motion]\nxy_per_m = -0.1\n",
+        "[scan_line]\nmin_confidence = 1.1\n"})
     EXPECT_THROW(load(text), Error) << text;
 }
 

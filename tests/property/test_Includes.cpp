@@ -283,14 +283,14 @@ TEST(Includes, RightIncludesAreLeftAlone) {
     EXPECT_TRUE(violations({path, {line}}).empty()) << path << ' ' << line;
 }
 
-TEST(Includes, noSourceIsLongerThanFiveHundredLines) {
+TEST(Includes, NoSourceIsLongerThanFiveHundredLines) {
   const std::vector<Source> sources =
       sourcesBelow({"libpolemcl", "apps", "tests", "share", "config"});
   ASSERT_FALSE(sources.empty());
   for (const Source& source : sources) EXPECT_LE(source.lines.size(), s_mostLines) << source.path;
 }
 
-TEST(Includes, mainsAreShort) {
+TEST(Includes, MainsAreShort) {
   for (const Source& source : sourcesBelow({"apps"})) {
     if (source.path.filename() == "main.cpp") {
       EXPECT_LE(source.lines.size(), s_mostLinesOfAMain) << source.path;
@@ -298,7 +298,7 @@ TEST(Includes, mainsAreShort) {
   }
 }
 
-TEST(Includes, headersEndInHAndAreReadOnce) {
+TEST(Includes, HeadersEndInHAndAreReadOnce) {
   static const std::set<std::string> otherSuffixes{".hh", ".hpp", ".hxx", ".inl", ".ipp"};
   for (const Source& source : sourcesBelow({"libpolemcl", "apps", "tests"})) {
     EXPECT_EQ(otherSuffixes.count(source.path.extension().string()), 0u) << source.path;

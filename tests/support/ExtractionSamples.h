@@ -16,8 +16,8 @@
 
 namespace polemcl::samples {
 
-inline PoleExtractionOptions hdl32(double height) {
-  PoleExtractionOptions options;
+inline ObservationPoleExtractorOptions hdl32(double height) {
+  ObservationPoleExtractorOptions options;
   options.sensor.model = "hdl32e";
   options.sensor.height = height;
   return options;
@@ -49,7 +49,7 @@ inline mrpt::obs::CObservationPointCloud::Ptr observationOf(
   return observation;
 }
 
-inline std::vector<PoleDetection> corePoles(const PoleExtractionOptions& options,
+inline std::vector<PoleDetection> corePoles(const ObservationPoleExtractorOptions& options,
                                             const PointsView& view) {
   PoleExtractor extractor(options.sensor, options.extraction);
   return extractor.extract(view);
@@ -81,7 +81,8 @@ inline int found(const CObservationPoles& scan, double tolerance) {
   return count;
 }
 
-inline std::string refusal(PoleExtraction& extraction, const mrpt::obs::CObservation& observation) {
+inline std::string refusal(ObservationPoleExtractor& extraction,
+                           const mrpt::obs::CObservation& observation) {
   try {
     extraction.process(observation);
   } catch (const Error& error) {
@@ -90,7 +91,7 @@ inline std::string refusal(PoleExtraction& extraction, const mrpt::obs::CObserva
   return "";
 }
 
-inline TestCloud plainCloud(const PoleExtractionOptions& options) {
+inline TestCloud plainCloud(const ObservationPoleExtractorOptions& options) {
   return castScan(options.sensor,
                   Eigen::Isometry3d(Eigen::Translation3d(0, 0, options.sensor.height)),
                   testPoles());

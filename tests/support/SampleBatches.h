@@ -13,7 +13,7 @@ inline BatchRun runWith(std::size_t index, double pos, double ang) {
   BatchRun run;
   run.run = index;
   run.seed = 1000 + index;
-  ErrorFigures& errors = run.errors;
+  ErrorMetrics& errors = run.errors;
   errors.posMean = pos, errors.posRmse = 2 * pos, errors.posMax = 3 * pos, errors.posEnd = pos;
   errors.latMean = pos / 2, errors.latStd = pos / 4;
   errors.lonMean = pos / 2, errors.lonStd = pos / 4;

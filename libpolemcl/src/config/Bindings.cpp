@@ -8,8 +8,8 @@ namespace {
 const Range positive = Range::above(0), notNegative = Range::atLeast(0),
             share = Range::between(0, 1);
 
-void bind(Binder& b, PaperOptions& o) {
-  b.section("paper", "Algorithm 1 of the paper, for method = paper");
+void bind(Binder& b, RangeImageOptions& o) {
+  b.section("range_image", "Algorithm 1 of the paper, for method = range_image");
   b.integer("rows", o.rows, Range::between(2, 1024), "px", "height of the range image");
   b.integer("columns", o.columns, Range::between(16, 65536), "px", "width of the range image");
   b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90), "elevation of the upper border");
@@ -55,8 +55,8 @@ void bind(Binder& b, PaperOptions& o) {
            "shape of the free space; cut_corners: the lower two cut, as by the authors' code");
 }
 
-void bind(Binder& b, NativeOptions& o) {
-  b.section("native", "Scan lines of real beams, for method = native");
+void bind(Binder& b, ScanLineOptions& o) {
+  b.section("scan_line", "Scan lines of real beams, for method = scan_line");
   b.number("max_width_m", o.maxWidth, positive, "m", "widest slice of a pole on one beam");
   b.number("connect_step_m", o.connectStep, positive, "m", "greatest step in range in a slice");
   b.number("edge_step_m", o.edgeStep, positive, "m", "least step to what is behind the edges");
@@ -109,10 +109,10 @@ void bind(Binder& b, ExtractionOptions& o) {
   b.section("extraction", "How poles are found");
   b.choice<ExtractionMethod>(
       "method", o.method,
-      {{ExtractionMethod::paper, "paper"}, {ExtractionMethod::native, "native"}},
+      {{ExtractionMethod::rangeImage, "range_image"}, {ExtractionMethod::scanLine, "scan_line"}},
       "the paper's Algorithm 1, or scan lines of real beams");
-  bind(b, o.paper);
-  bind(b, o.native);
+  bind(b, o.rangeImage);
+  bind(b, o.scanLine);
   b.check(o);
 }
 
@@ -134,8 +134,9 @@ void bind(Binder& b, PoleMapOptions& o) {
                          "sections of one run (paper), or detections (first implementation)");
   b.integer("min_count", o.minCount, Range::atLeast(1), "", "least count of a pole");
   b.integer("max_gap", o.maxGap, notNegative, "", "occupied sections a run may miss it");
-  b.number("min_confidence", o.minConfidence, share, "",
-           "detections below are not used; scans are searched down to it, 0: to that of [native]");
+  b.number(
+      "min_confidence", o.minConfidence, share, "",
+      "detections below are not used; scans are searched down to it, 0: to that of [scan_line]");
   b.number("min_share", o.minShare, share, "",
            "of the sections that pass a pole nearby, so many must have seen it");
   b.number("near_range_m", o.nearRange, positive, "m", "for min_share");

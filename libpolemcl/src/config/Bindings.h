@@ -14,13 +14,14 @@
 
 namespace polemcl {
 
-void bind(Binder& binder, SensorOptions& options);       ///< `[sensor]`
-void bind(Binder& binder, ExtractionOptions& options);   ///< `[extraction]`, `[paper]`, `[native]`
-void bind(Binder& binder, PoleMapOptions& options);      ///< `[map]`
-void bind(Binder& binder, LikelihoodOptions& options);   ///< `[likelihood]`
-void bind(Binder& binder, SubmapOptions& options);       ///< `[submap]`
-void bind(Binder& binder, GlobalOptions& options);       ///< `[global]`
-void bind(Binder& binder, HealthOptions& options);       ///< `[health]`
-void bind(Binder& binder, MotionCheckOptions& options);  ///< `[motion_check]`
+void bind(Binder& binder, SensorOptions& options);  ///< `[sensor]`
+void bind(Binder& binder,
+          ExtractionOptions& options);  ///< `[extraction]`, `[range_image]`, `[scan_line]`
+void bind(Binder& binder, PoleMapOptions& options);          ///< `[map]`
+void bind(Binder& binder, LikelihoodOptions& options);       ///< `[likelihood]`
+void bind(Binder& binder, SubmapOptions& options);           ///< `[submap]`
+void bind(Binder& binder, GlobalOptions& options);           ///< `[global]`
+void bind(Binder& binder, HealthOptions& options);           ///< `[health]`
+void bind(Binder& binder, OdometryMonitorOptions& options);  ///< `[odometry_monitor]`
 
 }  // namespace polemcl

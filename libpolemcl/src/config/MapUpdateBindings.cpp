@@ -8,8 +8,8 @@ const Range abovezero = Range::above(0), zeroOrMore = Range::atLeast(0),
 
 }  // namespace
 
-void bind(Binder& b, UpkeepOptions& o) {
-  b.section("upkeep", "How a map is kept true, session by session; gates are those of [map]");
+void bind(Binder& b, MapUpdateOptions& o) {
+  b.section("map_update", "How a map is kept true, session by session; gates are those of [map]");
   b.number("range_m", o.range, abovezero, "m", "nearer poles in free view are expected");
   b.number("detection", o.existence.detection, chance, "",
            "that such a pole is found in a scan, unless its own counts say less");

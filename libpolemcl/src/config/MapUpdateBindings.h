@@ -7,6 +7,6 @@
 
 namespace polemcl {
 
-void bind(Binder& binder, UpkeepOptions& options);  ///< `[upkeep]`
+void bind(Binder& binder, MapUpdateOptions& options);  ///< `[map_update]`
 
 }  // namespace polemcl

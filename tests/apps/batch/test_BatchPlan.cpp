@@ -27,7 +27,7 @@ BatchPlan planOf(const std::function<void(BatchSpec&)>& change = {}) {
     fs::create_directories(session.input);
     spec.sessions.push_back(session);
   }
-  BatchSetting setting;
+  BatchConfiguration setting;
   setting.name = "one";
   setting.config = source + "/config/nclt.ini";
   setting.mapSessions = {"a", "b"};
@@ -127,7 +127,7 @@ TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
   const BatchTask& poles = plan.task("poles.b");  // mapped and localized
   EXPECT_EQ(poles.outputs, (Names{"b.tum", "one/b.rawlog", "one.map/b.rawlog", "two/b.rawlog"}));
   ASSERT_EQ(poles.commands.size(), 4u);
-  EXPECT_EQ(argument(poles.commands[2], "--set"), "native.min_confidence=0.3");
+  EXPECT_EQ(argument(poles.commands[2], "--set"), "scan_line.min_confidence=0.3");
   EXPECT_EQ(argument(poles.commands[2], "--output"), "one.map/b.rawlog");
   EXPECT_EQ(argument(plan.task("map.one.a").commands[0], "--input"), "../poles.a/one.map/a.rawlog");
   EXPECT_EQ(argument(plan.task("run.one.b.00").commands[0], "--input"), "../poles.b/one/b.rawlog");

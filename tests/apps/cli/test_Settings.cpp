@@ -65,15 +65,15 @@ TEST(Settings, ConfigurationsSayWhatTheyAreFor) {
   const auto kitti = loadSettings(config("kitti.ini").string());
   EXPECT_EQ(kitti.sensor.model, "hdl64e");
   EXPECT_EQ(kitti.sensor.height, 1.73);
-  EXPECT_EQ(kitti.extraction.method, ExtractionMethod::native);
+  EXPECT_EQ(kitti.extraction.method, ExtractionMethod::scanLine);
   const auto nclt = loadSettings(config("nclt.ini").string());
   EXPECT_TRUE(nclt.sensor.upsideDown);
   EXPECT_EQ(nclt.sensor.originZ, 0.957);
   const auto paper = loadSettings(config("paper/nclt.ini").string());
-  EXPECT_EQ(paper.extraction.method, ExtractionMethod::paper);
-  EXPECT_EQ(paper.extraction.paper.columns, 250);
-  EXPECT_NEAR(paper.extraction.paper.fovUp, 30.67 * M_PI / 180, 1e-12);
-  EXPECT_EQ(paper.extraction.paper.projectFrom, "cloud");
+  EXPECT_EQ(paper.extraction.method, ExtractionMethod::rangeImage);
+  EXPECT_EQ(paper.extraction.rangeImage.columns, 250);
+  EXPECT_NEAR(paper.extraction.rangeImage.fovUp, 30.67 * M_PI / 180, 1e-12);
+  EXPECT_EQ(paper.extraction.rangeImage.projectFrom, "cloud");
   EXPECT_EQ(paper.map.minCount, 6);
   EXPECT_EQ(paper.likelihood.model, LikelihoodModel::floored);
   EXPECT_EQ(paper.localization.filter.estimate, PoseEstimator::bestShare);
@@ -82,9 +82,9 @@ TEST(Settings, ConfigurationsSayWhatTheyAreFor) {
 TEST(Settings, TheMendedPaperDiffersInOneHeight) {
   auto kitti = loadSettings(config("paper/kitti.ini").string());
   const auto mended = loadSettings(config("paper/kitti-mended.ini").string());
-  EXPECT_EQ(kitti.extraction.paper.minTop, 0.7);
-  EXPECT_EQ(mended.extraction.paper.minTop, 0);
-  kitti.extraction.paper.minTop = 0;
+  EXPECT_EQ(kitti.extraction.rangeImage.minTop, 0.7);
+  EXPECT_EQ(mended.extraction.rangeImage.minTop, 0);
+  kitti.extraction.rangeImage.minTop = 0;
   EXPECT_EQ(settingsText(mended), settingsText(kitti));
 }
 
@@ -95,10 +95,10 @@ TEST(Settings, KnowsEverySection) {
   for (std::string line; std::getline(lines, line);)
     if (!line.empty() && line[0] == '[') sections.push_back(line);
   const std::vector<std::string> expected{
-      "[sensor]",       "[extraction]", "[paper]",  "[native]",     "[map]",
-      "[upkeep]",       "[likelihood]", "[motion]", "[filter]",     "[start]",
-      "[tracking]",     "[submap]",     "[global]", "[health]",     "[search]",
-      "[motion_check]", "[runs]",       "[view]",   "[simulation]", "[world]"};
+      "[sensor]",           "[extraction]", "[range_image]", "[scan_line]",  "[map]",
+      "[map_update]",       "[likelihood]", "[motion]",      "[filter]",     "[start]",
+      "[tracking]",         "[submap]",     "[global]",      "[health]",     "[search]",
+      "[odometry_monitor]", "[runs]",       "[view]",        "[simulation]", "[world]"};
   EXPECT_TRUE(
       std::is_permutation(sections.begin(), sections.end(), expected.begin(), expected.end()))
       << testing::PrintToString(sections);

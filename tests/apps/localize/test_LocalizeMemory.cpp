@@ -72,7 +72,7 @@ class LocalizeMemory : public LocalizeTest {
       poles->timestamp = mrpt::Clock::fromDouble(time);
       poles->poles = street.frames[at].poles_robot;
       poles->points = 1000;
-      poles->freeRange.assign(directions, 20.0f);
+      poles->visibilityRange.assign(directions, 20.0f);
       io::PlanarMotion motion;
       motion.mean = relative(street.truth[before], street.truth[at]);
       motion.covariance = 1e-4 * Eigen::Matrix3d::Identity();

@@ -39,7 +39,7 @@ std::vector<StampedPose2D> localized(const LocalizationMap& map,
                                      const std::vector<PoleFrame>& frames,
                                      const LocalizationOptions& options, const StartOptions& start,
                                      std::uint32_t seed) {
-  PoleLocalization localization(map, options, seed);
+  LocalizationPipeline localization(map, options, seed);
   localization.start(start);
   std::vector<StampedPose2D> poses;
   for (const PoleFrame& frame : frames)
@@ -198,9 +198,9 @@ TEST(PaperMode, NothingBeyondThePaperIsOn) {
   for (const char* name : {"kitti", "kitti-mended", "nclt", "mulran"}) {
     SCOPED_TRACE(name);
     const Settings s = load("paper/" + std::string(name) + ".ini");
-    EXPECT_EQ(s.extraction.method, ExtractionMethod::paper);
+    EXPECT_EQ(s.extraction.method, ExtractionMethod::rangeImage);
     EXPECT_FALSE(s.localization.search.recover);
-    EXPECT_FALSE(s.localization.motionCheck.enabled);
+    EXPECT_FALSE(s.localization.odometryMonitor.enabled);
     EXPECT_FALSE(s.localization.tracking.average);
     EXPECT_EQ(s.localization.tracking.cadence, Cadence::section);
     EXPECT_EQ(s.localization.tracking.localMaps.sectionLength, s.map.sectionLength);

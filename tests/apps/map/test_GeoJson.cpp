@@ -100,7 +100,7 @@ const io::Datum home{50, 8, 0};
 
 }  // namespace
 
-TEST_F(GeoJson, placesStandAboveTheirLongitudeAndLatitude) {
+TEST_F(GeoJson, PlacesStandAboveTheirLongitudeAndLatitude) {
   for (const io::Datum& datum : datums)
     for (const Eigen::Vector2d& place :
          {Eigen::Vector2d(0, 0), Eigen::Vector2d(10, 0), Eigen::Vector2d(0, 10),
@@ -115,7 +115,7 @@ TEST_F(GeoJson, placesStandAboveTheirLongitudeAndLatitude) {
     }
 }
 
-TEST_F(GeoJson, eastIsEastAndNorthIsNorth) {
+TEST_F(GeoJson, EastIsEastAndNorthIsNorth) {
   const Eigen::Vector2d east = geographic({100, 0}, {50, 8, 0}),
                         turned = geographic({100, 0}, {50, 8, 90});
   EXPECT_NEAR(east.x() - 8, 100 / (111320 * std::cos(50 * degree)), 1e-5);
@@ -124,7 +124,7 @@ TEST_F(GeoJson, eastIsEastAndNorthIsNorth) {
   EXPECT_NEAR(turned.y() - 50, 100 / 111229.0, 1e-5);
 }
 
-TEST_F(GeoJson, mapsComeBackBelowAMillimetre) {
+TEST_F(GeoJson, MapsComeBackBelowAMillimetre) {
   const io::PoleMapData before = sample();
   const std::string file = folder / "m.geojson";
   writeGeoJson(file, before);
@@ -149,7 +149,7 @@ TEST_F(GeoJson, mapsComeBackBelowAMillimetre) {
   }
 }
 
-TEST_F(GeoJson, isWhatRfc7946Asks) {
+TEST_F(GeoJson, IsWhatRfc7946Asks) {
   writeGeoJson(folder / "m.geojson", sample());
   std::ifstream stream(folder / "m.geojson");
   const auto json = nlohmann::json::parse(stream);
@@ -166,7 +166,7 @@ TEST_F(GeoJson, isWhatRfc7946Asks) {
   EXPECT_EQ(json["polemcl"]["datum"], "42.293227,-83.709657,30");
 }
 
-TEST_F(GeoJson, readsPointsOfOthers) {
+TEST_F(GeoJson, ReadsPointsOfOthers) {
   const std::string file = write(
       points(point("8.001, 50.001, 120") + "," +
              R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]}})" +
@@ -187,7 +187,7 @@ TEST_F(GeoJson, readsPointsOfOthers) {
   EXPECT_EQ(map.info.at("datum"), "50,8,0");
 }
 
-TEST_F(GeoJson, refusesWhatItCannotPlace) {
+TEST_F(GeoJson, RefusesWhatItCannotPlace) {
   EXPECT_HAS(refusal(points(point("8, 50"))), "--datum");
   writeGeoJson(folder / "m.geojson", sample());
   EXPECT_THROW(readGeoJson(folder / "m.geojson", home), Error);  // it has another one
@@ -201,7 +201,7 @@ TEST_F(GeoJson, refusesWhatItCannotPlace) {
   EXPECT_FALSE(std::ifstream(folder / "n.geojson").good());
 }
 
-TEST_F(GeoJson, refusesWhatIsNone) {
+TEST_F(GeoJson, RefusesWhatIsNone) {
   EXPECT_HAS(refusal(""), "is no JSON");
   EXPECT_HAS(refusal("[1]"), "FeatureCollection");
   EXPECT_HAS(refusal(R"({"type":"FeatureCollection"})"), "FeatureCollection");

@@ -90,7 +90,7 @@ TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {
   options.truths = {folder / "in.tum"};
   options.output = folder / "street.polemap";
   Settings settings = loadSettings(config());
-  settings.extraction.native.minConfidence = 1;  // nothing is that sure
+  settings.extraction.scanLine.minConfidence = 1;  // nothing is that sure
   const auto ignore = [](std::size_t, std::size_t) {};
   EXPECT_THROW(buildMap(options, settings, ignore), Error);
   settings.map.minConfidence = 0.3;

@@ -148,7 +148,7 @@ TEST_F(MapUpdateApp, WrongUsage) {
   expectUsageError(runProgram(mapMain, {"--diff", "a.polemap"}));
   expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--update", "c"}));
   expectUsageError(runProgram(mapMain, {"--png", "a.png"}));
-  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--set", "upkeep.moved_m=1"}));
+  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--set", "map_update.moved_m=1"}));
   expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--csv", "c", "--png", "./c"}));
   expectUsageError(
       runProgram(mapMain, {"--convert", "a.csv", "--output", "b.csv", "--config", "c"}));

@@ -25,7 +25,7 @@ std::size_t brute(const Edges& edges, std::size_t left, std::uint32_t taken) {
 
 }  // namespace
 
-TEST(BipartiteMatching, equalsTryingAllChoices) {
+TEST(BipartiteMatching, EqualsTryingAllChoices) {
   std::mt19937_64 random(5);
   for (int i = 0; i < 300; ++i) {
     const std::size_t rightCount = 1 + random() % 7;
@@ -40,11 +40,11 @@ TEST(BipartiteMatching, equalsTryingAllChoices) {
   }
 }
 
-TEST(BipartiteMatching, givesUpAGreedyChoice) {
+TEST(BipartiteMatching, GivesUpAGreedyChoice) {
   EXPECT_EQ(maximumMatching({{0, 1}, {0}}, 2), 2u);
 }
 
-TEST(BipartiteMatching, followsAPathAsLongAsTheGraph) {
+TEST(BipartiteMatching, FollowsAPathAsLongAsTheGraph) {
   const std::uint32_t size = 200000;
   Edges chain(size);
   for (std::uint32_t left = 0; left < size; ++left) {
@@ -55,7 +55,7 @@ TEST(BipartiteMatching, followsAPathAsLongAsTheGraph) {
   EXPECT_EQ(maximumMatching(chain, size), size);
 }
 
-TEST(BipartiteMatching, nothingToMatch) {
+TEST(BipartiteMatching, NothingToMatch) {
   EXPECT_EQ(maximumMatching({}, 0), 0u);
   EXPECT_EQ(maximumMatching({{}, {}}, 3), 0u);
 }

@@ -11,40 +11,40 @@ namespace polemcl::test_greedy_assignment {
 using namespace polemcl;
 using Points = std::vector<Eigen::Vector2d>;
 
-TEST(PolePairs, TakesTheClosestPairFirst) {
+TEST(GreedyAssignment, TakesTheClosestPairFirst) {
   // The second of `a` is nearer to the only point of `b`; the first gets nothing.
-  const auto pairs = pairClosest({{0, 0}, {0.5, 0}}, {{0.4, 0}}, 1);
+  const auto pairs = greedyAssignment({{0, 0}, {0.5, 0}}, {{0.4, 0}}, 1);
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].first, 1u);
   EXPECT_EQ(pairs[0].second, 0u);
   EXPECT_NEAR(pairs[0].distance, 0.1, 1e-12);
 }
 
-TEST(PolePairs, GivesUpMorePairsForACloserOne) {
+TEST(GreedyAssignment, GivesUpMorePairsForACloserOne) {
   // Two pairs would be possible (0-0, 1-1); the closest, 1-0, leaves the others 1.1 m apart.
-  const auto pairs = pairClosest({{-0.5, 0}, {0.1, 0}}, {{0, 0}, {0.6, 0}}, 0.8);
+  const auto pairs = greedyAssignment({{-0.5, 0}, {0.1, 0}}, {{0, 0}, {0.6, 0}}, 0.8);
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].first, 1u);
   EXPECT_EQ(pairs[0].second, 0u);
 }
 
-TEST(PolePairs, TheRadiusIsInclusiveAndOrderIsByFirst) {
-  const auto pairs = pairClosest({{10, 0}, {0, 0}}, {{0.5, 0}, {10, 0.25}}, 0.5);
+TEST(GreedyAssignment, TheRadiusIsInclusiveAndOrderIsByFirst) {
+  const auto pairs = greedyAssignment({{10, 0}, {0, 0}}, {{0.5, 0}, {10, 0.25}}, 0.5);
   ASSERT_EQ(pairs.size(), 2u);
   EXPECT_EQ(pairs[0].first, 0u);
   EXPECT_EQ(pairs[0].second, 1u);
   EXPECT_EQ(pairs[1].first, 1u);
   EXPECT_EQ(pairs[1].second, 0u);
-  EXPECT_TRUE(pairClosest({{0, 0}}, {{0.5001, 0}}, 0.5).empty());
+  EXPECT_TRUE(greedyAssignment({{0, 0}}, {{0.5001, 0}}, 0.5).empty());
 }
 
-TEST(PolePairs, EqualDistancesGoToTheLowerIndex) {
-  const auto pairs = pairClosest({{0, 0}}, {{0.25, 0}, {-0.25, 0}}, 1);
+TEST(GreedyAssignment, EqualDistancesGoToTheLowerIndex) {
+  const auto pairs = greedyAssignment({{0, 0}}, {{0.25, 0}, {-0.25, 0}}, 1);
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].second, 0u);
 }
 
-TEST(PolePairs, AgreesWithTakingTheSmallestOfATable) {
+TEST(GreedyAssignment, AgreesWithTakingTheSmallestOfATable) {
   std::mt19937 random(5);
   const auto points = [&](std::size_t count) {
     Points result;
@@ -72,17 +72,17 @@ TEST(PolePairs, AgreesWithTakingTheSmallestOfATable) {
       expected[bestA].second = bestB;
     }
     std::vector<std::size_t> partner(a.size(), b.size());
-    for (const PolePair& pair : pairClosest(a, b, 1.0)) partner[pair.first] = pair.second;
+    for (const AssignedPair& pair : greedyAssignment(a, b, 1.0)) partner[pair.first] = pair.second;
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(partner[i], expected[i].second) << i;
   }
 }
 
-TEST(PolePairs, RefusesWhatMakesNoSense) {
-  EXPECT_THROW(pairClosest({{0, 0}}, {{0, 0}}, 0), Error);
-  EXPECT_THROW(pairClosest({{0, 0}}, {{0, 0}}, NAN), Error);
-  EXPECT_THROW(pairClosest({{NAN, 0}}, {{0, 0}}, 1), Error);
-  EXPECT_THROW(pairClosest({{0, 0}}, {{0, INFINITY}}, 1), Error);
-  EXPECT_TRUE(pairClosest({}, {}, 1).empty());
+TEST(GreedyAssignment, RefusesWhatMakesNoSense) {
+  EXPECT_THROW(greedyAssignment({{0, 0}}, {{0, 0}}, 0), Error);
+  EXPECT_THROW(greedyAssignment({{0, 0}}, {{0, 0}}, NAN), Error);
+  EXPECT_THROW(greedyAssignment({{NAN, 0}}, {{0, 0}}, 1), Error);
+  EXPECT_THROW(greedyAssignment({{0, 0}}, {{0, INFINITY}}, 1), Error);
+  EXPECT_TRUE(greedyAssignment({}, {}, 1).empty());
 }
 
 }  // namespace polemcl::test_greedy_assignment

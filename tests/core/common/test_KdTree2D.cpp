@@ -61,7 +61,7 @@ void expectEqualsBruteForce(const std::vector<Eigen::Vector2d>& points, double x
 
 }  // namespace
 
-TEST(KdTree2D, equalsBruteForceOnRandomPoints) {
+TEST(KdTree2D, EqualsBruteForceOnRandomPoints) {
   std::mt19937_64 random(1);
   const auto points = randomPoints(random, 300, 20);
   for (int i = 0; i < 200; ++i) {
@@ -70,7 +70,7 @@ TEST(KdTree2D, equalsBruteForceOnRandomPoints) {
   }
 }
 
-TEST(KdTree2D, equalsBruteForceOnDuplicatesAndTies) {
+TEST(KdTree2D, EqualsBruteForceOnDuplicatesAndTies) {
   std::mt19937_64 random(2);
   const auto points = latticePoints(random, 400);
   for (int i = 0; i < 200; ++i) {
@@ -79,13 +79,13 @@ TEST(KdTree2D, equalsBruteForceOnDuplicatesAndTies) {
   }
 }
 
-TEST(KdTree2D, radiusIsStrict) {
+TEST(KdTree2D, RadiusIsStrict) {
   const KdTree2D tree({{3, 4}});
   EXPECT_FALSE(tree.nearest(0, 0, 5));
   EXPECT_TRUE(tree.nearest(0, 0, std::nextafter(5.0, 6.0)));
 }
 
-TEST(KdTree2D, emptyFindsNothing) {
+TEST(KdTree2D, EmptyFindsNothing) {
   const KdTree2D tree({});
   std::vector<PointHit> hits(3);
   tree.within(0, 0, 10, hits);
@@ -94,7 +94,7 @@ TEST(KdTree2D, emptyFindsNothing) {
   EXPECT_EQ(tree.size(), 0u);
 }
 
-TEST(KdTree2D, queryThatIsNotANumberFindsNothing) {
+TEST(KdTree2D, QueryThatIsNotANumberFindsNothing) {
   const KdTree2D tree({{0, 0}});
   const double nan = std::nan("");
   EXPECT_FALSE(tree.nearest(nan, 0, 10));
@@ -103,7 +103,7 @@ TEST(KdTree2D, queryThatIsNotANumberFindsNothing) {
   EXPECT_FALSE(tree.nearest(0, 0, -1));
 }
 
-TEST(KdTree2D, refusesPointsThatAreNotFinite) {
+TEST(KdTree2D, RefusesPointsThatAreNotFinite) {
   EXPECT_THROW(KdTree2D({{0, 0}, {std::nan(""), 1}}), Error);
   EXPECT_THROW(KdTree2D({{0, std::numeric_limits<double>::infinity()}}), Error);
 }

@@ -25,7 +25,7 @@ using Scans = std::vector<std::size_t>;
 
 }  // namespace
 
-TEST(PathSections, straightPathByHand) {
+TEST(PathSections, StraightPathByHand) {
   const auto result = split(straight({0, 0.4, 0.8, 1.0, 1.7, 2.2, 3.9}), 1);
   ASSERT_EQ(result.occupied.size(), 4u);
   EXPECT_EQ(result.count, 4u);
@@ -38,18 +38,18 @@ TEST(PathSections, straightPathByHand) {
   EXPECT_EQ(result.occupied[1].middle, 4u);  // 1.7 is nearer to 1.5 than 1.0
 }
 
-TEST(PathSections, ofEqualsTheFirstIsTheMiddle) {
+TEST(PathSections, OfEqualsTheFirstIsTheMiddle) {
   EXPECT_EQ(split(straight({0.0, 0.4, 0.6}), 1).occupied[0].middle, 1u);
 }
 
-TEST(PathSections, sectionsWithoutAScanAreCountedButNotOccupied) {
+TEST(PathSections, SectionsWithoutAScanAreCountedButNotOccupied) {
   const auto result = split(straight({0, 5.5}), 1);
   ASSERT_EQ(result.occupied.size(), 2u);
   EXPECT_EQ(result.occupied[1].index, 5u);
   EXPECT_EQ(result.count, 6u);
 }
 
-TEST(PathSections, aWholeNumberOfSectionsDoesNotFallShort) {
+TEST(PathSections, AWholeNumberOfSectionsDoesNotFallShort) {
   std::vector<double> ways;
   for (int i = 0; i <= 3000; ++i) ways.push_back(0.1 * i);
   const auto result = split(straight(ways), 0.3);
@@ -58,7 +58,7 @@ TEST(PathSections, aWholeNumberOfSectionsDoesNotFallShort) {
     EXPECT_EQ(result.occupied[k].scans, (Scans{3 * k, 3 * k + 1, 3 * k + 2}));
 }
 
-TEST(PathSections, followTheCurve) {
+TEST(PathSections, FollowTheCurve) {
   std::vector<Pose2D> poses;
   for (int i = 0; i <= 2000; ++i)
     poses.push_back({8 * std::cos(i * M_PI / 1000), 8 * std::sin(i * M_PI / 1000), 0});
@@ -67,7 +67,7 @@ TEST(PathSections, followTheCurve) {
   EXPECT_EQ(result.count, 34u);  // 50.27 m
 }
 
-TEST(PathSections, goingBackIsTravelling) {
+TEST(PathSections, GoingBackIsTravelling) {
   std::vector<double> ways;
   for (int i = 0; i <= 10; ++i) ways.push_back(i);
   for (int i = 9; i >= 0; --i) ways.push_back(i);
@@ -76,7 +76,7 @@ TEST(PathSections, goingBackIsTravelling) {
   EXPECT_EQ(result.occupied.size(), 11u);
 }
 
-TEST(PathSections, jitterOfAStandingVehicleAddsNothing) {
+TEST(PathSections, JitterOfAStandingVehicleAddsNothing) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> jitter(-0.01, 0.01);
   std::vector<Pose2D> poses;
@@ -86,7 +86,7 @@ TEST(PathSections, jitterOfAStandingVehicleAddsNothing) {
   EXPECT_LT(result.length, 0.04);
 }
 
-TEST(PathSections, anotherDriveStartsAPathOfItsOwn) {
+TEST(PathSections, AnotherDriveStartsAPathOfItsOwn) {
   const std::vector<Pose2D> poses = straight({0, 1.2, 500, 500.4, 3});
   const auto result = splitPath(poses, {7, 7, 2, 2, 7}, 1);
   ASSERT_EQ(result.occupied.size(), 4u);
@@ -99,13 +99,13 @@ TEST(PathSections, anotherDriveStartsAPathOfItsOwn) {
   EXPECT_EQ(result.occupied[3].path, 2u);
 }
 
-TEST(PathSections, noPosesNoSections) {
+TEST(PathSections, NoPosesNoSections) {
   const auto result = split({}, 1);
   EXPECT_TRUE(result.occupied.empty());
   EXPECT_EQ(result.count, 0u);
 }
 
-TEST(PathSections, whatIsNotUsedIsWayButNoScan) {
+TEST(PathSections, WhatIsNotUsedIsWayButNoScan) {
   const auto poses = straight({0, 0.4, 0.8, 1.0, 1.7, 2.2, 3.9});
   const std::vector<std::uint32_t> drives(poses.size(), 0);
   const auto result = splitPath(poses, drives, 1, {true, false, true, false, false, true, false});
@@ -145,7 +145,7 @@ PathSections pass(const std::vector<Pose2D>& poses, double length) {
 
 }  // namespace
 
-TEST(PathSections, passedMiddlesByHand) {
+TEST(PathSections, PassedMiddlesByHand) {
   // 0.4 is nearer to 0.5, but 0.75 is the first past it; the end of section 1 is the first past 2.
   const auto result = pass(straight({0, 0.4, 0.75, 1.125, 1.5, 2, 2.25, 2.5, 3}), 1);
   EXPECT_EQ(middlesOf(result), (Scans{2, 4}));
@@ -154,13 +154,13 @@ TEST(PathSections, passedMiddlesByHand) {
   EXPECT_EQ(result.occupied[1].index, 1u);
 }
 
-TEST(PathSections, scansFarApartAreAllMiddlesAndAStandingVehicleMakesUp) {
+TEST(PathSections, ScansFarApartAreAllMiddlesAndAStandingVehicleMakesUp) {
   // After 4 m in two scans four sections are behind, two of them made up for while standing.
   const auto result = pass(straight({0, 2, 4.25, 4.25, 4.25, 4.25, 4.25}), 1);
   EXPECT_EQ(middlesOf(result), (Scans{1, 2, 3, 4}));
 }
 
-TEST(PathSections, passedMiddlesEqualTheLists) {
+TEST(PathSections, PassedMiddlesEqualTheLists) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 50; ++round) {
     std::uniform_real_distribution<double> step(0, round % 2 ? 0.4 : 2.5);
@@ -172,7 +172,7 @@ TEST(PathSections, passedMiddlesEqualTheLists) {
   }
 }
 
-TEST(PathSections, passedDrivesCountForThemselvesAndUnusedMiddlesAreLeftOut) {
+TEST(PathSections, PassedDrivesCountForThemselvesAndUnusedMiddlesAreLeftOut) {
   const std::vector<Pose2D> poses = straight({0, 0.625, 1.25, 1.625, 2.25, 500, 500.625, 501.25});
   const std::vector<std::uint32_t> drives{0, 0, 0, 0, 0, 1, 1, 1};
   const auto all = passSections(poses, drives, 1);

@@ -49,23 +49,23 @@ void compareOnRandomPoints(std::size_t count, double extent, double offset, doub
 
 }  // namespace
 
-TEST(PoleGrid, equalsTheTreeOnSparsePoles) {
+TEST(PoleGrid, EqualsTheTreeOnSparsePoles) {
   compareOnRandomPoints(500, 200, -100, 1);
 }
-TEST(PoleGrid, equalsTheTreeOnCrowdedPoles) {
+TEST(PoleGrid, EqualsTheTreeOnCrowdedPoles) {
   compareOnRandomPoints(3000, 20, 0, 1);
 }
-TEST(PoleGrid, equalsTheTreeWhenTheRadiusSpansTheMap) {
+TEST(PoleGrid, EqualsTheTreeWhenTheRadiusSpansTheMap) {
   compareOnRandomPoints(60, 10, 3, 30);
 }
-TEST(PoleGrid, equalsTheTreeFarFromTheOrigin) {
+TEST(PoleGrid, EqualsTheTreeFarFromTheOrigin) {
   compareOnRandomPoints(500, 100, 5.4e6, 0.5);
 }
-TEST(PoleGrid, equalsTheTreeOverAVastArea) {
+TEST(PoleGrid, EqualsTheTreeOverAVastArea) {
   compareOnRandomPoints(100, 4e7, -2e7, 0.01);
 }
 
-TEST(PoleGrid, tiesAndDuplicatesGoToTheLowerIndex) {
+TEST(PoleGrid, TiesAndDuplicatesGoToTheLowerIndex) {
   std::mt19937_64 random(3);
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i < 300; ++i) points.emplace_back(double(random() % 12), double(random() % 12));
@@ -76,7 +76,7 @@ TEST(PoleGrid, tiesAndDuplicatesGoToTheLowerIndex) {
   }
 }
 
-TEST(PoleGrid, radiusIsStrict) {
+TEST(PoleGrid, RadiusIsStrict) {
   const PoleGrid grid({{1, 0}}, 1);
   EXPECT_FALSE(grid.nearest(0, 0, 1));
   EXPECT_TRUE(grid.nearest(1e-15, 0, 1));
@@ -84,7 +84,7 @@ TEST(PoleGrid, radiusIsStrict) {
   EXPECT_FALSE(grid.nearest(0.5, 0, 0.25));
 }
 
-TEST(PoleGrid, emptyAndAQueryThatIsNotANumberFindNothing) {
+TEST(PoleGrid, EmptyAndAQueryThatIsNotANumberFindNothing) {
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(PoleGrid({}, 1).nearest(0, 0, 1));
   const PoleGrid grid({{0, 0}}, 1);
@@ -93,7 +93,7 @@ TEST(PoleGrid, emptyAndAQueryThatIsNotANumberFindNothing) {
   EXPECT_FALSE(grid.nearest(infinity, -infinity, 1));
 }
 
-TEST(PoleGrid, candidatesOfARectangleHoldTheNearestOfEachPlaceInIt) {
+TEST(PoleGrid, CandidatesOfARectangleHoldTheNearestOfEachPlaceInIt) {
   std::mt19937_64 random(11);
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i < 400; ++i)
@@ -126,7 +126,7 @@ TEST(PoleGrid, candidatesOfARectangleHoldTheNearestOfEachPlaceInIt) {
   EXPECT_GT(filled, 1000);
 }
 
-TEST(PoleGrid, candidatesOfARectangleThatIsTooWideOrNoneAreNotListed) {
+TEST(PoleGrid, CandidatesOfARectangleThatIsTooWideOrNoneAreNotListed) {
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i < 30; ++i) points.emplace_back(0.1 * i, 0);
   const PoleGrid grid(points, 1);

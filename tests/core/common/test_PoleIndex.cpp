@@ -41,7 +41,7 @@ std::vector<PoleIndex::Neighbour> brute(const std::vector<MapPole>& poles, doubl
 
 }  // namespace
 
-TEST(PoleIndex, equalsBruteForceInsideAndBeyondThePreparedRadius) {
+TEST(PoleIndex, EqualsBruteForceInsideAndBeyondThePreparedRadius) {
   std::mt19937_64 random(11);
   const auto poles = randomPoles(random, 400, 30);
   const PoleIndex index(poles, 2.0);
@@ -64,7 +64,7 @@ TEST(PoleIndex, equalsBruteForceInsideAndBeyondThePreparedRadius) {
   EXPECT_GT(found, 1000);
 }
 
-TEST(PoleIndex, ofEqualsTheLowerIndex) {
+TEST(PoleIndex, OfEqualsTheLowerIndex) {
   const std::vector<MapPole> poles{poleAt(9, 9), poleAt(1, 0), poleAt(-1, 0), poleAt(1, 0),
                                    poleAt(0, 1)};
   for (double prepared : {0.5, 2.0}) {  // by the tree, by the grid
@@ -77,7 +77,7 @@ TEST(PoleIndex, ofEqualsTheLowerIndex) {
   }
 }
 
-TEST(PoleIndex, distanceMustBeLessThanTheRadius) {
+TEST(PoleIndex, DistanceMustBeLessThanTheRadius) {
   for (double prepared : {1.0, 10.0}) {
     const PoleIndex index({poleAt(3, 4)}, prepared);
     EXPECT_FALSE(index.nearest(0, 0, 5).has_value());
@@ -88,7 +88,7 @@ TEST(PoleIndex, distanceMustBeLessThanTheRadius) {
   }
 }
 
-TEST(PoleIndex, emptyMapFindsNothing) {
+TEST(PoleIndex, EmptyMapFindsNothing) {
   const PoleIndex index({});
   EXPECT_EQ(index.size(), 0u);
   EXPECT_FALSE(index.nearest(0, 0, 1).has_value());
@@ -96,20 +96,20 @@ TEST(PoleIndex, emptyMapFindsNothing) {
   EXPECT_TRUE(index.within(0, 0, 100).empty());
 }
 
-TEST(PoleIndex, varianceIsTheMeanOverTheAxes) {
+TEST(PoleIndex, VarianceIsTheMeanOverTheAxes) {
   MapPole pole = poleAt(0, 0);
   pole.covariance << 0.04, 0.01, 0.01, 0.02;
   EXPECT_DOUBLE_EQ(PoleIndex({pole}).variance(0), 0.03);
 }
 
-TEST(PoleIndex, refusesAPoleThatIsNotFinite) {
+TEST(PoleIndex, RefusesAPoleThatIsNotFinite) {
   EXPECT_THROW(PoleIndex({poleAt(0, 0), poleAt(std::nan(""), 0)}), Error);
   MapPole pole = poleAt(0, 0);
   pole.covariance(0, 1) = std::nan("");
   EXPECT_THROW(PoleIndex({pole}), Error);
 }
 
-TEST(PoleIndex, refusesAPoleOutOfThisWorld) {
+TEST(PoleIndex, RefusesAPoleOutOfThisWorld) {
   MapPole pole;
   pole.y = -1.01e9;
   try {
@@ -123,7 +123,7 @@ TEST(PoleIndex, refusesAPoleOutOfThisWorld) {
   EXPECT_NO_THROW(PoleIndex({MapPole(), pole}));
 }
 
-TEST(PoleIndex, refusesARadiusThatIsNotPositive) {
+TEST(PoleIndex, RefusesARadiusThatIsNotPositive) {
   EXPECT_THROW(PoleIndex({poleAt(0, 0)}, 0), Error);
   EXPECT_THROW(PoleIndex({poleAt(0, 0)}, std::nan("")), Error);
 }

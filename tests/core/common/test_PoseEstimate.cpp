@@ -23,7 +23,7 @@ void expectPose(const Pose2D& pose, double x, double y, double yaw) {
 
 }  // namespace
 
-TEST(PoseEstimate, weightedMeanByHand) {
+TEST(PoseEstimate, WeightedMeanByHand) {
   // Weights 1 and 3.
   const auto estimate = weightedMean({{0, 0, 0.2}, {4, 8, 0.2}}, {std::log(1.0), std::log(3.0)});
   expectPose(estimate.mean, 3, 6, 0.2);
@@ -34,13 +34,13 @@ TEST(PoseEstimate, weightedMeanByHand) {
   EXPECT_NEAR(estimate.covariance(2, 2), 0, 1e-12);
 }
 
-TEST(PoseEstimate, headingsAreAveragedOnTheCircle) {
+TEST(PoseEstimate, HeadingsAreAveragedOnTheCircle) {
   const auto estimate = weightedMean({{0, 0, M_PI - 0.1}, {0, 0, -M_PI + 0.3}}, {0, 0});
   expectPose(estimate.mean, 0, 0, -M_PI + 0.1);
   EXPECT_NEAR(estimate.covariance(2, 2), 0.04, 1e-12);
 }
 
-TEST(PoseEstimate, crossTermsKeepTheSignOfTheHeadingError) {
+TEST(PoseEstimate, CrossTermsKeepTheSignOfTheHeadingError) {
   // Farther to the left goes with a heading turned to the right, across ±pi.
   const auto estimate = weightedMean(
       {{1, 0, M_PI + 0.1}, {-1, 0, M_PI - 0.1}, {0, 2, M_PI - 0.2}, {0, -2, M_PI + 0.2}},
@@ -50,13 +50,13 @@ TEST(PoseEstimate, crossTermsKeepTheSignOfTheHeadingError) {
   EXPECT_NEAR(estimate.covariance(2, 1), estimate.covariance(1, 2), 0);
 }
 
-TEST(PoseEstimate, headingsThatCancelOutAreTheHeaviests) {
+TEST(PoseEstimate, HeadingsThatCancelOutAreTheHeaviests) {
   const auto estimate = weightedMean({{0, 0, 0}, {0, 0, M_PI}, {0, 0, M_PI / 2}, {0, 0, -M_PI / 2}},
                                      {0, 0, std::log(2.0), std::log(2.0)});
   EXPECT_NEAR(estimate.mean.yaw, M_PI / 2, 1e-12);
 }
 
-TEST(PoseEstimate, anOffsetOfTheWeightsChangesNothing) {
+TEST(PoseEstimate, AnOffsetOfTheWeightsChangesNothing) {
   const std::vector<Pose2D> particles{{1, 2, 0.5}, {2, 1, 0.7}, {5, 5, -1}};
   const auto plain = weightedMean(particles, {0, -1, -2});
   for (double offset : {-1000.0, 1000.0}) {
@@ -66,14 +66,14 @@ TEST(PoseEstimate, anOffsetOfTheWeightsChangesNothing) {
   }
 }
 
-TEST(PoseEstimate, losesNoDigitsFarFromTheOrigin) {
+TEST(PoseEstimate, LosesNoDigitsFarFromTheOrigin) {
   const auto estimate =
       weightedMean({{4e6 + 0.25, -5e6, 0}, {4e6 + 0.75, -5e6, 0}, {4e6 + 0.5, -5e6, 0}}, {0, 0, 0});
   EXPECT_DOUBLE_EQ(estimate.mean.x, 4e6 + 0.5);
   EXPECT_NEAR(estimate.covariance(0, 0), 0.125 / 3, 1e-9);
 }
 
-TEST(PoseEstimate, bestShareEqualsTheSortedBest) {
+TEST(PoseEstimate, BestShareEqualsTheSortedBest) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   std::vector<Pose2D> particles;
@@ -106,7 +106,7 @@ TEST(PoseEstimate, bestShareEqualsTheSortedBest) {
   EXPECT_NEAR(estimate.covariance(0, 0), xx / total, 1e-12);
 }
 
-TEST(PoseEstimate, bestShareTakesAtLeastOneAndNoMoreThanTold) {
+TEST(PoseEstimate, BestShareTakesAtLeastOneAndNoMoreThanTold) {
   const std::vector<Pose2D> particles{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
   const std::vector<double> logWeights{-1, 0, 0, -2};
   expectPose(bestShareMean(particles, logWeights, 0.01).mean, 2, 0,
@@ -122,35 +122,35 @@ TEST(PoseEstimate, bestShareTakesAtLeastOneAndNoMoreThanTold) {
   expectPose(bestShareMean(hundred, std::vector<double>(100, 0.0), 0.29).mean, 14, 0, 0);
 }
 
-TEST(PoseEstimate, aWeightOfZeroCountsForNothing) {
+TEST(PoseEstimate, AWeightOfZeroCountsForNothing) {
   const auto estimate = weightedMean({{1, 1, 0}, {100, 100, 3}}, {0, -s_infinity});
   expectPose(estimate.mean, 1, 1, 0);
   EXPECT_EQ(estimate.covariance.norm(), 0);
 }
 
-TEST(PoseEstimate, effectiveShareByHand) {
+TEST(PoseEstimate, EffectiveShareByHand) {
   EXPECT_DOUBLE_EQ(effectiveShare({3, 3, 3, 3}), 1);
   EXPECT_DOUBLE_EQ(effectiveShare({0, -s_infinity, -s_infinity, -s_infinity}), 0.25);
   // Weights 1 1 2: 16 / 6 / 3.
   EXPECT_NEAR(effectiveShare({-500, -500, -500 + std::log(2.0)}), 16.0 / 18, 1e-12);
 }
 
-TEST(PoseEstimate, refusesNoParticles) {
+TEST(PoseEstimate, RefusesNoParticles) {
   EXPECT_THROW(weightedMean({}, {}), Error);
   EXPECT_THROW(effectiveShare({}), Error);
 }
 
-TEST(PoseEstimate, refusesADifferentNumberOfWeights) {
+TEST(PoseEstimate, RefusesADifferentNumberOfWeights) {
   EXPECT_THROW(weightedMean({{0, 0, 0}}, {0, 0}), Error);
 }
 
-TEST(PoseEstimate, refusesWeightsThatAreNone) {
+TEST(PoseEstimate, RefusesWeightsThatAreNone) {
   EXPECT_THROW(weightedMean({{}, {}}, {0, std::nan("")}), Error);
   EXPECT_THROW(weightedMean({{}, {}}, {0, s_infinity}), Error);
   EXPECT_THROW(effectiveShare({-s_infinity, -s_infinity}), Error);
 }
 
-TEST(PoseEstimate, refusesAShareOutsideZeroToOne) {
+TEST(PoseEstimate, RefusesAShareOutsideZeroToOne) {
   for (double share : {0.0, -0.1, 1.01, std::nan("")})
     EXPECT_THROW(bestShareMean({{}}, {0}, share), Error);
 }

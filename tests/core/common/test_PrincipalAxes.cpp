@@ -19,7 +19,7 @@ Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
 
 }  // namespace
 
-TEST(PrincipalAxes, giveTheMatrixBack) {
+TEST(PrincipalAxes, GiveTheMatrixBack) {
   for (double angle : {0.0, 0.3, 1.2, M_PI / 2, 2.5}) {
     const double c = std::cos(angle), s = std::sin(angle);
     const Eigen::Matrix2d m = matrix(4 * c * c + s * s, 3 * c * s, 3 * c * s, 4 * s * s + c * c);
@@ -31,7 +31,7 @@ TEST(PrincipalAxes, giveTheMatrixBack) {
   }
 }
 
-TEST(PrincipalAxes, flatAndZeroMatricesHaveAxes) {
+TEST(PrincipalAxes, FlatAndZeroMatricesHaveAxes) {
   EXPECT_EQ(principalAxes(matrix(0, 0, 0, 0))->first, 0);
   const auto flat = principalAxes(matrix(1, 1, 1, 1));
   EXPECT_NEAR(flat->first, 2, 1e-15);
@@ -39,7 +39,7 @@ TEST(PrincipalAxes, flatAndZeroMatricesHaveAxes) {
   EXPECT_NEAR(flat->x, std::sqrt(0.5), 1e-15);
 }
 
-TEST(PrincipalAxes, refuseWhatIsNoCovariance) {
+TEST(PrincipalAxes, RefuseWhatIsNoCovariance) {
   EXPECT_FALSE(principalAxes(matrix(1, 2, 2, 1)));
   EXPECT_FALSE(principalAxes(matrix(-1, 0, 0, -1)));
   EXPECT_FALSE(principalAxes(matrix(1, 0.1, 0, 1)));

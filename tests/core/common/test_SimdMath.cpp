@@ -66,7 +66,7 @@ struct AnyInstructionSet {
 
 }  // namespace
 
-TEST(BatchMath, ExponentialsEqualTheStandardLibrarys) {
+TEST(SimdMath, ExponentialsEqualTheStandardLibrarys) {
   std::vector<double> values = uniform(-708, 709);
   for (double extra : {0.0, -0.0, 1.0, -1.0, 1e-300, -1e-17, 709.0, -708.0})
     values.push_back(extra);
@@ -82,7 +82,7 @@ TEST(BatchMath, ExponentialsEqualTheStandardLibrarys) {
   EXPECT_TRUE(std::isnan(values[3]));
 }
 
-TEST(BatchMath, SinesAndCosinesEqualTheStandardLibrarys) {
+TEST(SimdMath, SinesAndCosinesEqualTheStandardLibrarys) {
   for (double range : {1.0, 4.0, 100.0, 1e6}) {
     std::vector<double> angles = uniform(-range, range);
     for (int quarter = -8; quarter <= 8; ++quarter) angles.push_back(quarter * M_PI / 2);
@@ -95,7 +95,7 @@ TEST(BatchMath, SinesAndCosinesEqualTheStandardLibrarys) {
   }
 }
 
-TEST(BatchMath, NormalDeviatesAreNormalAndIndependent) {
+TEST(SimdMath, NormalDeviatesAreNormalAndIndependent) {
   const std::vector<double> values = someNormals(200000);
   const double n = static_cast<double>(values.size());
   double sums[5] = {}, product = 0;
@@ -115,7 +115,7 @@ TEST(BatchMath, NormalDeviatesAreNormalAndIndependent) {
     EXPECT_NEAR(below[k] / n, 0.5 * std::erfc(-(k - 1) / std::sqrt(2.0)), 2 / std::sqrt(n));
 }
 
-TEST(BatchMath, NormalDeviatesStayFiniteAtTheEnds) {
+TEST(SimdMath, NormalDeviatesStayFiniteAtTheEnds) {
   const std::uint32_t bits[] = {0, 0, 0xffffffffu, 0xffffffffu};
   double out[4];
   normalDeviates(bits, 2, out);
@@ -123,7 +123,7 @@ TEST(BatchMath, NormalDeviatesStayFiniteAtTheEnds) {
   for (double value : out) EXPECT_LT(std::abs(value), 6.8);
 }
 
-TEST(BatchMath, EveryInstructionSetGivesTheSameBits) {
+TEST(SimdMath, EveryInstructionSetGivesTheSameBits) {
   const AnyInstructionSet restore;
   const std::vector<double> expected = everything();
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

@@ -73,13 +73,13 @@ TEST(Repeatability, ATurnedYardHasTheSamePoles) {
 TEST(Repeatability, ARangeImageThatDoesNotTurnWithTheScanIsFoundOut) {
   const SensorOptions sensor = sensorOptions("hdl32e");
   ExtractionOptions options;
-  options.method = ExtractionMethod::paper;
-  options.paper.rows = 32;
-  options.paper.columns = 250;
-  options.paper.fovUp = 10.67 * kDegree;
-  options.paper.fovDown = -30.67 * kDegree;
-  options.paper.minZ = -1.3;
-  options.paper.minTop = 0.3;
+  options.method = ExtractionMethod::rangeImage;
+  options.rangeImage.rows = 32;
+  options.rangeImage.columns = 250;
+  options.rangeImage.fovUp = 10.67 * kDegree;
+  options.rangeImage.fovDown = -30.67 * kDegree;
+  options.rangeImage.minZ = -1.3;
+  options.rangeImage.minTop = 0.3;
   PoleExtractor extractor(sensor, options);
   const PointList yardScan = castYard(sensor);
   const std::size_t poles = extractor.extract(yardScan.view()).size();

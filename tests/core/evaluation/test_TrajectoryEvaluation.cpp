@@ -45,7 +45,7 @@ std::size_t bruteOneToOne(const Points& truth, const Points& map, double radius,
 
 }  // namespace
 
-TEST(Evaluation, errorsByHand) {
+TEST(Evaluation, ErrorsByHand) {
   // At 1 s 0.3 m ahead, 0.4 m to the left, 2° to the left; at 2 s 0.5 m behind, 4° to the right.
   const auto e = evaluateTrajectory(straightTruth(3),
                                     {{1, {1.3, 0.4, 2 * s_degree}}, {2, {1.5, 0, -4 * s_degree}}},
@@ -69,7 +69,7 @@ TEST(Evaluation, errorsByHand) {
   EXPECT_NEAR(e.angRmseDeg, std::sqrt(10.0), 1e-9);
 }
 
-TEST(Evaluation, lateralAndLongitudinalTurnWithTheTruth) {
+TEST(Evaluation, LateralAndLongitudinalTurnWithTheTruth) {
   // Looking to -y: ahead is -y, left is +x.
   const std::vector<StampedPose2D> truth{{0, {5, 5, -M_PI / 2}}};
   const auto e = evaluateTrajectory(truth, {{0, {5.1, 4.8, M_PI / 2 + 0.1}}}, Sampling::perPose);
@@ -78,7 +78,7 @@ TEST(Evaluation, lateralAndLongitudinalTurnWithTheTruth) {
   EXPECT_NEAR(e.errors[0].heading, -M_PI + 0.1, 1e-12);
 }
 
-TEST(Evaluation, rmseWeighsTheLargeError) {
+TEST(Evaluation, RmseWeighsTheLargeError) {
   const auto e =
       evaluateTrajectory(straightTruth(3), {{1, {1, 3, 0}}, {2, {2, 1, 0}}}, Sampling::perPose);
   EXPECT_NEAR(e.posMean, 2, 1e-12);
@@ -86,14 +86,14 @@ TEST(Evaluation, rmseWeighsTheLargeError) {
   EXPECT_NEAR(e.posMax, 3, 1e-12);
 }
 
-TEST(Evaluation, truthIsInterpolatedInTimeAcrossTheTurnOfTheCircle) {
+TEST(Evaluation, TruthIsInterpolatedInTimeAcrossTheTurnOfTheCircle) {
   const std::vector<StampedPose2D> truth{{0, {0, 0, M_PI - 0.1}}, {1, {4, 2, -M_PI + 0.3}}};
   const auto e = evaluateTrajectory(truth, {{0.25, {1, 0.5, M_PI}}}, Sampling::perPose);
   EXPECT_NEAR(e.errors[0].position, 0, 1e-12);
   EXPECT_NEAR(e.errors[0].heading, 0, 1e-12);
 }
 
-TEST(Evaluation, estimatesOutsideTheTruthOrInItsGapsAreCounted) {
+TEST(Evaluation, EstimatesOutsideTheTruthOrInItsGapsAreCounted) {
   std::vector<StampedPose2D> truth = straightTruth(4);
   truth.push_back({14, {14, 0, 0}});  // 10 s without a sample
   truth.push_back({15, {15, 0, 0}});
@@ -151,7 +151,7 @@ TEST(TrajectoryEvaluator, RefusesWhatEvaluateTrajectoryRefuses) {
   EXPECT_THROW(evaluator.finish(), Error);
 }
 
-TEST(Evaluation, perMetreComparesAtWholeMetresOfTheTruePath) {
+TEST(Evaluation, PerMetreComparesAtWholeMetresOfTheTruePath) {
   // A corner: 2.5 m along x in 5 s, then 2.5 m along y in 2.5 s.
   const std::vector<StampedPose2D> truth{{0, {0, 0, 0}}, {5, {2.5, 0, 0}}, {7.5, {2.5, 2.5, 0}}};
   // The estimate is off by 0.1·t in y.
@@ -169,7 +169,7 @@ TEST(Evaluation, perMetreComparesAtWholeMetresOfTheTruePath) {
   EXPECT_EQ(e.poses, 6u);
 }
 
-TEST(Evaluation, perMetreDoesNotCountStandingTwice) {
+TEST(Evaluation, PerMetreDoesNotCountStandingTwice) {
   std::vector<StampedPose2D> truth, estimate;
   for (int t = 0; t <= 100;
        ++t) {  // 1 m/s, but standing from 10 s to 90 s where the estimate is bad
@@ -181,7 +181,7 @@ TEST(Evaluation, perMetreDoesNotCountStandingTwice) {
   EXPECT_GT(evaluateTrajectory(truth, estimate, Sampling::perPose).posMean, 3);
 }
 
-TEST(Evaluation, perMetreStartsAtTheFirstEstimateAndEndsWithTheLast) {
+TEST(Evaluation, PerMetreStartsAtTheFirstEstimateAndEndsWithTheLast) {
   const auto e = evaluateTrajectory(
       straightTruth(100), {{10.5, {10.5, 0, 0}}, {11.5, {11.5, 0, 0}}, {12.6, {12.6, 0, 0}}},
       Sampling::perMetre);
@@ -190,7 +190,7 @@ TEST(Evaluation, perMetreStartsAtTheFirstEstimateAndEndsWithTheLast) {
   EXPECT_NEAR(e.errors[2].time, 12.5, 1e-12);
 }
 
-TEST(Evaluation, perMetreCountsTheMetresOfAGap) {
+TEST(Evaluation, PerMetreCountsTheMetresOfAGap) {
   std::vector<StampedPose2D> estimate;
   for (int t : {0, 1, 2, 3, 4, 5, 6, 10, 11, 12})
     estimate.push_back({double(t), {double(t), 0, 0}});
@@ -199,7 +199,7 @@ TEST(Evaluation, perMetreCountsTheMetresOfAGap) {
   EXPECT_EQ(e.unmatched, 3u);  // 7, 8, 9
 }
 
-TEST(Evaluation, refusesWhenLessThanHalfCanBeCompared) {
+TEST(Evaluation, RefusesWhenLessThanHalfCanBeCompared) {
   const auto truth = straightTruth(3);
   const auto at = [](double t) { return StampedPose2D{t, {t, 0, 0}}; };
   EXPECT_EQ(evaluateTrajectory(truth, {at(2), at(3), at(4), at(5)}, Sampling::perPose).poses, 2u);
@@ -212,24 +212,24 @@ TEST(Evaluation, refusesWhenLessThanHalfCanBeCompared) {
                Error);
 }
 
-TEST(Evaluation, refusesEmptyTrajectories) {
+TEST(Evaluation, RefusesEmptyTrajectories) {
   EXPECT_THROW(evaluateTrajectory({}, {{0, {}}}, Sampling::perPose), Error);
   EXPECT_THROW(evaluateTrajectory({{0, {}}}, {}, Sampling::perPose), Error);
 }
 
-TEST(Evaluation, refusesTimesThatDoNotIncrease) {
+TEST(Evaluation, RefusesTimesThatDoNotIncrease) {
   const auto truth = straightTruth(3);
   EXPECT_THROW(evaluateTrajectory(truth, {{1, {}}, {1, {}}}, Sampling::perPose), Error);
   EXPECT_THROW(evaluateTrajectory({{2, {}}, {1, {}}}, {{1, {}}}, Sampling::perPose), Error);
 }
 
-TEST(Evaluation, refusesNumbersThatAreNotFinite) {
+TEST(Evaluation, RefusesNumbersThatAreNotFinite) {
   const double nan = std::nan("");
   EXPECT_THROW(evaluateTrajectory(straightTruth(3), {{1, {0, nan, 0}}}, Sampling::perPose), Error);
   EXPECT_THROW(evaluateTrajectory({{nan, {}}}, {{1, {}}}, Sampling::perPose), Error);
 }
 
-TEST(Evaluation, mapScoreByHand) {
+TEST(Evaluation, MapScoreByHand) {
   // Two poles of the map at the first true pole, none at the second, one far from all.
   const Points truth{{0, 0}, {10, 0}}, map{{0.5, 0}, {-0.5, 0}, {20, 0}};
   const MapScore authors = scoreMap(truth, map, 1, false);
@@ -246,22 +246,22 @@ TEST(Evaluation, mapScoreByHand) {
   EXPECT_NEAR(oneToOne.f1, 0.4, 1e-12);
 }
 
-TEST(Evaluation, theAuthorsRecallCanExceedOne) {
+TEST(Evaluation, TheAuthorsRecallCanExceedOne) {
   EXPECT_NEAR(scoreMap({{0, 0}}, {{0, 0.1}, {0, 0.2}, {0, 0.3}}, 1, false).recall, 3, 1e-12);
 }
 
-TEST(Evaluation, theRadiusIsInclusive) {
+TEST(Evaluation, TheRadiusIsInclusive) {
   EXPECT_EQ(scoreMap({{0, 0}}, {{3, 4}}, 5, false).matches, 1u);
   EXPECT_EQ(scoreMap({{0, 0}}, {{3, 4}}, std::nextafter(5.0, 0.0), false).matches, 0u);
 }
 
-TEST(Evaluation, noMatchesScoreZero) {
+TEST(Evaluation, NoMatchesScoreZero) {
   const MapScore score = scoreMap({{0, 0}}, {{9, 9}}, 1, true);
   EXPECT_EQ(score.matches, 0u);
   EXPECT_EQ(score.f1, 0);
 }
 
-TEST(Evaluation, mapScoreEqualsTryingEveryPair) {
+TEST(Evaluation, MapScoreEqualsTryingEveryPair) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> coordinate(0, 4);
   for (int i = 0; i < 100; ++i) {
@@ -273,18 +273,18 @@ TEST(Evaluation, mapScoreEqualsTryingEveryPair) {
   }
 }
 
-TEST(Evaluation, mapScoreRefusesEmptyMaps) {
+TEST(Evaluation, MapScoreRefusesEmptyMaps) {
   EXPECT_THROW(scoreMap({}, {{0, 0}}, 1, false), Error);
   EXPECT_THROW(scoreMap({{0, 0}}, {}, 1, true), Error);
 }
 
-TEST(Evaluation, mapScoreRefusesARadiusThatIsNotPositive) {
+TEST(Evaluation, MapScoreRefusesARadiusThatIsNotPositive) {
   for (double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(scoreMap({{0, 0}}, {{0, 0}}, radius, false), Error);
   }
 }
 
-TEST(Evaluation, mapScoreRefusesPolesThatAreNotFinite) {
+TEST(Evaluation, MapScoreRefusesPolesThatAreNotFinite) {
   const Eigen::Vector2d bad(std::nan(""), 0);
   EXPECT_THROW(scoreMap({bad}, {{0, 0}}, 1, false), Error);
   EXPECT_THROW(scoreMap({{0, 0}}, {bad}, 1, false), Error);

@@ -45,7 +45,7 @@ void expectYard(const std::vector<PoleDetection>& poles, const Scene& scene = ya
 
 }  // namespace
 
-TEST(PoleExtractor, findsThePolesOfAKnownScene) {
+TEST(PoleExtractor, FindsThePolesOfAKnownScene) {
   for (const auto& sensor :
        {sensorOptions("hdl64e"), sensorOptions("hdl32e"), sensorOptions("hdl32e", true),
         sensorOptions("os1_64"), sensorOptions("os1_128"), sensorOptions("vlp16")}) {
@@ -62,7 +62,7 @@ TEST(PoleExtractor, findsThePolesOfAKnownScene) {
   }
 }
 
-TEST(PoleExtractor, heightsAreAboveGround) {
+TEST(PoleExtractor, HeightsAreAboveGround) {
   const SensorOptions sensor = sensorOptions("os1_64");
   for (const PoleDetection& pole : extract(castYard(sensor), sensor)) {
     EXPECT_NEAR(pole.top, 3.2, 0.15);
@@ -70,7 +70,7 @@ TEST(PoleExtractor, heightsAreAboveGround) {
   }
 }
 
-TEST(PoleExtractor, onASlopeHeightsAreAboveTheLocalGround) {
+TEST(PoleExtractor, OnASlopeHeightsAreAboveTheLocalGround) {
   const SensorOptions sensor = sensorOptions("os1_64");
   Scene scene = yard();
   scene.ground->slopeX = 0.08;
@@ -86,16 +86,16 @@ TEST(PoleExtractor, onASlopeHeightsAreAboveTheLocalGround) {
   }
 }
 
-TEST(PoleExtractor, bollardsAreNoPoles) {
+TEST(PoleExtractor, BollardsAreNoPoles) {
   const SensorOptions sensor = sensorOptions("os1_64");
   Scene scene = yard();
   for (Cylinder& c : scene.cylinders) c.top = 1.2 - kSensorHeight;
   ExtractionReport report;
   EXPECT_TRUE(extract(castYard(sensor, scene), sensor, {}, &report).empty());
-  EXPECT_EQ(report.refused[static_cast<int>(Refusal::tooLow)], 4u);
+  EXPECT_EQ(report.refused[static_cast<int>(RejectionReason::tooLow)], 4u);
 }
 
-TEST(PoleExtractor, wallsAndPilastersAreNoPoles) {
+TEST(PoleExtractor, WallsAndPilastersAreNoPoles) {
   const SensorOptions sensor = sensorOptions("os1_64");
   Scene scene = yard();
   scene.cylinders.clear();
@@ -104,21 +104,21 @@ TEST(PoleExtractor, wallsAndPilastersAreNoPoles) {
   EXPECT_TRUE(extract(castYard(sensor, scene), sensor).empty());
 }
 
-TEST(PoleExtractor, polesAreSortedByAzimuth) {
+TEST(PoleExtractor, PolesAreSortedByAzimuth) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   const auto poles = extract(castYard(sensor), sensor);
   for (std::size_t i = 1; i < poles.size(); ++i)
     EXPECT_LT(std::atan2(poles[i - 1].y, poles[i - 1].x), std::atan2(poles[i].y, poles[i].x));
 }
 
-TEST(PoleExtractor, polesBeyondTheRangeAreNotLookedFor) {
+TEST(PoleExtractor, PolesBeyondTheRangeAreNotLookedFor) {
   const SensorOptions sensor = sensorOptions("os1_64");
   ExtractionOptions options;
-  options.native.maxRange = 9.3;  // two of four stand nearer: 8.5 and 9.0 m; the others 9.2, 11.4
+  options.scanLine.maxRange = 9.3;  // two of four stand nearer: 8.5 and 9.0 m; the others 9.2, 11.4
   EXPECT_EQ(extract(castYard(sensor), sensor, options).size(), 3u);
 }
 
-TEST(PoleExtractor, orderOfPointsIsOfNoConsequence) {
+TEST(PoleExtractor, OrderOfPointsIsOfNoConsequence) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   const PointList points = castYard(sensor);
   const auto poles = extract(points, sensor);
@@ -126,7 +126,7 @@ TEST(PoleExtractor, orderOfPointsIsOfNoConsequence) {
     EXPECT_TRUE(same(poles, extract(shuffled(points.view(), seed), sensor)));
 }
 
-TEST(PoleExtractor, oneObjectServesManyScans) {
+TEST(PoleExtractor, OneObjectServesManyScans) {
   const SensorOptions sensor = sensorOptions("hdl32e");
   const PointList points = castYard(sensor), others = turned(points.view(), 1);
   PoleExtractor extractor(sensor, {});
@@ -139,7 +139,7 @@ TEST(PoleExtractor, oneObjectServesManyScans) {
   EXPECT_TRUE(same(first, moved.extract(points.view())));
 }
 
-TEST(PoleExtractor, objectsInSeveralThreadsGiveTheSameBytes) {
+TEST(PoleExtractor, ObjectsInSeveralThreadsGiveTheSameBytes) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   const PointList points = castYard(sensor);
   std::vector<std::vector<PoleDetection>> results(4);
@@ -150,7 +150,7 @@ TEST(PoleExtractor, objectsInSeveralThreadsGiveTheSameBytes) {
   for (const auto& result : results) EXPECT_TRUE(same(result, results[0]));
 }
 
-TEST(PoleExtractor, pointsThatAreNoPointsAreDroppedAndCounted) {
+TEST(PoleExtractor, PointsThatAreNoPointsAreDroppedAndCounted) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   const PointList clean = castYard(sensor);
   const auto poles = extract(clean, sensor);
@@ -175,18 +175,18 @@ TEST(PoleExtractor, pointsThatAreNoPointsAreDroppedAndCounted) {
   EXPECT_EQ(report.outOfView, 100u);
   std::size_t far = 0;  // what stands well behind the farthest pole is not looked at
   for (std::size_t i = 0; i < clean.size(); ++i)
-    far += std::hypot(clean.x[i], clean.y[i]) > NativeOptions().maxRange + 1;
+    far += std::hypot(clean.x[i], clean.y[i]) > ScanLineOptions().maxRange + 1;
   EXPECT_EQ(report.outOfRange, 200u + far);
 }
 
-TEST(PoleExtractor, pointsThatComeTwiceAddNoPoles) {
+TEST(PoleExtractor, PointsThatComeTwiceAddNoPoles) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   PointList points = castYard(sensor);
   points.append(castYard(sensor).view());
   expectYard(extract(points, sensor));
 }
 
-TEST(PoleExtractor, fromNothingComesNothing) {
+TEST(PoleExtractor, FromNothingComesNothing) {
   const SensorOptions sensor = sensorOptions("hdl32e");
   EXPECT_TRUE(extract(PointList(), sensor).empty());
   PointList points;
@@ -199,7 +199,7 @@ TEST(PoleExtractor, fromNothingComesNothing) {
   EXPECT_TRUE(extract(onOneRay, sensor).empty());
 }
 
-TEST(PoleExtractor, hugeAndTinyCoordinatesAreNoPoles) {
+TEST(PoleExtractor, HugeAndTinyCoordinatesAreNoPoles) {
   const SensorOptions sensor = sensorOptions("hdl32e");
   PointList points;
   for (const double size : {3.4e38, 1e30, 1e19, 1e10, 1e-10, 1e-30, 1e-44})
@@ -212,7 +212,7 @@ TEST(PoleExtractor, hugeAndTinyCoordinatesAreNoPoles) {
   EXPECT_EQ(report.invalid + report.outOfRange + report.outOfView, points.size());
 }
 
-TEST(PoleExtractor, scatteredPointsMakeAPoleInAThousandAtMost) {
+TEST(PoleExtractor, ScatteredPointsMakeAPoleInAThousandAtMost) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   sim::Random random(6);
   PointList points;
@@ -224,17 +224,17 @@ TEST(PoleExtractor, scatteredPointsMakeAPoleInAThousandAtMost) {
   EXPECT_LT(poles.size(), report.candidates / 1000);
 }
 
-TEST(PoleExtractor, everyReasonHasItsName) {
+TEST(PoleExtractor, EveryReasonHasItsName) {
   std::set<std::string> names;
-  for (int i = 0; i < static_cast<int>(Refusal::count_); ++i)
-    names.insert(name(static_cast<Refusal>(i)));
-  EXPECT_EQ(names.size(), static_cast<std::size_t>(Refusal::count_));
-  EXPECT_EQ(names.count(name(Refusal::count_)), 0u);
+  for (int i = 0; i < static_cast<int>(RejectionReason::count_); ++i)
+    names.insert(name(static_cast<RejectionReason>(i)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(RejectionReason::count_));
+  EXPECT_EQ(names.count(name(RejectionReason::count_)), 0u);
 }
 
-TEST(PoleExtractor, refusesBadOptions) {
+TEST(PoleExtractor, RefusesBadOptions) {
   ExtractionOptions options;
-  options.native.maxWidth = 0;
+  options.scanLine.maxWidth = 0;
   EXPECT_THROW(PoleExtractor(SensorOptions(), options), Error);
   EXPECT_THROW(PoleExtractor(sensorOptions("no such sensor"), {}), Error);
 }
@@ -243,26 +243,26 @@ namespace {
 
 /// What makes the yard's poles be refused, and with which reason.
 struct Spoiled {
-  Refusal reason;
-  std::function<void(NativeOptions&)> spoil;
+  RejectionReason reason;
+  std::function<void(ScanLineOptions&)> spoil;
 };
 class PoleExtractorRefusal : public ::testing::TestWithParam<Spoiled> {};
 const std::vector<Spoiled> kSpoiled = {
-    {Refusal::tooFewPoints, [](NativeOptions& o) { o.minPoints = 10000; }},
-    {Refusal::tooShort, [](NativeOptions& o) { o.minHeight = 10; }},
-    {Refusal::startsTooHigh, [](NativeOptions& o) { o.maxBottom = -1; }},
-    {Refusal::tilted, [](NativeOptions& o) { o.maxTilt = 1e-7; }},
-    {Refusal::notStraight, [](NativeOptions& o) { o.maxScatter = 1e-7; }},
-    {Refusal::tooLow, [](NativeOptions& o) { o.minTop = 4; }},
-    {Refusal::lowConfidence, [](NativeOptions& o) { o.minConfidence = 1; }},
-    {Refusal::badFit, [](NativeOptions& o) { o.maxRadius = 0.03; }}};
+    {RejectionReason::tooFewPoints, [](ScanLineOptions& o) { o.minPoints = 10000; }},
+    {RejectionReason::tooShort, [](ScanLineOptions& o) { o.minHeight = 10; }},
+    {RejectionReason::startsTooHigh, [](ScanLineOptions& o) { o.maxBottom = -1; }},
+    {RejectionReason::tilted, [](ScanLineOptions& o) { o.maxTilt = 1e-7; }},
+    {RejectionReason::notStraight, [](ScanLineOptions& o) { o.maxScatter = 1e-7; }},
+    {RejectionReason::tooLow, [](ScanLineOptions& o) { o.minTop = 4; }},
+    {RejectionReason::lowConfidence, [](ScanLineOptions& o) { o.minConfidence = 1; }},
+    {RejectionReason::badFit, [](ScanLineOptions& o) { o.maxRadius = 0.03; }}};
 
 }  // namespace
 
-TEST_P(PoleExtractorRefusal, isCounted) {
+TEST_P(PoleExtractorRefusal, IsCounted) {
   const SensorOptions sensor = sensorOptions("os1_64");
   ExtractionOptions options;
-  GetParam().spoil(options.native);
+  GetParam().spoil(options.scanLine);
   ExtractionReport report;
   EXPECT_TRUE(extract(castYard(sensor), sensor, options, &report).empty());
   EXPECT_GE(report.refused[static_cast<int>(GetParam().reason)], 4u);
@@ -271,16 +271,16 @@ TEST_P(PoleExtractorRefusal, isCounted) {
 INSTANTIATE_TEST_SUITE_P(Each, PoleExtractorRefusal, ::testing::ValuesIn(kSpoiled),
                          [](const auto& i) { return std::string(name(i.param.reason)); });
 
-TEST(PoleExtractorRefusal, ofPolesTooNearToEachOtherTheMostConfidentStays) {
+TEST(PoleExtractorRefusal, OfPolesTooNearToEachOtherTheMostConfidentStays) {
   const SensorOptions sensor = sensorOptions("os1_64");
   const PointList points = castYard(sensor);
   const auto all = extract(points, sensor);
   ExtractionOptions options;
-  options.native.minSpacing = 100;
+  options.scanLine.minSpacing = 100;
   ExtractionReport report;
   const auto kept = extract(points, sensor, options, &report);
   ASSERT_EQ(kept.size(), 1u);
-  EXPECT_EQ(report.refused[static_cast<int>(Refusal::duplicate)], 3u);
+  EXPECT_EQ(report.refused[static_cast<int>(RejectionReason::duplicate)], 3u);
   for (const PoleDetection& pole : all) EXPECT_LE(pole.confidence, kept[0].confidence);
 }
 

@@ -75,7 +75,7 @@ std::vector<std::vector<Eigen::Vector2d>> mapEveryScan(const std::filesystem::pa
 
 }  // namespace
 
-TEST_P(PoleExtractorOnStreets, precisionAndRecall) {
+TEST_P(PoleExtractorOnStreets, PrecisionAndRecall) {
   PoleExtractor extract = extractor();
   Score all;
   for (const std::uint64_t world : {11, 12, 13, 14, 15, 16, 17, 18}) {
@@ -95,7 +95,7 @@ TEST_P(PoleExtractorOnStreets, precisionAndRecall) {
   EXPECT_GE(all.recall(), GetParam().recall - 0.01) << all.found << " of " << all.visible;
 }
 
-TEST_P(PoleExtractorOnStreets, turningTheScanTurnsThePoles) {
+TEST_P(PoleExtractorOnStreets, TurningTheScanTurnsThePoles) {
   PoleExtractor extract = extractor();
   int poles = 0, found = 0, back = 0, all = 0;
   for (const std::uint64_t world : {11, 12, 13})
@@ -118,7 +118,7 @@ TEST_P(PoleExtractorOnStreets, turningTheScanTurnsThePoles) {
   EXPECT_GE(back, 0.97 * all) << back << " of " << all;
 }
 
-TEST_P(PoleExtractorOnStreets, shuffledPointsGiveTheSameBytes) {
+TEST_P(PoleExtractorOnStreets, ShuffledPointsGiveTheSameBytes) {
   PoleExtractor extract = extractor();
   for (const LabelledScan& s : scans(12, 2)) {
     const auto poles = extract.extract(s.scan.view());
@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(Of, PoleExtractorOnStreets,
 
 // A pole is stable when at least 3 of the next 5 scans see it within 0.25 m; the first
 // implementation had 11.3 poles a scan, 52.5 % of them stable.
-TEST(PoleExtractorOnKitti, polesAreSeenAgainInTheNextScans) {
+TEST(PoleExtractorOnKitti, PolesAreSeenAgainInTheNextScans) {
   const char* data = std::getenv("POLEMCL_DATA");
   if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
   const auto poles = mapEveryScan(std::filesystem::path(data) / "kitti_raw_0005");

@@ -74,7 +74,7 @@ struct AnyInstructionSet {
 
 }  // namespace
 
-TEST(PoleExtractorResources, everyInstructionSetGivesTheSameBytes) {
+TEST(PoleExtractorResources, EveryInstructionSetGivesTheSameBytes) {
   const AnyInstructionSet restore;
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   ASSERT_GE(targets.size(), 2u) << "nothing to compare on this processor";
@@ -95,7 +95,7 @@ TEST(PoleExtractorResources, everyInstructionSetGivesTheSameBytes) {
     }
 }
 
-TEST(PoleExtractorResources, takesNothingFromTheHeapOnceWarm) {
+TEST(PoleExtractorResources, TakesNothingFromTheHeapOnceWarm) {
   for (const std::string model : {"hdl32e", "vlp16"}) {
     const auto scans = streetScans(22, model, 1.3, 4);
     PoleExtractor extract = extractorFor(model, 1.3);

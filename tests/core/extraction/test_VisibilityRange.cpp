@@ -33,37 +33,37 @@ Wall board(double bearing, double distance, double half, double top) {
 std::vector<float> freeRangeOf(const PointList& points, const SensorOptions& sensor) {
   PoleExtractor extractor(sensor, {});
   extractor.extract(points.view());
-  return extractor.freeRange();
+  return extractor.visibilityRange();
 }
 
 float at(const std::vector<float>& ranges, double bearing) {
-  return ranges[freeRangeSector(bearing, ranges.size())];
+  return ranges[visibilityRangeSector(bearing, ranges.size())];
 }
 
 }  // namespace
 
-TEST(FreeRange, sectorsCountFromBehindToTheLeft) {
-  EXPECT_EQ(freeRangeSector(-M_PI, 256), 0u);
-  EXPECT_EQ(freeRangeSector(-M_PI + 0.99 * kTurn / 256, 256), 0u);
-  EXPECT_EQ(freeRangeSector(-M_PI + 1.01 * kTurn / 256, 256), 1u);
-  EXPECT_EQ(freeRangeSector(0.001, 256), 128u);
-  EXPECT_EQ(freeRangeSector(M_PI - 0.001, 256), 255u);
-  EXPECT_EQ(freeRangeSector(M_PI / 2 + 3 * kTurn + 0.001, 4), 3u);
+TEST(VisibilityRange, SectorsCountFromBehindToTheLeft) {
+  EXPECT_EQ(visibilityRangeSector(-M_PI, 256), 0u);
+  EXPECT_EQ(visibilityRangeSector(-M_PI + 0.99 * kTurn / 256, 256), 0u);
+  EXPECT_EQ(visibilityRangeSector(-M_PI + 1.01 * kTurn / 256, 256), 1u);
+  EXPECT_EQ(visibilityRangeSector(0.001, 256), 128u);
+  EXPECT_EQ(visibilityRangeSector(M_PI - 0.001, 256), 255u);
+  EXPECT_EQ(visibilityRangeSector(M_PI / 2 + 3 * kTurn + 0.001, 4), 3u);
 }
 
-TEST(FreeRange, towardsSomethingWideTheNearestSectorDecides) {
+TEST(VisibilityRange, TowardsSomethingWideTheNearestSectorDecides) {
   std::vector<float> ranges(8, 20);  // of 45°
   ranges[4] = 7;                     // 0° to 45°
-  EXPECT_EQ(freeRangeTowards(ranges, 10, 5, 0.1), 7);
-  EXPECT_EQ(freeRangeTowards(ranges, 10, -5, 0.1), 20);
-  EXPECT_EQ(freeRangeTowards(ranges, 10, -0.05, 0.1), 7);  // reaches across
-  EXPECT_EQ(freeRangeTowards(ranges, 10, -0.15, 0.1), 20);
+  EXPECT_EQ(visibilityRangeTowards(ranges, 10, 5, 0.1), 7);
+  EXPECT_EQ(visibilityRangeTowards(ranges, 10, -5, 0.1), 20);
+  EXPECT_EQ(visibilityRangeTowards(ranges, 10, -0.05, 0.1), 7);  // reaches across
+  EXPECT_EQ(visibilityRangeTowards(ranges, 10, -0.15, 0.1), 20);
   ranges[0] = 3;  // beyond the seam
-  EXPECT_EQ(freeRangeTowards(ranges, -10, 0.05, 0.1), 3);
-  EXPECT_EQ(freeRangeTowards({}, 1, 0, 0.1), 0);
+  EXPECT_EQ(visibilityRangeTowards(ranges, -10, 0.05, 0.1), 3);
+  EXPECT_EQ(visibilityRangeTowards({}, 1, 0, 0.1), 0);
 }
 
-TEST(FreeRange, endsAtWallsAndGoesOnOverWhatIsLow) {
+TEST(VisibilityRange, EndsAtWallsAndGoesOnOverWhatIsLow) {
   for (const char* model : {"hdl64e", "hdl32e", "os1_64"}) {
     SCOPED_TRACE(model);
     Scene scene = plain();
@@ -80,7 +80,7 @@ TEST(FreeRange, endsAtWallsAndGoesOnOverWhatIsLow) {
   }
 }
 
-TEST(FreeRange, aPoleEndsItAtItsFrontAndNothingElse) {
+TEST(VisibilityRange, APoleEndsItAtItsFrontAndNothingElse) {
   Scene scene = plain();
   scene.cylinders.push_back({10, 4, 0.15, -kSensorHeight, 3});
   const auto ranges =
@@ -91,7 +91,7 @@ TEST(FreeRange, aPoleEndsItAtItsFrontAndNothingElse) {
   EXPECT_LE(std::count_if(ranges.begin(), ranges.end(), [](float r) { return r < 40; }), 3);
 }
 
-TEST(FreeRange, sparseBeamsEndItWhereFewerThanTwoMeetPoles) {
+TEST(VisibilityRange, SparseBeamsEndItWhereFewerThanTwoMeetPoles) {
   SensorOptions sensor = sensorOptions("uniform");
   sensor.rows = 5;  // at +10°, +5°, 0°, -5°, -10°
   sensor.fovUp = 10 * kDegree;
@@ -104,7 +104,7 @@ TEST(FreeRange, sparseBeamsEndItWhereFewerThanTwoMeetPoles) {
   EXPECT_EQ(at(ranges, 1.0), 17.0f);
 }
 
-TEST(FreeRange, isUnknownWhereNothingWasSeen) {
+TEST(VisibilityRange, IsUnknownWhereNothingWasSeen) {
   const SensorOptions sensor = sensorOptions("hdl32e");
   const auto ranges =
       freeRangeOf(cast(plain(), SensorModel(sensor), {0, 0, 5, 0.0, M_PI / 2}), sensor);
@@ -114,7 +114,7 @@ TEST(FreeRange, isUnknownWhereNothingWasSeen) {
   EXPECT_EQ(at(ranges, -3.0), 0.0f);
 }
 
-TEST(FreeRange, turnsWithTheScan) {
+TEST(VisibilityRange, TurnsWithTheScan) {
   Scene scene = plain();
   scene.walls.push_back(board(0.5, 12.2, 3, 6));
   const SensorOptions sensor = sensorOptions("hdl64e");
@@ -126,12 +126,12 @@ TEST(FreeRange, turnsWithTheScan) {
   EXPECT_LE(different, 4) << "edges of sectors may round";
 }
 
-TEST(FreeRange, isEmptyByThePapersMethodAndOfCameras) {
+TEST(VisibilityRange, IsEmptyByThePapersMethodAndOfCameras) {
   ExtractionOptions paper;
-  paper.method = ExtractionMethod::paper;
+  paper.method = ExtractionMethod::rangeImage;
   PoleExtractor extractor(sensorOptions("hdl64e"), paper);
   extractor.extract(castYard(sensorOptions("hdl64e")).view());
-  EXPECT_TRUE(extractor.freeRange().empty());
+  EXPECT_TRUE(extractor.visibilityRange().empty());
   PinholeCamera camera;
   camera.width = 320;
   camera.height = 240;
@@ -142,7 +142,7 @@ TEST(FreeRange, isEmptyByThePapersMethodAndOfCameras) {
   ScanLines lines(model);
   GroundGrid ground;
   std::vector<float> ranges{1, 2};
-  FreeRangeFinder(model, 1.5, 40).find(lines, ground, ranges);
+  VisibilityRangeFinder(model, 1.5, 40).find(lines, ground, ranges);
   EXPECT_TRUE(ranges.empty());
 }
 

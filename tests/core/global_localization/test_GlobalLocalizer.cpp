@@ -106,7 +106,7 @@ void expectRefused(const GlobalOptions& options, const std::string& field) {
 }  // namespace
 
 /// Worlds that no setting was chosen on: 1001 to 1004.
-TEST(GlobalLocalizer, findsTheRobotFromAnywhere) {
+TEST(GlobalLocalizer, FindsTheRobotFromAnywhere) {
   Count sum;
   for (std::uint64_t seed = 1001; seed <= 1004; ++seed) {
     sum += starts(city(seed), 50);
@@ -116,7 +116,7 @@ TEST(GlobalLocalizer, findsTheRobotFromAnywhere) {
   record(sum);
 }
 
-TEST(GlobalLocalizer, staysAmbiguousWhereEverythingLooksTheSame) {
+TEST(GlobalLocalizer, StaysAmbiguousWhereEverythingLooksTheSame) {
   for (std::uint64_t seed : {1011, 1012}) {
     const PoleCity world(regularCity(seed));
     const GlobalLocalizer localizer(world.map());
@@ -131,7 +131,7 @@ TEST(GlobalLocalizer, staysAmbiguousWhereEverythingLooksTheSame) {
 }
 
 /// Hardly a pattern at all: lamps every 25 m, a few centimetres out of line.
-TEST(GlobalLocalizer, isNotWrongWhereLittleTellsPlacesApart) {
+TEST(GlobalLocalizer, IsNotWrongWhereLittleTellsPlacesApart) {
   Count sum;
   for (double jitter : {0.03, 0.06, 0.12}) {
     CityOptions options = regularCity(1021);
@@ -143,7 +143,7 @@ TEST(GlobalLocalizer, isNotWrongWhereLittleTellsPlacesApart) {
   EXPECT_GT(sum.right, 5);
 }
 
-TEST(GlobalLocalizer, isNotFooledByAnotherCity) {
+TEST(GlobalLocalizer, IsNotFooledByAnotherCity) {
   const PoleCity world(city(1031)), other(city(1032));
   const GlobalLocalizer localizer(other.map());
   for (std::uint64_t i = 0; i < 30; ++i) {
@@ -152,7 +152,7 @@ TEST(GlobalLocalizer, isNotFooledByAnotherCity) {
   }
 }
 
-TEST(GlobalLocalizer, withstandsAnOldMapAndManyFalseDetections) {
+TEST(GlobalLocalizer, WithstandsAnOldMapAndManyFalseDetections) {
   CityOptions options = city(1041);
   options.missing = options.vanished = 0.3;
   DriveOptions driveOptions;
@@ -164,7 +164,7 @@ TEST(GlobalLocalizer, withstandsAnOldMapAndManyFalseDetections) {
 }
 
 /// Two copies of a city side by side: both places are right, and it must say so.
-TEST(GlobalLocalizer, namesBothOfTwoEqualPlaces) {
+TEST(GlobalLocalizer, NamesBothOfTwoEqualPlaces) {
   const PoleCity world(city(1051));
   std::vector<MapPole> map = world.map();
   const std::size_t half = map.size();
@@ -187,7 +187,7 @@ TEST(GlobalLocalizer, namesBothOfTwoEqualPlaces) {
 }
 
 /// A map turned and moved gives the same answer, turned and moved.
-TEST(GlobalLocalizer, doesNotDependOnTheMapsFrame) {
+TEST(GlobalLocalizer, DoesNotDependOnTheMapsFrame) {
   const PoleCity world(city(1061));
   const Pose2D moved{-31000, 47000, 2.1};
   std::vector<MapPole> map = world.map();
@@ -257,7 +257,7 @@ Consistency consistencyOf(const DriveOptions& driving, const SubmapOptions& subm
 }  // namespace
 
 // Where all is as the options say: exact odometry, and map poles off by their covariance and sigma.
-TEST(GlobalLocalizer, itsCovarianceIsWhatItsErrorsAre) {
+TEST(GlobalLocalizer, ItsCovarianceIsWhatItsErrorsAre) {
   DriveOptions exact;
   exact.odometryNoise = 0;
   SubmapOptions submap;
@@ -274,7 +274,7 @@ TEST(GlobalLocalizer, itsCovarianceIsWhatItsErrorsAre) {
 
 // With the default options on a map as good as it says: sigma allows for worse ones, and the walks
 // for worse headings. Poles share the drift of the odometry, which is taken as each one's own.
-TEST(GlobalLocalizer, itsCovarianceIsCautiousByDefault) {
+TEST(GlobalLocalizer, ItsCovarianceIsCautiousByDefault) {
   const Consistency c = consistencyOf({}, {}, nullptr, 0);
   ASSERT_GE(c.places, 235);
   EXPECT_NEAR(c.pose, 1.90, 0.26);  // measured, ± 2.58 of its standard deviations
@@ -282,7 +282,7 @@ TEST(GlobalLocalizer, itsCovarianceIsCautiousByDefault) {
   EXPECT_NEAR(c.heading, 0.27, 0.065);
 }
 
-TEST(GlobalLocalizer, findsTheOdometrysScale) {
+TEST(GlobalLocalizer, FindsTheOdometrysScale) {
   const PoleCity world(city(1081));
   const GlobalLocalizer localizer(world.map());
   for (double error : {-0.02, 0.02}) {
@@ -296,7 +296,7 @@ TEST(GlobalLocalizer, findsTheOdometrysScale) {
   }
 }
 
-TEST(GlobalLocalizer, ranksItsHypothesesAndCountsWhatTheyMatch) {
+TEST(GlobalLocalizer, RanksItsHypothesesAndCountsWhatTheyMatch) {
   const PoleCity world(regularCity(1091));
   GlobalOptions options;
   options.maxHypotheses = 7;
@@ -324,7 +324,7 @@ TEST(GlobalLocalizer, ranksItsHypothesesAndCountsWhatTheyMatch) {
   EXPECT_NEAR(weights, 1, 1e-12);
 }
 
-TEST(GlobalLocalizer, saysTheSameTwice) {
+TEST(GlobalLocalizer, SaysTheSameTwice) {
   const PoleCity world(city(1101));
   const Drive drive = driveFrom(world, 3, 30);
   const GlobalResult a = GlobalLocalizer(world.map()).localize(drive.submap);
@@ -339,7 +339,7 @@ TEST(GlobalLocalizer, saysTheSameTwice) {
 
 /// Poles beside the way that were never seen speak against a place: of two equal sets of matches
 /// the one with fewer of them wins.
-TEST(GlobalLocalizer, holdsUnseenPolesAgainstAPlace) {
+TEST(GlobalLocalizer, HoldsUnseenPolesAgainstAPlace) {
   const PoleCity world(city(1111));
   std::vector<MapPole> map = world.map();
   const std::size_t half = map.size();
@@ -363,7 +363,7 @@ TEST(GlobalLocalizer, holdsUnseenPolesAgainstAPlace) {
 
 /// Nothing false and nothing missing: one pair of poles is mostly enough, whichever way round it
 /// lies.
-TEST(GlobalLocalizer, findsAPlaceByOnePair) {
+TEST(GlobalLocalizer, FindsAPlaceByOnePair) {
   CityOptions options = city(1112);
   options.missing = options.vanished = 0;
   const PoleCity world(options);
@@ -387,7 +387,7 @@ TEST(GlobalLocalizer, findsAPlaceByOnePair) {
 }
 
 /// Where two poles stand for each one of a coarse map, half of them match.
-TEST(GlobalLocalizer, creditsAMapPoleOnce) {
+TEST(GlobalLocalizer, CreditsAMapPoleOnce) {
   const PoleCity world(city(1113));
   std::vector<MapPole> map = world.map();
   for (MapPole& pole : map) pole.covariance = 0.15 * 0.15 * Eigen::Matrix2d::Identity();
@@ -405,7 +405,7 @@ TEST(GlobalLocalizer, creditsAMapPoleOnce) {
 }
 
 /// A map full of poles that stand no more is still the right map.
-TEST(GlobalLocalizer, letsNoUnseenPolesOutvoteTheMatches) {
+TEST(GlobalLocalizer, LetsNoUnseenPolesOutvoteTheMatches) {
   const PoleCity world(city(1115));
   std::vector<MapPole> map = world.map();
   const Drive drive = driveFrom(world, 6, 60);
@@ -422,7 +422,7 @@ TEST(GlobalLocalizer, letsNoUnseenPolesOutvoteTheMatches) {
   EXPECT_GT(result.hypotheses[0].evidence, 0);
 }
 
-TEST(GlobalLocalizer, tellsWhyThereIsNoAnswer) {
+TEST(GlobalLocalizer, TellsWhyThereIsNoAnswer) {
   const PoleCity world(city(1121));
   const GlobalLocalizer localizer(world.map());
   EXPECT_EQ(localizer.localize(LocalSubmap()).reason, GlobalReason::fewPoles);
@@ -441,7 +441,7 @@ TEST(GlobalLocalizer, tellsWhyThereIsNoAnswer) {
             GlobalReason::smallShare);
 }
 
-TEST(GlobalLocalizer, boundsItsWork) {
+TEST(GlobalLocalizer, BoundsItsWork) {
   const PoleCity world(regularCity(1131));
   GlobalOptions options;
   options.maxCandidates = 3000;
@@ -454,7 +454,7 @@ TEST(GlobalLocalizer, boundsItsWork) {
   EXPECT_GT(bounded, 0u);
 }
 
-TEST(GlobalLocalizer, refusesMapsAndOptionsOutOfRange) {
+TEST(GlobalLocalizer, RefusesMapsAndOptionsOutOfRange) {
   std::vector<MapPole> map(3);
   map[2].y = std::nan("");
   try {

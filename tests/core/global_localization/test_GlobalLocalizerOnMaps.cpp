@@ -88,7 +88,7 @@ Count starts(const std::vector<MapPole>& map, const tests::Surroundings& things,
 
 /// Of this map's poles half are labelled, of the labelled poles two thirds are on the map, 0.16 m
 /// off in the median. What is not labelled is taken for a pole again in half of the cases.
-TEST(GlobalLocalizerOnMaps, findsTheRobotInAPublishedMap) {
+TEST(GlobalLocalizerOnMaps, FindsTheRobotInAPublishedMap) {
   if (dataFolder().empty()) GTEST_SKIP() << "POLEMCL_DATA is not set";
   const std::filesystem::path folder = dataFolder() / "published";
   tests::Surroundings things;
@@ -116,7 +116,7 @@ TEST(GlobalLocalizerOnMaps, findsTheRobotInAPublishedMap) {
   RecordProperty("wrong", count.wrong);
 }
 
-TEST(GlobalLocalizerOnMaps, findsTheRobotOnTheRoadsOfARealDrive) {
+TEST(GlobalLocalizerOnMaps, FindsTheRobotOnTheRoadsOfARealDrive) {
   if (dataFolder().empty()) GTEST_SKIP() << "POLEMCL_DATA is not set";
   const Way road = tests::drivable(readRoad(dataFolder() / "tracks" / "kaist02.txt.gz"));
   ASSERT_GT(road.size(), 5000u);

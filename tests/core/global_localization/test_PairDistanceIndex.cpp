@@ -25,18 +25,18 @@ std::vector<Eigen::Vector2d> scatter(std::uint64_t seed, int count, double exten
 
 using Names = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-Names namesOf(DistancePairs::Range range) {
+Names namesOf(PairDistanceIndex::Range range) {
   Names names;
-  for (const DistancePairs::Pair* p = range.begin; p != range.end; ++p)
+  for (const PairDistanceIndex::Pair* p = range.begin; p != range.end; ++p)
     names.insert({p->first, p->second});
   return names;
 }
 
 }  // namespace
 
-TEST(DistancePairs, holdsEveryPairWithinTheBoundsOnce) {
+TEST(PairDistanceIndex, HoldsEveryPairWithinTheBoundsOnce) {
   const std::vector<Eigen::Vector2d> poles = scatter(1, 200, 200);
-  const DistancePairs pairs(poles, 8, 40, 200);
+  const PairDistanceIndex pairs(poles, 8, 40, 200);
   for (const auto& [low, high] : {std::pair{0.0, 100.0}, {8.0, 12.0}, {20.0, 20.5}, {39.0, 60.0}}) {
     Names expected;
     for (std::uint32_t i = 0; i < poles.size(); ++i)
@@ -44,37 +44,37 @@ TEST(DistancePairs, holdsEveryPairWithinTheBoundsOnce) {
         const double d = (poles[i] - poles[j]).norm();
         if (d >= std::max(8.0, low) && d <= std::min(40.0, high)) expected.insert({i, j});
       }
-    const DistancePairs::Range range = pairs.between(low, high);
+    const PairDistanceIndex::Range range = pairs.between(low, high);
     EXPECT_EQ(namesOf(range), expected) << low << " to " << high;
     EXPECT_EQ(range.size(), expected.size());
   }
 }
 
-TEST(DistancePairs, sortsByDistance) {
+TEST(PairDistanceIndex, SortsByDistance) {
   const std::vector<Eigen::Vector2d> poles = scatter(2, 100, 100);
-  const DistancePairs pairs(poles, 8, 40);
-  const DistancePairs::Range all = pairs.between(0, 1000);
+  const PairDistanceIndex pairs(poles, 8, 40);
+  const PairDistanceIndex::Range all = pairs.between(0, 1000);
   ASSERT_GT(all.size(), 100u);
   EXPECT_TRUE(std::is_sorted(all.begin, all.end,
                              [](const auto& a, const auto& b) { return a.distance < b.distance; }));
-  for (const DistancePairs::Pair* p = all.begin; p != all.end; ++p)
+  for (const PairDistanceIndex::Pair* p = all.begin; p != all.end; ++p)
     EXPECT_NEAR(p->distance, (poles[p->first] - poles[p->second]).norm(), 1e-5);
 }
 
-TEST(DistancePairs, findsNothingOutsideOrBetweenCrossedBounds) {
-  const DistancePairs pairs({{0, 0}, {20, 0}}, 8, 40);
+TEST(PairDistanceIndex, FindsNothingOutsideOrBetweenCrossedBounds) {
+  const PairDistanceIndex pairs({{0, 0}, {20, 0}}, 8, 40);
   EXPECT_EQ(pairs.between(19.9, 20.1).size(), 1u);
   EXPECT_EQ(pairs.between(0, 19.9).size(), 0u);
   EXPECT_EQ(pairs.between(20.1, 90).size(), 0u);
   EXPECT_EQ(pairs.between(20.1, 19.9).size(), 0u);
-  const DistancePairs none({}, 8, 40);
+  const PairDistanceIndex none({}, 8, 40);
   EXPECT_EQ(none.between(0, 100).size(), 0u);
 }
 
 /// A park must not blow up the memory, nor lose its far pairs.
-TEST(DistancePairs, keepsAShareOfEveryDistanceInACrowd) {
+TEST(PairDistanceIndex, KeepsAShareOfEveryDistanceInACrowd) {
   const std::vector<Eigen::Vector2d> poles = scatter(3, 1500, 60);
-  const DistancePairs pairs(poles, 8, 40, 20);
+  const PairDistanceIndex pairs(poles, 8, 40, 20);
   EXPECT_LE(pairs.size(), 1500u * 20u);
   for (double low = 8; low < 40; low += 4)
     EXPECT_GT(pairs.between(low, low + 4).size(), 500u) << low;

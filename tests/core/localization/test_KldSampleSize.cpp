@@ -20,7 +20,7 @@ KldOptions wide() {
 
 }  // namespace
 
-TEST(KldSampleSize, normalQuantilesAreThoseOfTheTables) {
+TEST(KldSampleSize, NormalQuantilesAreThoseOfTheTables) {
   EXPECT_NEAR(normalQuantile(0.5), 0, 1e-12);
   EXPECT_NEAR(normalQuantile(0.95), 1.6448536269514722, 1e-10);
   EXPECT_NEAR(normalQuantile(0.99), 2.3263478740408408, 1e-10);
@@ -28,7 +28,7 @@ TEST(KldSampleSize, normalQuantilesAreThoseOfTheTables) {
   for (double bad : {0.0, 1.0, -1.0, 2.0, double(NAN)}) EXPECT_THROW(normalQuantile(bad), Error);
 }
 
-TEST(KldSampleSize, isTheQuantileOfChiSquareOverTwiceEpsilon) {
+TEST(KldSampleSize, IsTheQuantileOfChiSquareOverTwiceEpsilon) {
   struct Row {
     std::size_t bins;
     double quantile;
@@ -45,7 +45,7 @@ TEST(KldSampleSize, isTheQuantileOfChiSquareOverTwiceEpsilon) {
     EXPECT_NEAR(kldSampleSize(row.bins, other) / (row.quantile / 0.02), 1, 0.03) << row.bins;
 }
 
-TEST(KldSampleSize, staysWithinTheLimitsAndGrows) {
+TEST(KldSampleSize, StaysWithinTheLimitsAndGrows) {
   const KldOptions options;
   EXPECT_EQ(kldSampleSize(0, options), 200u);
   EXPECT_EQ(kldSampleSize(1, options), 200u);
@@ -58,7 +58,7 @@ TEST(KldSampleSize, staysWithinTheLimitsAndGrows) {
   }
 }
 
-TEST(KldSampleSize, countsTheBinsOfTheChosen) {
+TEST(KldSampleSize, CountsTheBinsOfTheChosen) {
   KldOptions options;
   options.bin = 0.5;
   options.binYaw = 0.1;
@@ -73,7 +73,7 @@ TEST(KldSampleSize, countsTheBinsOfTheChosen) {
   EXPECT_EQ(occupiedBins(poses, {}, options), 0u);
 }
 
-TEST(KldSampleSize, refusesOptionsOutOfRange) {
+TEST(KldSampleSize, RefusesOptionsOutOfRange) {
   EXPECT_NO_THROW(KldOptions().validate());
   const auto refuses = [](auto member, auto value) {
     KldOptions options;

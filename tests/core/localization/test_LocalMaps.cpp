@@ -52,7 +52,7 @@ std::string refusal(const LocalMapOptions& options) {
 
 }  // namespace
 
-TEST(LocalMaps, givesOutTheMiddleScansPolesWhenTheSectionEnds) {
+TEST(LocalMaps, GivesOutTheMiddleScansPolesWhenTheSectionEnds) {
   LocalMaps maps(options(1, 1));
   for (int scan = 0; scan < 20; ++scan) {
     // Each scan sees another place, 5 m ahead of it and a little aside.
@@ -71,7 +71,7 @@ TEST(LocalMaps, givesOutTheMiddleScansPolesWhenTheSectionEnds) {
   }
 }
 
-TEST(LocalMaps, onlyWhatTheNewestSectionsConfirm) {
+TEST(LocalMaps, OnlyWhatTheNewestSectionsConfirm) {
   LocalMaps maps(options(2, 2));
   std::vector<std::size_t> used;
   for (int scan = 0; scan < 30; ++scan) {
@@ -93,7 +93,7 @@ TEST(LocalMaps, onlyWhatTheNewestSectionsConfirm) {
   EXPECT_EQ(used, (std::vector<std::size_t>{0, 1, 1, 1, 1, 1, 1}));
 }
 
-TEST(LocalMaps, moreSectionsConfirmMore) {
+TEST(LocalMaps, MoreSectionsConfirmMore) {
   const auto given = [](int count, int hits) {
     LocalMaps maps(options(count, hits));
     std::vector<std::size_t> used;
@@ -114,7 +114,7 @@ TEST(LocalMaps, moreSectionsConfirmMore) {
   EXPECT_EQ(given(7, 3), (Counts{0, 0, 0, 0, 0, 0, 1}));
 }
 
-TEST(LocalMaps, twoOfOneScanConfirmEachOther) {
+TEST(LocalMaps, TwoOfOneScanConfirmEachOther) {
   LocalMaps maps(options(6, 2));
   std::size_t given = 0;
   for (int scan = 0; scan <= 5; ++scan)
@@ -122,7 +122,7 @@ TEST(LocalMaps, twoOfOneScanConfirmEachOther) {
   EXPECT_EQ(given, 2u);
 }
 
-TEST(LocalMaps, beginsAnewAfterClear) {
+TEST(LocalMaps, BeginsAnewAfterClear) {
   LocalMaps maps(options(1, 1)), fresh(options(1, 1));
   for (int scan = 0; scan < 7; ++scan) maps.add(step, {detection(5, 0)});
   maps.clear();
@@ -130,13 +130,13 @@ TEST(LocalMaps, beginsAnewAfterClear) {
     EXPECT_EQ(maps.add(step, {detection(5, 0)}).size(), fresh.add(step, {detection(5, 0)}).size());
 }
 
-TEST(LocalMaps, fastVehiclesGiveOneSectionAScan) {
+TEST(LocalMaps, FastVehiclesGiveOneSectionAScan) {
   LocalMaps maps(options(3, 1));
   for (int scan = 0; scan < 50; ++scan)
     EXPECT_EQ(maps.add({10, 0, 0}, {detection(5, 0)}).size(), scan > 0 ? 1u : 0u);
 }
 
-TEST(LocalMaps, refusesValuesOutOfRange) {
+TEST(LocalMaps, RefusesValuesOutOfRange) {
   EXPECT_EQ(refusal(options(1, 1)), "");
   EXPECT_NE(refusal(options(0, 1)).find("local_maps = 0"), std::string::npos);
   EXPECT_NE(refusal(options(1, 0)).find("local_hits = 0"), std::string::npos);

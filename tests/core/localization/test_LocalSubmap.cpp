@@ -45,7 +45,7 @@ const double s_nan = std::nan("");
 
 }  // namespace
 
-TEST(LocalSubmap, averagesByInformation) {
+TEST(LocalSubmap, AveragesByInformation) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 2, 0.01)});
   submap.add({}, {seen(10.2, 2, 0.03)});  // a third of the weight of the first
@@ -58,7 +58,7 @@ TEST(LocalSubmap, averagesByInformation) {
   EXPECT_EQ(pole.chances, 2u);
 }
 
-TEST(LocalSubmap, whatDetectionsShareDoesNotAverageOut) {
+TEST(LocalSubmap, WhatDetectionsShareDoesNotAverageOut) {
   SubmapOptions options;
   options.floor = 0.05;
   LocalSubmap submap(options);
@@ -66,7 +66,7 @@ TEST(LocalSubmap, whatDetectionsShareDoesNotAverageOut) {
   EXPECT_NEAR(submap.poles()[0].covariance(0, 0), 0.0025 + 0.01 / 1000, 1e-6);
 }
 
-TEST(LocalSubmap, bringsViewsFromDifferentPlacesTogether) {
+TEST(LocalSubmap, BringsViewsFromDifferentPlacesTogether) {
   LocalSubmap submap;
   submap.add({}, {seen(10, 5)});
   submap.add({10, 0, M_PI / 2}, {seen(5, 0)});  // now straight ahead
@@ -77,7 +77,7 @@ TEST(LocalSubmap, bringsViewsFromDifferentPlacesTogether) {
   EXPECT_NEAR(submap.driven(), 10, 1e-12);
 }
 
-TEST(LocalSubmap, opensAnotherPoleBeyondTheGate) {
+TEST(LocalSubmap, OpensAnotherPoleBeyondTheGate) {
   SubmapOptions options = exact();
   options.gate = 3;  // of sqrt(0.01 + 0.01) = 0.1414 m: 0.424 m
   LocalSubmap submap(options);
@@ -90,7 +90,7 @@ TEST(LocalSubmap, opensAnotherPoleBeyondTheGate) {
   EXPECT_EQ(other.poles().size(), 1u);
 }
 
-TEST(LocalSubmap, gatesByTheCovarianceAlongTheError) {
+TEST(LocalSubmap, GatesByTheCovarianceAlongTheError) {
   PoleDetection pole = seen(20, 0);
   pole.covariance << 0.25, 0, 0, 0.0004;  // 0.5 m along the line of sight, 2 cm across it
   LocalSubmap submap(exact());
@@ -103,7 +103,7 @@ TEST(LocalSubmap, gatesByTheCovarianceAlongTheError) {
   EXPECT_EQ(submap.poles().size(), 2u);
 }
 
-TEST(LocalSubmap, givesAPoleOneDetectionAFrameAndThatTheNearest) {
+TEST(LocalSubmap, GivesAPoleOneDetectionAFrameAndThatTheNearest) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 0)});
   submap.add({}, {seen(10.3, 0), seen(10.1, 0)});
@@ -113,7 +113,7 @@ TEST(LocalSubmap, givesAPoleOneDetectionAFrameAndThatTheNearest) {
   EXPECT_NEAR(submap.poles()[1].centre.x(), 10.3, 1e-6);
 }
 
-TEST(LocalSubmap, countsMissedChancesOnlyInView) {
+TEST(LocalSubmap, CountsMissedChancesOnlyInView) {
   SubmapOptions options;
   options.viewRange = 25;
   LocalSubmap submap(options);
@@ -127,7 +127,7 @@ TEST(LocalSubmap, countsMissedChancesOnlyInView) {
   EXPECT_EQ(submap.poles()[1].chances, 2u);
 }
 
-TEST(LocalSubmap, forgetsWithDistanceNotWithTime) {
+TEST(LocalSubmap, ForgetsWithDistanceNotWithTime) {
   SubmapOptions options;
   options.length = 50;
   options.minShare = 0;
@@ -139,7 +139,7 @@ TEST(LocalSubmap, forgetsWithDistanceNotWithTime) {
   EXPECT_EQ(submap.poles().size(), 0u);
 }
 
-TEST(LocalSubmap, dropsWhatIsHardlyEverSeenButNothingSure) {
+TEST(LocalSubmap, DropsWhatIsHardlyEverSeenButNothingSure) {
   SubmapOptions options;
   options.sureHits = 3;
   LocalSubmap submap(options);
@@ -154,7 +154,7 @@ TEST(LocalSubmap, dropsWhatIsHardlyEverSeenButNothingSure) {
   EXPECT_EQ(submap.poles().size(), 1u);
 }
 
-TEST(LocalSubmap, staysSmallWhileStandingAmongFalseDetections) {
+TEST(LocalSubmap, StaysSmallWhileStandingAmongFalseDetections) {
   LocalSubmap submap;
   sim::Random random(3);
   for (int i = 0; i < 2000; ++i) {
@@ -167,7 +167,7 @@ TEST(LocalSubmap, staysSmallWhileStandingAmongFalseDetections) {
   EXPECT_EQ(submap.path().size(), 2u);
 }
 
-TEST(LocalSubmap, olderPolesAreLessCertain) {
+TEST(LocalSubmap, OlderPolesAreLessCertain) {
   SubmapOptions options;
   options.positionWalk = 0.02;
   options.headingWalk = 0;
@@ -183,7 +183,7 @@ TEST(LocalSubmap, olderPolesAreLessCertain) {
   EXPECT_NEAR(submap.presentCovariance(pole, false)(0, 0), own + walked, 1e-9);
 }
 
-TEST(LocalSubmap, usesTheMotionsOwnCovariance) {
+TEST(LocalSubmap, UsesTheMotionsOwnCovariance) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 0)});
   const Eigen::Matrix3d covariance = Eigen::Vector3d(0.04, 0.09, 0).asDiagonal();
@@ -193,7 +193,7 @@ TEST(LocalSubmap, usesTheMotionsOwnCovariance) {
   EXPECT_NEAR(present(1, 1), 0.10, 1e-6);
 }
 
-TEST(LocalSubmap, handsOutPolesAsTheRobotWouldSeeThem) {
+TEST(LocalSubmap, HandsOutPolesAsTheRobotWouldSeeThem) {
   SubmapOptions options = exact();
   options.positionWalk = options.headingWalk = options.turnWalk = 0;
   LocalSubmap submap(options);
@@ -211,7 +211,7 @@ TEST(LocalSubmap, handsOutPolesAsTheRobotWouldSeeThem) {
   EXPECT_EQ(poles[0].points, 1u);
 }
 
-TEST(LocalSubmap, keepsThePathOfTheLastMetres) {
+TEST(LocalSubmap, KeepsThePathOfTheLastMetres) {
   SubmapOptions options;
   options.length = 20;
   LocalSubmap submap(options);
@@ -223,7 +223,7 @@ TEST(LocalSubmap, keepsThePathOfTheLastMetres) {
   EXPECT_NEAR(submap.path().front().x(), 30, 1.01);
 }
 
-TEST(LocalSubmap, doesNotUseDetectionsWithoutConfidence) {
+TEST(LocalSubmap, DoesNotUseDetectionsWithoutConfidence) {
   PoleDetection doubtful = seen(10, 0);
   doubtful.confidence = 0;
   LocalSubmap submap;
@@ -231,7 +231,7 @@ TEST(LocalSubmap, doesNotUseDetectionsWithoutConfidence) {
   EXPECT_TRUE(submap.poles().empty());
 }
 
-TEST(LocalSubmap, clearStartsAnew) {
+TEST(LocalSubmap, ClearStartsAnew) {
   LocalSubmap submap;
   submap.add({}, {seen(10, 0)});
   submap.add({1, 0, 1}, {});
@@ -288,7 +288,7 @@ Consistency consistencyOf(const tests::DriveOptions& driving, const SubmapOption
 
 }  // namespace
 
-TEST(LocalSubmap, polesAreAsCertainAsItSays) {
+TEST(LocalSubmap, PolesAreAsCertainAsItSays) {
   tests::DriveOptions exact;
   exact.odometryNoise = exact.falsePerFrame = 0;
   SubmapOptions options;
@@ -301,14 +301,14 @@ TEST(LocalSubmap, polesAreAsCertainAsItSays) {
 }
 
 // The default allows for an error of the odometry's scale, which these drives do not have.
-TEST(LocalSubmap, polesAreMoreCertainThanItSaysByDefault) {
+TEST(LocalSubmap, PolesAreMoreCertainThanItSaysByDefault) {
   const Consistency c = consistencyOf({}, {}, std::nullopt);
   EXPECT_GT(c.poles, 2000u);
   EXPECT_LE(c.strays, c.poles / 500);
   EXPECT_NEAR(c.squared, 0.84, 0.13);  // measured, ± 2.6 standard deviations of 80 drives' mean
 }
 
-TEST(LocalSubmap, refusesNumbersThatAreNone) {
+TEST(LocalSubmap, RefusesNumbersThatAreNone) {
   LocalSubmap submap;
   submap.add({}, {seen(10, 0)});
   expectRefused([&] { submap.add({s_nan, 0, 0}, {}); }, "motion before frame 1");
@@ -327,7 +327,7 @@ TEST(LocalSubmap, refusesNumbersThatAreNone) {
   EXPECT_EQ(submap.poles()[0].hits, 1u);
 }
 
-TEST(LocalSubmap, refusesOptionsOutOfRange) {
+TEST(LocalSubmap, RefusesOptionsOutOfRange) {
   const auto refused = [](double SubmapOptions::*field, double value, const std::string& name) {
     SubmapOptions options;
     options.*field = value;
@@ -347,7 +347,7 @@ TEST(LocalSubmap, refusesOptionsOutOfRange) {
   expectRefused([&] { options.validate(); }, "sure_hits");
 }
 
-TEST(LocalSubmap, takesEachDetectionOnceAveraged) {
+TEST(LocalSubmap, TakesEachDetectionOnceAveraged) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 2, 0.01)});
   EXPECT_TRUE(submap.take(2, 1).empty());  // one hit may be nothing
@@ -370,7 +370,7 @@ TEST(LocalSubmap, takesEachDetectionOnceAveraged) {
   EXPECT_NEAR(second[0].covariance(0, 0), 0.01, 1e-6);
 }
 
-TEST(LocalSubmap, takesOnlyWhatIsSeenNow) {
+TEST(LocalSubmap, TakesOnlyWhatIsSeenNow) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 2)});
   submap.add({}, {seen(10, 2)});

@@ -28,15 +28,15 @@ PoleDetection detection(double x, double y, double sigma, double confidence = 1)
   return pole;
 }
 
-const MatchingOptions exact{0.05, 3.5, 1.0};
+const AssociationOptions exact{0.05, 3.5, 1.0};
 
 }  // namespace
 
-TEST(PoleMatching, SquaredDistanceAddsUpAllCovariances) {
+TEST(MapAssociation, SquaredDistanceAddsUpAllCovariances) {
   const PoleIndex index({mapPole(10, 0, 0.04)});
   PoseWithCovariance robot;
   robot.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-4).asDiagonal();
-  const auto matches = matchPoles({detection(10.1, 0.2, 0.03, 0.7)}, robot, index, exact);
+  const auto matches = associate({detection(10.1, 0.2, 0.03, 0.7)}, robot, index, exact);
   ASSERT_EQ(matches.size(), 1u);
   EXPECT_TRUE(matches[0].matched);
   EXPECT_EQ(matches[0].confidence, 0.7);
@@ -49,50 +49,50 @@ TEST(PoleMatching, SquaredDistanceAddsUpAllCovariances) {
   EXPECT_NEAR(matches[0].squared, expected, 1e-12);
 }
 
-TEST(PoleMatching, TurnsDetectionsAndTheirCovariances) {
+TEST(MapAssociation, TurnsDetectionsAndTheirCovariances) {
   const PoleIndex index({mapPole(3, 7, 0)});
   PoseWithCovariance robot;
   robot.mean = {3, 2, M_PI / 2};  // ahead is +y
   PoleDetection seen = detection(5.2, 0, 0.1);
   seen.covariance << 0.04, 0, 0, 0.0001;  // uncertain ahead
-  const auto matches = matchPoles({seen}, robot, index, exact);
+  const auto matches = associate({seen}, robot, index, exact);
   EXPECT_NEAR(matches[0].squared, 0.04 / (0.04 + 0.0025), 1e-12);
 }
 
-TEST(PoleMatching, EachMapPoleCountsOnceAndTheNearerPairWins) {
+TEST(MapAssociation, EachMapPoleCountsOnceAndTheNearerPairWins) {
   const PoleIndex index({mapPole(5, 0, 0.1), mapPole(5.4, 0, 0.1)});
   const auto matches =
-      matchPoles({detection(5.15, 0, 0.1), detection(5.01, 0, 0.1)}, {}, index, exact);
+      associate({detection(5.15, 0, 0.1), detection(5.01, 0, 0.1)}, {}, index, exact);
   EXPECT_TRUE(matches[0].matched);
   EXPECT_EQ(matches[0].pole, 1u);  // the first map pole is taken by the second detection
   EXPECT_TRUE(matches[1].matched);
   EXPECT_EQ(matches[1].pole, 0u);
-  const auto lone = matchPoles({detection(5.05, 0, 0.1)}, {}, index, exact);
+  const auto lone = associate({detection(5.05, 0, 0.1)}, {}, index, exact);
   EXPECT_EQ(lone[0].pole, 0u);  // both are within reach
   EXPECT_NEAR(lone[0].squared, 0.05 * 0.05 / (0.1 * 0.1 + 0.1 * 0.1 + 0.05 * 0.05), 1e-12);
-  const auto crowd = matchPoles({detection(5.01, 0, 0.1), detection(5.02, 0, 0.1)}, {},
-                                PoleIndex({mapPole(5, 0, 0.1)}), exact);
+  const auto crowd = associate({detection(5.01, 0, 0.1), detection(5.02, 0, 0.1)}, {},
+                               PoleIndex({mapPole(5, 0, 0.1)}), exact);
   EXPECT_TRUE(crowd[0].matched);
   EXPECT_FALSE(crowd[1].matched);
 }
 
-TEST(PoleMatching, NothingBeyondTheGateOrTheReach) {
+TEST(MapAssociation, NothingBeyondTheGateOrTheReach) {
   const PoleIndex index({mapPole(5, 0, 0)});
-  const MatchingOptions tight{0.1, 2, 1};
-  EXPECT_TRUE(matchPoles({detection(5.19, 0, 0)}, {}, index, tight)[0].matched);
-  EXPECT_FALSE(matchPoles({detection(5.21, 0, 0)}, {}, index, tight)[0].matched);
+  const AssociationOptions tight{0.1, 2, 1};
+  EXPECT_TRUE(associate({detection(5.19, 0, 0)}, {}, index, tight)[0].matched);
+  EXPECT_FALSE(associate({detection(5.21, 0, 0)}, {}, index, tight)[0].matched);
   PoseWithCovariance vague;
   vague.covariance = 100 * Eigen::Matrix3d::Identity();
-  EXPECT_TRUE(matchPoles({detection(5.9, 0, 0)}, vague, index, tight)[0].matched);
-  EXPECT_FALSE(matchPoles({detection(6.1, 0, 0)}, vague, index, tight)[0].matched);
+  EXPECT_TRUE(associate({detection(5.9, 0, 0)}, vague, index, tight)[0].matched);
+  EXPECT_FALSE(associate({detection(6.1, 0, 0)}, vague, index, tight)[0].matched);
 }
 
-TEST(PoleMatching, WhatIsNotFiniteMatchesNothing) {
+TEST(MapAssociation, WhatIsNotFiniteMatchesNothing) {
   const PoleIndex index({mapPole(0, 0, 0.1)});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(matchPoles({detection(nan, 0, 0.1)}, {}, index, exact)[0].matched);
-  EXPECT_FALSE(matchPoles({detection(0, 0, nan)}, {}, index, exact)[0].matched);
-  EXPECT_TRUE(matchPoles({}, {}, index, exact).empty());
+  EXPECT_FALSE(associate({detection(nan, 0, 0.1)}, {}, index, exact)[0].matched);
+  EXPECT_FALSE(associate({detection(0, 0, nan)}, {}, index, exact)[0].matched);
+  EXPECT_TRUE(associate({}, {}, index, exact).empty());
 }
 
 }  // namespace polemcl::test_map_association

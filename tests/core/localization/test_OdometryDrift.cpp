@@ -18,7 +18,7 @@ Eigen::Matrix3d diagonal(double x, double y, double yaw) {
 
 }  // namespace
 
-TEST(OdometryDrift, aStepsPositionNoiseTurnsWithTheRobot) {
+TEST(OdometryDrift, AStepsPositionNoiseTurnsWithTheRobot) {
   const OdometryDrift then;
   OdometryDrift now;
   now.add({0, 2}, M_PI / 2,
@@ -29,7 +29,7 @@ TEST(OdometryDrift, aStepsPositionNoiseTurnsWithTheRobot) {
   EXPECT_NEAR(covariance(0, 1), 0, 1e-12);
 }
 
-TEST(OdometryDrift, aTurnSwingsWhatLiesFar) {
+TEST(OdometryDrift, ATurnSwingsWhatLiesFar) {
   const OdometryDrift then;
   OdometryDrift now;
   now.add({5, 0}, 0, diagonal(0, 0, 1e-4));  // 0.01 rad
@@ -43,7 +43,7 @@ TEST(OdometryDrift, aTurnSwingsWhatLiesFar) {
   EXPECT_NEAR(across(0, 1), -12e-4, 1e-12);
 }
 
-TEST(OdometryDrift, countsOnlyTheStepsBetween) {
+TEST(OdometryDrift, CountsOnlyTheStepsBetween) {
   OdometryDrift then;
   then.add({100, 0}, 0, diagonal(1, 1, 1));
   OdometryDrift now = then;
@@ -53,7 +53,7 @@ TEST(OdometryDrift, countsOnlyTheStepsBetween) {
 }
 
 /// The oracle: many noisy drives, and where the place lies as seen from their ends.
-TEST(OdometryDrift, agreesWithDrivesDrawnAtRandom) {
+TEST(OdometryDrift, AgreesWithDrivesDrawnAtRandom) {
   const std::vector<Pose2D> steps{
       {2, 0, 0.3}, {3, 0.1, 0.4}, {2, 0, -0.2}, {4, -0.2, -0.6}, {3, 0, 0.1}};
   const Eigen::Matrix3d noise = diagonal(0.0025, 0.0004, 1e-4);

@@ -47,9 +47,10 @@ struct CheckedDrive {
         .asDiagonal();
   }
   /// `spoilt` makes the odometry of a scan.
-  std::vector<CheckedMotion> run(
-      MotionCheck& check, const std::function<Pose2D(std::size_t, const Pose2D&)>& spoilt) const {
-    std::vector<CheckedMotion> results;
+  std::vector<MonitoredMotion> run(
+      OdometryMonitor& check,
+      const std::function<Pose2D(std::size_t, const Pose2D&)>& spoilt) const {
+    std::vector<MonitoredMotion> results;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const Pose2D motion = spoilt(i, frames[i].motion);
       results.push_back(check.add(100 + 0.1 * static_cast<double>(i), motion, covarianceOf(motion),
@@ -64,8 +65,8 @@ Pose2D scaled(const Pose2D& motion, double factor) {
 }
 
 /// Error of the way composed from scan `from` to `to`, m.
-double drift(const CheckedDrive& drive, const std::vector<CheckedMotion>& motions, std::size_t from,
-             std::size_t to) {
+double drift(const CheckedDrive& drive, const std::vector<MonitoredMotion>& motions,
+             std::size_t from, std::size_t to) {
   Pose2D pose = drive.frames[from].truth;
   for (std::size_t i = from + 1; i <= to; ++i) pose = compose(pose, motions[i].motion);
   return std::hypot(pose.x - drive.frames[to].truth.x, pose.y - drive.frames[to].truth.y);
@@ -73,32 +74,32 @@ double drift(const CheckedDrive& drive, const std::vector<CheckedMotion>& motion
 
 }  // namespace
 
-TEST(MotionCheck, LeavesAHealthyOdometryAlone) {
+TEST(OdometryMonitor, LeavesAHealthyOdometryAlone) {
   for (const double step : {0.02, 0.3, 0.7, 1.5})
     for (const std::uint64_t seed : {1, 2, 3}) {
       const CheckedDrive drive(seed, step < 0.1 ? 30 : 400, step);
-      MotionCheck check;
+      OdometryMonitor check;
       std::size_t agreed = 0;
       const auto results = drive.run(check, [](std::size_t, const Pose2D& m) { return m; });
       for (std::size_t i = 0; i < results.size(); ++i) {
         EXPECT_FALSE(results[i].replaced) << step << ' ' << seed << ' ' << i;
         EXPECT_EQ(results[i].motion.x, drive.frames[i].motion.x);
-        agreed += results[i].verdict == MotionVerdict::agrees;
+        agreed += results[i].verdict == OdometryVerdict::agrees;
       }
       EXPECT_GT(agreed, results.size() / 2);
     }
 }
 
-TEST(MotionCheck, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
+TEST(OdometryMonitor, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
   for (const double step : {0.5, 1.5})
     for (const std::uint64_t seed : {4, 5, 6}) {
       const CheckedDrive drive(seed, 300 * step, step, 2);
-      MotionCheck check;
+      OdometryMonitor check;
       const auto results = drive.run(check, [](std::size_t i, const Pose2D& motion) {
         return i >= 50 && i < 150 ? Pose2D() : motion;
       });
       for (std::size_t i = 0; i < results.size(); ++i) {
-        const bool contradicted = results[i].verdict == MotionVerdict::contradicted;
+        const bool contradicted = results[i].verdict == OdometryVerdict::contradicted;
         if (i < 50 || i > 165) {
           EXPECT_FALSE(contradicted) << i;
         }
@@ -110,17 +111,17 @@ TEST(MotionCheck, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
     }
 }
 
-TEST(MotionCheck, ASlippingOdometryIsReplacedWithinASecond) {
+TEST(OdometryMonitor, ASlippingOdometryIsReplacedWithinASecond) {
   for (const double factor : {0.8, 1.2})
     for (const std::uint64_t seed : {7, 8, 9}) {
       const CheckedDrive drive(seed, 210, 0.7, 2);
-      MotionCheck check;
+      OdometryMonitor check;
       const auto results = drive.run(check, [&](std::size_t i, const Pose2D& motion) {
         return i >= 50 && i < 200 ? scaled(motion, factor) : motion;
       });
       std::size_t contradicted = 0;
       for (std::size_t i = 0; i < results.size(); ++i) {
-        const bool is = results[i].verdict == MotionVerdict::contradicted;
+        const bool is = results[i].verdict == OdometryVerdict::contradicted;
         contradicted += is && i >= 60 && i < 200;
         if (i < 50 || i > 215) {
           EXPECT_FALSE(is) << i;
@@ -131,21 +132,21 @@ TEST(MotionCheck, ASlippingOdometryIsReplacedWithinASecond) {
     }
 }
 
-TEST(MotionCheck, AStandingVehicleWithSpinningWheelsIsNoticed) {
+TEST(OdometryMonitor, AStandingVehicleWithSpinningWheelsIsNoticed) {
   const CheckedDrive drive(10, 8, 0.01, 2);
-  MotionCheck check;
+  OdometryMonitor check;
   const auto results = drive.run(check, [](std::size_t i, const Pose2D& motion) {
     return i >= 100 ? Pose2D{0.4, 0, 0} : motion;
   });
   for (std::size_t i = 105; i < results.size(); ++i) {
-    EXPECT_EQ(results[i].verdict, MotionVerdict::contradicted) << i;
+    EXPECT_EQ(results[i].verdict, OdometryVerdict::contradicted) << i;
     EXPECT_NEAR(results[i].motion.x, 0, 0.2) << i;
   }
 }
 
-TEST(MotionCheck, AJumpToAnotherPlaceIsNotTakenForAMotion) {
+TEST(OdometryMonitor, AJumpToAnotherPlaceIsNotTakenForAMotion) {
   const CheckedDrive before(11, 100), later(12, 100);
-  MotionCheck check;
+  OdometryMonitor check;
   CheckedDrive both = before;
   both.frames.insert(both.frames.end(), later.frames.begin(), later.frames.end());
   const auto results = both.run(check, [](std::size_t, const Pose2D& motion) { return motion; });
@@ -153,24 +154,24 @@ TEST(MotionCheck, AJumpToAnotherPlaceIsNotTakenForAMotion) {
     const Pose2D& motion = results[i].motion;
     EXPECT_LT(std::hypot(motion.x, motion.y), 5);
   }
-  EXPECT_EQ(results.back().verdict, MotionVerdict::agrees);
+  EXPECT_EQ(results.back().verdict, OdometryVerdict::agrees);
 }
 
-TEST(MotionCheck, WithoutPolesTheOdometryIsAllThereIs) {
-  MotionCheck check;
+TEST(OdometryMonitor, WithoutPolesTheOdometryIsAllThereIs) {
+  OdometryMonitor check;
   for (int i = 0; i < 50; ++i) {
     const auto result =
         check.add(0.1 * i, {i > 20 ? 0.0 : 0.7, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), {});
-    EXPECT_EQ(result.verdict, MotionVerdict::unknown);
+    EXPECT_EQ(result.verdict, OdometryVerdict::unknown);
     EXPECT_FALSE(result.replaced);
   }
 }
 
-TEST(MotionCheck, BlindAmidAFaultItKeepsTheSpeedForAWhile) {
+TEST(OdometryMonitor, BlindAmidAFaultItKeepsTheSpeedForAWhile) {
   const CheckedDrive drive(13, 210);
-  MotionCheckOptions options;
+  OdometryMonitorOptions options;
   options.hold = 2;
-  MotionCheck check(options);
+  OdometryMonitor check(options);
   CheckedDrive blinded = drive;
   for (std::size_t i = 100; i < 200; ++i) blinded.frames[i].poles_robot.clear();
   const auto results = blinded.run(
@@ -183,9 +184,9 @@ TEST(MotionCheck, BlindAmidAFaultItKeepsTheSpeedForAWhile) {
   for (std::size_t i = 125; i < 200; ++i) EXPECT_FALSE(results[i].replaced) << i;
 }
 
-TEST(MotionCheck, AnUncertainOdometryIsNotContradictedForWhatItAdmits) {
+TEST(OdometryMonitor, AnUncertainOdometryIsNotContradictedForWhatItAdmits) {
   const CheckedDrive drive(14, 140);
-  MotionCheck check;
+  OdometryMonitor check;
   for (std::size_t i = 0; i < drive.frames.size(); ++i) {
     const Pose2D motion = scaled(drive.frames[i].motion, i >= 50 ? 1.2 : 1);
     // It says 1.2 m a step: 0.14 m is nothing.
@@ -196,9 +197,9 @@ TEST(MotionCheck, AnUncertainOdometryIsNotContradictedForWhatItAdmits) {
   }
 }
 
-TEST(MotionCheck, AGapEndsTheComparison) {
+TEST(OdometryMonitor, AGapEndsTheComparison) {
   const CheckedDrive drive(15, 70);
-  MotionCheck check;
+  OdometryMonitor check;
   for (std::size_t i = 0; i < drive.frames.size(); ++i) {
     const double time = 0.1 * static_cast<double>(i) + (i >= 50 ? 120 : 0);
     const Pose2D motion = i == 50 ? Pose2D{90, 0, 1} : drive.frames[i].motion;
@@ -206,16 +207,16 @@ TEST(MotionCheck, AGapEndsTheComparison) {
         check.add(time, motion, CheckedDrive::covarianceOf(motion), drive.frames[i].poles_robot);
     EXPECT_FALSE(result.replaced) << i;
     if (i == 50) {
-      EXPECT_EQ(result.verdict, MotionVerdict::unknown);
+      EXPECT_EQ(result.verdict, OdometryVerdict::unknown);
     }
   }
 }
 
-TEST(MotionCheck, RefusesOptionsOutOfRange) {
-  const auto refuses = [](const std::function<void(MotionCheckOptions&)>& change) {
-    MotionCheckOptions options;
+TEST(OdometryMonitor, RefusesOptionsOutOfRange) {
+  const auto refuses = [](const std::function<void(OdometryMonitorOptions&)>& change) {
+    OdometryMonitorOptions options;
     change(options);
-    EXPECT_THROW(MotionCheck{options}, Error);
+    EXPECT_THROW(OdometryMonitor{options}, Error);
   };
   refuses([](auto& o) { o.window = 0; });
   refuses([](auto& o) { o.scale = 1; });

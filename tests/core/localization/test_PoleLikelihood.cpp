@@ -116,7 +116,7 @@ void expectRefused(const LikelihoodOptions& options, const std::string& field) {
 
 }  // namespace
 
-TEST(PoleLikelihood, paperByHand) {
+TEST(PoleLikelihood, PaperByHand) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::paper, false);
   options.sigma = 0.5;
   options.gate = 2;
@@ -132,7 +132,7 @@ TEST(PoleLikelihood, paperByHand) {
   EXPECT_NEAR(logLikelihood({detection(0, -10.999999)}, pose, index, options), -8, 1e-4);
 }
 
-TEST(PoleLikelihood, mixtureByHand) {
+TEST(PoleLikelihood, MixtureByHand) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
   options.sigma = 0.2;
   options.outlier = 0.1;
@@ -143,7 +143,7 @@ TEST(PoleLikelihood, mixtureByHand) {
               matched + std::log(0.1), 1e-12);
 }
 
-TEST(PoleLikelihood, flooredByHand) {
+TEST(PoleLikelihood, FlooredByHand) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
   options.sigma = 1;
   const PoleIndex index({mapPole(5, 5)});
@@ -159,7 +159,7 @@ TEST(PoleLikelihood, flooredByHand) {
               1e-12);
 }
 
-TEST(PoleLikelihood, flooredEqualsItsFormula) {
+TEST(PoleLikelihood, FlooredEqualsItsFormula) {
   const Scene scene = randomScene(5);
   for (const double gate : {0.4, 1.0, 3.0})
     for (const double sigma : {0.05, 1.0, 1.2247})
@@ -187,7 +187,7 @@ TEST(PoleLikelihood, flooredEqualsItsFormula) {
       }
 }
 
-TEST(PoleLikelihood, flooredRefusesWhatItCannotDo) {
+TEST(PoleLikelihood, FlooredRefusesWhatItCannotDo) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::floored, true);
   expectRefused(options, "weighted");
   options.weighted = false;
@@ -198,7 +198,7 @@ TEST(PoleLikelihood, flooredRefusesWhatItCannotDo) {
   }
 }
 
-TEST(PoleLikelihood, flooredBatchesGiveTheSameNumbers) {
+TEST(PoleLikelihood, FlooredBatchesGiveTheSameNumbers) {
   const Scene scene = randomScene(7);
   const PoleIndex index(scene.map);
   const LikelihoodOptions options = optionsOf(LikelihoodModel::floored, false);
@@ -212,7 +212,7 @@ TEST(PoleLikelihood, flooredBatchesGiveTheSameNumbers) {
   }
 }
 
-TEST(PoleLikelihood, equalsTheFormulasWordByWord) {
+TEST(PoleLikelihood, EqualsTheFormulasWordByWord) {
   for (std::uint64_t seed : {1, 2, 3}) {
     const Scene scene = randomScene(seed);
     for (LikelihoodModel model : s_models) {
@@ -232,7 +232,7 @@ TEST(PoleLikelihood, equalsTheFormulasWordByWord) {
   }
 }
 
-TEST(PoleLikelihood, batchGivesTheSameNumbersAsTheSingleCall) {
+TEST(PoleLikelihood, BatchGivesTheSameNumbersAsTheSingleCall) {
   const Scene scene = randomScene(7);
   const PoleIndex index(scene.map);
   for (LikelihoodModel model : s_models) {
@@ -248,7 +248,7 @@ TEST(PoleLikelihood, batchGivesTheSameNumbersAsTheSingleCall) {
   }
 }
 
-TEST(PoleLikelihood, posesNearEachOtherAreSearchedTogetherToTheSameNumbers) {
+TEST(PoleLikelihood, PosesNearEachOtherAreSearchedTogetherToTheSameNumbers) {
   Scene scene = randomScene(13);
   for (MapPole& pole : scene.map) pole.x *= 0.4, pole.y *= 0.4;  // several within the gate
   for (Pose2D& pose : scene.poses) pose = {0.05 * pose.x, 0.05 * pose.y, 1 + 0.002 * pose.yaw};
@@ -262,7 +262,7 @@ TEST(PoleLikelihood, posesNearEachOtherAreSearchedTogetherToTheSameNumbers) {
   EXPECT_EQ(together, apart);
 }
 
-TEST(PoleLikelihood, severalSigmasAtOnceGiveWhatEachGivesAlone) {
+TEST(PoleLikelihood, SeveralSigmasAtOnceGiveWhatEachGivesAlone) {
   const Scene scene = randomScene(11);
   const PoleIndex index(scene.map);
   const std::vector<double> widenings{1, 2, 0.5, 8};
@@ -284,13 +284,13 @@ TEST(PoleLikelihood, severalSigmasAtOnceGiveWhatEachGivesAlone) {
   EXPECT_THROW(widenedLogLikelihoods({}, {}, index, {}, std::vector<double>(9, 1.0), out), Error);
 }
 
-TEST(PoleLikelihood, noDetectionsSayNothing) {
+TEST(PoleLikelihood, NoDetectionsSayNothing) {
   const PoleIndex index({mapPole(0, 0)});
   for (LikelihoodModel model : s_models)
     EXPECT_EQ(logLikelihood({}, {}, index, optionsOf(model, true)), 0);
 }
 
-TEST(PoleLikelihood, anEmptyMapCostsTheFloorForEachDetection) {
+TEST(PoleLikelihood, AnEmptyMapCostsTheFloorForEachDetection) {
   const PoleIndex index({});
   const std::vector<PoleDetection> poles{detection(1, 2), detection(3, 4)};
   EXPECT_NEAR(logLikelihood(poles, {}, index, optionsOf(LikelihoodModel::mixture, false)),
@@ -299,14 +299,14 @@ TEST(PoleLikelihood, anEmptyMapCostsTheFloorForEachDetection) {
               -2 / (2 * 0.15 * 0.15), 1e-9);
 }
 
-TEST(PoleLikelihood, staysFiniteWithThousandsOfUnmatchedPoles) {
+TEST(PoleLikelihood, StaysFiniteWithThousandsOfUnmatchedPoles) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
   options.outlier = 1e-9;
   const std::vector<PoleDetection> poles(5000, detection(1, 2));
   EXPECT_NEAR(logLikelihood(poles, {}, PoleIndex({}), options), 5000 * std::log(1e-9), 1e-6);
 }
 
-TEST(PoleLikelihood, staysFiniteWithNumbersThatAreNone) {
+TEST(PoleLikelihood, StaysFiniteWithNumbersThatAreNone) {
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   const PoleIndex index({mapPole(0, 0)});
   for (LikelihoodModel model : s_models) {
@@ -321,7 +321,7 @@ TEST(PoleLikelihood, staysFiniteWithNumbersThatAreNone) {
   }
 }
 
-TEST(PoleLikelihood, theMixtureIsNotFlat) {
+TEST(PoleLikelihood, TheMixtureIsNotFlat) {
   const PoleIndex index({mapPole(10, 0)});
   const LikelihoodOptions options;
   const double right = logLikelihood({detection(10, 0)}, {}, index, options);
@@ -332,7 +332,7 @@ TEST(PoleLikelihood, theMixtureIsNotFlat) {
   EXPECT_NEAR(lost, std::log(options.outlier), 1e-12);
 }
 
-TEST(PoleLikelihood, weightsAnErrorByTheCovarianceAlongIt) {
+TEST(PoleLikelihood, WeightsAnErrorByTheCovarianceAlongIt) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::paper, true);
   options.sigma = 0.1;
   const PoleIndex index({mapPole(0, 20)});
@@ -345,14 +345,14 @@ TEST(PoleLikelihood, weightsAnErrorByTheCovarianceAlongIt) {
   EXPECT_NEAR(across, -0.5 * 0.09 / 0.01, 1e-9);
 }
 
-TEST(PoleLikelihood, anUncertainMapPoleCountsForLess) {
+TEST(PoleLikelihood, AnUncertainMapPoleCountsForLess) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::paper, true);
   options.sigma = 0.1;
   EXPECT_NEAR(logLikelihood({detection(1.2, 1)}, {}, PoleIndex({mapPole(1, 1, 0.03)}), options),
               -0.5 * 0.04 / 0.04, 1e-9);
 }
 
-TEST(PoleLikelihood, aDetectionWithoutConfidenceHasNoInfluence) {
+TEST(PoleLikelihood, ADetectionWithoutConfidenceHasNoInfluence) {
   PoleDetection doubtful = detection(3, 3);
   doubtful.confidence = 0;
   const PoleIndex index({mapPole(3, 3)});
@@ -364,7 +364,7 @@ TEST(PoleLikelihood, aDetectionWithoutConfidenceHasNoInfluence) {
   }
 }
 
-TEST(PoleLikelihood, refusesOptionsOutOfRange) {
+TEST(PoleLikelihood, RefusesOptionsOutOfRange) {
   for (double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     LikelihoodOptions options;
     options.sigma = bad;
@@ -384,7 +384,7 @@ TEST(PoleLikelihood, refusesOptionsOutOfRange) {
   EXPECT_THROW(logLikelihoods({}, {}, PoleIndex({}), options, out), Error);
 }
 
-TEST(PoleLikelihood, refusesWeightsThatAreNone) {
+TEST(PoleLikelihood, RefusesWeightsThatAreNone) {
   const PoleIndex index({});
   const auto refuses = [&](const PoleDetection& pole) {
     logLikelihood({pole}, {}, index, LikelihoodOptions{});  // of no account unless weighted

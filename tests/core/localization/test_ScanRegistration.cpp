@@ -43,21 +43,21 @@ void expectNear(const Pose2D& a, const Pose2D& b, double metres, double radians)
 
 }  // namespace
 
-TEST(PoleAlignment, FindsTheExactMotionFromNearAndFromAfar) {
+TEST(ScanRegistration, FindsTheExactMotionFromNearAndFromAfar) {
   const Pose2D motion{1.3, -0.2, 0.1};
   const Poles moved = after(street, motion);
-  const PoleAlignment near = refineMotion(street, moved, {1.0, 0.0, 0.08}, {});
+  const ScanRegistration near = refineMotion(street, moved, {1.0, 0.0, 0.08}, {});
   expectNear(near.motion, motion, 1e-6, 1e-7);
   EXPECT_EQ(near.pairs, 5);
   EXPECT_NEAR(near.score, 5, 1e-6);
-  AlignmentOptions wide;
+  RegistrationOptions wide;
   wide.maxMetres = 10;
   expectNear(searchMotion(street, after(street, {7, 1, -0.3}), {}, wide).motion, {7, 1, -0.3}, 1e-6,
              1e-7);
 }
 
-TEST(PoleAlignment, SearchesNoFartherThanTold) {
-  AlignmentOptions options;
+TEST(ScanRegistration, SearchesNoFartherThanTold) {
+  RegistrationOptions options;
   options.maxMetres = 3;
   EXPECT_LT(searchMotion(street, after(street, {7, 1, 0}), {}, options).pairs, 3);
   EXPECT_EQ(searchMotion(street, after(street, {7, 1, 0}), {6, 0, 0}, options).pairs, 5);
@@ -65,27 +65,27 @@ TEST(PoleAlignment, SearchesNoFartherThanTold) {
   EXPECT_LT(searchMotion(street, after(street, {1, 0, 0.3}), {}, options).pairs, 3);
 }
 
-TEST(PoleAlignment, OutliersAndMissedPolesDoNotMoveIt) {
+TEST(ScanRegistration, OutliersAndMissedPolesDoNotMoveIt) {
   const Pose2D motion{0.9, 0.05, -0.02};
   Poles moved = after(street, motion);
   moved.erase(moved.begin());
   moved.insert(moved.begin(), {pole(3, 3), pole(-4, 12), pole(21, -9)});
-  const PoleAlignment found = refineMotion(street, moved, {0.5, 0, 0}, {});
+  const ScanRegistration found = refineMotion(street, moved, {0.5, 0, 0}, {});
   expectNear(found.motion, motion, 1e-6, 1e-7);
   EXPECT_EQ(found.pairs, 4);
 }
 
-TEST(PoleAlignment, CovarianceIsThatOfTheErrors) {
+TEST(ScanRegistration, CovarianceIsThatOfTheErrors) {
   sim::Random random(5);
   const Pose2D motion{1, 0, 0.05};
-  AlignmentOptions options;
+  RegistrationOptions options;
   options.sigma = 1e-6;
   options.gate = 10;  // so that the tails are not cut off
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero(), stated = Eigen::Matrix3d::Zero();
   const int trials = 2000;
   for (int i = 0; i < trials; ++i) {
     Poles noisy = after(street, {0, 0, 0}, &random);
-    const PoleAlignment found =
+    const ScanRegistration found =
         refineMotion(noisy, after(street, motion, &random), motion, options);
     ASSERT_EQ(found.pairs, 5);
     const Eigen::Vector3d error(found.motion.x - motion.x, found.motion.y - motion.y,
@@ -100,8 +100,8 @@ TEST(PoleAlignment, CovarianceIsThatOfTheErrors) {
   }
 }
 
-TEST(PoleAlignment, NothingInCommonGivesNoPairs) {
-  const PoleAlignment none = refineMotion(street, {}, {1, 2, 0.3}, {});
+TEST(ScanRegistration, NothingInCommonGivesNoPairs) {
+  const ScanRegistration none = refineMotion(street, {}, {1, 2, 0.3}, {});
   EXPECT_EQ(none.pairs, 0);
   EXPECT_DOUBLE_EQ(none.motion.x, 1);
   EXPECT_EQ(searchMotion({}, street, {}, {}).pairs, 0);

@@ -14,8 +14,8 @@ namespace {
 
 using Groups = std::vector<std::vector<std::uint32_t>>;
 
-PoleSighting sighting(double x, double y, double radius, std::uint32_t view = 0) {
-  PoleSighting result;
+LandmarkObservation sighting(double x, double y, double radius, std::uint32_t view = 0) {
+  LandmarkObservation result;
   result.pole.x = x;
   result.pole.y = y;
   result.pole.radius = radius;
@@ -24,7 +24,7 @@ PoleSighting sighting(double x, double y, double radius, std::uint32_t view = 0)
 }
 
 /// Components by spreading from each sighting over all that overlap, without an index.
-Groups spread(const std::vector<PoleSighting>& all) {
+Groups spread(const std::vector<LandmarkObservation>& all) {
   const auto overlap = [&](std::size_t i, std::size_t j) {
     const PoleDetection &a = all[i].pole, &b = all[j].pole;
     const double reach = a.radius + b.radius;
@@ -48,10 +48,10 @@ Groups spread(const std::vector<PoleSighting>& all) {
   return groups;
 }
 
-std::vector<PoleSighting> randomSightings(std::uint64_t seed, int count) {
+std::vector<LandmarkObservation> randomSightings(std::uint64_t seed, int count) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> place(-10, 10), radius(0.02, 0.4);
-  std::vector<PoleSighting> all;
+  std::vector<LandmarkObservation> all;
   for (int i = 0; i < count; ++i)
     all.push_back(sighting(4e5 + place(random), 5e6 + place(random), radius(random)));
   return all;
@@ -59,22 +59,22 @@ std::vector<PoleSighting> randomSightings(std::uint64_t seed, int count) {
 
 }  // namespace
 
-TEST(BoxMerging, joinsByHand) {
+TEST(BoxMerging, JoinsByHand) {
   // 0 and 1 overlap; 2 touches 1 by an edge; 3 shares only a corner with 2; 4 stands alone,
   // nearer to 0 than 0.5 m.
-  const std::vector<PoleSighting> all{sighting(0, 0, 0.25), sighting(0.375, 0, 0.25),
-                                      sighting(0.875, 0, 0.25), sighting(1.375, 0.5, 0.25),
-                                      sighting(-0.4375, 0, 0.125)};
+  const std::vector<LandmarkObservation> all{sighting(0, 0, 0.25), sighting(0.375, 0, 0.25),
+                                             sighting(0.875, 0, 0.25), sighting(1.375, 0.5, 0.25),
+                                             sighting(-0.4375, 0, 0.125)};
   EXPECT_EQ(joinOverlappingBoxes(all), (Groups{{0, 1, 2, 3}, {4}}));
 }
 
-TEST(BoxMerging, boxesAreSquaresRoundTheCentre) {
+TEST(BoxMerging, BoxesAreSquaresRoundTheCentre) {
   // Circles of 0.1 m do not meet at a diagonal distance of 0.27 m, their boxes do.
   EXPECT_EQ(joinOverlappingBoxes({sighting(0, 0, 0.1), sighting(0.19, 0.19, 0.1)}).size(), 1u);
   EXPECT_EQ(joinOverlappingBoxes({sighting(0, 0, 0.1), sighting(0.19, 0.21, 0.1)}).size(), 2u);
 }
 
-TEST(BoxMerging, equalsSpreadingOverAllPairs) {
+TEST(BoxMerging, EqualsSpreadingOverAllPairs) {
   for (const int count : {0, 1, 2, 50, 400, 1500}) {
     const auto all = randomSightings(count, count);
     EXPECT_EQ(joinOverlappingBoxes(all), spread(all)) << count;
@@ -85,8 +85,9 @@ TEST(BoxMerging, equalsSpreadingOverAllPairs) {
   EXPECT_LT(groups, 350u);
 }
 
-TEST(BoxMerging, plainMeanByHand) {
-  std::vector<PoleSighting> all{sighting(1, 2, 0.1), sighting(2, 4, 0.2), sighting(6, 0, 0.6)};
+TEST(BoxMerging, PlainMeanByHand) {
+  std::vector<LandmarkObservation> all{sighting(1, 2, 0.1), sighting(2, 4, 0.2),
+                                       sighting(6, 0, 0.6)};
   for (int i = 0; i < 3; ++i) {
     all[i].pole.bottom = i;
     all[i].pole.top = 3 + 2 * i;
@@ -108,7 +109,7 @@ TEST(BoxMerging, plainMeanByHand) {
   EXPECT_EQ(pair.count, 2u);
 }
 
-TEST(BoxMerging, theMeanDoesNotDependOnTheOrder) {
+TEST(BoxMerging, TheMeanDoesNotDependOnTheOrder) {
   auto all = randomSightings(3, 60);
   std::vector<std::uint32_t> members(all.size());
   for (std::uint32_t i = 0; i < members.size(); ++i) members[i] = i;

@@ -17,7 +17,7 @@ PoleDetection at(double x, double y) {
   return pole;
 }
 
-TEST(PoleMerging, MovesCentreAndCovariance) {
+TEST(IncrementalMerge, MovesCentreAndCovariance) {
   PoleDetection pole = at(2, 0);
   pole.covariance << 0.04, 0.01, 0.01, 0.09;
   const PoleDetection result = moved({10, 20, M_PI / 2}, pole);
@@ -31,7 +31,7 @@ TEST(PoleMerging, MovesCentreAndCovariance) {
   EXPECT_EQ(result.top, 3);
 }
 
-TEST(PoleMerging, FirstScanBecomesThePoles) {
+TEST(IncrementalMerge, FirstScanBecomesThePoles) {
   std::vector<MapPole> poles;
   mergeScan(poles, PoleIndex(poles), {at(1, 2), at(1.1, 2)}, 0.5);
   ASSERT_EQ(poles.size(), 2u);  // both of one scan: two poles, however near
@@ -41,7 +41,7 @@ TEST(PoleMerging, FirstScanBecomesThePoles) {
   EXPECT_EQ(poles[0].radius, 0.1);
 }
 
-TEST(PoleMerging, MeansOfManyScans) {
+TEST(IncrementalMerge, MeansOfManyScans) {
   std::vector<MapPole> poles;
   const double xs[] = {1.0, 1.2, 0.9, 1.05};
   double sum = 0;
@@ -67,7 +67,7 @@ TEST(PoleMerging, MeansOfManyScans) {
   EXPECT_NEAR(poles[0].covariance(0, 1), 0, 1e-12);
 }
 
-TEST(PoleMerging, OneDetectionPerPoleNearestFirst) {
+TEST(IncrementalMerge, OneDetectionPerPoleNearestFirst) {
   std::vector<MapPole> poles;
   mergeScan(poles, PoleIndex(poles), {at(0, 0)}, 0.5);
   mergeScan(poles, PoleIndex(poles), {at(0.4, 0), at(-0.1, 0)}, 0.5);
@@ -77,7 +77,7 @@ TEST(PoleMerging, OneDetectionPerPoleNearestFirst) {
   EXPECT_EQ(poles[1].x, 0.4);
 }
 
-TEST(PoleMerging, TheGateIsOpen) {
+TEST(IncrementalMerge, TheGateIsOpen) {
   std::vector<MapPole> poles;
   mergeScan(poles, PoleIndex(poles), {at(0, 0)}, 0.5);
   mergeScan(poles, PoleIndex(poles), {at(0.5, 0)}, 0.5);

@@ -58,7 +58,7 @@ std::vector<MapPole> polesOf(const Scan& scan, int times, LabelMapOptions option
 
 }  // namespace
 
-TEST(LabelMapBuilder, polesStandWhereTheirPointsAre) {
+TEST(LabelMapBuilder, PolesStandWhereTheirPointsAre) {
   Scan scan;
   scan.stem(10, 5, 0.1, 0, 4, pole);
   scan.stem(4, -6, 0.2, 0.3, 3.3, trunk | 7u << 16);  // the upper half is an instance
@@ -75,7 +75,7 @@ TEST(LabelMapBuilder, polesStandWhereTheirPointsAre) {
   EXPECT_NEAR(poles[1].y, 5, 0.1);
 }
 
-TEST(LabelMapBuilder, aSignHangsOnItsPole) {
+TEST(LabelMapBuilder, ASignHangsOnItsPole) {
   Scan scan;
   scan.stem(10, 5, 0.05, 0, 2.5, pole);
   for (double across = 0.1; across < 0.9; across += 0.05)
@@ -89,7 +89,7 @@ TEST(LabelMapBuilder, aSignHangsOnItsPole) {
   EXPECT_NEAR(poles[1].x, 30, 0.05);  // a sign by itself stands for its pole
 }
 
-TEST(LabelMapBuilder, neighboursStayApart) {
+TEST(LabelMapBuilder, NeighboursStayApart) {
   Scan scan;
   for (double x = 0; x < 6; x += 0.8) scan.stem(x, 5, 0.1, 0, 3, trunk);
   EXPECT_EQ(polesOf(scan, 3).size(), 8u);
@@ -100,7 +100,7 @@ TEST(LabelMapBuilder, neighboursStayApart) {
   for (std::size_t i = 1; i < poles.size(); ++i) EXPECT_GT(poles[i].x - poles[i - 1].x, 0.5);
 }
 
-TEST(LabelMapBuilder, littleIsNoPole) {
+TEST(LabelMapBuilder, LittleIsNoPole) {
   Scan scan;
   scan.stem(10, 5, 0.1, 0, 4, pole);
   EXPECT_EQ(polesOf(scan, 2).size(), 0u);  // three scans are needed
@@ -117,7 +117,7 @@ TEST(LabelMapBuilder, littleIsNoPole) {
   EXPECT_EQ(polesOf(far, 3).size(), 0u);
 }
 
-TEST(LabelMapBuilder, theOrderOfPointsIsNobodysBusiness) {
+TEST(LabelMapBuilder, TheOrderOfPointsIsNobodysBusiness) {
   std::mt19937 random(2);
   Scan scan;
   for (int i = 0; i < 30; ++i)
@@ -136,7 +136,7 @@ TEST(LabelMapBuilder, theOrderOfPointsIsNobodysBusiness) {
   }
 }
 
-TEST(LabelMapBuilder, keepsColumnsNotPoints) {
+TEST(LabelMapBuilder, KeepsColumnsNotPoints) {
   Scan scan;
   scan.stem(10, 5, 0.1, 0, 4, pole);
   LabelMapBuilder map;
@@ -146,7 +146,7 @@ TEST(LabelMapBuilder, keepsColumnsNotPoints) {
   EXPECT_LT(map.columns(), 12u);
 }
 
-TEST(LabelMapBuilder, refusesWhatCannotBe) {
+TEST(LabelMapBuilder, RefusesWhatCannotBe) {
   LabelMapBuilder map;
   const float value = 1;
   EXPECT_THROW(map.add(pose(0, 0), {&value, &value, &value, 1}, {}), Error);

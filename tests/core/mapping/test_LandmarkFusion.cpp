@@ -14,15 +14,15 @@ using namespace polemcl;
 
 namespace {
 
-PoleSighting sighting(double x, double y, double variance = 0.01) {
-  PoleSighting s;
+LandmarkObservation sighting(double x, double y, double variance = 0.01) {
+  LandmarkObservation s;
   s.pole.x = x;
   s.pole.y = y;
   s.pole.covariance = variance * Eigen::Matrix2d::Identity();
   return s;
 }
 
-std::vector<std::uint32_t> all(const std::vector<PoleSighting>& sightings) {
+std::vector<std::uint32_t> all(const std::vector<LandmarkObservation>& sightings) {
   std::vector<std::uint32_t> members(sightings.size());
   std::iota(members.begin(), members.end(), 0u);
   return members;
@@ -30,8 +30,8 @@ std::vector<std::uint32_t> all(const std::vector<PoleSighting>& sightings) {
 
 }  // namespace
 
-TEST(PoleFusion, oneSightingIsThePole) {
-  std::vector<PoleSighting> sightings{sighting(3, 4, 0.04)};
+TEST(LandmarkFusion, OneSightingIsThePole) {
+  std::vector<LandmarkObservation> sightings{sighting(3, 4, 0.04)};
   sightings[0].pole.radius = 0.1;
   sightings[0].pole.bottom = 0.3;
   sightings[0].pole.top = 5;
@@ -46,17 +46,17 @@ TEST(PoleFusion, oneSightingIsThePole) {
   EXPECT_EQ(pole.count, 1u);
 }
 
-TEST(PoleFusion, weighsByInverseCovarianceAndConfidence) {
+TEST(LandmarkFusion, WeighsByInverseCovarianceAndConfidence) {
   // Information 100 and 25 in x: (100·0 + 25·1)/125; the second one's confidence of a half makes
   // it 12.5.
-  std::vector<PoleSighting> sightings{sighting(0, 0, 0.01), sighting(1, 0, 0.04)};
+  std::vector<LandmarkObservation> sightings{sighting(0, 0, 0.01), sighting(1, 0, 0.04)};
   EXPECT_NEAR(fusedCentre(sightings, {0, 1}).x(), 25.0 / 125, 1e-5);
   sightings[1].pole.confidence = 0.5;
   EXPECT_NEAR(fusedCentre(sightings, {0, 1}).x(), 12.5 / 112.5, 1e-5);
 }
 
-TEST(PoleFusion, eachCountsMostAcrossItsLongAxis) {
-  std::vector<PoleSighting> sightings{sighting(0, 0), sighting(0.1, 0.1)};
+TEST(LandmarkFusion, EachCountsMostAcrossItsLongAxis) {
+  std::vector<LandmarkObservation> sightings{sighting(0, 0), sighting(0.1, 0.1)};
   sightings[0].pole.covariance << 1, 0, 0, 0.0001;
   sightings[1].pole.covariance << 0.0001, 0, 0, 1;
   const Eigen::Vector2d centre = fusedCentre(sightings, {0, 1});
@@ -64,16 +64,16 @@ TEST(PoleFusion, eachCountsMostAcrossItsLongAxis) {
   EXPECT_NEAR(centre.y(), 0, 1e-4);
 }
 
-TEST(PoleFusion, isTheLeastSquaresSolutionWithoutOutliers) {
+TEST(LandmarkFusion, IsTheLeastSquaresSolutionWithoutOutliers) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (int i = 0; i < 40; ++i) {
     Eigen::Matrix2d root;
     root << 0.1, 0.05 * normal(random), 0, 0.02 + 0.1 * (i % 3);
-    PoleSighting s = sighting(0, 0);
+    LandmarkObservation s = sighting(0, 0);
     s.pole.covariance = root * root.transpose();
     Eigen::Vector2d noise(normal(random), normal(random));
     if (noise.norm() > 2) noise *= 2 / noise.norm();  // all of them well inside the 99 % ellipse
@@ -89,10 +89,10 @@ TEST(PoleFusion, isTheLeastSquaresSolutionWithoutOutliers) {
   EXPECT_LT((fusedCentre(sightings, all(sightings)) - expected).norm(), 1e-5);
 }
 
-TEST(PoleFusion, leavesOutliersOut) {
+TEST(LandmarkFusion, LeavesOutliersOut) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal(0, 0.02);
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   for (int i = 0; i < 20; ++i)
     sightings.push_back(sighting(normal(random), normal(random), 0.0004));
   for (int i = 0; i < 6; ++i) sightings.push_back(sighting(0.4, 0.1 + normal(random), 0.0004));
@@ -104,13 +104,13 @@ TEST(PoleFusion, leavesOutliersOut) {
 }
 
 // 4000 poles of 12 sightings with σ = 0.05 m each, that promise 0.05 m, only 0.01 m, or 0.1 m.
-TEST(PoleFusion, theCovarianceIsHonestWhateverTheSightingsPromise) {
+TEST(LandmarkFusion, TheCovarianceIsHonestWhateverTheSightingsPromise) {
   const auto squaredErrors = [](double promised) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal(0, 0.05);
     double sum = 0;
     for (int pole = 0; pole < 4000; ++pole) {
-      std::vector<PoleSighting> sightings;
+      std::vector<LandmarkObservation> sightings;
       for (int i = 0; i < 12; ++i)
         sightings.push_back(sighting(normal(random), normal(random), promised * promised));
       Eigen::Matrix2d covariance;
@@ -126,16 +126,16 @@ TEST(PoleFusion, theCovarianceIsHonestWhateverTheSightingsPromise) {
   EXPECT_NEAR(squaredErrors(0.1), 0.5, 0.03);
 }
 
-TEST(PoleFusion, losesNoDigitsFarFromTheOrigin) {
-  const std::vector<PoleSighting> sightings{sighting(4e6 + 0.25, 5e6), sighting(4e6 + 0.5, 5e6),
-                                            sighting(4e6 + 0.75, 5e6)};
+TEST(LandmarkFusion, LosesNoDigitsFarFromTheOrigin) {
+  const std::vector<LandmarkObservation> sightings{
+      sighting(4e6 + 0.25, 5e6), sighting(4e6 + 0.5, 5e6), sighting(4e6 + 0.75, 5e6)};
   EXPECT_NEAR(fusedCentre(sightings, {0, 1, 2}).x() - 4e6, 0.5, 1e-8);
 }
 
-TEST(PoleFusion, heightsAreQuantilesAndTheRestMeans) {
-  std::vector<PoleSighting> sightings;
+TEST(LandmarkFusion, HeightsAreQuantilesAndTheRestMeans) {
+  std::vector<LandmarkObservation> sightings;
   for (int i = 0; i < 11; ++i) {
-    PoleSighting s = sighting(0, 0);
+    LandmarkObservation s = sighting(0, 0);
     s.pole.bottom = 0.1 * i;
     s.pole.top = 5 + i;
     s.pole.radius = i < 6 ? 0.1 : 0.2;
@@ -151,17 +151,17 @@ TEST(PoleFusion, heightsAreQuantilesAndTheRestMeans) {
   EXPECT_EQ(pole.count, 11u);
 }
 
-TEST(PoleFusion, copesWithACovarianceOfZero) {
-  const std::vector<PoleSighting> sightings{sighting(1, 1, 0), sighting(1.1, 1, 0),
-                                            sighting(1.05, 1, 0)};
+TEST(LandmarkFusion, CopesWithACovarianceOfZero) {
+  const std::vector<LandmarkObservation> sightings{sighting(1, 1, 0), sighting(1.1, 1, 0),
+                                                   sighting(1.05, 1, 0)};
   Eigen::Matrix2d covariance;
   EXPECT_NEAR(fusedCentre(sightings, {0, 1, 2}, &covariance).x(), 1.05, 1e-9);
   EXPECT_TRUE(covariance.allFinite());
 }
 
-TEST(PoleFusion, certainSightingsGiveACertainPole) {
+TEST(LandmarkFusion, CertainSightingsGiveACertainPole) {
   for (int n = 1; n < 60; ++n) {
-    const std::vector<PoleSighting> sightings(n, sighting(0, 0));
+    const std::vector<LandmarkObservation> sightings(n, sighting(0, 0));
     EXPECT_EQ(fuse(sightings, all(sightings)).confidence, 1) << n;
   }
 }

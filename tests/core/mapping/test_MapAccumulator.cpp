@@ -21,7 +21,7 @@ SessionScan scanAt(double x, double y, const std::vector<Eigen::Vector2d>& poles
   SessionScan scan;
   scan.time = time;
   scan.pose_map_robot = {x, y, 0};
-  scan.freeRange.assign(256, 12.0f);
+  scan.visibilityRange.assign(256, 12.0f);
   for (const Eigen::Vector2d& p : poles) {
     if (std::hypot(p.x() - x, p.y() - y) > 12) continue;
     PoleDetection pole;
@@ -80,7 +80,7 @@ void expectSame(const std::vector<MapPole>& a, const std::vector<MapPole>& b) {
 
 }  // namespace
 
-TEST(MapAccumulator, usesEverythingUnlessAsked) {
+TEST(MapAccumulator, UsesEverythingUnlessAsked) {
   const auto poles = somePoles();
   const auto first = drive(0, 100, 0, poles), second = drive(50, 150, 2, poles);
   MapAccumulator map = fresh(0);
@@ -95,8 +95,8 @@ TEST(MapAccumulator, usesEverythingUnlessAsked) {
   const PoleMapResult expected = buildPoleMap(scans, mapping(0));
   ASSERT_GT(expected.poles.size(), 20u);
   expectSame(map.build().poles, expected.poles);
-  const KeptMap histories = withHistory(expected.poles, all, mapping(0), {});
-  const KeptMap found = map.withHistories(expected.poles);
+  const LandmarkMap histories = withHistory(expected.poles, all, mapping(0), {});
+  const LandmarkMap found = map.withHistories(expected.poles);
   ASSERT_EQ(found.poles.size(), histories.poles.size());
   for (std::size_t i = 0; i < found.poles.size(); ++i) {
     EXPECT_EQ(found.poles[i].history.seen, histories.poles[i].history.seen);
@@ -104,7 +104,7 @@ TEST(MapAccumulator, usesEverythingUnlessAsked) {
   }
 }
 
-TEST(MapAccumulator, laterSessionsCountWhereNobodyHasBeen) {
+TEST(MapAccumulator, LaterSessionsCountWhereNobodyHasBeen) {
   std::mt19937 random(5);
   const auto walk = [&] {
     std::vector<SessionScan> scans;
@@ -136,7 +136,7 @@ TEST(MapAccumulator, laterSessionsCountWhereNobodyHasBeen) {
   EXPECT_GT(taken, 100u);
 }
 
-TEST(MapAccumulator, placesOfScansThatAreNotUsedAreVisitedToo) {
+TEST(MapAccumulator, PlacesOfScansThatAreNotUsedAreVisitedToo) {
   MapAccumulator map = fresh(10);
   chosen(map, {scanAt(0, 0, {})});
   EXPECT_EQ(chosen(map, {scanAt(8, 0, {})}), std::vector<bool>{false});
@@ -144,7 +144,7 @@ TEST(MapAccumulator, placesOfScansThatAreNotUsedAreVisitedToo) {
   EXPECT_EQ(chosen(map, {scanAt(27, 0, {})}), std::vector<bool>{true});
 }
 
-TEST(MapAccumulator, asFarAsThatIsNotFarther) {
+TEST(MapAccumulator, AsFarAsThatIsNotFarther) {
   for (const double distance : {10.0, 0.1, 7.3}) {
     MapAccumulator map = fresh(distance);
     chosen(map, {scanAt(0, 0, {})});
@@ -153,7 +153,7 @@ TEST(MapAccumulator, asFarAsThatIsNotFarther) {
   }
 }
 
-TEST(MapAccumulator, whatIsLeftOutChangesNothing) {
+TEST(MapAccumulator, WhatIsLeftOutChangesNothing) {
   const auto poles = somePoles();
   MapAccumulator map = fresh(10), other = fresh(10);
   map.add("one", drive(0, 80, 0, poles));
@@ -165,12 +165,13 @@ TEST(MapAccumulator, whatIsLeftOutChangesNothing) {
   const AddedSession& added = other.add("two", second);
   EXPECT_EQ(added.usedCount(), 71u);  // from x = 90 on, 10.05 m from the end of the first
   EXPECT_NEAR(added.usedShare(), 71.0 / 141, 1e-12);
-  EXPECT_TRUE(added.scans.front().poles_robot.empty() && added.scans.front().freeRange.empty());
+  EXPECT_TRUE(added.scans.front().poles_robot.empty() &&
+              added.scans.front().visibilityRange.empty());
   ASSERT_GT(map.build().poles.size(), 20u);
   expectSame(map.build().poles, other.build().poles);
 }
 
-TEST(MapAccumulator, goesOnAsIfItHadNeverStopped) {
+TEST(MapAccumulator, GoesOnAsIfItHadNeverStopped) {
   const auto poles = somePoles();
   const std::vector<std::vector<SessionScan>> sessions{
       drive(0, 80, 0, poles), drive(40, 130, 3, poles), drive(0, 190, 14, poles)};
@@ -187,7 +188,7 @@ TEST(MapAccumulator, goesOnAsIfItHadNeverStopped) {
   EXPECT_EQ(kept.scans(), 81u + 91u + 191u);
 }
 
-TEST(MapAccumulator, refusesWhatItCannotGoOnFrom) {
+TEST(MapAccumulator, RefusesWhatItCannotGoOnFrom) {
   AddedSessions kept;
   kept.unvisited = 10;
   const auto message = [&](double unvisited) -> std::string {
@@ -208,7 +209,7 @@ TEST(MapAccumulator, refusesWhatItCannotGoOnFrom) {
   EXPECT_THROW(map.add("s", {scanAt(0, kNan, {})}), Error);
 }
 
-TEST(MapAccumulator, refusesASessionInAnotherFrame) {
+TEST(MapAccumulator, RefusesASessionInAnotherFrame) {
   MapAccumulator map = fresh(0);
   map.add("one", drive(0, 100, 0));
   map.add("near", drive(9000, 9100, 0));

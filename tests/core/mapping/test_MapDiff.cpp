@@ -21,7 +21,7 @@ std::vector<MapPole> polesAt(const std::vector<std::pair<double, double>>& place
 
 }  // namespace
 
-TEST(MapDiff, tellsNewVanishedAndMoved) {
+TEST(MapDiff, TellsNewVanishedAndMoved) {
   const auto before = polesAt({{0, 0}, {10, 0}, {20, 0}, {30, 0}});
   const auto after = polesAt({{40, 0}, {30.1, 0}, {10.8, 0.6}, {0.1, -0.1}});
   const MapDiff diff = diffMaps(before, after);
@@ -38,7 +38,7 @@ TEST(MapDiff, tellsNewVanishedAndMoved) {
   EXPECT_EQ(diff.vanished[0].x, 20);
 }
 
-TEST(MapDiff, pairsOneToOneTheNearestFirst) {
+TEST(MapDiff, PairsOneToOneTheNearestFirst) {
   // 0.2 is nearer to 0.1 than to 0: that pair is taken, 0 has vanished beside -0.24.
   const MapDiff diff = diffMaps(polesAt({{0, 0}, {0.1, 0}}), polesAt({{0.2, 0}, {-0.24, 0}}));
   ASSERT_EQ(diff.same.size(), 2u);
@@ -48,7 +48,7 @@ TEST(MapDiff, pairsOneToOneTheNearestFirst) {
   EXPECT_TRUE(diff.moved.empty());
 }
 
-TEST(MapDiff, aStandingPoleIsNotTakenForAMovedOne) {
+TEST(MapDiff, AStandingPoleIsNotTakenForAMovedOne) {
   // The new pole beside the one that stays did not come from it.
   const MapDiff diff = diffMaps(polesAt({{0, 0}}), polesAt({{0, 0}, {1, 0}}));
   EXPECT_EQ(diff.same.size(), 1u);
@@ -56,13 +56,13 @@ TEST(MapDiff, aStandingPoleIsNotTakenForAMovedOne) {
   EXPECT_TRUE(diff.moved.empty());
 }
 
-TEST(MapDiff, emptyMaps) {
+TEST(MapDiff, EmptyMaps) {
   EXPECT_EQ(diffMaps({}, polesAt({{1, 1}})).appeared.size(), 1u);
   EXPECT_EQ(diffMaps(polesAt({{1, 1}}), {}).vanished.size(), 1u);
   EXPECT_TRUE(diffMaps({}, {}).same.empty());
 }
 
-TEST(MapDiff, refusesBadInput) {
+TEST(MapDiff, RefusesBadInput) {
   EXPECT_THROW(diffMaps({}, {}, {0, 1}), Error);
   EXPECT_THROW(diffMaps({}, {}, {0.2, -1}), Error);
   EXPECT_THROW(diffMaps(polesAt({{NAN, 0}}), polesAt({{1, 1}})), Error);

@@ -40,7 +40,7 @@ std::vector<SessionScan> drive(const std::vector<Place>& places, double day = 10
     SessionScan scan;
     scan.time = 86400 * day + i;
     scan.pose_map_robot = {static_cast<double>(i), 0, M_PI / 2};
-    scan.freeRange.assign(256, 40);
+    scan.visibilityRange.assign(256, 40);
     for (const Place& place : places) {
       if (std::hypot(place.x - i, place.y) > 30) continue;
       PoleDetection seen;
@@ -58,22 +58,22 @@ std::vector<SessionScan> drive(const std::vector<Place>& places, double day = 10
   return scans;
 }
 
-KeptMap kept(const std::vector<Place>& places) {
+LandmarkMap kept(const std::vector<Place>& places) {
   std::vector<MapPole> poles;
   for (const Place& place : places) poles.push_back(poleAt(place.x, place.y));
-  return keptFrom(poles);
+  return landmarksFrom(poles);
 }
 
 /// The one kept pole within 0.1 m of a place; null if there is none.
-const KeptPole* find(const KeptMap& map, double x, double y) {
-  const KeptPole* found = nullptr;
-  for (const KeptPole& pole : map.poles)
+const LandmarkRecord* find(const LandmarkMap& map, double x, double y) {
+  const LandmarkRecord* found = nullptr;
+  for (const LandmarkRecord& pole : map.poles)
     if (std::hypot(pole.pole.x - x, pole.pole.y - y) < 0.1) found = &pole;
   return found;
 }
 
-KeptMap updatedBy(const KeptMap& map, const std::vector<SessionScan>& scans,
-                  UpkeepCounts* counts = nullptr) {
+LandmarkMap updatedBy(const LandmarkMap& map, const std::vector<SessionScan>& scans,
+                      MapUpdateCounts* counts = nullptr) {
   return updateMap(map, scans, {}, {}, counts);
 }
 
@@ -88,11 +88,11 @@ std::string refusal(const std::function<void()>& work) {
 
 }  // namespace
 
-TEST(MapUpkeep, whatIsSeenStays) {
-  UpkeepCounts counts;
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}, {30, -6}}), &counts);
+TEST(MapUpdater, WhatIsSeenStays) {
+  MapUpdateCounts counts;
+  const LandmarkMap map = updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}, {30, -6}}), &counts);
   ASSERT_EQ(map.poles.size(), 2u);
-  for (const KeptPole& pole : map.poles) {
+  for (const LandmarkRecord& pole : map.poles) {
     EXPECT_TRUE(pole.present);
     EXPECT_NEAR(pole.history.existence, 0.99, 1e-9);
     EXPECT_EQ(pole.history.missed, 0u);
@@ -106,38 +106,38 @@ TEST(MapUpkeep, whatIsSeenStays) {
   EXPECT_EQ(counts.entered + counts.left + counts.moved + counts.candidates, 0u);
 }
 
-TEST(MapUpkeep, whatIsMissedInFreeViewFades) {
-  UpkeepCounts counts;
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}}), &counts);
+TEST(MapUpdater, WhatIsMissedInFreeViewFades) {
+  MapUpdateCounts counts;
+  const LandmarkMap map = updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}}), &counts);
   EXPECT_EQ(counts.left, 1u);
   EXPECT_EQ(counts.foundOnMap, 1u);
   EXPECT_EQ(presentPoles(map).size(), 1u);
   EXPECT_TRUE(find(map, 10, 5)->present);
 }
 
-TEST(MapUpkeep, whatIsHiddenStays) {
+TEST(MapUpdater, WhatIsHiddenStays) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   const std::size_t half = 128;
   // A lorry all along the right: nothing is seen farther than 4 m with y < 0. The robot heads to
   // +y, so that is behind it.
   for (SessionScan& scan : scans)
     for (std::size_t i = 0; i < 256; ++i)
-      if (i < half / 2 || i >= half + half / 2) scan.freeRange[i] = 4;
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans);
+      if (i < half / 2 || i >= half + half / 2) scan.visibilityRange[i] = 4;
+  const LandmarkMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans);
   ASSERT_TRUE(find(map, 30, -6));
   EXPECT_TRUE(find(map, 30, -6)->present);
   EXPECT_EQ(find(map, 30, -6)->history.missed, 0u);
   EXPECT_NEAR(find(map, 30, -6)->history.existence, 0.9, 1e-9);
 }
 
-TEST(MapUpkeep, freeRangesStandInTheSensorsFrame) {
+TEST(MapUpdater, FreeRangesStandInTheSensorsFrame) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   // The sensor looks along +x of the map: what lies to its right is hidden.
   for (SessionScan& scan : scans) {
     scan.pose_robot_sensor = {0, 0, -M_PI / 2};
-    for (std::size_t i = 0; i < 128; ++i) scan.freeRange[i] = 4;
+    for (std::size_t i = 0; i < 128; ++i) scan.visibilityRange[i] = 4;
   }
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans);
+  const LandmarkMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans);
   ASSERT_TRUE(find(map, 30, -6));
   EXPECT_EQ(find(map, 30, -6)->history.missed, 0u);
   // And to its left it is not.
@@ -146,22 +146,22 @@ TEST(MapUpkeep, freeRangesStandInTheSensorsFrame) {
                find(updatedBy(kept({{10, 5}, {30, -6}}), scans), 30, -6)->present);
 }
 
-TEST(MapUpkeep, withoutFreeRangesNothingIsMissed) {
+TEST(MapUpdater, WithoutFreeRangesNothingIsMissed) {
   std::vector<SessionScan> scans = drive({{10, 5}});
-  for (SessionScan& scan : scans) scan.freeRange.clear();
-  UpkeepCounts counts;
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans, &counts);
+  for (SessionScan& scan : scans) scan.visibilityRange.clear();
+  MapUpdateCounts counts;
+  const LandmarkMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans, &counts);
   EXPECT_EQ(counts.withoutFreeRange, 41u);
   EXPECT_EQ(presentPoles(map).size(), 2u);
   // Zero is unknown.
-  for (SessionScan& scan : scans) scan.freeRange.assign(256, 0);
+  for (SessionScan& scan : scans) scan.visibilityRange.assign(256, 0);
   EXPECT_EQ(presentPoles(updatedBy(kept({{10, 5}, {30, -6}}), scans)).size(), 2u);
 }
 
-TEST(MapUpkeep, newPolesEarnTheirPlace) {
-  UpkeepCounts counts;
+TEST(MapUpdater, NewPolesEarnTheirPlace) {
+  MapUpdateCounts counts;
   std::vector<SessionScan> scans = drive({{10, 5}, {20, -8}});
-  const KeptMap map = updatedBy(kept({{10, 5}}), scans, &counts);
+  const LandmarkMap map = updatedBy(kept({{10, 5}}), scans, &counts);
   ASSERT_TRUE(find(map, 20, -8));
   EXPECT_TRUE(find(map, 20, -8)->present);
   EXPECT_EQ(counts.entered, 1u);
@@ -171,32 +171,33 @@ TEST(MapUpkeep, newPolesEarnTheirPlace) {
     if (i != 20 && i != 21)
       scans[i].poles_robot.resize(std::min<std::size_t>(
           scans[i].poles_robot.size(), std::hypot(10.0 - static_cast<double>(i), 5) <= 30));
-  const KeptMap other = updatedBy(kept({{10, 5}}), scans);
+  const LandmarkMap other = updatedBy(kept({{10, 5}}), scans);
   EXPECT_EQ(presentPoles(other).size(), 1u);
 }
 
-TEST(MapUpkeep, candidatesAreKeptUntilTheNextSession) {
+TEST(MapUpdater, CandidatesAreKeptUntilTheNextSession) {
   // Seen from the far end of the drive only, for 4 scans: too little for the map.
   std::vector<SessionScan> scans = drive({{10, 5}});
   const std::vector<SessionScan> both = drive({{10, 5}, {55, 4}});
   for (std::size_t i = 37; i <= 40; ++i) scans[i] = both[i];
-  UpkeepCounts counts;
-  const KeptMap first = updatedBy(kept({{10, 5}}), scans, &counts);
+  MapUpdateCounts counts;
+  const LandmarkMap first = updatedBy(kept({{10, 5}}), scans, &counts);
   EXPECT_EQ(counts.candidates, 1u);
   EXPECT_EQ(presentPoles(first).size(), 1u);
   ASSERT_TRUE(find(first, 55, 4));
   EXPECT_FALSE(find(first, 55, 4)->present);
   for (SessionScan& scan : scans) scan.time += 86400;
-  const KeptMap second = updatedBy(first, scans);
+  const LandmarkMap second = updatedBy(first, scans);
   ASSERT_TRUE(find(second, 55, 4));
   EXPECT_TRUE(find(second, 55, 4)->present);
   EXPECT_NEAR(find(second, 55, 4)->history.firstSeen, 86400 * 10 + 37, 1e-6);
   EXPECT_NEAR(find(second, 55, 4)->history.lastSeen, 86400 * 11 + 40, 1e-6);
 }
 
-TEST(MapUpkeep, aPoleMovedAsideLeavesNoGhost) {
-  UpkeepCounts counts;
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}, {30.9, -6}}), &counts);
+TEST(MapUpdater, APoleMovedAsideLeavesNoGhost) {
+  MapUpdateCounts counts;
+  const LandmarkMap map =
+      updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}, {30.9, -6}}), &counts);
   EXPECT_FALSE(find(map, 30, -6));
   ASSERT_TRUE(find(map, 30.9, -6));
   EXPECT_TRUE(find(map, 30.9, -6)->present);
@@ -205,37 +206,38 @@ TEST(MapUpkeep, aPoleMovedAsideLeavesNoGhost) {
   EXPECT_EQ(counts.left, 0u);
 }
 
-TEST(MapUpkeep, aGhostGoesEvenIfHardlyLookedAt) {
+TEST(MapUpdater, AGhostGoesEvenIfHardlyLookedAt) {
   // The old place is hidden from all but two scans, the new one is in view all along.
   std::vector<SessionScan> scans = drive({{10, 5}, {30.9, -6}});
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (i == 28 || i == 29) continue;
     const double bearing = std::atan2(-(30.0 - static_cast<double>(i)), -6);  // robot frame
     for (int k = -2; k <= 2; ++k)
-      scans[i].freeRange[static_cast<std::size_t>(
-                             std::floor((bearing + M_PI) / (2 * M_PI) * 256 + k + 256)) %
-                         256] = 2;
+      scans[i].visibilityRange[static_cast<std::size_t>(
+                                   std::floor((bearing + M_PI) / (2 * M_PI) * 256 + k + 256)) %
+                               256] = 2;
   }
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans);
+  const LandmarkMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans);
   EXPECT_FALSE(find(map, 30, -6));
   EXPECT_TRUE(find(map, 30.9, -6)->present);
 }
 
-TEST(MapUpkeep, aPoleMovedWithinTheGateTakesItsNewPlace) {
-  UpkeepCounts counts;
-  const KeptMap map = updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}, {30.4, -6}}), &counts);
+TEST(MapUpdater, APoleMovedWithinTheGateTakesItsNewPlace) {
+  MapUpdateCounts counts;
+  const LandmarkMap map =
+      updatedBy(kept({{10, 5}, {30, -6}}), drive({{10, 5}, {30.4, -6}}), &counts);
   ASSERT_EQ(map.poles.size(), 2u);
   EXPECT_NEAR(map.poles[1].pole.x, 30.4, 0.01) << "not the middle";
   EXPECT_EQ(counts.moved, 1u);
   EXPECT_NEAR(map.poles[1].history.firstSeen, 86400 * 10, 1e-6) << "another pole, or another place";
 }
 
-TEST(MapUpkeep, placesAreAveragedByTheirCovariances) {
-  KeptMap map = kept({{10, 5}});
+TEST(MapUpdater, PlacesAreAveragedByTheirCovariances) {
+  LandmarkMap map = kept({{10, 5}});
   map.poles[0].pole.covariance = Eigen::Vector2d(4e-4, 1e-4).asDiagonal();
-  UpkeepOptions upkeep;
+  MapUpdateOptions upkeep;
   upkeep.sessionSigma = 0.02;
-  const KeptMap after = updateMap(map, drive({{10.05, 5.05}}), {}, upkeep);
+  const LandmarkMap after = updateMap(map, drive({{10.05, 5.05}}), {}, upkeep);
   ASSERT_EQ(after.poles.size(), 1u);
   const MapPole& pole = after.poles[0].pole;
   // 40 sightings of 2 cm and more make less than 4 mm; 2 cm of the session stay.
@@ -246,47 +248,47 @@ TEST(MapUpkeep, placesAreAveragedByTheirCovariances) {
   EXPECT_NEAR(pole.covariance(1, 1), 0.8e-4, 1e-5);
 }
 
-TEST(MapUpkeep, aScanGivesAPoleOneDetection) {
+TEST(MapUpdater, AScanGivesAPoleOneDetection) {
   // Two stand in one gate, and every scan shows both: two poles.
-  const KeptMap map = updatedBy(kept({{10, 5}}), drive({{10, 5}, {10.4, 5}}));
+  const LandmarkMap map = updatedBy(kept({{10, 5}}), drive({{10, 5}, {10.4, 5}}));
   EXPECT_EQ(presentPoles(map).size(), 2u);
   ASSERT_TRUE(find(map, 10, 5));
   EXPECT_EQ(find(map, 10, 5)->pole.count, 30u + 40u);
 }
 
-TEST(MapUpkeep, twoKeptPolesInOneGateBecomeOne) {
+TEST(MapUpdater, TwoKeptPolesInOneGateBecomeOne) {
   // The old map has the pole twice; scans show one, now nearer to the one, now to the other, so
   // that each is found often enough to stay.
   std::vector<SessionScan> scans = drive({{10, 5}});
   const std::vector<SessionScan> others = drive({{10.3, 5}});
   for (std::size_t i = 0; i < scans.size(); i += 2) scans[i] = others[i];
-  const KeptMap map = updatedBy(kept({{10, 5}, {10.3, 5}}), scans);
+  const LandmarkMap map = updatedBy(kept({{10, 5}, {10.3, 5}}), scans);
   EXPECT_EQ(map.poles.size(), 1u);
 }
 
-TEST(MapUpkeep, whatIsOutOfReachIsLeftAlone) {
-  const KeptMap before = kept({{10, 5}, {300, 5}});
-  const KeptMap map = updatedBy(before, drive({{10, 5}}));
+TEST(MapUpdater, WhatIsOutOfReachIsLeftAlone) {
+  const LandmarkMap before = kept({{10, 5}, {300, 5}});
+  const LandmarkMap map = updatedBy(before, drive({{10, 5}}));
   ASSERT_TRUE(find(map, 300, 5));
   EXPECT_TRUE(find(map, 300, 5)->present);
   EXPECT_EQ(find(map, 300, 5)->history.existence, before.poles[1].history.existence);
 }
 
-TEST(MapUpkeep, timeMakesUnsure) {
-  KeptMap map = kept({{10, 5}, {300, 5}});
+TEST(MapUpdater, TimeMakesUnsure) {
+  LandmarkMap map = kept({{10, 5}, {300, 5}});
   map.poles[1].history.lastSeen = 86400 * 10;
-  UpkeepOptions upkeep;
+  MapUpdateOptions upkeep;
   upkeep.existence.lifetimeDays = 365;
-  const KeptMap after = updateMap(map, drive({{10, 5}}, 375), {}, upkeep);
+  const LandmarkMap after = updateMap(map, drive({{10, 5}}, 375), {}, upkeep);
   EXPECT_NEAR(find(after, 300, 5)->history.existence, 0.9 / M_E, 0.02)
       << "clamped by no evidence, decayed by a year";
 }
 
-TEST(MapUpkeep, timeCountsOnce) {
+TEST(MapUpdater, TimeCountsOnce) {
   // A year in twelve sessions is no longer than a year in one.
-  KeptMap map = kept({{10, 5}, {300, 5}});
-  for (KeptPole& pole : map.poles) pole.history.lastSeen = 86400 * 10;
-  UpkeepOptions upkeep;
+  LandmarkMap map = kept({{10, 5}, {300, 5}});
+  for (LandmarkRecord& pole : map.poles) pole.history.lastSeen = 86400 * 10;
+  MapUpdateOptions upkeep;
   upkeep.existence.lifetimeDays = 365;
   upkeep.forget = 0.01;
   for (int month = 1; month <= 12; ++month)
@@ -295,9 +297,9 @@ TEST(MapUpkeep, timeCountsOnce) {
   EXPECT_NEAR(find(map, 300, 5)->history.existence, 0.9 / M_E, 0.001);
 }
 
-TEST(MapUpkeep, clocksOfDrivesAreNoDates) {
+TEST(MapUpdater, ClocksOfDrivesAreNoDates) {
   // Simulated drives begin at 0; a later one with a date does not make the map 50 years old.
-  KeptMap map = updatedBy(kept({{10, 5}, {300, 5}}), drive({{10, 5}}, 0));
+  LandmarkMap map = updatedBy(kept({{10, 5}, {300, 5}}), drive({{10, 5}}, 0));
   EXPECT_EQ(find(map, 10, 5)->history.lastSeen, 0);
   EXPECT_EQ(find(map, 10, 5)->history.firstSeen, 0);
   const double before = find(map, 300, 5)->history.existence;
@@ -306,12 +308,12 @@ TEST(MapUpkeep, clocksOfDrivesAreNoDates) {
   EXPECT_EQ(find(map, 10, 5)->history.firstSeen, 86400.0 * 20000);
 }
 
-TEST(MapUpkeep, theOrderOfDetectionsDoesNotMatter) {
-  const KeptMap before = kept({{10, 5}, {30, -6}, {25, 7}});
+TEST(MapUpdater, TheOrderOfDetectionsDoesNotMatter) {
+  const LandmarkMap before = kept({{10, 5}, {30, -6}, {25, 7}});
   std::vector<SessionScan> scans = drive({{10, 5}, {30.4, -6}, {20, -8}, {20.45, -8}});
-  const KeptMap a = updatedBy(before, scans);
+  const LandmarkMap a = updatedBy(before, scans);
   for (SessionScan& scan : scans) std::reverse(scan.poles_robot.begin(), scan.poles_robot.end());
-  const KeptMap b = updatedBy(before, scans);
+  const LandmarkMap b = updatedBy(before, scans);
   ASSERT_EQ(a.poles.size(), b.poles.size());
   for (std::size_t i = 0; i < a.poles.size(); ++i) {
     EXPECT_EQ(a.poles[i].pole.x, b.poles[i].pole.x);
@@ -320,8 +322,8 @@ TEST(MapUpkeep, theOrderOfDetectionsDoesNotMatter) {
   }
 }
 
-TEST(MapUpkeep, aFreshMapGetsItsHistoryFromItsScans) {
-  const KeptMap map = withHistory({poleAt(10, 5), poleAt(30, -6)}, drive({{10.01, 5}}), {}, {});
+TEST(MapUpdater, AFreshMapGetsItsHistoryFromItsScans) {
+  const LandmarkMap map = withHistory({poleAt(10, 5), poleAt(30, -6)}, drive({{10.01, 5}}), {}, {});
   ASSERT_EQ(map.poles.size(), 2u);
   EXPECT_EQ(map.poles[0].pole.x, 10) << "places stay";
   EXPECT_EQ(map.poles[0].history.seen, 30u);
@@ -333,30 +335,31 @@ TEST(MapUpkeep, aFreshMapGetsItsHistoryFromItsScans) {
   EXPECT_TRUE(map.poles[1].present) << "the builder decided";
 }
 
-TEST(MapUpkeep, refusesBadScansAndOptions) {
+TEST(MapUpdater, RefusesBadScansAndOptions) {
   std::vector<SessionScan> scans = drive({{10, 5}});
-  scans[3].freeRange[7] = -1;
+  scans[3].visibilityRange[7] = -1;
   EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("free range of scan 3"), std::string::npos);
   scans = drive({{10, 5}});
   scans[4].pose_map_robot.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("scan 4"), std::string::npos);
   const auto refused = [](auto field, auto value) {
-    UpkeepOptions o;
+    MapUpdateOptions o;
     o.*field = value;
     return refusal([&] { o.validate(); });
   };
-  EXPECT_EQ(refusal([] { UpkeepOptions().validate(); }), "");
-  EXPECT_NE(refused(&UpkeepOptions::range, 0.0).find("range_m"), std::string::npos);
-  EXPECT_NE(refused(&UpkeepOptions::minSeen, 0).find("min_seen"), std::string::npos);
-  EXPECT_NE(refused(&UpkeepOptions::present, 0.995).find("present"), std::string::npos);
-  EXPECT_NE(refused(&UpkeepOptions::absent, 0.95).find("absent"), std::string::npos);
-  EXPECT_NE(refused(&UpkeepOptions::forget, 0.5).find("forget"), std::string::npos);
-  EXPECT_NE(refused(&UpkeepOptions::sessionSigma, -1.0).find("session_sigma_m"), std::string::npos);
-  EXPECT_NE(refused(&UpkeepOptions::moved, 0.0).find("moved_m"), std::string::npos);
-  EXPECT_NE(refused(&UpkeepOptions::ghost, -1.0).find("ghost_m"), std::string::npos);
+  EXPECT_EQ(refusal([] { MapUpdateOptions().validate(); }), "");
+  EXPECT_NE(refused(&MapUpdateOptions::range, 0.0).find("range_m"), std::string::npos);
+  EXPECT_NE(refused(&MapUpdateOptions::minSeen, 0).find("min_seen"), std::string::npos);
+  EXPECT_NE(refused(&MapUpdateOptions::present, 0.995).find("present"), std::string::npos);
+  EXPECT_NE(refused(&MapUpdateOptions::absent, 0.95).find("absent"), std::string::npos);
+  EXPECT_NE(refused(&MapUpdateOptions::forget, 0.5).find("forget"), std::string::npos);
+  EXPECT_NE(refused(&MapUpdateOptions::sessionSigma, -1.0).find("session_sigma_m"),
+            std::string::npos);
+  EXPECT_NE(refused(&MapUpdateOptions::moved, 0.0).find("moved_m"), std::string::npos);
+  EXPECT_NE(refused(&MapUpdateOptions::ghost, -1.0).find("ghost_m"), std::string::npos);
 }
 
-TEST(MapUpkeep, nothingComesOfNothing) {
+TEST(MapUpdater, NothingComesOfNothing) {
   EXPECT_TRUE(updatedBy({}, {}).poles.empty());
   EXPECT_EQ(updatedBy(kept({{10, 5}}), {}).poles.size(), 1u);
 }

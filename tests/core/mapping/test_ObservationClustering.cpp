@@ -14,8 +14,8 @@ using Groups = std::vector<std::vector<std::uint32_t>>;
 
 namespace {
 
-PoleSighting sighting(double x, double y, std::uint32_t view) {
-  PoleSighting s;
+LandmarkObservation sighting(double x, double y, std::uint32_t view) {
+  LandmarkObservation s;
   s.pole.x = x;
   s.pole.y = y;
   s.pole.covariance = 0.0025 * Eigen::Matrix2d::Identity();
@@ -29,8 +29,8 @@ std::set<std::set<std::uint32_t>> asSets(const Groups& groups) {
   return sets;
 }
 
-void expectInvariants(const std::vector<PoleSighting>& sightings, const Groups& groups,
-                      const MergingOptions& options) {
+void expectInvariants(const std::vector<LandmarkObservation>& sightings, const Groups& groups,
+                      const ClusteringOptions& options) {
   std::vector<int> used(sightings.size(), 0);
   double lastX = -1e300;
   for (const auto& group : groups) {
@@ -52,7 +52,7 @@ void expectInvariants(const std::vector<PoleSighting>& sightings, const Groups& 
 /// Poles far apart, each seen with little noise in a random share of the views: no doubt who
 /// belongs to whom. The truth comes as one set of sightings for each pole.
 struct Easy {
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   std::set<std::set<std::uint32_t>> truth;
 };
 Easy easyScene(std::uint64_t seed, double spread) {
@@ -74,36 +74,36 @@ Easy easyScene(std::uint64_t seed, double spread) {
 
 }  // namespace
 
-TEST(SightingMerging, findsThePolesWhereThereIsNoDoubt) {
+TEST(ObservationClustering, FindsThePolesWhereThereIsNoDoubt) {
   for (std::uint64_t seed : {1, 2, 3}) {
     const Easy easy = easyScene(seed, 0.2);
-    const Groups groups = mergeSightings(easy.sightings, {0.5, 0.25});
+    const Groups groups = clusterObservations(easy.sightings, {0.5, 0.25});
     EXPECT_EQ(asSets(groups), easy.truth);
     expectInvariants(easy.sightings, groups, {0.5, 0.25});
   }
 }
 
-TEST(SightingMerging, aChainDoesNotRunTogether) {
+TEST(ObservationClustering, AChainDoesNotRunTogether) {
   // A hedge: a sighting every 0.3 m over 9 m. Connected components at 0.5 m would make one of it.
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   for (std::uint32_t i = 0; i <= 30; ++i) sightings.push_back(sighting(0.3 * i, 0, i));
-  const MergingOptions options{0.5, 0.25};
-  const Groups groups = mergeSightings(sightings, options);
+  const ClusteringOptions options{0.5, 0.25};
+  const Groups groups = clusterObservations(sightings, options);
   expectInvariants(sightings, groups, options);
   EXPECT_GE(groups.size(), 8u);
   for (const auto& group : groups) EXPECT_LE(group.size(), 4u);
 }
 
-TEST(SightingMerging, twoOfOneScanAreTwoPoles) {
+TEST(ObservationClustering, TwoOfOneScanAreTwoPoles) {
   // 0.4 m apart, both seen in every scan, with a noise that the gate is far wider than.
   std::mt19937_64 random(4);
   std::normal_distribution<double> noise(0, 0.03);
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   for (std::uint32_t view = 0; view < 30; ++view) {
     sightings.push_back(sighting(noise(random), noise(random), view));
     sightings.push_back(sighting(0.4 + noise(random), noise(random), view));
   }
-  const Groups groups = mergeSightings(sightings, {0.5, 0.25});
+  const Groups groups = clusterObservations(sightings, {0.5, 0.25});
   ASSERT_EQ(groups.size(), 2u);
   EXPECT_NEAR(fusedCentre(sightings, groups[0]).x(), 0, 0.02);
   EXPECT_NEAR(fusedCentre(sightings, groups[1]).x(), 0.4, 0.02);
@@ -111,66 +111,67 @@ TEST(SightingMerging, twoOfOneScanAreTwoPoles) {
   EXPECT_EQ(groups[1].size(), 30u);
 }
 
-TEST(SightingMerging, scansThatMissOneOfTwoGoToTheOneTheySaw) {
+TEST(ObservationClustering, ScansThatMissOneOfTwoGoToTheOneTheySaw) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0, 0.03);
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   std::size_t first = 0, second = 0;
   for (std::uint32_t view = 0; view < 60; ++view) {
     if (view % 3 != 0) sightings.push_back(sighting(noise(random), noise(random), view)), ++first;
     if (view % 3 != 1)
       sightings.push_back(sighting(0.4 + noise(random), noise(random), view)), ++second;
   }
-  const Groups groups = mergeSightings(sightings, {0.5, 0.25});
+  const Groups groups = clusterObservations(sightings, {0.5, 0.25});
   ASSERT_EQ(groups.size(), 2u);
   EXPECT_EQ(groups[0].size(), first);
   EXPECT_EQ(groups[1].size(), second);
 }
 
-TEST(SightingMerging, aSecondSightingNowAndThenIsNoPole) {
+TEST(ObservationClustering, ASecondSightingNowAndThenIsNoPole) {
   // One pole; two of 30 scans see something else 0.3 m beside it, too.
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   for (std::uint32_t view = 0; view < 30; ++view) sightings.push_back(sighting(0, 0, view));
   sightings.push_back(sighting(0.3, 0, 4));
   sightings.push_back(sighting(0.3, 0, 9));
-  const Groups groups = mergeSightings(sightings, {0.5, 0.25});
+  const Groups groups = clusterObservations(sightings, {0.5, 0.25});
   ASSERT_EQ(groups.size(), 1u);
   EXPECT_EQ(groups[0].size(), 30u);
   // With a share so small that two of 30 suffice they are two poles.
-  EXPECT_EQ(mergeSightings(sightings, {0.5, 0.05}).size(), 2u);
+  EXPECT_EQ(clusterObservations(sightings, {0.5, 0.05}).size(), 2u);
 }
 
-TEST(SightingMerging, oneEachSplitByAPoorPoseIsMerged) {
+TEST(ObservationClustering, OneEachSplitByAPoorPoseIsMerged) {
   // The same pole from two drives that disagree by 0.45 m.
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   for (std::uint32_t view = 0; view < 10; ++view)
     sightings.push_back(sighting(0.002 * view, 0, view));
   for (std::uint32_t view = 10; view < 20; ++view)
     sightings.push_back(sighting(0.45, 0.002 * view, view));
-  const Groups groups = mergeSightings(sightings, {0.5, 0.25});
+  const Groups groups = clusterObservations(sightings, {0.5, 0.25});
   ASSERT_EQ(groups.size(), 1u);
   EXPECT_EQ(groups[0].size(), 20u);
 }
 
-TEST(SightingMerging, theGateIsStrict) {
-  EXPECT_EQ(mergeSightings({sighting(0, 0, 0), sighting(1, 0, 1)}, {1.0, 0.25}).size(), 2u);
-  EXPECT_EQ(mergeSightings({sighting(0, 0, 0), sighting(0.999, 0, 1)}, {1.0, 0.25}).size(), 1u);
+TEST(ObservationClustering, TheGateIsStrict) {
+  EXPECT_EQ(clusterObservations({sighting(0, 0, 0), sighting(1, 0, 1)}, {1.0, 0.25}).size(), 2u);
+  EXPECT_EQ(clusterObservations({sighting(0, 0, 0), sighting(0.999, 0, 1)}, {1.0, 0.25}).size(),
+            1u);
 }
 
-TEST(SightingMerging, theOrderOfTheSightingsIsOfNoConsequence) {
+TEST(ObservationClustering, TheOrderOfTheSightingsIsOfNoConsequence) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> coordinate(0, 6);
-  std::vector<PoleSighting> sightings;
+  std::vector<LandmarkObservation> sightings;
   for (int i = 0; i < 400; ++i)
     sightings.push_back(sighting(coordinate(random), coordinate(random), random() % 40));
-  const MergingOptions options{0.5, 0.25};
-  const Groups groups = mergeSightings(sightings, options);
+  const ClusteringOptions options{0.5, 0.25};
+  const Groups groups = clusterObservations(sightings, options);
   std::vector<std::uint32_t> order(sightings.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   std::shuffle(order.begin(), order.end(), random);
-  std::vector<PoleSighting> shuffled;
+  std::vector<LandmarkObservation> shuffled;
   for (const std::uint32_t i : order) shuffled.push_back(sightings[i]);
-  Groups back = mergeSightings(shuffled, options);
+  Groups back = clusterObservations(shuffled, options);
   ASSERT_EQ(back.size(), groups.size());
   for (std::size_t g = 0; g < back.size(); ++g) {
     for (std::uint32_t& member : back[g]) member = order[member];
@@ -178,47 +179,49 @@ TEST(SightingMerging, theOrderOfTheSightingsIsOfNoConsequence) {
   }
 }
 
-TEST(SightingMerging, holdsItsInvariantsOnClutter) {
+TEST(ObservationClustering, HoldsItsInvariantsOnClutter) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> coordinate(0, 3 + seed);
-    std::vector<PoleSighting> sightings;
+    std::vector<LandmarkObservation> sightings;
     for (int i = 0; i < 500; ++i) {
-      PoleSighting s = sighting(coordinate(random), coordinate(random), random() % (5 + 5 * seed));
+      LandmarkObservation s =
+          sighting(coordinate(random), coordinate(random), random() % (5 + 5 * seed));
       s.pole.confidence = 0.1 + 0.9 * coordinate(random) / (3.0 + seed);
       sightings.push_back(s);
     }
-    const MergingOptions options{0.3 + 0.05 * seed, 0.25};
-    expectInvariants(sightings, mergeSightings(sightings, options), options);
+    const ClusteringOptions options{0.3 + 0.05 * seed, 0.25};
+    expectInvariants(sightings, clusterObservations(sightings, options), options);
   }
 }
 
-TEST(SightingMerging, holdsItsInvariantsWhereCentresDoNotSettle) {
+TEST(ObservationClustering, HoldsItsInvariantsWhereCentresDoNotSettle) {
   // Few sightings of very different certainty: centres jump, and the dealing may go round in
   // circles.
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> coordinate(0, 0.8 + 0.007 * seed), sigma(0.001, 0.2);
-    std::vector<PoleSighting> sightings;
+    std::vector<LandmarkObservation> sightings;
     for (std::uint64_t i = 0; i < 20 + seed % 60; ++i) {
-      PoleSighting s = sighting(coordinate(random), coordinate(random), random() % (5 + seed % 37));
+      LandmarkObservation s =
+          sighting(coordinate(random), coordinate(random), random() % (5 + seed % 37));
       s.pole.covariance = std::pow(sigma(random), 2) * Eigen::Matrix2d::Identity();
       sightings.push_back(s);
     }
-    expectInvariants(sightings, mergeSightings(sightings, {0.5, 0.25}), {0.5, 0.25});
+    expectInvariants(sightings, clusterObservations(sightings, {0.5, 0.25}), {0.5, 0.25});
   }
 }
 
-TEST(SightingMerging, copesWithPilesOfEqualSightings) {
-  std::vector<PoleSighting> sightings;
+TEST(ObservationClustering, CopesWithPilesOfEqualSightings) {
+  std::vector<LandmarkObservation> sightings;
   for (std::uint32_t i = 0; i < 300; ++i) sightings.push_back(sighting(1, 1, i % 3));
-  const Groups groups = mergeSightings(sightings, {0.5, 0.25});
+  const Groups groups = clusterObservations(sightings, {0.5, 0.25});
   expectInvariants(sightings, groups, {0.5, 0.25});
   for (const auto& group : groups) EXPECT_EQ(group.size(), 3u);
 }
 
-TEST(SightingMerging, nothingToMerge) {
-  EXPECT_TRUE(mergeSightings({}, {}).empty());
+TEST(ObservationClustering, NothingToMerge) {
+  EXPECT_TRUE(clusterObservations({}, {}).empty());
 }
 
 }  // namespace polemcl::test_observation_clustering

@@ -31,7 +31,7 @@ ExistenceOptions options() {
 
 }  // namespace
 
-TEST(PoleExistence, oneScanCountsAsBayesHasIt) {
+TEST(PoleExistence, OneScanCountsAsBayesHasIt) {
   ExistenceEvidence found, missed;
   found.add(true, 0, options(), 0.8);
   missed.add(false, 0, options(), 0.8);
@@ -44,7 +44,7 @@ TEST(PoleExistence, oneScanCountsAsBayesHasIt) {
   EXPECT_EQ(missed.missed(), 1u);
 }
 
-TEST(PoleExistence, scansOfOneLookCountOnce) {
+TEST(PoleExistence, ScansOfOneLookCountOnce) {
   ExistenceEvidence evidence;
   for (int i = 0; i < 10; ++i) evidence.add(i < 5, 0.4 * i, options(), 0.8);  // 0 to 3.6 m
   EXPECT_NEAR(evidence.logRatio(), 0.5 * std::log(8) + 0.5 * std::log(2.0 / 9), 1e-12);
@@ -55,7 +55,7 @@ TEST(PoleExistence, scansOfOneLookCountOnce) {
   EXPECT_EQ(evidence.missed(), 5u);
 }
 
-TEST(PoleExistence, nothingIsEverCertain) {
+TEST(PoleExistence, NothingIsEverCertain) {
   EXPECT_NEAR(updated(0.5, 100, options()), 0.99, 1e-12);
   EXPECT_NEAR(updated(0.5, -100, options()), 0.01, 1e-12);
   EXPECT_NEAR(updated(1, 0, options()), 0.99, 1e-12);
@@ -63,7 +63,7 @@ TEST(PoleExistence, nothingIsEverCertain) {
   EXPECT_NEAR(updated(0.7, 0, options()), 0.7, 1e-12);
 }
 
-TEST(PoleExistence, ownCountsLowerTheDetectionChance) {
+TEST(PoleExistence, OwnCountsLowerTheDetectionChance) {
   PoleHistory history;
   EXPECT_NEAR(detectionChance(history, options()), 0.8, 1e-12);
   history.seen = 20;
@@ -75,7 +75,7 @@ TEST(PoleExistence, ownCountsLowerTheDetectionChance) {
   EXPECT_NEAR(detectionChance(history, options()), 0.8, 1e-12) << "never above";
 }
 
-TEST(PoleExistence, decaysWithTime) {
+TEST(PoleExistence, DecaysWithTime) {
   ExistenceOptions o = options();
   o.lifetimeDays = 100;
   EXPECT_NEAR(survived(0.9, 100 * 86400.0, o), 0.9 / M_E, 1e-12);
@@ -83,7 +83,7 @@ TEST(PoleExistence, decaysWithTime) {
   EXPECT_EQ(survived(0.9, -5, o), 0.9);
 }
 
-TEST(PoleExistence, refusesWhatMakesNoSense) {
+TEST(PoleExistence, RefusesWhatMakesNoSense) {
   EXPECT_EQ(refusal({}), "");
   const auto refused = [](double ExistenceOptions::*field, double value) {
     ExistenceOptions o;

@@ -66,33 +66,33 @@ void expectRefused(const PoleMapOptions& options, const std::string& field) {
 
 }  // namespace
 
-TEST(PoleMapBuilder, keepsAPoleSeenOftenEnough) {
+TEST(PoleMapBuilder, KeepsAPoleSeenOftenEnough) {
   EXPECT_EQ(polesOf("xxx", 3, 0), 1u);
   EXPECT_EQ(polesOf("xx.", 3, 0), 0u);
 }
 
-TEST(PoleMapBuilder, aGapUpToTheLargestContinuesTheRun) {
+TEST(PoleMapBuilder, AGapUpToTheLargestContinuesTheRun) {
   EXPECT_EQ(polesOf("x..x..x", 3, 2), 1u);
   EXPECT_EQ(polesOf("x..x...x", 3, 2), 0u);
   EXPECT_EQ(polesOf("x.xx", 3, 0), 0u);
   EXPECT_EQ(polesOf("x.xx", 3, 1), 1u);
 }
 
-TEST(PoleMapBuilder, sectionsWithoutAScanNeitherCountNorBreak) {
+TEST(PoleMapBuilder, SectionsWithoutAScanNeitherCountNorBreak) {
   EXPECT_EQ(polesOf("x    x      x", 3, 0), 1u);
   EXPECT_EQ(polesOf("x  .    .x  x", 3, 2), 1u);
   EXPECT_EQ(polesOf("x  .    .  .x  x", 3, 2), 0u);
   EXPECT_EQ(polesOf("x         x", 3, 2), 0u);
 }
 
-TEST(PoleMapBuilder, oneRunMustSufficeByItself) {
+TEST(PoleMapBuilder, OneRunMustSufficeByItself) {
   EXPECT_EQ(polesOf("xx......xx", 3, 2), 0u);
   EXPECT_EQ(polesOf("xx......xxx", 3, 2), 1u);
   // All views that saw it count for the pole itself, of whatever run.
   EXPECT_EQ(buildPoleMap(pattern("xx......xxx"), sectionsOfOneMetre(3, 2)).poles.at(0).count, 5u);
 }
 
-TEST(PoleMapBuilder, countingEqualsTryingAllRuns) {
+TEST(PoleMapBuilder, CountingEqualsTryingAllRuns) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 200; ++i) {
     std::string sees;
@@ -114,7 +114,7 @@ TEST(PoleMapBuilder, countingEqualsTryingAllRuns) {
   }
 }
 
-TEST(PoleMapBuilder, aRunDoesNotContinueInAnotherDrive) {
+TEST(PoleMapBuilder, ARunDoesNotContinueInAnotherDrive) {
   std::vector<MappingScan> scans;
   for (double x : {0.5, 1.5}) scans.push_back(scanAt(x, {{10, 5}}, 0));
   for (double x : {0.5, 1.5}) scans.push_back(scanAt(x, {{10, 5}}, 1));
@@ -125,7 +125,7 @@ TEST(PoleMapBuilder, aRunDoesNotContinueInAnotherDrive) {
   EXPECT_EQ(result.poles[0].count, 5u);
 }
 
-TEST(PoleMapBuilder, takesTheMiddleScanOfASection) {
+TEST(PoleMapBuilder, TakesTheMiddleScanOfASection) {
   // Of the scans at 0, 0.4 and 0.9 m only the one at 0.4 m counts; its pole is the map.
   const std::vector<MappingScan> scans{scanAt(0, {{5, 1}}), scanAt(0.4, {{5, 3}}),
                                        scanAt(0.9, {{5, 6}})};
@@ -136,7 +136,7 @@ TEST(PoleMapBuilder, takesTheMiddleScanOfASection) {
   EXPECT_EQ(result.detections, 1u);
 }
 
-TEST(PoleMapBuilder, everyScanIsAViewButSectionsAreCounted) {
+TEST(PoleMapBuilder, EveryScanIsAViewButSectionsAreCounted) {
   std::vector<MappingScan> scans;  // 0 to 2.9 m: three sections
   for (int i = 0; i < 30; ++i) scans.push_back(scanAt(0.1 * i, {{5, 3}}));
   PoleMapOptions options = sectionsOfOneMetre(3, 0);
@@ -149,7 +149,7 @@ TEST(PoleMapBuilder, everyScanIsAViewButSectionsAreCounted) {
   EXPECT_TRUE(buildPoleMap(scans, options).poles.empty());
 }
 
-TEST(PoleMapBuilder, aStandingVehicleCountsOnce) {
+TEST(PoleMapBuilder, AStandingVehicleCountsOnce) {
   std::vector<MappingScan> scans;
   for (int i = 0; i < 500; ++i) scans.push_back(scanAt(7 + 0.005 * (i % 2), {{10, 5}}));
   for (bool everyScan : {false, true}) {
@@ -159,7 +159,7 @@ TEST(PoleMapBuilder, aStandingVehicleCountsOnce) {
   }
 }
 
-TEST(PoleMapBuilder, movesDetectionsByTheRobotsPose) {
+TEST(PoleMapBuilder, MovesDetectionsByTheRobotsPose) {
   MappingScan scan;
   scan.pose_map_robot = {10, 20, M_PI / 2};
   PoleDetection pole;
@@ -182,7 +182,7 @@ TEST(PoleMapBuilder, movesDetectionsByTheRobotsPose) {
   EXPECT_NEAR(c(0, 1), 0.06 * 0.02, 1e-6);
 }
 
-TEST(PoleMapBuilder, leavesDoubtfulDetectionsOut) {
+TEST(PoleMapBuilder, LeavesDoubtfulDetectionsOut) {
   std::vector<MappingScan> scans = pattern("xxx");
   scans[2].poles_robot[0].confidence = 0.4;
   PoleMapOptions options = sectionsOfOneMetre(1, 2);
@@ -197,7 +197,7 @@ TEST(PoleMapBuilder, leavesDoubtfulDetectionsOut) {
 
 // The pole stands at (10, 5): of sections with middles 0.5, 1.5, … those at 6.5 to 13.5 pass it
 // nearer than 6.2 m.
-TEST(PoleMapBuilder, whoPassesAPoleMustSeeIt) {
+TEST(PoleMapBuilder, WhoPassesAPoleMustSeeIt) {
   PoleMapOptions options = sectionsOfOneMetre(3, 30);
   options.nearRange = 6.2;
   const auto poles = [&](const std::string& sees, double share) {
@@ -212,7 +212,7 @@ TEST(PoleMapBuilder, whoPassesAPoleMustSeeIt) {
   EXPECT_EQ(poles("xxxx..", 1), 1u) << "nothing passes it";
 }
 
-TEST(PoleMapBuilder, tellsWhatItDid) {
+TEST(PoleMapBuilder, TellsWhatItDid) {
   const PoleMapResult result = buildPoleMap(pattern("x.   xx"), sectionsOfOneMetre(4, 2));
   EXPECT_TRUE(result.poles.empty());
   EXPECT_EQ(result.sections, 7u);
@@ -268,7 +268,7 @@ Street noisyStreet(std::uint64_t seed) {
 
 }  // namespace
 
-TEST(PoleMapBuilder, mapsStreetsDrivenTwiceToTheCentimetre) {
+TEST(PoleMapBuilder, MapsStreetsDrivenTwiceToTheCentimetre) {
   for (bool everyScan : {false, true}) {
     std::size_t all = 0;
     double squared = 0;  // in units of the covariances
@@ -300,7 +300,7 @@ TEST(PoleMapBuilder, mapsStreetsDrivenTwiceToTheCentimetre) {
   }
 }
 
-TEST(PoleMapBuilder, theOrderOfDetectionsInAScanIsOfNoConsequence) {
+TEST(PoleMapBuilder, TheOrderOfDetectionsInAScanIsOfNoConsequence) {
   Street street = noisyStreet(2);
   const PoleMapResult expected = buildPoleMap(street.scans, {});
   std::mt19937_64 random(3);
@@ -316,13 +316,13 @@ TEST(PoleMapBuilder, theOrderOfDetectionsInAScanIsOfNoConsequence) {
   }
 }
 
-TEST(PoleMapBuilder, noScansNoMap) {
+TEST(PoleMapBuilder, NoScansNoMap) {
   const PoleMapResult result = buildPoleMap({}, {});
   EXPECT_TRUE(result.poles.empty());
   EXPECT_EQ(result.sections, 0u);
 }
 
-TEST(PoleMapBuilder, refusesSharesAndRangesThatAreNone) {
+TEST(PoleMapBuilder, RefusesSharesAndRangesThatAreNone) {
   PoleMapOptions options;
   options.minShare = 1.1;
   expectRefused(options, "min_share");
@@ -331,7 +331,7 @@ TEST(PoleMapBuilder, refusesSharesAndRangesThatAreNone) {
   expectRefused(options, "near_range");
 }
 
-TEST(PoleMapBuilder, refusesOptionsOutOfRange) {
+TEST(PoleMapBuilder, RefusesOptionsOutOfRange) {
   const double nan = std::nan("");
   PoleMapOptions options;
   for (double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
@@ -365,7 +365,7 @@ TEST(PoleMapBuilder, refusesOptionsOutOfRange) {
   expectRefused(options, "max_gap");
 }
 
-TEST(PoleMapBuilder, refusesWhatIsNotFiniteAndSaysWhere) {
+TEST(PoleMapBuilder, RefusesWhatIsNotFiniteAndSaysWhere) {
   const auto refuses = [](const std::vector<MappingScan>& scans, const std::string& what) {
     try {
       buildPoleMap(scans, {});

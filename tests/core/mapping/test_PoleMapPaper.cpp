@@ -47,7 +47,7 @@ const Eigen::Vector2d pole(10, 5);
 
 }  // namespace
 
-TEST(PoleMapPaper, aChainIsOnePoleOfPlainMean) {
+TEST(PoleMapPaper, AChainIsOnePoleOfPlainMean) {
   // Neighbours 0.2 m apart overlap, the ends, 0.8 m apart, do not.
   std::vector<std::vector<Eigen::Vector2d>> seen;
   for (int i = 0; i < 5; ++i) seen.push_back({{10 + 0.2 * i, 5}});
@@ -61,7 +61,7 @@ TEST(PoleMapPaper, aChainIsOnePoleOfPlainMean) {
   EXPECT_TRUE(buildPoleMap(drive(seen), options).poles.empty());
 }
 
-TEST(PoleMapPaper, theMeanKnowsNoOutliersAndNoCertainty) {
+TEST(PoleMapPaper, TheMeanKnowsNoOutliersAndNoCertainty) {
   auto scans = drive({{pole}, {pole}, {pole}, {pole}, {{10.2, 5}}});
   for (std::size_t i = 1; i < 5; ++i) scans[i].poles_robot[0].covariance *= 1e-6;
   EXPECT_NEAR(buildPoleMap(scans, authors(5)).poles.at(0).x, 10.04, 1e-12);
@@ -70,7 +70,7 @@ TEST(PoleMapPaper, theMeanKnowsNoOutliersAndNoCertainty) {
   EXPECT_NEAR(buildPoleMap(scans, ours).poles.at(0).x, 10, 5e-3);
 }
 
-TEST(PoleMapPaper, membersCountWhereverTheyWereMade) {
+TEST(PoleMapPaper, MembersCountWhereverTheyWereMade) {
   // Seen twice, missed in six sections, seen twice: four members, runs of two.
   const auto scans = drive({{pole}, {pole}, {}, {}, {}, {}, {}, {}, {pole}, {pole}});
   EXPECT_EQ(buildPoleMap(scans, authors(4)).poles.size(), 1u);
@@ -83,7 +83,7 @@ TEST(PoleMapPaper, membersCountWhereverTheyWereMade) {
   EXPECT_EQ(buildPoleMap(scans, paper).poles.size(), 1u);
 }
 
-TEST(PoleMapPaper, twoMembersOfOneScanCountTwice) {
+TEST(PoleMapPaper, TwoMembersOfOneScanCountTwice) {
   const auto scans = drive({{pole, {10.1, 5}}});
   EXPECT_EQ(buildPoleMap(scans, authors(2)).poles.size(), 1u);
   auto paper = authors(2);
@@ -91,7 +91,7 @@ TEST(PoleMapPaper, twoMembersOfOneScanCountTwice) {
   EXPECT_TRUE(buildPoleMap(scans, paper).poles.empty());
 }
 
-TEST(PoleMapPaper, onlyMiddlesOfSectionsThatEndAreUsed) {
+TEST(PoleMapPaper, OnlyMiddlesOfSectionsThatEndAreUsed) {
   auto scans = drive({{pole}, {{20, 5}}});
   scans.pop_back();  // section 1 does not end
   const PoleMapResult map = buildPoleMap(scans, authors(1));
@@ -104,7 +104,7 @@ TEST(PoleMapPaper, onlyMiddlesOfSectionsThatEndAreUsed) {
   EXPECT_EQ(buildPoleMap(scans, nearest).poles.size(), 2u);
 }
 
-TEST(PoleMapPaper, theOrderOfDetectionsDoesNotMatter) {
+TEST(PoleMapPaper, TheOrderOfDetectionsDoesNotMatter) {
   std::vector<std::vector<Eigen::Vector2d>> seen;
   for (int i = 0; i < 8; ++i) seen.push_back({{10.013 * i, 3}, {10 + 0.017 * i, 5}, {3, 0.37 * i}});
   auto scans = drive(seen);
@@ -119,7 +119,7 @@ TEST(PoleMapPaper, theOrderOfDetectionsDoesNotMatter) {
   }
 }
 
-TEST(PoleMapPaper, everyScanHasNoPassedMiddles) {
+TEST(PoleMapPaper, EveryScanHasNoPassedMiddles) {
   auto options = authors(1);
   options.everyScan = true;
   EXPECT_THROW(options.validate(), Error);

@@ -25,7 +25,7 @@ PointList street(const std::string& lidar, double height, std::uint64_t world = 
 }
 
 /// Every beam of the list lies beside a true one, and at least `share` of the true ones is there.
-void expectBeams(const BeamEstimate& estimate, const sim::LidarModel& lidar, double share) {
+void expectBeams(const BeamTableEstimate& estimate, const sim::LidarModel& lidar, double share) {
   const auto found = estimate.elevations();
   for (const double elevation : found) {
     double nearest = 1;
@@ -37,7 +37,7 @@ void expectBeams(const BeamEstimate& estimate, const sim::LidarModel& lidar, dou
   EXPECT_GE(static_cast<double>(found.size()), share * static_cast<double>(lidar.beams.size()));
 }
 
-void expectSame(const BeamEstimate& a, const BeamEstimate& b) {
+void expectSame(const BeamTableEstimate& a, const BeamTableEstimate& b) {
   EXPECT_EQ(a.elevations(), b.elevations());
   EXPECT_EQ(a.origin.z, b.origin.z);
   EXPECT_EQ(a.sharpness, b.sharpness);
@@ -46,7 +46,7 @@ void expectSame(const BeamEstimate& a, const BeamEstimate& b) {
 
 std::string refusal(const PointsView& points) {
   try {
-    findBeams({points});
+    estimateBeamTable({points});
   } catch (const Error& error) {
     return error.what();
   }
@@ -57,9 +57,9 @@ std::string refusal(const PointsView& points) {
 
 class BeamFinderOnStreets : public ::testing::TestWithParam<std::pair<const char*, double>> {};
 
-TEST_P(BeamFinderOnStreets, findsTheBeamsOfTheLidar) {
+TEST_P(BeamFinderOnStreets, FindsTheBeamsOfTheLidar) {
   const auto [name, height] = GetParam();
-  const BeamEstimate estimate = findBeams({street(name, height).view()});
+  const BeamTableEstimate estimate = estimateBeamTable({street(name, height).view()});
   expectBeams(estimate, sim::makeLidar(name), 0.9);
   EXPECT_EQ(estimate.blocks.size(), 1u);
   EXPECT_EQ(estimate.origin.x, 0);
@@ -74,8 +74,8 @@ INSTANTIATE_TEST_SUITE_P(Lidars, BeamFinderOnStreets,
                                            std::pair{"os0_64", 1.0}));
 
 // Upper lasers of the HDL-64E start at 0.2 m, lower ones at 0.12 m.
-TEST(BeamFinder, tellsTwoBlocksApart) {
-  const BeamEstimate estimate = findBeams({street("hdl64e", 1.73).view()});
+TEST(BeamTableEstimator, TellsTwoBlocksApart) {
+  const BeamTableEstimate estimate = estimateBeamTable({street("hdl64e", 1.73).view()});
   ASSERT_EQ(estimate.blocks.size(), 2u);
   EXPECT_EQ(estimate.blocks[0].elevations.size(), 32u);
   EXPECT_EQ(estimate.blocks[1].elevations.size(), 32u);
@@ -90,10 +90,10 @@ TEST(BeamFinder, tellsTwoBlocksApart) {
   }
 }
 
-TEST(BeamFinder, orderAndInvalidPointsAreOfNoConsequence) {
+TEST(BeamTableEstimator, OrderAndInvalidPointsAreOfNoConsequence) {
   const PointList points = street("hdl32e", 1.0);
-  const BeamEstimate estimate = findBeams({points.view()});
-  expectSame(findBeams({clouds::shuffled(points.view(), 5).view()}), estimate);
+  const BeamTableEstimate estimate = estimateBeamTable({points.view()});
+  expectSame(estimateBeamTable({clouds::shuffled(points.view(), 5).view()}), estimate);
   PointList spoilt;
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 500; ++i) {
@@ -103,24 +103,24 @@ TEST(BeamFinder, orderAndInvalidPointsAreOfNoConsequence) {
     spoilt.add(9, 0, -inf);
   }
   spoilt.append(points.view());
-  expectSame(findBeams({spoilt.view()}), estimate);
+  expectSame(estimateBeamTable({spoilt.view()}), estimate);
 }
 
-TEST(BeamFinder, aTenthOfTheReturnsIsEnough) {
+TEST(BeamTableEstimator, ATenthOfTheReturnsIsEnough) {
   const PointList points = street("os1_64", 1.8);
   PointList few;
   sim::Random random(4);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (random.uniform(0, 1) < 0.1) few.add(points.x[i], points.y[i], points.z[i]);
-  expectBeams(findBeams({few.view()}), sim::makeLidar("os1_64"), 0.95);
+  expectBeams(estimateBeamTable({few.view()}), sim::makeLidar("os1_64"), 0.95);
 }
 
-TEST(BeamFinder, findsTheOriginOfCloudsInAnotherFrame) {
+TEST(BeamTableEstimator, FindsTheOriginOfCloudsInAnotherFrame) {
   const PointList points = street("hdl32e", 1.0);
   PointList moved;
   for (std::size_t i = 0; i < points.size(); ++i)
     moved.add(points.x[i] + 0.9, points.y[i] - 0.2, points.z[i] + 1.2);
-  const BeamEstimate estimate = findBeams({moved.view()});
+  const BeamTableEstimate estimate = estimateBeamTable({moved.view()});
   EXPECT_NEAR(estimate.origin.x, 0.9, 0.01);
   EXPECT_NEAR(estimate.origin.y, -0.2, 0.01);
   EXPECT_NEAR(estimate.origin.z, 1.2, 0.005);
@@ -128,19 +128,19 @@ TEST(BeamFinder, findsTheOriginOfCloudsInAnotherFrame) {
 }
 
 // Points moved to where the sensor was in the middle of a turn that began at the rear.
-TEST(BeamFinder, seesThroughMotionCorrection) {
+TEST(BeamTableEstimator, SeesThroughMotionCorrection) {
   const PointList points = street("os1_64", 1.8);
   PointList corrected;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double azimuth = std::atan2(points.y[i], points.x[i]);
     corrected.add(points.x[i] - 0.8 * azimuth / (2 * M_PI), points.y[i], points.z[i]);
   }
-  const BeamEstimate estimate = findBeams({corrected.view()});
+  const BeamTableEstimate estimate = estimateBeamTable({corrected.view()});
   EXPECT_NEAR(estimate.origin.slide, 0.8, 0.1);
   expectBeams(estimate, sim::makeLidar("os1_64"), 0.95);
 }
 
-TEST(BeamFinder, refusesCloudsWithoutBeams) {
+TEST(BeamTableEstimator, RefusesCloudsWithoutBeams) {
   const PointList points = street("hdl32e", 1.0);
   PointList merged, thinned, tilted;
   std::set<std::tuple<long, long, long>> voxels;
@@ -161,7 +161,7 @@ TEST(BeamFinder, refusesCloudsWithoutBeams) {
     EXPECT_NE(refusal(cloud->view()).find("no beams"), std::string::npos) << refusal(cloud->view());
 }
 
-TEST(BeamFinder, refusesTooFewPoints) {
+TEST(BeamTableEstimator, RefusesTooFewPoints) {
   PointList few;
   for (int i = 0; i < 1999; ++i) few.addPolar(0.003 * i, 0.01 * (i % 5), 10);
   EXPECT_NE(refusal(few.view()).find("1999"), std::string::npos);

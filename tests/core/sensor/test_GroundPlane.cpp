@@ -33,7 +33,7 @@ PointList turnedOver(const PointList& points) {
 
 }  // namespace
 
-TEST(GroundPlane, givesHeightAndTilt) {
+TEST(GroundPlane, GivesHeightAndTilt) {
   // The front of the sensor points up where the ground falls ahead of it.
   const double pitch = 4 * kDegree, roll = 3 * kDegree;
   const auto ground = findGroundPlane(field(1.5, std::tan(pitch), 0).view());
@@ -50,7 +50,7 @@ TEST(GroundPlane, givesHeightAndTilt) {
   EXPECT_NEAR(leaning->pitch(), 0, 0.006);
 }
 
-TEST(GroundPlane, isAboveWhenTheCloudStandsOnItsHead) {
+TEST(GroundPlane, IsAboveWhenTheCloudStandsOnItsHead) {
   const PointList points = field(1.2, 0.05, -0.03);
   const auto upright = findGroundPlane(points.view());
   const auto ground = findGroundPlane(turnedOver(points).view());
@@ -61,7 +61,7 @@ TEST(GroundPlane, isAboveWhenTheCloudStandsOnItsHead) {
   EXPECT_NEAR(ground->pitch(), upright->pitch(), 0.006);
 }
 
-TEST(GroundPlane, aCeilingIsNoGround) {
+TEST(GroundPlane, ACeilingIsNoGround) {
   PointList points = field(1.2);
   points.append(turnedOver(field(1.0)).view());
   const auto ground = findGroundPlane(points.view());
@@ -71,7 +71,7 @@ TEST(GroundPlane, aCeilingIsNoGround) {
 }
 
 // NCLT: the origin of the clouds lies almost on the ground, the sensor a metre over it.
-TEST(GroundPlane, takesHeightsFromTheSensor) {
+TEST(GroundPlane, TakesHeightsFromTheSensor) {
   const PointList points = field(0.05);
   const auto ground = findGroundPlane(points.view(), {0, 0, 1.0});
   ASSERT_TRUE(ground);
@@ -79,7 +79,7 @@ TEST(GroundPlane, takesHeightsFromTheSensor) {
   EXPECT_NEAR(ground->heightOf({0, 0, 0}), 0.05, 0.02);
 }
 
-TEST(GroundPlane, orderAndInvalidPointsAreOfNoConsequence) {
+TEST(GroundPlane, OrderAndInvalidPointsAreOfNoConsequence) {
   const PointList points = field(1.5, 0.02, 0.01);
   PointList spoilt = clouds::shuffled(points.view(), 3);
   for (int i = 0; i < 100; ++i) {
@@ -92,7 +92,7 @@ TEST(GroundPlane, orderAndInvalidPointsAreOfNoConsequence) {
   EXPECT_EQ(a->offset, b->offset);
 }
 
-TEST(GroundPlane, thereIsNoneInABlob) {
+TEST(GroundPlane, ThereIsNoneInABlob) {
   PointList points;
   sim::Random random(2);
   for (int i = 0; i < 20000; ++i)

@@ -29,7 +29,7 @@ PointList street(const std::string& lidar, double height) {
 
 std::string contradiction(const SensorOptions& options, const PointList& points,
                           bool beams = true) {
-  return SensorCheck(options, beams).contradiction(points.view());
+  return SensorConfigCheck(options, beams).contradiction(points.view());
 }
 
 bool has(const std::string& text, const std::string& word) {
@@ -52,7 +52,7 @@ PointList singleOrigin(int beams, double topDeg, double bottomDeg) {
 
 }  // namespace
 
-TEST(SensorCheck, acceptsEachLidarUnderItsOwnName) {
+TEST(SensorConfigCheck, AcceptsEachLidarUnderItsOwnName) {
   for (const auto& [lidar, model] :
        {std::pair{"hdl32e", "hdl32e"}, std::pair{"vlp16", "vlp16"}, std::pair{"os1_64", "os1_64"},
         std::pair{"os1_128", "os1_128"}, std::pair{"os0_64", "os0_64"},
@@ -61,7 +61,7 @@ TEST(SensorCheck, acceptsEachLidarUnderItsOwnName) {
     EXPECT_EQ(contradiction(preset(model), street(lidar, 1.5)), "") << lidar;
 }
 
-TEST(SensorCheck, refusesLidarsUnderOthersNames) {
+TEST(SensorConfigCheck, RefusesLidarsUnderOthersNames) {
   for (const std::string lidar : {"hdl32e", "vlp16", "os1_64", "os1_64_gen2", "hdl64e_kitti"}) {
     const PointList points = street(lidar, 1.5);
     for (const std::string model :
@@ -75,19 +75,19 @@ TEST(SensorCheck, refusesLidarsUnderOthersNames) {
   }
 }
 
-TEST(SensorCheck, namesThePresetThatFits) {
+TEST(SensorConfigCheck, NamesThePresetThatFits) {
   const std::string what = contradiction(preset("os0_64"), street("hdl32e", 1.0));
   EXPECT_TRUE(has(what, "as model = hdl32e has")) << what;
   EXPECT_TRUE(has(what, "32 beams from 10.7 to -30.7 deg")) << what;
 }
 
-TEST(SensorCheck, knowsAMirroredFan) {
+TEST(SensorConfigCheck, KnowsAMirroredFan) {
   const std::string what = contradiction(preset("hdl32e", true), street("hdl32e", 1.0));
   EXPECT_TRUE(has(what, "model = hdl32e upside down")) << what;
   EXPECT_TRUE(has(what, "as model = hdl32e has")) << what;
 }
 
-TEST(SensorCheck, refusesOneOriginWhereTheModelHasTwo) {
+TEST(SensorConfigCheck, RefusesOneOriginWhereTheModelHasTwo) {
   const std::string what = contradiction(preset("hdl64e"), singleOrigin(64, 2, -24.8));
   EXPECT_TRUE(has(what, "model = hdl64e")) << what;
   SensorOptions uniform = preset("uniform");
@@ -98,14 +98,14 @@ TEST(SensorCheck, refusesOneOriginWhereTheModelHasTwo) {
   EXPECT_EQ(contradiction(uniform, singleOrigin(64, 2, -24.8)), "");
 }
 
-TEST(SensorCheck, findsAWrongOrigin) {
+TEST(SensorConfigCheck, FindsAWrongOrigin) {
   PointList points = street("hdl32e", 1.0);
   for (float& z : points.z) z += 0.957f;
   const std::string what = contradiction(preset("hdl32e"), points);
   EXPECT_TRUE(has(what, "from 0.96 m above its origin (set [sensor] origin)")) << what;
 }
 
-TEST(SensorCheck, findsACloudUpsideDown) {
+TEST(SensorConfigCheck, FindsACloudUpsideDown) {
   PointList points = street("vlp16", 1.0);  // whose fan is symmetrical
   for (std::size_t i = 0; i < points.size(); ++i) {
     points.y[i] = -points.y[i];
@@ -118,7 +118,7 @@ TEST(SensorCheck, findsACloudUpsideDown) {
   }
 }
 
-TEST(SensorCheck, refusesMergedClouds) {
+TEST(SensorConfigCheck, RefusesMergedClouds) {
   const PointList points = street("hdl32e", 1.0);
   PointList merged;
   for (int k = 0; k < 4; ++k)
@@ -127,13 +127,13 @@ TEST(SensorCheck, refusesMergedClouds) {
   EXPECT_TRUE(has(contradiction(preset("hdl32e"), merged), "model = hdl32e"));
 }
 
-TEST(SensorCheck, doesNotJudgeBeamsWhenTold) {
+TEST(SensorConfigCheck, DoesNotJudgeBeamsWhenTold) {
   EXPECT_EQ(contradiction(preset("os1_128"), street("hdl32e", 1.0), false), "");
 }
 
-TEST(SensorCheck, doesNotJudgeFewPoints) {
+TEST(SensorConfigCheck, DoesNotJudgeFewPoints) {
   PointList few;
-  for (std::size_t i = 0; i + 1 < SensorCheck::kFewestPoints; ++i)
+  for (std::size_t i = 0; i + 1 < SensorConfigCheck::kFewestPoints; ++i)
     few.addPolar(0.003 * static_cast<double>(i), 0.5, 10);
   EXPECT_EQ(contradiction(preset("hdl32e"), few), "");
   EXPECT_EQ(contradiction(preset("hdl32e"), PointList()), "");
@@ -141,7 +141,7 @@ TEST(SensorCheck, doesNotJudgeFewPoints) {
 
 // Counted by hand: 3000 points on two of three beams, half of one beam's 10 % off its cone, 100
 // above the view.
-TEST(BeamAgreement, isMeasured) {
+TEST(BeamAgreement, IsMeasured) {
   SensorOptions options = preset("table");
   options.elevations = {std::atan(0.1), 0, std::atan(-0.1)};
   options.columns = 1000;

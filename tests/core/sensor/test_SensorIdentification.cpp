@@ -41,10 +41,10 @@ struct Expected {
 
 class SensorInspectionOnStreets : public ::testing::TestWithParam<Expected> {};
 
-TEST_P(SensorInspectionOnStreets, namesThePreset) {
+TEST_P(SensorInspectionOnStreets, NamesThePreset) {
   const Expected& expected = GetParam();
   const PointList points = scanOf(expected.lidar, expected.height, expected.upsideDown);
-  const SensorInspection inspection = inspectSensor({points.view()});
+  const SensorIdentification inspection = identifySensor({points.view()});
   const auto lidar = sim::makeLidar(expected.lidar);
   EXPECT_FALSE(inspection.onItsHead);
   EXPECT_NEAR(inspection.columns, lidar.columns, 0.01 * lidar.columns);
@@ -71,9 +71,9 @@ INSTANTIATE_TEST_SUITE_P(Lidars, SensorInspectionOnStreets,
                                            Expected{"os0_64", 1.0, false, "os0_64"}));
 
 // Data-sheet angles lie up to 0.4° beside those of KITTI's unit: a table, in two blocks.
-TEST(SensorInspection, givesATableWhenNoPresetFits) {
+TEST(SensorIdentification, GivesATableWhenNoPresetFits) {
   const PointList points = scanOf("hdl64e", 1.73);
-  const SensorInspection inspection = inspectSensor({points.view()});
+  const SensorIdentification inspection = identifySensor({points.view()});
   EXPECT_FALSE(inspection.preset());
   const SensorOptions options = inspection.options();
   EXPECT_EQ(options.model, "table");
@@ -92,12 +92,12 @@ TEST(SensorInspection, givesATableWhenNoPresetFits) {
   EXPECT_GT(static_cast<double>(near), 0.97 * static_cast<double>(points.size()));
 }
 
-TEST(SensorInspection, turnsACloudOverThatStandsOnItsHead) {
+TEST(SensorIdentification, TurnsACloudOverThatStandsOnItsHead) {
   const PointList points = scanOf("hdl32e", 1.0);
   PointList hanging;
   for (std::size_t i = 0; i < points.size(); ++i)
     hanging.add(points.x[i], -points.y[i], -points.z[i]);
-  const SensorInspection inspection = inspectSensor({hanging.view()});
+  const SensorIdentification inspection = identifySensor({hanging.view()});
   EXPECT_TRUE(inspection.onItsHead);
   ASSERT_TRUE(inspection.preset());
   EXPECT_EQ(inspection.options().model, "hdl32e");
@@ -105,23 +105,23 @@ TEST(SensorInspection, turnsACloudOverThatStandsOnItsHead) {
   EXPECT_NEAR(inspection.options().height, 1.0, 0.1);
 }
 
-TEST(SensorInspection, findsTheOriginOverACloudsOwn) {
+TEST(SensorIdentification, FindsTheOriginOverACloudsOwn) {
   const PointList points = scanOf("vlp16", 1.0);
   PointList moved;
   for (std::size_t i = 0; i < points.size(); ++i)
     moved.add(points.x[i], points.y[i], points.z[i] + 0.957);
-  const SensorOptions options = inspectSensor({moved.view()}).options();
+  const SensorOptions options = identifySensor({moved.view()}).options();
   EXPECT_EQ(options.model, "vlp16");
   EXPECT_NEAR(options.originZ, 0.957, 0.003);
   EXPECT_NEAR(options.height, 1.0, 0.1);
 }
 
-TEST(SensorInspection, countsAndShuffles) {
+TEST(SensorIdentification, CountsAndShuffles) {
   const PointList a = scanOf("vlp16", 1.0);
   PointList b = clouds::shuffled(a.view(), 2);
   for (int i = 0; i < 50; ++i) b.add(i % 2 ? std::nan("") : 0, 0, 0);
-  const SensorInspection one = inspectSensor({a.view(), a.view()});
-  const SensorInspection two = inspectSensor({b.view(), b.view()});
+  const SensorIdentification one = identifySensor({a.view(), a.view()});
+  const SensorIdentification two = identifySensor({b.view(), b.view()});
   EXPECT_EQ(two.invalid, one.invalid + 100);
   EXPECT_EQ(two.points, 2 * a.size() - one.invalid);
   EXPECT_EQ(two.scans, 2u);
@@ -130,9 +130,9 @@ TEST(SensorInspection, countsAndShuffles) {
   EXPECT_EQ(one.options().height, two.options().height);
 }
 
-TEST(SensorInspection, refusesWhatHasNoBeams) {
-  EXPECT_THROW(inspectSensor({}), Error);
-  EXPECT_THROW(inspectSensor({PointsView()}), Error);
+TEST(SensorIdentification, RefusesWhatHasNoBeams) {
+  EXPECT_THROW(identifySensor({}), Error);
+  EXPECT_THROW(identifySensor({PointsView()}), Error);
 }
 
 }  // namespace polemcl::test_sensor_identification

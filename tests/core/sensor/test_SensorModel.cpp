@@ -67,12 +67,12 @@ const std::vector<std::pair<std::string, int>> kBeams = {
 
 }  // namespace
 
-TEST(SensorModel, presetsHaveTheBeamsOfTheirNames) {
+TEST(SensorModel, PresetsHaveTheBeamsOfTheirNames) {
   for (const auto& [model, beams] : kBeams)
     EXPECT_EQ(SensorModel(preset(model)).rows(), beams) << model;
 }
 
-TEST(SensorModel, namesAreWhatModelAccepts) {
+TEST(SensorModel, NamesAreWhatModelAccepts) {
   const auto names = SensorModel::modelNames();
   EXPECT_EQ(names.size(), kBeams.size() + 2);
   for (const auto& name : names) {
@@ -83,7 +83,7 @@ TEST(SensorModel, namesAreWhatModelAccepts) {
   }
 }
 
-TEST(SensorModel, outermostBeamsAreThoseOfTheDataSheets) {
+TEST(SensorModel, OutermostBeamsAreThoseOfTheDataSheets) {
   const auto expectFan = [](const std::string& model, double topDeg, double bottomDeg) {
     const SensorModel sensor(preset(model));
     EXPECT_NEAR(std::atan(sensor.beam(0).slope), topDeg * kDegree, 0.002 * kDegree) << model;
@@ -97,7 +97,7 @@ TEST(SensorModel, outermostBeamsAreThoseOfTheDataSheets) {
   expectFan("os0_64", 45, -45);
 }
 
-TEST(SensorModel, beamsAreOrderedFromTheTop) {
+TEST(SensorModel, BeamsAreOrderedFromTheTop) {
   for (const auto& [model, beams] : kBeams)
     for (const bool upsideDown : {false, true}) {
       const SensorModel sensor(preset(model, upsideDown));
@@ -106,7 +106,7 @@ TEST(SensorModel, beamsAreOrderedFromTheTop) {
     }
 }
 
-TEST(SensorModel, aPointOfEachBeamIsGivenToThatBeam) {
+TEST(SensorModel, APointOfEachBeamIsGivenToThatBeam) {
   for (const auto& [model, beams] : kBeams)
     for (const bool upsideDown : {false, true}) {
       SCOPED_TRACE(model);
@@ -115,7 +115,7 @@ TEST(SensorModel, aPointOfEachBeamIsGivenToThatBeam) {
 }
 
 // The lower block of the HDL-64E starts 8 cm below the upper one: 1.5° at 3 m, 0.08° at 60 m.
-TEST(SensorModel, blocksOfTheHdl64eHaveTheirOwnOffsets) {
+TEST(SensorModel, BlocksOfTheHdl64eHaveTheirOwnOffsets) {
   const SensorModel sensor(preset("hdl64e"));
   EXPECT_GT(sensor.beam(0).offset, sensor.beam(63).offset + 0.05);
   EXPECT_EQ(sensor.beam(0).offset, sensor.beam(31).offset);
@@ -126,7 +126,7 @@ TEST(SensorModel, blocksOfTheHdl64eHaveTheirOwnOffsets) {
   EXPECT_EQ(sensor.row(rho, z), 40);
 }
 
-TEST(SensorModel, aPointBetweenTwoBeamsIsGivenToTheNearer) {
+TEST(SensorModel, APointBetweenTwoBeamsIsGivenToTheNearer) {
   sim::Random random(1);
   for (const SensorOptions& options :
        {preset("hdl32e"), preset("os1_64_gen2"), table({5, -1, 0.3})}) {
@@ -145,7 +145,7 @@ TEST(SensorModel, aPointBetweenTwoBeamsIsGivenToTheNearer) {
   }
 }
 
-TEST(SensorModel, outsideTheFanThereIsNoRow) {
+TEST(SensorModel, OutsideTheFanThereIsNoRow) {
   const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
   for (const auto& [model, beams] : kBeams) {
     const SensorModel sensor(preset(model));
@@ -164,7 +164,7 @@ TEST(SensorModel, outsideTheFanThereIsNoRow) {
   }
 }
 
-TEST(SensorModel, upsideDownTheFanIsMirrored) {
+TEST(SensorModel, UpsideDownTheFanIsMirrored) {
   for (const std::string model : {"hdl32e", "hdl64e", "vlp16"}) {
     const SensorModel upright(preset(model)), hanging(preset(model, true));
     for (int row = 0; row < upright.rows(); ++row) {
@@ -176,7 +176,7 @@ TEST(SensorModel, upsideDownTheFanIsMirrored) {
   EXPECT_NEAR(std::atan(SensorModel(preset("hdl32e", true)).beam(0).slope), 30.667 * kDegree, 1e-6);
 }
 
-TEST(SensorModel, aTableMayComeInAnyOrder) {
+TEST(SensorModel, ATableMayComeInAnyOrder) {
   const SensorModel sensor(table({-5, 10, 2}));
   ASSERT_EQ(sensor.rows(), 3);
   EXPECT_DOUBLE_EQ(sensor.beam(0).slope, std::tan(10 * kDegree));
@@ -187,7 +187,7 @@ TEST(SensorModel, aTableMayComeInAnyOrder) {
 }
 
 // As the HDL-64E: two blocks, each with its own apex.
-TEST(SensorModel, aTableMayHaveALowerBlock) {
+TEST(SensorModel, ATableMayHaveALowerBlock) {
   SensorOptions options = table({2, 0, -4, -2});
   options.lowerElevations = {-10 * kDegree, -6 * kDegree, -8 * kDegree};
   options.upperApex = 0.2;
@@ -201,7 +201,7 @@ TEST(SensorModel, aTableMayHaveALowerBlock) {
   expectOwnRows(sensor, {3, 12, 60});
 }
 
-TEST(SensorModel, uniformBeamsAreEvenlySpaced) {
+TEST(SensorModel, UniformBeamsAreEvenlySpaced) {
   const SensorModel sensor(uniform(5, 10, -30, 720));
   ASSERT_EQ(sensor.rows(), 5);
   for (int row = 0; row < 5; ++row)
@@ -211,7 +211,7 @@ TEST(SensorModel, uniformBeamsAreEvenlySpaced) {
   expectOwnRows(sensor, {1, 30});
 }
 
-TEST(SensorModel, spacingIsTheAngleToTheBeamAbove) {
+TEST(SensorModel, SpacingIsTheAngleToTheBeamAbove) {
   const SensorModel sensor(table({10, 7, 2, -5}));
   EXPECT_NEAR(sensor.spacingAbove(0), 3 * kDegree, 1e-12);  // repeats its lower gap
   EXPECT_NEAR(sensor.spacingAbove(1), 3 * kDegree, 1e-12);
@@ -219,43 +219,43 @@ TEST(SensorModel, spacingIsTheAngleToTheBeamAbove) {
   EXPECT_NEAR(sensor.spacingAbove(3), 7 * kDegree, 1e-12);
 }
 
-TEST(SensorModel, columnsOfAPresetCanBeSet) {
+TEST(SensorModel, ColumnsOfAPresetCanBeSet) {
   SensorOptions options = preset("os1_64");
   EXPECT_EQ(SensorModel(options).columns(), 1024);
   options.columns = 2048;
   EXPECT_EQ(SensorModel(options).columns(), 2048);
 }
 
-TEST(SensorOptions, defaultsAreAccepted) {
+TEST(SensorOptions, DefaultsAreAccepted) {
   EXPECT_EQ(refusal({}, [](SensorOptions&) {}), "accepted");
   EXPECT_EQ(refusal(uniform(2, 1, -1), [](SensorOptions&) {}), "accepted");
   EXPECT_EQ(refusal(table({1, -1}), [](SensorOptions&) {}), "accepted");
 }
-TEST(SensorOptions, refusesAnUnknownModelAndNamesTheKnown) {
+TEST(SensorOptions, RefusesAnUnknownModelAndNamesTheKnown) {
   EXPECT_REFUSED(
       {}, { o.model = "hdl128"; }, "model = hdl128");
   EXPECT_REFUSED(
       {}, { o.model = "hdl128"; }, "vlp16");
   EXPECT_THROW(SensorModel{preset("")}, Error);
 }
-TEST(SensorOptions, refusesATableOfOneBeam) {
+TEST(SensorOptions, RefusesATableOfOneBeam) {
   EXPECT_REFUSED(table({1}), {}, "elevations_deg");
 }
-TEST(SensorOptions, refusesAUniformFanOfTooFewOrTooManyBeams) {
+TEST(SensorOptions, RefusesAUniformFanOfTooFewOrTooManyBeams) {
   EXPECT_REFUSED(uniform(1, 1, -1), {}, "rows = 1");
   EXPECT_REFUSED(uniform(1025, 1, -1), {}, "rows = 1025");
 }
-TEST(SensorOptions, refusesAUniformFanTheWrongWayRound) {
+TEST(SensorOptions, RefusesAUniformFanTheWrongWayRound) {
   EXPECT_REFUSED(uniform(16, -1, -1), {}, "fov_up_deg");
   EXPECT_REFUSED(
       uniform(16, 1, -1), { o.fovDown = std::nan(""); }, "fov_up_deg");
 }
-TEST(SensorOptions, refusesATurnWithoutColumns) {
+TEST(SensorOptions, RefusesATurnWithoutColumns) {
   EXPECT_REFUSED(uniform(16, 1, -1, 89), {}, "columns = 89");
   EXPECT_REFUSED(
       table({1, -1}), { o.columns = 0; }, "columns = 0");
 }
-TEST(SensorOptions, refusesElevationsThatHaveNoTangent) {
+TEST(SensorOptions, RefusesElevationsThatHaveNoTangent) {
   EXPECT_REFUSED(table({1, 90}), {}, "elevations_deg");
   EXPECT_REFUSED(
       table({1, -1}), { o.elevations[1] = std::nan(""); }, "elevations_deg");
@@ -263,7 +263,7 @@ TEST(SensorOptions, refusesElevationsThatHaveNoTangent) {
   EXPECT_REFUSED(uniform(16, 1, -90), {}, "fov_down_deg");
   EXPECT_EQ(refusal({}, [](SensorOptions& o) { o.elevations = {90}; }), "accepted");  // not used
 }
-TEST(SensorOptions, refusesALowerBlockThatIsNone) {
+TEST(SensorOptions, RefusesALowerBlockThatIsNone) {
   EXPECT_REFUSED(
       table({1, -1}), { o.lowerElevations = {-0.2}; }, "lower_elevations_deg");
   EXPECT_REFUSED(
@@ -271,13 +271,13 @@ TEST(SensorOptions, refusesALowerBlockThatIsNone) {
   EXPECT_REFUSED(
       table({1, -1}), { o.lowerApex = std::nan(""); }, "apex_m");
 }
-TEST(SensorOptions, refusesTooFewColumnsForAnyModel) {
+TEST(SensorOptions, RefusesTooFewColumnsForAnyModel) {
   EXPECT_REFUSED(
       {}, { o.columns = -5; }, "columns = -5");
   EXPECT_REFUSED(
       {}, { o.columns = 89; }, "at least 90");
 }
-TEST(SensorOptions, refusesPlacesThatAreNoNumbers) {
+TEST(SensorOptions, RefusesPlacesThatAreNoNumbers) {
   EXPECT_REFUSED(
       {}, { o.height = std::nan(""); }, "height_m");
   EXPECT_REFUSED(
@@ -287,7 +287,7 @@ TEST(SensorOptions, refusesPlacesThatAreNoNumbers) {
   EXPECT_REFUSED(
       {}, { o.originZ = std::nan(""); }, "origin");
 }
-TEST(SensorOptions, refusesRangesTheWrongWayRound) {
+TEST(SensorOptions, RefusesRangesTheWrongWayRound) {
   EXPECT_REFUSED(
       {}, { o.maxRange = o.minRange; }, "max_range_m");
   EXPECT_REFUSED(

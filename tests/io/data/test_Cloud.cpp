@@ -12,7 +12,7 @@ using namespace polemcl::io::test;
 
 using CloudTest = FolderTest;
 
-TEST_F(CloudTest, readsPointsByHand) {
+TEST_F(CloudTest, ReadsPointsByHand) {
   const Cloud cloud = readKittiBin(write("a.bin", floats({1, 2, 3, 0.25f, -4, 0, 0, 1})));
   ASSERT_EQ(cloud.size(), 2u);
   EXPECT_EQ(cloud.x, (std::vector<float>{1, -4}));
@@ -25,7 +25,7 @@ TEST_F(CloudTest, readsPointsByHand) {
   EXPECT_EQ(view.z[0], 3);
 }
 
-TEST_F(CloudTest, dropsAndCountsInvalidPoints) {
+TEST_F(CloudTest, DropsAndCountsInvalidPoints) {
   const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
   const Cloud cloud =
       readKittiBin(write("a.bin", floats({nan,  1, 1, 1,   1, inf, 1,     1, 1, 1,
@@ -36,23 +36,23 @@ TEST_F(CloudTest, dropsAndCountsInvalidPoints) {
   EXPECT_EQ(cloud.intensity.size(), 2u);
 }
 
-TEST_F(CloudTest, anEmptyFileIsAnEmptyCloud) {
+TEST_F(CloudTest, AnEmptyFileIsAnEmptyCloud) {
   const Cloud cloud = readKittiBin(write("a.bin", ""));
   EXPECT_EQ(cloud.size(), 0u);
   EXPECT_EQ(cloud.invalid, 0u);
 }
 
-TEST_F(CloudTest, refusesAFileCutShort) {
+TEST_F(CloudTest, RefusesAFileCutShort) {
   const fs::path file = write("a.bin", floats({1, 2, 3, 4}) + "abc");
   expectIn(messageOf([&] { readKittiBin(file); }), file.string(), "cut short", "19 bytes");
 }
 
-TEST_F(CloudTest, refusesAMissingFile) {
+TEST_F(CloudTest, RefusesAMissingFile) {
   expectIn(messageOf([&] { readKittiBin(path("no.bin")); }), path("no.bin").string(),
            "No such file or directory");
 }
 
-TEST_F(CloudTest, readsARealScan) {
+TEST_F(CloudTest, ReadsARealScan) {
   POLEMCL_NEEDS_DATA();
   const fs::path folder = dataFolder() / "kitti_raw_0005" / "velodyne";
   const fs::path file = fs::directory_iterator(folder)->path();

@@ -51,7 +51,7 @@ class PcdFileTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(PcdFileTest, readsBinaryPoints) {
+TEST_F(PcdFileTest, ReadsBinaryPoints) {
   const Cloud cloud =
       readPcd(write("a.pcd", header("x y z intensity", "4 4 4 4", "F F F F", 2, "binary") +
                                  floats({1, 2, 3, 0.5f, -4, 5, -6, 7})));
@@ -62,7 +62,7 @@ TEST_F(PcdFileTest, readsBinaryPoints) {
   EXPECT_EQ(cloud.invalid, 0u);
 }
 
-TEST_F(PcdFileTest, readsAsciiPoints) {
+TEST_F(PcdFileTest, ReadsAsciiPoints) {
   const Cloud cloud = readPcd(write("a.pcd", header("x y z", "4 4 4", "F F F", 3, "ascii") +
                                                  "1.5 -2e1 3\r\n\nnan nan nan\n0 0.25 1\n"));
   EXPECT_EQ(cloud.x, (std::vector<float>{1.5f, 0}));
@@ -72,7 +72,7 @@ TEST_F(PcdFileTest, readsAsciiPoints) {
   EXPECT_EQ(cloud.invalid, 1u);
 }
 
-TEST_F(PcdFileTest, readsCompressedPoints) {
+TEST_F(PcdFileTest, ReadsCompressedPoints) {
   // 40 points with repeating values, so that LZF finds something to compress.
   std::string rings, normals, x, y, z, intensity;
   std::vector<float> wanted;
@@ -104,7 +104,7 @@ TEST_F(PcdFileTest, readsCompressedPoints) {
             0u);
 }
 
-TEST_F(PcdFileTest, refusesCompressedPointsThatAreDamaged) {
+TEST_F(PcdFileTest, RefusesCompressedPointsThatAreDamaged) {
   const std::string head = header("x y z", "4 4 4", "F F F", 20, "binary_compressed");
   const std::string body = compressed(std::string(240, 'a'));
   expectIn(refusal(head + body.substr(0, 5)), "a.pcd", "cut short", "5 bytes");
@@ -115,7 +115,7 @@ TEST_F(PcdFileTest, refusesCompressedPointsThatAreDamaged) {
   expectIn(refusal(head + damaged), "a.pcd", "damaged");
 }
 
-TEST_F(PcdFileTest, fieldsMayBeOfAnyTypeAndOrder) {
+TEST_F(PcdFileTest, FieldsMayBeOfAnyTypeAndOrder) {
   std::string content =
       "FIELDS ring time normal z x y intensity\nSIZE 2 8 4 8 4 1 2\n"
       "TYPE U F F F F I U\nCOUNT 1 1 3 1 1 1 1\nWIDTH 1\nHEIGHT 2\nDATA binary\n";
@@ -135,7 +135,7 @@ TEST_F(PcdFileTest, fieldsMayBeOfAnyTypeAndOrder) {
   EXPECT_EQ(readPcd(write("b.pcd", text)).z, (std::vector<float>{2.5f}));
 }
 
-TEST_F(PcdFileTest, refusesWhatIsNoPcd) {
+TEST_F(PcdFileTest, RefusesWhatIsNoPcd) {
   expectIn(refusal("ply\n"), path("a.pcd").string() + ":1: ", "'ply'");
   expectIn(refusal("VERSION 0.7\nFIELDS x y z"), "no line DATA");
   expectIn(refusal("DATA ascii\n"), "no FIELDS");
@@ -149,7 +149,7 @@ TEST_F(PcdFileTest, refusesWhatIsNoPcd) {
   expectIn(messageOf([&] { readPcd(path("no.pcd")); }), "no.pcd", "No such file");
 }
 
-TEST_F(PcdFileTest, refusesPointsThatAreMissingOrNoNumbers) {
+TEST_F(PcdFileTest, RefusesPointsThatAreMissingOrNoNumbers) {
   const std::string ascii = header("x y z", "4 4 4", "F F F", 2, "ascii");
   expectIn(refusal(ascii + "1 2 3\n"), "cut short", "1 points, 2 expected");
   expectIn(refusal(ascii + "1 2 3\n1 2\n"), ":13: ", "2 values, 3 expected");
@@ -158,7 +158,7 @@ TEST_F(PcdFileTest, refusesPointsThatAreMissingOrNoNumbers) {
            "cut short", "20 bytes", "2 points of 12 bytes");
 }
 
-TEST_F(PcdFileTest, readsARealScan) {
+TEST_F(PcdFileTest, ReadsARealScan) {
   POLEMCL_NEEDS_DATA();
   const Cloud cloud = readPcd(dataFolder() / "os1_64" / "0.pcd");
   EXPECT_EQ(cloud.size() + cloud.invalid, 61700u);

@@ -24,7 +24,7 @@ Eigen::Vector3d vector(const Pose2D& pose) {
 
 }  // namespace
 
-TEST(PlanarMotion, composesMeansByHand) {
+TEST(PlanarMotion, ComposesMeansByHand) {
   const PlanarMotion a{{1, 0, M_PI / 2}, Eigen::Matrix3d::Zero()},
       b{{2, 0.5, 0.1}, Eigen::Matrix3d::Zero()};
   const PlanarMotion sum = composeMotions(a, b);
@@ -34,7 +34,7 @@ TEST(PlanarMotion, composesMeansByHand) {
   EXPECT_EQ(sum.covariance, Eigen::Matrix3d::Zero());
 }
 
-TEST(PlanarMotion, composesCovariancesByHand) {
+TEST(PlanarMotion, ComposesCovariancesByHand) {
   // An uncertain heading (0.1 rad) moves the end of the 2 m ahead sideways by 0.2 m.
   PlanarMotion a, b;
   a.covariance = Eigen::Vector3d(0, 0, 0.01).asDiagonal();
@@ -51,7 +51,7 @@ TEST(PlanarMotion, composesCovariancesByHand) {
   EXPECT_TRUE(composeMotions(a, b).covariance.isApprox(expected, 1e-14));
 }
 
-TEST(PlanarMotion, covarianceIsThatOfSampledMotions) {
+TEST(PlanarMotion, CovarianceIsThatOfSampledMotions) {
   PlanarMotion a, b;
   a.mean = {1.2, -0.4, 0.8};
   b.mean = {2.1, 0.9, -0.5};
@@ -78,7 +78,7 @@ TEST(PlanarMotion, covarianceIsThatOfSampledMotions) {
   EXPECT_EQ(sum.covariance, sum.covariance.transpose());
 }
 
-TEST(PlanarMotion, composingIsAssociative) {
+TEST(PlanarMotion, ComposingIsAssociative) {
   PlanarMotion a, b, c;
   a.mean = {1, 0.1, 0.3};
   b.mean = {0.8, -0.2, -0.6};
@@ -92,7 +92,7 @@ TEST(PlanarMotion, composingIsAssociative) {
   EXPECT_TRUE(left.covariance.isApprox(right.covariance, 1e-13));
 }
 
-TEST(PlanarMotion, noiseHasTheDeviationsItStates) {
+TEST(PlanarMotion, NoiseHasTheDeviationsItStates) {
   const Pose2D motion{2, -0.5, 0.1};
   const double k = 0.02;
   std::mt19937_64 generator(7);
@@ -110,7 +110,7 @@ TEST(PlanarMotion, noiseHasTheDeviationsItStates) {
   EXPECT_LT((square - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 0.02);
 }
 
-TEST(PlanarMotion, noiseIsGaussian) {
+TEST(PlanarMotion, NoiseIsGaussian) {
   std::mt19937_64 generator(11);
   int within1 = 0, within2 = 0;
   const int count = 100000;
@@ -123,7 +123,7 @@ TEST(PlanarMotion, noiseIsGaussian) {
   EXPECT_NEAR(within2, 0.9545 * count, 0.005 * count);
 }
 
-TEST(PlanarMotion, noiseComesFromTheGeneratorByHand) {
+TEST(PlanarMotion, NoiseComesFromTheGeneratorByHand) {
   // Box-Muller, worked out here from the draws: u = draw / 2^53 of the upper 53 bits.
   std::mt19937_64 generator(7), draws(7);
   const auto uniform = [&] { return std::ldexp(static_cast<double>(draws() >> 11), -53); };
@@ -138,14 +138,14 @@ TEST(PlanarMotion, noiseComesFromTheGeneratorByHand) {
   EXPECT_EQ(generator, draws);  // four draws
 }
 
-TEST(PlanarMotion, drawsTheSameNumberForAnyMotion) {
+TEST(PlanarMotion, DrawsTheSameNumberForAnyMotion) {
   std::mt19937_64 still(3), moving(3);
   noisyMotion({0, 0, 0}, 0, still);
   noisyMotion({5, 1, -2}, 0.5, moving);
   EXPECT_EQ(still, moving);
 }
 
-TEST(PlanarMotion, covarianceOfNoiseByHand) {
+TEST(PlanarMotion, CovarianceOfNoiseByHand) {
   std::mt19937_64 generator(1);
   const PlanarMotion motion = noisyMotion({2, -0.5, 0.1}, 0.02, generator);
   EXPECT_NEAR(motion.covariance(0, 0), 0.0016 + 1e-6, 1e-18);
@@ -154,7 +154,7 @@ TEST(PlanarMotion, covarianceOfNoiseByHand) {
   EXPECT_EQ(motion.covariance(0, 1), 0);
 }
 
-TEST(PlanarMotion, standingStillHasAPositiveDefiniteCovariance) {
+TEST(PlanarMotion, StandingStillHasAPositiveDefiniteCovariance) {
   std::mt19937_64 generator(1);
   const PlanarMotion motion = noisyMotion({0, 0, 0}, 0.02, generator);
   EXPECT_EQ(vector(motion.mean), Eigen::Vector3d::Zero());
@@ -163,7 +163,7 @@ TEST(PlanarMotion, standingStillHasAPositiveDefiniteCovariance) {
       0);
 }
 
-TEST(PlanarMotion, refusesNegativeOrEndlessNoise) {
+TEST(PlanarMotion, RefusesNegativeOrEndlessNoise) {
   std::mt19937_64 generator(1);
   for (const double k : {-0.02, std::numeric_limits<double>::infinity(), std::nan("")}) {
     expectIn(messageOf([&] { noisyMotion({1, 0, 0}, k, generator); }), "odometry noise", ">= 0");

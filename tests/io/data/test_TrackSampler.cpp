@@ -21,7 +21,7 @@ double yaw(const Eigen::Isometry3d& p) {
 
 }  // namespace
 
-TEST(TrackSampler, interpolatesBetweenSamplesAndTakesSamplesAsTheyAre) {
+TEST(TrackSampler, InterpolatesBetweenSamplesAndTakesSamplesAsTheyAre) {
   TrackSampler track({10.25, 11, 11.5}, 2);
   track.add(10, pose(0, 3));
   track.add(11, pose(4, -3));  // across the half turn: 0.283 rad on
@@ -34,7 +34,7 @@ TEST(TrackSampler, interpolatesBetweenSamplesAndTakesSamplesAsTheyAre) {
   EXPECT_EQ(track.span(), "10.000 ... 12.000 s");
 }
 
-TEST(TrackSampler, knowsNothingOutsideTheTrackAndInGaps) {
+TEST(TrackSampler, KnowsNothingOutsideTheTrackAndInGaps) {
   TrackSampler track({9.9, 10, 10.5, 11.5, 14, 14.1}, 1);
   EXPECT_EQ(track.span(), "none");
   for (const double time : {10.0, 11.0, 14.0}) EXPECT_TRUE(track.add(time, pose(time, 0)));
@@ -43,7 +43,7 @@ TEST(TrackSampler, knowsNothingOutsideTheTrackAndInGaps) {
   EXPECT_EQ(found, std::vector<bool>({false, true, true, false, true, false}));
 }
 
-TEST(TrackSampler, forgivesRoundedTimes) {
+TEST(TrackSampler, ForgivesRoundedTimes) {
   TrackSampler track({1.0000015, 1.9999985}, 0.1);
   track.add(1, pose(1, 0));
   track.add(2, pose(2, 0));
@@ -52,7 +52,7 @@ TEST(TrackSampler, forgivesRoundedTimes) {
   EXPECT_EQ(track.poses()[1]->translation().x(), 2);
 }
 
-TEST(TrackSampler, doesNotUseSamplesOutOfOrder) {
+TEST(TrackSampler, DoesNotUseSamplesOutOfOrder) {
   TrackSampler track({1.5}, 1);
   EXPECT_TRUE(track.add(1, pose(1, 0)));
   EXPECT_FALSE(track.add(1, pose(7, 0)));

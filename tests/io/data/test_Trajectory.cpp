@@ -18,7 +18,7 @@ constexpr double rootHalf = 0.70710678118654752;
 
 }  // namespace
 
-TEST_F(TrajectoryTest, planarByHand) {
+TEST_F(TrajectoryTest, PlanarByHand) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   // Turned by 30° about z, then nose up by 20°: yaw stays 30°.
   pose.linear() = (Eigen::AngleAxisd(M_PI / 6, Eigen::Vector3d::UnitZ()) *
@@ -31,13 +31,13 @@ TEST_F(TrajectoryTest, planarByHand) {
   EXPECT_NEAR(result.yaw, M_PI / 6, 1e-15);
 }
 
-TEST_F(TrajectoryTest, planarKeepsYawInItsInterval) {
+TEST_F(TrajectoryTest, PlanarKeepsYawInItsInterval) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() << -1, 0, 0, -0.0, -1, 0, 0, 0, 1;  // atan2(-0, -1) is -pi
   EXPECT_EQ(planar(pose).yaw, M_PI);
 }
 
-TEST_F(TrajectoryTest, spatialUndoesPlanar) {
+TEST_F(TrajectoryTest, SpatialUndoesPlanar) {
   const Pose2D pose{4, -3, 2.5};
   const Eigen::Isometry3d result = spatial(pose);
   EXPECT_EQ(result.translation(), Eigen::Vector3d(4, -3, 0));
@@ -47,7 +47,7 @@ TEST_F(TrajectoryTest, spatialUndoesPlanar) {
   EXPECT_NEAR(planar(result).yaw, 2.5, 1e-15);
 }
 
-TEST_F(TrajectoryTest, readsTumByHand) {
+TEST_F(TrajectoryTest, ReadsTumByHand) {
   const auto poses =
       readTum(write("t.tum",
                     "# time x y z qx qy qz qw\n"
@@ -64,7 +64,7 @@ TEST_F(TrajectoryTest, readsTumByHand) {
   EXPECT_NEAR(flat[1].pose.yaw, M_PI / 2, 1e-15);
 }
 
-TEST_F(TrajectoryTest, writesPlanarTumByHand) {
+TEST_F(TrajectoryTest, WritesPlanarTumByHand) {
   writeTum(path("t.tum"),
            std::vector<StampedPose2D>{{0.1, {1.5, -2, 0}}, {0.25, {0, 0, M_PI / 2}}});
   EXPECT_EQ(read(path("t.tum")),
@@ -74,7 +74,7 @@ TEST_F(TrajectoryTest, writesPlanarTumByHand) {
             "0.707106781\n");
 }
 
-TEST_F(TrajectoryTest, tumComesBack) {
+TEST_F(TrajectoryTest, TumComesBack) {
   std::vector<StampedPose3D> poses;
   for (int i = 0; i < 50; ++i) {
     StampedPose3D entry;
@@ -94,7 +94,7 @@ TEST_F(TrajectoryTest, tumComesBack) {
   }
 }
 
-TEST_F(TrajectoryTest, planarTumIsTheSameInThePlane) {
+TEST_F(TrajectoryTest, PlanarTumIsTheSameInThePlane) {
   const auto file = write("t.tum",
                           "# t x y z q\n1.5 10 -20 3 0 0 0 1\n\n"
                           "2 1e5 0.25 -1 0.1 0.2 0.3 0.927361849549570\n");
@@ -114,41 +114,41 @@ TEST_F(TrajectoryTest, planarTumIsTheSameInThePlane) {
   expectIn(messageOf([&] { readPlanarTum(write("t.tum", "1 2\n")); }), "t.tum:1");
 }
 
-TEST_F(TrajectoryTest, refusesTumWithWrongColumns) {
+TEST_F(TrajectoryTest, RefusesTumWithWrongColumns) {
   const fs::path file = write("t.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 1\n");
   expectIn(messageOf([&] { readTum(file); }), file.string() + ":2: ", "7 numbers", "8 expected");
 }
 
-TEST_F(TrajectoryTest, refusesTumThatIsNoNumber) {
+TEST_F(TrajectoryTest, RefusesTumThatIsNoNumber) {
   const fs::path file = write("t.tum", "1 0 0 nan 0 0 0 1\n");
   expectIn(messageOf([&] { readTum(file); }), file.string() + ":1: ", "nan");
 }
 
-TEST_F(TrajectoryTest, refusesTumWithoutUnitQuaternion) {
+TEST_F(TrajectoryTest, RefusesTumWithoutUnitQuaternion) {
   const fs::path file = write("t.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1.02\n");
   expectIn(messageOf([&] { readTum(file); }), file.string() + ":2: ", "1.02");
   const fs::path zero = write("z.tum", "1 0 0 0 0 0 0 0\n");
   expectIn(messageOf([&] { readTum(zero); }), "length 0");
 }
 
-TEST_F(TrajectoryTest, refusesTumWhoseTimeStandsStill) {
+TEST_F(TrajectoryTest, RefusesTumWhoseTimeStandsStill) {
   const fs::path file = write("t.tum", "1.5 0 0 0 0 0 0 1\n\n1.5 0 0 0 0 0 0 1\n");
   expectIn(messageOf([&] { readTum(file); }), file.string() + ":3: ", "1.5 is not after 1.5");
 }
 
-TEST_F(TrajectoryTest, refusesTumWithoutPoses) {
+TEST_F(TrajectoryTest, RefusesTumWithoutPoses) {
   const fs::path file = write("t.tum", "# nothing\n");
   expectIn(messageOf([&] { readTum(file); }), file.string(), "no pose");
 }
 
-TEST_F(TrajectoryTest, refusesToWriteWhatIsNotFinite) {
+TEST_F(TrajectoryTest, RefusesToWriteWhatIsNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<StampedPose2D> poses{{0, {0, 0, 0}}, {1, {0, nan, 0}}};
   expectIn(messageOf([&] { writeTum(path("t.tum"), poses); }), path("t.tum").string(), "pose 1");
   EXPECT_TRUE(fs::is_empty(m_folder));
 }
 
-TEST_F(TrajectoryTest, readsKittiPosesByHand) {
+TEST_F(TrajectoryTest, ReadsKittiPosesByHand) {
   const auto poses = readKittiPoses(write("p.txt",
                                           "1 0 0 7 0 1 0 8 0 0 1 9\n"
                                           "# turned to the left\n"
@@ -159,7 +159,7 @@ TEST_F(TrajectoryTest, readsKittiPosesByHand) {
   EXPECT_TRUE((poses[1] * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(1, 3, 3), 1e-15));
 }
 
-TEST_F(TrajectoryTest, takesTheRoundingOutOfRotations) {
+TEST_F(TrajectoryTest, TakesTheRoundingOutOfRotations) {
   const std::string c = "0.7071", s = c;  // off by 7e-6
   const auto poses =
       readKittiPoses(write("p.txt", c + " -" + s + " 0 1 " + s + " " + c + " 0 2 0 0 1 3\n"));
@@ -167,13 +167,13 @@ TEST_F(TrajectoryTest, takesTheRoundingOutOfRotations) {
   EXPECT_NEAR(poses[0].linear()(0, 0), rootHalf, 1e-15);
 }
 
-TEST_F(TrajectoryTest, refusesPosesWithWrongColumns) {
+TEST_F(TrajectoryTest, RefusesPosesWithWrongColumns) {
   const fs::path file = write("p.txt", "0 -1 0 1\n");
   expectIn(messageOf([&] { readKittiPoses(file); }), file.string() + ":1: ", "4 numbers",
            "12 expected");
 }
 
-TEST_F(TrajectoryTest, refusesPosesWithoutRotation) {
+TEST_F(TrajectoryTest, RefusesPosesWithoutRotation) {
   for (const char* row : {"1.01 0 0 0 0 1 0 0 0 0 1 0", "-1 0 0 0 0 1 0 0 0 0 1 0",
                           "1 0.01 0 0 0 1 0 0 0 0 1 0", "0 0 0 0 0 0 0 0 0 0 0 0"}) {
     const fs::path file = write("p.txt", std::string("1 0 0 0 0 1 0 0 0 0 1 0\n") + row + "\n");
@@ -181,12 +181,12 @@ TEST_F(TrajectoryTest, refusesPosesWithoutRotation) {
   }
 }
 
-TEST_F(TrajectoryTest, refusesAFileWithoutPoses) {
+TEST_F(TrajectoryTest, RefusesAFileWithoutPoses) {
   const fs::path file = write("p.txt", "\n");
   expectIn(messageOf([&] { readKittiPoses(file); }), file.string(), "no pose");
 }
 
-TEST_F(TrajectoryTest, readsTheTracksOfMulRan) {
+TEST_F(TrajectoryTest, ReadsTheTracksOfMulRan) {
   POLEMCL_NEEDS_DATA();
   const auto poses = readKittiPoses(dataFolder() / "tracks" / "kaist01.txt.gz");
   double length = 0;

@@ -42,7 +42,7 @@ class KittiOdometryTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(KittiOdometryTest, camerasPosesBecomeLidarPosesByHand) {
+TEST_F(KittiOdometryTest, CamerasPosesBecomeLidarPosesByHand) {
   const ScanFolder folder = readKittiOdometry(sequence(), identity);
   ASSERT_EQ(folder.scans.size(), 3u);
   EXPECT_TRUE(folder.notes.empty());
@@ -58,7 +58,7 @@ TEST_F(KittiOdometryTest, camerasPosesBecomeLidarPosesByHand) {
   EXPECT_FALSE(folder.scans[1].motion);
 }
 
-TEST_F(KittiOdometryTest, theSensorPoseGivesRobotPoses) {
+TEST_F(KittiOdometryTest, TheSensorPoseGivesRobotPoses) {
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
   T_robot_sensor.translation() << 0.5, 0, 1.7;
   const ScanFolder folder = readKittiOdometry(sequence(), T_robot_sensor);
@@ -66,7 +66,7 @@ TEST_F(KittiOdometryTest, theSensorPoseGivesRobotPoses) {
       folder.scans[1].T_map_robot->translation().isApprox(Eigen::Vector3d(1.5, 0, -1.7), 1e-12));
 }
 
-TEST_F(KittiOdometryTest, findsPosesInTheFolderFirstAndThenBesideIt) {
+TEST_F(KittiOdometryTest, FindsPosesInTheFolderFirstAndThenBesideIt) {
   write("sequences/07/poses.txt",
         "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 5\n1 0 0 0 0 1 0 0 0 0 1 9\n");
   EXPECT_NEAR(readKittiOdometry(sequence(), identity).scans[1].T_map_robot->translation().x(), 5,
@@ -81,7 +81,7 @@ TEST_F(KittiOdometryTest, findsPosesInTheFolderFirstAndThenBesideIt) {
   EXPECT_TRUE(folder.scans[1].T_map_robot);
 }
 
-TEST_F(KittiOdometryTest, withoutPosesThereAreNoneAndANote) {
+TEST_F(KittiOdometryTest, WithoutPosesThereAreNoneAndANote) {
   fs::remove(path("poses/07.txt"));
   const ScanFolder folder = readKittiOdometry(sequence(), identity);
   EXPECT_FALSE(folder.scans[0].T_map_robot);
@@ -89,7 +89,7 @@ TEST_F(KittiOdometryTest, withoutPosesThereAreNoneAndANote) {
   expectIn(folder.notes[0], "no poses");
 }
 
-TEST_F(KittiOdometryTest, rowsBelongToFileNumbers) {
+TEST_F(KittiOdometryTest, RowsBelongToFileNumbers) {
   fs::remove(path("sequences/07/velodyne/000001.bin"));
   const ScanFolder folder = readKittiOdometry(sequence(), identity);
   ASSERT_EQ(folder.scans.size(), 2u);
@@ -99,66 +99,66 @@ TEST_F(KittiOdometryTest, rowsBelongToFileNumbers) {
   EXPECT_EQ(folder.notes[0], "2 scans of a sequence of 3");
 }
 
-TEST_F(KittiOdometryTest, takesTheOtherNameOfTheCalibration) {
+TEST_F(KittiOdometryTest, TakesTheOtherNameOfTheCalibration) {
   write("sequences/07/calib.txt", "Tr_velo_to_cam: 0 -1 0 0 0 0 -1 -0.1 1 0 0 -0.3\r\n");
   EXPECT_NEAR(readKittiOdometry(sequence(), identity).scans[2].T_map_robot->translation().y(), -0.3,
               1e-12);
 }
 
-TEST_F(KittiOdometryTest, refusesFewerPosesThanScans) {
+TEST_F(KittiOdometryTest, RefusesFewerPosesThanScans) {
   write("poses/07.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 2\n");
   expectIn(refusal(), "07.txt", "2 poses for 3 scans");
 }
 
-TEST_F(KittiOdometryTest, refusesFewerTimesThanScans) {
+TEST_F(KittiOdometryTest, RefusesFewerTimesThanScans) {
   write("sequences/07/times.txt", "0\n");
   expectIn(refusal(), "times.txt", "1 times for 3 scans");
 }
 
-TEST_F(KittiOdometryTest, refusesTimesThatDoNotIncrease) {
+TEST_F(KittiOdometryTest, RefusesTimesThatDoNotIncrease) {
   write("sequences/07/times.txt", "0\n1\n0.5\n");
   expectIn(refusal(), "times.txt:3: ", "not after");
 }
 
-TEST_F(KittiOdometryTest, refusesScansWithoutNumbers) {
+TEST_F(KittiOdometryTest, RefusesScansWithoutNumbers) {
   write("sequences/07/velodyne/x.bin", "");
   expectIn(refusal(), "x.bin", "no frame number");
 }
 
-TEST_F(KittiOdometryTest, refusesUnpaddedNumbers) {
+TEST_F(KittiOdometryTest, RefusesUnpaddedNumbers) {
   fs::remove_all(path("sequences/07/velodyne"));
   write("sequences/07/velodyne/10.bin", "");
   write("sequences/07/velodyne/9.bin", "");
   expectIn(refusal(), "9.bin", "same number of digits");
 }
 
-TEST_F(KittiOdometryTest, refusesAMissingCalibration) {
+TEST_F(KittiOdometryTest, RefusesAMissingCalibration) {
   fs::remove(path("sequences/07/calib.txt"));
   expectIn(refusal(), "calib.txt", "No such file or directory");
 }
 
-TEST_F(KittiOdometryTest, refusesACalibrationWithoutTr) {
+TEST_F(KittiOdometryTest, RefusesACalibrationWithoutTr) {
   write("sequences/07/calib.txt", "P0: 7 0 6 0 0 7 2 0 0 0 1 0\n");
   expectIn(refusal(), "calib.txt", "no line Tr:");
 }
 
-TEST_F(KittiOdometryTest, refusesAMalformedTr) {
+TEST_F(KittiOdometryTest, RefusesAMalformedTr) {
   write("sequences/07/calib.txt", "P0: 1\nTr: 0 -1 0 0 0 0 -1 -0.1 1 0 0\n");
   expectIn(refusal(), "calib.txt:2: ", "11 numbers", "12 expected");
   write("sequences/07/calib.txt", "Tr: 0 -1 0 0 0 0 1 -0.1 1 0 0 -0.3\n");
   expectIn(refusal(), "calib.txt:1: ", "no rotation");
 }
 
-TEST_F(KittiOdometryTest, refusesAScanCutShort) {
+TEST_F(KittiOdometryTest, RefusesAScanCutShort) {
   write("sequences/07/velodyne/000001.bin", "abc");
   expectIn(refusal(), "000001.bin", "cut short");
 }
 
-TEST_F(KittiOdometryTest, refusesAMissingFolder) {
+TEST_F(KittiOdometryTest, RefusesAMissingFolder) {
   expectIn(messageOf([&] { readKittiOdometry(path("no"), identity); }), path("no").string());
 }
 
-TEST_F(KittiOdometryTest, readsRealScansLaidOutAsASequence) {
+TEST_F(KittiOdometryTest, ReadsRealScansLaidOutAsASequence) {
   POLEMCL_NEEDS_DATA();
   // The scans and LiDAR poses of the sample, written as KITTI has them: camera poses in the frame
   // of the first camera, T_cam = Tr · T_lidar · Tr⁻¹. What comes back are the LiDAR poses.

@@ -74,7 +74,7 @@ class KittiRawTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(KittiRawTest, parseKittiTimeByHand) {
+TEST_F(KittiRawTest, ParseKittiTimeByHand) {
   EXPECT_EQ(parseKittiTime("1970-01-01 00:00:00", ""), 0);
   EXPECT_EQ(parseKittiTime("1969-12-31 23:59:59", ""), -1);
   EXPECT_EQ(parseKittiTime("2000-02-29 23:59:59", ""), 951868799);
@@ -83,7 +83,7 @@ TEST_F(KittiRawTest, parseKittiTimeByHand) {
   EXPECT_NEAR(parseKittiTime(" 2011-09-26 13:02:25.964389445\r", ""), 1317042145.964389445, 3e-7);
 }
 
-TEST_F(KittiRawTest, refusesWhatIsNoTime) {
+TEST_F(KittiRawTest, RefusesWhatIsNoTime) {
   for (const char* text :
        {"", "2011-09-26", "2011-09-26T13:02:25", "2011-13-26 13:02:25", "2011-02-29 13:02:25",
         "1900-02-29 00:00:00", "2011-09-26 24:02:25", "2011-09-26 13:60:25", "2011-09-26 13:02:61",
@@ -93,7 +93,7 @@ TEST_F(KittiRawTest, refusesWhatIsNoTime) {
   }
 }
 
-TEST_F(KittiRawTest, mercatorPoseByTheFormulaOfTheDevkit) {
+TEST_F(KittiRawTest, MercatorPoseByTheFormulaOfTheDevkit) {
   // Worked out apart with my = s·R·log(tan((90 + lat)·pi/360)), lat 49.015003823272.
   const double scale = 0.6558613736316692;
   const auto a = mercatorPose({49.015003823272, 8.4342971002335, 112.8, 0, 0, 0}, scale);
@@ -107,7 +107,7 @@ TEST_F(KittiRawTest, mercatorPoseByTheFormulaOfTheDevkit) {
   EXPECT_NEAR(b.translation().y() - a.translation().y(), 6378137 * 1e-4 * M_PI / 180, 1e-4);
 }
 
-TEST_F(KittiRawTest, attitudeIsYawThenPitchThenRoll) {
+TEST_F(KittiRawTest, AttitudeIsYawThenPitchThenRoll) {
   // Nose up is a negative pitch about the left axis.
   const auto pose = mercatorPose({0, 0, 0, 0.1, -0.2, 0.3}, 1);
   const Eigen::Vector3d ahead = pose.linear().col(0);
@@ -116,7 +116,7 @@ TEST_F(KittiRawTest, attitudeIsYawThenPitchThenRoll) {
   EXPECT_NEAR(std::atan2(pose.linear()(2, 1), pose.linear()(2, 2)), 0.1, 1e-15);
 }
 
-TEST_F(KittiRawTest, posesByHand) {
+TEST_F(KittiRawTest, PosesByHand) {
   const ScanFolder folder = readDrive();
   ASSERT_EQ(folder.scans.size(), 5u);
   EXPECT_TRUE(folder.notes.empty());
@@ -135,7 +135,7 @@ TEST_F(KittiRawTest, posesByHand) {
   }
 }
 
-TEST_F(KittiRawTest, theMapLooksAlongTheFirstFrameAndStaysLevel) {
+TEST_F(KittiRawTest, TheMapLooksAlongTheFirstFrameAndStaysLevel) {
   // Heading north, nose up: x of the map is north, and the map does not lean.
   for (int i = 0; i < 5; ++i) addOxts(i, oxtsRow(49 + 1e-5 * i, 8.4, 112, 0.05, -0.1, M_PI / 2));
   write("date/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 1\nT: 0 0 0\n");
@@ -149,14 +149,14 @@ TEST_F(KittiRawTest, theMapLooksAlongTheFirstFrameAndStaysLevel) {
   EXPECT_NEAR(std::asin(last.linear()(2, 0)), 0.1, 1e-12);
 }
 
-TEST_F(KittiRawTest, theSensorPoseGivesRobotPoses) {
+TEST_F(KittiRawTest, TheSensorPoseGivesRobotPoses) {
   // With the IMU in the robot's origin, the robot frame is the IMU's.
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
   T_robot_sensor.translation() << -0.8, 0.3, 0.8;
   EXPECT_TRUE(readDrive(T_robot_sensor).scans[0].T_map_robot->translation().isZero(1e-6));
 }
 
-TEST_F(KittiRawTest, missingScansArePairedByNumberAndNoted) {
+TEST_F(KittiRawTest, MissingScansArePairedByNumberAndNoted) {
   removeScan(1);
   removeScan(2);
   // Lines of missing frames are blank, as in drive 0009 …
@@ -175,7 +175,7 @@ TEST_F(KittiRawTest, missingScansArePairedByNumberAndNoted) {
   EXPECT_EQ(readDrive().scans[1].time, byNumber.scans[1].time);
 }
 
-TEST_F(KittiRawTest, scansWithoutOxtsAreLeftOutAndNoted) {
+TEST_F(KittiRawTest, ScansWithoutOxtsAreLeftOutAndNoted) {
   addScan(7);
   write("drive/velodyne_points/timestamps.txt",
         stamp(25) + stamp(25.1) + stamp(25.2) + stamp(25.3) + stamp(25.4) + stamp(25.7));
@@ -185,7 +185,7 @@ TEST_F(KittiRawTest, scansWithoutOxtsAreLeftOutAndNoted) {
   expectIn(folder.notes[0], "left out", "scans 7");
 }
 
-TEST_F(KittiRawTest, aDriveMayStartLate) {
+TEST_F(KittiRawTest, ADriveMayStartLate) {
   removeScan(0);
   fs::remove(path("drive/oxts/data/" + frameName(0, ".txt")));
   const ScanFolder folder = readDrive();
@@ -194,7 +194,7 @@ TEST_F(KittiRawTest, aDriveMayStartLate) {
   EXPECT_NEAR(folder.scans[0].T_map_robot->translation().x(), -0.8, 1e-6);
 }
 
-TEST_F(KittiRawTest, notesPairsFarApartInTime) {
+TEST_F(KittiRawTest, NotesPairsFarApartInTime) {
   write("drive/oxts/timestamps.txt",
         stamp(25) + stamp(25.1) + stamp(25.26) + stamp(25.3) + stamp(25.4));
   const ScanFolder folder = readDrive();
@@ -204,30 +204,30 @@ TEST_F(KittiRawTest, notesPairsFarApartInTime) {
   EXPECT_TRUE(readDrive().notes.empty());
 }
 
-TEST_F(KittiRawTest, refusesFewerTimesThanScans) {
+TEST_F(KittiRawTest, RefusesFewerTimesThanScans) {
   write("drive/velodyne_points/timestamps.txt", stamp(25) + stamp(25.1));
   expectIn(refusal(), "timestamps.txt", "2 times for 5 frames");
 }
 
-TEST_F(KittiRawTest, refusesABlankTimeOfAScanThatIsThere) {
+TEST_F(KittiRawTest, RefusesABlankTimeOfAScanThatIsThere) {
   write("drive/velodyne_points/timestamps.txt",
         stamp(25) + "\n" + stamp(25.2) + stamp(25.3) + stamp(25.4));
   expectIn(refusal(), "timestamps.txt:2: ", "no time");
 }
 
-TEST_F(KittiRawTest, refusesTimesThatDoNotIncrease) {
+TEST_F(KittiRawTest, RefusesTimesThatDoNotIncrease) {
   write("drive/velodyne_points/timestamps.txt",
         stamp(25) + stamp(25.2) + stamp(25.1) + stamp(25.3) + stamp(25.4));
   expectIn(refusal(), "timestamps.txt", "frame 2 is not after that of frame 1");
 }
 
-TEST_F(KittiRawTest, blankLinesAtTheEndOfTheTimesCountForNothing) {
+TEST_F(KittiRawTest, BlankLinesAtTheEndOfTheTimesCountForNothing) {
   const std::string times = read(path("drive/velodyne_points/timestamps.txt"));
   write("drive/velodyne_points/timestamps.txt", times + "\n \n");
   EXPECT_EQ(readDrive().scans.size(), 5u);
 }
 
-TEST_F(KittiRawTest, refusesUnpaddedNumbers) {
+TEST_F(KittiRawTest, RefusesUnpaddedNumbers) {
   write("drive/oxts/data/10.txt", "");
   write("drive/oxts/data/9.txt", "");
   expectIn(refusal(), "9.txt", "same number of digits");
@@ -237,12 +237,12 @@ TEST_F(KittiRawTest, refusesUnpaddedNumbers) {
   expectIn(refusal(), "9.bin", "same number of digits");
 }
 
-TEST_F(KittiRawTest, refusesMissingTimes) {
+TEST_F(KittiRawTest, RefusesMissingTimes) {
   fs::remove(path("drive/velodyne_points/timestamps.txt"));
   expectIn(refusal(), "timestamps.txt", "No such file or directory");
 }
 
-TEST_F(KittiRawTest, refusesMalformedOxts) {
+TEST_F(KittiRawTest, RefusesMalformedOxts) {
   addOxts(3, "49 8.4 112 0 0 0\n");
   expectIn(refusal(), frameName(3, ".txt") + ":1: ", "6 numbers, 30 expected");
   addOxts(3, oxtsRow(49, 8.4, 112, 0, 0, 0) + oxtsRow(49, 8.4, 112, 0, 0, 0));
@@ -253,19 +253,19 @@ TEST_F(KittiRawTest, refusesMalformedOxts) {
   expectIn(refusal(), frameName(3, ".txt") + ":1: ", "longitude 180.1");
 }
 
-TEST_F(KittiRawTest, refusesADriveWithoutCommonFrames) {
+TEST_F(KittiRawTest, RefusesADriveWithoutCommonFrames) {
   fs::remove_all(path("drive/oxts/data"));
   fs::remove(path("drive/oxts/timestamps.txt"));
   addOxts(9, oxtsRow(49, 8.4, 112, 0, 0, 0));
   expectIn(refusal(), path("drive").string(), "scans 0-4", "oxts 9");
 }
 
-TEST_F(KittiRawTest, refusesAMissingCalibration) {
+TEST_F(KittiRawTest, RefusesAMissingCalibration) {
   fs::remove(path("date/calib_imu_to_velo.txt"));
   expectIn(refusal(), path("date/calib_imu_to_velo.txt").string(), "No such file or directory");
 }
 
-TEST_F(KittiRawTest, refusesAMalformedCalibration) {
+TEST_F(KittiRawTest, RefusesAMalformedCalibration) {
   write("date/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 1\nT 0 0 0\n");
   expectIn(refusal(), "calib_imu_to_velo.txt", "9 and 0 found");
   write("date/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 2\nT: 0 0 0\n");
@@ -274,14 +274,14 @@ TEST_F(KittiRawTest, refusesAMalformedCalibration) {
   expectIn(refusal(), "calib_imu_to_velo.txt:1: ", "'x'");
 }
 
-TEST_F(KittiRawTest, refusesADriveWithoutScansOrOxts) {
+TEST_F(KittiRawTest, RefusesADriveWithoutScansOrOxts) {
   expectIn(messageOf([&] { readKittiRaw(path("no"), path("date"), identity); }),
            path("no").string());
   fs::remove_all(path("drive/oxts/data"));
   expectIn(refusal(), path("drive/oxts/data").string(), "No such file or directory");
 }
 
-TEST_F(KittiRawTest, refusesAScanCutShort) {
+TEST_F(KittiRawTest, RefusesAScanCutShort) {
   write("drive/velodyne_points/data/" + frameName(2, ".bin"), "abc");
   expectIn(refusal(), frameName(2, ".bin"), "cut short");
 }

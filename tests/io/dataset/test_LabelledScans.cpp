@@ -27,7 +27,7 @@ class LabelledScansTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(LabelledScansTest, labelsStayWithTheirPoints) {
+TEST_F(LabelledScansTest, LabelsStayWithTheirPoints) {
   const auto scan = readLabelledCloud(
       write("a.bin", floats({1, 2, 3, 0.5f, NAN, 0, 0, 0, 0, 0, 0, 1, 4, 5, 6, 0.25f})),
       write("a.label", labels({7, 8, 9, 0x80000001u})));
@@ -39,12 +39,12 @@ TEST_F(LabelledScansTest, labelsStayWithTheirPoints) {
   EXPECT_EQ(scan.labels, (std::vector<std::uint32_t>{7, 0x80000001u}));
 }
 
-TEST_F(LabelledScansTest, labelsLieBesideTheScans) {
+TEST_F(LabelledScansTest, LabelsLieBesideTheScans) {
   EXPECT_EQ(labelFile("/d/velodyne/000012.bin"), "/d/labels/000012.label");
   EXPECT_EQ(labelFile("velodyne/1.bin"), fs::absolute("labels/1.label"));
 }
 
-TEST_F(LabelledScansTest, refusesLabelsOfAnotherScan) {
+TEST_F(LabelledScansTest, RefusesLabelsOfAnotherScan) {
   const fs::path bin = write("a.bin", floats({1, 2, 3, 4, 5, 6, 7, 8}));
   for (const std::string& bytes : {labels({1}), labels({1, 2, 3}), labels({1, 2}) + "x"}) {
     const fs::path label = write("a.label", bytes);
@@ -57,7 +57,7 @@ TEST_F(LabelledScansTest, refusesLabelsOfAnotherScan) {
            "20 bytes");
 }
 
-TEST_F(LabelledScansTest, readsTruePoles) {
+TEST_F(LabelledScansTest, ReadsTruePoles) {
   const auto poles = readWorldPoles(write("poles_gt.csv",
                                           "id,x,y,radius,top,kind\n3,1.5,-2,0.1,5.25,lamp post\n"
                                           "4294967295,0,0,0.05,2,sign\n"));
@@ -70,7 +70,7 @@ TEST_F(LabelledScansTest, readsTruePoles) {
   EXPECT_EQ(poles[1].id, 4294967295u);
 }
 
-TEST_F(LabelledScansTest, refusesPolesWithoutAnId) {
+TEST_F(LabelledScansTest, RefusesPolesWithoutAnId) {
   expectIn(refusal("x,y,radius,top\n1,2,3,4\n"), "column named id");
   for (const char* id : {"-1", "1.5", "4294967296"})
     expectIn(refusal("id,x,y,radius,top\n" + std::string(id) + ",1,2,3,4\n"), ":2: ", "whole");

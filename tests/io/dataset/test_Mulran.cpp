@@ -41,7 +41,7 @@ class MulranTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(MulranTest, readsScansAndTheVehiclesPoses) {
+TEST_F(MulranTest, ReadsScansAndTheVehiclesPoses) {
   const ScanFolder sequence = load();
   ASSERT_EQ(sequence.scans.size(), 3u);
   EXPECT_FALSE(sequence.read);  // rawlogs can refer to these files
@@ -57,7 +57,7 @@ TEST_F(MulranTest, readsScansAndTheVehiclesPoses) {
   EXPECT_TRUE(sequence.notes.empty());
 }
 
-TEST_F(MulranTest, theRobotMayBeTheLidar) {
+TEST_F(MulranTest, TheRobotMayBeTheLidar) {
   const ScanFolder sequence = readMulran(path("KAIST01"), Eigen::Isometry3d::Identity());
   const Eigen::Isometry3d& pose = *sequence.scans[0].T_map_robot;
   EXPECT_NEAR(pose.translation().x(), 355000 + 10 * 0.04085763 + 1.7042, 1e-5);
@@ -66,7 +66,7 @@ TEST_F(MulranTest, theRobotMayBeTheLidar) {
   EXPECT_NEAR(planar(pose).yaw, 179.6654 * M_PI / 180, 1e-9);  // it looks back
 }
 
-TEST_F(MulranTest, readsTheLayoutWithSensorData) {
+TEST_F(MulranTest, ReadsTheLayoutWithSensorData) {
   fs::create_directories(path("KAIST01/sensor_data"));
   fs::rename(path("KAIST01/Ouster"), path("KAIST01/sensor_data/Ouster"));
   write("KAIST01/sensor_data/ouster_front_stamp.csv",
@@ -76,21 +76,21 @@ TEST_F(MulranTest, readsTheLayoutWithSensorData) {
   expectIn(sequence.notes.at(0), "ouster_front_stamp.csv", "1 of its 4 times have no scan");
 }
 
-TEST_F(MulranTest, scansWithoutTruthAreLeftOut) {
+TEST_F(MulranTest, ScansWithoutTruthAreLeftOut) {
   write("KAIST01/global_pose.csv", drive(20));  // the last scan comes after its end
   const ScanFolder sequence = load();
   EXPECT_EQ(sequence.scans.size(), 2u);
   expectIn(sequence.notes.at(0), "1 of 3 scans left out, at times without truth");
 }
 
-TEST_F(MulranTest, theTruthMayBeMissing) {
+TEST_F(MulranTest, TheTruthMayBeMissing) {
   fs::remove(path("KAIST01/global_pose.csv"));
   const ScanFolder sequence = load();
   EXPECT_FALSE(sequence.scans[0].T_map_robot);
   expectIn(sequence.notes.at(0), "no global_pose.csv");
 }
 
-TEST_F(MulranTest, refusesWhatIsDamaged) {
+TEST_F(MulranTest, RefusesWhatIsDamaged) {
   write("KAIST01/global_pose.csv", "1,1,0,0,0,0,1,0,0,0,0,1,0\n2,1,0,0\n");
   expectIn(refusal(), "global_pose.csv:2: ", "4 numbers, 13 expected");
   write("KAIST01/global_pose.csv", "1,2,0,0,0,0,1,0,0,0,0,1,0\n");

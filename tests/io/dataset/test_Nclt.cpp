@@ -61,7 +61,7 @@ class NcltTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(NcltTest, mapIsEastNorthUpAndTheRobotUpright) {
+TEST_F(NcltTest, MapIsEastNorthUpAndTheRobotUpright) {
   const ScanFolder session = load();
   ASSERT_EQ(session.scans.size(), 5u);
   for (int i = 0; i < 5; ++i) {
@@ -76,7 +76,7 @@ TEST_F(NcltTest, mapIsEastNorthUpAndTheRobotUpright) {
   expectIn(notes(session), "1 rows without a pose (NaN)");
 }
 
-TEST_F(NcltTest, motionsAreThoseOfTheTrackWithTheCovariancesOfTheSteps) {
+TEST_F(NcltTest, MotionsAreThoseOfTheTrackWithTheCovariancesOfTheSteps) {
   const ScanFolder session = load();
   EXPECT_FALSE(session.scans[0].motion);
   const PlanarMotion& motion = *session.scans[2].motion;
@@ -92,7 +92,7 @@ TEST_F(NcltTest, motionsAreThoseOfTheTrackWithTheCovariancesOfTheSteps) {
   EXPECT_NEAR(motion.covariance(2, 2), hh + 1e-8, 2e-7);
 }
 
-TEST_F(NcltTest, turnsToTheRightAreNegative) {
+TEST_F(NcltTest, TurnsToTheRightAreNegative) {
   std::string track;
   for (int i = 0; i < 110; ++i)
     track += poseRow(start + static_cast<std::uint64_t>(i) * 10000, 0, 0, 0, 0, 0, 0.005 * i);
@@ -100,21 +100,21 @@ TEST_F(NcltTest, turnsToTheRightAreNegative) {
   EXPECT_NEAR(load().scans[1].motion->mean.yaw, -0.1, 1e-6);
 }
 
-TEST_F(NcltTest, stepsAloneAreJoined) {
+TEST_F(NcltTest, StepsAloneAreJoined) {
   remove("odometry_mu_100hz.csv");
   const ScanFolder session = load();
   ASSERT_EQ(session.scans.size(), 5u);
   EXPECT_NEAR(session.scans[3].motion->mean.x, 1, 1e-6);
 }
 
-TEST_F(NcltTest, withoutCovariancesTheMotionGivesThem) {
+TEST_F(NcltTest, WithoutCovariancesTheMotionGivesThem) {
   remove("odometry_cov.csv");
   const ScanFolder session = load();
   EXPECT_NEAR(session.scans[1].motion->covariance(0, 0), 0.05 * 0.05 + 1e-6, 2e-7);
   expectIn(notes(session), "odometry_cov.csv", "5 %");
 }
 
-TEST_F(NcltTest, filesMayBeMissing) {
+TEST_F(NcltTest, FilesMayBeMissing) {
   for (const char* name :
        {"odometry_mu_100hz.csv", "odometry_mu.csv", "groundtruth_2012-01-15.csv"})
     remove(name);
@@ -125,24 +125,24 @@ TEST_F(NcltTest, filesMayBeMissing) {
   expectIn(notes(session), "no groundtruth_DATE.csv");
 }
 
-TEST_F(NcltTest, theTruthMayLieBesideTheSession) {
+TEST_F(NcltTest, TheTruthMayLieBesideTheSession) {
   fs::rename(path("2012-01-15/groundtruth_2012-01-15.csv"), path("groundtruth_2012-01-15.csv"));
   write("groundtruth_2012-01-22.csv", "1,2\n");
   EXPECT_TRUE(load().scans[0].T_map_robot);
 }
 
-TEST_F(NcltTest, partsMayLieOneFolderBelow) {
+TEST_F(NcltTest, PartsMayLieOneFolderBelow) {
   fs::create_directories(path("2012-01-15/sen"));
   fs::rename(path("2012-01-15/odometry_mu.csv"), path("2012-01-15/sen/odometry_mu.csv"));
   EXPECT_NEAR(load().scans[2].motion->covariance(2, 2), 0.0025 + 1e-8, 2e-7);
 }
 
-TEST_F(NcltTest, scansRightInTheFolderAreFound) {
+TEST_F(NcltTest, ScansRightInTheFolderAreFound) {
   fs::rename(path("2012-01-15/velodyne_sync"), path("bare"));
   EXPECT_EQ(readNclt(path("bare"), ncltRobotBody()).scans.size(), 5u);
 }
 
-TEST_F(NcltTest, scansWithoutTruthOrOdometryAreLeftOut) {
+TEST_F(NcltTest, ScansWithoutTruthOrOdometryAreLeftOut) {
   write("2012-01-15/velodyne_sync/" + std::to_string(scanTime(-10)) + ".bin", point(1, 2, 3));
   std::string truth;  // nothing at scan 1, nor after scan 3
   truth += poseRow(start - 900000, 0, 0, 0, 0, 0, 0) + poseRow(start, 0, 0, 0, 0, 0, 0) +
@@ -155,7 +155,7 @@ TEST_F(NcltTest, scansWithoutTruthOrOdometryAreLeftOut) {
            "1 of 5 scans left out, at times without truth");
 }
 
-TEST_F(NcltTest, tellsHowGoodTheTruthIs) {
+TEST_F(NcltTest, TellsHowGoodTheTruthIs) {
   Eigen::Matrix<double, 6, 6> c = Eigen::Matrix<double, 6, 6>::Zero();
   c(0, 0) = 0.09;
   c(1, 1) = 0.16;
@@ -164,7 +164,7 @@ TEST_F(NcltTest, tellsHowGoodTheTruthIs) {
   expectIn(notes(load()), "0.300 m in the mean, 0.500 m at worst (cov_2012-01-15.csv)");
 }
 
-TEST_F(NcltTest, readsPacketsWhereThereAreNoScans) {
+TEST_F(NcltTest, ReadsPacketsWhereThereAreNoScans) {
   remove("velodyne_sync");
   // Turns of 0.36 s; the body goes 1.8 m in each.
   write("2012-01-15/velodyne_hits.bin", turning(80, 10.005));
@@ -180,7 +180,7 @@ TEST_F(NcltTest, readsPacketsWhereThereAreNoScans) {
   EXPECT_NEAR(cloud.y[0], -10, 0.02);
 }
 
-TEST_F(NcltTest, refusesTimesThatDoNotOverlap) {
+TEST_F(NcltTest, RefusesTimesThatDoNotOverlap) {
   write("2012-01-15/groundtruth_2012-01-15.csv",
         poseRow(1000000, 0, 0, 0, 0, 0, 0) + poseRow(2000000, 0, 0, 0, 0, 0, 0));
   expectIn(refusal(), "groundtruth_2012-01-15.csv", "no truth", "1.000 ... 2.000 s",
@@ -192,13 +192,13 @@ TEST_F(NcltTest, refusesTimesThatDoNotOverlap) {
   expectIn(refusal(), "odometry_mu_100hz.csv", "no odometry", "none");
 }
 
-TEST_F(NcltTest, refusesSessionsWithoutScans) {
+TEST_F(NcltTest, RefusesSessionsWithoutScans) {
   remove("velodyne_sync");
   expectIn(refusal(), "2012-01-15", "velodyne_sync", "velodyne_hits.bin", "_vel.tar.gz");
   expectIn(messageOf([&] { readNclt(path("no"), ncltRobotBody()); }), path("no").string());
 }
 
-TEST_F(NcltTest, refusesShortRowsAndCutScans) {
+TEST_F(NcltTest, RefusesShortRowsAndCutScans) {
   const std::string scan = "2012-01-15/velodyne_sync/" + std::to_string(scanTime(2)) + ".bin";
   write(scan, point(1, 2, 3) + "abc");
   expectIn(refusal(), std::to_string(scanTime(2)), "cut short: 11 bytes", "multiple of 8");
@@ -210,7 +210,7 @@ TEST_F(NcltTest, refusesShortRowsAndCutScans) {
 }
 
 // The mean goes on from odometry_mu.csv whatever its covariances are.
-TEST_F(NcltTest, covariancesOfOtherTimesAreDoneWithout) {
+TEST_F(NcltTest, CovariancesOfOtherTimesAreDoneWithout) {
   write("2012-01-15/odometry_cov.csv", covarianceRow(5, Eigen::Matrix<double, 6, 6>::Identity()));
   const ScanFolder session = load();
   EXPECT_NEAR(session.scans[2].motion->mean.x, 1, 1e-6);
@@ -219,7 +219,7 @@ TEST_F(NcltTest, covariancesOfOtherTimesAreDoneWithout) {
            "6 have none");
 }
 
-TEST_F(NcltTest, covariancesAreFoundByTheirTimes) {
+TEST_F(NcltTest, CovariancesAreFoundByTheirTimes) {
   // As the owners' files may be: rows that odometry_mu.csv has not, rows missing, times a little
   // off, not in order, not finite.
   const auto c = [](double xx) {
@@ -244,7 +244,7 @@ TEST_F(NcltTest, covariancesAreFoundByTheirTimes) {
   expectIn(notes(session), "of 6 motions 2 take the covariance of the nearest time, 3 have none");
 }
 
-TEST_F(NcltTest, refusesSeveralSessionsInOneFolder) {
+TEST_F(NcltTest, RefusesSeveralSessionsInOneFolder) {
   fs::copy(path("2012-01-15"), path("2012-01-22"), fs::copy_options::recursive);
   expectIn(messageOf([&] { readNclt(m_folder, ncltRobotBody()); }), "several of these",
            "2012-01-15", "2012-01-22");

@@ -56,7 +56,7 @@ class NcltLayout : public FolderTest {
 }  // namespace
 
 // DATE_vel.tar.gz holds DATE/velodyne_sync/…, DATE_sen.tar.gz holds DATE/odometry_mu.csv, …
-TEST_F(NcltLayout, archivesUnpackedWhereTheDownloaderPutsThem) {
+TEST_F(NcltLayout, ArchivesUnpackedWhereTheDownloaderPutsThem) {
   for (const auto& [date, north] : {std::pair{"2012-01-08", 100.0}, {"2012-01-15", 200.0}})
     put(std::string("nclt/velodyne_data/") + date, std::string("nclt/sensor_data/") + date,
         "nclt/ground_truth", date, north);
@@ -71,7 +71,7 @@ TEST_F(NcltLayout, archivesUnpackedWhereTheDownloaderPutsThem) {
 }
 
 // As the authors of the paper have them.
-TEST_F(NcltLayout, archivesUnpackedInFoldersOfTheirNames) {
+TEST_F(NcltLayout, ArchivesUnpackedInFoldersOfTheirNames) {
   put("nclt/velodyne_data/2012-01-08_vel", "nclt/sensor_data/2012-01-08_sen", "nclt/ground_truth",
       "2012-01-08", 100);
   expectWhole("nclt/2012-01-08", 100);
@@ -86,7 +86,7 @@ TEST_F(NcltLayout, archivesUnpackedInFoldersOfTheirNames) {
 }
 
 // Both archives unpacked beside the downloader's folders make one folder for the session.
-TEST_F(NcltLayout, archivesUnpackedInTheRoot) {
+TEST_F(NcltLayout, ArchivesUnpackedInTheRoot) {
   put("nclt/2012-01-08", "nclt/2012-01-08", "nclt/ground_truth", "2012-01-08", 100);
   write("nclt/velodyne_data/2012-01-08_vel.tar.gz", "");
   expectWhole("nclt/2012-01-08", 100);
@@ -94,7 +94,7 @@ TEST_F(NcltLayout, archivesUnpackedInTheRoot) {
 }
 
 // The truth of another session is none.
-TEST_F(NcltLayout, takesNoTruthOfAnotherDate) {
+TEST_F(NcltLayout, TakesNoTruthOfAnotherDate) {
   put("nclt/velodyne_data/2012-01-08", "nclt/sensor_data/2012-01-08", "nclt/ground_truth",
       "2012-01-15", 100);
   const ScanFolder found = load("nclt/2012-01-08");
@@ -102,7 +102,7 @@ TEST_F(NcltLayout, takesNoTruthOfAnotherDate) {
   EXPECT_TRUE(found.scans[1].motion);
 }
 
-TEST_F(NcltLayout, saysWhatIsNotUnpacked) {
+TEST_F(NcltLayout, SaysWhatIsNotUnpacked) {
   write("nclt/velodyne_data/2012-01-08_vel.tar.gz", "");
   for (const char* session : {"nclt", "nclt/2012-01-08"})
     expectIn(messageOf([&] { load(session); }), "2012-01-08_vel.tar.gz", "unpack it there");

@@ -28,7 +28,7 @@ class NcltScansTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(NcltScansTest, readsPointsInStepsOfFiveMillimetres) {
+TEST_F(NcltScansTest, ReadsPointsInStepsOfFiveMillimetres) {
   // The first point by hand: 21000 = 5.000 m, 19000 = -5.000 m, 20199 = 0.995 m.
   const std::string bytes("\x08\x52\x38\x4a\xe7\x4e\xc8\x1f", 8);
   const Cloud cloud =
@@ -43,12 +43,12 @@ TEST_F(NcltScansTest, readsPointsInStepsOfFiveMillimetres) {
   EXPECT_EQ(cloud.invalid, 1u);
 }
 
-TEST_F(NcltScansTest, refusesAScanCutShort) {
+TEST_F(NcltScansTest, RefusesAScanCutShort) {
   expectIn(messageOf([&] { readNcltSync(write("a.bin", point(1, 2, 3) + "abc")); }), "a.bin",
            "cut short: 11 bytes", "multiple of 8");
 }
 
-TEST_F(NcltScansTest, readsTheRealScan) {
+TEST_F(NcltScansTest, ReadsTheRealScan) {
   POLEMCL_NEEDS_DATA();
   const Cloud cloud = readNcltSync(dataFolder() / "nclt_scan" / "1326652795280148.bin");
   EXPECT_EQ(cloud.size() + cloud.invalid, 188368u / 8);
@@ -62,7 +62,7 @@ TEST_F(NcltScansTest, readsTheRealScan) {
   EXPECT_NEAR(*middle, -0.1, 0.05);
 }
 
-TEST_F(NcltScansTest, turnsEndWhereTheBeamsHaveComeRound) {
+TEST_F(NcltScansTest, TurnsEndWhereTheBeamsHaveComeRound) {
   // A bit more than 10° a packet, 36 packets a turn: the first turn has packets 0 … 35, the second
   // 36 … 71, then 8 are left.
   const auto turns = find(turning(80, 10.005));
@@ -78,7 +78,7 @@ TEST_F(NcltScansTest, turnsEndWhereTheBeamsHaveComeRound) {
   expectIn(notes.at(0), "2 whole turns, 1 incomplete");
 }
 
-TEST_F(NcltScansTest, turnsDoNotDriftWhenStepsDoNotDivideThem) {
+TEST_F(NcltScansTest, TurnsDoNotDriftWhenStepsDoNotDivideThem) {
   // 7° steps, clockwise: turns begin at the first packet at or beyond 360°, 720°, …
   const auto turns = find(turning(210, -7));
   ASSERT_EQ(turns.size(), 4u);
@@ -87,7 +87,7 @@ TEST_F(NcltScansTest, turnsDoNotDriftWhenStepsDoNotDivideThem) {
   EXPECT_EQ(turns[3].offset, 155u * 40);
 }
 
-TEST_F(NcltScansTest, turnsWithAPauseAreLeftOut) {
+TEST_F(NcltScansTest, TurnsWithAPauseAreLeftOut) {
   // 20 packets, a pause of a second, a whole turn and one packet more.
   const auto turns = find(turning(20, 10.005) + turning(37, 10.005, start + 2000000));
   ASSERT_EQ(turns.size(), 1u);
@@ -95,7 +95,7 @@ TEST_F(NcltScansTest, turnsWithAPauseAreLeftOut) {
   expectIn(notes.at(0), "1 whole turns, 2 incomplete");
 }
 
-TEST_F(NcltScansTest, refusesDamagedPackets) {
+TEST_F(NcltScansTest, RefusesDamagedPackets) {
   const std::string good = turning(80, 10.005);
   expectIn(refusal(good.substr(0, good.size() - 3)), "velodyne_hits.bin", "byte 3184", "cut short");
   expectIn(refusal(good.substr(0, 3170)), "byte 3160", "cut short");
@@ -110,7 +110,7 @@ TEST_F(NcltScansTest, refusesDamagedPackets) {
   expectIn(messageOf([&] { findNcltTurns(path("no.bin"), notes); }), "no.bin", "No such file");
 }
 
-TEST_F(NcltScansTest, pointsOfATurnComeIntoTheBodyFrame) {
+TEST_F(NcltScansTest, PointsOfATurnComeIntoTheBodyFrame) {
   const fs::path file =
       write("h.bin", packet(start, point(10, 0, 0) + point(0, 0, 0) + point(0, 0, 2, 90)));
   const NcltTurn turn{0, 24 + 24, start * 1e-6, start * 1e-6, start * 1e-6};
@@ -125,7 +125,7 @@ TEST_F(NcltScansTest, pointsOfATurnComeIntoTheBodyFrame) {
   EXPECT_EQ(cloud.intensity[1], 90);
 }
 
-TEST_F(NcltScansTest, theMotionOfTheBodyIsTakenOut) {
+TEST_F(NcltScansTest, TheMotionOfTheBodyIsTakenOut) {
   // A wall 10 m ahead of the body, seen at the begin, the middle and the end of a turn in which the
   // body goes 2 m: 11, 10 and 9 m away. The LiDAR's -y is the body's -x.
   const Eigen::Isometry3d T_lidar_body = ncltBodyLidar().inverse();

@@ -9,7 +9,7 @@ using namespace polemcl::io::test;
 
 using ScanFilesTest = FolderTest;
 
-TEST_F(ScanFilesTest, listsInOrderOfNames) {
+TEST_F(ScanFilesTest, ListsInOrderOfNames) {
   for (const char* name : {"d/b.bin", "d/a.bin", "d/c.txt", "d/.a.bin", "d/B.bin", "d/e.bin/f"}) {
     write(name, "");
   }
@@ -21,14 +21,14 @@ TEST_F(ScanFilesTest, listsInOrderOfNames) {
   EXPECT_TRUE(files[0].is_absolute());
 }
 
-TEST_F(ScanFilesTest, refusesAMissingOrUselessFolder) {
+TEST_F(ScanFilesTest, RefusesAMissingOrUselessFolder) {
   expectIn(messageOf([&] { listFiles(path("no"), ".bin"); }), path("no").string(),
            "No such file or directory");
   expectIn(messageOf([&] { listFiles(write("f", ""), ".bin"); }), "Not a directory");
   expectIn(messageOf([&] { listFiles(m_folder, ".bin"); }), m_folder.string(), "no *.bin");
 }
 
-TEST_F(ScanFilesTest, aLinkToNothingIsThere) {
+TEST_F(ScanFilesTest, ALinkToNothingIsThere) {
   EXPECT_FALSE(isThere(path("f")));
   EXPECT_FALSE(isThere(path("no/f")));
   EXPECT_TRUE(isThere(write("f", "")));
@@ -36,7 +36,7 @@ TEST_F(ScanFilesTest, aLinkToNothingIsThere) {
   EXPECT_TRUE(isThere(path("link")));
 }
 
-TEST_F(ScanFilesTest, fileNumber) {
+TEST_F(ScanFilesTest, FileNumber) {
   EXPECT_EQ(fileNumber("x/000012.bin"), 12u);
   EXPECT_EQ(fileNumber("1326652795280148.bin"), 1326652795280148u);
   EXPECT_EQ(fileNumber("1561000444390857630.bin"), 1561000444390857630u);
@@ -45,16 +45,16 @@ TEST_F(ScanFilesTest, fileNumber) {
   }
 }
 
-TEST_F(ScanFilesTest, refusesNamesThatAreNoNumbers) {
+TEST_F(ScanFilesTest, RefusesNamesThatAreNoNumbers) {
   EXPECT_EQ(fileNumbers({"0.bin", "2.bin"}), (std::vector<std::uint64_t>{0, 2}));
   expectIn(messageOf([] { fileNumbers({"0.bin", "x.bin"}); }), "x.bin", "000012.bin");
 }
 
-TEST_F(ScanFilesTest, refusesANumberThatIsThereTwice) {
+TEST_F(ScanFilesTest, RefusesANumberThatIsThereTwice) {
   expectIn(messageOf([] { fileNumbers({"01.bin", "1.bin"}); }), "1.bin", "twice");
 }
 
-TEST_F(ScanFilesTest, refusesNamesThatDoNotSortAsNumbers) {
+TEST_F(ScanFilesTest, RefusesNamesThatDoNotSortAsNumbers) {
   requirePaddedNames({"08.bin", "09.bin", "10.bin", "a.bin"});
   expectIn(messageOf([] {
              requirePaddedNames({"1.bin", "10.bin", "2.bin"});
@@ -62,7 +62,7 @@ TEST_F(ScanFilesTest, refusesNamesThatDoNotSortAsNumbers) {
            "2.bin", "10.bin", "same number of digits");
 }
 
-TEST_F(ScanFilesTest, ranges) {
+TEST_F(ScanFilesTest, Ranges) {
   EXPECT_EQ(ranges({}), "");
   EXPECT_EQ(ranges({5}), "5");
   EXPECT_EQ(ranges({177, 178, 179, 180, 200, 202, 203}), "177-180, 200, 202-203");
@@ -70,7 +70,7 @@ TEST_F(ScanFilesTest, ranges) {
   EXPECT_EQ(ranges({1, 3, 5, 6}, 3), "1, 3, 5-6");
 }
 
-TEST_F(ScanFilesTest, notesEmptyScans) {
+TEST_F(ScanFilesTest, NotesEmptyScans) {
   std::vector<std::string> notes;
   checkScanSizes({write("0.bin", std::string(32, 'x'))}, notes);
   EXPECT_TRUE(notes.empty());
@@ -79,7 +79,7 @@ TEST_F(ScanFilesTest, notesEmptyScans) {
   EXPECT_EQ(notes[0], "2 of 3 scans are empty, the first is 1.bin");
 }
 
-TEST_F(ScanFilesTest, refusesAScanCutShort) {
+TEST_F(ScanFilesTest, RefusesAScanCutShort) {
   std::vector<std::string> notes;
   const fs::path file = write("1.bin", std::string(33, 'x'));
   expectIn(messageOf([&] { checkScanSizes({path("no.bin")}, notes); }), path("no.bin").string(),
@@ -90,13 +90,13 @@ TEST_F(ScanFilesTest, refusesAScanCutShort) {
            file.string(), "cut short", "33 bytes");
 }
 
-TEST_F(ScanFilesTest, refusesWhenAllScansAreEmpty) {
+TEST_F(ScanFilesTest, RefusesWhenAllScansAreEmpty) {
   std::vector<std::string> notes;
   expectIn(messageOf([&] { checkScanSizes({write("0.bin", "")}, notes); }), m_folder.string(),
            "no usable scan");
 }
 
-TEST_F(ScanFilesTest, refusesTimesThatDoNotIncrease) {
+TEST_F(ScanFilesTest, RefusesTimesThatDoNotIncrease) {
   requireIncreasing("t", {{1, {-1}}, {2, {0}}, {5, {0.5}}});
   expectIn(messageOf([] {
              requireIncreasing("t", {{1, {0}}, {4, {0}}});

@@ -41,7 +41,7 @@ class ScanFolderTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(ScanFolderTest, scansAndTimesAlone) {
+TEST_F(ScanFolderTest, ScansAndTimesAlone) {
   const ScanFolder folder = readScanFolder(m_folder, identity);
   ASSERT_EQ(folder.scans.size(), 3u);
   EXPECT_TRUE(folder.notes.empty());
@@ -53,7 +53,7 @@ TEST_F(ScanFolderTest, scansAndTimesAlone) {
   }
 }
 
-TEST_F(ScanFolderTest, sensorPosesBecomeRobotPosesByHand) {
+TEST_F(ScanFolderTest, SensorPosesBecomeRobotPosesByHand) {
   write("poses.txt", leftAt("10", "20", "3") + leftAt("11", "20", "3") + leftAt("12", "20", "3"));
   EXPECT_TRUE(readScanFolder(m_folder, identity)
                   .scans[0]
@@ -70,7 +70,7 @@ TEST_F(ScanFolderTest, sensorPosesBecomeRobotPosesByHand) {
   EXPECT_NEAR(planar(T_map_robot).yaw, -M_PI / 2, 1e-12);
 }
 
-TEST_F(ScanFolderTest, motionsAndTheirVariances) {
+TEST_F(ScanFolderTest, MotionsAndTheirVariances) {
   for (const char* name : {"odometry.txt", "odom.txt"}) {
     write(name, "# dx dy dyaw sx sy syaw\n0.5 -0.01 0.02 0.1 0.2 0.3\n0.6 0 -3.14159 0 0 0\n");
     const ScanFolder folder = readScanFolder(m_folder, identity);
@@ -86,7 +86,7 @@ TEST_F(ScanFolderTest, motionsAndTheirVariances) {
   }
 }
 
-TEST_F(ScanFolderTest, motionsAreNotMovedToTheRobotTwice) {
+TEST_F(ScanFolderTest, MotionsAreNotMovedToTheRobotTwice) {
   // They are given in the robot frame already, whatever the sensor pose.
   write("odom.txt", "1 0 0 0.1 0.1 0.1\n1 0 0 0.1 0.1 0.1\n");
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
@@ -95,7 +95,7 @@ TEST_F(ScanFolderTest, motionsAreNotMovedToTheRobotTwice) {
   EXPECT_EQ(readScanFolder(m_folder, T_robot_sensor).scans[1].motion->mean.x, 1);
 }
 
-TEST_F(ScanFolderTest, rowsBeyondTheLastScanAreNoted) {
+TEST_F(ScanFolderTest, RowsBeyondTheLastScanAreNoted) {
   write("times.txt", "0\n1\n2\n3\n4\n");
   write("poses.txt", leftAt("0", "0", "0") + leftAt("1", "0", "0") + leftAt("2", "0", "0") +
                          leftAt("3", "0", "0"));
@@ -111,7 +111,7 @@ TEST_F(ScanFolderTest, rowsBeyondTheLastScanAreNoted) {
   EXPECT_EQ(folder.scans[2].motion->mean.x, 2);
 }
 
-TEST_F(ScanFolderTest, emptyScansAreKeptAndNoted) {
+TEST_F(ScanFolderTest, EmptyScansAreKeptAndNoted) {
   write("velodyne/000001.bin", "");
   const ScanFolder folder = readScanFolder(m_folder, identity);
   EXPECT_EQ(folder.scans.size(), 3u);
@@ -119,7 +119,7 @@ TEST_F(ScanFolderTest, emptyScansAreKeptAndNoted) {
   expectIn(folder.notes[0], "1 of 3 scans are empty", "000001.bin");
 }
 
-TEST_F(ScanFolderTest, oneScanNeedsNoMotion) {
+TEST_F(ScanFolderTest, OneScanNeedsNoMotion) {
   fs::remove(path("velodyne/000001.bin"));
   fs::remove(path("velodyne/000002.bin"));
   write("times.txt", "7\n");
@@ -130,50 +130,50 @@ TEST_F(ScanFolderTest, oneScanNeedsNoMotion) {
   EXPECT_FALSE(folder.scans[0].motion);
 }
 
-TEST_F(ScanFolderTest, refusesAFolderWithoutScans) {
+TEST_F(ScanFolderTest, RefusesAFolderWithoutScans) {
   fs::remove_all(path("velodyne"));
   expectIn(refusal(), path("velodyne").string(), "No such file or directory");
   fs::create_directory(path("velodyne"));
   expectIn(refusal(), path("velodyne").string(), "no *.bin");
 }
 
-TEST_F(ScanFolderTest, refusesFewerTimesThanScans) {
+TEST_F(ScanFolderTest, RefusesFewerTimesThanScans) {
   write("times.txt", "0\n1\n");
   expectIn(refusal(), path("times.txt").string(), "2 times for 3 scans");
 }
 
-TEST_F(ScanFolderTest, refusesPosesThatAreALinkToNothing) {
+TEST_F(ScanFolderTest, RefusesPosesThatAreALinkToNothing) {
   fs::create_symlink(path("gone.txt"), path("poses.txt"));
   expectIn(refusal(), path("poses.txt").string(), "No such file or directory");
 }
 
-TEST_F(ScanFolderTest, refusesMissingTimes) {
+TEST_F(ScanFolderTest, RefusesMissingTimes) {
   fs::remove(path("times.txt"));
   expectIn(refusal(), path("times.txt").string(), "No such file or directory");
 }
 
-TEST_F(ScanFolderTest, refusesTimesThatDoNotIncrease) {
+TEST_F(ScanFolderTest, RefusesTimesThatDoNotIncrease) {
   write("times.txt", "0\n1\n# again\n1\n");
   expectIn(refusal(), path("times.txt").string() + ":4: ", "1 is not after 1");
 }
 
-TEST_F(ScanFolderTest, refusesFewerPosesThanScans) {
+TEST_F(ScanFolderTest, RefusesFewerPosesThanScans) {
   write("poses.txt", leftAt("0", "0", "0") + leftAt("1", "0", "0"));
   expectIn(refusal(), path("poses.txt").string(), "2 poses for 3 scans");
 }
 
-TEST_F(ScanFolderTest, refusesFewerMotionsThanGaps) {
+TEST_F(ScanFolderTest, RefusesFewerMotionsThanGaps) {
   write("odometry.txt", "1 0 0 1 1 1\n");
   expectIn(refusal(), path("odometry.txt").string(), "1 motions for 3 scans", "2 expected");
 }
 
-TEST_F(ScanFolderTest, refusesAsManyMotionsAsScans) {
+TEST_F(ScanFolderTest, RefusesAsManyMotionsAsScans) {
   write("odometry.txt", "0 0 0 1 1 1\n1 0 0 1 1 1\n1 0 0 1 1 1\n");
   expectIn(refusal(), path("odometry.txt").string(), "3 motions for 3 scans", "2 expected",
            "second scan");
 }
 
-TEST_F(ScanFolderTest, refusesMorePosesWhenScansAreNotNumberedFromZero) {
+TEST_F(ScanFolderTest, RefusesMorePosesWhenScansAreNotNumberedFromZero) {
   write("times.txt", "0\n1\n2\n");
   write("poses.txt", leftAt("0", "0", "0") + leftAt("1", "0", "0") + leftAt("2", "0", "0") +
                          leftAt("3", "0", "0"));
@@ -185,44 +185,44 @@ TEST_F(ScanFolderTest, refusesMorePosesWhenScansAreNotNumberedFromZero) {
   expectIn(refusal(), "not clear");
 }
 
-TEST_F(ScanFolderTest, refusesNegativeDeviations) {
+TEST_F(ScanFolderTest, RefusesNegativeDeviations) {
   write("odometry.txt", "1 0 0 1 1 1\n1 0 0 1 -0.5 1\n");
   expectIn(refusal(), path("odometry.txt").string() + ":2: ", "-0.5 is negative");
 }
 
-TEST_F(ScanFolderTest, refusesTurnsInDegrees) {
+TEST_F(ScanFolderTest, RefusesTurnsInDegrees) {
   write("odometry.txt", "1 0 0 1 1 1\n1 0 12 1 1 1\n");
   expectIn(refusal(), path("odometry.txt").string() + ":2: ", "12 rad");
 }
 
-TEST_F(ScanFolderTest, refusesMotionsWithWrongColumns) {
+TEST_F(ScanFolderTest, RefusesMotionsWithWrongColumns) {
   write("odometry.txt", "1 0 0\n1 0 0\n");
   expectIn(refusal(), path("odometry.txt").string() + ":1: ", "3 numbers, 6 expected");
 }
 
-TEST_F(ScanFolderTest, refusesTwoOdometryFiles) {
+TEST_F(ScanFolderTest, RefusesTwoOdometryFiles) {
   write("odometry.txt", "1 0 0 1 1 1\n1 0 0 1 1 1\n");
   write("odom.txt", "1 0 0 1 1 1\n1 0 0 1 1 1\n");
   expectIn(refusal(), "odometry.txt and odom.txt");
 }
 
-TEST_F(ScanFolderTest, refusesAScanCutShort) {
+TEST_F(ScanFolderTest, RefusesAScanCutShort) {
   write("velodyne/000001.bin", floats({1, 2, 3}));
   expectIn(refusal(), path("velodyne/000001.bin").string(), "cut short", "12 bytes");
 }
 
-TEST_F(ScanFolderTest, refusesAScanThatIsALinkToNothing) {
+TEST_F(ScanFolderTest, RefusesAScanThatIsALinkToNothing) {
   fs::remove(path("velodyne/000001.bin"));
   fs::create_symlink(path("gone.bin"), path("velodyne/000001.bin"));
   expectIn(refusal(), path("velodyne/000001.bin").string(), "No such file or directory");
 }
 
-TEST_F(ScanFolderTest, refusesUnpaddedNumbers) {
+TEST_F(ScanFolderTest, RefusesUnpaddedNumbers) {
   renameScans("9", "10", "11");
   expectIn(refusal(), "same number of digits");
 }
 
-TEST_F(ScanFolderTest, readsTheRealDrive) {
+TEST_F(ScanFolderTest, ReadsTheRealDrive) {
   POLEMCL_NEEDS_DATA();
   const ScanFolder folder = readScanFolder(dataFolder() / "kitti_raw_0005", identity);
   ASSERT_EQ(folder.scans.size(), 80u);
@@ -246,7 +246,7 @@ TEST_F(ScanFolderTest, readsTheRealDrive) {
   EXPECT_NEAR(turnedOdometry, turned, 0.03);
 }
 
-TEST_F(ScanFolderTest, readsTheRealScansWithoutOdometry) {
+TEST_F(ScanFolderTest, ReadsTheRealScansWithoutOdometry) {
   POLEMCL_NEEDS_DATA();
   const ScanFolder folder = readScanFolder(dataFolder() / "kitti_odom_00", identity);
   ASSERT_EQ(folder.scans.size(), 16u);
@@ -254,7 +254,7 @@ TEST_F(ScanFolderTest, readsTheRealScansWithoutOdometry) {
   EXPECT_FALSE(folder.scans[15].motion);
 }
 
-TEST_F(ScanFolderTest, foldersOfPcdFiles) {
+TEST_F(ScanFolderTest, FoldersOfPcdFiles) {
   fs::remove_all(path("velodyne"));
   fs::remove(path("times.txt"));
   for (const char* name : {"0.pcd", "1.pcd", "2.pcd"}) write(name, "");

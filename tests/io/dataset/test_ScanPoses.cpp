@@ -27,7 +27,7 @@ class ScanPosesTest : public FolderTest {};
 
 }  // namespace
 
-TEST_F(ScanPosesTest, motionsOfScansThatAreLeftOutGoIntoTheNext) {
+TEST_F(ScanPosesTest, MotionsOfScansThatAreLeftOutGoIntoTheNext) {
   ScanFolder folder = line(6);
   keepScans(folder, {false, true, false, false, true, false}, "as asked");
   ASSERT_EQ(folder.scans.size(), 2u);
@@ -42,7 +42,7 @@ TEST_F(ScanPosesTest, motionsOfScansThatAreLeftOutGoIntoTheNext) {
   EXPECT_EQ(folder.notes[0], "4 of 6 scans left out, as asked");
 }
 
-TEST_F(ScanPosesTest, allScansStayWithoutANote) {
+TEST_F(ScanPosesTest, AllScansStayWithoutANote) {
   ScanFolder folder = line(3);
   keepScans(folder, {true, true, true}, "");
   EXPECT_EQ(folder.scans.size(), 3u);
@@ -50,7 +50,7 @@ TEST_F(ScanPosesTest, allScansStayWithoutANote) {
   EXPECT_TRUE(folder.notes.empty());
 }
 
-TEST_F(ScanPosesTest, takesPosesOfTheRobotAtTheTimesOfTheScans) {
+TEST_F(ScanPosesTest, TakesPosesOfTheRobotAtTheTimesOfTheScans) {
   ScanFolder folder = line(4);
   takeTumPoses(folder,
                write("p.tum",
@@ -64,7 +64,7 @@ TEST_F(ScanPosesTest, takesPosesOfTheRobotAtTheTimesOfTheScans) {
   expectIn(folder.notes.at(0), "2 of 4 scans left out", "p.tum");
 }
 
-TEST_F(ScanPosesTest, takesPosesOfTheSensor) {
+TEST_F(ScanPosesTest, TakesPosesOfTheSensor) {
   ScanFolder folder = line(1);
   Eigen::Isometry3d T_robot_sensor = identity;  // 2 m ahead, looking to the left
   T_robot_sensor.translate(Eigen::Vector3d(2, 0, 0))
@@ -76,7 +76,7 @@ TEST_F(ScanPosesTest, takesPosesOfTheSensor) {
   EXPECT_TRUE(folder.scans[0].T_map_robot->linear().isIdentity(1e-9));
 }
 
-TEST_F(ScanPosesTest, scansWithoutTimesTakeThoseOfTheRows) {
+TEST_F(ScanPosesTest, ScansWithoutTimesTakeThoseOfTheRows) {
   ScanFolder folder = line(2);
   folder.nominalTimes = true;
   const fs::path file = write("p.tum", "1e9 1 0 0 0 0 0 1\n1000000001.5 2 0 0 0 0 0 1\n");
@@ -90,7 +90,7 @@ TEST_F(ScanPosesTest, scansWithoutTimesTakeThoseOfTheRows) {
            "times.txt");
 }
 
-TEST_F(ScanPosesTest, refusesTimesThatDoNotOverlap) {
+TEST_F(ScanPosesTest, RefusesTimesThatDoNotOverlap) {
   ScanFolder folder = line(3);
   const fs::path file = write("p.tum", "20 1 0 0 0 0 0 1\n21.5 2 0 0 0 0 0 1\n");
   expectIn(messageOf([&] { takeTumPoses(folder, file, identity); }), "p.tum", "20.000 ... 21.500 s",

@@ -19,7 +19,7 @@ std::size_t entries(const fs::path& folder) {
 
 }  // namespace
 
-TEST_F(AtomicFileTest, appearsOnlyWhenCommitted) {
+TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {
   AtomicFile file(path("out.bin"));
   file.stream() << "new\r\n";
   file.stream().flush();
@@ -31,7 +31,7 @@ TEST_F(AtomicFileTest, appearsOnlyWhenCommitted) {
   EXPECT_EQ(entries(m_folder), 1u);
 }
 
-TEST_F(AtomicFileTest, replacesWhatWasThere) {
+TEST_F(AtomicFileTest, ReplacesWhatWasThere) {
   write("out", "a longer text of before");
   AtomicFile file(path("out"));
   file.stream() << "new";
@@ -40,7 +40,7 @@ TEST_F(AtomicFileTest, replacesWhatWasThere) {
   EXPECT_EQ(read(path("out")), "new");
 }
 
-TEST_F(AtomicFileTest, leavesNothingBehindWhenNotCommitted) {
+TEST_F(AtomicFileTest, LeavesNothingBehindWhenNotCommitted) {
   write("out", "before");
   {
     AtomicFile file(path("out"));
@@ -50,7 +50,7 @@ TEST_F(AtomicFileTest, leavesNothingBehindWhenNotCommitted) {
   EXPECT_EQ(entries(m_folder), 1u);
 }
 
-TEST_F(AtomicFileTest, twoWritersOfOneNameDoNotMix) {
+TEST_F(AtomicFileTest, TwoWritersOfOneNameDoNotMix) {
   AtomicFile first(path("out")), second(path("out"));
   EXPECT_NE(first.temporaryPath(), second.temporaryPath());
   first.stream() << "first";
@@ -61,7 +61,7 @@ TEST_F(AtomicFileTest, twoWritersOfOneNameDoNotMix) {
   EXPECT_EQ(entries(m_folder), 1u);
 }
 
-TEST_F(AtomicFileTest, passesOverALeftoverTemporary) {
+TEST_F(AtomicFileTest, PassesOverALeftoverTemporary) {
   // The next name is that of the last one with its number plus one.
   fs::path next;
   {
@@ -77,7 +77,7 @@ TEST_F(AtomicFileTest, passesOverALeftoverTemporary) {
   EXPECT_EQ(read(next), "of another");
 }
 
-TEST_F(AtomicFileTest, keepsALinkAndReplacesWhatItNames) {
+TEST_F(AtomicFileTest, KeepsALinkAndReplacesWhatItNames) {
   write("real/out", "before");
   fs::create_symlink(path("real/out"), path("link"));
   AtomicFile file(path("link"));
@@ -88,7 +88,7 @@ TEST_F(AtomicFileTest, keepsALinkAndReplacesWhatItNames) {
   EXPECT_EQ(entries(path("real")), 1u);
 }
 
-TEST_F(AtomicFileTest, permissionsFollowTheUmask) {
+TEST_F(AtomicFileTest, PermissionsFollowTheUmask) {
   const mode_t before = ::umask(027);
   AtomicFile file(path("out"));
   file.commit();
@@ -98,43 +98,43 @@ TEST_F(AtomicFileTest, permissionsFollowTheUmask) {
   EXPECT_EQ(status.st_mode & 0777, 0640u);
 }
 
-TEST_F(AtomicFileTest, otherWritersMayUseTheTemporary) {
+TEST_F(AtomicFileTest, OtherWritersMayUseTheTemporary) {
   AtomicFile file(path("out"));
   std::ofstream(file.temporaryPath(), std::ios::binary) << "by another";
   file.commit();
   EXPECT_EQ(read(path("out")), "by another");
 }
 
-TEST_F(AtomicFileTest, refusesAMissingFolder) {
+TEST_F(AtomicFileTest, RefusesAMissingFolder) {
   expectIn(messageOf([&] { AtomicFile file(path("no/out")); }), path("no/out").string(),
            "No such file or directory");
 }
 
-TEST_F(AtomicFileTest, refusesANameThatIsTooLong) {
+TEST_F(AtomicFileTest, RefusesANameThatIsTooLong) {
   expectIn(messageOf([&] { AtomicFile file(path(std::string(300, 'x'))); }), "File name too long");
 }
 
-TEST_F(AtomicFileTest, refusesAFolderAsFile) {
+TEST_F(AtomicFileTest, RefusesAFolderAsFile) {
   expectIn(messageOf([&] { AtomicFile file(m_folder); }), m_folder.string(), "folder");
   EXPECT_EQ(entries(m_folder), 0u);
 }
 
-TEST_F(AtomicFileTest, refusesANameThatEndsInASlash) {
+TEST_F(AtomicFileTest, RefusesANameThatEndsInASlash) {
   expectIn(messageOf([&] { AtomicFile file(path("no") / ""); }), "names no file");
 }
 
-TEST_F(AtomicFileTest, refusesDevicesInsteadOfReplacingThem) {
+TEST_F(AtomicFileTest, RefusesDevicesInsteadOfReplacingThem) {
   expectIn(messageOf([&] { AtomicFile file("/dev/null"); }), "/dev/null", "device");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST_F(AtomicFileTest, refusesASecondCommit) {
+TEST_F(AtomicFileTest, RefusesASecondCommit) {
   AtomicFile file(path("out"));
   file.commit();
   expectIn(messageOf([&] { file.commit(); }), path("out").string(), "commit");
 }
 
-TEST_F(AtomicFileTest, fullDiskIsAnErrorAndChangesNothing) {
+TEST_F(AtomicFileTest, FullDiskIsAnErrorAndChangesNothing) {
   write("out", "before");
   {
     AtomicFile file(path("out"));
@@ -146,7 +146,7 @@ TEST_F(AtomicFileTest, fullDiskIsAnErrorAndChangesNothing) {
   EXPECT_EQ(entries(m_folder), 1u);
 }
 
-TEST_F(AtomicFileTest, fullDiskIsNoticedWhenOnlyTheLastBytesDoNotFit) {
+TEST_F(AtomicFileTest, FullDiskIsNoticedWhenOnlyTheLastBytesDoNotFit) {
   {
     AtomicFile file(path("out"));
     const FileSizeLimit limit(2);

@@ -9,7 +9,7 @@ using namespace polemcl::io::test;
 
 using BytesTest = FolderTest;
 
-TEST_F(BytesTest, loadsLittleEndianByHand) {
+TEST_F(BytesTest, LoadsLittleEndianByHand) {
   EXPECT_EQ(loadLittleEndian<std::uint16_t>("\x02\x01"), 0x0102);
   EXPECT_EQ(loadLittleEndian<std::uint32_t>("\x04\x03\x02\xf1"), 0xf1020304u);
   EXPECT_EQ(loadLittleEndian<std::uint64_t>("\x08\x07\x06\x05\x04\x03\x02\x81"),
@@ -19,7 +19,7 @@ TEST_F(BytesTest, loadsLittleEndianByHand) {
   EXPECT_EQ(loadLittleEndian<double>(std::string("\0\0\0\0\0\0\xf8\xbf", 8).data()), -1.5);
 }
 
-TEST_F(BytesTest, writesLittleEndianByHand) {
+TEST_F(BytesTest, WritesLittleEndianByHand) {
   ByteWriter writer;
   writer.put(std::uint32_t{0x01020304});
   writer.put(1.5);
@@ -27,7 +27,7 @@ TEST_F(BytesTest, writesLittleEndianByHand) {
   EXPECT_EQ(writer.bytes(), std::string("\x04\x03\x02\x01\0\0\0\0\0\0\xf8\x3f\x02\0\0\0ab", 18));
 }
 
-TEST_F(BytesTest, readsInOrderAndCountsWhatIsLeft) {
+TEST_F(BytesTest, ReadsInOrderAndCountsWhatIsLeft) {
   ByteWriter writer;
   writer.put(std::uint64_t{7});
   writer.putText("pole");
@@ -38,12 +38,12 @@ TEST_F(BytesTest, readsInOrderAndCountsWhatIsLeft) {
   EXPECT_EQ(reader.remaining(), 0u);
 }
 
-TEST_F(BytesTest, refusesToReadBeyondTheEnd) {
+TEST_F(BytesTest, RefusesToReadBeyondTheEnd) {
   ByteReader reader("abc", "file: ");
   expectIn(messageOf([&] { reader.get<std::uint32_t>(); }), "file: ", "4 bytes expected", "3 left");
 }
 
-TEST_F(BytesTest, refusesATextLongerThanWhatIsLeft) {
+TEST_F(BytesTest, RefusesATextLongerThanWhatIsLeft) {
   ByteWriter writer;
   writer.put(std::uint32_t{0xffffffff});
   writer.putRaw("abc");
@@ -51,7 +51,7 @@ TEST_F(BytesTest, refusesATextLongerThanWhatIsLeft) {
   expectIn(messageOf([&] { reader.getText(); }), "4294967295");
 }
 
-TEST_F(BytesTest, readsWholeFiles) {
+TEST_F(BytesTest, ReadsWholeFiles) {
   const std::string content("\0a\r\n\xff", 5);
   EXPECT_EQ(readBytes(write("f", content)), content);
   EXPECT_EQ(readBytes(write("empty", "")), "");
@@ -59,16 +59,16 @@ TEST_F(BytesTest, readsWholeFiles) {
   EXPECT_NE(readBytes("/proc/self/status").find("Name:"), std::string::npos);
 }
 
-TEST_F(BytesTest, refusesAMissingFile) {
+TEST_F(BytesTest, RefusesAMissingFile) {
   expectIn(messageOf([&] { readBytes(path("no")); }), path("no").string(),
            "No such file or directory");
 }
 
-TEST_F(BytesTest, refusesANameThatIsTooLong) {
+TEST_F(BytesTest, RefusesANameThatIsTooLong) {
   expectIn(messageOf([&] { readBytes(path(std::string(300, 'x'))); }), "File name too long");
 }
 
-TEST_F(BytesTest, refusesAFolder) {
+TEST_F(BytesTest, RefusesAFolder) {
   expectIn(messageOf([&] { readBytes(m_folder); }), "folder");
 }
 

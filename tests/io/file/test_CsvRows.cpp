@@ -24,7 +24,7 @@ class CsvRowsTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(CsvRowsTest, readsRowAfterRow) {
+TEST_F(CsvRowsTest, ReadsRowAfterRow) {
   CsvRows rows(write("a.csv", "# t,x,y\n1326652795280148,-2.5, 3e2\r\n\n4,NaN,nan\n5,6,7"), 3, "");
   std::vector<double> row;
   ASSERT_TRUE(rows.next(row));
@@ -37,14 +37,14 @@ TEST_F(CsvRowsTest, readsRowAfterRow) {
   EXPECT_FALSE(rows.next(row));
 }
 
-TEST_F(CsvRowsTest, refusesRowsThatAreShortOrNoNumbers) {
+TEST_F(CsvRowsTest, RefusesRowsThatAreShortOrNoNumbers) {
   expectIn(refusal("1,2,3\n1,2\n"), "a.csv:2: ", "2 numbers, 3 expected", "time, x, y");
   expectIn(refusal("1,2,3,4\n"), "a.csv:1: ", "4 numbers, 3 expected");
   expectIn(refusal("1,2,\n"), "a.csv:1: ", "'' is no number");
   expectIn(refusal("time,x,y\n"), "a.csv:1: ", "'time' is no number");
 }
 
-TEST_F(CsvRowsTest, tellsHowFarItIs) {
+TEST_F(CsvRowsTest, TellsHowFarItIs) {
   std::string text;
   for (int i = 0; i < 300000; ++i) text += "1,2,3.5\n";  // 2.4 MB
   std::vector<std::size_t> done;
@@ -60,7 +60,7 @@ TEST_F(CsvRowsTest, tellsHowFarItIs) {
   EXPECT_EQ(done.back(), 2u);
 }
 
-TEST_F(CsvRowsTest, refusesFilesThatCannotBeRead) {
+TEST_F(CsvRowsTest, RefusesFilesThatCannotBeRead) {
   expectIn(messageOf([&] { CsvRows(path("no.csv"), 3, ""); }), "no.csv", "No such file");
   expectIn(messageOf([&] { CsvRows(m_folder, 3, ""); }), "it is a folder");
 }

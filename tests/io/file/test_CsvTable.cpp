@@ -19,7 +19,7 @@ class CsvTableTest : public FolderTest {
   }
 };
 
-TEST_F(CsvTableTest, readsColumnsByName) {
+TEST_F(CsvTableTest, ReadsColumnsByName) {
   const CsvTable table(write("t.csv",
                              "# made by hand\r\n\"y\" , name,x\n\n2,\"a, \"\"b\"\"\",1e1\n"
                              "# more\n-3, c ,4.5\n"));
@@ -32,11 +32,11 @@ TEST_F(CsvTableTest, readsColumnsByName) {
   EXPECT_EQ(table.at(1), path("t.csv").string() + ":6: ");
 }
 
-TEST_F(CsvTableTest, aHeaderAloneIsATableWithoutRows) {
+TEST_F(CsvTableTest, AHeaderAloneIsATableWithoutRows) {
   EXPECT_EQ(CsvTable(write("t.csv", "x,y\n")).rows(), 0u);
 }
 
-TEST_F(CsvTableTest, refusesWhatIsNoTable) {
+TEST_F(CsvTableTest, RefusesWhatIsNoTable) {
   expectIn(refusal(""), path("t.csv").string(), "empty");
   expectIn(refusal("x,y\n1\n"), ":2: ", "1 fields", "2 expected");
   expectIn(refusal("x,y\n1,\"2\n"), ":2: ", "quote");

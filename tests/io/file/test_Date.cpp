@@ -8,7 +8,7 @@ namespace polemcl::test_date {
 using namespace polemcl;
 using namespace polemcl::io;
 
-TEST(Date, knownDays) {
+TEST(Date, KnownDays) {
   // From `date -u -d DAY +%s`.
   EXPECT_EQ(secondsOfDate("1970-01-01"), 0);
   EXPECT_EQ(secondsOfDate("2000-02-29"), 951782400);
@@ -21,16 +21,16 @@ TEST(Date, knownDays) {
   EXPECT_EQ(dateText(1356998399), "2012-12-31");
 }
 
-TEST(Date, thereAndBack) {
+TEST(Date, ThereAndBack) {
   for (double day = 1; day < 60000; day += 17)
     EXPECT_EQ(secondsOfDate(dateText(day * 86400 + 5)), day * 86400);
 }
 
-TEST(Date, notKnownIsEmpty) {
+TEST(Date, NotKnownIsEmpty) {
   EXPECT_EQ(dateText(0), "");
 }
 
-TEST(Date, refusesWhatIsNone) {
+TEST(Date, RefusesWhatIsNone) {
   for (const char* text :
        {"", "2012", "2012-3-17", "2012-13-01", "2011-02-29", "2012-04-31", "1969-12-31",
         "2012-00-10", "2012-01-00", "2012-03-17T", "20120317", "17.03.2012", "2012--3-17"})

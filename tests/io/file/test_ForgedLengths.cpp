@@ -71,12 +71,12 @@ std::string poleMap(const std::string& tag, const std::string& content,
 
 }  // namespace
 
-TEST_F(ForgedLengths, theCounterSeesWhatTheLibraryTakes) {
+TEST_F(ForgedLengths, TheCounterSeesWhatTheLibraryTakes) {
   const fs::path file = write("a.bin", std::string(3 * megabyte, 'x'));
   EXPECT_GT(memoryTakenBy([&] { readBytes(file); }), 3 * megabyte);
 }
 
-TEST_F(ForgedLengths, inAPoleMap) {
+TEST_F(ForgedLengths, InAPoleMap) {
   const std::string poles = little(76, 4) + little(~0ull, 8) + std::string(1700, '\0');
   expectIn(refusal([&] { readPoleMap(write("a.polemap", poleMap("POLE", poles))); }), "a.polemap",
            "18446744073709551615 poles");
@@ -87,7 +87,7 @@ TEST_F(ForgedLengths, inAPoleMap) {
            "4294967280 bytes expected");
 }
 
-TEST_F(ForgedLengths, inTheScansOfAMap) {
+TEST_F(ForgedLengths, InTheScansOfAMap) {
   const std::string data = zlibbed(std::string(20, '\1'));
   const auto unpack = [&](std::uint64_t size, const std::string& packed) {
     return refusal([&] { unpackMapScans(little(size, 8) + packed, "x: "); });
@@ -103,7 +103,7 @@ TEST_F(ForgedLengths, inTheScansOfAMap) {
   }
 }
 
-TEST_F(ForgedLengths, inCompressedData) {
+TEST_F(ForgedLengths, InCompressedData) {
   const std::string content(5 * megabyte, 'a'), packed = zlibbed(content);
   EXPECT_EQ(inflated(packed, content.size(), Deflated::zlib, "x: "), content);
   EXPECT_EQ(inflated(zlibbed(""), 0, Deflated::zlib, "x: "), "");
@@ -116,7 +116,7 @@ TEST_F(ForgedLengths, inCompressedData) {
   EXPECT_EQ(inflated(deflated(content), content.size(), Deflated::bare, "x: "), content);
 }
 
-TEST_F(ForgedLengths, inAnArchiveOfArrays) {
+TEST_F(ForgedLengths, InAnArchiveOfArrays) {
   const std::string array =
       npy(dictionary("<f8", "False", "(1000000000000,)"), std::string(1000, '\0'));
   const auto open = [&](const std::string& bytes) {
@@ -132,7 +132,7 @@ TEST_F(ForgedLengths, inAnArchiveOfArrays) {
   expectIn(refusal([&] { parseNpy(header + std::string(1800, ' '), "x: "); }), "x: ", "4294967295");
 }
 
-TEST_F(ForgedLengths, inPointClouds) {
+TEST_F(ForgedLengths, InPointClouds) {
   const auto cloud = [&](const std::string& points, const std::string& kind,
                          const std::string& data) {
     const fs::path file =
@@ -149,7 +149,7 @@ TEST_F(ForgedLengths, inPointClouds) {
            "a.pcd", "cut short");
 }
 
-TEST_F(ForgedLengths, inPacketsOfNclt) {
+TEST_F(ForgedLengths, InPacketsOfNclt) {
   for (const std::uint64_t points : {99999ull, 100001ull, 0xffffffffull}) {
     std::string packet = testing_nclt::packet(1, std::string(1600, '\0'));
     packet.replace(8, 4, little(points, 4));
@@ -161,7 +161,7 @@ TEST_F(ForgedLengths, inPacketsOfNclt) {
 }
 
 // A small file that unpacks to more text than anybody reads.
-TEST_F(ForgedLengths, inCompressedText) {
+TEST_F(ForgedLengths, InCompressedText) {
   const fs::path file = path("a.txt.gz");
   const gzFile stream = gzopen(file.c_str(), "wb1");
   const std::string line(megabyte, '1');

@@ -9,7 +9,7 @@ using polemcl::io::GrowingFile;
 
 using GrowingFileTest = FolderTest;
 
-TEST_F(GrowingFileTest, holdsAllThatWasAdded) {
+TEST_F(GrowingFileTest, HoldsAllThatWasAdded) {
   write("f", "what was there before");
   GrowingFile file(path("f"));
   EXPECT_EQ(read(path("f")), "");
@@ -26,14 +26,14 @@ TEST_F(GrowingFileTest, holdsAllThatWasAdded) {
   EXPECT_EQ(read(path("f")), all);
 }
 
-TEST_F(GrowingFileTest, anyNumberGrowAtATime) {
+TEST_F(GrowingFileTest, AnyNumberGrowAtATime) {
   std::vector<GrowingFile> files;
   for (int i = 0; i < 3000; ++i) files.emplace_back(path(std::to_string(i)));
   for (auto& file : files) file.add("row\n"), file.flush();
   EXPECT_EQ(read(path("2999")), "row\n");
 }
 
-TEST_F(GrowingFileTest, refusesWhatCannotBeWritten) {
+TEST_F(GrowingFileTest, RefusesWhatCannotBeWritten) {
   expectIn(messageOf([&] { GrowingFile(path("none/f")); }), path("none/f").string());
   GrowingFile file(path("f"));
   fs::remove(path("f"));
@@ -42,7 +42,7 @@ TEST_F(GrowingFileTest, refusesWhatCannotBeWritten) {
   expectIn(messageOf([&] { file.flush(); }), "cannot write " + path("f").string());
 }
 
-TEST_F(GrowingFileTest, refusesWhenTheDiskIsFull) {
+TEST_F(GrowingFileTest, RefusesWhenTheDiskIsFull) {
   GrowingFile file(path("f"));
   const FileSizeLimit limit(GrowingFile::piece / 2);
   expectIn(messageOf([&] { file.add(std::string(GrowingFile::piece, 'a')); }), "cannot write");

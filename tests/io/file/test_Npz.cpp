@@ -37,13 +37,13 @@ std::string npyRefusal(const std::string& bytes) {
 
 }  // namespace
 
-TEST(Npy, readsCOrderByHand) {
+TEST(Npy, ReadsCOrderByHand) {
   const NumberArray array = parseNpy(sample, "");
   EXPECT_EQ(array.shape, (Shape{3, 2}));
   EXPECT_EQ(array.values, (Values{1, 2, 3, 4, 5, 6}));
 }
 
-TEST(Npy, readsFortranOrderByHand) {
+TEST(Npy, ReadsFortranOrderByHand) {
   // Columns one after the other: (1 2 3) and (4 5 6).
   const NumberArray array = parseNpy(npy(dictionary("<f8", "True", "(3, 2)"), sixDoubles), "");
   EXPECT_EQ(array.values, (Values{1, 4, 2, 5, 3, 6}));
@@ -52,7 +52,7 @@ TEST(Npy, readsFortranOrderByHand) {
   EXPECT_EQ(cube.values, (Values{1, 3, 5, 2, 4, 6}));
 }
 
-TEST(Npy, readsFloat32AndVersions) {
+TEST(Npy, ReadsFloat32AndVersions) {
   const std::string data = floats({0.5f, -1, 2, 1e10f});
   for (const int version : {1, 2, 3}) {
     const NumberArray array =
@@ -61,28 +61,28 @@ TEST(Npy, readsFloat32AndVersions) {
   }
 }
 
-TEST(Npy, readsOtherShapes) {
+TEST(Npy, ReadsOtherShapes) {
   EXPECT_EQ(parseNpy(npy(dictionary("<f8", "False", "(6,)"), sixDoubles), "").shape, (Shape{6}));
   EXPECT_EQ(parseNpy(npy(dictionary("<f8", "False", "()"), doubles({7})), "").values, (Values{7}));
   EXPECT_EQ(parseNpy(npy(dictionary("<f8", "False", "(0, 2)"), ""), "").shape, (Shape{0, 2}));
 }
 
-TEST(Npy, refusesWhatIsNoNpy) {
+TEST(Npy, RefusesWhatIsNoNpy) {
   expectIn(npyRefusal("PK abcdefgh"), "f: ", "no .npy data");
   expectIn(npyRefusal(""), "no .npy data");
 }
 
-TEST(Npy, refusesOtherVersions) {
+TEST(Npy, RefusesOtherVersions) {
   expectIn(npyRefusal(npy(cDictionary, sixDoubles, 4)), "version 4");
 }
 
-TEST(Npy, refusesOtherTypes) {
+TEST(Npy, RefusesOtherTypes) {
   for (const char* type : {"<i8", ">f8", "<f2", "|O", "<f80", "<U4"}) {
     expectIn(npyRefusal(npy(dictionary(type, "False", "(3, 2)"), sixDoubles)), type, "'<f8'");
   }
 }
 
-TEST(Npy, refusesMalformedHeaders) {
+TEST(Npy, RefusesMalformedHeaders) {
   expectIn(npyRefusal(npy("{'fortran_order': False, 'shape': (6,), }", sixDoubles)), "no descr");
   expectIn(npyRefusal(npy("{'descr': '<f8', 'shape': (6,), }", sixDoubles)), "no fortran_order");
   expectIn(npyRefusal(npy("{'descr': '<f8', 'fortran_order': False}", sixDoubles)), "no shape");
@@ -93,7 +93,7 @@ TEST(Npy, refusesMalformedHeaders) {
   }
 }
 
-TEST(Npy, refusesDataThatDoesNotFitTheShape) {
+TEST(Npy, RefusesDataThatDoesNotFitTheShape) {
   for (const char* shape :
        {"(5,)", "(7,)", "(3, 3)", "(0,)", "(4294967296, 4294967296)", "(9223372036854775808, 2)",
         "(18446744073709551615, 18446744073709551615)"}) {
@@ -102,13 +102,13 @@ TEST(Npy, refusesDataThatDoesNotFitTheShape) {
   }
 }
 
-TEST(Npy, refusesEveryPrefix) {
+TEST(Npy, RefusesEveryPrefix) {
   for (std::size_t size = 0; size < sample.size(); ++size) {
     EXPECT_THROW(parseNpy(std::string_view(sample).substr(0, size), ""), Error) << size;
   }
 }
 
-TEST_F(NpzTest, readsStoredAndDeflatedMembers) {
+TEST_F(NpzTest, ReadsStoredAndDeflatedMembers) {
   const NpzFile npz(
       write("a.npz", zip({{"b.npy", npy(dictionary("<f8", "False", "(1,)"), doubles({9}))},
                           {"a.npy", sample, true}})));
@@ -119,7 +119,7 @@ TEST_F(NpzTest, readsStoredAndDeflatedMembers) {
   EXPECT_EQ(npz.array("b").values, (Values{9}));
 }
 
-TEST_F(NpzTest, readsLargeDeflatedMembers) {
+TEST_F(NpzTest, ReadsLargeDeflatedMembers) {
   // Very compressible, near the greatest ratio of deflate.
   const std::string zeros(8000000, '\0');
   const NpzFile npz(
@@ -127,26 +127,26 @@ TEST_F(NpzTest, readsLargeDeflatedMembers) {
   EXPECT_EQ(npz.array("a").values, Values(1000000, 0.0));
 }
 
-TEST_F(NpzTest, readsArchivesWithAComment) {
+TEST_F(NpzTest, ReadsArchivesWithAComment) {
   EXPECT_TRUE(
       NpzFile(write("a.npz", zip({{"a.npy", sample}}, "PK\x05\x06 is no end"))).contains("a"));
 }
 
-TEST_F(NpzTest, readsAnEmptyArchive) {
+TEST_F(NpzTest, ReadsAnEmptyArchive) {
   EXPECT_TRUE(NpzFile(write("a.npz", zip({}))).names().empty());
 }
 
-TEST_F(NpzTest, refusesAMissingFile) {
+TEST_F(NpzTest, RefusesAMissingFile) {
   expectIn(messageOf([&] { NpzFile npz(path("no.npz")); }), path("no.npz").string(),
            "No such file or directory");
 }
 
-TEST_F(NpzTest, refusesWhatIsNoZip) {
+TEST_F(NpzTest, RefusesWhatIsNoZip) {
   expectIn(openRefusal("x,y\n1,2\n"), path("a.npz").string(), "no .npz file");
   expectIn(openRefusal(std::string(100000, 'P')), "no .npz file");
 }
 
-TEST_F(NpzTest, refusesArchivesBeyond4GB) {
+TEST_F(NpzTest, RefusesArchivesBeyond4GB) {
   const std::string bytes = zip({{"a.npy", sample}});
   for (const auto& [fromEnd, size] : {std::pair{12, 2}, std::pair{10, 4}, std::pair{6, 4}}) {
     std::string changed = bytes;
@@ -155,72 +155,72 @@ TEST_F(NpzTest, refusesArchivesBeyond4GB) {
   }
 }
 
-TEST_F(NpzTest, refusesADirectoryThatIsNone) {
+TEST_F(NpzTest, RefusesADirectoryThatIsNone) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes[bytes.find("PK\x01\x02")] = 'X';
   expectIn(openRefusal(bytes), "entry 0");
 }
 
-TEST_F(NpzTest, refusesADirectoryBeyondTheEnd) {
+TEST_F(NpzTest, RefusesADirectoryBeyondTheEnd) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes.replace(bytes.size() - 6, 4, little(bytes.size(), 4));
   expectIn(openRefusal(bytes), "beyond its end");
 }
 
-TEST_F(NpzTest, refusesADirectoryLongerThanItsEntries) {
+TEST_F(NpzTest, RefusesADirectoryLongerThanItsEntries) {
   std::string bytes = zip({{"a.npy", sample}, {"b.npy", sample}});
   bytes.replace(bytes.size() - 12, 2, little(1, 2));
   expectIn(openRefusal(bytes), "longer than its entries");
 }
 
-TEST_F(NpzTest, refusesAnArrayThatIsNotThere) {
+TEST_F(NpzTest, RefusesAnArrayThatIsNotThere) {
   expectIn(arrayRefusal(zip({{"a.npy", sample}}), "b"), path("a.npz").string(), "no array b");
 }
 
-TEST_F(NpzTest, refusesEncryptedMembers) {
+TEST_F(NpzTest, RefusesEncryptedMembers) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes[bytes.find("PK\x01\x02") + 8] = 1;
   expectIn(arrayRefusal(bytes), "encrypted");
 }
 
-TEST_F(NpzTest, refusesOtherCompression) {
+TEST_F(NpzTest, RefusesOtherCompression) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes[bytes.find("PK\x01\x02") + 10] = 14;  // LZMA
   expectIn(arrayRefusal(bytes), "method 14");
 }
 
-TEST_F(NpzTest, refusesAWrongChecksum) {
+TEST_F(NpzTest, RefusesAWrongChecksum) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes[bytes.find("PK\x01\x02") - 1] ^= 1;  // the last byte of the data
   expectIn(arrayRefusal(bytes), "array a", "CRC-32");
 }
 
-TEST_F(NpzTest, refusesDeflateDataThatIsDamaged) {
+TEST_F(NpzTest, RefusesDeflateDataThatIsDamaged) {
   std::string bytes = zip({{"a.npy", sample, true}});
   const std::size_t data = 30 + 5 + 20;
   bytes[data] = '\x07';  // a block of the reserved kind
   expectIn(arrayRefusal(bytes), "decompressed");
 }
 
-TEST_F(NpzTest, refusesClaimsThatNoDataCanFulfil) {
+TEST_F(NpzTest, RefusesClaimsThatNoDataCanFulfil) {
   std::string bytes = zip({{"a.npy", sample, true}});
   bytes.replace(bytes.find("PK\x01\x02") + 24, 4, little(0xfffffff0, 4));
   expectIn(arrayRefusal(bytes), "cannot hold 4294967280");
 }
 
-TEST_F(NpzTest, refusesAStoredMemberOfTwoSizes) {
+TEST_F(NpzTest, RefusesAStoredMemberOfTwoSizes) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes.replace(bytes.find("PK\x01\x02") + 24, 4, little(sample.size() - 1, 4));
   expectIn(arrayRefusal(bytes), "two sizes");
 }
 
-TEST_F(NpzTest, refusesALocalHeaderThatIsNone) {
+TEST_F(NpzTest, RefusesALocalHeaderThatIsNone) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes[0] = 'X';
   expectIn(arrayRefusal(bytes), "header");
 }
 
-TEST_F(NpzTest, refusesEveryPrefixOfAFile) {
+TEST_F(NpzTest, RefusesEveryPrefixOfAFile) {
   for (const bool deflate : {false, true}) {
     const std::string bytes = zip({{"a.npy", sample, deflate}});
     for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -230,7 +230,7 @@ TEST_F(NpzTest, refusesEveryPrefixOfAFile) {
   }
 }
 
-TEST_F(NpzTest, aFlippedBitIsRefusedOrOfNoConsequence) {
+TEST_F(NpzTest, AFlippedBitIsRefusedOrOfNoConsequence) {
   // Dates, versions and unused sizes of a zip archive carry no checksum and are not read; any
   // other flip must be refused. Never are other values returned.
   for (const bool deflate : {false, true}) {
@@ -251,7 +251,7 @@ TEST_F(NpzTest, aFlippedBitIsRefusedOrOfNoConsequence) {
   }
 }
 
-TEST_F(NpzTest, manyFlippedBytesNeverCrash) {
+TEST_F(NpzTest, ManyFlippedBytesNeverCrash) {
   const std::string bytes = zip({{"a.npy", sample, true}, {"b.npy", sample}});
   std::mt19937_64 generator(9);
   int refused = 0;
@@ -271,14 +271,14 @@ TEST_F(NpzTest, manyFlippedBytesNeverCrash) {
   EXPECT_GT(refused, 1000);
 }
 
-TEST(Npy, writesWhatItsDocumentSays) {
+TEST(Npy, WritesWhatItsDocumentSays) {
   EXPECT_EQ(npyBytes({{3, 2}, {1, 2, 3, 4, 5, 6}}), sample);
   EXPECT_EQ(npyBytes({{2}, {1, 2}}), npy(dictionary("<f8", "False", "(2, )"), doubles({1, 2})));
   EXPECT_EQ(npyBytes({{}, {7}}), npy(dictionary("<f8", "False", "()"), doubles({7})));
   EXPECT_THROW(npyBytes({{3, 2}, {1, 2, 3}}), Error);
 }
 
-TEST_F(NpzTest, writesWhatItReads) {
+TEST_F(NpzTest, WritesWhatItReads) {
   const std::map<std::string, NumberArray> arrays{
       {"polemeans", {{2, 3}, {1, 2, 3, 4, 5, 6}}}, {"empty", {{0, 3}, {}}}, {"one", {{}, {7}}}};
   writeNpz(path("w.npz"), arrays);

@@ -25,7 +25,7 @@ void writeGzip(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-TEST_F(TextFileTest, linesOfAnyEnd) {
+TEST_F(TextFileTest, LinesOfAnyEnd) {
   const auto lines = readLines(write("f",
                                      "\xEF\xBB\xBF"
                                      "a\r\n\n b \nlast"));
@@ -33,7 +33,7 @@ TEST_F(TextFileTest, linesOfAnyEnd) {
   EXPECT_TRUE(readLines(write("empty", "")).empty());
 }
 
-TEST_F(TextFileTest, linesOfGzip) {
+TEST_F(TextFileTest, LinesOfGzip) {
   std::string text;
   for (int i = 0; i < 20000; ++i) text += std::to_string(i) + "\n";
   writeGzip(path("f.gz"), text);
@@ -43,7 +43,7 @@ TEST_F(TextFileTest, linesOfGzip) {
 }
 
 // Blocks of the reader end inside lines, between the two bytes of a line end, and at its end.
-TEST_F(TextFileTest, linesAcrossBlocks) {
+TEST_F(TextFileTest, LinesAcrossBlocks) {
   std::vector<std::string> lines;
   for (const std::size_t length : {65535u, 1u, 65533u, 0u, 65536u, 200000u, 7u})
     lines.emplace_back(length, static_cast<char>('a' + lines.size()));
@@ -56,7 +56,7 @@ TEST_F(TextFileTest, linesAcrossBlocks) {
   }
 }
 
-TEST_F(TextFileTest, refusesGzipCutShort) {
+TEST_F(TextFileTest, RefusesGzipCutShort) {
   std::string text;
   for (int i = 0; i < 20000; ++i) text += std::to_string(i * 7919L) + "\n";
   writeGzip(path("f.gz"), text);
@@ -64,7 +64,7 @@ TEST_F(TextFileTest, refusesGzipCutShort) {
   expectIn(messageOf([&] { readLines(path("f.gz")); }), path("f.gz").string(), "cut short");
 }
 
-TEST_F(TextFileTest, refusesDamagedGzip) {
+TEST_F(TextFileTest, RefusesDamagedGzip) {
   writeGzip(path("f.gz"), std::string(1000, 'a') + std::string(1000, 'b'));
   std::string bytes = read(path("f.gz"));
   bytes[bytes.size() - 6] ^= 1;  // in the checksum
@@ -72,14 +72,14 @@ TEST_F(TextFileTest, refusesDamagedGzip) {
   expectIn(messageOf([&] { readLines(path("f.gz")); }), path("f.gz").string());
 }
 
-TEST_F(TextFileTest, refusesMissingFilesAndFolders) {
+TEST_F(TextFileTest, RefusesMissingFilesAndFolders) {
   expectIn(messageOf([&] { readLines(path("no")); }), path("no").string(),
            "No such file or directory");
   expectIn(messageOf([&] { readLines(m_folder); }), m_folder.string(), "folder");
   expectIn(messageOf([&] { readLines(path(std::string(300, 'x'))); }), "File name too long");
 }
 
-TEST_F(TextFileTest, rowsKeepTheirLineNumbers) {
+TEST_F(TextFileTest, RowsKeepTheirLineNumbers) {
   const auto rows =
       readNumberRows(write("f", "# head\n1 -2.5\n\n\t+3e2   .5 # tail\r\n"), 2, "a b");
   ASSERT_EQ(rows.size(), 2u);
@@ -89,13 +89,13 @@ TEST_F(TextFileTest, rowsKeepTheirLineNumbers) {
   EXPECT_EQ(rows[1].values, (std::vector<double>{300, 0.5}));
 }
 
-TEST_F(TextFileTest, refusesAnotherCountOfColumns) {
+TEST_F(TextFileTest, RefusesAnotherCountOfColumns) {
   const fs::path file = write("f", "1 2\n1 2 3\n");
   expectIn(messageOf([&] { readNumberRows(file, 2, "a b"); }), file.string() + ":2: ", "3 numbers",
            "2 expected", "a b");
 }
 
-TEST_F(TextFileTest, refusesWhatIsNoNumber) {
+TEST_F(TextFileTest, RefusesWhatIsNoNumber) {
   for (const char* word :
        {"x", "1,5", "0x10", "1.5m", "+-1", "--1", "nan", "inf", "-Infinity", "1e999"}) {
     const fs::path file = write("f", std::string("1\n") + word + "\n");
@@ -103,7 +103,7 @@ TEST_F(TextFileTest, refusesWhatIsNoNumber) {
   }
 }
 
-TEST_F(TextFileTest, parseNumber) {
+TEST_F(TextFileTest, ParseNumber) {
   EXPECT_EQ(parseNumber(" 1.5\t"), 1.5);
   EXPECT_EQ(parseNumber("+2"), 2.0);
   EXPECT_EQ(parseNumber("1e-3"), 1e-3);
@@ -113,12 +113,12 @@ TEST_F(TextFileTest, parseNumber) {
     EXPECT_FALSE(parseNumber(text)) << text;
 }
 
-TEST_F(TextFileTest, trimmed) {
+TEST_F(TextFileTest, Trimmed) {
   EXPECT_EQ(trimmed(" \ta b\r "), "a b");
   EXPECT_EQ(trimmed(" \t\r"), "");
 }
 
-TEST_F(TextFileTest, formats) {
+TEST_F(TextFileTest, Formats) {
   EXPECT_EQ(fixed(1.5, 6), "1.500000");
   EXPECT_EQ(fixed(-0.0000004, 6), "-0.000000");
   EXPECT_EQ(fixed(1317042145.964389324, 6), "1317042145.964389");

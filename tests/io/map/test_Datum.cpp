@@ -6,7 +6,7 @@ namespace polemcl::test_datum {
 using namespace polemcl;
 using namespace polemcl::io;
 
-TEST(Datum, readsAndWritesTheSameNumbers) {
+TEST(Datum, ReadsAndWritesTheSameNumbers) {
   const Datum datum = parseDatum("42.293227, -83.709657,-0.1", "x: ");
   EXPECT_EQ(datum.latitude, 42.293227);
   EXPECT_EQ(datum.longitude, -83.709657);
@@ -17,13 +17,13 @@ TEST(Datum, readsAndWritesTheSameNumbers) {
   EXPECT_TRUE(parseDatum(datumText(odd), "") == odd);
 }
 
-TEST(Datum, refusesWhatIsNone) {
+TEST(Datum, RefusesWhatIsNone) {
   for (const char* text :
        {"", "1", "1,2,3,4", "91,0", "0,181", "0,0,361", "a,b", "1;2", "nan,0", "1,2,", "1,,2"})
     EXPECT_THROW(parseDatum(text, "--datum: "), Error) << text;
 }
 
-TEST(Datum, aMapHasOneDatum) {
+TEST(Datum, AMapHasOneDatum) {
   std::map<std::string, std::string> info;
   EXPECT_FALSE(datumOf(info, ""));
   setDatum(info, {50, 8, 0}, "m.polemap: ");

@@ -37,7 +37,7 @@ AddedSessions sample() {
           scan.poles_robot.push_back(pole);
         }
         for (unsigned k = random() % 3 * 128; k > 0; --k)
-          scan.freeRange.push_back(0.5f * static_cast<float>(random() % 100));
+          scan.visibilityRange.push_back(0.5f * static_cast<float>(random() % 100));
       }
       session.scans.push_back(scan);
       session.used.push_back(used);
@@ -75,7 +75,7 @@ void expectSame(const AddedSessions& a, const AddedSessions& b) {
       EXPECT_EQ(one.scans[i].time, two.scans[i].time);
       expectSame(one.scans[i].pose_map_robot, two.scans[i].pose_map_robot);
       expectSame(one.scans[i].pose_robot_sensor, two.scans[i].pose_robot_sensor);
-      EXPECT_EQ(one.scans[i].freeRange, two.scans[i].freeRange);
+      EXPECT_EQ(one.scans[i].visibilityRange, two.scans[i].visibilityRange);
       ASSERT_EQ(one.scans[i].poles_robot.size(), two.scans[i].poles_robot.size());
       for (std::size_t k = 0; k < one.scans[i].poles_robot.size(); ++k)
         expectSame(one.scans[i].poles_robot[k], two.scans[i].poles_robot[k]);
@@ -94,13 +94,13 @@ PoleMapData onePole() {
 
 }  // namespace
 
-TEST_F(MapScans, comeBackToTheLastBit) {
+TEST_F(MapScans, ComeBackToTheLastBit) {
   const AddedSessions before = sample();
   expectSame(unpackMapScans(packMapScans(before), "x: "), before);
   EXPECT_EQ(packMapScans(before), packMapScans(sample()));
 }
 
-TEST_F(MapScans, travelInTheMapBesideItsPoles) {
+TEST_F(MapScans, TravelInTheMapBesideItsPoles) {
   const fs::path with = path("with.polemap"), without = path("without.polemap");
   const AddedSessions scans = sample();
   writePoleMap(with, onePole(), &scans);
@@ -113,7 +113,7 @@ TEST_F(MapScans, travelInTheMapBesideItsPoles) {
   EXPECT_EQ(readPoleMap(with).info, onePole().info);
 }
 
-TEST_F(MapScans, refuseToBeDamaged) {
+TEST_F(MapScans, RefuseToBeDamaged) {
   const std::string good = packMapScans(sample());
   EXPECT_THROW(unpackMapScans("", "x: "), Error);
   for (std::size_t size = 0; size < good.size(); size += 97)

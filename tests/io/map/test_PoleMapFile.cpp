@@ -85,7 +85,7 @@ void expectSame(const MapPole& a, const MapPole& b) {
 
 }  // namespace
 
-TEST_F(PoleMapFileTest, comesBack) {
+TEST_F(PoleMapFileTest, ComesBack) {
   PoleMapData data;
   for (int i = 0; i < 100; ++i) data.poles.push_back(pole(0.1 * i - 3, 1e6 / (i + 1.0)));
   data.info = {
@@ -97,14 +97,14 @@ TEST_F(PoleMapFileTest, comesBack) {
   for (std::size_t i = 0; i < data.poles.size(); ++i) expectSame(back.poles[i], data.poles[i]);
 }
 
-TEST_F(PoleMapFileTest, anEmptyMapComesBackEmpty) {
+TEST_F(PoleMapFileTest, AnEmptyMapComesBackEmpty) {
   writePoleMap(path("m.polemap"), {});
   const PoleMapData back = readPoleMap(path("m.polemap"));
   EXPECT_TRUE(back.poles.empty());
   EXPECT_TRUE(back.info.empty());
 }
 
-TEST_F(PoleMapFileTest, bytesByHand) {
+TEST_F(PoleMapFileTest, BytesByHand) {
   PoleMapData data;
   data.poles = {pole(1, 2)};
   data.info = {{"k", "vw"}};
@@ -113,7 +113,7 @@ TEST_F(PoleMapFileTest, bytesByHand) {
   EXPECT_EQ(read(path("m.polemap")), wrapped(chunk("INFO", info) + poleChunk(fieldsByHand, 1, "")));
 }
 
-TEST_F(PoleMapFileTest, readsWhatLaterVersionsAppend) {
+TEST_F(PoleMapFileTest, ReadsWhatLaterVersionsAppend) {
   const fs::path file = write(
       "m.polemap", wrapped(chunk("NEWS", "unknown") + poleChunk(fieldsByHand, 1, "later field")));
   const PoleMapData data = readPoleMap(file);
@@ -121,7 +121,7 @@ TEST_F(PoleMapFileTest, readsWhatLaterVersionsAppend) {
   expectSame(data.poles[0], pole(1, 2));
 }
 
-TEST_F(PoleMapFileTest, historiesAndCandidatesComeBack) {
+TEST_F(PoleMapFileTest, HistoriesAndCandidatesComeBack) {
   PoleMapData data;
   data.poles = {pole(1, 2), pole(3, 4)};
   data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}, {0, 0, 0.5, 0, 0}};
@@ -142,7 +142,7 @@ TEST_F(PoleMapFileTest, historiesAndCandidatesComeBack) {
   EXPECT_FALSE(back.candidates[0].present);
 }
 
-TEST_F(PoleMapFileTest, historyByHand) {
+TEST_F(PoleMapFileTest, HistoryByHand) {
   PoleMapData data;
   data.poles = {pole(1, 2)};
   data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}};
@@ -154,12 +154,12 @@ TEST_F(PoleMapFileTest, historyByHand) {
             wrapped(chunk("INFO", info) + poleChunk(fieldsByHand, 1, history)));
 }
 
-TEST_F(PoleMapFileTest, keptMapsGoThereAndBack) {
+TEST_F(PoleMapFileTest, KeptMapsGoThereAndBack) {
   PoleMapData data;
   data.poles = {pole(1, 2)};
   data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}};
   data.candidates = {{pole(5, 6), {2, 1, 0.25, 1.35e9, 1.35e9}, false}};
-  const KeptMap map = keptMap(data);
+  const LandmarkMap map = landmarkMap(data);
   ASSERT_EQ(map.poles.size(), 2u);
   EXPECT_TRUE(map.poles[0].present);
   EXPECT_FALSE(map.poles[1].present);
@@ -173,13 +173,13 @@ TEST_F(PoleMapFileTest, keptMapsGoThereAndBack) {
   // A map of an earlier version: its count stands for what was seen.
   data.histories.clear();
   data.candidates.clear();
-  const KeptMap old = keptMap(data);
+  const LandmarkMap old = landmarkMap(data);
   ASSERT_EQ(old.poles.size(), 1u);
   EXPECT_TRUE(old.poles[0].present);
   EXPECT_EQ(old.poles[0].history.seen, 17u);
 }
 
-TEST_F(PoleMapFileTest, refusesHistoriesThatCannotBe) {
+TEST_F(PoleMapFileTest, RefusesHistoriesThatCannotBe) {
   PoleMapData data;
   data.poles = {pole(0, 0)};
   data.histories = {{}, {}};
@@ -196,25 +196,25 @@ TEST_F(PoleMapFileTest, refusesHistoriesThatCannotBe) {
   EXPECT_FALSE(fs::exists(path("m.polemap")));
 }
 
-TEST_F(PoleMapFileTest, refusesAMissingFile) {
+TEST_F(PoleMapFileTest, RefusesAMissingFile) {
   expectIn(messageOf([&] { readPoleMap(path("no.polemap")); }), path("no.polemap").string(),
            "No such file or directory");
 }
 
-TEST_F(PoleMapFileTest, refusesOtherFiles) {
+TEST_F(PoleMapFileTest, RefusesOtherFiles) {
   expectIn(refusal("x,y\n1,2\n"), path("m.polemap").string(), "no pole map");
   expectIn(refusal(""), "no pole map");
 }
 
-TEST_F(PoleMapFileTest, refusesANewerVersion) {
+TEST_F(PoleMapFileTest, RefusesANewerVersion) {
   expectIn(refusal(wrapped(poleChunk(fieldsByHand, 1, ""), 2)), "version 2", "reads 1");
 }
 
-TEST_F(PoleMapFileTest, refusesATail) {
+TEST_F(PoleMapFileTest, RefusesATail) {
   expectIn(refusal(wrapped(poleChunk(fieldsByHand, 1, "")) + "x"), "expected");
 }
 
-TEST_F(PoleMapFileTest, refusesAWrongChecksum) {
+TEST_F(PoleMapFileTest, RefusesAWrongChecksum) {
   std::string bytes = wrapped(poleChunk(fieldsByHand, 1, ""));
   bytes.back() ^= 1;
   expectIn(refusal(bytes), "CRC-32");
@@ -222,13 +222,13 @@ TEST_F(PoleMapFileTest, refusesAWrongChecksum) {
 
 // What follows is damage under a right checksum: files of a faulty writer.
 
-TEST_F(PoleMapFileTest, refusesMorePolesThanThereIsRoomFor) {
+TEST_F(PoleMapFileTest, RefusesMorePolesThanThereIsRoomFor) {
   expectIn(refusal(wrapped(poleChunk(fieldsByHand, 2, ""))), "2 poles of 76 bytes");
   expectIn(refusal(wrapped(poleChunk(fieldsByHand, std::numeric_limits<std::uint64_t>::max(), ""))),
            "do not fit");
 }
 
-TEST_F(PoleMapFileTest, refusesRecordsThatAreTooShort) {
+TEST_F(PoleMapFileTest, RefusesRecordsThatAreTooShort) {
   ByteWriter writer;
   writer.put(std::uint32_t{75});
   writer.put(std::uint64_t{1});
@@ -236,29 +236,29 @@ TEST_F(PoleMapFileTest, refusesRecordsThatAreTooShort) {
   expectIn(refusal(wrapped(chunk("POLE", writer.bytes()))), "75 bytes");
 }
 
-TEST_F(PoleMapFileTest, refusesAFileWithoutPoleList) {
+TEST_F(PoleMapFileTest, RefusesAFileWithoutPoleList) {
   expectIn(refusal(wrapped(chunk("NEWS", "unknown"))), "no list of poles");
 }
 
-TEST_F(PoleMapFileTest, refusesAChunkBeyondTheEnd) {
+TEST_F(PoleMapFileTest, RefusesAChunkBeyondTheEnd) {
   std::string payload = poleChunk(fieldsByHand, 1, "");
   payload[4] = static_cast<char>(payload[4] + 1);
   expectIn(refusal(wrapped(payload)), "mid-value");
 }
 
-TEST_F(PoleMapFileTest, refusesInfoBeyondItsChunk) {
+TEST_F(PoleMapFileTest, RefusesInfoBeyondItsChunk) {
   const std::string info("\1\0\0\0\xff\xff\0\0k", 9);
   expectIn(refusal(wrapped(chunk("INFO", info) + poleChunk(fieldsByHand, 1, ""))), "mid-value");
 }
 
-TEST_F(PoleMapFileTest, refusesStoredPolesThatAreUnsound) {
+TEST_F(PoleMapFileTest, RefusesStoredPolesThatAreUnsound) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::string fields = doubles({1, nan, 0.125, 0.25, 4.5, 0.75, 0.04, 0.01, 0.09});
   expectIn(refusal(wrapped(poleChunk(fields, 1, ""))), path("m.polemap").string(), "pole 0",
            "not finite");
 }
 
-TEST_F(PoleMapFileTest, refusesToWriteValuesThatAreNotFinite) {
+TEST_F(PoleMapFileTest, RefusesToWriteValuesThatAreNotFinite) {
   const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
                         std::numeric_limits<double>::infinity()};
   for (double MapPole::*field : {&MapPole::x, &MapPole::y, &MapPole::radius, &MapPole::bottom,
@@ -275,13 +275,13 @@ TEST_F(PoleMapFileTest, refusesToWriteValuesThatAreNotFinite) {
   EXPECT_TRUE(fs::is_empty(m_folder));
 }
 
-TEST_F(PoleMapFileTest, refusesToWriteANegativeRadius) {
+TEST_F(PoleMapFileTest, RefusesToWriteANegativeRadius) {
   MapPole p = pole(0, 0);
   p.radius = -0.1;
   expectIn(writeRefusal(p), "pole 1", "radius");
 }
 
-TEST_F(PoleMapFileTest, refusesToWriteAConfidenceOutOfRange) {
+TEST_F(PoleMapFileTest, RefusesToWriteAConfidenceOutOfRange) {
   for (const double confidence : {-0.1, 1.1}) {
     MapPole p = pole(0, 0);
     p.confidence = confidence;
@@ -289,7 +289,7 @@ TEST_F(PoleMapFileTest, refusesToWriteAConfidenceOutOfRange) {
   }
 }
 
-TEST_F(PoleMapFileTest, refusesToWriteACovarianceThatIsNone) {
+TEST_F(PoleMapFileTest, RefusesToWriteACovarianceThatIsNone) {
   for (const auto& [xx, xy, yx, yy] : std::vector<std::array<double, 4>>{{0.01, 0.01, 0.01, 0.01},
                                                                          {0, 0, 0, 0.01},
                                                                          {-0.01, 0, 0, -0.01},
@@ -300,7 +300,7 @@ TEST_F(PoleMapFileTest, refusesToWriteACovarianceThatIsNone) {
   }
 }
 
-TEST_F(PoleMapFileTest, refusesEveryPrefixOfAFile) {
+TEST_F(PoleMapFileTest, RefusesEveryPrefixOfAFile) {
   PoleMapData data;
   data.poles = {pole(1, 2), pole(3, 4)};
   data.info = {{"key", "value"}};
@@ -313,7 +313,7 @@ TEST_F(PoleMapFileTest, refusesEveryPrefixOfAFile) {
   }
 }
 
-TEST_F(PoleMapFileTest, refusesEverySingleFlippedBit) {
+TEST_F(PoleMapFileTest, RefusesEverySingleFlippedBit) {
   PoleMapData data;
   data.poles = {pole(1, 2), pole(3, 4)};
   data.info = {{"key", "value"}};
@@ -327,7 +327,7 @@ TEST_F(PoleMapFileTest, refusesEverySingleFlippedBit) {
   }
 }
 
-TEST_F(PoleMapFileTest, damageUnderARightChecksumNeverCrashes) {
+TEST_F(PoleMapFileTest, DamageUnderARightChecksumNeverCrashes) {
   // The checksum does not shield the parser here: it reads or it throws an Error.
   const std::string payload = chunk("INFO", std::string("\1\0\0\0\1\0\0\0k\2\0\0\0vw", 15)) +
                               poleChunk(fieldsByHand, 1, "");

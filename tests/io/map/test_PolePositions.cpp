@@ -26,7 +26,7 @@ class PolePositionsTest : public FolderTest {
 
 }  // namespace
 
-TEST_F(PolePositionsTest, writesCsvByHand) {
+TEST_F(PolePositionsTest, WritesCsvByHand) {
   MapPole p;
   p.x = 1.5;
   p.y = -2;
@@ -43,7 +43,7 @@ TEST_F(PolePositionsTest, writesCsvByHand) {
   EXPECT_EQ(readPolePositions(path("m.csv")), (Positions{{1.5, -2}}));
 }
 
-TEST_F(PolePositionsTest, writesHistories) {
+TEST_F(PolePositionsTest, WritesHistories) {
   MapPole p;
   p.x = 1;
   p.radius = 0.1;
@@ -55,7 +55,7 @@ TEST_F(PolePositionsTest, writesHistories) {
   EXPECT_EQ(readPolePositions(path("m.csv")).size(), 2u);
 }
 
-TEST_F(PolePositionsTest, readsCsvByTheNamesOfItsColumns) {
+TEST_F(PolePositionsTest, ReadsCsvByTheNamesOfItsColumns) {
   EXPECT_EQ(readPolePositions(write("m.csv", "id,x,y,radius,top\n0,1,2,0.1,5\n1,-3e1,4.5,0.1,5\n")),
             (Positions{{1, 2}, {-30, 4.5}}));
   EXPECT_EQ(readPolePositions(write(
@@ -64,7 +64,7 @@ TEST_F(PolePositionsTest, readsCsvByTheNamesOfItsColumns) {
   EXPECT_TRUE(readPolePositions(write("m.csv", "x,y\n")).empty());
 }
 
-TEST_F(PolePositionsTest, readsPoleMaps) {
+TEST_F(PolePositionsTest, ReadsPoleMaps) {
   PoleMapData data;
   data.poles.resize(2);
   data.poles[1].x = 3;
@@ -73,7 +73,7 @@ TEST_F(PolePositionsTest, readsPoleMaps) {
   EXPECT_EQ(readPolePositions(path("m.polemap")), (Positions{{0, 0}, {3, 4}}));
 }
 
-TEST_F(PolePositionsTest, readsArraysOfBothNames) {
+TEST_F(PolePositionsTest, ReadsArraysOfBothNames) {
   for (const char* name : {"poleparams.npy", "polemeans.npy"}) {
     const std::string three =
         npy(dictionary("<f8", "False", "(2, 3)"), doubles({1, 2, 9, 3, 4, 9}));
@@ -85,47 +85,47 @@ TEST_F(PolePositionsTest, readsArraysOfBothNames) {
             (Positions{{1, 2}, {3, 4}}));
 }
 
-TEST_F(PolePositionsTest, refusesUnknownEndings) {
+TEST_F(PolePositionsTest, RefusesUnknownEndings) {
   expectIn(refusal("m.txt", "1 2\n"), path("m.txt").string(), "'.txt'", ".polemap", ".csv", ".npz");
   expectIn(refusal("m", ""), "unknown kind");
 }
 
-TEST_F(PolePositionsTest, refusesMissingFiles) {
+TEST_F(PolePositionsTest, RefusesMissingFiles) {
   for (const char* name : {"no.csv", "no.npz", "no.polemap"}) {
     expectIn(messageOf([&] { readPolePositions(path(name)); }), name, "No such file or directory");
   }
 }
 
-TEST_F(PolePositionsTest, refusesCsvWithoutNamedColumns) {
+TEST_F(PolePositionsTest, RefusesCsvWithoutNamedColumns) {
   expectIn(refusal("m.csv", "1,2\n3,4\n"), path("m.csv").string() + ":1: ", "named x");
   expectIn(refusal("m.csv", "x,z\n3,4\n"), "named y");
   expectIn(refusal("m.csv", "x,y,x\n3,4,5\n"), "one column named x");
   expectIn(refusal("m.csv", "# only this\n"), "empty");
 }
 
-TEST_F(PolePositionsTest, refusesCsvRowsOfOtherLength) {
+TEST_F(PolePositionsTest, RefusesCsvRowsOfOtherLength) {
   expectIn(refusal("m.csv", "x,y\n1,2\n1,2,3\n"), path("m.csv").string() + ":3: ", "3 fields");
   expectIn(refusal("m.csv", "x,y\n1\n"), path("m.csv").string() + ":2: ", "1 fields");
 }
 
-TEST_F(PolePositionsTest, refusesCsvThatIsNoNumber) {
+TEST_F(PolePositionsTest, RefusesCsvThatIsNoNumber) {
   for (const char* word : {"a", "", "nan", "inf", "1.2.3"}) {
     expectIn(refusal("m.csv", std::string("x,y\n1,") + word + "\n"),
              path("m.csv").string() + ":2: ", "no finite number");
   }
 }
 
-TEST_F(PolePositionsTest, refusesCsvWithAnOpenQuote) {
+TEST_F(PolePositionsTest, RefusesCsvWithAnOpenQuote) {
   expectIn(refusal("m.csv", "x,y,name\n1,2,\"a\n"), path("m.csv").string() + ":2: ", "quote");
 }
 
-TEST_F(PolePositionsTest, refusesNpzWithoutPoles) {
+TEST_F(PolePositionsTest, RefusesNpzWithoutPoles) {
   expectIn(refusal("m.npz", zip({{"walls.npy", ""}, {"mappos.npy", ""}})), path("m.npz").string(),
            "poleparams or polemeans", "mappos, walls");
   expectIn(refusal("m.npz", zip({})), "none");
 }
 
-TEST_F(PolePositionsTest, refusesArraysOfOtherShape) {
+TEST_F(PolePositionsTest, RefusesArraysOfOtherShape) {
   for (const auto& [shape, told] : std::vector<std::pair<std::string, std::string>>{
            {"(4,)", "(4)"}, {"(4, 1)", "(4x1)"}, {"(2, 2, 1)", "(2x2x1)"}}) {
     const std::string array = npy(dictionary("<f8", "False", shape), doubles({1, 2, 3, 4}));
@@ -133,13 +133,13 @@ TEST_F(PolePositionsTest, refusesArraysOfOtherShape) {
   }
 }
 
-TEST_F(PolePositionsTest, refusesArraysThatAreNotFinite) {
+TEST_F(PolePositionsTest, RefusesArraysThatAreNotFinite) {
   const std::string array =
       npy(dictionary("<f8", "False", "(2, 2)"), doubles({1, 2, 3, std::nan("")}));
   expectIn(refusal("m.npz", zip({{"poleparams.npy", array}})), "row 1", "not finite");
 }
 
-TEST_F(PolePositionsTest, readsThePublishedMaps) {
+TEST_F(PolePositionsTest, ReadsThePublishedMaps) {
   POLEMCL_NEEDS_DATA();
   const fs::path folder = dataFolder() / "published";
   const Positions truth = readPolePositions(folder / "nclt_truth.npz");
@@ -161,7 +161,7 @@ TEST_F(PolePositionsTest, readsThePublishedMaps) {
   EXPECT_EQ(npz.array("wallmeans").shape, (std::vector<std::size_t>{0, 2}));
 }
 
-TEST_F(PolePositionsTest, readsTheTruthOfAllKittiSequences) {
+TEST_F(PolePositionsTest, ReadsTheTruthOfAllKittiSequences) {
   POLEMCL_NEEDS_DATA();
   const std::size_t expected[] = {598, 419, 783, 163, 205, 321, 236, 136, 846, 382, 194};
   for (int i = 0; i < 11; ++i) {

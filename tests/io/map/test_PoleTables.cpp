@@ -33,7 +33,7 @@ PoleMapData sample() {
 
 }  // namespace
 
-TEST_F(PoleTables, csvComesBack) {
+TEST_F(PoleTables, CsvComesBack) {
   const PoleMapData before = sample();
   writePoleCsv(path("m.csv"), before.poles, before.histories);
   const PoleMapData after = readPoleCsv(path("m.csv"));
@@ -56,7 +56,7 @@ TEST_F(PoleTables, csvComesBack) {
   }
 }
 
-TEST_F(PoleTables, csvOfOthersNeedsOnlyPlaces) {
+TEST_F(PoleTables, CsvOfOthersNeedsOnlyPlaces) {
   const auto map = readPoleCsv(write("o.csv", "name,y,x\nlamp,2,1\nsign,4,3\n"));
   ASSERT_EQ(map.poles.size(), 2u);
   EXPECT_EQ(map.poles[1].x, 3);
@@ -66,7 +66,7 @@ TEST_F(PoleTables, csvOfOthersNeedsOnlyPlaces) {
   EXPECT_TRUE(map.histories.empty());
 }
 
-TEST_F(PoleTables, csvRefusesWhatIsWrong) {
+TEST_F(PoleTables, CsvRefusesWhatIsWrong) {
   const auto refusal = [&](const std::string& text) {
     return messageOf([&] { readPoleCsv(write("bad.csv", text)); });
   };
@@ -78,7 +78,7 @@ TEST_F(PoleTables, csvRefusesWhatIsWrong) {
   expectIn(refusal("x,y,radius,radius\n1,2,3,4\n"), "radius");
 }
 
-TEST_F(PoleTables, npzComesBack) {
+TEST_F(PoleTables, NpzComesBack) {
   const PoleMapData before = sample();
   writePoleNpz(path("m.npz"), before.poles);
   const auto places = readPolePositions(path("m.npz"));  // as pole-eval reads it
@@ -93,14 +93,14 @@ TEST_F(PoleTables, npzComesBack) {
   }
 }
 
-TEST_F(PoleTables, npzRadiiMustBeRadii) {
+TEST_F(PoleTables, NpzRadiiMustBeRadii) {
   MapPole pole;
   pole.radius = -1;
   writePoleNpz(path("m.npz"), {MapPole(), pole});
   expectIn(messageOf([&] { readPoleNpz(path("m.npz")); }), "m.npz", "row 1", "no radius");
 }
 
-TEST_F(PoleTables, readsTheAuthorsFiles) {
+TEST_F(PoleTables, ReadsTheAuthorsFiles) {
   POLEMCL_NEEDS_DATA();
   const auto map = readPoleNpz(dataFolder() / "published" / "nclt_map_8_0.50_0.08.npz");
   ASSERT_EQ(map.poles.size(), 1635u);

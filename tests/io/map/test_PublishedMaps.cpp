@@ -29,7 +29,7 @@ class PublishedMaps : public testing::Test {
 
 }  // namespace
 
-TEST_F(PublishedMaps, ncltTheAuthorsWay) {
+TEST_F(PublishedMaps, NcltTheAuthorsWay) {
   ASSERT_EQ(truth.size(), 1205u);
   ASSERT_EQ(map.size(), 1635u);
   const MapScore score = scoreMap(truth, map, 1.0, false);
@@ -39,7 +39,7 @@ TEST_F(PublishedMaps, ncltTheAuthorsWay) {
   EXPECT_NEAR(score.f1, 0.6049, 5e-5);
 }
 
-TEST_F(PublishedMaps, ncltOneToOne) {
+TEST_F(PublishedMaps, NcltOneToOne) {
   const MapScore metre = scoreMap(truth, map, 1.0, true);
   EXPECT_EQ(metre.matches, 815u);
   EXPECT_NEAR(metre.precision, 0.498, 5e-4);

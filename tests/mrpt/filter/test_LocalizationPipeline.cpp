@@ -43,7 +43,7 @@ class PoleLocalizationTest : public testing::Test {
       truth.push_back(seen.truth);
     }
   }
-  PoleLocalization chain(std::uint32_t seed = 1) const { return {*map, options, seed}; }
+  LocalizationPipeline chain(std::uint32_t seed = 1) const { return {*map, options, seed}; }
   StartOptions atTruth(std::size_t i = 0) const {
     StartOptions start;
     start.pose = truth[i];
@@ -75,7 +75,7 @@ class RegularCity : public PoleLocalizationTest {
 
 TEST_F(PoleLocalizationTest, TracksFromAStartPoseAndSaysOk) {
   driveFrom(1, 150);
-  PoleLocalization localization = chain();
+  LocalizationPipeline localization = chain();
   localization.start(atTruth());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const LocalizationUpdate update = localization.step(frames[i]);
@@ -93,8 +93,8 @@ TEST_F(PoleLocalizationTest, FoundWithoutAStartPose) {
     frames.clear();
     truth.clear();
     driveFrom(seed, 100);
-    PoleLocalization localization = chain();
-    localization.startAnywhere();
+    LocalizationPipeline localization = chain();
+    localization.initializeGlobally();
     std::size_t known = frames.size();
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const LocalizationUpdate update = localization.step(frames[i]);
@@ -115,7 +115,7 @@ TEST_F(PoleLocalizationTest, AKidnappedVehicleIsLostAndFoundAgain) {
   driveFrom(6, 120);
   const std::size_t jump = frames.size();
   driveFrom(7, 120);  // somewhere else; its odometry knows of no jump
-  PoleLocalization localization = chain();
+  LocalizationPipeline localization = chain();
   localization.start(atTruth());
   std::size_t lost = 0, found = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -145,8 +145,8 @@ TEST_F(PoleLocalizationTest, AFilterThatSettledBesideTheTruthIsPutRightByTheSear
   for (PoleFrame& frame : frames)  // far too sure of the odometry to move by itself
     frame.motion->covariance = Eigen::Vector3d(1e-8, 1e-10, 1e-10).asDiagonal();
   options.filter.extraSigma = options.filter.extraSigmaYaw = 1e-6;
-  options.motionCheck.enabled = false;
-  PoleLocalization localization = chain();
+  options.odometryMonitor.enabled = false;
+  LocalizationPipeline localization = chain();
   StartOptions start = atTruth();
   start.radius = start.heading = 1e-3;
   start.pose->y += 0.4;
@@ -167,7 +167,7 @@ TEST_F(PoleLocalizationTest, AnotherCitysMapIsLost) {
   driveFrom(8, 60);
   auto poles = std::make_shared<CPoleMap>(*map->poles);
   poles->setPoles(tests::PoleCity(cityOf(77)).map());
-  PoleLocalization localization(LocalizationMap(poles, options.global), options, 1);
+  LocalizationPipeline localization(LocalizationMap(poles, options.global), options, 1);
   localization.start(atTruth());
   std::size_t lost = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -186,7 +186,7 @@ TEST_F(PoleLocalizationTest, WithoutRecoveryItStaysLost) {
   options.search.recover = false;
   driveFrom(6, 60);
   driveFrom(7, 90);
-  PoleLocalization localization = chain();
+  LocalizationPipeline localization = chain();
   localization.start(atTruth());
   LocalizationUpdate last;
   for (const PoleFrame& frame : frames) last = localization.step(frame);
@@ -196,8 +196,8 @@ TEST_F(PoleLocalizationTest, WithoutRecoveryItStaysLost) {
 
 TEST_F(RegularCity, WhereAllLooksAlikeSeveralPlacesAreKept) {
   driveFrom(3, 55);
-  PoleLocalization localization = chain();
-  localization.startAnywhere();
+  LocalizationPipeline localization = chain();
+  localization.initializeGlobally();
   bool adopted = false;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const LocalizationUpdate update = localization.step(frames[i]);
@@ -216,7 +216,7 @@ TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {
   const auto used = [&](bool average, double every) {
     options.tracking.average = average;
     options.tracking.every = every;
-    PoleLocalization localization = chain();
+    LocalizationPipeline localization = chain();
     localization.start(atTruth());
     std::vector<std::size_t> poles;
     for (const PoleFrame& frame : frames) poles.push_back(localization.step(frame).step.poles);
@@ -239,7 +239,7 @@ TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
   options.tracking.average = false;
   options.tracking.cadence = Cadence::section;
   options.tracking.localMaps.sectionLength = 5;
-  PoleLocalization localization = chain();
+  LocalizationPipeline localization = chain();
   localization.start(atTruth());
   std::size_t updates = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -260,13 +260,13 @@ TEST_F(PoleLocalizationTest, TheHeaviestPlaceMayReplaceTheEstimate) {
   const auto estimate = [&](bool heaviest) {
     options.filter.heaviestPlace = heaviest;
     options.filter.estimate = PoseEstimator::bestShare;
-    PoleLocalization localization = chain();
+    LocalizationPipeline localization = chain();
     localization.start(atTruth());
     return localization.step(frames[0]).estimate->mean;
   };
   // Equal weights: the best tenth is an arbitrary one, the heaviest place is all.
   const Pose2D all = estimate(true), tenth = estimate(false);
-  PoleLocalizer filter(map->poles, options.filter, 1);
+  PoleParticleFilter filter(map->poles, options.filter, 1);
   filter.start(atTruth());
   const std::vector<double> equal(filter.particles().size(), 0);
   EXPECT_NEAR(all.x, weightedMean(filter.particles(), equal).mean.x, 1e-9);
@@ -277,7 +277,7 @@ TEST_F(PoleLocalizationTest, TheHeaviestPlaceMayReplaceTheEstimate) {
 TEST_F(PoleLocalizationTest, SameSeedSameBytes) {
   driveFrom(9, 40);
   const auto run = [&](std::uint32_t seed) {
-    PoleLocalization localization = chain(seed);
+    LocalizationPipeline localization = chain(seed);
     localization.start(atTruth());
     std::vector<double> values;
     for (const PoleFrame& frame : frames)
@@ -290,7 +290,7 @@ TEST_F(PoleLocalizationTest, SameSeedSameBytes) {
 
 TEST_F(PoleLocalizationTest, RefusesAStartFarFromTheMap) {
   driveFrom(1, 5);
-  PoleLocalization localization = chain();
+  LocalizationPipeline localization = chain();
   StartOptions far = atTruth();
   far.pose->x += 5000;
   try {
@@ -303,10 +303,10 @@ TEST_F(PoleLocalizationTest, RefusesAStartFarFromTheMap) {
 
 TEST_F(PoleLocalizationTest, RefusesFramesBeforeTheStartAndBadFramesWithoutChange) {
   driveFrom(1, 30);
-  PoleLocalization localization = chain(), untouched = chain();
+  LocalizationPipeline localization = chain(), untouched = chain();
   EXPECT_THROW(localization.step(frames[0]), Error);
-  localization.startAnywhere();
-  untouched.startAnywhere();
+  localization.initializeGlobally();
+  untouched.initializeGlobally();
   localization.step(frames[0]);
   untouched.step(frames[0]);
   EXPECT_THROW(localization.step(frames[0]), Error);  // time stands still

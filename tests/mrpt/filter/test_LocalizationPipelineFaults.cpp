@@ -38,15 +38,15 @@ class PoleLocalizationFaults : public testing::Test {
                            4e-4 * motion.yaw * motion.yaw + 1e-8)
         .asDiagonal();
   }
-  PoleLocalization started() const {
-    PoleLocalization localization(*map, options, 1);
+  LocalizationPipeline started() const {
+    LocalizationPipeline localization(*map, options, 1);
     StartOptions start;
     start.pose = truth[0];
     localization.start(start);
     return localization;
   }
   std::vector<LocalizationUpdate> run() const {
-    PoleLocalization localization = started();
+    LocalizationPipeline localization = started();
     std::vector<LocalizationUpdate> updates;
     for (const PoleFrame& frame : frames) updates.push_back(localization.step(frame));
     return updates;
@@ -77,7 +77,7 @@ TEST_F(PoleLocalizationFaults, AStuckOdometryIsDegradedAndThePoseStaysRight) {
   const auto updates = run();
   for (std::size_t i = 105; i < 200; ++i) {
     EXPECT_EQ(updates[i].health.state, HealthState::degraded) << i;
-    EXPECT_EQ(updates[i].motion, MotionVerdict::contradicted) << i;
+    EXPECT_EQ(updates[i].motion, OdometryVerdict::contradicted) << i;
     EXPECT_LT(error(updates[i], i), 0.5) << i;
   }
   expectOkFrom(updates, 200 + 28);  // 20 m
@@ -100,7 +100,7 @@ TEST_F(PoleLocalizationFaults, ASlippingOdometryIsDegradedAndThePoseStaysRight) 
 TEST_F(PoleLocalizationFaults, TheCheckChangesNothingWhilePolesAgree) {
   drive(140);
   const auto checked = run();
-  options.motionCheck.enabled = false;
+  options.odometryMonitor.enabled = false;
   const auto unchecked = run();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(checked[i].estimate->mean.x, unchecked[i].estimate->mean.x);
@@ -140,7 +140,7 @@ TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {
 
 TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
   drive(20);
-  PoleLocalization localization = started(), untouched = started();
+  LocalizationPipeline localization = started(), untouched = started();
   const auto refused = [&](const io::PlanarMotion& motion, const char* word) {
     PoleFrame bad = frames[10];
     bad.motion = motion;

@@ -28,7 +28,7 @@ struct Errors {
   double worst = 0;                  ///< from the eleventh scan on, m
 };
 
-Errors drive(PoleLocalizer& localizer, const PoleStreet& street,
+Errors drive(PoleParticleFilter& localizer, const PoleStreet& street,
              StartPositions positions = StartPositions::area) {
   StartOptions start = at(street.truth[0]);
   start.positions = positions;
@@ -47,12 +47,12 @@ Errors drive(PoleLocalizer& localizer, const PoleStreet& street,
 
 }  // namespace
 
-TEST(PoleLocalizer, FollowsAStreet) {
+TEST(PoleParticleFilter, FollowsAStreet) {
   for (std::uint32_t seed : {1, 2, 3}) {
     StreetOptions options;
     options.seed = seed;
     const PoleStreet street = makeStreet(options);
-    PoleLocalizer localizer(street.map, {}, seed);
+    PoleParticleFilter localizer(street.map, {}, seed);
     const Errors errors = drive(localizer, street);
     // One scan alone gives 0.04 m here, a Kalman filter with known associations 0.015 m.
     EXPECT_LT(errors.position, 0.03) << "seed " << seed;
@@ -61,7 +61,7 @@ TEST(PoleLocalizer, FollowsAStreet) {
   }
 }
 
-TEST(PoleLocalizer, FollowsAStreetAsThePaperDoes) {
+TEST(PoleParticleFilter, FollowsAStreetAsThePaperDoes) {
   FilterOptions paper;
   paper.estimate = PoseEstimator::bestShare;
   paper.tempering = paper.regularization = paper.extraSigma = paper.extraSigmaYaw = 0;
@@ -78,7 +78,7 @@ TEST(PoleLocalizer, FollowsAStreetAsThePaperDoes) {
       street.map->setPoles(street.map->poles());
       paper.estimateTime = model == LikelihoodModel::paper ? EstimateTime::beforeResampling
                                                            : EstimateTime::afterResampling;
-      PoleLocalizer localizer(street.map, paper, seed);
+      PoleParticleFilter localizer(street.map, paper, seed);
       sum += drive(localizer, street, StartPositions::radius).position;
     }
     // Measured: 0.038 m with Eq. 3, 0.043 m as the first implementation.
@@ -86,7 +86,7 @@ TEST(PoleLocalizer, FollowsAStreetAsThePaperDoes) {
   }
 }
 
-TEST(PoleLocalizer, BatchEqualsTheMapsLikelihood) {
+TEST(PoleParticleFilter, BatchEqualsTheMapsLikelihood) {
   const PoleStreet street = makeStreet({});
   Dice dice(3);
   auto observation = CObservationPoles::Create();
@@ -100,7 +100,7 @@ TEST(PoleLocalizer, BatchEqualsTheMapsLikelihood) {
       likelihood.model = paper ? LikelihoodModel::paper : LikelihoodModel::mixture;
       likelihood.weighted = weighted;
       street.map->likelihoodOptions = likelihood;
-      PoleLocalizer localizer(street.map, still(), 1);
+      PoleParticleFilter localizer(street.map, still(), 1);
       localizer.start(at(street.truth[50], 1.5, M_PI));
       PoleFrame frame;
       frame.poles_robot = observation->poles;
@@ -121,10 +121,10 @@ TEST(PoleLocalizer, BatchEqualsTheMapsLikelihood) {
     }
 }
 
-TEST(PoleLocalizer, WorksAsAFilterOfMrpt) {
+TEST(PoleParticleFilter, WorksAsAFilterOfMrpt) {
   const PoleStreet street = makeStreet({});
   FilterOptions options = still();
-  PoleLocalizer own(street.map, options, 5), mrpts(street.map, options, 5);
+  PoleParticleFilter own(street.map, options, 5), mrpts(street.map, options, 5);
   own.start(at(street.truth[50]));
   mrpts.start(at(street.truth[50]));
   own.step(street.frames[50]);
@@ -156,14 +156,14 @@ TEST(PoleLocalizer, WorksAsAFilterOfMrpt) {
     EXPECT_NEAR(mrpts.logWeights()[i], 0.25 * (values[i] - greatest), 1e-12);
 }
 
-TEST(PoleLocalizer, AsksTheMapNotTheCore) {
+TEST(PoleParticleFilter, AsksTheMapNotTheCore) {
   const PoleStreet street = makeStreet({});
   const auto silent = std::make_shared<CPoleMap>(*street.map);
   silent->genericMapParams.enableObservationLikelihood = false;  // as with any map of MRPT
   for (const double tempering : {0.0, 0.2}) {
     FilterOptions options = still();
     options.resampleBelow = options.regularization = options.tempering = tempering;
-    PoleLocalizer localizer(silent, options, 1);
+    PoleParticleFilter localizer(silent, options, 1);
     localizer.start(at(street.truth[50]));
     localizer.step(street.frames[50]);
     EXPECT_EQ(localizer.report().effectiveShare, 1);
@@ -171,12 +171,12 @@ TEST(PoleLocalizer, AsksTheMapNotTheCore) {
   }
 }
 
-TEST(PoleLocalizer, MotionHasTheGivenCovarianceAndTheExtraNoise) {
+TEST(PoleParticleFilter, MotionHasTheGivenCovarianceAndTheExtraNoise) {
   FilterOptions options = still();
   options.particles = 100000;
   options.extraSigma = 0.05;
   options.extraSigmaYaw = 0.02;
-  PoleLocalizer localizer(smallMap(), options, 2);
+  PoleParticleFilter localizer(smallMap(), options, 2);
   const Pose2D start{10, 20, M_PI / 2};
   localizer.start(at(start, 0, 0));
   localizer.step(emptyFrame(0));
@@ -194,8 +194,8 @@ TEST(PoleLocalizer, MotionHasTheGivenCovarianceAndTheExtraNoise) {
   EXPECT_LT((estimate.covariance - expected).row(2).cwiseAbs().maxCoeff(), 1.2e-4);
 }
 
-TEST(PoleLocalizer, FirstFrameIsWhereTheStartPoseIs) {
-  PoleLocalizer localizer(smallMap(), still(), 1);
+TEST(PoleParticleFilter, FirstFrameIsWhereTheStartPoseIs) {
+  PoleParticleFilter localizer(smallMap(), still(), 1);
   localizer.start(at({1, 2, 3}, 0, 0));
   io::PlanarMotion motion;
   motion.mean = {5, 5, 1};
@@ -205,8 +205,8 @@ TEST(PoleLocalizer, FirstFrameIsWhereTheStartPoseIs) {
   EXPECT_NEAR(localizer.step(emptyFrame(0, motion)).mean.x, 1, 1e-12);
 }
 
-TEST(PoleLocalizer, FramesWithoutPolesOnlyPredict) {
-  PoleLocalizer localizer(smallMap(), {}, 1);
+TEST(PoleParticleFilter, FramesWithoutPolesOnlyPredict) {
+  PoleParticleFilter localizer(smallMap(), {}, 1);
   localizer.start(at({0, 0, 0}, 0, 0));
   io::PlanarMotion motion;
   motion.mean = {1, 0, 0};
@@ -223,12 +223,12 @@ TEST(PoleLocalizer, FramesWithoutPolesOnlyPredict) {
   }
 }
 
-TEST(PoleLocalizer, BestShareIsTheMeanOfTheBest) {
+TEST(PoleParticleFilter, BestShareIsTheMeanOfTheBest) {
   FilterOptions options = still();
   options.particles = 10;
   options.estimate = PoseEstimator::bestShare;
   options.bestShare = 0.2;
-  PoleLocalizer localizer(smallMap(), options, 1);
+  PoleParticleFilter localizer(smallMap(), options, 1);
   localizer.start(at({0, 0, 0}, 0, 0));
   for (int i = 0; i < 10; ++i) {
     localizer.m_particles[i].d = {double(i), 0, 0};
@@ -237,9 +237,9 @@ TEST(PoleLocalizer, BestShareIsTheMeanOfTheBest) {
   EXPECT_NEAR(localizer.step(emptyFrame(0)).mean.x, 0.75 * 3 + 0.25 * 7, 1e-12);
 }
 
-TEST(PoleLocalizer, TellsWhatAStepDid) {
+TEST(PoleParticleFilter, TellsWhatAStepDid) {
   const PoleStreet street = makeStreet({});
-  PoleLocalizer localizer(street.map, {}, 1);
+  PoleParticleFilter localizer(street.map, {}, 1);
   localizer.start(at(street.truth[50], 2.5));
   localizer.step(street.frames[50]);
   EXPECT_EQ(localizer.report().poles, street.frames[50].poles_robot.size());
@@ -249,9 +249,9 @@ TEST(PoleLocalizer, TellsWhatAStepDid) {
 }
 
 // 10000 particles at the start, of which 1000 are kept: a fifth of these is enough.
-TEST(PoleLocalizer, TemperingIsMeasuredByTheParticlesThatAreKept) {
+TEST(PoleParticleFilter, TemperingIsMeasuredByTheParticlesThatAreKept) {
   const PoleStreet street = makeStreet({});
-  PoleLocalizer localizer(street.map, {}, 1);
+  PoleParticleFilter localizer(street.map, {}, 1);
   localizer.start(at(street.truth[50], 0.3, 0.02));
   localizer.step(street.frames[50]);
   ASSERT_EQ(localizer.report().particles, 10000u);
@@ -260,13 +260,13 @@ TEST(PoleLocalizer, TemperingIsMeasuredByTheParticlesThatAreKept) {
   EXPECT_LT(localizer.report().effectiveShare, 0.2) << "or it is no test";
 }
 
-TEST(PoleLocalizer, AdaptsTheNumberOfParticles) {
+TEST(PoleParticleFilter, AdaptsTheNumberOfParticles) {
   for (const auto resampling : {Resampling::systematic, Resampling::multinomial}) {
     const PoleStreet street = makeStreet({});
     FilterOptions options;
     options.adaptive = true;
     options.resampling = resampling;
-    PoleLocalizer localizer(street.map, options, 4);
+    PoleParticleFilter localizer(street.map, options, 4);
     localizer.start(at(street.truth[0]));
     std::vector<std::size_t> counts;
     double error = 0;
@@ -298,22 +298,22 @@ TEST(PoleLocalizer, AdaptsTheNumberOfParticles) {
   }
 }
 
-TEST(PoleLocalizer, RefusesAMapWithoutPoles) {
-  EXPECT_THROW(PoleLocalizer(nullptr, {}, 1), Error);
-  EXPECT_THROW(PoleLocalizer(std::make_shared<CPoleMap>(), {}, 1), Error);
+TEST(PoleParticleFilter, RefusesAMapWithoutPoles) {
+  EXPECT_THROW(PoleParticleFilter(nullptr, {}, 1), Error);
+  EXPECT_THROW(PoleParticleFilter(std::make_shared<CPoleMap>(), {}, 1), Error);
 }
 
-TEST(PoleLocalizer, RefusesOptionsOutOfRange) {
+TEST(PoleParticleFilter, RefusesOptionsOutOfRange) {
   FilterOptions options;
   options.particles = 0;
-  EXPECT_THROW(PoleLocalizer(smallMap(), options, 1), Error);
+  EXPECT_THROW(PoleParticleFilter(smallMap(), options, 1), Error);
 }
 
-TEST(PoleLocalizer, WhatTheLikelihoodRefusesIsSaidInFull) {
+TEST(PoleParticleFilter, WhatTheLikelihoodRefusesIsSaidInFull) {
   const PoleStreet street = makeStreet({});
   const auto map = std::make_shared<CPoleMap>(*street.map);
   map->likelihoodOptions.weighted = true;
-  PoleLocalizer localizer(map, {}, 1);
+  PoleParticleFilter localizer(map, {}, 1);
   StartOptions start;
   start.pose = street.truth[0];
   localizer.start(start);
@@ -329,20 +329,20 @@ TEST(PoleLocalizer, WhatTheLikelihoodRefusesIsSaidInFull) {
   }
 }
 
-TEST(PoleLocalizer, RefusesToStepBeforeTheStart) {
-  PoleLocalizer localizer(smallMap(), {}, 1);
+TEST(PoleParticleFilter, RefusesToStepBeforeTheStart) {
+  PoleParticleFilter localizer(smallMap(), {}, 1);
   EXPECT_THROW(localizer.step(emptyFrame(0)), Error);
 }
 
-TEST(PoleLocalizer, RefusesAStartWithoutAPose) {
-  PoleLocalizer localizer(smallMap(), {}, 1);
+TEST(PoleParticleFilter, RefusesAStartWithoutAPose) {
+  PoleParticleFilter localizer(smallMap(), {}, 1);
   EXPECT_THROW(localizer.start(StartOptions()), Error);
   EXPECT_THROW(localizer.start(at({NAN, 0, 0})), Error);
   EXPECT_THROW(localizer.start(at({0, 0, 0}, -1)), Error);
 }
 
-TEST(PoleLocalizer, RefusesBadFramesAndStaysAsItWas) {
-  PoleLocalizer localizer(smallMap(), {}, 1);
+TEST(PoleParticleFilter, RefusesBadFramesAndStaysAsItWas) {
+  PoleParticleFilter localizer(smallMap(), {}, 1);
   localizer.start(at({0, 0, 0}));
   localizer.step(emptyFrame(5));
   const auto before = localizer.particles();

@@ -1,5 +1,5 @@
-// What MRPT's filter gets wrong or leaves to chance, beside what PoleLocalizer makes of it. When a
-// test of a defect (…OfMrpt) fails, MRPT has mended it.
+// What MRPT's filter gets wrong or leaves to chance, beside what PoleParticleFilter makes of it.
+// When a test of a defect (…OfMrpt) fails, MRPT has mended it.
 #include <gtest/gtest.h>
 #include <mrpt/slam/CMonteCarloLocalization2D.h>
 
@@ -69,7 +69,7 @@ void leanLeft(Filter& filter) {
 std::vector<double> driveOnce(const PoleStreet& street, std::uint32_t seed, int particles = 333) {
   FilterOptions options;
   options.particles = particles;
-  PoleLocalizer localizer(street.map, options, seed);
+  PoleParticleFilter localizer(street.map, options, seed);
   StartOptions start;
   start.pose = street.truth[0];
   localizer.start(start);
@@ -92,7 +92,7 @@ TEST(PoleLocalizerMrpt, WeightsSurviveResamplingOfMrpt) {
 }
 
 TEST(PoleLocalizerMrpt, WeightsAreResetAfterResampling) {
-  PoleLocalizer localizer(makeStreet({}).map, withoutJitter(), 1);
+  PoleParticleFilter localizer(makeStreet({}).map, withoutJitter(), 1);
   localizer.start(atOrigin());
   spread(localizer);
   localizer.performResampling(systematic());
@@ -122,7 +122,7 @@ TEST(PoleLocalizerMrpt, FewerParticlesAreDrawnFromAll) {
     FilterOptions options = withoutJitter();
     options.adaptive = true;
     options.resampling = method;
-    PoleLocalizer localizer(makeStreet({}).map, options, 1);
+    PoleParticleFilter localizer(makeStreet({}).map, options, 1);
     localizer.start({PoseHypothesis{}}, 4000);
     for (std::size_t i = 0; i < 4000; ++i) localizer.m_particles[i].d = {1e-5 * i, 0, 0};
     localizer.performResampling(systematic());
@@ -137,7 +137,7 @@ TEST(PoleLocalizerMrpt, FewerParticlesAreDrawnFromAll) {
 
 TEST(PoleLocalizerMrpt, NormalizesAndCountsLikeMrpt) {
   mrpt::slam::CMonteCarloLocalization2D stock(100);
-  PoleLocalizer localizer(makeStreet({}).map, withoutJitter(), 1);
+  PoleParticleFilter localizer(makeStreet({}).map, withoutJitter(), 1);
   localizer.start(atOrigin());
   localizer.m_particles.resize(100);
   spread(stock);
@@ -153,7 +153,7 @@ TEST(PoleLocalizerMrpt, NormalizesAndCountsLikeMrpt) {
 
 TEST(PoleLocalizerMrpt, ResamplesNowAndThenNotAlways) {
   const PoleStreet street = makeStreet({});
-  PoleLocalizer localizer(street.map, {}, 1);
+  PoleParticleFilter localizer(street.map, {}, 1);
   StartOptions start;
   start.pose = street.truth[0];
   localizer.start(start);
@@ -175,7 +175,7 @@ TEST(PoleLocalizerMrpt, CovarianceLosesTheSignOfHeadingErrorsInMrpt) {
 }
 
 TEST(PoleLocalizerMrpt, CovarianceKeepsTheSignOfHeadingErrors) {
-  PoleLocalizer localizer(makeStreet({}).map, withoutJitter(), 1);
+  PoleParticleFilter localizer(makeStreet({}).map, withoutJitter(), 1);
   localizer.start(atOrigin());
   leanLeft(localizer);
   PoleFrame frame;
@@ -222,7 +222,7 @@ TEST(PoleLocalizerMrpt, FiltersSideBySideDoNotDisturbEachOther) {
   StartOptions start;
   start.pose = street.truth[0];
   const auto run = [&](bool interleaved) {
-    PoleLocalizer one(street.map, options, 3), other(street.map, options, 4);
+    PoleParticleFilter one(street.map, options, 3), other(street.map, options, 4);
     one.start(start);
     if (interleaved) other.start(start);
     std::vector<double> result;
@@ -240,7 +240,7 @@ TEST(PoleLocalizerMrpt, JitterFollowsTheSpread) {
   options.particles = 20000;
   options.tempering = 0;
   options.regularization = 0.5;
-  PoleLocalizer localizer(makeStreet({}).map, options, 1);
+  PoleParticleFilter localizer(makeStreet({}).map, options, 1);
   localizer.start(atOrigin());
   for (std::size_t i = 0; i < localizer.m_particles.size(); ++i) {
     const double t = (i % 1000 + 0.5) / 1000 - 0.5;
@@ -260,7 +260,7 @@ TEST(PoleLocalizerMrpt, JitterKeepsPlacesApart) {
   options.particles = 2000;
   options.tempering = 0;
   options.regularization = 0.5;
-  PoleLocalizer localizer(makeStreet({}).map, options, 1);
+  PoleParticleFilter localizer(makeStreet({}).map, options, 1);
   localizer.start(atOrigin());
   for (std::size_t i = 0; i < localizer.m_particles.size(); ++i)
     localizer.m_particles[i].d = {i % 2 ? 30.0 : -30.0, 0, i % 2 ? 1.5 : -1.5};
@@ -271,8 +271,8 @@ TEST(PoleLocalizerMrpt, JitterKeepsPlacesApart) {
     turned = std::max(turned, std::abs(std::abs(pose.yaw) - 1.5));
   }
   EXPECT_GT(farthest, 0);
-  EXPECT_LT(farthest, 5 * PoleLocalizer::maxJitterMetres);
-  EXPECT_LT(turned, 5 * PoleLocalizer::maxJitterRadians);
+  EXPECT_LT(farthest, 5 * PoleParticleFilter::maxJitterMetres);
+  EXPECT_LT(turned, 5 * PoleParticleFilter::maxJitterRadians);
 }
 
 TEST(PoleLocalizerMrpt, TemperingSettlesSooner) {
@@ -283,7 +283,7 @@ TEST(PoleLocalizerMrpt, TemperingSettlesSooner) {
       const std::size_t first = 20 + 5 * seed;
       FilterOptions options;
       options.tempering = tempering;
-      PoleLocalizer localizer(street.map, options, seed);
+      PoleParticleFilter localizer(street.map, options, seed);
       StartOptions start;
       start.pose = compose(street.truth[first], {0.8, -0.5, 0.03});
       start.particles = 1;  // as many as the filter has
@@ -306,7 +306,7 @@ TEST(PoleLocalizerMrpt, TemperingKeepsThePosterior) {
     FilterOptions options;
     options.particles = 60000;
     options.tempering = tempering;
-    PoleLocalizer localizer(street.map, options, 1);
+    PoleParticleFilter localizer(street.map, options, 1);
     StartOptions start;
     start.pose = compose(street.truth[50], {0.1, -0.1, 0.002});
     start.radius = 0.4;

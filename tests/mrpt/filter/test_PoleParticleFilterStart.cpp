@@ -18,10 +18,10 @@ using tests::PoleStreet;
 using tests::smallMap;
 using tests::still;
 
-TEST(PoleLocalizer, StartIsUniformInTheDiscAndInHeading) {
+TEST(PoleParticleFilter, StartIsUniformInTheDiscAndInHeading) {
   FilterOptions options = still();
   options.particles = 40000;
-  PoleLocalizer localizer(smallMap(), options, 9);
+  PoleParticleFilter localizer(smallMap(), options, 9);
   const Pose2D centre{100, -50, 3.1};
   localizer.start(at(centre, 2.0, 0.2));
   int inner = 0, left = 0, turned = 0;
@@ -41,10 +41,10 @@ TEST(PoleLocalizer, StartIsUniformInTheDiscAndInHeading) {
   EXPECT_NEAR(turned, 10000, 346);
 }
 
-TEST(PoleLocalizer, StartCanBeUniformInTheDistanceFromTheCentre) {
+TEST(PoleParticleFilter, StartCanBeUniformInTheDistanceFromTheCentre) {
   FilterOptions options = still();
   options.particles = 40000;
-  PoleLocalizer localizer(smallMap(), options, 9);
+  PoleParticleFilter localizer(smallMap(), options, 9);
   StartOptions start = at({100, -50, 3.1}, 2.0, 0.2);
   start.positions = StartPositions::radius;
   localizer.start(start);
@@ -59,14 +59,14 @@ TEST(PoleLocalizer, StartCanBeUniformInTheDistanceFromTheCentre) {
   EXPECT_NEAR(left, 20000, 400);
 }
 
-TEST(PoleLocalizer, TheEstimateIsTakenBeforeOrAfterResampling) {
+TEST(PoleParticleFilter, TheEstimateIsTakenBeforeOrAfterResampling) {
   const PoleStreet street = makeStreet({});
   FilterOptions options = still();
   options.resampleBelow = 0.5;
   options.estimate = PoseEstimator::bestShare;
-  PoleLocalizer before(street.map, options, 5);
+  PoleParticleFilter before(street.map, options, 5);
   options.estimateTime = EstimateTime::afterResampling;
-  PoleLocalizer after(street.map, options, 5);
+  PoleParticleFilter after(street.map, options, 5);
   before.start(at(street.truth[50]));
   after.start(at(street.truth[50]));
   const Pose2D early = before.step(street.frames[50]).mean;
@@ -82,8 +82,8 @@ TEST(PoleLocalizer, TheEstimateIsTakenBeforeOrAfterResampling) {
   EXPECT_GT(std::hypot(early.x - late.x, early.y - late.y), 1e-3);
 }
 
-TEST(PoleLocalizer, StartDrawsFromAMixtureOfHypotheses) {
-  PoleLocalizer localizer(smallMap(), {}, 3);
+TEST(PoleParticleFilter, StartDrawsFromAMixtureOfHypotheses) {
+  PoleParticleFilter localizer(smallMap(), {}, 3);
   std::vector<PoseHypothesis> hypotheses(3);
   hypotheses[0].pose.mean = {100, 0, 3.1};
   hypotheses[0].pose.covariance << 0.25, 0.1, 0.02, 0.1, 0.16, 0.01, 0.02, 0.01, 0.01;
@@ -111,9 +111,9 @@ TEST(PoleLocalizer, StartDrawsFromAMixtureOfHypotheses) {
   EXPECT_LT(off.row(2).cwiseAbs().maxCoeff(), 0.0016);
 }
 
-TEST(PoleLocalizer, StartFromHypothesesKeepsTheUsualNumberAfterwards) {
+TEST(PoleParticleFilter, StartFromHypothesesKeepsTheUsualNumberAfterwards) {
   const PoleStreet street = makeStreet({});
-  PoleLocalizer localizer(street.map, {}, 3);
+  PoleParticleFilter localizer(street.map, {}, 3);
   PoseHypothesis right, wrong;
   right.pose.mean = street.truth[0];
   right.pose.covariance = Eigen::Vector3d(0.04, 0.04, 0.001).asDiagonal();
@@ -129,8 +129,8 @@ TEST(PoleLocalizer, StartFromHypothesesKeepsTheUsualNumberAfterwards) {
             0.1);
 }
 
-TEST(PoleLocalizer, RefusesBadHypothesesAndStaysAsItWas) {
-  PoleLocalizer localizer(smallMap(), {}, 1);
+TEST(PoleParticleFilter, RefusesBadHypothesesAndStaysAsItWas) {
+  PoleParticleFilter localizer(smallMap(), {}, 1);
   localizer.start(at({7, 0, 0}, 0, 0));
   PoseHypothesis good;
   good.pose.covariance = Eigen::Matrix3d::Identity();

@@ -15,7 +15,7 @@ void expectEqual(const CObservationPoles& a, const CObservationPoles& b) {
   EXPECT_EQ(a.timestamp, b.timestamp);
   EXPECT_EQ(a.sensorLabel, b.sensorLabel);
   EXPECT_EQ(a.sensorPose, b.sensorPose);
-  EXPECT_EQ(a.freeRange, b.freeRange);
+  EXPECT_EQ(a.visibilityRange, b.visibilityRange);
   EXPECT_EQ(a.points, b.points);
   ASSERT_EQ(a.poles.size(), b.poles.size());
   for (std::size_t i = 0; i < a.poles.size(); ++i) {

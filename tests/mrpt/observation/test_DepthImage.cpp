@@ -38,10 +38,10 @@ CObservation3DRangeScan depthImage(const CPose3D& mount, bool rangeIsDepth = tru
 }
 
 /// Nothing in `[sensor]` fits a camera but the height.
-PoleExtractionOptions options() {
-  PoleExtractionOptions o;
+ObservationPoleExtractorOptions options() {
+  ObservationPoleExtractorOptions o;
   o.sensor.height = 1.5;
-  o.extraction.native.maxRange = 30;
+  o.extraction.scanLine.maxRange = 30;
   return o;
 }
 
@@ -56,7 +56,7 @@ PoleDetection nearest(const CObservationPoles& scan, const TestPole& pole) {
 }
 
 void expectAllPoles(const CPose3D& mount, bool rangeIsDepth = true) {
-  PoleExtraction extraction(options());
+  ObservationPoleExtractor extraction(options());
   const auto scan = extraction.process(depthImage(mount, rangeIsDepth));
   EXPECT_EQ(scan->poles.size(), kPoles.size());
   EXPECT_EQ(extraction.report().outOfView, 0u);
@@ -94,7 +94,7 @@ TEST(DepthImage, OnItsSide) {
 // pixels become one.
 TEST(DepthImage, SeesMoreOfPolesThanTheBeamsOfALidar) {
   const auto scan = depthImage(CPose3D(0, 0, 1.5, 0, 10 * kDegree, 0));
-  PoleExtraction extraction(options());
+  ObservationPoleExtractor extraction(options());
   const auto image = extraction.process(scan);
   const auto cloud = extraction.lidarPoints(scan);
   PoleExtractor lidar(options().sensor, options().extraction);  // the default, an HDL-64E
@@ -117,7 +117,7 @@ TEST(DepthImage, CountsPixelsWithoutDepth) {
       if (row % 7 == 3 || (row + column) % 11 == 0) scan.rangeImage(row, column) = 0;
       empty += scan.rangeImage(row, column) == 0;
     }
-  PoleExtraction extraction(options());
+  ObservationPoleExtractor extraction(options());
   const auto poles = extraction.process(scan);
   EXPECT_EQ(extraction.report().points, 640u * 480u);
   EXPECT_EQ(extraction.report().invalid, empty);
@@ -125,7 +125,7 @@ TEST(DepthImage, CountsPixelsWithoutDepth) {
 }
 
 TEST(DepthImage, ImagesOfAnySize) {
-  PoleExtraction extraction(options());
+  ObservationPoleExtractor extraction(options());
   for (const auto& [height, width] : {std::pair{2, 2}, {3, 500}, {301, 417}, {480, 640}}) {
     const auto poles =
         extraction.process(depthImage(CPose3D(0, 0, 1.5, 0, 0, 0), true, height, width));
@@ -145,7 +145,7 @@ TEST(DepthImage, ImagesOfAnySize) {
 }
 
 std::string refusalOf(const CObservation3DRangeScan& scan) {
-  PoleExtraction extraction(options());
+  ObservationPoleExtractor extraction(options());
   try {
     extraction.process(scan);
   } catch (const Error& error) {

@@ -29,7 +29,7 @@ void writeKitti(const std::string& path, const TestCloud& cloud) {
 
 TEST(ObservationPoints, ReadsExternalKittiFiles) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
-  const Folder folder("PoleExtraction");
+  const Folder folder("ObservationPoleExtractor");
   const auto options = hdl32(1.5);
   TestCloud cloud = plainCloud(options);
   const auto expected = corePoles(options, cloud.view());
@@ -39,7 +39,7 @@ TEST(ObservationPoints, ReadsExternalKittiFiles) {
   writeKitti(folder / "0.bin", cloud);
   CObservationPointCloud observation;
   observation.setAsExternalStorage(folder / "0.bin", Format::KittiBinFile);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto scan = extraction.process(observation);
   expectSamePoles(scan->poles, expected, 0);
   EXPECT_EQ(extraction.report().invalid, 1u);
@@ -64,7 +64,7 @@ TEST(ObservationPoints, LoadsAndUnloadsOtherExternalFiles) {
   }
   CObservationPointCloud observation;
   observation.setAsExternalStorage(folder / "0.gz", Format::MRPT_Serialization);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   expectSamePoles(extraction.process(observation)->poles, corePoles(options, cloud.view()), 0);
   EXPECT_FALSE(observation.pointcloud);
   observation.load();  // what the caller loaded stays loaded
@@ -82,13 +82,13 @@ CObservation::Ptr firstOf(const std::string& file) {
   RawlogReader reader(datasets + file);
   RawlogEntry entry;
   while (reader.next(entry))
-    if (entry.observation && PoleExtraction::canProcess(*entry.observation))
+    if (entry.observation && ObservationPoleExtractor::canProcess(*entry.observation))
       return entry.observation;
   return nullptr;
 }
 
-PoleExtractionOptions vlp16() {
-  PoleExtractionOptions options;
+ObservationPoleExtractorOptions vlp16() {
+  ObservationPoleExtractorOptions options;
   options.sensor.model = "vlp16";
   options.sensor.height = 1;
   return options;
@@ -100,7 +100,7 @@ TEST(ObservationPoints, GeneratesVelodyneCloudsOnACopy) {
       std::dynamic_pointer_cast<CObservationVelodyneScan>(firstOf("test_velodyne_VLP16.rawlog"));
   ASSERT_TRUE(scan);
   ASSERT_EQ(scan->point_cloud.size(), 0u);
-  PoleExtraction extraction(vlp16());
+  ObservationPoleExtractor extraction(vlp16());
   const auto poles = extraction.process(*scan);
   EXPECT_EQ(scan->point_cloud.size(), 0u);
   EXPECT_EQ(extraction.report().points, 11305u);  // all its returns, as MRPT counts them
@@ -116,7 +116,7 @@ TEST(ObservationPoints, RotatingScanMatchesTheVelodyneScanItCameFrom) {
   const auto velodyne = firstOf("test_velodyne_VLP16.rawlog");
   const auto rotating = firstOf("rot_scan_velodyne.rawlog");
   ASSERT_TRUE(velodyne && rotating);
-  PoleExtraction extraction(vlp16());
+  ObservationPoleExtractor extraction(vlp16());
   const auto expected = extraction.process(*velodyne);
   const auto scan = extraction.process(*rotating);
   EXPECT_EQ(extraction.report().points, 11305u);
@@ -162,7 +162,7 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   auto options = hdl32(1.5);
   std::vector<int> topDown(32);
   for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
-  PoleExtraction byModel(options);
+  ObservationPoleExtractor byModel(options);
   EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown, up)), 0.05), 6);
 
   // Rows in another order: only a table can tell it.
@@ -176,7 +176,7 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
     table.sensor.elevations.push_back(std::atan(model.beam(mixed.back()).slope));
   }
   const auto scan = rotatingScan(options.sensor, mixed, up);
-  PoleExtraction byTable(table);
+  ObservationPoleExtractor byTable(table);
   EXPECT_GE(found(*byTable.process(scan), 0.05), 6);
   // Beams near the horizon hardly mind; of the others little is left.
   const auto points = [](const CObservationPoles& poles) {
@@ -194,7 +194,7 @@ TEST(ObservationPoints, RotatingScanUpsideDown) {
   for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
   const auto scan = rotatingScan(options.sensor, topDown, CPose3D(0.5, 0.2, 1.5, 0.3, 0, M_PI));
   options.sensor.upsideDown = true;
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   EXPECT_GE(found(*extraction.process(scan), 0.05), 6);
 }
 
@@ -210,7 +210,7 @@ TEST(ObservationPoints, RotatingScanClockwise) {
   for (int column = 0; column < n; ++column)
     for (int row = 0; row < 32; ++row)
       cw.rangeImage(row, column) = ccw.rangeImage(row, (n - column) % n);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto expected = extraction.process(ccw)->poles;
   expectSamePoles(extraction.process(cw)->poles, expected, 1e-4);
 }
@@ -222,7 +222,7 @@ TEST(ObservationPoints, RefusesRotatingScansOfUnknownElevations) {
   scan.rangeResolution = 0.01;
   scan.rangeImage.setZero(40, 100);
   scan.rangeImage(0, 0) = 500;
-  PoleExtraction extraction(hdl32(1.5));
+  ObservationPoleExtractor extraction(hdl32(1.5));
   const std::string text = refusal(extraction, scan);
   EXPECT_HAS(text, "40 rows");
   EXPECT_HAS(text, "model = hdl32e has 32 beams");
@@ -234,13 +234,13 @@ TEST(ObservationPoints, UnprojectsDepthImagesOnACopy) {
   const auto depth =
       std::dynamic_pointer_cast<CObservation3DRangeScan>(firstOf("tests_rgbd.rawlog"));
   ASSERT_TRUE(depth && depth->hasRangeImage);
-  PoleExtractionOptions options;
+  ObservationPoleExtractorOptions options;
   options.sensor.model = "uniform";
   options.sensor.rows = 240;
   options.sensor.fovUp = 0.5;
   options.sensor.fovDown = -0.5;
   options.sensor.columns = 2000;
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   extraction.process(*depth);
   EXPECT_EQ(extraction.report().points, 640u * 480u);
   EXPECT_EQ(extraction.report().invalid, 640u * 480u - 273225u);
@@ -258,7 +258,7 @@ TEST(ObservationPoints, RealKittiScan) {
   CObservationPointCloud observation;
   observation.setAsExternalStorage(std::string(data) + "/kitti_raw_0005/velodyne/0000000000.bin",
                                    CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
-  PoleExtraction extraction(PoleExtractionOptions{});
+  ObservationPoleExtractor extraction(ObservationPoleExtractorOptions{});
   const auto scan = extraction.process(observation);
   EXPECT_GE(scan->poles.size(), 8u);
   EXPECT_GT(scan->points, 100000u);

@@ -16,10 +16,10 @@ using namespace samples;
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 // Sensor at the robot's origin, level: nothing is moved, and the poles are the core's, bit for bit.
-TEST(PoleExtraction, LevelCloudsGoThroughUntouched) {
+TEST(ObservationPoleExtractor, LevelCloudsGoThroughUntouched) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto scan = extraction.process(*observationOf(cloud, CPose3D()));
   expectSamePoles(scan->poles, corePoles(options, cloud.view()), 0);
   EXPECT_EQ(scan->sensorLabel, "TEST");
@@ -30,10 +30,10 @@ TEST(PoleExtraction, LevelCloudsGoThroughUntouched) {
 }
 
 // The planar sensor frame moves with the sensor pose; what is seen in it stays the same.
-TEST(PoleExtraction, SensorPoseDoesNotChangeWhatTheSensorSees) {
+TEST(ObservationPoleExtractor, SensorPoseDoesNotChangeWhatTheSensorSees) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto there = extraction.process(*observationOf(cloud, CPose3D(1, -2, 1.5, 0.7, 0, 0)));
   expectSamePoles(there->poles, corePoles(options, cloud.view()), 1e-9);
   EXPECT_NEAR(there->sensorPose.yaw(), 0.7, 1e-12);
@@ -41,7 +41,7 @@ TEST(PoleExtraction, SensorPoseDoesNotChangeWhatTheSensorSees) {
 
 // The points that the poles come from, to be drawn or turned: extracting them again gives the
 // poles.
-TEST(PoleExtraction, GivesThePointsInTheLidarFrame) {
+TEST(ObservationPoleExtractor, GivesThePointsInTheLidarFrame) {
   auto options = hdl32(1.257);
   options.sensor.upsideDown = true;
   options.sensor.originZ = 0.957;
@@ -51,7 +51,7 @@ TEST(PoleExtraction, GivesThePointsInTheLidarFrame) {
   Eigen::Isometry3d T_body_lidar = Eigen::Isometry3d::Identity();
   T_body_lidar.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
   T_body_lidar.translation().z() = -0.957;
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto points = extraction.lidarPoints(*observationOf(cloud, bodyInRobot, T_body_lidar));
   ASSERT_EQ(points.size(), cloud.x.size());
   for (std::size_t i = 0; i < points.size(); i += 97) {
@@ -62,16 +62,16 @@ TEST(PoleExtraction, GivesThePointsInTheLidarFrame) {
   EXPECT_THROW(extraction.lidarPoints(CObservationOdometry()), Error);
 }
 
-TEST(PoleExtraction, FindsPolesFromAPlaceOnTheRobot) {
+TEST(ObservationPoleExtractor, FindsPolesFromAPlaceOnTheRobot) {
   const auto options = hdl32(1.8);
   const CPose3D pose(0.8, -0.4, 1.8, 0.5, 0, 0);
   const TestCloud cloud = castScan(options.sensor, isometry(pose), testPoles());
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.05), 6);
 }
 
 // NCLT: points in a body frame with z down; the sensor hangs upside down 0.957 m above its origin.
-TEST(PoleExtraction, BodyFrameWithZDown) {
+TEST(ObservationPoleExtractor, BodyFrameWithZDown) {
   auto options = hdl32(0.957 + 0.3);
   options.sensor.upsideDown = true;
   options.sensor.originZ = 0.957;
@@ -81,7 +81,7 @@ TEST(PoleExtraction, BodyFrameWithZDown) {
   // The body frame's origin is 0.957 m below the lidar, 0.3 m above the ground.
   Eigen::Isometry3d T_body_lidar = isometry(bodyInRobot).inverse();
   T_body_lidar = T_body_lidar * Eigen::Translation3d(0, 0, 0.957);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto scan = extraction.process(*observationOf(cloud, bodyInRobot, T_body_lidar));
   EXPECT_GE(found(*scan, 0.05), 6);
   expectSamePoles(scan->poles, corePoles(options, cloud.view()),
@@ -92,12 +92,12 @@ TEST(PoleExtraction, BodyFrameWithZDown) {
 
 // The authors' program sees NCLT's clouds from the origin of the body frame, 0.957 m below the
 // sensor and here 0.3 m above the ground.
-TEST(PoleExtraction, PaperMayProjectFromTheOriginOfClouds) {
+TEST(ObservationPoleExtractor, PaperMayProjectFromTheOriginOfClouds) {
   auto options = hdl32(0.957 + 0.3);
   options.sensor.upsideDown = true;
   options.sensor.originZ = 0.957;
-  options.extraction.method = ExtractionMethod::paper;
-  auto& paper = options.extraction.paper;
+  options.extraction.method = ExtractionMethod::rangeImage;
+  auto& paper = options.extraction.rangeImage;
   paper.rows = 32;
   paper.columns = 1000;
   paper.fovUp = mrpt::DEG2RAD(30.67);
@@ -111,7 +111,7 @@ TEST(PoleExtraction, PaperMayProjectFromTheOriginOfClouds) {
   const auto scan = observationOf(cloud, bodyInRobot, T_body_lidar);
   for (const bool fromCloud : {false, true}) {
     paper.projectFrom = fromCloud ? "cloud" : "sensor";
-    PoleExtraction extraction(options);
+    ObservationPoleExtractor extraction(options);
     const auto points = extraction.lidarPoints(*scan);
     for (std::size_t i = 0; i < points.size(); i += 97) {
       EXPECT_NEAR(points.x[i], cloud.x[i], 1e-5);
@@ -123,7 +123,7 @@ TEST(PoleExtraction, PaperMayProjectFromTheOriginOfClouds) {
   }
 }
 
-TEST(PoleExtraction, OriginIsAlongTheRobotsAxes) {
+TEST(ObservationPoleExtractor, OriginIsAlongTheRobotsAxes) {
   auto options = hdl32(1.5);
   options.sensor.originX = 0.6;
   options.sensor.originY = -0.3;
@@ -134,34 +134,34 @@ TEST(PoleExtraction, OriginIsAlongTheRobotsAxes) {
   const TestCloud cloud = castScan(options.sensor, T_robot_lidar, testPoles());
   Eigen::Isometry3d T_cloud_lidar = isometry(cloudInRobot).inverse() * T_robot_lidar;
   T_cloud_lidar.translation().z() = 0;
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   EXPECT_GE(found(*extraction.process(*observationOf(cloud, cloudInRobot, T_cloud_lidar)), 0.05),
             6);
 }
 
 // Poles stand upright in the robot frame, askew in the lidar's. What is seen at 13 m is 1 m higher
 // or lower there than it would be level; taken for that height, poles would be off by 7 cm.
-TEST(PoleExtraction, TiltedMounting) {
+TEST(ObservationPoleExtractor, TiltedMounting) {
   const auto options = hdl32(1.5);
   const CPose3D pose(0, 0, 1.5, 0, mrpt::DEG2RAD(4.0), mrpt::DEG2RAD(-2.0));
   const TestCloud cloud = castScan(options.sensor, isometry(pose), testPoles());
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.03), 8);
 }
 
 // A camera's optical frame: z ahead, x to the right. It is stood up before extraction.
-TEST(PoleExtraction, CloudOnItsSide) {
+TEST(ObservationPoleExtractor, CloudOnItsSide) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
   const CPose3D optical(0, 0, 1.5, -M_PI / 2, 0, -M_PI / 2);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   Eigen::Isometry3d T_optical_lidar = Eigen::Isometry3d::Identity();
   T_optical_lidar.linear() = isometry(optical).linear().transpose();
   const auto scan = extraction.process(*observationOf(cloud, optical, T_optical_lidar));
   EXPECT_GE(found(*scan, 0.05), 6);
 }
 
-TEST(PoleExtraction, CountsInvalidPoints) {
+TEST(ObservationPoleExtractor, CountsInvalidPoints) {
   const auto options = hdl32(1.5);
   TestCloud cloud = plainCloud(options);
   const auto clean = corePoles(options, cloud.view());
@@ -171,11 +171,11 @@ TEST(PoleExtraction, CountsInvalidPoints) {
     cloud.y.push_back(i % 2 ? 1 : 0);
     cloud.z.push_back(i == 9 ? INFINITY : 0);
   }
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   for (const double originX : {0.0, 0.5}) {  // as it is, and moved: zeros stay no returns
     auto moved = options;
     moved.sensor.originX = originX;
-    PoleExtraction other(moved);
+    ObservationPoleExtractor other(moved);
     const auto scan = other.process(*observationOf(cloud, CPose3D()));
     EXPECT_EQ(other.report().invalid, 10u);
     EXPECT_EQ(scan->points, cloud.x.size() - 10);
@@ -183,8 +183,8 @@ TEST(PoleExtraction, CountsInvalidPoints) {
   }
 }
 
-TEST(PoleExtraction, EmptyScansGiveNoPoles) {
-  PoleExtraction extraction(hdl32(1.5));
+TEST(ObservationPoleExtractor, EmptyScansGiveNoPoles) {
+  ObservationPoleExtractor extraction(hdl32(1.5));
   const auto plain = extraction.process(*observationOf(plainCloud(hdl32(1.5)), CPose3D()));
   EXPECT_GT(plain->points, 0u);
   const auto none = extraction.process(CObservationPointCloud());  // no cloud at all
@@ -196,22 +196,22 @@ TEST(PoleExtraction, EmptyScansGiveNoPoles) {
   EXPECT_EQ(extraction.report().points, 0u);  // not those of the scan before
 }
 
-TEST(PoleExtraction, RefusesOtherObservations) {
-  PoleExtraction extraction(hdl32(1.5));
+TEST(ObservationPoleExtractor, RefusesOtherObservations) {
+  ObservationPoleExtractor extraction(hdl32(1.5));
   const CObservationOdometry odometry;
-  EXPECT_FALSE(PoleExtraction::canProcess(odometry));
-  EXPECT_FALSE(PoleExtraction::canProcess(samples::observation()));
+  EXPECT_FALSE(ObservationPoleExtractor::canProcess(odometry));
+  EXPECT_FALSE(ObservationPoleExtractor::canProcess(samples::observation()));
   EXPECT_HAS(refusal(extraction, odometry), "mrpt::obs::CObservationOdometry");
-  EXPECT_TRUE(PoleExtraction::canProcess(CObservationPointCloud()));
-  EXPECT_TRUE(PoleExtraction::canProcess(CObservationVelodyneScan()));
-  EXPECT_TRUE(PoleExtraction::canProcess(CObservation3DRangeScan()));
-  EXPECT_TRUE(PoleExtraction::canProcess(CObservationRotatingScan()));
+  EXPECT_TRUE(ObservationPoleExtractor::canProcess(CObservationPointCloud()));
+  EXPECT_TRUE(ObservationPoleExtractor::canProcess(CObservationVelodyneScan()));
+  EXPECT_TRUE(ObservationPoleExtractor::canProcess(CObservation3DRangeScan()));
+  EXPECT_TRUE(ObservationPoleExtractor::canProcess(CObservationRotatingScan()));
 }
 
-TEST(PoleExtraction, RefusesBadOptions) {
+TEST(ObservationPoleExtractor, RefusesBadOptions) {
   auto options = hdl32(1.5);
   options.sensor.model = "hdl3000";
-  EXPECT_THROW(PoleExtraction{options}, Error);
+  EXPECT_THROW(ObservationPoleExtractor{options}, Error);
 }
 
 }  // namespace

@@ -23,39 +23,42 @@ std::size_t differing(const std::vector<float>& a, const std::vector<float>& b, 
 TEST(FreeRangeFrames, LevelCloudsKeepThoseOfTheExtractor) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto scan = extraction.process(*observationOf(cloud, CPose3D(0.5, 0.2, 1.5, 0.7, 0, 0)));
   PoleExtractor extractor(options.sensor, options.extraction);
   extractor.extract({cloud.x.data(), cloud.y.data(), cloud.z.data(), cloud.x.size()});
-  ASSERT_EQ(scan->freeRange.size(), 256u);
-  EXPECT_EQ(scan->freeRange, extractor.freeRange());
-  EXPECT_LT(*std::min_element(scan->freeRange.begin(), scan->freeRange.end()), 20) << "poles";
-  EXPECT_GE(*std::max_element(scan->freeRange.begin(), scan->freeRange.end()), 29) << "its walls";
+  ASSERT_EQ(scan->visibilityRange.size(), 256u);
+  EXPECT_EQ(scan->visibilityRange, extractor.visibilityRange());
+  EXPECT_LT(*std::min_element(scan->visibilityRange.begin(), scan->visibilityRange.end()), 20)
+      << "poles";
+  EXPECT_GE(*std::max_element(scan->visibilityRange.begin(), scan->visibilityRange.end()), 29)
+      << "its walls";
 }
 
 TEST(FreeRangeFrames, ABodyFrameWithZDownIsTurnedBack) {
   auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
-  PoleExtraction level(options);
+  ObservationPoleExtractor level(options);
   const auto upright = level.process(*observationOf(cloud, CPose3D(0, 0, 1.5, 0, 0, 0)));
   // The same beams seen by a sensor frame that hangs: x ahead, y right, z down.
   Eigen::Isometry3d T_cloud_lidar = Eigen::Isometry3d::Identity();
   T_cloud_lidar.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  PoleExtraction hanging(options);
+  ObservationPoleExtractor hanging(options);
   const auto down =
       hanging.process(*observationOf(cloud, CPose3D(0, 0, 1.5, 0, 0, M_PI), T_cloud_lidar));
-  ASSERT_EQ(down->freeRange.size(), 256u);
-  EXPECT_LE(differing(upright->freeRange, down->freeRange, 0), 12u) << "edges of sectors";
+  ASSERT_EQ(down->visibilityRange.size(), 256u);
+  EXPECT_LE(differing(upright->visibilityRange, down->visibilityRange, 0), 12u)
+      << "edges of sectors";
 }
 
 TEST(FreeRangeFrames, RawlogsKeepThem) {
   auto options = hdl32(1.5);
-  PoleExtraction extraction(options);
+  ObservationPoleExtractor extraction(options);
   const auto scan = extraction.process(*observationOf(plainCloud(options), CPose3D()));
   const auto read =
       std::dynamic_pointer_cast<CObservationPoles>(samples::objectFrom(samples::bytesOf(*scan)));
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->freeRange, scan->freeRange);
+  EXPECT_EQ(read->visibilityRange, scan->visibilityRange);
 }
 
 }  // namespace polemcl::test_visibility_range_frames

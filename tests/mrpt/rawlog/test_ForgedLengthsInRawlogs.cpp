@@ -79,7 +79,7 @@ CObservationPoles scanOf(std::size_t poles) {
   CObservationPoles scan = samples::observation();
   scan.sensorLabel = "LIDAR of a forger";
   scan.poles.assign(poles, samples::pole(5, 0));
-  scan.freeRange.assign(128, 7.f);
+  scan.visibilityRange.assign(128, 7.f);
   return scan;
 }
 

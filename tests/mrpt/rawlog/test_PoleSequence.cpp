@@ -251,7 +251,7 @@ TEST(PoleSequence, ExtractsClouds) {
                                    frame(cloud(2, 0.5)));
   ASSERT_EQ(sequence.frames.size(), 2u);
   EXPECT_EQ(sequence.counts.storedScans, 0u);
-  PoleExtraction extraction(options().extraction);
+  ObservationPoleExtractor extraction(options().extraction);
   const auto expected = extraction.process(cloud(2, 0.5))->polesInRobotFrame();
   ASSERT_GE(expected.size(), 4u);
   ASSERT_EQ(sequence.frames[1].poles_robot.size(), expected.size());
@@ -475,9 +475,9 @@ TEST(PoleSequence, ReportsProgress) {
 TEST(PoleSequence, ExpectsAsManyScansAsTheFileIsLong) {
   const Bench bench;
   CObservationPoles large = poles(1);
-  large.freeRange.resize(20000);  // so that few are read ahead by bytes, but many by number
-  for (std::size_t i = 0; i < large.freeRange.size(); ++i)
-    large.freeRange[i] = static_cast<float>(i);
+  large.visibilityRange.resize(20000);  // so that few are read ahead by bytes, but many by number
+  for (std::size_t i = 0; i < large.visibilityRange.size(); ++i)
+    large.visibilityRange[i] = static_cast<float>(i);
   const std::string one = samples::bytesOf(large);
   const std::size_t scans = 8'000'000 / one.size();
   std::string bytes;

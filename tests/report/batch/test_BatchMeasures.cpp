@@ -36,7 +36,7 @@ double farthestFrom(const std::vector<Eigen::Vector2d>& line, const Eigen::Vecto
 
 TEST(BatchMeasures, FiguresOfADriveNorth) {
   const NorthDrive drive;
-  const ErrorFigures figures = errorFigures(drive.errors(), drive.truth);
+  const ErrorMetrics figures = errorMetrics(drive.errors(), drive.truth);
   EXPECT_EQ(figures.poses, 4u);
   EXPECT_NEAR(figures.posEnd, std::hypot(0.1, 0.4), 1e-9);
   // Mean squares: x (0.09 + 0.01) / 2, y 0.16 / 2. Driving north, x is lateral (to the right).
@@ -54,13 +54,13 @@ TEST(BatchMeasures, AxesAreThoseOfTheMapWhateverTheHeading) {
   NorthDrive drive;
   for (auto* path : {&drive.truth, &drive.estimate})
     for (StampedPose2D& pose : *path) pose.pose.yaw -= 1.1;
-  const ErrorFigures figures = errorFigures(drive.errors(), drive.truth);
+  const ErrorMetrics figures = errorMetrics(drive.errors(), drive.truth);
   EXPECT_NEAR(figures.xRmse, std::sqrt(0.05), 1e-9);
   EXPECT_NEAR(figures.yRmse, std::sqrt(0.08), 1e-9);
 }
 
 TEST(BatchMeasures, ARunThatNeverKnewItsPoseHasNoFigures) {
-  const ErrorFigures figures = errorFigures(TrajectoryErrors(), NorthDrive().truth);
+  const ErrorMetrics figures = errorMetrics(TrajectoryErrors(), NorthDrive().truth);
   EXPECT_EQ(figures.poses, 0u);
   EXPECT_TRUE(std::isnan(figures.posMean) && std::isnan(figures.angRmseDeg));
 }
@@ -69,7 +69,7 @@ TEST(BatchMeasures, RefusesTheTruthOfAnotherDrive) {
   const NorthDrive drive;
   std::vector<StampedPose2D> other = drive.truth;
   for (StampedPose2D& pose : other) pose.time += 100;
-  EXPECT_THROW(errorFigures(drive.errors(), other), Error);
+  EXPECT_THROW(errorMetrics(drive.errors(), other), Error);
 }
 
 TEST(BatchMeasures, ErrorsAreCountedInMetresAndDegrees) {

@@ -37,7 +37,7 @@ TEST(BatchSummary, ARunIsLostWithoutAPoseOrFarOff) {
 }
 
 TEST(BatchSummary, SessionsAreMeansOverTheirRuns) {
-  const SettingSummary plain = summarize(smallBatch())[0];
+  const ConfigurationSummary plain = summarize(smallBatch())[0];
   ASSERT_EQ(plain.sessions.size(), 3u);
   const SessionSummary &first = plain.sessions[0], &second = plain.sessions[1];
   EXPECT_NEAR(first.figures.posMean.mean, 0.2, 1e-12);
@@ -56,7 +56,7 @@ TEST(BatchSummary, SessionsAreMeansOverTheirRuns) {
 }
 
 TEST(BatchSummary, SettingsAreMeansOverTheirSessions) {
-  const SettingSummary plain = summarize(smallBatch())[0];
+  const ConfigurationSummary plain = summarize(smallBatch())[0];
   // Each session once, however many runs it has; lost runs with a pose are in: 0.2, 0.4, 4.
   EXPECT_NEAR(plain.figures.posMean.mean, 4.6 / 3, 1e-12);
   EXPECT_NEAR(plain.figures.posMax.largest, 12, 1e-12);
@@ -86,7 +86,7 @@ TEST(BatchSummary, ScoresAreMeansOverTheMaps) {
 }
 
 TEST(BatchSummary, OneSessionHasNothingToCompareTheLastWith) {
-  const SettingSummary upkeep = summarize(smallBatch())[1];
+  const ConfigurationSummary upkeep = summarize(smallBatch())[1];
   ASSERT_EQ(upkeep.sessions.size(), 1u);
   EXPECT_EQ(upkeep.sessions[0].session, 1u);
   EXPECT_TRUE(std::isnan(upkeep.lastOverFirst));

@@ -6,7 +6,7 @@
 
 namespace polemcl::report::test_number_format {
 
-TEST(FigureText, ShortLengthsAreCentimetresWithTwoSignificantDigits) {
+TEST(NumberFormat, ShortLengthsAreCentimetresWithTwoSignificantDigits) {
   EXPECT_EQ(lengthText(0.0072, " "), "0.72 cm");
   EXPECT_EQ(lengthText(0.00004, " "), "0.004 cm");  // not below a hundredth of a millimetre
   EXPECT_EQ(lengthText(0.0724, " "), "7.2 cm");
@@ -20,15 +20,15 @@ TEST(FigureText, ShortLengthsAreCentimetresWithTwoSignificantDigits) {
   EXPECT_EQ(lengthText(0.5), "0.500\xC2\xA0m");
 }
 
-TEST(FigureText, AColumnHasOneUnit) {
-  const FigureColumn large(Quantity::length, {0.174, NAN, 2.47});
+TEST(NumberFormat, AColumnHasOneUnit) {
+  const MetricColumn large(Quantity::length, {0.174, NAN, 2.47});
   EXPECT_EQ(large.head("Δ"), "Δ (m)");
   EXPECT_EQ(large.latexHead("D"), "D [m]");
   EXPECT_EQ(large.figure(0.174), "0.174");
   EXPECT_EQ(large.figure(0.0123), "0.012");  // a spread in a column of metres
   EXPECT_EQ(large.figure(NAN), "\xE2\x80\x93");
 
-  const FigureColumn mixed(Quantity::length, {0.174, 0.0072});
+  const MetricColumn mixed(Quantity::length, {0.174, 0.0072});
   EXPECT_EQ(mixed.head("Δ"), "Δ (cm)");
   EXPECT_EQ(mixed.latexHead("D"), "D [cm]");
   EXPECT_EQ(mixed.figure(0.0072), "0.72");
@@ -38,8 +38,8 @@ TEST(FigureText, AColumnHasOneUnit) {
   EXPECT_EQ(mixed.figure(NAN, "--"), "--");
 }
 
-TEST(FigureText, AnglesAreDegrees) {
-  const FigureColumn angles(Quantity::angle, {0.02});
+TEST(NumberFormat, AnglesAreDegrees) {
+  const MetricColumn angles(Quantity::angle, {0.02});
   EXPECT_EQ(angles.head("Δ"), "Δ (°)");
   EXPECT_EQ(angles.latexHead("D"), "D [$^\\circ$]");
   EXPECT_EQ(angles.figure(0.0212), "0.021");

@@ -12,15 +12,15 @@ namespace {
 
 /// Rows as they stand in the papers' tables, "-" for no figure.
 void expectFigures(const std::string& key, const std::string& table,
-                   const std::vector<double PublishedFigure::*>& columns) {
-  const PublishedDataset* dataset = publishedFigures(key);
+                   const std::vector<double PublishedResult::*>& columns) {
+  const PublishedDataset* dataset = publishedResults(key);
   ASSERT_NE(dataset, nullptr);
   std::istringstream rows(table);
   std::string name, word;
-  for (const PublishedFigure& system : dataset->figures) {
+  for (const PublishedResult& system : dataset->figures) {
     ASSERT_TRUE(rows >> name);
     EXPECT_EQ(system.system.rfind(name, 0), 0u) << system.system << " is not " << name;
-    for (double PublishedFigure::*column : columns) {
+    for (double PublishedResult::*column : columns) {
       ASSERT_TRUE(rows >> word) << name;
       if (word == "-")
         EXPECT_TRUE(std::isnan(system.*column)) << name;
@@ -31,11 +31,11 @@ void expectFigures(const std::string& key, const std::string& table,
   EXPECT_FALSE(rows >> name) << "a system is missing: " << name;
 }
 
-using P = PublishedFigure;
+using P = PublishedResult;
 
 }  // namespace
 
-TEST(PublishedFigures, OfNclt) {
+TEST(PublishedResults, OfNclt) {
   expectFigures(
       "nclt",
       "Schaefer 0.284 0.526 0.801 1.081 - -\n"
@@ -43,7 +43,7 @@ TEST(PublishedFigures, OfNclt) {
       {&P::posMean, &P::posRmse, &P::angMeanDeg, &P::angRmseDeg, &P::axisRmse, &P::latStd});
 }
 
-TEST(PublishedFigures, OfKitti) {
+TEST(PublishedResults, OfKitti) {
   expectFigures("kitti-0009",
                 "Kümmerle 0.12  -     0.07  -     0.08  -     0.33  -     -\n"
                 "Weng     -     -     -     0.082 -     0.164 -     0.329 -\n"
@@ -54,7 +54,7 @@ TEST(PublishedFigures, OfKitti) {
                  &P::angMeanDeg, &P::angStdDeg, &P::angRmseDeg});
 }
 
-TEST(PublishedFigures, OfMulranPerAxis) {
+TEST(PublishedResults, OfMulranPerAxis) {
   expectFigures("mulran-kaist",
                 "Schaefer 1.82 0.56 - -\n"
                 "Chen     0.83 3.14 - -\n"
@@ -62,19 +62,19 @@ TEST(PublishedFigures, OfMulranPerAxis) {
                 {&P::axisRmse, &P::angRmseDeg, &P::posRmse, &P::posMean});
 }
 
-TEST(PublishedFigures, PositionsAreConsistentWithTheirComponents) {
+TEST(PublishedResults, PositionsAreConsistentWithTheirComponents) {
   // A mean of hypotenuses is at most the sum of the means of the sides, at least the larger.
   for (const PublishedDataset& dataset : publishedDatasets())
-    for (const PublishedFigure& system : dataset.figures) {
+    for (const PublishedResult& system : dataset.figures) {
       EXPECT_FALSE(system.posMean > system.posRmse) << system.system;
       EXPECT_FALSE(system.angMeanDeg > system.angRmseDeg) << system.system;
       EXPECT_FALSE(system.posMean > system.latMean + system.lonMean) << system.system;
     }
 }
 
-TEST(PublishedFigures, ScoresOfMaps) {
+TEST(PublishedResults, ScoresOfMaps) {
   const auto expectScores = [](const std::string& key, const std::vector<double>& figures) {
-    const PublishedDataset* dataset = publishedFigures(key);
+    const PublishedDataset* dataset = publishedResults(key);
     ASSERT_NE(dataset, nullptr);
     ASSERT_EQ(dataset->maps.size(), 2u);
     EXPECT_FALSE(dataset->mapProtocol.empty());
@@ -87,16 +87,16 @@ TEST(PublishedFigures, ScoresOfMaps) {
   };
   expectScores("nclt", {0.518, 0.664, 0.582, 0.525, 0.713, 0.605});
   expectScores("semantickitti", {0.621, 0.380, 0.455, 0.687, 0.439, 0.515});
-  EXPECT_TRUE(publishedFigures("kitti-0009")->maps.empty());
+  EXPECT_TRUE(publishedResults("kitti-0009")->maps.empty());
 }
 
-TEST(PublishedFigures, SessionsOfNcltAgreeWithTheirMeans) {
+TEST(PublishedResults, SessionsOfNcltAgreeWithTheirMeans) {
   const auto published =
       readPublishedSessions(std::string(POLEMCL_SOURCE_DIR) + "/share/published/nclt-table3.csv");
-  const PublishedDataset* dataset = publishedFigures("nclt");
+  const PublishedDataset* dataset = publishedResults("nclt");
   ASSERT_EQ(publishedSystems(published),
             (std::vector<std::string>{"Dong et al. 2021", "Schaefer et al. 2019"}));
-  for (const PublishedFigure& system : dataset->figures) {
+  for (const PublishedResult& system : dataset->figures) {
     PublishedSession mean{system.system, "", 0, 0, 0, 0, 0};
     std::size_t sessions = 0;
     for (const PublishedSession& one : published) {
@@ -119,7 +119,7 @@ TEST(PublishedFigures, SessionsOfNcltAgreeWithTheirMeans) {
   EXPECT_EQ(find(published, "Dong et al. 2021", "2012-02-23"), nullptr);
 }
 
-TEST(PublishedFigures, RefusesTablesThatAreDamaged) {
+TEST(PublishedResults, RefusesTablesThatAreDamaged) {
   const testing_apps::TempFolder folder;
   const auto refusal = [&](const std::string& text) {
     testing_apps::writeText(folder / "a.csv", text);
@@ -139,9 +139,9 @@ TEST(PublishedFigures, RefusesTablesThatAreDamaged) {
             std::string::npos);
 }
 
-TEST(PublishedFigures, OtherBatchesHaveNone) {
-  EXPECT_EQ(publishedFigures(""), nullptr);
-  EXPECT_EQ(publishedFigures("year"), nullptr);
+TEST(PublishedResults, OtherBatchesHaveNone) {
+  EXPECT_EQ(publishedResults(""), nullptr);
+  EXPECT_EQ(publishedResults("year"), nullptr);
 }
 
 }  // namespace polemcl::report::test_published_results

@@ -6,7 +6,7 @@ namespace polemcl::test_random {
 
 using namespace polemcl::sim;
 
-TEST(Random, isSplitMix64) {
+TEST(Random, IsSplitMix64) {
   // First outputs for seed 0 and 1234567, as published with the reference implementation.
   Random zero(0);
   EXPECT_EQ(zero.next(), 0xe220a8397b1dcdafull);
@@ -16,7 +16,7 @@ TEST(Random, isSplitMix64) {
   EXPECT_EQ(other.next(), 3203168211198807973ull);
 }
 
-TEST(Random, uniformStaysInsideAndHasTheRightMoments) {
+TEST(Random, UniformStaysInsideAndHasTheRightMoments) {
   Random random(3);
   double sum = 0, square = 0;
   constexpr int kCount = 200000;
@@ -32,7 +32,7 @@ TEST(Random, uniformStaysInsideAndHasTheRightMoments) {
   EXPECT_NEAR(square / kCount - mean * mean, 9.0 / 12, 0.01);
 }
 
-TEST(Random, normalHasMeanVarianceAndTails) {
+TEST(Random, NormalHasMeanVarianceAndTails) {
   Random random(4);
   double sum = 0, square = 0;
   int beyondTwo = 0;
@@ -48,7 +48,7 @@ TEST(Random, normalHasMeanVarianceAndTails) {
   EXPECT_NEAR(static_cast<double>(beyondTwo) / kCount, 0.0455, 0.002);
 }
 
-TEST(Random, belowReachesEveryNumberAndNoOther) {
+TEST(Random, BelowReachesEveryNumberAndNoOther) {
   Random random(5);
   int seen[7] = {};
   for (int i = 0; i < 7000; ++i) {
@@ -60,7 +60,7 @@ TEST(Random, belowReachesEveryNumberAndNoOther) {
   for (const int count : seen) EXPECT_NEAR(count, 1000, 150);
 }
 
-TEST(Random, hashOfAListDependsOnTheOrder) {
+TEST(Random, HashOfAListDependsOnTheOrder) {
   EXPECT_NE(hash(1, 2), hash(2, 1));
   EXPECT_NE(hash(1, 2, 3), hash(1, 2));
   EXPECT_EQ(hash(1, 2, 3), hash(1, 2, 3));

@@ -7,7 +7,7 @@ namespace polemcl::test_simulation_bindings {
 using namespace polemcl;
 using namespace polemcl::sim;
 
-TEST(SimulationBindings, whatIsWrittenReadsBackTheSame) {
+TEST(SimulationBindings, WhatIsWrittenReadsBackTheSame) {
   SimulationOptions written;
   written.spacing = 0.31;
   written.laneOffset = 1.7;
@@ -49,7 +49,7 @@ TEST(SimulationBindings, whatIsWrittenReadsBackTheSame) {
   EXPECT_EQ(read.detour, 2);
 }
 
-TEST(SimulationBindings, refusesWhatIsOutOfRangeWithFileSectionAndKey) {
+TEST(SimulationBindings, RefusesWhatIsOutOfRangeWithFileSectionAndKey) {
   ConfigReader reader(ConfigFile::fromText("[world]\ntree_share = 1.2\n", "street.ini"));
   SimulationOptions options;
   try {
@@ -62,7 +62,7 @@ TEST(SimulationBindings, refusesWhatIsOutOfRangeWithFileSectionAndKey) {
   }
 }
 
-TEST(SimulationBindings, refusesALaneBesideTheRoad) {
+TEST(SimulationBindings, RefusesALaneBesideTheRoad) {
   ConfigReader reader(ConfigFile::fromText(
       "[simulation]\nlane_offset_m = 3\n[world]\nroad_width_m = 8\n", "street.ini"));
   SimulationOptions options;

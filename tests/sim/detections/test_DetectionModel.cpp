@@ -12,7 +12,7 @@ using namespace polemcl;
 using namespace polemcl::sim;
 using testing_sim::plainModel;
 
-TEST(DetectionModel, quantilesAreReadAtTheirLevelsAndLinearBetween) {
+TEST(DetectionModel, QuantilesAreReadAtTheirLevelsAndLinearBetween) {
   Quantiles quantiles;
   for (std::size_t i = 0; i < quantiles.size(); ++i) quantiles[i] = static_cast<double>(i * i);
   for (std::size_t i = 0; i < quantiles.size(); ++i) {
@@ -25,12 +25,12 @@ TEST(DetectionModel, quantilesAreReadAtTheirLevelsAndLinearBetween) {
   EXPECT_EQ(valueAt(quantiles, 9), 100);
 }
 
-TEST(DetectionModel, ofManyEqualValuesTheMiddleOneIsMeant) {
+TEST(DetectionModel, OfManyEqualValuesTheMiddleOneIsMeant) {
   Quantiles quantiles{0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2};
   EXPECT_NEAR(scoreOf(quantiles, 1), 0.5 * (normalQuantile(0.3) + normalQuantile(0.7)), 1e-9);
 }
 
-TEST(DetectionModel, isLinearBetweenRangesAndEndsAtTheLastOne) {
+TEST(DetectionModel, IsLinearBetweenRangesAndEndsAtTheLastOne) {
   DetectionModel model = plainModel();
   model.classes[0].detected = {normalCdf(1), normalCdf(-1)};  // at 5 and 35 m
   const auto score = [&](double range) {
@@ -42,7 +42,7 @@ TEST(DetectionModel, isLinearBetweenRangesAndEndsAtTheLastOne) {
   EXPECT_LT(score(40.1), -5);
 }
 
-TEST(DetectionModel, errorsGrowWithSigmaAsTheExponentSays) {
+TEST(DetectionModel, ErrorsGrowWithSigmaAsTheExponentSays) {
   DetectionModel model = plainModel();  // the usual sigma is 0.05
   const auto scale = [&](double exponent) {
     model.errorExponent = exponent;
@@ -53,14 +53,14 @@ TEST(DetectionModel, errorsGrowWithSigmaAsTheExponentSays) {
   EXPECT_NEAR(scale(0), 0.05, 1e-12);
 }
 
-TEST(DetectionModel, polesAreOfTheirKind) {
+TEST(DetectionModel, PolesAreOfTheirKind) {
   EXPECT_EQ(classOf(Kind::lampPost), DetectionClass::lampPost);
   EXPECT_EQ(classOf(Kind::sign), DetectionClass::sign);
   EXPECT_EQ(classOf(Kind::trafficLight), DetectionClass::trafficLight);
   EXPECT_EQ(classOf(Kind::tree), DetectionClass::tree);
 }
 
-TEST(DetectionModel, refusesWhatMakesNoSense) {
+TEST(DetectionModel, RefusesWhatMakesNoSense) {
   EXPECT_NO_THROW(plainModel().validate());
   const std::pair<const char*, std::function<void(DetectionModel&)>> spoilt[] = {
       {"sensor", [](auto& m) { m.sensor = ""; }},

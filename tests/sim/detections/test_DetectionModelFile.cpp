@@ -47,7 +47,7 @@ class DetectionModelFile : public testing::Test {
 };
 }  // namespace
 
-TEST_F(DetectionModelFile, readsBackWhatWasWritten) {
+TEST_F(DetectionModelFile, ReadsBackWhatWasWritten) {
   DetectionModel model = testing_sim::plainModel();
   model.fittedOn = "by hand";
   model.points = 64283;
@@ -72,7 +72,7 @@ TEST_F(DetectionModelFile, readsBackWhatWasWritten) {
   EXPECT_EQ(textOf(file), first);
 }
 
-TEST_F(DetectionModelFile, withoutSeasonsTheyChangeNothing) {
+TEST_F(DetectionModelFile, WithoutSeasonsTheyChangeNothing) {
   DetectionModel model = testing_sim::plainModel();
   model.season.fence = -1;
   writeDetectionModel(file, model);
@@ -86,7 +86,7 @@ TEST_F(DetectionModelFile, withoutSeasonsTheyChangeNothing) {
   EXPECT_EQ(read.bare, SeasonModel().bare);
 }
 
-TEST_F(DetectionModelFile, shippedModelsCanBeRead) {
+TEST_F(DetectionModelFile, ShippedModelsCanBeRead) {
   std::size_t models = 0;
   for (const auto& entry : fs::directory_iterator(s_models)) {
     EXPECT_NO_THROW(readDetectionModel(entry.path())) << entry.path();
@@ -95,7 +95,7 @@ TEST_F(DetectionModelFile, shippedModelsCanBeRead) {
   EXPECT_GT(models, 0u);
 }
 
-TEST_F(DetectionModelFile, namesFileKeyAndWhatIsAllowed) {
+TEST_F(DetectionModelFile, NamesFileKeyAndWhatIsAllowed) {
   const auto expect = [&](const std::string& text, const std::string& by, const std::string& word) {
     const std::string said = refusal(text, by);
     EXPECT_NE(said.find("model.json: "), std::string::npos) << said;

@@ -45,7 +45,7 @@ double sum(const std::array<double, 5>& shares) {
 }
 }  // namespace
 
-TEST(DetectionModelFit, findsTheModelThatTheDetectionsAreDrawnFrom) {
+TEST(DetectionModelFit, FindsTheModelThatTheDetectionsAreDrawnFrom) {
   DetectionModel truth = testing_sim::plainModel();
   for (int c = 0; c < static_cast<int>(DetectionClass::clutter); ++c)
     truth.classes[c].detected = {0.8, 0.4};
@@ -82,7 +82,7 @@ TEST(DetectionModelFit, findsTheModelThatTheDetectionsAreDrawnFrom) {
   EXPECT_NEAR(valueAt(fitted.passingRange, 0), 15, 0.3);
 }
 
-TEST(DetectionModelFit, wantsOneStreetOnTwoDays) {
+TEST(DetectionModelFit, WantsOneStreetOnTwoDays) {
   const DetectionModel model = testing_sim::plainModel();
   Drawn oneDay, twoStreets;
   oneDay.add(model, 3, 0);
@@ -94,7 +94,7 @@ TEST(DetectionModelFit, wantsOneStreetOnTwoDays) {
   EXPECT_THROW(fitDetectionModel({}, 40, ""), Error);
 }
 
-TEST(DetectionModelFit, refusesDrivesWithoutPoles) {
+TEST(DetectionModelFit, RefusesDrivesWithoutPoles) {
   DetectionModel model = testing_sim::plainModel();
   for (auto& own : model.classes)
     if (!own.detected.empty()) own.detected = {0, 0};
@@ -104,7 +104,7 @@ TEST(DetectionModelFit, refusesDrivesWithoutPoles) {
   EXPECT_THROW(drawn.fit(), Error);
 }
 
-TEST(DetectionSummary, countsWhatWasPutThere) {
+TEST(DetectionSummary, CountsWhatWasPutThere) {
   SimulationOptions options;
   options.world.length = 100;
   options.world.relief = 0;

@@ -53,14 +53,14 @@ class DetectionSamplerTest : public testing::Test {
 };
 }  // namespace
 
-TEST_F(DetectionSamplerTest, findsPolesAsOftenAndAsFarOffAsTheModelSays) {
+TEST_F(DetectionSamplerTest, FindsPolesAsOftenAndAsFarOffAsTheModelSays) {
   sample(plainModel());
   double chances = 0, found = 0, along = 0, across = 0, sum = 0, detections = 0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     chances += static_cast<double>(truth[i].size());
     detections += static_cast<double>(scans[i].size());
     const auto places = centres(scans[i]);
-    for (const PolePair& pair : pairClosest(truth[i], places, 0.3)) {
+    for (const AssignedPair& pair : greedyAssignment(truth[i], places, 0.3)) {
       const Eigen::Vector2d ray = truth[i][pair.first].normalized(),
                             error = places[pair.second] - truth[i][pair.first];
       found += 1;
@@ -77,7 +77,7 @@ TEST_F(DetectionSamplerTest, findsPolesAsOftenAndAsFarOffAsTheModelSays) {
   EXPECT_NEAR(sum / found, 0, 0.003);
 }
 
-TEST_F(DetectionSamplerTest, reportsTheCovarianceAlongTheRay) {
+TEST_F(DetectionSamplerTest, ReportsTheCovarianceAlongTheRay) {
   DetectionModel model = plainModel();
   for (auto& own : model.classes) own.reported[0][0].fill(0.2);
   sample(model);
@@ -94,21 +94,21 @@ TEST_F(DetectionSamplerTest, reportsTheCovarianceAlongTheRay) {
   EXPECT_GT(seen, 1000u);
 }
 
-TEST_F(DetectionSamplerTest, whatLastsKeepsAPoleHiddenOrFoundForTheWholeDrive) {
+TEST_F(DetectionSamplerTest, WhatLastsKeepsAPoleHiddenOrFoundForTheWholeDrive) {
   DetectionModel model = plainModel();
   model.poleVisibility.today[4] = 1;
   sample(model);
   std::size_t flips = 0, stays = 0;
   for (std::size_t i = 1; i < scans.size(); ++i) {
-    const auto before = pairClosest(truth[i - 1], centres(scans[i - 1]), 0.3);
+    const auto before = greedyAssignment(truth[i - 1], centres(scans[i - 1]), 0.3);
     stays += before.size();
-    const auto now = pairClosest(truth[i], centres(scans[i]), 0.3);
+    const auto now = greedyAssignment(truth[i], centres(scans[i]), 0.3);
     flips += now.size() > before.size() ? now.size() - before.size() : before.size() - now.size();
   }
   EXPECT_LT(static_cast<double>(flips), 0.05 * static_cast<double>(stays));
 }
 
-TEST_F(DetectionSamplerTest, isBlindBehindHouses) {
+TEST_F(DetectionSamplerTest, IsBlindBehindHouses) {
   DetectionModel model = plainModel();
   for (auto& own : model.classes)
     if (!own.detected.empty()) own.detected = {1, 1};
@@ -122,7 +122,7 @@ TEST_F(DetectionSamplerTest, isBlindBehindHouses) {
   EXPECT_EQ(found, visible);
 }
 
-TEST_F(DetectionSamplerTest, falseDetectionsComeAsOftenAsTheModelSaysTimesTheFactor) {
+TEST_F(DetectionSamplerTest, FalseDetectionsComeAsOftenAsTheModelSaysTimesTheFactor) {
   DetectionModel model = plainModel();
   for (auto& own : model.classes)
     if (!own.detected.empty()) own.detected = {0, 0};
@@ -140,7 +140,7 @@ TEST_F(DetectionSamplerTest, falseDetectionsComeAsOftenAsTheModelSaysTimesTheFac
   }
 }
 
-TEST_F(DetectionSamplerTest, lastingFalseObjectsStandOnAllDaysOrOnOne) {
+TEST_F(DetectionSamplerTest, LastingFalseObjectsStandOnAllDaysOrOnOne) {
   DetectionModel model = plainModel();
   model.clutterAlways = 0.05;
   model.clutterToday = 0.03;
@@ -161,7 +161,7 @@ TEST_F(DetectionSamplerTest, lastingFalseObjectsStandOnAllDaysOrOnOne) {
   for (const auto& place : second) EXPECT_EQ(twice.count(place), 1u);
 }
 
-TEST_F(DetectionSamplerTest, refusesAnotherLidarOrHeight) {
+TEST_F(DetectionSamplerTest, RefusesAnotherLidarOrHeight) {
   const World world = makeWorld(m_options.world);
   m_options.sensor = "vlp16";
   EXPECT_THROW(DetectionSampler(plainModel(), world, m_options), Error);
@@ -171,7 +171,7 @@ TEST_F(DetectionSamplerTest, refusesAnotherLidarOrHeight) {
   EXPECT_THROW(DetectionSampler(plainModel(), world, m_options), Error);
 }
 
-TEST_F(DetectionSamplerTest, freeRangesEndAtHousesInTheFrameOfTheClouds) {
+TEST_F(DetectionSamplerTest, FreeRangesEndAtHousesInTheFrameOfTheClouds) {
   const World world = makeWorld(m_options.world);
   const Drive drive = makeDrive(world, m_options);
   const DetectionSampler sampler(plainModel(), world, m_options);
@@ -179,7 +179,7 @@ TEST_F(DetectionSamplerTest, freeRangesEndAtHousesInTheFrameOfTheClouds) {
   std::size_t hidden = 0, all = 0;
   for (std::size_t i = 0; i < drive.time.size(); i += 40) {
     const Eigen::Isometry3d& T = drive.T_map_sensor[i];
-    const std::vector<float> ranges = sampler.freeRange(T);
+    const std::vector<float> ranges = sampler.visibilityRange(T);
     ASSERT_EQ(ranges.size(), 256u);
     const Eigen::Vector2d sensor = T.translation().head<2>();
     const auto blocks = sight.around(sensor, 40);
@@ -238,7 +238,7 @@ double shareSeen(const DetectionModel& model, const SimulationOptions& options, 
 }
 }  // namespace
 
-TEST_F(DetectionSamplerTest, snowHidesPolesThatStandInIt) {
+TEST_F(DetectionSamplerTest, SnowHidesPolesThatStandInIt) {
   DetectionModel model = plainModel();
   model.season.snow.fill(-4);
   m_options.world.dayOfYear = 15;
@@ -254,7 +254,7 @@ TEST_F(DetectionSamplerTest, snowHidesPolesThatStandInIt) {
   EXPECT_NEAR(shareSeen(model, m_options, inSnow), 0.6, 0.05);
 }
 
-TEST_F(DetectionSamplerTest, bottomsLieOnTheSnowAndElsewhereWhereTheModelHasThem) {
+TEST_F(DetectionSamplerTest, BottomsLieOnTheSnowAndElsewhereWhereTheModelHasThem) {
   DetectionModel model = plainModel();
   for (auto& own : model.classes)
     for (Quantiles& row : own.reported[static_cast<int>(Reported::bottom)]) row.fill(-0.2);
@@ -274,7 +274,7 @@ TEST_F(DetectionSamplerTest, bottomsLieOnTheSnowAndElsewhereWhereTheModelHasThem
   EXPECT_GT(inSnow, 0.3 * all);
 }
 
-TEST_F(DetectionSamplerTest, bareTreesAreSeenMoreOften) {
+TEST_F(DetectionSamplerTest, BareTreesAreSeenMoreOften) {
   DetectionModel model = plainModel();
   model.season.bare = {0, 0, 0, 0.8};  // P(z < 0.253 + 0.8) = 0.854
   const auto trees = [](const World&, const TruePole& pole, bool) {
@@ -292,7 +292,7 @@ TEST_F(DetectionSamplerTest, bareTreesAreSeenMoreOften) {
   EXPECT_NEAR(shareSeen(model, m_options, trees), 0.6, 0.04);
 }
 
-TEST_F(DetectionSamplerTest, fencesOfMeshLetSomePolesThrough) {
+TEST_F(DetectionSamplerTest, FencesOfMeshLetSomePolesThrough) {
   DetectionModel model = plainModel();
   model.season.fence = -1;  // P(z < 0.253 - 1) = 0.227
   m_options.world.buildingSites = 6;
@@ -303,7 +303,7 @@ TEST_F(DetectionSamplerTest, fencesOfMeshLetSomePolesThrough) {
   EXPECT_NEAR(shareSeen(model, m_options, free), 0.6, 0.03);
 }
 
-TEST_F(DetectionSamplerTest, buildingSitesLookLikePolesWhileTheyStand) {
+TEST_F(DetectionSamplerTest, BuildingSitesLookLikePolesWhileTheyStand) {
   DetectionModel model = plainModel();
   model.season.siteClutter = 0.2;
   m_options.world.buildingSites = 5;

@@ -38,12 +38,12 @@ double counted(const NoiseSpectrum& spectrum, double distance, bool sameDay) {
 }
 }  // namespace
 
-TEST(PersistentNoise, whiteIsWhatIsLeft) {
+TEST(PersistentNoise, WhiteIsWhatIsLeft) {
   EXPECT_NEAR(mixed().white(), 0.2, 1e-12);
   EXPECT_EQ(NoiseSpectrum().white(), 1);
 }
 
-TEST(PersistentNoise, correlatesAsItsSpectrumSays) {
+TEST(PersistentNoise, CorrelatesAsItsSpectrumSays) {
   for (const double distance : {0.0, 0.7, 3.0, 12.0})
     for (const bool sameDay : {true, false})
       EXPECT_NEAR(counted(mixed(), distance, sameDay), mixed().correlation(distance, sameDay), 0.02)
@@ -53,7 +53,7 @@ TEST(PersistentNoise, correlatesAsItsSpectrumSays) {
   EXPECT_NEAR(mixed().correlation(1000, true), 0.2, 1e-9);
 }
 
-TEST(PersistentNoise, dependsOnNothingButItsSeedsAndThePlace) {
+TEST(PersistentNoise, DependsOnNothingButItsSeedsAndThePlace) {
   const NoiseSeeds seeds{1, 2, 3};
   const double first = persistentNoise(mixed(), seeds, 4.5, -8);
   persistentNoise(mixed(), {9, 9, 9}, 0, 0);
@@ -61,7 +61,7 @@ TEST(PersistentNoise, dependsOnNothingButItsSeedsAndThePlace) {
   EXPECT_NE(persistentNoise(mixed(), {1, 2, 4}, 4.5, -8), first);
 }
 
-TEST(PersistentNoise, fadesOverItsReach) {
+TEST(PersistentNoise, FadesOverItsReach) {
   EXPECT_EQ(noiseCorrelation(0, 500), 1);
   for (const double reach : {1.5, 25.0}) {
     EXPECT_NEAR(noiseCorrelation(reach, 0), 1, 1e-9);

@@ -17,7 +17,7 @@ Pose2D planar(const Eigen::Isometry3d& pose) {
 }
 }  // namespace
 
-TEST(Drive, keepsSpacingTimeHeightAndUprightness) {
+TEST(Drive, KeepsSpacingTimeHeightAndUprightness) {
   SimulationOptions options;
   options.height = 1.7;
   const World world = makeWorld(options.world);
@@ -40,7 +40,7 @@ TEST(Drive, keepsSpacingTimeHeightAndUprightness) {
   }
 }
 
-TEST(Drive, odometryIsTheTrueMotionWithNoiseOfTheGivenShare) {
+TEST(Drive, OdometryIsTheTrueMotionWithNoiseOfTheGivenShare) {
   SimulationOptions options;
   options.world.length = 1000;
   options.odometryNoise = 0.05;
@@ -58,7 +58,7 @@ TEST(Drive, odometryIsTheTrueMotionWithNoiseOfTheGivenShare) {
   EXPECT_NEAR(square / static_cast<double>(drive.odometry.size()), 1, 0.12);
 }
 
-TEST(Drive, anotherDayDrivesAnotherLineOnTheSameRoad) {
+TEST(Drive, AnotherDayDrivesAnotherLineOnTheSameRoad) {
   SimulationOptions options;
   const Drive today = makeDrive(makeWorld(options.world), options);
   options.world.day = 1;
@@ -71,7 +71,7 @@ TEST(Drive, anotherDayDrivesAnotherLineOnTheSameRoad) {
   EXPECT_LT(most, 1.0);
 }
 
-TEST(Drive, reverseComesFromTheFarEndInTheOtherLane) {
+TEST(Drive, ReverseComesFromTheFarEndInTheOtherLane) {
   SimulationOptions options;
   const World world = makeWorld(options.world);
   const Drive there = makeDrive(world, options);
@@ -85,13 +85,13 @@ TEST(Drive, reverseComesFromTheFarEndInTheOtherLane) {
   EXPECT_GT(back.odometry[10].dx, 0.4) << "it drives forwards";
 }
 
-TEST(Drive, stopsAfterTheGivenNumberOfScans) {
+TEST(Drive, StopsAfterTheGivenNumberOfScans) {
   SimulationOptions options;
   options.scans = 7;
   EXPECT_EQ(makeDrive(makeWorld(options.world), options).time.size(), 7u);
 }
 
-TEST(Drive, refusesAStreetShorterThanTwoScans) {
+TEST(Drive, RefusesAStreetShorterThanTwoScans) {
   SimulationOptions options;
   options.spacing = 50;
   options.world.length = 30;

@@ -46,7 +46,7 @@ class Simulation : public testing::Test {
 };
 }  // namespace
 
-TEST_F(Simulation, writesAFolderThatReadsBackAsTheDrive) {
+TEST_F(Simulation, WritesAFolderThatReadsBackAsTheDrive) {
   const fs::path out = folder("out");
   std::vector<std::size_t> steps;
   const SimulationSummary summary =
@@ -78,7 +78,7 @@ TEST_F(Simulation, writesAFolderThatReadsBackAsTheDrive) {
   EXPECT_NEAR(poles[0].x(), world.poles()[0].x, 1e-4);
 }
 
-TEST_F(Simulation, anOriginMovesCloudsAndPosesButNotTheWorld) {
+TEST_F(Simulation, AnOriginMovesCloudsAndPosesButNotTheWorld) {
   m_options.scans = 2;
   const fs::path plain = folder("plain"), moved = folder("moved");
   simulate(m_options, plain);
@@ -100,7 +100,7 @@ TEST_F(Simulation, anOriginMovesCloudsAndPosesButNotTheWorld) {
   }
 }
 
-TEST_F(Simulation, bytesDoNotDependOnTheNumberOfThreads) {
+TEST_F(Simulation, BytesDoNotDependOnTheNumberOfThreads) {
   const fs::path one = folder("one"), many = folder("many");
   m_options.scans = 16;
   tbb::task_arena(1).execute([&] { simulate(m_options, one); });
@@ -114,13 +114,13 @@ TEST_F(Simulation, bytesDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(files, 16u + 16u + 4u);
 }
 
-TEST_F(Simulation, refusesAFolderItCannotWriteTo) {
+TEST_F(Simulation, RefusesAFolderItCannotWriteTo) {
   const fs::path file = folder("out") / "file";
   std::ofstream(file) << "in the way";
   EXPECT_THROW(simulate(m_options, file), Error);
 }
 
-TEST_F(Simulation, refusesOptionsBeforeItWritesAnything) {
+TEST_F(Simulation, RefusesOptionsBeforeItWritesAnything) {
   m_options.spacing = -1;
   const fs::path out = folder("out");
   EXPECT_THROW(simulate(m_options, out), Error);

@@ -56,7 +56,7 @@ void compare(const std::function<ShapeHit(const LocalRay&)>& kernel,
 }
 }  // namespace
 
-TEST(Intersection, byHand) {
+TEST(Intersection, ByHand) {
   const LocalRay along{V(-5, 0, 1), V(1, 0, 0)};
   EXPECT_NEAR(hitFrustum(along, 0.5f, 0.5f, 2).range, 4.5, 1e-5);
   EXPECT_NEAR(hitFrustum(along, 0.5f, 0.3f, 2).range, 4.6, 1e-5) << "0.4 m half way up";
@@ -69,7 +69,7 @@ TEST(Intersection, byHand) {
   EXPECT_FALSE(std::isfinite(hitBox({V(-5, 0, 0), V(-1, 0, 0)}, V(1, 1, 2)).range)) << "behind";
 }
 
-TEST(Intersection, frustumEqualsMarching) {
+TEST(Intersection, FrustumEqualsMarching) {
   for (const auto& [r0, r1] : {std::pair{0.8f, 0.8f}, {1.0f, 0.3f}, {0.2f, 0.9f}})
     compare([&, a = r0, b = r1](const LocalRay& ray) { return hitFrustum(ray, a, b, 1.5f); },
             [&, a = r0, b = r1](const V& p) {
@@ -78,19 +78,19 @@ TEST(Intersection, frustumEqualsMarching) {
             });
 }
 
-TEST(Intersection, boxEqualsMarching) {
+TEST(Intersection, BoxEqualsMarching) {
   const V half(1, 0.3f, 0.6f);
   compare([&](const LocalRay& ray) { return hitBox(ray, half); },
           [&](const V& p) { return (p.cwiseAbs().array() <= half.array()).all(); });
 }
 
-TEST(Intersection, ellipsoidEqualsMarching) {
+TEST(Intersection, EllipsoidEqualsMarching) {
   const V half(1, 0.5f, 0.8f);
   compare([&](const LocalRay& ray) { return hitEllipsoid(ray, half); },
           [&](const V& p) { return p.cwiseQuotient(half).squaredNorm() <= 1; });
 }
 
-TEST(Intersection, thinPostsFarAwayKeepTheirPrecision) {
+TEST(Intersection, ThinPostsFarAwayKeepTheirPrecision) {
   // 4 cm thick, 90 m away: the range must not suffer from single precision.
   for (int i = -9; i <= 9; ++i) {
     const float aside = 0.002f * static_cast<float>(i);
@@ -101,7 +101,7 @@ TEST(Intersection, thinPostsFarAwayKeepTheirPrecision) {
   }
 }
 
-TEST(Intersection, leavesFillTheirShareAndAreTheSameFromEverySide) {
+TEST(Intersection, LeavesFillTheirShareAndAreTheSameFromEverySide) {
   // Straight through one row of cells, from both sides: the same cells stop the ray.
   Random random(2);
   int hits = 0;

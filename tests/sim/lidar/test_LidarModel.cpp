@@ -20,7 +20,7 @@ struct Sheet {
 };
 }  // namespace
 
-TEST(LidarModel, beamsAreThoseOfTheDataSheets) {
+TEST(LidarModel, BeamsAreThoseOfTheDataSheets) {
   for (const Sheet& sheet : {Sheet{"hdl64e", 64, 2, -24.33}, Sheet{"hdl32e", 32, 10.67, -30.67},
                              Sheet{"vlp16", 16, 15, -15}, Sheet{"os1_64", 64, 16.6, -16.6},
                              Sheet{"os1_128", 128, 22.5, -22.5}, Sheet{"os0_64", 64, 45, -45}}) {
@@ -31,7 +31,7 @@ TEST(LidarModel, beamsAreThoseOfTheDataSheets) {
   }
 }
 
-TEST(LidarModel, hdl64HasTwoBlocksThatStartAtDifferentHeights) {
+TEST(LidarModel, Hdl64HasTwoBlocksThatStartAtDifferentHeights) {
   const LidarModel lidar = makeLidar("hdl64e");
   EXPECT_NEAR((lidar.beams[0].elevation - lidar.beams[31].elevation) / kDegree, 31.0 / 3, 0.3);
   EXPECT_NEAR((lidar.beams[32].elevation - lidar.beams[63].elevation) / kDegree, 31.0 / 2, 0.3);
@@ -39,7 +39,7 @@ TEST(LidarModel, hdl64HasTwoBlocksThatStartAtDifferentHeights) {
   EXPECT_NEAR(lidar.beams[40].rise, 0.12, 0.02);
 }
 
-TEST(LidarModel, unitsDifferALittleAndEachIsAlwaysTheSame) {
+TEST(LidarModel, UnitsDifferALittleAndEachIsAlwaysTheSame) {
   const LidarModel one = makeLidar("vlp16", false, 1), two = makeLidar("vlp16", false, 2),
                    again = makeLidar("vlp16", false, 1);
   for (std::size_t i = 0; i < one.beams.size(); ++i) {
@@ -49,7 +49,7 @@ TEST(LidarModel, unitsDifferALittleAndEachIsAlwaysTheSame) {
   }
 }
 
-TEST(LidarModel, hangingItKeepsBeamsFromTopToBottom) {
+TEST(LidarModel, HangingItKeepsBeamsFromTopToBottom) {
   const LidarModel hanging = makeLidar("hdl32e", true);
   EXPECT_NEAR(hanging.beams.front().elevation / kDegree, 30.67, 0.01);
   EXPECT_NEAR(hanging.beams.back().elevation / kDegree, -10.67, 0.01);
@@ -58,7 +58,7 @@ TEST(LidarModel, hangingItKeepsBeamsFromTopToBottom) {
                      [](const Beam& a, const Beam& b) { return a.elevation > b.elevation; }));
 }
 
-TEST(LidarModel, listedBeamsAreSimulatedAsTheyAreListed) {
+TEST(LidarModel, ListedBeamsAreSimulatedAsTheyAreListed) {
   SimulationOptions options;
   SensorOptions beams;
   options.sensor = "table";
@@ -85,7 +85,7 @@ TEST(LidarModel, listedBeamsAreSimulatedAsTheyAreListed) {
   EXPECT_NE(hanging.clockwise, lidar.clockwise);
 }
 
-TEST(LidarModel, uniformBeamsAreEvenlySpread) {
+TEST(LidarModel, UniformBeamsAreEvenlySpread) {
   SimulationOptions options;
   SensorOptions beams;
   options.sensor = "uniform";
@@ -98,7 +98,7 @@ TEST(LidarModel, uniformBeamsAreEvenlySpread) {
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(lidar.beams[i].elevation, 0.2 - 0.1 * i, 1e-12);
 }
 
-TEST(LidarModel, refusesAnUnknownNameAndListsTheKnownOnes) {
+TEST(LidarModel, RefusesAnUnknownNameAndListsTheKnownOnes) {
   try {
     makeLidar("hdl65");
     FAIL() << "accepted";

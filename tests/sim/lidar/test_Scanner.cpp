@@ -43,7 +43,7 @@ std::vector<V> pointsOf(const SimulatedScan& scan, std::uint32_t id,
 }
 }  // namespace
 
-TEST(Scanner, sameSeedGivesTheSameScan) {
+TEST(Scanner, SameSeedGivesTheSameScan) {
   SimulationOptions options;
   options.world.length = 60;
   const World world = makeWorld(options.world);
@@ -60,7 +60,7 @@ TEST(Scanner, sameSeedGivesTheSameScan) {
   EXPECT_NE(a.x, c.x);
 }
 
-TEST(Scanner, pointsLieOnThePostWithinTheNoiseFromEveryHeading) {
+TEST(Scanner, PointsLieOnThePostWithinTheNoiseFromEveryHeading) {
   const World world = emptyPlace({post(8, 2, 0.15, 4, 3)});
   for (const char* name :
        {"hdl64e", "hdl32e", "vlp16", "os1_64", "os1_64_gen2", "os1_128", "os0_64"})
@@ -84,7 +84,7 @@ TEST(Scanner, pointsLieOnThePostWithinTheNoiseFromEveryHeading) {
     }
 }
 
-TEST(Scanner, groundLiesWhereItIs) {
+TEST(Scanner, GroundLiesWhereItIs) {
   const World world = emptyPlace({});
   const LidarModel lidar = makeLidar("hdl32e");
   const SimulatedScan result = scan(world, at(0, 0, 2), lidar, 1);
@@ -102,7 +102,7 @@ TEST(Scanner, groundLiesWhereItIs) {
   EXPECT_LT(std::sqrt(square / static_cast<double>(onRoad)), 0.02);
 }
 
-TEST(Scanner, rangeNoiseIsThatOfTheLidar) {
+TEST(Scanner, RangeNoiseIsThatOfTheLidar) {
   ObjectBuilder builder(Kind::wall, Site{});
   Material smooth = materials::plaster;
   smooth.roughness = 0;
@@ -127,7 +127,7 @@ TEST(Scanner, rangeNoiseIsThatOfTheLidar) {
   EXPECT_NEAR(std::sqrt(square / count), lidar.rangeNoise, 0.1 * lidar.rangeNoise);
 }
 
-TEST(Scanner, whatStandsInFrontHidesWhatIsBehind) {
+TEST(Scanner, WhatStandsInFrontHidesWhatIsBehind) {
   ObjectBuilder builder(Kind::wall, Site{});
   builder.box(V(5, 0, 2), V(0.2, 3, 3), materials::brick);
   const World world =
@@ -139,7 +139,7 @@ TEST(Scanner, whatStandsInFrontHidesWhatIsBehind) {
   EXPECT_GT(pointsOf(result, 3, pose).size(), 30u);
 }
 
-TEST(Scanner, partsOfAPulseMeltAtNearStepsOnly) {
+TEST(Scanner, PartsOfAPulseMeltAtNearStepsOnly) {
   // The front of the post is at 11.85 m; the wall behind it at 12.6 m or 15 m.
   for (const double wall : {12.6, 15.0}) {
     ObjectBuilder builder(Kind::wall, Site{});
@@ -161,7 +161,7 @@ TEST(Scanner, partsOfAPulseMeltAtNearStepsOnly) {
   }
 }
 
-TEST(Scanner, pointsComeInFiringOrderWithinTheRangeOfTheLidar) {
+TEST(Scanner, PointsComeInFiringOrderWithinTheRangeOfTheLidar) {
   SimulationOptions options;
   options.world.length = 100;
   const World world = makeWorld(options.world);
@@ -187,7 +187,7 @@ TEST(Scanner, pointsComeInFiringOrderWithinTheRangeOfTheLidar) {
   }
 }
 
-TEST(Scanner, aHangingSensorSeesTheOtherElevations) {
+TEST(Scanner, AHangingSensorSeesTheOtherElevations) {
   const World world = emptyPlace({post(5, 0, 0.2, 6, 1)});
   const Eigen::Isometry3d pose = at(0, 0, 1.5);
   double upright = 0, hanging = 0;
@@ -199,7 +199,7 @@ TEST(Scanner, aHangingSensorSeesTheOtherElevations) {
   EXPECT_NEAR(hanging, 1.5 + 4.8 * std::tan(30.67 * M_PI / 180), 0.15);
 }
 
-TEST(Scanner, motionShiftsPointsByTheWayOfTheSensorWithinTheTurn) {
+TEST(Scanner, MotionShiftsPointsByTheWayOfTheSensorWithinTheTurn) {
   // Clockwise from the back: what lies at azimuth a is fired (pi - a) / 2 pi - 1/2 turns after the
   // middle. Left: a quarter of a turn before it.
   const World world = emptyPlace({post(0, 8, 0.1, 4, 1), post(8, 0, 0.1, 4, 2)});
@@ -217,7 +217,7 @@ TEST(Scanner, motionShiftsPointsByTheWayOfTheSensorWithinTheTurn) {
   EXPECT_NEAR(meanX(2), 7.9, 0.03) << "fired in the middle of the turn";
 }
 
-TEST(Scanner, walkersAreSeenWhereTheyAre) {
+TEST(Scanner, WalkersAreSeenWhereTheyAre) {
   WorldObject walker = post(6, 0, 0.2, 1.7, 4);
   walker.walk = {0, 4};
   walker.pace = 1;

@@ -38,7 +38,7 @@ Eigen::Isometry3d randomPose(Random& random) {
 }
 }  // namespace
 
-TEST(SolidView, boundsHoldEveryHit) {
+TEST(SolidView, BoundsHoldEveryHit) {
   Random random(21);
   int hits = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -76,7 +76,7 @@ TEST(SolidView, boundsHoldEveryHit) {
   EXPECT_GT(hits, 20000);
 }
 
-TEST(SolidView, glassLetsTheGivenShareThrough) {
+TEST(SolidView, GlassLetsTheGivenShareThrough) {
   Solid solid;
   solid.position = V(5, 0, 0);
   solid.size = V(1, 4, 4);

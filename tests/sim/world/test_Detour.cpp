@@ -41,7 +41,7 @@ class Detours : public testing::TestWithParam<std::uint64_t> {};
 
 }  // namespace
 
-TEST_P(Detours, leaveTheStreetAndComeBackWithoutAJerk) {
+TEST_P(Detours, LeaveTheStreetAndComeBackWithoutAJerk) {
   const World world = makeWorld(withSideStreets(GetParam(), 0).world);
   ASSERT_EQ(world.detours().size(), 2u);
   const auto straight = placesOf(makeDrive(world, withSideStreets(GetParam(), 0)));
@@ -73,7 +73,7 @@ TEST_P(Detours, leaveTheStreetAndComeBackWithoutAJerk) {
   }
 }
 
-TEST_P(Detours, haveTheirOwnPolesThatTheStreetNeverSees) {
+TEST_P(Detours, HaveTheirOwnPolesThatTheStreetNeverSees) {
   const World world = makeWorld(withSideStreets(GetParam(), 0).world);
   const auto straight = placesOf(makeDrive(world, withSideStreets(GetParam(), 0)));
   std::vector<std::vector<Eigen::Vector2d>> own(2);
@@ -90,7 +90,7 @@ TEST_P(Detours, haveTheirOwnPolesThatTheStreetNeverSees) {
   for (const auto& place : own[0]) EXPECT_GT(distance(own[1], place), 40);
 }
 
-TEST_P(Detours, nothingStandsInTheirWay) {
+TEST_P(Detours, NothingStandsInTheirWay) {
   const World world = makeWorld(withSideStreets(GetParam(), 0).world);
   for (const int detour : {1, 2})
     for (double s = 0; s < world.path(detour).length(); s += 1) {
@@ -117,7 +117,7 @@ TEST_P(Detours, nothingStandsInTheirWay) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Detours, testing::Values(61, 62, 63));
 
-TEST(Detour, theStreetItselfIsDrivenAsWithoutSideStreets) {
+TEST(Detour, TheStreetItselfIsDrivenAsWithoutSideStreets) {
   SimulationOptions options = withSideStreets(64, 0);
   options.world.relief = 0;  // the grid of worn ground begins elsewhere
   const auto with = placesOf(makeDrive(makeWorld(options.world), options));
@@ -127,7 +127,7 @@ TEST(Detour, theStreetItselfIsDrivenAsWithoutSideStreets) {
   for (std::size_t i = 0; i < with.size(); ++i) EXPECT_LT((with[i] - without[i]).norm(), 1e-9);
 }
 
-TEST(Detour, refusesAStreetWithoutRoomAndASideStreetThatIsNotThere) {
+TEST(Detour, RefusesAStreetWithoutRoomAndASideStreetThatIsNotThere) {
   SimulationOptions options = withSideStreets(65, 0);
   options.world.length = 300;
   try {

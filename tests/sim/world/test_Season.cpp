@@ -8,7 +8,7 @@ namespace polemcl::test_season {
 
 using namespace polemcl::sim;
 
-TEST(Season, winterIsBareAndWhiteAndSummerGreen) {
+TEST(Season, WinterIsBareAndWhiteAndSummerGreen) {
   EXPECT_EQ(seasonOf(15).foliage, 0);
   EXPECT_EQ(seasonOf(15).snow, 1);
   EXPECT_EQ(seasonOf(196).foliage, 1);
@@ -17,7 +17,7 @@ TEST(Season, winterIsBareAndWhiteAndSummerGreen) {
   EXPECT_NEAR(seasonOf(345).snow, 0.5, 1e-12) << "mid December";
 }
 
-TEST(Season, yearsFollowOneAnotherWithoutJumps) {
+TEST(Season, YearsFollowOneAnotherWithoutJumps) {
   for (int day = -400; day < 800; ++day) {
     const Season today = seasonOf(day), tomorrow = seasonOf(day + 1);
     EXPECT_LE(std::abs(tomorrow.foliage - today.foliage), 0.05) << day;

@@ -23,7 +23,7 @@ SightLines::Block block(double turn) {
 
 }  // namespace
 
-TEST(SightLines, theFreeWayEndsAtTheFirstBlock) {
+TEST(SightLines, TheFreeWayEndsAtTheFirstBlock) {
   const SightLines::Block near = block(0);
   SightLines::Block far = near;
   far.centre.x() = 20;
@@ -34,12 +34,12 @@ TEST(SightLines, theFreeWayEndsAtTheFirstBlock) {
   EXPECT_NEAR(SightLines::freeWay({}, {3, 4}, {0, 0}), 5, 1e-12);
 }
 
-TEST(SightLines, ofATurnedBlockItIsItsNearSide) {
+TEST(SightLines, OfATurnedBlockItIsItsNearSide) {
   const SightLines::Block turned = block(M_PI / 2);  // now 2 m deep to both sides of its centre
   EXPECT_NEAR(SightLines::freeWay({&turned}, {0, 0}, {40, 0}), 8, 1e-9);
 }
 
-TEST(SightLines, blockedAgreesWithTheFreeWay) {
+TEST(SightLines, BlockedAgreesWithTheFreeWay) {
   const SightLines::Block near = block(0.4);
   for (double angle = -1; angle < 1; angle += 0.01) {
     const Eigen::Vector2d to(30 * std::cos(angle), 30 * std::sin(angle));
@@ -48,7 +48,7 @@ TEST(SightLines, blockedAgreesWithTheFreeWay) {
   }
 }
 
-TEST(SightLines, boardsAndContainersHideAndMeshIsToldApart) {
+TEST(SightLines, BoardsAndContainersHideAndMeshIsToldApart) {
   WorldOptions options;
   options.length = 60;
   options.relief = 0;

@@ -36,7 +36,7 @@ class Street_ : public testing::Test {
 using Street_Track = Street_;
 }  // namespace
 
-TEST(Street, straightOneByHand) {
+TEST(Street, StraightOneByHand) {
   const Street street(std::vector<Eigen::Vector2d>{{0, 0}, {30, 40}});  // 3-4-5
   EXPECT_NEAR(street.length(), 50, 1e-9);
   const Pose2D middle = street.at(25);
@@ -50,7 +50,7 @@ TEST(Street, straightOneByHand) {
   EXPECT_NEAR(street.at(99).y, 40, 1e-9);
 }
 
-TEST(Street, generatedOneHasItsLengthAndGentleBends) {
+TEST(Street, GeneratedOneHasItsLengthAndGentleBends) {
   for (int seed = 1; seed <= 10; ++seed) {
     WorldOptions options;
     options.seed = seed;
@@ -64,7 +64,7 @@ TEST(Street, generatedOneHasItsLengthAndGentleBends) {
   }
 }
 
-TEST(Street, noCurvinessMeansStraight) {
+TEST(Street, NoCurvinessMeansStraight) {
   WorldOptions options;
   options.curviness = 0;
   const Street street = Street::make(options);
@@ -72,7 +72,7 @@ TEST(Street, noCurvinessMeansStraight) {
   EXPECT_NEAR(std::hypot(b.x - a.x, b.y - a.y), street.length(), 1e-6);
 }
 
-TEST(Street, distanceEqualsBruteForce) {
+TEST(Street, DistanceEqualsBruteForce) {
   WorldOptions options;
   const Street street = Street::make(options);
   for (int i = 0; i < 200; ++i) {
@@ -85,7 +85,7 @@ TEST(Street, distanceEqualsBruteForce) {
   }
 }
 
-TEST(Street, theSecondPassOfARoadIsNotFresh) {
+TEST(Street, TheSecondPassOfARoadIsNotFresh) {
   std::vector<Eigen::Vector2d> places;  // 100 m out, back 4 m beside, then 100 m elsewhere
   for (int i = 0; i <= 100; ++i) places.emplace_back(i, 0);
   for (int i = 100; i >= 0; --i) places.emplace_back(i, 4);
@@ -96,12 +96,12 @@ TEST(Street, theSecondPassOfARoadIsNotFresh) {
   EXPECT_TRUE(street.fresh(street.length() - 50));
 }
 
-TEST(Street, refusesLessThanTwoPlaces) {
+TEST(Street, RefusesLessThanTwoPlaces) {
   EXPECT_THROW(Street(std::vector<Eigen::Vector2d>{{1, 1}}), Error);
   EXPECT_THROW(Street(std::vector<Eigen::Vector2d>{{1, 1}, {1.1, 1}}), Error) << "10 cm apart";
 }
 
-TEST_F(Street_Track, plainAndGzipGiveTheSameRoad) {
+TEST_F(Street_Track, PlainAndGzipGiveTheSameRoad) {
   const std::string text = trackText(40);
   std::ofstream(path("track.txt")) << text;
   const gzFile packed = gzopen(path("track.txt.gz").c_str(), "wb");
@@ -117,7 +117,7 @@ TEST_F(Street_Track, plainAndGzipGiveTheSameRoad) {
   }
 }
 
-TEST_F(Street_Track, refusesAMissingFileAndALineOfElevenNumbers) {
+TEST_F(Street_Track, RefusesAMissingFileAndALineOfElevenNumbers) {
   WorldOptions options;
   options.track = path("nowhere.txt");
   EXPECT_THROW(Street::make(options), Error);

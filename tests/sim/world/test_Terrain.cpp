@@ -21,7 +21,7 @@ Street straightStreet() {
 }
 }  // namespace
 
-TEST(Terrain, flatRoadAndKerbByHand) {
+TEST(Terrain, FlatRoadAndKerbByHand) {
   const Terrain terrain(flatOptions(), straightStreet(), {});  // road from y = -5 to 5
   EXPECT_NEAR(terrain.height(0, 0), 0, 1e-6);
   EXPECT_NEAR(terrain.height(10, 4.9), 0, 1e-6);
@@ -32,13 +32,13 @@ TEST(Terrain, flatRoadAndKerbByHand) {
   EXPECT_NEAR(terrain.edge(3, 60), 6, 1e-6) << "far from every road";
 }
 
-TEST(Terrain, sideRoadsLowerTheGround) {
+TEST(Terrain, SideRoadsLowerTheGround) {
   const Terrain terrain(flatOptions(), straightStreet(), {{{20, 0}, {20, 50}, 3}});
   EXPECT_NEAR(terrain.height(20, 20), 0, 1e-6);
   EXPECT_NEAR(terrain.height(24, 20), 0.12, 1e-6);
 }
 
-TEST(Terrain, raysOnFlatGroundByHand) {
+TEST(Terrain, RaysOnFlatGroundByHand) {
   const Terrain terrain(flatOptions(), straightStreet(), {});
   const Eigen::Vector3d eye(0, 0, 2);
   const auto down = terrain.intersect(eye, {0, 0, -1}, 100);
@@ -59,7 +59,7 @@ TEST(Terrain, raysOnFlatGroundByHand) {
       << "beyond the greatest range";
 }
 
-TEST(Terrain, aRayThatWouldPassUnderThePavementMeetsTheKerb) {
+TEST(Terrain, ARayThatWouldPassUnderThePavementMeetsTheKerb) {
   const Terrain terrain(flatOptions(), straightStreet(), {});
   // At y = 5 it is 0.06 m above the road: half way up the kerb.
   const Eigen::Vector3d eye(0, 0, 1), direction = Eigen::Vector3d(0, 5, -0.94).normalized();
@@ -68,7 +68,7 @@ TEST(Terrain, aRayThatWouldPassUnderThePavementMeetsTheKerb) {
   EXPECT_NEAR(hit.range * direction.y(), 5, 0.03);
 }
 
-TEST(Terrain, hitsLieOnTheGroundAndNothingWasMissedBefore) {
+TEST(Terrain, HitsLieOnTheGroundAndNothingWasMissedBefore) {
   WorldOptions options;
   options.relief = 1;
   const Street street = Street::make(options);

@@ -31,7 +31,7 @@ std::map<std::uint32_t, TruePole> byId(const World& world) {
 }
 }  // namespace
 
-TEST(World, sameSeedSameWorldAndAnotherSeedAnother) {
+TEST(World, SameSeedSameWorldAndAnotherSeedAnother) {
   const World a = makeWorld(street(1)), b = makeWorld(street(1)), c = makeWorld(street(2));
   ASSERT_EQ(a.objects().size(), b.objects().size());
   for (std::size_t i = 0; i < a.objects().size(); ++i) {
@@ -42,7 +42,7 @@ TEST(World, sameSeedSameWorldAndAnotherSeedAnother) {
   EXPECT_NE(a.objects().size(), c.objects().size());
 }
 
-TEST(World, everyKindStandsSomewhere) {
+TEST(World, EveryKindStandsSomewhere) {
   std::set<Kind> kinds;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const World world = makeWorld(street(seed));
@@ -51,7 +51,7 @@ TEST(World, everyKindStandsSomewhere) {
   EXPECT_EQ(kinds.size(), static_cast<std::size_t>(Kind::column) + 1);
 }
 
-TEST(World, polesAreSlimTallAndBesideTheRoad) {
+TEST(World, PolesAreSlimTallAndBesideTheRoad) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const World world = makeWorld(street(seed));
     EXPECT_GT(world.poles().size(), 60u);
@@ -64,7 +64,7 @@ TEST(World, polesAreSlimTallAndBesideTheRoad) {
   }
 }
 
-TEST(World, truthLiesOnTheAxisOfTheTrunk) {
+TEST(World, TruthLiesOnTheAxisOfTheTrunk) {
   const World world = makeWorld(street(4));
   const auto poles = byId(world);
   int checked = 0;
@@ -93,7 +93,7 @@ TEST(World, truthLiesOnTheAxisOfTheTrunk) {
   EXPECT_EQ(checked, static_cast<int>(poles.size()));
 }
 
-TEST(World, anotherDayRemovesAFewPolesAddsAFewAndLeavesTheRest) {
+TEST(World, AnotherDayRemovesAFewPolesAddsAFewAndLeavesTheRest) {
   int before = 0, gone = 0, added = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const auto today = byId(makeWorld(street(seed, 0))), later = byId(makeWorld(street(seed, 3)));
@@ -114,7 +114,7 @@ TEST(World, anotherDayRemovesAFewPolesAddsAFewAndLeavesTheRest) {
   EXPECT_NEAR(static_cast<double>(added) / before, 0.02, 0.015);
 }
 
-TEST(World, carsAndPeopleAreElsewhereOnAnotherDay) {
+TEST(World, CarsAndPeopleAreElsewhereOnAnotherDay) {
   const World today = makeWorld(street(5, 0)), later = makeWorld(street(5, 1));
   const auto places = [](const World& world, Kind kind) {
     std::set<std::pair<double, double>> found;
@@ -132,7 +132,7 @@ TEST(World, carsAndPeopleAreElsewhereOnAnotherDay) {
   EXPECT_EQ(places(today, Kind::house), places(later, Kind::house));
 }
 
-TEST(World, noPoleStandsInAHouseOrACar) {
+TEST(World, NoPoleStandsInAHouseOrACar) {
   // A road that comes back beside itself: houses of one turn reach into the gardens of the other.
   const std::string track = testing::TempDir() + "hairpin_" + std::to_string(getpid()) + ".txt";
   {
@@ -161,7 +161,7 @@ TEST(World, noPoleStandsInAHouseOrACar) {
     }
 }
 
-TEST(World, objectsWithinEqualsBruteForce) {
+TEST(World, ObjectsWithinEqualsBruteForce) {
   const World world = makeWorld(street(2));
   for (int i = 0; i < 50; ++i) {
     const Pose2D place = world.street().at(8.0 * i, 3);
@@ -177,7 +177,7 @@ TEST(World, objectsWithinEqualsBruteForce) {
   }
 }
 
-TEST(World, bareBranchesHaveNoLeaves) {
+TEST(World, BareBranchesHaveNoLeaves) {
   WorldOptions options = street(3);
   options.foliage = 0;
   const World world = makeWorld(options);
@@ -187,7 +187,7 @@ TEST(World, bareBranchesHaveNoLeaves) {
   }
 }
 
-TEST(World, refusesWhatTheOptionsRefuse) {
+TEST(World, RefusesWhatTheOptionsRefuse) {
   WorldOptions options;
   options.length = -1;
   EXPECT_THROW(makeWorld(options), Error);

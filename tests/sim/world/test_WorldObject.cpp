@@ -10,7 +10,7 @@ namespace polemcl::test_world_object {
 using namespace polemcl::sim;
 using V = Eigen::Vector3d;
 
-TEST(WorldObject, solidsAreTurnedAndMovedToTheSite) {
+TEST(WorldObject, SolidsAreTurnedAndMovedToTheSite) {
   const Site site{V(10, 20, 1), M_PI / 2};  // local x points to map y
   ObjectBuilder builder(Kind::car, site);
   builder.box(V(2, 1, 0.5), V(1, 0.5, 0.25), materials::metal);
@@ -21,7 +21,7 @@ TEST(WorldObject, solidsAreTurnedAndMovedToTheSite) {
   EXPECT_EQ(object.solids[0].object, 7u);
 }
 
-TEST(WorldObject, postsRunFromOneEndToTheOther) {
+TEST(WorldObject, PostsRunFromOneEndToTheOther) {
   ObjectBuilder builder(Kind::lampPost, Site{});
   builder.post(V(0, 0, 1), V(3, 0, 5), 0.2, 0.1, materials::metal);
   const WorldObject object = builder.build(1);
@@ -31,7 +31,7 @@ TEST(WorldObject, postsRunFromOneEndToTheOther) {
   EXPECT_NEAR(post.axes.determinant(), 1, 1e-12);
 }
 
-TEST(WorldObject, theCircleHoldsAllSolids) {
+TEST(WorldObject, TheCircleHoldsAllSolids) {
   ObjectBuilder builder(Kind::house, Site{V(5, 5, 0), 0.4});
   builder.box(V(4, 0, 1), V(3, 2, 1), materials::brick, 0.3);
   builder.post(V(-2, 0, 0), V(-4, 1, 1), 0.3, 0.2, materials::metal);
@@ -52,7 +52,7 @@ TEST(WorldObject, theCircleHoldsAllSolids) {
     }
 }
 
-TEST(WorldObject, crownsAreLabelledApartFromTheTrunk) {
+TEST(WorldObject, CrownsAreLabelledApartFromTheTrunk) {
   ObjectBuilder builder(Kind::tree, Site{});
   builder.post(V(0, 0, 0), V(0, 0, 3), 0.2, 0.2, materials::bark);
   builder.startCrown();
@@ -62,7 +62,7 @@ TEST(WorldObject, crownsAreLabelledApartFromTheTrunk) {
   EXPECT_EQ(tree.solids[1].object, 9u | kFoliageBit);
 }
 
-TEST(WorldObject, walkersGoThereAndBack) {
+TEST(WorldObject, WalkersGoThereAndBack) {
   WorldObject person;
   person.walk = {8, 6};  // 10 m
   person.pace = 2;

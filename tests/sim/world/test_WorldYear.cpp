@@ -40,7 +40,7 @@ double distance(const BuildingSite& site, double x, double y) {
 
 }  // namespace
 
-TEST(WorldYear, polesThatGoStayGoneAndThoseThatComeStay) {
+TEST(WorldYear, PolesThatGoStayGoneAndThoseThatComeStay) {
   std::map<std::uint32_t, TruePole> before, everGone;
   std::size_t gone = 0, come = 0;
   for (int day = 0; day <= 720; day += 40) {
@@ -68,7 +68,7 @@ TEST(WorldYear, polesThatGoStayGoneAndThoseThatComeStay) {
   EXPECT_GT(come, 30u);
 }
 
-TEST(WorldYear, theGivenShareIsReplacedInAYear) {
+TEST(WorldYear, TheGivenShareIsReplacedInAYear) {
   constexpr double kShare = 0.4;
   double all = 0, gone = 0, come = 0, beside = 0;
   for (std::uint64_t seed = 41; seed <= 44; ++seed) {
@@ -97,7 +97,7 @@ TEST(WorldYear, theGivenShareIsReplacedInAYear) {
   EXPECT_LT(beside, 0.8 * come);
 }
 
-TEST(WorldYear, onTheDayOfTheMapNothingHasChangedYet) {
+TEST(WorldYear, OnTheDayOfTheMapNothingHasChangedYet) {
   const World plain = makeWorld(street(51, 0));
   WorldOptions options = street(51, 0);
   options.replacedPerYear = 0.5;
@@ -113,7 +113,7 @@ TEST(WorldYear, onTheDayOfTheMapNothingHasChangedYet) {
   }
 }
 
-TEST(WorldYear, treesAreBareInJanuary) {
+TEST(WorldYear, TreesAreBareInJanuary) {
   WorldOptions options = street(52, 200);
   options.dayOfYear = 180;  // day 200 is 15 January
   const World world = makeWorld(options);
@@ -123,7 +123,7 @@ TEST(WorldYear, treesAreBareInJanuary) {
   }
 }
 
-TEST(WorldYear, snowBanksHideWhatStandsAlongTheKerb) {
+TEST(WorldYear, SnowBanksHideWhatStandsAlongTheKerb) {
   for (const double height : {0.5, 0.8}) {
     WorldOptions options = street(53, 0);
     options.dayOfYear = 15;
@@ -157,7 +157,7 @@ TEST(WorldYear, snowBanksHideWhatStandsAlongTheKerb) {
   }
 }
 
-TEST(WorldYear, buildingSitesStandForTheirTimeAndNoLonger) {
+TEST(WorldYear, BuildingSitesStandForTheirTimeAndNoLonger) {
   std::map<std::uint64_t, BuildingSite> seen;
   std::map<std::uint64_t, std::set<int>> days;
   double standing = 0;
@@ -184,7 +184,7 @@ TEST(WorldYear, buildingSitesStandForTheirTimeAndNoLonger) {
       EXPECT_EQ(days[seed].count(day) > 0, day >= site.firstDay && day < site.endDay) << day;
 }
 
-TEST(WorldYear, polesComeBackWhenTheWorkIsDone) {
+TEST(WorldYear, PolesComeBackWhenTheWorkIsDone) {
   WorldOptions options = street(55, 100);
   const auto usual = byId(makeWorld(options));
   options.buildingSites = 6;

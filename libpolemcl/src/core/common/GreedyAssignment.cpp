@@ -10,13 +10,14 @@
 
 namespace polemcl {
 
-std::vector<PolePair> pairClosest(const std::vector<Eigen::Vector2d>& first,
-                                  const std::vector<Eigen::Vector2d>& second, double radius) {
+std::vector<AssignedPair> greedyAssignment(const std::vector<Eigen::Vector2d>& first,
+                                           const std::vector<Eigen::Vector2d>& second,
+                                           double radius) {
   if (!(std::isfinite(radius) && radius > 0))
     throw Error("the matching radius is " + std::to_string(radius) +
                 " m; it must be finite and above 0");
   const KdTree2D tree(second);
-  std::vector<PolePair> pairs;
+  std::vector<AssignedPair> pairs;
   std::vector<PointHit> hits;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (!first[i].allFinite())
@@ -26,18 +27,18 @@ std::vector<PolePair> pairClosest(const std::vector<Eigen::Vector2d>& first,
       if (hit.squaredDistance <= radius * radius)
         pairs.push_back({i, hit.index, std::sqrt(hit.squaredDistance)});
   }
-  std::sort(pairs.begin(), pairs.end(), [](const PolePair& a, const PolePair& b) {
+  std::sort(pairs.begin(), pairs.end(), [](const AssignedPair& a, const AssignedPair& b) {
     return std::tie(a.distance, a.first, a.second) < std::tie(b.distance, b.first, b.second);
   });
   std::vector<char> firstTaken(first.size(), 0), secondTaken(second.size(), 0);
-  std::vector<PolePair> chosen;
-  for (const PolePair& pair : pairs) {
+  std::vector<AssignedPair> chosen;
+  for (const AssignedPair& pair : pairs) {
     if (firstTaken[pair.first] || secondTaken[pair.second]) continue;
     firstTaken[pair.first] = secondTaken[pair.second] = 1;
     chosen.push_back(pair);
   }
   std::sort(chosen.begin(), chosen.end(),
-            [](const PolePair& a, const PolePair& b) { return a.first < b.first; });
+            [](const AssignedPair& a, const AssignedPair& b) { return a.first < b.first; });
   return chosen;
 }
 

@@ -9,7 +9,7 @@
 namespace polemcl {
 
 /// \brief Two points taken for the same thing.
-struct PolePair {
+struct AssignedPair {
   std::size_t first = 0, second = 0;  ///< indices into the two sets
   double distance = 0;                ///< m
 };
@@ -19,7 +19,8 @@ struct PolePair {
 /// Unlike maximumMatching() it never gives up a close pair for the sake of more pairs, so that the
 /// distances mean something. \return Pairs by ascending `first`.
 /// \throws Error when a point is not finite, or the radius is not finite and positive.
-std::vector<PolePair> pairClosest(const std::vector<Eigen::Vector2d>& first,
-                                  const std::vector<Eigen::Vector2d>& second, double radius);
+std::vector<AssignedPair> greedyAssignment(const std::vector<Eigen::Vector2d>& first,
+                                           const std::vector<Eigen::Vector2d>& second,
+                                           double radius);
 
 }  // namespace polemcl

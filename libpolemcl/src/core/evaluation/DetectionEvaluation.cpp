@@ -52,7 +52,7 @@ std::optional<double> quantile(std::vector<double> values, double q) {
 }
 
 DetectionEvaluation::DetectionEvaluation(double radius) : m_radius(radius) {
-  pairClosest({}, {}, radius);  // refuses a radius that makes no sense
+  greedyAssignment({}, {}, radius);  // refuses a radius that makes no sense
 }
 
 void DetectionEvaluation::addRight(const PoleDetection& detection, const TruePoleInScan& truth) {
@@ -74,7 +74,8 @@ void DetectionEvaluation::addRight(const PoleDetection& detection, const TruePol
 void DetectionEvaluation::add(const std::vector<PoleDetection>& detections,
                               const std::vector<TruePoleInScan>& truth) {
   std::vector<char> right(detections.size(), 0);
-  for (const PolePair& pair : pairClosest(poleCentres(detections), poleCentres(truth), m_radius)) {
+  for (const AssignedPair& pair :
+       greedyAssignment(poleCentres(detections), poleCentres(truth), m_radius)) {
     right[pair.first] = 1;
     m_found += truth[pair.second].visible;
     addRight(detections[pair.first], truth[pair.second]);

@@ -17,8 +17,8 @@ struct TruePoleInScan {
 };
 
 /// \brief Figures over scans. "Right" detections lie within the matching radius of a true pole,
-/// *visible or not*, one to one (pairClosest()): who finds a pole behind two returns is not wrong.
-/// Recall is of the visible ones only. What there is nothing to compute from is none.
+/// *visible or not*, one to one (greedyAssignment()): who finds a pole behind two returns is not
+/// wrong. Recall is of the visible ones only. What there is nothing to compute from is none.
 struct DetectionScore {
   std::size_t scans = 0, detections = 0;
   std::size_t right = 0;    ///< detections that are true poles

@@ -76,7 +76,7 @@ void addRotations(PoleExtractor& extractor, const PointsView& points, double rad
     const double yaw = degrees * M_PI / 180;
     const OwnedCloud cloud = turned(points, yaw);
     const auto again = turnedCentres(extractor.extract(cloud.view()), 0);
-    score.matched += pairClosest(turnedCentres(poles, yaw), again, radius).size();
+    score.matched += greedyAssignment(turnedCentres(poles, yaw), again, radius).size();
     score.poles += poles.size();
     score.turnedPoles += again.size();
     ++score.turns;

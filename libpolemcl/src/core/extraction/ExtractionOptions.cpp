@@ -21,16 +21,16 @@ void requireExtraction(bool good, const char* section, const char* key, double v
 void requireOneOf(const std::string& key, const std::string& value,
                   const std::vector<std::string>& allowed) {
   if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return;
-  std::string text = "[paper] " + key + " = " + value + ": allowed are ";
+  std::string text = "[range_image] " + key + " = " + value + ": allowed are ";
   for (const auto& one : allowed) text += (one == allowed.front() ? "" : ", ") + one;
   throw Error(text);
 }
 
 }  // namespace
 
-void PaperOptions::validate() const {
+void RangeImageOptions::validate() const {
   const auto check = [](bool good, const char* key, double value, const char* allowed) {
-    requireExtraction(good, "paper", key, value, allowed);
+    requireExtraction(good, "range_image", key, value, allowed);
   };
   check(rows >= 2 && rows <= 1024, "rows", rows, "2 to 1024");
   check(columns >= 16 && columns <= 65536, "columns", columns, "16 to 65536");
@@ -61,9 +61,9 @@ void PaperOptions::validate() const {
   requireOneOf("free_space", freeSpace, {"ring", "corners", "cut_corners"});
 }
 
-void NativeOptions::validate() const {
+void ScanLineOptions::validate() const {
   const auto check = [](bool good, const char* key, double value, const char* allowed) {
-    requireExtraction(good, "native", key, value, allowed);
+    requireExtraction(good, "scan_line", key, value, allowed);
   };
   check(maxWidth > 0, "max_width_m", maxWidth, "more than 0");
   check(connectStep > 0, "connect_step_m", connectStep, "more than 0");
@@ -86,8 +86,8 @@ void NativeOptions::validate() const {
 }
 
 void ExtractionOptions::validate() const {
-  paper.validate();
-  native.validate();
+  rangeImage.validate();
+  scanLine.validate();
 }
 
 }  // namespace polemcl

@@ -7,10 +7,10 @@
 
 namespace polemcl {
 
-enum class ExtractionMethod { paper, native };
+enum class ExtractionMethod { rangeImage, scanLine };
 
-/// \brief The paper's Algorithm 1. `[paper]` in INI files; departures are named options.
-struct PaperOptions {
+/// \brief The paper's Algorithm 1. `[range_image]` in INI files; departures are named options.
+struct RangeImageOptions {
   int rows = 64, columns = 500;              ///< range image, px
   double fovUp = 0.0524, fovDown = -0.4363;  ///< rad
   double minZ = -1.3, maxZ = 6;              ///< height cut, m; see `heights_above_ground`
@@ -62,8 +62,8 @@ struct PaperOptions {
   void validate() const;
 };
 
-/// \brief The native method: scan lines of real beams. `[native]` in INI files.
-struct NativeOptions {
+/// \brief The native method: scan lines of real beams. `[scan_line]` in INI files.
+struct ScanLineOptions {
   double maxWidth = 0.9;     ///< widest slice of a pole on one beam, m
   double connectStep = 0.2;  ///< greatest step in range between neighbours of one slice, m
   double edgeStep = 0.35;    ///< least step in range to what lies behind a slice's edges, m
@@ -85,9 +85,9 @@ struct NativeOptions {
 
 /// \brief `[extraction]` in INI files.
 struct ExtractionOptions {
-  ExtractionMethod method = ExtractionMethod::native;
-  PaperOptions paper;
-  NativeOptions native;
+  ExtractionMethod method = ExtractionMethod::scanLine;
+  RangeImageOptions rangeImage;
+  ScanLineOptions scanLine;
   void validate() const;  ///< \throws Error
 };
 

@@ -2,33 +2,33 @@
 
 namespace polemcl {
 
-const char* name(Refusal reason) {
+const char* name(RejectionReason reason) {
   switch (reason) {
-    case Refusal::tooFewPoints:
+    case RejectionReason::tooFewPoints:
       return "too_few_points";
-    case Refusal::tooWide:
+    case RejectionReason::tooWide:
       return "too_wide";
-    case Refusal::notForeground:
+    case RejectionReason::notForeground:
       return "not_foreground";
-    case Refusal::tooLow:
+    case RejectionReason::tooLow:
       return "too_low";
-    case Refusal::startsTooHigh:
+    case RejectionReason::startsTooHigh:
       return "starts_too_high";
-    case Refusal::tooShort:
+    case RejectionReason::tooShort:
       return "too_short";
-    case Refusal::badFit:
+    case RejectionReason::badFit:
       return "bad_fit";
-    case Refusal::notFree:
+    case RejectionReason::notFree:
       return "not_free";
-    case Refusal::tilted:
+    case RejectionReason::tilted:
       return "tilted";
-    case Refusal::notStraight:
+    case RejectionReason::notStraight:
       return "not_straight";
-    case Refusal::lowConfidence:
+    case RejectionReason::lowConfidence:
       return "low_confidence";
-    case Refusal::duplicate:
+    case RejectionReason::duplicate:
       return "duplicate";
-    case Refusal::count_:
+    case RejectionReason::count_:
       break;
   }
   return "none";

@@ -7,7 +7,7 @@
 namespace polemcl {
 
 /// \brief Why a candidate is no pole. Counted per scan, so that a setting can be judged.
-enum class Refusal {
+enum class RejectionReason {
   tooFewPoints,
   tooWide,        ///< wider than tall, or wider than any pole
   notForeground,  ///< something nearer stands beside it
@@ -22,7 +22,7 @@ enum class Refusal {
   duplicate,  ///< beside a more confident one
   count_      ///< number of reasons
 };
-const char* name(Refusal reason);
+const char* name(RejectionReason reason);
 
 /// \brief Counters of one extraction.
 struct ExtractionReport {
@@ -31,7 +31,7 @@ struct ExtractionReport {
   std::size_t outOfView = 0;   ///< match no beam: dropped
   std::size_t outOfRange = 0;  ///< dropped
   std::size_t candidates = 0;
-  std::size_t refused[static_cast<int>(Refusal::count_)] = {};
+  std::size_t refused[static_cast<int>(RejectionReason::count_)] = {};
   double ground = 0;  ///< median height of the ground below the sensor origin, m (negative)
 };
 

@@ -10,8 +10,8 @@
 namespace polemcl {
 
 struct PoleExtractor::Impl {
-  std::optional<NativeExtractor> native;
-  std::optional<PaperExtractor> paper;
+  std::optional<ScanLineExtractor> scanLine;
+  std::optional<RangeImageExtractor> rangeImage;
   std::vector<PoleDetection> poles;
   ExtractionReport report;
 };
@@ -20,17 +20,17 @@ PoleExtractor::PoleExtractor(const SensorOptions& sensor, const ExtractionOption
     : m_impl(std::make_unique<Impl>()) {
   extraction.validate();
   sensor.validate();
-  if (extraction.method == ExtractionMethod::native)
-    m_impl->native.emplace(SensorModel(sensor), sensor, extraction.native);
+  if (extraction.method == ExtractionMethod::scanLine)
+    m_impl->scanLine.emplace(SensorModel(sensor), sensor, extraction.scanLine);
   else
-    m_impl->paper.emplace(sensor, extraction.paper);
+    m_impl->rangeImage.emplace(sensor, extraction.rangeImage);
 }
 PoleExtractor::PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
-                             const NativeOptions& options)
+                             const ScanLineOptions& options)
     : m_impl(std::make_unique<Impl>()) {
   options.validate();
   sensor.validate();
-  m_impl->native.emplace(SensorModel(camera), sensor, options);
+  m_impl->scanLine.emplace(SensorModel(camera), sensor, options);
 }
 PoleExtractor::~PoleExtractor() = default;
 PoleExtractor::PoleExtractor(PoleExtractor&&) noexcept = default;
@@ -40,10 +40,10 @@ const std::vector<PoleDetection>& PoleExtractor::extract(const PointsView& point
                                                          const Eigen::Vector2f& upright) {
   m_impl->poles.clear();
   m_impl->report = {};
-  if (m_impl->native)
-    m_impl->native->extract(points, upright, m_impl->poles, m_impl->report);
+  if (m_impl->scanLine)
+    m_impl->scanLine->extract(points, upright, m_impl->poles, m_impl->report);
   else
-    m_impl->paper->extract(points, m_impl->poles, m_impl->report);
+    m_impl->rangeImage->extract(points, m_impl->poles, m_impl->report);
   std::sort(m_impl->poles.begin(), m_impl->poles.end(),
             [](const PoleDetection& a, const PoleDetection& b) {
               const double aa = std::atan2(a.y, a.x), ab = std::atan2(b.y, b.x);
@@ -52,9 +52,9 @@ const std::vector<PoleDetection>& PoleExtractor::extract(const PointsView& point
   return m_impl->poles;
 }
 
-const std::vector<float>& PoleExtractor::freeRange() const {
+const std::vector<float>& PoleExtractor::visibilityRange() const {
   static const std::vector<float> none;
-  return m_impl->native ? m_impl->native->freeRange() : none;
+  return m_impl->scanLine ? m_impl->scanLine->visibilityRange() : none;
 }
 
 const ExtractionReport& PoleExtractor::report() const {

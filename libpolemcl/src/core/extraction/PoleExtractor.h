@@ -23,7 +23,7 @@ class PoleExtractor {
   /// optical centre, in which the camera stands as `R_lidar_camera` says.
   /// \throws Error when an option or an intrinsic is out of range.
   PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
-                const NativeOptions& options);
+                const ScanLineOptions& options);
   ~PoleExtractor();
   PoleExtractor(PoleExtractor&&) noexcept;
   PoleExtractor& operator=(PoleExtractor&&) noexcept;
@@ -38,9 +38,9 @@ class PoleExtractor {
   const std::vector<PoleDetection>& extract(
       const PointsView& points, const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
   const ExtractionReport& report() const;
-  /// \brief Of the last scan: FreeRangeFinder::kSectors free ranges (see there), m, in the frame of
-  /// the points. Empty by the paper's method and of depth cameras: not known.
-  const std::vector<float>& freeRange() const;
+  /// \brief Of the last scan: VisibilityRangeFinder::kSectors free ranges (see there), m, in the
+  /// frame of the points. Empty by the paper's method and of depth cameras: not known.
+  const std::vector<float>& visibilityRange() const;
 
  private:
   struct Impl;

@@ -12,31 +12,33 @@ constexpr float kSteep = 5;
 constexpr std::size_t kEnoughBeams = 16;  ///< of more, every second, third … is looked at
 constexpr int kFewestBeams = 2;           ///< fewer do not make a pole
 
-static_assert(ScanLines::kBuckets % FreeRangeFinder::kSectors == 0);
+static_assert(ScanLines::kBuckets % VisibilityRangeFinder::kSectors == 0);
 
 }  // namespace
 
-std::size_t freeRangeSector(double azimuth, std::size_t sectors) {
+std::size_t visibilityRangeSector(double azimuth, std::size_t sectors) {
   const double turns = (azimuth + M_PI) / (2 * M_PI);
   const double within = turns - std::floor(turns);
   return std::min(static_cast<std::size_t>(within * static_cast<double>(sectors)), sectors - 1);
 }
 
-double freeRangeTowards(const std::vector<float>& freeRange, double x, double y, double halfWidth) {
-  if (freeRange.empty()) return 0;
+double visibilityRangeTowards(const std::vector<float>& visibilityRange, double x, double y,
+                              double halfWidth) {
+  if (visibilityRange.empty()) return 0;
   const double range = std::hypot(x, y), bearing = std::atan2(y, x);
   const double half = range > halfWidth ? std::asin(halfWidth / range) : M_PI / 2;
-  const std::size_t last = freeRangeSector(bearing + half, freeRange.size());
-  std::size_t i = freeRangeSector(bearing - half, freeRange.size());
-  float least = freeRange[i];
+  const std::size_t last = visibilityRangeSector(bearing + half, visibilityRange.size());
+  std::size_t i = visibilityRangeSector(bearing - half, visibilityRange.size());
+  float least = visibilityRange[i];
   while (i != last) {
-    i = (i + 1) % freeRange.size();
-    least = std::min(least, freeRange[i]);
+    i = (i + 1) % visibilityRange.size();
+    least = std::min(least, visibilityRange[i]);
   }
   return least;
 }
 
-FreeRangeFinder::FreeRangeFinder(const SensorModel& sensor, double sensorHeight, double maxRange) {
+VisibilityRangeFinder::VisibilityRangeFinder(const SensorModel& sensor, double sensorHeight,
+                                             double maxRange) {
   if (sensor.lookup().planes) return;
   m_steps = static_cast<int>(maxRange / kStep) + 1;  // 0 to m_steps - 1
   chooseBeams(sensor, static_cast<float>(sensorHeight));
@@ -56,7 +58,7 @@ FreeRangeFinder::FreeRangeFinder(const SensorModel& sensor, double sensorHeight,
   }
 }
 
-void FreeRangeFinder::chooseBeams(const SensorModel& sensor, float sensorHeight) {
+void VisibilityRangeFinder::chooseBeams(const SensorModel& sensor, float sensorHeight) {
   std::vector<Span> all;
   for (int row = 0; row < sensor.rows(); ++row) {
     Span span{row, m_steps, -1};
@@ -74,7 +76,7 @@ void FreeRangeFinder::chooseBeams(const SensorModel& sensor, float sensorHeight)
 }
 
 /// Of one beam, in all sectors: from what it met on, it sees nothing.
-void FreeRangeFinder::countBlocked(const ScanLines& lines, const Span& span) {
+void VisibilityRangeFinder::countBlocked(const ScanLines& lines, const Span& span) {
   const float farthest = kStep * static_cast<float>(span.last);
   const Return* r = lines.begin(span.row, 0, kSectors);
   for (int sector = 0; sector < kSectors; ++sector) {
@@ -89,7 +91,7 @@ void FreeRangeFinder::countBlocked(const ScanLines& lines, const Span& span) {
 }
 
 /// Steps that are free, from the nearest on, in all sectors at once.
-void FreeRangeFinder::countFree(std::int16_t* reached) const {
+void VisibilityRangeFinder::countFree(std::int16_t* reached) const {
   std::int16_t blocked[kSectors] = {}, open[kSectors];
   std::fill(open, open + kSectors, std::int16_t{1});
   std::fill(reached, reached + kSectors, std::int16_t{0});
@@ -105,9 +107,9 @@ void FreeRangeFinder::countFree(std::int16_t* reached) const {
   }
 }
 
-void FreeRangeFinder::find(const ScanLines& lines, const GroundGrid& ground,
-                           std::vector<float>& freeRange) {
-  freeRange.clear();
+void VisibilityRangeFinder::find(const ScanLines& lines, const GroundGrid& ground,
+                                 std::vector<float>& visibilityRange) {
+  visibilityRange.clear();
   if (m_steps == 0) return;
   std::fill(m_change.begin(), m_change.end(), std::int16_t{0});
   for (const Span& span : m_spans) countBlocked(lines, span);
@@ -116,10 +118,10 @@ void FreeRangeFinder::find(const ScanLines& lines, const GroundGrid& ground,
   bool known[GroundGrid::kSectors] = {};
   for (int cell = 0; cell < GroundGrid::kCells; ++cell)
     known[cell / GroundGrid::kRings] |= ground.hasPoints(cell);
-  freeRange.resize(kSectors);
+  visibilityRange.resize(kSectors);
   for (int sector = 0; sector < kSectors; ++sector) {
     const bool some = known[m_groundSector[sector]] && reached[sector] > m_firstJudged;
-    freeRange[sector] = some ? kStep * static_cast<float>(reached[sector] - 1) : 0.f;
+    visibilityRange[sector] = some ? kStep * static_cast<float>(reached[sector] - 1) : 0.f;
   }
 }
 

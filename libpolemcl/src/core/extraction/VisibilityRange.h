@@ -14,14 +14,15 @@ namespace polemcl {
 
 /// \brief The sector of n that an azimuth falls into: sector i spans -pi + i·2pi/n to
 /// -pi + (i + 1)·2pi/n. \param azimuth rad, any turn; must be finite. \param sectors At least 1.
-std::size_t freeRangeSector(double azimuth, std::size_t sectors);
+std::size_t visibilityRangeSector(double azimuth, std::size_t sectors);
 
 /// \brief Free range towards a thing so wide: the least of the sectors it reaches into, so that an
 /// edge beside it is not seen through.
-/// \param freeRange As FreeRangeFinder gives it; may be empty.
+/// \param visibilityRange As VisibilityRangeFinder gives it; may be empty.
 /// \param halfWidth Of the thing across the line of sight, m.
 /// \return m; 0 where one of the sectors, or all, are unknown.
-double freeRangeTowards(const std::vector<float>& freeRange, double x, double y, double halfWidth);
+double visibilityRangeTowards(const std::vector<float>& visibilityRange, double x, double y,
+                              double halfWidth);
 
 /// \brief Judges the free range from the beams at pole heights (0.5 to 3 m above the ground).
 ///
@@ -32,17 +33,17 @@ double freeRangeTowards(const std::vector<float>& freeRange, double x, double y,
 /// and two, are free; it ends where fewer than two beams pass at pole heights at all, and at the
 /// extractor's greatest range. A pole ends the free range of its own direction at its front. Beams
 /// without a return count as free; a direction in which not a single point was seen is unknown.
-class FreeRangeFinder {
+class VisibilityRangeFinder {
  public:
   static constexpr int kSectors = 256;     ///< 1.4° each
   static constexpr float kStep = 0.5f;     ///< m
   static constexpr float kLowest = 0.5f;   ///< of pole heights, m above ground
   static constexpr float kHighest = 3.0f;  ///< m above ground
   /// \param sensorHeight Of the lidar above ground, m. \param maxRange Of poles, m.
-  FreeRangeFinder(const SensorModel& sensor, double sensorHeight, double maxRange);
-  /// \param freeRange Becomes kSectors ranges, m, horizontal, lidar frame; sector i as
-  /// freeRangeSector(). 0: unknown. Of depth cameras: empty.
-  void find(const ScanLines& lines, const GroundGrid& ground, std::vector<float>& freeRange);
+  VisibilityRangeFinder(const SensorModel& sensor, double sensorHeight, double maxRange);
+  /// \param visibilityRange Becomes kSectors ranges, m, horizontal, lidar frame; sector i as
+  /// visibilityRangeSector(). 0: unknown. Of depth cameras: empty.
+  void find(const ScanLines& lines, const GroundGrid& ground, std::vector<float>& visibilityRange);
 
  private:
   /// \brief Steps of range at which a beam passes at pole heights: first to last.

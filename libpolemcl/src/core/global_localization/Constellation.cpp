@@ -33,7 +33,7 @@ Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& opt
                        rotation * (pole.seenFrom - here), oddsOf(pole, options), &pole});
   }
   // Of equals the later seen: it has drifted less.
-  std::stable_sort(m_stars.begin(), m_stars.end(), [](const Star& a, const Star& b) {
+  std::stable_sort(m_stars.begin(), m_stars.end(), [](const QueryPole& a, const QueryPole& b) {
     return a.odds != b.odds ? a.odds > b.odds : a.pole->seenAt > b.pole->seenAt;
   });
   if (m_stars.size() > s_mostStars) m_stars.resize(s_mostStars);
@@ -45,7 +45,7 @@ Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& opt
   }
 }
 
-double Constellation::driftVariance(const Star& a, const Star& b) const {
+double Constellation::driftVariance(const QueryPole& a, const QueryPole& b) const {
   const bool aFirst = a.pole->seenAt <= b.pole->seenAt;
   const SubmapPole &then = aFirst ? *a.pole : *b.pole, &now = aFirst ? *b.pole : *a.pole;
   return 0.5 * OdometryDrift::between(then.drift, now.drift, then.centre).trace() +

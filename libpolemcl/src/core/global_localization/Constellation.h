@@ -12,7 +12,7 @@
 namespace polemcl {
 
 /// \brief One pole of the submap, robot frame of now.
-struct Star {
+struct QueryPole {
   Eigen::Vector2d centre;      ///< m
   Eigen::Matrix2d covariance;  ///< as seen from now, without the error of scale, m²
   /// From the robot now to where it was when it last saw the pole, m: an error of scale s moves the
@@ -27,21 +27,21 @@ class Constellation {
   Constellation(const LocalSubmap& submap, const GlobalOptions& options);
 
   /// \brief Stars with odds first, by falling odds; then the others.
-  const std::vector<Star>& stars() const { return m_stars; }
+  const std::vector<QueryPole>& stars() const { return m_stars; }
   std::size_t reliable() const { return m_reliable; }  ///< stars with odds
   /// \brief Robot's places of the last metres, robot frame of now, a few metres apart, m.
   const std::vector<Eigen::Vector2d>& path() const { return m_path; }
   double scaleSigma() const { return m_scale; }
   /// \brief Variance along an axis of what two stars' distance vector may be off by, m²: what each
   /// was measured with, and the odometry between them.
-  double relativeVariance(const Star& a, const Star& b) const {
+  double relativeVariance(const QueryPole& a, const QueryPole& b) const {
     return 0.5 * (a.pole->covariance.trace() + b.pole->covariance.trace()) + driftVariance(a, b);
   }
   /// \brief The odometry's part of it, m².
-  double driftVariance(const Star& a, const Star& b) const;
+  double driftVariance(const QueryPole& a, const QueryPole& b) const;
 
  private:
-  std::vector<Star> m_stars;
+  std::vector<QueryPole> m_stars;
   std::size_t m_reliable = 0;
   std::vector<Eigen::Vector2d> m_path;
   double m_scale = 0;

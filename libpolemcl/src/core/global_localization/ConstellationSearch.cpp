@@ -21,7 +21,7 @@ constexpr std::uint32_t leastHits(std::uint32_t probes) {
 }  // namespace
 
 PairTolerance::PairTolerance(const GlobalLocalizer& map, const Constellation& sky,
-                             const Star& first, const Star& second)
+                             const QueryPole& first, const QueryPole& second)
     : m_map(map),
       m_sky(sky),
       m_first(first),
@@ -32,7 +32,7 @@ PairTolerance::PairTolerance(const GlobalLocalizer& map, const Constellation& sk
   m_variance = sky.relativeVariance(first, second) + 2 * (sigma * sigma + map.meanVariance());
 }
 
-double PairTolerance::of(const Star& star) const {
+double PairTolerance::of(const QueryPole& star) const {
   // The pair's middle is off by a quarter of the sum of both variances, its direction by the whole
   // over the squared length.
   const double lever = (star.centre - m_middle).squaredNorm() / m_squaredLength;
@@ -47,16 +47,16 @@ double PairTolerance::of(const Star& star) const {
 ConstellationSearch::ConstellationSearch(const GlobalLocalizer& map, const Constellation& sky)
     : m_map(map), m_sky(sky) {}
 
-std::vector<PlaceSeed> ConstellationSearch::run() {
-  for (const StarPair& pair : choosePairs()) tryPair(pair);
+std::vector<PoseCandidate> ConstellationSearch::run() {
+  for (const QueryPair& pair : choosePairs()) tryPair(pair);
   return bestSeeds();
 }
 
 /// Rare distances first: they cost least and say most.
-std::vector<ConstellationSearch::StarPair> ConstellationSearch::choosePairs() const {
+std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() const {
   const GlobalOptions& options = m_map.options();
-  const std::vector<Star>& stars = m_sky.stars();
-  std::vector<StarPair> all;
+  const std::vector<QueryPole>& stars = m_sky.stars();
+  std::vector<QueryPair> all;
   for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
     for (std::uint32_t j = i + 1; j < m_sky.reliable(); ++j) {
       const double length = (stars[i].centre - stars[j].centre).norm();
@@ -64,7 +64,7 @@ std::vector<ConstellationSearch::StarPair> ConstellationSearch::choosePairs() co
       const double variance = m_sky.relativeVariance(stars[i], stars[j]) +
                               2 * (options.sigma * options.sigma + m_map.meanVariance());
       const double tolerance = std::min(options.maxTolerance, s_sigmas * std::sqrt(variance));
-      const DistancePairs::Range range =
+      const PairDistanceIndex::Range range =
           m_map.pairs().between(length - tolerance, length + tolerance);
       // A short or a doubtful pair is worth less: many places fit it badly.
       const double doubt = (1 + 1 / stars[i].odds) * (1 + 1 / stars[j].odds);
@@ -73,14 +73,14 @@ std::vector<ConstellationSearch::StarPair> ConstellationSearch::choosePairs() co
       all.push_back({cost, i, j, range});
     }
   }
-  std::sort(all.begin(), all.end(), [](const StarPair& a, const StarPair& b) {
+  std::sort(all.begin(), all.end(), [](const QueryPair& a, const QueryPair& b) {
     if (a.cost != b.cost) return a.cost < b.cost;
     return a.first != b.first ? a.first < b.first : a.second < b.second;
   });
-  std::vector<StarPair> chosen;
+  std::vector<QueryPair> chosen;
   std::vector<int> uses(m_sky.reliable(), 0);
   std::size_t candidates = 0;
-  for (const StarPair& pair : all) {
+  for (const QueryPair& pair : all) {
     if (uses[pair.first] >= s_mostUses || uses[pair.second] >= s_mostUses) continue;
     candidates += 2 * pair.range.size();
     if (chosen.size() >= static_cast<std::size_t>(options.maxPairs) ||
@@ -93,8 +93,8 @@ std::vector<ConstellationSearch::StarPair> ConstellationSearch::choosePairs() co
   return chosen;
 }
 
-void ConstellationSearch::tryPair(const StarPair& pair) {
-  const std::vector<Star>& stars = m_sky.stars();
+void ConstellationSearch::tryPair(const QueryPair& pair) {
+  const std::vector<QueryPole>& stars = m_sky.stars();
   const PairTolerance tolerance(m_map, m_sky, stars[pair.first], stars[pair.second]);
   m_probes.clear();
   for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
@@ -105,14 +105,14 @@ void ConstellationSearch::tryPair(const StarPair& pair) {
   std::stable_sort(m_probes.begin(), m_probes.end(), [](const Probe& a, const Probe& b) {
     return a.squaredTolerance < b.squaredTolerance;
   });
-  for (const DistancePairs::Pair* p = pair.range.begin; p != pair.range.end; ++p) {
+  for (const PairDistanceIndex::Pair* p = pair.range.begin; p != pair.range.end; ++p) {
     const Eigen::Vector2d &a = m_map.tree().point(p->first), &b = m_map.tree().point(p->second);
     tryPlace(pair, a, b);
     tryPlace(pair, b, a);
   }
 }
 
-void ConstellationSearch::tryPlace(const StarPair& pair, const Eigen::Vector2d& first,
+void ConstellationSearch::tryPlace(const QueryPair& pair, const Eigen::Vector2d& first,
                                    const Eigen::Vector2d& second) {
   ++m_candidates;
   const Eigen::Vector2d &a = m_sky.stars()[pair.first].centre,
@@ -134,9 +134,9 @@ void ConstellationSearch::tryPlace(const StarPair& pair, const Eigen::Vector2d& 
   m_seeds.push_back({{x, y, std::atan2(s, c)}, hits, pair.first, pair.second});
 }
 
-std::vector<PlaceSeed> ConstellationSearch::bestSeeds() {
+std::vector<PoseCandidate> ConstellationSearch::bestSeeds() {
   std::stable_sort(m_seeds.begin(), m_seeds.end(),
-                   [](const PlaceSeed& a, const PlaceSeed& b) { return a.hits > b.hits; });
+                   [](const PoseCandidate& a, const PoseCandidate& b) { return a.hits > b.hits; });
   const auto cellOf = [](const Pose2D& pose) {
     const auto column = static_cast<std::int64_t>(std::floor(pose.x / 2));
     const auto row = static_cast<std::int64_t>(std::floor(pose.y / 2));
@@ -147,8 +147,8 @@ std::vector<PlaceSeed> ConstellationSearch::bestSeeds() {
            turn % 60;
   };
   std::unordered_set<std::uint64_t> taken;
-  std::vector<PlaceSeed> best;
-  for (const PlaceSeed& seed : m_seeds) {
+  std::vector<PoseCandidate> best;
+  for (const PoseCandidate& seed : m_seeds) {
     if (best.size() >= static_cast<std::size_t>(m_map.options().maxRefined)) break;
     if (taken.insert(cellOf(seed.pose_map_robot)).second) best.push_back(seed);
   }

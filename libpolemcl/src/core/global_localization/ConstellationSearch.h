@@ -8,7 +8,7 @@
 namespace polemcl {
 
 /// \brief A place to be refined.
-struct PlaceSeed {
+struct PoseCandidate {
   Pose2D pose_map_robot;
   std::uint32_t hits = 0;   ///< further stars that found a map pole
   std::uint32_t first = 0;  ///< the pair of stars it came from
@@ -18,14 +18,14 @@ struct PlaceSeed {
 /// \brief How far a star may lie from its map pole when the constellation is laid on two poles.
 struct PairTolerance {
   /// \brief For the pair of stars (first, second). \throws nothing
-  PairTolerance(const GlobalLocalizer& map, const Constellation& sky, const Star& first,
-                const Star& second);
-  double of(const Star& star) const;  ///< m, at most the greatest of the options
+  PairTolerance(const GlobalLocalizer& map, const Constellation& sky, const QueryPole& first,
+                const QueryPole& second);
+  double of(const QueryPole& star) const;  ///< m, at most the greatest of the options
 
  private:
   const GlobalLocalizer& m_map;
   const Constellation& m_sky;
-  const Star &m_first, &m_second;
+  const QueryPole &m_first, &m_second;
   Eigen::Vector2d m_middle;
   double m_variance, m_squaredLength;
 };
@@ -35,19 +35,19 @@ class ConstellationSearch {
  public:
   ConstellationSearch(const GlobalLocalizer& map, const Constellation& sky);
   /// \brief The best seeds by falling hits, no two in the same cell of place and heading.
-  std::vector<PlaceSeed> run();
+  std::vector<PoseCandidate> run();
   std::size_t candidates() const { return m_candidates; }
 
  private:
-  struct StarPair {
+  struct QueryPair {
     double cost;  ///< candidates, dearer for short baselines
     std::uint32_t first, second;
-    DistancePairs::Range range;
+    PairDistanceIndex::Range range;
   };
-  std::vector<StarPair> choosePairs() const;
-  void tryPair(const StarPair& pair);
-  void tryPlace(const StarPair& pair, const Eigen::Vector2d& first, const Eigen::Vector2d& second);
-  std::vector<PlaceSeed> bestSeeds();
+  std::vector<QueryPair> choosePairs() const;
+  void tryPair(const QueryPair& pair);
+  void tryPlace(const QueryPair& pair, const Eigen::Vector2d& first, const Eigen::Vector2d& second);
+  std::vector<PoseCandidate> bestSeeds();
 
   /// A star to try a candidate on.
   struct Probe {
@@ -56,7 +56,7 @@ class ConstellationSearch {
   const GlobalLocalizer& m_map;
   const Constellation& m_sky;
   std::vector<Probe> m_probes;  ///< the surest first
-  std::vector<PlaceSeed> m_seeds;
+  std::vector<PoseCandidate> m_seeds;
   std::size_t m_candidates = 0;
 };
 

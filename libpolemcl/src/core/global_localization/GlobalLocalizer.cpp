@@ -86,10 +86,10 @@ GlobalResult GlobalLocalizer::localize(const LocalSubmap& submap) const {
   result.poles = sky.reliable();
   if (result.poles < static_cast<std::size_t>(m_options.minMatched)) return result;
   ConstellationSearch search(*this, sky);
-  const std::vector<PlaceSeed> seeds = search.run();
+  const std::vector<PoseCandidate> seeds = search.run();
   result.candidates = search.candidates();
-  PlaceRefinement refinement(*this, sky, submap.pose());
-  for (const PlaceSeed& seed : seeds) {
+  PoseRefinement refinement(*this, sky, submap.pose());
+  for (const PoseCandidate& seed : seeds) {
     GlobalHypothesis hypothesis;
     if (refinement.run(seed, hypothesis)) result.hypotheses.push_back(hypothesis);
   }

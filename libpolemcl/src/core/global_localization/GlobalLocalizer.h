@@ -3,9 +3,9 @@
 /// \brief Where on the map is this constellation of poles? No start pose at all.
 ///
 /// The poles of a LocalSubmap are matched against the whole map: pairs of them by their distance
-/// (geometric hashing, DistancePairs), each candidate tried on its other poles and given up early,
-/// the best refined by least squares and judged on all poles: those matched speak for it, map poles
-/// beside the way that were never seen speak against it. See share/doc/global.md.
+/// (geometric hashing, PairDistanceIndex), each candidate tried on its other poles and given up
+/// early, the best refined by least squares and judged on all poles: those matched speak for it,
+/// map poles beside the way that were never seen speak against it. See share/doc/global.md.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -97,7 +97,7 @@ class GlobalLocalizer {
   const GlobalOptions& options() const { return m_options; }
   const KdTree2D& tree() const { return m_tree; }
   const PoleGrid& grid() const { return m_grid; }
-  const DistancePairs& pairs() const { return m_pairs; }
+  const PairDistanceIndex& pairs() const { return m_pairs; }
   /// \brief Half the trace of a pole's covariance, m².
   double variance(std::size_t pole) const { return m_variances[pole]; }
   double meanVariance() const {
@@ -109,7 +109,7 @@ class GlobalLocalizer {
   GlobalOptions m_options;
   KdTree2D m_tree;
   PoleGrid m_grid;
-  DistancePairs m_pairs;
+  PairDistanceIndex m_pairs;
   std::vector<double> m_variances;
   double m_meanVariance = 0;
 };

@@ -9,18 +9,18 @@
 namespace polemcl {
 namespace {
 
-bool before(const DistancePairs::Pair& a, const DistancePairs::Pair& b) {
+bool before(const PairDistanceIndex::Pair& a, const PairDistanceIndex::Pair& b) {
   return std::tie(a.distance, a.first, a.second) < std::tie(b.distance, b.first, b.second);
 }
 
-bool same(const DistancePairs::Pair& a, const DistancePairs::Pair& b) {
+bool same(const PairDistanceIndex::Pair& a, const PairDistanceIndex::Pair& b) {
   return a.first == b.first && a.second == b.second;
 }
 
 }  // namespace
 
-DistancePairs::DistancePairs(const std::vector<Eigen::Vector2d>& poles, double minDistance,
-                             double maxDistance, std::size_t neighbours) {
+PairDistanceIndex::PairDistanceIndex(const std::vector<Eigen::Vector2d>& poles, double minDistance,
+                                     double maxDistance, std::size_t neighbours) {
   const KdTree2D tree(poles);
   std::vector<PointHit> hits;
   for (std::uint32_t i = 0; i < poles.size(); ++i) {
@@ -47,7 +47,7 @@ DistancePairs::DistancePairs(const std::vector<Eigen::Vector2d>& poles, double m
   m_pairs.shrink_to_fit();
 }
 
-DistancePairs::Range DistancePairs::between(double low, double high) const& {
+PairDistanceIndex::Range PairDistanceIndex::between(double low, double high) const& {
   const auto below = [](const Pair& pair, double bound) { return pair.distance < bound; };
   const auto above = [](double bound, const Pair& pair) { return bound < pair.distance; };
   const auto begin = std::lower_bound(m_pairs.begin(), m_pairs.end(), low, below);

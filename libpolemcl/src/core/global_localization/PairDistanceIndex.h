@@ -14,7 +14,7 @@ namespace polemcl {
 ///
 /// Memory is bounded by `poles · neighbours` pairs of 12 bytes. In crowds (parks) each pole keeps
 /// only that many of its neighbours, evenly taken from near to far, so that no distance is lost.
-class DistancePairs {
+class PairDistanceIndex {
  public:
   struct Pair {
     float distance;       ///< m
@@ -24,8 +24,8 @@ class DistancePairs {
   /// \param poles Centres, map frame, m; finite.
   /// \param minDistance, maxDistance Pairs outside are not kept, m; 0 < min < max.
   /// \param neighbours Most partners a pole asks for (it may be asked for by more).
-  DistancePairs(const std::vector<Eigen::Vector2d>& poles, double minDistance, double maxDistance,
-                std::size_t neighbours = 48);
+  PairDistanceIndex(const std::vector<Eigen::Vector2d>& poles, double minDistance,
+                    double maxDistance, std::size_t neighbours = 48);
 
   /// \brief All pairs with low <= distance <= high, as [begin, end) of memory that belongs to this.
   struct Range {

@@ -23,11 +23,11 @@ Eigen::Vector2d turnedBy(const Eigen::Vector2d& v) {
 
 }  // namespace
 
-PlaceRefinement::PlaceRefinement(const GlobalLocalizer& map, const Constellation& sky,
-                                 const Pose2D& pose_local)
+PoseRefinement::PoseRefinement(const GlobalLocalizer& map, const Constellation& sky,
+                               const Pose2D& pose_local)
     : m_map(map), m_sky(sky), m_poseLocal(pose_local), m_claimed(map.tree().size(), 0) {}
 
-bool PlaceRefinement::run(const PlaceSeed& seed, GlobalHypothesis& out) {
+bool PoseRefinement::run(const PoseCandidate& seed, GlobalHypothesis& out) {
   State state;
   state.pose = seed.pose_map_robot;
   matchSeed(seed, state);
@@ -40,21 +40,21 @@ bool PlaceRefinement::run(const PlaceSeed& seed, GlobalHypothesis& out) {
   return true;
 }
 
-Eigen::Vector2d PlaceRefinement::seenAt(const Star& star, const State& state) const {
+Eigen::Vector2d PoseRefinement::seenAt(const QueryPole& star, const State& state) const {
   return Eigen::Vector2d(state.pose.x, state.pose.y) +
          rotationOf(state.pose.yaw) * (star.centre + state.scale * star.way);
 }
 
-Eigen::Matrix2d PlaceRefinement::uncertainty(const Star& star, std::size_t pole,
-                                             const State& state) const {
+Eigen::Matrix2d PoseRefinement::uncertainty(const QueryPole& star, std::size_t pole,
+                                            const State& state) const {
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
   const double sigma = m_map.options().sigma;
   return rotation * star.covariance * rotation.transpose() +
          (sigma * sigma + m_map.variance(pole)) * Eigen::Matrix2d::Identity();
 }
 
-void PlaceRefinement::matchSeed(const PlaceSeed& seed, const State& state) {
-  const std::vector<Star>& stars = m_sky.stars();
+void PoseRefinement::matchSeed(const PoseCandidate& seed, const State& state) {
+  const std::vector<QueryPole>& stars = m_sky.stars();
   const PairTolerance tolerance(m_map, m_sky, stars[seed.first], stars[seed.second]);
   m_matches.clear();
   for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
@@ -65,11 +65,11 @@ void PlaceRefinement::matchSeed(const PlaceSeed& seed, const State& state) {
   }
 }
 
-void PlaceRefinement::matchGated(const State& state) {
+void PoseRefinement::matchGated(const State& state) {
   const double most = m_map.options().maxTolerance;
   m_matches.clear();
   for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
-    const Star& star = m_sky.stars()[i];
+    const QueryPole& star = m_sky.stars()[i];
     const Eigen::Vector2d at = seenAt(star, state);
     const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
     if (!hit) continue;
@@ -84,7 +84,7 @@ void PlaceRefinement::matchGated(const State& state) {
 }
 
 /// One Gauss-Newton step on the matches, with the odometry's scale known beforehand to be near 0.
-bool PlaceRefinement::solve(State& state) const {
+bool PoseRefinement::solve(State& state) const {
   if (m_matches.size() < 3) return false;
   Matrix4 normal = Matrix4::Zero();
   Vector4 right = Vector4::Zero();
@@ -94,7 +94,7 @@ bool PlaceRefinement::solve(State& state) const {
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
   double squared = 0;
   for (const Match& match : m_matches) {
-    const Star& star = m_sky.stars()[match.star];
+    const QueryPole& star = m_sky.stars()[match.star];
     const Eigen::Vector2d at = seenAt(star, state);
     Eigen::Matrix<double, 2, 4> jacobian;
     const Eigen::Vector2d arm = at - Eigen::Vector2d(state.pose.x, state.pose.y);
@@ -118,12 +118,12 @@ bool PlaceRefinement::solve(State& state) const {
   return true;
 }
 
-void PlaceRefinement::judge(const State& state, GlobalHypothesis& out) {
+void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
   const double most = m_map.options().maxTolerance;
   const double sharp = s_sharp * s_sharp;
   newRound();
   out = {};
-  for (const Star& star : m_sky.stars()) {
+  for (const QueryPole& star : m_sky.stars()) {
     const Eigen::Vector2d at = seenAt(star, state);
     const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
     if (!hit) continue;
@@ -150,7 +150,7 @@ void PlaceRefinement::judge(const State& state, GlobalHypothesis& out) {
 }
 
 /// Map poles beside the way that no pole of the submap claimed in this round.
-std::uint32_t PlaceRefinement::countUnseen(const State& state) {
+std::uint32_t PoseRefinement::countUnseen(const State& state) {
   std::uint32_t unseen = 0;
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
   for (const Eigen::Vector2d& place : m_sky.path()) {
@@ -161,7 +161,7 @@ std::uint32_t PlaceRefinement::countUnseen(const State& state) {
   return unseen;
 }
 
-bool PlaceRefinement::claim(std::uint32_t pole) {
+bool PoseRefinement::claim(std::uint32_t pole) {
   if (m_claimed[pole] == m_round) return false;
   m_claimed[pole] = m_round;
   return true;

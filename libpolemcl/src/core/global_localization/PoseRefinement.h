@@ -8,11 +8,11 @@
 namespace polemcl {
 
 /// \brief Refines and judges one candidate after the other; keeps its memory between them.
-class PlaceRefinement {
+class PoseRefinement {
  public:
-  PlaceRefinement(const GlobalLocalizer& map, const Constellation& sky, const Pose2D& pose_local);
+  PoseRefinement(const GlobalLocalizer& map, const Constellation& sky, const Pose2D& pose_local);
   /// \return False when it fell apart: fewer than three matches, or no unique solution.
-  bool run(const PlaceSeed& seed, GlobalHypothesis& out);
+  bool run(const PoseCandidate& seed, GlobalHypothesis& out);
 
  private:
   using Vector4 = Eigen::Vector4d;
@@ -27,9 +27,9 @@ class PlaceRefinement {
     Matrix4 covariance = Matrix4::Zero();
     double squaredResiduals = 0;  ///< Mahalanobis, summed over the matches
   };
-  Eigen::Vector2d seenAt(const Star& star, const State& state) const;
-  Eigen::Matrix2d uncertainty(const Star& star, std::size_t pole, const State& state) const;
-  void matchSeed(const PlaceSeed& seed, const State& state);
+  Eigen::Vector2d seenAt(const QueryPole& star, const State& state) const;
+  Eigen::Matrix2d uncertainty(const QueryPole& star, std::size_t pole, const State& state) const;
+  void matchSeed(const PoseCandidate& seed, const State& state);
   void matchGated(const State& state);
   bool solve(State& state) const;
   void judge(const State& state, GlobalHypothesis& out);

@@ -53,7 +53,7 @@ std::vector<PoleDetection> LocalMaps::add(const Pose2D& motion,
 /// The newest map's poles that enough of the maps up to it show; in its robot frame.
 std::vector<PoleDetection> LocalMaps::confirmed(std::size_t newest) const {
   if (m_options.minHits == 1) return m_maps[newest].poles_robot;
-  std::vector<PoleSighting> sightings;  // the newest map's first
+  std::vector<LandmarkObservation> sightings;  // the newest map's first
   for (std::size_t k = newest + 1; k-- > 0;)
     for (const PoleDetection& pole : m_maps[k].poles_robot)
       sightings.push_back({moved(m_maps[k].pose_odometry_robot, pole), 0});

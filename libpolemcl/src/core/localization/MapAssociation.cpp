@@ -39,9 +39,9 @@ PlacedDetection placeDetection(const PoleDetection& pole, const PoseWithCovarian
 
 }  // namespace
 
-std::vector<PoleMatch> matchPoles(const std::vector<PoleDetection>& poles_robot,
-                                  const PoseWithCovariance& robot, const PoleIndex& index,
-                                  const MatchingOptions& options) {
+std::vector<PoleMatch> associate(const std::vector<PoleDetection>& poles_robot,
+                                 const PoseWithCovariance& robot, const PoleIndex& index,
+                                 const AssociationOptions& options) {
   std::vector<PoleMatch> matches(poles_robot.size());
   std::vector<MatchPair> pairs;
   for (std::size_t i = 0; i < poles_robot.size(); ++i) {

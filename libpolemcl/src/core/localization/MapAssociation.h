@@ -20,7 +20,7 @@ struct PoleMatch {
 };
 
 /// \brief When an observed pole counts as one of the map.
-struct MatchingOptions {
+struct AssociationOptions {
   double sigma = 0.05;  ///< of map against place, beside both covariances, m
   double gate = 3.5;    ///< greatest Mahalanobis distance (99.8 % of two-dimensional errors)
   double reach = 1.0;   ///< greatest distance, m: an estimate that knows nothing matches nothing
@@ -31,8 +31,8 @@ struct MatchingOptions {
 /// pose, whose heading moves what is far away.
 /// \param poles_robot Detections, robot frame. \param robot Map frame. \return Element i belongs to
 /// detection i; detections that are not finite match nothing.
-std::vector<PoleMatch> matchPoles(const std::vector<PoleDetection>& poles_robot,
-                                  const PoseWithCovariance& robot, const PoleIndex& index,
-                                  const MatchingOptions& options);
+std::vector<PoleMatch> associate(const std::vector<PoleDetection>& poles_robot,
+                                 const PoseWithCovariance& robot, const PoleIndex& index,
+                                 const AssociationOptions& options);
 
 }  // namespace polemcl

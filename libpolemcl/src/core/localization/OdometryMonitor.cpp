@@ -18,7 +18,7 @@ constexpr double s_mostDoubt = 5;         // m
 void requireMonitor(bool good, const char* key, double value, const char* allowed) {
   if (good) return;
   std::ostringstream text;
-  text << "[motion_check] " << key << " = " << value << ": allowed is " << allowed;
+  text << "[odometry_monitor] " << key << " = " << value << ": allowed is " << allowed;
   throw Error(text.str());
 }
 
@@ -70,7 +70,7 @@ double outside(double value, double tolerance) {
 
 }  // namespace
 
-void MotionCheckOptions::validate() const {
+void OdometryMonitorOptions::validate() const {
   requireMonitor(isAboveZero(window), "window_s", window, "more than 0");
   requireMonitor(scale >= 0 && scale < 1, "scale", scale, "0 or more, below 1");
   requireMonitor(metres >= 0 && std::isfinite(metres), "tolerance_m", metres, "0 or more");
@@ -91,17 +91,18 @@ void MotionCheckOptions::validate() const {
   requireMonitor(isAboveZero(alignment.reach), "reach_m", alignment.reach, "more than 0");
 }
 
-MotionCheck::MotionCheck(const MotionCheckOptions& options) : m_options(options) {
+OdometryMonitor::OdometryMonitor(const OdometryMonitorOptions& options) : m_options(options) {
   options.validate();
 }
 
-void MotionCheck::clear() {
-  *this = MotionCheck(m_options);
+void OdometryMonitor::clear() {
+  *this = OdometryMonitor(m_options);
 }
 
-CheckedMotion MotionCheck::add(double time, const Pose2D& motion, const Eigen::Matrix3d& covariance,
-                               const std::vector<PoleDetection>& poles_robot) {
-  CheckedMotion result;
+MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
+                                     const Eigen::Matrix3d& covariance,
+                                     const std::vector<PoleDetection>& poles_robot) {
+  MonitoredMotion result;
   result.motion = motion;
   result.covariance = covariance;
   if (!m_options.enabled) return result;
@@ -125,7 +126,7 @@ CheckedMotion MotionCheck::add(double time, const Pose2D& motion, const Eigen::M
 }
 
 /// Indices of the scans to compare with, the latest first.
-std::vector<std::size_t> MotionCheck::chosen(double time) const {
+std::vector<std::size_t> OdometryMonitor::chosen(double time) const {
   std::vector<std::size_t> result;
   for (const double lag : s_lags) {
     std::size_t i = m_past.size() - 1;
@@ -137,14 +138,14 @@ std::vector<std::size_t> MotionCheck::chosen(double time) const {
 
 /// The motion that most poles bear out: near what has been used, or near the speed before; from
 /// nowhere if neither holds.
-PoleAlignment MotionCheck::align(const Reference& reference, const Reference& now,
-                                 bool search) const {
+ScanRegistration OdometryMonitor::align(const Reference& reference, const Reference& now,
+                                        bool search) const {
   const Reference& last = m_past.back();
   const double seconds = now.time - reference.time;
   const Pose2D coasted = compose(last.used, coast(now.time - last.time));
-  PoleAlignment best = refineMotion(reference.poles, now.poles, relative(reference.used, now.used),
-                                    m_options.alignment);
-  const auto keep = [&](const PoleAlignment& other) {
+  ScanRegistration best = refineMotion(reference.poles, now.poles,
+                                       relative(reference.used, now.used), m_options.alignment);
+  const auto keep = [&](const ScanRegistration& other) {
     if (other.score > best.score + 0.5) best = other;
   };
   const double possible =
@@ -154,23 +155,23 @@ PoleAlignment MotionCheck::align(const Reference& reference, const Reference& no
     keep(refineMotion(reference.poles, now.poles, relative(reference.used, coasted),
                       m_options.alignment));
   if (!search || !poor()) return best;
-  AlignmentOptions wide = m_options.alignment;
+  RegistrationOptions wide = m_options.alignment;
   wide.maxMetres = m_options.maxSpeed * seconds;
   wide.maxRadians = m_options.maxTurnRate * seconds + 0.05;
   keep(searchMotion(reference.poles, now.poles, relative(reference.used, coasted), wide));
   return best;
 }
 
-bool MotionCheck::suffices(const PoleAlignment& alignment, const Reference& reference,
-                           const Reference& now) const {
+bool OdometryMonitor::suffices(const ScanRegistration& alignment, const Reference& reference,
+                               const Reference& now) const {
   const auto fewer = static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
   return alignment.pairs >= m_options.minPairs && alignment.pairs >= m_options.minShare * fewer &&
          isCertain(alignment.covariance);
 }
 
 /// How far another motion lies outside what the odometry allows, in standard deviations.
-double MotionCheck::beyondTolerance(const Pose2D& odometry, const Pose2D& other,
-                                    const Eigen::Matrix3d& covariance) const {
+double OdometryMonitor::beyondTolerance(const Pose2D& odometry, const Pose2D& other,
+                                        const Eigen::Matrix3d& covariance) const {
   const Pose2D difference = relative(odometry, other);
   const double way = std::hypot(odometry.x, odometry.y);
   const double length = std::hypot(difference.x, difference.y);
@@ -181,11 +182,11 @@ double MotionCheck::beyondTolerance(const Pose2D& odometry, const Pose2D& other,
   return std::sqrt(std::max(0.0, rest.dot(covariance.inverse() * rest)));
 }
 
-MotionCheck::Finding MotionCheck::compare(const Reference& reference, const Reference& now,
-                                          bool search) const {
+OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, const Reference& now,
+                                                  bool search) const {
   Finding finding;
   finding.alignment = align(reference, now, search);
-  const PoleAlignment& found = finding.alignment;
+  const ScanRegistration& found = finding.alignment;
   if (!suffices(found, reference, now)) return finding;
   const Pose2D odometry = relative(reference.odometry, now.odometry);
   Eigen::Matrix3d covariance = found.covariance + now.spent - reference.spent;
@@ -196,24 +197,24 @@ MotionCheck::Finding MotionCheck::compare(const Reference& reference, const Refe
                                 s_leastSigma * s_leastSigma + carried, s_leastTurn * s_leastTurn)
                     .asDiagonal();
   finding.beyond = beyondTolerance(odometry, found.motion, covariance);
-  const PoleAlignment stated =
+  const ScanRegistration stated =
       judgeMotion(reference.poles, now.poles, odometry, m_options.alignment);
   const bool contradicts =
       finding.beyond > m_options.sigmas && found.score >= stated.score + m_options.margin;
-  finding.verdict = contradicts ? MotionVerdict::contradicted : MotionVerdict::agrees;
+  finding.verdict = contradicts ? OdometryVerdict::contradicted : OdometryVerdict::agrees;
   return finding;
 }
 
 /// While the odometry is believed.
-CheckedMotion MotionCheck::watch(Reference& now, const CheckedMotion& odometry) {
-  CheckedMotion result = odometry;
+MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& odometry) {
+  MonitoredMotion result = odometry;
   bool first = true;
   for (const std::size_t i : chosen(now.time)) {
     const Finding finding = compare(m_past[i], now, first);
     first = false;
-    if (finding.verdict == MotionVerdict::unknown) continue;
-    if (finding.verdict == MotionVerdict::agrees) {
-      result.verdict = MotionVerdict::agrees;
+    if (finding.verdict == OdometryVerdict::unknown) continue;
+    if (finding.verdict == OdometryVerdict::agrees) {
+      result.verdict = OdometryVerdict::agrees;
       result.pairs = std::max(result.pairs, finding.alignment.pairs);
       continue;
     }
@@ -229,7 +230,7 @@ CheckedMotion MotionCheck::watch(Reference& now, const CheckedMotion& odometry) 
       m_knownTime = m_keyTime = now.time;
       return result;
     }
-    result.verdict = MotionVerdict::unknown;
+    result.verdict = OdometryVerdict::unknown;
     result.motion = before;
     result.covariance = odometry.covariance + doubt(before, change, 1);
     now.used = compose(m_past.back().used, before);
@@ -240,10 +241,10 @@ CheckedMotion MotionCheck::watch(Reference& now, const CheckedMotion& odometry) 
 }
 
 /// The motion from the scan before that ends where the alignment says.
-CheckedMotion MotionCheck::take(Reference& now, const Reference& reference,
-                                const PoleAlignment& alignment) {
-  CheckedMotion result;
-  result.verdict = MotionVerdict::contradicted;
+MonitoredMotion OdometryMonitor::take(Reference& now, const Reference& reference,
+                                      const ScanRegistration& alignment) {
+  MonitoredMotion result;
+  result.verdict = OdometryVerdict::contradicted;
   result.replaced = true;
   result.pairs = alignment.pairs;
   // The step to come may make up for earlier ones: the speed is that of the whole way. Smoothed,
@@ -265,15 +266,15 @@ CheckedMotion MotionCheck::take(Reference& now, const Reference& reference,
 }
 
 /// While it is not.
-CheckedMotion MotionCheck::replace(Reference& now, const CheckedMotion& odometry) {
+MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& odometry) {
   const Reference& last = m_past.back();
-  CheckedMotion result;
+  MonitoredMotion result;
   bool found = false;
   const std::size_t key = keyScan(), latest = m_past.size() - 1;
   for (const std::size_t i : {key, latest}) {
     Reference coasting = now;
     coasting.used = compose(last.used, coast(now.time - last.time));
-    const PoleAlignment alignment = align(m_past[i], coasting, i == latest);
+    const ScanRegistration alignment = align(m_past[i], coasting, i == latest);
     if (!suffices(alignment, m_past[i], now)) continue;
     result = take(now, m_past[i], alignment);
     m_knownTime = now.time;
@@ -284,7 +285,7 @@ CheckedMotion MotionCheck::replace(Reference& now, const CheckedMotion& odometry
   }
   if (!found) {
     result = odometry;
-    result.verdict = MotionVerdict::contradicted;
+    result.verdict = OdometryVerdict::contradicted;
     result.replaced = true;
     result.motion = coast(now.time - last.time);
     now.used = compose(last.used, result.motion);
@@ -301,14 +302,14 @@ CheckedMotion MotionCheck::replace(Reference& now, const CheckedMotion& odometry
 }
 
 /// The scan to align with, or the one after it where it is gone.
-std::size_t MotionCheck::keyScan() const {
+std::size_t OdometryMonitor::keyScan() const {
   std::size_t i = m_past.size() - 1;
   while (i > 0 && m_past[i - 1].time >= m_keyTime - 1e-6) --i;
   return i;
 }
 
 /// Odometry and poles say the same of the last moments.
-bool MotionCheck::hasSettled(const Reference& now) const {
+bool OdometryMonitor::hasSettled(const Reference& now) const {
   std::size_t i = m_past.size() - 1;
   while (i > 0 && now.time - m_past[i].time < m_options.settle - 1e-6) --i;
   if (!now.known || now.time - m_past[i].time < m_options.settle - 1e-6) return false;
@@ -323,7 +324,7 @@ bool MotionCheck::hasSettled(const Reference& now) const {
                          covariance) < 1;
 }
 
-Pose2D MotionCheck::coast(double seconds) const {
+Pose2D OdometryMonitor::coast(double seconds) const {
   return scaled(m_speed, seconds);
 }
 

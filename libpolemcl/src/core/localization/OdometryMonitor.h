@@ -18,8 +18,8 @@
 
 namespace polemcl {
 
-/// \brief `[motion_check]` in INI files.
-struct MotionCheckOptions {
+/// \brief `[odometry_monitor]` in INI files.
+struct OdometryMonitorOptions {
   bool enabled = true;
   double window = 1;      ///< longest time over which scans are compared, s
   double scale = 0.05;    ///< error of the odometry's scale that is tolerated, share of the way
@@ -32,20 +32,20 @@ struct MotionCheckOptions {
   double settle = 0.5;    ///< after so long an agreement the odometry is believed again, s
   double hold = 5;        ///< without enough poles the last speed is kept for so long, s
   double maxSpeed = 40;   ///< no vehicle is faster, m/s
-  double maxTurnRate = 1.5;    ///< or turns faster, rad/s (`max_turn_rate_deg_s`)
-  AlignmentOptions alignment;  ///< sigma, gate, reach (`sigma_m`, `gate`, `reach_m`)
-  void validate() const;       ///< \throws Error naming the field
+  double maxTurnRate = 1.5;       ///< or turns faster, rad/s (`max_turn_rate_deg_s`)
+  RegistrationOptions alignment;  ///< sigma, gate, reach (`sigma_m`, `gate`, `reach_m`)
+  void validate() const;          ///< \throws Error naming the field
 };
 
-enum class MotionVerdict {
+enum class OdometryVerdict {
   agrees,        ///< the poles bear the odometry out
   contradicted,  ///< they do not: the motion is the poles', or the last known speed's
   unknown        ///< too few poles to tell: the motion is the odometry's
 };
 
 /// \brief The motion to use for this step.
-struct CheckedMotion {
-  MotionVerdict verdict = MotionVerdict::unknown;
+struct MonitoredMotion {
+  OdometryVerdict verdict = OdometryVerdict::unknown;
   bool replaced = false;  ///< motion or covariance differ from the odometry's
   Pose2D motion;          ///< since the scan before, in the robot frame before; m, rad
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m², m·rad, rad²
@@ -53,10 +53,10 @@ struct CheckedMotion {
 };
 
 /// \brief Follows one drive. Deterministic.
-class MotionCheck {
+class OdometryMonitor {
  public:
   /// \throws Error on options out of range.
-  explicit MotionCheck(const MotionCheckOptions& options = {});
+  explicit OdometryMonitor(const OdometryMonitorOptions& options = {});
 
   /// \brief One scan more. After a gap longer than the window, and for the first scan, there is
   /// nothing to compare with.
@@ -64,11 +64,11 @@ class MotionCheck {
   /// refused elsewhere can be given again. \param motion, covariance Odometry
   /// since the scan before; finite. \param poles_robot Detections, robot frame; those that are not
   /// finite or have no confidence are not used.
-  CheckedMotion add(double time, const Pose2D& motion, const Eigen::Matrix3d& covariance,
-                    const std::vector<PoleDetection>& poles_robot);
+  MonitoredMotion add(double time, const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                      const std::vector<PoleDetection>& poles_robot);
   /// \brief Forgets all scans: the next is a first one.
   void clear();
-  const MotionCheckOptions& options() const { return m_options; }
+  const OdometryMonitorOptions& options() const { return m_options; }
 
  private:
   /// A scan to compare with. Chains of motions since the first scan: as the odometry has them, and
@@ -82,25 +82,26 @@ class MotionCheck {
   };
   /// What the poles say about the motion since a reference.
   struct Finding {
-    MotionVerdict verdict = MotionVerdict::unknown;
-    PoleAlignment alignment;
+    OdometryVerdict verdict = OdometryVerdict::unknown;
+    ScanRegistration alignment;
     double beyond = 0;  ///< of the odometry, outside the tolerance, standard deviations
   };
   Finding compare(const Reference& reference, const Reference& now, bool search) const;
-  PoleAlignment align(const Reference& reference, const Reference& now, bool search) const;
-  bool suffices(const PoleAlignment& alignment, const Reference& reference,
+  ScanRegistration align(const Reference& reference, const Reference& now, bool search) const;
+  bool suffices(const ScanRegistration& alignment, const Reference& reference,
                 const Reference& now) const;
   double beyondTolerance(const Pose2D& odometry, const Pose2D& other,
                          const Eigen::Matrix3d& covariance) const;
   std::vector<std::size_t> chosen(double time) const;
-  CheckedMotion watch(Reference& now, const CheckedMotion& odometry);
-  CheckedMotion replace(Reference& now, const CheckedMotion& odometry);
-  CheckedMotion take(Reference& now, const Reference& reference, const PoleAlignment& alignment);
+  MonitoredMotion watch(Reference& now, const MonitoredMotion& odometry);
+  MonitoredMotion replace(Reference& now, const MonitoredMotion& odometry);
+  MonitoredMotion take(Reference& now, const Reference& reference,
+                       const ScanRegistration& alignment);
   bool hasSettled(const Reference& now) const;
   Pose2D coast(double seconds) const;
   std::size_t keyScan() const;
 
-  MotionCheckOptions m_options;
+  OdometryMonitorOptions m_options;
   std::deque<Reference> m_past;
   bool m_contradicted = false, m_suspected = false;
   Pose2D m_speed;          ///< of the last motion handed out, per second

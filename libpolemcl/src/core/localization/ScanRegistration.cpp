@@ -66,7 +66,7 @@ std::vector<RegistrationPair> pairUp(const std::vector<PoleDetection>& before,
   return pairs;
 }
 
-void judge(const std::vector<RegistrationPair>& pairs, double gate, PoleAlignment& result) {
+void judge(const std::vector<RegistrationPair>& pairs, double gate, ScanRegistration& result) {
   result.pairs = static_cast<int>(pairs.size());
   result.score = 0;
   for (const RegistrationPair& pair : pairs) result.score += 1 - pair.squared / (gate * gate);
@@ -74,7 +74,7 @@ void judge(const std::vector<RegistrationPair>& pairs, double gate, PoleAlignmen
 
 /// One Gauss-Newton step over the pairs. \return Whether the pairs determine a motion.
 bool solve(const std::vector<RegistrationPair>& pairs, const std::vector<Moved>& moved,
-           PoleAlignment& result) {
+           ScanRegistration& result) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   double squared = 0;
@@ -126,20 +126,20 @@ double meanVariance(const PoleDetection& pole, double sigma) {
 
 }  // namespace
 
-PoleAlignment judgeMotion(const std::vector<PoleDetection>& before,
-                          const std::vector<PoleDetection>& after, const Pose2D& motion,
-                          const AlignmentOptions& options) {
-  PoleAlignment result;
+ScanRegistration judgeMotion(const std::vector<PoleDetection>& before,
+                             const std::vector<PoleDetection>& after, const Pose2D& motion,
+                             const RegistrationOptions& options) {
+  ScanRegistration result;
   result.motion = motion;
   judge(pairUp(before, moveAll(after, motion, options.sigma), options.gate, options.reach),
         options.gate, result);
   return result;
 }
 
-PoleAlignment refineMotion(const std::vector<PoleDetection>& before,
-                           const std::vector<PoleDetection>& after, const Pose2D& guess,
-                           const AlignmentOptions& options) {
-  PoleAlignment result;
+ScanRegistration refineMotion(const std::vector<PoleDetection>& before,
+                              const std::vector<PoleDetection>& after, const Pose2D& guess,
+                              const RegistrationOptions& options) {
+  ScanRegistration result;
   result.motion = guess;
   for (int round = 0; round < s_rounds; ++round) {
     // At first all that is within reach, whatever its covariance; at last the gate alone.
@@ -153,17 +153,17 @@ PoleAlignment refineMotion(const std::vector<PoleDetection>& before,
   return result;
 }
 
-PoleAlignment searchMotion(const std::vector<PoleDetection>& allBefore,
-                           const std::vector<PoleDetection>& allAfter, const Pose2D& centre,
-                           const AlignmentOptions& options) {
+ScanRegistration searchMotion(const std::vector<PoleDetection>& allBefore,
+                              const std::vector<PoleDetection>& allAfter, const Pose2D& centre,
+                              const RegistrationOptions& options) {
   const auto before = surest(allBefore), after = surest(allAfter);
-  PoleAlignment best;
+  ScanRegistration best;
   best.motion = centre;
   const auto consider = [&](std::size_t i, std::size_t j, std::size_t a, std::size_t b) {
     const Pose2D motion = motionOf(before[i], before[j], after[a], after[b]);
     if (std::abs(wrapAngle(motion.yaw - centre.yaw)) > options.maxRadians) return;
     if (std::hypot(motion.x - centre.x, motion.y - centre.y) > options.maxMetres) return;
-    const PoleAlignment tried = judgeMotion(before, after, motion, options);
+    const ScanRegistration tried = judgeMotion(before, after, motion, options);
     if (tried.score > best.score) best = tried;
   };
   for (std::size_t i = 0; i < before.size(); ++i)
@@ -183,7 +183,7 @@ PoleAlignment searchMotion(const std::vector<PoleDetection>& allBefore,
         }
     }
   if (best.pairs < 2) return best;
-  AlignmentOptions near = options;
+  RegistrationOptions near = options;
   near.reach = std::min(options.reach, 0.5);
   return refineMotion(allBefore, allAfter, best.motion, near);
 }

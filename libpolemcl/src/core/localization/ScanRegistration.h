@@ -10,7 +10,7 @@
 namespace polemcl {
 
 /// \brief Limits of an alignment.
-struct AlignmentOptions {
+struct RegistrationOptions {
   /// Standard deviation added to each detection along an axis, m: what its covariance leaves out.
   double sigma = 0.03;
   double gate = 3;           ///< greatest Mahalanobis distance of a pair
@@ -21,7 +21,7 @@ struct AlignmentOptions {
 };
 
 /// \brief A motion and the pairs of poles that bear it out.
-struct PoleAlignment {
+struct ScanRegistration {
   /// Motion of the robot from the first scan to the second, in the first's robot frame.
   Pose2D motion;
   /// Of (x, y, yaw), m², m·rad, rad²: of the least squares, scaled by the residuals where these are
@@ -32,21 +32,21 @@ struct PoleAlignment {
 };
 
 /// \brief How well a motion fits, as it is. Nothing is estimated; the covariance stays as it was.
-PoleAlignment judgeMotion(const std::vector<PoleDetection>& before,
-                          const std::vector<PoleDetection>& after, const Pose2D& motion,
-                          const AlignmentOptions& options);
+ScanRegistration judgeMotion(const std::vector<PoleDetection>& before,
+                             const std::vector<PoleDetection>& after, const Pose2D& motion,
+                             const RegistrationOptions& options);
 
 /// \brief Least squares over the pairs near a first guess (Gauss-Newton, paired again each time,
 /// the reach narrowing from `reach` to the gate), weighted by the covariances.
-PoleAlignment refineMotion(const std::vector<PoleDetection>& before,
-                           const std::vector<PoleDetection>& after, const Pose2D& guess,
-                           const AlignmentOptions& options);
+ScanRegistration refineMotion(const std::vector<PoleDetection>& before,
+                              const std::vector<PoleDetection>& after, const Pose2D& guess,
+                              const RegistrationOptions& options);
 
 /// \brief Without a guess: every two poles of one scan that lie as far apart as two of the other
 /// give a candidate; the one most other poles bear out is refined.
 /// \param centre Candidates lie within `maxMetres` and `maxRadians` of it.
-PoleAlignment searchMotion(const std::vector<PoleDetection>& before,
-                           const std::vector<PoleDetection>& after, const Pose2D& centre,
-                           const AlignmentOptions& options);
+ScanRegistration searchMotion(const std::vector<PoleDetection>& before,
+                              const std::vector<PoleDetection>& after, const Pose2D& centre,
+                              const RegistrationOptions& options);
 
 }  // namespace polemcl

@@ -38,10 +38,10 @@ bool overlap(const PoleDetection& a, const PoleDetection& b) {
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
-    const std::vector<PoleSighting>& sightings) {
+    const std::vector<LandmarkObservation>& sightings) {
   std::vector<Eigen::Vector2d> centres;
   double widest = 0;
-  for (const PoleSighting& sighting : sightings) {
+  for (const LandmarkObservation& sighting : sightings) {
     centres.emplace_back(sighting.pole.x, sighting.pole.y);
     widest = std::max(widest, sighting.pole.radius);
   }
@@ -69,7 +69,7 @@ std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
   return groups;
 }
 
-MapPole plainMean(const std::vector<PoleSighting>& sightings,
+MapPole plainMean(const std::vector<LandmarkObservation>& sightings,
                   const std::vector<std::uint32_t>& members) {
   std::vector<const PoleDetection*> poles;
   for (const std::uint32_t member : members) poles.push_back(&sightings[member].pole);

@@ -16,11 +16,11 @@ namespace polemcl {
 /// ordered by their first index. Work
 ///         grows with the number of sightings times those within a pole's width.
 std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
-    const std::vector<PoleSighting>& sightings);
+    const std::vector<LandmarkObservation>& sightings);
 
 /// \brief The pole of a group: plain means of centre, radius, bottom, top and confidence; count the
 /// number of members; covariance that of the mean of independent sightings.
-MapPole plainMean(const std::vector<PoleSighting>& sightings,
+MapPole plainMean(const std::vector<LandmarkObservation>& sightings,
                   const std::vector<std::uint32_t>& members);
 
 }  // namespace polemcl

@@ -6,14 +6,14 @@
 
 namespace polemcl {
 
-PoleSighting sightingOf(const PoleDetection& pole, const Pose2D& pose, std::uint32_t view,
-                        const PoseTrust& trust) {
+LandmarkObservation landmarkObservation(const PoleDetection& pole, const Pose2D& pose,
+                                        std::uint32_t view, const PoseTrust& trust) {
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
   Eigen::Matrix2d rotation;
   rotation << c, -s, s, c;
   const Eigen::Vector2d offset = rotation * Eigen::Vector2d(pole.x, pole.y);
   const Eigen::Vector2d swing = trust.headingSigma * Eigen::Vector2d(-offset.y(), offset.x());
-  PoleSighting sighting{pole, view};
+  LandmarkObservation sighting{pole, view};
   sighting.pole.x = pose.x + offset.x();
   sighting.pole.y = pose.y + offset.y();
   sighting.pole.covariance = rotation * pole.covariance * rotation.transpose() +

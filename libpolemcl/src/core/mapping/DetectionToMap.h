@@ -18,8 +18,8 @@ struct PoseTrust {
 
 /// \brief A detection in the map frame, made less certain by what the scan's pose is not known to.
 /// \param pole Robot frame. \param pose Robot in the map frame. \param view Number of the scan.
-PoleSighting sightingOf(const PoleDetection& pole, const Pose2D& pose, std::uint32_t view,
-                        const PoseTrust& trust);
+LandmarkObservation landmarkObservation(const PoleDetection& pole, const Pose2D& pose,
+                                        std::uint32_t view, const PoseTrust& trust);
 
 /// \throws Error on a pose or detection that is not finite, a confidence outside [0, 1], or a
 ///         covariance that is not symmetric positive semidefinite, naming the detection.

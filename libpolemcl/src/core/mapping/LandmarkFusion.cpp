@@ -16,7 +16,7 @@ struct Weighted {
   Eigen::Matrix2d information;  ///< inverse covariance times confidence
 };
 
-std::vector<Weighted> weigh(const std::vector<PoleSighting>& sightings,
+std::vector<Weighted> weigh(const std::vector<LandmarkObservation>& sightings,
                             const std::vector<std::uint32_t>& members,
                             const Eigen::Vector2d& origin) {
   std::vector<Weighted> weighted;
@@ -112,7 +112,7 @@ double quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-Eigen::Vector2d fusedCentre(const std::vector<PoleSighting>& sightings,
+Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& sightings,
                             const std::vector<std::uint32_t>& members, Eigen::Matrix2d* covariance,
                             std::vector<std::uint32_t>* kept) {
   const PoleDetection& first = sightings[members.front()].pole;
@@ -139,7 +139,7 @@ Eigen::Vector2d fusedCentre(const std::vector<PoleSighting>& sightings,
   return origin + mean.centre;
 }
 
-MapPole fuse(const std::vector<PoleSighting>& sightings,
+MapPole fuse(const std::vector<LandmarkObservation>& sightings,
              const std::vector<std::uint32_t>& members) {
   MapPole pole;
   std::vector<std::uint32_t> kept;

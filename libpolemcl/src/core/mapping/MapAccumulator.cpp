@@ -66,14 +66,14 @@ std::size_t AddedSessions::scans() const {
   return count;
 }
 
-MapAccumulator::MapAccumulator(const PoleMapOptions& mapping, const UpkeepOptions& upkeep)
+MapAccumulator::MapAccumulator(const PoleMapOptions& mapping, const MapUpdateOptions& upkeep)
     : m_mapping(mapping), m_upkeep(upkeep) {
   mapping.validate();
   upkeep.validate();
   m_added.unvisited = mapping.unvisited;
 }
 
-MapAccumulator::MapAccumulator(const PoleMapOptions& mapping, const UpkeepOptions& upkeep,
+MapAccumulator::MapAccumulator(const PoleMapOptions& mapping, const MapUpdateOptions& upkeep,
                                AddedSessions before)
     : MapAccumulator(mapping, upkeep) {
   if (before.unvisited != mapping.unvisited) {
@@ -122,7 +122,7 @@ PoleMapResult MapAccumulator::build() const {
   return buildPoleMap(scans, m_mapping);
 }
 
-KeptMap MapAccumulator::withHistories(const std::vector<MapPole>& poles) const {
+LandmarkMap MapAccumulator::withHistories(const std::vector<MapPole>& poles) const {
   std::vector<SessionScan> scans;
   for (const AddedSession& session : m_added.sessions)
     for (std::size_t i = 0; i < session.scans.size(); ++i)

@@ -35,11 +35,12 @@ struct AddedSessions {
 class MapAccumulator {
  public:
   /// \throws Error on options out of range.
-  MapAccumulator(const PoleMapOptions& mapping, const UpkeepOptions& upkeep);
+  MapAccumulator(const PoleMapOptions& mapping, const MapUpdateOptions& upkeep);
   /// \brief Goes on after sessions added before. Their scans are used as they are; all other
   /// options may have changed since. \throws Error when they were chosen by another `unvisited`:
   /// what was left out then is lost.
-  MapAccumulator(const PoleMapOptions& mapping, const UpkeepOptions& upkeep, AddedSessions before);
+  MapAccumulator(const PoleMapOptions& mapping, const MapUpdateOptions& upkeep,
+                 AddedSessions before);
 
   /// \brief The next session. Its scans are used unless a scan of an earlier session, used or not,
   /// stood within `unvisited` of them. The session itself does not count, so loops of it are used.
@@ -51,12 +52,12 @@ class MapAccumulator {
   /// \brief buildPoleMap() on the scans used. \throws Error as buildPoleMap().
   PoleMapResult build() const;
   /// \brief withHistory() by the scans used.
-  KeptMap withHistories(const std::vector<MapPole>& poles) const;
+  LandmarkMap withHistories(const std::vector<MapPole>& poles) const;
   const AddedSessions& added() const { return m_added; }
 
  private:
   PoleMapOptions m_mapping;
-  UpkeepOptions m_upkeep;
+  MapUpdateOptions m_upkeep;
   AddedSessions m_added;
 };
 

@@ -18,7 +18,7 @@ constexpr double kBeside = 0.15;
 constexpr double kOwnFront = 0.75;
 
 void checkFreeRange(const SessionScan& scan, const std::string& where) {
-  for (const float range : scan.freeRange)
+  for (const float range : scan.visibilityRange)
     if (!(std::isfinite(range) && range >= 0))
       throw Error("a free range of " + where +
                   " is negative or not finite; extract the scan again");
@@ -29,21 +29,21 @@ bool inView(const SessionScan& scan, const MapPole& pole) {
   const Pose2D sensor = compose(scan.pose_map_robot, scan.pose_robot_sensor);
   const Pose2D seen = relative(sensor, {pole.x, pole.y, 0});
   const double front = std::hypot(seen.x, seen.y) - pole.radius - kOwnFront;
-  return freeRangeTowards(scan.freeRange, seen.x, seen.y, pole.radius + kBeside) >=
+  return visibilityRangeTowards(scan.visibilityRange, seen.x, seen.y, pole.radius + kBeside) >=
          std::max(front, 1e-3);
 }
 
-std::vector<Eigen::Vector2d> polePlaces(const std::vector<KeptPole>& poles) {
+std::vector<Eigen::Vector2d> polePlaces(const std::vector<LandmarkRecord>& poles) {
   std::vector<Eigen::Vector2d> places;
   places.reserve(poles.size());
-  for (const KeptPole& kept : poles) places.emplace_back(kept.pole.x, kept.pole.y);
+  for (const LandmarkRecord& kept : poles) places.emplace_back(kept.pole.x, kept.pole.y);
   return places;
 }
 
 }  // namespace
 
 Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& mapping,
-                 const UpkeepOptions& upkeep)
+                 const MapUpdateOptions& upkeep)
     : m_scans(scans), m_mapping(mapping), m_upkeep(upkeep), m_firstOfView{0} {
   const PoseTrust trust{mapping.poseSigma, mapping.headingSigma};
   double along = 0;
@@ -61,13 +61,13 @@ Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& ma
     m_lastTime = view == 0 ? scan.time : std::max(m_lastTime, scan.time);
     for (const PoleDetection& pole : scan.poles_robot) {
       if (pole.confidence <= 0 || pole.confidence < mapping.minConfidence) continue;
-      m_sightings.push_back(sightingOf(pole, scan.pose_map_robot, view, trust));
+      m_sightings.push_back(landmarkObservation(pole, scan.pose_map_robot, view, trust));
     }
     m_firstOfView.push_back(m_sightings.size());
   }
 }
 
-void Session::observe(const std::vector<KeptPole>& poles) {
+void Session::observe(const std::vector<LandmarkRecord>& poles) {
   m_owner.assign(m_sightings.size(), kNone);
   m_poles.assign(poles.size(), {});
   const KdTree2D tree(polePlaces(poles));
@@ -108,7 +108,8 @@ void Session::deal(std::size_t view, const KdTree2D& tree) {
 }
 
 /// Which of the poles in range one scan found, and which it could have.
-void Session::expect(std::size_t view, const KdTree2D& tree, const std::vector<KeptPole>& poles) {
+void Session::expect(std::size_t view, const KdTree2D& tree,
+                     const std::vector<LandmarkRecord>& poles) {
   const SessionScan& scan = m_scans[view];
   const Pose2D sensor = compose(scan.pose_map_robot, scan.pose_robot_sensor);
   std::vector<PointHit> near;
@@ -122,8 +123,8 @@ void Session::expect(std::size_t view, const KdTree2D& tree, const std::vector<K
   }
 }
 
-std::vector<PoleSighting> Session::loose() const {
-  std::vector<PoleSighting> loose;
+std::vector<LandmarkObservation> Session::loose() const {
+  std::vector<LandmarkObservation> loose;
   for (std::size_t i = 0; i < m_sightings.size(); ++i)
     if (m_owner[i] == kNone) loose.push_back(m_sightings[i]);
   return loose;

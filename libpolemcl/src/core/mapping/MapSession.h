@@ -1,7 +1,7 @@
 #pragma once
 /// \file MapSession.h
 /// \brief One session against the poles of a kept map: who was found, who was missed. Private to
-/// the library; see MapUpkeep.h.
+/// the library; see MapUpdater.h.
 
 #include <vector>
 
@@ -20,29 +20,29 @@ class Session {
  public:
   /// \throws Error as updateMap().
   Session(const std::vector<SessionScan>& scans, const PoleMapOptions& mapping,
-          const UpkeepOptions& upkeep);
+          const MapUpdateOptions& upkeep);
 
   /// \brief Deals the sightings out to poles, and looks for those that were not found. May be
   /// called again with more poles.
-  void observe(const std::vector<KeptPole>& poles);
+  void observe(const std::vector<LandmarkRecord>& poles);
 
-  const std::vector<PoleSighting>& sightings() const { return m_sightings; }
+  const std::vector<LandmarkObservation>& sightings() const { return m_sightings; }
   const std::vector<SessionPole>& poles() const { return m_poles; }
   /// \brief Sightings that no pole took.
-  std::vector<PoleSighting> loose() const;
+  std::vector<LandmarkObservation> loose() const;
   double firstTime() const { return m_firstTime; }
   double lastTime() const { return m_lastTime; }
   double time(std::uint32_t view) const { return m_scans[view].time; }
 
  private:
   void deal(std::size_t view, const class KdTree2D& tree);
-  void expect(std::size_t view, const KdTree2D& tree, const std::vector<KeptPole>& poles);
+  void expect(std::size_t view, const KdTree2D& tree, const std::vector<LandmarkRecord>& poles);
 
   const std::vector<SessionScan>& m_scans;
   const PoleMapOptions& m_mapping;
-  const UpkeepOptions& m_upkeep;
-  std::vector<double> m_along;             ///< way travelled to each scan, m
-  std::vector<PoleSighting> m_sightings;   ///< scan by scan
+  const MapUpdateOptions& m_upkeep;
+  std::vector<double> m_along;                   ///< way travelled to each scan, m
+  std::vector<LandmarkObservation> m_sightings;  ///< scan by scan
   std::vector<std::size_t> m_firstOfView;  ///< index of its first sighting; one more than scans
   std::vector<std::uint32_t> m_owner;      ///< pole of each sighting, or none
   std::vector<SessionPole> m_poles;

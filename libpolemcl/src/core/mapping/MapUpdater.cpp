@@ -21,7 +21,7 @@ constexpr double kWithoutHistory = 0.9;     ///< existence of a pole of an old m
 template <class Value>
 [[noreturn]] void refuseOption(const char* field, Value value, const char* allowed) {
   std::ostringstream text;
-  text << "[upkeep] " << field << " = " << value << " is not allowed; it must be " << allowed;
+  text << "[map_update] " << field << " = " << value << " is not allowed; it must be " << allowed;
   throw Error(text.str());
 }
 
@@ -29,33 +29,34 @@ Eigen::Vector2d centreOf(const MapPole& pole) {
   return {pole.x, pole.y};
 }
 
-void sortByPlace(std::vector<KeptPole>& poles) {
-  std::stable_sort(poles.begin(), poles.end(), [](const KeptPole& a, const KeptPole& b) {
-    return std::tie(a.pole.x, a.pole.y) < std::tie(b.pole.x, b.pole.y);
-  });
+void sortByPlace(std::vector<LandmarkRecord>& poles) {
+  std::stable_sort(poles.begin(), poles.end(),
+                   [](const LandmarkRecord& a, const LandmarkRecord& b) {
+                     return std::tie(a.pole.x, a.pole.y) < std::tie(b.pole.x, b.pole.y);
+                   });
 }
 
 /// One session's update, step by step.
 class Update {
  public:
-  Update(const KeptMap& map, const std::vector<SessionScan>& scans, const PoleMapOptions& mapping,
-         const UpkeepOptions& options)
+  Update(const LandmarkMap& map, const std::vector<SessionScan>& scans,
+         const PoleMapOptions& mapping, const MapUpdateOptions& options)
       : m_mapping(mapping), m_options(options), m_session(scans, mapping, options) {
     m_poles = map.poles;
     m_known = m_poles.size();
     m_counts.scans = scans.size();
-    for (const SessionScan& scan : scans) m_counts.withoutFreeRange += scan.freeRange.empty();
+    for (const SessionScan& scan : scans) m_counts.withoutFreeRange += scan.visibilityRange.empty();
   }
 
-  KeptMap run();
-  const UpkeepCounts& counts() const { return m_counts; }
+  LandmarkMap run();
+  const MapUpdateCounts& counts() const { return m_counts; }
 
  private:
   void bringForward();
   void addNew();
   void applyEvidence();
   void movePlaces();
-  bool movePlace(KeptPole& kept, const MapPole& seen) const;
+  bool movePlace(LandmarkRecord& kept, const MapPole& seen) const;
   void dropGhosts();
   void dropDoubles();
   bool seenTogether(std::size_t a, std::size_t b) const;
@@ -64,32 +65,32 @@ class Update {
   std::vector<Eigen::Vector2d> places() const;
 
   const PoleMapOptions& m_mapping;
-  const UpkeepOptions& m_options;
+  const MapUpdateOptions& m_options;
   Session m_session;
-  std::vector<KeptPole> m_poles;  ///< those of before, then new ones
+  std::vector<LandmarkRecord> m_poles;  ///< those of before, then new ones
   std::vector<bool> m_gone;
   std::size_t m_known = 0;  ///< of before
-  UpkeepCounts m_counts;
+  MapUpdateCounts m_counts;
 };
 
 /// To the time of the session: nothing stands for ever. All of the map is as of the last session,
 /// of which some pole was seen last.
 void Update::bringForward() {
   double last = 0;
-  for (const KeptPole& kept : m_poles) last = std::max(last, kept.history.lastSeen);
+  for (const LandmarkRecord& kept : m_poles) last = std::max(last, kept.history.lastSeen);
   if (!isDate(last) || !isDate(m_session.firstTime())) return;
-  for (KeptPole& kept : m_poles)
+  for (LandmarkRecord& kept : m_poles)
     kept.history.existence =
         survived(kept.history.existence, m_session.firstTime() - last, m_options.existence);
 }
 
 /// What no kept pole took, merged to new ones.
 void Update::addNew() {
-  const std::vector<PoleSighting> loose = m_session.loose();
-  const auto groups = mergeSightings(loose, {m_mapping.mergeDistance, m_mapping.apartShare});
+  const std::vector<LandmarkObservation> loose = m_session.loose();
+  const auto groups = clusterObservations(loose, {m_mapping.mergeDistance, m_mapping.apartShare});
   for (const auto& group : groups) {
     if (group.size() < 2) continue;  // once is chance
-    KeptPole kept;
+    LandmarkRecord kept;
     kept.pole = fuse(loose, group);
     kept.pole.count = 0;  // its sightings are counted with everybody's
     kept.history.existence = m_options.existence.prior;
@@ -99,7 +100,7 @@ void Update::addNew() {
 
 void Update::applyEvidence() {
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
-    KeptPole& kept = m_poles[i];
+    LandmarkRecord& kept = m_poles[i];
     const SessionPole& today = m_session.poles()[i];
     const ExistenceEvidence& evidence = today.evidence;
     m_counts.expectedOnMap += kept.present && evidence.found() + evidence.missed() > 0;
@@ -115,7 +116,7 @@ void Update::applyEvidence() {
 
 /// The place after a session, with what all its scans share added to its covariance.
 /// \return Whether the pole has been moved.
-bool Update::movePlace(KeptPole& kept, const MapPole& seen) const {
+bool Update::movePlace(LandmarkRecord& kept, const MapPole& seen) const {
   MapPole& pole = kept.pole;
   const double shared = m_options.sessionSigma * m_options.sessionSigma;
   const Eigen::Matrix2d today = seen.covariance + shared * Eigen::Matrix2d::Identity();
@@ -156,7 +157,7 @@ void Update::movePlaces() {
 
 std::vector<Eigen::Vector2d> Update::places() const {
   std::vector<Eigen::Vector2d> places;
-  for (const KeptPole& kept : m_poles) places.push_back(centreOf(kept.pole));
+  for (const LandmarkRecord& kept : m_poles) places.push_back(centreOf(kept.pole));
   return places;
 }
 
@@ -182,7 +183,7 @@ std::set<std::uint32_t> Update::viewsOf(std::size_t pole) const {
   return views;
 }
 
-/// As SightingMerging has it: two that stand in one gate are two poles when scans show both.
+/// As ObservationClustering has it: two that stand in one gate are two poles when scans show both.
 bool Update::seenTogether(std::size_t a, std::size_t b) const {
   const auto first = viewsOf(a), second = viewsOf(b);
   std::size_t both = 0;
@@ -211,7 +212,7 @@ void Update::dropDoubles() {
 /// Who is on the map, who stays beside it, who is forgotten.
 void Update::decidePresence() {
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
-    KeptPole& kept = m_poles[i];
+    LandmarkRecord& kept = m_poles[i];
     const bool was = kept.present;
     const double existence = kept.history.existence;
     const bool seenEnough = kept.pole.count >= static_cast<std::uint32_t>(m_options.minSeen);
@@ -226,7 +227,7 @@ void Update::decidePresence() {
   }
 }
 
-KeptMap Update::run() {
+LandmarkMap Update::run() {
   bringForward();
   m_session.observe(m_poles);
   addNew();
@@ -237,7 +238,7 @@ KeptMap Update::run() {
   dropGhosts();
   dropDoubles();
   decidePresence();
-  KeptMap result;
+  LandmarkMap result;
   for (std::size_t i = 0; i < m_poles.size(); ++i)
     if (!m_gone[i]) result.poles.push_back(m_poles[i]);
   sortByPlace(result.poles);
@@ -246,7 +247,7 @@ KeptMap Update::run() {
 
 }  // namespace
 
-void UpkeepOptions::validate() const {
+void MapUpdateOptions::validate() const {
   existence.validate();
   if (!(std::isfinite(range) && range > 0)) refuseOption("range_m", range, "above 0 m");
   if (minSeen < 1) refuseOption("min_seen", minSeen, "at least 1");
@@ -261,10 +262,10 @@ void UpkeepOptions::validate() const {
   if (!(std::isfinite(ghost) && ghost >= 0)) refuseOption("ghost_m", ghost, "at least 0 m");
 }
 
-KeptMap keptFrom(const std::vector<MapPole>& poles) {
-  KeptMap map;
+LandmarkMap landmarksFrom(const std::vector<MapPole>& poles) {
+  LandmarkMap map;
   for (const MapPole& pole : poles) {
-    KeptPole kept{pole, {}, true};
+    LandmarkRecord kept{pole, {}, true};
     kept.history.seen = pole.count;
     kept.history.existence = kWithoutHistory;
     map.poles.push_back(kept);
@@ -273,11 +274,11 @@ KeptMap keptFrom(const std::vector<MapPole>& poles) {
   return map;
 }
 
-KeptMap withHistory(const std::vector<MapPole>& poles, const std::vector<SessionScan>& scans,
-                    const PoleMapOptions& mapping, const UpkeepOptions& upkeep) {
+LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<SessionScan>& scans,
+                        const PoleMapOptions& mapping, const MapUpdateOptions& upkeep) {
   mapping.validate();
   upkeep.validate();
-  KeptMap map;
+  LandmarkMap map;
   for (const MapPole& pole : poles) map.poles.push_back({pole, {}, true});
   Session session(scans, mapping, upkeep);
   session.observe(map.poles);
@@ -294,20 +295,20 @@ KeptMap withHistory(const std::vector<MapPole>& poles, const std::vector<Session
   return map;
 }
 
-KeptMap updateMap(const KeptMap& map, const std::vector<SessionScan>& scans,
-                  const PoleMapOptions& mapping, const UpkeepOptions& upkeep,
-                  UpkeepCounts* counts) {
+LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& scans,
+                      const PoleMapOptions& mapping, const MapUpdateOptions& upkeep,
+                      MapUpdateCounts* counts) {
   mapping.validate();
   upkeep.validate();
   Update update(map, scans, mapping, upkeep);
-  KeptMap result = update.run();
+  LandmarkMap result = update.run();
   if (counts) *counts = update.counts();
   return result;
 }
 
-std::vector<MapPole> presentPoles(const KeptMap& map) {
+std::vector<MapPole> presentPoles(const LandmarkMap& map) {
   std::vector<MapPole> poles;
-  for (const KeptPole& kept : map.poles)
+  for (const LandmarkRecord& kept : map.poles)
     if (kept.present) poles.push_back(kept.pole);
   return poles;
 }

@@ -15,8 +15,8 @@
 
 namespace polemcl {
 
-/// \brief `[upkeep]` in INI files. Gates and pose errors are those of `[map]`.
-struct UpkeepOptions {
+/// \brief `[map_update]` in INI files. Gates and pose errors are those of `[map]`.
+struct MapUpdateOptions {
   ExistenceOptions existence;
   double range = 20;     ///< poles nearer than this are expected to be found, m (`range_m`)
   int minSeen = 5;       ///< scans that must have found a pole before it enters the map
@@ -35,7 +35,7 @@ struct UpkeepOptions {
 };
 
 /// \brief A pole of a kept map.
-struct KeptPole {
+struct LandmarkRecord {
   MapPole pole;
   PoleHistory history;
   /// On the map; otherwise a candidate: a new one that has not earned its place, or one that faded.
@@ -48,12 +48,12 @@ struct SessionScan {
   Pose2D pose_map_robot;
   std::vector<PoleDetection> poles_robot;
   /// As CObservationPoles carries it. Empty: poles that this scan does not find are not missed.
-  std::vector<float> freeRange;
-  Pose2D pose_robot_sensor;  ///< of the frame of freeRange
+  std::vector<float> visibilityRange;
+  Pose2D pose_robot_sensor;  ///< of the frame of visibilityRange
 };
 
 /// \brief What a session changed.
-struct UpkeepCounts {
+struct MapUpdateCounts {
   std::size_t scans = 0;
   std::size_t withoutFreeRange = 0;  ///< of these: nothing is missed in them
   std::size_t expectedOnMap = 0;     ///< poles on the map before that a scan could see
@@ -66,29 +66,29 @@ struct UpkeepCounts {
 };
 
 /// \brief A map with what is known of its poles, sorted by x then y.
-struct KeptMap {
-  std::vector<KeptPole> poles;
+struct LandmarkMap {
+  std::vector<LandmarkRecord> poles;
 };
 
 /// \brief Poles of a map without a history: they are on the map with existence 0.9, their `count`
 /// stands for the scans that saw them, nothing is known of missed ones.
-KeptMap keptFrom(const std::vector<MapPole>& poles);
+LandmarkMap landmarksFrom(const std::vector<MapPole>& poles);
 
 /// \brief Histories for a map just built from the same scans: places stay as they are, and all of
 /// it stays on the map, whatever the evidence.
-KeptMap withHistory(const std::vector<MapPole>& poles, const std::vector<SessionScan>& scans,
-                    const PoleMapOptions& mapping, const UpkeepOptions& upkeep);
+LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<SessionScan>& scans,
+                        const PoleMapOptions& mapping, const MapUpdateOptions& upkeep);
 
 /// \brief Updates a map by one session. Scans in the order they were driven; the result does not
 /// depend on the order of the detections in a scan.
 /// \param counts If given: what changed.
 /// \throws Error on options out of range, on scans as buildPoleMap(), and on a free range that is
 ///         negative or not finite.
-KeptMap updateMap(const KeptMap& map, const std::vector<SessionScan>& scans,
-                  const PoleMapOptions& mapping, const UpkeepOptions& upkeep,
-                  UpkeepCounts* counts = nullptr);
+LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& scans,
+                      const PoleMapOptions& mapping, const MapUpdateOptions& upkeep,
+                      MapUpdateCounts* counts = nullptr);
 
 /// \brief The poles that are on the map, in its order.
-std::vector<MapPole> presentPoles(const KeptMap& map);
+std::vector<MapPole> presentPoles(const LandmarkMap& map);
 
 }  // namespace polemcl

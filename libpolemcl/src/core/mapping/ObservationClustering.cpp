@@ -15,7 +15,7 @@ using Group = std::vector<std::uint32_t>;
 
 constexpr int s_mostRounds = 10;  ///< dealing and growing settle in two or three
 
-Eigen::Vector2d clusterCentreOf(const PoleSighting& sighting) {
+Eigen::Vector2d clusterCentreOf(const LandmarkObservation& sighting) {
   return {sighting.pole.x, sighting.pole.y};
 }
 
@@ -26,11 +26,11 @@ void dropEmpty(std::vector<Group>& groups) {
 }
 
 /// Indices of the sightings in an order that depends on what they say only.
-Group canonicalOrder(const std::vector<PoleSighting>& sightings) {
+Group canonicalOrder(const std::vector<LandmarkObservation>& sightings) {
   Group order(sightings.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto key = [&](std::uint32_t i) {
-    const PoleSighting& s = sightings[i];
+    const LandmarkObservation& s = sightings[i];
     const Eigen::Matrix2d& c = s.pole.covariance;
     return std::make_tuple(s.pole.x, s.pole.y, s.view, s.pole.confidence, c(0, 0), c(0, 1), c(1, 1),
                            s.pole.radius, s.pole.bottom, s.pole.top);
@@ -43,7 +43,7 @@ Group canonicalOrder(const std::vector<PoleSighting>& sightings) {
 /// The work on sightings in canonical order.
 class Merger {
  public:
-  Merger(std::vector<PoleSighting> sightings, const MergingOptions& options)
+  Merger(std::vector<LandmarkObservation> sightings, const ClusteringOptions& options)
       : m_sightings(std::move(sightings)),
         m_options(options),
         m_tree(points()),
@@ -64,12 +64,13 @@ class Merger {
   std::vector<Eigen::Vector2d> points() const {
     std::vector<Eigen::Vector2d> result;
     result.reserve(m_sightings.size());
-    for (const PoleSighting& sighting : m_sightings) result.push_back(clusterCentreOf(sighting));
+    for (const LandmarkObservation& sighting : m_sightings)
+      result.push_back(clusterCentreOf(sighting));
     return result;
   }
   std::size_t viewCount() const {
     std::size_t count = 0;
-    for (const PoleSighting& sighting : m_sightings)
+    for (const LandmarkObservation& sighting : m_sightings)
       count = std::max<std::size_t>(count, sighting.view + 1);
     return count;
   }
@@ -87,8 +88,8 @@ class Merger {
   void prune();
   void sortGroups();
 
-  std::vector<PoleSighting> m_sightings;
-  MergingOptions m_options;
+  std::vector<LandmarkObservation> m_sightings;
+  ClusteringOptions m_options;
   KdTree2D m_tree;
   std::vector<PointHit> m_views;  ///< scratch: the nearest sighting of each view
   std::vector<PointHit> m_hits;   ///< scratch
@@ -284,10 +285,10 @@ void Merger::sortGroups() {
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> mergeSightings(const std::vector<PoleSighting>& sightings,
-                                                       const MergingOptions& options) {
+std::vector<std::vector<std::uint32_t>> clusterObservations(
+    const std::vector<LandmarkObservation>& sightings, const ClusteringOptions& options) {
   const Group order = canonicalOrder(sightings);
-  std::vector<PoleSighting> ordered;
+  std::vector<LandmarkObservation> ordered;
   ordered.reserve(order.size());
   for (const std::uint32_t i : order) ordered.push_back(sightings[i]);
   std::vector<Group> groups = Merger(std::move(ordered), options).run();

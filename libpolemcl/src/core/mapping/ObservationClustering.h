@@ -12,7 +12,7 @@
 
 namespace polemcl {
 
-struct MergingOptions {
+struct ClusteringOptions {
   double mergeDistance = 0.5;  ///< gate round the centre, m
   double apartShare = 0.25;    ///< see PoleMapOptions
 };
@@ -26,7 +26,7 @@ struct MergingOptions {
 /// group takes (a second one of the same pole in one scan) is left out.
 /// Work grows with the number of sightings times the sightings of a pole. The result does not
 /// depend on the order of the sightings.
-std::vector<std::vector<std::uint32_t>> mergeSightings(const std::vector<PoleSighting>& sightings,
-                                                       const MergingOptions& options);
+std::vector<std::vector<std::uint32_t>> clusterObservations(
+    const std::vector<LandmarkObservation>& sightings, const ClusteringOptions& options);
 
 }  // namespace polemcl

@@ -12,7 +12,7 @@ constexpr double kDay = 86400;      ///< s
 
 [[noreturn]] void refuseExistence(const char* field, double value, const char* allowed) {
   std::ostringstream text;
-  text << "[upkeep] " << field << " = " << value << " is not allowed; it must be " << allowed;
+  text << "[map_update] " << field << " = " << value << " is not allowed; it must be " << allowed;
   throw Error(text.str());
 }
 

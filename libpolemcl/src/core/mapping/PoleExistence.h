@@ -15,7 +15,7 @@
 
 namespace polemcl {
 
-/// \brief The part of `[upkeep]` in INI files that tells what scans say.
+/// \brief The part of `[map_update]` in INI files that tells what scans say.
 struct ExistenceOptions {
   /// Chance that a pole that could be seen is found in a scan (`detection`). What a pole's own
   /// counts say beyond that is used where it is less.

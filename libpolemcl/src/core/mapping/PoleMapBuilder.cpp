@@ -38,16 +38,16 @@ std::vector<View> chooseViews(const PathSections& sections, bool everyScan) {
   return views;
 }
 
-std::vector<PoleSighting> sightingsOf(const std::vector<MappingScan>& scans,
-                                      const std::vector<View>& views,
-                                      const PoleMapOptions& options) {
-  std::vector<PoleSighting> sightings;
+std::vector<LandmarkObservation> sightingsOf(const std::vector<MappingScan>& scans,
+                                             const std::vector<View>& views,
+                                             const PoleMapOptions& options) {
+  std::vector<LandmarkObservation> sightings;
   const PoseTrust trust{options.poseSigma, options.headingSigma};
   for (std::uint32_t view = 0; view < views.size(); ++view) {
     const MappingScan& scan = scans[views[view].scan];
     for (const PoleDetection& pole : scan.poles_robot) {
       if (pole.confidence <= 0 || pole.confidence < options.minConfidence) continue;
-      sightings.push_back(sightingOf(pole, scan.pose_map_robot, view, trust));
+      sightings.push_back(landmarkObservation(pole, scan.pose_map_robot, view, trust));
     }
   }
   return sightings;
@@ -121,11 +121,11 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   const auto split = options.middle == SectionMiddle::passed ? passSections : splitPath;
   const PathSections sections = split(poses, drives, options.sectionLength, used);
   const std::vector<View> views = chooseViews(sections, options.everyScan);
-  const std::vector<PoleSighting> sightings = sightingsOf(scans, views, options);
+  const std::vector<LandmarkObservation> sightings = sightingsOf(scans, views, options);
   const bool boxes = options.merging == MapMerging::boxes;
-  const auto groups = boxes
-                          ? joinOverlappingBoxes(sightings)
-                          : mergeSightings(sightings, {options.mergeDistance, options.apartShare});
+  const auto groups =
+      boxes ? joinOverlappingBoxes(sightings)
+            : clusterObservations(sightings, {options.mergeDistance, options.apartShare});
 
   PoleMapResult result;
   for (const std::vector<std::uint32_t>& group : groups) {

@@ -3,9 +3,9 @@
 /// \brief Step C of the paper: detections at known poses -> poles, with counts.
 ///
 /// The path is split into sections of equal length (PathSections); detections of different scans
-/// are merged by gated distance (SightingMerging) and averaged by their certainty (PoleFusion); a
-/// pole stays if enough sections in a continuous run saw it. The options have the first
-/// implementation's way of each step as well.
+/// are merged by gated distance (ObservationClustering) and averaged by their certainty
+/// (LandmarkFusion); a pole stays if enough sections in a continuous run saw it. The options have
+/// the first implementation's way of each step as well.
 
 #include <vector>
 

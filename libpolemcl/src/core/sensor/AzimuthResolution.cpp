@@ -16,7 +16,8 @@ constexpr double kLeastRho = 3;               // m
 constexpr std::size_t kFewestSteps = 200;     // steps to tell from
 
 /// Azimuths of one scan per beam, ascending.
-std::vector<std::vector<double>> azimuthsByBeam(const PointsView& scan, const BeamEstimate& beams) {
+std::vector<std::vector<double>> azimuthsByBeam(const PointsView& scan,
+                                                const BeamTableEstimate& beams) {
   // Beams of both blocks as slopes from the origin of the first; near enough to tell them apart far
   // away.
   std::vector<std::vector<double>> rows(static_cast<std::size_t>(beams.beams()));
@@ -49,7 +50,7 @@ std::vector<std::vector<double>> azimuthsByBeam(const PointsView& scan, const Be
 
 }  // namespace
 
-int firingSteps(const std::vector<PointsView>& scans, const BeamEstimate& beams) {
+int azimuthResolution(const std::vector<PointsView>& scans, const BeamTableEstimate& beams) {
   std::vector<double> steps;
   for (const PointsView& scan : scans)
     for (const auto& row : azimuthsByBeam(scan, beams))

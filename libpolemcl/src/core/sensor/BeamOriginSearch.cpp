@@ -20,7 +20,7 @@ struct Candidate {
 };
 
 /// The best of evenly spaced values of one part of the origin.
-Candidate sweep(BeamSpectrum& spectrum, const Candidate& start, Part part, double reach,
+Candidate sweep(ElevationHistogram& spectrum, const Candidate& start, Part part, double reach,
                 double step) {
   Candidate best = start;
   const double middle = start.origin.*part;
@@ -36,7 +36,7 @@ Candidate sweep(BeamSpectrum& spectrum, const Candidate& start, Part part, doubl
 
 /// Steps along each part in turn, halving the steps when none helps.
 template <std::size_t N>
-Candidate descend(BeamSpectrum& spectrum, Candidate best, const std::array<Part, N>& parts,
+Candidate descend(ElevationHistogram& spectrum, Candidate best, const std::array<Part, N>& parts,
                   double step) {
   for (int halvings = 0; halvings < 6;) {
     bool better = false;
@@ -61,7 +61,7 @@ struct Split {
 };
 
 /// The place to part the slopes, and an apex for each side, that stand out most together.
-Split searchSplit(BeamSpectrum& spectrum, const BeamOrigin& around) {
+Split searchSplit(ElevationHistogram& spectrum, const BeamOrigin& around) {
   constexpr int kSteps = 30;
   std::vector<std::vector<double>> sums;
   for (int i = -kSteps; i <= kSteps; ++i) {
@@ -79,19 +79,21 @@ Split searchSplit(BeamSpectrum& spectrum, const BeamOrigin& around) {
     const double excess = sums[upper].back() - sums[upper][cell] + sums[lower][cell];
     if (excess <= best.excess) continue;
     best = {excess, around.z + 0.01 * (static_cast<double>(upper) - kSteps),
-            around.z + 0.01 * (static_cast<double>(lower) - kSteps), BeamSpectrum::slopeOf(cell)};
+            around.z + 0.01 * (static_cast<double>(lower) - kSteps),
+            ElevationHistogram::slopeOf(cell)};
   }
   return best;
 }
 
 std::size_t cellAt(double slope, std::size_t cells) {
   std::size_t cell = 0;
-  while (cell + 1 < cells && BeamSpectrum::slopeOf(cell) < slope) ++cell;
+  while (cell + 1 < cells && ElevationHistogram::slopeOf(cell) < slope) ++cell;
   return cell;
 }
 
 /// The apex of one side of the split to a millimetre.
-double refine(BeamSpectrum& spectrum, const BeamOrigin& around, const Split& split, bool upper) {
+double refine(ElevationHistogram& spectrum, const BeamOrigin& around, const Split& split,
+              bool upper) {
   const double start = upper ? split.upperZ : split.lowerZ;
   double best = start, most = -1;
   for (int i = -10; i <= 10; ++i) {
@@ -109,7 +111,7 @@ double refine(BeamSpectrum& spectrum, const BeamOrigin& around, const Split& spl
 }
 
 /// Where the blocks part, seen from half-way between their apices: the middle of the best places.
-double partingSlope(BeamSpectrum& spectrum, const BlockOrigins& blocks) {
+double partingSlope(ElevationHistogram& spectrum, const BlockOrigins& blocks) {
   BeamOrigin middle = blocks.upper, lower = blocks.upper;
   middle.z = 0.5 * (blocks.upper.z + blocks.lowerZ);
   lower.z = blocks.lowerZ;
@@ -124,7 +126,7 @@ double partingSlope(BeamSpectrum& spectrum, const BlockOrigins& blocks) {
       first = std::min(first, cell);
       last = cell;
     }
-  return 0.5 * (BeamSpectrum::slopeOf(first) + BeamSpectrum::slopeOf(last));
+  return 0.5 * (ElevationHistogram::slopeOf(first) + ElevationHistogram::slopeOf(last));
 }
 
 /// What one place of the sensor explains, with one block of beams or, if that is clearly better,
@@ -134,7 +136,7 @@ struct Explanation {
   double contrast = 0;
 };
 
-Explanation explain(BeamSpectrum& spectrum, const BeamOrigin& origin) {
+Explanation explain(ElevationHistogram& spectrum, const BeamOrigin& origin) {
   const double points = static_cast<double>(spectrum.size());
   Explanation found;
   found.blocks.upper = origin;
@@ -154,7 +156,7 @@ Explanation explain(BeamSpectrum& spectrum, const BeamOrigin& origin) {
 
 }  // namespace
 
-BlockOrigins searchOrigins(BeamSpectrum& spectrum) {
+BlockOrigins searchOrigins(ElevationHistogram& spectrum) {
   const auto z = &BeamOrigin::z, x = &BeamOrigin::x, y = &BeamOrigin::y, slide = &BeamOrigin::slide;
   Candidate own;
   own.contrast = spectrum.contrast(own.origin);

@@ -16,6 +16,6 @@ struct BlockOrigins {
 
 /// \brief Searches heights of ±2.5 m, then places of ±2 m, the slide of motion-corrected clouds,
 /// and two blocks, keeping only what makes the beams clearly sharper.
-BlockOrigins searchOrigins(BeamSpectrum& spectrum);
+BlockOrigins searchOrigins(ElevationHistogram& spectrum);
 
 }  // namespace polemcl

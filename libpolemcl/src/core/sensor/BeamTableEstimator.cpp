@@ -177,7 +177,7 @@ std::vector<double> peaksOf(const Histogram& returns) {
 
 /// How far returns lie from their beams.
 void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& blocks,
-                      BeamEstimate& estimate) {
+                      BeamTableEstimate& estimate) {
   std::vector<double> all = estimate.elevations();
   std::reverse(all.begin(), all.end());
   std::vector<float> deviations;
@@ -200,7 +200,7 @@ void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& 
   estimate.sharpness = static_cast<double>(near) / static_cast<double>(deviations.size());
 }
 
-[[noreturn]] void refuseEstimate(const BeamEstimate& estimate) {
+[[noreturn]] void refuseEstimate(const BeamTableEstimate& estimate) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(0)
        << "no beams: the returns do not lie on cones about the z axis of their frame; of the best "
@@ -213,11 +213,11 @@ void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& 
 
 }  // namespace
 
-int BeamEstimate::beams() const {
+int BeamTableEstimate::beams() const {
   return static_cast<int>(elevations().size());
 }
 
-std::vector<double> BeamEstimate::elevations() const {
+std::vector<double> BeamTableEstimate::elevations() const {
   std::vector<double> all;
   for (const BeamBlock& block : blocks)
     all.insert(all.end(), block.elevations.begin(), block.elevations.end());
@@ -225,15 +225,15 @@ std::vector<double> BeamEstimate::elevations() const {
   return all;
 }
 
-BeamEstimate findBeams(const std::vector<PointsView>& scans) {
+BeamTableEstimate estimateBeamTable(const std::vector<PointsView>& scans) {
   const std::vector<BeamPoint> points = usablePoints(scans);
-  BeamSpectrum spectrum(sampleOf(points));
+  ElevationHistogram spectrum(sampleOf(points));
   if (spectrum.size() < kFewestReturns)
     throw Error("only " + std::to_string(spectrum.size()) +
                 " valid points farther than 3 m: at least " + std::to_string(kFewestReturns) +
                 " are needed to find the beams");
   const BlockOrigins blocks = searchOrigins(spectrum);
-  BeamEstimate estimate;
+  BeamTableEstimate estimate;
   estimate.origin = blocks.upper;
   estimate.points = points.size();
   estimate.blocks.push_back({blocks.upper.z, peaksOf(histogram(points, blocks, false))});

@@ -26,8 +26,8 @@ struct BeamOrigin {
   double slide = 0;
 };
 
-/// \brief What findBeams() found.
-struct BeamEstimate {
+/// \brief What estimateBeamTable() found.
+struct BeamTableEstimate {
   BeamOrigin origin;              ///< z: of the upper block, or the only one
   std::vector<BeamBlock> blocks;  ///< one or two, the upper one first; apex includes origin.z
   double spread = 0;              ///< median deviation of a return from its beam, rad
@@ -46,6 +46,6 @@ struct BeamEstimate {
 /// \throws Error when there are too few points, or no beams in them (clouds that were merged,
 /// thinned
 ///         by voxels, or tilted).
-BeamEstimate findBeams(const std::vector<PointsView>& scans);
+BeamTableEstimate estimateBeamTable(const std::vector<PointsView>& scans);
 
 }  // namespace polemcl

@@ -27,7 +27,7 @@ BeamCoordinates beamCoordinates(const BeamPoint& point, const BeamOrigin& origin
   return {std::sqrt(x * x + y * y), point.z - origin.z};
 }
 
-void BeamSpectrum::fill(const BeamOrigin& origin) {
+void ElevationHistogram::fill(const BeamOrigin& origin) {
   m_counts.assign(kSlopeCells, 0.f);
   for (const BeamPoint& point : m_points) {
     const std::size_t cell = cellOf(beamCoordinates(point, origin));
@@ -40,22 +40,22 @@ void BeamSpectrum::fill(const BeamOrigin& origin) {
   for (std::size_t i = 0; i < kSlopeCells; ++i) m_sums[i + 1] = m_sums[i] + m_smooth[i];
 }
 
-double BeamSpectrum::mean(std::size_t cell) const {
+double ElevationHistogram::mean(std::size_t cell) const {
   const std::size_t from = cell > kAround ? cell - kAround : 0;
   const std::size_t to = std::min(kSlopeCells, cell + kAround + 1);
   return (m_sums[to] - m_sums[from]) / static_cast<double>(to - from);
 }
 
 /// Half the sum of deviations from a mean is what stands out above it.
-double BeamSpectrum::contrast(const BeamOrigin& origin) {
+double ElevationHistogram::contrast(const BeamOrigin& origin) {
   fill(origin);
   double sum = 0;
   for (std::size_t i = 0; i < kSlopeCells; ++i) sum += 0.5 * std::abs(m_smooth[i] - mean(i));
   return m_sums[kSlopeCells] > 0 ? sum / m_sums[kSlopeCells] : 0;
 }
 
-std::vector<double> BeamSpectrum::cumulative(const BeamOrigin& origin,
-                                             const BeamOrigin& reference) {
+std::vector<double> ElevationHistogram::cumulative(const BeamOrigin& origin,
+                                                   const BeamOrigin& reference) {
   fill(origin);
   std::vector<double> share(kSlopeCells, 0);  // of a return that stands out
   for (std::size_t i = 0; i < kSlopeCells; ++i)
@@ -70,7 +70,7 @@ std::vector<double> BeamSpectrum::cumulative(const BeamOrigin& origin,
   return sums;
 }
 
-double BeamSpectrum::slopeOf(std::size_t cell) {
+double ElevationHistogram::slopeOf(std::size_t cell) {
   return -kSteepest + kSlopeCell * static_cast<double>(cell);
 }
 

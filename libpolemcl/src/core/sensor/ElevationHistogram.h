@@ -16,9 +16,9 @@ struct BeamPoint {
 
 /// \brief Histogram of slopes z / rho and its contrast: the share of returns that stands out
 /// against the running mean of their surroundings. Keeps its buffers.
-class BeamSpectrum {
+class ElevationHistogram {
  public:
-  explicit BeamSpectrum(std::vector<BeamPoint> points) : m_points(std::move(points)) {}
+  explicit ElevationHistogram(std::vector<BeamPoint> points) : m_points(std::move(points)) {}
 
   /// \brief Contrast in [0, 1]; the greater, the better the origin.
   double contrast(const BeamOrigin& origin);

@@ -46,7 +46,7 @@ double offsetFromBeam(const SensorModel& model, int row, double rho, double z) {
 }
 
 /// Rows that hold beams of the sensor, each one alone, as a share of all that should.
-double shareAlone(const SensorModel& model, const BeamEstimate& beams) {
+double shareAlone(const SensorModel& model, const BeamTableEstimate& beams) {
   std::vector<int> owners(static_cast<std::size_t>(model.rows()), 0);
   int first = model.rows(), last = -1;
   for (const BeamBlock& block : beams.blocks)
@@ -136,10 +136,10 @@ BeamAgreement measureAgreement(const PointsView& points, const SensorModel& mode
   return result;
 }
 
-SensorCheck::SensorCheck(const SensorOptions& options, bool beams)
+SensorConfigCheck::SensorConfigCheck(const SensorOptions& options, bool beams)
     : m_options(options), m_model(options), m_beams(beams) {}
 
-std::string SensorCheck::contradiction(const PointsView& points) const {
+std::string SensorConfigCheck::contradiction(const PointsView& points) const {
   const BeamAgreement agreement =
       measureAgreement(points, m_model, m_options.minRange, m_options.maxRange);
   if (agreement.points < kFewestPoints) return {};
@@ -153,16 +153,17 @@ std::string SensorCheck::contradiction(const PointsView& points) const {
   return inspect(points, agreement);
 }
 
-std::string SensorCheck::inspect(const PointsView& points, const BeamAgreement& agreement) const {
+std::string SensorConfigCheck::inspect(const PointsView& points,
+                                       const BeamAgreement& agreement) const {
   std::ostringstream text;
   text << "the cloud contradicts [sensor] model = "
        << modelName(m_options.model, m_options.upsideDown) << ": " << percent(agreement.outOfView)
        << " of its points lie outside the view, " << percent(agreement.mixedRows)
        << " of the rows hold points between beams, " << percent(agreement.emptyRows)
        << " are empty; ";
-  SensorInspection inspection;
+  SensorIdentification inspection;
   try {
-    inspection = inspectSensor({points});
+    inspection = identifySensor({points});
   } catch (const Error&) {
     if (agreement.mixedCells < 0.5 && agreement.outOfView < 0.5) return {};
     return text.str() + "no beams of any sensor are found in it" + kWhatToDo;

@@ -27,11 +27,11 @@ BeamAgreement measureAgreement(const PointsView& points, const SensorModel& mode
                                double maxRange);
 
 /// \brief Compares scans with the configuration: milliseconds for a scan that agrees; one that
-/// looks odd is inspected (inspectSensor()), which takes half a second and decides.
-class SensorCheck {
+/// looks odd is inspected (identifySensor()), which takes half a second and decides.
+class SensorConfigCheck {
  public:
-  /// \param beams false: only whether the cloud is upright (method = paper knows no beams).
-  SensorCheck(const SensorOptions& options, bool beams);
+  /// \param beams false: only whether the cloud is upright (method = range_image knows no beams).
+  SensorConfigCheck(const SensorOptions& options, bool beams);
 
   /// \brief What in the cloud contradicts the configuration, in one line that says what to do;
   /// empty when nothing does, or there are too few points to tell. \param points In the lidar

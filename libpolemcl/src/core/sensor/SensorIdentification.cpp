@@ -11,7 +11,7 @@ namespace polemcl {
 namespace {
 
 /// A cloud on its head, turned about x.
-BeamEstimate turnedOver(BeamEstimate beams) {
+BeamTableEstimate turnedOver(BeamTableEstimate beams) {
   beams.origin.y = -beams.origin.y;
   // Time runs the other way round.
   beams.origin.slide = -beams.origin.slide;
@@ -68,7 +68,7 @@ void matchBlock(const std::vector<double>& found, const std::vector<double>& wan
   }
 }
 
-PresetFit fitPreset(const std::string& name, bool upsideDown, const BeamEstimate& beams) {
+PresetFit fitPreset(const std::string& name, bool upsideDown, const BeamTableEstimate& beams) {
   SensorOptions options;
   options.model = name;
   options.upsideDown = upsideDown;
@@ -99,7 +99,7 @@ bool symmetrical(const SensorModel& model) {
   return std::abs(model.beam(0).slope + model.beam(model.rows() - 1).slope) < 0.01;
 }
 
-std::vector<PresetFit> fitPresets(const BeamEstimate& beams) {
+std::vector<PresetFit> fitPresets(const BeamTableEstimate& beams) {
   std::vector<PresetFit> fits;
   SensorOptions options;
   for (const std::string& name : SensorModel::modelNames()) {
@@ -122,7 +122,7 @@ double rounded(double value, double unit) {
   return std::round(value / unit) * unit;
 }
 
-void measureRanges(const std::vector<PointsView>& scans, SensorInspection& result) {
+void measureRanges(const std::vector<PointsView>& scans, SensorIdentification& result) {
   std::vector<float> ranges;
   std::vector<char> degrees(360, 0);
   for (const PointsView& scan : scans)
@@ -149,7 +149,7 @@ void measureRanges(const std::vector<PointsView>& scans, SensorInspection& resul
   result.farthest = rank(0.99);
 }
 
-void findGround(const std::vector<PointsView>& scans, SensorInspection& result) {
+void findGround(const std::vector<PointsView>& scans, SensorIdentification& result) {
   const BeamOrigin& origin = result.beams.origin;
   const Eigen::Vector3d sensor(origin.x, origin.y, origin.z);
   std::vector<GroundPlane> grounds;
@@ -172,11 +172,11 @@ void findGround(const std::vector<PointsView>& scans, SensorInspection& result) 
 
 }  // namespace
 
-const PresetFit* SensorInspection::preset() const {
+const PresetFit* SensorIdentification::preset() const {
   return !presets.empty() && presets.front().fits ? &presets.front() : nullptr;
 }
 
-SensorOptions SensorInspection::options() const {
+SensorOptions SensorIdentification::options() const {
   SensorOptions options;
   const auto significant = [](double length) {
     return std::abs(length) < 0.01 ? 0 : rounded(length, 0.001);
@@ -209,12 +209,12 @@ SensorOptions SensorInspection::options() const {
   return options;
 }
 
-SensorInspection inspectSensor(const std::vector<PointsView>& scans) {
-  SensorInspection result;
+SensorIdentification identifySensor(const std::vector<PointsView>& scans) {
+  SensorIdentification result;
   result.scans = scans.size();
-  result.beams = findBeams(scans);
+  result.beams = estimateBeamTable(scans);
   measureRanges(scans, result);
-  result.columns = firingSteps(scans, result.beams);
+  result.columns = azimuthResolution(scans, result.beams);
   findGround(scans, result);
   if (result.onItsHead) {
     result.beams = turnedOver(result.beams);

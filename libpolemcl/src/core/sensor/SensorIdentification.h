@@ -29,10 +29,10 @@ struct PresetFit {
 
 /// \brief What the scans say about their sensor. Everything is as seen with the ground below: when
 /// `onItsHead`, the clouds were turned by half a turn about x first.
-struct SensorInspection {
+struct SensorIdentification {
   std::size_t scans = 0, points = 0, invalid = 0;
   bool onItsHead = false;  ///< the ground is on the side of +z of the clouds
-  BeamEstimate beams;
+  BeamTableEstimate beams;
   int columns = 0;                    ///< firing steps in a full turn; 0: could not be told
   double covered = 0;                 ///< share of the full turn with returns
   double nearest = 0, farthest = 0;   ///< horizontal range of the returns, m (1 % to 99 %)
@@ -47,7 +47,7 @@ struct SensorInspection {
 
 /// \brief Inspects a few scans of one sensor.
 /// \param scans In the sensor's own axes; order of points is of no consequence.
-/// \throws Error as findBeams().
-SensorInspection inspectSensor(const std::vector<PointsView>& scans);
+/// \throws Error as estimateBeamTable().
+SensorIdentification identifySensor(const std::vector<PointsView>& scans);
 
 }  // namespace polemcl

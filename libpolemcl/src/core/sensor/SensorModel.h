@@ -24,7 +24,7 @@ struct Beam {
 /// \brief From a point's slope to its row: cells of equal slope for each of at most two blocks of
 /// lasers. Block 0 is the upper one; a point belongs to block 1 when z < rho · splitSlope +
 /// splitOffset.
-struct RowLookup {
+struct RingLookup {
   float splitSlope = -1e9f, splitOffset = 0;
   float offset[2] = {0, 0};       ///< height of the block's apex, m
   float minSlope[2] = {0, 0};     ///< of its first cell
@@ -70,7 +70,7 @@ class SensorModel {
     if (!(cell >= 0.f && cell < m_lookup.cells[block])) return -1;
     return m_lookup.row[m_lookup.base[block] + static_cast<int>(cell)];
   }
-  const RowLookup& lookup() const { return m_lookup; }
+  const RingLookup& lookup() const { return m_lookup; }
 
   /// \brief Names `model =` accepts, for error messages.
   static std::vector<std::string> modelNames();
@@ -80,7 +80,7 @@ class SensorModel {
 
   std::vector<Beam> m_beams;
   std::vector<double> m_spacingAbove;
-  RowLookup m_lookup;
+  RingLookup m_lookup;
   int m_columns = 0;
   double m_columnAngle = 0;
 };

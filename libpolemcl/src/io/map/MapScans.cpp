@@ -30,8 +30,8 @@ void put(ByteWriter& writer, const SessionScan& scan, bool used) {
   put(writer, scan.pose_robot_sensor);
   writer.put(static_cast<std::uint32_t>(scan.poles_robot.size()));
   for (const PoleDetection& pole : scan.poles_robot) put(writer, pole);
-  writer.put(static_cast<std::uint32_t>(scan.freeRange.size()));
-  for (const float range : scan.freeRange) writer.put(range);
+  writer.put(static_cast<std::uint32_t>(scan.visibilityRange.size()));
+  for (const float range : scan.visibilityRange) writer.put(range);
 }
 
 std::string deflated(const std::string& bytes) {
@@ -80,8 +80,8 @@ bool getScan(ByteReader& reader, const std::string& where, SessionScan& scan) {
   const auto poles = countOf<std::uint32_t>(reader, poleBytes, where);
   scan.poles_robot.reserve(poles);
   for (std::uint32_t i = 0; i < poles; ++i) scan.poles_robot.push_back(getPole(reader));
-  scan.freeRange.resize(countOf<std::uint32_t>(reader, 4, where));
-  for (float& range : scan.freeRange) range = reader.get<float>();
+  scan.visibilityRange.resize(countOf<std::uint32_t>(reader, 4, where));
+  for (float& range : scan.visibilityRange) range = reader.get<float>();
   return true;
 }
 

@@ -106,7 +106,7 @@ std::string payloadOf(const PoleMapData& data, const AddedSessions* scans) {
   }
   candidates.put(recordBytes + historyBytes);
   candidates.put(static_cast<std::uint64_t>(data.candidates.size()));
-  for (const KeptPole& kept : data.candidates) {
+  for (const LandmarkRecord& kept : data.candidates) {
     putPole(candidates, kept.pole);
     putHistory(candidates, kept.history);
   }
@@ -151,7 +151,8 @@ PoleHistory readHistory(ByteReader& record) {
 }
 
 /// The records of a chunk. \return Whether they have histories.
-bool readRecords(ByteReader& chunk, const std::string& where, std::vector<KeptPole>& records) {
+bool readRecords(ByteReader& chunk, const std::string& where,
+                 std::vector<LandmarkRecord>& records) {
   const auto size = chunk.get<std::uint32_t>();
   const auto count = chunk.get<std::uint64_t>();
   if (size < recordBytes || count > chunk.remaining() / size) {
@@ -162,7 +163,7 @@ bool readRecords(ByteReader& chunk, const std::string& where, std::vector<KeptPo
   records.reserve(count);
   for (std::uint64_t i = 0; i < count; ++i) {
     ByteReader record(chunk.getRaw(size), where);
-    KeptPole& kept = records.emplace_back();
+    LandmarkRecord& kept = records.emplace_back();
     kept.pole = readRecord(record);
     if (withHistory) kept.history = readHistory(record);
   }
@@ -170,9 +171,9 @@ bool readRecords(ByteReader& chunk, const std::string& where, std::vector<KeptPo
 }
 
 void readPoles(ByteReader& chunk, const std::string& where, PoleMapData& data) {
-  std::vector<KeptPole> records;
+  std::vector<LandmarkRecord> records;
   const bool withHistory = readRecords(chunk, where, records);
-  for (const KeptPole& record : records) {
+  for (const LandmarkRecord& record : records) {
     data.poles.push_back(record.pole);
     if (withHistory) data.histories.push_back(record.history);
   }
@@ -207,19 +208,19 @@ std::string_view checkedPayload(std::string_view bytes, const std::string& where
 
 }  // namespace
 
-KeptMap keptMap(const PoleMapData& data) {
-  KeptMap map;
-  if (data.histories.empty()) map = keptFrom(data.poles);
+LandmarkMap landmarkMap(const PoleMapData& data) {
+  LandmarkMap map;
+  if (data.histories.empty()) map = landmarksFrom(data.poles);
   for (std::size_t i = 0; i < data.histories.size(); ++i)
     map.poles.push_back({data.poles[i], data.histories[i], true});
   map.poles.insert(map.poles.end(), data.candidates.begin(), data.candidates.end());
   return map;
 }
 
-PoleMapData mapData(const KeptMap& map, std::map<std::string, std::string> info) {
+PoleMapData mapData(const LandmarkMap& map, std::map<std::string, std::string> info) {
   PoleMapData data;
   data.info = std::move(info);
-  for (const KeptPole& kept : map.poles) {
+  for (const LandmarkRecord& kept : map.poles) {
     if (!kept.present) {
       data.candidates.push_back(kept);
       continue;

@@ -33,14 +33,14 @@ struct PoleMapData {
   std::map<std::string, std::string> info;  ///< how it was made: free keys and values, UTF-8
   std::vector<PoleHistory> histories = {};  ///< of each of `poles`; empty: not known
   /// Not on the map: new ones that have not earned their place, faded ones. `present` is false.
-  std::vector<KeptPole> candidates = {};
+  std::vector<LandmarkRecord> candidates = {};
 };
 
-/// \brief The poles of the file with their histories, for updateMap(); as keptFrom() where the file
-/// has none.
-KeptMap keptMap(const PoleMapData& data);
+/// \brief The poles of the file with their histories, for updateMap(); as landmarksFrom() where the
+/// file has none.
+LandmarkMap landmarkMap(const PoleMapData& data);
 /// \brief The other way round.
-PoleMapData mapData(const KeptMap& map, std::map<std::string, std::string> info);
+PoleMapData mapData(const LandmarkMap& map, std::map<std::string, std::string> info);
 
 /// \brief Writes atomically; same data, same bytes.
 /// \param scans If given: kept in the file, so that sessions can be added.

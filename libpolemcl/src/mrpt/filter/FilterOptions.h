@@ -37,18 +37,19 @@ struct FilterOptions {
   PoseEstimator estimate = PoseEstimator::mean;
   double bestShare = 0.1;                                      ///< in (0, 1]; only for `best_share`
   EstimateTime estimateTime = EstimateTime::beforeResampling;  ///< `estimate_time`
-  /// Where the particles are spread wide (PoleLocalization::wideMetres), the estimate is the mean
-  /// of the heaviest of the places they are in, instead of the above. Used by PoleLocalization.
+  /// Where the particles are spread wide (LocalizationPipeline::wideMetres), the estimate is the
+  /// mean of the heaviest of the places they are in, instead of the above. Used by
+  /// LocalizationPipeline.
   bool heaviestPlace = true;
   /// After resampling, particles are moved by a Gaussian whose standard deviations are this share
   /// of those of the whole set (a regularized filter: Musso, Oudjane, Le Gland 2001), at most
-  /// PoleLocalizer::maxJitterMetres and maxJitterRadians. 0: copies stay where they are.
+  /// PoleParticleFilter::maxJitterMetres and maxJitterRadians. 0: copies stay where they are.
   double regularization = 0.2;
   /// A scan that would leave an effective share below this is used in steps: first with a wider
   /// likelihood (2 to 32 times the sigma) that leaves this share, resampling, then a narrower
   /// one, down to the likelihood itself, or to the narrowest that does not fall between the
-  /// particles (PoleLocalizer::narrowestDense). It is what finds the way from the start disc, where
-  /// few particles are near the truth. 0: at once.
+  /// particles (PoleParticleFilter::narrowestDense). It is what finds the way from the start disc,
+  /// where few particles are near the truth. 0: at once.
   double tempering = 0.2;
   /// Noise added to each motion, standard deviations in x and y (m) and heading (rad): odometry
   /// whose error grows with the motion knows (nearly) no error across the driving direction.

@@ -110,8 +110,9 @@ void bind(Binder& b, TrackingOptions& o) {
   b.check(o);
 }
 
-void bind(Binder& b, MotionCheckOptions& o) {
-  b.section("motion_check", "Do the poles contradict the odometry? Then their motion replaces it");
+void bind(Binder& b, OdometryMonitorOptions& o) {
+  b.section("odometry_monitor",
+            "Do the poles contradict the odometry? Then their motion replaces it");
   b.flag("enabled", o.enabled, "false: the odometry is always believed");
   b.number("window_s", o.window, positive, "s", "longest time over which scans are compared");
   b.number("scale", o.scale, {0, 1, false, true}, "",

@@ -28,9 +28,9 @@ PoseHypothesis toFilter(const GlobalHypothesis& place) {
 }
 
 bool isWide(const Eigen::Matrix3d& covariance) {
-  const double square = PoleLocalization::wideMetres * PoleLocalization::wideMetres;
+  const double square = LocalizationPipeline::wideMetres * LocalizationPipeline::wideMetres;
   return covariance(0, 0) > square || covariance(1, 1) > square ||
-         covariance(2, 2) > PoleLocalization::wideRadians * PoleLocalization::wideRadians;
+         covariance(2, 2) > LocalizationPipeline::wideRadians * LocalizationPipeline::wideRadians;
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void LocalizationOptions::validate() const {
   global.validate();
   health.validate();
   search.validate();
-  motionCheck.validate();
+  odometryMonitor.validate();
 }
 
 LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
@@ -71,18 +71,18 @@ LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
   search = std::make_shared<GlobalLocalizer>(poles->poles(), options);
 }
 
-PoleLocalization::PoleLocalization(LocalizationMap map, const LocalizationOptions& options,
-                                   std::uint32_t seed)
+LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const LocalizationOptions& options,
+                                           std::uint32_t seed)
     : m_map(std::move(map)),
       m_options(checked(options)),
       m_filter(m_map.poles, options.filter, seed),
       m_submap(options.submap),
       m_tracks(options.submap),
       m_localMaps(options.tracking.localMaps),
-      m_motionCheck(options.motionCheck),
+      m_odometryMonitor(options.odometryMonitor),
       m_monitor(options.health) {}
 
-void PoleLocalization::start(const StartOptions& start) {
+void LocalizationPipeline::start(const StartOptions& start) {
   if (start.pose) {
     const auto nearest = m_map.poles->index().nearest(start.pose->x, start.pose->y, INFINITY);
     const double distance = nearest ? nearest->distance - start.radius : INFINITY;
@@ -95,16 +95,16 @@ void PoleLocalization::start(const StartOptions& start) {
     }
   }
   m_filter.start(start);
-  startAnywhere();
+  initializeGlobally();
   m_hasPose = true;
   m_monitor.begin();
 }
 
-void PoleLocalization::startAnywhere() {
+void LocalizationPipeline::initializeGlobally() {
   m_submap.clear();
   m_tracks.clear();
   m_localMaps.clear();
-  m_motionCheck.clear();
+  m_odometryMonitor.clear();
   m_monitor.reset();
   m_search = {};
   m_searches = 0;
@@ -114,9 +114,10 @@ void PoleLocalization::startAnywhere() {
   m_hasPose = m_stepped = m_mistrusted = false;
 }
 
-void PoleLocalization::checkFrame(const PoleFrame& frame) const {
+void LocalizationPipeline::checkFrame(const PoleFrame& frame) const {
   if (!m_started)
-    throw Error("the localization has not been started: call start() or startAnywhere() first");
+    throw Error(
+        "the localization has not been started: call start() or initializeGlobally() first");
   const std::string when = std::to_string(frame.time) + " s";
   if (!std::isfinite(frame.time) || (m_stepped && frame.time <= m_time))
     throw Error("time does not move on: a scan at " + when + " comes after one at " +
@@ -131,7 +132,7 @@ void PoleLocalization::checkFrame(const PoleFrame& frame) const {
   }
 }
 
-LocalizationUpdate PoleLocalization::step(const PoleFrame& seen) {
+LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
   checkFrame(seen);
   LocalizationUpdate update;
   update.time = seen.time;
@@ -155,7 +156,7 @@ LocalizationUpdate PoleLocalization::step(const PoleFrame& seen) {
   return update;
 }
 
-std::vector<PoleDetection> PoleLocalization::polesForFilter(
+std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
     const Pose2D& motion, const Eigen::Matrix3d& covariance,
     const std::vector<PoleDetection>& poles_robot) {
   const TrackingOptions& tracking = m_options.tracking;
@@ -168,17 +169,18 @@ std::vector<PoleDetection> PoleLocalization::polesForFilter(
 }
 
 /// The frame, its motion replaced where the poles contradict it.
-PoleFrame PoleLocalization::checkedMotion(const PoleFrame& frame, LocalizationUpdate& update) {
+PoleFrame LocalizationPipeline::checkedMotion(const PoleFrame& frame, LocalizationUpdate& update) {
   const io::PlanarMotion odometry = m_stepped ? *frame.motion : io::PlanarMotion();
-  const CheckedMotion checked =
-      m_motionCheck.add(frame.time, odometry.mean, odometry.covariance, frame.poles_robot);
+  const MonitoredMotion checked =
+      m_odometryMonitor.add(frame.time, odometry.mean, odometry.covariance, frame.poles_robot);
   update.motion = checked.verdict;
   PoleFrame result = frame;
   if (checked.replaced) result.motion = io::PlanarMotion{checked.motion, checked.covariance};
   return result;
 }
 
-void PoleLocalization::track(const PoleFrame& frame, double metres, LocalizationUpdate& update) {
+void LocalizationPipeline::track(const PoleFrame& frame, double metres,
+                                 LocalizationUpdate& update) {
   PoseWithCovariance estimate = m_filter.step(m_tracked);
   double modeShare = 1;
   if (isWide(estimate.covariance)) {
@@ -199,12 +201,12 @@ void PoleLocalization::track(const PoleFrame& frame, double metres, Localization
   input.effectiveParticles =
       m_filter.report().effectiveShare * static_cast<double>(m_filter.report().particles);
   input.modeShare = modeShare;
-  input.odometryContradicted = update.motion == MotionVerdict::contradicted;
+  input.odometryContradicted = update.motion == OdometryVerdict::contradicted;
   m_monitor.update(input);
 }
 
 /// After a jump the submap holds poles from before it, which fit the old place.
-void PoleLocalization::doubtSubmap() {
+void LocalizationPipeline::doubtSubmap() {
   const bool mismatch = m_hasPose && m_monitor.health().reason == HealthReason::mismatch;
   if (mismatch && !m_mistrusted) {
     m_submap.clear();
@@ -214,7 +216,7 @@ void PoleLocalization::doubtSubmap() {
   m_mistrusted = mismatch;
 }
 
-bool PoleLocalization::searchIsDue() const {
+bool LocalizationPipeline::searchIsDue() const {
   if (m_hasPose) {
     if (!m_options.search.recover) return false;
     const Health& health = m_monitor.health();
@@ -227,7 +229,7 @@ bool PoleLocalization::searchIsDue() const {
          m_time - m_searchTime >= m_options.search.everySeconds;
 }
 
-void PoleLocalization::search(const PoleFrame& frame, LocalizationUpdate& update) {
+void LocalizationPipeline::search(const PoleFrame& frame, LocalizationUpdate& update) {
   m_searchedAt = m_submap.driven();
   m_searchTime = m_time;
   ++m_searches;
@@ -247,7 +249,7 @@ void PoleLocalization::search(const PoleFrame& frame, LocalizationUpdate& update
   if (wasElsewhere) m_monitor.reportElsewhere();
 }
 
-bool PoleLocalization::agrees(const GlobalHypothesis& place) const {
+bool LocalizationPipeline::agrees(const GlobalHypothesis& place) const {
   const Pose2D& found = place.pose_map_robot;
   const Pose2D& estimate = m_estimate.mean;
   return std::hypot(found.x - estimate.x, found.y - estimate.y) <= sameMetres &&
@@ -255,7 +257,7 @@ bool PoleLocalization::agrees(const GlobalHypothesis& place) const {
 }
 
 /// A filter that has settled beside the truth, on poles that happened to fit, is too sure to leave.
-bool PoleLocalization::fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const {
+bool LocalizationPipeline::fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const {
   const auto sum = [](const std::vector<PoleMatch>& matches) {
     double matched = 0;
     for (const PoleMatch& match : matches) matched += match.matched ? match.confidence : 0;
@@ -265,13 +267,14 @@ bool PoleLocalization::fitsBetter(const GlobalHypothesis& place, const PoleFrame
   return sum(match(frame, pose)) > sum(m_matches) + betterPoles;
 }
 
-std::vector<PoleMatch> PoleLocalization::match(const PoleFrame& frame,
-                                               const PoseWithCovariance& pose) const {
-  return matchPoles(frame.poles_robot, pose, m_map.poles->index(),
-                    {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
+std::vector<PoleMatch> LocalizationPipeline::match(const PoleFrame& frame,
+                                                   const PoseWithCovariance& pose) const {
+  return associate(frame.poles_robot, pose, m_map.poles->index(),
+                   {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
 }
 
-void PoleLocalization::adopt(const PoleFrame& frame, bool resolved, LocalizationUpdate& update) {
+void LocalizationPipeline::adopt(const PoleFrame& frame, bool resolved,
+                                 LocalizationUpdate& update) {
   std::vector<PoseHypothesis> places;
   for (const GlobalHypothesis& place : m_search.hypotheses) {
     places.push_back(toFilter(place));

@@ -55,7 +55,7 @@ struct LocalizationOptions {
   GlobalOptions global;
   HealthOptions health;
   SearchOptions search;
-  MotionCheckOptions motionCheck;
+  OdometryMonitorOptions odometryMonitor;
   void validate() const;  ///< \throws Error
 };
 
@@ -68,7 +68,7 @@ struct LocalizationUpdate {
   /// Of the filter, all zero without a pose; its `poles` are those it was given.
   StepReport step;
   bool relocalized = false;  ///< the global search put the filter here in this step
-  MotionVerdict motion = MotionVerdict::unknown;  ///< of the poles about the odometry
+  OdometryVerdict motion = OdometryVerdict::unknown;  ///< of the poles about the odometry
 };
 
 /// \brief The map as the chain needs it, prepared once and shared by many runs.
@@ -80,19 +80,19 @@ struct LocalizationMap {
 };
 
 /// \brief Localizes one drive. Deterministic by its seed; objects may run in parallel on one map.
-class PoleLocalization {
+class LocalizationPipeline {
  public:
   /// \throws Error on options out of range.
-  PoleLocalization(LocalizationMap map, const LocalizationOptions& options, std::uint32_t seed);
+  LocalizationPipeline(LocalizationMap map, const LocalizationOptions& options, std::uint32_t seed);
 
-  /// \brief Starts round a pose. \throws Error as PoleLocalizer::start(), and when the disc lies
-  /// farther than `maxStartDistance` from every pole of the map.
+  /// \brief Starts round a pose. \throws Error as PoleParticleFilter::start(), and when the disc
+  /// lies farther than `maxStartDistance` from every pole of the map.
   void start(const StartOptions& start);
   /// \brief Starts without any idea of the pose: the global search finds it on the way.
-  void startAnywhere();
+  void initializeGlobally();
 
   /// \brief One scan more. Of the first frame the motion is not used.
-  /// \throws Error as PoleLocalizer::step(); nothing has changed then.
+  /// \throws Error as PoleParticleFilter::step(); nothing has changed then.
   LocalizationUpdate step(const PoleFrame& frame);
 
   static constexpr double maxStartDistance = 1000;  ///< m
@@ -106,7 +106,7 @@ class PoleLocalization {
   /// \name For those who draw it
   /// @{
   bool hasPose() const { return m_hasPose; }
-  const PoleLocalizer& filter() const { return m_filter; }  ///< particles only with a pose
+  const PoleParticleFilter& filter() const { return m_filter; }  ///< particles only with a pose
   const LocalSubmap& submap() const { return m_submap; }
   const GlobalResult& lastSearch() const { return m_search; }  ///< empty before the first
   std::size_t searches() const { return m_searches; }          ///< since the start
@@ -131,11 +131,11 @@ class PoleLocalization {
 
   LocalizationMap m_map;
   LocalizationOptions m_options;
-  PoleLocalizer m_filter;
+  PoleParticleFilter m_filter;
   LocalSubmap m_submap;   ///< for the search
   LocalSubmap m_tracks;   ///< for the filter
   LocalMaps m_localMaps;  ///< for the filter, of Cadence::section
-  MotionCheck m_motionCheck;
+  OdometryMonitor m_odometryMonitor;
   HealthMonitor m_monitor;
   PoleFrame m_tracked;  ///< this frame as the filter gets it
   GlobalResult m_search;

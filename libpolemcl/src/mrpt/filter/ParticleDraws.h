@@ -24,7 +24,7 @@ class GeneratorLoan {
 };
 
 /// \brief Draws from N(0, covariance): the root of the covariance as MRPT's CPoseRandomSampler has
-/// it, normal deviates of our own (core/BatchMath.h) from 32-bit numbers of MRPT's generator in
+/// it, normal deviates of our own (core/SimdMath.h) from 32-bit numbers of MRPT's generator in
 /// this thread.
 class PoseNoise {
  public:
@@ -44,7 +44,7 @@ std::vector<std::size_t> drawIndices(Resampling method, const std::vector<double
                                      std::size_t count);
 
 /// \brief Particles that each hypothesis gets of so many: the rounded share of its weight.
-/// \throws Error as PoleLocalizer::start() does about hypotheses.
+/// \throws Error as PoleParticleFilter::start() does about hypotheses.
 std::vector<std::size_t> particlesPerHypothesis(const std::vector<PoseHypothesis>& hypotheses,
                                                 std::size_t count);
 

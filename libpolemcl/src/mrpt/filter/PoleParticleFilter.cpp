@@ -55,7 +55,7 @@ std::vector<size_t> thinned(const std::vector<size_t>& indices, size_t count) {
 KldOptions binsOf(double sigma) {
   KldOptions bins;
   bins.bin = 2 * sigma;
-  bins.binYaw = bins.bin / PoleLocalizer::leverMetres;
+  bins.binYaw = bins.bin / PoleParticleFilter::leverMetres;
   return bins;
 }
 
@@ -91,8 +91,8 @@ std::shared_ptr<const mrpt::poses::CPosePDFGaussian> gaussianMotion(
 
 }  // namespace
 
-PoleLocalizer::PoleLocalizer(std::shared_ptr<const CPoleMap> map,
-                             const FilterOptions& filterOptions, std::uint32_t seed)
+PoleParticleFilter::PoleParticleFilter(std::shared_ptr<const CPoleMap> map,
+                                       const FilterOptions& filterOptions, std::uint32_t seed)
     : m_map(std::move(map)), m_options(filterOptions), m_generator(seed) {
   m_options.validate();
   if (!m_map || m_map->poles().empty())
@@ -100,7 +100,7 @@ PoleLocalizer::PoleLocalizer(std::shared_ptr<const CPoleMap> map,
   m_filter.m_options = toMrpt(m_options);
 }
 
-void PoleLocalizer::start(const StartOptions& start) {
+void PoleParticleFilter::start(const StartOptions& start) {
   start.validate();
   if (!start.pose)
     throw Error("no start pose: set position_m and yaw_deg in [start], or give the truth");
@@ -119,7 +119,7 @@ void PoleLocalizer::start(const StartOptions& start) {
   }
 }
 
-void PoleLocalizer::start(const std::vector<PoseHypothesis>& hypotheses, int particles) {
+void PoleParticleFilter::start(const std::vector<PoseHypothesis>& hypotheses, int particles) {
   particlesPerHypothesis(hypotheses, 1);  // refuses bad ones before anything changes
   if (particles < 1 || particles > s_mostParticles)
     throw Error("the filter cannot start with " + std::to_string(particles) + " particles; 1 to " +
@@ -136,7 +136,7 @@ void PoleLocalizer::start(const std::vector<PoseHypothesis>& hypotheses, int par
   }
 }
 
-void PoleLocalizer::begin(int particles) {
+void PoleParticleFilter::begin(int particles) {
   const bool thinsOut = m_options.resampleBelow > 0;
   const int least = m_options.adaptive ? m_options.kld.minParticles : m_options.particles;
   m_particles.resize(thinsOut ? std::max(particles, least) : least);
@@ -145,7 +145,7 @@ void PoleLocalizer::begin(int particles) {
   m_stepped = false;
 }
 
-PoseWithCovariance PoleLocalizer::step(const PoleFrame& frame) {
+PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame) {
   if (!m_started) throw Error("the filter has no particles yet: call start() first");
   const std::string when = std::to_string(frame.time) + " s";
   if (!std::isfinite(frame.time) || (m_stepped && frame.time <= m_time))
@@ -179,7 +179,7 @@ PoseWithCovariance PoleLocalizer::step(const PoleFrame& frame) {
   return m_estimate;
 }
 
-void PoleLocalizer::prediction_and_update_pfStandardProposal(
+void PoleParticleFilter::prediction_and_update_pfStandardProposal(
     const mrpt::obs::CActionCollection* action, const mrpt::obs::CSensoryFrame* observation,
     const CParticleFilter::TParticleFilterOptions& mrptOptions) {
   if (action) predict(*action, mrptOptions);
@@ -196,14 +196,14 @@ void PoleLocalizer::prediction_and_update_pfStandardProposal(
   m_estimate = estimate(weights);
 }
 
-PoseWithCovariance PoleLocalizer::estimate(const std::vector<double>& weights) const {
+PoseWithCovariance PoleParticleFilter::estimate(const std::vector<double>& weights) const {
   return m_options.estimate == PoseEstimator::bestShare
              ? bestShareMean(particles(), weights, m_options.bestShare)
              : weightedMean(particles(), weights);
 }
 
-void PoleLocalizer::predict(const mrpt::obs::CActionCollection& action,
-                            const CParticleFilter::TParticleFilterOptions& mrptOptions) {
+void PoleParticleFilter::predict(const mrpt::obs::CActionCollection& action,
+                                 const CParticleFilter::TParticleFilterOptions& mrptOptions) {
   const auto motion = gaussianMotion(action);
   if (!motion)  // MRPT knows many more kinds
     return CMonteCarloLocalization2D::prediction_and_update_pfStandardProposal(&action, nullptr,
@@ -225,8 +225,8 @@ void PoleLocalizer::predict(const mrpt::obs::CActionCollection& action,
   }
 }
 
-void PoleLocalizer::update(const CObservationPoles& scan,
-                           const CParticleFilter::TParticleFilterOptions& mrptOptions) {
+void PoleParticleFilter::update(const CObservationPoles& scan,
+                                const CParticleFilter::TParticleFilterOptions& mrptOptions) {
   m_report.poles += scan.poles.size();
   std::vector<std::vector<double>> values;  // by widening
   const auto evaluate = [&](const std::vector<double>& widenings) {
@@ -271,7 +271,7 @@ void PoleLocalizer::update(const CObservationPoles& scan,
   }
 }
 
-std::vector<double> PoleLocalizer::temperingWidenings() const {
+std::vector<double> PoleParticleFilter::temperingWidenings() const {
   const LikelihoodOptions& likelihood = m_map->likelihoodOptions;
   // Wider than half the gate a bell is cut off at the gate, and draws towards chance matches.
   const double widestSigma = std::max(8 * likelihood.sigma, 0.5 * likelihood.gate);
@@ -283,7 +283,7 @@ std::vector<double> PoleLocalizer::temperingWidenings() const {
   return widenings;
 }
 
-std::optional<std::size_t> PoleLocalizer::narrowestDense(
+std::optional<std::size_t> PoleParticleFilter::narrowestDense(
     const std::vector<double>& widenings) const {
   const std::vector<Pose2D> poses = particles();
   const double sigma = m_map->likelihoodOptions.sigma;
@@ -293,22 +293,22 @@ std::optional<std::size_t> PoleLocalizer::narrowestDense(
   return k < widenings.size() ? std::optional(k) : std::nullopt;
 }
 
-void PoleLocalizer::updateRemembering(const CObservationPoles& scan,
-                                      const CParticleFilter::TParticleFilterOptions& options) {
+void PoleParticleFilter::updateRemembering(const CObservationPoles& scan,
+                                           const CParticleFilter::TParticleFilterOptions& filterOptions) {
   try {
-    update(scan, options);
+    update(scan, filterOptions);
   } catch (...) {
     m_failure = std::current_exception();
     throw;
   }
 }
 
-void PoleLocalizer::addToLogWeights(const std::vector<double>& values) {
+void PoleParticleFilter::addToLogWeights(const std::vector<double>& values) {
   std::size_t i = 0;
   for (auto& particle : m_particles) particle.log_w += values[i++];
 }
 
-bool PoleLocalizer::leavesEnough(const std::vector<double>& logLikelihoods) const {
+bool PoleParticleFilter::leavesEnough(const std::vector<double>& logLikelihoods) const {
   std::vector<double> weights = logWeights();
   for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += logLikelihoods[i];
   // Measured by what the filter keeps: after the start there may be many more.
@@ -316,11 +316,11 @@ bool PoleLocalizer::leavesEnough(const std::vector<double>& logLikelihoods) cons
   return effectiveShare(weights) * weights.size() >= m_options.tempering * kept;
 }
 
-double PoleLocalizer::ESS() const {
+double PoleParticleFilter::ESS() const {
   return effectiveShare(logWeights());
 }
 
-double PoleLocalizer::normalizeWeights(double* out_max_log_w) {
+double PoleParticleFilter::normalizeWeights(double* out_max_log_w) {
   double least = INFINITY, greatest = -INFINITY;
   for (const auto& particle : m_particles) {
     least = std::min(least, particle.log_w);
@@ -331,7 +331,7 @@ double PoleLocalizer::normalizeWeights(double* out_max_log_w) {
   return std::exp(greatest - least);
 }
 
-void PoleLocalizer::performSubstitution(const std::vector<size_t>& indices) {
+void PoleParticleFilter::performSubstitution(const std::vector<size_t>& indices) {
   const std::vector<Pose2D> before = particles();
   std::vector<size_t> chosen =
       m_options.adaptive ? drawAdaptively(before) : thinned(indices, m_options.particles);
@@ -349,7 +349,7 @@ void PoleLocalizer::performSubstitution(const std::vector<size_t>& indices) {
   m_report.resampled = true;
 }
 
-std::vector<size_t> PoleLocalizer::drawAdaptively(const std::vector<Pose2D>& poses) const {
+std::vector<size_t> PoleParticleFilter::drawAdaptively(const std::vector<Pose2D>& poses) const {
   const std::vector<double> weights = logWeights();
   std::vector<size_t> chosen;
   std::size_t wanted = m_options.kld.minParticles;
@@ -362,7 +362,7 @@ std::vector<size_t> PoleLocalizer::drawAdaptively(const std::vector<Pose2D>& pos
   return chosen;
 }
 
-void PoleLocalizer::jitter(const Eigen::Matrix3d& spread) {
+void PoleParticleFilter::jitter(const Eigen::Matrix3d& spread) {
   const double metres = std::sqrt(std::max(spread(0, 0), spread(1, 1)));
   const double radians = std::sqrt(spread(2, 2));
   double scale = m_options.regularization;
@@ -378,7 +378,7 @@ void PoleLocalizer::jitter(const Eigen::Matrix3d& spread) {
   }
 }
 
-std::vector<Pose2D> PoleLocalizer::particles() const {
+std::vector<Pose2D> PoleParticleFilter::particles() const {
   std::vector<Pose2D> result;
   result.reserve(m_particles.size());
   for (const auto& particle : m_particles)
@@ -386,7 +386,7 @@ std::vector<Pose2D> PoleLocalizer::particles() const {
   return result;
 }
 
-std::vector<double> PoleLocalizer::logWeights() const {
+std::vector<double> PoleParticleFilter::logWeights() const {
   std::vector<double> result;
   getWeights(result);
   return result;

@@ -47,7 +47,7 @@ struct PoseHypothesis {
 /// is replaced by one that belongs to the object. (Seeding MRPT's own does not suffice: it keeps
 /// half of the last pair of normal deviates.) So the same seed gives the same results in any thread
 /// and beside any other user. Objects may run in parallel and share one map.
-class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
+class PoleParticleFilter : public mrpt::slam::CMonteCarloLocalization2D {
  public:
   /// Limits of regularization: so that places far apart are not smeared into each other.
   static constexpr double maxJitterMetres = 0.25, maxJitterRadians = 0.035;
@@ -59,8 +59,8 @@ class PoleLocalizer : public mrpt::slam::CMonteCarloLocalization2D {
   static constexpr double leverMetres = 20;
 
   /// \throws Error when the map has no poles or an option is out of range.
-  PoleLocalizer(std::shared_ptr<const CPoleMap> map, const FilterOptions& filterOptions,
-                std::uint32_t seed);
+  PoleParticleFilter(std::shared_ptr<const CPoleMap> map, const FilterOptions& filterOptions,
+                     std::uint32_t seed);
 
   /// \brief Draws the particles round a pose: positions uniform in the area of the disc, headings
   /// uniform.

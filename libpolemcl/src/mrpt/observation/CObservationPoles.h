@@ -23,9 +23,9 @@ class CObservationPoles : public mrpt::obs::CObservation, public mrpt::opengl::V
  public:
   std::vector<PoleDetection> poles;  ///< planar sensor frame; may be empty: a scan without poles
   mrpt::poses::CPose3D sensorPose;   ///< the sensor in the robot frame
-  /// Free range per direction, m (see core/FreeRange.h); 0 = unknown. Element i of n looks to
+  /// Free range per direction, m (see core/VisibilityRange.h); 0 = unknown. Element i of n looks to
   /// azimuth -pi + (i + 0.5)·2pi/n in the planar sensor frame. Empty: not known for any direction.
-  std::vector<float> freeRange;
+  std::vector<float> visibilityRange;
   std::uint32_t points = 0;  ///< valid points of the scan; 0: none, or not known
 
   /// \brief The poles with centre and covariance moved to the robot frame by the planar part of

@@ -22,8 +22,8 @@ struct LidarFrame {
   bool planarIsLidar = true;
 };
 
-/// \brief The lidar frame of clouds with this sensor pose, as PoleExtraction describes it.
-/// \param level Level with the robot whatever the sensor pose is.
+/// \brief The lidar frame of clouds with this sensor pose, as ObservationPoleExtractor describes
+/// it. \param level Level with the robot whatever the sensor pose is.
 LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor,
                       bool level = false);
 

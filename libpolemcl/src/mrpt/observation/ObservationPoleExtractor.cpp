@@ -23,7 +23,7 @@ Eigen::Vector2f upright(const LidarFrame& f) {
 }
 
 /// Height in the lidar frame at which a detection's centre was found; where it stands, heights
-/// above the ground are those along the robot's z. The native method takes the height of the
+/// above the ground are those along the robot's z. The scan-line method takes the height of the
 /// sensor, or the nearest that it saw of the pole; the paper's the mean of all points.
 double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double ground,
                       const PoleDetection& pole) {
@@ -32,8 +32,8 @@ double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double groun
     return (aboveGround + ground - up.x() * pole.x - up.y() * pole.y) / up.z();
   };
   const double low = inLidar(pole.bottom), high = inLidar(pole.top);
-  return method == ExtractionMethod::paper ? 0.5 * (low + high)
-                                           : std::min(std::max(0.0, low), std::max(low, high));
+  return method == ExtractionMethod::rangeImage ? 0.5 * (low + high)
+                                                : std::min(std::max(0.0, low), std::max(low, high));
 }
 
 /// Moves a detection from the lidar frame to the planar sensor frame.
@@ -50,15 +50,15 @@ void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
 
 /// The free ranges of the lidar frame, seen from the planar sensor frame: of the sectors that one
 /// reaches into the nearer, and an origin aside of the lidar's costs its distance.
-std::vector<float> planarFreeRange(const LidarFrame& f, const std::vector<float>& freeRange) {
-  if (f.planarIsLidar || freeRange.empty()) return freeRange;
-  const std::size_t n = freeRange.size();
+std::vector<float> planarFreeRange(const LidarFrame& f, const std::vector<float>& visibilityRange) {
+  if (f.planarIsLidar || visibilityRange.empty()) return visibilityRange;
+  const std::size_t n = visibilityRange.size();
   const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>().transpose();
   const double aside = f.t_planar_lidar.head<2>().norm();
   const auto from = [&](double part) {
     const double azimuth = part * 2 * M_PI / static_cast<double>(n) - M_PI;
     const Eigen::Vector2d d = turn * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
-    return freeRange[freeRangeSector(std::atan2(d.y(), d.x()), n)];
+    return visibilityRange[visibilityRangeSector(std::atan2(d.y(), d.x()), n)];
   };
   std::vector<float> planar(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -84,20 +84,20 @@ void readingPoints(const mrpt::obs::CObservation& observation, const Work& work)
 
 }  // namespace
 
-struct PoleExtraction::Impl {
-  explicit Impl(const PoleExtractionOptions& o)
+struct ObservationPoleExtractor::Impl {
+  explicit Impl(const ObservationPoleExtractorOptions& o)
       : sensor(o.sensor),
         method(o.extraction.method),
-        native(o.extraction.native),
-        fromCloud(o.extraction.method == ExtractionMethod::paper &&
-                  o.extraction.paper.projectFrom == "cloud"),
+        scanLine(o.extraction.scanLine),
+        fromCloud(o.extraction.method == ExtractionMethod::rangeImage &&
+                  o.extraction.rangeImage.projectFrom == "cloud"),
         points(o.sensor),
         extractor(o.sensor, o.extraction),
-        check(o.sensor, o.extraction.method == ExtractionMethod::native) {}
+        check(o.sensor, o.extraction.method == ExtractionMethod::scanLine) {}
 
   SensorOptions sensor;
   ExtractionMethod method;
-  NativeOptions native;
+  ScanLineOptions scanLine;
   bool fromCloud;  ///< the range image is seen from the origin of the clouds
   ObservationPoints points;
   PoleExtractor extractor;
@@ -105,7 +105,7 @@ struct PoleExtraction::Impl {
   PinholeCamera camera;
   ExtractionReport report;
   MovedPoints moved;
-  SensorCheck check;
+  SensorConfigCheck check;
   int checksLeft = 3;  ///< scans to compare with the configuration
 
   void compare(const mrpt::obs::CObservation& observation, const PointsView& cloud,
@@ -113,12 +113,12 @@ struct PoleExtraction::Impl {
   LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
   PoleExtractor& extractorFor(const LidarFrame& frames);
   /// The image of the last points read is taken as such: the paper's range image is a sphere.
-  bool pinhole() const { return points.camera() && method == ExtractionMethod::native; }
+  bool pinhole() const { return points.camera() && method == ExtractionMethod::scanLine; }
 };
 
 /// Frame for the points last read. A depth image's points are levelled, as its rows are planes in
 /// whatever frame; its optical centre is the cloud's origin.
-LidarFrame PoleExtraction::Impl::frameOf(const mrpt::poses::CPose3D& sensorPose) const {
+LidarFrame ObservationPoleExtractor::Impl::frameOf(const mrpt::poses::CPose3D& sensorPose) const {
   if (!pinhole() && !fromCloud) return lidarFrame(sensorPose, sensor);
   SensorOptions own = sensor;
   own.originX = own.originY = own.originZ = 0;
@@ -126,22 +126,23 @@ LidarFrame PoleExtraction::Impl::frameOf(const mrpt::poses::CPose3D& sensorPose)
 }
 
 /// Extractor for the points last read.
-PoleExtractor& PoleExtraction::Impl::extractorFor(const LidarFrame& frames) {
+PoleExtractor& ObservationPoleExtractor::Impl::extractorFor(const LidarFrame& frames) {
   if (!pinhole()) return extractor;
   PinholeCamera seen = *points.camera();
   seen.R_lidar_camera = frames.R_lidar_cloud;
   if (!cameraExtractor || !(seen == camera)) {
-    cameraExtractor.emplace(seen, sensor, native);
+    cameraExtractor.emplace(seen, sensor, scanLine);
     camera = seen;
   }
   return *cameraExtractor;
 }
 
-void PoleExtraction::Impl::compare(const mrpt::obs::CObservation& observation,
-                                   const PointsView& cloud,
-                                   const mrpt::poses::CPose3D& sensorPose) {
+void ObservationPoleExtractor::Impl::compare(const mrpt::obs::CObservation& observation,
+                                             const PointsView& cloud,
+                                             const mrpt::poses::CPose3D& sensorPose) {
   const bool image = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation);
-  if (!sensor.checkBeams || checksLeft <= 0 || image || cloud.size < SensorCheck::kFewestPoints)
+  if (!sensor.checkBeams || checksLeft <= 0 || image ||
+      cloud.size < SensorConfigCheck::kFewestPoints)
     return;
   --checksLeft;
   const std::string contradiction =
@@ -149,17 +150,19 @@ void PoleExtraction::Impl::compare(const mrpt::obs::CObservation& observation,
   if (!contradiction.empty()) throw Error(contradiction);
 }
 
-PoleExtraction::PoleExtraction(const PoleExtractionOptions& options)
+ObservationPoleExtractor::ObservationPoleExtractor(const ObservationPoleExtractorOptions& options)
     : m_impl(std::make_unique<Impl>(options)) {}
-PoleExtraction::~PoleExtraction() = default;
-PoleExtraction::PoleExtraction(PoleExtraction&&) noexcept = default;
-PoleExtraction& PoleExtraction::operator=(PoleExtraction&&) noexcept = default;
+ObservationPoleExtractor::~ObservationPoleExtractor() = default;
+ObservationPoleExtractor::ObservationPoleExtractor(ObservationPoleExtractor&&) noexcept = default;
+ObservationPoleExtractor& ObservationPoleExtractor::operator=(ObservationPoleExtractor&&) noexcept =
+    default;
 
-bool PoleExtraction::canProcess(const mrpt::obs::CObservation& observation) {
+bool ObservationPoleExtractor::canProcess(const mrpt::obs::CObservation& observation) {
   return ObservationPoints::canRead(observation);
 }
 
-CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& observation) {
+CObservationPoles::Ptr ObservationPoleExtractor::process(
+    const mrpt::obs::CObservation& observation) {
   auto result = std::make_shared<CObservationPoles>();
   result->timestamp = observation.timestamp;
   result->sensorLabel = observation.sensorLabel;
@@ -175,7 +178,7 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
       PoleExtractor& extractor = m_impl->extractorFor(frames);
       result->poles = extractor.extract(points, upright(frames));
       m_impl->report = extractor.report();
-      result->freeRange = planarFreeRange(frames, extractor.freeRange());
+      result->visibilityRange = planarFreeRange(frames, extractor.visibilityRange());
       for (auto& pole : result->poles)
         toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
     }
@@ -186,7 +189,7 @@ CObservationPoles::Ptr PoleExtraction::process(const mrpt::obs::CObservation& ob
   return result;
 }
 
-io::Cloud PoleExtraction::lidarPoints(const mrpt::obs::CObservation& observation) {
+io::Cloud ObservationPoleExtractor::lidarPoints(const mrpt::obs::CObservation& observation) {
   mrpt::poses::CPose3D sensorPose;
   observation.getSensorPose(sensorPose);
   io::Cloud cloud;
@@ -203,11 +206,11 @@ io::Cloud PoleExtraction::lidarPoints(const mrpt::obs::CObservation& observation
   return cloud;
 }
 
-void PoleExtraction::checkNext(bool compare) {
+void ObservationPoleExtractor::checkNext(bool compare) {
   m_impl->checksLeft = compare ? 1 : 0;
 }
 
-const ExtractionReport& PoleExtraction::report() const {
+const ExtractionReport& ObservationPoleExtractor::report() const {
   return m_impl->report;
 }
 

@@ -12,7 +12,7 @@
 
 namespace polemcl {
 
-struct PoleExtractionOptions {
+struct ObservationPoleExtractorOptions {
   SensorOptions sensor;
   ExtractionOptions extraction;
 };
@@ -36,13 +36,13 @@ struct PoleExtractionOptions {
 /// the optical centre (`origin` is not used). Without an image, its cloud, as a LiDAR's | |
 /// CObservationRotatingScan | range image, elevations from
 /// `[sensor]`: refused unless its rows equal the sensor's beams |
-class PoleExtraction {
+class ObservationPoleExtractor {
  public:
   /// \throws Error when an option is out of range.
-  explicit PoleExtraction(const PoleExtractionOptions& options);
-  ~PoleExtraction();
-  PoleExtraction(PoleExtraction&&) noexcept;
-  PoleExtraction& operator=(PoleExtraction&&) noexcept;
+  explicit ObservationPoleExtractor(const ObservationPoleExtractorOptions& options);
+  ~ObservationPoleExtractor();
+  ObservationPoleExtractor(ObservationPoleExtractor&&) noexcept;
+  ObservationPoleExtractor& operator=(ObservationPoleExtractor&&) noexcept;
 
   /// \brief True for the classes of the table above.
   static bool canProcess(const mrpt::obs::CObservation& observation);
@@ -52,9 +52,9 @@ class PoleExtraction {
   /// that cannot be read, on a rotating scan
   ///         whose elevations are not known, on a depth image without usable intrinsics.
   ///
-  /// The first three scans with enough points are compared with the configuration (SensorCheck);
-  /// \throws Error when one contradicts it, unless `SensorOptions::checkBeams` is off. Depth images
-  /// are not compared.
+  /// The first three scans with enough points are compared with the configuration
+  /// (SensorConfigCheck); \throws Error when one contradicts it, unless `SensorOptions::checkBeams`
+  /// is off. Depth images are not compared.
   CObservationPoles::Ptr process(const mrpt::obs::CObservation& observation);
   /// \brief Whether the next process() compares, instead of counting to three: for those who share
   /// the scans of one rawlog among several objects.

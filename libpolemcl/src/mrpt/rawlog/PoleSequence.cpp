@@ -34,7 +34,7 @@ class Stream {
       : m_path(path),
         m_pace(options.pace),
         m_source(path, options.motion, options.allowTruncated),
-        m_extractions([options] { return PoleExtraction(options.extraction); }) {
+        m_extractions([options] { return ObservationPoleExtractor(options.extraction); }) {
     m_extractions.local();  // refuses bad options here, whatever the rawlog holds
   }
 
@@ -47,7 +47,7 @@ class Stream {
   std::string m_path;
   std::function<ScanClock::time_point(double)> m_pace;
   ScanSource m_source;
-  tbb::enumerable_thread_specific<PoleExtraction> m_extractions;
+  tbb::enumerable_thread_specific<ObservationPoleExtractor> m_extractions;
   SequenceCounts m_counts;
   bool m_ended = false;
 };
@@ -87,7 +87,7 @@ void Stream::extract(Task& task) {
   }
   const auto begin = ScanClock::now();
   try {
-    PoleExtraction& extraction = m_extractions.local();
+    ObservationPoleExtractor& extraction = m_extractions.local();
     // By index, so that the threads have no say in it.
     extraction.checkNext(task.scan.index < 3);
     result.observation = extraction.process(*observation);
@@ -158,7 +158,7 @@ PoleFrame frameOf(const PoleScan& scan) {
           scan.motion,
           scan.observation->polesInRobotFrame(),
           scan.points,
-          scan.observation->freeRange,
+          scan.observation->visibilityRange,
           scan.observation->planarSensorPose()};
 }
 

@@ -20,7 +20,7 @@ namespace polemcl {
 using ScanClock = std::chrono::steady_clock;
 
 struct SequenceOptions {
-  PoleExtractionOptions extraction;
+  ObservationPoleExtractorOptions extraction;
   MotionOptions motion;
   bool allowTruncated = false;
   int threads = 0;  ///< extracting, at most one per core; 0: that many. The result is the same
@@ -70,11 +70,11 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// \brief Streams a rawlog: reads in order, extracts on several threads, hands out in order. At
 /// most a few scans per thread are in memory.
 ///
-/// Scans are the observations that PoleExtraction can process, and CObservationPoles; all of the
-/// class and sensor label that come first (of a frame that holds both, the poles). External files
-/// with relative names are looked for in `<rawlog>_Images` if there is one, else beside the rawlog
-/// (MRPT keeps one such folder for the whole program). Motions: the action before the frame (for
-/// `emOdometry` the stored reading; its covariance is the Gaussian model's if it has one, else
+/// Scans are the observations that ObservationPoleExtractor can process, and CObservationPoles; all
+/// of the class and sensor label that come first (of a frame that holds both, the poles). External
+/// files with relative names are looked for in `<rawlog>_Images` if there is one, else beside the
+/// rawlog (MRPT keeps one such folder for the whole program). Motions: the action before the frame
+/// (for `emOdometry` the stored reading; its covariance is the Gaussian model's if it has one, else
 /// `[motion]`'s), several actions composed; else CObservationOdometry, interpolated at the time of
 /// the scan (held for 0.5 s before the first and after the last reading), covariance from
 /// `[motion]`.
@@ -83,8 +83,8 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///
 /// An error ends the stream in its place: the scans before it have been handed out.
 /// \param consume Called in order, from one thread at a time.
-/// \throws Error as RawlogReader and PoleExtraction do, naming file and scan; and what consume
-/// throws.
+/// \throws Error as RawlogReader and ObservationPoleExtractor do, naming file and scan; and what
+/// consume throws.
 SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
                            const std::function<void(const PoleScan&)>& consume);
 
@@ -93,9 +93,9 @@ struct PoleFrame {
   double time = 0;                         ///< s
   std::optional<io::PlanarMotion> motion;  ///< as in PoleScan
   std::vector<PoleDetection> poles_robot;
-  std::size_t points = 0;             ///< valid points of the scan; 0: none, or not known
-  std::vector<float> freeRange = {};  ///< as CObservationPoles carries it; maybe empty
-  Pose2D pose_robot_sensor = {};      ///< of the frame of freeRange
+  std::size_t points = 0;                   ///< valid points of the scan; 0: none, or not known
+  std::vector<float> visibilityRange = {};  ///< as CObservationPoles carries it; maybe empty
+  Pose2D pose_robot_sensor = {};            ///< of the frame of visibilityRange
 };
 
 /// \brief What map and filter need of a scan. \param scan Of streamPoles().

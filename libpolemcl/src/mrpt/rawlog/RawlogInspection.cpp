@@ -47,7 +47,7 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
 }
 
 /// The options of a sensor that is known in its own axes, for clouds with this sensor pose.
-SensorOptions mounted(const SensorInspection& sensor, const mrpt::poses::CPose3D& pose) {
+SensorOptions mounted(const SensorIdentification& sensor, const mrpt::poses::CPose3D& pose) {
   SensorOptions options = sensor.options();
   const Eigen::Matrix3d R_robot_lidar = pose.getRotationMatrix().asEigen() *
                                         lidarFrame(pose, SensorOptions()).R_lidar_cloud.transpose();
@@ -70,7 +70,8 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   ScanSource source(path, MotionOptions(), allowTruncated);
   const auto scans = spreadScans(source, result.scans);
   if (scans.empty()) throw Error(path + ": there is no scan in it");
-  PoleExtraction reader{PoleExtractionOptions()};  // without an origin: from that of the clouds
+  ObservationPoleExtractor reader{
+      ObservationPoleExtractorOptions()};  // without an origin: from that of the clouds
   std::vector<io::Cloud> clouds;
   std::vector<PointsView> views;
   for (const auto& scan : scans) {
@@ -88,7 +89,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
                  (first.sensorLabel.empty() ? "" : " " + first.sensorLabel);
   first.getSensorPose(result.sensorPose);
   try {
-    result.sensor = inspectSensor(views);
+    result.sensor = identifySensor(views);
   } catch (const Error& error) {
     throw Error(path + ": " + error.what());
   }

@@ -67,7 +67,7 @@ void requireUsable(const io::PlanarMotion& motion) {
 
 bool isScan(const CObservation& observation) {
   return dynamic_cast<const CObservationPoles*>(&observation) ||
-         PoleExtraction::canProcess(observation);
+         ObservationPoleExtractor::canProcess(observation);
 }
 
 std::string sensorOf(const CObservation& observation) {

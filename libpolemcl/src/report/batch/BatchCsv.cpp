@@ -36,7 +36,7 @@ std::string place(const BatchResults& results, const SessionResult& result) {
 void writeRun(std::ostream& out, const BatchRun& run, double lostBound) {
   out << ',' << run.run << ',' << run.seed << ',' << name(stateOf(run, lostBound)) << ','
       << field(run.failure);
-  for (const FigureName& name : figureNames) out << ',' << field(run.errors.*name.figure);
+  for (const MetricName& name : metricNames) out << ',' << field(run.errors.*name.figure);
   out << ',' << run.errors.poses << ',' << run.errors.unmatched;
   for (const ShareName& name : shareNames) out << ',' << field(run.health.*name.share);
   out << ',';
@@ -51,7 +51,7 @@ void writeSession(std::ostream& out, const SessionSummary& summary) {
   const auto both = [&](const Spread& spread) {
     out << ',' << field(spread.mean) << ',' << field(spread.deviation);
   };
-  for (const FigureName& name : figureNames) both(summary.figures.*name.spread);
+  for (const MetricName& name : metricNames) both(summary.figures.*name.spread);
   both(summary.figures.axisRmse);
   for (const ShareName& name : shareNames) out << ',' << field((summary.figures.*name.spread).mean);
   out << ',' << field(summary.relocalizations) << '\n';
@@ -63,7 +63,7 @@ void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results
   results.validate();
   io::AtomicFile out(file);
   out.stream() << "setting,session,run,seed,state,reason";
-  for (const FigureName& name : figureNames) out.stream() << ',' << name.key;
+  for (const MetricName& name : metricNames) out.stream() << ',' << name.key;
   out.stream() << ",poses,unmatched,ok_share,degraded_share,lost_share,first_pose_scan,"
                   "relocalizations\n";
   for (std::size_t i = 0; i < results.settings.size(); ++i)
@@ -105,10 +105,10 @@ void writeSessionsCsv(const std::filesystem::path& file, const BatchResults& res
   results.validate();
   io::AtomicFile out(file);
   out.stream() << "setting,session,date,length_m,scans,f_map,map_poles,runs,lost,failed";
-  for (const FigureName& name : figureNames)
+  for (const MetricName& name : metricNames)
     out.stream() << ',' << name.key << ',' << name.key << "_sd";
   out.stream() << ",axis_rmse,axis_rmse_sd,ok_share,degraded_share,lost_share,relocalizations\n";
-  const std::vector<SettingSummary> summaries = summarize(results);
+  const std::vector<ConfigurationSummary> summaries = summarize(results);
   for (std::size_t i = 0; i < summaries.size(); ++i)
     for (const SessionSummary& summary : summaries[i].sessions) {
       const BatchSession& session = results.sessions[summary.session];

@@ -14,9 +14,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // NaN becomes null by itself.
-Json jsonOf(const ErrorFigures& errors) {
+Json jsonOf(const ErrorMetrics& errors) {
   Json json;
-  for (const FigureName& name : figureNames) json[name.key] = errors.*name.figure;
+  for (const MetricName& name : metricNames) json[name.key] = errors.*name.figure;
   json["poses"] = errors.poses;
   json["unmatched"] = errors.unmatched;
   return json;
@@ -99,9 +99,9 @@ Json jsonOf(const Spread& spread) {
           {"count", spread.count}};
 }
 
-Json jsonOf(const FigureSpreads& figures) {
+Json jsonOf(const MetricSpreads& figures) {
   Json json;
-  for (const FigureName& name : figureNames) json[name.key] = jsonOf(figures.*name.spread);
+  for (const MetricName& name : metricNames) json[name.key] = jsonOf(figures.*name.spread);
   json["axis_rmse"] = jsonOf(figures.axisRmse);
   for (const ShareName& name : shareNames)
     json[std::string(name.key) + "_share"] = jsonOf(figures.*name.spread);
@@ -114,7 +114,7 @@ void setCounts(Json& json, const RunCounts& counts) {
   json["failed"] = counts.failed;
 }
 
-Json jsonOf(const SettingSummary& summary, const BatchResults& batch, std::size_t setting) {
+Json jsonOf(const ConfigurationSummary& summary, const BatchResults& batch, std::size_t setting) {
   Json json;
   json["setting"] = batch.settings[setting].name;
   setCounts(json, summary.counts);
@@ -157,7 +157,7 @@ Json jsonOf(const BatchResults& batch) {
                       {"compiler", batch.versions.compiler}};
   json["lost_bound_m"] = batch.lostBound;
   json["settings"] = Json::array();
-  for (const BatchSetting& setting : batch.settings)
+  for (const BatchConfiguration& setting : batch.settings)
     json["settings"].push_back({{"name", setting.name},
                                 {"description", setting.description},
                                 {"protocol", setting.protocol},
@@ -182,7 +182,7 @@ Json jsonOf(const BatchResults& batch) {
   for (const FailedTask& task : batch.failures)
     json["failures"].push_back({{"task", task.task}, {"reason", task.reason}, {"log", task.log}});
   json["summary"] = Json::array();
-  const std::vector<SettingSummary> summaries = summarize(batch);
+  const std::vector<ConfigurationSummary> summaries = summarize(batch);
   for (std::size_t i = 0; i < summaries.size(); ++i)
     json["summary"].push_back(jsonOf(summaries[i], batch, i));
   json["results"] = Json::array();

@@ -89,7 +89,7 @@ BatchRun run(const Node& node) {
   run.seed = node["seed"].count();
   run.failure = node["failure"].text();
   const Node errors = node["errors"], health = node["health"];
-  for (const FigureName& name : figureNames) run.errors.*name.figure = errors[name.key].figure();
+  for (const MetricName& name : metricNames) run.errors.*name.figure = errors[name.key].figure();
   run.errors.poses = errors["poses"].count();
   run.errors.unmatched = errors["unmatched"].count();
   for (const ShareName& name : shareNames) run.health.*name.share = health[name.key].figure();

@@ -11,17 +11,17 @@ namespace polemcl::report {
 namespace {
 
 /// "0.174", "--" for none.
-std::string number(const FigureColumn& column, double value) {
+std::string number(const MetricColumn& column, double value) {
   return column.figure(value, "--");
 }
 
-std::string latexWithSpread(const FigureColumn& column, const Spread& spread) {
+std::string latexWithSpread(const MetricColumn& column, const Spread& spread) {
   if (!std::isfinite(spread.deviation)) return number(column, spread.mean);
   return '$' + number(column, spread.mean) + " \\pm " + number(column, spread.deviation) + '$';
 }
 
 std::string latexPercent(double share) {
-  return figureText(100 * share, 1, "--");
+  return metricText(100 * share, 1, "--");
 }
 
 /// What went wrong, for the caption; figures without it would flatter.
@@ -41,8 +41,8 @@ void endTable(std::ostream& out) {
 
 /// The paper's table of sessions, with what was published for each beside.
 void writeSetting(std::ostream& out, const BatchResults& results, std::size_t index,
-                  const SettingSummary& summary) {
-  const BatchSetting& setting = results.settings[index];
+                  const ConfigurationSummary& summary) {
+  const BatchConfiguration& setting = results.settings[index];
   const PublishedRows published = publishedRows(results);
   const std::size_t systems = published.systems.size();
   std::string caption = latexText(results.title) + ", setting \\emph{" + latexText(setting.name) +
@@ -51,7 +51,7 @@ void writeSetting(std::ostream& out, const BatchResults& results, std::size_t in
   if (systems > 0) caption += "Published means beside ours, and below over the same sessions. ";
   beginTable(out, caption + losses(summary.counts), "lr" + std::string(4 * (1 + systems), 'r'));
   out << "    Session & $f_\\mathrm{map}$ [\\%]";
-  std::vector<FigureColumn> units;
+  std::vector<MetricColumn> units;
   for (const SessionColumn& column : sessionColumns) {
     units.push_back(unitOf(column, summary, published));
     out << " & " << units.back().latexHead(column.latex);
@@ -82,14 +82,14 @@ void writeSetting(std::ostream& out, const BatchResults& results, std::size_t in
 
 void writeShares(std::ostream& out, const PublishedMapScore& scores) {
   for (double value : {scores.precision, scores.recall, scores.f1})
-    out << " & " << figureText(value, 3, "--");
+    out << " & " << metricText(value, 3, "--");
 }
 
 /// The paper's first table: scores of maps.
 void writeScores(std::ostream& out, const BatchResults& results, const PublishedDataset* dataset,
-                 const std::vector<SettingSummary>& summaries) {
+                 const std::vector<ConfigurationSummary>& summaries) {
   if (std::none_of(summaries.begin(), summaries.end(),
-                   [](const SettingSummary& summary) { return summary.scores.maps > 0; }))
+                   [](const ConfigurationSummary& summary) { return summary.scores.maps > 0; }))
     return;
   std::string caption = latexText(results.title) +
                         ": precision, recall and F1 of the maps, by the authors' count (a true "
@@ -118,20 +118,20 @@ void writeScores(std::ostream& out, const BatchResults& results, const Published
 
 void writeComparison(std::ostream& out, const BatchResults& results,
                      const PublishedDataset& dataset,
-                     const std::vector<SettingSummary>& summaries) {
+                     const std::vector<ConfigurationSummary>& summaries) {
   const std::vector<ComparedColumn> columns = comparedColumns(dataset);
   beginTable(
       out,
       latexText(dataset.title) + ": published figures and ours. " + latexText(dataset.protocol),
       'l' + std::string(columns.size(), 'r'));
   out << "    System";
-  std::vector<FigureColumn> units;
+  std::vector<MetricColumn> units;
   for (const ComparedColumn& column : columns) {
     units.push_back(unitOf(column, dataset, summaries));
     out << " & " << units.back().latexHead(column.latex);
   }
   out << " \\\\\n    \\midrule\n";
-  for (const PublishedFigure& system : dataset.figures) {
+  for (const PublishedResult& system : dataset.figures) {
     out << "    " << latexText(system.system);
     for (std::size_t k = 0; k < columns.size(); ++k)
       out << " & " << number(units[k], system.*columns[k].published);
@@ -196,13 +196,13 @@ std::string latexText(const std::string& text) {
 
 void writeLatexTable(const std::filesystem::path& file, const BatchResults& results) {
   results.validate();
-  const std::vector<SettingSummary> summaries = summarize(results);
+  const std::vector<ConfigurationSummary> summaries = summarize(results);
   io::AtomicFile out(file);
   out.stream() << "% Needs \\usepackage{booktabs}. A column of lengths is in centimetres\n"
                   "% if any of them is below 0.1 m; these have two significant digits.\n";
   for (std::size_t i = 0; i < summaries.size(); ++i)
     if (summaries[i].counts.runs > 0) writeSetting(out.stream(), results, i, summaries[i]);
-  const PublishedDataset* dataset = publishedFigures(results.dataset);
+  const PublishedDataset* dataset = publishedResults(results.dataset);
   writeScores(out.stream(), results, dataset, summaries);
   if (dataset && !dataset->figures.empty())
     writeComparison(out.stream(), results, *dataset, summaries);

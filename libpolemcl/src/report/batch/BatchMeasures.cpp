@@ -76,8 +76,8 @@ double usualSpacing(const std::vector<double>& distance) {
 
 }  // namespace
 
-ErrorFigures errorFigures(const TrajectoryErrors& errors, const std::vector<StampedPose2D>& truth) {
-  ErrorFigures figures;
+ErrorMetrics errorMetrics(const TrajectoryErrors& errors, const std::vector<StampedPose2D>& truth) {
+  ErrorMetrics figures;
   figures.poses = errors.errors.size();
   figures.unmatched = errors.unmatched;
   if (errors.errors.empty()) return figures;

@@ -13,7 +13,7 @@ namespace polemcl::report {
 /// \param errors Of evaluateTrajectory() against the same truth.
 /// \param truth Robot poses, times increasing; gives the axes that lateral and longitudinal errors
 ///        are turned back into.
-ErrorFigures errorFigures(const TrajectoryErrors& errors, const std::vector<StampedPose2D>& truth);
+ErrorMetrics errorMetrics(const TrajectoryErrors& errors, const std::vector<StampedPose2D>& truth);
 
 /// \brief Adds a run's errors to the histograms of its session.
 void addErrors(SessionPlots& plots, const TrajectoryErrors& errors);
@@ -27,7 +27,7 @@ std::vector<Eigen::Vector2d> thinPath(const std::vector<Eigen::Vector2d>& points
 std::vector<Eigen::Vector2d> thinPath(const std::vector<StampedPose2D>& path, double tolerance = 0);
 
 /// \brief Position errors over the distance driven, the largest of each bin.
-/// \param truth See errorFigures().
+/// \param truth See errorMetrics().
 /// \param mostBins The bin width is 1, 2 or 5 times a power of ten, at least 1 m and 1.5 times the
 ///        usual distance between two errors, such that there are not more bins.
 BinnedMaxima positionOverDistance(const TrajectoryErrors& errors,

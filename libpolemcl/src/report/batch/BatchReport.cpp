@@ -24,13 +24,13 @@ struct Section {
 struct Page {
   explicit Page(const BatchResults& batch) : results(batch), summaries(summarize(batch)) {}
   const BatchResults& results;
-  const std::vector<SettingSummary> summaries;
+  const std::vector<ConfigurationSummary> summaries;
   PlotIds ids;
-  const BatchSetting& setting(std::size_t i) const { return results.settings[i]; }
+  const BatchConfiguration& setting(std::size_t i) const { return results.settings[i]; }
   /// Whether any session was localized, or ought to have been.
   bool localized() const {
     return std::any_of(summaries.begin(), summaries.end(),
-                       [](const SettingSummary& summary) { return summary.counts.runs > 0; });
+                       [](const ConfigurationSummary& summary) { return summary.counts.runs > 0; });
   }
 };
 
@@ -46,9 +46,9 @@ std::string sideBySide(const std::string& content) {
 
 std::string sessionFigures(Page& page) {
   return sessionsFigure(page.results, page.summaries,
-                        {"mean position error", "m", &FigureSpreads::posMean}, page.ids) +
+                        {"mean position error", "m", &MetricSpreads::posMean}, page.ids) +
          sessionsFigure(page.results, page.summaries,
-                        {"mean heading error", "°", &FigureSpreads::angMeanDeg}, page.ids);
+                        {"mean heading error", "°", &MetricSpreads::angMeanDeg}, page.ids);
 }
 
 Section settingsSection(Page& page) {
@@ -65,7 +65,7 @@ Section settingsSection(Page& page) {
 }
 
 Section publishedSection(const Page& page) {
-  const PublishedDataset* dataset = publishedFigures(page.results.dataset);
+  const PublishedDataset* dataset = publishedResults(page.results.dataset);
   if (!dataset || dataset->figures.empty() || !page.localized()) return {};
   return {"published", "Published figures beside ours",
           paragraph(escaped(dataset->protocol)) + publishedTable(page.results, page.summaries) +
@@ -78,7 +78,7 @@ Section publishedSection(const Page& page) {
 Section scoresSection(const Page& page) {
   const std::string table = mapScoresTable(page.results, page.summaries);
   if (table.empty()) return {};
-  const PublishedDataset* dataset = publishedFigures(page.results.dataset);
+  const PublishedDataset* dataset = publishedResults(page.results.dataset);
   std::string content;
   if (dataset && !dataset->maps.empty())
     content += paragraph("Published: " + escaped(dataset->mapProtocol));
@@ -98,7 +98,7 @@ Section scoresSection(const Page& page) {
 Section sessionTables(const Page& page) {
   std::string content;
   for (std::size_t i = 0; i < page.results.settings.size(); ++i) {
-    const BatchSetting& setting = page.setting(i);
+    const BatchConfiguration& setting = page.setting(i);
     content += element("h3", escaped(setting.name)) + '\n';
     content += paragraph(escaped(sentence(setting.description)));
     if (!setting.protocol.empty())
@@ -229,7 +229,7 @@ Section terms(const Page& page) {
                        "in their seeds. Means over sessions give every session the same "
                        "weight.") +
                   term("lost", "No pose could be compared, or the position error is larger than " +
-                                   figureText(page.results.lostBound, 1) +
+                                   metricText(page.results.lostBound, 1) +
                                    "\xC2\xA0m on average or at the end of the run. In the table of "
                                    "health: what the run said of itself, scan by scan.") +
                   term("m, cm",
@@ -245,7 +245,7 @@ std::string headOfPage(const Page& page, const std::vector<Section>& sections) {
     links += element("li", element("a", "href=\"#" + section.id + '"', section.title)) + '\n';
   const std::string title = results.title.empty() ? results.name : results.title;
   std::size_t runCount = 0;
-  for (const SettingSummary& summary : page.summaries) runCount += summary.counts.runs;
+  for (const ConfigurationSummary& summary : page.summaries) runCount += summary.counts.runs;
   return element(
              "header",
              '\n' + element("p", "class=\"over\"", "polemcl · localization among poles") + '\n' +

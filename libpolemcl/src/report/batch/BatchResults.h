@@ -28,7 +28,7 @@ struct BatchVersions {
 };
 
 /// \brief One way to map and localize; all sessions are run with each.
-struct BatchSetting {
+struct BatchConfiguration {
   std::string name;         ///< short, unique in the batch: "upkeep"
   std::string description;  ///< a sentence; may be empty
   std::string protocol;  ///< "paper: map from sessions 1 to i, own data in the map"; may be empty
@@ -47,7 +47,7 @@ struct BatchSession {
 /// \brief Errors of one run over its compared poses; 2D, convergence included.
 /// lat/lon/ang means are of absolute values; standard deviations are of the signed errors about
 /// their mean.
-struct ErrorFigures {
+struct ErrorMetrics {
   double posMean = noFigure, posRmse = noFigure, posMax = noFigure;  ///< m
   double posEnd = noFigure;                                          ///< m, at the last pose
   double latMean = noFigure, latStd = noFigure;                      ///< m, across the true heading
@@ -70,7 +70,7 @@ struct BatchRun {
   std::size_t run = 0;  ///< 0-based
   std::uint64_t seed = 0;
   std::string failure;  ///< why it has no result; empty when it has one
-  ErrorFigures errors;
+  ErrorMetrics errors;
   HealthShares health;
 };
 
@@ -141,7 +141,7 @@ struct FailedTask {
 struct BatchResults {
   std::string name;     ///< "nclt"
   std::string title;    ///< "NCLT: 27 sessions over 15 months"
-  std::string dataset;  ///< key of published figures (PublishedFigures.h), or empty
+  std::string dataset;  ///< key of published figures (PublishedResults.h), or empty
   std::vector<PublishedSession> published;  ///< figures by session, system after system
   std::string date;                         ///< only if the caller gives one
   std::string command;                      ///< that makes the batch again
@@ -149,7 +149,7 @@ struct BatchResults {
   /// A run is lost when no pose could be compared, or when its position error is larger than this
   /// on average or at the end, m.
   double lostBound = 2.0;
-  std::vector<BatchSetting> settings;
+  std::vector<BatchConfiguration> settings;
   std::vector<BatchSession> sessions;  ///< in the order they were driven
   std::vector<SessionResult> results;  ///< at most one for each setting and session, in any order
   std::vector<FailedTask> failures;

@@ -28,7 +28,7 @@ SessionSummary summaryOf(const SessionResult& result, double lostBound) {
   summary.mapPoles = result.mapPoles;
   for (const BatchRun& run : result.runs) count(summary.counts, stateOf(run, lostBound));
   const auto over = [&](const auto& value) { return spreadOver(result.runs, value); };
-  for (const FigureName& name : figureNames)
+  for (const MetricName& name : metricNames)
     summary.figures.*name.spread =
         over([&](const BatchRun& run) { return run.errors.*name.figure; });
   for (const ShareName& name : shareNames)
@@ -40,7 +40,7 @@ SessionSummary summaryOf(const SessionResult& result, double lostBound) {
   return summary;
 }
 
-void sumUpScores(SettingSummary& setting, const BatchResults& results, std::size_t index) {
+void sumUpScores(ConfigurationSummary& setting, const BatchResults& results, std::size_t index) {
   for (const ScoreName& name : scoreNames) {
     std::vector<double> precision, recall, f1;
     for (std::size_t k = 0; k < results.sessions.size(); ++k) {
@@ -57,7 +57,7 @@ void sumUpScores(SettingSummary& setting, const BatchResults& results, std::size
   }
 }
 
-Spread overSessions(const std::vector<SessionSummary>& sessions, Spread FigureSpreads::*figure) {
+Spread overSessions(const std::vector<SessionSummary>& sessions, Spread MetricSpreads::*figure) {
   std::vector<double> means, largest;
   for (const SessionSummary& session : sessions) {
     means.push_back((session.figures.*figure).mean);
@@ -68,7 +68,7 @@ Spread overSessions(const std::vector<SessionSummary>& sessions, Spread FigureSp
   return spread;
 }
 
-void sumUp(SettingSummary& setting) {
+void sumUp(ConfigurationSummary& setting) {
   std::vector<double> shares, means;
   for (const SessionSummary& session : setting.sessions) {
     const RunCounts& counts = session.counts;
@@ -80,18 +80,18 @@ void sumUp(SettingSummary& setting) {
     if (session.figures.posMean.count > 0) means.push_back(session.figures.posMean.mean);
   }
   setting.localized = means.size();
-  for (const FigureName& name : figureNames)
+  for (const MetricName& name : metricNames)
     setting.figures.*name.spread = overSessions(setting.sessions, name.spread);
   for (const ShareName& name : shareNames)
     setting.figures.*name.spread = overSessions(setting.sessions, name.spread);
-  setting.figures.axisRmse = overSessions(setting.sessions, &FigureSpreads::axisRmse);
+  setting.figures.axisRmse = overSessions(setting.sessions, &MetricSpreads::axisRmse);
   setting.mapShare = spreadOf(shares);
   if (means.size() > 1 && means.front() > 0) setting.lastOverFirst = means.back() / means.front();
 }
 
 }  // namespace
 
-double axisRmse(const ErrorFigures& errors) {
+double axisRmse(const ErrorMetrics& errors) {
   return std::sqrt((errors.xRmse * errors.xRmse + errors.yRmse * errors.yRmse) / 2);
 }
 
@@ -119,14 +119,14 @@ const char* name(RunState state) {
 
 RunState stateOf(const BatchRun& run, double lostBound) {
   if (!run.failure.empty()) return RunState::failed;
-  const ErrorFigures& errors = run.errors;
+  const ErrorMetrics& errors = run.errors;
   const bool known = errors.poses > 0 && std::isfinite(errors.posMean);
   return !known || errors.posMean > lostBound || errors.posEnd > lostBound ? RunState::lost
                                                                            : RunState::ok;
 }
 
-std::vector<SettingSummary> summarize(const BatchResults& results) {
-  std::vector<SettingSummary> summaries(results.settings.size());
+std::vector<ConfigurationSummary> summarize(const BatchResults& results) {
+  std::vector<ConfigurationSummary> summaries(results.settings.size());
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     for (std::size_t k = 0; k < results.sessions.size(); ++k)
       if (const SessionResult* result = results.find(i, k))

@@ -30,7 +30,7 @@ struct RunCounts {
 };
 
 /// \brief Figures that are summed up; lost runs with a pose count in all of them.
-struct FigureSpreads {
+struct MetricSpreads {
   Spread posMean, posRmse, posMax, posEnd, latMean, latStd, lonMean, lonStd, xRmse, yRmse;
   Spread axisRmse;  ///< root of the mean of x² and y²: the position RMSE per axis, posRmse / √2
   Spread angMeanDeg, angStdDeg, angRmseDeg;
@@ -43,7 +43,7 @@ struct SessionSummary {
   double mapShare = noFigure;
   std::size_t mapPoles = 0;
   RunCounts counts;
-  FigureSpreads figures;
+  MetricSpreads figures;
   double relocalizations = noFigure;  ///< mean over the runs
 };
 
@@ -58,14 +58,14 @@ struct ScoreSummary {
 };
 
 /// \brief A setting over its sessions.
-struct SettingSummary {
+struct ConfigurationSummary {
   std::vector<SessionSummary> sessions;  ///< in the order of the batch; those with a result
   RunCounts counts;
   std::size_t localized = 0;     ///< sessions with at least one run that has figures
   std::size_t lostSessions = 0;  ///< sessions with runs, all of which were lost or failed
   /// Over the sessions' means: every session has the same weight, as in the paper. `largest` is
   /// that of all runs.
-  FigureSpreads figures;
+  MetricSpreads figures;
   Spread mapShare;
   ScoreSummary scores;
   /// posMean of the last localized session over that of the first; none with less than two.
@@ -73,6 +73,6 @@ struct SettingSummary {
 };
 
 /// \brief One summary for each setting, in the order of the batch.
-std::vector<SettingSummary> summarize(const BatchResults& results);
+std::vector<ConfigurationSummary> summarize(const BatchResults& results);
 
 }  // namespace polemcl::report

@@ -6,8 +6,8 @@
 namespace polemcl::report {
 
 std::vector<ComparedColumn> comparedColumns(const PublishedDataset& dataset) {
-  using P = PublishedFigure;
-  using F = FigureSpreads;
+  using P = PublishedResult;
+  using F = MetricSpreads;
   static const ComparedColumn all[] = {
       {"Δ<sub>pos</sub>", "$\\Delta_\\mathrm{pos}$", Quantity::length, &P::posMean, &F::posMean},
       {"RMSE<sub>pos</sub>", "$\\mathrm{RMSE}_\\mathrm{pos}$", Quantity::length, &P::posRmse,
@@ -41,7 +41,7 @@ double PublishedRows::figure(std::size_t system, const SessionSummary& session,
   return one && session.counts.runs > 0 ? one->*figure : noFigure;
 }
 
-double PublishedRows::mean(std::size_t system, const SettingSummary& setting,
+double PublishedRows::mean(std::size_t system, const ConfigurationSummary& setting,
                            double PublishedSession::*wanted) const {
   std::vector<double> values;
   for (const SessionSummary& session : setting.sessions)
@@ -53,7 +53,7 @@ PublishedRows publishedRows(const BatchResults& results) {
   return {publishedSystems(results.published), results};
 }
 
-FigureColumn unitOf(const SessionColumn& column, const SettingSummary& setting,
+MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& setting,
                     const PublishedRows& published) {
   std::vector<double> values;
   for (const SessionSummary& session : setting.sessions) {
@@ -64,11 +64,11 @@ FigureColumn unitOf(const SessionColumn& column, const SettingSummary& setting,
   return {column.quantity, values};
 }
 
-FigureColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
-                    const std::vector<SettingSummary>& summaries) {
+MetricColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
+                    const std::vector<ConfigurationSummary>& summaries) {
   std::vector<double> values;
-  for (const PublishedFigure& system : dataset.figures) values.push_back(system.*column.published);
-  for (const SettingSummary& summary : summaries)
+  for (const PublishedResult& system : dataset.figures) values.push_back(system.*column.published);
+  for (const ConfigurationSummary& summary : summaries)
     values.push_back((summary.figures.*column.ours).mean);
   return {column.quantity, values};
 }

@@ -15,8 +15,8 @@ struct ComparedColumn {
   const char* html;   ///< without its unit
   const char* latex;  ///< the same
   Quantity quantity;  ///< m or degrees
-  double PublishedFigure::*published;
-  Spread FigureSpreads::*ours;
+  double PublishedResult::*published;
+  Spread MetricSpreads::*ours;
 };
 
 /// \brief The columns for which any system has a published figure, in the papers' order; the RMSE
@@ -29,17 +29,17 @@ struct SessionColumn {
   const char* latex;  ///< the same
   Quantity quantity;  ///< m or degrees
   double PublishedSession::*published;
-  Spread FigureSpreads::*ours;
+  Spread MetricSpreads::*ours;
 };
 inline constexpr SessionColumn sessionColumns[] = {
     {"Δ<sub>pos</sub>", "$\\Delta_\\mathrm{pos}$", Quantity::length, &PublishedSession::posMean,
-     &FigureSpreads::posMean},
+     &MetricSpreads::posMean},
     {"RMSE<sub>pos</sub>", "$\\mathrm{RMSE}_\\mathrm{pos}$", Quantity::length,
-     &PublishedSession::posRmse, &FigureSpreads::posRmse},
+     &PublishedSession::posRmse, &MetricSpreads::posRmse},
     {"Δ<sub>ang</sub>", "$\\Delta_\\mathrm{ang}$", Quantity::angle, &PublishedSession::angMeanDeg,
-     &FigureSpreads::angMeanDeg},
+     &MetricSpreads::angMeanDeg},
     {"RMSE<sub>ang</sub>", "$\\mathrm{RMSE}_\\mathrm{ang}$", Quantity::angle,
-     &PublishedSession::angRmseDeg, &FigureSpreads::angRmseDeg}};
+     &PublishedSession::angRmseDeg, &MetricSpreads::angRmseDeg}};
 
 /// \brief What was published for the sessions of a setting, system by system; sessions that were
 /// not localized have no figures.
@@ -49,16 +49,16 @@ struct PublishedRows {
   double figure(std::size_t system, const SessionSummary& session,
                 double PublishedSession::*figure) const;
   /// \brief Its mean over the sessions of which ours has a figure as well.
-  double mean(std::size_t system, const SettingSummary& setting,
+  double mean(std::size_t system, const ConfigurationSummary& setting,
               double PublishedSession::*figure) const;
   const BatchResults& results;
 };
 PublishedRows publishedRows(const BatchResults& results);
 
 /// \brief The figures of a column that decide on its unit: ours and those published.
-FigureColumn unitOf(const SessionColumn& column, const SettingSummary& setting,
+MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& setting,
                     const PublishedRows& published);
-FigureColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
-                    const std::vector<SettingSummary>& summaries);
+MetricColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
+                    const std::vector<ConfigurationSummary>& summaries);
 
 }  // namespace polemcl::report

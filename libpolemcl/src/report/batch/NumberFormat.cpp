@@ -9,7 +9,7 @@
 
 namespace polemcl::report {
 
-std::string figureText(double value, int decimals, const std::string& none) {
+std::string metricText(double value, int decimals, const std::string& none) {
   if (!std::isfinite(value)) return none;
   const std::string text = io::fixed(value, decimals);
   const bool isZero = text.find_first_not_of("-0.") == std::string::npos;
@@ -33,7 +33,7 @@ int decimalsOfTwoDigits(double value) {
 std::string centimetres(double metres) {
   const double value = 100 * metres;
   const bool isShort = std::abs(metres) < shortLength;
-  return figureText(value, !isShort || value == 0 ? 1 : decimalsOfTwoDigits(value));
+  return metricText(value, !isShort || value == 0 ? 1 : decimalsOfTwoDigits(value));
 }
 
 }  // namespace
@@ -41,29 +41,29 @@ std::string centimetres(double metres) {
 std::string lengthText(double metres, const std::string& space) {
   if (!std::isfinite(metres)) return enDash + space + "m";
   return std::abs(metres) < shortLength ? centimetres(metres) + space + "cm"
-                                        : figureText(metres, decimals) + space + "m";
+                                        : metricText(metres, decimals) + space + "m";
 }
 
-FigureColumn::FigureColumn(Quantity quantity, const std::vector<double>& values)
+MetricColumn::MetricColumn(Quantity quantity, const std::vector<double>& values)
     : m_unit(quantity == Quantity::angle ? Unit::degree
              : std::any_of(values.begin(), values.end(),
                            [](double value) { return std::abs(value) < shortLength; })
                  ? Unit::centimetre
                  : Unit::metre) {}
 
-std::string FigureColumn::head(const std::string& label) const {
+std::string MetricColumn::head(const std::string& label) const {
   return label + (m_unit == Unit::degree ? " (°)" : m_unit == Unit::metre ? " (m)" : " (cm)");
 }
 
-std::string FigureColumn::latexHead(const std::string& label) const {
+std::string MetricColumn::latexHead(const std::string& label) const {
   return label + (m_unit == Unit::degree  ? " [$^\\circ$]"
                   : m_unit == Unit::metre ? " [m]"
                                           : " [cm]");
 }
 
-std::string FigureColumn::figure(double value, const std::string& none) const {
+std::string MetricColumn::figure(double value, const std::string& none) const {
   if (!std::isfinite(value)) return none;
-  return m_unit == Unit::centimetre ? centimetres(value) : figureText(value, decimals);
+  return m_unit == Unit::centimetre ? centimetres(value) : metricText(value, decimals);
 }
 
 std::string countText(unsigned long long count) {
@@ -79,7 +79,7 @@ std::string plural(unsigned long long count, const std::string& word) {
 
 std::string durationText(double seconds) {
   if (!std::isfinite(seconds)) return enDash;
-  if (seconds < 9.95) return figureText(seconds, 1) + " s";
+  if (seconds < 9.95) return metricText(seconds, 1) + " s";
   const auto whole = static_cast<unsigned long long>(std::llround(std::max(seconds, 0.0)));
   if (whole < 60) return std::to_string(whole) + " s";
   if (whole < 3600) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";

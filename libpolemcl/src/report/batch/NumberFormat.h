@@ -10,7 +10,7 @@ namespace polemcl::report {
 inline constexpr const char* enDash = "\xE2\x80\x93";
 
 /// \brief "0.174"; `none` when the value is not finite. Zero has no sign.
-std::string figureText(double value, int decimals, const std::string& none = enDash);
+std::string metricText(double value, int decimals, const std::string& none = enDash);
 /// \brief An error in the unit that reads best: 0.0072 m is "0.72 cm", 0.174 m "0.174 m". Below 0.1
 /// m centimetres with two significant digits, from there metres with three decimals. \param space
 /// Between number and unit.
@@ -22,10 +22,10 @@ enum class Quantity { length, angle };
 /// \brief A column of errors, all in one unit. Lengths: centimetres if any of them is below 0.1 m,
 /// these with two significant digits, larger ones in tenths of a centimetre; otherwise metres with
 /// three decimals. Angles: degrees with three decimals.
-class FigureColumn {
+class MetricColumn {
  public:
   /// \param values All figures that decide on the unit, m or degrees.
-  FigureColumn(Quantity quantity, const std::vector<double>& values);
+  MetricColumn(Quantity quantity, const std::vector<double>& values);
   /// \brief The label with the unit, "Δ (cm)".
   std::string head(const std::string& label) const;
   std::string latexHead(const std::string& label) const;  ///< "Δ [cm]"

@@ -8,15 +8,15 @@ namespace {
 constexpr const char* dong = "Dong et al. 2021";
 constexpr const char* schaefer = "Schaefer et al. 2019";
 
-PublishedFigure publishedFigure(const std::string& system, const std::string& remark) {
-  PublishedFigure published;
+PublishedResult publishedFigure(const std::string& system, const std::string& remark) {
+  PublishedResult published;
   published.system = system;
   published.remark = remark;
   return published;
 }
 
 PublishedDataset nclt() {
-  PublishedFigure first = publishedFigure(schaefer, "as quoted by Dong et al."),
+  PublishedResult first = publishedFigure(schaefer, "as quoted by Dong et al."),
                   second = publishedFigure(dong, "");
   first.posMean = 0.284, first.posRmse = 0.526, first.angMeanDeg = 0.801, first.angRmseDeg = 1.081;
   second.posMean = 0.174, second.posRmse = 0.293;
@@ -45,7 +45,7 @@ PublishedDataset semanticKitti() {
 }
 
 PublishedDataset kitti() {
-  PublishedFigure kuemmerle = publishedFigure("Kümmerle et al. 2019", ""),
+  PublishedResult kuemmerle = publishedFigure("Kümmerle et al. 2019", ""),
                   weng = publishedFigure("Weng et al. 2018", "standard deviations only"),
                   sefati = publishedFigure("Sefati et al. 2017", "RMSE only"),
                   first = publishedFigure(schaefer, ""), second = publishedFigure(dong, "");
@@ -71,7 +71,7 @@ PublishedDataset kitti() {
 
 PublishedDataset mulran() {
   const char* perAxis = "position RMSE per axis";
-  PublishedFigure first = publishedFigure(schaefer, perAxis),
+  PublishedResult first = publishedFigure(schaefer, perAxis),
                   chen = publishedFigure("Chen et al. 2021", perAxis),
                   second = publishedFigure(dong, perAxis);
   first.axisRmse = 1.82, first.angRmseDeg = 0.56;
@@ -94,7 +94,7 @@ const std::vector<PublishedDataset>& publishedDatasets() {
   return all;
 }
 
-const PublishedDataset* publishedFigures(const std::string& key) {
+const PublishedDataset* publishedResults(const std::string& key) {
   const auto& all = publishedDatasets();
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const PublishedDataset& data) { return data.key == key; });

@@ -11,8 +11,8 @@
 namespace polemcl::report {
 
 /// \brief One system's figures on one dataset, as published; noFigure where a paper gives none.
-/// Means over runs and sessions, m and degrees, with the meaning of ErrorFigures.
-struct PublishedFigure {
+/// Means over runs and sessions, m and degrees, with the meaning of ErrorMetrics.
+struct PublishedResult {
   std::string system;  ///< first author and year: "Schaefer et al. 2019"
   std::string remark;  ///< what makes it comparable or not; may be empty
   double posMean = noFigure, posRmse = noFigure;
@@ -33,7 +33,7 @@ struct PublishedDataset {
   std::string key;       ///< BatchResults::dataset: "nclt", "semantickitti", "kitti-0009", …
   std::string title;     ///< "KITTI raw, drive 2011_09_26_0009"
   std::string protocol;  ///< how the figures of localization were come by, in sentences
-  std::vector<PublishedFigure> figures;
+  std::vector<PublishedResult> figures;
   std::string mapProtocol;  ///< the same for the scores of maps
   std::vector<PublishedMapScore> maps;
 };
@@ -43,7 +43,7 @@ struct PublishedDataset {
 /// Localization in Urban Environments" (ECMR 2021), which also quotes the other systems.
 const std::vector<PublishedDataset>& publishedDatasets();
 /// \brief The dataset of that key, or null.
-const PublishedDataset* publishedFigures(const std::string& key);
+const PublishedDataset* publishedResults(const std::string& key);
 
 /// \brief Reads figures by session: CSV with the columns `system,session,f_map,pos_mean,pos_rmse,
 /// ang_mean_deg,ang_rmse_deg`; f_map a share, m, degrees; an empty field: not published.

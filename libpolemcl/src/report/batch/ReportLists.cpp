@@ -13,25 +13,25 @@ namespace {
 constexpr std::size_t mostOpenRows = 20;  // a longer list of troubles is folded away
 
 std::string percentText(double share) {
-  return figureText(100 * share, 1);
+  return metricText(100 * share, 1);
 }
 
 /// A figure of a run in a list of runs.
 struct RunColumn {
   const char* html;  ///< without its unit
   Quantity quantity;
-  double ErrorFigures::*figure;
+  double ErrorMetrics::*figure;
 };
 constexpr RunColumn runColumns[] = {
-    {"Δ<sub>pos</sub>", Quantity::length, &ErrorFigures::posMean},
-    {"RMSE<sub>pos</sub>", Quantity::length, &ErrorFigures::posRmse},
-    {"Largest", Quantity::length, &ErrorFigures::posMax},
-    {"Δ<sub>lat</sub>", Quantity::length, &ErrorFigures::latMean},
-    {"Δ<sub>lon</sub>", Quantity::length, &ErrorFigures::lonMean},
-    {"Δ<sub>ang</sub>", Quantity::angle, &ErrorFigures::angMeanDeg},
-    {"RMSE<sub>ang</sub>", Quantity::angle, &ErrorFigures::angRmseDeg}};
+    {"Δ<sub>pos</sub>", Quantity::length, &ErrorMetrics::posMean},
+    {"RMSE<sub>pos</sub>", Quantity::length, &ErrorMetrics::posRmse},
+    {"Largest", Quantity::length, &ErrorMetrics::posMax},
+    {"Δ<sub>lat</sub>", Quantity::length, &ErrorMetrics::latMean},
+    {"Δ<sub>lon</sub>", Quantity::length, &ErrorMetrics::lonMean},
+    {"Δ<sub>ang</sub>", Quantity::angle, &ErrorMetrics::angMeanDeg},
+    {"RMSE<sub>ang</sub>", Quantity::angle, &ErrorMetrics::angRmseDeg}};
 
-FigureColumn unitOf(const RunColumn& column, const BatchResults& results, std::size_t setting) {
+MetricColumn unitOf(const RunColumn& column, const BatchResults& results, std::size_t setting) {
   std::vector<double> values;
   for (const SessionResult& result : results.results)
     if (result.setting == setting)
@@ -40,7 +40,7 @@ FigureColumn unitOf(const RunColumn& column, const BatchResults& results, std::s
 }
 
 std::vector<std::string> runCells(const BatchRun& run, const std::string& session, RunState state,
-                                  const std::vector<FigureColumn>& units) {
+                                  const std::vector<MetricColumn>& units) {
   std::vector<std::string> cells{
       session, std::to_string(run.run), std::to_string(run.seed),
       state == RunState::ok ? name(state) : element("span", "class=\"bad\"", name(state))};
@@ -89,7 +89,7 @@ std::map<std::string, std::string> valuesOf(const std::string& ini) {
 std::string runsTable(const BatchResults& results, std::size_t setting) {
   HtmlTable table("Setting " + results.settings[setting].name + ": every run.");
   std::vector<HeadCell> head{{"Session"}, {"Run"}, {"Seed"}, {"State"}};
-  std::vector<FigureColumn> units;
+  std::vector<MetricColumn> units;
   for (const RunColumn& column : runColumns) {
     units.push_back(unitOf(column, results, setting));
     head.push_back({units.back().head(column.html)});
@@ -150,8 +150,8 @@ std::string sessionsTable(const BatchResults& results) {
   table.head({{"Session"}, {"Date"}, {"Length (m)"}, {"Scans"}, {"Poles per scan"}});
   for (const BatchSession& session : results.sessions)
     table.row({escaped(session.name), session.date.empty() ? enDash : escaped(session.date),
-               figureText(session.length, 0), countText(session.scans),
-               figureText(session.polesPerScan, 1)});
+               metricText(session.length, 0), countText(session.scans),
+               metricText(session.polesPerScan, 1)});
   return table.str();
 }
 
@@ -178,7 +178,8 @@ std::string timingsTable(const BatchTimings& timings) {
 std::string differencesTable(const BatchResults& results) {
   std::vector<std::map<std::string, std::string>> values;
   std::map<std::string, bool> differs;
-  for (const BatchSetting& setting : results.settings) values.push_back(valuesOf(setting.config));
+  for (const BatchConfiguration& setting : results.settings)
+    values.push_back(valuesOf(setting.config));
   for (const auto& one : values)
     for (const auto& [key, value] : one)
       differs[key] |= std::any_of(values.begin(), values.end(),
@@ -188,7 +189,8 @@ std::string differencesTable(const BatchResults& results) {
                                   });
   HtmlTable table("Keys whose values are not the same in all settings.");
   std::vector<HeadCell> head{{"Key"}};
-  for (const BatchSetting& setting : results.settings) head.push_back({escaped(setting.name)});
+  for (const BatchConfiguration& setting : results.settings)
+    head.push_back({escaped(setting.name)});
   table.head(head);
   bool any = false;
   for (const auto& [key, different] : differs) {

@@ -41,7 +41,7 @@ Box boxOf(const SessionPlots& plots) {
 /// Room for the title and the labels of the y axis: northings have seven digits.
 double leftMargin(const Box& box) {
   const std::size_t digits =
-      std::max(figureText(box.y.low, 0).size(), figureText(box.y.high, 0).size());
+      std::max(metricText(box.y.low, 0).size(), metricText(box.y.high, 0).size());
   return std::max(66.0, 30 + 8.3 * digits);
 }
 

@@ -16,7 +16,7 @@ constexpr std::size_t mostLabels = 60;
 
 std::vector<std::string> settingNames(const BatchResults& results) {
   std::vector<std::string> names;
-  for (const BatchSetting& setting : results.settings) names.push_back(setting.name);
+  for (const BatchConfiguration& setting : results.settings) names.push_back(setting.name);
   return names;
 }
 
@@ -69,7 +69,7 @@ ErrorTicks errorTicks(const PlotAxes& axes, const std::string& unit) {
 /// The sessions x settings plot, drawn part by part.
 class SessionsPlot {
  public:
-  SessionsPlot(const BatchResults& results, const std::vector<SettingSummary>& summaries,
+  SessionsPlot(const BatchResults& results, const std::vector<ConfigurationSummary>& summaries,
                const SessionQuantity& quantity, const std::string& id)
       : m_results(results),
         m_summaries(summaries),
@@ -102,7 +102,7 @@ class SessionsPlot {
   }
   double limit() const {
     std::vector<double> tops;
-    for (const SettingSummary& setting : m_summaries)
+    for (const ConfigurationSummary& setting : m_summaries)
       for (const SessionSummary& session : setting.sessions) {
         const Spread& spread = spreadOf(session);
         if (spread.count > 0)
@@ -157,14 +157,14 @@ class SessionsPlot {
     const std::string hint =
         m_results.sessions[session.session].name + ", " + m_results.settings[index].name + ": " +
         (m_quantity.unit == "m" ? lengthText(spread.mean, " ")
-                                : figureText(spread.mean, 3) + ' ' + m_quantity.unit);
+                                : metricText(spread.mean, 3) + ' ' + m_quantity.unit);
     if (spread.mean <= m_axes.y.high) return m_plot.mark(index, at, hint);
     m_plot.beyond(index, {at.x(), m_axes.frame.y + 4}, hint);
     m_beyond.push_back(hint);
   }
 
   const BatchResults& m_results;
-  const std::vector<SettingSummary>& m_summaries;
+  const std::vector<ConfigurationSummary>& m_summaries;
   const SessionQuantity& m_quantity;
   SvgPlot m_plot;
   PlotAxes m_axes;
@@ -217,7 +217,7 @@ std::vector<Eigen::Vector2d> steps(const PlotAxes& axes, const BinnedMaxima& bin
 }  // namespace
 
 std::string sessionsFigure(const BatchResults& results,
-                           const std::vector<SettingSummary>& summaries,
+                           const std::vector<ConfigurationSummary>& summaries,
                            const SessionQuantity& quantity, PlotIds& ids) {
   SessionsPlot plot(results, summaries, quantity, ids.next());
   const std::string svg = plot.draw();
@@ -278,7 +278,7 @@ std::string distanceFigure(const BatchResults& results, std::size_t session, Plo
   const PlotAxes axes{{64, 12, 882, 190}, {0, length}, {0, valueLimit(values)}};
   SvgPlot plot(ids.next(), 960, 252, "Position error over distance",
                "Position error of run 0 over the distance driven, the largest in every " +
-                   figureText(bin, 0) + " m.");
+                   metricText(bin, 0) + " m.");
   const ErrorTicks errors = errorTicks(axes, "m");
   plot.axes(axes, roundTicks(axes.x, axes.frame.width, true), errors.ticks, "distance driven (m)",
             "position error (" + errors.unit + ")");
@@ -287,7 +287,7 @@ std::string distanceFigure(const BatchResults& results, std::size_t session, Plo
     if (const SessionResult* result = results.find(i, session))
       plot.line(steps(axes, result->plots.position), "line fine " + seriesClass(i));
   plot.endClip();
-  std::string caption = "Position error of run 0, the largest in every " + figureText(bin, 0) +
+  std::string caption = "Position error of run 0, the largest in every " + metricText(bin, 0) +
                         " m driven; at most " + lengthText(largest);
   caption += largest > axes.y.high ? ", which is above the plot." : ".";
   return figure(plot.str("plot wide"), seriesLegend(settingNames(results), false, "line fine"),

@@ -22,11 +22,11 @@ class PlotIds {
 struct SessionQuantity {
   std::string name;  ///< "mean position error"
   std::string unit;  ///< "m"
-  Spread FigureSpreads::*spread;
+  Spread MetricSpreads::*spread;
 };
 /// \brief Mean and standard deviation over the runs of each session, for all settings.
 std::string sessionsFigure(const BatchResults& results,
-                           const std::vector<SettingSummary>& summaries,
+                           const std::vector<ConfigurationSummary>& summaries,
                            const SessionQuantity& quantity, PlotIds& ids);
 
 /// \brief Which errors a histogram shows.

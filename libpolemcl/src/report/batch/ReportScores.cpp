@@ -9,7 +9,7 @@ namespace polemcl::report {
 namespace {
 
 std::string share(double value) {
-  return figureText(value, 3);
+  return metricText(value, 3);
 }
 
 template <typename Score>
@@ -38,8 +38,8 @@ void addHead(HtmlTable& table, const std::vector<HeadCell>& first,
 }  // namespace
 
 std::string mapScoresTable(const BatchResults& results,
-                           const std::vector<SettingSummary>& summaries) {
-  const PublishedDataset* dataset = publishedFigures(results.dataset);
+                           const std::vector<ConfigurationSummary>& summaries) {
+  const PublishedDataset* dataset = publishedResults(results.dataset);
   HtmlTable table("Precision, recall and F1 of the maps, mean over the maps of a setting.");
   addHead(table, {{"System"}}, {{"Maps"}});
   if (dataset)

@@ -11,12 +11,12 @@
 namespace polemcl::report {
 namespace {
 
-std::string emphasized(const BatchSetting& setting) {
+std::string emphasized(const BatchConfiguration& setting) {
   return element("em", escaped(setting.name));
 }
 
 std::string degrees(double value) {
-  return figureText(value, 3) + "°";
+  return metricText(value, 3) + "°";
 }
 
 /// "A, B and C".
@@ -30,7 +30,7 @@ std::string listed(const std::vector<std::string>& parts) {
 constexpr std::size_t mostNamed = 3;  // of more settings, sentences name the best and the worst
 
 /// The setting with the smallest mean error first.
-std::vector<std::size_t> byError(const std::vector<SettingSummary>& summaries) {
+std::vector<std::size_t> byError(const std::vector<ConfigurationSummary>& summaries) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     if (summaries[i].localized > 0) order.push_back(i);
@@ -44,11 +44,12 @@ bool isNamed(const std::vector<std::size_t>& order, std::size_t setting) {
   return order.size() <= mostNamed || setting == order.front() || setting == order.back();
 }
 
-std::string errorSentence(const BatchResults& results, const std::vector<SettingSummary>& summaries,
+std::string errorSentence(const BatchResults& results,
+                          const std::vector<ConfigurationSummary>& summaries,
                           const std::vector<std::size_t>& order) {
   std::vector<std::string> parts;
   for (std::size_t i : order) {
-    const FigureSpreads& figures = summaries[i].figures;
+    const MetricSpreads& figures = summaries[i].figures;
     const std::string with =
         results.settings.size() > 1 ? " with " + emphasized(results.settings[i]) : std::string();
     parts.push_back(element("strong", lengthText(figures.posMean.mean)) + with + " (RMSE " +
@@ -64,7 +65,7 @@ std::string errorSentence(const BatchResults& results, const std::vector<Setting
 }
 
 std::string changeSentence(const BatchResults& results,
-                           const std::vector<SettingSummary>& summaries,
+                           const std::vector<ConfigurationSummary>& summaries,
                            const std::vector<std::size_t>& order) {
   std::vector<std::string> parts;
   for (std::size_t i : order)
@@ -89,25 +90,25 @@ std::string bigLength(double metres) {
 }
 
 std::string shares(const ScoreMeans& means) {
-  return "precision " + figureText(means.precision, 3) + ", recall " + figureText(means.recall, 3);
+  return "precision " + metricText(means.precision, 3) + ", recall " + metricText(means.recall, 3);
 }
 
 /// The F1 of each setting's maps; empty when none was scored.
 std::string scoreSentence(const BatchResults& results,
-                          const std::vector<SettingSummary>& summaries) {
+                          const std::vector<ConfigurationSummary>& summaries) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     if (summaries[i].scores.maps > 0)
-      parts.push_back(element("strong", figureText(summaries[i].scores.near.f1, 3)) + " with " +
+      parts.push_back(element("strong", metricText(summaries[i].scores.near.f1, 3)) + " with " +
                       emphasized(results.settings[i]) + " (" + shares(summaries[i].scores.near) +
                       ")");
   if (parts.empty()) return "";
   return "The F1 of the maps is " + listed(parts) + ", by the authors' count within 1\xC2\xA0m.";
 }
 
-RunCounts countsOf(const std::vector<SettingSummary>& summaries) {
+RunCounts countsOf(const std::vector<ConfigurationSummary>& summaries) {
   RunCounts counts;
-  for (const SettingSummary& summary : summaries) {
+  for (const ConfigurationSummary& summary : summaries) {
     counts.runs += summary.counts.runs;
     counts.lost += summary.counts.lost;
     counts.failed += summary.counts.failed;
@@ -117,7 +118,7 @@ RunCounts countsOf(const std::vector<SettingSummary>& summaries) {
 
 /// Sessions that no run of a setting could follow.
 std::string lostSessions(const BatchResults& results,
-                         const std::vector<SettingSummary>& summaries) {
+                         const std::vector<ConfigurationSummary>& summaries) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     for (const SessionSummary& session : summaries[i].sessions)
@@ -131,7 +132,7 @@ std::string lostSessions(const BatchResults& results,
 }
 
 std::string troubleSentence(const BatchResults& results,
-                            const std::vector<SettingSummary>& summaries) {
+                            const std::vector<ConfigurationSummary>& summaries) {
   const RunCounts counts = countsOf(summaries);
   if (counts.runs == 0 && results.failures.empty() && !scoreSentence(results, summaries).empty())
     return element("p", "Maps only: no session was to be localized.");
@@ -152,7 +153,8 @@ std::string troubleSentence(const BatchResults& results,
 
 }  // namespace
 
-std::string headlines(const BatchResults& results, const std::vector<SettingSummary>& summaries) {
+std::string headlines(const BatchResults& results,
+                      const std::vector<ConfigurationSummary>& summaries) {
   const std::vector<std::size_t> order = byError(summaries);
   std::string text;
   if (!order.empty()) text += element("p", errorSentence(results, summaries, order)) + '\n';
@@ -172,11 +174,11 @@ std::string big(const std::string& html, const std::string& what) {
 
 std::string scoreFacts(const ScoreSummary& scores) {
   return fact("maps", countText(scores.maps)) + fact("authors' count", shares(scores.near)) +
-         fact("one to one", shares(scores.oneToOne) + ", F1 " + figureText(scores.oneToOne.f1, 3));
+         fact("one to one", shares(scores.oneToOne) + ", F1 " + metricText(scores.oneToOne.f1, 3));
 }
 
-std::string errorFacts(const SettingSummary& summary) {
-  const FigureSpreads& figures = summary.figures;
+std::string errorFacts(const ConfigurationSummary& summary) {
+  const MetricSpreads& figures = summary.figures;
   const bool bad = summary.counts.lost + summary.counts.failed > 0;
   return fact("RMSE", lengthText(figures.posRmse.mean)) +
          fact("heading", degrees(figures.angMeanDeg.mean) + " mean, " +
@@ -185,16 +187,16 @@ std::string errorFacts(const SettingSummary& summary) {
          (std::isfinite(summary.lastOverFirst)
               ? fact("last / first", changeText(summary.lastOverFirst))
               : "") +
-         (summary.scores.maps > 0 ? fact("F1 of its map", figureText(summary.scores.near.f1, 3))
+         (summary.scores.maps > 0 ? fact("F1 of its map", metricText(summary.scores.near.f1, 3))
                                   : "") +
          fact("runs", bad ? element("span", "class=\"bad\"", runsText(summary.counts))
                           : runsText(summary.counts));
 }
 
 /// Score of a setting whose maps were scored and that localizes no session.
-std::string cardOf(const SettingSummary& summary) {
+std::string cardOf(const ConfigurationSummary& summary) {
   if (summary.counts.runs == 0 && summary.scores.maps > 0)
-    return big(figureText(summary.scores.near.f1, 3),
+    return big(metricText(summary.scores.near.f1, 3),
                "F1 of the maps, authors' count within 1\xC2\xA0m") +
            element("dl", "class=\"facts\"", scoreFacts(summary.scores));
   return big(bigLength(summary.figures.posMean.mean), "mean position error") +
@@ -204,7 +206,7 @@ std::string cardOf(const SettingSummary& summary) {
 }  // namespace
 
 std::string settingCards(const BatchResults& results,
-                         const std::vector<SettingSummary>& summaries) {
+                         const std::vector<ConfigurationSummary>& summaries) {
   std::string cards;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     cards += element("section", "class=\"card " + seriesClass(i) + '"',
@@ -213,8 +215,8 @@ std::string settingCards(const BatchResults& results,
   return element("div", "class=\"cards\"", '\n' + cards) + '\n';
 }
 
-std::string sessionLine(const BatchResults& results, const std::vector<SettingSummary>& summaries,
-                        std::size_t session) {
+std::string sessionLine(const BatchResults& results,
+                        const std::vector<ConfigurationSummary>& summaries, std::size_t session) {
   std::string line = element("strong", escaped(results.sessions[session].name));
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < summaries.size(); ++i)

@@ -12,11 +12,11 @@ namespace polemcl::report {
 namespace {
 
 std::string percent(double share) {
-  return figureText(100 * share, 1);
+  return metricText(100 * share, 1);
 }
 
 /// "0.174 ± 0.012", the spread in a lighter ink.
-std::string withSpread(const FigureColumn& column, const Spread& spread) {
+std::string withSpread(const MetricColumn& column, const Spread& spread) {
   const std::string mean = column.figure(spread.mean);
   if (!std::isfinite(spread.deviation)) return mean;
   return mean + element("span", "class=\"sd\"", " ± " + column.figure(spread.deviation));
@@ -35,7 +35,7 @@ std::string sessionName(const BatchResults& results, const SessionSummary& sessi
   return escaped(results.sessions[session.session].name);
 }
 
-std::string healthBar(const FigureSpreads& figures) {
+std::string healthBar(const MetricSpreads& figures) {
   std::string parts;
   const std::pair<const char*, double> shares[] = {
       {"ok", figures.ok.mean}, {"degraded", figures.degraded.mean}, {"lost", figures.lost.mean}};
@@ -43,7 +43,7 @@ std::string healthBar(const FigureSpreads& figures) {
     if (share > 0)
       parts += element("i",
                        "class=\"" + std::string(className) +
-                           "\" style=\"width:" + figureText(100 * share, 2) + "%\"",
+                           "\" style=\"width:" + metricText(100 * share, 2) + "%\"",
                        "");
   return element("span", "class=\"bar\" aria-hidden=\"true\"", parts);
 }
@@ -52,7 +52,7 @@ std::string healthBar(const FigureSpreads& figures) {
 
 std::string changeText(double ratio) {
   if (!std::isfinite(ratio)) return enDash;
-  const std::string text = figureText(std::abs(100 * (ratio - 1)), 0);
+  const std::string text = metricText(std::abs(100 * (ratio - 1)), 0);
   return (text == "0" ? "±" : ratio > 1 ? "+" : "\xE2\x88\x92") + text + " %";
 }
 
@@ -64,29 +64,29 @@ std::string runsText(const RunCounts& counts) {
 }
 
 std::string settingsTable(const BatchResults& results,
-                          const std::vector<SettingSummary>& summaries) {
+                          const std::vector<ConfigurationSummary>& summaries) {
   HtmlTable table(
       "Settings compared: means over the localized sessions, each with the same weight.");
   const auto columnOf = [&](Quantity quantity, const auto& figure) {
     std::vector<double> values;
-    for (const SettingSummary& summary : summaries) values.push_back(figure(summary));
-    return FigureColumn(quantity, values);
+    for (const ConfigurationSummary& summary : summaries) values.push_back(figure(summary));
+    return MetricColumn(quantity, values);
   };
   std::vector<HeadCell> head{{"Setting"}, {"Sessions"}};
-  std::vector<FigureColumn> columns;
+  std::vector<MetricColumn> columns;
   for (const SessionColumn& column : sessionColumns) {
-    columns.push_back(columnOf(column.quantity, [&](const SettingSummary& summary) {
+    columns.push_back(columnOf(column.quantity, [&](const ConfigurationSummary& summary) {
       return (summary.figures.*column.ours).mean;
     }));
     head.push_back({columns.back().head(column.html)});
   }
-  const FigureColumn largest = columnOf(Quantity::length, [](const SettingSummary& summary) {
+  const MetricColumn largest = columnOf(Quantity::length, [](const ConfigurationSummary& summary) {
     return summary.figures.posMax.largest;
   });
   head.insert(head.end(), {{largest.head("Largest")}, {"Last against first"}, {"Runs"}});
   table.head(head);
   for (std::size_t i = 0; i < summaries.size(); ++i) {
-    const SettingSummary& summary = summaries[i];
+    const ConfigurationSummary& summary = summaries[i];
     std::vector<std::string> cells{escaped(results.settings[i].name), countText(summary.localized)};
     for (std::size_t k = 0; k < columns.size(); ++k)
       cells.push_back(columns[k].figure((summary.figures.*sessionColumns[k].ours).mean));
@@ -101,7 +101,7 @@ std::string settingsTable(const BatchResults& results,
 namespace {
 
 /// A setting's summary of a session that was localized, or null.
-const SessionSummary* localized(const SettingSummary& setting, std::size_t session) {
+const SessionSummary* localized(const ConfigurationSummary& setting, std::size_t session) {
   const auto found = std::find_if(
       setting.sessions.begin(), setting.sessions.end(),
       [&](const SessionSummary& one) { return one.session == session && one.counts.runs > 0; });
@@ -111,15 +111,15 @@ const SessionSummary* localized(const SettingSummary& setting, std::size_t sessi
 }  // namespace
 
 std::string sideBySideTable(const BatchResults& results,
-                            const std::vector<SettingSummary>& summaries) {
+                            const std::vector<ConfigurationSummary>& summaries) {
   HtmlTable table("Sessions with all settings side by side: mean over the runs.");
   std::vector<double> positions;
-  for (const SettingSummary& setting : summaries)
+  for (const ConfigurationSummary& setting : summaries)
     for (const SessionSummary& session : setting.sessions)
       positions.push_back(session.figures.posMean.mean);
-  const FigureColumn position(Quantity::length, positions), heading(Quantity::angle, {});
+  const MetricColumn position(Quantity::length, positions), heading(Quantity::angle, {});
   std::vector<HeadCell> names{{""}}, columns{{"Session"}};
-  for (const BatchSetting& setting : results.settings) {
+  for (const BatchConfiguration& setting : results.settings) {
     names.push_back({escaped(setting.name), 3});
     columns.insert(
         columns.end(),
@@ -130,7 +130,7 @@ std::string sideBySideTable(const BatchResults& results,
   for (std::size_t k = 0; k < results.sessions.size(); ++k) {
     std::vector<std::string> cells{escaped(results.sessions[k].name)};
     bool any = false;
-    for (const SettingSummary& setting : summaries) {
+    for (const ConfigurationSummary& setting : summaries) {
       const SessionSummary* session = localized(setting, k);
       any |= session != nullptr;
       cells.push_back(session ? position.figure(session->figures.posMean.mean) : enDash);
@@ -150,7 +150,7 @@ namespace {
 /// The paper's table of one setting, with what was published for its sessions.
 class SessionRows {
  public:
-  SessionRows(const BatchResults& results, const SettingSummary& setting)
+  SessionRows(const BatchResults& results, const ConfigurationSummary& setting)
       : m_results(results), m_setting(setting), m_published(publishedRows(results)) {
     for (const SessionColumn& column : sessionColumns)
       m_columns.push_back(unitOf(column, setting, m_published));
@@ -224,16 +224,16 @@ class SessionRows {
   }
 
   const BatchResults& m_results;
-  const SettingSummary& m_setting;
+  const ConfigurationSummary& m_setting;
   const PublishedRows m_published;
-  std::vector<FigureColumn> m_columns;
+  std::vector<MetricColumn> m_columns;
   std::vector<std::size_t> m_withShares;  ///< systems that give f_map
 };
 
 }  // namespace
 
 std::string paperTable(const BatchResults& results, std::size_t setting,
-                       const SettingSummary& summary) {
+                       const ConfigurationSummary& summary) {
   const SessionRows rows(results, summary);
   HtmlTable table("Setting " + results.settings[setting].name + rows.caption());
   rows.head(table);
@@ -244,13 +244,13 @@ std::string paperTable(const BatchResults& results, std::size_t setting,
 }
 
 std::string publishedTable(const BatchResults& results,
-                           const std::vector<SettingSummary>& summaries) {
-  const PublishedDataset* dataset = publishedFigures(results.dataset);
+                           const std::vector<ConfigurationSummary>& summaries) {
+  const PublishedDataset* dataset = publishedResults(results.dataset);
   if (!dataset || dataset->figures.empty()) return "";
   const std::vector<ComparedColumn> columns = comparedColumns(*dataset);
   HtmlTable table(dataset->title + ": published figures, and ours below.");
   std::vector<HeadCell> head{{"System"}};
-  std::vector<FigureColumn> units;
+  std::vector<MetricColumn> units;
   for (const ComparedColumn& column : columns) {
     units.push_back(unitOf(column, *dataset, summaries));
     head.push_back({units.back().head(column.html)});
@@ -260,7 +260,7 @@ std::string publishedTable(const BatchResults& results,
   const auto remark = [&](const std::string& system, const std::string& text) {
     if (!text.empty()) remarks += element("li", sentence(system + ": " + text)) + '\n';
   };
-  for (const PublishedFigure& system : dataset->figures) {
+  for (const PublishedResult& system : dataset->figures) {
     std::vector<std::string> cells{escaped(system.system)};
     for (std::size_t i = 0; i < columns.size(); ++i)
       cells.push_back(units[i].figure(system.*columns[i].published));
@@ -282,7 +282,7 @@ std::string publishedTable(const BatchResults& results,
 }
 
 std::string healthTable(const BatchResults& results, std::size_t setting,
-                        const SettingSummary& summary) {
+                        const ConfigurationSummary& summary) {
   HtmlTable table("Setting " + results.settings[setting].name +
                   ": shares of scans, mean over the runs of each session.");
   table.head({{"Session"},
@@ -293,10 +293,10 @@ std::string healthTable(const BatchResults& results, std::size_t setting,
               {"Relocalizations per run"}});
   for (const SessionSummary& session : summary.sessions) {
     if (session.counts.runs == 0) continue;
-    const FigureSpreads& figures = session.figures;
+    const MetricSpreads& figures = session.figures;
     table.row({sessionName(results, session), percent(figures.ok.mean),
                percent(figures.degraded.mean), percent(figures.lost.mean), healthBar(figures),
-               figureText(session.relocalizations, 1)});
+               metricText(session.relocalizations, 1)});
   }
   return table.str();
 }

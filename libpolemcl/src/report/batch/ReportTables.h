@@ -11,25 +11,25 @@ namespace polemcl::report {
 
 /// \brief One row for each setting: what it comes to.
 std::string settingsTable(const BatchResults& results,
-                          const std::vector<SettingSummary>& summaries);
+                          const std::vector<ConfigurationSummary>& summaries);
 /// \brief Sessions with all settings side by side.
 std::string sideBySideTable(const BatchResults& results,
-                            const std::vector<SettingSummary>& summaries);
+                            const std::vector<ConfigurationSummary>& summaries);
 /// \brief The paper's table: f_map, mean and RMSE of position and heading for each session, with
 /// the figures published for it beside ours.
 std::string paperTable(const BatchResults& results, std::size_t setting,
-                       const SettingSummary& summary);
+                       const ConfigurationSummary& summary);
 /// \brief Published figures and ours; empty when none are known for the dataset.
 std::string publishedTable(const BatchResults& results,
-                           const std::vector<SettingSummary>& summaries);
+                           const std::vector<ConfigurationSummary>& summaries);
 /// \brief Scores of the maps of each setting, below published ones; empty when none was scored.
 std::string mapScoresTable(const BatchResults& results,
-                           const std::vector<SettingSummary>& summaries);
+                           const std::vector<ConfigurationSummary>& summaries);
 /// \brief The score of every map; empty when no setting has more than one.
 std::string everyScoreTable(const BatchResults& results);
 /// \brief What the runs said of themselves, for each session.
 std::string healthTable(const BatchResults& results, std::size_t setting,
-                        const SettingSummary& summary);
+                        const ConfigurationSummary& summary);
 /// \brief Every run of a setting, with its seed.
 std::string runsTable(const BatchResults& results, std::size_t setting);
 /// \brief Tasks that failed and runs that were lost; empty without any.

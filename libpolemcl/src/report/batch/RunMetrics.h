@@ -7,36 +7,36 @@
 namespace polemcl::report {
 
 /// \brief A figure of a run and where it is summed up; named as by `pole-eval trajectory`.
-struct FigureName {
+struct MetricName {
   const char* key;
-  double ErrorFigures::*figure;
-  Spread FigureSpreads::*spread;
+  double ErrorMetrics::*figure;
+  Spread MetricSpreads::*spread;
 };
-inline constexpr FigureName figureNames[] = {
-    {"pos_mean", &ErrorFigures::posMean, &FigureSpreads::posMean},
-    {"pos_rmse", &ErrorFigures::posRmse, &FigureSpreads::posRmse},
-    {"pos_max", &ErrorFigures::posMax, &FigureSpreads::posMax},
-    {"pos_end", &ErrorFigures::posEnd, &FigureSpreads::posEnd},
-    {"lat_mean", &ErrorFigures::latMean, &FigureSpreads::latMean},
-    {"lat_std", &ErrorFigures::latStd, &FigureSpreads::latStd},
-    {"lon_mean", &ErrorFigures::lonMean, &FigureSpreads::lonMean},
-    {"lon_std", &ErrorFigures::lonStd, &FigureSpreads::lonStd},
-    {"x_rmse", &ErrorFigures::xRmse, &FigureSpreads::xRmse},
-    {"y_rmse", &ErrorFigures::yRmse, &FigureSpreads::yRmse},
-    {"ang_mean_deg", &ErrorFigures::angMeanDeg, &FigureSpreads::angMeanDeg},
-    {"ang_std_deg", &ErrorFigures::angStdDeg, &FigureSpreads::angStdDeg},
-    {"ang_rmse_deg", &ErrorFigures::angRmseDeg, &FigureSpreads::angRmseDeg}};
+inline constexpr MetricName metricNames[] = {
+    {"pos_mean", &ErrorMetrics::posMean, &MetricSpreads::posMean},
+    {"pos_rmse", &ErrorMetrics::posRmse, &MetricSpreads::posRmse},
+    {"pos_max", &ErrorMetrics::posMax, &MetricSpreads::posMax},
+    {"pos_end", &ErrorMetrics::posEnd, &MetricSpreads::posEnd},
+    {"lat_mean", &ErrorMetrics::latMean, &MetricSpreads::latMean},
+    {"lat_std", &ErrorMetrics::latStd, &MetricSpreads::latStd},
+    {"lon_mean", &ErrorMetrics::lonMean, &MetricSpreads::lonMean},
+    {"lon_std", &ErrorMetrics::lonStd, &MetricSpreads::lonStd},
+    {"x_rmse", &ErrorMetrics::xRmse, &MetricSpreads::xRmse},
+    {"y_rmse", &ErrorMetrics::yRmse, &MetricSpreads::yRmse},
+    {"ang_mean_deg", &ErrorMetrics::angMeanDeg, &MetricSpreads::angMeanDeg},
+    {"ang_std_deg", &ErrorMetrics::angStdDeg, &MetricSpreads::angStdDeg},
+    {"ang_rmse_deg", &ErrorMetrics::angRmseDeg, &MetricSpreads::angRmseDeg}};
 
 /// \brief A share of scans by health state.
 struct ShareName {
   const char* key;
   double HealthShares::*share;
-  Spread FigureSpreads::*spread;
+  Spread MetricSpreads::*spread;
 };
 inline constexpr ShareName shareNames[] = {
-    {"ok", &HealthShares::ok, &FigureSpreads::ok},
-    {"degraded", &HealthShares::degraded, &FigureSpreads::degraded},
-    {"lost", &HealthShares::lost, &FigureSpreads::lost}};
+    {"ok", &HealthShares::ok, &MetricSpreads::ok},
+    {"degraded", &HealthShares::degraded, &MetricSpreads::degraded},
+    {"lost", &HealthShares::lost, &MetricSpreads::lost}};
 
 /// \brief A way to count the score of a map.
 struct ScoreName {
@@ -50,6 +50,6 @@ inline constexpr ScoreName scoreNames[] = {
     {"one_to_one_0.5m", &MapScores::oneToOneHalf, &ScoreSummary::oneToOneHalf}};
 
 /// \brief The position RMSE per axis, as MulRan's published figures give it, m.
-double axisRmse(const ErrorFigures& errors);
+double axisRmse(const ErrorMetrics& errors);
 
 }  // namespace polemcl::report

@@ -15,7 +15,7 @@ constexpr double characterWidth = 8.3;  // of a digit in a wide sans serif
 
 /// A tenth of a pixel is enough: "12.3", "12", "-0.4".
 std::string px(double value) {
-  std::string text = figureText(value, 1, "0");
+  std::string text = metricText(value, 1, "0");
   if (text.size() > 2 && text.substr(text.size() - 2) == ".0") text.resize(text.size() - 2);
   return text;
 }
@@ -67,7 +67,7 @@ std::vector<SvgTick> decadeTicks(const Range& exponents, const std::string& unit
     const int power = static_cast<int>(std::lround(exponent));
     const int shown = unit != "m" ? power : power == -3 ? 0 : power < 0 ? power + 2 : power;
     const std::string prefix = unit != "m" || power >= 0 ? "" : power == -3 ? "m" : "c";
-    all.push_back({exponent, figureText(std::pow(10, shown), std::max(0, -shown)) +
+    all.push_back({exponent, metricText(std::pow(10, shown), std::max(0, -shown)) +
                                  (unit == "°" ? "" : " ") + prefix + unit});
   }
   return all;

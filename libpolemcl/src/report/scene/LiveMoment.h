@@ -49,7 +49,7 @@ struct LiveMoment {
 };
 
 /// \brief \param start Time of the first scan, s. \param way Up to this update.
-LiveMoment momentOf(const PoleLocalization& localization, const PoleFrame& frame,
+LiveMoment momentOf(const LocalizationPipeline& localization, const PoleFrame& frame,
                     const LocalizationUpdate& update, std::size_t scan, double start,
                     const Way& way);
 

@@ -242,8 +242,8 @@ std::vector<PoleDetection> DetectionSampler::sample(std::size_t i,
   return found;
 }
 
-std::vector<float> DetectionSampler::freeRange(const Eigen::Isometry3d& T_map_sensor) const {
-  constexpr int kSectors = FreeRangeFinder::kSectors;
+std::vector<float> DetectionSampler::visibilityRange(const Eigen::Isometry3d& T_map_sensor) const {
+  constexpr int kSectors = VisibilityRangeFinder::kSectors;
   const Eigen::Vector2d sensor = T_map_sensor.translation().head<2>();
   const Eigen::Vector3d ahead = cloudFrame(T_map_sensor, m_options).linear().col(0);
   const double yaw = std::atan2(ahead.y(), ahead.x());
@@ -258,7 +258,7 @@ std::vector<float> DetectionSampler::freeRange(const Eigen::Isometry3d& T_map_se
   std::vector<float> ranges(kSectors);
   for (int i = 0; i < kSectors; ++i) {
     const float least = std::min(border[i], border[(i + 1) % kSectors]);
-    ranges[i] = FreeRangeFinder::kStep * std::floor(least / FreeRangeFinder::kStep);
+    ranges[i] = VisibilityRangeFinder::kStep * std::floor(least / VisibilityRangeFinder::kStep);
   }
   return ranges;
 }

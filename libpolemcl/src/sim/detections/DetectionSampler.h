@@ -39,11 +39,12 @@ class DetectionSampler {
   /// \return Poles in the frame of the written clouds (see cloudFrame()), heights above ground.
   std::vector<PoleDetection> sample(std::size_t i, const Eigen::Isometry3d& T_map_sensor) const;
 
-  /// \brief How far a pole could have been seen in each direction, as FreeRangeFinder gives it: to
-  /// the nearest house, wall, hoarding or container, at most to the model's greatest range, in its
-  /// steps. Cars, hedges and crowns hide nothing here; the model's detection rates hold what they
-  /// hide. \return FreeRangeFinder::kSectors ranges, m, in the frame of the written clouds.
-  std::vector<float> freeRange(const Eigen::Isometry3d& T_map_sensor) const;
+  /// \brief How far a pole could have been seen in each direction, as VisibilityRangeFinder gives
+  /// it: to the nearest house, wall, hoarding or container, at most to the model's greatest range,
+  /// in its steps. Cars, hedges and crowns hide nothing here; the model's detection rates hold what
+  /// they hide. \return VisibilityRangeFinder::kSectors ranges, m, in the frame of the written
+  /// clouds.
+  std::vector<float> visibilityRange(const Eigen::Isometry3d& T_map_sensor) const;
 
   const DetectionModel& model() const { return m_model; }
   const std::vector<ClutterObject>& clutter() const { return m_clutter; }

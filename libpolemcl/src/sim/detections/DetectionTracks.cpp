@@ -107,7 +107,7 @@ class Tracker {
       detectionOf.push_back(k);
     }
     std::vector<const PoleDetection*> of(truth.size(), nullptr);
-    for (const PolePair& pair : pairClosest(truth, found, radius)) {
+    for (const AssignedPair& pair : greedyAssignment(truth, found, radius)) {
       m_used[i][detectionOf[pair.second]] = 1;
       of[pair.first] = &poles[detectionOf[pair.second]];
     }

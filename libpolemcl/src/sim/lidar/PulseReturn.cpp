@@ -28,14 +28,14 @@ struct Group {
 };
 }  // namespace
 
-const Material& EchoMaker::material(const SubHit& hit) const {
+const Material& PulseReturnModel::material(const SubHit& hit) const {
   if (hit.solid >= 0) return m_solids[hit.solid].material;
   if (hit.solid == SubHit::kRoad) return materials::asphalt;
   return hit.solid == SubHit::kPavement ? materials::paving : materials::grass;
 }
 
-std::optional<Echo> EchoMaker::make(const SubHit* hits, const Beam& beam,
-                                    std::uint64_t seed) const {
+std::optional<PulseReturn> PulseReturnModel::make(const SubHit* hits, const Beam& beam,
+                                                  std::uint64_t seed) const {
   Part parts[kSubRays];
   int count = 0;
   for (int s = 0; s < kSubRays; ++s) {
@@ -71,8 +71,8 @@ std::optional<Echo> EchoMaker::make(const SubHit* hits, const Beam& beam,
   range = std::round(range / m_lidar.rangeStep) * m_lidar.rangeStep;
   if (range < m_lidar.minRange || range > m_lidar.maxRange) return std::nullopt;
   const double shine = best.signal * (0.85 + 0.3 * random.uniform());
-  return Echo{range, static_cast<float>(std::clamp(shine, 0.0, 1.0)),
-              hit.solid >= 0 ? m_solids[hit.solid].object : 0u};
+  return PulseReturn{range, static_cast<float>(std::clamp(shine, 0.0, 1.0)),
+                     hit.solid >= 0 ? m_solids[hit.solid].object : 0u};
 }
 
 }  // namespace polemcl::sim

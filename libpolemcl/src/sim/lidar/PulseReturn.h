@@ -18,19 +18,19 @@ struct SubHit {
   static constexpr std::int32_t kNothing = -1, kRoad = -2, kPavement = -3, kGrass = -4;
 };
 
-struct Echo {
+struct PulseReturn {
   double range;
   float intensity;  ///< in [0, 1]
   std::uint32_t label;
 };
 
 /// \brief Melts sub-rays into echoes of one LiDAR.
-class EchoMaker {
+class PulseReturnModel {
  public:
-  EchoMaker(const LidarModel& lidar, const std::vector<SolidView>& solids)
+  PulseReturnModel(const LidarModel& lidar, const std::vector<SolidView>& solids)
       : m_lidar(lidar), m_solids(solids) {}
   /// \brief The strongest echo, if it is seen at all.
-  std::optional<Echo> make(const SubHit* hits, const Beam& beam, std::uint64_t seed) const;
+  std::optional<PulseReturn> make(const SubHit* hits, const Beam& beam, std::uint64_t seed) const;
 
  private:
   const Material& material(const SubHit& hit) const;

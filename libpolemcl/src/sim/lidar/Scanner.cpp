@@ -165,7 +165,7 @@ SimulatedScan Scanner::scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t
     m_impl->castSolid(solids[i], i, columns, bounds[i], passSeed, hits);
 
   SimulatedScan scan;
-  const EchoMaker echoes(lidar, solids);
+  const PulseReturnModel echoes(lidar, solids);
   for (int c = 0; c < lidar.columns; ++c)
     for (std::size_t b = 0; b < m_impl->beams.size(); ++b) {
       const std::size_t pixel = m_impl->pixel(b, c);

@@ -52,8 +52,9 @@ std::vector<SideRoad> sideRoads(const std::vector<Crossing>& crossings, const St
   return roads;
 }
 
-StreetPlan::StreetPlan(const WorldOptions& options, const Street& street, const Terrain& terrain,
-                       const std::vector<Crossing>& crossings, StreetPart part)
+StreetLayout::StreetLayout(const WorldOptions& options, const Street& street,
+                           const Terrain& terrain, const std::vector<Crossing>& crossings,
+                           StreetPart part)
     : m_options(options),
       m_street(street),
       m_terrain(terrain),
@@ -62,7 +63,7 @@ StreetPlan::StreetPlan(const WorldOptions& options, const Street& street, const 
       m_open(part.index > 0),
       m_nextId(m_street0 + 1) {}
 
-void StreetPlan::furnish() {
+void StreetLayout::furnish() {
   crossingFurniture();
   for (const int side : {1, -1}) {
     lamps(side);
@@ -90,19 +91,19 @@ void StreetPlan::furnish() {
             [](const TruePole& a, const TruePole& b) { return a.id < b.id; });
 }
 
-Random StreetPlan::stream(std::uint64_t kind, int side, std::uint64_t index) const {
+Random StreetLayout::stream(std::uint64_t kind, int side, std::uint64_t index) const {
   return Random(hash(m_options.seed, kind, side + 2, index));
 }
 
-Random StreetPlan::dayStream(std::uint64_t kind, int side, std::uint64_t index) const {
+Random StreetLayout::dayStream(std::uint64_t kind, int side, std::uint64_t index) const {
   return Random(hash(m_options.seed, kind, side + 2, index, 0xda11ull, m_options.day));
 }
 
-double StreetPlan::pavementWidth(int side, double s) const {
+double StreetLayout::pavementWidth(int side, double s) const {
   return stream(0x9a5e, side, static_cast<std::uint64_t>(s / 150)).uniform(2.2, 4.2);
 }
 
-bool StreetPlan::nearCrossing(int side, double s, double gap) const {
+bool StreetLayout::nearCrossing(int side, double s, double gap) const {
   for (const Crossing& crossing : m_crossings)
     if ((side > 0 ? crossing.left : crossing.right) &&
         std::abs(crossing.s - s) < crossing.halfWidth + gap)
@@ -110,13 +111,13 @@ bool StreetPlan::nearCrossing(int side, double s, double gap) const {
   return false;
 }
 
-Site StreetPlan::site(int side, double s, double lateral) const {
+Site StreetLayout::site(int side, double s, double lateral) const {
   const Pose2D pose = m_street.at(s, side * lateral);
   return {Eigen::Vector3d(pose.x, pose.y, m_terrain.height(pose.x, pose.y)),
           pose.yaw + (side > 0 ? 0 : M_PI)};
 }
 
-bool StreetPlan::claim(const Site& place, double gap, Ground ground) {
+bool StreetLayout::claim(const Site& place, double gap, Ground ground) {
   const double x = place.base.x(), y = place.base.y(), edge = m_terrain.edge(x, y);
   if (ground == Ground::road ? edge < -2.6 || edge > -0.6 : edge < 0.25) return false;
   constexpr double kCell = 4;
@@ -133,7 +134,7 @@ bool StreetPlan::claim(const Site& place, double gap, Ground ground) {
   return true;
 }
 
-bool StreetPlan::goneToday(std::uint32_t id) const {
+bool StreetLayout::goneToday(std::uint32_t id) const {
   return m_options.day != 0 &&
          Random(hash(m_options.seed, 0x60ull, m_options.day, id)).chance(m_options.removedShare);
 }
@@ -160,7 +161,7 @@ void removeBuiltOver(std::vector<WorldObject>& objects, std::vector<TruePole>& p
   poles.erase(std::remove_if(poles.begin(), poles.end(), isHidden), poles.end());
 }
 
-void StreetPlan::add(Piece piece, const Site& place) {
+void StreetLayout::add(Piece piece, const Site& place) {
   const std::uint32_t id = piece.object.id;
   if (m_permanent && piece.pole) m_planned.push_back({id, piece.object.kind, place});
   if (goneToday(id) || (m_permanent && lastDayOf(id) <= m_options.day)) return;

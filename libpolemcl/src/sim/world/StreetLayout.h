@@ -32,10 +32,10 @@ void removeBuiltOver(std::vector<WorldObject>& objects, std::vector<TruePole>& p
 
 /// \brief Fills a street. Permanent things draw from streams of (seed, kind, place), so that they
 /// are the same on every day; what a day changes draws from (seed, day, ...).
-class StreetPlan {
+class StreetLayout {
  public:
-  StreetPlan(const WorldOptions& options, const Street& street, const Terrain& terrain,
-             const std::vector<Crossing>& crossings, StreetPart part = {});
+  StreetLayout(const WorldOptions& options, const Street& street, const Terrain& terrain,
+               const std::vector<Crossing>& crossings, StreetPart part = {});
   void furnish();
   std::vector<WorldObject> objects;
   std::vector<TruePole> poles;

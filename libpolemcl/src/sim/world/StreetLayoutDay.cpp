@@ -5,7 +5,7 @@
 
 namespace polemcl::sim {
 
-void StreetPlan::addedPoles(std::size_t permanentPoles) {
+void StreetLayout::addedPoles(std::size_t permanentPoles) {
   if (m_options.day == 0) return;
   for (std::size_t i = 0; i < permanentPoles; ++i) {
     Random random = dayStream(0xadd, 0, i);
@@ -23,7 +23,7 @@ void StreetPlan::addedPoles(std::size_t permanentPoles) {
   }
 }
 
-void StreetPlan::parkedVehicles(int side) {
+void StreetLayout::parkedVehicles(int side) {
   constexpr double kBlock = 45;  // m where parking is allowed, or not
   Random random = dayStream(0xca5, side);
   for (double s = random.uniform(2, 5); s < m_street.length(); s += random.uniform(5.4, 7)) {
@@ -39,7 +39,7 @@ void StreetPlan::parkedVehicles(int side) {
   }
 }
 
-void StreetPlan::vehiclesInYards() {
+void StreetLayout::vehiclesInYards() {
   for (std::size_t i = 0; i < m_yards.size(); ++i) {
     const Yard& yard = m_yards[i];
     Random random = dayStream(0xca6, yard.side, i);
@@ -54,7 +54,7 @@ void StreetPlan::vehiclesInYards() {
   }
 }
 
-void StreetPlan::people(int side) {
+void StreetLayout::people(int side) {
   if (m_options.clutter <= 0) return;
   Random random = dayStream(0x9e0, side);
   for (double s = random.uniform(0, 20); s < m_street.length();

@@ -6,7 +6,7 @@
 
 namespace polemcl::sim {
 
-void StreetPlan::crossingFurniture() {
+void StreetLayout::crossingFurniture() {
   for (std::size_t i = 0; i < m_crossings.size(); ++i) {
     const Crossing& crossing = m_crossings[i];
     Random random = stream(0x7af, 0, i);
@@ -23,7 +23,7 @@ void StreetPlan::crossingFurniture() {
   }
 }
 
-void StreetPlan::lamps(int side) {
+void StreetLayout::lamps(int side) {
   Random random = stream(0x1a4b, side);
   for (double s = random.uniform(3, m_options.lampSpacing); s < m_street.length();
        s += m_options.lampSpacing * random.uniform(0.8, 1.2)) {
@@ -41,7 +41,7 @@ void StreetPlan::lamps(int side) {
   }
 }
 
-void StreetPlan::avenue(int side) {
+void StreetLayout::avenue(int side) {
   constexpr double kBlock = 70;  // m planted, or not, as one
   const double leaves = m_options.foliage * dayStream(0x1eaf, 0).uniform(0.85, 1.15);
   for (double start = 0; start < m_street.length(); start += kBlock) {
@@ -61,7 +61,7 @@ void StreetPlan::avenue(int side) {
   }
 }
 
-void StreetPlan::signs(int side) {
+void StreetLayout::signs(int side) {
   Random random = stream(0x519, side);
   for (double s = random.uniform(2, m_options.signSpacing); s < m_street.length();
        s += m_options.signSpacing * random.uniform(0.4, 1.6)) {
@@ -76,7 +76,7 @@ void StreetPlan::signs(int side) {
   }
 }
 
-void StreetPlan::smallThings(int side) {
+void StreetLayout::smallThings(int side) {
   if (m_options.clutter <= 0) return;
   Random random = stream(0x5ba11, side);
   for (double s = random.uniform(0, 10); s < m_street.length();

@@ -13,7 +13,7 @@ double leavesOf(const WorldOptions& options) {
 }
 }  // namespace
 
-void StreetPlan::lots(int side) {
+void StreetLayout::lots(int side) {
   Random random = stream(0x107, side);
   for (double s = 0; s < m_street.length();) s += lot(side, s, random);
   if (m_open) return;
@@ -31,7 +31,7 @@ void StreetPlan::lots(int side) {
 }
 
 /// \return The length used, m.
-double StreetPlan::lot(int side, double s, Random& random) {
+double StreetLayout::lot(int side, double s, Random& random) {
   const double length = random.uniform(9, 26), kind = random.uniform(),
                depth = random.uniform(3.5, 8);
   const double middle = s + length / 2;
@@ -55,7 +55,7 @@ double StreetPlan::lot(int side, double s, Random& random) {
   return length;
 }
 
-void StreetPlan::house(int side, double s, double length, double setBack, Random& random) {
+void StreetLayout::house(int side, double s, double length, double setBack, Random& random) {
   const double front = m_options.roadWidth / 2 + pavementWidth(side, s) + setBack;
   const double depth = random.uniform(8, 12);
   const std::uint32_t id = m_nextId++;
@@ -73,7 +73,7 @@ void StreetPlan::house(int side, double s, double length, double setBack, Random
   add(makeHouse(place, id, length, depth, random));
 }
 
-void StreetPlan::garden(int side, double s, double length, double depth, Random& random) {
+void StreetLayout::garden(int side, double s, double length, double depth, Random& random) {
   const double border = m_options.roadWidth / 2 + pavementWidth(side, s) + 0.1;
   const double kind = random.uniform();
   const Site edge = site(side, s, border);
@@ -101,7 +101,7 @@ void StreetPlan::garden(int side, double s, double length, double depth, Random&
   }
 }
 
-void StreetPlan::yard(int side, double s, double length, Random& random) {
+void StreetLayout::yard(int side, double s, double length, Random& random) {
   const double border = m_options.roadWidth / 2 + pavementWidth(side, s);
   const double depth = random.uniform(9, 18);
   m_yards.push_back({side, s, length, border});
@@ -119,7 +119,7 @@ void StreetPlan::yard(int side, double s, double length, Random& random) {
   }
 }
 
-void StreetPlan::park(int side, double s, double length, Random& random) {
+void StreetLayout::park(int side, double s, double length, Random& random) {
   const double border = m_options.roadWidth / 2 + pavementWidth(side, s) + 0.4;
   const TreeStyle style(random);
   const int plants = static_cast<int>(length * random.uniform(0.25, 0.5));

@@ -22,7 +22,7 @@ bool makesRoom(Kind kind) {
 
 }  // namespace
 
-void StreetPlan::planSites() {
+void StreetLayout::planSites() {
   if (m_options.buildingSites <= 0) return;
   // On each piece sites follow one another: idle for a while, then one of one to three months. The
   // beginning lies far enough back for day 0 to be like any other.
@@ -47,7 +47,7 @@ void StreetPlan::planSites() {
     }
 }
 
-void StreetPlan::findSite(BuildingSite site, double start, double length) {
+void StreetLayout::findSite(BuildingSite site, double start, double length) {
   Random random(hash(site.seed, 0xf14dull));
   site.boards = random.chance(0.5);
   for (int attempt = 0; attempt < 20; ++attempt, length = std::max(15.0, 0.9 * length)) {
@@ -68,8 +68,8 @@ void StreetPlan::findSite(BuildingSite site, double start, double length) {
   }
 }
 
-void StreetPlan::fenceOff(const BuildingSite& site, double depth, std::uint32_t& id,
-                          Random& random) {
+void StreetLayout::fenceOff(const BuildingSite& site, double depth, std::uint32_t& id,
+                            Random& random) {
   const double out = m_options.roadWidth / 2 + kSiteFence;
   const auto fence = [&](const Site& place, double length) {
     add(site.boards ? makeHoarding(place, id++, length, random)
@@ -86,7 +86,7 @@ void StreetPlan::fenceOff(const BuildingSite& site, double depth, std::uint32_t&
   }
 }
 
-void StreetPlan::buildSite(const BuildingSite& building) {
+void StreetLayout::buildSite(const BuildingSite& building) {
   Random random(hash(building.seed, 0xb01dull));
   std::uint32_t id = m_street0 + kFirstOfSites +
                      kIdsPerSite * static_cast<std::uint32_t>(hash(building.seed) % 6000);
@@ -107,7 +107,7 @@ void StreetPlan::buildSite(const BuildingSite& building) {
   }
 }
 
-const BuildingSite* StreetPlan::siteAt(double x, double y, double beyond) const {
+const BuildingSite* StreetLayout::siteAt(double x, double y, double beyond) const {
   for (const BuildingSite& site : sites) {
     std::size_t nearest = 0;
     const Eigen::Vector2d place(x, y);
@@ -126,7 +126,7 @@ const BuildingSite* StreetPlan::siteAt(double x, double y, double beyond) const 
   return nullptr;
 }
 
-void StreetPlan::clearSites() {
+void StreetLayout::clearSites() {
   if (sites.empty()) return;
   std::set<std::uint32_t> gone;
   for (const TruePole& pole : poles) {

@@ -38,12 +38,12 @@ Piece makeAgain(Kind kind, const Site& place, std::uint32_t id, double foliage, 
 
 }  // namespace
 
-double StreetPlan::lastDayOf(std::uint32_t id) const {
+double StreetLayout::lastDayOf(std::uint32_t id) const {
   if (m_options.replacedPerYear <= 0) return std::numeric_limits<double>::infinity();
   return waiting(m_options.replacedPerYear, hash(m_options.seed, 0x1a57ull, id));
 }
 
-void StreetPlan::replacedPoles() {
+void StreetLayout::replacedPoles() {
   if (m_options.replacedPerYear <= 0) return;
   // Whoever goes leaves a successor beside it at once, or nothing; then another one comes somewhere
   // else, some time. Who came first has the first choice, so that no later day moves a pole.
@@ -65,7 +65,7 @@ void StreetPlan::replacedPoles() {
   for (const Arrival& arrival : arrivals) settle(*arrival.old, arrival.beside);
 }
 
-void StreetPlan::settle(const Planned& old, bool beside) {
+void StreetLayout::settle(const Planned& old, bool beside) {
   const std::uint32_t id = old.id + kFirstReplaced;
   Random random(hash(m_options.seed, 0x4e3ull, id));
   const Kind kind = beside ? old.kind : random.chance(0.7) ? Kind::sign : Kind::lampPost;
@@ -87,7 +87,7 @@ void StreetPlan::settle(const Planned& old, bool beside) {
   }
 }
 
-void StreetPlan::snowBanks(double height) {
+void StreetLayout::snowBanks(double height) {
   if (height < 0.02) return;
   constexpr double kPiece = 4.5;  // m
   for (const int side : {1, -1}) {

@@ -82,7 +82,7 @@ struct Furnished {
   std::vector<WorldObject> objects;
   std::vector<TruePole> poles;
   std::vector<BuildingSite> sites;
-  void add(StreetPlan plan) {
+  void add(StreetLayout plan) {
     objects.insert(objects.end(), plan.objects.begin(), plan.objects.end());
     poles.insert(poles.end(), plan.poles.begin(), plan.poles.end());
     sites.insert(sites.end(), plan.sites.begin(), plan.sites.end());
@@ -94,7 +94,7 @@ Furnished furnish(const WorldOptions& options, const Street& street, const Terra
   WorldOptions today = options;
   if (options.dayOfYear > 0) today.foliage *= seasonOf(options.dayOfYear + options.day).foliage;
   Furnished all;
-  StreetPlan plan(today, street, terrain, crossings);
+  StreetLayout plan(today, street, terrain, crossings);
   plan.furnish();
   all.add(std::move(plan));
   for (std::size_t k = 0; k < detours.size(); ++k) {
@@ -102,8 +102,8 @@ Furnished furnish(const WorldOptions& options, const Street& street, const Terra
     own.seed = hash(options.seed, 0x51de2ull, k);
     std::vector<Crossing> bends;  // nothing wide fits into a bend
     for (const double s : detours[k].bends) bends.push_back({s, true, true, 12, false});
-    StreetPlan sidePlan(own, detours[k].street, terrain, bends,
-                        StreetPart{static_cast<std::uint32_t>(k + 1)});
+    StreetLayout sidePlan(own, detours[k].street, terrain, bends,
+                          StreetPart{static_cast<std::uint32_t>(k + 1)});
     sidePlan.furnish();
     all.add(std::move(sidePlan));
   }

@@ -119,7 +119,7 @@ Bias bias(double depth, double radius, Fit fit) {
 
 }  // namespace
 
-TEST(CircleFit, pointsOnACircleGiveThatCircle) {
+TEST(CircleFit, PointsOnACircleGiveThatCircle) {
   for (const double to : {1.0, 2.5, 6.0}) {
     const Points points = arc(3, -2, 0.7, 0.2, 0.2 + to, 12);
     expectCircle(fitCircleKasa(points), 3, -2, 0.7, 1e-9);
@@ -128,19 +128,19 @@ TEST(CircleFit, pointsOnACircleGiveThatCircle) {
   }
 }
 
-TEST(CircleFit, threePointsAreEnough) {
+TEST(CircleFit, ThreePointsAreEnough) {
   const Points points = {{1, 0}, {0, 1}, {-1, 0}};
   expectCircle(fitCircleKasa(points), 0, 0, 1, 1e-12);
   expectCircle(fitCircleTaubin(points), 0, 0, 1, 1e-12);
 }
 
-TEST(CircleFit, isAccurateFarFromTheOrigin) {
+TEST(CircleFit, IsAccurateFarFromTheOrigin) {
   const Points points = arc(4000, -7000, 0.15, 1, 4, 20);
   expectCircle(fitCircleKasa(points), 4000, -7000, 0.15, 1e-7);
   expectCircle(fitCircleTaubin(points), 4000, -7000, 0.15, 1e-7);
 }
 
-TEST(CircleFit, kasaEqualsLeastSquares) {
+TEST(CircleFit, KasaEqualsLeastSquares) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Points points = noisyCircle(seed);
     const Circle expected = kasaOracle(points);
@@ -148,7 +148,7 @@ TEST(CircleFit, kasaEqualsLeastSquares) {
   }
 }
 
-TEST(CircleFit, taubinEqualsTheGeneralizedEigenvalueProblem) {
+TEST(CircleFit, TaubinEqualsTheGeneralizedEigenvalueProblem) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Points points = noisyCircle(seed);
     const Circle expected = taubinOracle(points);
@@ -156,7 +156,7 @@ TEST(CircleFit, taubinEqualsTheGeneralizedEigenvalueProblem) {
   }
 }
 
-TEST(CircleFit, kasaMeanHasKasasCentreAndTheMeanDistanceToIt) {
+TEST(CircleFit, KasaMeanHasKasasCentreAndTheMeanDistanceToIt) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Points points = noisyCircle(seed);
     const auto kasa = fitCircleKasa(points);
@@ -170,7 +170,7 @@ TEST(CircleFit, kasaMeanHasKasasCentreAndTheMeanDistanceToIt) {
   }
 }
 
-TEST(CircleFit, kasaMeanInSinglePrecisionRoundsOffsets) {
+TEST(CircleFit, KasaMeanInSinglePrecisionRoundsOffsets) {
   const Points points = noisyCircle(1);
   const auto exact = fitCircleKasaMean(points, false), rounded = fitCircleKasaMean(points, true);
   ASSERT_TRUE(exact && rounded);
@@ -178,7 +178,7 @@ TEST(CircleFit, kasaMeanInSinglePrecisionRoundsOffsets) {
   EXPECT_EQ(rounded->radius, static_cast<float>(rounded->radius));
 }
 
-TEST(CircleFit, kasaMeanRefusesOnlyWhatIsExactlySingular) {
+TEST(CircleFit, KasaMeanRefusesOnlyWhatIsExactlySingular) {
   Points line;  // on a line but for 1e-9 m
   for (int i = 0; i < 9; ++i) line.emplace_back(7.3 + 0.1 * i + 1e-9 * i * i, 0.7 - 0.13 * i);
   EXPECT_FALSE(fitCircleKasa(line));
@@ -191,7 +191,7 @@ TEST(CircleFit, kasaMeanRefusesOnlyWhatIsExactlySingular) {
   EXPECT_FALSE(fitCircleKasaMean({{4, 1}, {4, 2}, {4, 5}}, true));
 }
 
-TEST(CircleFit, noCircleThroughPointsOnALine) {
+TEST(CircleFit, NoCircleThroughPointsOnALine) {
   const Points line = {{0, 0}, {1, 2}, {2, 4}, {3, 6}};
   EXPECT_FALSE(fitCircleKasa(line));
   EXPECT_FALSE(fitCircleTaubin(line));
@@ -201,7 +201,7 @@ TEST(CircleFit, noCircleThroughPointsOnALine) {
   EXPECT_FALSE(fitCircleTaubin(rounded));
 }
 
-TEST(CircleFit, noCircleThroughTooFewPoints) {
+TEST(CircleFit, NoCircleThroughTooFewPoints) {
   EXPECT_FALSE(fitCircleKasa({}));
   EXPECT_FALSE(fitCircleTaubin({}));
   EXPECT_FALSE(fitCircleKasa({{0, 0}, {1, 1}}));
@@ -210,14 +210,14 @@ TEST(CircleFit, noCircleThroughTooFewPoints) {
   EXPECT_FALSE(fitCircleSilhouette({{5, 0}}, 0.1));
 }
 
-TEST(CircleFit, noCircleThroughOnePointSeveralTimes) {
+TEST(CircleFit, NoCircleThroughOnePointSeveralTimes) {
   const Points same(5, Eigen::Vector2d(4, 3));
   EXPECT_FALSE(fitCircleKasa(same));
   EXPECT_FALSE(fitCircleTaubin(same));
   EXPECT_FALSE(fitCircleSilhouette(same, 0));
 }
 
-TEST(CircleFit, silhouetteOfARenderedPole) {
+TEST(CircleFit, SilhouetteOfARenderedPole) {
   sim::Random random(3);
   for (const double bearing : {0.0, 2.0, M_PI, -1.5})  // pi: across the seam of atan2
     for (const double radius : {0.1, 0.25})
@@ -229,16 +229,16 @@ TEST(CircleFit, silhouetteOfARenderedPole) {
       }
 }
 
-TEST(CircleFit, silhouetteWithoutWidthIsNone) {
+TEST(CircleFit, SilhouetteWithoutWidthIsNone) {
   EXPECT_FALSE(fitCircleSilhouette({{5, 0}, {6, 0}}, 0));
   EXPECT_TRUE(fitCircleSilhouette({{5, 0}, {6, 0}}, 0.1));
 }
 
-TEST(CircleFit, silhouetteOfWhatSurroundsTheSensorIsNone) {
+TEST(CircleFit, SilhouetteOfWhatSurroundsTheSensorIsNone) {
   EXPECT_FALSE(fitCircleSilhouette({{1, 0}, {0, 1}, {-1, 0}}, 0));
 }
 
-TEST(CircleFit, onShortArcsKasaIsTooSmallTaubinLessSilhouetteNot) {
+TEST(CircleFit, OnShortArcsKasaIsTooSmallTaubinLessSilhouetteNot) {
   const double depth = 10, radius = 0.15;
   const Bias kasa = bias(depth, radius, fitCircleKasa);
   const Bias taubin = bias(depth, radius, fitCircleTaubin);

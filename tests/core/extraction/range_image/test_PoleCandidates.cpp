@@ -17,7 +17,7 @@ struct Scene {
   static constexpr int kTopRow = 2, kRows = 6, kColumn = 8;
   RangeImage image{12, 32};
   PointList points;
-  PaperOptions options;
+  RangeImageOptions options;
   double heightOffset = 0;
   HeightRange heights{-99, -99};
 
@@ -32,7 +32,7 @@ struct Scene {
     image.set(row, column, range, static_cast<std::int32_t>(points.size()));
     points.add(0, 0, z);
   }
-  Refusal test(int row = kTopRow, int column = kColumn) {
+  RejectionReason test(int row = kTopRow, int column = kColumn) {
     SegmentationOptions growing;
     growing.epsilon = options.epsilon;
     const Segmentation segmentation(image, growing);
@@ -43,129 +43,129 @@ struct Scene {
 
 }  // namespace
 
-TEST(PoleCandidates, aSlimThingBeforeAWallPasses) {
+TEST(PoleCandidates, ASlimThingBeforeAWallPasses) {
   Scene scene(2.5);
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
   EXPECT_FLOAT_EQ(static_cast<float>(scene.heights.high), 2.5f);
   EXPECT_FLOAT_EQ(static_cast<float>(scene.heights.low), 0.5f);
 }
 
-TEST(PoleCandidates, tooFewPixels) {
+TEST(PoleCandidates, TooFewPixels) {
   Scene scene;
   scene.options.minPixels = 6;  // strictly more are asked for
-  EXPECT_EQ(scene.test(), Refusal::tooFewPoints);
+  EXPECT_EQ(scene.test(), RejectionReason::tooFewPoints);
   scene.options.minPixels = 5;
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
-TEST(PoleCandidates, widerThanTall) {
+TEST(PoleCandidates, WiderThanTall) {
   Scene scene(2.5, 7);
-  EXPECT_EQ(scene.test(), Refusal::tooWide);
+  EXPECT_EQ(scene.test(), RejectionReason::tooWide);
   Scene square(2.5, 6);
-  EXPECT_EQ(square.test(), Refusal::count_);
+  EXPECT_EQ(square.test(), RejectionReason::count_);
   square.options.minAspect = 1.01;
-  EXPECT_EQ(square.test(), Refusal::tooWide);
+  EXPECT_EQ(square.test(), RejectionReason::tooWide);
 }
 
-TEST(PoleCandidates, widerThanAllowed) {
+TEST(PoleCandidates, WiderThanAllowed) {
   Scene scene(2.5, 4);
   scene.options.maxWidthPx = 3;
-  EXPECT_EQ(scene.test(), Refusal::tooWide);
+  EXPECT_EQ(scene.test(), RejectionReason::tooWide);
   scene.options.maxWidthPx = 4;
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
-TEST(PoleCandidates, somethingNearerStandsBesideIt) {
+TEST(PoleCandidates, SomethingNearerStandsBesideIt) {
   Scene scene;
   scene.set(Scene::kTopRow, Scene::kColumn - 1, 5, 0);
-  EXPECT_EQ(scene.test(), Refusal::count_);  // 5 of 6 pixels are in front: 0.83
+  EXPECT_EQ(scene.test(), RejectionReason::count_);  // 5 of 6 pixels are in front: 0.83
   scene.set(Scene::kTopRow + 3, Scene::kColumn + 1, 5, 0);
-  EXPECT_EQ(scene.test(), Refusal::notForeground);  // 4 of 6: 0.67
+  EXPECT_EQ(scene.test(), RejectionReason::notForeground);  // 4 of 6: 0.67
   scene.options.foreground = 0.6;
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
-TEST(PoleCandidates, aPixelWithNearerThingsOnBothSidesCountsOnce) {
+TEST(PoleCandidates, APixelWithNearerThingsOnBothSidesCountsOnce) {
   Scene scene;
   scene.set(Scene::kTopRow, Scene::kColumn - 1, 5, 0);
   scene.set(Scene::kTopRow, Scene::kColumn + 1, 5, 0);
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
 // Of three columns only the outer two have neighbours outside: 12 of 18 pixels, 0.67.
-TEST(PoleCandidates, inFrontOnlyPixelsAtTheEdgeCount) {
+TEST(PoleCandidates, InFrontOnlyPixelsAtTheEdgeCount) {
   Scene scene(2.5, 3);
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
   scene.options.foregroundTest = "in_front";
-  EXPECT_EQ(scene.test(), Refusal::notForeground);
+  EXPECT_EQ(scene.test(), RejectionReason::notForeground);
   scene.options.foreground = 0.66;
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
-TEST(PoleCandidates, inFrontWhatHasNothingBesideItIsNotInTheForeground) {
+TEST(PoleCandidates, InFrontWhatHasNothingBesideItIsNotInTheForeground) {
   Scene scene;
   for (int r = 0; r < Scene::kRows + Scene::kTopRow; ++r)
     for (const int c : {Scene::kColumn - 1, Scene::kColumn + 1}) scene.image.set(r, c, 0, -1);
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
   scene.options.foregroundTest = "in_front";
-  EXPECT_EQ(scene.test(), Refusal::notForeground);
+  EXPECT_EQ(scene.test(), RejectionReason::notForeground);
 }
 
-TEST(PoleCandidates, inFrontANearerNeighbourCountsAgainstAPixel) {
+TEST(PoleCandidates, InFrontANearerNeighbourCountsAgainstAPixel) {
   Scene scene;
   scene.options.foregroundTest = "in_front";
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
   for (const int row : {0, 3}) scene.set(Scene::kTopRow + row, Scene::kColumn - 1, 5, 0);
-  EXPECT_EQ(scene.test(), Refusal::notForeground);  // 4 of 6: 0.67
+  EXPECT_EQ(scene.test(), RejectionReason::notForeground);  // 4 of 6: 0.67
 }
 
-TEST(PoleCandidates, whatIsBesideIsSeenAcrossTheSeam) {
+TEST(PoleCandidates, WhatIsBesideIsSeenAcrossTheSeam) {
   Scene scene;
   for (int r = Scene::kTopRow; r < Scene::kTopRow + Scene::kRows; ++r) {
     scene.set(r, 0, 10, 2.5 - 0.4 * (r - Scene::kTopRow));
     scene.set(r, 31, r < Scene::kTopRow + 2 ? 5 : 20, 0);
   }
-  EXPECT_EQ(scene.test(Scene::kTopRow, 0), Refusal::notForeground);
+  EXPECT_EQ(scene.test(Scene::kTopRow, 0), RejectionReason::notForeground);
 }
 
-TEST(PoleCandidates, topTooLow) {
+TEST(PoleCandidates, TopTooLow) {
   Scene scene(0.6);
-  EXPECT_EQ(scene.test(), Refusal::tooLow);
+  EXPECT_EQ(scene.test(), RejectionReason::tooLow);
   scene.heightOffset = 1.73;  // heights above ground
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
   EXPECT_NEAR(scene.heights.high, 2.33, 1e-6);
   EXPECT_NEAR(scene.heights.low, 0.33, 1e-6);
 }
 
-TEST(PoleCandidates, topMustLieStrictlyAboveTheBound) {
+TEST(PoleCandidates, TopMustLieStrictlyAboveTheBound) {
   Scene scene(1.0);
   scene.options.minTop = 1.0;
-  EXPECT_EQ(scene.test(), Refusal::tooLow);
+  EXPECT_EQ(scene.test(), RejectionReason::tooLow);
   scene.options.minTop = 0.999;
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
-TEST(PoleCandidates, startsTooHigh) {
+TEST(PoleCandidates, StartsTooHigh) {
   Scene scene(4.0);
-  EXPECT_EQ(scene.test(), Refusal::startsTooHigh);  // from 2.0 m
+  EXPECT_EQ(scene.test(), RejectionReason::startsTooHigh);  // from 2.0 m
   scene.options.maxBottom = 2.1;
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
-TEST(PoleCandidates, tooShort) {
+TEST(PoleCandidates, TooShort) {
   Scene scene;
   scene.options.minHeight = 2.001;
-  EXPECT_EQ(scene.test(), Refusal::tooShort);  // 2.0 m tall
+  EXPECT_EQ(scene.test(), RejectionReason::tooShort);  // 2.0 m tall
   scene.options.minHeight = 1.999;
-  EXPECT_EQ(scene.test(), Refusal::count_);
+  EXPECT_EQ(scene.test(), RejectionReason::count_);
 }
 
-TEST(PoleCandidates, theFirstReasonOfSeveralIsGiven) {
+TEST(PoleCandidates, TheFirstReasonOfSeveralIsGiven) {
   Scene scene(0.1, 7);  // too wide, too low
   scene.options.minHeight = 9;
-  EXPECT_EQ(scene.test(), Refusal::tooWide);
+  EXPECT_EQ(scene.test(), RejectionReason::tooWide);
   scene.options.minPixels = 100;
-  EXPECT_EQ(scene.test(), Refusal::tooFewPoints);
+  EXPECT_EQ(scene.test(), RejectionReason::tooFewPoints);
 }
 
 }  // namespace polemcl::test_pole_candidates

@@ -18,8 +18,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Four rows of 10° from +20° to -20°, 16 columns of 22.5°.
-RangeImageOptions smallImage() {
-  RangeImageOptions options;
+ProjectionOptions smallImage() {
+  ProjectionOptions options;
   options.rows = 4;
   options.columns = 16;
   options.fovUp = 20 * kDegree;
@@ -28,8 +28,8 @@ RangeImageOptions smallImage() {
 }
 
 /// Rows meet where asin(z / r) = 0 and ± asin(0.6): points (4, 0, ± 3) lie exactly on the borders.
-RangeImageOptions exactBorders() {
-  RangeImageOptions options;
+ProjectionOptions exactBorders() {
+  ProjectionOptions options;
   options.rows = 2;
   options.columns = 16;
   options.fovUp = std::asin(0.6);
@@ -38,7 +38,7 @@ RangeImageOptions exactBorders() {
 }
 
 PointCounts projectInto(RangeImage& image, const PointList& points,
-                        const RangeImageOptions& options) {
+                        const ProjectionOptions& options) {
   return project(points.view(), options, -kInfinity, kInfinity, image);
 }
 
@@ -46,8 +46,8 @@ std::size_t total(const PointCounts& c) {
   return c.used + c.hidden + c.invalid + c.outOfView + c.outOfRange;
 }
 
-std::string refusal(const std::function<void(RangeImageOptions&)>& spoil) {
-  RangeImageOptions options;
+std::string refusal(const std::function<void(ProjectionOptions&)>& spoil) {
+  ProjectionOptions options;
   spoil(options);
   try {
     options.validate();
@@ -59,7 +59,7 @@ std::string refusal(const std::function<void(RangeImageOptions&)>& spoil) {
 
 }  // namespace
 
-TEST(RangeImage, pixelsAsComputedByHand) {
+TEST(RangeImage, PixelsAsComputedByHand) {
   struct Expected {
     double azimuthDeg, elevationDeg;
     int row, column;
@@ -80,7 +80,7 @@ TEST(RangeImage, pixelsAsComputedByHand) {
   }
 }
 
-TEST(RangeImage, straightAheadIsTheMiddleColumnAndAzimuthFallsWithTheColumn) {
+TEST(RangeImage, StraightAheadIsTheMiddleColumnAndAzimuthFallsWithTheColumn) {
   PointList points;
   points.add(10, 0, 0);
   RangeImage image(4, 16);
@@ -102,8 +102,8 @@ TEST(RangeImage, straightAheadIsTheMiddleColumnAndAzimuthFallsWithTheColumn) {
 
 // The angle added in Eq. 1 is the one below the horizon: with the upper one added, the horizon of
 // this sensor would lie in row 57.
-TEST(RangeImage, rowZeroIsTopmostWhenTheViewIsNotSymmetric) {
-  RangeImageOptions options;
+TEST(RangeImage, RowZeroIsTopmostWhenTheViewIsNotSymmetric) {
+  ProjectionOptions options;
   options.fovUp = 3 * kDegree;
   options.fovDown = -25 * kDegree;
   PointList points;
@@ -118,7 +118,7 @@ TEST(RangeImage, rowZeroIsTopmostWhenTheViewIsNotSymmetric) {
   EXPECT_EQ(image.point(63, column), 2);
 }
 
-TEST(RangeImage, closesAtTheSeam) {
+TEST(RangeImage, ClosesAtTheSeam) {
   for (const float y : {0.f, -0.f}) {  // azimuth +180° and -180° are one direction
     PointList points;
     points.add(-10, y, 1);
@@ -133,7 +133,7 @@ TEST(RangeImage, closesAtTheSeam) {
   EXPECT_EQ(image.wrap(15), 15);
 }
 
-TEST(RangeImage, nearestPointWinsInAnyOrder) {
+TEST(RangeImage, NearestPointWinsInAnyOrder) {
   const std::array<std::array<double, 3>, 6> orders = {
       {{5, 6, 7}, {5, 7, 6}, {6, 5, 7}, {6, 7, 5}, {7, 5, 6}, {7, 6, 5}}};
   for (const auto& ranges : orders) {
@@ -148,7 +148,7 @@ TEST(RangeImage, nearestPointWinsInAnyOrder) {
   }
 }
 
-TEST(RangeImage, ofEquallyNearPointsTheFirstWins) {
+TEST(RangeImage, OfEquallyNearPointsTheFirstWins) {
   PointList points;
   points.add(3, -0.25, 0.125);
   points.add(3, -0.25, 0.125);
@@ -157,14 +157,14 @@ TEST(RangeImage, ofEquallyNearPointsTheFirstWins) {
   EXPECT_EQ(image.point(1, 8), 0);
 }
 
-TEST(RangeImage, equalsABruteForceOnRandomClouds) {
+TEST(RangeImage, EqualsABruteForceOnRandomClouds) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     sim::Random random(seed);
     PointList points;
     for (int i = 0; i < 5000; ++i)
       points.addPolar(random.uniform(-M_PI, M_PI), random.uniform(-30, 30) * kDegree,
                       random.uniform(0, 60));
-    const RangeImageOptions options = smallImage();
+    const ProjectionOptions options = smallImage();
     RangeImage image(4, 16);
     const PointCounts counts = projectInto(image, points, options);
 
@@ -199,7 +199,7 @@ TEST(RangeImage, equalsABruteForceOnRandomClouds) {
   }
 }
 
-TEST(RangeImage, pointsThatAreNoPointsAreCountedAndDropped) {
+TEST(RangeImage, PointsThatAreNoPointsAreCountedAndDropped) {
   const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
   PointList points;
   for (const float bad : {nan, inf, -inf}) {
@@ -217,7 +217,7 @@ TEST(RangeImage, pointsThatAreNoPointsAreCountedAndDropped) {
   EXPECT_EQ(total(counts), 12u);
 }
 
-TEST(RangeImage, upperBorderBelongsToTheViewLowerDoesNot) {
+TEST(RangeImage, UpperBorderBelongsToTheViewLowerDoesNot) {
   PointList points;
   points.add(4, 0, 3);   // v = 0
   points.add(4, 0, -3);  // v = rows
@@ -228,7 +228,7 @@ TEST(RangeImage, upperBorderBelongsToTheViewLowerDoesNot) {
   EXPECT_EQ(image.point(0, 8), 0);
 }
 
-TEST(RangeImage, aPointBetweenTwoRowsOrColumnsGoesToTheLaterOne) {
+TEST(RangeImage, APointBetweenTwoRowsOrColumnsGoesToTheLaterOne) {
   PointList points;
   points.add(4, 0, 0);   // v = 1, u = 8
   points.add(0, 4, 0);   // u = 4
@@ -240,8 +240,8 @@ TEST(RangeImage, aPointBetweenTwoRowsOrColumnsGoesToTheLaterOne) {
   EXPECT_EQ(image.point(1, 12), 2);
 }
 
-TEST(RangeImage, pointsLieStrictlyWithinTheBoundsOfRangeAndHeight) {
-  RangeImageOptions options = exactBorders();
+TEST(RangeImage, PointsLieStrictlyWithinTheBoundsOfRangeAndHeight) {
+  ProjectionOptions options = exactBorders();
   options.minRange = 5;
   options.maxRange = 10;
   PointList points;
@@ -259,11 +259,11 @@ TEST(RangeImage, pointsLieStrictlyWithinTheBoundsOfRangeAndHeight) {
   EXPECT_EQ(counts.outOfRange, 4u);
 }
 
-TEST(RangeImage, clampedPointsOutsideTheViewGoToTheBorderRows) {
+TEST(RangeImage, ClampedPointsOutsideTheViewGoToTheBorderRows) {
   PointList points;
   points.addPolar(0.1, 40 * kDegree, 10);
   points.addPolar(-0.1, -60 * kDegree, 11);
-  RangeImageOptions options = smallImage();
+  ProjectionOptions options = smallImage();
   RangeImage image(4, 16);
   EXPECT_EQ(projectInto(image, points, options).outOfView, 2u);
   options.clampToView = true;
@@ -274,10 +274,10 @@ TEST(RangeImage, clampedPointsOutsideTheViewGoToTheBorderRows) {
   EXPECT_EQ(image.point(3, 8), 1);
 }
 
-TEST(RangeImage, clampedTheSeamBelongsToTheLastColumn) {
+TEST(RangeImage, ClampedTheSeamBelongsToTheLastColumn) {
   PointList points;
   points.add(-10, -0.f, 1);  // azimuth -180°: u = columns
-  RangeImageOptions options = smallImage();
+  ProjectionOptions options = smallImage();
   RangeImage image(4, 16);
   projectInto(image, points, options);
   EXPECT_TRUE(image.valid(1, 0));
@@ -287,8 +287,8 @@ TEST(RangeImage, clampedTheSeamBelongsToTheLastColumn) {
   EXPECT_FALSE(image.valid(1, 0));
 }
 
-TEST(RangeImage, mirroredColumnsCountTheOtherWay) {
-  RangeImageOptions options = smallImage();
+TEST(RangeImage, MirroredColumnsCountTheOtherWay) {
+  ProjectionOptions options = smallImage();
   options.mirrored = true;
   PointList points;
   points.addPolar(30 * kDegree, 0.01, 10);
@@ -300,11 +300,11 @@ TEST(RangeImage, mirroredColumnsCountTheOtherWay) {
 }
 
 // 10 m and 10.0000002 m: one float, two doubles.
-TEST(RangeImage, inSinglePrecisionRangesAreFloats) {
+TEST(RangeImage, InSinglePrecisionRangesAreFloats) {
   PointList points;
   points.add(10, -0.002, 0);
   points.add(10, 0, 0);
-  RangeImageOptions options = exactBorders();
+  ProjectionOptions options = exactBorders();
   RangeImage image(2, 16);
   projectInto(image, points, options);
   EXPECT_EQ(image.point(1, 8), 1);
@@ -314,11 +314,11 @@ TEST(RangeImage, inSinglePrecisionRangesAreFloats) {
 }
 
 // Points on the borders of columns: u of a float is off by up to 3e-5 px.
-TEST(RangeImage, singlePrecisionMovesPointsOnBordersByOneColumn) {
-  RangeImageOptions options = smallImage();
+TEST(RangeImage, SinglePrecisionMovesPointsOnBordersByOneColumn) {
+  ProjectionOptions options = smallImage();
   options.rows = 2;
   options.columns = 500;
-  RangeImageOptions single = options;
+  ProjectionOptions single = options;
   single.singlePrecision = true;
   RangeImage image(2, 500), singleImage(2, 500);
   int moved = 0;
@@ -337,7 +337,7 @@ TEST(RangeImage, singlePrecisionMovesPointsOnBordersByOneColumn) {
   EXPECT_LT(moved, 480);
 }
 
-TEST(RangeImage, coordinatesOfAGridAreTakenExactly) {
+TEST(RangeImage, CoordinatesOfAGridAreTakenExactly) {
   for (const int steps : {1, 247, -247, 9999}) {
     const double exact = steps * 0.005;
     EXPECT_EQ(exactCoordinate(static_cast<float>(exact), 0.005), exact);
@@ -345,14 +345,14 @@ TEST(RangeImage, coordinatesOfAGridAreTakenExactly) {
   }
   PointList points;
   points.add(10, 0, 0.1);  // the float is more than 0.1
-  RangeImageOptions options = smallImage();
+  ProjectionOptions options = smallImage();
   RangeImage image(4, 16);
   EXPECT_EQ(project(points.view(), options, 0.1, 1, image).used, 1u);
   options.coordinateStep = 0.005;
   EXPECT_EQ(project(points.view(), options, 0.1, 1, image).outOfRange, 1u);
 }
 
-TEST(RangeImage, isEmptiedBeforeEachProjection) {
+TEST(RangeImage, IsEmptiedBeforeEachProjection) {
   PointList points;
   points.add(10, 0, 0);
   RangeImage image(4, 16);
@@ -366,28 +366,28 @@ TEST(RangeImage, isEmptiedBeforeEachProjection) {
   EXPECT_EQ(image.range(2, 8), 0);
 }
 
-TEST(RangeImageOptions, refusesSizesOutOfBounds) {
+TEST(ProjectionOptions, RefusesSizesOutOfBounds) {
   EXPECT_NE(refusal([](auto& o) { o.rows = 1; }).find("2 to 1024 rows"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.rows = 1025; }).find("1025"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.columns = 15; }).find("16 to 65536"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.columns = 65537; }).find("65537"), std::string::npos);
 }
-TEST(RangeImageOptions, refusesAViewTheWrongWayRound) {
+TEST(ProjectionOptions, RefusesAViewTheWrongWayRound) {
   EXPECT_NE(refusal([](auto& o) { o.fovUp = o.fovDown; }).find("fov_up_deg"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.fovDown = std::nan(""); }).find("fov_up_deg"),
             std::string::npos);
 }
-TEST(RangeImageOptions, refusesRangesTheWrongWayRound) {
+TEST(ProjectionOptions, RefusesRangesTheWrongWayRound) {
   EXPECT_NE(refusal([](auto& o) { o.minRange = -1; }).find("min_range_m"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.maxRange = 0.5; }).find("max_range_m"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.maxRange = std::nan(""); }).find("max_range_m"),
             std::string::npos);
 }
-TEST(RangeImageOptions, defaultsAreAccepted) {
+TEST(ProjectionOptions, DefaultsAreAccepted) {
   EXPECT_EQ(refusal([](auto&) {}), "accepted");
 }
-TEST(RangeImage, projectRefusesBadOptions) {
-  RangeImageOptions options = smallImage();
+TEST(RangeImage, ProjectRefusesBadOptions) {
+  ProjectionOptions options = smallImage();
   options.maxRange = 0;
   RangeImage image(4, 16);
   EXPECT_THROW(projectInto(image, PointList(), options), Error);

@@ -16,16 +16,16 @@ namespace {
 /// Algorithm 1 with an image that fits the OS1-64, the sensor of these scans.
 ExtractionOptions paperOptions() {
   ExtractionOptions options;
-  options.method = ExtractionMethod::paper;
-  options.paper.fovUp = 17 * kDegree;
-  options.paper.fovDown = -17 * kDegree;
+  options.method = ExtractionMethod::rangeImage;
+  options.rangeImage.fovUp = 17 * kDegree;
+  options.rangeImage.fovDown = -17 * kDegree;
   return options;
 }
 
 struct Result {
   std::vector<PoleDetection> poles;
   ExtractionReport report;
-  std::size_t of(Refusal reason) const { return report.refused[static_cast<int>(reason)]; }
+  std::size_t of(RejectionReason reason) const { return report.refused[static_cast<int>(reason)]; }
 };
 
 Result extract(const PointList& points, const ExtractionOptions& options,
@@ -56,20 +56,20 @@ void expectYard(const Result& result, double tolerance) {
 
 }  // namespace
 
-TEST(PaperExtractor, findsThePolesOfAKnownScene) {
+TEST(RangeImageExtractor, FindsThePolesOfAKnownScene) {
   expectYard(extract(yardPoints(), paperOptions()), 0.06);
 }
 
-TEST(PaperExtractor, everyCircleFitFindsThem) {
+TEST(RangeImageExtractor, EveryCircleFitFindsThem) {
   for (const std::string fit : {"kasa", "kasa_mean", "taubin", "silhouette"}) {
     SCOPED_TRACE(fit);
     ExtractionOptions options = paperOptions();
-    options.paper.circleFit = fit;
+    options.rangeImage.circleFit = fit;
     expectYard(extract(yardPoints(), options), 0.08);
   }
 }
 
-TEST(PaperExtractor, heightsInResultsAreAboveGround) {
+TEST(RangeImageExtractor, HeightsInResultsAreAboveGround) {
   for (const PoleDetection& pole : extract(yardPoints(), paperOptions()).poles) {
     EXPECT_NEAR(pole.top, 3.2, 0.2);
     EXPECT_GT(pole.bottom, 0.1);  // ground is cut off at -1.3 m
@@ -79,27 +79,27 @@ TEST(PaperExtractor, heightsInResultsAreAboveGround) {
 
 // `top > 0.7` is meant above ground but compared in the sensor frame: beams of an HDL-64E, that
 // rise by 2°, are not so high before 20 m.
-TEST(PaperExtractor, heightsAboveGroundBringsBackTheNearPoles) {
+TEST(RangeImageExtractor, HeightsAboveGroundBringsBackTheNearPoles) {
   const PointList points = castYard(sensorOptions("hdl64e"));
   ExtractionOptions options;
-  options.method = ExtractionMethod::paper;
+  options.method = ExtractionMethod::rangeImage;
   const Result asStated = extract(points, options, "hdl64e");
   EXPECT_TRUE(asStated.poles.empty());
-  EXPECT_GE(asStated.of(Refusal::tooLow), 4u);
-  options.paper.heightsAboveGround = true;
-  options.paper.minZ = 0.3;
+  EXPECT_GE(asStated.of(RejectionReason::tooLow), 4u);
+  options.rangeImage.heightsAboveGround = true;
+  options.rangeImage.minZ = 0.3;
   expectYard(extract(points, options, "hdl64e"), 0.08);
 }
 
-TEST(PaperExtractor, withoutWrapThePoleOnTheSeamIsLost) {
+TEST(RangeImageExtractor, WithoutWrapThePoleOnTheSeamIsLost) {
   ExtractionOptions options = paperOptions();
-  options.paper.wrapAround = false;
+  options.rangeImage.wrapAround = false;
   const Result result = extract(yardPoints(), options);
   EXPECT_FALSE(nearest(result.poles, -9, 0, 0.06));
   EXPECT_TRUE(nearest(result.poles, 8, 3, 0.06));
 }
 
-TEST(PaperExtractor, whatCrowdsThePoleRefusesIt) {
+TEST(RangeImageExtractor, WhatCrowdsThePoleRefusesIt) {
   Scene scene = yard();
   for (int i = 0; i < 8; ++i) {  // slim sticks in a ring of 0.45 m around the first pole
     const double angle = (i + 0.5) * M_PI / 4;
@@ -108,35 +108,35 @@ TEST(PaperExtractor, whatCrowdsThePoleRefusesIt) {
   }
   const PointList points = castYard(sensorOptions("os1_64"), scene);
   ExtractionOptions options = paperOptions();
-  options.paper.freeSpace = "ring";
+  options.rangeImage.freeSpace = "ring";
   const Result crowded = extract(points, options);
-  EXPECT_GE(crowded.of(Refusal::notFree), 1u);
+  EXPECT_GE(crowded.of(RejectionReason::notFree), 1u);
   EXPECT_FALSE(nearest(crowded.poles, 8, 3, 0.1));
   EXPECT_TRUE(nearest(crowded.poles, -9, 0, 0.1));
-  options.paper.freeShare = 1e9;
-  EXPECT_EQ(extract(points, options).of(Refusal::notFree), 0u);
+  options.rangeImage.freeShare = 1e9;
+  EXPECT_EQ(extract(points, options).of(RejectionReason::notFree), 0u);
 }
 
-TEST(PaperExtractor, cornersLookBesideTheBoxOnly) {
+TEST(RangeImageExtractor, CornersLookBesideTheBoxOnly) {
   Scene scene = yard();
   scene.cylinders.push_back(
       {8, 3.6, 0.06, -3, 1.7});  // 0.6 m to the left: in the ring, in no corner
   const PointList points = castYard(sensorOptions("os1_64"), scene);
   ExtractionOptions options = paperOptions();
   EXPECT_TRUE(nearest(extract(points, options).poles, 8, 3, 0.1));
-  options.paper.freeSpace = "ring";
+  options.rangeImage.freeSpace = "ring";
   EXPECT_FALSE(nearest(extract(points, options).poles, 8, 3, 0.1));
 }
 
 // Sticks 0.45 m farther and 0.5 m aside: in a corner, but at lower y beyond the cut one, which is
 // 0.1 m high for this pole.
-TEST(PaperExtractor, cutCornersMissHalfOfWhatStandsInCorners) {
+TEST(RangeImageExtractor, CutCornersMissHalfOfWhatStandsInCorners) {
   const auto finds = [](double aside, const std::string& freeSpace, bool mirrored) {
     Scene scene = yard();
     scene.cylinders.push_back({8 + (aside < 0 ? 0.45 : -0.45), 3 + aside, 0.06, -3, 1.7});
     ExtractionOptions options = paperOptions();
-    options.paper.freeSpace = freeSpace;
-    options.paper.mirrored = mirrored;
+    options.rangeImage.freeSpace = freeSpace;
+    options.rangeImage.mirrored = mirrored;
     const Result result = extract(castYard(sensorOptions("os1_64"), scene), options);
     return nearest(result.poles, 8, 3, 0.1) != nullptr;
   };
@@ -148,9 +148,9 @@ TEST(PaperExtractor, cutCornersMissHalfOfWhatStandsInCorners) {
     }
 }
 
-TEST(PaperExtractor, aMirroredImageFindsTheSamePoles) {
+TEST(RangeImageExtractor, AMirroredImageFindsTheSamePoles) {
   ExtractionOptions options = paperOptions();
-  options.paper.mirrored = true;
+  options.rangeImage.mirrored = true;
   expectYard(extract(yardPoints(), options), 0.06);
 }
 
@@ -176,44 +176,44 @@ PointList flatFront() {
 
 }  // namespace
 
-TEST(PaperExtractor, theFirstCircleMayBeOfAnySize) {
+TEST(RangeImageExtractor, TheFirstCircleMayBeOfAnySize) {
   ExtractionOptions options = paperOptions();
-  options.paper.circleFit = "kasa_mean";
+  options.rangeImage.circleFit = "kasa_mean";
   const Result result = extract(flatFront(), options);
   ASSERT_EQ(result.poles.size(), 1u);
   EXPECT_NEAR(result.poles[0].radius, 0.05, 0.01);
   EXPECT_EQ(result.poles[0].points, (kRingRows - 2u) * kRingPoints);  // strictly between z's
-  options.paper.fitMargin = 0;  // the coarse circle's box holds them without a margin, too
+  options.rangeImage.fitMargin = 0;  // the coarse circle's box holds them without a margin, too
   EXPECT_EQ(extract(flatFront(), options).poles.size(), 1u);
 }
 
-TEST(PaperExtractor, theFitTakesPointsBeyondTheRange) {
+TEST(RangeImageExtractor, TheFitTakesPointsBeyondTheRange) {
   PointList points = flatFront();
   ExtractionOptions options = paperOptions();
-  options.paper.circleFit = "kasa_mean";
-  options.paper.maxRange = 10.2;
+  options.rangeImage.circleFit = "kasa_mean";
+  options.rangeImage.maxRange = 10.2;
   for (int i = 0; i < 2000; ++i) points.add(12.6, 0.1 * (i % 20) - 1, 0.3);  // a wall behind
   const Result result = extract(points, options);
   EXPECT_TRUE(result.poles.empty());
-  EXPECT_EQ(result.of(Refusal::badFit), 1u);
+  EXPECT_EQ(result.of(RejectionReason::badFit), 1u);
 }
 
 // Floats of -0.6 and 1.2 lie beyond these: as exact multiples of the step they are between.
-TEST(PaperExtractor, exactCoordinatesPutTheOutermostRowsIntoTheFit) {
+TEST(RangeImageExtractor, ExactCoordinatesPutTheOutermostRowsIntoTheFit) {
   ExtractionOptions options = paperOptions();
-  options.paper.circleFit = "kasa_mean";
-  options.paper.coordinateStep = 0.0001;
+  options.rangeImage.circleFit = "kasa_mean";
+  options.rangeImage.coordinateStep = 0.0001;
   const Result result = extract(flatFront(), options);
   ASSERT_EQ(result.poles.size(), 1u);
   EXPECT_EQ(result.poles[0].points, kRingRows * kRingPoints);
 }
 
-TEST(PaperExtractor, heightsCountFromTheOriginOfTheProjection) {
+TEST(RangeImageExtractor, HeightsCountFromTheOriginOfTheProjection) {
   SensorOptions sensor = sensorOptions("os1_64");
   sensor.originZ = 0.4;  // above the origin of the clouds
   for (const bool fromCloud : {false, true}) {
     ExtractionOptions options = paperOptions();
-    options.paper.projectFrom = fromCloud ? "cloud" : "sensor";
+    options.rangeImage.projectFrom = fromCloud ? "cloud" : "sensor";
     PoleExtractor extractor(sensor, options);
     for (const PoleDetection& pole : extractor.extract(yardPoints().view()))
       EXPECT_NEAR(pole.top, fromCloud ? 2.8 : 3.2, 0.2);
@@ -221,13 +221,13 @@ TEST(PaperExtractor, heightsCountFromTheOriginOfTheProjection) {
   }
 }
 
-TEST(PaperExtractor, growingUpwardsFindsNoFewer) {
+TEST(RangeImageExtractor, GrowingUpwardsFindsNoFewer) {
   ExtractionOptions options = paperOptions();
-  options.paper.growUpwards = true;
+  options.rangeImage.growUpwards = true;
   expectYard(extract(yardPoints(), options), 0.06);
 }
 
-TEST(PaperExtractor, pointsAreCounted) {
+TEST(RangeImageExtractor, PointsAreCounted) {
   PointList points = yardPoints();
   points.add(std::nan(""), 0, 0);
   points.add(0, 0, 0);
@@ -240,7 +240,7 @@ TEST(PaperExtractor, pointsAreCounted) {
   EXPECT_EQ(report.outOfRange, clean.outOfRange + 1);
 }
 
-TEST(PaperExtractor, fromNothingComesNothing) {
+TEST(RangeImageExtractor, FromNothingComesNothing) {
   EXPECT_TRUE(extract(PointList(), paperOptions()).poles.empty());
   PointList points;
   for (int i = 0; i < 1000; ++i) points.add(8, 3, 0);
@@ -251,24 +251,24 @@ TEST(PaperExtractor, fromNothingComesNothing) {
 namespace {
 
 struct Spoiled {
-  Refusal reason;
-  std::function<void(PaperOptions&)> spoil;
+  RejectionReason reason;
+  std::function<void(RangeImageOptions&)> spoil;
 };
 class PaperExtractorRefusal : public ::testing::TestWithParam<Spoiled> {};
 const std::vector<Spoiled> kSpoiled = {
-    {Refusal::tooFewPoints, [](PaperOptions& o) { o.minPixels = 100000; }},
-    {Refusal::tooWide, [](PaperOptions& o) { o.minAspect = 1000; }},
-    {Refusal::tooLow, [](PaperOptions& o) { o.minTop = 5; }},
-    {Refusal::startsTooHigh, [](PaperOptions& o) { o.maxBottom = -1.3; }},
-    {Refusal::tooShort, [](PaperOptions& o) { o.minHeight = 6; }},
-    {Refusal::badFit, [](PaperOptions& o) { o.maxRadius = 0.03; }},
-    {Refusal::notFree, [](PaperOptions& o) { o.freeShare = 0; }}};
+    {RejectionReason::tooFewPoints, [](RangeImageOptions& o) { o.minPixels = 100000; }},
+    {RejectionReason::tooWide, [](RangeImageOptions& o) { o.minAspect = 1000; }},
+    {RejectionReason::tooLow, [](RangeImageOptions& o) { o.minTop = 5; }},
+    {RejectionReason::startsTooHigh, [](RangeImageOptions& o) { o.maxBottom = -1.3; }},
+    {RejectionReason::tooShort, [](RangeImageOptions& o) { o.minHeight = 6; }},
+    {RejectionReason::badFit, [](RangeImageOptions& o) { o.maxRadius = 0.03; }},
+    {RejectionReason::notFree, [](RangeImageOptions& o) { o.freeShare = 0; }}};
 
 }  // namespace
 
-TEST_P(PaperExtractorRefusal, isCounted) {
+TEST_P(PaperExtractorRefusal, IsCounted) {
   ExtractionOptions options = paperOptions();
-  GetParam().spoil(options.paper);
+  GetParam().spoil(options.rangeImage);
   const Result result = extract(yardPoints(), options);
   EXPECT_TRUE(result.poles.empty());
   EXPECT_GE(result.of(GetParam().reason), 4u);
@@ -276,13 +276,13 @@ TEST_P(PaperExtractorRefusal, isCounted) {
 INSTANTIATE_TEST_SUITE_P(Each, PaperExtractorRefusal, ::testing::ValuesIn(kSpoiled),
                          [](const auto& i) { return std::string(name(i.param.reason)); });
 
-TEST(PaperExtractorRefusal, whatStandsBehindOthersIsNotInTheForeground) {
+TEST(PaperExtractorRefusal, WhatStandsBehindOthersIsNotInTheForeground) {
   Scene scene = yard();
   for (const double side : {-1.0, 1.0})  // seen through the gap between two boards
     scene.walls.push_back({4 + 0.06 * 3 * side, 1.5 - 0.06 * 8 * side, 4 + 0.6 * 3 * side,
                            1.5 - 0.6 * 8 * side, -3, 4});
   const Result result = extract(castYard(sensorOptions("os1_64"), scene), paperOptions());
-  EXPECT_GE(result.of(Refusal::notForeground), 1u);
+  EXPECT_GE(result.of(RejectionReason::notForeground), 1u);
 }
 
 }  // namespace polemcl::test_range_image_extractor

@@ -161,7 +161,7 @@ void expectLabels(const RangeImage& image, const Segmentation& segmentation,
 
 }  // namespace
 
-TEST(Segmentation, likeNeighboursMakeOneSegment) {
+TEST(Segmentation, LikeNeighboursMakeOneSegment) {
   EXPECT_EQ(segment({"1122..",  //
                      "1.22.4",  //
                      "333344"},
@@ -171,7 +171,7 @@ TEST(Segmentation, likeNeighboursMakeOneSegment) {
                   "ddddcc"}));
 }
 
-TEST(Segmentation, seedsAreTakenInReadingOrder) {
+TEST(Segmentation, SeedsAreTakenInReadingOrder) {
   EXPECT_EQ(segment({".5.3.",  //
                      "..4..",  //
                      ".1.2."},
@@ -179,17 +179,17 @@ TEST(Segmentation, seedsAreTakenInReadingOrder) {
             (Rows{".a.b.", "..c..", ".d.e."}));
 }
 
-TEST(Segmentation, growsAcrossTheSeamWhenWrapped) {
+TEST(Segmentation, GrowsAcrossTheSeamWhenWrapped) {
   const Rows image = {"......", ".7..7.", "77..77", "......"};
   EXPECT_EQ(segment(image, true, false), (Rows{"......", ".a..b.", "aa..aa", "......"}));
 }
 
-TEST(Segmentation, withoutWrapTheBordersAreLeftOut) {
+TEST(Segmentation, WithoutWrapTheBordersAreLeftOut) {
   EXPECT_EQ(segment({"777777", "777.77", "77..77", "777777"}, false, false),
             (Rows{"......", ".aa.b.", ".a..b.", "......"}));
 }
 
-TEST(Segmentation, aPieceThatOnlyConnectsUpwardsIsItsOwn) {
+TEST(Segmentation, APieceThatOnlyConnectsUpwardsIsItsOwn) {
   const Rows hook = {".4...",  //
                      ".4.4.",  // the right arm is above what the left one reaches
                      ".444.",  //
@@ -198,7 +198,7 @@ TEST(Segmentation, aPieceThatOnlyConnectsUpwardsIsItsOwn) {
   EXPECT_EQ(segment(hook, true, false), (Rows{".a...", ".a.b.", ".aaa.", "....."}));
 }
 
-TEST(Segmentation, epsilonIsStrict) {
+TEST(Segmentation, EpsilonIsStrict) {
   RangeImage image(2, 16);
   image.set(0, 3, 5.f, 0);
   image.set(0, 4, 5.25f, 1);
@@ -208,11 +208,11 @@ TEST(Segmentation, epsilonIsStrict) {
   EXPECT_EQ(wider.segments().size(), 1u);
 }
 
-TEST(Segmentation, aSlopeOfSmallStepsIsOneSegment) {
+TEST(Segmentation, ASlopeOfSmallStepsIsOneSegment) {
   EXPECT_EQ(segment({".123456789."}, true, false, 1.5), (Rows{".aaaaaaaaa."}));
 }
 
-TEST(Segmentation, boxIsCountedAcrossTheSeam) {
+TEST(Segmentation, BoxIsCountedAcrossTheSeam) {
   const RangeImage image = draw({"......", "7....7", "77...7", "......"});
   const Segmentation segmentation(image, growing(0.5, true, false));
   ASSERT_EQ(segmentation.segments().size(), 1u);
@@ -226,7 +226,7 @@ TEST(Segmentation, boxIsCountedAcrossTheSeam) {
   EXPECT_EQ(s.pixels[0].column, 0);
 }
 
-TEST(Segmentation, aClosedRingIsAsWideAsTheImage) {
+TEST(Segmentation, AClosedRingIsAsWideAsTheImage) {
   for (const int columns : {16, 17}) {
     const RangeImage image = draw({std::string(columns, '3'), std::string(columns, '.')});
     const Segmentation segmentation(image, growing(0.5, true, false));
@@ -236,12 +236,12 @@ TEST(Segmentation, aClosedRingIsAsWideAsTheImage) {
   }
 }
 
-TEST(Segmentation, anEmptyImageHasNoSegments) {
+TEST(Segmentation, AnEmptyImageHasNoSegments) {
   const RangeImage image(4, 16);
   EXPECT_TRUE(Segmentation(image, growing(0.5, true, true)).segments().empty());
 }
 
-TEST(Segmentation, growingUpwardsGivesConnectedComponents) {
+TEST(Segmentation, GrowingUpwardsGivesConnectedComponents) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const RangeImage image = randomImage(seed, 12, 20);
     for (const bool wrap : {true, false})
@@ -250,7 +250,7 @@ TEST(Segmentation, growingUpwardsGivesConnectedComponents) {
   }
 }
 
-TEST(Segmentation, otherwiseItEqualsAlgorithmOneAsWritten) {
+TEST(Segmentation, OtherwiseItEqualsAlgorithmOneAsWritten) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const RangeImage image = randomImage(seed, 12, 20);
     for (const bool wrap : {true, false})
@@ -260,7 +260,7 @@ TEST(Segmentation, otherwiseItEqualsAlgorithmOneAsWritten) {
 }
 
 // An open set searched again for every pixel would not get through this.
-TEST(Segmentation, takesALargeImageOfOneSegment) {
+TEST(Segmentation, TakesALargeImageOfOneSegment) {
   RangeImage image(512, 8192);
   for (int r = 0; r < image.rows(); ++r)
     for (int c = 0; c < image.columns(); ++c) image.set(r, c, 10, 0);

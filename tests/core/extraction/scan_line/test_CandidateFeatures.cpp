@@ -13,8 +13,8 @@ using namespace polemcl::clouds;
 
 namespace {
 
-Slice sliceAt(double x, double y, double z, double width = 0.2) {
-  Slice s;
+ScanLineSegment sliceAt(double x, double y, double z, double width = 0.2) {
+  ScanLineSegment s;
   s.x = static_cast<float>(x);
   s.y = static_cast<float>(y);
   s.z = static_cast<float>(z);
@@ -24,7 +24,7 @@ Slice sliceAt(double x, double y, double z, double width = 0.2) {
   return s;
 }
 
-StackShape shapeOf(const std::vector<Slice>& slices) {
+ClusterShape shapeOf(const std::vector<ScanLineSegment>& slices) {
   std::vector<std::uint32_t> indices(slices.size());
   std::iota(indices.begin(), indices.end(), 0u);
   return measureShape(slices, {indices.data(), indices.size()});
@@ -40,11 +40,11 @@ struct Look {
   SensorModel sensor;
   ScanLines lines;
   GroundGrid ground;
-  std::vector<Slice> slices;
+  std::vector<ScanLineSegment> slices;
   std::vector<std::uint32_t> members;
-  StackShape shape;
+  ClusterShape shape;
   PoleAxis axis;
-  PoleEvidence evidence;
+  CandidateFeatures evidence;
   explicit Look(Scene scene, const GroundPlane& plane = {-kHeight, 0, 0})
       : sensor(hdl32e()), lines(sensor) {
     scene.ground = plane;
@@ -52,19 +52,19 @@ struct Look {
     const PointList points = cast(scene, sensor, {0.01, 0, 3});
     ground.build(points.view(), 1, 60, kHeight);
     lines.build(points.view(), ground, kClearance);
-    const NativeOptions options;
-    SliceFinder(sensor, options).find(lines, slices);
-    SliceStacker stacker(sensor, options);
-    for (const Stack& s : stacker.stack(slices))
+    const ScanLineOptions options;
+    ScanLineSegmenter(sensor, options).find(lines, slices);
+    SegmentClustering stacker(sensor, options);
+    for (const SegmentCluster& s : stacker.stack(slices))
       if (std::hypot(slices[s.top()].x - kDistance, slices[s.top()].y) < 0.5 &&
           s.count > members.size())
         members.assign(s.begin(), s.end());
     EXPECT_GE(members.size(), 2u);
     shape = measureShape(slices, stack());
     axis = {static_cast<float>(kDistance), 0, static_cast<float>(kRadius)};
-    evidence = gatherEvidence(lines, sensor, ground, slices, stack(), shape, axis);
+    evidence = computeFeatures(lines, sensor, ground, slices, stack(), shape, axis);
   }
-  Stack stack() const { return {members.data(), members.size()}; }
+  SegmentCluster stack() const { return {members.data(), members.size()}; }
   float clutter() const { return clutteredShare(lines, sensor, slices, stack(), axis); }
   /// Of the rows, the lowest may meet the ground in the ring.
   float groundShare() const { return 1.01f / static_cast<float>(members.size()); }
@@ -96,8 +96,8 @@ constexpr double kBeamGap = kDistance * 1.4 * kDegree;  ///< a little more than 
 
 }  // namespace
 
-TEST(StackShape, ofAnUprightStackIsStraight) {
-  const StackShape s = shapeOf({sliceAt(5, 1, 2), sliceAt(5, 1, 1), sliceAt(5, 1, -1)});
+TEST(ClusterShape, OfAnUprightStackIsStraight) {
+  const ClusterShape s = shapeOf({sliceAt(5, 1, 2), sliceAt(5, 1, 1), sliceAt(5, 1, -1)});
   EXPECT_EQ(s.points, 9);
   EXPECT_EQ(s.wholeSlices, 3);
   EXPECT_FLOAT_EQ(s.high, 2);
@@ -107,44 +107,44 @@ TEST(StackShape, ofAnUprightStackIsStraight) {
   EXPECT_NEAR(s.widthSpread, 0, 1e-6);
 }
 
-TEST(StackShape, aLeaningStackIsStraightButTilted) {
-  std::vector<Slice> slices;
+TEST(ClusterShape, ALeaningStackIsStraightButTilted) {
+  std::vector<ScanLineSegment> slices;
   for (int i = 0; i < 6; ++i) slices.push_back(sliceAt(5 - 0.06 * i, 1 - 0.08 * i, 2 - 0.5 * i));
-  const StackShape s = shapeOf(slices);
+  const ClusterShape s = shapeOf(slices);
   EXPECT_NEAR(s.tilt, std::atan(0.2), 1e-4);  // 0.1 m aside per 0.5 m
   EXPECT_NEAR(s.scatter, 0, 1e-4);
 }
 
-TEST(StackShape, scatterIsTheRmsDistanceFromTheLine) {
+TEST(ClusterShape, ScatterIsTheRmsDistanceFromTheLine) {
   // Of 0, 0.1, 0 the line leaves -1/30, 2/30, -1/30; one degree of freedom is left.
-  const StackShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5, 0.1, 0), sliceAt(5, 0, -1)});
+  const ClusterShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5, 0.1, 0), sliceAt(5, 0, -1)});
   EXPECT_NEAR(s.scatter, std::sqrt(6.0 / 900), 1e-5);
   EXPECT_NEAR(s.tilt, 0, 1e-6);
 }
 
-TEST(StackShape, twoSlicesAreAlwaysStraight) {
+TEST(ClusterShape, TwoSlicesAreAlwaysStraight) {
   EXPECT_EQ(shapeOf({sliceAt(5, 0, 1), sliceAt(5.2, 0.1, 0)}).scatter, 0);
 }
 
-TEST(StackShape, slicesOfOneHeightHaveNoTilt) {
-  const StackShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5.2, 0.1, 1)});
+TEST(ClusterShape, SlicesOfOneHeightHaveNoTilt) {
+  const ClusterShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5.2, 0.1, 1)});
   EXPECT_EQ(s.tilt, 0);
   EXPECT_EQ(s.high, s.low);
 }
 
-TEST(StackShape, widthSpreadIsTheStandardDeviation) {
-  const StackShape s =
+TEST(ClusterShape, WidthSpreadIsTheStandardDeviation) {
+  const ClusterShape s =
       shapeOf({sliceAt(5, 0, 2, 0.1), sliceAt(5, 0, 1, 0.1), sliceAt(5, 0, 0, 0.4)});
   EXPECT_NEAR(s.widthSpread, std::sqrt(0.02), 1e-5);
 }
 
-TEST(StackShape, wholeSlicesHaveBothSidesFree) {
-  std::vector<Slice> slices = {sliceAt(5, 0, 2), sliceAt(5, 0, 1), sliceAt(5, 0, 0)};
+TEST(ClusterShape, WholeSlicesHaveBothSidesFree) {
+  std::vector<ScanLineSegment> slices = {sliceAt(5, 0, 2), sliceAt(5, 0, 1), sliceAt(5, 0, 0)};
   slices[1].left = Side::occluded;
   EXPECT_EQ(shapeOf(slices).wholeSlices, 2);
 }
 
-TEST(PoleEvidence, ofAPostAlone) {
+TEST(CandidateFeatures, OfAPostAlone) {
   const Look look({{part(-1, 0.9)}, {}, {}});
   // Where the ground is is known to a few centimetres.
   EXPECT_GE(static_cast<int>(look.members.size()), look.beamsBetween(-1 + kClearance + 0.05, 0.9));
@@ -161,13 +161,13 @@ TEST(PoleEvidence, ofAPostAlone) {
   EXPECT_LT(look.evidence.topBound, 1.9 + 1.05 * kBeamGap);
 }
 
-TEST(PoleEvidence, ofAPostThatLeavesTheView) {
+TEST(CandidateFeatures, OfAPostThatLeavesTheView) {
   const Look look({{part(-1, 5)}, {}, {}});
   EXPECT_NEAR(look.evidence.top, kHeight + (kDistance - kRadius) * look.sensor.beam(0).slope, 0.05);
   EXPECT_TRUE(std::isinf(look.evidence.topBound));
 }
 
-TEST(PoleEvidence, rowsThatSeeThroughAreCounted) {
+TEST(CandidateFeatures, RowsThatSeeThroughAreCounted) {
   const Look look({{part(-1, 0), part(0.6, 1.4)}, {}, {}});
   const int through = look.beamsBetween(0, 0.6);
   EXPECT_GE(through, 2);
@@ -175,13 +175,13 @@ TEST(PoleEvidence, rowsThatSeeThroughAreCounted) {
   EXPECT_EQ(look.evidence.rowsWide, 0);
 }
 
-TEST(PoleEvidence, rowsThatMeetABoardAreWide) {
+TEST(CandidateFeatures, RowsThatMeetABoardAreWide) {
   const Look look({{part(-1, 1.4)}, {board(0, 0.6, 1.0)}, {}});
   EXPECT_EQ(look.evidence.rowsWide, look.beamsBetween(0, 0.6));
   EXPECT_EQ(look.evidence.rowsPassed, 0);
 }
 
-TEST(PoleEvidence, whatStandsOnThePoleIsItsTop) {
+TEST(CandidateFeatures, WhatStandsOnThePoleIsItsTop) {
   const Look look({{part(-1, 0.5)}, {board(0.5, 1.2, 0.8)}, {}});
   EXPECT_LE(look.shape.high, 0.5);
   EXPECT_LE(look.evidence.top, 2.2);
@@ -189,7 +189,7 @@ TEST(PoleEvidence, whatStandsOnThePoleIsItsTop) {
   EXPECT_GT(look.evidence.topBound, 2.2);
 }
 
-TEST(PoleEvidence, oneSilentRowDoesNotEndThePole) {
+TEST(CandidateFeatures, OneSilentRowDoesNotEndThePole) {
   // A slit that one beam looks through; above it a board.
   const SensorModel sensor = Look::hdl32e();
   int row = 0;
@@ -199,13 +199,13 @@ TEST(PoleEvidence, oneSilentRowDoesNotEndThePole) {
   EXPECT_GE(look.evidence.top, 2.2 - kBeamGap);
 }
 
-TEST(PoleEvidence, whereSomethingHidesTheTopItIsUnknown) {
+TEST(CandidateFeatures, WhereSomethingHidesTheTopItIsUnknown) {
   const Look look({{part(-1, 1.4)}, {{4, -1, 4, 1, 0.3, 3}}, {}});
   EXPECT_LT(look.evidence.top, 1.75);
   EXPECT_TRUE(std::isinf(look.evidence.topBound));
 }
 
-TEST(PoleEvidence, heightsAreAboveTheLocalGround) {
+TEST(CandidateFeatures, HeightsAreAboveTheLocalGround) {
   const GroundPlane slope{-kHeight, 0.07, 0};
   const double base = slope.at(kDistance, 0);  // 0.56 m above the ground below the sensor
   const Look look({{part(base, base + 1.5)}, {}, {}}, slope);
@@ -213,7 +213,7 @@ TEST(PoleEvidence, heightsAreAboveTheLocalGround) {
   EXPECT_NEAR(look.evidence.bottom, 0, kBeamGap + 0.25);
 }
 
-TEST(PoleEvidence, otherThingsInTheRingClutter) {
+TEST(CandidateFeatures, OtherThingsInTheRingClutter) {
   // A second post 0.45 m beside, up to half the height.
   const Look look({{part(-1, 1.4), {kDistance, 0.45, 0.05, -1, 0.2}}, {}, {}});
   const double expected =
@@ -221,7 +221,7 @@ TEST(PoleEvidence, otherThingsInTheRingClutter) {
   EXPECT_NEAR(look.clutter(), expected, 0.08);
 }
 
-TEST(PoleEvidence, whatIsOutsideTheRingDoesNotClutter) {
+TEST(CandidateFeatures, WhatIsOutsideTheRingDoesNotClutter) {
   const Look look({{part(-1, 1.4), {kDistance, 0.85, 0.05, -1, 1.4}}, {}, {}});
   EXPECT_LE(look.clutter(), look.groundShare());
 }

@@ -50,7 +50,7 @@ Scene onGround(const GroundPlane& ground) {
 
 }  // namespace
 
-TEST(GroundGrid, flatGroundIsFlat) {
+TEST(GroundGrid, FlatGroundIsFlat) {
   for (const std::string model : {"hdl64e", "hdl32e", "vlp16"}) {
     const SensorModel sensor = sensorModel(model);
     const GroundPlane plane{-1.5, 0, 0};
@@ -62,7 +62,7 @@ TEST(GroundGrid, flatGroundIsFlat) {
   }
 }
 
-TEST(GroundGrid, theNominalHeightMayBeOff) {
+TEST(GroundGrid, TheNominalHeightMayBeOff) {
   const SensorModel sensor = sensorModel("hdl64e");
   const GroundPlane plane{-1.73, 0, 0};
   for (const double nominal : {1.4, 2.1}) {
@@ -74,7 +74,7 @@ TEST(GroundGrid, theNominalHeightMayBeOff) {
 
 // A cell keeps its lowest return, so on a slope it lies too low by up to what the slope falls
 // across a cell: 2.5 m · 8 % along the ray, and 5.6° of the turn across it.
-TEST(GroundGrid, followsASlopeInAnyDirection) {
+TEST(GroundGrid, FollowsASlopeInAnyDirection) {
   const SensorModel sensor = sensorModel("hdl64e");
   for (double direction = 0; direction < 6.2; direction += 0.7) {
     const GroundPlane plane{-1.73, 0.08 * std::cos(direction), 0.08 * std::sin(direction)};
@@ -85,7 +85,7 @@ TEST(GroundGrid, followsASlopeInAnyDirection) {
   }
 }
 
-TEST(GroundGrid, strayReturnsBelowTheGroundDoNotMoveIt) {
+TEST(GroundGrid, StrayReturnsBelowTheGroundDoNotMoveIt) {
   const SensorModel sensor = sensorModel("hdl64e");
   const GroundPlane plane{-1.73, 0, 0};
   PointList points = cast(onGround(plane), sensor, {0.02, 0, 1});
@@ -101,7 +101,7 @@ TEST(GroundGrid, strayReturnsBelowTheGroundDoNotMoveIt) {
   EXPECT_LT(e.high, 0.06);
 }
 
-TEST(GroundGrid, aWallIsNotTakenForGround) {
+TEST(GroundGrid, AWallIsNotTakenForGround) {
   const SensorModel sensor = sensorModel("hdl64e");
   const GroundPlane plane{-1.73, 0, 0};
   Scene scene = onGround(plane);
@@ -113,14 +113,14 @@ TEST(GroundGrid, aWallIsNotTakenForGround) {
   EXPECT_LT(e.high, 0.06);
 }
 
-TEST(GroundGrid, whereNothingIsSeenTheNominalHeightHolds) {
+TEST(GroundGrid, WhereNothingIsSeenTheNominalHeightHolds) {
   const SensorModel sensor = sensorModel("vlp16");
   const GroundGrid ground = built(PointList(), 1.2);
   for (const float x : {0.f, 5.f, 49.f, -500.f}) EXPECT_FLOAT_EQ(ground.at(x, 0.1f * x), -1.2f);
   EXPECT_FLOAT_EQ(ground.median(), -1.2f);
 }
 
-TEST(GroundGrid, theLastKnownHeightIsHandedOn) {
+TEST(GroundGrid, TheLastKnownHeightIsHandedOn) {
   const SensorModel sensor = sensorModel("vlp16");  // its lowest beams reach 30 m at most
   const GroundPlane plane{-1.0, 0.02, 0};
   const GroundGrid ground = built(cast(onGround(plane), sensor), 1.0);
@@ -128,7 +128,7 @@ TEST(GroundGrid, theLastKnownHeightIsHandedOn) {
   EXPECT_TRUE(std::isfinite(ground.at(1e6f, 0)));
 }
 
-TEST(GroundGrid, keepsNothingOfTheScanBefore) {
+TEST(GroundGrid, KeepsNothingOfTheScanBefore) {
   const SensorModel sensor = sensorModel("hdl32e");
   const PointList low = cast(onGround({-2.0, 0, 0}), sensor),
                   high = cast(onGround({-1.0, 0, 0}), sensor);

@@ -34,7 +34,7 @@ struct Scan {
   SensorModel sensor = twelveBeams();
   ScanLines lines{sensor};
   PointList points;
-  std::vector<Slice> slices;
+  std::vector<ScanLineSegment> slices;
   std::vector<std::uint32_t> used;
   Scan(double distance, double bearingOfPole, double radius, std::uint64_t seed,
        double sigma = 0.02, const std::vector<Wall>& before = {})
@@ -60,9 +60,9 @@ struct Scan {
  private:
   void findSlices(double distance) {
     buildWhole(lines, points.view(), 1, 100);
-    std::vector<Slice> all;
-    SliceFinder(sensor, {}).find(lines, all);
-    for (const Slice& s : all)
+    std::vector<ScanLineSegment> all;
+    ScanLineSegmenter(sensor, {}).find(lines, all);
+    for (const ScanLineSegment& s : all)
       if (std::abs(s.rho - distance) < 1) slices.push_back(s);
     used.resize(slices.size());
     std::iota(used.begin(), used.end(), 0u);
@@ -107,7 +107,7 @@ Statistics statistics(double distance, double radius) {
 
 }  // namespace
 
-TEST(PoleFitting, postsAreFoundWithoutBias) {
+TEST(PoleFitting, PostsAreFoundWithoutBias) {
   for (const double distance : {5.0, 10.0, 20.0}) {
     double nees = 0;
     for (const double radius : {0.03, 0.06, 0.1, 0.15}) {
@@ -134,7 +134,7 @@ TEST(PoleFitting, postsAreFoundWithoutBias) {
 }
 
 // Where a beam is as wide as the pole, and on thick trunks, the front is not known that well.
-TEST(PoleFitting, trunksAndFarPolesAreFoundWithLittleBias) {
+TEST(PoleFitting, TrunksAndFarPolesAreFoundWithLittleBias) {
   for (const double radius : {0.03, 0.1, 0.25, 0.35})
     for (const double distance : {10.0, 20.0, 35.0}) {
       SCOPED_TRACE(std::to_string(radius) + " at " + std::to_string(distance));
@@ -146,10 +146,10 @@ TEST(PoleFitting, trunksAndFarPolesAreFoundWithLittleBias) {
     }
 }
 
-TEST(PoleFitting, isMuchBetterThanACircleThroughThePoints) {
+TEST(PoleFitting, IsMuchBetterThanACircleThroughThePoints) {
   const auto circle = [](const Scan& scan) -> std::optional<PoleFit> {
     std::vector<Eigen::Vector2d> xy;
-    for (const Slice& s : scan.slices)
+    for (const ScanLineSegment& s : scan.slices)
       for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
         const Return& r = scan.lines.begin(s.row)[i];
         xy.emplace_back(scan.lines.x(r), scan.lines.y(r));
@@ -166,7 +166,7 @@ TEST(PoleFitting, isMuchBetterThanACircleThroughThePoints) {
     EXPECT_LT(statistics(10, radius).rms, 0.5 * statistics(10, radius, circle).rms) << radius;
 }
 
-TEST(PoleFitting, residualIsTheNoiseOfTheRanges) {
+TEST(PoleFitting, ResidualIsTheNoiseOfTheRanges) {
   const double residual = statistics(8, 0.12).residual;
   EXPECT_GT(residual, 0.012);
   EXPECT_LT(residual, 0.025);
@@ -174,7 +174,7 @@ TEST(PoleFitting, residualIsTheNoiseOfTheRanges) {
   EXPECT_GT(Scan(8, 1, 0.12, 1, 0.08).fit()->residual, 0.03);
 }
 
-TEST(PoleFitting, acrossTheSeam) {
+TEST(PoleFitting, AcrossTheSeam) {
   const Scan scan(10, M_PI, 0.1, 5);
   const auto fit = scan.fit();
   ASSERT_TRUE(fit);
@@ -184,7 +184,7 @@ TEST(PoleFitting, acrossTheSeam) {
 }
 
 // Of a thin pole far away some rows lie wholly on one side of the seam.
-TEST(PoleFitting, acrossTheSeamOneReturnAtATime) {
+TEST(PoleFitting, AcrossTheSeamOneReturnAtATime) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto fit = Scan(25, M_PI, 0.04, seed).fit();
     ASSERT_TRUE(fit);
@@ -193,7 +193,7 @@ TEST(PoleFitting, acrossTheSeamOneReturnAtATime) {
   }
 }
 
-TEST(PoleFitting, alongTheRayTheCentreIsLessCertainThanAcrossIt) {
+TEST(PoleFitting, AlongTheRayTheCentreIsLessCertainThanAcrossIt) {
   for (const double bearing : {0.0, 0.8, 2.5}) {
     const auto fit = Scan(20, bearing, 0.03, 3).fit();
     ASSERT_TRUE(fit);
@@ -203,7 +203,7 @@ TEST(PoleFitting, alongTheRayTheCentreIsLessCertainThanAcrossIt) {
   }
 }
 
-TEST(PoleFitting, covarianceIsPositiveDefiniteAndGrowsWithDistance) {
+TEST(PoleFitting, CovarianceIsPositiveDefiniteAndGrowsWithDistance) {
   double before = 0;
   for (const double distance : {5.0, 15.0, 30.0}) {
     const auto fit = Scan(distance, 0.7, 0.1, 3).fit();
@@ -217,7 +217,7 @@ TEST(PoleFitting, covarianceIsPositiveDefiniteAndGrowsWithDistance) {
   }
 }
 
-TEST(PoleFitting, turningTheScanTurnsCentreAndCovariance) {
+TEST(PoleFitting, TurningTheScanTurnsCentreAndCovariance) {
   const double distance = 20;
   const Scan scan(distance, 0.2, 0.1, 11);
   const auto fit = scan.fit();
@@ -237,13 +237,13 @@ TEST(PoleFitting, turningTheScanTurnsCentreAndCovariance) {
 }
 
 // A wall hides the right half. Its edge is no edge of the pole, so the left one has to do.
-TEST(PoleFitting, aPoleHalfHiddenIsNotPulledAside) {
+TEST(PoleFitting, APoleHalfHiddenIsNotPulledAside) {
   const double radius = 0.15;
   double lateral = 0;
   for (int i = 0; i < 20; ++i) {
     const Scan scan(10, 0, radius, 50 + i, 0.02, {{5, -3, 5, 0}});
     ASSERT_FALSE(scan.slices.empty());
-    for (const Slice& s : scan.slices) ASSERT_EQ(s.right, Side::occluded);
+    for (const ScanLineSegment& s : scan.slices) ASSERT_EQ(s.right, Side::occluded);
     const auto fit = scan.fit();
     ASSERT_TRUE(fit);
     EXPECT_NEAR(fit->x, 10, 0.1);
@@ -253,12 +253,12 @@ TEST(PoleFitting, aPoleHalfHiddenIsNotPulledAside) {
   EXPECT_LT(std::abs(lateral), 0.04);  // the middle of what is seen is 0.075 m aside
 }
 
-TEST(PoleFitting, ofNoSlicesThereIsNoFit) {
+TEST(PoleFitting, OfNoSlicesThereIsNoFit) {
   const Scan scan(10, 0, 0.1, 1);
   EXPECT_FALSE(fitPole(scan.lines, scan.slices, {}, {scan.column()}));
 }
 
-TEST(PoleFitting, onlyTheSlicesNamedAreUsed) {
+TEST(PoleFitting, OnlyTheSlicesNamedAreUsed) {
   Scan scan(10, 0.3, 0.1, 1);
   ASSERT_GE(scan.slices.size(), 4u);
   scan.slices[0].azimuthEnd += 0.1f;  // a slice of something else
@@ -272,7 +272,7 @@ TEST(PoleFitting, onlyTheSlicesNamedAreUsed) {
   EXPECT_GT(std::hypot(all->x - rest->x, all->y - rest->y), 0.01);
 }
 
-TEST(PoleFitting, roughAxisIsWithinAFewCentimetres) {
+TEST(PoleFitting, RoughAxisIsWithinAFewCentimetres) {
   for (const double radius : {0.05, 0.12, 0.25})
     for (const double distance : {5.0, 12.0, 25.0})
       for (const double bearing : {0.0, 1.9, M_PI}) {

@@ -52,7 +52,7 @@ class Drawing {
   }
   static double azimuth(int step) { return -M_PI + (step + 0.5) * 0.5 * kDegree; }
 
-  std::vector<Slice> slices(const NativeOptions& options = {}) const {
+  std::vector<ScanLineSegment> slices(const ScanLineOptions& options = {}) const {
     const SensorModel sensor = twoBeams();
     PointList points;
     for (int row = 0; row < 2; ++row)
@@ -62,8 +62,8 @@ class Drawing {
     ScanLines lines(sensor);
     buildWhole(lines, points.view(), 1, 100);
     EXPECT_EQ(lines.size(0) + lines.size(1), points.size());
-    std::vector<Slice> found(3);  // what is left of the scan before must go
-    SliceFinder(sensor, options).find(lines, found);
+    std::vector<ScanLineSegment> found(3);  // what is left of the scan before must go
+    ScanLineSegmenter(sensor, options).find(lines, found);
     return found;
   }
 
@@ -78,10 +78,10 @@ Drawing poleBefore(double background) {
 
 }  // namespace
 
-TEST(Slices, aPoleBeforeAFarWallIsOneWholeSlice) {
+TEST(Slices, APoleBeforeAFarWallIsOneWholeSlice) {
   const auto slices = poleBefore(12).slices();
   ASSERT_EQ(slices.size(), 1u);
-  const Slice& s = slices[0];
+  const ScanLineSegment& s = slices[0];
   EXPECT_EQ(s.row, 0);
   EXPECT_EQ(s.first, 300u);
   EXPECT_EQ(s.count, 5u);
@@ -95,7 +95,7 @@ TEST(Slices, aPoleBeforeAFarWallIsOneWholeSlice) {
   EXPECT_TRUE(s.whole());
 }
 
-TEST(Slices, theStepToTheWallDecides) {
+TEST(Slices, TheStepToTheWallDecides) {
   EXPECT_EQ(poleBefore(10.1).slices().size(), 0u);  // one surface
   EXPECT_EQ(poleBefore(10.3).slices().size(), 0u);  // attached: less than 0.35 m
   EXPECT_EQ(poleBefore(10.5).slices().size(), 1u);
@@ -103,8 +103,8 @@ TEST(Slices, theStepToTheWallDecides) {
   EXPECT_EQ(poleBefore(9).slices().size(), 0u);  // a hole in a wall is none
 }
 
-TEST(Slices, theSettingsAreHonoured) {
-  NativeOptions options;
+TEST(Slices, TheSettingsAreHonoured) {
+  ScanLineOptions options;
   options.connectStep = 0.05;
   options.edgeStep = 0.08;
   EXPECT_EQ(poleBefore(10.1).slices(options).size(), 1u);
@@ -119,17 +119,17 @@ TEST(Slices, theSettingsAreHonoured) {
   EXPECT_EQ(poleBefore(12).slices(options).size(), 0u);
 }
 
-TEST(Slices, beforeNothingTheSidesAreFree) {
+TEST(Slices, BeforeNothingTheSidesAreFree) {
   const auto slices = Drawing(0).fill(1, 100, 103, 15).slices();
   ASSERT_EQ(slices.size(), 1u);
   EXPECT_EQ(slices[0].row, 1);
   EXPECT_TRUE(slices[0].whole());
 }
 
-TEST(Slices, acrossTheSeam) {
+TEST(Slices, AcrossTheSeam) {
   const auto slices = Drawing(12).fill(0, -2, 3, 10).slices();
   ASSERT_EQ(slices.size(), 1u);
-  const Slice& s = slices[0];
+  const ScanLineSegment& s = slices[0];
   EXPECT_EQ(s.first, 718u);
   EXPECT_EQ(s.count, 6u);
   EXPECT_NEAR(s.azimuthBegin, M_PI - 0.75 * kDegree, 1e-6);
@@ -139,7 +139,7 @@ TEST(Slices, acrossTheSeam) {
   EXPECT_TRUE(s.whole());
 }
 
-TEST(Slices, besideTheSeamTheNeighboursAreAcrossIt) {
+TEST(Slices, BesideTheSeamTheNeighboursAreAcrossIt) {
   EXPECT_EQ(Drawing(12).fill(0, 0, 3, 10).slices().size(), 1u);
   EXPECT_EQ(Drawing(12).fill(0, -4, -1, 10).slices().size(), 1u);
   // What continues as far behind the seam makes it attached; what is nearer there hides its end.
@@ -150,14 +150,14 @@ TEST(Slices, besideTheSeamTheNeighboursAreAcrossIt) {
   EXPECT_EQ(hidden[0].left, Side::free);
 }
 
-TEST(Slices, twoPolesAreTwoSlicesInOrderOfAzimuth) {
+TEST(Slices, TwoPolesAreTwoSlicesInOrderOfAzimuth) {
   const auto slices = Drawing(12).fill(0, 500, 502, 8).fill(0, 300, 304, 10).slices();
   ASSERT_EQ(slices.size(), 2u);
   EXPECT_EQ(slices[0].first, 300u);
   EXPECT_EQ(slices[1].first, 500u);
 }
 
-TEST(Slices, twoPolesSideBySideAtDifferentRanges) {
+TEST(Slices, TwoPolesSideBySideAtDifferentRanges) {
   const auto slices = Drawing(14).fill(0, 300, 303, 10).fill(0, 304, 306, 11).slices();
   ASSERT_EQ(slices.size(), 2u);
   EXPECT_TRUE(slices[0].whole());
@@ -166,30 +166,30 @@ TEST(Slices, twoPolesSideBySideAtDifferentRanges) {
   EXPECT_FALSE(slices[1].whole());
 }
 
-TEST(Slices, aWideThingIsNone) {
+TEST(Slices, AWideThingIsNone) {
   EXPECT_EQ(Drawing(14).fill(0, 300, 322, 10).slices().size(), 0u);  // 1.9 m
   EXPECT_EQ(Drawing(14).fill(0, 300, 310, 10).slices().size(), 1u);  // 0.87 m
   EXPECT_EQ(Drawing(14).fill(0, 300, 311, 10).slices().size(), 0u);  // 0.96 m
 }
 
-TEST(Slices, aThingDeeperThanAnyPoleIsNone) {
+TEST(Slices, AThingDeeperThanAnyPoleIsNone) {
   Drawing receding(20);
   for (int s = 0; s < 8; ++s) receding.fill(0, 300 + s, 300 + s, 10 + 0.15 * s);  // 1.05 m deep
   EXPECT_EQ(receding.slices().size(), 0u);
 }
 
-TEST(Slices, hiddenOnBothSidesIsNone) {
+TEST(Slices, HiddenOnBothSidesIsNone) {
   const Drawing between = Drawing(14).fill(0, 250, 350, 5).fill(0, 300, 304, 10);
   EXPECT_EQ(between.slices().size(), 0u);
 }
 
-TEST(Slices, attachedOnOneSideIsNone) {
+TEST(Slices, AttachedOnOneSideIsNone) {
   EXPECT_EQ(Drawing(14).fill(0, 300, 304, 10).fill(0, 305, 360, 10.3).slices().size(), 0u);
   EXPECT_EQ(Drawing(14).fill(0, 300, 304, 10).fill(0, 240, 299, 10.3).slices().size(), 0u);
 }
 
 // A return between pole and wall ends the pole all the same; it is a slice of its own, half hidden.
-TEST(Slices, aMixedPixelAtTheEdgeDoesNotAttach) {
+TEST(Slices, AMixedPixelAtTheEdgeDoesNotAttach) {
   const auto left = poleBefore(12).fill(0, 305, 305, 10.25).slices();
   ASSERT_EQ(left.size(), 2u);
   EXPECT_EQ(left[0].count, 5u);
@@ -202,24 +202,24 @@ TEST(Slices, aMixedPixelAtTheEdgeDoesNotAttach) {
   EXPECT_TRUE(right[1].whole());
 }
 
-TEST(Slices, oneMissingReturnIsBridged) {
+TEST(Slices, OneMissingReturnIsBridged) {
   const auto slices = poleBefore(12).fill(0, 302, 302, 0).slices();
   ASSERT_EQ(slices.size(), 1u);
   EXPECT_EQ(slices[0].count, 4u);
   EXPECT_NEAR(slices[0].width(), 10 * 2 * kDegree, 1e-5);
 }
 
-TEST(Slices, manyMissingReturnsDivide) {
+TEST(Slices, ManyMissingReturnsDivide) {
   EXPECT_EQ(poleBefore(12).fill(0, 300, 310, 10).fill(0, 302, 307, 0).slices().size(), 2u);
 }
 
 // Close by, where firing steps are narrow, two or three missing returns are still bridged.
-TEST(Slices, missingReturnsAreBridgedFurtherCloseBy) {
+TEST(Slices, MissingReturnsAreBridgedFurtherCloseBy) {
   EXPECT_EQ(Drawing(6).fill(0, 300, 308, 3).fill(0, 303, 305, 0).slices().size(), 1u);
   EXPECT_EQ(Drawing(12).fill(0, 300, 308, 10).fill(0, 303, 305, 0).slices().size(), 2u);
 }
 
-TEST(Slices, aSingleReturnIsASlice) {
+TEST(Slices, ASingleReturnIsASlice) {
   const auto slices = Drawing(40).fill(0, 300, 300, 30).slices();
   ASSERT_EQ(slices.size(), 1u);
   EXPECT_EQ(slices[0].count, 1u);
@@ -228,7 +228,7 @@ TEST(Slices, aSingleReturnIsASlice) {
 }
 
 // The topmost beams often meet nothing but one lamp post.
-TEST(Slices, theOnlyReturnOfABeamIsASlice) {
+TEST(Slices, TheOnlyReturnOfABeamIsASlice) {
   for (const int step : {0, 300, 719}) {
     const auto slices = Drawing(0).fill(0, step, step, 20).slices();
     ASSERT_EQ(slices.size(), 1u);
@@ -237,15 +237,15 @@ TEST(Slices, theOnlyReturnOfABeamIsASlice) {
   }
 }
 
-TEST(Slices, aClosedRingHasNone) {
+TEST(Slices, AClosedRingHasNone) {
   EXPECT_EQ(Drawing(10).slices().size(), 0u);
 }
 
-TEST(Slices, emptyRowsHaveNone) {
+TEST(Slices, EmptyRowsHaveNone) {
   EXPECT_EQ(Drawing(0).slices().size(), 0u);
 }
 
-TEST(Slices, rowsAreTakenFromTheTop) {
+TEST(Slices, RowsAreTakenFromTheTop) {
   const auto slices = Drawing(0).fill(1, 100, 102, 9).fill(0, 400, 402, 9).slices();
   ASSERT_EQ(slices.size(), 2u);
   EXPECT_EQ(slices[0].row, 0);
@@ -253,7 +253,7 @@ TEST(Slices, rowsAreTakenFromTheTop) {
 }
 
 // A scan turned by any number of firing steps gives the same slices, wherever the seam falls.
-TEST(Slices, turningTheScanTurnsTheSlices) {
+TEST(Slices, TurningTheScanTurnsTheSlices) {
   Drawing drawing(14);
   drawing.fill(0, 300, 304, 10).fill(0, 302, 302, 0);      // a hole
   drawing.fill(0, 320, 328, 3).fill(0, 323, 325, 0);       // a wide hole, bridged
@@ -267,11 +267,11 @@ TEST(Slices, turningTheScanTurnsTheSlices) {
     const auto after = drawing.turned(steps).slices();
     ASSERT_EQ(after.size(), before.size()) << steps;
     std::size_t matched = 0;
-    for (const Slice& a : before) {
+    for (const ScanLineSegment& a : before) {
       const double angle = steps * 0.5 * kDegree;
       const double x = a.x * std::cos(angle) - a.y * std::sin(angle);
       const double y = a.x * std::sin(angle) + a.y * std::cos(angle);
-      for (const Slice& b : after)
+      for (const ScanLineSegment& b : after)
         matched += std::hypot(b.x - x, b.y - y) < 1e-4 && a.count == b.count && a.left == b.left &&
                    a.right == b.right && std::abs(a.width() - b.width()) < 1e-4;
     }

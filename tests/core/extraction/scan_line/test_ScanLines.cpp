@@ -130,7 +130,7 @@ struct ExactCopy {
 
 }  // namespace
 
-TEST(ScanLines, equalsABruteForceOnCloudsOfAnySize) {
+TEST(ScanLines, EqualsABruteForceOnCloudsOfAnySize) {
   const SensorModel sensor = sensorModel();
   for (const std::size_t size :
        {0, 1, 2, 3, 4, 7, 8, 9, 15, 16, 17, 31, 33, 1000, 4097, 50000, 600000}) {
@@ -141,14 +141,14 @@ TEST(ScanLines, equalsABruteForceOnCloudsOfAnySize) {
   }
 }
 
-TEST(ScanLines, keepsNothingOfTheScanBefore) {
+TEST(ScanLines, KeepsNothingOfTheScanBefore) {
   const SensorModel sensor = sensorModel("hdl32e");
   ScanLines lines(sensor);
   for (const std::size_t size : {5000, 17, 9000, 0, 300})
     expectEqualsBruteForce(randomCloud(size, size).view(), sensor, lines);
 }
 
-TEST(ScanLines, oneBearingWithManyReturnsIsSorted) {
+TEST(ScanLines, OneBearingWithManyReturnsIsSorted) {
   const SensorModel sensor = sensorModel();
   PointList points;
   sim::Random random(4);
@@ -158,7 +158,7 @@ TEST(ScanLines, oneBearingWithManyReturnsIsSorted) {
   expectEqualsBruteForce(points.view(), sensor, lines);
 }
 
-TEST(ScanLines, theAxesHaveTheirAzimuths) {
+TEST(ScanLines, TheAxesHaveTheirAzimuths) {
   const SensorModel sensor = sensorModel();
   PointList points;
   points.add(10, 0, 0);
@@ -181,7 +181,7 @@ TEST(ScanLines, theAxesHaveTheirAzimuths) {
   EXPECT_NEAR(azimuth[5], M_PI / 4, 5e-7);
 }
 
-TEST(ScanLines, orderOfPointsIsOfNoConsequence) {
+TEST(ScanLines, OrderOfPointsIsOfNoConsequence) {
   const SensorModel sensor = sensorModel();
   PointList points = randomCloud(20000, 5);
   points.append(randomCloud(2000, 5).view());  // duplicates
@@ -208,7 +208,7 @@ TEST(ScanLines, orderOfPointsIsOfNoConsequence) {
   }
 }
 
-TEST(ScanLines, whatBecomesOfPointsIsCounted) {
+TEST(ScanLines, WhatBecomesOfPointsIsCounted) {
   const SensorModel sensor = sensorModel("vlp16");  // ±15°
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   PointList points;
@@ -234,7 +234,7 @@ TEST(ScanLines, whatBecomesOfPointsIsCounted) {
   EXPECT_EQ(counts.lines.used, 2u);
 }
 
-TEST(ScanLines, withoutALeastRangeAPointStraightAboveIsOutOfView) {
+TEST(ScanLines, WithoutALeastRangeAPointStraightAboveIsOutOfView) {
   const SensorModel sensor = sensorModel("vlp16");
   PointList points;
   points.add(0, 0, 5);
@@ -243,7 +243,7 @@ TEST(ScanLines, withoutALeastRangeAPointStraightAboveIsOutOfView) {
   EXPECT_EQ(buildWhole(lines, points.view(), 0, kMaxRange).lines.outOfView, 2u);
 }
 
-TEST(ScanLines, whatLiesOnTheGroundIsLeftOut) {
+TEST(ScanLines, WhatLiesOnTheGroundIsLeftOut) {
   const SensorModel sensor = sensorModel();
   GroundGrid ground;
   PointList points;
@@ -266,7 +266,7 @@ TEST(ScanLines, whatLiesOnTheGroundIsLeftOut) {
   EXPECT_EQ(counts.used, 9u);
 }
 
-TEST(ScanLines, lowerBoundEqualsABinarySearch) {
+TEST(ScanLines, LowerBoundEqualsABinarySearch) {
   const SensorModel sensor = sensorModel("vlp16");
   PointList points = randomCloud(8000, 11);
   for (int b = 0; b <= ScanLines::kBuckets; ++b)  // on the borders of the buckets

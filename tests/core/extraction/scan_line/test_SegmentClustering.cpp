@@ -20,8 +20,8 @@ SensorModel sensorModel(const std::string& model = "hdl64e") {
 }
 
 /// What a beam sees of a thin pole at (x, y).
-Slice sliceAt(const SensorModel& sensor, int row, double x, double y) {
-  Slice s;
+ScanLineSegment sliceAt(const SensorModel& sensor, int row, double x, double y) {
+  ScanLineSegment s;
   s.row = row;
   s.rho = static_cast<float>(std::hypot(x, y));
   s.x = static_cast<float>(x);
@@ -31,20 +31,21 @@ Slice sliceAt(const SensorModel& sensor, int row, double x, double y) {
   return s;
 }
 
-/// In the order SliceFinder gives them.
-void sortByRow(std::vector<Slice>& slices) {
-  std::stable_sort(slices.begin(), slices.end(),
-                   [](const Slice& a, const Slice& b) { return a.row < b.row; });
+/// In the order ScanLineSegmenter gives them.
+void sortByRow(std::vector<ScanLineSegment>& slices) {
+  std::stable_sort(
+      slices.begin(), slices.end(),
+      [](const ScanLineSegment& a, const ScanLineSegment& b) { return a.row < b.row; });
 }
 
 using Lists = std::vector<std::vector<std::uint32_t>>;
 
-Lists stack(const SensorModel& sensor, std::vector<Slice> slices,
-            const NativeOptions& options = {}) {
+Lists stack(const SensorModel& sensor, std::vector<ScanLineSegment> slices,
+            const ScanLineOptions& options = {}) {
   sortByRow(slices);
-  SliceStacker stacker(sensor, options);
+  SegmentClustering stacker(sensor, options);
   Lists lists;
-  for (const Stack& s : stacker.stack(slices)) {
+  for (const SegmentCluster& s : stacker.stack(slices)) {
     lists.emplace_back(s.begin(), s.end());
     EXPECT_EQ(s.top(), lists.back().front());
     EXPECT_EQ(s.bottom(), lists.back().back());
@@ -52,28 +53,29 @@ Lists stack(const SensorModel& sensor, std::vector<Slice> slices,
   return lists;
 }
 
-std::vector<Slice> pole(const SensorModel& sensor, int firstRow, int lastRow, double x, double y) {
-  std::vector<Slice> slices;
+std::vector<ScanLineSegment> pole(const SensorModel& sensor, int firstRow, int lastRow, double x,
+                                  double y) {
+  std::vector<ScanLineSegment> slices;
   for (int row = firstRow; row <= lastRow; ++row) slices.push_back(sliceAt(sensor, row, x, y));
   return slices;
 }
 
-void append(std::vector<Slice>& slices, const std::vector<Slice>& more) {
+void append(std::vector<ScanLineSegment>& slices, const std::vector<ScanLineSegment>& more) {
   slices.insert(slices.end(), more.begin(), more.end());
 }
 
 /// The rule as it is stated: every slice joins the nearest stack above it whose last slice lies
 /// within reach, in the plane and in height. Looks at all stacks for every slice.
-Lists bruteForce(const SensorModel& sensor, const std::vector<Slice>& slices,
-                 const NativeOptions& options) {
+Lists bruteForce(const SensorModel& sensor, const std::vector<ScanLineSegment>& slices,
+                 const ScanLineOptions& options) {
   Lists stacks;
   for (std::uint32_t i = 0; i < slices.size(); ++i) {
-    const Slice& s = slices[i];
+    const ScanLineSegment& s = slices[i];
     const double gap = std::max(options.stackGap, 2.2 * sensor.spacingAbove(s.row) * s.rho);
     std::size_t best = stacks.size();
     double bestDistance = options.stackReach;
     for (std::size_t k = 0; k < stacks.size(); ++k) {
-      const Slice& last = slices[stacks[k].back()];
+      const ScanLineSegment& last = slices[stacks[k].back()];
       const double distance = std::hypot(last.x - s.x, last.y - s.y);
       if (last.row == s.row || last.z - s.z > gap || distance >= bestDistance) continue;
       best = k;
@@ -90,70 +92,71 @@ Lists bruteForce(const SensorModel& sensor, const std::vector<Slice>& slices,
 
 }  // namespace
 
-TEST(PoleStacks, aPoleIsOneStackFromTheTop) {
+TEST(SegmentClustering, APoleIsOneStackFromTheTop) {
   const SensorModel sensor = sensorModel();
   EXPECT_EQ(stack(sensor, pole(sensor, 10, 14, 8, -6)), (Lists{{0, 1, 2, 3, 4}}));
 }
 
-TEST(PoleStacks, aLoneSliceIsNone) {
+TEST(SegmentClustering, ALoneSliceIsNone) {
   const SensorModel sensor = sensorModel();
   EXPECT_TRUE(stack(sensor, {}).empty());
   EXPECT_TRUE(stack(sensor, {sliceAt(sensor, 5, 10, 0)}).empty());
   EXPECT_TRUE(stack(sensor, {sliceAt(sensor, 5, 10, 0), sliceAt(sensor, 6, 10, 3)}).empty());
 }
 
-TEST(PoleStacks, twoPolesSixtyCentimetresApartAreTwo) {
+TEST(SegmentClustering, TwoPolesSixtyCentimetresApartAreTwo) {
   const SensorModel sensor = sensorModel();
-  std::vector<Slice> slices = pole(sensor, 10, 13, 10, 0.3);
+  std::vector<ScanLineSegment> slices = pole(sensor, 10, 13, 10, 0.3);
   append(slices, pole(sensor, 10, 13, 10, -0.3));
   // Sorted by row, the two alternate.
   EXPECT_EQ(stack(sensor, slices), (Lists{{0, 2, 4, 6}, {1, 3, 5, 7}}));
 }
 
-TEST(PoleStacks, twoSlicesOfOneBeamAreNeverOneStack) {
+TEST(SegmentClustering, TwoSlicesOfOneBeamAreNeverOneStack) {
   const SensorModel sensor = sensorModel();
   EXPECT_TRUE(stack(sensor, {sliceAt(sensor, 5, 10, 0), sliceAt(sensor, 5, 10, 0.1)}).empty());
 }
 
-TEST(PoleStacks, theNearestStackTakesTheSlice) {
+TEST(SegmentClustering, TheNearestStackTakesTheSlice) {
   const SensorModel sensor = sensorModel();
   const Lists lists = stack(sensor, {sliceAt(sensor, 5, 10, 0.2), sliceAt(sensor, 5, 10, -0.2),
                                      sliceAt(sensor, 6, 10, -0.05)});
   EXPECT_EQ(lists, (Lists{{1, 2}}));
 }
 
-TEST(PoleStacks, reachIsASetting) {
+TEST(SegmentClustering, ReachIsASetting) {
   const SensorModel sensor = sensorModel();
-  const std::vector<Slice> apart = {sliceAt(sensor, 5, 10, 0), sliceAt(sensor, 6, 10, 0.31)};
+  const std::vector<ScanLineSegment> apart = {sliceAt(sensor, 5, 10, 0),
+                                              sliceAt(sensor, 6, 10, 0.31)};
   EXPECT_TRUE(stack(sensor, apart).empty());
-  NativeOptions options;
+  ScanLineOptions options;
   options.stackReach = 0.32;
   EXPECT_EQ(stack(sensor, apart, options).size(), 1u);
 }
 
-TEST(PoleStacks, aMissingRowIsBridged) {
+TEST(SegmentClustering, AMissingRowIsBridged) {
   const SensorModel sensor = sensorModel();
-  std::vector<Slice> slices = pole(sensor, 10, 11, 12, 5);
+  std::vector<ScanLineSegment> slices = pole(sensor, 10, 11, 12, 5);
   append(slices, pole(sensor, 13, 14, 12, 5));
   EXPECT_EQ(stack(sensor, slices).size(), 1u);
 }
 
-TEST(PoleStacks, whatIsFarAboveIsAnotherThing) {
+TEST(SegmentClustering, WhatIsFarAboveIsAnotherThing) {
   const SensorModel sensor = sensorModel();
   // At 10 m the upper block's beams are 6 cm apart: 10 rows are 0.6 m, 25 rows 1.5 m.
-  std::vector<Slice> near = pole(sensor, 0, 1, 10, 0), far = near;
+  std::vector<ScanLineSegment> near = pole(sensor, 0, 1, 10, 0), far = near;
   append(near, pole(sensor, 11, 12, 10, 0));
   append(far, pole(sensor, 26, 27, 10, 0));
   EXPECT_EQ(stack(sensor, near).size(), 1u);
   EXPECT_EQ(stack(sensor, far).size(), 2u);
-  NativeOptions options;
+  ScanLineOptions options;
   options.stackGap = 2;
   EXPECT_EQ(stack(sensor, far, options).size(), 1u);
 }
 
 // Beams of a VLP-16 are 0.7 m apart at 20 m and 1.2 m at 35 m: the next always counts, and one
 // silent beam between is bridged, two are not.
-TEST(PoleStacks, wideBeamsFarAway) {
+TEST(SegmentClustering, WideBeamsFarAway) {
   const SensorModel sensor = sensorModel("vlp16");
   for (const double rho : {20.0, 35.0}) {
     EXPECT_EQ(stack(sensor, pole(sensor, 5, 9, rho, 0)), (Lists{{0, 1, 2, 3, 4}})) << rho;
@@ -162,11 +165,11 @@ TEST(PoleStacks, wideBeamsFarAway) {
   }
 }
 
-TEST(PoleStacks, aTiltedPoleIsOne) {
+TEST(SegmentClustering, ATiltedPoleIsOne) {
   const SensorModel sensor = sensorModel("vlp16");
-  std::vector<Slice> slices;
+  std::vector<ScanLineSegment> slices;
   for (int row = 4; row < 12; ++row) {
-    Slice s = sliceAt(sensor, row, 10, 0);
+    ScanLineSegment s = sliceAt(sensor, row, 10, 0);
     s.y = s.z * std::tan(0.3f);  // 0.35 m between beams, 11 cm to the side each
     slices.push_back(s);
   }
@@ -174,9 +177,9 @@ TEST(PoleStacks, aTiltedPoleIsOne) {
   EXPECT_EQ(stack(sensor, slices)[0].size(), 8u);
 }
 
-TEST(PoleStacks, stacksComeInTheOrderOfTheirTops) {
+TEST(SegmentClustering, StacksComeInTheOrderOfTheirTops) {
   const SensorModel sensor = sensorModel();
-  std::vector<Slice> slices = pole(sensor, 20, 22, -10, 0);
+  std::vector<ScanLineSegment> slices = pole(sensor, 20, 22, -10, 0);
   append(slices, pole(sensor, 10, 12, 10, 0));
   append(slices, pole(sensor, 15, 21, 0, 10));
   const Lists lists = stack(sensor, slices);
@@ -186,27 +189,27 @@ TEST(PoleStacks, stacksComeInTheOrderOfTheirTops) {
   EXPECT_EQ(lists[1].size(), 7u);
 }
 
-TEST(PoleStacks, equalsABruteForceOnRandomSlices) {
+TEST(SegmentClustering, EqualsABruteForceOnRandomSlices) {
   for (const std::string model : {"vlp16", "hdl64e"}) {
     const SensorModel sensor = sensorModel(model);
-    NativeOptions options;
-    SliceStacker stacker(sensor, options);
+    ScanLineOptions options;
+    SegmentClustering stacker(sensor, options);
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
       sim::Random random(seed);
-      std::vector<Slice> slices;
+      std::vector<ScanLineSegment> slices;
       const double extent = seed % 3 ? 3 : 28;  // crowded, or to the end of the range
       for (int i = 0; i < 600; ++i)
         slices.push_back(sliceAt(sensor, random.below(sensor.rows()),
                                  random.uniform(-extent, extent), random.uniform(-extent, extent)));
       sortByRow(slices);
       Lists found;
-      for (const Stack& s : stacker.stack(slices)) found.emplace_back(s.begin(), s.end());
+      for (const SegmentCluster& s : stacker.stack(slices)) found.emplace_back(s.begin(), s.end());
       ASSERT_EQ(found, bruteForce(sensor, slices, options)) << model << ' ' << seed;
     }
   }
 }
 
-TEST(PoleStacks, allAroundTheSensorNearAndFar) {
+TEST(SegmentClustering, AllAroundTheSensorNearAndFar) {
   const SensorModel sensor = sensorModel("hdl32e");
   for (const double rho : {0.05, 1.0, 39.9})
     for (double azimuth = -M_PI; azimuth < M_PI; azimuth += 0.01) {

@@ -11,8 +11,8 @@ namespace {
 using Vector = Eigen::Vector2f;
 
 /// A pole that was seen to lean by `seen`, shrunk by the prior towards `upright`.
-PoleLean leaning(const Vector& seen, float prior, const Vector& upright = Vector::Zero()) {
-  PoleLean pole;
+PoleTilt leaning(const Vector& seen, float prior, const Vector& upright = Vector::Zero()) {
+  PoleTilt pole;
   pole.lean = prior * upright + (1 - prior) * seen;
   pole.prior = prior;
   pole.step = -2;
@@ -26,43 +26,43 @@ void expectNear(const Vector& value, const Vector& expected, float tolerance) {
 
 }  // namespace
 
-TEST(CommonLean, WithoutPolesWhatWasKnownBefore) {
-  expectNear(commonLean({}, {0.01f, -0.02f}), {0.01f, -0.02f}, 1e-7f);
+TEST(TiltEstimation, WithoutPolesWhatWasKnownBefore) {
+  expectNear(estimateTilt({}, {0.01f, -0.02f}), {0.01f, -0.02f}, 1e-7f);
 }
 
-TEST(CommonLean, ManyPolesThatLeanAlikeDecide) {
-  const std::vector<PoleLean> poles(30, leaning({0.02f, -0.01f}, 0.2f));
-  expectNear(commonLean(poles, Vector::Zero()), {0.02f, -0.01f}, 1e-3f);
+TEST(TiltEstimation, ManyPolesThatLeanAlikeDecide) {
+  const std::vector<PoleTilt> poles(30, leaning({0.02f, -0.01f}, 0.2f));
+  expectNear(estimateTilt(poles, Vector::Zero()), {0.02f, -0.01f}, 1e-3f);
   const Vector known(0.1f, 0.3f);  // a camera that looks down is tilted far, and that is known
-  const std::vector<PoleLean> seen(30, leaning({0.12f, 0.29f}, 0.2f, known));
-  expectNear(commonLean(seen, known), {0.12f, 0.29f}, 2e-3f);
+  const std::vector<PoleTilt> seen(30, leaning({0.12f, 0.29f}, 0.2f, known));
+  expectNear(estimateTilt(seen, known), {0.12f, 0.29f}, 2e-3f);
 }
 
-TEST(CommonLean, OnePoleIsSharedBetweenItselfAndTheSensor) {
-  const PoleLean pole = leaning({0.005f, 0}, 0.2f);
+TEST(TiltEstimation, OnePoleIsSharedBetweenItselfAndTheSensor) {
+  const PoleTilt pole = leaning({0.005f, 0}, 0.2f);
   // By hand: variances 0.0004 / 4 + 0.0009 of the pole, 0.0016 of the sensor.
   const double share = (1 / 0.001) / (1 / 0.001 + 1 / 0.0016);
-  const Vector common = commonLean({pole}, Vector::Zero());
+  const Vector common = estimateTilt({pole}, Vector::Zero());
   EXPECT_NEAR(common.x(), share * 0.005, 1e-5);
-  PoleLean doubtful = pole;
+  PoleTilt doubtful = pole;
   doubtful.weight = 0.5f;
   const double half = (0.5 / 0.001) / (0.5 / 0.001 + 1 / 0.0016);
-  EXPECT_NEAR(commonLean({doubtful}, Vector::Zero()).x(), half * 0.005, 1e-5);
+  EXPECT_NEAR(estimateTilt({doubtful}, Vector::Zero()).x(), half * 0.005, 1e-5);
 }
 
-TEST(CommonLean, ATrunkThatLeansDoesNotTiltTheWorld) {
-  std::vector<PoleLean> poles(10, leaning({0.01f, 0}, 0.2f));
-  const float without = commonLean(poles, Vector::Zero()).x();
+TEST(TiltEstimation, ATrunkThatLeansDoesNotTiltTheWorld) {
+  std::vector<PoleTilt> poles(10, leaning({0.01f, 0}, 0.2f));
+  const float without = estimateTilt(poles, Vector::Zero()).x();
   poles.push_back(leaning({0.5f, 0.3f}, 0.1f));
-  expectNear(commonLean(poles, Vector::Zero()), {without, 0}, 2e-4f);
+  expectNear(estimateTilt(poles, Vector::Zero()), {without, 0}, 2e-4f);
 }
 
-TEST(CommonLean, WhatIsMostlyThePriorTellsNothing) {
-  expectNear(commonLean({leaning({0.3f, 0.3f}, 0.7f)}, Vector::Zero()), Vector::Zero(), 1e-7f);
+TEST(TiltEstimation, WhatIsMostlyThePriorTellsNothing) {
+  expectNear(estimateTilt({leaning({0.3f, 0.3f}, 0.7f)}, Vector::Zero()), Vector::Zero(), 1e-7f);
 }
 
-TEST(CommonLean, MovesWhatThePriorHeldUpright) {
-  PoleLean pole = leaning({0, 0}, 0.25f);
+TEST(TiltEstimation, MovesWhatThePriorHeldUpright) {
+  PoleTilt pole = leaning({0, 0}, 0.25f);
   expectNear(shiftBy(pole, Vector::Zero(), {0.02f, 0.04f}), {-0.01f, -0.02f}, 1e-6f);
   pole.gap = -0.5f;  // seen from half a metre above the sensor's height on
   expectNear(shiftBy(pole, Vector::Zero(), {0.02f, 0.04f}), {-0.02f, -0.04f}, 1e-6f);

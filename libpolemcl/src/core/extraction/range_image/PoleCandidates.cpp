@@ -6,7 +6,7 @@
 namespace polemcl {
 namespace {
 
-/// Share of pixels that count: see PaperOptions::foregroundTest.
+/// Share of pixels that count: see RangeImageOptions::foregroundTest.
 double foregroundShare(const RangeImage& image, const Segmentation& segmentation,
                        std::int32_t label, bool inFront) {
   const Segment& segment = segmentation.segments()[label];
@@ -29,17 +29,18 @@ double foregroundShare(const RangeImage& image, const Segmentation& segmentation
 
 }  // namespace
 
-Refusal testCandidate(const RangeImage& image, const Segmentation& segmentation, std::int32_t label,
-                      const PointsView& points, const PaperOptions& options, double heightOffset,
-                      HeightRange& heights) {
+RejectionReason testCandidate(const RangeImage& image, const Segmentation& segmentation,
+                              std::int32_t label, const PointsView& points,
+                              const RangeImageOptions& options, double heightOffset,
+                              HeightRange& heights) {
   const Segment& segment = segmentation.segments()[label];
   if (segment.pixels.size() <= static_cast<std::size_t>(options.minPixels))
-    return Refusal::tooFewPoints;
+    return RejectionReason::tooFewPoints;
   if (segment.height() < options.minAspect * segment.width || segment.width > options.maxWidthPx)
-    return Refusal::tooWide;
+    return RejectionReason::tooWide;
   if (foregroundShare(image, segmentation, label, options.foregroundTest == "in_front") <
       options.foreground)
-    return Refusal::notForeground;
+    return RejectionReason::notForeground;
 
   heights = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const Pixel& pixel : segment.pixels) {
@@ -47,10 +48,10 @@ Refusal testCandidate(const RangeImage& image, const Segmentation& segmentation,
     heights.low = std::min(heights.low, z);
     heights.high = std::max(heights.high, z);
   }
-  if (!(heights.high > options.minTop)) return Refusal::tooLow;
-  if (!(heights.low < options.maxBottom)) return Refusal::startsTooHigh;
-  if (!(heights.high - heights.low > options.minHeight)) return Refusal::tooShort;
-  return Refusal::count_;
+  if (!(heights.high > options.minTop)) return RejectionReason::tooLow;
+  if (!(heights.low < options.maxBottom)) return RejectionReason::startsTooHigh;
+  if (!(heights.high - heights.low > options.minHeight)) return RejectionReason::tooShort;
+  return RejectionReason::count_;
 }
 
 }  // namespace polemcl

@@ -18,9 +18,10 @@ struct HeightRange {
 /// where
 ///        heights are above ground, else 0).
 /// \param[out] heights Filled once the shape tests have passed.
-/// \return The first reason to refuse it, or Refusal::count_.
-Refusal testCandidate(const RangeImage& image, const Segmentation& segmentation, std::int32_t label,
-                      const PointsView& points, const PaperOptions& options, double heightOffset,
-                      HeightRange& heights);
+/// \return The first reason to refuse it, or RejectionReason::count_.
+RejectionReason testCandidate(const RangeImage& image, const Segmentation& segmentation,
+                              std::int32_t label, const PointsView& points,
+                              const RangeImageOptions& options, double heightOffset,
+                              HeightRange& heights);
 
 }  // namespace polemcl

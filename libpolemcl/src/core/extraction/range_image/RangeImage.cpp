@@ -29,7 +29,7 @@ namespace {
 template <class Real>
 class Projection {
  public:
-  Projection(const RangeImageOptions& options, double minZ, double maxZ)
+  Projection(const ProjectionOptions& options, double minZ, double maxZ)
       : m_options(options),
         m_minZ(static_cast<Real>(minZ)),
         m_maxZ(static_cast<Real>(maxZ)),
@@ -63,12 +63,12 @@ class Projection {
   }
 
  private:
-  const RangeImageOptions& m_options;
+  const ProjectionOptions& m_options;
   Real m_minZ, m_maxZ, m_fovDown, m_fov;
 };
 
 template <class Real>
-PointCounts projectIn(const PointsView& points, const RangeImageOptions& options, double minZ,
+PointCounts projectIn(const PointsView& points, const ProjectionOptions& options, double minZ,
                       double maxZ, RangeImage& image) {
   const Projection<Real> projection(options, minZ, maxZ);
   PointCounts counts;
@@ -105,7 +105,7 @@ PointCounts projectIn(const PointsView& points, const RangeImageOptions& options
 
 }  // namespace
 
-PointCounts project(const PointsView& points, const RangeImageOptions& options, double minZ,
+PointCounts project(const PointsView& points, const ProjectionOptions& options, double minZ,
                     double maxZ, RangeImage& image) {
   options.validate();
   image.clear();
@@ -113,7 +113,7 @@ PointCounts project(const PointsView& points, const RangeImageOptions& options, 
                                  : projectIn<double>(points, options, minZ, maxZ, image);
 }
 
-void RangeImageOptions::validate() const {
+void ProjectionOptions::validate() const {
   if (rows < 2 || rows > 1024 || columns < 16 || columns > 65536)
     throw Error("range image of " + std::to_string(rows) + " x " + std::to_string(columns) +
                 ": allowed are 2 to 1024 rows and 16 to 65536 columns");

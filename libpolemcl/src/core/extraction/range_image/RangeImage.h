@@ -11,7 +11,7 @@
 namespace polemcl {
 
 /// \brief Geometry of the paper's spherical image. `[range_image]` in INI files.
-struct RangeImageOptions {
+struct ProjectionOptions {
   int rows = 64;             ///< px
   int columns = 500;         ///< px over the full turn
   double fovUp = 0.0524;     ///< elevation of the upper border, rad (`fov_up_deg`)
@@ -72,7 +72,7 @@ inline double exactCoordinate(float value, double step) {
 /// of equally near ones the first.
 /// \param points In the frame of the projection, z up.
 /// \param minZ,maxZ Points must lie strictly between (same frame); pass ∓infinity for no cut.
-PointCounts project(const PointsView& points, const RangeImageOptions& options, double minZ,
+PointCounts project(const PointsView& points, const ProjectionOptions& options, double minZ,
                     double maxZ, RangeImage& image);
 
 }  // namespace polemcl

@@ -7,7 +7,8 @@
 
 namespace polemcl {
 
-PaperExtractor::PaperExtractor(const SensorOptions& sensor, const PaperOptions& options)
+RangeImageExtractor::RangeImageExtractor(const SensorOptions& sensor,
+                                         const RangeImageOptions& options)
     : m_options(options),
       m_minRange(sensor.minRange),
       m_height(sensor.height - (options.projectFrom == "cloud" ? sensor.originZ : 0)),
@@ -15,8 +16,8 @@ PaperExtractor::PaperExtractor(const SensorOptions& sensor, const PaperOptions& 
       m_image(options.rows, options.columns),
       m_cells(2 * (static_cast<int>(std::ceil(options.maxRange)) + 1)) {}
 
-RangeImageOptions PaperExtractor::projection() const {
-  RangeImageOptions projection;
+ProjectionOptions RangeImageExtractor::projection() const {
+  ProjectionOptions projection;
   projection.rows = m_options.rows;
   projection.columns = m_options.columns;
   projection.fovUp = m_options.fovUp;
@@ -30,8 +31,8 @@ RangeImageOptions PaperExtractor::projection() const {
   return projection;
 }
 
-void PaperExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
-                             ExtractionReport& report) {
+void RangeImageExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
+                                  ExtractionReport& report) {
   const PointCounts counts = project(points, projection(), m_options.minZ - m_heightOffset,
                                      m_options.maxZ - m_heightOffset, m_image);
   report.points = points.size;
@@ -50,19 +51,19 @@ void PaperExtractor::extract(const PointsView& points, std::vector<PoleDetection
   for (std::size_t i = 0; i < segmentation.segments().size(); ++i) {
     HeightRange heights;
     PoleDetection pole;
-    Refusal refusal = testCandidate(m_image, segmentation, static_cast<std::int32_t>(i), points,
-                                    m_options, m_heightOffset, heights);
-    if (refusal == Refusal::count_)
+    RejectionReason refusal = testCandidate(m_image, segmentation, static_cast<std::int32_t>(i),
+                                            points, m_options, m_heightOffset, heights);
+    if (refusal == RejectionReason::count_)
       refusal = fitPole(segmentation.segments()[i], heights, points, pole);
-    if (refusal == Refusal::count_)
+    if (refusal == RejectionReason::count_)
       poles.push_back(pole);
     else
       ++report.refused[static_cast<int>(refusal)];
   }
 }
 
-std::vector<Eigen::Vector2d> PaperExtractor::segmentPoints(const Segment& segment,
-                                                           const PointsView& points) const {
+std::vector<Eigen::Vector2d> RangeImageExtractor::segmentPoints(const Segment& segment,
+                                                                const PointsView& points) const {
   std::vector<Eigen::Vector2d> xy;
   for (const Pixel& pixel : segment.pixels) {
     const auto i = m_image.point(pixel.row, pixel.column);
@@ -71,8 +72,8 @@ std::vector<Eigen::Vector2d> PaperExtractor::segmentPoints(const Segment& segmen
   return xy;
 }
 
-std::optional<Circle> PaperExtractor::fit(const std::vector<Eigen::Vector2d>& points,
-                                          bool singlePrecision) const {
+std::optional<Circle> RangeImageExtractor::fit(const std::vector<Eigen::Vector2d>& points,
+                                               bool singlePrecision) const {
   if (m_options.circleFit == "kasa_mean") return fitCircleKasaMean(points, singlePrecision);
   if (m_options.circleFit == "taubin") return fitCircleTaubin(points);
   if (m_options.circleFit == "silhouette") return fitCircleSilhouette(points, 0);
@@ -81,32 +82,33 @@ std::optional<Circle> PaperExtractor::fit(const std::vector<Eigen::Vector2d>& po
 
 /// A coarse circle from the segment's pixels, which hold floats, then the circle of all points in a
 /// box around it.
-Refusal PaperExtractor::fitPole(const Segment& segment, const HeightRange& heights,
-                                const PointsView& points, PoleDetection& pole) const {
+RejectionReason RangeImageExtractor::fitPole(const Segment& segment, const HeightRange& heights,
+                                             const PointsView& points, PoleDetection& pole) const {
   const auto coarse = fit(segmentPoints(segment, points), true);
-  if (!coarse) return Refusal::badFit;
+  if (!coarse) return RejectionReason::badFit;
   Box box;
   box.centre = *coarse;
   box.half = coarse->radius + m_options.fitMargin;
   box.low = heights.low - m_heightOffset;
   box.high = std::min(heights.high, m_options.fitMaxZ) - m_heightOffset;
   const auto xy = pointsInside(box, points);
-  if (xy.size() < static_cast<std::size_t>(m_options.minFitPoints)) return Refusal::tooFewPoints;
+  if (xy.size() < static_cast<std::size_t>(m_options.minFitPoints))
+    return RejectionReason::tooFewPoints;
   const auto circle = fit(xy, m_options.singlePrecision);
   if (!circle || !(circle->radius > m_options.minRadius && circle->radius < m_options.maxRadius))
-    return Refusal::badFit;
-  if (!isFree(box, xy.size(), points)) return Refusal::notFree;
+    return RejectionReason::badFit;
+  if (!isFree(box, xy.size(), points)) return RejectionReason::notFree;
   pole.x = circle->x;
   pole.y = circle->y;
   pole.radius = circle->radius;
   pole.bottom = heights.low - m_heightOffset + m_height;
   pole.top = heights.high - m_heightOffset + m_height;
   pole.points = static_cast<std::uint32_t>(xy.size());
-  return Refusal::count_;
+  return RejectionReason::count_;
 }
 
-std::vector<Eigen::Vector2d> PaperExtractor::pointsInside(const Box& box,
-                                                          const PointsView& points) const {
+std::vector<Eigen::Vector2d> RangeImageExtractor::pointsInside(const Box& box,
+                                                               const PointsView& points) const {
   std::vector<Eigen::Vector2d> xy;
   eachNear(box, box.half, points, [&](const Point& p) {
     if (between(p.x, box.centre.x - box.half, box.centre.x + box.half) &&
@@ -116,7 +118,8 @@ std::vector<Eigen::Vector2d> PaperExtractor::pointsInside(const Box& box,
   return xy;
 }
 
-bool PaperExtractor::isFree(const Box& box, std::size_t fitted, const PointsView& points) const {
+bool RangeImageExtractor::isFree(const Box& box, std::size_t fitted,
+                                 const PointsView& points) const {
   const double outer = box.half + m_options.freeRing;
   const double side = m_options.mirrored ? -1 : 1;
   const double x = box.centre.x, y = side * box.centre.y;
@@ -138,18 +141,18 @@ bool PaperExtractor::isFree(const Box& box, std::size_t fitted, const PointsView
 }
 
 /// Strictly between; in single precision the bounds are rounded, as the points are.
-bool PaperExtractor::between(double value, double low, double high) const {
+bool RangeImageExtractor::between(double value, double low, double high) const {
   if (m_options.singlePrecision)
     return value > static_cast<float>(low) && value < static_cast<float>(high);
   return value > low && value < high;
 }
 
-int PaperExtractor::cellAlong(double coordinate) const {
+int RangeImageExtractor::cellAlong(double coordinate) const {
   const double cell = std::floor(coordinate) + m_cells / 2;
   return static_cast<int>(std::clamp(cell, 0.0, m_cells - 1.0));
 }
 
-void PaperExtractor::sortIntoCells(const PointsView& points) {
+void RangeImageExtractor::sortIntoCells(const PointsView& points) {
   const auto cell = [&](std::size_t i) -> std::ptrdiff_t {
     if (!std::isfinite(points.x[i]) || !std::isfinite(points.y[i])) return -1;
     return static_cast<std::ptrdiff_t>(cellAlong(points.y[i])) * m_cells + cellAlong(points.x[i]);
@@ -165,7 +168,8 @@ void PaperExtractor::sortIntoCells(const PointsView& points) {
 }
 
 template <class F>
-void PaperExtractor::eachNear(const Box& box, double reach, const PointsView& points, F f) const {
+void RangeImageExtractor::eachNear(const Box& box, double reach, const PointsView& points,
+                                   F f) const {
   const double step = m_options.coordinateStep;
   const int fromX = cellAlong(box.centre.x - reach), toX = cellAlong(box.centre.x + reach);
   const int fromY = cellAlong(box.centre.y - reach), toY = cellAlong(box.centre.y + reach);

@@ -10,9 +10,9 @@
 
 namespace polemcl {
 
-class PaperExtractor {
+class RangeImageExtractor {
  public:
-  PaperExtractor(const SensorOptions& sensor, const PaperOptions& options);
+  RangeImageExtractor(const SensorOptions& sensor, const RangeImageOptions& options);
   void extract(const PointsView& points, std::vector<PoleDetection>& poles,
                ExtractionReport& report);
 
@@ -27,7 +27,7 @@ class PaperExtractor {
     double x, y, z;
   };
 
-  RangeImageOptions projection() const;
+  ProjectionOptions projection() const;
   /// Points in columns of 1 m x 1 m, so that a box is searched without reading the whole cloud.
   /// Those beyond the outermost columns are in them.
   void sortIntoCells(const PointsView& points);
@@ -40,11 +40,11 @@ class PaperExtractor {
   std::vector<Eigen::Vector2d> segmentPoints(const Segment& segment,
                                              const PointsView& points) const;
   std::vector<Eigen::Vector2d> pointsInside(const Box& box, const PointsView& points) const;
-  Refusal fitPole(const Segment& segment, const HeightRange& heights, const PointsView& points,
-                  PoleDetection& pole) const;
+  RejectionReason fitPole(const Segment& segment, const HeightRange& heights,
+                          const PointsView& points, PoleDetection& pole) const;
   bool isFree(const Box& box, std::size_t fitted, const PointsView& points) const;
 
-  PaperOptions m_options;
+  RangeImageOptions m_options;
   double m_minRange;      ///< m
   double m_height;        ///< of the points' origin above ground, m
   double m_heightOffset;  ///< from z to the heights that the options are meant in, m

@@ -100,7 +100,7 @@ class Place {
 
 /// Walks up from the topmost slice while something stands there; one silent row may interrupt it.
 void top(const Place& place, const SensorModel& sensor, int row, float ground,
-         PoleEvidence& evidence) {
+         CandidateFeatures& evidence) {
   evidence.topBound = kInfinity;
   float bound = kInfinity;
   for (int misses = 0, r = row - 1; r >= 0 && misses < 2; --r) {
@@ -121,14 +121,14 @@ void top(const Place& place, const SensorModel& sensor, int row, float ground,
 
 }  // namespace
 
-StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack) {
-  StackShape shape;
+ClusterShape measureShape(const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack) {
+  ClusterShape shape;
   shape.low = slices[stack.bottom()].z;
   shape.high = slices[stack.top()].z;
   const float n = static_cast<float>(stack.count);
   float mz = 0, mx = 0, my = 0, mw = 0;
   for (auto i : stack) {
-    const Slice& slice = slices[i];
+    const ScanLineSegment& slice = slices[i];
     shape.points += static_cast<int>(slice.count);
     shape.wholeSlices += slice.whole();
     mz += slice.z / n;
@@ -138,7 +138,7 @@ StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack) {
   }
   float zz = 0, zx = 0, zy = 0, xx = 0, yy = 0, ww = 0;
   for (auto i : stack) {
-    const Slice& slice = slices[i];
+    const ScanLineSegment& slice = slices[i];
     const float z = slice.z - mz, x = slice.x - mx, y = slice.y - my, w = slice.width() - mw;
     zz += z * z;
     zx += z * x;
@@ -156,12 +156,14 @@ StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack) {
   return shape;
 }
 
-PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
-                            const GroundGrid& ground, const std::vector<Slice>& slices,
-                            const Stack& stack, const StackShape& shape, const PoleAxis& axis) {
+CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sensor,
+                                  const GroundGrid& ground,
+                                  const std::vector<ScanLineSegment>& slices,
+                                  const SegmentCluster& stack, const ClusterShape& shape,
+                                  const PoleAxis& axis) {
   const Place place(lines, sensor, axis);
   const float groundZ = ground.at(axis.x, axis.y);
-  PoleEvidence e;
+  CandidateFeatures e;
   int expected = slices[stack.top()].row;
   for (auto i : stack) {
     for (; expected < slices[i].row; ++expected) {
@@ -179,7 +181,8 @@ PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
 }
 
 float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
-                     const std::vector<Slice>& slices, const Stack& stack, const PoleAxis& axis) {
+                     const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack,
+                     const PoleAxis& axis) {
   const Place place(lines, sensor, axis);
   int cluttered = 0;
   for (auto i : stack) cluttered += place.cluttered(slices[i].row);

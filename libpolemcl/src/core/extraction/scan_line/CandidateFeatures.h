@@ -10,7 +10,7 @@
 namespace polemcl {
 
 /// \brief Shape of a stack, from its slices alone.
-struct StackShape {
+struct ClusterShape {
   int points = 0;           ///< returns in the slices
   int wholeSlices = 0;      ///< slices with both sides free
   float low = 0, high = 0;  ///< of the slices, lidar frame, m
@@ -19,23 +19,26 @@ struct StackShape {
   float tilt = 0;         ///< of that line against the vertical, rad
   float widthSpread = 0;  ///< standard deviation of the slices' widths, m
 };
-StackShape measureShape(const std::vector<Slice>& slices, const Stack& stack);
+ClusterShape measureShape(const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack);
 
 /// \brief What the beams at a candidate's place say. Heights in m above local ground.
-struct PoleEvidence {
+struct CandidateFeatures {
   int rowsPassed = 0;  ///< rows between bottom and top that saw through it (or nothing)
   int rowsWide = 0;    ///< rows between bottom and top that met something there that is no slice
   float bottom = 0;    ///< lowest slice
   float top = 0;       ///< highest return, whatever stands on it (sign, crown) included
   float topBound = 0;  ///< height of the lowest beam that passed over it; infinity when none did
 };
-PoleEvidence gatherEvidence(const ScanLines& lines, const SensorModel& sensor,
-                            const GroundGrid& ground, const std::vector<Slice>& slices,
-                            const Stack& stack, const StackShape& shape, const PoleAxis& axis);
+CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sensor,
+                                  const GroundGrid& ground,
+                                  const std::vector<ScanLineSegment>& slices,
+                                  const SegmentCluster& stack, const ClusterShape& shape,
+                                  const PoleAxis& axis);
 
 /// \brief Share of the stack's rows with other returns in a ring around the place, 0.15 to 0.55 m
 /// outside the radius: free space, as a score.
 float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
-                     const std::vector<Slice>& slices, const Stack& stack, const PoleAxis& axis);
+                     const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack,
+                     const PoleAxis& axis);
 
 }  // namespace polemcl

@@ -60,14 +60,14 @@ struct Residuals {
 
 /// Weight of a slice, 0 to 1: grass and kerbs mix with a pole's foot, and whether a beam there is
 /// taken for ground should not matter.
-float firmness(const Slice& slice, float firmHeight) {
+float firmness(const ScanLineSegment& slice, float firmHeight) {
   constexpr float kFoot = 0.5f, kLeast = 0.02f;
   return std::clamp(1 - (firmHeight - slice.z) / kFoot, kLeast, 1.f);
 }
 
 class CylinderProblem {
  public:
-  CylinderProblem(const ScanLines& lines, const std::vector<Slice>& slices,
+  CylinderProblem(const ScanLines& lines, const std::vector<ScanLineSegment>& slices,
                   const std::vector<std::uint32_t>& used, const PoleView& view)
       : m_lines(lines),
         m_slices(slices),
@@ -76,7 +76,7 @@ class CylinderProblem {
         m_stride((used.size() + kMostSlices - 1) / kMostSlices),
         m_firmHeight(view.firmHeight),
         m_columnAngle(view.columnAngle) {
-    const Slice& reference = slices[used[used.size() / 2]];
+    const ScanLineSegment& reference = slices[used[used.size() / 2]];
     m_bearing = 0.5 * (reference.azimuthBegin + reference.azimuthEnd);
     m_cos = std::cos(m_bearing);
     m_sin = std::sin(m_bearing);
@@ -112,7 +112,7 @@ class CylinderProblem {
     State s;
     double sumLateral = 0, sumDepth = 0, sumWidth = 0;
     for (std::uint32_t u : m_used) {
-      const Slice& slice = m_slices[u];
+      const ScanLineSegment& slice = m_slices[u];
       sumLateral += slice.rho * offset(0.5 * (slice.azimuthBegin + slice.azimuthEnd));
       sumDepth += slice.rho;
       sumWidth += slice.rho * (slice.azimuthEnd - slice.azimuthBegin + m_columnAngle - kFootprint);
@@ -152,7 +152,7 @@ class CylinderProblem {
   }
 
   /// Takes up the returns of a slice.
-  void gather(const Slice& slice) {
+  void gather(const ScanLineSegment& slice) {
     const Return* row = m_lines.begin(slice.row);
     const std::size_t size = m_lines.size(slice.row);
     const std::size_t groups = std::min<std::size_t>(slice.count, kGroups);
@@ -197,7 +197,7 @@ class CylinderProblem {
     }
   }
 
-  void addEdges(const Slice& slice, const State& s, Normal& n) const {
+  void addEdges(const ScanLineSegment& slice, const State& s, Normal& n) const {
     const double half = 0.5 * (m_columnAngle - kFootprint);
     const double sigma = std::max(0.004, s.depth * std::sqrt(m_columnAngle * m_columnAngle / 12 +
                                                              0.16 * kFootprint * kFootprint));
@@ -209,7 +209,7 @@ class CylinderProblem {
   }
 
   const ScanLines& m_lines;
-  const std::vector<Slice>& m_slices;
+  const std::vector<ScanLineSegment>& m_slices;
   const std::vector<std::uint32_t>& m_used;
   std::size_t m_stride;  ///< of the slices used
   FitPoints m_points;
@@ -219,11 +219,11 @@ class CylinderProblem {
 
 }  // namespace
 
-PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
-                   float columnAngle) {
+PoleAxis roughAxis(const std::vector<ScanLineSegment>& slices,
+                   const std::vector<std::uint32_t>& used, float columnAngle) {
   float x = 0, y = 0, width = 0, n = 0;
   for (std::uint32_t u : used) {
-    const Slice& slice = slices[u];
+    const ScanLineSegment& slice = slices[u];
     x += slice.x;
     y += slice.y;
     width += slice.rho *
@@ -248,7 +248,7 @@ struct Lean {
   double low = 0, high = 0;
 };
 
-Lean leanOf(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
+Lean leanOf(const std::vector<ScanLineSegment>& slices, const std::vector<std::uint32_t>& used,
             const PoleView& view) {
   // Poles are upright but for the sway of the sensor. The prior is the ratio of the variances of a
   // front's place and of the lean.
@@ -297,7 +297,7 @@ void moveToSensorHeight(const Lean& lean, PoleFit& fit) {
 
 }  // namespace
 
-std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
+std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLineSegment>& slices,
                                const std::vector<std::uint32_t>& used, const PoleView& view) {
   if (used.empty()) return std::nullopt;
   const CylinderProblem problem(lines, slices, used, view);

@@ -18,7 +18,7 @@ struct PoleFit {
   float radius = 0;    ///< m
   float residual = 0;  ///< robust standard deviation of the ranges against the cylinder, m
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< of (x, y), m²
-  PoleLean lean;
+  PoleTilt lean;
 };
 
 /// \brief Where a pole stands, roughly: middle of the slices' fronts, half their width behind.
@@ -26,8 +26,8 @@ struct PoleAxis {
   float x = 0, y = 0;  ///< lidar frame, m
   float radius = 0;    ///< m
 };
-PoleAxis roughAxis(const std::vector<Slice>& slices, const std::vector<std::uint32_t>& used,
-                   float columnAngle);
+PoleAxis roughAxis(const std::vector<ScanLineSegment>& slices,
+                   const std::vector<std::uint32_t>& used, float columnAngle);
 
 /// \brief How poles are looked at.
 struct PoleView {
@@ -50,7 +50,7 @@ struct PoleView {
 /// roll or pitch of the sensor does not move it.
 /// \param used Which slices to fit (indices into slices), topmost first.
 /// \return Nothing when the normal equations are degenerate.
-std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<Slice>& slices,
+std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLineSegment>& slices,
                                const std::vector<std::uint32_t>& used, const PoleView& view);
 
 }  // namespace polemcl

@@ -183,7 +183,7 @@ GroundGrid::Counts collectLowest(const PointsView& points, float minRange, float
 
 class Classifier {
  public:
-  Classifier(const PointsView& points, const RowLookup& lookup, int rows, int bucketsPerRow,
+  Classifier(const PointsView& points, const RingLookup& lookup, int rows, int bucketsPerRow,
              const UnsortedReturns& out)
       : m_points(points), m_lookup(lookup), m_rows(rows), m_buckets(bucketsPerRow), m_out(out) {}
 
@@ -254,13 +254,13 @@ class Classifier {
   }
 
   const PointsView& m_points;
-  const RowLookup& m_lookup;
+  const RingLookup& m_lookup;
   int m_rows, m_buckets;
   const UnsortedReturns& m_out;
 };
 
 std::size_t classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                           const RowLookup& lookup, int rows, int bucketsPerRow,
+                           const RingLookup& lookup, int rows, int bucketsPerRow,
                            const UnsortedReturns& out) {
   const hn::ScalableTag<float> d;
   const hn::RebindToSigned<decltype(d)> di;
@@ -337,7 +337,7 @@ GroundGrid::Counts collectLowest(const PointsView& points, float minRange, float
 }
 
 std::size_t classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                           const RowLookup& lookup, int rows, int bucketsPerRow,
+                           const RingLookup& lookup, int rows, int bucketsPerRow,
                            const UnsortedReturns& out) {
   return HWY_DYNAMIC_DISPATCH(classifyPoints)(points, cell, limit, lookup, rows, bucketsPerRow,
                                               out);

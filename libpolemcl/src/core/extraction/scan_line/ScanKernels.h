@@ -39,7 +39,7 @@ struct UnsortedReturns {
 /// \param rows,bucketsPerRow Beams, and columns of equal azimuth from -pi to pi.
 /// \return How many were written.
 std::size_t classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                           const RowLookup& lookup, int rows, int bucketsPerRow,
+                           const RingLookup& lookup, int rows, int bucketsPerRow,
                            const UnsortedReturns& out);
 
 /// \brief Widest gap, m, that neighbours up to two `gap`s apart may have between them.

@@ -21,8 +21,8 @@ double confidence(double logOdds) {
 
 }  // namespace
 
-NativeExtractor::NativeExtractor(SensorModel model, const SensorOptions& sensor,
-                                 const NativeOptions& options)
+ScanLineExtractor::ScanLineExtractor(SensorModel model, const SensorOptions& sensor,
+                                     const ScanLineOptions& options)
     : m_sensorOptions(sensor),
       m_options(options),
       // What stands well behind the farthest pole is as good as nothing.
@@ -33,8 +33,8 @@ NativeExtractor::NativeExtractor(SensorModel model, const SensorOptions& sensor,
       m_stacker(m_sensor, options),
       m_freeFinder(m_sensor, sensor.height, options.maxRange) {}
 
-void NativeExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
-                              std::vector<PoleDetection>& poles, ExtractionReport& report) {
+void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
+                                std::vector<PoleDetection>& poles, ExtractionReport& report) {
   m_upright = upright;
   const auto& dropped = m_ground.build(points, static_cast<float>(m_sensorOptions.minRange),
                                        m_farthest, static_cast<float>(m_sensorOptions.height));
@@ -45,14 +45,14 @@ void NativeExtractor::extract(const PointsView& points, const Eigen::Vector2f& u
   report.outOfView = counts.outOfView;
   report.ground = m_ground.median();
   m_finder.find(m_lines, m_slices);
-  const std::vector<Stack>& stacks = m_stacker.stack(m_slices);
+  const std::vector<SegmentCluster>& stacks = m_stacker.stack(m_slices);
   report.candidates = stacks.size();
   m_leans.clear();
-  for (const Stack& stack : stacks) {
+  for (const SegmentCluster& stack : stacks) {
     PoleDetection pole;
-    PoleLean lean;
-    const Refusal refusal = examine(stack, pole, lean);
-    if (refusal == Refusal::count_) {
+    PoleTilt lean;
+    const RejectionReason refusal = examine(stack, pole, lean);
+    if (refusal == RejectionReason::count_) {
       poles.push_back(pole);
       m_leans.push_back(lean);
     } else {
@@ -61,12 +61,12 @@ void NativeExtractor::extract(const PointsView& points, const Eigen::Vector2f& u
   }
   m_freeFinder.find(m_lines, m_ground, m_freeRange);
   setUpright(poles);
-  report.refused[static_cast<int>(Refusal::duplicate)] = dropDuplicates(poles);
+  report.refused[static_cast<int>(RejectionReason::duplicate)] = dropDuplicates(poles);
 }
 
 /// The sensor's tilt, which the fits did not know, moves poles whose own lean is not well seen.
-void NativeExtractor::setUpright(std::vector<PoleDetection>& poles) const {
-  const Eigen::Vector2f common = commonLean(m_leans, m_upright);
+void ScanLineExtractor::setUpright(std::vector<PoleDetection>& poles) const {
+  const Eigen::Vector2f common = estimateTilt(m_leans, m_upright);
   for (std::size_t i = 0; i < poles.size(); ++i) {
     const Eigen::Vector2f shift = shiftBy(m_leans[i], m_upright, common);
     poles[i].x += shift.x();
@@ -75,7 +75,7 @@ void NativeExtractor::setUpright(std::vector<PoleDetection>& poles) const {
 }
 
 /// Two stacks can stand on one thing (a sign's edge beside its post): the more confident one stays.
-std::size_t NativeExtractor::dropDuplicates(std::vector<PoleDetection>& poles) const {
+std::size_t ScanLineExtractor::dropDuplicates(std::vector<PoleDetection>& poles) const {
   std::sort(poles.begin(), poles.end(), [](const PoleDetection& a, const PoleDetection& b) {
     return a.confidence != b.confidence ? a.confidence > b.confidence
                                         : std::tie(a.x, a.y) < std::tie(b.x, b.y);
@@ -94,7 +94,7 @@ std::size_t NativeExtractor::dropDuplicates(std::vector<PoleDetection>& poles) c
 }
 
 /// The slices of the bare trunk: those not much wider than the slimmer ones (a sign is wider).
-void NativeExtractor::selectForFit(const Stack& stack) {
+void ScanLineExtractor::selectForFit(const SegmentCluster& stack) {
   m_widths.clear();
   for (auto i : stack) m_widths.push_back(m_slices[i].width());
   const std::size_t middle = (m_widths.size() - 1) * 4 / 10;
@@ -108,47 +108,51 @@ void NativeExtractor::selectForFit(const Stack& stack) {
 }
 
 /// Refusals that need no more than the slices, the cheapest first.
-Refusal NativeExtractor::judgeShape(const Stack& stack, StackShape& shape) const {
-  const Slice &highest = m_slices[stack.top()], &lowest = m_slices[stack.bottom()];
-  if (highest.z - lowest.z < m_options.minHeight) return Refusal::tooShort;
+RejectionReason ScanLineExtractor::judgeShape(const SegmentCluster& stack,
+                                              ClusterShape& shape) const {
+  const ScanLineSegment &highest = m_slices[stack.top()], &lowest = m_slices[stack.bottom()];
+  if (highest.z - lowest.z < m_options.minHeight) return RejectionReason::tooShort;
   if (lowest.z - m_ground.at(lowest.x, lowest.y) > m_options.maxBottom)
-    return Refusal::startsTooHigh;
+    return RejectionReason::startsTooHigh;
   shape = measureShape(m_slices, stack);
-  if (shape.points < m_options.minPoints) return Refusal::tooFewPoints;
-  if (shape.tilt > m_options.maxTilt && shape.high - shape.low > 0.8) return Refusal::tilted;
-  if (shape.scatter > m_options.maxScatter) return Refusal::notStraight;
-  return Refusal::count_;
+  if (shape.points < m_options.minPoints) return RejectionReason::tooFewPoints;
+  if (shape.tilt > m_options.maxTilt && shape.high - shape.low > 0.8)
+    return RejectionReason::tilted;
+  if (shape.scatter > m_options.maxScatter) return RejectionReason::notStraight;
+  return RejectionReason::count_;
 }
 
 /// Cheap tests first; the fit, which costs most, comes last.
-Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole, PoleLean& lean) {
-  StackShape shape;
-  const Refusal early = judgeShape(stack, shape);
-  if (early != Refusal::count_) return early;
+RejectionReason ScanLineExtractor::examine(const SegmentCluster& stack, PoleDetection& pole,
+                                           PoleTilt& lean) {
+  ClusterShape shape;
+  const RejectionReason early = judgeShape(stack, shape);
+  if (early != RejectionReason::count_) return early;
   selectForFit(stack);
   const float column = static_cast<float>(m_sensor.columnAngle());
   const PoleAxis axis = roughAxis(m_slices, m_fitSlices, column);
-  const PoleEvidence evidence =
-      gatherEvidence(m_lines, m_sensor, m_ground, m_slices, stack, shape, axis);
+  const CandidateFeatures evidence =
+      computeFeatures(m_lines, m_sensor, m_ground, m_slices, stack, shape, axis);
   // Between the highest return and the first beam that passed over, the top is anywhere.
   const double top =
       std::isfinite(evidence.topBound) ? 0.5 * (evidence.top + evidence.topBound) : 1e9;
-  if (std::max<double>(top, evidence.top) < m_options.minTop) return Refusal::tooLow;
+  if (std::max<double>(top, evidence.top) < m_options.minTop) return RejectionReason::tooLow;
   PoleFeatures features = describe(stack, shape, evidence, axis);
-  if (roughOdds(features) < kHopelessOdds) return Refusal::lowConfidence;
+  if (roughOdds(features) < kHopelessOdds) return RejectionReason::lowConfidence;
   const float ground = m_ground.at(axis.x, axis.y);
   const auto fit = fitPole(m_lines, m_slices, m_fitSlices,
                            {column, ground + kFirmHeight, m_upright.x(), m_upright.y()});
   if (!fit || fit->radius < m_options.minRadius || fit->radius > m_options.maxRadius)
-    return Refusal::badFit;
+    return RejectionReason::badFit;
   features.residual = fit->residual;
   features.radius = fit->radius;
   // A place without clutter is the best that can be.
-  if (confidence(poleOdds(features)) < m_options.minConfidence) return Refusal::lowConfidence;
+  if (confidence(poleOdds(features)) < m_options.minConfidence)
+    return RejectionReason::lowConfidence;
   features.clutter = clutteredShare(m_lines, m_sensor, m_slices, stack, axis);
   const double odds = poleOdds(features);
   pole.confidence = confidence(odds);
-  if (pole.confidence < m_options.minConfidence) return Refusal::notFree;
+  if (pole.confidence < m_options.minConfidence) return RejectionReason::notFree;
   pole.x = fit->x;
   pole.y = fit->y;
   pole.radius = fit->radius;
@@ -158,11 +162,12 @@ Refusal NativeExtractor::examine(const Stack& stack, PoleDetection& pole, PoleLe
   pole.top = evidence.top;
   pole.covariance = fit->covariance * covarianceScale(features, odds);
   pole.points = static_cast<std::uint32_t>(shape.points);
-  return Refusal::count_;
+  return RejectionReason::count_;
 }
 
-PoleFeatures NativeExtractor::describe(const Stack& stack, const StackShape& shape,
-                                       const PoleEvidence& evidence, const PoleAxis& axis) const {
+PoleFeatures ScanLineExtractor::describe(const SegmentCluster& stack, const ClusterShape& shape,
+                                         const CandidateFeatures& evidence,
+                                         const PoleAxis& axis) const {
   PoleFeatures f;
   f.slices = static_cast<double>(stack.count);
   f.points = shape.points;
@@ -190,7 +195,7 @@ PoleFeatures NativeExtractor::describe(const Stack& stack, const StackShape& sha
 /// What the fit's own covariance does not know: crooked, half hidden and doubtful things lie
 /// farther off, and columns are the same for all beams, so that more slices do not make up for
 /// wide ones. Maximum likelihood on the worlds of the score.
-double NativeExtractor::covarianceScale(const PoleFeatures& f, double odds) const {
+double ScanLineExtractor::covarianceScale(const PoleFeatures& f, double odds) const {
   constexpr double kFineColumns = 0.003;  // rad
   return std::exp(-1.15 - 0.124 * std::clamp(odds, 0.0, 7.0) +
                   56.5 * std::clamp(f.residual - 0.02, 0.0, 0.05) + 2.55 * f.tilt +

@@ -12,42 +12,43 @@
 
 namespace polemcl {
 
-class NativeExtractor {
+class ScanLineExtractor {
  public:
   /// \param model Made from the same options, or from a depth camera.
-  NativeExtractor(SensorModel model, const SensorOptions& sensor, const NativeOptions& options);
+  ScanLineExtractor(SensorModel model, const SensorOptions& sensor, const ScanLineOptions& options);
   /// \param upright See PoleExtractor::extract().
   void extract(const PointsView& points, const Eigen::Vector2f& upright,
                std::vector<PoleDetection>& poles, ExtractionReport& report);
-  /// \brief Of the last scan, as FreeRangeFinder gives it.
-  const std::vector<float>& freeRange() const { return m_freeRange; }
+  /// \brief Of the last scan, as VisibilityRangeFinder gives it.
+  const std::vector<float>& visibilityRange() const { return m_freeRange; }
 
  private:
-  /// \return The reason of the refusal, or Refusal::count_ when `pole` and `lean` were filled.
-  Refusal examine(const Stack& stack, PoleDetection& pole, PoleLean& lean);
+  /// \return The reason of the refusal, or RejectionReason::count_ when `pole` and `lean` were
+  /// filled.
+  RejectionReason examine(const SegmentCluster& stack, PoleDetection& pole, PoleTilt& lean);
   void setUpright(std::vector<PoleDetection>& poles) const;
-  Refusal judgeShape(const Stack& stack, StackShape& shape) const;
+  RejectionReason judgeShape(const SegmentCluster& stack, ClusterShape& shape) const;
   std::size_t dropDuplicates(std::vector<PoleDetection>& poles) const;
-  void selectForFit(const Stack& stack);
-  PoleFeatures describe(const Stack& stack, const StackShape& shape, const PoleEvidence& evidence,
-                        const PoleAxis& axis) const;
+  void selectForFit(const SegmentCluster& stack);
+  PoleFeatures describe(const SegmentCluster& stack, const ClusterShape& shape,
+                        const CandidateFeatures& evidence, const PoleAxis& axis) const;
   double covarianceScale(const PoleFeatures& features, double odds) const;
 
   SensorOptions m_sensorOptions;
-  NativeOptions m_options;
+  ScanLineOptions m_options;
   Eigen::Vector2f m_upright = Eigen::Vector2f::Zero();
   float m_farthest;  ///< m
   SensorModel m_sensor;
   ScanLines m_lines;
   GroundGrid m_ground;
-  SliceFinder m_finder;
-  SliceStacker m_stacker;
-  FreeRangeFinder m_freeFinder;
+  ScanLineSegmenter m_finder;
+  SegmentClustering m_stacker;
+  VisibilityRangeFinder m_freeFinder;
   std::vector<float> m_freeRange;
-  std::vector<Slice> m_slices;
+  std::vector<ScanLineSegment> m_slices;
   std::vector<std::uint32_t> m_fitSlices;
   std::vector<float> m_widths;
-  std::vector<PoleLean> m_leans;  ///< of the poles found, in the order they were found
+  std::vector<PoleTilt> m_leans;  ///< of the poles found, in the order they were found
 };
 
 }  // namespace polemcl

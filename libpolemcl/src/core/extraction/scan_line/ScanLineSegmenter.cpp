@@ -38,7 +38,7 @@ class Row {
   }
 
   /// Appends the run of returns first..last (last may be size or more: it wraps) if it is a slice.
-  void consider(std::size_t first, std::size_t last, std::vector<Slice>& slices) const {
+  void consider(std::size_t first, std::size_t last, std::vector<ScanLineSegment>& slices) const {
     const Return &begin = m_returns[first], &end = at(last);
     const float turn = end.azimuth - begin.azimuth + (last < m_size ? 0 : kTurn);
     if (begin.rho * turn > 1.5f * m_limits.maxWidth || begin.rho > m_limits.maxRange) return;
@@ -56,7 +56,7 @@ class Row {
       z += r.z;
     }
     if (rho * turn > m_limits.maxWidth || farthest - rho > m_limits.maxWidth) return;
-    Slice& slice = slices.emplace_back();
+    ScanLineSegment& slice = slices.emplace_back();
     slice.left = left;
     slice.right = right;
     slice.row = m_row;
@@ -97,7 +97,7 @@ class Row {
   }
 
   /// The bisector of the bearings of both ends, at the slice's range.
-  void placeFront(const Return& a, const Return& b, Slice& slice) const {
+  void placeFront(const Return& a, const Return& b, ScanLineSegment& slice) const {
     const float x = m_lines.x(a) * b.rho + m_lines.x(b) * a.rho;
     const float y = m_lines.y(a) * b.rho + m_lines.y(b) * a.rho;
     const float scale = slice.rho / std::sqrt(x * x + y * y);
@@ -114,14 +114,14 @@ class Row {
 
 }  // namespace
 
-SliceFinder::SliceFinder(const SensorModel& sensor, const NativeOptions& options)
+ScanLineSegmenter::ScanLineSegmenter(const SensorModel& sensor, const ScanLineOptions& options)
     : m_gap(2.6f * static_cast<float>(sensor.columnAngle())),
       m_step(static_cast<float>(options.connectStep)),
       m_edge(static_cast<float>(options.edgeStep)),
       m_maxWidth(static_cast<float>(options.maxWidth)),
       m_maxRange(static_cast<float>(options.maxRange)) {}
 
-void SliceFinder::find(const ScanLines& lines, std::vector<Slice>& slices) {
+void ScanLineSegmenter::find(const ScanLines& lines, std::vector<ScanLineSegment>& slices) {
   slices.clear();
   const Limits limits{m_gap, m_step, m_edge, m_maxWidth, m_maxRange};
   for (int r = 0; r < lines.rows(); ++r) {

@@ -19,7 +19,7 @@ enum class Side : std::uint8_t {
 
 /// \brief A run of neighbouring returns on one beam. Indices are within the row and may wrap:
 /// the run is first, first + 1, … (modulo the size of the row), `count` returns.
-struct Slice {
+struct ScanLineSegment {
   std::int32_t row = 0;
   std::uint32_t first = 0, count = 0;
   float azimuthBegin = 0,
@@ -34,12 +34,12 @@ struct Slice {
 };
 
 /// \brief Finds slices; keeps its buffer between scans.
-class SliceFinder {
+class ScanLineSegmenter {
  public:
-  SliceFinder(const SensorModel& sensor, const NativeOptions& options);
+  ScanLineSegmenter(const SensorModel& sensor, const ScanLineOptions& options);
   /// \brief All slices no wider than maxWidth with at least one free side and none attached, rows
   /// ascending, in a row by azimuth of their beginning.
-  void find(const ScanLines& lines, std::vector<Slice>& slices);
+  void find(const ScanLines& lines, std::vector<ScanLineSegment>& slices);
 
  private:
   float m_gap, m_step, m_edge, m_maxWidth, m_maxRange;

@@ -5,7 +5,7 @@
 
 namespace polemcl {
 
-SliceStacker::SliceStacker(const SensorModel& sensor, const NativeOptions& options)
+SegmentClustering::SegmentClustering(const SensorModel& sensor, const ScanLineOptions& options)
     : m_reach(static_cast<float>(options.stackReach)),
       m_gap(static_cast<float>(options.stackGap)),
       // Cells twice the reach wide: what lies within reach is in the nearest four.
@@ -20,12 +20,12 @@ SliceStacker::SliceStacker(const SensorModel& sensor, const NativeOptions& optio
 }
 
 /// \param x,y In cells from the grid's corner; positive, so that cutting off rounds down.
-std::int32_t SliceStacker::cell(float x, float y) const {
+std::int32_t SegmentClustering::cell(float x, float y) const {
   return static_cast<std::int32_t>(y) * m_cells + static_cast<std::int32_t>(x);
 }
 
 /// Forgets, on its way, the tips that lie too far above to be joined any more.
-std::uint32_t SliceStacker::nearestTip(const Slice& slice) {
+std::uint32_t SegmentClustering::nearestTip(const ScanLineSegment& slice) {
   const float gap = std::max(m_beamGap[slice.row] * slice.rho, m_gap);
   const std::int32_t corner = cell(slice.x * m_cellsPerMetre + m_middle - 0.5f,
                                    slice.y * m_cellsPerMetre + m_middle - 0.5f);
@@ -53,7 +53,7 @@ std::uint32_t SliceStacker::nearestTip(const Slice& slice) {
   return best;
 }
 
-void SliceStacker::enter(std::uint32_t t) {
+void SegmentClustering::enter(std::uint32_t t) {
   Tip& tip = m_tips[t];
   tip.cell = cell(tip.x * m_cellsPerMetre + m_middle, tip.y * m_cellsPerMetre + m_middle);
   tip.next = m_head[tip.cell];
@@ -61,7 +61,7 @@ void SliceStacker::enter(std::uint32_t t) {
 }
 
 /// Enters a tip where it stands now.
-void SliceStacker::move(std::uint32_t t) {
+void SegmentClustering::move(std::uint32_t t) {
   Tip& tip = m_tips[t];
   if (tip.cell == cell(tip.x * m_cellsPerMetre + m_middle, tip.y * m_cellsPerMetre + m_middle))
     return;
@@ -71,12 +71,13 @@ void SliceStacker::move(std::uint32_t t) {
   enter(t);
 }
 
-const std::vector<Stack>& SliceStacker::stack(const std::vector<Slice>& slices) {
+const std::vector<SegmentCluster>& SegmentClustering::stack(
+    const std::vector<ScanLineSegment>& slices) {
   m_tips.clear();
   std::fill(m_head.begin(), m_head.end(), kNone);
   m_below.assign(slices.size(), kNone);
   for (std::uint32_t i = 0; i < slices.size(); ++i) {
-    const Slice& slice = slices[i];
+    const ScanLineSegment& slice = slices[i];
     const std::uint32_t t = nearestTip(slice);
     if (t == kNone) {
       m_tips.push_back({slice.x, slice.y, slice.z, slice.row, i, i, 1, -1, kNone});
@@ -93,7 +94,7 @@ const std::vector<Stack>& SliceStacker::stack(const std::vector<Slice>& slices) 
 }
 
 /// Lays the chains of two slices and more out as lists.
-void SliceStacker::collect() {
+void SegmentClustering::collect() {
   m_members.clear();
   m_stacks.clear();
   m_members.reserve(m_below.size());  // so that the stacks' pointers stay good

@@ -10,7 +10,7 @@
 namespace polemcl {
 
 /// \brief Slices that stand above one another: indices into the slices, topmost first. Borrowed.
-struct Stack {
+struct SegmentCluster {
   const std::uint32_t* first = nullptr;
   std::size_t count = 0;
   const std::uint32_t* begin() const { return first; }
@@ -21,13 +21,13 @@ struct Stack {
 
 /// \brief Stacks the slices from the top row down; every slice joins the nearest stack above it
 /// whose last slice lies within reach, or starts its own. Keeps its buffers between scans.
-class SliceStacker {
+class SegmentClustering {
  public:
-  SliceStacker(const SensorModel& sensor, const NativeOptions& options);
+  SegmentClustering(const SensorModel& sensor, const ScanLineOptions& options);
   /// \brief Stacks of at least two slices, in the order of their topmost slices.
-  /// \param slices As SliceFinder gives them: rows ascending.
+  /// \param slices As ScanLineSegmenter gives them: rows ascending.
   /// \return Valid until the next call.
-  const std::vector<Stack>& stack(const std::vector<Slice>& slices);
+  const std::vector<SegmentCluster>& stack(const std::vector<ScanLineSegment>& slices);
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
@@ -40,7 +40,7 @@ class SliceStacker {
     std::uint32_t next;  ///< tip in the same cell
   };
   std::int32_t cell(float x, float y) const;
-  std::uint32_t nearestTip(const Slice& slice);
+  std::uint32_t nearestTip(const ScanLineSegment& slice);
   void enter(std::uint32_t tip);
   void move(std::uint32_t tip);
   void collect();
@@ -52,7 +52,7 @@ class SliceStacker {
   std::vector<std::uint32_t> m_head;   ///< per cell of the plane: the tip that entered last
   std::vector<std::uint32_t> m_below;  ///< per slice: the next one down its stack
   std::vector<std::uint32_t> m_members;
-  std::vector<Stack> m_stacks;
+  std::vector<SegmentCluster> m_stacks;
 };
 
 }  // namespace polemcl

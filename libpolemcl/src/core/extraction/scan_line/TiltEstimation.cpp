@@ -14,13 +14,13 @@ constexpr int s_tiltRounds = 3;
 
 }  // namespace
 
-Eigen::Vector2f commonLean(const std::vector<PoleLean>& poles, const Eigen::Vector2f& upright) {
+Eigen::Vector2f estimateTilt(const std::vector<PoleTilt>& poles, const Eigen::Vector2f& upright) {
   const Eigen::Vector2d before = upright.cast<double>();
   Eigen::Vector2d common = before;
   for (int round = 0; round < s_tiltRounds; ++round) {
     double weights = 1 / (s_sensor * s_sensor);
     Eigen::Vector2d sum = weights * before;
-    for (const PoleLean& pole : poles) {
+    for (const PoleTilt& pole : poles) {
       if (pole.prior > s_mostPrior) continue;
       const double prior = pole.prior;
       const Eigen::Vector2d seen = (pole.lean.cast<double>() - prior * before) / (1 - prior);
@@ -35,7 +35,7 @@ Eigen::Vector2f commonLean(const std::vector<PoleLean>& poles, const Eigen::Vect
   return common.cast<float>();
 }
 
-Eigen::Vector2f shiftBy(const PoleLean& pole, const Eigen::Vector2f& upright,
+Eigen::Vector2f shiftBy(const PoleTilt& pole, const Eigen::Vector2f& upright,
                         const Eigen::Vector2f& common) {
   return pole.prior * pole.step * (common - upright) + pole.gap * common;
 }

@@ -12,7 +12,7 @@
 namespace polemcl {
 
 /// \brief How a fitted pole leans, lidar frame.
-struct PoleLean {
+struct PoleTilt {
   Eigen::Vector2f lean{0, 0};  ///< along x and y, m per m of height, shrunk towards upright
   /// Share of the prior, that poles are upright, in `lean`; in (0, 1], 1 for what is seen at one
   /// height only.
@@ -30,11 +30,11 @@ constexpr double leanSigma = 0.02;
 /// \brief The lean that the poles have in common: robust mean of the leans as they were seen, each
 /// weighted by how well it is known, shrunk towards `upright`, which it is without poles.
 /// \param upright Lean of an upright pole as far as was known before, m per m.
-Eigen::Vector2f commonLean(const std::vector<PoleLean>& poles, const Eigen::Vector2f& upright);
+Eigen::Vector2f estimateTilt(const std::vector<PoleTilt>& poles, const Eigen::Vector2f& upright);
 
 /// \brief How far the centre of a pole moves when `common` takes the place of `upright` in the
 /// prior, and its axis is followed to the height of the sensor where it was not seen, m.
-Eigen::Vector2f shiftBy(const PoleLean& pole, const Eigen::Vector2f& upright,
+Eigen::Vector2f shiftBy(const PoleTilt& pole, const Eigen::Vector2f& upright,
                         const Eigen::Vector2f& common);
 
 }  // namespace polemcl
