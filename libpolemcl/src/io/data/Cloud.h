@@ -9,18 +9,19 @@
 
 namespace polemcl::io {
 
-/// \brief A cloud, structure of arrays, all of one length. Sensor frame, m.
+/// \brief Point cloud as arrays of equal length. Sensor frame, m.
 struct Cloud {
   std::vector<float> x, y, z;
   std::vector<float> intensity;  ///< as stored; KITTI: 0 … 1
-  std::size_t invalid = 0;       ///< points dropped on reading: NaN, infinite, or at the sensor
+  std::size_t invalid = 0;       ///< points dropped when reading: NaN, infinite, or at the origin
 
   std::size_t size() const { return x.size(); }
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
-/// \brief Reads float32 little-endian x y z intensity. An empty file is an empty cloud.
-/// \throws Error when it cannot be read, or its size is no multiple of 16 bytes (cut short).
+/// \brief Reads little-endian float32 x y z intensity. An empty file gives an empty cloud.
+/// \throws Error when the file cannot be read, or its size is not a multiple of 16 bytes
+///         (truncated).
 Cloud readKittiBin(const std::filesystem::path& file);
 
 }  // namespace polemcl::io

@@ -15,20 +15,20 @@
 namespace polemcl::io {
 namespace {
 
-/// A column of the points.
+/// One field of the points.
 struct Field {
   std::string name;
   char type = 'F';         ///< F float, I signed, U unsigned
-  std::size_t size = 4;    ///< bytes of one value
-  std::size_t count = 1;   ///< values of a point
-  std::size_t offset = 0;  ///< of the first value in a binary point, bytes
-  std::size_t column = 0;  ///< of the first value in an ascii point
+  std::size_t size = 4;    ///< bytes per value
+  std::size_t count = 1;   ///< values per point
+  std::size_t offset = 0;  ///< byte offset of the first value in a binary point
+  std::size_t column = 0;  ///< column of the first value in an ascii point
 };
 
 struct Header {
   std::vector<Field> fields;
   std::size_t pointBytes = 0, columns = 0, points = 0;
-  std::size_t lines = 0, bytes = 0;  ///< of the header itself
+  std::size_t lines = 0, bytes = 0;  ///< size of the header
   enum class Data { ascii, binary, compressed } data = Data::ascii;
 };
 
@@ -46,7 +46,7 @@ std::size_t pcdCountOf(const std::string& word, const std::string& where) {
   return static_cast<std::size_t>(*value);
 }
 
-/// Collects the lines of the header, whatever their order.
+/// Collects the lines of the header, in any order.
 class HeaderReader {
  public:
   HeaderReader(const std::filesystem::path& file, std::string_view bytes)
@@ -110,7 +110,7 @@ class HeaderReader {
     m_ended = true;
   }
 
-  /// Where each field's values are, once all of the header is known.
+  /// Computes offset and column of every field. Needs the complete header.
   void layOut() {
     for (Field& field : m_header.fields) {
       const bool real = field.type == 'F' && (field.size == 4 || field.size == 8);
@@ -137,7 +137,7 @@ class HeaderReader {
   bool m_ended = false;
 };
 
-/// x, y, z and, if there is one, intensity.
+/// The fields x, y, z and intensity; intensity is null if the file has none.
 std::array<const Field*, 4> wantedFields(const Header& header, const std::filesystem::path& file) {
   std::array<const Field*, 4> wanted{};
   const std::array<const char*, 4> names{"x", "y", "z", "intensity"};
@@ -183,11 +183,11 @@ void add(Cloud& cloud, const std::array<double, 4>& point) {
   cloud.intensity.push_back(static_cast<float>(intensity));
 }
 
-/// Where the values of a field lie in binary data.
+/// Position of a field's values in binary data.
 struct Column {
-  const Field* field = nullptr;  ///< null: there is no such field
-  std::size_t begin = 0;         ///< of the first point's value, bytes
-  std::size_t step = 0;          ///< from one point's to the next one's, bytes
+  const Field* field = nullptr;  ///< null: the file has no such field
+  std::size_t begin = 0;         ///< offset of the first point's value, bytes
+  std::size_t step = 0;          ///< distance between the values of two points, bytes
 };
 
 Cloud readColumns(const std::array<Column, 4>& columns, std::size_t points, const char* data) {
@@ -202,7 +202,7 @@ Cloud readColumns(const std::array<Column, 4>& columns, std::size_t points, cons
   return cloud;
 }
 
-/// Point after point.
+/// Binary data are stored point by point.
 Cloud readBinary(const Header& header, std::string_view data, const std::filesystem::path& file) {
   const auto fields = wantedFields(header, file);
   if (data.size() / header.pointBytes < header.points)
@@ -215,7 +215,7 @@ Cloud readBinary(const Header& header, std::string_view data, const std::filesys
   return readColumns(columns, header.points, data.data());
 }
 
-/// uint32 sizes, compressed and not, then LZF data.
+/// The data start with two uint32 sizes (compressed, uncompressed); LZF data follow.
 std::string decompress(const Header& header, std::string_view data,
                        const std::filesystem::path& file) {
   constexpr std::size_t sizes = 8;
@@ -227,7 +227,7 @@ std::string decompress(const Header& header, std::string_view data,
   if (size > greatestLzfRatio * packed)
     throw Error(file.string() + ": damaged: " + std::to_string(packed) +
                 " bytes of compressed points cannot hold " + std::to_string(size));
-  // Not multiplied: the header may say anything.
+  // Divide instead of multiply: the sizes in the header may be forged and overflow.
   if (size / header.pointBytes != header.points || size % header.pointBytes != 0)
     throw Error(file.string() + ": " + std::to_string(size) + " bytes of points, " +
                 std::to_string(header.points) + " points of " + std::to_string(header.pointBytes) +
@@ -239,7 +239,7 @@ std::string decompress(const Header& header, std::string_view data,
   return points;
 }
 
-/// Field after field.
+/// Compressed data are stored field by field.
 Cloud readCompressed(const Header& header, std::string_view data,
                      const std::filesystem::path& file) {
   const auto fields = wantedFields(header, file);

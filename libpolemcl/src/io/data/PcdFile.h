@@ -8,13 +8,15 @@
 
 namespace polemcl::io {
 
-/// \brief Reads `DATA ascii`, `binary` and `binary_compressed` (LZF, as PCL writes it: field after
-/// field). The fields x, y and z are needed, `intensity` is
-/// taken if there is one (else 0), others are passed over. All types and sizes of the format are
-/// read. The view point of the header is not applied: points stay in the frame they are in.
-/// Invalid points are dropped and counted as by readKittiBin().
-/// \throws Error naming the file (and line): cannot be read, no PCD header, no x, y or z, fewer
-///         points than the header says, not a number, compressed points that are damaged.
+/// \brief Reads `DATA ascii`, `binary` and `binary_compressed` (LZF as PCL writes it, field by
+/// field).
+/// The fields x, y and z are required. `intensity` is optional (default 0); other fields are
+/// ignored. All types and sizes of the format are supported. The VIEWPOINT of the header is not
+/// applied: points stay in the frame of the file. Invalid points are dropped and counted as in
+/// readKittiBin().
+/// \throws Error with the file (and line): file not readable, no PCD header, x, y or z missing,
+///         fewer points than the header says, a value that is not a number, damaged compressed
+///         data.
 Cloud readPcd(const std::filesystem::path& file);
 
 }  // namespace polemcl::io

@@ -10,7 +10,7 @@ namespace polemcl::io {
 PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b) {
   const double c = std::cos(a.mean.yaw), s = std::sin(a.mean.yaw);
   const double x = b.mean.x, y = b.mean.y;
-  // Derivatives of a ⊕ b by a and by b.
+  // Derivatives of a ⊕ b with respect to a and to b.
   Eigen::Matrix3d byA, byB;
   byA << 1, 0, -s * x - c * y,  //
       0, 1, c * x - s * y,      //
@@ -22,7 +22,7 @@ PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b) {
   result.mean = compose(a.mean, b.mean);
   const Eigen::Matrix3d sum =
       byA * a.covariance * byA.transpose() + byB * b.covariance * byB.transpose();
-  // Rounding leaves the two triangles a bit apart.
+  // Rounding errors leave the matrix slightly asymmetric.
   result.covariance = 0.5 * (sum + sum.transpose());
   return result;
 }

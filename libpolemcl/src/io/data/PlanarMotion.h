@@ -1,6 +1,6 @@
 #pragma once
 /// \file PlanarMotion.h
-/// \brief Motions between scans: what odometry says, and how far it may be off.
+/// \brief Motions between scans as measured by odometry, with their uncertainty.
 
 #include <Eigen/Core>
 #include <random>
@@ -9,28 +9,29 @@
 
 namespace polemcl::io {
 
-/// \brief A planar motion in the robot frame before it.
+/// \brief Planar motion, in the robot frame before the motion.
 struct PlanarMotion {
   Pose2D mean;  ///< m, m, rad
   /// Covariance of (x, y, yaw), m², m·rad, rad².
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// \brief `a`, then `b` (given in the robot frame after `a`), as one motion. The covariance is
-/// carried over to first order, the two taken as independent.
+/// \brief Composes two motions: `a`, then `b` (given in the robot frame after `a`).
+/// The covariance is propagated to first order; `a` and `b` are assumed independent.
 PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b);
 
-/// \brief Least standard deviations of noisyMotion(), so that a standing vehicle has a positive
-/// definite covariance too.
+/// \brief Minimum standard deviations of noisyMotion(). They keep the covariance of a standing
+/// vehicle positive definite.
 constexpr double motionFloorMetres = 1e-3, motionFloorRadians = 1e-4;
 
-/// \brief The true motion as an odometer sees it: x, y and yaw each with Gaussian noise of standard
+/// \brief Odometry measurement of a true motion: x, y and yaw each get Gaussian noise with standard
 /// deviation K·|component|.
 ///
-/// Draws exactly four numbers from the generator whatever the motion, and turns them into normal
-/// deviates itself (Box-Muller; the standard library's distributions differ between compilers).
-/// The covariance is diagonal: the variances of that noise plus those of the floors above, to
-/// which no noise belongs.
+/// The function draws exactly four numbers from the generator, for any motion. It converts them to
+/// normal deviates itself (Box-Muller), because the standard library's distributions differ between
+/// compilers.
+/// The covariance is diagonal: the variances of the noise plus the variances of the minimum
+/// standard deviations above. No noise is drawn for those minimums.
 /// \param k Relative noise, >= 0. \throws Error when it is negative or not finite.
 PlanarMotion noisyMotion(const Pose2D& trueMotion, double k, std::mt19937_64& generator);
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file TrackSampler.h
-/// \brief Poses at wanted times from a long track that is read once and never kept.
+/// \brief Interpolates poses at given times from a long track that is read once and not stored.
 
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -10,35 +10,37 @@
 
 namespace polemcl::io {
 
-/// \brief The pose between two: position linearly, attitude along the shorter turn (slerp).
+/// \brief Interpolated pose: linear in position, slerp (shorter rotation) in attitude.
 /// \param share 0 at `a`, 1 at `b`.
 Eigen::Isometry3d interpolate(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double share);
 
-/// \brief Is fed samples in the order of their times and keeps the poses at wanted times only: a
-/// truth of a million rows costs no more memory than the scans it is for.
+/// \brief Takes samples in the order of time and keeps only the poses at the requested times.
+/// Memory grows with the number of scans, not with the length of the track.
 class TrackSampler {
  public:
-  /// \param times Wanted, s, not falling.
-  /// \param maxGap Samples further apart than this are not interpolated across, s.
+  /// \param times Requested times, s, in ascending order (equal times are allowed).
+  /// \param maxGap Longest gap between two samples that is interpolated, s.
   TrackSampler(std::vector<double> times, double maxGap);
 
-  /// \brief The next sample. \return False, and it is not used, unless it is after the one before.
+  /// \brief Adds the next sample. \return False if its time is not after the previous one; the
+  /// sample is then ignored.
   bool add(double time, const Eigen::Isometry3d& pose);
 
-  /// \brief The pose at each wanted time, once all samples are in: a sample within
-  /// `sampleTolerance`, else interpolated; none outside the track and in gaps.
+  /// \brief The pose at each requested time, once all samples are added. A sample within
+  /// `sampleTolerance` is used directly; otherwise the pose is interpolated. Times outside the
+  /// track or in a gap have no pose.
   const std::vector<std::optional<Eigen::Isometry3d>>& poses() const { return m_poses; }
-  /// \brief How many wanted times have a pose.
+  /// \brief Number of requested times that have a pose.
   std::size_t found() const;
-  /// \brief "12.5 ... 99.25 s" of the samples, or "none", for messages.
+  /// \brief Time span of the samples for messages, e.g. "12.5 ... 99.25 s"; "none" without samples.
   std::string span() const;
 
  private:
   std::vector<double> m_times;
   double m_maxGap;
   std::vector<std::optional<Eigen::Isometry3d>> m_poses;
-  std::size_t m_next = 0;     ///< first wanted time that is still open
-  std::size_t m_samples = 0;  ///< used so far
+  std::size_t m_next = 0;     ///< first requested time without a result yet
+  std::size_t m_samples = 0;  ///< number of samples used so far
   double m_firstTime = 0, m_lastTime = 0;
   Eigen::Isometry3d m_lastPose = Eigen::Isometry3d::Identity();
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* tumLayout = "time x y z qx qy qz qw (s, m)";
 constexpr int decimals = 9;
 
-/// Reads a TUM file, handing each pose on.
+/// Reads a TUM file and passes each pose to `consume`.
 void readTumRows(const std::filesystem::path& file,
                  const std::function<void(const StampedPose3D&)>& consume) {
   NumberRowReader rows(file, 8, tumLayout);
@@ -130,7 +130,7 @@ Eigen::Isometry3d poseFromRows(const std::vector<double>& values, const std::str
                 significant(off, 3) + ", determinant " + significant(rotation.determinant(), 3) +
                 "); expected: twelve numbers, row-major 3x4 [R|t]");
   }
-  // The nearest rotation.
+  // Project onto the nearest rotation.
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
   pose.linear() = svd.matrixU() * svd.matrixV().transpose();
   return pose;

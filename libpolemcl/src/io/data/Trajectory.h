@@ -1,6 +1,6 @@
 #pragma once
 /// \file Trajectory.h
-/// \brief Trajectories as files: TUM (time and pose), KITTI (twelve numbers a pose).
+/// \brief Trajectory files: TUM (time and pose) and KITTI (twelve numbers per pose).
 
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -18,15 +18,15 @@ struct StampedPose3D {
 /// \brief x, y and yaw of a pose. Yaw is the direction of the x axis seen from above.
 Pose2D planar(const Eigen::Isometry3d& pose);
 std::vector<StampedPose2D> planar(const std::vector<StampedPose3D>& trajectory);
-/// \brief The planar pose at z = 0, upright.
+/// \brief The 3D pose with z = 0, roll = 0 and pitch = 0.
 Eigen::Isometry3d spatial(const Pose2D& pose);
 
-/// \brief Rows `time x y z qx qy qz qw`; s, m. `#` starts a comment. Plain or gzip.
-/// Quaternions may be off unit length by rounding (1 %) and are normalised.
-/// \throws Error naming file and line: wrong columns, not a number, no unit quaternion, times not
-///         increasing; and when there is no pose at all.
+/// \brief Reads rows `time x y z qx qy qz qw`; s, m. `#` starts a comment. Plain text or gzip.
+/// Quaternions whose length differs from 1 by at most 1 % (rounding) are normalised.
+/// \throws Error with file and line: wrong number of columns, not a number, not a unit quaternion,
+///         times not increasing. Also when the file holds no pose.
 std::vector<StampedPose3D> readTum(const std::filesystem::path& file);
-/// \brief The same, planar: no more than 100 bytes a pose are in memory at any time.
+/// \brief Planar version of readTum(). It needs at most 100 bytes of memory per pose.
 std::vector<StampedPose2D> readPlanarTum(const std::filesystem::path& file);
 
 /// \brief One row of a TUM file, with its line end: 9 decimals, z = 0.
@@ -38,15 +38,16 @@ std::string tumRow(const StampedPose2D& pose);
 void writeTum(const std::filesystem::path& file, const std::vector<StampedPose2D>& trajectory);
 void writeTum(const std::filesystem::path& file, const std::vector<StampedPose3D>& trajectory);
 
-/// \brief Poses of twelve numbers a line, row-major 3×4, as KITTI odometry and the plain folder
-/// layout have them. `#` starts a comment. Plain or gzip.
-/// Rotations may be off by rounding (1e-3 in any element of RᵀR) and become the nearest ones.
-/// \throws Error naming file and line: wrong columns, not a number, no rotation; and when there is
-///         no pose at all.
+/// \brief Reads poses as twelve numbers per line (row-major 3×4), as in KITTI odometry and in the
+/// plain folder layout. `#` starts a comment. Plain text or gzip.
+/// Rotations with rounding errors (up to 1e-3 in any element of RᵀR) are replaced by the nearest
+/// rotation.
+/// \throws Error with file and line: wrong number of columns, not a number, not a rotation. Also
+///         when the file holds no pose.
 std::vector<Eigen::Isometry3d> readKittiPoses(const std::filesystem::path& file);
 
-/// \brief Twelve numbers, row-major 3×4, as a pose. \param where Start of the message.
-/// \throws Error when the rotation is none.
+/// \brief Pose from twelve numbers (row-major 3×4). \param where Prefix of the error message.
+/// \throws Error when the 3×3 part is not a rotation.
 Eigen::Isometry3d poseFromRows(const std::vector<double>& values, const std::string& where);
 
 }  // namespace polemcl::io

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The LiDAR in the frame of camera 0, from a line "Tr: twelve numbers".
+/// Pose of the LiDAR in the frame of camera 0, from a line "Tr: twelve numbers".
 Eigen::Isometry3d readLidarInCamera(const fs::path& file) {
   const auto lines = readLines(file);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -32,13 +32,13 @@ Eigen::Isometry3d readLidarInCamera(const fs::path& file) {
 fs::path findPoses(const fs::path& sequence) {
   if (isThere(sequence / "poses.txt")) return sequence / "poses.txt";
   fs::path full = fs::absolute(sequence).lexically_normal();
-  if (!full.has_filename()) full = full.parent_path();  // it ended in a slash
+  if (!full.has_filename()) full = full.parent_path();  // the path ended in a slash
   const fs::path beside =
       full.parent_path().parent_path() / "poses" / (full.filename().string() + ".txt");
   return isThere(beside) ? beside : fs::path();
 }
 
-/// Throws unless there is a row for the highest number.
+/// Throws unless the file has a row for the highest scan number.
 void requireRow(const fs::path& file, const std::string& what, std::size_t rows,
                 const std::vector<fs::path>& scans, std::uint64_t highest) {
   if (highest < rows) return;

@@ -15,15 +15,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double earthRadius = 6378137;  ///< m, as the devkit has it
+constexpr double earthRadius = 6378137;  ///< m, as in the devkit
 constexpr std::size_t oxtsFields = 30;
 
 double radians(double degrees) {
   return degrees * M_PI / 180;
 }
 
-/// Days from 1970-01-01 in the Gregorian calendar; years are counted from March, so that the leap
-/// day comes last.
+/// Days since 1970-01-01 in the Gregorian calendar. Years start in March, so that the leap day is
+/// the last day of a year.
 long daysSinceEpoch(int year, int month, int day) {
   const long y = month > 2 ? year : year - 1;
   const long monthFromMarch = (month + 9) % 12;
@@ -38,8 +38,8 @@ int daysInMonth(int year, int month) {
                                                                  : 31;
 }
 
-/// Times of the frames with these numbers: by line, or in order when lines of missing frames are
-/// missing too.
+/// Times of the frames with these numbers. Lines are selected by frame number, or in order if the
+/// file has exactly one line per existing frame.
 std::vector<double> readStamps(const fs::path& file, const std::vector<std::uint64_t>& numbers) {
   std::vector<std::string> lines = readLines(file);
   const auto blank = [](const std::string& line) { return trimmed(line).empty(); };
@@ -74,7 +74,7 @@ OxtsPose readOxts(const fs::path& file) {
   return {v[0], v[1], v[2], v[3], v[4], v[5]};
 }
 
-/// The IMU in the LiDAR frame, from the lines "R: nine numbers" and "T: three numbers".
+/// Pose of the IMU in the LiDAR frame, from the lines "R: nine numbers" and "T: three numbers".
 Eigen::Isometry3d readImuInLidar(const fs::path& file) {
   std::map<std::string, std::vector<double>> fields;
   const auto lines = readLines(file);
@@ -94,7 +94,7 @@ Eigen::Isometry3d readImuInLidar(const fs::path& file) {
                       file.string() + ": ");
 }
 
-/// Frames of both kinds, by number.
+/// Scans and oxts frames by number.
 struct Drive {
   std::vector<fs::path> scans;
   std::vector<std::uint64_t> scanNumbers, oxtsNumbers;
@@ -139,7 +139,7 @@ Drive listDrive(const fs::path& folder, std::vector<std::string>& notes) {
   return drive;
 }
 
-/// Says how far apart in time the two halves of the pairs are, if it is more than half a turn.
+/// Adds a note if a scan and its oxts frame differ in time by more than half a LiDAR revolution.
 void noteOffsets(const fs::path& file, const Drive& drive, std::vector<std::string>& notes) {
   const auto times = readStamps(file, drive.oxtsNumbers);
   double worst = 0;
@@ -214,7 +214,7 @@ ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
   const OxtsPose first = readOxts(frames.oxts.begin()->second);
   const double scale = std::cos(radians(first.latitude));
   const Eigen::Isometry3d T_world_first = mercatorPose(first, scale);
-  // Levelled: only the heading of the first frame, so that the map's z points up.
+  // Levelled: use only the heading of the first frame, so that the map's z axis points up.
   Eigen::Isometry3d T_world_map = spatial(planar(T_world_first));
   T_world_map.translation().z() = first.altitude;
 

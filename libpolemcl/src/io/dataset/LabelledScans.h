@@ -1,6 +1,6 @@
 #pragma once
 /// \file LabelledScans.h
-/// \brief What a simulated folder knows beyond the scans: labels of the points, the true poles.
+/// \brief Ground truth of a simulated folder: labels of the points and the true poles.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,16 +16,16 @@ struct LabelledCloud {
   std::vector<std::uint32_t> labels;  ///< one per point of the cloud
 };
 
-/// \brief A KITTI `.bin` with its `.label` (uint32, little-endian, one per point). Points that
-/// readKittiBin() would drop are dropped with their labels.
-/// \throws Error when either cannot be read, or their numbers of points differ.
+/// \brief Reads a KITTI `.bin` with its `.label` file (uint32, little-endian, one per point).
+/// Points that readKittiBin() drops are dropped together with their labels.
+/// \throws Error when a file cannot be read, or the numbers of points and labels differ.
 LabelledCloud readLabelledCloud(const std::filesystem::path& bin,
                                 const std::filesystem::path& label);
 
-/// \brief `labels/000012.label` of a folder for its `velodyne/000012.bin`.
+/// \brief Path of the label file: `labels/000012.label` for `velodyne/000012.bin`.
 std::filesystem::path labelFile(const std::filesystem::path& bin);
 
-/// \brief `poles_gt.csv`: columns id, x, y, radius, top. \throws Error naming file and line.
+/// \brief Reads `poles_gt.csv`: columns id, x, y, radius, top. \throws Error with file and line.
 std::vector<WorldPole> readWorldPoles(const std::filesystem::path& file);
 
 }  // namespace polemcl::io

@@ -16,13 +16,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In the folder, else in its sensor_data/.
+/// Path in the folder; if the file is missing there, path in its sensor_data/.
 fs::path findIn(const fs::path& sequence, const std::string& name) {
   const fs::path below = sequence / "sensor_data" / name;
   return isThere(sequence / name) || !isThere(below) ? sequence / name : below;
 }
 
-/// Nanoseconds as seconds; the whole part apart, as together they have too many digits.
+/// Converts nanoseconds to seconds. The whole seconds are converted separately: a double cannot
+/// hold all digits of the nanoseconds.
 double seconds(std::uint64_t nanoseconds) {
   constexpr std::uint64_t second = 1000000000;
   return static_cast<double>(nanoseconds / second) +
@@ -49,7 +50,7 @@ void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
   takePoses(result, track, file, "truth", "at times without truth");
 }
 
-/// Tells of scans that were recorded, but are not there.
+/// Adds a note about scans that were recorded but are missing in the folder.
 void noteMissing(const fs::path& file, const std::vector<std::uint64_t>& names,
                  ScanFolder& result) {
   const auto lines = readLines(file);

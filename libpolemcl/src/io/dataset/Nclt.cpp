@@ -44,18 +44,19 @@ void addTurns(const fs::path& file, const Turns& turns, ScanFolder& result) {
   }
 }
 
-/// Times at which the body's pose is wanted: three for each turn, or one for each scan.
+/// Times at which the body's pose is needed: three per revolution, or one per scan.
 std::vector<double> wantedTimes(const ScanFolder& folder, const Turns& turns) {
   if (turns.empty()) return timesOf(folder);
   std::vector<double> times;
   for (const NcltTurn& turn : turns)
     for (const double time : {turn.begin, turn.middle, turn.end}) times.push_back(time);
-  // The last packet of a turn may be stamped after the first one of the next.
+  // The last packet of a revolution may have a later time stamp than the first packet of the next
+  // one.
   for (std::size_t i = 1; i < times.size(); ++i) times[i] = std::max(times[i], times[i - 1]);
   return times;
 }
 
-/// Reads turns of `file`, each by its place in it.
+/// Installs a reader for the revolutions of `file`. Each one is identified by its byte offset.
 void readTurns(Turns turns, TurnMotions motions, ScanFolder& result) {
   struct Known {
     Turns turns;
@@ -72,7 +73,7 @@ void readTurns(Turns turns, TurnMotions motions, ScanFolder& result) {
   };
 }
 
-/// How the body moved during each turn, where odometry knows.
+/// Motion of the body during each revolution, where odometry is available.
 TurnMotions turnMotions(const Turns& turns, const NcltOdometry* odometry) {
   TurnMotions motions(turns.size());
   for (std::size_t i = 0; odometry && i < turns.size(); ++i) {
@@ -84,7 +85,7 @@ TurnMotions turnMotions(const Turns& turns, const NcltOdometry* odometry) {
   return motions;
 }
 
-/// Motions between the scans; those at times without odometry are left out.
+/// Sets the motions between scans. Scans at times without odometry are dropped.
 void addMotions(const NcltOdometry& odometry, const fs::path& file, std::size_t posesPerScan,
                 const Eigen::Isometry3d& T_robot_body, ScanFolder& result) {
   requireOverlap(result, odometry.track(), file, "odometry");
@@ -107,7 +108,7 @@ void addMotions(const NcltOdometry& odometry, const fs::path& file, std::size_t 
 
 void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body,
               const ReadProgress& progress, ScanFolder& result) {
-  Eigen::Isometry3d T_map_truth = Eigen::Isometry3d::Identity();  // x north y east z down to ENU
+  Eigen::Isometry3d T_map_truth = Eigen::Isometry3d::Identity();  // truth: north east down
   T_map_truth.linear() << 0, 1, 0, 1, 0, 0, 0, 0, -1;
   const Eigen::Isometry3d T_body_robot = T_robot_body.inverse();
   TrackSampler track(timesOf(result), trackGap);
@@ -132,7 +133,7 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body,
   takePoses(result, track, file, "truth", "at times without truth");
 }
 
-/// Tells how far the truth itself may be off, as its owners say.
+/// Adds a note with the accuracy of the ground truth, as the dataset states it.
 void noteTruthAccuracy(const fs::path& file, const ReadProgress& progress, ScanFolder& result) {
   CsvRows rows(file, 22, "utime, 21 numbers: the upper triangle of the covariance of the pose",
                progress);

@@ -1,40 +1,42 @@
 #pragma once
 /// \file Nclt.h
-/// \brief Sessions of the North Campus Long-Term dataset (NCLT), as its owners publish them.
+/// \brief Sessions of the North Campus Long-Term dataset (NCLT) in their published form.
 
 #include "io/dataset/NcltScans.h"
 #include "io/dataset/ScanFolder.h"
 
 namespace polemcl::io {
 
-/// \brief NCLT's body in the robot frame: its x ahead, y right, z down, turned upright about x.
+/// \brief Pose of NCLT's body frame (x forward, y right, z down) in the robot frame: a half turn
+/// about x.
 Eigen::Isometry3d ncltRobotBody();
 
-/// \brief Reads a session: `velodyne_sync/*.bin` (named by their times in µs; also right in the
-/// folder), else `velodyne_hits.bin`; `groundtruth_DATE.csv`, `cov_DATE.csv`,
-/// `odometry_mu_100hz.csv`, `odometry_mu.csv`, `odometry_cov.csv`, all optional. Each may lie in
-/// the folder or one below it; the truth also beside the folder or in `../ground_truth`, of the
-/// date in the folder's name.
+/// \brief Reads a session. Scans: `velodyne_sync/*.bin` (file names are times in µs; the files may
+/// also lie directly in the folder), otherwise `velodyne_hits.bin`. Optional:
+/// `groundtruth_DATE.csv`, `cov_DATE.csv`, `odometry_mu_100hz.csv`, `odometry_mu.csv`,
+/// `odometry_cov.csv`. Each file may lie in the folder or one level below. The ground truth may
+/// also lie beside the folder or in `../ground_truth`; its date must then be the date in the
+/// folder's name.
 ///
-/// The folders of NCLT's own downloader are known as well: ROOT/velodyne_data/DATE (or DATE_vel),
-/// ROOT/sensor_data/DATE (or DATE_sen), ROOT/ground_truth, ROOT/ground_truth_cov. The session is
-/// then ROOT/DATE, though there is no such folder, or ROOT/velodyne_data/DATE; or ROOT when it
-/// holds one session only.
+/// The folders of NCLT's own downloader are supported: ROOT/velodyne_data/DATE (or DATE_vel),
+/// ROOT/sensor_data/DATE (or DATE_sen), ROOT/ground_truth, ROOT/ground_truth_cov. Name such a
+/// session as ROOT/DATE (this folder need not exist) or as ROOT/velodyne_data/DATE. ROOT alone is
+/// enough if it holds only one session.
 ///
-/// Clouds are in the body frame (z down), as velodyne_sync has them. Whole turns of
-/// velodyne_hits.bin are brought there, with the body's motion during the turn taken out where
-/// there is odometry. Map frame: x east, y north, z up, the origin that of the dataset, as in the
-/// published pole maps; the truth's files have x north, y east, z down. Rows with NaN are passed
-/// over. Scans at times without truth, or without odometry where there is some, are left out, with
-/// a note.
-/// \param T_robot_body The frame of the clouds in the robot frame; ncltRobotBody() if in doubt.
-/// \param progress Of the search for turns, in MB.
-/// \throws Error naming the file (and line): no scans, scans cut short, rows too short, several
-///         files that may be meant, times of the files that do not overlap.
+/// Clouds are in the body frame (z down), as in velodyne_sync. Complete revolutions of
+/// velodyne_hits.bin are transformed to the body frame. Where odometry exists, the motion of the
+/// body during the revolution is compensated. Map frame: x east, y north, z up, with the origin of
+/// the dataset, as in the published pole maps. The ground truth files use x north, y east, z down.
+/// Rows with NaN are skipped. Scans without ground truth are dropped with a note; so are scans
+/// without odometry if the session has odometry.
+/// \param T_robot_body Pose of the cloud frame in the robot frame; usually ncltRobotBody().
+/// \param progress Progress of the search for revolutions, in MB.
+/// \throws Error with the file (and line): no scans, truncated scans, rows too short, several
+///         candidates for one file, times of the files that do not overlap.
 ScanFolder readNclt(const std::filesystem::path& session, const Eigen::Isometry3d& T_robot_body,
                     const ReadProgress& progress = {});
 
-/// \brief Whether there is anything of a session by that name, see readNclt().
+/// \brief Whether any file of such a session exists, see readNclt().
 bool isNcltSession(const std::filesystem::path& session);
 
 }  // namespace polemcl::io

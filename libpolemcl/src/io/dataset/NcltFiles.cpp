@@ -22,7 +22,7 @@ bool isFolder(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
-/// The folder and those right below it, in the order of their names.
+/// The folder and its direct subfolders, sorted by name.
 std::vector<fs::path> placesIn(const fs::path& folder) {
   std::error_code error, ignored;
   std::vector<fs::path> places;
@@ -36,19 +36,19 @@ std::vector<fs::path> placesIn(const fs::path& folder) {
   return places;
 }
 
-/// "2012-01-15" in a name that has such a thing.
+/// The date "2012-01-15" in a name; empty if the name holds no date.
 std::string dateIn(const std::string& name) {
   static const std::regex date("\\d{4}-\\d{2}-\\d{2}");
   std::smatch match;
   return std::regex_search(name, match, date) ? match.str() : std::string();
 }
 
-/// Where the parts of one session are looked for.
+/// Folders in which the files of one session are searched.
 struct Places {
-  std::string date;              ///< empty when the name of the folder has none
+  std::string date;              ///< empty: the name of the folder has no date
   fs::path root;                 ///< the folder of all sessions
-  std::vector<fs::path> own;     ///< hold files of this session alone
-  std::vector<fs::path> shared;  ///< hold files of several sessions, with their dates
+  std::vector<fs::path> own;     ///< folders with files of this session only
+  std::vector<fs::path> shared;  ///< folders with files of several sessions, whose names hold dates
 };
 
 Places placesOf(const fs::path& session) {
@@ -74,7 +74,7 @@ Places placesOf(const fs::path& session) {
   return places;
 }
 
-/// The one place that has the name; an empty path when none has.
+/// The only match for the name; an empty path if no folder has it.
 fs::path findNamed(const std::vector<fs::path>& places, const std::string& name) {
   fs::path found;
   for (const fs::path& place : places) {
@@ -87,7 +87,8 @@ fs::path findNamed(const std::vector<fs::path>& places, const std::string& name)
   return found;
 }
 
-/// groundtruth_DATE.csv or cov_DATE.csv: of the session's date if it has one, else the only one.
+/// Finds groundtruth_DATE.csv or cov_DATE.csv: the file of the session's date, otherwise the only
+/// one.
 fs::path findDated(const Places& places, const std::string& prefix) {
   if (!places.date.empty()) {
     const std::string name = prefix + "_" + places.date + ".csv";
@@ -118,7 +119,7 @@ bool hasScans(const fs::path& folder) {
   return false;
 }
 
-/// Dates of what the downloader has fetched, unpacked or not.
+/// Dates of the archives that were downloaded, unpacked or not.
 std::set<std::string> datesIn(const fs::path& root) {
   std::set<std::string> dates;
   std::error_code ignored;
@@ -129,7 +130,7 @@ std::set<std::string> datesIn(const fs::path& root) {
   return dates;
 }
 
-/// The session in a folder of the downloader that holds but one; any other folder as it is.
+/// The session in a folder of the downloader that holds only one; any other folder unchanged.
 fs::path onlySession(const fs::path& folder) {
   if (!isFolder(folder / scanArchives)) return folder;
   const auto dates = datesIn(folder);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file NcltFiles.h
-/// \brief Where the files of one session of NCLT lie.
+/// \brief Finds the files of one NCLT session.
 
 #include <filesystem>
 
@@ -8,14 +8,15 @@
 
 namespace polemcl::io {
 
-/// \brief The files of a session; empty paths are not there.
+/// \brief The files of a session; a path is empty if the file does not exist.
 struct NcltFiles {
   std::filesystem::path sync, hits;  ///< folder of scans; file of packets
   std::filesystem::path truth, covariances;
   NcltOdometryFiles odometry;
 };
 
-/// \brief Finds them, see readNclt(). \throws Error: no scans, several files that may be meant.
+/// \brief Finds the files, see readNclt(). \throws Error: no scans, several candidates for one
+/// file.
 NcltFiles findNcltFiles(const std::filesystem::path& session);
 
 }  // namespace polemcl::io

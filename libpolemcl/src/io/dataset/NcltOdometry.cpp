@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double relativeNoise = 0.05;  ///< of each component, without covariances; own choice
+constexpr double relativeNoise = 0.05;  ///< per component, without covariances; own choice
 constexpr const char* poseLayout = "utime, x, y, z, roll, pitch, heading (us, m, rad)";
 constexpr const char* covarianceLayout =
     "utime, 21 numbers: the upper triangle of the covariance of x y z roll pitch heading";
@@ -24,7 +24,7 @@ bool allFinite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// x, y and heading out of the 21 numbers of an upper triangle that begins at `values`.
+/// Covariance of x, y and heading, from the 21 numbers of an upper triangle at `values`.
 Eigen::Matrix3d planarCovariance(const double* values) {
   const double xx = values[0], xy = values[1], xh = values[5], yy = values[6], yh = values[10],
                hh = values[20];
@@ -33,7 +33,7 @@ Eigen::Matrix3d planarCovariance(const double* values) {
   return covariance;
 }
 
-/// How small motions in the plane of the body look in the plane of the robot.
+/// Transforms small motions from the plane of the body to the plane of the robot.
 Eigen::Matrix3d planeChange(const Eigen::Isometry3d& T_robot_body) {
   Eigen::Matrix3d change = Eigen::Matrix3d::Zero();
   change.topLeftCorner<2, 2>() = T_robot_body.linear().topLeftCorner<2, 2>();
@@ -46,12 +46,13 @@ PlanarMotion shareOf(const PlanarMotion& motion, double share) {
           share * motion.covariance};
 }
 
-/// The covariances of the steps, looked up by time.
+/// The covariances of the steps, searched by time.
 class CovarianceRows {
  public:
   explicit CovarianceRows(const fs::path& file) : m_rows(file, 22, covarianceLayout) { advance(); }
 
-  /// That of the row nearest to `time`, unless it is farther than `reach`, s. Times must rise.
+  /// The covariance of the row nearest to `time`; nullopt if it is more than `reach` s away. Calls
+  /// must have increasing times.
   std::optional<Eigen::Matrix3d> at(double time, double reach) {
     while (m_next && m_next->time <= time) advance();
     const Row* nearest = m_before ? &*m_before : nullptr;
@@ -79,7 +80,7 @@ class CovarianceRows {
     Eigen::Matrix3d covariance;
   };
 
-  /// To the next row that is finite and later.
+  /// Moves to the next row that is finite and later.
   void advance() {
     m_before = m_next;
     m_next.reset();
@@ -93,7 +94,7 @@ class CovarianceRows {
 
   CsvRows m_rows;
   std::optional<Row> m_before, m_next;
-  std::size_t m_shifted = 0, m_missing = 0;  ///< steps with a covariance of another time, with none
+  std::size_t m_shifted = 0, m_missing = 0;  ///< steps with another time's covariance; with none
 };
 
 void noteUnused(std::size_t rows, const fs::path& file, std::vector<std::string>& notes) {
@@ -152,7 +153,7 @@ void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::st
       continue;
     }
     const Eigen::Isometry3d step = ncltPose(row.data() + 1);
-    // The first row's motion began before the session.
+    // The motion of the first row began before the session.
     if (last) {
       ++steps;
       T_odom_body = T_odom_body * step;

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t hitBytes = 8, hitHeaderBytes = 24;
 constexpr std::uint16_t hitMagic = 44444;
-constexpr double nearest = 0.5;          ///< m; nearer points are no returns
-constexpr double longestPause = 0.05;    ///< s between packets; they come every 0.55 ms
-constexpr double widestStep = M_PI / 4;  ///< between packets; they are 2° wide
+constexpr double nearest = 0.5;          ///< m; nearer points are not returns
+constexpr double longestPause = 0.05;    ///< longest time between packets, s; usual: 0.55 ms
+constexpr double widestStep = M_PI / 4;  ///< largest step of azimuth between packets; usual: 2°
 
 double metres(const char* value) {
   return loadLittleEndian<std::uint16_t>(value) * 0.005 - 100.0;
@@ -30,11 +30,11 @@ Eigen::Vector3d pointAt(const char* bytes) {
   return {metres(bytes), metres(bytes + 2), metres(bytes + 4)};
 }
 
-/// Adds `count` points, each moved.
+/// Adds `count` points, transformed by `move`.
 void addPoints(const char* bytes, std::size_t count, const Eigen::Isometry3d& move, Cloud& cloud) {
   for (std::size_t i = 0; i < count; ++i, bytes += hitBytes) {
     const Eigen::Vector3d raw = pointAt(bytes);
-    if (raw.squaredNorm() < 1e-6) {  // at the sensor: no return
+    if (raw.squaredNorm() < 1e-6) {  // no return
       ++cloud.invalid;
       continue;
     }
@@ -47,9 +47,9 @@ void addPoints(const char* bytes, std::size_t count, const Eigen::Isometry3d& mo
 }
 
 struct Packet {
-  std::uint64_t offset = 0;  ///< of its header, bytes
+  std::uint64_t offset = 0;  ///< offset of its header, bytes
   double time = 0;           ///< s
-  std::string points;        ///< as in the file
+  std::string points;        ///< raw bytes from the file
   std::uint64_t bytes() const { return hitHeaderBytes + points.size(); }
 };
 
@@ -101,7 +101,7 @@ class PacketReader {
   std::uint64_t m_position, m_end;
 };
 
-/// Direction of the first return; none when the packet has none.
+/// Azimuth of the first return; nullopt if the packet has no return.
 std::optional<double> azimuthOf(const Packet& packet) {
   for (std::size_t i = 0; i < packet.points.size(); i += hitBytes) {
     const Eigen::Vector3d point = pointAt(packet.points.data() + i);
@@ -110,7 +110,7 @@ std::optional<double> azimuthOf(const Packet& packet) {
   return std::nullopt;
 }
 
-/// Joins packets to turns.
+/// Joins packets to revolutions.
 class TurnFinder {
  public:
   void add(const Packet& packet) {
@@ -161,12 +161,12 @@ class TurnFinder {
 
   NcltTurn m_turn;
   bool m_open = false;
-  double m_turned = 0;              ///< since the turn began, rad, signed
-  std::optional<double> m_azimuth;  ///< of the packet before, in this turn
+  double m_turned = 0;              ///< azimuth since the start of the revolution, rad, signed
+  std::optional<double> m_azimuth;  ///< azimuth of the previous packet in this revolution
   std::size_t m_leftOut = 0;
 };
 
-/// From the time of a packet to the middle of its turn.
+/// Transform from the time of a packet to the middle of its revolution.
 Eigen::Isometry3d toMiddle(double time, const NcltTurn& turn,
                            const std::optional<TurnMotion>& motion) {
   const double half = (turn.end - turn.begin) / 2;

@@ -16,7 +16,7 @@ std::vector<fs::path> listFiles(const fs::path& folder, const std::string& endin
        !error && entry != fs::directory_iterator(); entry.increment(error)) {
     const fs::path name = entry->path().filename();
     const bool wanted = name.extension() == ending && name.native().front() != '.';
-    // A link to nothing is listed too, so that reading it fails aloud.
+    // A broken link is listed too, so that reading it fails with an error.
     if (wanted && !entry->is_directory(ignored)) files.push_back(fs::absolute(entry->path()));
   }
   if (error) throw Error("cannot read the folder " + folder.string() + ": " + error.message());

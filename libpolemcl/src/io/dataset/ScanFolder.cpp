@@ -13,13 +13,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double nominalPeriod = 0.1;  ///< s, of scans that tell no times
+constexpr double nominalPeriod = 0.1;  ///< period of scans without times, s
 
-/// The scans of a folder and what is said about the rows that belong to them.
+/// The scans of a folder, with what is needed to assign rows to them.
 struct Scans {
   std::vector<fs::path> files;
-  std::string place;              ///< where they are, for messages
-  bool numberedFromZero = false;  ///< 0, 1, 2, …: row i belongs to scan i for certain
+  std::string place;              ///< where the scans are, for messages
+  bool numberedFromZero = false;  ///< names are 0, 1, 2, …: row i belongs to scan i
 };
 
 Scans listScans(const fs::path& folder, const std::string& ending, const std::string& place) {
@@ -31,7 +31,8 @@ Scans listScans(const fs::path& folder, const std::string& ending, const std::st
   return scans;
 }
 
-/// One row per scan, or per scan after the first: throws on fewer, notes more or throws.
+/// Checks for one row per scan, or per scan after the first. Throws on fewer rows. More rows give a
+/// note, or an error if the assignment is ambiguous.
 void checkCount(const fs::path& file, const std::string& what, std::size_t got,
                 std::size_t expected, const Scans& scans, std::vector<std::string>& notes) {
   const std::string counts = std::to_string(got) + " " + what + " for " +
@@ -40,7 +41,8 @@ void checkCount(const fs::path& file, const std::string& what, std::size_t got,
     throw Error(file.string() + ": " + counts + ", " + std::to_string(expected) + " expected");
   }
   if (got == expected) return;
-  // As many motions as scans is more likely a list that starts otherwise than one that goes on.
+  // As many motions as scans: more likely a list with an extra first row than a list that is too
+  // long.
   const bool shifted = expected + 1 == scans.files.size() && got == scans.files.size();
   if (shifted || !scans.numberedFromZero) {
     throw Error(file.string() + ": " + counts + ", " + std::to_string(expected) +
@@ -77,7 +79,7 @@ PlanarMotion motionFromRow(const fs::path& file, const NumberRow& row) {
                   " is negative; expected: dx dy dyaw sx sy syaw");
     }
   }
-  // Room for a half turn that was rounded upwards.
+  // Tolerance for a half turn that was rounded up.
   if (std::abs(v[2]) > M_PI + 1e-3) {
     throw Error(at(file, row.line) + "turn of " + significant(v[2], 9) +
                 " rad between two scans; radians within -pi ... pi are expected");
@@ -104,7 +106,7 @@ void addScans(const Scans& scans, ScanFolder& folder) {
   }
 }
 
-/// True poses and odometry, where there are such files.
+/// Reads true poses and odometry, if the files exist.
 void readMotions(const fs::path& folder, const Eigen::Isometry3d& T_robot_sensor,
                  const Scans& scans, ScanFolder& result) {
   if (isThere(folder / "poses.txt")) {

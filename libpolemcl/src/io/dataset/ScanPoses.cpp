@@ -16,7 +16,7 @@ std::string span(const ScanFolder& folder) {
   return fixed(folder.scans.front().time, 3) + " ... " + fixed(folder.scans.back().time, 3) + " s";
 }
 
-/// Row i is scan i: both counts must agree.
+/// Row i belongs to scan i: both counts must agree.
 void pairInTurn(ScanFolder& folder, const fs::path& file, const std::vector<StampedPose3D>& rows) {
   if (rows.size() != folder.scans.size())
     throw Error(file.string() + ": " + std::to_string(rows.size()) + " poses for " +
@@ -42,14 +42,14 @@ std::vector<double> timesOf(const ScanFolder& folder) {
 
 void keepScans(ScanFolder& folder, const std::vector<bool>& keep, const std::string& why) {
   std::vector<ScanEntry> kept;
-  std::optional<PlanarMotion> pending;  // into the scans left out since the last one kept
+  std::optional<PlanarMotion> pending;  // motion since the last remaining scan
   const std::size_t all = folder.scans.size();
   for (std::size_t i = 0; i < all; ++i) {
     ScanEntry& scan = folder.scans[i];
     if (pending && scan.motion) scan.motion = composeMotions(*pending, *scan.motion);
     pending.reset();
     if (keep[i]) {
-      if (kept.empty()) scan.motion.reset();  // the first scan starts at itself
+      if (kept.empty()) scan.motion.reset();  // the first scan has no motion
       kept.push_back(std::move(scan));
     } else if (!kept.empty()) {
       pending = scan.motion;

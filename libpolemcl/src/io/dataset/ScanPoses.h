@@ -1,40 +1,42 @@
 #pragma once
 /// \file ScanPoses.h
-/// \brief True poses for the scans of a folder, from tracks with their own times.
+/// \brief True poses for the scans of a folder, from tracks with other time stamps.
 
 #include "io/data/TrackSampler.h"
 #include "io/dataset/ScanFolder.h"
 
 namespace polemcl::io {
 
-/// \brief Tracks are not interpolated across longer gaps, s: a vehicle may turn meanwhile.
+/// \brief Longest gap of a track that is interpolated, s: the vehicle may turn during longer gaps.
 constexpr double trackGap = 1.0;
 
 /// \brief Times of the scans, s.
 std::vector<double> timesOf(const ScanFolder& folder);
 
-/// \brief Leaves out the scans that are not to be kept, with a note. Their motion goes into that of
-/// the next scan that stays.
-/// \param keep One for each scan. \param why Such as "at times without truth".
+/// \brief Drops the scans with `keep` false and adds a note. Their motions are composed with that
+/// of the next remaining scan.
+/// \param keep One value per scan. \param why Reason for the note, such as "at times without
+///        truth".
 void keepScans(ScanFolder& folder, const std::vector<bool>& keep, const std::string& why);
 
-/// \throws Error that names both time spans when the sampled track has no pose for any scan.
-/// \param file Where the track comes from. \param what Such as "truth".
+/// \throws Error with both time spans when the sampled track has no pose for any scan.
+/// \param file Source of the track. \param what Content of the track, such as "truth".
 void requireOverlap(const ScanFolder& folder, const TrackSampler& track,
                     const std::filesystem::path& file, const std::string& what);
 
-/// \brief Gives the scans the poses of a sampled track; those without one are left out.
-/// \param why As of keepScans(). \throws Error as requireOverlap(), whose the other arguments are.
+/// \brief Gives the scans the poses of a sampled track. Scans without a pose are dropped.
+/// \param why Reason for the note, see keepScans(). \throws Error as requireOverlap(), which takes
+///        the other arguments.
 void takePoses(ScanFolder& folder, const TrackSampler& track, const std::filesystem::path& file,
                const std::string& what, const std::string& why);
 
-/// \brief Gives the scans the poses of a TUM file, instead of those they had, at their times.
-/// Scans at times without a pose are left out, with a note. Scans without times of their own
-/// (`nominalTimes`) are paired with the rows in turn, and take their times.
-/// \param T_pose_robot The robot in the frame whose poses the file has: identity for poses of the
-///        robot, the inverse of the sensor's pose for poses of the sensor.
-/// \throws Error as readTum(); when no scan has a pose, or scans without times are not as many as
-///         rows.
+/// \brief Replaces the poses of the scans by those of a TUM file at the times of the scans. Scans
+/// at times without a pose are dropped, with a note. Scans without times of their own
+/// (`nominalTimes`) are paired with the rows in order, and take the times of the rows.
+/// \param T_pose_robot Pose of the robot in the frame that the file describes: identity if the file
+///        has robot poses, the inverse of the sensor's pose if it has sensor poses.
+/// \throws Error as readTum(). Also when no scan has a pose, or the number of rows differs from the
+///         number of scans without times.
 void takeTumPoses(ScanFolder& folder, const std::filesystem::path& file,
                   const Eigen::Isometry3d& T_pose_robot);
 

@@ -19,7 +19,7 @@ Error cannotWrite(const fs::path& file, const std::string& why) {
   return Error("cannot write " + file.string() + ": " + why);
 }
 
-/// The file to replace: what a link names, never a folder or a device.
+/// The file to replace: the target of a link, never a folder or a device.
 fs::path checkedTarget(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -37,7 +37,7 @@ fs::path checkedTarget(const fs::path& path) {
   return named;
 }
 
-/// Creates a file that was not there, beside the target.
+/// Creates a new file beside the target.
 fs::path createTemporary(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
   while (true) {
@@ -48,7 +48,7 @@ fs::path createTemporary(const fs::path& target) {
       ::close(descriptor);
       return temporary;
     }
-    // A leftover of an ended process with our number: take the next name.
+    // Leftover of an earlier process with our process id: try the next name.
     if (errno != EEXIST) throw cannotWrite(target, std::strerror(errno));
   }
 }
@@ -76,7 +76,7 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::commit() {
   if (!m_open) throw cannotWrite(m_target, "commit() was called before");
   errno = 0;
-  m_stream.close();  // writes what is buffered; a failure of earlier writes is still set
+  m_stream.close();  // flushes the buffer; failures of earlier writes are still set
   if (m_stream.fail()) {
     const std::string why = errno != 0 ? std::strerror(errno) : "a write failed";
     throw cannotWrite(m_target, why + " (the disk may be full); nothing was changed");

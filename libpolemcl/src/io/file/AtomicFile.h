@@ -1,6 +1,7 @@
 #pragma once
 /// \file AtomicFile.h
-/// \brief Outputs that are complete or not there: written beside the target, renamed when done.
+/// \brief Output files that are either complete or absent: written to a temporary file, then
+/// renamed.
 
 #include <filesystem>
 #include <fstream>
@@ -9,34 +10,35 @@ namespace polemcl::io {
 
 /// \brief A file that appears under its name only once it is complete.
 ///
-/// The temporary lies in the target's folder, ends in `.tmp`, and is removed unless committed. Safe
-/// against a full disk and against a process that ends at any moment; what a power failure leaves
-/// is up to the file system (nothing is synced).
+/// The temporary file lies in the target's folder, ends in `.tmp`, and is removed unless committed.
+/// This is safe against a full disk and against a process that ends at any moment. The result of a
+/// power failure depends on the file system (nothing is synced).
 ///
-/// A symbolic link to a regular file stays a link; the file it names is replaced.
+/// If the target is a symbolic link to a regular file, the link stays and the file behind it is
+/// replaced.
 class AtomicFile {
  public:
-  /// \brief Creates the temporary. Permissions follow the umask, as for any new file.
-  /// \throws Error when the folder is missing or not writable, or when `path` is there and is no
+  /// \brief Creates the temporary file. Permissions follow the umask, as for any new file.
+  /// \throws Error when the folder is missing or not writable, or when `path` exists but is not a
   ///         regular file (a folder, a device).
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// \brief Where to write; binary.
+  /// \brief The stream to write to; binary.
   std::ofstream& stream() { return m_stream; }
-  /// \brief For writers that open files themselves; they must have closed it before commit().
+  /// \brief Path for writers that open files themselves. They must close the file before commit().
   const std::filesystem::path& temporaryPath() const { return m_temporary; }
-  /// \brief Completes the file and gives it its name, replacing what was there.
-  /// \throws Error when any write failed (full disk); the target is then as it was before. Also
-  ///         when called twice.
+  /// \brief Completes the file and renames it to the target, replacing an existing file.
+  /// \throws Error when a write failed (full disk); the target is then unchanged. Also when called
+  ///         twice.
   void commit();
 
  private:
   std::filesystem::path m_target, m_temporary;
   std::ofstream m_stream;
-  bool m_open = true;  ///< the temporary exists and is ours
+  bool m_open = true;  ///< the temporary file exists and belongs to this object
 };
 
 }  // namespace polemcl::io

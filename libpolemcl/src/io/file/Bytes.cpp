@@ -12,7 +12,7 @@ std::string readBytes(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& why) {
     return Error("cannot read " + file.string() + ": " + why);
   };
-  // Opening a folder succeeds; only reading it would fail.
+  // Opening a folder succeeds; only reading it fails.
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
@@ -20,7 +20,7 @@ std::string readBytes(const std::filesystem::path& file) {
   if (!stream) throw fail(std::strerror(errno));
   const auto size = std::filesystem::file_size(file, ignored);
   std::string bytes;
-  // One byte more than there should be, so that the end is seen without a second round.
+  // One byte more than the file size, so that the first read reaches the end.
   bytes.resize(ignored ? 65536 : size + 1);
   std::size_t used = 0;
   while (true) {

@@ -11,8 +11,7 @@
 
 namespace polemcl::io {
 
-/// \brief The content of a file. \throws Error with the reason of the system when it cannot be
-/// read.
+/// \brief Reads a whole file. \throws Error with the system's reason when the file cannot be read.
 std::string readBytes(const std::filesystem::path& file);
 
 /// \brief The little-endian value of type T (integer or float) at `bytes`; no alignment needed.
@@ -52,7 +51,7 @@ class ByteWriter {
     }
   }
   void putRaw(std::string_view bytes) { m_bytes.append(bytes); }
-  /// \brief uint32 length and bytes.
+  /// \brief Writes a uint32 length, then the bytes.
   void putText(std::string_view text);
   const std::string& bytes() const { return m_bytes; }
 
@@ -60,13 +59,13 @@ class ByteWriter {
   std::string m_bytes;
 };
 
-/// \brief Reads values, little-endian, one after the other; never beyond the end.
+/// \brief Reads little-endian values one after the other; never reads beyond the end.
 class ByteReader {
  public:
-  /// \param bytes Must outlive the reader. \param where Start of the message of errors.
+  /// \param bytes Must outlive the reader. \param where Prefix of error messages.
   ByteReader(std::string_view bytes, std::string where)
       : m_bytes(bytes), m_where(std::move(where)) {}
-  /// \throws Error at the end of the bytes, as all of them.
+  /// \throws Error at the end of the bytes, as do the other functions.
   template <class T>
   T get() {
     return loadLittleEndian<T>(getRaw(sizeof(T)).data());
@@ -76,7 +75,7 @@ class ByteReader {
   std::size_t remaining() const { return m_bytes.size(); }
 
  private:
-  std::string_view m_bytes;  ///< what is left
+  std::string_view m_bytes;  ///< bytes not yet read
   std::string m_where;
 };
 

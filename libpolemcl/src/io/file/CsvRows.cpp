@@ -23,7 +23,7 @@ CsvRows::CsvRows(const std::filesystem::path& file, std::size_t columns, std::st
       m_layout(std::move(layout)),
       m_progress(std::move(progress)) {
   std::error_code ignored;
-  // Opening a folder succeeds; only reading it would fail.
+  // Opening a folder succeeds; only reading it fails.
   if (std::filesystem::is_directory(file, ignored))
     throw Error("cannot read " + file.string() + ": it is a folder, not a file");
   errno = 0;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file CsvRows.h
-/// \brief Long tables of numbers between commas, without a header, row by row.
+/// \brief Long tables of comma-separated numbers without a header, read row by row.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,21 +12,21 @@
 
 namespace polemcl::io {
 
-/// \brief Reads one row at a time and keeps none, so that files may be of any length. Blank lines
-/// and lines that start with `#` are skipped; `nan` and `inf` are numbers.
+/// \brief Reads one row at a time and stores none, so that files may have any length. Blank lines
+/// and lines that start with `#` are skipped; `nan` and `inf` are accepted as numbers.
 class CsvRows {
  public:
   /// \param layout The columns, for messages: "utime, x, y".
-  /// \param progress Told the megabytes read and those of the file, now and then; may be empty.
+  /// \param progress Called at intervals with the megabytes read and the size of the file; may be
+  ///        empty.
   /// \throws Error when the file cannot be read.
   CsvRows(const std::filesystem::path& file, std::size_t columns, std::string layout,
           ReadProgress progress = {});
 
   /// \brief The next row. \return False at the end.
-  /// \throws Error naming file and line: another number of columns, not a number, a read that
-  ///         failed.
+  /// \throws Error with file and line: wrong number of columns, not a number, failed read.
   bool next(std::vector<double>& values);
-  /// \brief "FILE:LINE: " of the row last read, for messages.
+  /// \brief "FILE:LINE: " of the last row read, for messages.
   std::string at() const;
 
  private:

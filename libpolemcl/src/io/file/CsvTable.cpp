@@ -9,14 +9,14 @@
 namespace polemcl::io {
 namespace {
 
-/// Fields between commas, without the quotes and spaces around them.
+/// Splits a line at commas; removes quotes and spaces around the fields.
 std::vector<std::string> splitCsv(std::string_view line, const std::string& where) {
   std::vector<std::string> fields(1);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
     if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      fields.back() += line[++i];  // a doubled quote is one
+      fields.back() += line[++i];  // a doubled quote stands for one
     } else if (c == '"') {
       quoted = !quoted;
     } else if (c == ',' && !quoted) {

@@ -9,22 +9,22 @@
 
 namespace polemcl::io {
 
-/// \brief A CSV file in memory. Fields are between commas, optionally in quotes; blank lines and
+/// \brief A CSV file in memory. Fields are separated by commas and may be quoted. Blank lines and
 /// lines that start with `#` are skipped; the first other line names the columns.
 class CsvTable {
  public:
-  /// \throws Error naming file and line: cannot be read, empty, a quote that is not closed, a row
-  ///         with another number of fields than the header.
+  /// \throws Error with file and line: file not readable, empty, a quote that is not closed, a row
+  ///         whose number of fields differs from the header.
   explicit CsvTable(const std::filesystem::path& file);
 
   std::size_t rows() const { return m_rows.size(); }
-  /// \brief Index of the column of that name. \throws Error unless there is exactly one.
+  /// \brief Index of the column with this name. \throws Error unless there is exactly one.
   std::size_t column(const std::string& name) const;
-  /// \brief The same where it may be missing. \throws Error when there are several.
+  /// \brief As column(), for optional columns. \throws Error when there are several.
   std::optional<std::size_t> find(const std::string& name) const;
-  /// \brief A field as a number. \throws Error naming file and line unless it is finite.
+  /// \brief A field as a number. \throws Error with file and line unless it is finite.
   double number(std::size_t row, std::size_t column) const;
-  /// \brief A field as it stands, without spaces and quotes round it.
+  /// \brief A field as text, without surrounding spaces and quotes.
   const std::string& text(std::size_t row, std::size_t column) const {
     return m_rows[row].fields[column];
   }

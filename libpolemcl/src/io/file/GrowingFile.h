@@ -1,6 +1,6 @@
 #pragma once
 /// \file GrowingFile.h
-/// \brief A file that is written piece by piece over a long time.
+/// \brief A file that is written in pieces over a long time.
 
 #include <filesystem>
 #include <string>
@@ -8,17 +8,18 @@
 
 namespace polemcl::io {
 
-/// \brief The file is open only while a piece goes out, so that any number can be under way. It has
-/// its name from the start: to be used in folders that become visible when they are complete.
+/// \brief The file is open only while a piece is written, so that any number of files can be in
+/// progress. It has its final name from the start: use it in folders that become visible when
+/// complete.
 class GrowingFile {
  public:
-  static constexpr std::size_t piece = 4096;  ///< bytes collected before they go out
+  static constexpr std::size_t piece = 4096;  ///< bytes collected before a write
 
-  /// \brief Creates the file, empty. \throws Error when that fails.
+  /// \brief Creates an empty file. \throws Error when that fails.
   explicit GrowingFile(std::filesystem::path file);
-  /// \brief Adds to the end. \throws Error when a write failed.
+  /// \brief Appends text. \throws Error when a write failed.
   void add(std::string_view text);
-  /// \brief Writes what is collected. Text that no flush() follows is lost. \throws Error as add().
+  /// \brief Writes the collected text. Text after the last flush() is lost. \throws Error as add().
   void flush();
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t firstBlock = 1 << 16;
 
-/// Ends what inflateInit2() began.
+/// Calls inflateEnd() for inflateInit2().
 struct Stream : z_stream {
   Stream() : z_stream() {}
   ~Stream() { inflateEnd(this); }
@@ -39,7 +39,7 @@ std::string inflated(std::string_view data, std::uint64_t size, Deflated kind,
   std::size_t used = 0, taken = 0;
   int code = Z_OK;
   while (code == Z_OK) {
-    // One byte more than claimed, so that data beyond the claim is seen.
+    // One byte more than claimed, to detect data beyond the claimed size.
     if (used == result.size())
       result.resize(std::min<std::uint64_t>(size + 1, std::max(firstBlock, 2 * result.size())));
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data())) + taken;

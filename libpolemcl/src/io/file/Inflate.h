@@ -1,6 +1,6 @@
 #pragma once
 /// \file Inflate.h
-/// \brief Decompression of data whose size a file only claims.
+/// \brief Decompression of data whose size is only claimed by a file.
 
 #include <cstdint>
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace polemcl::io {
 
-enum class Deflated { zlib, bare };  ///< with zlib's header and checksum; as zip archives have it
+enum class Deflated { zlib, bare };  ///< with zlib's header and checksum; raw, as in zip archives
 
-/// \brief Decompresses. Memory is taken as the data comes: a false claim costs at most twice what
-/// the data really holds.
-/// \param size As the file claims. \param where Start of the message.
-/// \throws Error when the data is damaged, holds more or less than that, or cannot hold it (see
+/// \brief Decompresses. Memory grows with the data: a false size costs at most twice the memory of
+/// the actual content.
+/// \param size Uncompressed size that the file claims. \param where Prefix of error messages.
+/// \throws Error when the data are damaged, hold more or less than `size`, or cannot hold it (see
 ///         greatestDeflateRatio).
 std::string inflated(std::string_view data, std::uint64_t size, Deflated kind,
                      const std::string& where);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view magic("\x93NUMPY", 6);
 
-/// What the dictionary of a `.npy` header says.
+/// Content of the dictionary in a `.npy` header.
 struct Layout {
   bool isFloat64 = false;
   bool fortranOrder = false;
@@ -80,7 +80,7 @@ std::size_t countElements(const Layout& layout, std::size_t dataBytes, const std
   return count;
 }
 
-/// Position in C order of the element at `index` in Fortran order.
+/// Index in C order of the element at `index` in Fortran order.
 std::size_t toCOrder(std::size_t index, const std::vector<std::size_t>& shape) {
   std::size_t result = 0;
   std::size_t stride = 1;

@@ -21,7 +21,7 @@ std::uint64_t at32(std::string_view record, std::size_t offset) {
   return loadLittleEndian<std::uint32_t>(record.data() + offset);
 }
 
-/// A part of the archive, or an error when it does not lie inside.
+/// A part of the archive. Throws if it does not lie inside.
 std::string_view part(std::string_view bytes, std::uint64_t offset, std::uint64_t size,
                       const std::string& where) {
   if (offset > bytes.size() || size > bytes.size() - offset) {
@@ -30,7 +30,7 @@ std::string_view part(std::string_view bytes, std::uint64_t offset, std::uint64_
   return bytes.substr(offset, size);
 }
 
-/// The record that ends the archive; it must reach exactly to the end of the file.
+/// The end record of the archive; it must reach exactly to the end of the file.
 std::string_view findEnd(std::string_view bytes, const std::string& where) {
   for (std::size_t tail = endBytes; tail <= bytes.size() && tail <= endBytes + longestComment;
        ++tail) {

@@ -9,7 +9,7 @@ namespace polemcl::io {
 namespace {
 
 constexpr std::uint16_t zipVersion = 20;
-constexpr std::uint16_t firstDay = 1 << 5 | 1;  ///< 1980-01-01, as NumPy has it: no clock
+constexpr std::uint16_t firstDay = 1 << 5 | 1;  ///< 1980-01-01, as NumPy writes it; no clock
 constexpr std::uint64_t mostBytes = 0xffffffff;
 
 void put16(std::string& bytes, std::uint64_t value) {
@@ -19,7 +19,7 @@ void put32(std::string& bytes, std::uint64_t value) {
   for (int shift : {0, 8, 16, 24}) bytes += static_cast<char>(value >> shift & 0xff);
 }
 
-/// What the local header and the directory have in common: from the version to the name's length.
+/// The common part of local header and directory entry: from the version to the name's length.
 std::string description(const std::string& name, const std::string& content) {
   std::string bytes;
   put16(bytes, zipVersion);

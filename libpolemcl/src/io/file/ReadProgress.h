@@ -1,13 +1,13 @@
 #pragma once
 /// \file ReadProgress.h
-/// \brief Who reads large files tells how far.
+/// \brief Progress reports of functions that read large files.
 
 #include <cstddef>
 #include <functional>
 
 namespace polemcl::io {
 
-/// \brief Told how much is read and how much there is, both in one unit.
+/// \brief Called with the amount read and the total, both in the same unit.
 using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 }  // namespace polemcl::io

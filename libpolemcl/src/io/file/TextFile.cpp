@@ -52,7 +52,7 @@ void LineReader::readBlock() {
     return;
   }
   m_ended = true;
-  // A gzip file that is cut short reads to its end first and is reported here only.
+  // A truncated gzip file is readable to its end first; the error is reported only here.
   int code = Z_OK;
   const char* message = gzerror(m_stream->file, &code);
   if (got < 0 || code != Z_OK)
@@ -149,7 +149,7 @@ std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::si
 namespace {
 
 std::string formatted(double value, std::chars_format format, int precision) {
-  // Room for the largest double in fixed notation.
+  // Enough for the largest double in fixed notation.
   std::array<char, 512> buffer;
   const auto result =
       std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format, precision);

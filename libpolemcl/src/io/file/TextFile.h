@@ -1,6 +1,7 @@
 #pragma once
 /// \file TextFile.h
-/// \brief Strict tables of numbers, and numbers to text and back, in no locale but "C".
+/// \brief Strict tables of numbers, and conversion of numbers to and from text, always in the "C"
+/// locale.
 
 #include <filesystem>
 #include <memory>
@@ -17,8 +18,8 @@ struct NumberRow {
   std::vector<double> values;
 };
 
-/// \brief The lines of a text file one by one, without line ends (`\n` or `\r\n`), blank ones
-/// included. Plain or gzip. A byte order mark is dropped.
+/// \brief Reads the lines of a text file one by one, including blank ones, without line ends (`\n`
+/// or `\r\n`). Plain text or gzip. A byte order mark is dropped.
 class LineReader {
  public:
   /// \throws Error when the file cannot be opened.
@@ -27,8 +28,8 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  /// \return False at the end. \throws Error when it cannot be read, is cut short, or holds more
-  /// than `mostTextBytes` (ReadLimits.h).
+  /// \return False at the end. \throws Error when the file cannot be read, is truncated, or holds
+  ///         more than `mostTextBytes` (ReadLimits.h).
   bool next(std::string& line);
 
  private:
@@ -37,7 +38,7 @@ class LineReader {
 
   std::filesystem::path m_file;
   std::unique_ptr<Stream> m_stream;
-  std::string m_text;  ///< read, not yet given out from m_begin on
+  std::string m_text;  ///< text read; the part from m_begin on is not returned yet
   std::size_t m_begin = 0;
   std::size_t m_read = 0;  ///< bytes, uncompressed
   bool m_ended = false;
@@ -46,10 +47,10 @@ class LineReader {
 /// \brief All lines, see LineReader. \throws Error as LineReader does.
 std::vector<std::string> readLines(const std::filesystem::path& file);
 
-/// \brief Lines of exactly `columns` numbers between spaces or tabs. `#` starts a comment; blank
-/// lines are skipped.
+/// \brief Reads lines of exactly `columns` numbers, separated by spaces or tabs. `#` starts a
+/// comment; blank lines are skipped.
 /// \param layout The columns, for messages: "time x y".
-/// \throws Error naming file and line: another count of columns, no number, NaN or infinite.
+/// \throws Error with file and line: wrong number of columns, not a number, NaN or infinite.
 class NumberRowReader {
  public:
   NumberRowReader(const std::filesystem::path& file, std::size_t columns, std::string layout);
@@ -71,19 +72,20 @@ std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::si
 std::vector<double> parseNumbers(std::string_view text, const std::filesystem::path& file,
                                  std::size_t line);
 
-/// \brief The whole text as one number (surrounding spaces allowed); none when it is not one.
-/// `nan` and `inf` are numbers here.
+/// \brief Parses the whole text as one number (surrounding spaces allowed); nullopt if it is not a
+/// number. `nan` and `inf` are accepted.
 std::optional<double> parseNumber(std::string_view text);
 
 /// \brief The text without spaces, tabs and carriage returns at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// \brief With so many decimals: 1.5 -> "1.500000".
+/// \brief Text with this number of decimals: 1.5 -> "1.500000".
 std::string fixed(double value, int decimals);
-/// \brief With so many significant digits, as short as possible: 0.01 -> "0.01".
+/// \brief Text with at most this number of significant digits, as short as possible: 0.01 ->
+/// "0.01".
 std::string significant(double value, int digits);
 
-/// \brief "FILE:LINE: ", the start of a message.
+/// \brief "FILE:LINE: ", the prefix of a message.
 std::string at(const std::filesystem::path& file, std::size_t line);
 
 }  // namespace polemcl::io

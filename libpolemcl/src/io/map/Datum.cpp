@@ -10,7 +10,7 @@
 namespace polemcl::io {
 namespace {
 
-/// As short as it can be read back to the last bit.
+/// Shortest text that converts back to exactly the same number.
 std::string exact(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};

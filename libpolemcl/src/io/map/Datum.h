@@ -1,6 +1,6 @@
 #pragma once
 /// \file Datum.h
-/// \brief Where on Earth a map lies: what is written in its info under `datum`.
+/// \brief Position of a map on Earth, stored in the map's info under `datum`.
 
 #include <map>
 #include <optional>
@@ -8,28 +8,29 @@
 
 namespace polemcl::io {
 
-/// \brief The origin of a map, on WGS 84, and how it is turned.
+/// \brief Origin of a map on WGS 84, and its rotation.
 struct Datum {
   double latitude = 0;   ///< deg, north positive
   double longitude = 0;  ///< deg, east positive
-  double yawDeg = 0;     ///< the map's x axis, deg counter-clockwise from east
+  double yawDeg = 0;     ///< direction of the map's x axis, deg counter-clockwise from east
 };
 bool operator==(const Datum& a, const Datum& b);
 
-/// \brief Key of a datum in the info of a map.
+/// \brief Key of the datum in the info of a map.
 inline const char* const kDatumKey = "datum";
 
-/// \brief `LAT,LON` or `LAT,LON,YAW_DEG`.
-/// \param where Start of the message. \throws Error unless the numbers are within ±90, ±180, ±360.
+/// \brief Parses `LAT,LON` or `LAT,LON,YAW_DEG`.
+/// \param where Prefix of the error message. \throws Error unless the numbers are within ±90, ±180,
+///        ±360.
 Datum parseDatum(const std::string& text, const std::string& where);
-/// \brief As parseDatum() takes it; the same numbers to the last bit.
+/// \brief Text that parseDatum() converts back to exactly the same numbers.
 std::string datumText(const Datum& datum);
 
-/// \brief The datum in a map's info, if there is one. \throws Error when it is none.
+/// \brief The datum in a map's info; nullopt if absent. \throws Error when it is malformed.
 std::optional<Datum> datumOf(const std::map<std::string, std::string>& info,
                              const std::string& where);
 
-/// \brief Puts a datum into a map's info. \throws Error when another one stands there.
+/// \brief Stores a datum in a map's info. \throws Error when the info holds a different datum.
 void setDatum(std::map<std::string, std::string>& info, const Datum& datum,
               const std::string& where);
 

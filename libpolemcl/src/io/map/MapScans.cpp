@@ -8,7 +8,7 @@
 namespace polemcl::io {
 namespace {
 
-constexpr std::uint64_t scanBytes = 4 * 8 + 4, poleBytes = 10 * 8 + 4;  ///< least of each
+constexpr std::uint64_t scanBytes = 4 * 8 + 4, poleBytes = 10 * 8 + 4;  ///< smallest size of each
 
 void put(ByteWriter& writer, const Pose2D& pose) {
   for (const double value : {pose.x, pose.y, pose.yaw}) writer.put(value);
@@ -44,7 +44,7 @@ std::string deflated(const std::string& bytes) {
   return result;
 }
 
-/// A count of things that take at least so many bytes each.
+/// Reads a count of entries that take at least `bytes` bytes each.
 template <class Count>
 Count countOf(ByteReader& reader, std::uint64_t bytes, const std::string& where) {
   const auto count = reader.get<Count>();
@@ -69,7 +69,7 @@ PoleDetection getPole(ByteReader& reader) {
   return p;
 }
 
-/// \return Whether it is used.
+/// \return Whether the scan is used.
 bool getScan(ByteReader& reader, const std::string& where, SessionScan& scan) {
   scan.time = reader.get<double>();
   scan.pose_map_robot = getPose(reader);

@@ -1,13 +1,16 @@
 #pragma once
 /// \file MapScans.h
-/// \brief What a `.polemap` keeps of the scans it was made from, so that sessions can be added
-/// later.
+/// \brief Storage of the mapping scans in a `.polemap`, so that sessions can be added later.
 ///
-/// Content of the chunk `SCAN`: uint64 size, then so many bytes deflated (zlib): float64 unvisited
-/// (m), uint32 sessions; of each: text name (uint32 length, bytes), uint64 scans; of each: float64
-/// time, x, y, yaw, uint32 used. Of those used (1): float64 x, y, yaw of the sensor in the robot
-/// frame; uint32 detections, of each: float64 x, y, radius, bottom, top, confidence, covariance xx,
-/// xy, yx, yy, uint32 points; uint32 free ranges, float32 each.
+/// Content of the chunk `SCAN`: uint64 size, followed by deflated data (zlib) with that
+/// uncompressed size:
+/// - float64 unvisited (m), uint32 number of sessions
+/// - per session: text name (uint32 length, bytes), uint64 number of scans
+/// - per scan: float64 time, x, y, yaw, uint32 used
+/// - per scan with used = 1: float64 x, y, yaw of the sensor in the robot frame; uint32 number of
+///   detections; uint32 number of visibility ranges after the detections, each float32
+/// - per detection: float64 x, y, radius, bottom, top, confidence, covariance xx, xy, yx, yy,
+///   uint32 points
 
 #include <string>
 #include <string_view>
@@ -16,11 +19,11 @@
 
 namespace polemcl::io {
 
-/// \brief The content of the chunk; same sessions, same bytes.
+/// \brief Packs the content of the chunk; equal sessions give equal bytes.
 std::string packMapScans(const AddedSessions& added);
 
-/// \brief The other way round, to the last bit. \param where Start of the message of errors.
-/// \throws Error when it is damaged.
+/// \brief Inverse of packMapScans(), exact to the last bit. \param where Prefix of error messages.
+/// \throws Error when the content is damaged.
 AddedSessions unpackMapScans(std::string_view content, const std::string& where);
 
 }  // namespace polemcl::io

@@ -24,7 +24,7 @@ std::uint32_t checksum(std::string_view bytes) {
       crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// Why the pole cannot be kept in a map; null when it can.
+/// Why the pole is invalid; null when it is valid.
 const char* fault(const MapPole& pole) {
   for (const double value : {pole.x, pole.y, pole.radius, pole.bottom, pole.top, pole.confidence}) {
     if (!std::isfinite(value)) return "a value is not finite";
@@ -41,7 +41,7 @@ const char* fault(const MapPole& pole) {
   return nullptr;
 }
 
-/// Why the history cannot be; null when it can.
+/// Why the history is invalid; null when it is valid.
 const char* fault(const PoleHistory& history) {
   if (!(history.existence >= 0 && history.existence <= 1)) return "the existence is outside 0 … 1";
   for (const double time : {history.firstSeen, history.lastSeen}) {
@@ -150,7 +150,7 @@ PoleHistory readHistory(ByteReader& record) {
   return history;
 }
 
-/// The records of a chunk. \return Whether they have histories.
+/// Reads the records of a chunk. \return Whether they have histories.
 bool readRecords(ByteReader& chunk, const std::string& where,
                  std::vector<LandmarkRecord>& records) {
   const auto size = chunk.get<std::uint32_t>();
@@ -184,7 +184,7 @@ void readCandidates(ByteReader& chunk, const std::string& where, PoleMapData& da
     throw Error(where + "damaged: its candidates have no histories");
 }
 
-/// The checked payload of a whole file.
+/// The payload of a whole file, after all checks.
 std::string_view checkedPayload(std::string_view bytes, const std::string& where) {
   if (bytes.substr(0, polemapMagic.size()) != polemapMagic) {
     throw Error(where + "no pole map (it does not start like a .polemap file)");

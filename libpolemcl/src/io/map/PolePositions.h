@@ -1,6 +1,6 @@
 #pragma once
 /// \file PolePositions.h
-/// \brief Poles to CSV, and positions of poles from whatever file holds them.
+/// \brief Poles to CSV, and positions of poles from any supported file.
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -11,18 +11,19 @@
 
 namespace polemcl::io {
 
-/// \brief CSV with the header `x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy`: map
-/// frame, m and m². With histories `,existence,seen,missed,first_seen,last_seen` follow, the last
-/// two as dateText(). Written atomically. \param histories One for each pole, or none. \throws
-/// Error when it cannot be written.
+/// \brief Writes CSV with the header `x,y,radius,count,bottom,top,confidence,cov_xx,cov_xy,cov_yy`:
+/// map frame, m and m². With histories `,existence,seen,missed,first_seen,last_seen` follow, the
+/// last two as dateText(). Written atomically.
+/// \param histories One per pole, or empty.
+/// \throws Error when the file cannot be written.
 void writePoleCsv(const std::filesystem::path& file, const std::vector<MapPole>& poles,
                   const std::vector<PoleHistory>& histories = {});
 
-/// \brief Positions of the poles in a file, in its order, map frame, m:
-/// `.polemap`; `.csv` with columns named x and y; `.npz` with the array `poleparams` or
-/// `polemeans`, first two columns. \throws Error naming the file (and line): unknown ending, cannot
-/// be read, no such column or
-///         array, not a number, damaged.
+/// \brief Positions of the poles in a file, in the order of the file, map frame, m. Supported:
+/// `.polemap`; `.csv` with columns named x and y; `.npz` with the array `poleparams` or `polemeans`
+/// (first two columns).
+/// \throws Error with the file (and line): unknown extension, not readable, column or array
+///         missing, not a number, damaged.
 std::vector<Eigen::Vector2d> readPolePositions(const std::filesystem::path& file);
 
 }  // namespace polemcl::io

@@ -19,7 +19,7 @@ MapPole poleAt(double x, double y) {
   return pole;
 }
 
-/// Columns that may be missing, of one row at a time.
+/// Optional columns of one row.
 class Row {
  public:
   Row(const CsvTable& table, std::size_t row) : m_table(table), m_row(row) {}
@@ -75,7 +75,7 @@ PoleHistory readHistoryColumn(const CsvTable& table, std::size_t row) {
   return history;
 }
 
-/// The radii beside the positions, where the file has them.
+/// The radii of the poles, if the file has them.
 std::vector<double> readRadii(const std::filesystem::path& file) {
   const NpzFile npz(file);
   if (npz.contains("poleparams") || !npz.contains("polemeans")) return {};
@@ -96,7 +96,7 @@ std::vector<double> readRadii(const std::filesystem::path& file) {
 PoleMapData readPoleCsv(const std::filesystem::path& file) {
   const CsvTable table(file);
   PoleMapData map;
-  table.column("x");  // refused without a row, too
+  table.column("x");  // missing columns are an error even without rows
   table.column("y");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     map.poles.push_back(readPole(table, row));
