@@ -10,7 +10,7 @@ namespace {
 
 constexpr long double degree = 3.141592653589793238462643383279502884L / 180;
 
-/// Parses all of a text as one number, in no locale but "C"; none for "3x", "1,5", "", "nan".
+/// Parses a whole text as one number in the "C" locale; nullopt for "3x", "1,5", "", "nan".
 template <class Number>
 std::optional<Number> parsed(const std::string& text) {
   const char* begin = text.data();
@@ -24,7 +24,7 @@ std::optional<Number> parsed(const std::string& text) {
   return value;
 }
 
-/// The shortest text that reads back as the same number.
+/// The shortest text that is read back as the same number.
 std::string shortest(double value) {
   char buffer[64];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
@@ -35,8 +35,8 @@ double radians(long double degrees) {
   return static_cast<double>(degrees * degree);
 }
 
-/// The shortest text in degrees that reads back as the same radians. Long double, because not
-/// every double of radians is the image of a double of degrees.
+/// The shortest text in degrees that is read back as the same radians. Long double, because some
+/// doubles in radians have no double in degrees that converts to them.
 std::string shortestDegrees(double angle) {
   if (!std::isfinite(angle)) return "nan";
   char buffer[64];
@@ -134,7 +134,7 @@ void Binder::choice(const std::string& key, std::string& field,
   std::string list;
   for (const auto& word : allowed) list += (list.empty() ? "" : " | ") + word;
   const Key known{key, "", list, comment};
-  // The default too: a struct must not start with a word that its own file would be refused for.
+  // The default is checked too: its own file would otherwise be rejected on reading.
   const std::string value = exchange(known, field).value_or(field);
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
     refuse(known, value, "one of");
@@ -200,7 +200,7 @@ void Binder::refuse(const Key& key, const std::string& value, const std::string&
 }
 
 void Binder::refuseStruct(const std::string& what) const {
-  const bool named = !what.empty() && what.front() == '[';  // names its section itself
+  const bool named = !what.empty() && what.front() == '[';  // already names its section
   throw Error(place() + (named ? "" : "[" + m_section + "] ") + what);
 }
 

@@ -17,7 +17,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Cuts a comment off: `#`, `;` or `//` at the start or after a blank.
+/// Removes a comment: `#`, `;` or `//` at the start or after a blank.
 std::string withoutComment(const std::string& line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (i > 0 && line[i - 1] != ' ' && line[i - 1] != '\t') continue;
@@ -33,7 +33,7 @@ std::string joined(const std::set<std::string>& words) {
   return text;
 }
 
-/// Reads the lines MRPT's parser would be given, refusing those it would pass over in silence.
+/// Checks the lines before MRPT's parser gets them; rejects those that it would ignore silently.
 class Lint {
  public:
   explicit Lint(std::string name) : m_name(std::move(name)) {}
@@ -155,7 +155,7 @@ void ConfigReader::finish() const {
   for (const auto& section : sections) {
     const auto known = m_known.find(lower(section));
     if (known == m_known.end()) {
-      if (!m_fixedSection.empty()) continue;  // the others belong to others
+      if (!m_fixedSection.empty()) continue;  // the other sections belong to others
       throw Error(place() + "section [" + section +
                   "] is not known; known are: " + joined(knownSections));
     }

@@ -1,12 +1,11 @@
 #pragma once
 /// \file Config.h
-/// \brief Strict INI files, both ways: one function per option struct serves loading and saving.
+/// \brief Strict INI files: one function per option struct serves both reading and writing.
 ///
-/// Grammar: that of MRPT's `CConfigFileMemory` (`[section]`, `key = value`, `@define`, `$env{}`),
-/// names without regard to case. `#`, `;` and `//` start a comment at the start of a line or after
-/// a blank. What MRPT passes over in silence is an Error here: unknown sections and keys, keys
-/// given twice, sections given twice, lines that are none of these, values of the wrong type or out
-/// of range.
+/// Grammar: as in MRPT's `CConfigFileMemory` (`[section]`, `key = value`, `@define`, `$env{}`);
+/// names are not case sensitive. `#`, `;` and `//` start a comment at the start of a line or after
+/// a blank. Cases that MRPT ignores silently are an Error here: unknown sections and keys, repeated
+/// keys and sections, other lines, values of the wrong type or out of range.
 
 #include <mrpt/config/CConfigFileBase.h>
 
@@ -41,13 +40,13 @@ struct Range {
   std::string text() const;  ///< e.g. "> 0", "0 to 1", "any number"
 };
 
-/// \brief What a `bind` function talks to: names every field of an option struct once. Reading
-/// fills fields whose key is present and leaves the others at their defaults; writing writes all of
-/// them.
+/// \brief Interface for `bind` functions, which name every field of an option struct once. A reader
+/// sets the fields whose keys are present and leaves the others at their defaults. A writer writes
+/// all fields.
 class Binder {
  public:
   virtual ~Binder() = default;
-  /// \brief The keys that follow belong to `[name]`. A section may be opened again later.
+  /// \brief The following keys belong to `[name]`. A section may be opened again later.
   void section(const std::string& name, const std::string& comment);
 
   void number(const std::string& key, double& field, const Range& allowed, const std::string& unit,
@@ -60,7 +59,7 @@ class Binder {
   void angleDeg(const std::string& key, double& field, const Range& allowed,
                 const std::string& comment);
   void flag(const std::string& key, bool& field, const std::string& comment);
-  /// \brief One of some words.
+  /// \brief One of the allowed words.
   void choice(const std::string& key, std::string& field, const std::vector<std::string>& allowed,
               const std::string& comment);
   template <class Enum>
@@ -68,26 +67,27 @@ class Binder {
               const std::vector<std::pair<Enum, std::string>>& allowed, const std::string& comment);
   /// \brief Free text on one line, may be empty.
   void text(const std::string& key, std::string& field, const std::string& comment);
-  /// \brief Numbers separated by blanks; none at all is allowed.
+  /// \brief Numbers separated by blanks; the list may be empty.
   void numbers(const std::string& key, std::vector<double>& field, const Range& allowed,
                const std::string& unit, const std::string& comment);
-  /// \brief As many numbers as there are fields.
+  /// \brief As many numbers as fields.
   void numbers(const std::string& key, std::initializer_list<double*> fields, const Range& allowed,
                const std::string& unit, const std::string& comment);
   /// \brief Degrees in the file, radians in the field. \param allowed In degrees.
   void anglesDeg(const std::string& key, std::vector<double>& field, const Range& allowed,
                  const std::string& comment);
-  /// \brief Last line of a `bind` function: `options.validate()`, an Error names file and section.
+  /// \brief Last line of a `bind` function: calls `options.validate()`. An Error gets file and
+  /// section.
   template <class Options>
   void check(const Options& options);
 
  protected:
-  /// \brief What is known of a key besides its value.
+  /// \brief Description of a key, without its value.
   struct Key {
     std::string name, unit, allowed, comment;
   };
   virtual void openSection(const std::string& comment) = 0;
-  /// \brief Hands over the current value; returns the text to put in its place, if any.
+  /// \brief Passes the current value; returns the text that replaces it, if any.
   virtual std::optional<std::string> exchange(const Key& key, const std::string& current) = 0;
   virtual std::string place() const = 0;  ///< "file: " for messages
 
@@ -100,19 +100,18 @@ class Binder {
   [[noreturn]] void refuseStruct(const std::string& what) const;
 };
 
-/// \brief An INI file in memory, checked for what MRPT's parser passes over in silence.
+/// \brief An INI file in memory, checked for errors that MRPT's parser ignores silently.
 class ConfigFile {
  public:
-  /// \throws Error when the file cannot be read, or a line is no section, key or comment, or a
+  /// \throws Error when the file cannot be read, a line is not a section, key or comment, or a
   ///         section or key is given twice (the message names both lines).
   static ConfigFile read(const std::string& path);
-  /// \param name Stands for the file in messages.
+  /// \param name Name of the file in messages.
   static ConfigFile fromText(const std::string& text, const std::string& name);
 
-  /// \brief Puts a value in place of the file's, or adds it. \param assignment
-  /// `section.key=value`, the key without a dot.
-  /// \throws Error when it is not of that form; whether section and key are known, and the value is
-  ///         allowed, is found out when the file is bound.
+  /// \brief Replaces or adds a value. \param assignment `section.key=value`, the key without a dot.
+  /// \throws Error when it does not have that form. Section, key and value are checked later, when
+  ///         the file is bound.
   void set(const std::string& assignment);
 
   const std::string& name() const { return m_name; }
@@ -125,7 +124,7 @@ class ConfigFile {
   std::shared_ptr<mrpt::config::CConfigFileBase> m_source;
 };
 
-/// \brief Fills option structs. Bind every struct a program family knows, then call finish():
+/// \brief Fills option structs. Bind every struct that the programs know, then call finish():
 /// \code
 ///   ConfigReader reader(ConfigFile::read(path));
 ///   bind(reader, settings.sensor);
@@ -135,13 +134,13 @@ class ConfigFile {
 class ConfigReader : public Binder {
  public:
   explicit ConfigReader(const ConfigFile& file);
-  /// \brief Reads one section of a source that others own (a map definition of MRPT): section names
-  /// of the bind functions are ignored, all keys are looked for in `fixedSection`.
+  /// \brief Reads one section of a source that belongs to others (a map definition of MRPT).
+  /// Section names of the bind functions are ignored; all keys are searched in `fixedSection`.
   ConfigReader(const mrpt::config::CConfigFileBase& source, const std::string& name,
                const std::string& fixedSection);
-  /// \brief Keys of the open section that are known, but bound by others.
+  /// \brief Known keys of the open section that other code reads.
   void knownElsewhere(std::initializer_list<std::string> keys);
-  /// \throws Error on a section or key that nothing was bound to, naming what is known.
+  /// \throws Error on a section or key that was not bound, with the known ones.
   void finish() const;
 
  protected:
@@ -153,16 +152,16 @@ class ConfigReader : public Binder {
   std::shared_ptr<const mrpt::config::CConfigFileBase> m_owned;
   const mrpt::config::CConfigFileBase* m_source;
   std::string m_name;
-  std::string m_fixedSection;                            ///< empty: sections as bound
+  std::string m_fixedSection;  ///< empty: sections as in the bind functions
   std::map<std::string, std::set<std::string>> m_known;  ///< lower case: section -> keys
 };
 
-/// \brief Writes option structs, every key with unit, allowed values and meaning. What it writes
-/// reads back as the same struct, bit for bit.
+/// \brief Writes option structs, every key with unit, allowed values and meaning. The text is read
+/// back as the same struct, bit for bit.
 class ConfigWriter : public Binder {
  public:
   std::string text() const;
-  /// \brief Writes the file in one piece. \throws Error when it cannot be written.
+  /// \brief Writes the file atomically. \throws Error when it cannot be written.
   void save(const std::string& path) const;
 
  protected:
@@ -181,7 +180,7 @@ class ConfigWriter : public Binder {
 template <class Int>
 void Binder::integer(const std::string& key, Int& field, const Range& allowed,
                      const std::string& unit, const std::string& comment) {
-  Range fits = allowed;  // never more than the field can hold
+  Range fits = allowed;  // limited to the field's type
   const auto least = static_cast<double>(std::numeric_limits<Int>::lowest());
   const auto most = static_cast<double>(std::numeric_limits<Int>::max());
   if (fits.min < least) fits.min = least;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file MapUpdateBindings.h
-/// \brief INI keys of the upkeep of maps.
+/// \brief INI keys of map updates.
 
 #include "config/Config.h"
 #include "core/mapping/MapUpdater.h"
