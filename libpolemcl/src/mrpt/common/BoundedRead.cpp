@@ -18,7 +18,7 @@ void requireAtMost(std::uint32_t count, std::uint32_t most, const char* what) {
                 " are allowed, the file is damaged");
 }
 
-/// Appends so many elements, block by block.
+/// Appends `count` elements, block by block.
 template <class Container>
 void append(CArchive& in, std::size_t count, const char* what, Container& to) {
   using Element = typename Container::value_type;
@@ -26,7 +26,7 @@ void append(CArchive& in, std::size_t count, const char* what, Container& to) {
     const std::size_t block = std::min(count, blockBytes / sizeof(Element));
     const std::size_t begin = to.size();
     to.resize(begin + block);
-    // Some streams of MRPT hand out less than was asked for at their end.
+    // Some MRPT streams return less than requested at their end.
     if (in.ReadBufferFixEndianness(&to[begin], block) != block * sizeof(Element))
       throw Error(std::string("the data ends inside its ") + what);
     count -= block;

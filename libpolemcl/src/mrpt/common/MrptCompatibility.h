@@ -1,7 +1,8 @@
 #pragma once
 /// \file MrptCompatibility.h
-/// \brief Where the versions of MRPT differ. `MRPT_VERSION` is 0x258 in 2.5.8 and 0x020A02 from
-/// 2.10.2 on: it still grows, but digits must not be compared one by one.
+/// \brief Differences between versions of MRPT. `MRPT_VERSION` is 0x258 in 2.5.8 and 0x020A02 from
+/// 2.10.2 on. The number still grows with the version, but its digits cannot be compared one by
+/// one.
 
 #include <mrpt/maps/CMetricMap.h>
 #include <mrpt/version.h>
@@ -11,7 +12,7 @@ namespace polemcl {
 #if MRPT_VERSION >= 0x020B03
 using CreatedMap = mrpt::maps::CMetricMap::Ptr;
 #else
-/// \brief What `internal_CreateFromMapDefinition` returns: a pointer the caller owns.
+/// \brief Return type of `internal_CreateFromMapDefinition`: a pointer owned by the caller.
 using CreatedMap = mrpt::maps::CMetricMap*;
 #endif
 

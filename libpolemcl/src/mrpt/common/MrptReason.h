@@ -5,8 +5,8 @@
 
 namespace polemcl {
 
-/// \brief The innermost reason in the message of an exception of MRPT, on one line: without nested
-/// contexts and call stacks. Other messages give their first line.
+/// \brief The innermost reason in the message of an MRPT exception, on one line, without nested
+/// contexts and call stacks. Other messages are reduced to their first line.
 std::string mrptReason(const std::string& what);
 
 }  // namespace polemcl

@@ -15,11 +15,11 @@ namespace {
 
 using namespace scene;
 
-constexpr double highest = 6;         ///< of what has to be seen, m
-constexpr double halfHeight = 0.268;  ///< tangent of half of the angle that MRPT's cameras see
-constexpr double aspect = 1.35;       ///< of a viewer's window, if it is a slim one
+constexpr double highest = 6;         ///< height that must be visible, m
+constexpr double halfHeight = 0.268;  ///< tangent of half the opening angle of MRPT's cameras
+constexpr double aspect = 1.35;       ///< of a rather narrow viewer window
 
-/// A camera, as MRPT has them: it stands at `distance` from its target.
+/// A camera in MRPT's convention, at `distance` from its target.
 struct View {
   double azimuth = -90 * degree, elevation = 55 * degree;
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
@@ -32,14 +32,14 @@ struct View {
   Eigen::Vector3d up() const { return back().cross(right()); }
 };
 
-/// From the south; streets from one end, where more of them is near.
+/// View from the south; streets from one end, so that more of the street is near the camera.
 View directionFor(const Path& places) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const auto& place : places) mean += place / static_cast<double>(places.size());
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const auto& place : places) scatter += (place - mean) * (place - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter);
-  constexpr double slim = 16;  // ratio of the scatter along the axes
+  constexpr double slim = 16;  // ratio of the eigenvalues
   View view;
   if (axes.eigenvalues()[1] <= slim * axes.eigenvalues()[0]) return view;
   Eigen::Vector2d axis = axes.eigenvectors().col(1);
@@ -49,12 +49,12 @@ View directionFor(const Path& places) {
   return view;
 }
 
-/// As near as it sees all places, on the ground and above it.
+/// Moves the camera as near as possible while all places are visible, on the ground and above it.
 void fit(View& view, const Path& places) {
-  constexpr double share = 0.92, nearest = 40;  // of the window that is used; m
+  constexpr double share = 0.92, nearest = 40;  // used share of the window; m
   const double vertical = share * halfHeight, horizontal = aspect * vertical;
   const Eigen::Vector3d back = view.back(), right = view.right(), up = view.up();
-  // A place is seen if |right| <= horizontal * (distance - back), and so for up.
+  // A place is visible if |right| <= horizontal * (distance - back); similarly for up.
   double r[2] = {-HUGE_VAL, -HUGE_VAL}, u[2] = {-HUGE_VAL, -HUGE_VAL};
   for (const auto& place : places)
     for (double z : {0.0, highest}) {
@@ -68,15 +68,15 @@ void fit(View& view, const Path& places) {
   const double away = std::max((r[0] + r[1]) / (2 * horizontal), (u[0] + u[1]) / (2 * vertical));
   view.target = (r[0] - r[1]) / 2 * right + (u[0] - u[1]) / 2 * up;
   view.distance = std::max(away, nearest);
-  // Onto the ground, which viewers then turn about; the camera stays where it is.
+  // Move the target onto the ground, because viewers rotate about it; the camera stays in place.
   const double slide = view.target.z() / back.z();
   view.target -= slide * back;
   view.distance += slide;
 }
 
-/// Where the legend hides least.
+/// The corner where the legend hides the fewest places.
 Corner emptiest(const View& view, const Path& places) {
-  constexpr double width = 0.65, height = 0.6;  // of the legend; the window's are 2
+  constexpr double width = 0.65, height = 0.6;  // of the legend; the window has 2 by 2
   const auto hidden = [&](const Corner& corner) {
     return std::count_if(places.begin(), places.end(), [&](const Eigen::Vector2d& place) {
       const Eigen::Vector3d p = Eigen::Vector3d(place.x(), place.y(), 0) - view.target;
@@ -90,7 +90,7 @@ Corner emptiest(const View& view, const Path& places) {
                            [&](const Corner& a, const Corner& b) { return hidden(a) < hidden(b); });
 }
 
-/// Parts without gaps, thinned: a drive has more poses than a ribbon needs corners.
+/// Splits a path at gaps and thins it: a drive has more poses than a ribbon needs corners.
 std::vector<Path> partsOf(const Path& path, double spacing) {
   constexpr double gap = 50;  // m
   std::vector<Path> parts;
@@ -142,7 +142,7 @@ void OverviewScene::addPoles(const std::string& name, const std::vector<MapPole>
 
 void OverviewScene::addRibbons(const std::string& name, const std::vector<Path>& paths_map,
                                const Ribbon& ribbon) {
-  // Apart by what viewers resolve: grid, truth, estimate.
+  // Heights that viewers can resolve: grid, truth and estimate lie above each other.
   const double height = std::max(0.03, m_extent / 5000) * (ribbon.bothSides ? 1 : 2);
   const double width = ribbon.width > 0 ? ribbon.width : std::max(1.0, m_extent / 500);
   auto triangles = mrpt::opengl::CSetOfTriangles::Create();

@@ -39,7 +39,7 @@ struct CountClass {
   const char* text;
 };
 constexpr std::size_t countClasses = 6;
-/// Light to dark, and none of it the blue or the grey of the paths.
+/// From light to dark, without the blue and the grey of the paths.
 const CountClass& classOf(std::uint32_t count) {
   static const CountClass classes[countClasses] = {
       {100, {0x46, 0x03, 0x9f}, "100 or more"}, {30, {0x9c, 0x17, 0x9e}, "30 to 99"},
@@ -49,7 +49,7 @@ const CountClass& classOf(std::uint32_t count) {
                        [&](const CountClass& c) { return count >= c.least; });
 }
 
-/// MRPT's letters are those of ASCII: one `?` for each other character of UTF-8.
+/// MRPT's fonts are ASCII only: replaces each other UTF-8 character by one `?`.
 std::string asciiOf(const std::string& text) {
   std::string ascii;
   for (unsigned char c : text)
@@ -176,7 +176,7 @@ std::vector<LegendLine> countLegend(const std::vector<MapPole>& poles) {
 void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, double scale,
                 Corner corner) {
   constexpr double margin = 10, spacing = 6, mark = 10, indent = 18;  // pixels
-  constexpr double letter = 0.82;                                     // its width by its size
+  constexpr double letter = 0.82;  // width of a letter relative to its size
   double height = 2 * margin - spacing, width = 0;
   for (const LegendLine& line : lines) {
     height += line.size + spacing;
@@ -184,7 +184,7 @@ void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, doubl
                                 (line.mark ? indent : 0));
   }
   width += 2 * margin;
-  const auto place = [&](bool far, double length) {  // MRPT counts negative ones from the far side
+  const auto place = [&](bool far, double length) {  // MRPT: negative counts from far side
     constexpr double off = 10;
     return far ? -(off + length) * scale : off * scale;
   };
@@ -198,7 +198,7 @@ void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, doubl
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const LegendLine& line = lines[i];
     y -= line.size;
-    // Without projection a viewport reaches from -1 to 1.
+    // Without projection, a viewport reaches from -1 to 1.
     if (line.mark)
       marks.push_back(
           {{2 * (margin + mark / 2) / width - 1, 2 * (y + line.size / 2) / height - 1, 0},
@@ -215,7 +215,7 @@ void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, doubl
 }
 
 void save(const COpenGLScene& scene, const std::filesystem::path& file) {
-  // Through memory: MRPT's file streams do not tell when the disk is full.
+  // Written to memory first: MRPT's file streams do not report a full disk.
   mrpt::io::CMemoryStream bytes;
   mrpt::serialization::archiveFrom(bytes) << scene;
   io::AtomicFile output(file);

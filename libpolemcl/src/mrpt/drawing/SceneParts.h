@@ -1,9 +1,9 @@
 #pragma once
 /// \file SceneParts.h
-/// \brief What all scenes are made of: ground, poles, ribbons, dots, a legend. Stock MRPT objects
-/// only, so that viewers need no plugin.
+/// \brief Parts of all scenes: ground, poles, ribbons, dots, a legend. Only stock MRPT objects are
+/// used, so that viewers need no plugin.
 ///
-/// Coordinates are those of the scene, m, ground at z = 0, unless said otherwise.
+/// Unless stated otherwise, coordinates are those of the scene, m, with the ground at z = 0.
 
 #include <mrpt/opengl/CGridPlaneXY.h>
 #include <mrpt/opengl/COpenGLScene.h>
@@ -22,32 +22,33 @@
 namespace polemcl::scene {
 
 using mrpt::img::TColor;
-using Path = std::vector<Eigen::Vector2d>;  ///< places in order, m
+using Path = std::vector<Eigen::Vector2d>;  ///< positions in order, m
 
-/// Told apart by lightness too, for those who do not see all colours.
+/// The colours also differ in lightness, for colour-blind readers.
 inline const TColor textColor(0x20, 0x26, 0x2e), groundColor(0xb4, 0xba, 0xc2),
     truthColor(0x40, 0x48, 0x54), estimateColor(0x00, 0x72, 0xb2);
 
-/// \brief OpenGL has single precision only: at UTM coordinates nothing would be drawn. Scenes more
-/// than 10 km off the map's origin get an origin of their own at whole kilometres, else (0, 0).
+/// \brief Origin of a scene. OpenGL has single precision only, which is too coarse for UTM
+/// coordinates. Scenes more than 10 km from the map's origin get an origin at whole kilometres;
+/// others get (0, 0).
 Eigen::Vector2d originFor(const Eigen::AlignedBox2d& box_map);
-/// \brief Names that origin, for legends. Empty for (0, 0).
+/// \brief Text with that origin, for legends. Empty for (0, 0).
 std::string originText(const Eigen::Vector2d& origin_map);
 
-/// \brief White, and light from all sides: colours are those of the legend.
+/// \brief White background, light from all sides: colours look as in the legend.
 void prepare(mrpt::opengl::COpenGLViewport& viewport);
-/// \brief Takes the place of the object of that name; null: the object goes.
+/// \brief Replaces the object with this name; a null object removes it.
 void put(mrpt::opengl::COpenGLViewport& viewport, const std::string& name,
          const mrpt::opengl::CRenderizable::Ptr& object);
-/// \brief A viewport over the main one with a border; made when it is first asked for.
+/// \brief A viewport with a border over the main one; created on first use.
 mrpt::opengl::COpenGLViewport& panelOf(mrpt::opengl::COpenGLScene& scene, const std::string& name,
                                        double border);
 
-/// \brief A grid at multiples of `step` that covers the box.
+/// \brief A grid that covers the box, with lines at multiples of `step`.
 mrpt::opengl::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step);
 
-/// \brief Inserts an upright cylinder. \param bottom,top Heights above z = 0, m.
-/// Poles with a radius under 5 cm get that radius: thinner ones cannot be seen.
+/// \brief Inserts a vertical cylinder. \param bottom,top Heights above z = 0, m.
+/// Radii below 5 cm are drawn as 5 cm, because thinner poles are not visible.
 void drawPole(mrpt::opengl::CSetOfObjects& objects, double x, double y, double radius,
               double bottom, double top, const TColor& color, const std::string& name = "");
 
@@ -55,34 +56,34 @@ struct Dot {
   Eigen::Vector3d place;
   TColor color;
 };
-/// \brief Squares of so many pixels, however far the camera is: poles seen from afar.
+/// \brief Squares of constant size in pixels at any distance: poles seen from far away.
 mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<Dot>& dots, double pixels);
 
 /// \brief One triangle of one colour.
 void insertFace(mrpt::opengl::CSetOfTriangles& triangles, const Eigen::Vector3d& a,
                 const Eigen::Vector3d& b, const Eigen::Vector3d& c, const TColor& color);
-/// \brief A flat band along the path, its edges joined at the bends (software renderers draw lines
-/// of a pixel only). \param left Its middle lies so far to the left of the path, m.
+/// \brief A flat band along the path with joined edges at the bends (software renderers draw lines
+/// only one pixel wide). \param left Offset of the band to the left of the path, m.
 void insertRibbon(mrpt::opengl::CSetOfTriangles& triangles, const Path& path, double height,
                   double width, const TColor& color, double left = 0);
 
-/// \brief Colour of a map pole by the number of its detections: 1, 3, 10, 30, 100 or more.
+/// \brief Colour of a map pole by its number of detections, in classes from 1, 3, 10, 30 and 100.
 TColor colorOfCount(std::uint32_t count);
 
-/// \brief A line of the legend; `mark`: the colour of a square before the text.
+/// \brief A line of the legend. `mark` is the colour of a square before the text.
 struct LegendLine {
   std::string text;
   std::optional<TColor> mark = std::nullopt;
-  double size = 12;  ///< of the letters, pixels
+  double size = 12;  ///< height of the letters, pixels
   TColor color = textColor;
 };
-/// \brief The colours of those counts that occur, a line each with the number of poles.
+/// \brief One line per colour that occurs, with its number of poles.
 std::vector<LegendLine> countLegend(const std::vector<MapPole>& poles);
 struct Corner {
   bool right = false, top = false;
 };
-/// \brief Panel `text` in a corner, lines from top to bottom.
-/// \param scale Letters and marks are so many times larger.
+/// \brief Panel `text` in a corner, with the lines from top to bottom.
+/// \param scale Factor on the size of letters and marks.
 void showLegend(mrpt::opengl::COpenGLScene& scene, const std::vector<LegendLine>& lines,
                 double scale = 1, Corner corner = {});
 

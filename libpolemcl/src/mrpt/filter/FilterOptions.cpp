@@ -46,7 +46,7 @@ void StartOptions::validate() const {
 
 void RunOptions::validate() const {
   require(runs >= 1 && runs <= 10000, "runs must be 1 to 10000");
-  // Seeds that wrap round would repeat runs of a neighbouring seed.
+  // Seeds that overflow would repeat the runs of a neighbouring seed.
   require(seed <= UINT32_MAX - static_cast<std::uint32_t>(runs),
           "seed plus runs must stay below 4294967296");
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file FilterOptions.h
-/// \brief The settings of the particle filter and of its start, with units, defaults and sources.
+/// \brief Settings of the particle filter and of its start, with units, defaults and sources.
 
 #include <cstdint>
 #include <optional>
@@ -13,11 +13,11 @@ namespace polemcl {
 
 enum class Resampling { systematic, stratified, multinomial };
 enum class PoseEstimator { mean, bestShare };
-/// \brief When the estimate of a scan is taken.
+/// \brief Time at which the estimate of a scan is computed.
 enum class EstimateTime {
   beforeResampling,
-  /// Where the scan led to resampling, of equally weighted copies: the best by weight are then an
-  /// arbitrary share of them (first implementation).
+  /// After resampling, if the scan led to it. All weights are then equal, so `best_share` takes an
+  /// arbitrary part of the particles (first implementation).
   afterResampling
 };
 
@@ -58,10 +58,10 @@ struct FilterOptions {
   void validate() const;                       ///< \throws Error
 };
 
-/// \brief How positions are drawn in the disc of the start.
+/// \brief Distribution of the start positions in the disc.
 enum class StartPositions {
-  area,   ///< uniform in its area
-  radius  ///< distance from its centre uniform, so crowded there (first implementation)
+  area,   ///< uniform over the area
+  radius  ///< uniform in distance from the centre, so denser there (first implementation)
 };
 
 /// \brief Where the filter starts. `[start]` in INI files.

@@ -22,7 +22,7 @@ const LocalizationOptions& checked(const LocalizationOptions& options) {
   return options;
 }
 
-/// A search's place as the filter takes it.
+/// Converts a result of the search to a hypothesis of the filter.
 PoseHypothesis toFilter(const GlobalHypothesis& place) {
   return {{place.pose_map_robot, place.covariance}, place.weight};
 }
@@ -163,12 +163,12 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
   if (tracking.cadence == Cadence::section) return m_localMaps.add(motion, poles_robot);
   if (!tracking.average) return poles_robot;
   m_tracks.add(motion, covariance, poles_robot);
-  // At the start every scan counts: there is nothing to average yet.
+  // The first scan is used as it is: there is nothing to average yet.
   if (m_tracks.frames() == 1) return poles_robot;
   return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), tracking.every);
 }
 
-/// The frame, its motion replaced where the poles contradict it.
+/// The frame; its motion is replaced if the poles contradict the odometry.
 PoleFrame LocalizationPipeline::checkedMotion(const PoleFrame& frame, LocalizationUpdate& update) {
   const io::PlanarMotion odometry = m_stepped ? *frame.motion : io::PlanarMotion();
   const MonitoredMotion checked =
@@ -205,7 +205,7 @@ void LocalizationPipeline::track(const PoleFrame& frame, double metres,
   m_monitor.update(input);
 }
 
-/// After a jump the submap holds poles from before it, which fit the old place.
+/// After a jump, the submap still holds poles from before it, which match the old place only.
 void LocalizationPipeline::doubtSubmap() {
   const bool mismatch = m_hasPose && m_monitor.health().reason == HealthReason::mismatch;
   if (mismatch && !m_mistrusted) {
@@ -238,7 +238,7 @@ void LocalizationPipeline::search(const PoleFrame& frame, LocalizationUpdate& up
   const bool resolved = m_search.verdict == GlobalVerdict::resolved;
   const bool here = resolved && m_hasPose && agrees(m_search.hypotheses[0]);
   if (!resolved) {
-    // The filter keeps several places already, or a few metres more may tell.
+    // The filter already covers several places, or a few more metres may resolve the ambiguity.
     if (m_hasPose && m_monitor.health().state != HealthState::lost) return;
     if (m_submap.driven() < m_options.search.patience) return;
   } else if (here && !fitsBetter(m_search.hypotheses[0], frame)) {
@@ -256,7 +256,7 @@ bool LocalizationPipeline::agrees(const GlobalHypothesis& place) const {
          std::abs(wrapAngle(found.yaw - estimate.yaw)) <= sameRadians;
 }
 
-/// A filter that has settled beside the truth, on poles that happened to fit, is too sure to leave.
+/// A filter that converged to a wrong pose on matching poles is too certain to leave it by itself.
 bool LocalizationPipeline::fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const {
   const auto sum = [](const std::vector<PoleMatch>& matches) {
     double matched = 0;

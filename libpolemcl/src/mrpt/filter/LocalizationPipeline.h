@@ -1,7 +1,7 @@
 #pragma once
 /// \file LocalizationPipeline.h
-/// \brief The whole chain behind one call per scan: particle filter, submap of the last metres,
-/// global search, health, and a check of the odometry by the poles.
+/// \brief The complete localization behind one call per scan: particle filter, submap of the last
+/// metres, global search, health, and fault detection for the odometry.
 
 #include <memory>
 #include <optional>
@@ -29,10 +29,11 @@ struct SearchOptions {
   void validate() const;  ///< \throws Error naming the field
 };
 
-/// \brief When the filter gets detections.
+/// \brief When the filter receives detections.
 enum class Cadence {
   scan,    ///< at every scan
-  section  ///< at the end of each section, those of its middle scan (first implementation)
+  section  ///< at the end of each section, with the detections of its middle scan (first
+           ///< implementation)
 };
 
 /// \brief What of the detections the filter is given. `[tracking]` in INI files.
@@ -47,7 +48,7 @@ struct TrackingOptions {
   void validate() const;            ///< \throws Error naming the field
 };
 
-/// \brief All settings of the chain.
+/// \brief All settings of the pipeline.
 struct LocalizationOptions {
   FilterOptions filter;
   TrackingOptions tracking;
@@ -59,19 +60,19 @@ struct LocalizationOptions {
   void validate() const;  ///< \throws Error
 };
 
-/// \brief What is known after one scan.
+/// \brief Result of one scan.
 struct LocalizationUpdate {
-  double time = 0;                             ///< s, of the scan
-  std::optional<PoseWithCovariance> estimate;  ///< map frame; none while no pose is known
+  double time = 0;                             ///< time of the scan, s
+  std::optional<PoseWithCovariance> estimate;  ///< map frame; nullopt while the pose is unknown
   Health health;
-  std::size_t poles = 0;  ///< observed in the scan
-  /// Of the filter, all zero without a pose; its `poles` are those it was given.
+  std::size_t poles = 0;  ///< poles observed in the scan
+  /// Report of the filter, all zero without a pose. Its `poles` are those given to the filter.
   StepReport step;
-  bool relocalized = false;  ///< the global search put the filter here in this step
-  OdometryVerdict motion = OdometryVerdict::unknown;  ///< of the poles about the odometry
+  bool relocalized = false;  ///< the global search moved the filter to this pose in this step
+  OdometryVerdict motion = OdometryVerdict::unknown;  ///< verdict of the odometry monitor
 };
 
-/// \brief The map as the chain needs it, prepared once and shared by many runs.
+/// \brief The map with the data for the global search, prepared once and shared by many runs.
 struct LocalizationMap {
   /// \throws Error on a map without poles, or options out of range.
   LocalizationMap(std::shared_ptr<const CPoleMap> poleMap, const GlobalOptions& options);
@@ -79,38 +80,40 @@ struct LocalizationMap {
   std::shared_ptr<const GlobalLocalizer> search;
 };
 
-/// \brief Localizes one drive. Deterministic by its seed; objects may run in parallel on one map.
+/// \brief Localizes one drive. Results depend only on input and seed. Several objects may run in
+/// parallel on one map.
 class LocalizationPipeline {
  public:
   /// \throws Error on options out of range.
   LocalizationPipeline(LocalizationMap map, const LocalizationOptions& options, std::uint32_t seed);
 
-  /// \brief Starts round a pose. \throws Error as PoleParticleFilter::start(), and when the disc
-  /// lies farther than `maxStartDistance` from every pole of the map.
+  /// \brief Starts around a pose. \throws Error as PoleParticleFilter::start(). Also when the disc
+  /// is farther than `maxStartDistance` from every pole of the map.
   void start(const StartOptions& start);
-  /// \brief Starts without any idea of the pose: the global search finds it on the way.
+  /// \brief Starts without a pose: the global search finds it during the drive.
   void initializeGlobally();
 
-  /// \brief One scan more. Of the first frame the motion is not used.
-  /// \throws Error as PoleParticleFilter::step(); nothing has changed then.
+  /// \brief Processes the next scan. The motion of the first frame is ignored.
+  /// \throws Error as PoleParticleFilter::step(); the state is then unchanged.
   LocalizationUpdate step(const PoleFrame& frame);
 
   static constexpr double maxStartDistance = 1000;  ///< m
-  /// A search's answer this near to the estimate is the same place, m and rad.
+  /// A search result within these limits of the estimate counts as the same pose, m and rad.
   static constexpr double sameMetres = 0.5, sameRadians = 0.035;
-  /// There, it is taken all the same if so many poles of the scan more stand on the map.
+  /// Re-initialize at the same pose anyway if the new pose matches at least this many more poles.
   static constexpr double betterPoles = 2;
-  /// Particles whose standard deviation is above may be in several places, m and rad.
+  /// Above these standard deviations the particles may cover several places, m and rad.
   static constexpr double wideMetres = 0.3, wideRadians = 0.1;
 
-  /// \name For those who draw it
+  /// \name For drawing
   /// @{
   bool hasPose() const { return m_hasPose; }
   const PoleParticleFilter& filter() const { return m_filter; }  ///< particles only with a pose
   const LocalSubmap& submap() const { return m_submap; }
-  const GlobalResult& lastSearch() const { return m_search; }  ///< empty before the first
-  std::size_t searches() const { return m_searches; }          ///< since the start
-  /// \brief Of the last frame's poles at the estimate, in their order; empty without a pose.
+  const GlobalResult& lastSearch() const { return m_search; }  ///< empty before the first search
+  std::size_t searches() const { return m_searches; }  ///< number of searches since the start
+  /// \brief Associations of the last frame's poles at the estimate, in the order of the frame;
+  /// empty without a pose.
   const std::vector<PoleMatch>& matches() const { return m_matches; }
   const LocalizationMap& map() const { return m_map; }
   /// @}
@@ -132,21 +135,21 @@ class LocalizationPipeline {
   LocalizationMap m_map;
   LocalizationOptions m_options;
   PoleParticleFilter m_filter;
-  LocalSubmap m_submap;   ///< for the search
+  LocalSubmap m_submap;   ///< for the global search
   LocalSubmap m_tracks;   ///< for the filter
-  LocalMaps m_localMaps;  ///< for the filter, of Cadence::section
+  LocalMaps m_localMaps;  ///< for the filter with Cadence::section
   OdometryMonitor m_odometryMonitor;
   HealthMonitor m_monitor;
-  PoleFrame m_tracked;  ///< this frame as the filter gets it
+  PoleFrame m_tracked;  ///< the last frame with the poles given to the filter
   GlobalResult m_search;
   std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;
   bool m_hasPose = false, m_started = false, m_stepped = false;
-  bool m_mistrusted = false;  ///< the submap was begun anew because poles do not match
+  bool m_mistrusted = false;  ///< the submap was restarted because poles did not match
   std::size_t m_searches = 0;
-  double m_time = 0;        ///< of the last frame, s
-  double m_searchedAt = 0;  ///< metres of the submap at the last search
-  double m_searchTime = 0;  ///< s, of the last search
+  double m_time = 0;        ///< time of the last frame, s
+  double m_searchedAt = 0;  ///< distance travelled in the submap at the last search, m
+  double m_searchTime = 0;  ///< time of the last search, s
 };
 
 void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`

@@ -56,8 +56,8 @@ mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motio
   requireFinite(motion);
   requireCovariance(motion.covariance);
   requireCertain(motion.covariance);
-  // The floor of 1 µm and 1 µrad keeps MRPT's sampler, which takes the roots of eigenvalues, away
-  // from those that rounding has made negative.
+  // MRPT's sampler takes roots of eigenvalues. The floor of 1 µm and 1 µrad keeps rounding errors
+  // from making them negative.
   const double xy = options.extraSigma * options.extraSigma + 1e-12;
   const double yaw = options.extraSigmaYaw * options.extraSigmaYaw + 1e-12;
   const Eigen::Matrix3d extra = Eigen::Vector3d(xy, xy, yaw).asDiagonal();

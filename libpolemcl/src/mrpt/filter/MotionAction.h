@@ -1,6 +1,6 @@
 #pragma once
 /// \file MotionAction.h
-/// \brief A motion between two scans, as MRPT's particle filter takes it.
+/// \brief Motion between two scans in the form that MRPT's particle filter takes.
 
 #include <mrpt/obs/CActionCollection.h>
 
@@ -9,17 +9,18 @@
 
 namespace polemcl {
 
-/// Largest standard deviations a motion may have, m (x, y) and rad: beyond, odometry says nothing.
+/// Largest standard deviations of a motion, m (x, y) and rad. Beyond them odometry is useless.
 constexpr double maxMotionMetres = 10, maxMotionRadians = 1;
 
-/// Longest motion from one scan to the next, m.
+/// Longest motion between two consecutive scans, m.
 constexpr double maxMotionStep = 10000;
 
-/// \brief An action with one `CActionRobotMovement2D`, `emScan2DMatching` (so that it survives
-/// serialization), a Gaussian whose variances are those of the motion plus the extra sigmas
-/// squared. \throws Error when the motion is not finite or too long, or its covariance not
-/// symmetric, not positive
-///         semidefinite (both but for rounding: 1e-9 of its largest element), or above the limits.
+/// \brief An action with one `CActionRobotMovement2D` of kind `emScan2DMatching` (this kind
+/// survives serialization). It is a Gaussian whose variances are those of the motion plus the
+/// squares of the extra sigmas.
+/// \throws Error when the motion is not finite or too long. Also when its covariance is not
+///         symmetric, not positive semidefinite (tolerance for both: 1e-9 of the largest element),
+///         or above the limits.
 mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motion,
                                                    const FilterOptions& options);
 

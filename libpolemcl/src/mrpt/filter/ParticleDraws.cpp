@@ -73,7 +73,7 @@ std::vector<std::size_t> drawIndices(Resampling method, const std::vector<double
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
   auto& generator = getRandomGenerator();
   const double common = generator.drawUniform(0.0, 1.0);
-  std::vector<double> places(count);  // in the cumulated weight, as shares
+  std::vector<double> places(count);  // positions in the cumulated weight, as shares
   for (std::size_t i = 0; i < count; ++i) {
     const double own = method == Resampling::systematic ? common : generator.drawUniform(0.0, 1.0);
     places[i] = method == Resampling::multinomial

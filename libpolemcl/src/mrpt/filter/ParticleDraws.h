@@ -10,8 +10,8 @@
 
 namespace polemcl {
 
-/// \brief Lends a generator to MRPT's code in this thread. Swapping the whole object matters:
-/// seeding alone leaves the spare deviate of its normal distribution in place.
+/// \brief Lends a generator to MRPT's code in this thread. The whole object is swapped, because
+/// seeding alone does not discard the spare deviate of its normal distribution.
 class GeneratorLoan {
  public:
   explicit GeneratorLoan(mrpt::random::CRandomGenerator& generator);
@@ -23,13 +23,13 @@ class GeneratorLoan {
   mrpt::random::CRandomGenerator& m_generator;
 };
 
-/// \brief Draws from N(0, covariance): the root of the covariance as MRPT's CPoseRandomSampler has
-/// it, normal deviates of our own (core/SimdMath.h) from 32-bit numbers of MRPT's generator in
-/// this thread.
+/// \brief Draws from N(0, covariance). The root of the covariance is computed as in MRPT's
+/// CPoseRandomSampler. The normal deviates are our own (core/common/SimdMath.h), from 32-bit
+/// numbers of MRPT's generator in this thread.
 class PoseNoise {
  public:
   explicit PoseNoise(const Eigen::Matrix3d& covariance);
-  /// \brief Draws so many. \return x, y, yaw of each, m, m, rad; valid until the next call.
+  /// \brief Draws `count` samples. \return x, y, yaw of each, m, m, rad; valid until the next call.
   const std::vector<Eigen::Vector3d>& draw(std::size_t count);
 
  private:
@@ -37,14 +37,14 @@ class PoseNoise {
   std::vector<Eigen::Vector3d> m_moves;
 };
 
-/// \brief Resamples any number of particles: ascending indices. (MRPT's computeResampling(), asked
-/// for fewer than there are, draws only from those in front: the thresholds of all, the first of
-/// them used.)
+/// \brief Resamples any number of particles; returns ascending indices. (MRPT's computeResampling()
+/// computes thresholds for all particles. Asked for fewer, it uses only the first thresholds and so
+/// draws only from the particles in front.)
 std::vector<std::size_t> drawIndices(Resampling method, const std::vector<double>& logWeights,
                                      std::size_t count);
 
-/// \brief Particles that each hypothesis gets of so many: the rounded share of its weight.
-/// \throws Error as PoleParticleFilter::start() does about hypotheses.
+/// \brief Number of particles for each hypothesis out of `count`: its rounded share by weight.
+/// \throws Error as PoleParticleFilter::start() for invalid hypotheses.
 std::vector<std::size_t> particlesPerHypothesis(const std::vector<PoseHypothesis>& hypotheses,
                                                 std::size_t count);
 

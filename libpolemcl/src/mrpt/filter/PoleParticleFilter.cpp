@@ -42,8 +42,8 @@ CParticleFilter::TParticleFilterOptions toMrpt(const FilterOptions& options) {
   return result;
 }
 
-/// Every n-th of the indices, evenly spaced: of systematically drawn, sorted ones that is a
-/// systematic draw again.
+/// Every n-th of the indices, evenly spaced. Thinned systematic draws (sorted) are again a
+/// systematic draw.
 std::vector<size_t> thinned(const std::vector<size_t>& indices, size_t count) {
   if (indices.size() <= count) return indices;
   std::vector<size_t> result(count);
@@ -51,7 +51,7 @@ std::vector<size_t> thinned(const std::vector<size_t>& indices, size_t count) {
   return result;
 }
 
-/// Bins as wide as a bell of this sigma, in x, y and heading.
+/// Bins as wide as a bell with this sigma, in x, y and heading.
 KldOptions binsOf(double sigma) {
   KldOptions bins;
   bins.bin = 2 * sigma;
@@ -59,15 +59,15 @@ KldOptions binsOf(double sigma) {
   return bins;
 }
 
-/// Whether two particles or more share a bin as wide as a bell of this sigma. If they are sparser
-/// it falls between them: whichever is nearest wins, or none, whatever lies there.
+/// Whether on average two or more particles share a bin as wide as a bell with this sigma. With
+/// sparser particles the bell falls between them, and the result depends on chance.
 bool areDense(const std::vector<Pose2D>& poses, double sigma) {
   std::vector<std::size_t> all(poses.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return 2 * occupiedBins(poses, all, binsOf(sigma)) <= all.size();
 }
 
-/// Particles are dense, at any rate, where the box round them holds so few bins. Quicker to tell.
+/// Sufficient and faster check: particles are dense if their bounding box holds few enough bins.
 bool lieWithinFewBins(const std::vector<Pose2D>& poses, double sigma) {
   Eigen::Array3d low = Eigen::Array3d::Constant(INFINITY), high = -low;
   for (const Pose2D& pose : poses) {
@@ -80,7 +80,7 @@ bool lieWithinFewBins(const std::vector<Pose2D>& poses, double sigma) {
   return 2 * ((high - low) / size + 2).prod() <= static_cast<double>(poses.size());
 }
 
-/// The Gaussian motion of an action; null if it has another, or a distribution of another kind.
+/// The Gaussian motion of an action; null without a motion or with another distribution.
 std::shared_ptr<const mrpt::poses::CPosePDFGaussian> gaussianMotion(
     const mrpt::obs::CActionCollection& action) {
   const auto movement = action.getBestMovementEstimation();
@@ -109,7 +109,7 @@ void PoleParticleFilter::start(const StartOptions& start) {
   CRandomGenerator& random = getRandomGenerator();
   for (auto& particle : m_particles) {
     const double share = random.drawUniform(0.0, 1.0);
-    // The root makes the density uniform in area instead of crowded at the centre.
+    // The square root makes the density uniform over the area instead of denser at the centre.
     const bool crowded = start.positions == StartPositions::radius;
     const double distance = start.radius * (crowded ? share : std::sqrt(share));
     const double direction = random.drawUniform(-M_PI, M_PI);
@@ -120,7 +120,7 @@ void PoleParticleFilter::start(const StartOptions& start) {
 }
 
 void PoleParticleFilter::start(const std::vector<PoseHypothesis>& hypotheses, int particles) {
-  particlesPerHypothesis(hypotheses, 1);  // refuses bad ones before anything changes
+  particlesPerHypothesis(hypotheses, 1);  // rejects invalid hypotheses before any change
   if (particles < 1 || particles > s_mostParticles)
     throw Error("the filter cannot start with " + std::to_string(particles) + " particles; 1 to " +
                 std::to_string(s_mostParticles) + " are allowed");
@@ -162,7 +162,7 @@ PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame) {
     }
   }
   const auto observation = CObservationPoles::Create();
-  observation->poles = frame.poles_robot;  // sensorPose stays identity: the robot frame
+  observation->poles = frame.poles_robot;  // sensorPose stays identity: robot frame
   mrpt::obs::CSensoryFrame scan;
   scan.insert(observation);
 
@@ -170,7 +170,7 @@ PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame) {
   m_failure = nullptr;
   try {
     m_filter.executeOn(*this, action.get(), &scan);
-  } catch (...) {  // MRPT replaces what its steps throw by a text that has lost its beginning
+  } catch (...) {  // MRPT replaces exceptions of its steps by a text without its beginning
     if (m_failure) std::rethrow_exception(m_failure);
     throw;
   }
@@ -188,7 +188,7 @@ void PoleParticleFilter::prediction_and_update_pfStandardProposal(
     for (const auto& part : *observation)
       if (const auto* poles = dynamic_cast<const CObservationPoles*>(part.get()))
         updateRemembering(*poles, mrptOptions);
-  // Now, since executeOn() resamples next, which erases the weights.
+  // Estimate now: executeOn() resamples next, which erases the weights.
   const std::vector<double> weights = logWeights();
   m_report.effectiveShare = effectiveShare(weights);
   m_report.particles = m_particles.size();
@@ -246,13 +246,13 @@ void PoleParticleFilter::update(const CObservationPoles& scan,
     return adds;
   };
   if (m_options.tempering == 0) return void(addAtOnce(true));
-  // From the prior to the posterior over posteriors of wider likelihoods. The weights of a stage
-  // are the ratio of its likelihood to the one the particles have been weighed by already.
+  // Goes from the prior to the posterior over posteriors of wider likelihoods. The weights of a
+  // stage are the ratio of its likelihood to the likelihood already applied to the particles.
   const std::vector<double> widenings = temperingWidenings();
   std::optional<std::size_t> weighed;
   while (true) {
     const std::optional<std::size_t> dense = narrowestDense(widenings);
-    // Narrower ones would fall between the particles; the next scans will tell.
+    // Narrower likelihoods would fall between the particles; later scans will decide.
     if (weighed && (!dense || *dense >= *weighed)) return;
     const std::size_t widest = weighed.value_or(widenings.size() - 1);
     const std::size_t narrowest = dense.value_or(widest);
@@ -273,7 +273,7 @@ void PoleParticleFilter::update(const CObservationPoles& scan,
 
 std::vector<double> PoleParticleFilter::temperingWidenings() const {
   const LikelihoodOptions& likelihood = m_map->likelihoodOptions;
-  // Wider than half the gate a bell is cut off at the gate, and draws towards chance matches.
+  // A bell wider than half the gate is cut off at the gate and attracted by chance matches.
   const double widestSigma = std::max(8 * likelihood.sigma, 0.5 * likelihood.gate);
   std::vector<double> widenings;
   for (double widening = 1;
@@ -293,8 +293,8 @@ std::optional<std::size_t> PoleParticleFilter::narrowestDense(
   return k < widenings.size() ? std::optional(k) : std::nullopt;
 }
 
-void PoleParticleFilter::updateRemembering(const CObservationPoles& scan,
-                                           const CParticleFilter::TParticleFilterOptions& filterOptions) {
+void PoleParticleFilter::updateRemembering(
+    const CObservationPoles& scan, const CParticleFilter::TParticleFilterOptions& filterOptions) {
   try {
     update(scan, filterOptions);
   } catch (...) {
@@ -311,7 +311,7 @@ void PoleParticleFilter::addToLogWeights(const std::vector<double>& values) {
 bool PoleParticleFilter::leavesEnough(const std::vector<double>& logLikelihoods) const {
   std::vector<double> weights = logWeights();
   for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += logLikelihoods[i];
-  // Measured by what the filter keeps: after the start there may be many more.
+  // Relative to the number that the filter keeps: after the start there may be many more.
   const auto kept = std::min<std::size_t>(weights.size(), m_options.particles);
   return effectiveShare(weights) * weights.size() >= m_options.tempering * kept;
 }
@@ -353,8 +353,9 @@ std::vector<size_t> PoleParticleFilter::drawAdaptively(const std::vector<Pose2D>
   const std::vector<double> weights = logWeights();
   std::vector<size_t> chosen;
   std::size_t wanted = m_options.kld.minParticles;
-  // Fox draws one by one until there are enough for the bins met so far. Systematic resampling has
-  // to know the number first: it is drawn anew with what the bins of the last draw ask for.
+  // Fox draws one by one until the number is sufficient for the bins met so far. Systematic
+  // resampling needs the number in advance, so it draws again with the number for the bins of the
+  // last draw.
   do {
     chosen = drawIndices(m_options.resampling, weights, wanted);
     wanted = kldSampleSize(occupiedBins(poses, chosen, m_options.kld), m_options.kld);

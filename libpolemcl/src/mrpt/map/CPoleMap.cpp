@@ -81,7 +81,7 @@ void CPoleMap::saveToPoleMapFile(const std::string& path) const {
 }
 
 uint8_t CPoleMap::serializeGetVersion() const {
-  return 1;  // 1: the floor of the likelihood
+  return 1;  // 1: with the floor of the likelihood
 }
 
 void CPoleMap::serializeTo(CArchive& out) const {
@@ -105,7 +105,7 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   l.validate();
   info = readTexts(in, io::mostMapFacts, io::longestMapFact, "facts about the map");
   std::vector<MapPole> poles;
-  // One by one: the count in a damaged file must not decide how much memory is taken.
+  // One by one: a count in a damaged file must not decide how much memory is allocated.
   for (std::uint32_t left = readCount(in, io::mostMapPoles, "poles"); left > 0; --left)
     poles.push_back(readMapPole(in));
   setPoles(std::move(poles));
@@ -138,7 +138,7 @@ void CPoleMap::evaluate(const CObservationPoles& scan, const std::vector<Pose2D>
                         const std::vector<double>& widenings,
                         std::vector<std::vector<double>>& out) const {
   const Pose2D T_robot_sensor = scan.planarSensorPose();
-  // In the sensor's own frame: the same value as in the robot frame, without moving every pole.
+  // Computed in the sensor frame: same value as in the robot frame, without moving every pole.
   const bool sameFrame = T_robot_sensor.x == 0 && T_robot_sensor.y == 0 && T_robot_sensor.yaw == 0;
   std::vector<Pose2D> sensorPoses;
   if (!sameFrame) {

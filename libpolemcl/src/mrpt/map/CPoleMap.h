@@ -1,6 +1,6 @@
 #pragma once
 /// \file CPoleMap.h
-/// \brief A map of poles, as a metric map of MRPT.
+/// \brief A map of poles as a metric map of MRPT.
 
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/maps/CMetricMap.h>
@@ -18,10 +18,10 @@ namespace polemcl {
 
 class CObservationPoles;
 
-/// \brief Poles in the map frame, with an index that is built whenever the poles change. A const
+/// \brief Poles in the map frame, with an index that is rebuilt whenever the poles change. A const
 /// map may be shared between threads; copies are independent.
 ///
-/// As `poleMap` in INI files of MRPT's tools: `poleMap_count = 1`, with sections
+/// Name in INI files of MRPT's tools: `poleMap`. Set `poleMap_count = 1` and add the sections
 /// `<prefix>_poleMap_00_creationOpts` (`map_file`: a `.polemap` to load, relative to the working
 /// directory), `…_insertOpts`, `…_likelihoodOpts`.
 class CPoleMap : public mrpt::maps::CMetricMap {
@@ -31,25 +31,25 @@ class CPoleMap : public mrpt::maps::CMetricMap {
   CPoleMap();
 
   const std::vector<MapPole>& poles() const { return m_poles; }  ///< map frame
-  /// \brief Replaces all poles and builds the index, its grid prepared for
-  /// `likelihoodOptions.gate`: set the options first, or set the poles again. (With a wider gate
-  /// later nanoflann's tree answers in place of the grid: slower, the same numbers.) \throws Error
-  /// on a position or covariance that is not finite, or a covariance that is not
+  /// \brief Replaces all poles and builds the index. Its grid is prepared for
+  /// `likelihoodOptions.gate`: set the options first, or set the poles again. (If the gate is
+  /// widened later, nanoflann's tree replaces the grid: slower, with the same numbers.)
+  /// \throws Error on a position or covariance that is not finite, or a covariance that is not
   ///         positive semidefinite.
   void setPoles(std::vector<MapPole> poles);
   /// \brief Index i is poles()[i].
   const PoleIndex& index() const { return *m_index; }
 
-  /// \brief Facts that travel with the map (`.polemap` keeps them): name -> value.
+  /// \brief Facts about the map (name -> value), stored in the `.polemap` too.
   std::map<std::string, std::string> info;
 
-  /// \throws Error when the file cannot be read or is damaged. Replaces poles and info.
+  /// \brief Replaces poles and info. \throws Error when the file cannot be read or is damaged.
   void loadFromPoleMapFile(const std::string& path);
   /// \throws Error when the file cannot be written.
   void saveToPoleMapFile(const std::string& path) const;
 
-  /// \brief How detections become poles when observations are inserted one by one (MRPT's tools).
-  /// The map builder of `core/` is the better way when all scans are at hand.
+  /// \brief Rules for inserting observations one by one (MRPT's tools). If all scans are available,
+  /// use the map builder of `core/mapping/` instead.
   struct TInsertionOptions : public mrpt::config::CLoadableOptions {
     double mergeDistance =
         0.5;  ///< a detection this near to a pole is that pole, m (`merge_distance`)
@@ -63,7 +63,7 @@ class CPoleMap : public mrpt::maps::CMetricMap {
     void validate() const;  ///< \throws Error
   } insertionOptions;
 
-  /// \brief The core's likelihood options with MRPT's ways of loading and showing them.
+  /// \brief The core's likelihood options with MRPT's functions for loading and showing them.
   struct TLikelihoodOptions : public mrpt::config::CLoadableOptions, public LikelihoodOptions {
     TLikelihoodOptions() = default;
     TLikelihoodOptions& operator=(const LikelihoodOptions& options);
@@ -76,21 +76,22 @@ class CPoleMap : public mrpt::maps::CMetricMap {
   } likelihoodOptions;
 
   /// \name Likelihood of many poses at once
-  /// One definition, the core's (core/PoleLikelihood.h) with `likelihoodOptions`: MRPT asks for one
-  /// pose by computeObservationLikelihood(), the filter of this library for all its particles by
-  /// these. The same planar pose gets the same number, bit for bit.
+  /// One definition, that of the core (core/localization/PoleLikelihood.h) with
+  /// `likelihoodOptions`. MRPT calls computeObservationLikelihood() for one pose; the particle
+  /// filter of this library calls these functions for all its particles. The same planar pose gets
+  /// the same number, bit for bit.
   /// @{
-  /// \brief log p(observation | pose) up to a constant, finite. All 0 for observations that are not
-  /// CObservationPoles (they say nothing), and when `genericMapParams.enableObservationLikelihood`
-  /// is false, as with MRPT's own.
+  /// \brief log p(observation | pose) up to a constant, finite. All 0 for observations other than
+  /// CObservationPoles, because they carry no information for this map. Also all 0 when
+  /// `genericMapParams.enableObservationLikelihood` is false, as in MRPT's own maps.
   /// \param robotPoses Map frame.
   /// \param out Element i belongs to robotPoses[i].
   /// \throws Error as logLikelihood() of the core.
   void logLikelihoods(const mrpt::obs::CObservation& observation,
                       const std::vector<Pose2D>& robotPoses, std::vector<double>& out) const;
-  /// \brief The same with several sigmas at once, which share the search for the nearest pole:
+  /// \brief As logLikelihoods(), for several sigmas that share the search for the nearest pole.
   /// out[k][i] belongs to robotPoses[i] with widenings[k] times `likelihoodOptions.sigma`.
-  /// \throws Error also on more than `maxWidenings`.
+  /// \throws Error also for more than `maxWidenings`.
   void widenedLogLikelihoods(const mrpt::obs::CObservation& observation,
                              const std::vector<Pose2D>& robotPoses,
                              const std::vector<double>& widenings,
@@ -102,23 +103,23 @@ class CPoleMap : public mrpt::maps::CMetricMap {
   /// \brief Writes `<prefix>.polemap`, `<prefix>.csv` and `<prefix>.3Dscene` (an OverviewScene).
   void saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const override;
   /// \brief A cylinder from bottom to top for each pole, map frame, ground at z = 0, coloured by
-  /// count; nothing when `genericMapParams.enableSaveAs3DObject` is false. OpenGL draws none of
-  /// them at UTM coordinates.
+  /// count. Nothing when `genericMapParams.enableSaveAs3DObject` is false. At UTM coordinates
+  /// OpenGL cannot draw them.
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& outObj) const override;
 
   MAP_DEFINITION_START(CPoleMap)
-  std::string mapFile;  ///< `.polemap` to load at creation; empty: none
+  std::string mapFile;  ///< `.polemap` to load at creation; empty: no file
   polemcl::CPoleMap::TInsertionOptions insertionOpts;
   polemcl::CPoleMap::TLikelihoodOptions likelihoodOpts;
   MAP_DEFINITION_END(CPoleMap)
 
  protected:
   void internal_clear() override;
-  /// \brief Merges CObservationPoles; other observations are not inserted (false).
+  /// \brief Merges CObservationPoles; returns false for other observations.
   bool internal_insertObservation(
       const mrpt::obs::CObservation& obs,
       const std::optional<const mrpt::poses::CPose3D>& robotPose = std::nullopt) override;
-  /// \brief What logLikelihoods() gives for the planar part (x, y, yaw) of this one pose.
+  /// \brief Same value as logLikelihoods() for the planar part (x, y, yaw) of this pose.
   double internal_computeObservationLikelihood(
       const mrpt::obs::CObservation& obs, const mrpt::poses::CPose3D& takenFrom) const override;
   bool internal_canComputeObservationLikelihood(const mrpt::obs::CObservation& obs) const override;

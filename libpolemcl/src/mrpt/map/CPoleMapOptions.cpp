@@ -29,7 +29,7 @@ void bind(Binder& b, CPoleMap::TInsertionOptions& o) {
   b.check(o);
 }
 
-/// Fills options from one section of a configuration that MRPT hands over.
+/// Reads options from one section of an MRPT configuration.
 template <class Options>
 void load(const Source& source, const std::string& section, Options& options) {
   ConfigReader reader(source, nameOf(source), section);
@@ -37,7 +37,7 @@ void load(const Source& source, const std::string& section, Options& options) {
   reader.finish();
 }
 
-/// Writes options into one section of a configuration of MRPT.
+/// Writes options to one section of an MRPT configuration.
 class SourceWriter : public Binder {
  public:
   SourceWriter(Source& target, std::string section)

@@ -15,7 +15,7 @@ void registerClasses() {
 
 }  // namespace polemcl
 
-// When the library is loaded as a plugin.
+// For loading the library as a plugin.
 MRPT_INITIALIZER(registerPolemclClasses) {
   polemcl::registerClasses();
 }

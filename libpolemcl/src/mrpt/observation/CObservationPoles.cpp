@@ -59,7 +59,7 @@ void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   sensorLabel = readText(in, io::mostOfAScan, "sensor label");
   in >> sensorPose >> points;
   poles.clear();
-  // One by one: the count in a damaged file must not decide how much memory is taken.
+  // One by one: a count in a damaged file must not decide how much memory is allocated.
   for (std::uint32_t left = readCount(in, io::mostOfAScan, "poles"); left > 0; --left)
     poles.push_back(readPole(in));
   visibilityRange = readFloats(in, io::mostOfAScan, "free ranges");

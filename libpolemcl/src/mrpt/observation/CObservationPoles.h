@@ -1,6 +1,6 @@
 #pragma once
 /// \file CObservationPoles.h
-/// \brief The poles of one scan, as an observation of MRPT.
+/// \brief The poles of one scan as an observation of MRPT.
 
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/opengl/Visualizable.h>
@@ -12,24 +12,25 @@
 
 namespace polemcl {
 
-/// \brief The poles seen in one scan, small enough to be stored in a rawlog in its place.
+/// \brief The poles of one scan, small enough to replace the scan in a rawlog.
 ///
-/// Frame: the *planar sensor frame*, origin at x, y of `sensorPose`, turned by its yaw, z up. So a
-/// pole in the robot frame is `Pose2D(sensorPose) ⊕ (x, y)`; heights are above local ground and
-/// know no frame. Covariances are in the same planar frame.
+/// Frame: the *planar sensor frame*, with its origin at x, y of `sensorPose`, rotated by its yaw, z
+/// up. A pole in the robot frame is `Pose2D(sensorPose) ⊕ (x, y)`. Heights are above local ground
+/// and independent of the frame. Covariances are in the planar sensor frame.
 class CObservationPoles : public mrpt::obs::CObservation, public mrpt::opengl::Visualizable {
   DEFINE_SERIALIZABLE(CObservationPoles, polemcl)
 
  public:
-  std::vector<PoleDetection> poles;  ///< planar sensor frame; may be empty: a scan without poles
-  mrpt::poses::CPose3D sensorPose;   ///< the sensor in the robot frame
-  /// Free range per direction, m (see core/VisibilityRange.h); 0 = unknown. Element i of n looks to
-  /// azimuth -pi + (i + 0.5)·2pi/n in the planar sensor frame. Empty: not known for any direction.
+  std::vector<PoleDetection> poles;  ///< planar sensor frame; empty: a scan without poles
+  mrpt::poses::CPose3D sensorPose;   ///< pose of the sensor in the robot frame
+  /// Visibility range per direction, m (see core/extraction/VisibilityRange.h); 0 = unknown.
+  /// Element i of n has the azimuth -pi + (i + 0.5)·2pi/n in the planar sensor frame. Empty:
+  /// unknown in all directions.
   std::vector<float> visibilityRange;
-  std::uint32_t points = 0;  ///< valid points of the scan; 0: none, or not known
+  std::uint32_t points = 0;  ///< valid points of the scan; 0: none or unknown
 
-  /// \brief The poles with centre and covariance moved to the robot frame by the planar part of
-  /// `sensorPose`.
+  /// \brief The poles with centre and covariance transformed to the robot frame by the planar part
+  /// of `sensorPose`.
   std::vector<PoleDetection> polesInRobotFrame() const;
   /// \brief x, y and yaw of `sensorPose`.
   Pose2D planarSensorPose() const;

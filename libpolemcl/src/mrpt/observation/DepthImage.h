@@ -1,6 +1,6 @@
 #pragma once
 /// \file DepthImage.h
-/// \brief Points and pinhole of a CObservation3DRangeScan. Private to the library.
+/// \brief Points and pinhole camera of a CObservation3DRangeScan. Private to the library.
 
 #include <vector>
 
@@ -12,18 +12,18 @@ class CObservation3DRangeScan;
 
 namespace polemcl {
 
-/// \brief The points of an image, camera axes (x ahead, y left, z up), m.
+/// \brief The points of an image, camera axes (x forward, y left, z up), m.
 struct DepthPoints {
   std::vector<float>&x, &y, &z;
 };
 
-/// \brief True when the observation holds pixels in memory.
+/// \brief Whether the observation holds pixels in memory.
 bool hasPixels(const mrpt::obs::CObservation3DRangeScan& observation);
-/// \brief The camera of the image; its attitude is left as identity.
-/// \throws Error on intrinsics that are out of range, and units that are not positive.
+/// \brief The camera of the image; its attitude is identity.
+/// \throws Error on intrinsics that are out of range, and depth units that are not positive.
 PinholeCamera cameraOf(const mrpt::obs::CObservation3DRangeScan& observation);
-/// \brief One point per pixel with a depth; depths along the ray or along x, as `range_is_depth`
-/// says. \return How many pixels have none (0).
+/// \brief Computes one point per pixel with a depth. Depths are along the ray or along x, depending
+/// on `range_is_depth`. \return Number of pixels without a depth (0).
 std::size_t unproject(const mrpt::obs::CObservation3DRangeScan& observation,
                       const PinholeCamera& camera, const DepthPoints& to);
 

@@ -12,7 +12,7 @@ LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOption
   const Eigen::Matrix3d R_robot_cloud = sensorPose.getRotationMatrix().asEigen();
   const Eigen::Matrix3d R_robot_planar =
       Eigen::AngleAxisd(sensorPose.yaw(), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const double upright = R_robot_cloud(2, 2);  // cosine between the two z axes
+  const double upright = R_robot_cloud(2, 2);  // cosine of the angle between the two z axes
   Eigen::Matrix3d R_robot_lidar = R_robot_cloud;
   if (!level && upright < -M_SQRT1_2) {
     f.R_lidar_cloud = Eigen::Vector3d(1, -1, -1).asDiagonal();  // half a turn about x
@@ -38,7 +38,7 @@ PointsView MovedPoints::toLidar(const PointsView& cloud, const LidarFrame& f) {
   const Eigen::Vector3f t = f.t_lidar_cloud.cast<float>();
   for (std::size_t i = 0; i < cloud.size; ++i) {
     const float px = cloud.x[i], py = cloud.y[i], pz = cloud.z[i];
-    if (px == 0 && py == 0 && pz == 0) {  // no return: must not become a point somewhere else
+    if (px == 0 && py == 0 && pz == 0) {  // no return: must not become a point elsewhere
       m_x[i] = m_y[i] = m_z[i] = 0;
       continue;
     }

@@ -1,6 +1,7 @@
 #pragma once
 /// \file LidarFrame.h
-/// \brief The frame the extraction works in, and points moved there. Private to the library.
+/// \brief The LiDAR frame in which the extraction works, and transformation of points to it.
+/// Private to the library.
 
 #include <mrpt/poses/CPose3D.h>
 
@@ -12,25 +13,25 @@
 
 namespace polemcl {
 
-/// \brief Where the lidar frame is, seen from the cloud and from the planar sensor frame.
+/// \brief Pose of the LiDAR frame relative to the cloud and to the planar sensor frame.
 struct LidarFrame {
   Eigen::Matrix3d R_lidar_cloud = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t_lidar_cloud = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_planar_lidar = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d t_planar_lidar = Eigen::Vector3d::Zero();  ///< z is of no consequence
+  Eigen::Vector3d t_planar_lidar = Eigen::Vector3d::Zero();  ///< z is not used
   bool cloudIsLidar = true;
   bool planarIsLidar = true;
 };
 
-/// \brief The lidar frame of clouds with this sensor pose, as ObservationPoleExtractor describes
-/// it. \param level Level with the robot whatever the sensor pose is.
+/// \brief The LiDAR frame of clouds with this sensor pose, as described at
+/// ObservationPoleExtractor. \param level True: level with the robot for any sensor pose.
 LidarFrame lidarFrame(const mrpt::poses::CPose3D& sensorPose, const SensorOptions& sensor,
                       bool level = false);
 
-/// \brief Points in the lidar frame; keeps its buffers.
+/// \brief Transforms points to the LiDAR frame; reuses its buffers.
 class MovedPoints {
  public:
-  /// \brief The cloud itself where nothing is to be moved. Zeros (no return) stay zeros.
+  /// \brief Returns the cloud itself if no transformation is needed. Zeros (no return) stay zeros.
   PointsView toLidar(const PointsView& cloud, const LidarFrame& f);
 
  private:

@@ -49,14 +49,14 @@ void ObservationPoints::release() noexcept {
   try {
     if (m_loaded) m_loaded->unload();
   } catch (const std::exception&) {
-    // It only gives memory back; what could not be read has been reported by read().
+    // Unloading only frees memory; read() has already reported unreadable data.
   }
   m_loaded = nullptr;
 }
 
 namespace {
 
-/// The class hides its format, but shows it to classes derived from it.
+/// The class hides its format, but classes derived from it have access.
 struct StorageFormat : CObservationPointCloud {
   static ExternalStorageFormat of(const CObservationPointCloud& observation) {
     return observation.*(&StorageFormat::m_externally_stored);
@@ -67,8 +67,8 @@ bool endsIn(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Columns of a rotating scan that hold data. MRPT 2.5.8 converts Velodyne scans into images that
-/// are as many times too wide as there are lasers, the rest being empty.
+/// Number of columns of a rotating scan that hold data. MRPT 2.5.8 converts Velodyne scans to
+/// images that are too wide by a factor equal to the number of lasers; the rest is empty.
 int usedColumns(const CObservationRotatingScan& scan) {
   const auto& ranges = scan.rangeImage;
   const int columns = static_cast<int>(ranges.cols()), rows = static_cast<int>(ranges.rows());
@@ -79,8 +79,8 @@ int usedColumns(const CObservationRotatingScan& scan) {
   return narrow;
 }
 
-/// Made by MRPT from a Velodyne scan: rows in the order the lasers fire, azimuth clockwise,
-/// as the device counts it.
+/// Whether MRPT made the scan from a Velodyne scan. Rings are then in firing order, and azimuth is
+/// clockwise as on the device.
 bool isVelodyne(const CObservationRotatingScan& scan) {
   return scan.lidarModel == "VLP-16" || scan.lidarModel == "HDL-32E";
 }
@@ -94,7 +94,7 @@ PointsView ObservationPoints::readCloud(const CObservationPointCloud& observatio
     const auto format = StorageFormat::of(observation);
     if (format == CObservationPointCloud::ExternalStorageFormat::KittiBinFile &&
         !endsIn(file, ".gz")) {
-      io::Cloud cloud = io::readKittiBin(file);  // strict, and three times as fast
+      io::Cloud cloud = io::readKittiBin(file);  // stricter, and three times as fast
       m_x.swap(cloud.x);
       m_y.swap(cloud.y);
       m_z.swap(cloud.z);
@@ -117,7 +117,7 @@ PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& obser
     return {own.x.data(), own.y.data(), own.z.data(), own.size()};
   CObservationVelodyneScan copy = observation;
   CObservationVelodyneScan::TGeneratePointCloudParameters parameters;
-  parameters.minDistance = 0;  // `[sensor] min_range_m` decides
+  parameters.minDistance = 0;  // `[sensor] min_range_m` applies instead
   copy.generatePointCloud(parameters);
   m_x.swap(copy.point_cloud.x);
   m_y.swap(copy.point_cloud.y);
@@ -125,7 +125,8 @@ PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& obser
   return owned();
 }
 
-/// The image is what the camera gave; a cloud beside it may be in another frame or thinned out.
+/// Prefers the image, the raw data of the camera: a cloud beside it may be thinned or in another
+/// frame.
 PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observation) {
   const bool stored =
       observation.rangeImage_isExternallyStored() || observation.points3D_isExternallyStored();
@@ -147,8 +148,8 @@ PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observati
 std::vector<double> ObservationPoints::rowElevations(const CObservationRotatingScan& scan) const {
   const int rows = static_cast<int>(scan.rangeImage.rows());
   SensorOptions upright = m_sensor;
-  upright.upsideDown = false;                           // the sensor pose turns the points over
-  std::vector<double> elevations = upright.elevations;  // `table`: in the order of the rows
+  upright.upsideDown = false;                           // the sensor pose turns the points
+  std::vector<double> elevations = upright.elevations;  // `table`: in the order of the rings
   if (upright.model != "table") {
     const SensorModel model(upright);  // topmost first
     elevations.resize(static_cast<std::size_t>(model.rows()));
@@ -168,7 +169,8 @@ std::vector<double> ObservationPoints::rowElevations(const CObservationRotatingS
   if (lasers.size() != elevations.size())
     throw Error("a rotating scan says it is of a " + scan.lidarModel + " but has " +
                 std::to_string(rows) + " rows");
-  // The configuration gives the elevations, the calibration only says which laser is how high.
+  // The configuration gives the elevations; the calibration only gives the vertical order of the
+  // lasers.
   std::vector<std::size_t> order(lasers.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

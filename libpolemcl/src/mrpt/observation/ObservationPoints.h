@@ -1,6 +1,6 @@
 #pragma once
 /// \file ObservationPoints.h
-/// \brief The points of whatever observation of MRPT holds some.
+/// \brief The points of any MRPT observation with 3D points.
 
 #include <mrpt/obs/CObservation.h>
 
@@ -20,22 +20,22 @@ class CObservationRotatingScan;
 
 namespace polemcl {
 
-/// \brief Borrows the points of an observation where it has them in memory, else loads, unprojects
-/// or generates them on a copy. One object serves one thread.
+/// \brief Gives access to the points of an observation. Points in memory are not copied. Otherwise
+/// they are loaded, or computed on a copy. Use one object per thread.
 class ObservationPoints {
  public:
-  /// \param sensor Elevations of the rows of rotating scans.
+  /// \param sensor Elevations for the rings of rotating scans.
   explicit ObservationPoints(SensorOptions sensor) : m_sensor(std::move(sensor)) {}
 
   static bool canRead(const mrpt::obs::CObservation& observation);
-  /// \brief Points in the frame of the observation's sensor pose; they may hold NaN and zeros.
-  /// Valid until the next read() or release(), and as long as the observation lives. \throws Error
-  /// on other classes, and when the points cannot be had.
+  /// \brief Points in the frame of the observation's sensor pose; they may contain NaN and zeros.
+  /// Valid until the next read() or release(), and as long as the observation exists.
+  /// \throws Error for other classes, and when the points are not available.
   PointsView read(const mrpt::obs::CObservation& observation);
-  /// \brief Invalid points of the last read() that are not in its view any more.
+  /// \brief Number of invalid points of the last read() that are not in its result.
   std::size_t dropped() const { return m_dropped; }
-  /// \brief The camera, with its attitude left as identity, when the points of the last read() are
-  /// the pixels of a depth image.
+  /// \brief The camera, with identity as attitude, if the points of the last read() are the pixels
+  /// of a depth image.
   const std::optional<PinholeCamera>& camera() const { return m_camera; }
   /// \brief Unloads what read() loaded from external storage.
   void release() noexcept;
@@ -64,7 +64,7 @@ class ObservationPoints {
   std::vector<float> m_x, m_y, m_z;
   std::size_t m_dropped = 0;
   std::optional<PinholeCamera> m_camera;
-  const mrpt::obs::CObservation* m_loaded = nullptr;  ///< to be unloaded
+  const mrpt::obs::CObservation* m_loaded = nullptr;  ///< must be unloaded
 };
 
 }  // namespace polemcl

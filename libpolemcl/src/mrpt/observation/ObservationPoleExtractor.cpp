@@ -16,15 +16,15 @@ namespace polemcl {
 
 namespace {
 
-/// By so much an upright pole moves along the lidar's x and y per height along its z.
+/// Slope (dx/dz, dy/dz) of a vertical pole in the LiDAR frame, caused by sensor tilt.
 Eigen::Vector2f upright(const LidarFrame& f) {
   const Eigen::Vector3d up = f.R_planar_lidar.row(2);
   return (up.head<2>() / up.z()).cast<float>();
 }
 
-/// Height in the lidar frame at which a detection's centre was found; where it stands, heights
-/// above the ground are those along the robot's z. The scan-line method takes the height of the
-/// sensor, or the nearest that it saw of the pole; the paper's the mean of all points.
+/// Height of a detection's centre in the LiDAR frame. Heights above ground are converted along the
+/// robot's z axis. The scan-line method measures the centre at the height of the sensor, or at the
+/// visible part of the pole nearest to it. The method of the paper uses the mean of all points.
 double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double ground,
                       const PoleDetection& pole) {
   const Eigen::RowVector3d up = f.R_planar_lidar.row(2);
@@ -36,7 +36,7 @@ double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double groun
                                                 : std::min(std::max(0.0, low), std::max(low, high));
 }
 
-/// Moves a detection from the lidar frame to the planar sensor frame.
+/// Transforms a detection from the LiDAR frame to the planar sensor frame.
 void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
   if (f.planarIsLidar) return;
   const Eigen::Vector3d centre =
@@ -48,8 +48,8 @@ void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
   pole.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
 }
 
-/// The free ranges of the lidar frame, seen from the planar sensor frame: of the sectors that one
-/// reaches into the nearer, and an origin aside of the lidar's costs its distance.
+/// Converts the visibility ranges from the LiDAR frame to the planar sensor frame. A sector that
+/// overlaps two takes the smaller range. A horizontal offset between the origins is subtracted.
 std::vector<float> planarFreeRange(const LidarFrame& f, const std::vector<float>& visibilityRange) {
   if (f.planarIsLidar || visibilityRange.empty()) return visibilityRange;
   const std::size_t n = visibilityRange.size();
@@ -69,7 +69,7 @@ std::vector<float> planarFreeRange(const LidarFrame& f, const std::vector<float>
   return planar;
 }
 
-/// Runs what reads an observation's points; errors of MRPT name its class.
+/// Runs code that reads an observation's points; adds the observation's class to errors of MRPT.
 template <class Work>
 void readingPoints(const mrpt::obs::CObservation& observation, const Work& work) {
   try {
@@ -98,26 +98,27 @@ struct ObservationPoleExtractor::Impl {
   SensorOptions sensor;
   ExtractionMethod method;
   ScanLineOptions scanLine;
-  bool fromCloud;  ///< the range image is seen from the origin of the clouds
+  bool fromCloud;  ///< the range image is projected from the origin of the clouds
   ObservationPoints points;
   PoleExtractor extractor;
-  std::optional<PoleExtractor> cameraExtractor;  ///< for the camera seen last
+  std::optional<PoleExtractor> cameraExtractor;  ///< for the last camera
   PinholeCamera camera;
   ExtractionReport report;
   MovedPoints moved;
   SensorConfigCheck check;
-  int checksLeft = 3;  ///< scans to compare with the configuration
+  int checksLeft = 3;  ///< number of scans still to be compared with the configuration
 
   void compare(const mrpt::obs::CObservation& observation, const PointsView& cloud,
                const mrpt::poses::CPose3D& sensorPose);
   LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
   PoleExtractor& extractorFor(const LidarFrame& frames);
-  /// The image of the last points read is taken as such: the paper's range image is a sphere.
+  /// Whether the last points read are treated as an image. The range image of the paper is
+  /// spherical, so its method treats them as a cloud.
   bool pinhole() const { return points.camera() && method == ExtractionMethod::scanLine; }
 };
 
-/// Frame for the points last read. A depth image's points are levelled, as its rows are planes in
-/// whatever frame; its optical centre is the cloud's origin.
+/// Frame for the last points read. Points of a depth image are levelled; its rows are planes in any
+/// frame. Its optical centre is the cloud's origin.
 LidarFrame ObservationPoleExtractor::Impl::frameOf(const mrpt::poses::CPose3D& sensorPose) const {
   if (!pinhole() && !fromCloud) return lidarFrame(sensorPose, sensor);
   SensorOptions own = sensor;
@@ -125,7 +126,7 @@ LidarFrame ObservationPoleExtractor::Impl::frameOf(const mrpt::poses::CPose3D& s
   return lidarFrame(sensorPose, own, pinhole());
 }
 
-/// Extractor for the points last read.
+/// Extractor for the last points read.
 PoleExtractor& ObservationPoleExtractor::Impl::extractorFor(const LidarFrame& frames) {
   if (!pinhole()) return extractor;
   PinholeCamera seen = *points.camera();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file ObservationPoleExtractor.h
-/// \brief The preprocessor: any LiDAR or depth observation of MRPT -> CObservationPoles.
+/// \brief Preprocessor: converts any LiDAR or depth observation of MRPT to CObservationPoles.
 
 #include <memory>
 
@@ -17,25 +17,29 @@ struct ObservationPoleExtractorOptions {
   ExtractionOptions extraction;
 };
 
-/// \brief Extracts the poles of observations; keeps its buffers, so one object serves one thread.
+/// \brief Extracts the poles of observations. Reuses its buffers: use one object per thread.
 ///
-/// Points go to the *lidar frame* that PoleExtractor takes. Its axes are those of the cloud, so
-/// that beams stay cones around z whatever the mounting's tilt; turned by 180° about x when the
-/// cloud's z axis points down in the robot frame (NCLT's body frame); level with the robot and
-/// turned by the sensor's yaw when the cloud lies on its side (more than 45° off: optical frames of
-/// cameras). Its origin is that of the cloud moved by `SensorOptions::origin`, along the robot's
-/// axes. Nothing is copied when nothing is to be moved. Poles go from there to the planar sensor
+/// Points are transformed to the *LiDAR frame* of PoleExtractor. Its axes depend on the mounting:
+/// - Usually they are the axes of the cloud. Beams thus stay cones around z for any tilt of the
+///   mounting.
+/// - If the cloud's z axis points down in the robot frame (NCLT's body frame), they are turned by
+///   180° about x.
+/// - If the cloud is tilted by more than 45° (optical frames of cameras), they are level with the
+///   robot and rotated by the sensor's yaw.
+///
+/// The origin is that of the cloud, shifted by `SensorOptions::origin` along the robot's axes.
+/// Points are not copied if no transformation is needed. Poles are transformed to the planar sensor
 /// frame at their middle height, so that a tilted mounting does not shift them.
 ///
-/// | observation | points |
-/// |---|---|
-/// | CObservationPointCloud | as they are; external storage is loaded and unloaded |
-/// | CObservationVelodyneScan | its cloud, generated on a copy when it has none |
-/// | CObservation3DRangeScan | its depth image, by the camera's intrinsics (without distortion);
-/// the native method takes its rows of pixels for beams, whatever `model` says, in a level frame at
-/// the optical centre (`origin` is not used). Without an image, its cloud, as a LiDAR's | |
-/// CObservationRotatingScan | range image, elevations from
-/// `[sensor]`: refused unless its rows equal the sensor's beams |
+/// Sources of the points by class:
+/// - CObservationPointCloud: the cloud as it is; external storage is loaded and unloaded.
+/// - CObservationVelodyneScan: its cloud; without one, a cloud generated on a copy.
+/// - CObservation3DRangeScan: its depth image, with the camera's intrinsics (without distortion).
+///   The method scan_line treats pixel rows as rings for any `model`, in a level frame at the
+///   optical centre (`origin` is not used). Without an image, its cloud is treated as that of a
+///   LiDAR.
+/// - CObservationRotatingScan: its range image, with elevations from `[sensor]`. The number of
+///   rings must equal the number of the sensor's beams.
 class ObservationPoleExtractor {
  public:
   /// \throws Error when an option is out of range.
@@ -44,22 +48,22 @@ class ObservationPoleExtractor {
   ObservationPoleExtractor(ObservationPoleExtractor&&) noexcept;
   ObservationPoleExtractor& operator=(ObservationPoleExtractor&&) noexcept;
 
-  /// \brief True for the classes of the table above.
+  /// \brief Whether the class is in the list above.
   static bool canProcess(const mrpt::obs::CObservation& observation);
 
-  /// \brief The poles, with time, label and sensor pose of the observation. A scan without any
-  /// valid point gives no poles and `points` = 0. \throws Error on other classes, on external files
-  /// that cannot be read, on a rotating scan
-  ///         whose elevations are not known, on a depth image without usable intrinsics.
+  /// \brief The poles, with time, label and sensor pose of the observation. A scan without valid
+  /// points gives no poles and `points` = 0.
   ///
   /// The first three scans with enough points are compared with the configuration
-  /// (SensorConfigCheck); \throws Error when one contradicts it, unless `SensorOptions::checkBeams`
-  /// is off. Depth images are not compared.
+  /// (SensorConfigCheck), unless `SensorOptions::checkBeams` is off. Depth images are not compared.
+  /// \throws Error for other classes, unreadable external files, a rotating scan with unknown
+  ///         elevations, a depth image without usable intrinsics. Also when a compared scan
+  ///         contradicts the configuration.
   CObservationPoles::Ptr process(const mrpt::obs::CObservation& observation);
-  /// \brief Whether the next process() compares, instead of counting to three: for those who share
-  /// the scans of one rawlog among several objects.
+  /// \brief Sets whether the next process() compares its scan, instead of counting to three. For
+  /// several objects that share the scans of one rawlog.
   void checkNext(bool compare);
-  /// \brief The points that process() hands to PoleExtractor: a copy, lidar frame.
+  /// \brief Copy of the points that process() passes to PoleExtractor, LiDAR frame.
   /// \throws Error as process().
   io::Cloud lidarPoints(const mrpt::obs::CObservation& observation);
   /// \brief Counters of the last process().

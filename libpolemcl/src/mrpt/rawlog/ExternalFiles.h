@@ -1,13 +1,13 @@
 #pragma once
 /// \file ExternalFiles.h
-/// \brief Where the external files of a rawlog are. Private to the library.
+/// \brief Location of a rawlog's external files. Private to the library.
 
 #include <string>
 
 namespace polemcl {
 
-/// \brief Tells MRPT. Relative names of external files are meant from the folder MRPT's tools put
-/// them in, if there is one, else from the rawlog's own.
+/// \brief Sets the base folder of relative names in MRPT: the folder that MRPT's tools use
+/// (`<rawlog>_Images`) if it exists, otherwise the folder of the rawlog.
 void findExternals(const std::string& rawlog);
 
 }  // namespace polemcl

@@ -18,7 +18,7 @@ namespace polemcl {
 struct GzReadStream::Impl {
   gzFile file = nullptr;
   std::vector<unsigned char> buffer = std::vector<unsigned char>(1 << 18);
-  std::size_t begin = 0, end = 0;  ///< of what is not consumed yet
+  std::size_t begin = 0, end = 0;  ///< range not consumed yet
   PointCountGuard points;
 };
 
@@ -37,7 +37,7 @@ GzReadStream::~GzReadStream() {
   if (m_impl->file) gzclose(m_impl->file);
 }
 
-/// Makes bytes available; false at the end of the data, clean or not.
+/// Makes bytes available; false at the end of the data, clean or damaged.
 bool GzReadStream::refill() {
   Impl& impl = *m_impl;
   if (impl.begin < impl.end) return true;
@@ -45,17 +45,17 @@ bool GzReadStream::refill() {
   int code = Z_OK;
   gzerror(impl.file, &code);
   if (code == Z_ERRNO) throw Error(m_path + ": cannot be read: " + std::strerror(errno));
-  // Z_BUF_ERROR: gzip data without its end; Z_DATA_ERROR: damaged, also by its checksum.
+  // Z_BUF_ERROR: truncated gzip data; Z_DATA_ERROR: damaged data or wrong checksum.
   if (got <= 0 && code != Z_OK && code != Z_STREAM_END) m_cutShort = true;
   impl.begin = 0;
   impl.end = got > 0 ? static_cast<std::size_t>(got) : 0;
   return got > 0;
 }
 
-/// Bytes that can still come, at most.
+/// Upper bound of the bytes that are left.
 std::uint64_t GzReadStream::mostLeft() const {
   if (gzdirect(m_impl->file)) return m_fileSize - std::min(m_fileSize, m_position);
-  constexpr std::uint64_t buffered = 1 << 20;  // by zlib, and here
+  constexpr std::uint64_t buffered = 1 << 20;  // by zlib and by this class
   const auto at = static_cast<std::uint64_t>(std::max<z_off_t>(0, gzoffset(m_impl->file)));
   return buffered + io::greatestDeflateRatio * (m_fileSize - std::min(m_fileSize, at));
 }

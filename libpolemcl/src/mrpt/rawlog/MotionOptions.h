@@ -1,6 +1,6 @@
 #pragma once
 /// \file MotionOptions.h
-/// \brief How far odometry is trusted when a rawlog does not say so itself.
+/// \brief Uncertainty of odometry if the rawlog does not state it.
 
 #include <Eigen/Core>
 
@@ -22,9 +22,9 @@ struct MotionOptions {
   void validate() const;        ///< \throws Error
 };
 
-/// \brief Covariance of (x, y, yaw), m, m, rad, diagonal, of a motion that came without one:
-/// σ_xy = minXy + xyPerMetre·d + xyPerRadian·|yaw|, σ_yaw likewise, times covarianceFactor.
-/// \param motion In the robot frame before it.
+/// \brief Diagonal covariance of (x, y, yaw), m, m, rad, for a motion without one: σ_xy = minXy +
+/// xyPerMetre·d + xyPerRadian·|yaw|, σ_yaw in the same way, times covarianceFactor.
+/// \param motion In the robot frame before the motion.
 Eigen::Matrix3d motionCovariance(const Pose2D& motion, const MotionOptions& options);
 
 void bind(Binder& binder, MotionOptions& options);  ///< `[motion]`

@@ -1,6 +1,6 @@
 #pragma once
 /// \file OdometryTrack.h
-/// \brief Odometry readings over time, asked for poses in between.
+/// \brief Odometry readings over time, with interpolation between them.
 
 #include <map>
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace polemcl {
 
-/// \brief Readings in any order. Poses are in odometry's own frame.
+/// \brief Readings may come in any order. Poses are in the odometry frame.
 class OdometryTrack {
  public:
-  /// \brief Poses are held this long before the first and after the last reading, s.
+  /// \brief The first and last pose are also valid for this time before and after the readings, s.
   static constexpr double reach = 0.5;
 
   void add(double time, const Pose2D& pose) { m_readings[time] = pose; }
   bool empty() const { return m_readings.empty(); }
-  /// \brief True when there is a reading at `time` or later.
+  /// \brief Whether there is a reading at `time` or later.
   bool reaches(double time) const {
     return !m_readings.empty() && m_readings.rbegin()->first >= time;
   }
-  /// \brief Interpolated between the readings around `time`; none beyond `reach`.
+  /// \brief Pose interpolated between the readings around `time`; nullopt beyond `reach`.
   std::optional<Pose2D> at(double time) const;
-  /// \brief Drops readings that poses at `time` or later do not need.
+  /// \brief Drops readings that are not needed for poses at `time` or later.
   void forgetBefore(double time);
 
  private:

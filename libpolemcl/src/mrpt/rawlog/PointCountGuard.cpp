@@ -7,7 +7,7 @@ namespace polemcl {
 
 namespace {
 
-/// "mrpt::maps::CPointsMapXYZI", "CSimplePointsMap" of old files, and their like.
+/// E.g. "mrpt::maps::CPointsMapXYZI", or "CSimplePointsMap" of old files.
 bool isPointsMap(std::string_view name) {
   return name.find("PointsMap") != std::string_view::npos;
 }

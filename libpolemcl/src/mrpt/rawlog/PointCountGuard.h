@@ -1,6 +1,6 @@
 #pragma once
 /// \file PointCountGuard.h
-/// \brief Looks over MRPT's shoulder while it reads maps of points.
+/// \brief Detects the counts of point maps while MRPT reads them.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,13 +9,14 @@
 
 namespace polemcl {
 
-/// \brief MRPT's maps of points take memory for the count in the file before they read a point. The
-/// count stands right behind the header of the object (a byte with the length of the class's name,
-/// the name, a byte with the version), and MRPT reads each of these by itself: so it is known here.
+/// \brief MRPT's point maps allocate memory for the count in the file before they read a point. The
+/// count follows the header of the object: a byte with the length of the class name, the name, a
+/// byte with the version. MRPT reads each of them separately, so this class can recognize the
+/// count.
 class PointCountGuard {
  public:
-  /// \brief Is told of every piece that was read.
-  /// \return The count of points, when this piece is one.
+  /// \brief Call it for every block that was read.
+  /// \return The count of points, if this block is one.
   std::optional<std::uint32_t> see(const void* piece, std::size_t size);
   /// A point has at least x, y and z.
   static constexpr std::uint64_t pointBytes = 12;

@@ -19,8 +19,8 @@ double secondsSince(ScanClock::time_point begin) {
   return std::chrono::duration<double>(ScanClock::now() - begin).count();
 }
 
-/// One scan on its way through the pipeline; an error travels in its place, so that the first of
-/// the file is the one reported, whatever the threads do.
+/// One scan in the pipeline. An error travels in the scan's position: the first error of the file
+/// is thus the one reported, for any timing of the threads.
 struct Task {
   ScanSource::Scan scan;
   PoleScan result;
@@ -35,7 +35,7 @@ class Stream {
         m_pace(options.pace),
         m_source(path, options.motion, options.allowTruncated),
         m_extractions([options] { return ObservationPoleExtractor(options.extraction); }) {
-    m_extractions.local();  // refuses bad options here, whatever the rawlog holds
+    m_extractions.local();  // reports invalid options here, for any rawlog
   }
 
   TaskPtr read();
@@ -52,7 +52,7 @@ class Stream {
   bool m_ended = false;
 };
 
-/// The next scan or the error that stands in its place; none at the end.
+/// The next scan, or the error at its position; null at the end.
 TaskPtr Stream::read() {
   if (m_ended) return nullptr;
   auto task = std::make_shared<Task>();
@@ -88,7 +88,7 @@ void Stream::extract(Task& task) {
   const auto begin = ScanClock::now();
   try {
     ObservationPoleExtractor& extraction = m_extractions.local();
-    // By index, so that the threads have no say in it.
+    // By index, so that the result does not depend on the threads.
     extraction.checkNext(task.scan.index < 3);
     result.observation = extraction.process(*observation);
     result.scan = observation;
@@ -130,7 +130,7 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
     throw Error("threads = " + std::to_string(options.threads) + ": allowed is 0 or more");
   findExternals(path);
   Stream stream(path, options);
-  const int cores = tbb::info::default_concurrency();  // more threads than that are refused by TBB
+  const int cores = tbb::info::default_concurrency();  // TBB rejects more threads than that
   const int threads = options.threads > 0 ? std::min(options.threads, cores) : cores;
   tbb::task_arena arena(threads);
   arena.execute([&] {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file PoleSequence.h
-/// \brief A rawlog of scans or of poles, as poles with the motions between them; extracted in
-/// parallel.
+/// \brief Reads a rawlog of scans or poles as poles with the motions between them. Extraction runs
+/// in parallel.
 
 #include <chrono>
 #include <functional>
@@ -16,7 +16,7 @@
 
 namespace polemcl {
 
-/// \brief The clock by which latencies are measured.
+/// \brief Clock for measuring latencies.
 using ScanClock = std::chrono::steady_clock;
 
 struct SequenceOptions {
@@ -30,75 +30,78 @@ struct SequenceOptions {
   std::function<ScanClock::time_point(double)> pace = {};
 };
 
-/// \brief What was in the rawlog.
+/// \brief Statistics of the rawlog.
 struct SequenceCounts {
-  std::size_t scans = 0;          ///< given out, empty ones included
-  std::size_t storedScans = 0;    ///< of these, poles that were read as they are
-  std::size_t emptyScans = 0;     ///< without a valid point (and no poles either)
-  std::size_t points = 0;         ///< valid points, all scans
-  std::size_t invalidPoints = 0;  ///< NaN, infinite or at the sensor: dropped
+  std::size_t scans = 0;          ///< scans returned, including empty ones
+  std::size_t storedScans = 0;    ///< scans that were stored as poles in the rawlog
+  std::size_t emptyScans = 0;     ///< scans without valid points and poles
+  std::size_t points = 0;         ///< valid points of all scans
+  std::size_t invalidPoints = 0;  ///< points dropped: NaN, infinite or at the origin
   std::size_t poles = 0;
-  std::size_t otherSensors = 0;    ///< scans of another sensor label than the first's: not used
-  std::size_t unknownMotions = 0;  ///< scans after the first without any odometry
-  bool truncated = false;          ///< the file ended too early, and that was allowed
+  std::size_t otherSensors = 0;  ///< ignored scans, whose sensor label differs from the first one's
+  std::size_t unknownMotions = 0;  ///< scans after the first without odometry
+  bool truncated = false;          ///< the file is truncated, and this was allowed
 };
 
-/// \brief One scan as it comes out of the stream.
+/// \brief One scan from the stream.
 struct PoleScan {
   std::size_t index = 0;  ///< 0-based among the scans of the rawlog
-  double time = 0;        ///< s, of the observation
-  /// Since the scan before, in its robot frame; identity without covariance for the first; none
-  /// when the rawlog has no odometry in between.
+  double time = 0;        ///< time of the observation, s
+  /// Motion since the previous scan, in its robot frame. Identity without covariance for the first
+  /// scan; nullopt if the rawlog has no odometry in between.
   std::optional<io::PlanarMotion> motion;
   CObservationPoles::Ptr observation;  ///< never null
-  /// What the poles were extracted from, its points maybe outside still; null for stored poles.
+  /// Source of the poles; its points may still be in an external file. Null for stored poles.
   mrpt::obs::CObservation::Ptr scan;
-  std::size_t points = 0;         ///< valid points; 0 for stored poles that do not tell
+  std::size_t points = 0;         ///< valid points; 0 if stored poles do not state it
   std::size_t invalid = 0;        ///< dropped points
-  ExtractionReport report;        ///< of the extraction; all zero for stored poles
+  ExtractionReport report;        ///< report of the extraction; all zero for stored poles
   bool stored = false;            ///< true: read as poles, not extracted
-  ScanClock::time_point arrival;  ///< when it was there: read, or due by SequenceOptions::pace
-  double readSeconds = 0;         ///< spent on reading it
-  double extractSeconds = 0;      ///< spent on its points and poles
-  /// Scans of the whole rawlog, judged from the share of the file read so far; 0: not known yet.
+  ScanClock::time_point arrival;  ///< time when the scan was read, or due by SequenceOptions::pace
+  double readSeconds = 0;         ///< time spent on reading it
+  double extractSeconds = 0;      ///< time spent on loading points and extracting poles
+  /// Estimated number of scans in the rawlog, from the fraction of the file read so far; 0:
+  /// unknown.
   std::size_t expected = 0;
 };
 
-/// \brief Called with the scans done so far and those expected in all, 0: not known.
+/// \brief Called with the number of finished scans and the expected total (0: unknown).
 using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// \brief Streams a rawlog: reads in order, extracts on several threads, hands out in order. At
+/// \brief Streams a rawlog: reads in order, extracts on several threads, returns scans in order. At
 /// most a few scans per thread are in memory.
 ///
-/// Scans are the observations that ObservationPoleExtractor can process, and CObservationPoles; all
-/// of the class and sensor label that come first (of a frame that holds both, the poles). External
-/// files with relative names are looked for in `<rawlog>_Images` if there is one, else beside the
-/// rawlog (MRPT keeps one such folder for the whole program). Motions: the action before the frame
-/// (for `emOdometry` the stored reading; its covariance is the Gaussian model's if it has one, else
-/// `[motion]`'s), several actions composed; else CObservationOdometry, interpolated at the time of
-/// the scan (held for 0.5 s before the first and after the last reading), covariance from
-/// `[motion]`.
+/// Scans are the observations that ObservationPoleExtractor can process, and CObservationPoles.
+/// Only those with the class and sensor label of the first one are used; if the first frame holds
+/// poles and other scans, the poles are used. External files with relative names are searched in
+/// `<rawlog>_Images` if it exists, otherwise beside the rawlog. (MRPT has one such folder for the
+/// whole program.)
 ///
-/// While a scan is extracted and consumed, the next ones are read and extracted.
+/// Motions come from the action before the frame; several actions are composed. For `emOdometry`
+/// the stored reading is used, with the covariance of the Gaussian model or, without one, that of
+/// `[motion]`. Without actions, motions come from CObservationOdometry with the covariance of
+/// `[motion]`. Its readings are interpolated at the time of the scan (the first and last are valid
+/// for another 0.5 s).
 ///
-/// An error ends the stream in its place: the scans before it have been handed out.
+/// The next scans are read and extracted while a scan is consumed. An error ends the stream at its
+/// position: all scans before it have been returned.
 /// \param consume Called in order, from one thread at a time.
-/// \throws Error as RawlogReader and ObservationPoleExtractor do, naming file and scan; and what
-/// consume throws.
+/// \throws Error as RawlogReader and ObservationPoleExtractor do, with file and scan. Exceptions of
+///         `consume` are passed on.
 SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
                            const std::function<void(const PoleScan&)>& consume);
 
-/// \brief One scan, ready for map and filter.
+/// \brief One scan in the form that map and filter need.
 struct PoleFrame {
   double time = 0;                         ///< s
   std::optional<io::PlanarMotion> motion;  ///< as in PoleScan
   std::vector<PoleDetection> poles_robot;
-  std::size_t points = 0;                   ///< valid points of the scan; 0: none, or not known
-  std::vector<float> visibilityRange = {};  ///< as CObservationPoles carries it; maybe empty
-  Pose2D pose_robot_sensor = {};            ///< of the frame of visibilityRange
+  std::size_t points = 0;                   ///< valid points of the scan; 0: none or unknown
+  std::vector<float> visibilityRange = {};  ///< as in CObservationPoles; may be empty
+  Pose2D pose_robot_sensor = {};            ///< pose of the frame of visibilityRange
 };
 
-/// \brief What map and filter need of a scan. \param scan Of streamPoles().
+/// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().
 PoleFrame frameOf(const PoleScan& scan);
 
 struct PoleSequence {
@@ -106,7 +109,7 @@ struct PoleSequence {
   SequenceCounts counts;
 };
 
-/// \brief All of a rawlog, poles only.
+/// \brief Reads a whole rawlog, poles only.
 /// \param progress May be empty.
 /// \throws Error as streamPoles().
 PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,

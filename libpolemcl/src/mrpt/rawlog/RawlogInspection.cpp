@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kMostScans = 8;
 
-/// Scans spread evenly over the rawlog, read once: when there are too many, every second is dropped
-/// and from then on twice as many are passed over.
+/// Scans spread evenly over the rawlog, in a single pass. If there are too many, every second one
+/// is dropped and the stride is doubled.
 std::vector<ScanSource::Scan> spreadScans(ScanSource& source, std::size_t& count) {
   std::vector<ScanSource::Scan> kept;
   std::size_t stride = 1;
@@ -46,7 +46,7 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
         "[sensor], or give elevations_deg in the order of the rows");
 }
 
-/// The options of a sensor that is known in its own axes, for clouds with this sensor pose.
+/// The options of a sensor identified in its own axes, for clouds with this sensor pose.
 SensorOptions mounted(const SensorIdentification& sensor, const mrpt::poses::CPose3D& pose) {
   SensorOptions options = sensor.options();
   const Eigen::Matrix3d R_robot_lidar = pose.getRotationMatrix().asEigen() *
@@ -71,7 +71,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   const auto scans = spreadScans(source, result.scans);
   if (scans.empty()) throw Error(path + ": there is no scan in it");
   ObservationPoleExtractor reader{
-      ObservationPoleExtractorOptions()};  // without an origin: from that of the clouds
+      ObservationPoleExtractorOptions()};  // without an origin: that of the clouds applies
   std::vector<io::Cloud> clouds;
   std::vector<PointsView> views;
   for (const auto& scan : scans) {

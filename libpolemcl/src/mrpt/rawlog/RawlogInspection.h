@@ -1,6 +1,6 @@
 #pragma once
 /// \file RawlogInspection.h
-/// \brief What LiDAR made the scans of a rawlog?
+/// \brief Identifies the LiDAR that made the scans of a rawlog.
 
 #include <mrpt/poses/CPose3D.h>
 
@@ -12,22 +12,21 @@
 namespace polemcl {
 
 struct RawlogInspection {
-  std::size_t scans = 0;          ///< in the rawlog
-  std::vector<std::size_t> used;  ///< 0-based indices of those that were looked at
+  std::size_t scans = 0;          ///< number of scans in the rawlog
+  std::vector<std::size_t> used;  ///< 0-based indices of the examined scans
   std::string label;              ///< class and sensor label of the scans
   mrpt::poses::CPose3D sensorPose;
-  /// In the lidar frame of ObservationPoleExtractor before `origin` is applied.
+  /// In the LiDAR frame of ObservationPoleExtractor before `origin` is applied.
   SensorIdentification sensor;
-  /// `[sensor]` for this rawlog; `origin` is along the robot's axes. When `sensor.onItsHead`, for
-  /// the same clouds with a sensor pose that tells so.
+  /// `[sensor]` for this rawlog; `origin` is along the robot's axes. If `sensor.onItsHead`, the
+  /// options are for the same clouds with a sensor pose that is corrected accordingly.
   SensorOptions options;
 };
 
-/// \brief Looks at up to eight scans, spread over the rawlog.
-/// \throws Error as RawlogReader, ObservationPoleExtractor and estimateBeamTable() do, naming the
-/// file; when there is
-///         no scan, or scans have no beams by nature (depth cameras) or do not tell their
-///         elevations (rotating scans).
+/// \brief Examines up to eight scans, spread over the rawlog.
+/// \throws Error with the file, as RawlogReader, ObservationPoleExtractor and estimateBeamTable()
+///         do. Also when there is no scan, when the scans have no beams (depth cameras), or when
+///         they do not state their elevations (rotating scans).
 RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated = false);
 
 }  // namespace polemcl

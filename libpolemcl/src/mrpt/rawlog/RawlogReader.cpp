@@ -25,8 +25,8 @@ struct RawlogReader::Impl {
   GzReadStream stream;
   bool allowTruncated;
   bool truncated = false, ended = false;
-  std::optional<Object> pending;  ///< read ahead: what follows an action
-  std::uint64_t objects = 0;      ///< read so far
+  std::optional<Object> pending;  ///< object after an action, read ahead
+  std::uint64_t objects = 0;      ///< number of objects read so far
 
   std::optional<Object> readObject();
   std::optional<Object> nextObject();
@@ -36,7 +36,7 @@ struct RawlogReader::Impl {
 
 namespace {
 
-/// The class in "... class 'NAME' which is not registered ...", if the message is that.
+/// The class in "... class 'NAME' which is not registered ..."; empty for other messages.
 std::string unregisteredClass(const std::string& message) {
   const auto end = message.find("' which is not registered");
   if (end == std::string::npos) return {};
@@ -52,7 +52,7 @@ bool printable(const std::string& text) {
 
 }  // namespace
 
-/// The data ends inside the object that starts at `offset`: an Error unless that is allowed.
+/// Handles data that end inside the object at `offset`: an Error, unless this is allowed.
 void RawlogReader::Impl::endsHere(std::uint64_t offset) {
   ended = true;
   if (!allowTruncated)
@@ -73,7 +73,7 @@ void RawlogReader::Impl::explain(std::uint64_t offset, const std::string& what) 
               " is damaged: " + mrptReason(what));
 }
 
-/// One object of the file, none at its end.
+/// Reads one object of the file; nullopt at its end.
 std::optional<RawlogReader::Impl::Object> RawlogReader::Impl::readObject() {
   if (ended) return std::nullopt;
   const std::uint64_t offset = stream.getPosition();
@@ -94,9 +94,9 @@ std::optional<RawlogReader::Impl::Object> RawlogReader::Impl::readObject() {
     return object;
   } catch (const std::exception& error) {
     what = error.what();
-    if (what.rfind(name + ": ", 0) == 0) throw;  // of the file itself, not of what is in it
+    if (what.rfind(name + ": ", 0) == 0) throw;  // about the file itself, not its content
   }
-  // A class that is not known may also be the first to run into the end of the data.
+  // An unknown class may also be the first to reach the end of the data.
   if (!stream.cutShort() || !unregisteredClass(what).empty()) explain(offset, what);
   endsHere(offset);
   return std::nullopt;
@@ -129,7 +129,7 @@ bool RawlogReader::next(RawlogEntry& entry) {
     if (entry.observation || entry.frame) return true;
     if (!entry.action) continue;
     auto following = m_impl->readObject();
-    if (!following) return true;  // rawlogs that end with an action are common
+    if (!following) return true;  // rawlogs often end with an action
     entry.frame = std::dynamic_pointer_cast<CSensoryFrame>(following->object);
     if (!entry.frame) m_impl->pending = std::move(following);
     return true;

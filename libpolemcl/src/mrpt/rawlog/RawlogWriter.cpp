@@ -13,14 +13,14 @@ namespace polemcl {
 
 namespace {
 
-/// MRPT's interface to a stream of the standard library.
+/// MRPT's stream interface to a stream of the standard library.
 class OutputStream : public mrpt::io::CStream {
  public:
   explicit OutputStream(std::ostream& stream) : m_stream(stream) {}
   std::size_t Write(const void* buffer, std::size_t count) override {
     m_stream.write(static_cast<const char*>(buffer), static_cast<std::streamsize>(count));
     m_position += count;
-    return count;  // failures (disk full) are kept by the stream, and reported by commit()
+    return count;  // the stream remembers failures (disk full); commit() reports them
   }
   std::size_t Read(void*, std::size_t) override {
     throw std::logic_error("a stream for writing only");
@@ -56,7 +56,7 @@ struct RawlogWriter::Impl {
   void write(const mrpt::serialization::CSerializable& object) {
     auto archive = mrpt::serialization::archiveFrom(stream);
     archive << object;
-    if (!file.stream()) file.commit();  // throws: do not go on for hours with a full disk
+    if (!file.stream()) file.commit();  // throws now instead of writing for hours to a full disk
   }
 };
 

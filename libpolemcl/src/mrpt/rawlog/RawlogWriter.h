@@ -1,6 +1,6 @@
 #pragma once
 /// \file RawlogWriter.h
-/// \brief Writes rawlogs, uncompressed, under a temporary name until they are complete.
+/// \brief Writes rawlogs, uncompressed. They have a temporary name until they are complete.
 
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservation.h>
@@ -11,7 +11,7 @@
 
 namespace polemcl {
 
-/// \brief Destroyed before commit(), it leaves nothing behind.
+/// \brief Writer of one rawlog. If it is destroyed before commit(), no file remains.
 class RawlogWriter {
  public:
   /// \throws Error when the folder cannot be written.
@@ -20,14 +20,14 @@ class RawlogWriter {
   RawlogWriter(RawlogWriter&&) noexcept;
   RawlogWriter& operator=(RawlogWriter&&) noexcept;
 
-  /// \brief An action and a sensory frame that holds the observation.
-  /// \throws Error when an action's movement would not survive: CActionRobotMovement2D at
+  /// \brief Writes an action and a sensory frame with the observation.
+  /// \throws Error when an action's movement would be lost: CActionRobotMovement2D with
   ///         `emOdometry` stores the odometry reading, not `poseChange`.
   void write(const mrpt::obs::CActionCollection& action,
              const mrpt::obs::CObservation::Ptr& observation);
-  /// \brief A bare observation.
+  /// \brief Writes a single observation.
   void write(const mrpt::obs::CObservation& observation);
-  /// \brief Gives the file its name. \throws Error when not all could be written (disk full).
+  /// \brief Gives the file its name. \throws Error when a write failed (disk full).
   void commit();
 
  private:

@@ -17,7 +17,7 @@ using namespace mrpt::obs;
 
 namespace {
 
-/// Scans that may wait for later odometry: bounds the memory, and the harm of a rawlog without any.
+/// Most scans that wait for later odometry. Bounds the memory, and the delay without odometry.
 constexpr std::size_t mostWaiting = 32;
 
 Pose2D planar(const mrpt::poses::CPose2D& pose) {
@@ -30,7 +30,7 @@ std::optional<io::PlanarMotion> motionOf2D(const CActionRobotMovement2D& action,
       dynamic_cast<const mrpt::poses::CPosePDFGaussian*>(action.poseChange.get()) != nullptr;
   io::PlanarMotion motion;
   if (action.estimationMethod == CActionRobotMovement2D::emOdometry) {
-    // The reading itself: what the motion model made of it may be random samples.
+    // The reading itself: the motion model may have turned it into random samples.
     motion.mean = planar(action.rawOdometryIncrementReading);
     motion.covariance = motionCovariance(motion.mean, options);
     if (!isGaussian) return motion;
@@ -124,13 +124,13 @@ void ScanSource::take(const RawlogEntry& entry) {
   }
   if (entry.observation) take(entry.observation);
   if (!entry.frame) return;
-  if (m_sensor.empty())  // of several scans in one frame, the one that is ready
+  if (m_sensor.empty())  // prefer poles in a frame with several scans
     if (const auto poles = entry.frame->getObservationByClass<CObservationPoles>())
       m_sensor = sensorOf(*poles);
   for (const auto& observation : *entry.frame) take(observation);
 }
 
-/// Without actions, a scan waits until odometry has come that is later than itself.
+/// Without actions, a scan waits for odometry later than itself.
 bool ScanSource::mustWait(const Scan& scan) const {
   return !m_ended && !m_anyAction && !m_odometry.reaches(scan.time) &&
          m_waiting.size() < mostWaiting;
@@ -173,7 +173,7 @@ std::optional<ScanSource::Scan> ScanSource::next() {
     }
   } catch (...) {
     m_ended = true;
-    m_error = std::current_exception();  // in its place: the scans that wait come before it
+    m_error = std::current_exception();  // reported later: the waiting scans come before it
   }
   if (!m_waiting.empty()) return release();
   if (m_error) std::rethrow_exception(m_error);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file ScanSource.h
-/// \brief The scans of a rawlog in order, each with the motion since the one before.
+/// \brief The scans of a rawlog in order, each with the motion since the previous one.
 
 #include <mrpt/obs/CActionCollection.h>
 
@@ -16,12 +16,12 @@
 
 namespace polemcl {
 
-/// \brief The planar motion an action estimates; none when it holds no movement.
+/// \brief The planar motion in an action; nullopt when it holds no movement.
 /// \throws Error when it is not finite or its covariance is not positive semidefinite.
 std::optional<io::PlanarMotion> motionOf(const mrpt::obs::CActionCollection& actions,
                                          const MotionOptions& options);
 
-/// \brief Reads scans, not yet their points.
+/// \brief Reads scans without loading their points.
 class ScanSource {
  public:
   struct Scan {
@@ -32,13 +32,13 @@ class ScanSource {
   };
   ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated);
 
-  /// \brief The next scan, none at the end. \throws Error as RawlogReader, and naming the scan.
+  /// \brief The next scan; nullopt at the end. \throws Error as RawlogReader, with the scan.
   std::optional<Scan> next();
 
   std::size_t otherSensors() const { return m_otherSensors; }
   std::size_t unknownMotions() const { return m_unknownMotions; }
   bool truncated() const { return m_reader.truncated(); }
-  /// \brief Scans of the whole file, judged from those in the share read so far; 0: not known.
+  /// \brief Estimated number of scans in the file, from the fraction read so far; 0: unknown.
   std::size_t expected() const;
 
  private:
@@ -50,12 +50,12 @@ class ScanSource {
   std::string m_path;
   MotionOptions m_options;
   RawlogReader m_reader;
-  std::optional<io::PlanarMotion> m_moved;  ///< by actions, since the last scan
+  std::optional<io::PlanarMotion> m_moved;  ///< motion by actions since the last scan
   OdometryTrack m_odometry;
-  std::deque<Scan> m_waiting;  ///< for odometry later than they are
-  std::string m_sensor;        ///< class and label of the scans that are used; empty: none yet
-  double m_lastTime = 0;       ///< of the scan released last
-  std::exception_ptr m_error;  ///< why the reading ended
+  std::deque<Scan> m_waiting;  ///< scans waiting for later odometry
+  std::string m_sensor;        ///< class and label of the scans in use; empty before the first
+  double m_lastTime = 0;       ///< time of the last scan released
+  std::exception_ptr m_error;  ///< reason why reading ended
   bool m_ended = false, m_anyAction = false;
   std::size_t m_scans = 0, m_released = 0, m_otherSensors = 0, m_unknownMotions = 0;
 };
