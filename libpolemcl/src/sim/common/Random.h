@@ -1,6 +1,6 @@
 #pragma once
 /// \file Random.h
-/// \brief Small seeded generator with its own distributions: the same bytes everywhere.
+/// \brief Small seeded generator with its own distributions: equal bytes on every platform.
 
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,7 @@ inline std::uint64_t hash(std::uint64_t value) {
   value = (value ^ (value >> 27)) * 0x94d049bb133111ebull;
   return value ^ (value >> 31);
 }
-/// \brief Hash of an ordered list of numbers: independent streams from one seed.
+/// \brief Hash of an ordered list of numbers: gives independent streams from one seed.
 template <class... Rest>
 std::uint64_t hash(std::uint64_t first, Rest... rest) {
   return hash(hash(first) ^ (hash(static_cast<std::uint64_t>(rest)...) * 0x2545f4914f6cdd1dull));
@@ -24,7 +24,8 @@ inline float unitFloat(std::uint64_t bits) {
   return static_cast<float>(bits >> 40) * 0x1p-24f;
 }
 
-/// \brief SplitMix64 sequence. Cheap to create, so that each scan, object and pixel has its own.
+/// \brief SplitMix64 sequence. It is cheap to create, so that each scan, object and pixel has its
+/// own.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : m_state(seed) {}
@@ -36,7 +37,7 @@ class Random {
   /// \brief Uniform in [0, 1).
   double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// \brief Standard normal (Box and Muller, one of the pair).
+  /// \brief Standard normal (Box-Muller, one number of the pair).
   double normal() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * M_PI * uniform());

@@ -8,8 +8,8 @@
 namespace polemcl::sim {
 
 void bind(Binder& binder, WorldOptions& options);  ///< `[world]`
-/// \brief `[simulation]` and `[world]`. The LiDAR and its mounting are those of `[sensor]`; the
-/// program fills them in.
+/// \brief `[simulation]` and `[world]`. The LiDAR and its mounting come from `[sensor]`; the
+/// program copies them.
 void bind(Binder& binder, SimulationOptions& options);
 
 }  // namespace polemcl::sim

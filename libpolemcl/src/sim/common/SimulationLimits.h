@@ -1,6 +1,6 @@
 #pragma once
 /// \file SimulationLimits.h
-/// \brief What the settings of the simulation may be: for the INI and for validate().
+/// \brief Allowed ranges of the simulation settings, for INI files and validate().
 
 #include <sstream>
 
@@ -24,7 +24,7 @@ inline const Range origin = Range::between(-10, 10), height = Range::between(0.3
                    scans = Range::between(0, 1e7), falseFactor = Range::between(0, 10),
                    detour = Range::between(0, 2);
 
-/// \throws Error that names the key, unless its value is allowed.
+/// \throws Error with the key, unless its value is allowed.
 inline void require(const char* key, double value, const Range& allowed) {
   if (allowed.contains(value)) return;
   std::ostringstream message;

@@ -38,7 +38,7 @@ void SimulationOptions::validate() const {
   require("[simulation] drive_seed", static_cast<double>(driveSeed), limits::seed);
   require("[simulation] false_factor", falseFactor, limits::falseFactor);
   require("[simulation] detour", detour, Range::between(0, world.sideStreets));
-  // Half of a vehicle has to fit between the sensor and the kerb.
+  // Half the width of a vehicle must fit between sensor and kerb.
   const double room = world.roadWidth / 2 - 1.2;
   require("[simulation] lane_offset_m", laneOffset, Range::between(-room, room));
 }

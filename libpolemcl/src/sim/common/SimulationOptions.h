@@ -1,6 +1,6 @@
 #pragma once
 /// \file SimulationOptions.h
-/// \brief The settings of the simulated world and of the drive through it.
+/// \brief Settings of the simulated world and of the drive through it.
 
 #include <cstdint>
 #include <string>

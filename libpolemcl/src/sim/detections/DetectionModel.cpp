@@ -18,10 +18,10 @@ const std::array<double, kQuantileLevels.size()>& levelScores() {
   return scores;
 }
 
-/// Place between two neighbours of an ascending list.
+/// Position between two neighbours of an ascending list.
 struct Between {
   std::size_t low = 0, high = 0;
-  double share = 0;  ///< of the higher one
+  double share = 0;  ///< weight of the higher neighbour
   Between(const std::vector<double>& at, double x) {
     const auto above = std::upper_bound(at.begin(), at.end(), x);
     high = static_cast<std::size_t>(above - at.begin());
@@ -62,7 +62,7 @@ void requireSpectrum(const std::string& key, const NoiseSpectrum& spectrum) {
   if (sum > 1 + 1e-6) refuse(key, "the shares sum up to more than 1");
 }
 
-/// What a reported value can be.
+/// Checks a reported value against its possible range.
 void requireReported(const std::string& key, Reported reported, const Quantiles& quantiles) {
   requireAscending(key, quantiles.data(), quantiles.size(), false);
   const bool sigma = reported == Reported::sigmaAlong || reported == Reported::sigmaAcross;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file DetectionModel.h
-/// \brief What an extractor reports of the poles around it, as statistics: it stands in for casting
-/// rays and extracting poles on long drives. share/doc/simulation.md describes it.
+/// \brief Statistical model of an extractor's detections. It replaces ray casting and pole
+/// extraction on long drives. share/doc/simulation.md describes it.
 
 #include <array>
 #include <string>
@@ -12,22 +12,23 @@
 
 namespace polemcl::sim {
 
-/// \brief What a detection is of.
+/// \brief Class of the object behind a detection. `clutter` is a lasting false detection: an object
+/// that looks like a pole and is found from many places. `passing` is a single false detection.
 enum class DetectionClass { lampPost, sign, trafficLight, tree, clutter, passing, count_ };
-/// Lasting false detections: something looks like a pole and is found from many places.
+/// Number of classes.
 inline constexpr int kDetectionClasses = static_cast<int>(DetectionClass::count_);
 const char* name(DetectionClass detectionClass);
-/// \brief Of a true pole.
+/// \brief Class of a true pole.
 DetectionClass classOf(Kind kind);
 
-/// \brief What a detection says, or is off by.
+/// \brief Values of a detection and their errors.
 enum class Reported {
   sigmaAlong,   ///< reported standard deviation along the ray, m
-  sigmaAcross,  ///< and across, m
-  errorAlong,   ///< error along the ray, + beyond, as a multiple of errorScale()
-  errorAcross,  ///< and across, + left, likewise
+  sigmaAcross,  ///< reported standard deviation across the ray, m
+  errorAlong,   ///< error along the ray, + beyond, divided by errorScale()
+  errorAcross,  ///< error across the ray, + left, divided by errorScale()
   confidence,
-  radius,  ///< reported minus true, m; of what is no pole the reported one
+  radius,  ///< reported minus true, m; without a true pole the reported one
   bottom,  ///< m above ground
   top,     ///< m above ground
   points,
@@ -36,65 +37,68 @@ enum class Reported {
 inline constexpr int kReported = static_cast<int>(Reported::count_);
 const char* name(Reported reported);
 
-/// Probabilities of the quantiles that stand for a distribution.
+/// Probabilities of the quantiles that describe a distribution.
 inline constexpr std::array<double, 11> kQuantileLevels{0.002, 0.01, 0.05, 0.15, 0.3,  0.5,
                                                         0.7,   0.85, 0.95, 0.99, 0.998};
 /// \brief Values at kQuantileLevels, ascending.
 using Quantiles = std::array<double, kQuantileLevels.size()>;
-/// \brief The value at a standard normal number z: linear in z between the levels, constant beyond.
+/// \brief The value at a standard normal number z: linear in z between the levels, constant
+/// outside.
 double valueAt(const Quantiles& quantiles, double z);
-/// \brief The z of a value, the middle one where several have that value.
+/// \brief The z of a value; if several z have this value, the middle one.
 double scoreOf(const Quantiles& quantiles, double value);
 
-/// \brief One class. Functions of range are given at the ranges of the model and linear between.
+/// \brief Model of one class. Functions of range are given at the model's ranges, linear between
+/// them.
 struct ClassModel {
-  /// Probability that one is detected, at DetectionModel::detectedRange; empty for `passing`.
+  /// Probability of detection at DetectionModel::detectedRange; empty for `passing`.
   std::vector<double> detected;
-  /// What is reported, at DetectionModel::reportedRange.
+  /// Distributions of the reported values at DetectionModel::reportedRange.
   std::array<std::vector<Quantiles>, kReported> reported;
 };
 
-/// \brief What seasons and building sites change. Scores are added to the threshold of visibility,
-/// by class of poles: lamp post, sign, traffic light, tree. All 0: nothing changes.
+/// \brief Effects of seasons and building sites. Scores are added to the visibility threshold, by
+/// class of pole: lamp post, sign, traffic light, tree. With all values 0, nothing changes.
 struct SeasonModel {
-  std::array<double, 4> snow{};  ///< score of poles in a snow bank, for each 0.5 m it is high
-  std::array<double, 4> bare{};  ///< score when no leaves are out
-  double fence = 0;              ///< score behind a fence of mesh
+  std::array<double, 4> snow{};  ///< score of poles in a snow bank, per 0.5 m of its height
+  std::array<double, 4> bare{};  ///< score when the trees are bare
+  double fence = 0;              ///< score behind a mesh fence
   double siteClutter = 0;        ///< lasting false objects per metre of building site
 };
 
 struct DetectionModel {
-  std::string sensor;        ///< `[sensor] model` it was fitted for
-  double height = 1;         ///< of the sensor above ground, m
-  double maxRange = 40;      ///< nothing is detected beyond, m
+  std::string sensor;        ///< `[sensor] model` of the fit
+  double height = 1;         ///< height of the sensor above ground, m
+  double maxRange = 40;      ///< range of the farthest detections, m
   std::uint32_t points = 0;  ///< valid points of a scan, median
-  std::string fittedOn;      ///< for people
-  double behindHouses = 0;   ///< probability that a pole hidden by a house is detected all the same
+  std::string fittedOn;      ///< description of the training data, for humans
+  double behindHouses = 0;   ///< probability of detecting a pole hidden by a house
   std::vector<double> detectedRange, reportedRange;  ///< ascending, m
-  /// How far errors grow with the sigma reported: 1, as they should; 0, not at all.
+  /// Exponent of errors over reported sigmas: 1 if errors are proportional to them, 0 if
+  /// independent.
   double errorExponent = 1;
   std::array<ClassModel, kDetectionClasses> classes;
   NoiseSpectrum poleVisibility, clutterVisibility;
   std::array<NoiseSpectrum, kReported> noise;
   double clutterAlways = 0, clutterToday = 0;  ///< lasting false objects per metre of road
-  Quantiles clutterLateral{};  ///< of these, distance from the middle of the road, m
-  double passing = 0;          ///< passing false detections per scan
-  Quantiles passingRange{};    ///< of these, m
+  Quantiles clutterLateral{};  ///< distance of these objects from the middle of the road, m
+  double passing = 0;          ///< `passing` detections per scan
+  Quantiles passingRange{};    ///< range of these detections, m
   SeasonModel season;
 
   const ClassModel& of(DetectionClass c) const { return classes[static_cast<int>(c)]; }
   const NoiseSpectrum& noiseOf(Reported r) const { return noise[static_cast<int>(r)]; }
-  /// \brief Threshold on a standard normal number below which one of the class is detected.
+  /// \brief Threshold on a standard normal number; below it, an object of the class is detected.
   double detectionScore(DetectionClass c, double range) const;
-  /// \brief What is reported at a range, for a standard normal number.
+  /// \brief The value reported at a range, for a standard normal number.
   double value(DetectionClass c, Reported r, double range, double z) const;
 
-  /// \brief What errors are multiples of, m: the reported sigma to the power of errorExponent,
-  /// times the usual sigma at that range to the power of what is left of 1. \param sigma Which:
-  /// sigmaAlong or sigmaAcross. \param reported Its value, m.
+  /// \brief Divisor of the normalized errors, m: reported^e · usual^(1 − e), where e is
+  /// errorExponent and `usual` is the median reported sigma at this range.
+  /// \param sigma sigmaAlong or sigmaAcross. \param reported Its value, m.
   double errorScale(DetectionClass c, Reported sigma, double range, double reported) const;
 
-  /// \throws Error naming the key as it is in the file and what is allowed.
+  /// \throws Error with the key of the file and the allowed values.
   void validate() const;
 };
 

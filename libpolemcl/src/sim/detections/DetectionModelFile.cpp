@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "polemcl detection model 1";
 
-/// One object of the file: hands out its values, and complains about those that nobody asked for.
+/// One object of the file: returns its values, and reports keys that nobody asked for.
 class Section {
  public:
   Section(const Json& json, std::string where) : m_json(json), m_where(std::move(where)) {
@@ -213,7 +213,7 @@ Json toJson(const DetectionModel& model) {
           {"classes", classes}};
 }
 
-/// Objects over several lines, lists of numbers on one: small enough to be read.
+/// Objects over several lines, lists of numbers on one line, for readability.
 void print(std::ostream& out, const Json& value, const std::string& indent) {
   const bool nested = value.is_object() || (value.is_array() && value.front().is_array());
   if (!nested) {

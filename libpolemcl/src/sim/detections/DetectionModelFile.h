@@ -8,11 +8,11 @@
 
 namespace polemcl::sim {
 
-/// \brief \throws Error naming the file and the key: cannot be read, no JSON, another format, a key
-/// missing or not known, a value of the wrong type or out of range.
+/// \brief \throws Error with file and key: not readable, not JSON, other format, missing or unknown
+/// key, value of the wrong type or out of range.
 DetectionModel readDetectionModel(const std::filesystem::path& file);
 
-/// \brief Writes it, atomically, numbers with three digits. \throws Error when it cannot be
+/// \brief Writes the model atomically, numbers with three digits. \throws Error when it cannot be
 /// written.
 void writeDetectionModel(const std::filesystem::path& file, const DetectionModel& model);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<double, 12> kDetectedRange{2, 4.5, 7, 10, 13, 16, 20, 24, 28, 32, 36, 39.5};
 constexpr std::array<double, 5> kReportedRange{3, 8, 14, 22, 33};
 constexpr std::array<std::size_t, 8> kLags{0, 1, 2, 4, 8, 16, 32, 64};  // scans
-constexpr std::size_t kFewSamples = 40;  // a distribution of fewer says little
+constexpr std::size_t kFewSamples = 40;  // fewer samples are not enough for a distribution
 constexpr std::size_t kFewPairs = 100;
 
 template <std::size_t n>
@@ -45,7 +45,7 @@ class Fit {
 
   DetectionModel run(const std::vector<ObservedStreet>& streets) {
     fitDetected();
-    fitReported();  // for the usual sigmas
+    fitReported();  // gives the usual sigmas
     fitErrorExponent();
     scaleErrors();
     fitReported();
@@ -55,8 +55,8 @@ class Fit {
   }
 
  private:
-  /// Slope of the logarithm of errors over that of sigmas, both against what is usual at that
-  /// range (Harvey 1976).
+  /// Slope of log(error) over log(sigma), both relative to the usual sigma at the range (Harvey
+  /// 1976).
   void fitErrorExponent() {
     double count = 0, x = 0, y = 0, xx = 0, xy = 0;
     forTracks([&](const Track& track) {
@@ -78,7 +78,7 @@ class Fit {
     if (spread > 0) m_model.errorExponent = std::clamp((count * xy - x * y) / spread, 0.0, 1.0);
   }
 
-  /// Errors as multiples of what the model has them multiples of.
+  /// Converts errors from multiples of the reported sigma to multiples of errorScale().
   void scaleErrors() {
     const auto scale = [&](DetectionClass kind, Chance& chance) {
       for (int i = 0; i < 2 && chance.detection; ++i)
@@ -101,7 +101,8 @@ class Fit {
         for (const Track& track : drive->tracks) work(track);
   }
 
-  /// Counts per range, then thresholds such that, linear between the ranges, they give the counts.
+  /// Counts detections per range, then finds thresholds (linear between the ranges) that reproduce
+  /// the counts.
   void fitDetected() {
     const std::size_t nodes = m_model.detectedRange.size();
     std::size_t hidden = 0, hiddenFound = 0;
@@ -137,8 +138,8 @@ class Fit {
     adjustDetected();
   }
 
-  /// Linear thresholds between the ranges give other counts than steps: they are moved until they
-  /// do not.
+  /// Linear thresholds between the ranges give other counts than steps. They are adjusted until the
+  /// counts agree.
   void adjustDetected() {
     const std::size_t nodes = m_model.detectedRange.size();
     for (int sweep = 0; sweep < 20; ++sweep) {
@@ -190,7 +191,7 @@ class Fit {
               chance);
     for (int c = 0; c < kDetectionClasses; ++c) {
       m_model.classes[c].reported = {};
-      Samples pooled;  // over all ranges, for what is seldom
+      Samples pooled;  // over all ranges, for rare classes
       for (const Samples& row : samples[c])
         for (int r = 0; r < kReported; ++r)
           pooled[r].insert(pooled[r].end(), row[r].begin(), row[r].end());
@@ -214,7 +215,7 @@ class Fit {
     return quantiles;
   }
 
-  /// Visits pairs of chances of one thing: on one day, and on two.
+  /// Visits pairs of chances of one object: on one day, or on both days.
   template <class Work>
   void forPairs(std::size_t lag, bool sameDay, const Work& work) const {
     for (std::size_t n = 0; n < m_streets.size(); ++n) {
@@ -264,7 +265,7 @@ class Fit {
 
   NoiseSpectrum reportedNoise(Reported r) const {
     const auto z = [&](const Track& track, const Chance& chance) {
-      // Of the two tables around, as valueAt() mixes their values.
+      // Uses the nearer of the two tables that valueAt() mixes.
       const auto& table = m_model.of(track.kind).reported[static_cast<int>(r)];
       return scoreOf(table[nearest(kReportedRange, chance.range)],
                      chance.reported[static_cast<int>(r)]);

@@ -19,13 +19,15 @@ int poisson(double mean, Random& random) {
   return count;
 }
 
-/// Times something happens, when its number is scaled: each whole time, and once more by chance.
+/// Number of copies for a scale factor: its whole part, plus one more with the probability of the
+/// rest.
 int copies(double factor, Random& random) {
   const double whole = std::floor(factor);
   return static_cast<int>(whole) + random.chance(factor - whole);
 }
 
-/// The street in pieces, each with its own stream, so that a longer street begins as a shorter one.
+/// Divides the street into pieces with their own streams, so that a longer street begins like a
+/// shorter one.
 void placeAlong(const Street& street, const DetectionModel& model, double perMetre,
                 std::uint64_t stream, bool today, std::vector<ClutterObject>& objects) {
   constexpr double kPiece = 20;  // m
@@ -43,7 +45,7 @@ void placeAlong(const Street& street, const DetectionModel& model, double perMet
   }
 }
 
-/// What looks like a pole at the fence of a building site, the same on all its days.
+/// Places clutter at the fence of a building site, the same on all its days.
 void placeAtSite(const BuildingSite& site, const DetectionModel& model, int copy,
                  std::vector<ClutterObject>& objects) {
   const std::uint64_t seed = hash(site.seed, 0xc1dull, copy);
@@ -82,13 +84,13 @@ std::vector<ClutterObject> placeClutter(const DetectionModel& model, const World
   return objects;
 }
 
-/// What one scan sees from where.
+/// One scan: pose, frames, and obstacles around it.
 struct DetectionSampler::View {
   std::size_t scan;
   Eigen::Vector2d sensor;  ///< m, map frame
-  double height;           ///< of the sensor, map frame, m
+  double height;           ///< height of the sensor, map frame, m
   Eigen::Isometry3d T_cloud_map;
-  Eigen::Vector2d lidar_cloud;  ///< the optical centre in the cloud frame, m
+  Eigen::Vector2d lidar_cloud;  ///< optical centre in the cloud frame, m
   std::vector<const SightLines::Block*> blocks, fences;
 };
 
@@ -192,7 +194,7 @@ void DetectionSampler::addTarget(const Target& target, const View& view,
       persistentNoise(isClutter ? m_model.clutterVisibility : m_model.poleVisibility,
                       {target.always, target.today, scanSeed}, view.sensor.x(), view.sensor.y());
   if (z >= threshold(target, view)) return;
-  // Where a perfect extractor would see it: upright in the map, at the height of the LiDAR.
+  // Position for a perfect extractor: vertical in the map, at the height of the LiDAR.
   const Eigen::Vector3d place =
       view.T_cloud_map * Eigen::Vector3d(target.place.x(), target.place.y(), view.height);
   found.push_back(report(target, view, place.head<2>(), scanSeed));
@@ -248,7 +250,7 @@ std::vector<float> DetectionSampler::visibilityRange(const Eigen::Isometry3d& T_
   const Eigen::Vector3d ahead = cloudFrame(T_map_sensor, m_options).linear().col(0);
   const double yaw = std::atan2(ahead.y(), ahead.x());
   const auto blocks = m_sight.around(sensor, m_model.maxRange);
-  std::vector<float> border(kSectors);  // between the sectors, from -pi on
+  std::vector<float> border(kSectors);  // borders between the sectors, from -pi on
   for (int i = 0; i < kSectors; ++i) {
     const double azimuth = yaw - M_PI + i * 2 * M_PI / kSectors;
     const Eigen::Vector2d way(std::cos(azimuth), std::sin(azimuth));

@@ -15,8 +15,8 @@ std::optional<double> mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Lengths of runs of equal outcome in scans that follow one another; the first and the last run
-/// are cut off by the end of sight and left out.
+/// Lengths of runs with equal outcome in consecutive scans. The first and the last run are left
+/// out, because they are cut off at the limits of visibility.
 void addRuns(const Track& track, double spacing, std::vector<double>& found,
              std::vector<double>& missed) {
   const auto& chances = track.chances;

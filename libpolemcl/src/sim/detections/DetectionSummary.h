@@ -1,6 +1,6 @@
 #pragma once
 /// \file DetectionSummary.h
-/// \brief What a drive's detections are like in numbers, to compare drawn ones with cast ones.
+/// \brief Statistics of a drive's detections, to compare sampled ones with ray-cast ones.
 
 #include <array>
 #include <optional>
@@ -10,24 +10,24 @@
 
 namespace polemcl::sim {
 
-/// \brief Figures of one drive. A pole counts when it stands within the range and no house hides
-/// it; a detection is right within 0.5 m of a true pole, one to one. What there is nothing to
-/// compute from is none.
+/// \brief Metrics of one drive. A pole counts if it is within the range and not hidden by a house.
+/// A detection is correct if it is assigned to a true pole within 0.5 m, one to one. Values without
+/// data are nullopt.
 struct DetectionSummary {
   std::size_t scans = 0, detections = 0;
   double perScan = 0, falsePerScan = 0;
-  /// Of these, of objects that are found three times or more in the drive.
+  /// The part of these that belongs to objects found three times or more in the drive.
   double lastingFalsePerScan = 0;
   std::vector<double> rangeEdges;             ///< 0, 5, 10, … m
   std::vector<std::optional<double>> recall;  ///< share of the poles found between two edges
   std::optional<double> centreMedian, centre90, neesMean, neesMedian;
-  /// Mean length of the way over which a pole is found in each scan, or in none, within runs that
-  /// begin and end in sight, m.
+  /// Mean path length over which a pole is found in every scan, or in no scan, m. Only complete
+  /// runs count, not those cut off at the limits of visibility.
   std::optional<double> foundRun, missedRun;
-  std::optional<double> confidence;  ///< mean, of right detections
+  std::optional<double> confidence;  ///< mean of the correct detections
 };
 
-/// \brief \param maxRange Of the extraction, m. \throws Error when there is no scan.
+/// \brief \param maxRange Range of the extraction, m. \throws Error when there is no scan.
 DetectionSummary summarizeDetections(const ObservedDrive& observed, double maxRange);
 
 }  // namespace polemcl::sim

@@ -9,8 +9,8 @@ namespace polemcl::sim {
 namespace {
 
 constexpr double kMatch = 0.5;       // m, as in pole-eval detections
-constexpr double kSame = 0.6;        // m: false detections nearer than that are of one object
-constexpr std::size_t kLasting = 3;  // detections of it on one drive
+constexpr double kSame = 0.6;        // m: nearer false detections belong to one object
+constexpr std::size_t kLasting = 3;  // least number of its detections on one drive
 constexpr std::uint64_t kClutterIds = 1ull << 40;
 
 /// The frames of one scan.
@@ -26,7 +26,7 @@ struct Frames {
     height = T_map_sensor.translation().z();
     lidar_cloud = {drive.options().originX, drive.options().originY};
   }
-  /// Where something upright is at the height of the sensor, cloud frame.
+  /// Position of a vertical object at the height of the sensor, cloud frame.
   Eigen::Vector2d inCloud(const Eigen::Vector2d& place) const {
     const Eigen::Vector3d p = T_map_cloud.inverse() * Eigen::Vector3d(place.x(), place.y(), height);
     return p.head<2>();
@@ -56,7 +56,7 @@ std::array<double, kReported> reportedBy(const PoleDetection& pole, const Eigen:
           static_cast<double>(pole.points)};
 }
 
-/// Takes the detections of one drive to what they are of.
+/// Assigns the detections of one drive to objects.
 class Tracker {
  public:
   Tracker(const ObservedDrive& observed, double maxRange)
@@ -90,7 +90,7 @@ class Tracker {
     for (std::size_t i = 0; i < m_result.scans; ++i) assign(i, first, kMatch);
   }
 
-  /// Gives the detections of a scan that are free to the tracks from `first` on.
+  /// Assigns the remaining detections of a scan to the tracks from `first` on.
   void assign(std::size_t i, std::size_t first, double radius) {
     std::vector<Eigen::Vector2d> truth, found;
     std::vector<std::size_t> trackOf, detectionOf;
@@ -123,7 +123,7 @@ class Tracker {
     }
   }
 
-  /// Places that several false detections fall on: running means, in the order of the scans.
+  /// Places with several false detections: running means, in the order of the scans.
   std::vector<Eigen::Vector2d> lastingPlaces() const {
     struct Place {
       Eigen::Vector2d sum;

@@ -12,7 +12,7 @@ constexpr std::size_t kParts = 2 * kNoiseReach.size();
 }  // namespace
 
 NoiseSpectrum fitSpectrum(const std::vector<LagCorrelation>& counted) {
-  // Columns: parts that last always, then those of the day.
+  // Columns: parts that are permanent, then parts of the day.
   std::vector<std::array<double, kParts>> rows;
   for (const LagCorrelation& pair : counted) {
     std::array<double, kParts> row{};

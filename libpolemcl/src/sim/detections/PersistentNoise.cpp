@@ -9,8 +9,8 @@
 namespace polemcl::sim {
 namespace {
 
-/// Between the nodes of a grid: independent numbers at the four around, weighted bilinearly and
-/// brought to variance 1.
+/// Interpolation in a grid: independent numbers at the four nodes around, bilinear weights, scaled
+/// to variance 1.
 struct Corners {
   std::int64_t column, row;
   std::array<double, 4> weight;

@@ -4,7 +4,7 @@
 
 namespace polemcl::sim {
 namespace {
-/// \brief Slow sway about zero with the given standard deviation: two waves over the way driven.
+/// \brief Slow sway about zero with the given standard deviation: two waves over the path length.
 class Sway {
  public:
   Sway(double sigma, double wavelength, Random& random)
@@ -27,7 +27,7 @@ struct Sways {
       : lane(0.12, 60, random), roll(0.004, 14, random), pitch(0.004, 11, random) {}
 };
 
-/// \brief The sensor over the place s of the way: upright on the slope, and a little sway.
+/// \brief Pose of the sensor at path length s: perpendicular to the slope, with a little sway.
 Eigen::Isometry3d sensorAt(const World& world, const SimulationOptions& options, const Sways& sways,
                            double s) {
   const auto place = [&](double at) {
@@ -73,7 +73,7 @@ Drive makeDrive(const World& world, const SimulationOptions& options) {
   const Sways sways(
       Random(driveSeed(options, hash(options.world.seed, 0xd21feull, options.world.day))));
   Random noise(driveSeed(options, hash(options.world.seed, 0x0d0ull, options.world.day)));
-  // A metre is left free at both ends, where the heading needs neighbours.
+  // One metre at both ends is not driven, because the heading needs neighbours.
   const int fits =
       static_cast<int>((world.path(options.detour).length() - 2) / options.spacing) + 1;
   const int count = options.scans > 0 ? std::min(options.scans, fits) : fits;

@@ -15,7 +15,7 @@ namespace polemcl::sim {
 namespace {
 namespace fs = std::filesystem;
 
-/// \brief A file that complains when it could not be written.
+/// \brief A file that reports failed writes.
 class Output {
  public:
   explicit Output(fs::path path)
@@ -23,7 +23,7 @@ class Output {
   void write(const void* data, std::size_t bytes) {
     m_stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
   }
-  /// \brief A line of numbers with enough digits to come back as they were.
+  /// \brief A line of numbers.
   template <class... Numbers>
   void line(const char* format, Numbers... numbers) {
     char text[512];
@@ -65,7 +65,7 @@ void writeDrive(const Drive& drive, const SimulationOptions& options, const fs::
   odometry.close();
 }
 
-/// \brief Mean motion of the sensor about a scan, in its own frame.
+/// \brief Mean motion of the sensor around a scan, in its own frame.
 Motion motionAt(const Drive& drive, std::size_t i) {
   const std::size_t from = i == 0 ? 0 : i - 1, to = std::min(i + 1, drive.time.size() - 1);
   const Eigen::Isometry3d step = drive.T_map_sensor[from].inverse() * drive.T_map_sensor[to];

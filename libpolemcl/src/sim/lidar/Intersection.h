@@ -1,7 +1,8 @@
 #pragma once
 /// \file Intersection.h
-/// \brief Rays against shapes, each in the shape's own frame. Single precision, so every kernel
-/// first moves the origin near the shape: far origins would cost centimetres on thin posts.
+/// \brief Intersection of rays with shapes, each in the shape's own frame. All kernels use single
+/// precision and first move the origin near the shape: distant origins would cost centimetres on
+/// thin posts.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -57,8 +58,8 @@ inline ShapeHit hitFrustum(const LocalRay& ray, float r0, float r1, float length
   return hit;
 }
 
-/// \brief Interval of ranges inside an axis-aligned box about the origin; empty when first >
-/// second. \param face Set to the axis whose face is entered.
+/// \brief Interval of ranges inside an axis-aligned box around the origin; empty if first > second.
+/// \param face Set to the axis of the face that the ray enters.
 inline std::pair<float, float> crossBox(const LocalRay& ray, const Eigen::Vector3f& half,
                                         int& face) {
   float enter = -std::numeric_limits<float>::infinity(), leave = -enter;
@@ -87,7 +88,7 @@ inline ShapeHit hitBox(const LocalRay& ray, const Eigen::Vector3f& half) {
   return hit;
 }
 
-/// \brief Interval of ranges inside an ellipsoid; empty when first > second.
+/// \brief Interval of ranges inside an ellipsoid; empty if first > second.
 inline std::pair<float, float> crossEllipsoid(const LocalRay& ray, const Eigen::Vector3f& half) {
   const float shift = -ray.origin.dot(ray.direction);
   const Eigen::Vector3f o = (ray.origin + shift * ray.direction).cwiseQuotient(half);
@@ -110,10 +111,10 @@ inline ShapeHit hitEllipsoid(const LocalRay& ray, const Eigen::Vector3f& half) {
   return hit;
 }
 
-/// \brief Walks through leaf cells from `enter` to `leave`; the first filled one answers.
-/// Cells are filled by a hash of their place, in clumps with gaps, so that the same leaves are seen
-/// from everywhere.
-/// \param jitter In [0, 1): where within the cell the leaf is met.
+/// \brief Steps through leaf cells from `enter` to `leave`; the first filled cell is the hit. Cells
+/// are filled by a hash of their position, in clumps with gaps, so that leaves look the same from
+/// everywhere.
+/// \param jitter In [0, 1): position of the leaf within the cell.
 inline ShapeHit hitLeaves(const LocalRay& ray, float enter, float leave, float density, float cell,
                           std::uint64_t seed, float jitter) {
   ShapeHit hit;
@@ -139,8 +140,8 @@ inline ShapeHit hitLeaves(const LocalRay& ray, float enter, float leave, float d
     const std::uint64_t leaf = hash(seed ^ key(index[0], index[1], index[2]));
     const float draw = unitFloat(leaf);
     const bool grazed =
-        std::min(next[axis], leave) - range < 1e-4f;  // a corner, no way through the cell
-    if (draw < 2 * density && !grazed) {  // clumps have up to twice the mean density, gaps none
+        std::min(next[axis], leave) - range < 1e-4f;  // only touches a corner of the cell
+    if (draw < 2 * density && !grazed) {              // clumps: up to twice the density
       const std::uint64_t clump = hash(~seed ^ key(index[0] >> 2, index[1] >> 2, index[2] >> 2));
       if (draw < density * 2 * unitFloat(clump)) {
         const float end = std::min(next[axis], leave);

@@ -20,9 +20,9 @@ std::vector<Beam> evenBeams(int count, double topDeg, double stepDeg) {
   return beams;
 }
 
-/// Velodyne HDL-64E: two blocks of 32 lasers, the upper ones start higher than the lower ones, as
-/// the calibration of real units says; lasers of one firing look to the left and right of the
-/// rotor's azimuth.
+/// Velodyne HDL-64E: two blocks of 32 lasers. The upper ones start higher than the lower ones,
+/// according to the calibration of real units. Lasers of one firing point to the left and right of
+/// the rotor's azimuth.
 LidarModel hdl64e(double topDeg, double upperStepDeg, double lowerTopDeg, double lowerStepDeg) {
   LidarModel lidar;
   lidar.beams = evenBeams(32, topDeg, upperStepDeg);
@@ -41,7 +41,7 @@ LidarModel hdl64e(double topDeg, double upperStepDeg, double lowerTopDeg, double
   return lidar;
 }
 
-/// Velodyne HDL-32E: 46.08 µs a firing.
+/// Velodyne HDL-32E: 46.08 µs per firing.
 LidarModel hdl32e() {
   LidarModel lidar;
   lidar.beams = evenBeams(32, 10.0 + 2.0 / 3, 4.0 / 3);
@@ -52,7 +52,7 @@ LidarModel hdl32e() {
   return lidar;
 }
 
-/// Beams that someone lists or has measured, on the rotor and the ranging of an HDL-32E.
+/// Listed or measured beams, with the rotor and the ranging of an HDL-32E.
 LidarModel listed(const SensorOptions& options) {
   const SensorModel model(options);
   LidarModel lidar = hdl32e();
@@ -73,7 +73,7 @@ LidarModel listed(const SensorOptions& options) {
   return lidar;
 }
 
-/// Velodyne VLP-16: 55.296 µs a firing.
+/// Velodyne VLP-16: 55.296 µs per firing.
 LidarModel vlp16() {
   LidarModel lidar;
   lidar.beams = evenBeams(16, 15, 2);
@@ -104,20 +104,20 @@ LidarModel ouster(int rows, double halfViewDeg, double staggerDeg, double refere
 using Maker = LidarModel (*)();
 const std::map<std::string, Maker>& makers() {
   static const std::map<std::string, Maker> table{
-      // Data sheet: 1/3° apart from +2°, 1/2° apart from -8.83°.
+      // Data sheet: spacing 1/3° from +2°, 1/2° from -8.83°.
       {"hdl64e", [] { return hdl64e(2.0, 1.0 / 3, -8.0 - 5.0 / 6, 0.5); }},
-      // The unit of the KITTI recordings spreads its lasers a little wider than the data sheet.
+      // The unit of the KITTI recordings has a slightly wider field of view than the data sheet.
       {"hdl64e_kitti", [] { return hdl64e(1.95, 0.3435, -9.03, 0.5151); }},
       {"hdl32e", hdl32e},
       {"vlp16", vlp16},
       {"os1_64", [] { return ouster(64, 16.611, 3.164, 45); }},    // first generation
-      {"os1_64_gen2", [] { return ouster(64, 21.2, 4.23, 50); }},  // "45°", as real units measure
+      {"os1_64_gen2", [] { return ouster(64, 21.2, 4.23, 50); }},  // "45°", as measured
       {"os1_128", [] { return ouster(128, 22.5, 4.23, 50); }},
       {"os0_64", [] { return ouster(64, 45, 4.23, 25); }}};
   return table;
 }
 
-/// What the calibration of a unit leaves.
+/// Adds the residual errors of a unit's calibration.
 void addOffsets(LidarModel& lidar, unsigned unit) {
   Random random(hash(0x11da4ull, unit));
   for (Beam& beam : lidar.beams) {
@@ -174,7 +174,7 @@ LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beam
   SensorOptions mounted = beams;
   mounted.model = options.sensor;
   mounted.upsideDown = options.upsideDown;
-  LidarModel lidar = listed(mounted);  // as they hang, from top to bottom
+  LidarModel lidar = listed(mounted);  // as mounted, from top to bottom
   addOffsets(lidar, 1);
   lidar.startAzimuth = M_PI;
   if (options.upsideDown) lidar.clockwise = !lidar.clockwise;

@@ -40,7 +40,7 @@ std::optional<PulseReturn> PulseReturnModel::make(const SubHit* hits, const Beam
   int count = 0;
   for (int s = 0; s < kSubRays; ++s) {
     if (hits[s].solid == SubHit::kNothing) continue;
-    // Rough surfaces fall off more slowly than Lambert's cosine towards grazing incidence.
+    // Towards grazing incidence, rough surfaces get darker more slowly than Lambert's cosine.
     const float signal = kWeight[s] * material(hits[s]).reflectivity * std::sqrt(hits[s].cosine);
     const float near = std::max(hits[s].range, 2.0f);
     int at = count++;  // keeps them sorted by range
@@ -58,11 +58,11 @@ std::optional<PulseReturn> PulseReturnModel::make(const SubHit* hits, const Beam
   }
   Random random(seed);
   double range = best.moment / best.power;
-  // Received signal over the one that is seen every second time.
+  // Ratio of the received signal to the signal with a detection probability of one half.
   const double ratio =
       best.signal / 0.1 * std::pow(m_lidar.referenceRange / std::max(range, 2.0), 2);
   const double cube = ratio * ratio * ratio;
-  // Pulses split between near and far are answered less often.
+  // Pulses split between near and far are lost more often.
   const double lost = m_lidar.dropout + 0.5 * (1 - best.power / total);
   if (random.uniform() > cube / (1 + cube) || random.chance(lost)) return std::nullopt;
   const SubHit& hit = hits[best.subRay];

@@ -1,6 +1,6 @@
 #pragma once
 /// \file PulseReturn.h
-/// \brief What a receiver makes of a pulse whose parts met different things.
+/// \brief Response of a receiver to a pulse whose parts hit different objects.
 
 #include <cstdint>
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace polemcl::sim {
 
-/// \brief What one sub-ray met.
+/// \brief Hit of one sub-ray.
 struct SubHit {
   float range, cosine;
-  std::int32_t solid;  ///< index of the solid, or one of the following
+  std::int32_t solid;  ///< index of the solid, or a constant below
   static constexpr std::int32_t kNothing = -1, kRoad = -2, kPavement = -3, kGrass = -4;
 };
 
@@ -24,12 +24,12 @@ struct PulseReturn {
   std::uint32_t label;
 };
 
-/// \brief Melts sub-rays into echoes of one LiDAR.
+/// \brief Merges sub-rays into the returns of one LiDAR.
 class PulseReturnModel {
  public:
   PulseReturnModel(const LidarModel& lidar, const std::vector<SolidView>& solids)
       : m_lidar(lidar), m_solids(solids) {}
-  /// \brief The strongest echo, if it is seen at all.
+  /// \brief The strongest return; nullopt if it is not detected.
   std::optional<PulseReturn> make(const SubHit* hits, const Beam& beam, std::uint64_t seed) const;
 
  private:

@@ -9,9 +9,9 @@
 
 namespace polemcl::sim {
 
-/// Casting is done object by object into a buffer of sub-rays, as a rasterizer does: an object
-/// touches only the beams and firing steps whose rays can meet it. Several sub-rays sample the
-/// width of one pulse; what they meet is melted into its echo at the end.
+/// Casting works object by object into a buffer of sub-rays, like a rasterizer. An object touches
+/// only the beams and firing steps whose rays can hit it. Several sub-rays sample the width of one
+/// pulse; their hits are merged into its return at the end.
 struct Scanner::Impl {
   const World& world;
   LidarModel lidar;
@@ -67,7 +67,7 @@ void Scanner::Impl::castGround(const Eigen::Isometry3d& T_map_sensor,
       if (!std::isfinite(ground.range)) continue;
       const float fall = -up.dot(direction);
       for (int s = 0; s < kSubRays; ++s) {
-        // The other sub-rays meet the same level ground a little nearer or farther.
+        // The other sub-rays hit the same level ground a little nearer or farther.
         const float subFall = -up.dot(beams[b].direction(s, columns[c]));
         if (!ground.kerbFace && subFall < 0.003f && s > 0) continue;
         SubHit& hit = hits[pixel(b, c) * kSubRays + s];
@@ -156,7 +156,7 @@ SimulatedScan Scanner::scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t
     bounds.push_back(solids[i].bounds(margin));
     if (bounds[i].nearest < lidar.maxRange) order.push_back(static_cast<std::int32_t>(i));
   }
-  // Front to back, so that what is hidden is found to be so at once.
+  // Front to back, so that hidden solids are rejected early.
   std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
     return bounds[a].nearest != bounds[b].nearest ? bounds[a].nearest < bounds[b].nearest : a < b;
   });

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Scanner.h
-/// \brief Casts the rays of one turn of a LiDAR through the world.
+/// \brief Simulates one revolution of a LiDAR in the world by ray casting.
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace polemcl::sim {
 
-/// \brief Points of one turn in firing order (column by column, beams from top to bottom), in the
-/// sensor frame: origin at the optical centre, x forward, y left, z up, m.
+/// \brief Points of one revolution in firing order (column by column, beams from top to bottom).
+/// Sensor frame: origin at the optical centre, x forward, y left, z up, m.
 struct SimulatedScan {
   std::vector<float> x, y, z, intensity;
-  /// Id of the object hit, 0 the ground; on the crown of a tree with kFoliageBit set.
+  /// Id of the hit object, 0 for the ground; points on the crown of a tree have kFoliageBit set.
   std::vector<std::uint32_t> label;
   std::size_t size() const { return x.size(); }
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
-/// \brief How the sensor moves during one turn, in its own frame.
+/// \brief Motion of the sensor during one revolution, in its own frame.
 struct Motion {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   double yawRate = 0;                                  ///< rad/s
@@ -34,11 +34,11 @@ class Scanner {
  public:
   Scanner(const World& world, const LidarModel& lidar);
   ~Scanner();
-  /// \brief One turn.
-  /// \param T_map_sensor Pose of the optical centre in the middle of the turn.
-  /// \param seed Of noise and dropouts; the same seed gives the same scan.
-  /// \param time Of the scan, s: where things that walk are.
-  /// \param motion Distorts the scan: points are given as if the sensor had not moved.
+  /// \brief Simulates one revolution.
+  /// \param T_map_sensor Pose of the optical centre in the middle of the revolution.
+  /// \param seed Seed of noise and dropouts; equal seeds give equal scans.
+  /// \param time Time of the scan, s; determines the position of walking objects.
+  /// \param motion Distorts the scan: points are computed as if the sensor had not moved.
   SimulatedScan scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t seed, double time = 0,
                      const Motion& motion = {}) const;
 
@@ -47,7 +47,7 @@ class Scanner {
   std::unique_ptr<Impl> m_impl;
 };
 
-/// \brief One scan; for many, keep a Scanner.
+/// \brief Simulates a single scan; for many, keep a Scanner.
 SimulatedScan scan(const World& world, const Eigen::Isometry3d& T_map_sensor,
                    const LidarModel& lidar, std::uint64_t seed);
 

@@ -9,7 +9,7 @@ namespace polemcl::sim {
 
 BeamView::BeamView(const Beam& beam, double divergence)
     : start(0, 0, static_cast<float>(beam.rise)), azimuth(beam.azimuth), halfAngle(divergence / 2) {
-  // At 0.35 of the full angle a Gaussian pulse carries about 0.4 of its peak.
+  // A Gaussian pulse has about 0.4 of its peak at 0.35 of the full angle.
   const double aside = 0.35 * divergence;
   const double yaw[kSubRays] = {0, aside, -aside, 0, 0}, pitch[kSubRays] = {0, 0, 0, aside, -aside};
   const double elevation = beam.elevation + beam.elevationError;
@@ -88,10 +88,10 @@ void SolidView::boundFrustum(SolidBounds& bounds, double margin, double& low, do
 void SolidView::boundBox(SolidBounds& bounds, double margin, double& low, double& high,
                          double& farthest) const {
   const Eigen::Vector3d size = m_size.cast<double>();
-  const Eigen::Vector3d origin = offset.cast<double>();  // of the sensor in the frame of the box
+  const Eigen::Vector3d origin = offset.cast<double>();  // position of the sensor in the box frame
   const double aside = std::hypot(std::max(std::abs(origin.x()) - size.x(), 0.0),
                                   std::max(std::abs(origin.y()) - size.y(), 0.0));
-  // Boxes stand upright, the sensor may tilt by a few degrees: heights leak into distances.
+  // Boxes are vertical; the sensor may tilt by a few degrees, so that heights add to distances.
   bounds.nearest = 0.97 * aside - 0.1 * (std::abs(origin.z()) + size.z()) - margin;
   const double middle = std::atan2(m_position.y(), m_position.x());
   double from = 0, to = 0;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file SolidView.h
-/// \brief Beams, firing steps and solids as one scan sees them, in the sensor frame.
+/// \brief Beams, firing steps and solids in the sensor frame of one scan.
 
 #include <Eigen/Geometry>
 
@@ -12,11 +12,11 @@ namespace polemcl::sim {
 
 constexpr int kSubRays = 5;  ///< centre, left, right, up, down of a pulse
 
-/// \brief One firing step: where the rotor looks, and where the sensor is then.
+/// \brief One firing step: azimuth of the rotor and position of the sensor.
 struct ColumnView {
   Eigen::Vector3f origin;
-  float cosine, sine;                   ///< of the true azimuth
-  double reportedCosine, reportedSine;  ///< of the azimuth written into the points
+  float cosine, sine;                   ///< true azimuth
+  double reportedCosine, reportedSine;  ///< azimuth written into the points
 };
 
 /// \brief One beam with the directions of its sub-rays.
@@ -28,26 +28,26 @@ class BeamView {
     return {column.cosine * local.x() - column.sine * local.y(),
             column.sine * local.x() + column.cosine * local.y(), local.z()};
   }
-  /// \brief The point the sensor reports for a range.
+  /// \brief The point that the sensor reports for a range.
   Eigen::Vector3d reported(const ColumnView& column, double range) const;
 
-  Eigen::Vector3f start;           ///< of the ray in the sensor frame, m
+  Eigen::Vector3f start;           ///< start of the ray in the sensor frame, m
   double azimuth, halfAngle;       ///< rad
-  double lowTangent, highTangent;  ///< of the elevations the pulse covers
+  double lowTangent, highTangent;  ///< elevations covered by the pulse
 
  private:
   Eigen::Vector3f m_local[kSubRays];  ///< at rotor azimuth 0
   Eigen::Vector3d m_reported;
 };
 
-/// \brief Where an object can be met, conservatively.
+/// \brief Conservative bounds of a solid.
 struct SolidBounds {
-  double nearest = 0;                      ///< least range, m
+  double nearest = 0;                      ///< smallest range, m
   double azimuth = 0, halfAzimuth = M_PI;  ///< rad
   double lowTangent = -1e9, highTangent = 1e9;
 };
 
-/// \brief By how much rays may start off the sensor's origin.
+/// \brief Largest offset of the ray origins from the sensor's origin.
 struct BoundsMargin {
   double translation = 0;  ///< m
   double azimuth = 0;      ///< rad
@@ -60,7 +60,7 @@ class SolidView {
   SolidView(const Solid& solid, const Eigen::Vector3d& displacement,
             const Eigen::Isometry3d& T_sensor_map, std::uint64_t seed);
   SolidBounds bounds(const BoundsMargin& margin) const;
-  /// \param draw Random bits of this ray and solid.
+  /// \param draw Random bits for this ray and solid.
   ShapeHit intersect(const LocalRay& ray, std::uint64_t draw) const;
 
   Eigen::Matrix3f toLocal;  ///< local = toLocal * sensor + offset

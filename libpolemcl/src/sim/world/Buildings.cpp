@@ -6,16 +6,16 @@
 namespace polemcl::sim {
 namespace {
 using V = Eigen::Vector3d;
-constexpr double kBuried = 1.0;  // walls go so deep, so that slopes leave no gap, m
+constexpr double kBuried = 1.0;  // depth of walls below ground, so that slopes leave no gap, m
 
-/// \brief The front in the making.
+/// \brief The front under construction.
 struct Front {
   ObjectBuilder& builder;
   Random& random;
   double length, depth, height;
   Material material;
 
-  /// Wall from x0 to x1 whose face stands at y = face.
+  /// Wall from x0 to x1 with its face at y = face.
   void wall(double x0, double x1, double face, double low, double high) {
     builder.box(V(0.5 * (x0 + x1), 0.5 * (face + depth), 0.5 * (low + high)),
                 V(0.5 * (x1 - x0), 0.5 * (depth - face), 0.5 * (high - low)), material);

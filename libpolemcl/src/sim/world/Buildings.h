@@ -7,11 +7,11 @@
 
 namespace polemcl::sim {
 
-/// \brief A house whose front lies on local y = 0, centred on the site; it reaches to y = depth.
-/// With recessed doors, windows, pilasters, drain pipes, bays and balconies as chance has it.
+/// \brief A house with its front on local y = 0, centred on the site; it extends to y = depth.
+/// Recessed doors, windows, pilasters, drain pipes, bays and balconies are added at random.
 WorldObject makeHouse(const Site& site, std::uint32_t id, double length, double depth,
                       Random& random);
-/// \brief A garden wall along local x with pillars.
+/// \brief A garden wall with pillars along local x.
 WorldObject makeWall(const Site& site, std::uint32_t id, double length, Random& random);
 
 }  // namespace polemcl::sim

@@ -11,7 +11,7 @@ WorldObject makeSnowBank(const Site& site, std::uint32_t id, double length, doub
                          Random& random) {
   ObjectBuilder builder(Kind::snowBank, site);
   constexpr double kHeap = 1.5, kLong = 2.2, kWide = 1.15;  // distance and half axes of heaps, m
-  // Between two heaps, and as far aside as poles stand, an ellipsoid is so much lower.
+  // Relative height of the ellipsoids midway between two heaps, at the lateral offset of poles.
   const double lower = std::sqrt(1 - std::pow(0.5 * kHeap / kLong, 2) - std::pow(0.35 / kWide, 2));
   for (double x = -length / 2 + kHeap / 2; x < length / 2; x += kHeap)
     builder.ellipsoid(V(x, 0, 0), V(kLong, kWide, height / lower * random.uniform(1.0, 1.12)),

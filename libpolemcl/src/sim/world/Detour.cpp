@@ -10,14 +10,14 @@ namespace polemcl::sim {
 namespace {
 using V2 = Eigen::Vector2d;
 constexpr double kBend = 9;     // radius of the bends, m
-constexpr double kMouth = 17;   // so near the main street nothing of the side street stands, m
-constexpr double kLeast = 400;  // of the main street, m: two detours and their houses have room
+constexpr double kMouth = 17;   // nothing is placed this near to the main street, m
+constexpr double kLeast = 400;  // main street, m: room for two detours and houses
 
 V2 pointOf(const Pose2D& pose) {
   return {pose.x, pose.y};
 }
 
-/// \brief A line through corners, each rounded with an arc; a point about every 0.4 m of an arc.
+/// \brief A line through corners, each rounded by an arc with a point about every 0.4 m.
 std::vector<V2> rounded(const std::vector<V2>& corners) {
   std::vector<V2> points{corners.front()};
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
@@ -38,7 +38,7 @@ std::vector<V2> rounded(const std::vector<V2>& corners) {
   return points;
 }
 
-/// \brief Whether a way round keeps clear of the main street, but for its mouths.
+/// \brief Whether a detour keeps its distance from the main street, except at its mouths.
 bool hasRoom(const Street& street, const std::vector<V2>& corners) {
   const V2 a = corners[1], b = corners[2], c = corners[3], e = corners[4];
   const auto clear = [&](const V2& from, const V2& to, double share) {
@@ -62,7 +62,7 @@ double alongOf(const Street& street, const V2& place) {
 
 Detour make(const Street& street, const std::vector<V2>& corners, double leave, double back,
             int side) {
-  // Where the street is left its own heading counts, so that the drive does not jerk.
+  // At the exit, keep the heading of the street, so that the drive does not jerk.
   const auto round = rounded(corners);
   std::vector<V2> path, furnished;
   for (double s = 0; s < leave - kBend - 1; s += Street::step())

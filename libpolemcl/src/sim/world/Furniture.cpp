@@ -6,10 +6,10 @@ namespace polemcl::sim {
 namespace {
 using V = Eigen::Vector3d;
 
-constexpr double kPostDepth = 0.4;    // posts go so deep, so that slopes leave no gap, m
-constexpr double kTruthHeight = 1.5;  // where TruePole gives position and radius, m
+constexpr double kPostDepth = 0.4;    // depth of posts below ground, so that slopes leave no gap, m
+constexpr double kTruthHeight = 1.5;  // height at which TruePole gives position and radius, m
 
-/// \brief A leaning straight axis: point at a height above ground.
+/// \brief A straight axis with a random tilt: point at a height above ground.
 struct Axis {
   V lean;
   Axis(double sigmaDeg, Random& random)
@@ -31,7 +31,7 @@ TruePole poleAt(const Site& site, std::uint32_t id, Kind kind, const V& local, d
   return pole;
 }
 
-/// \brief A plate before a post, its face along or across the street.
+/// \brief A plate in front of a post, parallel or perpendicular to the street.
 void addPlate(ObjectBuilder& builder, const Axis& axis, double height, double postRadius,
               bool acrossStreet, Random& random) {
   const double halfWidth = random.uniform(0.18, 0.4), halfHeight = random.uniform(0.15, 0.4);
@@ -103,7 +103,7 @@ Piece makeTrafficLight(const Site& site, std::uint32_t id, Random& random) {
     builder.post(axis.at(height - 0.15), tip, 0.06, 0.05, materials::metal);
     head(tip + V(0, 0, -0.3));
   }
-  if (random.chance(0.6))  // button for those on foot
+  if (random.chance(0.6))  // push button for pedestrians
     builder.box(axis.at(1.05) + V(0, radius + 0.05, 0), V(0.05, 0.05, 0.1), materials::plastic);
   return {builder.build(id),
           poleAt(site, id, Kind::trafficLight, axis.at(kTruthHeight), radius, height)};
@@ -166,7 +166,7 @@ WorldObject makeBicycle(const Site& site, std::uint32_t id, Random& random) {
   const auto place = [&](double forward, double height) {
     return V(forward * along + height * up);
   };
-  for (const double wheel : {-0.52, 0.52}) {  // spokes let most pulses through
+  for (const double wheel : {-0.52, 0.52}) {  // spokes let most pulses pass
     builder.thicket(place(wheel, 0.34), V(0.3, 0.02, 0.3), materials::rubber, 0.12, yaw);
     builder.post(place(wheel - 0.2, 0.6), place(wheel + 0.2, 0.6), 0.02, 0.02, materials::rubber);
   }

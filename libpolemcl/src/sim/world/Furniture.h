@@ -1,6 +1,6 @@
 #pragma once
 /// \file Furniture.h
-/// \brief Things of metal, wood and stone that stand along a street.
+/// \brief Metal, wooden and stone objects along a street.
 
 #include <optional>
 
@@ -9,17 +9,17 @@
 
 namespace polemcl::sim {
 
-/// \brief An object and, when it counts as one, its pole.
+/// \brief An object and, if it counts as one, its pole.
 struct Piece {
   WorldObject object;
   std::optional<TruePole> pole;
 };
 
-/// \brief Lamp posts of one make; a street keeps to one for some hundred metres.
+/// \brief Lamp posts of one type; a street keeps one type for a few hundred metres.
 struct LampStyle {
   double height, baseRadius, topRadius;  ///< m
-  double armLength;                      ///< m, 0: the lamp sits on top
-  bool thickFoot;                        ///< wider up to the door of the fuse box
+  double armLength;                      ///< m, 0: lamp on top
+  bool thickFoot;                        ///< wider up to the fuse box door
   explicit LampStyle(Random& random);
 };
 

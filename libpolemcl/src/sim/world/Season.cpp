@@ -7,7 +7,7 @@ namespace polemcl::sim {
 namespace {
 constexpr double kYear = 365;  // days
 
-/// 0 until `from`, 1 after `to`, linear between.
+/// 0 until `from`, 1 after `to`, linear in between.
 double rise(double day, double from, double to) {
   return std::clamp((day - from) / (to - from), 0.0, 1.0);
 }

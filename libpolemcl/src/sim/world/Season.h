@@ -1,19 +1,19 @@
 #pragma once
 /// \file Season.h
-/// \brief What the time of the year does to a street of northern mid latitudes.
+/// \brief Effects of the season on a street in northern mid latitudes.
 
 namespace polemcl::sim {
 
-/// \brief Shares in [0, 1] of what stands or lies at most in a year.
+/// \brief Shares in [0, 1] of the maximum within a year.
 struct Season {
-  double foliage = 1;  ///< of the leaves of summer
-  double snow = 0;     ///< of the height of midwinter's snow banks
+  double foliage = 1;  ///< share of the leaves of summer
+  double snow = 0;     ///< share of the height of midwinter's snow banks
 };
 
-/// \brief Buds break in mid April, trees are in full leaf from mid May to the end of September and
-/// bare from late November; snow lies in December, banks are full from late December to mid
-/// February and gone by mid March. Linear between. \param dayOfYear 1: 1 January. Any number; years
-/// have 365 days.
+/// \brief Season of a day. Leaves: they start in mid April, are complete from mid May to the end of
+/// September, and are gone in late November. Snow: it starts in December, is complete from late
+/// December to mid February, and is gone by mid March. Linear in between.
+/// \param dayOfYear 1: 1 January. Any number; years have 365 days.
 Season seasonOf(double dayOfYear);
 
 }  // namespace polemcl::sim

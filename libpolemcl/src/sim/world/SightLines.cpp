@@ -6,11 +6,11 @@
 namespace polemcl::sim {
 namespace {
 
-/// The share of a way at which it enters a block; 1 if it does not.
+/// The share of a line at which it enters a block; 1 if it does not enter.
 double entry(const SightLines::Block& block, const Eigen::Vector2d& from,
              const Eigen::Vector2d& to) {
   const Eigen::Vector2d start = block.axes * (from - block.centre), step = block.axes * (to - from);
-  double enter = 0, leave = 1;  // shares of the way, cut by the slabs of the rectangle
+  double enter = 0, leave = 1;  // shares of the line inside the rectangle
   for (int i = 0; i < 2 && enter < leave; ++i) {
     const double inverse = 1 / (std::abs(step(i)) > 1e-12 ? step(i) : 1e-12);
     const double a = (-block.half(i) - start(i)) * inverse,
@@ -31,7 +31,7 @@ bool isA(Kind kind, Obstacle obstacle) {
 
 SightLines::SightLines(const World& world, Obstacle obstacle) {
   const Shape shape = obstacle == Obstacle::mesh ? Shape::thicket : Shape::box;
-  // Lower than that they do not hide what stands behind; fences are looked through higher up.
+  // Lower obstacles hide nothing behind them.
   const double lowest = obstacle == Obstacle::mesh ? 0.8 : 1;
   constexpr double kSmallest = 0.5;  // m; drain pipes, sills and the like hide nothing
   for (const WorldObject& object : world.objects()) {

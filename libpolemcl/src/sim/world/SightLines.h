@@ -1,6 +1,6 @@
 #pragma once
 /// \file SightLines.h
-/// \brief Whether something stands between two places, seen from above.
+/// \brief Tests whether an obstacle stands between two places, seen from above.
 
 #include <Eigen/Core>
 #include <vector>
@@ -9,13 +9,13 @@
 
 namespace polemcl::sim {
 
-/// \brief What hides things behind it.
+/// \brief Kind of an obstacle.
 enum class Obstacle {
   opaque,  ///< houses, walls, hoardings, containers
-  mesh     ///< fences of building sites: some pulses pass
+  mesh     ///< fences of building sites; some pulses pass
 };
 
-/// \brief The obstacles of one sort in a world as rectangles. Immutable, safe to share.
+/// \brief All obstacles of one kind in a world, as rectangles. Immutable, safe to share.
 class SightLines {
  public:
   explicit SightLines(const World& world, Obstacle obstacle = Obstacle::opaque);
@@ -24,15 +24,15 @@ class SightLines {
   struct Block {
     Eigen::Vector2d centre, half;
     Eigen::Matrix2d axes;
-    double reach = 0;  ///< of its corners from the centre, m
+    double reach = 0;  ///< distance of its corners from the centre, m
   };
-  /// \brief Those that reach into a circle.
+  /// \brief The blocks that reach into a circle.
   std::vector<const Block*> around(const Eigen::Vector2d& place, double radius) const;
-  /// \brief Whether one of them crosses the way between two places.
+  /// \brief Whether a block crosses the line between two places.
   static bool blocked(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
                       const Eigen::Vector2d& to);
-  /// \brief Distance from a place to the first of them on the way to another, m; the whole way if
-  /// there is none.
+  /// \brief Distance from a place to the first block on the line to another place, m; the whole
+  /// distance if no block crosses it.
   static double freeWay(const std::vector<const Block*>& blocks, const Eigen::Vector2d& from,
                         const Eigen::Vector2d& to);
 

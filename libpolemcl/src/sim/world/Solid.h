@@ -1,17 +1,17 @@
 #pragma once
 /// \file Solid.h
-/// \brief The shapes the world is made of, and what a laser pulse meets on them.
+/// \brief Shapes of the world, and their effect on a laser pulse.
 
 #include <Eigen/Core>
 #include <cstdint>
 
 namespace polemcl::sim {
 
-/// \brief What a surface does to a pulse.
+/// \brief Effect of a surface on a pulse.
 struct Material {
   float reflectivity = 0.3f;  ///< diffuse, at 905 nm; above 1: retro-reflecting
   float roughness = 0.0f;     ///< standard deviation of the surface, m
-  float passes = 0.0f;        ///< probability that a pulse goes through (glass, mesh)
+  float passes = 0.0f;        ///< probability that a pulse passes (glass, mesh)
 };
 
 namespace materials {
@@ -25,20 +25,19 @@ constexpr Material asphalt{0.15f, 0.004f, 0}, paving{0.25f, 0.006f, 0}, grass{0.
 }
 
 enum class Shape : std::uint8_t {
-  frustum,    ///< upright or tilted post: cone between two radii, with caps
+  frustum,    ///< vertical or tilted post: cone between two radii, with caps
   box,        ///< oriented box
   ellipsoid,  ///< solid, or porous when `density` > 0
   thicket     ///< porous oriented box (hedge, mesh)
 };
 
-/// \brief Set in the label of points on branches and leaves of a tree, so that its bare id labels
-/// the trunk.
+/// \brief Set in the label of points on branches and leaves. Points on the trunk have the plain id.
 constexpr std::uint32_t kFoliageBit = 0x80000000u;
 
 /// \brief One shape, in the map frame. Units m.
 struct Solid {
   Shape shape = Shape::box;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< centre; of a frustum: centre of its base
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< centre; frustum: centre of its base
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: own axes; frustum: z along it
   /// Half extents (box, thicket), half axes (ellipsoid); frustum: radius at base, radius at end,
   /// length.
@@ -47,7 +46,7 @@ struct Solid {
   float density = 0;
   float cell = 0.12f;  ///< edge of a leaf cell, m
   Material material;
-  std::uint32_t object = 0;  ///< label of its points: id of its object, kFoliageBit for a crown
+  std::uint32_t object = 0;  ///< label of its points: id of the object, kFoliageBit for a crown
 };
 
 }  // namespace polemcl::sim

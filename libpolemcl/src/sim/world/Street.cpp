@@ -10,7 +10,7 @@ namespace polemcl::sim {
 namespace {
 constexpr double kCell = 16;  // m
 
-/// \brief Two bends of different length: radii above about 150 m, never turning back on itself.
+/// \brief Two overlaid bends of different length: radii above about 150 m, never turning back.
 std::vector<Eigen::Vector2d> generate(const WorldOptions& options) {
   Random random(hash(options.seed, 0x57ull));
   const double wide = random.uniform(500, 900), narrow = random.uniform(220, 340);
@@ -59,7 +59,7 @@ void Street::resample(const std::vector<Eigen::Vector2d>& places) {
   }
   if (m_points.size() < 2) throw Error("a street must be longer than half a metre");
   const int count = static_cast<int>(m_points.size());
-  for (int i = 0; i < count; ++i) {  // over 3 m, so that a noisy track has no kinks
+  for (int i = 0; i < count; ++i) {  // chords over 3 m, so that a noisy track has no kinks
     const auto chord = m_points[std::min(i + 3, count - 1)] - m_points[std::max(i - 3, 0)];
     const double heading = std::atan2(chord.y(), chord.x());
     m_heading.push_back(
@@ -102,7 +102,7 @@ double Street::distance(double x, double y, double limit) const {
 
 void Street::findFreshParts() {
   m_fresh.assign(m_points.size(), 1);
-  constexpr int kApart = 120;  // vertices: 60 m further along is another visit
+  constexpr int kApart = 120;  // vertices: from 60 m on it is another visit
   for (std::size_t i = 0; i < m_points.size(); ++i) {
     for (int dx = -1; dx <= 1 && m_fresh[i]; ++dx)
       for (int dy = -1; dy <= 1; ++dy) {

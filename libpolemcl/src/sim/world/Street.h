@@ -1,6 +1,6 @@
 #pragma once
 /// \file Street.h
-/// \brief The line a road follows, by arc length, generated or from a track file.
+/// \brief The centre line of a road by arc length, generated or from a track file.
 
 #include <Eigen/Core>
 #include <unordered_map>
@@ -19,15 +19,15 @@ class Street {
   /// \throws Error when the track cannot be read, has fewer than two places or a line without 12
   ///         numbers.
   static Street make(const WorldOptions& options);
-  /// \brief A street along places about a metre apart or more; closer ones are skipped.
+  /// \brief A street along places. Places less than 0.4 m from the previous one are skipped.
   /// \throws Error when fewer than two places remain.
   explicit Street(const std::vector<Eigen::Vector2d>& places);
 
   static constexpr double step() { return 0.5; }
   double length() const { return step() * static_cast<double>(m_points.size() - 1); }
-  /// \brief Point at s (clamped to the street) and lateral offset, with the street's heading there.
+  /// \brief Point at s (clamped to the street) and lateral offset, with the heading of the street.
   Pose2D at(double s, double lateral = 0) const;
-  /// \brief Distance of a point to the street, m, or `limit` when it is farther than that (< 64 m).
+  /// \brief Distance of a point to the street, m, at most `limit` (< 64 m).
   double distance(double x, double y, double limit) const;
   /// \brief False where the street runs along a part of itself with smaller s (a road driven
   /// twice).

@@ -9,7 +9,8 @@
 namespace polemcl::sim {
 
 namespace {
-/// \brief The mouths of side streets are crossings, and no other road is near them or between.
+/// \brief Adds the mouths of a side street as crossings, and removes other roads near or between
+/// them.
 void makeMouths(const Detour& detour, double halfWidth, std::vector<Crossing>& crossings) {
   constexpr double kApart = 40;  // m
   for (Crossing& crossing : crossings)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file StreetLayout.h
-/// \brief What stands where along a street, for good and on one day.
+/// \brief Layout of the objects along a street: permanent ones and those of one day.
 
 #include <unordered_map>
 
@@ -9,29 +9,29 @@
 
 namespace polemcl::sim {
 
-/// \brief Roads that leave the street at s.
+/// \brief Side roads that leave the street at s.
 struct Crossing {
   double s;
   bool left, right;
   double halfWidth;
-  bool straight = true;  ///< its roads are made by sideRoads(); false: a side street does
+  bool straight = true;  ///< its roads are made by sideRoads(); false: by a detour
 };
 std::vector<Crossing> planCrossings(const WorldOptions& options, const Street& street,
                                     const std::vector<Detour>& detours);
 std::vector<SideRoad> sideRoads(const std::vector<Crossing>& crossings, const Street& street,
                                 const WorldOptions& options);
 
-/// \brief Which street of a world a plan fills.
+/// \brief The street of a world that a layout fills.
 struct StreetPart {
-  std::uint32_t index = 0;  ///< 0: the main street; others are side streets, open at both ends
+  std::uint32_t index = 0;  ///< 0: main street; others: side streets, open at both ends
 };
 
-/// \brief Takes away poles that a house or wall of another street, or of another turn of this one,
-/// was built over.
+/// \brief Removes poles that stand inside a house, wall or container of another street or another
+/// part of this street.
 void removeBuiltOver(std::vector<WorldObject>& objects, std::vector<TruePole>& poles);
 
-/// \brief Fills a street. Permanent things draw from streams of (seed, kind, place), so that they
-/// are the same on every day; what a day changes draws from (seed, day, ...).
+/// \brief Fills a street. Permanent objects are drawn from streams of (seed, kind, place), so that
+/// they are equal on every day. Changes of a day are drawn from (seed, day, ...).
 class StreetLayout {
  public:
   StreetLayout(const WorldOptions& options, const Street& street, const Terrain& terrain,
@@ -39,48 +39,49 @@ class StreetLayout {
   void furnish();
   std::vector<WorldObject> objects;
   std::vector<TruePole> poles;
-  std::vector<BuildingSite> sites;  ///< of this day
+  std::vector<BuildingSite> sites;  ///< sites of this day
 
  private:
   enum class Ground { lot, pavement, road };
-  // Buildings and gardens: StreetPlanLots.cpp
+  // Buildings and gardens: StreetLayoutLots.cpp
   void lots(int side);
   double lot(int side, double s, Random& random);
   void house(int side, double s, double length, double setBack, Random& random);
   void garden(int side, double s, double length, double depth, Random& random);
-  /// \brief Paved ground before a house, where vehicles may stand.
+  /// \brief Paved ground in front of a house, where vehicles may park.
   void yard(int side, double s, double length, Random& random);
   void park(int side, double s, double length, Random& random);
-  // Along the kerb: StreetPlanKerb.cpp
+  // Along the kerb: StreetLayoutKerb.cpp
   void crossingFurniture();
   void lamps(int side);
   void avenue(int side);
   void signs(int side);
   void smallThings(int side);
-  // Of one day: StreetPlanDay.cpp
+  // Objects of one day: StreetLayoutDay.cpp
   void addedPoles(std::size_t permanentPoles);
   void parkedVehicles(int side);
   void vehiclesInYards();
   void people(int side);
-  // Of the year: StreetPlanYear.cpp
+  // Changes of the year: StreetLayoutYear.cpp
   struct Planned {
     std::uint32_t id;
     Kind kind;
     Site place;
   };
   void replacedPoles();
-  /// \brief A pole comes for good, beside the one whose number it keeps up or anywhere.
+  /// \brief Adds a permanent pole that replaces an old one, beside it or anywhere.
   void settle(const Planned& old, bool beside);
   void snowBanks(double height);
-  // Of some weeks: StreetPlanSites.cpp
+  // Objects of some weeks: StreetLayoutSites.cpp
   void planSites();
-  /// \brief A place for a site within its piece of the street, from `start` m on.
+  /// \brief Finds a place for a site within its piece of the street, from `start` m on.
   void findSite(BuildingSite site, double start, double length);
   void buildSite(const BuildingSite& site);
   void fenceOff(const BuildingSite& site, double depth, std::uint32_t& id, Random& random);
-  /// \brief Takes away what has no place in building sites today.
+  /// \brief Removes objects that cannot stand in today's building sites.
   void clearSites();
-  /// \brief The site whose ground holds a place, from `beyond` m beyond the kerb on; or none.
+  /// \brief The site whose ground contains a place, from `beyond` m beyond the kerb on; null if
+  /// there is no such site.
   const BuildingSite* siteAt(double x, double y, double beyond) const;
 
   Random stream(std::uint64_t kind, int side, std::uint64_t index = 0) const;
@@ -88,10 +89,11 @@ class StreetLayout {
   double pavementWidth(int side, double s) const;
   bool nearCrossing(int side, double s, double gap) const;
   Site site(int side, double s, double lateral) const;
-  /// \brief True and taken when nothing stands within `gap` and the ground is right.
+  /// \brief True if nothing stands within `gap` and the ground is suitable; the place is then
+  /// taken.
   bool claim(const Site& place, double gap, Ground ground);
   bool goneToday(std::uint32_t id) const;
-  /// \brief The day on which a permanent pole goes for good; infinity if it never does.
+  /// \brief The day on which a permanent pole is removed for good; infinity if never.
   double lastDayOf(std::uint32_t id) const;
   void add(WorldObject object) { objects.push_back(std::move(object)); }
   void add(Piece piece, const Site& place);
@@ -105,11 +107,11 @@ class StreetLayout {
     double s, length, border;
   };
   std::vector<Yard> m_yards;
-  std::vector<Planned> m_planned;  ///< permanent poles, those that are gone by now too
-  const std::uint32_t m_street0;   ///< where the ids of this street begin
-  const bool m_open;               ///< houses do not close the ends
+  std::vector<Planned> m_planned;  ///< permanent poles, including those removed by now
+  const std::uint32_t m_street0;   ///< first id of this street
+  const bool m_open;               ///< no houses at the ends
   std::uint32_t m_nextId;
-  bool m_permanent = true;  ///< what is added now has stood there since day 0
+  bool m_permanent = true;  ///< objects added now are permanent since day 0
   std::unordered_map<std::int64_t, std::vector<Eigen::Vector3d>> m_taken;  ///< x, y, gap
 };
 

@@ -9,7 +9,7 @@ void StreetLayout::addedPoles(std::size_t permanentPoles) {
   if (m_options.day == 0) return;
   for (std::size_t i = 0; i < permanentPoles; ++i) {
     Random random = dayStream(0xadd, 0, i);
-    // Permanent ids count other things as well; poles are about a third of them.
+    // Permanent ids include other objects; about a third of them are poles.
     if (!random.chance(m_options.addedShare / 3)) continue;
     const std::uint32_t id = m_nextId++;
     const int side = random.chance(0.5) ? 1 : -1;
@@ -24,7 +24,7 @@ void StreetLayout::addedPoles(std::size_t permanentPoles) {
 }
 
 void StreetLayout::parkedVehicles(int side) {
-  constexpr double kBlock = 45;  // m where parking is allowed, or not
+  constexpr double kBlock = 45;  // length with or without parking, m
   Random random = dayStream(0xca5, side);
   for (double s = random.uniform(2, 5); s < m_street.length(); s += random.uniform(5.4, 7)) {
     const std::uint32_t id = m_nextId++;

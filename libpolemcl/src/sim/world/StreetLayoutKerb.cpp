@@ -27,12 +27,12 @@ void StreetLayout::lamps(int side) {
   Random random = stream(0x1a4b, side);
   for (double s = random.uniform(3, m_options.lampSpacing); s < m_street.length();
        s += m_options.lampSpacing * random.uniform(0.8, 1.2)) {
-    // One make for some 250 m of street, the same on both sides.
+    // One type of lamp for about 250 m of street, on both sides.
     Random make = stream(0x5791e, 0, static_cast<std::uint64_t>(s / 250));
     const LampStyle style(make);
     const std::uint32_t id = m_nextId++;
     Random own(random.next());
-    // Some streets keep their lamps at the house fronts.
+    // Some streets have their lamps at the house fronts.
     const double out =
         make.chance(0.2) ? pavementWidth(side, s) - own.uniform(0.35, 0.6) : own.uniform(0.4, 0.7);
     const Site place = site(side, s, m_options.roadWidth / 2 + out);
@@ -42,7 +42,7 @@ void StreetLayout::lamps(int side) {
 }
 
 void StreetLayout::avenue(int side) {
-  constexpr double kBlock = 70;  // m planted, or not, as one
+  constexpr double kBlock = 70;  // length planted as one unit, or not planted, m
   const double leaves = m_options.foliage * dayStream(0x1eaf, 0).uniform(0.85, 1.15);
   for (double start = 0; start < m_street.length(); start += kBlock) {
     Random random = stream(0xa7e, side, static_cast<std::uint64_t>(start / kBlock));

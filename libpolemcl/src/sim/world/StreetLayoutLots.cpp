@@ -7,7 +7,7 @@
 
 namespace polemcl::sim {
 namespace {
-/// \brief Leaves of one day: a little denser or thinner than the year's mean.
+/// \brief Density of leaves on one day: slightly above or below the season's mean.
 double leavesOf(const WorldOptions& options) {
   return options.foliage * Random(hash(options.seed, 0x1eafull, options.day)).uniform(0.85, 1.15);
 }
@@ -17,7 +17,7 @@ void StreetLayout::lots(int side) {
   Random random = stream(0x107, side);
   for (double s = 0; s < m_street.length();) s += lot(side, s, random);
   if (m_open) return;
-  // Both ends of the street are not the end of the town.
+  // Houses at both ends of the street: the town continues there.
   for (const double s : {-12.0, m_street.length() + 12.0}) {
     const Pose2D end = m_street.at(s);
     const double along = s < 0 ? s : s - m_street.length();
@@ -30,12 +30,12 @@ void StreetLayout::lots(int side) {
   }
 }
 
-/// \return The length used, m.
+/// \return Length used, m.
 double StreetLayout::lot(int side, double s, Random& random) {
   const double length = random.uniform(9, 26), kind = random.uniform(),
                depth = random.uniform(3.5, 8);
   const double middle = s + length / 2;
-  Random own(random.next());  // so that a lot left out leaves the others as they are
+  Random own(random.next());  // keeps other lots unchanged if this one is left out
   if (middle > m_street.length() || !m_street.fresh(middle)) return length;
   if (nearCrossing(side, middle, length / 2 + 1.0)) return 3;
   if (kind < 0.34) {
@@ -61,7 +61,7 @@ void StreetLayout::house(int side, double s, double length, double setBack, Rand
   const std::uint32_t id = m_nextId++;
   const Site place = site(side, s, front);
   const double c = std::cos(place.heading), n = std::sin(place.heading);
-  // Never on a road, be it another turn of this one. Side streets come close from behind, too.
+  // Never on a road, including another part of this street. Side streets may also be close behind.
   const int steps = m_options.sideStreets > 0 ? 8 : 2;
   for (int i = 0; i <= steps; ++i)
     for (int j = 0; j <= steps; ++j) {

@@ -8,11 +8,11 @@
 namespace polemcl::sim {
 namespace {
 
-constexpr double kPiece = 120;                   // of a side of the street, m: one site at a time
-constexpr double kShortest = 30, kLongest = 90;  // a site stands so many days
+constexpr double kPiece = 120;  // piece of a side of the street, m: one site at a time
+constexpr double kShortest = 30, kLongest = 90;                    // duration of a site in days
 constexpr std::uint32_t kFirstOfSites = 600000, kIdsPerSite = 64;  // ids within a street
 
-/// \brief Who has nothing to do in a building site, when that is not what it is made of.
+/// \brief Kinds of objects that have to leave a building site.
 bool makesRoom(Kind kind) {
   static const std::set<Kind> kinds{Kind::bush,    Kind::car,     Kind::person,
                                     Kind::bicycle, Kind::bollard, Kind::billboard,
@@ -24,8 +24,8 @@ bool makesRoom(Kind kind) {
 
 void StreetLayout::planSites() {
   if (m_options.buildingSites <= 0) return;
-  // On each piece sites follow one another: idle for a while, then one of one to three months. The
-  // beginning lies far enough back for day 0 to be like any other.
+  // On each piece, sites follow one another: an idle time, then a site of one to three months. The
+  // sequence starts long before day 0, so that day 0 is like any other day.
   const double busy = std::min(0.9, m_options.buildingSites * kPiece / 2 / 1000);
   const double mean = 0.5 * (kShortest + kLongest), idle = mean * (1 / busy - 1);
   for (const int side : {1, -1})
@@ -131,7 +131,7 @@ void StreetLayout::clearSites() {
   std::set<std::uint32_t> gone;
   for (const TruePole& pole : poles) {
     const BuildingSite* site = siteAt(pole.x, pole.y, kSiteFence);
-    // Most poles are taken away until the work is done, some stay behind the fence.
+    // Most poles are removed until the end of the work; some remain behind the fence.
     if (site != nullptr && Random(hash(site->seed, pole.id)).chance(0.6)) gone.insert(pole.id);
   }
   const auto mustGo = [&](const WorldObject& object) {

@@ -9,15 +9,15 @@
 namespace polemcl::sim {
 namespace {
 
-constexpr std::uint32_t kFirstReplaced = 500000;  // ids of poles that came later, within a street
+constexpr std::uint32_t kFirstReplaced = 500000;  // ids of later poles, within a street
 
-/// \brief Days until something happens that befalls `share` of all within 365 days, at any time
-/// alike.
+/// \brief Days until a random event that affects `share` of all objects within 365 days, at a
+/// constant rate.
 double waiting(double share, std::uint64_t seed) {
   return std::log1p(-Random(seed).uniform()) / std::log1p(-share) * 365;
 }
 
-/// \brief A new one of a kind; of trees a young one.
+/// \brief A new object of a kind; trees are young.
 Piece makeAgain(Kind kind, const Site& place, std::uint32_t id, double foliage, Random& random) {
   switch (kind) {
     case Kind::tree: {
@@ -45,11 +45,11 @@ double StreetLayout::lastDayOf(std::uint32_t id) const {
 
 void StreetLayout::replacedPoles() {
   if (m_options.replacedPerYear <= 0) return;
-  // Whoever goes leaves a successor beside it at once, or nothing; then another one comes somewhere
-  // else, some time. Who came first has the first choice, so that no later day moves a pole.
+  // A removed pole is either replaced beside it at once, or another one appears elsewhere at
+  // another time. Earlier arrivals choose their place first, so that later days do not move a pole.
   struct Arrival {
     double day;
-    const Planned* old;  ///< whose number it keeps up
+    const Planned* old;  ///< the pole that it replaces
     bool beside;
   };
   std::vector<Arrival> arrivals;
@@ -94,7 +94,7 @@ void StreetLayout::snowBanks(double height) {
     for (double s = kPiece / 2; s < m_street.length(); s += kPiece) {
       const std::uint32_t id = m_nextId++;
       Random random = stream(0x540b, side, static_cast<std::uint64_t>(s));
-      // Someone has shovelled a gap.
+      // A gap was shovelled.
       if (random.chance(0.08) || !m_street.fresh(s) || nearCrossing(side, s, 1)) continue;
       const Site place = site(side, s, m_options.roadWidth / 2 + kSnowBankMiddle);
       const double x = place.base.x(), y = place.base.y();

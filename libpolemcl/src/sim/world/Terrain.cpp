@@ -11,15 +11,15 @@ namespace {
 constexpr double kNode = 0.5;  // m between nodes
 constexpr int kNodes = 64;     // intervals of a tile
 constexpr double kTile = kNode * kNodes;
-constexpr double kReach = 64;   // tiles are made this far from the street, m
-constexpr double kFarEdge = 6;  // the signed distance saturates here, m
+constexpr double kReach = 64;   // distance from the street up to which tiles exist, m
+constexpr double kFarEdge = 6;  // limit of the signed distance, m
 }  // namespace
 
 Terrain::Terrain(const WorldOptions& options, const Street& street,
                  const std::vector<SideRoad>& sideRoads, const std::vector<Detour>& detours)
     : m_seed(hash(options.seed, 0x7e44ull)), m_relief(options.relief) {
   Random random(m_seed);
-  // Long waves make slopes of up to a few per cent, short ones the humps a car rides over.
+  // Long waves make slopes of up to a few per cent; short waves make bumps.
   for (const double length : {900.0, 420.0, 230.0, 95.0, 41.0, 17.0}) {
     const double wave = length * random.uniform(0.85, 1.2), turn = random.uniform(0, 2 * M_PI);
     const double steepest = random.uniform(0.006, 0.017) * (length < 60 ? 0.5 : 1.0);
@@ -80,7 +80,7 @@ void Terrain::paintRoad(const Eigen::Vector2d& from, const Eigen::Vector2d& to, 
   const Eigen::Vector2d high = (from.cwiseMax(to).array() + reach - m_origin.array()) / kNode;
   const Eigen::Vector2d along = to - from;
   const double square = std::max(along.squaredNorm(), 1e-12);
-  // Nodes on a seam belong to two tiles, so each tile is painted by itself.
+  // Nodes on a seam belong to two tiles, so each tile is painted separately.
   for (int ty = std::max(0, static_cast<int>(low.y()) / kNodes - 1);
        ty <= static_cast<int>(high.y()) / kNodes && ty < m_tilesY; ++ty)
     for (int tx = std::max(0, static_cast<int>(low.x()) / kNodes - 1);
@@ -116,10 +116,10 @@ void Terrain::fillHeights() {
           const int column = tx * kNodes + i, row = ty * kNodes + j;
           const double x = m_origin.x() + kNode * column, y = m_origin.y() + kNode * row;
           const double edge = tile.edge[j * (kNodes + 1) + i];
-          // Worn ground: centimetres off the road, millimetres on it.
+          // Surface roughness: centimetres beside the road, millimetres on it.
           const double bump = unitFloat(hash(m_seed, column, row)) - 0.5;
           const double wear = edge > 2.5 ? 0.05 : 0.012;
-          // Roads are cambered, and what lies beside them falls towards them.
+          // Roads are cambered, and the ground beside them falls towards them.
           const double camber = 0.02 * std::abs(edge);
           tile.base[j * (kNodes + 1) + i] =
               static_cast<float>(smooth(x, y) + m_relief * (wear * bump + camber));
@@ -148,8 +148,8 @@ Terrain::Sample Terrain::sample(double x, double y) const {
 
 double Terrain::solve(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double lift,
                       double start, double maxRange) const {
-  // The slope of the ground is small, so the fall of the ray alone makes a good first step; then
-  // the secant. A ray that hardly falls is given a least fall, lest it be sent away.
+  // The slope of the ground is small, so the slope of the ray alone gives a good first step; secant
+  // steps follow. Nearly level rays get a minimum slope, so that the steps do not diverge.
   constexpr double kLeastFall = 0.02;
   double range = start, fall = std::max(-direction.z(), kLeastFall);
   double rangeBefore = 0, aboveBefore = 0;
@@ -185,7 +185,7 @@ Terrain::Hit Terrain::intersect(const Eigen::Vector3d& origin, const Eigen::Vect
   if (highEdge > 0) return {high, false, highEdge};
   const double lowEdge = edgeAt(low);
   if (lowEdge <= 0) return low <= maxRange ? Hit{low, false, lowEdge} : Hit{kNone, false, 0};
-  double before = high, behind = low;  // the kerb stands between
+  double before = high, behind = low;  // the kerb is between them
   for (int i = 0; i < 7; ++i) {
     const double middle = 0.5 * (before + behind);
     (edgeAt(middle) > 0 ? behind : before) = middle;

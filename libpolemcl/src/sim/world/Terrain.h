@@ -1,6 +1,6 @@
 #pragma once
 /// \file Terrain.h
-/// \brief The ground: slopes, undulation, and roads lowered by a kerb.
+/// \brief The ground: slopes, undulation, and roads below kerb level.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace polemcl::sim {
 
-/// \brief A road that leaves the main one: straight, from a to b.
+/// \brief A straight road from a to b that leaves the main street.
 struct SideRoad {
   Eigen::Vector2d a, b;
   double halfWidth = 3;  ///< m
@@ -28,12 +28,12 @@ class Terrain {
     const Sample s = sample(x, y);
     return s.base + (s.edge > 0 ? kerbHeight() : 0.0);
   }
-  /// \brief Signed distance to the kerb, m: negative on the road; at most a few metres.
+  /// \brief Signed distance to the kerb, m: negative on the road; limited to a few metres.
   double edge(double x, double y) const { return sample(x, y).edge; }
   static constexpr double kerbHeight() { return 0.12; }
 
-  /// \brief What a ray meets: range along `direction` (unit) from `origin`, m; infinity when
-  /// nothing within `maxRange`. `kerbFace` tells a hit on the side of a kerb.
+  /// \brief Hit of a ray: range along `direction` (unit) from `origin`, m; infinity if there is no
+  /// hit within `maxRange`. `kerbFace` is true for a hit on the side of a kerb.
   struct Hit {
     double range;
     bool kerbFace;
@@ -44,7 +44,7 @@ class Terrain {
 
  private:
   struct Sample {
-    double base;  ///< height of the road surface there, m
+    double base;  ///< height of the road surface, m
     double edge;
   };
   struct Tile {

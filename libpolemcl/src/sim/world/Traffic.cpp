@@ -14,11 +14,11 @@ void addWheels(ObjectBuilder& builder, double axle, double halfWidth, double rad
                    radius, radius, materials::rubber);
 }
 
-/// \brief Roof on slim pillars with glass between, as cars have it.
+/// \brief Roof on slim pillars with glass between, as on cars.
 void addCabin(ObjectBuilder& builder, double rear, double front, double halfWidth, double sill,
               double roof, const Material& paint) {
   const double middle = 0.5 * (rear + front), top = roof - 0.04;
-  const double inset = 0.18;  // windows lean inwards
+  const double inset = 0.18;  // windows are tilted inwards
   builder.box(V(middle - 0.1, 0, top), V(0.5 * (front - rear) - 0.45, halfWidth - inset, 0.05),
               paint);
   for (const double side : {-1.0, 1.0}) {
@@ -37,7 +37,7 @@ void addCabin(ObjectBuilder& builder, double rear, double front, double halfWidt
 
 WorldObject makeVehicle(const Site& site, std::uint32_t id, Random& random) {
   ObjectBuilder builder(Kind::car, site);
-  // Black paint sends little back, and most of that elsewhere.
+  // Black paint reflects little, and mostly in other directions.
   const Material paint{static_cast<float>(random.chance(0.35) ? random.uniform(0.03, 0.1)
                                                               : random.uniform(0.2, 0.7)),
                        0.001f, 0};

@@ -22,7 +22,7 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
   const double height = style.height * random.uniform(0.9, 1.1);
   const double trunkTop = crownBase + 0.35 * (height - crownBase);
   const double leanX = random.normal(0, 0.02), leanY = random.normal(0, 0.02);
-  // The trunk: pieces that wander by a centimetre or two and taper.
+  // The trunk: tapered pieces, shifted by a centimetre or two.
   V place(0, 0, -0.3), truth(0, 0, 0);
   double width = radius * random.uniform(1.2, 1.6);  // roots
   const double levels[] = {0.25, 1.0, 1.9, crownBase, trunkTop};

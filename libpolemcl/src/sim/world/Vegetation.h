@@ -6,13 +6,13 @@
 
 namespace polemcl::sim {
 
-/// \brief Trees of one planting: an avenue keeps to one sort and age.
+/// \brief Trees of one planting: an avenue has one sort and age.
 struct TreeStyle {
   double trunkRadius, crownBase, height, crownRadius;  ///< m
   explicit TreeStyle(Random& random);
 };
 
-/// \param foliage Scales the density of leaves; 0 leaves bare branches.
+/// \param foliage Scales the density of leaves; 0 gives bare branches.
 Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, double foliage,
                Random& random);
 WorldObject makeBush(const Site& site, std::uint32_t id, double foliage, Random& random);

@@ -8,7 +8,7 @@
 
 namespace polemcl::sim {
 namespace {
-constexpr double kIndexCell = 10;  // of the index of objects, m
+constexpr double kIndexCell = 10;  // cell of the object index, m
 }
 
 World::World(const WorldOptions& options, Street street, Terrain terrain,
@@ -77,7 +77,7 @@ double World::snowAt(double x, double y) const {
 }
 
 namespace {
-/// \brief What plans of all streets add up to.
+/// \brief The objects of all streets.
 struct Furnished {
   std::vector<WorldObject> objects;
   std::vector<TruePole> poles;
@@ -100,7 +100,7 @@ Furnished furnish(const WorldOptions& options, const Street& street, const Terra
   for (std::size_t k = 0; k < detours.size(); ++k) {
     WorldOptions own = today;
     own.seed = hash(options.seed, 0x51de2ull, k);
-    std::vector<Crossing> bends;  // nothing wide fits into a bend
+    std::vector<Crossing> bends;  // no wide objects in bends
     for (const double s : detours[k].bends) bends.push_back({s, true, true, 12, false});
     StreetLayout sidePlan(own, detours[k].street, terrain, bends,
                           StreetPart{static_cast<std::uint32_t>(k + 1)});

@@ -1,6 +1,6 @@
 #pragma once
 /// \file World.h
-/// \brief The street, its ground and all that stands there on one day.
+/// \brief The street, its ground and all objects on one day.
 
 #include <vector>
 
@@ -13,7 +13,7 @@
 
 namespace polemcl::sim {
 
-/// \brief A world on one day. Immutable once made, safe to share between threads.
+/// \brief A world on one day. Immutable, safe to share between threads.
 class World {
  public:
   World(const WorldOptions& options, Street street, Terrain terrain,
@@ -24,16 +24,16 @@ class World {
   const Street& street() const { return m_street; }
   const Terrain& terrain() const { return m_terrain; }
   const std::vector<WorldObject>& objects() const { return m_objects; }
-  /// \brief The poles that stand on this day, by id.
+  /// \brief The poles of this day, sorted by id.
   const std::vector<TruePole>& poles() const { return m_poles; }
   /// \brief The building sites of this day.
   const std::vector<BuildingSite>& buildingSites() const { return m_sites; }
   const std::vector<Detour>& detours() const { return m_detours; }
-  /// \brief The way of a drive: the street, or with a detour (from 1).
+  /// \brief The path of a drive: the street (0), or with a detour (from 1).
   const Street& path(int detour) const {
     return detour == 0 ? m_street : m_detours.at(static_cast<std::size_t>(detour - 1)).path;
   }
-  /// \brief Height of the snow banks at a place, m above ground; 0 where none is.
+  /// \brief Height of the snow bank at a place, m above ground; 0 without a bank.
   double snowAt(double x, double y) const;
   /// \brief Indices of the objects that may reach into a circle, ascending.
   std::vector<std::uint32_t> objectsWithin(double x, double y, double radius) const;
@@ -52,7 +52,7 @@ class World {
   std::vector<std::vector<std::uint32_t>> m_grid;
 };
 
-/// \brief Builds the world of (seed, day): the same numbers on any machine and number of threads.
+/// \brief Builds the world of (seed, day): equal numbers on any machine and number of threads.
 /// \throws Error when an option is out of range or the track cannot be read.
 World makeWorld(const WorldOptions& options);
 

@@ -19,7 +19,7 @@ const char* name(Kind kind) {
 Eigen::Vector2d WorldObject::displacement(double time) const {
   const double way = walk.norm();
   if (pace <= 0 || way <= 0) return Eigen::Vector2d::Zero();
-  const double phase = std::fmod(pace * time / way, 2.0);  // there and back
+  const double phase = std::fmod(pace * time / way, 2.0);  // to the end and back
   return (phase < 1 ? phase : 2 - phase) * walk;
 }
 
@@ -69,7 +69,7 @@ void ObjectBuilder::thicket(const Eigen::Vector3d& centre, const Eigen::Vector3d
 }
 
 namespace {
-/// \brief Radius around a solid's position that holds it in the plane, m.
+/// \brief Radius of a circle around the solid's position that contains it, seen from above, m.
 double reach(const Solid& solid) {
   if (solid.shape == Shape::frustum)
     return solid.size.z() * solid.axes.col(2).head<2>().norm() +
