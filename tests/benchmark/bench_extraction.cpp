@@ -1,6 +1,6 @@
 /// \file bench_extraction.cpp
-/// \brief Points in memory to poles out, one core. A real KITTI scan where POLEMCL_DATA names the
-/// data, else a simulated HDL-64E one.
+/// \brief From points in memory to poles, one core. A real KITTI scan if POLEMCL_DATA is set,
+/// otherwise a simulated HDL-64E scan.
 
 #include <benchmark/benchmark.h>
 
@@ -23,7 +23,7 @@ struct Scan {
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
-/// \param columns Firing steps a turn, 0: the sensor's own.
+/// \param columns Firing steps per revolution; 0: those of the sensor.
 Scan simulated(const std::string& sensor, double height, int columns = 0) {
   sim::SimulationOptions options;
   options.world.length = 120;
@@ -48,7 +48,7 @@ const Scan& kittiScan() {
   return scan;
 }
 
-/// An HDL-32E scan with as many points as NCLT's have after their driver's filter.
+/// An HDL-32E scan with as many points as NCLT's scans have after their driver's filter.
 const Scan& ncltSizedScan() {
   static const Scan scan = [] {
     Scan thin = simulated("hdl32e", 1.0);
@@ -84,7 +84,7 @@ void nativeNcltSized(benchmark::State& state) {
   extract(state, ncltSizedScan(), "hdl32e", 1.0, ExtractionMethod::scanLine);
 }
 
-/// The limit: every point read once, its range computed.
+/// Lower bound: reads every point once and computes its range.
 void readOnly(benchmark::State& state) {
   const PointsView points = kittiScan().view();
   for (auto _ : state) {
@@ -97,7 +97,8 @@ void readOnly(benchmark::State& state) {
   }
 }
 
-/// The same street seen by 64 beams that fire so often that a turn has about so many points.
+/// The same street seen by 64 beams; the firing rate gives about this number of points per
+/// revolution.
 void nativePoints(benchmark::State& state) {
   const int columns = static_cast<int>(state.range(0) / 64);
   const Scan scan = simulated("hdl64e_kitti", 1.73, columns);

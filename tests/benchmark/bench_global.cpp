@@ -1,6 +1,6 @@
 /// \file bench_global.cpp
-/// \brief A query of global localization over a whole city, what comes before it, and a frame of
-/// the submap. One thread.
+/// \brief Global localization in a whole city: a query, its preparation, and a frame of the submap.
+/// One thread.
 
 #include <benchmark/benchmark.h>
 
@@ -30,7 +30,8 @@ std::vector<LocalSubmap> submaps(const PoleCity& city, double metres) {
   return all;
 }
 
-/// range(0): streets each way, range(1): metres driven, range(2): lamps every 25 m, nothing else.
+/// range(0): streets in each direction, range(1): metres travelled, range(2): only lamps, every 25
+/// m.
 void query(benchmark::State& state) {
   const PoleCity city(cityOf(static_cast<int>(state.range(0)), state.range(2) != 0));
   const GlobalLocalizer localizer(city.map());

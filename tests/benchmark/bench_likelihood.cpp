@@ -1,5 +1,5 @@
 /// \file bench_likelihood.cpp
-/// \brief The likelihood of a batch of particles, beside the bare searches it is made of.
+/// \brief The likelihood of a batch of particles, compared with the bare searches it contains.
 ///
 /// 2000 poles along a road of 6 km, particles within 1 m of the truth or all over the map.
 

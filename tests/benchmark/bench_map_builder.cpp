@@ -1,8 +1,9 @@
 /// \file bench_map_builder.cpp
-/// \brief Building a map from drives of different length: the work must grow with the detections.
+/// \brief Building a map from drives of different length: the time must grow linearly with the
+/// detections.
 ///
-/// A road with a pole every 10 m on both sides, a scan every 0.5 m that sees 60 % of the poles
-/// within 40 m, and a false detection a scan.
+/// A road with a pole every 10 m on both sides, a scan every 0.5 m that detects 60 % of the poles
+/// within 40 m, and one false detection per scan.
 
 #include <benchmark/benchmark.h>
 

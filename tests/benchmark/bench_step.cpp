@@ -1,10 +1,11 @@
 /// \file bench_step.cpp
-/// \brief A whole step of the filter (predict, update, estimate, resample), beside MRPT's own.
+/// \brief A whole step of the filter (predict, update, estimate, resample), compared with MRPT's
+/// own.
 ///
-/// 1000 particles, 10 observed poles, a map of 2000 poles along streets of 6 km; particles within
-/// 1 m of the truth, or all over the map. Each step begins with the same particles, so that it
-/// costs the same again. MRPT's step is CMonteCarloLocalization2D with a CPoleMap of the same
-/// likelihood, which it asks once per particle.
+/// 1000 particles, 10 observed poles, a map of 2000 poles along streets of 6 km; particles within 1
+/// m of the truth, or all over the map. Each step starts with the same particles, so that all steps
+/// cost the same. MRPT's step is CMonteCarloLocalization2D with a CPoleMap of the same likelihood,
+/// which is evaluated once per particle.
 
 #include <benchmark/benchmark.h>
 #include <mrpt/obs/CSensoryFrame.h>
@@ -81,11 +82,11 @@ void reset(Filter& filter, const std::vector<mrpt::math::TPose2D>& particles) {
   }
 }
 
-/// range(0): particles over the whole map. What only the benchmark does, putting the particles
-/// back, is part of both figures; it is measured by putBack. \param tempering As in the options of
-/// the filter. 0: one update and one resampling, as MRPT's step; else particles that are spread far
-/// wider than the likelihood, as after a start, are weighed and resampled several times within the
-/// step.
+/// range(0): particles over the whole map. Both results include resetting the particles, which only
+/// the benchmark does; putBack measures it alone.
+/// \param tempering As in the options of the filter. 0: one update and one resampling, as in MRPT's
+///        step. Otherwise particles spread far wider than the likelihood (as after a start) are
+///        weighed and resampled several times within the step.
 void step(benchmark::State& state, double tempering) {
   Scene scene;
   const auto particles = scene.particles(1000, state.range(0) != 0);

@@ -64,8 +64,8 @@ TEST(Bindings, DefaultsSurvive) {
   EXPECT_EQ(written(load(text)), text);
 }
 
-// One field after the other gets another value in the file; after reading and writing again, that
-// key and no other has changed. So every key is bound to a field of its own.
+// Changes the value of one key after the other in the file. After reading and writing again, only
+// that key has changed. Hence every key is bound to its own field.
 TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
   const std::string base = written(All());
   const auto before = keys(base);
@@ -145,7 +145,7 @@ TEST(Bindings, ReadsHandPickedValues) {
   EXPECT_NEAR(all.motion.minYaw, 0.0017453293, 1e-9);
 }
 
-// What no single range can say is refused by the struct itself, and the message names the file.
+// The struct itself rejects contradictions that ranges cannot express; the message names the file.
 TEST(Bindings, RefusesStructsThatContradictThemselves) {
   for (const char* text :
        {"[sensor]\nmodel = table\n", "[sensor]\nmin_range_m = 70\n",

@@ -1,5 +1,5 @@
 /// \file test_BuildIdentity.cpp
-/// \brief The script that each build runs, on small projects of its own.
+/// \brief The script that runs in each build, on small test projects.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -44,7 +44,7 @@ class BuildIdentity : public testing::Test {
   }
   bool commit() const { return git("add -A") && git("commit -q -m change"); }
 
-  /// What the build says of itself.
+  /// The identity that the build reports.
   std::string identity(const std::string& options = "-O3  -DNDEBUG") const {
     const std::string script = std::string(POLEMCL_SOURCE_DIR) + "/share/cmake/BuildIdentity.cmake";
     EXPECT_TRUE(run("cmake -D 'SOURCE=" + project().string() + "' -D 'OUTPUT=" + source().string() +
@@ -100,7 +100,7 @@ TEST_F(BuildIdentity, IsAHashOfTheSourcesWithoutGit) {
   EXPECT_NE(identity(), archive);
 }
 
-// An archive inside somebody's own repository has nothing to do with the commits there.
+// An archive inside a foreign repository has nothing to do with the commits there.
 TEST_F(BuildIdentity, IsNotThatOfARepositoryAround) {
   const std::string archive = identity();
   if (!run("git -C '" + m_folder.string() + "' init -q")) GTEST_SKIP() << "git is not here";

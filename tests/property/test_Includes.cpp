@@ -1,6 +1,6 @@
 /// \file test_Includes.cpp
-/// \brief Reads every source of the library and the programs, and holds the house rules of
-/// share/doc/architecture.md: rooms look upwards only, files and mains stay small.
+/// \brief Reads every source of the library and the programs. Checks the rules of
+/// share/doc/architecture.md: rooms include only rooms above them, files and mains stay small.
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ const fs::path s_top = POLEMCL_SOURCE_DIR;
 constexpr std::size_t s_mostLines = 500;
 constexpr std::size_t s_mostLinesOfAMain = 60;
 
-/// Rooms and the rooms in them, in the order of the document: a file may include what stands in its
-/// own line and in the lines above. Lines that begin alike belong to one big room.
+/// Rooms and sub-rooms in the order of the document. A file may include headers of its own line and
+/// of the lines above. Lines with the same first part belong to one big room.
 const std::vector<std::string> s_order{
     "core/common",
     "core/sensor",
@@ -67,18 +67,18 @@ const std::vector<std::string> s_order{
     "apps/labels",
 };
 
-/// Big rooms that a big room does not use, although they stand above it.
+/// Big rooms that a big room must not use, although they are above it.
 const std::map<std::string, std::set<std::string>> s_strangers{{"sim", {"mrpt"}}};
-/// A line above that a room does not use: two ways to the same end.
+/// A line above that a room must not use: two methods for the same purpose.
 const std::map<std::string, std::set<std::string>> s_strangerRooms{
     {"core/extraction/scan_line", {"core/extraction/range_image"}}};
-/// Settings and report of the room around them, which the rooms in it share.
+/// Settings and report of the surrounding room, shared by its sub-rooms.
 const std::map<std::string, std::set<std::string>> s_sharedHeaders{
     {"core/extraction",
      {"ExtractionOptions.h", "ExtractionReport.h", "PoleClassifier.h", "VisibilityRange.h"}}};
 
 struct Source {
-  fs::path path;  ///< relative to the top
+  fs::path path;  ///< relative to the top folder
   std::vector<std::string> lines;
 };
 
@@ -101,7 +101,7 @@ std::vector<Source> sourcesBelow(const std::vector<std::string>& folders) {
   for (const std::string& folder : folders) {
     if (!fs::exists(s_top / folder)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(s_top / folder)) {
-      // share/demo/out is what the demo wrote, no source.
+      // share/demo/out is output of the demo, not source.
       const fs::path path = fs::relative(entry.path(), s_top);
       if (entry.is_regular_file() && isSource(path) &&
           path.string().rfind("share/demo/out", 0) != 0) {
@@ -114,7 +114,7 @@ std::vector<Source> sourcesBelow(const std::vector<std::string>& folders) {
   return sources;
 }
 
-/// Place in the order; its size for what is no room.
+/// Position in the order; its size if it is not a room.
 std::size_t placeOf(const std::string& room) {
   return std::find(s_order.begin(), s_order.end(), room) - s_order.begin();
 }
@@ -127,7 +127,7 @@ std::string bigRoomOf(const std::string& room) {
   return room.substr(0, room.find('/'));
 }
 
-/// The room a file belongs to; empty for what is in none.
+/// The room of a file; empty for other files.
 std::string roomOf(const fs::path& path) {
   const std::string folder = path.parent_path().generic_string();
   for (const std::string base : {"libpolemcl/src/", "libpolemcl/include/polemcl/"})
@@ -135,14 +135,14 @@ std::string roomOf(const fs::path& path) {
   return folder.rfind("apps/", 0) == 0 ? folder : "";
 }
 
-/// The room of a header of ours, by the text of its include.
+/// The room of one of our headers, from the text of its include.
 std::string roomOfHeader(const std::string& header) {
   const fs::path path = header.rfind("polemcl/", 0) == 0 ? header.substr(8) : header;
   const std::string folder = path.parent_path().generic_string();
   return isRoom(folder) ? folder : "apps/" + folder;
 }
 
-/// What stands between the brackets or quotes, with them; empty if the line includes nothing.
+/// The name between brackets or quotes, including them; empty if the line includes nothing.
 std::string includeOf(const std::string& line) {
   static const std::regex include("\\s*#\\s*include\\s*(<[^>]*>|\"[^\"]*\"|\\S+).*");
   std::smatch match;
@@ -157,7 +157,7 @@ bool mayIncludeOwn(const std::string& room, const std::string& header) {
   };
   if (has(s_strangers, bigRoomOf(room), bigRoomOf(target)) || has(s_strangerRooms, room, target))
     return false;
-  if (room.rfind(target + '/', 0) == 0)  // the room around this one
+  if (room.rfind(target + '/', 0) == 0)  // the surrounding room
     return has(s_sharedHeaders, target, fs::path(header).filename().string());
   return placeOf(target) <= placeOf(room);
 }
@@ -180,7 +180,8 @@ bool exists(const std::string& header) {
   return false;
 }
 
-/// Why a file may not include something; empty if it may. \param include With brackets or quotes.
+/// Reason why a file may not include something; empty if it may. \param include With brackets or
+/// quotes.
 std::string whyNot(const fs::path& file, const std::string& include) {
   const std::string room = roomOf(file), header = include.substr(1, include.size() - 2);
   if (!isRoom(room)) return "the file is in no room";

@@ -21,7 +21,7 @@ inline std::string messageOf(const std::function<void()>& work) {
   return "no error";
 }
 
-/// A batch of three short simulated drives of drawn poles, two runs under two settings.
+/// A batch of three short simulated drives with sampled poles, two runs with two configurations.
 inline fs::path writeStreetBatch(const TempFolder& folder) {
   const std::string source = POLEMCL_SOURCE_DIR;
   writeText(folder / "street.ini", readText(source + "/config/hdl32e.ini") +
@@ -42,7 +42,7 @@ inline fs::path writeStreetBatch(const TempFolder& folder) {
   return folder / "street-batch.ini";
 }
 
-/// The files of a folder and what is in them, by path, but for those whose path holds `except`.
+/// The files of a folder with their contents, by path, except paths that contain `except`.
 inline std::map<std::string, std::string> contents(const fs::path& folder,
                                                    const std::string& except = "\n") {
   std::map<std::string, std::string> all;

@@ -12,7 +12,7 @@
 
 namespace testing_apps {
 
-/// \brief `city.polemap`, `drive.rawlog` (a frame a metre, 0.2 s), `drive.tum`, `city.ini`.
+/// \brief `city.polemap`, `drive.rawlog` (one frame per metre, 0.2 s), `drive.tum`, `city.ini`.
 class CityFiles {
  public:
   explicit CityFiles(double metres, std::uint64_t seed = 21) {
@@ -50,7 +50,7 @@ class CityFiles {
       io::PlanarMotion motion;
       motion.mean = frames[i].motion;
       const Eigen::Vector3d moved(motion.mean.x, motion.mean.y, motion.mean.yaw);
-      motion.covariance = (0.02 * moved).cwiseAbs2().asDiagonal();  // as the drive draws it
+      motion.covariance = (0.02 * moved).cwiseAbs2().asDiagonal();  // as sampled by the drive
       writer.write(apps::makeActions(motion, poles->timestamp), poles);
       truth.push_back({time(i), frames[i].truth});
     }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Clouds.h
-/// \brief Clouds for the tests of core: a growing one, one shuffled, one turned.
+/// \brief Clouds for the tests of core: growing, shuffled, rotated.
 
 #include <cmath>
 #include <utility>
@@ -13,7 +13,7 @@ namespace polemcl::clouds {
 
 constexpr double kDegree = M_PI / 180;
 
-/// \brief Owns what a PointsView borrows.
+/// \brief Owner of the data for a PointsView.
 struct PointList {
   std::vector<float> x, y, z;
   void add(double px, double py, double pz) {
@@ -49,7 +49,7 @@ inline PointList shuffled(const PointsView& points, std::uint64_t seed) {
   return out;
 }
 
-/// \brief The same points turned about z by `yaw` (rad, counter-clockwise).
+/// \brief The same points rotated about z by `yaw` (rad, counter-clockwise).
 inline PointList turned(const PointsView& points, double yaw) {
   PointList out;
   const double c = std::cos(yaw), s = std::sin(yaw);

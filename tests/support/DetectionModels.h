@@ -1,13 +1,13 @@
 #pragma once
 /// \file DetectionModels.h
-/// \brief A model simple enough to know by hand what comes out of it.
+/// \brief A model that is simple enough to compute its results by hand.
 
 #include "sim/detections/DetectionModel.h"
 
 namespace polemcl::sim::testing_sim {
 
-/// All poles within 40 m are found with probability 0.6 in every scan, 5 cm off (1 sigma) in both
-/// directions, with nothing that lasts and nothing false.
+/// All poles within 40 m are found with probability 0.6 in every scan, with errors of 5 cm (1
+/// sigma) in both directions. No persistent noise, no false detections.
 inline DetectionModel plainModel() {
   DetectionModel model;
   model.sensor = "hdl32e";

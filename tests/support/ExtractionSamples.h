@@ -1,6 +1,7 @@
 #pragma once
 /// \file ExtractionSamples.h
-/// \brief What the tests of extraction share: clouds as MRPT holds them, and what is found in them.
+/// \brief Shared by the tests of extraction: clouds as MRPT observations, and the poles found in
+/// them.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
@@ -30,7 +31,7 @@ inline Eigen::Isometry3d isometry(const mrpt::poses::CPose3D& pose) {
   return T;
 }
 
-/// The cloud as MRPT holds it, after moving its points by T_cloud_lidar.
+/// The cloud as an MRPT observation, after transforming its points by T_cloud_lidar.
 inline mrpt::obs::CObservationPointCloud::Ptr observationOf(
     const TestCloud& cloud, const mrpt::poses::CPose3D& sensorPose,
     const Eigen::Isometry3d& T_cloud_lidar = Eigen::Isometry3d::Identity()) {
@@ -68,7 +69,7 @@ inline void expectSamePoles(const std::vector<PoleDetection>& a,
   }
 }
 
-/// Poles of the place that were found within the tolerance, robot frame.
+/// Number of test poles that were found within the tolerance, robot frame.
 inline int found(const CObservationPoles& scan, double tolerance) {
   int count = 0;
   const auto poles_robot = scan.polesInRobotFrame();

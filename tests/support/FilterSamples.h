@@ -1,4 +1,4 @@
-// Options, starts and frames that tests of the particle filter share.
+// Options, starts and frames shared by tests of the particle filter.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace polemcl::tests {
 
 inline constexpr double degree = M_PI / 180;
 
-/// Particles stay where they are told to: no noise, no resampling.
+/// Particles stay in place: no noise, no resampling.
 inline FilterOptions still() {
   FilterOptions options;
   options.resampleBelow = 0;

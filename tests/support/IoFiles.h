@@ -1,6 +1,6 @@
 #pragma once
 /// \file IoFiles.h
-/// \brief What the tests of io/ share: a folder that goes away, files in it, messages of errors.
+/// \brief Shared by the tests of io/: a temporary folder, files in it, messages of errors.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -45,7 +45,7 @@ class FolderTest : public ::testing::Test {
   fs::path m_folder;
 };
 
-/// No file may grow beyond so many bytes while this lives: a full disk, without one.
+/// Limits the size of all files while it exists: simulates a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : m_handler(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -80,7 +80,7 @@ std::string messageOf(Action action) {
   return {};
 }
 
-/// Fails unless all texts are in the message and it is one line.
+/// Fails unless the message is one line and contains all texts.
 template <class... Texts>
 void expectIn(const std::string& message, const Texts&... texts) {
   for (const std::string& text : {std::string(texts)...}) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file KnownScene.h
-/// \brief A yard with four poles and nothing else upright, to extract poles from.
+/// \brief A yard with four poles and no other vertical objects, for extraction.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace polemcl::clouds {
 
 constexpr double kSensorHeight = 1.5;  ///< above ground, m
 
-/// \brief Four poles of 3.2 m, one of them behind the sensor on the seam of azimuth; ground; walls.
+/// \brief Four poles of 3.2 m, one of them behind the sensor at azimuth ±180°; ground; walls.
 inline Scene yard() {
   Scene scene;
   const double top = 3.2 - kSensorHeight;
@@ -37,7 +37,7 @@ inline PointList castYard(const SensorOptions& sensor, const Scene& scene = yard
   return cast(scene, SensorModel(sensor), {0.015, 0, 5});
 }
 
-/// \brief The detection nearest to a place, if within `reach` m of it.
+/// \brief The detection nearest to a place; null if none is within `reach` m.
 inline const PoleDetection* nearest(const std::vector<PoleDetection>& poles, double x, double y,
                                     double reach) {
   const PoleDetection* best = nullptr;
@@ -63,7 +63,7 @@ inline bool same(const std::vector<PoleDetection>& a, const std::vector<PoleDete
                     [](const PoleDetection& p, const PoleDetection& q) { return same(p, q); });
 }
 
-/// \brief Refusals of all reasons.
+/// \brief Number of rejections for all reasons.
 inline std::size_t refused(const ExtractionReport& report) {
   std::size_t sum = 0;
   for (const std::size_t n : report.refused) sum += n;

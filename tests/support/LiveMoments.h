@@ -1,6 +1,6 @@
 #pragma once
 /// \file LiveMoments.h
-/// \brief Moments of a run made of nothing but numbers, for tests.
+/// \brief Moments of a run made of plain numbers, for tests.
 
 #include <cmath>
 #include <vector>
@@ -19,7 +19,7 @@ inline std::vector<MapPole> smallMap() {
   return {mapPole(0, 5), mapPole(20, -5), mapPole(40, 5), mapPole(60, -5)};
 }
 
-/// At (10, 0) looking along +y: pole 1 of smallMap() is seen, and one that is not there.
+/// At (10, 0) looking along +y: detects pole 1 of smallMap(), and one that does not exist.
 inline LiveMoment knownMoment() {
   LiveMoment moment;
   moment.scan = 12;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file LocalizeTest.h
-/// \brief What `pole-localize` needs, as files, and its runs.
+/// \brief The input of `pole-localize` as files, and its runs.
 
 #include <nlohmann/json.hpp>
 
@@ -65,7 +65,7 @@ class LocalizeTest : public testing::Test {
   }
   nlohmann::json summary() const { return nlohmann::json::parse(readText(out("summary.json"))); }
   fs::path out(const std::string& name) const { return folder / "out" / name; }
-  /// All results but the timings.
+  /// All results except the timings.
   std::string bytes() const {
     std::string all;
     for (const auto& name : names(folder / "out"))

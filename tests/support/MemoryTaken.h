@@ -1,7 +1,6 @@
 #pragma once
-/// \file MemoryTaken.h
-/// \brief How much memory a piece of work takes at its peak. Replaces `new` and `delete` of a test
-/// program and of the library it loads: for one source file of a program only.
+/// \brief Measures the peak memory of a piece of work. Replaces `new` and `delete` of a test
+/// program and of the library it loads: include it in one source file of a program only.
 
 #include <malloc.h>
 
@@ -28,7 +27,7 @@ inline void giveMemory(void* memory) {
   std::free(memory);
 }
 
-/// \brief Bytes that `work` takes beyond what is in use before it, at its peak.
+/// \brief Peak number of bytes that `work` allocates in addition to those in use before it.
 template <class Work>
 std::size_t memoryTakenBy(Work work) {
   const std::size_t before = memoryLive;

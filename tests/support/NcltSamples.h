@@ -1,7 +1,6 @@
 #pragma once
 /// \file NcltSamples.h
-/// \brief Files of NCLT, byte by byte as read_vel_sync.py and read_vel_hits.py of the dataset read
-/// them.
+/// \brief Files of NCLT, byte by byte as in read_vel_sync.py and read_vel_hits.py of the dataset.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -12,7 +11,7 @@
 
 namespace testing_nclt {
 
-/// Little-endian, so many bytes.
+/// Little-endian value with this number of bytes.
 inline std::string little(std::uint64_t value, int bytes) {
   std::string text;
   for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
@@ -59,7 +58,7 @@ inline std::string covarianceRow(std::uint64_t utime, const Eigen::Matrix<double
 
 inline constexpr std::uint64_t start = 1326652795000000;  ///< us; 2012-01-15
 
-/// Packets of a LiDAR that turns: every `step` degrees one point at 10 m, so many times.
+/// Packets of a rotating LiDAR: one point at 10 m every `step` degrees.
 inline std::string turning(int packets, double step, std::uint64_t begin = start,
                            std::uint64_t period = 10000) {
   std::string bytes;

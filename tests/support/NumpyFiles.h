@@ -1,6 +1,6 @@
 #pragma once
 /// \file NumpyFiles.h
-/// \brief `.npy` and `.npz` bytes for the tests, written by the layout of their documents.
+/// \brief `.npy` and `.npz` bytes for the tests, written after their format documents.
 
 #include <zlib.h>
 
@@ -16,7 +16,7 @@ inline std::string little(std::uint64_t value, int bytes) {
   return result;
 }
 
-/// A `.npy` file of version 1 or 2 with this dictionary, padded as numpy.lib.format says.
+/// A `.npy` file of version 1 or 2 with this dictionary, padded as in numpy.lib.format.
 inline std::string npy(const std::string& dictionary, const std::string& data, int version = 1) {
   const std::size_t lengthBytes = version == 1 ? 2 : 4;
   std::string header = dictionary;
@@ -51,7 +51,7 @@ inline std::string deflated(const std::string& content) {
   return result;
 }
 
-/// A zip archive as numpy writes it: the local headers carry an extra field (zip64 sizes).
+/// A zip archive as NumPy writes it: the local headers have an extra field (zip64 sizes).
 inline std::string zip(const std::vector<ZipMember>& members, const std::string& comment = "") {
   std::string archive, directory;
   for (const ZipMember& member : members) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Pixels.h
-/// \brief Reads a PNG back with MRPT's image class, which knows nothing of the one that wrote it.
+/// \brief Reads a PNG with MRPT's image class, which is independent of the writer.
 
 #include <mrpt/img/CImage.h>
 
@@ -26,7 +26,7 @@ class Pixels {
     };
     return channel(2) << 16 | channel(1) << 8 | channel(0);  // stored as BGR
   }
-  /// First and last column that is not white between two rows; (width, -1) when there is none.
+  /// First and last column that is not white between two rows; (width, -1) if all are white.
   std::pair<int, int> inkColumns(int top, int bottom) const {
     std::pair<int, int> columns{width(), -1};
     for (int y = top; y < bottom; ++y)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file PoleCity.h
-/// \brief A city of poles, its imperfect map, and drives through it as a pole detector sees them.
+/// \brief A city of poles, its imperfect map, and drives through it with simulated detections.
 /// Deterministic by seed. For tests and benchmarks.
 
 #include <Eigen/Core>
@@ -17,14 +17,14 @@ using Way = std::vector<Eigen::Vector2d>;
 
 struct CityOptions {
   std::uint64_t seed = 1;
-  int streets = 9;           ///< each way
+  int streets = 9;           ///< in each direction
   double block = 120;        ///< mean distance between parallel streets, m
-  double density = 1;        ///< lamps and all that stands between them, so many times as dense
+  double density = 1;        ///< factor on the density of lamps and other objects
   bool regular = false;      ///< one lamp spacing everywhere, no trees, signs or clutter
-  double regularJitter = 0;  ///< of the lamps of a regular city, along an axis, m
+  double regularJitter = 0;  ///< jitter of the lamps of a regular city, along an axis, m
   double missing = 0.1;      ///< share of standing poles that are not on the map
   double vanished = 0.05;    ///< share of map poles that no longer stand
-  double mapNoise = 0.03;    ///< of a map pole, along an axis, m
+  double mapNoise = 0.03;    ///< noise of a map pole, along an axis, m
 };
 
 /// \brief A polyline sampled every `step` metres.
@@ -45,7 +45,7 @@ inline Way resample(const Way& way, double step) {
   return out;
 }
 
-/// \brief Corners rounded as a car takes them; a point every metre.
+/// \brief Corners rounded as driven by a car; a point every metre.
 inline Way drivable(const Way& way) {
   const Way fine = resample(way, 0.5);
   const int reach = 12;
@@ -59,10 +59,10 @@ inline Way drivable(const Way& way) {
   return resample(smooth, 1);
 }
 
-/// \brief What a pole detector meets.
+/// \brief Objects around the drive.
 struct Surroundings {
   std::vector<Eigen::Vector2d> poles;    ///< map frame, m
-  std::vector<Eigen::Vector2d> clutter;  ///< taken for poles, not on any map
+  std::vector<Eigen::Vector2d> clutter;  ///< detected as poles, not on any map
 };
 
 class PoleCity {
@@ -80,7 +80,7 @@ class PoleCity {
       for (double line : m_lines[axis]) furnish(street(axis, line));
     makeMap();
   }
-  /// \brief Poles along a road that is given.
+  /// \brief Poles along a given road.
   PoleCity(const CityOptions& options, const Way& road)
       : m_options(options), m_random(options.seed) {
     furnish(resample(road, 1));
@@ -90,14 +90,14 @@ class PoleCity {
   const Surroundings& surroundings() const { return m_things; }
   const std::vector<MapPole>& map() const { return m_map; }
 
-  /// \brief A way of `length` metres from a random place, turning at some crossings.
+  /// \brief A path of `length` metres from a random place, turning at some crossings.
   Way randomWay(sim::Random& random, double length) const {
     const int last = m_options.streets - 1;
     int at[2] = {random.below(last + 1), random.below(last + 1)};
     int axis = random.below(2), step = random.chance(0.5) ? 1 : -1;
     Way corners{crossing(at)};
     double sum = 0;
-    const double lead = random.uniform(0, 60);  // starts anywhere between two crossings
+    const double lead = random.uniform(0, 60);  // starts between two crossings
     while (sum < length + lead + 20) {
       if (at[axis] + step < 0 || at[axis] + step > last) step = -step;
       at[axis] += step;
@@ -124,7 +124,7 @@ class PoleCity {
     return resample({from, to}, 1);
   }
 
-  /// Lamps on both sides, rows of trees, signs; and things that look like poles.
+  /// Lamps on both sides, rows of trees, signs, and clutter that looks like poles.
   void furnish(const Way& road) {
     const bool regular = m_options.regular;
     for (double side : {1.0, -1.0}) {
@@ -192,18 +192,18 @@ class PoleCity {
 };
 
 struct DriveOptions {
-  double range = 40;            ///< of the detector, m
-  double nearChance = 0.9;      ///< to detect a pole beside the robot
+  double range = 40;            ///< of the detections, m
+  double nearChance = 0.9;      ///< probability of detecting a pole beside the robot
   double farChance = 0.3;       ///< at the end of the range
-  double falsePerFrame = 1.5;   ///< false detections that no other frame repeats
-  double odometryNoise = 0.02;  ///< σ of each component of a step, as a share of it
-  double scaleError = 0;        ///< the odometry's, common to all steps
+  double falsePerFrame = 1.5;   ///< false detections that do not repeat in other frames
+  double odometryNoise = 0.02;  ///< σ of each component of a step, relative to it
+  double scaleError = 0;        ///< of the odometry, common to all steps
 };
 
 /// \brief One frame of a drive.
 struct Frame {
   Pose2D truth;   ///< robot in the map
-  Pose2D motion;  ///< odometry since the frame before; zero in the first
+  Pose2D motion;  ///< odometry since the previous frame; zero in the first
   std::vector<PoleDetection> poles_robot;
 };
 
@@ -233,7 +233,7 @@ inline void detect(const std::vector<Eigen::Vector2d>& things, const Pose2D& tru
   }
 }
 
-/// \brief What no other frame repeats.
+/// \brief Adds false detections that do not repeat in other frames.
 inline void addFalse(const DriveOptions& options, sim::Random& random,
                      std::vector<PoleDetection>& out) {
   for (double left = options.falsePerFrame; random.chance(std::min(1.0, left)); left -= 1) {
@@ -248,7 +248,7 @@ inline void addFalse(const DriveOptions& options, sim::Random& random,
   }
 }
 
-/// \brief A frame every metre of the way.
+/// \brief One frame per metre of the path.
 inline std::vector<Frame> drive(const Surroundings& things, const Way& way,
                                 const DriveOptions& options, sim::Random& random) {
   std::vector<Frame> frames;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file PoleStreet.h
-/// \brief A street of poles with a drive through it, made of nothing but numbers, for tests.
+/// \brief A street of poles with a drive through it, made of plain numbers, for tests.
 
 #include <cmath>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace polemcl::tests {
 
-/// \brief Uniform in [0, 1) and normal numbers, the same on every standard library.
+/// \brief Uniform numbers in [0, 1) and normal numbers, equal on every standard library.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : m_generator(seed) {}
@@ -36,10 +36,10 @@ struct StreetOptions {
   int scans = 200;
   double step = 0.5;        ///< m
   double detection = 0.05;  ///< σ of detections, m
-  double odometry = 0.02;   ///< σ of each component of the motion, as a share of it
+  double odometry = 0.02;   ///< σ of each component of the motion, relative to it
   double missed = 0.25;     ///< share of poles not detected
-  double falsePerScan = 1;  ///< detections of nothing, at most, mean half of it
-  double unmapped = 0.15;   ///< share of poles that the map does not know
+  double falsePerScan = 1;  ///< greatest number of false detections; mean: half of it
+  double unmapped = 0.15;   ///< share of poles that are not on the map
   double range = 35;        ///< m
   std::uint64_t seed = 1;
 };

@@ -1,6 +1,7 @@
 #pragma once
 /// \file PoleStreetFiles.h
-/// \brief A street of bare poles on flat ground, seen by an HDL-32E 1.0 m up, as a scan folder.
+/// \brief A street of bare poles on flat ground, seen by an HDL-32E 1.0 m above it, as a scan
+/// folder.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,7 @@ inline std::vector<StreetPole> streetPoles() {
   return poles;
 }
 
-/// Range of a horizontal ray from (x, y) to the nearest pole, and infinity past all of them.
+/// Range of a horizontal ray from (x, y) to the nearest pole; infinity if it hits none.
 inline double rangeToPoles(const std::vector<StreetPole>& poles, double x, double y, double yaw) {
   const double dx = std::cos(yaw), dy = std::sin(yaw);
   double nearest = std::numeric_limits<double>::infinity();
@@ -38,7 +39,7 @@ inline double rangeToPoles(const std::vector<StreetPole>& poles, double x, doubl
   return nearest;
 }
 
-/// One turn of the sensor at a pose: 32 beams, 0.2 degrees a step, no noise, 60 m.
+/// One revolution of the sensor at a pose: 32 beams, 0.2 degrees per step, no noise, 60 m.
 inline Points scanStreet(const std::vector<StreetPole>& poles, double x, double y, double yaw) {
   Points points;
   const double degree = M_PI / 180;
@@ -60,7 +61,7 @@ inline Points scanStreet(const std::vector<StreetPole>& poles, double x, double 
   return points;
 }
 
-/// A drive along x at y = 0, one scan a metre and 0.2 s, heading slowly swinging, with exact
+/// A drive along x at y = 0, one scan per metre and 0.2 s, with a slowly swinging heading and exact
 /// odometry.
 inline void writeStreet(const fs::path& folder, std::size_t scans,
                         const std::vector<StreetPole>& poles = streetPoles(), double startTime = 50,

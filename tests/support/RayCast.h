@@ -1,6 +1,6 @@
 #pragma once
 /// \file RayCast.h
-/// \brief Exact scans of a few simple solids, as an oracle: where every return belongs is known.
+/// \brief Exact scans of a few simple solids, as an oracle: the source of every return is known.
 
 #include <algorithm>
 #include <optional>
@@ -10,11 +10,11 @@
 
 namespace polemcl::clouds {
 
-/// \brief Upright cylinder. Lidar frame, m.
+/// \brief Vertical cylinder. LiDAR frame, m.
 struct Cylinder {
   double x = 0, y = 0, radius = 0.1, bottom = -10, top = 10;
 };
-/// \brief Upright rectangle over a line in the plane. Lidar frame, m.
+/// \brief Vertical rectangle over a line in the plane. LiDAR frame, m.
 struct Wall {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0, bottom = -10, top = 10;
 };
@@ -32,13 +32,13 @@ struct Casting {
   double sigma = 0;      ///< of ranges, m
   double footprint = 0;  ///< full width of a beam, rad; a return needs 30 % of it
   std::uint64_t seed = 1;
-  /// Azimuths cast, rad: bearing ± half. No full turn is needed to look at one thing.
+  /// Azimuths to cast, rad: bearing ± half. A full revolution is not needed to look at one object.
   double bearing = 0, half = 4;
 };
 
 constexpr double kNothing = 1e9;
 
-/// \brief Horizontal range at which a ray from (0, 0, apex) meets the scene first.
+/// \brief Horizontal range of the first hit of a ray from (0, 0, apex).
 inline double firstHit(const Scene& scene, double azimuth, double slope, double apex) {
   const double c = std::cos(azimuth), s = std::sin(azimuth);
   double nearest = kNothing;
@@ -66,7 +66,7 @@ inline double firstHit(const Scene& scene, double azimuth, double slope, double 
   return nearest;
 }
 
-/// \brief The echo of a beam of some width: the nearest thing that fills 30 % of it.
+/// \brief The return of a beam with a width: the nearest object that fills 30 % of it.
 inline double firstEcho(const Scene& scene, double azimuth, const Beam& beam, double footprint) {
   if (footprint == 0) return firstHit(scene, azimuth, beam.slope, beam.offset);
   constexpr int kRays = 10;
@@ -86,8 +86,8 @@ inline double firstEcho(const Scene& scene, double azimuth, const Beam& beam, do
   return kNothing;
 }
 
-/// \brief One turn. Every beam starts at its own azimuth, as the lasers of real sensors do.
-/// Returns farther than 100 m are lost.
+/// \brief One revolution. Every beam starts at its own azimuth, as the lasers of real sensors do.
+/// Returns beyond 100 m are lost.
 inline PointList cast(const Scene& scene, const SensorModel& sensor, const Casting& casting = {}) {
   sim::Random random(casting.seed);
   PointList points;

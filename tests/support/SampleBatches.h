@@ -1,6 +1,6 @@
 #pragma once
 /// \file SampleBatches.h
-/// \brief A small batch with all that can go wrong, figures chosen to be summed up by hand.
+/// \brief A small batch with all kinds of failures, with numbers that are easy to sum by hand.
 
 #include <string>
 
@@ -8,7 +8,8 @@
 
 namespace polemcl::report {
 
-/// A run whose position errors are `pos`, 2 `pos` (RMSE) and 3 `pos` (maximum), heading likewise.
+/// A run with position errors `pos` (mean), 2 `pos` (RMSE) and 3 `pos` (maximum); the same for
+/// heading.
 inline BatchRun runWith(std::size_t index, double pos, double ang) {
   BatchRun run;
   run.run = index;
@@ -43,7 +44,7 @@ inline SessionPlots smallPlots() {
   return plots;
 }
 
-/// A map of 8 poles against 10, of which 6 are right; one to one 5, and 4 within half a metre.
+/// A map of 8 poles against 10, of which 6 are correct; one to one 5, and 4 within half a metre.
 inline MapScores smallScores() {
   const auto score = [](std::size_t matches) {
     MapScore one{8, 10, matches, matches / 8.0, matches / 10.0, 0};
@@ -53,7 +54,8 @@ inline MapScores smallScores() {
   return {"truth.csv", score(6), score(5), score(4)};
 }
 
-/// The small batch with a score of its first setting's map, and figures published for sessions.
+/// The small batch with a score of its first configuration's map, and published results for
+/// sessions.
 inline BatchResults smallBatch();
 inline BatchResults scoredBatch() {
   BatchResults batch = smallBatch();
@@ -67,8 +69,8 @@ inline BatchResults scoredBatch() {
   return batch;
 }
 
-/// Setting 0: two runs in session 0, one of two failed in session 1, both lost in session 2.
-/// Setting 1: session 1 only.
+/// Configuration 0: two runs in session 0, one of two failed in session 1, both lost in session 2.
+/// Configuration 1: session 1 only.
 inline BatchResults smallBatch() {
   BatchResults batch;
   batch.name = "small";

@@ -22,7 +22,8 @@ inline MapPole poleAt(double x, double y) {
   return pole;
 }
 
-/// Truth along the x axis at 1 m/s; the estimate lies `offset` to its left, heading `turn` off.
+/// Truth along the x axis at 1 m/s; the estimate is `offset` to its left, with a heading error of
+/// `turn`.
 inline MapView smallDrive(double offset = 0.1, double turn = 0.01) {
   MapView view;
   view.title = "A small drive";
@@ -34,7 +35,7 @@ inline MapView smallDrive(double offset = 0.1, double turn = 0.01) {
   return view;
 }
 
-/// An empty folder of its own for the files of one test; gone with it.
+/// A temporary folder for the files of one test.
 class TestFolder {
  public:
   TestFolder() {

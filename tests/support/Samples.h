@@ -1,6 +1,6 @@
 #pragma once
 /// \file Samples.h
-/// \brief Poles and clouds for the tests, made up but plausible; and archives in memory.
+/// \brief Invented, plausible poles and clouds for the tests; and archives in memory.
 
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
@@ -14,7 +14,7 @@
 
 namespace polemcl::samples {
 
-/// \brief A detection whose fields all differ, so that a mix-up shows.
+/// \brief A detection with different values in all fields, to detect mix-ups.
 inline PoleDetection pole(double x, double y) {
   PoleDetection p;
   p.x = x;
@@ -28,7 +28,7 @@ inline PoleDetection pole(double x, double y) {
   return p;
 }
 
-/// \brief Two poles seen by a sensor 1 m ahead, 2 m to the left, turned by a quarter.
+/// \brief Two poles seen by a sensor 1 m in front, 2 m to the left, with a quarter turn.
 inline CObservationPoles observation() {
   CObservationPoles scan;
   scan.timestamp = mrpt::Clock::fromDouble(1326653000.25);
@@ -55,7 +55,7 @@ inline mrpt::serialization::CSerializable::Ptr objectFrom(const std::string& byt
   return archive.ReadObject();
 }
 
-/// \brief A folder of its own for one test, removed afterwards.
+/// \brief A temporary folder for one test.
 class Folder {
  public:
   explicit Folder(const std::string& name)

@@ -31,7 +31,7 @@ inline std::string poseRow(double x, double y, double yaw) {
   return row;
 }
 
-/// Scans of two points each, at (i, 0) looking along x, 0.1 s apart from 100 s on.
+/// Scans of two points each, at (i, 0) looking along x, 0.1 s apart, starting at 100 s.
 inline void writeLine(const fs::path& folder, std::size_t scans, bool poses = true) {
   std::string times, rows;
   for (std::size_t i = 0; i < scans; ++i) {
@@ -44,7 +44,7 @@ inline void writeLine(const fs::path& folder, std::size_t scans, bool poses = tr
   if (poses) writeText(folder / "poses.txt", rows);
 }
 
-/// Of pole-import, from `in` to `out.rawlog`.
+/// Arguments of pole-import, from `in` to `out.rawlog`.
 inline std::vector<std::string> importArguments(const TempFolder& folder,
                                                 const std::string& dataset,
                                                 std::vector<std::string> more) {

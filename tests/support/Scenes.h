@@ -1,6 +1,6 @@
 #pragma once
 /// \file Scenes.h
-/// \brief What a scene holds, read back.
+/// \brief Reads back the content of a scene.
 
 #include <mrpt/opengl/CCylinder.h>
 #include <mrpt/opengl/COpenGLScene.h>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file SimulatedScans.h
-/// \brief Scans of the simulated street with the poles that can be seen in them.
+/// \brief Scans of the simulated street with the visible poles.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace polemcl::clouds {
 /// \brief A true pole in the sensor frame of one scan.
 struct ScannedPole {
   double x = 0, y = 0, radius = 0;  ///< m, at 1.5 m above ground
-  bool visible = false;  ///< 6 returns and more on its trunk, over 0.6 m of height, within 40 m
+  bool visible = false;  ///< at least 6 returns on its trunk, over 0.6 m of height, within 40 m
 };
 
 struct LabelledScan {
@@ -24,7 +24,7 @@ struct LabelledScan {
   std::vector<ScannedPole> poles;  ///< all of the world
 };
 
-/// \brief The world's poles in a scan's frame, and what the scan shows of each.
+/// \brief The world's poles in a scan's frame, with their visibility in the scan.
 inline std::vector<ScannedPole> scannedPoles(const sim::World& world,
                                              const Eigen::Isometry3d& T_map_sensor,
                                              const sim::SimulatedScan& scan) {
@@ -80,8 +80,8 @@ inline std::vector<LabelledScan> streetScans(std::uint64_t world, const std::str
   return scans;
 }
 
-/// \brief Detections against the poles of one scan or several; each pole matches once, within 0.5
-/// m.
+/// \brief Comparison of detections with the poles of one or more scans; each pole matches once,
+/// within 0.5 m.
 struct Score {
   int detections = 0, right = 0, visible = 0, found = 0;
   double precision() const { return static_cast<double>(right) / std::max(1, detections); }

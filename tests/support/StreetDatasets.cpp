@@ -21,11 +21,11 @@ using Pose = Eigen::Isometry3d;
 
 constexpr double degree = M_PI / 180;
 
-/// A simulated folder, read back.
+/// A simulated folder that was read back.
 struct Drive {
   std::vector<fs::path> scans;
   std::vector<double> times;                   ///< s, from 0
-  std::vector<Pose> poses;                     ///< of the sensor in the map
+  std::vector<Pose> poses;                     ///< pose of the sensor in the map
   std::vector<std::array<double, 6>> motions;  ///< odometry.txt: one less than scans
 };
 
@@ -55,7 +55,7 @@ std::string bytesOf(const std::vector<std::uint32_t>& labels) {
   return {reinterpret_cast<const char*>(labels.data()), labels.size() * 4};
 }
 
-/// [R|t] row by row; as a line, fields apart by that character.
+/// [R|t] row by row, as a line with fields separated by this character.
 std::string matrixRow(const Pose& pose, char between) {
   std::string row;
   for (int i = 0; i < 3; ++i)
@@ -100,7 +100,7 @@ void writeSemanticKitti(const sim::SimulationOptions& options, const fs::path& s
   std::set<std::uint32_t> poles;
   for (const auto& pole : io::readWorldPoles(sequence / "poles_gt.csv")) poles.insert(pole.id);
   relabel(sequence, poles);
-  Pose T_cam_lidar = Pose::Identity();  // the camera looks along x and has z ahead
+  Pose T_cam_lidar = Pose::Identity();  // the camera looks along x; its z points forward
   T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   std::string poseRows;
   for (const Pose& pose : drive.poses)
@@ -165,7 +165,7 @@ void writeNclt(const sim::SimulationOptions& options, const fs::path& session,
                std::uint64_t startMicroseconds, const fs::path& truth) {
   const TempFolder temporary;
   const Drive street = simulated(options, temporary.path());
-  Eigen::Matrix3d mapAxes;  // east, north, up as north, east, down, and back
+  Eigen::Matrix3d mapAxes;  // from east, north, up to north, east, down
   mapAxes << 0, 1, 0, 1, 0, 0, 0, 0, -1;
   const Eigen::Matrix3d bodyAxes = Eigen::Vector3d(1, -1, -1).asDiagonal();
   std::string truthRows, steps, covariances;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file StreetTest.h
-/// \brief What the tests of pole-extract and pole-map share: an imported street.
+/// \brief Shared by the tests of pole-extract and pole-map: an imported street.
 
 #include "cli/Settings.h"
 #include "import/DatasetImport.h"
@@ -11,7 +11,7 @@ namespace testing_apps {
 class StreetTest : public testing::Test {
  protected:
   StreetTest() {
-    // Its own, so that tuning config/ changes no test here.
+    // Own settings, so that changes of config/ do not affect the tests.
     writeText(configFolder / "street.ini",
               "[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\nsection_length_m = 1.5\n"
               "min_count = 2\n");
@@ -30,7 +30,7 @@ class StreetTest : public testing::Test {
     polemcl::apps::importDataset(options);
   }
 
-  /// Replaces a word by another of the same length, everywhere in a file.
+  /// Replaces a word by another of the same length everywhere in a file.
   void replace(const std::string& name, const std::string& word, const std::string& by) const {
     std::string bytes = readText(folder / name);
     for (auto p = bytes.find(word); p != std::string::npos; p = bytes.find(word, p + 1))

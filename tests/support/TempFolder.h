@@ -1,6 +1,6 @@
 #pragma once
 /// \file TempFolder.h
-/// \brief A folder of one test, and small things to do with files and programs.
+/// \brief A temporary folder for one test, and helpers for files and programs.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ namespace testing_apps {
 
 namespace fs = std::filesystem;
 
-/// A new, empty folder; removed with all that is in it.
+/// A new, empty folder that is removed with its content.
 class TempFolder {
  public:
   TempFolder() {
@@ -79,7 +79,7 @@ inline Outcome runProgram(const std::function<int(int, const char* const*)>& pro
   return outcome;
 }
 
-/// Exit code 1, and one line on stderr that holds all of these words.
+/// Checks for exit code 1 and one line on stderr with all of these words.
 inline void expectFailure(const Outcome& outcome, const std::vector<std::string>& words) {
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file TestClouds.h
-/// \brief Clouds of a made-up place, cast ray by ray: flat ground, upright cylinders, a round wall.
+/// \brief Clouds of an invented place, cast ray by ray: flat ground, vertical cylinders, a round
+/// wall.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -17,12 +18,12 @@ struct TestPole {
   double x = 0, y = 0, radius = 0.12, top = 4;  ///< robot frame, m; top above ground
 };
 
-/// \brief The poles of the place: robot frame, ground at z = 0. None hides another.
+/// \brief The poles of the place: robot frame, ground at z = 0. They do not hide each other.
 inline std::vector<TestPole> testPoles() {
   return {{8, 1}, {6, 7}, {-2, 9}, {-9, 4}, {-7, -6}, {1, -8}, {9, -7}, {13, 4}};
 }
 
-/// \brief What one ray sees, as a range; 0 for nothing within 40 m.
+/// \brief Range of one ray; 0 if it hits nothing within 40 m.
 inline double castRay(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
                       const std::vector<TestPole>& poles) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -43,11 +44,11 @@ inline double castRay(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
 }
 
 struct TestCloud {
-  std::vector<float> x, y, z;  ///< lidar frame
+  std::vector<float> x, y, z;  ///< LiDAR frame
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
-/// \brief The unit direction of a beam, lidar frame, and where it starts.
+/// \brief Unit direction of a beam in the LiDAR frame, and its start.
 inline std::pair<Eigen::Vector3d, Eigen::Vector3d> ray(const SensorModel& model, int row,
                                                        double azimuth) {
   const double elevation = std::atan(model.beam(row).slope);
@@ -56,8 +57,8 @@ inline std::pair<Eigen::Vector3d, Eigen::Vector3d> ray(const SensorModel& model,
                           std::cos(elevation) * std::sin(azimuth), std::sin(elevation))};
 }
 
-/// \brief One turn of the sensor. \param T_robot_lidar The lidar frame, ground at the robot's z =
-/// 0.
+/// \brief One revolution of the sensor. \param T_robot_lidar Pose of the LiDAR; the ground is at z
+/// = 0 of the robot.
 inline TestCloud castScan(const SensorOptions& options, const Eigen::Isometry3d& T_robot_lidar,
                           const std::vector<TestPole>& poles) {
   const SensorModel model(options);

@@ -6,7 +6,7 @@
 
 namespace polemcl::clouds {
 
-/// \brief What became of the points: the counts of both steps.
+/// \brief Counts of the points in both steps.
 struct WholeScanCounts {
   ScanLines::Counts lines;
   GroundGrid::Counts dropped;
@@ -14,7 +14,7 @@ struct WholeScanCounts {
 
 inline WholeScanCounts buildWhole(ScanLines& lines, const PointsView& points, float minRange,
                                   float maxRange) {
-  constexpr float kAbyss = 1e6f;  // m: a ground so low that nothing lies on it
+  constexpr float kAbyss = 1e6f;  // m: a ground so low that no point is on it
   GroundGrid ground;
   ground.build(points, minRange, maxRange, kAbyss);
   return {lines.build(points, ground, 0), ground.counts()};

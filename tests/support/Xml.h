@@ -1,6 +1,6 @@
 #pragma once
 /// \file Xml.h
-/// \brief A strict reader of small XML documents, to look into pages that were written.
+/// \brief A strict reader of small XML documents, to examine written pages.
 
 #include <functional>
 #include <map>
@@ -25,13 +25,13 @@ struct Element {
   bool hasClass(const std::string& one) const {
     return (' ' + at("class") + ' ').find(' ' + one + ' ') != std::string::npos;
   }
-  /// Its text and that of all below, in no particular order.
+  /// Text of this element and of all elements below, in no particular order.
   std::string allText() const {
     std::string all = text;
     for (const Element& child : children) all += child.allText();
     return all;
   }
-  /// Calls for all elements below and this one, parents first.
+  /// Calls the function for this element and all below, parents first.
   void each(const std::function<void(const Element&)>& call) const {
     call(*this);
     for (const Element& child : children) child.each(call);
@@ -48,7 +48,7 @@ struct Element {
   }
 };
 
-/// Throws std::runtime_error on anything that is not well-formed.
+/// Throws std::runtime_error on XML that is not well-formed.
 class Reader {
  public:
   explicit Reader(const std::string& text) : m_text(text) {}

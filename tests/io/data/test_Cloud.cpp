@@ -64,7 +64,7 @@ TEST_F(CloudTest, ReadsARealScan) {
     farthest = std::max<double>(farthest, std::hypot(cloud.x[i], cloud.y[i]));
   }
   EXPECT_GT(farthest, 50);
-  EXPECT_LT(farthest, 130);  // reach of the HDL-64E
+  EXPECT_LT(farthest, 130);  // range of the HDL-64E
 }
 
 }  // namespace polemcl::test_cloud

@@ -31,7 +31,7 @@ std::string raw(T value) {
   return bytes;
 }
 
-/// Values of fields, field after field, as PCL compresses them: two sizes, then LZF data.
+/// Values of fields, field by field, as PCL compresses them: two sizes, then LZF data.
 std::string compressed(const std::string& columns) {
   std::vector<char> packed(columns.size() + 64);
   const unsigned size = lzf_compress(columns.data(), static_cast<unsigned>(columns.size()),
@@ -73,7 +73,7 @@ TEST_F(PcdFileTest, ReadsAsciiPoints) {
 }
 
 TEST_F(PcdFileTest, ReadsCompressedPoints) {
-  // 40 points with repeating values, so that LZF finds something to compress.
+  // 40 points with repeating values, so that LZF can compress them.
   std::string rings, normals, x, y, z, intensity;
   std::vector<float> wanted;
   for (int i = 0; i < 40; ++i) {
@@ -97,7 +97,7 @@ TEST_F(PcdFileTest, ReadsCompressedPoints) {
     EXPECT_EQ(cloud.z[i], 3 * wanted[i]);
     EXPECT_EQ(cloud.intensity[i], 200);
   }
-  // No points at all.
+  // No points.
   EXPECT_EQ(readPcd(write("b.pcd", header("x y z", "4 4 4", "F F F", 0, "binary_compressed") +
                                        std::string(8, '\0')))
                 .size(),
@@ -128,7 +128,7 @@ TEST_F(PcdFileTest, FieldsMayBeOfAnyTypeAndOrder) {
   EXPECT_EQ(cloud.y, (std::vector<float>{-1, -2}));
   EXPECT_EQ(cloud.z, (std::vector<float>{2.5f, 5}));
   EXPECT_EQ(cloud.intensity, (std::vector<float>{65535, 65535}));
-  // The same as text.
+  // The same points as text.
   const std::string text =
       "FIELDS ring normal z x y\nSIZE 2 4 8 4 1\nTYPE U F F F I\n"
       "COUNT 1 3 1 1 1\nWIDTH 1\nHEIGHT 1\nDATA ascii\n9 7 7 7 2.5 -1.5 -1\n";

@@ -35,7 +35,7 @@ TEST(PlanarMotion, ComposesMeansByHand) {
 }
 
 TEST(PlanarMotion, ComposesCovariancesByHand) {
-  // An uncertain heading (0.1 rad) moves the end of the 2 m ahead sideways by 0.2 m.
+  // An uncertain heading (0.1 rad) moves the end of a 2 m motion sideways by 0.2 m.
   PlanarMotion a, b;
   a.covariance = Eigen::Vector3d(0, 0, 0.01).asDiagonal();
   b.mean = {2, 0, 0};
@@ -43,7 +43,7 @@ TEST(PlanarMotion, ComposesCovariancesByHand) {
   Eigen::Matrix3d expected;
   expected << 0.09, 0, 0, 0, 0.04, 0.02, 0, 0.02, 0.01;
   EXPECT_TRUE(composeMotions(a, b).covariance.isApprox(expected, 1e-14));
-  // After a quarter turn what was uncertain ahead is uncertain to the left.
+  // After a quarter turn, forward uncertainty becomes uncertainty to the left.
   a.mean.yaw = M_PI / 2;
   a.covariance.setZero();
   expected.setZero();
@@ -58,7 +58,7 @@ TEST(PlanarMotion, CovarianceIsThatOfSampledMotions) {
   a.covariance << 0.04, 0.01, 0.002, 0.01, 0.02, -0.001, 0.002, -0.001, 0.0016;
   b.covariance << 0.01, -0.004, 0.001, -0.004, 0.03, 0.0005, 0.001, 0.0005, 0.0009;
   const PlanarMotion sum = composeMotions(a, b);
-  // Noise so small that first order is exact to the digits compared.
+  // Noise small enough for the first-order result to be exact to the digits compared.
   const double small = 1e-3;
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
@@ -124,7 +124,7 @@ TEST(PlanarMotion, NoiseIsGaussian) {
 }
 
 TEST(PlanarMotion, NoiseComesFromTheGeneratorByHand) {
-  // Box-Muller, worked out here from the draws: u = draw / 2^53 of the upper 53 bits.
+  // Box-Muller computed here from the draws: u = draw / 2^53 of the upper 53 bits.
   std::mt19937_64 generator(7), draws(7);
   const auto uniform = [&] { return std::ldexp(static_cast<double>(draws() >> 11), -53); };
   const double u0 = uniform(), u1 = uniform(), u2 = uniform(), u3 = uniform();

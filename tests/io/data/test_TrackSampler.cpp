@@ -24,7 +24,7 @@ double yaw(const Eigen::Isometry3d& p) {
 TEST(TrackSampler, InterpolatesBetweenSamplesAndTakesSamplesAsTheyAre) {
   TrackSampler track({10.25, 11, 11.5}, 2);
   track.add(10, pose(0, 3));
-  track.add(11, pose(4, -3));  // across the half turn: 0.283 rad on
+  track.add(11, pose(4, -3));  // across ±180°: 0.283 rad
   track.add(12, pose(6, -3));
   ASSERT_EQ(track.found(), 3u);
   EXPECT_NEAR(track.poses()[0]->translation().x(), 1, 1e-12);

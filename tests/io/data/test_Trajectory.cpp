@@ -20,7 +20,7 @@ constexpr double rootHalf = 0.70710678118654752;
 
 TEST_F(TrajectoryTest, PlanarByHand) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  // Turned by 30° about z, then nose up by 20°: yaw stays 30°.
+  // 30° about z, then 20° nose up: yaw stays 30°.
   pose.linear() = (Eigen::AngleAxisd(M_PI / 6, Eigen::Vector3d::UnitZ()) *
                    Eigen::AngleAxisd(-M_PI / 9, Eigen::Vector3d::UnitY()))
                       .toRotationMatrix();
@@ -89,7 +89,7 @@ TEST_F(TrajectoryTest, TumComesBack) {
   const auto back = readTum(path("t.tum"));
   ASSERT_EQ(back.size(), poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_EQ(back[i].time, poses[i].time);  // 9 decimals hold the double of a stamp of today
+    EXPECT_EQ(back[i].time, poses[i].time);  // 9 decimals keep today's time stamps exact
     EXPECT_TRUE(back[i].pose.isApprox(poses[i].pose, 1e-8)) << i;
   }
 }

@@ -14,12 +14,12 @@ namespace {
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
-/// Camera: x right, y down, z ahead. LiDAR: x ahead, y left, z up. The camera sits 0.3 m ahead of
-/// the LiDAR and 0.1 m below it: x_cam = -y, y_cam = -z - 0.1, z_cam = x - 0.3.
+/// Camera: x right, y down, z forward. LiDAR: x forward, y left, z up. The camera is 0.3 m in front
+/// of the LiDAR and 0.1 m below it: x_cam = -y, y_cam = -z - 0.1, z_cam = x - 0.3.
 const char* const calibration =
     "P0: 7 0 6 0 0 7 2 0 0 0 1 0\nTr: 0 -1 0 0 0 0 -1 -0.1 1 0 0 -0.3\n";
 
-/// Camera poses: 2 m ahead (along its z), then turned to the left (about -y) by a quarter turn.
+/// Camera poses: 2 m forward (along its z), then a quarter turn to the left (about -y).
 const char* const cameraPoses =
     "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 2\n0 0 -1 0 0 1 0 0 1 0 0 2\n";
 
@@ -49,8 +49,8 @@ TEST_F(KittiOdometryTest, CamerasPosesBecomeLidarPosesByHand) {
   EXPECT_TRUE(folder.scans[0].T_map_robot->isApprox(identity, 1e-12));
   EXPECT_EQ(folder.scans[1].time, 0.1036224);
   EXPECT_TRUE(folder.scans[1].T_map_robot->translation().isApprox(Eigen::Vector3d(2, 0, 0), 1e-12));
-  // The camera is at x = 2.3 and turns on the spot to the left; the LiDAR, 0.3 m behind it, swings
-  // to its right: to (2.3, -0.3), looking along +y.
+  // The camera is at x = 2.3 and turns left in place. The LiDAR, 0.3 m behind it, moves to the
+  // right, to (2.3, -0.3), and looks along +y.
   const Eigen::Isometry3d& turned = *folder.scans[2].T_map_robot;
   EXPECT_TRUE(turned.translation().isApprox(Eigen::Vector3d(2.3, -0.3, 0), 1e-12))
       << turned.translation().transpose();
@@ -160,8 +160,8 @@ TEST_F(KittiOdometryTest, RefusesAMissingFolder) {
 
 TEST_F(KittiOdometryTest, ReadsRealScansLaidOutAsASequence) {
   POLEMCL_NEEDS_DATA();
-  // The scans and LiDAR poses of the sample, written as KITTI has them: camera poses in the frame
-  // of the first camera, T_cam = Tr · T_lidar · Tr⁻¹. What comes back are the LiDAR poses.
+  // The scans and LiDAR poses of the sample in KITTI's form: camera poses in the frame of the first
+  // camera, T_cam = Tr · T_lidar · Tr⁻¹. Reading must return the LiDAR poses.
   const fs::path real = dataFolder() / "kitti_odom_00";
   fs::create_directories(path("sequences/00"));
   fs::create_directory_symlink(real / "velodyne", path("sequences/00/velodyne"));

@@ -15,7 +15,7 @@ namespace {
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
-/// The LiDAR sits 0.8 m behind, 0.3 m left of and 0.8 m above the IMU, its axes parallel.
+/// The LiDAR is 0.8 m behind, 0.3 m left of and 0.8 m above the IMU, with parallel axes.
 const char* const calibration =
     "calib_time: 25-May-2012 16:47:16\nR: 1 0 0 0 1 0 0 0 1\nT: 0.8 -0.3 -0.8\n";
 
@@ -40,7 +40,7 @@ std::string stamp(double seconds) {
   return text;
 }
 
-/// Five frames 0.1 s apart; the vehicle looks east and climbs 1e-5 degrees of longitude a frame.
+/// Five frames 0.1 s apart; the vehicle looks east and moves 1e-5 degrees of longitude per frame.
 class KittiRawTest : public FolderTest {
  protected:
   void SetUp() override {
@@ -94,7 +94,7 @@ TEST_F(KittiRawTest, RefusesWhatIsNoTime) {
 }
 
 TEST_F(KittiRawTest, MercatorPoseByTheFormulaOfTheDevkit) {
-  // Worked out apart with my = s·R·log(tan((90 + lat)·pi/360)), lat 49.015003823272.
+  // Computed separately with my = s·R·log(tan((90 + lat)·pi/360)), lat 49.015003823272.
   const double scale = 0.6558613736316692;
   const auto a = mercatorPose({49.015003823272, 8.4342971002335, 112.8, 0, 0, 0}, scale);
   EXPECT_NEAR(a.translation().x(), 615789.3313814249, 1e-6);
@@ -103,7 +103,7 @@ TEST_F(KittiRawTest, MercatorPoseByTheFormulaOfTheDevkit) {
   const auto b = mercatorPose({49.015103823272, 8.4343971002335, 112.8, 0, 0, 0}, scale);
   EXPECT_NEAR(b.translation().x() - a.translation().x(), 7.301015, 1e-5);
   EXPECT_NEAR(b.translation().y() - a.translation().y(), 11.131960, 1e-5);
-  // That is the length of 1e-4 degrees on the sphere, near this latitude.
+  // The length of 1e-4 degrees on the sphere near this latitude.
   EXPECT_NEAR(b.translation().y() - a.translation().y(), 6378137 * 1e-4 * M_PI / 180, 1e-4);
 }
 
@@ -121,8 +121,8 @@ TEST_F(KittiRawTest, PosesByHand) {
   ASSERT_EQ(folder.scans.size(), 5u);
   EXPECT_TRUE(folder.notes.empty());
   EXPECT_NEAR(folder.scans[3].time, 1317042145.3, 1e-6);
-  // 1e-5 degrees of longitude at 49 degrees north: 0.730322 m. T_lidar_imu is a shift, so the
-  // LiDAR sits at minus that shift from the IMU.
+  // 1e-5 degrees of longitude at 49 degrees north are 0.730322 m. T_lidar_imu is a translation; the
+  // LiDAR is at the negative of it from the IMU.
   const double step = 6378137 * std::cos(49 * M_PI / 180) * 1e-5 * M_PI / 180;
   EXPECT_NEAR(step, 0.730322, 1e-6);
   for (int i = 0; i < 5; ++i) {
@@ -136,7 +136,7 @@ TEST_F(KittiRawTest, PosesByHand) {
 }
 
 TEST_F(KittiRawTest, TheMapLooksAlongTheFirstFrameAndStaysLevel) {
-  // Heading north, nose up: x of the map is north, and the map does not lean.
+  // Heading north, nose up: x of the map is north, and the map is not tilted.
   for (int i = 0; i < 5; ++i) addOxts(i, oxtsRow(49 + 1e-5 * i, 8.4, 112, 0.05, -0.1, M_PI / 2));
   write("date/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 1\nT: 0 0 0\n");
   const ScanFolder folder = readDrive();
@@ -150,7 +150,7 @@ TEST_F(KittiRawTest, TheMapLooksAlongTheFirstFrameAndStaysLevel) {
 }
 
 TEST_F(KittiRawTest, TheSensorPoseGivesRobotPoses) {
-  // With the IMU in the robot's origin, the robot frame is the IMU's.
+  // With the IMU at the robot's origin, the robot frame is that of the IMU.
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
   T_robot_sensor.translation() << -0.8, 0.3, 0.8;
   EXPECT_TRUE(readDrive(T_robot_sensor).scans[0].T_map_robot->translation().isZero(1e-6));
@@ -166,11 +166,11 @@ TEST_F(KittiRawTest, MissingScansArePairedByNumberAndNoted) {
   EXPECT_NEAR(byNumber.scans[1].time, 1317042145.3, 1e-6);
   EXPECT_NEAR(byNumber.scans[1].T_map_robot->translation().z(), 0.8 + 1.5, 1e-6);
   EXPECT_EQ(byNumber.notes, std::vector<std::string>{"no scan for the oxts frames 1-2"});
-  // … or there …
+  // … or present …
   write("drive/velodyne_points/timestamps.txt",
         stamp(25) + stamp(25.1) + stamp(25.2) + stamp(25.3) + stamp(25.4));
   EXPECT_EQ(readDrive().scans[1].time, byNumber.scans[1].time);
-  // … or missing too.
+  // … or missing.
   write("drive/velodyne_points/timestamps.txt", stamp(25) + stamp(25.3) + stamp(25.4));
   EXPECT_EQ(readDrive().scans[1].time, byNumber.scans[1].time);
 }

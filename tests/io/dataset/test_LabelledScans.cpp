@@ -51,7 +51,7 @@ TEST_F(LabelledScansTest, RefusesLabelsOfAnotherScan) {
     expectIn(messageOf([&] { readLabelledCloud(bin, label); }), label.string(), bin.string());
   }
   expectIn(messageOf([&] { readLabelledCloud(bin, path("no.label")); }), "no.label");
-  // A cloud that is cut short is refused too, whatever its labels.
+  // A truncated cloud is rejected with any labels.
   const fs::path cut = write("b.bin", floats({1, 2, 3, 4, 5}));
   expectIn(messageOf([&] { readLabelledCloud(cut, write("b.label", labels({1}))); }), cut.string(),
            "20 bytes");

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* names[] = {"1561000444390857630", "1561000444489636410",
                                  "1561000444590000000"};
 
-/// The vehicle on its way east at 10 m/s, in UTM, looking there; a row each 10 ms.
+/// The vehicle drives and looks east at 10 m/s, in UTM; one row per 10 ms.
 std::string drive(int rows) {
   std::string text;
   for (int i = 0; i < rows; ++i) {
@@ -47,7 +47,7 @@ TEST_F(MulranTest, ReadsScansAndTheVehiclesPoses) {
   EXPECT_FALSE(sequence.read);  // rawlogs can refer to these files
   EXPECT_NEAR(sequence.scans[0].time, 1561000444.390857630, 3e-7);
   EXPECT_EQ(sequence.scans[0].cloud.filename(), "1561000444390857630.bin");
-  // 40.857630 ms after the first row, at 10 m/s; where it was first is 355000 m.
+  // 40.857630 ms after the first row, at 10 m/s; the first position is 355000 m.
   const Eigen::Isometry3d& pose = *sequence.scans[0].T_map_robot;
   EXPECT_NEAR(pose.translation().x(), 355000 + 10 * 0.04085763, 1e-5);
   EXPECT_NEAR(pose.translation().y(), 4025000.5, 1e-6);
@@ -63,7 +63,7 @@ TEST_F(MulranTest, TheRobotMayBeTheLidar) {
   EXPECT_NEAR(pose.translation().x(), 355000 + 10 * 0.04085763 + 1.7042, 1e-5);
   EXPECT_NEAR(pose.translation().y(), 4025000.5 - 0.021, 1e-6);
   EXPECT_NEAR(pose.translation().z(), 19.25 + 1.8047, 1e-6);
-  EXPECT_NEAR(planar(pose).yaw, 179.6654 * M_PI / 180, 1e-9);  // it looks back
+  EXPECT_NEAR(planar(pose).yaw, 179.6654 * M_PI / 180, 1e-9);  // it looks backwards
 }
 
 TEST_F(MulranTest, ReadsTheLayoutWithSensorData) {
@@ -77,7 +77,7 @@ TEST_F(MulranTest, ReadsTheLayoutWithSensorData) {
 }
 
 TEST_F(MulranTest, ScansWithoutTruthAreLeftOut) {
-  write("KAIST01/global_pose.csv", drive(20));  // the last scan comes after its end
+  write("KAIST01/global_pose.csv", drive(20));  // the last scan is after its end
   const ScanFolder sequence = load();
   EXPECT_EQ(sequence.scans.size(), 2u);
   expectIn(sequence.notes.at(0), "1 of 3 scans left out, at times without truth");

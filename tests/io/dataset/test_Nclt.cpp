@@ -19,7 +19,7 @@ std::uint64_t scanTime(int i) {
   return start + static_cast<std::uint64_t>(i) * period;
 }
 
-/// Five scans 0.2 s apart; the body goes north at 5 m/s, z down, its heading a tenth of a radian.
+/// Five scans 0.2 s apart; the body goes north at 5 m/s, z down, with a heading of 0.1 rad.
 class NcltTest : public FolderTest {
  protected:
   void SetUp() override {
@@ -80,10 +80,11 @@ TEST_F(NcltTest, MotionsAreThoseOfTheTrackWithTheCovariancesOfTheSteps) {
   const ScanFolder session = load();
   EXPECT_FALSE(session.scans[0].motion);
   const PlanarMotion& motion = *session.scans[2].motion;
-  EXPECT_NEAR(motion.mean.x, 1, 1e-6);  // ahead
+  EXPECT_NEAR(motion.mean.x, 1, 1e-6);  // forward
   EXPECT_NEAR(motion.mean.y, 0, 1e-6);
-  // Half of one step and half of the next: by hand, y and heading turned over (z up). The heading
-  // error of the first half moves the end by 0.5 m a radian; half of each covariance counts.
+  // Half of one step and half of the next. Computed by hand, with y and heading negated (z up). The
+  // heading error of the first half moves the end by 0.5 m per radian; half of each covariance
+  // counts.
   const double xx = 0.04, xy = -0.005, yy = 0.01, xh = -0.002, hh = 0.0025, floor = 1e-6;
   EXPECT_NEAR(motion.covariance(0, 0), xx + floor, 2e-7);
   EXPECT_NEAR(motion.covariance(0, 1), xy + 0.5 * xh / 2, 2e-7);
@@ -144,12 +145,12 @@ TEST_F(NcltTest, ScansRightInTheFolderAreFound) {
 
 TEST_F(NcltTest, ScansWithoutTruthOrOdometryAreLeftOut) {
   write("2012-01-15/velodyne_sync/" + std::to_string(scanTime(-10)) + ".bin", point(1, 2, 3));
-  std::string truth;  // nothing at scan 1, nor after scan 3
+  std::string truth;  // no rows at scan 1 and after scan 3
   truth += poseRow(start - 900000, 0, 0, 0, 0, 0, 0) + poseRow(start, 0, 0, 0, 0, 0, 0) +
            poseRow(scanTime(2), 2, 0, 0, 0, 0, 0) + poseRow(scanTime(3), 3, 0, 0, 0, 0, 0);
   write("2012-01-15/groundtruth_2012-01-15.csv", truth);
   const ScanFolder session = load();
-  ASSERT_EQ(session.scans.size(), 4u);  // 0.4 s are no gap
+  ASSERT_EQ(session.scans.size(), 4u);  // 0.4 s are not a gap
   EXPECT_NEAR(session.scans[1].T_map_robot->translation().y(), 1, 1e-5);
   expectIn(notes(session), "1 of 6 scans left out, at times without odometry",
            "1 of 5 scans left out, at times without truth");
@@ -166,14 +167,14 @@ TEST_F(NcltTest, TellsHowGoodTheTruthIs) {
 
 TEST_F(NcltTest, ReadsPacketsWhereThereAreNoScans) {
   remove("velodyne_sync");
-  // Turns of 0.36 s; the body goes 1.8 m in each.
+  // Revolutions of 0.36 s; the body moves 1.8 m in each.
   write("2012-01-15/velodyne_hits.bin", turning(80, 10.005));
   const ScanFolder session = load();
   ASSERT_EQ(session.scans.size(), 2u);
   EXPECT_NEAR(session.scans[0].time, start * 1e-6 + 0.175, 1e-5);
   EXPECT_NEAR(session.scans[1].motion->mean.x, 1.8, 1e-5);
   EXPECT_NEAR(session.scans[1].T_map_robot->translation().y(), 100 + 5 * 0.535, 1e-4);
-  // The point seen first, 10 m to the left of the body, is further back in the middle of the turn.
+  // The first point, 10 m to the left of the body, is farther back at the middle of the revolution.
   const Cloud cloud = session.read(session.scans[1]);
   ASSERT_EQ(cloud.size(), 36u);
   EXPECT_NEAR(cloud.x[0], -0.12 - 5 * 0.175, 0.02);
@@ -209,7 +210,7 @@ TEST_F(NcltTest, RefusesShortRowsAndCutScans) {
   expectIn(refusal(), "odometry_cov.csv:1: ", "2 numbers, 22 expected");
 }
 
-// The mean goes on from odometry_mu.csv whatever its covariances are.
+// The mean continues to come from odometry_mu.csv.
 TEST_F(NcltTest, CovariancesOfOtherTimesAreDoneWithout) {
   write("2012-01-15/odometry_cov.csv", covarianceRow(5, Eigen::Matrix<double, 6, 6>::Identity()));
   const ScanFolder session = load();
@@ -220,8 +221,8 @@ TEST_F(NcltTest, CovariancesOfOtherTimesAreDoneWithout) {
 }
 
 TEST_F(NcltTest, CovariancesAreFoundByTheirTimes) {
-  // As the owners' files may be: rows that odometry_mu.csv has not, rows missing, times a little
-  // off, not in order, not finite.
+  // As in the original files: rows that are missing in odometry_mu.csv, missing rows, times
+  // slightly off, not in order, not finite.
   const auto c = [](double xx) {
     Eigen::Matrix<double, 6, 6> all = Eigen::Matrix<double, 6, 6>::Zero();
     all.diagonal() << xx, 0.01, 1, 1, 1, 0.0025;
@@ -239,7 +240,7 @@ TEST_F(NcltTest, CovariancesAreFoundByTheirTimes) {
   const ScanFolder session = load();
   // From scan 0 to 1: half of the first step and half of the second.
   EXPECT_NEAR(session.scans[1].motion->covariance(0, 0), (0.04 + 0.16) / 2 + 1e-6, 1e-3);
-  // From scan 2 to 3: neither of the two steps has one.
+  // From scan 2 to 3: neither of the two steps has a covariance.
   EXPECT_NEAR(session.scans[3].motion->covariance(0, 0), 0.05 * 0.05 + 1e-6, 2e-7);
   expectIn(notes(session), "of 6 motions 2 take the covariance of the nearest time, 3 have none");
 }

@@ -1,5 +1,5 @@
 /// \file test_NcltFiles.cpp
-/// \brief Where sessions of NCLT lie: as its downloader and its archives leave them.
+/// \brief Folders of NCLT sessions, as left by the downloader and by its archives.
 
 #include "io/dataset/Nclt.h"
 #include "support/IoFiles.h"
@@ -14,12 +14,12 @@ using namespace testing_nclt;
 
 namespace {
 
-constexpr double ahead = 2;  ///< m, of every motion, with a covariance of its own
+constexpr double ahead = 2;  ///< length of every motion, m; each has its own covariance
 
-/// Sessions of two scans, in folders as a test wants them.
+/// Sessions of two scans, in folders that a test chooses.
 class NcltLayout : public FolderTest {
  protected:
-  /// Scans, odometry and truth; `north` tells the truth of one session from that of another.
+  /// Scans, odometry and truth; `north` distinguishes the truths of the sessions.
   void put(const std::string& velodyne, const std::string& sensors, const std::string& truth,
            const std::string& date, double north) const {
     Eigen::Matrix<double, 6, 6> c = Eigen::Matrix<double, 6, 6>::Identity();
@@ -70,13 +70,13 @@ TEST_F(NcltLayout, ArchivesUnpackedWhereTheDownloaderPutsThem) {
   EXPECT_FALSE(isNcltSession(path("nclt/2012-01-22")));
 }
 
-// As the authors of the paper have them.
+// As on the disks of the paper's authors.
 TEST_F(NcltLayout, ArchivesUnpackedInFoldersOfTheirNames) {
   put("nclt/velodyne_data/2012-01-08_vel", "nclt/sensor_data/2012-01-08_sen", "nclt/ground_truth",
       "2012-01-08", 100);
   expectWhole("nclt/2012-01-08", 100);
   expectWhole("nclt/velodyne_data/2012-01-08_vel", 100);
-  expectWhole("nclt", 100);  // there is but one
+  expectWhole("nclt", 100);  // there is only one
   fs::create_directories(path("nclt/velodyne_data/2012-01-15_vel/2012-01-15"));
   fs::rename(path("nclt/velodyne_data/2012-01-08_vel/velodyne_sync"),
              path("nclt/velodyne_data/2012-01-15_vel/2012-01-15/velodyne_sync"));
@@ -85,7 +85,7 @@ TEST_F(NcltLayout, ArchivesUnpackedInFoldersOfTheirNames) {
   EXPECT_NEAR(load("nclt/2012-01-15").scans[1].T_map_robot->translation().y(), 8, 1e-6);
 }
 
-// Both archives unpacked beside the downloader's folders make one folder for the session.
+// Both archives unpacked beside the downloader's folders share one folder per session.
 TEST_F(NcltLayout, ArchivesUnpackedInTheRoot) {
   put("nclt/2012-01-08", "nclt/2012-01-08", "nclt/ground_truth", "2012-01-08", 100);
   write("nclt/velodyne_data/2012-01-08_vel.tar.gz", "");
@@ -93,7 +93,7 @@ TEST_F(NcltLayout, ArchivesUnpackedInTheRoot) {
   expectWhole("nclt", 100);
 }
 
-// The truth of another session is none.
+// The truth of another session must not be used.
 TEST_F(NcltLayout, TakesNoTruthOfAnotherDate) {
   put("nclt/velodyne_data/2012-01-08", "nclt/sensor_data/2012-01-08", "nclt/ground_truth",
       "2012-01-15", 100);

@@ -63,8 +63,8 @@ TEST_F(NcltScansTest, ReadsTheRealScan) {
 }
 
 TEST_F(NcltScansTest, TurnsEndWhereTheBeamsHaveComeRound) {
-  // A bit more than 10° a packet, 36 packets a turn: the first turn has packets 0 … 35, the second
-  // 36 … 71, then 8 are left.
+  // Slightly more than 10° per packet, 36 packets per revolution: the first revolution has packets
+  // 0 … 35, the second 36 … 71, and 8 remain.
   const auto turns = find(turning(80, 10.005));
   const std::uint64_t packetBytes = 24 + 16;
   ASSERT_EQ(turns.size(), 2u);
@@ -79,7 +79,7 @@ TEST_F(NcltScansTest, TurnsEndWhereTheBeamsHaveComeRound) {
 }
 
 TEST_F(NcltScansTest, TurnsDoNotDriftWhenStepsDoNotDivideThem) {
-  // 7° steps, clockwise: turns begin at the first packet at or beyond 360°, 720°, …
+  // 7° steps, clockwise: revolutions begin at the first packet at or beyond 360°, 720°, …
   const auto turns = find(turning(210, -7));
   ASSERT_EQ(turns.size(), 4u);
   EXPECT_EQ(turns[1].offset, 52u * 40);
@@ -88,7 +88,7 @@ TEST_F(NcltScansTest, TurnsDoNotDriftWhenStepsDoNotDivideThem) {
 }
 
 TEST_F(NcltScansTest, TurnsWithAPauseAreLeftOut) {
-  // 20 packets, a pause of a second, a whole turn and one packet more.
+  // 20 packets, a pause of a second, a complete revolution and one more packet.
   const auto turns = find(turning(20, 10.005) + turning(37, 10.005, start + 2000000));
   ASSERT_EQ(turns.size(), 1u);
   EXPECT_EQ(turns[0].offset, 20u * 40);
@@ -126,8 +126,8 @@ TEST_F(NcltScansTest, PointsOfATurnComeIntoTheBodyFrame) {
 }
 
 TEST_F(NcltScansTest, TheMotionOfTheBodyIsTakenOut) {
-  // A wall 10 m ahead of the body, seen at the begin, the middle and the end of a turn in which the
-  // body goes 2 m: 11, 10 and 9 m away. The LiDAR's -y is the body's -x.
+  // A wall 10 m in front of the body, seen at the begin, middle and end of a revolution. The body
+  // moves 2 m: the distances are 11, 10 and 9 m. The LiDAR's -y is the body's -x.
   const Eigen::Isometry3d T_lidar_body = ncltBodyLidar().inverse();
   std::string bytes;
   for (int i = 0; i < 3; ++i) {

@@ -14,7 +14,7 @@ namespace {
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
-/// A pose row: x, y, z, turned to the left by a quarter turn.
+/// A pose row: x, y, z, with a quarter turn to the left.
 std::string leftAt(const std::string& x, const std::string& y, const std::string& z) {
   return "0 -1 0 " + x + " 1 0 0 " + y + " 0 0 1 " + z + "\n";
 }
@@ -59,12 +59,12 @@ TEST_F(ScanFolderTest, SensorPosesBecomeRobotPosesByHand) {
                   .scans[0]
                   .T_map_robot->translation()
                   .isApprox(Eigen::Vector3d(10, 20, 3)));
-  // The sensor sits 1 m before and 2 m above the robot's origin, and looks backwards.
+  // The sensor is 1 m in front of and 2 m above the robot's origin, and looks backwards.
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
   T_robot_sensor.translation() << 1, 0, 2;
   T_robot_sensor.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const ScanFolder folder = readScanFolder(m_folder, T_robot_sensor);
-  // The sensor looks to +y, so the robot to -y, and its origin is 1 m behind the sensor: at +y.
+  // The sensor looks to +y, so the robot looks to -y; its origin is 1 m behind the sensor, at +y.
   const Eigen::Isometry3d& T_map_robot = *folder.scans[1].T_map_robot;
   EXPECT_TRUE(T_map_robot.translation().isApprox(Eigen::Vector3d(11, 21, 1), 1e-12));
   EXPECT_NEAR(planar(T_map_robot).yaw, -M_PI / 2, 1e-12);
@@ -87,7 +87,7 @@ TEST_F(ScanFolderTest, MotionsAndTheirVariances) {
 }
 
 TEST_F(ScanFolderTest, MotionsAreNotMovedToTheRobotTwice) {
-  // They are given in the robot frame already, whatever the sensor pose.
+  // Motions are already in the robot frame, for any sensor pose.
   write("odom.txt", "1 0 0 0.1 0.1 0.1\n1 0 0 0.1 0.1 0.1\n");
   Eigen::Isometry3d T_robot_sensor = Eigen::Isometry3d::Identity();
   T_robot_sensor.linear() =
@@ -229,7 +229,7 @@ TEST_F(ScanFolderTest, ReadsTheRealDrive) {
   EXPECT_TRUE(folder.notes.empty());
   EXPECT_FALSE(folder.scans[0].motion);
   EXPECT_NEAR(folder.scans[79].time, 7.9, 1e-9);
-  // Odometry is independent of the poses: a few per cent longer, a similar turn.
+  // Odometry is independent of the poses: a few per cent longer, with similar rotations.
   double driven = 0, odometry = 0, turned = 0, turnedOdometry = 0;
   for (std::size_t i = 1; i < folder.scans.size(); ++i) {
     const Pose2D step =

@@ -9,7 +9,7 @@ using namespace polemcl::io::test;
 
 namespace {
 
-/// Scans at 10, 11, 12, … s, each a metre ahead of the one before.
+/// Scans at 10, 11, 12, … s, each one metre ahead of the previous one.
 ScanFolder line(std::size_t scans) {
   ScanFolder folder;
   for (std::size_t i = 0; i < scans; ++i) {
@@ -35,7 +35,8 @@ TEST_F(ScanPosesTest, MotionsOfScansThatAreLeftOutGoIntoTheNext) {
   EXPECT_FALSE(folder.scans[0].motion);
   EXPECT_EQ(folder.scans[1].time, 14);
   EXPECT_NEAR(folder.scans[1].motion->mean.x, 3, 1e-12);
-  // By hand: x errors add up; a heading error of 1 rad at the first metre moves the end by 2 m.
+  // Computed by hand: x errors add up; a heading error of 1 rad at the first metre moves the end by
+  // 2 m.
   EXPECT_NEAR(folder.scans[1].motion->covariance(0, 0), 3, 1e-12);
   EXPECT_NEAR(folder.scans[1].motion->covariance(1, 1), 3 + 4 + 1, 1e-12);
   ASSERT_EQ(folder.notes.size(), 1u);
@@ -66,7 +67,7 @@ TEST_F(ScanPosesTest, TakesPosesOfTheRobotAtTheTimesOfTheScans) {
 
 TEST_F(ScanPosesTest, TakesPosesOfTheSensor) {
   ScanFolder folder = line(1);
-  Eigen::Isometry3d T_robot_sensor = identity;  // 2 m ahead, looking to the left
+  Eigen::Isometry3d T_robot_sensor = identity;  // 2 m in front, looking left
   T_robot_sensor.translate(Eigen::Vector3d(2, 0, 0))
       .rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   // The sensor at (5, 7), looking along y of the map: the robot looks along x.

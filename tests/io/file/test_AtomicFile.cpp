@@ -62,7 +62,7 @@ TEST_F(AtomicFileTest, TwoWritersOfOneNameDoNotMix) {
 }
 
 TEST_F(AtomicFileTest, PassesOverALeftoverTemporary) {
-  // The next name is that of the last one with its number plus one.
+  // The next name is the last name with its number plus one.
   fs::path next;
   {
     AtomicFile probe(path("out"));

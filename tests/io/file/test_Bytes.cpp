@@ -55,7 +55,7 @@ TEST_F(BytesTest, ReadsWholeFiles) {
   const std::string content("\0a\r\n\xff", 5);
   EXPECT_EQ(readBytes(write("f", content)), content);
   EXPECT_EQ(readBytes(write("empty", "")), "");
-  // Files that do not tell their size.
+  // Files that do not state their size.
   EXPECT_NE(readBytes("/proc/self/status").find("Name:"), std::string::npos);
 }
 

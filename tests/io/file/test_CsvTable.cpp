@@ -9,7 +9,7 @@ using namespace polemcl::io::test;
 
 class CsvTableTest : public FolderTest {
  protected:
-  /// The message when column `name` of the first row is asked for as a number.
+  /// The error message for reading column `name` of the first row as a number.
   std::string refusal(const std::string& content, const std::string& name = "x") const {
     const fs::path file = write("t.csv", content);
     return messageOf([&] {

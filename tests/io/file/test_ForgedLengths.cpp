@@ -1,6 +1,5 @@
 /// \file test_ForgedLengths.cpp
-/// \brief Lengths and counts that a file claims and does not hold: an error, and no memory for
-/// them.
+/// \brief False lengths and counts in files must give an error and must not allocate memory.
 
 #include <zlib.h>
 
@@ -33,7 +32,7 @@ constexpr std::size_t megabyte = 1 << 20;
 
 class ForgedLengths : public FolderTest {
  protected:
-  /// The message of the refusal, which may take so much memory.
+  /// The error message of `reading`, which may take at most `most` bytes.
   static std::string refusal(const std::function<void()>& reading, std::size_t most = megabyte) {
     std::string message;
     const std::size_t taken = memoryTakenBy([&] { message = messageOf(reading); });
@@ -51,7 +50,7 @@ std::string zlibbed(const std::string& content) {
   return result;
 }
 
-/// A `.polemap` of one chunk of these bytes, with a checksum that fits.
+/// A `.polemap` with one chunk of these bytes and a valid checksum.
 std::string poleMap(const std::string& tag, const std::string& content,
                     std::uint64_t chunkBytes = ~0ull) {
   ByteWriter payload;
@@ -93,7 +92,7 @@ TEST_F(ForgedLengths, InTheScansOfAMap) {
     return refusal([&] { unpackMapScans(little(size, 8) + packed, "x: "); });
   };
   expectIn(unpack(1ull << 40, data), "x: ", "cannot hold 1099511627776");
-  // A claim that deflate could just fulfil, and this data does not.
+  // A size that deflate could just reach, but this data does not.
   const std::string large = data + std::string(100000, 'x');
   expectIn(unpack(90 * megabyte, large), "x: ", "cannot be decompressed");
   for (const std::uint64_t sessions : {0xffffffffull, 2ull}) {
@@ -109,7 +108,7 @@ TEST_F(ForgedLengths, InCompressedData) {
   EXPECT_EQ(inflated(zlibbed(""), 0, Deflated::zlib, "x: "), "");
   for (const std::uint64_t size : {std::uint64_t{0}, content.size() - 1, content.size() + 1})
     expectIn(messageOf([&] { inflated(packed, size, Deflated::zlib, "x: "); }), "x: ");
-  // What is there beyond a small claim is not unpacked.
+  // Data beyond a small claimed size are not decompressed.
   refusal([&] { inflated(packed, 100, Deflated::zlib, "x: "); });
   expectIn(messageOf([&] { inflated(packed + "x", content.size(), Deflated::zlib, "x: "); }),
            "cannot be decompressed");
@@ -125,7 +124,7 @@ TEST_F(ForgedLengths, InAnArchiveOfArrays) {
   };
   expectIn(open(zip({{"a.npy", array, true}})), "a.npz", "do not fit its shape");
   std::string claim = zip({{"a.npy", array + std::string(100000, '\7'), false}});
-  claim[claim.find("PK\x01\x02") + 10] = 8;  // stored data that is said to be deflated
+  claim[claim.find("PK\x01\x02") + 10] = 8;  // stored data marked as deflated
   claim.replace(claim.find("PK\x01\x02") + 24, 4, little(90 * megabyte, 4));
   expectIn(open(claim), "a.npz", "decompressed");
   const std::string header = std::string("\x93NUMPY\x02\0", 8) + little(0xffffffff, 4);
@@ -160,7 +159,7 @@ TEST_F(ForgedLengths, InPacketsOfNclt) {
   }
 }
 
-// A small file that unpacks to more text than anybody reads.
+// A small file that decompresses to more text than the limit.
 TEST_F(ForgedLengths, InCompressedText) {
   const fs::path file = path("a.txt.gz");
   const gzFile stream = gzopen(file.c_str(), "wb1");

@@ -18,7 +18,7 @@ TEST_F(GrowingFileTest, HoldsAllThatWasAdded) {
     const std::string row = std::to_string(i * 7919) + "\n";
     file.add(row);
     all += row;
-    // Nothing but the last piece waits.
+    // Only the last piece may wait.
     ASSERT_GE(fs::file_size(path("f")) + GrowingFile::piece, all.size());
   }
   file.flush();

@@ -231,8 +231,8 @@ TEST_F(NpzTest, RefusesEveryPrefixOfAFile) {
 }
 
 TEST_F(NpzTest, AFlippedBitIsRefusedOrOfNoConsequence) {
-  // Dates, versions and unused sizes of a zip archive carry no checksum and are not read; any
-  // other flip must be refused. Never are other values returned.
+  // Dates, versions and unused sizes of a zip archive have no checksum and are not read. Any other
+  // flip must be rejected; other values must never be returned.
   for (const bool deflate : {false, true}) {
     const std::string bytes = zip({{"a.npy", sample, deflate}});
     std::size_t refused = 0;
@@ -288,7 +288,7 @@ TEST_F(NpzTest, WritesWhatItReads) {
     EXPECT_EQ(npz.array(name).shape, array.shape);
     EXPECT_EQ(npz.array(name).values, array.values);
   }
-  // A program that is not ours finds nothing wrong with it.
+  // An independent program accepts the file.
   const std::string check = "python3 -m zipfile -t " + path("w.npz").string() + " > " +
                             path("out.txt").string() + " 2>&1 && grep -q 'Done testing' " +
                             path("out.txt").string();

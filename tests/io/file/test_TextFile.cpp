@@ -42,7 +42,7 @@ TEST_F(TextFileTest, LinesOfGzip) {
   EXPECT_EQ(lines[19999], "19999");
 }
 
-// Blocks of the reader end inside lines, between the two bytes of a line end, and at its end.
+// Blocks of the reader end inside lines, between the two bytes of a line end, and after it.
 TEST_F(TextFileTest, LinesAcrossBlocks) {
   std::vector<std::string> lines;
   for (const std::size_t length : {65535u, 1u, 65533u, 0u, 65536u, 200000u, 7u})

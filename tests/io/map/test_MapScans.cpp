@@ -14,7 +14,7 @@ namespace {
 
 class MapScans : public FolderTest {};
 
-/// Numbers without any pattern, each to be kept to the last bit.
+/// Random numbers; each must be kept to the last bit.
 AddedSessions sample() {
   std::mt19937 random(7);
   const auto number = [&] { return static_cast<double>(random()) / 3e8 - 7; };

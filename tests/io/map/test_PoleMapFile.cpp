@@ -31,7 +31,7 @@ MapPole pole(double x, double y) {
   return p;
 }
 
-/// A whole file round a payload, checksum and all.
+/// A whole file around a payload, with its checksum.
 std::string wrapped(const std::string& payload, std::uint32_t version = 1) {
   ByteWriter writer;
   writer.putRaw(std::string_view("\x89PMAP\r\n\x1a", 8));
@@ -49,7 +49,7 @@ std::string chunk(const std::string& tag, const std::string& content) {
   return writer.bytes() + content;
 }
 
-/// A POLE chunk of one record with `extra` bytes that this version does not know.
+/// A POLE chunk of one record with `extra` bytes that are unknown to this version.
 std::string poleChunk(const std::string& fields, std::uint64_t count, const std::string& extra) {
   ByteWriter writer;
   writer.put(static_cast<std::uint32_t>(76 + extra.size()));
@@ -147,7 +147,7 @@ TEST_F(PoleMapFileTest, HistoryByHand) {
   data.poles = {pole(1, 2)};
   data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}};
   writePoleMap(path("m.polemap"), data);
-  // Behind the fields that older programs know: they read 108 bytes a record and skip 32.
+  // Behind the fields that older programs know: they read 108 bytes per record and skip 32.
   const std::string info("\0\0\0\0", 4);
   const std::string history = doubles({0.875, 1.3e9, 1.4e9}) + std::string("\7\0\0\0\3\0\0\0", 8);
   EXPECT_EQ(read(path("m.polemap")),
@@ -170,7 +170,7 @@ TEST_F(PoleMapFileTest, KeptMapsGoThereAndBack) {
   EXPECT_EQ(back.histories[0].seen, 7u);
   ASSERT_EQ(back.candidates.size(), 1u);
   expectSame(back.candidates[0].pole, data.candidates[0].pole);
-  // A map of an earlier version: its count stands for what was seen.
+  // A map of an earlier version: its count is used as the number of times seen.
   data.histories.clear();
   data.candidates.clear();
   const LandmarkMap old = landmarkMap(data);
@@ -220,7 +220,7 @@ TEST_F(PoleMapFileTest, RefusesAWrongChecksum) {
   expectIn(refusal(bytes), "CRC-32");
 }
 
-// What follows is damage under a right checksum: files of a faulty writer.
+// The following files have damaged content and valid checksums, as from a faulty writer.
 
 TEST_F(PoleMapFileTest, RefusesMorePolesThanThereIsRoomFor) {
   expectIn(refusal(wrapped(poleChunk(fieldsByHand, 2, ""))), "2 poles of 76 bytes");
@@ -328,7 +328,7 @@ TEST_F(PoleMapFileTest, RefusesEverySingleFlippedBit) {
 }
 
 TEST_F(PoleMapFileTest, DamageUnderARightChecksumNeverCrashes) {
-  // The checksum does not shield the parser here: it reads or it throws an Error.
+  // The checksum does not protect the parser here: it must read or throw an Error.
   const std::string payload = chunk("INFO", std::string("\1\0\0\0\1\0\0\0k\2\0\0\0vw", 15)) +
                               poleChunk(fieldsByHand, 1, "");
   std::mt19937_64 generator(5);

@@ -146,7 +146,8 @@ TEST_F(PolePositionsTest, ReadsThePublishedMaps) {
   const Positions map = readPolePositions(folder / "nclt_map_8_0.50_0.08.npz");
   ASSERT_EQ(truth.size(), 1205u);
   ASSERT_EQ(map.size(), 1635u);
-  // By brute force: 859 map poles have a truth pole within 1 m, as the paper's figures imply.
+  // By brute force: 859 map poles have a truth pole within 1 m, in agreement with the paper's
+  // numbers.
   int matches = 0;
   for (const auto& pole : map) {
     bool matched = false;

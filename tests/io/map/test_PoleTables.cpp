@@ -51,7 +51,7 @@ TEST_F(PoleTables, CsvComesBack) {
     EXPECT_EQ(after.histories[i].existence, 0.875);
     EXPECT_EQ(after.histories[i].seen, 12u);
     EXPECT_EQ(after.histories[i].missed, 3u);
-    EXPECT_EQ(after.histories[i].firstSeen, 1326585600);  // midnights, as days go
+    EXPECT_EQ(after.histories[i].firstSeen, 1326585600);  // midnight, because CSV stores dates
     EXPECT_EQ(after.histories[i].lastSeen, before.histories[i].lastSeen);
   }
 }
@@ -108,7 +108,7 @@ TEST_F(PoleTables, ReadsTheAuthorsFiles) {
     EXPECT_GT(pole.radius, 0.01);
     EXPECT_LT(pole.radius, 1);
   }
-  // Its third column is no radius.
+  // Its third column is not a radius.
   const auto truth = readPoleNpz(dataFolder() / "published" / "nclt_truth.npz");
   ASSERT_EQ(truth.poles.size(), 1205u);
   EXPECT_EQ(truth.poles.front().radius, 0.1);

@@ -1,5 +1,5 @@
 /// \file test_PublishedMaps.cpp
-/// \brief The score of the authors' own NCLT map, as they and others published or recomputed it.
+/// \brief Scores of the authors' own NCLT map, as published or recomputed by them and others.
 
 #include <gtest/gtest.h>
 

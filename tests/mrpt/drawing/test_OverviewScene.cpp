@@ -22,8 +22,8 @@ scene::Path round(double radius) {
   return path;
 }
 
-/// Where a place of the map appears in a window of 4:3, ±1 at its borders; third: how far away in
-/// the viewer's units.
+/// Position of a map place in a 4:3 window, ±1 at its borders; third: distance in the viewer's
+/// units.
 Eigen::Vector3d seenAt(const mrpt::opengl::COpenGLScene& scene, const Eigen::Vector3d& place) {
   const auto& camera = scene.getViewport()->getCamera();
   const double azimuth = camera.getAzimuthDegrees() * M_PI / 180,
@@ -40,7 +40,7 @@ Eigen::Vector3d seenAt(const mrpt::opengl::COpenGLScene& scene, const Eigen::Vec
   return {right.dot(p) / half * 3 / 4, right.cross(ahead).dot(p) / half, depth};
 }
 
-/// All in the window, and not lost in it.
+/// All places are in the window, and not too small in it.
 void expectInView(const scene::Path& places, const Eigen::Vector2d& origin = {0, 0}) {
   const auto scene = OverviewScene(places, "").finish();
   EXPECT_TRUE(scene->followCamera());

@@ -37,7 +37,7 @@ All load(const std::string& text) {
   return all;
 }
 
-/// The message of the refusal; empty when there is none.
+/// The error message of `action`; empty if it throws none.
 std::string refusal(const std::function<void()>& action) {
   try {
     action();

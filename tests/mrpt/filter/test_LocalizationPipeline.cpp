@@ -11,7 +11,7 @@ using namespace polemcl;
 
 namespace {
 
-/// A city and drives through it, as the chain takes them: a frame a metre.
+/// A city and drives through it in the form that the pipeline takes: one frame per metre.
 class PoleLocalizationTest : public testing::Test {
  protected:
   explicit PoleLocalizationTest(const tests::CityOptions& cityOptions = cityOf(31))
@@ -114,7 +114,7 @@ TEST_F(PoleLocalizationTest, FoundWithoutAStartPose) {
 TEST_F(PoleLocalizationTest, AKidnappedVehicleIsLostAndFoundAgain) {
   driveFrom(6, 120);
   const std::size_t jump = frames.size();
-  driveFrom(7, 120);  // somewhere else; its odometry knows of no jump
+  driveFrom(7, 120);  // elsewhere; the odometry does not contain the jump
   LocalizationPipeline localization = chain();
   localization.start(atTruth());
   std::size_t lost = 0, found = 0;
@@ -142,7 +142,7 @@ TEST_F(PoleLocalizationTest, AKidnappedVehicleIsLostAndFoundAgain) {
 
 TEST_F(PoleLocalizationTest, AFilterThatSettledBesideTheTruthIsPutRightByTheSearch) {
   driveFrom(9, 80);
-  for (PoleFrame& frame : frames)  // far too sure of the odometry to move by itself
+  for (PoleFrame& frame : frames)  // odometry much too certain to move the filter
     frame.motion->covariance = Eigen::Vector3d(1e-8, 1e-10, 1e-10).asDiagonal();
   options.filter.extraSigma = options.filter.extraSigmaYaw = 1e-6;
   options.odometryMonitor.enabled = false;
@@ -206,7 +206,7 @@ TEST_F(RegularCity, WhereAllLooksAlikeSeveralPlacesAreKept) {
     adopted = true;
     EXPECT_EQ(update.health.reason, HealthReason::ambiguous);
     EXPECT_LT(update.health.modeShare, options.health.modeShare);
-    EXPECT_GT(update.health.spread, 10);  // the covariance owns up to the other places
+    EXPECT_GT(update.health.spread, 10);  // the covariance includes the other places
   }
   EXPECT_TRUE(adopted);
 }
@@ -229,13 +229,13 @@ TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {
     EXPECT_LE(every[i], all[i]);
     sums[0] += all[i], sums[1] += every[i], sums[2] += seldom[i];
   }
-  EXPECT_EQ(every[0], all[0]);  // at the start there is nothing to wait for
+  EXPECT_EQ(every[0], all[0]);  // no wait at the start
   EXPECT_LT(sums[1], 0.95 * sums[0]);
   EXPECT_LT(sums[2], 0.5 * sums[1]);
 }
 
 TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
-  driveFrom(9, 60);  // a scan a metre
+  driveFrom(9, 60);  // one scan per metre
   options.tracking.average = false;
   options.tracking.cadence = Cadence::section;
   options.tracking.localMaps.sectionLength = 5;
@@ -247,7 +247,7 @@ TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
     EXPECT_EQ(update.poles, frames[i].poles_robot.size());
     if (update.step.poles == 0) continue;
     ++updates;
-    EXPECT_TRUE(i % 5 <= 1 && i > 0) << i;  // the odometry errs by less than a metre
+    EXPECT_TRUE(i % 5 <= 1 && i > 0) << i;  // the odometry error is below a metre
     EXPECT_LT(error(update, i), 0.3);
   }
   EXPECT_NEAR(static_cast<double>(updates), 11.5, 1);
@@ -264,7 +264,7 @@ TEST_F(PoleLocalizationTest, TheHeaviestPlaceMayReplaceTheEstimate) {
     localization.start(atTruth());
     return localization.step(frames[0]).estimate->mean;
   };
-  // Equal weights: the best tenth is an arbitrary one, the heaviest place is all.
+  // Equal weights: the best tenth is an arbitrary one, the heaviest place contains all.
   const Pose2D all = estimate(true), tenth = estimate(false);
   PoleParticleFilter filter(map->poles, options.filter, 1);
   filter.start(atTruth());
@@ -309,7 +309,7 @@ TEST_F(PoleLocalizationTest, RefusesFramesBeforeTheStartAndBadFramesWithoutChang
   untouched.initializeGlobally();
   localization.step(frames[0]);
   untouched.step(frames[0]);
-  EXPECT_THROW(localization.step(frames[0]), Error);  // time stands still
+  EXPECT_THROW(localization.step(frames[0]), Error);  // same time again
   PoleFrame bad = frames[1];
   bad.motion.reset();
   EXPECT_THROW(localization.step(bad), Error);

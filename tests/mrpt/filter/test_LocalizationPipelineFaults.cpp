@@ -1,5 +1,5 @@
-// What the chain does when odometry, clock or poles fail. Recovery from kidnapping and wrong maps:
-// test_PoleLocalization.cpp; figures over many trials: share/experiments/faults.sh.
+// Behaviour of the pipeline when odometry, clock or poles fail. Recovery from kidnapping and wrong
+// maps: test_LocalizationPipeline.cpp; results of many trials: share/experiments/faults.sh.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ class PoleLocalizationFaults : public testing::Test {
   double error(const LocalizationUpdate& update, std::size_t i) const {
     return std::hypot(update.estimate->mean.x - truth[i].x, update.estimate->mean.y - truth[i].y);
   }
-  /// From scan `from` on, `ok` with a right pose.
+  /// From scan `from` on, `ok` with a correct pose.
   void expectOkFrom(const std::vector<LocalizationUpdate>& updates, std::size_t from) const {
     for (std::size_t i = from; i < updates.size(); ++i) {
       EXPECT_EQ(updates[i].health.state, HealthState::ok)
@@ -121,7 +121,7 @@ TEST_F(PoleLocalizationFaults, NoPoleOverKilometresIsDegradedUntilPolesReturn) {
 
 TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {
   drive(210);
-  // Five minutes and 70 m without a scan; the odometry has gone on.
+  // Five minutes and 70 m without a scan; the odometry continued.
   const std::size_t gap = 100, later = 200;
   io::PlanarMotion across = *frames[gap].motion;
   for (std::size_t i = gap + 1; i <= later; ++i)

@@ -31,7 +31,7 @@ FilterOptions extra(double metres, double radians) {
   return options;
 }
 
-/// The message of the refusal of a motion that `change` has spoilt; empty when it was taken.
+/// The error message for a motion changed by `change`; empty if the motion is accepted.
 std::string refusal(const std::function<void(io::PlanarMotion&)>& change) {
   io::PlanarMotion motion = usual();
   change(motion);
@@ -80,7 +80,7 @@ TEST(MotionAction, TakesNoCovarianceAtAll) {
 }
 
 TEST(MotionAction, SamplesOfSingularCovariancesAreFinite) {
-  // Rank one: eigenvalues that rounding may push below zero, whose roots are not numbers.
+  // Rank one: rounding may make eigenvalues negative, and their roots NaN.
   for (int i = 1; i <= 500; ++i) {
     io::PlanarMotion motion;
     const Eigen::Vector3d direction(std::sin(i), std::cos(2 * i), 0.1 * std::sin(3 * i));
@@ -115,7 +115,7 @@ TEST(MotionAction, RefusesACovarianceThatIsNotSymmetric) {
 
 TEST(MotionAction, RefusesAnIndefiniteCovariance) {
   EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(1, 1) = -0.02; }), "negative eigenvalue"));
-  // Positive variances, but a correlation above one.
+  // Positive variances, but a correlation greater than one.
   EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(0, 1) = m.covariance(1, 0) = 0.03; }),
                     "negative eigenvalue"));
 }

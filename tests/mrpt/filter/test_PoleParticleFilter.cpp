@@ -117,7 +117,7 @@ TEST(PoleParticleFilter, BatchEqualsTheMapsLikelihood) {
         EXPECT_NEAR(weights[i] - offset, likelihoodAt(particles[i]), 1e-9);
         span = std::max(span, std::abs(weights[i] - weights[0]));
       }
-      EXPECT_GT(span, 1);  // or the comparison says nothing
+      EXPECT_GT(span, 1);  // otherwise the comparison proves nothing
     }
 }
 
@@ -128,7 +128,7 @@ TEST(PoleParticleFilter, WorksAsAFilterOfMrpt) {
   own.start(at(street.truth[50]));
   mrpts.start(at(street.truth[50]));
   own.step(street.frames[50]);
-  // The same poles, as a sensor sees them that is mounted somewhere else.
+  // The same poles, seen by a sensor with another mounting.
   const Pose2D mounting{0.7, -0.2, 0.5};
   auto observation = CObservationPoles::Create();
   observation->poles = street.frames[50].poles_robot;
@@ -159,7 +159,7 @@ TEST(PoleParticleFilter, WorksAsAFilterOfMrpt) {
 TEST(PoleParticleFilter, AsksTheMapNotTheCore) {
   const PoleStreet street = makeStreet({});
   const auto silent = std::make_shared<CPoleMap>(*street.map);
-  silent->genericMapParams.enableObservationLikelihood = false;  // as with any map of MRPT
+  silent->genericMapParams.enableObservationLikelihood = false;  // as in any MRPT map
   for (const double tempering : {0.0, 0.2}) {
     FilterOptions options = still();
     options.resampleBelow = options.regularization = options.tempering = tempering;
@@ -201,7 +201,7 @@ TEST(PoleParticleFilter, FirstFrameIsWhereTheStartPoseIs) {
   motion.mean = {5, 5, 1};
   EXPECT_NEAR(localizer.step(emptyFrame(0, motion)).mean.x, 1, 1e-12);
   EXPECT_GT(std::abs(localizer.step(emptyFrame(1, motion)).mean.x - 1), 1);
-  localizer.start(at({1, 2, 3}, 0, 0));  // anew: time may begin again too
+  localizer.start(at({1, 2, 3}, 0, 0));  // restart: time may start again too
   EXPECT_NEAR(localizer.step(emptyFrame(0, motion)).mean.x, 1, 1e-12);
 }
 
@@ -248,7 +248,7 @@ TEST(PoleParticleFilter, TellsWhatAStepDid) {
   EXPECT_EQ(localizer.report().resampled, localizer.report().effectiveShare < 0.5);
 }
 
-// 10000 particles at the start, of which 1000 are kept: a fifth of these is enough.
+// 10000 particles at the start, of which 1000 remain: a fifth of these is enough.
 TEST(PoleParticleFilter, TemperingIsMeasuredByTheParticlesThatAreKept) {
   const PoleStreet street = makeStreet({});
   PoleParticleFilter localizer(street.map, {}, 1);
@@ -347,7 +347,7 @@ TEST(PoleParticleFilter, RefusesBadFramesAndStaysAsItWas) {
   localizer.step(emptyFrame(5));
   const auto before = localizer.particles();
   std::vector<PoleFrame> bad(5, emptyFrame(6));
-  bad[0].time = 5;    // again
+  bad[0].time = 5;    // repeated
   bad[1].time = 4.5;  // backwards
   bad[2].time = NAN;
   bad[3].motion.reset();

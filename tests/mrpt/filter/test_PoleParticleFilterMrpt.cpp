@@ -1,5 +1,5 @@
-// What MRPT's filter gets wrong or leaves to chance, beside what PoleParticleFilter makes of it.
-// When a test of a defect (…OfMrpt) fails, MRPT has mended it.
+// Defects and random effects of MRPT's filter, compared with PoleParticleFilter. If the test of a
+// defect (…OfMrpt) fails, MRPT has fixed it.
 #include <gtest/gtest.h>
 #include <mrpt/slam/CMonteCarloLocalization2D.h>
 
@@ -32,7 +32,7 @@ StartOptions atOrigin() {
   return start;
 }
 
-/// Positions 0, 1, 2, … with weights of which few matter.
+/// Positions 0, 1, 2, … with weights of which only a few are significant.
 template <class Filter>
 void spread(Filter& filter) {
   for (std::size_t i = 0; i < filter.m_particles.size(); ++i) {
@@ -55,7 +55,7 @@ mrpt::bayes::CParticleFilter::TParticleFilterOptions systematic() {
   return options;
 }
 
-/// x falls as the heading grows: correlation -1.
+/// x decreases as the heading increases: correlation -1.
 template <class Filter>
 void leanLeft(Filter& filter) {
   for (std::size_t i = 0; i < filter.m_particles.size(); ++i) {
@@ -171,7 +171,7 @@ TEST(PoleLocalizerMrpt, CovarianceLosesTheSignOfHeadingErrorsInMrpt) {
   leanLeft(stock);
   const auto [covariance, mean] = stock.getCovarianceAndMean();
   EXPECT_NEAR(covariance(0, 1), 2.0 / 12, 1e-3);
-  EXPECT_GT(covariance(0, 2), -1e-9);  // truly -0.1/12
+  EXPECT_GT(covariance(0, 2), -1e-9);  // correct: -0.1/12
 }
 
 TEST(PoleLocalizerMrpt, CovarianceKeepsTheSignOfHeadingErrors) {
@@ -249,7 +249,7 @@ TEST(PoleLocalizerMrpt, JitterFollowsTheSpread) {
   }
   localizer.performResampling(systematic());
   const auto covariance = weightedMean(localizer.particles(), localizer.logWeights()).covariance;
-  // Variances grow by the square of the share; x and heading stay in one line, y stays 0.
+  // Variances grow by the square of the share; x and heading stay on one line, y stays 0.
   EXPECT_NEAR(covariance(0, 0), 1.25 / 12, 0.002);
   EXPECT_NEAR(covariance(0, 2), 1.25 / 12 * 0.02, 0.00005);
   EXPECT_NEAR(covariance(1, 1), 0, 1e-12);

@@ -1,4 +1,4 @@
-// Where the filter starts: discs round a pose, and mixtures of places.
+// Start of the filter: discs around a pose, and mixtures of places.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -88,7 +88,7 @@ TEST(PoleParticleFilter, StartDrawsFromAMixtureOfHypotheses) {
   hypotheses[0].pose.mean = {100, 0, 3.1};
   hypotheses[0].pose.covariance << 0.25, 0.1, 0.02, 0.1, 0.16, 0.01, 0.02, 0.01, 0.01;
   hypotheses[0].weight = 3;
-  hypotheses[1].pose.mean = {-100, 50, 0};  // no covariance: all in one place
+  hypotheses[1].pose.mean = {-100, 50, 0};  // covariance 0: all in one place
   hypotheses[2].weight = 0;
   localizer.start(hypotheses, 40000);
   std::vector<Pose2D> near;

@@ -113,7 +113,7 @@ TEST(CPoleMap, RefusesBadPoles) {
   EXPECT_THROW(map.setPoles({bad}), Error);
   bad.covariance << 1, 2, 2, 1;
   EXPECT_THROW(map.setPoles({bad}), Error);
-  EXPECT_EQ(map.poles().size(), 3u);  // as it was
+  EXPECT_EQ(map.poles().size(), 3u);  // unchanged
 }
 
 TEST(CPoleMap, CopiesAreIndependent) {
@@ -131,7 +131,7 @@ TEST(CPoleMap, CopiesAreIndependent) {
   expectEqual(*clone, sampleMap());
 }
 
-// The core's value, in the robot frame, where the observation's sensor stands askew.
+// Equal to the core's value in the robot frame, with a rotated sensor mounting.
 TEST(CPoleMap, LikelihoodIsTheCores) {
   CPoleMap map = sampleMap();
   CObservationPoles scan = samples::observation();
@@ -160,8 +160,8 @@ TEST(CPoleMap, LikelihoodIsTheCores) {
   EXPECT_GT(matched, 10);  // not only poles without a match
 }
 
-// Enough poses for several blocks of the batch, near each other and far apart; gates that the grid
-// answers and, after setPoles(), one that nanoflann's tree answers.
+// Enough poses for several blocks of the batch, near each other and far apart. Some gates use the
+// grid; after setPoles(), one uses nanoflann's tree.
 TEST(CPoleMap, ManyPosesGetTheSameBitsAsEachAlone) {
   std::mt19937_64 generator(4);
   const auto uniform = [&](double half) {
@@ -239,8 +239,8 @@ TEST(CPoleMap, HonoursTheGenericSwitches) {
   EXPECT_FALSE(map.insertObservation(scan));
 }
 
-// Robot at (100, 50) looking left, sensor at (1, 2) looking left of that: 5 m ahead of the sensor
-// is 7 m to the left of the robot and 1 m ahead of it, so at (100 - 7, 50 + 1).
+// Robot at (100, 50) looking left, sensor at (1, 2) rotated left. A point 5 m in front of the
+// sensor is 7 m to the left of the robot and 1 m in front of it, at (100 - 7, 50 + 1).
 TEST(CPoleMap, InsertsAtTheRobotPose) {
   CPoleMap map;
   CObservationPoles scan = samples::observation();
@@ -250,7 +250,7 @@ TEST(CPoleMap, InsertsAtTheRobotPose) {
   const MapPole& p = map.poles()[0];
   EXPECT_NEAR(p.x, 93, 1e-12);
   EXPECT_NEAR(p.y, 51, 1e-12);
-  EXPECT_NEAR(p.covariance(0, 0), 0.04, 1e-12);  // half a turn: as it was
+  EXPECT_NEAR(p.covariance(0, 0), 0.04, 1e-12);  // half a turn: unchanged
   EXPECT_NEAR(p.covariance(0, 1), 0.01, 1e-12);
   EXPECT_EQ(p.count, 1u);
   EXPECT_EQ(p.top, 3.5);
@@ -262,7 +262,7 @@ TEST(CPoleMap, InsertsAtTheRobotPose) {
   EXPECT_NEAR(map.poles()[0].x, 92.8, 1e-12);
   EXPECT_EQ(map.poles()[0].count, 2u);
 
-  map.insertionOptions.mergeDistance = 0.1;  // now it is another one
+  map.insertionOptions.mergeDistance = 0.1;  // now a separate pole
   ASSERT_TRUE(map.insertObservation(scan, CPose3D(100, 50, 3, M_PI / 2, 0, 0)));
   EXPECT_EQ(map.poles().size(), 2u);
 }

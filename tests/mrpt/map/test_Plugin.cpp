@@ -1,4 +1,4 @@
-// The library inside MRPT's own programs (Debian package mrpt-apps), which know nothing of it.
+// The library inside MRPT's own programs (Debian package mrpt-apps), which do not know it.
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
@@ -26,7 +26,7 @@ using namespace mrpt::obs;
 
 constexpr int scans = 20;
 
-/// A street of poles, driven along its middle, one scan a metre.
+/// A street of poles with a drive along its middle, one scan per metre.
 struct Street {
   samples::Folder folder{"Plugin"};
   Street() {
@@ -61,7 +61,7 @@ struct Street {
     move.estimationMethod = CActionRobotMovement2D::emScan2DMatching;
     mrpt::math::CMatrixDouble33 C;
     C.setDiagonal(std::vector<double>{0.0025, 0.0025, 0.0002});
-    // Off by 4 cm, 2 cm and 0.4 degrees in each metre, as the covariance allows.
+    // Errors of 4 cm, 2 cm and 0.4 degrees per metre, consistent with the covariance.
     const mrpt::poses::CPose2D motion(0.96, 0.02, 0.007);
     move.poseChange =
         mrpt::poses::CPosePDFGaussian::Create(x > 0 ? motion : mrpt::poses::CPose2D(), C);
@@ -75,7 +75,7 @@ struct Street {
                   frame);
   }
 
-  /// What a command prints, both streams; run in the folder of the street.
+  /// Output of a command, both streams; run in the folder of the street.
   std::string run(const std::string& command) const {
     const std::string line = "cd '" + (folder / "") + "' && " + command + " </dev/null 2>&1";
     FILE* pipe = popen(line.c_str(), "r");
@@ -113,7 +113,7 @@ TEST(Plugin, RawlogEditReadsPoles) {
   const std::string info = street.run("rawlog-edit" + plugin + "--info -i p.rawlog");
   EXPECT_EQ(objects(info), 2 * scans) << info;
   EXPECT_HAS(info, "LIDAR");
-  // Why it is needed: without it, the program stops at the first pole observation and says nothing.
+  // Reason for the library: without it, the program stops silently at the first pole observation.
   EXPECT_EQ(objects(street.run("rawlog-edit --info -i p.rawlog")), 1);
 }
 
@@ -138,7 +138,7 @@ TEST(Plugin, RawlogEditCutsRawlogsOfPoles) {
   int frames = 0;
   while (reader.next(entry))
     frames += entry.frame && entry.frame->getObservationByClass<CObservationPoles>();
-  EXPECT_GE(frames, 4);  // entries 0 to 9 are five pairs; MRPT counts generously
+  EXPECT_GE(frames, 4);  // entries 0 to 9 are five pairs; MRPT may count one less
   EXPECT_LE(frames, 6);
 }
 
@@ -161,15 +161,15 @@ TEST(Plugin, Observations2mapBuildsAPoleMap) {
   }
 }
 
-/// What pf-localization writes about a run.
+/// Results that pf-localization writes about a run.
 struct Outcome {
-  double error = 0;              ///< of the weighted mean after the last scan, m
-  double nees = 0;               ///< of that mean in x, y and heading, by its covariance
+  double error = 0;              ///< error of the weighted mean after the last scan, m
+  double nees = 0;               ///< NEES of that mean in x, y and heading, with its covariance
   double spread = 0;             ///< root of the determinant of that covariance, m² rad
-  std::vector<double> distance;  ///< of the particles from the truth after each scan, mean, m
+  std::vector<double> distance;  ///< mean error of the particles after each scan, m
 };
 
-/// All numbers of a file, row by row, without its heading.
+/// All numbers of a file, row by row, without its header.
 std::vector<double> numbersIn(const std::string& file) {
   std::ifstream in(file);
   std::vector<double> values;
@@ -180,8 +180,8 @@ std::vector<double> numbersIn(const std::string& file) {
   return values;
 }
 
-/// MRPT's own filter, from a start whose middle lies 1.2 m from the truth, on odometry that is off
-/// by 3.5 m at the end.
+/// MRPT's own filter. The middle of the start is 1.2 m from the truth; the odometry ends with an
+/// error of 3.5 m.
 Outcome localize(const Street& street, const std::string& likelihood) {
   std::string truth;
   for (int x = 0; x < scans; ++x)
@@ -231,7 +231,7 @@ TEST(Plugin, PfLocalizationFindsItsWayOnAPoleMap) {
   EXPECT_LT(found.spread, sure);
   EXPECT_LT(found.nees, 11.3);  // 99 % of chi-square with 3 degrees of freedom
   EXPECT_LT(*std::max_element(found.distance.begin() + 3, found.distance.end()), 2 * nearby);
-  // With a likelihood that matches nothing the same run misses these bounds by far.
+  // With a likelihood that matches nothing, the same run misses these bounds by far.
   const Outcome dead = localize(street, "gate_m = 1e-6\n");
   ASSERT_EQ(dead.distance.size(), scans - 1u);
   EXPECT_GT(dead.error, 20 * nearby);

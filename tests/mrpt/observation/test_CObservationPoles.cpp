@@ -75,7 +75,7 @@ TEST(CObservationPoles, RefusesNewerVersions) {
   std::string bytes = samples::bytesOf(samples::observation());
   const std::string name = "polemcl::CObservationPoles";
   ASSERT_EQ(bytes.substr(1, name.size()), name);
-  ASSERT_EQ(bytes[1 + name.size()], 0);  // the version of today
+  ASSERT_EQ(bytes[1 + name.size()], 0);  // the current version
   bytes[1 + name.size()] = 1;
   EXPECT_ANY_THROW(samples::objectFrom(bytes));
 }
@@ -95,7 +95,8 @@ TEST(CObservationPoles, ClonesAreIndependent) {
   EXPECT_EQ(clone->poles[0].x, 5);
 }
 
-// Sensor at (1, 2), turned left by a quarter: what is 5 m ahead of it is at (1, 7) of the robot.
+// Sensor at (1, 2), a quarter turn to the left: a point 5 m in front of it is at (1, 7) in the
+// robot frame.
 TEST(CObservationPoles, MovesPolesToTheRobotFrame) {
   const CObservationPoles scan = samples::observation();
   const auto poles_robot = scan.polesInRobotFrame();
@@ -109,7 +110,7 @@ TEST(CObservationPoles, MovesPolesToTheRobotFrame) {
   EXPECT_EQ(poles_robot[0].top, 3.5);
 }
 
-// Roll and pitch say nothing about the planar frame.
+// Roll and pitch do not affect the planar frame.
 TEST(CObservationPoles, OnlyThePlanarPartOfTheSensorPoseCounts) {
   CObservationPoles scan = samples::observation();
   scan.setSensorPose(mrpt::poses::CPose3D(1, 2, 9, M_PI / 2, 0.1, M_PI));

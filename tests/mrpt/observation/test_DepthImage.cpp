@@ -13,7 +13,7 @@ using namespace samples;
 constexpr double kDegree = M_PI / 180;
 const std::vector<TestPole> kPoles = {{7, 0.4, 0.10, 4}, {9, -2.5, 0.15, 4}, {12, 3, 0.12, 4}};
 
-/// Rays cast through every pixel: poles before a wall, on flat ground.
+/// Casts a ray through every pixel: poles in front of a wall, on flat ground.
 /// \param mount Camera in the robot frame, ground at z = 0.
 CObservation3DRangeScan depthImage(const CPose3D& mount, bool rangeIsDepth = true, int height = 480,
                                    int width = 640) {
@@ -37,7 +37,7 @@ CObservation3DRangeScan depthImage(const CPose3D& mount, bool rangeIsDepth = tru
   return scan;
 }
 
-/// Nothing in `[sensor]` fits a camera but the height.
+/// `[sensor]` describes a LiDAR; only its height fits the camera.
 ObservationPoleExtractorOptions options() {
   ObservationPoleExtractorOptions o;
   o.sensor.height = 1.5;
@@ -90,8 +90,8 @@ TEST(DepthImage, OnItsSide) {
   expectAllPoles(CPose3D(0, 0, 1.5, 0, 0, -M_PI / 2));
 }
 
-// Through the beams of a LiDAR the same points lose what lies beside the fan, and several rows of
-// pixels become one.
+// With the beams of a LiDAR, the same points lose everything outside the fan, and several pixel
+// rows merge into one ring.
 TEST(DepthImage, SeesMoreOfPolesThanTheBeamsOfALidar) {
   const auto scan = depthImage(CPose3D(0, 0, 1.5, 0, 10 * kDegree, 0));
   ObservationPoleExtractor extraction(options());

@@ -103,14 +103,14 @@ TEST(ObservationPoints, GeneratesVelodyneCloudsOnACopy) {
   ObservationPoleExtractor extraction(vlp16());
   const auto poles = extraction.process(*scan);
   EXPECT_EQ(scan->point_cloud.size(), 0u);
-  EXPECT_EQ(extraction.report().points, 11305u);  // all its returns, as MRPT counts them
+  EXPECT_EQ(extraction.report().points, 11305u);  // all its returns, as counted by MRPT
   EXPECT_EQ(extraction.report().outOfView, 0u);
   scan->generatePointCloud();
   EXPECT_EQ(extraction.process(*scan)->poles.size(), poles->poles.size());
 }
 
-// MRPT's sample of a rotating scan is the same scan as its Velodyne sample, sparse and with its
-// rows in firing order: range and height of what is found must agree with the Velodyne cloud.
+// MRPT's sample of a rotating scan is the same scan as its Velodyne sample, sparse and with rings
+// in firing order. Range and height of the results must agree with the Velodyne cloud.
 TEST(ObservationPoints, RotatingScanMatchesTheVelodyneScanItCameFrom) {
   if (!std::filesystem::exists(datasets)) GTEST_SKIP() << datasets << " is not there";
   const auto velodyne = firstOf("test_velodyne_VLP16.rawlog");
@@ -132,7 +132,7 @@ TEST(ObservationPoints, RotatingScanMatchesTheVelodyneScanItCameFrom) {
   EXPECT_GE(matched * 10, expected->poles.size() * 8);
 }
 
-/// A rotating scan of the place: rows as given, columns counter-clockwise from the back.
+/// A rotating scan of the test place: rings as given, columns counter-clockwise from the back.
 CObservationRotatingScan rotatingScan(const SensorOptions& sensor, const std::vector<int>& rows,
                                       const CPose3D& pose) {
   const SensorModel model(sensor);
@@ -165,7 +165,7 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   ObservationPoleExtractor byModel(options);
   EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown, up)), 0.05), 6);
 
-  // Rows in another order: only a table can tell it.
+  // Rings in another order: only a table can describe it.
   std::vector<int> mixed;
   auto table = options;
   table.sensor.model = "table";
@@ -178,7 +178,7 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   const auto scan = rotatingScan(options.sensor, mixed, up);
   ObservationPoleExtractor byTable(table);
   EXPECT_GE(found(*byTable.process(scan), 0.05), 6);
-  // Beams near the horizon hardly mind; of the others little is left.
+  // Beams near the horizon hardly change; few of the other points remain.
   const auto points = [](const CObservationPoles& poles) {
     std::size_t sum = 0;
     for (const auto& pole : poles.poles) sum += pole.points;
@@ -187,7 +187,7 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   EXPECT_LT(3 * points(*byModel.process(scan)), 2 * points(*byTable.process(scan)));
 }
 
-// Rows keep the elevations of the sensor itself; its pose turns them over.
+// Rings keep the elevations of the sensor itself; the sensor pose turns them over.
 TEST(ObservationPoints, RotatingScanUpsideDown) {
   auto options = hdl32(1.5);
   std::vector<int> topDown(32);

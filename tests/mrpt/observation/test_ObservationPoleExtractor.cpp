@@ -15,7 +15,7 @@ using namespace samples;
 
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
-// Sensor at the robot's origin, level: nothing is moved, and the poles are the core's, bit for bit.
+// Sensor at the robot's origin, level: no transformation; the poles equal the core's, bit for bit.
 TEST(ObservationPoleExtractor, LevelCloudsGoThroughUntouched) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
@@ -29,7 +29,7 @@ TEST(ObservationPoleExtractor, LevelCloudsGoThroughUntouched) {
   EXPECT_GE(found(*scan, 0.05), 6);
 }
 
-// The planar sensor frame moves with the sensor pose; what is seen in it stays the same.
+// The planar sensor frame moves with the sensor pose; positions in it stay the same.
 TEST(ObservationPoleExtractor, SensorPoseDoesNotChangeWhatTheSensorSees) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
@@ -39,7 +39,7 @@ TEST(ObservationPoleExtractor, SensorPoseDoesNotChangeWhatTheSensorSees) {
   EXPECT_NEAR(there->sensorPose.yaw(), 0.7, 1e-12);
 }
 
-// The points that the poles come from, to be drawn or turned: extracting them again gives the
+// The points from which the poles were extracted, for drawing: extracting them again gives the same
 // poles.
 TEST(ObservationPoleExtractor, GivesThePointsInTheLidarFrame) {
   auto options = hdl32(1.257);
@@ -70,7 +70,7 @@ TEST(ObservationPoleExtractor, FindsPolesFromAPlaceOnTheRobot) {
   EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.05), 6);
 }
 
-// NCLT: points in a body frame with z down; the sensor hangs upside down 0.957 m above its origin.
+// NCLT: points in a body frame with z down; the sensor is upside down, 0.957 m above its origin.
 TEST(ObservationPoleExtractor, BodyFrameWithZDown) {
   auto options = hdl32(0.957 + 0.3);
   options.sensor.upsideDown = true;
@@ -85,12 +85,12 @@ TEST(ObservationPoleExtractor, BodyFrameWithZDown) {
   const auto scan = extraction.process(*observationOf(cloud, bodyInRobot, T_body_lidar));
   EXPECT_GE(found(*scan, 0.05), 6);
   expectSamePoles(scan->poles, corePoles(options, cloud.view()),
-                  1e-3);  // but for rounding to floats
+                  1e-3);  // except for rounding to floats
 
-  EXPECT_NEAR(extraction.report().ground, -1.257, 0.05);  // below the sensor, not the body
+  EXPECT_NEAR(extraction.report().ground, -1.257, 0.05);  // relative to the sensor, not the body
 }
 
-// The authors' program sees NCLT's clouds from the origin of the body frame, 0.957 m below the
+// The authors' program projects NCLT's clouds from the origin of the body frame, 0.957 m below the
 // sensor and here 0.3 m above the ground.
 TEST(ObservationPoleExtractor, PaperMayProjectFromTheOriginOfClouds) {
   auto options = hdl32(0.957 + 0.3);
@@ -127,7 +127,7 @@ TEST(ObservationPoleExtractor, OriginIsAlongTheRobotsAxes) {
   auto options = hdl32(1.5);
   options.sensor.originX = 0.6;
   options.sensor.originY = -0.3;
-  // Clouds in a frame turned by 90° at the robot's origin; the lidar stands at (0.6, -0.3).
+  // Clouds in a frame rotated by 90° at the robot's origin; the LiDAR is at (0.6, -0.3).
   const CPose3D cloudInRobot(0, 0, 0, M_PI / 2, 0, 0);
   const Eigen::Isometry3d T_robot_lidar =
       Eigen::Translation3d(0.6, -0.3, 1.5) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
@@ -139,8 +139,8 @@ TEST(ObservationPoleExtractor, OriginIsAlongTheRobotsAxes) {
             6);
 }
 
-// Poles stand upright in the robot frame, askew in the lidar's. What is seen at 13 m is 1 m higher
-// or lower there than it would be level; taken for that height, poles would be off by 7 cm.
+// Poles are vertical in the robot frame and tilted in the LiDAR frame. At 13 m, the tilt changes
+// heights by 1 m. Without a correction, poles would be off by 7 cm.
 TEST(ObservationPoleExtractor, TiltedMounting) {
   const auto options = hdl32(1.5);
   const CPose3D pose(0, 0, 1.5, 0, mrpt::DEG2RAD(4.0), mrpt::DEG2RAD(-2.0));
@@ -149,7 +149,7 @@ TEST(ObservationPoleExtractor, TiltedMounting) {
   EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.03), 8);
 }
 
-// A camera's optical frame: z ahead, x to the right. It is stood up before extraction.
+// Optical frame of a camera: z forward, x right. It is rotated upright before extraction.
 TEST(ObservationPoleExtractor, CloudOnItsSide) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
@@ -172,7 +172,7 @@ TEST(ObservationPoleExtractor, CountsInvalidPoints) {
     cloud.z.push_back(i == 9 ? INFINITY : 0);
   }
   ObservationPoleExtractor extraction(options);
-  for (const double originX : {0.0, 0.5}) {  // as it is, and moved: zeros stay no returns
+  for (const double originX : {0.0, 0.5}) {  // as it is, and shifted: zeros must stay "no return"
     auto moved = options;
     moved.sensor.originX = originX;
     ObservationPoleExtractor other(moved);
@@ -187,13 +187,13 @@ TEST(ObservationPoleExtractor, EmptyScansGiveNoPoles) {
   ObservationPoleExtractor extraction(hdl32(1.5));
   const auto plain = extraction.process(*observationOf(plainCloud(hdl32(1.5)), CPose3D()));
   EXPECT_GT(plain->points, 0u);
-  const auto none = extraction.process(CObservationPointCloud());  // no cloud at all
+  const auto none = extraction.process(CObservationPointCloud());  // observation without a cloud
   EXPECT_TRUE(none->poles.empty());
   EXPECT_EQ(none->points, 0u);
   const auto empty = extraction.process(*observationOf(TestCloud(), CPose3D()));
   EXPECT_TRUE(empty->poles.empty());
   EXPECT_EQ(empty->points, 0u);
-  EXPECT_EQ(extraction.report().points, 0u);  // not those of the scan before
+  EXPECT_EQ(extraction.report().points, 0u);  // not those of the previous scan
 }
 
 TEST(ObservationPoleExtractor, RefusesOtherObservations) {

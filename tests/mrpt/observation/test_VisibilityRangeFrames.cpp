@@ -1,5 +1,6 @@
 /// \file test_VisibilityRangeFrames.cpp
-/// \brief Free ranges on their way from the lidar to the robot: mountings turn and shift them.
+/// \brief Visibility ranges converted from the LiDAR frame to the robot frame: mountings rotate and
+/// shift them.
 
 #include <algorithm>
 
@@ -40,7 +41,7 @@ TEST(FreeRangeFrames, ABodyFrameWithZDownIsTurnedBack) {
   const TestCloud cloud = plainCloud(options);
   ObservationPoleExtractor level(options);
   const auto upright = level.process(*observationOf(cloud, CPose3D(0, 0, 1.5, 0, 0, 0)));
-  // The same beams seen by a sensor frame that hangs: x ahead, y right, z down.
+  // The same beams in the frame of an upside-down sensor: x forward, y right, z down.
   Eigen::Isometry3d T_cloud_lidar = Eigen::Isometry3d::Identity();
   T_cloud_lidar.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
   ObservationPoleExtractor hanging(options);

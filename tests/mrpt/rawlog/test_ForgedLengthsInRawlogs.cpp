@@ -1,6 +1,5 @@
 /// \file test_ForgedLengthsInRawlogs.cpp
-/// \brief Lengths and counts that an archive claims and does not hold: an error, and no memory for
-/// them.
+/// \brief False lengths and counts in archives must give an error and must not allocate memory.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
@@ -29,7 +28,7 @@ std::string number(std::uint32_t value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-/// The archive with another number in the place of this one, which stands there once.
+/// The archive with one number, which occurs once, replaced by another.
 std::string forged(std::string bytes, const std::string& there, const std::string& instead) {
   const auto at = bytes.find(there);
   EXPECT_NE(at, std::string::npos);
@@ -37,7 +36,7 @@ std::string forged(std::string bytes, const std::string& there, const std::strin
   return bytes.replace(at, there.size(), instead);
 }
 
-/// What MRPT says of an archive that must be refused without much memory.
+/// Error message of MRPT for an archive that must be rejected without much memory.
 std::string refusal(const std::string& bytes) {
   std::string message;
   const std::size_t taken = tests::memoryTakenBy([&] {
@@ -52,7 +51,7 @@ std::string refusal(const std::string& bytes) {
   return message;
 }
 
-/// That of a rawlog of these bytes.
+/// Error message for a rawlog of these bytes.
 std::string rawlogRefusal(const samples::Folder& folder, const std::string& bytes,
                           bool compressed = false) {
   const std::string path = folder / "s.rawlog";
@@ -94,7 +93,7 @@ TEST(ForgedLengths, OfFreeRanges) {
         forged(bytesOf(scanOf(2)), ranges, number(claim) + number(0x40e00000));
     EXPECT_HAS(refusal(bytes), std::to_string(claim) + " free ranges");
   }
-  // Within what is allowed, and more than there is.
+  // Within the limit, but more than the data hold.
   refusal(forged(bytesOf(scanOf(2)), ranges, number(65536) + number(0x40e00000)));
 }
 
@@ -168,7 +167,7 @@ TEST(ForgedLengths, InARawlogOfPoles) {
   }
 }
 
-// MRPT takes memory for the points before it reads them: the reader has to be there first.
+// MRPT allocates memory for the points before it reads them: the reader must check first.
 TEST(ForgedLengths, InARawlogOfScans) {
   const samples::Folder folder("ForgedLengths");
   auto cloud = mrpt::obs::CObservationPointCloud::Create();

@@ -59,7 +59,7 @@ CObservationPoles poles(double time, double x = 5) {
   return scan;
 }
 
-/// The made-up place, seen from (x, 0).
+/// The test place seen from (x, 0).
 CObservationPointCloud cloud(double time, double x) {
   const Eigen::Isometry3d T_robot_lidar(Eigen::Translation3d(x, 0, 1.2));
   const auto cast =
@@ -118,7 +118,7 @@ TEST(PoleSequence, StoredPolesWithActions) {
   const auto sequence = bench.read(action({9, 9, 1}) + frame(poles(10.5)) + action({1, 0.5, 0.1}) +
                                    frame(poles(11, 6)));
   ASSERT_EQ(sequence.frames.size(), 2u);
-  expectMotion(sequence.frames[0], 0, 0, 0);  // what was before the first scan is of no interest
+  expectMotion(sequence.frames[0], 0, 0, 0);  // motions before the first scan are ignored
   EXPECT_TRUE(sequence.frames[0].motion->covariance.isZero());
   expectMotion(sequence.frames[1], 1, 0.5, 0.1);
   EXPECT_NEAR(sequence.frames[1].motion->covariance(1, 1), 0.02, 1e-12);
@@ -153,7 +153,7 @@ TEST(PoleSequence, CovarianceFactorAppliesToActions) {
   EXPECT_NEAR(sequence.frames[1].motion->covariance(0, 0), 0.04, 1e-12);
 }
 
-// The default emOdometry comes back from a file as a motion model makes it; the reading is kept.
+// The default emOdometry is rebuilt from the file by a motion model; the reading must be kept.
 TEST(PoleSequence, OdometryActionsGiveTheirReading) {
   const Bench bench;
   for (const auto model : {CActionRobotMovement2D::mmGaussian, CActionRobotMovement2D::mmThrun}) {
@@ -170,7 +170,7 @@ TEST(PoleSequence, OdometryActionsGiveTheirReading) {
     if (model == CActionRobotMovement2D::mmGaussian) {
       const auto stored = std::get<0>(move.poseChange->getCovarianceAndMean());
       EXPECT_NEAR((C - stored.asEigen()).norm(), 0, 1e-9);
-    } else {  // samples: their covariance would be another one each time
+    } else {  // samples: a different covariance on every run
       EXPECT_NEAR((C - motionCovariance({0.8, 0.1, 0.2}, MotionOptions())).norm(), 0, 1e-12);
     }
   }
@@ -187,7 +187,7 @@ TEST(PoleSequence, SpatialActionsArePlanar) {
   actions.insert(move);
   const auto sequence = bench.read(frame(poles(1)) + samples::bytesOf(actions) + frame(poles(2)));
   expectMotion(sequence.frames[1], 1, 2, 0.4);
-  EXPECT_NEAR(sequence.frames[1].motion->covariance(2, 2), 0.04, 1e-9);  // of the yaw
+  EXPECT_NEAR(sequence.frames[1].motion->covariance(2, 2), 0.04, 1e-9);  // yaw
 }
 
 TEST(PoleSequence, WithoutOdometryTheMotionIsUnknown) {
@@ -201,7 +201,7 @@ TEST(PoleSequence, WithoutOdometryTheMotionIsUnknown) {
   EXPECT_EQ(sequence.counts.unknownMotions, 1u);
 }
 
-// A straight drive at 2 m/s, odometry at 10 Hz, scans out of step with it.
+// A straight drive at 2 m/s, odometry at 10 Hz, scans at other times.
 TEST(PoleSequence, BareOdometryIsInterpolated) {
   const Bench bench;
   std::string bytes;
@@ -231,7 +231,7 @@ TEST(PoleSequence, OdometryFarFromTheScanIsUnknown) {
                                    samples::bytesOf(poles(3)) + samples::bytesOf(poles(5)));
   ASSERT_EQ(sequence.frames.size(), 4u);
   EXPECT_FALSE(sequence.frames[1].motion);
-  expectMotion(sequence.frames[2], 1, 0, 0);  // held for 0.4 s before the first reading
+  expectMotion(sequence.frames[2], 1, 0, 0);  // valid for 0.4 s before the first reading
   EXPECT_FALSE(sequence.frames[3].motion);
   EXPECT_EQ(sequence.counts.unknownMotions, 2u);
 }
@@ -260,7 +260,7 @@ TEST(PoleSequence, ExtractsClouds) {
   EXPECT_EQ(sequence.frames[1].points, extraction.report().points);
 }
 
-// Scans of very different cost, on any number of threads: the same frames in the same order.
+// Scans with very different run times, on any number of threads: the same frames in the same order.
 TEST(PoleSequence, ThreadsDoNotMatter) {
   const Bench bench;
   std::string bytes;
@@ -337,7 +337,7 @@ TEST(PoleSequence, TruncatedFiles) {
   EXPECT_FALSE(bench.read(bytes, o).counts.truncated);
 }
 
-// Whatever the length of the rawlog, only the scans that the threads work on are in memory.
+// For any length of the rawlog, only the scans in process are in memory.
 TEST(PoleSequence, ScansAreLetGoOnceTheyAreConsumed) {
   const Bench bench;
   std::string bytes;
@@ -350,7 +350,7 @@ TEST(PoleSequence, ScansAreLetGoOnceTheyAreConsumed) {
     std::vector<std::weak_ptr<CObservationPoles>> consumed;
     std::size_t alive = 0;
     streamPoles(bench.path, o, [&](const PoleScan& scan) {
-      // One may still be on its way out of the pipeline.
+      // One may still be leaving the pipeline.
       for (std::size_t i = 0; i + 1 < consumed.size(); ++i) alive += !consumed[i].expired();
       consumed.push_back(scan.observation);
     });
@@ -382,7 +382,7 @@ TEST(PoleSequence, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
   EXPECT_THROW(streamPoles(bench.path, o, [](const PoleScan&) {}), std::domain_error);
 }
 
-// The first error of the file is the one reported, after the scans before it, on any threads.
+// The first error of the file is reported, after the scans before it, with any number of threads.
 TEST(PoleSequence, ErrorsComeInTheirPlace) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
   const Bench bench;
@@ -475,7 +475,7 @@ TEST(PoleSequence, ReportsProgress) {
 TEST(PoleSequence, ExpectsAsManyScansAsTheFileIsLong) {
   const Bench bench;
   CObservationPoles large = poles(1);
-  large.visibilityRange.resize(20000);  // so that few are read ahead by bytes, but many by number
+  large.visibilityRange.resize(20000);  // few are read ahead by bytes, but many by number
   for (std::size_t i = 0; i < large.visibilityRange.size(); ++i)
     large.visibilityRange[i] = static_cast<float>(i);
   const std::string one = samples::bytesOf(large);
@@ -488,7 +488,7 @@ TEST(PoleSequence, ExpectsAsManyScansAsTheFileIsLong) {
     if (2 * done == scans || 2 * done == scans + 1) atHalf = total;
     atEnd = total;
   });
-  // What is read ahead, 0.5 MB at most, makes it a little too few.
+  // Reading ahead by at most 0.5 MB makes the estimate slightly too small.
   EXPECT_GT(atHalf, scans * 8 / 10);
   EXPECT_LE(atHalf, scans * 11 / 10);
   EXPECT_EQ(atEnd, scans);

@@ -66,7 +66,7 @@ std::string gzipped(const std::string& bytes, const samples::Folder& folder) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What a reading gave: entries until the end or the error.
+/// Result of a reading: entries until the end or the error.
 struct Reading {
   std::vector<RawlogEntry> entries;
   bool truncated = false;
@@ -79,7 +79,7 @@ Reading readAll(const std::string& path, bool allowTruncated = false) {
     RawlogReader reader(path, allowTruncated);
     RawlogEntry entry;
     while (reader.next(entry)) reading.entries.push_back(entry);
-    EXPECT_FALSE(reader.next(entry));  // the end stays the end
+    EXPECT_FALSE(reader.next(entry));  // still at the end
     reading.truncated = reader.truncated();
   } catch (const Error& error) {
     reading.error = error.what();
@@ -89,7 +89,7 @@ Reading readAll(const std::string& path, bool allowTruncated = false) {
 
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
-/// A folder with one rawlog, of whatever bytes.
+/// A folder with one rawlog of given bytes.
 struct Bench {
   samples::Folder folder{"RawlogReader"};
   std::string path = folder / "s.rawlog";
@@ -129,7 +129,7 @@ TEST(RawlogReader, ReadsBareObservations) {
   EXPECT_FALSE(reading.entries[0].action || reading.entries[0].frame);
 }
 
-// MRPT's reader drops the first of two actions and frames without an action.
+// MRPT's reader loses the first of two actions, and frames without an action.
 TEST(RawlogReader, LosesNoActionAndNoFrame) {
   const Bench bench;
   const Reading reading =
@@ -151,8 +151,8 @@ TEST(RawlogReader, JoinedFilesAreOneFile) {
   EXPECT_EQ(bench.read(gzipped(one, bench.folder) + gzipped(two, bench.folder)).entries.size(), 2u);
 }
 
-// At many lengths: either an error that says truncated and where, or, if allowed, all entries
-// before. Only a cut between objects cannot be seen.
+// At many lengths: either an error that says "truncated" and where, or, if allowed, all entries
+// before. Only a cut between two objects cannot be detected.
 TEST(RawlogReader, TruncatedAnywhere) {
   const Bench bench;
   const std::size_t a = action(1).size(), f = frame(1).size();
@@ -211,7 +211,7 @@ TEST(RawlogReader, EmptyFile) {
   EXPECT_TRUE(lax.truncated);
 }
 
-/// The same bytes with another name of the same length for a class.
+/// The same bytes with a class name replaced by another of the same length.
 std::string renamed(std::string bytes, const std::string& from, const std::string& to) {
   const auto at = bytes.find(from);
   EXPECT_NE(at, std::string::npos);
@@ -242,7 +242,7 @@ TEST(RawlogReader, ReportsDamage) {
   const Reading reading = bench.read(bytes);
   EXPECT_HAS(reading.error, "s.rawlog: object 1 at byte " + std::to_string(size) + " is damaged: ");
   EXPECT_EQ(reading.error.find('\n'), std::string::npos);
-  EXPECT_HAS(bench.read(bytes, true).error, "is damaged");  // damage is no truncation
+  EXPECT_HAS(bench.read(bytes, true).error, "is damaged");  // damage is not truncation
 }
 
 TEST(RawlogReader, RefusesWhatIsNoRawlog) {
@@ -252,7 +252,7 @@ TEST(RawlogReader, RefusesWhatIsNoRawlog) {
   EXPECT_HAS(readAll(bench.folder / "").error, "is not a file");
 }
 
-// The reason this reader exists: MRPT's own ends without a word in all of these cases.
+// Reason for this reader: MRPT's own ends silently in all of these cases.
 TEST(RawlogReader, StockReaderStopsSilently) {
   const Bench bench;
   const std::string strange =

@@ -55,12 +55,12 @@ TEST(RawlogWriter, PairsAndObservationsSurvive) {
   EXPECT_TRUE(entry.observation);
   EXPECT_FALSE(reader.next(entry));
 
-  CRawlog log;  // MRPT's own reader, too
+  CRawlog log;  // MRPT's own reader too
   ASSERT_TRUE(log.loadFromRawLogFile(folder / "s.rawlog"));
   EXPECT_EQ(log.size(), 3u);
 }
 
-// The trap: what is written as emOdometry comes back with another mean and covariance.
+// The pitfall: a motion written as emOdometry is read back with another mean and covariance.
 TEST(RawlogWriter, RefusesMovementsThatWouldBeLost) {
   const samples::Folder folder("RawlogWriterLost");
   CActionCollection odometry = move(CActionRobotMovement2D::emOdometry);
@@ -98,7 +98,7 @@ TEST(RawlogWriter, RefusesAFolderThatIsNotThere) {
   EXPECT_THROW(RawlogWriter("/no/such/folder/s.rawlog"), Error);
 }
 
-// A limit on the size of files stands for a full disk: writes fail in mid-file.
+// A limit on file sizes simulates a full disk: writes fail in the middle of the file.
 TEST(RawlogWriter, ReportsAFullDisk) {
   const samples::Folder folder("RawlogWriterFull");
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -118,7 +118,7 @@ TEST(RawlogWriter, ReportsAFullDisk) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_NE(error.find("s.rawlog"), std::string::npos) << error;
-  EXPECT_LT(written, 1000);  // not only noticed at the end
+  EXPECT_LT(written, 1000);  // noticed before the end
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
 }
 

@@ -16,7 +16,7 @@ namespace {
 struct RejectionReason {
   const char* name;
   std::function<void(SimulationOptions&)> spoil;
-  const char* message;  ///< what the message has to name
+  const char* message;  ///< text that the message must contain
 };
 
 class SimulationOptionsRefusal : public testing::TestWithParam<RejectionReason> {};
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
         RejectionReason{"speed", [](auto& o) { o.speed = 0; }, "speed_m_s"},
         RejectionReason{"odometryNoise", [](auto& o) { o.odometryNoise = -0.1; }, "odometry_noise"},
         RejectionReason{"scans", [](auto& o) { o.scans = -1; }, "scans"},
-        // 10 m of road leave 3.8 m for the middle of a vehicle.
+        // 10 m of road leave 3.8 m for the centre of a vehicle.
         RejectionReason{"lane", [](auto& o) { o.laneOffset = 4; }, "lane_offset_m = 4"}),
     [](const auto& test) { return std::string(test.param.name); });
 

@@ -28,7 +28,7 @@ class DetectionModelFile : public testing::Test {
  protected:
   DetectionModelFile() { fs::create_directories(m_folder); }
   ~DetectionModelFile() override { fs::remove_all(m_folder); }
-  /// What is said about the plain model's file with one text in place of another.
+  /// The error message for the plain model's file with one text replaced.
   std::string refusal(const std::string& text, const std::string& by) {
     writeDetectionModel(file, testing_sim::plainModel());
     std::string content = textOf(file);

@@ -13,7 +13,7 @@ using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {
-/// Drives whose detections are drawn from a model: what is fitted to them must be that model.
+/// Drives whose detections are sampled from a model: the fit must return that model.
 struct Drawn {
   std::vector<std::unique_ptr<SimulatedDrive>> drives;
   std::vector<ObservedDrive> observed;
@@ -112,7 +112,7 @@ TEST(DetectionSummary, CountsWhatWasPutThere) {
   const SimulatedDrive drive(options);
   const SightLines sight(drive.world());
   ObservedDrive observed{&drive, {}, {}};
-  // Every pole in sight within 20 m, 3 cm too far and 4 cm to the left; missed in scans 30 to 39.
+  // Every visible pole within 20 m, 3 cm too far and 4 cm to the left; missed in scans 30 to 39.
   std::size_t poles = 0;
   for (std::size_t i = 0; i < drive.scans(); ++i) {
     const Eigen::Isometry3d& T = drive.drive().T_map_sensor[i];

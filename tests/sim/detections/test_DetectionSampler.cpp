@@ -22,7 +22,7 @@ class DetectionSamplerTest : public testing::Test {
     m_options.world.length = 400;
     m_options.world.relief = 0;
   }
-  /// Sampled scans, and where the poles within 40 m that no house hides are in each.
+  /// Sampled scans, with the poles within 40 m of each that no house hides.
   void sample(const DetectionModel& model) {
     const World world = makeWorld(m_options.world);
     const Drive drive = makeDrive(world, m_options);
@@ -194,7 +194,7 @@ TEST_F(DetectionSamplerTest, FreeRangesEndAtHousesInTheFrameOfTheClouds) {
       const bool blocked = SightLines::blocked(blocks, sensor, place);
       ++all;
       hidden += blocked;
-      // Sectors are coarse: one that an edge crosses ends at the edge.
+      // Sectors are coarse: a sector crossed by an edge ends at the edge.
       if (blocked) {
         EXPECT_LT(ranges.at(sector), range + 0.3) << i << ' ' << pole.id;
       }
@@ -207,7 +207,7 @@ TEST_F(DetectionSamplerTest, FreeRangesEndAtHousesInTheFrameOfTheClouds) {
 }
 
 namespace {
-/// Share of the chances to see a pole of a sort that a drive took.
+/// Share of detections among all chances to see a pole of a class during a drive.
 template <class Sort>
 double shareSeen(const DetectionModel& model, const SimulationOptions& options, const Sort& isA) {
   const World world = makeWorld(options.world);

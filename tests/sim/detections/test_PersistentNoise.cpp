@@ -17,7 +17,7 @@ NoiseSpectrum mixed() {
   return spectrum;
 }
 
-/// Correlation of noise at two places so far apart in a random direction, counted over many poles.
+/// Correlation of noise at two places at this distance in a random direction, over many poles.
 double counted(const NoiseSpectrum& spectrum, double distance, bool sameDay) {
   Random random(7);
   double ab = 0, aa = 0, bb = 0;

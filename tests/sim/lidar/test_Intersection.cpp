@@ -35,7 +35,7 @@ LocalRay randomRay(Random& random) {
   return {origin.cast<float>(), (vector(1.6) - origin).normalized().cast<float>()};
 }
 
-/// Compares a kernel with marching; rays that only graze the shape may differ.
+/// Compares a kernel with marching; rays that only touch the shape may differ.
 void compare(const std::function<ShapeHit(const LocalRay&)>& kernel,
              const std::function<bool(const V&)>& inside) {
   Random random(11);

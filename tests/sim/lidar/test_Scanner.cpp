@@ -70,7 +70,7 @@ TEST(Scanner, PointsLieOnThePostWithinTheNoiseFromEveryHeading) {
       const auto points = pointsOf(scan(world, pose, lidar, 1), 3, pose);
       ASSERT_GT(points.size(), 25u) << name;
       double error = 0;
-      std::size_t far = 0;  // melted with the ground behind the foot
+      std::size_t far = 0;  // merged with the ground behind the foot
       for (const V& point : points) {
         const double off = std::hypot(point.x() - 8, point.y() - 2) - 0.15;
         error += off;
@@ -146,7 +146,7 @@ TEST(Scanner, PartsOfAPulseMeltAtNearStepsOnly) {
     builder.box(V(wall + 0.1, 0, 2), V(0.1, 6, 4), materials::plaster);
     const World world = emptyPlace({builder.build(1), post(11.9, 0, 0.05, 5, 2)});
     int between = 0;
-    for (int turn = 0; turn < 8; ++turn) {  // so that the post is cut at many places
+    for (int turn = 0; turn < 8; ++turn) {  // so that rays hit the post at many places
       const Eigen::Isometry3d pose = at(0, 0, 2, 0.0101 * turn);
       const SimulatedScan result = scan(world, pose, makeLidar("os1_64"), 1);
       for (const std::uint32_t id : {1u, 2u})
@@ -200,8 +200,8 @@ TEST(Scanner, AHangingSensorSeesTheOtherElevations) {
 }
 
 TEST(Scanner, MotionShiftsPointsByTheWayOfTheSensorWithinTheTurn) {
-  // Clockwise from the back: what lies at azimuth a is fired (pi - a) / 2 pi - 1/2 turns after the
-  // middle. Left: a quarter of a turn before it.
+  // Clockwise from the back: azimuth a is fired (pi - a) / 2 pi - 1/2 revolutions after the middle.
+  // Left: a quarter of a revolution before it.
   const World world = emptyPlace({post(0, 8, 0.1, 4, 1), post(8, 0, 0.1, 4, 2)});
   const Eigen::Isometry3d pose = at(0, 0, 1.5);
   Motion motion;

@@ -26,7 +26,7 @@ Solid randomSolid(Random& random) {
   return solid;
 }
 
-/// The sensor: up to 6 degrees off the upright.
+/// Sensor poses with a tilt of up to 6 degrees.
 Eigen::Isometry3d randomPose(Random& random) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = (Eigen::AngleAxisd(random.uniform(-M_PI, M_PI), V::UnitZ()) *
@@ -66,7 +66,8 @@ TEST(SolidView, BoundsHoldEveryHit) {
           std::abs(wrapAngle(std::atan2(direction.y(), direction.x()) - bounds.azimuth));
       const double tangent = direction.z() / direction.head<2>().norm();
       const char* what = solid.shape == Shape::frustum ? "frustum" : "other";
-      // Starting 0.28 m aside turns directions by that over the distance; the margin is 0.3 m.
+      // A start 0.28 m to the side changes directions by that over the distance; the margin is 0.3
+      // m.
       ASSERT_LE(off, bounds.halfAzimuth + 1e-4) << what << i;
       ASSERT_GE(tangent, bounds.lowTangent - 1e-4) << what << i;
       ASSERT_LE(tangent, bounds.highTangent + 1e-4) << what << i;

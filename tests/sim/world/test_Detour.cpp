@@ -48,7 +48,7 @@ TEST_P(Detours, LeaveTheStreetAndComeBackWithoutAJerk) {
   for (const int detour : {1, 2}) {
     const Drive drive = makeDrive(world, withSideStreets(GetParam(), detour));
     const auto places = placesOf(drive);
-    // The sway of a drive is by the way it has gone: 0.12 m each side.
+    // The sway of a drive depends on its path length: 0.12 m to each side.
     EXPECT_LT((places.front() - straight.front()).norm(), 0.6);
     EXPECT_LT((places.back() - straight.back()).norm(), 1.6);
     double farthest = 0, away = 0;
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Detours, testing::Values(61, 62, 63));
 
 TEST(Detour, TheStreetItselfIsDrivenAsWithoutSideStreets) {
   SimulationOptions options = withSideStreets(64, 0);
-  options.world.relief = 0;  // the grid of worn ground begins elsewhere
+  options.world.relief = 0;  // the grid of bumps starts elsewhere
   const auto with = placesOf(makeDrive(makeWorld(options.world), options));
   options.world.sideStreets = 0;
   const auto without = placesOf(makeDrive(makeWorld(options.world), options));

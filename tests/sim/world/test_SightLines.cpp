@@ -35,7 +35,7 @@ TEST(SightLines, TheFreeWayEndsAtTheFirstBlock) {
 }
 
 TEST(SightLines, OfATurnedBlockItIsItsNearSide) {
-  const SightLines::Block turned = block(M_PI / 2);  // now 2 m deep to both sides of its centre
+  const SightLines::Block turned = block(M_PI / 2);  // now 2 m to both sides of its centre
   EXPECT_NEAR(SightLines::freeWay({&turned}, {0, 0}, {40, 0}), 8, 1e-9);
 }
 

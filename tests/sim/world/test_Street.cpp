@@ -15,7 +15,7 @@ using namespace polemcl::sim;
 namespace fs = std::filesystem;
 
 namespace {
-/// A folder of its own that goes when the test ends.
+/// A temporary folder for one test.
 class Street_ : public testing::Test {
  protected:
   Street_() { fs::create_directories(m_folder); }

@@ -43,7 +43,7 @@ TEST(Terrain, RaysOnFlatGroundByHand) {
   const Eigen::Vector3d eye(0, 0, 2);
   const auto down = terrain.intersect(eye, {0, 0, -1}, 100);
   EXPECT_NEAR(down.range, 2, 0.003);
-  const double slope = 2.0 / 40;  // ahead on the road, 40 m away
+  const double slope = 2.0 / 40;  // forward on the road, 40 m away
   const auto ahead = terrain.intersect(eye, Eigen::Vector3d(1, 0, -slope).normalized(), 100);
   EXPECT_NEAR(ahead.range, std::hypot(40, 2), 0.1);
   const auto aside = terrain.intersect(eye, Eigen::Vector3d(0, 1, -0.2).normalized(), 100);
@@ -84,7 +84,7 @@ TEST(Terrain, HitsLieOnTheGroundAndNothingWasMissedBefore) {
     const auto hit = terrain.intersect(eye, direction, 60);
     const double end = std::isfinite(hit.range) ? hit.range : 60;
     for (double range = 0.5; range < end - 0.3;
-         range += 0.1) {  // never below ground before, but for bumps of centimetres
+         range += 0.1) {  // never below ground before, except for bumps
       const Eigen::Vector3d point = eye + range * direction;
       ASSERT_GT(point.z(), terrain.height(point.x(), point.y()) - 0.03) << "ray " << i;
     }

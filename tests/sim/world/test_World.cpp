@@ -71,7 +71,7 @@ TEST(World, TruthLiesOnTheAxisOfTheTrunk) {
   for (const WorldObject& object : world.objects()) {
     const auto pole = poles.find(object.id);
     if (pole == poles.end()) continue;
-    // The widest post that is there at 1.5 m above the ground.
+    // The widest post at 1.5 m above the ground.
     const double height = 1.5 + world.terrain().height(pole->second.x, pole->second.y);
     double widest = 0, off = 1e9;
     for (const Solid& solid : object.solids) {
@@ -133,7 +133,7 @@ TEST(World, CarsAndPeopleAreElsewhereOnAnotherDay) {
 }
 
 TEST(World, NoPoleStandsInAHouseOrACar) {
-  // A road that comes back beside itself: houses of one turn reach into the gardens of the other.
+  // A road that returns beside itself: houses of one part reach into the gardens of the other.
   const std::string track = testing::TempDir() + "hairpin_" + std::to_string(getpid()) + ".txt";
   {
     std::ofstream file(track);

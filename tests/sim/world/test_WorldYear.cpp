@@ -1,5 +1,5 @@
 /// \file test_WorldYear.cpp
-/// \brief What a year does to a world: poles that go and come for good, seasons, building sites.
+/// \brief Changes of a world during a year: permanent changes of poles, seasons, building sites.
 
 #include <gtest/gtest.h>
 
