@@ -44,6 +44,18 @@ TEST(GreedyAssignment, EqualDistancesGoToTheLowerIndex) {
   EXPECT_EQ(pairs[0].second, 0u);
 }
 
+TEST(GreedyAssignment, CandidatesKeepTheirContentAndTheirOwnOrder) {
+  struct Labelled : AssignedPair {
+    char label;
+    bool operator<(const Labelled& other) const { return label < other.label; }
+  };
+  const auto chosen = chooseClosest<Labelled>(
+      {{{7, 2, 1}, 'c'}, {{3, 2, 9}, 'b'}, {{3, 5, 1}, 'd'}, {{7, 5, 4}, 'e'}});
+  ASSERT_EQ(chosen.size(), 2u);
+  EXPECT_EQ(chosen[0].label, 'b');
+  EXPECT_EQ(chosen[1].label, 'e');
+}
+
 TEST(GreedyAssignment, AgreesWithTakingTheSmallestOfATable) {
   std::mt19937 random(5);
   const auto points = [&](std::size_t count) {

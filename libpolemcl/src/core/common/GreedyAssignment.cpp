@@ -1,9 +1,8 @@
 #include "core/common/GreedyAssignment.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
-#include <tuple>
+#include <utility>
 
 #include "core/common/KdTree2D.h"
 #include "core/common/Types.h"
@@ -22,21 +21,12 @@ std::vector<AssignedPair> greedyAssignment(const std::vector<Eigen::Vector2d>& f
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (!first[i].allFinite())
       throw Error("point " + std::to_string(i) + " has a coordinate that is not finite");
-    tree.within(first[i].x(), first[i].y(), 1.001 * radius, hits);  // the tree leaves the rim out
+    tree.within(first[i].x(), first[i].y(), 1.001 * radius, hits);  // the tree excludes the border
     for (const PointHit& hit : hits)
       if (hit.squaredDistance <= radius * radius)
         pairs.push_back({i, hit.index, std::sqrt(hit.squaredDistance)});
   }
-  std::sort(pairs.begin(), pairs.end(), [](const AssignedPair& a, const AssignedPair& b) {
-    return std::tie(a.distance, a.first, a.second) < std::tie(b.distance, b.first, b.second);
-  });
-  std::vector<char> firstTaken(first.size(), 0), secondTaken(second.size(), 0);
-  std::vector<AssignedPair> chosen;
-  for (const AssignedPair& pair : pairs) {
-    if (firstTaken[pair.first] || secondTaken[pair.second]) continue;
-    firstTaken[pair.first] = secondTaken[pair.second] = 1;
-    chosen.push_back(pair);
-  }
+  std::vector<AssignedPair> chosen = chooseClosest(std::move(pairs));
   std::sort(chosen.begin(), chosen.end(),
             [](const AssignedPair& a, const AssignedPair& b) { return a.first < b.first; });
   return chosen;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+
+#include "core/common/GreedyAssignment.h"
 
 namespace polemcl {
 namespace {
@@ -27,16 +30,6 @@ bool isCovariance(const Eigen::Matrix<double, size, size>& matrix) {
       matrix, Eigen::EigenvaluesOnly);
   return solver.eigenvalues().minCoeff() >= -tolerance;
 }
-
-/// A detection and a pole it may belong to.
-struct Pairing {
-  double squared;  ///< Mahalanobis
-  std::size_t detection, pole;
-  bool operator<(const Pairing& other) const {
-    if (squared != other.squared) return squared < other.squared;
-    return detection != other.detection ? detection < other.detection : pole < other.pole;
-  }
-};
 
 /// A detection in the local frame.
 struct Placed {
@@ -129,7 +122,7 @@ void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {
   placed.reserve(poles_robot.size());
   for (const PoleDetection& d : poles_robot)
     placed.push_back(placePole(d, m_pose, m_options.floor));
-  std::vector<Pairing> pairings;
+  std::vector<AssignedPair> pairs;  // detection, pole, squared Mahalanobis distance
   for (std::size_t p = 0; p < m_poles.size(); ++p) {
     const Eigen::Matrix2d present = presentCovariance(m_poles[p]);
     for (std::size_t d = 0; d < placed.size(); ++d) {
@@ -137,16 +130,14 @@ void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {
       if (poles_robot[d].confidence <= 0 || error.squaredNorm() > s_farthest * s_farthest) continue;
       const Eigen::Matrix2d sum = present + placed[d].covariance;
       const double squared = error.dot(sum.inverse() * error);
-      if (squared <= m_options.gate * m_options.gate) pairings.push_back({squared, d, p});
+      if (squared <= m_options.gate * m_options.gate) pairs.push_back({d, p, squared});
     }
   }
-  std::sort(pairings.begin(), pairings.end());
-  std::vector<char> poleTaken(m_poles.size(), 0), detectionTaken(placed.size(), 0);
-  for (const Pairing& pair : pairings) {
-    if (poleTaken[pair.pole] || detectionTaken[pair.detection]) continue;
-    poleTaken[pair.pole] = detectionTaken[pair.detection] = 1;
-    update(m_poles[pair.pole], poles_robot[pair.detection], placed[pair.detection].centre,
-           placed[pair.detection].covariance);
+  std::vector<bool> poleTaken(m_poles.size()), detectionTaken(placed.size());
+  for (const AssignedPair& pair : chooseClosest(std::move(pairs))) {
+    detectionTaken[pair.first] = poleTaken[pair.second] = true;
+    update(m_poles[pair.second], poles_robot[pair.first], placed[pair.first].centre,
+           placed[pair.first].covariance);
   }
   const Eigen::Vector2d here(m_pose.x, m_pose.y);
   for (std::size_t p = 0; p < m_poles.size(); ++p)

@@ -1,21 +1,13 @@
 #include "core/localization/MapAssociation.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
+
+#include "core/common/GreedyAssignment.h"
 
 namespace polemcl {
 namespace {
-
-struct MatchPair {
-  double squared;
-  std::size_t detection, pole;
-  bool operator<(const MatchPair& other) const {
-    return std::tie(squared, detection, pole) <
-           std::tie(other.squared, other.detection, other.pole);
-  }
-};
 
 /// A detection in the map frame, with the uncertainty of detection and pose.
 struct PlacedDetection {
@@ -43,7 +35,7 @@ std::vector<PoleMatch> associate(const std::vector<PoleDetection>& poles_robot,
                                  const PoseWithCovariance& robot, const PoleIndex& index,
                                  const AssociationOptions& options) {
   std::vector<PoleMatch> matches(poles_robot.size());
-  std::vector<MatchPair> pairs;
+  std::vector<AssignedPair> pairs;  // detection, map pole, squared Mahalanobis distance
   for (std::size_t i = 0; i < poles_robot.size(); ++i) {
     matches[i].confidence = poles_robot[i].confidence;
     const PlacedDetection placed = placeDetection(poles_robot[i], robot, options.sigma);
@@ -53,18 +45,13 @@ std::vector<PoleMatch> associate(const std::vector<PoleDetection>& poles_robot,
       const Eigen::Matrix2d sum =
           placed.covariance + index.variance(near.index) * Eigen::Matrix2d::Identity();
       const double squared = error.dot(sum.inverse() * error);
-      if (squared <= options.gate * options.gate) pairs.push_back({squared, i, near.index});
+      if (squared <= options.gate * options.gate) pairs.push_back({i, near.index, squared});
     }
   }
-  std::sort(pairs.begin(), pairs.end());
-  std::vector<std::size_t> taken;
-  for (const MatchPair& pair : pairs) {
-    if (matches[pair.detection].matched) continue;
-    if (std::find(taken.begin(), taken.end(), pair.pole) != taken.end()) continue;
-    taken.push_back(pair.pole);
-    matches[pair.detection].matched = true;
-    matches[pair.detection].pole = pair.pole;
-    matches[pair.detection].squared = pair.squared;
+  for (const AssignedPair& pair : chooseClosest(std::move(pairs))) {
+    matches[pair.first].matched = true;
+    matches[pair.first].pole = pair.second;
+    matches[pair.first].squared = pair.distance;
   }
   return matches;
 }

@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
+
+#include "core/common/GreedyAssignment.h"
 
 namespace polemcl {
 namespace {
@@ -34,9 +36,8 @@ std::vector<Moved> moveAll(const std::vector<PoleDetection>& poles, const Pose2D
   return moved;
 }
 
-struct RegistrationPair {
-  double squared;
-  std::size_t before, after;
+/// A pole of the first scan and a pole of the second; `distance` is the squared Mahalanobis one.
+struct RegistrationPair : AssignedPair {
   Eigen::Vector2d error;        ///< of the second from the first
   Eigen::Matrix2d information;  ///< of the error
 };
@@ -51,25 +52,15 @@ std::vector<RegistrationPair> pairUp(const std::vector<PoleDetection>& before,
       if (!(error.squaredNorm() <= reach * reach)) continue;
       const Eigen::Matrix2d information = (after[a].covariance + before[b].covariance).inverse();
       const double squared = error.dot(information * error);
-      if (squared <= gate * gate) all.push_back({squared, b, a, error, information});
+      if (squared <= gate * gate) all.push_back({{b, a, squared}, error, information});
     }
-  std::sort(all.begin(), all.end(), [](const RegistrationPair& l, const RegistrationPair& r) {
-    return std::tie(l.squared, l.before, l.after) < std::tie(r.squared, r.before, r.after);
-  });
-  std::vector<char> beforeTaken(before.size(), 0), afterTaken(after.size(), 0);
-  std::vector<RegistrationPair> pairs;
-  for (const RegistrationPair& pair : all) {
-    if (beforeTaken[pair.before] || afterTaken[pair.after]) continue;
-    beforeTaken[pair.before] = afterTaken[pair.after] = 1;
-    pairs.push_back(pair);
-  }
-  return pairs;
+  return chooseClosest(std::move(all));
 }
 
 void judge(const std::vector<RegistrationPair>& pairs, double gate, ScanRegistration& result) {
   result.pairs = static_cast<int>(pairs.size());
   result.score = 0;
-  for (const RegistrationPair& pair : pairs) result.score += 1 - pair.squared / (gate * gate);
+  for (const RegistrationPair& pair : pairs) result.score += 1 - pair.distance / (gate * gate);
 }
 
 /// One Gauss-Newton step over the pairs. \return Whether the pairs determine a motion.
@@ -80,11 +71,11 @@ bool solve(const std::vector<RegistrationPair>& pairs, const std::vector<Moved>&
   double squared = 0;
   for (const RegistrationPair& pair : pairs) {
     Eigen::Matrix<double, 2, 3> jacobian;  // of the error by x, y, yaw
-    const Eigen::Vector2d& arm = moved[pair.after].arm;
+    const Eigen::Vector2d& arm = moved[pair.second].arm;
     jacobian << 1, 0, -arm.y(), 0, 1, arm.x();
     information += jacobian.transpose() * pair.information * jacobian;
     gradient += jacobian.transpose() * pair.information * pair.error;
-    squared += pair.squared;
+    squared += pair.distance;
   }
   const Eigen::LDLT<Eigen::Matrix3d> solver(information);
   if (pairs.size() < 2 || solver.info() != Eigen::Success || !(solver.rcond() > 1e-12))

@@ -2,19 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <tuple>
+#include <utility>
+
+#include "core/common/GreedyAssignment.h"
 
 namespace polemcl {
 namespace {
-
-struct MergePair {
-  double distance;
-  std::size_t detection, pole;
-  bool operator<(const MergePair& other) const {
-    return std::tie(distance, detection, pole) <
-           std::tie(other.distance, other.detection, other.pole);
-  }
-};
 
 void absorb(MapPole& pole, const PoleDetection& seen) {
   const double n = pole.count, all = n + 1;
@@ -57,20 +50,17 @@ PoleDetection moved(const Pose2D& base, const PoleDetection& pole) {
 
 void mergeScan(std::vector<MapPole>& poles, const PoleIndex& index,
                const std::vector<PoleDetection>& detections_map, double mergeDistance) {
-  std::vector<MergePair> pairs;
+  std::vector<AssignedPair> pairs;  // detection, pole
   for (std::size_t i = 0; i < detections_map.size(); ++i)
     for (const auto& near : index.within(detections_map[i].x, detections_map[i].y, mergeDistance))
-      pairs.push_back({near.distance, i, near.index});
-  std::sort(pairs.begin(), pairs.end());
-
-  std::vector<bool> detectionTaken(detections_map.size()), poleTaken(poles.size());
-  for (const MergePair& pair : pairs) {
-    if (detectionTaken[pair.detection] || poleTaken[pair.pole]) continue;
-    detectionTaken[pair.detection] = poleTaken[pair.pole] = true;
-    absorb(poles[pair.pole], detections_map[pair.detection]);
+      pairs.push_back({i, near.index, near.distance});
+  std::vector<bool> merged(detections_map.size());
+  for (const AssignedPair& pair : chooseClosest(std::move(pairs))) {
+    merged[pair.first] = true;
+    absorb(poles[pair.second], detections_map[pair.first]);
   }
   for (std::size_t i = 0; i < detections_map.size(); ++i)
-    if (!detectionTaken[i]) poles.push_back(newPole(detections_map[i]));
+    if (!merged[i]) poles.push_back(newPole(detections_map[i]));
 }
 
 }  // namespace polemcl

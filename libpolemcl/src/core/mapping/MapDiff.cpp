@@ -4,7 +4,9 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 
+#include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
 
 namespace polemcl {
@@ -24,27 +26,18 @@ bool byPlace(const MapPole& a, const MapPole& b) {
 
 /// Takes the pairs nearer than the gate out of both lists, nearest first.
 std::vector<MapDiff::Pair> takePairs(Poles& before, Poles& after, double gate) {
-  struct Match {
-    double squaredDistance;
-    std::size_t before, after;
-  };
   const KdTree2D tree(placesOf(before));
-  std::vector<Match> matches;
+  std::vector<AssignedPair> candidates;
   std::vector<PointHit> hits;
   for (std::size_t i = 0; i < after.size(); ++i) {
     tree.within(after[i].x, after[i].y, gate, hits);
-    for (const PointHit& hit : hits) matches.push_back({hit.squaredDistance, hit.index, i});
+    for (const PointHit& hit : hits) candidates.push_back({hit.index, i, hit.squaredDistance});
   }
-  std::sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
-    return std::tie(a.squaredDistance, a.before, a.after) <
-           std::tie(b.squaredDistance, b.before, b.after);
-  });
   std::vector<bool> takenBefore(before.size()), takenAfter(after.size());
   std::vector<MapDiff::Pair> pairs;
-  for (const Match& match : matches) {
-    if (takenBefore[match.before] || takenAfter[match.after]) continue;
-    takenBefore[match.before] = takenAfter[match.after] = true;
-    pairs.push_back({before[match.before], after[match.after], std::sqrt(match.squaredDistance)});
+  for (const AssignedPair& pair : chooseClosest(std::move(candidates))) {
+    takenBefore[pair.first] = takenAfter[pair.second] = true;
+    pairs.push_back({before[pair.first], after[pair.second], std::sqrt(pair.distance)});
   }
   const auto rest = [](const Poles& all, const std::vector<bool>& taken) {
     Poles left;

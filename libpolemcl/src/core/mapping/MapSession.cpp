@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
+#include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
 #include "core/extraction/VisibilityRange.h"
 #include "core/mapping/DetectionToMap.h"
@@ -79,31 +81,25 @@ void Session::observe(const std::vector<LandmarkRecord>& poles) {
 
 /// The sightings of one scan to the poles in their gates, nearest pair first.
 void Session::deal(std::size_t view, const KdTree2D& tree) {
-  struct Pair {
-    double squaredDistance, x, y;
-    std::uint32_t sighting, pole;
+  struct Pair : AssignedPair {
+    double x, y;
+    bool operator<(const Pair& other) const {
+      return std::tie(distance, x, y, second) <
+             std::tie(other.distance, other.x, other.y, other.second);
+    }
   };
+  const std::size_t begin = m_firstOfView[view];
   std::vector<Pair> pairs;
   std::vector<PointHit> hits;
-  for (std::size_t i = m_firstOfView[view]; i < m_firstOfView[view + 1]; ++i) {
+  for (std::size_t i = begin; i < m_firstOfView[view + 1]; ++i) {
     const PoleDetection& seen = m_sightings[i].pole;
     tree.within(seen.x, seen.y, m_mapping.mergeDistance, hits);
     for (const PointHit& hit : hits)
-      pairs.push_back(
-          {hit.squaredDistance, seen.x, seen.y, static_cast<std::uint32_t>(i), hit.index});
+      pairs.push_back({{i - begin, hit.index, hit.squaredDistance}, seen.x, seen.y});
   }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-    return std::tie(a.squaredDistance, a.x, a.y, a.pole) <
-           std::tie(b.squaredDistance, b.x, b.y, b.pole);
-  });
-  std::vector<std::uint32_t> taken;
-  for (const Pair& pair : pairs) {
-    if (m_owner[pair.sighting] != kNone ||
-        std::find(taken.begin(), taken.end(), pair.pole) != taken.end())
-      continue;
-    m_owner[pair.sighting] = pair.pole;
-    taken.push_back(pair.pole);
-    m_poles[pair.pole].sightings.push_back(pair.sighting);
+  for (const Pair& pair : chooseClosest(std::move(pairs))) {
+    m_owner[begin + pair.first] = static_cast<std::uint32_t>(pair.second);
+    m_poles[pair.second].sightings.push_back(static_cast<std::uint32_t>(begin + pair.first));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
 
 namespace polemcl {
@@ -162,32 +163,20 @@ std::vector<Eigen::Vector2d> Merger::observationCentres() const {
 
 /// Deals the sightings of each view out to the centres, nearest pair first, until none moves.
 void Merger::deal() {
-  struct Pair {
-    std::uint32_t view;
-    double squaredDistance;
-    std::uint32_t sighting, group;
-  };
+  std::vector<Group> scans(m_views.size());
+  for (std::uint32_t i = 0; i < m_sightings.size(); ++i) scans[m_sightings[i].view].push_back(i);
   for (int round = 0; round < s_mostRounds; ++round) {
     const KdTree2D tree(observationCentres());
-    std::vector<Pair> pairs;
-    for (std::uint32_t i = 0; i < m_sightings.size(); ++i) {
-      const Eigen::Vector2d& p = m_tree.point(i);
-      tree.within(p.x(), p.y(), m_options.mergeDistance, m_hits);
-      for (const PointHit& hit : m_hits)
-        pairs.push_back({m_sightings[i].view, hit.squaredDistance, i, hit.index});
-    }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-      return std::tie(a.view, a.squaredDistance, a.sighting, a.group) <
-             std::tie(b.view, b.squaredDistance, b.sighting, b.group);
-    });
     std::vector<Group> groups(m_groups.size());
-    std::vector<std::uint32_t> lastView(m_groups.size(), PointHit::none);
-    std::vector<bool> dealt(m_sightings.size(), false);
-    for (const Pair& pair : pairs) {
-      if (dealt[pair.sighting] || lastView[pair.group] == pair.view) continue;
-      dealt[pair.sighting] = true;
-      lastView[pair.group] = pair.view;
-      groups[pair.group].push_back(pair.sighting);
+    for (const Group& scan : scans) {
+      std::vector<AssignedPair> pairs;  // member of the scan, group
+      for (std::size_t i = 0; i < scan.size(); ++i) {
+        const Eigen::Vector2d& p = m_tree.point(scan[i]);
+        tree.within(p.x(), p.y(), m_options.mergeDistance, m_hits);
+        for (const PointHit& hit : m_hits) pairs.push_back({i, hit.index, hit.squaredDistance});
+      }
+      for (const AssignedPair& pair : chooseClosest(std::move(pairs)))
+        groups[pair.second].push_back(scan[pair.first]);
     }
     for (Group& group : groups) std::sort(group.begin(), group.end());
     dropEmpty(groups);
