@@ -288,13 +288,14 @@ class Planner {
     BatchTask task;
     task.id = mapId(setting, names[n - 1]);
     task.kind = "map";
+    const bool updates = setting.protocol == MapProtocol::upkeep && n > 1;
     Command command = program("pole-map");
-    append(command,
-           {"--config", "../../settings/" + setting.name + ".ini", "--output", "map.polemap"});
+    append(command, {updates ? "update" : "build", "--config",
+                     "../../settings/" + setting.name + ".ini", "--output", "map.polemap"});
     const std::size_t first = setting.protocol == MapProtocol::together ? 0 : n - 1;
-    if (setting.protocol == MapProtocol::upkeep && n > 1) {
+    if (updates) {
       const std::string before = mapId(setting, names[n - 2]);
-      append(command, {"--update", "../" + before + "/map.polemap"});
+      append(command, {"--map", "../" + before + "/map.polemap"});
       task.needs.push_back(before);
     }
     Command inputs{"--input"}, truths{"--truth"}, dates{"--date"};

@@ -36,7 +36,7 @@ inline constexpr const char* truthFromLabels = "labels";
 /// \brief How maps come about.
 enum class MapProtocol {
   together,  ///< all sessions driven so far make one map, as `[map]` says (`unvisited_m`)
-  upkeep,    ///< the first makes the map, each later one keeps it true (`pole-map --update`)
+  upkeep,    ///< the first makes the map, each later one keeps it true (`pole-map update`)
   each       ///< each session makes a map of its own: they show different places
 };
 

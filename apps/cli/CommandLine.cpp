@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
-#include <optional>
+#include <set>
 
 #include "cli/Version.h"
 #include "mrpt/map/RegisterClasses.h"
@@ -44,6 +44,17 @@ std::string printable(const std::string& text) {
   return clean;
 }
 
+bool lacksSubcommand(const CLI::App& cli) {
+  return cli.get_require_subcommand_min() > 0 && cli.get_subcommands().empty();
+}
+
+std::string subcommandsOf(CLI::App& cli) {
+  std::string names;
+  for (const CLI::App* command : cli.get_subcommands([](CLI::App*) { return true; }))
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  return names;
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
@@ -66,7 +77,9 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
   try {
     m_cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usageError(e.what());
+    if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
+      return usageError(lacksSubcommand(m_cli) ? "a subcommand is needed: " + subcommandsOf(m_cli)
+                                               : e.what());
     m_cli.exit(e);  // prints what --help or --version ask for
     return exitDone;
   }
@@ -86,11 +99,29 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
   return exitFailed;
 }
 
+int CommandLine::run(int argc, const char* const* argv, const std::vector<Subcommand>& commands) {
+  m_cli.require_subcommand(1);
+  return run(argc, argv, [&] {
+    for (const Subcommand& command : commands) {
+      if (!command.parser->parsed()) continue;
+      const std::string text = command.run(m_quiet);
+      if (!m_quiet) std::cout << text;
+    }
+  });
+}
+
 void addSetOption(CLI::App& cli, std::vector<std::string>& assignments) {
   cli.add_option("--set", assignments, "A setting in place of the INI file's; may be repeated")
       ->type_name("SECTION.KEY=VALUE")
       ->take_all()
       ->expected(1);
+}
+
+void requireDistinct(const std::vector<std::optional<std::filesystem::path>>& outputs) {
+  std::set<std::filesystem::path> names;
+  for (const auto& output : outputs)
+    if (output && !names.insert(output->lexically_normal()).second)
+      throw CLI::ValidationError(output->string(), "is given for two outputs");
 }
 
 CLI::Validator positiveNumber() {

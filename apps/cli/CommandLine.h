@@ -3,7 +3,9 @@
 /// \brief The frame every program stands in: parse, run, catch; exit codes; common flags.
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,13 @@ enum ExitCode : int {
   exitDone = 0,
   exitFailed = 1,  ///< one line on stderr: what, where, what is allowed
   exitUsage = 2    ///< wrong usage: unknown or missing options, values of the wrong type
+};
+
+/// \brief A declared subcommand and what it does once parsed: returns the text for the user, shows
+/// its progress unless quiet.
+struct Subcommand {
+  const CLI::App* parser = nullptr;
+  std::function<std::string(bool quiet)> run;
 };
 
 /// \brief Declares `--help`, `--version`, `--quiet` and `--threads`; the program declares the rest
@@ -36,6 +45,8 @@ class CommandLine {
   /// \return An ExitCode. Usage errors and failures are printed on stderr, `--help` and `--version`
   ///         on stdout; nothing escapes as an exception.
   int run(int argc, const char* const* argv, const std::function<void()>& work);
+  /// \brief The same for a program of subcommands: runs the one that was given, prints its text.
+  int run(int argc, const char* const* argv, const std::vector<Subcommand>& commands);
 
  private:
   int usageError(const std::string& what) const;
@@ -48,6 +59,10 @@ class CommandLine {
 
 /// \brief Declares `--set SECTION.KEY=VALUE`, which may be given several times.
 void addSetOption(CLI::App& cli, std::vector<std::string>& assignments);
+
+/// \brief Wrong usage when two outputs have one name: one of them would be lost.
+/// \throws CLI::ValidationError
+void requireDistinct(const std::vector<std::optional<std::filesystem::path>>& outputs);
 
 /// \brief Check of an option: a number above 0 and up to 1e6. (CLI11's own takes nan.)
 CLI::Validator positiveNumber();

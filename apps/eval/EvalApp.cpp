@@ -1,6 +1,5 @@
 #include "eval/EvalApp.h"
 
-#include <iostream>
 #include <memory>
 #include <sstream>
 
@@ -67,7 +66,7 @@ nlohmann::ordered_json scoreJson(const EvalTrajectoryOptions& options,
   return out;
 }
 
-EvalCommand mapCommand(CLI::App& program) {
+Subcommand mapCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("map", "Precision, recall and F1 of a pole map");
   const auto shared = std::make_shared<EvalMapOptions>();
   EvalMapOptions& options = *shared;
@@ -83,7 +82,7 @@ EvalCommand mapCommand(CLI::App& program) {
   return {&cli, [shared](bool) { return scoreText(evalMap(*shared)); }};
 }
 
-EvalCommand trajectoryCommand(CLI::App& program) {
+Subcommand trajectoryCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("trajectory", "Errors of a trajectory");
   const auto shared = std::make_shared<EvalTrajectoryOptions>();
   EvalTrajectoryOptions& options = *shared;
@@ -168,17 +167,10 @@ TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
 
 int evalMain(int argc, const char* const* argv) {
   CommandLine line("pole-eval", "Scores pole maps, trajectories, extractors and localization.");
-  line.cli().require_subcommand(1);
-  std::vector<EvalCommand> commands{mapCommand(line.cli()), trajectoryCommand(line.cli())};
+  std::vector<Subcommand> commands{mapCommand(line.cli()), trajectoryCommand(line.cli())};
   for (auto& command : extractionCommands(line.cli())) commands.push_back(std::move(command));
   for (auto& command : localizationCommands(line.cli())) commands.push_back(std::move(command));
-  return line.run(argc, argv, [&] {
-    for (const EvalCommand& command : commands) {
-      if (!command.parser->parsed()) continue;
-      const std::string text = command.run(line.quiet());
-      if (!line.quiet()) std::cout << text;
-    }
-  });
+  return line.run(argc, argv, commands);
 }
 
 }  // namespace polemcl::apps

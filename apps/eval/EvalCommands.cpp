@@ -53,7 +53,7 @@ std::string helpText(const RotationScore& s, double radius) {
   return out.str();
 }
 
-EvalCommand detectionsCommand(CLI::App& program) {
+Subcommand detectionsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "detections", "Poles of single scans against the true ones of a simulated folder");
   const auto options = std::make_shared<EvalDetectionsOptions>();
@@ -73,7 +73,7 @@ EvalCommand detectionsCommand(CLI::App& program) {
   return {&cli, [options](bool) { return helpText(evalDetections(*options)); }};
 }
 
-EvalCommand repeatabilityCommand(CLI::App& program) {
+Subcommand repeatabilityCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("repeatability", "Poles found again in the next scans");
   const auto options = std::make_shared<EvalRepeatabilityOptions>();
   cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
@@ -82,7 +82,7 @@ EvalCommand repeatabilityCommand(CLI::App& program) {
   return {&cli, [options](bool) { return helpText(evalRepeatability(*options)); }};
 }
 
-EvalCommand rotationCommand(CLI::App& program) {
+Subcommand rotationCommand(CLI::App& program) {
   auto& cli =
       *program.add_subcommand("rotation", "Poles found again when scans are turned about z");
   const auto options = std::make_shared<EvalRotationOptions>();
@@ -117,7 +117,7 @@ std::string helpText(const sim::DetectionModel& m, const FitModelOptions& option
   return out.str();
 }
 
-EvalCommand modelCommand(CLI::App& program) {
+Subcommand modelCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "model", "Fits a model of detections ([simulation] detections) to ray-cast drives");
   const auto options = std::make_shared<FitModelOptions>();
@@ -144,7 +144,7 @@ std::string helpText(const sim::DetectionSummary& s) {
   return out.str();
 }
 
-EvalCommand sightingsCommand(CLI::App& program) {
+Subcommand sightingsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "sightings", "Poles of a simulated drive against the true ones, without its scans");
   const auto options = std::make_shared<EvalObservationsOptions>();
@@ -181,7 +181,7 @@ std::string helpText(const std::vector<MotionComparison>& stretches) {
   return out.str();
 }
 
-EvalCommand motionCommand(CLI::App& program) {
+Subcommand motionCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "motion", "Do the true poses agree with how the poles move from scan to scan?");
   const auto options = std::make_shared<EvalMotionOptions>();
@@ -197,7 +197,7 @@ EvalCommand motionCommand(CLI::App& program) {
 
 }  // namespace
 
-std::vector<EvalCommand> extractionCommands(CLI::App& program) {
+std::vector<Subcommand> extractionCommands(CLI::App& program) {
   return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program),
           modelCommand(program),      sightingsCommand(program),     motionCommand(program)};
 }

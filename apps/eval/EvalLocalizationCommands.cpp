@@ -20,7 +20,7 @@ void declareFiles(CLI::App& cli, TrialDriveFiles& files) {
   cli.add_option("--truth", files.truth, "True robot poses of the drive (.tum)")->required();
 }
 
-EvalCommand globalCommand(CLI::App& program) {
+Subcommand globalCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("global", "Random starts without a pose: are they found?");
   const auto shared = std::make_shared<GlobalTrialsOptions>();
   GlobalTrialsOptions& options = *shared;
@@ -62,7 +62,7 @@ std::string localizationText(const ConsistencyResult& result) {
   return out.str();
 }
 
-EvalCommand consistencyCommand(CLI::App& program) {
+Subcommand consistencyCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("consistency", "Are poses as uncertain as they say?");
   const auto options = std::make_shared<EvalConsistencyOptions>();
   cli.add_option("--truth", options->truth,
@@ -82,7 +82,7 @@ EvalCommand consistencyCommand(CLI::App& program) {
   return {&cli, [options](bool) { return localizationText(evalConsistency(*options)); }};
 }
 
-EvalCommand faultsCommand(CLI::App& program) {
+Subcommand faultsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("faults", "Faults in a drive: noticed, and recovered from?");
   const auto shared = std::make_shared<FaultTrialsOptions>();
   FaultTrialsOptions& options = *shared;
@@ -120,7 +120,7 @@ EvalCommand faultsCommand(CLI::App& program) {
 
 }  // namespace
 
-std::vector<EvalCommand> localizationCommands(CLI::App& program) {
+std::vector<Subcommand> localizationCommands(CLI::App& program) {
   return {globalCommand(program), consistencyCommand(program), faultsCommand(program)};
 }
 

@@ -1,6 +1,6 @@
 #include "map/MapConvertApp.h"
 
-#include <iostream>
+#include <sstream>
 
 #include "cli/Version.h"
 #include "io/map/PoleMapFile.h"
@@ -73,12 +73,14 @@ MapConvertSummary convertMap(const MapConvertOptions& options) {
   return summary;
 }
 
-void print(const MapConvertSummary& summary, const MapConvertOptions& options) {
-  std::cout << options.output.string() << ": " << summary.poles << " poles\n";
+std::string summaryText(const MapConvertSummary& summary, const MapConvertOptions& options) {
+  std::ostringstream out;
+  out << options.output.string() << ": " << summary.poles << " poles\n";
   if (summary.otherFeatures > 0)
-    std::cout << "features that are no points, left out: " << summary.otherFeatures << '\n';
+    out << "features that are no points, left out: " << summary.otherFeatures << '\n';
   if (summary.candidates > 0)
-    std::cout << "candidates, which are not on the map, left out: " << summary.candidates << '\n';
+    out << "candidates, which are not on the map, left out: " << summary.candidates << '\n';
+  return out.str();
 }
 
 }  // namespace polemcl::apps

@@ -1,16 +1,17 @@
 #pragma once
 /// \file MapConvertApp.h
-/// \brief `pole-map --convert`: pole maps from one kind of file to another.
+/// \brief `pole-map convert`: pole maps from one kind of file to another.
 
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "io/map/Datum.h"
 
 namespace polemcl::apps {
 
-/// \brief Files of `pole-map --convert`; their endings say what they are: `.polemap`, `.csv`,
+/// \brief Files of `pole-map convert`; their endings say what they are: `.polemap`, `.csv`,
 /// `.npz` (the first implementation's), `.geojson`.
 struct MapConvertOptions {
   std::filesystem::path input, output;
@@ -29,7 +30,7 @@ struct MapConvertSummary {
 ///         another datum.
 MapConvertSummary convertMap(const MapConvertOptions& options);
 
-/// \brief What the program tells of it.
-void print(const MapConvertSummary& summary, const MapConvertOptions& options);
+/// \brief What the program prints.
+std::string summaryText(const MapConvertSummary& summary, const MapConvertOptions& options);
 
 }  // namespace polemcl::apps

@@ -1,6 +1,6 @@
 #include "map/MapDiffApp.h"
 
-#include <ostream>
+#include <sstream>
 
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
@@ -42,7 +42,8 @@ MapDiff diffMapFiles(const MapDiffFiles& files, const MapDiffOptions& options) {
   return diff;
 }
 
-void print(const MapDiff& diff, std::ostream& out) {
+std::string summaryText(const MapDiff& diff) {
+  std::ostringstream out;
   for (const MapPole& pole : diff.appeared) out << "new       " << place(pole, " ") << '\n';
   for (const MapPole& pole : diff.vanished) out << "vanished  " << place(pole, " ") << '\n';
   for (const MapDiff::Pair& pair : diff.moved)
@@ -50,6 +51,7 @@ void print(const MapDiff& diff, std::ostream& out) {
         << io::fixed(pair.distance, 2) << " m)\n";
   out << diff.appeared.size() << " new, " << diff.vanished.size() << " vanished, "
       << diff.moved.size() << " moved, " << diff.same.size() << " the same\n";
+  return out.str();
 }
 
 }  // namespace polemcl::apps

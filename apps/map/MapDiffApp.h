@@ -1,16 +1,16 @@
 #pragma once
 /// \file MapDiffApp.h
-/// \brief `pole-map --diff`: what changed between two maps, listed and drawn.
+/// \brief `pole-map diff`: what changed between two maps, listed and drawn.
 
 #include <filesystem>
-#include <iosfwd>
 #include <optional>
+#include <string>
 
 #include "core/mapping/MapDiff.h"
 
 namespace polemcl::apps {
 
-/// \brief Files of `pole-map --diff`.
+/// \brief Files of `pole-map diff`.
 struct MapDiffFiles {
   std::filesystem::path before, after;         ///< `.polemap`
   std::optional<std::filesystem::path> csv;    ///< the changes as a table, when given
@@ -26,6 +26,6 @@ struct MapDiffFiles {
 MapDiff diffMapFiles(const MapDiffFiles& files, const MapDiffOptions& options);
 
 /// \brief One line a change, then the counts.
-void print(const MapDiff& diff, std::ostream& out);
+std::string summaryText(const MapDiff& diff);
 
 }  // namespace polemcl::apps

@@ -3,15 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iostream>
+#include <sstream>
 
 #include "cli/Version.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
-#include "map/MappingSession.h"
-#include "report/scene/MapScene.h"
 
 namespace polemcl::apps {
 namespace {
@@ -59,13 +56,12 @@ void requireNearMap(const std::vector<StampedPose2D>& path, const LandmarkMap& m
 }
 
 std::map<std::string, std::string> updateFacts(std::map<std::string, std::string> info,
-                                               const MapUpdateJob& options,
-                                               const Settings& settings) {
+                                               const MapUpdateJob& job, const Settings& settings) {
   std::string& updates = info["updates"];
-  for (const auto& input : options.inputs)
+  for (const auto& input : job.inputs)
     updates += (updates.empty() ? "" : " ") + input.filename().string();
-  for (const auto& input : options.inputs) info["f_map." + input.stem().string()] = io::fixed(1, 6);
-  if (options.datum) io::setDatum(info, *options.datum, options.map.string() + ": ");
+  for (const auto& input : job.inputs) info["f_map." + input.stem().string()] = io::fixed(1, 6);
+  if (job.datum) io::setDatum(info, *job.datum, job.map.string() + ": ");
   info["program"] = std::string("pole-map ") + version();
   info["build"] = buildIdentity();
   info["config"] = settingsText(settings);
@@ -74,81 +70,55 @@ std::map<std::string, std::string> updateFacts(std::map<std::string, std::string
 
 }  // namespace
 
-void MapUpdateJob::validate() const {
-  if (inputs.empty()) throw Error("--input: at least one rawlog is needed");
-  if (inputs.size() != truths.size())
-    throw Error("--truth: one file per --input is needed, " + std::to_string(inputs.size()) +
-                ", not " + std::to_string(truths.size()));
-  if (!dates.empty() && dates.size() != inputs.size())
-    throw Error("--date: one day per --input is needed, or none; " + std::to_string(inputs.size()) +
-                ", not " + std::to_string(dates.size()));
-  if (output.extension() != ".polemap")
-    throw Error("--output " + output.string() + ": the name must end in .polemap");
-}
-
-MapUpdateSummary updateMapFile(const MapUpdateJob& options, const Settings& settings,
+MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings,
                                const ScanProgress& progress) {
-  options.validate();
-  const io::PoleMapData before = io::readPoleMap(options.map);
-  const auto info = updateFacts(before.info, options, settings);
+  job.validate();
+  const io::PoleMapData before = io::readPoleMap(job.map);
+  const auto info = updateFacts(before.info, job, settings);
   MapUpdateSummary summary;
   summary.before = before.poles.size();
   LandmarkMap map = io::landmarkMap(before);
-  report::MapView view;
-  for (std::size_t i = 0; i < options.inputs.size(); ++i) {
-    MappingSession survey = loadMappingSession(options.inputs[i], options.truths[i], settings,
-                                               options.allowTruncated, progress);
-    if (survey.scans.empty())
-      throw Error(options.inputs[i].string() + ": no usable scan, " +
-                  std::to_string(survey.emptyScans) + " without a valid point");
-    requireNearMap(survey.path, map, options.inputs[i], options.map);
-    if (!options.dates.empty()) setDate(survey.scans, options.dates[i]);
-    requireDateOrder(survey.scans, map, options.inputs[i], options.map);
+  std::vector<StampedPose2D> path;
+  for (std::size_t i = 0; i < job.inputs.size(); ++i) {
+    MappingSession session =
+        loadMappingSession(job.inputs[i], job.truths[i], settings, job.allowTruncated, progress);
+    if (session.scans.empty())
+      throw Error(job.inputs[i].string() + ": no usable scan, " +
+                  std::to_string(session.emptyScans) + " without a valid point");
+    requireNearMap(session.path, map, job.inputs[i], job.map);
+    if (!job.dates.empty()) setDate(session.scans, job.dates[i]);
+    requireDateOrder(session.scans, map, job.inputs[i], job.map);
     MapUpdateCounts counts;
-    map = updateMap(map, survey.scans, settings.map, settings.upkeep, &counts);
-    requireSamePlace(counts, options.inputs[i], options.map);
+    map = updateMap(map, session.scans, settings.map, settings.upkeep, &counts);
+    requireSamePlace(counts, job.inputs[i], job.map);
     summary.sessions.push_back(counts);
-    summary.emptyScans += survey.emptyScans;
-    summary.unmatched += survey.unmatched;
-    summary.invalidPoints += survey.invalidPoints;
-    summary.truncated += survey.truncated;
-    view.truth.insert(view.truth.end(), survey.path.begin(), survey.path.end());
+    summary.skipped.add(session);
+    path.insert(path.end(), session.path.begin(), session.path.end());
   }
   const io::PoleMapData after = io::mapData(map, info);
   summary.poles = after.poles.size();
   if (after.poles.empty())
-    throw Error(options.map.string() + ": no pole is left on the map; see [map_update]");
-  if (options.csv) io::writePoleCsv(*options.csv, after.poles, after.histories);
-  if (options.scene) {
-    view.title = options.output.filename().string();
-    view.poles = after.poles;
-    scene::save(*report::makeMapScene(view), *options.scene);
-  }
-  io::writePoleMap(options.output, after);
+    throw Error(job.map.string() + ": no pole is left on the map; see [map_update]");
+  writeViews(job, after, path);
+  io::writePoleMap(job.output, after);
   return summary;
 }
 
-void print(const MapUpdateSummary& summary, const MapUpdateJob& options) {
-  std::cout << options.output.string() << ": " << summary.poles << " poles, " << summary.before
-            << " before\n";
+std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job) {
+  std::ostringstream out;
+  out << job.output.string() << ": " << summary.poles << " poles, " << summary.before
+      << " before\n";
   for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
     const MapUpdateCounts& c = summary.sessions[i];
-    std::cout << options.inputs[i].string() << ": " << c.scans << " scans; of " << c.expectedOnMap
-              << " poles in view " << c.foundOnMap << " found; " << c.entered << " new, " << c.left
-              << " vanished, " << c.moved << " moved; " << c.candidates << " candidates\n";
+    out << job.inputs[i].string() << ": " << c.scans << " scans; of " << c.expectedOnMap
+        << " poles in view " << c.foundOnMap << " found; " << c.entered << " new, " << c.left
+        << " vanished, " << c.moved << " moved; " << c.candidates << " candidates\n";
     if (c.withoutFreeRange > 0)
-      std::cout << "scans without free ranges, in which nothing counts as missed: "
-                << c.withoutFreeRange << '\n';
+      out << "scans without free ranges, in which nothing counts as missed: " << c.withoutFreeRange
+          << '\n';
   }
-  if (summary.emptyScans > 0)
-    std::cout << "scans without a valid point, not used: " << summary.emptyScans << '\n';
-  if (summary.unmatched > 0)
-    std::cout << "scans without a true pose, not used: " << summary.unmatched << '\n';
-  if (summary.invalidPoints > 0)
-    std::cout << "invalid points dropped: " << summary.invalidPoints << '\n';
-  if (summary.truncated > 0)
-    std::cout << "inputs that ended too early: " << summary.truncated
-              << "; what could be read was used\n";
+  out << summary.skipped;
+  return out.str();
 }
 
 }  // namespace polemcl::apps

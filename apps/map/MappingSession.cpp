@@ -1,14 +1,33 @@
 #include "map/MappingSession.h"
 
+#include <ostream>
+
 #include "core/common/PoseInterpolation.h"
-#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
-#include "mrpt/rawlog/PoleSequence.h"
+#include "io/map/PolePositions.h"
+#include "report/scene/MapScene.h"
 
 namespace polemcl::apps {
-namespace {}  // namespace
+
+std::string MappingJob::wrongCounts() const {
+  const std::string files = std::to_string(inputs.size());
+  if (inputs.empty()) return "--input: at least one rawlog is needed";
+  if (inputs.size() != truths.size())
+    return "--truth: one file per --input is needed, " + files + ", not " +
+           std::to_string(truths.size());
+  if (!dates.empty() && dates.size() != inputs.size())
+    return "--date: one day per --input is needed, " + files + ", not " +
+           std::to_string(dates.size()) + "; or leave it out";
+  return {};
+}
+
+void MappingJob::validate() const {
+  if (const std::string wrong = wrongCounts(); !wrong.empty()) throw Error(wrong);
+  if (output.extension() != ".polemap")
+    throw Error("--output " + output.string() + ": the name must end in .polemap");
+}
 
 MappingSession loadMappingSession(const std::filesystem::path& input,
                                   const std::filesystem::path& truthFile, const Settings& settings,
@@ -19,30 +38,60 @@ MappingSession loadMappingSession(const std::filesystem::path& input,
     options.extraction.extraction.scanLine.minConfidence = settings.map.minConfidence;
   const PoleSequence sequence = readPoleSequence(input.string(), options, progress);
   const auto truth = io::planar(io::readTum(truthFile));
-  MappingSession survey;
+  MappingSession session;
   for (const auto& frame : sequence.frames) {
     if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
     const auto pose = poseAt(truth, frame.time, longestTruthGap);
     if (!pose) {
-      ++survey.unmatched;
+      ++session.unmatched;
       continue;
     }
-    survey.scans.push_back(
+    session.scans.push_back(
         {frame.time, *pose, frame.poles_robot, frame.visibilityRange, frame.pose_robot_sensor});
-    survey.path.push_back({frame.time, *pose});
+    session.path.push_back({frame.time, *pose});
   }
-  if (survey.unmatched > survey.scans.size())
+  if (session.unmatched > session.scans.size())
     throw Error(truthFile.string() + ": has a pose at the time of only " +
-                std::to_string(survey.scans.size()) + " of the " +
-                std::to_string(survey.scans.size() + survey.unmatched) + " scans of " +
+                std::to_string(session.scans.size()) + " of the " +
+                std::to_string(session.scans.size() + session.unmatched) + " scans of " +
                 input.string() + " (" + io::fixed(sequence.frames.front().time, 3) + " to " +
                 io::fixed(sequence.frames.back().time, 3) +
                 " s), at least half are needed; is it "
                 "the truth of this rawlog?");
-  survey.emptyScans = sequence.counts.emptyScans;
-  survey.invalidPoints = sequence.counts.invalidPoints;
-  survey.truncated = sequence.counts.truncated;
-  return survey;
+  session.emptyScans = sequence.counts.emptyScans;
+  session.invalidPoints = sequence.counts.invalidPoints;
+  session.truncated = sequence.counts.truncated;
+  return session;
+}
+
+void SkippedScans::add(const MappingSession& session) {
+  emptyScans += session.emptyScans;
+  unmatched += session.unmatched;
+  invalidPoints += session.invalidPoints;
+  truncated += session.truncated;
+}
+
+std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped) {
+  if (skipped.emptyScans > 0)
+    out << "scans without a valid point, not used: " << skipped.emptyScans << '\n';
+  if (skipped.unmatched > 0)
+    out << "scans without a true pose, not used: " << skipped.unmatched << '\n';
+  if (skipped.invalidPoints > 0) out << "invalid points dropped: " << skipped.invalidPoints << '\n';
+  if (skipped.truncated > 0)
+    out << "inputs that ended too early: " << skipped.truncated
+        << "; what could be read was used\n";
+  return out;
+}
+
+void writeViews(const MappingJob& job, const io::PoleMapData& map,
+                const std::vector<StampedPose2D>& path) {
+  if (job.csv) io::writePoleCsv(*job.csv, map.poles, map.histories);
+  if (!job.scene) return;
+  report::MapView view;
+  view.title = job.output.filename().string();
+  view.poles = map.poles;
+  view.truth = path;
+  scene::save(*report::makeMapScene(view), *job.scene);
 }
 
 void setDate(std::vector<SessionScan>& scans, const std::string& date) {

@@ -1,17 +1,38 @@
 #pragma once
 /// \file MappingSession.h
-/// \brief One rawlog at true poses, ready for mapping. Private to the library.
+/// \brief One rawlog at true poses, ready for mapping; what building and updating share.
 
 #include <filesystem>
-#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "cli/Settings.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "core/mapping/MapUpdater.h"
+#include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 #include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
+
+/// \brief Files of a job that maps sessions, as the command line names them.
+struct MappingJob {
+  std::vector<std::filesystem::path> inputs;   ///< rawlogs of scans or poles, one per session
+  std::vector<std::filesystem::path> truths;   ///< TUM, robot poses, one file per input
+  std::filesystem::path output;                ///< `.polemap`
+  std::optional<std::filesystem::path> scene;  ///< `.3Dscene` of map and paths, when given
+  std::optional<std::filesystem::path> csv;    ///< poles as a table, when given
+  bool allowTruncated = false;                 ///< use the readable part of damaged rawlogs
+  std::vector<std::string> dates = {};         ///< YYYY-MM-DD, one per input, or empty
+  std::optional<io::Datum> datum = {};         ///< of the truths: goes into the map's info
+
+  /// \brief What is wrong with the numbers of files and dates; empty when nothing is.
+  std::string wrongCounts() const;
+  /// \throws Error naming the option.
+  void validate() const;
+};
 
 /// \brief The scans of one drive that have a true pose and a point.
 struct MappingSession {
@@ -31,8 +52,23 @@ MappingSession loadMappingSession(const std::filesystem::path& input,
                                   const std::filesystem::path& truth, const Settings& settings,
                                   bool allowTruncated, const ScanProgress& progress);
 
+/// \brief Scans that were not used, summed over the sessions.
+struct SkippedScans {
+  std::size_t emptyScans = 0;     ///< without a valid point
+  std::size_t unmatched = 0;      ///< scans at whose time the truth says nothing
+  std::size_t invalidPoints = 0;  ///< dropped
+  std::size_t truncated = 0;      ///< inputs that ended too early, and that was allowed
+  void add(const MappingSession& session);
+};
+/// \brief A line for each count above 0.
+std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped);
+
+/// \brief Writes table and scene of a new map, when the job names them.
+void writeViews(const MappingJob& job, const io::PoleMapData& map,
+                const std::vector<StampedPose2D>& path);
+
 /// \brief The scans on another day: their times count from the first one.
-/// \param date YYYY-MM-DD. \throws Error when it is none.
+/// \param date YYYY-MM-DD. \throws Error when it is not a date.
 void setDate(std::vector<SessionScan>& scans, const std::string& date);
 
 }  // namespace polemcl::apps

@@ -52,7 +52,7 @@ drive mapping 0
 echo "2/4 The same street on another day"
 drive another_day 1
 echo "3/4 Building the map and localizing ten times"
-"$bin/pole-map" --quiet --config "$out/mapping.ini" --input "$out/mapping.rawlog" \
+"$bin/pole-map" build --quiet --config "$out/mapping.ini" --input "$out/mapping.rawlog" \
   --truth "$out/mapping.tum" --output "$out/map.polemap" --csv "$out/map.csv"
 "$bin/pole-localize" --quiet --config "$out/another_day.ini" --input "$out/another_day.rawlog" \
   --map "$out/map.polemap" --truth "$out/another_day.tum" --output "$out/runs" --runs 10 --seed 1

@@ -53,7 +53,7 @@ while [ "$world" -lt $((first + worlds)) ]; do
   drive "$world-map" "$world" 0 false
   drive "$world-forward" "$world" 1 false
   drive "$world-reverse" "$world" 1 true
-  "$bin/pole-map" --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
+  "$bin/pole-map" build --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
     --truth "$out/$world-map.tum" --output "$out/$world.polemap"
   localize "$world" forward
   localize "$world" reverse

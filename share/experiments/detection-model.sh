@@ -43,7 +43,7 @@ judge() {
     "$bin/pole-eval" repeatability --quiet --poles "$out/$name.rawlog" --truth "$out/$name.tum" \
       --json "$out/$name-repeated.json"
   done
-  "$bin/pole-map" --quiet --config "$out/$1-$2-0.ini" --input "$out/$1-$2-0.rawlog" \
+  "$bin/pole-map" build --quiet --config "$out/$1-$2-0.ini" --input "$out/$1-$2-0.rawlog" \
     --truth "$out/$1-$2-0.tum" --output "$out/$1-$2.polemap"
   "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/$1-$2-0_poles_gt.csv" \
     --map "$out/$1-$2.polemap" --json "$out/$1-$2-map.json" >/dev/null

@@ -94,7 +94,7 @@ simulated_drive() {
     evaluate_drive "$method"
     auc_all=null
     [ "$method" != native ] || auc_all=$(undecided_auc)
-    "$bin/pole-map" --quiet --config "$work/$method.ini" --input "$work/$method.rawlog" \
+    "$bin/pole-map" build --quiet --config "$work/$method.ini" --input "$work/$method.rawlog" \
       --truth "$work/scans.tum" --output "$work/$method.polemap" 2>"$work/$method.log" ||
       grep -q 'no pole' "$work/$method.log" || die "$(cat "$work/$method.log")"
     jq --argjson seed "$2" --argjson auc "$auc_all" \

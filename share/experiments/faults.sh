@@ -59,7 +59,7 @@ drive() {
 # map_of WORLD: the map of day 0, mapWORLD.polemap.
 map_of() {
   drive "map$1" "$1" 0 1
-  "$bin/pole-map" --quiet --config "$out/map$1.ini" --input "$out/map$1.rawlog" \
+  "$bin/pole-map" build --quiet --config "$out/map$1.ini" --input "$out/map$1.rawlog" \
     --truth "$out/map$1.tum" --output "$out/map$1.polemap"
 }
 

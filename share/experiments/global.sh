@@ -56,7 +56,7 @@ files=
 for city in $cities; do
   seed=${city%%:*}
   for day in 0 1; do drive "$seed" "$day" "${city#*:}"; done
-  "$bin/pole-map" --quiet --config "$out/$seed-0.ini" --input "$out/$seed-0.rawlog" \
+  "$bin/pole-map" build --quiet --config "$out/$seed-0.ini" --input "$out/$seed-0.rawlog" \
     --truth "$out/$seed-0.tum" --output "$out/$seed.polemap"
   "$bin/pole-eval" global --quiet --config "$out/$seed-1.ini" --map "$out/$seed.polemap" \
     --input "$out/$seed-1.rawlog" --truth "$out/$seed-1.tum" --trials "$trials" --seed "$seed" \

@@ -27,7 +27,7 @@ mkdir -p "$out"
 simulate_day "$settings" "$out" "$seed" 1500 0
 simulate_day "$settings" "$out" "$seed" 1500 1
 
-"$bin/pole-map" --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
+"$bin/pole-map" build --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
   --truth "$out/day0.tum" --output "$out/map.polemap" --csv "$out/map.csv"
 "$bin/pole-eval" map --quiet --one-to-one --radius 1.0 --truth "$out/poles_day0.csv" \
   --map "$out/map.polemap" --json "$out/map.json" >/dev/null

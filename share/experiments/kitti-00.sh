@@ -25,7 +25,7 @@ truth=$data/published/kitti_truth_00.npz
 [ -f "$truth" ] || die "no labelled poles in $truth"
 mkdir -p "$out"
 
-"$bin/pole-map" --quiet --convert "$truth" --output "$out/truth.csv"
+"$bin/pole-map" convert --quiet "$truth" --output "$out/truth.csv"
 
 # near TUM: the labelled poles within 20 m of the path.
 near() {
@@ -38,7 +38,7 @@ near() {
 # score DRIVE NAME CONFIG: one JSON object.
 score() {
   map=$out/$1-$2.polemap
-  "$bin/pole-map" --quiet --config "$3" --input "$out/$1.rawlog" --truth "$out/$1.tum" \
+  "$bin/pole-map" build --quiet --config "$3" --input "$out/$1.rawlog" --truth "$out/$1.tum" \
     --output "$map"
   "$bin/pole-eval" map --quiet --one-to-one --truth "$truth" --map "$map" \
     --json "$out/all.json" >/dev/null

@@ -36,7 +36,7 @@ mkdir -p "$out"
 # shellcheck disable=SC2086
 "$bin/pole-import" folder --quiet --input "$data" --output "$out/odd.rawlog" --every 2 --offset 1 \
   $odometry # options: several words
-"$bin/pole-map" --quiet --config "$config" --input "$out/even.rawlog" --truth "$out/even.tum" \
+"$bin/pole-map" build --quiet --config "$config" --input "$out/even.rawlog" --truth "$out/even.tum" \
   --output "$out/map.polemap" --csv "$out/map.csv"
 "$bin/pole-localize" --quiet --config "$config" --input "$out/odd.rawlog" \
   --map "$out/map.polemap" --truth "$out/odd.tum" --output "$out/runs" \

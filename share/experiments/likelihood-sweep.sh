@@ -31,7 +31,7 @@ for world in "$@"; do
   [ -f "$folder/map.polemap" ] && continue
   simulate_day "$top/config/hdl32e.ini" "$folder" "$world" "$length" 0
   simulate_day "$top/config/hdl32e.ini" "$folder" "$world" "$length" 1
-  "$bin/pole-map" --quiet --config "$folder/day0.ini" --input "$folder/day0.rawlog" \
+  "$bin/pole-map" build --quiet --config "$folder/day0.ini" --input "$folder/day0.rawlog" \
     --truth "$folder/day0.tum" --output "$folder/map.polemap"
 done
 "$top/share/experiments/kitti-split.sh" "$data" "$out/split" >/dev/null

@@ -56,7 +56,7 @@ run() {
   [ -f "$folder/even.rawlog" ] ||
     "$bin/pole-import" folder --quiet --input "$folder" --output "$folder/even.rawlog" --every 2
   # shellcheck disable=SC2086 # options: several words
-  "$bin/pole-map" --quiet --config "$top/config/$2" $poses_options \
+  "$bin/pole-map" build --quiet --config "$top/config/$2" $poses_options \
     --input "$folder/even.rawlog" --truth "$folder/even.tum" --output "$folder/$1.polemap"
   seed=1
   while [ "$seed" -le "$seeds" ]; do

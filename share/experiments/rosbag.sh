@@ -60,7 +60,7 @@ awk '{ $1 = sprintf("%.9f", $1 + 1.5e9); print }' "$out/direct.tum" >"$out/bag.t
 for way in direct bag; do
   "$bin/pole-extract" --quiet --config "$config" --input "$out/$way.rawlog" \
     --output "$out/$way-poles.rawlog" --csv "$out/$way.csv"
-  "$bin/pole-map" --config "$config" --input "$out/$way.rawlog" --truth "$out/$way.tum" \
+  "$bin/pole-map" build --config "$config" --input "$out/$way.rawlog" --truth "$out/$way.tum" \
     --output "$out/$way.polemap" --csv "$out/$way-map.csv"
 done
 # Without the times, which differ by 1.5e9 s, and the dates that come of them.

@@ -18,7 +18,7 @@ set_option "$out/street.ini" simulation detections "$top/share/models/hdl32e.jso
 for day in 0 1; do
   "$bin/pole-simulate" --quiet --config "$out/street.ini" --day $day --poles "$out/day$day.rawlog"
 done
-"$bin/pole-map" --quiet --config "$out/street.ini" --input "$out/day0.rawlog" \
+"$bin/pole-map" build --quiet --config "$out/street.ini" --input "$out/day0.rawlog" \
   --truth "$out/day0.tum" --output "$out/map.polemap" >/dev/null
 "$bin/pole-localize" --quiet --config "$out/street.ini" --input "$out/day1.rawlog" \
   --map "$out/map.polemap" --truth "$out/day1.tum" --output "$out/run" --seed 1 \

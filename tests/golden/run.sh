@@ -93,26 +93,26 @@ sessions = s1 s2
 END
 }
 
-map_build() { "$bin/pole-map" --quiet "$@"; }
+map_build() { "$bin/pole-map" build --quiet "$@"; }
 map_update() { # MAP OPTIONS...
   before=$1
   shift
-  "$bin/pole-map" --quiet --update "$before" "$@"
+  "$bin/pole-map" update --quiet --map "$before" "$@"
 }
 map_add() { # MAP OPTIONS...
   before=$1
   shift
-  "$bin/pole-map" --quiet --add "$before" "$@"
+  "$bin/pole-map" build --quiet --add "$before" "$@"
 }
 map_diff() { # A B OPTIONS...
   first=$1 second=$2
   shift 2
-  "$bin/pole-map" --quiet --diff "$first" "$second" "$@"
+  "$bin/pole-map" diff --quiet "$first" "$second" "$@"
 }
 map_convert() { # FROM TO OPTIONS...
   from=$1 to=$2
   shift 2
-  "$bin/pole-map" --quiet --convert "$from" --output "$to" "$@"
+  "$bin/pole-map" convert --quiet "$from" --output "$to" "$@"
 }
 
 # Here the names end.

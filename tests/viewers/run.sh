@@ -50,10 +50,10 @@ scenes() {
   drive "${1}_first" 0 "$2" "$3"
   drive "${1}_second" 1 "$2" "$3"
   for day in first second; do
-    "$bin/pole-map" --quiet --config "$folder/street.ini" --input "${at}_$day.rawlog" \
+    "$bin/pole-map" build --quiet --config "$folder/street.ini" --input "${at}_$day.rawlog" \
       --truth "${at}_$day.tum" --output "${at}_$day.polemap" --scene "${at}_map.3Dscene" >/dev/null
   done
-  "$bin/pole-map" --quiet --diff "${at}_first.polemap" "${at}_second.polemap" \
+  "$bin/pole-map" diff --quiet "${at}_first.polemap" "${at}_second.polemap" \
     --scene "${at}_diff.3Dscene" >/dev/null
   "$bin/pole-localize" --quiet --config "$folder/street.ini" --input "${at}_second.rawlog" \
     --map "${at}_first.polemap" --truth "${at}_second.tum" --output "${at}_runs" --scenes 200

@@ -4,6 +4,7 @@
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
+#include "map/MapBuildApp.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_app {
@@ -22,8 +23,8 @@ class MapApp : public StreetTest {
   }
   Outcome run(const std::vector<std::string>& inputs, const std::vector<std::string>& more = {},
               const std::string& ini = "") {
-    std::vector<std::string> arguments{"--config", ini.empty() ? config() : ini, "--output",
-                                       at("street.polemap")};
+    std::vector<std::string> arguments{"build", "--config", ini.empty() ? config() : ini,
+                                       "--output", at("street.polemap")};
     arguments.push_back("--input");
     for (const auto& name : inputs) arguments.push_back(at(name + ".rawlog"));
     arguments.push_back("--truth");
@@ -85,7 +86,7 @@ TEST_F(MapApp, ScansAndStoredPolesGiveTheSameMap) {
 
 TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {
   drive("in", 12);
-  MapOptions options;
+  MapBuildJob options;
   options.inputs = {folder / "in.rawlog"};
   options.truths = {folder / "in.tum"};
   options.output = folder / "street.polemap";
@@ -94,7 +95,7 @@ TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {
   const auto ignore = [](std::size_t, std::size_t) {};
   EXPECT_THROW(buildMap(options, settings, ignore), Error);
   settings.map.minConfidence = 0.3;
-  const MapSummary summary = buildMap(options, settings, ignore);
+  const MapBuildSummary summary = buildMap(options, settings, ignore);
   EXPECT_GE(summary.map.poles.size(), 8u);
 }
 
@@ -119,9 +120,11 @@ TEST_F(MapApp, TruthIsInterpolatedInTime) {
   std::vector<io::StampedPose3D> thin;
   for (std::size_t i = 0; i < truth.size(); i += 7) thin.push_back(truth[i]);
   io::writeTum(folder / "in.tum", thin);
-  MapOptions options{{folder / "in.rawlog"}, {folder / "in.tum"}, folder / "street.polemap",
-                     std::nullopt,           std::nullopt,        false};
-  const auto summary = buildMap(options, settings());
+  MapBuildJob job;
+  job.inputs = {folder / "in.rawlog"};
+  job.truths = {folder / "in.tum"};
+  job.output = folder / "street.polemap";
+  const auto summary = buildMap(job, settings());
   EXPECT_EQ(summary.scans, 8u);
   EXPECT_NEAR(summary.map.pathLength, 7, 1e-6);
 }
@@ -191,15 +194,20 @@ TEST_F(MapApp, RefusesMissingFilesAndOtherEndings) {
   drive("in", 2);
   fs::remove(folder / "in.tum");
   expectFailure(run({"in"}), {"in.tum"});
-  expectFailure(runProgram(mapMain, {"--config", config(), "--input", at("in.rawlog"), "--truth",
-                                     at("in.tum"), "--output", at("street.csv")}),
+  expectFailure(runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"),
+                                     "--truth", at("in.tum"), "--output", at("street.csv")}),
                 {"street.csv", ".polemap"});
 }
 
 TEST_F(MapApp, WrongUsage) {
-  expectUsageError(runProgram(mapMain, {}));
-  expectUsageError(runProgram(
-      mapMain, {"--config", "c", "--input", "a", "b", "--truth", "a", "--output", "m.polemap"}));
+  for (const std::vector<std::string>& none : {std::vector<std::string>(), {"--config", "c"}}) {
+    const Outcome outcome = runProgram(mapMain, none);
+    expectUsageError(outcome);
+    EXPECT_NE(outcome.err.find("needed: build, update, diff, convert"), std::string::npos)
+        << outcome.err;
+  }
+  expectUsageError(runProgram(mapMain, {"build", "--config", "c", "--input", "a", "b", "--truth",
+                                        "a", "--output", "m.polemap"}));
 }
 
 }  // namespace polemcl::test_map_app

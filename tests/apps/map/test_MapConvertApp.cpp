@@ -35,7 +35,7 @@ class MapConvertApp : public testing::Test {
   }
   Outcome convert(const std::string& from, const std::string& to,
                   const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"--convert", (folder / from).string(), "--output",
+    std::vector<std::string> arguments{"convert", (folder / from).string(), "--output",
                                        (folder / to).string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(mapMain, arguments);
@@ -109,9 +109,9 @@ TEST_F(MapConvertApp, RefusesWhatItCannotConvert) {
 }
 
 TEST_F(MapConvertApp, WrongUsage) {
-  expectUsageError(runProgram(mapMain, {"--convert", "a.csv"}));
-  expectUsageError(runProgram(mapMain, {"--convert", "a.csv", "--update", "b", "--output", "c"}));
-  expectUsageError(runProgram(mapMain, {"--convert", "a.csv", "--input", "b", "--output", "c"}));
+  expectUsageError(runProgram(mapMain, {"convert", "a.csv"}));
+  expectUsageError(runProgram(mapMain, {"convert", "--output", "c.csv"}));
+  expectUsageError(runProgram(mapMain, {"convert", "a.csv", "--output", "c", "--config", "b"}));
 }
 
 }  // namespace polemcl::test_map_convert_app

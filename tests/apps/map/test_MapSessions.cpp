@@ -40,8 +40,10 @@ class MapSessions : public StreetTest {
     fs::rename(folder / (name + "-scans.tum"), folder / (name + ".tum"));
   }
   Outcome map(const std::string& ini, const std::vector<std::string>& inputs,
-              const std::string& output, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"--config", at(ini), "--output", at(output), "--input"};
+              const std::string& output, const std::vector<std::string>& more = {},
+              const std::string& command = "build") {
+    std::vector<std::string> arguments{command,    "--config", at(ini),
+                                       "--output", at(output), "--input"};
     for (const auto& name : inputs) arguments.push_back(at(name + ".rawlog"));
     arguments.push_back("--truth");
     for (const auto& name : inputs) arguments.push_back(at(name + ".tum"));
@@ -123,13 +125,14 @@ TEST_F(MapSessions, SessionsThatDisagreeOnTheDatumAreRefused) {
   const std::vector<std::string> here{"--keep-scans", "--datum", "42.25,-83.5,-1"};
   ASSERT_EQ(map("all.ini", {"one"}, "m.polemap", here).code, 0);
   EXPECT_EQ(io::readPoleMap(folder / "m.polemap").info.at("datum"), "42.25,-83.5,-1");
-  for (const std::string option : {"--add", "--update"}) {
-    SCOPED_TRACE(option);
-    expectFailure(
-        map("all.ini", {"two"}, "n.polemap", {option, at("m.polemap"), "--datum", "42.25,-83.5,0"}),
-        {"m.polemap", "42.25,-83.5,-1", "42.25,-83.5,0"});
+  for (const auto& [command, option] :
+       {std::pair<std::string, std::string>("build", "--add"), {"update", "--map"}}) {
+    SCOPED_TRACE(command);
+    expectFailure(map("all.ini", {"two"}, "n.polemap",
+                      {option, at("m.polemap"), "--datum", "42.25,-83.5,0"}, command),
+                  {"m.polemap", "42.25,-83.5,-1", "42.25,-83.5,0"});
     EXPECT_FALSE(fs::exists(folder / "n.polemap"));
-    ASSERT_EQ(map("all.ini", {"two"}, "o.polemap", {option, at("m.polemap")}).code, 0);
+    ASSERT_EQ(map("all.ini", {"two"}, "o.polemap", {option, at("m.polemap")}, command).code, 0);
     EXPECT_EQ(io::readPoleMap(folder / "o.polemap").info.at("datum"), "42.25,-83.5,-1");
   }
   EXPECT_EQ(chunk("o.polemap", "SCAN"), "");  // an updated map is not what its scans say
@@ -137,8 +140,8 @@ TEST_F(MapSessions, SessionsThatDisagreeOnTheDatumAreRefused) {
 }
 
 TEST_F(MapSessions, WrongUsage) {
-  expectUsageError(map("all.ini", {"one"}, "m.polemap", {"--add", "a", "--update", "b"}));
-  expectUsageError(runProgram(mapMain, {"--add", "a.polemap"}));
+  expectUsageError(map("all.ini", {"one"}, "m.polemap", {"--add", "a", "--map", "b"}));
+  expectUsageError(runProgram(mapMain, {"build", "--add", "a.polemap"}));
 }
 
 }  // namespace polemcl::test_map_sessions

@@ -34,15 +34,16 @@ class MapUpdateApp : public StreetTest {
   }
   void mapYesterday() {
     drive("day0", yesterday);
-    const auto outcome = runProgram(
-        mapMain, {"--config", config(), "--input", at("day0.rawlog"), "--truth", at("day0.tum"),
-                  "--date", "2026-03-01", "--output", at("day0.polemap"), "--csv", at("m.csv")});
+    const auto outcome =
+        runProgram(mapMain, {"build", "--config", config(), "--input", at("day0.rawlog"), "--truth",
+                             at("day0.tum"), "--date", "2026-03-01", "--output", at("day0.polemap"),
+                             "--csv", at("m.csv")});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
   }
   Outcome update(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{
-        "--config",        config(),  "--update",     at("day0.polemap"), "--input",
-        at("day1.rawlog"), "--truth", at("day1.tum"), "--output",         at("day1.polemap")};
+    std::vector<std::string> arguments{"update",           "--config", config(),          "--map",
+                                       at("day0.polemap"), "--input",  at("day1.rawlog"), "--truth",
+                                       at("day1.tum"),     "--output", at("day1.polemap")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(mapMain, arguments);
   }
@@ -93,7 +94,7 @@ TEST_F(MapUpdateApp, ListsAndDrawsWhatChanged) {
   drive("day1", today);
   ASSERT_EQ(update().code, 0);
   const auto outcome =
-      runProgram(mapMain, {"--diff", at("day0.polemap"), at("day1.polemap"), "--png", at("d.png"),
+      runProgram(mapMain, {"diff", at("day0.polemap"), at("day1.polemap"), "--png", at("d.png"),
                            "--scene", at("d.3Dscene"), "--csv", at("d.csv")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("1 vanished, 1 moved"), std::string::npos) << outcome.out;
@@ -140,24 +141,26 @@ TEST_F(MapUpdateApp, RefusesBadFilesAndDates) {
   expectFailure(update(), {"day0.polemap"});
   mapYesterday();
   expectFailure(update({"--date", "2026-02-30"}), {"2026-02-30", "YYYY-MM-DD"});
-  expectFailure(runProgram(mapMain, {"--diff", at("day0.polemap"), at("no.polemap")}),
+  expectFailure(runProgram(mapMain, {"diff", at("day0.polemap"), at("no.polemap")}),
                 {"no.polemap"});
 }
 
 TEST_F(MapUpdateApp, WrongUsage) {
-  expectUsageError(runProgram(mapMain, {"--diff", "a.polemap"}));
-  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--update", "c"}));
-  expectUsageError(runProgram(mapMain, {"--png", "a.png"}));
-  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--set", "map_update.moved_m=1"}));
-  expectUsageError(runProgram(mapMain, {"--diff", "a", "b", "--csv", "c", "--png", "./c"}));
-  expectUsageError(
-      runProgram(mapMain, {"--convert", "a.csv", "--output", "b.csv", "--config", "c"}));
-  expectUsageError(runProgram(mapMain, {"--config", "c", "--update", "m", "--input", "a", "--truth",
-                                        "a", "--output", "m.polemap", "--keep-scans"}));
-  expectUsageError(
-      runProgram(mapMain, {"--config", "c", "--update", "m", "--input", "a", "--truth", "a"}));
-  expectUsageError(runProgram(mapMain, {"--config", "c", "--input", "a", "--truth", "a", "--date",
-                                        "2026-03-01", "2026-03-02", "--output", "m.polemap"}));
+  const std::vector<std::string> right{"update", "--config", "c", "--map",    "m",        "--input",
+                                       "a",      "--truth",  "a", "--output", "m.polemap"};
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--keep-scans"},
+                                               {"--add", "a"},
+                                               {"--date", "d", "e"},
+                                               {"--csv", "m.polemap"}}) {
+    SCOPED_TRACE(more.front());
+    auto arguments = right;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expectUsageError(runProgram(mapMain, arguments));
+  }
+  expectUsageError(runProgram(mapMain, {right.begin(), right.end() - 2}));
+  expectUsageError(runProgram(mapMain, {"diff", "a.polemap"}));
+  expectUsageError(runProgram(mapMain, {"diff", "a", "b", "--set", "map_update.moved_m=1"}));
+  expectUsageError(runProgram(mapMain, {"diff", "a", "b", "--csv", "c", "--png", "./c"}));
 }
 
 }  // namespace polemcl::test_map_update_app

@@ -73,11 +73,12 @@ TEST_P(SensorModels, ServesEveryProgram) {
   run("pole-simulate", simulateMain, {"--config", c, "--output", at("s")});
   run("pole-import", importMain, {"folder", "--input", at("s"), "--output", scans});
   run("pole-extract", extractMain, {"--config", c, "--input", scans, "--output", poles});
-  run("pole-map", mapMain, {"--config", c, "--input", scans, "--truth", truth, "--output", map});
-  run("pole-map --update", mapMain,
-      {"--config", c, "--update", map, "--input", poles, "--truth", truth, "--output",
+  run("pole-map build", mapMain,
+      {"build", "--config", c, "--input", scans, "--truth", truth, "--output", map});
+  run("pole-map update", mapMain,
+      {"update", "--config", c, "--map", map, "--input", poles, "--truth", truth, "--output",
        at("m2.polemap")});
-  run("pole-map --diff", mapMain, {"--config", c, "--diff", map, at("m2.polemap")});
+  run("pole-map diff", mapMain, {"diff", "--config", c, map, at("m2.polemap")});
   run("pole-localize", localizeMain,
       {"--config", c, "--input", scans, "--map", map, "--truth", truth, "--output", at("out")});
   run("pole-eval rotation", evalMain,

@@ -1,0 +1,148 @@
+#include "map/MapBuildApp.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "cli/Version.h"
+#include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
+
+namespace polemcl::apps {
+namespace {
+
+/// The sessions before; empty unless `add` is given.
+MapAccumulator accumulator(const MapBuildJob& job, const Settings& settings) {
+  if (!job.add) return {settings.map, settings.upkeep};
+  auto scans = io::readMapScans(*job.add);
+  if (!scans)
+    throw Error(job.add->string() +
+                ": keeps no scans, so none can be added; build it with --keep-scans");
+  try {
+    return {settings.map, settings.upkeep, std::move(*scans)};
+  } catch (const Error& error) {
+    throw Error(job.add->string() + ": " + error.what());
+  }
+}
+
+/// The job's datum, or that of the map that is added to: both must be the same.
+std::optional<io::Datum> datumFor(const MapBuildJob& job) {
+  if (!job.add) return job.datum;
+  const std::string where = job.add->string() + ": ";
+  auto info = io::readPoleMap(*job.add).info;
+  if (job.datum) io::setDatum(info, *job.datum, where);
+  return io::datumOf(info, where);
+}
+
+void addDrive(const MapBuildJob& job, std::size_t drive, MappingSession found,
+              MapAccumulator& sessions, MapBuildSummary& summary) {
+  if (!job.dates.empty()) setDate(found.scans, job.dates[drive]);
+  sessions.add(job.inputs[drive].filename().string(), std::move(found.scans));
+  summary.skipped.add(found);
+}
+
+void countSessions(const AddedSessions& added, MapBuildSummary& summary) {
+  for (const AddedSession& session : added.sessions) {
+    summary.sessions.push_back(
+        {session.name, session.scans.size(), session.usedCount(), session.usedShare()});
+    summary.visited += session.scans.size();
+    summary.scans += session.usedCount();
+  }
+}
+
+std::vector<StampedPose2D> pathOf(const AddedSessions& added) {
+  std::vector<StampedPose2D> path;
+  for (const AddedSession& session : added.sessions)
+    for (const SessionScan& scan : session.scans) path.push_back({scan.time, scan.pose_map_robot});
+  return path;
+}
+
+std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& options) {
+  const auto& map = summary.map;
+  const std::size_t steps = summary.visited - std::min(summary.visited, summary.sessions.size());
+  const double spacing = steps > 0 ? map.pathLength / static_cast<double>(steps) : 0;
+  return "no pole found: " + std::to_string(summary.scans) + " scans " + io::fixed(spacing, 2) +
+         " m apart on average; sections of section_length_m = " +
+         io::significant(options.sectionLength, 6) + ", " + std::to_string(map.occupiedSections) +
+         " of " + std::to_string(map.sections) + " with a scan; " + std::to_string(map.detections) +
+         " detections in " + std::to_string(map.clusters) + " places, the best with " +
+         std::to_string(map.bestCount) +
+         (options.counting == PoleCounting::members
+              ? " detections, min_count = " + std::to_string(options.minCount) + " are needed"
+              : " sections of one run, min_count = " + std::to_string(options.minCount) +
+                    " are needed, max_gap = " + std::to_string(options.maxGap)) +
+         (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]");
+}
+
+/// `f_map.NAME` of each session; of equal names the second is `f_map.NAME.2`.
+void addShares(const MapBuildSummary& summary, std::map<std::string, std::string>& info) {
+  for (const MapBuildSummary::Session& session : summary.sessions) {
+    const std::string key = "f_map." + std::filesystem::path(session.name).stem().string();
+    std::string unique = key;
+    for (int n = 2; info.count(unique) > 0; ++n) unique = key + '.' + std::to_string(n);
+    info[unique] = io::fixed(session.share, 6);
+  }
+}
+
+std::map<std::string, std::string> facts(const Settings& settings, const MapBuildSummary& summary,
+                                         const std::optional<io::Datum>& datum) {
+  std::string names;
+  for (const MapBuildSummary::Session& session : summary.sessions)
+    names += (names.empty() ? "" : " ") + session.name;
+  std::map<std::string, std::string> info{
+      {"program", std::string("pole-map ") + version()},
+      {"build", buildIdentity()},
+      {"inputs", names},
+      {"scans", std::to_string(summary.scans)},
+      {"path_length_m", io::fixed(summary.map.pathLength, 3)},
+      {"sections", std::to_string(summary.map.sections)},
+      {"occupied_sections", std::to_string(summary.map.occupiedSections)},
+      {"detections", std::to_string(summary.map.detections)},
+      {"config", settingsText(settings)}};
+  addShares(summary, info);
+  if (datum) info[io::kDatumKey] = io::datumText(*datum);
+  return info;
+}
+
+}  // namespace
+
+MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
+                         const ScanProgress& progress) {
+  job.validate();
+  MapBuildSummary summary;
+  const auto datum = datumFor(job);
+  MapAccumulator sessions = accumulator(job, settings);
+  for (std::size_t i = 0; i < job.inputs.size(); ++i)
+    addDrive(
+        job, i,
+        loadMappingSession(job.inputs[i], job.truths[i], settings, job.allowTruncated, progress),
+        sessions, summary);
+  countSessions(sessions.added(), summary);
+  if (summary.scans == 0)
+    throw Error(job.inputs.front().string() + ": no usable scan, " +
+                std::to_string(summary.skipped.emptyScans) + " without a valid point");
+  summary.map = sessions.build();
+  if (summary.map.poles.empty()) throw Error(noPoles(summary, settings.map));
+
+  const io::PoleMapData map =
+      io::mapData(sessions.withHistories(summary.map.poles), facts(settings, summary, datum));
+  writeViews(job, map, pathOf(sessions.added()));
+  io::writePoleMap(job.output, map, job.keepScans || job.add ? &sessions.added() : nullptr);
+  return summary;
+}
+
+std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) {
+  std::ostringstream out;
+  out << job.output.string() << ": " << summary.map.poles.size() << " poles from " << summary.scans
+      << " scans over " << io::fixed(summary.map.pathLength, 1) << " m\n"
+      << "sections: " << summary.map.occupiedSections << " of " << summary.map.sections
+      << " with a scan; detections " << summary.map.detections << " in " << summary.map.clusters
+      << " places\n";
+  if (summary.sessions.size() > 1)
+    for (const MapBuildSummary::Session& session : summary.sessions)
+      out << session.name << ": " << session.used << " of " << session.scans
+          << " scans used, f_map " << io::fixed(session.share, 4) << '\n';
+  out << summary.skipped;
+  return out.str();
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,52 @@
+#pragma once
+/// \file MapBuildApp.h
+/// \brief `pole-map build`: scans or poles at true poses -> a pole map.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mapping/MapAccumulator.h"
+#include "map/MappingSession.h"
+
+namespace polemcl::apps {
+
+/// \brief Files of `pole-map build`.
+struct MapBuildJob : MappingJob {
+  /// `.polemap` that keeps its scans: the inputs are sessions after those it was made from.
+  std::optional<std::filesystem::path> add = {};
+  bool keepScans = false;  ///< in the map, for `add`; always when `add` is given
+};
+
+/// \brief What mapping did, summed over the inputs.
+struct MapBuildSummary {
+  std::size_t scans = 0;    ///< used
+  std::size_t visited = 0;  ///< scans at true poses, used or not
+  SkippedScans skipped;
+  PoleMapResult map;
+  /// \brief How much of a session is in the map.
+  struct Session {
+    std::string name;                 ///< of the rawlog
+    std::size_t scans = 0, used = 0;  ///< at true poses; of these
+    double share = 0;                 ///< used / scans, `f_map`
+  };
+  std::vector<Session> sessions;  ///< in their order, those of `add` first
+};
+
+/// \brief Builds the map, with a history of each pole for later updates, and writes the files of
+/// the job. The inputs are sessions, in their order: see MapAccumulator for which scans are used.
+/// The map's info holds `f_map.NAME` for each, NAME the rawlog's without its ending. The truth is
+/// interpolated at the time of each scan, not across gaps of more than 2 s.
+/// \param progress Of the current input; may be empty.
+/// \throws Error as readPoleSequence() and readTum(); when the truth covers less than half of the
+///         scans of an input; when no scan is usable; when no pole was found (names the section
+///         length, the scan spacing and the counts); when `add` keeps no scans, or ones chosen by
+///         another `unvisited_m`, or has another datum.
+MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
+                         const ScanProgress& progress = {});
+
+/// \brief What the program prints.
+std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job);
+
+}  // namespace polemcl::apps
