@@ -87,7 +87,7 @@ void printOpen(const BatchPlan& plan, const std::vector<const BatchTask*>& open,
             << std::endl;
 }
 
-/// Tasks take their settings from files that the plan's keys stand for.
+/// Tasks read their settings from frozen files, on which the keys of the plan depend.
 void requireFrozen(const BatchFolder& folder, const BatchPlan& plan) {
   for (const auto& [name, sum] : plan.sums) {
     std::ifstream stream(folder.path() / name, std::ios::binary);

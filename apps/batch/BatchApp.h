@@ -1,6 +1,6 @@
 #pragma once
 /// \file BatchApp.h
-/// \brief `pole-batch`: sessions x settings x runs, from the datasets to the report.
+/// \brief `pole-batch`: sessions x configurations x runs, from the datasets to the report.
 
 #include <filesystem>
 #include <string>

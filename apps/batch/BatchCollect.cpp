@@ -58,18 +58,18 @@ std::string settingsShown(const std::string& ini) {
   return shown;
 }
 
-std::string protocolOf(const BatchConfiguration& setting) {
-  const auto& maps = setting.mapSessions;
+std::string protocolOf(const BatchConfiguration& configuration) {
+  const auto& maps = configuration.mapSessions;
   const std::string sessions =
       maps.size() == 1 ? "session " + maps.front() : std::to_string(maps.size()) + " sessions";
-  if (setting.protocol == MapProtocol::each)
-    return setting.sessions.empty()
+  if (configuration.protocol == MapProtocol::each)
+    return configuration.sessions.empty()
                ? "A map of each session"
                : "A map of each session, which is localized in it (its own data is in it)";
-  if (setting.sessions.empty()) return "One map of " + sessions;
-  if (setting.map == MapTime::finished) {
+  if (configuration.sessions.empty()) return "One map of " + sessions;
+  if (configuration.map == MapTime::finished) {
     const bool own = std::any_of(maps.begin(), maps.end(), [&](const std::string& name) {
-      const auto& s = setting.sessions;
+      const auto& s = configuration.sessions;
       return std::find(s.begin(), s.end(), name) != s.end();
     });
     return "One map of " + sessions + " for all" +
@@ -77,7 +77,7 @@ std::string protocolOf(const BatchConfiguration& setting) {
                 : "; no session is localized in its own data");
   }
   if (maps.size() == 1) return "One map of " + sessions + ", never changed; later sessions in it";
-  return setting.protocol == MapProtocol::upkeep
+  return configuration.protocol == MapProtocol::upkeep
              ? "Each session in the map as earlier ones left it, kept up session by session"
              : "Each session in one map of all earlier ones";
 }
@@ -98,7 +98,7 @@ class Collector {
 
   report::BatchResults collect() {
     addFacts();
-    for (const auto& cell : m_plan.cells) addCell(cell);
+    for (const auto& experiment : m_plan.experiments) addExperiment(experiment);
     for (const auto& [task, reason] : m_failures)
       m_results.failures.push_back({task, reason, "logs/" + task + ".log"});
     return std::move(m_results);
@@ -113,10 +113,11 @@ class Collector {
       m_results.published = report::readPublishedSessions(m_spec.publishedSessions);
     m_results.versions = {std::string(version()) + " (build " + buildIdentity() + ")",
                           mrpt::system::MRPT_getVersion(), "GCC " __VERSION__};
-    for (const auto& setting : m_spec.settings) {
-      const fs::path config = m_folder.path() / "settings" / (setting.name + ".ini");
-      m_results.settings.push_back(
-          {setting.name, setting.title, protocolOf(setting), settingsShown(contentOf(config))});
+    for (const auto& configuration : m_spec.configurations) {
+      const fs::path config = m_folder.path() / "settings" / (configuration.name + ".ini");
+      m_results.configurations.push_back({configuration.name, configuration.title,
+                                          protocolOf(configuration),
+                                          settingsShown(contentOf(config))});
     }
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;
@@ -133,8 +134,8 @@ class Collector {
   }
 
   bool isUsed(const std::string& session) const {
-    return std::any_of(m_plan.cells.begin(), m_plan.cells.end(),
-                       [&](const Experiment& cell) { return cell.session == session; });
+    return std::any_of(m_plan.experiments.begin(), m_plan.experiments.end(),
+                       [&](const Experiment& experiment) { return experiment.session == session; });
   }
 
   bool isDone(const std::string& task) const {
@@ -175,31 +176,31 @@ class Collector {
                                     [&](const auto& entry) { return entry.name == session; });
     return static_cast<std::size_t>(found - all.begin());
   }
-  std::size_t settingIndex(const std::string& name) const {
-    const auto& all = m_results.settings;
+  std::size_t configurationIndex(const std::string& name) const {
+    const auto& all = m_results.configurations;
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; });
     return static_cast<std::size_t>(found - all.begin());
   }
 
   /// Share of a session's scans that its map used, as pole-map noted it.
-  double mapShare(const Experiment& cell) {
-    if (!isDone(cell.ownMap)) return noFigure;
-    const auto& info = mapOf(cell.ownMap).info;
-    const auto share = info.find("f_map." + cell.session);
+  double mapShare(const Experiment& experiment) {
+    if (!isDone(experiment.ownMap)) return noFigure;
+    const auto& info = mapOf(experiment.ownMap).info;
+    const auto share = info.find("f_map." + experiment.session);
     if (share == info.end()) return noFigure;
     return io::parseNumber(share->second).value_or(noFigure);
   }
 
   /// Scores of the map that the session completes; none when there are none.
-  std::optional<report::MapScores> scoresOf(const Experiment& cell) const {
-    if (!isDone(cell.score)) return {};
+  std::optional<report::MapScores> scoresOf(const Experiment& experiment) const {
+    if (!isDone(experiment.score)) return {};
     report::MapScores scores;
-    const std::string& truth = m_spec.session(cell.session).truthMap;
+    const std::string& truth = m_spec.session(experiment.session).truthMap;
     scores.truth = truth == truthFromLabels ? truth : fs::path(truth).filename().string();
     MapScore* const all[] = {&scores.near, &scores.oneToOne, &scores.oneToOneHalf};
     for (std::size_t i = 0; i < std::size(scoreFiles); ++i) {
-      const Json json = readResultJson(m_folder.work(cell.score) / scoreFiles[i]);
+      const Json json = readResultJson(m_folder.work(experiment.score) / scoreFiles[i]);
       json.at("precision").get_to(all[i]->precision);
       json.at("recall").get_to(all[i]->recall);
       json.at("f1").get_to(all[i]->f1);
@@ -210,31 +211,33 @@ class Collector {
     return scores;
   }
 
-  void addCell(const Experiment& cell) {
+  void addExperiment(const Experiment& experiment) {
     report::SessionResult result;
-    result.setting = settingIndex(cell.setting);
-    result.session = indexOf(cell.session);
-    result.mapShare = mapShare(cell);
-    result.score = scoresOf(cell);
-    if (isDone(cell.map)) {
-      const auto& map = mapOf(cell.map);
+    result.configuration = configurationIndex(experiment.configuration);
+    result.session = indexOf(experiment.session);
+    result.mapShare = mapShare(experiment);
+    result.score = scoresOf(experiment);
+    if (isDone(experiment.map)) {
+      const auto& map = mapOf(experiment.map);
       result.mapPoles = map.poles.size();
       for (const auto& pole : map.poles) result.plots.mapPoles.push_back({pole.x, pole.y});
     }
-    if (const auto* truth = truthOf(cell.session)) result.plots.truth = report::thinPath(*truth);
-    for (std::size_t i = 0; i < cell.runs.size(); ++i)
-      result.runs.push_back(readRun(cell, i, result));
+    if (const auto* truth = truthOf(experiment.session))
+      result.plots.truth = report::thinPath(*truth);
+    for (std::size_t i = 0; i < experiment.runs.size(); ++i)
+      result.runs.push_back(readRun(experiment, i, result));
     m_results.results.push_back(std::move(result));
   }
 
-  report::BatchRun readRun(const Experiment& cell, std::size_t i, report::SessionResult& result) {
+  report::BatchRun readRun(const Experiment& experiment, std::size_t i,
+                           report::SessionResult& result) {
     report::BatchRun run;
     run.run = i;
-    run.seed = cell.seeds[i];
-    run.failure = failureOf(cell.runs[i]);
-    if (run.failure.empty() && !truthOf(cell.session)) run.failure = "no true poses";
+    run.seed = experiment.seeds[i];
+    run.failure = failureOf(experiment.runs[i]);
+    if (run.failure.empty() && !truthOf(experiment.session)) run.failure = "no true poses";
     if (!run.failure.empty()) return run;
-    const fs::path out = m_folder.work(cell.runs[i]) / "out";
+    const fs::path out = m_folder.work(experiment.runs[i]) / "out";
     const Json summary = readResultJson(out / "summary.json");
     auto& session = m_results.sessions[result.session];
     session.scans = summary.at("scans");
@@ -242,7 +245,7 @@ class Collector {
     const Json& health = summary.at("runs").at(0).at("health");
     run.health = healthOf(health);
     if (health.at("first_pose_scan").is_null()) return run;  // it never knew where it was
-    judge(out / "run_00.tum", *truthOf(cell.session), run, result.plots);
+    judge(out / "run_00.tum", *truthOf(experiment.session), run, result.plots);
     return run;
   }
 

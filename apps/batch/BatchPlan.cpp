@@ -34,7 +34,7 @@ std::string mapConfidence(const Settings& settings) {
   return map > 0 && map != native ? io::significant(map, 9) : "";
 }
 
-/// What the extraction depends on: settings with the same text share their poles.
+/// What the extraction depends on: configurations with the same text share their poles.
 std::string extractionText(Settings settings) {
   ConfigWriter writer;
   bind(writer, settings.sensor);
@@ -56,16 +56,16 @@ class Planner {
 
   BatchPlan plan() {
     requireInputs();
-    for (const auto& setting : m_spec.settings) freeze(setting);
+    for (const auto& configuration : m_spec.configurations) freeze(configuration);
     for (const auto& session : m_spec.sessions)
       if (isUsed(session.name)) addPoles(session);
     for (const auto& session : m_spec.sessions)
       if (session.truthMap == truthFromLabels && isScored(session)) addTruth(session);
-    for (const auto& setting : m_spec.settings) {
-      addMaps(setting);
+    for (const auto& configuration : m_spec.configurations) {
+      addMaps(configuration);
       for (const auto& session : m_spec.sessions)
-        if (isScored(setting, session)) addScore(setting, session);
-      addCells(setting);
+        if (isScored(configuration, session)) addScore(configuration, session);
+      addExperiments(configuration);
     }
     for (const auto& [name, content] : m_plan.files) m_plan.sums[name] = mrpt::system::md5(content);
     setKeys();
@@ -74,21 +74,22 @@ class Planner {
 
  private:
   bool isUsed(const std::string& session) const {
-    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(), [&](const auto& setting) {
-      return has(setting.sessions, session) || has(setting.mapSessions, session);
-    });
+    return std::any_of(
+        m_spec.configurations.begin(), m_spec.configurations.end(), [&](const auto& configuration) {
+          return has(configuration.sessions, session) || has(configuration.mapSessions, session);
+        });
   }
 
-  /// Whether a session completes a map of the setting, and its true poles are known.
-  static bool isScored(const BatchConfiguration& setting, const BatchSession& session) {
-    const auto& names = setting.mapSessions;
+  /// Whether a session completes a map of the configuration, and its true poles are known.
+  static bool isScored(const BatchConfiguration& configuration, const BatchSession& session) {
+    const auto& names = configuration.mapSessions;
     return !session.truthMap.empty() &&
-           (setting.protocol == MapProtocol::each ? has(names, session.name)
-                                                  : names.back() == session.name);
+           (configuration.protocol == MapProtocol::each ? has(names, session.name)
+                                                        : names.back() == session.name);
   }
   bool isScored(const BatchSession& session) const {
-    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(),
-                       [&](const auto& setting) { return isScored(setting, session); });
+    return std::any_of(m_spec.configurations.begin(), m_spec.configurations.end(),
+                       [&](const auto& configuration) { return isScored(configuration, session); });
   }
 
   /// What is wrong with a session's input; empty when nothing is.
@@ -141,12 +142,12 @@ class Planner {
     return "../../" + name;
   }
 
-  void freeze(const BatchConfiguration& setting) {
-    const Settings settings = loadSettings(setting.config, setting.set);
-    const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), setting.name);
-    m_group[setting.name] = group->second;
-    if (isNew) m_groups.push_back({setting.name, mapConfidence(settings)});
-    m_plan.files["settings/" + setting.name + ".ini"] = settingsText(settings);
+  void freeze(const BatchConfiguration& configuration) {
+    const Settings settings = loadSettings(configuration.config, configuration.set);
+    const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), configuration.name);
+    m_group[configuration.name] = group->second;
+    if (isNew) m_groups.push_back({configuration.name, mapConfidence(settings)});
+    m_plan.files["settings/" + configuration.name + ".ini"] = settingsText(settings);
   }
 
   void addPoles(const BatchSession& session) {
@@ -218,24 +219,24 @@ class Planner {
     }
   }
 
-  /// Stored and simulated poles are those of all settings.
+  /// Stored and simulated poles are those of all configurations.
   static bool hasGroups(const BatchSession& session) {
     return session.source != "simulated" && session.source != "poles";
   }
 
   static std::string truthId(const BatchSession& session) { return "truth." + session.name; }
-  static std::string scoreId(const BatchConfiguration& setting, const std::string& session) {
-    return "score." + setting.name + "." + session;
+  static std::string scoreId(const BatchConfiguration& configuration, const std::string& session) {
+    return "score." + configuration.name + "." + session;
   }
-  static std::string mapId(const BatchConfiguration& setting, const std::string& session) {
-    return "map." + setting.name + "." + session;
+  static std::string mapId(const BatchConfiguration& configuration, const std::string& session) {
+    return "map." + configuration.name + "." + session;
   }
 
-  std::string rawlogOf(const BatchConfiguration& setting, const std::string& session,
+  std::string rawlogOf(const BatchConfiguration& configuration, const std::string& session,
                        bool forMaps = false) const {
     std::string folder = "../poles." + session + "/";
     if (hasGroups(m_spec.session(session))) {
-      const std::string& name = m_group.at(setting.name);
+      const std::string& name = m_group.at(configuration.name);
       const auto group = std::find_if(m_groups.begin(), m_groups.end(),
                                       [&](const Group& entry) { return entry.name == name; });
       folder += name + (forMaps && !group->mapConfidence.empty() ? mapFolder : "") + "/";
@@ -253,72 +254,74 @@ class Planner {
   }
 
   /// The map that a session is localized in: the number of its last map session, from 1.
-  std::size_t mapFor(const BatchConfiguration& setting, const std::string& session) const {
-    const auto& maps = setting.mapSessions;
-    if (setting.protocol == MapProtocol::each)
+  std::size_t mapFor(const BatchConfiguration& configuration, const std::string& session) const {
+    const auto& maps = configuration.mapSessions;
+    if (configuration.protocol == MapProtocol::each)
       return static_cast<std::size_t>(std::find(maps.begin(), maps.end(), session) - maps.begin()) +
              1;
-    if (setting.map == MapTime::finished) return maps.size();
+    if (configuration.map == MapTime::finished) return maps.size();
     return static_cast<std::size_t>(
         std::count_if(maps.begin(), maps.end(),
                       [&](const std::string& name) { return placeOf(name) < placeOf(session); }));
   }
 
-  void addMaps(const BatchConfiguration& setting) {
+  void addMaps(const BatchConfiguration& configuration) {
     std::set<std::size_t> wanted;
-    for (const auto& session : setting.sessions) wanted.insert(mapFor(setting, session));
+    for (const auto& session : configuration.sessions)
+      wanted.insert(mapFor(configuration, session));
     for (const auto& session : m_spec.sessions)
-      if (isScored(setting, session))
-        wanted.insert(setting.protocol == MapProtocol::each ? mapFor(setting, session.name)
-                                                            : setting.mapSessions.size());
-    const bool chain = setting.protocol == MapProtocol::upkeep;
+      if (isScored(configuration, session))
+        wanted.insert(configuration.protocol == MapProtocol::each
+                          ? mapFor(configuration, session.name)
+                          : configuration.mapSessions.size());
+    const bool chain = configuration.protocol == MapProtocol::upkeep;
     for (std::size_t n = 1; n <= *wanted.rbegin(); ++n)
-      if (chain || wanted.count(n)) addMap(setting, n);
+      if (chain || wanted.count(n)) addMap(configuration, n);
   }
 
   /// Dates that some have and others have not would be years apart.
-  bool allDated(const BatchConfiguration& setting) const {
-    return std::none_of(setting.mapSessions.begin(), setting.mapSessions.end(),
+  bool allDated(const BatchConfiguration& configuration) const {
+    return std::none_of(configuration.mapSessions.begin(), configuration.mapSessions.end(),
                         [&](const std::string& name) { return m_spec.session(name).date.empty(); });
   }
 
   /// The map of the first n map sessions, or of the n-th alone.
-  void addMap(const BatchConfiguration& setting, std::size_t n) {
-    const auto& names = setting.mapSessions;
+  void addMap(const BatchConfiguration& configuration, std::size_t n) {
+    const auto& names = configuration.mapSessions;
     BatchTask task;
-    task.id = mapId(setting, names[n - 1]);
+    task.id = mapId(configuration, names[n - 1]);
     task.kind = "map";
-    const bool updates = setting.protocol == MapProtocol::upkeep && n > 1;
+    const bool updates = configuration.protocol == MapProtocol::upkeep && n > 1;
     Command command = program("pole-map");
     append(command, {updates ? "update" : "build", "--config",
-                     "../../settings/" + setting.name + ".ini", "--output", "map.polemap"});
-    const std::size_t first = setting.protocol == MapProtocol::together ? 0 : n - 1;
+                     "../../settings/" + configuration.name + ".ini", "--output", "map.polemap"});
+    const std::size_t first = configuration.protocol == MapProtocol::together ? 0 : n - 1;
     if (updates) {
-      const std::string before = mapId(setting, names[n - 2]);
+      const std::string before = mapId(configuration, names[n - 2]);
       append(command, {"--map", "../" + before + "/map.polemap"});
       task.needs.push_back(before);
     }
     Command inputs{"--input"}, truths{"--truth"}, dates{"--date"};
     for (std::size_t i = first; i < n; ++i) {
-      inputs.push_back(rawlogOf(setting, names[i], true));
+      inputs.push_back(rawlogOf(configuration, names[i], true));
       truths.push_back(truthOf(names[i]));
       dates.push_back(m_spec.session(names[i]).date);
       task.needs.push_back("poles." + names[i]);
     }
     append(command, inputs);
     append(command, truths);
-    if (allDated(setting)) append(command, dates);
+    if (allDated(configuration)) append(command, dates);
     task.commands = {command};
     task.outputs = {"map.polemap"};
     m_plan.tasks.push_back(std::move(task));
   }
 
   /// Scores the map that the session completes.
-  void addScore(const BatchConfiguration& setting, const BatchSession& session) {
+  void addScore(const BatchConfiguration& configuration, const BatchSession& session) {
     BatchTask task;
-    task.id = scoreId(setting, session.name);
+    task.id = scoreId(configuration, session.name);
     task.kind = "score";
-    const std::string map = mapId(setting, session.name);
+    const std::string map = mapId(configuration, session.name);
     task.needs = {map};
     std::string truth = session.truthMap;
     if (truth == truthFromLabels) {
@@ -330,51 +333,53 @@ class Planner {
     m_plan.tasks.push_back(std::move(task));
   }
 
-  void addCells(const BatchConfiguration& setting) {
+  void addExperiments(const BatchConfiguration& configuration) {
     for (const auto& session : m_spec.sessions) {
-      const bool mapped = has(setting.mapSessions, session.name);
-      const bool localized = has(setting.sessions, session.name);
+      const bool mapped = has(configuration.mapSessions, session.name);
+      const bool localized = has(configuration.sessions, session.name);
       if (!localized && !mapped) continue;
-      Experiment cell;
-      cell.setting = setting.name;
-      cell.session = session.name;
-      cell.poles = rawlogOf(setting, session.name, !localized).substr(3);
-      if (mapped) cell.ownMap = lastMapOf(setting, session.name);
-      if (isScored(setting, session)) cell.score = scoreId(setting, session.name);
-      if (localized) addRuns(setting, cell);
-      m_plan.cells.push_back(std::move(cell));
+      Experiment experiment;
+      experiment.configuration = configuration.name;
+      experiment.session = session.name;
+      experiment.poles = rawlogOf(configuration, session.name, !localized).substr(3);
+      if (mapped) experiment.ownMap = lastMapOf(configuration, session.name);
+      if (isScored(configuration, session)) experiment.score = scoreId(configuration, session.name);
+      if (localized) addRuns(configuration, experiment);
+      m_plan.experiments.push_back(std::move(experiment));
     }
   }
 
   /// A map that the session went into: the first there is.
-  std::string lastMapOf(const BatchConfiguration& setting, const std::string& session) const {
-    const auto& names = setting.mapSessions;
+  std::string lastMapOf(const BatchConfiguration& configuration, const std::string& session) const {
+    const auto& names = configuration.mapSessions;
     const auto at = std::find(names.begin(), names.end(), session);
     for (auto name = at; name != names.end(); ++name)
       for (const auto& task : m_plan.tasks)
-        if (task.id == mapId(setting, *name)) return task.id;
+        if (task.id == mapId(configuration, *name)) return task.id;
     return {};
   }
 
-  void addRuns(const BatchConfiguration& setting, Experiment& cell) {
-    cell.map = mapId(setting, setting.mapSessions[mapFor(setting, cell.session) - 1]);
+  void addRuns(const BatchConfiguration& configuration, Experiment& experiment) {
+    experiment.map = mapId(
+        configuration, configuration.mapSessions[mapFor(configuration, experiment.session) - 1]);
     for (int run = 0; run < m_spec.runs; ++run) {
       BatchTask task;
       const std::string number = std::to_string(run);
-      task.id = "run." + setting.name + "." + cell.session + "." +
+      task.id = "run." + configuration.name + "." + experiment.session + "." +
                 std::string(number.size() < 2 ? 1 : 0, '0') + number;
       task.kind = "run";
-      task.needs = {"poles." + cell.session, cell.map};
-      const auto seed = seedOf(m_spec.seed, cell.session + "/run " + number);
+      task.needs = {"poles." + experiment.session, experiment.map};
+      const auto seed = seedOf(m_spec.seed, experiment.session + "/run " + number);
       Command command = program("pole-localize");
-      append(command, {"--config", "../../settings/" + setting.name + ".ini", "--input",
-                       rawlogOf(setting, cell.session), "--truth", truthOf(cell.session), "--map",
-                       "../" + cell.map + "/map.polemap", "--output", "out", "--runs", "1",
-                       "--seed", std::to_string(seed)});
+      append(command,
+             {"--config", "../../settings/" + configuration.name + ".ini", "--input",
+              rawlogOf(configuration, experiment.session), "--truth", truthOf(experiment.session),
+              "--map", "../" + experiment.map + "/map.polemap", "--output", "out", "--runs", "1",
+              "--seed", std::to_string(seed)});
       task.commands = {command};
       task.outputs = {"out/run_00.tum", "out/run_00_health.csv", "out/summary.json"};
-      cell.runs.push_back(task.id);
-      cell.seeds.push_back(seed);
+      experiment.runs.push_back(task.id);
+      experiment.seeds.push_back(seed);
       m_plan.tasks.push_back(std::move(task));
     }
   }
@@ -409,19 +414,21 @@ class Planner {
 
   const BatchSpec& m_spec;
   BatchPlan m_plan;
-  /// Settings that share their poles.
+  /// Configurations that share their poles.
   struct Group {
     std::string name;           ///< of the first of them
     std::string mapConfidence;  ///< of poles for maps; empty: that of all
   };
   static constexpr const char* mapFolder = ".map";
 
-  /// Whether any setting of the group takes the session's poles for that.
+  /// Whether any configuration of the group takes the session's poles for that.
   bool isFor(const Group& group, const std::string& session,
              std::vector<std::string> BatchConfiguration::*purpose) const {
-    return std::any_of(m_spec.settings.begin(), m_spec.settings.end(), [&](const auto& setting) {
-      return m_group.at(setting.name) == group.name && has(setting.*purpose, session);
-    });
+    return std::any_of(m_spec.configurations.begin(), m_spec.configurations.end(),
+                       [&](const auto& configuration) {
+                         return m_group.at(configuration.name) == group.name &&
+                                has(configuration.*purpose, session);
+                       });
   }
   /// Poles for maps are those of localization, unless the group has others for maps.
   bool hasMapPoles(const Group& group, const std::string& session) const {
@@ -433,7 +440,7 @@ class Planner {
   }
 
   std::map<std::string, std::string> m_groupOf;  ///< text of the extraction -> name of the group
-  std::map<std::string, std::string> m_group;    ///< setting -> group
+  std::map<std::string, std::string> m_group;    ///< configuration -> group
   std::vector<Group> m_groups;
 };
 

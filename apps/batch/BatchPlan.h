@@ -31,9 +31,9 @@ struct BatchTask {
   std::string key;
 };
 
-/// \brief Where the results of one session under one setting come from.
+/// \brief Where the results of one session under one configuration come from.
 struct Experiment {
-  std::string setting, session;
+  std::string configuration, session;
   std::string poles;              ///< its rawlog of poles, relative to the folder of tasks
   std::string map;                ///< id of the map it is localized in; empty: not localized
   std::string ownMap;             ///< id of the map that it went into; empty: none
@@ -46,7 +46,7 @@ struct BatchPlan {
   std::string name;
   std::string build;             ///< of the programs that planned it, see buildIdentity()
   std::vector<BatchTask> tasks;  ///< none needs a later one
-  std::vector<Experiment> cells;
+  std::vector<Experiment> experiments;
   /// Frozen copies of what INI files say, relative to the batch's folder: settings, models.
   std::map<std::string, std::string> files;
   /// MD5 of each of them: what a stored plan has instead of their content.
@@ -55,11 +55,11 @@ struct BatchPlan {
   const BatchTask& task(const std::string& id) const;  ///< \throws Error
 };
 
-/// \brief Plans a batch. Sessions are imported once and extracted once for all settings that use
-/// them and have the same `[sensor] [extraction] [range_image] [scan_line]`; maps are built once
-/// for all sessions and runs. Maps that a setting's last map session completes (with `maps = each`:
-/// all) are scored where that session has a truthMap. \throws Error as loadSettings() and
-/// readPublishedSessions(), and when the input or the true
+/// \brief Plans a batch. Sessions are imported once and extracted once for all configurations that
+/// use them and have the same `[sensor] [extraction] [range_image] [scan_line]`; maps are built
+/// once for all sessions and runs. Maps that a configuration's last map session completes (with
+/// `maps = each`: all) are scored where that session has a truthMap. \throws Error as
+/// loadSettings() and readPublishedSessions(), and when the input or the true
 ///         poles of a session are not there (all that are missing are named).
 /// \param build Of the programs that do the tasks: tasks that another build has done are open.
 BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());

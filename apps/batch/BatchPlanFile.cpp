@@ -16,10 +16,15 @@ Json toJson(const BatchTask& task) {
           {"outputs", task.outputs}, {"key", task.key}};
 }
 
-Json toJson(const Experiment& cell) {
-  return {{"setting", cell.setting}, {"session", cell.session}, {"poles", cell.poles},
-          {"map", cell.map},         {"own_map", cell.ownMap},  {"score", cell.score},
-          {"runs", cell.runs},       {"seeds", cell.seeds}};
+Json toJson(const Experiment& experiment) {
+  return {{"setting", experiment.configuration},
+          {"session", experiment.session},
+          {"poles", experiment.poles},
+          {"map", experiment.map},
+          {"own_map", experiment.ownMap},
+          {"score", experiment.score},
+          {"runs", experiment.runs},
+          {"seeds", experiment.seeds}};
 }
 
 BatchTask taskFrom(const Json& json) {
@@ -33,17 +38,17 @@ BatchTask taskFrom(const Json& json) {
   return task;
 }
 
-Experiment cellFrom(const Json& json) {
-  Experiment cell;
-  json.at("setting").get_to(cell.setting);
-  json.at("session").get_to(cell.session);
-  json.at("poles").get_to(cell.poles);
-  json.at("map").get_to(cell.map);
-  json.at("own_map").get_to(cell.ownMap);
-  json.at("score").get_to(cell.score);
-  json.at("runs").get_to(cell.runs);
-  json.at("seeds").get_to(cell.seeds);
-  return cell;
+Experiment experimentFrom(const Json& json) {
+  Experiment experiment;
+  json.at("setting").get_to(experiment.configuration);
+  json.at("session").get_to(experiment.session);
+  json.at("poles").get_to(experiment.poles);
+  json.at("map").get_to(experiment.map);
+  json.at("own_map").get_to(experiment.ownMap);
+  json.at("score").get_to(experiment.score);
+  json.at("runs").get_to(experiment.runs);
+  json.at("seeds").get_to(experiment.seeds);
+  return experiment;
 }
 
 }  // namespace
@@ -56,7 +61,7 @@ void writePlan(const std::filesystem::path& file, const BatchPlan& plan) {
   json["tasks"] = json["cells"] = Json::array();
   json["files"] = plan.sums;
   for (const auto& task : plan.tasks) json["tasks"].push_back(toJson(task));
-  for (const auto& cell : plan.cells) json["cells"].push_back(toJson(cell));
+  for (const auto& experiment : plan.experiments) json["cells"].push_back(toJson(experiment));
   writeJson(file, json);
 }
 
@@ -73,7 +78,8 @@ BatchPlan readPlan(const std::filesystem::path& file) {
     json.at("build").get_to(plan.build);
     json.at("files").get_to(plan.sums);
     for (const auto& task : json.at("tasks")) plan.tasks.push_back(taskFrom(task));
-    for (const auto& cell : json.at("cells")) plan.cells.push_back(cellFrom(cell));
+    for (const auto& experiment : json.at("cells"))
+      plan.experiments.push_back(experimentFrom(experiment));
     return plan;
   } catch (const std::exception& error) {
     throw Error(file.string() + ": is no plan of a batch: " + error.what() +

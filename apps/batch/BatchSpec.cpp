@@ -45,7 +45,7 @@ void requireNames(const std::vector<std::string>& names, const std::string& wher
   }
 }
 
-/// What the values of a session or setting may refer to.
+/// What the values of a session or configuration may refer to.
 class Placeholders {
  public:
   Placeholders(const fs::path& file, fs::path data)
@@ -171,81 +171,82 @@ std::vector<std::string> chosen(const std::string& text, const std::vector<Batch
 }
 
 /// Each session that is localized in the map before it needs a map session before it.
-void requireMaps(const BatchConfiguration& setting, const std::vector<BatchSession>& sessions,
+void requireMaps(const BatchConfiguration& configuration, const std::vector<BatchSession>& sessions,
                  const std::string& where) {
-  if (setting.map == MapTime::finished) return;
+  if (configuration.map == MapTime::finished) return;
   for (const auto& session : sessions) {
-    if (session.name == setting.mapSessions.front()) {
-      const auto& s = setting.sessions;
+    if (session.name == configuration.mapSessions.front()) {
+      const auto& s = configuration.sessions;
       if (std::find(s.begin(), s.end(), session.name) == s.end()) return;
     }
-    const auto& s = setting.sessions;
+    const auto& s = configuration.sessions;
     if (std::find(s.begin(), s.end(), session.name) != s.end())
       throw Error(where + ": session " + session.name +
                   " has no map session before it; leave it out of sessions, or set map = finished");
   }
 }
 
-BatchConfiguration readSetting(ConfigReader& reader, const std::string& name,
-                               const Placeholders& fill, const std::vector<BatchSession>& sessions,
-                               const std::string& where) {
-  BatchConfiguration setting;
-  setting.name = name;
+BatchConfiguration readConfiguration(ConfigReader& reader, const std::string& name,
+                                     const Placeholders& fill,
+                                     const std::vector<BatchSession>& sessions,
+                                     const std::string& where) {
+  BatchConfiguration configuration;
+  configuration.name = name;
   std::string set, mapSessions = "first", localized = "all";
   const std::string here = where + "[setting " + name + "] ";
   reader.section("setting " + name, "One way to map and to localize");
-  reader.text("title", setting.title, "a sentence for the report");
-  reader.text("config", setting.config, "INI file, relative to this file");
+  reader.text("title", configuration.title, "a sentence for the report");
+  reader.text("config", configuration.config, "INI file, relative to this file");
   reader.text("set", set, "settings in place of those of config, section.key=value …");
   reader.text("map_sessions", mapSessions, "names, all, first, or later (all but the first)");
   reader.text("sessions", localized, "those localized: names, all, later, or none");
-  reader.choice<MapProtocol>("maps", setting.protocol,
+  reader.choice<MapProtocol>("maps", configuration.protocol,
                              {{MapProtocol::together, "together"},
                               {MapProtocol::upkeep, "upkeep"},
                               {MapProtocol::each, "each"}},
                              "how they come about");
-  reader.choice<MapTime>("map", setting.map,
+  reader.choice<MapTime>("map", configuration.map,
                          {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
                          "the one that sessions are localized in");
-  if (setting.config.empty())
+  if (configuration.config.empty())
     throw Error(here + "config is missing (each of [batch] settings has a section of its own)");
-  setting.config = fill.path(setting.config, "");
-  setting.set = words(set);
-  setting.mapSessions = chosen(mapSessions, sessions, here + "map_sessions");
-  if (localized != "none") setting.sessions = chosen(localized, sessions, here + "sessions");
-  return setting;
+  configuration.config = fill.path(configuration.config, "");
+  configuration.set = words(set);
+  configuration.mapSessions = chosen(mapSessions, sessions, here + "map_sessions");
+  if (localized != "none") configuration.sessions = chosen(localized, sessions, here + "sessions");
+  return configuration;
 }
 
 /// Sessions with maps of their own are localized in these.
-void requireOwnMaps(const BatchConfiguration& setting, const std::string& where) {
-  if (setting.protocol != MapProtocol::each) return;
-  if (!setting.sessions.empty() && setting.map == MapTime::before)
+void requireOwnMaps(const BatchConfiguration& configuration, const std::string& where) {
+  if (configuration.protocol != MapProtocol::each) return;
+  if (!configuration.sessions.empty() && configuration.map == MapTime::before)
     throw Error(where + "maps = each has no map before a session; set map = finished");
-  for (const auto& name : setting.sessions)
-    if (std::find(setting.mapSessions.begin(), setting.mapSessions.end(), name) ==
-        setting.mapSessions.end())
+  for (const auto& name : configuration.sessions)
+    if (std::find(configuration.mapSessions.begin(), configuration.mapSessions.end(), name) ==
+        configuration.mapSessions.end())
       throw Error(where + "session " + name + " has no map; with maps = each, it must be one of " +
                   "map_sessions");
 }
 
 /// Maps alone are of use if they get a score.
-void requireUse(const BatchConfiguration& setting, const BatchSpec& spec,
+void requireUse(const BatchConfiguration& configuration, const BatchSpec& spec,
                 const std::string& where) {
   const auto hasTruth = [&](const std::string& name) {
     return !spec.session(name).truthMap.empty();
   };
-  if (setting.sessions.empty() &&
-      std::none_of(setting.mapSessions.begin(), setting.mapSessions.end(), hasTruth))
+  if (configuration.sessions.empty() &&
+      std::none_of(configuration.mapSessions.begin(), configuration.mapSessions.end(), hasTruth))
     throw Error(where + "sessions = none leaves nothing to report; name sessions, or give " +
                 "[sessions] truth_map");
 }
 
 /// A map is kept up from day to day, not back.
-void requireOrder(const BatchConfiguration& setting, const BatchSpec& spec,
+void requireOrder(const BatchConfiguration& configuration, const BatchSpec& spec,
                   const std::string& where) {
-  if (setting.protocol != MapProtocol::upkeep) return;
+  if (configuration.protocol != MapProtocol::upkeep) return;
   std::string last;
-  for (const auto& name : setting.mapSessions) {
+  for (const auto& name : configuration.mapSessions) {
     const std::string& date = spec.session(name).date;
     if (!date.empty() && date < last)
       throw Error(where + ": session " + name + " of " + date + " comes after one of " + last +
@@ -271,7 +272,7 @@ BatchSpec readBatchSpec(const fs::path& file, const fs::path& data,
   ConfigReader reader(source);
   BatchSpec spec;
   spec.name = file.stem().string();
-  std::string settings;
+  std::string names;
   reader.section("batch", "What is done");
   reader.text("name", spec.name, "of the batch; the file's unless given");
   reader.text("title", spec.title, "for the report");
@@ -284,20 +285,20 @@ BatchSpec readBatchSpec(const fs::path& file, const fs::path& data,
   reader.integer("seed", spec.seed, Range::atLeast(0), "", "of all random numbers");
   reader.choice<bool>("errors", spec.perMetre, {{false, "scan"}, {true, "metre"}},
                       "where they are taken");
-  reader.text("settings", settings, "names; each has a section of its own");
+  reader.text("settings", names, "names; each has a section of its own");
   requireName(spec.name, where + "[batch] name (the file's unless given)");
-  requireNames(words(settings), where + "[batch] settings");
+  requireNames(words(names), where + "[batch] settings");
   spec.publishedSessions = fill.path(spec.publishedSessions, "");
   spec.sessions = readSessions(reader, fill, where);
-  for (const auto& name : words(settings))
-    spec.settings.push_back(readSetting(reader, name, fill, spec.sessions, where));
+  for (const auto& name : words(names))
+    spec.configurations.push_back(readConfiguration(reader, name, fill, spec.sessions, where));
   reader.finish();
-  for (const auto& setting : spec.settings) {
-    const std::string here = where + "[setting " + setting.name + "] ";
-    requireUse(setting, spec, here);
-    requireOwnMaps(setting, here);
-    requireMaps(setting, spec.sessions, here + "sessions");
-    requireOrder(setting, spec, here + "map_sessions");
+  for (const auto& configuration : spec.configurations) {
+    const std::string here = where + "[setting " + configuration.name + "] ";
+    requireUse(configuration, spec, here);
+    requireOwnMaps(configuration, here);
+    requireMaps(configuration, spec.sessions, here + "sessions");
+    requireOrder(configuration, spec, here + "map_sessions");
   }
   return spec;
 }

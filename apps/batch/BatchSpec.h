@@ -1,6 +1,6 @@
 #pragma once
 /// \file BatchSpec.h
-/// \brief What a batch is: sessions, settings and runs, from an INI file.
+/// \brief What a batch is: sessions, configurations and runs, from an INI file.
 
 #include <cstdint>
 #include <filesystem>
@@ -64,11 +64,11 @@ struct BatchSpec {
   /// Published figures to show beside: `none`, or a key of PublishedResults.h.
   std::string published = "none";
   std::string publishedSessions;  ///< CSV of published figures by session; empty: none
-  int runs = 10;                  ///< of each session under each setting
+  int runs = 10;                  ///< of each session under each configuration
   std::uint32_t seed = 1;
   bool perMetre = false;  ///< errors at each metre of the way, not at each scan (`errors = metre`)
   std::vector<BatchSession> sessions;  ///< in the order they were driven
-  std::vector<BatchConfiguration> settings;
+  std::vector<BatchConfiguration> configurations;
 
   const BatchSession& session(const std::string& name) const;  ///< \throws Error
 };
@@ -77,10 +77,10 @@ struct BatchSpec {
 /// \param data What stands for `{data}`; empty: not given.
 /// \param set Values in place of the file's, `section.key=value`, as ConfigFile::set() takes them.
 /// \throws Error naming file, section and key: what ConfigReader refuses, names that are given
-///         twice or have other characters, sessions and settings that nobody knows, `{data}`
+///         twice or have other characters, sessions and configurations that nobody knows, `{data}`
 ///         without
-///         `--data`, a session localized in the map before it where there is none, a setting that
-///         neither localizes nor scores.
+///         `--data`, a session localized in the map before it where there is none, a configuration
+///         that neither localizes nor scores.
 BatchSpec readBatchSpec(const std::filesystem::path& file, const std::filesystem::path& data = {},
                         const std::vector<std::string>& set = {});
 

@@ -77,15 +77,17 @@ inline BatchResults smallBatch() {
   batch.title = "Small & <odd> \"batch\"";
   batch.command = "pole-batch small.ini --data 'a&b' --output out";
   batch.versions = {"1.2.3", "2.5.8", "GCC 12.2"};
-  batch.settings = {{"plain", "no upkeep", "paper: own data in the map", "[map]\ncount = 6\n"},
-                    {"up_keep 100 %", "", "", ""}};
+  batch.configurations = {
+      {"plain", "no upkeep", "paper: own data in the map", "[map]\ncount = 6\n"},
+      {"up_keep 100 %", "", "", ""}};
   batch.sessions = {{"one<&\">", "2012-01-08", 1500, 700, 8.25},
                     {"two_2", "", noFigure, 650, noFigure},
                     {"three", "2012-03-17", 1480.5, 690, 7}};
-  const auto result = [](std::size_t setting, std::size_t session, double share,
+  const auto result = [](std::size_t configuration, std::size_t session, double share,
                          std::vector<BatchRun> runs) {
     SessionResult one;
-    one.setting = setting, one.session = session, one.mapShare = share, one.mapPoles = 210;
+    one.configuration = configuration, one.session = session, one.mapShare = share,
+    one.mapPoles = 210;
     one.runs = std::move(runs);
     return one;
   };

@@ -79,14 +79,14 @@ TempFolder* BatchApp::s_folder = nullptr;
 TEST_F(BatchApp, ReportsAllRuns) {
   const auto results = report::readResultsJson(*s_folder / "done/results.json");
   EXPECT_EQ(results.name, "street-batch");
-  ASSERT_EQ(results.settings.size(), 2u);
+  ASSERT_EQ(results.configurations.size(), 2u);
   ASSERT_EQ(results.sessions.size(), 3u);
   EXPECT_TRUE(results.failures.empty());
   EXPECT_EQ(results.sessions[1].date, "2026-02-01");
   EXPECT_NEAR(results.sessions[0].length, 120, 5);  // in one lane of a bent street
-  for (std::size_t setting : {0, 1})
+  for (std::size_t configuration : {0, 1})
     for (std::size_t session : {1, 2}) {
-      const auto* result = results.find(setting, session);
+      const auto* result = results.find(configuration, session);
       ASSERT_NE(result, nullptr);
       ASSERT_EQ(result->runs.size(), 2u);
       EXPECT_GT(result->mapPoles, 10u);

@@ -13,7 +13,7 @@ namespace {
 
 const std::string source = POLEMCL_SOURCE_DIR;
 
-/// Three sessions in folders that are there, two settings; `change` may alter it.
+/// Three sessions in folders that are there, two configurations; `change` may alter it.
 BatchPlan planOf(const std::function<void(BatchSpec&)>& change = {}) {
   static const TempFolder folder;
   BatchSpec spec;
@@ -27,12 +27,12 @@ BatchPlan planOf(const std::function<void(BatchSpec&)>& change = {}) {
     fs::create_directories(session.input);
     spec.sessions.push_back(session);
   }
-  BatchConfiguration setting;
-  setting.name = "one";
-  setting.config = source + "/config/nclt.ini";
-  setting.mapSessions = {"a", "b"};
-  setting.sessions = {"b", "c"};
-  spec.settings = {setting};
+  BatchConfiguration configuration;
+  configuration.name = "one";
+  configuration.config = source + "/config/nclt.ini";
+  configuration.mapSessions = {"a", "b"};
+  configuration.sessions = {"b", "c"};
+  spec.configurations = {configuration};
   if (change) change(spec);
   return planBatch(spec);
 }
@@ -68,22 +68,22 @@ TEST(BatchPlan, LocalizesInTheMapOfEarlierSessions) {
 
 TEST(BatchPlan, LocalizesInTheFinishedMap) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
-    spec.settings[0].map = MapTime::finished;
-    spec.settings[0].sessions = {"a", "b", "c"};
+    spec.configurations[0].map = MapTime::finished;
+    spec.configurations[0].sessions = {"a", "b", "c"};
   });
   EXPECT_EQ(ids(plan).size(), 3u + 1 + 6);
   for (const char* run : {"run.one.a.00", "run.one.b.00", "run.one.c.00"})
     EXPECT_EQ(plan.task(run).needs.back(), "map.one.b") << run;
-  ASSERT_EQ(plan.cells.size(), 3u);
-  EXPECT_EQ(plan.cells[0].ownMap, "map.one.b");
-  EXPECT_EQ(plan.cells[2].ownMap, "");
+  ASSERT_EQ(plan.experiments.size(), 3u);
+  EXPECT_EQ(plan.experiments[0].ownMap, "map.one.b");
+  EXPECT_EQ(plan.experiments[2].ownMap, "");
 }
 
 TEST(BatchPlan, UpkeepIsAChain) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
-    spec.settings[0].protocol = MapProtocol::upkeep;
-    spec.settings[0].mapSessions = {"a", "b", "c"};
-    spec.settings[0].sessions = {"c"};
+    spec.configurations[0].protocol = MapProtocol::upkeep;
+    spec.configurations[0].mapSessions = {"a", "b", "c"};
+    spec.configurations[0].sessions = {"c"};
   });
   EXPECT_EQ(ids(plan), (Names{"poles.a", "poles.b", "poles.c", "map.one.a", "map.one.b",
                               "run.one.c.00", "run.one.c.01"}));
@@ -97,12 +97,12 @@ TEST(BatchPlan, UpkeepIsAChain) {
 
 TEST(BatchPlan, SettingsWithTheSameExtractionShareTheirPoles) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
-    spec.settings.push_back(spec.settings[0]);
-    spec.settings[1].name = "two";
-    spec.settings[1].set = {"filter.particles=7"};
-    spec.settings.push_back(spec.settings[0]);
-    spec.settings[2].name = "paper";
-    spec.settings[2].config = source + "/config/paper/nclt.ini";
+    spec.configurations.push_back(spec.configurations[0]);
+    spec.configurations[1].name = "two";
+    spec.configurations[1].set = {"filter.particles=7"};
+    spec.configurations.push_back(spec.configurations[0]);
+    spec.configurations[2].name = "paper";
+    spec.configurations[2].config = source + "/config/paper/nclt.ini";
   });
   const BatchTask& poles = plan.task("poles.a");
   ASSERT_EQ(poles.commands.size(), 3u);  // one import, two extractions
@@ -113,17 +113,17 @@ TEST(BatchPlan, SettingsWithTheSameExtractionShareTheirPoles) {
   EXPECT_EQ(argument(plan.task("run.two.b.00").commands[0], "--input"), "../poles.b/one/b.rawlog");
   EXPECT_EQ(argument(plan.task("run.paper.b.00").commands[0], "--input"),
             "../poles.b/paper/b.rawlog");
-  // Settings are compared on the same random numbers.
-  EXPECT_EQ(plan.cells[1].seeds, plan.cells[4].seeds);
+  // Configurations are compared on the same random numbers.
+  EXPECT_EQ(plan.experiments[1].seeds, plan.experiments[4].seeds);
   EXPECT_NE(plan.files.at("settings/two.ini").find("particles = 7"), std::string::npos);
 }
 
 TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
-    spec.settings[0].set = {"map.min_confidence=0.3"};
-    spec.settings.push_back(spec.settings[0]);
-    spec.settings[1].name = "two";
-    spec.settings[1].set.clear();
+    spec.configurations[0].set = {"map.min_confidence=0.3"};
+    spec.configurations.push_back(spec.configurations[0]);
+    spec.configurations[1].name = "two";
+    spec.configurations[1].set.clear();
   });
   const BatchTask& poles = plan.task("poles.b");  // mapped and localized
   EXPECT_EQ(poles.outputs, (Names{"b.tum", "one/b.rawlog", "one.map/b.rawlog", "two/b.rawlog"}));
@@ -135,17 +135,17 @@ TEST(BatchPlan, MapsTakeDoubtfulPolesWhereTheyAreAskedFor) {
   EXPECT_EQ(argument(plan.task("map.two.a").commands[0], "--input"), "../poles.a/two/a.rawlog");
 }
 
-TEST(BatchPlan, SessionsHaveThePolesOfTheSettingsThatUseThem) {
+TEST(BatchPlan, SessionsHaveThePolesOfTheConfigurationsThatUseThem) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
-    spec.settings[0].set = {"map.min_confidence=0.3"};
-    spec.settings.push_back(spec.settings[0]);
-    spec.settings[1].name = "paper";
-    spec.settings[1].config = source + "/config/paper/nclt.ini";
-    spec.settings[1].set.clear();
-    spec.settings[1].mapSessions = spec.settings[1].sessions = {"b"};
-    spec.settings[1].map = MapTime::finished;
+    spec.configurations[0].set = {"map.min_confidence=0.3"};
+    spec.configurations.push_back(spec.configurations[0]);
+    spec.configurations[1].name = "paper";
+    spec.configurations[1].config = source + "/config/paper/nclt.ini";
+    spec.configurations[1].set.clear();
+    spec.configurations[1].mapSessions = spec.configurations[1].sessions = {"b"};
+    spec.configurations[1].map = MapTime::finished;
   });
-  // a is only mapped, and by the first setting alone; c is only localized, by the same.
+  // a is only mapped, and by the first configuration alone; c is only localized, by the same.
   EXPECT_EQ(plan.task("poles.a").outputs, (Names{"a.tum", "one.map/a.rawlog"}));
   EXPECT_EQ(plan.task("poles.b").outputs,
             (Names{"b.tum", "one/b.rawlog", "one.map/b.rawlog", "paper/b.rawlog"}));
@@ -180,13 +180,13 @@ TEST(BatchPlan, FinishedMapsAreScoredAgainstTruePoles) {
   EXPECT_FALSE(oneToOne(0));
   EXPECT_TRUE(oneToOne(1) && oneToOne(2));
   EXPECT_EQ(argument(score.commands[2], "--radius"), "0.5");
-  ASSERT_EQ(plan.cells.size(), 3u);
-  EXPECT_EQ(plan.cells[0].score, "");
-  EXPECT_EQ(plan.cells[1].score, "score.one.b");
+  ASSERT_EQ(plan.experiments.size(), 3u);
+  EXPECT_EQ(plan.experiments[0].score, "");
+  EXPECT_EQ(plan.experiments[1].score, "score.one.b");
   // A map that no session is localized in is made for its score.
   const BatchPlan strict = scored([](BatchSpec& spec) {
-    spec.settings[0].mapSessions = {"a", "b", "c"};
-    spec.settings[0].sessions = {"b"};
+    spec.configurations[0].mapSessions = {"a", "b", "c"};
+    spec.configurations[0].sessions = {"b"};
   });
   EXPECT_EQ(strict.task("score.one.c").needs, Names{"map.one.c"});
   EXPECT_EQ(strict.task("map.one.c").needs, (Names{"poles.a", "poles.b", "poles.c"}));
@@ -199,9 +199,9 @@ TEST(BatchPlan, EachSessionMayHaveItsOwnMapAndTruth) {
       session.truthMap = truthFromLabels;
       fs::create_directories(session.input + "/labels");
     }
-    spec.settings[0].protocol = MapProtocol::each;
-    spec.settings[0].mapSessions = {"a", "b"};
-    spec.settings[0].sessions.clear();
+    spec.configurations[0].protocol = MapProtocol::each;
+    spec.configurations[0].mapSessions = {"a", "b"};
+    spec.configurations[0].sessions.clear();
   });
   EXPECT_EQ(ids(plan), (Names{"poles.a", "poles.b", "truth.a", "truth.b", "map.one.a", "map.one.b",
                               "score.one.a", "score.one.b"}));
@@ -209,12 +209,12 @@ TEST(BatchPlan, EachSessionMayHaveItsOwnMapAndTruth) {
   EXPECT_EQ(plan.task("score.one.b").needs, (Names{"map.one.b", "truth.b"}));
   EXPECT_EQ(argument(plan.task("score.one.b").commands[0], "--truth"), "../truth.b/truth.polemap");
   EXPECT_EQ(plan.task("truth.a").commands[0][0], "pole-labels");
-  EXPECT_EQ(plan.cells[1].ownMap, "map.one.b");
+  EXPECT_EQ(plan.experiments[1].ownMap, "map.one.b");
   // Localized, it is in its own map.
   const BatchPlan localized = planOf([](BatchSpec& spec) {
-    spec.settings[0].protocol = MapProtocol::each;
-    spec.settings[0].map = MapTime::finished;
-    spec.settings[0].sessions = {"a", "b"};
+    spec.configurations[0].protocol = MapProtocol::each;
+    spec.configurations[0].map = MapTime::finished;
+    spec.configurations[0].sessions = {"a", "b"};
   });
   EXPECT_EQ(localized.task("run.one.a.00").needs, (Names{"poles.a", "map.one.a"}));
   EXPECT_EQ(localized.task("run.one.b.00").needs, (Names{"poles.b", "map.one.b"}));
@@ -261,9 +261,10 @@ TEST(BatchPlan, KeysChangeWithWhatTheOutputsDependOn) {
   EXPECT_EQ(changed([](BatchSpec& spec) { spec.sessions[2].every = 2; }),
             (Names{"poles.c", "run.one.c.00", "run.one.c.01"}));
   EXPECT_EQ(changed([](BatchSpec& spec) { spec.sessions[1].every = 2; }).size(), 6u);
-  // Settings are frozen as a whole: poles depend on them, and all else on the poles.
-  EXPECT_EQ(changed([](BatchSpec& spec) { spec.settings[0].set = {"map.min_count=3"}; }).size(),
-            plan.tasks.size());
+  // Configurations are frozen as a whole: poles depend on them, and all else on the poles.
+  EXPECT_EQ(
+      changed([](BatchSpec& spec) { spec.configurations[0].set = {"map.min_count=3"}; }).size(),
+      plan.tasks.size());
   EXPECT_EQ(changed([](BatchSpec& spec) { spec.runs = 3; }), Names{});
 }
 
@@ -280,10 +281,10 @@ TEST(BatchPlan, NamesAllInputsThatAreMissing) {
             std::string::npos);
   // True poles that no map is scored against need not be there.
   EXPECT_NO_THROW(planOf([](BatchSpec& spec) { spec.sessions[0].truthMap = "/not/there.npz"; }));
-  // Sessions that no setting uses need not be there.
+  // Sessions that no configuration uses need not be there.
   EXPECT_NO_THROW(planOf([](BatchSpec& spec) {
     spec.sessions[2].input = "/not/there";
-    spec.settings[0].sessions = {"b"};
+    spec.configurations[0].sessions = {"b"};
   }));
 }
 
@@ -312,7 +313,8 @@ TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
       }
     const BatchPlan plan = planBatch(spec);
     std::size_t runs = 0;
-    for (const auto& setting : spec.settings) runs += setting.sessions.size() * spec.runs;
+    for (const auto& configuration : spec.configurations)
+      runs += configuration.sessions.size() * spec.runs;
     EXPECT_EQ(std::count_if(plan.tasks.begin(), plan.tasks.end(),
                             [](const BatchTask& task) { return task.kind == "run"; }),
               static_cast<std::ptrdiff_t>(runs));
@@ -347,7 +349,7 @@ TEST(BatchPlan, SurvivesItsFile) {
   writeText(folder / "truth.csv", "x,y\n1,2\n");
   const BatchPlan plan =
       planOf([&](BatchSpec& spec) { spec.sessions[1].truthMap = (folder / "truth.csv").string(); });
-  EXPECT_EQ(plan.cells[1].score, "score.one.b");
+  EXPECT_EQ(plan.experiments[1].score, "score.one.b");
   writePlan(folder / "plan.json", plan);
   const BatchPlan read = readPlan(folder / "plan.json");
   EXPECT_EQ(read.name, plan.name);
@@ -360,10 +362,10 @@ TEST(BatchPlan, SurvivesItsFile) {
     EXPECT_EQ(read.tasks[i].key, plan.tasks[i].key);
     EXPECT_EQ(read.tasks[i].kind, plan.tasks[i].kind);
   }
-  ASSERT_EQ(read.cells.size(), plan.cells.size());
-  EXPECT_EQ(read.cells[1].seeds, plan.cells[1].seeds);
-  EXPECT_EQ(read.cells[1].map, plan.cells[1].map);
-  EXPECT_EQ(read.cells[1].score, plan.cells[1].score);
+  ASSERT_EQ(read.experiments.size(), plan.experiments.size());
+  EXPECT_EQ(read.experiments[1].seeds, plan.experiments[1].seeds);
+  EXPECT_EQ(read.experiments[1].map, plan.experiments[1].map);
+  EXPECT_EQ(read.experiments[1].score, plan.experiments[1].score);
   writeText(folder / "plan.json", readText(folder / "plan.json").substr(0, 100));
   EXPECT_NE(messageOf([&] { readPlan(folder / "plan.json"); }).find("is no plan of a batch"),
             std::string::npos);

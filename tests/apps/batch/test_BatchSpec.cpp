@@ -22,7 +22,7 @@ std::string refusal(const std::string& text) {
 }
 
 const std::string sessions = "[sessions]\nnames = a b c\ninput = x\n";
-const std::string setting = "[setting one]\nconfig = c.ini\n";
+const std::string configuration = "[setting one]\nconfig = c.ini\n";
 
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
@@ -50,49 +50,54 @@ TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
   EXPECT_EQ(spec.session("b").set, (std::vector<std::string>{"world.day=3", "world.seed=4"}));
   EXPECT_EQ(fs::path(spec.session("b").input).filename(), "b.ini");
   EXPECT_EQ(fs::path(spec.session("b").input).parent_path().filename(), "other");
-  ASSERT_EQ(spec.settings.size(), 1u);
-  EXPECT_EQ(spec.settings[0].mapSessions, std::vector<std::string>{"a"});
-  EXPECT_EQ(spec.settings[0].sessions, std::vector<std::string>{"b"});
-  EXPECT_EQ(spec.settings[0].protocol, MapProtocol::upkeep);
-  EXPECT_EQ(spec.settings[0].map, MapTime::before);
+  ASSERT_EQ(spec.configurations.size(), 1u);
+  EXPECT_EQ(spec.configurations[0].mapSessions, std::vector<std::string>{"a"});
+  EXPECT_EQ(spec.configurations[0].sessions, std::vector<std::string>{"b"});
+  EXPECT_EQ(spec.configurations[0].protocol, MapProtocol::upkeep);
+  EXPECT_EQ(spec.configurations[0].map, MapTime::before);
 }
 
-TEST(BatchSpec, SessionsOfASettingComeInTheOrderOfTheBatch) {
-  const auto spec = read("[batch]\nsettings = one\n" + sessions + setting +
+TEST(BatchSpec, SessionsOfAConfigurationComeInTheOrderOfTheBatch) {
+  const auto spec = read("[batch]\nsettings = one\n" + sessions + configuration +
                          "map_sessions = b a\nsessions = c b\n");
-  EXPECT_EQ(spec.settings[0].mapSessions, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(spec.settings[0].sessions, (std::vector<std::string>{"b", "c"}));
+  EXPECT_EQ(spec.configurations[0].mapSessions, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(spec.configurations[0].sessions, (std::vector<std::string>{"b", "c"}));
 }
 
 TEST(BatchSpec, NamesWhatIsWrong) {
   const std::string head = "[batch]\nsettings = one\n";
   EXPECT_HAS(refusal("[batch]\nsettings =\n" + sessions), "[batch] settings: at least one name");
-  EXPECT_HAS(refusal("[batch]\nsettings = one one\n" + sessions + setting), "'one' is given twice");
-  EXPECT_HAS(refusal(head + "[sessions]\nnames = a a\ninput = x\n" + setting),
+  EXPECT_HAS(refusal("[batch]\nsettings = one one\n" + sessions + configuration),
+             "'one' is given twice");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a a\ninput = x\n" + configuration),
              "'a' is given twice");
-  EXPECT_HAS(refusal(head + "[sessions]\nnames = a/b\ninput = x\n" + setting), "'a/b' is no name");
-  EXPECT_HAS(refusal(head + "[sessions]\nnames = a.b\ninput = x\n" + setting), "'a.b' is no name");
-  EXPECT_HAS(refusal(head + sessions + "date = 2026-13-01\n" + setting),
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a/b\ninput = x\n" + configuration),
+             "'a/b' is no name");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a.b\ninput = x\n" + configuration),
+             "'a.b' is no name");
+  EXPECT_HAS(refusal(head + sessions + "date = 2026-13-01\n" + configuration),
              "session a: date: '2026-13-01' is no date");
   EXPECT_HAS(refusal(head + sessions + "date = 2026-02-01\n[session b]\ndate = 2026-01-31\n" +
-                     setting + "map_sessions = all\nsessions = c\nmaps = upkeep\n"),
+                     configuration + "map_sessions = all\nsessions = c\nmaps = upkeep\n"),
              "session b of 2026-01-31 comes after one of 2026-02-01");
-  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\n" + setting), "session a: input is missing");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\n" + configuration),
+             "session a: input is missing");
   EXPECT_HAS(refusal(head + sessions), "config is missing");
-  EXPECT_HAS(refusal(head + sessions + setting + "sessions = d\n"), "no session 'd'");
-  EXPECT_HAS(refusal(head + sessions + setting + "sessions = b d\n"), "no session 'd'");
-  EXPECT_HAS(refusal(head + sessions + setting + "[session d]\ninput = y\n"),
+  EXPECT_HAS(refusal(head + sessions + configuration + "sessions = d\n"), "no session 'd'");
+  EXPECT_HAS(refusal(head + sessions + configuration + "sessions = b d\n"), "no session 'd'");
+  EXPECT_HAS(refusal(head + sessions + configuration + "[session d]\ninput = y\n"),
              "[session d] is not known");
-  EXPECT_HAS(refusal(head + sessions + setting + "mapps = upkeep\n"), "mapps");
-  EXPECT_HAS(refusal(head + sessions + setting + "[setting two]\nconfig = c\n"),
+  EXPECT_HAS(refusal(head + sessions + configuration + "mapps = upkeep\n"), "mapps");
+  EXPECT_HAS(refusal(head + sessions + configuration + "[setting two]\nconfig = c\n"),
              "[setting two] is not known");
-  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\ninput = {data}/x\n" + setting), "--data");
-  EXPECT_HAS(refusal(head + "[sessions]\nnames = a b\ninput = x\nset = world.day=1\n" + setting),
-             "simulated");
+  EXPECT_HAS(refusal(head + "[sessions]\nnames = a\ninput = {data}/x\n" + configuration), "--data");
+  EXPECT_HAS(
+      refusal(head + "[sessions]\nnames = a b\ninput = x\nset = world.day=1\n" + configuration),
+      "simulated");
 }
 
 TEST(BatchSpec, ASessionInTheMapBeforeItNeedsOne) {
-  const std::string head = "[batch]\nsettings = one\n" + sessions + setting;
+  const std::string head = "[batch]\nsettings = one\n" + sessions + configuration;
   EXPECT_HAS(refusal(head + "map_sessions = b\nsessions = all\n"),
              "session a has no map session before it");
   EXPECT_HAS(refusal(head + "map_sessions = b\nsessions = b c\n"),
@@ -106,41 +111,43 @@ TEST(BatchSpec, ReadsTruePolesAndPublishedFigures) {
       "[batch]\nsettings = one\npublished = semantickitti\npublished_sessions = {here}/p.csv\n"
       "[sessions]\nnames = 00 01\nsource = kitti-odometry\ninput = {data}/{session}\n"
       "truth_map = labels\n[session 01]\ntruth_map = {data}/t_{session}.npz\n" +
-          setting + "maps = each\nmap_sessions = all\nsessions = none\n",
+          configuration + "maps = each\nmap_sessions = all\nsessions = none\n",
       "/d");
   EXPECT_EQ(spec.session("00").truthMap, truthFromLabels);
   EXPECT_EQ(spec.session("01").truthMap, "/d/t_01.npz");
   EXPECT_EQ(spec.published, "semantickitti");
   EXPECT_EQ(fs::path(spec.publishedSessions).filename(), "p.csv");
-  EXPECT_EQ(spec.settings[0].protocol, MapProtocol::each);
-  EXPECT_TRUE(spec.settings[0].sessions.empty());
-  EXPECT_EQ(spec.settings[0].mapSessions, (std::vector<std::string>{"00", "01"}));
+  EXPECT_EQ(spec.configurations[0].protocol, MapProtocol::each);
+  EXPECT_TRUE(spec.configurations[0].sessions.empty());
+  EXPECT_EQ(spec.configurations[0].mapSessions, (std::vector<std::string>{"00", "01"}));
 }
 
 TEST(BatchSpec, LaterSessionsAreAllButTheFirst) {
-  const auto spec = read("[batch]\nsettings = one\n" + sessions + setting + "sessions = later\n");
-  EXPECT_EQ(spec.settings[0].sessions, (std::vector<std::string>{"b", "c"}));
-  EXPECT_HAS(refusal("[batch]\nsettings = one\n[sessions]\nnames = a\ninput = x\n" + setting +
+  const auto spec =
+      read("[batch]\nsettings = one\n" + sessions + configuration + "sessions = later\n");
+  EXPECT_EQ(spec.configurations[0].sessions, (std::vector<std::string>{"b", "c"}));
+  EXPECT_HAS(refusal("[batch]\nsettings = one\n[sessions]\nnames = a\ninput = x\n" + configuration +
                      "sessions = later\n"),
              "sessions: at least one name");
 }
 
 TEST(BatchSpec, MapsAloneAndMapsOfEachNeedSense) {
   const std::string head = "[batch]\nsettings = one\n" + sessions;
-  EXPECT_HAS(refusal(head + setting + "sessions = none\n"), "sessions = none leaves nothing");
-  EXPECT_HAS(refusal(head + setting + "maps = each\nmap_sessions = all\n"),
+  EXPECT_HAS(refusal(head + configuration + "sessions = none\n"), "sessions = none leaves nothing");
+  EXPECT_HAS(refusal(head + configuration + "maps = each\nmap_sessions = all\n"),
              "maps = each has no map before a session");
-  EXPECT_HAS(refusal(head + setting + "maps = each\nmap_sessions = a b\nmap = finished\n"),
+  EXPECT_HAS(refusal(head + configuration + "maps = each\nmap_sessions = a b\nmap = finished\n"),
              "session c has no map");
-  EXPECT_HAS(refusal(head + "truth_map = labels\n" + setting), "needs source = kitti-odometry");
-  EXPECT_HAS(refusal(head + "truth_map = {data}/x\n" + setting), "--data");
-  EXPECT_HAS(refusal("[batch]\nsettings = one\npublished = all\n" + sessions + setting),
+  EXPECT_HAS(refusal(head + "truth_map = labels\n" + configuration),
+             "needs source = kitti-odometry");
+  EXPECT_HAS(refusal(head + "truth_map = {data}/x\n" + configuration), "--data");
+  EXPECT_HAS(refusal("[batch]\nsettings = one\npublished = all\n" + sessions + configuration),
              "semantickitti");
 }
 
 TEST(BatchSpec, ValuesCanBePutInPlaceOfTheFiles) {
   const TempFolder folder;
-  writeText(folder / "a.ini", "[batch]\nsettings = one\n" + sessions + setting +
+  writeText(folder / "a.ini", "[batch]\nsettings = one\n" + sessions + configuration +
                                   "map_sessions = first\nsessions = later\n");
   const auto with = [&](const std::vector<std::string>& set) {
     return readBatchSpec(folder / "a.ini", "/d", set);
@@ -151,7 +158,7 @@ TEST(BatchSpec, ValuesCanBePutInPlaceOfTheFiles) {
   EXPECT_EQ(spec.runs, 2);
   ASSERT_EQ(spec.sessions.size(), 2u);
   EXPECT_EQ(spec.sessions[1].input, "/d/b");
-  EXPECT_EQ(spec.settings[0].set,
+  EXPECT_EQ(spec.configurations[0].set,
             (std::vector<std::string>{"filter.particles=7", "map.min_count=2"}));
   EXPECT_HAS(messageOf([&] { with({"batch.run=2"}); }), "run");
   EXPECT_HAS(messageOf([&] { with({"runs=2"}); }), "section.key=value");
@@ -171,7 +178,7 @@ TEST(BatchSpec, WhatASessionSetsComesAfterWhatAllSet) {
             "[batch]\nsettings = one\n[sessions]\nnames = a b\nsource = simulated\ninput = x.ini\n"
             "set = world.seed=5 simulation.detections={here}/m.json\n"
             "[session b]\nset = world.seed=6\n" +
-                setting + "sessions = b\n");
+                configuration + "sessions = b\n");
   const BatchSpec spec = readBatchSpec(folder / "a.ini");
   const std::string model = "simulation.detections=" + folder.path().string() + "/m.json";
   EXPECT_EQ(spec.session("a").set, (std::vector<std::string>{"world.seed=5", model}));

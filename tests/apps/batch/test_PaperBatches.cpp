@@ -51,13 +51,14 @@ class PaperBatches : public testing::Test {
     for (const auto& result : results.results)
       for (const auto& one : result.runs) {
         ++runs;
-        const std::string& setting = results.settings[result.setting].name;
-        EXPECT_EQ(one.failure, "") << setting;
-        EXPECT_GT(one.errors.poses, 20u) << setting;
-        EXPECT_GT(one.errors.posMean, 0) << setting;
-        EXPECT_LT(one.errors.posMean, setting.rfind("ours", 0) == 0 ? bound : 3.0) << setting;
+        const std::string& configuration = results.configurations[result.configuration].name;
+        EXPECT_EQ(one.failure, "") << configuration;
+        EXPECT_GT(one.errors.poses, 20u) << configuration;
+        EXPECT_GT(one.errors.posMean, 0) << configuration;
+        EXPECT_LT(one.errors.posMean, configuration.rfind("ours", 0) == 0 ? bound : 3.0)
+            << configuration;
       }
-    EXPECT_GE(runs, results.settings.size());
+    EXPECT_GE(runs, results.configurations.size());
   }
 
   static void expectScored(const report::BatchResults& results, double bound) {
@@ -66,15 +67,16 @@ class PaperBatches : public testing::Test {
     for (const auto& result : results.results)
       if (result.score) {
         ++scores;
-        const std::string& setting = results.settings[result.setting].name;
-        EXPECT_GE(result.score->near.matches, result.score->oneToOne.matches) << setting;
-        EXPECT_GE(result.score->oneToOne.matches, result.score->oneToOneHalf.matches) << setting;
-        EXPECT_GT(result.score->near.mapPoles, 0u) << setting;
-        if (setting == "ours") {
+        const std::string& configuration = results.configurations[result.configuration].name;
+        EXPECT_GE(result.score->near.matches, result.score->oneToOne.matches) << configuration;
+        EXPECT_GE(result.score->oneToOne.matches, result.score->oneToOneHalf.matches)
+            << configuration;
+        EXPECT_GT(result.score->near.mapPoles, 0u) << configuration;
+        if (configuration == "ours") {
           EXPECT_GT(result.score->oneToOneHalf.f1, bound);
         }
       }
-    EXPECT_GE(scores, results.settings.size());
+    EXPECT_GE(scores, results.configurations.size());
   }
 
   /// The rows of the page's tables, in that order.
@@ -102,7 +104,7 @@ TEST_F(PaperBatches, TableOneOfNclt) {
   writeNclt(options, data / "2012-01-15", 1326652795000000, output / "other_day.npz");
   const auto results = run("table1-nclt", {"sessions.names=2012-01-08 2012-01-15"});
   expectScored(results, 0.5);
-  ASSERT_EQ(results.settings.size(), 2u);
+  ASSERT_EQ(results.configurations.size(), 2u);
   EXPECT_FALSE(results.find(0, 0)->score);  // one map of both sessions
   EXPECT_EQ(results.find(1, 1)->score->truth, "nclt_truth.npz");
   expectRows({"Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode", "polemcl, ours"});
@@ -114,7 +116,7 @@ TEST_F(PaperBatches, TableOneOfNclt) {
   const auto three = run("nclt", {"sessions.names=2012-01-08 2012-01-15", "batch.runs=1",
                                   "sessions.truth_map={data}/nclt_truth.npz"});
   expectLocalized(three, 0.15);
-  ASSERT_EQ(three.settings.size(), 3u);
+  ASSERT_EQ(three.configurations.size(), 3u);
   EXPECT_EQ(three.published.size(), 54u);
   EXPECT_TRUE(three.find(2, 1)->score);
   expectRows({"Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode", "polemcl, ours",
@@ -131,11 +133,11 @@ TEST_F(PaperBatches, TableOneOfSemanticKitti) {
   writeSemanticKitti(options, data / "sequences/01");
   const auto results = run("table1-semantickitti", {"sessions.names=00 01"});
   expectScored(results, 0.5);
-  ASSERT_EQ(results.settings.size(), 3u);
-  for (std::size_t setting : {0, 1, 2})
+  ASSERT_EQ(results.configurations.size(), 3u);
+  for (std::size_t configuration : {0, 1, 2})
     for (std::size_t session : {0, 1}) {
-      ASSERT_TRUE(results.find(setting, session)->score);
-      EXPECT_EQ(results.find(setting, session)->score->truth, "labels");
+      ASSERT_TRUE(results.find(configuration, session)->score);
+      EXPECT_EQ(results.find(configuration, session)->score->truth, "labels");
     }
   expectRows({"Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode-mended",
               "polemcl, paper-mode", "polemcl, ours"});
@@ -157,7 +159,7 @@ TEST_F(PaperBatches, TableFourKitti) {
   writeKittiRaw(street("hdl64e_kitti", 1.73, 60), data / "2011_09_26/2011_09_26_drive_0009_sync");
   const auto results = run("kitti", {"batch.runs=1"});
   expectLocalized(results, 0.15);
-  ASSERT_EQ(results.settings.size(), 4u);
+  ASSERT_EQ(results.configurations.size(), 4u);
   expectRows({"Kümmerle et al. 2019", "Weng et al. 2018", "Sefati et al. 2017",
               "Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode-mended",
               "polemcl, paper-mode", "polemcl, ours", "polemcl, ours-strict"});

@@ -63,7 +63,7 @@ TEST(BatchFiles, WhatIsReadBackIsWhatWasWritten) {
   EXPECT_EQ(read.title, batch.title);
   EXPECT_EQ(read.command, batch.command);
   EXPECT_EQ(read.versions.compiler, "GCC 12.2");
-  EXPECT_EQ(read.settings[0].config, batch.settings[0].config);
+  EXPECT_EQ(read.configurations[0].config, batch.configurations[0].config);
   EXPECT_EQ(read.sessions[2].length, 1480.5);
   EXPECT_TRUE(std::isnan(read.sessions[1].length));
   ASSERT_EQ(read.results.size(), 4u);

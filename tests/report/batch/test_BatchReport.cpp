@@ -29,7 +29,7 @@ std::vector<std::string> pages() {
   batches[1].dataset = "nclt";
   batches[2].results.clear();
   batches[2].failures.clear();
-  batches[3].settings.resize(1);
+  batches[3].configurations.resize(1);
   batches[3].sessions.resize(1);
   batches[3].results.resize(1);
   batches[3].failures.clear();
@@ -178,8 +178,9 @@ TEST(BatchReport, WhatDoesNotExistIsADash) {
 TEST(BatchReport, HostileNamesAreTextAndNothingElse) {
   BatchResults batch = smallBatch();
   const std::string evil = "<script>alert('x')</script>&\"]]>";
-  batch.settings[0].name = batch.settings[0].description = batch.settings[0].protocol = evil;
-  batch.settings[0].config = "[a]\nkey = " + evil + "\n";
+  batch.configurations[0].name = batch.configurations[0].description =
+      batch.configurations[0].protocol = evil;
+  batch.configurations[0].config = "[a]\nkey = " + evil + "\n";
   batch.sessions[0].name = batch.title = batch.command = batch.name = evil;
   batch.results[1].runs[1].failure = batch.failures[0].log = evil;
   const BatchTimings timings{evil, 1, 1, {{evil, {1}}}};
@@ -229,15 +230,16 @@ TEST(BatchReport, HeadlinesTellWhatWasLost) {
   EXPECT_EQ(page2.find("What went wrong"), std::string::npos);
 }
 
-TEST(BatchReport, OfManySettingsTheBestAndTheWorstAreNamed) {
+TEST(BatchReport, OfManyConfigurationsTheBestAndTheWorstAreNamed) {
   BatchResults batch = smallBatch();
   const double errors[] = {0.3, 0.2, 0.5, 0.4};
-  batch.settings = {{"A", "", "", ""}, {"B", "", "", ""}, {"C", "", "", ""}, {"D", "", "", ""}};
+  batch.configurations = {
+      {"A", "", "", ""}, {"B", "", "", ""}, {"C", "", "", ""}, {"D", "", "", ""}};
   batch.results.clear();
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 2; ++k) {
       SessionResult result;
-      result.setting = i, result.session = k;
+      result.configuration = i, result.session = k;
       result.runs = {runWith(0, errors[i] * (k == 0 ? 0.9 : 1.1), 0.1)};
       batch.results.push_back(result);
     }
@@ -452,8 +454,9 @@ TEST(BatchReport, LabelsStayInsideTheirPlotAndOffTheTitleOfTheAxis) {
 
 TEST(BatchReport, ChangedKeysAreShownSideBySide) {
   BatchResults batch = smallBatch();
-  batch.settings[0].config = "[map]\ncount = 6 ; detections\nsame = 1\n[filter]\ncount = 500\n";
-  batch.settings[1].config = "[map]\nsame = 1 # as there\ncount = 9\n";
+  batch.configurations[0].config =
+      "[map]\ncount = 6 ; detections\nsame = 1\n[filter]\ncount = 500\n";
+  batch.configurations[1].config = "[map]\nsame = 1 # as there\ncount = 9\n";
   const Element page = parsePage(batchReport(batch));
   const Element& section = sectionOf(page, "configuration");
   EXPECT_EQ(cellsOf(section, "map.count"), (std::vector<std::string>{"map.count", "6", "9"}));
@@ -470,7 +473,7 @@ TEST(BatchReport, ALongBatchStaysBelowTenMegabytes) {
     batch.sessions.push_back({"session " + std::to_string(k), "", 5500, 20000, 5});
     for (std::size_t i = 0; i < 2; ++i) {
       SessionResult result;
-      result.setting = i, result.session = k;
+      result.configuration = i, result.session = k;
       for (std::size_t run = 0; run < 10; ++run) result.runs.push_back(runWith(run, 0.1, 0.2));
       for (int j = 0; j < 3000; ++j)
         result.plots.mapPoles.emplace_back(400 * std::cos(j), 300 * std::sin(1.7 * j));

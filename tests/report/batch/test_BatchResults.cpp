@@ -47,11 +47,11 @@ TEST(BatchResults, FindsAPairAndNothingElse) {
 TEST(BatchResults, RefusesWhatCannotBeTrue) {
   EXPECT_NO_THROW(smallBatch().validate());
   const std::function<void(BatchResults&)> breakages[] = {
-      [](BatchResults& b) { b.settings.clear(); },
+      [](BatchResults& b) { b.configurations.clear(); },
       [](BatchResults& b) { b.sessions.clear(); },
       [](BatchResults& b) { b.sessions[1].name = b.sessions[0].name; },
-      [](BatchResults& b) { b.settings[1].name = ""; },
-      [](BatchResults& b) { b.results[3].setting = 2; },
+      [](BatchResults& b) { b.configurations[1].name = ""; },
+      [](BatchResults& b) { b.results[3].configuration = 2; },
       [](BatchResults& b) { b.results[3].session = 3; },
       [](BatchResults& b) { b.results[3] = b.results[0]; },
       [](BatchResults& b) { b.results[0].mapShare = 1.01; },

@@ -55,7 +55,7 @@ TEST(BatchSummary, SessionsAreMeansOverTheirRuns) {
   EXPECT_EQ(second.figures.posMean.count, 1u);
 }
 
-TEST(BatchSummary, SettingsAreMeansOverTheirSessions) {
+TEST(BatchSummary, ConfigurationsAreMeansOverTheirSessions) {
   const ConfigurationSummary plain = summarize(smallBatch())[0];
   // Each session once, however many runs it has; lost runs with a pose are in: 0.2, 0.4, 4.
   EXPECT_NEAR(plain.figures.posMean.mean, 4.6 / 3, 1e-12);

@@ -29,7 +29,7 @@ std::string field(double value) {
 }
 
 std::string place(const BatchResults& results, const SessionResult& result) {
-  return field(results.settings[result.setting].name) + ',' +
+  return field(results.configurations[result.configuration].name) + ',' +
          field(results.sessions[result.session].name);
 }
 
@@ -66,7 +66,7 @@ void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results
   for (const MetricName& name : metricNames) out.stream() << ',' << name.key;
   out.stream() << ",poses,unmatched,ok_share,degraded_share,lost_share,first_pose_scan,"
                   "relocalizations\n";
-  for (std::size_t i = 0; i < results.settings.size(); ++i)
+  for (std::size_t i = 0; i < results.configurations.size(); ++i)
     for (std::size_t k = 0; k < results.sessions.size(); ++k)
       if (const SessionResult* result = results.find(i, k))
         for (const BatchRun& run : result->runs) {
@@ -84,7 +84,7 @@ void writeMapsCsv(const std::filesystem::path& file, const BatchResults& results
     for (const char* figure : {"precision", "recall", "f1", "matches"})
       out.stream() << ',' << name.key << '_' << figure;
   out.stream() << '\n';
-  for (std::size_t i = 0; i < results.settings.size(); ++i)
+  for (std::size_t i = 0; i < results.configurations.size(); ++i)
     for (std::size_t k = 0; k < results.sessions.size(); ++k) {
       const SessionResult* result = results.find(i, k);
       if (!result || !result->score) continue;

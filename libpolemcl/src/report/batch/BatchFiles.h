@@ -20,17 +20,18 @@ void writeResultsJson(const std::filesystem::path& file, const BatchResults& res
 ///         another type, another format version, results that are not valid.
 BatchResults readResultsJson(const std::filesystem::path& file);
 
-/// \brief One row for each run: setting, session, run, seed, state, reason, figures, health.
+/// \brief One row for each run: configuration, session, run, seed, state, reason, figures, health.
 void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results);
-/// \brief One row for each session under each setting: mean and standard deviation over its runs.
+/// \brief One row for each session under each configuration: mean and standard deviation over its
+/// runs.
 void writeSessionsCsv(const std::filesystem::path& file, const BatchResults& results);
 
 /// \brief One row for each map that was scored: poles, then precision, recall, F1 and matches in
 /// three ways to count, see MapScores. Without any, the header alone.
 void writeMapsCsv(const std::filesystem::path& file, const BatchResults& results);
 
-/// \brief The paper's tables (booktabs), to be \input into a document: sessions of each setting,
-/// scores of maps, published figures beside ours.
+/// \brief The paper's tables (booktabs), to be \input into a document: sessions of each
+/// configuration, scores of maps, published figures beside ours.
 void writeLatexTable(const std::filesystem::path& file, const BatchResults& results);
 /// \brief Text as LaTeX shows it letter by letter.
 std::string latexText(const std::string& text);

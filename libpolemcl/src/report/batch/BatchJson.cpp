@@ -81,7 +81,7 @@ Json jsonOf(const MapScores& scores) {
 
 Json jsonOf(const SessionResult& result, const BatchResults& batch) {
   Json json;
-  json["setting"] = batch.settings[result.setting].name;
+  json["setting"] = batch.configurations[result.configuration].name;
   json["session"] = batch.sessions[result.session].name;
   json["f_map"] = result.mapShare;
   json["map_poles"] = result.mapPoles;
@@ -114,9 +114,10 @@ void setCounts(Json& json, const RunCounts& counts) {
   json["failed"] = counts.failed;
 }
 
-Json jsonOf(const ConfigurationSummary& summary, const BatchResults& batch, std::size_t setting) {
+Json jsonOf(const ConfigurationSummary& summary, const BatchResults& batch,
+            std::size_t configuration) {
   Json json;
-  json["setting"] = batch.settings[setting].name;
+  json["setting"] = batch.configurations[configuration].name;
   setCounts(json, summary.counts);
   json["localized_sessions"] = summary.localized;
   json["lost_sessions"] = summary.lostSessions;
@@ -157,11 +158,11 @@ Json jsonOf(const BatchResults& batch) {
                       {"compiler", batch.versions.compiler}};
   json["lost_bound_m"] = batch.lostBound;
   json["settings"] = Json::array();
-  for (const BatchConfiguration& setting : batch.settings)
-    json["settings"].push_back({{"name", setting.name},
-                                {"description", setting.description},
-                                {"protocol", setting.protocol},
-                                {"config", setting.config}});
+  for (const BatchConfiguration& configuration : batch.configurations)
+    json["settings"].push_back({{"name", configuration.name},
+                                {"description", configuration.description},
+                                {"protocol", configuration.protocol},
+                                {"config", configuration.config}});
   json["sessions"] = Json::array();
   for (const BatchSession& session : batch.sessions)
     json["sessions"].push_back({{"name", session.name},
@@ -186,7 +187,7 @@ Json jsonOf(const BatchResults& batch) {
   for (std::size_t i = 0; i < summaries.size(); ++i)
     json["summary"].push_back(jsonOf(summaries[i], batch, i));
   json["results"] = Json::array();
-  for (std::size_t i = 0; i < batch.settings.size(); ++i)
+  for (std::size_t i = 0; i < batch.configurations.size(); ++i)
     for (std::size_t k = 0; k < batch.sessions.size(); ++k)
       if (const SessionResult* result = batch.find(i, k))
         json["results"].push_back(jsonOf(*result, batch));

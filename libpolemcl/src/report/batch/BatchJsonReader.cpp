@@ -131,8 +131,8 @@ SessionPlots plots(const Node& node) {
 
 void readLists(BatchResults& batch, const Node& root) {
   for (const Node& node : root["settings"].elements())
-    batch.settings.push_back({node["name"].text(), node["description"].text(),
-                              node["protocol"].text(), node["config"].text()});
+    batch.configurations.push_back({node["name"].text(), node["description"].text(),
+                                    node["protocol"].text(), node["config"].text()});
   for (const Node& node : root["sessions"].elements())
     batch.sessions.push_back({node["name"].text(), node["date"].text(), node["length_m"].figure(),
                               node["scans"].count(), node["poles_per_scan"].figure()});
@@ -147,11 +147,12 @@ void readLists(BatchResults& batch, const Node& root) {
 
 void readResults(BatchResults& batch, const Node& root) {
   std::map<std::string, std::size_t> settings, sessions;
-  for (std::size_t i = 0; i < batch.settings.size(); ++i) settings[batch.settings[i].name] = i;
+  for (std::size_t i = 0; i < batch.configurations.size(); ++i)
+    settings[batch.configurations[i].name] = i;
   for (std::size_t i = 0; i < batch.sessions.size(); ++i) sessions[batch.sessions[i].name] = i;
   for (const Node& node : root["results"].elements()) {
     SessionResult result;
-    result.setting = node["setting"].indexIn(settings);
+    result.configuration = node["setting"].indexIn(settings);
     result.session = node["session"].indexIn(sessions);
     result.mapShare = node["f_map"].figure();
     result.mapPoles = node["map_poles"].count();

@@ -40,14 +40,15 @@ void endTable(std::ostream& out) {
 }
 
 /// The paper's table of sessions, with what was published for each beside.
-void writeSetting(std::ostream& out, const BatchResults& results, std::size_t index,
-                  const ConfigurationSummary& summary) {
-  const BatchConfiguration& setting = results.settings[index];
+void writeConfiguration(std::ostream& out, const BatchResults& results, std::size_t index,
+                        const ConfigurationSummary& summary) {
+  const BatchConfiguration& configuration = results.configurations[index];
   const PublishedRows published = publishedRows(results);
   const std::size_t systems = published.systems.size();
-  std::string caption = latexText(results.title) + ", setting \\emph{" + latexText(setting.name) +
+  std::string caption = latexText(results.title) + ", setting \\emph{" +
+                        latexText(configuration.name) +
                         "}. Mean and standard deviation over the runs of each session. ";
-  if (!setting.protocol.empty()) caption += latexText(sentence(setting.protocol)) + " ";
+  if (!configuration.protocol.empty()) caption += latexText(sentence(configuration.protocol)) + " ";
   if (systems > 0) caption += "Published means beside ours, and below over the same sessions. ";
   beginTable(out, caption + losses(summary.counts), "lr" + std::string(4 * (1 + systems), 'r'));
   out << "    Session & $f_\\mathrm{map}$ [\\%]";
@@ -108,7 +109,7 @@ void writeScores(std::ostream& out, const BatchResults& results, const Published
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     const ScoreSummary& scores = summaries[i].scores;
     if (scores.maps == 0) continue;
-    out << "    polemcl, " << latexText(results.settings[i].name);
+    out << "    polemcl, " << latexText(results.configurations[i].name);
     for (const ScoreMeans& one : {scores.near, scores.oneToOne, scores.oneToOneHalf})
       writeShares(out, {"", one.precision, one.recall, one.f1});
     out << " \\\\\n";
@@ -139,7 +140,7 @@ void writeComparison(std::ostream& out, const BatchResults& results,
   }
   out << "    \\midrule\n";
   for (std::size_t i = 0; i < summaries.size(); ++i) {
-    out << "    polemcl, " << latexText(results.settings[i].name);
+    out << "    polemcl, " << latexText(results.configurations[i].name);
     for (std::size_t k = 0; k < columns.size(); ++k)
       out << " & " << number(units[k], (summaries[i].figures.*columns[k].ours).mean);
     out << " \\\\\n";
@@ -201,7 +202,7 @@ void writeLatexTable(const std::filesystem::path& file, const BatchResults& resu
   out.stream() << "% Needs \\usepackage{booktabs}. A column of lengths is in centimetres\n"
                   "% if any of them is below 0.1 m; these have two significant digits.\n";
   for (std::size_t i = 0; i < summaries.size(); ++i)
-    if (summaries[i].counts.runs > 0) writeSetting(out.stream(), results, i, summaries[i]);
+    if (summaries[i].counts.runs > 0) writeConfiguration(out.stream(), results, i, summaries[i]);
   const PublishedDataset* dataset = publishedResults(results.dataset);
   writeScores(out.stream(), results, dataset, summaries);
   if (dataset && !dataset->figures.empty())

@@ -26,7 +26,7 @@ struct Page {
   const BatchResults& results;
   const std::vector<ConfigurationSummary> summaries;
   PlotIds ids;
-  const BatchConfiguration& setting(std::size_t i) const { return results.settings[i]; }
+  const BatchConfiguration& configuration(std::size_t i) const { return results.configurations[i]; }
   /// Whether any session was localized, or ought to have been.
   bool localized() const {
     return std::any_of(summaries.begin(), summaries.end(),
@@ -51,16 +51,16 @@ std::string sessionFigures(Page& page) {
                         {"mean heading error", "°", &MetricSpreads::angMeanDeg}, page.ids);
 }
 
-Section settingsSection(Page& page) {
+Section configurationsSection(Page& page) {
   const BatchResults& results = page.results;
   if (!page.localized()) return {};
   std::string content;
-  if (results.settings.size() > 1) content += settingsTable(results, page.summaries);
+  if (results.configurations.size() > 1) content += configurationsTable(results, page.summaries);
   if (results.sessions.size() > 1) content += sessionFigures(page);
-  if (results.settings.size() > 1)
+  if (results.configurations.size() > 1)
     content += foldable("Sessions with all settings side by side",
                         sideBySideTable(results, page.summaries), false);
-  return {"settings", results.settings.size() > 1 ? "Settings compared" : "Error per session",
+  return {"settings", results.configurations.size() > 1 ? "Settings compared" : "Error per session",
           content};
 }
 
@@ -97,12 +97,12 @@ Section scoresSection(const Page& page) {
 
 Section sessionTables(const Page& page) {
   std::string content;
-  for (std::size_t i = 0; i < page.results.settings.size(); ++i) {
-    const BatchConfiguration& setting = page.setting(i);
-    content += element("h3", escaped(setting.name)) + '\n';
-    content += paragraph(escaped(sentence(setting.description)));
-    if (!setting.protocol.empty())
-      content += paragraph("Protocol: " + escaped(sentence(setting.protocol)));
+  for (std::size_t i = 0; i < page.results.configurations.size(); ++i) {
+    const BatchConfiguration& configuration = page.configuration(i);
+    content += element("h3", escaped(configuration.name)) + '\n';
+    content += paragraph(escaped(sentence(configuration.description)));
+    if (!configuration.protocol.empty())
+      content += paragraph("Protocol: " + escaped(sentence(configuration.protocol)));
     if (page.summaries[i].counts.runs > 0)
       content += paperTable(page.results, i, page.summaries[i]);
   }
@@ -124,7 +124,7 @@ Section paths(Page& page) {
   bool opened = false;
   for (std::size_t k = 0; k < results.sessions.size(); ++k) {
     std::string maps;
-    for (std::size_t i = 0; i < results.settings.size(); ++i)
+    for (std::size_t i = 0; i < results.configurations.size(); ++i)
       if (const SessionResult* result = results.find(i, k))
         maps += mapFigure(results, *result, page.ids);
     const std::string errors = distanceFigure(results, k, page.ids);
@@ -139,9 +139,9 @@ Section paths(Page& page) {
 
 Section health(const Page& page) {
   std::string content;
-  for (std::size_t i = 0; i < page.results.settings.size(); ++i)
+  for (std::size_t i = 0; i < page.results.configurations.size(); ++i)
     if (page.summaries[i].counts.runs > 0)
-      content += foldable("Setting " + element("em", escaped(page.setting(i).name)),
+      content += foldable("Setting " + element("em", escaped(page.configuration(i).name)),
                           healthTable(page.results, i, page.summaries[i]), i == 0);
   if (content.empty()) return {};
   return {
@@ -151,10 +151,10 @@ Section health(const Page& page) {
 
 Section runs(const Page& page) {
   std::string content;
-  for (std::size_t i = 0; i < page.results.settings.size(); ++i) {
+  for (std::size_t i = 0; i < page.results.configurations.size(); ++i) {
     const std::string table = runsTable(page.results, i);
     if (!table.empty())
-      content += foldable("Runs and seeds of " + element("em", escaped(page.setting(i).name)),
+      content += foldable("Runs and seeds of " + element("em", escaped(page.configuration(i).name)),
                           table, false);
   }
   return {"runs", "Runs and seeds", content};
@@ -174,12 +174,13 @@ Section timings(const BatchTimings* timings) {
           paragraph("The only part of this page that changes from one time to the next.", "note")};
 }
 
-Section settingsInFull(const Page& page) {
+Section configurationsInFull(const Page& page) {
   std::string content = differencesTable(page.results);
-  for (std::size_t i = 0; i < page.results.settings.size(); ++i)
-    if (!page.setting(i).config.empty())
-      content += foldable("Effective settings of " + element("em", escaped(page.setting(i).name)),
-                          element("pre", "tabindex=\"0\"", escaped(page.setting(i).config)), false);
+  for (std::size_t i = 0; i < page.results.configurations.size(); ++i)
+    if (!page.configuration(i).config.empty())
+      content +=
+          foldable("Effective settings of " + element("em", escaped(page.configuration(i).name)),
+                   element("pre", "tabindex=\"0\"", escaped(page.configuration(i).config)), false);
   return {"configuration", "Settings in full", content};
 }
 
@@ -246,17 +247,18 @@ std::string headOfPage(const Page& page, const std::vector<Section>& sections) {
   const std::string title = results.title.empty() ? results.name : results.title;
   std::size_t runCount = 0;
   for (const ConfigurationSummary& summary : page.summaries) runCount += summary.counts.runs;
-  return element(
-             "header",
-             '\n' + element("p", "class=\"over\"", "polemcl · localization among poles") + '\n' +
-                 element("h1", escaped(title)) + '\n' +
-                 element("p", "class=\"meta\"",
-                         plural(results.sessions.size(), "session") + ", " +
-                             plural(results.settings.size(), "setting") + ", " +
-                             plural(runCount, "run") +
-                             (results.date.empty() ? "" : " · " + escaped(results.date))) +
-                 '\n' + headlines(results, page.summaries) + settingCards(results, page.summaries) +
-                 element("nav", "aria-label=\"Sections\"", element("ul", '\n' + links)) + '\n') +
+  return element("header",
+                 '\n' + element("p", "class=\"over\"", "polemcl · localization among poles") +
+                     '\n' + element("h1", escaped(title)) + '\n' +
+                     element("p", "class=\"meta\"",
+                             plural(results.sessions.size(), "session") + ", " +
+                                 plural(results.configurations.size(), "setting") + ", " +
+                                 plural(runCount, "run") +
+                                 (results.date.empty() ? "" : " · " + escaped(results.date))) +
+                     '\n' + headlines(results, page.summaries) +
+                     configurationCards(results, page.summaries) +
+                     element("nav", "aria-label=\"Sections\"", element("ul", '\n' + links)) +
+                     '\n') +
          '\n';
 }
 
@@ -266,7 +268,7 @@ std::vector<Section> sectionsOf(Page& page, const BatchTimings* times) {
     if (!section.content.empty()) sections.push_back(std::move(section));
   };
   add({"troubles", "What went wrong", troublesTables(page.results)});
-  add(settingsSection(page));
+  add(configurationsSection(page));
   add(publishedSection(page));
   add(scoresSection(page));
   add(sessionTables(page));
@@ -275,7 +277,7 @@ std::vector<Section> sectionsOf(Page& page, const BatchTimings* times) {
   add(health(page));
   add(runs(page));
   add(timings(times));
-  add(settingsInFull(page));
+  add(configurationsInFull(page));
   add(origin(page));
   add(terms(page));
   return sections;

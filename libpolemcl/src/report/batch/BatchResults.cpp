@@ -86,29 +86,31 @@ std::uint64_t ErrorHistogram::total() const {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-const SessionResult* BatchResults::find(std::size_t setting, std::size_t session) const {
+const SessionResult* BatchResults::find(std::size_t configuration, std::size_t session) const {
   const auto found = std::find_if(results.begin(), results.end(), [&](const SessionResult& r) {
-    return r.setting == setting && r.session == session;
+    return r.configuration == configuration && r.session == session;
   });
   return found == results.end() ? nullptr : &*found;
 }
 
 void BatchResults::validate() const {
-  if (settings.empty() || sessions.empty())
+  if (configurations.empty() || sessions.empty())
     throw Error("report: batch '" + name + "' has no " +
-                (settings.empty() ? "settings" : "sessions") + "; there is nothing to report");
+                (configurations.empty() ? "settings" : "sessions") +
+                "; there is nothing to report");
   if (!(lostBound > 0)) throw Error("report: the bound of lost runs must be positive, in metres");
-  requireNames(settings, "setting");
+  requireNames(configurations, "setting");
   requireNames(sessions, "session");
   std::set<std::pair<std::size_t, std::size_t>> seen;
   for (const SessionResult& result : results) {
-    if (result.setting >= settings.size() || result.session >= sessions.size())
-      throw Error("report: a result belongs to setting " + std::to_string(result.setting) +
+    if (result.configuration >= configurations.size() || result.session >= sessions.size())
+      throw Error("report: a result belongs to setting " + std::to_string(result.configuration) +
                   " and session " + std::to_string(result.session) + ", but there are only " +
-                  std::to_string(settings.size()) + " and " + std::to_string(sessions.size()));
+                  std::to_string(configurations.size()) + " and " +
+                  std::to_string(sessions.size()));
     const std::string where = "report: session '" + sessions[result.session].name + "', setting '" +
-                              settings[result.setting].name + "': ";
-    if (!seen.insert({result.setting, result.session}).second)
+                              configurations[result.configuration].name + "': ";
+    if (!seen.insert({result.configuration, result.session}).second)
       throw Error(where + "there are two results; there can be one");
     requireValid(result, where);
   }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file BatchResults.h
-/// \brief All that a finished batch has to tell: sessions x settings x runs, as plain data.
+/// \brief All that a finished batch has to tell: sessions x configurations x runs, as plain data.
 ///
 /// Filled from run folders by the program, measured with BatchMeasures.h, summed up by
 /// BatchSummary.h, written by BatchFiles.h and BatchReport.h. It holds no clock and no timing: the
@@ -94,7 +94,7 @@ struct ErrorHistogram {
   std::uint64_t total() const;
 };
 
-/// \brief What is drawn of a session under a setting. Any part may be empty.
+/// \brief What is drawn of a session under a configuration. Any part may be empty.
 struct SessionPlots {
   std::vector<Eigen::Vector2d> mapPoles;         ///< m, of the map the session was localized in
   std::vector<Eigen::Vector2d> truth, estimate;  ///< m, of run 0; see thinPath()
@@ -120,13 +120,13 @@ struct PublishedSession {
   double angMeanDeg = noFigure, angRmseDeg = noFigure;  ///< degrees
 };
 
-/// \brief One session under one setting.
+/// \brief One session under one configuration.
 struct SessionResult {
-  std::size_t setting = 0, session = 0;  ///< indices in the batch
-  double mapShare = noFigure;            ///< f_map: share of the session's scans used for the map
-  std::size_t mapPoles = 0;              ///< of the map it was localized in
-  std::optional<MapScores> score;        ///< of the map that the session completes
-  std::vector<BatchRun> runs;            ///< by index; empty for a session that was only mapped
+  std::size_t configuration = 0, session = 0;  ///< indices in the batch
+  double mapShare = noFigure;      ///< f_map: share of the session's scans used for the map
+  std::size_t mapPoles = 0;        ///< of the map it was localized in
+  std::optional<MapScores> score;  ///< of the map that the session completes
+  std::vector<BatchRun> runs;      ///< by index; empty for a session that was only mapped
   SessionPlots plots;
 };
 
@@ -149,13 +149,14 @@ struct BatchResults {
   /// A run is lost when no pose could be compared, or when its position error is larger than this
   /// on average or at the end, m.
   double lostBound = 2.0;
-  std::vector<BatchConfiguration> settings;
+  std::vector<BatchConfiguration> configurations;
   std::vector<BatchSession> sessions;  ///< in the order they were driven
-  std::vector<SessionResult> results;  ///< at most one for each setting and session, in any order
+  std::vector<SessionResult>
+      results;  ///< at most one for each configuration and session, in any order
   std::vector<FailedTask> failures;
 
-  /// \brief The result of a session under a setting, or null.
-  const SessionResult* find(std::size_t setting, std::size_t session) const;
+  /// \brief The result of a session under a configuration, or null.
+  const SessionResult* find(std::size_t configuration, std::size_t session) const;
   /// \throws Error: nothing to report, indices out of range, a name or a pair that appears twice, a
   ///         share or a precision outside [0, 1], plots with coordinates that are not finite.
   void validate() const;

@@ -40,7 +40,8 @@ SessionSummary summaryOf(const SessionResult& result, double lostBound) {
   return summary;
 }
 
-void sumUpScores(ConfigurationSummary& setting, const BatchResults& results, std::size_t index) {
+void sumUpScores(ConfigurationSummary& configuration, const BatchResults& results,
+                 std::size_t index) {
   for (const ScoreName& name : scoreNames) {
     std::vector<double> precision, recall, f1;
     for (std::size_t k = 0; k < results.sessions.size(); ++k) {
@@ -51,8 +52,8 @@ void sumUpScores(ConfigurationSummary& setting, const BatchResults& results, std
       recall.push_back(one.recall);
       f1.push_back(one.f1);
     }
-    setting.scores.maps = f1.size();
-    setting.scores.*
+    configuration.scores.maps = f1.size();
+    configuration.scores.*
         name.means = {spreadOf(precision).mean, spreadOf(recall).mean, spreadOf(f1).mean};
   }
 }
@@ -68,25 +69,26 @@ Spread overSessions(const std::vector<SessionSummary>& sessions, Spread MetricSp
   return spread;
 }
 
-void sumUp(ConfigurationSummary& setting) {
+void sumUp(ConfigurationSummary& configuration) {
   std::vector<double> shares, means;
-  for (const SessionSummary& session : setting.sessions) {
+  for (const SessionSummary& session : configuration.sessions) {
     const RunCounts& counts = session.counts;
-    setting.counts.runs += counts.runs;
-    setting.counts.lost += counts.lost;
-    setting.counts.failed += counts.failed;
-    setting.lostSessions += counts.runs > 0 && counts.lost + counts.failed == counts.runs;
+    configuration.counts.runs += counts.runs;
+    configuration.counts.lost += counts.lost;
+    configuration.counts.failed += counts.failed;
+    configuration.lostSessions += counts.runs > 0 && counts.lost + counts.failed == counts.runs;
     shares.push_back(session.mapShare);
     if (session.figures.posMean.count > 0) means.push_back(session.figures.posMean.mean);
   }
-  setting.localized = means.size();
+  configuration.localized = means.size();
   for (const MetricName& name : metricNames)
-    setting.figures.*name.spread = overSessions(setting.sessions, name.spread);
+    configuration.figures.*name.spread = overSessions(configuration.sessions, name.spread);
   for (const ShareName& name : shareNames)
-    setting.figures.*name.spread = overSessions(setting.sessions, name.spread);
-  setting.figures.axisRmse = overSessions(setting.sessions, &MetricSpreads::axisRmse);
-  setting.mapShare = spreadOf(shares);
-  if (means.size() > 1 && means.front() > 0) setting.lastOverFirst = means.back() / means.front();
+    configuration.figures.*name.spread = overSessions(configuration.sessions, name.spread);
+  configuration.figures.axisRmse = overSessions(configuration.sessions, &MetricSpreads::axisRmse);
+  configuration.mapShare = spreadOf(shares);
+  if (means.size() > 1 && means.front() > 0)
+    configuration.lastOverFirst = means.back() / means.front();
 }
 
 }  // namespace
@@ -126,7 +128,7 @@ RunState stateOf(const BatchRun& run, double lostBound) {
 }
 
 std::vector<ConfigurationSummary> summarize(const BatchResults& results) {
-  std::vector<ConfigurationSummary> summaries(results.settings.size());
+  std::vector<ConfigurationSummary> summaries(results.configurations.size());
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     for (std::size_t k = 0; k < results.sessions.size(); ++k)
       if (const SessionResult* result = results.find(i, k))

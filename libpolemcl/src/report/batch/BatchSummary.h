@@ -1,6 +1,6 @@
 #pragma once
 /// \file BatchSummary.h
-/// \brief Means and spreads over the runs of a session and over the sessions of a setting.
+/// \brief Means and spreads over the runs of a session and over the sessions of a configuration.
 
 #include <vector>
 
@@ -37,7 +37,7 @@ struct MetricSpreads {
   Spread ok, degraded, lost;  ///< shares of scans
 };
 
-/// \brief A session under a setting, over its runs.
+/// \brief A session under a configuration, over its runs.
 struct SessionSummary {
   std::size_t session = 0;  ///< index in the batch
   double mapShare = noFigure;
@@ -51,13 +51,13 @@ struct SessionSummary {
 struct ScoreMeans {
   double precision = noFigure, recall = noFigure, f1 = noFigure;
 };
-/// \brief The scored maps of a setting; see MapScores.
+/// \brief The scored maps of a configuration; see MapScores.
 struct ScoreSummary {
   std::size_t maps = 0;
   ScoreMeans near, oneToOne, oneToOneHalf;
 };
 
-/// \brief A setting over its sessions.
+/// \brief A configuration over its sessions.
 struct ConfigurationSummary {
   std::vector<SessionSummary> sessions;  ///< in the order of the batch; those with a result
   RunCounts counts;
@@ -72,7 +72,7 @@ struct ConfigurationSummary {
   double lastOverFirst = noFigure;
 };
 
-/// \brief One summary for each setting, in the order of the batch.
+/// \brief One summary for each configuration, in the order of the batch.
 std::vector<ConfigurationSummary> summarize(const BatchResults& results);
 
 }  // namespace polemcl::report

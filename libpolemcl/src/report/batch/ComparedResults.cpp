@@ -41,10 +41,10 @@ double PublishedRows::figure(std::size_t system, const SessionSummary& session,
   return one && session.counts.runs > 0 ? one->*figure : noFigure;
 }
 
-double PublishedRows::mean(std::size_t system, const ConfigurationSummary& setting,
+double PublishedRows::mean(std::size_t system, const ConfigurationSummary& configuration,
                            double PublishedSession::*wanted) const {
   std::vector<double> values;
-  for (const SessionSummary& session : setting.sessions)
+  for (const SessionSummary& session : configuration.sessions)
     if (session.figures.posMean.count > 0) values.push_back(figure(system, session, wanted));
   return spreadOf(values).mean;
 }
@@ -53,10 +53,10 @@ PublishedRows publishedRows(const BatchResults& results) {
   return {publishedSystems(results.published), results};
 }
 
-MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& setting,
+MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& configuration,
                     const PublishedRows& published) {
   std::vector<double> values;
-  for (const SessionSummary& session : setting.sessions) {
+  for (const SessionSummary& session : configuration.sessions) {
     values.push_back((session.figures.*column.ours).mean);
     for (std::size_t i = 0; i < published.systems.size(); ++i)
       values.push_back(published.figure(i, session, column.published));

@@ -41,22 +41,23 @@ inline constexpr SessionColumn sessionColumns[] = {
     {"RMSE<sub>ang</sub>", "$\\mathrm{RMSE}_\\mathrm{ang}$", Quantity::angle,
      &PublishedSession::angRmseDeg, &MetricSpreads::angRmseDeg}};
 
-/// \brief What was published for the sessions of a setting, system by system; sessions that were
-/// not localized have no figures.
+/// \brief What was published for the sessions of a configuration, system by system; sessions that
+/// were not localized have no figures.
 struct PublishedRows {
   std::vector<std::string> systems;
-  /// \brief A figure of a system for one of the setting's sessions; noFigure where there is none.
+  /// \brief A figure of a system for one of the configuration's sessions; noFigure where there is
+  /// none.
   double figure(std::size_t system, const SessionSummary& session,
                 double PublishedSession::*figure) const;
   /// \brief Its mean over the sessions of which ours has a figure as well.
-  double mean(std::size_t system, const ConfigurationSummary& setting,
+  double mean(std::size_t system, const ConfigurationSummary& configuration,
               double PublishedSession::*figure) const;
   const BatchResults& results;
 };
 PublishedRows publishedRows(const BatchResults& results);
 
 /// \brief The figures of a column that decide on its unit: ours and those published.
-MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& setting,
+MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& configuration,
                     const PublishedRows& published);
 MetricColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
                     const std::vector<ConfigurationSummary>& summaries);

@@ -31,10 +31,11 @@ constexpr RunColumn runColumns[] = {
     {"Δ<sub>ang</sub>", Quantity::angle, &ErrorMetrics::angMeanDeg},
     {"RMSE<sub>ang</sub>", Quantity::angle, &ErrorMetrics::angRmseDeg}};
 
-MetricColumn unitOf(const RunColumn& column, const BatchResults& results, std::size_t setting) {
+MetricColumn unitOf(const RunColumn& column, const BatchResults& results,
+                    std::size_t configuration) {
   std::vector<double> values;
   for (const SessionResult& result : results.results)
-    if (result.setting == setting)
+    if (result.configuration == configuration)
       for (const BatchRun& run : result.runs) values.push_back(run.errors.*column.figure);
   return {column.quantity, values};
 }
@@ -86,12 +87,12 @@ std::map<std::string, std::string> valuesOf(const std::string& ini) {
 
 }  // namespace
 
-std::string runsTable(const BatchResults& results, std::size_t setting) {
-  HtmlTable table("Setting " + results.settings[setting].name + ": every run.");
+std::string runsTable(const BatchResults& results, std::size_t configuration) {
+  HtmlTable table("Setting " + results.configurations[configuration].name + ": every run.");
   std::vector<HeadCell> head{{"Session"}, {"Run"}, {"Seed"}, {"State"}};
   std::vector<MetricColumn> units;
   for (const RunColumn& column : runColumns) {
-    units.push_back(unitOf(column, results, setting));
+    units.push_back(unitOf(column, results, configuration));
     head.push_back({units.back().head(column.html)});
   }
   head.insert(head.end(), {{"Poses"},
@@ -103,7 +104,7 @@ std::string runsTable(const BatchResults& results, std::size_t setting) {
   table.head(head);
   bool any = false;
   for (std::size_t k = 0; k < results.sessions.size(); ++k)
-    if (const SessionResult* result = results.find(setting, k))
+    if (const SessionResult* result = results.find(configuration, k))
       for (const BatchRun& run : result->runs) {
         const RunState state = stateOf(run, results.lostBound);
         table.row(runCells(run, escaped(results.sessions[k].name), state, units));
@@ -123,14 +124,14 @@ std::string troublesTables(const BatchResults& results) {
               {"What happened"}});
   std::size_t count = 0;
   for (std::size_t k = 0; k < results.sessions.size(); ++k)
-    for (std::size_t i = 0; i < results.settings.size(); ++i) {
+    for (std::size_t i = 0; i < results.configurations.size(); ++i) {
       const SessionResult* result = results.find(i, k);
       if (!result) continue;
       for (const BatchRun& run : result->runs) {
         const RunState state = stateOf(run, results.lostBound);
         if (state == RunState::ok) continue;
         ++count;
-        table.row({escaped(results.sessions[k].name), escaped(results.settings[i].name),
+        table.row({escaped(results.sessions[k].name), escaped(results.configurations[i].name),
                    std::to_string(run.run), std::to_string(run.seed),
                    lengthText(run.errors.posMean), lengthText(run.errors.posEnd),
                    state == RunState::failed ? "failed: " + escaped(run.failure)
@@ -178,8 +179,8 @@ std::string timingsTable(const BatchTimings& timings) {
 std::string differencesTable(const BatchResults& results) {
   std::vector<std::map<std::string, std::string>> values;
   std::map<std::string, bool> differs;
-  for (const BatchConfiguration& setting : results.settings)
-    values.push_back(valuesOf(setting.config));
+  for (const BatchConfiguration& configuration : results.configurations)
+    values.push_back(valuesOf(configuration.config));
   for (const auto& one : values)
     for (const auto& [key, value] : one)
       differs[key] |= std::any_of(values.begin(), values.end(),
@@ -189,8 +190,8 @@ std::string differencesTable(const BatchResults& results) {
                                   });
   HtmlTable table("Keys whose values are not the same in all settings.");
   std::vector<HeadCell> head{{"Key"}};
-  for (const BatchConfiguration& setting : results.settings)
-    head.push_back({escaped(setting.name)});
+  for (const BatchConfiguration& configuration : results.configurations)
+    head.push_back({escaped(configuration.name)});
   table.head(head);
   bool any = false;
   for (const auto& [key, different] : differs) {

@@ -83,13 +83,13 @@ std::string mapFigure(const BatchResults& results, const SessionResult& result, 
   const Box box = boxOf(plots);
   if (box.empty()) return "";
   const std::string& session = results.sessions[result.session].name;
-  const std::string& setting = results.settings[result.setting].name;
+  const std::string& configuration = results.configurations[result.configuration].name;
   const double left = leftMargin(box), height = frameHeight(box, left);
   const PlotAxes axes =
       equalScales({left, top, width - left - mapRight, height}, box.x, box.y, mapMargin);
   SvgPlot plot(ids.next(), width, top + height + bottom, "Map and paths of " + session,
-               "Map poles, true path and the path estimated by run 0 with the setting " + setting +
-                   ", seen from above.");
+               "Map poles, true path and the path estimated by run 0 with the setting " +
+                   configuration + ", seen from above.");
   drawAxes(plot, axes);
   plot.beginClip(axes.frame);
   plot.line(mapPixels(axes, plots.truth), "truth");
@@ -99,9 +99,10 @@ std::string mapFigure(const BatchResults& results, const SessionResult& result, 
   plot.endClip();
   const std::string poles =
       result.mapPoles > 0 ? ", map of " + countText(result.mapPoles) + " poles" : std::string();
-  return element("figure", element("div", "class=\"scroll\"", '\n' + plot.str("plot map")) +
-                               element("figcaption", "Setting " + element("em", escaped(setting)) +
-                                                         poles + '.')) +
+  return element("figure",
+                 element("div", "class=\"scroll\"", '\n' + plot.str("plot map")) +
+                     element("figcaption",
+                             "Setting " + element("em", escaped(configuration)) + poles + '.')) +
          '\n';
 }
 

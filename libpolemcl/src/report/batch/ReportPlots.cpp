@@ -14,9 +14,10 @@ namespace {
 constexpr std::size_t longestLabel = 16;
 constexpr std::size_t mostLabels = 60;
 
-std::vector<std::string> settingNames(const BatchResults& results) {
+std::vector<std::string> configurationNames(const BatchResults& results) {
   std::vector<std::string> names;
-  for (const BatchConfiguration& setting : results.settings) names.push_back(setting.name);
+  for (const BatchConfiguration& configuration : results.configurations)
+    names.push_back(configuration.name);
   return names;
 }
 
@@ -66,7 +67,7 @@ ErrorTicks errorTicks(const PlotAxes& axes, const std::string& unit) {
   return result;
 }
 
-/// The sessions x settings plot, drawn part by part.
+/// The sessions x configurations plot, drawn part by part.
 class SessionsPlot {
  public:
   SessionsPlot(const BatchResults& results, const std::vector<ConfigurationSummary>& summaries,
@@ -76,7 +77,7 @@ class SessionsPlot {
         m_quantity(quantity),
         m_plot(id, width, heightOf(results), quantity.name + " per session",
                "Mean over the runs of each session, bars of one standard deviation, for " +
-                   plural(results.settings.size(), "setting") + ".") {
+                   plural(results.configurations.size(), "setting") + ".") {
     const double left =
         turned(results, plotWidth) ? std::max(64.0, 0.71 * labelWidth(results) - 10) : 64;
     m_axes.frame = {left, 12, width - left - 14, plotHeight};
@@ -85,7 +86,7 @@ class SessionsPlot {
   }
   std::string draw() {
     drawAxes();
-    for (std::size_t i = 0; i < m_summaries.size(); ++i) drawSetting(i);
+    for (std::size_t i = 0; i < m_summaries.size(); ++i) drawConfiguration(i);
     return m_plot.str("plot wide");
   }
   /// What lies above the plot, in words.
@@ -102,8 +103,8 @@ class SessionsPlot {
   }
   double limit() const {
     std::vector<double> tops;
-    for (const ConfigurationSummary& setting : m_summaries)
-      for (const SessionSummary& session : setting.sessions) {
+    for (const ConfigurationSummary& configuration : m_summaries)
+      for (const SessionSummary& session : configuration.sessions) {
         const Spread& spread = spreadOf(session);
         if (spread.count > 0)
           tops.push_back(spread.mean + (spread.count > 1 ? spread.deviation : 0));
@@ -123,13 +124,13 @@ class SessionsPlot {
     m_plot.axes(m_axes, lines, errors.ticks, "session", m_quantity.name + " (" + errors.unit + ")");
     if (isTurned) m_plot.turnedLabels(m_axes, labels);
   }
-  /// Settings stand side by side within a session.
-  double offset(std::size_t setting) const {
+  /// Configurations stand side by side within a session.
+  double offset(std::size_t configuration) const {
     const double slot = m_axes.pixelsPerX();
     const double apart = std::min(11.0, slot / (m_summaries.size() + 1));
-    return (setting - (m_summaries.size() - 1) / 2.0) * apart;
+    return (configuration - (m_summaries.size() - 1) / 2.0) * apart;
   }
-  void drawSetting(std::size_t index) {
+  void drawConfiguration(std::size_t index) {
     std::vector<Eigen::Vector2d> means(m_results.sessions.size(),
                                        Eigen::Vector2d(noFigure, noFigure));
     for (const SessionSummary& session : m_summaries[index].sessions) {
@@ -155,7 +156,8 @@ class SessionsPlot {
   void drawMark(std::size_t index, const SessionSummary& session, const Eigen::Vector2d& at) {
     const Spread& spread = spreadOf(session);
     const std::string hint =
-        m_results.sessions[session.session].name + ", " + m_results.settings[index].name + ": " +
+        m_results.sessions[session.session].name + ", " + m_results.configurations[index].name +
+        ": " +
         (m_quantity.unit == "m" ? lengthText(spread.mean, " ")
                                 : metricText(spread.mean, 3) + ' ' + m_quantity.unit);
     if (spread.mean <= m_axes.y.high) return m_plot.mark(index, at, hint);
@@ -173,9 +175,9 @@ class SessionsPlot {
 
 std::vector<ErrorHistogram> histogramsOf(const BatchResults& results,
                                          ErrorHistogram SessionPlots::*histogram) {
-  std::vector<ErrorHistogram> sums(results.settings.size());
+  std::vector<ErrorHistogram> sums(results.configurations.size());
   for (const SessionResult& result : results.results)
-    sums[result.setting].add(result.plots.*histogram);
+    sums[result.configuration].add(result.plots.*histogram);
   return sums;
 }
 
@@ -228,7 +230,7 @@ std::string sessionsFigure(const BatchResults& results,
   for (std::size_t i = 0; i < plot.beyond().size(); ++i)
     caption += (i == 0 ? " Arrows: above the plot, " : "; ") + plot.beyond()[i];
   if (!plot.beyond().empty()) caption += '.';
-  return figure(svg, seriesLegend(settingNames(results), true), escaped(caption));
+  return figure(svg, seriesLegend(configurationNames(results), true), escaped(caption));
 }
 
 std::string histogramFigure(const BatchResults& results, const HistogramQuantity& quantity,
@@ -242,7 +244,7 @@ std::string histogramFigure(const BatchResults& results, const HistogramQuantity
     if (all == 0) continue;
     for (auto count : histograms[i].counts)
       axes.y.high = std::max(axes.y.high, 110.0 * count / all);
-    counted.push_back(results.settings[i].name + ' ' + countText(all));
+    counted.push_back(results.configurations[i].name + ' ' + countText(all));
   }
   SvgPlot plot(ids.next(), 480, 300, "Histogram of the " + quantity.name,
                "Share of the compared poses of all runs and sessions over the error on a "
@@ -257,14 +259,14 @@ std::string histogramFigure(const BatchResults& results, const HistogramQuantity
   }
   std::string caption = "Poses compared: ";
   for (std::size_t i = 0; i < counted.size(); ++i) caption += (i == 0 ? "" : ", ") + counted[i];
-  return figure(plot.str("plot"), seriesLegend(settingNames(results), false),
+  return figure(plot.str("plot"), seriesLegend(configurationNames(results), false),
                 escaped(caption + '.'));
 }
 
 std::string distanceFigure(const BatchResults& results, std::size_t session, PlotIds& ids) {
   std::vector<double> values;
   double length = 0, bin = 0;
-  for (std::size_t i = 0; i < results.settings.size(); ++i)
+  for (std::size_t i = 0; i < results.configurations.size(); ++i)
     if (const SessionResult* result = results.find(i, session)) {
       const BinnedMaxima& bins = result->plots.position;
       for (double value : bins.largest)
@@ -283,15 +285,15 @@ std::string distanceFigure(const BatchResults& results, std::size_t session, Plo
   plot.axes(axes, roundTicks(axes.x, axes.frame.width, true), errors.ticks, "distance driven (m)",
             "position error (" + errors.unit + ")");
   plot.beginClip(axes.frame);
-  for (std::size_t i = 0; i < results.settings.size(); ++i)
+  for (std::size_t i = 0; i < results.configurations.size(); ++i)
     if (const SessionResult* result = results.find(i, session))
       plot.line(steps(axes, result->plots.position), "line fine " + seriesClass(i));
   plot.endClip();
   std::string caption = "Position error of run 0, the largest in every " + metricText(bin, 0) +
                         " m driven; at most " + lengthText(largest);
   caption += largest > axes.y.high ? ", which is above the plot." : ".";
-  return figure(plot.str("plot wide"), seriesLegend(settingNames(results), false, "line fine"),
-                caption);
+  return figure(plot.str("plot wide"),
+                seriesLegend(configurationNames(results), false, "line fine"), caption);
 }
 
 }  // namespace polemcl::report

@@ -24,7 +24,7 @@ struct SessionQuantity {
   std::string unit;  ///< "m"
   Spread MetricSpreads::*spread;
 };
-/// \brief Mean and standard deviation over the runs of each session, for all settings.
+/// \brief Mean and standard deviation over the runs of each session, for all configurations.
 std::string sessionsFigure(const BatchResults& results,
                            const std::vector<ConfigurationSummary>& summaries,
                            const SessionQuantity& quantity, PlotIds& ids);
@@ -35,11 +35,11 @@ struct HistogramQuantity {
   std::string unit;  ///< "m" or "°"
   ErrorHistogram SessionPlots::*histogram;
 };
-/// \brief Shares of the poses of all runs and sessions, for all settings; empty without any.
+/// \brief Shares of the poses of all runs and sessions, for all configurations; empty without any.
 std::string histogramFigure(const BatchResults& results, const HistogramQuantity& quantity,
                             PlotIds& ids);
 
-/// \brief Error of run 0 over the distance driven, for all settings; empty without any.
+/// \brief Error of run 0 over the distance driven, for all configurations; empty without any.
 std::string distanceFigure(const BatchResults& results, std::size_t session, PlotIds& ids);
 
 /// \brief Map, true path and estimate of run 0; empty when there is nothing to draw.

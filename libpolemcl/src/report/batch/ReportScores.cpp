@@ -54,7 +54,7 @@ std::string mapScoresTable(const BatchResults& results,
     const ScoreSummary& scores = summaries[i].scores;
     if (scores.maps == 0) continue;
     any = true;
-    std::vector<std::string> cells{"polemcl, " + escaped(results.settings[i].name)};
+    std::vector<std::string> cells{"polemcl, " + escaped(results.configurations[i].name)};
     for (const ScoreMeans* means : {&scores.near, &scores.oneToOne, &scores.oneToOneHalf})
       addShares(cells, *means);
     cells.push_back(countText(scores.maps));
@@ -66,16 +66,16 @@ std::string mapScoresTable(const BatchResults& results,
 std::string everyScoreTable(const BatchResults& results) {
   HtmlTable table("Every map that was scored, by the session that completes it.");
   addHead(table, {{"Session"}, {"Setting"}}, {{"Poles"}, {"True poles"}, {"Truth"}});
-  std::vector<std::size_t> maps(results.settings.size(), 0);
+  std::vector<std::size_t> maps(results.configurations.size(), 0);
   bool several = false;
   for (std::size_t k = 0; k < results.sessions.size(); ++k)
-    for (std::size_t i = 0; i < results.settings.size(); ++i) {
+    for (std::size_t i = 0; i < results.configurations.size(); ++i) {
       const SessionResult* result = results.find(i, k);
       if (!result || !result->score) continue;
       several |= ++maps[i] > 1;
       const MapScores& scores = *result->score;
       std::vector<std::string> cells{escaped(results.sessions[k].name),
-                                     escaped(results.settings[i].name)};
+                                     escaped(results.configurations[i].name)};
       for (const MapScore* score : {&scores.near, &scores.oneToOne, &scores.oneToOneHalf})
         addShares(cells, *score);
       cells.push_back(countText(scores.near.mapPoles));

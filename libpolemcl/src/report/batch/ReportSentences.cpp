@@ -11,8 +11,8 @@
 namespace polemcl::report {
 namespace {
 
-std::string emphasized(const BatchConfiguration& setting) {
-  return element("em", escaped(setting.name));
+std::string emphasized(const BatchConfiguration& configuration) {
+  return element("em", escaped(configuration.name));
 }
 
 std::string degrees(double value) {
@@ -27,9 +27,10 @@ std::string listed(const std::vector<std::string>& parts) {
   return text;
 }
 
-constexpr std::size_t mostNamed = 3;  // of more settings, sentences name the best and the worst
+constexpr std::size_t mostNamed =
+    3;  // of more configurations, sentences name the best and the worst
 
-/// The setting with the smallest mean error first.
+/// The configuration with the smallest mean error first.
 std::vector<std::size_t> byError(const std::vector<ConfigurationSummary>& summaries) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < summaries.size(); ++i)
@@ -40,8 +41,9 @@ std::vector<std::size_t> byError(const std::vector<ConfigurationSummary>& summar
   return order;
 }
 
-bool isNamed(const std::vector<std::size_t>& order, std::size_t setting) {
-  return order.size() <= mostNamed || setting == order.front() || setting == order.back();
+bool isNamed(const std::vector<std::size_t>& order, std::size_t configuration) {
+  return order.size() <= mostNamed || configuration == order.front() ||
+         configuration == order.back();
 }
 
 std::string errorSentence(const BatchResults& results,
@@ -50,8 +52,9 @@ std::string errorSentence(const BatchResults& results,
   std::vector<std::string> parts;
   for (std::size_t i : order) {
     const MetricSpreads& figures = summaries[i].figures;
-    const std::string with =
-        results.settings.size() > 1 ? " with " + emphasized(results.settings[i]) : std::string();
+    const std::string with = results.configurations.size() > 1
+                                 ? " with " + emphasized(results.configurations[i])
+                                 : std::string();
     parts.push_back(element("strong", lengthText(figures.posMean.mean)) + with + " (RMSE " +
                     lengthText(figures.posRmse.mean) + ", heading " +
                     degrees(figures.angMeanDeg.mean) + ", largest " +
@@ -71,8 +74,9 @@ std::string changeSentence(const BatchResults& results,
   for (std::size_t i : order)
     if (isNamed(order, i) && std::isfinite(summaries[i].lastOverFirst))
       parts.push_back(changeText(summaries[i].lastOverFirst) +
-                      (results.settings.size() > 1 ? " with " + emphasized(results.settings[i])
-                                                   : std::string()));
+                      (results.configurations.size() > 1
+                           ? " with " + emphasized(results.configurations[i])
+                           : std::string()));
   if (parts.empty()) return "";
   return element(
       "p", "From the first localized session to the last, it changes by " + listed(parts) + ".");
@@ -93,15 +97,15 @@ std::string shares(const ScoreMeans& means) {
   return "precision " + metricText(means.precision, 3) + ", recall " + metricText(means.recall, 3);
 }
 
-/// The F1 of each setting's maps; empty when none was scored.
+/// The F1 of each configuration's maps; empty when none was scored.
 std::string scoreSentence(const BatchResults& results,
                           const std::vector<ConfigurationSummary>& summaries) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     if (summaries[i].scores.maps > 0)
       parts.push_back(element("strong", metricText(summaries[i].scores.near.f1, 3)) + " with " +
-                      emphasized(results.settings[i]) + " (" + shares(summaries[i].scores.near) +
-                      ")");
+                      emphasized(results.configurations[i]) + " (" +
+                      shares(summaries[i].scores.near) + ")");
   if (parts.empty()) return "";
   return "The F1 of the maps is " + listed(parts) + ", by the authors' count within 1\xC2\xA0m.";
 }
@@ -116,7 +120,7 @@ RunCounts countsOf(const std::vector<ConfigurationSummary>& summaries) {
   return counts;
 }
 
-/// Sessions that no run of a setting could follow.
+/// Sessions that no run of a configuration could follow.
 std::string lostSessions(const BatchResults& results,
                          const std::vector<ConfigurationSummary>& summaries) {
   std::vector<std::string> names;
@@ -125,7 +129,7 @@ std::string lostSessions(const BatchResults& results,
       if (session.counts.runs > 0 &&
           session.counts.lost + session.counts.failed == session.counts.runs)
         names.push_back(escaped(results.sessions[session.session].name) + " (" +
-                        emphasized(results.settings[i]) + ")");
+                        emphasized(results.configurations[i]) + ")");
   if (names.empty()) return "";
   return (names.size() == 1 ? " No run got through session " : " No run got through sessions ") +
          listed(names) + ".";
@@ -193,7 +197,7 @@ std::string errorFacts(const ConfigurationSummary& summary) {
                           : runsText(summary.counts));
 }
 
-/// Score of a setting whose maps were scored and that localizes no session.
+/// Score of a configuration whose maps were scored and that localizes no session.
 std::string cardOf(const ConfigurationSummary& summary) {
   if (summary.counts.runs == 0 && summary.scores.maps > 0)
     return big(metricText(summary.scores.near.f1, 3),
@@ -205,13 +209,14 @@ std::string cardOf(const ConfigurationSummary& summary) {
 
 }  // namespace
 
-std::string settingCards(const BatchResults& results,
-                         const std::vector<ConfigurationSummary>& summaries) {
+std::string configurationCards(const BatchResults& results,
+                               const std::vector<ConfigurationSummary>& summaries) {
   std::string cards;
   for (std::size_t i = 0; i < summaries.size(); ++i)
-    cards += element("section", "class=\"card " + seriesClass(i) + '"',
-                     element("h2", escaped(results.settings[i].name)) + cardOf(summaries[i])) +
-             '\n';
+    cards +=
+        element("section", "class=\"card " + seriesClass(i) + '"',
+                element("h2", escaped(results.configurations[i].name)) + cardOf(summaries[i])) +
+        '\n';
   return element("div", "class=\"cards\"", '\n' + cards) + '\n';
 }
 
@@ -222,8 +227,8 @@ std::string sessionLine(const BatchResults& results,
   for (std::size_t i = 0; i < summaries.size(); ++i)
     for (const SessionSummary& one : summaries[i].sessions) {
       if (one.session != session || one.counts.runs == 0) continue;
-      std::string part =
-          escaped(results.settings[i].name) + "\xC2\xA0" + lengthText(one.figures.posMean.mean);
+      std::string part = escaped(results.configurations[i].name) + "\xC2\xA0" +
+                         lengthText(one.figures.posMean.mean);
       if (one.counts.lost + one.counts.failed > 0)
         part += element("span", "class=\"bad\"", " (runs: " + runsText(one.counts) + ")");
       parts.push_back(part);

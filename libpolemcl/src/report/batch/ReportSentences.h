@@ -12,9 +12,9 @@ namespace polemcl::report {
 /// \brief The main figures, what was lost, how the last session compares with the first: HTML.
 std::string headlines(const BatchResults& results,
                       const std::vector<ConfigurationSummary>& summaries);
-/// \brief A card for each setting.
-std::string settingCards(const BatchResults& results,
-                         const std::vector<ConfigurationSummary>& summaries);
+/// \brief A card for each configuration.
+std::string configurationCards(const BatchResults& results,
+                               const std::vector<ConfigurationSummary>& summaries);
 /// \brief A session's figures in a few words, for the head of its fold: HTML.
 std::string sessionLine(const BatchResults& results,
                         const std::vector<ConfigurationSummary>& summaries, std::size_t session);

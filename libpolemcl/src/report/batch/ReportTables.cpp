@@ -63,8 +63,8 @@ std::string runsText(const RunCounts& counts) {
   return text;
 }
 
-std::string settingsTable(const BatchResults& results,
-                          const std::vector<ConfigurationSummary>& summaries) {
+std::string configurationsTable(const BatchResults& results,
+                                const std::vector<ConfigurationSummary>& summaries) {
   HtmlTable table(
       "Settings compared: means over the localized sessions, each with the same weight.");
   const auto columnOf = [&](Quantity quantity, const auto& figure) {
@@ -87,7 +87,8 @@ std::string settingsTable(const BatchResults& results,
   table.head(head);
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     const ConfigurationSummary& summary = summaries[i];
-    std::vector<std::string> cells{escaped(results.settings[i].name), countText(summary.localized)};
+    std::vector<std::string> cells{escaped(results.configurations[i].name),
+                                   countText(summary.localized)};
     for (std::size_t k = 0; k < columns.size(); ++k)
       cells.push_back(columns[k].figure((summary.figures.*sessionColumns[k].ours).mean));
     cells.push_back(largest.figure(summary.figures.posMax.largest));
@@ -100,12 +101,12 @@ std::string settingsTable(const BatchResults& results,
 
 namespace {
 
-/// A setting's summary of a session that was localized, or null.
-const SessionSummary* localized(const ConfigurationSummary& setting, std::size_t session) {
+/// A configuration's summary of a session that was localized, or null.
+const SessionSummary* localized(const ConfigurationSummary& configuration, std::size_t session) {
   const auto found = std::find_if(
-      setting.sessions.begin(), setting.sessions.end(),
+      configuration.sessions.begin(), configuration.sessions.end(),
       [&](const SessionSummary& one) { return one.session == session && one.counts.runs > 0; });
-  return found == setting.sessions.end() ? nullptr : &*found;
+  return found == configuration.sessions.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -114,13 +115,13 @@ std::string sideBySideTable(const BatchResults& results,
                             const std::vector<ConfigurationSummary>& summaries) {
   HtmlTable table("Sessions with all settings side by side: mean over the runs.");
   std::vector<double> positions;
-  for (const ConfigurationSummary& setting : summaries)
-    for (const SessionSummary& session : setting.sessions)
+  for (const ConfigurationSummary& configuration : summaries)
+    for (const SessionSummary& session : configuration.sessions)
       positions.push_back(session.figures.posMean.mean);
   const MetricColumn position(Quantity::length, positions), heading(Quantity::angle, {});
   std::vector<HeadCell> names{{""}}, columns{{"Session"}};
-  for (const BatchConfiguration& setting : results.settings) {
-    names.push_back({escaped(setting.name), 3});
+  for (const BatchConfiguration& configuration : results.configurations) {
+    names.push_back({escaped(configuration.name), 3});
     columns.insert(
         columns.end(),
         {{position.head("Δ<sub>pos</sub>")}, {heading.head("Δ<sub>ang</sub>")}, {"Runs"}});
@@ -130,8 +131,8 @@ std::string sideBySideTable(const BatchResults& results,
   for (std::size_t k = 0; k < results.sessions.size(); ++k) {
     std::vector<std::string> cells{escaped(results.sessions[k].name)};
     bool any = false;
-    for (const ConfigurationSummary& setting : summaries) {
-      const SessionSummary* session = localized(setting, k);
+    for (const ConfigurationSummary& configuration : summaries) {
+      const SessionSummary* session = localized(configuration, k);
       any |= session != nullptr;
       cells.push_back(session ? position.figure(session->figures.posMean.mean) : enDash);
       cells.push_back(session ? heading.figure(session->figures.angMeanDeg.mean) : enDash);
@@ -147,15 +148,15 @@ std::string sideBySideTable(const BatchResults& results,
 
 namespace {
 
-/// The paper's table of one setting, with what was published for its sessions.
+/// The paper's table of one configuration, with what was published for its sessions.
 class SessionRows {
  public:
-  SessionRows(const BatchResults& results, const ConfigurationSummary& setting)
-      : m_results(results), m_setting(setting), m_published(publishedRows(results)) {
+  SessionRows(const BatchResults& results, const ConfigurationSummary& configuration)
+      : m_results(results), m_configuration(configuration), m_published(publishedRows(results)) {
     for (const SessionColumn& column : sessionColumns)
-      m_columns.push_back(unitOf(column, setting, m_published));
+      m_columns.push_back(unitOf(column, configuration, m_published));
     for (std::size_t i = 0; i < m_published.systems.size(); ++i)
-      if (std::isfinite(m_published.mean(i, setting, &PublishedSession::mapShare)))
+      if (std::isfinite(m_published.mean(i, configuration, &PublishedSession::mapShare)))
         m_withShares.push_back(i);
   }
   void head(HtmlTable& table) const {
@@ -188,14 +189,14 @@ class SessionRows {
   }
   std::vector<std::string> foot() const {
     return cells(
-        "Mean of sessions", m_setting.mapShare.mean,
+        "Mean of sessions", m_configuration.mapShare.mean,
         [&](std::size_t i) {
-          return m_columns[i].figure((m_setting.figures.*sessionColumns[i].ours).mean);
+          return m_columns[i].figure((m_configuration.figures.*sessionColumns[i].ours).mean);
         },
         [&](std::size_t system, double PublishedSession::*figure) {
-          return m_published.mean(system, m_setting, figure);
+          return m_published.mean(system, m_configuration, figure);
         },
-        runsText(m_setting.counts));
+        runsText(m_configuration.counts));
   }
   std::string caption() const {
     std::string text = ": mean ± standard deviation over the runs of each session";
@@ -224,7 +225,7 @@ class SessionRows {
   }
 
   const BatchResults& m_results;
-  const ConfigurationSummary& m_setting;
+  const ConfigurationSummary& m_configuration;
   const PublishedRows m_published;
   std::vector<MetricColumn> m_columns;
   std::vector<std::size_t> m_withShares;  ///< systems that give f_map
@@ -232,10 +233,10 @@ class SessionRows {
 
 }  // namespace
 
-std::string paperTable(const BatchResults& results, std::size_t setting,
+std::string paperTable(const BatchResults& results, std::size_t configuration,
                        const ConfigurationSummary& summary) {
   const SessionRows rows(results, summary);
-  HtmlTable table("Setting " + results.settings[setting].name + rows.caption());
+  HtmlTable table("Setting " + results.configurations[configuration].name + rows.caption());
   rows.head(table);
   for (const SessionSummary& session : summary.sessions)
     table.row(rows.row(session), isBad(session.counts) ? "bad" : "");
@@ -268,12 +269,12 @@ std::string publishedTable(const BatchResults& results,
     remark(escaped(system.system), escaped(system.remark));
   }
   for (std::size_t i = 0; i < summaries.size(); ++i) {
-    const std::string ours = "polemcl, " + escaped(results.settings[i].name);
+    const std::string ours = "polemcl, " + escaped(results.configurations[i].name);
     std::vector<std::string> cells{ours};
     for (std::size_t k = 0; k < columns.size(); ++k)
       cells.push_back(units[k].figure((summaries[i].figures.*columns[k].ours).mean));
     table.row(cells, "ours");
-    const std::string& description = results.settings[i].description;
+    const std::string& description = results.configurations[i].description;
     remark(ours, (description.empty() ? "" : sentence(escaped(description)) + ' ') +
                      plural(summaries[i].localized, "session") +
                      ", runs: " + runsText(summaries[i].counts));
@@ -281,9 +282,9 @@ std::string publishedTable(const BatchResults& results,
   return table.str() + element("ul", "class=\"note\"", '\n' + remarks) + '\n';
 }
 
-std::string healthTable(const BatchResults& results, std::size_t setting,
+std::string healthTable(const BatchResults& results, std::size_t configuration,
                         const ConfigurationSummary& summary) {
-  HtmlTable table("Setting " + results.settings[setting].name +
+  HtmlTable table("Setting " + results.configurations[configuration].name +
                   ": shares of scans, mean over the runs of each session.");
   table.head({{"Session"},
               {"ok (%)"},

@@ -10,7 +10,7 @@
 
 namespace polemcl::report {
 
-/// \brief Colours for series of settings: `c0` … `c5`, then again from the first.
+/// \brief Colours for series of configurations: `c0` … `c5`, then again from the first.
 std::string seriesClass(std::size_t series);
 
 /// \brief A tick of an axis where it is to stand, with its label.
