@@ -33,11 +33,11 @@ std::size_t jobsOf(const BatchOptions& options) {
 }
 
 Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
-                 std::size_t open) {
+                 const std::vector<const BatchTask*>& open) {
   const std::size_t all = plan.tasks.size();
   Progress progress("batch", all, options.quiet);
-  ProgressLogger log("batch", all, all - open, options.quiet);
-  return runBatch(folder, plan, {jobsOf(options), options.imports},
+  ProgressLogger log("batch", all, all - open.size(), options.quiet);
+  return runBatch(folder, open, all, {jobsOf(options), options.imports},
                   [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
                     if (!outcome.failure.empty() && !outcome.blocked)
                       progress.say("pole-batch: " + task.id + " failed: " + outcome.failure);
@@ -80,11 +80,10 @@ std::string commandOf(const BatchOptions& options) {
   return command;
 }
 
-void printOpen(const BatchPlan& plan, const std::vector<const BatchTask*>& open,
-               const std::vector<std::string>& notes) {
-  for (const auto& note : notes) std::cerr << "pole-batch: " << note << '\n';
-  std::cout << plan.name << ": " << plan.tasks.size() << " tasks, " << open.size() << " to be done"
-            << std::endl;
+void printOpen(const BatchPlan& plan, const OpenTasks& open) {
+  for (const auto& note : open.notes) std::cerr << "pole-batch: " << note << '\n';
+  std::cout << plan.name << ": " << plan.tasks.size() << " tasks, " << open.tasks.size()
+            << " to be done" << std::endl;
 }
 
 /// Tasks read their settings from frozen files, on which the keys of the plan depend.
@@ -146,16 +145,16 @@ void doBatch(const BatchOptions& options) {
   BatchFolder folder(options.output);
   folder.take(spec.name, options.resume);
   folder.store(plan, options.batch);
-  std::vector<std::string> notes;
-  const auto open = openTasks(folder, plan, notes);
-  if (!options.quiet) printOpen(plan, open, notes);
+  const OpenTasks open = openTasks(folder, plan);
+  for (const BatchTask* task : open.outdated) folder.remove(*task);
+  if (!options.quiet) printOpen(plan, open);
 
   const auto begin = std::chrono::steady_clock::now();
-  const Failures failures = options.slurm ? runThere(options, folder, plan, open)
-                                          : runHere(options, folder, plan, open.size());
+  const Failures failures = options.slurm ? runThere(options, folder, plan, open.tasks)
+                                          : runHere(options, folder, plan, open.tasks);
   folder.sweep();
   report::BatchTimings timings = collectTimings(folder, plan);
-  if (open.size() == plan.tasks.size()) {
+  if (open.tasks.size() == plan.tasks.size()) {
     timings.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     timings.jobs = options.slurm ? 0 : jobsOf(options);
   }

@@ -152,7 +152,7 @@ class Collector {
   const std::vector<StampedPose2D>* truthOf(const std::string& session) {
     const auto known = m_truth.find(session);
     if (known != m_truth.end()) return &known->second;
-    const std::string task = "poles." + session;
+    const std::string task = TaskPath{TaskKind::poles, {session}}.id();
     if (!isDone(task) || m_broken.count(session)) return nullptr;
     try {
       return &(m_truth[session] =
@@ -313,8 +313,8 @@ report::BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& 
     const double seconds = folder.seconds(task.id);
     if (std::isnan(seconds)) continue;
     auto kind = std::find_if(timings.tasks.begin(), timings.tasks.end(),
-                             [&](const auto& times) { return times.kind == task.kind; });
-    if (kind == timings.tasks.end()) kind = timings.tasks.insert(kind, {task.kind, {}});
+                             [&](const auto& times) { return times.kind == name(task.kind); });
+    if (kind == timings.tasks.end()) kind = timings.tasks.insert(kind, {name(task.kind), {}});
     kind->seconds.push_back(seconds);
   }
   return timings;

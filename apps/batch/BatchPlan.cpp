@@ -130,8 +130,17 @@ class Planner {
     if (!m_spec.publishedSessions.empty()) report::readPublishedSessions(m_spec.publishedSessions);
   }
 
-  /// A file that settings name, copied into the batch's folder; the name it has from a task's.
-  std::string frozen(const std::string& file) {
+  /// A frozen file, as the commands of a task name it, whose outputs depend on it.
+  static std::string frozen(const std::string& name, BatchTask& task) {
+    task.frozen.push_back(name);
+    return "../../" + name;
+  }
+  static std::string settingsOf(const std::string& configuration, BatchTask& task) {
+    return frozen("settings/" + configuration + ".ini", task);
+  }
+
+  /// The same for a file that settings name: it is copied into the batch's folder.
+  std::string frozenCopy(const std::string& file, BatchTask& task) {
     if (file.empty()) return file;
     const std::string name = "files/" + fs::path(file).filename().string();
     const std::string content = plannedContentOf(file);
@@ -139,7 +148,7 @@ class Planner {
     if (!isNew && entry->second != content)
       throw Error("batch " + m_spec.name + ": two different files are called " +
                   fs::path(file).filename().string() + "; rename one of them");
-    return "../../" + name;
+    return frozen(name, task);
   }
 
   void freeze(const BatchConfiguration& configuration) {
@@ -151,9 +160,7 @@ class Planner {
   }
 
   void addPoles(const BatchSession& session) {
-    BatchTask task;
-    task.id = "poles." + session.name;
-    task.kind = "poles";
+    BatchTask task(polesPath(session.name));
     const std::string rawlog = session.name + ".rawlog", truth = session.name + ".tum";
     if (session.source == "simulated")
       simulate(session, task);
@@ -176,9 +183,7 @@ class Planner {
   }
 
   void addTruth(const BatchSession& session) {
-    BatchTask task;
-    task.id = truthId(session);
-    task.kind = "truth";
+    BatchTask task(truthPath(session));
     task.commands = {labelsCommand(session)};
     task.outputs = {"truth.polemap"};
     m_plan.tasks.push_back(std::move(task));
@@ -186,12 +191,12 @@ class Planner {
 
   void simulate(const BatchSession& session, BatchTask& task) {
     Settings settings = loadSettings(session.input, session.set);
-    settings.simulation.detections = frozen(settings.simulation.detections);
-    settings.simulation.world.track = frozen(settings.simulation.world.track);
+    settings.simulation.detections = frozenCopy(settings.simulation.detections, task);
+    settings.simulation.world.track = frozenCopy(settings.simulation.world.track, task);
     const std::string file = "settings/simulate." + session.name + ".ini";
     m_plan.files[file] = settingsText(settings);
     Command command = program("pole-simulate");
-    append(command, {"--config", "../../" + file, "--poles", session.name + ".rawlog"});
+    append(command, {"--config", frozen(file, task), "--poles", session.name + ".rawlog"});
     task.commands = {command};
     task.outputs = {session.name + "_poles_gt.csv"};
   }
@@ -206,9 +211,10 @@ class Planner {
       task.commands = {importCommand(session, m_spec.seed)};
     }
     for (const auto& group : m_groups) {
+      if (!hasPoles(group, session.name) && !hasMapPoles(group, session.name)) continue;
       const std::string rawlog = "/" + session.name + ".rawlog";
       Command command = program("pole-extract");
-      append(command, {"--config", "../../settings/" + group.name + ".ini", "--input", scans});
+      append(command, {"--config", settingsOf(group.name, task), "--input", scans});
       Command forMaps = command;
       append(command, {"--output", group.name + rawlog});
       if (hasPoles(group, session.name)) task.commands.push_back(command);
@@ -224,27 +230,30 @@ class Planner {
     return session.source != "simulated" && session.source != "poles";
   }
 
-  static std::string truthId(const BatchSession& session) { return "truth." + session.name; }
-  static std::string scoreId(const BatchConfiguration& configuration, const std::string& session) {
-    return "score." + configuration.name + "." + session;
+  static TaskPath polesPath(const std::string& session) { return {TaskKind::poles, {session}}; }
+  static TaskPath truthPath(const BatchSession& session) {
+    return {TaskKind::truth, {session.name}};
   }
-  static std::string mapId(const BatchConfiguration& configuration, const std::string& session) {
-    return "map." + configuration.name + "." + session;
+  static TaskPath scorePath(const BatchConfiguration& configuration, const std::string& session) {
+    return {TaskKind::score, {configuration.name, session}};
+  }
+  static TaskPath mapPath(const BatchConfiguration& configuration, const std::string& session) {
+    return {TaskKind::map, {configuration.name, session}};
   }
 
   std::string rawlogOf(const BatchConfiguration& configuration, const std::string& session,
                        bool forMaps = false) const {
-    std::string folder = "../poles." + session + "/";
+    std::string folder;
     if (hasGroups(m_spec.session(session))) {
       const std::string& name = m_group.at(configuration.name);
       const auto group = std::find_if(m_groups.begin(), m_groups.end(),
                                       [&](const Group& entry) { return entry.name == name; });
-      folder += name + (forMaps && !group->mapConfidence.empty() ? mapFolder : "") + "/";
+      folder = name + (forMaps && !group->mapConfidence.empty() ? mapFolder : "") + "/";
     }
-    return folder + session + ".rawlog";
+    return polesPath(session).file(folder + session + ".rawlog");
   }
   static std::string truthOf(const std::string& session) {
-    return "../poles." + session + "/" + session + ".tum";
+    return polesPath(session).file(session + ".tum");
   }
 
   std::size_t placeOf(const std::string& session) const {
@@ -288,25 +297,23 @@ class Planner {
   /// The map of the first n map sessions, or of the n-th alone.
   void addMap(const BatchConfiguration& configuration, std::size_t n) {
     const auto& names = configuration.mapSessions;
-    BatchTask task;
-    task.id = mapId(configuration, names[n - 1]);
-    task.kind = "map";
+    BatchTask task(mapPath(configuration, names[n - 1]));
     const bool updates = configuration.protocol == MapProtocol::upkeep && n > 1;
     Command command = program("pole-map");
-    append(command, {updates ? "update" : "build", "--config",
-                     "../../settings/" + configuration.name + ".ini", "--output", "map.polemap"});
+    append(command, {updates ? "update" : "build", "--config", settingsOf(configuration.name, task),
+                     "--output", "map.polemap"});
     const std::size_t first = configuration.protocol == MapProtocol::together ? 0 : n - 1;
     if (updates) {
-      const std::string before = mapId(configuration, names[n - 2]);
-      append(command, {"--map", "../" + before + "/map.polemap"});
-      task.needs.push_back(before);
+      const TaskPath before = mapPath(configuration, names[n - 2]);
+      append(command, {"--map", before.file("map.polemap")});
+      task.needs.push_back(before.id());
     }
     Command inputs{"--input"}, truths{"--truth"}, dates{"--date"};
     for (std::size_t i = first; i < n; ++i) {
       inputs.push_back(rawlogOf(configuration, names[i], true));
       truths.push_back(truthOf(names[i]));
       dates.push_back(m_spec.session(names[i]).date);
-      task.needs.push_back("poles." + names[i]);
+      task.needs.push_back(polesPath(names[i]).id());
     }
     append(command, inputs);
     append(command, truths);
@@ -318,17 +325,15 @@ class Planner {
 
   /// Scores the map that the session completes.
   void addScore(const BatchConfiguration& configuration, const BatchSession& session) {
-    BatchTask task;
-    task.id = scoreId(configuration, session.name);
-    task.kind = "score";
-    const std::string map = mapId(configuration, session.name);
-    task.needs = {map};
+    BatchTask task(scorePath(configuration, session.name));
+    const TaskPath map = mapPath(configuration, session.name);
+    task.needs = {map.id()};
     std::string truth = session.truthMap;
     if (truth == truthFromLabels) {
-      task.needs.push_back(truthId(session));
-      truth = "../" + truthId(session) + "/truth.polemap";
+      task.needs.push_back(truthPath(session).id());
+      truth = truthPath(session).file("truth.polemap");
     }
-    task.commands = scoreCommands("../" + map + "/map.polemap", truth);
+    task.commands = scoreCommands(map.file("map.polemap"), truth);
     task.outputs.assign(std::begin(scoreFiles), std::end(scoreFiles));
     m_plan.tasks.push_back(std::move(task));
   }
@@ -341,9 +346,9 @@ class Planner {
       Experiment experiment;
       experiment.configuration = configuration.name;
       experiment.session = session.name;
-      experiment.poles = rawlogOf(configuration, session.name, !localized).substr(3);
       if (mapped) experiment.ownMap = lastMapOf(configuration, session.name);
-      if (isScored(configuration, session)) experiment.score = scoreId(configuration, session.name);
+      if (isScored(configuration, session))
+        experiment.score = scorePath(configuration, session.name).id();
       if (localized) addRuns(configuration, experiment);
       m_plan.experiments.push_back(std::move(experiment));
     }
@@ -355,27 +360,26 @@ class Planner {
     const auto at = std::find(names.begin(), names.end(), session);
     for (auto name = at; name != names.end(); ++name)
       for (const auto& task : m_plan.tasks)
-        if (task.id == mapId(configuration, *name)) return task.id;
+        if (task.id == mapPath(configuration, *name).id()) return task.id;
     return {};
   }
 
   void addRuns(const BatchConfiguration& configuration, Experiment& experiment) {
-    experiment.map = mapId(
+    const TaskPath map = mapPath(
         configuration, configuration.mapSessions[mapFor(configuration, experiment.session) - 1]);
+    experiment.map = map.id();
     for (int run = 0; run < m_spec.runs; ++run) {
-      BatchTask task;
       const std::string number = std::to_string(run);
-      task.id = "run." + configuration.name + "." + experiment.session + "." +
-                std::string(number.size() < 2 ? 1 : 0, '0') + number;
-      task.kind = "run";
-      task.needs = {"poles." + experiment.session, experiment.map};
+      BatchTask task({TaskKind::run,
+                      {configuration.name, experiment.session,
+                       std::string(number.size() < 2 ? 1 : 0, '0') + number}});
+      task.needs = {polesPath(experiment.session).id(), experiment.map};
       const auto seed = seedOf(m_spec.seed, experiment.session + "/run " + number);
       Command command = program("pole-localize");
-      append(command,
-             {"--config", "../../settings/" + configuration.name + ".ini", "--input",
-              rawlogOf(configuration, experiment.session), "--truth", truthOf(experiment.session),
-              "--map", "../" + experiment.map + "/map.polemap", "--output", "out", "--runs", "1",
-              "--seed", std::to_string(seed)});
+      append(command, {"--config", settingsOf(configuration.name, task), "--input",
+                       rawlogOf(configuration, experiment.session), "--truth",
+                       truthOf(experiment.session), "--map", map.file("map.polemap"), "--output",
+                       "out", "--runs", "1", "--seed", std::to_string(seed)});
       task.commands = {command};
       task.outputs = {"out/run_00.tum", "out/run_00_health.csv", "out/summary.json"};
       experiment.runs.push_back(task.id);
@@ -398,15 +402,8 @@ class Planner {
     for (auto& task : m_plan.tasks) {
       std::string text = std::string("polemcl ") + version() + "\n" + m_plan.build + "\n";
       for (const auto& command : task.commands)
-        for (const auto& argument : command) {
-          text += argument + "\n" + stamp(argument);
-          const std::string prefix = "../../";
-          if (argument.rfind(prefix, 0) == 0) text += m_plan.files.at(argument.substr(6));
-        }
-      // Files that frozen settings name belong to all that is simulated.
-      if (task.commands.front().front() == "pole-simulate")
-        for (const auto& [name, content] : m_plan.files)
-          if (name.rfind("files/", 0) == 0) text += content;
+        for (const auto& argument : command) text += argument + "\n" + stamp(argument);
+      for (const auto& name : task.frozen) text += m_plan.files.at(name);
       for (const auto& need : task.needs) text += keys.at(need) + "\n";
       task.key = keys[task.id] = mrpt::system::md5(text);
     }

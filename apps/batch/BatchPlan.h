@@ -2,10 +2,8 @@
 /// \file BatchPlan.h
 /// \brief What has to be done for a batch: tasks, each a few commands, and what they need.
 ///
-/// A plan is plain data and can be stored, so that a task can be done by another process, on
-/// another machine. Commands name files relative to the folder they run in; tasks lie beside each
-/// other:
-/// `../poles.month_03/month_03.rawlog` is what the task `poles.month_03` left.
+/// A plan is plain data and can be stored, so that another process can do a task, on another
+/// machine. Commands name files relative to the folder they run in, see TaskPath.
 
 #include <filesystem>
 #include <map>
@@ -13,19 +11,23 @@
 #include <vector>
 
 #include "batch/BatchSpec.h"
+#include "batch/TaskPath.h"
 #include "cli/Version.h"
 
 namespace polemcl::apps {
 
 /// \brief A piece of work that is done, or not: never half.
 struct BatchTask {
-  std::string id;    ///< `poles.SESSION`, `map.SETTING.SESSION`, `run.SETTING.SESSION.NN`,
-                     ///< `truth.SESSION`, `score.SETTING.SESSION`
-  std::string kind;  ///< its first word
+  BatchTask() = default;
+  explicit BatchTask(const TaskPath& path) : id(path.id()), kind(path.kind) {}
+
+  std::string id;  ///< see TaskPath::id()
+  TaskKind kind = TaskKind::poles;
   std::vector<std::string> needs;  ///< ids of tasks that must be done before
   /// One after the other: program and arguments. The program `copy` takes files here (FROM TO …).
   std::vector<std::vector<std::string>> commands;
   std::vector<std::string> outputs;  ///< files kept, relative to the task's folder; others go
+  std::vector<std::string> frozen;   ///< names in BatchPlan::files that its outputs depend on
   /// Stands for all that its outputs depend on: commands, settings, the build of the programs, the
   /// keys of its needs.
   std::string key;
@@ -34,7 +36,6 @@ struct BatchTask {
 /// \brief Where the results of one session under one configuration come from.
 struct Experiment {
   std::string configuration, session;
-  std::string poles;              ///< its rawlog of poles, relative to the folder of tasks
   std::string map;                ///< id of the map it is localized in; empty: not localized
   std::string ownMap;             ///< id of the map that it went into; empty: none
   std::string score;              ///< id of the score of the map it completes; empty: none

@@ -11,7 +11,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* s_format = "polemcl batch plan 2";
 
 Json toJson(const BatchTask& task) {
-  return {{"id", task.id},           {"kind", task.kind},
+  return {{"id", task.id},           {"kind", name(task.kind)},
           {"needs", task.needs},     {"commands", task.commands},
           {"outputs", task.outputs}, {"key", task.key}};
 }
@@ -19,7 +19,6 @@ Json toJson(const BatchTask& task) {
 Json toJson(const Experiment& experiment) {
   return {{"setting", experiment.configuration},
           {"session", experiment.session},
-          {"poles", experiment.poles},
           {"map", experiment.map},
           {"own_map", experiment.ownMap},
           {"score", experiment.score},
@@ -30,7 +29,7 @@ Json toJson(const Experiment& experiment) {
 BatchTask taskFrom(const Json& json) {
   BatchTask task;
   json.at("id").get_to(task.id);
-  json.at("kind").get_to(task.kind);
+  task.kind = taskKind(json.at("kind"));
   json.at("needs").get_to(task.needs);
   json.at("commands").get_to(task.commands);
   json.at("outputs").get_to(task.outputs);
@@ -42,7 +41,6 @@ Experiment experimentFrom(const Json& json) {
   Experiment experiment;
   json.at("setting").get_to(experiment.configuration);
   json.at("session").get_to(experiment.session);
-  json.at("poles").get_to(experiment.poles);
   json.at("map").get_to(experiment.map);
   json.at("own_map").get_to(experiment.ownMap);
   json.at("score").get_to(experiment.score);

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -165,7 +166,7 @@ class Queue {
   const std::map<std::string, std::string>& failures() const { return m_failures; }
 
  private:
-  static bool isImport(const BatchTask& task) { return task.kind == "poles"; }
+  static bool isImport(const BatchTask& task) { return task.kind == TaskKind::poles; }
 
   const BatchTask* takeReady() {
     for (auto task = m_waiting.begin(); task != m_waiting.end(); ++task) {
@@ -236,37 +237,36 @@ TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {
   return outcome;
 }
 
-std::vector<const BatchTask*> openTasks(const BatchFolder& folder, const BatchPlan& plan,
-                                        std::vector<std::string>& notes) {
-  std::vector<const BatchTask*> open;
+OpenTasks openTasks(const BatchFolder& folder, const BatchPlan& plan) {
+  OpenTasks open;
   std::set<std::string> ids;
   std::map<std::string, std::size_t> doneByOthers;
   for (const auto& task : plan.tasks) {
-    bool again = false;
-    for (const auto& need : task.needs) again = again || ids.count(need);
+    const bool again = std::any_of(task.needs.begin(), task.needs.end(),
+                                   [&](const std::string& need) { return ids.count(need) > 0; });
     std::string why;
     const auto state = folder.state(task, &why);
     if (state == BatchFolder::State::damaged)
-      notes.push_back(task.id + ": " + why + "; it is done again");
+      open.notes.push_back(task.id + ": " + why + "; it is done again");
     if (state == BatchFolder::State::done && !again) continue;
     const std::string build = folder.buildOf(task);
     if (state == BatchFolder::State::open && !build.empty() && build != plan.build)
       ++doneByOthers[build];
-    if (state != BatchFolder::State::open || again) folder.remove(task);
-    open.push_back(&task);
+    if (state != BatchFolder::State::open || again) open.outdated.push_back(&task);
+    open.tasks.push_back(&task);
     ids.insert(task.id);
   }
   for (const auto& [build, count] : doneByOthers)
-    notes.push_back(std::to_string(count) + " tasks were done by another build (" + build +
-                    ") and are done again; this is " + plan.build);
+    open.notes.push_back(std::to_string(count) + " tasks were done by another build (" + build +
+                         ") and are done again; this is " + plan.build);
   return open;
 }
 
-std::map<std::string, std::string> runBatch(const BatchFolder& folder, const BatchPlan& plan,
-                                            const BatchLimits& limits,
+std::map<std::string, std::string> runBatch(const BatchFolder& folder,
+                                            const std::vector<const BatchTask*>& open,
+                                            std::size_t all, const BatchLimits& limits,
                                             const Queue::Report& report) {
-  std::vector<std::string> notes;
-  Queue queue(folder, openTasks(folder, plan, notes), plan.tasks.size(), limits.imports, report);
+  Queue queue(folder, open, all, limits.imports, report);
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < limits.jobs; ++i) threads.emplace_back([&queue] { queue.work(); });
   for (auto& thread : threads) thread.join();

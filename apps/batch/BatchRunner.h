@@ -40,18 +40,25 @@ struct BatchLimits {
   std::size_t imports = 0;  ///< of the kind `poles`, which hold a session's scans; 0: any
 };
 
-/// \brief Does all tasks that are open, several at a time. A task that needs one that failed fails
-/// as well; all others are done. Tasks whose outputs were damaged are done again, and so are those
-/// that need them. \param report Called after each task, one call at a time, with the task and its
-/// outcome. \return The failures by task, blocked ones left out.
-std::map<std::string, std::string> runBatch(
-    const BatchFolder& folder, const BatchPlan& plan, const BatchLimits& limits,
-    const std::function<void(const BatchTask&, const TaskOutcome&, const BatchProgress&)>& report);
+/// \brief Tasks that have to be done: those not done, those damaged, and all that need one of them.
+struct OpenTasks {
+  std::vector<const BatchTask*> tasks;
+  /// Of these, the ones with outputs that look as if they were done: to be removed before the work
+  /// begins, see BatchFolder::remove().
+  std::vector<const BatchTask*> outdated;
+  /// A line for each damaged task, and for each other build that did some.
+  std::vector<std::string> notes;
+};
+/// \brief Only looks; nothing is removed.
+OpenTasks openTasks(const BatchFolder& folder, const BatchPlan& plan);
 
-/// \brief Tasks that have to be done: those not done, those damaged (removed here), and all that
-/// need one of them. \param notes One line for each that was damaged, and for each other build that
-/// did some.
-std::vector<const BatchTask*> openTasks(const BatchFolder& folder, const BatchPlan& plan,
-                                        std::vector<std::string>& notes);
+/// \brief Does the open tasks, several at a time. A task that needs one that failed fails as well;
+/// all others are done. \param all Tasks of the plan. \param report Called after each task, one
+/// call at a time, with the task and its outcome. \return The failures by task, blocked ones left
+/// out.
+std::map<std::string, std::string> runBatch(
+    const BatchFolder& folder, const std::vector<const BatchTask*>& open, std::size_t all,
+    const BatchLimits& limits,
+    const std::function<void(const BatchTask&, const TaskOutcome&, const BatchProgress&)>& report);
 
 }  // namespace polemcl::apps

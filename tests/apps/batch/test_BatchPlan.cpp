@@ -167,7 +167,7 @@ TEST(BatchPlan, FinishedMapsAreScoredAgainstTruePoles) {
   // Two maps are made, of a, and of a and b; the last one is scored.
   EXPECT_EQ(ids(plan).size(), 3u + 2 + 1 + 4);
   const BatchTask& score = plan.task("score.one.b");
-  EXPECT_EQ(score.kind, "score");
+  EXPECT_EQ(score.kind, TaskKind::score);
   EXPECT_EQ(score.needs, Names{"map.one.b"});
   EXPECT_EQ(score.outputs, (Names{"near_1m.json", "one_to_one_1m.json", "one_to_one_0.5m.json"}));
   ASSERT_EQ(score.commands.size(), 3u);
@@ -316,7 +316,7 @@ TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
     for (const auto& configuration : spec.configurations)
       runs += configuration.sessions.size() * spec.runs;
     EXPECT_EQ(std::count_if(plan.tasks.begin(), plan.tasks.end(),
-                            [](const BatchTask& task) { return task.kind == "run"; }),
+                            [](const BatchTask& task) { return task.kind == TaskKind::run; }),
               static_cast<std::ptrdiff_t>(runs));
     EXPECT_FALSE(spec.title.empty());
     ++batches;

@@ -45,7 +45,6 @@ class BatchRunner : public testing::Test {
   void add(const std::string& id, const std::vector<Names>& commands, const Names& needs = {}) {
     BatchTask task;
     task.id = id;
-    task.kind = "made";
     task.commands = commands;
     task.needs = needs;
     task.outputs = {"out"};
@@ -57,7 +56,9 @@ class BatchRunner : public testing::Test {
   Names run(std::size_t jobs = 2) {
     m_batch.store(m_plan, m_temporary / "batch.ini");
     Names worked;
-    m_failures = runBatch(m_batch, m_plan, {jobs, m_imports},
+    const OpenTasks open = openTasks(m_batch, m_plan);
+    for (const BatchTask* task : open.outdated) m_batch.remove(*task);
+    m_failures = runBatch(m_batch, open.tasks, m_plan.tasks.size(), {jobs, m_imports},
                           [&](const BatchTask& task, const TaskOutcome&, const BatchProgress& now) {
                             worked.push_back(task.id);
                             m_last = now;
@@ -144,6 +145,10 @@ TEST_F(BatchRunner, OtherSettingsAreDoneAgain) {
   run();
   m_plan.tasks[0].key = "another";
   m_plan.tasks[0].commands = {{"write", "out", "other"}};
+  const OpenTasks open = openTasks(m_batch, m_plan);
+  EXPECT_EQ(open.tasks, (std::vector<const BatchTask*>{&m_plan.tasks[0], &m_plan.tasks[1]}));
+  EXPECT_EQ(open.outdated, std::vector<const BatchTask*>{&m_plan.tasks[1]});
+  EXPECT_EQ(out("b"), "B\nA\n");  // asking removes nothing
   EXPECT_EQ(run(), (Names{"a", "b"}));
   EXPECT_EQ(out("b"), "B\nother\n");
 }
@@ -211,7 +216,7 @@ TEST_F(BatchRunner, AsManyImportsAsAllowed) {
              "rm ../../under_way_$1");
   for (const char* id : {"a", "b", "c"}) {
     add(id, {{"alone", id}});
-    m_plan.tasks.back().kind = "poles";
+    m_plan.tasks.back().kind = TaskKind::poles;
   }
   add("d", {{"write", "out", "D"}});
   m_imports = 1;
@@ -269,16 +274,17 @@ TEST_F(BatchRunner, SaysWhichBuildDidWhatIsDoneAgain) {
   m_plan.build = buildIdentity();
   EXPECT_EQ(run(1), (Names{"a", "b"}));
   EXPECT_EQ(m_batch.buildOf(m_plan.tasks[0]), buildIdentity());
-  std::vector<std::string> notes;
-  EXPECT_TRUE(openTasks(m_batch, m_plan, notes).empty());
+  EXPECT_TRUE(openTasks(m_batch, m_plan).tasks.empty());
 
   // Another build gives the tasks other keys, see BatchPlan.
   m_plan.build = "0123456789ab, GNU 12.2.0, Debug, -g";
   for (BatchTask& task : m_plan.tasks) task.key += " of another build";
-  EXPECT_EQ(openTasks(m_batch, m_plan, notes).size(), 2u);
-  ASSERT_EQ(notes.size(), 1u);
-  EXPECT_EQ(notes[0], std::string("2 tasks were done by another build (") + buildIdentity() +
-                          ") and are done again; this is " + m_plan.build);
+  const OpenTasks open = openTasks(m_batch, m_plan);
+  EXPECT_EQ(open.tasks.size(), 2u);
+  EXPECT_TRUE(open.outdated.empty());  // their keys tell them apart
+  ASSERT_EQ(open.notes.size(), 1u);
+  EXPECT_EQ(open.notes[0], std::string("2 tasks were done by another build (") + buildIdentity() +
+                               ") and are done again; this is " + m_plan.build);
   EXPECT_EQ(run(1), (Names{"a", "b"}));
 }
 
