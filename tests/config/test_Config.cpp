@@ -190,8 +190,8 @@ TEST(Config, RefusesWhatIsGivenTwice) {
 TEST(Config, RefusesLinesThatAreNothing) {
   EXPECT_HAS(refusal("[sample]\ncount 3\n"), "test.ini:2: 'count 3' is neither");
   EXPECT_HAS(refusal("[sample]\n= 3\n"), "test.ini:2: '= 3' is neither");
-  EXPECT_HAS(refusal("[sample\n"), "test.ini:1: '[sample' is no section");
-  EXPECT_HAS(refusal("[]\n"), "test.ini:1: '[]' is no section");
+  EXPECT_HAS(refusal("[sample\n"), "test.ini:1: '[sample' is not a section");
+  EXPECT_HAS(refusal("[]\n"), "test.ini:1: '[]' is not a section");
   EXPECT_HAS(refusal("count = 3\n[sample]\n"), "test.ini:1: key 'count' stands before");
 }
 

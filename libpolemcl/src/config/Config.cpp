@@ -58,7 +58,7 @@ class Lint {
  private:
   void section(const std::string& text, std::size_t number, const std::string& where) {
     if (text.back() != ']' || text.size() < 3)
-      throw Error(where + "'" + text + "' is no section; write [name]");
+      throw Error(where + "'" + text + "' is not a section; write [name]");
     m_section = std::string(io::trimmed(text.substr(1, text.size() - 2)));
     once(m_sections, lower(m_section), number, where + "section [" + m_section + "]");
     m_clean += "[" + m_section + "]\n";
@@ -112,7 +112,7 @@ void ConfigFile::set(const std::string& assignment) {
   };
   if (equals == std::string::npos || dot >= equals || part(0, dot).empty() ||
       part(dot + 1, equals).empty())
-    throw Error("'" + assignment + "' sets nothing; write section.key=value, as in " +
+    throw Error("'" + assignment + "' is not an assignment; write section.key=value, as in " +
                 "filter.particles=500");
   m_source->write(part(0, dot), part(dot + 1, equals), part(equals + 1, assignment.size()));
 }

@@ -76,7 +76,7 @@ TEST(BatchSpec, NamesWhatIsWrong) {
   EXPECT_HAS(refusal(head + "[sessions]\nnames = a.b\ninput = x\n" + configuration),
              "'a.b' is no name");
   EXPECT_HAS(refusal(head + sessions + "date = 2026-13-01\n" + configuration),
-             "session a: date: '2026-13-01' is no date");
+             "session a: date: '2026-13-01' is not a date");
   EXPECT_HAS(refusal(head + sessions + "date = 2026-02-01\n[session b]\ndate = 2026-01-31\n" +
                      configuration + "map_sessions = all\nsessions = c\nmaps = upkeep\n"),
              "session b of 2026-01-31 comes after one of 2026-02-01");

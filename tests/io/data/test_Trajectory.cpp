@@ -177,7 +177,7 @@ TEST_F(TrajectoryTest, RefusesPosesWithoutRotation) {
   for (const char* row : {"1.01 0 0 0 0 1 0 0 0 0 1 0", "-1 0 0 0 0 1 0 0 0 0 1 0",
                           "1 0.01 0 0 0 1 0 0 0 0 1 0", "0 0 0 0 0 0 0 0 0 0 0 0"}) {
     const fs::path file = write("p.txt", std::string("1 0 0 0 0 1 0 0 0 0 1 0\n") + row + "\n");
-    expectIn(messageOf([&] { readKittiPoses(file); }), file.string() + ":2: ", "no rotation");
+    expectIn(messageOf([&] { readKittiPoses(file); }), file.string() + ":2: ", "not a rotation");
   }
 }
 

@@ -122,7 +122,7 @@ TEST_F(KittiOdometryTest, RefusesTimesThatDoNotIncrease) {
 
 TEST_F(KittiOdometryTest, RefusesScansWithoutNumbers) {
   write("sequences/07/velodyne/x.bin", "");
-  expectIn(refusal(), "x.bin", "no frame number");
+  expectIn(refusal(), "x.bin", "not a frame number");
 }
 
 TEST_F(KittiOdometryTest, RefusesUnpaddedNumbers) {
@@ -146,7 +146,7 @@ TEST_F(KittiOdometryTest, RefusesAMalformedTr) {
   write("sequences/07/calib.txt", "P0: 1\nTr: 0 -1 0 0 0 0 -1 -0.1 1 0 0\n");
   expectIn(refusal(), "calib.txt:2: ", "11 numbers", "12 expected");
   write("sequences/07/calib.txt", "Tr: 0 -1 0 0 0 0 1 -0.1 1 0 0 -0.3\n");
-  expectIn(refusal(), "calib.txt:1: ", "no rotation");
+  expectIn(refusal(), "calib.txt:1: ", "not a rotation");
 }
 
 TEST_F(KittiOdometryTest, RefusesAScanCutShort) {

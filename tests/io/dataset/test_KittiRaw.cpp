@@ -269,7 +269,7 @@ TEST_F(KittiRawTest, RefusesAMalformedCalibration) {
   write("date/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 1\nT 0 0 0\n");
   expectIn(refusal(), "calib_imu_to_velo.txt", "9 and 0 found");
   write("date/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 2\nT: 0 0 0\n");
-  expectIn(refusal(), "calib_imu_to_velo.txt", "no rotation");
+  expectIn(refusal(), "calib_imu_to_velo.txt", "not a rotation");
   write("date/calib_imu_to_velo.txt", "R: 1 0 0 0 1 0 0 0 x\nT: 0 0 0\n");
   expectIn(refusal(), "calib_imu_to_velo.txt:1: ", "'x'");
 }

@@ -94,12 +94,12 @@ TEST_F(MulranTest, RefusesWhatIsDamaged) {
   write("KAIST01/global_pose.csv", "1,1,0,0,0,0,1,0,0,0,0,1,0\n2,1,0,0\n");
   expectIn(refusal(), "global_pose.csv:2: ", "4 numbers, 13 expected");
   write("KAIST01/global_pose.csv", "1,2,0,0,0,0,1,0,0,0,0,1,0\n");
-  expectIn(refusal(), "global_pose.csv:1: ", "no rotation");
+  expectIn(refusal(), "global_pose.csv:1: ", "not a rotation");
   write("KAIST01/global_pose.csv", "1,1,0,0,0,0,1,0,0,0,0,1,0\n");
   expectIn(refusal(), "global_pose.csv", "no truth at the time of any scan",
            "1561000444.391 ... 1561000444.590 s");
   write("KAIST01/ouster_front_stamp.csv", std::string(names[0]) + "\nx\n");
-  expectIn(refusal(), "ouster_front_stamp.csv:2: ", "'x' is no time");
+  expectIn(refusal(), "ouster_front_stamp.csv:2: ", "'x' is not a time");
   write("KAIST01/Ouster/" + std::string(names[1]) + ".bin", "12345");
   expectIn(refusal(), names[1], "cut short: 5 bytes");
   fs::remove_all(path("KAIST01/Ouster"));

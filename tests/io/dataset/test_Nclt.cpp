@@ -216,8 +216,8 @@ TEST_F(NcltTest, CovariancesOfOtherTimesAreDoneWithout) {
   const ScanFolder session = load();
   EXPECT_NEAR(session.scans[2].motion->mean.x, 1, 1e-6);
   EXPECT_NEAR(session.scans[2].motion->covariance(0, 0), 0.05 * 0.05 + 1e-6, 2e-7);
-  expectIn(notes(session), "odometry_cov.csv does not go row by row", "of 6 motions 0 take",
-           "6 have none");
+  expectIn(notes(session), "rows of odometry_cov.csv and odometry_mu.csv do not match",
+           "of 6 motions 0 take", "6 have none");
 }
 
 TEST_F(NcltTest, CovariancesAreFoundByTheirTimes) {

@@ -40,8 +40,8 @@ TEST_F(CsvRowsTest, ReadsRowAfterRow) {
 TEST_F(CsvRowsTest, RefusesRowsThatAreShortOrNoNumbers) {
   expectIn(refusal("1,2,3\n1,2\n"), "a.csv:2: ", "2 numbers, 3 expected", "time, x, y");
   expectIn(refusal("1,2,3,4\n"), "a.csv:1: ", "4 numbers, 3 expected");
-  expectIn(refusal("1,2,\n"), "a.csv:1: ", "'' is no number");
-  expectIn(refusal("time,x,y\n"), "a.csv:1: ", "'time' is no number");
+  expectIn(refusal("1,2,\n"), "a.csv:1: ", "'' is not a number");
+  expectIn(refusal("time,x,y\n"), "a.csv:1: ", "'time' is not a number");
 }
 
 TEST_F(CsvRowsTest, TellsHowFarItIs) {

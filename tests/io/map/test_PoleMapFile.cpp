@@ -202,8 +202,8 @@ TEST_F(PoleMapFileTest, RefusesAMissingFile) {
 }
 
 TEST_F(PoleMapFileTest, RefusesOtherFiles) {
-  expectIn(refusal("x,y\n1,2\n"), path("m.polemap").string(), "no pole map");
-  expectIn(refusal(""), "no pole map");
+  expectIn(refusal("x,y\n1,2\n"), path("m.polemap").string(), "not a pole map");
+  expectIn(refusal(""), "not a pole map");
 }
 
 TEST_F(PoleMapFileTest, RefusesANewerVersion) {

@@ -111,7 +111,7 @@ TEST_F(PolePositionsTest, RefusesCsvRowsOfOtherLength) {
 TEST_F(PolePositionsTest, RefusesCsvThatIsNoNumber) {
   for (const char* word : {"a", "", "nan", "inf", "1.2.3"}) {
     expectIn(refusal("m.csv", std::string("x,y\n1,") + word + "\n"),
-             path("m.csv").string() + ":2: ", "no finite number");
+             path("m.csv").string() + ":2: ", "not a finite number");
   }
 }
 

@@ -97,7 +97,7 @@ TEST_F(PoleTables, NpzRadiiMustBeRadii) {
   MapPole pole;
   pole.radius = -1;
   writePoleNpz(path("m.npz"), {MapPole(), pole});
-  expectIn(messageOf([&] { readPoleNpz(path("m.npz")); }), "m.npz", "row 1", "no radius");
+  expectIn(messageOf([&] { readPoleNpz(path("m.npz")); }), "m.npz", "row 1", "not a radius");
 }
 
 TEST_F(PoleTables, ReadsTheAuthorsFiles) {

@@ -91,7 +91,7 @@ TEST(ForgedLengths, OfFreeRanges) {
   for (const std::uint32_t claim : claims) {
     const std::string bytes =
         forged(bytesOf(scanOf(2)), ranges, number(claim) + number(0x40e00000));
-    EXPECT_HAS(refusal(bytes), std::to_string(claim) + " free ranges");
+    EXPECT_HAS(refusal(bytes), std::to_string(claim) + " visibility ranges");
   }
   // Within the limit, but more than the data hold.
   refusal(forged(bytesOf(scanOf(2)), ranges, number(65536) + number(0x40e00000)));
@@ -162,7 +162,7 @@ TEST(ForgedLengths, InARawlogOfPoles) {
   for (const bool compressed : {false, true}) {
     const std::string message = rawlogRefusal(folder, good + bad, compressed);
     EXPECT_HAS(message, "s.rawlog: object 1 at byte " + std::to_string(good.size()));
-    EXPECT_HAS(message, "220000000 free ranges");
+    EXPECT_HAS(message, "220000000 visibility ranges");
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
 }

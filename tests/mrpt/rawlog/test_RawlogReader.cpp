@@ -228,7 +228,7 @@ TEST(RawlogReader, NamesUnknownClasses) {
     const Reading bare = bench.read(odometry(0) + strange, allow);
     EXPECT_EQ(bare.error, bench.path + ": class 'other::lib::CObservationUnheard' at byte " +
                               std::to_string(odometry(0).size()) +
-                              " is not known here: it needs the library that defines it");
+                              " is unknown: load the library that defines it");
     EXPECT_HAS(bench.read(action(1) + inFrame, allow).error,
                "class 'polemcl::CObservationPales' at");
   }
@@ -247,7 +247,7 @@ TEST(RawlogReader, ReportsDamage) {
 
 TEST(RawlogReader, RefusesWhatIsNoRawlog) {
   const Bench bench;
-  EXPECT_HAS(bench.read("x y z\n1 2 3\n4 5 6\n").error, "is no rawlog");
+  EXPECT_HAS(bench.read("x y z\n1 2 3\n4 5 6\n").error, "is not a rawlog");
   EXPECT_HAS(readAll(bench.folder / "none.rawlog").error, "none.rawlog: no such file");
   EXPECT_HAS(readAll(bench.folder / "").error, "is not a file");
 }

@@ -113,8 +113,8 @@ TEST_F(DetectionModelFile, NamesFileKeyAndWhatIsAllowed) {
   expect("\"always\": [0.0,0.0", "\"always\": [0.8,0.8", "persistence.poles: the shares");
   expect("\"fence\": 0.0", "\"fence\": 9", "season.fence: 9 is not allowed");
   expect("\"always\": [0.0,", "\"always\": [", "5 numbers are needed, 4");
-  expect("0.002,", "0.003,", "levels: other quantiles");
-  expect("{", "", "no JSON");
+  expect("0.002,", "0.003,", "levels: not the quantiles");
+  expect("{", "", "not JSON");
 }
 
 }  // namespace polemcl::test_detection_model_file

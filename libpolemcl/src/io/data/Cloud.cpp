@@ -14,7 +14,7 @@ Cloud readKittiBin(const std::filesystem::path& file) {
   const std::string bytes = readBytes(file);
   if (bytes.size() % pointBytes != 0) {
     throw Error(file.string() + ": cut short: " + std::to_string(bytes.size()) +
-                " bytes are no multiple of 16 (float32 x y z intensity a point)");
+                " bytes are not a multiple of 16 (float32 x y z intensity a point)");
   }
   Cloud cloud;
   for (auto* field : {&cloud.x, &cloud.y, &cloud.z, &cloud.intensity}) {

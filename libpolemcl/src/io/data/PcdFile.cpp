@@ -42,7 +42,7 @@ std::vector<std::string> wordsOf(std::string_view line) {
 std::size_t pcdCountOf(const std::string& word, const std::string& where) {
   const auto value = parseNumber(word);
   if (!value || !(*value >= 0 && *value <= 1e12) || *value != std::floor(*value))
-    throw Error(where + "'" + word + "' is no count");
+    throw Error(where + "'" + word + "' is not a count");
   return static_cast<std::size_t>(*value);
 }
 
@@ -64,7 +64,7 @@ class HeaderReader {
   void takeLine() {
     const std::size_t end = m_bytes.find('\n', m_header.bytes);
     if (end == std::string_view::npos)
-      throw Error(m_file.string() + ": no PCD file: its header has no line DATA");
+      throw Error(m_file.string() + ": not a PCD file: its header has no line DATA");
     const auto words = wordsOf(m_bytes.substr(m_header.bytes, end - m_header.bytes));
     m_header.bytes = end + 1;
     const std::string where = at(m_file, ++m_header.lines);
@@ -82,7 +82,8 @@ class HeaderReader {
     } else if (key == "DATA") {
       startData(words, where);
     } else if (key != "VERSION" && key != "VIEWPOINT") {
-      throw Error(where + "no PCD file: '" + key.substr(0, 20) + "' is no word of its header");
+      throw Error(where + "not a PCD file: '" + key.substr(0, 20) +
+                  "' is not a PCD header keyword");
     }
   }
 
@@ -269,7 +270,8 @@ Cloud readAscii(const Header& header, std::string_view data, const std::filesyst
     for (std::size_t k = 0; k < 4; ++k) {
       if (!fields[k]) continue;
       const auto value = parseNumber(words[fields[k]->column]);
-      if (!value) throw Error(at(file, line) + "'" + words[fields[k]->column] + "' is no number");
+      if (!value)
+        throw Error(at(file, line) + "'" + words[fields[k]->column] + "' is not a number");
       point[k] = *value;
     }
     add(cloud, point);

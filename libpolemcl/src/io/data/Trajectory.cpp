@@ -126,7 +126,7 @@ Eigen::Isometry3d poseFromRows(const std::vector<double>& values, const std::str
   const double off =
       (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (off > 1e-3 || rotation.determinant() < 0) {
-    throw Error(where + "the 3x3 part is no rotation (RᵀR is off identity by " +
+    throw Error(where + "the 3x3 part is not a rotation (RᵀR differs from identity by " +
                 significant(off, 3) + ", determinant " + significant(rotation.determinant(), 3) +
                 "); expected: twelve numbers, row-major 3x4 [R|t]");
   }

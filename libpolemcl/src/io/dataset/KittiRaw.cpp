@@ -134,7 +134,7 @@ Drive listDrive(const fs::path& folder, std::vector<std::string>& notes) {
   const auto unplaced = missingFrom(drive.scanNumbers, drive.oxtsNumbers);
   if (!lost.empty()) notes.push_back("no scan for the oxts frames " + ranges(lost));
   if (!unplaced.empty()) {
-    notes.push_back("left out, for want of an oxts frame: scans " + ranges(unplaced));
+    notes.push_back("left out, because they have no oxts frame: scans " + ranges(unplaced));
   }
   return drive;
 }
@@ -175,7 +175,7 @@ Eigen::Isometry3d mercatorPose(const OxtsPose& measurement, double scale) {
 double parseKittiTime(std::string_view text, const std::string& where) {
   text = trimmed(text);
   const Error error(where + "'" + std::string(text.substr(0, 40)) +
-                    "' is no time; expected: YYYY-MM-DD hh:mm:ss.fraction");
+                    "' is not a time; expected: YYYY-MM-DD hh:mm:ss.fraction");
   if (text.size() < 19 || text[4] != '-' || text[7] != '-' || text[10] != ' ' || text[13] != ':' ||
       text[16] != ':') {
     throw error;

@@ -12,9 +12,9 @@ LabelledCloud readLabelledCloud(const std::filesystem::path& bin,
                                 const std::filesystem::path& label) {
   const std::string points = readBytes(bin), labels = readBytes(label);
   if (points.size() % 16 != 0 || labels.size() % 4 != 0 || points.size() / 16 != labels.size() / 4)
-    throw Error(label.string() + ": " + std::to_string(labels.size()) + " bytes are no label (4 " +
-                "bytes) for each point (16 bytes) of " + bin.string() + ", which has " +
-                std::to_string(points.size()) + " bytes");
+    throw Error(label.string() + ": " + std::to_string(labels.size()) +
+                " bytes are not one label (4 bytes) for each point (16 bytes) of " + bin.string() +
+                ", which has " + std::to_string(points.size()) + " bytes");
   LabelledCloud result;
   for (std::size_t i = 0; i < points.size() / 16; ++i) {
     float value[4];

@@ -46,7 +46,7 @@ void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
   }
   if (unused > 0)
     result.notes.push_back(file.filename().string() + ": " + std::to_string(unused) +
-                           " rows that are not finite or not after the row before, not used");
+                           " rows ignored: not finite, or not later than the previous row");
   takePoses(result, track, file, "truth", "at times without truth");
 }
 
@@ -61,7 +61,7 @@ void noteMissing(const fs::path& file, const std::vector<std::uint64_t>& names,
     const auto stamp = fileNumber(fs::path(std::string(word) + ".bin"));
     if (!stamp)
       throw Error(at(file, i + 1) + "'" + std::string(word.substr(0, 40)) +
-                  "' is no time; expected: one time in ns a line");
+                  "' is not a time; expected: one time in ns a line");
     ++all;
     if (!std::binary_search(names.begin(), names.end(), *stamp)) ++missing;
   }

@@ -129,7 +129,7 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body,
     result.notes.push_back(name + ": " + std::to_string(unknown) + " rows without a pose (NaN)");
   if (disordered > 0)
     result.notes.push_back(name + ": " + std::to_string(disordered) +
-                           " rows not after the row before, not used");
+                           " rows not later than the previous row, ignored");
   takePoses(result, track, file, "truth", "at times without truth");
 }
 

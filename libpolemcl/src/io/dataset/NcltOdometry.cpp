@@ -67,7 +67,7 @@ class CovarianceRows {
 
   void noteMismatch(std::size_t steps, std::vector<std::string>& notes) const {
     if (m_missing + m_shifted == 0) return;
-    notes.push_back("odometry_cov.csv does not go row by row with odometry_mu.csv: of " +
+    notes.push_back("the rows of odometry_cov.csv and odometry_mu.csv do not match: of " +
                     std::to_string(steps) + " motions " + std::to_string(m_shifted) +
                     " take the covariance of the nearest time, " + std::to_string(m_missing) +
                     " have none (there it is that of the motions beside them, or of 5 % of each "
@@ -100,7 +100,7 @@ class CovarianceRows {
 void noteUnused(std::size_t rows, const fs::path& file, std::vector<std::string>& notes) {
   if (rows > 0)
     notes.push_back(file.filename().string() + ": " + std::to_string(rows) +
-                    " rows that are not finite or not after the row before, not used");
+                    " rows ignored: not finite, or not later than the previous row");
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ NcltOdometry::NcltOdometry(const NcltOdometryFiles& files, std::vector<double> t
   if (!files.steps.empty()) readSteps(files, notes, progress);
   if (files.steps.empty() || files.covariances.empty())
     notes.push_back(
-        "no odometry_mu.csv with odometry_cov.csv: standard deviations of the odometry are taken "
+        "no odometry_mu.csv with odometry_cov.csv: standard deviations of the odometry are assumed "
         "to be 5 % of each motion");
 }
 

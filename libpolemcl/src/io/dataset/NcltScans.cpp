@@ -182,7 +182,7 @@ Cloud readNcltSync(const fs::path& file) {
   const std::string bytes = readBytes(file);
   if (bytes.size() % hitBytes != 0)
     throw Error(file.string() + ": cut short: " + std::to_string(bytes.size()) +
-                " bytes are no multiple of 8 (uint16 x y z, uint8 intensity, laser a point)");
+                " bytes are not a multiple of 8 (uint16 x y z, uint8 intensity, laser a point)");
   Cloud cloud;
   addPoints(bytes.data(), bytes.size() / hitBytes, Eigen::Isometry3d::Identity(), cloud);
   return cloud;

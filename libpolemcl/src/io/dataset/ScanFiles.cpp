@@ -46,7 +46,7 @@ std::vector<std::uint64_t> fileNumbers(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     const auto number = fileNumber(file);
     if (!number) {
-      throw Error(file.string() + ": the name is no frame number; names like 000012" +
+      throw Error(file.string() + ": the name is not a frame number; names like 000012" +
                   file.extension().string() + " are expected here");
     }
     if (!numbers.empty() && *number == numbers.back()) {
@@ -91,8 +91,8 @@ void checkScanSizes(const std::vector<fs::path>& scans, std::vector<std::string>
     if (error) throw Error("cannot read " + scan.string() + ": " + error.message());
     if (size % point.bytes != 0) {
       throw Error(scan.string() + ": cut short: " + std::to_string(size) +
-                  " bytes are no multiple of " + std::to_string(point.bytes) + " (" + point.fields +
-                  " a point)");
+                  " bytes are not a multiple of " + std::to_string(point.bytes) + " (" +
+                  point.fields + " a point)");
     }
     if (size == 0) empty.push_back(scan);
   }

@@ -144,7 +144,7 @@ ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robo
     for (std::size_t i = 0; i < result.scans.size(); ++i)
       result.scans[i].time = nominalPeriod * static_cast<double>(i);
     result.nominalTimes = true;
-    result.notes.push_back("no times.txt: scans are taken to be 0.1 s apart");
+    result.notes.push_back("no times.txt: scans are assumed to be 0.1 s apart");
   }
   readMotions(folder, T_robot_sensor, scans, result);
   return result;

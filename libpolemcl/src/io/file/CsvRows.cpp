@@ -52,7 +52,7 @@ bool CsvRows::next(std::vector<double>& values) {
       const auto value = parseNumber(word);
       if (!value)
         throw Error(at() + "'" + std::string(word.substr(0, 40)) +
-                    "' is no number; expected: " + m_layout);
+                    "' is not a number; expected: " + m_layout);
       values.push_back(*value);
       more = comma != std::string_view::npos;
       if (more) rest.remove_prefix(comma + 1);

@@ -71,7 +71,7 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
   const std::string& field = m_rows[row].fields[column];
   const auto value = parseNumber(field);
   if (!value || !std::isfinite(*value))
-    throw Error(at(row) + "'" + field + "' is no finite number");
+    throw Error(at(row) + "'" + field + "' is not a finite number");
   return *value;
 }
 

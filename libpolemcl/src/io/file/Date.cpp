@@ -25,7 +25,7 @@ double secondsOfDate(const std::string& text) {
   const double seconds = end && *end == '\0' ? static_cast<double>(::timegm(&parts)) : -1;
   // Convert back: a day that does not exist (2012-02-30) comes back as another one.
   const bool exists = seconds == 0 || (seconds > 0 && dateText(seconds) == text);
-  if (!exists) throw Error("'" + text + "' is no date; write YYYY-MM-DD, from 1970-01-01 on");
+  if (!exists) throw Error("'" + text + "' is not a date; write YYYY-MM-DD, from 1970-01-01 on");
   return seconds;
 }
 

@@ -30,7 +30,7 @@ std::string_view valueOf(std::string_view header, std::string_view key, const st
 }
 
 std::vector<std::size_t> parseShape(std::string_view text, const std::string& where) {
-  const Error error(where + "damaged: the shape in the .npy header is none");
+  const Error error(where + "damaged: the .npy header has no valid shape");
   const auto close = text.find(')');
   if (text.empty() || text.front() != '(' || close == std::string_view::npos) throw error;
   text = text.substr(1, close - 1);
@@ -97,7 +97,7 @@ std::size_t toCOrder(std::size_t index, const std::vector<std::size_t>& shape) {
 
 NumberArray parseNpy(std::string_view bytes, const std::string& where) {
   ByteReader reader(bytes, where + "cut short: ");
-  if (bytes.substr(0, magic.size()) != magic) throw Error(where + "no .npy data");
+  if (bytes.substr(0, magic.size()) != magic) throw Error(where + "not .npy data");
   reader.getRaw(magic.size());
   const int version = reader.getRaw(2).front();
   if (version < 1 || version > 3) {

@@ -38,7 +38,8 @@ std::string_view findEnd(std::string_view bytes, const std::string& where) {
     if (at32(record, 0) == zip_records::endSignature && at16(record, 20) == tail - endBytes)
       return record;
   }
-  throw Error(where + "no .npz file (zip archive), or cut short: it has no directory at its end");
+  throw Error(where +
+              "not a .npz file (zip archive), or cut short: it has no directory at its end");
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ NpzFile::NpzFile(const std::filesystem::path& file) : m_file(file), m_bytes(read
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::string_view entry = part(directory, 0, entryBytes, where);
     if (at32(entry, 0) != zip_records::entrySignature) {
-      throw Error(where + "damaged: entry " + std::to_string(i) + " of its directory is none");
+      throw Error(where + "damaged: entry " + std::to_string(i) + " of its directory is invalid");
     }
     Member member;
     member.flags = static_cast<std::uint32_t>(at16(entry, 8));
@@ -86,11 +87,11 @@ std::string NpzFile::extract(const Member& member, const std::string& where) con
   }
   const std::string_view header = part(m_bytes, member.header, localBytes, where);
   if (at32(header, 0) != zip_records::localSignature)
-    throw Error(where + "damaged: its header is none");
+    throw Error(where + "damaged: its local header is invalid");
   const std::uint64_t begin = member.header + localBytes + at16(header, 26) + at16(header, 28);
   const std::string_view data = part(m_bytes, begin, member.compressed, where);
   if (member.method == stored && member.compressed != member.size) {
-    throw Error(where + "damaged: stored, but of two sizes");
+    throw Error(where + "damaged: stored uncompressed, but with two different sizes");
   }
   std::string content = member.method == stored
                             ? std::string(data)

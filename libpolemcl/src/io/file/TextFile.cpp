@@ -48,7 +48,7 @@ void LineReader::readBlock() {
     if (m_read > mostTextBytes)
       throw Error("cannot read " + m_file.string() + ": it holds more than " +
                   std::to_string(mostTextBytes >> 20) +
-                  " MB of text, uncompressed; that is no table of this program");
+                  " MB of text, uncompressed; no table is that large");
     return;
   }
   m_ended = true;
@@ -112,7 +112,8 @@ std::vector<double> parseNumbers(std::string_view text, const std::filesystem::p
     const std::string_view word = text.substr(0, text.find_first_of(" \t"));
     const auto value = parseNumber(word);
     if (!value || !std::isfinite(*value)) {
-      throw Error(at(file, line) + "'" + std::string(word.substr(0, 40)) + "' is no finite number");
+      throw Error(at(file, line) + "'" + std::string(word.substr(0, 40)) +
+                  "' is not a finite number");
     }
     values.push_back(*value);
     text.remove_prefix(word.size());

@@ -35,8 +35,9 @@ Datum parseDatum(const std::string& text, const std::string& where) {
   const bool good = values.size() == 3 && std::abs(values[0]) <= 90 && std::abs(values[1]) <= 180 &&
                     std::abs(values[2]) <= 360;
   if (!good)
-    throw Error(where + "'" + text +
-                "' is no datum; LAT,LON or LAT,LON,YAW_DEG in degrees, within 90, 180 and 360");
+    throw Error(
+        where + "'" + text +
+        "' is not a datum; write LAT,LON or LAT,LON,YAW_DEG in degrees, within 90, 180 and 360");
   return {values[0], values[1], values[2]};
 }
 

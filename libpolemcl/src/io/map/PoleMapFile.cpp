@@ -57,7 +57,8 @@ void require(const char* why, const std::string& where, const char* what, std::s
 void requireSound(const PoleMapData& data, const std::string& where) {
   if (!data.histories.empty() && data.histories.size() != data.poles.size()) {
     throw Error(where + std::to_string(data.histories.size()) + " histories for " +
-                std::to_string(data.poles.size()) + " poles; there must be one for each, or none");
+                std::to_string(data.poles.size()) +
+                " poles; allowed is one for each pole, or no history");
   }
   for (std::size_t i = 0; i < data.poles.size(); ++i)
     require(fault(data.poles[i]), where, "pole ", i);
@@ -187,7 +188,7 @@ void readCandidates(ByteReader& chunk, const std::string& where, PoleMapData& da
 /// The payload of a whole file, after all checks.
 std::string_view checkedPayload(std::string_view bytes, const std::string& where) {
   if (bytes.substr(0, polemapMagic.size()) != polemapMagic) {
-    throw Error(where + "no pole map (it does not start like a .polemap file)");
+    throw Error(where + "not a pole map (it does not start like a .polemap file)");
   }
   ByteReader header(bytes.substr(polemapMagic.size()), where + "cut short: ");
   const auto found = header.get<std::uint32_t>();

@@ -86,7 +86,7 @@ std::vector<double> readRadii(const std::filesystem::path& file) {
     radii.push_back(array.values[3 * row + 2]);
     if (!(radii.back() >= 0 && std::isfinite(radii.back())))
       throw Error(file.string() + ": array polemeans, row " + std::to_string(row) +
-                  " (counted from 0): the third number is no radius");
+                  " (counted from 0): the third number is not a radius");
   }
   return radii;
 }

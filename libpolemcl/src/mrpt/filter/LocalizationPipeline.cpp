@@ -120,7 +120,7 @@ void LocalizationPipeline::checkFrame(const PoleFrame& frame) const {
         "the localization has not been started: call start() or initializeGlobally() first");
   const std::string when = std::to_string(frame.time) + " s";
   if (!std::isfinite(frame.time) || (m_stepped && frame.time <= m_time))
-    throw Error("time does not move on: a scan at " + when + " comes after one at " +
+    throw Error("time does not increase: a scan at " + when + " comes after one at " +
                 std::to_string(m_time) + " s");
   if (!m_stepped) return;
   if (!frame.motion)

@@ -149,7 +149,7 @@ PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame) {
   if (!m_started) throw Error("the filter has no particles yet: call start() first");
   const std::string when = std::to_string(frame.time) + " s";
   if (!std::isfinite(frame.time) || (m_stepped && frame.time <= m_time))
-    throw Error("time does not move on: a scan at " + when + " comes after one at " +
+    throw Error("time does not increase: a scan at " + when + " comes after one at " +
                 std::to_string(m_time) + " s");
   mrpt::obs::CActionCollection::Ptr action;
   if (m_stepped) {

@@ -45,7 +45,7 @@ void CObservationPoles::serializeTo(CArchive& out) const {
   for (const std::size_t count : {sensorLabel.size(), poles.size(), visibilityRange.size()})
     if (count > io::mostOfAScan)
       throw Error("a scan with " + std::to_string(count) +
-                  " poles, free ranges or bytes of its label cannot be stored; at most " +
+                  " poles, visibility ranges or bytes of its label cannot be stored; at most " +
                   std::to_string(io::mostOfAScan) + " are allowed of each");
   out << timestamp << sensorLabel << sensorPose << points;
   out << static_cast<std::uint32_t>(poles.size());
@@ -62,7 +62,7 @@ void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   // One by one: a count in a damaged file must not decide how much memory is allocated.
   for (std::uint32_t left = readCount(in, io::mostOfAScan, "poles"); left > 0; --left)
     poles.push_back(readPole(in));
-  visibilityRange = readFloats(in, io::mostOfAScan, "free ranges");
+  visibilityRange = readFloats(in, io::mostOfAScan, "visibility ranges");
 }
 
 Pose2D CObservationPoles::planarSensorPose() const {
@@ -89,7 +89,7 @@ void CObservationPoles::getDescriptionAsText(std::ostream& o) const {
   CObservation::getDescriptionAsText(o);
   o << "Sensor pose on the robot: " << sensorPose << "\n"
     << "Valid points of the scan: " << points << "\n"
-    << "Directions with a free range: " << visibilityRange.size() << "\n"
+    << "Directions with a visibility range: " << visibilityRange.size() << "\n"
     << "Poles: " << poles.size() << " (planar sensor frame, m)\n";
   if (poles.empty()) return;
   std::ostringstream table;

@@ -158,8 +158,8 @@ std::vector<double> ObservationPoints::rowElevations(const CObservationRotatingS
   }
   if (static_cast<int>(elevations.size()) != rows)
     throw Error("a rotating scan of " + std::to_string(rows) + " rows (" + scan.lidarModel +
-                ") tells no elevations, and [sensor] model = " + m_sensor.model + " has " +
-                std::to_string(elevations.size()) +
+                ") does not state its elevations, and [sensor] model = " + m_sensor.model +
+                " has " + std::to_string(elevations.size()) +
                 " beams; set the model, or model = table with elevations_deg in the order of the "
                 "rows");
   if (!isVelodyne(scan) || upright.model == "table") return elevations;
@@ -167,7 +167,7 @@ std::vector<double> ObservationPoints::rowElevations(const CObservationRotatingS
       VelodyneCalibration::LoadDefaultCalibration(scan.lidarModel == "VLP-16" ? "VLP16" : "HDL32")
           .laser_corrections;
   if (lasers.size() != elevations.size())
-    throw Error("a rotating scan says it is of a " + scan.lidarModel + " but has " +
+    throw Error("a rotating scan names the model " + scan.lidarModel + " but has " +
                 std::to_string(rows) + " rows");
   // The configuration gives the elevations; the calibration only gives the vertical order of the
   // lasers.

@@ -78,7 +78,7 @@ void readingPoints(const mrpt::obs::CObservation& observation, const Work& work)
     throw;
   } catch (const std::exception& error) {
     throw Error(std::string("points of a ") + observation.GetRuntimeClass()->className +
-                " cannot be had: " + mrptReason(error.what()));
+                " cannot be read: " + mrptReason(error.what()));
   }
 }
 

@@ -39,11 +39,11 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
   if (dynamic_cast<const CObservationPoles*>(&scan))
     throw Error("holds poles, not scans; give the rawlog that they were extracted from");
   if (dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&scan))
-    throw Error("is of a depth camera, which has an image and no beams: it needs no inspection");
+    throw Error("is from a depth camera, which has an image and no beams: it needs no inspection");
   if (dynamic_cast<const mrpt::obs::CObservationRotatingScan*>(&scan))
     throw Error(
-        "holds rotating scans, which do not tell the elevations of their rows; name the model in "
-        "[sensor], or give elevations_deg in the order of the rows");
+        "holds rotating scans, which do not state the elevations of their rings; name the model in "
+        "[sensor], or give elevations_deg in the order of the rings");
 }
 
 /// The options of a sensor identified in its own axes, for clouds with this sensor pose.

@@ -58,7 +58,7 @@ void RawlogReader::Impl::endsHere(std::uint64_t offset) {
   if (!allowTruncated)
     throw Error(name + ": truncated: the file ends inside an object that starts at byte " +
                 std::to_string(offset) + " (object " + std::to_string(objects) +
-                "); copy the file again, or allow truncated files to use what is before");
+                "); copy the file again, or allow truncated files to use the entries before");
   truncated = true;
 }
 
@@ -67,8 +67,8 @@ void RawlogReader::Impl::explain(std::uint64_t offset, const std::string& what) 
   const std::string unknown = unregisteredClass(what);
   if (printable(unknown))
     throw Error(name + ": class '" + unknown + "'" + at +
-                " is not known here: it needs the library that defines it");
-  if (objects == 0) throw Error(name + ": is no rawlog: " + mrptReason(what));
+                " is unknown: load the library that defines it");
+  if (objects == 0) throw Error(name + ": is not a rawlog: " + mrptReason(what));
   throw Error(name + ": object " + std::to_string(objects) + at +
               " is damaged: " + mrptReason(what));
 }

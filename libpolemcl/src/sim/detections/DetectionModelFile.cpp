@@ -69,7 +69,8 @@ class Section {
     if (!value.is_array()) throw Error(m_where + key + ": a list of numbers is needed");
     std::vector<double> result;
     for (const Json& number : value) {
-      if (!number.is_number()) throw Error(m_where + key + ": holds something that is no number");
+      if (!number.is_number())
+        throw Error(m_where + key + ": holds something that is not a number");
       result.push_back(number.get<double>());
     }
     return result;
@@ -124,9 +125,9 @@ DetectionModel fromJson(const Json& json, const std::string& where) {
   model.detectedRange = file.numbers("detected_range_m");
   model.reportedRange = file.numbers("reported_range_m");
   if (file.array<kQuantileLevels.size()>("levels") != kQuantileLevels)
-    throw Error(where + "levels: other quantiles than those of this version; fit the model anew");
+    throw Error(where + "levels: not the quantiles of this version; fit the model again");
   if (file.array<kNoiseReach.size()>("reach_m") != kNoiseReach)
-    throw Error(where + "reach_m: other reaches than those of this version; fit the model anew");
+    throw Error(where + "reach_m: not the reaches of this version; fit the model again");
   Section clutter = file.section("clutter_per_m");
   model.clutterAlways = clutter.number("always");
   model.clutterToday = clutter.number("today");
@@ -237,7 +238,7 @@ DetectionModel readDetectionModel(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw Error(file.string() + ": cannot be read");
   const Json json = Json::parse(stream, nullptr, false);
-  if (json.is_discarded()) throw Error(file.string() + ": is no JSON");
+  if (json.is_discarded()) throw Error(file.string() + ": is not JSON");
   DetectionModel model = fromJson(json, file.string() + ": ");
   try {
     model.validate();

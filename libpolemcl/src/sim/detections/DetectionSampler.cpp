@@ -103,10 +103,10 @@ DetectionSampler::DetectionSampler(DetectionModel model, const World& world,
   m_model.validate();
   constexpr double kHeights = 0.3;
   if (m_model.sensor != options.sensor)
-    throw Error("the model is of a " + m_model.sensor + ", and [sensor] model is " +
+    throw Error("the model is for a " + m_model.sensor + ", and [sensor] model is " +
                 options.sensor + "; fit one for it (pole-eval model)");
   if (std::abs(m_model.height - options.height) > kHeights)
-    throw Error("the model is of a LiDAR " + std::to_string(m_model.height) +
+    throw Error("the model is for a LiDAR " + std::to_string(m_model.height) +
                 " m above ground, and [sensor] height_m is " + std::to_string(options.height) +
                 "; fit one for that height (pole-eval model)");
   addPoles(world);

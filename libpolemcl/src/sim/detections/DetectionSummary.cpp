@@ -36,7 +36,7 @@ void addRuns(const Track& track, double spacing, std::vector<double>& found,
 }  // namespace
 
 DetectionSummary summarizeDetections(const ObservedDrive& observed, double maxRange) {
-  if (observed.poles.empty()) throw Error("no scan to sum up");
+  if (observed.poles.empty()) throw Error("no scan to summarize");
   constexpr double kBin = 5;
   const TrackedDrive tracked = trackDrive(observed, maxRange);
   const auto bins = static_cast<std::size_t>(std::ceil(maxRange / kBin));

@@ -108,7 +108,7 @@ std::vector<Detour> planDetours(const WorldOptions& options, const Street& stree
     for (int attempt = 0; attempt < 40 && !found; ++attempt)
       found = tryOne(street, index, attempt % 2 == 0 ? side : -side, random);
     if (!found)
-      throw Error("[world] side_streets: beside this street is no room for side street " +
+      throw Error("[world] side_streets: there is no room beside this street for side street " +
                   std::to_string(index + 1) + "; take fewer, or another seed or track");
     detours.push_back(std::move(*found));
   }
