@@ -28,9 +28,8 @@ struct NcltOdometryFiles {
 ///
 /// The means come from the track; without a track, from the accumulated steps. The covariances of
 /// the steps in the interval are composed. A step that lies only partly in the interval contributes
-/// in proportion. A step takes the covariance row with its time, or the nearest row within half a
-/// step, because the rows of the two files may not match. Frame: the body, x forward, y right, z
-/// down.
+/// in proportion. The rows of the two files may not match: a step takes the covariance row with its
+/// time, or the nearest row within half a step. Frame: the body, x forward, y right, z down.
 class NcltOdometry {
  public:
   /// \param times Times at which the body's pose is needed, s, in ascending order (equal times are

@@ -1,5 +1,6 @@
 #pragma once
 /// \file MrptReason.h
+/// \brief Short reasons of MRPT's errors.
 
 #include <string>
 

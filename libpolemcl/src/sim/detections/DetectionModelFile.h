@@ -8,8 +8,8 @@
 
 namespace polemcl::sim {
 
-/// \brief \throws Error with file and key: not readable, not JSON, other format, missing or unknown
-/// key, value of the wrong type or out of range.
+/// \brief Reads a model. \throws Error with file and key: not readable, not JSON, other format,
+/// missing or unknown key, value of the wrong type or out of range.
 DetectionModel readDetectionModel(const std::filesystem::path& file);
 
 /// \brief Writes the model atomically, numbers with three digits. \throws Error when it cannot be
