@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "batch/BatchPlan.h"
 #include "core/common/Types.h"
@@ -40,6 +41,19 @@ inline fs::path writeStreetBatch(const TempFolder& folder) {
                 "[setting once]\nconfig = " +
                 source + "/config/hdl32e.ini\nset = filter.particles=200\nsessions = s1 s2\n");
   return folder / "street-batch.ini";
+}
+
+/// The results of a batch, as scripts read them.
+inline nlohmann::json resultsIn(const fs::path& folder) {
+  return nlohmann::json::parse(readText(folder / "results.json"));
+}
+
+/// The result of a session under a configuration; null when there is none.
+inline nlohmann::json resultOf(const nlohmann::json& batch, const std::string& configuration,
+                               const std::string& session) {
+  for (const auto& result : batch.at("results"))
+    if (result.at("setting") == configuration && result.at("session") == session) return result;
+  return nullptr;
 }
 
 /// The files of a folder with their contents, by path, except paths that contain `except`.

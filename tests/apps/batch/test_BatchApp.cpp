@@ -1,14 +1,15 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <thread>
 
 #include "batch/BatchApp.h"
 #include "batch/BatchFolder.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
-#include "report/batch/BatchFiles.h"
 #include "support/BatchTestFiles.h"
 
 namespace polemcl::test_batch_app {
@@ -20,6 +21,42 @@ using namespace testing_apps;
 namespace {
 
 const std::string program = std::string(POLEMCL_BIN_DIR) + "/pole-batch";
+
+/// The programs, of which one only says that it has started, and goes on until it is ended.
+class HeldPrograms {
+ public:
+  HeldPrograms(const fs::path& folder, const std::string& name) : m_folder(folder) {
+    fs::create_directories(folder);
+    for (const auto& entry : fs::directory_iterator(POLEMCL_BIN_DIR))
+      if (entry.path().filename() != name)
+        fs::create_symlink(entry.path(), folder / entry.path().filename());
+    const std::string said = folder / "said", never = folder / "never";
+    EXPECT_EQ(::mkfifo(said.c_str(), 0600) + ::mkfifo(never.c_str(), 0600), 0);
+    m_said = ::open(said.c_str(), O_RDONLY | O_NONBLOCK);
+    // Its own end of the pipe stays open until the process ends; nobody writes to the other one.
+    writeText(folder / name,
+              "#!/bin/sh\nexec 3>'" + said + "'\necho >&3\nread word <'" + never + "'\n");
+    fs::permissions(folder / name, fs::perms::owner_all);
+  }
+  ~HeldPrograms() { ::close(m_said); }
+  const fs::path& folder() const { return m_folder; }
+
+  bool waitForStart() const {
+    char newline = 0;
+    return happens(POLLIN) && ::read(m_said, &newline, 1) == 1;
+  }
+  bool waitForEnd() const { return happens(POLLHUP); }
+
+ private:
+  /// \return False when it does not happen within a minute.
+  bool happens(short event) const {
+    pollfd pipe{m_said, event, 0};
+    return ::poll(&pipe, 1, 60000) == 1 && (pipe.revents & event) != 0;
+  }
+
+  fs::path m_folder;
+  int m_said = -1;
+};
 
 /// A street's batch, done once for all tests.
 class BatchApp : public testing::Test {
@@ -54,21 +91,6 @@ class BatchApp : public testing::Test {
     return all;
   }
 
-  /// No process works in the folder, or none does soon.
-  static bool nobodyWorksIn(const fs::path& folder) {
-    const auto works = [&] {
-      std::error_code none;
-      for (const auto& process : fs::directory_iterator("/proc", none)) {
-        const std::string place = fs::read_symlink(process.path() / "cwd", none).string();
-        if (place.rfind(folder.string() + "/", 0) == 0) return true;
-      }
-      return false;
-    };
-    for (int i = 0; i < 20 && works(); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    return !works();
-  }
-
   static TempFolder* s_folder;
 };
 
@@ -77,41 +99,44 @@ TempFolder* BatchApp::s_folder = nullptr;
 }  // namespace
 
 TEST_F(BatchApp, ReportsAllRuns) {
-  const auto results = report::readResultsJson(*s_folder / "done/results.json");
-  EXPECT_EQ(results.name, "street-batch");
-  ASSERT_EQ(results.configurations.size(), 2u);
-  ASSERT_EQ(results.sessions.size(), 3u);
-  EXPECT_TRUE(results.failures.empty());
-  EXPECT_EQ(results.sessions[1].date, "2026-02-01");
-  EXPECT_NEAR(results.sessions[0].length, 120, 5);  // in one lane of a bent street
-  for (std::size_t configuration : {0, 1})
-    for (std::size_t session : {1, 2}) {
-      const auto* result = results.find(configuration, session);
-      ASSERT_NE(result, nullptr);
-      ASSERT_EQ(result->runs.size(), 2u);
-      EXPECT_GT(result->mapPoles, 10u);
-      EXPECT_GT(result->plots.truth.size(), 1u);
-      for (const auto& run : result->runs) {
-        EXPECT_EQ(run.failure, "");
-        EXPECT_GT(run.errors.posMean, 0);
-        EXPECT_LT(run.errors.posMean, 0.1);
-        EXPECT_EQ(run.health.ok + run.health.degraded + run.health.lost, 1);
+  const auto results = resultsIn(*s_folder / "done");
+  EXPECT_EQ(results["name"], "street-batch");
+  ASSERT_EQ(results["settings"].size(), 2u);
+  ASSERT_EQ(results["sessions"].size(), 3u);
+  EXPECT_TRUE(results["failures"].empty());
+  EXPECT_EQ(results["sessions"][1]["date"], "2026-02-01");
+  EXPECT_NEAR(results["sessions"][0]["length_m"], 120, 5);  // in one lane of a bent street
+  for (const char* configuration : {"kept", "once"})
+    for (const char* session : {"s1", "s2"}) {
+      const auto result = resultOf(results, configuration, session);
+      ASSERT_EQ(result["runs"].size(), 2u);
+      EXPECT_GT(result["map_poles"], 10);
+      EXPECT_GT(result["plots"]["truth_xy"].size(), 2u);
+      std::size_t poses = 0, counted = 0;
+      for (const auto& run : result["runs"]) {
+        EXPECT_EQ(run["failure"], "");
+        EXPECT_GT(run["errors"]["pos_mean"], 0);
+        EXPECT_LT(run["errors"]["pos_mean"], 0.1);
+        const auto& health = run["health"];
+        EXPECT_EQ(health["ok"].get<double>() + health["degraded"].get<double>() +
+                      health["lost"].get<double>(),
+                  1);
+        poses += run["errors"]["poses"].get<std::size_t>();
       }
-      EXPECT_NE(result->runs[0].seed, result->runs[1].seed);
-      EXPECT_EQ(result->plots.positionErrors.total(),
-                result->runs[0].errors.poses + result->runs[1].errors.poses);
+      for (const std::size_t count : result["plots"]["position_histogram"]) counted += count;
+      EXPECT_EQ(counted, poses);
+      EXPECT_NE(result["runs"][0]["seed"], result["runs"][1]["seed"]);
     }
-  EXPECT_TRUE(results.find(0, 0)->runs.empty());  // the map's own session
+  EXPECT_TRUE(resultOf(results, "kept", "s0")["runs"].empty());  // the map's own session
   for (const char* file : {"report.html", "runs.csv", "sessions.csv", "table.tex"})
     EXPECT_GT(fs::file_size(*s_folder / "done" / file), 100u) << file;
 }
 
 TEST_F(BatchApp, FiguresAreThoseOfTheRuns) {
-  const auto results = report::readResultsJson(*s_folder / "done/results.json");
-  const std::string summary = readText(*s_folder / "done/tasks/run.kept.s2.01/out/summary.json");
-  const auto at = summary.find("\"pos_mean\": ");
-  ASSERT_NE(at, std::string::npos);
-  EXPECT_NEAR(results.find(0, 2)->runs[1].errors.posMean, std::stod(summary.substr(at + 12)), 1e-6);
+  const auto summary =
+      nlohmann::json::parse(readText(*s_folder / "done/tasks/run.kept.s2.01/out/summary.json"));
+  const auto result = resultOf(resultsIn(*s_folder / "done"), "kept", "s2");
+  EXPECT_NEAR(result["runs"][1]["errors"]["pos_mean"], summary["runs"][0]["pos_mean"], 1e-6);
 }
 
 TEST_F(BatchApp, BytesDependOnNothingElse) {
@@ -123,26 +148,21 @@ TEST_F(BatchApp, BytesDependOnNothingElse) {
 
 TEST_F(BatchApp, GoesOnAfterItWasKilled) {
   const fs::path output = *s_folder / "killed";
+  HeldPrograms held(*s_folder / "held", "pole-localize");
   const pid_t child = ::fork();
   if (child == 0) {
-    ::setpgid(0, 0);
+    ::setenv("POLEMCL_BIN", held.folder().c_str(), 1);
     ::execl(program.c_str(), "pole-batch", (*s_folder / "street-batch.ini").c_str(), "--output",
             output.c_str(), "--jobs", "1", "--quiet", nullptr);
     ::_exit(127);
   }
-  const auto doneTasks = [&] {
-    std::size_t done = 0;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(output / "tasks", none))
-      done += entry.path().extension() != ".part";
-    return done;
-  };
-  while (doneTasks() < 4) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_TRUE(held.waitForStart());
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
-  EXPECT_TRUE(nobodyWorksIn(output)) << "a child goes on";
+  EXPECT_TRUE(held.waitForEnd()) << "a child goes on";
   EXPECT_FALSE(fs::exists(output / "results.json"));
   const auto before = contents(output / "tasks", ".part");
+  ASSERT_FALSE(before.empty());
   ASSERT_LT(before.size(), contents(*s_folder / "done/tasks").size());
   BatchOptions options = optionsFor("killed");
   EXPECT_NE(messageOf([&] { doBatch(options); }).find("--resume"), std::string::npos);
@@ -166,10 +186,10 @@ TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
   EXPECT_NE(message.find("4 of 14 tasks failed (run.kept.s2.00: "), std::string::npos) << message;
   EXPECT_NE(message.find("with those that need them 4 are not done"), std::string::npos) << message;
   EXPECT_NE(said.find("run.once.s2.00 failed: "), std::string::npos) << said;
-  const auto results = report::readResultsJson(*s_folder / "broken/results.json");
-  EXPECT_EQ(results.failures.size(), 4u);
-  EXPECT_NE(results.find(1, 2)->runs[0].failure, "");
-  EXPECT_EQ(results.find(1, 1)->runs[0].failure, "");
+  const auto results = resultsIn(*s_folder / "broken");
+  EXPECT_EQ(results["failures"].size(), 4u);
+  EXPECT_NE(resultOf(results, "once", "s2")["runs"][0]["failure"], "");
+  EXPECT_EQ(resultOf(results, "once", "s1")["runs"][0]["failure"], "");
 }
 
 TEST_F(BatchApp, ASessionWithoutReadableTruthIsReportedAlone) {
@@ -194,9 +214,9 @@ TEST_F(BatchApp, ASessionWithoutReadableTruthIsReportedAlone) {
   const std::string message = messageOf([&] { doBatch(options); });
   testing::internal::GetCapturedStderr();
   EXPECT_NE(message.find("s2.tum:2: 'nan"), std::string::npos) << message;
-  const auto results = report::readResultsJson(*s_folder / "truth/results.json");
-  EXPECT_NE(results.find(1, 2)->runs[0].failure, "");
-  EXPECT_EQ(results.find(1, 1)->runs[0].failure, "");
+  const auto results = resultsIn(*s_folder / "truth");
+  EXPECT_NE(resultOf(results, "once", "s2")["runs"][0]["failure"], "");
+  EXPECT_EQ(resultOf(results, "once", "s1")["runs"][0]["failure"], "");
   EXPECT_TRUE(fs::exists(*s_folder / "truth/report.html"));
 }
 
@@ -248,15 +268,16 @@ TEST_F(BatchApp, ScoresItsMaps) {
   writeText(*s_folder / "once.ini", text);
   options.batch = *s_folder / "once.ini";
   doBatch(options);
-  const auto results = report::readResultsJson(*s_folder / "scored/results.json");
-  ASSERT_TRUE(results.find(0, 0)->score);
-  const auto& score = *results.find(0, 0)->score;
-  EXPECT_EQ(score.truth, "truth.csv");
-  EXPECT_EQ(score.oneToOne.mapPoles, map.size());
-  EXPECT_EQ(score.oneToOne.truthPoles, map.size());
-  EXPECT_EQ(score.oneToOne.matches, map.size() - 1);
-  EXPECT_NEAR(score.oneToOneHalf.f1, 1 - 1.0 / static_cast<double>(map.size()), 1e-9);
-  EXPECT_NE(results.command.find("--set 'batch.runs=1'"), std::string::npos) << results.command;
+  const auto results = resultsIn(*s_folder / "scored");
+  const auto score = resultOf(results, "once", "s0")["map_score"];
+  EXPECT_EQ(score["truth"], "truth.csv");
+  const auto& oneToOne = score["one_to_one_1m"];
+  EXPECT_EQ(oneToOne["map_poles"], map.size());
+  EXPECT_EQ(oneToOne["truth_poles"], map.size());
+  EXPECT_EQ(oneToOne["matches"], map.size() - 1);
+  EXPECT_NEAR(score["one_to_one_0.5m"]["f1"], 1 - 1.0 / static_cast<double>(map.size()), 1e-9);
+  const std::string command = results["command"];
+  EXPECT_NE(command.find("--set 'batch.runs=1'"), std::string::npos) << command;
 }
 
 TEST_F(BatchApp, WritesLinesOfProgressWithoutATerminal) {

@@ -1,7 +1,7 @@
 #include "batch/BatchApp.h"
 #include "core/common/Types.h"
 #include "io/file/TextFile.h"
-#include "report/batch/BatchFiles.h"
+#include "support/BatchTestFiles.h"
 #include "support/StreetDatasets.h"
 
 namespace polemcl::test_paper_batches {
@@ -28,7 +28,7 @@ class PaperBatches : public testing::Test {
     return options;
   }
 
-  report::BatchResults run(const std::string& batch, const std::vector<std::string>& set) {
+  nlohmann::json run(const std::string& batch, const std::vector<std::string>& set) {
     BatchOptions options;
     options.batch = fs::path(POLEMCL_SOURCE_DIR) / "config/batches" / (batch + ".ini");
     options.data = data.path();
@@ -41,42 +41,44 @@ class PaperBatches : public testing::Test {
       ADD_FAILURE() << error.what();
     }
     report = readText(options.output / "report.html");
-    return report::readResultsJson(options.output / "results.json");
+    return resultsIn(options.output);
   }
 
   /// Ours knows where it is, the paper's method has figures: a short street proves no more.
-  static void expectLocalized(const report::BatchResults& results, double bound) {
-    EXPECT_TRUE(results.failures.empty());
+  static void expectLocalized(const nlohmann::json& batch, double bound) {
+    EXPECT_TRUE(batch["failures"].empty());
     std::size_t runs = 0;
-    for (const auto& result : results.results)
-      for (const auto& one : result.runs) {
+    for (const auto& result : batch["results"])
+      for (const auto& run : result["runs"]) {
         ++runs;
-        const std::string& configuration = results.configurations[result.configuration].name;
-        EXPECT_EQ(one.failure, "") << configuration;
-        EXPECT_GT(one.errors.poses, 20u) << configuration;
-        EXPECT_GT(one.errors.posMean, 0) << configuration;
-        EXPECT_LT(one.errors.posMean, configuration.rfind("ours", 0) == 0 ? bound : 3.0)
+        const std::string configuration = result["setting"];
+        EXPECT_EQ(run["failure"], "") << configuration;
+        EXPECT_GT(run["errors"]["poses"], 20) << configuration;
+        EXPECT_GT(run["errors"]["pos_mean"], 0) << configuration;
+        EXPECT_LT(run["errors"]["pos_mean"], configuration.rfind("ours", 0) == 0 ? bound : 3.0)
             << configuration;
       }
-    EXPECT_GE(runs, results.configurations.size());
+    EXPECT_GE(runs, batch["settings"].size());
   }
 
-  static void expectScored(const report::BatchResults& results, double bound) {
-    EXPECT_TRUE(results.failures.empty());
+  static void expectScored(const nlohmann::json& batch, double bound) {
+    EXPECT_TRUE(batch["failures"].empty());
     std::size_t scores = 0;
-    for (const auto& result : results.results)
-      if (result.score) {
-        ++scores;
-        const std::string& configuration = results.configurations[result.configuration].name;
-        EXPECT_GE(result.score->near.matches, result.score->oneToOne.matches) << configuration;
-        EXPECT_GE(result.score->oneToOne.matches, result.score->oneToOneHalf.matches)
-            << configuration;
-        EXPECT_GT(result.score->near.mapPoles, 0u) << configuration;
-        if (configuration == "ours") {
-          EXPECT_GT(result.score->oneToOneHalf.f1, bound);
-        }
+    for (const auto& result : batch["results"]) {
+      const auto& score = result["map_score"];
+      if (score.is_null()) continue;
+      ++scores;
+      const std::string configuration = result["setting"];
+      const auto &near = score["near_1m"], &oneToOne = score["one_to_one_1m"],
+                 &half = score["one_to_one_0.5m"];
+      EXPECT_GE(near["matches"], oneToOne["matches"]) << configuration;
+      EXPECT_GE(oneToOne["matches"], half["matches"]) << configuration;
+      EXPECT_GT(near["map_poles"], 0) << configuration;
+      if (configuration == "ours") {
+        EXPECT_GT(half["f1"], bound);
       }
-    EXPECT_GE(scores, results.configurations.size());
+    }
+    EXPECT_GE(scores, batch["settings"].size());
   }
 
   /// The rows of the page's tables, in that order.
@@ -104,9 +106,10 @@ TEST_F(PaperBatches, TableOneOfNclt) {
   writeNclt(options, data / "2012-01-15", 1326652795000000, output / "other_day.npz");
   const auto results = run("table1-nclt", {"sessions.names=2012-01-08 2012-01-15"});
   expectScored(results, 0.5);
-  ASSERT_EQ(results.configurations.size(), 2u);
-  EXPECT_FALSE(results.find(0, 0)->score);  // one map of both sessions
-  EXPECT_EQ(results.find(1, 1)->score->truth, "nclt_truth.npz");
+  ASSERT_EQ(results["settings"].size(), 2u);
+  EXPECT_TRUE(resultOf(results, "paper-mode", "2012-01-08")["map_score"]
+                  .is_null());  // one map of both sessions
+  EXPECT_EQ(resultOf(results, "ours", "2012-01-15")["map_score"]["truth"], "nclt_truth.npz");
   expectRows({"Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode", "polemcl, ours"});
   const auto maps = io::readLines(output / "table1-nclt/maps.csv");
   ASSERT_EQ(maps.size(), 3u);
@@ -116,9 +119,9 @@ TEST_F(PaperBatches, TableOneOfNclt) {
   const auto three = run("nclt", {"sessions.names=2012-01-08 2012-01-15", "batch.runs=1",
                                   "sessions.truth_map={data}/nclt_truth.npz"});
   expectLocalized(three, 0.15);
-  ASSERT_EQ(three.configurations.size(), 3u);
-  EXPECT_EQ(three.published.size(), 54u);
-  EXPECT_TRUE(three.find(2, 1)->score);
+  ASSERT_EQ(three["settings"].size(), 3u);
+  EXPECT_EQ(three["published_sessions"].size(), 54u);
+  EXPECT_TRUE(resultOf(three, "ours-strict", "2012-01-15")["map_score"].is_object());
   expectRows({"Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode", "polemcl, ours",
               "polemcl, ours-strict"});
   // The paper's 0.115 m and 20.4 cm of these sessions, in the unit of the column.
@@ -133,12 +136,9 @@ TEST_F(PaperBatches, TableOneOfSemanticKitti) {
   writeSemanticKitti(options, data / "sequences/01");
   const auto results = run("table1-semantickitti", {"sessions.names=00 01"});
   expectScored(results, 0.5);
-  ASSERT_EQ(results.configurations.size(), 3u);
-  for (std::size_t configuration : {0, 1, 2})
-    for (std::size_t session : {0, 1}) {
-      ASSERT_TRUE(results.find(configuration, session)->score);
-      EXPECT_EQ(results.find(configuration, session)->score->truth, "labels");
-    }
+  ASSERT_EQ(results["settings"].size(), 3u);
+  ASSERT_EQ(results["results"].size(), 6u);
+  for (const auto& result : results["results"]) EXPECT_EQ(result["map_score"]["truth"], "labels");
   expectRows({"Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode-mended",
               "polemcl, paper-mode", "polemcl, ours"});
 }
@@ -159,7 +159,7 @@ TEST_F(PaperBatches, TableFourKitti) {
   writeKittiRaw(street("hdl64e_kitti", 1.73, 60), data / "2011_09_26/2011_09_26_drive_0009_sync");
   const auto results = run("kitti", {"batch.runs=1"});
   expectLocalized(results, 0.15);
-  ASSERT_EQ(results.configurations.size(), 4u);
+  ASSERT_EQ(results["settings"].size(), 4u);
   expectRows({"Kümmerle et al. 2019", "Weng et al. 2018", "Sefati et al. 2017",
               "Schaefer et al. 2019", "Dong et al. 2021", "polemcl, paper-mode-mended",
               "polemcl, paper-mode", "polemcl, ours", "polemcl, ours-strict"});

@@ -1,6 +1,6 @@
 #pragma once
 /// \file BatchFiles.h
-/// \brief Results of a batch for other programs: JSON (also read back), CSV, LaTeX.
+/// \brief Results of a batch for other programs: JSON, CSV, LaTeX.
 ///
 /// All are written atomically and hold no timing: the same results give the same bytes.
 
@@ -15,10 +15,6 @@ namespace polemcl::report {
 /// keep all their digits; what does not exist is `null`.
 /// \throws Error when the results are not valid or the file cannot be written.
 void writeResultsJson(const std::filesystem::path& file, const BatchResults& results);
-/// \brief Reads what writeResultsJson() wrote; `summary` is computed again when it is needed.
-/// \throws Error naming the file, and key or byte: cannot be read, no JSON, a key is missing or of
-///         another type, another format version, results that are not valid.
-BatchResults readResultsJson(const std::filesystem::path& file);
 
 /// \brief One row for each run: configuration, session, run, seed, state, reason, figures, health.
 void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results);

@@ -1,5 +1,3 @@
-#include "report/batch/BatchJson.h"
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -12,6 +10,8 @@ namespace polemcl::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
+constexpr const char* resultsFormat = "polemcl batch results";
+constexpr unsigned resultsVersion = 2;
 
 // NaN becomes null by itself.
 Json jsonOf(const ErrorMetrics& errors) {
