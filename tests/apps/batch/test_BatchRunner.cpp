@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <set>
-#include <thread>
 
 #include "batch/BatchRunner.h"
 #include "support/BatchTestFiles.h"
@@ -41,6 +40,9 @@ class BatchRunner : public testing::Test {
     writeText(m_temporary / "bin" / name, "#!/bin/sh\n" + script + "\n");
     fs::permissions(m_temporary / "bin" / name, fs::perms::owner_all);
   }
+
+  std::string at(const std::string& name) const { return m_temporary / name; }
+  void addPipe(const std::string& name) { ASSERT_EQ(::mkfifo(at(name).c_str(), 0600), 0); }
 
   void add(const std::string& id, const std::vector<Names>& commands, const Names& needs = {}) {
     BatchTask task;
@@ -199,30 +201,30 @@ TEST_F(BatchRunner, ATaskDoneElsewhereMeanwhileStays) {
 }
 
 TEST_F(BatchRunner, TasksRunAtTheSameTime) {
-  // Each waits for the other one's file.
-  addProgram("meet",
-             "touch ../../$1; i=0; while [ ! -e ../../$2 ] && [ $i -lt 100 ]; do sleep 0.1; "
-             "i=$((i+1)); done; [ -e ../../$2 ] && echo met > out");
-  add("a", {{"meet", "x", "y"}});
-  add("b", {{"meet", "y", "x"}});
+  // Each hears of the other one by a pipe.
+  for (const char* pipe : {"x", "y"}) addPipe(pipe);
+  addProgram("meet", "timeout 60 sh -c \"echo met > $2\" & timeout 60 cat $1 > out");
+  add("a", {{"meet", at("x"), at("y")}});
+  add("b", {{"meet", at("y"), at("x")}});
   run(2);
   EXPECT_TRUE(m_failures.empty());
 }
 
 TEST_F(BatchRunner, AsManyImportsAsAllowed) {
-  // Each looks whether another one is under way, and leaves what it found.
+  // The first goes on until d has run, so that the one beside it is another import or d.
+  addPipe("d_has_run");
   addProgram("alone",
-             "ls ../.. | grep -c under_way_ > out; touch ../../under_way_$1; sleep 0.2; "
-             "rm ../../under_way_$1");
+             "mkdir ../../under_way && { [ $1 != a ] || timeout 60 cat $2; } && "
+             "rmdir ../../under_way && echo $1 > out");
   for (const char* id : {"a", "b", "c"}) {
-    add(id, {{"alone", id}});
+    add(id, {{"alone", id, at("d_has_run")}});
     m_plan.tasks.back().kind = TaskKind::poles;
   }
-  add("d", {{"write", "out", "D"}});
+  addProgram("tell", "timeout 60 sh -c \"echo run > $1\" && echo D > out");
+  add("d", {{"tell", at("d_has_run")}});
   m_imports = 1;
-  EXPECT_EQ(run(3).front(), "d");  // others need not wait
-  EXPECT_TRUE(m_failures.empty());
-  for (const char* id : {"a", "b", "c"}) EXPECT_EQ(out(id), "0\n") << id;
+  EXPECT_EQ(run(2).size(), 4u);
+  EXPECT_TRUE(m_failures.empty()) << m_failures.begin()->second;
 }
 
 TEST(BatchFolder, IsForOneBatchAlone) {
