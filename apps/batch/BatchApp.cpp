@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <thread>
 
 #include "batch/BatchCollect.h"
+#include "batch/BatchCommands.h"
 #include "batch/BatchFolder.h"
 #include "batch/BatchPlan.h"
 #include "batch/BatchRunner.h"
@@ -21,6 +20,7 @@
 #include "cli/Progress.h"
 #include "cli/ProgressLog.h"
 #include "core/common/Types.h"
+#include "io/file/WholeFile.h"
 
 namespace polemcl::apps {
 namespace {
@@ -88,13 +88,10 @@ void printOpen(const BatchPlan& plan, const OpenTasks& open) {
 
 /// Tasks read their settings from frozen files, on which the keys of the plan depend.
 void requireFrozen(const BatchFolder& folder, const BatchPlan& plan) {
-  for (const auto& [name, sum] : plan.sums) {
-    std::ifstream stream(folder.path() / name, std::ios::binary);
-    const std::string content{std::istreambuf_iterator<char>(stream), {}};
-    if (mrpt::system::md5(content) != sum)
+  for (const auto& [name, sum] : plan.sums)
+    if (mrpt::system::md5(io::contentOf(folder.path() / name)) != sum)
       throw Error((folder.path() / name).string() +
                   " is not what the batch was begun with; begin it again with --resume");
-  }
 }
 
 /// One task of a batch that was begun elsewhere.
@@ -131,7 +128,7 @@ void printPlan(const BatchPlan& plan) {
     for (const auto& need : task.needs) std::cout << "  after " << need << '\n';
     for (const auto& command : task.commands) {
       std::cout << "  $";
-      for (const auto& argument : command) std::cout << ' ' << argument;
+      for (const auto& argument : command) std::cout << ' ' << shellQuoted(argument);
       std::cout << '\n';
     }
   }

@@ -6,16 +6,17 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <thread>
 
 #include "batch/BatchCommands.h"
+#include "cli/JsonFile.h"
 #include "cli/Version.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
+#include "io/file/WholeFile.h"
 #include "io/map/PoleMapFile.h"
 #include "report/batch/BatchFiles.h"
 #include "report/batch/BatchMeasures.h"
@@ -28,21 +29,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using report::noFigure;
-
-Json readResultJson(const fs::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Error(file.string() + ": cannot be read");
-  try {
-    return Json::parse(stream);
-  } catch (const std::exception& error) {
-    throw Error(file.string() + ": " + error.what());
-  }
-}
-
-std::string contentOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Without the sections that tell of simulation, views and numbers of runs: a batch has its own.
 std::string settingsShown(const std::string& ini) {
@@ -117,7 +103,7 @@ class Collector {
       const fs::path config = m_folder.path() / "settings" / (configuration.name + ".ini");
       m_results.configurations.push_back({configuration.name, configuration.title,
                                           protocolOf(configuration),
-                                          settingsShown(contentOf(config))});
+                                          settingsShown(io::contentOf(config))});
     }
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;
@@ -200,7 +186,7 @@ class Collector {
     scores.truth = truth == truthFromLabels ? truth : fs::path(truth).filename().string();
     MapScore* const all[] = {&scores.near, &scores.oneToOne, &scores.oneToOneHalf};
     for (std::size_t i = 0; i < std::size(scoreFiles); ++i) {
-      const Json json = readResultJson(m_folder.work(experiment.score) / scoreFiles[i]);
+      const Json json = readJson(m_folder.work(experiment.score) / scoreFiles[i]);
       json.at("precision").get_to(all[i]->precision);
       json.at("recall").get_to(all[i]->recall);
       json.at("f1").get_to(all[i]->f1);
@@ -238,7 +224,7 @@ class Collector {
     if (run.failure.empty() && !truthOf(experiment.session)) run.failure = "no true poses";
     if (!run.failure.empty()) return run;
     const fs::path out = m_folder.work(experiment.runs[i]) / "out";
-    const Json summary = readResultJson(out / "summary.json");
+    const Json summary = readJson(out / "summary.json");
     auto& session = m_results.sessions[result.session];
     session.scans = summary.at("scans");
     session.polesPerScan = summary.at("poles_per_scan");

@@ -6,6 +6,14 @@ Command program(const std::string& name) {
   return {name, "--quiet", "--threads", "1"};
 }
 
+std::string shellQuoted(const std::string& text) {
+  if (!text.empty() && text.find_first_of(" \t\n'\"\\$&|;<>()*?[]#~`!{}") == std::string::npos)
+    return text;
+  std::string quote = "'";
+  for (const char c : text) quote += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quote + "'";
+}
+
 void append(Command& command, const Command& more) {
   command.insert(command.end(), more.begin(), more.end());
 }

@@ -17,6 +17,8 @@ inline constexpr const char* scoreFiles[] = {"near_1m.json", "one_to_one_1m.json
 
 /// \brief The program, quiet, on one thread: one process runs for each core.
 Command program(const std::string& name);
+/// \brief The text as one word of a shell's command line.
+std::string shellQuoted(const std::string& text);
 void append(Command& command, const Command& more);
 
 /// \brief The dataset of a session to `SESSION.rawlog`. \param seed Of all the batch.

@@ -14,7 +14,7 @@
 
 #include "cli/JsonFile.h"
 #include "core/common/Types.h"
-#include "io/file/AtomicFile.h"
+#include "io/file/WholeFile.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -35,11 +35,13 @@ std::uint32_t checksumOf(const fs::path& file) {
   return static_cast<std::uint32_t>(crc);
 }
 
-Json readJson(const fs::path& file) {
-  std::error_code none;
-  if (!fs::is_regular_file(file, none)) return Json::value_t::discarded;
-  std::ifstream stream(file);
-  return Json::parse(stream, nullptr, false);  // discarded when it is none
+/// Discarded when there is no such file, or no JSON in it.
+Json noteIn(const fs::path& file) {
+  try {
+    return readJson(file);
+  } catch (const Error&) {
+    return Json::value_t::discarded;
+  }
 }
 
 /// What is wrong with an output; empty when nothing is.
@@ -106,25 +108,18 @@ void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
   for (const char* folder : {"tasks", "logs", "failed", "times", "settings", "files"})
     createFolder(m_path / folder);
   sweep();
-  for (const auto& [name, content] : plan.files) {
-    io::AtomicFile file(m_path / name);
-    file.stream() << content;
-    file.commit();
-  }
-  std::ifstream source(batchFile, std::ios::binary);
-  io::AtomicFile copy(m_path / "batch.ini");
-  copy.stream() << source.rdbuf();
-  copy.commit();
+  for (const auto& [name, content] : plan.files) io::writeContent(m_path / name, content);
+  io::writeContent(m_path / "batch.ini", io::contentOf(batchFile));
   writePlan(m_path / s_marker, plan);
 }
 
 bool BatchFolder::isDone(const BatchTask& task) const {
-  const Json done = readJson(work(task.id) / "done.json");
+  const Json done = noteIn(work(task.id) / "done.json");
   return done.is_object() && done.value("key", "") == task.key;
 }
 
 std::string BatchFolder::buildOf(const BatchTask& task) const {
-  const Json done = readJson(work(task.id) / "done.json");
+  const Json done = noteIn(work(task.id) / "done.json");
   return done.is_object() ? done.value("build", "an earlier version") : "";
 }
 
@@ -138,7 +133,7 @@ BatchFolder::State BatchFolder::state(const BatchTask& task, std::string* why) c
   const fs::path folder = work(task.id);
   std::error_code none;
   if (!fs::exists(folder, none)) return State::open;
-  const Json done = readJson(folder / "done.json");
+  const Json done = noteIn(folder / "done.json");
   if (!done.is_object() || !done.contains("key") || !done.contains("outputs")) {
     if (why) *why = (folder / "done.json").string() + " is not what was written";
     return State::damaged;
@@ -219,7 +214,7 @@ double BatchFolder::seconds(const std::string& task) const {
 }
 
 std::string BatchFolder::failure(const std::string& task) const {
-  const Json note = readJson(m_path / "failed" / (task + ".json"));
+  const Json note = noteIn(m_path / "failed" / (task + ".json"));
   return note.is_object() ? note.value("reason", "") : "";
 }
 

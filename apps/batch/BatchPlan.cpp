@@ -3,7 +3,6 @@
 #include <mrpt/system/md5.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -14,17 +13,12 @@
 #include "config/Config.h"
 #include "io/dataset/Nclt.h"
 #include "io/file/TextFile.h"
+#include "io/file/WholeFile.h"
 #include "report/batch/PublishedResults.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
-
-std::string plannedContentOf(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(file + ": cannot be read");
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Least confidence of poles for maps where it is another than for localization, see
 /// loadMappingSession().
@@ -143,7 +137,7 @@ class Planner {
   std::string frozenCopy(const std::string& file, BatchTask& task) {
     if (file.empty()) return file;
     const std::string name = "files/" + fs::path(file).filename().string();
-    const std::string content = plannedContentOf(file);
+    const std::string content = io::contentOf(file);
     const auto [entry, isNew] = m_plan.files.emplace(name, content);
     if (!isNew && entry->second != content)
       throw Error("batch " + m_spec.name + ": two different files are called " +

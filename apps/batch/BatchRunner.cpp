@@ -17,6 +17,7 @@
 #include <set>
 #include <thread>
 
+#include "batch/BatchCommands.h"
 #include "core/common/Types.h"
 #include "io/file/TextFile.h"
 
@@ -47,12 +48,6 @@ void copyFiles(const std::vector<std::string>& command, const fs::path& folder) 
   std::error_code failure;
   fs::copy_file(command.at(1), folder / command.at(2), failure);
   if (failure) throw Error(command.at(1) + ": cannot be copied: " + failure.message());
-}
-
-std::string quoted(const std::string& argument) {
-  const bool plain =
-      !argument.empty() && argument.find_first_of(" '\"\\$&|;<>()*?") == std::string::npos;
-  return plain ? argument : "'" + argument + "'";
 }
 
 /// The last line that a command wrote: its error.
@@ -102,7 +97,7 @@ void runCommand(const std::vector<std::string>& command, const fs::path& folder,
   {
     std::ofstream stream(log, std::ios::app);
     stream << "$";
-    for (const auto& argument : command) stream << ' ' << quoted(argument);
+    for (const auto& argument : command) stream << ' ' << shellQuoted(argument);
     stream << '\n';
     if (!stream.flush()) throw Error(log.string() + ": cannot be written; is the disk full?");
   }

@@ -9,20 +9,15 @@
 #include <set>
 #include <thread>
 
+#include "batch/BatchCommands.h"
 #include "batch/BatchRunner.h"
 #include "core/common/Types.h"
-#include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
+#include "io/file/WholeFile.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
-
-std::string shellQuoted(const std::string& text) {
-  std::string quote = "'";
-  for (const char c : text) quote += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quote + "'";
-}
 
 /// What a command prints. \throws Error with it when the command fails.
 std::string outputOf(const std::string& command) {
@@ -40,12 +35,6 @@ std::string outputOf(const std::string& command) {
   return text;
 }
 
-void writeText(const fs::path& file, const std::string& text) {
-  io::AtomicFile output(file);
-  output.stream() << text;
-  output.commit();
-}
-
 /// One array of tasks that can be done at the same time.
 class JobArray {
  public:
@@ -57,8 +46,8 @@ class JobArray {
     const fs::path here = m_folder.path() / "slurm";
     std::string list;
     for (const auto& task : m_tasks) list += task + "\n";
-    writeText(here / (m_name + ".txt"), list);
-    writeText(here / (m_name + ".sh"), script(here));
+    io::writeContent(here / (m_name + ".txt"), list);
+    io::writeContent(here / (m_name + ".sh"), script(here));
     std::string command =
         "sbatch --parsable --requeue --job-name=" + shellQuoted(m_name) + " --array=1-" +
         std::to_string(m_tasks.size()) + " --chdir=" + shellQuoted(m_folder.path().string()) +

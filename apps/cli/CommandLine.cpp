@@ -8,6 +8,7 @@
 #include <set>
 
 #include "cli/Version.h"
+#include "io/file/WholeFile.h"
 #include "mrpt/map/RegisterClasses.h"
 
 namespace polemcl::apps {
@@ -15,30 +16,13 @@ namespace {
 
 constexpr double s_largest = 1e6;  // of metres, seconds and the like
 
-/// Length of the UTF-8 character that begins at `at`; 0 when none does, or one that controls the
-/// terminal.
-std::size_t characterAt(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const unsigned first = byte(at);
-  if (first < 0x80) return first >= 0x20 && first != 0x7f;
-  const std::size_t length = first >= 0xf5   ? 0
-                             : first >= 0xf0 ? 4
-                             : first >= 0xe0 ? 3
-                             : first >= 0xc2 ? 2
-                                             : 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(at + i) & 0xc0) != 0x80) return 0;
-  return length;
-}
-
 /// What broken files bring into messages becomes question marks.
 std::string printable(const std::string& text) {
   std::string clean;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = characterAt(text, at);
-    clean += length > 0 ? text.substr(at, length) : "?";
+    const std::size_t length = io::characterLength(text, at);
+    const bool isControl = (text[at] >= 0 && text[at] < 0x20) || text[at] == 0x7f;
+    clean += length > 0 && !isControl ? text.substr(at, length) : "?";
     at += std::max<std::size_t>(1, length);
   }
   return clean;

@@ -12,4 +12,7 @@ namespace polemcl::apps {
 /// \throws Error when it cannot be written.
 void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& value);
 
+/// \throws Error naming the file when it cannot be read or holds no JSON.
+nlohmann::ordered_json readJson(const std::filesystem::path& file);
+
 }  // namespace polemcl::apps

@@ -19,7 +19,7 @@ std::string shownText(const std::optional<double>& value, int decimals, double f
   return value ? io::fixed(*value * factor, decimals) : "-";
 }
 
-std::string helpText(const DetectionScore& s) {
+std::string scoreText(const DetectionScore& s) {
   std::ostringstream out;
   out << "scans " << s.scans << ", detections " << s.detections << " (" << s.right
       << " right), visible poles " << s.visible << " (" << s.found << " found)\n"
@@ -36,7 +36,7 @@ std::string helpText(const DetectionScore& s) {
   return out.str();
 }
 
-std::string helpText(const RepeatabilityScore& s) {
+std::string scoreText(const RepeatabilityScore& s) {
   std::ostringstream out;
   out << "scans " << s.scans << ", poles per scan " << io::fixed(s.perScan, 2)
       << "; found again within 0.25 m in at least 3 of the next 5 scans: " << s.repeated << " of "
@@ -44,7 +44,7 @@ std::string helpText(const RepeatabilityScore& s) {
   return out.str();
 }
 
-std::string helpText(const RotationScore& s, double radius) {
+std::string scoreText(const RotationScore& s, double radius) {
   std::ostringstream out;
   out << "scans " << s.scans << ", turned by 30, 60, ... 330 deg; poles found again within "
       << io::significant(100 * radius, 6) << " cm, one to one: " << s.matched << " of " << s.poles
@@ -70,7 +70,7 @@ Subcommand detectionsCommand(CLI::App& program) {
                  "Poles visible in fewer scans are left out of that table")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  return {&cli, [options](bool) { return helpText(evalDetections(*options)); }};
+  return {&cli, [options](bool) { return scoreText(evalDetections(*options)); }};
 }
 
 Subcommand repeatabilityCommand(CLI::App& program) {
@@ -79,7 +79,7 @@ Subcommand repeatabilityCommand(CLI::App& program) {
   cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
   cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options](bool) { return helpText(evalRepeatability(*options)); }};
+  return {&cli, [options](bool) { return scoreText(evalRepeatability(*options)); }};
 }
 
 Subcommand rotationCommand(CLI::App& program) {
@@ -104,11 +104,11 @@ Subcommand rotationCommand(CLI::App& program) {
             options->progress = [&](std::size_t done, std::size_t total) {
               progress.update(done, total);
             };
-            return helpText(evalRotation(*options, loadSettings(*config, *set)), options->radius);
+            return scoreText(evalRotation(*options, loadSettings(*config, *set)), options->radius);
           }};
 }
 
-std::string helpText(const sim::DetectionModel& m, const FitModelOptions& options) {
+std::string scoreText(const sim::DetectionModel& m, const FitModelOptions& options) {
   std::ostringstream out;
   out << options.model.string() << ": " << m.sensor << ", " << m.fittedOn
       << "\nlasting false objects per 100 m: " << io::fixed(100 * m.clutterAlways, 2)
@@ -125,10 +125,10 @@ Subcommand modelCommand(CLI::App& program) {
                  "Rawlogs of pole-simulate --poles: two for each street, of two days")
       ->required();
   cli.add_option("--model", options->model, "Model to write (JSON)")->required();
-  return {&cli, [options](bool) { return helpText(fitModel(*options), *options); }};
+  return {&cli, [options](bool) { return scoreText(fitModel(*options), *options); }};
 }
 
-std::string helpText(const sim::DetectionSummary& s) {
+std::string scoreText(const sim::DetectionSummary& s) {
   std::ostringstream out;
   out << "scans " << s.scans << ", detections per scan " << io::fixed(s.perScan, 2) << ", false "
       << io::fixed(s.falsePerScan, 3) << " (" << io::fixed(s.lastingFalsePerScan, 3)
@@ -150,7 +150,7 @@ Subcommand sightingsCommand(CLI::App& program) {
   const auto options = std::make_shared<EvalObservationsOptions>();
   cli.add_option("--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options](bool) { return helpText(evalObservations(*options)); }};
+  return {&cli, [options](bool) { return scoreText(evalObservations(*options)); }};
 }
 
 std::string cells(const Pose2D& motion) {
@@ -160,7 +160,7 @@ std::string cells(const Pose2D& motion) {
   return out.str();
 }
 
-std::string helpText(const std::vector<MotionComparison>& stretches) {
+std::string scoreText(const std::vector<MotionComparison>& stretches) {
   std::ostringstream out;
   const std::string none = std::string(16, ' ') + '-';
   out << " scan  truth m     deg  odom. m     deg  poles m     deg  pairs\n";
@@ -192,7 +192,7 @@ Subcommand motionCommand(CLI::App& program) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cli.add_option("--json", options->json, "Write the figures to this file");
-  return {&cli, [options](bool) { return helpText(evalMotion(*options)); }};
+  return {&cli, [options](bool) { return scoreText(evalMotion(*options)); }};
 }
 
 }  // namespace

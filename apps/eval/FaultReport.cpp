@@ -11,13 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of values in any order, 0 for none.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
 Json delays(const std::vector<FaultTrial>& trials, std::optional<Delay> FaultTrial::*which) {
   std::vector<double> seconds, metres;
   for (const FaultTrial& trial : trials) {

@@ -35,7 +35,7 @@ Judged judge(const LocalizationUpdate& update, const Pose2D& truth, double drive
   if (!update.estimate) return judged;
   const PlanarError error = errorOf(update.estimate->mean, truth);
   judged.error = error.metres;
-  judged.right = error.metres <= rightMetres && error.radians <= rightRadians;
+  judged.right = isRight(error);
   return judged;
 }
 

@@ -24,9 +24,6 @@ struct FaultTrialsOptions {
   std::function<void()> progress = {};
 };
 
-/// \brief A pose this good is right, as for global starts: m and rad.
-constexpr double rightMetres = 0.5, rightRadians = 2 * M_PI / 180;
-
 /// \brief When something came to be, since another moment.
 struct Delay {
   double seconds = 0;

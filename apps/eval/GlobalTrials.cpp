@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <random>
@@ -16,12 +15,6 @@ namespace polemcl::apps {
 namespace {
 
 using Outcome = GlobalTrial::Outcome;
-
-constexpr double rightMetres = 0.5, rightRadians = 2 * M_PI / 180;
-
-bool isRight(const PlanarError& error) {
-  return error.metres <= rightMetres && error.radians <= rightRadians;
-}
 
 /// Metres driven from the first scan to each.
 std::vector<double> distanceAlong(const std::vector<Pose2D>& truth) {
@@ -59,12 +52,6 @@ GlobalTrial runGlobalTrial(const TrialDrive& drive, const std::vector<double>& d
   return trial;
 }
 
-/// Of sorted values, 0 for none.
-double trialQuantile(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return 0;
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
-
 nlohmann::ordered_json globalSummary(const std::vector<GlobalTrial>& trials,
                                      const TrialDrive& drive) {
   std::vector<double> metres, errors;
@@ -76,7 +63,6 @@ nlohmann::ordered_json globalSummary(const std::vector<GlobalTrial>& trials,
     metres.push_back(trial.metres);
     errors.push_back(trial.error.metres);
   }
-  for (auto* values : {&metres, &errors}) std::sort(values->begin(), values->end());
   const auto all = static_cast<double>(trials.size());
   return {{"trials", trials.size()},
           {"map_poles", drive.map.poles->poles().size()},
@@ -86,20 +72,19 @@ nlohmann::ordered_json globalSummary(const std::vector<GlobalTrial>& trials,
           {"right_share", counts[0] / all},
           {"wrong_share", counts[1] / all},
           {"ok_wrong", okWrong},
-          {"metres_median", trialQuantile(metres, 0.5)},
-          {"metres_p95", trialQuantile(metres, 0.95)},
-          {"metres_max", trialQuantile(metres, 1)},
-          {"error_median_m", trialQuantile(errors, 0.5)},
-          {"error_max_m", trialQuantile(errors, 1)}};
+          {"metres_median", quantile(metres, 0.5)},
+          {"metres_p95", quantile(metres, 0.95)},
+          {"metres_max", quantile(metres, 1)},
+          {"error_median_m", quantile(errors, 0.5)},
+          {"error_max_m", quantile(errors, 1)}};
 }
 
 nlohmann::ordered_json timings(const std::vector<GlobalTrial>& trials) {
   std::vector<double> seconds;
   for (const GlobalTrial& trial : trials)
     seconds.insert(seconds.end(), trial.querySeconds.begin(), trial.querySeconds.end());
-  std::sort(seconds.begin(), seconds.end());
-  return {{"query_median_ms", 1e3 * trialQuantile(seconds, 0.5)},
-          {"query_max_ms", 1e3 * trialQuantile(seconds, 1)}};
+  return {{"query_median_ms", 1e3 * quantile(seconds, 0.5)},
+          {"query_max_ms", 1e3 * quantile(seconds, 1)}};
 }
 
 /// Timings lie apart, so that the figures are the same bytes each time.

@@ -8,6 +8,7 @@
 #include "extract/InspectApp.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
+#include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "report/picture/ScanPicture.h"
 
@@ -37,18 +38,33 @@ void writeRows(std::ostream& out, const PoleScan& scan) {
   }
 }
 
-/// The scan as the extractor sees it, in the lidar frame, with the poles found in it.
+/// The points of the scan in the frame of its poles: upright, turned as the sensor is.
+io::Cloud pointsOf(const PoleScan& scan, const SensorOptions& sensor) {
+  ObservationPoints source(sensor);
+  const ObservationPoints::Loan loan(source);
+  const PointsView points = source.read(*scan.scan);
+  const auto& pose = scan.observation->sensorPose;
+  const mrpt::poses::CPose3D upright(0, 0, 0, 0, pose.pitch(), pose.roll());
+  io::Cloud cloud;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const auto point = upright.composePoint({points.x[i], points.y[i], points.z[i]});
+    cloud.x.push_back(static_cast<float>(point.x));
+    cloud.y.push_back(static_cast<float>(point.y));
+    cloud.z.push_back(static_cast<float>(point.z));
+  }
+  return cloud;
+}
+
+/// The scan from above with the poles that were found in it.
 void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& options) {
   const std::string where = options.input.string() + ": scan " + std::to_string(scan.index);
   if (scan.stored) throw Error(where + " holds poles, no points to draw");
-  const auto cloud = ObservationPoleExtractor(settings.poleExtraction()).lidarPoints(*scan.scan);
-  PoleExtractor extractor(settings.sensor, settings.extraction);
+  const io::Cloud cloud = pointsOf(scan, settings.sensor);
   report::ScanView view;
   view.title = options.input.filename().string() + ", scan " + std::to_string(scan.index);
   view.points = cloud.view();
-  if (cloud.size() > 0) view.poles = extractor.extract(cloud.view());
-  const double ground = extractor.report().ground;
-  view.ground = ground != 0 ? ground : -settings.sensor.height;
+  view.poles = scan.observation->poles;
+  view.ground = scan.report.ground != 0 ? scan.report.ground : -settings.sensor.height;
   report::drawScanPng(view, *options.png);
 }
 

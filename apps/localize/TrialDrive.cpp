@@ -1,14 +1,14 @@
 #include "localize/TrialDrive.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 
 namespace polemcl::apps {
-
-namespace {}  // namespace
 
 std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
                                             const LikelihoodOptions& likelihood) {
@@ -48,6 +48,16 @@ TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
 PlanarError errorOf(const Pose2D& estimate, const Pose2D& truth) {
   return {std::hypot(estimate.x - truth.x, estimate.y - truth.y),
           std::abs(wrapAngle(estimate.yaw - truth.yaw))};
+}
+
+bool isRight(const PlanarError& error) {
+  return error.metres <= 0.5 && error.radians <= 2 * degree;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
 }  // namespace polemcl::apps

@@ -31,6 +31,11 @@ struct PlanarError {
   double metres, radians;
 };
 PlanarError errorOf(const Pose2D& estimate, const Pose2D& truth);
+/// \brief Within 0.5 m and 2 degrees of the true pose.
+bool isRight(const PlanarError& error);
+
+/// \brief The value below which this share of them lies, at the nearest rank; 0 without values.
+double quantile(std::vector<double> values, double share);
 
 /// \brief A map for `settings` from a file. \throws Error when it cannot be read or has no poles.
 std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,

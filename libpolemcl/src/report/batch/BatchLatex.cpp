@@ -20,10 +20,6 @@ std::string latexWithSpread(const MetricColumn& column, const Spread& spread) {
   return '$' + number(column, spread.mean) + " \\pm " + number(column, spread.deviation) + '$';
 }
 
-std::string latexPercent(double share) {
-  return metricText(100 * share, 1, "--");
-}
-
 /// What went wrong, for the caption; figures without it would flatter.
 std::string losses(const RunCounts& counts) {
   return std::to_string(counts.runs) + " runs, " + std::to_string(counts.lost) + " lost, " +
@@ -61,7 +57,7 @@ void writeConfiguration(std::ostream& out, const BatchResults& results, std::siz
   out << " \\\\\n    \\midrule\n";
   for (const SessionSummary& session : summary.sessions) {
     out << "    " << latexText(results.sessions[session.session].name) << " & "
-        << latexPercent(session.mapShare);
+        << percentText(session.mapShare, "--");
     for (std::size_t i = 0; i < units.size(); ++i) {
       const SessionColumn& column = sessionColumns[i];
       out << " & " << latexWithSpread(units[i], session.figures.*column.ours);
@@ -70,7 +66,7 @@ void writeConfiguration(std::ostream& out, const BatchResults& results, std::siz
     }
     out << " \\\\\n";
   }
-  out << "    \\midrule\n    Mean & " << latexPercent(summary.mapShare.mean);
+  out << "    \\midrule\n    Mean & " << percentText(summary.mapShare.mean, "--");
   for (std::size_t i = 0; i < units.size(); ++i) {
     const SessionColumn& column = sessionColumns[i];
     out << " & " << number(units[i], (summary.figures.*column.ours).mean);

@@ -1,29 +1,11 @@
 #include "report/batch/Html.h"
 
+#include "io/file/WholeFile.h"
+
 namespace polemcl::report {
 namespace {
 
 constexpr const char* replacement = "\xEF\xBF\xBD";
-
-bool continues(const std::string& text, std::size_t at) {
-  return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
-}
-
-/// Length of the UTF-8 character that begins there, 0 when there is none.
-std::size_t characterLength(const std::string& text, std::size_t at) {
-  const auto first = static_cast<unsigned char>(text[at]);
-  if (first < 0x80) return 1;
-  if (first < 0xC2 || first > 0xF4 || !continues(text, at + 1)) return 0;
-  if (first < 0xE0) return 2;
-  const auto second = static_cast<unsigned char>(text[at + 1]);
-  if (first < 0xF0) {
-    // Neither too long a form nor half of a pair (UTF-16).
-    const bool allowed = (first != 0xE0 || second >= 0xA0) && (first != 0xED || second < 0xA0);
-    return allowed && continues(text, at + 2) ? 3 : 0;
-  }
-  const bool allowed = (first != 0xF0 || second >= 0x90) && (first != 0xF4 || second < 0x90);
-  return allowed && continues(text, at + 2) && continues(text, at + 3) ? 4 : 0;
-}
 
 std::string escapedCharacter(char c) {
   switch (c) {
@@ -56,7 +38,7 @@ std::string escaped(const std::string& text) {
   std::string result;
   result.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = characterLength(text, i);
+    const std::size_t length = io::characterLength(text, i);
     if (length == 0)
       result += replacement;
     else if (length == 1)

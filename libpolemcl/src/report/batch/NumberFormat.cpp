@@ -16,6 +16,10 @@ std::string metricText(double value, int decimals, const std::string& none) {
   return isZero && text.front() == '-' ? text.substr(1) : text;
 }
 
+std::string percentText(double share, const std::string& none) {
+  return metricText(100 * share, 1, none);
+}
+
 namespace {
 
 constexpr double shortLength = 0.1;  // m; shorter ones are shown in centimetres

@@ -11,6 +11,8 @@ inline constexpr const char* enDash = "\xE2\x80\x93";
 
 /// \brief "0.174"; `none` when the value is not finite. Zero has no sign.
 std::string metricText(double value, int decimals, const std::string& none = enDash);
+/// \brief A share in percent, without the sign: 0.174 is "17.4".
+std::string percentText(double share, const std::string& none = enDash);
 /// \brief An error in the unit that reads best: 0.0072 m is "0.72 cm", 0.174 m "0.174 m". Below 0.1
 /// m centimetres with two significant digits, from there metres with three decimals. \param space
 /// Between number and unit.

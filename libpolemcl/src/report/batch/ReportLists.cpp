@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t mostOpenRows = 20;  // a longer list of troubles is folded away
 
-std::string percentText(double share) {
-  return metricText(100 * share, 1);
-}
-
 /// A figure of a run in a list of runs.
 struct RunColumn {
   const char* html;  ///< without its unit

@@ -11,10 +11,6 @@
 namespace polemcl::report {
 namespace {
 
-std::string percent(double share) {
-  return metricText(100 * share, 1);
-}
-
 /// "0.174 ± 0.012", the spread in a lighter ink.
 std::string withSpread(const MetricColumn& column, const Spread& spread) {
   const std::string mean = column.figure(spread.mean);
@@ -211,10 +207,10 @@ class SessionRows {
   template <typename Ours, typename Theirs>
   std::vector<std::string> cells(const std::string& name, double mapShare, const Ours& ours,
                                  const Theirs& theirs, const std::string& runs) const {
-    std::vector<std::string> row{name, percent(mapShare)};
+    std::vector<std::string> row{name, percentText(mapShare)};
     const std::size_t systems = m_published.systems.size();
     for (std::size_t k : m_withShares)
-      row.push_back(percent(theirs(k, &PublishedSession::mapShare)));
+      row.push_back(percentText(theirs(k, &PublishedSession::mapShare)));
     for (std::size_t i = 0; i < m_columns.size(); ++i) {
       row.push_back(ours(i));
       for (std::size_t k = 0; k < systems; ++k)
@@ -295,9 +291,9 @@ std::string healthTable(const BatchResults& results, std::size_t configuration,
   for (const SessionSummary& session : summary.sessions) {
     if (session.counts.runs == 0) continue;
     const MetricSpreads& figures = session.figures;
-    table.row({sessionName(results, session), percent(figures.ok.mean),
-               percent(figures.degraded.mean), percent(figures.lost.mean), healthBar(figures),
-               metricText(session.relocalizations, 1)});
+    table.row({sessionName(results, session), percentText(figures.ok.mean),
+               percentText(figures.degraded.mean), percentText(figures.lost.mean),
+               healthBar(figures), metricText(session.relocalizations, 1)});
   }
   return table.str();
 }
