@@ -23,7 +23,7 @@ function(hash_of_sources result)
   set(${result} ${sum} PARENT_SCOPE)
 endfunction()
 
-# Of a checkout of its own only: an archive unpacked inside another project is none of its commits.
+# Only for a checkout of this project: an archive unpacked inside another project has no commit of its own.
 set(revision "")
 find_program(git git)
 if(git AND EXISTS ${SOURCE}/.git)

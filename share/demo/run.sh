@@ -1,9 +1,9 @@
 #!/bin/sh
-# The whole way once: a street is simulated on two days; the first gives the map, in which the
-# second is localized ten times. Installs and builds what is missing.
+# Runs all steps once. A street is simulated on two days. The first day gives the map; the second day is
+# localized in it ten times. Installs and builds what is missing.
 # Usage: share/demo/run.sh [--keep-scans] [OUT]
 #   OUT           gets the results, share/demo/out unless given
-#   --keep-scans  leaves the simulated scans there too
+#   --keep-scans  keeps the simulated scans there too
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh

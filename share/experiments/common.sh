@@ -1,4 +1,4 @@
-# Sourced by the scripts here and by the demo, which set $top: small helpers.
+# Small helpers, sourced by the scripts here and by the demo, which set $top.
 # shellcheck shell=sh disable=SC2154
 
 die() {

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Are poses as uncertain as they say? Simulated streets of 600 m, an HDL-32E, the map of one day, drives on
-# another: one in each direction for each world, each with its own detections, odometry noise and filter seed.
+# Checks whether errors of poses fit their covariances. Simulated streets of 600 m, an HDL-32E, the map of one
+# day, and two drives on another day for each world: one per direction, with own detections, noise and seed.
 # Usage: share/experiments/consistency.sh OUT [FIRST [WORLDS]]
 #   OUT      gets maps, drives, runs, forward.json, reverse.json and all.json
-#   FIRST    first world, 701 unless given; WORLDS: how many, 30 unless given
+#   FIRST    first world, 701 unless given; WORLDS: their number, 30 unless given
 # Poles are drawn by the model of share/models/hdl32e.json. Programs: build/bin, or POLEMCL_BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)

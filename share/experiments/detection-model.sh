@@ -2,7 +2,7 @@
 # The detection model of an HDL-32E (share/models/hdl32e.json): fitted to ray-cast streets, and compared
 # with ray casting on others: streets of 400 m, a scan every 0.5 m, two days each.
 # Usage: share/experiments/detection-model.sh OUT [SEED...]
-#   OUT   gets hdl32e.json, the drives, result.json and table.txt; drives that are there are used again
+#   OUT   gets hdl32e.json, the drives, result.json and table.txt; existing drives are used again
 #   SEED  of the worlds to compare on, 501 to 503 unless given; the model is fitted to 101 to 103
 # Per drive: pole-eval sightings and repeatability. Map of day 0, one to one at 0.5 m against all true
 # poles; localization on day 1 in it, 3 runs of 1000 particles, odometry with 2 % noise: both cast, or both
@@ -35,7 +35,7 @@ drive() {
   "$bin/pole-simulate" --quiet --config "$out/$1.ini" --poles "$out/$1.rawlog"
 }
 
-# judge KIND SEED: figures of both days' drives, of the map and of the localization, in one object.
+# judge KIND SEED: metrics of both days' drives, of the map and of the localization, in one object.
 judge() {
   for day in 0 1; do
     name=$1-$2-$day

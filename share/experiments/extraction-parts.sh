@@ -1,8 +1,8 @@
 # Sourced by extraction.sh, which sets $top, $bin, $out, $length, $spacing: the steps.
 # shellcheck shell=sh disable=SC2154
 
-# native_settings SENSOR: the configuration of that sensor.
-native_settings() {
+# scan_line_settings SENSOR: the configuration of that sensor.
+scan_line_settings() {
   case $1 in
     hdl64e) echo "$top/config/kitti.ini" ;;
     os1_64) echo "$top/config/mulran.ini" ;;
@@ -10,7 +10,7 @@ native_settings() {
   esac
 }
 
-# paper_settings DIR: the authors' settings for each sensor; those they had none for get NCLT's, with
+# paper_settings DIR: the authors' settings for each sensor. A sensor for which they had none gets NCLT's, with
 # the sensor and its rows and field of view exchanged.
 paper_settings() {
   mkdir -p "$1"
@@ -34,10 +34,10 @@ paper_settings() {
   set_option "$1/vlp16.ini" range_image fov_down_deg -15
 }
 
-# methods SENSOR: those to compare. For the HDL-64E the authors' settings come twice: as they are, and with
+# methods SENSOR: the methods to compare. The authors' settings for the HDL-64E come twice: as they are, and with
 # the height of the top counted from the ground (mended).
 methods() {
-  if [ "$1" = hdl64e ]; then echo native mended paper; else echo native paper; fi
+  if [ "$1" = hdl64e ]; then echo scan_line mended paper; else echo scan_line paper; fi
 }
 
 # settings METHOD SENSOR: the file.
@@ -45,7 +45,7 @@ settings() {
   case $1 in
     paper) echo "$out/paper/$2.ini" ;;
     mended) echo "$out/paper/$2-mended.ini" ;;
-    *) native_settings "$2" ;;
+    *) scan_line_settings "$2" ;;
   esac
 }
 
@@ -67,7 +67,7 @@ real_drive() {
   done
 }
 
-# map_score METHOD TRUTH FIGURE: precision or recall of the world's map, 0 when there is none.
+# map_score METHOD TRUTH METRIC: precision or recall of the world's map; 0 without a map.
 map_score() {
   if [ -f "$work/$1.polemap" ]; then
     "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$2" \
@@ -83,17 +83,17 @@ simulated_drive() {
   work=$out/world
   rm -rf "$work"
   mkdir -p "$work"
-  cp "$(native_settings "$1")" "$work/native.ini"
-  set_option "$work/native.ini" world seed "$2"
-  set_option "$work/native.ini" world length_m "$length"
-  set_option "$work/native.ini" simulation spacing_m "$spacing"
-  "$bin/pole-simulate" --quiet --config "$work/native.ini" --output "$work/scans"
+  cp "$(scan_line_settings "$1")" "$work/scan_line.ini"
+  set_option "$work/scan_line.ini" world seed "$2"
+  set_option "$work/scan_line.ini" world length_m "$length"
+  set_option "$work/scan_line.ini" simulation spacing_m "$spacing"
+  "$bin/pole-simulate" --quiet --config "$work/scan_line.ini" --output "$work/scans"
   "$bin/pole-import" folder --quiet --input "$work/scans" --output "$work/scans.rawlog"
   for method in $(methods "$1"); do
-    [ "$method" = native ] || cp "$(settings "$method" "$1")" "$work/$method.ini"
+    [ "$method" = scan_line ] || cp "$(settings "$method" "$1")" "$work/$method.ini"
     evaluate_drive "$method"
     auc_all=null
-    [ "$method" != native ] || auc_all=$(undecided_auc)
+    [ "$method" != scan_line ] || auc_all=$(undecided_auc)
     "$bin/pole-map" build --quiet --config "$work/$method.ini" --input "$work/$method.rawlog" \
       --truth "$work/scans.tum" --output "$work/$method.polemap" 2>"$work/$method.log" ||
       grep -q 'no pole' "$work/$method.log" || die "$(cat "$work/$method.log")"
@@ -115,14 +115,14 @@ evaluate_drive() {
     --json "$work/score.json" --visible "$work/visible.csv" --min-scans 3
 }
 
-# undecided_auc: area under the ROC of the native confidence when it refuses nothing.
+# undecided_auc: area under the ROC of the confidence of scan_line when it rejects nothing.
 undecided_auc() {
-  cp "$work/native.ini" "$work/undecided.ini"
+  cp "$work/scan_line.ini" "$work/undecided.ini"
   set_option "$work/undecided.ini" scan_line min_confidence 0.001
-  cp "$work/score.json" "$work/native-score.json"
+  cp "$work/score.json" "$work/scan_line-score.json"
   evaluate_drive undecided
   json_value "$work/score.json" auc
-  mv "$work/native-score.json" "$work/score.json"
+  mv "$work/scan_line-score.json" "$work/score.json"
 }
 
 # summarize QUICK: all figures as one JSON object on standard output.
@@ -147,7 +147,7 @@ summarize() {
     {quick: ($quick == "yes"), length_m: $length, spacing_m: $spacing} + reduce .[] as $part ({}; . * $part)'
 }
 
-# table FILE: the figures for people.
+# table FILE: the figures as a table.
 table() {
   jq -r '
     def pad(n): tostring | if length < n then . + " " * (n - length) else . end;
@@ -156,8 +156,8 @@ table() {
       ((. * pow(10; d) | round / pow(10; d)) + 0 | tostring) as $t
       | ($t | split(".") | .[1] // "") as $f | if d == 0 then $t
         else ($t | split(".")[0]) + "." + $f + "0" * (d - ($f | length)) end end;
-    def methods: . as $sensor | ["native", "mended", "paper"] | map(select($sensor[.]));
-    def title: {native: "native", mended: "paper mended", paper: "paper"}[.];
+    def methods: . as $sensor | ["scan_line", "mended", "paper"] | map(select($sensor[.]));
+    def title: {scan_line: "scan_line", mended: "paper mended", paper: "paper"}[.];
     def row(name; key; scale; digits): name as $name | . as $sensor
       | "  " + ($name | pad(30)) + ([methods[] as $m
         | [("mean", "min", "max") as $w | $sensor[$m][$w][key]
@@ -178,7 +178,7 @@ table() {
       + "\(.pair.median_m * 100 | round_to(1)) cm (median), \(.pair.p90_m * 100 | round_to(1)) cm (90 %), "
       + "\(.pair.max_m * 100 | round_to(1)) cm (most); \(.pair.within_10cm) within 10 cm" else empty end),
     (.simulated | to_entries[] | .key as $name | .value
-      | "", "Simulated " + $name + ", worlds " + ([.native.worlds[].seed | tostring] | join(" ")),
+      | "", "Simulated " + $name + ", worlds " + ([.scan_line.worlds[].seed | tostring] | join(" ")),
         ("  mean, least and most of" | pad(32)) + ([methods[] | title | lead(24) | pad(27)] | add),
         row("precision"; "precision"; 1; 3), row("recall of visible poles"; "recall"; 1; 3),
         row("centre error, median (cm)"; "centre_median_m"; 100; 2),

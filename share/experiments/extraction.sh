@@ -1,21 +1,21 @@
 #!/bin/sh
-# How good the extractor is, the paper's method beside the native one (for the HDL-64E, also with its
+# Measures the extractor: method scan_line beside the paper's method (for the HDL-64E, also with the paper's
 # height error mended).
 # Usage: share/experiments/extraction.sh [--quick] DATA_DIR OUT [SEED...]
-#   DATA_DIR  folder of real scans (kitti_raw_0005/ in it); what is not there is left out
+#   DATA_DIR  folder of real scans (kitti_raw_0005/ in it); missing scans are left out
 #   OUT       gets result.json, table.txt, pictures and every world's own figures
-#   SEED      of the simulated worlds, 201 to 205 unless given: not fitted on, but looked at
-#   --quick   streets of 80 m, two worlds: to see that it runs, not to judge by
+#   SEED      of the simulated worlds, 201 to 205 unless given: not fitted on, but used to choose settings
+#   --quick   streets of 80 m, two worlds: a test of the script, not a measurement
 # Programs: build/bin, or POLEMCL_BIN. Needs jq, 1 GB of disk while it runs, 10 minutes on 2 cores.
 #
 # Real drive: repeatability, and poles found again when a scan is turned (pole-eval --help).
 # Simulated: streets of 160 m, a scan every 0.8 m; HDL-64E with the laser angles of KITTI's unit (those
-# that the extractor's model hdl64e has), HDL-32E, OS1-64 (first generation) and VLP-16 with the data
-# sheet's. Per scan: pole-eval detections. `auc all` is the area under the ROC when nothing is refused
+# of the extractor's model hdl64e); HDL-32E, OS1-64 (first generation) and VLP-16 with those of the data
+# sheet. Per scan: pole-eval detections. `auc all` is the area under the ROC when nothing is rejected
 # for its confidence. Map of one drive, one to one at 0.5 m: precision against all true poles, recall
-# against those visible in 3 scans or more (2.4 m of the way): fewer cannot be confirmed.
-# Single scans: SCAN.png of each with its poles, to be looked at; the poles of hdl32_pair/ under the given
-# transform, each with the nearest of the other scan within half a metre.
+# against the poles visible in 3 scans or more (2.4 m of the path): the others cannot be confirmed.
+# Single scans: SCAN.png of each with its poles, for inspection. The poles of hdl32_pair/ under the given
+# transform: each with the nearest pole of the other scan within half a metre.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Does the localization notice when something is wrong, and recover? Faults put into simulated drives
-# at 10 Hz and 7 m/s along a 6 km road (poles drawn by the model of share/models/hdl32e.json, another
-# day and another drive than the map's, odometry with 2 % noise), 200 trials each on five worlds:
-# kidnapped, wrong map, blind, odometry stuck, odometry slipping; half of the poles gone with twice the
-# false detections; and healthy drives of 10 h.
+# Checks whether the localization notices faults, and recovers. Drives are simulated at 10 Hz and 7 m/s
+# along a 6 km road (poles drawn by the model of share/models/hdl32e.json, another day and another
+# drive than the map's, odometry with 2 % noise). 200 trials each on five worlds: kidnapped, wrong
+# map, blind, odometry stuck, odometry slipping. Also: half of the poles gone with twice the false
+# detections, and healthy drives of 10 h.
 # Usage: share/experiments/faults.sh [--quick] OUT [TRACK]
 #   OUT      gets maps, drives, one JSON and one text for each fault, table.txt and faults.json
 #   TRACK    the road as poses, 12 numbers a line, plain or gzip; $POLEMCL_DATA/tracks/kaist01.txt.gz unless

@@ -3,10 +3,10 @@
 # Usage: share/experiments/global.sh TRACKS OUT [--dense] [--quick]
 #   TRACKS   folder of the roads kaist01.txt.gz and kaist02.txt.gz (sensor poses, 12 numbers a line)
 #   OUT      gets maps, drives, one JSON file a city and result.json
-#   --dense  about three times the simulator's default number of poles
+#   --dense  about three times as many poles as the simulator's default
 #   --quick  one city, 40 starts
-# The poles that scans report are drawn from share/models/hdl32e.json. Worlds 601 to 604; settings
-# were chosen on others. Programs: build/bin, or POLEMCL_BIN.
+# The poles of each scan are drawn from share/models/hdl32e.json. Worlds 601 to 604; settings
+# were chosen on other worlds. Programs: build/bin, or POLEMCL_BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh

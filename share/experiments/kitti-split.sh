@@ -3,10 +3,10 @@
 # Odometry is the true motion with 2 % noise (seed 7); 1000 particles, filter seeds 1 to 5.
 # Usage: share/experiments/kitti-split.sh DATA_DIR OUT [CONFIG [ODOMETRY]]
 #   DATA_DIR  a folder of scans with poses (velodyne/, times.txt, poses.txt)
-#   OUT       gets the map, the trajectories, errors.txt and result.json; in odometry/ the same for odometry
-#             alone: from the true start with a likelihood that no pole can change
+#   OUT       gets the map, the trajectories, errors.txt and result.json. OUT/odometry/ gets the same for
+#             odometry alone: from the true start with a likelihood that no pole can change
 #   CONFIG    settings, config/kitti.ini unless given
-#   ODOMETRY  "visual": that of DATA_DIR/odometry.txt instead of the noisy truth
+#   ODOMETRY  "visual": DATA_DIR/odometry.txt instead of the noisy truth
 # Programs: build/bin, or POLEMCL_BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)

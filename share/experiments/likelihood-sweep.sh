@@ -1,10 +1,10 @@
 #!/bin/sh
-# What sigma, outlier share, gate and model of the likelihood do to the accuracy: one setting at a time
-# is changed, on simulated HDL-32E streets and on the real KITTI drive split. Writes a table, a plot
-# and the JSON they are made of.
+# Measures how sigma, outlier share, gate and model of the likelihood change the accuracy: one setting at
+# a time, on simulated HDL-32E streets and on the real KITTI drive split. Writes a table, a plot
+# and their data as JSON.
 # Usage: share/experiments/likelihood-sweep.sh DATA_DIR OUT [LENGTH [WORLD...]]
 #   DATA_DIR  a folder of real scans with poses (kitti_raw_0005)
-#   OUT       gets the poles of the drives (used again if they are there), table.md, sweep.svg, sweep.json
+#   OUT       gets the poles of the drives (used again if they exist), table.md, sweep.svg, sweep.json
 #   LENGTH    of each street, 400 m unless given; WORLD: seeds, 21 22 unless given
 # Programs: build/bin, or POLEMCL_BIN. Needs jq. 10 minutes on 2 cores, half of it simulation.
 set -eu

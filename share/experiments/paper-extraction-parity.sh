@@ -1,13 +1,13 @@
 #!/bin/sh
-# Poles of paper mode beside those that the paper's authors' program finds in the same scans.
+# Compares the poles of paper mode with those of the authors' program in the same scans.
 # Usage: share/experiments/paper-extraction-parity.sh DATA_DIR OUT
 #   DATA_DIR  folder of scans with first_implementation/SET.csv (`scan,x,y,radius`) for each SET of
-#             kitti_raw_0005, kitti_odom_00, nclt_scan; what is not there is left out
+#             kitti_raw_0005, kitti_odom_00, nclt_scan; missing sets are left out
 #   OUT       gets each set's poles as CSV, result.json and table.txt
-# A pole has a partner within 2 cm, its radius within 1 cm, in the same scan, one to one (the nearest
+# A partner of a pole lies within 2 cm, its radius within 1 cm, in the same scan, one to one (the nearest
 # pairs first). `found`: share of their poles with a partner; `more`: our poles without one, as a share
-# of theirs; `largest cm`: the greatest distance of partners. Rows of kitti-mended.ini: what the
-# mended height adds.
+# of theirs; `largest cm`: the greatest distance of partners. Rows of kitti-mended.ini: the poles
+# that the mended height adds.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq; one minute on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Paper mode beside the first implementation on a real drive: map from the even scans, localized on the
+# Compares paper mode with the authors' program on a real drive: map from the even scans, localized on the
 # odd ones. Odometry is the true motion with 2 % noise; each seed draws odometry and filter anew; the
 # filter is updated at every scan, has 1000 particles, and starts uniformly in the radius and within
-# 5 deg. Prints a table: settings by poses and start disc, means over the seeds (least to greatest), beside
+# 5 deg. Prints a table: settings by poses and start disc, means over the seeds (least to greatest), and
 # the figures of the authors' program on kitti_raw_0005. pole-import adds 1 mm and 0.006 deg to the sigma
 # of the odometry, which costs that program 0.001 to 0.002 m.
 # Usage: share/experiments/paper-parity.sh DATA OUT [SEEDS]
@@ -34,7 +34,7 @@ done
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 
-# The protocol's cadence, particles and start stand in for those of the settings.
+# Cadence, particles and start of the protocol replace those of the settings.
 map_options="--set map.every_scan=true --set map.middle=nearest"
 start_options="--set start.positions=radius --set start.heading_deg=5"
 paper_options="--set tracking.cadence=scan --set start.particles=1000"
@@ -85,7 +85,7 @@ for poses in poses_scan_matching.txt poses.txt; do
   run ours kitti.ini "" $poses
 done
 
-# Ten seeds of the authors' program on its own detections; the README of the data tells how.
+# Ten seeds of the authors' program on its own detections; see the README of the data.
 reference='first-implementation,poses_scan_matching.txt,2.5,0.058,0.029,0.143,0.092,0.054,0.184
 first-implementation,poses_scan_matching.txt,0.5,0.032,0.024,0.045,0.056,0.026,0.087
 first-implementation,poses.txt,2.5,0.055,0.032,0.132,0.076,0.045,0.190

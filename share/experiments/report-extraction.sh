@@ -1,5 +1,5 @@
 #!/bin/sh
-# Writes a dated report on the extractor: machine, versions, settings, commands, figures, what is weak.
+# Writes a dated report on the extractor: machine, versions, settings, commands, figures, weaknesses.
 # Usage: share/experiments/report-extraction.sh DATA_DIR [RESULT_DIR [REPORT]]
 #   DATA_DIR    folder of real scans, as for extraction.sh
 #   RESULT_DIR  of a run of extraction.sh; without it, it is run first (10 minutes)
@@ -30,7 +30,7 @@ if [ -z "$results" ]; then
 fi
 [ -f "$results/result.json" ] || die "no result.json in $results: run extraction.sh into it first"
 
-# machine: what the figures were measured on.
+# machine: the machine of the measurements.
 machine() {
   echo "- CPU: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores," \
     "load $(cut -d ' ' -f 1 /proc/loadavg) when the benchmark began"
@@ -40,7 +40,7 @@ machine() {
   for package in libmrpt-maps-dev libeigen3-dev libhwy-dev libtbb-dev; do
     echo "- $package $(dpkg-query -W -f '${Version}' $package 2>/dev/null || echo unknown)"
   done
-  # A checkout that was changed by hand is not the commit it says.
+  # A checkout with changes is not the commit that it names.
   revision=$(git -C "$top" rev-parse --short HEAD 2>/dev/null || echo unknown)
   git -C "$top" diff --quiet HEAD -- libpolemcl apps config 2>/dev/null || revision="$revision, changed"
   echo "- polemcl $("$bin/pole-extract" --version | awk '{ print $2 }'), commit $revision"
@@ -75,19 +75,19 @@ file_to_file() {
     '{ printf "\n`pole-extract`, file to file over %d embedded scans, start of the program included: %.2f ms a scan (best of 5).\n", scans, $1 / 1000 / scans }'
 }
 
-# weak: the worst of the figures against what they ought to be.
+# weak: the worst of the figures against their bounds.
 weak() {
   jq -r '
     def pct: . * 1000 | round / 10 | tostring + " %";
     def cm: . * 1000 | round / 10 | tostring + " cm";
     def two: . * 100 | round / 100 | tostring;
-    [ (.real.native // empty |
+    [ (.real.scan_line // empty |
         (select(.repeatability.share < 0.8) | "real drive: \(.repeatability.share | pct) found again (80 % wanted)"),
         (select(.repeatability.per_scan < 18) | "real drive: \(.repeatability.per_scan | two) poles a scan (18 wanted)"),
         (select(.rotation.share < 0.98) | "real drive: \(.rotation.share | pct) found again when turned (98 % wanted)")),
       (.pair // empty | select(.within_10cm < .matched)
         | "pair of scans: \(.matched - .within_10cm) of \(.matched) poles farther apart than 10 cm, up to \(.max_m | cm)"),
-      (.simulated | to_entries[] | .key as $s | .value.native
+      (.simulated | to_entries[] | .key as $s | .value.scan_line
         | (if $s == "vlp16" then 0.6 else 0.8 end) as $recall
         | (select(.min.precision < 0.95) | "\($s): precision \(.min.precision | pct) in the worst world, \(.mean.precision | pct) on average (95 % wanted)"),
           (select(.min.recall < $recall) | "\($s): recall \(.min.recall | pct) in the worst world, \(.mean.recall | pct) on average (\($recall | pct) wanted)"),
@@ -99,12 +99,12 @@ weak() {
     ] | if length == 0 then "- every figure is within its bound in every world" else .[] | "- " + . end' \
     "$results/result.json"
   cat <<'TEXT'
-- Simulated streets are no real ones: no rain, no moving traffic, no reflections; the weights of the confidence were
+- Simulated streets are not real ones: no rain, no moving traffic, no reflections; the weights of the confidence were
   fitted on such streets (other worlds).
 - Nothing was fitted on worlds 201 to 205, but results on them decided between settings (`min_confidence`, `min_share`):
   their figures flatter a little. Give other seeds for untouched ones.
-- The real drive is 30 m of one street, and the settings for KITTI were chosen with it at hand.
-- True poles are those of the simulator: a post that a person would call a pole and the simulator does not counts as
+- The real drive is 30 m of one street, and the settings for KITTI were chosen with this drive at hand.
+- True poles are those of the simulator: a post that a person calls a pole, but the simulator does not, counts as
   wrong. Poles are compared at the height of the sensor.
 TEXT
 }
@@ -119,7 +119,7 @@ mkdir -p "$(dirname "$report")"
   echo "## Settings"
   echo "\`config/kitti.ini\`, \`hdl32e.ini\`, \`mulran.ini\`, \`vlp16.ini\` and, for the paper's method, \`config/paper/\`" \
     "(where it has none for a sensor: NCLT's with that sensor's rows and field of view), as of this commit."
-  jq -r '"Simulated: worlds \(.simulated.hdl32e.native.worlds | map(.seed | tostring) | join(", ")), \(.length_m) m each, a scan every \(.spacing_m) m."' \
+  jq -r '"Simulated: worlds \(.simulated.hdl32e.scan_line.worlds | map(.seed | tostring) | join(", ")), \(.length_m) m each, a scan every \(.spacing_m) m."' \
     "$results/result.json"
   echo
   echo "## Commands"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# A ROS 1 bag on its way to a pole map, by MRPT's own rosbag2rawlog: a simulated street of 60 m (world
-# 512) is written as a bag, converted, extracted and mapped, and once more without the bag.
+# Makes a pole map from a ROS 1 bag, with MRPT's own rosbag2rawlog: a simulated street of 60 m (world
+# 512) is written as a bag, converted, extracted and mapped, and then mapped without the bag.
 # Usage: share/experiments/rosbag.sh OUT
 # Needs the Debian packages mrpt-apps, python3-rosbag, python3-sensor-msgs, python3-nav-msgs.
 # Programs: build/bin, or POLEMCL_BIN.
@@ -63,7 +63,7 @@ for way in direct bag; do
   "$bin/pole-map" build --config "$config" --input "$out/$way.rawlog" --truth "$out/$way.tum" \
     --output "$out/$way.polemap" --csv "$out/$way-map.csv"
 done
-# Without the times, which differ by 1.5e9 s, and the dates that come of them.
+# Without the times, which differ by 1.5e9 s, and the dates made from them.
 cut -d, -f1,3- "$out/direct.csv" >"$out/direct.cut"
 cut -d, -f1,3- "$out/bag.csv" | cmp - "$out/direct.cut" && echo "poles of all scans: the same"
 cut -d, -f1-13 "$out/direct-map.csv" >"$out/direct-map.cut"

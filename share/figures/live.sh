@@ -1,6 +1,6 @@
 #!/bin/sh
-# Makes the picture of the live view, share/figures/live.png: a street of 400 m on another day, with
-# poles drawn from the model of detections, as pole-localize --live shows it.
+# Makes the picture of the live view, share/figures/live.png, as pole-localize --live shows it. The street is
+# 400 m long and localized on another day; the poles are drawn from the detection model.
 # Usage: share/figures/live.sh [PICTURE]
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
