@@ -1,22 +1,24 @@
 #!/bin/sh
 # Installs what is missing, builds, and runs every test.
-# Usage: tests/run.sh [--full]
-#   --full  then opens scenes in MRPT's viewer, tries batches on a Slurm cluster of its own (as
-#           root), builds with the address and undefined-behaviour sanitizers and runs the tests again
+# Usage: tests/run.sh [--quick | --full]
+#   --quick  runs the unit tests only: less than a minute after the build
+#   --full   also opens scenes in MRPT's viewer, tries batches on a Slurm cluster of its own (as root),
+#            and runs the tests again under the address and undefined-behaviour sanitizers
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 
-full=no
+how=all
 case "$#:${1-}" in
   0:) ;;
-  1:--full) full=yes ;;
+  1:--quick) how=quick ;;
+  1:--full) how=full ;;
   1:-h | 1:--help)
-    sed -n '2,6s/^# //p' "$0"
+    sed -n '2,7s/^# //p' "$0"
     exit 0
     ;;
   *)
-    echo "usage: tests/run.sh [--full]" >&2
+    echo "usage: tests/run.sh [--quick | --full]" >&2
     exit 2
     ;;
 esac
@@ -27,20 +29,28 @@ if [ -n "${POLEMCL_DATA-}" ]; then
     exit 1
   }
   export POLEMCL_DATA
-else
+elif [ "$how" != quick ]; then
   echo "POLEMCL_DATA is not set: tests on real scans will be skipped"
 fi
 
+# Usage: run_tests BUILD_FOLDER [options of ctest]
 run_tests() {
-  ctest --test-dir "$1" --output-on-failure --parallel "$(nproc)"
+  build=$1
+  shift
+  ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)" "$@"
 }
 
 "$top/share/setup/install.sh"
-"$top/share/setup/build.sh" release all
-run_tests "$top/build"
-
-if [ "$full" = yes ]; then
+if [ "$how" = full ]; then
   "$top/share/setup/install.sh" full
+fi
+"$top/share/setup/build.sh" release all
+case $how in
+  quick) run_tests "$top/build" --label-regex '^unit$' ;;
+  *) run_tests "$top/build" ;;
+esac
+
+if [ "$how" = full ]; then
   "$top/tests/viewers/run.sh"
   "$top/tests/slurm/run.sh"
   "$top/share/setup/build.sh" sanitize all
