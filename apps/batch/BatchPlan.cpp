@@ -9,7 +9,6 @@
 
 #include "batch/BatchCommands.h"
 #include "cli/Settings.h"
-#include "config/Bindings.h"
 #include "config/Config.h"
 #include "io/dataset/Nclt.h"
 #include "io/file/TextFile.h"

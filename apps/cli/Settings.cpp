@@ -1,32 +1,9 @@
 #include "cli/Settings.h"
 
-#include "config/Bindings.h"
 #include "config/Config.h"
-#include "config/MapUpdateBindings.h"
-#include "sim/common/SimulationBindings.h"
 
 namespace polemcl::apps {
 namespace {
-
-void bindAll(Binder& binder, Settings& settings) {
-  bind(binder, settings.sensor);
-  bind(binder, settings.extraction);
-  bind(binder, settings.map);
-  bind(binder, settings.upkeep);
-  bind(binder, settings.likelihood);
-  bind(binder, settings.motion);
-  bind(binder, settings.localization.filter);
-  bind(binder, settings.start);
-  bind(binder, settings.localization.tracking);
-  bind(binder, settings.localization.submap);
-  bind(binder, settings.localization.global);
-  bind(binder, settings.localization.health);
-  bind(binder, settings.localization.search);
-  bind(binder, settings.localization.odometryMonitor);
-  bind(binder, settings.runs);
-  bind(binder, settings.view);
-  bind(binder, settings.simulation);
-}
 
 /// The simulated LiDAR is the one that the extraction is told of.
 void shareSensor(Settings& settings) {
@@ -40,32 +17,52 @@ void shareSensor(Settings& settings) {
   settings.simulation.originZ = settings.sensor.originZ;
 }
 
-ConfigWriter written(const Settings& settings) {
-  ConfigWriter writer;
+ConfigWriter written(const Settings& settings, Tier most) {
+  ConfigWriter writer(most);
   Settings copy = settings;
-  bindAll(writer, copy);
+  bind(writer, copy);
   return writer;
 }
 
 }  // namespace
+
+void bind(Binder& binder, Settings& settings) {
+  bind(binder, settings.sensor);
+  bind(binder, settings.extraction);
+  bind(binder, settings.map);
+  bind(binder, settings.upkeep);
+  bind(binder, settings.likelihood);
+  bind(binder, settings.motion);
+  bind(binder, settings.localization.filter);
+  bind(binder, settings.start);
+  bind(binder, settings.localization.tracking);
+  bind(binder, settings.localization.submap);
+  bind(binder, settings.global);
+  bind(binder, settings.localization.health);
+  bind(binder, settings.localization.search);
+  bind(binder, settings.localization.odometryMonitor);
+  bind(binder, settings.runs);
+  bind(binder, settings.view);
+  bind(binder, settings.simulation);
+}
 
 Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
   Settings settings;
   ConfigFile file = ConfigFile::read(path);
   for (const auto& assignment : assignments) file.set(assignment);
   ConfigReader reader(file);
-  bindAll(reader, settings);
+  bind(reader, settings);
   reader.finish();
   shareSensor(settings);
   return settings;
 }
 
-std::string settingsText(const Settings& settings) {
-  return written(settings).text();
+std::string settingsText(const Settings& settings, Tier most) {
+  return written(settings, most).text();
 }
 
 void saveSettings(const Settings& settings, const std::string& path) {
-  written(settings).save(path);
+  written(settings, Tier::expert).save(path);
 }
 
 }  // namespace polemcl::apps

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/common/Binder.h"
 #include "core/extraction/ExtractionOptions.h"
+#include "core/global_localization/GlobalLocalizer.h"
 #include "core/localization/PoleLikelihood.h"
 #include "core/mapping/MapUpdater.h"
 #include "core/mapping/PoleMapBuilder.h"
@@ -27,8 +29,9 @@ struct Settings {
   MapUpdateOptions upkeep;       ///< `[map_update]`
   LikelihoodOptions likelihood;  ///< `[likelihood]`
   MotionOptions motion;          ///< `[motion]`
-  /// `[filter] [submap] [global] [health] [search] [odometry_monitor]`
+  /// `[filter] [tracking] [submap] [health] [search] [odometry_monitor]`
   LocalizationOptions localization;
+  GlobalOptions global;               ///< `[global]`
   StartOptions start;                 ///< `[start]`
   RunOptions runs;                    ///< `[runs]`
   report::ViewOptions view;           ///< `[view]`
@@ -38,6 +41,9 @@ struct Settings {
   ObservationPoleExtractorOptions poleExtraction() const { return {sensor, extraction}; }
 };
 
+/// \brief Binds all sections, in the order of the reference page.
+void bind(Binder& binder, Settings& settings);
+
 /// \brief Reads an INI file.
 /// \param assignments Values that take the place of the file's, each `section.key=value`: what
 /// `--set` of the programs gives.
@@ -45,9 +51,10 @@ struct Settings {
 ///         wrong types, values out of range.
 Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments = {});
 
-/// \brief All settings as an INI file, every key with unit, allowed values and meaning.
-/// Reading it gives the same settings, bit for bit.
-std::string settingsText(const Settings& settings);
+/// \brief Settings as an INI file, every key with unit, allowed values and meaning. Reading it
+/// with all tiers gives the same settings, bit for bit.
+/// \param most Keys of later tiers are left out.
+std::string settingsText(const Settings& settings, Tier most = Tier::expert);
 /// \brief Writes settingsText(), atomically. \throws Error when it cannot be written.
 void saveSettings(const Settings& settings, const std::string& path);
 

@@ -175,7 +175,7 @@ std::vector<FaultTrial> runFaultTrials(const TrialDrive& drive, const FaultTrial
   if (options.fault.fault == Fault::wrongMap) {
     if (!options.otherMap) throw Error("--fault wrong-map needs --other-map, the wrong one");
     map = LocalizationMap(loadPoleMap(*options.otherMap, drive.settings.likelihood),
-                          drive.settings.localization.global);
+                          drive.settings.global);
   }
   std::vector<FaultTrial> trials(options.trials);
   tbb::parallel_for(0, options.trials, [&](int i) {

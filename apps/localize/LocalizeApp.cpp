@@ -116,7 +116,7 @@ LocalizeResult localize(const LocalizeJob& job) {
     folder.protect(input);
   RunView view(settings.view, map->poles(), job.input.filename().string(), folder);
 
-  const LocalizationMap prepared(map, settings.localization.global);
+  const LocalizationMap prepared(map, settings.global);
   const auto begin = ScanClock::now();
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view);
   facts.counts = play(job, settings, view, player);

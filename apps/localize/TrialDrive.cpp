@@ -27,7 +27,7 @@ TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
   reading.motion = settings.motion;
   TrialDrive drive{
       settings,
-      LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.localization.global),
+      LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.global),
       readPoleSequence(files.input.string(), reading).frames,
       {}};
   const auto truth = io::planar(io::readTum(files.truth));

@@ -61,6 +61,7 @@ void batch(benchmark::State& state, LikelihoodModel model, bool weighted) {
   const Scene scene(1000, state.range(0), state.range(1) != 0);
   LikelihoodOptions options;
   options.model = model;
+  options.sigma = 0.15;
   options.weighted = weighted;
   const PoleIndex index(scene.poles, options.gate);
   std::vector<double> out;

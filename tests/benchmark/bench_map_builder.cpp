@@ -45,6 +45,8 @@ void buildMap(benchmark::State& state) {
   const std::vector<MappingScan> scans = drive(state.range(0));
   PoleMapOptions options;
   options.everyScan = state.range(1) != 0;
+  options.minCount = 3;
+  options.minShare = 0;
   PoleMapResult result;
   for (auto _ : state) benchmark::DoNotOptimize(result = buildPoleMap(scans, options));
   state.counters["detections"] = static_cast<double>(result.detections);

@@ -2,46 +2,30 @@
 
 #include <map>
 
-#include "config/Bindings.h"
+#include "cli/Settings.h"
+#include "config/Config.h"
+#include "core/common/Angles.h"
 #include "io/file/TextFile.h"
-#include "mrpt/rawlog/MotionOptions.h"
 
 namespace polemcl::test_bindings {
 namespace {
 
-struct All {
-  SensorOptions sensor;
-  ExtractionOptions extraction;
-  PoleMapOptions map;
-  LikelihoodOptions likelihood;
-  MotionOptions motion;
+using apps::Settings;
+
+/// A key with its section, value and what is allowed, as the writer gives them.
+struct WrittenKey {
+  std::string name;  ///< section.key
+  std::string value, allowed;
 };
 
-void bindAll(Binder& binder, All& all) {
-  bind(binder, all.sensor);
-  bind(binder, all.extraction);
-  bind(binder, all.map);
-  bind(binder, all.likelihood);
-  bind(binder, all.motion);
-}
-
-std::string written(All all) {
+std::string written(Settings settings) {
   ConfigWriter writer;
-  bindAll(writer, all);
+  bind(writer, settings);
   return writer.text();
 }
 
-All load(const std::string& text) {
-  ConfigReader reader(ConfigFile::fromText(text, "t.ini"));
-  All all;
-  bindAll(reader, all);
-  reader.finish();
-  return all;
-}
-
-/// Names of keys with their values, in the order of the file.
-std::vector<std::pair<std::string, std::string>> keys(const std::string& text) {
-  std::vector<std::pair<std::string, std::string>> result;
+std::vector<WrittenKey> keys(const std::string& text) {
+  std::vector<WrittenKey> result;
   std::string section;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text.find('\n', at);
@@ -49,77 +33,116 @@ std::vector<std::pair<std::string, std::string>> keys(const std::string& text) {
     at = end + 1;
     if (line.empty() || line[0] == '#') continue;
     if (line[0] == '[') {
-      section = line;
+      section = line.substr(1, line.size() - 2);
       continue;
     }
-    const auto equals = line.find(" = ");
-    const std::string value = line.substr(equals + 3, line.find("  //") - equals - 3);
-    result.emplace_back(section + line.substr(0, equals), io::trimmed(value));
+    const auto equals = line.find(" = "), comment = line.find("  //");
+    std::string allowed = line.substr(line.rfind('[') + 1);
+    allowed.pop_back();
+    if (const auto unit = allowed.find("; "); unit != std::string::npos) allowed.erase(0, unit + 2);
+    result.push_back({section + "." + line.substr(0, equals),
+                      std::string(io::trimmed(line.substr(equals + 3, comment - equals - 3))),
+                      allowed});
   }
   return result;
 }
 
+/// Settings from assignments `section.key=value`.
+Settings loadWith(const std::vector<std::string>& assignments) {
+  ConfigFile file = ConfigFile::fromText("", "t.ini");
+  for (const auto& assignment : assignments) file.set(assignment);
+  ConfigReader reader(file);
+  Settings settings;
+  bind(reader, settings);
+  reader.finish();
+  return settings;
+}
+
+Settings load(const std::string& text) {
+  ConfigReader reader(ConfigFile::fromText(text, "t.ini"));
+  Settings settings;
+  bind(reader, settings);
+  reader.finish();
+  return settings;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    load(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Values to try in the place of a key's, until one is allowed.
+std::vector<std::string> otherValues(const WrittenKey& key) {
+  if (key.value == "true") return {"false"};
+  if (key.value == "false") return {"true"};
+  if (key.allowed == "text") return {"2x", "some file"};
+  if (key.allowed.find(" | ") != std::string::npos) {
+    std::vector<std::string> words;
+    for (std::size_t at = 0, end; at < key.allowed.size(); at = end + 3) {
+      end = std::min(key.allowed.find(" | ", at), key.allowed.size());
+      words.push_back(key.allowed.substr(at, end - at));
+    }
+    return words;
+  }
+  std::vector<std::string> values{"2 1", "1 2", "1 2 3", "2", "1", "900"};
+  if (key.value.empty() || key.value.find(' ') != std::string::npos) return values;
+  const double number = std::stod(key.value);
+  for (const double value :
+       {number * 0.875, number * 1.125, number + 1, number - 1, 0.5, 0.01, 0.95})
+    values.insert(values.begin(), std::to_string(value));
+  values.insert(values.begin(), std::to_string(std::lround(number) + 1));
+  return values;
+}
+
+/// Where the defaults leave no other value to a key.
+const std::vector<std::string> s_base{"map.every_scan=false", "tracking.average=false",
+                                      "start.position_m=1 2", "world.side_streets=2",
+                                      "likelihood.weighted=false"};
+
 TEST(Bindings, DefaultsSurvive) {
-  const std::string text = written(All());
+  const std::string text = written(Settings());
   EXPECT_EQ(written(load(text)), text);
 }
 
-// Changes the value of one key after the other in the file. After reading and writing again, only
-// that key has changed. Hence every key is bound to its own field.
-TEST(Bindings, EveryKeyHasAFieldOfItsOwn) {
-  const std::string base = written(All());
-  const auto before = keys(base);
-  ASSERT_GT(before.size(), 60u);
-  const std::map<std::string, std::string> otherChoices = {
-      {"circle_fit", "taubin"},        {"free_space", "ring"}, {"project_from", "cloud"},
-      {"foreground_test", "in_front"}, {"middle", "passed"},   {"merging", "boxes"},
-      {"counting", "members"}};
-  for (const auto& [name, value] : before) {
-    SCOPED_TRACE(name + " = " + value);
-    const std::string key = name.substr(name.find(']') + 1);
-    const std::string section = name.substr(0, name.find(']') + 1);
-    std::string other;
-    if (value == "true")
-      other = "false";
-    else if (value == "false")
-      other = "true";
-    else if (key == "model" && section == "[sensor]")
-      other = "os1_64";
-    else if (key == "model")
-      other = "paper";
-    else if (key == "method")
-      other = "range_image";
-    else if (const auto choice = otherChoices.find(key); choice != otherChoices.end())
-      other = choice->second;
-    else if (key == "elevations_deg" || key == "lower_elevations_deg" || key == "apex_m")
-      other = "1 2";
-    else if (key == "origin")
-      other = "1 2 3";
-    else if (key == "edge_step_m")
-      other = "0.5";
-    else if (key == "columns")
-      other = "1024";
-    else if (value.find('.') == std::string::npos)
-      other = std::to_string(std::stoi(value) + 1);
-    else if (value[0] == '-')
-      other = "-1.125";
-    else
-      other = std::to_string(std::stod(value) * 0.875);
-    const All changed = load(section + "\n" + key + " = " + other + "\n");
-    const auto after = keys(written(changed));
-    ASSERT_EQ(after.size(), before.size());
-    std::size_t differences = 0;
-    for (std::size_t i = 0; i < after.size(); ++i)
-      if (after[i].second != before[i].second) {
-        ++differences;
-        EXPECT_EQ(after[i].first, name);
+// One key after the other gets another value; after reading and writing again, that key and no
+// other has changed. So each key is bound to a field of its own.
+TEST(Bindings, EachKeyOfEachSectionHasAFieldOfItsOwn) {
+  const auto before = keys(written(loadWith(s_base)));
+  ASSERT_GT(before.size(), 220u);
+  for (const WrittenKey& key : before) {
+    SCOPED_TRACE(key.name + " = " + key.value);
+    bool tried = false;
+    for (const std::string& value : otherValues(key)) {
+      std::vector<std::string> assignments = s_base;
+      assignments.push_back(key.name + "=" + value);
+      std::vector<WrittenKey> after;
+      try {
+        after = keys(written(loadWith(assignments)));
+      } catch (const Error&) {
+        continue;  // not allowed; the next one may be
       }
-    EXPECT_EQ(differences, 1u) << name << " = " << other;
+      ASSERT_EQ(after.size(), before.size());
+      std::size_t differences = 0;
+      for (std::size_t i = 0; i < after.size(); ++i)
+        if (after[i].value != before[i].value) {
+          ++differences;
+          EXPECT_EQ(after[i].name, key.name) << value;
+        }
+      if (differences == 0) continue;  // the same value in other words
+      EXPECT_EQ(differences, 1u) << value;
+      tried = true;
+      break;
+    }
+    EXPECT_TRUE(tried) << "no other value of this key has any effect";
   }
 }
 
 TEST(Bindings, ReadsHandPickedValues) {
-  const All all = load(
+  const Settings all = load(
       "[sensor]\nmodel = table\nelevations_deg = 10 0 -10\ncolumns = 900\nheight_m = 1.2\n"
       "origin = 0 0 0.957\nupside_down = true\n"
       "[extraction]\nmethod = range_image\n"
@@ -127,46 +150,97 @@ TEST(Bindings, ReadsHandPickedValues) {
       "[scan_line]\nmin_top_m = 2.5\nmax_tilt_deg = 10\n"
       "[map]\nsection_length_m = 0.25\nmin_count = 6\n"
       "[likelihood]\nmodel = paper\nsigma_m = 1.2247\n"
-      "[motion]\ncovariance_factor = 4\nmin_yaw_deg = 0.1\n");
+      "[motion]\ncovariance_factor = 4\nmin_yaw_deg = 0.1\n"
+      "[map_update]\ndecorrelation_m = 7\n"
+      "[global]\nmin_matched = 5\n"
+      "[health]\nconfirm_found_m = 1.5\n");
   ASSERT_EQ(all.sensor.elevations.size(), 3u);
-  EXPECT_NEAR(all.sensor.elevations[2], -0.17453293, 1e-8);
+  EXPECT_NEAR(all.sensor.elevations[2], -10 * degree, 1e-12);
   EXPECT_EQ(all.sensor.originZ, 0.957);
   EXPECT_TRUE(all.sensor.upsideDown);
   EXPECT_EQ(all.extraction.method, ExtractionMethod::rangeImage);
   EXPECT_EQ(all.extraction.rangeImage.epsilon, 0.08);
   EXPECT_EQ(all.extraction.rangeImage.maxBottom, 1.4);
   EXPECT_EQ(all.extraction.scanLine.minTop, 2.5);
-  EXPECT_NEAR(all.extraction.scanLine.maxTilt, 0.17453293, 1e-8);
+  EXPECT_NEAR(all.extraction.scanLine.maxTilt, 10 * degree, 1e-12);
   EXPECT_EQ(all.map.sectionLength, 0.25);
   EXPECT_EQ(all.map.minCount, 6);
   EXPECT_EQ(all.likelihood.model, LikelihoodModel::paper);
   EXPECT_EQ(all.likelihood.sigma, 1.2247);
   EXPECT_EQ(all.motion.covarianceFactor, 4);
-  EXPECT_NEAR(all.motion.minYaw, 0.0017453293, 1e-9);
+  EXPECT_NEAR(all.motion.minYaw, 0.1 * degree, 1e-12);
+  EXPECT_EQ(all.upkeep.existence.decorrelation, 7);
+  EXPECT_EQ(all.global.minMatched, 5);
+  EXPECT_EQ(all.localization.health.confirmFound, 1.5);
 }
 
-// The struct itself rejects contradictions that ranges cannot express; the message names the file.
-TEST(Bindings, RefusesStructsThatContradictThemselves) {
-  for (const char* text :
-       {"[sensor]\nmodel = table\n", "[sensor]\nmin_range_m = 70\n",
-        "[range_image]\nfov_up_deg = -80\n", "[scan_line]\nmin_radius_m = 0.5\n"}) {
-    try {
-      load(text);
-      FAIL() << text;
-    } catch (const Error& error) {
-      EXPECT_EQ(std::string(error.what()).find("t.ini: ["), 0u) << error.what();
-    }
+// Rules between fields: the message names file, section and key.
+TEST(Bindings, RefusesSettingsThatContradictEachOther) {
+  const std::map<std::string, std::string> places = {
+      {"[sensor]\nmodel = table\n", "[sensor] elevations_deg"},
+      {"[sensor]\nmin_range_m = 70\n", "[sensor] max_range_m = 60"},
+      {"[sensor]\ncolumns = 80\n", "[sensor] columns = 80"},
+      {"[range_image]\nfov_up_deg = -80\n", "[range_image] fov_up_deg = -80"},
+      {"[scan_line]\nmin_radius_m = 0.5\n", "[scan_line] max_radius_m = 0.45"},
+      {"[map]\nevery_scan = true\nmiddle = passed\n", "[map] middle = passed"},
+      {"[map_update]\nabsent = 0.95\n", "[map_update] absent = 0.95"},
+      {"[map_update]\nfalse_detection = 0.5\n", "[map_update] false_detection = 0.5"},
+      {"[likelihood]\nmodel = floored\nweighted = true\n", "[likelihood] weighted = true"},
+      {"[filter]\ntempering = 0.6\n", "[filter] tempering = 0.6"},
+      {"[filter]\nmin_particles = 20000\n", "[filter] min_particles = 20000"},
+      {"[start]\nposition_m = 1\n", "[start] position_m = 1"},
+      {"[tracking]\ncadence = section\n", "[tracking] cadence = section"},
+      {"[global]\nmin_baseline_m = 50\n", "[global] max_baseline_m = 40"},
+      {"[health]\nlost_window_m = 5\n", "[health] lost_window_m = 5"},
+      {"[odometry_monitor]\nsettle_s = 3\n", "[odometry_monitor] settle_s = 3"},
+      {"[runs]\nseed = 4294967294\nruns = 10\n", "[runs] seed = 4294967294"},
+      {"[view]\nrate = fast\n", "[view] rate = fast"},
+      {"[simulation]\nlane_offset_m = 5\n", "[simulation] lane_offset_m = 5"},
+      {"[simulation]\ndetour = 1\n", "[simulation] detour = 1"}};
+  for (const auto& [text, place] : places) {
+    const std::string message = refusal(text);
+    EXPECT_EQ(message.find("t.ini: " + place), 0u) << text << message;
+    EXPECT_NE(message.find(": allowed is "), std::string::npos) << message;
   }
 }
 
 TEST(Bindings, RefusesRanges) {
   for (const char* text :
        {"[likelihood]\noutlier = 0\n", "[likelihood]\noutlier = 1\n", "[likelihood]\nsigma_m = 0\n",
-        "[likelihood]\nmodel = floored\nweighted = true\n",
-        "[map]\nevery_scan = true\nmiddle = passed\n", "[map]\nmin_count = 0\n",
-        "[map]\nsection_length_m = 0\n", "[range_image]\nrows = 1\n", "[motion]\nxy_per_m = -0.1\n",
-        "[scan_line]\nmin_confidence = 1.1\n"})
-    EXPECT_THROW(load(text), Error) << text;
+        "[map]\nmin_count = 0\n", "[map]\nsection_length_m = 0\n", "[range_image]\nrows = 1\n",
+        "[range_image]\nmax_range_m = 1001\n", "[scan_line]\nmax_range_m = 301\n",
+        "[scan_line]\nmin_confidence = 1.1\n", "[sensor]\nrings = 1\n",
+        "[motion]\nxy_per_m = -0.1\n", "[start]\nheading_deg = 181\n"})
+    EXPECT_NE(refusal(text), "") << text;
+}
+
+// A struct is checked by its binding: names and units are those of the INI.
+TEST(Bindings, CheckStructsAsTheyCheckFiles) {
+  SubmapOptions submap;
+  submap.headingWalk = 58 * degree;
+  try {
+    submap.validate();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what())
+                  .find("[submap] heading_walk_deg = 58: allowed is a number "
+                        "0 to 57 deg (odometry without"),
+              0u)
+        << error.what();
+  }
+  StartOptions start;
+  start.heading = 180 * degree;  // the greatest that is allowed
+  EXPECT_NO_THROW(start.validate());
+  start.pose = Pose2D{NAN, 0, 0};
+  EXPECT_THROW(start.validate(), Error);
+}
+
+TEST(Bindings, TiersFollowEachOther) {
+  const auto count = [](Tier most) { return keys(settingsText(Settings(), most)).size(); };
+  EXPECT_LT(count(Tier::sensor), 25u);
+  EXPECT_LT(count(Tier::sensor), count(Tier::tuning));
+  EXPECT_LT(count(Tier::tuning), count(Tier::expert));
+  EXPECT_EQ(settingsText(Settings(), Tier::expert), written(Settings()));
 }
 
 }  // namespace

@@ -27,9 +27,6 @@ struct Sample {
   std::vector<double> list = {0.1, -2};
   double x = 1, y = 2, z = 3;
   std::vector<double> beams = {0.1, -0.2};
-  void validate() const {
-    if (length > 100) throw Error("length must be at most 100 here");
-  }
 };
 
 void bind(Binder& b, Sample& s) {
@@ -45,7 +42,7 @@ void bind(Binder& b, Sample& s) {
   b.numbers("list", s.list, Range::any(), "m", "some");
   b.numbers("origin", {&s.x, &s.y, &s.z}, Range::any(), "m", "three");
   b.anglesDeg("beams_deg", s.beams, Range::between(-90, 90), "some");
-  b.check(s);
+  b.require(s.length <= 100, "length_m", s.length, "at most 100 here");
 }
 
 Sample load(const std::string& text) {
@@ -168,9 +165,9 @@ TEST(Config, RefusesValuesOutOfRange) {
   EXPECT_HAS(refusal("[sample]\nbeams_deg = 1 91\n"), "beams_deg = 1 91");
 }
 
-TEST(Config, ShowsWhatTheStructRefuses) {
+TEST(Config, HoldsRulesBetweenFields) {
   EXPECT_EQ(refusal("[sample]\nlength_m = 101\n"),
-            "test.ini: [sample] length must be at most 100 here");
+            "test.ini: [sample] length_m = 101: allowed is at most 100 here");
 }
 
 TEST(Config, RefusesUnknownNames) {
@@ -299,6 +296,81 @@ TEST(Config, RefusesToWriteAWordThatIsNotAllowed) {
   Sample s;
   s.word = "other";
   EXPECT_HAS(refusal([&] { written(s); }), "word = other: allowed is one of kasa | taubin");
+}
+
+TEST(Config, RefusesToWriteWhatIsOutOfRange) {
+  Sample s;
+  s.count = 11;
+  EXPECT_HAS(refusal([&] { written(s); }),
+             "[sample] count = 11: allowed is a whole number 1 to 10");
+}
+
+TEST(Config, WritesTheTiersAskedFor) {
+  const auto text = [](Tier most) {
+    double a = 1, b = 2, c = 3, d = 4;
+    ConfigWriter writer(most);
+    writer.section("one", "first", Tier::sensor);
+    writer.number("a", a, Range::any(), "", "a");
+    writer.tier(Tier::tuning);
+    writer.number("b", b, Range::any(), "", "b");
+    writer.section("two", "second", Tier::expert);
+    writer.number("c", c, Range::any(), "", "c");
+    writer.section("one", "first");  // the tier begins anew
+    writer.number("d", d, Range::any(), "", "d");
+    std::string keys;
+    for (const char* key : {"a = 1", "b = 2", "c = 3", "d = 4", "[two]"})
+      if (writer.text().find(key) != std::string::npos) keys += key[0];
+    return keys;
+  };
+  EXPECT_EQ(text(Tier::sensor), "a");
+  EXPECT_EQ(text(Tier::tuning), "abd");
+  EXPECT_EQ(text(Tier::expert), "abcd[");
+}
+
+TEST(Config, ChecksStructsWithoutAFile) {
+  EXPECT_NO_THROW(checkOptions(Sample()));
+  Sample s;
+  s.angle = 3.490658503988659;  // 200 degrees
+  EXPECT_HAS(refusal([&] { checkOptions(s); }), "deg = 200: allowed is a number -180 to 180 deg");
+  s = {};
+  s.angle = NAN;
+  EXPECT_HAS(refusal([&] { checkOptions(s); }), "[sample] angle_deg = nan");
+  s = {};
+  s.beams = {0, 2};
+  EXPECT_HAS(refusal([&] { checkOptions(s); }), "[sample] beams_deg = 0 114.59");
+  s = {};
+  s.list = {1, INFINITY};
+  EXPECT_HAS(refusal([&] { checkOptions(s); }), "[sample] list = 1 inf");
+  s = {};
+  s.y = NAN;
+  EXPECT_HAS(refusal([&] { checkOptions(s); }), "[sample] origin = 1 nan 3");
+  s = {};
+  s.word = "pratt";
+  EXPECT_HAS(refusal([&] { checkOptions(s); }), "[sample] word = pratt");
+  s = {};
+  s.length = 101;
+  EXPECT_HAS(refusal([&] { checkOptions(s); }), "[sample] length_m = 101: allowed is at most 100");
+}
+
+// The way from degrees to radians and back must not refuse a limit itself.
+TEST(Config, AllowsAnglesAtTheirLimits) {
+  for (const double limit : {0.001, 57.0, 85.0, 89.0, 90.0, 180.0, 360.0}) {
+    double angle = 0;
+    const auto bindLimit = [&](Binder& b) {
+      b.section("a", "a");
+      b.angleDeg("limit_deg", angle, Range::between(-limit, limit), "a");
+    };
+    char text[64];
+    std::snprintf(text, sizeof text, "[a]\nlimit_deg = %.17g\n", limit);
+    ConfigReader reader(ConfigFile::fromText(text, "t.ini"));
+    bindLimit(reader);
+    CheckingBinder checker;
+    EXPECT_NO_THROW(bindLimit(checker)) << limit;
+    angle *= -1;
+    EXPECT_NO_THROW(bindLimit(checker)) << limit;
+    angle *= 1.001;
+    EXPECT_THROW(bindLimit(checker), Error) << limit;
+  }
 }
 
 TEST(Config, SavesAFile) {

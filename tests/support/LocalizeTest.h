@@ -34,7 +34,8 @@ class LocalizeTest : public testing::Test {
       truth.push_back({street.frames[i].time, street.truth[i]});
     io::writeTum(folder / "truth.tum", truth);
     writeText(folder / "config.ini",
-              "[likelihood]\nsigma_m = 0.1\n[filter]\nparticles = 200\n[start]\nparticles = 1\n");
+              "[likelihood]\nsigma_m = 0.1\nweighted = false\n[filter]\nparticles = "
+              "200\n[start]\nparticles = 1\n");
   }
 
   void writeRawlog() {

@@ -74,6 +74,7 @@ inline PoleStreet makeStreet(const StreetOptions& options = {}) {
   street.map = std::make_shared<CPoleMap>();
   street.map->setPoles(mapped);
   LikelihoodOptions likelihood;
+  likelihood.weighted = false;
   likelihood.sigma = 0.1;
   likelihood.outlier = 0.01;
   street.map->likelihoodOptions = likelihood;

@@ -14,7 +14,8 @@ class StreetTest : public testing::Test {
     // Own settings, so that changes of config/ do not affect the tests.
     writeText(configFolder / "street.ini",
               "[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\nsection_length_m = 1.5\n"
-              "min_count = 2\n");
+              "min_count = 2\nevery_scan = false\nmin_share = 0\n"
+              "[likelihood]\nsigma_m = 0.15\nweighted = false\n");
   }
   std::string config() const { return (configFolder / "street.ini").string(); }
   polemcl::apps::Settings settings() const { return polemcl::apps::loadSettings(config()); }

@@ -178,6 +178,7 @@ void ConfigWriter::openSection(const std::string& comment) {
 }
 
 std::optional<std::string> ConfigWriter::exchange(const Key& key, const std::string& current) {
+  if (key.tier > m_most) return std::nullopt;
   if (withoutComment(current) != current || current.find_first_of("\n\r$\\") != std::string::npos)
     throw Error(
         place() + "[" + m_section + "] " + key.name + " = " + current +
@@ -197,9 +198,11 @@ std::string ConfigWriter::place() const {
 
 std::string ConfigWriter::text() const {
   std::string text;
-  for (const auto& section : m_sections)
+  for (const auto& section : m_sections) {
+    if (section.lines.empty()) continue;
     text += (text.empty() ? "# " : "\n# ") + section.comment + "\n[" + section.name + "]\n" +
             section.lines;
+  }
   return text;
 }
 

@@ -27,7 +27,7 @@ class FilterRunsTest : public testing::Test {
   }
   /// Element [i][k]: what run i made of scan k.
   std::vector<Updates> run(const RunOptions& which) {
-    FilterRuns filters({street.map, options.global}, options, start, which);
+    FilterRuns filters({street.map, GlobalOptions()}, options, start, which);
     std::vector<Updates> results(filters.size());
     for (const PoleFrame& frame : street.frames) {
       const auto& steps = filters.step(frame);
@@ -122,7 +122,7 @@ TEST_F(FilterRunsTest, RefusesMoreParticlesThanFitSideBySide) {
   runs.runs = 51;
   start.particles = 1000000;
   try {
-    FilterRuns({street.map, options.global}, options, start, runs);
+    FilterRuns({street.map, GlobalOptions()}, options, start, runs);
     ADD_FAILURE() << "not refused";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("51 runs of 1000000 particles"), std::string::npos)

@@ -50,7 +50,7 @@ std::vector<StampedPose2D> localized(const LocalizationMap& map,
 /// How many of 20 kidnapped vehicles are within 2 m of the truth at the end of the drive.
 int recovered(const Settings& settings) {
   const tests::PoleCity city{tests::CityOptions()};
-  const LocalizationMap map(mapOf(city.map(), settings), settings.localization.global);
+  const LocalizationMap map(mapOf(city.map(), settings), settings.global);
   int count = 0;
   for (int run = 0; run < 20; ++run) {
     std::vector<PoleFrame> frames;
@@ -131,7 +131,7 @@ class Parity {
     StartOptions start = m_settings.start;
     start.pose = m_poses[1];
     start.radius = radius;
-    const LocalizationMap map(m_map, m_settings.localization.global);
+    const LocalizationMap map(m_map, m_settings.global);
     return evaluateTrajectory(truth, localized(map, frames, m_settings.localization, start, seed),
                               Sampling::perPose);
   }

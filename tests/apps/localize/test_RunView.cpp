@@ -45,7 +45,7 @@ class RunViewTest : public testing::Test {
     start.pose = street.truth[0];
     RunOptions two;
     two.runs = 2;
-    FilterRuns runs({street.map, localization.global}, localization, start, two);
+    FilterRuns runs({street.map, GlobalOptions()}, localization, start, two);
     Updates done;
     for (const PoleFrame& frame : street.frames) {
       done.push_back(runs.step(frame)[0].update);

@@ -23,7 +23,8 @@ class MapSessions : public StreetTest {
          {std::pair("all.ini", ""), std::pair("paper.ini", "unvisited_m = 10\n"),
           std::pair("near.ini", "unvisited_m = 4\n")})
       writeText(folder / name, std::string("[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\n"
-                                           "section_length_m = 1.5\nmin_count = 2\n") +
+                                           "section_length_m = 1.5\nmin_count = 2\n"
+                                           "every_scan = false\nmin_share = 0\n") +
                                    text);
     drive("one", 12, 0);
     drive("two", 10, 8);    // 8 … 17 m

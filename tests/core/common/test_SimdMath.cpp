@@ -52,6 +52,7 @@ std::vector<double> everything() {
     for (const auto model : {LikelihoodModel::paper, LikelihoodModel::mixture}) {
       LikelihoodOptions options;
       options.model = model;
+      options.sigma = 0.15;
       options.weighted = weighted;
       std::vector<double> values;
       logLikelihoods(poles, poses, PoleIndex(map), options, values);

@@ -93,7 +93,7 @@ TEST(VisibilityRange, APoleEndsItAtItsFrontAndNothingElse) {
 
 TEST(VisibilityRange, SparseBeamsEndItWhereFewerThanTwoMeetPoles) {
   SensorOptions sensor = sensorOptions("uniform");
-  sensor.rows = 5;  // at +10°, +5°, 0°, -5°, -10°
+  sensor.rings = 5;  // at +10°, +5°, 0°, -5°, -10°
   sensor.fovUp = 10 * kDegree;
   sensor.fovDown = -10 * kDegree;
   sensor.columns = 1800;

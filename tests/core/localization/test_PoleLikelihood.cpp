@@ -33,6 +33,7 @@ PoleDetection detection(double x, double y) {
 LikelihoodOptions optionsOf(LikelihoodModel model, bool weighted) {
   LikelihoodOptions options;
   options.model = model;
+  options.sigma = 0.15;
   options.weighted = weighted;
   return options;
 }
@@ -323,7 +324,7 @@ TEST(PoleLikelihood, StaysFiniteWithNumbersThatAreNone) {
 
 TEST(PoleLikelihood, TheMixtureIsNotFlat) {
   const PoleIndex index({mapPole(10, 0)});
-  const LikelihoodOptions options;
+  const LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
   const double right = logLikelihood({detection(10, 0)}, {}, index, options);
   const double off = logLikelihood({detection(10, 0)}, {0.3, 0, 0}, index, options);
   const double lost = logLikelihood({detection(10, 0)}, {5, 0, 0}, index, options);
@@ -387,7 +388,8 @@ TEST(PoleLikelihood, RefusesOptionsOutOfRange) {
 TEST(PoleLikelihood, RefusesWeightsThatAreNone) {
   const PoleIndex index({});
   const auto refuses = [&](const PoleDetection& pole) {
-    logLikelihood({pole}, {}, index, LikelihoodOptions{});  // of no account unless weighted
+    // Covariance and confidence are not used unless weighted.
+    logLikelihood({pole}, {}, index, optionsOf(LikelihoodModel::mixture, false));
     EXPECT_THROW(logLikelihood({pole}, {}, index, optionsOf(LikelihoodModel::mixture, true)),
                  Error);
   };

@@ -55,6 +55,8 @@ std::vector<Eigen::Vector2d> somePoles() {
 PoleMapOptions mapping(double unvisited) {
   PoleMapOptions options;
   options.sectionLength = 1;
+  options.everyScan = false;
+  options.minShare = 0;
   options.minCount = 2;
   options.unvisited = unvisited;
   return options;

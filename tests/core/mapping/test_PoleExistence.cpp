@@ -24,7 +24,7 @@ ExistenceOptions options() {
   ExistenceOptions o;
   o.detection = 0.8;
   o.falseDetection = 0.1;
-  o.look = 5;
+  o.decorrelation = 5;
   o.certain = 0.99;
   return o;
 }
@@ -93,7 +93,8 @@ TEST(PoleExistence, RefusesWhatMakesNoSense) {
   EXPECT_NE(refused(&ExistenceOptions::detection, 1).find("detection"), std::string::npos);
   EXPECT_NE(refused(&ExistenceOptions::falseDetection, 0.5).find("false_detection"),
             std::string::npos);
-  EXPECT_NE(refused(&ExistenceOptions::look, 0).find("look_m"), std::string::npos);
+  EXPECT_NE(refused(&ExistenceOptions::decorrelation, 0).find("decorrelation_m"),
+            std::string::npos);
   EXPECT_NE(refused(&ExistenceOptions::prior, 0).find("prior"), std::string::npos);
   EXPECT_NE(refused(&ExistenceOptions::certain, 0.4).find("certain"), std::string::npos);
   EXPECT_NE(refused(&ExistenceOptions::lifetimeDays, NAN).find("lifetime_days"), std::string::npos);

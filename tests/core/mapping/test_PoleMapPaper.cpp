@@ -14,6 +14,8 @@ namespace {
 PoleMapOptions authors(int minCount) {
   PoleMapOptions options;
   options.sectionLength = 1;
+  options.everyScan = false;
+  options.minShare = 0;
   options.middle = SectionMiddle::passed;
   options.merging = MapMerging::boxes;
   options.counting = PoleCounting::members;

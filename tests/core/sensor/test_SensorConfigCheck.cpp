@@ -91,7 +91,7 @@ TEST(SensorConfigCheck, RefusesOneOriginWhereTheModelHasTwo) {
   const std::string what = contradiction(preset("hdl64e"), singleOrigin(64, 2, -24.8));
   EXPECT_TRUE(has(what, "model = hdl64e")) << what;
   SensorOptions uniform = preset("uniform");
-  uniform.rows = 64;
+  uniform.rings = 64;
   uniform.fovUp = 2 * kDegree;
   uniform.fovDown = -24.8 * kDegree;
   uniform.columns = 1800;

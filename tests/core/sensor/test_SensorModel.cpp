@@ -24,7 +24,7 @@ SensorOptions preset(const std::string& model, bool upsideDown = false) {
 
 SensorOptions uniform(int rows, double upDeg, double downDeg, int columns = 1000) {
   SensorOptions options = preset("uniform");
-  options.rows = rows;
+  options.rings = rows;
   options.fovUp = upDeg * kDegree;
   options.fovDown = downDeg * kDegree;
   options.columns = columns;
@@ -242,13 +242,13 @@ TEST(SensorOptions, RefusesATableOfOneBeam) {
   EXPECT_REFUSED(table({1}), {}, "elevations_deg");
 }
 TEST(SensorOptions, RefusesAUniformFanOfTooFewOrTooManyBeams) {
-  EXPECT_REFUSED(uniform(1, 1, -1), {}, "rows = 1");
-  EXPECT_REFUSED(uniform(1025, 1, -1), {}, "rows = 1025");
+  EXPECT_REFUSED(uniform(1, 1, -1), {}, "rings = 1");
+  EXPECT_REFUSED(uniform(1025, 1, -1), {}, "rings = 1025");
 }
 TEST(SensorOptions, RefusesAUniformFanTheWrongWayRound) {
   EXPECT_REFUSED(uniform(16, -1, -1), {}, "fov_up_deg");
   EXPECT_REFUSED(
-      uniform(16, 1, -1), { o.fovDown = std::nan(""); }, "fov_up_deg");
+      uniform(16, 1, -1), { o.fovDown = std::nan(""); }, "fov_down_deg");
 }
 TEST(SensorOptions, RefusesATurnWithoutColumns) {
   EXPECT_REFUSED(uniform(16, 1, -1, 89), {}, "columns = 89");
@@ -261,13 +261,14 @@ TEST(SensorOptions, RefusesElevationsThatHaveNoTangent) {
       table({1, -1}), { o.elevations[1] = std::nan(""); }, "elevations_deg");
   EXPECT_REFUSED(uniform(16, 90, -1), {}, "fov_up_deg");
   EXPECT_REFUSED(uniform(16, 1, -90), {}, "fov_down_deg");
-  EXPECT_EQ(refusal({}, [](SensorOptions& o) { o.elevations = {90}; }), "accepted");  // not used
+  EXPECT_REFUSED(
+      {}, { o.elevations = {M_PI / 2}; }, "elevations_deg = 90");
 }
 TEST(SensorOptions, RefusesALowerBlockThatIsNone) {
   EXPECT_REFUSED(
       table({1, -1}), { o.lowerElevations = {-0.2}; }, "lower_elevations_deg");
   EXPECT_REFUSED(
-      table({1, -1}), { o.lowerElevations.assign(2, 0.0); }, "below all");
+      table({1, -1}), { o.lowerElevations.assign(2, 0.0); }, "block below all");
   EXPECT_REFUSED(
       table({1, -1}), { o.lowerApex = std::nan(""); }, "apex_m");
 }

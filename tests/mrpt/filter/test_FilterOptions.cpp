@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "config/Config.h"
 #include "mrpt/filter/FilterOptions.h"
 
 namespace polemcl::test_filter_options {
@@ -105,11 +106,13 @@ TEST(FilterOptions, YawIsWrapped) {
 TEST(FilterOptions, RefusalsNameFileSectionAndWhatIsAllowed) {
   const auto half = refusal([] { load("[start]\nposition_m = 1\n"); });
   EXPECT_NE(half.find("t.ini"), std::string::npos) << half;
-  EXPECT_NE(half.find("position_m must be two numbers"), std::string::npos) << half;
+  EXPECT_NE(half.find("[start] position_m = 1: allowed is two numbers"), std::string::npos) << half;
   const auto word = refusal([] { load("[filter]\nestimate = median\n"); });
   EXPECT_NE(word.find("best_share"), std::string::npos) << word;
   const auto low = refusal([] { load("[filter]\nresample_below = 0.1\ntempering = 0.2\n"); });
-  EXPECT_NE(low.find("tempering must be 0 to resample_below"), std::string::npos) << low;
+  EXPECT_NE(low.find("[filter] tempering = 0.2: allowed is resample_below or less"),
+            std::string::npos)
+      << low;
   const auto key = refusal([] { load("[filter]\nparticle = 10\n"); });
   EXPECT_NE(key.find("particle"), std::string::npos) << key;
 }
@@ -145,9 +148,13 @@ TEST(FilterOptions, ReadsAdaptiveSampling) {
   EXPECT_EQ(all.filter.kld.maxParticles, 3000);
   const auto never =
       refusal([] { load("[filter]\nadaptive = true\nresample_below = 0\ntempering = 0\n"); });
-  EXPECT_NE(never.find("adaptive needs a resample_below"), std::string::npos) << never;
+  EXPECT_NE(never.find("[filter] adaptive = true: allowed is false where resample_below = 0"),
+            std::string::npos)
+      << never;
   const auto crossed = refusal([] { load("[filter]\nmin_particles = 20000\n"); });
-  EXPECT_NE(crossed.find("the least not above the most"), std::string::npos) << crossed;
+  EXPECT_NE(crossed.find("[filter] min_particles = 20000: allowed is max_particles or less"),
+            std::string::npos)
+      << crossed;
 }
 
 TEST(FilterOptions, ValidateRefusesBadStartsAndRuns) {

@@ -20,7 +20,7 @@ class PoleLocalizationTest : public testing::Test {
     poles->likelihoodOptions.sigma = 0.05;
     poles->likelihoodOptions.weighted = true;
     poles->setPoles(city.map());
-    map = std::make_unique<LocalizationMap>(poles, options.global);
+    map = std::make_unique<LocalizationMap>(poles, GlobalOptions());
   }
   static tests::CityOptions cityOf(std::uint64_t seed) {
     tests::CityOptions options;
@@ -167,7 +167,7 @@ TEST_F(PoleLocalizationTest, AnotherCitysMapIsLost) {
   driveFrom(8, 60);
   auto poles = std::make_shared<CPoleMap>(*map->poles);
   poles->setPoles(tests::PoleCity(cityOf(77)).map());
-  LocalizationPipeline localization(LocalizationMap(poles, options.global), options, 1);
+  LocalizationPipeline localization(LocalizationMap(poles, GlobalOptions()), options, 1);
   localization.start(atTruth());
   std::size_t lost = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {

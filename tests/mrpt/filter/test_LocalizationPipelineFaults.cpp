@@ -21,7 +21,7 @@ class PoleLocalizationFaults : public testing::Test {
     poles->likelihoodOptions.sigma = 0.05;
     poles->likelihoodOptions.weighted = true;
     poles->setPoles(city.map());
-    map = std::make_unique<LocalizationMap>(poles, options.global);
+    map = std::make_unique<LocalizationMap>(poles, GlobalOptions());
     sim::Random random(3);
     const auto way = tests::resample(city.randomWay(random, metres), step);
     for (const tests::Frame& seen : tests::drive(city.surroundings(), way, {}, random)) {

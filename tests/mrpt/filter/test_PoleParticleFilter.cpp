@@ -73,6 +73,7 @@ TEST(PoleParticleFilter, FollowsAStreetAsThePaperDoes) {
       const PoleStreet street = makeStreet(options);
       LikelihoodOptions likelihood;
       likelihood.model = model;
+      likelihood.weighted = false;
       likelihood.sigma = likelihood.gate = 1;
       street.map->likelihoodOptions = likelihood;
       street.map->setPoles(street.map->poles());
@@ -98,6 +99,7 @@ TEST(PoleParticleFilter, BatchEqualsTheMapsLikelihood) {
     for (const bool weighted : {true, false}) {
       LikelihoodOptions likelihood;
       likelihood.model = paper ? LikelihoodModel::paper : LikelihoodModel::mixture;
+      likelihood.sigma = 0.15;
       likelihood.weighted = weighted;
       street.map->likelihoodOptions = likelihood;
       PoleParticleFilter localizer(street.map, still(), 1);

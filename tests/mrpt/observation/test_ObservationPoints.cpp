@@ -236,7 +236,7 @@ TEST(ObservationPoints, UnprojectsDepthImagesOnACopy) {
   ASSERT_TRUE(depth && depth->hasRangeImage);
   ObservationPoleExtractorOptions options;
   options.sensor.model = "uniform";
-  options.sensor.rows = 240;
+  options.sensor.rings = 240;
   options.sensor.fovUp = 0.5;
   options.sensor.fovDown = -0.5;
   options.sensor.columns = 2000;

@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                         "relief"},
         RejectionReason{"sensor", [](auto& o) { o.sensor = "lms200"; }, "lms200"},
         RejectionReason{"height", [](auto& o) { o.height = 0; }, "height_m"},
-        RejectionReason{"origin", [](auto& o) { o.originY = 99; }, "[sensor] origin = 99"},
+        RejectionReason{"origin", [](auto& o) { o.originY = 99; }, "[sensor] origin = 0 99 0"},
         RejectionReason{"spacing", [](auto& o) { o.spacing = 0; }, "spacing_m"},
         RejectionReason{"speed", [](auto& o) { o.speed = 0; }, "speed_m_s"},
         RejectionReason{"odometryNoise", [](auto& o) { o.odometryNoise = -0.1; }, "odometry_noise"},

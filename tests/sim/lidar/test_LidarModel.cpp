@@ -89,7 +89,7 @@ TEST(LidarModel, UniformBeamsAreEvenlySpread) {
   SimulationOptions options;
   SensorOptions beams;
   options.sensor = "uniform";
-  beams.rows = 5;
+  beams.rings = 5;
   beams.fovUp = 0.2;
   beams.fovDown = -0.2;
   beams.columns = 500;

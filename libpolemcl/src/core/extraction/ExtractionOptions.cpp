@@ -1,93 +1,137 @@
 #include "core/extraction/ExtractionOptions.h"
 
-#include <algorithm>
-#include <cmath>
-#include <sstream>
-
 #include "core/common/Angles.h"
-#include "core/common/Types.h"
+#include "core/common/Binder.h"
 
 namespace polemcl {
 namespace {
 
-void requireExtraction(bool good, const char* section, const char* key, double value,
-                       const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text << "[" << section << "] " << key << " = " << value << ": allowed is " << allowed;
-  throw Error(text.str());
-}
+const Range s_positive = Range::above(0), s_notNegative = Range::atLeast(0),
+            s_share = Range::between(0, 1);
 
-void requireOneOf(const std::string& key, const std::string& value,
-                  const std::vector<std::string>& allowed) {
-  if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return;
-  std::string text = "[range_image] " + key + " = " + value + ": allowed are ";
-  for (const auto& one : allowed) text += (one == allowed.front() ? "" : ", ") + one;
-  throw Error(text);
+void bindChoices(Binder& b, RangeImageOptions& o) {
+  b.flag("heights_above_ground", o.heightsAboveGround,
+         "true: heights are z + height_m; false: z in the frame of the sensor");
+  b.choice("project_from", o.projectFrom, {"sensor", "cloud"},
+           "origin of the image: the optical centre, or the origin of the clouds");
+  b.flag("mirrored", o.mirrored, "true: y counts to the right in the image");
+  b.number("coordinate_step_m", o.coordinateStep, Range::between(0, 1), "m",
+           "coordinates are rounded to multiples of this step; 0: used as read");
+  b.flag("single_precision", o.singlePrecision, "true: projection and fit in float");
+  b.flag("clamp_to_view", o.clampToView,
+         "true: points outside the image go to its border pixels; false: they are dropped");
+  b.flag("wrap_around", o.wrapAround,
+         "true: the image closes at +-180 deg; false: it is open, and its border rows and "
+         "columns hold no clusters");
+  b.flag("grow_upwards", o.growUpwards,
+         "true: clusters also grow up; false: left, right and down only");
+  b.choice("foreground_test", o.foregroundTest, {"not_behind", "in_front"},
+           "pixels that count for foreground: those without a nearer neighbour beside, or those "
+           "with neighbours beside that are all farther");
+  b.choice("circle_fit", o.circleFit, {"kasa", "kasa_mean", "taubin", "silhouette"},
+           "how a circle is fitted");
+  b.choice("free_space", o.freeSpace, {"ring", "corners", "cut_corners"},
+           "shape of the free space; cut_corners: as in the authors' code");
 }
 
 }  // namespace
 
-void RangeImageOptions::validate() const {
-  const auto check = [](bool good, const char* key, double value, const char* allowed) {
-    requireExtraction(good, "range_image", key, value, allowed);
-  };
-  check(rows >= 2 && rows <= 1024, "rows", rows, "2 to 1024");
-  check(columns >= 16 && columns <= 65536, "columns", columns, "16 to 65536");
-  check(fovUp > fovDown, "fov_up_deg", fovUp / degree,
-        "more than fov_down_deg (negative below the horizon)");
-  check(maxZ > minZ, "max_z_m", maxZ, "more than min_z_m");
+void bind(Binder& b, RangeImageOptions& o) {
+  b.section("range_image", "Algorithm 1 of the paper, for method = range_image", Tier::expert);
+  b.integer("rows", o.rows, Range::between(2, 1024), "px", "height of the range image");
+  b.integer("columns", o.columns, Range::between(16, 65536), "px", "width of the range image");
+  b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90), "elevation of the upper border");
+  b.angleDeg("fov_down_deg", o.fovDown, Range::between(-90, 90),
+             "elevation of the lower border, negative below the horizon");
+  b.number("min_z_m", o.minZ, Range::any(), "m", "lower cut, see heights_above_ground");
+  b.number("max_z_m", o.maxZ, Range::any(), "m", "upper cut, see heights_above_ground");
   // Cells of 1 m cover the square that the range spans.
-  check(maxRange > 0 && maxRange <= 1000, "max_range_m", maxRange, "more than 0, at most 1000");
-  check(epsilon > 0, "epsilon_m", epsilon, "more than 0");
-  check(minPixels >= 0, "min_pixels", minPixels, "0 or more");
-  check(maxWidthPx >= 1, "max_width_px", maxWidthPx, "1 or more");
-  check(minAspect >= 0, "min_aspect", minAspect, "0 or more");
-  check(foreground >= 0 && foreground <= 1, "foreground", foreground, "0 to 1");
-  check(maxRadius > minRadius && minRadius >= 0, "max_radius_m", maxRadius,
-        "more than min_radius_m");
-  check(std::isfinite(minTop), "min_top_m", minTop, "a number");
-  check(std::isfinite(maxBottom), "max_bottom_m", maxBottom, "a number");
-  check(minHeight >= 0, "min_height_m", minHeight, "0 or more");
-  check(fitMargin >= 0, "fit_margin_m", fitMargin, "0 or more");
-  check(std::isfinite(fitMaxZ), "fit_max_z_m", fitMaxZ, "a number");
-  check(minFitPoints >= 3, "min_fit_points", minFitPoints, "3 or more");
-  check(freeRing >= 0, "free_ring_m", freeRing, "0 or more");
-  check(freeShare >= 0, "free_share", freeShare, "0 or more");
-  check(coordinateStep >= 0 && coordinateStep <= 1, "coordinate_step_m", coordinateStep, "0 to 1");
-  requireOneOf("project_from", projectFrom, {"sensor", "cloud"});
-  requireOneOf("foreground_test", foregroundTest, {"not_behind", "in_front"});
-  requireOneOf("circle_fit", circleFit, {"kasa", "kasa_mean", "taubin", "silhouette"});
-  requireOneOf("free_space", freeSpace, {"ring", "corners", "cut_corners"});
+  b.number("max_range_m", o.maxRange, Range::aboveUpTo(0, 1000), "m",
+           "farther points are not used");
+  b.number("epsilon_m", o.epsilon, s_positive, "m", "greatest step in range inside a cluster");
+  b.integer("min_pixels", o.minPixels, s_notNegative, "px",
+            "a cluster needs more pixels than this");
+  b.integer("max_width_px", o.maxWidthPx, Range::atLeast(1), "px", "greatest width of a cluster");
+  b.number("min_aspect", o.minAspect, s_notNegative, "", "least height / width of a cluster");
+  b.number("foreground", o.foreground, s_share, "",
+           "least share of a cluster's pixels that pass foreground_test");
+  b.number("min_top_m", o.minTop, Range::any(), "m", "least height of a pole's top");
+  b.number("max_bottom_m", o.maxBottom, Range::any(), "m", "greatest height of a pole's bottom");
+  b.number("min_height_m", o.minHeight, s_notNegative, "m", "least distance from bottom to top");
+  b.number("min_radius_m", o.minRadius, s_notNegative, "m", "thinner circles are refused");
+  b.number("max_radius_m", o.maxRadius, s_positive, "m", "thicker circles are refused");
+  b.number("fit_margin_m", o.fitMargin, s_notNegative, "m",
+           "half width of the box of the fit beyond the radius");
+  b.number("fit_max_z_m", o.fitMaxZ, Range::any(), "m", "greatest height of the points fitted");
+  b.integer("min_fit_points", o.minFitPoints, Range::atLeast(3), "",
+            "least number of points fitted");
+  b.number("free_ring_m", o.freeRing, s_notNegative, "m", "width of the free space round a pole");
+  b.number("free_share", o.freeShare, s_notNegative, "",
+           "points allowed in the free space, as a share of those fitted");
+  bindChoices(b, o);
+
+  b.require(o.fovUp > o.fovDown, "fov_up_deg", o.fovUp / degree,
+            "more than fov_down_deg (negative below the horizon)");
+  b.require(o.maxZ > o.minZ, "max_z_m", o.maxZ, "more than min_z_m");
+  b.require(o.maxRadius > o.minRadius, "max_radius_m", o.maxRadius, "more than min_radius_m");
+}
+
+void bind(Binder& b, ScanLineOptions& o) {
+  b.section("scan_line", "Scan lines of real beams, for method = scan_line");
+  b.number("min_top_m", o.minTop, s_notNegative, "m",
+           "least height of a pole's top above local ground");
+  b.number("max_range_m", o.maxRange, Range::aboveUpTo(0, 300), "m",
+           "poles farther away are not looked for");
+  b.number("min_confidence", o.minConfidence, s_share, "",
+           "poles with a lower confidence are refused");
+  b.number("max_radius_m", o.maxRadius, s_positive, "m", "thicker poles are refused");
+  b.tier(Tier::expert);
+  b.number("max_width_m", o.maxWidth, s_positive, "m", "greatest width of a segment of a pole");
+  b.number("connect_step_m", o.connectStep, s_positive, "m",
+           "greatest step in range between neighbours in a segment");
+  b.number("edge_step_m", o.edgeStep, s_positive, "m",
+           "least step in range from a segment's edge to what lies behind it");
+  // Cells of twice the reach cover the square that the range spans.
+  b.number("stack_reach_m", o.stackReach, Range::atLeast(0.05), "m",
+           "greatest horizontal step between segments of a pole");
+  b.number("stack_gap_m", o.stackGap, s_notNegative, "m",
+           "greatest vertical step between segments of a pole");
+  b.number("max_bottom_m", o.maxBottom, s_positive, "m",
+           "greatest height of a pole's lowest return");
+  b.number("min_height_m", o.minHeight, s_notNegative, "m", "least visible height of a pole");
+  b.number("min_radius_m", o.minRadius, s_notNegative, "m", "thinner poles are refused");
+  b.integer("min_points", o.minPoints, Range::atLeast(2), "", "least number of returns of a pole");
+  b.angleDeg("max_tilt_deg", o.maxTilt, Range::aboveUpTo(0, 85),
+             "greatest tilt of the axis from the vertical");
+  b.number("max_scatter_m", o.maxScatter, s_positive, "m",
+           "greatest rms distance of the segments from the axis");
+  b.number("min_spacing_m", o.minSpacing, s_notNegative, "m",
+           "two poles nearer than this: the less confident one is dropped");
+
+  b.require(o.edgeStep >= o.connectStep, "edge_step_m", o.edgeStep, "connect_step_m or more");
+  b.require(o.maxRadius > o.minRadius, "max_radius_m", o.maxRadius, "more than min_radius_m");
+}
+
+void bind(Binder& b, ExtractionOptions& o) {
+  b.section("extraction", "How poles are found");
+  b.choice<ExtractionMethod>(
+      "method", o.method,
+      {{ExtractionMethod::rangeImage, "range_image"}, {ExtractionMethod::scanLine, "scan_line"}},
+      "Algorithm 1 of the paper, or scan lines of real beams");
+  bind(b, o.rangeImage);
+  bind(b, o.scanLine);
+}
+
+void RangeImageOptions::validate() const {
+  checkOptions(*this);
 }
 
 void ScanLineOptions::validate() const {
-  const auto check = [](bool good, const char* key, double value, const char* allowed) {
-    requireExtraction(good, "scan_line", key, value, allowed);
-  };
-  check(maxWidth > 0, "max_width_m", maxWidth, "more than 0");
-  check(connectStep > 0, "connect_step_m", connectStep, "more than 0");
-  check(edgeStep >= connectStep, "edge_step_m", edgeStep, "connect_step_m or more");
-  // Cells of twice the reach cover the square that the range spans.
-  check(stackReach >= 0.05, "stack_reach_m", stackReach, "0.05 or more");
-  check(maxRange > 0 && maxRange <= 300, "max_range_m", maxRange, "more than 0, at most 300");
-  check(stackGap >= 0, "stack_gap_m", stackGap, "0 or more");
-  check(std::isfinite(minTop), "min_top_m", minTop, "a number");
-  check(std::isfinite(maxBottom), "max_bottom_m", maxBottom, "a number");
-  check(minHeight >= 0, "min_height_m", minHeight, "0 or more");
-  check(maxRadius > minRadius && minRadius >= 0, "max_radius_m", maxRadius,
-        "more than min_radius_m");
-  check(maxTilt > 0 && maxTilt <= 85 * degree, "max_tilt_deg", maxTilt / degree,
-        "more than 0, at most 85");
-  check(minSpacing >= 0, "min_spacing_m", minSpacing, "0 or more");
-  check(maxScatter > 0, "max_scatter_m", maxScatter, "more than 0");
-  check(minPoints >= 2, "min_points", minPoints, "2 or more");
-  check(minConfidence >= 0 && minConfidence <= 1, "min_confidence", minConfidence, "0 to 1");
+  checkOptions(*this);
 }
 
 void ExtractionOptions::validate() const {
-  rangeImage.validate();
-  scanLine.validate();
+  checkOptions(*this);
 }
 
 }  // namespace polemcl

@@ -7,6 +7,8 @@
 
 namespace polemcl {
 
+class Binder;
+
 enum class ExtractionMethod { rangeImage, scanLine };
 
 /// \brief The paper's Algorithm 1. `[range_image]` in INI files; departures are named options.
@@ -62,6 +64,8 @@ struct RangeImageOptions {
   void validate() const;
 };
 
+void bind(Binder& binder, RangeImageOptions& options);  ///< `[range_image]`
+
 /// \brief The native method: scan lines of real beams. `[scan_line]` in INI files.
 struct ScanLineOptions {
   double maxWidth = 0.9;     ///< widest slice of a pole on one beam, m
@@ -83,6 +87,8 @@ struct ScanLineOptions {
   void validate() const;
 };
 
+void bind(Binder& binder, ScanLineOptions& options);  ///< `[scan_line]`
+
 /// \brief `[extraction]` in INI files.
 struct ExtractionOptions {
   ExtractionMethod method = ExtractionMethod::scanLine;
@@ -90,5 +96,7 @@ struct ExtractionOptions {
   ScanLineOptions scanLine;
   void validate() const;  ///< \throws Error
 };
+
+void bind(Binder& binder, ExtractionOptions& options);  ///< `[extraction]` and the two above
 
 }  // namespace polemcl

@@ -19,30 +19,34 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief `[global]` in INI files.
 struct GlobalOptions {
-  int minHits = 2;  ///< submap poles with fewer hits give no evidence
-  /// Chance that a pole of the submap that is no false one stands on the map, in (0, 1).
+  int minHits = 2;  ///< poles of the submap with fewer hits are not used
+  /// Probability that a true pole of the submap is on the map, in (0, 1).
   double mapped = 0.9;
-  double sigma = 0.05;        ///< of a pole against its map pole, beyond both covariances, m
-  double maxTolerance = 1.0;  ///< a pole never matches one farther away than this, m
+  double sigma = 0.05;        ///< σ of a pole from its map pole, beyond both covariances, m
+  double maxTolerance = 1.0;  ///< greatest distance of a pole from its map pole, m
   double minBaseline = 8, maxBaseline = 40;  ///< of pole pairs that give a candidate, m
-  double corridor = 15;  ///< map poles this near to the way should have been seen, m
-  double seen = 0.5;     ///< chance that such a pole is in the submap, in [0, 1)
+  double corridor = 15;  ///< map poles nearer than this to the path should have been seen, m
+  double seen = 0.5;     ///< probability that such a pole is in the submap, in [0, 1)
   /// \name Verdict
   /// @{
-  int minMatched = 6;         ///< fewer matched poles never decide
-  double minShare = 0.4;      ///< least share of the submap's poles that must be matched, in [0, 1]
-  double margin = 7;          ///< least lead in evidence over every other place, nats
+  int minMatched = 6;         ///< least number of matched poles of an answer
+  double minShare = 0.4;      ///< least share of the submap's poles that are matched, in [0, 1]
+  double margin = 7;          ///< least lead in log-likelihood over every other place, nats
   double distinct = 2;        ///< places farther apart than this are different ones, m
-  double distinctYaw = 0.17;  ///< or turned by more than this, rad (`distinct_yaw_deg`)
+  double distinctYaw = 0.17;  ///< places turned by more are different, rad (`distinct_yaw_deg`)
   /// @}
-  int maxPairs = 40;           ///< most pole pairs of the submap that are looked up
-  int maxCandidates = 100000;  ///< most candidate places that are tried, bounds the time
-  int maxRefined = 64;         ///< most of them that are refined
-  int maxHypotheses = 20;      ///< most that are handed out
-  void validate() const;       ///< \throws Error naming the field
+  int maxPairs = 40;           ///< greatest number of pole pairs that are looked up
+  int maxCandidates = 100000;  ///< greatest number of places that are tried; bounds the time
+  int maxRefined = 64;         ///< greatest number of places that are refined
+  int maxHypotheses = 20;      ///< greatest number of places in an answer
+  void validate() const;       ///< \throws Error
 };
+
+void bind(Binder& binder, GlobalOptions& options);  ///< `[global]`
 
 /// \brief A place where the submap may lie.
 struct GlobalHypothesis {

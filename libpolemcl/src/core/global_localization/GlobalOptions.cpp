@@ -1,41 +1,54 @@
-#include <cmath>
-#include <sstream>
-
+#include "core/common/Angles.h"
+#include "core/common/Binder.h"
 #include "core/global_localization/GlobalLocalizer.h"
 
 namespace polemcl {
-namespace {
 
-void requireGlobal(bool good, const char* key, double value, const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text << "[global] " << key << " = " << value << ": allowed is " << allowed;
-  throw Error(text.str());
+void bind(Binder& b, GlobalOptions& o) {
+  b.section("global", "The place of a submap on the whole map", Tier::expert);
+  b.integer("min_hits", o.minHits, Range::atLeast(1), "",
+            "poles of the submap with fewer hits are not used");
+  b.number("mapped", o.mapped, Range::inside(0, 1), "",
+           "probability that a true pole of the submap is on the map");
+  b.number("sigma_m", o.sigma, Range::between(0, 1), "m",
+           "standard deviation of a pole from its map pole, beyond both covariances");
+  b.number("max_tolerance_m", o.maxTolerance, Range::aboveUpTo(0, 5), "m",
+           "greatest distance of a pole from its map pole");
+  b.number("min_baseline_m", o.minBaseline, Range::atLeast(1), "m",
+           "least distance of the pole pairs that are looked up");
+  b.number("max_baseline_m", o.maxBaseline, Range::aboveUpTo(1, 200), "m",
+           "greatest distance of the pole pairs that are looked up");
+  b.number("corridor_m", o.corridor, Range::between(0, 200), "m",
+           "map poles nearer than this to the path should have been seen");
+  b.number("seen", o.seen, Range::fromBelow(0, 1), "",
+           "probability that such a pole is in the submap");
+  b.tier(Tier::tuning);
+  b.integer("min_matched", o.minMatched, Range::atLeast(3), "",
+            "least number of matched poles of an answer");
+  b.number("min_share", o.minShare, Range::between(0, 1), "share",
+           "least share of the submap's poles that are matched");
+  b.number("margin", o.margin, Range::above(0), "nats",
+           "least lead in log-likelihood over every other place");
+  b.tier(Tier::expert);
+  b.number("distinct_m", o.distinct, Range::above(0), "m",
+           "places farther apart than this are different ones");
+  b.angleDeg("distinct_yaw_deg", o.distinctYaw, Range::aboveUpTo(0, 180),
+             "places turned by more than this are different ones");
+  b.integer("max_pairs", o.maxPairs, Range::atLeast(1), "",
+            "greatest number of pole pairs that are looked up");
+  b.integer("max_candidates", o.maxCandidates, Range::atLeast(1), "",
+            "greatest number of places that are tried");
+  b.integer("max_refined", o.maxRefined, Range::atLeast(1), "",
+            "greatest number of places that are refined");
+  b.integer("max_hypotheses", o.maxHypotheses, Range::atLeast(2), "",
+            "greatest number of places in an answer");
+
+  b.require(o.maxBaseline > o.minBaseline, "max_baseline_m", o.maxBaseline,
+            "more than min_baseline_m");
 }
 
-}  // namespace
-
 void GlobalOptions::validate() const {
-  requireGlobal(minHits >= 1, "min_hits", minHits, "1 or more");
-  requireGlobal(mapped > 0 && mapped < 1, "mapped", mapped, "a share between 0 and 1");
-  requireGlobal(sigma >= 0 && sigma <= 1, "sigma_m", sigma, "0 to 1");
-  requireGlobal(maxTolerance > 0 && maxTolerance <= 5, "max_tolerance_m", maxTolerance,
-                "more than 0, at most 5");
-  requireGlobal(minBaseline >= 1, "min_baseline_m", minBaseline, "1 or more");
-  requireGlobal(maxBaseline > minBaseline && maxBaseline <= 200, "max_baseline_m", maxBaseline,
-                "more than min_baseline_m, at most 200");
-  requireGlobal(corridor >= 0 && corridor <= 200, "corridor_m", corridor, "0 to 200");
-  requireGlobal(seen >= 0 && seen < 1, "seen", seen, "a share from 0 to below 1");
-  requireGlobal(minMatched >= 3, "min_matched", minMatched, "3 or more");
-  requireGlobal(minShare >= 0 && minShare <= 1, "min_share", minShare, "0 to 1");
-  requireGlobal(margin > 0 && std::isfinite(margin), "margin", margin, "more than 0");
-  requireGlobal(distinct > 0 && std::isfinite(distinct), "distinct_m", distinct, "more than 0");
-  requireGlobal(distinctYaw > 0 && distinctYaw <= M_PI, "distinct_yaw_deg",
-                distinctYaw * 180 / M_PI, "more than 0, at most 180");
-  requireGlobal(maxPairs >= 1, "max_pairs", maxPairs, "1 or more");
-  requireGlobal(maxCandidates >= 1, "max_candidates", maxCandidates, "1 or more");
-  requireGlobal(maxRefined >= 1, "max_refined", maxRefined, "1 or more");
-  requireGlobal(maxHypotheses >= 2, "max_hypotheses", maxHypotheses, "2 or more");
+  checkOptions(*this);
 }
 
 }  // namespace polemcl

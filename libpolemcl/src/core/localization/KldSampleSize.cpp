@@ -5,23 +5,30 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/common/Binder.h"
+
 namespace polemcl {
 
-namespace {
-
-void requireKld(bool condition, const char* what) {
-  if (!condition) throw Error(what);
+void bind(Binder& b, KldOptions& o) {
+  const Range particles = Range::between(1, 1000000);
+  b.section("filter", "The particle filter that localizes", Tier::expert);
+  b.number("kld_epsilon", o.epsilon, Range::aboveUpTo(0, 1), "nat",
+           "adaptive: greatest Kullback-Leibler distance to the posterior in bins");
+  b.number("kld_delta", o.delta, Range::aboveUpTo(0, 0.5), "",
+           "adaptive: probability of a greater distance");
+  b.number("kld_bin_m", o.bin, Range::between(0.001, 100), "m",
+           "adaptive: size of a bin in x and y");
+  b.angleDeg("kld_bin_deg", o.binYaw, Range::between(0.001, 180),
+             "adaptive: size of a bin in heading");
+  b.integer("min_particles", o.minParticles, particles, "", "adaptive: least number of particles");
+  b.integer("max_particles", o.maxParticles, particles, "",
+            "adaptive: greatest number of particles");
+  b.require(o.minParticles <= o.maxParticles, "min_particles", o.minParticles,
+            "max_particles or less");
 }
 
-}  // namespace
-
 void KldOptions::validate() const {
-  requireKld(epsilon > 0 && epsilon <= 1, "kld_epsilon must be above 0 and at most 1");
-  requireKld(delta > 0 && delta <= 0.5, "kld_delta must be above 0 and at most 0.5");
-  requireKld(bin >= 1e-3 && bin <= 100, "kld_bin_m must be 0.001 to 100 m");
-  requireKld(binYaw >= 1e-5 && binYaw <= M_PI, "kld_bin_deg must be 0.001 to 180 degrees");
-  requireKld(minParticles >= 1 && maxParticles <= 1000000 && minParticles <= maxParticles,
-             "min_particles and max_particles must be 1 to 1000000, the least not above the most");
+  checkOptions(*this);
 }
 
 std::size_t occupiedBins(const std::vector<Pose2D>& particles,

@@ -10,16 +10,20 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief Settings of KLD sampling, part of `[filter]`.
 struct KldOptions {
   double epsilon = 0.05;  ///< greatest Kullback-Leibler distance to the posterior in bins, nat
-  double delta = 0.01;    ///< probability of exceeding it, in (0, 0.5]
+  double delta = 0.01;    ///< probability of a greater distance, in (0, 0.5]
   double bin = 0.1;       ///< size of a bin in x and y, m
   double binYaw = 0.017453292519943296;  ///< in heading, rad (`kld_bin_deg`, 1°)
   int minParticles = 200;
   int maxParticles = 10000;
   void validate() const;  ///< \throws Error
 };
+
+void bind(Binder& binder, KldOptions& options);  ///< `[filter]`
 
 /// \brief Bins that hold at least one of the chosen particles. Poses must be finite.
 std::size_t occupiedBins(const std::vector<Pose2D>& particles,

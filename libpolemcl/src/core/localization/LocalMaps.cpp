@@ -1,22 +1,25 @@
 #include "core/localization/LocalMaps.h"
 
 #include <cmath>
-#include <sstream>
 
+#include "core/common/Binder.h"
 #include "core/mapping/BoxMerging.h"
 #include "core/mapping/IncrementalMerge.h"
 
 namespace polemcl {
 
+void bind(Binder& b, LocalMapOptions& o) {
+  b.section("tracking", "Which detections the filter is given", Tier::expert);
+  b.number("section_length_m", o.sectionLength, Range::above(0), "m",
+           "cadence = section: length of a section");
+  b.integer("local_maps", o.maps, Range::atLeast(1), "",
+            "cadence = section: number of newest sections that confirm poles");
+  b.integer("local_hits", o.minHits, Range::atLeast(1), "",
+            "cadence = section: least number of overlapping poles in them, itself included");
+}
+
 void LocalMapOptions::validate() const {
-  std::ostringstream text;
-  if (!(std::isfinite(sectionLength) && sectionLength > 0))
-    text << "section_length_m = " << sectionLength << ": allowed is more than 0";
-  else if (maps < 1)
-    text << "local_maps = " << maps << ": allowed is 1 or more";
-  else if (minHits < 1)
-    text << "local_hits = " << minHits << ": allowed is 1 or more";
-  if (!text.str().empty()) throw Error("[tracking] " + text.str());
+  checkOptions(*this);
 }
 
 LocalMaps::LocalMaps(const LocalMapOptions& options)

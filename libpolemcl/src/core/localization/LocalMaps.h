@@ -11,15 +11,19 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief What LocalMaps gives out.
 struct LocalMapOptions {
   double sectionLength = 1.5;  ///< of odometry, m (first implementation: 0.25 NCLT, else 1.5)
   int maps = 1;  ///< newest sections whose poles are compared (NCLT 6, MulRan 3, KITTI 1)
-  /// A pole is given out if its box overlaps, in a connected component, with so many of these maps'
-  /// poles, itself included (NCLT and MulRan 2, KITTI 1).
+  /// Least number of these maps' poles whose boxes overlap with a pole's, in a connected component
+  /// and with itself (NCLT and MulRan 2, KITTI 1).
   int minHits = 1;
   void validate() const;  ///< \throws Error naming the key of `[tracking]`
 };
+
+void bind(Binder& binder, LocalMapOptions& options);  ///< `[tracking]`
 
 /// \brief The poles of the middle scan of each section (SectionMarks), given out once, when the
 /// section ends: carried on to then by odometry, and only those that the newest sections confirm.

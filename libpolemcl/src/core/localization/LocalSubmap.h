@@ -16,27 +16,31 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief `[submap]` in INI files.
 struct SubmapOptions {
-  double length = 60;  ///< poles not seen over so many driven metres are dropped, m
+  double length = 60;  ///< poles not seen over this distance travelled are dropped, m
   double gate = 3.5;   ///< greatest Mahalanobis distance of a detection from its pole
-  /// Error that all detections of a pole share and that does not average out, added to each
-  /// detection's standard deviation (and never below it in a pole's), m.
+  /// Standard deviation of the error that all detections of a pole share and that does not average
+  /// out, m. Added to each detection's; a pole's never falls below it.
   double floor = 0.01;
   double viewRange = 25;  ///< a pole nearer than this that is not detected is a missed chance, m
-  /// Drops a pole that was seen in less than this share of its chances, once it had ten, unless it
-  /// has `sureHits`. In [0, 1].
+  /// A pole with ten chances or more that was seen in a smaller share is dropped, unless it has
+  /// `sureHits`. In [0, 1].
   double minShare = 0.15;
-  int sureHits = 6;  ///< poles with so many hits are only dropped by distance
-  /// \name Odometry, where no covariance comes with it
+  int sureHits = 6;  ///< a pole with this number of hits is dropped by distance only
+  /// \name Odometry without a covariance
   /// @{
-  double positionWalk = 0.02;  ///< σ of position after a metre driven; grows with √distance, m/√m
-  double headingWalk = 0.0007;  ///< σ of heading likewise, rad/√m (`heading_walk_deg`)
+  double positionWalk = 0.02;   ///< σ of position after a metre; grows with √distance, m/√m
+  double headingWalk = 0.0007;  ///< σ of heading after a metre, rad/√m (`heading_walk_deg`)
   double turnWalk = 0.01;  ///< σ of heading after a radian turned; grows with √angle, rad/√rad
   /// @}
   double scale = 0.01;    ///< σ of the scale error that all steps of the odometry share
-  void validate() const;  ///< \throws Error naming the field
+  void validate() const;  ///< \throws Error
 };
+
+void bind(Binder& binder, SubmapOptions& options);  ///< `[submap]`
 
 /// \brief Covariance of (x, y, yaw) of a motion by the walks of the options, m², m·rad, rad².
 /// \param motion In the robot frame before it.

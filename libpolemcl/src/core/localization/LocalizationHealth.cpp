@@ -3,28 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace polemcl {
 namespace {
 
 constexpr double s_hopeless = 0.3;   // a new pose is not waited for below this part of its share
 constexpr double s_viewpoint = 0.1;  // scans nearer to each other are of one viewpoint, m
-
-void require(bool good, const char* key, double value, const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text << "[health] " << key << " = " << value << ": allowed is " << allowed;
-  throw Error(text.str());
-}
-
-bool isShare(double value) {
-  return value >= 0 && value <= 1;
-}
-
-bool isPositive(double value) {
-  return value > 0 && std::isfinite(value);
-}
 
 double worstSigma(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
@@ -72,34 +56,6 @@ const char* name(HealthReason reason) {
       break;
   }
   return "innovation";
-}
-
-void HealthOptions::validate() const {
-  require(isPositive(window), "window_m", window, "more than 0");
-  require(isPositive(lostWindow) && lostWindow >= window, "lost_window_m", lostWindow,
-          "window_m or more");
-  require(isPositive(minEvidence), "min_evidence", minEvidence, "more than 0");
-  require(isPositive(lostEvidence), "lost_evidence", lostEvidence, "more than 0");
-  require(isShare(lostShare), "lost_share", lostShare, "0 to 1");
-  require(isShare(degradedShare) && degradedShare >= lostShare, "degraded_share", degradedShare,
-          "lost_share to 1");
-  require(isPositive(lostSpread), "lost_spread_m", lostSpread, "more than 0");
-  require(isPositive(degradedSpread) && degradedSpread <= lostSpread, "degraded_spread_m",
-          degradedSpread, "more than 0, at most lost_spread_m");
-  require(isPositive(degradedHeading), "degraded_heading_deg", degradedHeading * 180 / M_PI,
-          "more than 0");
-  require(isPositive(innovation), "innovation", innovation, "more than 0");
-  require(isShare(modeShare), "mode_share", modeShare, "0 to 1");
-  require(isPositive(blindSeconds), "blind_s", blindSeconds, "more than 0");
-  require(isPositive(blindMetres), "blind_m", blindMetres, "more than 0");
-  require(isPositive(maxGap), "max_gap_s", maxGap, "more than 0");
-  require(isShare(confirmShare) && confirmShare >= degradedShare, "confirm_share", confirmShare,
-          "degraded_share to 1");
-  require(confirmWithin >= confirm && std::isfinite(confirmWithin), "confirm_within_m",
-          confirmWithin, "confirm_m or more");
-  require(confirm >= 0 && std::isfinite(confirm), "confirm_m", confirm, "0 or more");
-  require(confirmFound >= 0 && confirmFound <= confirm, "confirm_found_m", confirmFound,
-          "0 to confirm_m");
 }
 
 HealthMonitor::HealthMonitor(const HealthOptions& options) : m_options(options) {

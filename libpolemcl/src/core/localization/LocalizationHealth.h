@@ -11,6 +11,8 @@
 
 namespace polemcl {
 
+class Binder;
+
 enum class HealthState { ok, degraded, lost };
 
 /// \brief Why the state is not `ok`; the first that applies in this order.
@@ -34,36 +36,38 @@ const char* name(HealthReason reason);
 
 /// \brief `[health]` in INI files.
 struct HealthOptions {
-  /// Metres driven whose scans are judged together. Scans from one viewpoint count as one: a
+  /// Scans over this distance are judged together, m. Scans from one viewpoint count as one: a
   /// vehicle that stands beside something odd is not lost.
   double window = 8;
-  /// A window this long must agree before the pose is called lost: on a stretch where most poles
-  /// are gone or new, little else is seen for some metres.
+  /// Lost: scans over this longer distance agree, m. Where most poles are gone or new, few known
+  /// poles are seen for some metres.
   double lostWindow = 18;
-  double minEvidence = 8;  ///< sum of confidences in the window below which shares say nothing
-  /// Likewise in the long one: where the poles of the map are gone, the few new ones prove nothing.
+  double minEvidence = 8;  ///< least sum of confidences in the window that says anything
+  /// Lost: least sum of confidences in the longer window. Where the poles of the map are gone, the
+  /// few new ones prove nothing.
   double lostEvidence = 40;
-  /// Lost: a smaller share of the observed poles stands on the map. A pose that was right and is so
-  /// no longer is known so well that chance leaves next to nothing: 0.002 for 20 cm round each
-  /// pole.
+  /// Lost: a smaller share of the observed poles is on the map. A pose that has gone wrong was
+  /// known well before, so matches by chance are rare: 0.002 for 20 cm round each pole.
   double lostShare = 0.03;
-  double degradedShare = 0.4;  ///< degraded: a smaller share than this
-  double lostSpread = 5;       ///< lost: standard deviation of the position along its worst axis, m
-  double degradedSpread = 0.5;     ///< degraded, likewise, m
-  double degradedHeading = 0.052;  ///< degraded: standard deviation of the heading, rad
-  double innovation = 4;           ///< degraded: mean m² per degree of freedom of matched poles
-  double modeShare = 0.95;         ///< degraded: less of the particles' weight round the estimate
-  double blindSeconds = 2;         ///< degraded: no pole seen for longer, s
-  double blindMetres = 20;         ///< or farther, m
-  double maxGap = 2;               ///< degraded: a longer time between two scans, s
-  double confirm = 5;              ///< metres of good matches until a new pose is `ok`
-  double confirmFound = 2;  ///< likewise after a search, which the poles of its submap bear out
-  /// A new pose is borne out by this share; particles drawn over metres find chance matches. With
-  /// less than 0.3 of it the pose is lost as soon as there is `lostEvidence`.
+  double degradedShare = 0.4;      ///< degraded: a smaller share of them is on the map
+  double lostSpread = 5;           ///< lost: greater σ of the position along its worst axis, m
+  double degradedSpread = 0.5;     ///< degraded: greater σ of the position, m
+  double degradedHeading = 0.052;  ///< degraded: greater σ of the heading, rad
+  double innovation = 4;    ///< degraded: greater mean m² per degree of freedom of matched poles
+  double modeShare = 0.95;  ///< degraded: smaller share of the particles' weight at the estimate
+  double blindSeconds = 2;  ///< degraded: no pole for a longer time, s
+  double blindMetres = 20;  ///< degraded: no pole over a longer distance, m
+  double maxGap = 2;        ///< degraded: a longer time between two scans, s
+  double confirm = 5;       ///< distance with good matches until a new pose is `ok`, m
+  double confirmFound = 2;  ///< the same for a pose found by a search, which its submap confirms, m
+  /// Share of matched poles that confirms a new pose; particles drawn over metres find matches by
+  /// chance. With less than 0.3 of it the pose is lost as soon as there is `lostEvidence`.
   double confirmShare = 0.5;
-  double confirmWithin = 15;  ///< lost: a new pose not borne out after so many metres
-  void validate() const;      ///< \throws Error naming the field
+  double confirmWithin = 15;  ///< lost: a new pose is not confirmed within this distance, m
+  void validate() const;      ///< \throws Error
 };
+
+void bind(Binder& binder, HealthOptions& options);  ///< `[health]`
 
 /// \brief What one update brings.
 struct HealthInput {

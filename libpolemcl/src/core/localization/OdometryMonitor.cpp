@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace polemcl {
 namespace {
@@ -14,17 +13,6 @@ constexpr double s_leastSigma = 0.02;     // of a motion by poles, m
 constexpr double s_leastTurn = 0.002;     // rad
 constexpr double s_mostVariance = 1;      // m²; more, and the poles do not say what the motion was
 constexpr double s_mostDoubt = 5;         // m
-
-void requireMonitor(bool good, const char* key, double value, const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text << "[odometry_monitor] " << key << " = " << value << ": allowed is " << allowed;
-  throw Error(text.str());
-}
-
-bool isAboveZero(double value) {
-  return value > 0 && std::isfinite(value);
-}
 
 std::vector<PoleDetection> usable(const std::vector<PoleDetection>& poles) {
   std::vector<PoleDetection> result;
@@ -69,27 +57,6 @@ double outside(double value, double tolerance) {
 }
 
 }  // namespace
-
-void OdometryMonitorOptions::validate() const {
-  requireMonitor(isAboveZero(window), "window_s", window, "more than 0");
-  requireMonitor(scale >= 0 && scale < 1, "scale", scale, "0 or more, below 1");
-  requireMonitor(metres >= 0 && std::isfinite(metres), "tolerance_m", metres, "0 or more");
-  requireMonitor(turn >= 0 && turn <= M_PI, "tolerance_deg", turn * 180 / M_PI, "0 to 180");
-  requireMonitor(isAboveZero(sigmas), "sigmas", sigmas, "more than 0");
-  requireMonitor(minPairs >= 3, "min_pairs", minPairs, "3 or more");
-  requireMonitor(minShare >= 0 && minShare <= 1, "min_share", minShare, "0 to 1");
-  requireMonitor(margin >= 0 && std::isfinite(margin), "margin", margin, "0 or more");
-  requireMonitor(isAboveZero(settle) && settle <= window, "settle_s", settle,
-                 "more than 0, at most window_s");
-  requireMonitor(hold >= 0 && std::isfinite(hold), "hold_s", hold, "0 or more");
-  requireMonitor(isAboveZero(maxSpeed), "max_speed_m_s", maxSpeed, "more than 0");
-  requireMonitor(isAboveZero(maxTurnRate), "max_turn_rate_deg_s", maxTurnRate * 180 / M_PI,
-                 "more than 0");
-  requireMonitor(isAboveZero(alignment.sigma) && alignment.sigma <= 1, "sigma_m", alignment.sigma,
-                 "more than 0, at most 1");
-  requireMonitor(isAboveZero(alignment.gate), "gate", alignment.gate, "more than 0");
-  requireMonitor(isAboveZero(alignment.reach), "reach_m", alignment.reach, "more than 0");
-}
 
 OdometryMonitor::OdometryMonitor(const OdometryMonitorOptions& options) : m_options(options) {
   options.validate();

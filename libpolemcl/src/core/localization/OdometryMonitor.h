@@ -18,24 +18,28 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief `[odometry_monitor]` in INI files.
 struct OdometryMonitorOptions {
   bool enabled = true;
-  double window = 1;      ///< longest time over which scans are compared, s
-  double scale = 0.05;    ///< error of the odometry's scale that is tolerated, share of the way
-  double metres = 0.1;    ///< error of any motion that is tolerated beside it, m
-  double turn = 0.02;     ///< error of any turn that is tolerated, rad (`turn_deg`)
-  double sigmas = 5;      ///< beyond the tolerance, so many standard deviations contradict
-  int minPairs = 3;       ///< fewer poles seen by both scans never contradict
-  double minShare = 0.4;  ///< least share of the poles of the scan with fewer that must be paired
-  double margin = 1.5;    ///< so much better must the poles' motion fit, in pairs
-  double settle = 0.5;    ///< after so long an agreement the odometry is believed again, s
-  double hold = 5;        ///< without enough poles the last speed is kept for so long, s
-  double maxSpeed = 40;   ///< no vehicle is faster, m/s
-  double maxTurnRate = 1.5;       ///< or turns faster, rad/s (`max_turn_rate_deg_s`)
+  double window = 1;         ///< longest time over which scans are compared, s
+  double scale = 0.05;       ///< tolerated error of the odometry, as a share of the distance
+  double metres = 0.1;       ///< tolerated error of any motion, m (`tolerance_m`)
+  double turn = 0.02;        ///< tolerated error of any turn, rad (`tolerance_deg`)
+  double sigmas = 5;         ///< least difference beyond that contradicts, in standard deviations
+  int minPairs = 3;          ///< least number of poles in common that contradict
+  double minShare = 0.4;     ///< least share of the poles of the scan with fewer that are paired
+  double margin = 1.5;       ///< least lead of the poles' motion over the odometry's, in pairs
+  double settle = 0.5;       ///< time of agreement after which the odometry is believed again, s
+  double hold = 5;           ///< time for which the last speed is kept without enough poles, s
+  double maxSpeed = 40;      ///< greatest speed of the vehicle, m/s
+  double maxTurnRate = 1.5;  ///< greatest turn rate, rad/s (`max_turn_rate_deg_s`)
   RegistrationOptions alignment;  ///< sigma, gate, reach (`sigma_m`, `gate`, `reach_m`)
-  void validate() const;          ///< \throws Error naming the field
+  void validate() const;          ///< \throws Error
 };
+
+void bind(Binder& binder, OdometryMonitorOptions& options);  ///< `[odometry_monitor]`
 
 enum class OdometryVerdict {
   agrees,        ///< the poles bear the odometry out

@@ -2,20 +2,12 @@
 
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include "core/common/PrincipalAxes.h"
 #include "core/localization/LikelihoodKernels.h"
 
 namespace polemcl {
 namespace {
-
-template <class Value>
-[[noreturn]] void refuseLikelihood(const char* field, Value value, const char* allowed) {
-  std::ostringstream text;
-  text << "[likelihood] " << field << " = " << value << " is not allowed; it must be " << allowed;
-  throw Error(text.str());
-}
 
 [[noreturn]] void refuseDetection(std::size_t index, const std::string& what) {
   throw Error("pole detection " + std::to_string(index) + " " + what +
@@ -50,21 +42,6 @@ std::vector<LikelihoodTerm> prepare(const std::vector<PoleDetection>& poles,
 }
 
 }  // namespace
-
-void LikelihoodOptions::validate() const {
-  if (!(std::isfinite(sigma) && sigma > 0)) refuseLikelihood("sigma", sigma, "above 0 m");
-  if (!(outlier >= 1e-9 && outlier < 1))
-    refuseLikelihood("outlier", outlier, "a share in [1e-9, 1)");
-  if (!(std::isfinite(gate) && gate > 0)) refuseLikelihood("gate", gate, "above 0 m");
-  // Against the peak of the density, so that products of many factors do not underflow.
-  const double peak = 1 / (sigma * std::sqrt(2 * M_PI));
-  if (!(std::isfinite(floor) && floor > 0)) refuseLikelihood("floor", floor, "above 0");
-  if (model == LikelihoodModel::floored && floor < 1e-9 * (peak + floor))
-    refuseLikelihood("floor", floor, "at least 1e-9 of the density's peak");
-  if (model == LikelihoodModel::floored && weighted)
-    refuseLikelihood("weighted", "true",
-                     "false with model = floored, which takes all detections alike");
-}
 
 double logLikelihood(const std::vector<PoleDetection>& poles_robot, const Pose2D& pose_map_robot,
                      const PoleIndex& index, const LikelihoodOptions& options) {

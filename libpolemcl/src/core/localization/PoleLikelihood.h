@@ -9,6 +9,8 @@
 
 namespace polemcl {
 
+class Binder;
+
 enum class LikelihoodModel {
   paper,  ///< Eq. 3: product of exp(-d²/(2σ²)), d clipped at `gate` (a pole without a match costs
           ///< the gate)
@@ -26,15 +28,16 @@ enum class LikelihoodModel {
 ///    part of S without Σ_m: cost = gate²/(2σ² + tr Σ_i).
 struct LikelihoodOptions {
   LikelihoodModel model = LikelihoodModel::mixture;
-  double sigma = 0.15;  ///< σ_d: standard deviation of a detection against its map pole, m
-  double outlier =
-      0.05;  ///< w: share of detections that belong to no map pole, in [1e-9, 1); mixture only
+  double sigma = 0.05;    ///< σ_d: standard deviation of a detection from its map pole, m
+  double outlier = 0.05;  ///< w: share of detections not on the map, in [1e-9, 1); mixture only
   double floor = 0.2;     ///< added to the density, 1/m, > 0; floored only
   double gate = 1.0;      ///< d_max: beyond it a pole has no match, m
-  bool weighted = false;  ///< true: each detection counts by its covariance and confidence; not
+  bool weighted = true;   ///< true: each detection counts by its covariance and confidence; not
                           ///< with `floored`
   void validate() const;  ///< \throws Error
 };
+
+void bind(Binder& binder, LikelihoodOptions& options);  ///< `[likelihood]`
 
 /// \brief log p(z | pose) up to a constant; finite; 0 for no detections.
 ///

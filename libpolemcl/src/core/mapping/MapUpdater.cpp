@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 #include "core/common/KdTree2D.h"
@@ -17,13 +16,6 @@ namespace {
 constexpr double kFarEllipse = 13.8;        ///< 99.9 % of squared distances, 2 degrees of freedom
 constexpr std::uint32_t kWeightedTo = 200;  ///< sightings: a long past does not outweigh today
 constexpr double kWithoutHistory = 0.9;     ///< existence of a pole of an old map
-
-template <class Value>
-[[noreturn]] void refuseOption(const char* field, Value value, const char* allowed) {
-  std::ostringstream text;
-  text << "[map_update] " << field << " = " << value << " is not allowed; it must be " << allowed;
-  throw Error(text.str());
-}
 
 Eigen::Vector2d centreOf(const MapPole& pole) {
   return {pole.x, pole.y};
@@ -246,21 +238,6 @@ LandmarkMap Update::run() {
 }
 
 }  // namespace
-
-void MapUpdateOptions::validate() const {
-  existence.validate();
-  if (!(std::isfinite(range) && range > 0)) refuseOption("range_m", range, "above 0 m");
-  if (minSeen < 1) refuseOption("min_seen", minSeen, "at least 1");
-  if (!(present > 0 && present <= existence.certain))
-    refuseOption("present", present, "above 0 and not above certain");
-  if (!(absent > 0 && absent <= present))
-    refuseOption("absent", absent, "above 0, at most present");
-  if (!(forget >= 0 && forget < absent)) refuseOption("forget", forget, "at least 0, below absent");
-  if (!(std::isfinite(sessionSigma) && sessionSigma >= 0))
-    refuseOption("session_sigma_m", sessionSigma, "at least 0 m");
-  if (!(std::isfinite(moved) && moved > 0)) refuseOption("moved_m", moved, "above 0 m");
-  if (!(std::isfinite(ghost) && ghost >= 0)) refuseOption("ghost_m", ghost, "at least 0 m");
-}
 
 LandmarkMap landmarksFrom(const std::vector<MapPole>& poles) {
   LandmarkMap map;

@@ -15,24 +15,29 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief `[map_update]` in INI files. Gates and pose errors are those of `[map]`.
 struct MapUpdateOptions {
   ExistenceOptions existence;
-  double range = 20;     ///< poles nearer than this are expected to be found, m (`range_m`)
-  int minSeen = 5;       ///< scans that must have found a pole before it enters the map
+  double range = 20;     ///< a scan is expected to find poles in view up to here, m (`range_m`)
+  int minSeen = 5;       ///< least number of scans that found a pole on the map
   double present = 0.9;  ///< a pole enters the map from this probability on
-  double absent = 0.4;   ///< and leaves it below this one; it is remembered
-  double forget = 0.05;  ///< below this it is forgotten
-  /// Standard deviation of a session's places against those of others, m (`session_sigma_m`).
+  double absent = 0.4;   ///< a pole leaves the map below this probability; it is remembered
+  double forget = 0.05;  ///< a pole is forgotten below this probability
+  /// Standard deviation of one session's positions against those of others, m
+  /// (`session_sigma_m`).
   double sessionSigma = 0.02;
-  /// A pole that all of a session's scans put farther than this from its place, beyond its 99.9 %
-  /// ellipse, has been moved, m (`moved_m`): its place is the new one, nothing is averaged.
+  /// A pole that a session puts farther than this from its place, beyond its 99.9 % ellipse, has
+  /// been moved, m (`moved_m`). Its place is the new one; nothing is averaged.
   double moved = 0.25;
-  /// A pole that was missed all session, while a new one came up nearer than this, has been moved
-  /// there, m (`ghost_m`): it leaves no ghost.
+  /// A missed pole that is nearer than this to a new one has been moved there, m (`ghost_m`). It
+  /// leaves no ghost.
   double ghost = 1.5;
   void validate() const;  ///< \throws Error
 };
+
+void bind(Binder& binder, MapUpdateOptions& options);  ///< `[map_update]`
 
 /// \brief A pole of a kept map.
 struct LandmarkRecord {

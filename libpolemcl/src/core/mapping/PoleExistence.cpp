@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace polemcl {
 namespace {
@@ -10,29 +9,11 @@ namespace {
 constexpr double kPriorScans = 20;  ///< that the prior of the detection chance counts for
 constexpr double kDay = 86400;      ///< s
 
-[[noreturn]] void refuseExistence(const char* field, double value, const char* allowed) {
-  std::ostringstream text;
-  text << "[map_update] " << field << " = " << value << " is not allowed; it must be " << allowed;
-  throw Error(text.str());
-}
-
 double logOdds(double probability) {
   return std::log(probability / (1 - probability));
 }
 
 }  // namespace
-
-void ExistenceOptions::validate() const {
-  const auto inside = [](double value) { return value > 0 && value < 1; };
-  if (!inside(detection)) refuseExistence("detection", detection, "a chance in (0, 1)");
-  if (!(falseDetection > 0 && 2 * falseDetection < detection))
-    refuseExistence("false_detection", falseDetection, "above 0 and below half of detection");
-  if (!(std::isfinite(look) && look > 0)) refuseExistence("look_m", look, "above 0 m");
-  if (!inside(prior)) refuseExistence("prior", prior, "a chance in (0, 1)");
-  if (!(certain > 0.5 && certain < 1)) refuseExistence("certain", certain, "in (0.5, 1)");
-  if (!(std::isfinite(lifetimeDays) && lifetimeDays > 0))
-    refuseExistence("lifetime_days", lifetimeDays, "above 0 days");
-}
 
 bool isDate(double seconds) {
   constexpr double day = 86400;  // s
@@ -57,7 +38,7 @@ double survived(double existence, double seconds, const ExistenceOptions& option
 
 void ExistenceEvidence::add(bool found, double along, const ExistenceOptions& options,
                             double chance) {
-  const auto look = static_cast<std::int64_t>(along / options.look);
+  const auto look = static_cast<std::int64_t>(along / options.decorrelation);
   if (look != m_look) {
     m_done = logRatio();
     m_sum = 0;

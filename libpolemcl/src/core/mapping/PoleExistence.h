@@ -15,22 +15,24 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief The part of `[map_update]` in INI files that tells what scans say.
 struct ExistenceOptions {
-  /// Chance that a pole that could be seen is found in a scan (`detection`). What a pole's own
-  /// counts say beyond that is used where it is less.
+  /// Probability that a scan finds a pole in view (`detection`). The pole's own counts are used
+  /// where they say less.
   double detection = 0.75;
-  /// Chance that something is found where no pole is, in one scan (`false_detection`). A place
-  /// stays a pole's if it is found in more than about 0.37 of the scans that could see it, by these
-  /// two.
+  /// Probability that a scan finds something where no pole is (`false_detection`). With these two,
+  /// a place found in more than about 0.37 of the scans that could see it stays a pole.
   double falseDetection = 0.08;
-  double look = 5;  ///< scans over so many metres of the way count as one, m (`look_m`)
-  /// That what is new at its first sight is a pole (`prior`).
-  double prior = 0.2;
-  double certain = 0.99;       ///< never surer than this, nor surer of the opposite (`certain`)
+  double decorrelation = 5;  ///< scans within this distance count as one, m (`decorrelation_m`)
+  double prior = 0.2;        ///< prior probability that a newly observed object is a pole (`prior`)
+  double certain = 0.99;  ///< greatest probability of existence; the least is 1 - this (`certain`)
   double lifetimeDays = 3650;  ///< mean time that a pole stands, days (`lifetime_days`)
   void validate() const;       ///< \throws Error
 };
+
+void bind(Binder& binder, ExistenceOptions& options);  ///< `[map_update]`
 
 /// \brief What is known of a pole over the sessions.
 struct PoleHistory {

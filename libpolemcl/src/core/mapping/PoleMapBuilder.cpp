@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "core/common/PathSections.h"
 #include "core/mapping/BoxMerging.h"
@@ -12,13 +11,6 @@
 
 namespace polemcl {
 namespace {
-
-template <class Value>
-[[noreturn]] void refuse(const char* field, Value value, const char* allowed) {
-  std::ostringstream text;
-  text << "[map] " << field << " = " << value << " is not allowed; it must be " << allowed;
-  throw Error(text.str());
-}
 
 /// A scan that is used, and the occupied section it counts for.
 struct View {
@@ -85,27 +77,6 @@ bool seenFromEnough(const MapPole& pole, const std::vector<std::uint32_t>& seen,
 }
 
 }  // namespace
-
-void PoleMapOptions::validate() const {
-  if (!(std::isfinite(sectionLength) && sectionLength > 0))
-    refuse("section_length", sectionLength, "above 0 m");
-  if (everyScan && middle == SectionMiddle::passed)
-    refuse("middle", "passed", "nearest where every_scan = true: all scans are views then");
-  if (!(std::isfinite(mergeDistance) && mergeDistance > 0))
-    refuse("merge_distance", mergeDistance, "above 0 m");
-  if (!(apartShare > 0 && apartShare <= 1)) refuse("apart_share", apartShare, "a share in (0, 1]");
-  if (minCount < 1) refuse("min_count", minCount, "at least 1");
-  if (maxGap < 0) refuse("max_gap", maxGap, "at least 0");
-  if (!(minConfidence >= 0 && minConfidence <= 1))
-    refuse("min_confidence", minConfidence, "in [0, 1]");
-  if (!(minShare >= 0 && minShare <= 1)) refuse("min_share", minShare, "in [0, 1]");
-  if (!(std::isfinite(nearRange) && nearRange > 0)) refuse("near_range", nearRange, "above 0 m");
-  if (!(std::isfinite(poseSigma) && poseSigma >= 0))
-    refuse("pose_sigma", poseSigma, "at least 0 m");
-  if (!(headingSigma >= 0 && headingSigma < M_PI))
-    refuse("heading_sigma", headingSigma, "in [0, pi) rad");
-  if (!(std::isfinite(unvisited) && unvisited >= 0)) refuse("unvisited", unvisited, "at least 0 m");
-}
 
 PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapOptions& options) {
   options.validate();

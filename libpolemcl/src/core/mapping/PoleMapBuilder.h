@@ -13,6 +13,8 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief Which scan is the view of a section.
 enum class SectionMiddle {
   nearest,  ///< the one nearest to the middle of the section
@@ -35,23 +37,23 @@ enum class PoleCounting {
 struct PoleMapOptions {
   /// Length of a section of the path, m (paper: 0.25 NCLT, 1.5 KITTI and MulRan).
   double sectionLength = 1.5;
-  /// false: the scan nearest to the middle of a section is its one view (paper); true: every scan
-  /// is a view.
-  bool everyScan = false;
+  /// true: every scan is a view; false: the scan nearest to the middle of a section is its one view
+  /// (paper).
+  bool everyScan = true;
   SectionMiddle middle = SectionMiddle::nearest;
   MapMerging merging = MapMerging::gated;
   PoleCounting counting = PoleCounting::run;
   double mergeDistance = 0.5;  ///< detections of one pole lie within this of its mean, m
   /// Poles nearer to each other than mergeDistance stay apart when at least this share of the views
-  /// of the one seen more often shows both; otherwise they are one. In (0, 1].
-  double apartShare = 0.25;
-  int minCount = 3;  ///< keep poles with at least this `counting`
-  int maxGap = 2;    ///< most *occupied* sections in a row that may miss it inside such a run
+  /// of the one seen more often shows both; otherwise they are one.
+  static constexpr double apartShare = 0.25;
+  int minCount = 5;          ///< least `counting` of a pole
+  int maxGap = 2;            ///< most *occupied* sections in a row that may miss it inside a run
   double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
-  /// A pole must be seen from at least this share of the occupied sections whose middles pass it
-  /// nearer than `nearRange`, in [0, 1]; a pole that none passes needs `minCount` alone. Clutter is
-  /// taken for a pole from here and there, a pole is seen from nearly everywhere.
-  double minShare = 0;
+  /// Least share of the occupied sections with middles within `nearRange` that saw the pole, in
+  /// [0, 1]. Clutter looks like a pole from few places, a pole from nearly all. A pole without such
+  /// sections needs `minCount` alone.
+  double minShare = 0.4;
   double nearRange = 15;  ///< m
   /// Standard deviation of the scans' positions, m: added to each detection, so that the nearest
   /// one does not count alone.
@@ -59,11 +61,13 @@ struct PoleMapOptions {
   /// Standard deviation of the scans' headings, rad (`heading_sigma_deg`): far detections count
   /// less across the line of sight.
   double headingSigma = 0.002;
-  /// Of the second and later sessions, only scans at least so far from every place that earlier
-  /// ones visited are used, m (`unvisited_m`, paper: 10); 0: all. See MapAccumulator.
+  /// Later sessions use only scans at least this far from every place that earlier sessions
+  /// visited, m (`unvisited_m`, paper: 10); 0: all scans. See MapAccumulator.
   double unvisited = 0;
   void validate() const;  ///< \throws Error
 };
+
+void bind(Binder& binder, PoleMapOptions& options);  ///< `[map]`
 
 /// \brief One scan's poles at a known pose.
 struct MappingScan {

@@ -61,12 +61,6 @@ const std::vector<Preset>& presets() {
   return all;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string> SensorModel::modelNames() {
@@ -95,7 +89,7 @@ SensorModel::SensorModel(const SensorOptions& options) {
     offset = options.upperApex;
     lowerOffset = options.lowerApex;
   } else {
-    for (double e : fan(options.rows, options.fovUp, options.fovDown)) upper.push_back(e);
+    for (double e : fan(options.rings, options.fovUp, options.fovDown)) upper.push_back(e);
   }
   if (options.upsideDown) {
     for (double& e : upper) e = -e;
@@ -192,58 +186,6 @@ void SensorModel::buildBlock(int block, int firstRow, int lastRow) {
       --row;
     m_lookup.row.push_back(row);
   }
-}
-
-namespace {
-
-void validateTable(const SensorOptions& options, double steepest) {
-  for (const auto* list : {&options.elevations, &options.lowerElevations})
-    for (const double elevation : *list)
-      if (!(std::abs(elevation) <= steepest))
-        throw Error("[sensor] elevations_deg: " + std::to_string(elevation / degree) +
-                    ": allowed are -89 to 89 degrees");
-  for (const double apex : {options.upperApex, options.lowerApex})
-    if (!std::isfinite(apex)) throw Error("[sensor] apex_m: allowed are finite numbers");
-  if (options.lowerElevations.empty()) return;
-  if (options.lowerElevations.size() < 2)
-    throw Error("[sensor] lower_elevations_deg: a lower block needs at least 2 beams, or none");
-  const double least = *std::min_element(options.elevations.begin(), options.elevations.end());
-  for (const double elevation : options.lowerElevations)
-    if (elevation >= least)
-      throw Error("[sensor] lower_elevations_deg: " + std::to_string(elevation / degree) +
-                  ": allowed are angles below all of elevations_deg");
-}
-
-}  // namespace
-
-void SensorOptions::validate() const {
-  const auto names = SensorModel::modelNames();
-  if (std::find(names.begin(), names.end(), model) == names.end())
-    throw Error("[sensor] model = " + model + ": unknown; allowed are " + joined(names));
-  if (model == "table" && elevations.size() < 2)
-    throw Error("[sensor] elevations_deg: model = table needs the elevations of at least 2 beams");
-  // Rows are looked up by the tangent of their elevation.
-  constexpr double kSteepest = 89 * degree;
-  if (model == "table") validateTable(*this, kSteepest);
-  if (model == "uniform" && (rows < 2 || rows > 1024))
-    throw Error("[sensor] rows = " + std::to_string(rows) +
-                ": model = uniform needs 2 to 1024 beams");
-  if (model == "uniform" && !(fovUp > fovDown))
-    throw Error(
-        "[sensor] fov_up_deg must be greater than fov_down_deg (negative below the horizon)");
-  if (model == "uniform" && !(fovUp <= kSteepest && fovDown >= -kSteepest))
-    throw Error("[sensor] fov_up_deg, fov_down_deg: allowed are -89 to 89 degrees");
-  if ((model == "table" || model == "uniform") && columns < 90)
-    throw Error("[sensor] columns = " + std::to_string(columns) + ": model = " + model +
-                " needs the firing steps of a turn, at least 90");
-  if (columns != 0 && columns < 90)
-    throw Error("[sensor] columns = " + std::to_string(columns) +
-                ": allowed are 0, for those of the model, or at least 90");
-  for (const double length : {height, originX, originY, originZ})
-    if (!std::isfinite(length))
-      throw Error("[sensor] height_m, origin: allowed are finite numbers");
-  if (!(maxRange > minRange && minRange >= 0))
-    throw Error("[sensor] max_range_m must be greater than min_range_m, and that not negative");
 }
 
 }  // namespace polemcl

@@ -7,12 +7,14 @@
 
 namespace polemcl {
 
+class Binder;
+
 /// \brief The LiDAR's geometry and mounting. `[sensor]` in INI files.
 struct SensorOptions {
-  /// `hdl64e`, `hdl32e`, `vlp16`, `os1_64`, `os1_128`, `os0_64`: beams of the data sheet;
-  /// `table`: `elevations_deg`; `uniform`: `rows` beams from `fov_up_deg` to `fov_down_deg`.
+  /// Names as in SensorModel::modelNames(): rings of a data sheet; `table`: `elevations_deg`;
+  /// `uniform`: `rings` rings from `fov_up_deg` to `fov_down_deg`.
   std::string model = "hdl64e";
-  /// Upside down mounting: the beams are listed as seen upright, z up (elevations change sign).
+  /// Upside down mounting: the rings are listed as seen upright, z up (elevations change sign).
   bool upsideDown = false;
   std::vector<double> elevations;  ///< rad, any order, only for `table` (`elevations_deg`)
   /// Lower block of a two-block sensor (HDL-64E), all below those of `elevations`, rad, only for
@@ -21,19 +23,21 @@ struct SensorOptions {
   /// Where the beams of `elevations` and of `lowerElevations` start, above the origin, m, only for
   /// `table` (`apex_m = upper lower`).
   double upperApex = 0, lowerApex = 0;
-  int rows = 64;             ///< beams, only for `uniform`
+  int rings = 64;            ///< number, only for `uniform`
   double fovUp = 0.0349;     ///< rad, only for `uniform` (`fov_up_deg`)
   double fovDown = -0.4334;  ///< rad, only for `uniform` (`fov_down_deg`)
-  int columns = 0;           ///< firing steps a turn; 0: the model's
+  int columns = 0;           ///< firing steps of a turn; 0: those of the model
   double height = 1.73;      ///< optical centre above ground, m (`height_m`)
   /// Optical centre in the *robot frame after the sensor pose*, when clouds come in another frame
   /// than the LiDAR's own (NCLT: body frame, 0.957 m above its origin): `origin = x y z`, m.
   double originX = 0, originY = 0, originZ = 0;
   double minRange = 1.0;   ///< m, nearer returns are the vehicle
   double maxRange = 60.0;  ///< m
-  /// Compare the first scans with the beams above, and refuse those that contradict them.
+  /// Compare the first scans with the rings above, and refuse scans that contradict them.
   bool checkBeams = true;
   void validate() const;  ///< \throws Error
 };
+
+void bind(Binder& binder, SensorOptions& options);  ///< `[sensor]`
 
 }  // namespace polemcl

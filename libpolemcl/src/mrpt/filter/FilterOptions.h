@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "config/Config.h"
+#include "core/common/Binder.h"
 #include "core/common/Types.h"
 #include "core/localization/KldSampleSize.h"
 
@@ -25,8 +25,8 @@ enum class EstimateTime {
 /// false, and regularization, tempering and the extra sigmas 0.
 struct FilterOptions {
   int particles = 1000;  ///< (paper: 1000 NCLT; first implementation: 500 to 2000)
-  /// Each resampling keeps as many particles as the posterior needs, by the bins it covers: many
-  /// while it is spread, few once it has converged. `particles` is then only the yardstick of
+  /// true: resampling keeps the number of particles that the posterior needs, by the bins it
+  /// covers: many while it is spread, few once it has converged. `particles` then only serves
   /// `tempering`.
   bool adaptive = false;
   KldOptions kld;              ///< of `adaptive`
@@ -71,14 +71,14 @@ struct StartOptions {
   static constexpr double maxRadius = 10000;  ///< m; farther off the search (`anywhere`) is better
   double radius = 2.5;                        ///< of the disc of positions, m (paper)
   StartPositions positions = StartPositions::area;
-  double heading = 0.087266462599716;  ///< headings uniform in ± this, rad (paper: 5°)
-  /// Drawn at the start, where few would be near the truth; the first resampling keeps
-  /// FilterOptions::particles of them. Smaller numbers mean that one.
+  double heading = 0.08726646259971647;  ///< headings uniform in ± this, rad (paper: 5°)
+  /// Number until the first resampling, which keeps FilterOptions::particles of them. The start
+  /// needs more, since few of them are near the truth. Smaller numbers mean that one.
   int particles = 10000;
   void validate() const;  ///< \throws Error
 };
 
-/// \brief How often the same drive is localized. `[runs]` in INI files.
+/// \brief Repeated localizations of the same drive. `[runs]` in INI files.
 struct RunOptions {
   int runs = 1;            ///< (paper: 10)
   std::uint32_t seed = 1;  ///< of the first run; run i uses seed + i

@@ -10,13 +10,6 @@
 namespace polemcl {
 namespace {
 
-void requireSearch(bool good, const char* key, double value, const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text << "[search] " << key << " = " << value << ": allowed is " << allowed;
-  throw Error(text.str());
-}
-
 const LocalizationOptions& checked(const LocalizationOptions& options) {
   options.validate();
   return options;
@@ -34,34 +27,6 @@ bool isWide(const Eigen::Matrix3d& covariance) {
 }
 
 }  // namespace
-
-void TrackingOptions::validate() const {
-  if (minHits < 1)
-    throw Error("[tracking] min_hits = " + std::to_string(minHits) + ": allowed is 1 or more");
-  if (!(every >= 0 && std::isfinite(every)))
-    throw Error("[tracking] every_m = " + std::to_string(every) + ": allowed is 0 or more");
-  if (average && cadence == Cadence::section)
-    throw Error("[tracking] cadence = section: allowed is scan where average = true");
-  localMaps.validate();
-}
-
-void SearchOptions::validate() const {
-  requireSearch(every > 0 && std::isfinite(every), "every_m", every, "more than 0");
-  requireSearch(everySeconds > 0 && std::isfinite(everySeconds), "every_s", everySeconds,
-                "more than 0");
-  requireSearch(patience >= 0 && std::isfinite(patience), "patience_m", patience, "0 or more");
-  requireSearch(particles >= 1 && particles <= 1000000, "particles", particles, "1 to 1000000");
-}
-
-void LocalizationOptions::validate() const {
-  filter.validate();
-  tracking.validate();
-  submap.validate();
-  global.validate();
-  health.validate();
-  search.validate();
-  odometryMonitor.validate();
-}
 
 LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
                                  const GlobalOptions& options)

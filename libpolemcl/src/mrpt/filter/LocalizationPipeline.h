@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "config/Config.h"
 #include "core/global_localization/GlobalLocalizer.h"
 #include "core/localization/LocalMaps.h"
 #include "core/localization/LocalSubmap.h"
@@ -19,41 +18,44 @@ namespace polemcl {
 
 /// \brief When the global search is asked. `[search]` in INI files.
 struct SearchOptions {
-  bool recover = true;      ///< a vehicle that is lost is looked for on the whole map
-  double every = 4;         ///< metres driven between two searches, m
-  double everySeconds = 5;  ///< or after so long, standing still, s
-  /// Without a pose: several places that are about as likely are handed to the filter after so many
-  /// metres; before, a few metres more may tell, m.
+  bool recover = true;      ///< true: the map is searched when the vehicle is lost
+  double every = 4;         ///< distance travelled between two searches, m
+  double everySeconds = 5;  ///< time between two searches of a vehicle that stands, s
+  /// Distance travelled until an ambiguous answer is used, m; until then the next metres may tell.
   double patience = 30;
-  int particles = 4000;   ///< drawn round the places that a search hands to the filter
-  void validate() const;  ///< \throws Error naming the field
+  int particles = 4000;   ///< number of particles drawn round the places of an answer
+  void validate() const;  ///< \throws Error
 };
 
-/// \brief When the filter receives detections.
+void bind(Binder& binder, SearchOptions& options);  ///< `[search]`
+
+/// \brief When the filter gets detections.
 enum class Cadence {
   scan,    ///< at every scan
   section  ///< at the end of each section, with the detections of its middle scan (first
            ///< implementation)
 };
 
-/// \brief What of the detections the filter is given. `[tracking]` in INI files.
+/// \brief Which detections the filter is given. `[tracking]` in INI files.
 struct TrackingOptions {
-  /// Detections of a pole are averaged in the odometry frame and used together: what is wrong with
-  /// one is wrong with the next in much the same way, so each for itself would count too much.
+  /// Detections of a pole are averaged in the odometry frame and used together. Errors of
+  /// successive detections are alike, so each for itself would count too much.
   bool average = true;
-  int minHits = 2;                  ///< poles seen less often are not used
-  double every = 0.5;               ///< a pole is used again after so many driven metres, m
+  int minHits = 2;                  ///< poles seen in fewer scans are not used
+  double every = 0.5;               ///< distance travelled until a pole is used again, m
   Cadence cadence = Cadence::scan;  ///< `section` needs `average` to be false
   LocalMapOptions localMaps;        ///< of Cadence::section
-  void validate() const;            ///< \throws Error naming the field
+  void validate() const;            ///< \throws Error
 };
 
-/// \brief All settings of the pipeline.
+void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`
+
+/// \brief All settings of the chain, but those of the search on the map, which LocalizationMap
+/// takes.
 struct LocalizationOptions {
   FilterOptions filter;
   TrackingOptions tracking;
   SubmapOptions submap;
-  GlobalOptions global;
   HealthOptions health;
   SearchOptions search;
   OdometryMonitorOptions odometryMonitor;
@@ -151,8 +153,5 @@ class LocalizationPipeline {
   double m_searchedAt = 0;  ///< distance travelled in the submap at the last search, m
   double m_searchTime = 0;  ///< time of the last search, s
 };
-
-void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`
-void bind(Binder& binder, SearchOptions& options);    ///< `[search]`
 
 }  // namespace polemcl

@@ -1,15 +1,23 @@
 #include <mrpt/config/CConfigFile.h>
 
-#include <cmath>
 #include <ostream>
 
-#include "config/Bindings.h"
+#include "config/Config.h"
+#include "core/common/Binder.h"
 #include "mrpt/common/MrptCompatibility.h"
 #include "mrpt/map/CPoleMap.h"
 
 MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)
 
 namespace polemcl {
+
+void bind(Binder& b, CPoleMap::TInsertionOptions& o) {
+  b.section("insertion", "How CPoleMap inserts observations one by one (MRPT's tools)");
+  b.number("merge_distance", o.mergeDistance, Range::above(0), "m",
+           "a detection within this distance of a pole is that pole");
+  b.number("min_confidence", o.minConfidence, Range::between(0, 1), "",
+           "detections with a lower confidence are not inserted");
+}
 
 namespace {
 
@@ -20,16 +28,7 @@ std::string nameOf(const Source& source) {
   return file ? file->getAssociatedFile() : "map options";
 }
 
-void bind(Binder& b, CPoleMap::TInsertionOptions& o) {
-  b.section("insertion", "How observations are merged into the pole map");
-  b.number("merge_distance", o.mergeDistance, Range::above(0), "m",
-           "a detection this near to a pole is that pole");
-  b.number("min_confidence", o.minConfidence, Range::between(0, 1), "",
-           "detections below are not inserted");
-  b.check(o);
-}
-
-/// Reads options from one section of an MRPT configuration.
+/// Fills options from one section of a configuration that MRPT hands over.
 template <class Options>
 void load(const Source& source, const std::string& section, Options& options) {
   ConfigReader reader(source, nameOf(source), section);
@@ -74,10 +73,7 @@ void dump(std::ostream& out, Options options) {
 }  // namespace
 
 void CPoleMap::TInsertionOptions::validate() const {
-  if (!(std::isfinite(mergeDistance) && mergeDistance > 0))
-    throw Error("merge_distance is " + std::to_string(mergeDistance) + "; allowed is > 0 m");
-  if (!(minConfidence >= 0 && minConfidence <= 1))
-    throw Error("min_confidence is " + std::to_string(minConfidence) + "; allowed is 0 to 1");
+  checkOptions(*this);
 }
 
 void CPoleMap::TInsertionOptions::loadFromConfigFile(const Source& source,

@@ -5,18 +5,7 @@
 namespace polemcl {
 
 void MotionOptions::validate() const {
-  const auto notNegative = [](const char* name, double value) {
-    if (!(std::isfinite(value) && value >= 0))
-      throw Error(std::string(name) + " is " + std::to_string(value) + "; allowed is >= 0");
-  };
-  notNegative("xy_per_m", xyPerMetre);
-  notNegative("xy_per_rad", xyPerRadian);
-  notNegative("yaw_per_m_deg", yawPerMetre);
-  notNegative("yaw_per_rad", yawPerRadian);
-  notNegative("min_xy_m", minXy);
-  notNegative("min_yaw_deg", minYaw);
-  if (!(std::isfinite(covarianceFactor) && covarianceFactor > 0))
-    throw Error("covariance_factor is " + std::to_string(covarianceFactor) + "; allowed is > 0");
+  checkOptions(*this);
 }
 
 Eigen::Matrix3d motionCovariance(const Pose2D& motion, const MotionOptions& options) {
@@ -28,19 +17,23 @@ Eigen::Matrix3d motionCovariance(const Pose2D& motion, const MotionOptions& opti
 }
 
 void bind(Binder& b, MotionOptions& o) {
-  b.section("motion", "Noise of odometry that comes without a covariance");
-  b.number("xy_per_m", o.xyPerMetre, Range::atLeast(0), "m/m", "sigma of x, y per metre driven");
-  b.number("xy_per_rad", o.xyPerRadian, Range::atLeast(0), "m/rad",
-           "sigma of x, y per radian turned");
-  b.angleDeg("yaw_per_m_deg", o.yawPerMetre, Range::atLeast(0),
-             "sigma of the heading per metre driven");
-  b.number("yaw_per_rad", o.yawPerRadian, Range::atLeast(0), "rad/rad",
-           "the same per radian turned");
-  b.number("min_xy_m", o.minXy, Range::atLeast(0), "m", "added to sigma of x, y each time");
-  b.angleDeg("min_yaw_deg", o.minYaw, Range::atLeast(0), "added to sigma of the heading each time");
+  const Range notNegative = Range::atLeast(0);
+  b.section("motion", "Noise of odometry that comes without a covariance", Tier::sensor);
   b.number("covariance_factor", o.covarianceFactor, Range::above(0), "",
-           "on all covariances, stored too");
-  b.check(o);
+           "factor on all covariances of motions, also on those of the rawlog");
+  b.tier(Tier::tuning);
+  b.number("xy_per_m", o.xyPerMetre, notNegative, "m/m",
+           "standard deviation of x and y per metre travelled");
+  b.number("xy_per_rad", o.xyPerRadian, notNegative, "m/rad",
+           "standard deviation of x and y per radian turned");
+  b.angleDeg("yaw_per_m_deg", o.yawPerMetre, notNegative,
+             "standard deviation of the heading per metre travelled");
+  b.number("yaw_per_rad", o.yawPerRadian, notNegative, "rad/rad",
+           "standard deviation of the heading per radian turned");
+  b.number("min_xy_m", o.minXy, notNegative, "m",
+           "added to the standard deviation of x and y of each motion");
+  b.angleDeg("min_yaw_deg", o.minYaw, notNegative,
+             "added to the standard deviation of the heading of each motion");
 }
 
 }  // namespace polemcl

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "config/Config.h"
+#include "core/common/Binder.h"
 #include "core/common/Types.h"
 
 namespace polemcl {

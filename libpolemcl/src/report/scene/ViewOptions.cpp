@@ -10,10 +10,13 @@ constexpr double minSide = 160, maxSide = 8192;  // pixels; what OpenGL's textur
 
 constexpr double minRate = 0.001;  // slower ones never end
 
-void require(bool good, const char* key, int value, const std::string& allowed) {
-  if (!good)
-    throw Error(std::string("[view] ") + key + " = " + std::to_string(value) + ": allowed is " +
-                allowed);
+bool isRate(const std::string& text) {
+  try {
+    parseRate(text);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -31,25 +34,25 @@ std::optional<double> parseRate(const std::string& text) {
   return rate;
 }
 
-void ViewOptions::validate() const {
-  parseRate(rate);
-  require(scenes >= 0, "scenes", scenes, "0 or more");
-  require(frameEvery >= 1, "frame_every", frameEvery, "1 or more");
-  for (const auto& [key, side] : {std::pair{"width", width}, {"height", height}})
-    require(side >= minSide && side <= maxSide, key, side, Range::between(minSide, maxSide).text());
-}
-
 void bind(Binder& b, ViewOptions& o) {
-  b.section("view", "How the first run is watched; nothing of it changes the results");
+  const Range side = Range::between(minSide, maxSide);
+  b.section("view", "How the first run is watched; results stay the same");
   b.flag("live", o.live, "true: a window shows the run as it goes");
   b.flag("hold", o.hold, "true: the window stays until it is closed");
-  b.text("rate", o.rate, "with a window: 1x as it was driven, 2.5x faster, max");
-  b.integer("scenes", o.scenes, Range::atLeast(0), "scans", "a .3Dscene every so many; 0: none");
-  b.text("frames", o.frames, "folder of PNG frames; empty: none");
-  b.integer("frame_every", o.frameEvery, Range::atLeast(1), "scans", "a frame every so many");
-  b.integer("width", o.width, Range::between(minSide, maxSide), "pixels", "of frames and window");
-  b.integer("height", o.height, Range::between(minSide, maxSide), "pixels", "of frames and window");
-  b.check(o);
+  b.text("rate", o.rate, "speed with a window: 1x as it was driven, 2.5x, or max");
+  b.integer("scenes", o.scenes, Range::atLeast(0), "scans",
+            "number of scans from one .3Dscene to the next; 0: no scenes");
+  b.text("frames", o.frames, "folder of PNG frames; empty: no frames");
+  b.integer("frame_every", o.frameEvery, Range::atLeast(1), "scans",
+            "number of scans from one frame to the next");
+  b.integer("width", o.width, side, "pixels", "width of frames and window");
+  b.integer("height", o.height, side, "pixels", "height of frames and window");
+  b.require(isRate(o.rate), "rate", o.rate,
+            "max, or a factor on the recorded speed such as 1x or 2.5x, at least 0.001x");
+}
+
+void ViewOptions::validate() const {
+  checkOptions(*this);
 }
 
 }  // namespace polemcl::report

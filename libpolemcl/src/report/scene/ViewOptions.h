@@ -5,20 +5,20 @@
 #include <optional>
 #include <string>
 
-#include "config/Config.h"
+#include "core/common/Binder.h"
 
 namespace polemcl::report {
 
-/// \brief Of the first run; nothing of it changes the results.
+/// \brief How the first run is watched; results stay the same.
 struct ViewOptions {
   bool live = false;        ///< a window that shows the run as it goes
   bool hold = false;        ///< the window stays after the run, until it is closed
   std::string rate = "1x";  ///< of the input while a window shows it: as parseRate() takes it
-  int scenes = 0;           ///< a `.3Dscene` every so many scans; 0: none
+  int scenes = 0;           ///< scans from one `.3Dscene` to the next; 0: none
   std::string frames;       ///< folder of PNG frames; empty: none
-  int frameEvery = 1;       ///< a frame every so many scans
+  int frameEvery = 1;       ///< scans from one frame to the next
   int width = 1280;         ///< of the frames, and of the window at first, pixels
-  int height = 720;         ///< likewise
+  int height = 720;         ///< height of the same, pixels
   void validate() const;    ///< \throws Error naming the field
 };
 

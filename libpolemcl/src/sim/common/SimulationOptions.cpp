@@ -1,46 +1,93 @@
 #include "sim/common/SimulationOptions.h"
 
-#include "sim/common/SimulationLimits.h"
+#include "core/common/Binder.h"
 
 namespace polemcl::sim {
+namespace {
 
-using limits::require;
+const Range s_share = Range::between(0, 1), s_seed = Range::between(0, 9e15);
+
+void bindSeasons(Binder& b, WorldOptions& o) {
+  b.number("replaced_per_year", o.replacedPerYear, Range::between(0, 0.9), "",
+           "share of the poles that go for good within 365 days; as many new ones come");
+  b.integer("day_of_year", o.dayOfYear, Range::between(0, 365), "",
+            "date of day 0 for leaves and snow, 1: 1 January; 0: no seasons");
+  b.number("snow_bank_m", o.snowBank, Range::between(0, 2), "m",
+           "height of midwinter's snow banks along the kerb");
+  b.number("building_sites", o.buildingSites, Range::between(0, 6), "1/km",
+           "number of construction sites per km of street");
+  b.integer("side_streets", o.sideStreets, Range::between(0, 2), "",
+            "number of side streets for detours");
+}
+
+}  // namespace
+
+void bind(Binder& b, WorldOptions& o) {
+  b.section("world", "The simulated street and what stands there");
+  b.integer("seed", o.seed, s_seed, "", "another seed gives another street");
+  b.integer("day", o.day, Range::between(0, 36500), "",
+            "0: the day of the map; on other days things have moved");
+  b.number("length_m", o.length, Range::between(20, 50000), "m",
+           "length of the street, unless a track is given");
+  b.text("track", o.track,
+         "file of poses that the road follows, 12 numbers a line, plain or gzip; or empty");
+  b.number("curviness", o.curviness, Range::between(0, 2), "", "scale of the bends; 0: straight");
+  b.number("relief", o.relief, Range::between(0, 3), "", "scale of slopes and bumps; 0: flat");
+  b.number("road_width_m", o.roadWidth, Range::between(6, 20), "m",
+           "width of the road from kerb to kerb");
+  b.number("lamp_spacing_m", o.lampSpacing, Range::between(8, 1000), "m",
+           "mean distance of lamp posts on each side");
+  b.number("sign_spacing_m", o.signSpacing, Range::between(8, 1000), "m",
+           "mean distance of traffic signs on each side");
+  b.number("tree_spacing_m", o.treeSpacing, Range::between(4, 100), "m",
+           "mean distance of trees in a row");
+  b.number("tree_share", o.treeShare, s_share, "", "share of the street lined with trees");
+  b.number("parked_share", o.parkedShare, s_share, "", "share of parking places taken");
+  b.number("clutter", o.clutter, Range::between(0, 3), "",
+           "scale of the numbers of people, bins, bollards and bicycles");
+  b.number("removed_share", o.removedShare, s_share, "",
+           "share of the poles that are gone on another day");
+  b.number("added_share", o.addedShare, s_share, "", "share of the poles new on another day");
+  b.number("foliage", o.foliage, Range::between(0, 2), "", "density of leaves; 0: bare branches");
+  b.flag("people_move", o.peopleMove, "true: people walk during the drive");
+  bindSeasons(b, o);
+}
+
+void bind(Binder& b, SimulationOptions& o) {
+  b.section("simulation", "The simulated drive");
+  b.number("spacing_m", o.spacing, Range::between(0.05, 50), "m", "distance between scans");
+  b.number("speed_m_s", o.speed, Range::between(0.1, 50), "m/s", "speed of the vehicle");
+  b.number("lane_offset_m", o.laneOffset, Range::between(-10, 10), "m",
+           "offset of the drive from the middle of the road, + left");
+  b.number("odometry_noise", o.odometryNoise, s_share, "",
+           "standard deviation as a share of each component of the motion");
+  b.flag("reverse", o.reverse, "true: from the far end of the street, in the other lane");
+  b.flag("motion_distortion", o.motionDistortion, "true: the sensor moves while it turns");
+  b.integer("scans", o.scans, Range::between(0, 1e7), "",
+            "greatest number of scans; 0: to the end of the road");
+  b.integer("drive_seed", o.driveSeed, s_seed, "",
+            "another seed gives another drive of the same day, with its own noise");
+  b.integer("detour", o.detour, Range::between(0, 2), "",
+            "number of the side street that the drive takes; 0: straight on");
+  b.text("detections", o.detections,
+         "model of detections (JSON) for `--poles`; empty: rays are cast");
+  b.number("false_factor", o.falseFactor, Range::between(0, 10), "",
+           "scale of the false detections of that model");
+  bind(b, o.world);
+  b.section("simulation", "");
+  // Half of a vehicle has to fit between the sensor and the kerb.
+  const double room = o.world.roadWidth / 2 - 1.2;
+  b.require(Range::between(-room, room).contains(o.laneOffset), "lane_offset_m", o.laneOffset,
+            Range::between(-room, room).text() + " m with this [world] road_width_m");
+  b.require(o.detour <= o.world.sideStreets, "detour", o.detour, "[world] side_streets or less");
+}
 
 void WorldOptions::validate() const {
-  require("[world] seed", static_cast<double>(seed), limits::seed);
-  require("[world] day", day, limits::day);
-  require("[world] length_m", length, limits::length);
-  require("[world] curviness", curviness, limits::curviness);
-  require("[world] relief", relief, limits::relief);
-  require("[world] road_width_m", roadWidth, limits::roadWidth);
-  require("[world] lamp_spacing_m", lampSpacing, limits::lampSpacing);
-  require("[world] sign_spacing_m", signSpacing, limits::signSpacing);
-  require("[world] tree_spacing_m", treeSpacing, limits::treeSpacing);
-  require("[world] tree_share", treeShare, limits::share);
-  require("[world] parked_share", parkedShare, limits::share);
-  require("[world] clutter", clutter, limits::clutter);
-  require("[world] removed_share", removedShare, limits::share);
-  require("[world] added_share", addedShare, limits::share);
-  require("[world] foliage", foliage, limits::foliage);
-  require("[world] replaced_per_year", replacedPerYear, limits::replacedPerYear);
-  require("[world] day_of_year", dayOfYear, limits::dayOfYear);
-  require("[world] snow_bank_m", snowBank, limits::snowBank);
-  require("[world] building_sites", buildingSites, limits::buildingSites);
-  require("[world] side_streets", sideStreets, limits::sideStreets);
+  checkOptions(*this);
 }
 
 void SimulationOptions::validate() const {
-  world.validate();
-  require("[simulation] spacing_m", spacing, limits::spacing);
-  require("[simulation] speed_m_s", speed, limits::speed);
-  require("[simulation] odometry_noise", odometryNoise, limits::odometryNoise);
-  require("[simulation] scans", scans, limits::scans);
-  require("[simulation] drive_seed", static_cast<double>(driveSeed), limits::seed);
-  require("[simulation] false_factor", falseFactor, limits::falseFactor);
-  require("[simulation] detour", detour, Range::between(0, world.sideStreets));
-  // Half the width of a vehicle must fit between sensor and kerb.
-  const double room = world.roadWidth / 2 - 1.2;
-  require("[simulation] lane_offset_m", laneOffset, Range::between(-room, room));
+  checkOptions(*this);
 }
 
 }  // namespace polemcl::sim

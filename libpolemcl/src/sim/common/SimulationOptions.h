@@ -5,6 +5,10 @@
 #include <cstdint>
 #include <string>
 
+namespace polemcl {
+class Binder;
+}
+
 namespace polemcl::sim {
 
 /// \brief What stands along the street. `[world]` in INI files. Shares are in [0, 1].
@@ -39,6 +43,8 @@ struct WorldOptions {
   void validate() const;     ///< \throws Error
 };
 
+void bind(Binder& binder, WorldOptions& options);  ///< `[world]`
+
 /// \brief The drive and its LiDAR. `[simulation]` in INI files.
 struct SimulationOptions {
   WorldOptions world;
@@ -51,13 +57,13 @@ struct SimulationOptions {
   double originX = 0, originY = 0, originZ = 0;
   double spacing = 0.5;  ///< distance between scans, m (`spacing_m`)
   double speed = 5;      ///< m/s (`speed_m_s`)
-  /// Of the drive from the middle of the road, m, + left (`lane_offset_m`).
+  /// Offset of the drive from the middle of the road, m, + left (`lane_offset_m`).
   double laneOffset = -1.5;
   /// Standard deviation as a share of each component of the motion (`odometry_noise`).
   double odometryNoise = 0.02;
   bool reverse = false;  ///< from the far end, in the other lane: poles are seen from behind
   bool motionDistortion = false;  ///< the sensor moves while it turns (`motion_distortion`)
-  int scans = 0;                  ///< at most so many scans; 0: to the end of the road
+  int scans = 0;                  ///< greatest number of scans; 0: to the end of the road
   /// Another one, other noise, sway and detections on the same day (`drive_seed`).
   std::uint64_t driveSeed = 0;
   /// Detection model (JSON) that stands in for rays where poles are asked for; "": rays are cast
@@ -68,5 +74,9 @@ struct SimulationOptions {
   double falseFactor = 1;  ///< scales the false detections of that model (`false_factor`)
   void validate() const;   ///< \throws Error
 };
+
+/// \brief `[simulation]` and `[world]`. The LiDAR and its mounting are those of `[sensor]`; the
+/// program fills them in.
+void bind(Binder& binder, SimulationOptions& options);
 
 }  // namespace polemcl::sim

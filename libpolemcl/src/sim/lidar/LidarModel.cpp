@@ -6,10 +6,10 @@
 #include <sstream>
 
 #include "core/common/Angles.h"
+#include "core/common/Binder.h"
 #include "core/common/Types.h"
 #include "core/sensor/SensorModel.h"
 #include "sim/common/Random.h"
-#include "sim/common/SimulationLimits.h"
 
 namespace polemcl::sim {
 namespace {
@@ -165,10 +165,22 @@ LidarModel makeLidar(const std::string& name, bool upsideDown, unsigned unit) {
   return lidar;
 }
 
+namespace {
+
+/// The mounting comes from `[sensor]`; a simulated street allows less.
+void checkMounting(SimulationOptions options) {
+  CheckingBinder binder;
+  binder.section("sensor", "");
+  binder.number("height_m", options.height, Range::between(0.3, 5), "m",
+                "of a simulated sensor above ground");
+  binder.numbers("origin", {&options.originX, &options.originY, &options.originZ},
+                 Range::between(-10, 10), "m", "of a simulated sensor");
+}
+
+}  // namespace
+
 LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beams) {
-  limits::require("[sensor] height_m", options.height, limits::height);
-  for (const double origin : {options.originX, options.originY, options.originZ})
-    limits::require("[sensor] origin", origin, limits::origin);
+  checkMounting(options);
   if (options.sensor != "table" && options.sensor != "uniform")
     return makeLidar(options.sensor, options.upsideDown);
   SensorOptions mounted = beams;

@@ -21,7 +21,7 @@ namespace {
 SensorModel twelveBeams() {
   SensorOptions options;
   options.model = "uniform";
-  options.rows = 12;
+  options.rings = 12;
   options.fovUp = 2 * kDegree;
   options.fovDown = -4 * kDegree;
   options.columns = 2094;

@@ -18,7 +18,7 @@ namespace {
 SensorModel twoBeams() {
   SensorOptions options;
   options.model = "uniform";
-  options.rows = 2;
+  options.rings = 2;
   options.fovUp = 1 * kDegree;
   options.fovDown = -1 * kDegree;
   options.columns = 720;

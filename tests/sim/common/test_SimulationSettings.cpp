@@ -1,13 +1,14 @@
 #include <gtest/gtest.h>
 
-#include "sim/common/SimulationBindings.h"
+#include "config/Config.h"
+#include "sim/common/SimulationOptions.h"
 
-namespace polemcl::test_simulation_bindings {
+namespace polemcl::test_simulation_settings {
 
 using namespace polemcl;
 using namespace polemcl::sim;
 
-TEST(SimulationBindings, WhatIsWrittenReadsBackTheSame) {
+TEST(SimulationSettings, WhatIsWrittenReadsBackTheSame) {
   SimulationOptions written;
   written.spacing = 0.31;
   written.laneOffset = 1.7;
@@ -49,7 +50,7 @@ TEST(SimulationBindings, WhatIsWrittenReadsBackTheSame) {
   EXPECT_EQ(read.detour, 2);
 }
 
-TEST(SimulationBindings, RefusesWhatIsOutOfRangeWithFileSectionAndKey) {
+TEST(SimulationSettings, RefusesWhatIsOutOfRangeWithFileSectionAndKey) {
   ConfigReader reader(ConfigFile::fromText("[world]\ntree_share = 1.2\n", "street.ini"));
   SimulationOptions options;
   try {
@@ -62,11 +63,11 @@ TEST(SimulationBindings, RefusesWhatIsOutOfRangeWithFileSectionAndKey) {
   }
 }
 
-TEST(SimulationBindings, RefusesALaneBesideTheRoad) {
+TEST(SimulationSettings, RefusesALaneBesideTheRoad) {
   ConfigReader reader(ConfigFile::fromText(
       "[simulation]\nlane_offset_m = 3\n[world]\nroad_width_m = 8\n", "street.ini"));
   SimulationOptions options;
   EXPECT_THROW(bind(reader, options), Error);
 }
 
-}  // namespace polemcl::test_simulation_bindings
+}  // namespace polemcl::test_simulation_settings

@@ -1,0 +1,54 @@
+#include "core/common/Binder.h"
+#include "core/mapping/PoleMapBuilder.h"
+
+namespace polemcl {
+
+void bind(Binder& b, PoleMapOptions& o) {
+  b.section("map", "How a map is built");
+  b.tier(Tier::sensor);
+  b.integer("min_count", o.minCount, Range::atLeast(1), "", "least count of a pole, see counting");
+  b.number("min_confidence", o.minConfidence, Range::between(0, 1), "",
+           "detections with a lower confidence are not used; scans are searched down to it; "
+           "0: to that of [scan_line]");
+  b.tier(Tier::tuning);
+  b.number("section_length_m", o.sectionLength, Range::above(0), "m",
+           "length of a section of the path");
+  b.flag("every_scan", o.everyScan,
+         "true: all scans are used; false: the middle one of each section (paper)");
+  b.integer("max_gap", o.maxGap, Range::atLeast(0), "",
+            "sections with scans that may miss the pole inside a run");
+  b.number("min_share", o.minShare, Range::between(0, 1), "",
+           "least share of the sections within near_range_m that saw the pole");
+  b.number("near_range_m", o.nearRange, Range::above(0), "m",
+           "distance from a section's middle up to which min_share counts it");
+  b.number("merge_distance_m", o.mergeDistance, Range::above(0), "m",
+           "merging = gated: greatest distance of a detection from its pole");
+  b.number("pose_sigma_m", o.poseSigma, Range::atLeast(0), "m",
+           "standard deviation of the true positions");
+  b.angleDeg("heading_sigma_deg", o.headingSigma, Range::between(0, 57),
+             "standard deviation of the true headings; far detections count less");
+  b.tier(Tier::expert);
+  b.choice<SectionMiddle>(
+      "middle", o.middle, {{SectionMiddle::nearest, "nearest"}, {SectionMiddle::passed, "passed"}},
+      "middle scan of a section: the nearest to its middle, or the first past it (first "
+      "implementation)");
+  b.choice<MapMerging>("merging", o.merging,
+                       {{MapMerging::gated, "gated"}, {MapMerging::boxes, "boxes"}},
+                       "detections are one pole by distance, or where their boxes overlap (first "
+                       "implementation)");
+  b.choice<PoleCounting>("counting", o.counting,
+                         {{PoleCounting::run, "run"}, {PoleCounting::members, "members"}},
+                         "count of a pole: sections of one run (paper), or detections (first "
+                         "implementation)");
+  b.number("unvisited_m", o.unvisited, Range::atLeast(0), "m",
+           "later sessions: least distance of a scan from all places visited before; 0: all");
+
+  b.require(!o.everyScan || o.middle != SectionMiddle::passed, "middle", "passed",
+            "nearest where every_scan = true");
+}
+
+void PoleMapOptions::validate() const {
+  checkOptions(*this);
+}
+
+}  // namespace polemcl

@@ -1,0 +1,68 @@
+#include "core/sensor/SensorOptions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/common/Binder.h"
+#include "core/sensor/SensorModel.h"
+
+namespace polemcl {
+namespace {
+
+/// Rings are looked up by the tangent of their elevation.
+const Range s_elevation = Range::between(-89, 89);
+
+void requireTable(const Binder& b, const SensorOptions& o) {
+  b.require(o.elevations.size() >= 2, "elevations_deg", static_cast<double>(o.elevations.size()),
+            "a list of at least 2 rings where model = table (the value is their number)");
+  if (o.lowerElevations.empty() || o.elevations.empty()) return;
+  b.require(o.lowerElevations.size() >= 2, "lower_elevations_deg", "1 ring",
+            "a list of at least 2 rings, or an empty one");
+  b.require(*std::max_element(o.lowerElevations.begin(), o.lowerElevations.end()) <
+                *std::min_element(o.elevations.begin(), o.elevations.end()),
+            "lower_elevations_deg", "(list)", "a block below all of elevations_deg");
+}
+
+}  // namespace
+
+void bind(Binder& b, SensorOptions& o) {
+  b.section("sensor", "The LiDAR and how it is mounted", Tier::sensor);
+  b.choice("model", o.model, SensorModel::modelNames(),
+           "rings of a data sheet, of elevations_deg, or evenly from fov_up_deg to fov_down_deg");
+  b.flag("upside_down", o.upsideDown, "true: the elevations of the model change sign");
+  b.anglesDeg("elevations_deg", o.elevations, s_elevation, "rings of model = table");
+  b.anglesDeg("lower_elevations_deg", o.lowerElevations, s_elevation,
+              "lower block of model = table, for sensors with two blocks");
+  b.numbers("apex_m", {&o.upperApex, &o.lowerApex}, Range::any(), "m",
+            "heights above the origin where the beams of elevations_deg and of "
+            "lower_elevations_deg start");
+  b.integer("rings", o.rings, Range::between(2, 1024), "", "number of rings of model = uniform");
+  b.angleDeg("fov_up_deg", o.fovUp, s_elevation, "topmost ring of model = uniform");
+  b.angleDeg("fov_down_deg", o.fovDown, s_elevation, "lowest ring of model = uniform");
+  b.integer("columns", o.columns, Range::between(0, 65536), "",
+            "firing steps of a turn; 0: those of the model");
+  b.number("height_m", o.height, Range::any(), "m", "optical centre above ground");
+  b.numbers("origin", {&o.originX, &o.originY, &o.originZ}, Range::any(), "m",
+            "optical centre x y z, along the robot's axes from the origin of the clouds");
+  b.number("min_range_m", o.minRange, Range::atLeast(0), "m", "nearer returns are the vehicle");
+  b.number("max_range_m", o.maxRange, Range::above(0), "m", "farther returns are not used");
+  b.flag("check_beams", o.checkBeams,
+         "true: a scan that contradicts the settings above is refused; the first three are "
+         "checked");
+
+  if (o.model == "table") requireTable(b, o);
+  if (o.model == "uniform")
+    b.require(o.fovUp > o.fovDown, "fov_up_deg", o.fovUp * 180 / M_PI,
+              "more than fov_down_deg (negative below the horizon)");
+  if (o.model == "table" || o.model == "uniform")
+    b.require(o.columns >= 90, "columns", o.columns, "at least 90 where model = " + o.model);
+  b.require(o.columns == 0 || o.columns >= 90, "columns", o.columns,
+            "0 for those of the model, or at least 90");
+  b.require(o.maxRange > o.minRange, "max_range_m", o.maxRange, "more than min_range_m");
+}
+
+void SensorOptions::validate() const {
+  checkOptions(*this);
+}
+
+}  // namespace polemcl
