@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <set>
 
+#include "cli/Settings.h"
 #include "cli/Version.h"
 #include "io/file/WholeFile.h"
 #include "mrpt/map/RegisterClasses.h"
@@ -39,6 +41,47 @@ std::string subcommandsOf(CLI::App& cli) {
   return names;
 }
 
+/// Declares `--print-config` where `--config` is declared; whether it is anywhere.
+bool offerPrintConfig(CLI::App& app) {
+  bool offered = app.get_option_no_throw("--config") != nullptr;
+  if (offered && app.get_option_no_throw("--print-config") == nullptr) {
+    auto* print = app.add_flag("--print-config", "Print the effective settings, and end");
+    app.add_flag("--all", "With --print-config: the expert settings, too")->needs(print);
+  }
+  for (CLI::App* below : app.get_subcommands({})) offered |= offerPrintConfig(*below);
+  return offered;
+}
+
+/// What `--print-config` prints.
+struct PrintRequest {
+  std::string config;
+  std::vector<std::string> assignments;
+  bool all = false;
+};
+
+/// The request of a command line, if it has one. Its other arguments do not matter, so that none of
+/// them is required. \throws CLI::ParseError without `--config`.
+std::optional<PrintRequest> printRequest(int argc, const char* const* argv) {
+  const auto isRequest = [](const char* argument) {
+    return std::string(argument) == "--print-config";
+  };
+  if (std::none_of(argv, argv + argc, isRequest)) return std::nullopt;
+  CLI::App cli;
+  PrintRequest request;
+  cli.allow_extras();
+  cli.add_option("--config", request.config)->required();
+  addSetOption(cli, request.assignments);
+  cli.add_flag("--print-config");
+  cli.add_flag("--all", request.all);
+  cli.parse(argc, argv);
+  return request;
+}
+
+void printConfig(const PrintRequest& request) {
+  std::cout << settingsText(loadSettings(request.config, request.assignments),
+                            request.all ? Tier::expert : Tier::tuning);
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
@@ -58,8 +101,10 @@ int CommandLine::usageError(const std::string& what) const {
 }
 
 int CommandLine::run(int argc, const char* const* argv, const std::function<void()>& work) {
+  std::optional<PrintRequest> request;
   try {
-    m_cli.parse(argc, argv);
+    if (offerPrintConfig(m_cli)) request = printRequest(argc, argv);
+    if (!request) m_cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
       return usageError(lacksSubcommand(m_cli) ? "a subcommand is needed: " + subcommandsOf(m_cli)
@@ -73,7 +118,7 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
     limit.emplace(tbb::global_control::max_allowed_parallelism,
                   static_cast<std::size_t>(m_threads));
   try {
-    work();
+    request ? printConfig(*request) : work();
     return exitDone;
   } catch (const std::exception& e) {
     std::cerr << m_program << ": " << oneLine(e.what()) << '\n';

@@ -29,7 +29,8 @@ struct Subcommand {
 /// on `cli()`.
 ///
 /// Use: declare options on `cli()`, then `return line.run(argc, argv, [&] { work(options); });`.
-/// `--quiet` also works behind a subcommand.
+/// `--quiet` also works behind a subcommand. Where a program declares `--config`, run() adds
+/// `--print-config` and `--all`.
 class CommandLine {
  public:
   /// \param program Name as the user types it, such as `pole-map`.
