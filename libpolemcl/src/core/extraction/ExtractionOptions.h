@@ -66,23 +66,23 @@ struct RangeImageOptions {
 
 void bind(Binder& binder, RangeImageOptions& options);  ///< `[range_image]`
 
-/// \brief The native method: scan lines of real beams. `[scan_line]` in INI files.
+/// \brief Our method: scan lines of real beams. `[scan_line]` in INI files.
 struct ScanLineOptions {
-  double maxWidth = 0.9;     ///< widest slice of a pole on one beam, m
-  double connectStep = 0.2;  ///< greatest step in range between neighbours of one slice, m
-  double edgeStep = 0.35;    ///< least step in range to what lies behind a slice's edges, m
-  double stackReach = 0.3;   ///< greatest step in the plane between slices of one pole, m
-  double stackGap = 1.2;     ///< greatest height between them, m (or two beams)
+  double maxWidth = 0.9;     ///< greatest width of a segment of a pole, m
+  double connectStep = 0.2;  ///< greatest step in range between neighbours in a segment, m
+  double edgeStep = 0.35;    ///< least step in range from a segment's edge to what lies behind, m
+  double stackReach = 0.3;   ///< greatest horizontal step between segments of a pole, m
+  double stackGap = 1.2;     ///< greatest vertical step between them, m (or two beams)
   double minTop = 2.0;       ///< least height of the top, m above local ground (`min_top_m`)
   double maxBottom = 2.2;    ///< greatest height of the lowest return, m
   double minHeight = 0.5;    ///< least visible height, m
   double minRadius = 0.02;   ///< m
   double maxRadius = 0.45;   ///< m
-  int minPoints = 5;         ///< least returns of a pole
-  double maxTilt = 0.2;  ///< greatest tilt of the axis against the vertical, rad (`max_tilt_deg`)
-  double maxScatter = 0.12;    ///< greatest rms distance of slices from the axis, m
-  double minSpacing = 0.4;     ///< of two poles nearer than this the less confident is dropped, m
-  double minConfidence = 0.5;  ///< poles below are refused
+  int minPoints = 5;         ///< least number of returns of a pole
+  double maxTilt = 0.2;      ///< greatest tilt of the axis from the vertical, rad (`max_tilt_deg`)
+  double maxScatter = 0.12;  ///< greatest rms distance of the segments from the axis, m
+  double minSpacing = 0.4;   ///< two poles nearer than this: the less confident is dropped, m
+  double minConfidence = 0.5;  ///< poles with a lower confidence are refused
   double maxRange = 40;        ///< poles farther away are not looked for, m
   void validate() const;
 };

@@ -29,7 +29,7 @@ struct FilterOptions {
   /// covers: many while it is spread, few once it has converged. `particles` then only serves
   /// `tempering`.
   bool adaptive = false;
-  KldOptions kld;              ///< of `adaptive`
+  KldOptions kld;              ///< settings of `adaptive`
   double resampleBelow = 0.5;  ///< resample when the effective share falls below; 0: never (paper)
   Resampling resampling = Resampling::systematic;
   /// `mean`: weighted mean of all particles. `best_share`: of the best by weight (paper: 10 %),
@@ -69,7 +69,7 @@ struct StartOptions {
   bool anywhere = false;       ///< true: no start pose, the global search finds it (`anywhere`)
   std::optional<Pose2D> pose;  ///< map frame (`position_m`, `yaw_deg`); none: from the truth
   static constexpr double maxRadius = 10000;  ///< m; farther off the search (`anywhere`) is better
-  double radius = 2.5;                        ///< of the disc of positions, m (paper)
+  double radius = 2.5;                        ///< radius of the disc of positions, m (paper)
   StartPositions positions = StartPositions::area;
   double heading = 0.08726646259971647;  ///< headings uniform in ± this, rad (paper: 5°)
   /// Number until the first resampling, which keeps FilterOptions::particles of them. The start
@@ -81,7 +81,7 @@ struct StartOptions {
 /// \brief Repeated localizations of the same drive. `[runs]` in INI files.
 struct RunOptions {
   int runs = 1;            ///< (paper: 10)
-  std::uint32_t seed = 1;  ///< of the first run; run i uses seed + i
+  std::uint32_t seed = 1;  ///< seed of the first run; run i uses seed + i
   void validate() const;   ///< \throws Error
 };
 

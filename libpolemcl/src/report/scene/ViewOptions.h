@@ -13,11 +13,11 @@ namespace polemcl::report {
 struct ViewOptions {
   bool live = false;        ///< a window that shows the run as it goes
   bool hold = false;        ///< the window stays after the run, until it is closed
-  std::string rate = "1x";  ///< of the input while a window shows it: as parseRate() takes it
+  std::string rate = "1x";  ///< speed while a window shows the run, as parseRate() takes it
   int scenes = 0;           ///< scans from one `.3Dscene` to the next; 0: none
   std::string frames;       ///< folder of PNG frames; empty: none
   int frameEvery = 1;       ///< scans from one frame to the next
-  int width = 1280;         ///< of the frames, and of the window at first, pixels
+  int width = 1280;         ///< width of the frames, and of the window at first, pixels
   int height = 720;         ///< height of the same, pixels
   void validate() const;    ///< \throws Error naming the field
 };

@@ -15,7 +15,7 @@ namespace polemcl::sim {
 struct WorldOptions {
   std::uint64_t seed = 1;  ///< another seed, another street
   int day = 0;             ///< 0: the day of the map; other days move what moves
-  double length = 300;     ///< of the generated street, m (`length_m`); a track gives its own
+  double length = 300;  ///< length of the generated street, m (`length_m`); a track gives its own
   /// Road along a track: sensor poses, 12 numbers a line, row-major 3x4, plain or gzip; "" = none.
   std::string track;
   double curviness = 1;        ///< scales the bends of the generated street; 0: straight
