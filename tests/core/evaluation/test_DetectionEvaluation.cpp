@@ -101,12 +101,4 @@ TEST(DetectionEvaluation, RefusesWhatMakesNoSense) {
   EXPECT_THROW(evaluation.add({flat}, {{1, 0, 0.1, true}}), Error);
 }
 
-TEST(DetectionEvaluation, QuantilesLieBetweenRanks) {
-  EXPECT_FALSE(quantile({}, 0.5));
-  EXPECT_DOUBLE_EQ(*quantile({3}, 0.9), 3);
-  EXPECT_DOUBLE_EQ(*quantile({4, 1, 3, 2}, 0.5), 2.5);
-  EXPECT_DOUBLE_EQ(*quantile({4, 1, 3, 2, 5}, 0.9), 4.6);
-  EXPECT_DOUBLE_EQ(*quantile({4, 1}, 1), 4);
-}
-
 }  // namespace polemcl::test_detection_evaluation

@@ -17,20 +17,6 @@ PoleDetection at(double x, double y) {
   return pole;
 }
 
-TEST(IncrementalMerge, MovesCentreAndCovariance) {
-  PoleDetection pole = at(2, 0);
-  pole.covariance << 0.04, 0.01, 0.01, 0.09;
-  const PoleDetection result = moved({10, 20, M_PI / 2}, pole);
-  EXPECT_NEAR(result.x, 10, 1e-12);
-  EXPECT_NEAR(result.y, 22, 1e-12);
-  // A quarter turn swaps the variances and changes the sign of the cross term.
-  EXPECT_NEAR(result.covariance(0, 0), 0.09, 1e-12);
-  EXPECT_NEAR(result.covariance(1, 1), 0.04, 1e-12);
-  EXPECT_NEAR(result.covariance(0, 1), -0.01, 1e-12);
-  EXPECT_EQ(result.covariance(0, 1), result.covariance(1, 0));
-  EXPECT_EQ(result.top, 3);
-}
-
 TEST(IncrementalMerge, FirstScanBecomesThePoles) {
   std::vector<MapPole> poles;
   mergeScan(poles, PoleIndex(poles), {at(1, 2), at(1.1, 2)}, 0.5);

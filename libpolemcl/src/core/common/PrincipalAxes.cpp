@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Covariance.h"
+
 namespace polemcl {
 
 std::optional<PrincipalAxes> principalAxes(const Eigen::Matrix2d& covariance) {
+  if (!isCovariance(covariance)) return std::nullopt;
   const double xx = covariance(0, 0), yy = covariance(1, 1), xy = covariance(0, 1);
   const double mean = 0.5 * (xx + yy), spread = std::hypot(0.5 * (xx - yy), xy);
-  const double rounding = 2e-9 * mean;
-  if (!covariance.allFinite() || !(std::abs(xy - covariance(1, 0)) <= rounding) ||
-      !(mean - spread >= -rounding)) {
-    return std::nullopt;
-  }
   const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
   return PrincipalAxes{mean + spread, std::max(0.0, mean - spread), std::cos(angle),
                        std::sin(angle)};

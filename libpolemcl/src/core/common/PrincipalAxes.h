@@ -13,8 +13,7 @@ struct PrincipalAxes {
   double x = 1, y = 0;  ///< direction of the first axis, length 1
 };
 
-/// \brief None if the matrix holds a number that is not finite, or is not symmetric positive
-/// semidefinite (to within 1e-9 of its trace, as sums round).
+/// \brief Nothing if the matrix is no covariance, see isCovariance().
 std::optional<PrincipalAxes> principalAxes(const Eigen::Matrix2d& covariance);
 
 }  // namespace polemcl

@@ -57,7 +57,7 @@ struct PoleDetection {
   double bottom = 0;      ///< lowest return, m above local ground
   double top = 0;         ///< highest return, m above local ground
   double confidence = 1;  ///< in [0, 1]: probability-like score that this is a pole
-  /// Covariance of (x, y), m², same frame as x, y. Symmetric, positive definite.
+  /// Covariance of (x, y), m², same frame as x, y. See isCovariance().
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity() * 0.01;
   std::uint32_t points = 0;  ///< returns that support it
 };

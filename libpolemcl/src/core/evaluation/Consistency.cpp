@@ -1,10 +1,12 @@
 #include "core/evaluation/Consistency.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+
+#include "core/common/Covariance.h"
+#include "core/common/Statistics.h"
 
 namespace polemcl {
 namespace {
@@ -21,18 +23,8 @@ Eigen::Vector3d sampleError(const ConsistencySample& sample) {
 void checkSample(const ConsistencySample& sample, std::size_t index) {
   const Eigen::Matrix3d& covariance = sample.estimate.covariance;
   if (!sampleError(sample).allFinite()) refuseSample(index, "a pose that is not finite");
-  if (!covariance.allFinite() || (covariance - covariance.transpose()).cwiseAbs().maxCoeff() >
-                                     1e-9 * covariance.cwiseAbs().maxCoeff())
-    refuseSample(index, "a covariance that is not finite and symmetric");
-  if (Eigen::LLT<Eigen::Matrix3d>(covariance).info() != Eigen::Success)
-    refuseSample(index, "a covariance that is not positive definite");
-}
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+  if (!isDefiniteCovariance(covariance))
+    refuseSample(index, "a covariance that is not symmetric positive definite");
 }
 
 }  // namespace
@@ -60,7 +52,7 @@ ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples)
   }
   const double count = static_cast<double>(samples.size());
   score.neesMean = sum / count;
-  score.neesMedian = medianOf(std::move(all));
+  score.neesMedian = *quantile(std::move(all), 0.5);
   score.neesPositionMean = position / count;
   score.neesHeadingMean = heading / count;
   score.coverage95 = static_cast<double>(covered) / count;

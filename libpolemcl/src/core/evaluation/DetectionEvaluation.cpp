@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/common/GreedyAssignment.h"
+#include "core/common/Statistics.h"
 
 namespace polemcl {
 namespace {
@@ -41,15 +42,6 @@ std::optional<double> areaUnderRoc(const std::vector<double>& high, std::vector<
 }
 
 }  // namespace
-
-std::optional<double> quantile(std::vector<double> values, double q) {
-  if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  const double rank = q * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  if (below + 1 >= values.size()) return values.back();
-  return values[below] + (rank - static_cast<double>(below)) * (values[below + 1] - values[below]);
-}
 
 DetectionEvaluation::DetectionEvaluation(double radius) : m_radius(radius) {
   greedyAssignment({}, {}, radius);  // refuses a radius that makes no sense

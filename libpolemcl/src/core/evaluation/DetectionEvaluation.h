@@ -58,7 +58,4 @@ class DetectionEvaluation {
   std::vector<double> m_rightConfidence, m_wrongConfidence;
 };
 
-/// \brief The q-quantile (0 to 1), linear between ranks; none of no values.
-std::optional<double> quantile(std::vector<double> values, double q);
-
 }  // namespace polemcl

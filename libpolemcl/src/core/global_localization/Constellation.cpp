@@ -1,8 +1,9 @@
 #include "core/global_localization/Constellation.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
@@ -26,7 +27,7 @@ Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& opt
     : m_scale(submap.options().scale) {
   const Pose2D& pose = submap.pose();
   const Eigen::Vector2d here(pose.x, pose.y);
-  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(-pose.yaw).toRotationMatrix();
+  const Eigen::Matrix2d rotation = rotationOf(-pose.yaw);
   for (const SubmapPole& pole : submap.poles()) {
     m_stars.push_back({rotation * (pole.centre - here),
                        rotation * submap.presentCovariance(pole, false) * rotation.transpose(),

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Transform.h"
+
 namespace polemcl {
 namespace {
 
@@ -11,10 +13,6 @@ constexpr int s_refinements = 4;
 constexpr double s_gate = 3;  ///< standard deviations
 /// A match of a pole known worse than this counts for less, m: it could be had by chance.
 constexpr double s_sharp = 0.3;
-
-Eigen::Matrix2d rotationOf(double yaw) {
-  return Eigen::Rotation2Dd(yaw).toRotationMatrix();
-}
 
 /// J·v, a quarter turn to the left.
 Eigen::Vector2d turnedBy(const Eigen::Vector2d& v) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/common/Binder.h"
+#include "core/common/Statistics.h"
 
 namespace polemcl {
 
@@ -54,16 +55,6 @@ std::size_t kldSampleSize(std::size_t bins, const KldOptions& options) {
   const double root = 1 - part + std::sqrt(part) * normalQuantile(1 - options.delta);
   const double wanted = freedom / (2 * options.epsilon) * root * root * root;
   return static_cast<std::size_t>(std::clamp(std::ceil(wanted), least, most));
-}
-
-double normalQuantile(double p) {
-  if (!(p > 0 && p < 1))
-    throw Error("a quantile of the normal distribution was asked for at " + std::to_string(p) +
-                "; it must lie between 0 and 1");
-  double low = -40, high = 40;  // halved until nothing lies between
-  for (double z = 0; low < z && z < high; z = 0.5 * (low + high))
-    (0.5 * std::erfc(-z * M_SQRT1_2) < p ? low : high) = z;
-  return high;
 }
 
 }  // namespace polemcl

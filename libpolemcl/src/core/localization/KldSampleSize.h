@@ -33,7 +33,4 @@ std::size_t occupiedBins(const std::vector<Pose2D>& particles,
 /// within the limits of the options. \param bins k; 0 and 1 need no more than the least number.
 std::size_t kldSampleSize(std::size_t bins, const KldOptions& options);
 
-/// \brief z with P(Z < z) = p of a standard normal number. \throws Error outside (0, 1).
-double normalQuantile(double p);
-
 }  // namespace polemcl

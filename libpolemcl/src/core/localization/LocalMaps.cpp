@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/common/Binder.h"
+#include "core/common/Transform.h"
 #include "core/mapping/BoxMerging.h"
-#include "core/mapping/IncrementalMerge.h"
 
 namespace polemcl {
 

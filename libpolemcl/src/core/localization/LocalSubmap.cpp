@@ -6,7 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "core/common/Covariance.h"
+#include "core/common/DetectionCheck.h"
 #include "core/common/GreedyAssignment.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
@@ -16,21 +19,6 @@ constexpr double s_farthest = 5;                 ///< no detection belongs to a 
 constexpr std::uint32_t s_fewChances = 10;       ///< before them nothing is dropped for its misses
 constexpr std::size_t s_mostSubmapPoles = 2000;  ///< the oldest go first; a real drive has a tenth
 
-Eigen::Vector2d toLocal(const Pose2D& pose, double x, double y) {
-  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
-  return {pose.x + c * x - s * y, pose.y + s * x + c * y};
-}
-
-template <int size>
-bool isCovariance(const Eigen::Matrix<double, size, size>& matrix) {
-  if (!matrix.allFinite()) return false;
-  const double scale = matrix.cwiseAbs().maxCoeff(), tolerance = 1e-9 * scale;
-  if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > tolerance) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>> solver(
-      matrix, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().minCoeff() >= -tolerance;
-}
-
 /// A detection in the local frame.
 struct Placed {
   Eigen::Vector2d centre;
@@ -38,8 +26,9 @@ struct Placed {
 };
 
 Placed placePole(const PoleDetection& detection, const Pose2D& pose, double floor) {
-  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(pose.yaw).toRotationMatrix();
-  return {toLocal(pose, detection.x, detection.y),
+  const Eigen::Matrix2d rotation = rotationOf(pose.yaw);
+  const Pose2D centre = compose(pose, {detection.x, detection.y, 0});
+  return {{centre.x, centre.y},
           rotation * detection.covariance * rotation.transpose() +
               floor * floor * Eigen::Matrix2d::Identity()};
 }
@@ -69,7 +58,7 @@ void LocalSubmap::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,
     if (!std::isfinite(motion.x) || !std::isfinite(motion.y) || !std::isfinite(motion.yaw))
       throw Error("the motion before frame " + std::to_string(m_frames) +
                   " of the submap is not finite; leave the frame out or start a new submap");
-    if (!isCovariance<3>(covariance))
+    if (!isCovariance(covariance))
       throw Error("the covariance of the motion before frame " + std::to_string(m_frames) +
                   " of the submap is not symmetric positive semidefinite");
     move(motion, covariance);
@@ -87,17 +76,10 @@ void LocalSubmap::clear() {
 }
 
 void LocalSubmap::check(const std::vector<PoleDetection>& poles_robot) const {
-  for (std::size_t i = 0; i < poles_robot.size(); ++i) {
-    const PoleDetection& pole = poles_robot[i];
-    const char* fault = nullptr;
-    if (!std::isfinite(pole.x) || !std::isfinite(pole.y)) fault = "a place that is not finite";
-    if (!isCovariance<2>(pole.covariance))
-      fault = "a covariance that is not symmetric positive semidefinite";
-    if (!(pole.confidence >= 0 && pole.confidence <= 1)) fault = "a confidence outside [0, 1]";
-    if (fault)
+  for (std::size_t i = 0; i < poles_robot.size(); ++i)
+    if (const char* fault = faultOf(poles_robot[i]))
       throw Error("pole " + std::to_string(i) + " of frame " + std::to_string(m_frames) +
                   " of the submap has " + fault);
-  }
 }
 
 void LocalSubmap::move(const Pose2D& motion, const Eigen::Matrix3d& covariance) {
@@ -166,7 +148,7 @@ void LocalSubmap::update(SubmapPole& pole, const PoleDetection& detection,
     const Eigen::Matrix2d gain = before * sum.inverse();
     pole.centre += gain * (centre - pole.centre);
     const Eigen::Matrix2d after = before - gain * before;
-    pole.covariance = 0.5 * (after + after.transpose()) + floor;
+    pole.covariance = symmetrized(after) + floor;
   }
   ++pole.hits;
   ++pole.chances;
@@ -208,7 +190,7 @@ Eigen::Matrix2d LocalSubmap::presentCovariance(const SubmapPole& pole, bool with
 }
 
 PoleDetection LocalSubmap::seenNow(const SubmapPole& pole) const {
-  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(-m_pose.yaw).toRotationMatrix();
+  const Eigen::Matrix2d rotation = rotationOf(-m_pose.yaw);
   const Eigen::Vector2d centre = rotation * (pole.centre - Eigen::Vector2d(m_pose.x, m_pose.y));
   PoleDetection detection;
   detection.x = centre.x();

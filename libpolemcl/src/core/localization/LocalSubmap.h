@@ -81,9 +81,8 @@ class LocalSubmap {
   /// \param poles_robot Detections of this frame, robot frame; may be empty. Those with a
   /// confidence
   ///        of 0 are not used.
-  /// \throws Error on a motion that is not finite, or a detection whose place is not finite, whose
-  ///         covariance is not symmetric positive semidefinite or whose confidence is outside
-  ///         [0, 1]. Nothing has changed then.
+  /// \throws Error on a motion that is not finite or a detection with a fault, see faultOf().
+  ///         Nothing has changed then.
   void add(const Pose2D& motion, const std::vector<PoleDetection>& poles_robot);
   /// \brief The same with the motion's own covariance of (x, y, yaw), m², m·rad, rad², which takes
   /// the place of the walks in the options. \throws Error also when it is not symmetric positive

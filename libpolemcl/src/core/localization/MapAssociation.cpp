@@ -1,32 +1,23 @@
 #include "core/localization/MapAssociation.h"
 
 #include <Eigen/LU>
-#include <cmath>
 #include <utility>
 
 #include "core/common/GreedyAssignment.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
 
 /// A detection in the map frame, with the uncertainty of detection and pose.
-struct PlacedDetection {
-  Eigen::Vector2d centre;
-  Eigen::Matrix2d covariance;
-};
-
-PlacedDetection placeDetection(const PoleDetection& pole, const PoseWithCovariance& robot,
-                               double sigma) {
-  const double c = std::cos(robot.mean.yaw), s = std::sin(robot.mean.yaw);
-  Eigen::Matrix2d rotation;
-  rotation << c, -s, s, c;
-  const Eigen::Vector2d arm = rotation * Eigen::Vector2d(pole.x, pole.y);
-  Eigen::Matrix<double, 2, 3> jacobian;  // of the place by x, y, yaw
-  jacobian << 1, 0, -arm.y(), 0, 1, arm.x();
-  return {arm + Eigen::Vector2d(robot.mean.x, robot.mean.y),
-          rotation * pole.covariance * rotation.transpose() +
-              jacobian * robot.covariance * jacobian.transpose() +
-              sigma * sigma * Eigen::Matrix2d::Identity()};
+MovedCentre placeDetection(const PoleDetection& pole, const PoseWithCovariance& robot,
+                           double sigma) {
+  MovedCentre placed = movedCentre(robot.mean, pole);
+  Eigen::Matrix<double, 2, 3> jacobian;  // of the centre by x, y, yaw
+  jacobian << 1, 0, -placed.arm.y(), 0, 1, placed.arm.x();
+  placed.covariance += jacobian * robot.covariance * jacobian.transpose();
+  placed.covariance += sigma * sigma * Eigen::Matrix2d::Identity();
+  return placed;
 }
 
 }  // namespace
@@ -38,7 +29,7 @@ std::vector<PoleMatch> associate(const std::vector<PoleDetection>& poles_robot,
   std::vector<AssignedPair> pairs;  // detection, map pole, squared Mahalanobis distance
   for (std::size_t i = 0; i < poles_robot.size(); ++i) {
     matches[i].confidence = poles_robot[i].confidence;
-    const PlacedDetection placed = placeDetection(poles_robot[i], robot, options.sigma);
+    const MovedCentre placed = placeDetection(poles_robot[i], robot, options.sigma);
     // NaN fails every comparison below, so what is not a number matches nothing.
     for (const auto& near : index.within(placed.centre.x(), placed.centre.y(), options.reach)) {
       const Eigen::Vector2d error = placed.centre - index.tree().point(near.index);

@@ -1,11 +1,11 @@
 #include "core/localization/OdometryDrift.h"
 
-#include <Eigen/Geometry>
+#include "core/common/Transform.h"
 
 namespace polemcl {
 
 void OdometryDrift::add(const Eigen::Vector2d& end, double yaw, const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(yaw).toRotationMatrix();
+  const Eigen::Matrix2d rotation = rotationOf(yaw);
   m_position += rotation * covariance.topLeftCorner<2, 2>() * rotation.transpose();
   const double heading = covariance(2, 2);
   m_heading += heading;

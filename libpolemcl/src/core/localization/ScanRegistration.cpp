@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/common/GreedyAssignment.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
@@ -14,24 +15,14 @@ namespace {
 constexpr int s_rounds = 5;              // of pairing and Gauss-Newton
 constexpr std::size_t s_mostPoles = 24;  // of each scan that a search takes, bounds its time
 
-/// The poles of the second scan, seen from the first.
-struct Moved {
-  Eigen::Vector2d centre, arm;  ///< arm: the turned vector from the robot, for the derivative
-  Eigen::Matrix2d covariance;
-};
-
-std::vector<Moved> moveAll(const std::vector<PoleDetection>& poles, const Pose2D& motion,
-                           double sigma) {
-  const double c = std::cos(motion.yaw), s = std::sin(motion.yaw);
-  Eigen::Matrix2d rotation;
-  rotation << c, -s, s, c;
-  std::vector<Moved> moved;
+/// The poles of the second scan, in the frame of the first.
+std::vector<MovedCentre> moveAll(const std::vector<PoleDetection>& poles, const Pose2D& motion,
+                                 double sigma) {
+  std::vector<MovedCentre> moved;
   moved.reserve(poles.size());
   for (const PoleDetection& pole : poles) {
-    const Eigen::Vector2d arm = rotation * Eigen::Vector2d(pole.x, pole.y);
-    moved.push_back({arm + Eigen::Vector2d(motion.x, motion.y), arm,
-                     rotation * pole.covariance * rotation.transpose() +
-                         2 * sigma * sigma * Eigen::Matrix2d::Identity()});
+    moved.push_back(movedCentre(motion, pole));
+    moved.back().covariance += 2 * sigma * sigma * Eigen::Matrix2d::Identity();
   }
   return moved;
 }
@@ -44,7 +35,8 @@ struct RegistrationPair : AssignedPair {
 
 /// One to one, the nearest by Mahalanobis distance first.
 std::vector<RegistrationPair> pairUp(const std::vector<PoleDetection>& before,
-                                     const std::vector<Moved>& after, double gate, double reach) {
+                                     const std::vector<MovedCentre>& after, double gate,
+                                     double reach) {
   std::vector<RegistrationPair> all;
   for (std::size_t a = 0; a < after.size(); ++a)
     for (std::size_t b = 0; b < before.size(); ++b) {
@@ -64,7 +56,7 @@ void judge(const std::vector<RegistrationPair>& pairs, double gate, ScanRegistra
 }
 
 /// One Gauss-Newton step over the pairs. \return Whether the pairs determine a motion.
-bool solve(const std::vector<RegistrationPair>& pairs, const std::vector<Moved>& moved,
+bool solve(const std::vector<RegistrationPair>& pairs, const std::vector<MovedCentre>& moved,
            ScanRegistration& result) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();

@@ -1,6 +1,5 @@
 #include "core/mapping/IncrementalMerge.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -36,17 +35,6 @@ MapPole newPole(const PoleDetection& seen) {
 }
 
 }  // namespace
-
-PoleDetection moved(const Pose2D& base, const PoleDetection& pole) {
-  PoleDetection result = pole;
-  const Pose2D centre = compose(base, {pole.x, pole.y, 0});
-  result.x = centre.x;
-  result.y = centre.y;
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(base.yaw).toRotationMatrix();
-  const Eigen::Matrix2d covariance = turn * pole.covariance * turn.transpose();
-  result.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
-  return result;
-}
 
 void mergeScan(std::vector<MapPole>& poles, const PoleIndex& index,
                const std::vector<PoleDetection>& detections_map, double mergeDistance) {

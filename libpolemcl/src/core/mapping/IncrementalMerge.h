@@ -1,6 +1,6 @@
 #pragma once
 /// \file IncrementalMerge.h
-/// \brief Detections moved between planar frames, and merged into a map scan by scan.
+/// \brief Detections merged into a map, scan by scan.
 
 #include <vector>
 
@@ -8,10 +8,6 @@
 #include "core/common/Types.h"
 
 namespace polemcl {
-
-/// \brief A detection given in the frame of `base`, expressed in base's parent frame: centre moved,
-/// covariance turned, the rest as it is.
-PoleDetection moved(const Pose2D& base, const PoleDetection& pole);
 
 /// \brief Merges the detections of one scan into a map, each pole with at most one of them: pairs
 /// nearer than `mergeDistance` (m, > 0) are taken nearest first, ties by index; what is left

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Statistics.h"
+
 namespace polemcl {
 namespace {
 
@@ -84,10 +86,9 @@ std::vector<double> squaredDistances(const std::vector<Weighted>& weighted,
 /// that median varies much); they are never narrowed.
 std::vector<bool> inside(const std::vector<double>& squared) {
   std::vector<double> ordered = squared;
-  const auto middle = ordered.begin() + ordered.size() / 2;
-  std::nth_element(ordered.begin(), middle, ordered.end());
+  const double middle = elementOfRank(ordered, ordered.size() / 2);
   const double few = 1 + 5 / (2.0 * static_cast<double>(squared.size()) - 2);
-  const double limit = s_ellipse * std::max(1.0, few * few * *middle / s_medianOfTwo);
+  const double limit = s_ellipse * std::max(1.0, few * few * middle / s_medianOfTwo);
   std::vector<bool> kept(squared.size());
   for (std::size_t i = 0; i < squared.size(); ++i) kept[i] = squared[i] <= limit;
   return kept;
@@ -102,12 +103,6 @@ double excess(const std::vector<double>& squared, const std::vector<bool>& kept)
     freedom += 2;
   }
   return freedom > 0 ? std::max(1.0, sum / freedom) : 1.0;
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 }  // namespace
@@ -163,8 +158,8 @@ MapPole fuse(const std::vector<LandmarkObservation>& sightings,
     pole.confidence += sightings[member].pole.confidence;
   }
   pole.confidence /= static_cast<double>(members.size());  // last: so that all ones give one
-  pole.bottom = quantile(std::move(bottoms), 0.1);
-  pole.top = quantile(std::move(tops), 0.9);
+  pole.bottom = nearestRank(std::move(bottoms), 0.1);
+  pole.top = nearestRank(std::move(tops), 0.9);
   return pole;
 }
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/common/KdTree2D.h"
+#include "core/common/Transform.h"
 #include "core/mapping/MapSession.h"
 #include "core/mapping/ObservationClustering.h"
 
@@ -131,7 +132,7 @@ bool Update::movePlace(LandmarkRecord& kept, const MapPole& seen) const {
   const Eigen::Matrix2d covariance = takeOver ? today : pole.covariance - gain * pole.covariance;
   pole.x = place.x();
   pole.y = place.y();
-  pole.covariance = (covariance + covariance.transpose()) / 2;
+  pole.covariance = symmetrized(covariance);
   pole.count += seen.count;
   return moved;
 }

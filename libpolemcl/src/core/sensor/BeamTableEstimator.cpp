@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/common/Angles.h"
+#include "core/common/Statistics.h"
 #include "core/sensor/BeamOriginSearch.h"
 
 namespace polemcl {
@@ -194,9 +195,7 @@ void measureSharpness(const std::vector<BeamPoint>& points, const BlockOrigins& 
     near += deviation < cell / 3;
     deviations.push_back(static_cast<float>(deviation));
   }
-  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  estimate.spread = *middle;
+  estimate.spread = elementOfRank(deviations, deviations.size() / 2);
   estimate.sharpness = static_cast<double>(near) / static_cast<double>(deviations.size());
 }
 

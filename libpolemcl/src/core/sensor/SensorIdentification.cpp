@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Statistics.h"
 #include "core/sensor/AzimuthResolution.h"
 #include "core/sensor/ElevationHistogram.h"
 #include "core/sensor/SensorModel.h"
@@ -140,10 +141,8 @@ void measureRanges(const std::vector<PointsView>& scans, SensorIdentification& r
   result.points = ranges.size();
   result.covered = static_cast<double>(std::count(degrees.begin(), degrees.end(), 1)) / 360;
   const auto rank = [&](double share) {
-    const auto at = ranges.begin() +
-                    static_cast<std::ptrdiff_t>(share * static_cast<double>(ranges.size() - 1));
-    std::nth_element(ranges.begin(), at, ranges.end());
-    return static_cast<double>(*at);
+    const double at = share * static_cast<double>(ranges.size() - 1);
+    return static_cast<double>(elementOfRank(ranges, static_cast<std::size_t>(at)));
   };
   result.nearest = rank(0.01);
   result.farthest = rank(0.99);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/common/Covariance.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
 #include "io/map/MapScans.h"
@@ -31,13 +32,9 @@ const char* fault(const MapPole& pole) {
   }
   if (pole.radius < 0) return "the radius is negative";
   if (pole.confidence < 0 || pole.confidence > 1) return "the confidence is outside 0 … 1";
-  const Eigen::Matrix2d& c = pole.covariance;
-  if (!c.allFinite()) return "the covariance is not finite";
-  const bool symmetric =
-      std::abs(c(0, 1) - c(1, 0)) <= 1e-9 * (std::abs(c(0, 0)) + std::abs(c(1, 1)));
-  if (!symmetric || !(c(0, 0) > 0) || !(c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1) > 0)) {
-    return "the covariance is not symmetric and positive definite";
-  }
+  if (!pole.covariance.allFinite()) return "the covariance is not finite";
+  if (!isCovariance(pole.covariance))
+    return "the covariance is not symmetric positive semidefinite";
   return nullptr;
 }
 

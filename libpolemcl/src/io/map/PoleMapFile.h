@@ -47,7 +47,7 @@ PoleMapData mapData(const LandmarkMap& map, std::map<std::string, std::string> i
 /// \param scans Optional: stored in the file, so that sessions can be added later.
 /// \throws Error when the file cannot be written, or when the data are invalid. For a pole: values
 ///         not finite, negative radius, confidence outside [0, 1], covariance not positive
-///         definite. For a history: existence outside [0, 1], time negative or not finite. Also
+///         semidefinite. For a history: existence outside [0, 1], time negative or not finite. Also
 ///         when the number of histories is neither 0 nor the number of poles.
 void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
                   const AddedSessions* scans = nullptr);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/common/Covariance.h"
+
 namespace polemcl {
 
 namespace {
@@ -25,17 +27,10 @@ void requireFinite(const io::PlanarMotion& motion) {
 }
 
 void requireCovariance(const Eigen::Matrix3d& covariance) {
-  constexpr double rounding = 1e-9;
-  const double size = covariance.cwiseAbs().maxCoeff();
-  if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > rounding * size)
-    throw Error("the covariance of the motion is not symmetric: check the odometry");
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-  if (solver.eigenvalues()[0] < -rounding * size) {
-    std::ostringstream text;
-    text << "the covariance of the motion has the negative eigenvalue " << solver.eigenvalues()[0]
-         << ": check the odometry";
-    throw Error(text.str());
-  }
+  if (!isCovariance(covariance))
+    throw Error(
+        "the covariance of the motion is not symmetric or has a negative eigenvalue: check the "
+        "odometry");
 }
 
 void requireCertain(const Eigen::Matrix3d& covariance) {

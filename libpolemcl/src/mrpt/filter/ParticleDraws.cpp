@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/common/Covariance.h"
 #include "core/common/SimdMath.h"
 
 namespace polemcl {
@@ -29,10 +30,7 @@ void check(const PoseHypothesis& hypothesis) {
   if (!std::isfinite(mean.x) || !std::isfinite(mean.y) || !std::isfinite(mean.yaw))
     refuse(hypothesis, "a pose that is not finite");
   if (!covariance.allFinite()) refuse(hypothesis, "a covariance that is not finite");
-  const double tolerance = 1e-9 * covariance.cwiseAbs().maxCoeff();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-  if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > tolerance ||
-      solver.eigenvalues()[0] < -tolerance)
+  if (!isCovariance(covariance))
     refuse(hypothesis, "a covariance that is not symmetric positive semidefinite");
 }
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Covariance.h"
+#include "core/common/Transform.h"
 #include "core/mapping/IncrementalMerge.h"
 #include "io/file/ReadLimits.h"
 #include "io/map/PoleMapFile.h"
@@ -52,11 +54,11 @@ void requireStorable(const CPoleMap& map) {
 }
 
 void requireUsableMap(const MapPole& pole, std::size_t i) {
-  const auto& C = pole.covariance;
-  if (!std::isfinite(pole.x) || !std::isfinite(pole.y) || !C.allFinite())
-    throw Error("pole " + std::to_string(i) + ": position and covariance must be finite numbers");
-  if (!(C(0, 0) >= 0 && C(1, 1) >= 0 && C.determinant() >= -1e-12 * C(0, 0) * C(1, 1)))
-    throw Error("pole " + std::to_string(i) + ": the covariance must be positive semidefinite");
+  if (!std::isfinite(pole.x) || !std::isfinite(pole.y))
+    throw Error("pole " + std::to_string(i) + ": the position must be finite");
+  if (!isCovariance(pole.covariance))
+    throw Error("pole " + std::to_string(i) +
+                ": the covariance must be symmetric positive semidefinite");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <sstream>
 
-#include "core/mapping/IncrementalMerge.h"
+#include "core/common/Transform.h"
 #include "io/file/ReadLimits.h"
 #include "mrpt/common/BoundedRead.h"
 #include "mrpt/drawing/SceneParts.h"

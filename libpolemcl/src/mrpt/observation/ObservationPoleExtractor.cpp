@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
 #include "core/sensor/SensorConfigCheck.h"
 #include "mrpt/common/MrptReason.h"
@@ -42,10 +43,9 @@ void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
   const Eigen::Vector3d centre =
       f.R_planar_lidar * Eigen::Vector3d(pole.x, pole.y, z) + f.t_planar_lidar;
   const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>();
-  const Eigen::Matrix2d covariance = turn * pole.covariance * turn.transpose();
   pole.x = centre.x();
   pole.y = centre.y();
-  pole.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
+  pole.covariance = symmetrized<2>(turn * pole.covariance * turn.transpose());
 }
 
 /// Converts the visibility ranges from the LiDAR frame to the planar sensor frame. A sector that

@@ -5,9 +5,9 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/common/Covariance.h"
 #include "mrpt/observation/CObservationPoles.h"
 #include "mrpt/observation/ObservationPoleExtractor.h"
 
@@ -58,10 +58,7 @@ void requireUsable(const io::PlanarMotion& motion) {
   const Eigen::Vector3d mean(motion.mean.x, motion.mean.y, motion.mean.yaw);
   if (!mean.allFinite() || !motion.covariance.allFinite())
     throw Error("the odometry is not finite");
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(motion.covariance,
-                                                              Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d eigenvalues = solver.eigenvalues();
-  if (eigenvalues.minCoeff() < -1e-9 * std::max(1e-6, eigenvalues.maxCoeff()))
+  if (!isCovariance(motion.covariance))
     throw Error("the covariance of the odometry is not positive semidefinite");
 }
 

@@ -4,13 +4,12 @@
 
 #include <cstdint>
 
+#include "core/common/Statistics.h"
+
 namespace polemcl::sim {
 
 /// \brief P(z < x).
 double normalCdf(double x);
-/// \brief The inverse of normalCdf(); p is clamped to [1e-9, 1 - 1e-9].
-/// Acklam's rational approximation (2003), relative error 1.2e-9.
-double normalQuantile(double p);
 /// \brief P(a < h and b < k) for two standard normal numbers with the given correlation in (-1, 1).
 /// Integral over the correlation (Drezner and Wesolowsky 1990) with 16 Gauss-Legendre points.
 double bivariateNormalCdf(double h, double k, double correlation);

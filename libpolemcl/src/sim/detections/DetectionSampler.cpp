@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
 #include "sim/common/NormalDistribution.h"
 #include "sim/common/Random.h"
@@ -164,8 +165,7 @@ PoleDetection DetectionSampler::report(const Target& target, const View& view,
   PoleDetection pole;
   pole.x = centre.x();
   pole.y = centre.y();
-  const Eigen::Matrix2d covariance = ray * sigma.cwiseAbs2().asDiagonal() * ray.transpose();
-  pole.covariance = 0.5 * (covariance + covariance.transpose());
+  pole.covariance = symmetrized<2>(ray * sigma.cwiseAbs2().asDiagonal() * ray.transpose());
   pole.confidence = std::clamp(value(Reported::confidence), 0.0, 1.0);
   pole.radius = std::max(0.01, target.radius + value(Reported::radius));
   pole.bottom = value(Reported::bottom);

@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/common/Statistics.h"
+
 namespace polemcl {
 namespace {
 
@@ -97,9 +99,7 @@ std::size_t ScanLineExtractor::dropDuplicates(std::vector<PoleDetection>& poles)
 void ScanLineExtractor::selectForFit(const SegmentCluster& stack) {
   m_widths.clear();
   for (auto i : stack) m_widths.push_back(m_slices[i].width());
-  const std::size_t middle = (m_widths.size() - 1) * 4 / 10;
-  std::nth_element(m_widths.begin(), m_widths.begin() + middle, m_widths.end());
-  const float typical = m_widths[middle];
+  const float typical = elementOfRank(m_widths, (m_widths.size() - 1) * 4 / 10);
   m_fitSlices.clear();
   for (auto i : stack) {
     const float column = m_slices[i].rho * static_cast<float>(m_sensor.columnAngle());

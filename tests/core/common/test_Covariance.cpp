@@ -1,0 +1,39 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/common/Covariance.h"
+
+namespace polemcl::test_covariance {
+
+Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
+  return (Eigen::Matrix2d() << xx, xy, yx, yy).finished();
+}
+
+TEST(Covariance, AcceptsSemidefiniteMatrices) {
+  for (const Eigen::Matrix2d& good : {matrix(0, 0, 0, 0), matrix(1, 1, 1, 1), matrix(0, 0, 0, 2)}) {
+    EXPECT_TRUE(isCovariance(good)) << good;
+    EXPECT_FALSE(isDefiniteCovariance(good)) << good;
+  }
+  EXPECT_TRUE(isDefiniteCovariance(matrix(2, 1, 1, 2)));
+}
+
+TEST(Covariance, AcceptsRoundingInProportionToTheMatrix) {
+  for (const double scale : {1e-8, 1.0, 1e6}) {
+    EXPECT_TRUE(isCovariance<2>(scale * matrix(1, 0, 5e-10, 1)));
+    EXPECT_TRUE(isCovariance<2>(scale * matrix(1, 0, 0, -5e-10)));
+    EXPECT_FALSE(isCovariance<2>(scale * matrix(1, 0, 2e-9, 1)));
+    EXPECT_FALSE(isCovariance<2>(scale * matrix(1, 0, 0, -2e-9)));
+  }
+}
+
+TEST(Covariance, RefusesOtherMatrices) {
+  for (const Eigen::Matrix2d& bad : {matrix(1, 2, 2, 1), matrix(-1, 0, 0, -1), matrix(1, 0.1, 0, 1),
+                                     matrix(1, 0, NAN, 1), matrix(INFINITY, 0, 0, 1)})
+    EXPECT_FALSE(isCovariance(bad)) << bad;
+  Eigen::Matrix3d indefinite = Eigen::Matrix3d::Identity();
+  indefinite(0, 2) = indefinite(2, 0) = 1.1;
+  EXPECT_FALSE(isCovariance(indefinite));
+}
+
+}  // namespace polemcl::test_covariance
