@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace polemcl {
 namespace {
@@ -90,6 +91,7 @@ Health HealthMonitor::update(const HealthInput& input) {
   m_health.modeShare = input.modeShare;
   m_health.spread = worstSigma(input.estimate.covariance);
   m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
+  confirm(input);
   judge(input);
   return m_health;
 }
@@ -137,50 +139,56 @@ void HealthMonitor::sumUp() {
   m_longShare = all.evidence > 0 ? all.matched / all.evidence : 0;
 }
 
-bool HealthMonitor::set(bool applies, HealthState state, HealthReason reason) {
-  if (applies) {
-    m_health.state = state;
-    m_health.reason = reason;
-  }
-  return applies;
+/// Confirms a new pose after enough metres of good matches.
+void HealthMonitor::confirm(const HealthInput& input) {
+  const HealthOptions& o = m_options;
+  const Viewpoint& here = m_views.back();
+  if (here.evidence > 0 && here.matched >= o.degradedShare * here.evidence)
+    m_goodDriven += input.metres;
+  const bool good = m_health.evidence >= o.minEvidence &&
+                    m_health.matchedShare >= o.degradedShare && m_longShare >= o.confirmShare &&
+                    m_health.spread < o.degradedSpread &&
+                    m_health.spreadHeading < o.degradedHeading;
+  if (good && m_goodDriven >= (m_found ? o.confirmFound : o.confirm)) m_confirmed = true;
 }
 
 void HealthMonitor::judge(const HealthInput& input) {
   const HealthOptions& o = m_options;
-  const bool tells = m_health.evidence >= o.minEvidence;
-  const Viewpoint& here = m_views.back();
-  if (here.evidence > 0 && here.matched >= o.degradedShare * here.evidence)
-    m_goodDriven += input.metres;
-  const bool good = tells && m_health.matchedShare >= o.degradedShare &&
-                    m_longShare >= o.confirmShare && m_health.spread < o.degradedSpread &&
-                    m_health.spreadHeading < o.degradedHeading;
-  if (good && m_goodDriven >= (m_found ? o.confirmFound : o.confirm)) m_confirmed = true;
+  const bool enough = m_health.evidence >= o.minEvidence;
+  const bool fewMatched = m_health.matchedShare < o.degradedShare;
+  const double lostShare = m_confirmed ? o.lostShare : s_hopeless * o.confirmShare;
+  const bool bare = m_longEvidence >= o.lostEvidence && m_longShare < lostShare && fewMatched;
+  const bool unconfirmed =
+      enough && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
+  const bool wide =
+      m_health.spread > o.degradedSpread || m_health.spreadHeading > o.degradedHeading;
+  const bool severalModes = m_health.modeShare < o.modeShare;
+  const bool blind =
+      m_time - m_seenTime > o.blindSeconds || m_driven - m_seenDriven > o.blindMetres;
 
   using State = HealthState;
   using Reason = HealthReason;
-  const bool few = tells && m_health.matchedShare < o.degradedShare;
-  const double lostShare = m_confirmed ? o.lostShare : s_hopeless * o.confirmShare;
-  const bool bareLong = m_longEvidence >= o.lostEvidence && m_longShare < lostShare &&
-                        m_health.matchedShare < o.degradedShare;
-  const bool unproven =
-      tells && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
-  if (set(bareLong || unproven, State::lost, Reason::mismatch)) return;
-  if (set(m_health.spread > o.lostSpread && m_health.modeShare >= o.modeShare, State::lost,
-          Reason::spread))
-    return;
-  if (set(m_health.modeShare < o.modeShare, State::degraded, Reason::ambiguous)) return;
-  if (set(!m_confirmed, State::degraded, Reason::converging)) return;
-  if (set(few, State::degraded, Reason::mismatch)) return;
-  if (set(m_health.spread > o.degradedSpread || m_health.spreadHeading > o.degradedHeading,
-          State::degraded, Reason::spread))
-    return;
-  if (set(m_driven < m_gapUntil, State::degraded, Reason::timeGap)) return;
-  const bool blind =
-      m_time - m_seenTime > o.blindSeconds || m_driven - m_seenDriven > o.blindMetres;
-  if (set(blind, State::degraded, Reason::noPoles)) return;
-  if (set(input.odometryContradicted, State::degraded, Reason::odometry)) return;
-  if (set(tells && m_health.innovation > o.innovation, State::degraded, Reason::innovation)) return;
-  set(true, State::ok, Reason::none);
+  const struct {
+    bool applies;
+    HealthState state;
+    HealthReason reason;
+  } rules[] = {
+      {bare || unconfirmed, State::lost, Reason::mismatch},
+      {m_health.spread > o.lostSpread && !severalModes, State::lost, Reason::spread},
+      {severalModes, State::degraded, Reason::ambiguous},
+      {!m_confirmed, State::degraded, Reason::converging},
+      {enough && fewMatched, State::degraded, Reason::mismatch},
+      {wide, State::degraded, Reason::spread},
+      {m_driven < m_gapUntil, State::degraded, Reason::timeGap},
+      {blind, State::degraded, Reason::noPoles},
+      {input.odometryContradicted, State::degraded, Reason::odometry},
+      {enough && m_health.innovation > o.innovation, State::degraded, Reason::innovation},
+      {true, State::ok, Reason::none},
+  };
+  const auto* rule =
+      std::find_if(std::begin(rules), std::end(rules), [](const auto& r) { return r.applies; });
+  m_health.state = rule->state;
+  m_health.reason = rule->reason;
 }
 
 }  // namespace polemcl

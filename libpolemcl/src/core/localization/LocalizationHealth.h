@@ -123,8 +123,8 @@ class HealthMonitor {
   void remember(const HealthInput& input);
   Viewpoint sumOver(double metres) const;
   void sumUp();
+  void confirm(const HealthInput& input);
   void judge(const HealthInput& input);
-  bool set(bool applies, HealthState state, HealthReason reason);
 
   HealthOptions m_options;
   Health m_health;

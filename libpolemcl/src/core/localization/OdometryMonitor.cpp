@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Transform.h"
+
 namespace polemcl {
 namespace {
 
@@ -83,7 +85,7 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     now.odometry = compose(last.odometry, motion);
     now.used = compose(last.used, motion);
     now.spent = last.spent + covariance;
-    result = m_contradicted ? replace(now, result) : watch(now, result);
+    result = m_state == State::contradicted ? replace(now, result) : watch(now, result);
     if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
   }
   m_past.push_back(now);
@@ -172,38 +174,41 @@ OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, co
   return finding;
 }
 
-/// While the odometry is believed.
+/// One scan while the odometry is believed or suspected.
 MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& odometry) {
   MonitoredMotion result = odometry;
-  bool first = true;
+  bool search = true;
   for (const std::size_t i : chosen(now.time)) {
-    const Finding finding = compare(m_past[i], now, first);
-    first = false;
+    const Finding finding = compare(m_past[i], now, search);
+    search = false;
+    if (finding.verdict == OdometryVerdict::contradicted)
+      return contradict(now, m_past[i], finding.alignment, odometry);
     if (finding.verdict == OdometryVerdict::unknown) continue;
-    if (finding.verdict == OdometryVerdict::agrees) {
-      result.verdict = OdometryVerdict::agrees;
-      result.pairs = std::max(result.pairs, finding.alignment.pairs);
-      continue;
-    }
-    const bool sure = m_suspected || finding.alignment.pairs >= s_surePairs;
-    m_suspected = true;
-    const Pose2D before = odometry.motion;
-    result = take(now, m_past[i], finding.alignment);
-    // The filter may have seen through a part of what is made up for now, or all of this is wrong.
-    const Pose2D change = result.motion;
-    result.covariance += doubt(before, change, 0.5);
-    if (sure) {
-      m_contradicted = true;
-      m_knownTime = m_keyTime = now.time;
-      return result;
-    }
-    result.verdict = OdometryVerdict::unknown;
-    result.motion = before;
-    result.covariance = odometry.covariance + doubt(before, change, 1);
-    now.used = compose(m_past.back().used, before);
+    result.verdict = OdometryVerdict::agrees;
+    result.pairs = std::max(result.pairs, finding.alignment.pairs);
+  }
+  m_state = State::believed;
+  return result;
+}
+
+/// The poles contradict the odometry. Many pairs, or a second scan in a row, decide.
+MonitoredMotion OdometryMonitor::contradict(Reference& now, const Reference& reference,
+                                            const ScanRegistration& alignment,
+                                            const MonitoredMotion& odometry) {
+  const bool decides = m_state == State::suspected || alignment.pairs >= s_surePairs;
+  MonitoredMotion result = take(now, reference, alignment);
+  if (decides) {
+    m_state = State::contradicted;
+    m_knownTime = m_keyTime = now.time;
+    // The filter may have corrected a part of this already, or the poles may be wrong.
+    result.covariance += doubt(odometry.motion, result.motion, 0.5);
     return result;
   }
-  m_suspected = false;
+  m_state = State::suspected;
+  result.verdict = OdometryVerdict::unknown;
+  result.covariance = odometry.covariance + doubt(odometry.motion, result.motion, 1);
+  result.motion = odometry.motion;
+  now.used = compose(m_past.back().used, odometry.motion);
   return result;
 }
 
@@ -217,7 +222,7 @@ MonitoredMotion OdometryMonitor::take(Reference& now, const Reference& reference
   // The step to come may make up for earlier ones: the speed is that of the whole way. Smoothed,
   // since it is what is left where poles are missing.
   const Pose2D speed = scaled(alignment.motion, 1 / (now.time - reference.time));
-  m_speed = m_contradicted ? middle(m_speed, speed) : speed;
+  m_speed = m_state == State::contradicted ? middle(m_speed, speed) : speed;
   now.used = compose(reference.used, alignment.motion);
   result.motion = relative(m_past.back().used, now.used);
   const double turn = relative(reference.used, m_past.back().used).yaw;
@@ -225,14 +230,14 @@ MonitoredMotion OdometryMonitor::take(Reference& now, const Reference& reference
   Eigen::Matrix3d rotation;  // into the robot frame before this step
   rotation << c, s, 0, -s, c, 0, 0, 0, 1;
   const Eigen::Matrix3d turned = rotation * alignment.covariance * rotation.transpose();
-  result.covariance = 0.5 * (turned + turned.transpose());
+  result.covariance = symmetrized(turned);
   result.covariance += Eigen::Vector3d(s_leastSigma * s_leastSigma, s_leastSigma * s_leastSigma,
                                        s_leastTurn * s_leastTurn)
                            .asDiagonal();
   return result;
 }
 
-/// While it is not.
+/// One scan while the odometry is contradicted.
 MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& odometry) {
   const Reference& last = m_past.back();
   MonitoredMotion result;
@@ -260,8 +265,8 @@ MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& 
     result.covariance += doubt(result.motion, odometry.motion, 0.5);
   }
   if (hasSettled(now) || now.time - m_knownTime > m_options.hold) {
-    m_contradicted = m_suspected = false;
-    // What was before is not compared with any more: the odometry was wrong then.
+    m_state = State::believed;
+    // Earlier scans are not compared with any more: the odometry was wrong then.
     while (m_past.size() > 1 && now.time - m_past.front().time > m_options.settle)
       m_past.pop_front();
   }

@@ -90,6 +90,11 @@ class OdometryMonitor {
     ScanRegistration alignment;
     double beyond = 0;  ///< of the odometry, outside the tolerance, standard deviations
   };
+  enum class State {
+    believed,     ///< the odometry is handed out
+    suspected,    ///< the last scan contradicted it with few pairs; the next contradiction decides
+    contradicted  ///< the motion of the poles, or the last known speed, is handed out
+  };
   Finding compare(const Reference& reference, const Reference& now, bool search) const;
   ScanRegistration align(const Reference& reference, const Reference& now, bool search) const;
   bool suffices(const ScanRegistration& alignment, const Reference& reference,
@@ -98,6 +103,8 @@ class OdometryMonitor {
                          const Eigen::Matrix3d& covariance) const;
   std::vector<std::size_t> chosen(double time) const;
   MonitoredMotion watch(Reference& now, const MonitoredMotion& odometry);
+  MonitoredMotion contradict(Reference& now, const Reference& reference,
+                             const ScanRegistration& alignment, const MonitoredMotion& odometry);
   MonitoredMotion replace(Reference& now, const MonitoredMotion& odometry);
   MonitoredMotion take(Reference& now, const Reference& reference,
                        const ScanRegistration& alignment);
@@ -107,7 +114,7 @@ class OdometryMonitor {
 
   OdometryMonitorOptions m_options;
   std::deque<Reference> m_past;
-  bool m_contradicted = false, m_suspected = false;
+  State m_state = State::believed;
   Pose2D m_speed;          ///< of the last motion handed out, per second
   double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s
   /// Of the scan that those after it are aligned with while contradicted, s. One for several, not
