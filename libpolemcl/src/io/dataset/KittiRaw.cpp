@@ -198,7 +198,8 @@ double parseKittiTime(std::string_view text, const std::string& where) {
     throw error;
   }
   const double fraction = tail.empty() ? 0 : *parseNumber("0" + std::string(tail));
-  return 86400.0 * daysSinceEpoch(year, month, day) + 3600 * hour + 60 * minute + second + fraction;
+  return 86400.0 * static_cast<double>(daysSinceEpoch(year, month, day)) + 3600 * hour +
+         60 * minute + second + fraction;
 }
 
 ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,

@@ -312,8 +312,9 @@ bool PoleParticleFilter::leavesEnough(const std::vector<double>& logLikelihoods)
   std::vector<double> weights = logWeights();
   for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += logLikelihoods[i];
   // Relative to the number that the filter keeps: after the start there may be many more.
-  const auto kept = std::min<std::size_t>(weights.size(), m_options.particles);
-  return effectiveShare(weights) * weights.size() >= m_options.tempering * kept;
+  const auto all = static_cast<double>(weights.size());
+  const auto kept = std::min(all, static_cast<double>(m_options.particles));
+  return effectiveShare(weights) * all >= m_options.tempering * kept;
 }
 
 double PoleParticleFilter::ESS() const {

@@ -127,7 +127,8 @@ class Fit {
         }
       }
     });
-    m_model.behindHouses = hidden > 0 ? static_cast<double>(hiddenFound) / hidden : 0;
+    m_model.behindHouses =
+        hidden > 0 ? static_cast<double>(hiddenFound) / static_cast<double>(hidden) : 0;
     for (int c = 0; c < static_cast<int>(DetectionClass::passing); ++c)
       for (std::size_t i = 0; i < nodes; ++i) {
         const Bin& own = bins[c][i];
@@ -258,7 +259,8 @@ class Fit {
                    m_model.detectionScore(track.kind, b.range), a.detection && b.detection);
         });
         if (hits.count() >= kFewPairs)
-          counted.push_back({lag * m_spacing.front(), sameDay, hits.correlation()});
+          counted.push_back(
+              {static_cast<double>(lag) * m_spacing.front(), sameDay, hits.correlation()});
       }
     return fitSpectrum(counted);
   }
@@ -279,7 +281,8 @@ class Fit {
           if (isPole(track.kind) && a.detection && b.detection) pairs.add(z(track, a), z(track, b));
         });
         if (pairs.count() >= kFewPairs)
-          counted.push_back({lag * m_spacing.front(), sameDay, pairs.correlation()});
+          counted.push_back(
+              {static_cast<double>(lag) * m_spacing.front(), sameDay, pairs.correlation()});
       }
     return fitSpectrum(counted);
   }

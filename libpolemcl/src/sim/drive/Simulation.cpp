@@ -46,6 +46,7 @@ void writeDrive(const Drive& drive, const SimulationOptions& options, const fs::
   Output times(directory / "times.txt"), poses(directory / "poses.txt"),
       odometry(directory / "odometry.txt");
   odometry.line(
+      "%s",
       "# dx dy dyaw sx sy syaw: motion since the scan before, in its frame (m, m, rad), and "
       "standard deviations\n");
   for (std::size_t i = 0; i < drive.time.size(); ++i) {

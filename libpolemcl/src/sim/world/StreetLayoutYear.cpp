@@ -89,9 +89,9 @@ void StreetLayout::settle(const Planned& old, bool beside) {
 
 void StreetLayout::snowBanks(double height) {
   if (height < 0.02) return;
-  constexpr double kPiece = 4.5;  // m
+  constexpr double kBank = 4.5;  // m
   for (const int side : {1, -1}) {
-    for (double s = kPiece / 2; s < m_street.length(); s += kPiece) {
+    for (double s = kBank / 2; s < m_street.length(); s += kBank) {
       const std::uint32_t id = m_nextId++;
       Random random = stream(0x540b, side, static_cast<std::uint64_t>(s));
       // A gap was shovelled.
@@ -99,7 +99,7 @@ void StreetLayout::snowBanks(double height) {
       const Site place = site(side, s, m_options.roadWidth / 2 + kSnowBankMiddle);
       const double x = place.base.x(), y = place.base.y();
       if (m_terrain.edge(x, y) < 0.25 || siteAt(x, y, 0) != nullptr) continue;
-      add(makeSnowBank(place, id, kPiece, height, random));
+      add(makeSnowBank(place, id, kBank, height, random));
     }
   }
 }
