@@ -9,13 +9,13 @@
 namespace polemcl::report {
 namespace {
 
-constexpr double width = 480, mapRight = 12, top = 12, bottom = 46;
+constexpr double mapWidth = 480, mapRight = 12, top = 12, bottom = 46;
 constexpr double mapMargin = 14;  // between the content and the frame, pixels
 constexpr double leastHeight = 180, mostHeight = 440;
 
 struct Box {
-  Range x{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  Range y = x;
+  AxisRange x{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  AxisRange y = x;
   void include(const std::vector<Eigen::Vector2d>& points) {
     for (const Eigen::Vector2d& point : points) {
       x = {std::min(x.low, point.x()), std::max(x.high, point.x())};
@@ -46,7 +46,7 @@ double leftMargin(const Box& box) {
 }
 
 double frameHeight(const Box& box, double left) {
-  const double inner = width - left - mapRight - 2 * mapMargin;
+  const double inner = mapWidth - left - mapRight - 2 * mapMargin;
   return std::clamp(inner * box.y.span() / box.x.span() + 2 * mapMargin, leastHeight, mostHeight);
 }
 
@@ -86,8 +86,8 @@ std::string mapFigure(const BatchResults& results, const SessionResult& result, 
   const std::string& configuration = results.configurations[result.configuration].name;
   const double left = leftMargin(box), height = frameHeight(box, left);
   const PlotAxes axes =
-      equalScales({left, top, width - left - mapRight, height}, box.x, box.y, mapMargin);
-  SvgPlot plot(ids.next(), width, top + height + bottom, "Map and paths of " + session,
+      equalScales({left, top, mapWidth - left - mapRight, height}, box.x, box.y, mapMargin);
+  SvgPlot plot(ids.next(), mapWidth, top + height + bottom, "Map and paths of " + session,
                "Map poles, true path and the path estimated by run 0 with the setting " +
                    configuration + ", seen from above.");
   drawAxes(plot, axes);

@@ -182,7 +182,7 @@ std::vector<ErrorHistogram> histogramsOf(const BatchResults& results,
 }
 
 /// The decades that hold all counts, at least two.
-Range exponentsOf(const std::vector<ErrorHistogram>& histograms) {
+AxisRange exponentsOf(const std::vector<ErrorHistogram>& histograms) {
   std::size_t first = ErrorHistogram::bins, last = 0;
   for (const ErrorHistogram& histogram : histograms)
     for (std::size_t i = 0; i < ErrorHistogram::bins; ++i)

@@ -48,7 +48,7 @@ std::string seriesClass(std::size_t series) {
   return 'c' + std::to_string(series % 6);
 }
 
-std::vector<SvgTick> roundTicks(const Range& range, double pixels, bool horizontal) {
+std::vector<SvgTick> roundTicks(const AxisRange& range, double pixels, bool horizontal) {
   double step = tickStep(range.span(), std::max(2, static_cast<int>(pixels / 36)));
   const auto widest = [&] {
     return std::max(tickLabel(range.low, step).size(), tickLabel(range.high, step).size());
@@ -61,7 +61,7 @@ std::vector<SvgTick> roundTicks(const Range& range, double pixels, bool horizont
   return all;
 }
 
-std::vector<SvgTick> decadeTicks(const Range& exponents, const std::string& unit) {
+std::vector<SvgTick> decadeTicks(const AxisRange& exponents, const std::string& unit) {
   std::vector<SvgTick> all;
   for (double exponent : ticks(exponents, 1)) {
     const int power = static_cast<int>(std::lround(exponent));

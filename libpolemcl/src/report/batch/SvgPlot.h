@@ -19,11 +19,11 @@ struct SvgTick {
   std::string label;
 };
 /// \brief Round ticks for a range of that many pixels, spaced such that labels do not touch.
-std::vector<SvgTick> roundTicks(const Range& range, double pixels, bool horizontal);
+std::vector<SvgTick> roundTicks(const AxisRange& range, double pixels, bool horizontal);
 /// \brief The powers of ten within a range of exponents; labels by the caller's unit.
 /// \param unit "m": 0.01 becomes "1 cm", as for lengths; otherwise the unit stands after the
 /// number.
-std::vector<SvgTick> decadeTicks(const Range& exponents, const std::string& unit);
+std::vector<SvgTick> decadeTicks(const AxisRange& exponents, const std::string& unit);
 
 /// \brief Collects shapes; str() gives the `<svg>`.
 class SvgPlot {

@@ -15,7 +15,7 @@ constexpr double labelSize = 14;
 
 }  // namespace
 
-std::vector<double> ticks(const Range& range, double step) {
+std::vector<double> ticks(const AxisRange& range, double step) {
   std::vector<double> values;
   const double first = std::ceil(range.low / step - 1e-9);
   const double last = std::floor(range.high / step + 1e-9);
@@ -28,7 +28,8 @@ std::string tickLabel(double value, double step) {
   return io::fixed(value, decimals);
 }
 
-PlotAxes equalScales(const Rect& frame, const Range& x, const Range& y, double marginPixels) {
+PlotAxes equalScales(const Rect& frame, const AxisRange& x, const AxisRange& y,
+                     double marginPixels) {
   const double width = frame.width - 2 * marginPixels, height = frame.height - 2 * marginPixels;
   // A single place still gets a plot: one metre is the smallest content.
   const double metresPerPixel =
@@ -42,7 +43,7 @@ PlotAxes equalScales(const Rect& frame, const Range& x, const Range& y, double m
 void drawGrid(Canvas& canvas, const PlotAxes& axes, const GridStyle& style) {
   const Rect& frame = axes.frame;
   canvas.fill(frame, panel);
-  const auto step = [](const Range& range, double pixels) {
+  const auto step = [](const AxisRange& range, double pixels) {
     return tickStep(range.span(), std::max(3, static_cast<int>(pixels)));
   };
   double xStep = step(axes.x, frame.width / 80), yStep = step(axes.y, frame.height / 60);

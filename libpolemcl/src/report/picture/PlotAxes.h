@@ -11,20 +11,20 @@
 namespace polemcl::report {
 
 /// \brief A range of values, low < high.
-struct Range {
+struct AxisRange {
   double low = 0, high = 1;
   double span() const { return high - low; }
 };
 
 /// \brief The multiples of `step` within the range, ends included (to a rounding error).
-std::vector<double> ticks(const Range& range, double step);
+std::vector<double> ticks(const AxisRange& range, double step);
 /// \brief A tick as text, with the decimals its step needs: (0.5, 0.25) -> "0.50".
 std::string tickLabel(double value, double step);
 
 /// \brief A rectangle on a canvas with a range of values along each side; y grows upwards.
 struct PlotAxes {
   Rect frame;
-  Range x, y;
+  AxisRange x, y;
 
   Eigen::Vector2d toPixel(double xValue, double yValue) const {
     return {frame.x + (xValue - x.low) / x.span() * frame.width,
@@ -34,7 +34,8 @@ struct PlotAxes {
 };
 
 /// \brief Axes with equal scales that show all of `content` with a margin, centred in the frame.
-PlotAxes equalScales(const Rect& frame, const Range& x, const Range& y, double marginPixels);
+PlotAxes equalScales(const Rect& frame, const AxisRange& x, const AxisRange& y,
+                     double marginPixels);
 
 /// \brief Which labels drawGrid() writes; empty titles are left out.
 struct GridStyle {
