@@ -91,7 +91,7 @@ void requireFrozen(const BatchFolder& folder, const BatchPlan& plan) {
   for (const auto& [name, sum] : plan.sums)
     if (mrpt::system::md5(io::contentOf(folder.path() / name)) != sum)
       throw Error((folder.path() / name).string() +
-                  " is not what the batch was begun with; begin it again with --resume");
+                  " has changed since the batch began; begin it again with --resume");
 }
 
 /// One task of a batch that was begun elsewhere.
@@ -119,7 +119,8 @@ void requireAllDone(const BatchFolder& folder, const BatchPlan& plan,
                      " tasks failed";
   if (!failures.empty())
     text += " (" + failures.front().task + ": " + failures.front().reason + ")";
-  throw Error(text + "; with those that need them " + std::to_string(undone) + " are not done");
+  throw Error(text + "; with the tasks that need them, " + std::to_string(undone) +
+              " are not done");
 }
 
 void printPlan(const BatchPlan& plan) {
@@ -162,16 +163,17 @@ void doBatch(const BatchOptions& options) {
       std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
     requireAllDone(folder, plan, results);
   } catch (const Error& error) {
-    throw Error(std::string(error.what()) + "; what is done stays, --resume goes on");
+    throw Error(std::string(error.what()) + "; finished tasks are kept, continue with --resume");
   }
 }
 
 namespace {
 
-/// With a word on how to go on; the children end with this process.
-void endWithAWord(int signal) {
-  constexpr char word[] = "pole-batch: interrupted; what is done stays, --resume goes on\n";
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, word, sizeof word - 1);
+/// Ends with a hint on how to continue; the children end with this process.
+void endWithAHint(int signal) {
+  constexpr char hint[] =
+      "pole-batch: interrupted; finished tasks are kept, continue with --resume\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, hint, sizeof hint - 1);
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -180,7 +182,7 @@ void endWithAWord(int signal) {
 
 int batchMain(int argc, const char* const* argv) {
   CommandLine line("pole-batch",
-                   "Sessions x settings x runs: imports, maps, localizes, and reports on it.");
+                   "Imports, maps and localizes sessions x settings x runs, and writes a report.");
   BatchOptions options;
   std::string task;
   bool dry = false;
@@ -188,21 +190,21 @@ int batchMain(int argc, const char* const* argv) {
   auto* batch = cli.add_option("batch", options.batch, "Batch (.ini), see config/batches/");
   cli.add_option("--output", options.output, "Folder of the batch: intermediate files, report");
   cli.add_option("--data", options.data, "Folder of the dataset: {data} in the batch");
-  cli.add_option("--jobs", options.jobs, "Tasks at the same time; 0: one for each core")
+  cli.add_option("--jobs", options.jobs, "Number of tasks at the same time; 0: one for each core")
       ->check(CLI::Range(0, 4096));
   cli.add_option("--imports", options.imports,
-                 "Of these, sessions imported at the same time; 0: any. Their scans lie on disk "
-                 "meanwhile")
+                 "Number of imports among them; 0: no limit. Scans lie on disk during an "
+                 "import")
       ->check(CLI::Range(0, 4096));
   addSetOption(cli, options.set);
-  cli.add_flag("--resume", options.resume, "Go on with the batch that is in the folder");
-  auto* slurm = cli.add_flag("--slurm", options.slurm, "On a cluster, as job arrays");
-  cli.add_option("--sbatch", options.sbatch, "One more argument for sbatch; may be repeated")
+  cli.add_flag("--resume", options.resume, "Continue the batch in the folder");
+  auto* slurm = cli.add_flag("--slurm", options.slurm, "Run on a Slurm cluster, as job arrays");
+  cli.add_option("--sbatch", options.sbatch, "Additional argument for sbatch; may be repeated")
       ->type_name("ARGUMENT")
       ->take_all()
       ->expected(1)
       ->needs(slurm);
-  cli.add_flag("--dry-run", dry, "Only print the tasks and their commands");
+  cli.add_flag("--dry-run", dry, "Print the tasks and their commands, do nothing");
   auto* one = cli.add_option("--task", task, "Do this one task of the batch in --output");
   batch->excludes(one);
   cli.parse_complete_callback([&] {
@@ -213,7 +215,7 @@ int batchMain(int argc, const char* const* argv) {
     options.quiet = line.quiet();
     if (!task.empty()) return doTaskOf(options, task);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-      if (std::signal(signal, endWithAWord) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+      if (std::signal(signal, endWithAHint) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
     if (dry) return printPlan(planBatch(readBatchSpec(options.batch, options.data, options.set)));
     doBatch(options);
   });

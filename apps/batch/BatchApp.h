@@ -15,7 +15,7 @@ struct BatchOptions {
   std::filesystem::path data;    ///< stands for `{data}`; may be empty
   std::vector<std::string> set;  ///< values in place of the INI's, `section.key=value`
   std::size_t jobs = 0;          ///< tasks at the same time; 0: one for each core
-  std::size_t imports = 0;       ///< of these, sessions whose scans lie on disk; 0: any
+  std::size_t imports = 0;       ///< imports at the same time, whose scans lie on disk; 0: no limit
   bool resume = false, slurm = false, quiet = false;
   std::vector<std::string> sbatch;  ///< more arguments for it
 };

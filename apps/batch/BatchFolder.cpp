@@ -81,17 +81,17 @@ void BatchFolder::take(const std::string& name, bool resume) {
   // Begun, but cut short before its plan was written: ours as well.
   const bool begun = known || fs::exists(m_path / s_lock);
   if (!begun && fs::exists(m_path) && (!fs::is_directory(m_path) || !fs::is_empty(m_path)))
-    throw Error(m_path.string() + ": is there and holds no batch; choose another --output");
+    throw Error(m_path.string() + ": exists and holds no batch; choose another --output");
   if (known && !resume)
     throw Error(m_path.string() +
-                ": holds a batch already; --resume does what is missing of it, or choose another "
+                ": holds a batch already; continue it with --resume, or choose another "
                 "--output");
   createFolder(m_path);
   const fs::path lock = m_path / s_lock;
   m_lock = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (m_lock < 0) throw Error(lock.string() + ": cannot be written: " + std::strerror(errno));
   if (::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
-    throw Error(m_path.string() + ": a batch is under way in this folder; wait for it, or end it");
+    throw Error(m_path.string() + ": a batch is under way in this folder; wait for it, or stop it");
   if (!known) return;
   std::string there;
   try {

@@ -64,7 +64,7 @@ std::string lastLine(const fs::path& log) {
 [[noreturn]] void become(const char* program, char* const* arguments, const char* folder,
                          const char* log, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG,
-          SIGKILL);  // nobody would wait for it, and the batch may go on elsewhere
+          SIGKILL);  // without its parent nobody waits for it
   const int in = ::open("/dev/null", O_RDONLY);
   const int out = ::open(log, O_WRONLY | O_CREAT | O_APPEND, 0666);
   if (::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&

@@ -43,8 +43,8 @@ struct BatchLimits {
 /// \brief Tasks that have to be done: those not done, those damaged, and all that need one of them.
 struct OpenTasks {
   std::vector<const BatchTask*> tasks;
-  /// Of these, the ones with outputs that look as if they were done: to be removed before the work
-  /// begins, see BatchFolder::remove().
+  /// Those with old outputs that look complete. Remove them before the work begins, see
+  /// BatchFolder::remove().
   std::vector<const BatchTask*> outdated;
   /// A line for each damaged task, and for each other build that did some.
   std::vector<std::string> notes;

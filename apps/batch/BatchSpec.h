@@ -20,7 +20,7 @@ struct BatchSession {
   std::string source;
   std::string input;
   std::string date;  ///< YYYY-MM-DD; "": as the times of its scans say
-  /// Of `simulated`: `section.key=value`, see loadSettings(); those of all, then its own.
+  /// Settings of `simulated`: `section.key=value`, see loadSettings(); common ones first.
   std::vector<std::string> set;
   std::size_t every = 1, offset = 0;  ///< scans taken, as `pole-import` has it
   double odometryNoise = 0;           ///< share of the true motion; 0: odometry of the dataset

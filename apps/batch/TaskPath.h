@@ -20,8 +20,8 @@ TaskKind taskKind(const std::string& name);
 
 struct TaskPath {
   TaskKind kind = TaskKind::poles;
-  /// Of poles and truth: SESSION; of map and score: CONFIGURATION, SESSION; of run: both and its
-  /// number. Such names hold no dots.
+  /// SESSION for poles and truth; CONFIGURATION, SESSION for map and score; run adds its number.
+  /// Names hold no dots.
   std::vector<std::string> parts;
 
   /// \brief Name of the task and of its folder: `KIND.PART.PART`.

@@ -89,7 +89,7 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
   m_cli.set_version_flag("--version",
                          program + " " + version() + " (build " + buildIdentity() + ")");
   m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors");
-  m_cli.add_option("--threads", m_threads, "At most so many threads; 0: one for each core")
+  m_cli.add_option("--threads", m_threads, "Number of threads at most; 0: one for each core")
       ->check(CLI::Range(0, 10000));
   // So that `pole-eval map --quiet` works as well as `pole-eval --quiet map`.
   m_cli.fallthrough();
@@ -140,7 +140,7 @@ int CommandLine::run(int argc, const char* const* argv, const std::vector<Subcom
 }
 
 void addSetOption(CLI::App& cli, std::vector<std::string>& assignments) {
-  cli.add_option("--set", assignments, "A setting in place of the INI file's; may be repeated")
+  cli.add_option("--set", assignments, "Overrides a setting of the INI file; may be repeated")
       ->type_name("SECTION.KEY=VALUE")
       ->take_all()
       ->expected(1);

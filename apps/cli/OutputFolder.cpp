@@ -21,7 +21,7 @@ void refuseForeign(const fs::path& target, const std::string& what,
   const std::string advice = ", so it is not replaced; choose another folder or remove it";
   if (!fs::exists(fs::symlink_status(target))) return;
   if (!fs::is_directory(fs::symlink_status(target)))
-    throw Error(target.string() + ": is there and is no folder" + advice);
+    throw Error(target.string() + ": exists and is not a folder" + advice);
   if (fs::is_empty(target)) return;
   for (const auto& entry : fs::directory_iterator(target)) {
     const std::string name = entry.path().filename().string();
@@ -42,7 +42,7 @@ OutputFolder::OutputFolder(const fs::path& target, std::string what,
     m_temporary = m_target;
     m_temporary += "." + std::to_string(::getpid()) + ".tmp";
     if (!fs::create_directory(m_temporary))
-      throw Error(m_temporary.string() + ": is there already; remove it");
+      throw Error(m_temporary.string() + ": exists already; remove it");
   } catch (const fs::filesystem_error& error) {
     throw Error(m_target.string() + ": cannot be created: " + error.code().message());
   }

@@ -73,12 +73,12 @@ Subcommand mapCommand(CLI::App& program) {
   cli.add_option("--truth", options.truth, "True poles: .polemap, .csv with x,y columns, or .npz")
       ->required();
   cli.add_option("--map", options.map, "Poles to score, in any of these formats")->required();
-  cli.add_option("--radius", options.radius, "A pole is right within this distance, m")
+  cli.add_option("--radius", options.radius, "Distance within which a pole is right, m")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   cli.add_flag("--one-to-one", options.oneToOne,
                "Match each pole at most once (default: count map poles near any true pole)");
-  cli.add_option("--json", options.json, "Write the figures to this file");
+  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool) { return scoreText(evalMap(*shared)); }};
 }
 
@@ -94,7 +94,7 @@ Subcommand trajectoryCommand(CLI::App& program) {
                  "Evaluate at each `pose`, or every `metre` along the true path (default: pose)")
       ->transform(CLI::CheckedTransformer(samplings))
       ->type_name("pose|metre");
-  cli.add_option("--json", options.json, "Write the figures to this file");
+  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
   cli.add_option("--map", options.map, "Pole map to draw under the trajectories");
   cli.add_option("--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
   cli.add_option("--png", options.png, "Write a picture of map, truth and estimate");

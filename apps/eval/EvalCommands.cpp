@@ -55,36 +55,37 @@ std::string scoreText(const RotationScore& s, double radius) {
 
 Subcommand detectionsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
-      "detections", "Poles of single scans against the true ones of a simulated folder");
+      "detections", "Compares the poles of single scans with the true poles of a simulated folder");
   const auto options = std::make_shared<EvalDetectionsOptions>();
   cli.add_option("--scans", options->scans, "Folder that pole-simulate wrote")->required();
   cli.add_option("--poles", options->poles, "Rawlog of poles extracted from these scans")
       ->required();
-  cli.add_option("--radius", options->radius, "A pole is right within this distance, m")
+  cli.add_option("--radius", options->radius, "Distance within which a pole is right, m")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   cli.add_option("--visible", options->visible,
                  "Write the true poles visible in the scans to this table (CSV)");
   cli.add_option("--min-scans", options->minScans,
-                 "Poles visible in fewer scans are left out of that table")
+                 "Least number of scans that see a pole of that table")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   return {&cli, [options](bool) { return scoreText(evalDetections(*options)); }};
 }
 
 Subcommand repeatabilityCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("repeatability", "Poles found again in the next scans");
+  auto& cli =
+      *program.add_subcommand("repeatability", "Share of poles found again in the next scans");
   const auto options = std::make_shared<EvalRepeatabilityOptions>();
   cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
   cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
-  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalRepeatability(*options)); }};
 }
 
 Subcommand rotationCommand(CLI::App& program) {
-  auto& cli =
-      *program.add_subcommand("rotation", "Poles found again when scans are turned about z");
+  auto& cli = *program.add_subcommand("rotation",
+                                      "Share of poles found again when scans are turned about z");
   const auto options = std::make_shared<EvalRotationOptions>();
   const auto config = std::make_shared<std::string>();
   cli.add_option("--config", *config, "INI file, see config/")->required();
@@ -95,10 +96,10 @@ Subcommand rotationCommand(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  cli.add_option("--radius", options->radius, "A pole is found again within this distance, m")
+  cli.add_option("--radius", options->radius, "Distance within which a pole is found again, m")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options, config, set](bool quiet) {
             Progress progress("turn", 0, quiet);
             options->progress = [&](std::size_t done, std::size_t total) {
@@ -122,7 +123,7 @@ Subcommand modelCommand(CLI::App& program) {
       "model", "Fits a model of detections ([simulation] detections) to ray-cast drives");
   const auto options = std::make_shared<FitModelOptions>();
   cli.add_option("--drives", options->drives,
-                 "Rawlogs of pole-simulate --poles: two for each street, of two days")
+                 "Rawlogs of pole-simulate --poles: for each street two, of two days")
       ->required();
   cli.add_option("--model", options->model, "Model to write (JSON)")->required();
   return {&cli, [options](bool) { return scoreText(fitModel(*options), *options); }};
@@ -139,17 +140,17 @@ std::string scoreText(const sim::DetectionSummary& s) {
   out << "centre error: median " << shownText(s.centreMedian, 1, 100) << "  90 % "
       << shownText(s.centre90, 1, 100) << " cm; normalised squared error: mean "
       << shownText(s.neesMean, 2) << "  median " << shownText(s.neesMedian, 2)
-      << "; confidence: mean " << shownText(s.confidence, 3) << "\nmean way found without a break "
+      << "; confidence: mean " << shownText(s.confidence, 3) << "\nmean path found without a break "
       << shownText(s.foundRun, 2) << " m, missed " << shownText(s.missedRun, 2) << " m\n";
   return out.str();
 }
 
 Subcommand sightingsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
-      "sightings", "Poles of a simulated drive against the true ones, without its scans");
+      "sightings", "Compares the poles of a simulated drive with the true poles; needs no scans");
   const auto options = std::make_shared<EvalObservationsOptions>();
   cli.add_option("--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
-  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalObservations(*options)); }};
 }
 
@@ -183,7 +184,7 @@ std::string scoreText(const std::vector<MotionComparison>& stretches) {
 
 Subcommand motionCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
-      "motion", "Do the true poses agree with how the poles move from scan to scan?");
+      "motion", "Compares the true poses with the motion of the poles from scan to scan");
   const auto options = std::make_shared<EvalMotionOptions>();
   cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
   cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
@@ -191,7 +192,7 @@ Subcommand motionCommand(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalMotion(*options)); }};
 }
 

@@ -21,19 +21,20 @@ void declareFiles(CLI::App& cli, TrialDriveFiles& files) {
 }
 
 Subcommand globalCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("global", "Random starts without a pose: are they found?");
+  auto& cli = *program.add_subcommand("global",
+                                      "Starts at random places without a pose: is the pose found?");
   const auto shared = std::make_shared<GlobalTrialsOptions>();
   GlobalTrialsOptions& options = *shared;
   declareFiles(cli, options.files);
   cli.add_option("--trials", options.trials, "Random starts")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  cli.add_option("--seed", options.seed, "Of the starts; trial i filters with seed + i")
+  cli.add_option("--seed", options.seed, "Seed of the starts; the filter of trial i uses seed + i")
       ->capture_default_str();
-  cli.add_option("--metres", options.metres, "Driven in each trial, at most, m")
+  cli.add_option("--metres", options.metres, "Longest path of a trial, m")
       ->check(positiveNumber())
       ->capture_default_str();
-  cli.add_option("--json", options.json, "Write the figures to this file");
+  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
             shared->progress = [&] { progress.step(); };
@@ -63,27 +64,31 @@ std::string localizationText(const ConsistencyResult& result) {
 }
 
 Subcommand consistencyCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("consistency", "Are poses as uncertain as they say?");
+  auto& cli =
+      *program.add_subcommand("consistency", "Compares the errors of poses with their covariances");
   const auto options = std::make_shared<EvalConsistencyOptions>();
   cli.add_option("--truth", options->truth,
-                 "True robot poses, TUM: one file for all runs, or one for each")
+                 "True robot poses, TUM: one file for all runs, or one per run")
       ->required();
   cli.add_option("--cov", options->cov, "run_NN_cov.csv of pole-localize, one or several")
       ->required();
   cli.add_option("--health", options->health,
-                 "run_NN_health.csv of each: only poses that are ok count");
-  cli.add_option("--skip-seconds", options->skipSeconds, "Left out since the first pose, s")
+                 "run_NN_health.csv of each run: count only poses that are ok");
+  cli.add_option("--skip-seconds", options->skipSeconds,
+                 "Time after the first pose that is left out, s")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  cli.add_option("--skip-metres", options->skipMetres, "And along the true path, m")
+  cli.add_option("--skip-metres", options->skipMetres,
+                 "Path after the first pose that is left out, m")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  cli.add_option("--json", options->json, "Write the figures to this file");
+  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return localizationText(evalConsistency(*options)); }};
 }
 
 Subcommand faultsCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("faults", "Faults in a drive: noticed, and recovered from?");
+  auto& cli = *program.add_subcommand(
+      "faults", "Injects faults into a drive: are they noticed, does localization recover?");
   const auto shared = std::make_shared<FaultTrialsOptions>();
   FaultTrialsOptions& options = *shared;
   declareFiles(cli, options.files);
@@ -91,26 +96,27 @@ Subcommand faultsCommand(CLI::App& program) {
   for (const Fault fault :
        {Fault::none, Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck, Fault::slip})
     faults[name(fault)] = fault;
-  cli.add_option("--fault", options.fault.fault, "What goes wrong; none: the whole drive as it is")
+  cli.add_option("--fault", options.fault.fault, "Kind of fault; none: the whole drive as it is")
       ->required()
       ->transform(CLI::CheckedTransformer(faults))
       ->type_name("none|kidnap|wrong-map|blind|stuck|slip");
   cli.add_option("--other-map", options.otherMap, "The wrong map (.polemap), for wrong-map");
-  cli.add_option("--trials", options.trials, "Places of the fault; of none, runs of the drive")
+  cli.add_option("--trials", options.trials,
+                 "Number of trials, each with the fault at another place")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  cli.add_option("--seed", options.seed, "Of the faults; trial i filters with seed + i")
+  cli.add_option("--seed", options.seed, "Seed of the faults; the filter of trial i uses seed + i")
       ->capture_default_str();
   const auto number = [&](const char* flag, double& value, const char* meaning) {
     cli.add_option(flag, value, meaning)->check(positiveNumber())->capture_default_str();
   };
-  number("--lead", options.fault.lead, "Driven before the fault, s");
-  number("--duration", options.fault.duration, "Of blind, stuck and slip, s");
-  number("--tail", options.fault.tail, "Driven after the fault, m");
+  number("--lead", options.fault.lead, "Time before the fault, s");
+  number("--duration", options.fault.duration, "Duration of blind, stuck and slip, s");
+  number("--tail", options.fault.tail, "Path after the fault, m");
   cli.add_option("--slip", options.fault.slip, "Error of the slipping odometry's scale")
       ->check(positiveNumber() & CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  cli.add_option("--json", options.json, "Write the figures to this file");
+  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
             shared->progress = [&] { progress.step(); };

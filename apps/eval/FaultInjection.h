@@ -26,7 +26,7 @@ struct FaultOptions {
   double duration = 30;                ///< of blind, stuck, slip, s
   double tail = 150;                   ///< driven after the fault's end, or after the kidnapping, m
   double slip = 0.2;                   ///< error of the slipping odometry's scale
-  double minJump = 20, maxJump = 500;  ///< kidnapped by so many metres, straight
+  double minJump = 20, maxJump = 500;  ///< straight distance of the kidnapping, m
 };
 
 /// \brief A piece of the drive with the fault in it. Element i of the lists is scan i.
@@ -37,7 +37,7 @@ struct FaultyDrive {
   std::size_t begin = 0;       ///< first scan with the fault
   std::size_t end = 0;         ///< first scan after it; kidnap, wrongMap: `begin`
   std::size_t origin = 0;      ///< scan of the whole drive that is the first here
-  double jump = 0;             ///< kidnap: by so far, m
+  double jump = 0;             ///< distance of the kidnapping, m
 };
 
 /// \brief Draws a place for the fault and puts it in; `none` leaves the whole drive.

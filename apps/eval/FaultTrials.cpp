@@ -8,7 +8,7 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double s_stays = 5;    // a pose that is right over so many metres is found, m
+constexpr double s_stays = 5;    // path over which a pose must be right to count as found, m
 constexpr double s_judged = 20;  // metres after `ok` whose error is averaged, m
 constexpr double s_withinSeconds = 5, s_withinMetres = 20;
 

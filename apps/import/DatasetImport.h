@@ -37,7 +37,7 @@ struct ImportOptions {
   void validate() const;
 };
 
-/// \brief Where the frame of the clouds is on the robot if nobody says so: NCLT's body, turned
+/// \brief Default pose of the frame of the clouds on the robot: NCLT's body, turned
 /// upright; MulRan's Ouster on the vehicle; else identity.
 Eigen::Isometry3d datasetSensorPose(Dataset dataset);
 

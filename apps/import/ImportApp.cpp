@@ -56,7 +56,7 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   cli.add_option("--odometry-noise", options.odometryNoise,
-                 "Odometry: true motion, noise of this share of each component (0.02 for 2 %)")
+                 "Make odometry from the true motion, with noise of this share (0.02 for 2 %)")
       ->check(CLI::NonNegativeNumber);
   cli.add_option("--seed", options.seed, "Seed of that noise")
       ->check(CLI::NonNegativeNumber)
@@ -68,13 +68,12 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
       ->check(sensorPoseProblem);
   auto* poses = cli.add_option("--poses", options.poses,
                                "TUM file of true poses, instead of those of the dataset");
-  cli.add_option("--poses-of", texts.posesOf, "What has these poses")
+  cli.add_option("--poses-of", texts.posesOf, "Whose poses these are")
       ->check(CLI::IsMember({"robot", "sensor"}))
       ->capture_default_str()
       ->needs(poses);
   if (dataset == Dataset::nclt)
-    cli.add_option("--session", texts.session,
-                   "Session of --input where that holds several: 2012-01-15")
+    cli.add_option("--session", texts.session, "Session, when --input holds several: 2012-01-15")
         ->type_name("DATE");
   if (dataset == Dataset::kittiRaw)
     cli.add_option("--calib", options.calibration,

@@ -41,12 +41,13 @@ void addLabelsOptions(CLI::App& cli, LabelsOptions& options) {
     cli.add_option(name, value, what)->capture_default_str();
   };
   number("--stems", labels.stems, "Classes of trunks and poles");
-  number("--signs", labels.signs, "Classes of what hangs on them");
-  number("--max-range", labels.maxRange, "Farther points are not used, m");
-  number("--max-width", labels.maxWidth, "Wider things are several poles, m");
-  number("--min-height", labels.minHeight, "Of a pole, from its lowest to its highest point, m");
-  number("--min-scans", labels.minScans, "That see a pole");
-  number("--min-points", labels.minPoints, "Of a pole");
+  number("--signs", labels.signs, "Classes of signs and lights on poles");
+  number("--max-range", labels.maxRange, "Range of the points used, m");
+  number("--max-width", labels.maxWidth, "Largest width of one pole, m");
+  number("--min-height", labels.minHeight,
+         "Least height of a pole, from its lowest to its highest point, m");
+  number("--min-scans", labels.minScans, "Least number of scans that see a pole");
+  number("--min-points", labels.minPoints, "Least number of points of a pole");
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ LabelsSummary mapLabels(const LabelsOptions& options,
 
 int labelsMain(int argc, const char* const* argv) {
   CommandLine line("pole-labels",
-                   "Maps the poles that really stand, from SemanticKITTI's labels and poses.");
+                   "Builds a map of the true poles from the labels and poses of SemanticKITTI.");
   LabelsOptions options;
   addLabelsOptions(line.cli(), options);
   return line.run(argc, argv, [&] {

@@ -145,15 +145,16 @@ std::string wrongRate(const std::string& text) {
 
 void addViewOptions(CLI::App& cli, LocalizeJob& job) {
   cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
-  cli.add_flag("--hold", job.hold, "--live, and the window stays until it is closed");
+  cli.add_flag("--hold", job.hold, "As --live, and keep the window until it is closed");
   cli.add_option("--rate", job.rate,
-                 "Pace of the input: 1x as it was driven, 2.5x, max. Default: max; with a window "
+                 "Speed of the input: 1x as driven, 2.5x, max. Default: max; with a window "
                  "[view] rate")
       ->check(wrongRate);
-  cli.add_option("--scenes", job.scenes, "A .3Dscene every N scans, in OUTPUT/run_00_scenes")
+  cli.add_option("--scenes", job.scenes,
+                 "Write a .3Dscene every N scans, into OUTPUT/run_00_scenes")
       ->check(CLI::Range(0, 1000000000));
   cli.add_option("--frames", job.frames, "Folder for PNG frames; needs no display");
-  cli.add_option("--frame-every", job.frameEvery, "A frame every N scans")
+  cli.add_option("--frame-every", job.frameEvery, "Write a frame every N scans")
       ->check(CLI::Range(1, 1000000000));
 }
 
@@ -173,11 +174,13 @@ int localizeMain(int argc, const char* const* argv) {
   cli.add_option("--seed", job.seed, "Seed of the first run; run i uses seed + i");
   cli.add_option("--particles", job.particles, "Particles of the filter")
       ->check(CLI::Range(1, 1000000));
-  auto* start = cli.add_option("--start", job.start,
-                               "X,Y,YAW_DEG,RADIUS,HEADING_DEG: where it starts, m and deg")
-                    ->delimiter(',')
-                    ->expected(5);
-  cli.add_flag("--global", job.anywhere, "No start pose: the whole map is searched on the way")
+  auto* start =
+      cli.add_option("--start", job.start,
+                     "Start: X,Y,YAW_DEG and its uncertainty RADIUS,HEADING_DEG, m and deg")
+          ->delimiter(',')
+          ->expected(5);
+  cli.add_flag("--global", job.anywhere,
+               "Start without a pose: search the whole map during the drive")
       ->excludes(start);
   addViewOptions(cli, job);
   cli.add_flag("--allow-truncated", job.allowTruncated,

@@ -46,7 +46,7 @@ Eigen::Vector2d lengthsOfDegrees(const io::Datum& datum) {
   return {metres * std::max(0.01, std::cos(datum.latitude * M_PI / 180)), metres};
 }
 
-/// With so many decimals, as JSON has numbers. (nlohmann prints 17 digits of 0.1 + 0.2.)
+/// A number with this many decimals. (nlohmann prints 17 digits of 0.1 + 0.2.)
 double rounded(double value, double steps) {
   return std::round(value * steps) / steps;
 }

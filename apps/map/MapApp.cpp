@@ -20,7 +20,7 @@ struct MappingLine {
 
 void addDatumOption(CLI::App& cli, std::string& datum, const std::string& whose) {
   cli.add_option("--datum", datum,
-                 "Of " + whose + ": LAT,LON of the origin, and the heading of x from east")
+                 "Origin of " + whose + " on Earth: LAT,LON, and the heading of x from east")
       ->type_name("LAT,LON[,YAW_DEG]");
 }
 
@@ -35,7 +35,7 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
   cli.add_option("--truth", job.truths, "True robot poses, TUM, one file per rawlog")->required();
   cli.add_option("--output", job.output, "Map to write, .polemap")->required();
   cli.add_option("--date", job.dates,
-                 "Day of each rawlog, YYYY-MM-DD, where its times do not tell");
+                 "Day of each rawlog, YYYY-MM-DD, when its times do not tell it");
   addDatumOption(cli, line.datum, "the truth");
   cli.add_option("--scene", job.scene, "Also write a .3Dscene of the map and the paths");
   cli.add_option("--csv", job.csv, "Also write the poles to this table");
@@ -68,9 +68,9 @@ Subcommand buildCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("build", "Builds a map from sessions at true poses");
   const auto job = std::make_shared<MapBuildJob>();
   cli.add_option("--add", job->add,
-                 "Map that keeps its scans: the rawlogs are sessions after those it was made from");
+                 "Map that keeps its scans; the rawlogs are added as later sessions");
   cli.add_flag("--keep-scans", job->keepScans,
-               "Keep the poles of the used scans in the map, so that --add can go on from it");
+               "Keep the poles of the used scans in the map, for a later --add");
   return mappingCommand(cli, job, buildMap);
 }
 

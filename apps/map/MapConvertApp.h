@@ -15,7 +15,7 @@ namespace polemcl::apps {
 /// `.npz` (the first implementation's), `.geojson`.
 struct MapConvertOptions {
   std::filesystem::path input, output;
-  /// Of the map, where the input has none: must be the same where it has one.
+  /// Datum of the map. Needed when the input has none; otherwise both must agree.
   std::optional<io::Datum> datum = {};
 };
 

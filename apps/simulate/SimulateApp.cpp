@@ -113,14 +113,14 @@ int simulateMain(int argc, const char* const* argv) {
   line.cli().add_option("--config", options.config, "Settings (INI)")->required();
   addSetOption(line.cli(), options.set);
   const auto* output = line.cli().add_option(
-      "--output", options.output, "Folder of scans to write; an earlier simulation is replaced");
+      "--output", options.output, "Folder of scans to write; replaces an earlier simulation");
   const auto* poles = line.cli().add_option(
       "--poles", options.poles,
       "Rawlog of poles to write, with P.tum, P_poles_gt.csv, P_config.ini beside it");
-  line.cli().add_option("--seed", options.seed, "Another seed, another street ([world] seed)");
-  line.cli().add_option("--day", options.day, "0: the day of the map ([world] day)");
+  line.cli().add_option("--seed", options.seed, "Seed of the street ([world] seed)");
+  line.cli().add_option("--day", options.day, "Day; 0 is the day of the map ([world] day)");
   line.cli().add_option("--length", options.length, "Length of the street, m ([world] length_m)");
-  line.cli().add_option("--sensor", options.sensor, "LiDAR, instead of [sensor] model");
+  line.cli().add_option("--sensor", options.sensor, "LiDAR model ([sensor] model)");
   line.cli().parse_complete_callback([&] {
     if (output->count() + poles->count() == 0) throw CLI::RequiredError("--output or --poles");
   });

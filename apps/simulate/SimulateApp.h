@@ -29,8 +29,8 @@ struct SimulateOptions {
 /// \brief Simulates, and writes the folder layout with truth, labels and `config.ini`, the
 /// effective settings. An earlier simulation in the same place is replaced once the new one is
 /// complete. \param quiet No progress bar. \throws Error when a setting is out of range, the
-/// configuration's LiDAR is none the simulator
-///         knows, or something else than an earlier simulation is in the place of the output.
+/// simulator does not know the configured LiDAR,
+///         or the output exists and is not an earlier simulation.
 sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet);
 
 /// \brief Simulates and writes the poles of the scans (PoleDriveFiles), and the folder of

@@ -184,7 +184,8 @@ TEST_F(BatchApp, FailedSessionsAreReportedAndStopNoOthers) {
   const std::string message = messageOf([&] { doBatch(options); });
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(message.find("4 of 14 tasks failed (run.kept.s2.00: "), std::string::npos) << message;
-  EXPECT_NE(message.find("with those that need them 4 are not done"), std::string::npos) << message;
+  EXPECT_NE(message.find("with the tasks that need them, 4 are not done"), std::string::npos)
+      << message;
   EXPECT_NE(said.find("run.once.s2.00 failed: "), std::string::npos) << said;
   const auto results = resultsIn(*s_folder / "broken");
   EXPECT_EQ(results["failures"].size(), 4u);
@@ -227,7 +228,7 @@ TEST_F(BatchApp, TasksDoneByHandNeedTheSettingsOfTheBatch) {
                                       "run.once.s1.00"};
   const std::string settings = readText(*s_folder / "hand/settings/once.ini");
   writeText(*s_folder / "hand/settings/once.ini", settings + "\n# edited\n");
-  expectFailure(runProgram(batchMain, task), {"once.ini", "not what the batch was begun with"});
+  expectFailure(runProgram(batchMain, task), {"once.ini", "has changed since the batch began"});
   writeText(*s_folder / "hand/settings/once.ini", settings);
   EXPECT_EQ(runProgram(batchMain, task).code, 0);
   EXPECT_EQ(left("hand"), left("done"));

@@ -49,7 +49,7 @@ class MotionEvalTest : public StreetTest {
     writer.commit();
   }
 
-  /// Poses on the same curve, each step so many times as long.
+  /// Poses on the same curve, each step longer by this factor.
   void writeTruth(std::size_t poses, double scale) {
     std::ostringstream rows;
     Pose2D pose;

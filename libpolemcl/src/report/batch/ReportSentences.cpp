@@ -145,7 +145,7 @@ std::string troubleSentence(const BatchResults& results,
     return element("p", (counts.runs == 1 ? "The only run" : "All " + plural(counts.runs, "run")) +
                             " kept " + (counts.runs == 1 ? "its" : "their") +
                             " pose; none failed.");
-  std::string text = "Of " + plural(counts.runs, "run") + ", " + countText(counts.lost) +
+  std::string text = countText(counts.lost) + " of " + plural(counts.runs, "run") +
                      " lost the pose and " + countText(counts.failed) + " failed.";
   text += lostSessions(results, summaries);
   if (counts.lost > 0)

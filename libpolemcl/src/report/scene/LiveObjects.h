@@ -17,7 +17,7 @@ inline const TColor mapColor(0x8a, 0x93, 0x9f), matchedColor(0x00, 0x9e, 0x63),
     particleColor(0x6a, 0x1b, 0x9a), particleLight(0xe9, 0xa8, 0xd8),
     ellipseColor(0x10, 0x10, 0x10);
 
-/// Of the words and of the vehicle: blue, amber, red.
+/// Colour of the words and of the vehicle: blue, amber, red.
 TColor colorOf(HealthState state);
 
 mrpt::opengl::CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles);
@@ -28,7 +28,7 @@ mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& pole
 mrpt::opengl::CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched);
 /// A ribbon; null without a way.
 mrpt::opengl::CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way);
-/// An arrow of so many metres that points where the pose does, its middle on it.
+/// An arrow of this length, m, in the direction of the pose, its middle on the pose.
 mrpt::opengl::CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& color);
 mrpt::opengl::CSetOfObjects::Ptr makeHypotheses(const std::vector<GlobalHypothesis>& places,
                                                 double length, int letters);

@@ -31,7 +31,7 @@ namespace polemcl::report {
 class LiveScene {
  public:
   /// \param map As drawn all the time. \param title One line, for the text. \param textScale
-  /// Letters and points are so many times larger: 2 for pictures that are halved afterwards.
+  /// Factor on the size of letters and points: 2 for pictures that are halved afterwards.
   /// \throws Error on a map without poles or with a coordinate that is not finite.
   LiveScene(const std::vector<MapPole>& map, std::string title, double textScale = 1);
 
