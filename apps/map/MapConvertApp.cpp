@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "cli/Version.h"
+#include "core/mapping/MapAccumulator.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "io/map/PoleTables.h"

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/common/KdTree2D.h"
+#include "core/common/PoleGrid.h"
 #include "core/localization/PoleLikelihood.h"
 
 using namespace polemcl;

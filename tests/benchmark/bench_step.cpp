@@ -13,6 +13,7 @@
 #include <cmath>
 #include <random>
 
+#include "mrpt/filter/MotionAction.h"
 #include "mrpt/filter/PoleParticleFilter.h"
 
 using namespace polemcl;

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/mapping/MapAccumulator.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"

@@ -1,5 +1,6 @@
 #include <random>
 
+#include "core/mapping/MapAccumulator.h"
 #include "io/map/MapScans.h"
 #include "io/map/PoleMapFile.h"
 #include "support/IoFiles.h"

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/common/KdTree2D.h"
+#include "core/common/PoleGrid.h"
+
 namespace polemcl {
 namespace {
 
@@ -37,22 +40,24 @@ double checkedRadius(double radius) {
 }  // namespace
 
 PoleIndex::PoleIndex(const std::vector<MapPole>& poles, double preparedRadius)
-    : m_tree(centres(poles)), m_grid(centres(poles), checkedRadius(preparedRadius)) {
+    : m_tree(std::make_shared<const KdTree2D>(centres(poles))),
+      m_grid(std::make_shared<const PoleGrid>(centres(poles), checkedRadius(preparedRadius))),
+      m_preparedRadius(preparedRadius) {
   m_variances.reserve(poles.size());
   for (const MapPole& pole : poles) m_variances.push_back(0.5 * pole.covariance.trace());
 }
 
 std::optional<PoleIndex::Neighbour> PoleIndex::nearest(double x, double y, double radius) const {
   if (!(radius > 0)) return std::nullopt;
-  const PointHit hit = radius <= m_grid.radius() ? m_grid.nearest(x, y, radius * radius)
-                                                 : m_tree.nearest(x, y, radius);
+  const PointHit hit = radius <= m_preparedRadius ? m_grid->nearest(x, y, radius * radius)
+                                                  : m_tree->nearest(x, y, radius);
   if (!hit) return std::nullopt;
   return Neighbour{hit.index, std::sqrt(hit.squaredDistance)};
 }
 
 std::vector<PoleIndex::Neighbour> PoleIndex::within(double x, double y, double radius) const {
   std::vector<PointHit> hits;
-  m_tree.within(x, y, radius, hits);
+  m_tree->within(x, y, radius, hits);
   std::stable_sort(hits.begin(), hits.end(), [](const PointHit& a, const PointHit& b) {
     return a.squaredDistance < b.squaredDistance;
   });

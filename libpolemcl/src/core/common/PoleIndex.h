@@ -7,14 +7,16 @@
 /// CPoleMap prepares for the gate of its likelihood, so the particle filter asks the grid only.
 /// Built eagerly and never changed, so it is safe to share between threads.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "core/common/KdTree2D.h"
-#include "core/common/PoleGrid.h"
 #include "core/common/Types.h"
 
 namespace polemcl {
+
+class KdTree2D;
+class PoleGrid;
 
 class PoleIndex {
  public:
@@ -34,8 +36,8 @@ class PoleIndex {
   ///         or a radius that is not finite and positive.
   explicit PoleIndex(const std::vector<MapPole>& poles, double preparedRadius = 1.0);
 
-  std::size_t size() const { return m_tree.size(); }
-  double preparedRadius() const { return m_grid.radius(); }
+  std::size_t size() const { return m_variances.size(); }
+  double preparedRadius() const { return m_preparedRadius; }
   /// \brief The nearest pole with distance < radius, if any. Of equals, the lower index.
   /// "<" is decided on the squares. A query that is not a number finds nothing.
   std::optional<Neighbour> nearest(double x, double y, double radius) const;
@@ -44,15 +46,16 @@ class PoleIndex {
 
   /// \name The parts, for loops that ask thousands of times
   /// @{
-  const PoleGrid& grid() const { return m_grid; }
-  const KdTree2D& tree() const { return m_tree; }
+  const PoleGrid& grid() const { return *m_grid; }
+  const KdTree2D& tree() const { return *m_tree; }
   /// \brief Half the trace of a pole's covariance: its mean variance along an axis, m².
   double variance(std::size_t pole) const { return m_variances[pole]; }
   /// @}
 
  private:
-  KdTree2D m_tree;
-  PoleGrid m_grid;
+  std::shared_ptr<const KdTree2D> m_tree;  ///< never changed, so copies share it
+  std::shared_ptr<const PoleGrid> m_grid;  ///< as m_tree
+  double m_preparedRadius;
   std::vector<double> m_variances;
 };
 

@@ -20,7 +20,7 @@ constexpr std::uint32_t leastHits(std::uint32_t probes) {
 
 }  // namespace
 
-PairTolerance::PairTolerance(const GlobalLocalizer& map, const Constellation& sky,
+PairTolerance::PairTolerance(const PreparedMap& map, const Constellation& sky,
                              const QueryPole& first, const QueryPole& second)
     : m_map(map),
       m_sky(sky),
@@ -44,7 +44,7 @@ double PairTolerance::of(const QueryPole& star) const {
   return std::min(m_map.options().maxTolerance, s_sigmas * std::sqrt(variance));
 }
 
-ConstellationSearch::ConstellationSearch(const GlobalLocalizer& map, const Constellation& sky)
+ConstellationSearch::ConstellationSearch(const PreparedMap& map, const Constellation& sky)
     : m_map(map), m_sky(sky) {}
 
 std::vector<PoseCandidate> ConstellationSearch::run() {

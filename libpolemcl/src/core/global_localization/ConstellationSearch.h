@@ -4,6 +4,7 @@
 /// Private to the library; see GlobalLocalizer.h.
 
 #include "core/global_localization/Constellation.h"
+#include "core/global_localization/PreparedMap.h"
 
 namespace polemcl {
 
@@ -18,12 +19,12 @@ struct PoseCandidate {
 /// \brief How far a star may lie from its map pole when the constellation is laid on two poles.
 struct PairTolerance {
   /// \brief For the pair of stars (first, second). \throws nothing
-  PairTolerance(const GlobalLocalizer& map, const Constellation& sky, const QueryPole& first,
+  PairTolerance(const PreparedMap& map, const Constellation& sky, const QueryPole& first,
                 const QueryPole& second);
   double of(const QueryPole& star) const;  ///< m, at most the greatest of the options
 
  private:
-  const GlobalLocalizer& m_map;
+  const PreparedMap& m_map;
   const Constellation& m_sky;
   const QueryPole &m_first, &m_second;
   Eigen::Vector2d m_middle;
@@ -33,7 +34,7 @@ struct PairTolerance {
 /// \brief Searches the whole map.
 class ConstellationSearch {
  public:
-  ConstellationSearch(const GlobalLocalizer& map, const Constellation& sky);
+  ConstellationSearch(const PreparedMap& map, const Constellation& sky);
   /// \brief The best seeds by falling hits, no two in the same cell of place and heading.
   std::vector<PoseCandidate> run();
   std::size_t candidates() const { return m_candidates; }
@@ -53,7 +54,7 @@ class ConstellationSearch {
   struct Probe {
     double x, y, squaredTolerance;
   };
-  const GlobalLocalizer& m_map;
+  const PreparedMap& m_map;
   const Constellation& m_sky;
   std::vector<Probe> m_probes;  ///< the surest first
   std::vector<PoseCandidate> m_seeds;

@@ -1,28 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "core/global_localization/PoseRefinement.h"
+#include "core/global_localization/PreparedMap.h"
 
 namespace polemcl {
 namespace {
-
-std::vector<Eigen::Vector2d> mapCentres(const std::vector<MapPole>& map) {
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(map.size());
-  for (const MapPole& pole : map) {
-    if (!std::isfinite(pole.x) || !std::isfinite(pole.y) || !pole.covariance.allFinite())
-      throw Error("pole " + std::to_string(points.size()) +
-                  " of the map has a centre or covariance that is not finite; remove it");
-    points.emplace_back(pole.x, pole.y);
-  }
-  return points;
-}
-
-const GlobalOptions& checked(const GlobalOptions& options) {
-  options.validate();
-  return options;
-}
 
 bool samePlace(const Pose2D& a, const Pose2D& b, const GlobalOptions& options) {
   return std::hypot(a.x - b.x, a.y - b.y) <= options.distinct &&
@@ -69,32 +52,24 @@ void decide(GlobalResult& result, const GlobalOptions& options) {
 }  // namespace
 
 GlobalLocalizer::GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOptions& options)
-    : m_options(checked(options)),
-      m_tree(mapCentres(map)),
-      m_grid(mapCentres(map), options.maxTolerance),
-      m_pairs(mapCentres(map), options.minBaseline, options.maxBaseline) {
-  m_variances.reserve(map.size());
-  for (const MapPole& pole : map) {
-    m_variances.push_back(0.5 * pole.covariance.trace());
-    m_meanVariance += m_variances.back() / static_cast<double>(map.size());
-  }
-}
+    : m_map(std::make_shared<const PreparedMap>(map, options)) {}
 
 GlobalResult GlobalLocalizer::localize(const LocalSubmap& submap) const {
+  const GlobalOptions& options = m_map->options();
   GlobalResult result;
-  const Constellation sky(submap, m_options);
+  const Constellation sky(submap, options);
   result.poles = sky.reliable();
-  if (result.poles < static_cast<std::size_t>(m_options.minMatched)) return result;
-  ConstellationSearch search(*this, sky);
+  if (result.poles < static_cast<std::size_t>(options.minMatched)) return result;
+  ConstellationSearch search(*m_map, sky);
   const std::vector<PoseCandidate> seeds = search.run();
   result.candidates = search.candidates();
-  PoseRefinement refinement(*this, sky, submap.pose());
+  PoseRefinement refinement(*m_map, sky, submap.pose());
   for (const PoseCandidate& seed : seeds) {
     GlobalHypothesis hypothesis;
     if (refinement.run(seed, hypothesis)) result.hypotheses.push_back(hypothesis);
   }
-  rank(result.hypotheses, m_options);
-  decide(result, m_options);
+  rank(result.hypotheses, options);
+  decide(result, options);
   return result;
 }
 

@@ -9,12 +9,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "core/common/KdTree2D.h"
-#include "core/common/PoleGrid.h"
 #include "core/common/Types.h"
-#include "core/global_localization/PairDistanceIndex.h"
 #include "core/localization/LocalSubmap.h"
 
 namespace polemcl {
@@ -87,6 +85,8 @@ struct GlobalResult {
   std::size_t candidates = 0;                ///< places tried
 };
 
+class PreparedMap;
+
 /// \brief The map, prepared once. Const calls may run in parallel; the answer depends on nothing
 /// but map, options and submap.
 class GlobalLocalizer {
@@ -96,26 +96,8 @@ class GlobalLocalizer {
 
   GlobalResult localize(const LocalSubmap& submap) const;
 
-  /// \name The prepared map, for the steps of the search
-  /// @{
-  const GlobalOptions& options() const { return m_options; }
-  const KdTree2D& tree() const { return m_tree; }
-  const PoleGrid& grid() const { return m_grid; }
-  const PairDistanceIndex& pairs() const { return m_pairs; }
-  /// \brief Half the trace of a pole's covariance, m².
-  double variance(std::size_t pole) const { return m_variances[pole]; }
-  double meanVariance() const {
-    return m_meanVariance;
-  }  ///< m²
-     /// @}
-
  private:
-  GlobalOptions m_options;
-  KdTree2D m_tree;
-  PoleGrid m_grid;
-  PairDistanceIndex m_pairs;
-  std::vector<double> m_variances;
-  double m_meanVariance = 0;
+  std::shared_ptr<const PreparedMap> m_map;  ///< never changed, so copies share it
 };
 
 }  // namespace polemcl

@@ -21,7 +21,7 @@ Eigen::Vector2d turnedBy(const Eigen::Vector2d& v) {
 
 }  // namespace
 
-PoseRefinement::PoseRefinement(const GlobalLocalizer& map, const Constellation& sky,
+PoseRefinement::PoseRefinement(const PreparedMap& map, const Constellation& sky,
                                const Pose2D& pose_local)
     : m_map(map), m_sky(sky), m_poseLocal(pose_local), m_claimed(map.tree().size(), 0) {}
 

@@ -10,7 +10,7 @@ namespace polemcl {
 /// \brief Refines and judges one candidate after the other; keeps its memory between them.
 class PoseRefinement {
  public:
-  PoseRefinement(const GlobalLocalizer& map, const Constellation& sky, const Pose2D& pose_local);
+  PoseRefinement(const PreparedMap& map, const Constellation& sky, const Pose2D& pose_local);
   /// \return False when it fell apart: fewer than three matches, or no unique solution.
   bool run(const PoseCandidate& seed, GlobalHypothesis& out);
 
@@ -38,7 +38,7 @@ class PoseRefinement {
   bool claim(std::uint32_t pole);
   void newRound() { ++m_round; }
 
-  const GlobalLocalizer& m_map;
+  const PreparedMap& m_map;
   const Constellation& m_sky;
   Pose2D m_poseLocal;
   std::vector<Match> m_matches;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/KdTree2D.h"
+#include "core/common/PoleGrid.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/localization/LikelihoodKernels.cpp"
 #include <hwy/foreach_target.h>

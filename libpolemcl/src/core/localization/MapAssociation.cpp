@@ -6,6 +6,8 @@
 #include "core/common/GreedyAssignment.h"
 #include "core/common/Transform.h"
 
+#include "core/common/KdTree2D.h"
+
 namespace polemcl {
 namespace {
 

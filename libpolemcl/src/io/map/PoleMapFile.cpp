@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/common/Covariance.h"
+#include "core/mapping/MapAccumulator.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
 #include "io/map/MapScans.h"

@@ -23,8 +23,11 @@
 #include <vector>
 
 #include "core/common/Types.h"
-#include "core/mapping/MapAccumulator.h"
 #include "core/mapping/MapUpdater.h"
+
+namespace polemcl {
+struct AddedSessions;
+}
 
 namespace polemcl::io {
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/localization/PoseModes.h"
+#include "mrpt/filter/MotionAction.h"
 
 namespace polemcl {
 namespace {

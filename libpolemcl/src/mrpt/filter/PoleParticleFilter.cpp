@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/common/SimdMath.h"
+#include "mrpt/filter/MotionAction.h"
 #include "mrpt/filter/ParticleDraws.h"
 
 namespace polemcl {

@@ -14,7 +14,6 @@
 
 #include "core/common/PoseEstimate.h"
 #include "mrpt/filter/FilterOptions.h"
-#include "mrpt/filter/MotionAction.h"
 #include "mrpt/map/CPoleMap.h"
 #include "mrpt/rawlog/PoleSequence.h"
 
