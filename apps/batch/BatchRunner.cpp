@@ -19,6 +19,7 @@
 
 #include "batch/BatchCommands.h"
 #include "core/common/Types.h"
+#include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -214,7 +215,7 @@ class Queue {
 fs::path programFolder() {
   if (const char* folder = std::getenv("POLEMCL_BIN"); folder && *folder)
     return fs::absolute(folder);
-  return fs::read_symlink("/proc/self/exe").parent_path();
+  return io::programFolder();
 }
 
 TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {

@@ -9,6 +9,7 @@
 
 #include "config/Config.h"
 #include "io/file/Date.h"
+#include "io/file/InstalledFiles.h"
 #include "report/batch/PublishedResults.h"
 
 namespace polemcl::apps {
@@ -263,8 +264,9 @@ const BatchSession& BatchSpec::session(const std::string& wanted) const {
   throw Error("no session '" + wanted + "' in batch " + name);
 }
 
-BatchSpec readBatchSpec(const fs::path& file, const fs::path& data,
+BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,
                         const std::vector<std::string>& set) {
+  const fs::path file = io::installedFile(wanted, "config");
   ConfigFile source = ConfigFile::read(file.string());
   for (const auto& assignment : set) source.set(assignment);
   const std::string where = file.string() + ": ";

@@ -75,6 +75,7 @@ struct BatchSpec {
 
 /// \brief Reads a batch file.
 /// \param data What stands for `{data}`; empty: not given.
+/// \param file The batch, or the name of an installed one such as `batches/year.ini`.
 /// \param set Values in place of the file's, `section.key=value`, as ConfigFile::set() takes them.
 /// \throws Error naming file, section and key: what ConfigReader refuses, names that are given
 ///         twice or have other characters, sessions and configurations that nobody knows, `{data}`

@@ -1,6 +1,7 @@
 #include "cli/Settings.h"
 
 #include "config/Config.h"
+#include "io/file/InstalledFiles.h"
 
 namespace polemcl::apps {
 namespace {
@@ -48,11 +49,13 @@ void bind(Binder& binder, Settings& settings) {
 
 Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
   Settings settings;
-  ConfigFile file = ConfigFile::read(path);
+  ConfigFile file = ConfigFile::read(io::installedFile(path, "config").string());
   for (const auto& assignment : assignments) file.set(assignment);
   ConfigReader reader(file);
   bind(reader, settings);
   reader.finish();
+  auto& detections = settings.simulation.detections;
+  detections = io::installedFile(detections, "models").string();
   shareSensor(settings);
   return settings;
 }

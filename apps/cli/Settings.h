@@ -45,6 +45,8 @@ struct Settings {
 void bind(Binder& binder, Settings& settings);
 
 /// \brief Reads an INI file.
+/// \param path A file, or the name of an installed one such as `hdl32e.ini`. The same holds for the
+/// model of detections that the file names (io::installedFile()).
 /// \param assignments Values that take the place of the file's, each `section.key=value`: what
 /// `--set` of the programs gives.
 /// \throws Error naming file, section, key, value and what is allowed: unknown sections or keys,

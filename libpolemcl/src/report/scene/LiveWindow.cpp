@@ -4,8 +4,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 #include "core/common/Types.h"
+#include "io/file/InstalledFiles.h"
 
 namespace polemcl::report {
 namespace {
@@ -20,12 +22,16 @@ bool isSet(const char* variable) {
   return value && *value;
 }
 
-/// The module beside this library, wherever that was loaded from.
+/// Where the module lies: beside the program, in the folder of libraries next to the program's, or
+/// where it was to be installed. Its bare name, when it is in none of these: as the loader finds
+/// it.
 std::filesystem::path modulePath() {
-  Dl_info info{};
-  if (!dladdr(reinterpret_cast<const void*>(&openLiveWindow), &info) || !info.dli_fname)
-    return moduleName;
-  return std::filesystem::absolute(info.dli_fname).parent_path() / moduleName;
+  namespace fs = std::filesystem;
+  const fs::path program = io::programFolder();
+  std::error_code ignored;
+  for (const fs::path& folder : {program, program.parent_path() / "lib", fs::path(POLEMCL_LIBDIR)})
+    if (fs::exists(folder / moduleName, ignored)) return folder / moduleName;
+  return moduleName;
 }
 
 /// Loaded once and never closed: GTK cannot be.

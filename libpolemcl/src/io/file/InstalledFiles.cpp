@@ -1,0 +1,24 @@
+#include "io/file/InstalledFiles.h"
+
+#include <system_error>
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+fs::path programFolder() {
+  return fs::read_symlink("/proc/self/exe").parent_path();
+}
+
+fs::path installedFile(const fs::path& file, const std::string& folder) {
+  std::error_code ignored;
+  if (file.empty() || file.is_absolute() || fs::exists(file, ignored)) return file;
+  for (const fs::path& data :
+       {programFolder().parent_path() / "share" / "polemcl", fs::path(POLEMCL_DATADIR)}) {
+    const fs::path candidate = data / folder / file;
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+  }
+  return file;
+}
+
+}  // namespace polemcl::io

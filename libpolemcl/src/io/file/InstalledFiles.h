@@ -1,0 +1,21 @@
+#pragma once
+/// \file InstalledFiles.h
+/// \brief Where the running program lies, and the files that are installed with it.
+
+#include <filesystem>
+#include <string>
+
+namespace polemcl::io {
+
+/// \brief The folder of the running program, links resolved.
+std::filesystem::path programFolder();
+
+/// \brief A file by its path, or by its name among the files installed with the programs.
+///
+/// A path to an existing file is returned as it is. Another relative path is looked for in
+/// `../share/polemcl/FOLDER` beside the folder of the program, then in the data folder chosen when
+/// the programs were built. \param folder `config` or `models`. \return `file` as it is when it is
+/// found nowhere, so that messages name what the user typed.
+std::filesystem::path installedFile(const std::filesystem::path& file, const std::string& folder);
+
+}  // namespace polemcl::io
