@@ -1,15 +1,25 @@
 # A room is a folder of sources with one internal static library. Private headers are included by
-# their path from the folder of the rooms, always in quotes: "core/common/Types.h".
+# their path from the folder of the rooms, always in quotes: "core/common/KdTree2D.h"; public ones
+# in angle brackets: <polemcl/core/common/Types.h>.
 #   polemcl_room(NAME [sources...])
 function(polemcl_room name)
   add_library(${name} STATIC ${ARGN})
+  polemcl_public_headers(${name})
   polemcl_private_headers(${name} PUBLIC)
+endfunction()
+
+function(polemcl_public_headers name)
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/libpolemcl/include>
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 endfunction()
 
 # The flag -iquote keeps the room mrpt/ apart from the headers of MRPT, which are in angle brackets.
 function(polemcl_private_headers name scope)
-  target_compile_options(${name} ${scope} "SHELL:-iquote ${PROJECT_SOURCE_DIR}/libpolemcl/src"
-                         "SHELL:-iquote ${PROJECT_SOURCE_DIR}/apps")
+  foreach(folder libpolemcl/src apps)
+    target_compile_options(${name} ${scope}
+      "$<BUILD_INTERFACE:SHELL:-iquote ${PROJECT_SOURCE_DIR}/${folder}>")
+  endforeach()
 endfunction()
 
 # Sources that must be compiled alone: Highway includes them once for each instruction set.
