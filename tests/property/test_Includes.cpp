@@ -127,6 +127,20 @@ std::string bigRoomOf(const std::string& room) {
   return room.substr(0, room.find('/'));
 }
 
+/// Public headers that stand above all rooms.
+const std::set<std::string> s_aboveRooms{"polemcl/export.h", "polemcl/version.h"};
+/// Public headers that include the others, for users.
+const std::set<std::string> s_allTogether{"core.h", "polemcl.h"};
+
+bool isPublic(const fs::path& path) {
+  return path.generic_string().rfind("libpolemcl/include/polemcl/", 0) == 0;
+}
+
+/// Public headers in no room: the marks, and those that include all others.
+bool isAboveRooms(const fs::path& path) {
+  return path.parent_path() == "libpolemcl/include/polemcl";
+}
+
 /// The room of a file; empty for other files.
 std::string roomOf(const fs::path& path) {
   const std::string folder = path.parent_path().generic_string();
@@ -187,9 +201,14 @@ std::string whyNot(const fs::path& file, const std::string& include) {
   if (!isRoom(room)) return "the file is in no room";
   const bool quoted = include.front() == '"', ours = header.rfind("polemcl/", 0) == 0;
   if (!quoted && include.front() != '<') return "only plain includes can be checked";
+  if (quoted && isPublic(file)) return "a public header includes public headers only";
   if (quoted && (ours || !exists(header))) return "quotes are for private headers, by their path";
-  if (quoted || (ours && header != "polemcl/polemcl.h"))
-    return mayIncludeOwn(room, header) ? "" : "it stands below the room " + room;
+  if (s_aboveRooms.count(header)) return "";
+  if (ours && !isRoom(fs::path(header.substr(8)).parent_path().generic_string()))
+    return "sources include the header they need, not all";
+  if (ours && !fs::exists(s_top / "libpolemcl/include" / header))
+    return "there is no such public header";
+  if (quoted || ours) return mayIncludeOwn(room, header) ? "" : "it stands below the room " + room;
   return mayIncludeForeign(room, header) ? "" : "the room " + room + " does not use that library";
 }
 
@@ -213,7 +232,7 @@ TEST(Includes, RoomsIncludeOnlyWhatStandsAboveThem) {
   const std::vector<Source> sources = sourcesBelow({"libpolemcl", "apps"});
   std::size_t includes = 0;
   for (const Source& source : sources) {
-    if (source.path.filename() == "CMakeLists.txt") continue;
+    if (source.path.filename() == "CMakeLists.txt" || isAboveRooms(source.path)) continue;
     for (const std::string& violation : violations(source)) ADD_FAILURE() << violation;
     for (const std::string& line : source.lines) includes += !includeOf(line).empty();
   }
@@ -231,10 +250,29 @@ TEST(Includes, OrderOfRoomsIsThatOfTheDocument) {
 }
 
 TEST(Includes, EverySourceIsInARoom) {
-  for (const Source& source : sourcesBelow({"libpolemcl/src", "apps"})) {
-    if (source.path.filename() == "CMakeLists.txt") continue;
+  for (const Source& source : sourcesBelow({"libpolemcl/src", "libpolemcl/include", "apps"})) {
+    if (source.path.filename() == "CMakeLists.txt" || isAboveRooms(source.path)) continue;
     EXPECT_TRUE(isRoom(roomOf(source.path))) << source.path;
   }
+}
+
+/// `<polemcl/core.h>` has all of the room core, `<polemcl/polemcl.h>` that and all else.
+TEST(Includes, HeadersForUsersIncludeAllPublicHeaders) {
+  std::set<std::string> included, expected{"<polemcl/core.h>", "<polemcl/version.h>"};
+  for (const std::string& name : s_allTogether) {
+    for (const std::string& line : readLines(s_top / "libpolemcl/include/polemcl" / name)) {
+      const std::string include = includeOf(line);
+      if (include.empty()) continue;
+      included.insert(include);
+      if (name == "core.h" && include != "<polemcl/version.h>") {
+        EXPECT_EQ(include.rfind("<polemcl/core/", 0), 0u) << include;
+      }
+    }
+  }
+  for (const Source& source : sourcesBelow({"libpolemcl/include"}))
+    if (!isAboveRooms(source.path))
+      expected.insert("<" + fs::relative(source.path, "libpolemcl/include").string() + ">");
+  EXPECT_EQ(included, expected);
 }
 
 TEST(Includes, WrongIncludesAreFound) {
@@ -257,6 +295,9 @@ TEST(Includes, WrongIncludesAreFound) {
       {"libpolemcl/src/sim/world/A.cpp", "#include <mrpt/poses/CPose2D.h>"},
       {"libpolemcl/src/report/scene/A.cpp", "#include \"cli/CommandLine.h\""},
       {"libpolemcl/src/elsewhere/A.cpp", "#include <vector>"},
+      {"libpolemcl/include/polemcl/core/sensor/A.h", "#include \"core/common/KdTree2D.h\""},
+      {"libpolemcl/include/polemcl/mrpt/map/A.h", "#include <polemcl/core/common/KdTree2D.h>"},
+      {"libpolemcl/src/mrpt/map/A.cpp", "#include <polemcl/polemcl.h>"},
       {"apps/cli/A.cpp", "#include \"map/MapApp.h\""},
   };
   for (const auto& [path, line] : wrong)
@@ -279,6 +320,7 @@ TEST(Includes, RightIncludesAreLeftAlone) {
       {"libpolemcl/src/sim/common/A.cpp", "#include \"config/Config.h\""},
       {"libpolemcl/src/report/scene/A.cpp", "#include \"sim/world/World.h\""},
       {"apps/map/main.cpp", "#include \"map/MapApp.h\""},
+      {"libpolemcl/include/polemcl/core/common/A.h", "#include <polemcl/export.h>"},
   };
   for (const auto& [path, line] : right)
     EXPECT_TRUE(violations({path, {line}}).empty()) << path << ' ' << line;
