@@ -47,7 +47,10 @@ fi
 "$top/share/setup/build.sh" release all
 case $how in
   quick) run_tests "$top/build" --label-regex '^unit$' ;;
-  *) run_tests "$top/build" ;;
+  *)
+    run_tests "$top/build"
+    "$top/tests/install/run.sh" "$top/build"
+    ;;
 esac
 
 if [ "$how" = full ]; then

@@ -9,6 +9,8 @@
 #include <iostream>
 #include <thread>
 
+#include <polemcl/core/common/Types.h>
+
 #include "batch/BatchCollect.h"
 #include "batch/BatchCommands.h"
 #include "batch/BatchFolder.h"
@@ -19,7 +21,6 @@
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "cli/ProgressLog.h"
-#include "core/common/Types.h"
 #include "io/file/WholeFile.h"
 
 namespace polemcl::apps {

@@ -12,8 +12,9 @@
 #include <fstream>
 #include <limits>
 
+#include <polemcl/core/common/Types.h>
+
 #include "cli/JsonFile.h"
-#include "core/common/Types.h"
 #include "io/file/WholeFile.h"
 
 namespace polemcl::apps {

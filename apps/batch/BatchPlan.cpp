@@ -7,9 +7,10 @@
 #include <optional>
 #include <set>
 
+#include <polemcl/config/Config.h>
+
 #include "batch/BatchCommands.h"
 #include "cli/Settings.h"
-#include "config/Config.h"
 #include "io/dataset/Nclt.h"
 #include "io/file/TextFile.h"
 #include "io/file/WholeFile.h"

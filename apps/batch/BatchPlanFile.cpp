@@ -1,8 +1,9 @@
 #include <fstream>
 
+#include <polemcl/core/common/Types.h>
+
 #include "batch/BatchPlan.h"
 #include "cli/JsonFile.h"
-#include "core/common/Types.h"
 
 namespace polemcl::apps {
 namespace {

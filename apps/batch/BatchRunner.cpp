@@ -17,8 +17,9 @@
 #include <set>
 #include <thread>
 
+#include <polemcl/core/common/Types.h>
+
 #include "batch/BatchCommands.h"
-#include "core/common/Types.h"
 #include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 

@@ -9,9 +9,10 @@
 #include <set>
 #include <thread>
 
+#include <polemcl/core/common/Types.h>
+
 #include "batch/BatchCommands.h"
 #include "batch/BatchRunner.h"
-#include "core/common/Types.h"
 #include "io/file/TextFile.h"
 #include "io/file/WholeFile.h"
 

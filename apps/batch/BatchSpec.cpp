@@ -7,7 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "config/Config.h"
+#include <polemcl/config/Config.h>
+
 #include "io/file/Date.h"
 #include "io/file/InstalledFiles.h"
 #include "report/batch/PublishedResults.h"

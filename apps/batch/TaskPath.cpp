@@ -1,6 +1,6 @@
 #include "batch/TaskPath.h"
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::apps {
 

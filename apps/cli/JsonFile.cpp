@@ -1,7 +1,8 @@
 #include "cli/JsonFile.h"
 
+#include <polemcl/core/common/Types.h>
+
 #include "cli/Version.h"
-#include "core/common/Types.h"
 #include "io/file/WholeFile.h"
 
 namespace polemcl::apps {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "io/data/PlanarMotion.h"
+#include <polemcl/io/data/PlanarMotion.h>
 
 namespace polemcl::apps {
 

@@ -7,7 +7,7 @@
 #include <regex>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::apps {
 

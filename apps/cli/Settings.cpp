@@ -1,6 +1,7 @@
 #include "cli/Settings.h"
 
-#include "config/Config.h"
+#include <polemcl/config/Config.h>
+
 #include "io/file/InstalledFiles.h"
 
 namespace polemcl::apps {

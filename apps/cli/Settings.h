@@ -5,17 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "core/common/Binder.h"
-#include "core/extraction/ExtractionOptions.h"
-#include "core/global_localization/GlobalLocalizer.h"
-#include "core/localization/PoleLikelihood.h"
-#include "core/mapping/MapUpdater.h"
-#include "core/mapping/PoleMapBuilder.h"
-#include "core/sensor/SensorOptions.h"
-#include "mrpt/filter/FilterOptions.h"
-#include "mrpt/filter/LocalizationPipeline.h"
-#include "mrpt/observation/ObservationPoleExtractor.h"
-#include "mrpt/rawlog/MotionOptions.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/extraction/ExtractionOptions.h>
+#include <polemcl/core/global_localization/GlobalLocalizer.h>
+#include <polemcl/core/localization/PoleLikelihood.h>
+#include <polemcl/core/mapping/MapUpdater.h>
+#include <polemcl/core/mapping/PoleMapBuilder.h>
+#include <polemcl/core/sensor/SensorOptions.h>
+#include <polemcl/mrpt/filter/FilterOptions.h>
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include <polemcl/mrpt/rawlog/MotionOptions.h>
+
 #include "report/scene/ViewOptions.h"
 #include "sim/common/SimulationOptions.h"
 

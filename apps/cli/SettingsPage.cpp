@@ -5,8 +5,9 @@
 #include <cstdlib>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
+
 #include "cli/Settings.h"
-#include "core/common/Binder.h"
 
 namespace polemcl::apps {
 namespace {

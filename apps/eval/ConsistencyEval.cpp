@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+
 #include "cli/JsonFile.h"
 #include "core/common/PoseInterpolation.h"
-#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/CsvTable.h"
 

@@ -3,8 +3,9 @@
 #include <memory>
 #include <sstream>
 
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "cli/JsonFile.h"
-#include "mrpt/rawlog/PoleSequence.h"
 #include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionModelFit.h"
 #include "simulate/SimulatedPoles.h"

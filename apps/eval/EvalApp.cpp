@@ -3,12 +3,13 @@
 #include <memory>
 #include <sstream>
 
+#include <polemcl/io/map/PoleMapFile.h>
+
 #include "cli/CommandLine.h"
 #include "cli/JsonFile.h"
 #include "eval/EvalCommands.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
-#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "report/picture/MapPicture.h"
 #include "report/scene/MapScene.h"

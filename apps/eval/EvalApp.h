@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 
 namespace polemcl::apps {
 

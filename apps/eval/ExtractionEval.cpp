@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "cli/JsonFile.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/PoleVisibility.h"
@@ -11,7 +13,6 @@
 #include "io/dataset/ScanFolder.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
-#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 namespace {

@@ -2,11 +2,12 @@
 
 #include <cmath>
 
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "cli/JsonFile.h"
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
-#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 namespace {

@@ -5,9 +5,10 @@
 #include <filesystem>
 #include <optional>
 
+#include <polemcl/core/extraction/PoleExtractor.h>
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "cli/Settings.h"
-#include "core/extraction/PoleExtractor.h"
-#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

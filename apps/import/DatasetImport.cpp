@@ -8,9 +8,10 @@
 #include <random>
 #include <sstream>
 
+#include <polemcl/io/data/Cloud.h>
+
 #include "cli/RawlogActions.h"
 #include "core/common/Angles.h"
-#include "io/data/Cloud.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/KittiOdometry.h"
 #include "io/dataset/KittiRaw.h"

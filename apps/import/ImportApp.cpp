@@ -4,9 +4,10 @@
 #include <string>
 #include <utility>
 
+#include <polemcl/core/common/Types.h>
+
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
-#include "core/common/Types.h"
 #include "import/DatasetImport.h"
 
 namespace polemcl::apps {

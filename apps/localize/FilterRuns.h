@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "mrpt/filter/LocalizationPipeline.h"
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 
 namespace polemcl::apps {
 

@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+
 #include "localize/FilterRuns.h"
 #include "localize/LocalizeTimings.h"
 

@@ -1,7 +1,8 @@
 #include "localize/LocalizePlayer.h"
 
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+
 #include "core/common/PoseInterpolation.h"
-#include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::apps {
 

@@ -6,8 +6,9 @@
 #include <ostream>
 #include <string>
 
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "localize/LocalizeApp.h"
-#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+
 #include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
-#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 
 namespace polemcl::apps {
@@ -25,11 +26,10 @@ TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
   SequenceOptions reading;
   reading.extraction = settings.poleExtraction();
   reading.motion = settings.motion;
-  TrialDrive drive{
-      settings,
-      LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.global),
-      readPoleSequence(files.input.string(), reading).frames,
-      {}};
+  TrialDrive drive{settings,
+                   LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.global),
+                   readPoleSequence(files.input.string(), reading).frames,
+                   {}};
   const auto truth = io::planar(io::readTum(files.truth));
   for (std::size_t i = 0; i < drive.frames.size(); ++i) {
     const PoleFrame& frame = drive.frames[i];

@@ -9,8 +9,9 @@
 #include <filesystem>
 #include <optional>
 
+#include <polemcl/io/map/PoleMapFile.h>
+
 #include "io/map/Datum.h"
-#include "io/map/PoleMapFile.h"
 
 namespace polemcl {
 

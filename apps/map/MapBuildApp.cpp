@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <sstream>
 
+#include <polemcl/io/map/PoleMapFile.h>
+
 #include "cli/Version.h"
 #include "io/file/TextFile.h"
-#include "io/map/PoleMapFile.h"
 
 namespace polemcl::apps {
 namespace {

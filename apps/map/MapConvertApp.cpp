@@ -2,9 +2,10 @@
 
 #include <sstream>
 
+#include <polemcl/io/map/PoleMapFile.h>
+
 #include "cli/Version.h"
 #include "core/mapping/MapAccumulator.h"
-#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "io/map/PoleTables.h"
 #include "map/GeoJson.h"

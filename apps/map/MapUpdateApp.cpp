@@ -5,10 +5,11 @@
 #include <cmath>
 #include <sstream>
 
+#include <polemcl/io/map/PoleMapFile.h>
+
 #include "cli/Version.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
-#include "io/map/PoleMapFile.h"
 
 namespace polemcl::apps {
 namespace {

@@ -8,12 +8,13 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include <polemcl/core/mapping/MapUpdater.h>
+#include <polemcl/io/map/PoleMapFile.h>
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "cli/Settings.h"
-#include "core/evaluation/TrajectoryEvaluation.h"
-#include "core/mapping/MapUpdater.h"
 #include "io/map/Datum.h"
-#include "io/map/PoleMapFile.h"
-#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

@@ -9,10 +9,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+
 #include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "io/file/AtomicFile.h"
-#include "mrpt/observation/ObservationPoleExtractor.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionSampler.h"

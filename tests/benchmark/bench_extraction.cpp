@@ -9,8 +9,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/extraction/PoleExtractor.h"
-#include "io/data/Cloud.h"
+#include <polemcl/core/extraction/PoleExtractor.h>
+#include <polemcl/io/data/Cloud.h>
+
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
 

@@ -8,9 +8,10 @@
 #include <cmath>
 #include <random>
 
+#include <polemcl/core/localization/PoleLikelihood.h>
+
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
-#include "core/localization/PoleLikelihood.h"
 
 using namespace polemcl;
 

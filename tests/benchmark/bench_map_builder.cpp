@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/mapping/PoleMapBuilder.h"
+#include <polemcl/core/mapping/PoleMapBuilder.h>
 
 using namespace polemcl;
 

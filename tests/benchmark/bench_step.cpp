@@ -13,8 +13,9 @@
 #include <cmath>
 #include <random>
 
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+
 #include "mrpt/filter/MotionAction.h"
-#include "mrpt/filter/PoleParticleFilter.h"
 
 using namespace polemcl;
 

@@ -7,7 +7,8 @@
 #include <functional>
 #include <random>
 
-#include "config/Config.h"
+#include <polemcl/config/Config.h>
+
 #include "io/file/AtomicFile.h"
 
 namespace polemcl::test_config {

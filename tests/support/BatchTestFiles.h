@@ -7,8 +7,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include <polemcl/core/common/Types.h>
+
 #include "batch/BatchPlan.h"
-#include "core/common/Types.h"
 #include "support/TempFolder.h"
 
 namespace testing_apps {

@@ -2,10 +2,11 @@
 /// \file CityFiles.h
 /// \brief A city of poles, its map and a drive through it, as the files that programs read.
 
+#include <polemcl/mrpt/map/CPoleMap.h>
+#include <polemcl/mrpt/observation/CObservationPoles.h>
+
 #include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
-#include "mrpt/map/CPoleMap.h"
-#include "mrpt/observation/CObservationPoles.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/PoleCity.h"
 #include "support/TempFolder.h"

@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/common/Random.h"
 
 namespace polemcl::clouds {

@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "mrpt/observation/ObservationPoleExtractor.h"
+#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+
 #include "support/Samples.h"
 #include "support/TestClouds.h"
 

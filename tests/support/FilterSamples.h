@@ -4,7 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "mrpt/filter/PoleParticleFilter.h"
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+
 #include "support/PoleStreet.h"
 
 namespace polemcl::tests {

@@ -14,7 +14,7 @@
 #include <iterator>
 #include <string>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::io::test {
 

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/extraction/PoleExtractor.h"
+#include <polemcl/core/extraction/PoleExtractor.h>
+
 #include "support/RayCast.h"
 
 namespace polemcl::clouds {

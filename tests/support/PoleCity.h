@@ -8,7 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/common/Random.h"
 
 namespace polemcl::tests {

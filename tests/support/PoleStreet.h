@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "mrpt/map/CPoleMap.h"
-#include "mrpt/rawlog/PoleSequence.h"
+#include <polemcl/mrpt/map/CPoleMap.h>
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
 
 namespace polemcl::tests {
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mrpt/observation/CObservationPoles.h"
+#include <polemcl/mrpt/observation/CObservationPoles.h>
 
 namespace polemcl::samples {
 

@@ -7,7 +7,8 @@
 #include <map>
 #include <string>
 
-#include "core/extraction/PoleExtractor.h"
+#include <polemcl/core/extraction/PoleExtractor.h>
+
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
 

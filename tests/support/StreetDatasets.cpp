@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "io/data/Cloud.h"
+#include <polemcl/io/data/Cloud.h>
+
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/dataset/Mulran.h"

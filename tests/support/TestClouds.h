@@ -9,7 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "core/sensor/SensorModel.h"
 
 namespace polemcl::samples {

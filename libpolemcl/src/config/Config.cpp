@@ -1,10 +1,10 @@
-#include "config/Config.h"
-
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/config/config_parser.h>
 
 #include <algorithm>
 #include <cctype>
+
+#include <polemcl/config/Config.h>
 
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"

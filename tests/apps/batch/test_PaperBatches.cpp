@@ -1,5 +1,6 @@
+#include <polemcl/core/common/Types.h>
+
 #include "batch/BatchApp.h"
-#include "core/common/Types.h"
 #include "io/file/TextFile.h"
 #include "support/BatchTestFiles.h"
 #include "support/StreetDatasets.h"

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/common/Types.h>
+
 #include "cli/CommandLine.h"
 #include "cli/Version.h"
-#include "core/common/Types.h"
 
 namespace polemcl::test_command_line {
 

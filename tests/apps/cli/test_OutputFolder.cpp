@@ -1,5 +1,6 @@
+#include <polemcl/core/common/Types.h>
+
 #include "cli/OutputFolder.h"
-#include "core/common/Types.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_output_folder {

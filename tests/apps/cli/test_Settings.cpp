@@ -1,5 +1,6 @@
+#include <polemcl/core/common/Types.h>
+
 #include "cli/Settings.h"
-#include "core/common/Types.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_settings {

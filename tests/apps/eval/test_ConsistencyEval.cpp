@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "eval/ConsistencyEval.h"
 #include "eval/EvalApp.h"
 #include "support/TempFolder.h"

@@ -2,11 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <polemcl/mrpt/observation/CObservationPoles.h>
+
 #include "cli/RawlogActions.h"
 #include "eval/EvalApp.h"
 #include "eval/ExtractionEval.h"
 #include "extract/ExtractApp.h"
-#include "mrpt/observation/CObservationPoles.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/StreetTest.h"
 

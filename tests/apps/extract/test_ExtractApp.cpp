@@ -3,7 +3,8 @@
 #include <limits>
 #include <map>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "extract/ExtractApp.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/StreetTest.h"

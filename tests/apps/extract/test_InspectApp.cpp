@@ -1,6 +1,7 @@
 #include <cstdlib>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "extract/ExtractApp.h"
 #include "extract/InspectApp.h"
 #include "sim/drive/Drive.h"

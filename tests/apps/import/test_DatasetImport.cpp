@@ -5,7 +5,8 @@
 
 #include <limits>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogReader.h"

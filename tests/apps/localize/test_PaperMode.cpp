@@ -4,12 +4,13 @@
 
 #include <cstdlib>
 
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "cli/Settings.h"
 #include "import/ImportApp.h"
 #include "io/data/Trajectory.h"
 #include "io/file/CsvTable.h"
-#include "mrpt/filter/LocalizationPipeline.h"
-#include "mrpt/rawlog/PoleSequence.h"
 #include "support/PoleCity.h"
 #include "support/TempFolder.h"
 

@@ -1,7 +1,8 @@
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/io/map/PoleMapFile.h>
+
 #include "extract/ExtractApp.h"
 #include "io/data/Trajectory.h"
-#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapBuildApp.h"

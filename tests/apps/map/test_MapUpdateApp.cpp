@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/io/map/PoleMapFile.h>
+
 #include "io/data/Trajectory.h"
-#include "io/map/PoleMapFile.h"
 #include "map/MapApp.h"
 #include "map/MapDiffApp.h"
 #include "map/MapUpdateApp.h"

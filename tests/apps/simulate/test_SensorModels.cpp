@@ -1,5 +1,6 @@
+#include <polemcl/core/common/Types.h>
+
 #include "batch/BatchApp.h"
-#include "core/common/Types.h"
 #include "core/sensor/SensorModel.h"
 #include "eval/EvalApp.h"
 #include "extract/ExtractApp.h"

@@ -1,5 +1,6 @@
+#include <polemcl/core/common/Types.h>
+
 #include "cli/Settings.h"
-#include "core/common/Types.h"
 #include "io/dataset/ScanFolder.h"
 #include "simulate/SimulateApp.h"
 #include "support/TempFolder.h"

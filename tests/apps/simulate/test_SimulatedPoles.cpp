@@ -1,11 +1,12 @@
 #include <tbb/task_arena.h>
 
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "eval/EvalApp.h"
 #include "extract/ExtractApp.h"
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
 #include "io/map/PolePositions.h"
-#include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
 #include "support/TempFolder.h"
 

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <random>
 
+#include <polemcl/core/common/Types.h>
+
 #include "core/common/GreedyAssignment.h"
-#include "core/common/Types.h"
 
 namespace polemcl::test_greedy_assignment {
 

@@ -4,8 +4,9 @@
 #include <limits>
 #include <random>
 
+#include <polemcl/core/common/Types.h>
+
 #include "core/common/KdTree2D.h"
-#include "core/common/Types.h"
 
 namespace polemcl::test_kd_tree2_d {
 

@@ -6,8 +6,9 @@
 #include <random>
 #include <vector>
 
+#include <polemcl/core/localization/PoleLikelihood.h>
+
 #include "core/common/SimdMath.h"
-#include "core/localization/PoleLikelihood.h"
 
 namespace polemcl::test_simd_math {
 

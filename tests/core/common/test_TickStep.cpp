@@ -2,8 +2,9 @@
 
 #include <cmath>
 
+#include <polemcl/core/common/Types.h>
+
 #include "core/common/TickStep.h"
-#include "core/common/Types.h"
 
 namespace polemcl::test_tick_step {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::test_types {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <ostream>
 
-#include "core/common/Types.h"
-#include "core/extraction/ExtractionOptions.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/extraction/ExtractionOptions.h>
 
 namespace polemcl::test_extraction_options {
 

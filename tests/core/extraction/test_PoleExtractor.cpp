@@ -7,7 +7,8 @@
 #include <set>
 #include <thread>
 
-#include "core/extraction/PoleExtractor.h"
+#include <polemcl/core/extraction/PoleExtractor.h>
+
 #include "support/KnownScene.h"
 
 namespace polemcl::test_pole_extractor {

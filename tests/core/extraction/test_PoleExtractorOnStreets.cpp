@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <ostream>
 
-#include "io/data/Cloud.h"
+#include <polemcl/io/data/Cloud.h>
+
 #include "io/data/Trajectory.h"
 #include "support/Clouds.h"
 #include "support/KnownScene.h"

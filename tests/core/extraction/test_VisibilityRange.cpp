@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/extraction/PoleExtractor.h"
+#include <polemcl/core/extraction/PoleExtractor.h>
+
 #include "core/extraction/VisibilityRange.h"
 #include "support/KnownScene.h"
 

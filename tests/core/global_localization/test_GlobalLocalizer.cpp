@@ -5,7 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "core/global_localization/GlobalLocalizer.h"
+#include <polemcl/core/global_localization/GlobalLocalizer.h>
+
 #include "support/PoleCity.h"
 
 namespace polemcl::test_global_localizer {

@@ -9,7 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/global_localization/GlobalLocalizer.h"
+#include <polemcl/core/global_localization/GlobalLocalizer.h>
+
 #include "io/file/Npz.h"
 #include "io/map/PolePositions.h"
 #include "support/PoleCity.h"

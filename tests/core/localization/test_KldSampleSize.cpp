@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/localization/KldSampleSize.h"
+#include <polemcl/core/localization/KldSampleSize.h>
 
 namespace polemcl::test_kld_sample_size {
 

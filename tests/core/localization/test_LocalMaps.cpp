@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/localization/LocalMaps.h"
+#include <polemcl/core/localization/LocalMaps.h>
 
 namespace polemcl::test_local_maps {
 

@@ -6,7 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "core/localization/LocalSubmap.h"
+#include <polemcl/core/localization/LocalSubmap.h>
+
 #include "support/PoleCity.h"
 
 namespace polemcl::test_local_submap {

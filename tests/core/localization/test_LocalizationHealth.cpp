@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/localization/LocalizationHealth.h"
+#include <polemcl/core/localization/LocalizationHealth.h>
 
 namespace polemcl::test_localization_health {
 

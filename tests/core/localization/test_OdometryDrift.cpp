@@ -3,7 +3,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "core/localization/OdometryDrift.h"
+#include <polemcl/core/localization/OdometryDrift.h>
+
 #include "sim/common/Random.h"
 
 namespace polemcl::test_odometry_drift {

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/localization/OdometryMonitor.h"
+#include <polemcl/core/localization/OdometryMonitor.h>
+
 #include "support/PoleCity.h"
 
 namespace polemcl::test_odometry_monitor {

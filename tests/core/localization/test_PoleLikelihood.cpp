@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "core/localization/PoleLikelihood.h"
+#include <polemcl/core/localization/PoleLikelihood.h>
 
 namespace polemcl::test_pole_likelihood {
 

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "core/localization/ScanRegistration.h"
+#include <polemcl/core/localization/ScanRegistration.h>
+
 #include "sim/common/Random.h"
 
 namespace polemcl::test_scan_registration {

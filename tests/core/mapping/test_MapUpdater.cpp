@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/mapping/MapUpdater.h"
+#include <polemcl/core/mapping/MapUpdater.h>
 
 namespace polemcl::test_map_updater {
 

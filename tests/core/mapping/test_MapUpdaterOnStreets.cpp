@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
-#include "core/mapping/MapUpdater.h"
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include <polemcl/core/mapping/MapUpdater.h>
+
 #include "sim/common/Random.h"
 #include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionSampler.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "core/mapping/PoleMapBuilder.h"
+#include <polemcl/core/mapping/PoleMapBuilder.h>
 
 namespace polemcl::test_pole_map_builder {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/mapping/PoleMapBuilder.h"
+#include <polemcl/core/mapping/PoleMapBuilder.h>
 
 namespace polemcl::test_pole_map_paper {
 

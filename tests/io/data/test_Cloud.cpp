@@ -1,7 +1,8 @@
 #include <cmath>
 #include <limits>
 
-#include "io/data/Cloud.h"
+#include <polemcl/io/data/Cloud.h>
+
 #include "support/IoFiles.h"
 
 namespace polemcl::test_cloud {

@@ -2,7 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "io/data/PlanarMotion.h"
+#include <polemcl/io/data/PlanarMotion.h>
+
 #include "support/IoFiles.h"
 
 namespace polemcl::test_planar_motion {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/Date.h"
 
 namespace polemcl::test_date {

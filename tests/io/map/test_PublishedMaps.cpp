@@ -6,7 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+
 #include "io/map/PolePositions.h"
 
 namespace polemcl::test_published_maps {

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "mrpt/filter/LocalizationPipeline.h"
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+
 #include "support/PoleCity.h"
 
 namespace polemcl::test_localization_pipeline_faults {

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "mrpt/filter/PoleParticleFilter.h"
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+
 #include "support/FilterSamples.h"
 
 namespace polemcl::test_pole_particle_filter {

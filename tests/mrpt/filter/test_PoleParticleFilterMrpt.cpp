@@ -7,7 +7,8 @@
 #include <set>
 #include <thread>
 
-#include "mrpt/filter/PoleParticleFilter.h"
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+
 #include "support/PoleStreet.h"
 
 namespace polemcl::test_pole_particle_filter_mrpt {

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mrpt/filter/PoleParticleFilter.h"
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+
 #include "support/FilterSamples.h"
 
 namespace polemcl::test_pole_particle_filter_start {

@@ -11,9 +11,10 @@
 #include <random>
 #include <sstream>
 
-#include "io/map/PoleMapFile.h"
+#include <polemcl/io/map/PoleMapFile.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
+
 #include "io/map/PolePositions.h"
-#include "mrpt/map/CPoleMap.h"
 #include "mrpt/map/RegisterClasses.h"
 #include "support/Samples.h"
 

@@ -13,8 +13,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/common/PoseEstimate.h"
-#include "mrpt/map/CPoleMap.h"
+#include <polemcl/core/common/PoseEstimate.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
+
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/Samples.h"

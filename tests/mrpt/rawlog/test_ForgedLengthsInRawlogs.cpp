@@ -10,8 +10,9 @@
 #include <cstring>
 #include <fstream>
 
+#include <polemcl/mrpt/map/CPoleMap.h>
+
 #include "io/file/ReadLimits.h"
-#include "mrpt/map/CPoleMap.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/MemoryTaken.h"
 #include "support/Samples.h"

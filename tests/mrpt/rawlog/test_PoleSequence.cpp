@@ -11,7 +11,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "mrpt/rawlog/PoleSequence.h"
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
 #include "support/Samples.h"
 #include "support/TestClouds.h"
 

@@ -4,7 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/CsvTable.h"
 #include "io/file/TextFile.h"
 #include "report/batch/BatchFiles.h"

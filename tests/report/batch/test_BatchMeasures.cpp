@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "report/batch/BatchMeasures.h"
 #include "support/SampleBatches.h"
 

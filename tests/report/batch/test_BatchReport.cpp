@@ -5,7 +5,8 @@
 #include <regex>
 #include <sstream>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "report/batch/BatchReport.h"
 #include "support/SampleBatches.h"
 #include "support/TempFolder.h"

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "report/batch/BatchResults.h"
 #include "support/SampleBatches.h"
 

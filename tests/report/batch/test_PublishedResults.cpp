@@ -3,7 +3,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "report/batch/PublishedResults.h"
 #include "support/TempFolder.h"
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "report/picture/Canvas.h"
 #include "support/Pixels.h"
 #include "support/SampleViews.h"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "config/Config.h"
+#include <polemcl/config/Config.h>
+
 #include "report/scene/ViewOptions.h"
 
 namespace polemcl::report::test_view_options {

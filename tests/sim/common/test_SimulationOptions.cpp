@@ -3,7 +3,8 @@
 #include <functional>
 #include <limits>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/common/SimulationOptions.h"
 #include "sim/lidar/LidarModel.h"
 

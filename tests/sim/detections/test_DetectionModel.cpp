@@ -2,7 +2,8 @@
 
 #include <functional>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/common/NormalDistribution.h"
 #include "support/DetectionModels.h"
 

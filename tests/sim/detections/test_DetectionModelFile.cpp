@@ -5,7 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/detections/DetectionModelFile.h"
 #include "support/DetectionModels.h"
 

@@ -5,8 +5,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/common/Types.h"
-#include "io/data/Cloud.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/io/data/Cloud.h>
+
 #include "io/dataset/ScanFolder.h"
 #include "io/map/PolePositions.h"
 #include "sim/drive/Drive.h"

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/lidar/LidarModel.h"
 
 namespace polemcl::test_lidar_model {

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <set>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
 

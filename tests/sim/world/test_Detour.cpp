@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/drive/Drive.h"
 
 namespace polemcl::test_detour {

@@ -8,7 +8,8 @@
 #include <map>
 #include <set>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/world/World.h"
 
 namespace polemcl::test_world {

@@ -2,7 +2,7 @@
 /// \file DetectionCheck.h
 /// \brief Which detections can be used.
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

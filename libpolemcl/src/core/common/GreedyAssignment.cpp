@@ -4,8 +4,9 @@
 #include <string>
 #include <utility>
 
+#include <polemcl/core/common/Types.h>
+
 #include "core/common/KdTree2D.h"
-#include "core/common/Types.h"
 
 namespace polemcl {
 

@@ -5,7 +5,7 @@
 #include <nanoflann.hpp>
 #include <utility>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 namespace {

@@ -1,6 +1,6 @@
-#include "core/common/Types.h"
-
 #include <cmath>
+
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

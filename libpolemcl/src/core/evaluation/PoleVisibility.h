@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "core/evaluation/DetectionEvaluation.h"
 
 namespace polemcl {

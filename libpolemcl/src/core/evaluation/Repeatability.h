@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/extraction/PoleExtractor.h"
+#include <polemcl/core/extraction/PoleExtractor.h>
 
 namespace polemcl {
 

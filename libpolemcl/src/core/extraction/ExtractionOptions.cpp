@@ -1,7 +1,7 @@
-#include "core/extraction/ExtractionOptions.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/extraction/ExtractionOptions.h>
 
 #include "core/common/Angles.h"
-#include "core/common/Binder.h"
 
 namespace polemcl {
 namespace {

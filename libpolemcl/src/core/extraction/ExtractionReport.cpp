@@ -1,4 +1,4 @@
-#include "core/extraction/ExtractionReport.h"
+#include <polemcl/core/extraction/ExtractionReport.h>
 
 namespace polemcl {
 

@@ -1,8 +1,8 @@
-#include "core/extraction/PoleExtractor.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include <polemcl/core/extraction/PoleExtractor.h>
 
 #include "core/extraction/range_image/RangeImageExtractor.h"
 #include "core/extraction/scan_line/ScanLineExtractor.h"

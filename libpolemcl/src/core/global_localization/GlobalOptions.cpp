@@ -1,6 +1,7 @@
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/global_localization/GlobalLocalizer.h>
+
 #include "core/common/Angles.h"
-#include "core/common/Binder.h"
-#include "core/global_localization/GlobalLocalizer.h"
 
 namespace polemcl {
 

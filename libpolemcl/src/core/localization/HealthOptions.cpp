@@ -1,5 +1,5 @@
-#include "core/common/Binder.h"
-#include "core/localization/LocalizationHealth.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/localization/LocalizationHealth.h>
 
 namespace polemcl {
 namespace {

@@ -5,8 +5,9 @@
 
 #include <vector>
 
+#include <polemcl/core/localization/PoleLikelihood.h>
+
 #include "core/common/PrincipalAxes.h"
-#include "core/localization/PoleLikelihood.h"
 
 namespace polemcl {
 

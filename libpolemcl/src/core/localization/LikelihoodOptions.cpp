@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "core/common/Binder.h"
-#include "core/localization/PoleLikelihood.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/localization/PoleLikelihood.h>
 
 namespace polemcl {
 

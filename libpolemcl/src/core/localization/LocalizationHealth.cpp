@@ -1,9 +1,9 @@
-#include "core/localization/LocalizationHealth.h"
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include <polemcl/core/localization/LocalizationHealth.h>
 
 namespace polemcl {
 namespace {

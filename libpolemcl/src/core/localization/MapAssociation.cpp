@@ -1,12 +1,11 @@
-#include "core/localization/MapAssociation.h"
-
 #include <Eigen/LU>
 #include <utility>
 
-#include "core/common/GreedyAssignment.h"
-#include "core/common/Transform.h"
+#include <polemcl/core/localization/MapAssociation.h>
 
+#include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {

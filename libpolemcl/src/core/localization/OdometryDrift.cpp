@@ -1,4 +1,4 @@
-#include "core/localization/OdometryDrift.h"
+#include <polemcl/core/localization/OdometryDrift.h>
 
 #include "core/common/Transform.h"
 

@@ -1,5 +1,5 @@
-#include "core/common/Binder.h"
-#include "core/localization/OdometryMonitor.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/localization/OdometryMonitor.h>
 
 namespace polemcl {
 

@@ -1,7 +1,7 @@
-#include "core/localization/PoleLikelihood.h"
-
 #include <cmath>
 #include <optional>
+
+#include <polemcl/core/localization/PoleLikelihood.h>
 
 #include "core/common/PrincipalAxes.h"
 #include "core/localization/LikelihoodKernels.h"

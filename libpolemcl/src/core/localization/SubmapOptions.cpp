@@ -1,5 +1,5 @@
-#include "core/common/Binder.h"
-#include "core/localization/LocalSubmap.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/localization/LocalSubmap.h>
 
 namespace polemcl {
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "core/mapping/LandmarkFusion.h"
 
 namespace polemcl {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "core/common/PoleIndex.h"
-#include "core/common/Types.h"
+#include <polemcl/core/common/PoleIndex.h>
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

@@ -12,7 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

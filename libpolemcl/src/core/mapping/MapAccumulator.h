@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mapping/MapUpdater.h"
+#include <polemcl/core/mapping/MapUpdater.h>
 
 namespace polemcl {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

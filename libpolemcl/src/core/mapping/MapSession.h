@@ -5,8 +5,9 @@
 
 #include <vector>
 
+#include <polemcl/core/mapping/MapUpdater.h>
+
 #include "core/mapping/LandmarkFusion.h"
-#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 

@@ -1,6 +1,6 @@
-#include "core/common/Binder.h"
-#include "core/mapping/MapUpdater.h"
-#include "core/mapping/PoleExistence.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/mapping/MapUpdater.h>
+#include <polemcl/core/mapping/PoleExistence.h>
 
 namespace polemcl {
 namespace {

@@ -1,10 +1,10 @@
-#include "core/mapping/MapUpdater.h"
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <tuple>
+
+#include <polemcl/core/mapping/MapUpdater.h>
 
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"

@@ -1,9 +1,9 @@
-#include "core/mapping/PoleMapBuilder.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/common/PathSections.h"
+#include <polemcl/core/common/PathSections.h>
+#include <polemcl/core/mapping/PoleMapBuilder.h>
+
 #include "core/mapping/BoxMerging.h"
 #include "core/mapping/DetectionToMap.h"
 #include "core/mapping/LandmarkFusion.h"

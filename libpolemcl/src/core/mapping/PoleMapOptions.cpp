@@ -1,5 +1,5 @@
-#include "core/common/Binder.h"
-#include "core/mapping/PoleMapBuilder.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/mapping/PoleMapBuilder.h>
 
 namespace polemcl {
 

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

@@ -1,9 +1,8 @@
-#include "core/sensor/PinholeCamera.h"
-
 #include <cmath>
 #include <string>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/sensor/PinholeCamera.h>
 
 namespace polemcl {
 

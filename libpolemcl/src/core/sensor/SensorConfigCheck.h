@@ -4,9 +4,10 @@
 
 #include <string>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/sensor/SensorOptions.h>
+
 #include "core/sensor/SensorModel.h"
-#include "core/sensor/SensorOptions.h"
 
 namespace polemcl {
 

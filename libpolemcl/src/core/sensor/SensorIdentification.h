@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/sensor/SensorOptions.h>
+
 #include "core/sensor/BeamTableEstimator.h"
 #include "core/sensor/GroundPlane.h"
-#include "core/sensor/SensorOptions.h"
 
 namespace polemcl {
 

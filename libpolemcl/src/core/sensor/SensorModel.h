@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/common/Types.h"
-#include "core/sensor/PinholeCamera.h"
-#include "core/sensor/SensorOptions.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/sensor/PinholeCamera.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl {
 

@@ -1,9 +1,9 @@
-#include "core/sensor/SensorOptions.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/common/Binder.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/sensor/SensorOptions.h>
+
 #include "core/sensor/SensorModel.h"
 
 namespace polemcl {

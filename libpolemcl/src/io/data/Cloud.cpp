@@ -1,6 +1,6 @@
-#include "io/data/Cloud.h"
-
 #include <cmath>
+
+#include <polemcl/io/data/Cloud.h>
 
 #include "io/file/Bytes.h"
 

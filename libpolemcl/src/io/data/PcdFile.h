@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "io/data/Cloud.h"
+#include <polemcl/io/data/Cloud.h>
 
 namespace polemcl::io {
 

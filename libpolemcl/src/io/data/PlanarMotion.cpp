@@ -1,7 +1,7 @@
-#include "io/data/PlanarMotion.h"
-
 #include <array>
 #include <cmath>
+
+#include <polemcl/io/data/PlanarMotion.h>
 
 #include "io/file/TextFile.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 
 namespace polemcl::io {
 

@@ -6,8 +6,9 @@
 #include <filesystem>
 #include <vector>
 
+#include <polemcl/io/data/Cloud.h>
+
 #include "core/evaluation/PoleVisibility.h"
-#include "io/data/Cloud.h"
 
 namespace polemcl::io {
 

@@ -4,7 +4,8 @@
 #include <regex>
 #include <set>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/dataset/Nclt.h"
 #include "io/dataset/ScanFiles.h"
 

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/data/PlanarMotion.h"
+#include <polemcl/io/data/PlanarMotion.h>
+
 #include "io/data/TrackSampler.h"
 #include "io/file/ReadProgress.h"
 

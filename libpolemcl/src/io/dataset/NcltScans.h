@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "io/data/Cloud.h"
+#include <polemcl/io/data/Cloud.h>
+
 #include "io/file/ReadProgress.h"
 
 namespace polemcl::io {

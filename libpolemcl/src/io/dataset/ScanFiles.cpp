@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::io {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "io/data/Cloud.h"
-#include "io/data/PlanarMotion.h"
+#include <polemcl/io/data/Cloud.h>
+#include <polemcl/io/data/PlanarMotion.h>
 
 namespace polemcl::io {
 

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::io {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::io {
 

@@ -5,7 +5,8 @@
 #include <string_view>
 #include <utility>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

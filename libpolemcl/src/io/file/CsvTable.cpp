@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

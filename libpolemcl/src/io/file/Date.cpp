@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::io {
 

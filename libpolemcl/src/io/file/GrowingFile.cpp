@@ -5,7 +5,7 @@
 #include <fstream>
 #include <utility>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::io {
 namespace {

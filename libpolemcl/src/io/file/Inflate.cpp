@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/ReadLimits.h"
 
 namespace polemcl::io {

@@ -1,7 +1,8 @@
 #include <charconv>
 #include <limits>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/Bytes.h"
 #include "io/file/Npz.h"
 #include "io/file/TextFile.h"

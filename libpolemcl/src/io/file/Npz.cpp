@@ -2,7 +2,8 @@
 
 #include <zlib.h>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/Bytes.h"
 #include "io/file/Inflate.h"
 

@@ -1,6 +1,7 @@
 #include <zlib.h>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
 #include "io/file/Npz.h"

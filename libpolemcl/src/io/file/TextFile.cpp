@@ -9,7 +9,8 @@
 #include <cstring>
 #include <utility>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/ReadLimits.h"
 
 namespace polemcl::io {

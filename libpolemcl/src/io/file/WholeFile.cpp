@@ -3,7 +3,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/AtomicFile.h"
 
 namespace polemcl::io {

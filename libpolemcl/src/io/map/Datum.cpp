@@ -4,7 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

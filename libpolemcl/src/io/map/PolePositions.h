@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/common/Types.h"
-#include "core/mapping/PoleExistence.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/mapping/PoleExistence.h>
 
 namespace polemcl::io {
 

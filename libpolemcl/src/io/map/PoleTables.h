@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "io/map/PoleMapFile.h"
+#include <polemcl/io/map/PoleMapFile.h>
 
 namespace polemcl::io {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

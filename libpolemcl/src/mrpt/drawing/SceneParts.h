@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::scene {
 

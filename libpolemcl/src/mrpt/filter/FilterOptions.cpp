@@ -1,8 +1,7 @@
-#include "mrpt/filter/FilterOptions.h"
-
 #include <vector>
 
-#include "core/common/Binder.h"
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/mrpt/filter/FilterOptions.h>
 
 namespace polemcl {
 namespace {

@@ -1,9 +1,9 @@
-#include "mrpt/filter/LocalizationPipeline.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <utility>
+
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 
 #include "core/localization/PoseModes.h"
 #include "mrpt/filter/MotionAction.h"

@@ -4,8 +4,8 @@
 
 #include <mrpt/obs/CActionCollection.h>
 
-#include "io/data/PlanarMotion.h"
-#include "mrpt/filter/FilterOptions.h"
+#include <polemcl/io/data/PlanarMotion.h>
+#include <polemcl/mrpt/filter/FilterOptions.h>
 
 namespace polemcl {
 

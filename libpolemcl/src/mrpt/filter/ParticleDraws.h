@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "mrpt/filter/PoleParticleFilter.h"
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
 
 namespace polemcl {
 

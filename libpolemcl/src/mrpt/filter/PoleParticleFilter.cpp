@@ -1,5 +1,3 @@
-#include "mrpt/filter/PoleParticleFilter.h"
-
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
@@ -8,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 #include <utility>
+
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
 
 #include "core/common/SimdMath.h"
 #include "mrpt/filter/MotionAction.h"

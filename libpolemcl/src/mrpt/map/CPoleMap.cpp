@@ -1,5 +1,3 @@
-#include "mrpt/map/CPoleMap.h"
-
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/stl_serialization.h>  // to write std::map
 
@@ -7,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/io/map/PoleMapFile.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
+#include <polemcl/mrpt/observation/CObservationPoles.h>
+
 #include "core/common/Covariance.h"
 #include "core/common/Transform.h"
 #include "core/mapping/IncrementalMerge.h"
 #include "io/file/ReadLimits.h"
-#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "mrpt/common/BoundedRead.h"
 #include "mrpt/drawing/OverviewScene.h"
-#include "mrpt/observation/CObservationPoles.h"
 
 IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
 

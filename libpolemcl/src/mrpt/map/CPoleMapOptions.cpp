@@ -2,10 +2,11 @@
 
 #include <ostream>
 
-#include "config/Config.h"
-#include "core/common/Binder.h"
+#include <polemcl/config/Config.h>
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
+
 #include "mrpt/common/MrptCompatibility.h"
-#include "mrpt/map/CPoleMap.h"
 
 MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)
 

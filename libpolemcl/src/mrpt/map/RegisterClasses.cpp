@@ -3,8 +3,8 @@
 #include <mrpt/core/initializer.h>
 #include <mrpt/rtti/CObject.h>
 
-#include "mrpt/map/CPoleMap.h"
-#include "mrpt/observation/CObservationPoles.h"
+#include <polemcl/mrpt/map/CPoleMap.h>
+#include <polemcl/mrpt/observation/CObservationPoles.h>
 
 namespace polemcl {
 

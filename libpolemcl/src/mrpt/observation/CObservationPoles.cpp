@@ -1,5 +1,3 @@
-#include "mrpt/observation/CObservationPoles.h"
-
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <iomanip>
 #include <ostream>
 #include <sstream>
+
+#include <polemcl/mrpt/observation/CObservationPoles.h>
 
 #include "core/common/Transform.h"
 #include "io/file/ReadLimits.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

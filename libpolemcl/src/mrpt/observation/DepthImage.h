@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/sensor/PinholeCamera.h"
+#include <polemcl/core/sensor/PinholeCamera.h>
 
 namespace mrpt::obs {
 class CObservation3DRangeScan;

@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/common/Types.h"
-#include "core/sensor/SensorOptions.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl {
 

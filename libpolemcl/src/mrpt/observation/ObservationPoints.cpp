@@ -12,8 +12,9 @@
 #include <cmath>
 #include <numeric>
 
+#include <polemcl/io/data/Cloud.h>
+
 #include "core/sensor/SensorModel.h"
-#include "io/data/Cloud.h"
 #include "mrpt/observation/DepthImage.h"
 
 namespace polemcl {

@@ -1,10 +1,10 @@
-#include "mrpt/observation/ObservationPoleExtractor.h"
-
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 
 #include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"

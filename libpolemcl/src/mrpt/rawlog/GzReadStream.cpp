@@ -9,7 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/ReadLimits.h"
 #include "mrpt/rawlog/PointCountGuard.h"
 

@@ -1,6 +1,6 @@
-#include "mrpt/rawlog/MotionOptions.h"
-
 #include <cmath>
+
+#include <polemcl/mrpt/rawlog/MotionOptions.h>
 
 namespace polemcl {
 

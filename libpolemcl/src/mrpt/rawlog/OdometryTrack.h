@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

@@ -1,5 +1,3 @@
-#include "mrpt/rawlog/PoleSequence.h"
-
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
@@ -7,6 +5,8 @@
 
 #include <algorithm>
 #include <exception>
+
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
 
 #include "mrpt/rawlog/ExternalFiles.h"
 #include "mrpt/rawlog/ScanSource.h"

@@ -5,9 +5,10 @@
 
 #include <cmath>
 
-#include "mrpt/observation/CObservationPoles.h"
+#include <polemcl/mrpt/observation/CObservationPoles.h>
+#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+
 #include "mrpt/observation/LidarFrame.h"
-#include "mrpt/observation/ObservationPoleExtractor.h"
 #include "mrpt/rawlog/ExternalFiles.h"
 #include "mrpt/rawlog/ScanSource.h"
 

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl {
 

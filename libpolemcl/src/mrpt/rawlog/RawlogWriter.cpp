@@ -6,7 +6,8 @@
 
 #include <stdexcept>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/AtomicFile.h"
 
 namespace polemcl {

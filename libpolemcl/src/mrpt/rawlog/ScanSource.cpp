@@ -7,9 +7,10 @@
 
 #include <algorithm>
 
+#include <polemcl/mrpt/observation/CObservationPoles.h>
+#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+
 #include "core/common/Covariance.h"
-#include "mrpt/observation/CObservationPoles.h"
-#include "mrpt/observation/ObservationPoleExtractor.h"
 
 namespace polemcl {
 

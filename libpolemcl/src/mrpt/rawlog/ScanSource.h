@@ -9,8 +9,9 @@
 #include <optional>
 #include <string>
 
-#include "io/data/PlanarMotion.h"
-#include "mrpt/rawlog/MotionOptions.h"
+#include <polemcl/io/data/PlanarMotion.h>
+#include <polemcl/mrpt/rawlog/MotionOptions.h>
+
 #include "mrpt/rawlog/OdometryTrack.h"
 #include "mrpt/rawlog/RawlogReader.h"
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include <polemcl/core/common/Types.h>
+
 #include "core/common/PoseInterpolation.h"
-#include "core/common/Types.h"
 #include "report/picture/ErrorStrip.h"
 #include "report/picture/PlotAxes.h"
 

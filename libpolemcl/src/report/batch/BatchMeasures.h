@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+
 #include "report/batch/BatchResults.h"
 
 namespace polemcl::report {

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::report {
 namespace {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/CsvTable.h"
 #include "report/batch/PublishedResults.h"
 

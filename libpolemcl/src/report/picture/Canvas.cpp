@@ -5,7 +5,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/AtomicFile.h"
 
 namespace polemcl::report {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+
 #include "report/picture/PlotAxes.h"
 
 namespace polemcl::report {

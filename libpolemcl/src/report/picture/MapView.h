@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/common/Types.h"
-#include "core/evaluation/TrajectoryEvaluation.h"
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 
 namespace polemcl::report {
 

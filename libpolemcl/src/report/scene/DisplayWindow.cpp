@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "report/scene/LiveWindow.h"
 
 namespace polemcl::report {

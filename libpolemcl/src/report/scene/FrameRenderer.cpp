@@ -3,7 +3,7 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/opengl/CFBORender.h>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::report {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/localization/MapAssociation.h"
-#include "mrpt/filter/LocalizationPipeline.h"
+#include <polemcl/core/localization/MapAssociation.h>
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 
 namespace polemcl::report {
 

@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/InstalledFiles.h"
 
 namespace polemcl::report {

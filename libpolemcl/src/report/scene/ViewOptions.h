@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/common/Binder.h"
+#include <polemcl/core/common/Binder.h>
 
 namespace polemcl::report {
 

@@ -6,7 +6,8 @@
 #include <fstream>
 #include <mutex>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 #include "sim/lidar/LidarModel.h"

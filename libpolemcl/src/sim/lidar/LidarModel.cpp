@@ -5,9 +5,10 @@
 #include <map>
 #include <sstream>
 
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/common/Types.h>
+
 #include "core/common/Angles.h"
-#include "core/common/Binder.h"
-#include "core/common/Types.h"
 #include "core/sensor/SensorModel.h"
 #include "sim/common/Random.h"
 

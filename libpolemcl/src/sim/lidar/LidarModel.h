@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/sensor/SensorOptions.h"
+#include <polemcl/core/sensor/SensorOptions.h>
+
 #include "sim/common/SimulationOptions.h"
 
 namespace polemcl::sim {

@@ -7,7 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/lidar/LidarModel.h"
 #include "sim/world/World.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
 
 namespace polemcl::sim {
 

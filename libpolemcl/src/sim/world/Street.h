@@ -6,7 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "sim/common/SimulationOptions.h"
 
 namespace polemcl::sim {

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/extraction/PoleExtractor.h"
+#include <polemcl/core/extraction/PoleExtractor.h>
+
 #include "support/KnownScene.h"
 
 namespace polemcl::test_range_image_extractor {

@@ -2,8 +2,9 @@
 /// \file PoleCandidates.h
 /// \brief Step B2 of the paper: shape, foreground and height tests on segments (Algorithm 1).
 
-#include "core/extraction/ExtractionOptions.h"
-#include "core/extraction/ExtractionReport.h"
+#include <polemcl/core/extraction/ExtractionOptions.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
+
 #include "core/extraction/range_image/Segmentation.h"
 
 namespace polemcl {

@@ -2,13 +2,14 @@
 /// \file ScanLineExtractor.h
 /// \brief The native method, A to B3, on one screen. Private to the library; see PoleExtractor.h.
 
-#include "core/extraction/ExtractionOptions.h"
-#include "core/extraction/ExtractionReport.h"
+#include <polemcl/core/extraction/ExtractionOptions.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
+#include <polemcl/core/sensor/PinholeCamera.h>
+#include <polemcl/core/sensor/SensorOptions.h>
+
 #include "core/extraction/PoleClassifier.h"
 #include "core/extraction/VisibilityRange.h"
 #include "core/extraction/scan_line/CandidateFeatures.h"
-#include "core/sensor/PinholeCamera.h"
-#include "core/sensor/SensorOptions.h"
 
 namespace polemcl {
 

@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/extraction/ExtractionOptions.h"
+#include <polemcl/core/extraction/ExtractionOptions.h>
+
 #include "core/extraction/scan_line/ScanLines.h"
 
 namespace polemcl {

@@ -9,7 +9,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/common/Types.h"
+#include <polemcl/core/common/Types.h>
+
 #include "core/extraction/scan_line/GroundGrid.h"
 #include "core/sensor/SensorModel.h"
 

@@ -1,0 +1,105 @@
+#pragma once
+/// \file ExtractionOptions.h
+/// \brief The settings of the extraction, with units, defaults and sources.
+
+#include <string>
+#include <vector>
+
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+class Binder;
+
+enum class ExtractionMethod { rangeImage, scanLine };
+
+/// \brief The paper's Algorithm 1. `[range_image]` in INI files; departures are named options.
+struct POLEMCL_EXPORT RangeImageOptions {
+  int rows = 64, columns = 500;              ///< range image, px
+  double fovUp = 0.0524, fovDown = -0.4363;  ///< rad
+  double minZ = -1.3, maxZ = 6;              ///< height cut, m; see `heights_above_ground`
+  double maxRange = 50;                      ///< m
+  double epsilon = 0.2;                      ///< ε: range step inside a cluster, m
+  int minPixels = 3;                         ///< ζ: clusters need strictly more pixels
+  int maxWidthPx = 10;                       ///< px
+  double minAspect = 1;                      ///< least h/w, px
+  double foreground = 0.7;  ///< δ: least share of pixels not behind a side neighbour
+  double minTop = 0.7;      ///< α, m
+  double maxBottom = 1.5;   ///< β, m
+  double minHeight = 0.6;   ///< γ, m
+  double minRadius = 0.02, maxRadius = 0.4;  ///< b, a, m
+  double fitMargin = 0.1;                    ///< box for the fit: ± (R + margin), m
+  double fitMaxZ = 3;                        ///< highest point of the fit, m
+  int minFitPoints = 6;
+  double freeRing = 0.5;    ///< width of the free space, m
+  double freeShare = 0.15;  ///< μ: allowed points there as a share of the fitted ones
+  bool heightsAboveGround =
+      false;  ///< false: z in the sensor frame, as the paper; true: z + `height_m`
+  /// Origin of the range image. `sensor`: the optical centre, as in the paper; `cloud`: the origin
+  /// of the clouds, whatever `[sensor] origin` says (authors' code: NCLT's body frame).
+  std::string projectFrom = "sensor";
+  /// true: y counts to the right in the image (authors' code for NCLT, which turns z over only).
+  bool mirrored = false;
+  /// m; the files hold multiples of this, and the exact ones are used instead of those rounded to
+  /// float (NCLT: 0.005); 0: coordinates as they are.
+  double coordinateStep = 0;
+  /// true: projection and fit in float (authors' code for KITTI); false: in double.
+  bool singlePrecision = false;
+  /// true: points outside the image go to its border pixels (authors' code); false: dropped.
+  bool clampToView = false;
+  /// true: the image closes at +-180 deg; false: it is open, and its first and last rows and
+  /// columns hold no pixels of clusters (authors' code).
+  bool wrapAround = true;
+  bool growUpwards = false;  ///< true: clusters grow up too; false: left, right, below
+  /// Which pixels count for `foreground`. `not_behind`: those without a nearer side neighbour
+  /// outside the cluster (authors' code); `in_front`: those with side neighbours outside the
+  /// cluster, all farther (paper).
+  std::string foregroundTest = "not_behind";
+  /// `kasa` (the paper's algebraic fit), `kasa_mean` (its centre, the mean distance of the points
+  /// as radius: authors' code), `taubin` (less biased), `silhouette` (radius from the width seen,
+  /// centre behind the front: not biased on short arcs).
+  std::string circleFit = "kasa";
+  /// `ring`: all that is nearer than the ring's width to the circle around the box of the fit
+  /// (paper); `corners`: four squares at the corners of that box; `cut_corners`: the same, but the
+  /// two at lower y are cut to the height `ring - 2 (R + margin)` by a sign slip (authors' code).
+  std::string freeSpace = "corners";
+  void validate() const;
+};
+
+POLEMCL_EXPORT void bind(Binder& binder, RangeImageOptions& options);  ///< `[range_image]`
+
+/// \brief Our method: scan lines of real beams. `[scan_line]` in INI files.
+struct POLEMCL_EXPORT ScanLineOptions {
+  double maxWidth = 0.9;     ///< greatest width of a segment of a pole, m
+  double connectStep = 0.2;  ///< greatest step in range between neighbours in a segment, m
+  double edgeStep = 0.35;    ///< least step in range from a segment's edge to what lies behind, m
+  double stackReach = 0.3;   ///< greatest horizontal step between segments of a pole, m
+  double stackGap = 1.2;     ///< greatest vertical step between them, m (or two beams)
+  double minTop = 2.0;       ///< least height of the top, m above local ground (`min_top_m`)
+  double maxBottom = 2.2;    ///< greatest height of the lowest return, m
+  double minHeight = 0.5;    ///< least visible height, m
+  double minRadius = 0.02;   ///< m
+  double maxRadius = 0.45;   ///< m
+  int minPoints = 5;         ///< least number of returns of a pole
+  double maxTilt = 0.2;      ///< greatest tilt of the axis from the vertical, rad (`max_tilt_deg`)
+  double maxScatter = 0.12;  ///< greatest rms distance of the segments from the axis, m
+  double minSpacing = 0.4;   ///< two poles nearer than this: the less confident is dropped, m
+  double minConfidence = 0.5;  ///< poles with a lower confidence are refused
+  double maxRange = 40;        ///< poles farther away are not looked for, m
+  void validate() const;
+};
+
+POLEMCL_EXPORT void bind(Binder& binder, ScanLineOptions& options);  ///< `[scan_line]`
+
+/// \brief `[extraction]` in INI files.
+struct POLEMCL_EXPORT ExtractionOptions {
+  ExtractionMethod method = ExtractionMethod::scanLine;
+  RangeImageOptions rangeImage;
+  ScanLineOptions scanLine;
+  void validate() const;  ///< \throws Error
+};
+
+POLEMCL_EXPORT void bind(Binder& binder,
+                         ExtractionOptions& options);  ///< `[extraction]` and the two above
+
+}  // namespace polemcl

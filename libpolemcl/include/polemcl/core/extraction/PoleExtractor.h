@@ -1,0 +1,51 @@
+#pragma once
+/// \file PoleExtractor.h
+/// \brief Scan in, poles out: steps A to B3 of the paper on one screen, and the native method.
+
+#include <memory>
+#include <vector>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/extraction/ExtractionOptions.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
+#include <polemcl/core/sensor/PinholeCamera.h>
+#include <polemcl/core/sensor/SensorOptions.h>
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+/// \brief Extracts poles; keeps its buffers between scans, so one object serves one thread.
+class POLEMCL_EXPORT PoleExtractor {
+ public:
+  /// \throws Error when an option is out of range or the sensor's geometry is unknown.
+  explicit PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction);
+  /// \brief For the depth images of one camera, by the native method. Of `sensor` only the height
+  /// and the ranges are used. extract() takes points in a level frame with the origin at the
+  /// optical centre, in which the camera stands as `R_lidar_camera` says.
+  /// \throws Error when an option or an intrinsic is out of range.
+  PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
+                const ScanLineOptions& options);
+  ~PoleExtractor();
+  PoleExtractor(PoleExtractor&&) noexcept;
+  PoleExtractor& operator=(PoleExtractor&&) noexcept;
+
+  /// \brief Poles of one full turn, sorted by azimuth then range so that the order is defined.
+  /// \param points Cloud in the LiDAR's own frame, origin at its optical centre, z up
+  ///        (within the mounting tilt; see SensorOptions). Order of points is of no consequence.
+  /// \param upright By so much an upright pole moves along x and y per height along z: the known
+  /// lean of the lidar. Used by the native method.
+  /// \return Poles in that same frame; heights above the local ground. Centres of the native method
+  /// are those at the height of the lidar, or the nearest that was seen.
+  const std::vector<PoleDetection>& extract(
+      const PointsView& points, const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
+  const ExtractionReport& report() const;
+  /// \brief Of the last scan: VisibilityRangeFinder::kSectors free ranges (see there), m, in the
+  /// frame of the points. Empty by the paper's method and of depth cameras: not known.
+  const std::vector<float>& visibilityRange() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace polemcl

@@ -1,0 +1,104 @@
+#pragma once
+/// \file GlobalLocalizer.h
+/// \brief Where on the map is this constellation of poles? No start pose at all.
+///
+/// The poles of a LocalSubmap are matched against the whole map: pairs of them by their distance
+/// (geometric hashing, PairDistanceIndex), each candidate tried on its other poles and given up
+/// early, the best refined by least squares and judged on all poles: those matched speak for it,
+/// map poles beside the way that were never seen speak against it. See share/doc/global.md.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/localization/LocalSubmap.h>
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+class Binder;
+
+/// \brief `[global]` in INI files.
+struct POLEMCL_EXPORT GlobalOptions {
+  int minHits = 2;  ///< poles of the submap with fewer hits are not used
+  /// Probability that a true pole of the submap is on the map, in (0, 1).
+  double mapped = 0.9;
+  double sigma = 0.05;        ///< σ of a pole from its map pole, beyond both covariances, m
+  double maxTolerance = 1.0;  ///< greatest distance of a pole from its map pole, m
+  double minBaseline = 8, maxBaseline = 40;  ///< of pole pairs that give a candidate, m
+  double corridor = 15;  ///< map poles nearer than this to the path should have been seen, m
+  double seen = 0.5;     ///< probability that such a pole is in the submap, in [0, 1)
+  /// \name Verdict
+  /// @{
+  int minMatched = 6;         ///< least number of matched poles of an answer
+  double minShare = 0.4;      ///< least share of the submap's poles that are matched, in [0, 1]
+  double margin = 7;          ///< least lead in log-likelihood over every other place, nats
+  double distinct = 2;        ///< places farther apart than this are different ones, m
+  double distinctYaw = 0.17;  ///< places turned by more are different, rad (`distinct_yaw_deg`)
+  /// @}
+  int maxPairs = 40;           ///< greatest number of pole pairs that are looked up
+  int maxCandidates = 100000;  ///< greatest number of places that are tried; bounds the time
+  int maxRefined = 64;         ///< greatest number of places that are refined
+  int maxHypotheses = 20;      ///< greatest number of places in an answer
+  void validate() const;       ///< \throws Error
+};
+
+POLEMCL_EXPORT void bind(Binder& binder, GlobalOptions& options);  ///< `[global]`
+
+/// \brief A place where the submap may lie.
+struct POLEMCL_EXPORT GlobalHypothesis {
+  Pose2D pose_map_robot;  ///< the robot now, m, rad
+  Pose2D pose_map_local;  ///< the submap's local frame
+  /// Covariance of pose_map_robot's (x, y, yaw), m², m·rad, rad²: of the least squares, scaled by
+  /// its residuals where these are larger than expected.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  double scale = 0;     ///< error of the odometry's scale: true way = (1 + scale)·driven way
+  double evidence = 0;  ///< log of the odds this place has against a place with no match, nats
+  double weight = 0;    ///< share of exp(evidence) among the hypotheses handed out
+  std::uint32_t matched = 0;  ///< map poles matched, each once
+  double matchedShare = 0;    ///< of the submap's poles with `minHits`
+  std::uint32_t unseen = 0;   ///< map poles beside the way that are not in the submap
+};
+
+enum class GlobalVerdict {
+  resolved,   ///< the first hypothesis, clearly better than all other places
+  ambiguous,  ///< several about as good: keep all, drive on
+  none        ///< nothing that holds: too few poles, or not on this map
+};
+
+/// \brief Why the verdict is what it is.
+enum class GlobalReason {
+  clear,       ///< resolved
+  rivals,      ///< ambiguous: another place is within the margin
+  fewPoles,    ///< none: the submap has fewer than `minMatched` poles with `minHits`
+  noPlace,     ///< none: no candidate survived
+  fewMatched,  ///< none: the best has fewer than `minMatched`
+  smallShare   ///< none: the best has less than `minShare`
+};
+
+struct GlobalResult {
+  GlobalVerdict verdict = GlobalVerdict::none;
+  GlobalReason reason = GlobalReason::fewPoles;
+  std::vector<GlobalHypothesis> hypotheses;  ///< by falling evidence; may be empty
+  std::size_t poles = 0;                     ///< submap poles that gave evidence
+  std::size_t candidates = 0;                ///< places tried
+};
+
+class PreparedMap;
+
+/// \brief The map, prepared once. Const calls may run in parallel; the answer depends on nothing
+/// but map, options and submap.
+class POLEMCL_EXPORT GlobalLocalizer {
+ public:
+  /// \throws Error on options out of range or a map pole whose centre or covariance is not finite.
+  explicit GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOptions& options = {});
+
+  GlobalResult localize(const LocalSubmap& submap) const;
+
+ private:
+  std::shared_ptr<const PreparedMap> m_map;  ///< never changed, so copies share it
+};
+
+}  // namespace polemcl

@@ -1,0 +1,127 @@
+#pragma once
+/// \file OdometryMonitor.h
+/// \brief Do the poles contradict the odometry? And what motion do they say instead?
+///
+/// Each scan's poles are compared with those of a few scans before, up to a second back, where a
+/// slip has added up. While poles and odometry agree, nothing is changed. An odometry that is
+/// stuck, slips or jumps is contradicted when enough poles fit another motion, clearly better than
+/// the odometry's, and that motion is outside what the odometry's covariance and a tolerance for
+/// errors of its scale allow. From then on the poles' motion takes its place, until both agree
+/// again for a while. See share/doc/health.md.
+
+#include <Eigen/Core>
+#include <deque>
+#include <vector>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/localization/ScanRegistration.h>
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+class Binder;
+
+/// \brief `[odometry_monitor]` in INI files.
+struct POLEMCL_EXPORT OdometryMonitorOptions {
+  bool enabled = true;
+  double window = 1;         ///< longest time over which scans are compared, s
+  double scale = 0.05;       ///< tolerated error of the odometry, as a share of the distance
+  double metres = 0.1;       ///< tolerated error of any motion, m (`tolerance_m`)
+  double turn = 0.02;        ///< tolerated error of any turn, rad (`tolerance_deg`)
+  double sigmas = 5;         ///< least difference beyond that contradicts, in standard deviations
+  int minPairs = 3;          ///< least number of poles in common that contradict
+  double minShare = 0.4;     ///< least share of the poles of the scan with fewer that are paired
+  double margin = 1.5;       ///< least lead of the poles' motion over the odometry's, in pairs
+  double settle = 0.5;       ///< time of agreement after which the odometry is believed again, s
+  double hold = 5;           ///< time for which the last speed is kept without enough poles, s
+  double maxSpeed = 40;      ///< greatest speed of the vehicle, m/s
+  double maxTurnRate = 1.5;  ///< greatest turn rate, rad/s (`max_turn_rate_deg_s`)
+  RegistrationOptions alignment;  ///< sigma, gate, reach (`sigma_m`, `gate`, `reach_m`)
+  void validate() const;          ///< \throws Error
+};
+
+POLEMCL_EXPORT void bind(Binder& binder,
+                         OdometryMonitorOptions& options);  ///< `[odometry_monitor]`
+
+enum class OdometryVerdict {
+  agrees,        ///< the poles bear the odometry out
+  contradicted,  ///< they do not: the motion is the poles', or the last known speed's
+  unknown        ///< too few poles to tell: the motion is the odometry's
+};
+
+/// \brief The motion to use for this step.
+struct POLEMCL_EXPORT MonitoredMotion {
+  OdometryVerdict verdict = OdometryVerdict::unknown;
+  bool replaced = false;  ///< motion or covariance differ from the odometry's
+  Pose2D motion;          ///< since the scan before, in the robot frame before; m, rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m², m·rad, rad²
+  int pairs = 0;                                         ///< poles that bear it out
+};
+
+/// \brief Follows one drive. Deterministic.
+class POLEMCL_EXPORT OdometryMonitor {
+ public:
+  /// \throws Error on options out of range.
+  explicit OdometryMonitor(const OdometryMonitorOptions& options = {});
+
+  /// \brief One scan more. After a gap longer than the window, and for the first scan, there is
+  /// nothing to compare with.
+  /// \param time Of the scan, s; scans that are not earlier are forgotten, so that one that was
+  /// refused elsewhere can be given again. \param motion, covariance Odometry
+  /// since the scan before; finite. \param poles_robot Detections, robot frame; those that are not
+  /// finite or have no confidence are not used.
+  MonitoredMotion add(double time, const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                      const std::vector<PoleDetection>& poles_robot);
+  /// \brief Forgets all scans: the next is a first one.
+  void clear();
+  const OdometryMonitorOptions& options() const { return m_options; }
+
+ private:
+  /// A scan to compare with. Chains of motions since the first scan: as the odometry has them, and
+  /// as they were handed out.
+  struct Reference {
+    double time = 0;
+    Pose2D odometry, used;
+    Eigen::Matrix3d spent = Eigen::Matrix3d::Zero();  ///< sum of the odometry's covariances
+    std::vector<PoleDetection> poles;
+    bool known = true;  ///< the motion to it was borne out (while contradicted)
+  };
+  /// What the poles say about the motion since a reference.
+  struct Finding {
+    OdometryVerdict verdict = OdometryVerdict::unknown;
+    ScanRegistration alignment;
+    double beyond = 0;  ///< of the odometry, outside the tolerance, standard deviations
+  };
+  enum class State {
+    believed,     ///< the odometry is handed out
+    suspected,    ///< the last scan contradicted it with few pairs; the next contradiction decides
+    contradicted  ///< the motion of the poles, or the last known speed, is handed out
+  };
+  Finding compare(const Reference& reference, const Reference& now, bool search) const;
+  ScanRegistration align(const Reference& reference, const Reference& now, bool search) const;
+  bool suffices(const ScanRegistration& alignment, const Reference& reference,
+                const Reference& now) const;
+  double beyondTolerance(const Pose2D& odometry, const Pose2D& other,
+                         const Eigen::Matrix3d& covariance) const;
+  std::vector<std::size_t> chosen(double time) const;
+  MonitoredMotion watch(Reference& now, const MonitoredMotion& odometry);
+  MonitoredMotion contradict(Reference& now, const Reference& reference,
+                             const ScanRegistration& alignment, const MonitoredMotion& odometry);
+  MonitoredMotion replace(Reference& now, const MonitoredMotion& odometry);
+  MonitoredMotion take(Reference& now, const Reference& reference,
+                       const ScanRegistration& alignment);
+  bool hasSettled(const Reference& now) const;
+  Pose2D coast(double seconds) const;
+  std::size_t keyScan() const;
+
+  OdometryMonitorOptions m_options;
+  std::deque<Reference> m_past;
+  State m_state = State::believed;
+  Pose2D m_speed;          ///< of the last motion handed out, per second
+  double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s
+  /// Of the scan that those after it are aligned with while contradicted, s. One for several, not
+  /// each with its own: chains of every third scan would drift apart.
+  double m_keyTime = 0;
+};
+
+}  // namespace polemcl

@@ -1,0 +1,84 @@
+#pragma once
+/// \file PoleExistence.h
+/// \brief Whether a mapped pole still stands: its probability, from scans that saw it and scans
+/// that should have.
+///
+/// A binary Bayes filter in log-odds with a survival prior between sessions, as the persistence
+/// filter has it for features of semi-static maps (Rosen, Mason and Leonard 2016, "Towards lifelong
+/// feature-based mapping in semi-static environments": detections with a chance of a miss and of a
+/// false alarm, a prior on how long a feature lasts). Unlike there, scans are not taken for
+/// independent: one metre farther on, the same car stands before the same pole.
+
+#include <cstdint>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+class Binder;
+
+/// \brief The part of `[map_update]` in INI files that tells what scans say.
+struct POLEMCL_EXPORT ExistenceOptions {
+  /// Probability that a scan finds a pole in view (`detection`). The pole's own counts are used
+  /// where they say less.
+  double detection = 0.75;
+  /// Probability that a scan finds something where no pole is (`false_detection`). With these two,
+  /// a place found in more than about 0.37 of the scans that could see it stays a pole.
+  double falseDetection = 0.08;
+  double decorrelation = 5;  ///< scans within this distance count as one, m (`decorrelation_m`)
+  double prior = 0.2;        ///< prior probability that a newly observed object is a pole (`prior`)
+  double certain = 0.99;  ///< greatest probability of existence; the least is 1 - this (`certain`)
+  double lifetimeDays = 3650;  ///< mean time that a pole stands, days (`lifetime_days`)
+  void validate() const;       ///< \throws Error
+};
+
+POLEMCL_EXPORT void bind(Binder& binder, ExistenceOptions& options);  ///< `[map_update]`
+
+/// \brief What is known of a pole over the sessions.
+struct PoleHistory {
+  std::uint32_t seen = 0;    ///< scans within `range_m` that found it
+  std::uint32_t missed = 0;  ///< scans within `range_m` that should have: in free view, not found
+  double existence = 0.5;    ///< probability that it stands, in (0, 1)
+  double firstSeen = 0;      ///< s since 1970; 0: not known
+  double lastSeen = 0;       ///< s since 1970; 0: not known
+};
+
+/// \brief True for a time of the calendar. Earlier ones, of the first day of 1970, are those of a
+/// drive that has a clock of its own; they do not tell when a pole was seen.
+POLEMCL_EXPORT bool isDate(double seconds);
+/// \brief Notes that the pole was seen, unless the time is no date.
+POLEMCL_EXPORT void noteSeen(PoleHistory& history, double seconds);
+
+/// \brief Chance that a pole is found in a scan that could see it: from its counts, with
+/// `detection` counting as 20 scans; at most `detection`, and at least twice `falseDetection`, so
+/// that misses always count against it.
+POLEMCL_EXPORT double detectionChance(const PoleHistory& history, const ExistenceOptions& options);
+
+/// \brief Probability after a time without news: it decays as exp(-days / lifetime).
+/// \param seconds Since it was last updated; negative ones count as 0.
+POLEMCL_EXPORT double survived(double existence, double seconds, const ExistenceOptions& options);
+
+/// \brief Collects what the scans of a session say of one pole, look by look.
+class POLEMCL_EXPORT ExistenceEvidence {
+ public:
+  /// \param along Way travelled to the scan, m; never less than before.
+  void add(bool found, double along, const ExistenceOptions& options, double chance);
+  std::uint32_t found() const { return m_found; }
+  std::uint32_t missed() const { return m_missed; }
+  /// \brief Log of the ratio of likelihoods, of a pole to none: the mean over the scans of a look,
+  /// summed over the looks.
+  double logRatio() const;
+
+ private:
+  std::uint32_t m_found = 0, m_missed = 0;
+  double m_done = 0;           ///< of the looks before
+  double m_sum = 0;            ///< of the look under way
+  std::uint32_t m_inLook = 0;  ///< scans in it
+  std::int64_t m_look = -1;    ///< its number
+};
+
+/// \brief Probability after evidence, kept within `certain`.
+POLEMCL_EXPORT double updated(double existence, double logRatio, const ExistenceOptions& options);
+
+}  // namespace polemcl

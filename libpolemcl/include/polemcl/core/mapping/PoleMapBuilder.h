@@ -1,0 +1,102 @@
+#pragma once
+/// \file PoleMapBuilder.h
+/// \brief Step C of the paper: detections at known poses -> poles, with counts.
+///
+/// The path is split into sections of equal length (PathSections); detections of different scans
+/// are merged by gated distance (ObservationClustering) and averaged by their certainty
+/// (LandmarkFusion); a pole stays if enough sections in a continuous run saw it. The options have
+/// the first implementation's way of each step as well.
+
+#include <vector>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+class Binder;
+
+/// \brief Which scan is the view of a section.
+enum class SectionMiddle {
+  nearest,  ///< the one nearest to the middle of the section
+  passed    ///< the first at or past the middle (first implementation, see SectionMarks)
+};
+
+/// \brief Which detections are one pole, and what becomes of them.
+enum class MapMerging {
+  gated,  ///< by distance to the pole's centre, one a view; mean by certainty, without outliers
+  boxes   ///< all whose boxes overlap, chains too; plain mean (first implementation)
+};
+
+/// \brief What is counted against PoleMapOptions::minCount.
+enum class PoleCounting {
+  run,     ///< sections of one continuous run that saw the pole (paper)
+  members  ///< detections of the pole, wherever they were made (first implementation)
+};
+
+/// \brief `[map]` in INI files.
+struct POLEMCL_EXPORT PoleMapOptions {
+  /// Length of a section of the path, m (paper: 0.25 NCLT, 1.5 KITTI and MulRan).
+  double sectionLength = 1.5;
+  /// true: every scan is a view; false: the scan nearest to the middle of a section is its one view
+  /// (paper).
+  bool everyScan = true;
+  SectionMiddle middle = SectionMiddle::nearest;
+  MapMerging merging = MapMerging::gated;
+  PoleCounting counting = PoleCounting::run;
+  double mergeDistance = 0.5;  ///< detections of one pole lie within this of its mean, m
+  /// Poles nearer to each other than mergeDistance stay apart when at least this share of the views
+  /// of the one seen more often shows both; otherwise they are one.
+  static constexpr double apartShare = 0.25;
+  int minCount = 5;          ///< least `counting` of a pole
+  int maxGap = 2;            ///< most *occupied* sections in a row that may miss it inside a run
+  double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
+  /// Least share of the occupied sections with middles within `nearRange` that saw the pole, in
+  /// [0, 1]. Clutter looks like a pole from few places, a pole from nearly all. A pole without such
+  /// sections needs `minCount` alone.
+  double minShare = 0.4;
+  double nearRange = 15;  ///< m
+  /// Standard deviation of the scans' positions, m: added to each detection, so that the nearest
+  /// one does not count alone.
+  double poseSigma = 0.02;
+  /// Standard deviation of the scans' headings, rad (`heading_sigma_deg`): far detections count
+  /// less across the line of sight.
+  double headingSigma = 0.002;
+  /// Later sessions use only scans at least this far from every place that earlier sessions
+  /// visited, m (`unvisited_m`, paper: 10); 0: all scans. See MapAccumulator.
+  double unvisited = 0;
+  void validate() const;  ///< \throws Error
+};
+
+POLEMCL_EXPORT void bind(Binder& binder, PoleMapOptions& options);  ///< `[map]`
+
+/// \brief One scan's poles at a known pose.
+struct MappingScan {
+  Pose2D pose_map_robot;
+  std::vector<PoleDetection> poles_robot;
+  /// Where it differs from the scan before, another drive begins: the way between the two is no
+  /// part of the path, and no run continues across.
+  std::uint32_t drive = 0;
+  /// false: the way leads here, but nothing is taken from this scan. Its detections are ignored.
+  bool used = true;
+};
+
+struct PoleMapResult {
+  std::vector<MapPole> poles;        ///< map frame, sorted by x then y
+  double pathLength = 0;             ///< over all drives, scans not used included, m
+  std::size_t sections = 0;          ///< along the path
+  std::size_t occupiedSections = 0;  ///< with at least one scan: only these count and break runs
+  std::size_t views = 0;             ///< scans used: one of each occupied section, or all
+  std::size_t detections = 0;        ///< used
+  std::size_t clusters = 0;          ///< before counting
+  std::size_t bestCount = 0;         ///< greatest `counting` of a pole; minCount must be met
+};
+
+/// \brief Builds the map from scans in the order they were driven. The result does not depend on
+/// the order of the detections in a scan. Empty input gives an empty map.
+/// \throws Error on options out of range, and on a pose or detection that is not finite, or whose
+///         covariance is not symmetric positive semidefinite, naming scan and detection.
+POLEMCL_EXPORT PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans,
+                                          const PoleMapOptions& options);
+
+}  // namespace polemcl

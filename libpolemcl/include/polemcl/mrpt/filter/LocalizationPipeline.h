@@ -1,0 +1,158 @@
+#pragma once
+/// \file LocalizationPipeline.h
+/// \brief The complete localization behind one call per scan: particle filter, submap of the last
+/// metres, global search, health, and fault detection for the odometry.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <polemcl/core/global_localization/GlobalLocalizer.h>
+#include <polemcl/core/localization/LocalMaps.h>
+#include <polemcl/core/localization/LocalSubmap.h>
+#include <polemcl/core/localization/LocalizationHealth.h>
+#include <polemcl/core/localization/OdometryMonitor.h>
+#include <polemcl/export.h>
+#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+
+namespace polemcl {
+
+/// \brief When the global search is asked. `[search]` in INI files.
+struct POLEMCL_EXPORT SearchOptions {
+  bool recover = true;      ///< true: the map is searched when the vehicle is lost
+  double every = 4;         ///< distance travelled between two searches, m
+  double everySeconds = 5;  ///< time between two searches of a vehicle that stands, s
+  /// Distance travelled until an ambiguous answer is used, m; until then the next metres may tell.
+  double patience = 30;
+  int particles = 4000;   ///< number of particles drawn round the places of an answer
+  void validate() const;  ///< \throws Error
+};
+
+POLEMCL_EXPORT void bind(Binder& binder, SearchOptions& options);  ///< `[search]`
+
+/// \brief When the filter gets detections.
+enum class Cadence {
+  scan,    ///< at every scan
+  section  ///< at the end of each section, with the detections of its middle scan (first
+           ///< implementation)
+};
+
+/// \brief Which detections the filter is given. `[tracking]` in INI files.
+struct POLEMCL_EXPORT TrackingOptions {
+  /// Detections of a pole are averaged in the odometry frame and used together. Errors of
+  /// successive detections are alike, so each for itself would count too much.
+  bool average = true;
+  int minHits = 2;                  ///< poles seen in fewer scans are not used
+  double every = 0.5;               ///< distance travelled until a pole is used again, m
+  Cadence cadence = Cadence::scan;  ///< `section` needs `average` to be false
+  LocalMapOptions localMaps;        ///< of Cadence::section
+  void validate() const;            ///< \throws Error
+};
+
+POLEMCL_EXPORT void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`
+
+/// \brief All settings of the chain, but those of the search on the map, which LocalizationMap
+/// takes.
+struct POLEMCL_EXPORT LocalizationOptions {
+  FilterOptions filter;
+  TrackingOptions tracking;
+  SubmapOptions submap;
+  HealthOptions health;
+  SearchOptions search;
+  OdometryMonitorOptions odometryMonitor;
+  void validate() const;  ///< \throws Error
+};
+
+/// \brief Result of one scan.
+struct LocalizationUpdate {
+  double time = 0;                             ///< time of the scan, s
+  std::optional<PoseWithCovariance> estimate;  ///< map frame; nullopt while the pose is unknown
+  Health health;
+  std::size_t poles = 0;  ///< poles observed in the scan
+  /// Report of the filter, all zero without a pose. Its `poles` are those given to the filter.
+  StepReport step;
+  bool relocalized = false;  ///< the global search moved the filter to this pose in this step
+  OdometryVerdict motion = OdometryVerdict::unknown;  ///< verdict of the odometry monitor
+};
+
+/// \brief The map with the data for the global search, prepared once and shared by many runs.
+struct POLEMCL_EXPORT LocalizationMap {
+  /// \throws Error on a map without poles, or options out of range.
+  LocalizationMap(std::shared_ptr<const CPoleMap> poleMap, const GlobalOptions& options);
+  std::shared_ptr<const CPoleMap> poles;
+  std::shared_ptr<const GlobalLocalizer> search;
+};
+
+/// \brief Localizes one drive. Results depend only on input and seed. Several objects may run in
+/// parallel on one map.
+class POLEMCL_EXPORT LocalizationPipeline {
+ public:
+  /// \throws Error on options out of range.
+  LocalizationPipeline(LocalizationMap map, const LocalizationOptions& options, std::uint32_t seed);
+
+  /// \brief Starts around a pose. \throws Error as PoleParticleFilter::start(). Also when the disc
+  /// is farther than `maxStartDistance` from every pole of the map.
+  void start(const StartOptions& start);
+  /// \brief Starts without a pose: the global search finds it during the drive.
+  void initializeGlobally();
+
+  /// \brief Processes the next scan. The motion of the first frame is ignored.
+  /// \throws Error as PoleParticleFilter::step(); the state is then unchanged.
+  LocalizationUpdate step(const PoleFrame& frame);
+
+  static constexpr double maxStartDistance = 1000;  ///< m
+  /// A search result within these limits of the estimate counts as the same pose, m and rad.
+  static constexpr double sameMetres = 0.5, sameRadians = 0.035;
+  /// Re-initialize at the same pose anyway if the new pose matches at least this many more poles.
+  static constexpr double betterPoles = 2;
+  /// Above these standard deviations the particles may cover several places, m and rad.
+  static constexpr double wideMetres = 0.3, wideRadians = 0.1;
+
+  /// \name For drawing
+  /// @{
+  bool hasPose() const { return m_hasPose; }
+  const PoleParticleFilter& filter() const { return m_filter; }  ///< particles only with a pose
+  const LocalSubmap& submap() const { return m_submap; }
+  const GlobalResult& lastSearch() const { return m_search; }  ///< empty before the first search
+  std::size_t searches() const { return m_searches; }  ///< number of searches since the start
+  /// \brief Associations of the last frame's poles at the estimate, in the order of the frame;
+  /// empty without a pose.
+  const std::vector<PoleMatch>& matches() const { return m_matches; }
+  const LocalizationMap& map() const { return m_map; }
+  /// @}
+
+ private:
+  void checkFrame(const PoleFrame& frame) const;
+  PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
+  std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                                            const std::vector<PoleDetection>& poles_robot);
+  void track(const PoleFrame& frame, double metres, LocalizationUpdate& update);
+  void doubtSubmap();
+  bool searchIsDue() const;
+  void search(const PoleFrame& frame, LocalizationUpdate& update);
+  bool agrees(const GlobalHypothesis& place) const;
+  bool fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const;
+  std::vector<PoleMatch> match(const PoleFrame& frame, const PoseWithCovariance& pose) const;
+  void adopt(const PoleFrame& frame, bool resolved, LocalizationUpdate& update);
+
+  LocalizationMap m_map;
+  LocalizationOptions m_options;
+  PoleParticleFilter m_filter;
+  LocalSubmap m_submap;   ///< for the global search
+  LocalSubmap m_tracks;   ///< for the filter
+  LocalMaps m_localMaps;  ///< for the filter with Cadence::section
+  OdometryMonitor m_odometryMonitor;
+  HealthMonitor m_monitor;
+  PoleFrame m_tracked;  ///< the last frame with the poles given to the filter
+  GlobalResult m_search;
+  std::vector<PoleMatch> m_matches;
+  PoseWithCovariance m_estimate;
+  bool m_hasPose = false, m_started = false, m_stepped = false;
+  bool m_mistrusted = false;  ///< the submap was restarted because poles did not match
+  std::size_t m_searches = 0;
+  double m_time = 0;        ///< time of the last frame, s
+  double m_searchedAt = 0;  ///< distance travelled in the submap at the last search, m
+  double m_searchTime = 0;  ///< time of the last search, s
+};
+
+}  // namespace polemcl

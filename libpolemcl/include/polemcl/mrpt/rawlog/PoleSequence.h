@@ -1,0 +1,120 @@
+#pragma once
+/// \file PoleSequence.h
+/// \brief Reads a rawlog of scans or poles as poles with the motions between them. Extraction runs
+/// in parallel.
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polemcl/export.h>
+#include <polemcl/io/data/PlanarMotion.h>
+#include <polemcl/mrpt/observation/CObservationPoles.h>
+#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include <polemcl/mrpt/rawlog/MotionOptions.h>
+
+namespace polemcl {
+
+/// \brief Clock for measuring latencies.
+using ScanClock = std::chrono::steady_clock;
+
+struct SequenceOptions {
+  ObservationPoleExtractorOptions extraction;
+  MotionOptions motion;
+  bool allowTruncated = false;
+  int threads = 0;  ///< extracting, at most one per core; 0: that many. The result is the same
+  /// Sets the pace of the input. Called in order with the time (s) of each scan that has been read,
+  /// from one thread at a time; may wait. Returns the moment at which the scan counts as there.
+  /// Empty: no scan waits.
+  std::function<ScanClock::time_point(double)> pace = {};
+};
+
+/// \brief Statistics of the rawlog.
+struct SequenceCounts {
+  std::size_t scans = 0;          ///< scans returned, including empty ones
+  std::size_t storedScans = 0;    ///< scans that were stored as poles in the rawlog
+  std::size_t emptyScans = 0;     ///< scans without valid points and poles
+  std::size_t points = 0;         ///< valid points of all scans
+  std::size_t invalidPoints = 0;  ///< points dropped: NaN, infinite or at the origin
+  std::size_t poles = 0;
+  std::size_t otherSensors = 0;  ///< ignored scans, whose sensor label differs from the first one's
+  std::size_t unknownMotions = 0;  ///< scans after the first without odometry
+  bool truncated = false;          ///< the file is truncated, and this was allowed
+};
+
+/// \brief One scan from the stream.
+struct PoleScan {
+  std::size_t index = 0;  ///< 0-based among the scans of the rawlog
+  double time = 0;        ///< time of the observation, s
+  /// Motion since the previous scan, in its robot frame. Identity without covariance for the first
+  /// scan; nullopt if the rawlog has no odometry in between.
+  std::optional<io::PlanarMotion> motion;
+  CObservationPoles::Ptr observation;  ///< never null
+  /// Source of the poles; its points may still be in an external file. Null for stored poles.
+  mrpt::obs::CObservation::Ptr scan;
+  std::size_t points = 0;         ///< valid points; 0 if stored poles do not state it
+  std::size_t invalid = 0;        ///< dropped points
+  ExtractionReport report;        ///< report of the extraction; all zero for stored poles
+  bool stored = false;            ///< true: read as poles, not extracted
+  ScanClock::time_point arrival;  ///< time when the scan was read, or due by SequenceOptions::pace
+  double readSeconds = 0;         ///< time spent on reading it
+  double extractSeconds = 0;      ///< time spent on loading points and extracting poles
+  /// Estimated number of scans in the rawlog, from the fraction of the file read so far; 0:
+  /// unknown.
+  std::size_t expected = 0;
+};
+
+/// \brief Called with the number of finished scans and the expected total (0: unknown).
+using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// \brief Streams a rawlog: reads in order, extracts on several threads, returns scans in order. At
+/// most a few scans per thread are in memory.
+///
+/// Scans are the observations that ObservationPoleExtractor can process, and CObservationPoles.
+/// Only those with the class and sensor label of the first one are used; if the first frame holds
+/// poles and other scans, the poles are used. External files with relative names are searched in
+/// `<rawlog>_Images` if it exists, otherwise beside the rawlog. (MRPT has one such folder for the
+/// whole program.)
+///
+/// Motions come from the action before the frame; several actions are composed. For `emOdometry`
+/// the stored reading is used, with the covariance of the Gaussian model or, without one, that of
+/// `[motion]`. Without actions, motions come from CObservationOdometry with the covariance of
+/// `[motion]`. Its readings are interpolated at the time of the scan (the first and last are valid
+/// for another 0.5 s).
+///
+/// The next scans are read and extracted while a scan is consumed. An error ends the stream at its
+/// position: all scans before it have been returned.
+/// \param consume Called in order, from one thread at a time.
+/// \throws Error as RawlogReader and ObservationPoleExtractor do, with file and scan. Exceptions of
+///         `consume` are passed on.
+POLEMCL_EXPORT SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
+                                          const std::function<void(const PoleScan&)>& consume);
+
+/// \brief One scan in the form that map and filter need.
+struct PoleFrame {
+  double time = 0;                         ///< s
+  std::optional<io::PlanarMotion> motion;  ///< as in PoleScan
+  std::vector<PoleDetection> poles_robot;
+  std::size_t points = 0;                   ///< valid points of the scan; 0: none or unknown
+  std::vector<float> visibilityRange = {};  ///< as in CObservationPoles; may be empty
+  Pose2D pose_robot_sensor = {};            ///< pose of the frame of visibilityRange
+};
+
+/// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().
+POLEMCL_EXPORT PoleFrame frameOf(const PoleScan& scan);
+
+struct PoleSequence {
+  std::vector<PoleFrame> frames;
+  SequenceCounts counts;
+};
+
+/// \brief Reads a whole rawlog, poles only.
+/// \param progress May be empty.
+/// \throws Error as streamPoles().
+POLEMCL_EXPORT PoleSequence readPoleSequence(const std::string& path,
+                                             const SequenceOptions& options,
+                                             const ScanProgress& progress = {});
+
+}  // namespace polemcl

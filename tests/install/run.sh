@@ -1,0 +1,94 @@
+#!/bin/sh
+# Installs into a folder of its own, builds the examples against that and checks what they print.
+# Also: programs find settings, models and the window from where they are installed; the library
+# exports the project's own symbols only.
+# Usage: tests/install/run.sh [BUILD]
+#   BUILD  folder of a complete build, build/ unless given
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+build=${1-$top/build}
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+prefix=$dir/prefix
+
+fail() {
+  echo "tests/install/run.sh: $1" >&2
+  exit 1
+}
+
+# quietly COMMAND...: shows what it prints only when it fails.
+quietly() {
+  "$@" >"$dir/log" 2>&1 || {
+    cat "$dir/log" >&2
+    fail "this failed: $*"
+  }
+}
+
+# example NAME OPTION...: builds an example against the installed tree.
+example() {
+  name=$1
+  shift
+  quietly cmake -S "$top/share/examples/$name" -B "$dir/$name" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF "$@"
+  quietly cmake --build "$dir/$name"
+}
+
+quietly cmake --install "$build" --prefix "$prefix"
+lib=$(find "$prefix" -name libpolemcl.so -exec dirname {} \;)
+[ -n "$lib" ] || fail "libpolemcl.so was not installed"
+bin=$prefix/bin
+
+echo "1/5 Headers and symbols"
+headers=$(find "$prefix/include/polemcl" -mindepth 2 -name '*.h' | wc -l)
+if [ "$headers" -lt 20 ] || [ "$headers" -gt 45 ]; then
+  fail "$headers public headers; 20 to 45 were meant"
+fi
+grep -rhoE '#include "[^"]*"' "$prefix/include" && fail "a public header includes a private one"
+own=$(nm -DC --defined-only "$lib/libpolemcl.so" | grep -c 'polemcl::' || :)
+foreign=$(nm -DC --defined-only "$lib/libpolemcl.so" | cut -d' ' -f3- |
+  grep -cvE '^((typeinfo|typeinfo name|vtable|VTT) for |(non-virtual|virtual) thunk to )?polemcl::' || :)
+[ "$own" -ge 100 ] || fail "libpolemcl.so exports $own symbols of polemcl; at least 100 were meant"
+[ "$foreign" -eq 0 ] || fail "libpolemcl.so exports $foreign symbols of other libraries"
+
+echo "2/5 Installed programs, with installed settings and models by their names"
+cd "$dir"
+quietly "$bin/pole-simulate" --quiet --config demo.ini --length 60 --output scans
+quietly "$bin/pole-simulate" --quiet --config hdl32e.ini --length 60 --poles poles.rawlog \
+  --set simulation.detections=hdl32e.json
+[ -s poles.rawlog ] || fail "no poles were simulated by the installed model"
+if "$bin/pole-simulate" --quiet --config nobody.ini --output none 2>error.txt; then
+  fail "settings that do not exist were read"
+fi
+grep -q '^pole-simulate: .*nobody\.ini' error.txt || fail "the message does not name the file: $(cat error.txt)"
+
+echo "3/5 extract: poles of one scan, without MRPT"
+example extract -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-obs=ON -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-maps=ON
+! ldd extract/extract | grep -q mrpt || fail "the example of polemcl::core links MRPT"
+extract/extract scans/velodyne/000040.bin >extracted.txt
+awk 'NF != 3 || $3 <= 0 || $3 > 0.5 { exit 1 } END { if (NR < 3) exit 1 }' extracted.txt ||
+  fail "extract did not print three poles or more: $(cat extracted.txt)"
+
+echo "4/5 map: scans at known poses to a map"
+example map
+map/map scans street.polemap >mapped.txt
+"$bin/pole-eval" map --quiet --one-to-one --truth scans/poles_gt.csv --map street.polemap \
+  --json score.json >/dev/null
+jq -e '.precision > 0.7 and .recall > 0.4' score.json >/dev/null ||
+  fail "the map of the example is poor: $(cat mapped.txt score.json)"
+
+echo "5/5 localize: points to poses"
+example localize
+# The true poses as x, y; the start is 0.5 m off.
+awk '{ print $4, $8, atan2($5, $1) }' scans/poses.txt >true.txt
+read -r x y yaw <true.txt
+localize/localize scans street.polemap "$(awk "BEGIN { print $x + 0.3 }")" "$(awk "BEGIN { print $y - 0.4 }")" \
+  "$yaw" >poses.txt
+[ "$(wc -l <poses.txt)" = "$(wc -l <true.txt)" ] || fail "not every scan got a pose"
+paste -d' ' poses.txt true.txt | tail -n 40 |
+  awk '{ e = sqrt(($2 - $5) ^ 2 + ($3 - $6) ^ 2); if (e > most) most = e }
+       END { if (!(NR == 40 && most < 0.3)) { print most; exit 1 } }' ||
+  fail "the poses of the example are more than 0.3 m off"
+if localize/localize scans missing.polemap 0 0 0 2>error.txt; then fail "a missing map was read"; fi
+grep -q '^localize: .*missing\.polemap' error.txt ||
+  fail "polemcl::Error was not caught outside the library: $(cat error.txt)"
+echo "Installed tree: all checks passed"
