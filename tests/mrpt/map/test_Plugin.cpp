@@ -108,6 +108,50 @@ long objects(const std::string& info) {
   return at == std::string::npos ? -1 : std::stol(info.substr(info.find(':', at) + 1));
 }
 
+/// What the library exports, demangled.
+std::vector<std::string> exportedSymbols() {
+  const std::string command = std::string("nm -DC --defined-only '") + POLEMCL_LIB + "'";
+  FILE* pipe = popen(command.c_str(), "r");
+  std::vector<std::string> names;
+  char line[65536];
+  while (fgets(line, sizeof line, pipe)) {
+    const std::string text = line;  // address, letter, name
+    if (text.size() > 19) names.push_back(text.substr(19, text.size() - 20));
+  }
+  EXPECT_EQ(pclose(pipe), 0) << command;
+  return names;
+}
+
+/// True for what is in the namespace of this project, and for its tables of types.
+bool isOwn(std::string symbol) {
+  for (const std::string prefix : {"typeinfo for ", "typeinfo name for ", "vtable for ", "VTT for ",
+                                   "non-virtual thunk to ", "virtual thunk to "})
+    if (symbol.rfind(prefix, 0) == 0) symbol.erase(0, prefix.size());
+  return symbol.rfind("polemcl::", 0) == 0;
+}
+
+TEST(Plugin, ExportsSymbolsOfThisProjectOnly) {
+  NEEDS("nm");
+  const std::vector<std::string> symbols = exportedSymbols();
+  for (const std::string& symbol : symbols) EXPECT_TRUE(isOwn(symbol)) << symbol;
+  EXPECT_LT(symbols.size(), 1000u);
+}
+
+TEST(Plugin, ExportsWhatPublicHeadersDeclare) {
+  NEEDS("nm");
+  const std::vector<std::string> symbols = exportedSymbols();
+  for (const std::string wanted : {"typeinfo for polemcl::Error", "vtable for polemcl::CPoleMap",
+                                   "polemcl::CPoleMap::TInsertionOptions::validate() const",
+                                   "polemcl::LocalizationPipeline::step(polemcl::PoleFrame const&)",
+                                   "polemcl::PoleExtractor::report() const",
+                                   "polemcl::compose(polemcl::Pose2D const&, "
+                                   "polemcl::Pose2D const&)"})
+    EXPECT_EQ(std::count(symbols.begin(), symbols.end(), wanted), 1) << wanted;
+  // Of private headers nothing is visible.
+  for (const std::string& symbol : symbols)
+    EXPECT_EQ(symbol.find("polemcl::KdTree2D::"), std::string::npos) << symbol;
+}
+
 TEST(Plugin, RawlogEditReadsPoles) {
   NEEDS("rawlog-edit");
   const Street street;
