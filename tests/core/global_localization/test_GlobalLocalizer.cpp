@@ -230,8 +230,8 @@ Consistency consistencyOf(const DriveOptions& driving, const SubmapOptions& subm
     sim::Random off(seed);
     for (MapPole& pole : map) pole.x += off.normal(0, unknown), pole.y += off.normal(0, unknown);
     const GlobalLocalizer localizer(map);
-    for (std::uint64_t way = 0; way < 60; ++way) {
-      sim::Random random(way);
+    for (std::uint64_t travel = 0; travel < 60; ++travel) {
+      sim::Random random(travel);
       const auto frames =
           tests::drive(world.surroundings(), world.randomWay(random, 60), driving, random);
       LocalSubmap submap(submapping);

@@ -47,13 +47,13 @@ Way readRoad(const std::filesystem::path& file) {
 Way pieceOf(const Way& road, sim::Random& random) {
   for (;;) {
     const auto first = random.below(static_cast<int>(road.size()) - 62);
-    Way way(road.begin() + first, road.begin() + first + 61);
-    if (random.chance(0.5)) std::reverse(way.begin(), way.end());
+    Way travel(road.begin() + first, road.begin() + first + 61);
+    if (random.chance(0.5)) std::reverse(travel.begin(), travel.end());
     bool smooth = true;
-    for (std::size_t i = 1; i < way.size(); ++i)
-      smooth =
-          smooth && std::abs(relative(tests::poseOn(way, i - 1), tests::poseOn(way, i)).yaw) < 0.5;
-    if (smooth) return way;
+    for (std::size_t i = 1; i < travel.size(); ++i)
+      smooth = smooth &&
+               std::abs(relative(tests::poseOn(travel, i - 1), tests::poseOn(travel, i)).yaw) < 0.5;
+    if (smooth) return travel;
   }
 }
 

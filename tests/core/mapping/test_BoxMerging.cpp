@@ -14,16 +14,16 @@ namespace {
 
 using Groups = std::vector<std::vector<std::uint32_t>>;
 
-LandmarkObservation sighting(double x, double y, double radius, std::uint32_t view = 0) {
+LandmarkObservation observation(double x, double y, double radius, std::uint32_t view = 0) {
   LandmarkObservation result;
   result.pole.x = x;
   result.pole.y = y;
   result.pole.radius = radius;
-  result.view = view;
+  result.scan = view;
   return result;
 }
 
-/// Components by spreading from each sighting over all that overlap, without an index.
+/// Components by spreading from each observation over all that overlap, without an index.
 Groups spread(const std::vector<LandmarkObservation>& all) {
   const auto overlap = [&](std::size_t i, std::size_t j) {
     const PoleDetection &a = all[i].pole, &b = all[j].pole;
@@ -53,7 +53,7 @@ std::vector<LandmarkObservation> randomSightings(std::uint64_t seed, int count) 
   std::uniform_real_distribution<double> place(-10, 10), radius(0.02, 0.4);
   std::vector<LandmarkObservation> all;
   for (int i = 0; i < count; ++i)
-    all.push_back(sighting(4e5 + place(random), 5e6 + place(random), radius(random)));
+    all.push_back(observation(4e5 + place(random), 5e6 + place(random), radius(random)));
   return all;
 }
 
@@ -62,16 +62,18 @@ std::vector<LandmarkObservation> randomSightings(std::uint64_t seed, int count) 
 TEST(BoxMerging, JoinsByHand) {
   // 0 and 1 overlap; 2 touches 1 by an edge; 3 shares only a corner with 2; 4 stands alone,
   // nearer to 0 than 0.5 m.
-  const std::vector<LandmarkObservation> all{sighting(0, 0, 0.25), sighting(0.375, 0, 0.25),
-                                             sighting(0.875, 0, 0.25), sighting(1.375, 0.5, 0.25),
-                                             sighting(-0.4375, 0, 0.125)};
+  const std::vector<LandmarkObservation> all{
+      observation(0, 0, 0.25), observation(0.375, 0, 0.25), observation(0.875, 0, 0.25),
+      observation(1.375, 0.5, 0.25), observation(-0.4375, 0, 0.125)};
   EXPECT_EQ(joinOverlappingBoxes(all), (Groups{{0, 1, 2, 3}, {4}}));
 }
 
 TEST(BoxMerging, BoxesAreSquaresRoundTheCentre) {
   // Circles of 0.1 m do not meet at a diagonal distance of 0.27 m, their boxes do.
-  EXPECT_EQ(joinOverlappingBoxes({sighting(0, 0, 0.1), sighting(0.19, 0.19, 0.1)}).size(), 1u);
-  EXPECT_EQ(joinOverlappingBoxes({sighting(0, 0, 0.1), sighting(0.19, 0.21, 0.1)}).size(), 2u);
+  EXPECT_EQ(joinOverlappingBoxes({observation(0, 0, 0.1), observation(0.19, 0.19, 0.1)}).size(),
+            1u);
+  EXPECT_EQ(joinOverlappingBoxes({observation(0, 0, 0.1), observation(0.19, 0.21, 0.1)}).size(),
+            2u);
 }
 
 TEST(BoxMerging, EqualsSpreadingOverAllPairs) {
@@ -79,15 +81,15 @@ TEST(BoxMerging, EqualsSpreadingOverAllPairs) {
     const auto all = randomSightings(count, count);
     EXPECT_EQ(joinOverlappingBoxes(all), spread(all)) << count;
   }
-  // With 400 in 20 m by 20 m neither one group nor one a sighting: the test says something.
+  // With 400 in 20 m by 20 m neither one group nor one a observation: the test says something.
   const auto groups = joinOverlappingBoxes(randomSightings(400, 400)).size();
   EXPECT_GT(groups, 150u);
   EXPECT_LT(groups, 350u);
 }
 
 TEST(BoxMerging, PlainMeanByHand) {
-  std::vector<LandmarkObservation> all{sighting(1, 2, 0.1), sighting(2, 4, 0.2),
-                                       sighting(6, 0, 0.6)};
+  std::vector<LandmarkObservation> all{observation(1, 2, 0.1), observation(2, 4, 0.2),
+                                       observation(6, 0, 0.6)};
   for (int i = 0; i < 3; ++i) {
     all[i].pole.bottom = i;
     all[i].pole.top = 3 + 2 * i;

@@ -14,7 +14,7 @@ using namespace polemcl;
 
 namespace {
 
-LandmarkObservation sighting(double x, double y, double variance = 0.01) {
+LandmarkObservation observation(double x, double y, double variance = 0.01) {
   LandmarkObservation s;
   s.pole.x = x;
   s.pole.y = y;
@@ -22,8 +22,8 @@ LandmarkObservation sighting(double x, double y, double variance = 0.01) {
   return s;
 }
 
-std::vector<std::uint32_t> all(const std::vector<LandmarkObservation>& sightings) {
-  std::vector<std::uint32_t> members(sightings.size());
+std::vector<std::uint32_t> all(const std::vector<LandmarkObservation>& observations) {
+  std::vector<std::uint32_t> members(observations.size());
   std::iota(members.begin(), members.end(), 0u);
   return members;
 }
@@ -31,12 +31,12 @@ std::vector<std::uint32_t> all(const std::vector<LandmarkObservation>& sightings
 }  // namespace
 
 TEST(LandmarkFusion, OneSightingIsThePole) {
-  std::vector<LandmarkObservation> sightings{sighting(3, 4, 0.04)};
-  sightings[0].pole.radius = 0.1;
-  sightings[0].pole.bottom = 0.3;
-  sightings[0].pole.top = 5;
-  sightings[0].pole.confidence = 1;
-  const MapPole pole = fuse(sightings, {0});
+  std::vector<LandmarkObservation> observations{observation(3, 4, 0.04)};
+  observations[0].pole.radius = 0.1;
+  observations[0].pole.bottom = 0.3;
+  observations[0].pole.top = 5;
+  observations[0].pole.confidence = 1;
+  const MapPole pole = fuse(observations, {0});
   EXPECT_DOUBLE_EQ(pole.x, 3);
   EXPECT_DOUBLE_EQ(pole.y, 4);
   EXPECT_NEAR(pole.covariance(0, 0), 0.04, 1e-7);
@@ -49,17 +49,17 @@ TEST(LandmarkFusion, OneSightingIsThePole) {
 TEST(LandmarkFusion, WeighsByInverseCovarianceAndConfidence) {
   // Information 100 and 25 in x: (100·0 + 25·1)/125; the second one's confidence of a half makes
   // it 12.5.
-  std::vector<LandmarkObservation> sightings{sighting(0, 0, 0.01), sighting(1, 0, 0.04)};
-  EXPECT_NEAR(fusedCentre(sightings, {0, 1}).x(), 25.0 / 125, 1e-5);
-  sightings[1].pole.confidence = 0.5;
-  EXPECT_NEAR(fusedCentre(sightings, {0, 1}).x(), 12.5 / 112.5, 1e-5);
+  std::vector<LandmarkObservation> observations{observation(0, 0, 0.01), observation(1, 0, 0.04)};
+  EXPECT_NEAR(fusedCentre(observations, {0, 1}).x(), 25.0 / 125, 1e-5);
+  observations[1].pole.confidence = 0.5;
+  EXPECT_NEAR(fusedCentre(observations, {0, 1}).x(), 12.5 / 112.5, 1e-5);
 }
 
 TEST(LandmarkFusion, EachCountsMostAcrossItsLongAxis) {
-  std::vector<LandmarkObservation> sightings{sighting(0, 0), sighting(0.1, 0.1)};
-  sightings[0].pole.covariance << 1, 0, 0, 0.0001;
-  sightings[1].pole.covariance << 0.0001, 0, 0, 1;
-  const Eigen::Vector2d centre = fusedCentre(sightings, {0, 1});
+  std::vector<LandmarkObservation> observations{observation(0, 0), observation(0.1, 0.1)};
+  observations[0].pole.covariance << 1, 0, 0, 0.0001;
+  observations[1].pole.covariance << 0.0001, 0, 0, 1;
+  const Eigen::Vector2d centre = fusedCentre(observations, {0, 1});
   EXPECT_NEAR(centre.x(), 0.1, 1e-4);
   EXPECT_NEAR(centre.y(), 0, 1e-4);
 }
@@ -67,54 +67,55 @@ TEST(LandmarkFusion, EachCountsMostAcrossItsLongAxis) {
 TEST(LandmarkFusion, IsTheLeastSquaresSolutionWithoutOutliers) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  std::vector<LandmarkObservation> sightings;
+  std::vector<LandmarkObservation> observations;
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (int i = 0; i < 40; ++i) {
     Eigen::Matrix2d root;
     root << 0.1, 0.05 * normal(random), 0, 0.02 + 0.1 * (i % 3);
-    LandmarkObservation s = sighting(0, 0);
+    LandmarkObservation s = observation(0, 0);
     s.pole.covariance = root * root.transpose();
     Eigen::Vector2d noise(normal(random), normal(random));
     if (noise.norm() > 2) noise *= 2 / noise.norm();  // all of them well inside the 99 % ellipse
     const Eigen::Vector2d at = Eigen::Vector2d(7, -3) + root * noise;
     s.pole.x = at.x();
     s.pole.y = at.y();
-    sightings.push_back(s);
+    observations.push_back(s);
     const Eigen::Matrix2d inverse = s.pole.covariance.inverse();
     information += inverse;
     sum += inverse * at;
   }
   const Eigen::Vector2d expected = information.inverse() * sum;
-  EXPECT_LT((fusedCentre(sightings, all(sightings)) - expected).norm(), 1e-5);
+  EXPECT_LT((fusedCentre(observations, all(observations)) - expected).norm(), 1e-5);
 }
 
 TEST(LandmarkFusion, LeavesOutliersOut) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal(0, 0.02);
-  std::vector<LandmarkObservation> sightings;
+  std::vector<LandmarkObservation> observations;
   for (int i = 0; i < 20; ++i)
-    sightings.push_back(sighting(normal(random), normal(random), 0.0004));
-  for (int i = 0; i < 6; ++i) sightings.push_back(sighting(0.4, 0.1 + normal(random), 0.0004));
+    observations.push_back(observation(normal(random), normal(random), 0.0004));
+  for (int i = 0; i < 6; ++i)
+    observations.push_back(observation(0.4, 0.1 + normal(random), 0.0004));
   std::vector<std::uint32_t> kept;
-  const Eigen::Vector2d centre = fusedCentre(sightings, all(sightings), nullptr, &kept);
+  const Eigen::Vector2d centre = fusedCentre(observations, all(observations), nullptr, &kept);
   EXPECT_LT(centre.norm(), 0.02);
   for (const std::uint32_t member : kept) EXPECT_LT(member, 20u);
   EXPECT_GE(kept.size(), 18u);
 }
 
-// 4000 poles of 12 sightings with σ = 0.05 m each, that promise 0.05 m, only 0.01 m, or 0.1 m.
+// 4000 poles of 12 observations with σ = 0.05 m each, that promise 0.05 m, only 0.01 m, or 0.1 m.
 TEST(LandmarkFusion, TheCovarianceIsHonestWhateverTheSightingsPromise) {
   const auto squaredErrors = [](double promised) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal(0, 0.05);
     double sum = 0;
     for (int pole = 0; pole < 4000; ++pole) {
-      std::vector<LandmarkObservation> sightings;
+      std::vector<LandmarkObservation> observations;
       for (int i = 0; i < 12; ++i)
-        sightings.push_back(sighting(normal(random), normal(random), promised * promised));
+        observations.push_back(observation(normal(random), normal(random), promised * promised));
       Eigen::Matrix2d covariance;
-      const Eigen::Vector2d error = fusedCentre(sightings, all(sightings), &covariance);
+      const Eigen::Vector2d error = fusedCentre(observations, all(observations), &covariance);
       sum += error.dot(covariance.inverse() * error);
     }
     return sum / 4000;
@@ -127,22 +128,22 @@ TEST(LandmarkFusion, TheCovarianceIsHonestWhateverTheSightingsPromise) {
 }
 
 TEST(LandmarkFusion, LosesNoDigitsFarFromTheOrigin) {
-  const std::vector<LandmarkObservation> sightings{
-      sighting(4e6 + 0.25, 5e6), sighting(4e6 + 0.5, 5e6), sighting(4e6 + 0.75, 5e6)};
-  EXPECT_NEAR(fusedCentre(sightings, {0, 1, 2}).x() - 4e6, 0.5, 1e-8);
+  const std::vector<LandmarkObservation> observations{
+      observation(4e6 + 0.25, 5e6), observation(4e6 + 0.5, 5e6), observation(4e6 + 0.75, 5e6)};
+  EXPECT_NEAR(fusedCentre(observations, {0, 1, 2}).x() - 4e6, 0.5, 1e-8);
 }
 
 TEST(LandmarkFusion, HeightsAreQuantilesAndTheRestMeans) {
-  std::vector<LandmarkObservation> sightings;
+  std::vector<LandmarkObservation> observations;
   for (int i = 0; i < 11; ++i) {
-    LandmarkObservation s = sighting(0, 0);
+    LandmarkObservation s = observation(0, 0);
     s.pole.bottom = 0.1 * i;
     s.pole.top = 5 + i;
     s.pole.radius = i < 6 ? 0.1 : 0.2;
     s.pole.confidence = i % 2 ? 0.5 : 1;
-    sightings.push_back(s);
+    observations.push_back(s);
   }
-  const MapPole pole = fuse(sightings, all(sightings));
+  const MapPole pole = fuse(observations, all(observations));
   EXPECT_DOUBLE_EQ(pole.bottom, 0.1);
   EXPECT_DOUBLE_EQ(pole.top, 14);
   // Weights 1 and 1/2: 1 at even, 1/2 at odd; 0.1 has 1+.5+1+.5+1+.5, 0.2 has 1+.5+1+.5+1.
@@ -152,17 +153,17 @@ TEST(LandmarkFusion, HeightsAreQuantilesAndTheRestMeans) {
 }
 
 TEST(LandmarkFusion, CopesWithACovarianceOfZero) {
-  const std::vector<LandmarkObservation> sightings{sighting(1, 1, 0), sighting(1.1, 1, 0),
-                                                   sighting(1.05, 1, 0)};
+  const std::vector<LandmarkObservation> observations{observation(1, 1, 0), observation(1.1, 1, 0),
+                                                      observation(1.05, 1, 0)};
   Eigen::Matrix2d covariance;
-  EXPECT_NEAR(fusedCentre(sightings, {0, 1, 2}, &covariance).x(), 1.05, 1e-9);
+  EXPECT_NEAR(fusedCentre(observations, {0, 1, 2}, &covariance).x(), 1.05, 1e-9);
   EXPECT_TRUE(covariance.allFinite());
 }
 
 TEST(LandmarkFusion, CertainSightingsGiveACertainPole) {
   for (int n = 1; n < 60; ++n) {
-    const std::vector<LandmarkObservation> sightings(n, sighting(0, 0));
-    EXPECT_EQ(fuse(sightings, all(sightings)).confidence, 1) << n;
+    const std::vector<LandmarkObservation> observations(n, observation(0, 0));
+    EXPECT_EQ(fuse(observations, all(observations)).confidence, 1) << n;
   }
 }
 

@@ -240,7 +240,7 @@ TEST(MapUpdater, PlacesAreAveragedByTheirCovariances) {
   const LandmarkMap after = updateMap(map, drive({{10.05, 5.05}}), {}, upkeep);
   ASSERT_EQ(after.poles.size(), 1u);
   const MapPole& pole = after.poles[0].pole;
-  // 40 sightings of 2 cm and more make less than 4 mm; 2 cm of the session stay.
+  // 40 observations of 2 cm and more make less than 4 mm; 2 cm of the session stay.
   const double today = 4e-4;
   EXPECT_NEAR(pole.x, 10 + 0.05 * 4e-4 / (4e-4 + today), 1.5e-3);
   EXPECT_NEAR(pole.y, 5 + 0.05 * 1e-4 / (1e-4 + today), 1.5e-3);

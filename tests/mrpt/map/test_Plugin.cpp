@@ -245,7 +245,7 @@ Outcome localize(const Street& street, const std::string& likelihood) {
                    "init_PDF_min_yaw_deg = -3\ninit_PDF_max_yaw_deg = 7\n"
                    "[MetricMap]\npoleMap_count = 1\n"
                    "[MetricMap_poleMap_00_creationOpts]\nmap_file = m.polemap\n"
-                   "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0.2\n" +
+                   "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0.2\nweighted = false\n" +
                    likelihood);
   street.run(preload + "pf-localization c.ini");
   const std::string log = street.folder / "LOG_000_0002000/";

@@ -6,7 +6,7 @@
 namespace polemcl {
 namespace {
 
-/// Way travelled at each pose of one path, never decreasing.
+/// Distance travelled at each pose of one path, never decreasing.
 class Odometer {
  public:
   explicit Odometer(double step) : m_step(step) {}
@@ -16,26 +16,26 @@ class Odometer {
       m_anchor = pose;
     }
     const double away = std::hypot(pose.x - m_anchor.x, pose.y - m_anchor.y);
-    m_way = std::max(m_way, m_wayOfAnchor + away);
+    m_travelled = std::max(m_travelled, m_travelledToAnchor + away);
     if (away >= m_step) {
       m_anchor = pose;
-      m_wayOfAnchor = m_way;
+      m_travelledToAnchor = m_travelled;
     }
-    return m_way;
+    return m_travelled;
   }
 
  private:
   double m_step;
   bool m_started = false;
   Pose2D m_anchor;
-  double m_wayOfAnchor = 0, m_way = 0;
+  double m_travelledToAnchor = 0, m_travelled = 0;
 };
 
 }  // namespace
 
-void SectionMarks::pass(double way) {
-  m_middle = way >= static_cast<double>(m_middles) * m_length + 0.5 * m_length;
-  m_end = way > static_cast<double>(m_ends) * m_length + m_length;
+void SectionMarks::pass(double travelled) {
+  m_middle = travelled >= static_cast<double>(m_middles) * m_length + 0.5 * m_length;
+  m_end = travelled > static_cast<double>(m_ends) * m_length + m_length;
   m_middles += m_middle;
   m_ends += m_end;
 }
@@ -46,29 +46,29 @@ PathSections passSections(const std::vector<Pose2D>& poses,
   PathSections result;
   std::uint32_t path = 0;
   std::vector<std::size_t> middles;
-  const auto finish = [&](const SectionMarks& marks, double way) {
+  const auto finish = [&](const SectionMarks& marks, double travelled) {
     for (std::size_t k = 0; k < marks.ends(); ++k)
       if (used.empty() || used[middles[k]])
         result.occupied.push_back({path, k, {middles[k]}, middles[k]});
     result.count += marks.ends();
-    result.length += way;
+    result.length += travelled;
     middles.clear();
     ++path;
   };
   SectionMarks marks(sectionLength);
-  double way = 0;
+  double travelled = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (i > 0 && drives[i] != drives[i - 1]) {
-      finish(marks, way);
+      finish(marks, travelled);
       marks = SectionMarks(sectionLength);
-      way = 0;
+      travelled = 0;
     } else if (i > 0) {
-      way += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
+      travelled += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
     }
-    marks.pass(way);
+    marks.pass(travelled);
     if (marks.middle()) middles.push_back(i);
   }
-  finish(marks, way);
+  finish(marks, travelled);
   return result;
 }
 
@@ -88,12 +88,12 @@ PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::
       lengthBefore = result.length;
       odometer = Odometer(step);
     }
-    const double way = odometer.at(poses[i]) / sectionLength;
+    const double travelled = odometer.at(poses[i]) / sectionLength;
     // Whole numbers of sections may come out a rounding short.
-    const auto index = static_cast<std::size_t>(std::floor(way + 1e-9));
-    const double fromMiddle = std::abs(way - (static_cast<double>(index) + 0.5));
+    const auto index = static_cast<std::size_t>(std::floor(travelled + 1e-9));
+    const double fromMiddle = std::abs(travelled - (static_cast<double>(index) + 0.5));
     result.count = sectionsBefore + index + 1;
-    result.length = lengthBefore + way * sectionLength;
+    result.length = lengthBefore + travelled * sectionLength;
     if (!used.empty() && !used[i]) continue;
     const bool opens = result.occupied.empty() || result.occupied.back().path != path ||
                        result.occupied.back().index != index;

@@ -9,7 +9,7 @@ namespace {
 
 enum Term {
   one,
-  logSlices,
+  logSegments,
   logPoints,
   extent,
   passed,
@@ -42,7 +42,7 @@ struct Weight {
 // the gradient of the likelihood, as many as repeatability on a real drive bore.
 constexpr std::array<Weight, terms> kWeights = {{
     {0, 1, -2.6032, -3.27265},                    // one
-    {2.09088, 1.35838, -0.173793, -0.749212},     // logSlices
+    {2.09088, 1.35838, -0.173793, -0.749212},     // logSegments
     {2.8676, 1.03279, 0.332273, 1.01863},         // logPoints
     {1.98989, 1.14071, 0.361639, 1.91677},        // extent
     {0.0289928, 11.604, -0.1904, -0.484396},      // passed
@@ -70,14 +70,14 @@ struct Product {
 constexpr Product kProducts[] = {
     {extent, notWhole, -0.535285},     {clutter, excess, 0.538301},
     {wide, widthSpread, -0.261537},    {notWhole, clutter, 0.284359},
-    {extent, clutter, -0.285748},      {logSlices, range, -0.272408},
+    {extent, clutter, -0.285748},      {logSegments, range, -0.272408},
     {roughRadius, density, -0.325533}, {widthSpread, tilt, -0.252595},
 };
 
 Terms standardized(const PoleFeatures& f) {
   Terms t{};
   t[one] = 1;
-  t[logSlices] = std::log(f.slices);
+  t[logSegments] = std::log(f.segments);
   t[logPoints] = std::log(f.points);
   t[extent] = std::min(3.0, f.extent);
   t[passed] = f.passed;
@@ -95,7 +95,7 @@ Terms standardized(const PoleFeatures& f) {
   t[tilt] = f.tilt;
   t[range] = f.range / 40;
   t[radius] = f.radius;
-  t[density] = std::log(f.points / f.slices / std::max(1.0, 2 * f.radius / f.columnWidth));
+  t[density] = std::log(f.points / f.segments / std::max(1.0, 2 * f.radius / f.columnWidth));
   for (int i = one + 1; i < terms; ++i)
     t[i] = std::clamp((t[i] - kWeights[i].mean) * kWeights[i].scale, -3.0, 3.0);
   return t;

@@ -6,13 +6,13 @@ namespace polemcl {
 
 /// \brief What the score looks at. Heights in m above local ground.
 struct PoleFeatures {
-  // Known from slices and evidence.
-  double slices = 1, points = 1;
-  double extent = 0;         ///< from the lowest to the highest slice, m
+  // Known from segments and evidence.
+  double segments = 1, points = 1;
+  double extent = 0;         ///< from the lowest to the highest segment, m
   double passed = 0;         ///< share of the rows between that saw through
   double wide = 0;           ///< share of the rows between that met something wide
-  double notWhole = 0;       ///< share of the slices with a side that is not free
-  double scatter = 0;        ///< of the slices around a straight line, m
+  double notWhole = 0;       ///< share of the segments with a side that is not free
+  double scatter = 0;        ///< of the segments around a straight line, m
   double widthSpread = 0;    ///< m
   double tilt = 0;           ///< rad
   double top = 0;            ///< m
@@ -21,7 +21,7 @@ struct PoleFeatures {
   double roughRadius = 0;    ///< before the fit, m
   double range = 0;          ///< m
   double columnWidth = 0.1;  ///< one firing step at that range, m
-  double hiddenEdges = 0;    ///< share of the edges of the slices fitted that are not free
+  double hiddenEdges = 0;    ///< share of the edges of the segments fitted that are not free
   // Known only when the surroundings were looked at and the cylinder was fitted.
   double clutter = 0;   ///< share of the rows with something in the ring around
   double residual = 0;  ///< of the fit, m

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double s_pathStep = 4;            ///< m
 constexpr std::size_t s_mostReliable = 80;  ///< the best seen; more would only cost time
-constexpr std::size_t s_mostStars = 300;
+constexpr std::size_t s_mostQueryPoles = 300;
 
 /// Odds that a pole with so many hits stands on the map. One hit more halves the doubt whether it
 /// is a pole at all, less the more chances it missed.
@@ -29,17 +29,18 @@ Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& opt
   const Eigen::Vector2d here(pose.x, pose.y);
   const Eigen::Matrix2d rotation = rotationOf(-pose.yaw);
   for (const SubmapPole& pole : submap.poles()) {
-    m_stars.push_back({rotation * (pole.centre - here),
-                       rotation * submap.presentCovariance(pole, false) * rotation.transpose(),
-                       rotation * (pole.seenFrom - here), oddsOf(pole, options), &pole});
+    m_queryPoles.push_back({rotation * (pole.centre - here),
+                            rotation * submap.presentCovariance(pole, false) * rotation.transpose(),
+                            rotation * (pole.seenFrom - here), oddsOf(pole, options), &pole});
   }
   // Of equals the later seen: it has drifted less.
-  std::stable_sort(m_stars.begin(), m_stars.end(), [](const QueryPole& a, const QueryPole& b) {
-    return a.odds != b.odds ? a.odds > b.odds : a.pole->seenAt > b.pole->seenAt;
-  });
-  if (m_stars.size() > s_mostStars) m_stars.resize(s_mostStars);
-  while (m_reliable < m_stars.size() && m_stars[m_reliable].odds > 0) ++m_reliable;
-  for (; m_reliable > s_mostReliable; --m_reliable) m_stars[m_reliable - 1].odds = 0;
+  std::stable_sort(m_queryPoles.begin(), m_queryPoles.end(),
+                   [](const QueryPole& a, const QueryPole& b) {
+                     return a.odds != b.odds ? a.odds > b.odds : a.pole->seenAt > b.pole->seenAt;
+                   });
+  if (m_queryPoles.size() > s_mostQueryPoles) m_queryPoles.resize(s_mostQueryPoles);
+  while (m_reliable < m_queryPoles.size() && m_queryPoles[m_reliable].odds > 0) ++m_reliable;
+  for (; m_reliable > s_mostReliable; --m_reliable) m_queryPoles[m_reliable - 1].odds = 0;
   for (const Eigen::Vector2d& place : submap.path()) {
     const Eigen::Vector2d seen = rotation * (place - here);
     if (m_path.empty() || (seen - m_path.back()).norm() >= s_pathStep) m_path.push_back(seen);
@@ -50,7 +51,7 @@ double Constellation::driftVariance(const QueryPole& a, const QueryPole& b) cons
   const bool aFirst = a.pole->seenAt <= b.pole->seenAt;
   const SubmapPole &then = aFirst ? *a.pole : *b.pole, &now = aFirst ? *b.pole : *a.pole;
   return 0.5 * OdometryDrift::between(then.drift, now.drift, then.centre).trace() +
-         0.5 * m_scale * m_scale * (a.way - b.way).squaredNorm();
+         0.5 * m_scale * m_scale * (a.travel - b.travel).squaredNorm();
 }
 
 }  // namespace polemcl

@@ -17,7 +17,7 @@ struct QueryPole {
   Eigen::Matrix2d covariance;  ///< as seen from now, without the error of scale, m²
   /// From the robot now to where it was when it last saw the pole, m: an error of scale s moves the
   /// pole by s·way.
-  Eigen::Vector2d way;
+  Eigen::Vector2d travel;
   double odds = 0;  ///< that it stands on the map; 0: too few hits, only marks map poles as seen
   const SubmapPole* pole = nullptr;
 };
@@ -26,14 +26,14 @@ class Constellation {
  public:
   Constellation(const LocalSubmap& submap, const GlobalOptions& options);
 
-  /// \brief Stars with odds first, by falling odds; then the others.
-  const std::vector<QueryPole>& stars() const { return m_stars; }
-  std::size_t reliable() const { return m_reliable; }  ///< stars with odds
+  /// \brief Query poles with odds first, by falling odds; then the others.
+  const std::vector<QueryPole>& queryPoles() const { return m_queryPoles; }
+  std::size_t reliable() const { return m_reliable; }  ///< query poles with odds
   /// \brief Robot's places of the last metres, robot frame of now, a few metres apart, m.
   const std::vector<Eigen::Vector2d>& path() const { return m_path; }
   double scaleSigma() const { return m_scale; }
-  /// \brief Variance along an axis of what two stars' distance vector may be off by, m²: what each
-  /// was measured with, and the odometry between them.
+  /// \brief Variance along an axis of what two query poles' distance vector may be off by, m²: what
+  /// each was measured with, and the odometry between them.
   double relativeVariance(const QueryPole& a, const QueryPole& b) const {
     return 0.5 * (a.pole->covariance.trace() + b.pole->covariance.trace()) + driftVariance(a, b);
   }
@@ -41,7 +41,7 @@ class Constellation {
   double driftVariance(const QueryPole& a, const QueryPole& b) const;
 
  private:
-  std::vector<QueryPole> m_stars;
+  std::vector<QueryPole> m_queryPoles;
   std::size_t m_reliable = 0;
   std::vector<Eigen::Vector2d> m_path;
   double m_scale = 0;

@@ -9,43 +9,44 @@ namespace polemcl {
 namespace {
 
 constexpr double s_sigmas = 2.5;  ///< of tolerances: 96 % of true matches lie within, in the plane
-constexpr int s_mostUses = 4;     ///< of one star in pairs: a false one must not spoil them all
+constexpr int s_mostUses = 4;  ///< of one query pole in pairs: a false one must not spoil them all
 
-/// Least hits after so many probes. A true place, where six of ten stars find their pole, falls
-/// short once in a hundred times, and up to `maxPairs` pairs can find it; of chance ones, with
-/// three hits in a hundred probes, hardly any gets through.
+/// Least hits after so many probes. A true place, where six of ten query poles find their pole,
+/// falls short once in a hundred times, and up to `maxPairs` pairs can find it; of chance ones,
+/// with three hits in a hundred probes, hardly any gets through.
 constexpr std::uint32_t leastHits(std::uint32_t probes) {
   return probes < 6 ? 0 : probes < 10 ? 1 : probes < 16 ? 2 : probes < 24 ? 5 : 8;
 }
 
 }  // namespace
 
-PairTolerance::PairTolerance(const PreparedMap& map, const Constellation& sky,
+PairTolerance::PairTolerance(const PreparedMap& map, const Constellation& query,
                              const QueryPole& first, const QueryPole& second)
     : m_map(map),
-      m_sky(sky),
+      m_query(query),
       m_first(first),
       m_second(second),
       m_middle(0.5 * (first.centre + second.centre)),
       m_squaredLength((second.centre - first.centre).squaredNorm()) {
   const double sigma = map.options().sigma;
-  m_variance = sky.relativeVariance(first, second) + 2 * (sigma * sigma + map.meanVariance());
+  m_variance = query.relativeVariance(first, second) + 2 * (sigma * sigma + map.meanVariance());
 }
 
-double PairTolerance::of(const QueryPole& star) const {
+double PairTolerance::of(const QueryPole& queryPole) const {
   // The pair's middle is off by a quarter of the sum of both variances, its direction by the whole
   // over the squared length.
-  const double lever = (star.centre - m_middle).squaredNorm() / m_squaredLength;
+  const double lever = (queryPole.centre - m_middle).squaredNorm() / m_squaredLength;
   const double sigma = m_map.options().sigma;
-  const double own = 0.5 * star.pole->covariance.trace() + sigma * sigma + m_map.meanVariance();
-  const double drift =
-      std::min(m_sky.driftVariance(star, m_first), m_sky.driftVariance(star, m_second));
+  const double own =
+      0.5 * queryPole.pole->covariance.trace() + sigma * sigma + m_map.meanVariance();
+  const double drift = std::min(m_query.driftVariance(queryPole, m_first),
+                                m_query.driftVariance(queryPole, m_second));
   const double variance = m_variance * (0.25 + lever) + own + drift;
   return std::min(m_map.options().maxTolerance, s_sigmas * std::sqrt(variance));
 }
 
-ConstellationSearch::ConstellationSearch(const PreparedMap& map, const Constellation& sky)
-    : m_map(map), m_sky(sky) {}
+ConstellationSearch::ConstellationSearch(const PreparedMap& map, const Constellation& query)
+    : m_map(map), m_query(query) {}
 
 std::vector<PoseCandidate> ConstellationSearch::run() {
   for (const QueryPair& pair : choosePairs()) tryPair(pair);
@@ -55,19 +56,19 @@ std::vector<PoseCandidate> ConstellationSearch::run() {
 /// Rare distances first: they cost least and say most.
 std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() const {
   const GlobalOptions& options = m_map.options();
-  const std::vector<QueryPole>& stars = m_sky.stars();
+  const std::vector<QueryPole>& queryPoles = m_query.queryPoles();
   std::vector<QueryPair> all;
-  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
-    for (std::uint32_t j = i + 1; j < m_sky.reliable(); ++j) {
-      const double length = (stars[i].centre - stars[j].centre).norm();
+  for (std::uint32_t i = 0; i < m_query.reliable(); ++i) {
+    for (std::uint32_t j = i + 1; j < m_query.reliable(); ++j) {
+      const double length = (queryPoles[i].centre - queryPoles[j].centre).norm();
       if (length < options.minBaseline || length > options.maxBaseline) continue;
-      const double variance = m_sky.relativeVariance(stars[i], stars[j]) +
+      const double variance = m_query.relativeVariance(queryPoles[i], queryPoles[j]) +
                               2 * (options.sigma * options.sigma + m_map.meanVariance());
       const double tolerance = std::min(options.maxTolerance, s_sigmas * std::sqrt(variance));
       const PairDistanceIndex::Range range =
           m_map.pairs().between(length - tolerance, length + tolerance);
       // A short or a doubtful pair is worth less: many places fit it badly.
-      const double doubt = (1 + 1 / stars[i].odds) * (1 + 1 / stars[j].odds);
+      const double doubt = (1 + 1 / queryPoles[i].odds) * (1 + 1 / queryPoles[j].odds);
       const double cost =
           (1.0 + static_cast<double>(range.size())) * (1 + 100 / (length * length)) * doubt * doubt;
       all.push_back({cost, i, j, range});
@@ -78,7 +79,7 @@ std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() c
     return a.first != b.first ? a.first < b.first : a.second < b.second;
   });
   std::vector<QueryPair> chosen;
-  std::vector<int> uses(m_sky.reliable(), 0);
+  std::vector<int> uses(m_query.reliable(), 0);
   std::size_t candidates = 0;
   for (const QueryPair& pair : all) {
     if (uses[pair.first] >= s_mostUses || uses[pair.second] >= s_mostUses) continue;
@@ -94,13 +95,13 @@ std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() c
 }
 
 void ConstellationSearch::tryPair(const QueryPair& pair) {
-  const std::vector<QueryPole>& stars = m_sky.stars();
-  const PairTolerance tolerance(m_map, m_sky, stars[pair.first], stars[pair.second]);
+  const std::vector<QueryPole>& queryPoles = m_query.queryPoles();
+  const PairTolerance tolerance(m_map, m_query, queryPoles[pair.first], queryPoles[pair.second]);
   m_probes.clear();
-  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
+  for (std::uint32_t i = 0; i < m_query.reliable(); ++i) {
     if (i == pair.first || i == pair.second) continue;
-    const double t = tolerance.of(stars[i]);
-    m_probes.push_back({stars[i].centre.x(), stars[i].centre.y(), t * t});
+    const double t = tolerance.of(queryPoles[i]);
+    m_probes.push_back({queryPoles[i].centre.x(), queryPoles[i].centre.y(), t * t});
   }
   std::stable_sort(m_probes.begin(), m_probes.end(), [](const Probe& a, const Probe& b) {
     return a.squaredTolerance < b.squaredTolerance;
@@ -115,8 +116,8 @@ void ConstellationSearch::tryPair(const QueryPair& pair) {
 void ConstellationSearch::tryPlace(const QueryPair& pair, const Eigen::Vector2d& first,
                                    const Eigen::Vector2d& second) {
   ++m_candidates;
-  const Eigen::Vector2d &a = m_sky.stars()[pair.first].centre,
-                        &b = m_sky.stars()[pair.second].centre;
+  const Eigen::Vector2d &a = m_query.queryPoles()[pair.first].centre,
+                        &b = m_query.queryPoles()[pair.second].centre;
   const Eigen::Vector2d seen = b - a, mapped = second - first;
   const double norm = std::sqrt(seen.squaredNorm() * mapped.squaredNorm());
   const double c = seen.dot(mapped) / norm;

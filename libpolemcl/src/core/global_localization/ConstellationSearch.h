@@ -11,21 +11,22 @@ namespace polemcl {
 /// \brief A place to be refined.
 struct PoseCandidate {
   Pose2D pose_map_robot;
-  std::uint32_t hits = 0;   ///< further stars that found a map pole
-  std::uint32_t first = 0;  ///< the pair of stars it came from
+  std::uint32_t hits = 0;   ///< further query poles that found a map pole
+  std::uint32_t first = 0;  ///< the pair of query poles it came from
   std::uint32_t second = 0;
 };
 
-/// \brief How far a star may lie from its map pole when the constellation is laid on two poles.
+/// \brief How far a query pole may lie from its map pole when the constellation is laid on two
+/// poles.
 struct PairTolerance {
-  /// \brief For the pair of stars (first, second). \throws nothing
-  PairTolerance(const PreparedMap& map, const Constellation& sky, const QueryPole& first,
+  /// \brief For the pair of query poles (first, second). \throws nothing
+  PairTolerance(const PreparedMap& map, const Constellation& query, const QueryPole& first,
                 const QueryPole& second);
-  double of(const QueryPole& star) const;  ///< m, at most the greatest of the options
+  double of(const QueryPole& queryPole) const;  ///< m, at most the greatest of the options
 
  private:
   const PreparedMap& m_map;
-  const Constellation& m_sky;
+  const Constellation& m_query;
   const QueryPole &m_first, &m_second;
   Eigen::Vector2d m_middle;
   double m_variance, m_squaredLength;
@@ -34,7 +35,7 @@ struct PairTolerance {
 /// \brief Searches the whole map.
 class ConstellationSearch {
  public:
-  ConstellationSearch(const PreparedMap& map, const Constellation& sky);
+  ConstellationSearch(const PreparedMap& map, const Constellation& query);
   /// \brief The best seeds by falling hits, no two in the same cell of place and heading.
   std::vector<PoseCandidate> run();
   std::size_t candidates() const { return m_candidates; }
@@ -50,12 +51,12 @@ class ConstellationSearch {
   void tryPlace(const QueryPair& pair, const Eigen::Vector2d& first, const Eigen::Vector2d& second);
   std::vector<PoseCandidate> bestSeeds();
 
-  /// A star to try a candidate on.
+  /// A query pole to try a candidate on.
   struct Probe {
     double x, y, squaredTolerance;
   };
   const PreparedMap& m_map;
-  const Constellation& m_sky;
+  const Constellation& m_query;
   std::vector<Probe> m_probes;  ///< the surest first
   std::vector<PoseCandidate> m_seeds;
   std::size_t m_candidates = 0;

@@ -57,13 +57,13 @@ GlobalLocalizer::GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOp
 GlobalResult GlobalLocalizer::localize(const LocalSubmap& submap) const {
   const GlobalOptions& options = m_map->options();
   GlobalResult result;
-  const Constellation sky(submap, options);
-  result.poles = sky.reliable();
+  const Constellation query(submap, options);
+  result.poles = query.reliable();
   if (result.poles < static_cast<std::size_t>(options.minMatched)) return result;
-  ConstellationSearch search(*m_map, sky);
+  ConstellationSearch search(*m_map, query);
   const std::vector<PoseCandidate> seeds = search.run();
   result.candidates = search.candidates();
-  PoseRefinement refinement(*m_map, sky, submap.pose());
+  PoseRefinement refinement(*m_map, query, submap.pose());
   for (const PoseCandidate& seed : seeds) {
     GlobalHypothesis hypothesis;
     if (refinement.run(seed, hypothesis)) result.hypotheses.push_back(hypothesis);

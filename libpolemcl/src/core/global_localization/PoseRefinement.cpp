@@ -21,9 +21,9 @@ Eigen::Vector2d turnedBy(const Eigen::Vector2d& v) {
 
 }  // namespace
 
-PoseRefinement::PoseRefinement(const PreparedMap& map, const Constellation& sky,
+PoseRefinement::PoseRefinement(const PreparedMap& map, const Constellation& query,
                                const Pose2D& pose_local)
-    : m_map(map), m_sky(sky), m_poseLocal(pose_local), m_claimed(map.tree().size(), 0) {}
+    : m_map(map), m_query(query), m_poseLocal(pose_local), m_claimed(map.tree().size(), 0) {}
 
 bool PoseRefinement::run(const PoseCandidate& seed, GlobalHypothesis& out) {
   State state;
@@ -38,26 +38,26 @@ bool PoseRefinement::run(const PoseCandidate& seed, GlobalHypothesis& out) {
   return true;
 }
 
-Eigen::Vector2d PoseRefinement::seenAt(const QueryPole& star, const State& state) const {
+Eigen::Vector2d PoseRefinement::seenAt(const QueryPole& queryPole, const State& state) const {
   return Eigen::Vector2d(state.pose.x, state.pose.y) +
-         rotationOf(state.pose.yaw) * (star.centre + state.scale * star.way);
+         rotationOf(state.pose.yaw) * (queryPole.centre + state.scale * queryPole.travel);
 }
 
-Eigen::Matrix2d PoseRefinement::uncertainty(const QueryPole& star, std::size_t pole,
+Eigen::Matrix2d PoseRefinement::uncertainty(const QueryPole& queryPole, std::size_t pole,
                                             const State& state) const {
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
   const double sigma = m_map.options().sigma;
-  return rotation * star.covariance * rotation.transpose() +
+  return rotation * queryPole.covariance * rotation.transpose() +
          (sigma * sigma + m_map.variance(pole)) * Eigen::Matrix2d::Identity();
 }
 
 void PoseRefinement::matchSeed(const PoseCandidate& seed, const State& state) {
-  const std::vector<QueryPole>& stars = m_sky.stars();
-  const PairTolerance tolerance(m_map, m_sky, stars[seed.first], stars[seed.second]);
+  const std::vector<QueryPole>& queryPoles = m_query.queryPoles();
+  const PairTolerance tolerance(m_map, m_query, queryPoles[seed.first], queryPoles[seed.second]);
   m_matches.clear();
-  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
-    const Eigen::Vector2d at = seenAt(stars[i], state);
-    const double t = tolerance.of(stars[i]);
+  for (std::uint32_t i = 0; i < m_query.reliable(); ++i) {
+    const Eigen::Vector2d at = seenAt(queryPoles[i], state);
+    const double t = tolerance.of(queryPoles[i]);
     const PointHit hit = m_map.grid().nearest(at.x(), at.y(), t * t);
     if (hit) m_matches.push_back({i, hit.index});
   }
@@ -66,16 +66,17 @@ void PoseRefinement::matchSeed(const PoseCandidate& seed, const State& state) {
 void PoseRefinement::matchGated(const State& state) {
   const double most = m_map.options().maxTolerance;
   m_matches.clear();
-  for (std::uint32_t i = 0; i < m_sky.reliable(); ++i) {
-    const QueryPole& star = m_sky.stars()[i];
-    const Eigen::Vector2d at = seenAt(star, state);
+  for (std::uint32_t i = 0; i < m_query.reliable(); ++i) {
+    const QueryPole& queryPole = m_query.queryPoles()[i];
+    const Eigen::Vector2d at = seenAt(queryPole, state);
     const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
     if (!hit) continue;
     Eigen::Matrix<double, 2, 4> jacobian;
     const Eigen::Vector2d arm = at - Eigen::Vector2d(state.pose.x, state.pose.y);
-    jacobian << Eigen::Matrix2d::Identity(), turnedBy(arm), rotationOf(state.pose.yaw) * star.way;
-    const Eigen::Matrix2d S =
-        uncertainty(star, hit.index, state) + jacobian * state.covariance * jacobian.transpose();
+    jacobian << Eigen::Matrix2d::Identity(), turnedBy(arm),
+        rotationOf(state.pose.yaw) * queryPole.travel;
+    const Eigen::Matrix2d S = uncertainty(queryPole, hit.index, state) +
+                              jacobian * state.covariance * jacobian.transpose();
     const Eigen::Vector2d error = m_map.tree().point(hit.index) - at;
     if (error.dot(S.inverse() * error) <= s_gate * s_gate) m_matches.push_back({i, hit.index});
   }
@@ -86,18 +87,18 @@ bool PoseRefinement::solve(State& state) const {
   if (m_matches.size() < 3) return false;
   Matrix4 normal = Matrix4::Zero();
   Vector4 right = Vector4::Zero();
-  const double scaleSigma = std::max(m_sky.scaleSigma(), 1e-6);
+  const double scaleSigma = std::max(m_query.scaleSigma(), 1e-6);
   normal(3, 3) = 1 / (scaleSigma * scaleSigma);
   right(3) = -state.scale * normal(3, 3);
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
   double squared = 0;
   for (const Match& match : m_matches) {
-    const QueryPole& star = m_sky.stars()[match.star];
-    const Eigen::Vector2d at = seenAt(star, state);
+    const QueryPole& queryPole = m_query.queryPoles()[match.queryPole];
+    const Eigen::Vector2d at = seenAt(queryPole, state);
     Eigen::Matrix<double, 2, 4> jacobian;
     const Eigen::Vector2d arm = at - Eigen::Vector2d(state.pose.x, state.pose.y);
-    jacobian << Eigen::Matrix2d::Identity(), turnedBy(arm), rotation * star.way;
-    const Eigen::Matrix2d weight = uncertainty(star, match.pole, state).inverse();
+    jacobian << Eigen::Matrix2d::Identity(), turnedBy(arm), rotation * queryPole.travel;
+    const Eigen::Matrix2d weight = uncertainty(queryPole, match.pole, state).inverse();
     const Eigen::Vector2d error = m_map.tree().point(match.pole) - at;
     normal += jacobian.transpose() * weight * jacobian;
     right += jacobian.transpose() * weight * error;
@@ -121,24 +122,24 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
   const double sharp = s_sharp * s_sharp;
   newRound();
   out = {};
-  for (const QueryPole& star : m_sky.stars()) {
-    const Eigen::Vector2d at = seenAt(star, state);
+  for (const QueryPole& queryPole : m_query.queryPoles()) {
+    const Eigen::Vector2d at = seenAt(queryPole, state);
     const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
     if (!hit) continue;
-    const Eigen::Matrix2d S = uncertainty(star, hit.index, state);
+    const Eigen::Matrix2d S = uncertainty(queryPole, hit.index, state);
     const Eigen::Vector2d error = m_map.tree().point(hit.index) - at;
     const double squared = error.dot(S.inverse() * error);
-    // Reliable stars come first, so none loses its map pole to a doubtful one.
-    if (squared > s_gate * s_gate || !claim(hit.index) || star.odds <= 0) continue;
+    // Reliable query poles come first, so none loses its map pole to a doubtful one.
+    if (squared > s_gate * s_gate || !claim(hit.index) || queryPole.odds <= 0) continue;
     ++out.matched;
     const double sharpness = std::min(1.0, sharp / std::sqrt(S.determinant()));
-    out.evidence += std::log1p(star.odds * sharpness * std::exp(-0.5 * squared));
+    out.evidence += std::log1p(queryPole.odds * sharpness * std::exp(-0.5 * squared));
   }
   out.unseen = countUnseen(state);
   // Where the map is old or full of false poles, these must not outvote the matches.
   const double doubt = -std::log1p(-m_map.options().seen) * out.unseen;
   out.evidence -= std::min(doubt, 0.5 * out.evidence);
-  out.matchedShare = static_cast<double>(out.matched) / static_cast<double>(m_sky.reliable());
+  out.matchedShare = static_cast<double>(out.matched) / static_cast<double>(m_query.reliable());
   out.pose_map_robot = state.pose;
   out.pose_map_local = compose(state.pose, relative(m_poseLocal, Pose2D{}));
   out.scale = state.scale;
@@ -151,7 +152,7 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
 std::uint32_t PoseRefinement::countUnseen(const State& state) {
   std::uint32_t unseen = 0;
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
-  for (const Eigen::Vector2d& place : m_sky.path()) {
+  for (const Eigen::Vector2d& place : m_query.path()) {
     const Eigen::Vector2d at = Eigen::Vector2d(state.pose.x, state.pose.y) + rotation * place;
     m_map.tree().within(at.x(), at.y(), m_map.options().corridor, m_hits);
     for (const PointHit& hit : m_hits) unseen += claim(hit.index);

@@ -10,7 +10,7 @@ namespace polemcl {
 /// \brief Refines and judges one candidate after the other; keeps its memory between them.
 class PoseRefinement {
  public:
-  PoseRefinement(const PreparedMap& map, const Constellation& sky, const Pose2D& pose_local);
+  PoseRefinement(const PreparedMap& map, const Constellation& query, const Pose2D& pose_local);
   /// \return False when it fell apart: fewer than three matches, or no unique solution.
   bool run(const PoseCandidate& seed, GlobalHypothesis& out);
 
@@ -18,7 +18,7 @@ class PoseRefinement {
   using Vector4 = Eigen::Vector4d;
   using Matrix4 = Eigen::Matrix4d;
   struct Match {
-    std::uint32_t star, pole;
+    std::uint32_t queryPole, pole;
   };
   /// The place under refinement: x, y, yaw of the robot, and the odometry's error of scale.
   struct State {
@@ -27,8 +27,9 @@ class PoseRefinement {
     Matrix4 covariance = Matrix4::Zero();
     double squaredResiduals = 0;  ///< Mahalanobis, summed over the matches
   };
-  Eigen::Vector2d seenAt(const QueryPole& star, const State& state) const;
-  Eigen::Matrix2d uncertainty(const QueryPole& star, std::size_t pole, const State& state) const;
+  Eigen::Vector2d seenAt(const QueryPole& queryPole, const State& state) const;
+  Eigen::Matrix2d uncertainty(const QueryPole& queryPole, std::size_t pole,
+                              const State& state) const;
   void matchSeed(const PoseCandidate& seed, const State& state);
   void matchGated(const State& state);
   bool solve(State& state) const;
@@ -39,7 +40,7 @@ class PoseRefinement {
   void newRound() { ++m_round; }
 
   const PreparedMap& m_map;
-  const Constellation& m_sky;
+  const Constellation& m_query;
   Pose2D m_poseLocal;
   std::vector<Match> m_matches;
   std::vector<std::uint32_t> m_claimed;  ///< round in which each map pole was claimed

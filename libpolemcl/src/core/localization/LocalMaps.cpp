@@ -56,12 +56,12 @@ std::vector<PoleDetection> LocalMaps::add(const Pose2D& motion,
 /// The newest map's poles that enough of the maps up to it show; in its robot frame.
 std::vector<PoleDetection> LocalMaps::confirmed(std::size_t newest) const {
   if (m_options.minHits == 1) return m_maps[newest].poles_robot;
-  std::vector<LandmarkObservation> sightings;  // the newest map's first
+  std::vector<LandmarkObservation> observations;  // the newest map's first
   for (std::size_t k = newest + 1; k-- > 0;)
     for (const PoleDetection& pole : m_maps[k].poles_robot)
-      sightings.push_back({moved(m_maps[k].pose_odometry_robot, pole), 0});
+      observations.push_back({moved(m_maps[k].pose_odometry_robot, pole), 0});
   std::vector<bool> taken(m_maps[newest].poles_robot.size());
-  for (const std::vector<std::uint32_t>& group : joinOverlappingBoxes(sightings))
+  for (const std::vector<std::uint32_t>& group : joinOverlappingBoxes(observations))
     if (group.size() >= static_cast<std::size_t>(m_options.minHits))
       for (const std::uint32_t member : group)
         if (member < taken.size()) taken[member] = true;

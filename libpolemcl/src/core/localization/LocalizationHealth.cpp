@@ -75,7 +75,7 @@ void HealthMonitor::begin(bool found) {
 
 Health HealthMonitor::update(const HealthInput& input) {
   if (!m_begun) return m_health;
-  const bool first = m_views.empty();
+  const bool first = m_viewpoints.empty();
   if (!first && input.time - m_time > m_options.maxGap)
     m_gapUntil = m_driven + input.metres + m_options.confirm;
   m_driven += input.metres;
@@ -97,11 +97,11 @@ Health HealthMonitor::update(const HealthInput& input) {
 }
 
 void HealthMonitor::remember(const HealthInput& input) {
-  if (m_views.empty() || m_driven - m_views.back().driven >= s_viewpoint) {
-    m_views.emplace_back();
-    m_views.back().driven = m_driven;
+  if (m_viewpoints.empty() || m_driven - m_viewpoints.back().driven >= s_viewpoint) {
+    m_viewpoints.emplace_back();
+    m_viewpoints.back().driven = m_driven;
   }
-  while (m_driven - m_views.front().driven > m_options.lostWindow) m_views.pop_front();
+  while (m_driven - m_viewpoints.front().driven > m_options.lostWindow) m_viewpoints.pop_front();
   Viewpoint scan;
   for (const PoleMatch& match : input.matches) {
     scan.evidence += match.confidence;
@@ -110,22 +110,22 @@ void HealthMonitor::remember(const HealthInput& input) {
     scan.squared += match.squared;
     ++scan.matches;
   }
-  Viewpoint& view = m_views.back();
-  const double share = 1.0 / ++view.scans;
-  view.evidence += share * (scan.evidence - view.evidence);
-  view.matched += share * (scan.matched - view.matched);
-  view.squared += share * (scan.squared - view.squared);
-  view.matches += share * (scan.matches - view.matches);
+  Viewpoint& viewpoint = m_viewpoints.back();
+  const double share = 1.0 / ++viewpoint.scans;
+  viewpoint.evidence += share * (scan.evidence - viewpoint.evidence);
+  viewpoint.matched += share * (scan.matched - viewpoint.matched);
+  viewpoint.squared += share * (scan.squared - viewpoint.squared);
+  viewpoint.matches += share * (scan.matches - viewpoint.matches);
 }
 
 HealthMonitor::Viewpoint HealthMonitor::sumOver(double metres) const {
   Viewpoint sum;
-  for (const Viewpoint& view : m_views) {
-    if (m_driven - view.driven > metres) continue;
-    sum.evidence += view.evidence;
-    sum.matched += view.matched;
-    sum.squared += view.squared;
-    sum.matches += view.matches;
+  for (const Viewpoint& viewpoint : m_viewpoints) {
+    if (m_driven - viewpoint.driven > metres) continue;
+    sum.evidence += viewpoint.evidence;
+    sum.matched += viewpoint.matched;
+    sum.squared += viewpoint.squared;
+    sum.matches += viewpoint.matches;
   }
   return sum;
 }
@@ -142,7 +142,7 @@ void HealthMonitor::sumUp() {
 /// Confirms a new pose after enough metres of good matches.
 void HealthMonitor::confirm(const HealthInput& input) {
   const HealthOptions& o = m_options;
-  const Viewpoint& here = m_views.back();
+  const Viewpoint& here = m_viewpoints.back();
   if (here.evidence > 0 && here.matched >= o.degradedShare * here.evidence)
     m_goodDriven += input.metres;
   const bool good = m_health.evidence >= o.minEvidence &&

@@ -38,27 +38,27 @@ bool overlap(const PoleDetection& a, const PoleDetection& b) {
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
-    const std::vector<LandmarkObservation>& sightings) {
+    const std::vector<LandmarkObservation>& observations) {
   std::vector<Eigen::Vector2d> centres;
   double widest = 0;
-  for (const LandmarkObservation& sighting : sightings) {
-    centres.emplace_back(sighting.pole.x, sighting.pole.y);
-    widest = std::max(widest, sighting.pole.radius);
+  for (const LandmarkObservation& observation : observations) {
+    centres.emplace_back(observation.pole.x, observation.pole.y);
+    widest = std::max(widest, observation.pole.radius);
   }
   const KdTree2D tree(std::move(centres));
-  Sets sets(sightings.size());
+  Sets sets(observations.size());
   std::vector<PointHit> near;
-  for (std::uint32_t i = 0; i < sightings.size(); ++i) {
-    const PoleDetection& pole = sightings[i].pole;
+  for (std::uint32_t i = 0; i < observations.size(); ++i) {
+    const PoleDetection& pole = observations[i].pole;
     // Corners of boxes that touch are the farthest; the margin is for rounding, and radii of 0.
     const double reach = 1.415 * std::max(0.0, pole.radius + widest) + 1e-6;
     tree.within(pole.x, pole.y, reach, near);
     for (const PointHit& hit : near)
-      if (hit.index < i && overlap(sightings[hit.index].pole, pole)) sets.join(hit.index, i);
+      if (hit.index < i && overlap(observations[hit.index].pole, pole)) sets.join(hit.index, i);
   }
   std::vector<std::vector<std::uint32_t>> groups;
-  std::vector<std::size_t> groupOf(sightings.size());
-  for (std::uint32_t i = 0; i < sightings.size(); ++i) {
+  std::vector<std::size_t> groupOf(observations.size());
+  for (std::uint32_t i = 0; i < observations.size(); ++i) {
     const std::uint32_t root = sets.root(i);
     if (root == i) {
       groupOf[i] = groups.size();
@@ -69,10 +69,10 @@ std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
   return groups;
 }
 
-MapPole plainMean(const std::vector<LandmarkObservation>& sightings,
+MapPole plainMean(const std::vector<LandmarkObservation>& observations,
                   const std::vector<std::uint32_t>& members) {
   std::vector<const PoleDetection*> poles;
-  for (const std::uint32_t member : members) poles.push_back(&sightings[member].pole);
+  for (const std::uint32_t member : members) poles.push_back(&observations[member].pole);
   // Sums round by their order: this one does not depend on that of the detections.
   std::sort(poles.begin(), poles.end(), [](const PoleDetection* a, const PoleDetection* b) {
     return std::tie(a->x, a->y, a->radius, a->bottom, a->top, a->confidence) <

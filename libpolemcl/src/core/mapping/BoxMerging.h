@@ -1,6 +1,6 @@
 #pragma once
 /// \file BoxMerging.h
-/// \brief Which sightings show the same pole by the first implementation: those whose boxes
+/// \brief Which observations show the same pole by the first implementation: those whose boxes
 /// overlap.
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace polemcl {
 
-/// \brief Connected components of overlapping boxes. A box is the square round a sighting's centre
-/// that reaches one radius to each side; boxes that touch overlap. Chains are one component, and
-/// one scan may have several members. \return Groups of indices into `sightings`, each ascending,
-/// ordered by their first index. Work
-///         grows with the number of sightings times those within a pole's width.
+/// \brief Connected components of overlapping boxes. A box is the square round a observation's
+/// centre that reaches one radius to each side; boxes that touch overlap. Chains are one component,
+/// and one scan may have several members. \return Groups of indices into `observations`, each
+/// ascending, ordered by their first index. Work
+///         grows with the number of observations times those within a pole's width.
 std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
-    const std::vector<LandmarkObservation>& sightings);
+    const std::vector<LandmarkObservation>& observations);
 
 /// \brief The pole of a group: plain means of centre, radius, bottom, top and confidence; count the
-/// number of members; covariance that of the mean of independent sightings.
-MapPole plainMean(const std::vector<LandmarkObservation>& sightings,
+/// number of members; covariance that of the mean of independent observations.
+MapPole plainMean(const std::vector<LandmarkObservation>& observations,
                   const std::vector<std::uint32_t>& members);
 
 }  // namespace polemcl

@@ -8,10 +8,10 @@
 namespace polemcl {
 
 LandmarkObservation landmarkObservation(const PoleDetection& pole, const Pose2D& pose,
-                                        std::uint32_t view, const PoseTrust& trust) {
+                                        std::uint32_t scan, const PoseTrust& trust) {
   const auto [arm, centre, covariance] = movedCentre(pose, pole);
   const Eigen::Vector2d byHeading = trust.headingSigma * Eigen::Vector2d(-arm.y(), arm.x());
-  LandmarkObservation observation{pole, view};
+  LandmarkObservation observation{pole, scan};
   observation.pole.x = centre.x();
   observation.pole.y = centre.y();
   observation.pole.covariance = covariance + byHeading * byHeading.transpose() +

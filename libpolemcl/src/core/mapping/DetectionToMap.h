@@ -1,6 +1,6 @@
 #pragma once
 /// \file DetectionToMap.h
-/// \brief A scan's detections at a known pose -> sightings in the map frame.
+/// \brief A scan's detections at a known pose -> observations in the map frame.
 
 #include <string>
 #include <vector>
@@ -18,9 +18,9 @@ struct PoseTrust {
 };
 
 /// \brief A detection in the map frame, made less certain by what the scan's pose is not known to.
-/// \param pole Robot frame. \param pose Robot in the map frame. \param view Number of the scan.
+/// \param pole Robot frame. \param pose Robot in the map frame. \param scan Number of the scan.
 LandmarkObservation landmarkObservation(const PoleDetection& pole, const Pose2D& pose,
-                                        std::uint32_t view, const PoseTrust& trust);
+                                        std::uint32_t scan, const PoseTrust& trust);
 
 /// \throws Error on a pose or detection that is not finite, a confidence outside [0, 1], or a
 ///         covariance that is not symmetric positive semidefinite, naming the detection.

@@ -18,13 +18,13 @@ struct Weighted {
   Eigen::Matrix2d information;  ///< inverse covariance times confidence
 };
 
-std::vector<Weighted> weigh(const std::vector<LandmarkObservation>& sightings,
+std::vector<Weighted> weigh(const std::vector<LandmarkObservation>& observations,
                             const std::vector<std::uint32_t>& members,
                             const Eigen::Vector2d& origin) {
   std::vector<Weighted> weighted;
   weighted.reserve(members.size());
   for (const std::uint32_t member : members) {
-    const PoleDetection& pole = sightings[member].pole;
+    const PoleDetection& pole = observations[member].pole;
     // A tenth of a millimetre: a covariance of zero would be an infinite weight.
     const Eigen::Matrix2d covariance = pole.covariance + 1e-8 * Eigen::Matrix2d::Identity();
     weighted.push_back(
@@ -58,11 +58,11 @@ struct Mean {
   Eigen::Matrix2d covariance;
 };
 
-Mean fusedMeanOf(const std::vector<Weighted>& weighted, const std::vector<bool>& kept) {
+Mean fusedMeanOf(const std::vector<Weighted>& weighted, const std::vector<bool>& inliers) {
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < weighted.size(); ++i) {
-    if (!kept[i]) continue;
+    if (!inliers[i]) continue;
     information += weighted[i].information;
     sum += weighted[i].information * weighted[i].offset;
   }
@@ -89,16 +89,16 @@ std::vector<bool> inside(const std::vector<double>& squared) {
   const double middle = elementOfRank(ordered, ordered.size() / 2);
   const double few = 1 + 5 / (2.0 * static_cast<double>(squared.size()) - 2);
   const double limit = s_ellipse * std::max(1.0, few * few * middle / s_medianOfTwo);
-  std::vector<bool> kept(squared.size());
-  for (std::size_t i = 0; i < squared.size(); ++i) kept[i] = squared[i] <= limit;
-  return kept;
+  std::vector<bool> inliers(squared.size());
+  for (std::size_t i = 0; i < squared.size(); ++i) inliers[i] = squared[i] <= limit;
+  return inliers;
 }
 
-/// How much larger than promised the scatter of the kept ones is, never below 1.
-double excess(const std::vector<double>& squared, const std::vector<bool>& kept) {
+/// How much larger than promised the scatter of the inliers ones is, never below 1.
+double excess(const std::vector<double>& squared, const std::vector<bool>& inliers) {
   double sum = 0, freedom = -2;
   for (std::size_t i = 0; i < squared.size(); ++i) {
-    if (!kept[i]) continue;
+    if (!inliers[i]) continue;
     sum += squared[i];
     freedom += 2;
   }
@@ -107,12 +107,12 @@ double excess(const std::vector<double>& squared, const std::vector<bool>& kept)
 
 }  // namespace
 
-Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& sightings,
+Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& observations,
                             const std::vector<std::uint32_t>& members, Eigen::Matrix2d* covariance,
-                            std::vector<std::uint32_t>* kept) {
-  const PoleDetection& first = sightings[members.front()].pole;
+                            std::vector<std::uint32_t>* inliers) {
+  const PoleDetection& first = observations[members.front()].pole;
   const Eigen::Vector2d origin(first.x, first.y);
-  const std::vector<Weighted> weighted = weigh(sightings, members, origin);
+  const std::vector<Weighted> weighted = weigh(observations, members, origin);
   std::vector<bool> taken(weighted.size(), true);
   Mean mean = fusedMeanOf(weighted, taken);
   if (weighted.size() > 2) {  // of two none can be told to be the outlier
@@ -125,26 +125,26 @@ Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& sightings,
   }
   if (covariance)
     *covariance = mean.covariance * excess(squaredDistances(weighted, mean.centre), taken);
-  if (kept) {
-    kept->clear();
+  if (inliers) {
+    inliers->clear();
     for (std::size_t i = 0; i < weighted.size(); ++i) {
-      if (taken[i]) kept->push_back(weighted[i].member);
+      if (taken[i]) inliers->push_back(weighted[i].member);
     }
   }
   return origin + mean.centre;
 }
 
-MapPole fuse(const std::vector<LandmarkObservation>& sightings,
+MapPole fuse(const std::vector<LandmarkObservation>& observations,
              const std::vector<std::uint32_t>& members) {
   MapPole pole;
-  std::vector<std::uint32_t> kept;
-  const Eigen::Vector2d centre = fusedCentre(sightings, members, &pole.covariance, &kept);
+  std::vector<std::uint32_t> inliers;
+  const Eigen::Vector2d centre = fusedCentre(observations, members, &pole.covariance, &inliers);
   pole.x = centre.x();
   pole.y = centre.y();
   pole.count = static_cast<std::uint32_t>(members.size());
   double weight = 0, radius = 0;
-  for (const std::uint32_t member : kept) {
-    const PoleDetection& seen = sightings[member].pole;
+  for (const std::uint32_t member : inliers) {
+    const PoleDetection& seen = observations[member].pole;
     const double w = seen.confidence / (seen.covariance.trace() + 1e-8);
     weight += w;
     radius += w * seen.radius;
@@ -153,9 +153,9 @@ MapPole fuse(const std::vector<LandmarkObservation>& sightings,
   std::vector<double> bottoms, tops;
   pole.confidence = 0;
   for (const std::uint32_t member : members) {
-    bottoms.push_back(sightings[member].pole.bottom);
-    tops.push_back(sightings[member].pole.top);
-    pole.confidence += sightings[member].pole.confidence;
+    bottoms.push_back(observations[member].pole.bottom);
+    tops.push_back(observations[member].pole.top);
+    pole.confidence += observations[member].pole.confidence;
   }
   pole.confidence /= static_cast<double>(members.size());  // last: so that all ones give one
   pole.bottom = nearestRank(std::move(bottoms), 0.1);

@@ -38,49 +38,49 @@ bool inView(const SessionScan& scan, const MapPole& pole) {
 std::vector<Eigen::Vector2d> polePlaces(const std::vector<LandmarkRecord>& poles) {
   std::vector<Eigen::Vector2d> places;
   places.reserve(poles.size());
-  for (const LandmarkRecord& kept : poles) places.emplace_back(kept.pole.x, kept.pole.y);
+  for (const LandmarkRecord& record : poles) places.emplace_back(record.pole.x, record.pole.y);
   return places;
 }
 
 }  // namespace
 
 Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& mapping,
-                 const MapUpdateOptions& upkeep)
-    : m_scans(scans), m_mapping(mapping), m_upkeep(upkeep), m_firstOfView{0} {
+                 const MapUpdateOptions& options)
+    : m_scans(scans), m_mapping(mapping), m_options(options), m_firstOfScan{0} {
   const PoseTrust trust{mapping.poseSigma, mapping.headingSigma};
   double along = 0;
-  for (std::uint32_t view = 0; view < scans.size(); ++view) {
-    const SessionScan& scan = scans[view];
-    const std::string where = "scan " + std::to_string(view);
+  for (std::uint32_t number = 0; number < scans.size(); ++number) {
+    const SessionScan& scan = scans[number];
+    const std::string where = "scan " + std::to_string(number);
     checkScan(scan.pose_map_robot, scan.poles_robot, where);
     checkFreeRange(scan, where);
-    if (view > 0) {
-      const Pose2D &a = scans[view - 1].pose_map_robot, &b = scan.pose_map_robot;
+    if (number > 0) {
+      const Pose2D &a = scans[number - 1].pose_map_robot, &b = scan.pose_map_robot;
       along += std::hypot(b.x - a.x, b.y - a.y);
     }
     m_along.push_back(along);
-    m_firstTime = view == 0 ? scan.time : std::min(m_firstTime, scan.time);
-    m_lastTime = view == 0 ? scan.time : std::max(m_lastTime, scan.time);
+    m_firstTime = number == 0 ? scan.time : std::min(m_firstTime, scan.time);
+    m_lastTime = number == 0 ? scan.time : std::max(m_lastTime, scan.time);
     for (const PoleDetection& pole : scan.poles_robot) {
       if (pole.confidence <= 0 || pole.confidence < mapping.minConfidence) continue;
-      m_sightings.push_back(landmarkObservation(pole, scan.pose_map_robot, view, trust));
+      m_observations.push_back(landmarkObservation(pole, scan.pose_map_robot, number, trust));
     }
-    m_firstOfView.push_back(m_sightings.size());
+    m_firstOfScan.push_back(m_observations.size());
   }
 }
 
 void Session::observe(const std::vector<LandmarkRecord>& poles) {
-  m_owner.assign(m_sightings.size(), kNone);
+  m_owner.assign(m_observations.size(), kNone);
   m_poles.assign(poles.size(), {});
   const KdTree2D tree(polePlaces(poles));
-  for (std::size_t view = 0; view < m_scans.size(); ++view) {
-    deal(view, tree);
-    expect(view, tree, poles);
+  for (std::size_t number = 0; number < m_scans.size(); ++number) {
+    assign(number, tree);
+    expect(number, tree, poles);
   }
 }
 
-/// The sightings of one scan to the poles in their gates, nearest pair first.
-void Session::deal(std::size_t view, const KdTree2D& tree) {
+/// The observations of one scan to the poles in their gates, nearest pair first.
+void Session::assign(std::size_t number, const KdTree2D& tree) {
   struct Pair : AssignedPair {
     double x, y;
     bool operator<(const Pair& other) const {
@@ -88,41 +88,42 @@ void Session::deal(std::size_t view, const KdTree2D& tree) {
              std::tie(other.distance, other.x, other.y, other.second);
     }
   };
-  const std::size_t begin = m_firstOfView[view];
+  const std::size_t begin = m_firstOfScan[number];
   std::vector<Pair> pairs;
   std::vector<PointHit> hits;
-  for (std::size_t i = begin; i < m_firstOfView[view + 1]; ++i) {
-    const PoleDetection& seen = m_sightings[i].pole;
+  for (std::size_t i = begin; i < m_firstOfScan[number + 1]; ++i) {
+    const PoleDetection& seen = m_observations[i].pole;
     tree.within(seen.x, seen.y, m_mapping.mergeDistance, hits);
     for (const PointHit& hit : hits)
       pairs.push_back({{i - begin, hit.index, hit.squaredDistance}, seen.x, seen.y});
   }
   for (const Pair& pair : chooseClosest(std::move(pairs))) {
     m_owner[begin + pair.first] = static_cast<std::uint32_t>(pair.second);
-    m_poles[pair.second].sightings.push_back(static_cast<std::uint32_t>(begin + pair.first));
+    m_poles[pair.second].observations.push_back(static_cast<std::uint32_t>(begin + pair.first));
   }
 }
 
 /// Which of the poles in range one scan found, and which it could have.
-void Session::expect(std::size_t view, const KdTree2D& tree,
+void Session::expect(std::size_t number, const KdTree2D& tree,
                      const std::vector<LandmarkRecord>& poles) {
-  const SessionScan& scan = m_scans[view];
+  const SessionScan& scan = m_scans[number];
   const Pose2D sensor = compose(scan.pose_map_robot, scan.pose_robot_sensor);
   std::vector<PointHit> near;
-  tree.within(sensor.x, sensor.y, m_upkeep.range, near);
+  tree.within(sensor.x, sensor.y, m_options.range, near);
   for (const PointHit& hit : near) {
     SessionPole& own = m_poles[hit.index];
-    const bool found = !own.sightings.empty() && m_sightings[own.sightings.back()].view == view;
+    const bool found =
+        !own.observations.empty() && m_observations[own.observations.back()].scan == number;
     if (!found && !inView(scan, poles[hit.index].pole)) continue;
-    own.evidence.add(found, m_along[view], m_upkeep.existence,
-                     detectionChance(poles[hit.index].history, m_upkeep.existence));
+    own.evidence.add(found, m_along[number], m_options.existence,
+                     detectionChance(poles[hit.index].history, m_options.existence));
   }
 }
 
 std::vector<LandmarkObservation> Session::loose() const {
   std::vector<LandmarkObservation> loose;
-  for (std::size_t i = 0; i < m_sightings.size(); ++i)
-    if (m_owner[i] == kNone) loose.push_back(m_sightings[i]);
+  for (std::size_t i = 0; i < m_observations.size(); ++i)
+    if (m_owner[i] == kNone) loose.push_back(m_observations[i]);
   return loose;
 }
 

@@ -15,7 +15,7 @@ namespace polemcl {
 namespace {
 
 constexpr double kFarEllipse = 13.8;        ///< 99.9 % of squared distances, 2 degrees of freedom
-constexpr std::uint32_t kWeightedTo = 200;  ///< sightings: a long past does not outweigh today
+constexpr std::uint32_t kWeightedTo = 200;  ///< observations: a long past does not outweigh today
 constexpr double kWithoutHistory = 0.9;     ///< existence of a pole of an old map
 
 Eigen::Vector2d centreOf(const MapPole& pole) {
@@ -49,11 +49,11 @@ class Update {
   void addNew();
   void applyEvidence();
   void movePlaces();
-  bool movePlace(LandmarkRecord& kept, const MapPole& seen) const;
+  bool movePlace(LandmarkRecord& record, const MapPole& seen) const;
   void dropGhosts();
   void dropDoubles();
   bool seenTogether(std::size_t a, std::size_t b) const;
-  std::set<std::uint32_t> viewsOf(std::size_t pole) const;
+  std::set<std::uint32_t> scansOf(std::size_t pole) const;
   void decidePresence();
   std::vector<Eigen::Vector2d> places() const;
 
@@ -70,47 +70,47 @@ class Update {
 /// of which some pole was seen last.
 void Update::bringForward() {
   double last = 0;
-  for (const LandmarkRecord& kept : m_poles) last = std::max(last, kept.history.lastSeen);
+  for (const LandmarkRecord& record : m_poles) last = std::max(last, record.history.lastSeen);
   if (!isDate(last) || !isDate(m_session.firstTime())) return;
-  for (LandmarkRecord& kept : m_poles)
-    kept.history.existence =
-        survived(kept.history.existence, m_session.firstTime() - last, m_options.existence);
+  for (LandmarkRecord& record : m_poles)
+    record.history.existence =
+        survived(record.history.existence, m_session.firstTime() - last, m_options.existence);
 }
 
-/// What no kept pole took, merged to new ones.
+/// What no pole of the map took, merged to new ones.
 void Update::addNew() {
   const std::vector<LandmarkObservation> loose = m_session.loose();
   const auto groups = clusterObservations(loose, {m_mapping.mergeDistance, m_mapping.apartShare});
   for (const auto& group : groups) {
     if (group.size() < 2) continue;  // once is chance
-    LandmarkRecord kept;
-    kept.pole = fuse(loose, group);
-    kept.pole.count = 0;  // its sightings are counted with everybody's
-    kept.history.existence = m_options.existence.prior;
-    m_poles.push_back(kept);
+    LandmarkRecord record;
+    record.pole = fuse(loose, group);
+    record.pole.count = 0;  // its observations are counted with everybody's
+    record.history.existence = m_options.existence.prior;
+    m_poles.push_back(record);
   }
 }
 
 void Update::applyEvidence() {
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
-    LandmarkRecord& kept = m_poles[i];
+    LandmarkRecord& record = m_poles[i];
     const SessionPole& today = m_session.poles()[i];
     const ExistenceEvidence& evidence = today.evidence;
-    m_counts.expectedOnMap += kept.present && evidence.found() + evidence.missed() > 0;
-    m_counts.foundOnMap += kept.present && evidence.found() > 0;
-    kept.history.existence =
-        updated(kept.history.existence, evidence.logRatio(), m_options.existence);
-    kept.history.seen += evidence.found();
-    kept.history.missed += evidence.missed();
-    for (const std::uint32_t sighting : today.sightings)
-      noteSeen(kept.history, m_session.time(m_session.sightings()[sighting].view));
+    m_counts.expectedOnMap += record.present && evidence.found() + evidence.missed() > 0;
+    m_counts.foundOnMap += record.present && evidence.found() > 0;
+    record.history.existence =
+        updated(record.history.existence, evidence.logRatio(), m_options.existence);
+    record.history.seen += evidence.found();
+    record.history.missed += evidence.missed();
+    for (const std::uint32_t observation : today.observations)
+      noteSeen(record.history, m_session.time(m_session.observations()[observation].scan));
   }
 }
 
 /// The place after a session, with what all its scans share added to its covariance.
 /// \return Whether the pole has been moved.
-bool Update::movePlace(LandmarkRecord& kept, const MapPole& seen) const {
-  MapPole& pole = kept.pole;
+bool Update::movePlace(LandmarkRecord& record, const MapPole& seen) const {
+  MapPole& pole = record.pole;
   const double shared = m_options.sessionSigma * m_options.sessionSigma;
   const Eigen::Matrix2d today = seen.covariance + shared * Eigen::Matrix2d::Identity();
   const Eigen::Vector2d step = centreOf(seen) - centreOf(pole);
@@ -139,9 +139,9 @@ bool Update::movePlace(LandmarkRecord& kept, const MapPole& seen) const {
 
 void Update::movePlaces() {
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
-    const auto& members = m_session.poles()[i].sightings;
+    const auto& members = m_session.poles()[i].observations;
     if (members.empty()) continue;
-    const bool moved = movePlace(m_poles[i], fuse(m_session.sightings(), members));
+    const bool moved = movePlace(m_poles[i], fuse(m_session.observations(), members));
     if (moved) m_poles[i].history.firstSeen = 0;
     if (moved) noteSeen(m_poles[i].history, m_session.firstTime());
     m_counts.moved += moved && m_poles[i].present;
@@ -150,7 +150,7 @@ void Update::movePlaces() {
 
 std::vector<Eigen::Vector2d> Update::places() const {
   std::vector<Eigen::Vector2d> places;
-  for (const LandmarkRecord& kept : m_poles) places.push_back(centreOf(kept.pole));
+  for (const LandmarkRecord& record : m_poles) places.push_back(centreOf(record.pole));
   return places;
 }
 
@@ -160,7 +160,7 @@ void Update::dropGhosts() {
   std::vector<PointHit> near;
   for (std::size_t i = 0; i < m_known; ++i) {
     const ExistenceEvidence& evidence = m_session.poles()[i].evidence;
-    if (!m_session.poles()[i].sightings.empty() || evidence.missed() == 0) continue;
+    if (!m_session.poles()[i].observations.empty() || evidence.missed() == 0) continue;
     tree.within(m_poles[i].pole.x, m_poles[i].pole.y, m_options.ghost, near);
     m_gone[i] = std::any_of(near.begin(), near.end(), [&](const PointHit& hit) {
       return hit.index >= m_known && m_poles[hit.index].history.existence >= m_options.present;
@@ -169,23 +169,23 @@ void Update::dropGhosts() {
   }
 }
 
-std::set<std::uint32_t> Update::viewsOf(std::size_t pole) const {
-  std::set<std::uint32_t> views;
-  for (const std::uint32_t sighting : m_session.poles()[pole].sightings)
-    views.insert(m_session.sightings()[sighting].view);
-  return views;
+std::set<std::uint32_t> Update::scansOf(std::size_t pole) const {
+  std::set<std::uint32_t> scans;
+  for (const std::uint32_t observation : m_session.poles()[pole].observations)
+    scans.insert(m_session.observations()[observation].scan);
+  return scans;
 }
 
 /// As ObservationClustering has it: two that stand in one gate are two poles when scans show both.
 bool Update::seenTogether(std::size_t a, std::size_t b) const {
-  const auto first = viewsOf(a), second = viewsOf(b);
+  const auto first = scansOf(a), second = scansOf(b);
   std::size_t both = 0;
-  for (const std::uint32_t view : first) both += second.count(view);
+  for (const std::uint32_t scan : first) both += second.count(scan);
   return static_cast<double>(both) >=
          m_mapping.apartShare * static_cast<double>(std::max(first.size(), second.size()));
 }
 
-/// Two kept poles may have come to stand in one gate: the one seen less today goes.
+/// Two poles of the map may have come to stand in one gate: the one seen less today goes.
 void Update::dropDoubles() {
   const KdTree2D tree(places());
   std::vector<PointHit> near;
@@ -194,8 +194,8 @@ void Update::dropDoubles() {
     for (const PointHit& hit : near) {
       const std::size_t j = hit.index;
       if (j <= i || m_gone[i] || m_gone[j]) continue;
-      const std::size_t a = m_session.poles()[i].sightings.size(),
-                        b = m_session.poles()[j].sightings.size();
+      const std::size_t a = m_session.poles()[i].observations.size(),
+                        b = m_session.poles()[j].observations.size();
       if (a + b == 0 || seenTogether(i, j)) continue;
       m_gone[a < b ? i : j] = true;
     }
@@ -205,18 +205,18 @@ void Update::dropDoubles() {
 /// Who is on the map, who stays beside it, who is forgotten.
 void Update::decidePresence() {
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
-    LandmarkRecord& kept = m_poles[i];
-    const bool was = kept.present;
-    const double existence = kept.history.existence;
-    const bool seenEnough = kept.pole.count >= static_cast<std::uint32_t>(m_options.minSeen);
-    if (existence < m_options.absent) kept.present = false;
-    if (existence >= m_options.present && seenEnough) kept.present = true;
-    m_counts.entered += kept.present && !was && !m_gone[i];
-    m_counts.left += was && !kept.present && !m_gone[i];
+    LandmarkRecord& record = m_poles[i];
+    const bool was = record.present;
+    const double existence = record.history.existence;
+    const bool seenEnough = record.pole.count >= static_cast<std::uint32_t>(m_options.minSeen);
+    if (existence < m_options.absent) record.present = false;
+    if (existence >= m_options.present && seenEnough) record.present = true;
+    m_counts.entered += record.present && !was && !m_gone[i];
+    m_counts.left += was && !record.present && !m_gone[i];
     if (m_gone[i]) continue;
-    m_gone[i] = existence < m_options.forget || kept.pole.count == 0;
+    m_gone[i] = existence < m_options.forget || record.pole.count == 0;
     m_counts.forgotten += m_gone[i];
-    m_counts.candidates += !kept.present && !m_gone[i];
+    m_counts.candidates += !record.present && !m_gone[i];
   }
 }
 
@@ -243,22 +243,22 @@ LandmarkMap Update::run() {
 LandmarkMap landmarksFrom(const std::vector<MapPole>& poles) {
   LandmarkMap map;
   for (const MapPole& pole : poles) {
-    LandmarkRecord kept{pole, {}, true};
-    kept.history.seen = pole.count;
-    kept.history.existence = kWithoutHistory;
-    map.poles.push_back(kept);
+    LandmarkRecord record{pole, {}, true};
+    record.history.seen = pole.count;
+    record.history.existence = kWithoutHistory;
+    map.poles.push_back(record);
   }
   sortByPlace(map.poles);
   return map;
 }
 
 LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<SessionScan>& scans,
-                        const PoleMapOptions& mapping, const MapUpdateOptions& upkeep) {
+                        const PoleMapOptions& mapping, const MapUpdateOptions& options) {
   mapping.validate();
-  upkeep.validate();
+  options.validate();
   LandmarkMap map;
   for (const MapPole& pole : poles) map.poles.push_back({pole, {}, true});
-  Session session(scans, mapping, upkeep);
+  Session session(scans, mapping, options);
   session.observe(map.poles);
   for (std::size_t i = 0; i < map.poles.size(); ++i) {
     PoleHistory& history = map.poles[i].history;
@@ -266,19 +266,19 @@ LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<Ses
     history.seen = seen.evidence.found();
     history.missed = seen.evidence.missed();
     history.existence =
-        std::max(upkeep.present, updated(0.5, seen.evidence.logRatio(), upkeep.existence));
-    for (const std::uint32_t sighting : seen.sightings)
-      noteSeen(history, session.time(session.sightings()[sighting].view));
+        std::max(options.present, updated(0.5, seen.evidence.logRatio(), options.existence));
+    for (const std::uint32_t observation : seen.observations)
+      noteSeen(history, session.time(session.observations()[observation].scan));
   }
   return map;
 }
 
 LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& scans,
-                      const PoleMapOptions& mapping, const MapUpdateOptions& upkeep,
+                      const PoleMapOptions& mapping, const MapUpdateOptions& options,
                       MapUpdateCounts* counts) {
   mapping.validate();
-  upkeep.validate();
-  Update update(map, scans, mapping, upkeep);
+  options.validate();
+  Update update(map, scans, mapping, options);
   LandmarkMap result = update.run();
   if (counts) *counts = update.counts();
   return result;
@@ -286,8 +286,8 @@ LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& sc
 
 std::vector<MapPole> presentPoles(const LandmarkMap& map) {
   std::vector<MapPole> poles;
-  for (const LandmarkRecord& kept : map.poles)
-    if (kept.present) poles.push_back(kept.pole);
+  for (const LandmarkRecord& record : map.poles)
+    if (record.present) poles.push_back(record.pole);
   return poles;
 }
 

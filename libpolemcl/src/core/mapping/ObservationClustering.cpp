@@ -16,8 +16,8 @@ using Group = std::vector<std::uint32_t>;
 
 constexpr int s_mostRounds = 10;  ///< dealing and growing settle in two or three
 
-Eigen::Vector2d clusterCentreOf(const LandmarkObservation& sighting) {
-  return {sighting.pole.x, sighting.pole.y};
+Eigen::Vector2d clusterCentreOf(const LandmarkObservation& observation) {
+  return {observation.pole.x, observation.pole.y};
 }
 
 void dropEmpty(std::vector<Group>& groups) {
@@ -26,14 +26,14 @@ void dropEmpty(std::vector<Group>& groups) {
       groups.end());
 }
 
-/// Indices of the sightings in an order that depends on what they say only.
-Group canonicalOrder(const std::vector<LandmarkObservation>& sightings) {
-  Group order(sightings.size());
+/// Indices of the observations in an order that depends on what they say only.
+Group canonicalOrder(const std::vector<LandmarkObservation>& observations) {
+  Group order(observations.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto key = [&](std::uint32_t i) {
-    const LandmarkObservation& s = sightings[i];
+    const LandmarkObservation& s = observations[i];
     const Eigen::Matrix2d& c = s.pole.covariance;
-    return std::make_tuple(s.pole.x, s.pole.y, s.view, s.pole.confidence, c(0, 0), c(0, 1), c(1, 1),
+    return std::make_tuple(s.pole.x, s.pole.y, s.scan, s.pole.confidence, c(0, 0), c(0, 1), c(1, 1),
                            s.pole.radius, s.pole.bottom, s.pole.top);
   };
   std::sort(order.begin(), order.end(),
@@ -41,19 +41,19 @@ Group canonicalOrder(const std::vector<LandmarkObservation>& sightings) {
   return order;
 }
 
-/// The work on sightings in canonical order.
-class Merger {
+/// The work on observations in canonical order.
+class Clusterer {
  public:
-  Merger(std::vector<LandmarkObservation> sightings, const ClusteringOptions& options)
-      : m_sightings(std::move(sightings)),
+  Clusterer(std::vector<LandmarkObservation> observations, const ClusteringOptions& options)
+      : m_observations(std::move(observations)),
         m_options(options),
         m_tree(points()),
-        m_views(viewCount()) {}
+        m_nearest(scanCount()) {}
 
   std::vector<Group> run() {
     growAll();
     for (int round = 0; round < s_mostRounds; ++round) {
-      deal();
+      assign();
       if (!mergeNeighbours()) break;
     }
     prune();
@@ -64,15 +64,15 @@ class Merger {
  private:
   std::vector<Eigen::Vector2d> points() const {
     std::vector<Eigen::Vector2d> result;
-    result.reserve(m_sightings.size());
-    for (const LandmarkObservation& sighting : m_sightings)
-      result.push_back(clusterCentreOf(sighting));
+    result.reserve(m_observations.size());
+    for (const LandmarkObservation& observation : m_observations)
+      result.push_back(clusterCentreOf(observation));
     return result;
   }
-  std::size_t viewCount() const {
+  std::size_t scanCount() const {
     std::size_t count = 0;
-    for (const LandmarkObservation& sighting : m_sightings)
-      count = std::max<std::size_t>(count, sighting.view + 1);
+    for (const LandmarkObservation& observation : m_observations)
+      count = std::max<std::size_t>(count, observation.scan + 1);
     return count;
   }
   double squaredGate() const { return m_options.mergeDistance * m_options.mergeDistance; }
@@ -80,45 +80,45 @@ class Merger {
   std::vector<double> densities() const;
   void growAll();
   Group grow(std::uint32_t seed, const std::vector<bool>& taken);
-  Group nearestPerView(const Eigen::Vector2d& centre, const std::vector<bool>& taken);
+  Group nearestPerScan(const Eigen::Vector2d& centre, const std::vector<bool>& taken);
   std::vector<Eigen::Vector2d> observationCentres() const;
-  void deal();
+  void assign();
   bool mergeNeighbours();
   bool areApart(const Group& a, const Group& b) const;
   Group united(const Group& a, const Group& b) const;
   void prune();
   void sortGroups();
 
-  std::vector<LandmarkObservation> m_sightings;
+  std::vector<LandmarkObservation> m_observations;
   ClusteringOptions m_options;
   KdTree2D m_tree;
-  std::vector<PointHit> m_views;  ///< scratch: the nearest sighting of each view
-  std::vector<PointHit> m_hits;   ///< scratch
+  std::vector<PointHit> m_nearest;  ///< scratch: the nearest observation of each scan
+  std::vector<PointHit> m_hits;     ///< scratch
   std::vector<Group> m_groups;
 };
 
-/// How much confidence lies round each sighting, counting less towards the gate.
-std::vector<double> Merger::densities() const {
-  std::vector<double> density(m_sightings.size());
+/// How much confidence lies round each observation, counting less towards the gate.
+std::vector<double> Clusterer::densities() const {
+  std::vector<double> density(m_observations.size());
   std::vector<PointHit> hits;
-  for (std::size_t i = 0; i < m_sightings.size(); ++i) {
+  for (std::size_t i = 0; i < m_observations.size(); ++i) {
     const Eigen::Vector2d& p = m_tree.point(i);
     m_tree.within(p.x(), p.y(), m_options.mergeDistance, hits);
     for (const PointHit& hit : hits) {
       const double share = 1 - hit.squaredDistance / squaredGate();
-      density[i] += m_sightings[hit.index].pole.confidence * share * share;
+      density[i] += m_observations[hit.index].pole.confidence * share * share;
     }
   }
   return density;
 }
 
-void Merger::growAll() {
+void Clusterer::growAll() {
   const std::vector<double> density = densities();
-  Group seeds(m_sightings.size());
+  Group seeds(m_observations.size());
   std::iota(seeds.begin(), seeds.end(), 0u);
   std::stable_sort(seeds.begin(), seeds.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return density[a] > density[b]; });
-  std::vector<bool> taken(m_sightings.size(), false);
+  std::vector<bool> taken(m_observations.size(), false);
   for (const std::uint32_t seed : seeds) {
     while (!taken[seed]) {  // a centre may move away from its seed
       m_groups.push_back(grow(seed, taken));
@@ -127,44 +127,46 @@ void Merger::growAll() {
   }
 }
 
-Group Merger::grow(std::uint32_t seed, const std::vector<bool>& taken) {
+Group Clusterer::grow(std::uint32_t seed, const std::vector<bool>& taken) {
   Group group{seed};
   for (int round = 0; round < s_mostRounds; ++round) {
-    Group next = nearestPerView(fusedCentre(m_sightings, group), taken);
+    Group next = nearestPerScan(fusedCentre(m_observations, group), taken);
     if (next.empty() || next == group) break;
     group = std::move(next);
   }
   return group;
 }
 
-/// Of each view the nearest sighting inside the gate that no group has taken, by ascending index.
-Group Merger::nearestPerView(const Eigen::Vector2d& centre, const std::vector<bool>& taken) {
+/// Of each scan the nearest observation inside the gate that no group has taken, by ascending
+/// index.
+Group Clusterer::nearestPerScan(const Eigen::Vector2d& centre, const std::vector<bool>& taken) {
   m_tree.within(centre.x(), centre.y(), m_options.mergeDistance, m_hits);
   const auto isTaken = [&](const PointHit& hit) { return taken[hit.index]; };
   m_hits.erase(std::remove_if(m_hits.begin(), m_hits.end(), isTaken), m_hits.end());
   for (const PointHit& hit : m_hits) {
-    PointHit& best = m_views[m_sightings[hit.index].view];
+    PointHit& best = m_nearest[m_observations[hit.index].scan];
     if (!best || hit.squaredDistance < best.squaredDistance) best = hit;
   }
   Group group;
   for (const PointHit& hit : m_hits) {
-    if (m_views[m_sightings[hit.index].view].index == hit.index) group.push_back(hit.index);
+    if (m_nearest[m_observations[hit.index].scan].index == hit.index) group.push_back(hit.index);
   }
-  for (const PointHit& hit : m_hits) m_views[m_sightings[hit.index].view] = {};
+  for (const PointHit& hit : m_hits) m_nearest[m_observations[hit.index].scan] = {};
   return group;
 }
 
-std::vector<Eigen::Vector2d> Merger::observationCentres() const {
+std::vector<Eigen::Vector2d> Clusterer::observationCentres() const {
   std::vector<Eigen::Vector2d> result;
   result.reserve(m_groups.size());
-  for (const Group& group : m_groups) result.push_back(fusedCentre(m_sightings, group));
+  for (const Group& group : m_groups) result.push_back(fusedCentre(m_observations, group));
   return result;
 }
 
-/// Deals the sightings of each view out to the centres, nearest pair first, until none moves.
-void Merger::deal() {
-  std::vector<Group> scans(m_views.size());
-  for (std::uint32_t i = 0; i < m_sightings.size(); ++i) scans[m_sightings[i].view].push_back(i);
+/// Deals the observations of each scan out to the centres, nearest pair first, until none moves.
+void Clusterer::assign() {
+  std::vector<Group> scans(m_nearest.size());
+  for (std::uint32_t i = 0; i < m_observations.size(); ++i)
+    scans[m_observations[i].scan].push_back(i);
   for (int round = 0; round < s_mostRounds; ++round) {
     const KdTree2D tree(observationCentres());
     std::vector<Group> groups(m_groups.size());
@@ -187,7 +189,7 @@ void Merger::deal() {
 }
 
 /// Merges neighbours, nearest first, each group at most once; true if any were.
-bool Merger::mergeNeighbours() {
+bool Clusterer::mergeNeighbours() {
   struct Pair {
     double squaredDistance;
     std::uint32_t a, b;
@@ -217,40 +219,40 @@ bool Merger::mergeNeighbours() {
 }
 
 /// Two poles, not one: often seen both in one scan.
-bool Merger::areApart(const Group& a, const Group& b) const {
-  std::vector<std::uint32_t> viewsOfA, viewsOfB, common;
-  for (const std::uint32_t i : a) viewsOfA.push_back(m_sightings[i].view);
-  for (const std::uint32_t i : b) viewsOfB.push_back(m_sightings[i].view);
-  std::sort(viewsOfA.begin(), viewsOfA.end());
-  std::sort(viewsOfB.begin(), viewsOfB.end());
-  std::set_intersection(viewsOfA.begin(), viewsOfA.end(), viewsOfB.begin(), viewsOfB.end(),
+bool Clusterer::areApart(const Group& a, const Group& b) const {
+  std::vector<std::uint32_t> scansOfA, scansOfB, common;
+  for (const std::uint32_t i : a) scansOfA.push_back(m_observations[i].scan);
+  for (const std::uint32_t i : b) scansOfB.push_back(m_observations[i].scan);
+  std::sort(scansOfA.begin(), scansOfA.end());
+  std::sort(scansOfB.begin(), scansOfB.end());
+  std::set_intersection(scansOfA.begin(), scansOfA.end(), scansOfB.begin(), scansOfB.end(),
                         std::back_inserter(common));
   return static_cast<double>(common.size()) >=
          m_options.apartShare * static_cast<double>(std::max(a.size(), b.size()));
 }
 
-/// Both, but of a view that has one in each only that of the larger (of equals the first).
-Group Merger::united(const Group& a, const Group& b) const {
+/// Both, but of a scan that has one in each only that of the larger (of equals the first).
+Group Clusterer::united(const Group& a, const Group& b) const {
   const Group &large = a.size() >= b.size() ? a : b, &small = a.size() >= b.size() ? b : a;
-  std::vector<std::uint32_t> views;
-  for (const std::uint32_t i : large) views.push_back(m_sightings[i].view);
-  std::sort(views.begin(), views.end());
+  std::vector<std::uint32_t> scans;
+  for (const std::uint32_t i : large) scans.push_back(m_observations[i].scan);
+  std::sort(scans.begin(), scans.end());
   Group group = large;
   for (const std::uint32_t i : small) {
-    if (!std::binary_search(views.begin(), views.end(), m_sightings[i].view)) group.push_back(i);
+    if (!std::binary_search(scans.begin(), scans.end(), m_observations[i].scan)) group.push_back(i);
   }
   std::sort(group.begin(), group.end());
   return group;
 }
 
 /// Leaves out members that the last move of a centre left beyond the gate.
-void Merger::prune() {
+void Clusterer::prune() {
   for (Group& group : m_groups) {
     for (std::size_t before = 0; before != group.size();) {
       before = group.size();
-      const Eigen::Vector2d centre = fusedCentre(m_sightings, group);
+      const Eigen::Vector2d centre = fusedCentre(m_observations, group);
       const auto isBeyond = [&](std::uint32_t i) {
-        return (clusterCentreOf(m_sightings[i]) - centre).squaredNorm() >= squaredGate();
+        return (clusterCentreOf(m_observations[i]) - centre).squaredNorm() >= squaredGate();
       };
       group.erase(std::remove_if(group.begin(), group.end(), isBeyond), group.end());
       if (group.empty()) break;
@@ -259,7 +261,7 @@ void Merger::prune() {
   dropEmpty(m_groups);
 }
 
-void Merger::sortGroups() {
+void Clusterer::sortGroups() {
   const std::vector<Eigen::Vector2d> at = observationCentres();
   std::vector<std::size_t> order(m_groups.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -275,12 +277,12 @@ void Merger::sortGroups() {
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> clusterObservations(
-    const std::vector<LandmarkObservation>& sightings, const ClusteringOptions& options) {
-  const Group order = canonicalOrder(sightings);
+    const std::vector<LandmarkObservation>& observations, const ClusteringOptions& options) {
+  const Group order = canonicalOrder(observations);
   std::vector<LandmarkObservation> ordered;
   ordered.reserve(order.size());
-  for (const std::uint32_t i : order) ordered.push_back(sightings[i]);
-  std::vector<Group> groups = Merger(std::move(ordered), options).run();
+  for (const std::uint32_t i : order) ordered.push_back(observations[i]);
+  std::vector<Group> groups = Clusterer(std::move(ordered), options).run();
   for (Group& group : groups) {
     for (std::uint32_t& member : group) member = order[member];
   }

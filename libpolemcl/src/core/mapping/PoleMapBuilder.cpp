@@ -13,36 +13,36 @@ namespace polemcl {
 namespace {
 
 /// A scan that is used, and the occupied section it counts for.
-struct View {
+struct Keyframe {
   std::size_t scan;
   std::uint32_t section;  ///< number among the occupied ones
 };
 
-std::vector<View> chooseViews(const PathSections& sections, bool everyScan) {
-  std::vector<View> views;
+std::vector<Keyframe> chooseKeyframes(const PathSections& sections, bool everyScan) {
+  std::vector<Keyframe> keyframes;
   for (std::uint32_t number = 0; number < sections.occupied.size(); ++number) {
     const PathSection& section = sections.occupied[number];
-    if (!everyScan) views.push_back({section.middle, number});
+    if (!everyScan) keyframes.push_back({section.middle, number});
     for (const std::size_t scan : section.scans) {
-      if (everyScan) views.push_back({scan, number});
+      if (everyScan) keyframes.push_back({scan, number});
     }
   }
-  return views;
+  return keyframes;
 }
 
-std::vector<LandmarkObservation> sightingsOf(const std::vector<MappingScan>& scans,
-                                             const std::vector<View>& views,
-                                             const PoleMapOptions& options) {
-  std::vector<LandmarkObservation> sightings;
+std::vector<LandmarkObservation> observationsOf(const std::vector<MappingScan>& scans,
+                                                const std::vector<Keyframe>& keyframes,
+                                                const PoleMapOptions& options) {
+  std::vector<LandmarkObservation> observations;
   const PoseTrust trust{options.poseSigma, options.headingSigma};
-  for (std::uint32_t view = 0; view < views.size(); ++view) {
-    const MappingScan& scan = scans[views[view].scan];
+  for (std::uint32_t number = 0; number < keyframes.size(); ++number) {
+    const MappingScan& scan = scans[keyframes[number].scan];
     for (const PoleDetection& pole : scan.poles_robot) {
       if (pole.confidence <= 0 || pole.confidence < options.minConfidence) continue;
-      sightings.push_back(landmarkObservation(pole, scan.pose_map_robot, view, trust));
+      observations.push_back(landmarkObservation(pole, scan.pose_map_robot, number, trust));
     }
   }
-  return sightings;
+  return observations;
 }
 
 /// The counting model: most sections that saw the pole in one run of sections, in which at most
@@ -91,23 +91,24 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   }
   const auto split = options.middle == SectionMiddle::passed ? passSections : splitPath;
   const PathSections sections = split(poses, drives, options.sectionLength, used);
-  const std::vector<View> views = chooseViews(sections, options.everyScan);
-  const std::vector<LandmarkObservation> sightings = sightingsOf(scans, views, options);
+  const std::vector<Keyframe> keyframes = chooseKeyframes(sections, options.everyScan);
+  const std::vector<LandmarkObservation> observations = observationsOf(scans, keyframes, options);
   const bool boxes = options.merging == MapMerging::boxes;
   const auto groups =
-      boxes ? joinOverlappingBoxes(sightings)
-            : clusterObservations(sightings, {options.mergeDistance, options.apartShare});
+      boxes ? joinOverlappingBoxes(observations)
+            : clusterObservations(observations, {options.mergeDistance, options.apartShare});
 
   PoleMapResult result;
   for (const std::vector<std::uint32_t>& group : groups) {
     std::vector<std::uint32_t> seen;
-    for (const std::uint32_t member : group) seen.push_back(views[sightings[member].view].section);
+    for (const std::uint32_t member : group)
+      seen.push_back(keyframes[observations[member].scan].section);
     const std::size_t count = options.counting == PoleCounting::members
                                   ? group.size()
                                   : longestRun(seen, sections.occupied, options.maxGap);
     result.bestCount = std::max(result.bestCount, count);
     if (count < static_cast<std::size_t>(options.minCount)) continue;
-    const MapPole pole = boxes ? plainMean(sightings, group) : fuse(sightings, group);
+    const MapPole pole = boxes ? plainMean(observations, group) : fuse(observations, group);
     if (seenFromEnough(pole, seen, sections.occupied, scans, options)) result.poles.push_back(pole);
   }
   std::stable_sort(
@@ -116,8 +117,8 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   result.pathLength = sections.length;
   result.sections = sections.count;
   result.occupiedSections = sections.occupied.size();
-  result.views = views.size();
-  result.detections = sightings.size();
+  result.views = keyframes.size();
+  result.detections = observations.size();
   result.clusters = groups.size();
   return result;
 }

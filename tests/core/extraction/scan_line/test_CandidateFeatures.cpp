@@ -13,7 +13,7 @@ using namespace polemcl::clouds;
 
 namespace {
 
-ScanLineSegment sliceAt(double x, double y, double z, double width = 0.2) {
+ScanLineSegment segmentAt(double x, double y, double z, double width = 0.2) {
   ScanLineSegment s;
   s.x = static_cast<float>(x);
   s.y = static_cast<float>(y);
@@ -24,10 +24,10 @@ ScanLineSegment sliceAt(double x, double y, double z, double width = 0.2) {
   return s;
 }
 
-ClusterShape shapeOf(const std::vector<ScanLineSegment>& slices) {
-  std::vector<std::uint32_t> indices(slices.size());
+ClusterShape shapeOf(const std::vector<ScanLineSegment>& segments) {
+  std::vector<std::uint32_t> indices(segments.size());
   std::iota(indices.begin(), indices.end(), 0u);
-  return measureShape(slices, {indices.data(), indices.size()});
+  return measureShape(segments, {indices.data(), indices.size()});
 }
 
 constexpr double kHeight = 1.0;     ///< of the sensor above ground
@@ -35,12 +35,12 @@ constexpr float kClearance = 0.1f;  ///< of the returns used above ground
 constexpr double kDistance = 8.0;   ///< of the pole
 constexpr double kRadius = 0.1;
 
-/// The stack of the pole at (kDistance, 0) in a scene, scanned by an HDL-32E, and its evidence.
+/// The cluster of the pole at (kDistance, 0) in a scene, scanned by an HDL-32E, and its evidence.
 struct Look {
   SensorModel sensor;
   ScanLines lines;
   GroundGrid ground;
-  std::vector<ScanLineSegment> slices;
+  std::vector<ScanLineSegment> segments;
   std::vector<std::uint32_t> members;
   ClusterShape shape;
   PoleAxis axis;
@@ -53,19 +53,19 @@ struct Look {
     ground.build(points.view(), 1, 60, kHeight);
     lines.build(points.view(), ground, kClearance);
     const ScanLineOptions options;
-    ScanLineSegmenter(sensor, options).find(lines, slices);
+    ScanLineSegmenter(sensor, options).find(lines, segments);
     SegmentClustering stacker(sensor, options);
-    for (const SegmentCluster& s : stacker.stack(slices))
-      if (std::hypot(slices[s.top()].x - kDistance, slices[s.top()].y) < 0.5 &&
+    for (const SegmentCluster& s : stacker.cluster(segments))
+      if (std::hypot(segments[s.top()].x - kDistance, segments[s.top()].y) < 0.5 &&
           s.count > members.size())
         members.assign(s.begin(), s.end());
     EXPECT_GE(members.size(), 2u);
-    shape = measureShape(slices, stack());
+    shape = measureShape(segments, cluster());
     axis = {static_cast<float>(kDistance), 0, static_cast<float>(kRadius)};
-    evidence = computeFeatures(lines, sensor, ground, slices, stack(), shape, axis);
+    evidence = computeFeatures(lines, sensor, ground, segments, cluster(), shape, axis);
   }
-  SegmentCluster stack() const { return {members.data(), members.size()}; }
-  float clutter() const { return clutteredShare(lines, sensor, slices, stack(), axis); }
+  SegmentCluster cluster() const { return {members.data(), members.size()}; }
+  float clutter() const { return clutteredShare(lines, sensor, segments, cluster(), axis); }
   /// Of the rows, the lowest may meet the ground in the ring.
   float groundShare() const { return 1.01f / static_cast<float>(members.size()); }
   /// Beams that meet the front of the pole between two heights, lidar frame.
@@ -97,9 +97,9 @@ constexpr double kBeamGap = kDistance * 1.4 * kDegree;  ///< a little more than 
 }  // namespace
 
 TEST(ClusterShape, OfAnUprightStackIsStraight) {
-  const ClusterShape s = shapeOf({sliceAt(5, 1, 2), sliceAt(5, 1, 1), sliceAt(5, 1, -1)});
+  const ClusterShape s = shapeOf({segmentAt(5, 1, 2), segmentAt(5, 1, 1), segmentAt(5, 1, -1)});
   EXPECT_EQ(s.points, 9);
-  EXPECT_EQ(s.wholeSlices, 3);
+  EXPECT_EQ(s.wholeSegments, 3);
   EXPECT_FLOAT_EQ(s.high, 2);
   EXPECT_FLOAT_EQ(s.low, -1);
   EXPECT_NEAR(s.scatter, 0, 1e-6);
@@ -108,40 +108,42 @@ TEST(ClusterShape, OfAnUprightStackIsStraight) {
 }
 
 TEST(ClusterShape, ALeaningStackIsStraightButTilted) {
-  std::vector<ScanLineSegment> slices;
-  for (int i = 0; i < 6; ++i) slices.push_back(sliceAt(5 - 0.06 * i, 1 - 0.08 * i, 2 - 0.5 * i));
-  const ClusterShape s = shapeOf(slices);
+  std::vector<ScanLineSegment> segments;
+  for (int i = 0; i < 6; ++i)
+    segments.push_back(segmentAt(5 - 0.06 * i, 1 - 0.08 * i, 2 - 0.5 * i));
+  const ClusterShape s = shapeOf(segments);
   EXPECT_NEAR(s.tilt, std::atan(0.2), 1e-4);  // 0.1 m aside per 0.5 m
   EXPECT_NEAR(s.scatter, 0, 1e-4);
 }
 
 TEST(ClusterShape, ScatterIsTheRmsDistanceFromTheLine) {
   // Of 0, 0.1, 0 the line leaves -1/30, 2/30, -1/30; one degree of freedom is left.
-  const ClusterShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5, 0.1, 0), sliceAt(5, 0, -1)});
+  const ClusterShape s = shapeOf({segmentAt(5, 0, 1), segmentAt(5, 0.1, 0), segmentAt(5, 0, -1)});
   EXPECT_NEAR(s.scatter, std::sqrt(6.0 / 900), 1e-5);
   EXPECT_NEAR(s.tilt, 0, 1e-6);
 }
 
 TEST(ClusterShape, TwoSlicesAreAlwaysStraight) {
-  EXPECT_EQ(shapeOf({sliceAt(5, 0, 1), sliceAt(5.2, 0.1, 0)}).scatter, 0);
+  EXPECT_EQ(shapeOf({segmentAt(5, 0, 1), segmentAt(5.2, 0.1, 0)}).scatter, 0);
 }
 
 TEST(ClusterShape, SlicesOfOneHeightHaveNoTilt) {
-  const ClusterShape s = shapeOf({sliceAt(5, 0, 1), sliceAt(5.2, 0.1, 1)});
+  const ClusterShape s = shapeOf({segmentAt(5, 0, 1), segmentAt(5.2, 0.1, 1)});
   EXPECT_EQ(s.tilt, 0);
   EXPECT_EQ(s.high, s.low);
 }
 
 TEST(ClusterShape, WidthSpreadIsTheStandardDeviation) {
   const ClusterShape s =
-      shapeOf({sliceAt(5, 0, 2, 0.1), sliceAt(5, 0, 1, 0.1), sliceAt(5, 0, 0, 0.4)});
+      shapeOf({segmentAt(5, 0, 2, 0.1), segmentAt(5, 0, 1, 0.1), segmentAt(5, 0, 0, 0.4)});
   EXPECT_NEAR(s.widthSpread, std::sqrt(0.02), 1e-5);
 }
 
 TEST(ClusterShape, WholeSlicesHaveBothSidesFree) {
-  std::vector<ScanLineSegment> slices = {sliceAt(5, 0, 2), sliceAt(5, 0, 1), sliceAt(5, 0, 0)};
-  slices[1].left = Side::occluded;
-  EXPECT_EQ(shapeOf(slices).wholeSlices, 2);
+  std::vector<ScanLineSegment> segments = {segmentAt(5, 0, 2), segmentAt(5, 0, 1),
+                                           segmentAt(5, 0, 0)};
+  segments[1].left = Side::occluded;
+  EXPECT_EQ(shapeOf(segments).wholeSegments, 2);
 }
 
 TEST(CandidateFeatures, OfAPostAlone) {

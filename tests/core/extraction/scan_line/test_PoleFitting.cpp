@@ -28,13 +28,13 @@ SensorModel twelveBeams() {
   return SensorModel(options);
 }
 
-/// A pole before far walls, scanned with beams 2 mrad wide, and its slices.
+/// A pole before far walls, scanned with beams 2 mrad wide, and its segments.
 struct Scan {
   double bearing;
   SensorModel sensor = twelveBeams();
   ScanLines lines{sensor};
   PointList points;
-  std::vector<ScanLineSegment> slices;
+  std::vector<ScanLineSegment> segments;
   std::vector<std::uint32_t> used;
   Scan(double distance, double bearingOfPole, double radius, std::uint64_t seed,
        double sigma = 0.02, const std::vector<Wall>& before = {})
@@ -55,7 +55,7 @@ struct Scan {
     findSlices(distance);
   }
   float column() const { return static_cast<float>(sensor.columnAngle()); }
-  std::optional<PoleFit> fit() const { return fitPole(lines, slices, used, {column()}); }
+  std::optional<PoleFit> fit() const { return fitPole(lines, segments, used, {column()}); }
 
  private:
   void findSlices(double distance) {
@@ -63,8 +63,8 @@ struct Scan {
     std::vector<ScanLineSegment> all;
     ScanLineSegmenter(sensor, {}).find(lines, all);
     for (const ScanLineSegment& s : all)
-      if (std::abs(s.rho - distance) < 1) slices.push_back(s);
-    used.resize(slices.size());
+      if (std::abs(s.rho - distance) < 1) segments.push_back(s);
+    used.resize(segments.size());
     std::iota(used.begin(), used.end(), 0u);
   }
 };
@@ -149,7 +149,7 @@ TEST(PoleFitting, TrunksAndFarPolesAreFoundWithLittleBias) {
 TEST(PoleFitting, IsMuchBetterThanACircleThroughThePoints) {
   const auto circle = [](const Scan& scan) -> std::optional<PoleFit> {
     std::vector<Eigen::Vector2d> xy;
-    for (const ScanLineSegment& s : scan.slices)
+    for (const ScanLineSegment& s : scan.segments)
       for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
         const Return& r = scan.lines.begin(s.row)[i];
         xy.emplace_back(scan.lines.x(r), scan.lines.y(r));
@@ -242,8 +242,8 @@ TEST(PoleFitting, APoleHalfHiddenIsNotPulledAside) {
   double lateral = 0;
   for (int i = 0; i < 20; ++i) {
     const Scan scan(10, 0, radius, 50 + i, 0.02, {{5, -3, 5, 0}});
-    ASSERT_FALSE(scan.slices.empty());
-    for (const ScanLineSegment& s : scan.slices) ASSERT_EQ(s.right, Side::occluded);
+    ASSERT_FALSE(scan.segments.empty());
+    for (const ScanLineSegment& s : scan.segments) ASSERT_EQ(s.right, Side::occluded);
     const auto fit = scan.fit();
     ASSERT_TRUE(fit);
     EXPECT_NEAR(fit->x, 10, 0.1);
@@ -255,14 +255,14 @@ TEST(PoleFitting, APoleHalfHiddenIsNotPulledAside) {
 
 TEST(PoleFitting, OfNoSlicesThereIsNoFit) {
   const Scan scan(10, 0, 0.1, 1);
-  EXPECT_FALSE(fitPole(scan.lines, scan.slices, {}, {scan.column()}));
+  EXPECT_FALSE(fitPole(scan.lines, scan.segments, {}, {scan.column()}));
 }
 
 TEST(PoleFitting, OnlyTheSlicesNamedAreUsed) {
   Scan scan(10, 0.3, 0.1, 1);
-  ASSERT_GE(scan.slices.size(), 4u);
-  scan.slices[0].azimuthEnd += 0.1f;  // a slice of something else
-  scan.slices[0].first = 0;
+  ASSERT_GE(scan.segments.size(), 4u);
+  scan.segments[0].azimuthEnd += 0.1f;  // a segment of something else
+  scan.segments[0].first = 0;
   const auto all = scan.fit();
   scan.used.erase(scan.used.begin());
   const auto rest = scan.fit();
@@ -277,7 +277,7 @@ TEST(PoleFitting, RoughAxisIsWithinAFewCentimetres) {
     for (const double distance : {5.0, 12.0, 25.0})
       for (const double bearing : {0.0, 1.9, M_PI}) {
         const Scan scan(distance, bearing, radius, 21, 0.01);
-        const PoleAxis axis = roughAxis(scan.slices, scan.used, scan.column());
+        const PoleAxis axis = roughAxis(scan.segments, scan.used, scan.column());
         EXPECT_NEAR(axis.x, distance * std::cos(bearing), 0.06);
         EXPECT_NEAR(axis.y, distance * std::sin(bearing), 0.06);
         EXPECT_NEAR(axis.radius, radius, 0.04);

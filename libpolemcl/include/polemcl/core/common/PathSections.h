@@ -1,6 +1,6 @@
 #pragma once
 /// \file PathSections.h
-/// \brief A path split into sections of equal length along the way travelled.
+/// \brief A path split into sections of equal length along the distance travelled.
 
 #include <cstdint>
 #include <vector>
@@ -13,15 +13,15 @@ namespace polemcl {
 /// \brief Middles and ends of sections, as a vehicle passes them one scan after the other.
 ///
 /// The rule of the first implementation: the middle of section n is the first scan at or past
-/// n + 1/2 sections of the way, its end the first scan past n + 1. A scan is the middle of one
+/// n + 1/2 sections of the path, its end the first scan past n + 1. A scan is the middle of one
 /// section at most. So where scans are farther apart than a section is long, each scan is a middle,
 /// and the sections left behind are made up for later, by a standing vehicle too.
 class POLEMCL_EXPORT SectionMarks {
  public:
   /// \param length Of a section, > 0, m.
   explicit SectionMarks(double length) : m_length(length) {}
-  /// \brief The next scan. \param way Travelled up to it, m.
-  void pass(double way);
+  /// \brief The next scan. \param travelled Distance up to it, m.
+  void pass(double travelled);
   bool middle() const { return m_middle; }  ///< this scan is the middle of section middles() - 1
   bool end() const { return m_end; }        ///< section ends() - 1 ends at this scan
   std::size_t middles() const { return m_middles; }  ///< so far
@@ -48,20 +48,20 @@ struct PathSections {
   double length = 0;                  ///< of all paths, m
 };
 
-/// \brief Splits the way travelled.
+/// \brief Splits the distance travelled.
 ///
 /// The length grows only with what leads away from where the last part of a section was completed:
 /// the jitter of a vehicle that stands adds nothing, so nothing is counted twice from one place.
 /// \param poses Finite, in the order travelled.
 /// \param drives One a pose: where it changes, a new path begins with a section of its own.
 /// \param sectionLength > 0, m.
-/// \param used One a pose, or empty for all: the others are part of the way only, no scan.
+/// \param used One a pose, or empty for all: the others are part of the path only, no scan.
 POLEMCL_EXPORT PathSections splitPath(const std::vector<Pose2D>& poses,
                                       const std::vector<std::uint32_t>& drives,
                                       double sectionLength, const std::vector<bool>& used = {});
 
 /// \brief The same by SectionMarks: a section has one scan, its middle, and is there only if its
-/// end was reached. All steps between poses add to the way, the jitter of a vehicle that stands
+/// end was reached. All steps between poses add to the distance, the jitter of a vehicle that stands
 /// too.
 POLEMCL_EXPORT PathSections passSections(const std::vector<Pose2D>& poses,
                                          const std::vector<std::uint32_t>& drives,

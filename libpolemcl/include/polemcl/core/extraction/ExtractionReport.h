@@ -19,7 +19,7 @@ enum class RejectionReason {
   badFit,         ///< no circle, or a radius out of range
   notFree,        ///< its surroundings are not free
   tilted,         ///< its axis leans more than `max_tilt_deg`
-  notStraight,    ///< its slices do not stand above one another
+  notStraight,    ///< its segments do not stand above one another
   lowConfidence,
   duplicate,  ///< beside a more confident one
   count_      ///< number of reasons

@@ -129,7 +129,7 @@ class POLEMCL_EXPORT HealthMonitor {
 
   HealthOptions m_options;
   Health m_health;
-  std::deque<Viewpoint> m_views;
+  std::deque<Viewpoint> m_viewpoints;
   bool m_begun = false, m_found = false, m_confirmed = false;
   double m_driven = 0, m_time = 0;             ///< at the last update
   double m_longShare = 0, m_longEvidence = 0;  ///< over `lostWindow`

@@ -85,7 +85,7 @@ POLEMCL_EXPORT LandmarkMap landmarksFrom(const std::vector<MapPole>& poles);
 POLEMCL_EXPORT LandmarkMap withHistory(const std::vector<MapPole>& poles,
                                        const std::vector<SessionScan>& scans,
                                        const PoleMapOptions& mapping,
-                                       const MapUpdateOptions& upkeep);
+                                       const MapUpdateOptions& options);
 
 /// \brief Updates a map by one session. Scans in the order they were driven; the result does not
 /// depend on the order of the detections in a scan.
@@ -93,7 +93,7 @@ POLEMCL_EXPORT LandmarkMap withHistory(const std::vector<MapPole>& poles,
 /// \throws Error on options out of range, on scans as buildPoleMap(), and on a free range that is
 ///         negative or not finite.
 POLEMCL_EXPORT LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& scans,
-                                     const PoleMapOptions& mapping, const MapUpdateOptions& upkeep,
+                                     const PoleMapOptions& mapping, const MapUpdateOptions& options,
                                      MapUpdateCounts* counts = nullptr);
 
 /// \brief The poles that are on the map, in its order.

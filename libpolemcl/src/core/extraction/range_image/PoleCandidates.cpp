@@ -29,10 +29,11 @@ double foregroundShare(const RangeImage& image, const Segmentation& segmentation
 
 }  // namespace
 
-RejectionReason testCandidate(const RangeImage& image, const Segmentation& segmentation,
-                              std::int32_t label, const PointsView& points,
-                              const RangeImageOptions& options, double heightOffset,
-                              HeightRange& heights) {
+std::optional<RejectionReason> testCandidate(const RangeImage& image,
+                                             const Segmentation& segmentation, std::int32_t label,
+                                             const PointsView& points,
+                                             const RangeImageOptions& options, double heightOffset,
+                                             HeightRange& heights) {
   const Segment& segment = segmentation.segments()[label];
   if (segment.pixels.size() <= static_cast<std::size_t>(options.minPixels))
     return RejectionReason::tooFewPoints;
@@ -51,7 +52,7 @@ RejectionReason testCandidate(const RangeImage& image, const Segmentation& segme
   if (!(heights.high > options.minTop)) return RejectionReason::tooLow;
   if (!(heights.low < options.maxBottom)) return RejectionReason::startsTooHigh;
   if (!(heights.high - heights.low > options.minHeight)) return RejectionReason::tooShort;
-  return RejectionReason::count_;
+  return std::nullopt;
 }
 
 }  // namespace polemcl

@@ -2,6 +2,8 @@
 /// \file PoleCandidates.h
 /// \brief Step B2 of the paper: shape, foreground and height tests on segments (Algorithm 1).
 
+#include <optional>
+
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include <polemcl/core/extraction/ExtractionReport.h>
 
@@ -19,10 +21,11 @@ struct HeightRange {
 /// where
 ///        heights are above ground, else 0).
 /// \param[out] heights Filled once the shape tests have passed.
-/// \return The first reason to refuse it, or RejectionReason::count_.
-RejectionReason testCandidate(const RangeImage& image, const Segmentation& segmentation,
-                              std::int32_t label, const PointsView& points,
-                              const RangeImageOptions& options, double heightOffset,
-                              HeightRange& heights);
+/// \return The first reason to refuse it, if any.
+std::optional<RejectionReason> testCandidate(const RangeImage& image,
+                                             const Segmentation& segmentation, std::int32_t label,
+                                             const PointsView& points,
+                                             const RangeImageOptions& options, double heightOffset,
+                                             HeightRange& heights);
 
 }  // namespace polemcl

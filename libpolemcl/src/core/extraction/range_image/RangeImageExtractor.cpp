@@ -51,14 +51,13 @@ void RangeImageExtractor::extract(const PointsView& points, std::vector<PoleDete
   for (std::size_t i = 0; i < segmentation.segments().size(); ++i) {
     HeightRange heights;
     PoleDetection pole;
-    RejectionReason refusal = testCandidate(m_image, segmentation, static_cast<std::int32_t>(i),
-                                            points, m_options, m_heightOffset, heights);
-    if (refusal == RejectionReason::count_)
-      refusal = fitPole(segmentation.segments()[i], heights, points, pole);
-    if (refusal == RejectionReason::count_)
-      poles.push_back(pole);
+    auto rejection = testCandidate(m_image, segmentation, static_cast<std::int32_t>(i), points,
+                                   m_options, m_heightOffset, heights);
+    if (!rejection) rejection = fitPole(segmentation.segments()[i], heights, points, pole);
+    if (rejection)
+      ++report.refused[static_cast<int>(*rejection)];
     else
-      ++report.refused[static_cast<int>(refusal)];
+      poles.push_back(pole);
   }
 }
 
@@ -82,8 +81,10 @@ std::optional<Circle> RangeImageExtractor::fit(const std::vector<Eigen::Vector2d
 
 /// A coarse circle from the segment's pixels, which hold floats, then the circle of all points in a
 /// box around it.
-RejectionReason RangeImageExtractor::fitPole(const Segment& segment, const HeightRange& heights,
-                                             const PointsView& points, PoleDetection& pole) const {
+std::optional<RejectionReason> RangeImageExtractor::fitPole(const Segment& segment,
+                                                            const HeightRange& heights,
+                                                            const PointsView& points,
+                                                            PoleDetection& pole) const {
   const auto coarse = fit(segmentPoints(segment, points), true);
   if (!coarse) return RejectionReason::badFit;
   Box box;
@@ -104,7 +105,7 @@ RejectionReason RangeImageExtractor::fitPole(const Segment& segment, const Heigh
   pole.bottom = heights.low - m_heightOffset + m_height;
   pole.top = heights.high - m_heightOffset + m_height;
   pole.points = static_cast<std::uint32_t>(xy.size());
-  return RejectionReason::count_;
+  return std::nullopt;
 }
 
 std::vector<Eigen::Vector2d> RangeImageExtractor::pointsInside(const Box& box,

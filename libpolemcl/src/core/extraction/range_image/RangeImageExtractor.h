@@ -18,7 +18,7 @@ class RangeImageExtractor {
                ExtractionReport& report);
 
  private:
-  /// Square around a circle and its slice of heights, frame of the points.
+  /// Square around a circle and its segment of heights, frame of the points.
   struct Box {
     Circle centre;
     double half = 0;  ///< half the side, m
@@ -41,8 +41,8 @@ class RangeImageExtractor {
   std::vector<Eigen::Vector2d> segmentPoints(const Segment& segment,
                                              const PointsView& points) const;
   std::vector<Eigen::Vector2d> pointsInside(const Box& box, const PointsView& points) const;
-  RejectionReason fitPole(const Segment& segment, const HeightRange& heights,
-                          const PointsView& points, PoleDetection& pole) const;
+  std::optional<RejectionReason> fitPole(const Segment& segment, const HeightRange& heights,
+                                         const PointsView& points, PoleDetection& pole) const;
   bool isFree(const Box& box, std::size_t fitted, const PointsView& points) const;
 
   RangeImageOptions m_options;

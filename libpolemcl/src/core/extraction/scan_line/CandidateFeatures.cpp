@@ -98,7 +98,7 @@ class Place {
   float m_rho, m_bearing, m_column;
 };
 
-/// Walks up from the topmost slice while something stands there; one silent row may interrupt it.
+/// Walks up from the topmost segment while something stands there; one silent row may interrupt it.
 void top(const Place& place, const SensorModel& sensor, int row, float ground,
          CandidateFeatures& evidence) {
   evidence.topBound = kInfinity;
@@ -121,25 +121,27 @@ void top(const Place& place, const SensorModel& sensor, int row, float ground,
 
 }  // namespace
 
-ClusterShape measureShape(const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack) {
+ClusterShape measureShape(const std::vector<ScanLineSegment>& segments,
+                          const SegmentCluster& cluster) {
   ClusterShape shape;
-  shape.low = slices[stack.bottom()].z;
-  shape.high = slices[stack.top()].z;
-  const float n = static_cast<float>(stack.count);
+  shape.low = segments[cluster.bottom()].z;
+  shape.high = segments[cluster.top()].z;
+  const float n = static_cast<float>(cluster.count);
   float mz = 0, mx = 0, my = 0, mw = 0;
-  for (auto i : stack) {
-    const ScanLineSegment& slice = slices[i];
-    shape.points += static_cast<int>(slice.count);
-    shape.wholeSlices += slice.whole();
-    mz += slice.z / n;
-    mx += slice.x / n;
-    my += slice.y / n;
-    mw += slice.width() / n;
+  for (auto i : cluster) {
+    const ScanLineSegment& segment = segments[i];
+    shape.points += static_cast<int>(segment.count);
+    shape.wholeSegments += segment.whole();
+    mz += segment.z / n;
+    mx += segment.x / n;
+    my += segment.y / n;
+    mw += segment.width() / n;
   }
   float zz = 0, zx = 0, zy = 0, xx = 0, yy = 0, ww = 0;
-  for (auto i : stack) {
-    const ScanLineSegment& slice = slices[i];
-    const float z = slice.z - mz, x = slice.x - mx, y = slice.y - my, w = slice.width() - mw;
+  for (auto i : cluster) {
+    const ScanLineSegment& segment = segments[i];
+    const float z = segment.z - mz, x = segment.x - mx, y = segment.y - my,
+                w = segment.width() - mw;
     zz += z * z;
     zx += z * x;
     zy += z * y;
@@ -148,7 +150,7 @@ ClusterShape measureShape(const std::vector<ScanLineSegment>& slices, const Segm
     ww += w * w;
   }
   const float ax = zz > 0 ? zx / zz : 0, ay = zz > 0 ? zy / zz : 0;
-  // Two parameters were fitted per axis: with two slices nothing is left to judge by.
+  // Two parameters were fitted per axis: with two segments nothing is left to judge by.
   const float rest = xx + yy - ax * zx - ay * zy;
   shape.scatter = n > 2 ? std::sqrt(std::max(0.f, rest) / (n - 2)) : 0;
   shape.tilt = std::atan(std::sqrt(ax * ax + ay * ay));
@@ -158,15 +160,15 @@ ClusterShape measureShape(const std::vector<ScanLineSegment>& slices, const Segm
 
 CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sensor,
                                   const GroundGrid& ground,
-                                  const std::vector<ScanLineSegment>& slices,
-                                  const SegmentCluster& stack, const ClusterShape& shape,
+                                  const std::vector<ScanLineSegment>& segments,
+                                  const SegmentCluster& cluster, const ClusterShape& shape,
                                   const PoleAxis& axis) {
   const Place place(lines, sensor, axis);
   const float groundZ = ground.at(axis.x, axis.y);
   CandidateFeatures e;
-  int expected = slices[stack.top()].row;
-  for (auto i : stack) {
-    for (; expected < slices[i].row; ++expected) {
+  int expected = segments[cluster.top()].row;
+  for (auto i : cluster) {
+    for (; expected < segments[i].row; ++expected) {
       float z = 0;
       const Meeting meeting = place.meet(expected, &z);
       e.rowsPassed += meeting == Meeting::passed || meeting == Meeting::empty;
@@ -176,17 +178,17 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
   }
   e.bottom = shape.low - groundZ;
   e.top = shape.high - groundZ;
-  top(place, sensor, slices[stack.top()].row, groundZ, e);
+  top(place, sensor, segments[cluster.top()].row, groundZ, e);
   return e;
 }
 
 float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
-                     const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack,
+                     const std::vector<ScanLineSegment>& segments, const SegmentCluster& cluster,
                      const PoleAxis& axis) {
   const Place place(lines, sensor, axis);
   int cluttered = 0;
-  for (auto i : stack) cluttered += place.cluttered(slices[i].row);
-  return static_cast<float>(cluttered) / static_cast<float>(stack.count);
+  for (auto i : cluster) cluttered += place.cluttered(segments[i].row);
+  return static_cast<float>(cluttered) / static_cast<float>(cluster.count);
 }
 
 }  // namespace polemcl

@@ -9,36 +9,37 @@
 
 namespace polemcl {
 
-/// \brief Shape of a stack, from its slices alone.
+/// \brief Shape of a cluster, from its segments alone.
 struct ClusterShape {
-  int points = 0;           ///< returns in the slices
-  int wholeSlices = 0;      ///< slices with both sides free
-  float low = 0, high = 0;  ///< of the slices, lidar frame, m
+  int points = 0;           ///< returns in the segments
+  int wholeSegments = 0;    ///< segments with both sides free
+  float low = 0, high = 0;  ///< of the segments, lidar frame, m
   float scatter =
-      0;  ///< rms distance of the slices' middles from a straight line, m; 0 for two slices
+      0;  ///< rms distance of the segments' middles from a straight line, m; 0 for two segments
   float tilt = 0;         ///< of that line against the vertical, rad
-  float widthSpread = 0;  ///< standard deviation of the slices' widths, m
+  float widthSpread = 0;  ///< standard deviation of the segments' widths, m
 };
-ClusterShape measureShape(const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack);
+ClusterShape measureShape(const std::vector<ScanLineSegment>& segments,
+                          const SegmentCluster& cluster);
 
 /// \brief What the beams at a candidate's place say. Heights in m above local ground.
 struct CandidateFeatures {
   int rowsPassed = 0;  ///< rows between bottom and top that saw through it (or nothing)
-  int rowsWide = 0;    ///< rows between bottom and top that met something there that is no slice
-  float bottom = 0;    ///< lowest slice
+  int rowsWide = 0;    ///< rows between bottom and top that met something there that is no segment
+  float bottom = 0;    ///< lowest segment
   float top = 0;       ///< highest return, whatever stands on it (sign, crown) included
   float topBound = 0;  ///< height of the lowest beam that passed over it; infinity when none did
 };
 CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sensor,
                                   const GroundGrid& ground,
-                                  const std::vector<ScanLineSegment>& slices,
-                                  const SegmentCluster& stack, const ClusterShape& shape,
+                                  const std::vector<ScanLineSegment>& segments,
+                                  const SegmentCluster& cluster, const ClusterShape& shape,
                                   const PoleAxis& axis);
 
-/// \brief Share of the stack's rows with other returns in a ring around the place, 0.15 to 0.55 m
+/// \brief Share of the cluster's rows with other returns in a ring around the place, 0.15 to 0.55 m
 /// outside the radius: free space, as a score.
 float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
-                     const std::vector<ScanLineSegment>& slices, const SegmentCluster& stack,
+                     const std::vector<ScanLineSegment>& segments, const SegmentCluster& cluster,
                      const PoleAxis& axis);
 
 }  // namespace polemcl

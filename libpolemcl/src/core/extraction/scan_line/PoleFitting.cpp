@@ -21,8 +21,8 @@ constexpr int kIterations = 6;
 constexpr double kThinnestBoard = 0.12;  ///< m: half its width
 constexpr double kFlatter = 0.8;         ///< a board's residuals against a cylinder's, at most
 constexpr double kPostRadius = 0.04;     ///< m: of a sign's post
-constexpr std::size_t kMostSlices = 128;
-constexpr std::size_t kGroups = 12;  ///< of neighbouring returns, in a slice that has more
+constexpr std::size_t kMostSegments = 128;
+constexpr std::size_t kGroups = 12;  ///< of neighbouring returns, in a segment that has more
 
 struct State {
   double lateral = 0, depth = 0, radius = kRadiusPrior;
@@ -50,37 +50,37 @@ struct Normal {
 /// Returns, or means of neighbouring ones, against the reference bearing: a structure of arrays.
 struct FitPoints {
   std::size_t count = 0;
-  float along[kMostSlices * kGroups], across[kMostSlices * kGroups];  ///< m
-  float returns[kMostSlices * kGroups];
+  float along[kMostSegments * kGroups], across[kMostSegments * kGroups];  ///< m
+  float returns[kMostSegments * kGroups];
 };
 struct Residuals {
-  float residual[kMostSlices * kGroups], slope[kMostSlices * kGroups], front[kMostSlices * kGroups],
-      weight[kMostSlices * kGroups];
+  float residual[kMostSegments * kGroups], slope[kMostSegments * kGroups],
+      front[kMostSegments * kGroups], weight[kMostSegments * kGroups];
 };
 
-/// Weight of a slice, 0 to 1: grass and kerbs mix with a pole's foot, and whether a beam there is
+/// Weight of a segment, 0 to 1: grass and kerbs mix with a pole's foot, and whether a beam there is
 /// taken for ground should not matter.
-float firmness(const ScanLineSegment& slice, float firmHeight) {
+float firmness(const ScanLineSegment& segment, float firmHeight) {
   constexpr float kFoot = 0.5f, kLeast = 0.02f;
-  return std::clamp(1 - (firmHeight - slice.z) / kFoot, kLeast, 1.f);
+  return std::clamp(1 - (firmHeight - segment.z) / kFoot, kLeast, 1.f);
 }
 
 class CylinderProblem {
  public:
-  CylinderProblem(const ScanLines& lines, const std::vector<ScanLineSegment>& slices,
+  CylinderProblem(const ScanLines& lines, const std::vector<ScanLineSegment>& segments,
                   const std::vector<std::uint32_t>& used, const PoleView& view)
       : m_lines(lines),
-        m_slices(slices),
+        m_segments(segments),
         m_used(used),
         // More than these add nothing to what the radius prior and the floor leave.
-        m_stride((used.size() + kMostSlices - 1) / kMostSlices),
+        m_stride((used.size() + kMostSegments - 1) / kMostSegments),
         m_firmHeight(view.firmHeight),
         m_columnAngle(view.columnAngle) {
-    const ScanLineSegment& reference = slices[used[used.size() / 2]];
+    const ScanLineSegment& reference = segments[used[used.size() / 2]];
     m_bearing = 0.5 * (reference.azimuthBegin + reference.azimuthEnd);
     m_cos = std::cos(m_bearing);
     m_sin = std::sin(m_bearing);
-    for (std::size_t i = 0; i < m_used.size(); i += m_stride) gather(m_slices[m_used[i]]);
+    for (std::size_t i = 0; i < m_used.size(); i += m_stride) gather(m_segments[m_used[i]]);
   }
   /// Replaces the cylinder by a thin one right behind when the returns lie on a plane across: a
   /// sign before its post.
@@ -112,10 +112,11 @@ class CylinderProblem {
     State s;
     double sumLateral = 0, sumDepth = 0, sumWidth = 0;
     for (std::uint32_t u : m_used) {
-      const ScanLineSegment& slice = m_slices[u];
-      sumLateral += slice.rho * offset(0.5 * (slice.azimuthBegin + slice.azimuthEnd));
-      sumDepth += slice.rho;
-      sumWidth += slice.rho * (slice.azimuthEnd - slice.azimuthBegin + m_columnAngle - kFootprint);
+      const ScanLineSegment& segment = m_segments[u];
+      sumLateral += segment.rho * offset(0.5 * (segment.azimuthBegin + segment.azimuthEnd));
+      sumDepth += segment.rho;
+      sumWidth +=
+          segment.rho * (segment.azimuthEnd - segment.azimuthBegin + m_columnAngle - kFootprint);
     }
     const double n = static_cast<double>(m_used.size());
     s.radius = std::clamp(0.5 * sumWidth / n, 0.02, 0.5);
@@ -128,12 +129,12 @@ class CylinderProblem {
     Normal n;
     n.add(0, 0, 1, s.radius - kRadiusPrior, 1 / (kRadiusPriorSigma * kRadiusPriorSigma));
     addRanges(s, n);
-    for (std::size_t i = 0; i < m_used.size(); i += m_stride) addEdges(m_slices[m_used[i]], s, n);
+    for (std::size_t i = 0; i < m_used.size(); i += m_stride) addEdges(m_segments[m_used[i]], s, n);
     return n;
   }
 
  private:
-  /// Azimuth against the reference bearing; a slice's azimuths differ from it by less than a turn
+  /// Azimuth against the reference bearing; a segment's azimuths differ from it by less than a turn
   /// and a half.
   double offset(double azimuth) const {
     const double d = azimuth - m_bearing;
@@ -151,16 +152,16 @@ class CylinderProblem {
     }
   }
 
-  /// Takes up the returns of a slice.
-  void gather(const ScanLineSegment& slice) {
-    const Return* row = m_lines.begin(slice.row);
-    const std::size_t size = m_lines.size(slice.row);
-    const std::size_t groups = std::min<std::size_t>(slice.count, kGroups);
+  /// Takes up the returns of a segment.
+  void gather(const ScanLineSegment& segment) {
+    const Return* row = m_lines.begin(segment.row);
+    const std::size_t size = m_lines.size(segment.row);
+    const std::size_t groups = std::min<std::size_t>(segment.count, kGroups);
     for (std::size_t g = 0; g < groups; ++g) {
-      const std::size_t first = g * slice.count / groups, end = (g + 1) * slice.count / groups;
+      const std::size_t first = g * segment.count / groups, end = (g + 1) * segment.count / groups;
       float along = 0, across = 0;
       for (std::size_t k = first; k < end; ++k) {
-        const std::size_t i = slice.first + k;
+        const std::size_t i = segment.first + k;
         const Return& r = row[i < size ? i : i - size];
         // Sine and cosine to 1e-7 for half a radian; of all poles but those at arm's length.
         const float d = static_cast<float>(offset(r.azimuth)), q = d * d;
@@ -170,7 +171,7 @@ class CylinderProblem {
       const float returns = static_cast<float>(end - first);
       m_points.along[m_points.count] = along / returns;
       m_points.across[m_points.count] = across / returns;
-      m_points.returns[m_points.count++] = returns * firmness(slice, m_firmHeight);
+      m_points.returns[m_points.count++] = returns * firmness(segment, m_firmHeight);
     }
   }
 
@@ -197,21 +198,22 @@ class CylinderProblem {
     }
   }
 
-  void addEdges(const ScanLineSegment& slice, const State& s, Normal& n) const {
+  void addEdges(const ScanLineSegment& segment, const State& s, Normal& n) const {
     const double half = 0.5 * (m_columnAngle - kFootprint);
     const double sigma = std::max(0.004, s.depth * std::sqrt(m_columnAngle * m_columnAngle / 12 +
                                                              0.16 * kFootprint * kFootprint));
-    const double weight = firmness(slice, m_firmHeight) / (sigma * sigma);
-    if (slice.left == Side::free)
-      n.add(1, 0, 1, s.lateral + s.radius - s.depth * (offset(slice.azimuthEnd) + half), weight);
-    if (slice.right == Side::free)
-      n.add(1, 0, -1, s.lateral - s.radius - s.depth * (offset(slice.azimuthBegin) - half), weight);
+    const double weight = firmness(segment, m_firmHeight) / (sigma * sigma);
+    if (segment.left == Side::free)
+      n.add(1, 0, 1, s.lateral + s.radius - s.depth * (offset(segment.azimuthEnd) + half), weight);
+    if (segment.right == Side::free)
+      n.add(1, 0, -1, s.lateral - s.radius - s.depth * (offset(segment.azimuthBegin) - half),
+            weight);
   }
 
   const ScanLines& m_lines;
-  const std::vector<ScanLineSegment>& m_slices;
+  const std::vector<ScanLineSegment>& m_segments;
   const std::vector<std::uint32_t>& m_used;
-  std::size_t m_stride;  ///< of the slices used
+  std::size_t m_stride;  ///< of the segments used
   FitPoints m_points;
   float m_firmHeight;
   double m_columnAngle, m_bearing, m_cos, m_sin;
@@ -219,15 +221,15 @@ class CylinderProblem {
 
 }  // namespace
 
-PoleAxis roughAxis(const std::vector<ScanLineSegment>& slices,
+PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
                    const std::vector<std::uint32_t>& used, float columnAngle) {
   float x = 0, y = 0, width = 0, n = 0;
   for (std::uint32_t u : used) {
-    const ScanLineSegment& slice = slices[u];
-    x += slice.x;
-    y += slice.y;
-    width += slice.rho *
-             (slice.azimuthEnd - slice.azimuthBegin + columnAngle - static_cast<float>(kFootprint));
+    const ScanLineSegment& segment = segments[u];
+    x += segment.x;
+    y += segment.y;
+    width += segment.rho * (segment.azimuthEnd - segment.azimuthBegin + columnAngle -
+                            static_cast<float>(kFootprint));
     n += 1;
   }
   PoleAxis axis;
@@ -240,67 +242,67 @@ PoleAxis roughAxis(const std::vector<ScanLineSegment>& slices,
 
 namespace {
 
-/// How a pole's place changes with height, from the fronts of its slices; shrunk towards upright.
-struct Lean {
+/// How a pole's place changes with height, from the fronts of its segments; shrunk towards upright.
+struct AxisTilt {
   double x = 0, y = 0;  ///< m per m of height
-  double height = 0;    ///< mean of the slices, m
+  double height = 0;    ///< mean of the segments, m
   double prior = 1;     ///< share of the prior in x and y
   double low = 0, high = 0;
 };
 
-Lean leanOf(const std::vector<ScanLineSegment>& slices, const std::vector<std::uint32_t>& used,
-            const PoleView& view) {
+AxisTilt tiltOf(const std::vector<ScanLineSegment>& segments,
+                const std::vector<std::uint32_t>& used, const PoleView& view) {
   // Poles are upright but for the sway of the sensor. The prior is the ratio of the variances of a
-  // front's place and of the lean.
+  // front's place and of the tilt.
   constexpr double kPrior = 4;
-  Lean lean;
+  AxisTilt tilt;
   double n = 0, mx = 0, my = 0;
   for (std::uint32_t u : used) {
-    const double w = firmness(slices[u], view.firmHeight);
+    const double w = firmness(segments[u], view.firmHeight);
     n += w;
-    mx += w * slices[u].x;
-    my += w * slices[u].y;
-    lean.height += w * slices[u].z;
+    mx += w * segments[u].x;
+    my += w * segments[u].y;
+    tilt.height += w * segments[u].z;
   }
   mx /= n;
   my /= n;
-  lean.height /= n;
+  tilt.height /= n;
   double zz = 0;
   for (std::uint32_t u : used) {
-    const double z = slices[u].z - lean.height, w = firmness(slices[u], view.firmHeight);
+    const double z = segments[u].z - tilt.height, w = firmness(segments[u], view.firmHeight);
     zz += w * z * z;
-    lean.x += w * z * (slices[u].x - mx);
-    lean.y += w * z * (slices[u].y - my);
+    tilt.x += w * z * (segments[u].x - mx);
+    tilt.y += w * z * (segments[u].y - my);
   }
-  lean.x = (lean.x + kPrior * view.uprightX) / (zz + kPrior);
-  lean.y = (lean.y + kPrior * view.uprightY) / (zz + kPrior);
-  lean.prior = kPrior / (zz + kPrior);
-  lean.high = slices[used.front()].z;
-  lean.low = slices[used.back()].z;
-  return lean;
+  tilt.x = (tilt.x + kPrior * view.uprightX) / (zz + kPrior);
+  tilt.y = (tilt.y + kPrior * view.uprightY) / (zz + kPrior);
+  tilt.prior = kPrior / (zz + kPrior);
+  tilt.high = segments[used.front()].z;
+  tilt.low = segments[used.back()].z;
+  return tilt;
 }
 
-/// Moves the fit along the pole to the height of the sensor, as far as the slices reach: there a
+/// Moves the fit along the pole to the height of the sensor, as far as the segments reach: there a
 /// roll or pitch of the sensor does not move it.
-void moveToSensorHeight(const Lean& lean, PoleFit& fit) {
-  const double reached = std::clamp(0.0, lean.low, lean.high);
-  const double step = reached - lean.height;
-  fit.x += static_cast<float>(lean.x * step);
-  fit.y += static_cast<float>(lean.y * step);
+void moveToSensorHeight(const AxisTilt& tilt, PoleFit& fit) {
+  const double reached = std::clamp(0.0, tilt.low, tilt.high);
+  const double step = reached - tilt.height;
+  fit.x += static_cast<float>(tilt.x * step);
+  fit.y += static_cast<float>(tilt.y * step);
   fit.covariance +=
-      Eigen::Matrix2d::Identity() * (leanSigma * leanSigma * lean.prior * step * step);
-  fit.lean.lean = {static_cast<float>(lean.x), static_cast<float>(lean.y)};
-  fit.lean.prior = static_cast<float>(lean.prior);
-  fit.lean.step = static_cast<float>(step);
-  fit.lean.gap = static_cast<float>(-reached);
+      Eigen::Matrix2d::Identity() * (tiltSigma * tiltSigma * tilt.prior * step * step);
+  fit.tilt.tilt = {static_cast<float>(tilt.x), static_cast<float>(tilt.y)};
+  fit.tilt.prior = static_cast<float>(tilt.prior);
+  fit.tilt.step = static_cast<float>(step);
+  fit.tilt.gap = static_cast<float>(-reached);
 }
 
 }  // namespace
 
-std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLineSegment>& slices,
+std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLineSegment>& segments,
                                const std::vector<std::uint32_t>& used, const PoleView& view) {
   if (used.empty()) return std::nullopt;
-  const CylinderProblem problem(lines, slices, used, view);
+  const CylinderProblem problem(lines, segments, used, view);
   State s = problem.initial();
   Normal n;
   for (int i = 0; i < kIterations; ++i) {
@@ -325,7 +327,7 @@ std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLin
   const Eigen::Matrix2d local =
       n.H.inverse().topLeftCorner<2, 2>() + kFloorSigma * kFloorSigma * Eigen::Matrix2d::Identity();
   fit.covariance = turn * local * turn.transpose();
-  moveToSensorHeight(leanOf(slices, used, view), fit);
+  moveToSensorHeight(tiltOf(segments, used, view), fit);
   return fit;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file PoleFitting.h
-/// \brief Step B3, native: centre, radius and covariance of a stack of slices.
+/// \brief Step B3, native: centre, radius and covariance of a cluster of segments.
 
 #include <Eigen/Core>
 #include <optional>
@@ -18,21 +18,21 @@ struct PoleFit {
   float radius = 0;    ///< m
   float residual = 0;  ///< robust standard deviation of the ranges against the cylinder, m
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< of (x, y), m²
-  PoleTilt lean;
+  PoleTilt tilt;
 };
 
-/// \brief Where a pole stands, roughly: middle of the slices' fronts, half their width behind.
+/// \brief Where a pole stands, roughly: middle of the segments' fronts, half their width behind.
 struct PoleAxis {
   float x = 0, y = 0;  ///< lidar frame, m
   float radius = 0;    ///< m
 };
-PoleAxis roughAxis(const std::vector<ScanLineSegment>& slices,
+PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
                    const std::vector<std::uint32_t>& used, float columnAngle);
 
 /// \brief How poles are looked at.
 struct PoleView {
   float columnAngle = 0;  ///< one firing step, rad
-  /// Slices below weigh less, the less the lower, down to 0.5 m below; lidar frame, m.
+  /// Segments below weigh less, the less the lower, down to 0.5 m below; lidar frame, m.
   float firmHeight = -1e3f;
   /// By so much an upright pole moves along x and y per height along z: 0 for an upright lidar.
   float uprightX = 0, uprightY = 0;
@@ -46,11 +46,11 @@ struct PoleView {
 /// less half the footprint, outside the outermost returns, so the width of the run of returns gives
 /// the radius, and ranges plus radius give the centre. Both enter one Gauss-Newton problem in
 /// (lateral, depth, radius).
-/// The centre is that at the height of the sensor, or as near to it as the slices reach: there a
+/// The centre is that at the height of the sensor, or as near to it as the segments reach: there a
 /// roll or pitch of the sensor does not move it.
-/// \param used Which slices to fit (indices into slices), topmost first.
+/// \param used Which segments to fit (indices into segments), topmost first.
 /// \return Nothing when the normal equations are degenerate.
-std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLineSegment>& slices,
+std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLineSegment>& segments,
                                const std::vector<std::uint32_t>& used, const PoleView& view);
 
 }  // namespace polemcl

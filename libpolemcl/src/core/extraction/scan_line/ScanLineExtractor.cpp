@@ -32,7 +32,7 @@ ScanLineExtractor::ScanLineExtractor(SensorModel model, const SensorOptions& sen
       m_sensor(std::move(model)),
       m_lines(m_sensor),
       m_finder(m_sensor, options),
-      m_stacker(m_sensor, options),
+      m_clustering(m_sensor, options),
       m_freeFinder(m_sensor, sensor.height, options.maxRange) {}
 
 void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
@@ -46,19 +46,18 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
   report.outOfRange = dropped.outOfRange;
   report.outOfView = counts.outOfView;
   report.ground = m_ground.median();
-  m_finder.find(m_lines, m_slices);
-  const std::vector<SegmentCluster>& stacks = m_stacker.stack(m_slices);
-  report.candidates = stacks.size();
-  m_leans.clear();
-  for (const SegmentCluster& stack : stacks) {
+  m_finder.find(m_lines, m_segments);
+  const std::vector<SegmentCluster>& clusters = m_clustering.cluster(m_segments);
+  report.candidates = clusters.size();
+  m_tilts.clear();
+  for (const SegmentCluster& cluster : clusters) {
     PoleDetection pole;
-    PoleTilt lean;
-    const RejectionReason refusal = examine(stack, pole, lean);
-    if (refusal == RejectionReason::count_) {
-      poles.push_back(pole);
-      m_leans.push_back(lean);
+    PoleTilt tilt;
+    if (const auto rejection = examine(cluster, pole, tilt)) {
+      ++report.refused[static_cast<int>(*rejection)];
     } else {
-      ++report.refused[static_cast<int>(refusal)];
+      poles.push_back(pole);
+      m_tilts.push_back(tilt);
     }
   }
   m_freeFinder.find(m_lines, m_ground, m_freeRange);
@@ -66,17 +65,18 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
   report.refused[static_cast<int>(RejectionReason::duplicate)] = dropDuplicates(poles);
 }
 
-/// The sensor's tilt, which the fits did not know, moves poles whose own lean is not well seen.
+/// The sensor's tilt, which the fits did not know, moves poles whose own tilt is not well seen.
 void ScanLineExtractor::setUpright(std::vector<PoleDetection>& poles) const {
-  const Eigen::Vector2f common = estimateTilt(m_leans, m_upright);
+  const Eigen::Vector2f common = estimateTilt(m_tilts, m_upright);
   for (std::size_t i = 0; i < poles.size(); ++i) {
-    const Eigen::Vector2f shift = shiftBy(m_leans[i], m_upright, common);
+    const Eigen::Vector2f shift = shiftBy(m_tilts[i], m_upright, common);
     poles[i].x += shift.x();
     poles[i].y += shift.y();
   }
 }
 
-/// Two stacks can stand on one thing (a sign's edge beside its post): the more confident one stays.
+/// Two clusters can stand on one thing (a sign's edge beside its post): the more confident one
+/// stays.
 std::size_t ScanLineExtractor::dropDuplicates(std::vector<PoleDetection>& poles) const {
   std::sort(poles.begin(), poles.end(), [](const PoleDetection& a, const PoleDetection& b) {
     return a.confidence != b.confidence ? a.confidence > b.confidence
@@ -95,52 +95,52 @@ std::size_t ScanLineExtractor::dropDuplicates(std::vector<PoleDetection>& poles)
   return dropped;
 }
 
-/// The slices of the bare trunk: those not much wider than the slimmer ones (a sign is wider).
-void ScanLineExtractor::selectForFit(const SegmentCluster& stack) {
+/// The segments of the bare trunk: those not much wider than the slimmer ones (a sign is wider).
+void ScanLineExtractor::selectForFit(const SegmentCluster& cluster) {
   m_widths.clear();
-  for (auto i : stack) m_widths.push_back(m_slices[i].width());
+  for (auto i : cluster) m_widths.push_back(m_segments[i].width());
   const float typical = elementOfRank(m_widths, (m_widths.size() - 1) * 4 / 10);
-  m_fitSlices.clear();
-  for (auto i : stack) {
-    const float column = m_slices[i].rho * static_cast<float>(m_sensor.columnAngle());
-    if (m_slices[i].width() <= 1.4f * typical + 1.5f * column) m_fitSlices.push_back(i);
+  m_fitSegments.clear();
+  for (auto i : cluster) {
+    const float column = m_segments[i].rho * static_cast<float>(m_sensor.columnAngle());
+    if (m_segments[i].width() <= 1.4f * typical + 1.5f * column) m_fitSegments.push_back(i);
   }
 }
 
-/// Refusals that need no more than the slices, the cheapest first.
-RejectionReason ScanLineExtractor::judgeShape(const SegmentCluster& stack,
-                                              ClusterShape& shape) const {
-  const ScanLineSegment &highest = m_slices[stack.top()], &lowest = m_slices[stack.bottom()];
+/// Refusals that need no more than the segments, the cheapest first.
+std::optional<RejectionReason> ScanLineExtractor::judgeShape(const SegmentCluster& cluster,
+                                                             ClusterShape& shape) const {
+  const ScanLineSegment &highest = m_segments[cluster.top()],
+                        &lowest = m_segments[cluster.bottom()];
   if (highest.z - lowest.z < m_options.minHeight) return RejectionReason::tooShort;
   if (lowest.z - m_ground.at(lowest.x, lowest.y) > m_options.maxBottom)
     return RejectionReason::startsTooHigh;
-  shape = measureShape(m_slices, stack);
+  shape = measureShape(m_segments, cluster);
   if (shape.points < m_options.minPoints) return RejectionReason::tooFewPoints;
   if (shape.tilt > m_options.maxTilt && shape.high - shape.low > 0.8)
     return RejectionReason::tilted;
   if (shape.scatter > m_options.maxScatter) return RejectionReason::notStraight;
-  return RejectionReason::count_;
+  return std::nullopt;
 }
 
 /// Cheap tests first; the fit, which costs most, comes last.
-RejectionReason ScanLineExtractor::examine(const SegmentCluster& stack, PoleDetection& pole,
-                                           PoleTilt& lean) {
+std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& cluster,
+                                                          PoleDetection& pole, PoleTilt& tilt) {
   ClusterShape shape;
-  const RejectionReason early = judgeShape(stack, shape);
-  if (early != RejectionReason::count_) return early;
-  selectForFit(stack);
+  if (const auto rejection = judgeShape(cluster, shape)) return rejection;
+  selectForFit(cluster);
   const float column = static_cast<float>(m_sensor.columnAngle());
-  const PoleAxis axis = roughAxis(m_slices, m_fitSlices, column);
-  const CandidateFeatures evidence =
-      computeFeatures(m_lines, m_sensor, m_ground, m_slices, stack, shape, axis);
+  const PoleAxis axis = roughAxis(m_segments, m_fitSegments, column);
+  const CandidateFeatures candidate =
+      computeFeatures(m_lines, m_sensor, m_ground, m_segments, cluster, shape, axis);
   // Between the highest return and the first beam that passed over, the top is anywhere.
   const double top =
-      std::isfinite(evidence.topBound) ? 0.5 * (evidence.top + evidence.topBound) : 1e9;
-  if (std::max<double>(top, evidence.top) < m_options.minTop) return RejectionReason::tooLow;
-  PoleFeatures features = describe(stack, shape, evidence, axis);
+      std::isfinite(candidate.topBound) ? 0.5 * (candidate.top + candidate.topBound) : 1e9;
+  if (std::max<double>(top, candidate.top) < m_options.minTop) return RejectionReason::tooLow;
+  PoleFeatures features = describe(cluster, shape, candidate, axis);
   if (roughOdds(features) < kHopelessOdds) return RejectionReason::lowConfidence;
   const float ground = m_ground.at(axis.x, axis.y);
-  const auto fit = fitPole(m_lines, m_slices, m_fitSlices,
+  const auto fit = fitPole(m_lines, m_segments, m_fitSegments,
                            {column, ground + kFirmHeight, m_upright.x(), m_upright.y()});
   if (!fit || fit->radius < m_options.minRadius || fit->radius > m_options.maxRadius)
     return RejectionReason::badFit;
@@ -149,51 +149,51 @@ RejectionReason ScanLineExtractor::examine(const SegmentCluster& stack, PoleDete
   // A place without clutter is the best that can be.
   if (confidence(poleOdds(features)) < m_options.minConfidence)
     return RejectionReason::lowConfidence;
-  features.clutter = clutteredShare(m_lines, m_sensor, m_slices, stack, axis);
+  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);
   const double odds = poleOdds(features);
   pole.confidence = confidence(odds);
   if (pole.confidence < m_options.minConfidence) return RejectionReason::notFree;
   pole.x = fit->x;
   pole.y = fit->y;
   pole.radius = fit->radius;
-  lean = fit->lean;
-  lean.weight = static_cast<float>(pole.confidence - m_options.minConfidence);
-  pole.bottom = evidence.bottom;
-  pole.top = evidence.top;
+  tilt = fit->tilt;
+  tilt.weight = static_cast<float>(pole.confidence - m_options.minConfidence);
+  pole.bottom = candidate.bottom;
+  pole.top = candidate.top;
   pole.covariance = fit->covariance * covarianceScale(features, odds);
   pole.points = static_cast<std::uint32_t>(shape.points);
-  return RejectionReason::count_;
+  return std::nullopt;
 }
 
-PoleFeatures ScanLineExtractor::describe(const SegmentCluster& stack, const ClusterShape& shape,
-                                         const CandidateFeatures& evidence,
+PoleFeatures ScanLineExtractor::describe(const SegmentCluster& cluster, const ClusterShape& shape,
+                                         const CandidateFeatures& candidate,
                                          const PoleAxis& axis) const {
   PoleFeatures f;
-  f.slices = static_cast<double>(stack.count);
+  f.segments = static_cast<double>(cluster.count);
   f.points = shape.points;
   f.extent = shape.high - shape.low;
-  const double rows = f.slices + evidence.rowsPassed + evidence.rowsWide;
-  f.passed = evidence.rowsPassed / rows;
-  f.wide = evidence.rowsWide / rows;
-  f.notWhole = 1 - shape.wholeSlices / f.slices;
+  const double rows = f.segments + candidate.rowsPassed + candidate.rowsWide;
+  f.passed = candidate.rowsPassed / rows;
+  f.wide = candidate.rowsWide / rows;
+  f.notWhole = 1 - shape.wholeSegments / f.segments;
   f.scatter = shape.scatter;
   f.widthSpread = shape.widthSpread;
   f.tilt = shape.tilt;
-  f.top = evidence.top;
-  f.missingTop = std::max(0.0, m_options.minTop - evidence.top);
-  f.bottom = evidence.bottom;
+  f.top = candidate.top;
+  f.missingTop = std::max(0.0, m_options.minTop - candidate.top);
+  f.bottom = candidate.bottom;
   f.roughRadius = axis.radius;
-  f.range = m_slices[stack.bottom()].rho;
+  f.range = m_segments[cluster.bottom()].rho;
   f.columnWidth = f.range * m_sensor.columnAngle();
   int freeEdges = 0;
-  for (auto i : m_fitSlices)
-    freeEdges += (m_slices[i].left == Side::free) + (m_slices[i].right == Side::free);
-  f.hiddenEdges = 1 - 0.5 * freeEdges / static_cast<double>(m_fitSlices.size());
+  for (auto i : m_fitSegments)
+    freeEdges += (m_segments[i].left == Side::free) + (m_segments[i].right == Side::free);
+  f.hiddenEdges = 1 - 0.5 * freeEdges / static_cast<double>(m_fitSegments.size());
   return f;
 }
 
 /// What the fit's own covariance does not know: crooked, half hidden and doubtful things lie
-/// farther off, and columns are the same for all beams, so that more slices do not make up for
+/// farther off, and columns are the same for all beams, so that more segments do not make up for
 /// wide ones. Maximum likelihood on the worlds of the score.
 double ScanLineExtractor::covarianceScale(const PoleFeatures& f, double odds) const {
   constexpr double kFineColumns = 0.003;  // rad

@@ -2,6 +2,8 @@
 /// \file ScanLineExtractor.h
 /// \brief The native method, A to B3, on one screen. Private to the library; see PoleExtractor.h.
 
+#include <optional>
+
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include <polemcl/core/extraction/ExtractionReport.h>
 #include <polemcl/core/sensor/PinholeCamera.h>
@@ -24,15 +26,16 @@ class ScanLineExtractor {
   const std::vector<float>& visibilityRange() const { return m_freeRange; }
 
  private:
-  /// \return The reason of the refusal, or RejectionReason::count_ when `pole` and `lean` were
-  /// filled.
-  RejectionReason examine(const SegmentCluster& stack, PoleDetection& pole, PoleTilt& lean);
+  /// \return Why the cluster is rejected; nothing when `pole` and `tilt` were filled.
+  std::optional<RejectionReason> examine(const SegmentCluster& cluster, PoleDetection& pole,
+                                         PoleTilt& tilt);
   void setUpright(std::vector<PoleDetection>& poles) const;
-  RejectionReason judgeShape(const SegmentCluster& stack, ClusterShape& shape) const;
+  std::optional<RejectionReason> judgeShape(const SegmentCluster& cluster,
+                                            ClusterShape& shape) const;
   std::size_t dropDuplicates(std::vector<PoleDetection>& poles) const;
-  void selectForFit(const SegmentCluster& stack);
-  PoleFeatures describe(const SegmentCluster& stack, const ClusterShape& shape,
-                        const CandidateFeatures& evidence, const PoleAxis& axis) const;
+  void selectForFit(const SegmentCluster& cluster);
+  PoleFeatures describe(const SegmentCluster& cluster, const ClusterShape& shape,
+                        const CandidateFeatures& candidate, const PoleAxis& axis) const;
   double covarianceScale(const PoleFeatures& features, double odds) const;
 
   SensorOptions m_sensorOptions;
@@ -43,13 +46,13 @@ class ScanLineExtractor {
   ScanLines m_lines;
   GroundGrid m_ground;
   ScanLineSegmenter m_finder;
-  SegmentClustering m_stacker;
+  SegmentClustering m_clustering;
   VisibilityRangeFinder m_freeFinder;
   std::vector<float> m_freeRange;
-  std::vector<ScanLineSegment> m_slices;
-  std::vector<std::uint32_t> m_fitSlices;
+  std::vector<ScanLineSegment> m_segments;
+  std::vector<std::uint32_t> m_fitSegments;
   std::vector<float> m_widths;
-  std::vector<PoleTilt> m_leans;  ///< of the poles found, in the order they were found
+  std::vector<PoleTilt> m_tilts;  ///< of the poles found, in the order they were found
 };
 
 }  // namespace polemcl

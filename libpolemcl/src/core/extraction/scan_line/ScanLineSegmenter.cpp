@@ -37,8 +37,9 @@ class Row {
     return joined(a, b, b.azimuth + kTurn - a.azimuth, m_limits.step, m_limits.gap);
   }
 
-  /// Appends the run of returns first..last (last may be size or more: it wraps) if it is a slice.
-  void consider(std::size_t first, std::size_t last, std::vector<ScanLineSegment>& slices) const {
+  /// Appends the run of returns first..last (last may be size or more: it wraps) if it is a
+  /// segment.
+  void consider(std::size_t first, std::size_t last, std::vector<ScanLineSegment>& segments) const {
     const Return &begin = m_returns[first], &end = at(last);
     const float turn = end.azimuth - begin.azimuth + (last < m_size ? 0 : kTurn);
     if (begin.rho * turn > 1.5f * m_limits.maxWidth || begin.rho > m_limits.maxRange) return;
@@ -56,17 +57,17 @@ class Row {
       z += r.z;
     }
     if (rho * turn > m_limits.maxWidth || farthest - rho > m_limits.maxWidth) return;
-    ScanLineSegment& slice = slices.emplace_back();
-    slice.left = left;
-    slice.right = right;
-    slice.row = m_row;
-    slice.first = static_cast<std::uint32_t>(first);
-    slice.count = static_cast<std::uint32_t>(last - first + 1);
-    slice.azimuthBegin = begin.azimuth;
-    slice.azimuthEnd = begin.azimuth + turn;
-    slice.rho = rho;
-    slice.z = z / static_cast<float>(slice.count);
-    placeFront(begin, end, slice);
+    ScanLineSegment& segment = segments.emplace_back();
+    segment.left = left;
+    segment.right = right;
+    segment.row = m_row;
+    segment.first = static_cast<std::uint32_t>(first);
+    segment.count = static_cast<std::uint32_t>(last - first + 1);
+    segment.azimuthBegin = begin.azimuth;
+    segment.azimuthEnd = begin.azimuth + turn;
+    segment.rho = rho;
+    segment.z = z / static_cast<float>(segment.count);
+    placeFront(begin, end, segment);
   }
 
  private:
@@ -96,13 +97,13 @@ class Row {
     return Side::attached;
   }
 
-  /// The bisector of the bearings of both ends, at the slice's range.
-  void placeFront(const Return& a, const Return& b, ScanLineSegment& slice) const {
+  /// The bisector of the bearings of both ends, at the segment's range.
+  void placeFront(const Return& a, const Return& b, ScanLineSegment& segment) const {
     const float x = m_lines.x(a) * b.rho + m_lines.x(b) * a.rho;
     const float y = m_lines.y(a) * b.rho + m_lines.y(b) * a.rho;
-    const float scale = slice.rho / std::sqrt(x * x + y * y);
-    slice.x = x * scale;
-    slice.y = y * scale;
+    const float scale = segment.rho / std::sqrt(x * x + y * y);
+    segment.x = x * scale;
+    segment.y = y * scale;
   }
 
   const ScanLines& m_lines;
@@ -121,8 +122,8 @@ ScanLineSegmenter::ScanLineSegmenter(const SensorModel& sensor, const ScanLineOp
       m_maxWidth(static_cast<float>(options.maxWidth)),
       m_maxRange(static_cast<float>(options.maxRange)) {}
 
-void ScanLineSegmenter::find(const ScanLines& lines, std::vector<ScanLineSegment>& slices) {
-  slices.clear();
+void ScanLineSegmenter::find(const ScanLines& lines, std::vector<ScanLineSegment>& segments) {
+  segments.clear();
   const Limits limits{m_gap, m_step, m_edge, m_maxWidth, m_maxRange};
   for (int r = 0; r < lines.rows(); ++r) {
     const Row row(lines, r, limits);
@@ -135,10 +136,10 @@ void ScanLineSegmenter::find(const ScanLines& lines, std::vector<ScanLineSegment
     if (closed && breaks == 0) continue;  // one closed ring: no ends, no pole
     std::size_t first = closed ? m_breaks[0] + 1 : 0;
     for (std::size_t b = closed ? 1 : 0; b < breaks; ++b) {
-      row.consider(first, m_breaks[b], slices);
+      row.consider(first, m_breaks[b], segments);
       first = m_breaks[b] + 1;
     }
-    row.consider(first, closed ? row.size() + m_breaks[0] : row.size() - 1, slices);
+    row.consider(first, closed ? row.size() + m_breaks[0] : row.size() - 1, segments);
   }
 }
 

@@ -34,13 +34,13 @@ struct ScanLineSegment {
   bool whole() const { return left == Side::free && right == Side::free; }
 };
 
-/// \brief Finds slices; keeps its buffer between scans.
+/// \brief Finds segments; keeps its buffer between scans.
 class ScanLineSegmenter {
  public:
   ScanLineSegmenter(const SensorModel& sensor, const ScanLineOptions& options);
-  /// \brief All slices no wider than maxWidth with at least one free side and none attached, rows
+  /// \brief All segments no wider than maxWidth with at least one free side and none attached, rows
   /// ascending, in a row by azimuth of their beginning.
-  void find(const ScanLines& lines, std::vector<ScanLineSegment>& slices);
+  void find(const ScanLines& lines, std::vector<ScanLineSegment>& segments);
 
  private:
   float m_gap, m_step, m_edge, m_maxWidth, m_maxRange;

@@ -25,10 +25,10 @@ std::int32_t SegmentClustering::cell(float x, float y) const {
 }
 
 /// Forgets, on its way, the tips that lie too far above to be joined any more.
-std::uint32_t SegmentClustering::nearestTip(const ScanLineSegment& slice) {
-  const float gap = std::max(m_beamGap[slice.row] * slice.rho, m_gap);
-  const std::int32_t corner = cell(slice.x * m_cellsPerMetre + m_middle - 0.5f,
-                                   slice.y * m_cellsPerMetre + m_middle - 0.5f);
+std::uint32_t SegmentClustering::nearestTip(const ScanLineSegment& segment) {
+  const float gap = std::max(m_beamGap[segment.row] * segment.rho, m_gap);
+  const std::int32_t corner = cell(segment.x * m_cellsPerMetre + m_middle - 0.5f,
+                                   segment.y * m_cellsPerMetre + m_middle - 0.5f);
   std::uint32_t best = kNone;
   float bestDistance = m_reach * m_reach;
   for (std::int32_t k = 0; k < 4; ++k) {
@@ -36,15 +36,15 @@ std::uint32_t SegmentClustering::nearestTip(const ScanLineSegment& slice) {
     while (*link != kNone) {
       const std::uint32_t t = *link;
       Tip& tip = m_tips[t];
-      const float above = tip.z - slice.z;
+      const float above = tip.z - segment.z;
       if (above > 3 * gap) {
         *link = tip.next;
         continue;
       }
       link = &tip.next;
-      const float dx = tip.x - slice.x, dy = tip.y - slice.y;
+      const float dx = tip.x - segment.x, dy = tip.y - segment.y;
       const float distance = dx * dx + dy * dy;
-      if (distance > bestDistance || tip.row == slice.row || above > gap) continue;
+      if (distance > bestDistance || tip.row == segment.row || above > gap) continue;
       if (distance == bestDistance && t > best) continue;
       bestDistance = distance;
       best = t;
@@ -71,36 +71,37 @@ void SegmentClustering::move(std::uint32_t t) {
   enter(t);
 }
 
-const std::vector<SegmentCluster>& SegmentClustering::stack(
-    const std::vector<ScanLineSegment>& slices) {
+const std::vector<SegmentCluster>& SegmentClustering::cluster(
+    const std::vector<ScanLineSegment>& segments) {
   m_tips.clear();
   std::fill(m_head.begin(), m_head.end(), kNone);
-  m_below.assign(slices.size(), kNone);
-  for (std::uint32_t i = 0; i < slices.size(); ++i) {
-    const ScanLineSegment& slice = slices[i];
-    const std::uint32_t t = nearestTip(slice);
+  m_below.assign(segments.size(), kNone);
+  for (std::uint32_t i = 0; i < segments.size(); ++i) {
+    const ScanLineSegment& segment = segments[i];
+    const std::uint32_t t = nearestTip(segment);
     if (t == kNone) {
-      m_tips.push_back({slice.x, slice.y, slice.z, slice.row, i, i, 1, -1, kNone});
+      m_tips.push_back({segment.x, segment.y, segment.z, segment.row, i, i, 1, -1, kNone});
       enter(static_cast<std::uint32_t>(m_tips.size()) - 1);
     } else {
       Tip& tip = m_tips[t];
       m_below[tip.last] = i;
-      tip = {slice.x, slice.y, slice.z, slice.row, tip.first, i, tip.count + 1, tip.cell, tip.next};
+      tip = {segment.x, segment.y,     segment.z, segment.row, tip.first,
+             i,         tip.count + 1, tip.cell,  tip.next};
       move(t);
     }
   }
   collect();
-  return m_stacks;
+  return m_clusters;
 }
 
-/// Lays the chains of two slices and more out as lists.
+/// Lays the chains of two segments and more out as lists.
 void SegmentClustering::collect() {
   m_members.clear();
-  m_stacks.clear();
-  m_members.reserve(m_below.size());  // so that the stacks' pointers stay good
+  m_clusters.clear();
+  m_members.reserve(m_below.size());  // so that the clusters' pointers stay good
   for (const Tip& tip : m_tips) {
     if (tip.count < 2) continue;
-    m_stacks.push_back({m_members.data() + m_members.size(), tip.count});
+    m_clusters.push_back({m_members.data() + m_members.size(), tip.count});
     for (std::uint32_t i = tip.first; i != kNone; i = m_below[i]) m_members.push_back(i);
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file SegmentClustering.h
-/// \brief Step B2, native: slices of several beams, one above the other, make a candidate.
+/// \brief Step B2, native: segments of several beams, one above the other, make a candidate.
 
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace polemcl {
 
-/// \brief Slices that stand above one another: indices into the slices, topmost first. Borrowed.
+/// \brief Segments that stand above one another: indices into the segments, topmost first.
+/// Borrowed.
 struct SegmentCluster {
   const std::uint32_t* first = nullptr;
   std::size_t count = 0;
@@ -19,28 +20,29 @@ struct SegmentCluster {
   std::uint32_t bottom() const { return first[count - 1]; }
 };
 
-/// \brief Stacks the slices from the top row down; every slice joins the nearest stack above it
-/// whose last slice lies within reach, or starts its own. Keeps its buffers between scans.
+/// \brief Clusters the segments from the top row down; every segment joins the nearest cluster
+/// above it whose last segment lies within reach, or starts its own. Keeps its buffers between
+/// scans.
 class SegmentClustering {
  public:
   SegmentClustering(const SensorModel& sensor, const ScanLineOptions& options);
-  /// \brief Stacks of at least two slices, in the order of their topmost slices.
-  /// \param slices As ScanLineSegmenter gives them: rows ascending.
+  /// \brief Clusters of at least two segments, in the order of their topmost segments.
+  /// \param segments As ScanLineSegmenter gives them: rows ascending.
   /// \return Valid until the next call.
-  const std::vector<SegmentCluster>& stack(const std::vector<ScanLineSegment>& slices);
+  const std::vector<SegmentCluster>& cluster(const std::vector<ScanLineSegment>& segments);
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
-  /// The lower end of a growing stack.
+  /// The lower end of a growing cluster.
   struct Tip {
     float x, y, z;
     std::int32_t row;
-    std::uint32_t first, last, count;  ///< slices
+    std::uint32_t first, last, count;  ///< segments
     std::int32_t cell;
     std::uint32_t next;  ///< tip in the same cell
   };
   std::int32_t cell(float x, float y) const;
-  std::uint32_t nearestTip(const ScanLineSegment& slice);
+  std::uint32_t nearestTip(const ScanLineSegment& segment);
   void enter(std::uint32_t tip);
   void move(std::uint32_t tip);
   void collect();
@@ -50,9 +52,9 @@ class SegmentClustering {
   std::vector<float> m_beamGap;  ///< per row: two beams apart, as a share of range
   std::vector<Tip> m_tips;
   std::vector<std::uint32_t> m_head;   ///< per cell of the plane: the tip that entered last
-  std::vector<std::uint32_t> m_below;  ///< per slice: the next one down its stack
+  std::vector<std::uint32_t> m_below;  ///< per segment: the next one down its cluster
   std::vector<std::uint32_t> m_members;
-  std::vector<SegmentCluster> m_stacks;
+  std::vector<SegmentCluster> m_clusters;
 };
 
 }  // namespace polemcl

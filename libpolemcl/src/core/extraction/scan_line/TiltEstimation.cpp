@@ -6,10 +6,10 @@
 namespace polemcl {
 namespace {
 
-constexpr float s_mostPrior = 0.4f;  // of a lean that is mostly the prior, too little is known
-constexpr double s_own = 0.03;       // standard deviation of a pole's own lean, m per m
+constexpr float s_mostPrior = 0.4f;  // of a tilt that is mostly the prior, too little is known
+constexpr double s_own = 0.03;       // standard deviation of a pole's own tilt, m per m
 constexpr double s_sensor = 0.04;    // and of the sensor's
-constexpr double s_outlier = 2;      // a pole that leans off by more sigmas counts less and less
+constexpr double s_outlier = 2;      // a pole that tilts off by more sigmas counts less and less
 constexpr int s_tiltRounds = 3;
 
 }  // namespace
@@ -23,8 +23,8 @@ Eigen::Vector2f estimateTilt(const std::vector<PoleTilt>& poles, const Eigen::Ve
     for (const PoleTilt& pole : poles) {
       if (pole.prior > s_mostPrior) continue;
       const double prior = pole.prior;
-      const Eigen::Vector2d seen = (pole.lean.cast<double>() - prior * before) / (1 - prior);
-      const double variance = leanSigma * leanSigma * prior / (1 - prior) + s_own * s_own;
+      const Eigen::Vector2d seen = (pole.tilt.cast<double>() - prior * before) / (1 - prior);
+      const double variance = tiltSigma * tiltSigma * prior / (1 - prior) + s_own * s_own;
       const double off = (seen - common).squaredNorm() / (s_outlier * s_outlier * variance);
       const double weight = pole.weight / (variance * (1 + off * off));
       weights += weight;

@@ -2,34 +2,34 @@
 /// \file TiltEstimation.h
 /// \brief Which way is up, by the poles of one scan.
 ///
-/// A LiDAR on a cambered road or a slope is tilted, and sees every upright pole lean alike. The
-/// ground does not tell, since the vehicle stands on it. One pole's lean is known poorly, and some
-/// trunks do lean; all of them together tell.
+/// A LiDAR on a cambered road or a slope is tilted, and sees every upright pole tilt alike. The
+/// ground does not tell, since the vehicle stands on it. One pole's tilt is known poorly, and some
+/// trunks do tilt; all of them together tell.
 
 #include <Eigen/Core>
 #include <vector>
 
 namespace polemcl {
 
-/// \brief How a fitted pole leans, lidar frame.
+/// \brief How a fitted pole tilts, lidar frame.
 struct PoleTilt {
-  Eigen::Vector2f lean{0, 0};  ///< along x and y, m per m of height, shrunk towards upright
-  /// Share of the prior, that poles are upright, in `lean`; in (0, 1], 1 for what is seen at one
+  Eigen::Vector2f tilt{0, 0};  ///< along x and y, m per m of height, shrunk towards upright
+  /// Share of the prior, that poles are upright, in `tilt`; in (0, 1], 1 for what is seen at one
   /// height only.
   float prior = 1;
   /// Counts so much, in [0, 1]: how far the pole's confidence lies above that of those left out, so
   /// that what is found in one scan and not in the next moves nothing.
   float weight = 1;
-  float step = 0;  ///< from the mean height of the fitted slices to that of the centre, m
-  float gap = 0;   ///< from there to the height of the sensor, m: 0 where the slices reach it
+  float step = 0;  ///< from the mean height of the fitted segments to that of the centre, m
+  float gap = 0;   ///< from there to the height of the sensor, m: 0 where the segments reach it
 };
 
-/// Standard deviation of a pole's lean by which it is shrunk, m per m.
-constexpr double leanSigma = 0.02;
+/// Standard deviation of a pole's tilt by which it is shrunk, m per m.
+constexpr double tiltSigma = 0.02;
 
-/// \brief The lean that the poles have in common: robust mean of the leans as they were seen, each
+/// \brief The tilt that the poles have in common: robust mean of the tilts as they were seen, each
 /// weighted by how well it is known, shrunk towards `upright`, which it is without poles.
-/// \param upright Lean of an upright pole as far as was known before, m per m.
+/// \param upright AxisTilt of an upright pole as far as was known before, m per m.
 Eigen::Vector2f estimateTilt(const std::vector<PoleTilt>& poles, const Eigen::Vector2f& upright);
 
 /// \brief How far the centre of a pole moves when `common` takes the place of `upright` in the
