@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds one target of a preset (CMakePresets.json); a second time only what changed.
-# Usage: share/setup/build.sh release|debug|sanitize TARGET
+# Usage: share/setup/build.sh PRESET TARGET
 set -eu
 cd "$(dirname "$0")/../.."
 preset=$1
