@@ -2,8 +2,9 @@
 # Installs what is missing, builds, and runs every test.
 # Usage: tests/run.sh [--quick | --full]
 #   --quick  runs the unit tests only: less than a minute after the build
-#   --full   also opens scenes in MRPT's viewer, tries batches on a Slurm cluster of its own (as root),
-#            and runs the tests again under the address and undefined-behaviour sanitizers
+#   --full   also checks format, spelling and clang-tidy, opens scenes in MRPT's viewer, tries batches
+#            on a Slurm cluster of its own (as root), and runs the tests again under
+#            the address and undefined-behaviour sanitizers
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
@@ -14,7 +15,7 @@ case "$#:${1-}" in
   1:--quick) how=quick ;;
   1:--full) how=full ;;
   1:-h | 1:--help)
-    sed -n '2,7s/^# //p' "$0"
+    sed -n '2,8s/^# //p' "$0"
     exit 0
     ;;
   *)
@@ -43,6 +44,7 @@ run_tests() {
 "$top/share/setup/install.sh"
 if [ "$how" = full ]; then
   "$top/share/setup/install.sh" full
+  "$top/tests/lint.sh" format spelling files
 fi
 "$top/share/setup/build.sh" release all
 case $how in
@@ -54,6 +56,7 @@ case $how in
 esac
 
 if [ "$how" = full ]; then
+  "$top/tests/lint.sh" tidy
   "$top/tests/viewers/run.sh"
   "$top/tests/slurm/run.sh"
   "$top/share/setup/build.sh" sanitize all

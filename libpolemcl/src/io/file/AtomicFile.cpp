@@ -32,7 +32,7 @@ fs::path checkedTarget(const fs::path& path) {
     throw cannotWrite(path, "it is a device or pipe; name a regular file");
   }
   if (!fs::is_symlink(path, error)) return path;
-  const fs::path named = fs::canonical(path, error);
+  fs::path named = fs::canonical(path, error);
   if (error) throw cannotWrite(path, error.message());
   return named;
 }

@@ -1,0 +1,62 @@
+#!/bin/sh
+# Checks that need no test program. Each prints what is wrong and where.
+# Usage: tests/lint.sh CHECK...
+#   format    clang-format would change no source file
+#   spelling  codespell knows no misspelling
+#   files     text files end with one newline, and have no spaces at line ends (Markdown may)
+#   tidy      clang-tidy has nothing to say (.clang-tidy); takes many minutes
+# Needs the packages that share/setup/install.sh full installs.
+set -eu
+cd "$(dirname "$0")/.."
+
+sources() {
+  git ls-files '*.cpp' '*.h'
+}
+
+format() {
+  sources | xargs clang-format --dry-run -Werror
+}
+
+spelling() {
+  git ls-files | grep -v '\.png$\|\.svg$' | xargs codespell
+}
+
+files() {
+  # The file whose last character is no newline, or whose last line is empty; spaces at a line's end.
+  bad=$(git ls-files | grep -v '\.png$\|\.svg$' | while read -r name; do
+    [ -s "$name" ] || continue
+    [ -z "$(tail -c 1 "$name")" ] || echo "$name: the last line has no newline at its end"
+    [ -n "$(tail -n 1 "$name")" ] || echo "$name: empty lines at the end"
+    case $name in *.md) continue ;; esac # there, spaces at the end are a line break
+    grep -n '[[:blank:]]$' "$name" | sed "s|^\([0-9]*\):.*|$name:\1: spaces at the end of the line|"
+  done)
+  [ -z "$bad" ] || {
+    echo "$bad" >&2
+    return 1
+  }
+}
+
+tidy() {
+  cmake --preset clang -G Ninja >/dev/null
+  run-clang-tidy -quiet -p build-clang -j "$(nproc)" '/(libpolemcl|apps)/'
+}
+
+[ $# -gt 0 ] || set -- --help
+for check in "$@"; do
+  case $check in
+    format | spelling | files | tidy) ;;
+    *)
+      sed -n '2,8s/^# //p' "$0"
+      [ "$check" = -h ] || [ "$check" = --help ] || exit 2
+      exit 0
+      ;;
+  esac
+done
+status=0
+for check in "$@"; do
+  "$check" || {
+    echo "tests/lint.sh: the check '$check' failed" >&2
+    status=1
+  }
+done
+exit $status
