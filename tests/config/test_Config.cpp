@@ -10,6 +10,7 @@
 #include <polemcl/config/Config.h>
 
 #include "io/file/AtomicFile.h"
+#include "support/ExpectHas.h"
 
 namespace polemcl::test_config {
 namespace {
@@ -65,8 +66,6 @@ std::string refusal(const std::function<void()>& work) {
 std::string refusal(const std::string& text) {
   return refusal([&] { load(text); });
 }
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 TEST(Config, ReadsEveryType) {
   const Sample s = load(

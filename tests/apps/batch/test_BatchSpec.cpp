@@ -2,6 +2,7 @@
 
 #include "batch/BatchSpec.h"
 #include "support/BatchTestFiles.h"
+#include "support/ExpectHas.h"
 
 namespace polemcl::test_batch_spec {
 
@@ -23,8 +24,6 @@ std::string refusal(const std::string& text) {
 
 const std::string sessions = "[sessions]\nnames = a b c\ninput = x\n";
 const std::string configuration = "[setting one]\nconfig = c.ini\n";
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "map/GeoJson.h"
+#include "support/ExpectHas.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_geo_json {
@@ -95,8 +96,6 @@ std::string point(const std::string& coordinates, const std::string& properties 
 }
 
 const io::Datum home{50, 8, 0};
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 }  // namespace
 

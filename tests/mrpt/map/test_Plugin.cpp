@@ -18,6 +18,7 @@
 
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
+#include "support/ExpectHas.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_plugin {
@@ -98,8 +99,6 @@ bool has(const char* program) {
 
 #define NEEDS(program) \
   if (!has(program)) GTEST_SKIP() << program << " (Debian package mrpt-apps) is not installed"
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
-
 const std::string plugin = std::string(" -p '") + POLEMCL_LIB + "' ";
 const std::string preload = std::string("LD_PRELOAD='") + POLEMCL_LIB + "' ";
 

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "mrpt/rawlog/RawlogReader.h"
+#include "support/ExpectHas.h"
 #include "support/ExtractionSamples.h"
 
 namespace polemcl::test_observation_points {
@@ -16,8 +17,6 @@ namespace {
 using mrpt::poses::CPose3D;
 using namespace mrpt::obs;
 using namespace samples;
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 void writeKitti(const std::string& path, const TestCloud& cloud) {
   std::ofstream out(path, std::ios::binary);

@@ -4,6 +4,7 @@
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include "support/ExpectHas.h"
 #include "support/ExtractionSamples.h"
 
 namespace polemcl::test_observation_pole_extractor {
@@ -12,8 +13,6 @@ namespace {
 using mrpt::poses::CPose3D;
 using namespace mrpt::obs;
 using namespace samples;
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 // Sensor at the robot's origin, level: no transformation; the poles equal the core's, bit for bit.
 TEST(ObservationPoleExtractor, LevelCloudsGoThroughUntouched) {

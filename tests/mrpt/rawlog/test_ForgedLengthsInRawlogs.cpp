@@ -14,6 +14,7 @@
 
 #include "io/file/ReadLimits.h"
 #include "mrpt/rawlog/RawlogReader.h"
+#include "support/ExpectHas.h"
 #include "support/MemoryTaken.h"
 #include "support/Samples.h"
 
@@ -84,8 +85,6 @@ CObservationPoles scanOf(std::size_t poles) {
 }
 
 const std::vector<std::uint32_t> claims{70000, 220'000'000, 0xffffffff};
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 TEST(ForgedLengths, OfFreeRanges) {
   const std::string ranges(number(128) + number(0x40e00000));  // 7

@@ -13,6 +13,7 @@
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
 
+#include "support/ExpectHas.h"
 #include "support/Samples.h"
 #include "support/TestClouds.h"
 
@@ -104,8 +105,6 @@ struct Bench {
     return "";
   }
 };
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 void expectMotion(const PoleFrame& frame, double x, double y, double yaw) {
   ASSERT_TRUE(frame.motion);

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "mrpt/rawlog/RawlogReader.h"
+#include "support/ExpectHas.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_rawlog_reader {
@@ -86,8 +87,6 @@ Reading readAll(const std::string& path, bool allowTruncated = false) {
   }
   return reading;
 }
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 /// A folder with one rawlog of given bytes.
 struct Bench {

@@ -1,0 +1,9 @@
+#pragma once
+/// \file ExpectHas.h
+/// \brief Expects a text within another, and shows the whole text when it is not there.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
