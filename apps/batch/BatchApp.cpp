@@ -10,7 +10,6 @@
 #include <thread>
 
 #include <polemcl/core/common/Types.h>
-
 #include "batch/BatchCollect.h"
 #include "batch/BatchCommands.h"
 #include "batch/BatchFolder.h"

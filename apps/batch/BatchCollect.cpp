@@ -12,7 +12,6 @@
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "batch/BatchCommands.h"
 #include "cli/JsonFile.h"
 #include "cli/Version.h"

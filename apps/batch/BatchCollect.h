@@ -13,8 +13,8 @@
 namespace polemcl::apps {
 
 /// \brief Reads the trajectories of all runs that are done and judges them.
-/// \param failures Of this and earlier attempts, by task; what they left open has no figures.
-/// \param command That makes the batch again.
+/// \param failures Failures of this and earlier attempts, by task. Tasks left open have no figures.
+/// \param command Command that makes the batch again.
 /// \throws Error when a file of a task that is done cannot be read.
 report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& plan,
                                   const BatchSpec& spec,

@@ -21,7 +21,7 @@ Command program(const std::string& name);
 std::string shellQuoted(const std::string& text);
 void append(Command& command, const Command& more);
 
-/// \brief The dataset of a session to `SESSION.rawlog`. \param seed Of all the batch.
+/// \brief The dataset of a session to `SESSION.rawlog`. \param seed Seed of the whole batch.
 Command importCommand(const BatchSession& session, std::uint32_t seed);
 /// \brief The poles that SemanticKITTI's labels show, to `truth.polemap`.
 Command labelsCommand(const BatchSession& session);

@@ -13,7 +13,6 @@
 #include <limits>
 
 #include <polemcl/core/common/Types.h>
-
 #include "cli/JsonFile.h"
 #include "io/file/WholeFile.h"
 

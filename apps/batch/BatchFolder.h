@@ -68,7 +68,7 @@ class BatchFolder {
   void noteTime(const std::string& task, double seconds) const;
   /// \brief How long it took the last time; NaN when that is not known.
   double seconds(const std::string& task) const;
-  /// \brief Reason of the last attempt's failure; empty when there is none.
+  /// \brief Reason of the last attempt's failure; empty when no failure is noted.
   std::string failure(const std::string& task) const;
 
  private:

@@ -8,7 +8,6 @@
 #include <set>
 
 #include <polemcl/config/Config.h>
-
 #include "batch/BatchCommands.h"
 #include "cli/Settings.h"
 #include "io/dataset/Nclt.h"

@@ -62,7 +62,7 @@ struct BatchPlan {
 /// `maps = each`: all) are scored where that session has a truthMap. \throws Error as
 /// loadSettings() and readPublishedSessions(), and when the input or the true
 ///         poles of a session are not there (all that are missing are named).
-/// \param build Of the programs that do the tasks: tasks that another build has done are open.
+/// \param build Build of the programs that do the tasks. Tasks done by another build are open.
 BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());
 
 /// \brief Tasks that can be done at the same time, the first need nothing: ids by level.

@@ -1,7 +1,6 @@
 #include <fstream>
 
 #include <polemcl/core/common/Types.h>
-
 #include "batch/BatchPlan.h"
 #include "cli/JsonFile.h"
 

@@ -18,7 +18,6 @@
 #include <thread>
 
 #include <polemcl/core/common/Types.h>
-
 #include "batch/BatchCommands.h"
 #include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include <polemcl/config/Config.h>
-
 #include "io/file/Date.h"
 #include "io/file/InstalledFiles.h"
 #include "report/batch/PublishedResults.h"

@@ -78,15 +78,14 @@ struct BatchSpec {
 /// \param file The batch, or the name of an installed one such as `batches/year.ini`.
 /// \param set Values in place of the file's, `section.key=value`, as ConfigFile::set() takes them.
 /// \throws Error naming file, section and key: what ConfigReader refuses, names that are given
-///         twice or have other characters, sessions and configurations that nobody knows, `{data}`
-///         without
-///         `--data`, a session localized in the map before it where there is none, a configuration
-///         that neither localizes nor scores.
+///         twice or have other characters, unknown sessions and configurations, `{data}` without
+///         `--data`, a session localized in the map before it when no map comes before it, a
+///         configuration that neither localizes nor scores.
 BatchSpec readBatchSpec(const std::filesystem::path& file, const std::filesystem::path& data = {},
                         const std::vector<std::string>& set = {});
 
 /// \brief A seed from names: the same whatever else is in the batch, and in whatever order.
-/// \param name Of what draws, such as "month_03/run 4".
+/// \param name Name of what draws the random numbers, such as "month_03/run 4".
 std::uint32_t seedOf(std::uint32_t seed, const std::string& name);
 
 }  // namespace polemcl::apps

@@ -1,7 +1,6 @@
 #include "cli/JsonFile.h"
 
 #include <polemcl/core/common/Types.h>
-
 #include "cli/Version.h"
 #include "io/file/WholeFile.h"
 

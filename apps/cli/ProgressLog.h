@@ -17,8 +17,8 @@ class ProgressLog {
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds interval{30};  ///< longest time without a line
 
-  /// \param label What is being done, such as `batch`. \param total Tasks. \param done Of these,
-  /// before it began.
+  /// \param label What is being done, such as `batch`. \param total Number of tasks.
+  /// \param done Number of tasks that were done before it began.
   ProgressLog(std::string label, std::size_t total, std::size_t done, Time start);
 
   /// \brief The line that is due: at each further tenth of the tasks, and `interval` after the one

@@ -1,7 +1,6 @@
 #include "cli/Settings.h"
 
 #include <polemcl/config/Config.h>
-
 #include "io/file/InstalledFiles.h"
 
 namespace polemcl::apps {

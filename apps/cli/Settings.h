@@ -16,7 +16,6 @@
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
-
 #include "report/scene/ViewOptions.h"
 #include "sim/common/SimulationOptions.h"
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Binder.h>
-
 #include "cli/Settings.h"
 
 namespace polemcl::apps {

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "cli/JsonFile.h"
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"

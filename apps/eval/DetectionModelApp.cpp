@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "cli/JsonFile.h"
 #include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionModelFit.h"

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "cli/CommandLine.h"
 #include "cli/JsonFile.h"
 #include "eval/EvalCommands.h"

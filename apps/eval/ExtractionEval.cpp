@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "cli/JsonFile.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/PoleVisibility.h"

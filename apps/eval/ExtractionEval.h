@@ -6,7 +6,6 @@
 #include <optional>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "cli/Settings.h"
 #include "core/evaluation/DetectionEvaluation.h"
 #include "core/evaluation/Repeatability.h"

@@ -7,7 +7,6 @@
 
 #include <polemcl/core/extraction/PoleExtractor.h>
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "cli/Settings.h"
 
 namespace polemcl::apps {

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "cli/RawlogActions.h"
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"

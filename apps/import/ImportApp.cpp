@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <polemcl/core/common/Types.h>
-
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "import/DatasetImport.h"

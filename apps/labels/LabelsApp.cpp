@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "cli/Version.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "localize/FilterRuns.h"
 #include "localize/LocalizeTimings.h"
 

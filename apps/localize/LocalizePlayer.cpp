@@ -1,7 +1,6 @@
 #include "localize/LocalizePlayer.h"
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "core/common/PoseInterpolation.h"
 
 namespace polemcl::apps {

@@ -39,12 +39,12 @@ std::vector<TrajectoryErrors> known(const LocalizeResult& result) {
 Spread spreadOf(const std::vector<TrajectoryErrors>& errors, double TrajectoryErrors::*figure) {
   Spread spread;
   for (const auto& run : errors) {
-    spread.mean += run.*figure / errors.size();
+    spread.mean += run.*figure / static_cast<double>(errors.size());
     spread.largest = std::max(spread.largest, run.*figure);
   }
   if (errors.size() < 2) return spread;
   for (const auto& run : errors) spread.deviation += std::pow(run.*figure - spread.mean, 2);
-  spread.deviation = std::sqrt(spread.deviation / (errors.size() - 1));
+  spread.deviation = std::sqrt(spread.deviation / static_cast<double>(errors.size() - 1));
   return spread;
 }
 
@@ -65,9 +65,12 @@ void printHealth(std::ostream& out, const LocalizeResult& result) {
     unknown += !run.firstPose;
     for (int state = 0; state < 3; ++state) counts[state] += run.states[state];
   }
+  const auto percent = [all](std::size_t count) {
+    return 100.0 * static_cast<double>(count) / static_cast<double>(all);
+  };
   char line[200];
   std::snprintf(line, sizeof line, "health: %.1f %% ok, %.1f %% degraded, %.1f %% lost\n",
-                100.0 * counts[0] / all, 100.0 * counts[1] / all, 100.0 * counts[2] / all);
+                percent(counts[0]), percent(counts[1]), percent(counts[2]));
   out << line;
   if (unknown > 0) out << unknown << " of " << result.runs.size() << " runs never found a pose\n";
 }
@@ -90,7 +93,7 @@ Json inputs(const LocalizeFacts& facts) {
   json["empty_scans"] = counts.emptyScans;
   json["invalid_points"] = counts.invalidPoints;
   json["truncated"] = counts.truncated;
-  json["poles_per_scan"] = double(counts.poles) / counts.scans;
+  json["poles_per_scan"] = static_cast<double>(counts.poles) / static_cast<double>(counts.scans);
   json["map_poles"] = facts.mapPoles;
   json["particles"] = facts.localization.filter.particles;
   json["seed"] = facts.runs.seed;
@@ -159,8 +162,8 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
   char line[200];
   std::snprintf(line, sizeof line,
                 "%zu scans, %.1f poles per scan, map of %zu poles, %zu runs of %d particles\n",
-                counts.scans, double(counts.poles) / counts.scans, facts.mapPoles,
-                result.runs.size(), facts.localization.filter.particles);
+                counts.scans, static_cast<double>(counts.poles) / static_cast<double>(counts.scans),
+                facts.mapPoles, result.runs.size(), facts.localization.filter.particles);
   out << line;
   if (counts.truncated) out << "the rawlog is truncated: only its readable part was used\n";
   if (counts.emptyScans) out << counts.emptyScans << " scans without a valid point\n";

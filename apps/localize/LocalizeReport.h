@@ -7,7 +7,6 @@
 #include <string>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "localize/LocalizeApp.h"
 
 namespace polemcl::apps {

@@ -8,7 +8,6 @@
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
-
 #include "cli/RunFolder.h"
 #include "io/file/GrowingFile.h"
 

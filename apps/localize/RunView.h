@@ -17,7 +17,7 @@ namespace polemcl::apps {
 /// Scenes and frames are made by a thread of their own, from copies.
 class RunView {
  public:
-  /// \param map Drawn. \param name Of the input, for the title.
+  /// \param map Map to draw. \param name Name of the input, for the title.
   /// \param folder Gets `run_00_scenes/NNNNNN.3Dscene`, NNNNNN the scan; must outlive this object.
   /// \throws Error without a display for the window; when the folder of frames holds other files.
   RunView(const report::ViewOptions& options, const std::vector<MapPole>& map,

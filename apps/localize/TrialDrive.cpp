@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"

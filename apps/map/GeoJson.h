@@ -10,7 +10,6 @@
 #include <optional>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "io/map/Datum.h"
 
 namespace polemcl {

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "cli/Version.h"
 #include "io/file/TextFile.h"
 

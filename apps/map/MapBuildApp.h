@@ -38,7 +38,7 @@ struct MapBuildSummary {
 /// the job. The inputs are sessions, in their order: see MapAccumulator for which scans are used.
 /// The map's info holds `f_map.NAME` for each, NAME the rawlog's without its ending. The truth is
 /// interpolated at the time of each scan, not across gaps of more than 2 s.
-/// \param progress Of the current input; may be empty.
+/// \param progress Progress of the current input; may be empty.
 /// \throws Error as readPoleSequence() and readTum(); when the truth covers less than half of the
 ///         scans of an input; when no scan is usable; when no pole was found (names the section
 ///         length, the scan spacing and the counts); when `add` keeps no scans, or ones chosen by

@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "cli/Version.h"
 #include "core/mapping/MapAccumulator.h"
 #include "io/map/PolePositions.h"

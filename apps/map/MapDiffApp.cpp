@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 #include "mrpt/drawing/SceneParts.h"

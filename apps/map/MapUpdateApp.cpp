@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "cli/Version.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"

@@ -25,9 +25,9 @@ struct MapUpdateSummary {
 
 /// \brief Updates the map by one session after the other, in the order given, and writes what was
 /// asked for. Candidates are kept in the file, beside the map. Scans kept for `build --add` are
-/// not: the updated map no longer follows from them. \param progress Of the current input; may be
-/// empty. \throws Error as loadMappingSession(), updateMap(), readPoleMap(); when the datum differs
-/// from
+/// not: the updated map no longer follows from them.
+/// \param progress Progress of the current input; may be empty.
+/// \throws Error as loadMappingSession(), updateMap(), readPoleMap(); when the datum differs from
 ///         the map's; when a session has no usable scan; when fewer than a fifth of at least ten
 ///         map poles in free view were found: a session of another place, or of another datum, must
 ///         not spoil a map.

@@ -12,7 +12,6 @@
 #include <polemcl/core/mapping/MapUpdater.h>
 #include <polemcl/io/map/PoleMapFile.h>
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "cli/Settings.h"
 #include "io/map/Datum.h"
 

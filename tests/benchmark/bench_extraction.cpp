@@ -11,7 +11,6 @@
 
 #include <polemcl/core/extraction/PoleExtractor.h>
 #include <polemcl/io/data/Cloud.h>
-
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
 

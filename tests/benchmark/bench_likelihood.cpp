@@ -9,7 +9,6 @@
 #include <random>
 
 #include <polemcl/core/localization/PoleLikelihood.h>
-
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
 

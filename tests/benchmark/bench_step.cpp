@@ -14,7 +14,6 @@
 #include <random>
 
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
-
 #include "mrpt/filter/MotionAction.h"
 
 using namespace polemcl;

@@ -3,7 +3,6 @@
 #include <map>
 
 #include <polemcl/config/Config.h>
-
 #include "cli/Settings.h"
 #include "core/common/Angles.h"
 #include "io/file/TextFile.h"

@@ -8,7 +8,6 @@
 #include <random>
 
 #include <polemcl/config/Config.h>
-
 #include "io/file/AtomicFile.h"
 #include "support/ExpectHas.h"
 

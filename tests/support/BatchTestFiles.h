@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include <polemcl/core/common/Types.h>
-
 #include "batch/BatchPlan.h"
 #include "support/TempFolder.h"
 
@@ -49,7 +48,7 @@ inline nlohmann::json resultsIn(const fs::path& folder) {
   return nlohmann::json::parse(readText(folder / "results.json"));
 }
 
-/// The result of a session under a configuration; null when there is none.
+/// The result of a session under a configuration; null when the batch has no such result.
 inline nlohmann::json resultOf(const nlohmann::json& batch, const std::string& configuration,
                                const std::string& session) {
   for (const auto& result : batch.at("results"))

@@ -4,7 +4,6 @@
 
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
-
 #include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogWriter.h"

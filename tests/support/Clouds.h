@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/common/Random.h"
 
 namespace polemcl::clouds {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-
 #include "support/Samples.h"
 #include "support/TestClouds.h"
 

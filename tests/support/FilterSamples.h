@@ -5,7 +5,6 @@
 #include <memory>
 
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
-
 #include "support/PoleStreet.h"
 
 namespace polemcl::tests {

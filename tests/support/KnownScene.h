@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
-
 #include "support/RayCast.h"
 
 namespace polemcl::clouds {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/common/Random.h"
 
 namespace polemcl::tests {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
-
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
 

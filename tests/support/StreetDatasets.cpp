@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/dataset/Mulran.h"

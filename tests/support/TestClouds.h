@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/sensor/SensorModel.h"
 
 namespace polemcl::samples {

@@ -2,8 +2,8 @@
 /// \file polemcl.h
 /// \brief All of polemcl::polemcl. See share/doc/cpp.md.
 
-#include <polemcl/core.h>
 #include <polemcl/config/Config.h>
+#include <polemcl/core.h>
 #include <polemcl/io/data/Cloud.h>
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/io/map/PoleMapFile.h>

@@ -5,7 +5,6 @@
 #include <cctype>
 
 #include <polemcl/config/Config.h>
-
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 

@@ -18,7 +18,7 @@ int main(int count, char** arguments) try {
   auto map = std::make_shared<polemcl::CPoleMap>();
   map->loadFromPoleMapFile(arguments[2]);
   const polemcl::LocalizationOptions options;
-  polemcl::LocalizationPipeline pipeline({map, options.global}, options, 1);
+  polemcl::LocalizationPipeline pipeline({map, polemcl::GlobalOptions()}, options, 1);
   polemcl::StartOptions start;
   start.pose =
       polemcl::Pose2D{std::atof(arguments[3]), std::atof(arguments[4]), std::atof(arguments[5])};

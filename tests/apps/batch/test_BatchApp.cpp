@@ -7,7 +7,6 @@
 #include <cstdlib>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "batch/BatchApp.h"
 #include "batch/BatchFolder.h"
 #include "io/file/TextFile.h"

@@ -1,5 +1,4 @@
 #include <polemcl/core/common/Types.h>
-
 #include "batch/BatchApp.h"
 #include "io/file/TextFile.h"
 #include "support/BatchTestFiles.h"

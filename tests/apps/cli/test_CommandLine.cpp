@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "cli/CommandLine.h"
 #include "cli/Version.h"
 

@@ -1,5 +1,4 @@
 #include <polemcl/core/common/Types.h>
-
 #include "cli/RunFolder.h"
 #include "support/TempFolder.h"
 

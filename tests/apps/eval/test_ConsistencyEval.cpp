@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include <polemcl/core/common/Types.h>
-
 #include "eval/ConsistencyEval.h"
 #include "eval/EvalApp.h"
 #include "support/TempFolder.h"

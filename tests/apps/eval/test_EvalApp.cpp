@@ -3,7 +3,6 @@
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "eval/EvalApp.h"
 #include "support/TempFolder.h"
 

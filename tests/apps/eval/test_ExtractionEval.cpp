@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
-
 #include "cli/RawlogActions.h"
 #include "eval/EvalApp.h"
 #include "eval/ExtractionEval.h"

@@ -4,7 +4,6 @@
 #include <map>
 
 #include <polemcl/core/common/Types.h>
-
 #include "extract/ExtractApp.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/StreetTest.h"

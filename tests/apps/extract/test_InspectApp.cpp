@@ -1,7 +1,6 @@
 #include <cstdlib>
 
 #include <polemcl/core/common/Types.h>
-
 #include "extract/ExtractApp.h"
 #include "extract/InspectApp.h"
 #include "sim/drive/Drive.h"

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include <polemcl/core/common/Types.h>
-
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogReader.h"

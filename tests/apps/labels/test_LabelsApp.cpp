@@ -3,7 +3,6 @@
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/map/PolePositions.h"

@@ -30,7 +30,7 @@ void release(void* memory) {
 
 }  // namespace
 
-// Of this test program and of the libraries it loads.
+// These operators replace those of this test program and of the libraries it loads.
 void* operator new(std::size_t size) {
   return counted(size);
 }

@@ -6,7 +6,6 @@
 
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "cli/Settings.h"
 #include "import/ImportApp.h"
 #include "io/data/Trajectory.h"

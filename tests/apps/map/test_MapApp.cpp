@@ -1,6 +1,5 @@
 #include <polemcl/core/common/Types.h>
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "extract/ExtractApp.h"
 #include "io/data/Trajectory.h"
 #include "io/map/PolePositions.h"

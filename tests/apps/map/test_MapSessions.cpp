@@ -2,7 +2,6 @@
 /// \brief pole-map with several sessions: the paper's protocol, and sessions added one by one.
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "extract/ExtractApp.h"
 #include "io/file/Bytes.h"
 #include "map/MapApp.h"

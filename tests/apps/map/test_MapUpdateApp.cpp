@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "io/data/Trajectory.h"
 #include "map/MapApp.h"
 #include "map/MapDiffApp.h"

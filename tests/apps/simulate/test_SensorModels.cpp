@@ -1,5 +1,4 @@
 #include <polemcl/core/common/Types.h>
-
 #include "batch/BatchApp.h"
 #include "core/sensor/SensorModel.h"
 #include "eval/EvalApp.h"

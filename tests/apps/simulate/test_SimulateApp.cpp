@@ -1,5 +1,4 @@
 #include <polemcl/core/common/Types.h>
-
 #include "cli/Settings.h"
 #include "io/dataset/ScanFolder.h"
 #include "simulate/SimulateApp.h"
@@ -69,7 +68,7 @@ TEST_F(SimulateApp, RefusesALidarItDoesNotKnowAndListsThoseItDoes) {
 }
 
 TEST_F(SimulateApp, RefusesBeamsThatAreNotListed) {
-  expectFailure(run({"--sensor", "table"}), {"street.ini", "elevations_deg", "at least 2 beams"});
+  expectFailure(run({"--sensor", "table"}), {"street.ini", "elevations_deg", "at least 2 rings"});
   EXPECT_FALSE(fs::exists(folder / "drive"));
 }
 

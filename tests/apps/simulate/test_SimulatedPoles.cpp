@@ -1,7 +1,6 @@
 #include <tbb/task_arena.h>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "eval/EvalApp.h"
 #include "extract/ExtractApp.h"
 #include "import/DatasetImport.h"

@@ -4,7 +4,6 @@
 #include <random>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/common/GreedyAssignment.h"
 
 namespace polemcl::test_greedy_assignment {

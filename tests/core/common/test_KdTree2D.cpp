@@ -5,7 +5,6 @@
 #include <random>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/common/KdTree2D.h"
 
 namespace polemcl::test_kd_tree2_d {

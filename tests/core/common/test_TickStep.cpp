@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/common/TickStep.h"
 
 namespace polemcl::test_tick_step {

@@ -25,7 +25,7 @@ PoleDetection detection(double x, double y, double confidence, double radius = 0
 TEST(DetectionEvaluation, CountsRightDetectionsAndVisiblePoles) {
   DetectionEvaluation evaluation;
   // Right and visible; right though not visible; a second one on a pole already taken; nothing
-  // there. Of three visible poles one is found.
+  // there. One of three visible poles is found.
   evaluation.add(
       {detection(10, 0.1, 0.9), detection(0, 20, 0.8), detection(10, -0.3, 0.6),
        detection(-5, -5, 0.7)},
@@ -73,7 +73,7 @@ TEST(DetectionEvaluation, CorrelatedErrorsAreWeighedByTheWholeCovariance) {
 
 TEST(DetectionEvaluation, AreaUnderTheRocCountsPairs) {
   DetectionEvaluation evaluation;
-  // Right: 0.9 and 0.6; wrong: 0.6, 0.7 and 0.5. Of six pairs four are in order, one is a tie.
+  // Right: 0.9 and 0.6; wrong: 0.6, 0.7 and 0.5. Four of six pairs are in order, one is a tie.
   evaluation.add({detection(1, 0, 0.9), detection(0, 1, 0.6), detection(50, 0, 0.6),
                   detection(60, 0, 0.7), detection(70, 0, 0.5)},
                  {{1, 0, 0.1, true}, {0, 1, 0.1, true}});

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
-
 #include "support/KnownScene.h"
 
 namespace polemcl::test_pole_extractor {
@@ -251,7 +250,7 @@ class PoleExtractorRefusal : public ::testing::TestWithParam<Spoiled> {};
 const std::vector<Spoiled> kSpoiled = {
     {RejectionReason::tooFewPoints, [](ScanLineOptions& o) { o.minPoints = 10000; }},
     {RejectionReason::tooShort, [](ScanLineOptions& o) { o.minHeight = 10; }},
-    {RejectionReason::startsTooHigh, [](ScanLineOptions& o) { o.maxBottom = -1; }},
+    {RejectionReason::startsTooHigh, [](ScanLineOptions& o) { o.maxBottom = 1e-6; }},
     {RejectionReason::tilted, [](ScanLineOptions& o) { o.maxTilt = 1e-7; }},
     {RejectionReason::notStraight, [](ScanLineOptions& o) { o.maxScatter = 1e-7; }},
     {RejectionReason::tooLow, [](ScanLineOptions& o) { o.minTop = 4; }},

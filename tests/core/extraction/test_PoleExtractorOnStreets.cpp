@@ -8,7 +8,6 @@
 #include <ostream>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "io/data/Trajectory.h"
 #include "support/Clouds.h"
 #include "support/KnownScene.h"

@@ -24,7 +24,7 @@ void* counted(std::size_t size) {
 
 }  // namespace
 
-// Of this test program and of the library it loads.
+// These operators replace those of this test program and of the library it loads.
 void* operator new(std::size_t size) {
   return counted(size);
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
-
 #include "core/extraction/VisibilityRange.h"
 #include "support/KnownScene.h"
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include <polemcl/core/global_localization/GlobalLocalizer.h>
-
 #include "support/PoleCity.h"
 
 namespace polemcl::test_global_localizer {

@@ -10,7 +10,6 @@
 #include <filesystem>
 
 #include <polemcl/core/global_localization/GlobalLocalizer.h>
-
 #include "io/file/Npz.h"
 #include "io/map/PolePositions.h"
 #include "support/PoleCity.h"
@@ -87,8 +86,8 @@ Count starts(const std::vector<MapPole>& map, const tests::Surroundings& things,
 
 }  // namespace
 
-/// Of this map's poles half are labelled, of the labelled poles two thirds are on the map, 0.16 m
-/// off in the median. What is not labelled is taken for a pole again in half of the cases.
+/// Half of this map's poles are labelled. Two thirds of the labelled poles are on the map, 0.16 m
+/// off in the median. Unlabelled things are taken for a pole again in half of the cases.
 TEST(GlobalLocalizerOnMaps, FindsTheRobotInAPublishedMap) {
   if (dataFolder().empty()) GTEST_SKIP() << "POLEMCL_DATA is not set";
   const std::filesystem::path folder = dataFolder() / "published";

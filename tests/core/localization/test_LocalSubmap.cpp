@@ -7,7 +7,6 @@
 #include <string>
 
 #include <polemcl/core/localization/LocalSubmap.h>
-
 #include "support/PoleCity.h"
 
 namespace polemcl::test_local_submap {

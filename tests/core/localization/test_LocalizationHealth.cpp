@@ -15,7 +15,7 @@ class Feed {
  public:
   explicit Feed(const HealthOptions& options = {}) : monitor(options) { monitor.begin(); }
 
-  /// \param share Of the poles that match. \param poles Of the scan.
+  /// \param share Share of the poles that match. \param poles Number of poles in the scan.
   Health scan(double share, int poles = 10) {
     HealthInput input;
     input.time = time += period;

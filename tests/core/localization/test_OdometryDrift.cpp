@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <polemcl/core/localization/OdometryDrift.h>
-
 #include "sim/common/Random.h"
 
 namespace polemcl::test_odometry_drift {

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include <polemcl/core/localization/OdometryMonitor.h>
-
 #include "support/PoleCity.h"
 
 namespace polemcl::test_odometry_monitor {

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <polemcl/core/localization/ScanRegistration.h>
-
 #include "sim/common/Random.h"
 
 namespace polemcl::test_scan_registration {

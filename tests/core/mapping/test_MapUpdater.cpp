@@ -64,7 +64,7 @@ LandmarkMap kept(const std::vector<Place>& places) {
   return landmarksFrom(poles);
 }
 
-/// The one kept pole within 0.1 m of a place; null if there is none.
+/// The one kept pole within 0.1 m of a place; null if no pole is there.
 const LandmarkRecord* find(const LandmarkMap& map, double x, double y) {
   const LandmarkRecord* found = nullptr;
   for (const LandmarkRecord& pole : map.poles)

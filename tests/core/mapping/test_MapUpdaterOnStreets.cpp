@@ -8,7 +8,6 @@
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include <polemcl/core/mapping/MapUpdater.h>
-
 #include "sim/common/Random.h"
 #include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionSampler.h"

@@ -128,7 +128,7 @@ TEST(PoleMapBuilder, ARunDoesNotContinueInAnotherDrive) {
 }
 
 TEST(PoleMapBuilder, TakesTheMiddleScanOfASection) {
-  // Of the scans at 0, 0.4 and 0.9 m only the one at 0.4 m counts; its pole is the map.
+  // Only the scan at 0.4 m counts among those at 0, 0.4 and 0.9 m; its pole is the map.
   const std::vector<MappingScan> scans{scanAt(0, {{5, 1}}), scanAt(0.4, {{5, 3}}),
                                        scanAt(0.9, {{5, 6}})};
   const PoleMapResult result = buildPoleMap(scans, sectionsOfOneMetre(1, 0));

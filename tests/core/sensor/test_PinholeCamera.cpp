@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <polemcl/core/sensor/PinholeCamera.h>
-
 #include "core/extraction/scan_line/ScanLines.h"
 
 namespace polemcl::test_pinhole_camera {

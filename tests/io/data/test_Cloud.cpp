@@ -2,7 +2,6 @@
 #include <limits>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "support/IoFiles.h"
 
 namespace polemcl::test_cloud {

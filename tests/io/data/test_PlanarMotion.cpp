@@ -3,7 +3,6 @@
 #include <limits>
 
 #include <polemcl/io/data/PlanarMotion.h>
-
 #include "support/IoFiles.h"
 
 namespace polemcl::test_planar_motion {

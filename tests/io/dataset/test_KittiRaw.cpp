@@ -212,7 +212,7 @@ TEST_F(KittiRawTest, RefusesFewerTimesThanScans) {
 TEST_F(KittiRawTest, RefusesABlankTimeOfAScanThatIsThere) {
   write("drive/velodyne_points/timestamps.txt",
         stamp(25) + "\n" + stamp(25.2) + stamp(25.3) + stamp(25.4));
-  expectIn(refusal(), "timestamps.txt:2: ", "no time");
+  expectIn(refusal(), "timestamps.txt:2: ", "not a time");
 }
 
 TEST_F(KittiRawTest, RefusesTimesThatDoNotIncrease) {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/Date.h"
 
 namespace polemcl::test_date {

@@ -6,7 +6,6 @@
 #include <functional>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "io/data/PcdFile.h"
 #include "io/dataset/NcltScans.h"
 #include "io/file/Bytes.h"

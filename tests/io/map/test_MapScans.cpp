@@ -1,7 +1,6 @@
 #include <random>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "core/mapping/MapAccumulator.h"
 #include "io/map/MapScans.h"
 #include "support/IoFiles.h"

@@ -5,7 +5,6 @@
 #include <random>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "io/file/Bytes.h"
 #include "support/IoFiles.h"
 

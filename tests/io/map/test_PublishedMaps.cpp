@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "io/map/PolePositions.h"
 
 namespace polemcl::test_published_maps {

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
-
 #include "support/PoleCity.h"
 
 namespace polemcl::test_localization_pipeline {

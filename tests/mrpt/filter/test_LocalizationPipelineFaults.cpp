@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
-
 #include "support/PoleCity.h"
 
 namespace polemcl::test_localization_pipeline_faults {

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
-
 #include "support/FilterSamples.h"
 
 namespace polemcl::test_pole_particle_filter {

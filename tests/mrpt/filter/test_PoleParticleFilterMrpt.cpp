@@ -8,7 +8,6 @@
 #include <thread>
 
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
-
 #include "support/PoleStreet.h"
 
 namespace polemcl::test_pole_particle_filter_mrpt {

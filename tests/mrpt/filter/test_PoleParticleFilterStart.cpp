@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
-
 #include "support/FilterSamples.h"
 
 namespace polemcl::test_pole_particle_filter_start {

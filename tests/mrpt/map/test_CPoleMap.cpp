@@ -13,7 +13,6 @@
 
 #include <polemcl/io/map/PoleMapFile.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
-
 #include "io/map/PolePositions.h"
 #include "mrpt/map/RegisterClasses.h"
 #include "support/Samples.h"

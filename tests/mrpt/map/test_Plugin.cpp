@@ -15,7 +15,6 @@
 
 #include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
-
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/ExpectHas.h"
@@ -146,7 +145,7 @@ TEST(Plugin, ExportsWhatPublicHeadersDeclare) {
                                    "polemcl::compose(polemcl::Pose2D const&, "
                                    "polemcl::Pose2D const&)"})
     EXPECT_EQ(std::count(symbols.begin(), symbols.end(), wanted), 1) << wanted;
-  // Of private headers nothing is visible.
+  // Nothing from private headers is visible.
   for (const std::string& symbol : symbols)
     EXPECT_EQ(symbol.find("polemcl::KdTree2D::"), std::string::npos) << symbol;
 }

@@ -11,7 +11,6 @@
 #include <fstream>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
-
 #include "io/file/ReadLimits.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/ExpectHas.h"

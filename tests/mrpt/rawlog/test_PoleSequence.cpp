@@ -12,7 +12,6 @@
 #include <fstream>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "support/ExpectHas.h"
 #include "support/Samples.h"
 #include "support/TestClouds.h"

@@ -5,7 +5,6 @@
 #include <regex>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/CsvTable.h"
 #include "io/file/TextFile.h"
 #include "report/batch/BatchFiles.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <polemcl/core/common/Types.h>
-
 #include "report/batch/BatchMeasures.h"
 #include "support/SampleBatches.h"
 

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include <polemcl/core/common/Types.h>
-
 #include "report/batch/BatchReport.h"
 #include "support/SampleBatches.h"
 #include "support/TempFolder.h"
@@ -23,7 +22,6 @@ BatchTimings someTimings(double factor) {
   return timings;
 }
 
-/// All sorts of pages.
 std::vector<std::string> pages() {
   std::vector<BatchResults> batches{smallBatch(), smallBatch(),  smallBatch(),
                                     smallBatch(), scoredBatch(), scoredBatch()};
@@ -269,11 +267,9 @@ TEST(BatchReport, PublishedFiguresOfASessionStandBesideOurs) {
   const Element& section = sectionOf(page, "sessions");
   const std::string dash = "\xE2\x80\x93";
   EXPECT_EQ(cellsOf(section, "two_2"),
-            (std::vector<std::string>{"two_2", "25.0", "50.0",    //
-                                      "0.400", "0.120", "0.130",  //
-                                      "0.800", "0.146", "0.178",  //
-                                      "0.800", "0.626", "0.663",  //
-                                      "1.600", "0.810", "0.857", "2, 1 failed"}));
+            (std::vector<std::string>{"two_2", "25.0", "50.0", "0.400", "0.120", "0.130", "0.800",
+                                      "0.146", "0.178", "0.800", "0.626", "0.663", "1.600", "0.810",
+                                      "0.857", "2, 1 failed"}));
   EXPECT_EQ(cellsOf(section, "one<&\">")[4], dash);
   // Below, the means of theirs over the sessions that they have and we have figures of.
   const auto mean = cellsOf(section, "Mean of sessions");
@@ -289,8 +285,7 @@ TEST(BatchReport, ShortErrorsAreInCentimetres) {
   const std::string text = batchReport(batch);
   const Element page = parsePage(text);
   const Element& section = sectionOf(page, "sessions");
-  // Mean of 0.6 and 0.84 cm, deviation 0.24/√2 cm.
-  EXPECT_EQ(cellsOf(section, "two_2")[3], "0.72 ± 0.17");
+  EXPECT_EQ(cellsOf(section, "two_2")[3], "0.72 ± 0.17");  // 0.6 and 0.84 cm, 0.24/√2 cm
   EXPECT_EQ(cellsOf(section, "two_2")[4], "12.0");
   EXPECT_EQ(cellsOf(section, "three")[3], "400.0");
   EXPECT_NE(text.find("Δ<sub>pos</sub> (cm)"), std::string::npos);
@@ -337,8 +332,7 @@ TEST(BatchReport, MapsAloneAreNoTrouble) {
   EXPECT_NE(text.find("<p class=\"big\">0.667</p>"), std::string::npos);
   EXPECT_EQ(text.find("alarm\">"), std::string::npos);
   EXPECT_EQ(text.find("id=\"settings\""), std::string::npos);
-  // Where a map failed, that is told.
-  batch.failures = {{"map.plain.three", "no pole found", ""}};
+  batch.failures = {{"map.plain.three", "no pole found", ""}};  // a failed map is reported
   EXPECT_NE(batchReport(batch).find("alarm\">"), std::string::npos);
 }
 
@@ -367,8 +361,7 @@ TEST(BatchReport, TheOrderOfTheResultsDoesNotMatter) {
 }
 
 TEST(BatchReport, MapsKeepShapesWithNorthUp) {
-  const Element page = parsePage(batchReport(smallBatch()));
-  // Truth: 40 m along x, then 30 m along y.
+  const Element page = parsePage(batchReport(smallBatch()));  // 40 m along x, then 30 m along y
   const Element& section = sectionOf(page, "paths");
   std::vector<std::vector<Eigen::Vector2d>> paths;
   for (const Element* svg : section.named("svg"))

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include <polemcl/core/common/Types.h>
-
 #include "report/batch/BatchResults.h"
 #include "support/SampleBatches.h"
 

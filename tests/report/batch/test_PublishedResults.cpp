@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include <polemcl/core/common/Types.h>
-
 #include "report/batch/PublishedResults.h"
 #include "support/TempFolder.h"
 

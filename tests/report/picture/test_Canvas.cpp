@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <polemcl/core/common/Types.h>
-
 #include "report/picture/Canvas.h"
 #include "support/Pixels.h"
 #include "support/SampleViews.h"

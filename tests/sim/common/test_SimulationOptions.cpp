@@ -4,7 +4,6 @@
 #include <limits>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/common/SimulationOptions.h"
 #include "sim/lidar/LidarModel.h"
 

@@ -3,7 +3,6 @@
 #include <functional>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/common/NormalDistribution.h"
 #include "support/DetectionModels.h"
 

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/detections/DetectionModelFile.h"
 #include "support/DetectionModels.h"
 

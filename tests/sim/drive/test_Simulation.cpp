@@ -7,7 +7,6 @@
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/io/data/Cloud.h>
-
 #include "io/dataset/ScanFolder.h"
 #include "io/map/PolePositions.h"
 #include "sim/drive/Drive.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/lidar/LidarModel.h"
 
 namespace polemcl::test_lidar_model {

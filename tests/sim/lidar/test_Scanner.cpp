@@ -4,7 +4,6 @@
 #include <set>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
 

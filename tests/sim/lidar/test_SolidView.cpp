@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/common/Random.h"
 #include "sim/lidar/SolidView.h"
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/drive/Drive.h"
 
 namespace polemcl::test_detour {

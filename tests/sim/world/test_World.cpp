@@ -9,7 +9,6 @@
 #include <set>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/world/World.h"
 
 namespace polemcl::test_world {

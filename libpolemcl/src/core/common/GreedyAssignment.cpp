@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/common/KdTree2D.h"
 
 namespace polemcl {

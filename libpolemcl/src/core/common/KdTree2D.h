@@ -14,8 +14,7 @@ namespace polemcl {
 /// \brief What a search over points found.
 struct PointHit {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t index =
-      none;  ///< into the points given to the constructor; `none` if there is none
+  std::uint32_t index = none;  ///< into the points given to the constructor; `none` without a hit
   double squaredDistance = 0;  ///< m², dx² + dy² in that order; 0 for `none`
   explicit operator bool() const { return index != none; }
 };
@@ -31,7 +30,7 @@ class KdTree2D {
 
   std::size_t size() const;
   const Eigen::Vector2d& point(std::size_t index) const;
-  /// \brief Nearest point with squared distance < radius². Of equals, the lower index.
+  /// \brief Nearest point with squared distance < radius². The lower index wins a tie.
   /// A query or radius that is not a number finds nothing.
   PointHit nearest(double x, double y, double radius) const;
   /// \brief All points with squared distance < radius², by ascending index; `out` is replaced.

@@ -118,7 +118,8 @@ std::vector<PoleGrid::Entry> PoleGrid::entriesOf(const std::vector<Eigen::Vector
     const auto lastRow = static_cast<std::int64_t>((y + radius + m_margin) * m_inverseCell);
     for (std::int64_t row = firstRow; row <= lastRow; ++row) {
       for (std::int64_t column = firstColumn; column <= lastColumn; ++column) {
-        const double lowX = column * m_cell - m_margin, lowY = row * m_cell - m_margin;
+        const double lowX = static_cast<double>(column) * m_cell - m_margin;
+        const double lowY = static_cast<double>(row) * m_cell - m_margin;
         const Reach r =
             reach(x, y, lowX, lowY, lowX + m_cell + 2 * m_margin, lowY + m_cell + 2 * m_margin);
         if (r.nearest <= radius * radius) entries.push_back({keyOf(column, row), i, r});

@@ -28,8 +28,8 @@ class PoleGrid {
     double x, y;          ///< m
     std::uint32_t index;  ///< into the points given to the constructor
   };
-  /// \brief Nearest point with squared distance < squaredRadius; null if there is none. Of equals,
-  /// the lower index. A query that is not a number finds nothing.
+  /// \brief Nearest point with squared distance < squaredRadius; null without one. The lower
+  /// index wins a tie. A query that is not a number finds nothing.
   /// \param squaredRadius At most radius()², m²; beyond it the answer would not be complete.
   const Place* find(double x, double y, double squaredRadius) const noexcept {
     if (!(x >= m_minX && x <= m_maxX && y >= m_minY && y <= m_maxY)) return nullptr;

@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include <polemcl/core/common/PoleIndex.h>
-
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
 

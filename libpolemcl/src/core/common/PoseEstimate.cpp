@@ -3,7 +3,6 @@
 #include <numeric>
 
 #include <polemcl/core/common/PoseEstimate.h>
-
 #include "core/common/SimdMath.h"
 
 namespace polemcl {

@@ -18,7 +18,7 @@ struct TruePoleInScan {
 
 /// \brief Figures over scans. "Right" detections lie within the matching radius of a true pole,
 /// *visible or not*, one to one (greedyAssignment()): who finds a pole behind two returns is not
-/// wrong. Recall is of the visible ones only. What there is nothing to compute from is none.
+/// wrong. Recall is of the visible ones only. A figure without data stays empty.
 struct DetectionScore {
   std::size_t scans = 0, detections = 0;
   std::size_t right = 0;    ///< detections that are true poles
@@ -26,7 +26,7 @@ struct DetectionScore {
   std::size_t found = 0;    ///< of these, matched by a detection
   std::optional<double> precision, recall;
 
-  // Of the right detections, none left out. Errors are detection minus truth.
+  // Figures of all right detections. Errors are detection minus truth.
   std::optional<double> centreMean, centreMedian, centre90;  ///< distance; 90 % are nearer, m
   std::optional<double> radiusMean;                          ///< signed, m
   std::optional<double> radiusMedian;                        ///< of the absolute error, m
@@ -41,7 +41,7 @@ struct DetectionScore {
 /// \brief Collects scans, then sums up.
 class DetectionEvaluation {
  public:
-  /// \param radius Of matching, m. \throws Error unless finite and positive.
+  /// \param radius Matching radius, m. \throws Error unless finite and positive.
   explicit DetectionEvaluation(double radius = 0.5);
 
   /// \brief One scan. Both in one frame whose origin is the sensor's.

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/evaluation/DetectionEvaluation.h"
 
 namespace polemcl {
@@ -20,8 +19,8 @@ struct WorldPole {
   double top = 0;        ///< m above ground
 };
 
-/// \brief A pole is visible when at least so many returns carry its id, the highest so much above
-/// the lowest, and the sensor is not farther away.
+/// \brief A pole is visible when at least `returns` returns carry its id, the highest is at least
+/// `height` above the lowest, and the sensor is not farther away than `range`.
 struct VisibilityRule {
   std::size_t returns = 6;
   double height = 0.6;  ///< m

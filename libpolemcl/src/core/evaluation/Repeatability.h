@@ -42,7 +42,7 @@ struct RotationScore {
 
 /// \brief Turns a scan by 30°, 60°, … 330° about z, extracts again and adds to `score` how many of
 /// its poles are found again in their place.
-/// \param points One turn, lidar frame. \param radius Of matching, m, inclusive.
+/// \param points One turn, lidar frame. \param radius Matching radius, m, inclusive.
 void addRotations(PoleExtractor& extractor, const PointsView& points, double radius,
                   RotationScore& score);
 

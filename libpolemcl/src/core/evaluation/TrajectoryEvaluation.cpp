@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "core/common/BipartiteMatching.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/PoseInterpolation.h"

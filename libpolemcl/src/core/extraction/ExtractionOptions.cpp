@@ -1,13 +1,11 @@
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/extraction/ExtractionOptions.h>
-
 #include "core/common/Angles.h"
 
 namespace polemcl {
 namespace {
 
-const Range s_positive = Range::above(0), s_notNegative = Range::atLeast(0),
-            s_share = Range::between(0, 1);
+const Range s_above0 = Range::above(0), s_from0 = Range::atLeast(0), s_0to1 = Range::between(0, 1);
 
 void bindChoices(Binder& b, RangeImageOptions& o) {
   b.flag("heights_above_ground", o.heightsAboveGround,
@@ -48,25 +46,24 @@ void bind(Binder& b, RangeImageOptions& o) {
   // Cells of 1 m cover the square that the range spans.
   b.number("max_range_m", o.maxRange, Range::aboveUpTo(0, 1000), "m",
            "farther points are not used");
-  b.number("epsilon_m", o.epsilon, s_positive, "m", "greatest step in range inside a cluster");
-  b.integer("min_pixels", o.minPixels, s_notNegative, "px",
-            "a cluster needs more pixels than this");
+  b.number("epsilon_m", o.epsilon, s_above0, "m", "greatest step in range inside a cluster");
+  b.integer("min_pixels", o.minPixels, s_from0, "px", "a cluster needs more pixels than this");
   b.integer("max_width_px", o.maxWidthPx, Range::atLeast(1), "px", "greatest width of a cluster");
-  b.number("min_aspect", o.minAspect, s_notNegative, "", "least height / width of a cluster");
-  b.number("foreground", o.foreground, s_share, "",
+  b.number("min_aspect", o.minAspect, s_from0, "", "least height / width of a cluster");
+  b.number("foreground", o.foreground, s_0to1, "",
            "least share of a cluster's pixels that pass foreground_test");
   b.number("min_top_m", o.minTop, Range::any(), "m", "least height of a pole's top");
   b.number("max_bottom_m", o.maxBottom, Range::any(), "m", "greatest height of a pole's bottom");
-  b.number("min_height_m", o.minHeight, s_notNegative, "m", "least distance from bottom to top");
-  b.number("min_radius_m", o.minRadius, s_notNegative, "m", "thinner circles are refused");
-  b.number("max_radius_m", o.maxRadius, s_positive, "m", "thicker circles are refused");
-  b.number("fit_margin_m", o.fitMargin, s_notNegative, "m",
+  b.number("min_height_m", o.minHeight, s_from0, "m", "least distance from bottom to top");
+  b.number("min_radius_m", o.minRadius, s_from0, "m", "thinner circles are refused");
+  b.number("max_radius_m", o.maxRadius, s_above0, "m", "thicker circles are refused");
+  b.number("fit_margin_m", o.fitMargin, s_from0, "m",
            "half width of the box of the fit beyond the radius");
   b.number("fit_max_z_m", o.fitMaxZ, Range::any(), "m", "greatest height of the points fitted");
   b.integer("min_fit_points", o.minFitPoints, Range::atLeast(3), "",
             "least number of points fitted");
-  b.number("free_ring_m", o.freeRing, s_notNegative, "m", "width of the free space round a pole");
-  b.number("free_share", o.freeShare, s_notNegative, "",
+  b.number("free_ring_m", o.freeRing, s_from0, "m", "width of the free space round a pole");
+  b.number("free_share", o.freeShare, s_from0, "",
            "points allowed in the free space, as a share of those fitted");
   bindChoices(b, o);
 
@@ -78,34 +75,32 @@ void bind(Binder& b, RangeImageOptions& o) {
 
 void bind(Binder& b, ScanLineOptions& o) {
   b.section("scan_line", "Scan lines of real beams, for method = scan_line");
-  b.number("min_top_m", o.minTop, s_notNegative, "m",
-           "least height of a pole's top above local ground");
+  b.number("min_top_m", o.minTop, s_from0, "m", "least height of a pole's top above local ground");
   b.number("max_range_m", o.maxRange, Range::aboveUpTo(0, 300), "m",
            "poles farther away are not looked for");
-  b.number("min_confidence", o.minConfidence, s_share, "",
+  b.number("min_confidence", o.minConfidence, s_0to1, "",
            "poles with a lower confidence are refused");
-  b.number("max_radius_m", o.maxRadius, s_positive, "m", "thicker poles are refused");
+  b.number("max_radius_m", o.maxRadius, s_above0, "m", "thicker poles are refused");
   b.tier(Tier::expert);
-  b.number("max_width_m", o.maxWidth, s_positive, "m", "greatest width of a segment of a pole");
-  b.number("connect_step_m", o.connectStep, s_positive, "m",
+  b.number("max_width_m", o.maxWidth, s_above0, "m", "greatest width of a segment of a pole");
+  b.number("connect_step_m", o.connectStep, s_above0, "m",
            "greatest step in range between neighbours in a segment");
-  b.number("edge_step_m", o.edgeStep, s_positive, "m",
+  b.number("edge_step_m", o.edgeStep, s_above0, "m",
            "least step in range from a segment's edge to what lies behind it");
   // Cells of twice the reach cover the square that the range spans.
   b.number("stack_reach_m", o.stackReach, Range::atLeast(0.05), "m",
            "greatest horizontal step between segments of a pole");
-  b.number("stack_gap_m", o.stackGap, s_notNegative, "m",
+  b.number("stack_gap_m", o.stackGap, s_from0, "m",
            "greatest vertical step between segments of a pole");
-  b.number("max_bottom_m", o.maxBottom, s_positive, "m",
-           "greatest height of a pole's lowest return");
-  b.number("min_height_m", o.minHeight, s_notNegative, "m", "least visible height of a pole");
-  b.number("min_radius_m", o.minRadius, s_notNegative, "m", "thinner poles are refused");
+  b.number("max_bottom_m", o.maxBottom, s_above0, "m", "greatest height of a pole's lowest return");
+  b.number("min_height_m", o.minHeight, s_from0, "m", "least visible height of a pole");
+  b.number("min_radius_m", o.minRadius, s_from0, "m", "thinner poles are refused");
   b.integer("min_points", o.minPoints, Range::atLeast(2), "", "least number of returns of a pole");
   b.angleDeg("max_tilt_deg", o.maxTilt, Range::aboveUpTo(0, 85),
              "greatest tilt of the axis from the vertical");
-  b.number("max_scatter_m", o.maxScatter, s_positive, "m",
+  b.number("max_scatter_m", o.maxScatter, s_above0, "m",
            "greatest rms distance of the segments from the axis");
-  b.number("min_spacing_m", o.minSpacing, s_notNegative, "m",
+  b.number("min_spacing_m", o.minSpacing, s_from0, "m",
            "two poles nearer than this: the less confident one is dropped");
 
   b.require(o.edgeStep >= o.connectStep, "edge_step_m", o.edgeStep, "connect_step_m or more");

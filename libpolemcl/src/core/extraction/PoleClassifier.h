@@ -16,7 +16,7 @@ struct PoleFeatures {
   double widthSpread = 0;    ///< m
   double tilt = 0;           ///< rad
   double top = 0;            ///< m
-  double missingTop = 0;     ///< by so much the top is below what a pole must have, m
+  double missingTop = 0;     ///< how far the top is below what a pole must have, m
   double bottom = 0;         ///< m
   double roughRadius = 0;    ///< before the fit, m
   double range = 0;          ///< m

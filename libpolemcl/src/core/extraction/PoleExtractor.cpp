@@ -3,7 +3,6 @@
 #include <optional>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
-
 #include "core/extraction/range_image/RangeImageExtractor.h"
 #include "core/extraction/scan_line/ScanLineExtractor.h"
 

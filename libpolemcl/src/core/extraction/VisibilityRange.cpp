@@ -75,7 +75,7 @@ void VisibilityRangeFinder::chooseBeams(const SensorModel& sensor, float sensorH
   for (std::size_t i = 0; i < all.size(); i += stride) m_spans.push_back(all[i]);
 }
 
-/// Of one beam, in all sectors: from what it met on, it sees nothing.
+/// Counts the blocked steps of one beam in all sectors: it sees nothing beyond what it met.
 void VisibilityRangeFinder::countBlocked(const ScanLines& lines, const Span& span) {
   const float farthest = kStep * static_cast<float>(span.last);
   const Return* r = lines.begin(span.row, 0, kSectors);

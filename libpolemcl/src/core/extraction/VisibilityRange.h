@@ -19,7 +19,7 @@ std::size_t visibilityRangeSector(double azimuth, std::size_t sectors);
 /// \brief Free range towards a thing so wide: the least of the sectors it reaches into, so that an
 /// edge beside it is not seen through.
 /// \param visibilityRange As VisibilityRangeFinder gives it; may be empty.
-/// \param halfWidth Of the thing across the line of sight, m.
+/// \param halfWidth Half the width of the thing across the line of sight, m.
 /// \return m; 0 where one of the sectors, or all, are unknown.
 double visibilityRangeTowards(const std::vector<float>& visibilityRange, double x, double y,
                               double halfWidth);
@@ -39,10 +39,11 @@ class VisibilityRangeFinder {
   static constexpr float kStep = 0.5f;     ///< m
   static constexpr float kLowest = 0.5f;   ///< of pole heights, m above ground
   static constexpr float kHighest = 3.0f;  ///< m above ground
-  /// \param sensorHeight Of the lidar above ground, m. \param maxRange Of poles, m.
+  /// \param sensorHeight Height of the lidar above ground, m.
+  /// \param maxRange Maximum range of poles, m.
   VisibilityRangeFinder(const SensorModel& sensor, double sensorHeight, double maxRange);
   /// \param visibilityRange Becomes kSectors ranges, m, horizontal, lidar frame; sector i as
-  /// visibilityRangeSector(). 0: unknown. Of depth cameras: empty.
+  /// visibilityRangeSector(). 0: unknown. Empty for depth cameras.
   void find(const ScanLines& lines, const GroundGrid& ground, std::vector<float>& visibilityRange);
 
  private:

@@ -12,8 +12,8 @@ constexpr double s_pathStep = 4;            ///< m
 constexpr std::size_t s_mostReliable = 80;  ///< the best seen; more would only cost time
 constexpr std::size_t s_mostQueryPoles = 300;
 
-/// Odds that a pole with so many hits stands on the map. One hit more halves the doubt whether it
-/// is a pole at all, less the more chances it missed.
+/// Odds that a pole with this number of hits stands on the map. One hit more halves the doubt
+/// whether it is a pole at all, less the more chances it missed.
 double oddsOf(const SubmapPole& pole, const GlobalOptions& options) {
   if (pole.hits < static_cast<std::uint32_t>(options.minHits)) return 0;
   const double real = 1 - std::pow(0.5, std::min<double>(pole.hits, 30));
@@ -33,7 +33,7 @@ Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& opt
                             rotation * submap.presentCovariance(pole, false) * rotation.transpose(),
                             rotation * (pole.seenFrom - here), oddsOf(pole, options), &pole});
   }
-  // Of equals the later seen: it has drifted less.
+  // The pole seen later wins a tie: it has drifted less.
   std::stable_sort(m_queryPoles.begin(), m_queryPoles.end(),
                    [](const QueryPole& a, const QueryPole& b) {
                      return a.odds != b.odds ? a.odds > b.odds : a.pole->seenAt > b.pole->seenAt;

@@ -11,7 +11,7 @@ namespace {
 constexpr double s_sigmas = 2.5;  ///< of tolerances: 96 % of true matches lie within, in the plane
 constexpr int s_mostUses = 4;  ///< of one query pole in pairs: a false one must not spoil them all
 
-/// Least hits after so many probes. A true place, where six of ten query poles find their pole,
+/// Least hits after `probes` probes. A true place, where six of ten query poles find their pole,
 /// falls short once in a hundred times, and up to `maxPairs` pairs can find it; of chance ones,
 /// with three hits in a hundred probes, hardly any gets through.
 constexpr std::uint32_t leastHits(std::uint32_t probes) {

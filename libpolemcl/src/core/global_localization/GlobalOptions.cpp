@@ -1,6 +1,5 @@
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/global_localization/GlobalLocalizer.h>
-
 #include "core/common/Angles.h"
 
 namespace polemcl {

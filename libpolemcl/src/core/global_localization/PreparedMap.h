@@ -7,7 +7,6 @@
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/global_localization/GlobalLocalizer.h>
-
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
 #include "core/global_localization/PairDistanceIndex.h"

@@ -4,16 +4,15 @@
 namespace polemcl {
 namespace {
 
-const Range s_positive = Range::above(0), s_share = Range::between(0, 1);
-
 void bindConfirmation(Binder& b, HealthOptions& o) {
+  const Range positive = Range::above(0), share = Range::between(0, 1);
   b.number("confirm_m", o.confirm, Range::atLeast(0), "m",
            "distance with good matches until a new pose is ok");
   b.number("confirm_found_m", o.confirmFound, Range::atLeast(0), "m",
            "the same for a pose that the global search found");
-  b.number("confirm_share", o.confirmShare, s_share, "share",
+  b.number("confirm_share", o.confirmShare, share, "share",
            "share of matched poles that confirms a new pose");
-  b.number("confirm_within_m", o.confirmWithin, s_positive, "m",
+  b.number("confirm_within_m", o.confirmWithin, positive, "m",
            "lost: a new pose is not confirmed within this distance");
 
   b.require(o.confirmShare >= o.degradedShare, "confirm_share", o.confirmShare,
@@ -25,32 +24,33 @@ void bindConfirmation(Binder& b, HealthOptions& o) {
 }  // namespace
 
 void bind(Binder& b, HealthOptions& o) {
+  const Range positive = Range::above(0), share = Range::between(0, 1);
   b.section("health", "When the pose is called ok, degraded or lost", Tier::expert);
-  b.number("window_m", o.window, s_positive, "m", "scans over this distance are judged together");
-  b.number("lost_window_m", o.lostWindow, s_positive, "m",
+  b.number("window_m", o.window, positive, "m", "scans over this distance are judged together");
+  b.number("lost_window_m", o.lostWindow, positive, "m",
            "lost: scans over this longer distance agree");
-  b.number("min_evidence", o.minEvidence, s_positive, "",
+  b.number("min_evidence", o.minEvidence, positive, "",
            "least sum of confidences in the window that says anything");
-  b.number("lost_evidence", o.lostEvidence, s_positive, "",
+  b.number("lost_evidence", o.lostEvidence, positive, "",
            "lost: least sum of confidences in the longer window");
-  b.number("lost_share", o.lostShare, s_share, "share",
+  b.number("lost_share", o.lostShare, share, "share",
            "lost: a smaller share of the observed poles is on the map");
-  b.number("degraded_share", o.degradedShare, s_share, "share",
+  b.number("degraded_share", o.degradedShare, share, "share",
            "degraded: a smaller share of the observed poles is on the map");
   b.tier(Tier::tuning);
-  b.number("lost_spread_m", o.lostSpread, s_positive, "m",
+  b.number("lost_spread_m", o.lostSpread, positive, "m",
            "lost: greater standard deviation of the position");
-  b.number("degraded_spread_m", o.degradedSpread, s_positive, "m",
+  b.number("degraded_spread_m", o.degradedSpread, positive, "m",
            "degraded: greater standard deviation of the position");
   b.angleDeg("degraded_heading_deg", o.degradedHeading, Range::aboveUpTo(0, 180),
              "degraded: greater standard deviation of the heading");
-  b.number("blind_s", o.blindSeconds, s_positive, "s", "degraded: no pole for a longer time");
-  b.number("blind_m", o.blindMetres, s_positive, "m", "degraded: no pole over a longer distance");
-  b.number("max_gap_s", o.maxGap, s_positive, "s", "degraded: a longer time between two scans");
+  b.number("blind_s", o.blindSeconds, positive, "s", "degraded: no pole for a longer time");
+  b.number("blind_m", o.blindMetres, positive, "m", "degraded: no pole over a longer distance");
+  b.number("max_gap_s", o.maxGap, positive, "s", "degraded: a longer time between two scans");
   b.tier(Tier::expert);
-  b.number("innovation", o.innovation, s_positive, "",
+  b.number("innovation", o.innovation, positive, "",
            "degraded: greater mean squared Mahalanobis distance per degree of freedom");
-  b.number("mode_share", o.modeShare, s_share, "share",
+  b.number("mode_share", o.modeShare, share, "share",
            "degraded: a smaller share of the particles' weight in the likeliest place");
   bindConfirmation(b, o);
 

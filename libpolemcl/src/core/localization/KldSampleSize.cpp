@@ -5,7 +5,6 @@
 
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/localization/KldSampleSize.h>
-
 #include "core/common/Statistics.h"
 
 namespace polemcl {

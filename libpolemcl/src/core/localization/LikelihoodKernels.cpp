@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 /// Poses worked on together: few enough for all that is kept of them to stay in the first cache.
 constexpr std::size_t kBlock = 128;
-/// Factors are at least 1e-9: so many can be multiplied before their product could underflow.
+/// Factors are at least 1e-9: a product of this number of factors cannot underflow.
 constexpr std::size_t kFactorsPerLogarithm = 30;
 
 /// A block of poses, and of one detection seen from each.
@@ -27,7 +27,7 @@ struct Block {
   HWY_ALIGN double x[kBlock], y[kBlock], cosine[kBlock], sine[kBlock];
   HWY_ALIGN double placeX[kBlock], placeY[kBlock];  ///< of the detection, map frame
   HWY_ALIGN double dx[kBlock], dy[kBlock];          ///< its offset from the nearest map pole
-  HWY_ALIGN double variance[kBlock];                ///< of that pole; below 0: there is none
+  HWY_ALIGN double variance[kBlock];                ///< of that pole; below 0: no pole
   HWY_ALIGN double product[maxWidenings][kBlock], sum[maxWidenings][kBlock];
 };
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <polemcl/core/localization/PoleLikelihood.h>
-
 #include "core/common/PrincipalAxes.h"
 
 namespace polemcl {

@@ -2,7 +2,6 @@
 
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/localization/LocalMaps.h>
-
 #include "core/common/Transform.h"
 #include "core/mapping/BoxMerging.h"
 

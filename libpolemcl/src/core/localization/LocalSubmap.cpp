@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <polemcl/core/localization/LocalSubmap.h>
-
 #include "core/common/Covariance.h"
 #include "core/common/DetectionCheck.h"
 #include "core/common/GreedyAssignment.h"

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include <polemcl/core/localization/MapAssociation.h>
-
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"

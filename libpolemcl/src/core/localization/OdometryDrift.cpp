@@ -1,5 +1,4 @@
 #include <polemcl/core/localization/OdometryDrift.h>
-
 #include "core/common/Transform.h"
 
 namespace polemcl {

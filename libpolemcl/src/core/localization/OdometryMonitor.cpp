@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include <polemcl/core/localization/OdometryMonitor.h>
-
 #include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
 
 constexpr double s_lags[] = {0, 0.3, 1};  // of the window: the scans compared with
-constexpr int s_surePairs = 5;            // so many contradict at once, fewer in two scans running
+constexpr int s_surePairs = 5;            // pairs that decide at once; fewer need two scans running
 constexpr double s_leastSigma = 0.02;     // of a motion by poles, m
 constexpr double s_leastTurn = 0.002;     // rad
 constexpr double s_mostVariance = 1;      // m²; more, and the poles do not say what the motion was

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include <polemcl/core/localization/PoleLikelihood.h>
-
 #include "core/common/PrincipalAxes.h"
 #include "core/localization/LikelihoodKernels.h"
 

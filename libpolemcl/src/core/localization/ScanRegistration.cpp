@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <polemcl/core/localization/ScanRegistration.h>
-
 #include "core/common/GreedyAssignment.h"
 #include "core/common/Transform.h"
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/mapping/LandmarkFusion.h"
 
 namespace polemcl {

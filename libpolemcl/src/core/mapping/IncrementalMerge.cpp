@@ -16,7 +16,8 @@ void absorb(MapPole& pole, const PoleDetection& seen) {
   pole.confidence += (seen.confidence - pole.confidence) / all;
   pole.bottom = std::min(pole.bottom, seen.bottom);
   pole.top = std::max(pole.top, seen.top);
-  // Of the mean of n + 1 independent detections, n of them summed up in the pole's covariance.
+  // Covariance of the mean of n + 1 independent detections; the pole's covariance sums up n of
+  // them.
   pole.covariance = (n * n * pole.covariance + seen.covariance) / (all * all);
   ++pole.count;
 }

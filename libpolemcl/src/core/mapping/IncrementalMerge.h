@@ -15,7 +15,7 @@ namespace polemcl {
 ///
 /// A merged pole has the mean of its detections as centre, radius and confidence, their lowest
 /// bottom and highest top, and the covariance of that mean.
-/// \param poles Map frame. \param index Of exactly these poles.
+/// \param poles Map frame. \param index Index of exactly these poles.
 /// \param detections_map Map frame.
 void mergeScan(std::vector<MapPole>& poles, const PoleIndex& index,
                const std::vector<PoleDetection>& detections_map, double mergeDistance);

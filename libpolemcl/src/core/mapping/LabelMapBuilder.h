@@ -28,8 +28,8 @@ struct LabelMapOptions {
   double maxWidth = 1.5;   ///< things wider than this are several poles, m
   double maxRange = 50;    ///< points farther from the LiDAR are not used, m
   double minHeight = 0.5;  ///< poles reach at least from their lowest to so far above it, m
-  int minScans = 3;        ///< and were seen in at least so many scans
-  int minPoints = 20;      ///< with so many points
+  int minScans = 3;        ///< poles were seen in at least this number of scans
+  int minPoints = 20;      ///< and have at least this number of points
   void validate() const;   ///< \throws Error naming the field
 };
 
@@ -39,7 +39,7 @@ class LabelMapBuilder {
   /// \throws Error on options out of range.
   explicit LabelMapBuilder(const LabelMapOptions& options = {});
 
-  /// \brief One scan. \param T_map_lidar Of the frame of the points, map z up.
+  /// \brief One scan. \param T_map_lidar Pose of the frame of the points, map z up.
   /// \param labels One a point; the upper 16 bits (instance) are not looked at.
   /// \throws Error on a pose that is not finite, and when the numbers of points and labels differ.
   void add(const Eigen::Isometry3d& T_map_lidar, const PointsView& points,

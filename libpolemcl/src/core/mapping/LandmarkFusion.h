@@ -20,7 +20,7 @@ struct LandmarkObservation {
 /// From the median on, observations beyond the 99 % ellipse of their covariance are left out, all
 /// ellipses widened where the scatter says that covariances promise too much.
 /// \param members Indices into `observations`, at least one.
-/// \param covariance If given: of the mean, widened by the scatter likewise; m².
+/// \param covariance If given: covariance of the mean, also widened by the scatter; m².
 /// \param inliers If given: the members that were not left out, in the order of `members`.
 Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& observations,
                             const std::vector<std::uint32_t>& members,

@@ -16,7 +16,7 @@ namespace polemcl {
 /// \brief A session as a map remembers it.
 struct AddedSession {
   std::string name;
-  /// In the order driven. Of scans that are not used only time and pose are kept.
+  /// Scans in the order driven. A scan that is not used keeps only its time and pose.
   std::vector<SessionScan> scans;
   std::vector<bool> used;  ///< one a scan
   std::size_t usedCount() const;

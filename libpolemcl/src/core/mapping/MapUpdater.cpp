@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include <polemcl/core/mapping/MapUpdater.h>
-
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "core/mapping/MapSession.h"

@@ -137,8 +137,7 @@ Group Clusterer::grow(std::uint32_t seed, const std::vector<bool>& taken) {
   return group;
 }
 
-/// Of each scan the nearest observation inside the gate that no group has taken, by ascending
-/// index.
+/// Nearest observation of each scan inside the gate that no group has taken, by ascending index.
 Group Clusterer::nearestPerScan(const Eigen::Vector2d& centre, const std::vector<bool>& taken) {
   m_tree.within(centre.x(), centre.y(), m_options.mergeDistance, m_hits);
   const auto isTaken = [&](const PointHit& hit) { return taken[hit.index]; };

@@ -3,7 +3,6 @@
 
 #include <polemcl/core/common/PathSections.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
-
 #include "core/mapping/BoxMerging.h"
 #include "core/mapping/DetectionToMap.h"
 #include "core/mapping/LandmarkFusion.h"

@@ -7,7 +7,7 @@
 namespace polemcl {
 
 /// \brief Firing steps in a full turn: the commonest step of azimuth between neighbours on a beam.
-/// \param beams Of these scans. \return 0 when no step stands out.
+/// \param beams Beams of these scans. \return 0 when no step stands out.
 int azimuthResolution(const std::vector<PointsView>& scans, const BeamTableEstimate& beams);
 
 }  // namespace polemcl

@@ -41,7 +41,7 @@ struct BeamTableEstimate {
   std::vector<double> elevations() const;
 };
 
-/// \brief Finds the beams. The order of the points is of no consequence, down to the last bit.
+/// \brief Finds the beams. The order of the points does not matter, down to the last bit.
 /// \param scans Clouds of one sensor in its own axes, z up or down; NaN and zeros are passed over.
 /// \throws Error when there are too few points, or no beams in them (clouds that were merged,
 /// thinned

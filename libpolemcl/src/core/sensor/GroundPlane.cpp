@@ -41,7 +41,7 @@ Points outermost(const PointsView& points, const Eigen::Vector3d& sensor, double
   return found;
 }
 
-/// Same numbers in the same order each time; which ones is of no consequence.
+/// Draws the same numbers in the same order each time; which ones does not matter.
 struct Draw {
   std::uint64_t state = 0x2545f4914f6cdd1dull;
   std::size_t below(std::size_t n) {

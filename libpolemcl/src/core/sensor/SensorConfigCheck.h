@@ -6,7 +6,6 @@
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/sensor/SensorOptions.h>
-
 #include "core/sensor/SensorModel.h"
 
 namespace polemcl {

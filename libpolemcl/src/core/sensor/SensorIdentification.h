@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <polemcl/core/sensor/SensorOptions.h>
-
 #include "core/sensor/BeamTableEstimator.h"
 #include "core/sensor/GroundPlane.h"
 
@@ -47,7 +46,7 @@ struct SensorIdentification {
 };
 
 /// \brief Inspects a few scans of one sensor.
-/// \param scans In the sensor's own axes; order of points is of no consequence.
+/// \param scans In the sensor's own axes; the order of points does not matter.
 /// \throws Error as estimateBeamTable().
 SensorIdentification identifySensor(const std::vector<PointsView>& scans);
 

@@ -3,7 +3,6 @@
 
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/sensor/SensorOptions.h>
-
 #include "core/sensor/SensorModel.h"
 
 namespace polemcl {

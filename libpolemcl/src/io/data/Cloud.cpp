@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "io/file/Bytes.h"
 
 namespace polemcl::io {

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include <polemcl/io/data/PlanarMotion.h>
-
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

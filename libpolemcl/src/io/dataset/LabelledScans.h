@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "core/evaluation/PoleVisibility.h"
 
 namespace polemcl::io {

@@ -5,7 +5,6 @@
 #include <set>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/dataset/Nclt.h"
 #include "io/dataset/ScanFiles.h"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <polemcl/io/data/PlanarMotion.h>
-
 #include "io/data/TrackSampler.h"
 #include "io/file/ReadProgress.h"
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "io/file/ReadProgress.h"
 
 namespace polemcl::io {

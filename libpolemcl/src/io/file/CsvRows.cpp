@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

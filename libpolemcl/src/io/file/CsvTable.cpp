@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

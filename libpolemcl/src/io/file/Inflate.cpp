@@ -6,7 +6,6 @@
 #include <limits>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/ReadLimits.h"
 
 namespace polemcl::io {

@@ -2,7 +2,6 @@
 #include <limits>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/Bytes.h"
 #include "io/file/Npz.h"
 #include "io/file/TextFile.h"

@@ -3,7 +3,6 @@
 #include <zlib.h>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/Bytes.h"
 #include "io/file/Inflate.h"
 

@@ -1,7 +1,6 @@
 #include <zlib.h>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
 #include "io/file/Npz.h"

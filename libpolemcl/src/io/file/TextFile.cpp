@@ -10,7 +10,6 @@
 #include <utility>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/ReadLimits.h"
 
 namespace polemcl::io {

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/AtomicFile.h"
 
 namespace polemcl::io {

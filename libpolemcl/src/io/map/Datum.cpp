@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "core/common/Covariance.h"
 #include "core/mapping/MapAccumulator.h"
 #include "io/file/AtomicFile.h"

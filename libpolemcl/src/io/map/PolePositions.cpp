@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <polemcl/io/map/PoleMapFile.h>
-
 #include "io/file/AtomicFile.h"
 #include "io/file/CsvTable.h"
 #include "io/file/Date.h"

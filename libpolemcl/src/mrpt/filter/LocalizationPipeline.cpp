@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
-
 #include "core/localization/PoseModes.h"
 #include "mrpt/filter/MotionAction.h"
 

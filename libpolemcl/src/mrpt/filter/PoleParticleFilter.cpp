@@ -8,7 +8,6 @@
 #include <utility>
 
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
-
 #include "core/common/SimdMath.h"
 #include "mrpt/filter/MotionAction.h"
 #include "mrpt/filter/ParticleDraws.h"

@@ -8,7 +8,6 @@
 #include <polemcl/io/map/PoleMapFile.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
-
 #include "core/common/Covariance.h"
 #include "core/common/Transform.h"
 #include "core/mapping/IncrementalMerge.h"

@@ -5,7 +5,6 @@
 #include <polemcl/config/Config.h>
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
-
 #include "mrpt/common/MrptCompatibility.h"
 
 MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
-
 #include "core/common/Transform.h"
 #include "io/file/ReadLimits.h"
 #include "mrpt/common/BoundedRead.h"

@@ -13,7 +13,6 @@
 #include <numeric>
 
 #include <polemcl/io/data/Cloud.h>
-
 #include "core/sensor/SensorModel.h"
 #include "mrpt/observation/DepthImage.h"
 

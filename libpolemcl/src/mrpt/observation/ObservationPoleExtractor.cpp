@@ -5,7 +5,6 @@
 #include <optional>
 
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-
 #include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
 #include "core/sensor/SensorConfigCheck.h"

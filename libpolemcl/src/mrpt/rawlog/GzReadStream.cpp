@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/ReadLimits.h"
 #include "mrpt/rawlog/PointCountGuard.h"
 

@@ -7,7 +7,6 @@
 #include <exception>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-
 #include "mrpt/rawlog/ExternalFiles.h"
 #include "mrpt/rawlog/ScanSource.h"
 

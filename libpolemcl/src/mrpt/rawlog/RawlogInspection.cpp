@@ -7,7 +7,6 @@
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-
 #include "mrpt/observation/LidarFrame.h"
 #include "mrpt/rawlog/ExternalFiles.h"
 #include "mrpt/rawlog/ScanSource.h"

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/AtomicFile.h"
 
 namespace polemcl {

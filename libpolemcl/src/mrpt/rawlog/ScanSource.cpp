@@ -9,7 +9,6 @@
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-
 #include "core/common/Covariance.h"
 
 namespace polemcl {

@@ -11,7 +11,6 @@
 
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
-
 #include "mrpt/rawlog/OdometryTrack.h"
 #include "mrpt/rawlog/RawlogReader.h"
 

@@ -23,7 +23,7 @@ std::string field(std::string text) {
   return quoted + '"';
 }
 
-/// A number, or nothing when there is none.
+/// A number as text; empty when the value is not finite.
 std::string field(double value) {
   return std::isfinite(value) ? io::significant(value, digits) : "";
 }

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/common/PoseInterpolation.h"
 #include "report/picture/ErrorStrip.h"
 #include "report/picture/PlotAxes.h"
@@ -19,9 +18,9 @@ constexpr double degrees = 180 / M_PI;
 template <typename Value>
 double deviation(const std::vector<PoseError>& errors, const Value& value) {
   double mean = 0, squares = 0;
-  for (const PoseError& error : errors) mean += value(error) / errors.size();
+  for (const PoseError& error : errors) mean += value(error) / static_cast<double>(errors.size());
   for (const PoseError& error : errors) squares += std::pow(value(error) - mean, 2);
-  return std::sqrt(squares / errors.size());
+  return std::sqrt(squares / static_cast<double>(errors.size()));
 }
 
 /// Sums of squares of the errors along the axes of the map.
@@ -70,7 +69,8 @@ double usualSpacing(const std::vector<double>& distance) {
   for (std::size_t i = 1; i < distance.size(); ++i)
     spacing.push_back(distance[i] - distance[i - 1]);
   if (spacing.empty()) return 0;
-  const auto rank = spacing.begin() + static_cast<std::ptrdiff_t>(0.95 * (spacing.size() - 1));
+  const auto rank =
+      spacing.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(spacing.size() - 1));
   std::nth_element(spacing.begin(), rank, spacing.end());
   return *rank;
 }

@@ -5,13 +5,12 @@
 #include <vector>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "report/batch/BatchResults.h"
 
 namespace polemcl::report {
 
 /// \brief All figures of a run.
-/// \param errors Of evaluateTrajectory() against the same truth.
+/// \param errors Result of evaluateTrajectory() against the same truth.
 /// \param truth Robot poses, times increasing; gives the axes that lateral and longitudinal errors
 ///        are turned back into.
 ErrorMetrics errorMetrics(const TrajectoryErrors& errors, const std::vector<StampedPose2D>& truth);
@@ -24,7 +23,7 @@ void addErrors(SessionPlots& plots, const TrajectoryErrors& errors);
 /// \param tolerance m; 0 chooses 1/1500 of the larger side of their box.
 std::vector<Eigen::Vector2d> thinPath(const std::vector<Eigen::Vector2d>& points,
                                       double tolerance = 0);
-/// \brief Likewise for a trajectory.
+/// \brief Thins the positions of a trajectory in the same way.
 std::vector<Eigen::Vector2d> thinPath(const std::vector<StampedPose2D>& path, double tolerance = 0);
 
 /// \brief Position errors over the distance driven, the largest of each bin.

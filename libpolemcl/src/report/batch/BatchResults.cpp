@@ -65,7 +65,7 @@ void requireValid(const SessionResult& result, const std::string& where) {
 }  // namespace
 
 double ErrorHistogram::edge(std::size_t bin) {
-  return std::pow(10, lowestExponent + bin / binsPerDecade);
+  return std::pow(10, lowestExponent + static_cast<double>(bin) / binsPerDecade);
 }
 
 void ErrorHistogram::add(double value) {

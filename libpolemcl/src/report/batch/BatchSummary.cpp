@@ -107,11 +107,11 @@ Spread spreadOf(const std::vector<double>& values) {
     spread.largest = spread.count == 1 ? value : std::max(spread.largest, value);
   }
   if (spread.count == 0) return spread;
-  spread.mean = sum / spread.count;
+  spread.mean = sum / static_cast<double>(spread.count);
   if (spread.count < 2) return spread;
   for (double value : values)
     if (std::isfinite(value)) squares += (value - spread.mean) * (value - spread.mean);
-  spread.deviation = std::sqrt(squares / (spread.count - 1));
+  spread.deviation = std::sqrt(squares / static_cast<double>(spread.count - 1));
   return spread;
 }
 

@@ -15,7 +15,7 @@ struct Spread {
   double largest = noFigure;
   std::size_t count = 0;
 };
-/// \brief Of the values that are finite.
+/// \brief Spread of the finite values.
 Spread spreadOf(const std::vector<double>& values);
 
 enum class RunState { ok, lost, failed };

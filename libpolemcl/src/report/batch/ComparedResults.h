@@ -45,8 +45,8 @@ inline constexpr SessionColumn sessionColumns[] = {
 /// were not localized have no figures.
 struct PublishedRows {
   std::vector<std::string> systems;
-  /// \brief A figure of a system for one of the configuration's sessions; noFigure where there is
-  /// none.
+  /// \brief A figure of a system for one of the configuration's sessions; noFigure where none was
+  /// published.
   double figure(std::size_t system, const SessionSummary& session,
                 double PublishedSession::*figure) const;
   /// \brief Its mean over the sessions of which ours has a figure as well.

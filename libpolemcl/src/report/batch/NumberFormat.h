@@ -1,6 +1,6 @@
 #pragma once
 /// \file NumberFormat.h
-/// \brief Figures as text: always the same decimals, a dash where there is none.
+/// \brief Figures as text: always the same decimals, a dash for a missing figure.
 
 #include <string>
 #include <vector>

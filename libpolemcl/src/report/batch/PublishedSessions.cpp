@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/CsvTable.h"
 #include "report/batch/PublishedResults.h"
 

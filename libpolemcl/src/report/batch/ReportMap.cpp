@@ -42,7 +42,7 @@ Box boxOf(const SessionPlots& plots) {
 double leftMargin(const Box& box) {
   const std::size_t digits =
       std::max(metricText(box.y.low, 0).size(), metricText(box.y.high, 0).size());
-  return std::max(66.0, 30 + 8.3 * digits);
+  return std::max(66.0, 30 + 8.3 * static_cast<double>(digits));
 }
 
 double frameHeight(const Box& box, double left) {

@@ -45,12 +45,12 @@ double labelWidth(const BatchResults& results) {
   std::size_t longest = 0;
   for (const BatchSession& session : results.sessions)
     longest = std::max(longest, std::min(session.name.size(), longestLabel + 1));
-  return 7.4 * longest;
+  return 7.4 * static_cast<double>(longest);
 }
 
 /// Whether the labels have to be turned by 45 degrees on an axis that long.
 bool turned(const BatchResults& results, double pixels) {
-  return labelWidth(results) + 12 > pixels / results.sessions.size();
+  return labelWidth(results) + 12 > pixels / static_cast<double>(results.sessions.size());
 }
 
 /// Ticks of an axis of errors, and their unit: centimetres for lengths below 0.1 m.
@@ -81,7 +81,7 @@ class SessionsPlot {
     const double left =
         turned(results, plotWidth) ? std::max(64.0, 0.71 * labelWidth(results) - 10) : 64;
     m_axes.frame = {left, 12, width - left - 14, plotHeight};
-    m_axes.x = {-0.5, results.sessions.size() - 0.5};
+    m_axes.x = {-0.5, static_cast<double>(results.sessions.size()) - 0.5};
     m_axes.y = {0, limit()};
   }
   std::string draw() {
@@ -127,8 +127,10 @@ class SessionsPlot {
   /// Configurations stand side by side within a session.
   double offset(std::size_t configuration) const {
     const double slot = m_axes.pixelsPerX();
-    const double apart = std::min(11.0, slot / (m_summaries.size() + 1));
-    return (configuration - (m_summaries.size() - 1) / 2.0) * apart;
+    const double apart = std::min(11.0, slot / static_cast<double>(m_summaries.size() + 1));
+    return (static_cast<double>(configuration) -
+            static_cast<double>(m_summaries.size() - 1) / 2.0) *
+           apart;
   }
   void drawConfiguration(std::size_t index) {
     std::vector<Eigen::Vector2d> means(m_results.sessions.size(),
@@ -136,8 +138,8 @@ class SessionsPlot {
     for (const SessionSummary& session : m_summaries[index].sessions) {
       const Spread& spread = spreadOf(session);
       if (spread.count == 0) continue;
-      means[session.session] =
-          m_axes.toPixel(session.session, spread.mean) + Eigen::Vector2d(offset(index), 0);
+      means[session.session] = m_axes.toPixel(static_cast<double>(session.session), spread.mean) +
+                               Eigen::Vector2d(offset(index), 0);
     }
     m_plot.beginClip(m_axes.frame);
     m_plot.line(means, "line thin " + seriesClass(index));
@@ -189,7 +191,8 @@ AxisRange exponentsOf(const std::vector<ErrorHistogram>& histograms) {
       if (histogram.counts[i] > 0) first = std::min(first, i), last = std::max(last, i);
   if (first > last) return {0, 0};
   const std::size_t low = first / 10 * 10;
-  return {low / 10.0 - 3, std::max(low + 20, last / 10 * 10 + 10) / 10.0 - 3};
+  return {static_cast<double>(low) / 10.0 - 3,
+          static_cast<double>(std::max(low + 20, last / 10 * 10 + 10)) / 10.0 - 3};
 }
 
 /// Steps of a histogram in pixels, empty ends left out.
@@ -197,7 +200,8 @@ std::vector<Eigen::Vector2d> steps(const PlotAxes& axes, const ErrorHistogram& h
   const double all = double(histogram.total());
   std::vector<Eigen::Vector2d> line;
   for (std::size_t i = 0; i < ErrorHistogram::bins; ++i) {
-    const double low = i / 10.0 - 3, share = 100 * histogram.counts[i] / all;
+    const double low = static_cast<double>(i) / 10.0 - 3;
+    const double share = static_cast<double>(100 * histogram.counts[i]) / all;
     if (low < axes.x.low - 1e-9 || low > axes.x.high - 1e-9) continue;
     line.push_back(axes.toPixel(low, share));
     line.push_back(axes.toPixel(low + 0.1, share));
@@ -209,9 +213,9 @@ std::vector<Eigen::Vector2d> steps(const PlotAxes& axes, const ErrorHistogram& h
 std::vector<Eigen::Vector2d> steps(const PlotAxes& axes, const BinnedMaxima& bins) {
   std::vector<Eigen::Vector2d> line;
   for (std::size_t i = 0; i < bins.largest.size(); ++i) {
-    line.push_back(axes.toPixel(i * bins.binWidth, bins.largest[i]));
+    line.push_back(axes.toPixel(static_cast<double>(i) * bins.binWidth, bins.largest[i]));
     if (i + 1 == bins.largest.size() || !std::isfinite(bins.largest[i + 1]))
-      line.push_back(axes.toPixel((i + 1) * bins.binWidth, bins.largest[i]));
+      line.push_back(axes.toPixel(static_cast<double>(i + 1) * bins.binWidth, bins.largest[i]));
   }
   return line;
 }
@@ -243,7 +247,8 @@ std::string histogramFigure(const BatchResults& results, const HistogramQuantity
     const auto all = histograms[i].total();
     if (all == 0) continue;
     for (auto count : histograms[i].counts)
-      axes.y.high = std::max(axes.y.high, 110.0 * count / all);
+      axes.y.high =
+          std::max(axes.y.high, 110.0 * static_cast<double>(count) / static_cast<double>(all));
     counted.push_back(results.configurations[i].name + ' ' + countText(all));
   }
   SvgPlot plot(ids.next(), 480, 300, "Histogram of the " + quantity.name,
@@ -272,7 +277,7 @@ std::string distanceFigure(const BatchResults& results, std::size_t session, Plo
       for (double value : bins.largest)
         if (std::isfinite(value)) values.push_back(value);
       if (bins.largest.empty()) continue;
-      length = std::max(length, bins.largest.size() * bins.binWidth);
+      length = std::max(length, static_cast<double>(bins.largest.size()) * bins.binWidth);
       bin = std::max(bin, bins.binWidth);
     }
   if (values.empty()) return "";

@@ -54,7 +54,7 @@ std::vector<SvgTick> roundTicks(const AxisRange& range, double pixels, bool hori
     return std::max(tickLabel(range.low, step).size(), tickLabel(range.high, step).size());
   };
   if (horizontal)
-    while (step / range.span() * pixels < characterWidth * widest() + 14)
+    while (step / range.span() * pixels < characterWidth * static_cast<double>(widest()) + 14)
       step = tickStep(1.5 * step, 1);
   std::vector<SvgTick> all;
   for (double value : ticks(range, step)) all.push_back({value, tickLabel(value, step)});
@@ -92,7 +92,8 @@ void SvgPlot::axes(const PlotAxes& axes, const std::vector<SvgTick>& x,
   for (const SvgTick& tick : x) {
     const double place = axes.toPixel(tick.at, axes.y.low).x();
     // At the end of the axis there may be no room for half a label.
-    const bool fits = place + characterWidth * tick.label.size() / 2 <= m_width;
+    const bool fits =
+        place + characterWidth * static_cast<double>(tick.label.size()) / 2 <= m_width;
     if (fits && !tick.label.empty()) text({place, frame.bottom() + 18}, tick.label, "middle");
   }
   for (const SvgTick& tick : y)

@@ -6,7 +6,6 @@
 #include <ostream>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/AtomicFile.h"
 
 namespace polemcl::report {

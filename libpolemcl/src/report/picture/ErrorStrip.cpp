@@ -62,7 +62,8 @@ std::vector<double> distanceDriven(const std::vector<StampedPose2D>& truth,
 
 double valueLimit(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const double high = values[static_cast<std::size_t>(0.95 * (values.size() - 1) + 0.5)];
+  const double high =
+      values[static_cast<std::size_t>(0.95 * static_cast<double>(values.size() - 1) + 0.5)];
   return std::max(1.1 * std::min(values.back(), 2 * high), 1e-3);
 }
 

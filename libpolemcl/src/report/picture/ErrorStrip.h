@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-
 #include "report/picture/PlotAxes.h"
 
 namespace polemcl::report {

@@ -8,7 +8,6 @@
 #include <cstdlib>
 
 #include <polemcl/core/common/Types.h>
-
 #include "report/scene/LiveWindow.h"
 
 namespace polemcl::report {

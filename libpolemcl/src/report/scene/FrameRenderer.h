@@ -16,7 +16,7 @@ class FrameRenderer {
   /// \brief How many times larger letters and points of scenes for it must be: as large a part of
   /// any picture as of one of 720 rows.
   static constexpr double textScale(unsigned height) { return 2 * height / 720.0; }
-  /// \param width,height Of the pictures, pixels.
+  /// \param width,height Size of the pictures, pixels.
   /// \throws Error when OpenGL cannot be had off-screen.
   FrameRenderer(unsigned width, unsigned height);
   ~FrameRenderer();

@@ -35,7 +35,7 @@ mrpt::opengl::CSetOfObjects::Ptr makeHypotheses(const std::vector<GlobalHypothes
 /// Light ones first, so that heavy ones are not hidden.
 mrpt::opengl::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, double height,
                                                      double pointSize);
-/// \param width Of the band, m.
+/// \param width Width of the band, m.
 mrpt::opengl::CSetOfTriangles::Ptr makeEllipse(const PoseWithCovariance& pose, double height,
                                                double width);
 

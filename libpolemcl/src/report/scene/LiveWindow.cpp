@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/InstalledFiles.h"
 
 namespace polemcl::report {

@@ -5,7 +5,8 @@
 namespace polemcl::sim {
 namespace {
 
-const Range s_share = Range::between(0, 1), s_seed = Range::between(0, 9e15);
+const Range s_shareOfSimulation = Range::between(0, 1),
+            s_seedOfSimulation = Range::between(0, 9e15);
 
 void bindSeasons(Binder& b, WorldOptions& o) {
   b.number("replaced_per_year", o.replacedPerYear, Range::between(0, 0.9), "",
@@ -24,7 +25,7 @@ void bindSeasons(Binder& b, WorldOptions& o) {
 
 void bind(Binder& b, WorldOptions& o) {
   b.section("world", "The simulated street and what stands there");
-  b.integer("seed", o.seed, s_seed, "", "another seed gives another street");
+  b.integer("seed", o.seed, s_seedOfSimulation, "", "another seed gives another street");
   b.integer("day", o.day, Range::between(0, 36500), "",
             "0: the day of the map; on other days things have moved");
   b.number("length_m", o.length, Range::between(20, 50000), "m",
@@ -41,13 +42,15 @@ void bind(Binder& b, WorldOptions& o) {
            "mean distance of traffic signs on each side");
   b.number("tree_spacing_m", o.treeSpacing, Range::between(4, 100), "m",
            "mean distance of trees in a row");
-  b.number("tree_share", o.treeShare, s_share, "", "share of the street lined with trees");
-  b.number("parked_share", o.parkedShare, s_share, "", "share of parking places taken");
+  b.number("tree_share", o.treeShare, s_shareOfSimulation, "",
+           "share of the street lined with trees");
+  b.number("parked_share", o.parkedShare, s_shareOfSimulation, "", "share of parking places taken");
   b.number("clutter", o.clutter, Range::between(0, 3), "",
            "scale of the numbers of people, bins, bollards and bicycles");
-  b.number("removed_share", o.removedShare, s_share, "",
+  b.number("removed_share", o.removedShare, s_shareOfSimulation, "",
            "share of the poles that are gone on another day");
-  b.number("added_share", o.addedShare, s_share, "", "share of the poles new on another day");
+  b.number("added_share", o.addedShare, s_shareOfSimulation, "",
+           "share of the poles new on another day");
   b.number("foliage", o.foliage, Range::between(0, 2), "", "density of leaves; 0: bare branches");
   b.flag("people_move", o.peopleMove, "true: people walk during the drive");
   bindSeasons(b, o);
@@ -59,13 +62,13 @@ void bind(Binder& b, SimulationOptions& o) {
   b.number("speed_m_s", o.speed, Range::between(0.1, 50), "m/s", "speed of the vehicle");
   b.number("lane_offset_m", o.laneOffset, Range::between(-10, 10), "m",
            "offset of the drive from the middle of the road, + left");
-  b.number("odometry_noise", o.odometryNoise, s_share, "",
+  b.number("odometry_noise", o.odometryNoise, s_shareOfSimulation, "",
            "standard deviation as a share of each component of the motion");
   b.flag("reverse", o.reverse, "true: from the far end of the street, in the other lane");
   b.flag("motion_distortion", o.motionDistortion, "true: the sensor moves while it turns");
   b.integer("scans", o.scans, Range::between(0, 1e7), "",
             "greatest number of scans; 0: to the end of the road");
-  b.integer("drive_seed", o.driveSeed, s_seed, "",
+  b.integer("drive_seed", o.driveSeed, s_seedOfSimulation, "",
             "another seed gives another drive of the same day, with its own noise");
   b.integer("detour", o.detour, Range::between(0, 2), "",
             "number of the side street that the drive takes; 0: straight on");

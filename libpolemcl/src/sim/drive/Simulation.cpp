@@ -7,7 +7,6 @@
 #include <mutex>
 
 #include <polemcl/core/common/Types.h>
-
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 #include "sim/lidar/LidarModel.h"

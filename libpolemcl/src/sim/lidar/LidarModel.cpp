@@ -7,7 +7,6 @@
 
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
-
 #include "core/common/Angles.h"
 #include "core/sensor/SensorModel.h"
 #include "sim/common/Random.h"

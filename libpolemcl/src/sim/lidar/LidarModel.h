@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <polemcl/core/sensor/SensorOptions.h>
-
 #include "sim/common/SimulationOptions.h"
 
 namespace polemcl::sim {

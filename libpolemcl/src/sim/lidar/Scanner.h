@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/lidar/LidarModel.h"
 #include "sim/world/World.h"
 

@@ -29,7 +29,7 @@ std::vector<Crossing> planCrossings(const WorldOptions& options, const Street& s
   std::vector<Crossing> crossings;
   for (double s = random.uniform(30, 90); s < street.length() - 15; s += random.uniform(75, 170)) {
     const double kind = random.uniform();
-    const bool left = kind < 0.7, right = kind > 0.35;
+    const bool left = kind<0.7, right = kind> 0.35;
     const Crossing crossing{s, left, right, random.uniform(2.8, 4.2)};
     if (street.fresh(s)) crossings.push_back(crossing);
   }

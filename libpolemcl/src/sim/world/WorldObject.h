@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "sim/world/Solid.h"
 
 namespace polemcl::sim {

@@ -92,7 +92,7 @@ TEST(PoleCandidates, APixelWithNearerThingsOnBothSidesCountsOnce) {
   EXPECT_EQ(scene.test(), std::nullopt);
 }
 
-// Of three columns only the outer two have neighbours outside: 12 of 18 pixels, 0.67.
+// Only the outer two of three columns have neighbours outside: 12 of 18 pixels, 0.67.
 TEST(PoleCandidates, InFrontOnlyPixelsAtTheEdgeCount) {
   Scene scene(2.5, 3);
   EXPECT_EQ(scene.test(), std::nullopt);

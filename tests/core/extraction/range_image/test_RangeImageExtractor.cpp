@@ -4,7 +4,6 @@
 #include <functional>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
-
 #include "support/KnownScene.h"
 
 namespace polemcl::test_range_image_extractor {

@@ -66,7 +66,7 @@ struct Look {
   }
   SegmentCluster cluster() const { return {members.data(), members.size()}; }
   float clutter() const { return clutteredShare(lines, sensor, segments, cluster(), axis); }
-  /// Of the rows, the lowest may meet the ground in the ring.
+  /// The lowest of the rows may meet the ground in the ring.
   float groundShare() const { return 1.01f / static_cast<float>(members.size()); }
   /// Beams that meet the front of the pole between two heights, lidar frame.
   int beamsBetween(double low, double high) const {
@@ -117,7 +117,7 @@ TEST(ClusterShape, ALeaningStackIsStraightButTilted) {
 }
 
 TEST(ClusterShape, ScatterIsTheRmsDistanceFromTheLine) {
-  // Of 0, 0.1, 0 the line leaves -1/30, 2/30, -1/30; one degree of freedom is left.
+  // The line through 0, 0.1, 0 leaves -1/30, 2/30, -1/30; one degree of freedom is left.
   const ClusterShape s = shapeOf({segmentAt(5, 0, 1), segmentAt(5, 0.1, 0), segmentAt(5, 0, -1)});
   EXPECT_NEAR(s.scatter, std::sqrt(6.0 / 900), 1e-5);
   EXPECT_NEAR(s.tilt, 0, 1e-6);

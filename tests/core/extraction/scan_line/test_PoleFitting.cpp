@@ -17,7 +17,7 @@ using namespace polemcl::clouds;
 
 namespace {
 
-/// Twelve beams, so many as meet a pole of 1 m at 10 m; firing steps of 3 mrad.
+/// Twelve beams, the number that meets a pole of 1 m at 10 m; firing steps of 3 mrad.
 SensorModel twelveBeams() {
   SensorOptions options;
   options.model = "uniform";
@@ -183,7 +183,7 @@ TEST(PoleFitting, AcrossTheSeam) {
   EXPECT_NEAR(fit->radius, 0.1, 0.02);
 }
 
-// Of a thin pole far away some rows lie wholly on one side of the seam.
+// Some rows of a thin pole far away lie wholly on one side of the seam.
 TEST(PoleFitting, AcrossTheSeamOneReturnAtATime) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto fit = Scan(25, M_PI, 0.04, seed).fit();

@@ -100,7 +100,7 @@ TEST(Segments, TheStepToTheWallDecides) {
   EXPECT_EQ(poleBefore(10.3).segments().size(), 0u);  // attached: less than 0.35 m
   EXPECT_EQ(poleBefore(10.5).segments().size(), 1u);
   EXPECT_EQ(poleBefore(12).segments().size(), 1u);
-  EXPECT_EQ(poleBefore(9).segments().size(), 0u);  // a hole in a wall is none
+  EXPECT_EQ(poleBefore(9).segments().size(), 0u);  // a hole in a wall is no segment
 }
 
 TEST(Segments, TheSettingsAreHonoured) {
@@ -188,8 +188,7 @@ TEST(Segments, AttachedOnOneSideIsNone) {
   EXPECT_EQ(Drawing(14).fill(0, 300, 304, 10).fill(0, 240, 299, 10.3).segments().size(), 0u);
 }
 
-// A return between pole and wall ends the pole all the same; it is a segment of its own, half
-// hidden.
+// A return between pole and wall also ends the pole; it is a segment of its own, half hidden.
 TEST(Segments, AMixedPixelAtTheEdgeDoesNotAttach) {
   const auto left = poleBefore(12).fill(0, 305, 305, 10.25).segments();
   ASSERT_EQ(left.size(), 2u);

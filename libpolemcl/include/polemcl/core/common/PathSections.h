@@ -18,7 +18,7 @@ namespace polemcl {
 /// and the sections left behind are made up for later, by a standing vehicle too.
 class POLEMCL_EXPORT SectionMarks {
  public:
-  /// \param length Of a section, > 0, m.
+  /// \param length Length of a section, > 0, m.
   explicit SectionMarks(double length) : m_length(length) {}
   /// \brief The next scan. \param travelled Distance up to it, m.
   void pass(double travelled);
@@ -61,8 +61,8 @@ POLEMCL_EXPORT PathSections splitPath(const std::vector<Pose2D>& poses,
                                       double sectionLength, const std::vector<bool>& used = {});
 
 /// \brief The same by SectionMarks: a section has one scan, its middle, and is there only if its
-/// end was reached. All steps between poses add to the distance, the jitter of a vehicle that stands
-/// too.
+/// end was reached. All steps between poses add to the distance, the jitter of a vehicle that
+/// stands too.
 POLEMCL_EXPORT PathSections passSections(const std::vector<Pose2D>& poses,
                                          const std::vector<std::uint32_t>& drives,
                                          double sectionLength, const std::vector<bool>& used = {});

@@ -39,7 +39,7 @@ class POLEMCL_EXPORT PoleIndex {
 
   std::size_t size() const { return m_variances.size(); }
   double preparedRadius() const { return m_preparedRadius; }
-  /// \brief The nearest pole with distance < radius, if any. Of equals, the lower index.
+  /// \brief The nearest pole with distance < radius, if any. The lower index wins a tie.
   /// "<" is decided on the squares. A query that is not a number finds nothing.
   std::optional<Neighbour> nearest(double x, double y, double radius) const;
   /// \brief All poles with distance < radius, sorted by distance then index.

@@ -19,9 +19,9 @@ class POLEMCL_EXPORT PoleExtractor {
  public:
   /// \throws Error when an option is out of range or the sensor's geometry is unknown.
   explicit PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction);
-  /// \brief For the depth images of one camera, by the native method. Of `sensor` only the height
-  /// and the ranges are used. extract() takes points in a level frame with the origin at the
-  /// optical centre, in which the camera stands as `R_lidar_camera` says.
+  /// \brief For the depth images of one camera, by the native method. Only the height
+  /// and the ranges of `sensor` are used. extract() takes points in a level frame with the origin
+  /// at the optical centre, in which the camera stands as `R_lidar_camera` says.
   /// \throws Error when an option or an intrinsic is out of range.
   PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
                 const ScanLineOptions& options);
@@ -31,16 +31,16 @@ class POLEMCL_EXPORT PoleExtractor {
 
   /// \brief Poles of one full turn, sorted by azimuth then range so that the order is defined.
   /// \param points Cloud in the LiDAR's own frame, origin at its optical centre, z up
-  ///        (within the mounting tilt; see SensorOptions). Order of points is of no consequence.
-  /// \param upright By so much an upright pole moves along x and y per height along z: the known
+  ///        (within the mounting tilt; see SensorOptions). The order of points does not matter.
+  /// \param upright Shift of an upright pole along x and y per unit of height along z: the known
   /// lean of the lidar. Used by the native method.
   /// \return Poles in that same frame; heights above the local ground. Centres of the native method
   /// are those at the height of the lidar, or the nearest that was seen.
   const std::vector<PoleDetection>& extract(
       const PointsView& points, const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
   const ExtractionReport& report() const;
-  /// \brief Of the last scan: VisibilityRangeFinder::kSectors free ranges (see there), m, in the
-  /// frame of the points. Empty by the paper's method and of depth cameras: not known.
+  /// \brief Free ranges of the last scan: VisibilityRangeFinder::kSectors (see there), m, in the
+  /// frame of the points. Empty for the paper's method and for depth cameras: not known.
   const std::vector<float>& visibilityRange() const;
 
  private:

@@ -50,7 +50,8 @@ POLEMCL_EXPORT Eigen::Matrix3d walkCovariance(const Pose2D& motion, const Submap
 /// \brief One pole of the submap, local frame.
 struct POLEMCL_EXPORT SubmapPole {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< m
-  /// Of the centre, m², axes of the local frame, as seen from the robot when it was last detected.
+  /// Covariance of the centre, m², axes of the local frame, as seen from the robot when the pole
+  /// was last detected.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
   double radius = 0;          ///< mean of the detections, m
   double bottom = 0;          ///< lowest seen, m above local ground
@@ -77,8 +78,8 @@ class POLEMCL_EXPORT LocalSubmap {
 
   /// \brief One frame more: moves on, associates the detections one to one by ascending Mahalanobis
   /// distance, opens poles for the rest, drops what is far back or was hardly ever seen.
-  /// \param motion Robot's motion since the frame before, in the robot frame before. Of the first
-  ///        frame: ignored, the robot starts at the origin.
+  /// \param motion Robot's motion since the frame before, in the robot frame before. It is
+  ///        ignored for the first frame: the robot starts at the origin.
   /// \param poles_robot Detections of this frame, robot frame; may be empty. Those with a
   /// confidence
   ///        of 0 are not used.
@@ -109,7 +110,7 @@ class POLEMCL_EXPORT LocalSubmap {
   /// since it was last seen; m², axes of the local frame.
   /// \param withScale false: without the error of scale, for those who estimate it.
   Eigen::Matrix2d presentCovariance(const SubmapPole& pole, bool withScale = true) const;
-  /// \brief The poles with at least so many hits as the robot would detect them now: robot frame,
+  /// \brief The poles with at least `minHits` hits as the robot would detect them now: robot frame,
   /// covariance with the odometry's part, `points` the number of hits.
   std::vector<PoleDetection> detections(std::uint32_t minHits) const;
 

@@ -21,8 +21,8 @@ class POLEMCL_EXPORT OdometryDrift {
   /// \brief One step more.
   /// \param end Where the step ends, local frame, m.
   /// \param yaw Heading before the step, local frame, rad.
-  /// \param covariance Of the step's (x, y, yaw) in the robot frame before it, m², m·rad, rad². Its
-  ///        correlations of position and heading are not used.
+  /// \param covariance Covariance of the step's (x, y, yaw) in the robot frame before it,
+  ///        m², m·rad, rad². Its correlations of position and heading are not used.
   void add(const Eigen::Vector2d& end, double yaw, const Eigen::Matrix3d& covariance);
 
   /// \brief Covariance of `place` (local frame, m), known exactly from the robot at the moment

@@ -66,10 +66,10 @@ class POLEMCL_EXPORT OdometryMonitor {
 
   /// \brief One scan more. After a gap longer than the window, and for the first scan, there is
   /// nothing to compare with.
-  /// \param time Of the scan, s; scans that are not earlier are forgotten, so that one that was
-  /// refused elsewhere can be given again. \param motion, covariance Odometry
-  /// since the scan before; finite. \param poles_robot Detections, robot frame; those that are not
-  /// finite or have no confidence are not used.
+  /// \param time Time of the scan, s; scans that are not earlier are forgotten, so that one that
+  /// was refused elsewhere can be given again. \param motion, covariance Odometry since the scan
+  /// before; finite. \param poles_robot Detections, robot frame; those that are not finite or have
+  /// no confidence are not used.
   MonitoredMotion add(double time, const Pose2D& motion, const Eigen::Matrix3d& covariance,
                       const std::vector<PoleDetection>& poles_robot);
   /// \brief Forgets all scans: the next is a first one.
@@ -84,7 +84,7 @@ class POLEMCL_EXPORT OdometryMonitor {
     Pose2D odometry, used;
     Eigen::Matrix3d spent = Eigen::Matrix3d::Zero();  ///< sum of the odometry's covariances
     std::vector<PoleDetection> poles;
-    bool known = true;  ///< the motion to it was borne out (while contradicted)
+    bool known = true;  ///< the poles confirmed the motion to it (while contradicted)
   };
   /// What the poles say about the motion since a reference.
   struct Finding {
@@ -119,8 +119,8 @@ class POLEMCL_EXPORT OdometryMonitor {
   State m_state = State::believed;
   Pose2D m_speed;          ///< of the last motion handed out, per second
   double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s
-  /// Of the scan that those after it are aligned with while contradicted, s. One for several, not
-  /// each with its own: chains of every third scan would drift apart.
+  /// Time of the scan that later scans are aligned with while contradicted, s. Several scans share
+  /// one such scan: chains of every third scan would drift apart.
   double m_keyTime = 0;
 };
 

@@ -25,8 +25,8 @@ struct RegistrationOptions {
 struct POLEMCL_EXPORT ScanRegistration {
   /// Motion of the robot from the first scan to the second, in the first's robot frame.
   Pose2D motion;
-  /// Of (x, y, yaw), m², m·rad, rad²: of the least squares, scaled by the residuals where these are
-  /// larger than expected. Meaningless without 2 pairs.
+  /// Covariance of (x, y, yaw), m², m·rad, rad²: that of the least squares, scaled by the residuals
+  /// where these are larger than expected. Meaningless without 2 pairs.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   int pairs = 0;     ///< one to one, within the gate
   double score = 0;  ///< sum of 1 - m²/gate² of the pairs, m their Mahalanobis distances

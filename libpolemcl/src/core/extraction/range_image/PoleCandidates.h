@@ -6,7 +6,6 @@
 
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include <polemcl/core/extraction/ExtractionReport.h>
-
 #include "core/extraction/range_image/Segmentation.h"
 
 namespace polemcl {

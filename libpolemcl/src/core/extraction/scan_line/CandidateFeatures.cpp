@@ -64,7 +64,8 @@ class Place {
   }
 
  private:
-  /// Of a return from the axis, m², by the law of cosines; the angle between is small.
+  /// Squared distance of a return from the axis, m², by the law of cosines; the angle between is
+  /// small.
   float squaredDistance(const Return& r) const {
     const float step = r.rho - m_rho, turn = wrapped(r.azimuth - m_bearing);
     return step * step + r.rho * m_rho * turn * turn * (1 - turn * turn * (1 / 12.f));

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRangeSigma = 0.025;  ///< m: noise of one range, and of the surface's roughness
 constexpr double kRobust = 0.06;  ///< m: Cauchy scale of range residuals; mixed pixels lie beyond
-constexpr double kFootprint = 0.0008;  ///< rad: by so much a beam's width widens what it sees
+constexpr double kFootprint = 0.0008;  ///< rad: a beam's width widens what it sees by this
 constexpr double kDivergence = 0.002;  ///< rad: full width of a beam
 constexpr double kGrazing =
     0.85;  ///< share of the radius beyond which the front's slope is not used

@@ -34,7 +34,7 @@ struct PoleView {
   float columnAngle = 0;  ///< one firing step, rad
   /// Segments below weigh less, the less the lower, down to 0.5 m below; lidar frame, m.
   float firmHeight = -1e3f;
-  /// By so much an upright pole moves along x and y per height along z: 0 for an upright lidar.
+  /// Shift of an upright pole along x and y per unit of height along z: 0 for an upright lidar.
   float uprightX = 0, uprightY = 0;
 };
 

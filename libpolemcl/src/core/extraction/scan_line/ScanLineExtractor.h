@@ -8,7 +8,6 @@
 #include <polemcl/core/extraction/ExtractionReport.h>
 #include <polemcl/core/sensor/PinholeCamera.h>
 #include <polemcl/core/sensor/SensorOptions.h>
-
 #include "core/extraction/PoleClassifier.h"
 #include "core/extraction/VisibilityRange.h"
 #include "core/extraction/scan_line/CandidateFeatures.h"
@@ -22,7 +21,7 @@ class ScanLineExtractor {
   /// \param upright See PoleExtractor::extract().
   void extract(const PointsView& points, const Eigen::Vector2f& upright,
                std::vector<PoleDetection>& poles, ExtractionReport& report);
-  /// \brief Of the last scan, as VisibilityRangeFinder gives it.
+  /// \brief Free ranges of the last scan, as VisibilityRangeFinder gives them.
   const std::vector<float>& visibilityRange() const { return m_freeRange; }
 
  private:

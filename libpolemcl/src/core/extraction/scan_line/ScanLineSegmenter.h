@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <polemcl/core/extraction/ExtractionOptions.h>
-
 #include "core/extraction/scan_line/ScanLines.h"
 
 namespace polemcl {

@@ -23,9 +23,9 @@ void eachInStreams(std::size_t n, F f) {
   for (std::size_t i = 4 * quarter; i < n; ++i) f(i);
 }
 
-constexpr int kFewReturns = 32;  // so many are sorted fastest by insertion
+constexpr int kFewReturns = 32;  // up to this number, insertion sorts fastest
 
-/// Down to the last bit, so that the order of the points is of no consequence.
+/// Compares down to the last bit, so that the order of the points does not matter.
 class Before {
  public:
   explicit Before(const PointsView& points) : m_points(points) {}
@@ -66,8 +66,8 @@ int ScanLines::bucketColumn(float azimuth) const {
   return std::clamp(column, 0, m_buckets - 1);
 }
 
-/// So many that returns per bucket stay few, and the work linear. Powers of two only, so that the
-/// kernels and bucketColumn() round alike.
+/// Chooses enough buckets that each holds few returns, and the work stays linear. The number is a
+/// power of two, so that the kernels and bucketColumn() round alike.
 void ScanLines::chooseBuckets(std::size_t points) {
   constexpr std::size_t kPerBucket = 8;
   constexpr int kMost = 1 << 14;

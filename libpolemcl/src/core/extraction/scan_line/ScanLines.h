@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-
 #include "core/extraction/scan_line/GroundGrid.h"
 #include "core/sensor/SensorModel.h"
 
@@ -45,8 +44,8 @@ class ScanLines {
   /// \brief Returns of one row, azimuth ascending; equal azimuths by range, then height, then x, y.
   const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
   const Return* end(int row) const { return begin(row + 1); }
-  /// \brief First return of one of so many equal parts of a row, from -pi on; `part` may be
-  /// `parts`: the end of the last. \param parts A power of two, at most kBuckets.
+  /// \brief First return of part number `part` of a row split into `parts` equal parts, from -pi
+  /// on; `part` may be `parts`: the end of the last. \param parts A power of two, at most kBuckets.
   const Return* begin(int row, int part, int parts) const {
     return m_returns.data() + m_bucketStart[bucket(row, part * (m_buckets / parts))];
   }
