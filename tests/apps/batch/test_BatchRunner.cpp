@@ -47,6 +47,7 @@ class BatchRunner : public testing::Test {
   void add(const std::string& id, const std::vector<Names>& commands, const Names& needs = {}) {
     BatchTask task;
     task.id = id;
+    task.kind = TaskKind::run;
     task.commands = commands;
     task.needs = needs;
     task.outputs = {"out"};

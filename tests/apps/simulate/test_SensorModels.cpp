@@ -34,7 +34,7 @@ std::vector<Sensor> sensors() {
                  tableKeys + "lower_elevations_deg = -8 -10 -12 -15\napex_m = 0.2 0.12\n"});
   all.push_back({"table_upside_down", tableKeys + "upside_down = true\n"});
   all.push_back({"uniform",
-                 "model = uniform\ncolumns = 1200\nrows = 24\nfov_up_deg = 15\n"
+                 "model = uniform\ncolumns = 1200\nrings = 24\nfov_up_deg = 15\n"
                  "fov_down_deg = -12\n"});
   return all;
 }
