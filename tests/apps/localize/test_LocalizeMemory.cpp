@@ -56,7 +56,7 @@ using namespace testing_apps;
 
 namespace {
 
-constexpr std::size_t directions = 1440;  // of the free range: 5.8 kB a scan
+constexpr std::size_t directions = 1440;  // of the visibility range: 5.8 kB a scan
 
 class LocalizeMemory : public LocalizeTest {
  protected:

@@ -81,7 +81,8 @@ TEST(BoxMerging, EqualsSpreadingOverAllPairs) {
     const auto all = randomSightings(count, count);
     EXPECT_EQ(joinOverlappingBoxes(all), spread(all)) << count;
   }
-  // With 400 in 20 m by 20 m neither one group nor one a observation: the test says something.
+  // With 400 in 20 m by 20 m neither one group nor one for each observation: the test says
+  // something.
   const auto groups = joinOverlappingBoxes(randomSightings(400, 400)).size();
   EXPECT_GT(groups, 150u);
   EXPECT_LT(groups, 350u);

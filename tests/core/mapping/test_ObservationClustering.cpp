@@ -84,7 +84,7 @@ TEST(ObservationClustering, FindsThePolesWhereThereIsNoDoubt) {
 }
 
 TEST(ObservationClustering, AChainDoesNotRunTogether) {
-  // A hedge: a observation every 0.3 m over 9 m. Connected components at 0.5 m would make one of
+  // A hedge: an observation every 0.3 m over 9 m. Connected components at 0.5 m would make one of
   // it.
   std::vector<LandmarkObservation> observations;
   for (std::uint32_t i = 0; i <= 30; ++i) observations.push_back(observation(0.3 * i, 0, i));

@@ -16,23 +16,25 @@ namespace polemcl {
 /// -pi + (i + 1)·2pi/n. \param azimuth rad, any turn; must be finite. \param sectors At least 1.
 std::size_t visibilityRangeSector(double azimuth, std::size_t sectors);
 
-/// \brief Free range towards a thing so wide: the least of the sectors it reaches into, so that an
-/// edge beside it is not seen through.
+/// \brief Visibility range towards a thing so wide: the least of the sectors it reaches into, so
+/// that an edge beside it is not seen through.
 /// \param visibilityRange As VisibilityRangeFinder gives it; may be empty.
 /// \param halfWidth Half the width of the thing across the line of sight, m.
 /// \return m; 0 where one of the sectors, or all, are unknown.
 double visibilityRangeTowards(const std::vector<float>& visibilityRange, double x, double y,
                               double halfWidth);
 
-/// \brief Judges the free range from the beams at pole heights (0.5 to 3 m above the ground).
+/// \brief Judges the visibility range from the beams at pole heights (0.5 to 3 m above the
+/// ground).
 ///
 /// At a range, the beams that pass there at pole heights are counted (ground taken as level at the
 /// lidar's nominal height; those that reach the ground within 5 m or so are left out, of
 /// 32 and more every second, third … is taken). A beam that met something nearer in the sector is
-/// blocked. The free range is the last of steps of 0.5 m before which at least half of the beams,
-/// and two, are free; it ends where fewer than two beams pass at pole heights at all, and at the
-/// extractor's greatest range. A pole ends the free range of its own direction at its front. Beams
-/// without a return count as free; a direction in which not a single point was seen is unknown.
+/// blocked. The visibility range is the last of steps of 0.5 m before which at least half of the
+/// beams, and two, are free; it ends where fewer than two beams pass at pole heights at all, and at
+/// the extractor's greatest range. A pole ends the visibility range of its own direction at its
+/// front. Beams without a return count as free; a direction in which not a single point was seen is
+/// unknown.
 class VisibilityRangeFinder {
  public:
   static constexpr int kSectors = 256;     ///< 1.4° each

@@ -10,7 +10,7 @@
 
 namespace polemcl {
 
-/// \brief Connected components of overlapping boxes. A box is the square round a observation's
+/// \brief Connected components of overlapping boxes. A box is the square round an observation's
 /// centre that reaches one radius to each side; boxes that touch overlap. Chains are one component,
 /// and one scan may have several members. \return Groups of indices into `observations`, each
 /// ascending, ordered by their first index. Work

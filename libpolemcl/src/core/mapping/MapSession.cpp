@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kNone = PointHit::none;
 /// m beside a pole: what stands there may hide it.
 constexpr double kBeside = 0.15;
-/// m: a pole's own front ends the free range, a step of it is 0.5 m, and maps err.
+/// m: a pole's own front ends the visibility range, a step of it is 0.5 m, and maps err.
 constexpr double kOwnFront = 0.75;
 
 void checkFreeRange(const SessionScan& scan, const std::string& where) {

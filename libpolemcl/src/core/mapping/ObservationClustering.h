@@ -3,7 +3,7 @@
 /// \brief Which observations show the same pole: by gated distance to its centre, one a scan.
 ///
 /// Overlapping boxes merged as connected components, as the first implementation does, run together
-/// in chains. Here a observation belongs to a pole by its distance to the pole's own centre, and
+/// in chains. Here an observation belongs to a pole by its distance to the pole's own centre, and
 /// two of one scan are two poles.
 
 #include <vector>
@@ -22,7 +22,7 @@ struct ClusteringOptions {
 /// Groups grow from where observations are densest; then each scan's observations are dealt out to
 /// the nearest centres, one each, until nothing changes; then groups with centres nearer than the
 /// gate are merged unless they were seen together often enough to be two poles. In a group: all
-/// members lie nearer than the gate to its fused centre, and no two are of one scan. A observation
+/// members lie nearer than the gate to its fused centre, and no two are of one scan. An observation
 /// that no group takes (a second one of the same pole in one scan) is left out. Work grows with the
 /// number of observations times the observations of a pole. The result does not depend on the order
 /// of the observations.

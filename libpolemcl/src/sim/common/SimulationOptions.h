@@ -48,7 +48,7 @@ void bind(Binder& binder, WorldOptions& options);  ///< `[world]`
 /// \brief The drive and its LiDAR. `[simulation]` in INI files.
 struct SimulationOptions {
   WorldOptions world;
-  /// `hdl64e`, `hdl32e`, `vlp16`, `os1_64`, `os1_128`, `os0_64`. Programs take it from `[sensor]`.
+  /// Names as in lidarNames() (LidarModel.h). Programs take it from `[sensor]`.
   std::string sensor = "hdl32e";
   double height = 1.0;      ///< optical centre above ground, m. Programs take it from `[sensor]`.
   bool upsideDown = false;  ///< the sensor hangs; its beams are given as seen upright, z up

@@ -1,6 +1,7 @@
 #pragma once
 /// \file PoleExtractor.h
-/// \brief Scan in, poles out: steps A to B3 of the paper on one screen, and the native method.
+/// \brief Scan in, poles out: steps A to B3 of the paper on one screen, and the scan-line
+/// method.
 
 #include <memory>
 #include <vector>
@@ -19,7 +20,7 @@ class POLEMCL_EXPORT PoleExtractor {
  public:
   /// \throws Error when an option is out of range or the sensor's geometry is unknown.
   explicit PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction);
-  /// \brief For the depth images of one camera, by the native method. Only the height
+  /// \brief For the depth images of one camera, by the scan-line method. Only the height
   /// and the ranges of `sensor` are used. extract() takes points in a level frame with the origin
   /// at the optical centre, in which the camera stands as `R_lidar_camera` says.
   /// \throws Error when an option or an intrinsic is out of range.
@@ -33,14 +34,14 @@ class POLEMCL_EXPORT PoleExtractor {
   /// \param points Cloud in the LiDAR's own frame, origin at its optical centre, z up
   ///        (within the mounting tilt; see SensorOptions). The order of points does not matter.
   /// \param upright Shift of an upright pole along x and y per unit of height along z: the known
-  /// lean of the lidar. Used by the native method.
-  /// \return Poles in that same frame; heights above the local ground. Centres of the native method
-  /// are those at the height of the lidar, or the nearest that was seen.
+  /// lean of the lidar. Used by the scan-line method.
+  /// \return Poles in that same frame; heights above the local ground. Centres of the scan-line
+  /// method are those at the height of the lidar, or the nearest that was seen.
   const std::vector<PoleDetection>& extract(
       const PointsView& points, const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
   const ExtractionReport& report() const;
-  /// \brief Free ranges of the last scan: VisibilityRangeFinder::kSectors (see there), m, in the
-  /// frame of the points. Empty for the paper's method and for depth cameras: not known.
+  /// \brief Visibility ranges of the last scan: VisibilityRangeFinder::kSectors (see there), m, in
+  /// the frame of the points. Empty for the paper's method and for depth cameras: not known.
   const std::vector<float>& visibilityRange() const;
 
  private:

@@ -5,7 +5,7 @@
 /// Each scan's detections go to the kept poles by gated distance, one detection a scan and pole,
 /// nearest pairs first; what is left over is merged as buildPoleMap() does and becomes new poles.
 /// Whether a pole stands is told by PoleExistence, from the scans that found it and those that
-/// could have (in range and, by their free range, in view).
+/// could have (in range and, by their visibility range, in view).
 
 #include <vector>
 
@@ -90,8 +90,8 @@ POLEMCL_EXPORT LandmarkMap withHistory(const std::vector<MapPole>& poles,
 /// \brief Updates a map by one session. Scans in the order they were driven; the result does not
 /// depend on the order of the detections in a scan.
 /// \param counts If given: what changed.
-/// \throws Error on options out of range, on scans as buildPoleMap(), and on a free range that is
-///         negative or not finite.
+/// \throws Error on options out of range, on scans as buildPoleMap(), and on a visibility
+///         range that is negative or not finite.
 POLEMCL_EXPORT LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& scans,
                                      const PoleMapOptions& mapping, const MapUpdateOptions& options,
                                      MapUpdateCounts* counts = nullptr);

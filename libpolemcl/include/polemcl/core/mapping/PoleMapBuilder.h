@@ -16,7 +16,7 @@ namespace polemcl {
 
 class Binder;
 
-/// \brief Which scan is the view of a section.
+/// \brief Which scan is the keyframe of a section.
 enum class SectionMiddle {
   nearest,  ///< the one nearest to the middle of the section
   passed    ///< the first at or past the middle (first implementation, see SectionMarks)
@@ -24,8 +24,9 @@ enum class SectionMiddle {
 
 /// \brief Which detections are one pole, and what becomes of them.
 enum class MapMerging {
-  gated,  ///< by distance to the pole's centre, one a view; mean by certainty, without outliers
-  boxes   ///< all whose boxes overlap, chains too; plain mean (first implementation)
+  /// By distance to the pole's centre, one a keyframe; mean by certainty, without outliers.
+  gated,
+  boxes  ///< all whose boxes overlap, chains too; plain mean (first implementation)
 };
 
 /// \brief What is counted against PoleMapOptions::minCount.
@@ -38,15 +39,15 @@ enum class PoleCounting {
 struct POLEMCL_EXPORT PoleMapOptions {
   /// Length of a section of the path, m (paper: 0.25 NCLT, 1.5 KITTI and MulRan).
   double sectionLength = 1.5;
-  /// true: every scan is a view; false: the scan nearest to the middle of a section is its one view
-  /// (paper).
+  /// true: every scan is a keyframe; false: the scan nearest to the middle of a section is its one
+  /// keyframe (paper).
   bool everyScan = true;
   SectionMiddle middle = SectionMiddle::nearest;
   MapMerging merging = MapMerging::gated;
   PoleCounting counting = PoleCounting::run;
   double mergeDistance = 0.5;  ///< detections of one pole lie within this of its mean, m
-  /// Poles nearer to each other than mergeDistance stay apart when at least this share of the views
-  /// of the one seen more often shows both; otherwise they are one.
+  /// Poles nearer to each other than mergeDistance stay apart when at least this share of the
+  /// keyframes of the one seen more often shows both; otherwise they are one.
   static constexpr double apartShare = 0.25;
   int minCount = 5;          ///< least `counting` of a pole
   int maxGap = 2;            ///< most *occupied* sections in a row that may miss it inside a run
@@ -86,7 +87,7 @@ struct PoleMapResult {
   double pathLength = 0;             ///< over all drives, scans not used included, m
   std::size_t sections = 0;          ///< along the path
   std::size_t occupiedSections = 0;  ///< with at least one scan: only these count and break runs
-  std::size_t views = 0;             ///< scans used: one of each occupied section, or all
+  std::size_t views = 0;             ///< keyframes: one scan of each occupied section, or all
   std::size_t detections = 0;        ///< used
   std::size_t clusters = 0;          ///< before counting
   std::size_t bestCount = 0;         ///< greatest `counting` of a pole; minCount must be met

@@ -13,8 +13,9 @@ class Binder;
 
 /// \brief The LiDAR's geometry and mounting. `[sensor]` in INI files.
 struct POLEMCL_EXPORT SensorOptions {
-  /// Names as in SensorModel::modelNames(): rings of a data sheet; `table`: `elevations_deg`;
-  /// `uniform`: `rings` rings from `fov_up_deg` to `fov_down_deg`.
+  /// Names as in SensorModel::modelNames(): rings of a data sheet, or as measured
+  /// (`hdl64e`: KITTI's unit; `os1_64_gen2`). `table`: `elevations_deg`; `uniform`: `rings` rings
+  /// from `fov_up_deg` to `fov_down_deg`.
   std::string model = "hdl64e";
   /// Upside down mounting: the rings are listed as seen upright, z up (elevations change sign).
   bool upsideDown = false;

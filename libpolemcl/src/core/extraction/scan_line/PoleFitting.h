@@ -1,6 +1,6 @@
 #pragma once
 /// \file PoleFitting.h
-/// \brief Step B3, native: centre, radius and covariance of a cluster of segments.
+/// \brief Step B3, scan-line method: centre, radius and covariance of a cluster of segments.
 
 #include <Eigen/Core>
 #include <optional>

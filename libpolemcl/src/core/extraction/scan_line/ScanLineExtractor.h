@@ -1,6 +1,7 @@
 #pragma once
 /// \file ScanLineExtractor.h
-/// \brief The native method, A to B3, on one screen. Private to the library; see PoleExtractor.h.
+/// \brief The scan-line method, A to B3, on one screen. Private to the library; see
+/// PoleExtractor.h.
 
 #include <optional>
 
@@ -21,7 +22,7 @@ class ScanLineExtractor {
   /// \param upright See PoleExtractor::extract().
   void extract(const PointsView& points, const Eigen::Vector2f& upright,
                std::vector<PoleDetection>& poles, ExtractionReport& report);
-  /// \brief Free ranges of the last scan, as VisibilityRangeFinder gives them.
+  /// \brief Visibility ranges of the last scan, as VisibilityRangeFinder gives them.
   const std::vector<float>& visibilityRange() const { return m_freeRange; }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 /// \file ScanLineSegmenter.h
-/// \brief Step B1, native: narrow things that stand before what lies behind them, on one scan line.
+/// \brief Step B1, scan-line method: narrow things that stand before what lies behind
+/// them, on one scan line.
 
 #include <cstdint>
 #include <vector>

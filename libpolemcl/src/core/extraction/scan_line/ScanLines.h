@@ -1,6 +1,7 @@
 #pragma once
 /// \file ScanLines.h
-/// \brief The native range image: one row per real beam, its returns sorted by azimuth.
+/// \brief What the scan-line method has for a range image: one row per real beam, its returns
+/// sorted by azimuth.
 ///
 /// Nothing is rounded to a pixel and no return is lost to another, so a scan turned about z, or
 /// delivered in another order, gives the same rows. (Scan lines as units of pole detection:

@@ -1,6 +1,7 @@
 #pragma once
 /// \file SegmentClustering.h
-/// \brief Step B2, native: segments of several beams, one above the other, make a candidate.
+/// \brief Step B2, scan-line method: segments of several beams, one above the other, make a
+/// candidate.
 
 #include <cstdint>
 #include <vector>
