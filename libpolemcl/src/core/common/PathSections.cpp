@@ -74,7 +74,7 @@ PathSections passSections(const std::vector<Pose2D>& poses,
 
 PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::uint32_t>& drives,
                        double sectionLength, const std::vector<bool>& used) {
-  // A quarter of a section: far above the jitter of poses, far below the bends of roads.
+  // A quarter of a section: much longer than jitter of poses, much shorter than bends of roads.
   const double step = sectionLength / 4;
   PathSections result;
   Odometer odometer(step);
@@ -89,7 +89,7 @@ PathSections splitPath(const std::vector<Pose2D>& poses, const std::vector<std::
       odometer = Odometer(step);
     }
     const double travelled = odometer.at(poses[i]) / sectionLength;
-    // Whole numbers of sections may come out a rounding short.
+    // Rounding may leave whole numbers of sections slightly too small.
     const auto index = static_cast<std::size_t>(std::floor(travelled + 1e-9));
     const double fromMiddle = std::abs(travelled - (static_cast<double>(index) + 0.5));
     result.count = sectionsBefore + index + 1;

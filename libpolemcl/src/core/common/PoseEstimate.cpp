@@ -8,7 +8,7 @@
 namespace polemcl {
 namespace {
 
-/// Weights with the greatest at 1, so that none overflows and not all vanish.
+/// Weights scaled to a greatest of 1: no weight overflows, and not all become 0.
 std::vector<double> weightsOf(const std::vector<double>& logWeights) {
   if (logWeights.empty())
     throw Error("no particles to estimate a pose from; there must be at least one");
@@ -37,7 +37,7 @@ void checkSizes(const std::vector<Pose2D>& particles, const std::vector<double>&
 /// Mean of the chosen particles, which are given by ascending index.
 Pose2D meanOf(const std::vector<Pose2D>& particles, const std::vector<double>& weights,
               const std::vector<std::size_t>& chosen) {
-  // Summed up relative to one particle: no digits are lost far from the map's origin.
+  // Sums relative to one particle lose no digits far from the origin of the map.
   const Pose2D origin = particles[chosen.front()];
   double sum = 0, x = 0, y = 0, sine = 0, cosine = 0;
   std::size_t heaviest = chosen.front(), next = 0;
@@ -91,7 +91,7 @@ PoseWithCovariance bestShareMean(const std::vector<Pose2D>& particles,
   const std::vector<double> weights = weightsOf(logWeights);
   std::vector<std::size_t> chosen(particles.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  // 0.29 of 100 is 28.999999999999996: rounded down, but not for that.
+  // Round down, but allow for rounding: 0.29 of 100 is 28.999999999999996.
   const double wanted = std::floor(share * static_cast<double>(particles.size()) + 1e-9);
   const std::size_t count =
       std::clamp<std::size_t>(static_cast<std::size_t>(wanted), 1, particles.size());

@@ -33,8 +33,8 @@ PairTolerance::PairTolerance(const PreparedMap& map, const Constellation& query,
 }
 
 double PairTolerance::of(const QueryPole& queryPole) const {
-  // The pair's middle is off by a quarter of the sum of both variances, its direction by the whole
-  // over the squared length.
+  // Variance of the pair's middle: a quarter of the sum of both variances. Variance of its
+  // direction: that sum divided by the squared length.
   const double lever = (queryPole.centre - m_middle).squaredNorm() / m_squaredLength;
   const double sigma = m_map.options().sigma;
   const double own =
@@ -53,7 +53,7 @@ std::vector<PoseCandidate> ConstellationSearch::run() {
   return bestSeeds();
 }
 
-/// Rare distances first: they cost least and say most.
+/// Rare distances come first: they cost least and decide most.
 std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() const {
   const GlobalOptions& options = m_map.options();
   const std::vector<QueryPole>& queryPoles = m_query.queryPoles();

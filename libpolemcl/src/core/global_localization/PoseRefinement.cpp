@@ -136,7 +136,7 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
     out.evidence += std::log1p(queryPole.odds * sharpness * std::exp(-0.5 * squared));
   }
   out.unseen = countUnseen(state);
-  // Where the map is old or full of false poles, these must not outvote the matches.
+  // On old maps or maps with false poles, unseen poles must not outweigh the matches.
   const double doubt = -std::log1p(-m_map.options().seen) * out.unseen;
   out.evidence -= std::min(doubt, 0.5 * out.evidence);
   out.matchedShare = static_cast<double>(out.matched) / static_cast<double>(m_query.reliable());
@@ -148,7 +148,7 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
   out.covariance = inflation * state.covariance.topLeftCorner<3, 3>();
 }
 
-/// Map poles beside the way that no pole of the submap claimed in this round.
+/// Number of map poles beside the path that no submap pole claimed in this round.
 std::uint32_t PoseRefinement::countUnseen(const State& state) {
   std::uint32_t unseen = 0;
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);

@@ -12,7 +12,7 @@ constexpr double s_lags[] = {0, 0.3, 1};  // of the window: the scans compared w
 constexpr int s_surePairs = 5;            // pairs that decide at once; fewer need two scans running
 constexpr double s_leastSigma = 0.02;     // of a motion by poles, m
 constexpr double s_leastTurn = 0.002;     // rad
-constexpr double s_mostVariance = 1;      // m²; more, and the poles do not say what the motion was
+constexpr double s_mostVariance = 1;      // m²; above it, the motion by poles is too uncertain
 constexpr double s_mostDoubt = 5;         // m
 
 std::vector<PoleDetection> usable(const std::vector<PoleDetection>& poles) {
@@ -36,13 +36,14 @@ Pose2D middle(const Pose2D& a, const Pose2D& b) {
   return {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.yaw + b.yaw)};
 }
 
-/// The pairs pin the motion down.
+/// Whether the pairs determine the motion.
 bool isCertain(const Eigen::Matrix3d& covariance) {
   return covariance.allFinite() && covariance(0, 0) + covariance(1, 1) < s_mostVariance &&
          covariance(2, 2) < s_mostVariance / 100;
 }
 
-/// Half of what is made up for, as a standard deviation; bounded, as the filter's motions are.
+/// A share of the change between two motions, as a standard deviation; bounded like the motions of
+/// the filter.
 Eigen::Matrix3d doubt(const Pose2D& from, const Pose2D& to, double share) {
   const Pose2D change = relative(from, to);
   const double length = std::hypot(change.x, change.y);
@@ -52,7 +53,7 @@ Eigen::Matrix3d doubt(const Pose2D& from, const Pose2D& to, double share) {
   return share * share * vector * vector.transpose();
 }
 
-/// `value`, nearer to 0 by the tolerance.
+/// How far `value` lies outside the tolerance around 0.
 double outside(double value, double tolerance) {
   return value > tolerance ? value - tolerance : value < -tolerance ? value + tolerance : 0;
 }
@@ -88,7 +89,7 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
   }
   m_past.push_back(now);
-  // One older than the window stays, so that the window is filled.
+  // One scan older than the window stays, so that the window is full.
   while (m_past.size() > 2 && time - m_past[1].time >= m_options.window) m_past.pop_front();
   return result;
 }
@@ -104,8 +105,7 @@ std::vector<std::size_t> OdometryMonitor::chosen(double time) const {
   return result;
 }
 
-/// The motion that most poles bear out: near what has been used, or near the speed before; from
-/// nowhere if neither holds.
+/// The motion that most poles support: near the motion used, or near the last speed; else searched.
 ScanRegistration OdometryMonitor::align(const Reference& reference, const Reference& now,
                                         bool search) const {
   const Reference& last = m_past.back();
@@ -137,7 +137,7 @@ bool OdometryMonitor::suffices(const ScanRegistration& alignment, const Referenc
          isCertain(alignment.covariance);
 }
 
-/// How far another motion lies outside what the odometry allows, in standard deviations.
+/// Distance of another motion from what the odometry allows, in standard deviations.
 double OdometryMonitor::beyondTolerance(const Pose2D& odometry, const Pose2D& other,
                                         const Eigen::Matrix3d& covariance) const {
   const Pose2D difference = relative(odometry, other);
@@ -158,7 +158,7 @@ OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, co
   if (!suffices(found, reference, now)) return finding;
   const Pose2D odometry = relative(reference.odometry, now.odometry);
   Eigen::Matrix3d covariance = found.covariance + now.spent - reference.spent;
-  // Headings in between carry their error to the end.
+  // Errors of the headings on the way move the end.
   const double carried =
       (now.spent - reference.spent)(2, 2) * (odometry.x * odometry.x + odometry.y * odometry.y) / 3;
   covariance += Eigen::Vector3d(s_leastSigma * s_leastSigma + carried,
@@ -272,14 +272,14 @@ MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& 
   return result;
 }
 
-/// The scan to align with, or the one after it where it is gone.
+/// Index of the scan to align with, or of the next one if it is gone.
 std::size_t OdometryMonitor::keyScan() const {
   std::size_t i = m_past.size() - 1;
   while (i > 0 && m_past[i - 1].time >= m_keyTime - 1e-6) --i;
   return i;
 }
 
-/// Odometry and poles say the same of the last moments.
+/// Whether odometry and poles have agreed for the settling time.
 bool OdometryMonitor::hasSettled(const Reference& now) const {
   std::size_t i = m_past.size() - 1;
   while (i > 0 && now.time - m_past[i].time < m_options.settle - 1e-6) --i;

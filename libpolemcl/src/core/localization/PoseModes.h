@@ -1,6 +1,6 @@
 #pragma once
 /// \file PoseModes.h
-/// \brief Are the particles in one place or in several? The heaviest of the places they are in.
+/// \brief Modes of the particles: the heaviest of the places where they are.
 
 #include <vector>
 
@@ -14,13 +14,13 @@ constexpr double modeCell = 2;             ///< m
 constexpr double modeCellYaw = M_PI / 12;  ///< rad (15°)
 
 struct PoseMode {
-  /// Mean of the heaviest place's particles. The covariance is that of *all* particles about it:
-  /// what speaks for another place makes this one less certain.
+  /// Mean of the particles of the heaviest place. The covariance is that of *all* particles about
+  /// it: particles elsewhere make this place less certain.
   PoseWithCovariance estimate;
   double share = 1;  ///< of the weight, in the heaviest place
 };
 
-/// \brief The heaviest place; of equals, the one of the particle with the lowest index.
+/// \brief The heaviest place. Ties: the place of the particle with the lowest index.
 /// \param particles, logWeights As for weightedMean(). \throws Error as weightedMean().
 PoseMode heaviestMode(const std::vector<Pose2D>& particles, const std::vector<double>& logWeights);
 

@@ -1,7 +1,6 @@
 #pragma once
 /// \file BoxMerging.h
-/// \brief Which observations show the same pole by the first implementation: those whose boxes
-/// overlap.
+/// \brief Groups of observations whose boxes overlap, as in the first implementation.
 
 #include <cstdint>
 #include <vector>

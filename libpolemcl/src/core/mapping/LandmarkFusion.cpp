@@ -25,7 +25,7 @@ std::vector<Weighted> weigh(const std::vector<LandmarkObservation>& observations
   weighted.reserve(members.size());
   for (const std::uint32_t member : members) {
     const PoleDetection& pole = observations[member].pole;
-    // A tenth of a millimetre: a covariance of zero would be an infinite weight.
+    // A tenth of a millimetre: a zero covariance would give an infinite weight.
     const Eigen::Matrix2d covariance = pole.covariance + 1e-8 * Eigen::Matrix2d::Identity();
     weighted.push_back(
         {member, Eigen::Vector2d(pole.x, pole.y) - origin, pole.confidence * covariance.inverse()});
@@ -33,7 +33,7 @@ std::vector<Weighted> weigh(const std::vector<LandmarkObservation>& observations
   return weighted;
 }
 
-/// Weighted median of each coordinate: the start that outliers cannot move far.
+/// Weighted median of each coordinate: outliers cannot move it far.
 Eigen::Vector2d median(const std::vector<Weighted>& weighted) {
   Eigen::Vector2d result;
   std::vector<std::pair<double, double>> values(weighted.size());
@@ -94,7 +94,7 @@ std::vector<bool> inside(const std::vector<double>& squared) {
   return inliers;
 }
 
-/// How much larger than promised the scatter of the inliers ones is, never below 1.
+/// Scatter of the inliers divided by what their covariances promise, never below 1.
 double excess(const std::vector<double>& squared, const std::vector<bool>& inliers) {
   double sum = 0, freedom = -2;
   for (std::size_t i = 0; i < squared.size(); ++i) {
@@ -115,7 +115,7 @@ Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& observations
   const std::vector<Weighted> weighted = weigh(observations, members, origin);
   std::vector<bool> taken(weighted.size(), true);
   Mean mean = fusedMeanOf(weighted, taken);
-  if (weighted.size() > 2) {  // of two none can be told to be the outlier
+  if (weighted.size() > 2) {  // with two it is unknown which is the outlier
     std::vector<bool> next = inside(squaredDistances(weighted, median(weighted)));
     for (int round = 0; round < 10 && next != taken; ++round) {
       taken = std::move(next);

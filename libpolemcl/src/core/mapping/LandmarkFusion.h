@@ -17,8 +17,8 @@ struct LandmarkObservation {
 /// \brief Centre of the observations: mean by inverse covariance times confidence, without
 /// outliers.
 ///
-/// From the median on, observations beyond the 99 % ellipse of their covariance are left out, all
-/// ellipses widened where the scatter says that covariances promise too much.
+/// Observations beyond the 99 % ellipse of their covariance are left out, starting from the median.
+/// All ellipses are widened where the scatter is larger than the covariances say.
 /// \param members Indices into `observations`, at least one.
 /// \param covariance If given: covariance of the mean, also widened by the scatter; m².
 /// \param inliers If given: the members that were not left out, in the order of `members`.
@@ -28,8 +28,8 @@ Eigen::Vector2d fusedCentre(const std::vector<LandmarkObservation>& observations
                             std::vector<std::uint32_t>* inliers = nullptr);
 
 /// \brief The pole: fused centre and covariance; radius the mean over the same observations; bottom
-/// and top the 10 % and 90 % quantiles (the rare far too high one is a branch, the low one a hidden
-/// foot); confidence the mean; count the number of observations.
+/// and top the 10 % and 90 % quantiles, because rare extremes are branches or hidden feet;
+/// confidence the mean; count the number of observations.
 MapPole fuse(const std::vector<LandmarkObservation>& observations,
              const std::vector<std::uint32_t>& members);
 

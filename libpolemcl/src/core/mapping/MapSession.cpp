@@ -14,7 +14,7 @@ namespace polemcl {
 namespace {
 
 constexpr std::uint32_t kNone = PointHit::none;
-/// m beside a pole: what stands there may hide it.
+/// m beside a pole: objects there may hide it.
 constexpr double kBeside = 0.15;
 /// m: a pole's own front ends the visibility range, a step of it is 0.5 m, and maps err.
 constexpr double kOwnFront = 0.75;
@@ -79,7 +79,7 @@ void Session::observe(const std::vector<LandmarkRecord>& poles) {
   }
 }
 
-/// The observations of one scan to the poles in their gates, nearest pair first.
+/// Assigns the observations of one scan to the poles in their gates, nearest pair first.
 void Session::assign(std::size_t number, const KdTree2D& tree) {
   struct Pair : AssignedPair {
     double x, y;
@@ -103,7 +103,7 @@ void Session::assign(std::size_t number, const KdTree2D& tree) {
   }
 }
 
-/// Which of the poles in range one scan found, and which it could have.
+/// Counts the poles in range that one scan found or could have found.
 void Session::expect(std::size_t number, const KdTree2D& tree,
                      const std::vector<LandmarkRecord>& poles) {
   const SessionScan& scan = m_scans[number];

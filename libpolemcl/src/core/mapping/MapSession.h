@@ -1,7 +1,7 @@
 #pragma once
 /// \file MapSession.h
-/// \brief One session against the poles of a kept map: who was found, who was missed. Private to
-/// the library; see MapUpdater.h.
+/// \brief One session compared with the poles of a map: found and missed poles. Private to the
+/// library; see MapUpdater.h.
 
 #include <vector>
 
@@ -10,7 +10,7 @@
 
 namespace polemcl {
 
-/// \brief What a session says of one pole.
+/// \brief Result of a session for one pole.
 struct SessionPole {
   std::vector<std::uint32_t> observations;  ///< indices into Session::observations(), of all ranges
   ExistenceEvidence evidence;               ///< within range only
@@ -28,7 +28,7 @@ class Session {
 
   const std::vector<LandmarkObservation>& observations() const { return m_observations; }
   const std::vector<SessionPole>& poles() const { return m_poles; }
-  /// \brief Observations that no pole took.
+  /// \brief Observations without a pole.
   std::vector<LandmarkObservation> loose() const;
   double firstTime() const { return m_firstTime; }
   double lastTime() const { return m_lastTime; }
@@ -41,7 +41,7 @@ class Session {
   const std::vector<SessionScan>& m_scans;
   const PoleMapOptions& m_mapping;
   const MapUpdateOptions& m_options;
-  std::vector<double> m_along;                      ///< way travelled to each scan, m
+  std::vector<double> m_along;                      ///< distance travelled to each scan, m
   std::vector<LandmarkObservation> m_observations;  ///< scan by scan
   std::vector<std::size_t> m_firstOfScan;  ///< index of its first observation; one more than scans
   std::vector<std::uint32_t> m_owner;      ///< pole of each observation, or none

@@ -14,7 +14,7 @@ namespace polemcl {
 namespace {
 
 constexpr double kFarEllipse = 13.8;        ///< 99.9 % of squared distances, 2 degrees of freedom
-constexpr std::uint32_t kWeightedTo = 200;  ///< observations: a long past does not outweigh today
+constexpr std::uint32_t kWeightedTo = 200;  ///< observations: older ones do not outweigh today's
 constexpr double kWithoutHistory = 0.9;     ///< existence of a pole of an old map
 
 Eigen::Vector2d centreOf(const MapPole& pole) {
@@ -65,8 +65,8 @@ class Update {
   MapUpdateCounts m_counts;
 };
 
-/// To the time of the session: nothing stands for ever. All of the map is as of the last session,
-/// of which some pole was seen last.
+/// Ages the existence of all poles from the last session to this one. The last session is the
+/// latest time at which any pole was seen.
 void Update::bringForward() {
   double last = 0;
   for (const LandmarkRecord& record : m_poles) last = std::max(last, record.history.lastSeen);
@@ -76,15 +76,15 @@ void Update::bringForward() {
         survived(record.history.existence, m_session.firstTime() - last, m_options.existence);
 }
 
-/// What no pole of the map took, merged to new ones.
+/// Clusters the observations without a pole and makes new poles of them.
 void Update::addNew() {
   const std::vector<LandmarkObservation> loose = m_session.loose();
   const auto groups = clusterObservations(loose, {m_mapping.mergeDistance, m_mapping.apartShare});
   for (const auto& group : groups) {
-    if (group.size() < 2) continue;  // once is chance
+    if (group.size() < 2) continue;  // a single observation may be chance
     LandmarkRecord record;
     record.pole = fuse(loose, group);
-    record.pole.count = 0;  // its observations are counted with everybody's
+    record.pole.count = 0;  // movePlaces() counts its observations
     record.history.existence = m_options.existence.prior;
     m_poles.push_back(record);
   }
@@ -106,7 +106,8 @@ void Update::applyEvidence() {
   }
 }
 
-/// The place after a session, with what all its scans share added to its covariance.
+/// Updates the centre of a pole after a session. The covariance gets the error that all scans of
+/// the session share.
 /// \return Whether the pole has been moved.
 bool Update::movePlace(LandmarkRecord& record, const MapPole& seen) const {
   MapPole& pole = record.pole;
@@ -153,7 +154,7 @@ std::vector<Eigen::Vector2d> Update::places() const {
   return places;
 }
 
-/// What was missed all session beside a new pole that earned its place has become that pole.
+/// Drops a pole that was never found if a new, certain pole stands beside it.
 void Update::dropGhosts() {
   const KdTree2D tree(places());
   std::vector<PointHit> near;
@@ -175,7 +176,7 @@ std::set<std::uint32_t> Update::scansOf(std::size_t pole) const {
   return scans;
 }
 
-/// As ObservationClustering has it: two that stand in one gate are two poles when scans show both.
+/// Whether scans show both poles, as ObservationClustering decides it.
 bool Update::seenTogether(std::size_t a, std::size_t b) const {
   const auto first = scansOf(a), second = scansOf(b);
   std::size_t both = 0;
@@ -184,7 +185,7 @@ bool Update::seenTogether(std::size_t a, std::size_t b) const {
          m_mapping.apartShare * static_cast<double>(std::max(first.size(), second.size()));
 }
 
-/// Two poles of the map may have come to stand in one gate: the one seen less today goes.
+/// Drops the pole seen less often today when two poles have moved into one gate.
 void Update::dropDoubles() {
   const KdTree2D tree(places());
   std::vector<PointHit> near;
@@ -201,7 +202,7 @@ void Update::dropDoubles() {
   }
 }
 
-/// Who is on the map, who stays beside it, who is forgotten.
+/// Decides which poles are on the map, which are candidates and which are forgotten.
 void Update::decidePresence() {
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
     LandmarkRecord& record = m_poles[i];

@@ -14,7 +14,7 @@ namespace {
 
 using Group = std::vector<std::uint32_t>;
 
-constexpr int s_mostRounds = 10;  ///< dealing and growing settle in two or three
+constexpr int s_mostRounds = 10;  ///< assigning and growing usually end after two or three
 
 Eigen::Vector2d clusterCentreOf(const LandmarkObservation& observation) {
   return {observation.pole.x, observation.pole.y};
@@ -26,7 +26,7 @@ void dropEmpty(std::vector<Group>& groups) {
       groups.end());
 }
 
-/// Indices of the observations in an order that depends on what they say only.
+/// Indices of the observations, in an order that depends on their content only.
 Group canonicalOrder(const std::vector<LandmarkObservation>& observations) {
   Group order(observations.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -97,7 +97,7 @@ class Clusterer {
   std::vector<Group> m_groups;
 };
 
-/// How much confidence lies round each observation, counting less towards the gate.
+/// Sum of confidences around each observation, weighted less towards the gate.
 std::vector<double> Clusterer::densities() const {
   std::vector<double> density(m_observations.size());
   std::vector<PointHit> hits;
@@ -161,7 +161,7 @@ std::vector<Eigen::Vector2d> Clusterer::observationCentres() const {
   return result;
 }
 
-/// Deals the observations of each scan out to the centres, nearest pair first, until none moves.
+/// Assigns the observations of each scan to the centres, nearest pair first, until nothing changes.
 void Clusterer::assign() {
   std::vector<Group> scans(m_nearest.size());
   for (std::uint32_t i = 0; i < m_observations.size(); ++i)
@@ -187,7 +187,7 @@ void Clusterer::assign() {
   }
 }
 
-/// Merges neighbours, nearest first, each group at most once; true if any were.
+/// Merges neighbours, nearest first, each group at most once. Returns whether any were merged.
 bool Clusterer::mergeNeighbours() {
   struct Pair {
     double squaredDistance;
@@ -217,7 +217,7 @@ bool Clusterer::mergeNeighbours() {
   return any;
 }
 
-/// Two poles, not one: often seen both in one scan.
+/// Whether two groups are two poles: scans often saw both.
 bool Clusterer::areApart(const Group& a, const Group& b) const {
   std::vector<std::uint32_t> scansOfA, scansOfB, common;
   for (const std::uint32_t i : a) scansOfA.push_back(m_observations[i].scan);
@@ -230,7 +230,8 @@ bool Clusterer::areApart(const Group& a, const Group& b) const {
          m_options.apartShare * static_cast<double>(std::max(a.size(), b.size()));
 }
 
-/// Both, but of a scan that has one in each only that of the larger (of equals the first).
+/// Union of two groups. A scan with a member in each keeps the member of the larger group; the
+/// first group wins ties.
 Group Clusterer::united(const Group& a, const Group& b) const {
   const Group &large = a.size() >= b.size() ? a : b, &small = a.size() >= b.size() ? b : a;
   std::vector<std::uint32_t> scans;
@@ -244,7 +245,7 @@ Group Clusterer::united(const Group& a, const Group& b) const {
   return group;
 }
 
-/// Leaves out members that the last move of a centre left beyond the gate.
+/// Removes members that lie beyond the gate after the last move of a centre.
 void Clusterer::prune() {
   for (Group& group : m_groups) {
     for (std::size_t before = 0; before != group.size();) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file ObservationClustering.h
-/// \brief Which observations show the same pole: by gated distance to its centre, one a scan.
+/// \brief Groups observations of the same pole: by gated distance to its centre, one per scan.
 ///
 /// Overlapping boxes merged as connected components, as the first implementation does, run together
 /// in chains. Here an observation belongs to a pole by its distance to the pole's own centre, and

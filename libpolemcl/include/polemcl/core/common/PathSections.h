@@ -39,7 +39,7 @@ struct PathSection {
   std::size_t index = 0;   ///< number of the section on its path: [index, index + 1) · length
   std::vector<std::size_t> scans;  ///< by ascending index
   std::size_t middle =
-      0;  ///< of these the scan nearest to the middle of the section; of equals the first
+      0;  ///< the scan nearest to the middle of the section; the first one wins ties
 };
 
 struct PathSections {
@@ -50,10 +50,10 @@ struct PathSections {
 
 /// \brief Splits the distance travelled.
 ///
-/// The length grows only with what leads away from where the last part of a section was completed:
-/// the jitter of a vehicle that stands adds nothing, so nothing is counted twice from one place.
+/// The length grows only by motion away from the place where the last part of a section ended.
+/// The jitter of a standing vehicle adds nothing, so no place counts twice.
 /// \param poses Finite, in the order travelled.
-/// \param drives One a pose: where it changes, a new path begins with a section of its own.
+/// \param drives One per pose; where it changes, a new path begins with a new section.
 /// \param sectionLength > 0, m.
 /// \param used One a pose, or empty for all: the others are part of the path only, no scan.
 POLEMCL_EXPORT PathSections splitPath(const std::vector<Pose2D>& poses,

@@ -26,7 +26,7 @@ POLEMCL_EXPORT PoseWithCovariance weightedMean(const std::vector<Pose2D>& partic
                                                const std::vector<double>& logWeights);
 /// \brief Weighted mean of the best `share` of the particles by weight (paper: 0.1), at least one;
 /// ties go to the lower index. The covariance is that of *all* particles about this mean: the
-/// spread of the chosen few would claim a certainty that the filter does not have. Call it before
+/// spread of the chosen particles alone would be too small. Call it before
 /// resampling, which makes all weights equal. \throws Error as weightedMean, or when `share` is
 /// outside (0, 1].
 POLEMCL_EXPORT PoseWithCovariance bestShareMean(const std::vector<Pose2D>& particles,

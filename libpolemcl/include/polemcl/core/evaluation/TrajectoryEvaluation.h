@@ -60,7 +60,7 @@ class POLEMCL_EXPORT TrajectoryEvaluator {
   explicit TrajectoryEvaluator(const std::vector<StampedPose2D>& truth,
                                double maxTruthGap = longestTruthGap);
 
-  /// \brief The next estimate. \return Its error; none where the truth says nothing.
+  /// \brief The next estimate. \return Its error; nothing where there is no truth.
   /// \throws Error when it is not finite, or not later than the one before.
   std::optional<PoseError> add(const StampedPose2D& estimate);
   /// \brief Estimates taken so far.

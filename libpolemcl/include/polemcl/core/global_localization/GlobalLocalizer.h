@@ -1,11 +1,11 @@
 #pragma once
 /// \file GlobalLocalizer.h
-/// \brief Where on the map is this constellation of poles? No start pose at all.
+/// \brief Finds a submap on the whole map, without a start pose.
 ///
 /// The poles of a LocalSubmap are matched against the whole map: pairs of them by their distance
 /// (geometric hashing, PairDistanceIndex), each candidate tried on its other poles and given up
-/// early, the best refined by least squares and judged on all poles: those matched speak for it,
-/// map poles beside the way that were never seen speak against it. See share/doc/global.md.
+/// early. The best are refined by least squares and judged on all poles: matched poles raise the
+/// score, map poles beside the path that were never seen lower it. See share/doc/global.md.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -54,18 +54,19 @@ struct POLEMCL_EXPORT GlobalHypothesis {
   /// Covariance of pose_map_robot's (x, y, yaw), m², m·rad, rad²: of the least squares, scaled by
   /// its residuals where these are larger than expected.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  double scale = 0;     ///< error of the odometry's scale: true way = (1 + scale)·driven way
-  double evidence = 0;  ///< log of the odds this place has against a place with no match, nats
-  double weight = 0;    ///< share of exp(evidence) among the hypotheses handed out
+  double scale =
+      0;  ///< error of the odometry's scale: true length = (1 + scale)·length by odometry
+  double evidence = 0;        ///< log-likelihood ratio to a place without any match, nats
+  double weight = 0;          ///< share of exp(evidence) among the hypotheses handed out
   std::uint32_t matched = 0;  ///< map poles matched, each once
   double matchedShare = 0;    ///< of the submap's poles with `minHits`
-  std::uint32_t unseen = 0;   ///< map poles beside the way that are not in the submap
+  std::uint32_t unseen = 0;   ///< map poles beside the path that are not in the submap
 };
 
 enum class GlobalVerdict {
   resolved,   ///< the first hypothesis, clearly better than all other places
   ambiguous,  ///< several about as good: keep all, drive on
-  none        ///< nothing that holds: too few poles, or not on this map
+  none        ///< no place is good enough: too few poles, or not on this map
 };
 
 /// \brief Why the verdict is what it is.

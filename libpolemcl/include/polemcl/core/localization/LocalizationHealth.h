@@ -1,6 +1,6 @@
 #pragma once
 /// \file LocalizationHealth.h
-/// \brief Can the pose be trusted? `ok`, `degraded` or `lost`, with the reason.
+/// \brief Whether the pose can be trusted: `ok`, `degraded` or `lost`, with the reason.
 
 #include <cstddef>
 #include <deque>
@@ -103,7 +103,7 @@ class POLEMCL_EXPORT HealthMonitor {
   /// \brief No pose is known: `lost`, `searching`.
   void reset();
   /// \brief A pose was assumed (a start, a search's answer): forgets the scans before; `degraded`,
-  /// `converging` until matches over `confirm` metres bear it out.
+  /// `converging` until matches over `confirm` metres support it.
   /// \param found By a search that is sure of it: `confirmFound` metres do.
   void begin(bool found = false);
   /// \brief One update more. Before begin(): stays `searching`.

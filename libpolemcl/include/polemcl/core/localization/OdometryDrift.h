@@ -1,6 +1,6 @@
 #pragma once
 /// \file OdometryDrift.h
-/// \brief How far dead reckoning may have gone astray between two moments of a drive.
+/// \brief Uncertainty of dead reckoning between two moments of a drive.
 
 #include <Eigen/Core>
 
@@ -10,7 +10,7 @@
 namespace polemcl {
 
 /// \brief Running sums over the steps of a drive; the difference of two states gives the
-/// uncertainty that came up between them, to first order and in closed form.
+/// uncertainty added between them, to first order and in closed form.
 ///
 /// A step that ends at p_k with position noise N_k and heading noise ω_k moves a place m that was
 /// fixed before it, seen from after it, by -n_k - ω_k·J·(m - p_k) with J a quarter turn. Steps are

@@ -1,6 +1,6 @@
 #pragma once
 /// \file OdometryMonitor.h
-/// \brief Do the poles contradict the odometry? And what motion do they say instead?
+/// \brief Detects faults of the odometry by the poles, and replaces its motion.
 ///
 /// Each scan's poles are compared with those of a few scans before, up to a second back, where a
 /// slip has added up. While poles and odometry agree, nothing is changed. An odometry that is
@@ -44,7 +44,7 @@ POLEMCL_EXPORT void bind(Binder& binder,
                          OdometryMonitorOptions& options);  ///< `[odometry_monitor]`
 
 enum class OdometryVerdict {
-  agrees,        ///< the poles bear the odometry out
+  agrees,        ///< the poles support the odometry
   contradicted,  ///< they do not: the motion is the poles', or the last known speed's
   unknown        ///< too few poles to tell: the motion is the odometry's
 };
@@ -55,7 +55,7 @@ struct POLEMCL_EXPORT MonitoredMotion {
   bool replaced = false;  ///< motion or covariance differ from the odometry's
   Pose2D motion;          ///< since the scan before, in the robot frame before; m, rad
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m², m·rad, rad²
-  int pairs = 0;                                         ///< poles that bear it out
+  int pairs = 0;                                         ///< pairs of poles that support it
 };
 
 /// \brief Follows one drive. Deterministic.

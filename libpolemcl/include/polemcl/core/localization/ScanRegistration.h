@@ -46,7 +46,7 @@ POLEMCL_EXPORT ScanRegistration refineMotion(const std::vector<PoleDetection>& b
                                              const RegistrationOptions& options);
 
 /// \brief Without a guess: every two poles of one scan that lie as far apart as two of the other
-/// give a candidate; the one most other poles bear out is refined.
+/// give a candidate; the candidate that most other poles support is refined.
 /// \param centre Candidates lie within `maxMetres` and `maxRadians` of it.
 POLEMCL_EXPORT ScanRegistration searchMotion(const std::vector<PoleDetection>& before,
                                              const std::vector<PoleDetection>& after,

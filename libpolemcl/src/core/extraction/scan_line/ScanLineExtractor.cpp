@@ -65,7 +65,7 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
   report.refused[static_cast<int>(RejectionReason::duplicate)] = dropDuplicates(poles);
 }
 
-/// The sensor's tilt, which the fits did not know, moves poles whose own tilt is not well seen.
+/// Moves poles whose own tilt is poorly seen, by the sensor's tilt that their fits did not know.
 void ScanLineExtractor::setUpright(std::vector<PoleDetection>& poles) const {
   const Eigen::Vector2f common = estimateTilt(m_tilts, m_upright);
   for (std::size_t i = 0; i < poles.size(); ++i) {
@@ -107,7 +107,7 @@ void ScanLineExtractor::selectForFit(const SegmentCluster& cluster) {
   }
 }
 
-/// Refusals that need no more than the segments, the cheapest first.
+/// Rejects by the segments alone, cheap tests first.
 std::optional<RejectionReason> ScanLineExtractor::judgeShape(const SegmentCluster& cluster,
                                                              ClusterShape& shape) const {
   const ScanLineSegment &highest = m_segments[cluster.top()],
@@ -133,7 +133,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
   const PoleAxis axis = roughAxis(m_segments, m_fitSegments, column);
   const CandidateFeatures candidate =
       computeFeatures(m_lines, m_sensor, m_ground, m_segments, cluster, shape, axis);
-  // Between the highest return and the first beam that passed over, the top is anywhere.
+  // The top lies between the highest return and the first beam that passed over it.
   const double top =
       std::isfinite(candidate.topBound) ? 0.5 * (candidate.top + candidate.topBound) : 1e9;
   if (std::max<double>(top, candidate.top) < m_options.minTop) return RejectionReason::tooLow;
@@ -146,7 +146,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
     return RejectionReason::badFit;
   features.residual = fit->residual;
   features.radius = fit->radius;
-  // A place without clutter is the best that can be.
+  // Upper bound: assume no clutter; skip the costly check if even that fails.
   if (confidence(poleOdds(features)) < m_options.minConfidence)
     return RejectionReason::lowConfidence;
   features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);

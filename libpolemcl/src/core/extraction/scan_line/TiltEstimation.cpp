@@ -6,10 +6,10 @@
 namespace polemcl {
 namespace {
 
-constexpr float s_mostPrior = 0.4f;  // of a tilt that is mostly the prior, too little is known
+constexpr float s_mostPrior = 0.4f;  // greatest share of the prior in a tilt that is used
 constexpr double s_own = 0.03;       // standard deviation of a pole's own tilt, m per m
 constexpr double s_sensor = 0.04;    // and of the sensor's
-constexpr double s_outlier = 2;      // a pole that tilts off by more sigmas counts less and less
+constexpr double s_outlier = 2;      // sigmas; poles farther off lose weight
 constexpr int s_tiltRounds = 3;
 
 }  // namespace

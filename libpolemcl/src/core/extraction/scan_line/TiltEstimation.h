@@ -1,17 +1,17 @@
 #pragma once
 /// \file TiltEstimation.h
-/// \brief Which way is up, by the poles of one scan.
+/// \brief Tilt of the sensor, from the poles of one scan.
 ///
-/// A LiDAR on a cambered road or a slope is tilted, and sees every upright pole tilt alike. The
-/// ground does not tell, since the vehicle stands on it. One pole's tilt is known poorly, and some
-/// trunks do tilt; all of them together tell.
+/// A LiDAR on a cambered road or a slope sees every upright pole with the same tilt. The ground
+/// does not show it, because the vehicle stands on that ground. The tilt of one pole is known
+/// poorly, and some trunks are tilted; all poles together are reliable.
 
 #include <Eigen/Core>
 #include <vector>
 
 namespace polemcl {
 
-/// \brief How a fitted pole tilts, lidar frame.
+/// \brief Tilt of a fitted pole, LiDAR frame.
 struct PoleTilt {
   Eigen::Vector2f tilt{0, 0};  ///< along x and y, m per m of height, shrunk towards upright
   /// Share of the prior, that poles are upright, in `tilt`; in (0, 1], 1 for what is seen at one
@@ -29,7 +29,7 @@ constexpr double tiltSigma = 0.02;
 
 /// \brief The tilt that the poles have in common: robust mean of the tilts as they were seen, each
 /// weighted by how well it is known, shrunk towards `upright`, which it is without poles.
-/// \param upright AxisTilt of an upright pole as far as was known before, m per m.
+/// \param upright Tilt of an upright pole as known before, m per m.
 Eigen::Vector2f estimateTilt(const std::vector<PoleTilt>& poles, const Eigen::Vector2f& upright);
 
 /// \brief How far the centre of a pole moves when `common` takes the place of `upright` in the
