@@ -3,7 +3,7 @@
 # Usage: tests/run.sh [--quick | --full]
 #   --quick  runs the unit tests only: less than a minute after the build
 #   --full   also checks format, spelling and clang-tidy, opens scenes in MRPT's viewer, tries batches
-#            on a Slurm cluster of its own (as root), and runs the tests again under
+#            on a Slurm cluster of its own (as root), builds with clang, and runs the tests again under
 #            the address and undefined-behaviour sanitizers
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
@@ -46,7 +46,7 @@ if [ "$how" = full ]; then
   "$top/share/setup/install.sh" full
   "$top/tests/lint.sh" format spelling files
 fi
-"$top/share/setup/build.sh" release all
+"$top/share/setup/build.sh" ci all
 case $how in
   quick) run_tests "$top/build" --label-regex '^unit$' ;;
   *)
@@ -59,6 +59,7 @@ if [ "$how" = full ]; then
   "$top/tests/lint.sh" tidy
   "$top/tests/viewers/run.sh"
   "$top/tests/slurm/run.sh"
+  "$top/share/setup/build.sh" clang all
   "$top/share/setup/build.sh" sanitize all
   run_tests "$top/build-sanitize"
 fi
