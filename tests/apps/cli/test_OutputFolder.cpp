@@ -77,7 +77,7 @@ TEST_F(OutputFolderTest, RefusesAFolderWithoutTheMarker) {
 
 TEST_F(OutputFolderTest, RefusesAFileInItsPlace) {
   writeText(folder / "out", "a file");
-  EXPECT_NE(refusal("out").find("no folder"), std::string::npos) << refusal("out");
+  EXPECT_NE(refusal("out").find("not a folder"), std::string::npos) << refusal("out");
 }
 
 TEST_F(OutputFolderTest, RefusesAMissingParent) {
