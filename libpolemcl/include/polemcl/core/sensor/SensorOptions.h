@@ -36,7 +36,8 @@ struct POLEMCL_EXPORT SensorOptions {
   double originX = 0, originY = 0, originZ = 0;
   double minRange = 1.0;   ///< m, nearer returns are the vehicle
   double maxRange = 60.0;  ///< m
-  /// Compare the first scans with the rings above, and refuse scans that contradict them.
+  /// ObservationPoleExtractor and the programs compare the first scans with the rings above and
+  /// refuse scans that contradict them. PoleExtractor does not.
   bool checkBeams = true;
   void validate() const;  ///< \throws Error
 };
