@@ -147,6 +147,7 @@ done
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval pole-labels \
   pole-batch
 bin=$(cd "$bin" && pwd)
+export POLEMCL_BIN="$bin"  # pole-batch works in folders of its own
 command -v python3 >/dev/null || die "python3 is needed"
 
 data=${POLEMCL_DATA:-$top/../shared/data}
