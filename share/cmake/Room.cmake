@@ -27,3 +27,8 @@ endfunction()
 function(polemcl_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
+
+# For rooms that do not compute for long: they compile in little more than half of the time.
+function(polemcl_compile_quickly name)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
