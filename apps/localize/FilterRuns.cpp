@@ -35,7 +35,7 @@ void FilterRun::add(const LocalizationUpdate& update) {
 
 FilterRuns::FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
                        const StartOptions& start, const RunOptions& runs) {
-  runs.validate();
+  checkOptions(runs);
   const auto count = static_cast<std::size_t>(runs.runs);
   const auto particles =
       static_cast<std::size_t>(std::max(start.particles, options.filter.particles));

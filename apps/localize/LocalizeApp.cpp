@@ -45,9 +45,9 @@ Settings effectiveSettings(const LocalizeJob& job) {
   if (job.anywhere) settings.start.anywhere = true;
   if (!job.start.empty()) setStart(settings.start, job.start);
   setView(settings.view, job);
-  settings.runs.validate();
-  settings.localization.validate();
-  settings.start.validate();
+  checkOptions(settings.runs);
+  checkOptions(settings.localization);
+  checkOptions(settings.start);
   return settings;
 }
 

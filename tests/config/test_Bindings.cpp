@@ -219,7 +219,7 @@ TEST(Bindings, CheckStructsAsTheyCheckFiles) {
   SubmapOptions submap;
   submap.headingWalk = 58 * degree;
   try {
-    submap.validate();
+    checkOptions(submap);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what())
@@ -230,9 +230,9 @@ TEST(Bindings, CheckStructsAsTheyCheckFiles) {
   }
   StartOptions start;
   start.heading = 180 * degree;  // the greatest that is allowed
-  EXPECT_NO_THROW(start.validate());
+  EXPECT_NO_THROW(checkOptions(start));
   start.pose = Pose2D{NAN, 0, 0};
-  EXPECT_THROW(start.validate(), Error);
+  EXPECT_THROW(checkOptions(start), Error);
 }
 
 TEST(Bindings, TiersFollowEachOther) {

@@ -26,7 +26,7 @@ void PrintTo(const Bad& bad, std::ostream* out) {
 
 std::string refusal(const ExtractionOptions& options) {
   try {
-    options.validate();
+    checkOptions(options);
   } catch (const Error& error) {
     return error.what();
   }

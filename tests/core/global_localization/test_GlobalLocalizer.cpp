@@ -96,7 +96,7 @@ void record(const Count& count) {
 
 void expectRefused(const GlobalOptions& options, const std::string& field) {
   try {
-    options.validate();
+    checkOptions(options);
     FAIL() << field << " was accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();

@@ -66,11 +66,11 @@ TEST(KldSampleSize, CountsTheBinsOfTheChosen) {
 }
 
 TEST(KldSampleSize, RefusesOptionsOutOfRange) {
-  EXPECT_NO_THROW(KldOptions().validate());
+  EXPECT_NO_THROW(checkOptions(KldOptions()));
   const auto refuses = [](auto member, auto value) {
     KldOptions options;
     options.*member = value;
-    EXPECT_THROW(options.validate(), Error) << value;
+    EXPECT_THROW(checkOptions(options), Error) << value;
   };
   for (double bad : {0.0, -1.0, 200.0, double(NAN)}) {
     refuses(&KldOptions::epsilon, bad);

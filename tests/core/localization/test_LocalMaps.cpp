@@ -43,7 +43,7 @@ LocalMapOptions options(int maps, int minHits) {
 
 std::string refusal(const LocalMapOptions& options) {
   try {
-    options.validate();
+    checkOptions(options);
   } catch (const Error& error) {
     return error.what();
   }

@@ -344,7 +344,7 @@ TEST(LocalSubmap, RefusesOptionsOutOfRange) {
   refused(&SubmapOptions::scale, 2, "scale");
   SubmapOptions options;
   options.sureHits = 0;
-  expectRefused([&] { options.validate(); }, "sure_hits");
+  expectRefused([&] { checkOptions(options); }, "sure_hits");
 }
 
 TEST(LocalSubmap, TakesEachDetectionOnceAveraged) {

@@ -271,10 +271,10 @@ TEST(LocalizationHealth, RefusesOptionsOutOfRange) {
   const auto refused = [](auto change) {
     HealthOptions options;
     change(options);
-    EXPECT_THROW(options.validate(), Error);
+    EXPECT_THROW(checkOptions(options), Error);
     EXPECT_THROW(HealthMonitor{options}, Error);
   };
-  EXPECT_NO_THROW(HealthOptions().validate());
+  EXPECT_NO_THROW(checkOptions(HealthOptions()));
   refused([](HealthOptions& o) { o.window = 0; });
   refused([](HealthOptions& o) { o.minEvidence = NAN; });
   refused([](HealthOptions& o) { o.lostShare = 1.1; });

@@ -108,7 +108,7 @@ constexpr LikelihoodModel s_models[] = {LikelihoodModel::paper, LikelihoodModel:
 
 void expectRefused(const LikelihoodOptions& options, const std::string& field) {
   try {
-    options.validate();
+    checkOptions(options);
     FAIL() << field << " was accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
@@ -192,7 +192,7 @@ TEST(PoleLikelihood, FlooredRefusesWhatItCannotDo) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::floored, true);
   expectRefused(options, "weighted");
   options.weighted = false;
-  options.validate();
+  checkOptions(options);
   for (const double bad : {0.0, -0.2, std::nan(""), HUGE_VAL, 1e-12}) {
     options.floor = bad;
     expectRefused(options, "floor");

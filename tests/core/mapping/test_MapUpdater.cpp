@@ -345,9 +345,9 @@ TEST(MapUpdater, RefusesBadScansAndOptions) {
   const auto refused = [](auto field, auto value) {
     MapUpdateOptions o;
     o.*field = value;
-    return refusal([&] { o.validate(); });
+    return refusal([&] { checkOptions(o); });
   };
-  EXPECT_EQ(refusal([] { MapUpdateOptions().validate(); }), "");
+  EXPECT_EQ(refusal([] { checkOptions(MapUpdateOptions()); }), "");
   EXPECT_NE(refused(&MapUpdateOptions::range, 0.0).find("range_m"), std::string::npos);
   EXPECT_NE(refused(&MapUpdateOptions::minSeen, 0).find("min_seen"), std::string::npos);
   EXPECT_NE(refused(&MapUpdateOptions::present, 0.995).find("present"), std::string::npos);

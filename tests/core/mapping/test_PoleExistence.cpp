@@ -12,7 +12,7 @@ namespace {
 
 std::string refusal(const ExistenceOptions& options) {
   try {
-    options.validate();
+    checkOptions(options);
   } catch (const Error& error) {
     return error.what();
   }

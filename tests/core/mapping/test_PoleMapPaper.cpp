@@ -124,7 +124,7 @@ TEST(PoleMapPaper, TheOrderOfDetectionsDoesNotMatter) {
 TEST(PoleMapPaper, EveryScanHasNoPassedMiddles) {
   auto options = authors(1);
   options.everyScan = true;
-  EXPECT_THROW(options.validate(), Error);
+  EXPECT_THROW(checkOptions(options), Error);
 }
 
 }  // namespace polemcl::test_pole_map_paper

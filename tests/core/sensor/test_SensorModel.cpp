@@ -51,7 +51,7 @@ void expectOwnRows(const SensorModel& sensor, std::initializer_list<double> rang
 std::string refusal(SensorOptions options, const std::function<void(SensorOptions&)>& spoil) {
   spoil(options);
   try {
-    options.validate();
+    checkOptions(options);
   } catch (const Error& error) {
     return error.what();
   }

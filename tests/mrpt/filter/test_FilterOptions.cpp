@@ -52,7 +52,7 @@ template <class Options, class Field>
 std::string refusalOf(Field Options::*field, Field value) {
   Options options;
   options.*field = value;
-  return refusal([&] { options.validate(); });
+  return refusal([&] { checkOptions(options); });
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ TEST(FilterOptions, RefusalsNameFileSectionAndWhatIsAllowed) {
 }
 
 TEST(FilterOptions, ValidateRefusesEachFieldOutOfRange) {
-  EXPECT_EQ(refusal([] { FilterOptions().validate(); }), "");
+  EXPECT_EQ(refusal([] { checkOptions(FilterOptions()); }), "");
   EXPECT_NE(refusalOf(&FilterOptions::particles, 0), "");
   EXPECT_NE(refusalOf(&FilterOptions::particles, 1000001), "");
   for (double bad : {-0.1, 1.1, double(NAN)}) {
@@ -158,7 +158,7 @@ TEST(FilterOptions, ReadsAdaptiveSampling) {
 }
 
 TEST(FilterOptions, ValidateRefusesBadStartsAndRuns) {
-  EXPECT_EQ(refusal([] { StartOptions().validate(); }), "");
+  EXPECT_EQ(refusal([] { checkOptions(StartOptions()); }), "");
   EXPECT_NE(refusalOf(&StartOptions::radius, -1.0), "");
   EXPECT_NE(refusalOf(&StartOptions::radius, double(INFINITY)), "");
   EXPECT_NE(refusalOf(&StartOptions::radius, 10001.0), "");
@@ -166,7 +166,7 @@ TEST(FilterOptions, ValidateRefusesBadStartsAndRuns) {
   EXPECT_NE(refusalOf(&StartOptions::heading, double(NAN)), "");
   EXPECT_NE(refusalOf(&StartOptions::particles, 0), "");
   EXPECT_NE(refusalOf(&StartOptions::pose, std::optional<Pose2D>(Pose2D{0, NAN, 0})), "");
-  EXPECT_EQ(refusal([] { RunOptions().validate(); }), "");
+  EXPECT_EQ(refusal([] { checkOptions(RunOptions()); }), "");
   EXPECT_NE(refusalOf(&RunOptions::runs, 0), "");
   EXPECT_NE(refusalOf(&RunOptions::seed, UINT32_MAX), "");
 }

@@ -327,28 +327,28 @@ TEST(LocalizationMap, RefusesAMapWithoutPoles) {
 
 TEST(TrackingOptions, RefusesValuesOutOfRange) {
   TrackingOptions options;
-  EXPECT_NO_THROW(options.validate());
+  EXPECT_NO_THROW(checkOptions(options));
   options.minHits = 0;
-  EXPECT_THROW(options.validate(), Error);
+  EXPECT_THROW(checkOptions(options), Error);
   options = {};
   options.every = -1;
-  EXPECT_THROW(options.validate(), Error);
+  EXPECT_THROW(checkOptions(options), Error);
   options = {};
   options.cadence = Cadence::section;
-  EXPECT_THROW(options.validate(), Error);  // averaging needs every scan
+  EXPECT_THROW(checkOptions(options), Error);  // averaging needs every scan
   options.average = false;
-  EXPECT_NO_THROW(options.validate());
+  EXPECT_NO_THROW(checkOptions(options));
   options.localMaps.maps = 0;
-  EXPECT_THROW(options.validate(), Error);
+  EXPECT_THROW(checkOptions(options), Error);
 }
 
 TEST(SearchOptions, RefusesValuesOutOfRange) {
   const auto refused = [](auto change) {
     SearchOptions options;
     change(options);
-    EXPECT_THROW(options.validate(), Error);
+    EXPECT_THROW(checkOptions(options), Error);
   };
-  EXPECT_NO_THROW(SearchOptions().validate());
+  EXPECT_NO_THROW(checkOptions(SearchOptions()));
   refused([](SearchOptions& o) { o.every = 0; });
   refused([](SearchOptions& o) { o.everySeconds = INFINITY; });
   refused([](SearchOptions& o) { o.patience = -1; });

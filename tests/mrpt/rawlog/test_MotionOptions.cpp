@@ -37,7 +37,7 @@ TEST(MotionOptions, StandingStillKeepsTheFloor) {
 }
 
 TEST(MotionOptions, RefusesEachBadField) {
-  EXPECT_NO_THROW(MotionOptions().validate());
+  EXPECT_NO_THROW(checkOptions(MotionOptions()));
   for (double MotionOptions::*field :
        {&MotionOptions::xyPerMetre, &MotionOptions::xyPerRadian, &MotionOptions::yawPerMetre,
         &MotionOptions::yawPerRadian, &MotionOptions::minXy, &MotionOptions::minYaw,
@@ -45,11 +45,11 @@ TEST(MotionOptions, RefusesEachBadField) {
     for (const double bad : {-0.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
       MotionOptions options;
       options.*field = bad;
-      EXPECT_THROW(options.validate(), Error);
+      EXPECT_THROW(checkOptions(options), Error);
     }
   MotionOptions options;
   options.covarianceFactor = 0;
-  EXPECT_THROW(options.validate(), Error);
+  EXPECT_THROW(checkOptions(options), Error);
 }
 
 }  // namespace

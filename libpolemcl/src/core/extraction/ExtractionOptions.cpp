@@ -117,16 +117,4 @@ void bind(Binder& b, ExtractionOptions& o) {
   bind(b, o.scanLine);
 }
 
-void RangeImageOptions::validate() const {
-  checkOptions(*this);
-}
-
-void ScanLineOptions::validate() const {
-  checkOptions(*this);
-}
-
-void ExtractionOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

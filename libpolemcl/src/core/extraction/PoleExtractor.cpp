@@ -17,8 +17,8 @@ struct PoleExtractor::Impl {
 
 PoleExtractor::PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction)
     : m_impl(std::make_unique<Impl>()) {
-  extraction.validate();
-  sensor.validate();
+  checkOptions(extraction);
+  checkOptions(sensor);
   if (extraction.method == ExtractionMethod::scanLine)
     m_impl->scanLine.emplace(SensorModel(sensor), sensor, extraction.scanLine);
   else
@@ -27,8 +27,8 @@ PoleExtractor::PoleExtractor(const SensorOptions& sensor, const ExtractionOption
 PoleExtractor::PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
                              const ScanLineOptions& options)
     : m_impl(std::make_unique<Impl>()) {
-  options.validate();
-  sensor.validate();
+  checkOptions(options);
+  checkOptions(sensor);
   m_impl->scanLine.emplace(SensorModel(camera), sensor, options);
 }
 PoleExtractor::~PoleExtractor() = default;

@@ -47,8 +47,4 @@ void bind(Binder& b, GlobalOptions& o) {
             "more than min_baseline_m");
 }
 
-void GlobalOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -19,7 +19,7 @@ std::vector<Eigen::Vector2d> mapCentres(const std::vector<MapPole>& map) {
 }
 
 const GlobalOptions& checked(const GlobalOptions& options) {
-  options.validate();
+  checkOptions(options);
   return options;
 }
 

@@ -61,8 +61,4 @@ void bind(Binder& b, HealthOptions& o) {
             "lost_spread_m or less");
 }
 
-void HealthOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -27,10 +27,6 @@ void bind(Binder& b, KldOptions& o) {
             "max_particles or less");
 }
 
-void KldOptions::validate() const {
-  checkOptions(*this);
-}
-
 std::size_t occupiedBins(const std::vector<Pose2D>& particles,
                          const std::vector<std::size_t>& chosen, const KldOptions& options) {
   using Bin = std::array<std::int64_t, 3>;

@@ -36,8 +36,4 @@ void bind(Binder& b, LikelihoodOptions& o) {
             "false where model = floored, which takes all detections alike");
 }
 
-void LikelihoodOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

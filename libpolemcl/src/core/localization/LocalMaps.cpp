@@ -17,13 +17,9 @@ void bind(Binder& b, LocalMapOptions& o) {
             "cadence = section: least number of overlapping poles in them, itself included");
 }
 
-void LocalMapOptions::validate() const {
-  checkOptions(*this);
-}
-
 LocalMaps::LocalMaps(const LocalMapOptions& options)
     : m_options(options), m_marks(options.sectionLength) {
-  options.validate();
+  checkOptions(options);
 }
 
 void LocalMaps::clear() {

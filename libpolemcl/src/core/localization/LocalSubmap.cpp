@@ -43,7 +43,7 @@ Eigen::Matrix3d walkCovariance(const Pose2D& motion, const SubmapOptions& option
 }
 
 LocalSubmap::LocalSubmap(const SubmapOptions& options) : m_options(options) {
-  options.validate();
+  checkOptions(options);
 }
 
 void LocalSubmap::add(const Pose2D& motion, const std::vector<PoleDetection>& poles_robot) {

@@ -60,7 +60,7 @@ const char* name(HealthReason reason) {
 }
 
 HealthMonitor::HealthMonitor(const HealthOptions& options) : m_options(options) {
-  options.validate();
+  checkOptions(options);
 }
 
 void HealthMonitor::reset() {

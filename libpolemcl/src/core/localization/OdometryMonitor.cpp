@@ -61,7 +61,7 @@ double outside(double value, double tolerance) {
 }  // namespace
 
 OdometryMonitor::OdometryMonitor(const OdometryMonitorOptions& options) : m_options(options) {
-  options.validate();
+  checkOptions(options);
 }
 
 void OdometryMonitor::clear() {

@@ -38,8 +38,4 @@ void bind(Binder& b, OdometryMonitorOptions& o) {
   b.require(o.settle <= o.window, "settle_s", o.settle, "window_s or less");
 }
 
-void OdometryMonitorOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -62,7 +62,7 @@ void widenedLogLikelihoods(const std::vector<PoleDetection>& poles_robot,
                            const std::vector<Pose2D>& poses, const PoleIndex& index,
                            const LikelihoodOptions& options, const std::vector<double>& widenings,
                            std::vector<std::vector<double>>& out) {
-  options.validate();
+  checkOptions(options);
   if (widenings.size() > maxWidenings)
     throw Error("a likelihood was asked for with " + std::to_string(widenings.size()) +
                 " sigmas at once; at most " + std::to_string(maxWidenings) + " are allowed");

@@ -28,8 +28,4 @@ void bind(Binder& b, SubmapOptions& o) {
   b.number("scale", o.scale, share, "", "standard deviation of the odometry's scale");
 }
 
-void SubmapOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -68,8 +68,8 @@ std::size_t AddedSessions::scans() const {
 
 MapAccumulator::MapAccumulator(const PoleMapOptions& mapping, const MapUpdateOptions& upkeep)
     : m_mapping(mapping), m_upkeep(upkeep) {
-  mapping.validate();
-  upkeep.validate();
+  checkOptions(mapping);
+  checkOptions(upkeep);
   m_added.unvisited = mapping.unvisited;
 }
 

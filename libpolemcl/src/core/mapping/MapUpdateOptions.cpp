@@ -55,12 +55,4 @@ void bind(Binder& b, MapUpdateOptions& o) {
   b.require(o.forget < o.absent, "forget", o.forget, "less than absent");
 }
 
-void ExistenceOptions::validate() const {
-  checkOptions(*this);
-}
-
-void MapUpdateOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -254,8 +254,8 @@ LandmarkMap landmarksFrom(const std::vector<MapPole>& poles) {
 
 LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<SessionScan>& scans,
                         const PoleMapOptions& mapping, const MapUpdateOptions& options) {
-  mapping.validate();
-  options.validate();
+  checkOptions(mapping);
+  checkOptions(options);
   LandmarkMap map;
   for (const MapPole& pole : poles) map.poles.push_back({pole, {}, true});
   Session session(scans, mapping, options);
@@ -276,8 +276,8 @@ LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<Ses
 LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& scans,
                       const PoleMapOptions& mapping, const MapUpdateOptions& options,
                       MapUpdateCounts* counts) {
-  mapping.validate();
-  options.validate();
+  checkOptions(mapping);
+  checkOptions(options);
   Update update(map, scans, mapping, options);
   LandmarkMap result = update.run();
   if (counts) *counts = update.counts();

@@ -78,7 +78,7 @@ bool seenFromEnough(const MapPole& pole, const std::vector<std::uint32_t>& seen,
 }  // namespace
 
 PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapOptions& options) {
-  options.validate();
+  checkOptions(options);
   std::vector<Pose2D> poses;
   std::vector<std::uint32_t> drives;
   std::vector<bool> used;

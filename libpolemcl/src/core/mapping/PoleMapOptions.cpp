@@ -47,8 +47,4 @@ void bind(Binder& b, PoleMapOptions& o) {
             "nearest where every_scan = true");
 }
 
-void PoleMapOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -71,7 +71,7 @@ std::vector<std::string> SensorModel::modelNames() {
 }
 
 SensorModel::SensorModel(const SensorOptions& options) {
-  options.validate();
+  checkOptions(options);
   std::vector<double> upper, lower;
   double offset = 0, lowerOffset = 0;
   int columns = 0;

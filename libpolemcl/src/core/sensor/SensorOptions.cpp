@@ -60,8 +60,4 @@ void bind(Binder& b, SensorOptions& o) {
   b.require(o.maxRange > o.minRange, "max_range_m", o.maxRange, "more than min_range_m");
 }
 
-void SensorOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -98,16 +98,4 @@ void bind(Binder& b, RunOptions& o) {
             "a number with seed + runs below 4294967296");
 }
 
-void FilterOptions::validate() const {
-  checkOptions(*this);
-}
-
-void StartOptions::validate() const {
-  checkOptions(*this);
-}
-
-void RunOptions::validate() const {
-  checkOptions(*this);
-}
-
 }  // namespace polemcl

@@ -33,21 +33,13 @@ void bind(Binder& b, SearchOptions& o) {
             "number of particles drawn round the places of an answer");
 }
 
-void TrackingOptions::validate() const {
-  checkOptions(*this);
-}
-
-void SearchOptions::validate() const {
-  checkOptions(*this);
-}
-
-void LocalizationOptions::validate() const {
-  filter.validate();
-  tracking.validate();
-  submap.validate();
-  health.validate();
-  search.validate();
-  odometryMonitor.validate();
+void bind(Binder& b, LocalizationOptions& o) {
+  bind(b, o.filter);
+  bind(b, o.tracking);
+  bind(b, o.submap);
+  bind(b, o.health);
+  bind(b, o.search);
+  bind(b, o.odometryMonitor);
 }
 
 }  // namespace polemcl

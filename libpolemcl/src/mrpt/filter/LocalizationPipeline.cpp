@@ -11,7 +11,7 @@ namespace polemcl {
 namespace {
 
 const LocalizationOptions& checked(const LocalizationOptions& options) {
-  options.validate();
+  checkOptions(options);
   return options;
 }
 

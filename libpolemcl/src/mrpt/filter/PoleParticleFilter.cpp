@@ -94,14 +94,14 @@ std::shared_ptr<const mrpt::poses::CPosePDFGaussian> gaussianMotion(
 PoleParticleFilter::PoleParticleFilter(std::shared_ptr<const CPoleMap> map,
                                        const FilterOptions& filterOptions, std::uint32_t seed)
     : m_map(std::move(map)), m_options(filterOptions), m_generator(seed) {
-  m_options.validate();
+  checkOptions(m_options);
   if (!m_map || m_map->poles().empty())
     throw Error("the map has no poles: nothing can be localized in it");
   m_filter.m_options = toMrpt(m_options);
 }
 
 void PoleParticleFilter::start(const StartOptions& start) {
-  start.validate();
+  checkOptions(start);
   if (!start.pose)
     throw Error("no start pose: set position_m and yaw_deg in [start], or give the truth");
   begin(start.particles);

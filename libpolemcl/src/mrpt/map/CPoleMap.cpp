@@ -103,7 +103,7 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
   if (version >= 1) in >> l.floor;
   insertionOptions.validate();
-  l.validate();
+  checkOptions<LikelihoodOptions>(l);
   info = readTexts(in, io::mostMapFacts, io::longestMapFact, "facts about the map");
   std::vector<MapPole> poles;
   // One by one: a count in a damaged file must not decide how much memory is allocated.

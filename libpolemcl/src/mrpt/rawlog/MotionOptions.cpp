@@ -4,10 +4,6 @@
 
 namespace polemcl {
 
-void MotionOptions::validate() const {
-  checkOptions(*this);
-}
-
 Eigen::Matrix3d motionCovariance(const Pose2D& motion, const MotionOptions& options) {
   const double distance = std::hypot(motion.x, motion.y);
   const double turn = std::abs(motion.yaw);

@@ -88,7 +88,7 @@ std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
 
 ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated)
     : m_path(path), m_options(motion), m_reader(path, allowTruncated) {
-  m_options.validate();
+  checkOptions(m_options);
 }
 
 void ScanSource::take(const CObservation::Ptr& observation) {

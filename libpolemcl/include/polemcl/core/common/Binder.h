@@ -132,7 +132,7 @@ class POLEMCL_EXPORT CheckingBinder : public Binder {
   bool onlyChecks() const override { return true; }
 };
 
-/// \brief What `validate()` of an option struct does: its `bind` function in checking mode.
+/// \brief Checks an option struct: its `bind` function in checking mode.
 /// \throws Error `[section] key = value: allowed is …`, with the names and units of the INI.
 template <class Options>
 void checkOptions(Options options) {

@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 enum class ExtractionMethod { rangeImage, scanLine };
 
@@ -63,7 +62,6 @@ struct POLEMCL_EXPORT RangeImageOptions {
   /// (paper); `corners`: four squares at the corners of that box; `cut_corners`: the same, but the
   /// two at lower y are cut to the height `ring - 2 (R + margin)` by a sign slip (authors' code).
   std::string freeSpace = "corners";
-  void validate() const;
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, RangeImageOptions& options);  ///< `[range_image]`
@@ -86,7 +84,6 @@ struct POLEMCL_EXPORT ScanLineOptions {
   double minSpacing = 0.4;   ///< two poles nearer than this: the less confident is dropped, m
   double minConfidence = 0.5;  ///< poles with a lower confidence are refused
   double maxRange = 40;        ///< poles farther away are not looked for, m
-  void validate() const;
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, ScanLineOptions& options);  ///< `[scan_line]`
@@ -96,7 +93,6 @@ struct POLEMCL_EXPORT ExtractionOptions {
   ExtractionMethod method = ExtractionMethod::scanLine;
   RangeImageOptions rangeImage;
   ScanLineOptions scanLine;
-  void validate() const;  ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder,

@@ -12,13 +12,12 @@
 #include <memory>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/LocalSubmap.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief `[global]` in INI files.
 struct POLEMCL_EXPORT GlobalOptions {
@@ -42,7 +41,6 @@ struct POLEMCL_EXPORT GlobalOptions {
   int maxCandidates = 100000;  ///< greatest number of places that are tried; bounds the time
   int maxRefined = 64;         ///< greatest number of places that are refined
   int maxHypotheses = 20;      ///< greatest number of places in an answer
-  void validate() const;       ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, GlobalOptions& options);  ///< `[global]`

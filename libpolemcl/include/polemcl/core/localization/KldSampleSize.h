@@ -6,12 +6,11 @@
 #include <cstddef>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief Settings of KLD sampling, part of `[filter]`.
 struct POLEMCL_EXPORT KldOptions {
@@ -21,7 +20,6 @@ struct POLEMCL_EXPORT KldOptions {
   double binYaw = 0.017453292519943296;  ///< in heading, rad (`kld_bin_deg`, 1°)
   int minParticles = 200;
   int maxParticles = 10000;
-  void validate() const;  ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, KldOptions& options);  ///< `[filter]`

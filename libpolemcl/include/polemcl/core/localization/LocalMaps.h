@@ -6,13 +6,12 @@
 #include <deque>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/PathSections.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief What LocalMaps gives out.
 struct POLEMCL_EXPORT LocalMapOptions {
@@ -21,7 +20,6 @@ struct POLEMCL_EXPORT LocalMapOptions {
   /// Least number of these maps' poles whose boxes overlap with a pole's, in a connected component
   /// and with itself (NCLT and MulRan 2, KITTI 1).
   int minHits = 1;
-  void validate() const;  ///< \throws Error naming the key of `[tracking]`
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, LocalMapOptions& options);  ///< `[tracking]`

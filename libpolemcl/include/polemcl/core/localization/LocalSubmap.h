@@ -11,13 +11,12 @@
 #include <cstdint>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/OdometryDrift.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief `[submap]` in INI files.
 struct POLEMCL_EXPORT SubmapOptions {
@@ -37,8 +36,7 @@ struct POLEMCL_EXPORT SubmapOptions {
   double headingWalk = 0.0007;  ///< σ of heading after a metre, rad/√m (`heading_walk_deg`)
   double turnWalk = 0.01;  ///< σ of heading after a radian turned; grows with √angle, rad/√rad
   /// @}
-  double scale = 0.01;    ///< σ of the scale error that all steps of the odometry share
-  void validate() const;  ///< \throws Error
+  double scale = 0.01;  ///< σ of the scale error that all steps of the odometry share
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, SubmapOptions& options);  ///< `[submap]`

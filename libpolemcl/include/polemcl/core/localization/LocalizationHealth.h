@@ -6,13 +6,12 @@
 #include <deque>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/core/localization/MapAssociation.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 enum class HealthState { ok, degraded, lost };
 
@@ -65,7 +64,6 @@ struct POLEMCL_EXPORT HealthOptions {
   /// chance. With less than 0.3 of it the pose is lost as soon as there is `lostEvidence`.
   double confirmShare = 0.5;
   double confirmWithin = 15;  ///< lost: a new pose is not confirmed within this distance, m
-  void validate() const;      ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, HealthOptions& options);  ///< `[health]`

@@ -13,13 +13,12 @@
 #include <deque>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/ScanRegistration.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief `[odometry_monitor]` in INI files.
 struct POLEMCL_EXPORT OdometryMonitorOptions {
@@ -37,7 +36,6 @@ struct POLEMCL_EXPORT OdometryMonitorOptions {
   double maxSpeed = 40;      ///< greatest speed of the vehicle, m/s
   double maxTurnRate = 1.5;  ///< greatest turn rate, rad/s (`max_turn_rate_deg_s`)
   RegistrationOptions alignment;  ///< sigma, gate, reach (`sigma_m`, `gate`, `reach_m`)
-  void validate() const;          ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder,

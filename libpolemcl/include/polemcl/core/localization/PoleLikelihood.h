@@ -4,13 +4,12 @@
 
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/PoleIndex.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 enum class LikelihoodModel {
   paper,  ///< Eq. 3: product of exp(-d²/(2σ²)), d clipped at `gate` (a pole without a match costs
@@ -35,7 +34,6 @@ struct POLEMCL_EXPORT LikelihoodOptions {
   double gate = 1.0;      ///< d_max: beyond it a pole has no match, m
   bool weighted = true;   ///< true: each detection counts by its covariance and confidence; not
                           ///< with `floored`
-  void validate() const;  ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, LikelihoodOptions& options);  ///< `[likelihood]`

@@ -9,14 +9,13 @@
 
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/mapping/PoleExistence.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief `[map_update]` in INI files. Gates and pose errors are those of `[map]`.
 struct POLEMCL_EXPORT MapUpdateOptions {
@@ -35,7 +34,6 @@ struct POLEMCL_EXPORT MapUpdateOptions {
   /// A missed pole that is nearer than this to a new one has been moved there, m (`ghost_m`). It
   /// leaves no ghost.
   double ghost = 1.5;
-  void validate() const;  ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, MapUpdateOptions& options);  ///< `[map_update]`

@@ -11,12 +11,11 @@
 
 #include <cstdint>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief The part of `[map_update]` in INI files that tells what scans say.
 struct POLEMCL_EXPORT ExistenceOptions {
@@ -30,7 +29,6 @@ struct POLEMCL_EXPORT ExistenceOptions {
   double prior = 0.2;        ///< prior probability that a newly observed object is a pole (`prior`)
   double certain = 0.99;  ///< greatest probability of existence; the least is 1 - this (`certain`)
   double lifetimeDays = 3650;  ///< mean time that a pole stands, days (`lifetime_days`)
-  void validate() const;       ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, ExistenceOptions& options);  ///< `[map_update]`

@@ -9,12 +9,11 @@
 
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief Which scan is the keyframe of a section.
 enum class SectionMiddle {
@@ -66,7 +65,6 @@ struct POLEMCL_EXPORT PoleMapOptions {
   /// Later sessions use only scans at least this far from every place that earlier sessions
   /// visited, m (`unvisited_m`, paper: 10); 0: all scans. See MapAccumulator.
   double unvisited = 0;
-  void validate() const;  ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, PoleMapOptions& options);  ///< `[map]`

@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/common/Binder.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-class Binder;
 
 /// \brief The LiDAR's geometry and mounting. `[sensor]` in INI files.
 struct POLEMCL_EXPORT SensorOptions {
@@ -39,7 +38,6 @@ struct POLEMCL_EXPORT SensorOptions {
   /// ObservationPoleExtractor and the programs compare the first scans with the rings above and
   /// refuse scans that contradict them. PoleExtractor does not.
   bool checkBeams = true;
-  void validate() const;  ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, SensorOptions& options);  ///< `[sensor]`

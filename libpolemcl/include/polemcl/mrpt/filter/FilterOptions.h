@@ -56,7 +56,6 @@ struct POLEMCL_EXPORT FilterOptions {
   /// whose error grows with the motion knows (nearly) no error across the driving direction.
   double extraSigma = 0.003;
   double extraSigmaYaw = 0.00034906585039887;  ///< 0.02° (`extra_sigma_deg`)
-  void validate() const;                       ///< \throws Error
 };
 
 /// \brief Distribution of the start positions in the disc.
@@ -76,14 +75,12 @@ struct POLEMCL_EXPORT StartOptions {
   /// Number until the first resampling, which keeps FilterOptions::particles of them. The start
   /// needs more, since few of them are near the truth. Smaller numbers mean that one.
   int particles = 10000;
-  void validate() const;  ///< \throws Error
 };
 
 /// \brief Repeated localizations of the same drive. `[runs]` in INI files.
 struct POLEMCL_EXPORT RunOptions {
   int runs = 1;            ///< (paper: 10)
   std::uint32_t seed = 1;  ///< seed of the first run; run i uses seed + i
-  void validate() const;   ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, FilterOptions& options);  ///< `[filter]`

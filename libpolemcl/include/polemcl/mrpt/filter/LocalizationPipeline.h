@@ -24,8 +24,7 @@ struct POLEMCL_EXPORT SearchOptions {
   double everySeconds = 5;  ///< time between two searches of a vehicle that stands, s
   /// Distance travelled until an ambiguous answer is used, m; until then the next metres may tell.
   double patience = 30;
-  int particles = 4000;   ///< number of particles drawn round the places of an answer
-  void validate() const;  ///< \throws Error
+  int particles = 4000;  ///< number of particles drawn round the places of an answer
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, SearchOptions& options);  ///< `[search]`
@@ -46,7 +45,6 @@ struct POLEMCL_EXPORT TrackingOptions {
   double every = 0.5;               ///< distance travelled until a pole is used again, m
   Cadence cadence = Cadence::scan;  ///< `section` needs `average` to be false
   LocalMapOptions localMaps;        ///< of Cadence::section
-  void validate() const;            ///< \throws Error
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`
@@ -60,8 +58,9 @@ struct POLEMCL_EXPORT LocalizationOptions {
   HealthOptions health;
   SearchOptions search;
   OdometryMonitorOptions odometryMonitor;
-  void validate() const;  ///< \throws Error
 };
+
+POLEMCL_EXPORT void bind(Binder& binder, LocalizationOptions& options);  ///< their sections
 
 /// \brief Result of one scan.
 struct LocalizationUpdate {

@@ -20,7 +20,6 @@ struct POLEMCL_EXPORT MotionOptions {
   double minXy = 0.005;         ///< added to σ of x and y for each motion, m (`min_xy_m`)
   double minYaw = 0.00087;      ///< added to σ of the heading for each motion, rad (`min_yaw_deg`)
   double covarianceFactor = 1;  ///< on all covariances, also those of the rawlog (paper, NCLT: 4)
-  void validate() const;        ///< \throws Error
 };
 
 /// \brief Diagonal covariance of (x, y, yaw), m, m, rad, for a motion without one: σ_xy = minXy +
