@@ -62,22 +62,15 @@ bool allows(const Range& allowed, double angle) {
   return degrees && allowed.contains(static_cast<double>(*degrees));
 }
 
-std::vector<std::string> wordsOf(const std::string& text) {
-  std::vector<std::string> result;
-  const char* blanks = " \t";
-  for (std::size_t at = text.find_first_not_of(blanks); at != std::string::npos;) {
-    const std::size_t end = text.find_first_of(blanks, at);
-    result.push_back(text.substr(at, end - at));
-    at = text.find_first_not_of(blanks, end);
+/// The number that a word says, in radians where it says degrees; empty unless it is allowed.
+std::optional<double> valueOf(const std::string& word, const Range& allowed, bool degrees) {
+  if (degrees) {
+    const auto angle = parsed<long double>(word);
+    if (!angle || !allowed.contains(static_cast<double>(*angle))) return std::nullopt;
+    return radians(*angle);
   }
-  return result;
-}
-
-template <class Values, class Format>
-std::string listed(const Values& values, const Format& format) {
-  std::string text;
-  for (const auto& value : values) text += (text.empty() ? "" : " ") + format(value);
-  return text;
+  const auto value = parsed<double>(word);
+  return value && allowed.contains(*value) ? value : std::nullopt;
 }
 
 }  // namespace
@@ -99,15 +92,8 @@ std::string Range::text() const {
 }
 
 const char* name(Tier tier) {
-  switch (tier) {
-    case Tier::sensor:
-      return "sensor";
-    case Tier::tuning:
-      return "tuning";
-    case Tier::expert:
-      break;
-  }
-  return "expert";
+  static constexpr const char* names[] = {"sensor", "tuning", "expert"};
+  return names[static_cast<int>(tier)];
 }
 
 void Binder::section(std::string_view name, std::string_view comment, Tier tier) {
@@ -116,19 +102,45 @@ void Binder::section(std::string_view name, std::string_view comment, Tier tier)
   openSection(std::string(comment));
 }
 
-void Binder::number(std::string_view key, double& field, const Range& allowed,
-                    std::string_view unit, std::string_view comment) {
-  const auto refused = [&](std::string_view text) {
-    refuse(key, text, "a number", allowed.text(), unit, comment);
+void Binder::bindNumbers(const Numbers& setting, std::vector<double>& field) {
+  const Range& allowed = setting.allowed;
+  const std::optional<std::size_t> count = setting.count;
+  const bool degrees = setting.degrees;
+  const auto write = [&] {
+    std::string text;
+    for (const double value : field)
+      text += (text.empty() ? "" : " ") + (degrees ? shortestDegrees(value) : shortest(value));
+    return text;
+  };
+  const auto allowedText = [&] { return (count == 1 ? "" : "each ") + allowed.text(); };
+  const auto refused = [&](const std::string& text) {
+    const std::string type = count == 1 ? "a number"
+                             : count    ? std::to_string(*count) + " numbers between blanks,"
+                                        : "numbers between blanks,";
+    refuse(setting.key, text, type, allowedText(), setting.unit, setting.comment);
   };
   std::optional<std::string> text;
-  if (!onlyChecks()) text = exchange(known(key, unit, allowed.text(), comment), shortest(field));
-  if (text) {
-    const auto value = parsed<double>(*text);
-    if (!value) refused(*text);
-    field = *value;
+  if (!onlyChecks())
+    text = exchange(known(setting.key, setting.unit, allowedText(), setting.comment), write());
+  if (!text) {
+    for (const double value : field)
+      if (degrees ? !allows(allowed, value) : !allowed.contains(value)) refused(write());
+    return;
   }
-  if (!allowed.contains(field)) refused(text ? *text : shortest(field));
+  std::vector<double> values;
+  std::istringstream words(*text);
+  for (std::string word; words >> word;) {
+    const std::optional<double> value = valueOf(word, allowed, degrees);
+    if (!value) refused(*text);
+    values.push_back(*value);
+  }
+  if (count && values.size() != *count) refused(*text);
+  field = values;
+}
+
+void Binder::number(std::string_view key, double& field, const Range& allowed,
+                    std::string_view unit, std::string_view comment) {
+  numbers(key, {&field}, allowed, unit, comment);
 }
 
 void Binder::integer(std::string_view key, long long& field, const Range& allowed,
@@ -149,19 +161,9 @@ void Binder::integer(std::string_view key, long long& field, const Range& allowe
 
 void Binder::angleDeg(std::string_view key, double& field, const Range& allowed,
                       std::string_view comment) {
-  const auto refused = [&](std::string_view text) {
-    refuse(key, text, "a number", allowed.text(), "deg", comment);
-  };
-  std::optional<std::string> text;
-  if (!onlyChecks())
-    text = exchange(known(key, "deg", allowed.text(), comment), shortestDegrees(field));
-  if (!text) {
-    if (!allows(allowed, field)) refused(shortestDegrees(field));
-    return;
-  }
-  const auto value = parsed<long double>(*text);
-  if (!value || !allowed.contains(static_cast<double>(*value))) refused(*text);
-  field = radians(*value);
+  std::vector<double> angle{field};
+  bindNumbers({key, "deg", comment, allowed, 1, true}, angle);
+  field = angle[0];
 }
 
 void Binder::flag(std::string_view key, bool& field, std::string_view comment) {
@@ -192,70 +194,21 @@ void Binder::text(std::string_view key, std::string& field, std::string_view com
 
 void Binder::numbers(std::string_view key, std::vector<double>& field, const Range& allowed,
                      std::string_view unit, std::string_view comment) {
-  const std::string each = "each " + allowed.text();
-  const auto refused = [&](std::string_view text) {
-    refuse(key, text, "numbers between blanks,", each, unit, comment);
-  };
-  std::optional<std::string> text;
-  if (!onlyChecks()) text = exchange(known(key, unit, each, comment), listed(field, shortest));
-  if (text) {
-    std::vector<double> values;
-    for (const auto& word : wordsOf(*text)) {
-      const auto value = parsed<double>(word);
-      if (!value) refused(*text);
-      values.push_back(*value);
-    }
-    field = values;
-  }
-  for (const double value : field)
-    if (!allowed.contains(value)) refused(listed(field, shortest));
+  bindNumbers({key, unit, comment, allowed, std::nullopt, false}, field);
 }
 
 void Binder::numbers(std::string_view key, std::initializer_list<double*> fields,
                      const Range& allowed, std::string_view unit, std::string_view comment) {
-  const std::string each = "each " + allowed.text();
-  const auto current = [&] { return listed(fields, [](double* f) { return shortest(*f); }); };
-  const auto refused = [&](std::string_view text) {
-    refuse(key, text, std::to_string(fields.size()) + " numbers between blanks,", each, unit,
-           comment);
-  };
-  std::optional<std::string> text;
-  if (!onlyChecks()) text = exchange(known(key, unit, each, comment), current());
-  if (text) {
-    const auto list = wordsOf(*text);
-    if (list.size() != fields.size()) refused(*text);
-    auto word = list.begin();
-    for (double* field : fields) {
-      const auto value = parsed<double>(*word++);
-      if (!value) refused(*text);
-      *field = *value;
-    }
-  }
-  for (const double* field : fields)
-    if (!allowed.contains(*field)) refused(current());
+  std::vector<double> values;
+  for (const double* field : fields) values.push_back(*field);
+  bindNumbers({key, unit, comment, allowed, fields.size(), false}, values);
+  auto value = values.begin();
+  for (double* field : fields) *field = *value++;
 }
 
 void Binder::anglesDeg(std::string_view key, std::vector<double>& field, const Range& allowed,
                        std::string_view comment) {
-  const std::string each = "each " + allowed.text();
-  const auto refused = [&](std::string_view text) {
-    refuse(key, text, "numbers between blanks,", each, "deg", comment);
-  };
-  std::optional<std::string> text;
-  if (!onlyChecks())
-    text = exchange(known(key, "deg", each, comment), listed(field, shortestDegrees));
-  if (!text) {
-    for (const double angle : field)
-      if (!allows(allowed, angle)) refused(listed(field, shortestDegrees));
-    return;
-  }
-  std::vector<double> values;
-  for (const auto& word : wordsOf(*text)) {
-    const auto value = parsed<long double>(word);
-    if (!value || !allowed.contains(static_cast<double>(*value))) refused(*text);
-    values.push_back(radians(*value));
-  }
-  field = values;
+  bindNumbers({key, "deg", comment, allowed, std::nullopt, true}, field);
 }
 
 void Binder::require(bool good, std::string_view key, double value,

@@ -1,37 +1,25 @@
+#include <iterator>
+
 #include <polemcl/core/extraction/ExtractionReport.h>
 
 namespace polemcl {
 
 const char* name(RejectionReason reason) {
-  switch (reason) {
-    case RejectionReason::tooFewPoints:
-      return "too_few_points";
-    case RejectionReason::tooWide:
-      return "too_wide";
-    case RejectionReason::notForeground:
-      return "not_foreground";
-    case RejectionReason::tooLow:
-      return "too_low";
-    case RejectionReason::startsTooHigh:
-      return "starts_too_high";
-    case RejectionReason::tooShort:
-      return "too_short";
-    case RejectionReason::badFit:
-      return "bad_fit";
-    case RejectionReason::notFree:
-      return "not_free";
-    case RejectionReason::tilted:
-      return "tilted";
-    case RejectionReason::notStraight:
-      return "not_straight";
-    case RejectionReason::lowConfidence:
-      return "low_confidence";
-    case RejectionReason::duplicate:
-      return "duplicate";
-    case RejectionReason::count_:
-      break;
-  }
-  return "none";
+  static constexpr const char* names[] = {"too_few_points",
+                                          "too_wide",
+                                          "not_foreground",
+                                          "too_low",
+                                          "starts_too_high",
+                                          "too_short",
+                                          "bad_fit",
+                                          "not_free",
+                                          "tilted",
+                                          "not_straight",
+                                          "low_confidence",
+                                          "duplicate",
+                                          "none"};
+  static_assert(std::size(names) == static_cast<int>(RejectionReason::count_) + 1);
+  return names[static_cast<int>(reason)];
 }
 
 }  // namespace polemcl

@@ -20,43 +20,15 @@ double worstSigma(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 const char* name(HealthState state) {
-  switch (state) {
-    case HealthState::ok:
-      return "ok";
-    case HealthState::degraded:
-      return "degraded";
-    case HealthState::lost:
-      break;
-  }
-  return "lost";
+  static constexpr const char* names[] = {"ok", "degraded", "lost"};
+  return names[static_cast<int>(state)];
 }
 
 const char* name(HealthReason reason) {
-  switch (reason) {
-    case HealthReason::none:
-      return "none";
-    case HealthReason::searching:
-      return "searching";
-    case HealthReason::elsewhere:
-      return "elsewhere";
-    case HealthReason::mismatch:
-      return "mismatch";
-    case HealthReason::spread:
-      return "spread";
-    case HealthReason::ambiguous:
-      return "ambiguous";
-    case HealthReason::converging:
-      return "converging";
-    case HealthReason::timeGap:
-      return "time_gap";
-    case HealthReason::noPoles:
-      return "no_poles";
-    case HealthReason::odometry:
-      return "odometry";
-    case HealthReason::innovation:
-      break;
-  }
-  return "innovation";
+  static constexpr const char* names[] = {"none",     "searching", "elsewhere",  "mismatch",
+                                          "spread",   "ambiguous", "converging", "time_gap",
+                                          "no_poles", "odometry",  "innovation"};
+  return names[static_cast<int>(reason)];
 }
 
 HealthMonitor::HealthMonitor(const HealthOptions& options) : m_options(options) {

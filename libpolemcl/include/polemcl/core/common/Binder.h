@@ -110,6 +110,14 @@ class POLEMCL_EXPORT Binder {
   std::string m_section;
 
  private:
+  /// Numbers of one key: any number of them, or `count`.
+  struct Numbers {
+    std::string_view key, unit, comment;
+    const Range& allowed;  ///< in degrees where they are angles
+    std::optional<std::size_t> count;
+    bool degrees;
+  };
+  void bindNumbers(const Numbers& setting, std::vector<double>& field);
   void integer(std::string_view key, long long& field, const Range& allowed, const Range& fits,
                std::string_view unit, std::string_view comment);
   Key known(std::string_view key, std::string_view unit, std::string allowed,

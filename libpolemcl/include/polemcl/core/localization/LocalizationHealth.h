@@ -30,7 +30,7 @@ enum class HealthReason {
   innovation,  ///< degraded: matched poles lie farther off than their covariances say
 };
 
-/// \brief The words of the CSV and of the live view.
+/// \brief The words of the CSV and of the live view, in the order of the enumerators.
 POLEMCL_EXPORT const char* name(HealthState state);
 POLEMCL_EXPORT const char* name(HealthReason reason);
 
