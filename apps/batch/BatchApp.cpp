@@ -20,7 +20,7 @@
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "cli/ProgressLog.h"
-#include "io/file/WholeFile.h"
+#include "io/file/Bytes.h"
 
 namespace polemcl::apps {
 namespace {
@@ -89,7 +89,7 @@ void printOpen(const BatchPlan& plan, const OpenTasks& open) {
 /// Tasks read their settings from frozen files, on which the keys of the plan depend.
 void requireFrozen(const BatchFolder& folder, const BatchPlan& plan) {
   for (const auto& [name, sum] : plan.sums)
-    if (mrpt::system::md5(io::contentOf(folder.path() / name)) != sum)
+    if (mrpt::system::md5(io::readBytes(folder.path() / name)) != sum)
       throw Error((folder.path() / name).string() +
                   " has changed since the batch began; begin it again with --resume");
 }

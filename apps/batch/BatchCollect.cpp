@@ -16,8 +16,8 @@
 #include "cli/JsonFile.h"
 #include "cli/Version.h"
 #include "io/data/Trajectory.h"
+#include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
-#include "io/file/WholeFile.h"
 #include "report/batch/BatchFiles.h"
 #include "report/batch/BatchMeasures.h"
 #include "report/batch/BatchReport.h"
@@ -103,7 +103,7 @@ class Collector {
       const fs::path config = m_folder.path() / "settings" / (configuration.name + ".ini");
       m_results.configurations.push_back({configuration.name, configuration.title,
                                           protocolOf(configuration),
-                                          settingsShown(io::contentOf(config))});
+                                          settingsShown(io::readBytes(config))});
     }
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;

@@ -14,7 +14,8 @@
 
 #include <polemcl/core/common/Types.h>
 #include "cli/JsonFile.h"
-#include "io/file/WholeFile.h"
+#include "io/file/AtomicFile.h"
+#include "io/file/Bytes.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -108,8 +109,8 @@ void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
   for (const char* folder : {"tasks", "logs", "failed", "times", "settings", "files"})
     createFolder(m_path / folder);
   sweep();
-  for (const auto& [name, content] : plan.files) io::writeContent(m_path / name, content);
-  io::writeContent(m_path / "batch.ini", io::contentOf(batchFile));
+  for (const auto& [name, content] : plan.files) io::writeFile(m_path / name, content);
+  io::writeFile(m_path / "batch.ini", io::readBytes(batchFile));
   writePlan(m_path / s_marker, plan);
 }
 

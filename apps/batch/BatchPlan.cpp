@@ -11,8 +11,8 @@
 #include "batch/BatchCommands.h"
 #include "cli/Settings.h"
 #include "io/dataset/Nclt.h"
+#include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
-#include "io/file/WholeFile.h"
 #include "report/batch/PublishedResults.h"
 
 namespace polemcl::apps {
@@ -136,7 +136,7 @@ class Planner {
   std::string frozenCopy(const std::string& file, BatchTask& task) {
     if (file.empty()) return file;
     const std::string name = "files/" + fs::path(file).filename().string();
-    const std::string content = io::contentOf(file);
+    const std::string content = io::readBytes(file);
     const auto [entry, isNew] = m_plan.files.emplace(name, content);
     if (!isNew && entry->second != content)
       throw Error("batch " + m_spec.name + ": two different files are called " +

@@ -12,8 +12,8 @@
 #include <polemcl/core/common/Types.h>
 #include "batch/BatchCommands.h"
 #include "batch/BatchRunner.h"
+#include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
-#include "io/file/WholeFile.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -46,8 +46,8 @@ class JobArray {
     const fs::path here = m_folder.path() / "slurm";
     std::string list;
     for (const auto& task : m_tasks) list += task + "\n";
-    io::writeContent(here / (m_name + ".txt"), list);
-    io::writeContent(here / (m_name + ".sh"), script(here));
+    io::writeFile(here / (m_name + ".txt"), list);
+    io::writeFile(here / (m_name + ".sh"), script(here));
     std::string command =
         "sbatch --parsable --requeue --job-name=" + shellQuoted(m_name) + " --array=1-" +
         std::to_string(m_tasks.size()) + " --chdir=" + shellQuoted(m_folder.path().string()) +

@@ -10,7 +10,7 @@
 
 #include "cli/Settings.h"
 #include "cli/Version.h"
-#include "io/file/WholeFile.h"
+#include "io/file/TextFile.h"
 #include "mrpt/map/RegisterClasses.h"
 
 namespace polemcl::apps {

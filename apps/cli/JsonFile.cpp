@@ -2,7 +2,8 @@
 
 #include <polemcl/core/common/Types.h>
 #include "cli/Version.h"
-#include "io/file/WholeFile.h"
+#include "io/file/AtomicFile.h"
+#include "io/file/Bytes.h"
 
 namespace polemcl::apps {
 
@@ -10,13 +11,12 @@ void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& 
   nlohmann::ordered_json value = given;
   if (value.is_object() && !value.contains("build")) value["build"] = buildIdentity();
   // Names of files need not be UTF-8: replace what is not, rather than fail over a report.
-  io::writeContent(file,
-                   value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+  io::writeFile(file, value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }
 
 nlohmann::ordered_json readJson(const std::filesystem::path& file) {
   try {
-    return nlohmann::ordered_json::parse(io::contentOf(file));
+    return nlohmann::ordered_json::parse(io::readBytes(file));
   } catch (const nlohmann::json::exception& error) {
     throw Error(file.string() + ": " + error.what());
   }

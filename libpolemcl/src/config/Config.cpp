@@ -206,9 +206,7 @@ std::string ConfigWriter::text() const {
 }
 
 void ConfigWriter::save(const std::string& path) const {
-  io::AtomicFile file(path);
-  file.stream() << text();
-  file.commit();
+  io::writeFile(path, text());
 }
 
 }  // namespace polemcl

@@ -55,11 +55,11 @@ TEST_F(ScanFilesTest, RefusesANumberThatIsThereTwice) {
 }
 
 TEST_F(ScanFilesTest, RefusesNamesThatDoNotSortAsNumbers) {
-  requirePaddedNames({"08.bin", "09.bin", "10.bin", "a.bin"});
-  expectIn(messageOf([] {
-             requirePaddedNames({"1.bin", "10.bin", "2.bin"});
-           }),
-           "2.bin", "10.bin", "same number of digits");
+  for (const char* name : {"p/08.bin", "p/09.bin", "p/10.bin", "p/a.bin"}) write(name, "");
+  EXPECT_EQ(listFiles(path("p"), ".bin").size(), 4u);
+  for (const char* name : {"d/1.bin", "d/10.bin", "d/2.bin"}) write(name, "");
+  expectIn(messageOf([&] { listFiles(path("d"), ".bin"); }), "2.bin", "10.bin",
+           "same number of digits");
 }
 
 TEST_F(ScanFilesTest, Ranges) {

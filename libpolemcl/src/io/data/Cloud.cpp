@@ -9,6 +9,18 @@ namespace {
 constexpr std::size_t pointBytes = 16;
 }
 
+bool Cloud::add(double px, double py, double pz, double pointIntensity) {
+  if (!std::isfinite(px + py + pz) || (px == 0 && py == 0 && pz == 0)) {
+    ++invalid;
+    return false;
+  }
+  x.push_back(static_cast<float>(px));
+  y.push_back(static_cast<float>(py));
+  z.push_back(static_cast<float>(pz));
+  intensity.push_back(static_cast<float>(pointIntensity));
+  return true;
+}
+
 Cloud readKittiBin(const std::filesystem::path& file) {
   const std::string bytes = readBytes(file);
   if (bytes.size() % pointBytes != 0) {
@@ -21,17 +33,8 @@ Cloud readKittiBin(const std::filesystem::path& file) {
   }
   for (std::size_t i = 0; i < bytes.size(); i += pointBytes) {
     const char* point = bytes.data() + i;
-    const float x = loadLittleEndian<float>(point), y = loadLittleEndian<float>(point + 4),
-                z = loadLittleEndian<float>(point + 8);
-    const bool finite = std::isfinite(x) && std::isfinite(y) && std::isfinite(z);
-    if (!finite || (x == 0 && y == 0 && z == 0)) {
-      ++cloud.invalid;
-      continue;
-    }
-    cloud.x.push_back(x);
-    cloud.y.push_back(y);
-    cloud.z.push_back(z);
-    cloud.intensity.push_back(loadLittleEndian<float>(point + 12));
+    cloud.add(loadLittleEndian<float>(point), loadLittleEndian<float>(point + 4),
+              loadLittleEndian<float>(point + 8), loadLittleEndian<float>(point + 12));
   }
   return cloud;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <sstream>
 
@@ -34,9 +35,7 @@ struct Header {
 
 std::vector<std::string> wordsOf(std::string_view line) {
   std::istringstream in{std::string(line)};
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
+  return {std::istream_iterator<std::string>(in), {}};
 }
 
 std::size_t pcdCountOf(const std::string& word, const std::string& where) {
@@ -172,18 +171,6 @@ double binaryValue(const char* bytes, const Field& field) {
   }
 }
 
-void add(Cloud& cloud, const std::array<double, 4>& point) {
-  const auto [x, y, z, intensity] = point;
-  if (!std::isfinite(x + y + z) || (x == 0 && y == 0 && z == 0)) {
-    ++cloud.invalid;
-    return;
-  }
-  cloud.x.push_back(static_cast<float>(x));
-  cloud.y.push_back(static_cast<float>(y));
-  cloud.z.push_back(static_cast<float>(z));
-  cloud.intensity.push_back(static_cast<float>(intensity));
-}
-
 /// Position of a field's values in binary data.
 struct Column {
   const Field* field = nullptr;  ///< null: the file has no such field
@@ -198,7 +185,7 @@ Cloud readColumns(const std::array<Column, 4>& columns, std::size_t points, cons
     for (std::size_t k = 0; k < 4; ++k)
       if (columns[k].field)
         point[k] = binaryValue(data + columns[k].begin + i * columns[k].step, *columns[k].field);
-    add(cloud, point);
+    cloud.add(point[0], point[1], point[2], point[3]);
   }
   return cloud;
 }
@@ -274,7 +261,7 @@ Cloud readAscii(const Header& header, std::string_view data, const std::filesyst
         throw Error(at(file, line) + "'" + words[fields[k]->column] + "' is not a number");
       point[k] = *value;
     }
-    add(cloud, point);
+    cloud.add(point[0], point[1], point[2], point[3]);
     ++points;
   }
   if (points < header.points)

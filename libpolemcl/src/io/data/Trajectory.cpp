@@ -39,12 +39,8 @@ void readTumRows(const std::filesystem::path& file,
   if (count == 0) throw Error(file.string() + ": no pose in it; expected: " + tumLayout);
 }
 
-void requireFinite(const std::filesystem::path& file, std::size_t row, double time,
-                   const Eigen::Isometry3d& pose) {
-  if (!std::isfinite(time) || !pose.matrix().allFinite()) {
-    throw Error("cannot write " + file.string() + ": pose " + std::to_string(row) +
-                " (counted from 0) is not finite");
-  }
+bool isFinite(double time, const Eigen::Isometry3d& pose) {
+  return std::isfinite(time) && pose.matrix().allFinite();
 }
 
 std::string tumRow(double time, const Eigen::Isometry3d& pose) {
@@ -80,6 +76,17 @@ Eigen::Isometry3d spatial(const Pose2D& pose) {
   return result;
 }
 
+Eigen::Isometry3d poseFromAngles(const Eigen::Vector3d& position, double roll, double pitch,
+                                 double yaw) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = position;
+  pose.linear() = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  return pose;
+}
+
 std::vector<StampedPose3D> readTum(const std::filesystem::path& file) {
   std::vector<StampedPose3D> trajectory;
   readTumRows(file, [&](const StampedPose3D& entry) { trajectory.push_back(entry); });
@@ -96,7 +103,7 @@ std::vector<StampedPose2D> readPlanarTum(const std::filesystem::path& file) {
 
 std::string tumRow(const StampedPose2D& pose) {
   const Eigen::Isometry3d spatialPose = spatial(pose.pose);
-  if (!std::isfinite(pose.time) || !spatialPose.matrix().allFinite())
+  if (!isFinite(pose.time, spatialPose))
     throw Error("the pose at " + std::to_string(pose.time) + " s is not finite");
   return tumRow(pose.time, spatialPose);
 }
@@ -111,8 +118,11 @@ void writeTum(const std::filesystem::path& file, const std::vector<StampedPose2D
 void writeTum(const std::filesystem::path& file, const std::vector<StampedPose3D>& trajectory) {
   AtomicFile output(file);
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    requireFinite(file, i, trajectory[i].time, trajectory[i].pose);
-    output.stream() << tumRow(trajectory[i].time, trajectory[i].pose);
+    const auto& [time, pose] = trajectory[i];
+    if (!isFinite(time, pose))
+      throw Error("cannot write " + file.string() + ": pose " + std::to_string(i) +
+                  " (counted from 0) is not finite");
+    output.stream() << tumRow(time, pose);
   }
   output.commit();
 }

@@ -21,6 +21,10 @@ std::vector<StampedPose2D> planar(const std::vector<StampedPose3D>& trajectory);
 /// \brief The 3D pose with z = 0, roll = 0 and pitch = 0.
 Eigen::Isometry3d spatial(const Pose2D& pose);
 
+/// \brief The pose with the attitude Rz(yaw)·Ry(pitch)·Rx(roll), rad.
+Eigen::Isometry3d poseFromAngles(const Eigen::Vector3d& position, double roll, double pitch,
+                                 double yaw);
+
 /// \brief Reads rows `time x y z qx qy qz qw`; s, m. `#` starts a comment. Plain text or gzip.
 /// Quaternions whose length differs from 1 by at most 1 % (rounding) are normalised.
 /// \throws Error with file and line: wrong number of columns, not a number, not a unit quaternion,

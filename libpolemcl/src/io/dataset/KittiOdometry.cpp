@@ -51,7 +51,6 @@ void requireRow(const fs::path& file, const std::string& what, std::size_t rows,
 
 ScanFolder readKittiOdometry(const fs::path& sequence, const Eigen::Isometry3d& T_robot_sensor) {
   const auto files = listFiles(sequence / "velodyne", ".bin");
-  requirePaddedNames(files);
   const auto numbers = fileNumbers(files);
   ScanFolder result;
   checkScanSizes(files, result.notes);
@@ -73,14 +72,11 @@ ScanFolder readKittiOdometry(const fs::path& sequence, const Eigen::Isometry3d& 
 
   const Eigen::Isometry3d T_lidar_robot = T_robot_sensor.inverse();
   for (std::size_t i = 0; i < files.size(); ++i) {
-    ScanEntry entry;
-    entry.cloud = files[i];
-    entry.time = times[numbers[i]].values[0];
+    result.scans.push_back({files[i], 0, times[numbers[i]].values[0]});
     if (!T_cam0_cam.empty()) {
-      entry.T_map_robot =
+      result.scans.back().T_map_robot =
           T_cam_lidar.inverse() * T_cam0_cam[numbers[i]] * T_cam_lidar * T_lidar_robot;
     }
-    result.scans.push_back(std::move(entry));
   }
   if (times.size() > files.size()) {
     result.notes.push_back(std::to_string(files.size()) + " scans of a sequence of " +

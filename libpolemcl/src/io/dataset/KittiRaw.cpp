@@ -1,8 +1,8 @@
 #include "io/dataset/KittiRaw.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <ctime>
 #include <map>
 
 #include "io/data/Trajectory.h"
@@ -20,22 +20,6 @@ constexpr std::size_t oxtsFields = 30;
 
 double radians(double degrees) {
   return degrees * M_PI / 180;
-}
-
-/// Days since 1970-01-01 in the Gregorian calendar. Years start in March, so that the leap day is
-/// the last day of a year.
-long daysSinceEpoch(int year, int month, int day) {
-  const long y = month > 2 ? year : year - 1;
-  const long monthFromMarch = (month + 9) % 12;
-  const long dayOfYear = (153 * monthFromMarch + 2) / 5 + day - 1;
-  return 365 * y + y / 4 - y / 100 + y / 400 + dayOfYear - 719468;
-}
-
-int daysInMonth(int year, int month) {
-  const bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
-  return month == 2                                              ? (leap ? 29 : 28)
-         : month == 4 || month == 6 || month == 9 || month == 11 ? 30
-                                                                 : 31;
 }
 
 /// Times of the frames with these numbers. Lines are selected by frame number, or in order if the
@@ -114,8 +98,6 @@ Drive listDrive(const fs::path& folder, std::vector<std::string>& notes) {
   Drive drive;
   drive.scans = listFiles(folder / "velodyne_points" / "data", ".bin");
   const auto oxtsFiles = listFiles(folder / "oxts" / "data", ".txt");
-  requirePaddedNames(drive.scans);
-  requirePaddedNames(oxtsFiles);
   drive.scanNumbers = fileNumbers(drive.scans);
   drive.oxtsNumbers = fileNumbers(oxtsFiles);
   for (std::size_t i = 0; i < oxtsFiles.size(); ++i) {
@@ -161,15 +143,11 @@ void noteOffsets(const fs::path& file, const Drive& drive, std::vector<std::stri
 }  // namespace
 
 Eigen::Isometry3d mercatorPose(const OxtsPose& measurement, double scale) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() << scale * earthRadius * radians(measurement.longitude),
-      scale * earthRadius * std::log(std::tan(M_PI / 4 + radians(measurement.latitude) / 2)),
-      measurement.altitude;
-  pose.linear() = (Eigen::AngleAxisd(measurement.yaw, Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(measurement.pitch, Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(measurement.roll, Eigen::Vector3d::UnitX()))
-                      .toRotationMatrix();
-  return pose;
+  return poseFromAngles(
+      {scale * earthRadius * radians(measurement.longitude),
+       scale * earthRadius * std::log(std::tan(M_PI / 4 + radians(measurement.latitude) / 2)),
+       measurement.altitude},
+      measurement.roll, measurement.pitch, measurement.yaw);
 }
 
 double parseKittiTime(std::string_view text, const std::string& where) {
@@ -193,13 +171,16 @@ double parseKittiTime(std::string_view text, const std::string& where) {
   const std::string_view tail = text.substr(19);
   const bool digits = tail.find_first_not_of("0123456789", 1) == std::string_view::npos;
   if (!tail.empty() && (tail.front() != '.' || tail.size() < 2 || !digits)) throw error;
-  if (month < 1 || month > 12 || day < 1 || day > daysInMonth(year, month) || hour > 23 ||
-      minute > 59 || second > 60) {
-    throw error;
-  }
+  std::tm date{};
+  date.tm_year = year - 1900;
+  date.tm_mon = month - 1;
+  date.tm_mday = day;
+  const auto midnight = static_cast<double>(::timegm(&date));
+  // A day that does not exist has become another one.
+  const bool exists = date.tm_mon == month - 1 && date.tm_mday == day;
+  if (!exists || hour > 23 || minute > 59 || second > 60) throw error;
   const double fraction = tail.empty() ? 0 : *parseNumber("0" + std::string(tail));
-  return 86400.0 * static_cast<double>(daysSinceEpoch(year, month, day)) + 3600 * hour +
-         60 * minute + second + fraction;
+  return midnight + 3600 * hour + 60 * minute + second + fraction;
 }
 
 ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
@@ -222,12 +203,9 @@ ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
   for (std::size_t i = 0; i < frames.scans.size(); ++i) {
     const auto oxts = frames.oxts.find(frames.scanNumbers[i]);
     if (oxts == frames.oxts.end()) continue;
-    ScanEntry entry;
-    entry.cloud = frames.scans[i];
-    entry.time = frames.scanTimes[i];
-    entry.T_map_robot =
-        T_world_map.inverse() * mercatorPose(readOxts(oxts->second), scale) * T_imu_robot;
-    result.scans.push_back(std::move(entry));
+    result.scans.push_back(
+        {frames.scans[i], 0, frames.scanTimes[i],
+         T_world_map.inverse() * mercatorPose(readOxts(oxts->second), scale) * T_imu_robot});
   }
   if (result.scans.empty()) {
     throw Error(drive.string() + ": no scan has the number of an oxts frame (scans " +

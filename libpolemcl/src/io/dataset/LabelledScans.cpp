@@ -1,6 +1,5 @@
 #include "io/dataset/LabelledScans.h"
 
-#include <cmath>
 #include <string>
 
 #include "io/file/Bytes.h"
@@ -17,19 +16,10 @@ LabelledCloud readLabelledCloud(const std::filesystem::path& bin,
                 ", which has " + std::to_string(points.size()) + " bytes");
   LabelledCloud result;
   for (std::size_t i = 0; i < points.size() / 16; ++i) {
-    float value[4];
-    for (std::size_t k = 0; k < 4; ++k)
-      value[k] = loadLittleEndian<float>(points.data() + 16 * i + 4 * k);
-    const auto [x, y, z, intensity] = value;
-    if (!std::isfinite(x + y + z) || (x == 0 && y == 0 && z == 0)) {
-      ++result.cloud.invalid;
-      continue;
-    }
-    result.cloud.x.push_back(x);
-    result.cloud.y.push_back(y);
-    result.cloud.z.push_back(z);
-    result.cloud.intensity.push_back(intensity);
-    result.labels.push_back(loadLittleEndian<std::uint32_t>(labels.data() + 4 * i));
+    const char* point = points.data() + 16 * i;
+    if (result.cloud.add(loadLittleEndian<float>(point), loadLittleEndian<float>(point + 4),
+                         loadLittleEndian<float>(point + 8), loadLittleEndian<float>(point + 12)))
+      result.labels.push_back(loadLittleEndian<std::uint32_t>(labels.data() + 4 * i));
   }
   return result;
 }
@@ -45,10 +35,7 @@ std::vector<WorldPole> readWorldPoles(const std::filesystem::path& file) {
              radius = table.column("radius"), top = table.column("top");
   std::vector<WorldPole> poles;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double number = table.number(row, id);
-    if (!(number >= 0 && number <= 4294967295.0 && number == std::floor(number)))
-      throw Error(table.at(row) + "the id must be a whole number from 0 to 4294967295");
-    poles.push_back({static_cast<std::uint32_t>(number), table.number(row, x), table.number(row, y),
+    poles.push_back({table.count(row, id), table.number(row, x), table.number(row, y),
                      table.number(row, radius), table.number(row, top)});
   }
   return poles;

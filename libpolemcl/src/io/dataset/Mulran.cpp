@@ -1,8 +1,6 @@
 #include "io/dataset/Mulran.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
@@ -38,15 +36,11 @@ void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
   std::size_t unused = 0;
   while (rows.next(row)) {
     matrix.assign(row.begin() + 1, row.end());
-    if (!std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); })) {
+    if (!allFinite(row) ||
+        !track.add(row[0] * 1e-9, poseFromRows(matrix, rows.at()) * T_base_robot))
       ++unused;
-    } else if (!track.add(row[0] * 1e-9, poseFromRows(matrix, rows.at()) * T_base_robot)) {
-      ++unused;
-    }
   }
-  if (unused > 0)
-    result.notes.push_back(file.filename().string() + ": " + std::to_string(unused) +
-                           " rows ignored: not finite, or not later than the previous row");
+  noteUnusedRows(unused, file, result.notes);
   takePoses(result, track, file, "truth", "at times without truth");
 }
 
@@ -73,27 +67,17 @@ void noteMissing(const fs::path& file, const std::vector<std::uint64_t>& names,
 }  // namespace
 
 Eigen::Isometry3d mulranBaseLidar() {
-  Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();
-  T_base_lidar.translation() = Eigen::Vector3d(1.7042, -0.021, 1.8047);
-  T_base_lidar.linear() = (Eigen::AngleAxisd(179.6654 * degree, Eigen::Vector3d::UnitZ()) *
-                           Eigen::AngleAxisd(0.0003 * degree, Eigen::Vector3d::UnitY()) *
-                           Eigen::AngleAxisd(0.0001 * degree, Eigen::Vector3d::UnitX()))
-                              .toRotationMatrix();
-  return T_base_lidar;
+  return poseFromAngles({1.7042, -0.021, 1.8047}, 0.0001 * degree, 0.0003 * degree,
+                        179.6654 * degree);
 }
 
 ScanFolder readMulran(const fs::path& sequence, const Eigen::Isometry3d& T_robot_lidar) {
   const auto files = listFiles(findIn(sequence, "Ouster"), ".bin");
-  requirePaddedNames(files);
   const auto names = fileNumbers(files);
   ScanFolder result;
   checkScanSizes(files, result.notes);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    ScanEntry entry;
-    entry.cloud = files[i];
-    entry.time = seconds(names[i]);
-    result.scans.push_back(std::move(entry));
-  }
+  for (std::size_t i = 0; i < files.size(); ++i)
+    result.scans.push_back({files[i], 0, seconds(names[i])});
   const fs::path stamps = findIn(sequence, "ouster_front_stamp.csv");
   if (isThere(stamps)) noteMissing(stamps, names, result);
   const fs::path truth = findIn(sequence, "global_pose.csv");

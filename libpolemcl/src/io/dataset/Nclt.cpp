@@ -22,26 +22,11 @@ using TurnMotions = std::vector<std::optional<TurnMotion>>;
 
 void addSync(const fs::path& folder, ScanFolder& result) {
   const auto files = listFiles(folder, ".bin");
-  requirePaddedNames(files);
   const auto numbers = fileNumbers(files);
   checkScanSizes(files, result.notes, {8, "uint16 x y z, uint8 intensity, laser"});
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    ScanEntry entry;
-    entry.cloud = files[i];
-    entry.time = static_cast<double>(numbers[i]) * 1e-6;
-    result.scans.push_back(std::move(entry));
-  }
+  for (std::size_t i = 0; i < files.size(); ++i)
+    result.scans.push_back({files[i], 0, static_cast<double>(numbers[i]) * 1e-6});
   result.read = [](const ScanEntry& entry) { return readNcltSync(entry.cloud); };
-}
-
-void addTurns(const fs::path& file, const Turns& turns, ScanFolder& result) {
-  for (const NcltTurn& turn : turns) {
-    ScanEntry entry;
-    entry.cloud = fs::absolute(file);
-    entry.offset = turn.offset;
-    entry.time = turn.middle;
-    result.scans.push_back(std::move(entry));
-  }
 }
 
 /// Times at which the body's pose is needed: three per revolution, or one per scan.
@@ -116,9 +101,7 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body,
   std::vector<double> row;
   std::size_t unknown = 0, disordered = 0;
   while (rows.next(row)) {
-    const bool known =
-        std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); });
-    if (!known) {
+    if (!allFinite(row)) {
       ++unknown;
     } else if (!track.add(row[0] * 1e-6, T_map_truth * ncltPose(row.data() + 1) * T_body_robot)) {
       ++disordered;
@@ -173,7 +156,8 @@ ScanFolder readNclt(const fs::path& session, const Eigen::Isometry3d& T_robot_bo
       result.notes.push_back("scans of velodyne_sync; velodyne_hits.bin is not used");
   } else {
     turns = findNcltTurns(files.hits, result.notes, progress);
-    addTurns(files.hits, turns, result);
+    for (const NcltTurn& turn : turns)
+      result.scans.push_back({fs::absolute(files.hits), turn.offset, turn.middle});
   }
 
   std::optional<NcltOdometry> odometry;

@@ -7,7 +7,6 @@
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/ScanPoses.h"
-#include "io/file/CsvRows.h"
 
 namespace polemcl::io {
 
@@ -19,10 +18,6 @@ constexpr double relativeNoise = 0.05;  ///< per component, without covariances;
 constexpr const char* poseLayout = "utime, x, y, z, roll, pitch, heading (us, m, rad)";
 constexpr const char* covarianceLayout =
     "utime, 21 numbers: the upper triangle of the covariance of x y z roll pitch heading";
-
-bool allFinite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
 
 /// Covariance of x, y and heading, from the 21 numbers of an upper triangle at `values`.
 Eigen::Matrix3d planarCovariance(const double* values) {
@@ -97,22 +92,10 @@ class CovarianceRows {
   std::size_t m_shifted = 0, m_missing = 0;  ///< steps with another time's covariance; with none
 };
 
-void noteUnused(std::size_t rows, const fs::path& file, std::vector<std::string>& notes) {
-  if (rows > 0)
-    notes.push_back(file.filename().string() + ": " + std::to_string(rows) +
-                    " rows ignored: not finite, or not later than the previous row");
-}
-
 }  // namespace
 
 Eigen::Isometry3d ncltPose(const double* values) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = Eigen::Vector3d(values[0], values[1], values[2]);
-  pose.linear() = (Eigen::AngleAxisd(values[5], Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(values[4], Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(values[3], Eigen::Vector3d::UnitX()))
-                      .toRotationMatrix();
-  return pose;
+  return poseFromAngles({values[0], values[1], values[2]}, values[3], values[4], values[5]);
 }
 
 NcltOdometry::NcltOdometry(const NcltOdometryFiles& files, std::vector<double> times,
@@ -134,7 +117,7 @@ void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& not
   while (rows.next(row)) {
     if (!allFinite(row) || !m_track.add(row[0] * 1e-6, ncltPose(row.data() + 1))) ++unused;
   }
-  noteUnused(unused, file, notes);
+  noteUnusedRows(unused, file, notes);
 }
 
 void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
@@ -164,7 +147,7 @@ void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::st
     if (files.track.empty()) m_track.add(time, T_odom_body);
     last = time;
   }
-  noteUnused(unused, files.steps, notes);
+  noteUnusedRows(unused, files.steps, notes);
   if (covariances) covariances->noteMismatch(steps, notes);
 }
 

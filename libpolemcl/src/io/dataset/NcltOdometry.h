@@ -9,7 +9,7 @@
 
 #include <polemcl/io/data/PlanarMotion.h>
 #include "io/data/TrackSampler.h"
-#include "io/file/ReadProgress.h"
+#include "io/file/CsvRows.h"
 
 namespace polemcl::io {
 

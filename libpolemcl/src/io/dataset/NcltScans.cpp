@@ -7,6 +7,7 @@
 
 #include "core/common/Angles.h"
 #include "io/data/TrackSampler.h"
+#include "io/data/Trajectory.h"
 #include "io/file/Bytes.h"
 #include "io/file/ReadLimits.h"
 
@@ -189,13 +190,7 @@ Cloud readNcltSync(const fs::path& file) {
 }
 
 Eigen::Isometry3d ncltBodyLidar() {
-  Eigen::Isometry3d T_body_lidar = Eigen::Isometry3d::Identity();
-  T_body_lidar.translation() = Eigen::Vector3d(0.002, -0.004, -0.957);
-  T_body_lidar.linear() = (Eigen::AngleAxisd(-90.703 * degree, Eigen::Vector3d::UnitZ()) *
-                           Eigen::AngleAxisd(0.166 * degree, Eigen::Vector3d::UnitY()) *
-                           Eigen::AngleAxisd(0.807 * degree, Eigen::Vector3d::UnitX()))
-                              .toRotationMatrix();
-  return T_body_lidar;
+  return poseFromAngles({0.002, -0.004, -0.957}, 0.807 * degree, 0.166 * degree, -90.703 * degree);
 }
 
 std::vector<NcltTurn> findNcltTurns(const fs::path& file, std::vector<std::string>& notes,

@@ -9,6 +9,20 @@ namespace polemcl::io {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+void requirePaddedNames(const std::vector<fs::path>& files) {
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const auto before = fileNumber(files[i - 1]), number = fileNumber(files[i]);
+    if (before && number && *number < *before) {
+      throw Error(files[i].string() + ": sorts after " + files[i - 1].filename().string() +
+                  " by name but before it by number; give all names the same number of digits");
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<fs::path> listFiles(const fs::path& folder, const std::string& ending) {
   std::error_code error, ignored;
   std::vector<fs::path> files;
@@ -24,6 +38,7 @@ std::vector<fs::path> listFiles(const fs::path& folder, const std::string& endin
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return a.filename().native() < b.filename().native();
   });
+  requirePaddedNames(files);
   return files;
 }
 
@@ -55,16 +70,6 @@ std::vector<std::uint64_t> fileNumbers(const std::vector<fs::path>& files) {
     numbers.push_back(*number);
   }
   return numbers;
-}
-
-void requirePaddedNames(const std::vector<fs::path>& files) {
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const auto before = fileNumber(files[i - 1]), number = fileNumber(files[i]);
-    if (before && number && *number < *before) {
-      throw Error(files[i].string() + ": sorts after " + files[i - 1].filename().string() +
-                  " by name but before it by number; give all names the same number of digits");
-    }
-  }
 }
 
 std::string ranges(const std::vector<std::uint64_t>& numbers, std::size_t most) {

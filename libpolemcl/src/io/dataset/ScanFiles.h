@@ -11,7 +11,7 @@ namespace polemcl::io {
 
 /// \brief Absolute paths of the files in a folder with this extension, sorted by the bytes of their
 /// names. Hidden files are left out. \throws Error when the folder does not exist or has no such
-/// file.
+/// file, or when names are numbers that do not sort as numbers (10.bin before 2.bin).
 std::vector<std::filesystem::path> listFiles(const std::filesystem::path& folder,
                                              const std::string& ending);
 
@@ -25,8 +25,6 @@ std::optional<std::uint64_t> fileNumber(const std::filesystem::path& file);
 /// \brief Numbers of all files. \throws Error with the first file whose name is not a number or
 /// repeats the previous number.
 std::vector<std::uint64_t> fileNumbers(const std::vector<std::filesystem::path>& files);
-/// \throws Error when the names are numbers that do not sort as numbers (10.bin before 2.bin).
-void requirePaddedNames(const std::vector<std::filesystem::path>& files);
 
 /// \brief Sorted numbers as text, "177-180, 200"; at most `most` ranges, then "…".
 std::string ranges(const std::vector<std::uint64_t>& numbers, std::size_t most = 8);

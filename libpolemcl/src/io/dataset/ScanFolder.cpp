@@ -24,7 +24,6 @@ struct Scans {
 
 Scans listScans(const fs::path& folder, const std::string& ending, const std::string& place) {
   Scans scans{listFiles(folder, ending), place, true};
-  requirePaddedNames(scans.files);
   for (std::size_t i = 0; i < scans.files.size(); ++i) {
     scans.numberedFromZero = scans.numberedFromZero && fileNumber(scans.files[i]) == i;
   }
@@ -99,11 +98,7 @@ void readOdometry(const fs::path& file, const Scans& scans, ScanFolder& folder) 
 }
 
 void addScans(const Scans& scans, ScanFolder& folder) {
-  for (const fs::path& file : scans.files) {
-    ScanEntry entry;
-    entry.cloud = file;
-    folder.scans.push_back(std::move(entry));
-  }
+  for (const fs::path& file : scans.files) folder.scans.push_back({file});
 }
 
 /// Reads true poses and odometry, if the files exist.

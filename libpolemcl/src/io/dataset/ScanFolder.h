@@ -20,10 +20,11 @@ struct ScanEntry {
   std::filesystem::path cloud;  ///< absolute path; see ScanFolder::read
   std::uint64_t offset = 0;     ///< start of the scan in a file with many scans, bytes
   double time = 0;              ///< s; strictly increasing from entry to entry
-  std::optional<Eigen::Isometry3d> T_map_robot;  ///< set in all entries of a folder or in no entry
+  std::optional<Eigen::Isometry3d> T_map_robot =
+      {};  ///< set in all entries of a folder or in no entry
   /// Motion since the previous entry, in the robot frame of that entry. Never set in the first
   /// entry; set in all others or in no entry.
-  std::optional<PlanarMotion> motion;
+  std::optional<PlanarMotion> motion = {};
 };
 
 struct ScanFolder {

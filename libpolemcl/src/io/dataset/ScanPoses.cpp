@@ -33,6 +33,12 @@ void pairInTurn(ScanFolder& folder, const fs::path& file, const std::vector<Stam
 
 }  // namespace
 
+void noteUnusedRows(std::size_t rows, const fs::path& file, std::vector<std::string>& notes) {
+  if (rows > 0)
+    notes.push_back(file.filename().string() + ": " + std::to_string(rows) +
+                    " rows ignored: not finite, or not later than the previous row");
+}
+
 std::vector<double> timesOf(const ScanFolder& folder) {
   std::vector<double> times;
   times.reserve(folder.scans.size());

@@ -10,6 +10,10 @@ namespace polemcl::io {
 /// \brief Longest gap of a track that is interpolated, s: the vehicle may turn during longer gaps.
 constexpr double trackGap = 1.0;
 
+/// \brief Adds a note if rows of a track were ignored.
+void noteUnusedRows(std::size_t rows, const std::filesystem::path& file,
+                    std::vector<std::string>& notes);
+
 /// \brief Times of the scans, s.
 std::vector<double> timesOf(const ScanFolder& folder);
 

@@ -87,4 +87,10 @@ void AtomicFile::commit() {
   m_open = false;
 }
 
+void writeFile(const fs::path& file, std::string_view content) {
+  AtomicFile output(file);
+  output.stream() << content;
+  output.commit();
+}
+
 }  // namespace polemcl::io

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 namespace polemcl::io {
 
@@ -40,5 +41,8 @@ class AtomicFile {
   std::ofstream m_stream;
   bool m_open = true;  ///< the temporary file exists and belongs to this object
 };
+
+/// \brief Writes a whole file. \throws Error when it cannot be written.
+void writeFile(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace polemcl::io

@@ -14,17 +14,21 @@ namespace polemcl::io {
 /// \brief Reads a whole file. \throws Error with the system's reason when the file cannot be read.
 std::string readBytes(const std::filesystem::path& file);
 
+/// \brief The unsigned integer of the size of T.
+template <class T>
+using BitsOf = std::conditional_t<
+    sizeof(T) == 8, std::uint64_t,
+    std::conditional_t<sizeof(T) == 4, std::uint32_t,
+                       std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
+
 /// \brief The little-endian value of type T (integer or float) at `bytes`; no alignment needed.
 template <class T>
 T loadLittleEndian(const char* bytes) {
-  using Bits = std::conditional_t<
-      sizeof(T) == 8, std::uint64_t,
-      std::conditional_t<sizeof(T) == 4, std::uint32_t,
-                         std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
-  static_assert(sizeof(T) == sizeof(Bits));
-  Bits bits = 0;
+  BitsOf<T> bits = 0;
+  static_assert(sizeof(T) == sizeof(bits));
   for (std::size_t i = 0; i < sizeof(T); ++i) {
-    bits |= static_cast<Bits>(static_cast<Bits>(static_cast<unsigned char>(bytes[i])) << (8 * i));
+    const auto byte = static_cast<BitsOf<T>>(static_cast<unsigned char>(bytes[i]));
+    bits |= static_cast<BitsOf<T>>(byte << (8 * i));
   }
   T value;
   std::memcpy(&value, &bits, sizeof(T));
@@ -37,15 +41,8 @@ class ByteWriter {
   template <class T>
   void put(T value) {
     static_assert(std::is_arithmetic_v<T>);
-    std::uint64_t bits = 0;
-    if constexpr (sizeof(T) == 4) {
-      std::uint32_t narrow;
-      std::memcpy(&narrow, &value, 4);
-      bits = narrow;
-    } else {
-      static_assert(sizeof(T) == 8);
-      std::memcpy(&bits, &value, 8);
-    }
+    BitsOf<T> bits;
+    std::memcpy(&bits, &value, sizeof(T));
     for (std::size_t i = 0; i < sizeof(T); ++i) {
       m_bytes.push_back(static_cast<char>(bits >> (8 * i) & 0xff));
     }

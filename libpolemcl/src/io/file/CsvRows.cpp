@@ -1,6 +1,8 @@
 #include "io/file/CsvRows.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -31,6 +33,10 @@ CsvRows::CsvRows(const std::filesystem::path& file, std::size_t columns, std::st
   if (!m_stream) throw Error("cannot read " + file.string() + ": " + std::strerror(errno));
   const auto size = std::filesystem::file_size(file, ignored);
   if (!ignored) m_size = size;
+}
+
+bool allFinite(const std::vector<double>& row) {
+  return std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); });
 }
 
 std::string CsvRows::at() const {

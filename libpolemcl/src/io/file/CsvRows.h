@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "io/file/ReadProgress.h"
-
 namespace polemcl::io {
+
+/// \brief Called with the amount read and the total, both in the same unit.
+using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// \brief Reads one row at a time and stores none, so that files may have any length. Blank lines
 /// and lines that start with `#` are skipped; `nan` and `inf` are accepted as numbers.
@@ -37,5 +39,8 @@ class CsvRows {
   std::uint64_t m_size = 0, m_read = 0;  ///< bytes
   std::ifstream m_stream;
 };
+
+/// \brief Whether no number of a row is NaN or infinite.
+bool allFinite(const std::vector<double>& row);
 
 }  // namespace polemcl::io

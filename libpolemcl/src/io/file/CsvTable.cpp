@@ -75,6 +75,13 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
   return *value;
 }
 
+std::uint32_t CsvTable::count(std::size_t row, std::size_t column) const {
+  const double value = number(row, column);
+  if (!(value >= 0 && value <= 4294967295.0 && value == std::floor(value)))
+    throw Error(at(row) + m_header.fields[column] + " must be a whole number from 0 to 4294967295");
+  return static_cast<std::uint32_t>(value);
+}
+
 std::string CsvTable::at(std::size_t row) const {
   return io::at(m_file, m_rows[row].line);
 }

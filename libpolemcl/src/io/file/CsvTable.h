@@ -2,6 +2,7 @@
 /// \file CsvTable.h
 /// \brief Tables with named columns: CSV with a header line.
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ class CsvTable {
   std::optional<std::size_t> find(const std::string& name) const;
   /// \brief A field as a number. \throws Error with file and line unless it is finite.
   double number(std::size_t row, std::size_t column) const;
+  /// \brief A field as a whole number. \throws Error with file and line unless it is from 0 to
+  ///        4294967295.
+  std::uint32_t count(std::size_t row, std::size_t column) const;
   /// \brief A field as text, without surrounding spaces and quotes.
   const std::string& text(std::size_t row, std::size_t column) const {
     return m_rows[row].fields[column];

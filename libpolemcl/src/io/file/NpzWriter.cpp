@@ -96,9 +96,7 @@ void writeNpz(const std::filesystem::path& file, const std::map<std::string, Num
   put32(end, directory.size());
   put32(end, archive.size());
   put16(end, 0);  // comment
-  AtomicFile output(file);
-  output.stream() << archive << directory << end;
-  output.commit();
+  writeFile(file, archive + directory + end);
 }
 
 }  // namespace polemcl::io

@@ -14,32 +14,23 @@
 
 namespace polemcl::io {
 
-struct LineReader::Stream {
-  gzFile_s* file = nullptr;
-  ~Stream() {
-    if (file) gzclose(file);
-  }
-};
-
 LineReader::LineReader(const std::filesystem::path& file)
-    : m_file(file), m_stream(std::make_unique<Stream>()) {
+    : m_file(file), m_stream(nullptr, &gzclose) {
   const auto fail = [&](const std::string& why) {
     return Error("cannot read " + file.string() + ": " + why);
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   errno = 0;
-  m_stream->file = gzopen(file.c_str(), "rb");
-  if (!m_stream->file) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");
+  m_stream.reset(gzopen(file.c_str(), "rb"));
+  if (!m_stream) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");
   readBlock();
   if (std::string_view(m_text).substr(0, 3) == "\xEF\xBB\xBF") m_begin = 3;
 }
 
-LineReader::~LineReader() = default;
-
 void LineReader::readBlock() {
   std::array<char, 65536> block;
-  const int got = gzread(m_stream->file, block.data(), block.size());
+  const int got = gzread(m_stream.get(), block.data(), block.size());
   if (got > 0) {
     m_text.erase(0, m_begin);
     m_begin = 0;
@@ -54,7 +45,7 @@ void LineReader::readBlock() {
   m_ended = true;
   // A truncated gzip file is readable to its end first; the error is reported only here.
   int code = Z_OK;
-  const char* message = gzerror(m_stream->file, &code);
+  const char* message = gzerror(m_stream.get(), &code);
   if (got < 0 || code != Z_OK)
     throw Error("cannot read " + m_file.string() + ": " +
                 (code == Z_ERRNO       ? std::strerror(errno)
@@ -149,6 +140,10 @@ std::vector<NumberRow> readNumberRows(const std::filesystem::path& file, std::si
 
 namespace {
 
+bool continues(std::string_view text, std::size_t at) {
+  return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+}
+
 std::string formatted(double value, std::chars_format format, int precision) {
   // Enough for the largest double in fixed notation.
   std::array<char, 512> buffer;
@@ -158,6 +153,21 @@ std::string formatted(double value, std::chars_format format, int precision) {
 }
 
 }  // namespace
+
+std::size_t characterLength(std::string_view text, std::size_t at) {
+  const auto first = static_cast<unsigned char>(text[at]);
+  if (first < 0x80) return 1;
+  if (first < 0xC2 || first > 0xF4 || !continues(text, at + 1)) return 0;
+  if (first < 0xE0) return 2;
+  const auto second = static_cast<unsigned char>(text[at + 1]);
+  if (first < 0xF0) {
+    // Neither too long a form nor half of a pair (UTF-16).
+    const bool allowed = (first != 0xE0 || second >= 0xA0) && (first != 0xED || second < 0xA0);
+    return allowed && continues(text, at + 2) ? 3 : 0;
+  }
+  const bool allowed = (first != 0xF0 || second >= 0x90) && (first != 0xF4 || second < 0x90);
+  return allowed && continues(text, at + 2) && continues(text, at + 3) ? 4 : 0;
+}
 
 std::string fixed(double value, int decimals) {
   return formatted(value, std::chars_format::fixed, decimals);

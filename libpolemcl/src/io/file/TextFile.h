@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+struct gzFile_s;
+
 namespace polemcl::io {
 
 /// \brief One line of a table, with its 1-based line number for messages.
@@ -24,20 +26,15 @@ class LineReader {
  public:
   /// \throws Error when the file cannot be opened.
   explicit LineReader(const std::filesystem::path& file);
-  ~LineReader();
-  LineReader(const LineReader&) = delete;
-  LineReader& operator=(const LineReader&) = delete;
-
   /// \return False at the end. \throws Error when the file cannot be read, is truncated, or holds
   ///         more than `mostTextBytes` (ReadLimits.h).
   bool next(std::string& line);
 
  private:
-  struct Stream;
   void readBlock();
 
   std::filesystem::path m_file;
-  std::unique_ptr<Stream> m_stream;
+  std::unique_ptr<gzFile_s, int (*)(gzFile_s*)> m_stream;
   std::string m_text;  ///< text read; the part from m_begin on is not returned yet
   std::size_t m_begin = 0;
   std::size_t m_read = 0;  ///< bytes, uncompressed
@@ -75,6 +72,9 @@ std::vector<double> parseNumbers(std::string_view text, const std::filesystem::p
 /// \brief Parses the whole text as one number (surrounding spaces allowed); nullopt if it is not a
 /// number. `nan` and `inf` are accepted.
 std::optional<double> parseNumber(std::string_view text);
+
+/// \brief Length of the UTF-8 character that begins at this byte; 0 when no character begins there.
+std::size_t characterLength(std::string_view text, std::size_t at);
 
 /// \brief The text without spaces, tabs and carriage returns at its ends.
 std::string_view trimmed(std::string_view text);

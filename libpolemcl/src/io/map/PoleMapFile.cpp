@@ -67,10 +67,10 @@ void requireSound(const PoleMapData& data, const std::string& where) {
   }
 }
 
-void putChunk(ByteWriter& payload, std::string_view tag, const ByteWriter& content) {
+void putChunk(ByteWriter& payload, std::string_view tag, std::string_view content) {
   payload.putRaw(tag);
-  payload.put(static_cast<std::uint64_t>(content.bytes().size()));
-  payload.putRaw(content.bytes());
+  payload.put(static_cast<std::uint64_t>(content.size()));
+  payload.putRaw(content);
 }
 
 void putPole(ByteWriter& record, const MapPole& p) {
@@ -108,14 +108,10 @@ std::string payloadOf(const PoleMapData& data, const AddedSessions* scans) {
     putPole(candidates, kept.pole);
     putHistory(candidates, kept.history);
   }
-  putChunk(payload, "INFO", info);
-  putChunk(payload, "POLE", poles);
-  if (!data.candidates.empty()) putChunk(payload, "CAND", candidates);
-  if (scans) {
-    ByteWriter content;
-    content.putRaw(packMapScans(*scans));
-    putChunk(payload, "SCAN", content);
-  }
+  putChunk(payload, "INFO", info.bytes());
+  putChunk(payload, "POLE", poles.bytes());
+  if (!data.candidates.empty()) putChunk(payload, "CAND", candidates.bytes());
+  if (scans) putChunk(payload, "SCAN", packMapScans(*scans));
   return payload.bytes();
 }
 
@@ -177,11 +173,6 @@ void readPoles(ByteReader& chunk, const std::string& where, PoleMapData& data) {
   }
 }
 
-void readCandidates(ByteReader& chunk, const std::string& where, PoleMapData& data) {
-  if (!readRecords(chunk, where, data.candidates))
-    throw Error(where + "damaged: its candidates have no histories");
-}
-
 /// The payload of a whole file, after all checks.
 std::string_view checkedPayload(std::string_view bytes, const std::string& where) {
   if (bytes.substr(0, polemapMagic.size()) != polemapMagic) {
@@ -202,6 +193,18 @@ std::string_view checkedPayload(std::string_view bytes, const std::string& where
   const std::string_view payload = bytes.substr(headerBytes);
   if (checksum(payload) != crc) throw Error(where + "damaged: the checksum (CRC-32) is wrong");
   return payload;
+}
+
+/// Calls use(tag, content, "FILE: ") for each chunk of a file.
+template <class Use>
+void eachChunk(const std::filesystem::path& file, const Use& use) {
+  const std::string bytes = readBytes(file);
+  const std::string where = file.string() + ": ";
+  ByteReader payload(checkedPayload(bytes, where), where);
+  while (payload.remaining() > 0) {
+    const std::string_view tag = payload.getRaw(4);
+    use(tag, payload.getRaw(payload.get<std::uint64_t>()), where);
+  }
 }
 
 }  // namespace
@@ -238,39 +241,30 @@ void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
   header.put(version);
   header.put(static_cast<std::uint64_t>(payload.size()));
   header.put(checksum(payload));
-  AtomicFile output(file);
-  output.stream() << header.bytes() << payload;
-  output.commit();
+  writeFile(file, header.bytes() + payload);
 }
 
 std::optional<AddedSessions> readMapScans(const std::filesystem::path& file) {
-  const std::string bytes = readBytes(file);
-  const std::string where = file.string() + ": ";
-  ByteReader payload(checkedPayload(bytes, where), where);
-  while (payload.remaining() > 0) {
-    const std::string_view tag = payload.getRaw(4);
-    const std::string_view chunk = payload.getRaw(payload.get<std::uint64_t>());
-    if (tag == "SCAN") return unpackMapScans(chunk, where);
-  }
-  return std::nullopt;
+  std::optional<AddedSessions> scans;
+  eachChunk(file, [&](std::string_view tag, std::string_view content, const std::string& where) {
+    if (tag == "SCAN") scans = unpackMapScans(content, where);
+  });
+  return scans;
 }
 
 PoleMapData readPoleMap(const std::filesystem::path& file) {
-  const std::string bytes = readBytes(file);
-  const std::string where = file.string() + ": ";
-  ByteReader payload(checkedPayload(bytes, where), where);
   PoleMapData data;
   bool hasPoles = false;
-  while (payload.remaining() > 0) {
-    const std::string_view tag = payload.getRaw(4);
-    ByteReader chunk(payload.getRaw(payload.get<std::uint64_t>()), where);
+  eachChunk(file, [&](std::string_view tag, std::string_view content, const std::string& where) {
+    ByteReader chunk(content, where);
     if (tag == "INFO") readInfo(chunk, data);
     if (tag == "POLE") readPoles(chunk, where, data);
-    if (tag == "CAND") readCandidates(chunk, where, data);
+    if (tag == "CAND" && !readRecords(chunk, where, data.candidates))
+      throw Error(where + "damaged: its candidates have no histories");
     hasPoles = hasPoles || tag == "POLE";
-  }
-  if (!hasPoles) throw Error(where + "damaged: it has no list of poles");
-  requireSound(data, where);
+  });
+  if (!hasPoles) throw Error(file.string() + ": damaged: it has no list of poles");
+  requireSound(data, file.string() + ": ");
   return data;
 }
 

@@ -27,12 +27,7 @@ class Row {
     if (const auto column = m_table.find(name)) value = m_table.number(m_row, *column);
   }
   void take(const char* name, std::uint32_t& value) const {
-    const auto column = m_table.find(name);
-    if (!column) return;
-    const double number = m_table.number(m_row, *column);
-    if (!(number >= 0 && number <= 4294967295.0 && number == std::floor(number)))
-      throw Error(m_table.at(m_row) + name + " must be a whole number from 0 to 4294967295");
-    value = static_cast<std::uint32_t>(number);
+    if (const auto column = m_table.find(name)) value = m_table.count(m_row, *column);
   }
   void takeDay(const char* name, double& time) const {
     const auto column = m_table.find(name);

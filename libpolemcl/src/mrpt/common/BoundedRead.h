@@ -1,7 +1,8 @@
 #pragma once
 /// \file BoundedRead.h
-/// \brief Reading of lists from archives that may be damaged or forged. A length above its limit is
-/// rejected. Below the limit, memory grows with the bytes read, never beyond the size of the file.
+/// \brief Poles in archives, and reading of lists from archives that may be damaged or forged. A
+/// length above its limit is rejected. Below the limit, memory grows with the bytes read, never
+/// beyond the size of the file.
 
 #include <mrpt/serialization/CArchive.h>
 
@@ -27,5 +28,23 @@ std::vector<float> readFloats(mrpt::serialization::CArchive& in, std::uint32_t m
 /// \throws Error as readText(), for the number of entries, each key and each value.
 std::map<std::string, std::string> readTexts(mrpt::serialization::CArchive& in, std::uint32_t most,
                                              std::uint32_t longest, const char* what);
+
+/// \brief Writes what PoleDetection and MapPole have in common, then `count`.
+template <class Pole>
+void writePole(mrpt::serialization::CArchive& out, const Pole& pole, std::uint32_t count) {
+  out << pole.x << pole.y << pole.radius << pole.bottom << pole.top << pole.confidence
+      << pole.covariance(0, 0) << pole.covariance(0, 1) << pole.covariance(1, 1) << count;
+}
+
+/// \brief Inverse of writePole(). \param count The member that holds the count.
+template <class Pole>
+Pole readPole(mrpt::serialization::CArchive& in, std::uint32_t Pole::*count) {
+  Pole pole;
+  auto& C = pole.covariance;
+  in >> pole.x >> pole.y >> pole.radius >> pole.bottom >> pole.top >> pole.confidence >> C(0, 0) >>
+      C(0, 1) >> C(1, 1) >> pole.*count;
+  C(1, 0) = C(0, 1);
+  return pole;
+}
 
 }  // namespace polemcl

@@ -218,10 +218,8 @@ void save(const COpenGLScene& scene, const std::filesystem::path& file) {
   // Written to memory first: MRPT's file streams do not report a full disk.
   mrpt::io::CMemoryStream bytes;
   mrpt::serialization::archiveFrom(bytes) << scene;
-  io::AtomicFile output(file);
-  output.stream().write(static_cast<const char*>(bytes.getRawBufferData()),
-                        static_cast<std::streamsize>(bytes.getTotalBytesCount()));
-  output.commit();
+  io::writeFile(file, {static_cast<const char*>(bytes.getRawBufferData()),
+                       static_cast<std::size_t>(bytes.getTotalBytesCount())});
 }
 
 }  // namespace polemcl::scene

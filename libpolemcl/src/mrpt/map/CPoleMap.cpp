@@ -24,20 +24,6 @@ using mrpt::serialization::CArchive;
 
 namespace {
 
-void writeMapPole(CArchive& out, const MapPole& pole) {
-  out << pole.x << pole.y << pole.radius << pole.bottom << pole.top << pole.confidence
-      << pole.covariance(0, 0) << pole.covariance(0, 1) << pole.covariance(1, 1) << pole.count;
-}
-
-MapPole readMapPole(CArchive& in) {
-  MapPole pole;
-  auto& C = pole.covariance;
-  in >> pole.x >> pole.y >> pole.radius >> pole.bottom >> pole.top >> pole.confidence >> C(0, 0) >>
-      C(0, 1) >> C(1, 1) >> pole.count;
-  C(1, 0) = C(0, 1);
-  return pole;
-}
-
 Pose2D planarPose(const mrpt::poses::CPose3D& pose) {
   return {pose.x(), pose.y(), pose.yaw()};
 }
@@ -52,7 +38,7 @@ void requireStorable(const CPoleMap& map) {
                 std::to_string(io::longestMapFact) + " bytes, fits into no archive of MRPT");
 }
 
-void requireUsableMap(const MapPole& pole, std::size_t i) {
+void requireUsable(const MapPole& pole, std::size_t i) {
   if (!std::isfinite(pole.x) || !std::isfinite(pole.y))
     throw Error("pole " + std::to_string(i) + ": the position must be finite");
   if (!isCovariance(pole.covariance))
@@ -65,7 +51,7 @@ void requireUsableMap(const MapPole& pole, std::size_t i) {
 CPoleMap::CPoleMap() : m_index(std::make_shared<PoleIndex>(m_poles)) {}
 
 void CPoleMap::setPoles(std::vector<MapPole> poles) {
-  for (std::size_t i = 0; i < poles.size(); ++i) requireUsableMap(poles[i], i);
+  for (std::size_t i = 0; i < poles.size(); ++i) requireUsable(poles[i], i);
   auto index = std::make_shared<PoleIndex>(poles, likelihoodOptions.gate);
   m_poles = std::move(poles);
   m_index = std::move(index);
@@ -92,7 +78,7 @@ void CPoleMap::serializeTo(CArchive& out) const {
   out << static_cast<std::uint8_t>(l.model) << l.sigma << l.outlier << l.gate << l.weighted;
   out << l.floor;
   out << info << static_cast<std::uint32_t>(m_poles.size());
-  for (const auto& pole : m_poles) writeMapPole(out, pole);
+  for (const auto& pole : m_poles) writePole(out, pole, pole.count);
 }
 
 void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
@@ -108,7 +94,7 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   std::vector<MapPole> poles;
   // One by one: a count in a damaged file must not decide how much memory is allocated.
   for (std::uint32_t left = readCount(in, io::mostMapPoles, "poles"); left > 0; --left)
-    poles.push_back(readMapPole(in));
+    poles.push_back(readPole(in, &MapPole::count));
   setPoles(std::move(poles));
 }
 

@@ -1,11 +1,11 @@
 #include <mrpt/config/CConfigFile.h>
+#include <mrpt/version.h>
 
 #include <ostream>
 
 #include <polemcl/config/Config.h>
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
-#include "mrpt/common/MrptCompatibility.h"
 
 MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)
 
@@ -125,6 +125,13 @@ void CPoleMap::TMapDefinition::dumpToTextStream_map_specific(std::ostream& out) 
   likelihoodOpts.dumpToTextStream(out);
 }
 
+// MRPT_VERSION is 0x258 in 2.5.8 and 0x020A02 from 2.10.2 on: it grows, but not digit by digit.
+#if MRPT_VERSION >= 0x020B03
+using CreatedMap = mrpt::maps::CMetricMap::Ptr;
+#else
+using CreatedMap = mrpt::maps::CMetricMap*;  // owned by the caller
+#endif
+
 CreatedMap CPoleMap::internal_CreateFromMapDefinition(
     const mrpt::maps::TMetricMapInitializer& def) {
   const auto& own = dynamic_cast<const CPoleMap::TMapDefinition&>(def);
@@ -132,11 +139,7 @@ CreatedMap CPoleMap::internal_CreateFromMapDefinition(
   map->insertionOptions = own.insertionOpts;
   map->likelihoodOptions = own.likelihoodOpts;
   if (!own.mapFile.empty()) map->loadFromPoleMapFile(own.mapFile);
-#if MRPT_VERSION >= 0x020B03
-  return CreatedMap(std::move(map));
-#else
-  return map.release();
-#endif
+  return CreatedMap(map.release());
 }
 
 }  // namespace polemcl

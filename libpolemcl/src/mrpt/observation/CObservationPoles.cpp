@@ -18,24 +18,6 @@ namespace polemcl {
 
 using mrpt::serialization::CArchive;
 
-namespace {
-
-void write(CArchive& out, const PoleDetection& pole) {
-  out << pole.x << pole.y << pole.radius << pole.bottom << pole.top << pole.confidence
-      << pole.covariance(0, 0) << pole.covariance(0, 1) << pole.covariance(1, 1) << pole.points;
-}
-
-PoleDetection readPole(CArchive& in) {
-  PoleDetection pole;
-  auto& C = pole.covariance;
-  in >> pole.x >> pole.y >> pole.radius >> pole.bottom >> pole.top >> pole.confidence >> C(0, 0) >>
-      C(0, 1) >> C(1, 1) >> pole.points;
-  C(1, 0) = C(0, 1);
-  return pole;
-}
-
-}  // namespace
-
 uint8_t CObservationPoles::serializeGetVersion() const {
   return 0;
 }
@@ -48,7 +30,7 @@ void CObservationPoles::serializeTo(CArchive& out) const {
                   std::to_string(io::mostOfAScan) + " are allowed of each");
   out << timestamp << sensorLabel << sensorPose << points;
   out << static_cast<std::uint32_t>(poles.size());
-  for (const auto& pole : poles) write(out, pole);
+  for (const auto& pole : poles) writePole(out, pole, pole.points);
   out << visibilityRange;
 }
 
@@ -60,7 +42,7 @@ void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   poles.clear();
   // One by one: a count in a damaged file must not decide how much memory is allocated.
   for (std::uint32_t left = readCount(in, io::mostOfAScan, "poles"); left > 0; --left)
-    poles.push_back(readPole(in));
+    poles.push_back(readPole(in, &PoleDetection::points));
   visibilityRange = readFloats(in, io::mostOfAScan, "visibility ranges");
 }
 

@@ -7,56 +7,45 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
-#include <vector>
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/ReadLimits.h"
-#include "mrpt/rawlog/PointCountGuard.h"
 
 namespace polemcl {
 
-struct GzReadStream::Impl {
-  gzFile file = nullptr;
-  std::vector<unsigned char> buffer = std::vector<unsigned char>(1 << 18);
-  std::size_t begin = 0, end = 0;  ///< range not consumed yet
-  PointCountGuard points;
-};
-
-GzReadStream::GzReadStream(const std::string& path)
-    : m_path(path), m_impl(std::make_unique<Impl>()) {
+GzReadStream::GzReadStream(const std::string& path) : m_path(path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw Error(path + ": no such file");
   if (!std::filesystem::is_regular_file(path, error)) throw Error(path + ": is not a file");
   m_fileSize = std::filesystem::file_size(path, error);
-  m_impl->file = gzopen(path.c_str(), "rb");
-  if (!m_impl->file) throw Error(path + ": cannot be opened: " + std::strerror(errno));
-  gzbuffer(m_impl->file, 1 << 18);
+  m_file = gzopen(path.c_str(), "rb");
+  if (!m_file) throw Error(path + ": cannot be opened: " + std::strerror(errno));
+  gzbuffer(m_file, 1 << 18);
 }
 
 GzReadStream::~GzReadStream() {
-  if (m_impl->file) gzclose(m_impl->file);
+  gzclose(m_file);
 }
 
 /// Makes bytes available; false at the end of the data, clean or damaged.
 bool GzReadStream::refill() {
-  Impl& impl = *m_impl;
-  if (impl.begin < impl.end) return true;
-  const int got = gzread(impl.file, impl.buffer.data(), static_cast<unsigned>(impl.buffer.size()));
+  if (m_begin < m_end) return true;
+  const int got = gzread(m_file, m_buffer.data(), static_cast<unsigned>(m_buffer.size()));
   int code = Z_OK;
-  gzerror(impl.file, &code);
+  gzerror(m_file, &code);
   if (code == Z_ERRNO) throw Error(m_path + ": cannot be read: " + std::strerror(errno));
   // Z_BUF_ERROR: truncated gzip data; Z_DATA_ERROR: damaged data or wrong checksum.
   if (got <= 0 && code != Z_OK && code != Z_STREAM_END) m_cutShort = true;
-  impl.begin = 0;
-  impl.end = got > 0 ? static_cast<std::size_t>(got) : 0;
+  m_begin = 0;
+  m_end = got > 0 ? static_cast<std::size_t>(got) : 0;
   return got > 0;
 }
 
 /// Upper bound of the bytes that are left.
 std::uint64_t GzReadStream::mostLeft() const {
-  if (gzdirect(m_impl->file)) return m_fileSize - std::min(m_fileSize, m_position);
+  if (gzdirect(m_file)) return m_fileSize - std::min(m_fileSize, m_position);
   constexpr std::uint64_t buffered = 1 << 20;  // by zlib and by this class
-  const auto at = static_cast<std::uint64_t>(std::max<z_off_t>(0, gzoffset(m_impl->file)));
+  const auto at = static_cast<std::uint64_t>(std::max<z_off_t>(0, gzoffset(m_file)));
   return buffered + io::greatestDeflateRatio * (m_fileSize - std::min(m_fileSize, at));
 }
 
@@ -72,13 +61,13 @@ std::size_t GzReadStream::Read(void* buffer, std::size_t count) {
       m_cutShort = true;
       throw std::runtime_error("the data ends here");
     }
-    const std::size_t piece = std::min(count - done, m_impl->end - m_impl->begin);
-    std::memcpy(out + done, m_impl->buffer.data() + m_impl->begin, piece);
-    m_impl->begin += piece;
+    const std::size_t piece = std::min(count - done, m_end - m_begin);
+    std::memcpy(out + done, m_buffer.data() + m_begin, piece);
+    m_begin += piece;
     m_position += piece;
     done += piece;
   }
-  const auto points = m_impl->points.see(buffer, count);
+  const auto points = m_points.see(buffer, count);
   if (points && *points > mostLeft() / PointCountGuard::pointBytes) {
     m_cutShort = true;
     throw std::runtime_error("the data ends before its " + std::to_string(*points) + " points");
@@ -95,7 +84,7 @@ std::uint64_t GzReadStream::Seek(std::int64_t, TSeekOrigin) {
 }
 
 double GzReadStream::progress() const {
-  const auto at = gzoffset(m_impl->file);
+  const auto at = gzoffset(m_file);
   return m_fileSize == 0 || at < 0
              ? 1.0
              : std::min(1.0, static_cast<double>(at) / static_cast<double>(m_fileSize));

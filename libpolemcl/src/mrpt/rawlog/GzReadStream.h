@@ -6,8 +6,12 @@
 #include <mrpt/io/CStream.h>
 
 #include <cstdint>
-#include <memory>
 #include <string>
+#include <vector>
+
+#include "mrpt/rawlog/PointCountGuard.h"
+
+struct gzFile_s;
 
 namespace polemcl {
 
@@ -19,6 +23,8 @@ class GzReadStream : public mrpt::io::CStream {
   /// \throws Error when the file cannot be opened.
   explicit GzReadStream(const std::string& path);
   ~GzReadStream() override;
+  GzReadStream(const GzReadStream&) = delete;
+  GzReadStream& operator=(const GzReadStream&) = delete;
 
   /// \brief True when no byte is left and the file ended regularly.
   /// \throws Error when it cannot be read. Damaged gzip data set cutShort() and give false.
@@ -38,11 +44,13 @@ class GzReadStream : public mrpt::io::CStream {
   std::string getStreamDescription() const override { return m_path; }
 
  private:
-  struct Impl;
   bool refill();
   std::uint64_t mostLeft() const;
   std::string m_path;
-  std::unique_ptr<Impl> m_impl;
+  gzFile_s* m_file = nullptr;
+  std::vector<unsigned char> m_buffer = std::vector<unsigned char>(1 << 18);
+  std::size_t m_begin = 0, m_end = 0;  ///< part of the buffer that is not consumed yet
+  PointCountGuard m_points;
   std::uint64_t m_position = 0, m_fileSize = 0;
   bool m_cutShort = false;
 };

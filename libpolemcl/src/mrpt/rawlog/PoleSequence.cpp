@@ -7,7 +7,6 @@
 #include <exception>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
-#include "mrpt/rawlog/ExternalFiles.h"
 #include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl {
@@ -127,7 +126,6 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
                            const std::function<void(const PoleScan&)>& consume) {
   if (options.threads < 0)
     throw Error("threads = " + std::to_string(options.threads) + ": allowed is 0 or more");
-  findExternals(path);
   Stream stream(path, options);
   const int cores = tbb::info::default_concurrency();  // TBB rejects more threads than that
   const int threads = options.threads > 0 ? std::min(options.threads, cores) : cores;

@@ -8,7 +8,6 @@
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "mrpt/observation/LidarFrame.h"
-#include "mrpt/rawlog/ExternalFiles.h"
 #include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl {
@@ -65,7 +64,6 @@ SensorOptions mounted(const SensorIdentification& sensor, const mrpt::poses::CPo
 }  // namespace
 
 RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
-  findExternals(path);
   RawlogInspection result;
   ScanSource source(path, MotionOptions(), allowTruncated);
   const auto scans = spreadScans(source, result.scans);

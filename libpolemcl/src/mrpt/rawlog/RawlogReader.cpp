@@ -3,36 +3,10 @@
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/serialization/CArchive.h>
 
-#include <optional>
-
 #include "mrpt/common/MrptReason.h"
 #include "mrpt/map/RegisterClasses.h"
-#include "mrpt/rawlog/GzReadStream.h"
 
 namespace polemcl {
-
-using mrpt::serialization::CSerializable;
-
-struct RawlogReader::Impl {
-  Impl(const std::string& path, bool allowed) : name(path), stream(path), allowTruncated(allowed) {}
-
-  struct Object {
-    CSerializable::Ptr object;
-    std::uint64_t offset = 0;
-  };
-
-  std::string name;
-  GzReadStream stream;
-  bool allowTruncated;
-  bool truncated = false, ended = false;
-  std::optional<Object> pending;  ///< object after an action, read ahead
-  std::uint64_t objects = 0;      ///< number of objects read so far
-
-  std::optional<Object> readObject();
-  std::optional<Object> nextObject();
-  void endsHere(std::uint64_t offset);
-  [[noreturn]] void explain(std::uint64_t offset, const std::string& what);
-};
 
 namespace {
 
@@ -53,74 +27,71 @@ bool printable(const std::string& text) {
 }  // namespace
 
 /// Handles data that end inside the object at `offset`: an Error, unless this is allowed.
-void RawlogReader::Impl::endsHere(std::uint64_t offset) {
-  ended = true;
-  if (!allowTruncated)
-    throw Error(name + ": truncated: the file ends inside an object that starts at byte " +
-                std::to_string(offset) + " (object " + std::to_string(objects) +
+void RawlogReader::endsHere(std::uint64_t offset) {
+  m_ended = true;
+  if (!m_allowTruncated)
+    throw Error(m_name + ": truncated: the file ends inside an object that starts at byte " +
+                std::to_string(offset) + " (object " + std::to_string(m_objects) +
                 "); copy the file again, or allow truncated files to use the entries before");
-  truncated = true;
+  m_truncated = true;
 }
 
-void RawlogReader::Impl::explain(std::uint64_t offset, const std::string& what) {
+void RawlogReader::explain(std::uint64_t offset, const std::string& what) {
   const std::string at = " at byte " + std::to_string(offset);
   const std::string unknown = unregisteredClass(what);
   if (printable(unknown))
-    throw Error(name + ": class '" + unknown + "'" + at +
+    throw Error(m_name + ": class '" + unknown + "'" + at +
                 " is unknown: load the library that defines it");
-  if (objects == 0) throw Error(name + ": is not a rawlog: " + mrptReason(what));
-  throw Error(name + ": object " + std::to_string(objects) + at +
+  if (m_objects == 0) throw Error(m_name + ": is not a rawlog: " + mrptReason(what));
+  throw Error(m_name + ": object " + std::to_string(m_objects) + at +
               " is damaged: " + mrptReason(what));
 }
 
 /// Reads one object of the file; nullopt at its end.
-std::optional<RawlogReader::Impl::Object> RawlogReader::Impl::readObject() {
-  if (ended) return std::nullopt;
-  const std::uint64_t offset = stream.getPosition();
-  if (stream.atCleanEnd()) {
-    ended = true;
-    if (objects == 0) {
-      if (!allowTruncated) throw Error(name + ": is empty: there is no object in it");
-      truncated = true;
+std::optional<RawlogReader::Object> RawlogReader::readObject() {
+  if (m_ended) return std::nullopt;
+  const std::uint64_t offset = m_stream.getPosition();
+  if (m_stream.atCleanEnd()) {
+    m_ended = true;
+    if (m_objects == 0) {
+      if (!m_allowTruncated) throw Error(m_name + ": is empty: there is no object in it");
+      m_truncated = true;
     }
     return std::nullopt;
   }
   std::string what;
   try {
-    auto archive = mrpt::serialization::archiveFrom(stream);
+    auto archive = mrpt::serialization::archiveFrom(m_stream);
     Object object{archive.ReadObject(), offset};
     if (!object.object) throw std::runtime_error("an object of no class");
-    ++objects;
+    ++m_objects;
     return object;
   } catch (const std::exception& error) {
     what = error.what();
-    if (what.rfind(name + ": ", 0) == 0) throw;  // about the file itself, not its content
+    if (what.rfind(m_name + ": ", 0) == 0) throw;  // about the file itself, not its content
   }
   // An unknown class may also be the first to reach the end of the data.
-  if (!stream.cutShort() || !unregisteredClass(what).empty()) explain(offset, what);
+  if (!m_stream.cutShort() || !unregisteredClass(what).empty()) explain(offset, what);
   endsHere(offset);
   return std::nullopt;
 }
 
-std::optional<RawlogReader::Impl::Object> RawlogReader::Impl::nextObject() {
-  if (!pending) return readObject();
+std::optional<RawlogReader::Object> RawlogReader::nextObject() {
+  if (!m_pending) return readObject();
   std::optional<Object> object;
-  object.swap(pending);
+  object.swap(m_pending);
   return object;
 }
 
-RawlogReader::RawlogReader(const std::string& path, bool allowTruncated) {
+RawlogReader::RawlogReader(const std::string& path, bool allowTruncated)
+    : m_name(path), m_stream(path), m_allowTruncated(allowTruncated) {
   registerClasses();
-  m_impl = std::make_unique<Impl>(path, allowTruncated);
 }
-RawlogReader::~RawlogReader() = default;
-RawlogReader::RawlogReader(RawlogReader&&) noexcept = default;
-RawlogReader& RawlogReader::operator=(RawlogReader&&) noexcept = default;
 
 bool RawlogReader::next(RawlogEntry& entry) {
   using namespace mrpt::obs;
   entry = RawlogEntry();
-  while (auto read = m_impl->nextObject()) {
+  while (auto read = nextObject()) {
     entry.offset = read->offset;
     if (std::dynamic_pointer_cast<CObservationComment>(read->object)) continue;
     entry.observation = std::dynamic_pointer_cast<CObservation>(read->object);
@@ -128,21 +99,13 @@ bool RawlogReader::next(RawlogEntry& entry) {
     entry.action = std::dynamic_pointer_cast<CActionCollection>(read->object);
     if (entry.observation || entry.frame) return true;
     if (!entry.action) continue;
-    auto following = m_impl->readObject();
+    auto following = readObject();
     if (!following) return true;  // rawlogs often end with an action
     entry.frame = std::dynamic_pointer_cast<CSensoryFrame>(following->object);
-    if (!entry.frame) m_impl->pending = std::move(following);
+    if (!entry.frame) m_pending = std::move(following);
     return true;
   }
   return false;
-}
-
-bool RawlogReader::truncated() const {
-  return m_impl->truncated;
-}
-
-double RawlogReader::progress() const {
-  return m_impl->stream.progress();
 }
 
 }  // namespace polemcl

@@ -7,10 +7,11 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include <memory>
+#include <optional>
 #include <string>
 
 #include <polemcl/core/common/Types.h>
+#include "mrpt/rawlog/GzReadStream.h"
 
 namespace polemcl {
 
@@ -30,9 +31,6 @@ class RawlogReader {
   /// \param allowTruncated true: a file that ends inside an object is read up to that object.
   /// \throws Error when the file cannot be opened.
   explicit RawlogReader(const std::string& path, bool allowTruncated = false);
-  ~RawlogReader();
-  RawlogReader(RawlogReader&&) noexcept;
-  RawlogReader& operator=(RawlogReader&&) noexcept;
 
   /// \return false at the end of the file.
   /// \throws Error on a class that is not registered (with its name), on an unreadable object, and
@@ -40,13 +38,25 @@ class RawlogReader {
   ///         plain file cut between two objects cannot be distinguished from a complete one.
   bool next(RawlogEntry& entry);
   /// \brief True when the file is truncated and this was allowed.
-  bool truncated() const;
+  bool truncated() const { return m_truncated; }
   /// \brief Fraction of the file read so far, 0 to 1, for progress.
-  double progress() const;
+  double progress() const { return m_stream.progress(); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> m_impl;
+  struct Object {
+    mrpt::serialization::CSerializable::Ptr object;
+    std::uint64_t offset = 0;
+  };
+  std::optional<Object> readObject();
+  std::optional<Object> nextObject();
+  void endsHere(std::uint64_t offset);
+  [[noreturn]] void explain(std::uint64_t offset, const std::string& what);
+
+  std::string m_name;
+  GzReadStream m_stream;
+  bool m_allowTruncated, m_truncated = false, m_ended = false;
+  std::optional<Object> m_pending;  ///< object after an action, read ahead
+  std::uint64_t m_objects = 0;      ///< number of objects read so far
 };
 
 }  // namespace polemcl

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include <polemcl/core/common/Types.h>
-#include "io/file/AtomicFile.h"
 
 namespace polemcl {
 
@@ -48,39 +47,22 @@ void requireSurvives(const mrpt::obs::CActionCollection& actions) {
 
 }  // namespace
 
-struct RawlogWriter::Impl {
-  explicit Impl(const std::string& path) : file(path), stream(file.stream()) {}
-  io::AtomicFile file;
-  OutputStream stream;
+RawlogWriter::RawlogWriter(const std::string& path) : m_file(path) {}
 
-  void write(const mrpt::serialization::CSerializable& object) {
-    auto archive = mrpt::serialization::archiveFrom(stream);
-    archive << object;
-    if (!file.stream()) file.commit();  // throws now instead of writing for hours to a full disk
-  }
-};
-
-RawlogWriter::RawlogWriter(const std::string& path) : m_impl(std::make_unique<Impl>(path)) {}
-RawlogWriter::~RawlogWriter() = default;
-RawlogWriter::RawlogWriter(RawlogWriter&&) noexcept = default;
-RawlogWriter& RawlogWriter::operator=(RawlogWriter&&) noexcept = default;
+void RawlogWriter::writeObject(const mrpt::serialization::CSerializable& object) {
+  OutputStream stream(m_file.stream());
+  mrpt::serialization::archiveFrom(stream) << object;
+  if (!m_file.stream()) m_file.commit();  // throws now instead of writing for hours to a full disk
+}
 
 void RawlogWriter::write(const mrpt::obs::CActionCollection& action,
                          const mrpt::obs::CObservation::Ptr& observation) {
   if (!observation) throw Error("a frame cannot be written without its observation");
   requireSurvives(action);
-  m_impl->write(action);
+  writeObject(action);
   mrpt::obs::CSensoryFrame frame;
   frame.insert(observation);
-  m_impl->write(frame);
-}
-
-void RawlogWriter::write(const mrpt::obs::CObservation& observation) {
-  m_impl->write(observation);
-}
-
-void RawlogWriter::commit() {
-  m_impl->file.commit();
+  writeObject(frame);
 }
 
 }  // namespace polemcl

@@ -6,8 +6,9 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include <memory>
 #include <string>
+
+#include "io/file/AtomicFile.h"
 
 namespace polemcl {
 
@@ -16,9 +17,6 @@ class RawlogWriter {
  public:
   /// \throws Error when the folder cannot be written.
   explicit RawlogWriter(const std::string& path);
-  ~RawlogWriter();
-  RawlogWriter(RawlogWriter&&) noexcept;
-  RawlogWriter& operator=(RawlogWriter&&) noexcept;
 
   /// \brief Writes an action and a sensory frame with the observation.
   /// \throws Error when an action's movement would be lost: CActionRobotMovement2D with
@@ -26,13 +24,14 @@ class RawlogWriter {
   void write(const mrpt::obs::CActionCollection& action,
              const mrpt::obs::CObservation::Ptr& observation);
   /// \brief Writes a single observation.
-  void write(const mrpt::obs::CObservation& observation);
+  void write(const mrpt::obs::CObservation& observation) { writeObject(observation); }
   /// \brief Gives the file its name. \throws Error when a write failed (disk full).
-  void commit();
+  void commit() { m_file.commit(); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> m_impl;
+  void writeObject(const mrpt::serialization::CSerializable& object);
+
+  io::AtomicFile m_file;
 };
 
 }  // namespace polemcl

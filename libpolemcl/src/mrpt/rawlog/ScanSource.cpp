@@ -1,11 +1,13 @@
 #include "mrpt/rawlog/ScanSource.h"
 
+#include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
@@ -89,6 +91,11 @@ std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
 ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated)
     : m_path(path), m_options(motion), m_reader(path, allowTruncated) {
   checkOptions(m_options);
+  const std::filesystem::path file = std::filesystem::absolute(path);
+  const std::filesystem::path images = file.parent_path() / (file.stem().string() + "_Images");
+  std::error_code none;
+  mrpt::io::setLazyLoadPathBase(
+      (std::filesystem::is_directory(images, none) ? images : file.parent_path()).string());
 }
 
 void ScanSource::take(const CObservation::Ptr& observation) {

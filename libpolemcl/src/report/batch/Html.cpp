@@ -1,6 +1,6 @@
 #include "report/batch/Html.h"
 
-#include "io/file/WholeFile.h"
+#include "io/file/TextFile.h"
 
 namespace polemcl::report {
 namespace {

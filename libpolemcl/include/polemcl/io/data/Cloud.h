@@ -16,6 +16,8 @@ struct POLEMCL_EXPORT Cloud {
   std::vector<float> intensity;  ///< as stored; KITTI: 0 … 1
   std::size_t invalid = 0;       ///< points dropped when reading: NaN, infinite, or at the origin
 
+  /// \brief Appends a point, or counts it as invalid. \return Whether it was appended.
+  bool add(double px, double py, double pz, double pointIntensity);
   std::size_t size() const { return x.size(); }
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
