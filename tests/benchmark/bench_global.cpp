@@ -62,7 +62,7 @@ BENCHMARK(query)
 
 void prepareMap(benchmark::State& state) {
   const PoleCity city(cityOf(static_cast<int>(state.range(0)), false));
-  for (auto _ : state) benchmark::DoNotOptimize(PreparedMap(city.map(), {}).pairs().size());
+  for (auto _ : state) benchmark::DoNotOptimize(PreparedMap(city.map(), {}).pairs.size());
   state.counters["mapPoles"] = static_cast<double>(city.map().size());
 }
 BENCHMARK(prepareMap)->ArgName("streets")->Arg(9)->Arg(27)->Unit(benchmark::kMillisecond);

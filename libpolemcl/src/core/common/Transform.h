@@ -3,6 +3,7 @@
 /// \brief Detections moved by a planar pose, with their covariances.
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include <polemcl/core/common/Types.h>
 
@@ -10,6 +11,25 @@ namespace polemcl {
 
 inline Eigen::Matrix2d rotationOf(double yaw) {
   return Eigen::Rotation2Dd(yaw).toRotationMatrix();
+}
+
+/// \brief Centre of a pole in the plane, m; also of a record or an observation with a `pole`.
+template <class Pole>
+auto centreOf(const Pole& pole) -> decltype(pole.x, Eigen::Vector2d()) {
+  return {pole.x, pole.y};
+}
+template <class Record>
+auto centreOf(const Record& record) -> decltype(centreOf(record.pole)) {
+  return centreOf(record.pole);
+}
+
+/// \brief centreOf() each.
+template <class Pole>
+std::vector<Eigen::Vector2d> centresOf(const std::vector<Pole>& poles) {
+  std::vector<Eigen::Vector2d> centres;
+  centres.reserve(poles.size());
+  for (const Pole& pole : poles) centres.push_back(centreOf(pole));
+  return centres;
 }
 
 /// \brief The mean of a matrix and its transpose: symmetric to the last bit.

@@ -8,16 +8,10 @@
 
 #include "core/common/GreedyAssignment.h"
 #include "core/common/Statistics.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
-
-template <class Pole>
-std::vector<Eigen::Vector2d> poleCentres(const std::vector<Pole>& poles) {
-  std::vector<Eigen::Vector2d> points;
-  for (const Pole& pole : poles) points.emplace_back(pole.x, pole.y);
-  return points;
-}
 
 std::optional<double> mean(const std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
@@ -67,7 +61,7 @@ void DetectionEvaluation::add(const std::vector<PoleDetection>& detections,
                               const std::vector<TruePoleInScan>& truth) {
   std::vector<char> right(detections.size(), 0);
   for (const AssignedPair& pair :
-       greedyAssignment(poleCentres(detections), poleCentres(truth), m_radius)) {
+       greedyAssignment(centresOf(detections), centresOf(truth), m_radius)) {
     right[pair.first] = 1;
     m_found += truth[pair.second].visible;
     addRight(detections[pair.first], truth[pair.second]);

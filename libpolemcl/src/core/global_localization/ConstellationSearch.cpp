@@ -28,21 +28,20 @@ PairTolerance::PairTolerance(const PreparedMap& map, const Constellation& query,
       m_second(second),
       m_middle(0.5 * (first.centre + second.centre)),
       m_squaredLength((second.centre - first.centre).squaredNorm()) {
-  const double sigma = map.options().sigma;
-  m_variance = query.relativeVariance(first, second) + 2 * (sigma * sigma + map.meanVariance());
+  const double sigma = map.options.sigma;
+  m_variance = query.relativeVariance(first, second) + 2 * (sigma * sigma + map.meanVariance);
 }
 
 double PairTolerance::of(const QueryPole& queryPole) const {
   // Variance of the pair's middle: a quarter of the sum of both variances. Variance of its
   // direction: that sum divided by the squared length.
   const double lever = (queryPole.centre - m_middle).squaredNorm() / m_squaredLength;
-  const double sigma = m_map.options().sigma;
-  const double own =
-      0.5 * queryPole.pole->covariance.trace() + sigma * sigma + m_map.meanVariance();
+  const double sigma = m_map.options.sigma;
+  const double own = 0.5 * queryPole.pole->covariance.trace() + sigma * sigma + m_map.meanVariance;
   const double drift = std::min(m_query.driftVariance(queryPole, m_first),
                                 m_query.driftVariance(queryPole, m_second));
   const double variance = m_variance * (0.25 + lever) + own + drift;
-  return std::min(m_map.options().maxTolerance, s_sigmas * std::sqrt(variance));
+  return std::min(m_map.options.maxTolerance, s_sigmas * std::sqrt(variance));
 }
 
 ConstellationSearch::ConstellationSearch(const PreparedMap& map, const Constellation& query)
@@ -55,7 +54,7 @@ std::vector<PoseCandidate> ConstellationSearch::run() {
 
 /// Rare distances come first: they cost least and decide most.
 std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() const {
-  const GlobalOptions& options = m_map.options();
+  const GlobalOptions& options = m_map.options;
   const std::vector<QueryPole>& queryPoles = m_query.queryPoles();
   std::vector<QueryPair> all;
   for (std::uint32_t i = 0; i < m_query.reliable(); ++i) {
@@ -63,10 +62,10 @@ std::vector<ConstellationSearch::QueryPair> ConstellationSearch::choosePairs() c
       const double length = (queryPoles[i].centre - queryPoles[j].centre).norm();
       if (length < options.minBaseline || length > options.maxBaseline) continue;
       const double variance = m_query.relativeVariance(queryPoles[i], queryPoles[j]) +
-                              2 * (options.sigma * options.sigma + m_map.meanVariance());
+                              2 * (options.sigma * options.sigma + m_map.meanVariance);
       const double tolerance = std::min(options.maxTolerance, s_sigmas * std::sqrt(variance));
       const PairDistanceIndex::Range range =
-          m_map.pairs().between(length - tolerance, length + tolerance);
+          m_map.pairs.between(length - tolerance, length + tolerance);
       // A short or a doubtful pair is worth less: many places fit it badly.
       const double doubt = (1 + 1 / queryPoles[i].odds) * (1 + 1 / queryPoles[j].odds);
       const double cost =
@@ -107,7 +106,8 @@ void ConstellationSearch::tryPair(const QueryPair& pair) {
     return a.squaredTolerance < b.squaredTolerance;
   });
   for (const PairDistanceIndex::Pair* p = pair.range.begin; p != pair.range.end; ++p) {
-    const Eigen::Vector2d &a = m_map.tree().point(p->first), &b = m_map.tree().point(p->second);
+    const Eigen::Vector2d &a = m_map.index.tree().point(p->first),
+                          &b = m_map.index.tree().point(p->second);
     tryPlace(pair, a, b);
     tryPlace(pair, b, a);
   }
@@ -127,7 +127,7 @@ void ConstellationSearch::tryPlace(const QueryPair& pair, const Eigen::Vector2d&
   const double y = 0.5 * (first.y() + second.y()) - (s * middle.x() + c * middle.y());
   std::uint32_t hits = 0, tried = 0;
   for (const Probe& probe : m_probes) {
-    hits += static_cast<bool>(m_map.grid().nearest(
+    hits += static_cast<bool>(m_map.index.grid().nearest(
         x + c * probe.x - s * probe.y, y + s * probe.x + c * probe.y, probe.squaredTolerance));
     if (hits < leastHits(++tried)) return;
   }
@@ -150,7 +150,7 @@ std::vector<PoseCandidate> ConstellationSearch::bestSeeds() {
   std::unordered_set<std::uint64_t> taken;
   std::vector<PoseCandidate> best;
   for (const PoseCandidate& seed : m_seeds) {
-    if (best.size() >= static_cast<std::size_t>(m_map.options().maxRefined)) break;
+    if (best.size() >= static_cast<std::size_t>(m_map.options.maxRefined)) break;
     if (taken.insert(cellOf(seed.pose_map_robot)).second) best.push_back(seed);
   }
   return best;

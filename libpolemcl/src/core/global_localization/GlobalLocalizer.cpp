@@ -55,7 +55,7 @@ GlobalLocalizer::GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOp
     : m_map(std::make_shared<const PreparedMap>(map, options)) {}
 
 GlobalResult GlobalLocalizer::localize(const LocalSubmap& submap) const {
-  const GlobalOptions& options = m_map->options();
+  const GlobalOptions& options = m_map->options;
   GlobalResult result;
   const Constellation query(submap, options);
   result.poles = query.reliable();

@@ -23,7 +23,7 @@ Eigen::Vector2d turnedBy(const Eigen::Vector2d& v) {
 
 PoseRefinement::PoseRefinement(const PreparedMap& map, const Constellation& query,
                                const Pose2D& pose_local)
-    : m_map(map), m_query(query), m_poseLocal(pose_local), m_claimed(map.tree().size(), 0) {}
+    : m_map(map), m_query(query), m_poseLocal(pose_local), m_claimed(map.index.tree().size(), 0) {}
 
 bool PoseRefinement::run(const PoseCandidate& seed, GlobalHypothesis& out) {
   State state;
@@ -46,9 +46,9 @@ Eigen::Vector2d PoseRefinement::seenAt(const QueryPole& queryPole, const State& 
 Eigen::Matrix2d PoseRefinement::uncertainty(const QueryPole& queryPole, std::size_t pole,
                                             const State& state) const {
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
-  const double sigma = m_map.options().sigma;
+  const double sigma = m_map.options.sigma;
   return rotation * queryPole.covariance * rotation.transpose() +
-         (sigma * sigma + m_map.variance(pole)) * Eigen::Matrix2d::Identity();
+         (sigma * sigma + m_map.index.variance(pole)) * Eigen::Matrix2d::Identity();
 }
 
 void PoseRefinement::matchSeed(const PoseCandidate& seed, const State& state) {
@@ -58,18 +58,18 @@ void PoseRefinement::matchSeed(const PoseCandidate& seed, const State& state) {
   for (std::uint32_t i = 0; i < m_query.reliable(); ++i) {
     const Eigen::Vector2d at = seenAt(queryPoles[i], state);
     const double t = tolerance.of(queryPoles[i]);
-    const PointHit hit = m_map.grid().nearest(at.x(), at.y(), t * t);
+    const PointHit hit = m_map.index.grid().nearest(at.x(), at.y(), t * t);
     if (hit) m_matches.push_back({i, hit.index});
   }
 }
 
 void PoseRefinement::matchGated(const State& state) {
-  const double most = m_map.options().maxTolerance;
+  const double most = m_map.options.maxTolerance;
   m_matches.clear();
   for (std::uint32_t i = 0; i < m_query.reliable(); ++i) {
     const QueryPole& queryPole = m_query.queryPoles()[i];
     const Eigen::Vector2d at = seenAt(queryPole, state);
-    const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
+    const PointHit hit = m_map.index.grid().nearest(at.x(), at.y(), most * most);
     if (!hit) continue;
     Eigen::Matrix<double, 2, 4> jacobian;
     const Eigen::Vector2d arm = at - Eigen::Vector2d(state.pose.x, state.pose.y);
@@ -77,7 +77,7 @@ void PoseRefinement::matchGated(const State& state) {
         rotationOf(state.pose.yaw) * queryPole.travel;
     const Eigen::Matrix2d S = uncertainty(queryPole, hit.index, state) +
                               jacobian * state.covariance * jacobian.transpose();
-    const Eigen::Vector2d error = m_map.tree().point(hit.index) - at;
+    const Eigen::Vector2d error = m_map.index.tree().point(hit.index) - at;
     if (error.dot(S.inverse() * error) <= s_gate * s_gate) m_matches.push_back({i, hit.index});
   }
 }
@@ -99,7 +99,7 @@ bool PoseRefinement::solve(State& state) const {
     const Eigen::Vector2d arm = at - Eigen::Vector2d(state.pose.x, state.pose.y);
     jacobian << Eigen::Matrix2d::Identity(), turnedBy(arm), rotation * queryPole.travel;
     const Eigen::Matrix2d weight = uncertainty(queryPole, match.pole, state).inverse();
-    const Eigen::Vector2d error = m_map.tree().point(match.pole) - at;
+    const Eigen::Vector2d error = m_map.index.tree().point(match.pole) - at;
     normal += jacobian.transpose() * weight * jacobian;
     right += jacobian.transpose() * weight * error;
     squared += error.dot(weight * error);
@@ -118,16 +118,16 @@ bool PoseRefinement::solve(State& state) const {
 }
 
 void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
-  const double most = m_map.options().maxTolerance;
+  const double most = m_map.options.maxTolerance;
   const double sharp = s_sharp * s_sharp;
   newRound();
   out = {};
   for (const QueryPole& queryPole : m_query.queryPoles()) {
     const Eigen::Vector2d at = seenAt(queryPole, state);
-    const PointHit hit = m_map.grid().nearest(at.x(), at.y(), most * most);
+    const PointHit hit = m_map.index.grid().nearest(at.x(), at.y(), most * most);
     if (!hit) continue;
     const Eigen::Matrix2d S = uncertainty(queryPole, hit.index, state);
-    const Eigen::Vector2d error = m_map.tree().point(hit.index) - at;
+    const Eigen::Vector2d error = m_map.index.tree().point(hit.index) - at;
     const double squared = error.dot(S.inverse() * error);
     // Reliable query poles come first, so none loses its map pole to a doubtful one.
     if (squared > s_gate * s_gate || !claim(hit.index) || queryPole.odds <= 0) continue;
@@ -137,7 +137,7 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
   }
   out.unseen = countUnseen(state);
   // On old maps or maps with false poles, unseen poles must not outweigh the matches.
-  const double doubt = -std::log1p(-m_map.options().seen) * out.unseen;
+  const double doubt = -std::log1p(-m_map.options.seen) * out.unseen;
   out.evidence -= std::min(doubt, 0.5 * out.evidence);
   out.matchedShare = static_cast<double>(out.matched) / static_cast<double>(m_query.reliable());
   out.pose_map_robot = state.pose;
@@ -154,7 +154,7 @@ std::uint32_t PoseRefinement::countUnseen(const State& state) {
   const Eigen::Matrix2d rotation = rotationOf(state.pose.yaw);
   for (const Eigen::Vector2d& place : m_query.path()) {
     const Eigen::Vector2d at = Eigen::Vector2d(state.pose.x, state.pose.y) + rotation * place;
-    m_map.tree().within(at.x(), at.y(), m_map.options().corridor, m_hits);
+    m_map.index.tree().within(at.x(), at.y(), m_map.options.corridor, m_hits);
     for (const PointHit& hit : m_hits) unseen += claim(hit.index);
   }
   return unseen;

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/common/KdTree2D.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
@@ -39,13 +40,10 @@ bool overlap(const PoleDetection& a, const PoleDetection& b) {
 
 std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
     const std::vector<LandmarkObservation>& observations) {
-  std::vector<Eigen::Vector2d> centres;
   double widest = 0;
-  for (const LandmarkObservation& observation : observations) {
-    centres.emplace_back(observation.pole.x, observation.pole.y);
+  for (const LandmarkObservation& observation : observations)
     widest = std::max(widest, observation.pole.radius);
-  }
-  const KdTree2D tree(std::move(centres));
+  const KdTree2D tree(centresOf(observations));
   Sets sets(observations.size());
   std::vector<PointHit> near;
   for (std::uint32_t i = 0; i < observations.size(); ++i) {

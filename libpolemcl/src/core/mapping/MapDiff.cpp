@@ -8,17 +8,12 @@
 
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
 
 using Poles = std::vector<MapPole>;
-
-std::vector<Eigen::Vector2d> placesOf(const Poles& poles) {
-  std::vector<Eigen::Vector2d> places;
-  for (const MapPole& pole : poles) places.emplace_back(pole.x, pole.y);
-  return places;
-}
 
 bool byPlace(const MapPole& a, const MapPole& b) {
   return std::tie(a.x, a.y) < std::tie(b.x, b.y);
@@ -26,7 +21,7 @@ bool byPlace(const MapPole& a, const MapPole& b) {
 
 /// Takes the pairs nearer than the gate out of both lists, nearest first.
 std::vector<MapDiff::Pair> takePairs(Poles& before, Poles& after, double gate) {
-  const KdTree2D tree(placesOf(before));
+  const KdTree2D tree(centresOf(before));
   std::vector<AssignedPair> candidates;
   std::vector<PointHit> hits;
   for (std::size_t i = 0; i < after.size(); ++i) {

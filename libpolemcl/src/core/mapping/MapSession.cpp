@@ -7,6 +7,7 @@
 
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
+#include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
 #include "core/mapping/DetectionToMap.h"
 
@@ -33,13 +34,6 @@ bool inView(const SessionScan& scan, const MapPole& pole) {
   const double front = std::hypot(seen.x, seen.y) - pole.radius - kOwnFront;
   return visibilityRangeTowards(scan.visibilityRange, seen.x, seen.y, pole.radius + kBeside) >=
          std::max(front, 1e-3);
-}
-
-std::vector<Eigen::Vector2d> polePlaces(const std::vector<LandmarkRecord>& poles) {
-  std::vector<Eigen::Vector2d> places;
-  places.reserve(poles.size());
-  for (const LandmarkRecord& record : poles) places.emplace_back(record.pole.x, record.pole.y);
-  return places;
 }
 
 }  // namespace
@@ -72,7 +66,7 @@ Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& ma
 void Session::observe(const std::vector<LandmarkRecord>& poles) {
   m_owner.assign(m_observations.size(), kNone);
   m_poles.assign(poles.size(), {});
-  const KdTree2D tree(polePlaces(poles));
+  const KdTree2D tree(centresOf(poles));
   for (std::size_t number = 0; number < m_scans.size(); ++number) {
     assign(number, tree);
     expect(number, tree, poles);

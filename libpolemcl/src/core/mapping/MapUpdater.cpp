@@ -17,10 +17,6 @@ constexpr double kFarEllipse = 13.8;        ///< 99.9 % of squared distances, 2 
 constexpr std::uint32_t kWeightedTo = 200;  ///< observations: older ones do not outweigh today's
 constexpr double kWithoutHistory = 0.9;     ///< existence of a pole of an old map
 
-Eigen::Vector2d centreOf(const MapPole& pole) {
-  return {pole.x, pole.y};
-}
-
 void sortByPlace(std::vector<LandmarkRecord>& poles) {
   std::stable_sort(poles.begin(), poles.end(),
                    [](const LandmarkRecord& a, const LandmarkRecord& b) {
@@ -54,7 +50,6 @@ class Update {
   bool seenTogether(std::size_t a, std::size_t b) const;
   std::set<std::uint32_t> scansOf(std::size_t pole) const;
   void decidePresence();
-  std::vector<Eigen::Vector2d> places() const;
 
   const PoleMapOptions& m_mapping;
   const MapUpdateOptions& m_options;
@@ -148,15 +143,9 @@ void Update::movePlaces() {
   }
 }
 
-std::vector<Eigen::Vector2d> Update::places() const {
-  std::vector<Eigen::Vector2d> places;
-  for (const LandmarkRecord& record : m_poles) places.push_back(centreOf(record.pole));
-  return places;
-}
-
 /// Drops a pole that was never found if a new, certain pole stands beside it.
 void Update::dropGhosts() {
-  const KdTree2D tree(places());
+  const KdTree2D tree(centresOf(m_poles));
   std::vector<PointHit> near;
   for (std::size_t i = 0; i < m_known; ++i) {
     const ExistenceEvidence& evidence = m_session.poles()[i].evidence;
@@ -187,7 +176,7 @@ bool Update::seenTogether(std::size_t a, std::size_t b) const {
 
 /// Drops the pole seen less often today when two poles have moved into one gate.
 void Update::dropDoubles() {
-  const KdTree2D tree(places());
+  const KdTree2D tree(centresOf(m_poles));
   std::vector<PointHit> near;
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
     tree.within(m_poles[i].pole.x, m_poles[i].pole.y, m_mapping.mergeDistance, near);

@@ -8,6 +8,7 @@
 
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
+#include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
@@ -15,10 +16,6 @@ namespace {
 using Group = std::vector<std::uint32_t>;
 
 constexpr int s_mostRounds = 10;  ///< assigning and growing usually end after two or three
-
-Eigen::Vector2d clusterCentreOf(const LandmarkObservation& observation) {
-  return {observation.pole.x, observation.pole.y};
-}
 
 void dropEmpty(std::vector<Group>& groups) {
   groups.erase(
@@ -47,7 +44,7 @@ class Clusterer {
   Clusterer(std::vector<LandmarkObservation> observations, const ClusteringOptions& options)
       : m_observations(std::move(observations)),
         m_options(options),
-        m_tree(points()),
+        m_tree(centresOf(m_observations)),
         m_nearest(scanCount()) {}
 
   std::vector<Group> run() {
@@ -62,13 +59,6 @@ class Clusterer {
   }
 
  private:
-  std::vector<Eigen::Vector2d> points() const {
-    std::vector<Eigen::Vector2d> result;
-    result.reserve(m_observations.size());
-    for (const LandmarkObservation& observation : m_observations)
-      result.push_back(clusterCentreOf(observation));
-    return result;
-  }
   std::size_t scanCount() const {
     std::size_t count = 0;
     for (const LandmarkObservation& observation : m_observations)
@@ -252,7 +242,7 @@ void Clusterer::prune() {
       before = group.size();
       const Eigen::Vector2d centre = fusedCentre(m_observations, group);
       const auto isBeyond = [&](std::uint32_t i) {
-        return (clusterCentreOf(m_observations[i]) - centre).squaredNorm() >= squaredGate();
+        return (centreOf(m_observations[i]) - centre).squaredNorm() >= squaredGate();
       };
       group.erase(std::remove_if(group.begin(), group.end(), isBeyond), group.end());
       if (group.empty()) break;

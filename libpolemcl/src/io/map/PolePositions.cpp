@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <polemcl/io/map/PoleMapFile.h>
+#include "core/common/Transform.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/CsvTable.h"
 #include "io/file/Date.h"
@@ -89,11 +90,7 @@ std::vector<Eigen::Vector2d> readPolePositions(const std::filesystem::path& file
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   if (ending == ".csv") return readCsv(file);
   if (ending == ".npz") return readNpz(file);
-  if (ending == ".polemap") {
-    Positions positions;
-    for (const MapPole& pole : readPoleMap(file).poles) positions.emplace_back(pole.x, pole.y);
-    return positions;
-  }
+  if (ending == ".polemap") return centresOf(readPoleMap(file).poles);
   throw Error(file.string() + ": unknown kind of file '" + ending +
               "'; allowed: .polemap, .csv (columns x, y), .npz (poleparams or polemeans)");
 }

@@ -79,26 +79,11 @@ void LocalizationPipeline::initializeGlobally() {
   m_hasPose = m_stepped = m_mistrusted = false;
 }
 
-void LocalizationPipeline::checkFrame(const PoleFrame& frame) const {
+LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
   if (!m_started)
     throw Error(
         "the localization has not been started: call start() or initializeGlobally() first");
-  const std::string when = std::to_string(frame.time) + " s";
-  if (!std::isfinite(frame.time) || (m_stepped && frame.time <= m_time))
-    throw Error("time does not increase: a scan at " + when + " comes after one at " +
-                std::to_string(m_time) + " s");
-  if (!m_stepped) return;
-  if (!frame.motion)
-    throw Error("no motion leads to the scan at " + when + ": the filter needs odometry");
-  try {
-    makeMotionAction(*frame.motion, m_options.filter);
-  } catch (const Error& error) {
-    throw Error("scan at " + when + ": " + error.what());
-  }
-}
-
-LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
-  checkFrame(seen);
+  actionTo(seen, m_stepped ? std::optional(m_time) : std::nullopt, m_options.filter);  // checks
   LocalizationUpdate update;
   update.time = seen.time;
   const PoleFrame frame = checkedMotion(seen, update);

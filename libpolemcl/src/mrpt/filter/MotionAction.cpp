@@ -66,4 +66,20 @@ mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motio
   return action;
 }
 
+mrpt::obs::CActionCollection::Ptr actionTo(const PoleFrame& frame, std::optional<double> before,
+                                           const FilterOptions& options) {
+  const std::string when = std::to_string(frame.time) + " s";
+  if (!std::isfinite(frame.time) || (before && frame.time <= *before))
+    throw Error("time does not increase: a scan at " + when + " comes after one at " +
+                std::to_string(before.value_or(0)) + " s");
+  if (!before) return nullptr;
+  if (!frame.motion)
+    throw Error("no motion leads to the scan at " + when + ": the filter needs odometry");
+  try {
+    return makeMotionAction(*frame.motion, options);
+  } catch (const Error& error) {
+    throw Error("scan at " + when + ": " + error.what());
+  }
+}
+
 }  // namespace polemcl

@@ -4,8 +4,11 @@
 
 #include <mrpt/obs/CActionCollection.h>
 
+#include <optional>
+
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/mrpt/filter/FilterOptions.h>
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
 
 namespace polemcl {
 
@@ -23,5 +26,12 @@ constexpr double maxMotionStep = 10000;
 ///         or above the limits.
 mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motion,
                                                    const FilterOptions& options);
+
+/// \brief The action that leads to a frame; null for the first frame, whose motion is ignored.
+/// \param before Time of the frame before, s; nullopt for the first frame.
+/// \throws Error when the time is not later than `before`, or the motion is missing; also as
+///         makeMotionAction(), with the time of the frame.
+mrpt::obs::CActionCollection::Ptr actionTo(const PoleFrame& frame, std::optional<double> before,
+                                           const FilterOptions& options);
 
 }  // namespace polemcl

@@ -142,25 +142,12 @@ void PoleParticleFilter::begin(int particles) {
   m_particles.resize(thinsOut ? std::max(particles, least) : least);
   for (auto& particle : m_particles) particle.log_w = 0;
   m_started = true;
-  m_stepped = false;
+  m_time.reset();
 }
 
 PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame) {
   if (!m_started) throw Error("the filter has no particles yet: call start() first");
-  const std::string when = std::to_string(frame.time) + " s";
-  if (!std::isfinite(frame.time) || (m_stepped && frame.time <= m_time))
-    throw Error("time does not increase: a scan at " + when + " comes after one at " +
-                std::to_string(m_time) + " s");
-  mrpt::obs::CActionCollection::Ptr action;
-  if (m_stepped) {
-    if (!frame.motion)
-      throw Error("no motion leads to the scan at " + when + ": the filter needs odometry");
-    try {
-      action = makeMotionAction(*frame.motion, m_options);
-    } catch (const Error& error) {
-      throw Error("scan at " + when + ": " + error.what());
-    }
-  }
+  const auto action = actionTo(frame, m_time, m_options);
   const auto observation = CObservationPoles::Create();
   observation->poles = frame.poles_robot;  // sensorPose stays identity: robot frame
   mrpt::obs::CSensoryFrame scan;
@@ -174,7 +161,6 @@ PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame) {
     if (m_failure) std::rethrow_exception(m_failure);
     throw;
   }
-  m_stepped = true;
   m_time = frame.time;
   return m_estimate;
 }

@@ -176,9 +176,8 @@ std::string CPoleMap::asString() const {
 void CPoleMap::saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const {
   saveToPoleMapFile(filNamePrefix + ".polemap");
   io::writePoleCsv(filNamePrefix + ".csv", m_poles);
-  scene::Path places;
-  for (const MapPole& pole : m_poles) places.emplace_back(pole.x, pole.y);
-  OverviewScene overview(places, std::filesystem::path(filNamePrefix).filename().string());
+  OverviewScene overview(centresOf(m_poles),
+                         std::filesystem::path(filNamePrefix).filename().string());
   overview.addPoles("poles", m_poles,
                     [](const MapPole& pole) { return scene::colorOfCount(pole.count); });
   overview.addLegend(scene::countLegend(m_poles));

@@ -33,9 +33,7 @@ struct Scene {
     points.add(0, 0, z);
   }
   std::optional<RejectionReason> test(int row = kTopRow, int column = kColumn) {
-    SegmentationOptions growing;
-    growing.epsilon = options.epsilon;
-    const Segmentation segmentation(image, growing);
+    const Segmentation segmentation(image, options);
     return testCandidate(image, segmentation, segmentation.label(row, column), points.view(),
                          options, heightOffset, heights);
   }

@@ -17,9 +17,18 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// The options of an image without cuts by height.
+struct View : RangeImageOptions {
+  double minRange = 0.5;
+  View() {
+    minZ = -kInfinity;
+    maxZ = kInfinity;
+  }
+};
+
 /// Four rows of 10° from +20° to -20°, 16 columns of 22.5°.
-ProjectionOptions smallImage() {
-  ProjectionOptions options;
+View smallImage() {
+  View options;
   options.rows = 4;
   options.columns = 16;
   options.fovUp = 20 * kDegree;
@@ -28,8 +37,8 @@ ProjectionOptions smallImage() {
 }
 
 /// Rows meet where asin(z / r) = 0 and ± asin(0.6): points (4, 0, ± 3) lie exactly on the borders.
-ProjectionOptions exactBorders() {
-  ProjectionOptions options;
+View exactBorders() {
+  View options;
   options.rows = 2;
   options.columns = 16;
   options.fovUp = std::asin(0.6);
@@ -37,20 +46,24 @@ ProjectionOptions exactBorders() {
   return options;
 }
 
-PointCounts projectInto(RangeImage& image, const PointList& points,
-                        const ProjectionOptions& options) {
-  return project(points.view(), options, -kInfinity, kInfinity, image);
+PointCounts projectInto(RangeImage& image, const PointList& points, const View& options) {
+  return project(points.view(), options, options.minRange, 0, image);
 }
 
 std::size_t total(const PointCounts& c) {
   return c.used + c.hidden + c.invalid + c.outOfView + c.outOfRange;
 }
 
-std::string refusal(const std::function<void(ProjectionOptions&)>& spoil) {
-  ProjectionOptions options;
-  spoil(options);
+std::string refusal(const std::function<void(View&)>& spoil) {
+  View view;
+  spoil(view);
   try {
-    options.validate();
+    RangeImageOptions options = view;
+    options.minZ = -1;
+    options.maxZ = 1;
+    checkOptions(options);
+    RangeImage image(4, 16);
+    projectInto(image, PointList(), view);
   } catch (const Error& error) {
     return error.what();
   }
@@ -103,7 +116,7 @@ TEST(RangeImage, StraightAheadIsTheMiddleColumnAndAzimuthFallsWithTheColumn) {
 // The angle added in Eq. 1 is the one below the horizon: with the upper one added, the horizon of
 // this sensor would lie in row 57.
 TEST(RangeImage, RowZeroIsTopmostWhenTheViewIsNotSymmetric) {
-  ProjectionOptions options;
+  View options;
   options.fovUp = 3 * kDegree;
   options.fovDown = -25 * kDegree;
   PointList points;
@@ -164,7 +177,7 @@ TEST(RangeImage, EqualsABruteForceOnRandomClouds) {
     for (int i = 0; i < 5000; ++i)
       points.addPolar(random.uniform(-M_PI, M_PI), random.uniform(-30, 30) * kDegree,
                       random.uniform(0, 60));
-    const ProjectionOptions options = smallImage();
+    const View options = smallImage();
     RangeImage image(4, 16);
     const PointCounts counts = projectInto(image, points, options);
 
@@ -241,7 +254,7 @@ TEST(RangeImage, APointBetweenTwoRowsOrColumnsGoesToTheLaterOne) {
 }
 
 TEST(RangeImage, PointsLieStrictlyWithinTheBoundsOfRangeAndHeight) {
-  ProjectionOptions options = exactBorders();
+  View options = exactBorders();
   options.minRange = 5;
   options.maxRange = 10;
   PointList points;
@@ -254,7 +267,9 @@ TEST(RangeImage, PointsLieStrictlyWithinTheBoundsOfRangeAndHeight) {
   points.add(-7, 2, 0.9999);   // below the upper one
   points.add(-7, -2, -0.9999);
   RangeImage image(2, 16);
-  const PointCounts counts = project(points.view(), options, -1, 1, image);
+  options.minZ = -1;
+  options.maxZ = 1;
+  const PointCounts counts = projectInto(image, points, options);
   EXPECT_EQ(counts.used, 4u);
   EXPECT_EQ(counts.outOfRange, 4u);
 }
@@ -263,7 +278,7 @@ TEST(RangeImage, ClampedPointsOutsideTheViewGoToTheBorderRows) {
   PointList points;
   points.addPolar(0.1, 40 * kDegree, 10);
   points.addPolar(-0.1, -60 * kDegree, 11);
-  ProjectionOptions options = smallImage();
+  View options = smallImage();
   RangeImage image(4, 16);
   EXPECT_EQ(projectInto(image, points, options).outOfView, 2u);
   options.clampToView = true;
@@ -277,7 +292,7 @@ TEST(RangeImage, ClampedPointsOutsideTheViewGoToTheBorderRows) {
 TEST(RangeImage, ClampedTheSeamBelongsToTheLastColumn) {
   PointList points;
   points.add(-10, -0.f, 1);  // azimuth -180°: u = columns
-  ProjectionOptions options = smallImage();
+  View options = smallImage();
   RangeImage image(4, 16);
   projectInto(image, points, options);
   EXPECT_TRUE(image.valid(1, 0));
@@ -288,7 +303,7 @@ TEST(RangeImage, ClampedTheSeamBelongsToTheLastColumn) {
 }
 
 TEST(RangeImage, MirroredColumnsCountTheOtherWay) {
-  ProjectionOptions options = smallImage();
+  View options = smallImage();
   options.mirrored = true;
   PointList points;
   points.addPolar(30 * kDegree, 0.01, 10);
@@ -304,7 +319,7 @@ TEST(RangeImage, InSinglePrecisionRangesAreFloats) {
   PointList points;
   points.add(10, -0.002, 0);
   points.add(10, 0, 0);
-  ProjectionOptions options = exactBorders();
+  View options = exactBorders();
   RangeImage image(2, 16);
   projectInto(image, points, options);
   EXPECT_EQ(image.point(1, 8), 1);
@@ -315,10 +330,10 @@ TEST(RangeImage, InSinglePrecisionRangesAreFloats) {
 
 // Points on the borders of columns: u of a float is off by up to 3e-5 px.
 TEST(RangeImage, SinglePrecisionMovesPointsOnBordersByOneColumn) {
-  ProjectionOptions options = smallImage();
+  View options = smallImage();
   options.rows = 2;
   options.columns = 500;
-  ProjectionOptions single = options;
+  View single = options;
   single.singlePrecision = true;
   RangeImage image(2, 500), singleImage(2, 500);
   int moved = 0;
@@ -345,11 +360,13 @@ TEST(RangeImage, CoordinatesOfAGridAreTakenExactly) {
   }
   PointList points;
   points.add(10, 0, 0.1);  // the float is more than 0.1
-  ProjectionOptions options = smallImage();
+  View options = smallImage();
   RangeImage image(4, 16);
-  EXPECT_EQ(project(points.view(), options, 0.1, 1, image).used, 1u);
+  options.minZ = 0.1;
+  options.maxZ = 1;
+  EXPECT_EQ(projectInto(image, points, options).used, 1u);
   options.coordinateStep = 0.005;
-  EXPECT_EQ(project(points.view(), options, 0.1, 1, image).outOfRange, 1u);
+  EXPECT_EQ(projectInto(image, points, options).outOfRange, 1u);
 }
 
 TEST(RangeImage, IsEmptiedBeforeEachProjection) {
@@ -366,28 +383,28 @@ TEST(RangeImage, IsEmptiedBeforeEachProjection) {
   EXPECT_EQ(image.range(2, 8), 0);
 }
 
-TEST(ProjectionOptions, RefusesSizesOutOfBounds) {
-  EXPECT_NE(refusal([](auto& o) { o.rows = 1; }).find("2 to 1024 rows"), std::string::npos);
+TEST(RangeImageView, RefusesSizesOutOfBounds) {
+  EXPECT_NE(refusal([](auto& o) { o.rows = 1; }).find("2 to 1024"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.rows = 1025; }).find("1025"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.columns = 15; }).find("16 to 65536"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.columns = 65537; }).find("65537"), std::string::npos);
 }
-TEST(ProjectionOptions, RefusesAViewTheWrongWayRound) {
+TEST(RangeImageView, RefusesAViewTheWrongWayRound) {
   EXPECT_NE(refusal([](auto& o) { o.fovUp = o.fovDown; }).find("fov_up_deg"), std::string::npos);
-  EXPECT_NE(refusal([](auto& o) { o.fovDown = std::nan(""); }).find("fov_up_deg"),
+  EXPECT_NE(refusal([](auto& o) { o.fovDown = std::nan(""); }).find("fov_down_deg"),
             std::string::npos);
 }
-TEST(ProjectionOptions, RefusesRangesTheWrongWayRound) {
+TEST(RangeImageView, RefusesRangesTheWrongWayRound) {
   EXPECT_NE(refusal([](auto& o) { o.minRange = -1; }).find("min_range_m"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.maxRange = 0.5; }).find("max_range_m"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.maxRange = std::nan(""); }).find("max_range_m"),
             std::string::npos);
 }
-TEST(ProjectionOptions, DefaultsAreAccepted) {
+TEST(RangeImageView, DefaultsAreAccepted) {
   EXPECT_EQ(refusal([](auto&) {}), "accepted");
 }
 TEST(RangeImage, ProjectRefusesBadOptions) {
-  ProjectionOptions options = smallImage();
+  View options = smallImage();
   options.maxRange = 0;
   RangeImage image(4, 16);
   EXPECT_THROW(projectInto(image, PointList(), options), Error);

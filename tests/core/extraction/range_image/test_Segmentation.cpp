@@ -26,8 +26,8 @@ RangeImage draw(const std::vector<std::string>& rows) {
   return image;
 }
 
-SegmentationOptions growing(double epsilon, bool wrap, bool upwards) {
-  SegmentationOptions options;
+RangeImageOptions growing(double epsilon, bool wrap, bool upwards) {
+  RangeImageOptions options;
   options.epsilon = epsilon;
   options.wrapAround = wrap;
   options.growUpwards = upwards;

@@ -85,7 +85,7 @@ struct GlobalResult {
   std::size_t candidates = 0;                ///< places tried
 };
 
-class PreparedMap;
+struct PreparedMap;
 
 /// \brief The map, prepared once. Const calls may run in parallel; the answer depends on nothing
 /// but map, options and submap.

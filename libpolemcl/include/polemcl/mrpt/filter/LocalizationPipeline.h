@@ -121,7 +121,6 @@ class POLEMCL_EXPORT LocalizationPipeline {
   /// @}
 
  private:
-  void checkFrame(const PoleFrame& frame) const;
   PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
   std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,
                                             const std::vector<PoleDetection>& poles_robot);

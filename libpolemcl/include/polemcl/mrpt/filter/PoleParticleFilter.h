@@ -137,8 +137,8 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   FilterOptions m_options;
   mrpt::bayes::CParticleFilter m_filter;
   mrpt::random::CRandomGenerator m_generator;
-  bool m_started = false, m_stepped = false;
-  double m_time = 0;  ///< time of the last frame, s
+  bool m_started = false;
+  std::optional<double> m_time;  ///< time of the last frame since the start, s
   PoseWithCovariance m_estimate;
   StepReport m_report;
   std::exception_ptr m_failure;

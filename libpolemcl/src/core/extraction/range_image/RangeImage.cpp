@@ -29,10 +29,11 @@ namespace {
 template <class Real>
 class Projection {
  public:
-  Projection(const ProjectionOptions& options, double minZ, double maxZ)
+  Projection(const RangeImageOptions& options, double minRange, double heightOffset)
       : m_options(options),
-        m_minZ(static_cast<Real>(minZ)),
-        m_maxZ(static_cast<Real>(maxZ)),
+        m_minRange(static_cast<Real>(minRange)),
+        m_minZ(static_cast<Real>(options.minZ - heightOffset)),
+        m_maxZ(static_cast<Real>(options.maxZ - heightOffset)),
         m_fovDown(static_cast<Real>(-options.fovDown)),
         m_fov(static_cast<Real>(options.fovUp - options.fovDown)) {}
 
@@ -49,8 +50,8 @@ class Projection {
     return p;
   }
   bool inRange(const Point& p) const {
-    return p.range >= static_cast<Real>(m_options.minRange) &&
-           p.range < static_cast<Real>(m_options.maxRange) && p.z > m_minZ && p.z < m_maxZ;
+    return p.range >= m_minRange && p.range < static_cast<Real>(m_options.maxRange) &&
+           p.z > m_minZ && p.z < m_maxZ;
   }
   /// Row and column; may lie outside the image.
   std::pair<double, double> pixel(const Point& p) const {
@@ -63,14 +64,14 @@ class Projection {
   }
 
  private:
-  const ProjectionOptions& m_options;
-  Real m_minZ, m_maxZ, m_fovDown, m_fov;
+  const RangeImageOptions& m_options;
+  Real m_minRange, m_minZ, m_maxZ, m_fovDown, m_fov;
 };
 
 template <class Real>
-PointCounts projectIn(const PointsView& points, const ProjectionOptions& options, double minZ,
-                      double maxZ, RangeImage& image) {
-  const Projection<Real> projection(options, minZ, maxZ);
+PointCounts projectIn(const PointsView& points, const RangeImageOptions& options, double minRange,
+                      double heightOffset, RangeImage& image) {
+  const Projection<Real> projection(options, minRange, heightOffset);
   PointCounts counts;
   for (std::size_t i = 0; i < points.size; ++i) {
     const auto p = projection.point(points, i);
@@ -105,23 +106,13 @@ PointCounts projectIn(const PointsView& points, const ProjectionOptions& options
 
 }  // namespace
 
-PointCounts project(const PointsView& points, const ProjectionOptions& options, double minZ,
-                    double maxZ, RangeImage& image) {
-  options.validate();
-  image.clear();
-  return options.singlePrecision ? projectIn<float>(points, options, minZ, maxZ, image)
-                                 : projectIn<double>(points, options, minZ, maxZ, image);
-}
-
-void ProjectionOptions::validate() const {
-  if (rows < 2 || rows > 1024 || columns < 16 || columns > 65536)
-    throw Error("range image of " + std::to_string(rows) + " x " + std::to_string(columns) +
-                ": allowed are 2 to 1024 rows and 16 to 65536 columns");
-  if (!(fovUp > fovDown))
-    throw Error(
-        "range image: fov_up_deg must be more than fov_down_deg (negative below the horizon)");
-  if (!(minRange >= 0 && maxRange > minRange))
+PointCounts project(const PointsView& points, const RangeImageOptions& options, double minRange,
+                    double heightOffset, RangeImage& image) {
+  if (!(minRange >= 0 && options.maxRange > minRange))
     throw Error("range image: max_range_m must be more than min_range_m, and that not negative");
+  image.clear();
+  const auto run = options.singlePrecision ? projectIn<float> : projectIn<double>;
+  return run(points, options, minRange, heightOffset, image);
 }
 
 }  // namespace polemcl

@@ -7,23 +7,9 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
+#include <polemcl/core/extraction/ExtractionOptions.h>
 
 namespace polemcl {
-
-/// \brief Geometry of the paper's spherical image. `[range_image]` in INI files.
-struct ProjectionOptions {
-  int rows = 64;             ///< px
-  int columns = 500;         ///< px over the full turn
-  double fovUp = 0.0524;     ///< elevation of the upper border, rad (`fov_up_deg`)
-  double fovDown = -0.436;   ///< elevation of the lower border, rad, negative below the horizon
-  double minRange = 0.5;     ///< m; nearer points are the vehicle itself
-  double maxRange = 50;      ///< m; points must be nearer
-  bool clampToView = false;  ///< points outside the image go to its border pixels; false: dropped
-  bool mirrored = false;     ///< y counts to the right in the image, as in the authors' NCLT frame
-  bool singlePrecision = false;  ///< Eq. 1 is computed in float
-  double coordinateStep = 0;     ///< m; see exactCoordinate()
-  void validate() const;         ///< \throws Error naming the field
-};
 
 /// \brief What happened to the points of one cloud. They add up to the size of the cloud.
 struct PointCounts {
@@ -71,8 +57,11 @@ inline double exactCoordinate(float value, double step) {
 /// \brief Projects the points (Eq. 1 with f_up + f_down = fovUp - fovDown); the nearest point wins,
 /// of equally near ones the first.
 /// \param points In the frame of the projection, z up.
-/// \param minZ,maxZ Points must lie strictly between (same frame); pass ∓infinity for no cut.
-PointCounts project(const PointsView& points, const ProjectionOptions& options, double minZ,
-                    double maxZ, RangeImage& image);
+/// \param options In range; of these, those of the image, the cuts and the coordinates are used.
+/// \param minRange Nearer points are the vehicle itself, m.
+/// \throws Error unless minRange is below the greatest range, and not negative.
+/// \param heightOffset From z of the points to the heights that the options are meant in, m.
+PointCounts project(const PointsView& points, const RangeImageOptions& options, double minRange,
+                    double heightOffset, RangeImage& image);
 
 }  // namespace polemcl

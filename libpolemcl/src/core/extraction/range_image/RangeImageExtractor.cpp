@@ -16,36 +16,16 @@ RangeImageExtractor::RangeImageExtractor(const SensorOptions& sensor,
       m_image(options.rows, options.columns),
       m_cells(2 * (static_cast<int>(std::ceil(options.maxRange)) + 1)) {}
 
-ProjectionOptions RangeImageExtractor::projection() const {
-  ProjectionOptions projection;
-  projection.rows = m_options.rows;
-  projection.columns = m_options.columns;
-  projection.fovUp = m_options.fovUp;
-  projection.fovDown = m_options.fovDown;
-  projection.minRange = m_minRange;
-  projection.maxRange = m_options.maxRange;
-  projection.clampToView = m_options.clampToView;
-  projection.mirrored = m_options.mirrored;
-  projection.singlePrecision = m_options.singlePrecision;
-  projection.coordinateStep = m_options.coordinateStep;
-  return projection;
-}
-
 void RangeImageExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
                                   ExtractionReport& report) {
-  const PointCounts counts = project(points, projection(), m_options.minZ - m_heightOffset,
-                                     m_options.maxZ - m_heightOffset, m_image);
+  const PointCounts counts = project(points, m_options, m_minRange, m_heightOffset, m_image);
   report.points = points.size;
   report.invalid = counts.invalid;
   report.outOfView = counts.outOfView;
   report.outOfRange = counts.outOfRange;
   report.ground = -m_height;
 
-  SegmentationOptions growing;
-  growing.epsilon = m_options.epsilon;
-  growing.wrapAround = m_options.wrapAround;
-  growing.growUpwards = m_options.growUpwards;
-  const Segmentation segmentation(m_image, growing);
+  const Segmentation segmentation(m_image, m_options);
   report.candidates = segmentation.segments().size();
   sortIntoCells(points);
   for (std::size_t i = 0; i < segmentation.segments().size(); ++i) {

@@ -27,7 +27,6 @@ class RangeImageExtractor {
     double x, y, z;
   };
 
-  ProjectionOptions projection() const;
   /// Points in columns of 1 m x 1 m, so that a box is searched without reading the whole cloud.
   /// Those beyond the outermost columns are in them.
   void sortIntoCells(const PointsView& points);

@@ -5,7 +5,7 @@
 
 namespace polemcl {
 
-Segmentation::Segmentation(const RangeImage& image, const SegmentationOptions& options)
+Segmentation::Segmentation(const RangeImage& image, const RangeImageOptions& options)
     : m_image(image),
       m_options(options),
       m_label(static_cast<std::size_t>(image.rows()) * image.columns(), -1) {

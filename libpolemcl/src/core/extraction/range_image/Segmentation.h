@@ -10,13 +10,6 @@
 
 namespace polemcl {
 
-struct SegmentationOptions {
-  double epsilon = 0.2;  ///< ε: greatest difference in range between neighbours, m
-  bool wrapAround =
-      true;  ///< column 0 neighbours the last; false: the image ends there, borders left out
-  bool growUpwards = false;  ///< false: left, right and below (the paper); true: above too
-};
-
 struct Pixel {
   std::int16_t row;
   std::int32_t column;  ///< in [0, columns)
@@ -34,7 +27,8 @@ struct Segment {
 class Segmentation {
  public:
   /// \brief Seeds are taken row by row from the top, in a row by column, as the open set is read.
-  Segmentation(const RangeImage& image, const SegmentationOptions& options);
+  /// \param options epsilon, wrapAround and growUpwards are used.
+  Segmentation(const RangeImage& image, const RangeImageOptions& options);
   const std::vector<Segment>& segments() const { return m_segments; }
   /// \brief Index of the segment a pixel belongs to, -1 for none.
   std::int32_t label(int row, int column) const { return m_label[m_image.index(row, column)]; }
@@ -43,7 +37,7 @@ class Segmentation {
   void grow(int row, int column, std::int32_t label);
 
   const RangeImage& m_image;
-  SegmentationOptions m_options;
+  const RangeImageOptions& m_options;
   std::vector<std::int32_t> m_label;
   std::vector<Segment> m_segments;
   std::vector<std::int32_t>

@@ -10,18 +10,10 @@ namespace {
 
 constexpr float kTurn = static_cast<float>(2 * M_PI);
 
-struct Limits {
-  float gap;       ///< rad: neighbours farther apart have missing returns between them
-  float step;      ///< m: greatest step in range inside a run
-  float edge;      ///< m: least step to what lies behind
-  float maxWidth;  ///< m
-  float maxRange;  ///< m
-};
-
 /// One row, its indices wrapped where a run or a neighbour crosses the seam.
 class Row {
  public:
-  Row(const ScanLines& lines, int row, const Limits& limits)
+  Row(const ScanLines& lines, int row, const SegmentLimits& limits)
       : m_lines(lines),
         m_returns(lines.begin(row)),
         m_size(lines.size(row)),
@@ -110,28 +102,25 @@ class Row {
   const Return* m_returns;
   std::size_t m_size;
   int m_row;
-  const Limits& m_limits;
+  const SegmentLimits& m_limits;
 };
 
 }  // namespace
 
 ScanLineSegmenter::ScanLineSegmenter(const SensorModel& sensor, const ScanLineOptions& options)
-    : m_gap(2.6f * static_cast<float>(sensor.columnAngle())),
-      m_step(static_cast<float>(options.connectStep)),
-      m_edge(static_cast<float>(options.edgeStep)),
-      m_maxWidth(static_cast<float>(options.maxWidth)),
-      m_maxRange(static_cast<float>(options.maxRange)) {}
+    : m_limits{2.6f * static_cast<float>(sensor.columnAngle()),
+               static_cast<float>(options.connectStep), static_cast<float>(options.edgeStep),
+               static_cast<float>(options.maxWidth), static_cast<float>(options.maxRange)} {}
 
 void ScanLineSegmenter::find(const ScanLines& lines, std::vector<ScanLineSegment>& segments) {
   segments.clear();
-  const Limits limits{m_gap, m_step, m_edge, m_maxWidth, m_maxRange};
   for (int r = 0; r < lines.rows(); ++r) {
-    const Row row(lines, r, limits);
+    const Row row(lines, r, m_limits);
     if (row.size() == 0) continue;
     if (m_breaks.size() < row.size() + kKernelPadding)
       m_breaks.resize(2 * row.size() + kKernelPadding);
     const std::size_t breaks =
-        findBreaks(row.returns(), row.size(), m_step, m_gap, m_breaks.data());
+        findBreaks(row.returns(), row.size(), m_limits.step, m_limits.gap, m_breaks.data());
     const bool closed = row.closed();
     if (closed && breaks == 0) continue;  // one closed ring: no ends, no pole
     std::size_t first = closed ? m_breaks[0] + 1 : 0;

@@ -34,6 +34,15 @@ struct ScanLineSegment {
   bool whole() const { return left == Side::free && right == Side::free; }
 };
 
+/// \brief What bounds a segment.
+struct SegmentLimits {
+  float gap;       ///< rad: neighbours farther apart have missing returns between them
+  float step;      ///< m: greatest step in range inside a run
+  float edge;      ///< m: least step to what lies behind
+  float maxWidth;  ///< m
+  float maxRange;  ///< m
+};
+
 /// \brief Finds segments; keeps its buffer between scans.
 class ScanLineSegmenter {
  public:
@@ -43,7 +52,7 @@ class ScanLineSegmenter {
   void find(const ScanLines& lines, std::vector<ScanLineSegment>& segments);
 
  private:
-  float m_gap, m_step, m_edge, m_maxWidth, m_maxRange;
+  SegmentLimits m_limits;
   std::vector<std::uint32_t> m_breaks;
 };
 
