@@ -20,7 +20,6 @@
 #include "io/file/TextFile.h"
 #include "report/batch/BatchFiles.h"
 #include "report/batch/BatchMeasures.h"
-#include "report/batch/BatchReport.h"
 #include "report/batch/PublishedResults.h"
 
 namespace polemcl::apps {

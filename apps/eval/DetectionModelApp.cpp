@@ -5,7 +5,6 @@
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/JsonFile.h"
-#include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionModelFit.h"
 #include "simulate/SimulatedPoles.h"
 

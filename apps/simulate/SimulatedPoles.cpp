@@ -14,7 +14,6 @@
 #include "io/data/Trajectory.h"
 #include "io/file/AtomicFile.h"
 #include "mrpt/rawlog/RawlogWriter.h"
-#include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionSampler.h"
 
 namespace polemcl::apps {

@@ -4,6 +4,8 @@
 #   polemcl_room(NAME [sources...])
 function(polemcl_room name)
   add_library(${name} STATIC ${ARGN})
+  # Larger unity files read the headers less often.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 24)
   polemcl_public_headers(${name})
   polemcl_private_headers(${name} PUBLIC)
 endfunction()

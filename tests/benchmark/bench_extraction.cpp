@@ -33,7 +33,7 @@ Scan simulated(const std::string& sensor, double height, int columns = 0) {
   const sim::Drive drive = sim::makeDrive(world, options);
   sim::LidarModel lidar = sim::makeLidar(sensor);
   if (columns > 0) lidar.columns = columns;
-  const auto scan = sim::scan(world, drive.T_map_sensor[100], lidar, 1);
+  const auto scan = sim::Scanner(world, lidar).scan(drive.T_map_sensor[100], 1);
   return {scan.x, scan.y, scan.z};
 }
 

@@ -9,7 +9,6 @@
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include <polemcl/core/mapping/MapUpdater.h>
 #include "sim/common/Random.h"
-#include "sim/detections/DetectionModelFile.h"
 #include "sim/detections/DetectionSampler.h"
 
 namespace polemcl::test_map_updater_on_streets {

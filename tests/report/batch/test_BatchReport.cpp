@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include <polemcl/core/common/Types.h>
-#include "report/batch/BatchReport.h"
+#include "report/batch/BatchFiles.h"
 #include "support/SampleBatches.h"
 #include "support/TempFolder.h"
 #include "support/Xml.h"

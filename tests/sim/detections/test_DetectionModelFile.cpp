@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include <polemcl/core/common/Types.h>
-#include "sim/detections/DetectionModelFile.h"
+#include "sim/detections/DetectionModel.h"
 #include "support/DetectionModels.h"
 
 namespace polemcl::test_detection_model_file {

@@ -67,7 +67,7 @@ TEST(Scanner, PointsLieOnThePostWithinTheNoiseFromEveryHeading) {
     for (const double yaw : {0.0, 2.0, 3.1}) {
       const LidarModel lidar = makeLidar(name);
       const Eigen::Isometry3d pose = at(0, 0, 1.5, yaw);
-      const auto points = pointsOf(scan(world, pose, lidar, 1), 3, pose);
+      const auto points = pointsOf(Scanner(world, lidar).scan(pose, 1), 3, pose);
       ASSERT_GT(points.size(), 25u) << name;
       double error = 0;
       std::size_t far = 0;  // merged with the ground behind the foot
@@ -87,7 +87,7 @@ TEST(Scanner, PointsLieOnThePostWithinTheNoiseFromEveryHeading) {
 TEST(Scanner, GroundLiesWhereItIs) {
   const World world = emptyPlace({});
   const LidarModel lidar = makeLidar("hdl32e");
-  const SimulatedScan result = scan(world, at(0, 0, 2), lidar, 1);
+  const SimulatedScan result = Scanner(world, lidar).scan(at(0, 0, 2), 1);
   double sum = 0, square = 0;
   std::size_t onRoad = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(Scanner, RangeNoiseIsThatOfTheLidar) {
   const World world = emptyPlace({builder.build(1)});
   LidarModel lidar = makeLidar("hdl32e");
   for (Beam& beam : lidar.beams) beam.rangeBias = beam.elevationError = 0;
-  const SimulatedScan result = scan(world, at(0, 0, 3), lidar, 1);
+  const SimulatedScan result = Scanner(world, lidar).scan(at(0, 0, 3), 1);
   double sum = 0, square = 0;
   int count = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -133,7 +133,7 @@ TEST(Scanner, WhatStandsInFrontHidesWhatIsBehind) {
   const World world =
       emptyPlace({builder.build(1), post(10, 0, 0.2, 4, 2), post(0, 10, 0.2, 4, 3)});
   const Eigen::Isometry3d pose = at(0, 0, 1.5);
-  const SimulatedScan result = scan(world, pose, makeLidar("hdl32e"), 1);
+  const SimulatedScan result = Scanner(world, makeLidar("hdl32e")).scan(pose, 1);
   EXPECT_GT(pointsOf(result, 1, pose).size(), 1000u);
   EXPECT_TRUE(pointsOf(result, 2, pose).empty());
   EXPECT_GT(pointsOf(result, 3, pose).size(), 30u);
@@ -148,7 +148,7 @@ TEST(Scanner, PartsOfAPulseMeltAtNearStepsOnly) {
     int between = 0;
     for (int turn = 0; turn < 8; ++turn) {  // so that rays hit the post at many places
       const Eigen::Isometry3d pose = at(0, 0, 2, 0.0101 * turn);
-      const SimulatedScan result = scan(world, pose, makeLidar("os1_64"), 1);
+      const SimulatedScan result = Scanner(world, makeLidar("os1_64")).scan(pose, 1);
       for (const std::uint32_t id : {1u, 2u})
         for (const V& point : pointsOf(result, id, pose))
           between += point.z() > 0.5 && std::abs(point.y()) < 0.3 && point.x() > 11.94 &&
@@ -167,7 +167,7 @@ TEST(Scanner, PointsComeInFiringOrderWithinTheRangeOfTheLidar) {
   const World world = makeWorld(options.world);
   const Drive drive = makeDrive(world, options);
   const LidarModel lidar = makeLidar("hdl32e");
-  const SimulatedScan result = scan(world, drive.T_map_sensor[60], lidar, 2);
+  const SimulatedScan result = Scanner(world, lidar).scan(drive.T_map_sensor[60], 2);
   std::set<std::uint32_t> ids{0};
   for (const WorldObject& object : world.objects()) ids.insert(object.id);
   double turned = 0;  // clockwise from the back, one turn
@@ -191,9 +191,9 @@ TEST(Scanner, AHangingSensorSeesTheOtherElevations) {
   const World world = emptyPlace({post(5, 0, 0.2, 6, 1)});
   const Eigen::Isometry3d pose = at(0, 0, 1.5);
   double upright = 0, hanging = 0;
-  for (const V& point : pointsOf(scan(world, pose, makeLidar("hdl32e"), 1), 1, pose))
+  for (const V& point : pointsOf(Scanner(world, makeLidar("hdl32e")).scan(pose, 1), 1, pose))
     upright = std::max(upright, point.z());
-  for (const V& point : pointsOf(scan(world, pose, makeLidar("hdl32e", true), 1), 1, pose))
+  for (const V& point : pointsOf(Scanner(world, makeLidar("hdl32e", true)).scan(pose, 1), 1, pose))
     hanging = std::max(hanging, point.z());
   EXPECT_NEAR(upright, 1.5 + 4.8 * std::tan(10.67 * M_PI / 180), 0.1);
   EXPECT_NEAR(hanging, 1.5 + 4.8 * std::tan(30.67 * M_PI / 180), 0.15);

@@ -10,7 +10,7 @@
 namespace polemcl::report {
 namespace {
 
-constexpr int digits = 9;
+constexpr int significantDigits = 9;
 
 /// A field, in quotes where it needs them; one line, for readers that go line by line.
 std::string field(std::string text) {
@@ -25,7 +25,7 @@ std::string field(std::string text) {
 
 /// A number as text; empty when the value is not finite.
 std::string field(double value) {
-  return std::isfinite(value) ? io::significant(value, digits) : "";
+  return std::isfinite(value) ? io::significant(value, significantDigits) : "";
 }
 
 std::string place(const BatchResults& results, const SessionResult& result) {
@@ -108,7 +108,7 @@ void writeSessionsCsv(const std::filesystem::path& file, const BatchResults& res
   for (const MetricName& name : metricNames)
     out.stream() << ',' << name.key << ',' << name.key << "_sd";
   out.stream() << ",axis_rmse,axis_rmse_sd,ok_share,degraded_share,lost_share,relocalizations\n";
-  const std::vector<ConfigurationSummary> summaries = summarize(results);
+  const Summaries summaries = summarize(results);
   for (std::size_t i = 0; i < summaries.size(); ++i)
     for (const SessionSummary& summary : summaries[i].sessions) {
       const BatchSession& session = results.sessions[summary.session];

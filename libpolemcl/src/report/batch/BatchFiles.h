@@ -1,6 +1,7 @@
 #pragma once
 /// \file BatchFiles.h
-/// \brief Results of a batch for other programs: JSON, CSV, LaTeX.
+/// \brief Results of a batch as files: JSON, CSV and LaTeX for other programs, an HTML page to
+/// read.
 ///
 /// All are written atomically and hold no timing: the same results give the same bytes.
 
@@ -31,5 +32,15 @@ void writeMapsCsv(const std::filesystem::path& file, const BatchResults& results
 void writeLatexTable(const std::filesystem::path& file, const BatchResults& results);
 /// \brief Text as LaTeX shows it letter by letter.
 std::string latexText(const std::string& text);
+
+/// \brief The page: no scripts, nothing from the network, light and dark.
+/// \param timings May be null: the page has no section for them then, and the same results give the
+///        same bytes.
+/// \throws Error when the results are not valid.
+std::string batchReport(const BatchResults& results, const BatchTimings* timings = nullptr);
+
+/// \brief Writes the page atomically. \throws Error as above, or when it cannot be written.
+void writeBatchReport(const BatchResults& results, const BatchTimings* timings,
+                      const std::filesystem::path& file);
 
 }  // namespace polemcl::report

@@ -31,14 +31,12 @@ Json jsonOf(const HealthShares& health) {
 }
 
 Json jsonOf(const BatchRun& run, double lostBound) {
-  Json json;
-  json["run"] = run.run;
-  json["seed"] = run.seed;
-  json["state"] = name(stateOf(run, lostBound));
-  json["failure"] = run.failure;
-  json["errors"] = jsonOf(run.errors);
-  json["health"] = jsonOf(run.health);
-  return json;
+  return {{"run", run.run},
+          {"seed", run.seed},
+          {"state", name(stateOf(run, lostBound))},
+          {"failure", run.failure},
+          {"errors", jsonOf(run.errors)},
+          {"health", jsonOf(run.health)}};
 }
 
 /// x0, y0, x1, y1, ...
@@ -52,15 +50,13 @@ Json jsonOf(const std::vector<Eigen::Vector2d>& points) {
 }
 
 Json jsonOf(const SessionPlots& plots) {
-  Json json;
-  json["map_poles_xy"] = jsonOf(plots.mapPoles);
-  json["truth_xy"] = jsonOf(plots.truth);
-  json["estimate_xy"] = jsonOf(plots.estimate);
-  json["position_bin_m"] = plots.position.binWidth;
-  json["position_largest_m"] = plots.position.largest;
-  json["position_histogram"] = plots.positionErrors.counts;
-  json["heading_histogram"] = plots.headingErrors.counts;
-  return json;
+  return {{"map_poles_xy", jsonOf(plots.mapPoles)},
+          {"truth_xy", jsonOf(plots.truth)},
+          {"estimate_xy", jsonOf(plots.estimate)},
+          {"position_bin_m", plots.position.binWidth},
+          {"position_largest_m", plots.position.largest},
+          {"position_histogram", plots.positionErrors.counts},
+          {"heading_histogram", plots.headingErrors.counts}};
 }
 
 Json jsonOf(const MapScore& score) {
@@ -183,7 +179,7 @@ Json jsonOf(const BatchResults& batch) {
   for (const FailedTask& task : batch.failures)
     json["failures"].push_back({{"task", task.task}, {"reason", task.reason}, {"log", task.log}});
   json["summary"] = Json::array();
-  const std::vector<ConfigurationSummary> summaries = summarize(batch);
+  const Summaries summaries = summarize(batch);
   for (std::size_t i = 0; i < summaries.size(); ++i)
     json["summary"].push_back(jsonOf(summaries[i], batch, i));
   json["results"] = Json::array();

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <ostream>
 
 #include "io/file/AtomicFile.h"
@@ -84,7 +85,7 @@ void writeShares(std::ostream& out, const PublishedMapScore& scores) {
 
 /// The paper's first table: scores of maps.
 void writeScores(std::ostream& out, const BatchResults& results, const PublishedDataset* dataset,
-                 const std::vector<ConfigurationSummary>& summaries) {
+                 const Summaries& summaries) {
   if (std::none_of(summaries.begin(), summaries.end(),
                    [](const ConfigurationSummary& summary) { return summary.scores.maps > 0; }))
     return;
@@ -114,8 +115,7 @@ void writeScores(std::ostream& out, const BatchResults& results, const Published
 }
 
 void writeComparison(std::ostream& out, const BatchResults& results,
-                     const PublishedDataset& dataset,
-                     const std::vector<ConfigurationSummary>& summaries) {
+                     const PublishedDataset& dataset, const Summaries& summaries) {
   const std::vector<ComparedColumn> columns = comparedColumns(dataset);
   beginTable(
       out,
@@ -144,37 +144,23 @@ void writeComparison(std::ostream& out, const BatchResults& results,
   endTable(out);
 }
 
-/// What LaTeX reads as something else, as the letter it is; empty for all others.
-std::string latexLetter(char c) {
-  switch (c) {
-    case '\\':
-      return "\\textbackslash{}";
-    case '~':
-      return "\\textasciitilde{}";
-    case '^':
-      return "\\textasciicircum{}";
-    case '<':
-      return "\\textless{}";
-    case '>':
-      return "\\textgreater{}";
-    case '|':
-      return "\\textbar{}";
-    case '\n':
-    case '\r':
-    case '\t':
-      return " ";
-    case '{':
-    case '}':
-    case '%':
-    case '$':
-    case '#':
-    case '&':
-    case '_':
-      return std::string("\\") + c;
-    default:
-      return "";
-  }
-}
+/// What LaTeX reads as something else, as the letter it is.
+const std::map<char, const char*> latexLetters{{'\\', "\\textbackslash{}"},
+                                               {'~', "\\textasciitilde{}"},
+                                               {'^', "\\textasciicircum{}"},
+                                               {'<', "\\textless{}"},
+                                               {'>', "\\textgreater{}"},
+                                               {'|', "\\textbar{}"},
+                                               {'\n', " "},
+                                               {'\r', " "},
+                                               {'\t', " "},
+                                               {'{', "\\{"},
+                                               {'}', "\\}"},
+                                               {'%', "\\%"},
+                                               {'$', "\\$"},
+                                               {'#', "\\#"},
+                                               {'&', "\\&"},
+                                               {'_', "\\_"}};
 
 }  // namespace
 
@@ -184,8 +170,8 @@ std::string latexText(const std::string& text) {
   for (char c : text) {
     // Two of these would join: -- to a dash, '' to a quotation mark.
     if (c == before && (c == '-' || c == '\'' || c == '`')) escaped += "{}";
-    const std::string letter = latexLetter(c);
-    escaped += letter.empty() ? std::string(1, c) : letter;
+    const auto letter = latexLetters.find(c);
+    escaped += letter == latexLetters.end() ? std::string(1, c) : letter->second;
     before = c;
   }
   return escaped;
@@ -193,7 +179,7 @@ std::string latexText(const std::string& text) {
 
 void writeLatexTable(const std::filesystem::path& file, const BatchResults& results) {
   results.validate();
-  const std::vector<ConfigurationSummary> summaries = summarize(results);
+  const Summaries summaries = summarize(results);
   io::AtomicFile out(file);
   out.stream() << "% Needs \\usepackage{booktabs}. A column of lengths is in centimetres\n"
                   "% if any of them is below 0.1 m; these have two significant digits.\n";

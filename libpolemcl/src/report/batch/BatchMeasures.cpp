@@ -6,6 +6,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include "core/common/PoseInterpolation.h"
+#include "core/common/Statistics.h"
 #include "report/picture/ErrorStrip.h"
 #include "report/picture/PlotAxes.h"
 
@@ -69,10 +70,8 @@ double usualSpacing(const std::vector<double>& distance) {
   for (std::size_t i = 1; i < distance.size(); ++i)
     spacing.push_back(distance[i] - distance[i - 1]);
   if (spacing.empty()) return 0;
-  const auto rank =
-      spacing.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(spacing.size() - 1));
-  std::nth_element(spacing.begin(), rank, spacing.end());
-  return *rank;
+  return elementOfRank(spacing,
+                       static_cast<std::size_t>(0.95 * static_cast<double>(spacing.size() - 1)));
 }
 
 }  // namespace

@@ -1,16 +1,12 @@
-#include "report/batch/BatchReport.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "io/file/AtomicFile.h"
+#include "report/batch/BatchFiles.h"
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
 #include "report/batch/PublishedResults.h"
-#include "report/batch/ReportPlots.h"
-#include "report/batch/ReportSentences.h"
-#include "report/batch/ReportStyle.h"
-#include "report/batch/ReportTables.h"
+#include "report/batch/ReportParts.h"
 
 namespace polemcl::report {
 namespace {
@@ -24,7 +20,7 @@ struct Section {
 struct Page {
   explicit Page(const BatchResults& batch) : results(batch), summaries(summarize(batch)) {}
   const BatchResults& results;
-  const std::vector<ConfigurationSummary> summaries;
+  const Summaries summaries;
   PlotIds ids;
   const BatchConfiguration& configuration(std::size_t i) const { return results.configurations[i]; }
   /// Whether any session was localized, or ought to have been.
@@ -35,9 +31,7 @@ struct Page {
 };
 
 std::string paragraph(const std::string& text, const std::string& className = "") {
-  return text.empty()
-             ? ""
-             : element("p", className.empty() ? "" : "class=\"" + className + '"', text) + '\n';
+  return text.empty() ? "" : element("p", classed(className), text) + '\n';
 }
 
 std::string sideBySide(const std::string& content) {

@@ -127,8 +127,8 @@ RunState stateOf(const BatchRun& run, double lostBound) {
                                                                            : RunState::ok;
 }
 
-std::vector<ConfigurationSummary> summarize(const BatchResults& results) {
-  std::vector<ConfigurationSummary> summaries(results.configurations.size());
+Summaries summarize(const BatchResults& results) {
+  Summaries summaries(results.configurations.size());
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     for (std::size_t k = 0; k < results.sessions.size(); ++k)
       if (const SessionResult* result = results.find(i, k))

@@ -72,7 +72,8 @@ struct ConfigurationSummary {
   double lastOverFirst = noFigure;
 };
 
-/// \brief One summary for each configuration, in the order of the batch.
-std::vector<ConfigurationSummary> summarize(const BatchResults& results);
+/// \brief One for each configuration, in the order of the batch.
+using Summaries = std::vector<ConfigurationSummary>;
+Summaries summarize(const BatchResults& results);
 
 }  // namespace polemcl::report

@@ -65,7 +65,7 @@ MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& con
 }
 
 MetricColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
-                    const std::vector<ConfigurationSummary>& summaries) {
+                    const Summaries& summaries) {
   std::vector<double> values;
   for (const PublishedResult& system : dataset.figures) values.push_back(system.*column.published);
   for (const ConfigurationSummary& summary : summaries)

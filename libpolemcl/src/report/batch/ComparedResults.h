@@ -60,6 +60,6 @@ PublishedRows publishedRows(const BatchResults& results);
 MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& configuration,
                     const PublishedRows& published);
 MetricColumn unitOf(const ComparedColumn& column, const PublishedDataset& dataset,
-                    const std::vector<ConfigurationSummary>& summaries);
+                    const Summaries& summaries);
 
 }  // namespace polemcl::report

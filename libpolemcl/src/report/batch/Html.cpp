@@ -1,5 +1,7 @@
 #include "report/batch/Html.h"
 
+#include <map>
+
 #include "io/file/TextFile.h"
 
 namespace polemcl::report {
@@ -8,21 +10,11 @@ namespace {
 constexpr const char* replacement = "\xEF\xBF\xBD";
 
 std::string escapedCharacter(char c) {
-  switch (c) {
-    case '&':
-      return "&amp;";
-    case '<':
-      return "&lt;";
-    case '>':
-      return "&gt;";
-    case '"':
-      return "&quot;";
-    case '\'':
-      return "&#39;";
-    default:
-      const bool control = (c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
-      return control ? replacement : std::string(1, c);
-  }
+  static const std::map<char, const char*> letters{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+  if (const auto letter = letters.find(c); letter != letters.end()) return letter->second;
+  const bool control = (c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
+  return control ? replacement : std::string(1, c);
 }
 
 std::string cells(const std::vector<std::string>& content) {
@@ -60,6 +52,10 @@ std::string element(const std::string& name, const std::string& content) {
   return element(name, "", content);
 }
 
+std::string classed(const std::string& name) {
+  return name.empty() ? "" : "class=\"" + name + '"';
+}
+
 std::string foldable(const std::string& summary, const std::string& content, bool open) {
   return element("details", open ? "open=\"\"" : "", element("summary", summary) + '\n' + content) +
          '\n';
@@ -81,8 +77,7 @@ void HtmlTable::head(const std::vector<HeadCell>& head) {
 }
 
 void HtmlTable::row(const std::vector<std::string>& content, const std::string& className) {
-  m_body +=
-      element("tr", className.empty() ? "" : "class=\"" + className + '"', cells(content)) + '\n';
+  m_body += element("tr", classed(className), cells(content)) + '\n';
 }
 
 void HtmlTable::foot(const std::vector<std::string>& content) {
@@ -98,8 +93,7 @@ std::string HtmlTable::str(const std::string& className) const {
   return element("div",
                  "class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" +
                      escaped(m_caption) + '"',
-                 element("table", className.empty() ? "" : "class=\"" + className + '"',
-                         '\n' + table)) +
+                 element("table", classed(className), '\n' + table)) +
          '\n';
 }
 

@@ -17,6 +17,9 @@ std::string element(const std::string& name, const std::string& attributes,
 /// \brief `<name>content</name>`.
 std::string element(const std::string& name, const std::string& content);
 
+/// \brief The attribute `class="name"`; empty for an empty name.
+std::string classed(const std::string& name);
+
 /// \brief A part that can be folded away. \param summary HTML.
 std::string foldable(const std::string& summary, const std::string& content, bool open);
 

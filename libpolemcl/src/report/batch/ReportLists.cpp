@@ -5,7 +5,7 @@
 #include "io/file/TextFile.h"
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
-#include "report/batch/ReportTables.h"
+#include "report/batch/ReportParts.h"
 
 namespace polemcl::report {
 namespace {

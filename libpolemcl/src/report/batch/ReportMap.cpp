@@ -3,7 +3,7 @@
 
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
-#include "report/batch/ReportPlots.h"
+#include "report/batch/ReportParts.h"
 #include "report/batch/SvgPlot.h"
 
 namespace polemcl::report {

@@ -1,10 +1,9 @@
-#include "report/batch/ReportPlots.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
+#include "report/batch/ReportParts.h"
 #include "report/batch/SvgPlot.h"
 #include "report/picture/ErrorStrip.h"
 
@@ -23,7 +22,7 @@ std::vector<std::string> configurationNames(const BatchResults& results) {
 
 std::string figure(const std::string& plot, const std::string& legend, const std::string& caption,
                    const std::string& className = "") {
-  return element("figure", className.empty() ? "" : "class=\"" + className + '"',
+  return element("figure", classed(className),
                  element("div", "class=\"scroll\" tabindex=\"0\"", '\n' + plot) + '\n' + legend +
                      element("figcaption", caption)) +
          '\n';
@@ -70,7 +69,7 @@ ErrorTicks errorTicks(const PlotAxes& axes, const std::string& unit) {
 /// The sessions x configurations plot, drawn part by part.
 class SessionsPlot {
  public:
-  SessionsPlot(const BatchResults& results, const std::vector<ConfigurationSummary>& summaries,
+  SessionsPlot(const BatchResults& results, const Summaries& summaries,
                const SessionQuantity& quantity, const std::string& id)
       : m_results(results),
         m_summaries(summaries),
@@ -168,7 +167,7 @@ class SessionsPlot {
   }
 
   const BatchResults& m_results;
-  const std::vector<ConfigurationSummary>& m_summaries;
+  const Summaries& m_summaries;
   const SessionQuantity& m_quantity;
   SvgPlot m_plot;
   PlotAxes m_axes;
@@ -222,8 +221,7 @@ std::vector<Eigen::Vector2d> steps(const PlotAxes& axes, const BinnedMaxima& bin
 
 }  // namespace
 
-std::string sessionsFigure(const BatchResults& results,
-                           const std::vector<ConfigurationSummary>& summaries,
+std::string sessionsFigure(const BatchResults& results, const Summaries& summaries,
                            const SessionQuantity& quantity, PlotIds& ids) {
   SessionsPlot plot(results, summaries, quantity, ids.next());
   const std::string svg = plot.draw();

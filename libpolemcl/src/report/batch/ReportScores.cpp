@@ -3,7 +3,7 @@
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
 #include "report/batch/PublishedResults.h"
-#include "report/batch/ReportTables.h"
+#include "report/batch/ReportParts.h"
 
 namespace polemcl::report {
 namespace {
@@ -37,8 +37,7 @@ void addHead(HtmlTable& table, const std::vector<HeadCell>& first,
 
 }  // namespace
 
-std::string mapScoresTable(const BatchResults& results,
-                           const std::vector<ConfigurationSummary>& summaries) {
+std::string mapScoresTable(const BatchResults& results, const Summaries& summaries) {
   const PublishedDataset* dataset = publishedResults(results.dataset);
   HtmlTable table("Precision, recall and F1 of the maps, mean over the maps of a setting.");
   addHead(table, {{"System"}}, {{"Maps"}});

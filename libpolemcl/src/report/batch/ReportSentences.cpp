@@ -1,11 +1,9 @@
-#include "report/batch/ReportSentences.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
-#include "report/batch/ReportTables.h"
+#include "report/batch/ReportParts.h"
 #include "report/batch/SvgPlot.h"
 
 namespace polemcl::report {
@@ -15,7 +13,7 @@ std::string emphasized(const BatchConfiguration& configuration) {
   return element("em", escaped(configuration.name));
 }
 
-std::string degrees(double value) {
+std::string headingText(double value) {
   return metricText(value, 3) + "°";
 }
 
@@ -31,7 +29,7 @@ constexpr std::size_t mostNamed =
     3;  // of more configurations, sentences name the best and the worst
 
 /// The configuration with the smallest mean error first.
-std::vector<std::size_t> byError(const std::vector<ConfigurationSummary>& summaries) {
+std::vector<std::size_t> byError(const Summaries& summaries) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     if (summaries[i].localized > 0) order.push_back(i);
@@ -46,8 +44,7 @@ bool isNamed(const std::vector<std::size_t>& order, std::size_t configuration) {
          configuration == order.back();
 }
 
-std::string errorSentence(const BatchResults& results,
-                          const std::vector<ConfigurationSummary>& summaries,
+std::string errorSentence(const BatchResults& results, const Summaries& summaries,
                           const std::vector<std::size_t>& order) {
   std::vector<std::string> parts;
   for (std::size_t i : order) {
@@ -57,7 +54,7 @@ std::string errorSentence(const BatchResults& results,
                                  : std::string();
     parts.push_back(element("strong", lengthText(figures.posMean.mean)) + with + " (RMSE " +
                     lengthText(figures.posRmse.mean) + ", heading " +
-                    degrees(figures.angMeanDeg.mean) + ", largest " +
+                    headingText(figures.angMeanDeg.mean) + ", largest " +
                     lengthText(figures.posMax.largest) + ")");
   }
   if (parts.size() > mostNamed) parts = {"from " + parts.front() + " to " + parts.back()};
@@ -67,8 +64,7 @@ std::string errorSentence(const BatchResults& results,
          plural(sessions, "session") + ".";
 }
 
-std::string changeSentence(const BatchResults& results,
-                           const std::vector<ConfigurationSummary>& summaries,
+std::string changeSentence(const BatchResults& results, const Summaries& summaries,
                            const std::vector<std::size_t>& order) {
   std::vector<std::string> parts;
   for (std::size_t i : order)
@@ -98,8 +94,7 @@ std::string shares(const ScoreMeans& means) {
 }
 
 /// The F1 of each configuration's maps; empty when none was scored.
-std::string scoreSentence(const BatchResults& results,
-                          const std::vector<ConfigurationSummary>& summaries) {
+std::string scoreSentence(const BatchResults& results, const Summaries& summaries) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     if (summaries[i].scores.maps > 0)
@@ -110,7 +105,7 @@ std::string scoreSentence(const BatchResults& results,
   return "The F1 of the maps is " + listed(parts) + ", by the authors' count within 1\xC2\xA0m.";
 }
 
-RunCounts countsOf(const std::vector<ConfigurationSummary>& summaries) {
+RunCounts countsOf(const Summaries& summaries) {
   RunCounts counts;
   for (const ConfigurationSummary& summary : summaries) {
     counts.runs += summary.counts.runs;
@@ -121,8 +116,7 @@ RunCounts countsOf(const std::vector<ConfigurationSummary>& summaries) {
 }
 
 /// Sessions that no run of a configuration could follow.
-std::string lostSessions(const BatchResults& results,
-                         const std::vector<ConfigurationSummary>& summaries) {
+std::string lostSessions(const BatchResults& results, const Summaries& summaries) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     for (const SessionSummary& session : summaries[i].sessions)
@@ -135,8 +129,7 @@ std::string lostSessions(const BatchResults& results,
          listed(names) + ".";
 }
 
-std::string troubleSentence(const BatchResults& results,
-                            const std::vector<ConfigurationSummary>& summaries) {
+std::string troubleSentence(const BatchResults& results, const Summaries& summaries) {
   const RunCounts counts = countsOf(summaries);
   if (counts.runs == 0 && results.failures.empty() && !scoreSentence(results, summaries).empty())
     return element("p", "Maps only: no session was to be localized.");
@@ -157,8 +150,7 @@ std::string troubleSentence(const BatchResults& results,
 
 }  // namespace
 
-std::string headlines(const BatchResults& results,
-                      const std::vector<ConfigurationSummary>& summaries) {
+std::string headlines(const BatchResults& results, const Summaries& summaries) {
   const std::vector<std::size_t> order = byError(summaries);
   std::string text;
   if (!order.empty()) text += element("p", errorSentence(results, summaries, order)) + '\n';
@@ -185,8 +177,8 @@ std::string errorFacts(const ConfigurationSummary& summary) {
   const MetricSpreads& figures = summary.figures;
   const bool bad = summary.counts.lost + summary.counts.failed > 0;
   return fact("RMSE", lengthText(figures.posRmse.mean)) +
-         fact("heading", degrees(figures.angMeanDeg.mean) + " mean, " +
-                             degrees(figures.angRmseDeg.mean) + " RMSE") +
+         fact("heading", headingText(figures.angMeanDeg.mean) + " mean, " +
+                             headingText(figures.angRmseDeg.mean) + " RMSE") +
          fact("largest", lengthText(figures.posMax.largest)) +
          (std::isfinite(summary.lastOverFirst)
               ? fact("last / first", changeText(summary.lastOverFirst))
@@ -209,8 +201,7 @@ std::string cardOf(const ConfigurationSummary& summary) {
 
 }  // namespace
 
-std::string configurationCards(const BatchResults& results,
-                               const std::vector<ConfigurationSummary>& summaries) {
+std::string configurationCards(const BatchResults& results, const Summaries& summaries) {
   std::string cards;
   for (std::size_t i = 0; i < summaries.size(); ++i)
     cards +=
@@ -220,8 +211,8 @@ std::string configurationCards(const BatchResults& results,
   return element("div", "class=\"cards\"", '\n' + cards) + '\n';
 }
 
-std::string sessionLine(const BatchResults& results,
-                        const std::vector<ConfigurationSummary>& summaries, std::size_t session) {
+std::string sessionLine(const BatchResults& results, const Summaries& summaries,
+                        std::size_t session) {
   std::string line = element("strong", escaped(results.sessions[session].name));
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < summaries.size(); ++i)

@@ -1,4 +1,4 @@
-#include "report/batch/ReportStyle.h"
+#include "report/batch/ReportParts.h"
 
 namespace polemcl::report {
 

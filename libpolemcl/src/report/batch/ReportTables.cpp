@@ -1,5 +1,3 @@
-#include "report/batch/ReportTables.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +5,7 @@
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
 #include "report/batch/PublishedResults.h"
+#include "report/batch/ReportParts.h"
 
 namespace polemcl::report {
 namespace {
@@ -59,8 +58,7 @@ std::string runsText(const RunCounts& counts) {
   return text;
 }
 
-std::string configurationsTable(const BatchResults& results,
-                                const std::vector<ConfigurationSummary>& summaries) {
+std::string configurationsTable(const BatchResults& results, const Summaries& summaries) {
   HtmlTable table(
       "Settings compared: means over the localized sessions, each with the same weight.");
   const auto columnOf = [&](Quantity quantity, const auto& figure) {
@@ -107,8 +105,7 @@ const SessionSummary* localized(const ConfigurationSummary& configuration, std::
 
 }  // namespace
 
-std::string sideBySideTable(const BatchResults& results,
-                            const std::vector<ConfigurationSummary>& summaries) {
+std::string sideBySideTable(const BatchResults& results, const Summaries& summaries) {
   HtmlTable table("Sessions with all settings side by side: mean over the runs.");
   std::vector<double> positions;
   for (const ConfigurationSummary& configuration : summaries)
@@ -240,8 +237,7 @@ std::string paperTable(const BatchResults& results, std::size_t configuration,
   return table.str(results.published.empty() ? "" : "dense");
 }
 
-std::string publishedTable(const BatchResults& results,
-                           const std::vector<ConfigurationSummary>& summaries) {
+std::string publishedTable(const BatchResults& results, const Summaries& summaries) {
   const PublishedDataset* dataset = publishedResults(results.dataset);
   if (!dataset || dataset->figures.empty()) return "";
   const std::vector<ComparedColumn> columns = comparedColumns(*dataset);

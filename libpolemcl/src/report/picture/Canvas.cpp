@@ -113,6 +113,13 @@ void Canvas::text(const std::string& line, const Eigen::Vector2d& anchor, const 
   cairo_restore(context);
 }
 
+void Canvas::fittingText(const std::string& line, const Eigen::Vector2d& anchor, double room,
+                         TextStyle style) {
+  const double width = textWidth(line, style);
+  if (width > room) style.size *= room / width;
+  text(line, anchor, style);
+}
+
 double Canvas::textWidth(const std::string& line, const TextStyle& style) const {
   m_impl->font(style);
   cairo_text_extents_t extents;

@@ -19,6 +19,9 @@ constexpr Color rgb(unsigned hex, double alpha = 1) {
   return {((hex >> 16) & 255) / 255.0, ((hex >> 8) & 255) / 255.0, (hex & 255) / 255.0, alpha};
 }
 
+/// Colours that all pictures share, told apart by colour-blind eyes (Okabe and Ito 2008).
+inline constexpr Color ink = rgb(0x1f2328), white = rgb(0xffffff), poleColor = rgb(0xd55e00);
+
 /// \brief Upper left corner and size, px.
 struct Rect {
   double x = 0, y = 0, width = 0, height = 0;
@@ -51,6 +54,9 @@ class Canvas {
   void line(const std::vector<Eigen::Vector2d>& points, const Color& color, double lineWidth,
             bool dashed = false);
   void polygon(const std::vector<Eigen::Vector2d>& points, const Color& color);
+  /// \brief A text that becomes smaller rather than wider than `room`, px.
+  void fittingText(const std::string& line, const Eigen::Vector2d& anchor, double room,
+                   TextStyle style);
   /// \brief A filled disc with a rim of another colour (width 0: no rim).
   void disc(const Eigen::Vector2d& centre, double radius, const Color& color, const Color& rim,
             double rimWidth);

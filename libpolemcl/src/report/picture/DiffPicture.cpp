@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "report/picture/MapView.h"
-#include "report/picture/Palette.h"
 #include "report/picture/PictureLayout.h"
 #include "report/picture/PlotAxes.h"
 
@@ -45,7 +44,7 @@ void drawDiffPoles(Canvas& canvas, const PlotAxes& axes, const MapDiff& diff) {
 }
 
 /// From right to left, so that it ends at the margin whatever its texts are. \return Its left end.
-double drawDiffLegend(Canvas& canvas, double x, double baseline, const MapDiff& diff) {
+double drawLegendOf(Canvas& canvas, double x, double baseline, const MapDiff& diff) {
   struct Entry {
     std::string label;
     Color inside, rim;
@@ -70,24 +69,16 @@ double drawDiffLegend(Canvas& canvas, double x, double baseline, const MapDiff& 
 
 void drawDiffPng(const MapDiff& diff, const std::string& title, const std::filesystem::path& file,
                  int width, int height) {
-  if (width < 1200 || height < 750)
-    throw Error(file.string() + ": a picture of " + std::to_string(width) + " x " +
-                std::to_string(height) + " px; at least 1200 x 750 are needed");
+  requireSize(width, height, file);
   const Bounds bounds = boundsOfAll(diff);
   const PictureLayout layout = layoutPicture(width, height, bounds, false);
   const PlotAxes axes =
       equalScales(layout.map, {bounds.xMin, bounds.xMax}, {bounds.yMin, bounds.yMax}, 28);
   Canvas canvas(width, height);
-  const double legend = drawDiffLegend(canvas, width - 32, 42, diff);
-  TextStyle style{26, ink, Align::left, true};
-  const double room = legend - layout.map.x, wanted = canvas.textWidth(title, style);
-  if (wanted > room) style.size *= room / wanted;
-  canvas.text(title, {layout.map.x, 44}, style);
-  GridStyle grid;
-  grid.xTitle = "x (m)";
-  grid.yTitle = "y (m)";
-  grid.equalSteps = true;
-  drawGrid(canvas, axes, grid);
+  const double legend = drawLegendOf(canvas, width - 32, 42, diff);
+  canvas.fittingText(title, {layout.map.x, 44}, legend - layout.map.x,
+                     {26, ink, Align::left, true});
+  drawGrid(canvas, axes, {"x (m)", "y (m)", true, true});
   canvas.clip(layout.map);
   drawDiffPoles(canvas, axes, diff);
   canvas.unclip();

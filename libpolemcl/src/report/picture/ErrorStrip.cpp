@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/common/Statistics.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::report {
@@ -60,11 +61,9 @@ std::vector<double> distanceDriven(const std::vector<StampedPose2D>& truth,
   return distances;
 }
 
-double valueLimit(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const double high =
-      values[static_cast<std::size_t>(0.95 * static_cast<double>(values.size() - 1) + 0.5)];
-  return std::max(1.1 * std::min(values.back(), 2 * high), 1e-3);
+double valueLimit(const std::vector<double>& values) {
+  const double largest = *std::max_element(values.begin(), values.end());
+  return std::max(1.1 * std::min(largest, 2 * nearestRank(values, 0.95)), 1e-3);
 }
 
 void drawErrorStrip(Canvas& canvas, const Rect& frame, const ErrorSeries& series,
@@ -73,11 +72,7 @@ void drawErrorStrip(Canvas& canvas, const Rect& frame, const ErrorSeries& series
   const PlotAxes axes{frame,
                       {series.distance.front(), series.distance.front() + length},
                       {0, valueLimit(series.values)}};
-  GridStyle style;
-  style.yTitle = series.title;
-  style.xTitle = withDistances ? "distance driven (m)" : "";
-  style.xLabels = withDistances;
-  drawGrid(canvas, axes, style);
+  drawGrid(canvas, axes, {withDistances ? "distance driven (m)" : "", series.title, withDistances});
   drawSeries(canvas, axes, series, color);
   drawNote(canvas, axes, series);
   canvas.outline(frame, rgb(0xb8bfc8), 1);

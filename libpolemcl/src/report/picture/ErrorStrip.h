@@ -26,7 +26,7 @@ struct ErrorSeries {
 /// \brief Upper end of the value axis: a little above the largest value, but not above 2.2 times
 /// the 95th percentile, so that the first moments of a search do not flatten the rest.
 /// \param values Not empty.
-double valueLimit(std::vector<double> values);
+double valueLimit(const std::vector<double>& values);
 /// \brief Draws the series and its mean; above the frame (30 px), mean and maximum in words.
 /// \param withDistances Labels and title of the distance axis, below the frame.
 void drawErrorStrip(Canvas& canvas, const Rect& frame, const ErrorSeries& series,

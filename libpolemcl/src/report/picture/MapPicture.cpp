@@ -6,7 +6,6 @@
 
 #include "io/file/TextFile.h"
 #include "report/picture/ErrorStrip.h"
-#include "report/picture/Palette.h"
 #include "report/picture/PictureLayout.h"
 #include "report/picture/PlotAxes.h"
 
@@ -83,11 +82,7 @@ void drawScaleBar(Canvas& canvas, const PlotAxes& axes, const MapView& view) {
 void drawMap(Canvas& canvas, const Rect& frame, const Bounds& bounds, const MapView& view) {
   const PlotAxes axes =
       equalScales(frame, {bounds.xMin, bounds.xMax}, {bounds.yMin, bounds.yMax}, 28);
-  GridStyle style;
-  style.xTitle = "x (m)";
-  style.yTitle = "y (m)";
-  style.equalSteps = true;
-  drawGrid(canvas, axes, style);
+  drawGrid(canvas, axes, {"x (m)", "y (m)", true, true});
   canvas.clip(frame);
   // Thinner on large maps, so that both sides of a street stay apart.
   const double metre = axes.pixelsPerX();
@@ -101,14 +96,6 @@ void drawMap(Canvas& canvas, const Rect& frame, const Bounds& bounds, const MapV
   drawScaleBar(canvas, axes, view);
   canvas.unclip();
   canvas.outline(frame, rgb(0xb8bfc8), 1);
-}
-
-/// Text that becomes smaller rather than longer than its place.
-void drawFitting(Canvas& canvas, const std::string& text, const Eigen::Vector2d& at,
-                 double available, TextStyle style) {
-  const double width = canvas.textWidth(text, style);
-  if (width > available) style.size *= available / width;
-  canvas.text(text, at, style);
 }
 
 /// From right to left, so that it ends at the margin whatever its texts are. \return Its left end.
@@ -164,17 +151,15 @@ void drawStrips(Canvas& canvas, const PictureLayout& layout, const MapView& view
 }  // namespace
 
 void drawMapPng(const MapView& view, const std::filesystem::path& file, int width, int height) {
-  if (width < 1200 || height < 750)
-    throw Error(file.string() + ": a picture of " + std::to_string(width) + " x " +
-                std::to_string(height) + " px; at least 1200 x 750 are needed");
+  requireSize(width, height, file);
   const Bounds bounds = boundsOf(view);
   const std::optional<TrajectoryErrors> errors = compared(view);
   const PictureLayout layout = layoutPicture(width, height, bounds, errors.has_value());
   Canvas canvas(width, height);
   const double left = layout.map.x, right = width - 32;
   const double legend = drawLegend(canvas, right, 42, view);
-  drawFitting(canvas, view.title, {left, 44}, legend - left, {26, ink, Align::left, true});
-  drawFitting(canvas, summary(view, errors), {left, 76}, right - left, {17, rgb(0x5b6470)});
+  canvas.fittingText(view.title, {left, 44}, legend - left, {26, ink, Align::left, true});
+  canvas.fittingText(summary(view, errors), {left, 76}, right - left, {17, rgb(0x5b6470)});
   drawMap(canvas, layout.map, bounds, view);
   if (errors) drawStrips(canvas, layout, view, *errors);
   canvas.writePng(file);

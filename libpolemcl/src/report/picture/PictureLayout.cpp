@@ -36,6 +36,12 @@ PictureLayout stripsBeside(const Rect& page, double aspect) {
 
 }  // namespace
 
+void requireSize(int width, int height, const std::filesystem::path& file) {
+  if (width < 1200 || height < 750)
+    throw Error(file.string() + ": a picture of " + std::to_string(width) + " x " +
+                std::to_string(height) + " px; at least 1200 x 750 are needed");
+}
+
 PictureLayout layoutPicture(int width, int height, const Bounds& bounds, bool withErrors) {
   const Rect page{left, header, width - left - right, height - header - footer};
   if (!withErrors) return {page, {}, {}};

@@ -12,6 +12,9 @@ struct PictureLayout {
   Rect map, position, heading;
 };
 
+/// \throws Error naming the file when the picture is smaller than 1200 x 750 px.
+void requireSize(int width, int height, const std::filesystem::path& file);
+
 /// \brief The strips of errors go below the map (long streets) or to its right (others), whichever
 /// shows the map larger. The uppermost 96 px are left to title and legend.
 PictureLayout layoutPicture(int width, int height, const Bounds& bounds, bool withErrors);

@@ -7,7 +7,6 @@
 
 #include "io/file/TextFile.h"
 #include "report/picture/Canvas.h"
-#include "report/picture/Palette.h"
 #include "report/picture/PlotAxes.h"
 
 namespace polemcl::report {
@@ -120,11 +119,7 @@ void drawScanPng(const ScanView& view, const std::filesystem::path& file, int si
   Canvas canvas(size, size);
   const Rect frame{80, 84, size - 104.0, size - 144.0};
   const PlotAxes axes = equalScales(frame, {-reach, reach}, {-reach, reach}, 0);
-  GridStyle style;
-  style.xTitle = "x (m)";
-  style.yTitle = "y (m)";
-  style.equalSteps = true;
-  drawGrid(canvas, axes, style);
+  drawGrid(canvas, axes, {"x (m)", "y (m)", true, true});
   canvas.clip(frame);
   drawPoints(canvas, axes, view);
   const Eigen::Vector2d sensor = axes.toPixel(0, 0);

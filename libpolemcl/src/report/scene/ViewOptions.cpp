@@ -3,21 +3,14 @@
 #include <charconv>
 #include <cmath>
 
+#include "io/file/ErrorPlace.h"
+
 namespace polemcl::report {
 namespace {
 
 constexpr double minSide = 160, maxSide = 8192;  // pixels; what OpenGL's textures take, halved
 
 constexpr double minRate = 0.001;  // slower ones never end
-
-bool isRate(const std::string& text) {
-  try {
-    parseRate(text);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
 
 }  // namespace
 
@@ -47,7 +40,7 @@ void bind(Binder& b, ViewOptions& o) {
             "number of scans from one frame to the next");
   b.integer("width", o.width, side, "pixels", "width of frames and window");
   b.integer("height", o.height, side, "pixels", "height of frames and window");
-  b.require(isRate(o.rate), "rate", o.rate,
+  b.require(io::problemOf([&] { parseRate(o.rate); }).empty(), "rate", o.rate,
             "max, or a factor on the recorded speed such as 1x or 2.5x, at least 0.001x");
 }
 

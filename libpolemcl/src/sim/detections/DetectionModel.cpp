@@ -82,16 +82,10 @@ const char* name(DetectionClass c) {
 }
 
 DetectionClass classOf(Kind kind) {
-  switch (kind) {
-    case Kind::sign:
-      return DetectionClass::sign;
-    case Kind::trafficLight:
-      return DetectionClass::trafficLight;
-    case Kind::tree:
-      return DetectionClass::tree;
-    default:
-      return DetectionClass::lampPost;
-  }
+  return kind == Kind::sign           ? DetectionClass::sign
+         : kind == Kind::trafficLight ? DetectionClass::trafficLight
+         : kind == Kind::tree         ? DetectionClass::tree
+                                      : DetectionClass::lampPost;
 }
 
 const char* name(Reported r) {

@@ -4,6 +4,7 @@
 /// extraction on long drives. share/doc/simulation.md describes it.
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -101,5 +102,13 @@ struct DetectionModel {
   /// \throws Error with the key of the file and the allowed values.
   void validate() const;
 };
+
+/// \brief Reads a model. \throws Error with file and key: not readable, not JSON, other format,
+/// missing or unknown key, value of the wrong type or out of range.
+DetectionModel readDetectionModel(const std::filesystem::path& file);
+
+/// \brief Writes the model atomically, numbers with three digits. \throws Error when it cannot be
+/// written.
+void writeDetectionModel(const std::filesystem::path& file, const DetectionModel& model);
 
 }  // namespace polemcl::sim

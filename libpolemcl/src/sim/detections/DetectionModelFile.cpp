@@ -1,12 +1,12 @@
-#include "sim/detections/DetectionModelFile.h"
-
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "io/file/AtomicFile.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
+#include "sim/detections/DetectionModel.h"
 
 namespace polemcl::sim {
 namespace {
@@ -239,12 +239,8 @@ DetectionModel readDetectionModel(const std::filesystem::path& file) {
   if (!stream) throw Error(file.string() + ": cannot be read");
   const Json json = Json::parse(stream, nullptr, false);
   if (json.is_discarded()) throw Error(file.string() + ": is not JSON");
-  DetectionModel model = fromJson(json, file.string() + ": ");
-  try {
-    model.validate();
-  } catch (const Error& error) {
-    throw Error(file.string() + ": " + error.what());
-  }
+  const DetectionModel model = fromJson(json, file.string() + ": ");
+  io::located(file.string() + ": ", [&] { model.validate(); });
   return model;
 }
 

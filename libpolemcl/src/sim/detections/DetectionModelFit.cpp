@@ -247,22 +247,31 @@ class Fit {
     }
   }
 
-  NoiseSpectrum visibility(bool poles) const {
+  /// \param add Puts a pair of chances of one track into Pairs, or leaves it out.
+  template <class Pairs, class Add>
+  NoiseSpectrum spectrumOf(const Add& add) const {
     std::vector<LagCorrelation> counted;
     for (const bool sameDay : {true, false})
       for (const std::size_t lag : kLags) {
         if (sameDay && lag == 0) continue;
-        PairedHits hits;
+        Pairs pairs;
         forPairs(lag, sameDay, [&](const Track& track, const Chance& a, const Chance& b) {
-          if (isPole(track.kind) != poles) return;
-          hits.add(m_model.detectionScore(track.kind, a.range),
-                   m_model.detectionScore(track.kind, b.range), a.detection && b.detection);
+          add(pairs, track, a, b);
         });
-        if (hits.count() >= kFewPairs)
+        if (pairs.count() >= kFewPairs)
           counted.push_back(
-              {static_cast<double>(lag) * m_spacing.front(), sameDay, hits.correlation()});
+              {static_cast<double>(lag) * m_spacing.front(), sameDay, pairs.correlation()});
       }
     return fitSpectrum(counted);
+  }
+
+  NoiseSpectrum visibility(bool poles) const {
+    return spectrumOf<PairedHits>(
+        [&](PairedHits& hits, const Track& track, const Chance& a, const Chance& b) {
+          if (isPole(track.kind) == poles)
+            hits.add(m_model.detectionScore(track.kind, a.range),
+                     m_model.detectionScore(track.kind, b.range), a.detection && b.detection);
+        });
   }
 
   NoiseSpectrum reportedNoise(Reported r) const {
@@ -272,19 +281,10 @@ class Fit {
       return scoreOf(table[nearest(kReportedRange, chance.range)],
                      chance.reported[static_cast<int>(r)]);
     };
-    std::vector<LagCorrelation> counted;
-    for (const bool sameDay : {true, false})
-      for (const std::size_t lag : kLags) {
-        if (sameDay && lag == 0) continue;
-        PairedNumbers pairs;
-        forPairs(lag, sameDay, [&](const Track& track, const Chance& a, const Chance& b) {
+    return spectrumOf<PairedNumbers>(
+        [&](PairedNumbers& pairs, const Track& track, const Chance& a, const Chance& b) {
           if (isPole(track.kind) && a.detection && b.detection) pairs.add(z(track, a), z(track, b));
         });
-        if (pairs.count() >= kFewPairs)
-          counted.push_back(
-              {static_cast<double>(lag) * m_spacing.front(), sameDay, pairs.correlation()});
-      }
-    return fitSpectrum(counted);
   }
 
   void fitNoise() {

@@ -50,13 +50,6 @@ double NoiseSpectrum::white() const {
   return std::max(0.0, rest);
 }
 
-double NoiseSpectrum::correlation(double distance, bool sameDay) const {
-  double sum = 0;
-  for (std::size_t k = 0; k < kNoiseReach.size(); ++k)
-    sum += (always[k] + (sameDay ? today[k] : 0)) * noiseCorrelation(kNoiseReach[k], distance);
-  return sum;
-}
-
 double persistentNoise(const NoiseSpectrum& spectrum, const NoiseSeeds& seeds, double x, double y) {
   double sum = 0;
   for (std::size_t k = 0; k < kNoiseReach.size(); ++k) {

@@ -17,8 +17,6 @@ struct NoiseSpectrum {
   std::array<double, 5> always{};  ///< by reach; equal for every visit of the sensor to a place
   std::array<double, 5> today{};   ///< by reach; equal during one day
   double white() const;
-  /// \brief Correlation between two positions of the sensor, on the same day or on two days.
-  double correlation(double distance, bool sameDay) const;
 };
 
 /// \brief Seeds of independent noise streams. Equal seeds give equal noise.

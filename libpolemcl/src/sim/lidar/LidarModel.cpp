@@ -85,10 +85,11 @@ LidarModel vlp16() {
 }
 
 /// Ouster: beams in four staggered columns; noise of 1 to 3 cm; detectors integrate a short pulse.
-LidarModel ouster(int rows, double halfViewDeg, double staggerDeg, double reference) {
+LidarModel ouster(int rings, double halfViewDeg, double staggerDeg, double reference) {
   LidarModel lidar;
-  lidar.beams = evenBeams(rows, halfViewDeg, 2 * halfViewDeg / (rows - 1));
-  for (int i = 0; i < rows; ++i) lidar.beams[i].azimuth = (1.5 - i % 4) * staggerDeg / 1.5 * degree;
+  lidar.beams = evenBeams(rings, halfViewDeg, 2 * halfViewDeg / (rings - 1));
+  for (int i = 0; i < rings; ++i)
+    lidar.beams[i].azimuth = (1.5 - i % 4) * staggerDeg / 1.5 * degree;
   lidar.columns = 1024;
   lidar.calibrated = true;
   lidar.divergence = 0.0031;

@@ -4,11 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include "sim/lidar/LidarModel.h"
+#include "sim/lidar/PulseReturn.h"
+#include "sim/lidar/SolidView.h"
 #include "sim/world/World.h"
 
 namespace polemcl::sim {
@@ -30,10 +30,13 @@ struct Motion {
 };
 
 /// \brief A LiDAR in a world. Holds direction tables; one object may serve many threads.
+///
+/// Casting works object by object into a buffer of sub-rays, like a rasterizer. An object touches
+/// only the beams and firing steps whose rays can hit it. Several sub-rays sample the width of one
+/// pulse; their hits are merged into its return at the end.
 class Scanner {
  public:
   Scanner(const World& world, const LidarModel& lidar);
-  ~Scanner();
   /// \brief Simulates one revolution.
   /// \param T_map_sensor Pose of the optical centre in the middle of the revolution.
   /// \param seed Seed of noise and dropouts; equal seeds give equal scans.
@@ -43,12 +46,19 @@ class Scanner {
                      const Motion& motion = {}) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> m_impl;
-};
+  double azimuthStep() const;
+  std::size_t pixel(std::size_t beam, int column) const { return beam * m_lidar.columns + column; }
+  std::vector<ColumnView> columnViews(const Motion& motion) const;
+  void castGround(const Eigen::Isometry3d& T_map_sensor, const std::vector<ColumnView>& columns,
+                  std::vector<SubHit>& hits) const;
+  std::vector<SolidView> solidsAround(const Eigen::Isometry3d& T_map_sensor, double time) const;
+  void castSolid(const SolidView& solid, std::int32_t index, const std::vector<ColumnView>& columns,
+                 const SolidBounds& bounds, std::uint64_t seed, std::vector<SubHit>& hits) const;
 
-/// \brief Simulates a single scan; for many, keep a Scanner.
-SimulatedScan scan(const World& world, const Eigen::Isometry3d& T_map_sensor,
-                   const LidarModel& lidar, std::uint64_t seed);
+  const World& m_world;
+  LidarModel m_lidar;
+  std::vector<BeamView> m_beams;
+  double m_lowestRise = 0, m_highestRise = 0;
+};
 
 }  // namespace polemcl::sim

@@ -1,7 +1,7 @@
-#include "sim/world/Buildings.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "sim/world/StreetObjects.h"
 
 namespace polemcl::sim {
 namespace {

@@ -1,6 +1,6 @@
-#include "sim/world/ConstructionSites.h"
-
 #include <cmath>
+
+#include "sim/world/StreetObjects.h"
 
 namespace polemcl::sim {
 namespace {

@@ -1,6 +1,6 @@
-#include "sim/world/Furniture.h"
-
 #include <cmath>
+
+#include "sim/world/StreetObjects.h"
 
 namespace polemcl::sim {
 namespace {
@@ -18,6 +18,17 @@ struct Axis {
   V at(double height) const { return lean * height; }
 };
 
+/// \brief A plate in front of a post, parallel or perpendicular to the street.
+void addPlate(ObjectBuilder& builder, const Axis& axis, double height, double postRadius,
+              bool acrossStreet, Random& random) {
+  const double halfWidth = random.uniform(0.18, 0.4), halfHeight = random.uniform(0.15, 0.4);
+  const double yaw = (acrossStreet ? M_PI / 2 : 0) + random.normal(0, 0.15);
+  const double gap = postRadius + 0.03, side = random.chance(0.5) ? 1 : -1;
+  const V offset(-side * gap * std::sin(yaw), side * gap * std::cos(yaw), 0);
+  builder.box(axis.at(height) + offset, V(halfWidth, 0.01, halfHeight), materials::signFace, yaw);
+}
+}  // namespace
+
 TruePole poleAt(const Site& site, std::uint32_t id, Kind kind, const V& local, double radius,
                 double top) {
   TruePole pole;
@@ -30,17 +41,6 @@ TruePole poleAt(const Site& site, std::uint32_t id, Kind kind, const V& local, d
   pole.kind = kind;
   return pole;
 }
-
-/// \brief A plate in front of a post, parallel or perpendicular to the street.
-void addPlate(ObjectBuilder& builder, const Axis& axis, double height, double postRadius,
-              bool acrossStreet, Random& random) {
-  const double halfWidth = random.uniform(0.18, 0.4), halfHeight = random.uniform(0.15, 0.4);
-  const double yaw = (acrossStreet ? M_PI / 2 : 0) + random.normal(0, 0.15);
-  const double gap = postRadius + 0.03, side = random.chance(0.5) ? 1 : -1;
-  const V offset(-side * gap * std::sin(yaw), side * gap * std::cos(yaw), 0);
-  builder.box(axis.at(height) + offset, V(halfWidth, 0.01, halfHeight), materials::signFace, yaw);
-}
-}  // namespace
 
 LampStyle::LampStyle(Random& random)
     : height(random.uniform(4.5, 8)),

@@ -56,13 +56,13 @@ std::vector<SideRoad> sideRoads(const std::vector<Crossing>& crossings, const St
 
 StreetLayout::StreetLayout(const WorldOptions& options, const Street& street,
                            const Terrain& terrain, const std::vector<Crossing>& crossings,
-                           StreetPart part)
+                           std::uint32_t index)
     : m_options(options),
       m_street(street),
       m_terrain(terrain),
       m_crossings(crossings),
-      m_street0(part.index * kIdsPerStreet),
-      m_open(part.index > 0),
+      m_street0(index * kIdsPerStreet),
+      m_open(index > 0),
       m_nextId(m_street0 + 1) {}
 
 void StreetLayout::furnish() {

@@ -4,7 +4,7 @@
 
 #include <unordered_map>
 
-#include "sim/world/Furniture.h"
+#include "sim/world/StreetObjects.h"
 #include "sim/world/World.h"
 
 namespace polemcl::sim {
@@ -21,11 +21,6 @@ std::vector<Crossing> planCrossings(const WorldOptions& options, const Street& s
 std::vector<SideRoad> sideRoads(const std::vector<Crossing>& crossings, const Street& street,
                                 const WorldOptions& options);
 
-/// \brief The street of a world that a layout fills.
-struct StreetPart {
-  std::uint32_t index = 0;  ///< 0: main street; others: side streets, open at both ends
-};
-
 /// \brief Removes poles that stand inside a house, wall or container of another street or another
 /// part of this street.
 void removeBuiltOver(std::vector<WorldObject>& objects, std::vector<TruePole>& poles);
@@ -34,8 +29,9 @@ void removeBuiltOver(std::vector<WorldObject>& objects, std::vector<TruePole>& p
 /// they are equal on every day. Changes of a day are drawn from (seed, day, ...).
 class StreetLayout {
  public:
+  /// \param index 0: main street; others: side streets, open at both ends.
   StreetLayout(const WorldOptions& options, const Street& street, const Terrain& terrain,
-               const std::vector<Crossing>& crossings, StreetPart part = {});
+               const std::vector<Crossing>& crossings, std::uint32_t index = 0);
   void furnish();
   std::vector<WorldObject> objects;
   std::vector<TruePole> poles;

@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "sim/world/StreetLayout.h"
-#include "sim/world/Traffic.h"
 
 namespace polemcl::sim {
 

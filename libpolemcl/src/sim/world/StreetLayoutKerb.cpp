@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "sim/world/StreetLayout.h"
-#include "sim/world/Vegetation.h"
 
 namespace polemcl::sim {
 

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/world/Buildings.h"
 #include "sim/world/StreetLayout.h"
-#include "sim/world/Vegetation.h"
 
 namespace polemcl::sim {
 namespace {

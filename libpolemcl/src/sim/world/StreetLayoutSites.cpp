@@ -2,7 +2,6 @@
 #include <cmath>
 #include <set>
 
-#include "sim/world/ConstructionSites.h"
 #include "sim/world/StreetLayout.h"
 
 namespace polemcl::sim {

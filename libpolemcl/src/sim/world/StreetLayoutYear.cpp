@@ -2,9 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/world/ConstructionSites.h"
 #include "sim/world/StreetLayout.h"
-#include "sim/world/Vegetation.h"
 
 namespace polemcl::sim {
 namespace {

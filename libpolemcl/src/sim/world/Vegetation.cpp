@@ -1,7 +1,7 @@
-#include "sim/world/Vegetation.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "sim/world/StreetObjects.h"
 
 namespace polemcl::sim {
 namespace {
@@ -62,15 +62,7 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
     builder.ellipsoid(V(out * std::cos(turn), out * std::sin(turn), low), V(wide, wide, half),
                       materials::leaves, std::min(0.5, foliage * random.uniform(0.03, 0.09)));
   }
-  TruePole pole;
-  const double c = std::cos(site.heading), s = std::sin(site.heading);
-  pole.id = id;
-  pole.x = site.base.x() + c * truth.x() - s * truth.y();
-  pole.y = site.base.y() + s * truth.x() + c * truth.y();
-  pole.radius = truthRadius;
-  pole.top = trunkTop;
-  pole.kind = Kind::tree;
-  return {builder.build(id), pole};
+  return {builder.build(id), poleAt(site, id, Kind::tree, truth, truthRadius, trunkTop)};
 }
 
 WorldObject makeBush(const Site& site, std::uint32_t id, double foliage, Random& random) {

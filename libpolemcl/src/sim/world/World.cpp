@@ -103,7 +103,7 @@ Furnished furnish(const WorldOptions& options, const Street& street, const Terra
     std::vector<Crossing> bends;  // no wide objects in bends
     for (const double s : detours[k].bends) bends.push_back({s, true, true, 12, false});
     StreetLayout sidePlan(own, detours[k].street, terrain, bends,
-                          StreetPart{static_cast<std::uint32_t>(k + 1)});
+                          static_cast<std::uint32_t>(k + 1));
     sidePlan.furnish();
     all.add(std::move(sidePlan));
   }
