@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <iostream>
 #include <thread>
@@ -153,7 +152,7 @@ void doBatch(const BatchOptions& options) {
   folder.sweep();
   report::BatchTimings timings = collectTimings(folder, plan);
   if (open.tasks.size() == plan.tasks.size()) {
-    timings.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    timings.wall = secondsSince(begin);
     timings.jobs = options.slurm ? 0 : jobsOf(options);
   }
   try {

@@ -54,8 +54,7 @@ std::string protocolOf(const BatchConfiguration& configuration) {
   if (configuration.sessions.empty()) return "One map of " + sessions;
   if (configuration.map == MapTime::finished) {
     const bool own = std::any_of(maps.begin(), maps.end(), [&](const std::string& name) {
-      const auto& s = configuration.sessions;
-      return std::find(s.begin(), s.end(), name) != s.end();
+      return has(configuration.sessions, name);
     });
     return "One map of " + sessions + " for all" +
            (own ? "; sessions that made it are localized in it as well (their own data is in it)"
@@ -106,11 +105,8 @@ class Collector {
     }
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;
-      report::BatchSession entry;
-      entry.name = session.name;
-      entry.date = session.date;
-      const auto* truth = truthOf(session.name);
-      if (truth) {
+      report::BatchSession entry{session.name, session.date};
+      if (const auto* truth = truthOf(session.name)) {
         entry.length = lengthOf(*truth);
         entry.scans = truth->size();
       }
@@ -140,8 +136,7 @@ class Collector {
     const std::string task = TaskPath{TaskKind::poles, {session}}.id();
     if (!isDone(task) || m_broken.count(session)) return nullptr;
     try {
-      return &(m_truth[session] =
-                   io::planar(io::readTum(m_folder.work(task) / (session + ".tum"))));
+      return &(m_truth[session] = io::readPlanarTum(m_folder.work(task) / (session + ".tum")));
     } catch (const Error& error) {
       m_broken.insert(session);
       m_results.failures.push_back({task, error.what(), "logs/" + task + ".log"});
@@ -155,16 +150,10 @@ class Collector {
     return m_maps[task] = io::readPoleMap(m_folder.work(task) / "map.polemap");
   }
 
-  std::size_t indexOf(const std::string& session) const {
-    const auto& all = m_results.sessions;
+  template <class Named>
+  static std::size_t indexOf(const std::vector<Named>& all, const std::string& name) {
     const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const auto& entry) { return entry.name == session; });
-    return static_cast<std::size_t>(found - all.begin());
-  }
-  std::size_t configurationIndex(const std::string& name) const {
-    const auto& all = m_results.configurations;
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; });
+                                    [&](const Named& entry) { return entry.name == name; });
     return static_cast<std::size_t>(found - all.begin());
   }
 
@@ -198,8 +187,8 @@ class Collector {
 
   void addExperiment(const Experiment& experiment) {
     report::SessionResult result;
-    result.configuration = configurationIndex(experiment.configuration);
-    result.session = indexOf(experiment.session);
+    result.configuration = indexOf(m_results.configurations, experiment.configuration);
+    result.session = indexOf(m_results.sessions, experiment.session);
     result.mapShare = mapShare(experiment);
     result.score = scoresOf(experiment);
     if (isDone(experiment.map)) {
@@ -248,7 +237,7 @@ class Collector {
 
   void judge(const fs::path& file, const std::vector<StampedPose2D>& truth, report::BatchRun& run,
              report::SessionPlots& plots) const {
-    const auto estimate = io::planar(io::readTum(file));
+    const auto estimate = io::readPlanarTum(file);
     const auto sampling = m_spec.perMetre ? Sampling::perMetre : Sampling::perPose;
     const TrajectoryErrors errors = evaluateTrajectory(truth, estimate, sampling);
     run.errors = report::errorMetrics(errors, truth);

@@ -134,22 +134,18 @@ BatchFolder::State BatchFolder::state(const BatchTask& task, std::string* why) c
   const fs::path folder = work(task.id);
   std::error_code none;
   if (!fs::exists(folder, none)) return State::open;
+  const auto damaged = [&](const std::string& what) {
+    if (why) *why = what;
+    return State::damaged;
+  };
+  const std::string changed = (folder / "done.json").string() + " is not what was written";
   const Json done = noteIn(folder / "done.json");
-  if (!done.is_object() || !done.contains("key") || !done.contains("outputs")) {
-    if (why) *why = (folder / "done.json").string() + " is not what was written";
-    return State::damaged;
-  }
+  if (!done.is_object() || !done.contains("key") || !done.contains("outputs"))
+    return damaged(changed);
   if (done.at("key") != task.key) return State::open;
-  if (done.at("outputs").size() != task.outputs.size()) {
-    if (why) *why = (folder / "done.json").string() + " is not what was written";
-    return State::damaged;
-  }
-  for (const auto& output : done.at("outputs")) {
-    const std::string wrong = damage(folder, output);
-    if (wrong.empty()) continue;
-    if (why) *why = wrong;
-    return State::damaged;
-  }
+  if (done.at("outputs").size() != task.outputs.size()) return damaged(changed);
+  for (const auto& output : done.at("outputs"))
+    if (const std::string wrong = damage(folder, output); !wrong.empty()) return damaged(wrong);
   return State::done;
 }
 

@@ -22,9 +22,8 @@ namespace {
 /// Least confidence of poles for maps where it is another than for localization, see
 /// loadMappingSession().
 std::string mapConfidence(const Settings& settings) {
-  const double map = settings.map.minConfidence,
-               native = settings.extraction.scanLine.minConfidence;
-  return map > 0 && map != native ? io::significant(map, 9) : "";
+  const double map = settings.map.minConfidence, each = settings.extraction.scanLine.minConfidence;
+  return map > 0 && map != each ? io::significant(map, 9) : "";
 }
 
 /// What the extraction depends on: configurations with the same text share their poles.
@@ -33,10 +32,6 @@ std::string extractionText(Settings settings) {
   bind(writer, settings.sensor);
   bind(writer, settings.extraction);
   return writer.text() + mapConfidence(settings);
-}
-
-bool has(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /// Puts together one plan.
@@ -146,7 +141,7 @@ class Planner {
 
   void freeze(const BatchConfiguration& configuration) {
     const Settings settings = loadSettings(configuration.config, configuration.set);
-    const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), configuration.name);
+    const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), m_groups.size());
     m_group[configuration.name] = group->second;
     if (isNew) m_groups.push_back({configuration.name, mapConfidence(settings)});
     m_plan.files["settings/" + configuration.name + ".ini"] = settingsText(settings);
@@ -238,10 +233,8 @@ class Planner {
                        bool forMaps = false) const {
     std::string folder;
     if (hasGroups(m_spec.session(session))) {
-      const std::string& name = m_group.at(configuration.name);
-      const auto group = std::find_if(m_groups.begin(), m_groups.end(),
-                                      [&](const Group& entry) { return entry.name == name; });
-      folder = name + (forMaps && !group->mapConfidence.empty() ? mapFolder : "") + "/";
+      const Group& group = m_groups[m_group.at(configuration.name)];
+      folder = group.name + (forMaps && !group.mapConfidence.empty() ? mapFolder : "") + "/";
     }
     return polesPath(session).file(folder + session + ".rawlog");
   }
@@ -416,7 +409,7 @@ class Planner {
              std::vector<std::string> BatchConfiguration::*purpose) const {
     return std::any_of(m_spec.configurations.begin(), m_spec.configurations.end(),
                        [&](const auto& configuration) {
-                         return m_group.at(configuration.name) == group.name &&
+                         return m_groups[m_group.at(configuration.name)].name == group.name &&
                                 has(configuration.*purpose, session);
                        });
   }
@@ -429,8 +422,8 @@ class Planner {
            (group.mapConfidence.empty() && isFor(group, session, &BatchConfiguration::mapSessions));
   }
 
-  std::map<std::string, std::string> m_groupOf;  ///< text of the extraction -> name of the group
-  std::map<std::string, std::string> m_group;    ///< configuration -> group
+  std::map<std::string, std::size_t> m_groupOf;  ///< text of the extraction -> index of the group
+  std::map<std::string, std::size_t> m_group;    ///< configuration -> index of the group
   std::vector<Group> m_groups;
 };
 

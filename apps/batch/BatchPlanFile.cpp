@@ -9,6 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr const char* s_format = "polemcl batch plan 2";
+constexpr const char* s_kinds[] = {"poles", "truth", "map", "score", "run"};  // by TaskKind
 
 Json toJson(const BatchTask& task) {
   return {{"id", task.id},           {"kind", name(task.kind)},
@@ -50,6 +51,22 @@ Experiment experimentFrom(const Json& json) {
 }
 
 }  // namespace
+
+const char* name(TaskKind kind) {
+  return s_kinds[static_cast<int>(kind)];
+}
+
+TaskKind taskKind(const std::string& text) {
+  for (std::size_t i = 0; i < std::size(s_kinds); ++i)
+    if (text == s_kinds[i]) return static_cast<TaskKind>(i);
+  throw Error("unknown kind of task '" + text + "'; allowed: poles, truth, map, score, run");
+}
+
+std::string TaskPath::id() const {
+  std::string text = name(kind);
+  for (const std::string& part : parts) text += '.' + part;
+  return text;
+}
 
 void writePlan(const std::filesystem::path& file, const BatchPlan& plan) {
   Json json;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdlib>
@@ -19,6 +18,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include "batch/BatchCommands.h"
+#include "cli/Progress.h"
 #include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 
@@ -26,7 +26,6 @@ namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int s_notStarted = 127;  ///< exit code of a child that could not become its program
 
 /// Files that the commands leave beside their outputs would be found by the next attempt.
@@ -220,7 +219,7 @@ fs::path programFolder() {
 
 TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {
   TaskOutcome outcome;
-  const auto begin = Clock::now();
+  const auto begin = std::chrono::steady_clock::now();
   try {
     if (folder.state(task) == BatchFolder::State::done) return outcome;
     doTask(folder, task);
@@ -228,7 +227,7 @@ TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {
     outcome.failure = error.what();
     folder.noteFailure(task, outcome.failure);
   }
-  outcome.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  outcome.seconds = secondsSince(begin);
   if (outcome.failure.empty()) folder.noteTime(task.id, outcome.seconds);
   return outcome;
 }

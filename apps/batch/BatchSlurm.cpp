@@ -35,46 +35,36 @@ std::string outputOf(const std::string& command) {
   return text;
 }
 
-/// One array of tasks that can be done at the same time.
-class JobArray {
- public:
-  JobArray(const BatchFolder& folder, std::string name, std::vector<std::string> tasks)
-      : m_folder(folder), m_name(std::move(name)), m_tasks(std::move(tasks)) {}
+std::string scriptOf(const BatchFolder& folder, const std::string& name) {
+  return "#!/bin/sh\n# One task of a batch: the line of " + name +
+         ".txt that has the number of this array task.\n"
+         "export POLEMCL_BIN=" +
+         shellQuoted(programFolder().string()) + "\ntask=$(sed -n \"${SLURM_ARRAY_TASK_ID}p\" " +
+         shellQuoted((folder.path() / "slurm" / (name + ".txt")).string()) +
+         ")\nexec \"$POLEMCL_BIN/pole-batch\" --quiet --output " +
+         shellQuoted(folder.path().string()) + " --task \"$task\"\n";
+}
 
-  /// \param after Jobs that must have ended. \return The number of the job.
-  std::string submit(const SlurmOptions& options, const std::vector<std::string>& after) const {
-    const fs::path here = m_folder.path() / "slurm";
-    std::string list;
-    for (const auto& task : m_tasks) list += task + "\n";
-    io::writeFile(here / (m_name + ".txt"), list);
-    io::writeFile(here / (m_name + ".sh"), script(here));
-    std::string command =
-        "sbatch --parsable --requeue --job-name=" + shellQuoted(m_name) + " --array=1-" +
-        std::to_string(m_tasks.size()) + " --chdir=" + shellQuoted(m_folder.path().string()) +
-        " --output=" + shellQuoted((here / (m_name + "_%a.log")).string()) + " --open-mode=append";
-    for (std::size_t i = 0; i < after.size(); ++i)
-      command += (i == 0 ? " --dependency=afterany:" : ":") + after[i];
-    for (const auto& argument : options.arguments) command += " " + shellQuoted(argument);
-    const std::string said =
-        outputOf(command + " " + shellQuoted((here / (m_name + ".sh")).string()));
-    return std::string(io::trimmed(said.substr(0, said.find_first_of(";\n"))));
-  }
-
- private:
-  std::string script(const fs::path& here) const {
-    return "#!/bin/sh\n# One task of a batch: the line of " + m_name +
-           ".txt that has the number of this array task.\n"
-           "export POLEMCL_BIN=" +
-           shellQuoted(programFolder().string()) + "\ntask=$(sed -n \"${SLURM_ARRAY_TASK_ID}p\" " +
-           shellQuoted((here / (m_name + ".txt")).string()) +
-           ")\nexec \"$POLEMCL_BIN/pole-batch\" --quiet --output " +
-           shellQuoted(m_folder.path().string()) + " --task \"$task\"\n";
-  }
-
-  const BatchFolder& m_folder;
-  std::string m_name;
-  std::vector<std::string> m_tasks;
-};
+/// Submits an array of tasks that can be done at the same time. \param after Jobs that must have
+/// ended. \return The number of the job.
+std::string submit(const BatchFolder& folder, const std::string& name,
+                   const std::vector<std::string>& tasks, const SlurmOptions& options,
+                   const std::vector<std::string>& after) {
+  const fs::path here = folder.path() / "slurm";
+  std::string list;
+  for (const auto& task : tasks) list += task + "\n";
+  io::writeFile(here / (name + ".txt"), list);
+  io::writeFile(here / (name + ".sh"), scriptOf(folder, name));
+  std::string command =
+      "sbatch --parsable --requeue --job-name=" + shellQuoted(name) + " --array=1-" +
+      std::to_string(tasks.size()) + " --chdir=" + shellQuoted(folder.path().string()) +
+      " --output=" + shellQuoted((here / (name + "_%a.log")).string()) + " --open-mode=append";
+  for (std::size_t i = 0; i < after.size(); ++i)
+    command += (i == 0 ? " --dependency=afterany:" : ":") + after[i];
+  for (const auto& argument : options.arguments) command += " " + shellQuoted(argument);
+  const std::string said = outputOf(command + " " + shellQuoted((here / (name + ".sh")).string()));
+  return std::string(io::trimmed(said.substr(0, said.find_first_of(";\n"))));
+}
 
 /// The open tasks by level, in arrays that Slurm takes.
 std::vector<std::vector<std::vector<std::string>>> arraysOf(
@@ -118,7 +108,7 @@ void runOnSlurm(const BatchFolder& folder, const BatchPlan& plan,
     std::vector<std::string> submitted;
     for (const auto& tasks : level) {
       const std::string name = plan.name + "." + std::to_string(++number);
-      submitted.push_back(JobArray(folder, name, tasks).submit(options, before));
+      submitted.push_back(submit(folder, name, tasks, options, before));
     }
     jobs.insert(jobs.end(), submitted.begin(), submitted.end());
     before = submitted;

@@ -9,6 +9,7 @@
 
 #include <polemcl/config/Config.h>
 #include "io/file/Date.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/InstalledFiles.h"
 #include "report/batch/PublishedResults.h"
 
@@ -111,11 +112,8 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
   s.date = fill.filled(s.date, name);
   s.set = words(fill.filled(text.set, name));
   if (s.input.empty()) throw Error(where + "session " + name + ": input is missing");
-  try {
-    if (!s.date.empty()) io::secondsOfDate(s.date);
-  } catch (const Error& error) {
-    throw Error(where + "session " + name + ": date: " + error.what());
-  }
+  if (!s.date.empty())
+    io::located(where + "session " + name + ": date: ", [&] { io::secondsOfDate(s.date); });
   if (s.source != "simulated" && !s.set.empty())
     throw Error(where + "session " + name + ": set is for simulated sessions only");
   if (s.source != "kitti-odometry" && s.truthMap == truthFromLabels)
@@ -176,14 +174,10 @@ void requireMaps(const BatchConfiguration& configuration, const std::vector<Batc
                  const std::string& where) {
   if (configuration.map == MapTime::finished) return;
   for (const auto& session : sessions) {
-    if (session.name == configuration.mapSessions.front()) {
-      const auto& s = configuration.sessions;
-      if (std::find(s.begin(), s.end(), session.name) == s.end()) return;
-    }
-    const auto& s = configuration.sessions;
-    if (std::find(s.begin(), s.end(), session.name) != s.end())
+    if (has(configuration.sessions, session.name))
       throw Error(where + ": session " + session.name +
                   " has no map session before it; leave it out of sessions, or set map = finished");
+    if (session.name == configuration.mapSessions.front()) return;
   }
 }
 
@@ -224,8 +218,7 @@ void requireOwnMaps(const BatchConfiguration& configuration, const std::string& 
   if (!configuration.sessions.empty() && configuration.map == MapTime::before)
     throw Error(where + "maps = each has no map before a session; set map = finished");
   for (const auto& name : configuration.sessions)
-    if (std::find(configuration.mapSessions.begin(), configuration.mapSessions.end(), name) ==
-        configuration.mapSessions.end())
+    if (!has(configuration.mapSessions, name))
       throw Error(where + "session " + name + " has no map; with maps = each, it must be one of " +
                   "map_sessions");
 }
@@ -262,6 +255,10 @@ const BatchSession& BatchSpec::session(const std::string& wanted) const {
   for (const auto& session : sessions)
     if (session.name == wanted) return session;
   throw Error("no session '" + wanted + "' in batch " + name);
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,

@@ -73,6 +73,9 @@ struct BatchSpec {
   const BatchSession& session(const std::string& name) const;  ///< \throws Error
 };
 
+/// \brief Whether a list has this name.
+bool has(const std::vector<std::string>& names, const std::string& name);
+
 /// \brief Reads a batch file.
 /// \param data What stands for `{data}`; empty: not given.
 /// \param file The batch, or the name of an installed one such as `batches/year.ini`.

@@ -68,6 +68,13 @@ void requireDistinct(const std::vector<std::optional<std::filesystem::path>>& ou
 /// \brief Check of an option: a number above 0 and up to 1e6. (CLI11's own takes nan.)
 CLI::Validator positiveNumber();
 
+/// \brief An option for a number that passes the check; `--help` shows its default.
+template <class Number>
+CLI::Option* addNumber(CLI::App& cli, const std::string& flag, Number& value,
+                       const std::string& meaning, const CLI::Validator& check) {
+  return cli.add_option(flag, value, meaning)->check(check)->capture_default_str();
+}
+
 /// \brief The message of an exception on one line: MRPT's call stacks are left out, other line
 /// breaks become spaces, what is no UTF-8 or controls terminals question marks.
 std::string oneLine(const std::string& message);

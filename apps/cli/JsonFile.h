@@ -4,6 +4,16 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+
+/// Values that may be missing: `null` then.
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+  template <class Json>
+  static void to_json(Json& json, const std::optional<T>& value) {
+    json = value ? Json(*value) : Json();
+  }
+};
 
 namespace polemcl::apps {
 

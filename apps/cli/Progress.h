@@ -4,10 +4,16 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <string>
 
 namespace polemcl::apps {
+
+/// \brief Time since then, s.
+inline double secondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 /// \brief Shows `label  done/total  rate  time left` on one line that rewrites itself.
 class Progress {
@@ -26,6 +32,10 @@ class Progress {
   void update(std::size_t done);
   /// \brief The same where the total becomes known on the way.
   void update(std::size_t done, std::size_t total);
+  /// \brief update() as a function, for as long as this object lives.
+  std::function<void(std::size_t, std::size_t)> updates() {
+    return [this](std::size_t done, std::size_t total) { update(done, total); };
+  }
   /// \brief One more step is finished; from any thread.
   void step();
   /// \brief A line of its own on stderr, quiet or not; the bar, if there is one, comes again after

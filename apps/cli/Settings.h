@@ -60,4 +60,8 @@ std::string settingsText(const Settings& settings, Tier most = Tier::expert);
 /// \brief Writes settingsText(), atomically. \throws Error when it cannot be written.
 void saveSettings(const Settings& settings, const std::string& path);
 
+/// \brief The reference page of all settings, share/doc/settings.md: for each section a table with
+/// key, default, allowed values, tier and meaning. Markdown.
+std::string settingsPage();
+
 }  // namespace polemcl::apps

@@ -1,5 +1,3 @@
-#include "cli/SettingsPage.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

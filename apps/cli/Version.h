@@ -2,9 +2,13 @@
 /// \file Version.h
 /// \brief Which polemcl this is.
 
+#include <polemcl/version.h>
+
 namespace polemcl::apps {
 /// \brief Version of polemcl, as `--version` prints it first: "0.1.0".
-const char* version();
+inline const char* version() {
+  return POLEMCL_VERSION_TEXT;
+}
 /// \brief What this library was built from and how, on one line: the commit, with "+" and a hash of
 /// the sources when they are not as committed ("sources-" and that hash without git), the compiler,
 /// the build type, the options of the compiler. Another identity, possibly other results: it stands

@@ -7,6 +7,7 @@
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/CsvTable.h"
+#include "io/file/ErrorPlace.h"
 
 namespace polemcl::apps {
 namespace {
@@ -114,14 +115,12 @@ void requireFitting(const EvalConsistencyOptions& options) {
 }
 
 nlohmann::ordered_json consistencyJson(const ConsistencyScore& score) {
-  nlohmann::ordered_json out;
-  out["nees_mean"] = score.neesMean;
-  out["nees_median"] = score.neesMedian;
-  out["nees_position_mean"] = score.neesPositionMean;
-  out["nees_heading_mean"] = score.neesHeadingMean;
-  out["coverage_95"] = score.coverage95;
-  out["poses"] = score.samples;
-  return out;
+  return {{"nees_mean", score.neesMean},
+          {"nees_median", score.neesMedian},
+          {"nees_position_mean", score.neesPositionMean},
+          {"nees_heading_mean", score.neesHeadingMean},
+          {"coverage_95", score.coverage95},
+          {"poses", score.samples}};
 }
 
 nlohmann::ordered_json consistencyJson(const EvalConsistencyOptions& options,
@@ -141,15 +140,6 @@ nlohmann::ordered_json consistencyJson(const EvalConsistencyOptions& options,
   return out;
 }
 
-template <class Score>
-auto naming(const fs::path& file, const Score& score) {
-  try {
-    return score();
-  } catch (const Error& error) {
-    throw Error(file.string() + ": " + error.what());
-  }
-}
-
 }  // namespace
 
 ConsistencyResult evalConsistency(const EvalConsistencyOptions& options) {
@@ -159,7 +149,8 @@ ConsistencyResult evalConsistency(const EvalConsistencyOptions& options) {
   std::vector<ConsistencySample> all;
   for (std::size_t run = 0; run < options.cov.size(); ++run) {
     const auto samples = reader.samples(run);
-    result.runs.push_back(naming(options.cov[run], [&] { return scoreConsistency(samples); }));
+    result.runs.push_back(
+        io::located(options.cov[run].string() + ": ", [&] { return scoreConsistency(samples); }));
     all.insert(all.end(), samples.begin(), samples.end());
   }
   result.all = scoreConsistency(all);

@@ -3,8 +3,8 @@
 #include <memory>
 #include <sstream>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/JsonFile.h"
+#include "localize/TrialDrive.h"
 #include "sim/detections/DetectionModelFit.h"
 #include "simulate/SimulatedPoles.h"
 
@@ -21,8 +21,7 @@ struct LoadedDrive {
       : settings(loadSettings(poleDriveFiles(rawlog).config.string())),
         drive(std::make_unique<sim::SimulatedDrive>(settings.simulation, settings.sensor)) {
     observed.drive = drive.get();
-    streamPoles(rawlog.string(), {}, [&](const PoleScan& scan) {
-      if (!scan.stored) throw Error(rawlog.string() + ": holds scans, not poles");
+    streamStoredPoles(rawlog, [&](const PoleScan& scan) {
       observed.poles.push_back(scan.observation->poles);
       observed.points.push_back(scan.observation->points);
     });
@@ -68,25 +67,20 @@ sim::DetectionSummary evalObservations(const EvalObservationsOptions& options) {
   const auto s =
       sim::summarizeDetections(drive.observed, drive.settings.extraction.scanLine.maxRange);
   if (!options.json) return s;
-  const auto number = [](const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-  };
-  nlohmann::ordered_json recall = nlohmann::ordered_json::array();
-  for (const auto& share : s.recall) recall.push_back(number(share));
   writeJson(*options.json, {{"scans", s.scans},
                             {"detections", s.detections},
                             {"per_scan", s.perScan},
                             {"false_per_scan", s.falsePerScan},
                             {"lasting_false_per_scan", s.lastingFalsePerScan},
-                            {"centre_median_m", number(s.centreMedian)},
-                            {"centre_p90_m", number(s.centre90)},
-                            {"nees_mean", number(s.neesMean)},
-                            {"nees_median", number(s.neesMedian)},
-                            {"found_run_m", number(s.foundRun)},
-                            {"missed_run_m", number(s.missedRun)},
-                            {"confidence", number(s.confidence)},
+                            {"centre_median_m", s.centreMedian},
+                            {"centre_p90_m", s.centre90},
+                            {"nees_mean", s.neesMean},
+                            {"nees_median", s.neesMedian},
+                            {"found_run_m", s.foundRun},
+                            {"missed_run_m", s.missedRun},
+                            {"confidence", s.confidence},
                             {"range_edges_m", s.rangeEdges},
-                            {"recall", recall}});
+                            {"recall", s.recall}});
   return s;
 }
 

@@ -4,12 +4,12 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
-#include "cli/CommandLine.h"
 #include "cli/JsonFile.h"
-#include "eval/EvalCommands.h"
 #include "io/data/Trajectory.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PolePositions.h"
+#include "localize/LocalizeReport.h"
 #include "report/picture/MapPicture.h"
 #include "report/scene/MapScene.h"
 
@@ -37,35 +37,6 @@ std::string scoreText(const TrajectoryErrors& errors) {
   return out.str();
 }
 
-nlohmann::ordered_json scoreJson(const EvalMapOptions& options, const MapScore& score) {
-  nlohmann::ordered_json out;
-  out["precision"] = score.precision;
-  out["recall"] = score.recall;
-  out["f1"] = score.f1;
-  out["matches"] = score.matches;
-  out["map_poles"] = score.mapPoles;
-  out["truth_poles"] = score.truthPoles;
-  out["radius"] = options.radius;
-  out["one_to_one"] = options.oneToOne;
-  return out;
-}
-
-nlohmann::ordered_json scoreJson(const EvalTrajectoryOptions& options,
-                                 const TrajectoryErrors& errors) {
-  nlohmann::ordered_json out;
-  out["pos_mean"] = errors.posMean;
-  out["pos_rmse"] = errors.posRmse;
-  out["lat_mean"] = errors.latMean;
-  out["lon_mean"] = errors.lonMean;
-  out["ang_mean_deg"] = errors.angMeanDeg;
-  out["ang_rmse_deg"] = errors.angRmseDeg;
-  out["pos_max"] = errors.posMax;
-  out["poses"] = errors.poses;
-  out["unmatched"] = errors.unmatched;
-  out["per"] = options.sampling == Sampling::perMetre ? "metre" : "pose";
-  return out;
-}
-
 Subcommand mapCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("map", "Precision, recall and F1 of a pole map");
   const auto shared = std::make_shared<EvalMapOptions>();
@@ -73,9 +44,8 @@ Subcommand mapCommand(CLI::App& program) {
   cli.add_option("--truth", options.truth, "True poles: .polemap, .csv with x,y columns, or .npz")
       ->required();
   cli.add_option("--map", options.map, "Poles to score, in any of these formats")->required();
-  cli.add_option("--radius", options.radius, "Distance within which a pole is right, m")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  addNumber(cli, "--radius", options.radius, "Distance within which a pole is right, m",
+            CLI::PositiveNumber);
   cli.add_flag("--one-to-one", options.oneToOne,
                "Match each pole at most once (default: count map poles near any true pole)");
   cli.add_option("--json", options.json, "Write the results to this file (JSON)");
@@ -123,20 +93,9 @@ std::vector<MapPole> polesToDraw(const std::filesystem::path& file) {
   return poles;
 }
 
-/// What `score` returns; its errors name the two files.
-template <class Score>
-auto comparing(const std::filesystem::path& result, const std::filesystem::path& truth,
-               const Score& score) {
-  try {
-    return score();
-  } catch (const Error& error) {
-    throw Error(result.string() + " against " + truth.string() + ": " + error.what());
-  }
-}
-
-void drawEvaluation(const EvalTrajectoryOptions& options, const report::MapView& view) {
-  if (options.scene) scene::save(*report::makeMapScene(view), *options.scene);
-  if (options.png) report::drawMapPng(view, *options.png);
+/// Where errors of a comparison come from.
+std::string against(const std::filesystem::path& result, const std::filesystem::path& truth) {
+  return result.string() + " against " + truth.string() + ": ";
 }
 
 }  // namespace
@@ -144,24 +103,37 @@ void drawEvaluation(const EvalTrajectoryOptions& options, const report::MapView&
 MapScore evalMap(const EvalMapOptions& options) {
   const auto truth = readPoles(options.truth);
   const auto map = readPoles(options.map);
-  const auto score = comparing(options.map, options.truth, [&] {
+  const auto score = io::located(against(options.map, options.truth), [&] {
     return scoreMap(truth, map, options.radius, options.oneToOne);
   });
-  if (options.json) writeJson(*options.json, scoreJson(options, score));
+  if (options.json)
+    writeJson(*options.json, {{"precision", score.precision},
+                              {"recall", score.recall},
+                              {"f1", score.f1},
+                              {"matches", score.matches},
+                              {"map_poles", score.mapPoles},
+                              {"truth_poles", score.truthPoles},
+                              {"radius", options.radius},
+                              {"one_to_one", options.oneToOne}});
   return score;
 }
 
 TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
   report::MapView view;
-  view.truth = io::planar(io::readTum(options.truth));
-  view.estimate = io::planar(io::readTum(options.estimate));
+  view.truth = io::readPlanarTum(options.truth);
+  view.estimate = io::readPlanarTum(options.estimate);
   if (options.map) view.poles = polesToDraw(*options.map);
-  const auto errors = comparing(options.estimate, options.truth, [&] {
+  const auto errors = io::located(against(options.estimate, options.truth), [&] {
     return evaluateTrajectory(view.truth, view.estimate, options.sampling);
   });
   view.title = options.title.empty() ? options.estimate.filename().string() : options.title;
-  drawEvaluation(options, view);
-  if (options.json) writeJson(*options.json, scoreJson(options, errors));
+  if (options.scene) scene::save(*report::makeMapScene(view), *options.scene);
+  if (options.png) report::drawMapPng(view, *options.png);
+  if (options.json) {
+    auto json = errorsJson(errors);
+    json["per"] = options.sampling == Sampling::perMetre ? "metre" : "pose";
+    writeJson(*options.json, json);
+  }
   return errors;
 }
 

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "cli/CommandLine.h"
 
 namespace polemcl::apps {
 
@@ -35,6 +37,12 @@ struct EvalTrajectoryOptions {
 /// lon_mean ang_mean_deg ang_rmse_deg pos_max poses` and more), scene, picture.
 /// \throws Error naming the file and what is wrong, or when under half of the poses are matched.
 TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options);
+
+/// \brief Declares `detections`, `repeatability`, `rotation`, `model`, `sightings` and `motion`.
+std::vector<Subcommand> extractionCommands(CLI::App& program);
+
+/// \brief Declares `global`, `consistency` and `faults`.
+std::vector<Subcommand> localizationCommands(CLI::App& program);
 
 /// \brief The program. \return An ExitCode.
 int evalMain(int argc, const char* const* argv);

@@ -1,13 +1,11 @@
-#include "eval/EvalCommands.h"
-
 #include <cmath>
 #include <iomanip>
 #include <memory>
 #include <sstream>
 
-#include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "eval/DetectionModelApp.h"
+#include "eval/EvalApp.h"
 #include "eval/ExtractionEval.h"
 #include "eval/MotionEval.h"
 #include "io/file/TextFile.h"
@@ -60,16 +58,13 @@ Subcommand detectionsCommand(CLI::App& program) {
   cli.add_option("--scans", options->scans, "Folder that pole-simulate wrote")->required();
   cli.add_option("--poles", options->poles, "Rawlog of poles extracted from these scans")
       ->required();
-  cli.add_option("--radius", options->radius, "Distance within which a pole is right, m")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  addNumber(cli, "--radius", options->radius, "Distance within which a pole is right, m",
+            CLI::PositiveNumber);
   cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   cli.add_option("--visible", options->visible,
                  "Write the true poles visible in the scans to this table (CSV)");
-  cli.add_option("--min-scans", options->minScans,
-                 "Least number of scans that see a pole of that table")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  addNumber(cli, "--min-scans", options->minScans,
+            "Least number of scans that see a pole of that table", CLI::PositiveNumber);
   return {&cli, [options](bool) { return scoreText(evalDetections(*options)); }};
 }
 
@@ -92,19 +87,14 @@ Subcommand rotationCommand(CLI::App& program) {
   const auto set = std::make_shared<std::vector<std::string>>();
   addSetOption(cli, *set);
   cli.add_option("--input", options->input, "Rawlog of scans")->required();
-  cli.add_option("--every", options->every, "Turn every N-th scan only")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  cli.add_option("--radius", options->radius, "Distance within which a pole is found again, m")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  addNumber(cli, "--every", options->every, "Turn every N-th scan only", CLI::PositiveNumber)
+      ->type_name("N");
+  addNumber(cli, "--radius", options->radius, "Distance within which a pole is found again, m",
+            CLI::PositiveNumber);
   cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options, config, set](bool quiet) {
             Progress progress("turn", 0, quiet);
-            options->progress = [&](std::size_t done, std::size_t total) {
-              progress.update(done, total);
-            };
+            options->progress = progress.updates();
             return scoreText(evalRotation(*options, loadSettings(*config, *set)), options->radius);
           }};
 }
@@ -188,10 +178,9 @@ Subcommand motionCommand(CLI::App& program) {
   const auto options = std::make_shared<EvalMotionOptions>();
   cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
   cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
-  cli.add_option("--every", options->every, "Compare each scan with the N-th after it")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  addNumber(cli, "--every", options->every, "Compare each scan with the N-th after it",
+            CLI::PositiveNumber)
+      ->type_name("N");
   cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalMotion(*options)); }};
 }

@@ -2,10 +2,9 @@
 #include <memory>
 #include <sstream>
 
-#include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "eval/ConsistencyEval.h"
-#include "eval/EvalCommands.h"
+#include "eval/EvalApp.h"
 #include "eval/FaultTrials.h"
 #include "eval/GlobalTrials.h"
 
@@ -26,14 +25,10 @@ Subcommand globalCommand(CLI::App& program) {
   const auto shared = std::make_shared<GlobalTrialsOptions>();
   GlobalTrialsOptions& options = *shared;
   declareFiles(cli, options.files);
-  cli.add_option("--trials", options.trials, "Random starts")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  addNumber(cli, "--trials", options.trials, "Random starts", CLI::Range(1, 1000000));
   cli.add_option("--seed", options.seed, "Seed of the starts; the filter of trial i uses seed + i")
       ->capture_default_str();
-  cli.add_option("--metres", options.metres, "Longest path of a trial, m")
-      ->check(positiveNumber())
-      ->capture_default_str();
+  addNumber(cli, "--metres", options.metres, "Longest path of a trial, m", positiveNumber());
   cli.add_option("--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
@@ -74,14 +69,10 @@ Subcommand consistencyCommand(CLI::App& program) {
       ->required();
   cli.add_option("--health", options->health,
                  "run_NN_health.csv of each run: count only poses that are ok");
-  cli.add_option("--skip-seconds", options->skipSeconds,
-                 "Time after the first pose that is left out, s")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  cli.add_option("--skip-metres", options->skipMetres,
-                 "Path after the first pose that is left out, m")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  addNumber(cli, "--skip-seconds", options->skipSeconds,
+            "Time after the first pose that is left out, s", CLI::NonNegativeNumber);
+  addNumber(cli, "--skip-metres", options->skipMetres,
+            "Path after the first pose that is left out, m", CLI::NonNegativeNumber);
   cli.add_option("--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return localizationText(evalConsistency(*options)); }};
 }
@@ -101,21 +92,18 @@ Subcommand faultsCommand(CLI::App& program) {
       ->transform(CLI::CheckedTransformer(faults))
       ->type_name("none|kidnap|wrong-map|blind|stuck|slip");
   cli.add_option("--other-map", options.otherMap, "The wrong map (.polemap), for wrong-map");
-  cli.add_option("--trials", options.trials,
-                 "Number of trials, each with the fault at another place")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  addNumber(cli, "--trials", options.trials,
+            "Number of trials, each with the fault at another place", CLI::Range(1, 1000000));
   cli.add_option("--seed", options.seed, "Seed of the faults; the filter of trial i uses seed + i")
       ->capture_default_str();
   const auto number = [&](const char* flag, double& value, const char* meaning) {
-    cli.add_option(flag, value, meaning)->check(positiveNumber())->capture_default_str();
+    addNumber(cli, flag, value, meaning, positiveNumber());
   };
   number("--lead", options.fault.lead, "Time before the fault, s");
   number("--duration", options.fault.duration, "Duration of blind, stuck and slip, s");
   number("--tail", options.fault.tail, "Path after the fault, m");
-  cli.add_option("--slip", options.fault.slip, "Error of the slipping odometry's scale")
-      ->check(positiveNumber() & CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+  addNumber(cli, "--slip", options.fault.slip, "Error of the slipping odometry's scale",
+            positiveNumber() & CLI::Range(0.0, 1.0));
   cli.add_option("--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);

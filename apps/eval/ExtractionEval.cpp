@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/JsonFile.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/PoleVisibility.h"
@@ -11,14 +10,12 @@
 #include "io/dataset/LabelledScans.h"
 #include "io/dataset/ScanFolder.h"
 #include "io/file/AtomicFile.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
+#include "localize/TrialDrive.h"
 
 namespace polemcl::apps {
 namespace {
-
-nlohmann::ordered_json number(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-}
 
 nlohmann::ordered_json extractionJson(const DetectionScore& s) {
   return {{"scans", s.scans},
@@ -26,18 +23,18 @@ nlohmann::ordered_json extractionJson(const DetectionScore& s) {
           {"right", s.right},
           {"visible", s.visible},
           {"found", s.found},
-          {"precision", number(s.precision)},
-          {"recall", number(s.recall)},
-          {"centre_mean_m", number(s.centreMean)},
-          {"centre_median_m", number(s.centreMedian)},
-          {"centre_p90_m", number(s.centre90)},
-          {"radius_bias_m", number(s.radiusMean)},
-          {"radius_abs_median_m", number(s.radiusMedian)},
-          {"nees_mean", number(s.neesMean)},
-          {"nees_median", number(s.neesMedian)},
-          {"bias_along_m", number(s.biasAlong)},
-          {"bias_across_m", number(s.biasAcross)},
-          {"auc", number(s.auc)}};
+          {"precision", s.precision},
+          {"recall", s.recall},
+          {"centre_mean_m", s.centreMean},
+          {"centre_median_m", s.centreMedian},
+          {"centre_p90_m", s.centre90},
+          {"radius_bias_m", s.radiusMean},
+          {"radius_abs_median_m", s.radiusMedian},
+          {"nees_mean", s.neesMean},
+          {"nees_median", s.neesMedian},
+          {"bias_along_m", s.biasAlong},
+          {"bias_across_m", s.biasAcross},
+          {"auc", s.auc}};
 }
 
 nlohmann::ordered_json extractionJson(const RepeatabilityScore& s) {
@@ -50,16 +47,6 @@ nlohmann::ordered_json extractionJson(const RotationScore& s) {
           {"poles", s.poles},         {"turned_poles", s.turnedPoles},
           {"matched", s.matched},     {"share", s.share},
           {"back_share", s.backShare}};
-}
-
-/// Streams a rawlog that must hold poles.
-void streamStored(const std::filesystem::path& file,
-                  const std::function<void(const PoleScan&)>& consume) {
-  streamPoles(file.string(), {}, [&](const PoleScan& scan) {
-    if (!scan.stored)
-      throw Error(file.string() + ": holds scans, not poles; extract them with pole-extract first");
-    consume(scan);
-  });
 }
 
 /// A simulated drive: its scans, its poles, and how many scans each pole was visible in.
@@ -136,7 +123,7 @@ Eigen::Vector2d inMap(const Pose2D& pose, const PoleDetection& pole) {
 DetectionScore evalDetections(const EvalDetectionsOptions& options) {
   DetectionEvaluation evaluation(options.radius);
   SimulatedDrive drive(options.scans);
-  streamStored(options.poles, [&](const PoleScan& scan) {
+  streamStoredPoles(options.poles, [&](const PoleScan& scan) {
     evaluation.add(scan.observation->poles, drive.polesFor(scan));
   });
   const DetectionScore score = evaluation.score();
@@ -146,25 +133,18 @@ DetectionScore evalDetections(const EvalDetectionsOptions& options) {
 }
 
 RepeatabilityScore evalRepeatability(const EvalRepeatabilityOptions& options) {
-  const auto truth = io::planar(io::readTum(options.truth));
+  const auto truth = io::readPlanarTum(options.truth);
   std::vector<std::vector<Eigen::Vector2d>> scans_map;
-  streamStored(options.poles, [&](const PoleScan& scan) {
-    const auto pose = poseAt(truth, scan.time, 2.0);
-    if (!pose)
-      throw Error(options.truth.string() + ": no pose at " + io::fixed(scan.time, 6) +
-                  " s, the time of scan " + std::to_string(scan.index) + " of " +
-                  options.poles.string());
+  streamStoredPoles(options.poles, [&](const PoleScan& scan) {
+    const Pose2D pose = truePose(truth, options.truth, scan.time, scan.index, options.poles);
     scans_map.emplace_back();
     for (const PoleDetection& pole : scan.observation->polesInRobotFrame())
-      scans_map.back().push_back(inMap(*pose, pole));
+      scans_map.back().push_back(inMap(pose, pole));
   });
-  try {
-    const RepeatabilityScore score = evaluateRepeatability(scans_map);
-    if (options.json) writeJson(*options.json, extractionJson(score));
-    return score;
-  } catch (const Error& error) {
-    throw Error(options.poles.string() + ": " + error.what());
-  }
+  const RepeatabilityScore score =
+      io::located(options.poles.string() + ": ", [&] { return evaluateRepeatability(scans_map); });
+  if (options.json) writeJson(*options.json, extractionJson(score));
+  return score;
 }
 
 RotationScore evalRotation(const EvalRotationOptions& options, const Settings& settings) {

@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/RawlogActions.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
 namespace {
-
-/// Metres driven from the first scan to each.
-std::vector<double> drivenAlong(const std::vector<Pose2D>& truth) {
-  std::vector<double> driven(truth.size(), 0);
-  for (std::size_t i = 1; i < truth.size(); ++i)
-    driven[i] = driven[i - 1] + errorOf(truth[i], truth[i - 1]).metres;
-  return driven;
-}
 
 double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
@@ -23,30 +16,30 @@ double uniform(std::mt19937_64& random, double low, double high) {
 class Injector {
  public:
   Injector(const TrialDrive& drive, const FaultOptions& options, std::mt19937_64& random)
-      : m_drive(drive), m_options(options), m_random(random), m_driven(drivenAlong(drive.truth)) {}
+      : m_drive(drive),
+        m_options(options),
+        m_random(random),
+        m_driven(distancesDriven(drive.truth)) {}
 
   FaultyDrive inject() {
+    if (m_options.fault == Fault::kidnap) return kidnapped();
     FaultyDrive result;
     if (m_options.fault == Fault::none) {
       append(result, 0, m_drive.frames.size());
       result.begin = result.end = result.frames.size();
-      return finished(result);
-    }
-    if (m_options.fault == Fault::wrongMap) {
+    } else if (m_options.fault == Fault::wrongMap) {
       result.origin = drawStart(0, 0);
       append(result, result.origin, scanAfterMetres(result.origin));
-      return finished(result);
+    } else {
+      result.origin = drawStart(m_options.lead, m_options.duration);
+      const std::size_t begin = scanAfterSeconds(result.origin, m_options.lead);
+      const std::size_t end = scanAfterSeconds(begin, m_options.duration);
+      append(result, result.origin, scanAfterMetres(end));
+      result.begin = begin - result.origin;
+      result.end = end - result.origin;
+      spoil(result);
     }
-    if (m_options.fault == Fault::kidnap) return kidnapped();
-    const bool lasts = m_options.fault != Fault::kidnap;
-    result.origin = drawStart(m_options.lead, lasts ? m_options.duration : 0);
-    const std::size_t begin = scanAfterSeconds(result.origin, m_options.lead);
-    const std::size_t end = scanAfterSeconds(begin, m_options.duration);
-    append(result, result.origin, scanAfterMetres(end));
-    result.begin = begin - result.origin;
-    result.end = end - result.origin;
-    spoil(result);
-    return finished(result);
+    return result;
   }
 
  private:
@@ -112,7 +105,7 @@ class Injector {
     result.begin = result.end = result.frames.size();
     append(result, to, scanAfterMetres(to));
     result.jump = errorOf(m_drive.truth[to], m_drive.truth[from]).metres;
-    return finished(result);
+    return result;
   }
 
   /// A scan as far away as drawn, within 5 m; from it, the tail fits in.
@@ -141,10 +134,7 @@ class Injector {
       if (m_options.fault == Fault::blind) frame.poles_robot.clear();
       if (!frame.motion) continue;
       if (m_options.fault == Fault::stuck) {
-        frame.motion->mean = {};
-        const double xy = io::motionFloorMetres * io::motionFloorMetres;
-        const double yaw = io::motionFloorRadians * io::motionFloorRadians;
-        frame.motion->covariance = Eigen::Vector3d(xy, xy, yaw).asDiagonal();
+        frame.motion = standstill();
       } else if (m_options.fault == Fault::slip) {
         Pose2D& mean = frame.motion->mean;
         mean = {factor * mean.x, factor * mean.y, factor * mean.yaw};
@@ -152,8 +142,6 @@ class Injector {
       }
     }
   }
-
-  FaultyDrive finished(FaultyDrive& result) const { return std::move(result); }
 
   const TrialDrive& m_drive;
   const FaultOptions& m_options;
@@ -164,21 +152,8 @@ class Injector {
 }  // namespace
 
 const char* name(Fault fault) {
-  switch (fault) {
-    case Fault::kidnap:
-      return "kidnap";
-    case Fault::wrongMap:
-      return "wrong-map";
-    case Fault::blind:
-      return "blind";
-    case Fault::stuck:
-      return "stuck";
-    case Fault::slip:
-      return "slip";
-    case Fault::none:
-      break;
-  }
-  return "none";
+  static constexpr const char* names[] = {"none", "kidnap", "wrong-map", "blind", "stuck", "slip"};
+  return names[static_cast<int>(fault)];
 }
 
 FaultyDrive injectFault(const TrialDrive& drive, const FaultOptions& options,

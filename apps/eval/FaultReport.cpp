@@ -18,10 +18,13 @@ Json delays(const std::vector<FaultTrial>& trials, std::optional<Delay> FaultTri
     seconds.push_back((trial.*which)->seconds);
     metres.push_back((trial.*which)->metres);
   }
-  return {{"trials", seconds.size()},          {"median_s", quantile(seconds, 0.5)},
-          {"p95_s", quantile(seconds, 0.95)},  {"max_s", quantile(seconds, 1)},
-          {"median_m", quantile(metres, 0.5)}, {"p95_m", quantile(metres, 0.95)},
-          {"max_m", quantile(metres, 1)}};
+  return {{"trials", seconds.size()},
+          {"median_s", rankedValue(seconds, 0.5)},
+          {"p95_s", rankedValue(seconds, 0.95)},
+          {"max_s", rankedValue(seconds, 1)},
+          {"median_m", rankedValue(metres, 0.5)},
+          {"p95_m", rankedValue(metres, 0.95)},
+          {"max_m", rankedValue(metres, 1)}};
 }
 
 Json delayOf(const std::optional<Delay>& delay) {
@@ -67,11 +70,11 @@ Json summary(const std::vector<FaultTrial>& trials, const FaultTrialsOptions& op
   json["lost"] = delays(trials, &FaultTrial::lost);
   json["right"] = delays(trials, &FaultTrial::right);
   json["ok"] = delays(trials, &FaultTrial::ok);
-  json["error_after_median_m"] = quantile(errors, 0.5);
-  json["error_after_max_m"] = quantile(errors, 1);
-  json["error_largest_median_m"] = quantile(largest, 0.5);
-  json["ok_wrong_median_m"] = quantile(wrong, 0.5);
-  json["ok_wrong_max_m"] = quantile(wrong, 1);
+  json["error_after_median_m"] = rankedValue(errors, 0.5);
+  json["error_after_max_m"] = rankedValue(errors, 1);
+  json["error_largest_median_m"] = rankedValue(largest, 0.5);
+  json["ok_wrong_median_m"] = rankedValue(wrong, 0.5);
+  json["ok_wrong_max_m"] = rankedValue(wrong, 1);
   std::map<std::string, int> reasons;
   for (const FaultTrial& trial : trials)
     if (trial.lost) ++reasons[trial.lostReason];

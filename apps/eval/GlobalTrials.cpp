@@ -2,12 +2,12 @@
 
 #include <tbb/parallel_for.h>
 
-#include <chrono>
 #include <cmath>
 #include <random>
 #include <sstream>
 
 #include "cli/JsonFile.h"
+#include "cli/Progress.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -15,14 +15,6 @@ namespace polemcl::apps {
 namespace {
 
 using Outcome = GlobalTrial::Outcome;
-
-/// Metres driven from the first scan to each.
-std::vector<double> distanceAlong(const std::vector<Pose2D>& truth) {
-  std::vector<double> driven(truth.size(), 0);
-  for (std::size_t i = 1; i < truth.size(); ++i)
-    driven[i] = driven[i - 1] + errorOf(truth[i], truth[i - 1]).metres;
-  return driven;
-}
 
 GlobalTrial runGlobalTrial(const TrialDrive& drive, const std::vector<double>& driven,
                            std::size_t first, double metres, std::uint32_t seed) {
@@ -34,9 +26,8 @@ GlobalTrial runGlobalTrial(const TrialDrive& drive, const std::vector<double>& d
   for (std::size_t i = first; i < drive.frames.size() && driven[i] - driven[first] <= metres; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     const LocalizationUpdate update = localization.step(drive.frames[i]);
-    const auto end = std::chrono::steady_clock::now();
-    if (localization.searches() > searches)
-      trial.querySeconds.push_back(std::chrono::duration<double>(end - begin).count());
+    const double seconds = secondsSince(begin);
+    if (localization.searches() > searches) trial.querySeconds.push_back(seconds);
     searches = localization.searches();
     if (!update.estimate || update.health.state == HealthState::lost) continue;
     const PlanarError error = errorOf(update.estimate->mean, drive.truth[i]);
@@ -72,19 +63,19 @@ nlohmann::ordered_json globalSummary(const std::vector<GlobalTrial>& trials,
           {"right_share", counts[0] / all},
           {"wrong_share", counts[1] / all},
           {"ok_wrong", okWrong},
-          {"metres_median", quantile(metres, 0.5)},
-          {"metres_p95", quantile(metres, 0.95)},
-          {"metres_max", quantile(metres, 1)},
-          {"error_median_m", quantile(errors, 0.5)},
-          {"error_max_m", quantile(errors, 1)}};
+          {"metres_median", rankedValue(metres, 0.5)},
+          {"metres_p95", rankedValue(metres, 0.95)},
+          {"metres_max", rankedValue(metres, 1)},
+          {"error_median_m", rankedValue(errors, 0.5)},
+          {"error_max_m", rankedValue(errors, 1)}};
 }
 
 nlohmann::ordered_json timings(const std::vector<GlobalTrial>& trials) {
   std::vector<double> seconds;
   for (const GlobalTrial& trial : trials)
     seconds.insert(seconds.end(), trial.querySeconds.begin(), trial.querySeconds.end());
-  return {{"query_median_ms", 1e3 * quantile(seconds, 0.5)},
-          {"query_max_ms", 1e3 * quantile(seconds, 1)}};
+  return {{"query_median_ms", 1e3 * rankedValue(seconds, 0.5)},
+          {"query_max_ms", 1e3 * rankedValue(seconds, 1)}};
 }
 
 /// Timings lie apart, so that the figures are the same bytes each time.
@@ -107,7 +98,7 @@ void requireUsable(const GlobalTrialsOptions& options, double length) {
 
 std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
                                          const GlobalTrialsOptions& options) {
-  const std::vector<double> driven = distanceAlong(drive.truth);
+  const std::vector<double> driven = distancesDriven(drive.truth);
   requireUsable(options, driven.empty() ? 0 : driven.back());
   const auto last = std::upper_bound(driven.begin(), driven.end(), driven.back() - options.metres);
   const auto starts = static_cast<std::uint64_t>(last - driven.begin());

@@ -2,16 +2,12 @@
 
 #include <cmath>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/JsonFile.h"
-#include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
-#include "io/file/TextFile.h"
+#include "localize/TrialDrive.h"
 
 namespace polemcl::apps {
 namespace {
-
-constexpr double s_longestGap = 2;  // of the truth, s
 
 nlohmann::ordered_json motionJson(const Pose2D& motion) {
   return {{"m", std::hypot(motion.x, motion.y)}, {"deg", motion.yaw * 180 / M_PI}};
@@ -19,13 +15,13 @@ nlohmann::ordered_json motionJson(const Pose2D& motion) {
 
 nlohmann::ordered_json motionJson(const std::vector<MotionComparison>& stretches) {
   auto rows = nlohmann::ordered_json::array();
-  for (const MotionComparison& stretch : stretches) {
-    nlohmann::ordered_json row{{"scan", stretch.scan}, {"truth", motionJson(stretch.truth)}};
-    row["odometry"] = stretch.odometry ? motionJson(*stretch.odometry) : nlohmann::ordered_json();
-    row["poles"] = motionJson(stretch.poles.motion);
-    row["pairs"] = stretch.poles.pairs;
-    rows.push_back(row);
-  }
+  for (const MotionComparison& stretch : stretches)
+    rows.push_back(
+        {{"scan", stretch.scan},
+         {"truth", motionJson(stretch.truth)},
+         {"odometry", stretch.odometry ? motionJson(*stretch.odometry) : nlohmann::ordered_json()},
+         {"poles", motionJson(stretch.poles.motion)},
+         {"pairs", stretch.poles.pairs}});
   return rows;
 }
 
@@ -33,31 +29,24 @@ nlohmann::ordered_json motionJson(const std::vector<MotionComparison>& stretches
 
 std::vector<MotionComparison> evalMotion(const EvalMotionOptions& options) {
   if (options.every < 1) throw Error("--every 0 compares no scans: a number from 1 on is allowed");
-  const auto truth = io::planar(io::readTum(options.truth));
+  const auto truth = io::readPlanarTum(options.truth);
   std::vector<MotionComparison> result;
   std::vector<PoleDetection> before;
   Pose2D poseBefore;
   std::optional<Pose2D> odometry = Pose2D();
-  streamPoles(options.poles.string(), {}, [&](const PoleScan& scan) {
-    if (!scan.stored)
-      throw Error(options.poles.string() +
-                  ": holds scans, not poles; extract them with pole-extract first");
+  streamStoredPoles(options.poles, [&](const PoleScan& scan) {
     if (odometry && scan.motion) odometry = compose(*odometry, scan.motion->mean);
     if (!scan.motion) odometry.reset();
     if (scan.index % options.every != 0) return;
-    const auto pose = poseAt(truth, scan.time, s_longestGap);
-    if (!pose)
-      throw Error(options.truth.string() + ": no pose at " + io::fixed(scan.time, 6) +
-                  " s, the time of scan " + std::to_string(scan.index) + " of " +
-                  options.poles.string());
+    const Pose2D pose = truePose(truth, options.truth, scan.time, scan.index, options.poles);
     const auto poles = scan.observation->polesInRobotFrame();
     if (scan.index > 0) {
-      const Pose2D motion = relative(poseBefore, *pose);
+      const Pose2D motion = relative(poseBefore, pose);
       result.push_back({scan.index - options.every, motion, odometry,
                         refineMotion(before, poles, motion, RegistrationOptions())});
     }
     before = poles;
-    poseBefore = *pose;
+    poseBefore = pose;
     odometry = Pose2D();
   });
   if (result.empty())

@@ -138,13 +138,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
 namespace {
 
 void runExtraction(const ExtractOptions& options, const Settings& settings, bool quiet) {
-  ExtractSummary summary;
-  {
-    Progress progress("extract", 0, quiet);
-    summary = extractPoles(options, settings, [&](std::size_t done, std::size_t total) {
-      progress.update(done, total);
-    });
-  }
+  const auto summary = extractPoles(options, settings, Progress("extract", 0, quiet).updates());
   if (!quiet) print(summary, options);
 }
 

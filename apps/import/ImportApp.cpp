@@ -8,6 +8,7 @@
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "import/DatasetImport.h"
+#include "io/file/ErrorPlace.h"
 
 namespace polemcl::apps {
 namespace {
@@ -25,16 +26,6 @@ struct Texts {
   std::string sensorPose, posesOf = "robot", session;
 };
 
-/// What is wrong with the text, for CLI11; nothing when it is a pose.
-std::string sensorPoseProblem(const std::string& text) {
-  try {
-    parseSensorPose(text);
-    return {};
-  } catch (const Error& error) {
-    return error.what();
-  }
-}
-
 std::string ownSensorPose(Dataset dataset) {
   return dataset == Dataset::nclt ? "the body, turned upright, 0 0 0 0 0 180"
          : dataset == Dataset::mulran
@@ -47,10 +38,8 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
   cli.add_option("--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
       ->required();
   cli.add_flag("--embed", options.embed, "Store the clouds inside the rawlog");
-  cli.add_option("--every", options.every, "Take scans K, K+N, ...")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  addNumber(cli, "--every", options.every, "Take scans K, K+N, ...", CLI::PositiveNumber)
+      ->type_name("N");
   cli.add_option("--offset", options.offset, "First scan to take, from 0")
       ->type_name("K")
       ->check(CLI::NonNegativeNumber)
@@ -58,14 +47,13 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
   cli.add_option("--odometry-noise", options.odometryNoise,
                  "Make odometry from the true motion, with noise of this share (0.02 for 2 %)")
       ->check(CLI::NonNegativeNumber);
-  cli.add_option("--seed", options.seed, "Seed of that noise")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  addNumber(cli, "--seed", options.seed, "Seed of that noise", CLI::NonNegativeNumber);
   cli.add_option(
          "--sensor-pose", texts.sensorPose,
          "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\" (default: " +
              ownSensorPose(dataset) + ")")
-      ->check(sensorPoseProblem);
+      ->check(
+          [](const std::string& text) { return io::problemOf([&] { parseSensorPose(text); }); });
   auto* poses = cli.add_option("--poses", options.poses,
                                "TUM file of true poses, instead of those of the dataset");
   cli.add_option("--poses-of", texts.posesOf, "Whose poses these are")
@@ -114,12 +102,7 @@ int importMain(int argc, const char* const* argv) {
     if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);
     if (!texts.session.empty()) options.input /= texts.session;
     options.posesOfSensor = texts.posesOf == "sensor";
-    ImportReport report;
-    {
-      Progress progress("import", 0, line.quiet());
-      report = importDataset(
-          options, [&](std::size_t done, std::size_t total) { progress.update(done, total); });
-    }
+    const auto report = importDataset(options, Progress("import", 0, line.quiet()).updates());
     if (!line.quiet()) printImport(report, options);
   });
 }

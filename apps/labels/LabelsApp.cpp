@@ -81,12 +81,7 @@ int labelsMain(int argc, const char* const* argv) {
   LabelsOptions options;
   addLabelsOptions(line.cli(), options);
   return line.run(argc, argv, [&] {
-    LabelsSummary summary;
-    {
-      Progress progress("label", 0, line.quiet());
-      summary = mapLabels(
-          options, [&](std::size_t done, std::size_t total) { progress.update(done, total); });
-    }
+    const auto summary = mapLabels(options, Progress("label", 0, line.quiet()).updates());
     if (!line.quiet())
       std::cout << options.output.string() << ": " << summary.poles << " poles from "
                 << summary.points << " points in " << summary.scans << " scans\n";

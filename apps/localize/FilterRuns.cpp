@@ -4,8 +4,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <string>
+
+#include "cli/Progress.h"
 
 namespace polemcl::apps {
 
@@ -17,10 +18,6 @@ template <class Work>
 void forEachRun(std::size_t runs, const Work& work) {
   if (runs == 1) return work(0);
   tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, runs, work); });
-}
-
-double secondsSince(ScanClock::time_point begin) {
-  return std::chrono::duration<double>(ScanClock::now() - begin).count();
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "cli/Settings.h"
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
+#include "io/file/ErrorPlace.h"
 #include "localize/LocalizePlayer.h"
 #include "localize/LocalizeReport.h"
 #include "localize/Pace.h"
@@ -53,12 +54,7 @@ Settings effectiveSettings(const LocalizeJob& job) {
 
 /// What is known before the first scan; the truth gives the start where nothing else does.
 LocalizeFacts factsOf(const LocalizeJob& job, const Settings& settings, std::size_t mapPoles) {
-  LocalizeFacts facts;
-  facts.job = job;
-  facts.localization = settings.localization;
-  facts.start = settings.start;
-  facts.runs = settings.runs;
-  facts.mapPoles = mapPoles;
+  LocalizeFacts facts{job, settings.localization, settings.start, "", settings.runs, {}, mapPoles};
   if (facts.start.anywhere)
     facts.startSource = "anywhere";
   else if (!job.start.empty())
@@ -121,7 +117,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view);
   facts.counts = play(job, settings, view, player);
   LocalizeResult result = player.finish();
-  result.timings.wallSeconds = std::chrono::duration<double>(ScanClock::now() - begin).count();
+  result.timings.wallSeconds = secondsSince(begin);
   result.timings.rate = rateOf(job, settings);
   writeResults(folder, facts, settings, result);
   if (!job.quiet) {
@@ -134,22 +130,14 @@ LocalizeResult localize(const LocalizeJob& job) {
 
 namespace {
 
-std::string wrongRate(const std::string& text) {
-  try {
-    report::parseRate(text);
-    return "";
-  } catch (const Error& error) {
-    return error.what();
-  }
-}
-
 void addViewOptions(CLI::App& cli, LocalizeJob& job) {
   cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
   cli.add_flag("--hold", job.hold, "As --live, and keep the window until it is closed");
   cli.add_option("--rate", job.rate,
                  "Speed of the input: 1x as driven, 2.5x, max. Default: max; with a window "
                  "[view] rate")
-      ->check(wrongRate);
+      ->check(
+          [](const std::string& text) { return io::problemOf([&] { report::parseRate(text); }); });
   cli.add_option("--scenes", job.scenes,
                  "Write a .3Dscene every N scans, into OUTPUT/run_00_scenes")
       ->check(CLI::Range(0, 1000000000));

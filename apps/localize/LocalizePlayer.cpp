@@ -1,17 +1,10 @@
 #include "localize/LocalizePlayer.h"
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "cli/Progress.h"
 #include "core/common/PoseInterpolation.h"
 
 namespace polemcl::apps {
-
-namespace {
-
-double secondsFrom(ScanClock::time_point begin) {
-  return std::chrono::duration<double>(ScanClock::now() - begin).count();
-}
-
-}  // namespace
 
 LocalizePlayer::LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
                                const std::vector<StampedPose2D>* truth, const RunFolder& folder,
@@ -26,13 +19,13 @@ void LocalizePlayer::take(const PoleScan& scan) {
   const PoleFrame frame = frameOf(scan);
   if (!m_runs) begin(frame);
   const std::vector<FilterStep>& steps = m_runs->step(frame);
-  m_timings.total.add(secondsFrom(scan.arrival));
+  m_timings.total.add(secondsSince(scan.arrival));
 
   const auto found = ScanClock::now();
   if (m_truth) m_covered += poseAt(*m_truth, frame.time, longestTruthGap).has_value();
   for (std::size_t i = 0; i < steps.size(); ++i) m_files[i].add(steps[i].update);
   m_view.show(m_runs->localization(0), frame, steps[0].update);
-  m_timings.write.add(secondsFrom(found));
+  m_timings.write.add(secondsSince(found));
   for (const FilterStep& step : steps) m_timings.step.add(step.seconds);
   m_timings.read.add(scan.readSeconds);
   if (!scan.stored) m_timings.extract.add(scan.extractSeconds);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "cli/JsonFile.h"
 #include "cli/Version.h"
 #include "core/common/Angles.h"
 
@@ -13,16 +14,6 @@ namespace polemcl::apps {
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-/// Figures that are averaged over the runs, by the names of `pole-eval trajectory`.
-const std::pair<const char*, double TrajectoryErrors::*> figures[] = {
-    {"pos_mean", &TrajectoryErrors::posMean},
-    {"pos_rmse", &TrajectoryErrors::posRmse},
-    {"lat_mean", &TrajectoryErrors::latMean},
-    {"lon_mean", &TrajectoryErrors::lonMean},
-    {"ang_mean_deg", &TrajectoryErrors::angMeanDeg},
-    {"ang_rmse_deg", &TrajectoryErrors::angRmseDeg},
-    {"pos_max", &TrajectoryErrors::posMax}};
 
 struct Spread {
   double mean = 0, deviation = 0, largest = 0;
@@ -53,7 +44,7 @@ Json healthSummary(const FilterRun& run) {
   Json json;
   for (const auto state : {HealthState::ok, HealthState::degraded, HealthState::lost})
     json[name(state)] = run.states[static_cast<int>(state)];
-  json["first_pose_scan"] = run.firstPose ? Json(*run.firstPose) : Json();
+  json["first_pose_scan"] = run.firstPose;
   json["relocalizations"] = run.relocalizations;
   return json;
 }
@@ -99,15 +90,14 @@ Json inputs(const LocalizeFacts& facts) {
   json["seed"] = facts.runs.seed;
   if (facts.start.anywhere) {
     json["start"] = "anywhere";
-    json["start_source"] = facts.startSource;
-    return json;
+  } else {
+    const Pose2D& pose = *facts.start.pose;
+    json["start"] = {{"x", pose.x},
+                     {"y", pose.y},
+                     {"yaw_deg", pose.yaw / degree},
+                     {"radius_m", facts.start.radius},
+                     {"heading_deg", facts.start.heading / degree}};
   }
-  const Pose2D& pose = *facts.start.pose;
-  json["start"] = {{"x", pose.x},
-                   {"y", pose.y},
-                   {"yaw_deg", pose.yaw / degree},
-                   {"radius_m", facts.start.radius},
-                   {"heading_deg", facts.start.heading / degree}};
   json["start_source"] = facts.startSource;
   return json;
 }
@@ -117,12 +107,7 @@ Json runSummary(const LocalizeResult& result, std::size_t i) {
   Json json;
   json["trajectory"] = runName(i) + ".tum";
   json["seed"] = run.seed;
-  if (!result.errors.empty() && result.errors[i]) {
-    const TrajectoryErrors& errors = *result.errors[i];
-    for (const auto& [name, figure] : figures) json[name] = errors.*figure;
-    json["poses"] = errors.poses;
-    json["unmatched"] = errors.unmatched;
-  }
+  if (!result.errors.empty() && result.errors[i]) json.update(errorsJson(*result.errors[i]));
   json["resampled_scans"] = run.resampled;
   json["health"] = healthSummary(run);
   return json;
@@ -135,13 +120,21 @@ std::string runName(std::size_t run) {
   return "run_" + std::string(number.size() < 2 ? 2 - number.size() : 0, '0') + number;
 }
 
+Json errorsJson(const TrajectoryErrors& errors) {
+  Json json;
+  for (const auto& [name, metric] : trajectoryMetrics) json[name] = errors.*metric;
+  json["poses"] = errors.poses;
+  json["unmatched"] = errors.unmatched;
+  return json;
+}
+
 Json makeSummary(const LocalizeFacts& facts, const LocalizeResult& result) {
   Json json = inputs(facts);
   const std::vector<TrajectoryErrors> errors = known(result);
   if (!errors.empty()) {
     Json deviations;
-    for (const auto& [name, figure] : figures) {
-      const Spread spread = spreadOf(errors, figure);
+    for (const auto& [name, metric] : trajectoryMetrics) {
+      const Spread spread = spreadOf(errors, metric);
       json[name] = isLargest(name) ? spread.largest : spread.mean;
       deviations[name] = spread.deviation;
     }
@@ -178,10 +171,10 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
                   value(6));
     out << line;
   };
-  const auto spread = [&](int k) { return spreadOf(errors, figures[k].second); };
+  const auto spread = [&](int k) { return spreadOf(errors, trajectoryMetrics[k].second); };
   for (std::size_t i = 0; i < result.errors.size(); ++i)
     if (result.errors[i])
-      row(runName(i), [&](int k) { return (*result.errors[i]).*figures[k].second; });
+      row(runName(i), [&](int k) { return (*result.errors[i]).*trajectoryMetrics[k].second; });
   row("mean", [&](int k) { return spread(k).mean; });
   row("spread", [&](int k) { return spread(k).deviation; });
 }

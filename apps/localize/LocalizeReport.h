@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
+#include <utility>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "localize/LocalizeApp.h"
@@ -21,6 +22,18 @@ struct LocalizeFacts {
   SequenceCounts counts;
   std::size_t mapPoles = 0;
 };
+
+/// \brief The errors of a trajectory by their names in JSON: m and degrees.
+inline constexpr std::pair<const char*, double TrajectoryErrors::*> trajectoryMetrics[] = {
+    {"pos_mean", &TrajectoryErrors::posMean},
+    {"pos_rmse", &TrajectoryErrors::posRmse},
+    {"lat_mean", &TrajectoryErrors::latMean},
+    {"lon_mean", &TrajectoryErrors::lonMean},
+    {"ang_mean_deg", &TrajectoryErrors::angMeanDeg},
+    {"ang_rmse_deg", &TrajectoryErrors::angRmseDeg},
+    {"pos_max", &TrajectoryErrors::posMax}};
+/// \brief All of these, and the numbers of poses with and without truth.
+nlohmann::ordered_json errorsJson(const TrajectoryErrors& errors);
 
 /// \brief `run_00` for run 0; two digits or more.
 std::string runName(std::size_t run);

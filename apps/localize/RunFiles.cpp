@@ -9,8 +9,6 @@
 
 namespace polemcl::apps {
 
-namespace {}  // namespace
-
 RunFiles::RunFiles(const RunFolder& folder, std::size_t run,
                    const std::vector<StampedPose2D>* truth)
     : m_errorsFile(folder.staged(runName(run) + "_errors.csv")),

@@ -4,14 +4,11 @@
 #include <chrono>
 #include <thread>
 
-#include "localize/SceneRecorder.h"
+#include "cli/Progress.h"
 #include "report/scene/LiveScene.h"
 #include "report/scene/LiveWindow.h"
 
 namespace polemcl::apps {
-
-using SteadyClock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
 
 /// The window and what is drawn in it.
 class RunView::Screen {
@@ -26,22 +23,17 @@ class RunView::Screen {
   bool isOpen() const { return m_window->isOpen(); }
 
   /// More often than so the eye sees nothing new, and the run would only wait.
-  bool isDue() const { return Seconds(SteadyClock::now() - m_drawn).count() > 1.0 / 30; }
+  bool isDue() const { return secondsSince(m_drawn) > 1.0 / 30; }
 
   void draw(const report::LiveMoment& moment) {
     m_window->update([&] { m_scene.show(moment); }, m_scene.camera());
-    m_drawn = SteadyClock::now();
+    m_drawn = std::chrono::steady_clock::now();
   }
 
  private:
   report::LiveScene m_scene;
   std::unique_ptr<report::LiveWindow> m_window;
-  SteadyClock::time_point m_drawn;
-};
-
-class RunView::Recorder : public SceneRecorder {
- public:
-  using SceneRecorder::SceneRecorder;
+  std::chrono::steady_clock::time_point m_drawn;
 };
 
 RunView::RunView(const report::ViewOptions& options, const std::vector<MapPole>& map,
@@ -49,7 +41,8 @@ RunView::RunView(const report::ViewOptions& options, const std::vector<MapPole>&
     : m_options(options) {
   m_options.validate();
   if (m_options.scenes > 0 || !m_options.frames.empty())
-    m_recorder = std::make_unique<Recorder>(m_options, map, name, folder.staged("run_00_scenes"));
+    m_recorder =
+        std::make_unique<SceneRecorder>(m_options, map, name, folder.staged("run_00_scenes"));
   if (m_options.live) m_screen = std::make_unique<Screen>(m_options, map, name);
 }
 

@@ -6,8 +6,7 @@
 #include <string>
 
 #include "cli/RunFolder.h"
-#include "report/scene/LiveMoment.h"
-#include "report/scene/ViewOptions.h"
+#include "localize/SceneRecorder.h"
 
 namespace polemcl::apps {
 
@@ -41,10 +40,9 @@ class RunView {
 
  private:
   class Screen;
-  class Recorder;
   report::ViewOptions m_options;
   std::unique_ptr<Screen> m_screen;
-  std::unique_ptr<Recorder> m_recorder;
+  std::unique_ptr<SceneRecorder> m_recorder;
   report::Way m_way;
   std::size_t m_scan = 0;
   double m_start = 0;  ///< time of the first scan, s

@@ -1,12 +1,12 @@
 #include "localize/TrialDrive.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
+#include "core/common/Statistics.h"
 #include "io/data/Trajectory.h"
+#include "io/file/TextFile.h"
 
 namespace polemcl::apps {
 
@@ -29,17 +29,13 @@ TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
                    LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.global),
                    readPoleSequence(files.input.string(), reading).frames,
                    {}};
-  const auto truth = io::planar(io::readTum(files.truth));
+  const auto truth = io::readPlanarTum(files.truth);
   for (std::size_t i = 0; i < drive.frames.size(); ++i) {
     const PoleFrame& frame = drive.frames[i];
-    const auto pose = poseAt(truth, frame.time, longestTruthGap);
-    if (!pose)
-      throw Error(files.truth.string() + ": no true pose at " + std::to_string(frame.time) +
-                  " s, the time of scan " + std::to_string(i) + " of " + files.input.string());
     if (i > 0 && !frame.motion)
       throw Error(files.input.string() + ": no odometry before scan " + std::to_string(i) +
                   ": the filter needs it");
-    drive.truth.push_back(*pose);
+    drive.truth.push_back(truePose(truth, files.truth, frame.time, i, files.input));
   }
   return drive;
 }
@@ -53,10 +49,34 @@ bool isRight(const PlanarError& error) {
   return error.metres <= 0.5 && error.radians <= 2 * degree;
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+std::vector<double> distancesDriven(const std::vector<Pose2D>& truth) {
+  std::vector<double> driven(truth.size(), 0);
+  for (std::size_t i = 1; i < truth.size(); ++i)
+    driven[i] = driven[i - 1] + errorOf(truth[i], truth[i - 1]).metres;
+  return driven;
+}
+
+Pose2D truePose(const std::vector<StampedPose2D>& truth, const std::filesystem::path& truthFile,
+                double time, std::size_t scan, const std::filesystem::path& rawlog) {
+  const auto pose = poseAt(truth, time, longestTruthGap);
+  if (!pose)
+    throw Error(truthFile.string() + ": no true pose at " + io::fixed(time, 6) +
+                " s, the time of scan " + std::to_string(scan) + " of " + rawlog.string());
+  return *pose;
+}
+
+void streamStoredPoles(const std::filesystem::path& rawlog,
+                       const std::function<void(const PoleScan&)>& consume) {
+  streamPoles(rawlog.string(), {}, [&](const PoleScan& scan) {
+    if (!scan.stored)
+      throw Error(rawlog.string() +
+                  ": holds scans, not poles; extract them with pole-extract first");
+    consume(scan);
+  });
+}
+
+double rankedValue(const std::vector<double>& values, double share) {
+  return values.empty() ? 0 : nearestRank(values, share);
 }
 
 }  // namespace polemcl::apps

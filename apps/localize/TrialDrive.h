@@ -4,8 +4,11 @@
 /// take their trials from.
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
 
 namespace polemcl::apps {
@@ -34,8 +37,19 @@ PlanarError errorOf(const Pose2D& estimate, const Pose2D& truth);
 /// \brief Within 0.5 m and 2 degrees of the true pose.
 bool isRight(const PlanarError& error);
 
+/// \brief Distance driven from the first pose to each, m.
+std::vector<double> distancesDriven(const std::vector<Pose2D>& truth);
 /// \brief The value below which this share of them lies, at the nearest rank; 0 without values.
-double quantile(std::vector<double> values, double share);
+double rankedValue(const std::vector<double>& values, double share);
+
+/// \brief The true pose at the time of a scan. \param rawlog That holds the scan, for messages.
+/// \throws Error naming the files when the truth has none.
+Pose2D truePose(const std::vector<StampedPose2D>& truth, const std::filesystem::path& truthFile,
+                double time, std::size_t scan, const std::filesystem::path& rawlog);
+
+/// \brief Streams a rawlog of poles. \throws Error as streamPoles(), and when it holds scans.
+void streamStoredPoles(const std::filesystem::path& rawlog,
+                       const std::function<void(const PoleScan&)>& consume);
 
 /// \brief A map for `settings` from a file. \throws Error when it cannot be read or has no poles.
 std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,

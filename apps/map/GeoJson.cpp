@@ -9,6 +9,7 @@
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
 #include "io/file/Date.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl {
@@ -91,9 +92,8 @@ class Feature {
     return found;
   }
   Eigen::Vector2d place(const io::Datum& datum) const {
-    Eigen::Vector2d place = lonLat();
-    named([&] { place = onMap(place, datum); });
-    return place;
+    const Eigen::Vector2d found = lonLat();
+    return io::located(m_where, [&] { return onMap(found, datum); });
   }
   bool has(const char* name) const {
     const auto found = m_json.find("properties");
@@ -119,7 +119,7 @@ class Feature {
     if (!has(name.c_str())) return;
     const Json& json = m_json["properties"][name];
     if (!json.is_string()) fail(name + " is no day, YYYY-MM-DD");
-    named([&] { time = io::secondsOfDate(json.get<std::string>()); });
+    time = io::located(m_where, [&] { return io::secondsOfDate(json.get<std::string>()); });
   }
   void takeCovariance(Eigen::Matrix2d& covariance) const {
     if (!has("covariance")) return;
@@ -132,15 +132,6 @@ class Feature {
   }
 
  private:
-  /// An error of `work` with the name of the feature before it.
-  template <class Work>
-  void named(const Work& work) const {
-    try {
-      work();
-    } catch (const Error& error) {
-      fail(error.what());
-    }
-  }
   [[noreturn]] void fail(const std::string& what) const { throw Error(m_where + what); }
   const Json& m_json;
   std::string m_where;

@@ -57,10 +57,7 @@ Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const 
             job->datum = datumOf(line->datum);
             const Settings settings = loadSettings(line->config, line->set);
             Progress progress(name, 0, quiet);
-            const auto summary = work(*job, settings, [&](std::size_t done, std::size_t total) {
-              progress.update(done, total);
-            });
-            return summaryText(summary, *job);
+            return summaryText(work(*job, settings, progress.updates()), *job);
           }};
 }
 

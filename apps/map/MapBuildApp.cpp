@@ -5,6 +5,7 @@
 
 #include <polemcl/io/map/PoleMapFile.h>
 #include "cli/Version.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -17,11 +18,9 @@ MapAccumulator accumulator(const MapBuildJob& job, const Settings& settings) {
   if (!scans)
     throw Error(job.add->string() +
                 ": keeps no scans, so none can be added; build it with --keep-scans");
-  try {
-    return {settings.map, settings.upkeep, std::move(*scans)};
-  } catch (const Error& error) {
-    throw Error(job.add->string() + ": " + error.what());
-  }
+  return io::located(job.add->string() + ": ", [&] {
+    return MapAccumulator(settings.map, settings.upkeep, std::move(*scans));
+  });
 }
 
 /// The job's datum, or that of the map that is added to: both must be the same.
@@ -37,7 +36,7 @@ void addDrive(const MapBuildJob& job, std::size_t drive, MappingSession found,
               MapAccumulator& sessions, MapBuildSummary& summary) {
   if (!job.dates.empty()) setDate(found.scans, job.dates[drive]);
   sessions.add(job.inputs[drive].filename().string(), std::move(found.scans));
-  summary.skipped.add(found);
+  summary.skipped += found.skipped;
 }
 
 void countSessions(const AddedSessions& added, MapBuildSummary& summary) {

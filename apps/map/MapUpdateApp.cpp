@@ -41,8 +41,8 @@ void requireDateOrder(const std::vector<SessionScan>& scans, const LandmarkMap& 
 }
 
 /// Sessions of a map lie near it; one in another frame mostly does not.
-void requireNearMap(const std::vector<StampedPose2D>& path, const LandmarkMap& map,
-                    const std::filesystem::path& input, const std::filesystem::path& file) {
+void requireNearby(const std::vector<StampedPose2D>& path, const LandmarkMap& map,
+                   const std::filesystem::path& input, const std::filesystem::path& file) {
   constexpr double farthest = 10000;  // m
   Eigen::AlignedBox2d driven, mapped;
   for (const auto& [time, pose] : path) driven.extend(Eigen::Vector2d(pose.x, pose.y));
@@ -84,15 +84,15 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings
         loadMappingSession(job.inputs[i], job.truths[i], settings, job.allowTruncated, progress);
     if (session.scans.empty())
       throw Error(job.inputs[i].string() + ": no usable scan, " +
-                  std::to_string(session.emptyScans) + " without a valid point");
-    requireNearMap(session.path, map, job.inputs[i], job.map);
+                  std::to_string(session.skipped.emptyScans) + " without a valid point");
+    requireNearby(session.path, map, job.inputs[i], job.map);
     if (!job.dates.empty()) setDate(session.scans, job.dates[i]);
     requireDateOrder(session.scans, map, job.inputs[i], job.map);
     MapUpdateCounts counts;
     map = updateMap(map, session.scans, settings.map, settings.upkeep, &counts);
     requireSamePlace(counts, job.inputs[i], job.map);
     summary.sessions.push_back(counts);
-    summary.skipped.add(session);
+    summary.skipped += session.skipped;
     path.insert(path.end(), session.path.begin(), session.path.end());
   }
   const io::PoleMapData after = io::mapData(map, info);
@@ -114,8 +114,8 @@ std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job
         << " poles in view " << c.foundOnMap << " found; " << c.entered << " new, " << c.left
         << " vanished, " << c.moved << " moved; " << c.candidates << " candidates\n";
     if (c.withoutFreeRange > 0)
-      out << "scans without free ranges, in which nothing counts as missed: " << c.withoutFreeRange
-          << '\n';
+      out << "scans without visibility ranges, in which nothing counts as missed: "
+          << c.withoutFreeRange << '\n';
   }
   out << summary.skipped;
   return out.str();

@@ -37,38 +37,37 @@ MappingSession loadMappingSession(const std::filesystem::path& input,
   if (settings.map.minConfidence > 0)
     options.extraction.extraction.scanLine.minConfidence = settings.map.minConfidence;
   const PoleSequence sequence = readPoleSequence(input.string(), options, progress);
-  const auto truth = io::planar(io::readTum(truthFile));
+  const auto truth = io::readPlanarTum(truthFile);
   MappingSession session;
+  const SequenceCounts& counts = sequence.counts;
+  session.skipped = {counts.emptyScans, 0, counts.invalidPoints, counts.truncated};
   for (const auto& frame : sequence.frames) {
     if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
     const auto pose = poseAt(truth, frame.time, longestTruthGap);
     if (!pose) {
-      ++session.unmatched;
+      ++session.skipped.unmatched;
       continue;
     }
     session.scans.push_back(
         {frame.time, *pose, frame.poles_robot, frame.visibilityRange, frame.pose_robot_sensor});
     session.path.push_back({frame.time, *pose});
   }
-  if (session.unmatched > session.scans.size())
+  if (session.skipped.unmatched > session.scans.size())
     throw Error(truthFile.string() + ": has a pose at the time of only " +
                 std::to_string(session.scans.size()) + " of the " +
-                std::to_string(session.scans.size() + session.unmatched) + " scans of " +
+                std::to_string(session.scans.size() + session.skipped.unmatched) + " scans of " +
                 input.string() + " (" + io::fixed(sequence.frames.front().time, 3) + " to " +
                 io::fixed(sequence.frames.back().time, 3) +
                 " s), at least half are needed; is it "
                 "the truth of this rawlog?");
-  session.emptyScans = sequence.counts.emptyScans;
-  session.invalidPoints = sequence.counts.invalidPoints;
-  session.truncated = sequence.counts.truncated;
   return session;
 }
 
-void SkippedScans::add(const MappingSession& session) {
-  emptyScans += session.emptyScans;
-  unmatched += session.unmatched;
-  invalidPoints += session.invalidPoints;
-  truncated += session.truncated;
+void SkippedScans::operator+=(const SkippedScans& other) {
+  emptyScans += other.emptyScans;
+  unmatched += other.unmatched;
+  invalidPoints += other.invalidPoints;
+  truncated += other.truncated;
 }
 
 std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped) {

@@ -34,14 +34,20 @@ struct MappingJob {
   void validate() const;
 };
 
+/// \brief Scans that were not used, of one session or of several.
+struct SkippedScans {
+  std::size_t emptyScans = 0;     ///< without a valid point
+  std::size_t unmatched = 0;      ///< scans at whose time the truth says nothing
+  std::size_t invalidPoints = 0;  ///< dropped
+  std::size_t truncated = 0;      ///< inputs that ended too early, and that was allowed
+  void operator+=(const SkippedScans& other);
+};
+
 /// \brief The scans of one drive that have a true pose and a point.
 struct MappingSession {
   std::vector<SessionScan> scans;
   std::vector<StampedPose2D> path;  ///< of the scans
-  std::size_t unmatched = 0;        ///< scans at whose time the truth says nothing
-  std::size_t emptyScans = 0;       ///< without a valid point
-  std::size_t invalidPoints = 0;    ///< dropped
-  bool truncated = false;           ///< the rawlog ended too early, and that was allowed
+  SkippedScans skipped;
 };
 
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.
@@ -52,14 +58,6 @@ MappingSession loadMappingSession(const std::filesystem::path& input,
                                   const std::filesystem::path& truth, const Settings& settings,
                                   bool allowTruncated, const ScanProgress& progress);
 
-/// \brief Scans that were not used, summed over the sessions.
-struct SkippedScans {
-  std::size_t emptyScans = 0;     ///< without a valid point
-  std::size_t unmatched = 0;      ///< scans at whose time the truth says nothing
-  std::size_t invalidPoints = 0;  ///< dropped
-  std::size_t truncated = 0;      ///< inputs that ended too early, and that was allowed
-  void add(const MappingSession& session);
-};
 /// \brief A line for each count above 0.
 std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped);
 

@@ -8,6 +8,7 @@
 #include "cli/Progress.h"
 #include "cli/Settings.h"
 #include "core/sensor/SensorModel.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "sim/drive/Drive.h"
 
@@ -27,22 +28,20 @@ Settings simulationSettings(const SimulateOptions& options) {
     if (std::find(presets.begin(), presets.end(), *options.sensor) != presets.end())
       settings.sensor.model = *options.sensor;
   }
-  try {
+  io::located(options.config.string() + " and command line: ", [&] {
     simulation.validate();
     sim::makeLidar(simulation, settings.sensor);
-  } catch (const Error& error) {
-    throw Error(options.config.string() + " and command line: " + error.what());
-  }
+  });
   return settings;
 }
 
-void printDrive(const sim::SimulationSummary& summary, const SimulateOptions& options) {
+void print(const sim::SimulationSummary& summary, const SimulateOptions& options) {
   std::cout << summary.scans << " scans over " << io::fixed(summary.length, 1) << " m, "
             << summary.points << " points, " << summary.poles
             << " true poles: " << options.output->string() << '\n';
 }
 
-void printDrive(const PoleDriveSummary& summary, const SimulateOptions& options) {
+void print(const PoleDriveSummary& summary, const SimulateOptions& options) {
   std::cout << summary.poles << " poles in " << summary.scans << " scans ("
             << io::fixed(static_cast<double>(summary.poles) / static_cast<double>(summary.scans), 2)
             << " per scan) over " << io::fixed(summary.length, 1) << " m, " << summary.truePoles
@@ -53,30 +52,15 @@ const std::vector<std::string> folderNames{"velodyne",     "labels",       "time
                                            "odometry.txt", "poles_gt.csv", "config.ini"};
 const std::string folderMarker = "poles_gt.csv";
 
-/// A progress bar that knows its length from its first update on.
-class LateProgress {
- public:
-  explicit LateProgress(bool quiet) : m_quiet(quiet) {}
-  void update(std::size_t done, std::size_t total) {
-    if (!m_bar) m_bar.emplace("simulate", total, m_quiet);
-    m_bar->update(done);
-  }
-
- private:
-  std::optional<Progress> m_bar;
-  bool m_quiet;
-};
-
 }  // namespace
 
 sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet) {
   const Settings settings = simulationSettings(options);
   OutputFolder folder(*options.output, "a simulated drive", folderNames, folderMarker);
   saveSettings(settings, (folder.temporary() / "config.ini").string());
-  LateProgress bar(quiet);
-  const auto summary = sim::simulate(
-      settings.simulation, folder.temporary(),
-      [&](std::size_t done, std::size_t total) { bar.update(done, total); }, settings.sensor);
+  Progress progress("simulate", 0, quiet);
+  const auto summary =
+      sim::simulate(settings.simulation, folder.temporary(), progress.updates(), settings.sensor);
   folder.commit();
   return summary;
 }
@@ -96,11 +80,11 @@ PoleDriveSummary simulatePoles(const SimulateOptions& options, bool quiet) {
   const sim::SimulatedDrive drive(settings.simulation, settings.sensor);
   std::optional<sim::ScanFolderWriter> scans;
   if (folder) scans.emplace(drive, folder->temporary());
-  LateProgress bar(quiet);
-  const auto progress = [&](std::size_t done) { bar.update(done, drive.scans()); };
+  Progress progress("simulate", 0, quiet);
+  const auto update = [&](std::size_t done) { progress.update(done, drive.scans()); };
   const auto summary = settings.simulation.detections.empty()
-                           ? castPoles(drive, settings, files, scans ? &*scans : nullptr, progress)
-                           : samplePoles(drive, settings, files, progress);
+                           ? castPoles(drive, settings, files, scans ? &*scans : nullptr, update)
+                           : samplePoles(drive, settings, files, update);
   if (folder) folder->commit();
   return summary;
 }
@@ -127,10 +111,10 @@ int simulateMain(int argc, const char* const* argv) {
   return line.run(argc, argv, [&] {
     if (options.poles) {
       const auto summary = simulatePoles(options, line.quiet());
-      if (!line.quiet()) printDrive(summary, options);
+      if (!line.quiet()) print(summary, options);
     } else {
       const auto summary = simulateDrive(options, line.quiet());
-      if (!line.quiet()) printDrive(summary, options);
+      if (!line.quiet()) print(summary, options);
     }
   });
 }

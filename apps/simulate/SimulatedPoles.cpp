@@ -13,6 +13,7 @@
 #include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "io/file/AtomicFile.h"
+#include "io/file/ErrorPlace.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "sim/detections/DetectionSampler.h"
 
@@ -124,11 +125,8 @@ PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const Settings& set
     if (folder) folder->write(i, scan);
     ObservationPoleExtractor& extraction = extractions.local();
     extraction.checkNext(i < 3);  // by index, so that the threads have no say in it
-    try {
-      return extraction.process(cloudOf(scan));
-    } catch (const Error& error) {
-      throw Error("simulated scan " + std::to_string(i) + ": " + error.what());
-    }
+    return io::located("simulated scan " + std::to_string(i) + ": ",
+                       [&] { return extraction.process(cloudOf(scan)); });
   };
   writeInBlocks(drive.drive(), writer, polesOf, progress);
   return writer.commit(drive.world(), settings);
@@ -140,14 +138,9 @@ PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const Settings& s
   const std::string& file = drive.options().detections;
   auto options = drive.options();
   options.sensor = drive.lidar().name;  // more exact than "table"
-  const auto sampler = [&] {
-    const auto model = sim::readDetectionModel(file);
-    try {
-      return sim::DetectionSampler(model, drive.world(), options);
-    } catch (const Error& error) {
-      throw Error(file + ": " + error.what());
-    }
-  }();
+  const auto model = sim::readDetectionModel(file);
+  const auto sampler = io::located(
+      file + ": ", [&] { return sim::DetectionSampler(model, drive.world(), options); });
   PoleDriveWriter writer(drive.options(), files);
   const auto polesOf = [&](std::size_t i) {
     auto observation = std::make_shared<CObservationPoles>();

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cli/SettingsPage.h"
+#include "cli/Settings.h"
 
 namespace polemcl::test_settings_page {
 

@@ -319,7 +319,7 @@ TEST(Includes, RightIncludesAreLeftAlone) {
       {"libpolemcl/src/mrpt/map/A.cpp", "#include \"io/file/AtomicFile.h\""},
       {"libpolemcl/src/sim/common/A.cpp", "#include <polemcl/config/Config.h>"},
       {"libpolemcl/src/report/scene/A.cpp", "#include \"sim/world/World.h\""},
-      {"apps/map/main.cpp", "#include \"map/MapApp.h\""},
+      {"apps/map/A.cpp", "#include \"map/MapApp.h\""},
       {"libpolemcl/include/polemcl/core/common/A.h", "#include <polemcl/export.h>"},
   };
   for (const auto& [path, line] : right)

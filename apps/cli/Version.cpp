@@ -1,7 +1,0 @@
-#include "cli/Version.h"
-
-namespace polemcl::apps {
-const char* version() {
-  return POLEMCL_VERSION;
-}
-}  // namespace polemcl::apps
