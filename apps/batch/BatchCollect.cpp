@@ -26,7 +26,6 @@ namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::ordered_json;
 using report::noFigure;
 
 /// Without the sections that tell of simulation, views and numbers of runs: a batch has its own.

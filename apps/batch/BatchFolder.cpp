@@ -21,7 +21,6 @@ namespace polemcl::apps {
 namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr const char* s_marker = "plan.json";
 constexpr const char* s_lock = ".lock";
 

@@ -7,7 +7,6 @@
 namespace polemcl::apps {
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr const char* s_format = "polemcl batch plan 2";
 constexpr const char* s_kinds[] = {"poles", "truth", "map", "score", "run"};  // by TaskKind
 

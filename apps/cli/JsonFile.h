@@ -17,12 +17,14 @@ struct nlohmann::adl_serializer<std::optional<T>> {
 
 namespace polemcl::apps {
 
+using Json = nlohmann::ordered_json;
+
 /// \brief Writes the value, indented by two, atomically: the file is complete or as it was before.
 /// Numbers keep all their digits; what is not finite becomes `null`.
 /// \throws Error when it cannot be written.
-void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& value);
+void writeJson(const std::filesystem::path& file, const Json& value);
 
 /// \throws Error naming the file when it cannot be read or holds no JSON.
-nlohmann::ordered_json readJson(const std::filesystem::path& file);
+Json readJson(const std::filesystem::path& file);
 
 }  // namespace polemcl::apps

@@ -9,8 +9,6 @@
 namespace polemcl::apps {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json delays(const std::vector<FaultTrial>& trials, std::optional<Delay> FaultTrial::*which) {
   std::vector<double> seconds, metres;
   for (const FaultTrial& trial : trials) {

@@ -11,8 +11,6 @@
 
 namespace polemcl::apps {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
 
 struct Spread {

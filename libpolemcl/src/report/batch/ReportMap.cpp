@@ -9,7 +9,7 @@
 namespace polemcl::report {
 namespace {
 
-constexpr double mapWidth = 480, mapRight = 12, top = 12, bottom = 46;
+constexpr double mapWidth = 480, mapRight = 12, above = 12, below = 46;
 constexpr double mapMargin = 14;  // between the content and the frame, pixels
 constexpr double leastHeight = 180, mostHeight = 440;
 
@@ -86,8 +86,8 @@ std::string mapFigure(const BatchResults& results, const SessionResult& result, 
   const std::string& configuration = results.configurations[result.configuration].name;
   const double left = leftMargin(box), height = frameHeight(box, left);
   const PlotAxes axes =
-      equalScales({left, top, mapWidth - left - mapRight, height}, box.x, box.y, mapMargin);
-  SvgPlot plot(ids.next(), mapWidth, top + height + bottom, "Map and paths of " + session,
+      equalScales({left, above, mapWidth - left - mapRight, height}, box.x, box.y, mapMargin);
+  SvgPlot plot(ids.next(), mapWidth, above + height + below, "Map and paths of " + session,
                "Map poles, true path and the path estimated by run 0 with the setting " +
                    configuration + ", seen from above.");
   drawAxes(plot, axes);

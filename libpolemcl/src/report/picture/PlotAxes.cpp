@@ -8,7 +8,7 @@
 namespace polemcl::report {
 namespace {
 
-constexpr Color panel = rgb(0xf6f7f9);
+constexpr Color background = rgb(0xf6f7f9);
 constexpr Color gridLine = rgb(0xdfe3e8);
 constexpr Color labelColor = rgb(0x5b6470);
 constexpr double labelSize = 14;
@@ -42,7 +42,7 @@ PlotAxes equalScales(const Rect& frame, const AxisRange& x, const AxisRange& y,
 
 void drawGrid(Canvas& canvas, const PlotAxes& axes, const GridStyle& style) {
   const Rect& frame = axes.frame;
-  canvas.fill(frame, panel);
+  canvas.fill(frame, background);
   const auto step = [](const AxisRange& range, double pixels) {
     return tickStep(range.span(), std::max(3, static_cast<int>(pixels)));
   };
