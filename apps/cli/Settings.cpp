@@ -42,6 +42,7 @@ void bind(Binder& binder, Settings& settings) {
   bind(binder, settings.localization.health);
   bind(binder, settings.localization.search);
   bind(binder, settings.localization.odometryMonitor);
+  bind(binder, settings.localization.odometryCalibration);
   bind(binder, settings.runs);
   bind(binder, settings.view);
   bind(binder, settings.simulation);

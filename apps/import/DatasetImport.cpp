@@ -10,6 +10,7 @@
 
 #include <polemcl/io/data/Cloud.h>
 #include "cli/RawlogActions.h"
+#include "config/TimingComment.h"
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/KittiOdometry.h"
@@ -18,6 +19,7 @@
 #include "io/dataset/Nclt.h"
 #include "io/dataset/ScanPoses.h"
 #include "io/file/AtomicFile.h"
+#include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 
@@ -144,6 +146,13 @@ void protectPoses(const ImportOptions& options) {
                 options.output.string() + " would replace it; choose another name for --output");
 }
 
+ScanTiming timingOf(const ImportOptions& options) {
+  if (options.timing) return *options.timing;
+  const auto file = options.input / "scan_timing.ini";
+  if (!std::filesystem::exists(file)) return datasetTiming(options.dataset);
+  return timingIn(io::readBytes(file), file.string());
+}
+
 /// Both files appear together, when both are complete.
 void publish(RawlogWriter& rawlog, std::optional<io::AtomicFile>& truthFile,
              const std::vector<io::StampedPose3D>& truth) {
@@ -171,6 +180,22 @@ Eigen::Isometry3d datasetSensorPose(Dataset dataset) {
   return Eigen::Isometry3d::Identity();
 }
 
+ScanTiming datasetTiming(Dataset dataset) {
+  switch (dataset) {
+    case Dataset::kittiOdometry:
+    case Dataset::nclt:
+      return {Turn::compensated};
+    case Dataset::kittiRaw:  // begins at the back, stamped when it faces forward
+      return {Turn::clockwise, 0.1, M_PI, 0.5};
+    case Dataset::mulran:  // begins at the plug, which points backwards: along x of the clouds
+      return {Turn::clockwise, 0.1, 0, 0};
+    case Dataset::folder:
+    case Dataset::pcd:
+      break;
+  }
+  return {};
+}
+
 ImportReport importDataset(const ImportOptions& options,
                            const std::function<void(std::size_t, std::size_t)>& progress) {
   options.validate();
@@ -193,6 +218,8 @@ ImportReport importDataset(const ImportOptions& options,
   if (folder.scans.front().T_map_robot) truthFile.emplace(truthBeside(options.output));
   std::vector<io::StampedPose3D> truth;
   MotionSource motions(options);
+  if (const ScanTiming timing = timingOf(options); timing.turn != Turn::automatic)
+    rawlog.writeComment(timingComment(timing));
   for (std::size_t i = 0; i < folder.scans.size(); ++i) {
     const auto& scan = folder.scans[i];
     motions.pass(scan);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/sensor/ScanTiming.h>
+
 namespace polemcl::apps {
 
 enum class Dataset { folder, kittiOdometry, kittiRaw, nclt, mulran, pcd };
@@ -33,6 +35,9 @@ struct ImportOptions {
   /// The sensor in the robot frame: stored in every observation, turns sensor poses into robot
   /// poses. Without it the dataset's own, see datasetSensorPose().
   std::optional<Eigen::Isometry3d> T_robot_sensor;
+  /// When the points of a scan were measured; stored in the comment of the rawlog. Without it,
+  /// `scan_timing.ini` in the folder of the dataset, else datasetTiming().
+  std::optional<ScanTiming> timing;
   /// \throws Error naming the option.
   void validate() const;
 };
@@ -40,6 +45,9 @@ struct ImportOptions {
 /// \brief Default pose of the frame of the clouds on the robot: NCLT's body, turned
 /// upright; MulRan's Ouster on the vehicle; else identity.
 Eigen::Isometry3d datasetSensorPose(Dataset dataset);
+
+/// \brief Measuring times of the scans as a dataset publishes them; `automatic`: not known.
+ScanTiming datasetTiming(Dataset dataset);
 
 /// \brief What an import did.
 struct ImportReport {

@@ -7,6 +7,7 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
+#include "core/common/Angles.h"
 #include "import/DatasetImport.h"
 #include "io/file/ErrorPlace.h"
 
@@ -23,14 +24,33 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
 
 /// Options as they are typed.
 struct Texts {
-  std::string sensorPose, posesOf = "robot", session;
+  std::string sensorPose, posesOf = "robot", session, turn;
+  ScanTiming timing;
+  double cutDeg = 180;
+  std::optional<ScanTiming> stated() const;
 };
+
+std::optional<ScanTiming> Texts::stated() const {
+  if (turn.empty()) return std::nullopt;
+  ScanTiming result = timing;
+  for (const auto& [value, name] : turnNames())
+    if (name == turn) result.turn = value;
+  result.cut = cutDeg * degree;
+  return result;
+}
 
 std::string ownSensorPose(Dataset dataset) {
   return dataset == Dataset::nclt ? "the body, turned upright, 0 0 0 0 0 180"
          : dataset == Dataset::mulran
              ? "its calibration, 1.7042 -0.021 1.8047 179.6654 0.0003 0.0001"
              : "0";
+}
+
+std::string ownTiming(Dataset dataset) {
+  const ScanTiming timing = datasetTiming(dataset);
+  for (const auto& [value, name] : turnNames())
+    if (value == timing.turn) return value == Turn::automatic ? "scan_timing.ini, if there" : name;
+  return {};
 }
 
 void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
@@ -54,6 +74,23 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
              ownSensorPose(dataset) + ")")
       ->check(
           [](const std::string& text) { return io::problemOf([&] { parseSensorPose(text); }); });
+  auto* turn = cli.add_option("--turn", texts.turn,
+                              "How the LiDAR turns while it measures a scan, seen from above; "
+                              "compensated: the scans are corrected for motion (default: " +
+                                  ownTiming(dataset) + ")");
+  turn->check(CLI::IsMember({"compensated", "clockwise", "counterclockwise"}));
+  cli.add_option("--turn-s", texts.timing.seconds, "Duration of a turn, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->needs(turn);
+  cli.add_option("--cut-deg", texts.cutDeg, "Azimuth at which a scan begins and ends")
+      ->capture_default_str()
+      ->needs(turn);
+  cli.add_option("--stamp-turn", texts.timing.stamp,
+                 "Moment of the time stamps: 0 begin of the turn, 1 end of it")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->needs(turn);
   auto* poses = cli.add_option("--poses", options.poses,
                                "TUM file of true poses, instead of those of the dataset");
   cli.add_option("--poses-of", texts.posesOf, "Whose poses these are")
@@ -101,6 +138,7 @@ int importMain(int argc, const char* const* argv) {
       if (command->parsed()) options.dataset = dataset;
     if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);
     if (!texts.session.empty()) options.input /= texts.session;
+    options.timing = texts.stated();
     options.posesOfSensor = texts.posesOf == "sensor";
     const auto report = importDataset(options, Progress("import", 0, line.quiet()).updates());
     if (!line.quiet()) printImport(report, options);

@@ -2,6 +2,7 @@
 
 #include <ostream>
 
+#include <polemcl/core/common/Deskew.h>
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/Date.h"
@@ -29,6 +30,23 @@ void MappingJob::validate() const {
     throw Error("--output " + output.string() + ": the name must end in .polemap");
 }
 
+namespace {
+
+/// Velocity at a time, from the poses 0.05 s before and after, half a turn of most LiDARs. Zero
+/// where the trajectory has a gap.
+Velocity velocityAt(const std::vector<StampedPose2D>& trajectory, double time) {
+  constexpr double half = 0.05;
+  const auto here = poseAt(trajectory, time, longestTruthGap);
+  const auto before = poseAt(trajectory, time - half, longestTruthGap);
+  const auto after = poseAt(trajectory, time + half, longestTruthGap);
+  if (before && after) return velocityOf(relative(*before, *after), 2 * half);
+  if (after && here) return velocityOf(relative(*here, *after), half);
+  if (before && here) return velocityOf(relative(*before, *here), half);
+  return {};
+}
+
+}  // namespace
+
 MappingSession loadMappingSession(const std::filesystem::path& input,
                                   const std::filesystem::path& truthFile, const Settings& settings,
                                   bool allowTruncated, const ScanProgress& progress) {
@@ -48,8 +66,10 @@ MappingSession loadMappingSession(const std::filesystem::path& input,
       ++session.skipped.unmatched;
       continue;
     }
+    auto poles_robot = frame.poles_robot;
+    deskew(poles_robot, velocityAt(truth, frame.time));
     session.scans.push_back(
-        {frame.time, *pose, frame.poles_robot, frame.visibilityRange, frame.pose_robot_sensor});
+        {frame.time, *pose, poles_robot, frame.visibilityRange, frame.pose_robot_sensor});
     session.path.push_back({frame.time, *pose});
   }
   if (session.skipped.unmatched > session.scans.size())

@@ -124,6 +124,7 @@ PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const Settings& set
     const sim::SimulatedScan scan = drive.scan(i);
     if (folder) folder->write(i, scan);
     ObservationPoleExtractor& extraction = extractions.local();
+    if (drive.options().motionDistortion) extraction.setRecordedTiming(timingOf(drive.lidar()));
     extraction.checkNext(i < 3);  // by index, so that the threads have no say in it
     return io::located("simulated scan " + std::to_string(i) + ": ",
                        [&] { return extraction.process(cloudOf(scan)); });

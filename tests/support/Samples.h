@@ -36,6 +36,7 @@ inline CObservationPoles observation() {
   scan.sensorPose = mrpt::poses::CPose3D(1, 2, 1.5, M_PI / 2, 0.0, 0.0);
   scan.poles = {pole(5, 0), pole(-3, 4)};
   scan.poles[1].radius = 0.2;
+  scan.poles[1].timeOffset = -0.02;
   scan.visibilityRange = {1, 2.5, 0, 4};
   scan.points = 1234;
   return scan;

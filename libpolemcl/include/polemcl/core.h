@@ -4,6 +4,7 @@
 /// localization.
 
 #include <polemcl/core/common/Binder.h>
+#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/common/PathSections.h>
 #include <polemcl/core/common/PoleIndex.h>
 #include <polemcl/core/common/PoseEstimate.h>
@@ -18,6 +19,7 @@
 #include <polemcl/core/localization/LocalSubmap.h>
 #include <polemcl/core/localization/LocalizationHealth.h>
 #include <polemcl/core/localization/MapAssociation.h>
+#include <polemcl/core/localization/OdometryCalibration.h>
 #include <polemcl/core/localization/OdometryDrift.h>
 #include <polemcl/core/localization/OdometryMonitor.h>
 #include <polemcl/core/localization/PoleLikelihood.h>
@@ -26,5 +28,6 @@
 #include <polemcl/core/mapping/PoleExistence.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include <polemcl/core/sensor/PinholeCamera.h>
+#include <polemcl/core/sensor/ScanTiming.h>
 #include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/version.h>

@@ -94,11 +94,27 @@ TEST(Settings, KnowsEverySection) {
   std::vector<std::string> sections;
   for (std::string line; std::getline(lines, line);)
     if (!line.empty() && line[0] == '[') sections.push_back(line);
-  const std::vector<std::string> expected{
-      "[sensor]",           "[extraction]", "[range_image]", "[scan_line]",  "[map]",
-      "[map_update]",       "[likelihood]", "[motion]",      "[filter]",     "[start]",
-      "[tracking]",         "[submap]",     "[global]",      "[health]",     "[search]",
-      "[odometry_monitor]", "[runs]",       "[view]",        "[simulation]", "[world]"};
+  const std::vector<std::string> expected{"[sensor]",
+                                          "[extraction]",
+                                          "[range_image]",
+                                          "[scan_line]",
+                                          "[map]",
+                                          "[map_update]",
+                                          "[likelihood]",
+                                          "[motion]",
+                                          "[filter]",
+                                          "[start]",
+                                          "[tracking]",
+                                          "[submap]",
+                                          "[global]",
+                                          "[health]",
+                                          "[search]",
+                                          "[odometry_monitor]",
+                                          "[odometry_calibration]",
+                                          "[runs]",
+                                          "[view]",
+                                          "[simulation]",
+                                          "[world]"};
   EXPECT_TRUE(
       std::is_permutation(sections.begin(), sections.end(), expected.begin(), expected.end()))
       << testing::PrintToString(sections);

@@ -7,6 +7,7 @@
 
 #include "import/ImportApp.h"
 #include "mrpt/rawlog/RawlogReader.h"
+#include "support/ExpectHas.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_import_app {
@@ -44,7 +45,35 @@ class ImportApp : public testing::Test {
   TempFolder folder;
 };
 
+std::string commentOf(const fs::path& rawlog) {
+  polemcl::RawlogReader reader(rawlog.string());
+  polemcl::RawlogEntry entry;
+  reader.next(entry);
+  return reader.comment();
+}
+
 }  // namespace
+
+TEST_F(ImportApp, KeepsTheMeasuringTimesInTheRawlog) {
+  writeLine(folder / "in", 2);
+  EXPECT_EQ(run("folder").code, 0);
+  EXPECT_EQ(commentOf(folder / "out.rawlog"), "") << "nothing is known of them";
+  const std::vector<std::string> stated{
+      "--turn", "counterclockwise", "--cut-deg", "-90", "--turn-s", "0.05", "--stamp-turn", "1"};
+  EXPECT_EQ(run("folder", stated).code, 0);
+  const std::string comment = commentOf(folder / "out.rawlog");
+  for (const char* line :
+       {"turn = counterclockwise", "cut_deg = -90", "turn_s = 0.05", "stamp_turn = 1"})
+    EXPECT_HAS(comment, line);
+  writeText(folder / "in" / "scan_timing.ini", "[scan_timing]\nturn = clockwise\n");
+  EXPECT_EQ(run("folder").code, 0);
+  EXPECT_HAS(commentOf(folder / "out.rawlog"), "turn = clockwise");
+  EXPECT_EQ(run("folder", stated).code, 0);
+  EXPECT_HAS(commentOf(folder / "out.rawlog"), "turn = counterclockwise");
+  writeText(folder / "in" / "scan_timing.ini", "[scan_timing]\nturn = around\n");
+  expectFailure(run("folder"), {"scan_timing.ini", "turn = around"});
+  EXPECT_EQ(run("folder", {"--cut-deg", "90"}).code, 2) << "needs --turn";
+}
 
 TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
   for (const char* name : {"1.pcd", "2.pcd"})
@@ -103,6 +132,7 @@ TEST_F(ImportApp, ImportsKittiRawWithTheCalibrationOfItsDate) {
                                            (folder / "out.rawlog").string()};
   auto outcome = runProgram(importMain, arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_HAS(commentOf(folder / "out.rawlog"), "turn = clockwise") << "raw scans";
   fs::rename(folder / "date" / "calib_imu_to_velo.txt", folder / "calib_imu_to_velo.txt");
   expectFailure(runProgram(importMain, arguments), {"calib_imu_to_velo.txt"});
   auto elsewhere = arguments;

@@ -28,6 +28,27 @@ TEST(ObservationPoleExtractor, LevelCloudsGoThroughUntouched) {
   EXPECT_GE(found(*scan, 0.05), 6);
 }
 
+// Clockwise from the back, stamped at the front: what is at the left was measured before.
+TEST(ObservationPoleExtractor, PolesHaveTheTimesOfTheirAzimuths) {
+  auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  const auto offsetsFit = [&](ObservationPoleExtractor& extraction, const CPose3D& pose, int sign) {
+    const auto scan = extraction.process(*observationOf(cloud, pose));
+    EXPECT_GE(scan->poles.size(), 6u);
+    for (const PoleDetection& pole : scan->poles)
+      EXPECT_NEAR(pole.timeOffset, sign * 0.1 * std::atan2(pole.y, pole.x) / (2 * M_PI), 1e-9);
+  };
+  ObservationPoleExtractor recorded(options);
+  offsetsFit(recorded, CPose3D(), 0);
+  recorded.setRecordedTiming({Turn::clockwise, 0.1, M_PI, 0.5});
+  offsetsFit(recorded, CPose3D(), -1);
+  offsetsFit(recorded, CPose3D(1, 2, 1.5, 0.7, 0, 0), -1);
+  options.sensor.timing.turn = Turn::compensated;  // settings come before the recording
+  ObservationPoleExtractor set(options);
+  set.setRecordedTiming({Turn::clockwise, 0.1, M_PI, 0.5});
+  offsetsFit(set, CPose3D(), 0);
+}
+
 // The planar sensor frame moves with the sensor pose; positions in it stay the same.
 TEST(ObservationPoleExtractor, SensorPoseDoesNotChangeWhatTheSensorSees) {
   const auto options = hdl32(1.5);

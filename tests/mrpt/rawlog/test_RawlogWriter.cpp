@@ -30,6 +30,23 @@ CActionCollection move(CActionRobotMovement2D::TEstimationMethod method) {
   return actions;
 }
 
+TEST(RawlogWriter, TheCommentIsThatOfMrpt) {
+  const samples::Folder folder("RawlogComment");
+  RawlogWriter writer(folder / "s.rawlog");
+  writer.writeComment("said");
+  writer.write(samples::observation());
+  writer.commit();
+  RawlogReader reader(folder / "s.rawlog");
+  RawlogEntry entry;
+  ASSERT_TRUE(reader.next(entry));
+  EXPECT_TRUE(entry.observation);
+  EXPECT_EQ(reader.comment(), "said");
+  CRawlog log;
+  ASSERT_TRUE(log.loadFromRawLogFile(folder / "s.rawlog"));
+  EXPECT_EQ(log.getCommentText(), "said");
+  EXPECT_EQ(log.size(), 1u);
+}
+
 TEST(RawlogWriter, PairsAndObservationsSurvive) {
   const samples::Folder folder("RawlogWriter");
   RawlogWriter writer(folder / "s.rawlog");
@@ -54,6 +71,8 @@ TEST(RawlogWriter, PairsAndObservationsSurvive) {
   ASSERT_TRUE(reader.next(entry));
   EXPECT_TRUE(entry.observation);
   EXPECT_FALSE(reader.next(entry));
+
+  EXPECT_EQ(reader.comment(), "");
 
   CRawlog log;  // MRPT's own reader too
   ASSERT_TRUE(log.loadFromRawLogFile(folder / "s.rawlog"));

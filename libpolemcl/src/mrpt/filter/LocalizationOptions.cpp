@@ -40,6 +40,7 @@ void bind(Binder& b, LocalizationOptions& o) {
   bind(b, o.health);
   bind(b, o.search);
   bind(b, o.odometryMonitor);
+  bind(b, o.odometryCalibration);
 }
 
 }  // namespace polemcl

@@ -20,6 +20,12 @@ PoseHypothesis toFilter(const GlobalHypothesis& place) {
   return {{place.pose_map_robot, place.covariance}, place.weight};
 }
 
+/// Velocity at the end of the last of two motions of constant acceleration.
+Velocity extrapolated(const Velocity& before, const Velocity& last) {
+  return {last.x + (last.x - before.x) / 2, last.y + (last.y - before.y) / 2,
+          last.yaw + (last.yaw - before.yaw) / 2};
+}
+
 bool isWide(const Eigen::Matrix3d& covariance) {
   const double square = LocalizationPipeline::wideMetres * LocalizationPipeline::wideMetres;
   return covariance(0, 0) > square || covariance(1, 1) > square ||
@@ -45,6 +51,7 @@ LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const Localizati
       m_tracks(options.submap),
       m_localMaps(options.tracking.localMaps),
       m_odometryMonitor(options.odometryMonitor),
+      m_calibration(options.odometryCalibration),
       m_monitor(options.health) {}
 
 void LocalizationPipeline::start(const StartOptions& start) {
@@ -70,6 +77,8 @@ void LocalizationPipeline::initializeGlobally() {
   m_tracks.clear();
   m_localMaps.clear();
   m_odometryMonitor.clear();
+  m_calibration = OdometryCalibration(m_options.odometryCalibration);
+  m_meanVelocity.reset();
   m_monitor.reset();
   m_search = {};
   m_searches = 0;
@@ -86,7 +95,7 @@ LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
   actionTo(seen, m_stepped ? std::optional(m_time) : std::nullopt, m_options.filter);  // checks
   LocalizationUpdate update;
   update.time = seen.time;
-  const PoleFrame frame = checkedMotion(seen, update);
+  const PoleFrame frame = checkedMotion(deskewed(calibrated(seen)), update);
   const Pose2D motion = m_stepped ? frame.motion->mean : Pose2D();
   const double metres = std::hypot(motion.x, motion.y);
   Eigen::Matrix3d covariance = walkCovariance(motion, m_options.submap);
@@ -103,7 +112,25 @@ LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
   doubtSubmap();
   if (searchIsDue()) search(frame, update);
   update.health = m_monitor.health();
+  if (seen.motion) calibrate(*seen.motion, update);
   return update;
+}
+
+/// The frame with its motion corrected for the known errors of the odometry.
+PoleFrame LocalizationPipeline::calibrated(PoleFrame frame) const {
+  if (!m_stepped) return frame;
+  const CorrectedMotion motion =
+      m_calibration.correct(frame.motion->mean, frame.motion->covariance);
+  frame.motion = io::PlanarMotion{motion.motion, motion.covariance};
+  return frame;
+}
+
+/// Learns the errors of the odometry while the pose is certain.
+void LocalizationPipeline::calibrate(const io::PlanarMotion& motion, LocalizationUpdate& update) {
+  const bool certain = update.estimate && update.health.state == HealthState::ok &&
+                       !update.relocalized && update.motion != OdometryVerdict::contradicted;
+  m_calibration.add(motion.mean, motion.covariance, certain ? &*update.estimate : nullptr);
+  update.odometryErrors = m_calibration.errors();
 }
 
 std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
@@ -116,6 +143,24 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
   // The first scan is used as it is: there is nothing to average yet.
   if (m_tracks.frames() == 1) return poles_robot;
   return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), tracking.every);
+}
+
+/// The frame with its poles as seen from the pose at its time stamp. Unless the frame states it,
+/// the velocity is that of the motion to it, extrapolated by half of its change since the motion
+/// before.
+PoleFrame LocalizationPipeline::deskewed(PoleFrame frame) {
+  std::optional<Velocity> velocity = frame.velocity;
+  if (m_stepped) {
+    const Velocity mean = velocityOf(frame.motion->mean, frame.time - m_time);
+    if (!velocity) velocity = m_meanVelocity ? extrapolated(*m_meanVelocity, mean) : mean;
+    m_meanVelocity = mean;
+  }
+  for (PoleDetection& pole : frame.poles_robot) {
+    const double unknown = velocity ? 0 : unknownSpeed * pole.timeOffset;
+    pole.covariance += unknown * unknown * Eigen::Matrix2d::Identity();
+  }
+  deskew(frame.poles_robot, velocity.value_or(Velocity()));
+  return frame;
 }
 
 /// The frame; its motion is replaced if the poles contradict the odometry.

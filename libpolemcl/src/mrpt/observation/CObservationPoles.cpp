@@ -19,7 +19,7 @@ namespace polemcl {
 using mrpt::serialization::CArchive;
 
 uint8_t CObservationPoles::serializeGetVersion() const {
-  return 0;
+  return 1;  // 1: with the time offsets of the poles
 }
 
 void CObservationPoles::serializeTo(CArchive& out) const {
@@ -32,10 +32,11 @@ void CObservationPoles::serializeTo(CArchive& out) const {
   out << static_cast<std::uint32_t>(poles.size());
   for (const auto& pole : poles) writePole(out, pole, pole.points);
   out << visibilityRange;
+  for (const auto& pole : poles) out << pole.timeOffset;
 }
 
 void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> timestamp;
   sensorLabel = readText(in, io::mostOfAScan, "sensor label");
   in >> sensorPose >> points;
@@ -44,6 +45,8 @@ void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   for (std::uint32_t left = readCount(in, io::mostOfAScan, "poles"); left > 0; --left)
     poles.push_back(readPole(in, &PoleDetection::points));
   visibilityRange = readFloats(in, io::mostOfAScan, "visibility ranges");
+  if (version < 1) return;
+  for (auto& pole : poles) in >> pole.timeOffset;
 }
 
 Pose2D CObservationPoles::planarSensorPose() const {

@@ -31,6 +31,7 @@ PointsView ObservationPoints::read(const CObservation& observation) {
   release();
   m_dropped = 0;
   m_camera.reset();
+  m_timing.reset();
   if (const auto* cloud = dynamic_cast<const CObservationPointCloud*>(&observation))
     return readCloud(*cloud);
   if (const auto* scan = dynamic_cast<const CObservationVelodyneScan*>(&observation))
@@ -62,6 +63,34 @@ struct StorageFormat : CObservationPointCloud {
     return observation.*(&StorageFormat::m_externally_stored);
   }
 };
+
+/// Measuring times by the packets: the time stamp is that of the first firing, and azimuths of the
+/// device are clockwise. None if the packets do not show a turn (fewer than two, no clock).
+std::optional<ScanTiming> timingOf(
+    const std::vector<CObservationVelodyneScan::TVelodyneRawPacket>& packets) {
+  constexpr int fullTurn = 36000;                     // 1/100 degree
+  constexpr std::uint32_t wholeHour = 3'600'000'000;  // microseconds
+  if (packets.size() < 2) return std::nullopt;
+  const auto rotation = [&](std::size_t i) { return packets[i].blocks[0].rotation() % fullTurn; };
+  double turned = 0, seconds = 0;
+  for (std::size_t i = 1; i < packets.size(); ++i) {
+    const std::uint32_t from = packets[i - 1].gps_timestamp(), to = packets[i].gps_timestamp();
+    turned += (rotation(i) - rotation(i - 1) + fullTurn) % fullTurn;
+    seconds += (to >= from ? to - from : to + wholeHour - from) * 1e-6;
+  }
+  if (!(turned > 0 && seconds > 0)) return std::nullopt;
+  return ScanTiming{Turn::clockwise, seconds * fullTurn / turned,
+                    -rotation(0) * 2 * M_PI / fullTurn, 0};
+}
+
+/// Measuring times by the columns of the image; none if the scan does not state its duration.
+std::optional<ScanTiming> timingOf(const CObservationRotatingScan& scan, bool clockwise) {
+  if (!(scan.sweepDuration > 0) || scan.azimuthSpan == 0) return std::nullopt;
+  const double begin = clockwise ? -scan.startAzimuth : scan.startAzimuth;
+  const bool left = (scan.azimuthSpan > 0) != clockwise;
+  return ScanTiming{left ? Turn::counterclockwise : Turn::clockwise,
+                    scan.sweepDuration * 2 * M_PI / std::abs(scan.azimuthSpan), begin, 0};
+}
 
 bool endsIn(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -112,6 +141,7 @@ PointsView ObservationPoints::readCloud(const CObservationPointCloud& observatio
 }
 
 PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& observation) {
+  m_timing = timingOf(observation.scan_packets);
   const auto& own = observation.point_cloud;
   if (own.size() > 0 || observation.scan_packets.empty())
     return {own.x.data(), own.y.data(), own.z.data(), own.size()};
@@ -189,6 +219,7 @@ PointsView ObservationPoints::readRotating(const CObservationRotatingScan& scan)
   if (ranges.rows() == 0 || ranges.cols() == 0) return owned();
   const std::vector<double> elevations = rowElevations(scan);
   const bool velodyne = isVelodyne(scan);
+  m_timing = timingOf(scan, velodyne);
   const int columns = velodyne ? usedColumns(scan) : static_cast<int>(ranges.cols());
   for (int column = 0; column < columns; ++column) {
     const double turned = scan.startAzimuth + scan.azimuthSpan * column / columns;

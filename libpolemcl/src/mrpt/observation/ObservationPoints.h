@@ -37,6 +37,8 @@ class ObservationPoints {
   /// \brief The camera, with identity as attitude, if the points of the last read() are the pixels
   /// of a depth image.
   const std::optional<PinholeCamera>& camera() const { return m_camera; }
+  /// \brief Measuring times, if the observation of the last read() states them.
+  const std::optional<ScanTiming>& timing() const { return m_timing; }
   /// \brief Unloads what read() loaded from external storage.
   void release() noexcept;
 
@@ -64,6 +66,7 @@ class ObservationPoints {
   std::vector<float> m_x, m_y, m_z;
   std::size_t m_dropped = 0;
   std::optional<PinholeCamera> m_camera;
+  std::optional<ScanTiming> m_timing;
   const mrpt::obs::CObservation* m_loaded = nullptr;  ///< must be unloaded
 };
 

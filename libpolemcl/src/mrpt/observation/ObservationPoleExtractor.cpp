@@ -103,6 +103,7 @@ struct ObservationPoleExtractor::Impl {
   std::optional<PoleExtractor> cameraExtractor;  ///< for the last camera
   PinholeCamera camera;
   ExtractionReport report;
+  ScanTiming recorded;  ///< of the scans, if the settings do not say it
   MovedPoints moved;
   SensorConfigCheck check;
   int checksLeft = 3;  ///< number of scans still to be compared with the configuration
@@ -111,6 +112,7 @@ struct ObservationPoleExtractor::Impl {
                const mrpt::poses::CPose3D& sensorPose);
   LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
   PoleExtractor& extractorFor(const LidarFrame& frames);
+  void setTimeOffsets(const LidarFrame& frames, std::vector<PoleDetection>& poles) const;
   /// Whether the last points read are treated as an image. The range image of the paper is
   /// spherical, so its method treats them as a cloud.
   bool pinhole() const { return points.camera() && method == ExtractionMethod::scanLine; }
@@ -135,6 +137,19 @@ PoleExtractor& ObservationPoleExtractor::Impl::extractorFor(const LidarFrame& fr
     camera = seen;
   }
   return *cameraExtractor;
+}
+
+/// \param poles In the LiDAR frame.
+void ObservationPoleExtractor::Impl::setTimeOffsets(const LidarFrame& frames,
+                                                    std::vector<PoleDetection>& poles) const {
+  ScanTiming timing = sensor.timing;
+  if (timing.turn == Turn::automatic) timing = points.timing().value_or(recorded);
+  if (!timing.known()) return;
+  for (PoleDetection& pole : poles) {
+    const Eigen::Vector3d cloud =
+        frames.R_lidar_cloud.transpose() * Eigen::Vector3d(pole.x, pole.y, 0);
+    pole.timeOffset = timing.offset(std::atan2(cloud.y(), cloud.x()));
+  }
 }
 
 void ObservationPoleExtractor::Impl::compare(const mrpt::obs::CObservation& observation,
@@ -178,6 +193,7 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
       PoleExtractor& extractor = m_impl->extractorFor(frames);
       result->poles = extractor.extract(points, upright(frames));
       m_impl->report = extractor.report();
+      m_impl->setTimeOffsets(frames, result->poles);
       result->visibilityRange = planarFreeRange(frames, extractor.visibilityRange());
       for (auto& pole : result->poles)
         toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
@@ -208,6 +224,10 @@ io::Cloud ObservationPoleExtractor::lidarPoints(const mrpt::obs::CObservation& o
 
 void ObservationPoleExtractor::checkNext(bool compare) {
   m_impl->checksLeft = compare ? 1 : 0;
+}
+
+void ObservationPoleExtractor::setRecordedTiming(const ScanTiming& timing) {
+  m_impl->recorded = timing;
 }
 
 const ExtractionReport& ObservationPoleExtractor::report() const {

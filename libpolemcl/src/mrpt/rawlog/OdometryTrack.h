@@ -21,6 +21,10 @@ class OdometryTrack {
   bool reaches(double time) const {
     return !m_readings.empty() && m_readings.rbegin()->first >= time;
   }
+  /// \brief Whether all times from `begin` to `end` lie between readings.
+  bool covers(double begin, double end) const {
+    return reaches(end) && m_readings.begin()->first <= begin;
+  }
   /// \brief Pose interpolated between the readings around `time`; nullopt beyond `reach`.
   std::optional<Pose2D> at(double time) const;
   /// \brief Drops readings that are not needed for poses at `time` or later.

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
@@ -21,6 +22,7 @@ double secondsSince(ScanClock::time_point begin) {
 /// is thus the one reported, for any timing of the threads.
 struct Task {
   ScanSource::Scan scan;
+  ScanTiming timing;  ///< as the rawlog states it
   PoleScan result;
   std::exception_ptr error;
 };
@@ -39,20 +41,25 @@ class Stream {
   TaskPtr read();
   void extract(Task& task);
   void collect(Task& task, const std::function<void(const PoleScan&)>& consume);
-  SequenceCounts counts() const;
+  /// \brief After the pipeline. \throws What went wrong first.
+  SequenceCounts finish() const;
 
  private:
+  void count(const PoleScan& scan);
+
   std::string m_path;
   std::function<ScanClock::time_point(double)> m_pace;
   ScanSource m_source;
   tbb::enumerable_thread_specific<ObservationPoleExtractor> m_extractions;
   SequenceCounts m_counts;
   bool m_ended = false;
+  std::atomic<bool> m_failed{false};
+  std::exception_ptr m_failure;  ///< set before m_failed
 };
 
 /// The next scan, or the error at its position; null at the end.
 TaskPtr Stream::read() {
-  if (m_ended) return nullptr;
+  if (m_ended || m_failed) return nullptr;
   auto task = std::make_shared<Task>();
   try {
     const auto begin = ScanClock::now();
@@ -60,6 +67,7 @@ TaskPtr Stream::read() {
     m_ended = !scan;
     if (m_ended) return nullptr;
     task->scan = std::move(*scan);
+    task->timing = m_source.timing();
     task->result.expected = m_source.expected();
     task->result.readSeconds = secondsSince(begin);
     task->result.arrival = m_pace ? m_pace(task->scan.time) : ScanClock::now();
@@ -77,6 +85,7 @@ void Stream::extract(Task& task) {
   result.index = task.scan.index;
   result.time = task.scan.time;
   result.motion = task.scan.motion;
+  result.velocity = task.scan.velocity;
   result.observation = std::dynamic_pointer_cast<CObservationPoles>(observation);
   result.stored = result.observation != nullptr;
   if (result.stored) {
@@ -87,6 +96,7 @@ void Stream::extract(Task& task) {
   try {
     ObservationPoleExtractor& extraction = m_extractions.local();
     // By index, so that the result does not depend on the threads.
+    extraction.setRecordedTiming(task.timing);
     extraction.checkNext(task.scan.index < 3);
     result.observation = extraction.process(*observation);
     result.scan = observation;
@@ -100,19 +110,30 @@ void Stream::extract(Task& task) {
   }
 }
 
+/// An exception must not leave the pipeline: TBB would lose the task that caused it.
 void Stream::collect(Task& task, const std::function<void(const PoleScan&)>& consume) {
-  if (task.error) std::rethrow_exception(task.error);
-  const PoleScan& scan = task.result;
+  if (m_failed) return;
+  try {
+    if (task.error) std::rethrow_exception(task.error);
+    count(task.result);
+    consume(task.result);
+  } catch (...) {
+    m_failure = std::current_exception();
+    m_failed = true;
+  }
+}
+
+void Stream::count(const PoleScan& scan) {
   ++m_counts.scans;
   m_counts.storedScans += scan.stored ? 1 : 0;
   m_counts.emptyScans += scan.points == 0 && scan.observation->poles.empty() ? 1 : 0;
   m_counts.points += scan.points;
   m_counts.invalidPoints += scan.invalid;
   m_counts.poles += scan.observation->poles.size();
-  consume(scan);
 }
 
-SequenceCounts Stream::counts() const {
+SequenceCounts Stream::finish() const {
+  if (m_failure) std::rethrow_exception(m_failure);
   SequenceCounts counts = m_counts;
   counts.otherSensors = m_source.otherSensors();
   counts.unknownMotions = m_source.unknownMotions();
@@ -147,7 +168,7 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
             tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
             tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));
   });
-  return stream.counts();
+  return stream.finish();
 }
 
 PoleFrame frameOf(const PoleScan& scan) {
@@ -156,7 +177,8 @@ PoleFrame frameOf(const PoleScan& scan) {
           scan.observation->polesInRobotFrame(),
           scan.points,
           scan.observation->visibilityRange,
-          scan.observation->planarSensorPose()};
+          scan.observation->planarSensorPose(),
+          scan.velocity};
 }
 
 PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,

@@ -93,7 +93,10 @@ bool RawlogReader::next(RawlogEntry& entry) {
   entry = RawlogEntry();
   while (auto read = nextObject()) {
     entry.offset = read->offset;
-    if (std::dynamic_pointer_cast<CObservationComment>(read->object)) continue;
+    if (const auto comment = std::dynamic_pointer_cast<CObservationComment>(read->object)) {
+      m_comment += comment->text;
+      continue;
+    }
     entry.observation = std::dynamic_pointer_cast<CObservation>(read->object);
     entry.frame = std::dynamic_pointer_cast<CSensoryFrame>(read->object);
     entry.action = std::dynamic_pointer_cast<CActionCollection>(read->object);

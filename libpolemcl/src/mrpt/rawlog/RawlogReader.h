@@ -25,7 +25,7 @@ struct RawlogEntry {
 };
 
 /// \brief Streams a plain or gzip rawlog with action and frame pairs or single observations.
-/// Comments and other objects are skipped.
+/// Other objects are skipped.
 class RawlogReader {
  public:
   /// \param allowTruncated true: a file that ends inside an object is read up to that object.
@@ -37,6 +37,8 @@ class RawlogReader {
   ///         on a file that is empty or ends inside an object (with the byte; unless allowed). A
   ///         plain file cut between two objects cannot be distinguished from a complete one.
   bool next(RawlogEntry& entry);
+  /// \brief Text of the comments read so far; those of RawlogWriter and of RawlogViewer come first.
+  const std::string& comment() const { return m_comment; }
   /// \brief True when the file is truncated and this was allowed.
   bool truncated() const { return m_truncated; }
   /// \brief Fraction of the file read so far, 0 to 1, for progress.
@@ -56,7 +58,8 @@ class RawlogReader {
   GzReadStream m_stream;
   bool m_allowTruncated, m_truncated = false, m_ended = false;
   std::optional<Object> m_pending;  ///< object after an action, read ahead
-  std::uint64_t m_objects = 0;      ///< number of objects read so far
+  std::string m_comment;
+  std::uint64_t m_objects = 0;  ///< number of objects read so far
 };
 
 }  // namespace polemcl

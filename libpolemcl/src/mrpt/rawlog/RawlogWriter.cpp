@@ -2,6 +2,7 @@
 
 #include <mrpt/io/CStream.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationComment.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <stdexcept>
@@ -53,6 +54,12 @@ void RawlogWriter::writeObject(const mrpt::serialization::CSerializable& object)
   OutputStream stream(m_file.stream());
   mrpt::serialization::archiveFrom(stream) << object;
   if (!m_file.stream()) m_file.commit();  // throws now instead of writing for hours to a full disk
+}
+
+void RawlogWriter::writeComment(const std::string& text) {
+  mrpt::obs::CObservationComment comment;
+  comment.text = text;
+  writeObject(comment);
 }
 
 void RawlogWriter::write(const mrpt::obs::CActionCollection& action,

@@ -18,6 +18,8 @@ class RawlogWriter {
   /// \throws Error when the folder cannot be written.
   explicit RawlogWriter(const std::string& path);
 
+  /// \brief Writes the comment of the rawlog, as MRPT's own; to be called first.
+  void writeComment(const std::string& text);
   /// \brief Writes an action and a sensory frame with the observation.
   /// \throws Error when an action's movement would be lost: CActionRobotMovement2D with
   ///         `emOdometry` stores the odometry reading, not `poseChange`.

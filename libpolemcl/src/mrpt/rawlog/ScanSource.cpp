@@ -11,6 +11,7 @@
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include "config/TimingComment.h"
 #include "core/common/Covariance.h"
 
 namespace polemcl {
@@ -21,6 +22,9 @@ namespace {
 
 /// Most scans that wait for later odometry. Bounds the memory, and the delay without odometry.
 constexpr std::size_t mostWaiting = 32;
+
+/// Time over which odometry readings give a velocity, s: a turn of most LiDARs.
+constexpr double shortWay = 0.1;
 
 Pose2D planar(const mrpt::poses::CPose2D& pose) {
   return {pose.x(), pose.y(), pose.phi()};
@@ -112,7 +116,8 @@ void ScanSource::take(const CObservation::Ptr& observation) {
   }
   if (observation->timestamp == INVALID_TIMESTAMP)
     throw Error(m_path + ": scan " + std::to_string(m_scans) + " has no time");
-  m_waiting.push_back({m_scans++, time, m_moved, observation});
+  if (m_scans == 0) m_timing = timingIn(m_reader.comment(), m_path);
+  m_waiting.push_back({m_scans++, time, m_moved, {}, observation});
   m_moved.reset();
 }
 
@@ -134,8 +139,10 @@ void ScanSource::take(const RawlogEntry& entry) {
   for (const auto& observation : *entry.frame) take(observation);
 }
 
-/// Without actions, a scan waits for odometry later than itself.
+/// The first scan waits for the second, which tells its velocity; without actions, a scan waits for
+/// odometry later than itself.
 bool ScanSource::mustWait(const Scan& scan) const {
+  if (!m_ended && m_released == 0 && m_waiting.size() < 2) return true;
   return !m_ended && !m_anyAction && !m_odometry.reaches(scan.time) &&
          m_waiting.size() < mostWaiting;
 }
@@ -146,9 +153,20 @@ std::size_t ScanSource::expected() const {
   return std::max(m_scans, static_cast<std::size_t>(static_cast<double>(m_scans) / share + 0.5));
 }
 
+std::optional<Velocity> ScanSource::velocityAt(const Scan& scan) const {
+  if (m_odometry.covers(scan.time - shortWay, scan.time))
+    return velocityOf(relative(*m_odometry.at(scan.time - shortWay), *m_odometry.at(scan.time)),
+                      shortWay);
+  if (m_released > 0 || m_waiting.empty()) return std::nullopt;
+  const Scan& next = m_waiting.front();
+  if (!next.motion || next.time <= scan.time) return std::nullopt;
+  return velocityOf(next.motion->mean, next.time - scan.time);
+}
+
 ScanSource::Scan ScanSource::release() {
   Scan scan = std::move(m_waiting.front());
   m_waiting.pop_front();
+  scan.velocity = velocityAt(scan);
   if (m_released == 0) {
     scan.motion = io::PlanarMotion();
   } else if (!scan.motion) {
@@ -160,7 +178,7 @@ ScanSource::Scan ScanSource::release() {
       ++m_unknownMotions;
     }
   }
-  if (scan.time > m_lastTime) m_odometry.forgetBefore(scan.time);
+  if (scan.time > m_lastTime) m_odometry.forgetBefore(scan.time - shortWay);
   m_lastTime = scan.time;
   ++m_released;
   return scan;

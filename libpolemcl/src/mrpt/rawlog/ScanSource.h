@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include <polemcl/core/common/Deskew.h>
+#include <polemcl/core/sensor/ScanTiming.h>
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
 #include "mrpt/rawlog/OdometryTrack.h"
@@ -28,6 +30,7 @@ class ScanSource {
     std::size_t index = 0;  ///< 0-based
     double time = 0;        ///< s
     std::optional<io::PlanarMotion> motion;
+    std::optional<Velocity> velocity = {};  ///< see PoleScan
     mrpt::obs::CObservation::Ptr observation;
   };
   /// \brief Also sets the base folder of external files with relative names in MRPT: the folder
@@ -37,6 +40,8 @@ class ScanSource {
   /// \brief The next scan; nullopt at the end. \throws Error as RawlogReader, with the scan.
   std::optional<Scan> next();
 
+  /// \brief Measuring times of the scans, if the comment of the rawlog states them.
+  const ScanTiming& timing() const { return m_timing; }
   std::size_t otherSensors() const { return m_otherSensors; }
   std::size_t unknownMotions() const { return m_unknownMotions; }
   bool truncated() const { return m_reader.truncated(); }
@@ -48,12 +53,14 @@ class ScanSource {
   void take(const mrpt::obs::CObservation::Ptr& observation);
   bool mustWait(const Scan& scan) const;
   Scan release();
+  std::optional<Velocity> velocityAt(const Scan& scan) const;
 
   std::string m_path;
   MotionOptions m_options;
   RawlogReader m_reader;
   std::optional<io::PlanarMotion> m_moved;  ///< motion by actions since the last scan
   OdometryTrack m_odometry;
+  ScanTiming m_timing;
   std::deque<Scan> m_waiting;  ///< scans waiting for later odometry
   std::string m_sensor;        ///< class and label of the scans in use; empty before the first
   double m_lastTime = 0;       ///< time of the last scan released

@@ -64,6 +64,20 @@ void bind(Binder& b, SimulationOptions& o) {
            "offset of the drive from the middle of the road, + left");
   b.number("odometry_noise", o.odometryNoise, s_shareOfSimulation, "",
            "standard deviation as a share of each component of the motion");
+  b.choice<OdometryModel>("odometry", o.odometry,
+                          {{OdometryModel::noise, "noise"}, {OdometryModel::wheels, "wheels"}},
+                          "true motion with odometry_noise (paper), or wheel ticks and a gyroscope "
+                          "with the errors below");
+  b.number("odometry_scale", o.odometryBias.scale, Range::between(-0.5, 0.5), "share",
+           "error of the distance that stays");
+  b.angleDeg("odometry_yaw_deg_m", o.odometryBias.yaw, Range::between(-10, 10),
+             "error of the heading that stays, in deg per metre");
+  b.number("odometry_drift", o.odometryBias.drift, Range::between(0, 1), "share",
+           "odometry = wheels: slow change of these two, as a share of them");
+  b.number("wheel_slip", o.odometryBias.slip, Range::between(-0.5, 0.5), "share",
+           "odometry = wheels: error of turns");
+  b.number("wheel_tick_m", o.odometryBias.tick, Range::between(0, 1), "m",
+           "odometry = wheels: distance per tick; 0: not counted in ticks");
   b.flag("reverse", o.reverse, "true: from the far end of the street, in the other lane");
   b.flag("motion_distortion", o.motionDistortion, "true: the sensor moves while it turns");
   b.integer("scans", o.scans, Range::between(0, 1e7), "",

@@ -45,6 +45,21 @@ struct WorldOptions {
 
 void bind(Binder& binder, WorldOptions& options);  ///< `[world]`
 
+/// \brief Where the odometry of a drive comes from.
+enum class OdometryModel {
+  noise,  ///< the true motion with white noise (paper)
+  wheels  ///< ticks and a gyroscope with errors that stay, see WheelOdometry
+};
+
+/// \brief Errors of odometry that stay. Part of `[simulation]`.
+struct OdometryBias {
+  double scale = 0;     ///< error of the distance, share (`odometry_scale`)
+  double yaw = 0;       ///< error of the heading, rad per metre (`odometry_yaw_deg_m`)
+  double drift = 0.2;   ///< slow change of both, as a share of them (`odometry_drift`); wheels only
+  double slip = 0.005;  ///< error of turns, share (`wheel_slip`); wheels only
+  double tick = 0.02;   ///< distance per tick, m (`wheel_tick_m`), 0: not counted; wheels only
+};
+
 /// \brief The drive and its LiDAR. `[simulation]` in INI files.
 struct SimulationOptions {
   WorldOptions world;
@@ -61,6 +76,8 @@ struct SimulationOptions {
   double laneOffset = -1.5;
   /// Standard deviation as a share of each component of the motion (`odometry_noise`).
   double odometryNoise = 0.02;
+  OdometryModel odometry = OdometryModel::noise;
+  OdometryBias odometryBias;
   bool reverse = false;  ///< from the far end, in the other lane: poles are seen from behind
   bool motionDistortion = false;  ///< the sensor moves while it turns (`motion_distortion`)
   int scans = 0;                  ///< greatest number of scans; 0: to the end of the road

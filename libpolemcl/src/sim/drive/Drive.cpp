@@ -73,6 +73,9 @@ Drive makeDrive(const World& world, const SimulationOptions& options) {
   const Sways sways(
       Random(driveSeed(options, hash(options.world.seed, 0xd21feull, options.world.day))));
   Random noise(driveSeed(options, hash(options.world.seed, 0x0d0ull, options.world.day)));
+  WheelOdometry wheels(
+      options.odometryBias,
+      Random(driveSeed(options, hash(options.world.seed, 0x33ee15ull, options.world.day))));
   // One metre at both ends is not driven, because the heading needs neighbours.
   const int fits =
       static_cast<int>((world.path(options.detour).length() - 2) / options.spacing) + 1;
@@ -84,13 +87,17 @@ Drive makeDrive(const World& world, const SimulationOptions& options) {
     if (i == 0) continue;
     const Pose2D before = planar(cloudFrame(drive.T_map_sensor[i - 1], options));
     const Pose2D step = relative(before, planar(cloudFrame(drive.T_map_sensor[i], options)));
+    if (options.odometry == OdometryModel::wheels) {
+      drive.odometry.push_back(wheels.read(step));
+      continue;
+    }
     OdometryStep odometry;
     odometry.sx = options.odometryNoise * std::abs(step.x);
     odometry.sy = options.odometryNoise * std::abs(step.y);
     odometry.syaw = options.odometryNoise * std::abs(step.yaw);
-    odometry.dx = step.x + odometry.sx * noise.normal();
+    odometry.dx = step.x * (1 + options.odometryBias.scale) + odometry.sx * noise.normal();
     odometry.dy = step.y + odometry.sy * noise.normal();
-    odometry.dyaw = step.yaw + odometry.syaw * noise.normal();
+    odometry.dyaw = step.yaw + options.odometryBias.yaw * step.x + odometry.syaw * noise.normal();
     drive.odometry.push_back(odometry);
   }
   return drive;

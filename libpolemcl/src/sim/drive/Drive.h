@@ -6,15 +6,10 @@
 #include <vector>
 
 #include "sim/common/Random.h"
+#include "sim/drive/WheelOdometry.h"
 #include "sim/world/World.h"
 
 namespace polemcl::sim {
-
-/// \brief Planar motion since the previous pose, in its frame, as a wheel odometer reports it.
-struct OdometryStep {
-  double dx = 0, dy = 0, dyaw = 0;  ///< m, m, rad
-  double sx = 0, sy = 0, syaw = 0;  ///< standard deviations
-};
 
 /// \brief One element per scan, in `odometry` one less.
 struct Drive {

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include <polemcl/core/common/Types.h>
+#include "config/TimingComment.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 #include "sim/lidar/LidarModel.h"
@@ -42,7 +43,8 @@ class Output {
   std::ofstream m_stream;
 };
 
-void writeDrive(const Drive& drive, const SimulationOptions& options, const fs::path& directory) {
+void writeDrive(const Drive& drive, const SimulationOptions& options, const LidarModel& lidar,
+                const fs::path& directory) {
   Output times(directory / "times.txt"), poses(directory / "poses.txt"),
       odometry(directory / "odometry.txt");
   odometry.line(
@@ -60,6 +62,12 @@ void writeDrive(const Drive& drive, const SimulationOptions& options, const fs::
     const OdometryStep& step = drive.odometry[i - 1];
     odometry.line("%.9f %.9f %.9f %.3e %.3e %.3e\n", step.dx, step.dy, step.dyaw, step.sx, step.sy,
                   step.syaw);
+  }
+  if (options.motionDistortion) {
+    const std::string text = timingComment(timingOf(lidar));
+    Output timing(directory / "scan_timing.ini");
+    timing.write(text.data(), text.size());
+    timing.close();
   }
   times.close();
   poses.close();
@@ -110,7 +118,7 @@ ScanFolderWriter::ScanFolderWriter(const SimulatedDrive& drive, const fs::path& 
   for (const char* folder : {"velodyne", "labels"})
     fs::create_directories(directory / folder, failure);
   if (failure) throw Error(directory.string() + ": " + failure.message());
-  writeDrive(drive.drive(), drive.options(), directory);
+  writeDrive(drive.drive(), drive.options(), drive.lidar(), directory);
   writeTruePoles(directory / "poles_gt.csv", drive.world().poles());
 }
 

@@ -194,4 +194,9 @@ LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beam
   return lidar;
 }
 
+ScanTiming timingOf(const LidarModel& lidar) {
+  return {lidar.clockwise ? Turn::clockwise : Turn::counterclockwise, lidar.period,
+          lidar.startAzimuth, 0.5};
+}
+
 }  // namespace polemcl::sim

@@ -57,4 +57,7 @@ LidarModel makeLidar(const std::string& name, bool upsideDown = false, unsigned 
 ///         not support. (Programs that do not simulate accept such sensors.)
 LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beams = {});
 
+/// \brief Measuring times of its scans with `motion_distortion`; stamped in the middle of the turn.
+ScanTiming timingOf(const LidarModel& lidar);
+
 }  // namespace polemcl::sim

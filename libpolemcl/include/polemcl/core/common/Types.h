@@ -62,6 +62,9 @@ struct PoleDetection {
   /// Covariance of (x, y), m², same frame as x, y. See isCovariance().
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity() * 0.01;
   std::uint32_t points = 0;  ///< returns that support it
+  /// Time from the stamp of the scan to the moment the pole was measured, s: x, y and covariance
+  /// are those of this moment. 0: at the stamp, or the scan was corrected for motion.
+  double timeOffset = 0;
 };
 
 /// \brief One pole of a map, map frame.

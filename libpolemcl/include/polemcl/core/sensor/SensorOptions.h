@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Binder.h>
+#include <polemcl/core/sensor/ScanTiming.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
@@ -35,6 +36,7 @@ struct POLEMCL_EXPORT SensorOptions {
   double originX = 0, originY = 0, originZ = 0;
   double minRange = 1.0;   ///< m, nearer returns are the vehicle
   double maxRange = 60.0;  ///< m
+  ScanTiming timing;       ///< when the points of a scan are measured (`turn`, …)
   /// ObservationPoleExtractor and the programs compare the first scans with the rings above and
   /// refuse scans that contradict them. PoleExtractor does not.
   bool checkBeams = true;

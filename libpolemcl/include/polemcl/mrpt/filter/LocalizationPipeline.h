@@ -7,10 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/global_localization/GlobalLocalizer.h>
 #include <polemcl/core/localization/LocalMaps.h>
 #include <polemcl/core/localization/LocalSubmap.h>
 #include <polemcl/core/localization/LocalizationHealth.h>
+#include <polemcl/core/localization/OdometryCalibration.h>
 #include <polemcl/core/localization/OdometryMonitor.h>
 #include <polemcl/export.h>
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
@@ -58,6 +60,7 @@ struct POLEMCL_EXPORT LocalizationOptions {
   HealthOptions health;
   SearchOptions search;
   OdometryMonitorOptions odometryMonitor;
+  OdometryCalibrationOptions odometryCalibration;
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, LocalizationOptions& options);  ///< their sections
@@ -72,6 +75,7 @@ struct LocalizationUpdate {
   StepReport step;
   bool relocalized = false;  ///< the global search moved the filter to this pose in this step
   OdometryVerdict motion = OdometryVerdict::unknown;  ///< verdict of the odometry monitor
+  OdometryErrors odometryErrors;                      ///< as estimated so far
 };
 
 /// \brief The map with the data for the global search, prepared once and shared by many runs.
@@ -100,6 +104,8 @@ class POLEMCL_EXPORT LocalizationPipeline {
   LocalizationUpdate step(const PoleFrame& frame);
 
   static constexpr double maxStartDistance = 1000;  ///< m
+  /// Standard deviation of the velocity during a first scan that does not state it, m/s.
+  static constexpr double unknownSpeed = 5;
   /// A search result within these limits of the estimate counts as the same pose, m and rad.
   static constexpr double sameMetres = 0.5, sameRadians = 0.035;
   /// Re-initialize at the same pose anyway if the new pose matches at least this many more poles.
@@ -121,6 +127,9 @@ class POLEMCL_EXPORT LocalizationPipeline {
   /// @}
 
  private:
+  PoleFrame calibrated(PoleFrame frame) const;
+  void calibrate(const io::PlanarMotion& motion, LocalizationUpdate& update);
+  PoleFrame deskewed(PoleFrame frame);
   PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
   std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,
                                             const std::vector<PoleDetection>& poles_robot);
@@ -140,8 +149,10 @@ class POLEMCL_EXPORT LocalizationPipeline {
   LocalSubmap m_tracks;   ///< for the filter
   LocalMaps m_localMaps;  ///< for the filter with Cadence::section
   OdometryMonitor m_odometryMonitor;
+  OdometryCalibration m_calibration;
   HealthMonitor m_monitor;
-  PoleFrame m_tracked;  ///< the last frame with the poles given to the filter
+  std::optional<Velocity> m_meanVelocity;  ///< of the last motion
+  PoleFrame m_tracked;                     ///< the last frame with the poles given to the filter
   GlobalResult m_search;
   std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;

@@ -64,6 +64,10 @@ class POLEMCL_EXPORT ObservationPoleExtractor {
   /// \brief Sets whether the next process() compares its scan, instead of counting to three. For
   /// several objects that share the scans of one rawlog.
   void checkNext(bool compare);
+  /// \brief What the recording says of the measuring times of its scans; used if `[sensor] turn =
+  /// auto` and the observation itself says nothing. process() sets PoleDetection::timeOffset of
+  /// each pole accordingly.
+  void setRecordedTiming(const ScanTiming& timing);
   /// \brief Copy of the points that process() passes to PoleExtractor, LiDAR frame.
   /// \throws Error as process().
   io::Cloud lidarPoints(const mrpt::obs::CObservation& observation);

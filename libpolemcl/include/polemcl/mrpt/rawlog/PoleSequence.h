@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/common/Deskew.h>
 #include <polemcl/export.h>
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
@@ -51,6 +52,9 @@ struct PoleScan {
   /// Motion since the previous scan, in its robot frame. Identity without covariance for the first
   /// scan; nullopt if the rawlog has no odometry in between.
   std::optional<io::PlanarMotion> motion;
+  /// Velocity at the time of the scan, where the motions up to it do not tell: for the first scan
+  /// that on the way to the second, and where there are odometry readings around a scan.
+  std::optional<Velocity> velocity;
   CObservationPoles::Ptr observation;  ///< never null
   /// Source of the poles; its points may still be in an external file. Null for stored poles.
   mrpt::obs::CObservation::Ptr scan;
@@ -100,6 +104,8 @@ struct PoleFrame {
   std::size_t points = 0;                   ///< valid points of the scan; 0: none or unknown
   std::vector<float> visibilityRange = {};  ///< as in CObservationPoles; may be empty
   Pose2D pose_robot_sensor = {};            ///< pose of the frame of visibilityRange
+  /// As in PoleScan.
+  std::optional<Velocity> velocity = {};
 };
 
 /// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().

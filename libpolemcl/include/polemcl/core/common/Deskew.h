@@ -1,0 +1,29 @@
+#pragma once
+/// \file Deskew.h
+/// \brief Corrects detections for the motion of the vehicle during the scan.
+
+#include <vector>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+/// \brief Planar velocity in the robot frame.
+struct POLEMCL_EXPORT Velocity {
+  double x = 0, y = 0;  ///< m/s
+  double yaw = 0;       ///< rad/s
+};
+
+/// \brief Constant velocity that leads to `motion` in `seconds` (> 0), along a circular arc.
+POLEMCL_EXPORT Velocity velocityOf(const Pose2D& motion, double seconds);
+/// \brief Pose after moving at constant velocity for `seconds` (may be negative), relative to the
+/// start.
+POLEMCL_EXPORT Pose2D motionAfter(const Velocity& velocity, double seconds);
+
+/// \brief Moves each detection to where it is seen from at the time stamp of the scan, and sets its
+/// `timeOffset` to 0.
+/// \param poles Robot frame at the moment each was measured.
+POLEMCL_EXPORT void deskew(std::vector<PoleDetection>& poles, const Velocity& velocity);
+
+}  // namespace polemcl

@@ -1,0 +1,80 @@
+#pragma once
+/// \file OdometryCalibration.h
+/// \brief Estimates scale error and yaw bias of the odometry while driving, and corrects them.
+///
+/// Over some metres, the motion between two poses in the map tells what the odometry should have
+/// read. A Kalman filter keeps both errors as slowly varying states (random walks over the distance
+/// travelled). Motions are corrected by its estimate, and its uncertainty is added to theirs: a
+/// wrong wheel radius is thus no surprise to the particle filter.
+
+#include <Eigen/Core>
+#include <deque>
+
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/common/PoseEstimate.h>
+#include <polemcl/core/common/Types.h>
+#include <polemcl/export.h>
+
+namespace polemcl {
+
+/// \brief `[odometry_calibration]` in INI files.
+struct POLEMCL_EXPORT OdometryCalibrationOptions {
+  bool enabled = true;
+  double scaleSigma = 0.02;   ///< standard deviation of the scale error at the start, as a share
+  double yawSigma = 0.00052;  ///< of the yaw bias at the start, rad/m (`yaw_sigma_deg_m`)
+  double scaleWalk = 0.0005;  ///< growth of the scale's standard deviation, per root of a metre
+  double yawWalk = 1.7e-5;    ///< growth of the yaw bias's, rad/m per root of a metre
+  double length = 8;          ///< distance over which motions are compared, m (`length_m`)
+};
+
+POLEMCL_EXPORT void bind(Binder& binder,
+                         OdometryCalibrationOptions& options);  ///< `[odometry_calibration]`
+
+/// \brief What is known of the errors of the odometry.
+struct POLEMCL_EXPORT OdometryErrors {
+  double scale = 0;  ///< true distance / odometry - 1
+  double yaw = 0;    ///< true turn - odometry, rad per metre driven forwards
+  /// Covariance of (scale, yaw).
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+};
+
+/// \brief A motion with the covariance of its error.
+struct POLEMCL_EXPORT CorrectedMotion {
+  Pose2D motion;               ///< m, rad, in the robot frame before the motion
+  Eigen::Matrix3d covariance;  ///< m², m·rad, rad²
+};
+
+/// \brief Follows one drive. Deterministic.
+class POLEMCL_EXPORT OdometryCalibration {
+ public:
+  /// \throws Error on options out of range.
+  explicit OdometryCalibration(const OdometryCalibrationOptions& options = {});
+
+  /// \brief The motion without the errors known of, with their uncertainty in its covariance.
+  /// \param motion, covariance As the odometry has them.
+  CorrectedMotion correct(const Pose2D& motion, const Eigen::Matrix3d& covariance) const;
+  /// \brief One scan more: the motion to it as the odometry has it, and the pose found there.
+  /// \param estimate Map frame; null where it is not known or not to be trusted: comparisons then
+  /// begin anew.
+  void add(const Pose2D& motion, const Eigen::Matrix3d& covariance,
+           const PoseWithCovariance* estimate);
+  const OdometryErrors& errors() const { return m_errors; }
+
+ private:
+  struct Step {
+    Pose2D motion;
+    Eigen::Matrix3d covariance;
+  };
+  Pose2D chain(double scale, double yaw) const;
+  Eigen::Matrix3d walkedCovariance() const;
+  void compare(const PoseWithCovariance& estimate);
+
+  OdometryCalibrationOptions m_options;
+  OdometryErrors m_errors;
+  PoseWithCovariance m_begin;  ///< pose at which the steps begin
+  std::deque<Step> m_steps;    ///< as the odometry has them
+  double m_driven = 0;         ///< length of the steps, m
+  bool m_begun = false;
+};
+
+}  // namespace polemcl

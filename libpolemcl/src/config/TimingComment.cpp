@@ -1,0 +1,33 @@
+#include "config/TimingComment.h"
+
+#include <polemcl/config/Config.h>
+
+namespace polemcl {
+namespace {
+
+void bind(Binder& binder, ScanTiming& timing) {
+  binder.section("scan_timing", "When the points of these scans were measured", Tier::sensor);
+  bindTiming(binder, timing);
+}
+
+}  // namespace
+
+std::string timingComment(const ScanTiming& timing) {
+  ConfigWriter writer;
+  ScanTiming copy = timing;
+  bind(writer, copy);
+  return writer.text();
+}
+
+ScanTiming timingIn(const std::string& comment, const std::string& rawlog) {
+  ScanTiming timing;
+  const auto begin = comment.find("[scan_timing]");
+  if (begin == std::string::npos) return timing;
+  ConfigReader reader(
+      ConfigFile::fromText(comment.substr(begin), rawlog + ": comment of the rawlog"));
+  bind(reader, timing);
+  reader.finish();
+  return timing;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,17 @@
+#pragma once
+/// \file TimingComment.h
+/// \brief Measuring times of scans, stated in the comment of a rawlog.
+
+#include <string>
+
+#include <polemcl/core/sensor/ScanTiming.h>
+
+namespace polemcl {
+
+/// \brief Text of a comment: a section `[scan_timing]` as in INI files, the rest for people.
+std::string timingComment(const ScanTiming& timing);
+/// \brief The timing in a comment; `auto` if it has no such section.
+/// \param rawlog Name for messages. \throws Error when the section cannot be read.
+ScanTiming timingIn(const std::string& comment, const std::string& rawlog);
+
+}  // namespace polemcl

@@ -1,0 +1,140 @@
+#include <Eigen/LU>
+#include <cmath>
+
+#include <polemcl/core/localization/OdometryCalibration.h>
+#include "core/common/Transform.h"
+
+namespace polemcl {
+namespace {
+
+constexpr double s_furthest = 4;  // greatest innovation that is used, standard deviations
+
+Eigen::Vector3d asVector(const Pose2D& pose) {
+  return {pose.x, pose.y, pose.yaw};
+}
+
+Pose2D corrected(const Pose2D& motion, double scale, double yaw) {
+  return {(1 + scale) * motion.x, (1 + scale) * motion.y, motion.yaw + yaw * motion.x};
+}
+
+/// Covariance of a pose's own error, in the frame of that pose.
+Eigen::Matrix3d inOwnFrame(const PoseWithCovariance& pose) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotationOf(-pose.mean.yaw);
+  return turn * pose.covariance * turn.transpose();
+}
+
+/// Covariance of the motion between two poses with independent errors, in the frame of the first.
+Eigen::Matrix3d motionCovariance(const PoseWithCovariance& from, const PoseWithCovariance& to) {
+  const Pose2D motion = relative(from.mean, to.mean);
+  Eigen::Matrix3d carried = Eigen::Matrix3d::Identity(), turn = Eigen::Matrix3d::Identity();
+  carried(0, 2) = -motion.y;
+  carried(1, 2) = motion.x;
+  turn.topLeftCorner<2, 2>() = rotationOf(motion.yaw);
+  return carried * inOwnFrame(from) * carried.transpose() +
+         turn * inOwnFrame(to) * turn.transpose();
+}
+
+}  // namespace
+
+void bind(Binder& b, OdometryCalibrationOptions& o) {
+  b.section("odometry_calibration",
+            "Scale error and yaw bias of the odometry are estimated while driving");
+  b.flag("enabled", o.enabled, "false: the odometry is taken as it is");
+  b.number("scale_sigma", o.scaleSigma, Range::between(0, 1), "share",
+           "standard deviation of the scale error at the start");
+  b.angleDeg("yaw_sigma_deg_m", o.yawSigma, Range::between(0, 10),
+             "standard deviation of the yaw bias at the start, in deg per metre");
+  b.tier(Tier::expert);
+  b.number("scale_walk", o.scaleWalk, Range::between(0, 1), "",
+           "growth of the scale's standard deviation, per root of a metre");
+  b.angleDeg("yaw_walk_deg_m", o.yawWalk, Range::between(0, 10),
+             "growth of the yaw bias's standard deviation, in deg per metre, per root of a metre");
+  b.number("length_m", o.length, Range::above(0), "m", "distance over which motions are compared");
+}
+
+OdometryCalibration::OdometryCalibration(const OdometryCalibrationOptions& options)
+    : m_options(options) {
+  checkOptions(options);
+  m_errors.covariance =
+      Eigen::Vector2d(options.scaleSigma, options.yawSigma).cwiseAbs2().asDiagonal();
+}
+
+CorrectedMotion OdometryCalibration::correct(const Pose2D& motion,
+                                             const Eigen::Matrix3d& covariance) const {
+  if (!m_options.enabled) return {motion, covariance};
+  Eigen::Matrix<double, 3, 2> byErrors;
+  byErrors << motion.x, 0, motion.y, 0, 0, motion.x;
+  return {corrected(motion, m_errors.scale, m_errors.yaw),
+          covariance + symmetrized<3>(byErrors * m_errors.covariance * byErrors.transpose())};
+}
+
+void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,
+                              const PoseWithCovariance* estimate) {
+  if (!m_options.enabled) return;
+  const double metres = std::hypot(motion.x, motion.y);
+  m_errors.covariance(0, 0) += metres * m_options.scaleWalk * m_options.scaleWalk;
+  m_errors.covariance(1, 1) += metres * m_options.yawWalk * m_options.yawWalk;
+  if (!estimate) {
+    m_begun = false;
+    return;
+  }
+  if (m_begun) {
+    m_steps.push_back({motion, covariance});
+    m_driven += metres;
+    if (m_driven < m_options.length) return;
+    compare(*estimate);
+  }
+  m_begin = *estimate;
+  m_begun = true;
+  m_steps.clear();
+  m_driven = 0;
+}
+
+/// The motion of all steps, corrected.
+Pose2D OdometryCalibration::chain(double scale, double yaw) const {
+  Pose2D pose;
+  for (const Step& step : m_steps) pose = compose(pose, corrected(step.motion, scale, yaw));
+  return pose;
+}
+
+/// Covariance of the motion of all steps by their own, in the frame of the first.
+Eigen::Matrix3d OdometryCalibration::walkedCovariance() const {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Pose2D pose;
+  for (const Step& step : m_steps) {
+    const Pose2D next = compose(pose, corrected(step.motion, m_errors.scale, m_errors.yaw));
+    Eigen::Matrix3d carried = Eigen::Matrix3d::Identity(), turn = Eigen::Matrix3d::Identity();
+    carried(0, 2) = pose.y - next.y;
+    carried(1, 2) = next.x - pose.x;
+    turn.topLeftCorner<2, 2>() = rotationOf(pose.yaw);
+    covariance =
+        carried * covariance * carried.transpose() + turn * step.covariance * turn.transpose();
+    pose = next;
+  }
+  return covariance;
+}
+
+/// Kalman update with the motion from m_begin to `estimate`.
+void OdometryCalibration::compare(const PoseWithCovariance& estimate) {
+  const Pose2D expected = chain(m_errors.scale, m_errors.yaw);
+  constexpr double small = 1e-6;
+  Eigen::Matrix<double, 3, 2> H;
+  H.col(0) = (asVector(chain(m_errors.scale + small, m_errors.yaw)) - asVector(expected)) / small;
+  H.col(1) = (asVector(chain(m_errors.scale, m_errors.yaw + small)) - asVector(expected)) / small;
+  Eigen::Matrix3d R = motionCovariance(m_begin, estimate);
+  R += walkedCovariance();
+  Eigen::Vector3d innovation = asVector(relative(m_begin.mean, estimate.mean)) - asVector(expected);
+  innovation.z() = wrapAngle(innovation.z());
+  const Eigen::Matrix3d S = H * m_errors.covariance * H.transpose() + R;
+  const Eigen::Matrix3d inverse = S.inverse();
+  if (!(innovation.dot(inverse * innovation) < s_furthest * s_furthest)) return;
+  const Eigen::Matrix<double, 2, 3> gain = m_errors.covariance * H.transpose() * inverse;
+  const Eigen::Vector2d change = gain * innovation;
+  m_errors.scale += change.x();
+  m_errors.yaw += change.y();
+  m_errors.covariance =
+      symmetrized<2>((Eigen::Matrix2d::Identity() - gain * H) * m_errors.covariance);
+}
+
+}  // namespace polemcl

@@ -1,0 +1,35 @@
+#include <cmath>
+
+#include <polemcl/core/common/Binder.h>
+#include <polemcl/core/sensor/ScanTiming.h>
+
+namespace polemcl {
+
+double ScanTiming::offset(double azimuth) const {
+  if (!known()) return 0;
+  double turned = (azimuth - cut) / (2 * M_PI);
+  if (turn == Turn::clockwise) turned = -turned;
+  return seconds * (turned - std::floor(turned) - stamp);
+}
+
+const std::vector<std::pair<Turn, std::string>>& turnNames() {
+  static const std::vector<std::pair<Turn, std::string>> names{
+      {Turn::automatic, "auto"},
+      {Turn::compensated, "compensated"},
+      {Turn::clockwise, "clockwise"},
+      {Turn::counterclockwise, "counterclockwise"}};
+  return names;
+}
+
+void bindTiming(Binder& b, ScanTiming& timing) {
+  b.choice("turn", timing.turn, turnNames(),
+           "how the LiDAR turns while it measures a scan, seen from above; compensated: the scans "
+           "are already corrected for motion; auto: as the rawlog says, else compensated");
+  b.number("turn_s", timing.seconds, Range::aboveUpTo(0, 10), "s", "duration of a turn");
+  b.angleDeg("cut_deg", timing.cut, Range::between(-360, 360),
+             "azimuth at which a scan begins and ends, frame of the clouds");
+  b.number("stamp_turn", timing.stamp, Range::between(0, 1), "turns",
+           "moment of the time stamp: 0 begin of the turn, 1 end of it");
+}
+
+}  // namespace polemcl

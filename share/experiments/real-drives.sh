@@ -1,0 +1,117 @@
+#!/bin/sh
+# Real drives of three sensors, localized in maps of their own other scans, or of the way out.
+# Usage: share/experiments/real-drives.sh DATA_DIR OUT [SECTION.KEY=VALUE...]
+#   DATA_DIR  folder with kitti_raw_0005/, vlp16_loop/ and nuscenes_scene/
+#   OUT       gets maps, trajectories, result.json and table.txt
+#   SECTION.KEY=VALUE  settings, for all drives
+# kitti_raw_0005 and nuscenes_scene: map of the even scans, localized on the odd ones. vlp16_loop: map of
+# the turns 0 to 175 (way out), localized on 176 to 203, which come back in the opposite direction.
+# Odometry is the true motion with 2 % noise (seed 7); 1000 particles, filter seeds 1 to 5, start within
+# 2.5 m and 5 degrees. "raw": detections as they were measured; "deskewed": corrected for the motion of
+# the vehicle while the LiDAR turned. "ok" is the share of the scans with this health, "worst ok" the
+# greatest error of them, over all seeds.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; two minutes.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+[ $# -ge 2 ] || {
+  sed -n '2,14s/^# //p' "$0" >&2
+  exit 2
+}
+data=$(cd "$1" && pwd)
+mkdir -p "$2"
+out=$(cd "$2" && pwd)
+shift 2
+common=""
+for assignment in "$@"; do common="$common --set $assignment"; done
+find_programs pole-import pole-map pole-localize pole-eval
+command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+
+# part DRIVE FIRST LAST: the scans FIRST to LAST (from 0) as a folder of their own.
+part() {
+  rm -rf "$out/part"
+  mkdir -p "$out/part/velodyne"
+  for name in times.txt poses.txt; do
+    grep -v '^#' "$data/$1/$name" | sed -n "$(($2 + 1)),$(($3 + 1))p" >"$out/part/$name"
+  done
+  find "$data/$1/velodyne" -name '*.bin' | sort | sed -n "$(($2 + 1)),$(($3 + 1))p" |
+    while read -r scan; do ln -s "$scan" "$out/part/velodyne/"; done
+}
+
+# import DRIVE NAME FIRST LAST EVERY OFFSET: $here/NAME.rawlog and $here/NAME.tum, with $turn.
+import() {
+  part "$1" "$3" "$4"
+  # shellcheck disable=SC2086 # several words
+  "$bin/pole-import" folder --quiet --embed --input "$out/part" --output "$here/$2.rawlog" \
+    --every "$5" --offset "$6" --sensor-pose "$mounting" --turn $turn --odometry-noise 0.02 --seed 7
+  rm -r "$out/part"
+}
+
+# worst_ok RUNS: share of the scans that are ok, and their greatest error, m and degrees.
+worst_ok() {
+  for run in "$1"/run_[0-9]*_health.csv; do
+    awk -F , 'NR == FNR { ok[$1] = $3 == "ok"; next }
+      FNR > 1 { n++; if (ok[$1]) { good++; if ($3 > m) m = $3; if ($6 > d) d = $6 } }
+      END { print n, good + 0, m + 0, d + 0 }' "$run" "${run%_health.csv}_errors.csv"
+  done | awk '{ n += $1; good += $2; if ($3 > m) m = $3; if ($4 > d) d = $4 }
+    END { printf "{\"ok\": %.4f, \"worst_ok_m\": %.4f, \"worst_ok_deg\": %.4f}", good / n, m, d }'
+}
+
+# drive NAME DRIVE CONFIG TURN "MAP SCANS" "SCANS": map and localization, scans as FIRST LAST EVERY OFFSET.
+# Uses $mounting and $settings. Adds a line to $out/results.
+drive() {
+  here=$out/$1
+  turn=$4
+  mkdir -p "$here"
+  # shellcheck disable=SC2086 # several words
+  import "$2" map $5
+  # shellcheck disable=SC2086
+  import "$2" scans $6
+  # shellcheck disable=SC2086
+  "$bin/pole-map" build --quiet --config "$3" $settings $common --input "$here/map.rawlog" \
+    --truth "$here/map.tum" --output "$here/map.polemap" --csv "$here/map.csv"
+  # shellcheck disable=SC2086
+  "$bin/pole-localize" --quiet --config "$3" $settings $common --input "$here/scans.rawlog" \
+    --map "$here/map.polemap" --truth "$here/scans.tum" --output "$here/runs" --particles 1000 \
+    --runs 5 --seed 1
+  evaluate_runs "$here/runs" "$here/scans.tum" >/dev/null
+  worst_ok "$here/runs" >"$here/ok.json"
+  jq -s --arg name "$1" --slurpfile ok "$here/ok.json" --argjson poles "$(($(wc -l <"$here/map.csv") - 1))" \
+    '{drive: $name, map_poles: $poles, pos_mean: (map(.pos_mean) | add / length),
+      pos_least: (map(.pos_mean) | min), pos_most: (map(.pos_mean) | max),
+      ang_mean_deg: (map(.ang_mean_deg) | add / length), pos_max: (map(.pos_max) | max)} + $ok[0]' \
+    "$here"/runs/run_0?.json >>"$out/results"
+  rm "$here"/*.rawlog
+}
+
+# both NAME DRIVE CONFIG TURN "MAP SCANS" "SCANS": as measured, and corrected.
+both() {
+  drive "$1-raw" "$2" "$3" compensated "$5" "$6"
+  drive "$1-deskewed" "$2" "$3" "$4" "$5" "$6"
+}
+
+: >"$out/results"
+# These LiDARs turn clockwise, begin at the back, and are stamped when they face forward.
+turns="clockwise --cut-deg 180 --stamp-turn 0.5"
+mounting="0 0 0 0 0 0" settings=""
+both kitti_raw_0005 kitti_raw_0005 "$top/config/kitti.ini" "$turns" "0 79 2 0" "0 79 2 1"
+mounting="0 0 0 0 2.513 0.028" settings="--set sensor.height_m=1.77"
+both vlp16_loop vlp16_loop "$top/config/vlp16.ini" "$turns" "0 175 1 0" "176 203 1 0"
+mounting="0 0 0 0 0 0" settings="--set sensor.height_m=1.84 --set sensor.min_range_m=2.5"
+# Its scans are compensated: no timing makes the poles of successive scans agree better.
+settings="$settings --set map.min_count=2 --set map.min_confidence=0.3" # the scans are 5 m apart
+drive nuscenes nuscenes_scene "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
+
+jq -s . "$out/results" >"$out/result.json"
+rm "$out/results"
+jq -r '.[] | [.drive, .map_poles, .pos_mean, .pos_least, .pos_most, .ang_mean_deg, .pos_max, .ok,
+    .worst_ok_m, .worst_ok_deg] | @tsv' "$out/result.json" |
+  awk -F '\t' 'BEGIN {
+      format = "%-24s %9s %8s %17s %8s %8s %6s %10s %12s\n"
+      printf format, "drive", "map poles", "mean m", "(least to most)", "mean deg", "worst m", "ok",
+        "worst ok m", "worst ok deg" }
+    { printf "%-24s %9d %8.4f %8.4f %8.4f %8.4f %8.4f %6.2f %10.4f %12.4f\n", $1, $2, $3, $4, $5, $6, $7,
+        $8, $9, $10 }' >"$out/table.txt"
+cat "$out/table.txt"

@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <polemcl/core/common/Deskew.h>
+
+namespace polemcl::test_deskew {
+
+TEST(Deskew, VelocityAndMotionAreInverse) {
+  for (const Pose2D& motion : {Pose2D{1.2, 0.1, 0.3}, Pose2D{-0.5, 0, 0}, Pose2D{2, -0.4, -1.1}}) {
+    const Pose2D again = motionAfter(velocityOf(motion, 0.25), 0.25);
+    EXPECT_NEAR(again.x, motion.x, 1e-12);
+    EXPECT_NEAR(again.y, motion.y, 1e-12);
+    EXPECT_NEAR(again.yaw, motion.yaw, 1e-12);
+  }
+}
+
+TEST(Deskew, AQuarterCircleIsOne) {
+  // 2 m/s and 1 rad/s: a circle of 2 m around a point to the left.
+  const Pose2D quarter = motionAfter({2, 0, 1}, M_PI / 2);
+  EXPECT_NEAR(quarter.x, 2, 1e-12);
+  EXPECT_NEAR(quarter.y, 2, 1e-12);
+  EXPECT_NEAR(quarter.yaw, M_PI / 2, 1e-12);
+}
+
+/// Poles that stand still, seen from a vehicle on an arc: each is measured from where the vehicle
+/// is at its own moment, and must end where it is seen from at the time stamp.
+TEST(Deskew, StandingPolesAreSeenFromOnePlace) {
+  const Velocity velocity{10, 0.2, 0.4};
+  const Pose2D stamped{3, -1, 0.7};
+  std::vector<PoleDetection> poles;
+  std::vector<Pose2D> expected;
+  for (const double offset : {-0.05, -0.01, 0.0, 0.03, 0.05}) {
+    const Pose2D place{12 + 100 * offset, 5, 0};
+    const Pose2D seen = relative(compose(stamped, motionAfter(velocity, offset)), place);
+    PoleDetection pole;
+    pole.x = seen.x;
+    pole.y = seen.y;
+    pole.covariance << 0.04, 0, 0, 0.01;
+    pole.timeOffset = offset;
+    poles.push_back(pole);
+    expected.push_back(relative(stamped, place));
+  }
+  deskew(poles, velocity);
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    EXPECT_NEAR(poles[i].x, expected[i].x, 1e-12);
+    EXPECT_NEAR(poles[i].y, expected[i].y, 1e-12);
+    EXPECT_EQ(poles[i].timeOffset, 0);
+  }
+  EXPECT_EQ(poles[2].covariance(0, 1), 0) << "measured at the stamp: unchanged";
+  EXPECT_NEAR(poles[4].covariance(0, 1), 0.03 * std::sin(0.02) * std::cos(0.02), 1e-12);
+}
+
+}  // namespace polemcl::test_deskew

@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include <polemcl/core/localization/OdometryCalibration.h>
+
+namespace polemcl::test_odometry_calibration {
+namespace {
+
+/// A drive in gentle bends whose odometry has a wrong scale and a yaw bias.
+struct Bench {
+  double scale, yawBias;  ///< true motion = odometry with these errors
+  OdometryCalibration calibration;
+  PoseWithCovariance pose;
+  std::mt19937 random{1};
+  int steps = 0;
+
+  Bench(double scaleError, double bias) : scale(scaleError), yawBias(bias) {
+    pose.covariance = Eigen::Vector3d(4e-4, 4e-4, 1e-6).asDiagonal();
+  }
+  void drive(double metres, bool known = true) {
+    std::normal_distribution<double> normal;
+    for (double driven = 0; driven < metres; driven += 0.5) {
+      const Pose2D odometry{0.5, 0, 0.02 * std::sin(0.05 * ++steps)};
+      pose.mean = compose(pose.mean, {0.5 * (1 + scale), 0, odometry.yaw + yawBias * odometry.x});
+      PoseWithCovariance found = pose;
+      found.mean.x += 0.02 * normal(random);
+      found.mean.y += 0.02 * normal(random);
+      found.mean.yaw += 0.001 * normal(random);
+      calibration.add(odometry, Eigen::Vector3d(1e-6, 1e-6, 1e-8).asDiagonal(),
+                      known ? &found : nullptr);
+    }
+  }
+};
+
+}  // namespace
+
+TEST(OdometryCalibration, FindsScaleAndYawBiasWithinItsSigmas) {
+  for (const auto& [scale, yaw] : {std::pair{0.05, 0.0009}, std::pair{-0.03, -0.0003}}) {
+    Bench bench(scale, yaw);
+    bench.drive(200);
+    const OdometryErrors& errors = bench.calibration.errors();
+    EXPECT_NEAR(errors.scale, scale, 0.003);
+    EXPECT_NEAR(errors.yaw, yaw, 0.0001);
+    EXPECT_LT(std::abs(errors.scale - scale), 4 * std::sqrt(errors.covariance(0, 0)));
+    EXPECT_LT(std::abs(errors.yaw - yaw), 4 * std::sqrt(errors.covariance(1, 1)));
+    EXPECT_LT(std::sqrt(errors.covariance(0, 0)), 0.004);
+  }
+}
+
+TEST(OdometryCalibration, CorrectsMotionsAndStatesWhatIsLeft) {
+  Bench bench(0.05, 0.0009);
+  const Pose2D step{0.5, 0.01, 0.1};
+  const Eigen::Matrix3d stated = Eigen::Matrix3d::Identity() * 1e-6;
+  const double before = bench.calibration.correct(step, stated).covariance(0, 0);
+  EXPECT_NEAR(before, 1e-6 + 0.25 * 0.02 * 0.02, 1e-12) << "2 % of the step, at the start";
+  bench.drive(200);
+  const CorrectedMotion corrected = bench.calibration.correct(step, stated);
+  EXPECT_NEAR(corrected.motion.x, 0.525, 0.0015);
+  EXPECT_NEAR(corrected.motion.yaw, 0.1 + 0.00045, 0.00005);
+  EXPECT_LT(corrected.covariance(0, 0), before / 10);
+}
+
+TEST(OdometryCalibration, LearnsNothingWithoutPoses) {
+  Bench bench(0.05, 0.0009);
+  bench.drive(100, false);
+  EXPECT_EQ(bench.calibration.errors().scale, 0);
+  EXPECT_GT(bench.calibration.errors().covariance(0, 0), 0.02 * 0.02) << "it walks on";
+}
+
+TEST(OdometryCalibration, AJumpOfThePoseIsNoScale) {
+  Bench bench(0, 0);
+  bench.drive(100);
+  bench.pose.mean.x += 5;
+  bench.drive(20);
+  EXPECT_NEAR(bench.calibration.errors().scale, 0, 0.003);
+}
+
+TEST(OdometryCalibration, SwitchedOffItChangesNothing) {
+  OdometryCalibrationOptions options;
+  options.enabled = false;
+  const OdometryCalibration calibration(options);
+  const CorrectedMotion motion = calibration.correct({1, 2, 3}, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(motion.motion.x, 1);
+  EXPECT_EQ(motion.covariance, Eigen::Matrix3d::Identity());
+}
+
+}  // namespace polemcl::test_odometry_calibration

@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+#include <mrpt/obs/CObservationComment.h>
+
+#include <cmath>
+
+#include "support/ExpectHas.h"
+#include "support/SequenceFiles.h"
+
+namespace polemcl::test_pole_sequence_timing {
+
+using namespace tests::sequence;
+
+TEST(PoleSequenceTiming, TheFirstScanHasTheVelocityToTheSecond) {
+  const Bench bench;
+  const auto frames = bench
+                          .read(action({9, 9, 1}) + frame(poles(10.5)) + action({1, 0, 0.1}) +
+                                frame(poles(11)) + action({2, 0, 0}) + frame(poles(11.5)))
+                          .frames;
+  ASSERT_EQ(frames.size(), 3u);
+  ASSERT_TRUE(frames[0].velocity);
+  EXPECT_NEAR(frames[0].velocity->yaw, 0.2, 1e-6);
+  const Pose2D way = motionAfter(*frames[0].velocity, 0.5);
+  EXPECT_NEAR(way.x, 1, 1e-6);
+  EXPECT_NEAR(way.y, 0, 1e-6);
+  EXPECT_FALSE(frames[1].velocity) << "the motion to it tells";
+  EXPECT_FALSE(bench.read(action({0, 0, 0}) + frame(poles(1))).frames[0].velocity);
+}
+
+TEST(PoleSequenceTiming, ReadingsAroundAScanGiveItsVelocity) {
+  const Bench bench;
+  std::string log;
+  for (int i = 0; i <= 20; ++i)  // stands, then 10 m/s
+    log += odometry(10 + 0.05 * i, {i < 10 ? 0 : 0.5 * (i - 10), 0, 0}) +
+           (i == 4 || i == 16 ? samples::bytesOf(poles(10 + 0.05 * i)) : "");
+  const auto frames = bench.read(log).frames;
+  ASSERT_EQ(frames.size(), 2u);
+  ASSERT_TRUE(frames[0].velocity && frames[1].velocity);
+  EXPECT_NEAR(frames[0].velocity->x, 0, 1e-6);
+  EXPECT_NEAR(frames[1].velocity->x, 10, 1e-6) << "not the mean of the way";
+}
+
+TEST(PoleSequenceTiming, TheCommentTellsTheTimesOfPoles) {
+  const Bench bench;
+  mrpt::obs::CObservationComment comment;
+  comment.text = "driven by A. [scan_timing]\nturn = clockwise\nturn_s = 0.2\n";
+  const std::string scan = samples::bytesOf(cloud(10, 0));
+  const auto frames = bench.read(samples::bytesOf(comment) + scan).frames;
+  ASSERT_GE(frames.at(0).poles_robot.size(), 4u);
+  for (const PoleDetection& pole : frames[0].poles_robot)
+    EXPECT_NEAR(pole.timeOffset, -0.2 * std::atan2(pole.y, pole.x) / (2 * M_PI), 1e-9);
+  comment.text = "[scan_timing]\nturn = upwards\n";
+  EXPECT_HAS(bench.refusal(samples::bytesOf(comment) + scan), "[scan_timing] turn = upwards");
+}
+
+}  // namespace polemcl::test_pole_sequence_timing
