@@ -12,7 +12,7 @@ namespace polemcl::io::test {
 
 inline std::string little(std::uint64_t value, int bytes) {
   std::string result;
-  for (int i = 0; i < bytes; ++i) result += static_cast<char>(value >> (8 * i) & 0xff);
+  for (int i = 0; i < bytes; ++i, value >>= 8) result += static_cast<char>(value & 0xff);
   return result;
 }
 
