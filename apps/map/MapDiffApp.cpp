@@ -32,7 +32,7 @@ void writeCsv(const MapDiff& diff, const std::filesystem::path& file) {
 }  // namespace
 
 MapDiff diffMapFiles(const MapDiffFiles& files, const MapDiffOptions& options) {
-  const MapDiff diff =
+  MapDiff diff =
       diffMaps(io::readPoleMap(files.before).poles, io::readPoleMap(files.after).poles, options);
   const std::string before = files.before.filename().string(),
                     after = files.after.filename().string();

@@ -28,6 +28,7 @@ OwnedCloud turned(const PointsView& points, double yaw) {
 std::vector<Eigen::Vector2d> turnedCentres(const std::vector<PoleDetection>& poles, double yaw) {
   const double c = std::cos(yaw), s = std::sin(yaw);
   std::vector<Eigen::Vector2d> centres;
+  centres.reserve(poles.size());
   for (const PoleDetection& p : poles) centres.emplace_back(c * p.x - s * p.y, s * p.x + c * p.y);
   return centres;
 }

@@ -70,6 +70,7 @@ std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
 MapPole plainMean(const std::vector<LandmarkObservation>& observations,
                   const std::vector<std::uint32_t>& members) {
   std::vector<const PoleDetection*> poles;
+  poles.reserve(members.size());
   for (const std::uint32_t member : members) poles.push_back(&observations[member].pole);
   // Sums round by their order: this one does not depend on that of the detections.
   std::sort(poles.begin(), poles.end(), [](const PoleDetection* a, const PoleDetection* b) {

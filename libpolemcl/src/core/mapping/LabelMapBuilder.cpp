@@ -44,6 +44,7 @@ struct Piece {
 /// Numbers of things that hang together, by chains of pieces nearer than `link`.
 std::vector<std::uint32_t> linked(const std::vector<Piece>& pieces, double link) {
   std::vector<Eigen::Vector2d> places;
+  places.reserve(pieces.size());
   for (const Piece& piece : pieces) places.push_back(piece.centre);
   const KdTree2D tree(places);
   std::vector<std::uint32_t> thing(pieces.size(), PointHit::none), open;

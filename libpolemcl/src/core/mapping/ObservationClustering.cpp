@@ -260,6 +260,7 @@ void Clusterer::sortGroups() {
            std::make_tuple(at[b].x(), at[b].y(), m_groups[b][0]);
   });
   std::vector<Group> sorted;
+  sorted.reserve(m_groups.size());
   for (const std::size_t i : order) sorted.push_back(std::move(m_groups[i]));
   m_groups = std::move(sorted);
 }

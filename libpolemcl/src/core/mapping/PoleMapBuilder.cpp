@@ -100,6 +100,7 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   PoleMapResult result;
   for (const std::vector<std::uint32_t>& group : groups) {
     std::vector<std::uint32_t> seen;
+    seen.reserve(group.size());
     for (const std::uint32_t member : group)
       seen.push_back(keyframes[observations[member].scan].section);
     const std::size_t count = options.counting == PoleCounting::members

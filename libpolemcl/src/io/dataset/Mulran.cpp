@@ -24,8 +24,8 @@ fs::path findIn(const fs::path& sequence, const std::string& name) {
 /// hold all digits of the nanoseconds.
 double seconds(std::uint64_t nanoseconds) {
   constexpr std::uint64_t second = 1000000000;
-  return static_cast<double>(nanoseconds / second) +
-         static_cast<double>(nanoseconds % second) * 1e-9;
+  const std::uint64_t whole = nanoseconds / second;
+  return static_cast<double>(whole) + static_cast<double>(nanoseconds % second) * 1e-9;
 }
 
 void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,

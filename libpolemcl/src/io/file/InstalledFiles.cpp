@@ -15,7 +15,7 @@ fs::path installedFile(const fs::path& file, const std::string& folder) {
   if (file.empty() || file.is_absolute() || fs::exists(file, ignored)) return file;
   for (const fs::path& data :
        {programFolder().parent_path() / "share" / "polemcl", fs::path(POLEMCL_DATADIR)}) {
-    const fs::path candidate = data / folder / file;
+    fs::path candidate = data / folder / file;
     if (fs::is_regular_file(candidate, ignored)) return candidate;
   }
   return file;

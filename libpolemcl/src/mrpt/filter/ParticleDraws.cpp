@@ -104,7 +104,8 @@ std::vector<std::size_t> particlesPerHypothesis(const std::vector<PoseHypothesis
   std::size_t given = 0;
   for (const PoseHypothesis& hypothesis : hypotheses) {
     before += hypothesis.weight;
-    const auto end = static_cast<std::size_t>(before / sum * static_cast<double>(count) + 0.5);
+    const auto end =
+        static_cast<std::size_t>(std::llround(before / sum * static_cast<double>(count)));
     result.push_back(end - given);
     given = end;
   }

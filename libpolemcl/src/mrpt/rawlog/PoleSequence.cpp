@@ -163,7 +163,7 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
     };
     const auto collect = [&](const TaskPtr& task) { stream.collect(*task, consume); };
     tbb::parallel_pipeline(
-        static_cast<std::size_t>(2 * threads),
+        2 * static_cast<std::size_t>(threads),
         tbb::make_filter<void, TaskPtr>(tbb::filter_mode::serial_in_order, read) &
             tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
             tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));

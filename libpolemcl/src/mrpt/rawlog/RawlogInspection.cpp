@@ -81,6 +81,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
     }
     result.used.push_back(scan.index);
   }
+  views.reserve(clouds.size());
   for (const io::Cloud& cloud : clouds) views.push_back(cloud.view());
   const auto& first = *scans.front().observation;
   result.label = std::string(first.GetRuntimeClass()->className) +

@@ -150,7 +150,8 @@ bool ScanSource::mustWait(const Scan& scan) const {
 std::size_t ScanSource::expected() const {
   const double share = m_reader.progress();
   if (!(share > 0)) return 0;
-  return std::max(m_scans, static_cast<std::size_t>(static_cast<double>(m_scans) / share + 0.5));
+  return std::max(m_scans,
+                  static_cast<std::size_t>(std::llround(static_cast<double>(m_scans) / share)));
 }
 
 std::optional<Velocity> ScanSource::velocityAt(const Scan& scan) const {

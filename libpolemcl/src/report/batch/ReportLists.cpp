@@ -135,7 +135,7 @@ std::string troublesTables(const BatchResults& results) {
                                              : "lost"});
       }
     }
-  const std::string failed = failedTasks(results.failures);
+  std::string failed = failedTasks(results.failures);
   if (count == 0) return failed;
   return failed + (count <= mostOpenRows ? table.str("remark")
                                          : foldable(plural(count, "run") + " failed or lost",

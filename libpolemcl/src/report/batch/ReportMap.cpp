@@ -53,6 +53,7 @@ double frameHeight(const Box& box, double left) {
 std::vector<Eigen::Vector2d> mapPixels(const PlotAxes& axes,
                                        const std::vector<Eigen::Vector2d>& points) {
   std::vector<Eigen::Vector2d> result;
+  result.reserve(points.size());
   for (const Eigen::Vector2d& point : points) result.push_back(axes.toPixel(point.x(), point.y()));
   return result;
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// "0.174 ± 0.012", the spread in a lighter ink.
 std::string withSpread(const MetricColumn& column, const Spread& spread) {
-  const std::string mean = column.figure(spread.mean);
+  std::string mean = column.figure(spread.mean);
   if (!std::isfinite(spread.deviation)) return mean;
   return mean + element("span", "class=\"sd\"", " ± " + column.figure(spread.deviation));
 }

@@ -26,6 +26,7 @@ std::optional<TrajectoryErrors> compared(const MapView& view) {
 
 std::vector<Eigen::Vector2d> pixels(const PlotAxes& axes, const std::vector<StampedPose2D>& path) {
   std::vector<Eigen::Vector2d> points;
+  points.reserve(path.size());
   for (const StampedPose2D& pose : path) points.push_back(axes.toPixel(pose.pose.x, pose.pose.y));
   return points;
 }

@@ -9,6 +9,7 @@ using scene::TColor;
 
 std::vector<MapPole> laterOf(const std::vector<MapDiff::Pair>& pairs) {
   std::vector<MapPole> poles;
+  poles.reserve(pairs.size());
   for (const MapDiff::Pair& pair : pairs) poles.push_back(pair.after);
   return poles;
 }

@@ -38,9 +38,8 @@ class DisplayWindow : public LiveWindow {
       m_window.unlockAccess3DScene();
       throw;
     }
-    const mrpt::opengl::CCamera wanted = camera;
     m_window.unlockAccess3DScene();
-    follow(wanted);
+    follow(camera);
     m_window.forceRepaint();
   }
 

@@ -48,6 +48,7 @@ CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles) {
 mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& poles,
                                                 double pointSize) {
   std::vector<scene::Dot> dots;
+  dots.reserve(poles.size());
   for (const MapPole& pole : poles) dots.push_back({{pole.x, pole.y, 0.1}, mapColor});
   return scene::makeDots(dots, pointSize);
 }
@@ -137,6 +138,7 @@ mrpt::opengl::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, d
     return moment.weights[a] < moment.weights[b];
   });
   std::vector<scene::Dot> dots;
+  dots.reserve(order.size());
   for (std::size_t i : order)
     dots.push_back({{moment.particles[i].x, moment.particles[i].y, height},
                     mixed(particleLight, particleColor, moment.weights[i])});

@@ -239,7 +239,7 @@ DetectionModel readDetectionModel(const std::filesystem::path& file) {
   if (!stream) throw Error(file.string() + ": cannot be read");
   const Json json = Json::parse(stream, nullptr, false);
   if (json.is_discarded()) throw Error(file.string() + ": is not JSON");
-  const DetectionModel model = fromJson(json, file.string() + ": ");
+  DetectionModel model = fromJson(json, file.string() + ": ");
   io::located(file.string() + ": ", [&] { model.validate(); });
   return model;
 }

@@ -40,7 +40,7 @@ std::vector<V2> rounded(const std::vector<V2>& corners) {
 
 /// \brief Whether a detour keeps its distance from the main street, except at its mouths.
 bool hasRoom(const Street& street, const std::vector<V2>& corners) {
-  const V2 a = corners[1], b = corners[2], c = corners[3], e = corners[4];
+  const V2 &a = corners[1], &b = corners[2], &c = corners[3], &e = corners[4];
   const auto clear = [&](const V2& from, const V2& to, double share) {
     for (int i = 4; i <= 20; ++i) {
       const V2 place = from + i / 20.0 * (to - from);

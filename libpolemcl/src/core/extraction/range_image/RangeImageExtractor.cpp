@@ -129,7 +129,8 @@ bool RangeImageExtractor::between(double value, double low, double high) const {
 }
 
 int RangeImageExtractor::cellAlong(double coordinate) const {
-  const double cell = std::floor(coordinate) + m_cells / 2;
+  const int middle = m_cells / 2;
+  const double cell = std::floor(coordinate) + middle;
   return static_cast<int>(std::clamp(cell, 0.0, m_cells - 1.0));
 }
 

@@ -60,8 +60,8 @@ ScanLines::ScanLines(const SensorModel& sensor)
     : m_sensor(sensor), m_rows(sensor.rows()), m_bucketStart(bucket(m_rows, 0) + 3) {}
 
 int ScanLines::bucketColumn(float azimuth) const {
-  const float perRadian =
-      static_cast<float>(kBuckets / (2 * M_PI)) * static_cast<float>(m_buckets / kBuckets);
+  const int times = m_buckets / kBuckets;
+  const float perRadian = static_cast<float>(kBuckets / (2 * M_PI)) * static_cast<float>(times);
   const int column = static_cast<int>((azimuth + static_cast<float>(M_PI)) * perRadian);
   return std::clamp(column, 0, m_buckets - 1);
 }
