@@ -64,10 +64,10 @@ std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& option
          io::significant(options.sectionLength, 6) + ", " + std::to_string(map.occupiedSections) +
          " of " + std::to_string(map.sections) + " with a scan; " + std::to_string(map.detections) +
          " detections in " + std::to_string(map.clusters) + " places, the best with " +
-         std::to_string(map.bestCount) +
+         io::significant(map.bestCount, 4) +
          (options.counting == PoleCounting::members
-              ? " detections, min_count = " + std::to_string(options.minCount) + " are needed"
-              : " sections of one run, min_count = " + std::to_string(options.minCount) +
+              ? " detections, min_count = " + io::significant(options.minCount, 4) + " are needed"
+              : " sections of one run, min_count = " + io::significant(options.minCount, 4) +
                     " are needed, max_gap = " + std::to_string(options.maxGap)) +
          (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]");
 }

@@ -47,6 +47,7 @@ PoleMapOptions sectionsOfOneMetre(int minCount, int maxGap) {
   PoleMapOptions options;
   options.sectionLength = 1;
   options.everyScan = false;
+  options.counting = PoleCounting::run;
   options.minShare = 0;
   options.minCount = minCount;
   options.maxGap = maxGap;
@@ -214,6 +215,58 @@ TEST(PoleMapBuilder, WhoPassesAPoleMustSeeIt) {
   EXPECT_EQ(poles("xxxx..", 1), 1u) << "nothing passes it";
 }
 
+// Sections nearer than half of near_range_m (12) do not count if all that saw the pole are farther:
+// of the middles 0.5, 1.5, … those at 6.5 to 13.5 are nearer to (10, 5) than 6.2 m, ten others
+// than 12.
+TEST(PoleMapBuilder, WhoIsTooNearToSeeTheTopNeedNotSeeThePole) {
+  PoleMapOptions options = sectionsOfOneMetre(3, 30);
+  options.nearRange = 12;
+  const auto poles = [&](const std::string& sees, double share) {
+    options.minShare = share;
+    return buildPoleMap(pattern(sees), options).poles.size();
+  };
+  EXPECT_EQ(poles("xxxxxx.......xxxxxxx", 1), 0u) << "6.5 is farther than 6 m, and missed it";
+  EXPECT_EQ(poles("xxxxxxx......xxxxxxx", 1), 1u) << "the seven of the middle are nearer than 6 m";
+  EXPECT_EQ(poles("xxxxxxx..x...xxxxxxx", 1), 0u) << "one of them saw it: all might have";
+}
+
+// The same scans with confidences: the sum counts.
+TEST(PoleMapBuilder, SectionsCountByTheirConfidence) {
+  PoleMapOptions options = sectionsOfOneMetre(1, 2);
+  options.counting = PoleCounting::confidences;
+  options.everyScan = true;
+  std::vector<MappingScan> scans = pattern("xxxx");
+  for (MappingScan& scan : scans)
+    for (PoleDetection& pole : scan.poles_robot) pole.confidence = 0.6;
+  MappingScan again = scans[2];  // two scans of one section: the greater confidence counts
+  again.poles_robot[0].confidence = 0.5;
+  scans.insert(scans.begin() + 3, again);
+  const auto poles = [&](double count, double share) {
+    options.minCount = count;
+    options.minShare = share;
+    return buildPoleMap(scans, options).poles.size();
+  };
+  EXPECT_EQ(poles(2.39, 0), 1u);
+  EXPECT_EQ(poles(2.41, 0), 0u);
+  EXPECT_EQ(poles(1, 0.59), 1u);
+  EXPECT_EQ(poles(1, 0.61), 0u);
+}
+
+// 8 of the 22 sections of 1 m have a scan: that share of the count, but never 1.5 or less.
+TEST(PoleMapBuilder, SparseScansNeedLess) {
+  PoleMapOptions options = sectionsOfOneMetre(5, 2);
+  options.counting = PoleCounting::confidences;
+  const std::string twice = "x  x  .  .  .  .  .  .  ", once = "x  .  .  .  .  .  .  .  ";
+  EXPECT_EQ(buildPoleMap(pattern(twice), options).poles.size(), 1u);
+  EXPECT_EQ(buildPoleMap(pattern(once), options).poles.size(), 0u);
+  options.minCount = 5.6;
+  EXPECT_EQ(buildPoleMap(pattern(twice), options).poles.size(), 0u);
+  options.minCount = 3;
+  EXPECT_EQ(buildPoleMap(pattern(once), options).poles.size(), 0u) << "one scan is never enough";
+  options.counting = PoleCounting::run;
+  EXPECT_EQ(buildPoleMap(pattern(twice), options).poles.size(), 0u) << "the paper's count stays";
+}
+
 TEST(PoleMapBuilder, TellsWhatItDid) {
   const PoleMapResult result = buildPoleMap(pattern("x.   xx"), sectionsOfOneMetre(4, 2));
   EXPECT_TRUE(result.poles.empty());
@@ -222,7 +275,7 @@ TEST(PoleMapBuilder, TellsWhatItDid) {
   EXPECT_EQ(result.views, 4u);
   EXPECT_EQ(result.detections, 3u);
   EXPECT_EQ(result.clusters, 1u);
-  EXPECT_EQ(result.bestCount, 3u);
+  EXPECT_EQ(result.bestCount, 3);
   EXPECT_NEAR(result.pathLength, 6.5, 1e-9);
 }
 

@@ -77,7 +77,7 @@ TEST(PoleMapPaper, MembersCountWhereverTheyWereMade) {
   const auto scans = drive({{pole}, {pole}, {}, {}, {}, {}, {}, {}, {pole}, {pole}});
   EXPECT_EQ(buildPoleMap(scans, authors(4)).poles.size(), 1u);
   EXPECT_TRUE(buildPoleMap(scans, authors(5)).poles.empty());
-  EXPECT_EQ(buildPoleMap(scans, authors(5)).bestCount, 4u);
+  EXPECT_EQ(buildPoleMap(scans, authors(5)).bestCount, 4);
   auto paper = authors(3);
   paper.counting = PoleCounting::run;
   EXPECT_TRUE(buildPoleMap(scans, paper).poles.empty());

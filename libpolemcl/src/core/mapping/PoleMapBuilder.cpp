@@ -44,35 +44,80 @@ std::vector<LandmarkObservation> observationsOf(const std::vector<MappingScan>& 
   return observations;
 }
 
-/// The counting model: most sections that saw the pole in one run of sections, in which at most
-/// `maxGap` occupied ones in a row missed it.
-std::size_t longestRun(std::vector<std::uint32_t> seen, const std::vector<PathSection>& occupied,
-                       int maxGap) {
-  std::sort(seen.begin(), seen.end());
-  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  std::size_t longest = 0, run = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const bool continues = i > 0 && occupied[seen[i]].path == occupied[seen[i - 1]].path &&
-                           seen[i] - seen[i - 1] - 1 <= static_cast<std::uint32_t>(maxGap);
-    run = continues ? run + 1 : 1;
-    longest = std::max(longest, run);
-  }
-  return longest;
+/// A section that saw a pole.
+struct Sighting {
+  std::uint32_t section;  ///< number among the occupied ones
+  double confidence;      ///< greatest of the pole's detections there
+};
+
+/// The sections that saw the pole, in their order.
+std::vector<Sighting> sightingsOf(const std::vector<std::uint32_t>& group,
+                                  const std::vector<LandmarkObservation>& observations,
+                                  const std::vector<Keyframe>& keyframes) {
+  std::vector<Sighting> all;
+  all.reserve(group.size());
+  for (const std::uint32_t member : group)
+    all.push_back(
+        {keyframes[observations[member].scan].section, observations[member].pole.confidence});
+  std::sort(all.begin(), all.end(), [](const Sighting& a, const Sighting& b) {
+    return std::tie(a.section, b.confidence) < std::tie(b.section, a.confidence);
+  });
+  all.erase(
+      std::unique(all.begin(), all.end(),
+                  [](const Sighting& a, const Sighting& b) { return a.section == b.section; }),
+      all.end());
+  return all;
 }
 
-/// Whether enough of the sections that pass a place nearby saw what stands there.
-bool seenFromEnough(const MapPole& pole, const std::vector<std::uint32_t>& seen,
+/// The counting model: greatest sum of one run of sections that saw the pole, in which at most
+/// `maxGap` occupied ones in a row missed it.
+double bestRun(const std::vector<Sighting>& sightings, const std::vector<PathSection>& occupied,
+               const PoleMapOptions& options) {
+  double best = 0, run = 0;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const std::uint32_t here = sightings[i].section;
+    const bool continues =
+        i > 0 && occupied[here].path == occupied[sightings[i - 1].section].path &&
+        here - sightings[i - 1].section - 1 <= static_cast<std::uint32_t>(options.maxGap);
+    const double value =
+        options.counting == PoleCounting::confidences ? sightings[i].confidence : 1.0;
+    run = continues ? run + value : value;
+    best = std::max(best, run);
+  }
+  return best;
+}
+
+/// Whether enough of the sections that pass a place nearby saw what stands there. Within half of
+/// that distance, a section nearer than all that saw it does not count: the top may be above its
+/// beams.
+bool seenFromEnough(const MapPole& pole, const std::vector<Sighting>& sightings,
                     const std::vector<PathSection>& occupied, const std::vector<MappingScan>& scans,
                     const PoleMapOptions& options) {
   if (options.minShare == 0) return true;
-  std::size_t chances = 0, hits = 0;
-  for (std::uint32_t i = 0; i < occupied.size(); ++i) {
-    const Pose2D& pose = scans[occupied[i].middle].pose_map_robot;
-    if (std::hypot(pose.x - pole.x, pose.y - pole.y) > options.nearRange) continue;
-    ++chances;
-    hits += std::find(seen.begin(), seen.end(), i) != seen.end();
+  const auto distance = [&](std::uint32_t section) {
+    const Pose2D& pose = scans[occupied[section].middle].pose_map_robot;
+    return std::hypot(pose.x - pole.x, pose.y - pole.y);
+  };
+  double nearest = options.nearRange / 2, hits = 0, chances = 0;
+  for (const Sighting& sighting : sightings) {
+    const double range = distance(sighting.section);
+    nearest = std::min(nearest, range);
+    if (range <= options.nearRange)
+      hits += options.counting == PoleCounting::confidences ? sighting.confidence : 1.0;
   }
-  return static_cast<double>(hits) >= options.minShare * static_cast<double>(chances);
+  for (std::uint32_t i = 0; i < occupied.size(); ++i)
+    chances += distance(i) >= nearest && distance(i) <= options.nearRange;
+  return hits >= options.minShare * chances;
+}
+
+/// The least count. Scans farther apart than sections see a pole from fewer places: a sum of
+/// confidences must then be reached in proportion, but never in one scan.
+double neededCount(const PathSections& sections, const PoleMapOptions& options) {
+  constexpr double overOne = 1.5;
+  if (options.counting != PoleCounting::confidences || sections.count == 0) return options.minCount;
+  const double occupied =
+      static_cast<double>(sections.occupied.size()) / static_cast<double>(sections.count);
+  return std::min(options.minCount, std::max(overOne, occupied * options.minCount));
 }
 
 }  // namespace
@@ -97,19 +142,18 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
       boxes ? joinOverlappingBoxes(observations)
             : clusterObservations(observations, {options.mergeDistance, options.apartShare});
 
+  const double needed = neededCount(sections, options);
   PoleMapResult result;
   for (const std::vector<std::uint32_t>& group : groups) {
-    std::vector<std::uint32_t> seen;
-    seen.reserve(group.size());
-    for (const std::uint32_t member : group)
-      seen.push_back(keyframes[observations[member].scan].section);
-    const std::size_t count = options.counting == PoleCounting::members
-                                  ? group.size()
-                                  : longestRun(seen, sections.occupied, options.maxGap);
+    const std::vector<Sighting> sightings = sightingsOf(group, observations, keyframes);
+    const double count = options.counting == PoleCounting::members
+                             ? static_cast<double>(group.size())
+                             : bestRun(sightings, sections.occupied, options);
     result.bestCount = std::max(result.bestCount, count);
-    if (count < static_cast<std::size_t>(options.minCount)) continue;
+    if (count < needed) continue;
     const MapPole pole = boxes ? plainMean(observations, group) : fuse(observations, group);
-    if (seenFromEnough(pole, seen, sections.occupied, scans, options)) result.poles.push_back(pole);
+    if (seenFromEnough(pole, sightings, sections.occupied, scans, options))
+      result.poles.push_back(pole);
   }
   std::stable_sort(
       result.poles.begin(), result.poles.end(),

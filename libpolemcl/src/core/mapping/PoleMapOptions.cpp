@@ -6,7 +6,8 @@ namespace polemcl {
 void bind(Binder& b, PoleMapOptions& o) {
   b.section("map", "How a map is built");
   b.tier(Tier::sensor);
-  b.integer("min_count", o.minCount, Range::atLeast(1), "", "least count of a pole, see counting");
+  b.number("min_count", o.minCount, Range::above(0), "",
+           "least count of a pole, see counting; less where scans are farther apart than sections");
   b.number("min_confidence", o.minConfidence, Range::between(0, 1), "",
            "detections with a lower confidence are not used; scans are searched down to it; "
            "0: to that of [scan_line]");
@@ -18,7 +19,7 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.integer("max_gap", o.maxGap, Range::atLeast(0), "",
             "sections with scans that may miss the pole inside a run");
   b.number("min_share", o.minShare, Range::between(0, 1), "",
-           "least share of the sections within near_range_m that saw the pole");
+           "least share of the sections within near_range_m that saw the pole, see counting");
   b.number("near_range_m", o.nearRange, Range::above(0), "m",
            "distance from a section's middle up to which min_share counts it");
   b.number("merge_distance_m", o.mergeDistance, Range::above(0), "m",
@@ -37,9 +38,11 @@ void bind(Binder& b, PoleMapOptions& o) {
                        "detections are one pole by distance, or where their boxes overlap (first "
                        "implementation)");
   b.choice<PoleCounting>("counting", o.counting,
-                         {{PoleCounting::run, "run"}, {PoleCounting::members, "members"}},
-                         "count of a pole: sections of one run (paper), or detections (first "
-                         "implementation)");
+                         {{PoleCounting::run, "run"},
+                          {PoleCounting::confidences, "confidences"},
+                          {PoleCounting::members, "members"}},
+                         "count of a pole: sections of one run (paper), the sum of their greatest "
+                         "confidences, or detections (first implementation)");
   b.number("unvisited_m", o.unvisited, Range::atLeast(0), "m",
            "later sessions: least distance of a scan from all places visited before; 0: all");
 

@@ -7,6 +7,7 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>

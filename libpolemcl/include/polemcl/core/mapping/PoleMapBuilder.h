@@ -4,8 +4,9 @@
 ///
 /// The path is split into sections of equal length (PathSections); detections of different scans
 /// are merged by gated distance (ObservationClustering) and averaged by their certainty
-/// (LandmarkFusion); a pole stays if enough sections in a continuous run saw it. The options have
-/// the first implementation's way of each step as well.
+/// (LandmarkFusion); a pole stays if enough sections in a continuous run saw it, each counted by
+/// its confidence. The options have the paper's and the first implementation's way of each step as
+/// well.
 
 #include <vector>
 
@@ -30,8 +31,9 @@ enum class MapMerging {
 
 /// \brief What is counted against PoleMapOptions::minCount.
 enum class PoleCounting {
-  run,     ///< sections of one continuous run that saw the pole (paper)
-  members  ///< detections of the pole, wherever they were made (first implementation)
+  run,          ///< sections of one continuous run that saw the pole (paper)
+  confidences,  ///< the sum of their greatest confidences: how many of them were right
+  members       ///< detections of the pole, wherever they were made (first implementation)
 };
 
 /// \brief `[map]` in INI files.
@@ -43,18 +45,20 @@ struct POLEMCL_EXPORT PoleMapOptions {
   bool everyScan = true;
   SectionMiddle middle = SectionMiddle::nearest;
   MapMerging merging = MapMerging::gated;
-  PoleCounting counting = PoleCounting::run;
+  PoleCounting counting = PoleCounting::confidences;
   double mergeDistance = 0.5;  ///< detections of one pole lie within this of its mean, m
   /// Poles nearer to each other than mergeDistance stay apart when at least this share of the
   /// keyframes of the one seen more often shows both; otherwise they are one.
   static constexpr double apartShare = 0.25;
-  int minCount = 5;          ///< least `counting` of a pole
-  int maxGap = 2;            ///< most *occupied* sections in a row that may miss it inside a run
-  double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
+  /// Least `counting` of a pole. With `confidences`, of a drive whose scans are so far apart that
+  /// only a share of the sections has one, this share of it, but 1.5 at least.
+  double minCount = 3;
+  int maxGap = 2;              ///< most *occupied* sections in a row that may miss it inside a run
+  double minConfidence = 0.3;  ///< detections below are not used, in [0, 1]; those of 0 never are
   /// Least share of the occupied sections with middles within `nearRange` that saw the pole, in
-  /// [0, 1]. Clutter looks like a pole from few places, a pole from nearly all. A pole without such
-  /// sections needs `minCount` alone.
-  double minShare = 0.4;
+  /// [0, 1]; each counts by its confidence if `counting` says so. Clutter looks like a pole from
+  /// few places, a pole from nearly all. A pole without such sections needs `minCount` alone.
+  double minShare = 0.15;
   double nearRange = 15;  ///< m
   /// Standard deviation of the scans' positions, m: added to each detection, so that the nearest
   /// one does not count alone.
@@ -88,7 +92,7 @@ struct PoleMapResult {
   std::size_t views = 0;             ///< keyframes: one scan of each occupied section, or all
   std::size_t detections = 0;        ///< used
   std::size_t clusters = 0;          ///< before counting
-  std::size_t bestCount = 0;         ///< greatest `counting` of a pole; minCount must be met
+  double bestCount = 0;              ///< greatest `counting` of a pole; minCount must be met
 };
 
 /// \brief Builds the map from scans in the order they were driven. The result does not depend on
