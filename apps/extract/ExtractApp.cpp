@@ -143,7 +143,7 @@ void runExtraction(const ExtractOptions& options, const Settings& settings, bool
 }
 
 void runInspection(const InspectOptions& options, bool quiet) {
-  const RawlogInspection inspection = inspect(options);
+  const Inspection inspection = inspect(options, Progress("inspect", 0, quiet).updates());
   if (quiet) return;
   printInspection(std::cout, inspection);
   if (options.writeConfig)
@@ -162,8 +162,15 @@ int extractMain(int argc, const char* const* argv) {
   auto& cli = line.cli();
   addSetOption(cli, set);
   auto* inspected = cli.add_option("--inspect", inspection.input,
-                                   "Rawlog of scans: estimate its LiDAR's beams and mounting");
+                                   "Rawlog of scans: estimate its LiDAR's beams and mounting, and "
+                                   "from its poles and motion when the points were measured");
   cli.add_option("--write-config", inspection.writeConfig, "INI file to write for that LiDAR")
+      ->needs(inspected);
+  cli.add_option("--truth", inspection.truth, "TUM file of true poses for --inspect")
+      ->needs(inspected);
+  cli.add_option("--turn-s", inspection.turnSeconds, "Duration of a turn for --inspect, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
       ->needs(inspected);
   auto* configured = cli.add_option("--config", config, "INI file, see config/");
   auto* input = cli.add_option("--input", options.input, "Rawlog of scans");

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <ostream>
 
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/common/PoseInterpolation.h"
+#include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -81,28 +84,86 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
     out << "fits              no preset; model = table with the elevations above\n";
 }
 
+void printTiming(std::ostream& out, const std::optional<TimingEstimate>& found) {
+  out << "scan timing       ";
+  if (!found) {
+    out << "unknown: the rawlog has no odometry between its scans; give true poses with --truth\n";
+    return;
+  }
+  if (found->pairs == 0) {
+    out << "unknown: no pole was seen from two places\n";
+    return;
+  }
+  const ScanTiming& timing = found->timing;
+  for (const auto& [turn, name] : turnNames())
+    if (turn == timing.turn) out << name;
+  if (timing.known())
+    out << ", cut at " << degrees(timing.cut, 0) << " deg, stamped in the middle of the turn";
+  else
+    out << ", as far as the poles show";
+  out << "\nclock             "
+      << (timing.clock != 0 ? "clock_offset_s = " + io::fixed(timing.clock, 2) : "no offset seen")
+      << "\nevidence          " << found->pairs << " pairs of sightings, a pole moves by "
+      << io::fixed(found->before, 4) << " m between two scans as they are, by "
+      << io::fixed(found->after, 4) << " m\n                  with this timing; turn "
+      << io::fixed(found->turnEvidence, 1) << " and clock " << io::fixed(found->clockEvidence, 1)
+      << " standard errors better than none (4 are needed)\n";
+}
+
+/// A turn of one second from azimuth 0: the time offset of a detection tells its azimuth.
+ScanTiming azimuthAsTime() {
+  return {Turn::counterclockwise, 1, 0, 0};
+}
+
+std::optional<TimingEstimate> findTiming(const InspectOptions& options, Settings settings,
+                                         const ScanProgress& progress) {
+  settings.sensor.timing = azimuthAsTime();
+  const PoleSequence drive = readPoleSequence(
+      options.input.string(), {settings.poleExtraction(), settings.motion, options.allowTruncated},
+      progress);
+  std::vector<StampedPose2D> truth;
+  if (options.truth) truth = io::readPlanarTum(*options.truth);
+  std::vector<TimedScan> scans;
+  Pose2D dead;  // reckoning
+  for (const PoleFrame& frame : drive.frames) {
+    if (!options.truth && !frame.motion) return std::nullopt;
+    if (!options.truth) dead = compose(dead, frame.motion->mean);
+    const auto pose = options.truth ? poseAt(truth, frame.time, longestTruthGap) : dead;
+    if (!pose) continue;
+    TimedScan scan{frame.time, *pose, {}};
+    for (const PoleDetection& pole : frame.poles_robot)
+      scan.poles_robot.push_back({pole.x, pole.y, 2 * M_PI * pole.timeOffset});
+    scans.push_back(std::move(scan));
+  }
+  return searchTiming(scans, options.turnSeconds);
+}
+
 }  // namespace
 
-Settings settingsFor(const RawlogInspection& inspection) {
+Settings settingsFor(const Inspection& inspection) {
   Settings settings;
-  settings.sensor = inspection.options;
+  settings.sensor = inspection.sensor.options;
+  if (inspection.timing &&
+      (inspection.timing->timing.known() || inspection.timing->timing.clock != 0))
+    settings.sensor.timing = inspection.timing->timing;
   return settings;
 }
 
-RawlogInspection inspect(const InspectOptions& options) {
-  const RawlogInspection result = inspectRawlog(options.input.string(), options.allowTruncated);
+Inspection inspect(const InspectOptions& options, const ScanProgress& progress) {
+  Inspection result{inspectRawlog(options.input.string(), options.allowTruncated), {}};
+  result.timing = findTiming(options, settingsFor(result), progress);
   if (options.writeConfig) saveSettings(settingsFor(result), options.writeConfig->string());
   return result;
 }
 
-void printInspection(std::ostream& out, const RawlogInspection& inspection) {
-  const SensorIdentification& sensor = inspection.sensor;
-  out << "scans             " << inspection.used.size() << " of " << inspection.scans << " ("
-      << inspection.label << "), " << sensor.points << " points, " << sensor.invalid
-      << " invalid\n";
-  printBeams(out, sensor);
-  printMounting(out, inspection);
-  printPresets(out, inspection);
+void printInspection(std::ostream& out, const Inspection& inspection) {
+  const RawlogInspection& scans = inspection.sensor;
+  out << "scans             " << scans.used.size() << " of " << scans.scans << " (" << scans.label
+      << "), " << scans.sensor.points << " points, " << scans.sensor.invalid << " invalid\n";
+  printBeams(out, scans.sensor);
+  printMounting(out, scans);
+  printPresets(out, scans);
+  printTiming(out, inspection.timing);
 }
 
 }  // namespace polemcl::apps

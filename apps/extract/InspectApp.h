@@ -6,7 +6,9 @@
 #include <iosfwd>
 #include <optional>
 
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
+#include "core/sensor/TimingSearch.h"
 #include "mrpt/rawlog/RawlogInspection.h"
 
 namespace polemcl::apps {
@@ -16,16 +18,24 @@ struct InspectOptions {
   std::filesystem::path input;                       ///< rawlog of scans
   std::optional<std::filesystem::path> writeConfig;  ///< INI file to write, when given
   bool allowTruncated = false;                       ///< use the readable part of a damaged rawlog
+  std::optional<std::filesystem::path> truth;        ///< true poses, instead of the odometry
+  double turnSeconds = 0.1;                          ///< duration of a turn of the LiDAR, s
+};
+
+struct Inspection {
+  RawlogInspection sensor;
+  /// None if the rawlog has neither odometry between all scans nor true poses.
+  std::optional<TimingEstimate> timing;
 };
 
 /// \brief Inspects, writes the INI file if one is wanted. \throws Error as inspectRawlog(), and
 /// when the file cannot be written; it is then as it was before.
-RawlogInspection inspect(const InspectOptions& options);
+Inspection inspect(const InspectOptions& options, const ScanProgress& progress = {});
 
-/// \brief Defaults of all programs, with the sensor that was found.
-Settings settingsFor(const RawlogInspection& inspection);
+/// \brief Defaults of all programs, with the sensor that was found, and its timing if it turns.
+Settings settingsFor(const Inspection& inspection);
 
-/// \brief A table for people: beams, columns, view, mounting, and which preset fits how well.
-void printInspection(std::ostream& out, const RawlogInspection& inspection);
+/// \brief A table for people: beams, columns, view, mounting, which preset fits how well, timing.
+void printInspection(std::ostream& out, const Inspection& inspection);
 
 }  // namespace polemcl::apps

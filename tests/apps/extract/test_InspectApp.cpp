@@ -155,11 +155,28 @@ TEST_F(InspectApp, KnowsTheLidarOfKitti) {
   options.output = folder / "in.rawlog";
   options.every = 20;
   importDataset(options);
-  const auto inspection = inspect({folder / "in.rawlog", std::nullopt, false});
+  const RawlogInspection inspection = inspect({folder / "in.rawlog"}).sensor;
   EXPECT_EQ(inspection.sensor.beams.beams(), 64);
   EXPECT_EQ(inspection.options.model, "hdl64e");
   EXPECT_NEAR(inspection.options.height, 1.73, 0.1);
   EXPECT_EQ(inspection.options.originZ, 0);
+}
+
+TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
+  const char* data = std::getenv("POLEMCL_DATA");
+  if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";
+  ImportOptions options;
+  options.input = fs::path(data) / "kitti_raw_0005";
+  options.output = folder / "in.rawlog";
+  importDataset(options);
+  InspectOptions files{folder / "in.rawlog", folder / "found.ini"};
+  files.truth = folder / "in.tum";
+  const auto timing = inspect(files).timing;
+  ASSERT_TRUE(timing);
+  EXPECT_EQ(timing->timing.turn, Turn::clockwise);
+  EXPECT_NEAR(std::abs(timing->timing.cut), M_PI, 0.3);
+  EXPECT_EQ(timing->timing.clock, 0);
+  EXPECT_NE(readText(folder / "found.ini").find("turn = clockwise"), std::string::npos);
 }
 
 }  // namespace polemcl::test_inspect_app

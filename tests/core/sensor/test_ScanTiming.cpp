@@ -31,4 +31,9 @@ TEST(ScanTiming, CompensatedAndUnknownScansHaveNoOffsets) {
   }
 }
 
+TEST(ScanTiming, AnotherClockShiftsAllScans) {
+  EXPECT_NEAR((ScanTiming{Turn::clockwise, 0.1, M_PI, 0.5, 0.08}.offset(0)), 0.08, 1e-15);
+  EXPECT_EQ((ScanTiming{Turn::compensated, 0.1, M_PI, 0.5, 0.08}.offset(2)), 0.08);
+}
+
 }  // namespace polemcl::test_scan_timing

@@ -6,10 +6,10 @@
 namespace polemcl {
 
 double ScanTiming::offset(double azimuth) const {
-  if (!known()) return 0;
+  if (!known()) return clock;
   double turned = (azimuth - cut) / (2 * M_PI);
   if (turn == Turn::clockwise) turned = -turned;
-  return seconds * (turned - std::floor(turned) - stamp);
+  return clock + seconds * (turned - std::floor(turned) - stamp);
 }
 
 const std::vector<std::pair<Turn, std::string>>& turnNames() {
@@ -30,6 +30,8 @@ void bindTiming(Binder& b, ScanTiming& timing) {
              "azimuth at which a scan begins and ends, frame of the clouds");
   b.number("stamp_turn", timing.stamp, Range::between(0, 1), "turns",
            "moment of the time stamp: 0 begin of the turn, 1 end of it");
+  b.number("clock_offset_s", timing.clock, Range::between(-1, 1), "s",
+           "added to the time stamps of scans, where odometry and truth have another clock");
 }
 
 }  // namespace polemcl

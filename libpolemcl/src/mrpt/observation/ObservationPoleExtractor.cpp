@@ -143,8 +143,11 @@ PoleExtractor& ObservationPoleExtractor::Impl::extractorFor(const LidarFrame& fr
 void ObservationPoleExtractor::Impl::setTimeOffsets(const LidarFrame& frames,
                                                     std::vector<PoleDetection>& poles) const {
   ScanTiming timing = sensor.timing;
-  if (timing.turn == Turn::automatic) timing = points.timing().value_or(recorded);
-  if (!timing.known()) return;
+  if (timing.turn == Turn::automatic) {
+    timing = points.timing().value_or(recorded);
+    timing.clock += sensor.timing.clock;
+  }
+  if (!timing.known() && timing.clock == 0) return;
   for (PoleDetection& pole : poles) {
     const Eigen::Vector3d cloud =
         frames.R_lidar_cloud.transpose() * Eigen::Vector3d(pole.x, pole.y, 0);

@@ -29,10 +29,14 @@ struct POLEMCL_EXPORT ScanTiming {
                                         ///< cloud, rad (`cut_deg`)
   double stamp =
       0.5;  ///< moment of the time stamp: 0 the begin of the turn, 1 its end (`stamp_turn`)
+  /// Added to the stamps: the clocks of scans and odometry or truth may differ, s
+  /// (`clock_offset_s`). For compensated scans as well.
+  double clock = 0;
 
   /// \brief Whether points have measuring times of their own.
   bool known() const { return turn == Turn::clockwise || turn == Turn::counterclockwise; }
-  /// \brief Time from the stamp to the moment the LiDAR faces `azimuth`, s; 0 unless known().
+  /// \brief Time from the stamp, in the clock of the odometry, to the moment the LiDAR faces
+  /// `azimuth`, s; `clock` unless known().
   /// \param azimuth In the frame of the cloud, rad, any number of turns.
   double offset(double azimuth) const;
 };

@@ -1,0 +1,207 @@
+#include "core/sensor/TimingSearch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polemcl/core/common/Deskew.h>
+#include "core/common/KdTree2D.h"
+
+namespace polemcl {
+namespace {
+
+constexpr double kAway[] = {1, 2, 4, 8};   // m between the two scans of a pair
+constexpr double kLongestPause = 1;        // s between successive scans, else no velocity
+constexpr double kWidest = 1, kFar = 0.3;  // m: gate of a pair, and greatest distance that counts
+constexpr std::size_t kMostPairs = 30000;
+constexpr double kEnough = 4;     // standard errors
+constexpr double kGreatest = 15;  // clock offsets, in steps
+constexpr double kStep = 0.01;    // s
+
+/// Sightings of one pole in two scans.
+struct Pair {
+  std::size_t scanA, poleA, scanB, poleB;
+};
+
+class Search {
+ public:
+  Search(const std::vector<TimedScan>& scans, double turnSeconds);
+  void associate(const ScanTiming& timing);
+  const std::vector<Pair>& pairs() const { return m_pairs; }
+  /// Distances of the pairs, m.
+  std::vector<double> distances(const ScanTiming& timing) const;
+  double mean(const ScanTiming& timing) const;
+  /// Standard errors by which `better` is better; the pairs of a scan count as one sample.
+  double evidence(const ScanTiming& better, const ScanTiming& worse) const;
+  ScanTiming bestTurn(double clock) const;
+  double bestClock(ScanTiming timing) const;
+
+ private:
+  Eigen::Vector2d place(std::size_t scan, const TimedPole& pole, const ScanTiming& timing) const;
+  std::vector<std::size_t> partners(std::size_t scan) const;
+
+  const std::vector<TimedScan>& m_scans;
+  double m_seconds;
+  std::vector<Velocity> m_velocity;
+  std::vector<double> m_way;  ///< driven up to each scan, m
+  std::vector<Pair> m_pairs;
+};
+
+Search::Search(const std::vector<TimedScan>& scans, double turnSeconds)
+    : m_scans(scans), m_seconds(turnSeconds), m_velocity(scans.size()), m_way(scans.size()) {
+  std::vector<int> parts(scans.size());
+  for (std::size_t i = 1; i < scans.size(); ++i) {
+    const Pose2D motion = relative(scans[i - 1].pose_map_robot, scans[i].pose_map_robot);
+    m_way[i] = m_way[i - 1] + std::hypot(motion.x, motion.y);
+    const double pause = scans[i].time - scans[i - 1].time;
+    if (!(pause > 0 && pause <= kLongestPause)) continue;
+    const Velocity velocity = velocityOf(motion, pause);
+    for (const std::size_t k : {i - 1, i}) {
+      m_velocity[k].x += velocity.x;
+      m_velocity[k].y += velocity.y;
+      m_velocity[k].yaw += velocity.yaw;
+      ++parts[k];
+    }
+  }
+  for (std::size_t k = 0; k < scans.size(); ++k)
+    if (parts[k] == 2)
+      m_velocity[k] = {m_velocity[k].x / 2, m_velocity[k].y / 2, m_velocity[k].yaw / 2};
+}
+
+Eigen::Vector2d Search::place(std::size_t scan, const TimedPole& pole,
+                              const ScanTiming& timing) const {
+  const Pose2D moved = motionAfter(m_velocity[scan], timing.offset(pole.azimuth));
+  const Pose2D at = compose(m_scans[scan].pose_map_robot, compose(moved, {pole.x, pole.y, 0}));
+  return {at.x, at.y};
+}
+
+std::vector<std::size_t> Search::partners(std::size_t scan) const {
+  std::vector<std::size_t> result;
+  for (const double away : kAway) {
+    const auto found = std::lower_bound(m_way.begin() + static_cast<std::ptrdiff_t>(scan),
+                                        m_way.end(), m_way[scan] + away);
+    if (found == m_way.end()) break;
+    const auto partner = static_cast<std::size_t>(found - m_way.begin());
+    if (result.empty() || partner > result.back()) result.push_back(partner);
+  }
+  return result;
+}
+
+void Search::associate(const ScanTiming& timing) {
+  std::vector<KdTree2D> trees;
+  for (std::size_t i = 0; i < m_scans.size(); ++i) {
+    std::vector<Eigen::Vector2d> places;
+    for (const TimedPole& pole : m_scans[i].poles_robot) places.push_back(place(i, pole, timing));
+    trees.emplace_back(std::move(places));
+  }
+  m_pairs.clear();
+  for (std::size_t i = 0; i < m_scans.size(); ++i)
+    for (const std::size_t j : partners(i))
+      for (std::size_t a = 0; a < trees[i].size(); ++a) {
+        const Eigen::Vector2d& here = trees[i].point(a);
+        const PointHit hit = trees[j].nearest(here.x(), here.y(), kWidest);
+        if (!hit) continue;
+        const Eigen::Vector2d& there = trees[j].point(hit.index);
+        if (trees[i].nearest(there.x(), there.y(), kWidest).index == a)
+          m_pairs.push_back({i, a, j, hit.index});
+      }
+  if (m_pairs.size() <= kMostPairs) return;
+  std::vector<Pair> spread;
+  spread.reserve(kMostPairs);
+  for (std::size_t k = 0; k < kMostPairs; ++k)
+    spread.push_back(m_pairs[k * m_pairs.size() / kMostPairs]);
+  m_pairs.swap(spread);
+}
+
+std::vector<double> Search::distances(const ScanTiming& timing) const {
+  std::vector<double> result;
+  result.reserve(m_pairs.size());
+  for (const Pair& pair : m_pairs) {
+    const auto a = place(pair.scanA, m_scans[pair.scanA].poles_robot[pair.poleA], timing);
+    const auto b = place(pair.scanB, m_scans[pair.scanB].poles_robot[pair.poleB], timing);
+    result.push_back(std::min((a - b).norm(), kFar));
+  }
+  return result;
+}
+
+double Search::mean(const ScanTiming& timing) const {
+  double sum = 0;
+  for (const double distance : distances(timing)) sum += distance;
+  return sum / static_cast<double>(m_pairs.size());
+}
+
+double Search::evidence(const ScanTiming& better, const ScanTiming& worse) const {
+  const auto good = distances(better), bad = distances(worse);
+  double sum = 0, squares = 0, here = 0;
+  for (std::size_t k = 0; k < m_pairs.size(); ++k) {
+    here += bad[k] - good[k];
+    if (k + 1 < m_pairs.size() && m_pairs[k + 1].scanA == m_pairs[k].scanA) continue;
+    sum += here;
+    squares += here * here;
+    here = 0;
+  }
+  return squares > 0 ? sum / std::sqrt(squares) : 0;
+}
+
+/// The best of not turning, and of turning with cuts in steps of 15°.
+ScanTiming Search::bestTurn(double clock) const {
+  ScanTiming best{Turn::compensated, m_seconds, M_PI, 0.5, clock};
+  double least = mean(best);
+  const auto attempt = [&](Turn turn, double cut) {
+    const ScanTiming timing{turn, m_seconds, std::remainder(cut, 2 * M_PI), 0.5, clock};
+    if (const double distance = mean(timing); distance < least) {
+      least = distance;
+      best = timing;
+    }
+  };
+  for (const Turn turn : {Turn::clockwise, Turn::counterclockwise})
+    for (int k = 0; k < 8; ++k) attempt(turn, M_PI + k * M_PI / 4);
+  if (!best.known()) return best;
+  const ScanTiming rough = best;
+  for (const int k : {-2, -1, 1, 2}) attempt(rough.turn, rough.cut + k * M_PI / 12);
+  return best;
+}
+
+double Search::bestClock(ScanTiming timing) const {
+  double least = std::numeric_limits<double>::infinity(), best = 0;
+  for (double k = -kGreatest; k <= kGreatest; ++k) {
+    timing.clock = k * kStep;
+    if (const double distance = mean(timing); distance < least) {
+      least = distance;
+      best = timing.clock;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeconds) {
+  TimingEstimate result;
+  const ScanTiming still{Turn::compensated, turnSeconds, M_PI, 0.5, 0};
+  result.timing = still;
+  Search search(scans, turnSeconds);
+  // The second time with the pairs that the first result shows.
+  for (int round = 0; round < 2; ++round) {
+    search.associate(result.timing);
+    result.pairs = search.pairs().size();
+    if (result.pairs == 0) return result;
+    ScanTiming best = search.bestTurn(0);
+    ScanTiming shifted = best;
+    for (int k = 0; k < 4; ++k) {  // each needs the other
+      shifted.clock = search.bestClock(shifted);
+      shifted = search.bestTurn(shifted.clock);
+    }
+    result.clockEvidence = search.evidence(shifted, best);
+    if (result.clockEvidence >= kEnough) best = shifted;
+    ScanTiming standing = still;
+    standing.clock = best.clock;
+    result.turnEvidence = search.evidence(best, standing);
+    result.timing = result.turnEvidence >= kEnough ? best : standing;
+  }
+  result.before = search.mean(still);
+  result.after = search.mean(result.timing);
+  return result;
+}
+
+}  // namespace polemcl

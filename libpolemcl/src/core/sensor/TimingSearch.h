@@ -1,0 +1,45 @@
+#pragma once
+/// \file TimingSearch.h
+/// \brief When the points of a scan were measured, found from the poles of a drive alone.
+///
+/// A standing pole has one place. With the right measuring times, successive scans agree on it
+/// best.
+
+#include <vector>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/sensor/ScanTiming.h>
+
+namespace polemcl {
+
+/// \brief A pole as it was measured.
+struct TimedPole {
+  double x = 0, y = 0;  ///< robot frame at the moment it was measured, m
+  double azimuth = 0;   ///< in the frame of the cloud, rad
+};
+
+/// \brief A scan of a drive. Poses may drift: only the motion over some metres matters.
+struct TimedScan {
+  double time = 0;  ///< its stamp, s
+  Pose2D pose_map_robot;
+  std::vector<TimedPole> poles_robot;
+};
+
+/// \brief What fits a drive best.
+struct TimingEstimate {
+  /// compensated, or the direction of turning, with `seconds` as given and `stamp` = 0.5. Its
+  /// `clock` is 0 unless the drive shows another one.
+  ScanTiming timing;
+  std::size_t pairs = 0;     ///< of sightings of one pole in two scans
+  double before = 0;         ///< mean distance of a pair, all as measured at the stamps, m
+  double after = 0;          ///< the same with `timing`, m
+  double turnEvidence = 0;   ///< standard errors by which turning is better than not turning
+  double clockEvidence = 0;  ///< standard errors by which the best clock is better than 0
+};
+
+/// \brief Searches directions, cuts and clock offsets (±0.15 s).
+/// \param turnSeconds Duration of a turn of the LiDAR, s.
+/// \return `pairs` is 0 where no pole was seen twice.
+TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeconds);
+
+}  // namespace polemcl
