@@ -30,6 +30,7 @@ void bindTiming(Binder& b, ScanTiming& timing) {
              "azimuth at which a scan begins and ends, frame of the clouds");
   b.number("stamp_turn", timing.stamp, Range::between(0, 1), "turns",
            "moment of the time stamp: 0 begin of the turn, 1 end of it");
+  b.tier(Tier::tuning);
   b.number("clock_offset_s", timing.clock, Range::between(-1, 1), "s",
            "added to the time stamps of scans, where odometry and truth have another clock");
 }

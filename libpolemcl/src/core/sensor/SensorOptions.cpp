@@ -45,10 +45,10 @@ void bind(Binder& b, SensorOptions& o) {
             "optical centre x y z, along the robot's axes from the origin of the clouds");
   b.number("min_range_m", o.minRange, Range::atLeast(0), "m", "nearer returns are the vehicle");
   b.number("max_range_m", o.maxRange, Range::above(0), "m", "farther returns are not used");
-  bindTiming(b, o.timing);
   b.flag("check_beams", o.checkBeams,
          "true: a scan that contradicts the settings above is refused; the first three are "
          "checked");
+  bindTiming(b, o.timing);
 
   if (o.model == "table") requireTable(b, o);
   if (o.model == "uniform")
