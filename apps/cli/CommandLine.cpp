@@ -86,8 +86,7 @@ void printConfig(const PrintRequest& request) {
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
     : m_program(program), m_cli(description, program) {
-  m_cli.set_version_flag("--version",
-                         program + " " + version() + " (build " + buildIdentity() + ")");
+  m_cli.set_version_flag("--version", versionLine(program));
   m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors");
   m_cli.add_option("--threads", m_threads, "Number of threads at most; 0: one for each core")
       ->check(CLI::Range(0, 10000));

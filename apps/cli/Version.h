@@ -2,6 +2,8 @@
 /// \file Version.h
 /// \brief Which polemcl this is.
 
+#include <string>
+
 #include <polemcl/version.h>
 
 namespace polemcl::apps {
@@ -14,4 +16,8 @@ inline const char* version() {
 /// the build type, the options of the compiler. Another identity, possibly other results: it stands
 /// in the keys of a batch's tasks and in JSON files and maps.
 const char* buildIdentity();
+/// \brief What `--version` prints: "pole-map 0.1.0 (build ...)".
+inline std::string versionLine(const std::string& program) {
+  return program + " " + version() + " (build " + buildIdentity() + ")";
+}
 }  // namespace polemcl::apps

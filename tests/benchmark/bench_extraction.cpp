@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <random>
 #include <string>
+#include <tuple>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
 #include <polemcl/io/data/Cloud.h>
@@ -48,6 +51,39 @@ const Scan& kittiScan() {
   return scan;
 }
 
+/// The same points in another order.
+Scan ordered(const Scan& scan, const std::vector<std::size_t>& order) {
+  Scan other;
+  for (const std::size_t i : order) {
+    other.x.push_back(scan.x[i]);
+    other.y.push_back(scan.y[i]);
+    other.z.push_back(scan.z[i]);
+  }
+  return other;
+}
+
+/// Column by column, as a LiDAR that turns clockwise fires.
+Scan inFiringOrder(const Scan& scan) {
+  constexpr double kColumns = 2083;
+  std::vector<std::tuple<int, float, std::size_t>> keys;
+  for (std::size_t i = 0; i < scan.x.size(); ++i) {
+    const double turn = (M_PI - std::atan2(scan.y[i], scan.x[i])) / (2 * M_PI);
+    keys.emplace_back(static_cast<int>(turn * kColumns),
+                      -scan.z[i] / std::hypot(scan.x[i], scan.y[i]), i);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> order;
+  for (const auto& key : keys) order.push_back(std::get<2>(key));
+  return ordered(scan, order);
+}
+
+Scan shuffled(const Scan& scan) {
+  std::vector<std::size_t> order(scan.x.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(1));
+  return ordered(scan, order);
+}
+
 /// An HDL-32E scan with as many points as NCLT's scans have after their driver's filter.
 const Scan& ncltSizedScan() {
   static const Scan scan = [] {
@@ -76,6 +112,12 @@ void extract(benchmark::State& state, const Scan& scan, const std::string& model
 
 void nativeKitti(benchmark::State& state) {
   extract(state, kittiScan(), "hdl64e", 1.73, ExtractionMethod::scanLine);
+}
+void nativeKittiFirings(benchmark::State& state) {
+  extract(state, inFiringOrder(kittiScan()), "hdl64e", 1.73, ExtractionMethod::scanLine);
+}
+void nativeKittiShuffled(benchmark::State& state) {
+  extract(state, shuffled(kittiScan()), "hdl64e", 1.73, ExtractionMethod::scanLine);
 }
 void paperKitti(benchmark::State& state) {
   extract(state, kittiScan(), "hdl64e", 1.73, ExtractionMethod::rangeImage);
@@ -110,6 +152,8 @@ void nativePoints(benchmark::State& state) {
 
 BENCHMARK(readOnly)->Unit(benchmark::kMillisecond);
 BENCHMARK(nativeKitti)->Unit(benchmark::kMillisecond);
+BENCHMARK(nativeKittiFirings)->Unit(benchmark::kMillisecond);
+BENCHMARK(nativeKittiShuffled)->Unit(benchmark::kMillisecond);
 BENCHMARK(paperKitti)->Unit(benchmark::kMillisecond);
 BENCHMARK(nativeNcltSized)->Unit(benchmark::kMillisecond);
 BENCHMARK(nativePoints)

@@ -12,8 +12,6 @@ constexpr float kSteep = 5;
 constexpr std::size_t kEnoughBeams = 16;  ///< of more, every second, third … is looked at
 constexpr int kFewestBeams = 2;           ///< fewer do not make a pole
 
-static_assert(ScanLines::kBuckets % VisibilityRangeFinder::kSectors == 0);
-
 }  // namespace
 
 std::size_t visibilityRangeSector(double azimuth, std::size_t sectors) {
@@ -78,13 +76,15 @@ void VisibilityRangeFinder::chooseBeams(const SensorModel& sensor, float sensorH
 /// Counts the blocked steps of one beam in all sectors: it sees nothing beyond what it met.
 void VisibilityRangeFinder::countBlocked(const ScanLines& lines, const Span& span) {
   const float farthest = kStep * static_cast<float>(span.last);
-  const Return* r = lines.begin(span.row, 0, kSectors);
+  float nearest[kSectors];
+  std::fill(nearest, nearest + kSectors, std::numeric_limits<float>::infinity());
+  for (const Return* r = lines.begin(span.row); r < lines.end(span.row); ++r) {
+    float& least = nearest[ScanLines::part(r->azimuth, kSectors)];
+    least = std::min(least, r->rho);
+  }
   for (int sector = 0; sector < kSectors; ++sector) {
-    const Return* end = lines.begin(span.row, sector + 1, kSectors);
-    float nearest = std::numeric_limits<float>::infinity();
-    for (; r < end; ++r) nearest = std::min(nearest, r->rho);
-    if (!(nearest < farthest)) continue;
-    const int from = std::max(span.first, static_cast<int>(nearest / kStep) + 1);
+    if (!(nearest[sector] < farthest)) continue;
+    const int from = std::max(span.first, static_cast<int>(nearest[sector] / kStep) + 1);
     ++m_change[static_cast<std::size_t>(from) * kSectors + sector];
     --m_change[static_cast<std::size_t>(span.last + 1) * kSectors + sector];
   }

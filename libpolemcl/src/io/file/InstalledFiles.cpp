@@ -21,4 +21,12 @@ fs::path installedFile(const fs::path& file, const std::string& folder) {
   return file;
 }
 
+fs::path installedModule(const std::string& name) {
+  const fs::path program = programFolder();
+  std::error_code ignored;
+  for (const fs::path& folder : {program, program.parent_path() / "lib", fs::path(POLEMCL_LIBDIR)})
+    if (fs::exists(folder / name, ignored)) return folder / name;
+  return name;
+}
+
 }  // namespace polemcl::io

@@ -3,8 +3,6 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <system_error>
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/InstalledFiles.h"
@@ -22,21 +20,9 @@ bool isSet(const char* variable) {
   return value && *value;
 }
 
-/// Where the module lies: beside the program, in the folder of libraries next to the program's, or
-/// where it was to be installed. Its bare name, when it is in none of these: as the loader finds
-/// it.
-std::filesystem::path modulePath() {
-  namespace fs = std::filesystem;
-  const fs::path program = io::programFolder();
-  std::error_code ignored;
-  for (const fs::path& folder : {program, program.parent_path() / "lib", fs::path(POLEMCL_LIBDIR)})
-    if (fs::exists(folder / moduleName, ignored)) return folder / moduleName;
-  return moduleName;
-}
-
 /// Loaded once and never closed: GTK cannot be.
 Factory loadFactory() {
-  void* module = dlopen(modulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* module = dlopen(io::installedModule(moduleName).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!module) throw Error(std::string("no window can be opened: ") + dlerror());
   void* factory = dlsym(module, "polemclOpenWindow");
   if (!factory) throw Error(std::string("no window can be opened: ") + dlerror());

@@ -137,4 +137,23 @@ TEST(GroundGrid, KeepsNothingOfTheScanBefore) {
   EXPECT_NEAR(ground.median(), -1.0, 0.05);
 }
 
+/// Sectors are estimated, and made exact near their borders.
+TEST(GroundGrid, EveryPointIsInTheCellOfItsPlace) {
+  PointList points;
+  for (int border = 0; border <= 4 * GroundGrid::kSectors; ++border)
+    for (const double rho : {1.0, 2.5, 7.499999, 7.5, 39.9}) {
+      const double turn = 4.0 * border / (4 * GroundGrid::kSectors) - 2;  // y / (|x| + |y|), folded
+      const double t = std::abs(turn) <= 1 ? turn : std::copysign(2, turn) - turn;
+      const double x = std::copysign(1 - std::abs(t), std::abs(turn) <= 1 ? 1 : -1);
+      const double scale = rho / std::hypot(x, t);
+      for (const double off : {-1e-3, -1e-6, 0.0, 1e-7, 1e-5})
+        points.add(x * scale, t * scale + off, 0);
+    }
+  GroundGrid ground;
+  ground.build(points.view(), 0.5f, 60, 1.7f);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    ASSERT_EQ(ground.cells()[i], GroundGrid::cell(points.x[i], points.y[i]))
+        << points.x[i] << ' ' << points.y[i];
+}
+
 }  // namespace polemcl::test_ground_grid

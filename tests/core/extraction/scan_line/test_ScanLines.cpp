@@ -141,6 +141,30 @@ TEST(ScanLines, EqualsABruteForceOnCloudsOfAnySize) {
   }
 }
 
+TEST(ScanLines, CloudsInTheOrderOfRingsOrFiringsEqualABruteForce) {
+  const SensorModel sensor = sensorModel("vlp16");
+  sim::Random random(6);
+  for (const bool rings : {true, false})
+    for (const double direction : {1.0, -1.0})
+      for (const double cut : {0.0, 75.0, 180.0}) {
+        SCOPED_TRACE(testing::Message() << rings << ' ' << direction << ' ' << cut);
+        constexpr int kColumns = 900, kRows = 16;
+        PointList points;
+        for (int i = 0; i < kColumns * kRows; ++i) {
+          const int row = rings ? i / kColumns : i % kRows;
+          const int column = rings ? i % kColumns : i / kRows;
+          // Neighbours change places, and some points are of another beam.
+          const double azimuth =
+              cut + direction * (column + random.uniform(-1, 1)) * 360 / kColumns;
+          const double elevation = 15 - 2 * row + (random.below(100) == 0 ? 2 : 0);
+          points.addPolar(std::remainder(azimuth, 360) * kDegree, elevation * kDegree,
+                          random.uniform(5, 50));
+        }
+        ScanLines lines(sensor);
+        expectEqualsBruteForce(points.view(), sensor, lines);
+      }
+}
+
 TEST(ScanLines, KeepsNothingOfTheScanBefore) {
   const SensorModel sensor = sensorModel("hdl32e");
   ScanLines lines(sensor);
@@ -269,8 +293,8 @@ TEST(ScanLines, WhatLiesOnTheGroundIsLeftOut) {
 TEST(ScanLines, LowerBoundEqualsABinarySearch) {
   const SensorModel sensor = sensorModel("vlp16");
   PointList points = randomCloud(8000, 11);
-  for (int b = 0; b <= ScanLines::kBuckets; ++b)  // on the borders of the buckets
-    points.addPolar(-M_PI + 2 * M_PI * b / ScanLines::kBuckets, 1 * kDegree, 20);
+  for (int b = 0; b <= ScanLines::kParts; ++b)  // on the borders of the parts
+    points.addPolar(-M_PI + 2 * M_PI * b / ScanLines::kParts, 1 * kDegree, 20);
   ScanLines lines(sensor);
   buildWhole(lines, points.view(), kMinRange, kMaxRange);
   for (int row = 0; row < lines.rows(); ++row) {
@@ -286,8 +310,8 @@ TEST(ScanLines, LowerBoundEqualsABinarySearch) {
       expect(std::nextafter(r->azimuth, 10.f));
       expect(std::nextafter(r->azimuth, -10.f));
     }
-    for (int b = 0; b <= ScanLines::kBuckets; ++b)
-      expect(static_cast<float>(-M_PI + 2 * M_PI * b / ScanLines::kBuckets));
+    for (int b = 0; b <= ScanLines::kParts; ++b)
+      expect(static_cast<float>(-M_PI + 2 * M_PI * b / ScanLines::kParts));
     expect(-static_cast<float>(M_PI));
     expect(static_cast<float>(M_PI));
   }

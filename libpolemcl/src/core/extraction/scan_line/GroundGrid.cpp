@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/extraction/scan_line/ScanKernels.h"
+#include "core/extraction/scan_line/GroundKernels.h"
 
 namespace polemcl {
 namespace {

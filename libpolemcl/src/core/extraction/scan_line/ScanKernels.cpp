@@ -43,179 +43,113 @@ std::uint32_t maskBits(D d, hn::Mask<D> mask) {
   return bits;
 }
 
-/// Appends from + k for every bit k below `lanes` that is set, without branches.
-inline std::size_t appendSet(std::uint32_t bits, std::size_t lanes, std::uint32_t from,
-                             std::uint32_t* to) {
+/// Appends from + k for every bit k that is set. Writes up to 8 numbers more.
+inline std::size_t appendSet(std::uint32_t bits, std::uint32_t from, std::uint32_t* to) {
+  const hn::CappedTag<std::uint32_t, 8> d;
   std::size_t n = 0;
-  for (std::size_t k = 0; k < lanes; ++k) {
-    to[n] = from + static_cast<std::uint32_t>(k);
-    n += bits >> k & 1;
+  for (; bits != 0; bits >>= 8, from += 8) {
+    const std::uint8_t* set = kSetBits.of[bits & 255];
+    for (std::size_t k = 0; k < 8; k += hn::Lanes(d))
+      hn::StoreU(
+          hn::Add(hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::uint8_t, decltype(d)>(), set + k)),
+                  hn::Set(d, from)),
+          d, to + n + k);
+    n += hwy::PopCount(bits & 255);
   }
   return n;
 }
 
-/// table[index] of every lane. Neighbours in a cloud mostly share a cell: one load is then enough.
-template <class D, class VI>
-HWY_INLINE hn::Vec<D> lookUp(D d, const float* table, VI index) {
-  const hn::RebindToSigned<D> di;
-  const auto first = hn::GetLane(index);
-  if (hn::AllTrue(di, hn::Eq(index, hn::Set(di, first)))) return hn::Set(d, table[first]);
-  return hn::GatherIndex(d, table, index);
-}
+/// Points side by side that wait to be classified together.
+struct KeptPoints {
+  using D = hn::CappedTag<float, 8>;
+  static constexpr std::size_t kRoom = 512;
 
-/// Finds cells and lowest points a vector at a time.
-class Collector {
-  using D = hn::ScalableTag<float>;
-  using DI = hn::RebindToSigned<D>;
-  using V = hn::Vec<D>;
-  using VI = hn::Vec<DI>;
-
- public:
-  Collector(float minRange, float maxRange, const LowestPoints& out)
-      : m_minRange(minRange), m_maxRange(maxRange), m_out(out) {}
-
-  /// Every `step`th vector of the points; those whose number is a multiple of `skip` left out.
-  void collect(const PointsView& points, std::size_t step, std::size_t skip) {
-    const std::size_t lanes = hn::Lanes(m_d);
-    Sums sums = noSums();
-    std::size_t vectors = 0;
-    for (std::size_t v = 0, i = 0; i + lanes <= points.size; v += step, i = v * lanes) {
-      if (skip != 0 && v % skip == 0) continue;
-      collectVector(points.x + i, points.y + i, points.z + i, i, sums);
-      ++vectors;
-    }
-    add(sums, vectors * lanes);
+  /// Appends those of a vector of points, the first of which is number `from`, whose bit is set.
+  HWY_INLINE void append(std::uint32_t bits, hn::Vec<D> vx, hn::Vec<D> vy, hn::Vec<D> vz,
+                         std::size_t from) {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const auto lane =
+        hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::uint8_t, D>(), kSetBits.of[bits]));
+    const auto lanes = hn::IndicesFromVec(d, lane);
+    hn::StoreU(hn::TableLookupLanes(vx, lanes), d, x + count);
+    hn::StoreU(hn::TableLookupLanes(vy, lanes), d, y + count);
+    hn::StoreU(hn::TableLookupLanes(vz, lanes), d, z + count);
+    hn::StoreU(hn::Add(lane, hn::Set(di, static_cast<std::int32_t>(from))), di, point + count);
+    count += hwy::PopCount(bits);
   }
 
-  /// The points left over by whole vectors, with zeros behind them, which count for nothing.
-  void collectTail(const PointsView& points) {
-    const std::size_t rest = points.size % hn::Lanes(m_d), from = points.size - rest;
-    if (rest == 0) return;
-    HWY_ALIGN float x[HWY_MAX_BYTES / 4] = {}, y[HWY_MAX_BYTES / 4] = {}, z[HWY_MAX_BYTES / 4] = {};
-    std::memcpy(x, points.x + from, rest * sizeof(float));
-    std::memcpy(y, points.y + from, rest * sizeof(float));
-    std::memcpy(z, points.z + from, rest * sizeof(float));
-    Sums sums = noSums();
-    collectVector(x, y, z, from, sums);
-    add(sums, rest);
-  }
-
-  const GroundGrid::Counts& counts() const { return m_counts; }
-
- private:
-  /// Numbers of points, per lane.
-  struct Sums {
-    VI valid, inRange;
-  };
-  Sums noSums() const { return {hn::Zero(m_di), hn::Zero(m_di)}; }
-  void add(const Sums& sums, std::size_t points) {
-    const auto valid = static_cast<std::size_t>(hn::GetLane(hn::SumOfLanes(m_di, sums.valid)));
-    m_counts.invalid += points - valid;
-    m_counts.outOfRange +=
-        valid - static_cast<std::size_t>(hn::GetLane(hn::SumOfLanes(m_di, sums.inRange)));
-  }
-
-  HWY_INLINE void collectVector(const float* x, const float* y, const float* z, std::size_t at,
-                                Sums& sums) const {
-    const V vx = hn::LoadU(m_d, x), vy = hn::LoadU(m_d, y), vz = hn::LoadU(m_d, z);
-    const V rho = hn::Sqrt(hn::Add(hn::Mul(vx, vx), hn::Mul(vy, vy)));
-    // False for what is not a number; and zeros are what sensors give for no return.
-    const V size = hn::Add(rho, hn::Abs(vz));
-    const auto valid = hn::And(hn::Gt(size, hn::Zero(m_d)),
-                               hn::Le(size, hn::Set(m_d, std::numeric_limits<float>::max())));
-    const auto inRange = hn::And(valid, hn::And(hn::Ge(rho, hn::Set(m_d, m_minRange)),
-                                                hn::Le(rho, hn::Set(m_d, m_maxRange))));
-    sums.valid = hn::Sub(sums.valid, hn::VecFromMask(m_di, hn::RebindMask(m_di, valid)));
-    sums.inRange = hn::Sub(sums.inRange, hn::VecFromMask(m_di, hn::RebindMask(m_di, inRange)));
-    const auto cell = hn::IfThenElse(hn::RebindMask(m_di, inRange), groundCell(vx, vy, rho),
-                                     hn::Set(m_di, GroundGrid::kNoCell));
-    const hn::Rebind<std::uint16_t, D> d16;
-    hn::StoreU(hn::DemoteTo(d16, cell), d16, m_out.cell + at);
-    const auto low = hn::Lt(vz, hn::GatherIndex(m_d, m_out.second, cell));
-    for (std::uint32_t bits = maskBits(m_d, low); bits != 0; bits &= bits - 1)
-      enterLowest(m_out.cell[at + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)],
-                  z[hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)]);
-  }
-
-  /// GroundGrid::cell(); anything for points out of range.
-  HWY_INLINE VI groundCell(V x, V y, V rho) const {
-    const V two = hn::Set(m_d, 2.f);
-    const V sum =
-        hn::Max(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Set(m_d, std::numeric_limits<float>::min()));
-    const V t = hn::Div(y, sum);
-    const V turn = hn::IfThenElse(hn::Lt(x, hn::Zero(m_d)), hn::Sub(hn::CopySign(two, y), t), t);
-    const V place = hn::Mul(hn::Add(turn, two), hn::Set(m_d, GroundGrid::kSectors / 4.f));
-    const V ring = hn::Mul(rho, hn::Set(m_d, 1 / GroundGrid::kRingWidth));
-    const VI sector = hn::ConvertTo(m_di, hn::Min(place, hn::Set(m_d, GroundGrid::kSectors - 1.f)));
-    const VI inner = hn::ConvertTo(m_di, hn::Min(ring, hn::Set(m_d, GroundGrid::kRings - 1.f)));
-    return hn::Add(hn::Mul(sector, hn::Set(m_di, GroundGrid::kRings)), inner);
-  }
-
-  /// Enters one point into the two lowest of its cell. Heights are rounded down, or the noise of
-  /// each point would make it the lowest again and again.
-  void enterLowest(std::size_t cell, float z) const {
-    constexpr float kCoarse = 1.f / 32;  // m
-    float &lowest = m_out.lowest[cell], &second = m_out.second[cell];
-    const float height = std::floor(z * (1 / kCoarse)) * kCoarse;
-    if (height >= second) return;  // lowered by a point of the same vector
-    second = std::max(height, std::min(lowest, second));
-    lowest = std::min(height, lowest);
-  }
-
-  D m_d;
-  DI m_di;
-  float m_minRange, m_maxRange;
-  LowestPoints m_out;
-  GroundGrid::Counts m_counts;
+  std::size_t count = 0;
+  float x[kRoom + kKernelPadding], y[kRoom + kKernelPadding], z[kRoom + kKernelPadding];
+  std::int32_t point[kRoom + kKernelPadding];
 };
 
-GroundGrid::Counts collectLowest(const PointsView& points, float minRange, float maxRange,
-                                 const LowestPoints& out) {
-  Collector collector(minRange, maxRange, out);
-  // A beam's points come nearer and lower from point to point, and would be entered one after the
-  // other: a few from everywhere first leave little to enter.
-  constexpr std::size_t kFew = 16;
-  collector.collect(points, kFew, 0);
-  collector.collect(points, 1, kFew);
-  collector.collectTail(points);
-  return collector.counts();
-}
-
+/// Makes returns of points. Two vectors at a time, as one would wait for its own results.
 class Classifier {
  public:
-  Classifier(const PointsView& points, const RingLookup& lookup, int rows, int bucketsPerRow,
-             const UnsortedReturns& out)
-      : m_points(points), m_lookup(lookup), m_rows(rows), m_buckets(bucketsPerRow), m_out(out) {}
+  using D = hn::ScalableTag<float>;
+  using V = hn::Vec<D>;
+  using VI = hn::Vec<hn::RebindToSigned<D>>;
+  static constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
 
-  /// Classifies one vector of points, and writes it behind what was written before.
-  /// \param point Their indices.
-  void operator()(const std::uint32_t* point, std::size_t at) const {
-    const hn::ScalableTag<float> d;
-    const hn::RebindToSigned<decltype(d)> di;
-    const auto index = hn::BitCast(di, hn::LoadU(hn::RebindToUnsigned<decltype(d)>(), point));
-    // Neighbours in the cloud are mostly kept or dropped together.
-    const std::size_t lanes = hn::Lanes(d);
-    const bool together = point[lanes - 1] - point[0] == lanes - 1;
-    const auto load = [&](const float* from) {
-      return together ? hn::LoadU(d, from + point[0]) : hn::GatherIndex(d, from, index);
-    };
-    const auto vx = load(m_points.x), vy = load(m_points.y), vz = load(m_points.z);
-    const auto rho = hn::Sqrt(hn::Add(hn::Mul(vx, vx), hn::Mul(vy, vy)));
-    const auto azimuth = arcTangent(d, vy, vx);
-    const auto perRadian = hn::Set(d, static_cast<float>(m_buckets) / (2 * kPi));
-    const auto column = hn::ConvertTo(di, hn::Mul(hn::Add(azimuth, hn::Set(d, kPi)), perRadian));
-    const auto clamped = hn::Min(hn::Max(column, hn::Zero(di)), hn::Set(di, m_buckets - 1));
-    const auto row = m_lookup.planes ? rowOfPlane(d, vx, vy, vz) : rowOf(d, rho, vz);
-    const auto first = hn::Mul(row, hn::Set(di, m_buckets));
-    const auto bucket = hn::Min(hn::Add(first, clamped), hn::Set(di, m_rows * m_buckets));
-    hn::StoreU(bucket, di, m_out.bucket + at);
-    hn::StoreInterleaved4(azimuth, rho, vz, hn::BitCast(d, index), d, &m_out.returns[at].azimuth);
+  Classifier(const RingLookup& lookup, int rows, const ReturnStreams& out)
+      : m_lookup(lookup), m_rows(rows), m_out(out) {}
+
+  void operator()(const KeptPoints& points) const {
+    const std::size_t lanes = hn::Lanes(D());
+    std::size_t i = 0;
+    for (; i + 2 * lanes <= points.count; i += 2 * lanes) {
+      const Returns a = classify(points, i), b = classify(points, i + lanes);
+      write(a, lanes);
+      write(b, lanes);
+    }
+    for (; i < points.count; i += lanes)
+      write(classify(points, i), std::min(lanes, points.count - i));
   }
 
  private:
+  struct Returns {
+    V azimuth, rho, z, point;
+    VI stream;
+  };
+
+  HWY_INLINE Returns classify(const KeptPoints& points, std::size_t i) const {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const V x = hn::LoadU(d, points.x + i), y = hn::LoadU(d, points.y + i),
+            z = hn::LoadU(d, points.z + i);
+    const V rho = hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
+    const V azimuth = arcTangent(d, y, x);
+    const VI row = m_lookup.planes ? rowOfPlane(d, x, y, z) : rowOf(d, rho, z);
+    const auto ahead = hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(azimuth, hn::Zero(d))));
+    const VI stream = hn::Min(hn::Sub(hn::Add(row, row), ahead), hn::Set(di, 2 * m_rows));
+    return {azimuth, rho, z, hn::BitCast(d, hn::LoadU(di, points.point + i)), stream};
+  }
+
+  HWY_INLINE void write(const Returns& r, std::size_t count) const {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const auto first = static_cast<std::size_t>(hn::GetLane(r.stream));
+    const std::uint32_t next = m_out.next[first];
+    // Neighbours in the cloud mostly are of one beam.
+    if (count == hn::Lanes(d) && next + count <= m_out.end[first] &&
+        hn::AllTrue(di, hn::Eq(r.stream, hn::Set(di, hn::GetLane(r.stream))))) {
+      hn::StoreInterleaved4(r.azimuth, r.rho, r.z, r.point, d, &m_out.returns[next].azimuth);
+      m_out.next[first] = next + static_cast<std::uint32_t>(count);
+      return;
+    }
+    HWY_ALIGN std::int32_t stream[kMostLanes];
+    HWY_ALIGN Return returns[kMostLanes];
+    hn::Store(r.stream, di, stream);
+    hn::StoreInterleaved4(r.azimuth, r.rho, r.z, r.point, d, &returns[0].azimuth);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t to = m_out.next[stream[k]]++;
+      if (to < m_out.end[stream[k]]) m_out.returns[to] = returns[k];
+    }
+  }
+
   /// Row of every point; the number of rows for those out of view.
-  template <class D>
-  hn::Vec<hn::RebindToSigned<D>> rowOf(D d, hn::Vec<D> rho, hn::Vec<D> z) const {
+  HWY_INLINE VI rowOf(D d, V rho, V z) const {
     const hn::RebindToSigned<D> di;
     const auto lower = hn::Lt(z, hn::Add(hn::Mul(rho, hn::Set(d, m_lookup.splitSlope)),
                                          hn::Set(d, m_lookup.splitOffset)));
@@ -234,8 +168,7 @@ class Classifier {
   }
 
   /// The same for a depth camera.
-  template <class D>
-  hn::Vec<hn::RebindToSigned<D>> rowOfPlane(D d, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) const {
+  VI rowOfPlane(D d, V x, V y, V z) const {
     const hn::RebindToSigned<D> di;
     const auto along = [&](const float* axis) {
       return hn::Add(hn::Add(hn::Mul(x, hn::Set(d, axis[0])), hn::Mul(y, hn::Set(d, axis[1]))),
@@ -253,70 +186,124 @@ class Classifier {
                           hn::Set(di, m_rows));
   }
 
-  const PointsView& m_points;
   const RingLookup& m_lookup;
-  int m_rows, m_buckets;
-  const UnsortedReturns& m_out;
+  int m_rows;
+  ReturnStreams m_out;
 };
 
-std::size_t classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                           const RingLookup& lookup, int rows, int bucketsPerRow,
-                           const UnsortedReturns& out) {
-  const hn::ScalableTag<float> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const hn::Rebind<std::uint16_t, decltype(d)> d16;
+void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
+                    const RingLookup& lookup, int rows, const ReturnStreams& out) {
+  const KeptPoints::D d;
+  const hn::RebindToSigned<KeptPoints::D> di;
+  const hn::Rebind<std::uint16_t, KeptPoints::D> d16;
   const std::size_t lanes = hn::Lanes(d);
-  const Classifier classify(points, lookup, rows, bucketsPerRow, out);
-  constexpr std::size_t kRoom = 512;  // points that wait, so that whole vectors are classified
-  std::uint32_t point[kRoom + 2 * HWY_MAX_BYTES / 4];
-  std::size_t count = 0, written = 0;
-  for (std::size_t i = 0; i < points.size; i += lanes) {
-    const std::size_t rest = points.size - i;
-    HWY_ALIGN float tail[HWY_MAX_BYTES / 4] = {};
-    const float* z = points.z + i;
-    if (HWY_UNLIKELY(rest < lanes)) z = static_cast<float*>(std::memcpy(tail, z, rest * 4));
-    const auto c = hn::PromoteTo(di, hn::LoadU(d16, cell + i));
-    const auto keep = hn::Ge(hn::LoadU(d, z), lookUp(d, limit, c));
-    const std::uint32_t bits = maskBits(d, keep);
-    if (bits == 0) continue;  // most often
-    count += appendSet(bits, std::min(lanes, rest), static_cast<std::uint32_t>(i), point + count);
-    if (count < kRoom) continue;
-    std::size_t done = 0;
-    for (; done + lanes <= count; done += lanes) classify(point + done, written + done);
-    written += done;
-    count -= done;
-    std::copy(point + done, point + done + count, point);
+  const Classifier classify(lookup, rows, out);
+  KeptPoints kept = {};
+  const auto look = [&](const PointsView& some, std::size_t from) {
+    const auto z = hn::LoadU(d, some.z);
+    const auto c = hn::PromoteTo(di, hn::LoadU(d16, cell + from));
+    const std::uint32_t bits = maskBits(d, hn::Ge(z, hn::GatherIndex(d, limit, c)));
+    if (bits == 0) return;  // most often
+    kept.append(bits, hn::LoadU(d, some.x), hn::LoadU(d, some.y), z, from);
+    if (kept.count < KeptPoints::kRoom) return;
+    classify(kept);
+    kept.count = 0;
+  };
+  std::size_t i = 0;
+  for (; i + lanes <= points.size; i += lanes)
+    look({points.x + i, points.y + i, points.z + i, lanes}, i);
+  if (i < points.size) {
+    // Points that are left over; the lanes behind them are of no cell.
+    HWY_ALIGN float x[8] = {}, y[8] = {}, z[8] = {};
+    std::copy(points.x + i, points.x + points.size, x);
+    std::copy(points.y + i, points.y + points.size, y);
+    std::copy(points.z + i, points.z + points.size, z);
+    look({x, y, z, lanes}, i);
   }
-  for (std::size_t done = 0; done < count; done += lanes) {
-    for (std::size_t k = count; k < done + lanes; ++k) point[k] = point[0];  // somewhere
-    classify(point + done, written + done);
-  }
-  return written + count;
+  classify(kept);
 }
 
-std::size_t findBreaks(const Return* returns, std::size_t count, float step, float gap,
-                       std::uint32_t* breaks) {
-  if (count < 2) return 0;
+std::size_t findDisorder(const Return* returns, std::size_t count, std::size_t from) {
   const hn::ScalableTag<float> d;
   const std::size_t lanes = hn::Lanes(d);
-  std::size_t found = 0, i = 0;
+  std::size_t i = from;
   for (; i + lanes < count; i += lanes) {
-    hn::Vec<decltype(d)> azimuth, rho, z, point, nextAzimuth, nextRho;
+    hn::Vec<decltype(d)> azimuth, next, rho, z, point;
     hn::LoadInterleaved4(d, &returns[i].azimuth, azimuth, rho, z, point);
-    hn::LoadInterleaved4(d, &returns[i + 1].azimuth, nextAzimuth, nextRho, z, point);
-    const auto turn = hn::Sub(nextAzimuth, azimuth);
-    const auto near = hn::Lt(hn::Abs(hn::Sub(nextRho, rho)), hn::Set(d, step));
+    hn::LoadInterleaved4(d, &returns[i + 1].azimuth, next, rho, z, point);
+    const std::uint32_t bits = maskBits(d, hn::Not(hn::Lt(azimuth, next)));
+    if (bits != 0) return i + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
+  }
+  for (; i + 1 < count; ++i)
+    if (!(returns[i].azimuth < returns[i + 1].azimuth)) return i;
+  return count;
+}
+
+/// What is beside a run's end, from its next two neighbours outwards: a mixed pixel may stand
+/// between the edge and what lies behind it.
+template <class D>
+class SideFinder {
+ public:
+  using V = hn::Vec<D>;
+  using VI = hn::Vec<hn::RebindToSigned<D>>;
+  SideFinder(float step, float gap, float edge) : m_step(-step), m_gap(gap), m_edge(edge) {}
+
+  HWY_INLINE VI operator()(V azimuth, V rho, V azimuth1, V rho1, V azimuth2, V rho2) const {
+    const hn::RebindToSigned<D> di;
+    const VI next = beside(hn::Sub(azimuth2, azimuth1), hn::Sub(rho2, rho));
+    const VI first = beside(hn::Sub(azimuth1, azimuth), hn::Sub(rho1, rho));
+    return hn::IfThenElse(hn::Eq(first, hn::Set(di, kAttached)), next, first);
+  }
+
+ private:
+  static constexpr std::int32_t kFree = 0, kAttached = 1, kOccluded = 2;  // as Side
+  HWY_INLINE VI beside(V turn, V behind) const {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const auto free =
+        hn::Or(hn::Gt(hn::Abs(turn), hn::Set(d, m_gap)), hn::Gt(behind, hn::Set(d, m_edge)));
+    const auto before = hn::Lt(behind, hn::Set(d, m_step));
+    const VI side =
+        hn::IfThenElse(hn::RebindMask(di, before), hn::Set(di, kOccluded), hn::Set(di, kAttached));
+    return hn::IfThenElse(hn::RebindMask(di, free), hn::Set(di, kFree), side);
+  }
+  float m_step, m_gap, m_edge;
+};
+
+std::size_t findEdges(const Return* returns, std::size_t count, float step, float gap, float edge,
+                      const RowEdges& out) {
+  const hn::ScalableTag<float> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    hn::Vec<decltype(d)> azimuth, rho, z, point;
+    hn::LoadInterleaved4(d, &returns[i].azimuth, azimuth, rho, z, point);
+    hn::StoreU(azimuth, d, out.azimuth + i);
+    hn::StoreU(rho, d, out.rho + i);
+  }
+  for (; i < count; ++i) {
+    out.azimuth[i] = returns[i].azimuth;
+    out.rho[i] = returns[i].rho;
+  }
+  // Before the first and behind the last return stands anything: its results are not used.
+  const SideFinder<decltype(d)> side(step, gap, edge);
+  std::size_t found = 0;
+  for (i = 0; i + 1 < count; i += lanes) {
+    const auto load = [&](const float* from) { return hn::LoadU(d, from); };
+    const float *a = out.azimuth + i, *r = out.rho + i;
+    const auto azimuth = load(a), rho = load(r), azimuth1 = load(a + 1), rho1 = load(r + 1);
+    const auto left = side(azimuth, rho, azimuth1, rho1, load(a + 2), load(r + 2));
+    const auto right = side(azimuth, rho, load(a - 1), load(r - 1), load(a - 2), load(r - 2));
+    hn::StoreU(hn::Add(left, hn::ShiftLeft<2>(right)), di, out.sides + i);
+    const auto turn = hn::Sub(azimuth1, azimuth);
+    const auto near = hn::Lt(hn::Abs(hn::Sub(rho1, rho)), hn::Set(d, step));
     const auto bridged =
         hn::And(hn::Lt(turn, hn::Set(d, 2 * gap)), hn::Lt(hn::Mul(turn, rho), hn::Set(d, kBridge)));
     const auto same = hn::And(near, hn::Or(hn::Lt(turn, hn::Set(d, gap)), bridged));
-    const std::uint32_t bits = maskBits(d, hn::Not(same));
-    if (bits) found += appendSet(bits, lanes, static_cast<std::uint32_t>(i), breaks + found);
-  }
-  for (; i + 1 < count; ++i) {
-    const Return &a = returns[i], &b = returns[i + 1];
-    const bool same = joined(a, b, b.azimuth - a.azimuth, step, gap);
-    breaks[found] = static_cast<std::uint32_t>(i);
-    found += !same;
+    std::uint32_t bits = maskBits(d, hn::Not(same));
+    if (count - 1 - i < lanes) bits &= (1u << (count - 1 - i)) - 1;
+    found += appendSet(bits, static_cast<std::uint32_t>(i), out.breaks + found);
   }
   return found;
 }
@@ -327,25 +314,22 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace polemcl {
-HWY_EXPORT(collectLowest);
 HWY_EXPORT(classifyPoints);
-HWY_EXPORT(findBreaks);
+HWY_EXPORT(findDisorder);
+HWY_EXPORT(findEdges);
 
-GroundGrid::Counts collectLowest(const PointsView& points, float minRange, float maxRange,
-                                 const LowestPoints& out) {
-  return HWY_DYNAMIC_DISPATCH(collectLowest)(points, minRange, maxRange, out);
+void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
+                    const RingLookup& lookup, int rows, const ReturnStreams& out) {
+  HWY_DYNAMIC_DISPATCH(classifyPoints)(points, cell, limit, lookup, rows, out);
 }
 
-std::size_t classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                           const RingLookup& lookup, int rows, int bucketsPerRow,
-                           const UnsortedReturns& out) {
-  return HWY_DYNAMIC_DISPATCH(classifyPoints)(points, cell, limit, lookup, rows, bucketsPerRow,
-                                              out);
+std::size_t findDisorder(const Return* returns, std::size_t count, std::size_t from) {
+  return HWY_DYNAMIC_DISPATCH(findDisorder)(returns, count, from);
 }
 
-std::size_t findBreaks(const Return* returns, std::size_t count, float step, float gap,
-                       std::uint32_t* breaks) {
-  return HWY_DYNAMIC_DISPATCH(findBreaks)(returns, count, step, gap, breaks);
+std::size_t findEdges(const Return* returns, std::size_t count, float step, float gap, float edge,
+                      const RowEdges& out) {
+  return HWY_DYNAMIC_DISPATCH(findEdges)(returns, count, step, gap, edge, out);
 }
 }  // namespace polemcl
 #endif

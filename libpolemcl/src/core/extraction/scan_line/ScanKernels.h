@@ -2,45 +2,47 @@
 /// \file ScanKernels.h
 /// \brief The loops over all points, vectorised and chosen at run time. Private to the library.
 ///
-/// Only IEEE-exact operations (no fused multiply-add, no reciprocal estimates), so that every
-/// instruction set gives the same bits.
+/// Only IEEE-exact operations (no fused multiply-add, no reciprocal estimates but where an exact
+/// check decides), so that every instruction set gives the same bits.
 
 #include <cmath>
 
-#include "core/extraction/scan_line/GroundGrid.h"
+#include "core/extraction/scan_line/GroundKernels.h"
 #include "core/extraction/scan_line/ScanLines.h"
 
 namespace polemcl {
 
-/// \brief Lanes to allow beyond the number of points in the outputs of the kernels.
-constexpr std::size_t kKernelPadding = 64;
-
-/// \brief Where the lowest points of a ground grid are collected.
-struct LowestPoints {
-  std::uint16_t* cell;  ///< out, per point; GroundGrid::kNoCell for dropped points
-  float* lowest;        ///< in and out, per cell; infinity at first
-  /// In and out, per cell and one more: the second lowest. At first the height from which on
-  /// points are no ground; that of kNoCell must be -infinity.
-  float* second;
+/// \brief Positions of the bits that are set, for each byte.
+struct SetBits {
+  constexpr SetBits() {
+    for (int byte = 0; byte < 256; ++byte) {
+      int n = 0;
+      for (int bit = 0; bit < 8; ++bit)
+        if ((byte >> bit & 1) != 0) of[byte][n++] = static_cast<std::uint8_t>(bit);
+    }
+  }
+  std::uint8_t of[256][8] = {};
 };
+inline constexpr SetBits kSetBits;
 
-/// \brief Cell of every point of a ground grid, and the two lowest points of every cell.
-GroundGrid::Counts collectLowest(const PointsView& points, float minRange, float maxRange,
-                                 const LowestPoints& out);
-
-/// \brief Returns not yet in rows.
-struct UnsortedReturns {
+/// \brief Where returns are written: a stream for each half turn of each row, in the order of the
+/// cloud, so that a cloud in the order of rings or firings fills sorted streams.
+struct ReturnStreams {
   Return* returns;
-  std::int32_t* bucket;  ///< row * buckets + column; rows * buckets when out of view
+  /// In and out, per stream 2 * row + (azimuth >= 0), and for what is out of view: where its next
+  /// return is written. It is counted up beyond `end`, but nothing is written there.
+  std::uint32_t* next;
+  const std::uint32_t* end;
 };
 
 /// \brief Returns of the points that lie above a limit.
-/// \param limit Per cell of the ground: least z, m.
-/// \param rows,bucketsPerRow Beams, and columns of equal azimuth from -pi to pi.
-/// \return How many were written.
-std::size_t classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                           const RingLookup& lookup, int rows, int bucketsPerRow,
-                           const UnsortedReturns& out);
+/// \param limit Per cell of the ground: least z, m. \param rows Beams.
+void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
+                    const RingLookup& lookup, int rows, const ReturnStreams& out);
+
+/// \brief The first i from `from` on for which return i + 1 does not have a greater azimuth than
+/// return i; `count`: all have.
+std::size_t findDisorder(const Return* returns, std::size_t count, std::size_t from);
 
 /// \brief Widest gap, m, that neighbours up to two `gap`s apart may have between them.
 constexpr float kBridge = 0.15f;
@@ -52,9 +54,19 @@ inline bool joined(const Return& a, const Return& b, float turn, float step, flo
          (turn < gap || (turn < 2 * gap && turn * a.rho < kBridge));
 }
 
-/// \brief Positions i in [0, count - 1) where returns i and i + 1 are not joined().
-/// \param breaks Room for count + kKernelPadding. \return How many were written, ascending.
-std::size_t findBreaks(const Return* returns, std::size_t count, float step, float gap,
-                       std::uint32_t* breaks);
+/// \brief Where runs of neighbours in a row end, and what lies beside each return.
+struct RowEdges {
+  float *azimuth, *rho;  ///< buffers; two numbers before the first can be read
+  /// Out, per return: Side::… to the left, and to the right times 4, if the run ended there. Not of
+  /// the first and last two, whose neighbours may be across the seam.
+  std::int32_t* sides;
+  /// Out, ascending: positions i in [0, count - 1) where returns i and i + 1 are not joined().
+  std::uint32_t* breaks;
+};
+
+/// \brief Finds the edges in a row. \param edge m: least step to what lies behind.
+/// \param out Room for count + kKernelPadding each. \return Number of breaks.
+std::size_t findEdges(const Return* returns, std::size_t count, float step, float gap, float edge,
+                      const RowEdges& out);
 
 }  // namespace polemcl

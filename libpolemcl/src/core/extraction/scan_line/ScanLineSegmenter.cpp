@@ -21,7 +21,6 @@ class Row {
         m_limits(limits) {}
 
   std::size_t size() const { return m_size; }
-  const Return* returns() const { return m_returns; }
 
   /// True when the last and the first return of the row are neighbours on one surface.
   bool closed() const {
@@ -29,44 +28,40 @@ class Row {
     return joined(a, b, b.azimuth + kTurn - a.azimuth, m_limits.step, m_limits.gap);
   }
 
-  /// Appends the run of returns first..last (last may be size or more: it wraps) if it is a
-  /// segment.
-  void consider(std::size_t first, std::size_t last, std::vector<ScanLineSegment>& segments) const {
-    const Return &begin = m_returns[first], &end = at(last);
-    const float turn = end.azimuth - begin.azimuth + (last < m_size ? 0 : kTurn);
-    if (begin.rho * turn > 1.5f * m_limits.maxWidth || begin.rho > m_limits.maxRange) return;
-    const Side left = side(last < m_size ? last : last - m_size, +1);
-    const Side right = side(first, -1);
-    // One of them free, and none attached.
-    if (static_cast<int>(left) * static_cast<int>(right) != 0 || left == Side::attached ||
-        right == Side::attached)
-      return;
+  /// Appends the run as a segment if it is narrow and not too deep.
+  void append(const SegmentRun& run, std::vector<ScanLineSegment>& segments) const {
+    const Return &begin = m_returns[run.first], &end = at(run.last);
     float rho = begin.rho, farthest = rho, z = 0;
-    for (std::size_t i = first; i <= last; ++i) {
+    for (std::size_t i = run.first; i <= run.last; ++i) {
       const Return& r = at(i);
       rho = std::min(rho, r.rho);
       farthest = std::max(farthest, r.rho);
       z += r.z;
     }
+    const float turn = turnOf(run.first, run.last);
     if (rho * turn > m_limits.maxWidth || farthest - rho > m_limits.maxWidth) return;
-    ScanLineSegment& segment = segments.emplace_back();
-    segment.left = left;
-    segment.right = right;
+    ScanLineSegment segment;
+    segment.left = run.left;
+    segment.right = run.right;
     segment.row = m_row;
-    segment.first = static_cast<std::uint32_t>(first);
-    segment.count = static_cast<std::uint32_t>(last - first + 1);
+    segment.first = run.first;
+    segment.count = run.last - run.first + 1;
     segment.azimuthBegin = begin.azimuth;
     segment.azimuthEnd = begin.azimuth + turn;
     segment.rho = rho;
     segment.z = z / static_cast<float>(segment.count);
     placeFront(begin, end, segment);
+    segments.push_back(segment);
   }
 
- private:
-  const Return& at(std::size_t i) const { return m_returns[i < m_size ? i : i - m_size]; }
+  /// From the first to the last return of a run, rad.
+  float turnOf(std::size_t first, std::size_t last) const {
+    return at(last).azimuth - m_returns[first].azimuth + (last < m_size ? 0 : kTurn);
+  }
 
   /// What is beside return `end` when walking outwards with `direction` (+1 left, -1 right).
   Side side(std::size_t end, int direction) const {
+    if (end >= m_size) end -= m_size;
     const float rho = m_returns[end].rho;
     float azimuth = m_returns[end].azimuth;
     std::size_t i = end;
@@ -89,6 +84,9 @@ class Row {
     return Side::attached;
   }
 
+ private:
+  const Return& at(std::size_t i) const { return m_returns[i < m_size ? i : i - m_size]; }
+
   /// The bisector of the bearings of both ends, at the segment's range.
   void placeFront(const Return& a, const Return& b, ScanLineSegment& segment) const {
     const float x = m_lines.x(a) * b.rho + m_lines.x(b) * a.rho;
@@ -105,30 +103,76 @@ class Row {
   const SegmentLimits& m_limits;
 };
 
+/// True when one side is free and none attached.
+bool standsFree(Side left, Side right) {
+  return static_cast<int>(left) * static_cast<int>(right) == 0 && left != Side::attached &&
+         right != Side::attached;
+}
+
 }  // namespace
 
 ScanLineSegmenter::ScanLineSegmenter(const SensorModel& sensor, const ScanLineOptions& options)
     : m_limits{2.6f * static_cast<float>(sensor.columnAngle()),
                static_cast<float>(options.connectStep), static_cast<float>(options.edgeStep),
-               static_cast<float>(options.maxWidth), static_cast<float>(options.maxRange)} {}
+               static_cast<float>(options.maxWidth), static_cast<float>(options.maxRange)} {
+  // Bit left + 4 * right: those that stand free.
+  for (int sides = 0; sides < 16; ++sides)
+    m_free |= static_cast<std::uint32_t>(
+                  standsFree(static_cast<Side>(sides & 3), static_cast<Side>(sides >> 2)))
+              << sides;
+}
+
+/// Finds the runs of a row that may be segments. Most are not, and for no reason that could be
+/// foreseen: so all are written, and only those that may be are counted.
+void ScanLineSegmenter::findRuns(const ScanLines& lines, int r) {
+  constexpr std::size_t kBefore = 2;  // numbers that findEdges() may read before the first
+  const Row row(lines, r, m_limits);
+  m_runs.clear();
+  const std::size_t size = row.size();
+  if (size == 0) return;
+  if (m_sides.size() < size + kBefore + kKernelPadding) {
+    const std::size_t room = 2 * size + kBefore + kKernelPadding;
+    m_azimuth.resize(room);
+    m_rho.resize(room);
+    m_sides.resize(room);
+    m_breaks.resize(room);
+  }
+  const float *azimuth = m_azimuth.data() + kBefore, *rho = m_rho.data() + kBefore;
+  std::size_t breaks = findEdges(
+      lines.begin(r), size, m_limits.step, m_limits.gap, m_limits.edge,
+      {m_azimuth.data() + kBefore, m_rho.data() + kBefore, m_sides.data(), m_breaks.data()});
+  const bool closed = row.closed();
+  if (closed && breaks == 0) return;  // one closed ring: no ends, no pole
+  m_breaks[breaks++] = static_cast<std::uint32_t>(closed ? size + m_breaks[0] : size - 1);
+  m_runs.resize(breaks);
+  std::uint32_t first = closed ? m_breaks[0] + 1 : 0;
+  std::size_t count = 0;
+  for (std::size_t b = closed ? 1 : 0; b < breaks; ++b) {
+    const std::uint32_t last = m_breaks[b];
+    int sides;
+    float turn;
+    if (first >= 2 && last + 2 < size) {
+      sides = (m_sides[last] & 3) | (m_sides[first] & 12);
+      turn = azimuth[last] - azimuth[first];
+    } else {
+      sides = static_cast<int>(row.side(last, +1)) + 4 * static_cast<int>(row.side(first, -1));
+      turn = row.turnOf(first, last);
+    }
+    m_runs[count] = {first, last, static_cast<Side>(sides & 3), static_cast<Side>(sides >> 2)};
+    count += (m_free >> sides & 1) &
+             static_cast<unsigned>(rho[first] * turn <= 1.5f * m_limits.maxWidth) &
+             static_cast<unsigned>(rho[first] <= m_limits.maxRange);
+    first = last + 1;
+  }
+  m_runs.resize(count);
+}
 
 void ScanLineSegmenter::find(const ScanLines& lines, std::vector<ScanLineSegment>& segments) {
   segments.clear();
   for (int r = 0; r < lines.rows(); ++r) {
+    findRuns(lines, r);
     const Row row(lines, r, m_limits);
-    if (row.size() == 0) continue;
-    if (m_breaks.size() < row.size() + kKernelPadding)
-      m_breaks.resize(2 * row.size() + kKernelPadding);
-    const std::size_t breaks =
-        findBreaks(row.returns(), row.size(), m_limits.step, m_limits.gap, m_breaks.data());
-    const bool closed = row.closed();
-    if (closed && breaks == 0) continue;  // one closed ring: no ends, no pole
-    std::size_t first = closed ? m_breaks[0] + 1 : 0;
-    for (std::size_t b = closed ? 1 : 0; b < breaks; ++b) {
-      row.consider(first, m_breaks[b], segments);
-      first = m_breaks[b] + 1;
-    }
-    row.consider(first, closed ? row.size() + m_breaks[0] : row.size() - 1, segments);
+    for (const SegmentRun& run : m_runs) row.append(run, segments);
   }
 }
 

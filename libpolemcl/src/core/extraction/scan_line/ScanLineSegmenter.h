@@ -43,6 +43,13 @@ struct SegmentLimits {
   float maxRange;  ///< m
 };
 
+/// \brief Neighbouring returns of a row, as in ScanLineSegment; `last` is the size of the row or
+/// more where they wrap.
+struct SegmentRun {
+  std::uint32_t first, last;
+  Side left, right;
+};
+
 /// \brief Finds segments; keeps its buffer between scans.
 class ScanLineSegmenter {
  public:
@@ -52,8 +59,14 @@ class ScanLineSegmenter {
   void find(const ScanLines& lines, std::vector<ScanLineSegment>& segments);
 
  private:
+  void findRuns(const ScanLines& lines, int row);
+
   SegmentLimits m_limits;
+  std::uint32_t m_free = 0;  ///< bit left + 4 * right: one of these sides is free, none attached
+  std::vector<float> m_azimuth, m_rho;
+  std::vector<std::int32_t> m_sides;
   std::vector<std::uint32_t> m_breaks;
+  std::vector<SegmentRun> m_runs;  ///< of one row: those that may be segments
 };
 
 }  // namespace polemcl

@@ -7,6 +7,8 @@
 /// delivered in another order, gives the same rows. (Scan lines as units of pole detection:
 /// Lehtomäki et al. 2010, "Detection of vertical pole-like objects in a road environment".)
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -43,41 +45,41 @@ class ScanLines {
 
   int rows() const { return m_rows; }
   /// \brief Returns of one row, azimuth ascending; equal azimuths by range, then height, then x, y.
-  const Return* begin(int row) const { return m_returns.data() + m_bucketStart[bucket(row, 0)]; }
-  const Return* end(int row) const { return begin(row + 1); }
-  /// \brief First return of part number `part` of a row split into `parts` equal parts, from -pi
-  /// on; `part` may be `parts`: the end of the last. \param parts A power of two, at most kBuckets.
-  const Return* begin(int row, int part, int parts) const {
-    return m_returns.data() + m_bucketStart[bucket(row, part * (m_buckets / parts))];
+  const Return* begin(int row) const { return m_returns.data() + m_begin[row]; }
+  const Return* end(int row) const { return m_returns.data() + m_end[row]; }
+  std::size_t size(int row) const { return m_end[row] - m_begin[row]; }
+  /// \brief The one of `parts` equal parts of a turn, from -pi on, that an azimuth falls into.
+  static int part(float azimuth, int parts) {
+    const float perRadian = static_cast<float>(parts) / (2 * kPi);
+    return std::clamp(static_cast<int>((azimuth + kPi) * perRadian), 0, parts - 1);
   }
-  std::size_t size(int row) const { return static_cast<std::size_t>(end(row) - begin(row)); }
-  /// Buckets of azimuth in a row, for clouds of usual size; large clouds get more.
-  static constexpr int kBuckets = 512;
   /// \brief Coordinates of a return in the cloud last built from, lidar frame, m.
   float x(const Return& r) const { return m_points.x[r.point]; }
   float y(const Return& r) const { return m_points.y[r.point]; }
   /// \brief Index within the row of the first return whose azimuth is not less than `azimuth`.
   std::size_t lowerBound(int row, float azimuth) const;
+  static constexpr float kPi = 3.14159265358979f;
+  /// Parts of a turn in the index of lowerBound().
+  static constexpr int kParts = 256;
 
  private:
-  std::size_t bucket(int row, int column) const {
-    return static_cast<std::size_t>(row) * m_buckets + column;
-  }
-  int bucketColumn(float azimuth) const;
-  void chooseBuckets(std::size_t points);
-  std::uint32_t sortIntoBuckets(std::size_t count);
-  void sortRow(int row);
-  void sortBuckets(int row);
+  void layOut();
+  void sortStream(std::size_t first, std::size_t last);
+  void sortMixed(Return* returns, std::size_t count);
+  void joinHalves(int row);
+  void index(int row);
 
   const SensorModel& m_sensor;
   int m_rows;
-  int m_buckets = kBuckets;  ///< per row
   Counts m_counts;
   PointsView m_points;
-  std::vector<Return> m_unsorted, m_returns;
-  std::vector<std::int32_t> m_key;           ///< bucket of each unsorted return
-  std::vector<std::uint32_t> m_bucketStart;  ///< of every bucket, and the end of the last
-  float m_limit[GroundGrid::kCells + 1];     ///< per cell of the ground
+  std::vector<Return> m_returns, m_sorted;
+  /// Streams of ReturnStreams: first and last place, and where the next return would be.
+  std::vector<std::uint32_t> m_streamBegin, m_streamEnd, m_next;
+  std::vector<std::uint32_t> m_begin, m_end;  ///< of each row, in m_returns
+  std::vector<std::uint32_t> m_partEnd;
+  std::vector<std::uint32_t> m_hint;      ///< row * kParts + part: at its first return or before
+  float m_limit[GroundGrid::kCells + 1];  ///< per cell of the ground
 };
 
 }  // namespace polemcl

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/extraction/scan_line/ScanLineSegmenter.h"
+#include "core/extraction/scan_line/TipBlocks.h"
 
 namespace polemcl {
 
@@ -34,25 +35,24 @@ class SegmentClustering {
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
-  /// The lower end of a growing cluster.
-  struct Tip {
-    float x, y, z;
-    std::int32_t row;
-    std::uint32_t first, last, count;  ///< segments
-    std::int32_t cell;
-    std::uint32_t next;  ///< tip in the same cell
+  /// A growing cluster: its segments, and where its lower end, its tip, is kept.
+  struct Growing {
+    std::uint32_t first, last, count;
+    std::uint32_t block, slot;
   };
-  std::int32_t cell(float x, float y) const;
-  std::uint32_t nearestTip(const ScanLineSegment& segment);
-  void enter(std::uint32_t tip);
-  void move(std::uint32_t tip);
+  std::uint32_t cell(float x, float y) const;
+  std::uint32_t nearest(const ScanLineSegment& segment, float gap, NearestTip nearestTip) const;
+  void enter(std::uint32_t cluster, const ScanLineSegment& segment, float gap);
+  void moveTip(std::uint32_t cluster, const ScanLineSegment& segment, float gap);
+  std::uint32_t freeBlock(std::uint32_t cell);
   void collect();
 
   float m_reach, m_gap, m_cellsPerMetre, m_middle;
-  std::int32_t m_cells;          ///< of the square grid, per side
+  std::uint32_t m_cells;         ///< of the square grid, per side
   std::vector<float> m_beamGap;  ///< per row: two beams apart, as a share of range
-  std::vector<Tip> m_tips;
-  std::vector<std::uint32_t> m_head;   ///< per cell of the plane: the tip that entered last
+  std::vector<Growing> m_growing;
+  std::vector<TipBlock> m_blocks;      ///< number 0 stays empty
+  std::vector<std::uint32_t> m_block;  ///< per cell of the plane: its first block, or 0
   std::vector<std::uint32_t> m_below;  ///< per segment: the next one down its cluster
   std::vector<std::uint32_t> m_members;
   std::vector<SegmentCluster> m_clusters;

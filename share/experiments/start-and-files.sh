@@ -1,0 +1,63 @@
+#!/bin/sh
+# CPU time of a program's start and of its help, and of one scan from file to file, one core, in one run.
+# Usage: share/experiments/start-and-files.sh DATA OUT [BIN...]
+#   DATA  folder of the real scans     OUT  folder for results
+#   BIN   folders of programs to compare, POLEMCL_BIN or build/bin unless given
+# Needs python3 and c++. Prints the median of 9 starts and of 5 runs over the 80 scans of drive 0005.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+[ $# -ge 2 ] || die "usage: start-and-files.sh DATA OUT [BIN...]"
+data=$1 out=$2
+shift 2
+find_programs pole-import pole-extract pole-localize
+[ $# -gt 0 ] || set -- "$bin"
+mkdir -p "$out"
+
+# Two rawlogs with their clouds inside: the drive, and two scans of it, which cost the start.
+for every in 1 40; do
+  "$bin/pole-import" folder --quiet --embed --every $every --input "$data/kitti_raw_0005" \
+    --output "$out/every$every.rawlog"
+done
+# An empty program, linked to what MRPT's libraries the programs need.
+echo 'int main() {}' >"$out/empty.cpp"
+c++ -O1 "$out/empty.cpp" -o "$out/empty" -Wl,--no-as-needed -lmrpt-slam -lmrpt-maps -lmrpt-obs \
+  -lmrpt-opengl -lmrpt-topography -lmrpt-config
+
+python3 - "$top/config/kitti.ini" "$out" "$@" <<'END'
+import os, resource, statistics, subprocess, sys
+
+config, out, folders = sys.argv[1], sys.argv[2], sys.argv[3:]
+
+def milliseconds(command):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return 1e3 * (after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime)
+
+def interleaved(commands, rounds):
+    times = [[] for _ in commands]
+    for _ in range(rounds):
+        for k, command in enumerate(commands):
+            times[k].append(milliseconds(command))
+    return [statistics.median(t) for t in times]
+
+starts = [[out + "/empty"]]
+for folder in folders:
+    starts += [[f"{folder}/pole-localize", "--version"], [f"{folder}/pole-localize", "--help"],
+               [f"{folder}/pole-map", "build", "--help"], [f"{folder}/pole-map", "no-such-command"]]
+print("CPU ms, median of 9")
+for command, time in zip(starts, interleaved(starts, 9)):
+    print(f"{time:8.1f}  {' '.join(command)}")
+
+def extract(folder, every):
+    return [f"{folder}/pole-extract", "--quiet", "--threads", "1", "--config", config, "--input",
+            f"{out}/every{every}.rawlog", "--output", f"{out}/poles.rawlog"]
+
+runs = [extract(folder, every) for folder in folders for every in (1, 40)]
+times = interleaved(runs, 5)
+print("file to file, CPU ms, median of 5: a scan beyond a run over two; that run")
+for k, folder in enumerate(folders):
+    print(f"{(times[2 * k] - times[2 * k + 1]) / 78:8.2f} {times[2 * k + 1]:8.1f}  {folder}")
+END
