@@ -56,6 +56,7 @@ class Planner {
       addExperiments(configuration);
     }
     for (const auto& [name, content] : m_plan.files) m_plan.sums[name] = mrpt::system::md5(content);
+    sortTasks();
     setKeys();
     return std::move(m_plan);
   }
@@ -280,6 +281,21 @@ class Planner {
                         [&](const std::string& name) { return m_spec.session(name).date.empty(); });
   }
 
+  static TaskPath runPath(const BatchConfiguration& configuration, const std::string& session,
+                          int run) {
+    const std::string number = std::to_string(run);
+    return {TaskKind::run,
+            {configuration.name, session, std::string(number.size() < 2 ? 1 : 0, '0') + number}};
+  }
+
+  /// Whether a session updates a map by the estimates of its own first run.
+  static bool updatesByEstimate(const BatchConfiguration& configuration,
+                                const std::string& session) {
+    const auto& names = configuration.mapSessions;
+    return configuration.poses == MapPoses::estimate && names.front() != session &&
+           has(names, session);
+  }
+
   /// The map of the first n map sessions, or of the n-th alone.
   void addMap(const BatchConfiguration& configuration, std::size_t n) {
     const auto& names = configuration.mapSessions;
@@ -294,15 +310,18 @@ class Planner {
       append(command, {"--map", before.file("map.polemap")});
       task.needs.push_back(before.id());
     }
-    Command inputs{"--input"}, truths{"--truth"}, dates{"--date"};
+    const bool byEstimate = updatesByEstimate(configuration, names[n - 1]);
+    Command inputs{"--input"}, poses{byEstimate ? "--estimate" : "--truth"}, dates{"--date"};
     for (std::size_t i = first; i < n; ++i) {
+      const TaskPath run = runPath(configuration, names[i], 0);
       inputs.push_back(rawlogOf(configuration, names[i], true));
-      truths.push_back(truthOf(names[i]));
+      poses.push_back(byEstimate ? run.file("out/run_00.tum") : truthOf(names[i]));
+      if (byEstimate) task.needs.push_back(run.id());
       dates.push_back(m_spec.session(names[i]).date);
       task.needs.push_back(polesPath(names[i]).id());
     }
     append(command, inputs);
-    append(command, truths);
+    append(command, poses);
     if (allDated(configuration)) append(command, dates);
     task.commands = {command};
     task.outputs = {"map.polemap"};
@@ -355,12 +374,9 @@ class Planner {
         configuration, configuration.mapSessions[mapFor(configuration, experiment.session) - 1]);
     experiment.map = map.id();
     for (int run = 0; run < m_spec.runs; ++run) {
-      const std::string number = std::to_string(run);
-      BatchTask task({TaskKind::run,
-                      {configuration.name, experiment.session,
-                       std::string(number.size() < 2 ? 1 : 0, '0') + number}});
+      BatchTask task(runPath(configuration, experiment.session, run));
       task.needs = {polesPath(experiment.session).id(), experiment.map};
-      const auto seed = seedOf(m_spec.seed, experiment.session + "/run " + number);
+      const auto seed = seedOf(m_spec.seed, experiment.session + "/run " + std::to_string(run));
       Command command = program("pole-localize");
       append(command, {"--config", settingsOf(configuration.name, task), "--input",
                        rawlogOf(configuration, experiment.session), "--truth",
@@ -368,6 +384,8 @@ class Planner {
                        "out", "--runs", "1", "--seed", std::to_string(seed)});
       task.commands = {command};
       task.outputs = {"out/run_00.tum", "out/run_00_health.csv", "out/summary.json"};
+      if (run == 0 && updatesByEstimate(configuration, experiment.session))
+        task.outputs.push_back("out/run_00_cov.csv");
       experiment.runs.push_back(task.id);
       experiment.seeds.push_back(seed);
       m_plan.tasks.push_back(std::move(task));
@@ -381,6 +399,27 @@ class Planner {
     const auto size = fs::file_size(argument, none);
     const auto time = fs::last_write_time(argument, none).time_since_epoch().count();
     return std::to_string(size) + "@" + std::to_string(time);
+  }
+
+  /// Tasks after all that they need, otherwise in the order they were planned: updates by estimates
+  /// were planned before the runs that make these.
+  void sortTasks() {
+    std::vector<BatchTask> sorted;
+    std::set<std::string> done;
+    const auto isReady = [&](const BatchTask& task) {
+      return std::all_of(task.needs.begin(), task.needs.end(),
+                         [&](const std::string& need) { return done.count(need) > 0; });
+    };
+    while (!m_plan.tasks.empty()) {
+      std::vector<BatchTask> waiting;
+      for (BatchTask& task : m_plan.tasks) {
+        const bool ready = isReady(task);
+        if (ready) done.insert(task.id);
+        (ready ? sorted : waiting).push_back(std::move(task));
+      }
+      m_plan.tasks = std::move(waiting);
+    }
+    m_plan.tasks = std::move(sorted);
   }
 
   void setKeys() {

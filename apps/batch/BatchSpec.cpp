@@ -203,6 +203,9 @@ BatchConfiguration readConfiguration(ConfigReader& reader, const std::string& na
   reader.choice<MapTime>("map", configuration.map,
                          {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
                          "the one that sessions are localized in");
+  reader.choice<MapPoses>("poses", configuration.poses,
+                          {{MapPoses::truth, "truth"}, {MapPoses::estimate, "estimate"}},
+                          "maps = upkeep: poses of updates; estimate: those of the first run");
   if (configuration.config.empty())
     throw Error(here + "config is missing (each of [batch] settings has a section of its own)");
   configuration.config = fill.path(configuration.config, "");
@@ -221,6 +224,17 @@ void requireOwnMaps(const BatchConfiguration& configuration, const std::string& 
     if (!has(configuration.mapSessions, name))
       throw Error(where + "session " + name + " has no map; with maps = each, it must be one of " +
                   "map_sessions");
+}
+
+/// Updates by estimates need these estimates.
+void requireEstimates(const BatchConfiguration& configuration, const std::string& where) {
+  if (configuration.poses == MapPoses::truth) return;
+  if (configuration.protocol != MapProtocol::upkeep || configuration.map != MapTime::before)
+    throw Error(where + "poses = estimate needs maps = upkeep and map = before");
+  for (std::size_t i = 1; i < configuration.mapSessions.size(); ++i)
+    if (!has(configuration.sessions, configuration.mapSessions[i]))
+      throw Error(where + "poses = estimate: session " + configuration.mapSessions[i] +
+                  " updates the map but is not localized; add it to sessions");
 }
 
 /// Maps alone are of use if they get a score.
@@ -296,6 +310,7 @@ BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,
     const std::string here = where + "[setting " + configuration.name + "] ";
     requireUse(configuration, spec, here);
     requireOwnMaps(configuration, here);
+    requireEstimates(configuration, here);
     requireMaps(configuration, spec.sessions, here + "sessions");
     requireOrder(configuration, spec, here + "map_sessions");
   }

@@ -40,6 +40,12 @@ enum class MapProtocol {
   each       ///< each session makes a map of its own: they show different places
 };
 
+/// \brief Where the poses come from that maps are kept up with.
+enum class MapPoses {
+  truth,    ///< the true poses
+  estimate  ///< what the first run of the session estimated in the map before it
+};
+
 /// \brief Which map a session is localized in.
 enum class MapTime {
   before,   ///< the one that earlier map sessions left: the session's own data is not in it
@@ -56,6 +62,7 @@ struct BatchConfiguration {
   std::vector<std::string> sessions;     ///< names of those that are localized; may be empty
   MapProtocol protocol = MapProtocol::together;
   MapTime map = MapTime::before;
+  MapPoses poses = MapPoses::truth;  ///< of updates; the first map is made with true poses
 };
 
 struct BatchSpec {

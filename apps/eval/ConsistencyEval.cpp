@@ -4,59 +4,15 @@
 
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "cli/JsonFile.h"
+#include "cli/RunRecords.h"
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
-#include "io/file/CsvTable.h"
 #include "io/file/ErrorPlace.h"
 
 namespace polemcl::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct CovarianceRow {
-  double scan = 0, time = 0;
-  PoseWithCovariance estimate;
-};
-
-std::vector<CovarianceRow> readRows(const fs::path& file) {
-  const io::CsvTable table(file);
-  const char* names[] = {"scan", "timestamp", "x_m", "y_m",  "yaw_rad", "xx",
-                         "xy",   "xyaw",      "yy",  "yyaw", "yawyaw"};
-  std::vector<std::size_t> columns;
-  for (const char* name : names) columns.push_back(table.column(name));
-  std::vector<CovarianceRow> rows;
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const auto at = [&](int k) { return table.number(i, columns[k]); };
-    CovarianceRow row;
-    row.scan = at(0);
-    row.time = at(1);
-    row.estimate.mean = {at(2), at(3), at(4)};
-    row.estimate.covariance << at(5), at(6), at(7), at(6), at(8), at(9), at(7), at(9), at(10);
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-/// Element i: is scan i `ok`?
-std::vector<char> readOk(const fs::path& file) {
-  const io::CsvTable table(file);
-  const std::size_t scan = table.column("scan"), state = table.column("state");
-  std::vector<char> ok;
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    if (table.number(i, scan) != static_cast<double>(i))
-      throw Error(table.at(i) + "scan " + std::to_string(i) + " expected: one row for each scan");
-    ok.push_back(table.text(i, state) == "ok");
-  }
-  return ok;
-}
-
-bool isOk(const std::vector<char>& ok, double scan, const fs::path& file) {
-  if (scan < 0 || scan >= static_cast<double>(ok.size()))
-    throw Error(file.string() + ": no scan " + std::to_string(std::llround(scan)) +
-                "; does it belong to the same run as the covariances?");
-  return ok[static_cast<std::size_t>(scan)];
-}
 
 class RunReader {
  public:
@@ -68,11 +24,12 @@ class RunReader {
     const auto truth = io::planar(
         io::readTum(m_options.truth.size() == 1 ? m_options.truth[0] : m_options.truth[run]));
     const bool judged = !m_options.health.empty();
-    const auto ok = judged ? readOk(m_options.health[run]) : std::vector<char>();
+    std::optional<HealthRecords> health;
+    if (judged) health.emplace(m_options.health[run]);
     std::vector<ConsistencySample> samples;
     std::optional<Pose2D> last;
     double begin = 0, metres = 0;
-    for (const CovarianceRow& row : readRows(cov)) {
+    for (const EstimateRecord& row : readEstimates(cov)) {
       const auto pose = poseAt(truth, row.time, longestTruthGap);
       if (!pose) {
         ++m_result.unmatched;
@@ -82,7 +39,7 @@ class RunReader {
       if (last) metres += std::hypot(pose->x - last->x, pose->y - last->y);
       last = pose;
       if (row.time - begin < m_options.skipSeconds || metres < m_options.skipMetres) continue;
-      if (judged && !isOk(ok, row.scan, m_options.health[run])) {
+      if (judged && !health->isOk(row.scan)) {
         ++m_result.notOk;
         continue;
       }

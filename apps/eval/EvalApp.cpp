@@ -5,6 +5,8 @@
 
 #include <polemcl/io/map/PoleMapFile.h>
 #include "cli/JsonFile.h"
+#include "core/common/Angles.h"
+#include "core/evaluation/MapShift.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
@@ -106,6 +108,7 @@ MapScore evalMap(const EvalMapOptions& options) {
   const auto score = io::located(against(options.map, options.truth), [&] {
     return scoreMap(truth, map, options.radius, options.oneToOne);
   });
+  const MapShift moved = mapShift(truth, map, options.radius);
   if (options.json)
     writeJson(*options.json, {{"precision", score.precision},
                               {"recall", score.recall},
@@ -114,7 +117,10 @@ MapScore evalMap(const EvalMapOptions& options) {
                               {"map_poles", score.mapPoles},
                               {"truth_poles", score.truthPoles},
                               {"radius", options.radius},
-                              {"one_to_one", options.oneToOne}});
+                              {"one_to_one", options.oneToOne},
+                              {"shift_x_m", moved.shift.x()},
+                              {"shift_y_m", moved.shift.y()},
+                              {"rotation_deg", moved.rotation / degree}});
   return score;
 }
 

@@ -19,7 +19,8 @@ struct EvalMapOptions {
   bool oneToOne = false;                      ///< maximum matching instead of the authors' count
   std::optional<std::filesystem::path> json;  ///< written when given
 };
-/// \brief Scores the map and writes the JSON file (keys `precision recall f1 matches` and more).
+/// \brief Scores the map and writes the JSON file (keys `precision recall f1 matches` and more;
+/// also `shift_x_m shift_y_m rotation_deg`, how far the map as a whole is off, see MapShift).
 /// \throws Error naming the file and what is wrong with it, or the radius.
 MapScore evalMap(const EvalMapOptions& options);
 

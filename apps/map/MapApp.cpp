@@ -32,7 +32,7 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
   cli.add_option("--config", line.config, "INI file, see config/")->required();
   addSetOption(cli, line.set);
   cli.add_option("--input", job.inputs, "Rawlogs of scans or poles, one per session")->required();
-  cli.add_option("--truth", job.truths, "True robot poses, TUM, one file per rawlog")->required();
+  cli.add_option("--truth", job.poses, "True robot poses, TUM, one file per rawlog");
   cli.add_option("--output", job.output, "Map to write, .polemap")->required();
   cli.add_option("--date", job.dates,
                  "Day of each rawlog, YYYY-MM-DD, when its times do not tell it");
@@ -42,10 +42,17 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of rawlogs that were cut short");
   cli.parse_complete_callback([&job] {
-    requireDistinct({job.output, job.csv, job.scene});
+    requireDistinct(job.outputs());
     if (const std::string wrong = job.wrongCounts(); !wrong.empty())
       throw CLI::ValidationError(wrong);
   });
+}
+
+std::vector<std::string> warningsOf(const MapBuildSummary&, const MapBuildJob&) {
+  return {};
+}
+std::vector<std::string> warningsOf(const MapUpdateSummary& summary, const MapUpdateJob& job) {
+  return updateWarnings(summary, job);
 }
 
 /// A subcommand that maps sessions by `work(job, settings, progress)`.
@@ -57,7 +64,10 @@ Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const 
             job->datum = datumOf(line->datum);
             const Settings settings = loadSettings(line->config, line->set);
             Progress progress(name, 0, quiet);
-            return summaryText(work(*job, settings, progress.updates()), *job);
+            const auto summary = work(*job, settings, progress.updates());
+            for (const std::string& warning : warningsOf(summary, *job))
+              progress.say("pole-map: warning: " + warning);
+            return summaryText(summary, *job);
           }};
 }
 
@@ -76,7 +86,17 @@ Subcommand updateCommand(CLI::App& program) {
       "update", "Updates a map by new sessions, one after the other, see [map_update]");
   const auto job = std::make_shared<MapUpdateJob>();
   cli.add_option("--map", job->map, "Map to begin with, .polemap")->required();
-  return mappingCommand(cli, job, updateMapFile);
+  cli.add_option("--json", job->json, "Also write what changed to this file (JSON)");
+  const Subcommand command = mappingCommand(cli, job, updateMapFile);
+  auto* estimate = cli.add_option_function<std::vector<std::filesystem::path>>(
+      "--estimate",
+      [job](const std::vector<std::filesystem::path>& files) {
+        job->poses = files;
+        job->kind = PoseKind::estimate;
+      },
+      "Instead of --truth: run_NN.tum of pole-localize, one file per rawlog");
+  estimate->excludes(cli.get_option("--truth"));
+  return command;
 }
 
 Subcommand diffCommand(CLI::App& program) {

@@ -111,10 +111,8 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
   const auto datum = datumFor(job);
   MapAccumulator sessions = accumulator(job, settings);
   for (std::size_t i = 0; i < job.inputs.size(); ++i)
-    addDrive(
-        job, i,
-        loadMappingSession(job.inputs[i], job.truths[i], settings, job.allowTruncated, progress),
-        sessions, summary);
+    addDrive(job, i, loadMappingSession(job.session(i), settings, job.allowTruncated, progress),
+             sessions, summary);
   countSessions(sessions.added(), summary);
   if (summary.scans == 0)
     throw Error(job.inputs.front().string() + ": no usable scan, " +

@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
+#include "cli/JsonFile.h"
 #include "cli/Version.h"
+#include "core/common/Angles.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr std::size_t enoughExpected = 10;  ///< poles; fewer tell nothing of the place
 constexpr double leastFound = 0.2;          ///< share; half a map does not vanish over night
+constexpr double s_manyMoved = 0.05;        ///< share of the poles in view; more is suspicious
 
 void requireSamePlace(const MapUpdateCounts& counts, const std::filesystem::path& input,
                       const std::filesystem::path& map) {
@@ -40,6 +43,16 @@ void requireDateOrder(const std::vector<SessionScan>& scans, const LandmarkMap& 
               ": sessions must come in the order of their days; see --date");
 }
 
+void requireScans(const MappingSession& session, const std::filesystem::path& input) {
+  if (!session.scans.empty()) return;
+  std::ostringstream message;
+  message << input.string() << ": no usable scan, " << session.skipped.emptyScans
+          << " without a valid point";
+  if (session.skipped.notOk > 0)
+    message << ", " << session.skipped.notOk << " at which the localizer was not ok";
+  throw Error(message.str());
+}
+
 /// Sessions of a map lie near it; one in another frame mostly does not.
 void requireNearby(const std::vector<StampedPose2D>& path, const LandmarkMap& map,
                    const std::filesystem::path& input, const std::filesystem::path& file) {
@@ -55,17 +68,59 @@ void requireNearby(const std::vector<StampedPose2D>& path, const LandmarkMap& ma
               " (10 km are allowed): do they share a datum?");
 }
 
+const char* name(PoseKind kind) {
+  return kind == PoseKind::truth ? "truth" : "estimate";
+}
+
 std::map<std::string, std::string> updateFacts(std::map<std::string, std::string> info,
                                                const MapUpdateJob& job, const Settings& settings) {
   std::string& updates = info["updates"];
   for (const auto& input : job.inputs)
     updates += (updates.empty() ? "" : " ") + input.filename().string();
-  for (const auto& input : job.inputs) info["f_map." + input.stem().string()] = io::fixed(1, 6);
+  for (const auto& input : job.inputs) {
+    info["f_map." + input.stem().string()] = io::fixed(1, 6);
+    info["poses." + input.stem().string()] = name(job.kind);
+  }
   if (job.datum) io::setDatum(info, *job.datum, job.map.string() + ": ");
   info["program"] = std::string("pole-map ") + version();
   info["build"] = buildIdentity();
   info["config"] = settingsText(settings);
   return info;
+}
+
+double movedShare(const MapUpdateCounts& c) {
+  return c.expectedOnMap > 0 ? static_cast<double>(c.moved) / static_cast<double>(c.expectedOnMap)
+                             : 0;
+}
+
+Json sessionJson(const MapUpdateCounts& c) {
+  return {{"scans", c.scans},
+          {"uncertain", c.uncertain},
+          {"expected", c.expectedOnMap},
+          {"found", c.foundOnMap},
+          {"new", c.entered},
+          {"vanished", c.left},
+          {"moved", c.moved},
+          {"moved_share", movedShare(c)},
+          {"candidates", c.candidates},
+          {"aligned_scans", c.alignment.scans},
+          {"shift_mean_m", c.alignment.meanShift},
+          {"shift_max_m", c.alignment.largestShift},
+          {"turn_max_deg", c.alignment.largestTurn / degree}};
+}
+
+Json summaryJson(const MapUpdateSummary& summary, const MapUpdateJob& job) {
+  Json json{{"map", job.output.string()}, {"poles", summary.poles}, {"before", summary.before}};
+  json["not_ok"] = summary.skipped.notOk;
+  json["unmatched"] = summary.skipped.unmatched;
+  json["sessions"] = Json::array();
+  for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
+    Json session{{"input", job.inputs[i].string()}, {"poses", name(job.kind)}};
+    session.update(sessionJson(summary.sessions[i]));
+    json["sessions"].push_back(session);
+  }
+  json["warnings"] = updateWarnings(summary, job);
+  return json;
 }
 
 }  // namespace
@@ -74,34 +129,55 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings
                                const ScanProgress& progress) {
   job.validate();
   const io::PoleMapData before = io::readPoleMap(job.map);
-  const auto info = updateFacts(before.info, job, settings);
+  auto info = updateFacts(before.info, job, settings);
   MapUpdateSummary summary;
   summary.before = before.poles.size();
   LandmarkMap map = io::landmarkMap(before);
   std::vector<StampedPose2D> path;
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {
     MappingSession session =
-        loadMappingSession(job.inputs[i], job.truths[i], settings, job.allowTruncated, progress);
-    if (session.scans.empty())
-      throw Error(job.inputs[i].string() + ": no usable scan, " +
-                  std::to_string(session.skipped.emptyScans) + " without a valid point");
+        loadMappingSession(job.session(i), settings, job.allowTruncated, progress);
+    requireScans(session, job.inputs[i]);
     requireNearby(session.path, map, job.inputs[i], job.map);
     if (!job.dates.empty()) setDate(session.scans, job.dates[i]);
     requireDateOrder(session.scans, map, job.inputs[i], job.map);
     MapUpdateCounts counts;
     map = updateMap(map, session.scans, settings.map, settings.upkeep, &counts);
+    if (counts.scans == 0)
+      throw Error(job.inputs[i].string() + ": no usable scan, all " +
+                  std::to_string(counts.uncertain) +
+                  " poses are less certain than [map_update] max_sigma_m");
     requireSamePlace(counts, job.inputs[i], job.map);
     summary.sessions.push_back(counts);
     summary.skipped += session.skipped;
     path.insert(path.end(), session.path.begin(), session.path.end());
   }
+  const std::vector<std::string> warnings = updateWarnings(summary, job);
+  info.erase("warnings");
+  for (const std::string& warning : warnings)
+    info["warnings"] += (info["warnings"].empty() ? "" : "; ") + warning;
   const io::PoleMapData after = io::mapData(map, info);
   summary.poles = after.poles.size();
   if (after.poles.empty())
     throw Error(job.map.string() + ": no pole is left on the map; see [map_update]");
   writeViews(job, after, path);
+  if (job.json) writeJson(*job.json, summaryJson(summary, job));
   io::writePoleMap(job.output, after);
   return summary;
+}
+
+std::vector<std::string> updateWarnings(const MapUpdateSummary& summary, const MapUpdateJob& job) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
+    const MapUpdateCounts& c = summary.sessions[i];
+    if (!(movedShare(c) > s_manyMoved)) continue;
+    std::ostringstream line;
+    line << job.inputs[i].string() << ": " << c.moved << " of " << c.expectedOnMap
+         << " poles in view (" << io::fixed(100 * movedShare(c), 1)
+         << " %) seem to have moved; poles seldom do, check " << job.poses[i].string();
+    warnings.push_back(line.str());
+  }
+  return warnings;
 }
 
 std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job) {
@@ -113,6 +189,13 @@ std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job
     out << job.inputs[i].string() << ": " << c.scans << " scans; of " << c.expectedOnMap
         << " poles in view " << c.foundOnMap << " found; " << c.entered << " new, " << c.left
         << " vanished, " << c.moved << " moved; " << c.candidates << " candidates\n";
+    if (c.uncertain > 0)
+      out << "scans with too uncertain a pose, not used: " << c.uncertain << '\n';
+    if (c.alignment.scans > 0)
+      out << "aligned to the map: " << c.alignment.scans << " scans, by "
+          << io::fixed(c.alignment.meanShift, 3) << " m on average, at most "
+          << io::fixed(c.alignment.largestShift, 3) << " m and "
+          << io::fixed(c.alignment.largestTurn / degree, 2) << " deg\n";
     if (c.withoutFreeRange > 0)
       out << "scans without visibility ranges, in which nothing counts as missed: "
           << c.withoutFreeRange << '\n';

@@ -30,11 +30,15 @@ struct MapUpdateSummary {
 /// \throws Error as loadMappingSession(), updateMap(), readPoleMap(); when the datum differs from
 ///         the map's; when a session has no usable scan; when fewer than a fifth of at least ten
 ///         map poles in free view were found: a session of another place, or of another datum, must
-///         not spoil a map.
+///         not spoil a map; when no scan is left because the localizer was not `ok`.
 MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings,
                                const ScanProgress& progress = {});
 
 /// \brief What the program prints.
 std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job);
+
+/// \brief A line for each session of which more than 5 % of the poles found "moved". Poles seldom
+/// do: rather the poses are wrong.
+std::vector<std::string> updateWarnings(const MapUpdateSummary& summary, const MapUpdateJob& job);
 
 }  // namespace polemcl::apps

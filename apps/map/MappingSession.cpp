@@ -3,8 +3,6 @@
 #include <ostream>
 
 #include <polemcl/core/common/Deskew.h>
-#include "core/common/PoseInterpolation.h"
-#include "io/data/Trajectory.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
 #include "io/map/PolePositions.h"
@@ -15,9 +13,9 @@ namespace polemcl::apps {
 std::string MappingJob::wrongCounts() const {
   const std::string files = std::to_string(inputs.size());
   if (inputs.empty()) return "--input: at least one rawlog is needed";
-  if (inputs.size() != truths.size())
-    return "--truth: one file per --input is needed, " + files + ", not " +
-           std::to_string(truths.size());
+  if (inputs.size() != poses.size())
+    return std::string(kind == PoseKind::truth ? "--truth" : "--estimate") +
+           ": one file per --input is needed, " + files + ", not " + std::to_string(poses.size());
   if (!dates.empty() && dates.size() != inputs.size())
     return "--date: one day per --input is needed, " + files + ", not " +
            std::to_string(dates.size()) + "; or leave it out";
@@ -32,60 +30,51 @@ void MappingJob::validate() const {
 
 namespace {
 
-/// Velocity at a time, from the poses 0.05 s before and after, half a turn of most LiDARs. Zero
-/// where the trajectory has a gap.
-Velocity velocityAt(const std::vector<StampedPose2D>& trajectory, double time) {
-  constexpr double half = 0.05;
-  const auto here = poseAt(trajectory, time, longestTruthGap);
-  const auto before = poseAt(trajectory, time - half, longestTruthGap);
-  const auto after = poseAt(trajectory, time + half, longestTruthGap);
-  if (before && after) return velocityOf(relative(*before, *after), 2 * half);
-  if (after && here) return velocityOf(relative(*here, *after), half);
-  if (before && here) return velocityOf(relative(*before, *here), half);
-  return {};
+void requireCovered(const MappingSession& session, const SessionFiles& files,
+                    const PoleSequence& sequence) {
+  const std::size_t known = session.scans.size() + session.skipped.notOk;
+  if (session.skipped.unmatched <= known) return;
+  throw Error(files.poses.string() + ": has a pose at the time of only " + std::to_string(known) +
+              " of the " + std::to_string(known + session.skipped.unmatched) + " scans of " +
+              files.input.string() + " (" + io::fixed(sequence.frames.front().time, 3) + " to " +
+              io::fixed(sequence.frames.back().time, 3) +
+              " s), at least half are needed; is it the truth of this rawlog?");
 }
 
 }  // namespace
 
-MappingSession loadMappingSession(const std::filesystem::path& input,
-                                  const std::filesystem::path& truthFile, const Settings& settings,
+MappingSession loadMappingSession(const SessionFiles& files, const Settings& settings,
                                   bool allowTruncated, const ScanProgress& progress) {
   SequenceOptions options{settings.poleExtraction(), settings.motion, allowTruncated};
   // A doubtful detection is worth keeping where others can confirm it.
   if (settings.map.minConfidence > 0)
     options.extraction.extraction.scanLine.minConfidence = settings.map.minConfidence;
-  const PoleSequence sequence = readPoleSequence(input.string(), options, progress);
-  const auto truth = io::readPlanarTum(truthFile);
+  const PoleSequence sequence = readPoleSequence(files.input.string(), options, progress);
+  const SessionPoses poses(files.kind, files.poses);
   MappingSession session;
   const SequenceCounts& counts = sequence.counts;
-  session.skipped = {counts.emptyScans, 0, counts.invalidPoints, counts.truncated};
-  for (const auto& frame : sequence.frames) {
+  session.skipped = {counts.emptyScans, 0, 0, counts.invalidPoints, counts.truncated};
+  for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+    const PoleFrame& frame = sequence.frames[i];
     if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
-    const auto pose = poseAt(truth, frame.time, longestTruthGap);
-    if (!pose) {
-      ++session.skipped.unmatched;
-      continue;
-    }
+    const auto scan = poses.at(i, frame.time);
+    session.skipped.unmatched += !scan;
+    session.skipped.notOk += scan && !scan->isOk;
+    if (!scan || !scan->isOk) continue;
     auto poles_robot = frame.poles_robot;
-    deskew(poles_robot, velocityAt(truth, frame.time));
-    session.scans.push_back(
-        {frame.time, *pose, poles_robot, frame.visibilityRange, frame.pose_robot_sensor});
-    session.path.push_back({frame.time, *pose});
+    deskew(poles_robot, poses.velocityAt(frame.time));
+    session.scans.push_back({frame.time, scan->pose, poles_robot, frame.visibilityRange,
+                             frame.pose_robot_sensor, scan->covariance});
+    session.path.push_back({frame.time, scan->pose});
   }
-  if (session.skipped.unmatched > session.scans.size())
-    throw Error(truthFile.string() + ": has a pose at the time of only " +
-                std::to_string(session.scans.size()) + " of the " +
-                std::to_string(session.scans.size() + session.skipped.unmatched) + " scans of " +
-                input.string() + " (" + io::fixed(sequence.frames.front().time, 3) + " to " +
-                io::fixed(sequence.frames.back().time, 3) +
-                " s), at least half are needed; is it "
-                "the truth of this rawlog?");
+  requireCovered(session, files, sequence);
   return session;
 }
 
 void SkippedScans::operator+=(const SkippedScans& other) {
   emptyScans += other.emptyScans;
   unmatched += other.unmatched;
+  notOk += other.notOk;
   invalidPoints += other.invalidPoints;
   truncated += other.truncated;
 }
@@ -93,8 +82,9 @@ void SkippedScans::operator+=(const SkippedScans& other) {
 std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped) {
   if (skipped.emptyScans > 0)
     out << "scans without a valid point, not used: " << skipped.emptyScans << '\n';
-  if (skipped.unmatched > 0)
-    out << "scans without a true pose, not used: " << skipped.unmatched << '\n';
+  if (skipped.unmatched > 0) out << "scans without a pose, not used: " << skipped.unmatched << '\n';
+  if (skipped.notOk > 0)
+    out << "scans at which the localizer was not ok, not used: " << skipped.notOk << '\n';
   if (skipped.invalidPoints > 0) out << "invalid points dropped: " << skipped.invalidPoints << '\n';
   if (skipped.truncated > 0)
     out << "inputs that ended too early: " << skipped.truncated
@@ -111,6 +101,10 @@ void writeViews(const MappingJob& job, const io::PoleMapData& map,
   view.poles = map.poles;
   view.truth = path;
   scene::save(*report::makeMapScene(view), *job.scene);
+}
+
+SessionFiles MappingJob::session(std::size_t i) const {
+  return {inputs[i], poses[i], kind};
 }
 
 void setDate(std::vector<SessionScan>& scans, const std::string& date) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file MappingSession.h
-/// \brief One rawlog at true poses, ready for mapping; what building and updating share.
+/// \brief One rawlog at known poses, ready for mapping; what building and updating share.
 
 #include <filesystem>
 #include <iosfwd>
@@ -14,36 +14,53 @@
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
 #include "io/map/Datum.h"
+#include "map/SessionPoses.h"
 
 namespace polemcl::apps {
 
+/// \brief Files of one session.
+struct SessionFiles {
+  std::filesystem::path input;  ///< rawlog of scans or poles
+  std::filesystem::path poses;  ///< see SessionPoses
+  PoseKind kind = PoseKind::truth;
+};
+
 /// \brief Files of a job that maps sessions, as the command line names them.
 struct MappingJob {
-  std::vector<std::filesystem::path> inputs;   ///< rawlogs of scans or poles, one per session
-  std::vector<std::filesystem::path> truths;   ///< TUM, robot poses, one file per input
-  std::filesystem::path output;                ///< `.polemap`
-  std::optional<std::filesystem::path> scene;  ///< `.3Dscene` of map and paths, when given
-  std::optional<std::filesystem::path> csv;    ///< poles as a table, when given
-  bool allowTruncated = false;                 ///< use the readable part of damaged rawlogs
-  std::vector<std::string> dates = {};         ///< YYYY-MM-DD, one per input, or empty
-  std::optional<io::Datum> datum = {};         ///< of the truths: goes into the map's info
+  std::vector<std::filesystem::path> inputs;       ///< rawlogs of scans or poles, one per session
+  std::vector<std::filesystem::path> poses;        ///< robot poses, one file per input
+  std::filesystem::path output;                    ///< `.polemap`
+  std::optional<std::filesystem::path> scene;      ///< `.3Dscene` of map and paths, when given
+  std::optional<std::filesystem::path> csv;        ///< poles as a table, when given
+  bool allowTruncated = false;                     ///< use the readable part of damaged rawlogs
+  std::vector<std::string> dates = {};             ///< YYYY-MM-DD, one per input, or empty
+  std::optional<io::Datum> datum = {};             ///< of the truths: goes into the map's info
+  PoseKind kind = PoseKind::truth;                 ///< of `poses`
+  std::optional<std::filesystem::path> json = {};  ///< summary for scripts, when given
 
   /// \brief What is wrong with the numbers of files and dates; empty when nothing is.
   std::string wrongCounts() const;
   /// \throws Error naming the option.
   void validate() const;
+  /// \brief All files to write; they must differ.
+  std::vector<std::optional<std::filesystem::path>> outputs() const {
+    return {output, csv, scene, json};
+  }
+  /// \brief The files of one of the inputs.
+  SessionFiles session(std::size_t i) const;
 };
 
 /// \brief Scans that were not used, of one session or of several.
 struct SkippedScans {
   std::size_t emptyScans = 0;     ///< without a valid point
-  std::size_t unmatched = 0;      ///< scans at whose time the truth says nothing
+  std::size_t unmatched = 0;      ///< scans of whose pose nothing is known
+  std::size_t notOk = 0;          ///< scans at which the localizer was `degraded` or `lost`
   std::size_t invalidPoints = 0;  ///< dropped
   std::size_t truncated = 0;      ///< inputs that ended too early, and that was allowed
   void operator+=(const SkippedScans& other);
 };
 
-/// \brief The scans of one drive that have a true pose and a point.
+/// \brief The scans of one drive that have a pose and a point.
 struct MappingSession {
   std::vector<SessionScan> scans;
   std::vector<StampedPose2D> path;  ///< of the scans
@@ -52,10 +69,9 @@ struct MappingSession {
 
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.
 /// \param progress May be empty.
-/// \throws Error as readPoleSequence() and readTum(); when the truth covers less than half of the
-///         scans.
-MappingSession loadMappingSession(const std::filesystem::path& input,
-                                  const std::filesystem::path& truth, const Settings& settings,
+/// \throws Error as readPoleSequence() and SessionPoses; when less than half of the scans have a
+///         pose.
+MappingSession loadMappingSession(const SessionFiles& files, const Settings& settings,
                                   bool allowTruncated, const ScanProgress& progress);
 
 /// \brief A line for each count above 0.

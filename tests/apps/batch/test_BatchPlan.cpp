@@ -95,6 +95,24 @@ TEST(BatchPlan, UpkeepIsAChain) {
   EXPECT_EQ(plan.task("map.one.a").commands.at(0).at(4), "build");
 }
 
+TEST(BatchPlan, UpkeepByEstimatesWaitsForTheRuns) {
+  const BatchPlan plan = planOf([](BatchSpec& spec) {
+    spec.configurations[0].protocol = MapProtocol::upkeep;
+    spec.configurations[0].poses = MapPoses::estimate;
+    spec.configurations[0].mapSessions = {"a", "b"};
+    spec.configurations[0].sessions = {"b", "c"};
+  });
+  EXPECT_EQ(ids(plan), (Names{"poles.a", "poles.b", "poles.c", "map.one.a", "run.one.b.00",
+                              "run.one.b.01", "map.one.b", "run.one.c.00", "run.one.c.01"}));
+  EXPECT_EQ(plan.task("map.one.b").needs, (Names{"map.one.a", "run.one.b.00", "poles.b"}));
+  const auto& update = plan.task("map.one.b").commands.at(0);
+  EXPECT_EQ(argument(update, "--estimate"), "../run.one.b.00/out/run_00.tum");
+  EXPECT_EQ(std::count(update.begin(), update.end(), "--truth"), 0);
+  EXPECT_EQ(plan.task("run.one.b.00").outputs.back(), "out/run_00_cov.csv");
+  EXPECT_NE(plan.task("run.one.b.01").outputs.back(), "out/run_00_cov.csv");
+  EXPECT_EQ(argument(plan.task("map.one.a").commands.at(0), "--truth"), "../poles.a/a.tum");
+}
+
 TEST(BatchPlan, SettingsWithTheSameExtractionShareTheirPoles) {
   const BatchPlan plan = planOf([](BatchSpec& spec) {
     spec.configurations.push_back(spec.configurations[0]);

@@ -35,7 +35,8 @@ TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
       "odometry_noise = 0.02\n"
       "[session b]\ninput = other/{session}.ini\nsource = simulated\nset = world.day=3 "
       "world.seed=4\n"
-      "[setting one]\nconfig = c.ini\nset = filter.particles=5\nsessions = b\nmaps = upkeep\n",
+      "[setting one]\nconfig = c.ini\nset = filter.particles=5\nsessions = b\nmaps = upkeep\n"
+      "poses = estimate\n",
       "/d");
   EXPECT_EQ(spec.name, "n-1");
   EXPECT_EQ(spec.runs, 3);
@@ -53,6 +54,7 @@ TEST(BatchSpec, ReadsSessionsWithTheirDifferences) {
   EXPECT_EQ(spec.configurations[0].mapSessions, std::vector<std::string>{"a"});
   EXPECT_EQ(spec.configurations[0].sessions, std::vector<std::string>{"b"});
   EXPECT_EQ(spec.configurations[0].protocol, MapProtocol::upkeep);
+  EXPECT_EQ(spec.configurations[0].poses, MapPoses::estimate);
   EXPECT_EQ(spec.configurations[0].map, MapTime::before);
 }
 
@@ -79,6 +81,10 @@ TEST(BatchSpec, NamesWhatIsWrong) {
   EXPECT_HAS(refusal(head + sessions + "date = 2026-02-01\n[session b]\ndate = 2026-01-31\n" +
                      configuration + "map_sessions = all\nsessions = c\nmaps = upkeep\n"),
              "session b of 2026-01-31 comes after one of 2026-02-01");
+  const std::string estimates = configuration + "poses = estimate\nmap_sessions = all\n";
+  EXPECT_HAS(refusal(head + sessions + estimates + "sessions = later\n"), "needs maps = upkeep");
+  EXPECT_HAS(refusal(head + sessions + estimates + "sessions = c\nmaps = upkeep\n"),
+             "session b updates the map but is not localized");
   EXPECT_HAS(refusal(head + "[sessions]\nnames = a\n" + configuration),
              "session a: input is missing");
   EXPECT_HAS(refusal(head + sessions), "config is missing");

@@ -88,7 +88,7 @@ TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {
   drive("in", 12);
   MapBuildJob options;
   options.inputs = {folder / "in.rawlog"};
-  options.truths = {folder / "in.tum"};
+  options.poses = {folder / "in.tum"};
   options.output = folder / "street.polemap";
   Settings settings = loadSettings(config());
   settings.extraction.scanLine.minConfidence = 1;  // nothing is that sure
@@ -122,7 +122,7 @@ TEST_F(MapApp, TruthIsInterpolatedInTime) {
   io::writeTum(folder / "in.tum", thin);
   MapBuildJob job;
   job.inputs = {folder / "in.rawlog"};
-  job.truths = {folder / "in.tum"};
+  job.poses = {folder / "in.tum"};
   job.output = folder / "street.polemap";
   const auto summary = buildMap(job, settings());
   EXPECT_EQ(summary.scans, 8u);
@@ -136,7 +136,7 @@ TEST_F(MapApp, ScansWithoutTruthAreCountedAndLeftOut) {
   io::writeTum(folder / "in.tum", truth);
   const auto outcome = run({"in"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("without a true pose, not used: 3"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("without a pose, not used: 3"), std::string::npos) << outcome.out;
 }
 
 TEST_F(MapApp, RefusesTheTruthOfAnotherDrive) {

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
+#include "cli/JsonFile.h"
 #include "io/data/Trajectory.h"
 #include "map/MapApp.h"
 #include "map/MapDiffApp.h"
@@ -46,6 +49,31 @@ class MapUpdateApp : public StreetTest {
                                        at("day1.tum"),     "--output", at("day1.polemap")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(mapMain, arguments);
+  }
+  Outcome updateByRun(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"update",          "--config",         config(),
+                                       "--map",           at("day0.polemap"), "--input",
+                                       at("day1.rawlog"), "--estimate",       at("run_00.tum"),
+                                       "--output",        at("day1.polemap")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  /// Files of a run of pole-localize over day1 that estimated the true poses.
+  /// \param state From scan `doubtful` on; `lost` before. \param shift Of all times, s.
+  void writeRun(const std::string& state, double variance, int doubtful = 0, double shift = 0) {
+    std::ostringstream cov, health;
+    cov << std::fixed << std::setprecision(9)
+        << "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n";
+    health << "scan,timestamp,state\n";
+    int scan = 0;
+    for (const auto& [time, pose] : io::planar(io::readTum(folder / "day1.tum"))) {
+      cov << scan << ',' << time + shift << ',' << pose.x << ',' << pose.y << ',' << pose.yaw << ','
+          << variance << ",0,0," << variance << ",0," << variance / 100 << '\n';
+      health << scan << ',' << time << ',' << (scan < doubtful ? "lost" : state) << '\n';
+      ++scan;
+    }
+    writeText(folder / "run_00_cov.csv", cov.str());
+    writeText(folder / "run_00_health.csv", health.str());
   }
   static bool has(const std::vector<MapPole>& poles, double x, double y) {
     return std::any_of(poles.begin(), poles.end(), [&](const MapPole& pole) {
@@ -145,12 +173,69 @@ TEST_F(MapUpdateApp, RefusesBadFilesAndDates) {
                 {"no.polemap"});
 }
 
+// The run of a localizer serves instead of the truth. Where it was not ok, nothing changes.
+TEST_F(MapUpdateApp, TakesTheLocalizersOwnPoses) {
+  mapYesterday();
+  drive("day1", today);
+  ASSERT_EQ(update({"--json", at("truth.json")}).code, 0);
+  const std::string byTruth = readText(folder / "day1.polemap");
+  writeRun("ok", 1e-6);
+  const auto outcome = updateByRun({"--json", at("update.json")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto after = io::readPoleMap(folder / "day1.polemap");
+  EXPECT_TRUE(has(after.poles, 9, 7));
+  EXPECT_FALSE(has(after.poles, 13, -7));
+  EXPECT_TRUE(has(after.poles, 5, 9));
+  EXPECT_EQ(after.info.at("poses.day1"), "estimate");
+  const Json json = readJson(folder / "update.json");
+  EXPECT_EQ(json.at("sessions").at(0).at("poses"), "estimate");
+  EXPECT_EQ(json.at("sessions").at(0).at("scans"), 25);
+  EXPECT_EQ(json.at("sessions").at(0).at("vanished"), 1);
+  EXPECT_EQ(readJson(folder / "truth.json").at("sessions").at(0).at("poses"), "truth");
+}
+
+TEST_F(MapUpdateApp, DoubtfulPosesDoNotChangeTheMap) {
+  mapYesterday();
+  drive("day1", today);
+  writeRun("degraded", 1e-6);
+  expectFailure(updateByRun(), {"day1.rawlog", "25 at which the localizer was not ok"});
+  writeRun("ok", 0.09);  // 0.3 m
+  expectFailure(updateByRun(), {"day1.rawlog", "all 25 poses", "max_sigma_m"});
+  writeRun("ok", 1e-6, 7);
+  const auto outcome = updateByRun();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("not ok, not used: 7"), std::string::npos) << outcome.out;
+  writeRun("ok", 1e-6, 0, 5);
+  expectFailure(updateByRun(), {"run_00.tum", "scan 0", "is it a run over this rawlog"});
+  fs::remove(folder / "run_00_health.csv");
+  expectFailure(updateByRun(), {"run_00_health.csv"});
+}
+
+TEST_F(MapUpdateApp, WarnsWhenManyPolesHaveMoved) {
+  mapYesterday();
+  drive("day1", today);  // 1 of about 12 moved
+  const auto outcome = update({"--quiet", "--json", at("update.json")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("pole-map: warning: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("seem to have moved"), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+  EXPECT_EQ(readJson(folder / "update.json").at("warnings").size(), 1u);
+  EXPECT_EQ(io::readPoleMap(folder / "day1.polemap").info.count("warnings"), 1u);
+  drive("day1", yesterday);
+  const auto same = update({"--json", at("update.json")});
+  EXPECT_EQ(same.err, "");
+  EXPECT_EQ(readJson(folder / "update.json").at("warnings").size(), 0u);
+  EXPECT_EQ(io::readPoleMap(folder / "day1.polemap").info.count("warnings"), 0u);
+}
+
 TEST_F(MapUpdateApp, WrongUsage) {
   const std::vector<std::string> right{"update", "--config", "c", "--map",    "m",        "--input",
                                        "a",      "--truth",  "a", "--output", "m.polemap"};
   for (const std::vector<std::string>& more : {std::vector<std::string>{"--keep-scans"},
                                                {"--add", "a"},
                                                {"--date", "d", "e"},
+                                               {"--json", "m.polemap"},
+                                               {"--estimate", "a"},
                                                {"--csv", "m.polemap"}}) {
     SCOPED_TRACE(more.front());
     auto arguments = right;

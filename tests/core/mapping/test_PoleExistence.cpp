@@ -55,6 +55,17 @@ TEST(PoleExistence, ScansOfOneLookCountOnce) {
   EXPECT_EQ(evidence.missed(), 5u);
 }
 
+// Behind something, a find says less; where there was one, scans without a find count as well.
+TEST(PoleExistence, HiddenPlacesSayLess) {
+  ExistenceEvidence evidence;
+  evidence.add(false, 0, options(), 0.8, true);
+  EXPECT_EQ(evidence.logRatio(), 0);
+  evidence.add(true, 6, options(), 0.8, true);
+  EXPECT_NEAR(evidence.logRatio(), std::log(0.7 / 0.9) + std::log(3), 1e-12);
+  EXPECT_EQ(evidence.found(), 1u);
+  EXPECT_EQ(evidence.missed(), 0u);
+}
+
 TEST(PoleExistence, NothingIsEverCertain) {
   EXPECT_NEAR(updated(0.5, 100, options()), 0.99, 1e-12);
   EXPECT_NEAR(updated(0.5, -100, options()), 0.01, 1e-12);

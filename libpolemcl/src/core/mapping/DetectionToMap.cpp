@@ -16,6 +16,12 @@ LandmarkObservation landmarkObservation(const PoleDetection& pole, const Pose2D&
   observation.pole.y = centre.y();
   observation.pole.covariance = covariance + byHeading * byHeading.transpose() +
                                 trust.sigma * trust.sigma * Eigen::Matrix2d::Identity();
+  if (!trust.covariance.isZero(0)) {
+    Eigen::Matrix<double, 2, 3> jacobian;
+    jacobian << 1, 0, -arm.y(), 0, 1, arm.x();
+    observation.pole.covariance +=
+        symmetrized<2>(jacobian * trust.covariance * jacobian.transpose());
+  }
   return observation;
 }
 

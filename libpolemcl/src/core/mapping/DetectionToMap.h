@@ -14,6 +14,8 @@ namespace polemcl {
 struct PoseTrust {
   double sigma = 0;         ///< of the position, m
   double headingSigma = 0;  ///< rad
+  /// Covariance of this pose beyond that: x, y, yaw; m², m·rad, rad².
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
 /// \brief A detection in the map frame, made less certain by what the scan's pose is not known to.

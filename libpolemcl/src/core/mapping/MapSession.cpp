@@ -41,7 +41,6 @@ bool inView(const SessionScan& scan, const MapPole& pole) {
 Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& mapping,
                  const MapUpdateOptions& options)
     : m_scans(scans), m_mapping(mapping), m_options(options), m_firstOfScan{0} {
-  const PoseTrust trust{mapping.poseSigma, mapping.headingSigma};
   double along = 0;
   for (std::uint32_t number = 0; number < scans.size(); ++number) {
     const SessionScan& scan = scans[number];
@@ -55,6 +54,7 @@ Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& ma
     m_along.push_back(along);
     m_firstTime = number == 0 ? scan.time : std::min(m_firstTime, scan.time);
     m_lastTime = number == 0 ? scan.time : std::max(m_lastTime, scan.time);
+    const PoseTrust trust{mapping.poseSigma, mapping.headingSigma, scan.poseCovariance};
     for (const PoleDetection& pole : scan.poles_robot) {
       if (pole.confidence <= 0 || pole.confidence < mapping.minConfidence) continue;
       m_observations.push_back(landmarkObservation(pole, scan.pose_map_robot, number, trust));
@@ -97,7 +97,7 @@ void Session::assign(std::size_t number, const KdTree2D& tree) {
   }
 }
 
-/// Counts the poles in range that one scan found or could have found.
+/// Counts the poles in range that one scan found or did not find.
 void Session::expect(std::size_t number, const KdTree2D& tree,
                      const std::vector<LandmarkRecord>& poles) {
   const SessionScan& scan = m_scans[number];
@@ -108,9 +108,11 @@ void Session::expect(std::size_t number, const KdTree2D& tree,
     SessionPole& own = m_poles[hit.index];
     const bool found =
         !own.observations.empty() && m_observations[own.observations.back()].scan == number;
-    if (!found && !inView(scan, poles[hit.index].pole)) continue;
+    const bool unknown = scan.visibilityRange.empty();
+    if (unknown && !found) continue;
     own.evidence.add(found, m_along[number], m_options.existence,
-                     detectionChance(poles[hit.index].history, m_options.existence));
+                     detectionChance(poles[hit.index].history, m_options.existence),
+                     !unknown && !inView(scan, poles[hit.index].pole));
   }
 }
 

@@ -31,6 +31,20 @@ void bind(Binder& b, ExistenceOptions& o) {
             "below half of detection");
 }
 
+void bind(Binder& b, AlignmentOptions& o) {
+  b.section(s_updateSection, s_updateComment);
+  b.number("align_sigma_m", o.sigma, Range::atLeast(0), "m",
+           "standard deviation of a session's positions before it is aligned to the map; 0: it is "
+           "not aligned");
+  b.tier(Tier::expert);
+  b.angleDeg("align_sigma_deg", o.headingSigma, Range::aboveUpTo(0, 57),
+             "standard deviation of its headings");
+  b.number("align_length_m", o.length, Range::above(0), "m",
+           "distance over which these errors are correlated");
+  b.integer("align_min_poles", o.minPoles, Range::atLeast(2), "",
+            "least number of map poles seen within 50 m of path; pieces with fewer follow others");
+}
+
 void bind(Binder& b, MapUpdateOptions& o) {
   b.section(s_updateSection, s_updateComment);
   b.number("range_m", o.range, Range::above(0), "m",
@@ -49,7 +63,10 @@ void bind(Binder& b, MapUpdateOptions& o) {
            "standard deviation of one session's positions against those of others");
   b.number("ghost_m", o.ghost, Range::atLeast(0), "m",
            "a missed pole that is nearer than this to a new one has been moved there");
+  b.number("max_sigma_m", o.maxSigma, Range::above(0), "m",
+           "scans with a greater standard deviation of their estimated position change nothing");
   bind(b, o.existence);
+  bind(b, o.alignment);
   b.require(o.present <= o.existence.certain, "present", o.present, "certain or less");
   b.require(o.absent <= o.present, "absent", o.absent, "present or less");
   b.require(o.forget < o.absent, "forget", o.forget, "less than absent");

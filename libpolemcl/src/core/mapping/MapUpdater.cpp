@@ -5,10 +5,12 @@
 #include <tuple>
 
 #include <polemcl/core/mapping/MapUpdater.h>
+#include "core/common/Covariance.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "core/mapping/MapSession.h"
 #include "core/mapping/ObservationClustering.h"
+#include "core/mapping/SessionAlignment.h"
 
 namespace polemcl {
 namespace {
@@ -22,6 +24,22 @@ void sortByPlace(std::vector<LandmarkRecord>& poles) {
                    [](const LandmarkRecord& a, const LandmarkRecord& b) {
                      return std::tie(a.pole.x, a.pole.y) < std::tie(b.pole.x, b.pole.y);
                    });
+}
+
+/// The scans whose positions are known well enough.
+std::vector<SessionScan> certainScans(const std::vector<SessionScan>& scans,
+                                      const MapUpdateOptions& options) {
+  std::vector<SessionScan> certain;
+  certain.reserve(scans.size());
+  for (const SessionScan& scan : scans) {
+    if (!isCovariance<3>(scan.poseCovariance))
+      throw Error("the pose of scan " + std::to_string(&scan - scans.data()) +
+                  " has a matrix that is no covariance; leave the scan out or correct it");
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
+        scan.poseCovariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
+    if (axes.eigenvalues()[1] <= options.maxSigma * options.maxSigma) certain.push_back(scan);
+  }
+  return certain;
 }
 
 /// One session's update, step by step.
@@ -267,9 +285,15 @@ LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& sc
                       MapUpdateCounts* counts) {
   checkOptions(mapping);
   checkOptions(options);
-  Update update(map, scans, mapping, options);
+  std::vector<SessionScan> used = certainScans(scans, options);
+  AlignmentSummary alignment;
+  if (options.alignment.sigma > 0) used = alignedSession(used, map, mapping, options, &alignment);
+  Update update(map, used, mapping, options);
   LandmarkMap result = update.run();
-  if (counts) *counts = update.counts();
+  if (!counts) return result;
+  *counts = update.counts();
+  counts->uncertain = scans.size() - used.size();
+  counts->alignment = alignment;
   return result;
 }
 

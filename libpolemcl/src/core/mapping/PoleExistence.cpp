@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kPriorScans = 20;  ///< that the prior of the detection chance counts for
 constexpr double kDay = 86400;      ///< s
+/// Chance that a scan finds a pole though something stands before it, at most.
+constexpr double kHiddenChance = 0.3;
 
 double logOdds(double probability) {
   return std::log(probability / (1 - probability));
@@ -36,23 +38,30 @@ double survived(double existence, double seconds, const ExistenceOptions& option
   return existence * std::exp(-std::max(0.0, seconds) / (kDay * options.lifetimeDays));
 }
 
+void ExistenceEvidence::LookSum::add(std::int64_t number, double value) {
+  if (number != look) *this = {total(), 0, 0, number};
+  sum += value;
+  ++inLook;
+}
+
+double ExistenceEvidence::LookSum::total() const {
+  return inLook > 0 ? done + sum / inLook : done;
+}
+
 void ExistenceEvidence::add(bool found, double along, const ExistenceOptions& options,
-                            double chance) {
+                            double chance, bool hidden) {
+  if (hidden) chance = std::min(chance, std::max(kHiddenChance, 2 * options.falseDetection));
   const auto look = static_cast<std::int64_t>(along / options.decorrelation);
-  if (look != m_look) {
-    m_done = logRatio();
-    m_sum = 0;
-    m_inLook = 0;
-    m_look = look;
-  }
-  m_sum += found ? std::log(chance / options.falseDetection)
-                 : std::log((1 - chance) / (1 - options.falseDetection));
-  ++m_inLook;
-  ++(found ? m_found : m_missed);
+  (hidden ? m_hidden : m_inView)
+      .add(look, found ? std::log(chance / options.falseDetection)
+                       : std::log((1 - chance) / (1 - options.falseDetection)));
+  m_found += found;
+  m_missed += !found && !hidden;
+  m_foundHidden |= found && hidden;
 }
 
 double ExistenceEvidence::logRatio() const {
-  return m_inLook > 0 ? m_done + m_sum / m_inLook : m_done;
+  return m_foundHidden ? m_inView.total() + m_hidden.total() : m_inView.total();
 }
 
 double updated(double existence, double logRatio, const ExistenceOptions& options) {

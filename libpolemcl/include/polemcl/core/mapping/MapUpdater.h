@@ -11,6 +11,7 @@
 
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
+#include <polemcl/core/mapping/AlignmentOptions.h>
 #include <polemcl/core/mapping/PoleExistence.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include <polemcl/export.h>
@@ -20,6 +21,7 @@ namespace polemcl {
 /// \brief `[map_update]` in INI files. Gates and pose errors are those of `[map]`.
 struct POLEMCL_EXPORT MapUpdateOptions {
   ExistenceOptions existence;
+  AlignmentOptions alignment;
   double range = 20;     ///< a scan is expected to find poles in view up to here, m (`range_m`)
   int minSeen = 5;       ///< least number of scans that found a pole on the map
   double present = 0.9;  ///< a pole enters the map from this probability on
@@ -34,6 +36,9 @@ struct POLEMCL_EXPORT MapUpdateOptions {
   /// A missed pole that is nearer than this to a new one has been moved there, m (`ghost_m`). It
   /// leaves no ghost.
   double ghost = 1.5;
+  /// Scans whose position has a greater standard deviation along any axis change nothing, m
+  /// (`max_sigma_m`). See SessionScan::poseCovariance.
+  double maxSigma = 0.25;
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, MapUpdateOptions& options);  ///< `[map_update]`
@@ -54,12 +59,16 @@ struct SessionScan {
   /// As CObservationPoles carries it. Empty: poles that this scan does not find are not missed.
   std::vector<float> visibilityRange;
   Pose2D pose_robot_sensor;  ///< of the frame of visibilityRange
+  /// Covariance of pose_map_robot (x, y, yaw; m², m·rad, rad²), beyond `[map] pose_sigma_m` and
+  /// `heading_sigma_deg`. Zero: a pose of the truth.
+  Eigen::Matrix3d poseCovariance = Eigen::Matrix3d::Zero();
 };
 
 /// \brief What a session changed.
 struct MapUpdateCounts {
-  std::size_t scans = 0;
-  std::size_t withoutFreeRange = 0;  ///< of these: nothing is missed in them
+  std::size_t scans = 0;             ///< used
+  std::size_t uncertain = 0;         ///< left out: their positions are too uncertain
+  std::size_t withoutFreeRange = 0;  ///< of the used ones: nothing is missed in them
   std::size_t expectedOnMap = 0;     ///< poles on the map before that a scan could see
   std::size_t foundOnMap = 0;        ///< of these, found at least once
   std::size_t entered = 0;           ///< new on the map
@@ -67,6 +76,7 @@ struct MapUpdateCounts {
   std::size_t moved = 0;             ///< in place, or a stride away
   std::size_t candidates = 0;        ///< kept beside the map
   std::size_t forgotten = 0;
+  AlignmentSummary alignment;  ///< zero without alignment
 };
 
 /// \brief A map with what is known of its poles, sorted by x then y.
@@ -85,8 +95,8 @@ POLEMCL_EXPORT LandmarkMap withHistory(const std::vector<MapPole>& poles,
                                        const PoleMapOptions& mapping,
                                        const MapUpdateOptions& options);
 
-/// \brief Updates a map by one session. Scans in the order they were driven; the result does not
-/// depend on the order of the detections in a scan.
+/// \brief Updates a map by one session, which is first aligned to it (AlignmentOptions). Scans in
+/// the order they were driven; the result does not depend on the order of the detections in a scan.
 /// \param counts If given: what changed.
 /// \throws Error on options out of range, on scans as buildPoleMap(), and on a visibility
 ///         range that is negative or not finite.

@@ -61,7 +61,12 @@ POLEMCL_EXPORT double survived(double existence, double seconds, const Existence
 class POLEMCL_EXPORT ExistenceEvidence {
  public:
   /// \param along Way travelled to the scan, m; never less than before.
-  void add(bool found, double along, const ExistenceOptions& options, double chance);
+  /// \param hidden Something stands before the place. Such scans count with a small chance, and
+  /// only
+  ///        if one of them found the pole: then those that did not find it must count as well.
+  ///        They never count as missed().
+  void add(bool found, double along, const ExistenceOptions& options, double chance,
+           bool hidden = false);
   std::uint32_t found() const { return m_found; }
   std::uint32_t missed() const { return m_missed; }
   /// \brief Log of the ratio of likelihoods, of a pole to none: the mean over the scans of a look,
@@ -69,11 +74,18 @@ class POLEMCL_EXPORT ExistenceEvidence {
   double logRatio() const;
 
  private:
+  /// Mean over the scans of a look, summed over the looks.
+  struct LookSum {
+    double done = 0;           ///< of the looks before
+    double sum = 0;            ///< of the look under way
+    std::uint32_t inLook = 0;  ///< scans in it
+    std::int64_t look = -1;    ///< its number
+    void add(std::int64_t number, double value);
+    double total() const;
+  };
   std::uint32_t m_found = 0, m_missed = 0;
-  double m_done = 0;           ///< of the looks before
-  double m_sum = 0;            ///< of the look under way
-  std::uint32_t m_inLook = 0;  ///< scans in it
-  std::int64_t m_look = -1;    ///< its number
+  bool m_foundHidden = false;
+  LookSum m_inView, m_hidden;
 };
 
 /// \brief Probability after evidence, kept within `certain`.

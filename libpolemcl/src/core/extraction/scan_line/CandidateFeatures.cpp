@@ -100,8 +100,8 @@ class Place {
 };
 
 /// Walks up from the topmost segment while something stands there; one silent row may interrupt it.
-void top(const Place& place, const SensorModel& sensor, int row, float ground,
-         CandidateFeatures& evidence) {
+void topFeatures(const Place& place, const SensorModel& sensor, int row, float ground,
+                 CandidateFeatures& evidence) {
   evidence.topBound = kInfinity;
   float bound = kInfinity;
   for (int misses = 0, r = row - 1; r >= 0 && misses < 2; --r) {
@@ -179,7 +179,7 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
   }
   e.bottom = shape.low - groundZ;
   e.top = shape.high - groundZ;
-  top(place, sensor, segments[cluster.top()].row, groundZ, e);
+  topFeatures(place, sensor, segments[cluster.top()].row, groundZ, e);
   return e;
 }
 

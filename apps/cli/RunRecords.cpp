@@ -1,0 +1,47 @@
+#include "cli/RunRecords.h"
+
+#include <cmath>
+
+#include "io/file/CsvTable.h"
+
+namespace polemcl::apps {
+
+std::vector<EstimateRecord> readEstimates(const std::filesystem::path& file) {
+  const io::CsvTable table(file);
+  const char* names[] = {"scan", "timestamp", "x_m", "y_m",  "yaw_rad", "xx",
+                         "xy",   "xyaw",      "yy",  "yyaw", "yawyaw"};
+  std::vector<std::size_t> columns;
+  columns.reserve(std::size(names));
+  for (const char* name : names) columns.push_back(table.column(name));
+  std::vector<EstimateRecord> rows;
+  rows.reserve(table.rows());
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto at = [&](int k) { return table.number(i, columns[k]); };
+    EstimateRecord row;
+    row.scan = at(0);
+    row.time = at(1);
+    row.estimate.mean = {at(2), at(3), at(4)};
+    row.estimate.covariance << at(5), at(6), at(7), at(6), at(8), at(9), at(7), at(9), at(10);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+HealthRecords::HealthRecords(const std::filesystem::path& file) : m_file(file) {
+  const io::CsvTable table(file);
+  const std::size_t scan = table.column("scan"), state = table.column("state");
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    if (table.number(i, scan) != static_cast<double>(i))
+      throw Error(table.at(i) + "scan " + std::to_string(i) + " expected: one row for each scan");
+    m_ok.push_back(table.text(i, state) == "ok");
+  }
+}
+
+bool HealthRecords::isOk(double scan) const {
+  if (scan < 0 || scan >= static_cast<double>(m_ok.size()))
+    throw Error(m_file.string() + ": no scan " + std::to_string(std::llround(scan)) +
+                "; does it belong to the same run as the covariances?");
+  return m_ok[static_cast<std::size_t>(scan)];
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,70 @@
+#include "map/SessionPoses.h"
+
+#include <cmath>
+
+#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "cli/RunRecords.h"
+#include "core/common/PoseInterpolation.h"
+#include "io/data/Trajectory.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace {
+
+constexpr double s_sameTime = 1e-3;  ///< s: rawlogs and tables round times
+
+/// `run_NN_cov.csv` of `run_NN.tum`.
+std::filesystem::path besides(const std::filesystem::path& run, const std::string& ending) {
+  return run.parent_path() / (run.stem().string() + ending);
+}
+
+}  // namespace
+
+SessionPoses::SessionPoses(PoseKind kind, const std::filesystem::path& file)
+    : m_kind(kind), m_file(file) {
+  if (kind == PoseKind::truth) {
+    m_trajectory = io::readPlanarTum(file);
+    return;
+  }
+  const HealthRecords health(besides(file, "_health.csv"));
+  const std::filesystem::path covariances = besides(file, "_cov.csv");
+  for (const EstimateRecord& row : readEstimates(covariances)) {
+    const bool ok = health.isOk(row.scan);
+    if (!m_trajectory.empty() && !(row.time > m_trajectory.back().time))
+      throw Error(covariances.string() + ": the times do not increase");
+    m_trajectory.push_back({row.time, row.estimate.mean});
+    m_estimates[static_cast<std::size_t>(row.scan)] = {
+        row.time, {row.estimate.mean, row.estimate.covariance, ok}};
+  }
+}
+
+std::optional<ScanPose> SessionPoses::at(std::size_t scan, double time) const {
+  if (m_kind == PoseKind::estimate) return estimateOf(scan, time);
+  const auto pose = poseAt(m_trajectory, time, longestTruthGap);
+  return pose ? std::optional(ScanPose{*pose}) : std::nullopt;
+}
+
+std::optional<ScanPose> SessionPoses::estimateOf(std::size_t scan, double time) const {
+  const auto found = m_estimates.find(scan);
+  if (found == m_estimates.end()) return std::nullopt;
+  const auto& [ownTime, pose] = found->second;
+  if (std::abs(ownTime - time) <= s_sameTime) return pose;
+  throw Error(m_file.string() + ": scan " + std::to_string(scan) + " is of " +
+              io::fixed(ownTime, 6) + " s, but that of the rawlog of " + io::fixed(time, 6) +
+              " s; is it a run over this rawlog?");
+}
+
+Velocity SessionPoses::velocityAt(double time) const {
+  // Half a turn of most LiDARs. Estimates vary from scan to scan: over a longer time, that matters
+  // less.
+  const double half = m_kind == PoseKind::truth ? 0.05 : 0.25;
+  const auto here = poseAt(m_trajectory, time, longestTruthGap);
+  const auto before = poseAt(m_trajectory, time - half, longestTruthGap);
+  const auto after = poseAt(m_trajectory, time + half, longestTruthGap);
+  if (before && after) return velocityOf(relative(*before, *after), 2 * half);
+  if (after && here) return velocityOf(relative(*here, *after), half);
+  if (before && here) return velocityOf(relative(*before, *here), half);
+  return {};
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,58 @@
+#pragma once
+/// \file SessionPoses.h
+/// \brief Where a session's scans were taken: by its truth, or by the localizer's own estimates.
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <polemcl/core/common/Deskew.h>
+#include <polemcl/core/common/Types.h>
+
+namespace polemcl::apps {
+
+/// \brief Where poses of sessions come from.
+enum class PoseKind {
+  truth,    ///< a TUM file
+  estimate  ///< a run of `pole-localize`
+};
+
+/// \brief The pose of one scan.
+struct ScanPose {
+  Pose2D pose;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw; zero for truth
+  bool isOk = true;  ///< false: the localizer was `degraded` or `lost` there
+};
+
+class SessionPoses {
+ public:
+  /// \param file For truth: TUM, robot poses. For an estimate: `run_NN.tum` of `pole-localize`,
+  /// with
+  ///        its `run_NN_cov.csv` (which the poses are read from, too) and `run_NN_health.csv`
+  ///        beside it.
+  /// \throws Error when a file cannot be read.
+  SessionPoses(PoseKind kind, const std::filesystem::path& file);
+
+  /// \brief None where the file says nothing.
+  /// \param scan Number of the scan in its rawlog. \param time Of the scan, s.
+  /// \throws Error when an estimate for this scan has another time: it is of another rawlog.
+  std::optional<ScanPose> at(std::size_t scan, double time) const;
+  /// \brief Velocity from the poses before and after; zero where there is a gap.
+  Velocity velocityAt(double time) const;
+
+ private:
+  std::optional<ScanPose> estimateOf(std::size_t scan, double time) const;
+
+  PoseKind m_kind;
+  std::filesystem::path m_file;
+  std::vector<StampedPose2D> m_trajectory;
+  struct Estimate {
+    double time = 0;
+    ScanPose pose;
+  };
+  std::map<std::size_t, Estimate> m_estimates;  ///< by the number of the scan
+};
+
+}  // namespace polemcl::apps
