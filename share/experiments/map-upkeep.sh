@@ -48,7 +48,7 @@ drive() {
 keep() {
   ending=
   [ "$2" = none ] || ending=_$2
-  inputs= truths=
+  inputs='' truths=''
   for day in 1 2 3 4 5 6; do
     inputs="$inputs $out/$1-$day.rawlog"
     truths="$truths $out/$1-$day$ending.tum"

@@ -52,16 +52,17 @@ void ExistenceEvidence::add(bool found, double along, const ExistenceOptions& op
                             double chance, bool hidden) {
   if (hidden) chance = std::min(chance, std::max(kHiddenChance, 2 * options.falseDetection));
   const auto look = static_cast<std::int64_t>(along / options.decorrelation);
-  (hidden ? m_hidden : m_inView)
-      .add(look, found ? std::log(chance / options.falseDetection)
-                       : std::log((1 - chance) / (1 - options.falseDetection)));
+  const double value = found ? std::log(chance / options.falseDetection)
+                             : std::log((1 - chance) / (1 - options.falseDetection));
+  m_inView.add(look, hidden ? 0 : value);  // a look counts by the share of its scans in view
+  m_all.add(look, value);
   m_found += found;
   m_missed += !found && !hidden;
   m_foundHidden |= found && hidden;
 }
 
 double ExistenceEvidence::logRatio() const {
-  return m_foundHidden ? m_inView.total() + m_hidden.total() : m_inView.total();
+  return m_foundHidden ? m_all.total() : m_inView.total();
 }
 
 double updated(double existence, double logRatio, const ExistenceOptions& options) {

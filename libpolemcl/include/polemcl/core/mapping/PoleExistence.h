@@ -85,7 +85,7 @@ class POLEMCL_EXPORT ExistenceEvidence {
   };
   std::uint32_t m_found = 0, m_missed = 0;
   bool m_foundHidden = false;
-  LookSum m_inView, m_hidden;
+  LookSum m_inView, m_all;
 };
 
 /// \brief Probability after evidence, kept within `certain`.
