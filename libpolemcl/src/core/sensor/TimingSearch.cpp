@@ -19,7 +19,7 @@ constexpr double kGreatest = 15;  // clock offsets, in steps
 constexpr double kStep = 0.01;    // s
 
 /// Sightings of one pole in two scans.
-struct Pair {
+struct Resighting {
   std::size_t scanA, poleA, scanB, poleB;
 };
 
@@ -27,7 +27,7 @@ class Search {
  public:
   Search(const std::vector<TimedScan>& scans, double turnSeconds);
   void associate(const ScanTiming& timing);
-  const std::vector<Pair>& pairs() const { return m_pairs; }
+  const std::vector<Resighting>& pairs() const { return m_pairs; }
   /// Distances of the pairs, m.
   std::vector<double> distances(const ScanTiming& timing) const;
   double mean(const ScanTiming& timing) const;
@@ -44,7 +44,7 @@ class Search {
   double m_seconds;
   std::vector<Velocity> m_velocity;
   std::vector<double> m_way;  ///< driven up to each scan, m
-  std::vector<Pair> m_pairs;
+  std::vector<Resighting> m_pairs;
 };
 
 Search::Search(const std::vector<TimedScan>& scans, double turnSeconds)
@@ -106,7 +106,7 @@ void Search::associate(const ScanTiming& timing) {
           m_pairs.push_back({i, a, j, hit.index});
       }
   if (m_pairs.size() <= kMostPairs) return;
-  std::vector<Pair> spread;
+  std::vector<Resighting> spread;
   spread.reserve(kMostPairs);
   for (std::size_t k = 0; k < kMostPairs; ++k)
     spread.push_back(m_pairs[k * m_pairs.size() / kMostPairs]);
@@ -116,7 +116,7 @@ void Search::associate(const ScanTiming& timing) {
 std::vector<double> Search::distances(const ScanTiming& timing) const {
   std::vector<double> result;
   result.reserve(m_pairs.size());
-  for (const Pair& pair : m_pairs) {
+  for (const Resighting& pair : m_pairs) {
     const auto a = place(pair.scanA, m_scans[pair.scanA].poles_robot[pair.poleA], timing);
     const auto b = place(pair.scanB, m_scans[pair.scanB].poles_robot[pair.poleB], timing);
     result.push_back(std::min((a - b).norm(), kFar));
