@@ -87,7 +87,8 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
 void printTiming(std::ostream& out, const std::optional<TimingEstimate>& found) {
   out << "scan timing       ";
   if (!found) {
-    out << "unknown: the rawlog has no odometry between its scans; give true poses with --truth\n";
+    out << "unknown: clouds that stand upright are needed, and odometry between all scans or\n"
+           "                  true poses (--truth)\n";
     return;
   }
   if (found->pairs == 0) {
@@ -151,7 +152,8 @@ Settings settingsFor(const Inspection& inspection) {
 
 Inspection inspect(const InspectOptions& options, const ScanProgress& progress) {
   Inspection result{inspectRawlog(options.input.string(), options.allowTruncated), {}};
-  result.timing = findTiming(options, settingsFor(result), progress);
+  if (!result.sensor.sensor.onItsHead)  // else poles are not found
+    result.timing = findTiming(options, settingsFor(result), progress);
   if (options.writeConfig) saveSettings(settingsFor(result), options.writeConfig->string());
   return result;
 }

@@ -24,7 +24,8 @@ struct InspectOptions {
 
 struct Inspection {
   RawlogInspection sensor;
-  /// None if the rawlog has neither odometry between all scans nor true poses.
+  /// None if the clouds are upside down, or if there are neither odometry between all scans nor
+  /// true poses.
   std::optional<TimingEstimate> timing;
 };
 

@@ -36,7 +36,7 @@ class SessionPoses {
   SessionPoses(PoseKind kind, const std::filesystem::path& file);
 
   /// \brief None where the file says nothing.
-  /// \param scan Number of the scan in its rawlog. \param time Of the scan, s.
+  /// \param scan Number of the scan in its rawlog. \param time Time of the scan, s.
   /// \throws Error when an estimate for this scan has another time: it is of another rawlog.
   std::optional<ScanPose> at(std::size_t scan, double time) const;
   /// \brief Velocity from the poses before and after; zero where there is a gap.

@@ -41,9 +41,12 @@ build() {
 
 : >"$out/results"
 for sensor in kitti hdl32e vlp16; do
-  # The former defaults; kitti.ini had its own.
-  former="--set map.min_count=5 --set map.min_confidence=0.5"
-  [ $sensor != kitti ] || former="--set map.min_count=3 --set map.min_confidence=0.3"
+  # The former defaults beside those of today.
+  today="--set map.min_confidence=0.5" # what 0 stands for where scans are read
+  former="--set map.min_count=5 $today"
+  if [ $sensor = kitti ]; then # its own settings
+    today="" former="--set map.min_count=3"
+  fi
   former="--set map.counting=run --set map.min_share=0.4 $former"
   for world in $(seq "$first" "$last"); do
     here=$out/$sensor-$world
@@ -60,7 +63,7 @@ for sensor in kitti hdl32e vlp16; do
     mv "$here/scans/poles_gt.csv" "$here/poles.csv"
     rm -r "$here/scans" "$here/scans.rawlog"
     build $sensor "$world" run "$former"
-    build $sensor "$world" confidences ""
+    build $sensor "$world" confidences "$today"
   done
 done
 

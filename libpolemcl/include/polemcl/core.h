@@ -24,6 +24,7 @@
 #include <polemcl/core/localization/OdometryMonitor.h>
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/core/localization/ScanRegistration.h>
+#include <polemcl/core/mapping/AlignmentOptions.h>
 #include <polemcl/core/mapping/MapUpdater.h>
 #include <polemcl/core/mapping/PoleExistence.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>

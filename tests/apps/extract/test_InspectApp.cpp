@@ -155,7 +155,9 @@ TEST_F(InspectApp, KnowsTheLidarOfKitti) {
   options.output = folder / "in.rawlog";
   options.every = 20;
   importDataset(options);
-  const RawlogInspection inspection = inspect({folder / "in.rawlog"}).sensor;
+  InspectOptions files;
+  files.input = folder / "in.rawlog";
+  const RawlogInspection inspection = inspect(files).sensor;
   EXPECT_EQ(inspection.sensor.beams.beams(), 64);
   EXPECT_EQ(inspection.options.model, "hdl64e");
   EXPECT_NEAR(inspection.options.height, 1.73, 0.1);
@@ -169,7 +171,9 @@ TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   options.input = fs::path(data) / "kitti_raw_0005";
   options.output = folder / "in.rawlog";
   importDataset(options);
-  InspectOptions files{folder / "in.rawlog", folder / "found.ini"};
+  InspectOptions files;
+  files.input = folder / "in.rawlog";
+  files.writeConfig = folder / "found.ini";
   files.truth = folder / "in.tum";
   const auto timing = inspect(files).timing;
   ASSERT_TRUE(timing);

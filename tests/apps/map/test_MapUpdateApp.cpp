@@ -59,7 +59,7 @@ class MapUpdateApp : public StreetTest {
     return runProgram(mapMain, arguments);
   }
   /// Files of a run of pole-localize over day1 that estimated the true poses.
-  /// \param state From scan `doubtful` on; `lost` before. \param shift Of all times, s.
+  /// \param state From scan `doubtful` on; `lost` before. \param shift Added to all times, s.
   void writeRun(const std::string& state, double variance, int doubtful = 0, double shift = 0) {
     std::ostringstream cov, health;
     cov << std::fixed << std::setprecision(9)

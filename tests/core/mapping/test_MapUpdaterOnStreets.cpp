@@ -27,6 +27,8 @@ struct Day {
 PoleMapOptions mapping() {
   PoleMapOptions options;
   options.everyScan = true;
+  options.counting = PoleCounting::run;
+  options.minConfidence = 0;
   options.minCount = 5;
   options.minShare = 0.4;
   return options;
