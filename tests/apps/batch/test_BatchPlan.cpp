@@ -281,7 +281,7 @@ TEST(BatchPlan, KeysChangeWithWhatTheOutputsDependOn) {
   EXPECT_EQ(changed([](BatchSpec& spec) { spec.sessions[1].every = 2; }).size(), 6u);
   // Configurations are frozen as a whole: poles depend on them, and all else on the poles.
   EXPECT_EQ(
-      changed([](BatchSpec& spec) { spec.configurations[0].set = {"map.min_count=3"}; }).size(),
+      changed([](BatchSpec& spec) { spec.configurations[0].set = {"map.min_count=4"}; }).size(),
       plan.tasks.size());
   EXPECT_EQ(changed([](BatchSpec& spec) { spec.runs = 3; }), Names{});
 }

@@ -220,6 +220,7 @@ TEST(PoleMapBuilder, WhoPassesAPoleMustSeeIt) {
 // than 12.
 TEST(PoleMapBuilder, WhoIsTooNearToSeeTheTopNeedNotSeeThePole) {
   PoleMapOptions options = sectionsOfOneMetre(3, 30);
+  options.counting = PoleCounting::confidences;
   options.nearRange = 12;
   const auto poles = [&](const std::string& sees, double share) {
     options.minShare = share;

@@ -98,12 +98,12 @@ bool seenFromEnough(const MapPole& pole, const std::vector<Sighting>& sightings,
     const Pose2D& pose = scans[occupied[section].middle].pose_map_robot;
     return std::hypot(pose.x - pole.x, pose.y - pole.y);
   };
-  double nearest = options.nearRange / 2, hits = 0, chances = 0;
+  const bool confidences = options.counting == PoleCounting::confidences;
+  double nearest = confidences ? options.nearRange / 2 : 0, hits = 0, chances = 0;
   for (const Sighting& sighting : sightings) {
     const double range = distance(sighting.section);
     nearest = std::min(nearest, range);
-    if (range <= options.nearRange)
-      hits += options.counting == PoleCounting::confidences ? sighting.confidence : 1.0;
+    if (range <= options.nearRange) hits += confidences ? sighting.confidence : 1.0;
   }
   for (std::uint32_t i = 0; i < occupied.size(); ++i)
     chances += distance(i) >= nearest && distance(i) <= options.nearRange;

@@ -53,7 +53,7 @@ struct POLEMCL_EXPORT PoleMapOptions {
   /// Least `counting` of a pole. With `confidences`, of a drive whose scans are so far apart that
   /// only a share of the sections has one, this share of it, but 1.5 at least.
   double minCount = 3;
-  int maxGap = 2;              ///< most *occupied* sections in a row that may miss it inside a run
+  int maxGap = 2;            ///< most *occupied* sections in a row that may miss it inside a run
   double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
   /// Least share of the occupied sections with middles within `nearRange` that saw the pole, in
   /// [0, 1]; each counts by its confidence if `counting` says so. Clutter looks like a pole from
