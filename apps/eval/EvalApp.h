@@ -45,6 +45,9 @@ std::vector<Subcommand> extractionCommands(CLI::App& program);
 /// \brief Declares `global`, `consistency` and `faults`.
 std::vector<Subcommand> localizationCommands(CLI::App& program);
 
+/// \brief Declares `candidates` and `train`.
+std::vector<Subcommand> trainingCommands(CLI::App& program);
+
 /// \brief The program. \return An ExitCode.
 int evalMain(int argc, const char* const* argv);
 

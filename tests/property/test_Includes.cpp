@@ -75,7 +75,8 @@ const std::map<std::string, std::set<std::string>> s_strangerRooms{
 /// Settings and report of the surrounding room, shared by its sub-rooms.
 const std::map<std::string, std::set<std::string>> s_sharedHeaders{
     {"core/extraction",
-     {"ExtractionOptions.h", "ExtractionReport.h", "PoleClassifier.h", "VisibilityRange.h"}}};
+     {"CovarianceScale.h", "ExtractionOptions.h", "ExtractionReport.h", "PoleClassifier.h",
+      "VisibilityRange.h"}}};
 
 struct Source {
   fs::path path;  ///< relative to the top folder
@@ -189,8 +190,13 @@ bool mayIncludeForeign(const std::string& room, const std::string& header) {
 }
 
 bool exists(const std::string& header) {
-  for (const std::string base : {"libpolemcl/src", "libpolemcl/include", "apps"})
-    if (fs::exists(s_top / base / header)) return true;
+  const fs::path file(header);
+  for (const std::string base : {"libpolemcl/src", "libpolemcl/include", "apps"}) {
+    if (fs::exists(s_top / base / file)) return true;
+    // Rows of C++ that the build makes from a table of this name.
+    const fs::path table = s_top / base / fs::path(file).replace_extension(".csv");
+    if (file.extension() == ".inc" && fs::exists(table)) return true;
+  }
   return false;
 }
 

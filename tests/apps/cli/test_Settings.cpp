@@ -114,7 +114,8 @@ TEST(Settings, KnowsEverySection) {
                                           "[runs]",
                                           "[view]",
                                           "[simulation]",
-                                          "[world]"};
+                                          "[world]",
+                                          "[realism]"};
   EXPECT_TRUE(
       std::is_permutation(sections.begin(), sections.end(), expected.begin(), expected.end()))
       << testing::PrintToString(sections);

@@ -2,6 +2,8 @@
 /// \file PoleClassifier.h
 /// \brief How likely a candidate is a pole: logistic regression. Private to the library.
 
+#include <array>
+
 namespace polemcl {
 
 /// \brief What the score looks at. Heights in m above local ground.
@@ -27,6 +29,43 @@ struct PoleFeatures {
   double residual = 0;  ///< of the fit, m
   double radius = 0.1;  ///< fitted, m
 };
+
+/// \brief Terms of the regression, functions of the features.
+enum class ClassifierTerm {
+  one,
+  logSegments,
+  logPoints,
+  extent,
+  passed,
+  wide,
+  notWhole,
+  scatter,
+  widthSpread,
+  lowTop,
+  roughRadius,
+  top,
+  bottom,
+  clutter,
+  excess,
+  highBottom,
+  tilt,
+  range,
+  radius,
+  density,
+  count_  ///< number of terms
+};
+constexpr int kClassifierTerms = static_cast<int>(ClassifierTerm::count_);
+using ClassifierTerms = std::array<double, kClassifierTerms>;
+
+/// \brief Greatest distance of a term from its mean, in standard deviations; more counts as this.
+constexpr double kFarthestTerm = 3;
+
+/// \brief Name as in classifier.csv.
+const char* name(ClassifierTerm term);
+/// \brief Whether the term is known before the fit, so that roughOdds() has it.
+bool knownBeforeFit(ClassifierTerm term);
+/// \brief The terms as they are, before they are brought to mean 0 and variance 1.
+ClassifierTerms classifierTerms(const PoleFeatures& features);
 
 /// \brief Log odds from what is known before the fit; clearly low ones need no fit.
 double roughOdds(const PoleFeatures& features);

@@ -14,7 +14,7 @@
 namespace polemcl {
 namespace {
 
-constexpr std::uint32_t kNone = PointHit::none;
+constexpr std::uint32_t kNoHit = PointHit::none;
 /// m beside a pole: objects there may hide it.
 constexpr double kBeside = 0.15;
 /// m: a pole's own front ends the visibility range, a step of it is 0.5 m, and maps err.
@@ -64,7 +64,7 @@ Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& ma
 }
 
 void Session::observe(const std::vector<LandmarkRecord>& poles) {
-  m_owner.assign(m_observations.size(), kNone);
+  m_owner.assign(m_observations.size(), kNoHit);
   m_poles.assign(poles.size(), {});
   const KdTree2D tree(centresOf(poles));
   for (std::size_t number = 0; number < m_scans.size(); ++number) {
@@ -119,7 +119,7 @@ void Session::expect(std::size_t number, const KdTree2D& tree,
 std::vector<LandmarkObservation> Session::loose() const {
   std::vector<LandmarkObservation> loose;
   for (std::size_t i = 0; i < m_observations.size(); ++i)
-    if (m_owner[i] == kNone) loose.push_back(m_observations[i]);
+    if (m_owner[i] == kNoHit) loose.push_back(m_observations[i]);
   return loose;
 }
 

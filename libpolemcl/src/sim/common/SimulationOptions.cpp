@@ -54,6 +54,7 @@ void bind(Binder& b, WorldOptions& o) {
   b.number("foliage", o.foliage, Range::between(0, 2), "", "density of leaves; 0: bare branches");
   b.flag("people_move", o.peopleMove, "true: people walk during the drive");
   bindSeasons(b, o);
+  bind(b, o.realism);
 }
 
 void bind(Binder& b, SimulationOptions& o) {

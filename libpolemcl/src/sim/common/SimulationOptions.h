@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "sim/common/RealismOptions.h"
+
 namespace polemcl {
 class Binder;
 }
@@ -40,10 +42,11 @@ struct WorldOptions {
   double snowBank = 0.5;
   double buildingSites = 0;  ///< per km of street, at any time (`building_sites`)
   int sideStreets = 0;       ///< side streets for detours, 0 to 2 (`side_streets`)
+  RealismOptions realism;    ///< `[realism]`, of objects and LiDAR
   void validate() const;     ///< \throws Error
 };
 
-void bind(Binder& binder, WorldOptions& options);  ///< `[world]`
+void bind(Binder& binder, WorldOptions& options);  ///< `[world]`, `[realism]`
 
 /// \brief Where the odometry of a drive comes from.
 enum class OdometryModel {
@@ -92,8 +95,8 @@ struct SimulationOptions {
   void validate() const;   ///< \throws Error
 };
 
-/// \brief `[simulation]` and `[world]`. The LiDAR and its mounting are those of `[sensor]`; the
-/// program fills them in.
+/// \brief `[simulation]`, `[world]` and `[realism]`. The LiDAR and its mounting are those of
+/// `[sensor]`; the program fills them in.
 void bind(Binder& binder, SimulationOptions& options);
 
 }  // namespace polemcl::sim

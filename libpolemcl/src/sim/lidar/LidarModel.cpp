@@ -127,7 +127,7 @@ void addOffsets(LidarModel& lidar, unsigned unit) {
     else
       beam.elevationError = random.normal(0, 0.03 * degree);
     beam.azimuth += random.normal(0, 0.03 * degree);
-    beam.rangeBias = random.normal(0, 0.4 * lidar.rangeNoise);
+    beam.rangeBias = random.normal(0, kCalibrationError * lidar.rangeNoise);
     beam.rise += beam.rise > 0 ? random.normal(0, 0.004) : 0.0;
   }
 }

@@ -41,6 +41,9 @@ struct LidarModel {
   double dropout = 0.004;  ///< share of pulses lost at random
 };
 
+/// Standard deviation of Beam::rangeBias as a share of LidarModel::rangeNoise.
+inline constexpr double kCalibrationError = 0.4;
+
 /// \brief Names that makeLidar() knows.
 const std::vector<std::string>& lidarNames();
 /// \brief The LiDAR with this name. `unit` (a serial number) determines its small calibration

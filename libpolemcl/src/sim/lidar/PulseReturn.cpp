@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/common/Random.h"
+#include "sim/lidar/Weather.h"
 
 namespace polemcl::sim {
 namespace {
@@ -28,6 +29,14 @@ struct Group {
 };
 }  // namespace
 
+/// Bias of a beam, and of dim (late) and bright (early) returns, m.
+double PulseReturnModel::deviation(const Beam& beam, double ratio) const {
+  if (m_realism.scale <= 0) return 0;
+  const double own = beam.rangeBias / (kCalibrationError * m_lidar.rangeNoise);
+  const double brightness = std::clamp(std::log10(ratio) - 1, -1.0, 1.0);
+  return m_realism.scale * (m_realism.rangeBias * own - m_realism.rangeWalk * brightness);
+}
+
 const Material& PulseReturnModel::material(const SubHit& hit) const {
   if (hit.solid >= 0) return m_solids[hit.solid].material;
   if (hit.solid == SubHit::kRoad) return materials::asphalt;
@@ -35,7 +44,19 @@ const Material& PulseReturnModel::material(const SubHit& hit) const {
 }
 
 std::optional<PulseReturn> PulseReturnModel::make(const SubHit* hits, const Beam& beam,
-                                                  std::uint64_t seed) const {
+                                                  double azimuth, std::uint64_t seed) const {
+  const auto surface = strongest(hits, beam, seed);
+  if (m_realism.scale <= 0) return surface;
+  Random random(hash(seed, 0x4a11ull));
+  const auto drop = dropRange(m_realism, azimuth, beam.elevation, random);
+  if (!drop || *drop < m_lidar.minRange || *drop > m_lidar.maxRange) return surface;
+  if (surface && surface->range < *drop) return surface;
+  constexpr float kDropIntensity = 0.02f;
+  return PulseReturn{std::round(*drop / m_lidar.rangeStep) * m_lidar.rangeStep, kDropIntensity, 0};
+}
+
+std::optional<PulseReturn> PulseReturnModel::strongest(const SubHit* hits, const Beam& beam,
+                                                       std::uint64_t seed) const {
   Part parts[kSubRays];
   int count = 0;
   for (int s = 0; s < kSubRays; ++s) {
@@ -59,15 +80,20 @@ std::optional<PulseReturn> PulseReturnModel::make(const SubHit* hits, const Beam
   Random random(seed);
   double range = best.moment / best.power;
   // Ratio of the received signal to the signal with a detection probability of one half.
-  const double ratio =
-      best.signal / 0.1 * std::pow(m_lidar.referenceRange / std::max(range, 2.0), 2);
+  const double ratio = best.signal / 0.1 *
+                       std::pow(m_lidar.referenceRange / std::max(range, 2.0), 2) *
+                       rainFactor(m_realism, range);
   const double cube = ratio * ratio * ratio;
   // Pulses split between near and far are lost more often.
-  const double lost = m_lidar.dropout + 0.5 * (1 - best.power / total);
+  // So are pulses on surfaces so dark that little comes back from anywhere.
+  constexpr double kDark = 0.05;
+  const double dark = m_realism.share(m_realism.darkDropout) * std::exp(-best.signal / kDark);
+  const double lost = m_lidar.dropout + 0.5 * (1 - best.power / total) + dark;
   if (random.uniform() > cube / (1 + cube) || random.chance(lost)) return std::nullopt;
   const SubHit& hit = hits[best.subRay];
   const double noise = m_lidar.rangeNoise * std::sqrt(1 + 0.5 / ratio);
   range += beam.rangeBias + std::hypot(noise, material(hit).roughness) * random.normal();
+  range += deviation(beam, ratio);
   range = std::round(range / m_lidar.rangeStep) * m_lidar.rangeStep;
   if (range < m_lidar.minRange || range > m_lidar.maxRange) return std::nullopt;
   const double shine = best.signal * (0.85 + 0.3 * random.uniform());

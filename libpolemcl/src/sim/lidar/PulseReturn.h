@@ -27,15 +27,22 @@ struct PulseReturn {
 /// \brief Merges sub-rays into the returns of one LiDAR.
 class PulseReturnModel {
  public:
-  PulseReturnModel(const LidarModel& lidar, const std::vector<SolidView>& solids)
-      : m_lidar(lidar), m_solids(solids) {}
+  PulseReturnModel(const LidarModel& lidar, const std::vector<SolidView>& solids,
+                   const RealismOptions& realism)
+      : m_lidar(lidar), m_solids(solids), m_realism(realism) {}
   /// \brief The strongest return; nullopt if it is not detected.
-  std::optional<PulseReturn> make(const SubHit* hits, const Beam& beam, std::uint64_t seed) const;
+  /// \param azimuth Direction of the pulse, rad.
+  std::optional<PulseReturn> make(const SubHit* hits, const Beam& beam, double azimuth,
+                                  std::uint64_t seed) const;
 
  private:
+  std::optional<PulseReturn> strongest(const SubHit* hits, const Beam& beam,
+                                       std::uint64_t seed) const;
+  double deviation(const Beam& beam, double ratio) const;
   const Material& material(const SubHit& hit) const;
   const LidarModel& m_lidar;
   const std::vector<SolidView>& m_solids;
+  const RealismOptions& m_realism;
 };
 
 }  // namespace polemcl::sim

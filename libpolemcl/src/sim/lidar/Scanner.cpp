@@ -140,11 +140,13 @@ SimulatedScan Scanner::scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t
   for (const std::int32_t i : order) castSolid(solids[i], i, columns, bounds[i], passSeed, hits);
 
   SimulatedScan scan;
-  const PulseReturnModel returns(m_lidar, solids);
+  const PulseReturnModel returns(m_lidar, solids, m_world.options().realism);
   for (int c = 0; c < m_lidar.columns; ++c)
     for (std::size_t b = 0; b < m_beams.size(); ++b) {
       const std::size_t at = pixel(b, c);
-      const auto pulse = returns.make(&hits[at * kSubRays], m_lidar.beams[b], hash(seed, at));
+      const Beam& beam = m_lidar.beams[b];
+      const double azimuth = m_lidar.startAzimuth + azimuthStep() * c + beam.azimuth;
+      const auto pulse = returns.make(&hits[at * kSubRays], beam, azimuth, hash(seed, at));
       if (!pulse) continue;
       const Eigen::Vector3d point = m_beams[b].reported(columns[c], pulse->range);
       scan.x.push_back(static_cast<float>(point.x()));

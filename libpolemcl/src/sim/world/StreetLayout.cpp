@@ -167,8 +167,14 @@ void StreetLayout::add(Piece piece, const Site& place) {
   const std::uint32_t id = piece.object.id;
   if (m_permanent && piece.pole) m_planned.push_back({id, piece.object.kind, place});
   if (goneToday(id) || (m_permanent && lastDayOf(id) <= m_options.day)) return;
-  objects.push_back(std::move(piece.object));
-  if (piece.pole && piece.pole->top >= 2) poles.push_back(*piece.pole);
+  const auto keep = [this](Piece each) {
+    objects.push_back(std::move(each.object));
+    if (each.pole && each.pole->top >= 2) poles.push_back(*each.pole);
+  };
+  if (m_options.realism.scale <= 0) return keep(std::move(piece));
+  const Random own(hash(m_options.seed, 0xdef1ull, id));
+  for (Piece& each : deviating(std::move(piece), place, m_options.realism, own))
+    keep(std::move(each));
 }
 
 }  // namespace polemcl::sim

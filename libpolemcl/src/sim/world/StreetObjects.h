@@ -3,8 +3,10 @@
 /// \brief Makers of the single objects along a street. They are centred on their site.
 
 #include <optional>
+#include <vector>
 
 #include "sim/common/Random.h"
+#include "sim/common/RealismOptions.h"
 #include "sim/world/WorldObject.h"
 
 namespace polemcl::sim {
@@ -18,6 +20,11 @@ struct Piece {
 /// site.
 TruePole poleAt(const Site& site, std::uint32_t id, Kind kind, const Eigen::Vector3d& local,
                 double radius, double top);
+
+/// \brief The piece with the deviations that are drawn for it, and what else they bring: more
+/// posts, a hedge.
+std::vector<Piece> deviating(Piece piece, const Site& site, const RealismOptions& realism,
+                             Random random);
 
 /// \brief Lamp posts of one type; a street keeps one type for a few hundred metres.
 struct LampStyle {

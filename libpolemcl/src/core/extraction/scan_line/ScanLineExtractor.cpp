@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/common/Statistics.h"
+#include "core/extraction/CovarianceScale.h"
 
 namespace polemcl {
 namespace {
@@ -50,6 +51,8 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
   const std::vector<SegmentCluster>& clusters = m_clustering.cluster(m_segments);
   report.candidates = clusters.size();
   m_tilts.clear();
+  m_recordedTilts.clear();
+  if (m_recorded) m_recorded->clear();
   for (const SegmentCluster& cluster : clusters) {
     PoleDetection pole;
     PoleTilt tilt;
@@ -72,6 +75,11 @@ void ScanLineExtractor::setUpright(std::vector<PoleDetection>& poles) const {
     const Eigen::Vector2f shift = shiftBy(m_tilts[i], m_upright, common);
     poles[i].x += shift.x();
     poles[i].y += shift.y();
+  }
+  for (std::size_t i = 0; i < m_recordedTilts.size(); ++i) {
+    const Eigen::Vector2f shift = shiftBy(m_recordedTilts[i], m_upright, common);
+    (*m_recorded)[i].x += shift.x();
+    (*m_recorded)[i].y += shift.y();
   }
 }
 
@@ -138,7 +146,8 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
       std::isfinite(candidate.topBound) ? 0.5 * (candidate.top + candidate.topBound) : 1e9;
   if (std::max<double>(top, candidate.top) < m_options.minTop) return RejectionReason::tooLow;
   PoleFeatures features = describe(cluster, shape, candidate, axis);
-  if (roughOdds(features) < kHopelessOdds) return RejectionReason::lowConfidence;
+  const bool hopeless = roughOdds(features) < kHopelessOdds;
+  if (hopeless && !m_recorded) return RejectionReason::lowConfidence;
   const float ground = m_ground.at(axis.x, axis.y);
   const auto fit = fitPole(m_lines, m_segments, m_fitSegments,
                            {column, ground + kFirmHeight, m_upright.x(), m_upright.y()});
@@ -146,6 +155,8 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
     return RejectionReason::badFit;
   features.residual = fit->residual;
   features.radius = fit->radius;
+  if (m_recorded) record(cluster, features, axis, *fit);
+  if (hopeless) return RejectionReason::lowConfidence;
   // Upper bound: assume no clutter; skip the costly check if even that fails.
   if (confidence(poleOdds(features)) < m_options.minConfidence)
     return RejectionReason::lowConfidence;
@@ -160,9 +171,16 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
   tilt.weight = static_cast<float>(pole.confidence - m_options.minConfidence);
   pole.bottom = candidate.bottom;
   pole.top = candidate.top;
-  pole.covariance = fit->covariance * covarianceScale(features, odds);
+  pole.covariance = fit->covariance * covarianceScale(features, odds, m_sensor.columnAngle());
   pole.points = static_cast<std::uint32_t>(shape.points);
   return std::nullopt;
+}
+
+void ScanLineExtractor::record(const SegmentCluster& cluster, PoleFeatures features,
+                               const PoleAxis& axis, const PoleFit& fit) {
+  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);
+  m_recorded->push_back({features, fit.x, fit.y, fit.covariance});
+  m_recordedTilts.push_back(fit.tilt);
 }
 
 PoleFeatures ScanLineExtractor::describe(const SegmentCluster& cluster, const ClusterShape& shape,
@@ -190,17 +208,6 @@ PoleFeatures ScanLineExtractor::describe(const SegmentCluster& cluster, const Cl
     freeEdges += (m_segments[i].left == Side::free) + (m_segments[i].right == Side::free);
   f.hiddenEdges = 1 - 0.5 * freeEdges / static_cast<double>(m_fitSegments.size());
   return f;
-}
-
-/// What the fit's own covariance does not know: crooked, half hidden and doubtful things lie
-/// farther off, and columns are the same for all beams, so that more segments do not make up for
-/// wide ones. Maximum likelihood on the worlds of the score.
-double ScanLineExtractor::covarianceScale(const PoleFeatures& f, double odds) const {
-  constexpr double kFineColumns = 0.003;  // rad
-  return std::exp(-1.15 - 0.124 * std::clamp(odds, 0.0, 7.0) +
-                  56.5 * std::clamp(f.residual - 0.02, 0.0, 0.05) + 2.55 * f.tilt +
-                  1.264 * f.range / 40 + 2.34 * f.radius + 0.46 * f.clutter + 2.52 * f.scatter +
-                  1.09 * f.hiddenEdges + 0.851 * std::log(m_sensor.columnAngle() / kFineColumns));
 }
 
 }  // namespace polemcl

@@ -15,6 +15,13 @@
 
 namespace polemcl {
 
+/// \brief A candidate with all that the classifier and the covariance are fitted on.
+struct PoleCandidate {
+  PoleFeatures features;
+  double x = 0, y = 0;         ///< as of a detection, frame of the points, m
+  Eigen::Matrix2d covariance;  ///< of the fit alone, m²
+};
+
 class ScanLineExtractor {
  public:
   /// \param model Made from the same options, or from a depth camera.
@@ -22,6 +29,9 @@ class ScanLineExtractor {
   /// \param upright See PoleExtractor::extract().
   void extract(const PointsView& points, const Eigen::Vector2f& upright,
                std::vector<PoleDetection>& poles, ExtractionReport& report);
+  /// \brief For training: extract() replaces the contents of `candidates` by all candidates that a
+  /// circle fits, however low their odds. Null (the default): none, and no work for it.
+  void recordCandidates(std::vector<PoleCandidate>* candidates) { m_recorded = candidates; }
   /// \brief Visibility ranges of the last scan, as VisibilityRangeFinder gives them.
   const std::vector<float>& visibilityRange() const { return m_freeRange; }
 
@@ -30,13 +40,14 @@ class ScanLineExtractor {
   std::optional<RejectionReason> examine(const SegmentCluster& cluster, PoleDetection& pole,
                                          PoleTilt& tilt);
   void setUpright(std::vector<PoleDetection>& poles) const;
+  void record(const SegmentCluster& cluster, PoleFeatures features, const PoleAxis& axis,
+              const PoleFit& fit);
   std::optional<RejectionReason> judgeShape(const SegmentCluster& cluster,
                                             ClusterShape& shape) const;
   std::size_t dropDuplicates(std::vector<PoleDetection>& poles) const;
   void selectForFit(const SegmentCluster& cluster);
   PoleFeatures describe(const SegmentCluster& cluster, const ClusterShape& shape,
                         const CandidateFeatures& candidate, const PoleAxis& axis) const;
-  double covarianceScale(const PoleFeatures& features, double odds) const;
 
   SensorOptions m_sensorOptions;
   ScanLineOptions m_options;
@@ -53,6 +64,8 @@ class ScanLineExtractor {
   std::vector<std::uint32_t> m_fitSegments;
   std::vector<float> m_widths;
   std::vector<PoleTilt> m_tilts;  ///< of the poles found, in the order they were found
+  std::vector<PoleCandidate>* m_recorded = nullptr;
+  std::vector<PoleTilt> m_recordedTilts;
 };
 
 }  // namespace polemcl

@@ -1,0 +1,298 @@
+#include "eval/TrainingCandidates.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <unordered_map>
+
+#include <polemcl/core/common/Deskew.h>
+#include "core/common/Transform.h"
+#include "core/evaluation/MultiScanLabels.h"
+#include "core/extraction/scan_line/ScanLineExtractor.h"
+#include "io/dataset/LabelledScans.h"
+#include "io/dataset/ScanFolder.h"
+#include "io/file/AtomicFile.h"
+#include "io/file/CsvTable.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace {
+
+constexpr double kPoleRadius = 0.3;   ///< a candidate this near to a true pole is one, m
+constexpr double kOtherRadius = 0.5;  ///< one farther away is something else; between is unsure
+constexpr double kSamePlace = 0.2;    ///< candidates nearer than this are one place, m
+
+struct Column {
+  const char* name;
+  double PoleFeatures::*value;
+};
+constexpr Column kColumns[] = {{"segments", &PoleFeatures::segments},
+                               {"points", &PoleFeatures::points},
+                               {"extent", &PoleFeatures::extent},
+                               {"passed", &PoleFeatures::passed},
+                               {"wide", &PoleFeatures::wide},
+                               {"not_whole", &PoleFeatures::notWhole},
+                               {"scatter", &PoleFeatures::scatter},
+                               {"width_spread", &PoleFeatures::widthSpread},
+                               {"tilt", &PoleFeatures::tilt},
+                               {"top", &PoleFeatures::top},
+                               {"missing_top", &PoleFeatures::missingTop},
+                               {"bottom", &PoleFeatures::bottom},
+                               {"rough_radius", &PoleFeatures::roughRadius},
+                               {"range", &PoleFeatures::range},
+                               {"column_width", &PoleFeatures::columnWidth},
+                               {"hidden_edges", &PoleFeatures::hiddenEdges},
+                               {"clutter", &PoleFeatures::clutter},
+                               {"residual", &PoleFeatures::residual},
+                               {"radius", &PoleFeatures::radius}};
+
+/// The scans of a drive with poses, corrected for motion where the timing is known.
+class TrainingDrive {
+ public:
+  TrainingDrive(const CandidatesOptions& options, const ScanTiming& timing)
+      : m_T_robot_sensor(options.T_robot_sensor),
+        m_timing(timing),
+        m_folder(std::filesystem::is_directory(options.scans / "velodyne")
+                     ? io::readScanFolder(options.scans, options.T_robot_sensor)
+                     : io::readPcdFolder(options.scans, options.T_robot_sensor)) {
+    if (!m_folder.scans.front().T_map_robot)
+      throw Error(options.scans.string() + ": has no poses.txt, which labels need");
+  }
+  std::size_t size() const { return m_folder.scans.size(); }
+  io::Cloud cloud(std::size_t i) const {
+    const io::ScanEntry& entry = m_folder.scans[i];
+    return m_folder.read ? m_folder.read(entry) : io::readKittiBin(entry.cloud);
+  }
+  Eigen::Isometry3d T_map_lidar(std::size_t i) const {
+    return *m_folder.scans[i].T_map_robot * m_T_robot_sensor;
+  }
+  /// A planar point of scan i, where it is seen from at the time stamp.
+  Eigen::Vector2d atStamp(const Velocity& velocity, double x, double y) const {
+    const double offset = m_timing.offset(std::atan2(y, x));
+    if (offset == 0) return {x, y};
+    const Pose2D place = compose(motionAfter(velocity, offset), {x, y, 0});
+    return {place.x, place.y};
+  }
+  Velocity velocity(std::size_t i) const {
+    if (!m_timing.known() || size() < 2) return {};
+    const std::size_t from = i == 0 ? 0 : i - 1, to = std::min(i + 1, size() - 1);
+    const Eigen::Isometry3d step = T_map_lidar(from).inverse() * T_map_lidar(to);
+    const Eigen::Matrix3d turn = step.linear();
+    return velocityOf(
+        {step.translation().x(), step.translation().y(), std::atan2(turn(1, 0), turn(0, 0))},
+        m_folder.scans[to].time - m_folder.scans[from].time);
+  }
+
+ private:
+  Eigen::Isometry3d m_T_robot_sensor;
+  ScanTiming m_timing;
+  io::ScanFolder m_folder;
+};
+
+struct FoundCandidate {
+  std::size_t scan;
+  PoleCandidate candidate;  ///< x, y at the time stamp, LiDAR frame
+  Eigen::Vector2d place_map;
+};
+
+std::vector<FoundCandidate> findCandidates(const TrainingDrive& drive, std::size_t every,
+                                           const Settings& settings,
+                                           const Eigen::Matrix3d& R_robot_sensor) {
+  ScanLineExtractor extractor(SensorModel(settings.sensor), settings.sensor,
+                              settings.extraction.scanLine);
+  std::vector<PoleCandidate> recorded;
+  extractor.recordCandidates(&recorded);
+  const Eigen::Vector3f up = R_robot_sensor.row(2).cast<float>();
+  const Eigen::Vector2f upright = up.head<2>() / up.z();
+  std::vector<FoundCandidate> all;
+  std::vector<PoleDetection> poles;
+  ExtractionReport report;
+  for (std::size_t i = 0; i < drive.size(); i += every) {
+    const io::Cloud cloud = drive.cloud(i);
+    poles.clear();
+    report = {};
+    extractor.extract(cloud.view(), upright, poles, report);
+    const Velocity velocity = drive.velocity(i);
+    const Eigen::Isometry3d T_map_lidar = drive.T_map_lidar(i);
+    for (PoleCandidate each : recorded) {
+      const Eigen::Vector2d at = drive.atStamp(velocity, each.x, each.y);
+      each.x = at.x();
+      each.y = at.y();
+      const Eigen::Vector3d map = T_map_lidar * Eigen::Vector3d(at.x(), at.y(), 0);
+      all.push_back({i, each, map.head<2>()});
+    }
+  }
+  return all;
+}
+
+struct Label {
+  Standing standing = Standing::unsure;
+  std::optional<double> squaredError;
+};
+
+/// Labels by the true poles, which are upright in the map: compared at the height of the sensor.
+std::vector<Label> labelsByPoles(const TrainingDrive& drive,
+                                 const std::vector<FoundCandidate>& found,
+                                 const std::vector<WorldPole>& poles) {
+  std::vector<Label> labels;
+  labels.reserve(found.size());
+  for (const FoundCandidate& each : found) {
+    const Eigen::Isometry3d T_map_lidar = drive.T_map_lidar(each.scan);
+    const Eigen::Isometry3d T_lidar_map = T_map_lidar.inverse();
+    double nearest = 1e9;
+    Eigen::Vector2d error = Eigen::Vector2d::Zero();
+    for (const WorldPole& pole : poles) {
+      if ((each.place_map - Eigen::Vector2d(pole.x, pole.y)).norm() > 2) continue;
+      const Eigen::Vector3d truth =
+          T_lidar_map * Eigen::Vector3d(pole.x, pole.y, T_map_lidar.translation().z());
+      const Eigen::Vector2d e(each.candidate.x - truth.x(), each.candidate.y - truth.y());
+      if (e.norm() >= nearest) continue;
+      nearest = e.norm();
+      error = e;
+    }
+    Label label;
+    if (nearest < kPoleRadius) {
+      label = {Standing::pole, error.dot(each.candidate.covariance.llt().solve(error))};
+    } else if (nearest > kOtherRadius) {
+      label.standing = Standing::other;
+    }
+    labels.push_back(label);
+  }
+  return labels;
+}
+
+/// Groups candidates to places: the index of the place of each.
+class Places {
+ public:
+  std::size_t indexOf(const Eigen::Vector2d& at) {
+    const auto cx = cell(at.x()), cy = cell(at.y());
+    for (auto x = cx - 1; x <= cx + 1; ++x)
+      for (auto y = cy - 1; y <= cy + 1; ++y) {
+        const auto found = m_grid.find(key(x, y));
+        if (found == m_grid.end()) continue;
+        for (const std::size_t i : found->second)
+          if ((m_centres[i] - at).norm() < kSamePlace) return i;
+      }
+    m_centres.push_back(at);
+    m_grid[key(cx, cy)].push_back(m_centres.size() - 1);
+    return m_centres.size() - 1;
+  }
+  const std::vector<Eigen::Vector2d>& centres() const { return m_centres; }
+
+ private:
+  static std::int64_t cell(double value) {
+    return static_cast<std::int64_t>(std::floor(value / kSamePlace));
+  }
+  static std::int64_t key(std::int64_t x, std::int64_t y) { return x * 0x100000000ll + y; }
+  std::vector<Eigen::Vector2d> m_centres;
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> m_grid;
+};
+
+/// Labels by what all scans of the drive show at the place of a candidate.
+std::vector<Label> labelsByConsistency(const TrainingDrive& drive,
+                                       const std::vector<FoundCandidate>& found,
+                                       const SensorOptions& sensor) {
+  Places places;
+  std::vector<std::size_t> placeOf;
+  placeOf.reserve(found.size());
+  for (const FoundCandidate& each : found) placeOf.push_back(places.indexOf(each.place_map));
+  MultiScanLabels evidence(places.centres());
+  const double topSlope = SensorModel(sensor).beam(0).slope;
+  std::vector<Eigen::Vector3f> points_map;
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const io::Cloud cloud = drive.cloud(i);
+    const Velocity velocity = drive.velocity(i);
+    const Eigen::Isometry3f T_map_lidar = drive.T_map_lidar(i).cast<float>();
+    points_map.clear();
+    for (std::size_t k = 0; k < cloud.size(); ++k) {
+      if (std::hypot(cloud.x[k], cloud.y[k]) < sensor.minRange) continue;
+      const Eigen::Vector2d at = drive.atStamp(velocity, cloud.x[k], cloud.y[k]);
+      points_map.push_back(T_map_lidar * Eigen::Vector3f(static_cast<float>(at.x()),
+                                                         static_cast<float>(at.y()), cloud.z[k]));
+    }
+    evidence.add(points_map, drive.T_map_lidar(i).translation(), topSlope);
+  }
+  const std::vector<Standing> verdicts = evidence.judge();
+  std::vector<Label> labels;
+  labels.reserve(found.size());
+  for (const std::size_t place : placeOf) labels.push_back({verdicts[place], std::nullopt});
+  return labels;
+}
+
+void writeRow(std::ostream& out, const FoundCandidate& each, const Label& label) {
+  out << each.scan << ',' << io::fixed(each.place_map.x(), 3) << ','
+      << io::fixed(each.place_map.y(), 3) << ',' << (label.standing == Standing::pole) << ',';
+  if (label.squaredError) out << io::significant(*label.squaredError, 6);
+  for (const Column& column : kColumns)
+    out << ',' << io::significant(each.candidate.features.*column.value, 6);
+  out << '\n';
+}
+
+void requireOwnFrame(const SensorOptions& sensor) {
+  if (sensor.upsideDown || sensor.originX != 0 || sensor.originY != 0 || sensor.originZ != 0)
+    throw Error(
+        "pole-eval candidates takes clouds in the LiDAR's own frame, upright: remove [sensor] "
+        "upside_down and origin");
+}
+
+}  // namespace
+
+CandidatesSummary writeCandidates(const CandidatesOptions& options, const Settings& settings) {
+  requireOwnFrame(settings.sensor);
+  const TrainingDrive drive(options, settings.sensor.timing);
+  const auto found =
+      findCandidates(drive, options.every, settings, options.T_robot_sensor.linear());
+  const auto labels = options.poles
+                          ? labelsByPoles(drive, found, io::readWorldPoles(*options.poles))
+                          : labelsByConsistency(drive, found, settings.sensor);
+  io::AtomicFile file(options.output);
+  std::ostream& out = file.stream();
+  out << "# sensor " << settings.sensor.model << "\n# labels "
+      << (options.poles ? "true_poles" : "consistency") << "\n# column_angle "
+      << io::significant(SensorModel(settings.sensor).columnAngle(), 9)
+      << "\nscan,x,y,pole,squared_error";
+  for (const Column& column : kColumns) out << ',' << column.name;
+  out << '\n';
+  CandidatesSummary summary;
+  summary.scans = (drive.size() + options.every - 1) / options.every;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    summary.poles += labels[i].standing == Standing::pole;
+    summary.others += labels[i].standing == Standing::other;
+    summary.unsure += labels[i].standing == Standing::unsure;
+    if (labels[i].standing != Standing::unsure) writeRow(out, found[i], labels[i]);
+  }
+  file.commit();
+  return summary;
+}
+
+LabelledDrive readCandidates(const std::filesystem::path& file) {
+  LabelledDrive drive;
+  drive.name = file.stem().string();
+  double columnAngle = 0;
+  for (const std::string& line : io::readLines(file)) {
+    if (line.rfind("# sensor ", 0) == 0) drive.sensor = line.substr(9);
+    if (line.rfind("# labels ", 0) == 0) drive.real = line.substr(9) == "consistency";
+    if (line.rfind("# column_angle ", 0) == 0)
+      columnAngle = io::parseNumber(line.substr(15)).value_or(0);
+    if (line.empty() || line[0] != '#') break;
+  }
+  if (drive.sensor.empty() || columnAngle <= 0)
+    throw Error(file.string() + ": is no table of pole-eval candidates; its head names no sensor");
+  const io::CsvTable table(file);
+  const std::size_t pole = table.column("pole"), error = table.column("squared_error");
+  std::vector<std::size_t> columns;
+  columns.reserve(std::size(kColumns));
+  for (const Column& column : kColumns) columns.push_back(table.column(column.name));
+  drive.candidates.reserve(table.rows());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    LabelledCandidate each;
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      each.features.*kColumns[k].value = table.number(row, columns[k]);
+    each.columnAngle = columnAngle;
+    each.pole = table.count(row, pole) == 1;
+    if (!table.text(row, error).empty()) each.squaredError = table.number(row, error);
+    drive.candidates.push_back(each);
+  }
+  return drive;
+}
+
+}  // namespace polemcl::apps
