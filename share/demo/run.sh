@@ -15,13 +15,10 @@ while [ $# -gt 0 ]; do
   case $1 in
     --keep-scans) keep=yes ;;
     -h | --help)
-      sed -n '2,6s/^# //p' "$0"
+      show_header
       exit 0
       ;;
-    -*)
-      echo "usage: share/demo/run.sh [--keep-scans] [OUT]" >&2
-      exit 2
-      ;;
+    -*) usage ;;
     *) out=$1 ;;
   esac
   shift

@@ -6,6 +6,35 @@ die() {
   exit 1
 }
 
+# show_header: the comment at the head of the script, without the line that names the shell.
+show_header() {
+  awk 'NR > 1 { if (!/^#/) exit; sub(/^# ?/, ""); print }' "$0"
+}
+
+# usage: ends a script that was called wrongly.
+usage() {
+  show_header >&2
+  exit 2
+}
+
+# check_arguments LEAST MOST "$@": ends the script with its header on -h or --help, or when it has fewer or more
+# arguments; MOST may be "any".
+check_arguments() {
+  least=$1
+  most=$2
+  shift 2
+  for argument in "$@"; do
+    case $argument in
+      -h | --help)
+        show_header
+        exit 0
+        ;;
+    esac
+  done
+  [ $# -ge "$least" ] || usage
+  [ "$most" = any ] || [ $# -le "$most" ] || usage
+}
+
 # find_programs NAME...: sets $bin to POLEMCL_BIN, else build/bin of the checkout.
 find_programs() {
   bin=${POLEMCL_BIN:-$top/build/bin}

@@ -10,13 +10,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-case $# in
-  1 | 2 | 3) ;;
-  *)
-    sed -n '2,8s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 1 3 "$@"
 out=$1
 first=${2:-701}
 worlds=${3:-30}

@@ -12,10 +12,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-[ $# -ge 1 ] || {
-  sed -n '2,9s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 1 any "$@"
 out=$1
 shift
 [ $# -gt 0 ] || set -- 501 502 503

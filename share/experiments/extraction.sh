@@ -30,10 +30,7 @@ quick=no
   quick=yes
   shift
 }
-[ $# -ge 2 ] || {
-  sed -n '2,10s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 2 any "$@"
 data=$1
 out=$2
 shift 2

@@ -24,13 +24,7 @@ if [ "${1:-}" = --quick ]; then
   healthy=1
   shift
 fi
-case $# in
-  1 | 2) ;;
-  *)
-    sed -n '2,15s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 1 2 "$@"
 out=$1
 track=${2:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
 find_programs pole-simulate pole-map pole-eval

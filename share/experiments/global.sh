@@ -12,11 +12,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-usage() {
-  sed -n '2,9s/^# //p' "$0" >&2
-  exit 2
-}
-[ $# -ge 2 ] || usage
+check_arguments 2 any "$@"
 tracks=$1
 out=$2
 shift 2

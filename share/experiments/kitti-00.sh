@@ -13,10 +13,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-[ $# = 2 ] || {
-  sed -n '2,10s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 2 2 "$@"
 data=$1
 out=$2
 find_programs pole-import pole-map pole-eval

@@ -13,13 +13,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-case $# in
-  2 | 3 | 4) ;;
-  *)
-    sed -n '2,11s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 2 4 "$@"
 data=$1
 out=$2
 config=${3:-$top/config/kitti.ini}

@@ -11,10 +11,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-[ $# = 2 ] || [ $# = 3 ] || {
-  sed -n '2,8s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 2 3 "$@"
 data=$1
 out=$2
 seed=${3:-7}

@@ -12,13 +12,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-case $# in
-  1 | 2 | 3) ;;
-  *)
-    sed -n '2,9s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 1 3 "$@"
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
 first=${2:-311}

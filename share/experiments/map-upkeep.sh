@@ -1,22 +1,21 @@
 #!/bin/sh
-# map-upkeep.sh OUT [FIRST_WORLD [WORLDS [CONFIG]]]: what erring poses do to a map that is kept up.
+# What erring poses do to a map that is kept up.
+# Usage: share/experiments/map-upkeep.sh OUT [FIRST [WORLDS [CONFIG]]]
+#   OUT     gets maps, drives, result.json and table.txt
+#   FIRST   seed of the first world, 811 unless given; WORLDS: their number, 4 unless given
+#   CONFIG  settings, config/hdl32e.ini unless given
 # Streets of 400 m in which nothing changes but cars, people and leaves: a map of day 0 with true poses, then
 # `pole-map update` by six drives of other days. Poles are drawn from share/models/hdl32e.json. The truth of
 # the drives is exact, or it errs by 0.15 m and 0.3 deg, correlated over 100 m (erring-truth.awk, smooth and
 # rough); with and without the alignment of sessions. Scores: poles within 0.5 m of those of the world, one to
-# one. Writes OUT/result.json and OUT/table.txt. Programs: build/bin, or POLEMCL_BIN. Needs jq; two minutes.
+# one.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; two minutes.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-case $# in
-  1 | 2 | 3 | 4) ;;
-  *)
-    sed -n '2,7s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 1 4 "$@"
 out=$1
 first=${2:-811}
 last=$((first + ${3:-4} - 1))

@@ -16,13 +16,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-case $# in
-  2 | 3) ;;
-  *)
-    sed -n '2,14s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 2 3 "$@"
 data=$(cd "$1" && pwd)
 out=$2
 seeds=${3:-20}

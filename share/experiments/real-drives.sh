@@ -16,10 +16,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-[ $# -ge 2 ] || {
-  sed -n '2,14s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 2 any "$@"
 data=$(cd "$1" && pwd)
 mkdir -p "$2"
 out=$(cd "$2" && pwd)

@@ -15,10 +15,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/extraction-parts.sh
 . "$top/share/experiments/extraction-parts.sh"
 
-[ $# -ge 1 ] || {
-  sed -n '2,10s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 1 any "$@"
 out=$1
 sensor=${2-hdl32e}
 shift

@@ -10,13 +10,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-case $# in
-  1 | 2 | 3) ;;
-  *)
-    sed -n '2,7s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 1 3 "$@"
 data=$1
 results=${2-}
 report=${3:-$top/share/reports/extraction-$(date +%Y-%m-%d).md}

@@ -9,10 +9,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-[ $# -eq 1 ] || {
-  sed -n '2,6s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 1 1 "$@"
 out=$1
 find_programs pole-simulate pole-import pole-extract pole-map
 command -v rosbag2rawlog >/dev/null || die "no rosbag2rawlog: install mrpt-apps"

@@ -8,7 +8,8 @@ set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
-[ $# -ge 2 ] || die "usage: start-and-files.sh DATA OUT [BIN...]"
+
+check_arguments 2 any "$@"
 data=$1 out=$2
 shift 2
 find_programs pole-import pole-extract pole-localize

@@ -24,10 +24,7 @@ quick=no
   quick=yes
   shift
 }
-[ $# = 2 ] || {
-  sed -n '2,15s/^# //p' "$0" >&2
-  exit 2
-}
+check_arguments 2 2 "$@"
 data=$1
 out=$2
 find_programs pole-simulate pole-eval

@@ -1,22 +1,20 @@
 #!/bin/sh
-# year.sh OUT [WORLD [RUNS]]: the year of config/batches/year.ini, and its maps against the true poles.
+# The year of config/batches/year.ini, and its maps against the true poles.
+# Usage: share/experiments/year.sh OUT [WORLD [RUNS]]
+#   OUT    gets the batch, result.json and table.txt; an unfinished batch there is resumed
+#   WORLD  seed of the street, 500 unless given
+#   RUNS   runs of the filter, 10 unless given
 # The batch keeps a map up by the localizer's own poses, and localizes in the never changed map as well. Here
 # the same map is also kept up with true poses. Each month's map is compared with the poles of the world on
 # that day, within 0.5 m, one to one: precision against all of them; recall against those within 20 m of the main
-# street, as the side streets of the detours are on no map (recall_all counts these, too). Writes OUT/result.json
-# and OUT/table.txt. Programs: build/bin, or POLEMCL_BIN. Needs jq; ten minutes of two cores.
+# street, as the side streets of the detours are on no map (recall_all counts these, too).
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; ten minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-case $# in
-  1 | 2 | 3) ;;
-  *)
-    sed -n '2,8s/^# //p' "$0" >&2
-    exit 2
-    ;;
-esac
+check_arguments 1 3 "$@"
 out=$1
 world=${2:-500}
 runs=${3:-10}

@@ -6,6 +6,8 @@ set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
+
+check_arguments 0 1 "$@"
 find_programs pole-simulate pole-map pole-localize
 
 out=$(mktemp -d)

@@ -117,10 +117,6 @@ map_convert() { # FROM TO OPTIONS...
 
 # Here the names end.
 
-usage() {
-  echo "usage: tests/golden/run.sh [--check] [--keep FOLDER] [BIN]" >&2
-  exit 2
-}
 check=no
 keep=
 while [ $# -gt 0 ]; do
@@ -132,7 +128,7 @@ while [ $# -gt 0 ]; do
       shift
       ;;
     -h | --help)
-      sed -n '2,10s/^# //p' "$0"
+      show_header
       exit 0
       ;;
     -*) usage ;;
