@@ -44,6 +44,13 @@ find_programs() {
   done
 }
 
+# find_tools NAME...: ends the script where one of these programs of others is missing.
+find_tools() {
+  for tool in "$@"; do
+    command -v "$tool" >/dev/null || die "$tool is needed: share/setup/install.sh"
+  done
+}
+
 # set_option FILE SECTION KEY VALUE: changes a value of an INI file, or adds it.
 set_option() {
   awk -v section="[$2]" -v key="$3" -v value="$4" '

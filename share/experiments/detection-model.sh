@@ -16,7 +16,7 @@ check_arguments 1 any "$@"
 out=$1
 shift
 [ $# -gt 0 ] || set -- 501 502 503
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 find_programs pole-simulate pole-map pole-localize pole-eval
 mkdir -p "$out"
 

@@ -41,7 +41,7 @@ if [ $# = 0 ]; then
   set -- 201 202 203 204 205
   [ "$quick" = no ] || set -- 201 202
 fi
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 find_programs pole-import pole-extract pole-map pole-eval pole-simulate
 mkdir -p "$out"
 rm -f "$out"/*.json

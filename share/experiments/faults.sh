@@ -9,7 +9,8 @@
 #   TRACK    the road as poses, 12 numbers a line, plain or gzip; $POLEMCL_DATA/tracks/kaist01.txt.gz unless
 #            given; without either, the simulator's own street of 3 km
 #   --quick  one world, 20 trials each, one healthy drive
-# 10 minutes on 2 cores. Worlds 521 to 525 (--quick: 521), faults seeded 501. Programs: build/bin, or POLEMCL_BIN.
+# Worlds 521 to 525 (--quick: 521), faults seeded 501.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; 10 minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -28,6 +29,7 @@ check_arguments 1 2 "$@"
 out=$1
 track=${2:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
 find_programs pole-simulate pole-map pole-eval
+find_tools jq
 mkdir -p "$out"
 : >"$out/table.txt"
 

@@ -6,7 +6,7 @@
 #   --dense  about three times as many poles as the simulator's default
 #   --quick  one city, 40 starts
 # The poles of each scan are drawn from share/models/hdl32e.json. Worlds 601 to 604; settings
-# were chosen on other worlds. Programs: build/bin, or POLEMCL_BIN.
+# were chosen on other worlds. Programs: build/bin, or POLEMCL_BIN. Needs jq.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -25,6 +25,7 @@ for option in "$@"; do
   esac
 done
 find_programs pole-simulate pole-map pole-eval
+find_tools jq
 mkdir -p "$out"
 
 # drive CITY DAY TRACK: OUT/CITY-DAY.ini .rawlog .tum

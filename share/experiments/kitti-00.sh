@@ -17,7 +17,7 @@ check_arguments 2 2 "$@"
 data=$1
 out=$2
 find_programs pole-import pole-map pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 truth=$data/published/kitti_truth_00.npz
 [ -f "$truth" ] || die "no labelled poles in $truth"
 mkdir -p "$out"

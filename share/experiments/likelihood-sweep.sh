@@ -20,7 +20,7 @@ shift 2
 [ $# = 0 ] || shift
 [ $# != 0 ] || set -- 21 22
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 mkdir -p "$out"
 
 for world in "$@"; do

@@ -16,7 +16,7 @@ data=$1
 out=$2
 seed=${3:-7}
 find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 [ -f "$data/odometry.txt" ] || die "no odometry in $data/odometry.txt"
 mkdir -p "$out"
 

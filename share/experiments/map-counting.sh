@@ -18,7 +18,7 @@ out=$(cd "$1" && pwd)
 first=${2:-311}
 last=$((first + ${3:-3} - 1))
 find_programs pole-simulate pole-import pole-extract pole-map pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 
 # build SENSOR WORLD RULE SETTINGS: a map, and a line of $out/results.
 build() {

@@ -21,7 +21,7 @@ first=${2:-811}
 last=$((first + ${3:-4} - 1))
 settings=${4:-$top/config/hdl32e.ini}
 find_programs pole-simulate pole-map pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 mkdir -p "$out"
 
 # drive WORLD DAY: OUT/WORLD-DAY.ini .rawlog .tum, _smooth.tum, _rough.tum

@@ -18,7 +18,7 @@ out=$1
 first=${2:-801}
 last=$((first + ${3:-4} - 1))
 find_programs pole-simulate pole-map pole-localize pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 mkdir -p "$out"
 
 # drive NAME WORLD DAY REVERSE [options]: NAME.ini .rawlog .tum

@@ -18,7 +18,7 @@ check_arguments 2 2 "$@"
 data=$1
 out=$2
 find_programs pole-import pole-extract
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 mkdir -p "$out"
 
 # partners THEIRS OURS SIDE SCANS: one JSON object. SIDE: -1 where y counts to the right in THEIRS.

@@ -24,7 +24,7 @@ shift 2
 common=""
 for assignment in "$@"; do common="$common --set $assignment"; done
 find_programs pole-import pole-map pole-localize pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 
 # part DRIVE FIRST LAST: the scans FIRST to LAST (from 0) as a folder of their own.
 part() {

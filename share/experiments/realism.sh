@@ -21,7 +21,7 @@ sensor=${2-hdl32e}
 shift
 [ $# = 0 ] || shift
 seeds=${*:-321 322}
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 find_programs pole-simulate pole-eval
 mkdir -p "$out"
 : >"$out/scores"

@@ -14,7 +14,7 @@ check_arguments 1 3 "$@"
 data=$1
 results=${2-}
 report=${3:-$top/share/reports/extraction-$(date +%Y-%m-%d).md}
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 find_programs bench_extraction pole-extract pole-import
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -19,7 +19,7 @@ out=$1
 world=${2:-500}
 runs=${3:-10}
 find_programs pole-batch pole-map pole-eval
-command -v jq >/dev/null || die "jq is needed: share/setup/install.sh"
+find_tools jq
 mkdir -p "$out"
 batch=$out/batch
 tasks=$batch/tasks
