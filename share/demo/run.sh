@@ -33,8 +33,7 @@ started=$(date +%s)
 
 # drive NAME DAY: simulates one day; leaves NAME.rawlog with the poles of each scan, and NAME.tum.
 drive() {
-  cp "$top/config/demo.ini" "$out/$1.ini"
-  set_option "$out/$1.ini" world day "$2"
+  copy_settings "$top/config/demo.ini" "$out/$1.ini" "world.day=$2"
   rm -rf "$out/scans_$1"
   "$bin/pole-simulate" --quiet --config "$out/$1.ini" --output "$out/scans_$1"
   "$bin/pole-import" folder --quiet --input "$out/scans_$1" --output "$out/scans_$1.rawlog"

@@ -51,22 +51,42 @@ find_tools() {
   done
 }
 
-# set_option FILE SECTION KEY VALUE: changes a value of an INI file, or adds it.
-set_option() {
-  awk -v section="[$2]" -v key="$3" -v value="$4" '
-    function add() { if (inside && !done) { print key " = " value; done = 1 } }
-    /^[ \t]*\[/ { add(); inside = index($0, section) > 0 }
-    inside && $0 ~ "^[ \t]*" key "[ \t]*=" { print key " = " value; done = 1; next }
-    { print }
-    END { add(); if (!done) { print section; print key " = " value } }
-  ' "$1" >"$1.new"
-  mv "$1.new" "$1"
-}
+# copy_settings FROM TO SECTION.KEY=VALUE...: copies an INI file, with these values changed or added. Works in a
+# shell of its own, as draw_drive does, so that its variables are not those of the script.
+copy_settings() (
+  to=$2
+  cp "$1" "$to"
+  shift 2
+  for assignment in "$@"; do
+    key=${assignment%%=*}
+    awk -v section="[${key%%.*}]" -v key="${key#*.}" -v value="${assignment#*=}" '
+      function add() { if (inside && !done) { print key " = " value; done = 1 } }
+      /^[ \t]*\[/ { add(); inside = index($0, section) > 0 }
+      inside && $0 ~ "^[ \t]*" key "[ \t]*=" { print key " = " value; done = 1; next }
+      { print }
+      END { add(); if (!done) { print section; print key " = " value } }
+    ' "$to" >"$to.new"
+    mv "$to.new" "$to"
+  done
+)
 
 # json_value FILE KEY: the number under a key of a flat JSON object.
 json_value() {
   sed -n "s/.*\"$2\"[ ]*:[ ]*\\([-+.0-9eE]*\\).*/\\1/p" "$1" | head -n 1
 }
+
+# draw_drive PATH SETTINGS WORLD DAY [SECTION.KEY=VALUE...]: a drive whose poles are drawn from the model of an
+# HDL-32E, a scan every 0.5 m unless given. Leaves PATH.ini, PATH.rawlog (poles) and PATH.tum.
+draw_drive() (
+  path=$1
+  from=$2
+  seed=$3
+  day=$4
+  shift 4
+  copy_settings "$from" "$path.ini" "simulation.detections=$top/share/models/hdl32e.json" \
+    simulation.spacing_m=0.5 "$@" "world.seed=$seed" "world.day=$day"
+  "$bin/pole-simulate" --quiet --config "$path.ini" --poles "$path.rawlog"
+)
 
 # simulate_day SETTINGS FOLDER WORLD LENGTH DAY: a day of a simulated street, a scan every 0.5 m, odometry
 # with 2 % noise. Leaves dayN.ini, dayN.rawlog (poles), dayN.tum, poles_dayN.csv in the folder; the scans
@@ -74,12 +94,8 @@ json_value() {
 simulate_day() {
   config=$2/day$5.ini
   mkdir -p "$2"
-  cp "$1" "$config"
-  set_option "$config" simulation spacing_m 0.5
-  set_option "$config" simulation odometry_noise 0.02
-  set_option "$config" world length_m "$4"
-  set_option "$config" world seed "$3"
-  set_option "$config" world day "$5"
+  copy_settings "$1" "$config" simulation.spacing_m=0.5 simulation.odometry_noise=0.02 \
+    "world.length_m=$4" "world.seed=$3" "world.day=$5"
   "$bin/pole-simulate" --quiet --config "$config" --output "$2/scans"
   "$bin/pole-import" folder --quiet --input "$2/scans" --output "$2/scans.rawlog"
   "$bin/pole-extract" --quiet --config "$config" --input "$2/scans.rawlog" \

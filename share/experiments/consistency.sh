@@ -19,17 +19,8 @@ mkdir -p "$out"
 
 # drive NAME WORLD DAY REVERSE: NAME.ini .rawlog .tum
 drive() {
-  config=$out/$1.ini
-  cp "$top/config/hdl32e.ini" "$config"
-  set_option "$config" simulation detections "$top/share/models/hdl32e.json"
-  set_option "$config" simulation spacing_m 0.5
-  set_option "$config" simulation odometry_noise 0.02
-  set_option "$config" simulation reverse "$4"
-  set_option "$config" simulation drive_seed "$2"
-  set_option "$config" world length_m 600
-  set_option "$config" world seed "$2"
-  set_option "$config" world day "$3"
-  "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1.rawlog"
+  draw_drive "$out/$1" "$top/config/hdl32e.ini" "$2" "$3" simulation.odometry_noise=0.02 \
+    "simulation.reverse=$4" "simulation.drive_seed=$2" world.length_m=600
 }
 
 # localize WORLD DIRECTION: OUT/WORLD-DIRECTION/run_00_cov.csv

@@ -22,12 +22,8 @@ mkdir -p "$out"
 
 # drive NAME SEED DAY MODEL: simulates NAME.rawlog, cast when MODEL is empty.
 drive() {
-  cp "$top/config/hdl32e.ini" "$out/$1.ini"
-  set_option "$out/$1.ini" simulation spacing_m 0.5
-  set_option "$out/$1.ini" simulation detections "$4"
-  set_option "$out/$1.ini" world length_m 400
-  set_option "$out/$1.ini" world seed "$2"
-  set_option "$out/$1.ini" world day "$3"
+  copy_settings "$top/config/hdl32e.ini" "$out/$1.ini" simulation.spacing_m=0.5 \
+    "simulation.detections=$4" world.length_m=400 "world.seed=$2" "world.day=$3"
   [ -n "$4" ] || [ ! -f "$out/$1.rawlog" ] || return 0
   "$bin/pole-simulate" --quiet --config "$out/$1.ini" --poles "$out/$1.rawlog"
 }

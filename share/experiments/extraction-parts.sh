@@ -18,20 +18,15 @@ paper_settings() {
   cp "$top/config/paper/kitti-mended.ini" "$1/hdl64e-mended.ini"
   cp "$top/config/paper/mulran.ini" "$1/os1_64.ini"
   for sensor in hdl32e vlp16; do
-    cp "$top/config/paper/nclt.ini" "$1/$sensor.ini"
-    set_option "$1/$sensor.ini" sensor model $sensor
-    set_option "$1/$sensor.ini" sensor upside_down false
-    set_option "$1/$sensor.ini" sensor origin "0 0 0"
-    set_option "$1/$sensor.ini" sensor height_m 1.0
-    set_option "$1/$sensor.ini" range_image heights_above_ground true
-    set_option "$1/$sensor.ini" range_image mirrored false
-    set_option "$1/$sensor.ini" range_image coordinate_step_m 0
+    case $sensor in
+      hdl32e) rows="range_image.fov_up_deg=10.67 range_image.fov_down_deg=-30.67" ;;
+      vlp16) rows="range_image.rows=16 range_image.fov_up_deg=15 range_image.fov_down_deg=-15" ;;
+    esac
+    # shellcheck disable=SC2086 # several words
+    copy_settings "$top/config/paper/nclt.ini" "$1/$sensor.ini" sensor.model=$sensor sensor.upside_down=false \
+      "sensor.origin=0 0 0" sensor.height_m=1.0 range_image.heights_above_ground=true \
+      range_image.mirrored=false range_image.coordinate_step_m=0 $rows
   done
-  set_option "$1/hdl32e.ini" range_image fov_up_deg 10.67
-  set_option "$1/hdl32e.ini" range_image fov_down_deg -30.67
-  set_option "$1/vlp16.ini" range_image rows 16
-  set_option "$1/vlp16.ini" range_image fov_up_deg 15
-  set_option "$1/vlp16.ini" range_image fov_down_deg -15
 }
 
 # methods SENSOR: the methods to compare. The authors' settings for the HDL-64E come twice: as they are, and with
@@ -83,10 +78,8 @@ simulated_drive() {
   work=$out/world
   rm -rf "$work"
   mkdir -p "$work"
-  cp "$(scan_line_settings "$1")" "$work/scan_line.ini"
-  set_option "$work/scan_line.ini" world seed "$2"
-  set_option "$work/scan_line.ini" world length_m "$length"
-  set_option "$work/scan_line.ini" simulation spacing_m "$spacing"
+  copy_settings "$(scan_line_settings "$1")" "$work/scan_line.ini" "world.seed=$2" "world.length_m=$length" \
+    "simulation.spacing_m=$spacing"
   "$bin/pole-simulate" --quiet --config "$work/scan_line.ini" --output "$work/scans"
   "$bin/pole-import" folder --quiet --input "$work/scans" --output "$work/scans.rawlog"
   for method in $(methods "$1"); do
@@ -117,8 +110,7 @@ evaluate_drive() {
 
 # undecided_auc: area under the ROC of the confidence of scan_line when it rejects nothing.
 undecided_auc() {
-  cp "$work/scan_line.ini" "$work/undecided.ini"
-  set_option "$work/undecided.ini" scan_line min_confidence 0.001
+  copy_settings "$work/scan_line.ini" "$work/undecided.ini" scan_line.min_confidence=0.001
   cp "$work/score.json" "$work/scan_line-score.json"
   evaluate_drive undecided
   json_value "$work/score.json" auc

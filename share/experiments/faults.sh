@@ -28,28 +28,19 @@ fi
 check_arguments 1 2 "$@"
 out=$1
 track=${2:-${POLEMCL_DATA:+$POLEMCL_DATA/tracks/kaist01.txt.gz}}
+road=world.length_m=3000
+[ -z "$track" ] || road=world.track=$track
 find_programs pole-simulate pole-map pole-eval
 find_tools jq
 mkdir -p "$out"
 : >"$out/table.txt"
 
-# drive NAME WORLD DAY DRIVE: NAME.rawlog, NAME.tum, with the settings NAME.ini.
+# drive NAME WORLD DAY DRIVE [SECTION.KEY=VALUE...]: NAME.rawlog, NAME.tum, with the settings NAME.ini.
 drive() {
-  config=$out/$1.ini
-  [ -f "$config" ] || cp "$top/config/hdl32e.ini" "$config"
-  set_option "$config" simulation spacing_m 0.7
-  set_option "$config" simulation speed_m_s 7
-  set_option "$config" simulation odometry_noise 0.02
-  set_option "$config" simulation detections "$top/share/models/hdl32e.json"
-  set_option "$config" simulation drive_seed "$4"
-  if [ -n "$track" ]; then
-    set_option "$config" world track "$track"
-  else
-    set_option "$config" world length_m 3000
-  fi
-  set_option "$config" world seed "$2"
-  set_option "$config" world day "$3"
-  "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1.rawlog"
+  path=$out/$1 town=$2 day=$3 number=$4
+  shift 4
+  draw_drive "$path" "$top/config/hdl32e.ini" "$town" "$day" simulation.spacing_m=0.7 \
+    simulation.speed_m_s=7 simulation.odometry_noise=0.02 "simulation.drive_seed=$number" "$road" "$@"
 }
 
 # map_of WORLD: the map of day 0, mapWORLD.polemap.
@@ -84,10 +75,7 @@ for world in $worlds; do
   done
   faults "$world" "day$world" wrong-map "$trials" "$seed" --other-map "$out/map599.polemap" --tail 60
   # Half of the poles gone, twice the false detections.
-  cp "$top/config/hdl32e.ini" "$out/half$world.ini"
-  set_option "$out/half$world.ini" world removed_share 0.5
-  set_option "$out/half$world.ini" simulation false_factor 2
-  drive "half$world" "$world" 1 2
+  drive "half$world" "$world" 1 2 world.removed_share=0.5 simulation.false_factor=2
   faults "$world" "half$world" none 1 "$seed"
   i=0
   while [ "$i" -lt "$healthy" ]; do

@@ -16,10 +16,10 @@ check_arguments 2 any "$@"
 tracks=$1
 out=$2
 shift 2
-cities="601:kaist01 602:kaist02 603:kaist01 604:kaist02" trials=50 dense=no
+cities="601:kaist01 602:kaist02 603:kaist01 604:kaist02" trials=50 density=
 for option in "$@"; do
   case $option in
-    --dense) dense=yes ;;
+    --dense) density="world.tree_share=1 world.tree_spacing_m=4 world.lamp_spacing_m=9 world.sign_spacing_m=8" ;;
     --quick) cities=602:kaist02 trials=40 ;;
     *) usage ;;
   esac
@@ -30,21 +30,9 @@ mkdir -p "$out"
 
 # drive CITY DAY TRACK: OUT/CITY-DAY.ini .rawlog .tum
 drive() {
-  config=$out/$1-$2.ini
-  cp "$top/config/hdl32e.ini" "$config"
-  set_option "$config" simulation detections "$top/share/models/hdl32e.json"
-  set_option "$config" simulation spacing_m 0.5
-  set_option "$config" simulation speed_m_s 5
-  set_option "$config" world track "$tracks/$3.txt.gz"
-  if [ "$dense" = yes ]; then
-    set_option "$config" world tree_share 1
-    set_option "$config" world tree_spacing_m 4
-    set_option "$config" world lamp_spacing_m 9
-    set_option "$config" world sign_spacing_m 8
-  fi
-  set_option "$config" world seed "$1"
-  set_option "$config" world day "$2"
-  "$bin/pole-simulate" --quiet --config "$config" --poles "$out/$1-$2.rawlog"
+  # shellcheck disable=SC2086 # several words
+  draw_drive "$out/$1-$2" "$top/config/hdl32e.ini" "$1" "$2" simulation.speed_m_s=5 \
+    "world.track=$tracks/$3.txt.gz" $density
 }
 
 printf '%-6s %9s %6s %6s %6s %10s %9s %9s %11s %9s\n' city map_poles starts right wrong undecided \

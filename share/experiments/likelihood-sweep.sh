@@ -50,7 +50,7 @@ try_setting() {
   shift 2
   for config in hdl32e kitti; do
     cp "$top/config/$config.ini" "$out/$config.ini"
-    [ "$key" = default ] || set_option "$out/$config.ini" likelihood "$key" "$value"
+    [ "$key" = default ] || copy_settings "$top/config/$config.ini" "$out/$config.ini" "likelihood.$key=$value"
   done
   streets=$(for world in "$@"; do
     localize "$out/world$world" "$out/hdl32e.ini" day1.rawlog day1.tum

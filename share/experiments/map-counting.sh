@@ -45,10 +45,8 @@ for sensor in kitti hdl32e vlp16; do
   for world in $(seq "$first" "$last"); do
     here=$out/$sensor-$world
     mkdir -p "$here"
-    cp "$top/config/$sensor.ini" "$here/street.ini"
-    set_option "$here/street.ini" simulation spacing_m 1.0
-    set_option "$here/street.ini" world length_m 200
-    set_option "$here/street.ini" world seed "$world"
+    copy_settings "$top/config/$sensor.ini" "$here/street.ini" simulation.spacing_m=1.0 world.length_m=200 \
+      "world.seed=$world"
     "$bin/pole-simulate" --quiet --config "$here/street.ini" --output "$here/scans"
     "$bin/pole-import" folder --quiet --input "$here/scans" --output "$here/scans.rawlog"
     "$bin/pole-extract" --quiet --config "$here/street.ini" --set scan_line.min_confidence=0.3 \

@@ -27,16 +27,8 @@ mkdir -p "$out"
 # drive WORLD DAY: OUT/WORLD-DAY.ini .rawlog .tum, _smooth.tum, _rough.tum
 drive() {
   name=$out/$1-$2
-  cp "$settings" "$name.ini"
-  set_option "$name.ini" simulation detections "$top/share/models/hdl32e.json"
-  set_option "$name.ini" simulation spacing_m 0.5
-  set_option "$name.ini" simulation drive_seed "$2"
-  set_option "$name.ini" world length_m 400
-  set_option "$name.ini" world seed "$1"
-  set_option "$name.ini" world day "$2"
-  set_option "$name.ini" world removed_share 0
-  set_option "$name.ini" world added_share 0
-  "$bin/pole-simulate" --quiet --config "$name.ini" --poles "$name.rawlog"
+  draw_drive "$name" "$settings" "$1" "$2" "simulation.drive_seed=$2" world.length_m=400 \
+    world.removed_share=0 world.added_share=0
   for kind in smooth rough; do
     awk -v seed=$((100 * $1 + $2)) -v kind=$kind -f "$top/share/experiments/erring-truth.awk" "$name.tum" \
       >"${name}_$kind.tum"

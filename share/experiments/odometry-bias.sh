@@ -17,29 +17,14 @@ check_arguments 1 3 "$@"
 out=$1
 first=${2:-801}
 last=$((first + ${3:-4} - 1))
+settings=$top/config/hdl32e.ini
 find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq
 mkdir -p "$out"
 
-# drive NAME WORLD DAY REVERSE [options]: NAME.ini .rawlog .tum
-drive() {
-  config=$out/$1.ini
-  cp "$top/config/hdl32e.ini" "$config"
-  set_option "$config" simulation detections "$top/share/models/hdl32e.json"
-  set_option "$config" simulation spacing_m 0.5
-  set_option "$config" simulation reverse "$4"
-  set_option "$config" simulation drive_seed "$2"
-  set_option "$config" world length_m 600
-  set_option "$config" world seed "$2"
-  set_option "$config" world day "$3"
-  poles=$out/$1.rawlog
-  shift 4
-  "$bin/pole-simulate" --quiet --config "$config" --poles "$poles" "$@"
-}
-
 # score ODOMETRY SCALE YAW CALIBRATED DIRECTION: all worlds; adds a line to OUT/results.
 score() {
-  truth= runs= worst=0 sum=0
+  truth='' runs='' worst=0 sum=0
   for world in $(seq "$first" "$last"); do
     name=$world-$5
     "$bin/pole-localize" --quiet --config "$out/$name.ini" --input "$out/$name.rawlog" \
@@ -62,7 +47,7 @@ score() {
 
 : >"$out/results"
 for world in $(seq "$first" "$last"); do
-  drive "$world-map" "$world" 0 false
+  draw_drive "$out/$world-map" "$settings" "$world" 0 "simulation.drive_seed=$world" world.length_m=600
   "$bin/pole-map" build --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
     --truth "$out/$world-map.tum" --output "$out/$world.polemap"
 done
@@ -72,8 +57,9 @@ for odometry in noise wheels; do
     for world in $(seq "$first" "$last"); do
       for direction in forward reverse; do
         [ $direction = reverse ] && back=true || back=false
-        drive "$world-$direction" "$world" 1 $back --set simulation.odometry=$odometry \
-          --set simulation.odometry_scale="$scale" --set simulation.odometry_yaw_deg_m="$yaw"
+        draw_drive "$out/$world-$direction" "$settings" "$world" 1 "simulation.reverse=$back" \
+          "simulation.drive_seed=$world" world.length_m=600 "simulation.odometry=$odometry" \
+          "simulation.odometry_scale=$scale" "simulation.odometry_yaw_deg_m=$yaw"
       done
     done
     for calibrated in true false; do

@@ -18,10 +18,7 @@ command -v rosbag2rawlog >/dev/null || die "no rosbag2rawlog: install mrpt-apps"
 mkdir -p "$out"
 
 config=$out/street.ini
-cp "$top/config/hdl32e.ini" "$config"
-set_option "$config" simulation spacing_m 1
-set_option "$config" world length_m 60
-set_option "$config" world seed 512
+copy_settings "$top/config/hdl32e.ini" "$config" simulation.spacing_m=1 world.length_m=60 world.seed=512
 "$bin/pole-simulate" --quiet --config "$config" --output "$out/scans"
 "$bin/pole-import" folder --quiet --input "$out/scans" --output "$out/direct.rawlog"
 

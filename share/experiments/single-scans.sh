@@ -42,8 +42,7 @@ single_scans() {
   fi
   if [ -d "$1/os1_64" ]; then
     # A second generation OS1 ("45 degrees").
-    cp "$top/config/mulran.ini" "$out/singles/os1.ini"
-    set_option "$out/singles/os1.ini" sensor model os1_64_gen2
+    copy_settings "$top/config/mulran.ini" "$out/singles/os1.ini" sensor.model=os1_64_gen2
     "$bin/pole-import" pcd --quiet --input "$1/os1_64" --output "$out/singles/os1.rawlog"
     draw os1_64 "$out/singles/os1.ini" "$out/singles/os1.rawlog"
   fi

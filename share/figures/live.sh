@@ -12,17 +12,12 @@ find_programs pole-simulate pole-map pole-localize
 
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-cp "$top/config/hdl32e.ini" "$out/street.ini"
-set_option "$out/street.ini" world seed 7
-set_option "$out/street.ini" world length_m 400
-set_option "$out/street.ini" simulation spacing_m 1
-set_option "$out/street.ini" simulation detections "$top/share/models/hdl32e.json"
 for day in 0 1; do
-  "$bin/pole-simulate" --quiet --config "$out/street.ini" --day $day --poles "$out/day$day.rawlog"
+  draw_drive "$out/day$day" "$top/config/hdl32e.ini" 7 $day world.length_m=400 simulation.spacing_m=1
 done
-"$bin/pole-map" build --quiet --config "$out/street.ini" --input "$out/day0.rawlog" \
+"$bin/pole-map" build --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
   --truth "$out/day0.tum" --output "$out/map.polemap" >/dev/null
-"$bin/pole-localize" --quiet --config "$out/street.ini" --input "$out/day1.rawlog" \
+"$bin/pole-localize" --quiet --config "$out/day1.ini" --input "$out/day1.rawlog" \
   --map "$out/map.polemap" --truth "$out/day1.tum" --output "$out/run" --seed 1 \
   --frames "$out/frames" --frame-every 20
 cp "$out/frames/000080.png" "${1:-$top/share/figures/live.png}"
