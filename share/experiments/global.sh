@@ -57,5 +57,6 @@ jq -s '{cities: ., starts: (map(.trials) | add), right: (map(.right) | add),
   wrong: (map(.wrong) | add), undecided: (map(.undecided) | add), ok_wrong: (map(.ok_wrong) | add),
   query_max_ms: (map(.query_max_ms) | max)}
   | .right_share = .right / .starts | .wrong_share = .wrong / .starts' $files >"$out/result.json"
-jq -r '"\(.starts) starts: right \(.right), wrong \(.wrong), undecided \(.undecided); ok said of a wrong pose \(.ok_wrong); longest step with a search \(.query_max_ms * 10 | round / 10) ms"' \
+jq -r '"\(.starts) starts: right \(.right), wrong \(.wrong), undecided \(.undecided); "
+  + "ok said of a wrong pose \(.ok_wrong); longest step with a search \(.query_max_ms * 10 | round / 10) ms"' \
   "$out/result.json"

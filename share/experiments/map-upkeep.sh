@@ -60,8 +60,8 @@ keep() {
 : >"$out/results"
 for world in $(seq "$first" "$last"); do
   for day in 0 1 2 3 4 5 6; do drive "$world" $day; done
-  "$bin/pole-map" build --quiet --config "$out/$world-0.ini" --input "$out/$world-0.rawlog" --truth "$out/$world-0.tum" \
-    --output "$out/$world.polemap"
+  "$bin/pole-map" build --quiet --config "$out/$world-0.ini" --input "$out/$world-0.rawlog" \
+    --truth "$out/$world-0.tum" --output "$out/$world.polemap"
   "$bin/pole-eval" map --quiet --one-to-one --radius 0.5 --truth "$out/$world-0_poles_gt.csv" \
     --map "$out/$world.polemap" --json "$out/$world-before.json"
   for errors in none smooth rough; do

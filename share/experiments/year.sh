@@ -66,13 +66,17 @@ for month in may june july august september october november december january fe
   fi
   score truth $month "$map"
 done
-jq -s --argjson world "$world" --argjson runs "$runs" '{world: $world, runs: $runs, maps: .}' "$out/maps" >"$out/maps.json"
+jq -s --argjson world "$world" --argjson runs "$runs" '{world: $world, runs: $runs, maps: .}' \
+  "$out/maps" >"$out/maps.json"
 # sessions.csv: setting, session, mean error of the position, shares of the health
 awk -F , 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
-  $(at["pos_mean"]) != "" { printf "{\"setting\": \"%s\", \"session\": \"%s\", \"pos_mean_m\": %s, \"ok\": %s, \"lost_runs\": %s}\n",
-    $(at["setting"]), $(at["session"]), $(at["pos_mean"]), $(at["ok_share"]), $(at["lost"]) }' "$batch/sessions.csv" |
+  $(at["pos_mean"]) != "" {
+    printf "{\"setting\": \"%s\", \"session\": \"%s\", ", $(at["setting"]), $(at["session"])
+    printf "\"pos_mean_m\": %s, \"ok\": %s, \"lost_runs\": %s}\n",
+      $(at["pos_mean"]), $(at["ok_share"]), $(at["lost"]) }' "$batch/sessions.csv" |
   jq -s '{sessions: ., mean: (group_by(.setting) | map({setting: .[0].setting,
-    pos_mean_m: (map(.pos_mean_m) | add / length), last_to_first: (.[-1].pos_mean_m / .[0].pos_mean_m)}))}' >"$out/errors.json"
+    pos_mean_m: (map(.pos_mean_m) | add / length), last_to_first: (.[-1].pos_mean_m / .[0].pos_mean_m)}))}' \
+  >"$out/errors.json"
 jq -s '.[0] + .[1]' "$out/maps.json" "$out/errors.json" >"$out/result.json"
 rm "$out/maps" "$out/maps.json" "$out/errors.json" "$out/all.json" "$out/near.json" "$out/near.csv" "$out/truth.polemap"
 {
@@ -81,6 +85,7 @@ rm "$out/maps" "$out/maps.json" "$out/errors.json" "$out/all.json" "$out/near.js
         format = "%-7s %-10s %5s %9s %8s %8s %8s %9s %9s\n"
         printf format, "map", "month", "poles", "precision", "recall", "F1", "F1 all", "shift m", "turn deg" }
       { printf "%-7s %-10s %5d %9.4f %8.4f %8.4f %8.4f %9.4f %9.5f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }'
-  jq -r '.mean[] | "\(.setting): mean error \(.pos_mean_m) m, last session to first \(.last_to_first)"' "$out/result.json"
+  jq -r '.mean[] | "\(.setting): mean error \(.pos_mean_m) m, last session to first \(.last_to_first)"' \
+    "$out/result.json"
 } >"$out/table.txt"
 cat "$out/table.txt"
