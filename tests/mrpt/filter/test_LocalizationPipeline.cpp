@@ -289,13 +289,28 @@ TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {
   EXPECT_LT(sums[2], 0.5 * sums[1]);
 }
 
+TEST_F(PoleLocalizationTest, ScansFarApartAreUsedAsTheyAre) {
+  driveFrom(1, 60);
+  LocalizationPipeline localization = chain();
+  localization.start(atTruth());
+  localization.step(frames[0]);
+  const std::size_t apart = 3;  // frames are a metre apart
+  for (std::size_t i = apart; i < frames.size(); i += apart) {
+    PoleFrame frame = frames[i];
+    frame.motion->mean = relative(truth[i - apart], truth[i]);
+    EXPECT_EQ(localization.step(frame).step.poles, frame.poles_robot.size());
+  }
+}
+
 TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
   driveFrom(9, 60);  // one scan per metre
   options.tracking.average = false;
   options.tracking.cadence = Cadence::section;
   options.tracking.localMaps.sectionLength = 5;
   LocalizationPipeline localization = chain();
-  localization.start(atTruth());
+  StartOptions start = atTruth();
+  start.particles = 10000;
+  localization.start(start);
   std::size_t updates = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const LocalizationUpdate update = localization.step(frames[i]);

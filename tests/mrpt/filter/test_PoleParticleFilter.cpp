@@ -254,7 +254,9 @@ TEST(PoleParticleFilter, TellsWhatAStepDid) {
 TEST(PoleParticleFilter, TemperingIsMeasuredByTheParticlesThatAreKept) {
   const PoleStreet street = makeStreet({});
   PoleParticleFilter localizer(street.map, {}, 1);
-  localizer.start(at(street.truth[50], 0.3, 0.02));
+  StartOptions start = at(street.truth[50], 0.3, 0.02);
+  start.particles = 10000;
+  localizer.start(start);
   localizer.step(street.frames[50]);
   ASSERT_EQ(localizer.report().particles, 10000u);
   EXPECT_EQ(localizer.report().temperingStages, 0);

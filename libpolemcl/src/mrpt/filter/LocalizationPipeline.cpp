@@ -139,6 +139,8 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
   const TrackingOptions& tracking = m_options.tracking;
   if (tracking.cadence == Cadence::section) return m_localMaps.add(motion, poles_robot);
   if (!tracking.average) return poles_robot;
+  // Poles of a scan far from the one before had no chance to be seen twice.
+  if (std::hypot(motion.x, motion.y) > sparseMetres) m_tracks.clear();
   m_tracks.add(motion, covariance, poles_robot);
   // The first scan is used as it is: there is nothing to average yet.
   if (m_tracks.frames() == 1) return poles_robot;

@@ -74,7 +74,7 @@ struct POLEMCL_EXPORT StartOptions {
   double heading = 0.08726646259971647;  ///< headings uniform in ± this, rad (paper: 5°)
   /// Number until the first resampling, which keeps FilterOptions::particles of them. The start
   /// needs more, since few of them are near the truth. Smaller numbers mean that one.
-  int particles = 10000;
+  int particles = 30000;
 };
 
 /// \brief Repeated localizations of the same drive. `[runs]` in INI files.

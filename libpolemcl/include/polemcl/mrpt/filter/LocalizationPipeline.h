@@ -41,7 +41,8 @@ enum class Cadence {
 /// \brief Which detections the filter is given. `[tracking]` in INI files.
 struct POLEMCL_EXPORT TrackingOptions {
   /// Detections of a pole are averaged in the odometry frame and used together. Errors of
-  /// successive detections are alike, so each for itself would count too much.
+  /// successive detections are alike, so each for itself would count too much. Scans farther apart
+  /// than LocalizationPipeline::sparseMetres are used as they are.
   bool average = true;
   int minHits = 2;                  ///< poles seen in fewer scans are not used
   double every = 0.5;               ///< distance travelled until a pole is used again, m
@@ -106,6 +107,8 @@ class POLEMCL_EXPORT LocalizationPipeline {
   static constexpr double maxStartDistance = 1000;  ///< m
   /// Standard deviation of the velocity during a first scan that does not state it, m/s.
   static constexpr double unknownSpeed = 5;
+  /// Above this distance between two scans their poles are not averaged, m.
+  static constexpr double sparseMetres = 2;
   /// A search result within these limits of the estimate counts as the same pose, m and rad.
   static constexpr double sameMetres = 0.5, sameRadians = 0.035;
   /// Re-initialize at the same pose anyway if the new pose matches at least this many more poles.
