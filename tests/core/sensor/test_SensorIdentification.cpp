@@ -116,6 +116,37 @@ TEST(SensorIdentification, FindsTheOriginOverACloudsOwn) {
   EXPECT_NEAR(options.height, 1.0, 0.1);
 }
 
+// Correction for motion moves the vehicle's own returns off their beams.
+TEST(SensorIdentification, TheVehiclesRoofIsNoBeam) {
+  PointList points = scanOf("hdl32e", 1.8);
+  for (const double elevation : {-21.0, -22.2, -23.5})
+    for (int i = 0; i < 1000; ++i) {
+      const double range = 1.8 + 1e-4 * i;
+      points.addPolar((120 + 0.12 * i) * kDegree, elevation * kDegree, range);
+    }
+  const SensorIdentification inspection = identifySensor({points.view()});
+  EXPECT_EQ(inspection.beams.beams(), 32);
+  ASSERT_TRUE(inspection.preset());
+  EXPECT_EQ(inspection.options().model, "hdl32e");
+}
+
+// Each point was moved by the way the vehicle went until the end of the turn.
+TEST(SensorIdentification, CloudsCorrectedForSeveralSpeedsAreTriedOneByOne) {
+  const PointList points = scanOf("hdl32e", 1.8);
+  std::vector<PointList> moved(3);
+  for (std::size_t k = 0; k < moved.size(); ++k)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double turned = std::atan2(points.y[i], points.x[i]) / (2 * M_PI);
+      moved[k].add(points.x[i] + 0.45 * static_cast<double>(k) * turned, points.y[i], points.z[i]);
+    }
+  const SensorIdentification together =
+      identifySensor({moved[0].view(), moved[1].view(), moved[2].view()});
+  ASSERT_TRUE(together.preset());
+  EXPECT_EQ(together.options().model, "hdl32e");
+  EXPECT_EQ(together.beams.beams(), 32);
+  EXPECT_EQ(together.scans, 3u);
+}
+
 TEST(SensorIdentification, CountsAndShuffles) {
   const PointList a = scanOf("vlp16", 1.0);
   PointList b = clouds::shuffled(a.view(), 2);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/common/Statistics.h"
 #include "core/sensor/AzimuthResolution.h"
@@ -10,6 +12,36 @@
 
 namespace polemcl {
 namespace {
+
+// Returns nearer than this and higher over the ground may be the vehicle's own. In clouds that were
+// corrected for motion these are off their beams.
+constexpr double s_vehicleReach = 3;     ///< m, horizontal
+constexpr double s_vehicleBottom = 0.4;  ///< m
+constexpr double s_leastRest = 0.5;      ///< else the near returns are the surroundings, as indoors
+
+struct Cloud {
+  std::vector<float> x, y, z;
+  PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
+};
+
+Cloud withoutVehicle(const PointsView& scan) {
+  const auto ground = findGroundPlane(scan);
+  Cloud rest;
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    const Eigen::Vector3d point(scan.x[i], scan.y[i], scan.z[i]);
+    if (ground && point.head<2>().norm() < s_vehicleReach && !point.isZero(0) &&
+        ground->heightOf(point) > s_vehicleBottom)
+      continue;
+    rest.x.push_back(scan.x[i]);
+    rest.y.push_back(scan.y[i]);
+    rest.z.push_back(scan.z[i]);
+  }
+  const auto all = static_cast<double>(scan.size);
+  if (static_cast<double>(rest.x.size()) < s_leastRest * all)
+    return {
+        {scan.x, scan.x + scan.size}, {scan.y, scan.y + scan.size}, {scan.z, scan.z + scan.size}};
+  return rest;
+}
 
 /// A cloud on its head, turned about x.
 BeamTableEstimate turnedOver(BeamTableEstimate beams) {
@@ -169,6 +201,45 @@ void findGround(const std::vector<PointsView>& scans, SensorIdentification& resu
   result.ground = grounds[grounds.size() / 2];
 }
 
+/// Identifies the LiDAR by all scans together.
+SensorIdentification identifyTogether(const std::vector<PointsView>& scans) {
+  SensorIdentification result;
+  result.scans = scans.size();
+  std::vector<Cloud> clouds;
+  for (const PointsView& scan : scans) clouds.push_back(withoutVehicle(scan));
+  std::vector<PointsView> surroundings;
+  for (const Cloud& cloud : clouds) surroundings.push_back(cloud.view());
+  result.beams = estimateBeamTable(surroundings);
+  measureRanges(scans, result);
+  result.columns = azimuthResolution(surroundings, result.beams);
+  findGround(scans, result);
+  if (result.onItsHead) {
+    result.beams = turnedOver(result.beams);
+    if (result.ground) result.ground = turnedOver(*result.ground);
+  }
+  result.presets = fitPresets(result.beams);
+  return result;
+}
+
+/// The beams by the sharpest scan of those that fit a preset, if more than half fit the same one.
+/// Correction for motion bends the beams of each scan by its own speed.
+std::optional<SensorIdentification> identifyOneByOne(const std::vector<PointsView>& scans,
+                                                     bool onItsHead) {
+  std::map<std::pair<std::string, bool>, std::vector<SensorIdentification>> fitting;
+  for (const PointsView& scan : scans) {
+    SensorIdentification alone = identifyTogether({scan});
+    const PresetFit* fit = alone.preset();
+    if (fit && alone.onItsHead == onItsHead)
+      fitting[{fit->model, fit->upsideDown}].push_back(std::move(alone));
+  }
+  for (const auto& [preset, found] : fitting)
+    if (2 * found.size() > scans.size())
+      return *std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+        return a.beams.sharpness < b.beams.sharpness;
+      });
+  return std::nullopt;
+}
+
 }  // namespace
 
 const PresetFit* SensorIdentification::preset() const {
@@ -209,17 +280,13 @@ SensorOptions SensorIdentification::options() const {
 }
 
 SensorIdentification identifySensor(const std::vector<PointsView>& scans) {
-  SensorIdentification result;
-  result.scans = scans.size();
-  result.beams = estimateBeamTable(scans);
-  measureRanges(scans, result);
-  result.columns = azimuthResolution(scans, result.beams);
-  findGround(scans, result);
-  if (result.onItsHead) {
-    result.beams = turnedOver(result.beams);
-    if (result.ground) result.ground = turnedOver(*result.ground);
+  SensorIdentification result = identifyTogether(scans);
+  if (result.preset() || scans.size() < 2) return result;
+  if (const auto single = identifyOneByOne(scans, result.onItsHead)) {
+    result.beams = single->beams;
+    result.columns = single->columns;
+    result.presets = single->presets;
   }
-  result.presets = fitPresets(result.beams);
   return result;
 }
 

@@ -51,7 +51,7 @@ struct POLEMCL_EXPORT HealthOptions {
   double lostShare = 0.03;
   double degradedShare = 0.4;      ///< degraded: a smaller share of them is on the map
   double lostSpread = 5;           ///< lost: greater σ of the position along its worst axis, m
-  double degradedSpread = 0.5;     ///< degraded: greater σ of the position, m
+  double degradedSpread = 0.2;     ///< degraded: greater σ of the position, m
   double degradedHeading = 0.052;  ///< degraded: greater σ of the heading, rad
   double innovation = 4;    ///< degraded: greater mean m² per degree of freedom of matched poles
   double modeShare = 0.95;  ///< degraded: smaller share of the particles' weight at the estimate
