@@ -70,7 +70,7 @@ std::string host() {
 
 }  // namespace
 
-BatchFolder::BatchFolder(fs::path path) : m_path(fs::absolute(path).lexically_normal()) {}
+BatchFolder::BatchFolder(const fs::path& path) : m_path(fs::absolute(path).lexically_normal()) {}
 
 BatchFolder::~BatchFolder() {
   if (m_lock >= 0) ::close(m_lock);

@@ -20,7 +20,7 @@ namespace polemcl::apps {
 
 class BatchFolder {
  public:
-  explicit BatchFolder(std::filesystem::path path);
+  explicit BatchFolder(const std::filesystem::path& path);
   ~BatchFolder();
   BatchFolder(const BatchFolder&) = delete;
   BatchFolder& operator=(const BatchFolder&) = delete;

@@ -79,6 +79,7 @@ int spawn(const std::vector<std::string>& command, const fs::path& folder, const
   if (::access(program.c_str(), X_OK) != 0)
     throw Error(program + ": cannot be started: " + std::strerror(errno));
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
   const pid_t parent = ::getpid(), child = ::fork();

@@ -50,7 +50,7 @@ void requireNames(const std::vector<std::string>& names, const std::string& wher
 /// What the values of a session or configuration may refer to.
 class Placeholders {
  public:
-  Placeholders(const fs::path& file, fs::path data)
+  Placeholders(const fs::path& file, const fs::path& data)
       : m_file(file.string()),
         m_folder(fs::absolute(file).parent_path()),
         m_data(data.empty() ? data : fs::absolute(data)) {}

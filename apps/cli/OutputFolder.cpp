@@ -34,7 +34,7 @@ void refuseForeign(const fs::path& target, const std::string& what,
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& target, std::string what,
+OutputFolder::OutputFolder(const fs::path& target, const std::string& what,
                            const std::vector<std::string>& known, const std::string& marker)
     : m_target(withoutSlash(target)) {
   try {

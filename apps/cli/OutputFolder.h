@@ -17,7 +17,7 @@ class OutputFolder {
   ///        or holds nothing but `known` names, `marker` among them: an earlier output.
   /// \param what What the folder holds, for messages, such as "a simulated drive".
   /// \throws Error when something else is there (named), or the place is not writable.
-  OutputFolder(const std::filesystem::path& target, std::string what,
+  OutputFolder(const std::filesystem::path& target, const std::string& what,
                const std::vector<std::string>& known, const std::string& marker);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

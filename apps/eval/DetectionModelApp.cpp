@@ -57,15 +57,14 @@ sim::DetectionModel fitModel(const FitModelOptions& options) {
   for (std::size_t i = 0; i < drives.size(); i += 2)
     streets.push_back({drives[i].observed, drives[i + 1].observed});
   const double maxRange = drives.front().settings.extraction.scanLine.maxRange;
-  const auto model = sim::fitDetectionModel(streets, maxRange, describe(drives));
+  auto model = sim::fitDetectionModel(streets, maxRange, describe(drives));
   sim::writeDetectionModel(options.model, model);
   return model;
 }
 
 sim::DetectionSummary evalObservations(const EvalObservationsOptions& options) {
   const LoadedDrive drive(options.poles);
-  const auto s =
-      sim::summarizeDetections(drive.observed, drive.settings.extraction.scanLine.maxRange);
+  auto s = sim::summarizeDetections(drive.observed, drive.settings.extraction.scanLine.maxRange);
   if (!options.json) return s;
   writeJson(*options.json, {{"scans", s.scans},
                             {"detections", s.detections},

@@ -129,7 +129,7 @@ TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
   view.truth = io::readPlanarTum(options.truth);
   view.estimate = io::readPlanarTum(options.estimate);
   if (options.map) view.poles = polesToDraw(*options.map);
-  const auto errors = io::located(against(options.estimate, options.truth), [&] {
+  auto errors = io::located(against(options.estimate, options.truth), [&] {
     return evaluateTrajectory(view.truth, view.estimate, options.sampling);
   });
   view.title = options.title.empty() ? options.estimate.filename().string() : options.title;

@@ -104,6 +104,7 @@ std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
   const auto starts = static_cast<std::uint64_t>(last - driven.begin());
   std::mt19937_64 random(options.seed);
   std::vector<std::size_t> first;
+  first.reserve(options.trials);
   for (int i = 0; i < options.trials; ++i) first.push_back(random() % starts);
   std::vector<GlobalTrial> trials(options.trials);
   tbb::parallel_for(0, options.trials, [&](int i) {

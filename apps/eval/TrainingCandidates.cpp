@@ -49,7 +49,7 @@ constexpr Column kColumns[] = {{"segments", &PoleFeatures::segments},
 class TrainingDrive {
  public:
   TrainingDrive(const CandidatesOptions& options, const ScanTiming& timing)
-      : m_T_robot_sensor(options.T_robot_sensor),
+      : m_mounting(options.T_robot_sensor),
         m_timing(timing),
         m_folder(std::filesystem::is_directory(options.scans / "velodyne")
                      ? io::readScanFolder(options.scans, options.T_robot_sensor)
@@ -63,7 +63,7 @@ class TrainingDrive {
     return m_folder.read ? m_folder.read(entry) : io::readKittiBin(entry.cloud);
   }
   Eigen::Isometry3d T_map_lidar(std::size_t i) const {
-    return *m_folder.scans[i].T_map_robot * m_T_robot_sensor;
+    return *m_folder.scans[i].T_map_robot * m_mounting;
   }
   /// A planar point of scan i, where it is seen from at the time stamp.
   Eigen::Vector2d atStamp(const Velocity& velocity, double x, double y) const {
@@ -83,7 +83,7 @@ class TrainingDrive {
   }
 
  private:
-  Eigen::Isometry3d m_T_robot_sensor;
+  Eigen::Isometry3d m_mounting;
   ScanTiming m_timing;
   io::ScanFolder m_folder;
 };

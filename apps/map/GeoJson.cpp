@@ -86,7 +86,7 @@ class Feature {
     const Json& at = m_json["geometry"].value("coordinates", Json());
     if (!at.is_array() || at.size() < 2 || !at[0].is_number() || !at[1].is_number())
       fail("a point needs coordinates [longitude, latitude]");
-    const Eigen::Vector2d found(at[0].get<double>(), at[1].get<double>());
+    Eigen::Vector2d found(at[0].get<double>(), at[1].get<double>());
     if (!(std::abs(found.x()) <= 360 && std::abs(found.y()) <= 90))
       fail("longitude or latitude is out of range; GeoJSON has degrees, longitude first");
     return found;

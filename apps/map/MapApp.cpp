@@ -87,7 +87,7 @@ Subcommand updateCommand(CLI::App& program) {
   const auto job = std::make_shared<MapUpdateJob>();
   cli.add_option("--map", job->map, "Map to begin with, .polemap")->required();
   cli.add_option("--json", job->json, "Also write what changed to this file (JSON)");
-  const Subcommand command = mappingCommand(cli, job, updateMapFile);
+  Subcommand command = mappingCommand(cli, job, updateMapFile);
   auto* estimate = cli.add_option_function<std::vector<std::filesystem::path>>(
       "--estimate",
       [job](const std::vector<std::filesystem::path>& files) {

@@ -53,7 +53,8 @@ Voxel unpacked(std::uint32_t key) {
   return {k / kWidth % kWidth, k % kWidth, k / kWidth / kWidth + kLowestLayer};
 }
 double middleOf(int cell) {
-  return (cell - kWidth / 2) * kCell;
+  const int middle = kWidth / 2;
+  return (cell - middle) * kCell;
 }
 
 /// What stands at the middle of a place in a slice of heights.

@@ -35,9 +35,9 @@ Candidate sweep(ElevationHistogram& spectrum, const Candidate& start, Part part,
 }
 
 /// Steps along each part in turn, halving the steps when none helps.
-template <std::size_t N>
-Candidate descend(ElevationHistogram& spectrum, Candidate best, const std::array<Part, N>& parts,
-                  double step) {
+template <std::size_t count>
+Candidate descend(ElevationHistogram& spectrum, Candidate best,
+                  const std::array<Part, count>& parts, double step) {
   for (int halvings = 0; halvings < 6;) {
     bool better = false;
     for (const Part part : parts)
