@@ -46,9 +46,9 @@ struct SensorIdentification {
 };
 
 /// \brief Inspects a few scans of one sensor. Beams are found without returns that may be the
-/// vehicle's own: nearer than 3 m and higher than 0.4 m over the ground.
-/// Where no preset fits all scans together, each is tried alone, for correction for motion bends the
-/// beams of each scan by its own speed.
+/// vehicle's own: nearer than 3 m and higher than 0.4 m over the ground. Where no preset fits all
+/// scans together, each is tried alone: correction for motion bends the beams of each scan by its
+/// own speed.
 /// \param scans In the sensor's own axes; the order of points does not matter.
 /// \throws Error as estimateBeamTable().
 SensorIdentification identifySensor(const std::vector<PointsView>& scans);
