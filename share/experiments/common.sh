@@ -37,7 +37,7 @@ check_arguments() {
 
 # find_programs NAME...: sets $bin to POLEMCL_BIN, else build/bin of the checkout.
 find_programs() {
-  bin=${POLEMCL_BIN:-$top/build/bin}
+  bin=$(cd "${POLEMCL_BIN:-$top/build/bin}" 2>/dev/null && pwd) || bin=${POLEMCL_BIN:-$top/build/bin}
   for program in "$@"; do
     [ -x "$bin/$program" ] || die "no program $bin/$program: build first \
 (share/setup/build.sh release programs), or name its folder in POLEMCL_BIN"
@@ -88,22 +88,27 @@ draw_drive() (
   "$bin/pole-simulate" --quiet --config "$path.ini" --poles "$path.rawlog"
 )
 
-# simulate_day SETTINGS FOLDER WORLD LENGTH DAY: a day of a simulated street, a scan every 0.5 m, odometry
-# with 2 % noise. Leaves dayN.ini, dayN.rawlog (poles), dayN.tum, poles_dayN.csv in the folder; the scans
-# are removed.
-simulate_day() {
-  config=$2/day$5.ini
-  mkdir -p "$2"
-  copy_settings "$1" "$config" simulation.spacing_m=0.5 simulation.odometry_noise=0.02 \
-    "world.length_m=$4" "world.seed=$3" "world.day=$5"
-  "$bin/pole-simulate" --quiet --config "$config" --output "$2/scans"
-  "$bin/pole-import" folder --quiet --input "$2/scans" --output "$2/scans.rawlog"
-  "$bin/pole-extract" --quiet --config "$config" --input "$2/scans.rawlog" \
-    --output "$2/day$5.rawlog"
-  mv "$2/scans.tum" "$2/day$5.tum"
-  mv "$2/scans/poles_gt.csv" "$2/poles_day$5.csv"
-  rm -r "$2/scans" "$2/scans.rawlog"
-}
+# simulate_day SETTINGS FOLDER WORLD LENGTH DAY [SECTION.KEY=VALUE...]: a day of a simulated street, a scan
+# every 0.5 m and odometry with 2 % noise unless given. Leaves dayN.ini, dayN.rawlog (poles), dayN.tum,
+# poles_dayN.csv in the folder; the scans are removed.
+simulate_day() (
+  from=$1
+  folder=$2
+  seed=$3
+  length=$4
+  day=$5
+  shift 5
+  mkdir -p "$folder"
+  copy_settings "$from" "$folder/day$day.ini" simulation.spacing_m=0.5 simulation.odometry_noise=0.02 \
+    "world.length_m=$length" "world.seed=$seed" "world.day=$day" "$@"
+  cd "$folder" || exit
+  "$bin/pole-simulate" --quiet --config "day$day.ini" --output scans
+  "$bin/pole-import" folder --quiet --input scans --output scans.rawlog
+  "$bin/pole-extract" --quiet --config "day$day.ini" --input scans.rawlog --output "day$day.rawlog"
+  mv scans.tum "day$day.tum"
+  mv scans/poles_gt.csv "poles_day$day.csv"
+  rm -r scans scans.rawlog
+)
 
 error_keys="pos_mean pos_rmse lat_mean lon_mean ang_mean_deg ang_rmse_deg pos_max"
 

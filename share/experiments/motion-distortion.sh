@@ -1,0 +1,71 @@
+#!/bin/sh
+# Scans taken while the LiDAR moves: errors against the same drives of a LiDAR that stands still in each turn.
+# Usage: share/experiments/motion-distortion.sh OUT [FIRST [WORLDS [LENGTH]]]
+#   OUT     gets drives, maps, runs, result.json and table.txt
+#   FIRST   first world, 821 unless given; WORLDS: their number, 2 unless given
+#   LENGTH  of the streets, 200 m unless given
+# Cast scans of simulated streets: an HDL-32E at 5 m/s and an OS1-64 at 15 m/s, ten turns a second. The map is
+# that of one day, the localization that of another day in the opposite direction; both are distorted or both
+# are not. Odometry with 2 % noise, start within 2.5 m and 5 degrees, filter seeds 1 to 5. "used as they are":
+# distorted scans that are taken as compensated.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; ten minutes of two cores and 3 GB of disk.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+check_arguments 1 4 "$@"
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
+first=${2:-821}
+last=$((first + ${3:-2} - 1))
+length=${4:-200}
+find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
+find_tools jq
+
+# score SENSOR SPEED SPACING SCANS [SECTION.KEY=VALUE...]: all worlds; adds a line to $out/results.
+score() {
+  sensor=$1 speed=$2 spacing=$3 scans=$4
+  shift 4
+  world=$first
+  runs=
+  while [ "$world" -le "$last" ]; do
+    here=$out/$sensor-$scans-$world
+    for day in 0 1; do
+      reverse=false
+      [ "$day" = 0 ] || reverse=true
+      simulate_day "$top/config/$sensor.ini" "$here" "$world" "$length" "$day" \
+        "simulation.speed_m_s=$speed" "simulation.spacing_m=$spacing" "simulation.reverse=$reverse" "$@"
+    done
+    "$bin/pole-map" build --quiet --config "$here/day0.ini" --input "$here/day0.rawlog" \
+      --truth "$here/day0.tum" --output "$here/map.polemap"
+    "$bin/pole-localize" --quiet --config "$here/day1.ini" --input "$here/day1.rawlog" \
+      --map "$here/map.polemap" --truth "$here/day1.tum" --output "$here/runs" --runs 5 --seed 1
+    evaluate_runs "$here/runs" "$here/day1.tum"
+    runs="$runs $here/runs/run_00.json $here/runs/run_01.json $here/runs/run_02.json"
+    runs="$runs $here/runs/run_03.json $here/runs/run_04.json"
+    world=$((world + 1))
+  done
+  # shellcheck disable=SC2086 # a list of files
+  jq -s --arg sensor "$sensor" --arg speed "$speed" --arg scans "$scans" \
+    '{sensor: $sensor, speed_m_s: ($speed | tonumber), scans: $scans,
+      pos_mean: (map(.pos_mean) | add / length), ang_mean_deg: (map(.ang_mean_deg) | add / length),
+      worst_run_m: (map(.pos_mean) | max)}' $runs >>"$out/results"
+}
+
+: >"$out/results"
+for drive in "hdl32e 5 0.5" "mulran 15 1.5"; do
+  # shellcheck disable=SC2086 # three words
+  score $drive still
+  # shellcheck disable=SC2086
+  score $drive moving simulation.motion_distortion=true
+  # shellcheck disable=SC2086
+  score $drive moving-used-as-they-are simulation.motion_distortion=true sensor.turn=compensated
+done
+jq -s . "$out/results" >"$out/result.json"
+rm "$out/results"
+jq -r '.[] | [.sensor, .speed_m_s, .scans, .pos_mean, .ang_mean_deg, .worst_run_m] | @tsv' "$out/result.json" |
+  awk -F '\t' 'BEGIN { printf "%-8s %6s %-24s %8s %9s %12s\n", "config", "m/s", "scans", "mean m", "mean deg",
+      "worst run m" }
+    { printf "%-8s %6s %-24s %8.4f %9.4f %12.4f\n", $1, $2, $3, $4, $5, $6 }' >"$out/table.txt"
+cat "$out/table.txt"
