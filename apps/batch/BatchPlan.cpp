@@ -412,11 +412,14 @@ class Planner {
     };
     while (!m_plan.tasks.empty()) {
       std::vector<BatchTask> waiting;
+      const std::size_t before = sorted.size();
       for (BatchTask& task : m_plan.tasks) {
         const bool ready = isReady(task);
         if (ready) done.insert(task.id);
         (ready ? sorted : waiting).push_back(std::move(task));
       }
+      if (sorted.size() == before)
+        throw Error("batch: task " + waiting.front().id + " needs one that is not planned");
       m_plan.tasks = std::move(waiting);
     }
     m_plan.tasks = std::move(sorted);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/evaluation/LogisticRegression.h"
 #include "core/extraction/CovarianceScale.h"
@@ -15,38 +16,31 @@ namespace {
 struct Sample {
   ClassifierTerms terms;
   const LabelledCandidate* candidate;
-  std::size_t drive;
   double weight;
 };
 
-/// Samples with weights of mean 1, by which the sensors weigh alike.
-class Samples {
- public:
-  Samples(const std::vector<LabelledDrive>& drives, double realWeight) {
-    std::map<std::string, double> ofSensor;
-    double all = 0;
-    for (const LabelledDrive& drive : drives)
-      ofSensor[drive.sensor] +=
-          (drive.real ? realWeight : 1) * static_cast<double>(drive.candidates.size());
-    for (std::size_t d = 0; d < drives.size(); ++d)
-      for (const LabelledCandidate& candidate : drives[d].candidates) {
-        const double weight = (drives[d].real ? realWeight : 1) / ofSensor[drives[d].sensor];
-        m_samples.push_back({classifierTerms(candidate.features), &candidate, d, weight});
-        all += weight;
-      }
-    for (Sample& sample : m_samples) sample.weight *= static_cast<double>(m_samples.size()) / all;
+/// Samples of all drives but one, with weights of mean 1, by which the sensors weigh alike.
+std::vector<Sample> samplesOf(const std::vector<LabelledDrive>& drives, double realWeight,
+                              std::optional<std::size_t> without = std::nullopt) {
+  const auto weightOf = [&](const LabelledDrive& drive) { return drive.real ? realWeight : 1; };
+  std::map<std::string, double> ofSensor;
+  for (std::size_t d = 0; d < drives.size(); ++d)
+    if (d != without)
+      ofSensor[drives[d].sensor] +=
+          weightOf(drives[d]) * static_cast<double>(drives[d].candidates.size());
+  std::vector<Sample> samples;
+  double all = 0;
+  for (std::size_t d = 0; d < drives.size(); ++d) {
+    if (d == without) continue;
+    const double weight = weightOf(drives[d]) / ofSensor[drives[d].sensor];
+    for (const LabelledCandidate& candidate : drives[d].candidates) {
+      samples.push_back({classifierTerms(candidate.features), &candidate, weight});
+      all += weight;
+    }
   }
-  std::vector<Sample> without(std::optional<std::size_t> drive) const {
-    std::vector<Sample> rest;
-    rest.reserve(m_samples.size());
-    for (const Sample& sample : m_samples)
-      if (!drive || sample.drive != *drive) rest.push_back(sample);
-    return rest;
-  }
-
- private:
-  std::vector<Sample> m_samples;
-};
+  for (Sample& sample : samples) sample.weight *= static_cast<double>(samples.size()) / all;
+  return samples;
+}
 
 /// The weights of both regressions, as in classifier.csv.
 struct Weights {
@@ -81,7 +75,7 @@ void standardize(const std::vector<Sample>& samples, Weights& weights) {
     for (const Sample& sample : samples)
       square += sample.weight * std::pow(sample.terms[i] - mean, 2) / total;
     weights.mean[i] = mean;
-    weights.scale[i] = 1 / std::sqrt(std::max(square, 1e-12));
+    weights.scale[i] = square > 1e-12 ? 1 / std::sqrt(square) : 0;  // a constant says nothing
   }
 }
 
@@ -104,13 +98,13 @@ Design designOf(const std::vector<Sample>& samples, const Weights& weights) {
 }
 
 /// The product that would raise the likelihood most: the greatest score statistic (gradient squared
-/// by information) of those not taken.
-Weights::Product bestProduct(const Design& design, const Eigen::VectorXd& odds,
-                             const std::vector<Weights::Product>& taken) {
+/// by information) of those not taken. None if no product varies.
+std::optional<Weights::Product> bestProduct(const Design& design, const Eigen::VectorXd& odds,
+                                            const std::vector<Weights::Product>& taken) {
   const Eigen::ArrayXd p = probabilities(odds).array();
   const Eigen::ArrayXd residual = design.weights.array() * (design.labels.array() - p);
   const Eigen::ArrayXd information = design.weights.array() * p * (1 - p);
-  Weights::Product best{0, 0, 0};
+  std::optional<Weights::Product> best;
   double highest = -1;
   for (int a = 1; a < kClassifierTerms; ++a)
     for (int b = a + 1; b < kClassifierTerms; ++b) {
@@ -119,10 +113,10 @@ Weights::Product bestProduct(const Design& design, const Eigen::VectorXd& odds,
         continue;
       const Eigen::ArrayXd product = design.terms.col(a).array() * design.terms.col(b).array();
       const double gradient = (residual * product).sum();
-      const double statistic = gradient * gradient / (information * product.square()).sum();
-      if (statistic <= highest) continue;
-      highest = statistic;
-      best = {a, b, 0};
+      const double squares = (information * product.square()).sum();
+      if (!(squares > 0) || gradient * gradient / squares <= highest) continue;
+      highest = gradient * gradient / squares;
+      best = Weights::Product{a, b, 0};
     }
   return best;
 }
@@ -138,10 +132,11 @@ Weights fit(const std::vector<Sample>& samples, const TrainOptions& options) {
   const Eigen::VectorXd rough = fitLogistic(known, design.labels, design.weights, options.ridge);
   Eigen::VectorXd full = fitLogistic(design.terms, design.labels, design.weights, options.ridge);
   for (int k = 0; k < options.products; ++k) {
-    weights.products.push_back(bestProduct(design, design.terms * full, weights.products));
-    const Weights::Product& p = weights.products.back();
+    const auto best = bestProduct(design, design.terms * full, weights.products);
+    if (!best) break;
+    weights.products.push_back(*best);
     design.terms.conservativeResize(Eigen::NoChange, design.terms.cols() + 1);
-    design.terms.rightCols<1>() = design.terms.col(p.a).cwiseProduct(design.terms.col(p.b));
+    design.terms.rightCols<1>() = design.terms.col(best->a).cwiseProduct(design.terms.col(best->b));
     full = fitLogistic(design.terms, design.labels, design.weights, options.ridge);
   }
   for (int i = 0; i < kClassifierTerms; ++i) {
@@ -153,8 +148,8 @@ Weights fit(const std::vector<Sample>& samples, const TrainOptions& options) {
   return weights;
 }
 
-DriveScore scoreOf(const LabelledDrive& drive, const Weights& weights, bool fitted) {
-  DriveScore score{drive.name, drive.sensor, drive.real, fitted};
+DriveScore scoreOf(const LabelledDrive& drive, const Weights& weights, bool leftOut) {
+  DriveScore score{drive.name, drive.sensor, drive.real, leftOut};
   const auto n = static_cast<Eigen::Index>(drive.candidates.size());
   Eigen::VectorXd builtIn(n), odds(n), labels(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -196,8 +191,7 @@ void writeClassifier(const std::filesystem::path& file, const Weights& weights) 
 }
 
 /// Fits the scale of the covariances to the poles with a known error that the weights accept.
-void writeCovariance(const std::filesystem::path& file, const std::vector<Sample>& samples,
-                     const Weights& weights) {
+Eigen::VectorXd fitCovariance(const std::vector<Sample>& samples, const Weights& weights) {
   constexpr double kFarError = 100;  // of no pole's own centre: another thing beside it
   std::vector<CovarianceTerms> terms;
   std::vector<double> errors, sampleWeights;
@@ -215,9 +209,11 @@ void writeCovariance(const std::filesystem::path& file, const std::vector<Sample
     for (int i = 0; i < kCovarianceTerms; ++i)
       design(k, i) = terms[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)];
   constexpr double kSmallRidge = 1e-3;
-  const Eigen::VectorXd fitted =
-      fitCovarianceScale(design, Eigen::Map<Eigen::VectorXd>(errors.data(), n),
-                         Eigen::Map<Eigen::VectorXd>(sampleWeights.data(), n), kSmallRidge);
+  return fitCovarianceScale(design, Eigen::Map<Eigen::VectorXd>(errors.data(), n),
+                            Eigen::Map<Eigen::VectorXd>(sampleWeights.data(), n), kSmallRidge);
+}
+
+void writeCovariance(const std::filesystem::path& file, const Eigen::VectorXd& fitted) {
   io::AtomicFile out(file);
   out.stream() << "# Log-linear scale of the covariance of poles, " << kWrittenBy
                << "term,weight\n";
@@ -240,7 +236,7 @@ Json reportOf(const std::vector<DriveScore>& scores, const TrainOptions& options
         {{"drive", s.drive},
          {"sensor", s.sensor},
          {"real", s.real},
-         {"left_out", s.fitted},
+         {"left_out", s.leftOut},
          {"candidates", s.candidates},
          {"poles", s.poles},
          {"built_in", {{"log_loss", s.builtInLoss}, {"precision", s.builtInPrecision}}},
@@ -255,17 +251,19 @@ Json reportOf(const std::vector<DriveScore>& scores, const TrainOptions& options
 
 std::vector<DriveScore> trainClassifier(const TrainOptions& options) {
   const std::vector<LabelledDrive> drives = readAll(options.candidates);
-  const Samples samples(drives, options.realWeight);
-  const std::vector<Sample> all = samples.without(std::nullopt);
+  const std::vector<LabelledDrive> tests = readAll(options.test);
+  const std::vector<Sample> all = samplesOf(drives, options.realWeight);
   const Weights weights = fit(all, options);
+  std::optional<Eigen::VectorXd> covariance;
+  if (options.covariance) covariance = fitCovariance(all, weights);
   std::vector<DriveScore> scores;
-  if (options.crossValidate)
+  if (options.crossValidate && drives.size() > 1)
     for (std::size_t d = 0; d < drives.size(); ++d)
-      scores.push_back(scoreOf(drives[d], fit(samples.without(d), options), true));
-  for (const LabelledDrive& drive : readAll(options.test))
-    scores.push_back(scoreOf(drive, weights, false));
+      scores.push_back(
+          scoreOf(drives[d], fit(samplesOf(drives, options.realWeight, d), options), true));
+  for (const LabelledDrive& drive : tests) scores.push_back(scoreOf(drive, weights, false));
   writeClassifier(options.classifier, weights);
-  if (options.covariance) writeCovariance(*options.covariance, all, weights);
+  if (covariance) writeCovariance(*options.covariance, *covariance);
   if (options.json) writeJson(*options.json, reportOf(scores, options));
   return scores;
 }

@@ -27,8 +27,8 @@ struct TrainOptions {
 /// \brief Log loss and average precision of one drive.
 struct DriveScore {
   std::string drive, sensor;
-  bool real = false,
-       fitted = true;  ///< fitted: left out of the fit of its score, else a test drive
+  bool real = false;
+  bool leftOut = true;  ///< of the fit that it is scored by; false: a test drive
   std::size_t candidates = 0, poles = 0;
   double builtInLoss = 0, loss = 0;            ///< of the weights built in, and of new ones
   double builtInPrecision = 0, precision = 0;  ///< average precision

@@ -27,7 +27,7 @@ std::string scoreText(const std::vector<DriveScore>& scores) {
     out << std::left << std::setw(28) << s.drive << std::right << std::setw(9) << s.poles
         << std::setw(9) << s.candidates - s.poles << std::setw(13) << io::fixed(s.builtInLoss, 4)
         << std::setw(9) << io::fixed(s.loss, 4) << std::setw(17) << io::fixed(s.builtInPrecision, 4)
-        << std::setw(9) << io::fixed(s.precision, 4) << (s.fitted ? "" : "  test") << '\n';
+        << std::setw(9) << io::fixed(s.precision, 4) << (s.leftOut ? "" : "  test") << '\n';
   return out.str();
 }
 

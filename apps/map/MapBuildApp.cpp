@@ -55,6 +55,18 @@ std::vector<StampedPose2D> pathOf(const AddedSessions& added) {
   return path;
 }
 
+const char* counted(PoleCounting counting) {
+  switch (counting) {
+    case PoleCounting::members:
+      return " detections";
+    case PoleCounting::confidences:
+      return " sections of one run, weighed by confidence";
+    case PoleCounting::run:
+      return " sections of one run";
+  }
+  return "";
+}
+
 std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& options) {
   const auto& map = summary.map;
   const std::size_t steps = summary.visited - std::min(summary.visited, summary.sessions.size());
@@ -64,11 +76,10 @@ std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& option
          io::significant(options.sectionLength, 6) + ", " + std::to_string(map.occupiedSections) +
          " of " + std::to_string(map.sections) + " with a scan; " + std::to_string(map.detections) +
          " detections in " + std::to_string(map.clusters) + " places, the best with " +
-         io::significant(map.bestCount, 4) +
-         (options.counting == PoleCounting::members
-              ? " detections, min_count = " + io::significant(options.minCount, 4) + " are needed"
-              : " sections of one run, min_count = " + io::significant(options.minCount, 4) +
-                    " are needed, max_gap = " + std::to_string(options.maxGap)) +
+         io::significant(map.bestCount, 4) + counted(options.counting) +
+         ", min_count = " + io::significant(options.minCount, 4) +
+         " are needed (less where scans are far apart), max_gap = " +
+         std::to_string(options.maxGap) +
          (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]");
 }
 

@@ -38,7 +38,7 @@ void requireCovered(const MappingSession& session, const SessionFiles& files,
               " of the " + std::to_string(known + session.skipped.unmatched) + " scans of " +
               files.input.string() + " (" + io::fixed(sequence.frames.front().time, 3) + " to " +
               io::fixed(sequence.frames.back().time, 3) +
-              " s), at least half are needed; is it the truth of this rawlog?");
+              " s), at least half are needed; is it of this rawlog?");
 }
 
 }  // namespace

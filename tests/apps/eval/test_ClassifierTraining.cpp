@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <map>
 #include <random>
+#include <regex>
+#include <sstream>
 
 #include "eval/ClassifierTraining.h"
 #include "eval/EvalApp.h"
@@ -34,7 +36,8 @@ class ClassifierTraining : public StreetTest {
       const double residual = 0.03 + (pole ? 0 : 0.02) + 0.01 * std::abs(normal(random));
       text += "0,1,2," + std::to_string(pole) + "," + (pole ? "2.5" : "") +
               ",8,30,2,0.1,0.1,0.5,0.05,0.05,0.05,4,0,0.5,0.1,15,0.05,0.2," +
-              std::to_string(clutter) + "," + std::to_string(residual) + ",0.1\n";
+              std::to_string(clutter) + "," + std::to_string(residual) + "," +
+              std::to_string(0.1 + 0.01 * normal(random)) + "\n";
     }
     writeText(folder / name, text);
     return folder / name;
@@ -63,8 +66,8 @@ TEST_F(ClassifierTraining, LearnsWhatTellsPolesApart) {
     EXPECT_LT(score.loss, score.builtInLoss);
     EXPECT_GT(score.precision, 0.95);
   }
-  EXPECT_TRUE(scores[0].fitted);
-  EXPECT_FALSE(scores[2].fitted);
+  EXPECT_TRUE(scores[0].leftOut);
+  EXPECT_FALSE(scores[2].leftOut);
   const std::string weights = readText(folder / "classifier.csv");
   EXPECT_EQ(std::count(weights.begin(), weights.end(), '\n'), 4 + kClassifierTerms + 2);
 }
@@ -74,6 +77,11 @@ TEST_F(ClassifierTraining, WritesTablesThatTheBuildReads) {
   const std::string text = readText(folder / "classifier.csv");
   EXPECT_NE(text.find("\nclutter,0.5"), std::string::npos) << text;  // the mean of the table above
   EXPECT_NE(text.find("*"), std::string::npos);                      // products
+  EXPECT_EQ(text.find("range*"), std::string::npos) << text;         // constant in this table
+  const std::regex row("[A-Za-z]+([*][A-Za-z]+)?(,[-+.0-9e]+)+");    // see Weights.cmake
+  std::istringstream lines(text.substr(text.find("\none,") + 1));
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(std::regex_match(line, row)) << line;
   const std::string scale = readText(folder / "covariance.csv");
   EXPECT_NE(scale.find("term,weight\none,"), std::string::npos);
 }
@@ -83,6 +91,24 @@ TEST_F(ClassifierTraining, TheSameTablesGiveTheSameBytes) {
   const std::string first = readText(folder / "classifier.csv");
   trainClassifier(options());
   EXPECT_EQ(readText(folder / "classifier.csv"), first);
+}
+
+TEST_F(ClassifierTraining, ASingleTableIsFittedAndNotScored) {
+  auto single = options();
+  single.candidates.resize(1);
+  EXPECT_EQ(trainClassifier(single).size(), single.test.size());
+  EXPECT_TRUE(fs::exists(folder / "classifier.csv"));
+}
+
+TEST_F(ClassifierTraining, WithoutKnownErrorsNothingIsWritten) {
+  auto wrong = options();
+  for (auto& table : wrong.candidates) {
+    const std::string text = readText(table);
+    writeText(table, std::regex_replace(text, std::regex(",2\\.5,"), ",,"));
+    ASSERT_NE(readText(table), text);
+  }
+  EXPECT_THROW(trainClassifier(wrong), Error);
+  EXPECT_FALSE(fs::exists(folder / "classifier.csv"));
 }
 
 TEST_F(ClassifierTraining, RefusesOtherTables) {

@@ -83,6 +83,13 @@ TEST(LogisticRegression, ScoresByHand) {
   EXPECT_NEAR(averagePrecision(Eigen::VectorXd::Zero(4), labels, ones), 0.5, 1e-12);
 }
 
+TEST(LogisticRegression, NothingToScoreIsZeroAndNothingToFitIsRefused) {
+  const Eigen::VectorXd none(0), three = Eigen::VectorXd::Ones(3);
+  EXPECT_EQ(logLoss(none, none, none), 0);
+  EXPECT_EQ(averagePrecision(three, Eigen::VectorXd::Zero(3), three), 0);
+  EXPECT_THROW(fitCovarianceScale(Eigen::MatrixXd(0, 3), none, none, 1), Error);
+}
+
 TEST(LogisticRegression, FindsTheScaleOfSquaredErrors) {
   std::mt19937 random(2);
   const Eigen::MatrixXd terms = randomTerms(40000, random);

@@ -36,14 +36,15 @@ void wall(Points& points, double x, double y, double top = 3) {
 
 /// Drives along x past the place (10, 5); `scene` gives the points that scan i has.
 template <class Scene>
-Standing judged(Scene scene, int scans = 12) {
+Standing judged(Scene scene, int scans = 12, float height = 0) {
   MultiScanLabels labels({{10, 5}});
   for (int i = 0; i < scans; ++i) {
     const Eigen::Vector3d sensor(20.0 * i / scans, 0, 1.7);
     Points points;
     ground(points, 10, 5);
     scene(points, sensor, i);
-    labels.add(points, sensor, 0.2);
+    for (Eigen::Vector3f& point : points) point.z() += height;
+    labels.add(points, sensor + Eigen::Vector3d(0, 0, height), 0.2);
   }
   return labels.judge().front();
 }
@@ -55,6 +56,8 @@ TEST(MultiScanLabels, AFreePostIsAPole) {
             Standing::pole);
   EXPECT_EQ(judged([](Points& p, const auto& at, int) { post(p, at, 10, 5, 0.3, 4); }),
             Standing::pole);  // a trunk
+  EXPECT_EQ(judged([](Points& p, const auto& at, int) { post(p, at, 10, 5, 0.1, 4); }, 12, 600),
+            Standing::pole);  // on a mountain
   EXPECT_EQ(judged([](Points& p, const auto& at, int) {
               post(p, at, 10, 5, 0.05, 4);
               post(p, at, 10.4, 5, 0.05, 4);

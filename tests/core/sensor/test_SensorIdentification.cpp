@@ -147,6 +147,19 @@ TEST(SensorIdentification, CloudsCorrectedForSeveralSpeedsAreTriedOneByOne) {
   EXPECT_EQ(together.scans, 3u);
 }
 
+TEST(SensorIdentification, AScanWithFewReturnsSpoilsNothing) {
+  PointList points;  // of a LiDAR that fits no preset
+  for (int ring = 0; ring < 12; ++ring)
+    for (int i = 0; i < 900; ++i)
+      points.addPolar(0.4 * i * kDegree, (-19.3 + 2.9 * ring) * kDegree, 12);
+  PointList few;
+  for (int i = 0; i < 100; ++i) few.addPolar(i * kDegree, -2 * kDegree, 5);
+  const SensorIdentification inspection =
+      identifySensor({points.view(), points.view(), few.view()});
+  EXPECT_FALSE(inspection.preset());
+  EXPECT_EQ(inspection.options().model, "table");
+}
+
 TEST(SensorIdentification, CountsAndShuffles) {
   const PointList a = scanOf("vlp16", 1.0);
   PointList b = clouds::shuffled(a.view(), 2);

@@ -68,6 +68,7 @@ Eigen::VectorXd fitCovarianceScale(const Eigen::MatrixXd& terms,
                                    const Eigen::VectorXd& squaredErrors,
                                    const Eigen::VectorXd& sampleWeights, double ridge) {
   requireSameSize(terms, squaredErrors, sampleWeights);
+  if (squaredErrors.size() == 0) throw Error("regression: no pole with a known error");
   return minimize(
       terms, ridge,
       [&](const Eigen::VectorXd& logScale, Eigen::VectorXd& slopes, Eigen::VectorXd& curvatures) {
@@ -81,6 +82,7 @@ Eigen::VectorXd fitCovarianceScale(const Eigen::MatrixXd& terms,
 double logLoss(const Eigen::VectorXd& logOdds, const Eigen::VectorXd& labels,
                const Eigen::VectorXd& sampleWeights) {
   requireSameSize(logOdds, labels, sampleWeights);
+  if (labels.size() == 0) return 0;
   // ln(1 + exp(-m)), m: odds of the true label.
   const Eigen::ArrayXd odds = logOdds.array() * (2 * labels.array() - 1);
   const Eigen::ArrayXd loss = (-odds).max(0) + (1 + (-odds.abs()).exp()).log();
@@ -95,6 +97,7 @@ double averagePrecision(const Eigen::VectorXd& logOdds, const Eigen::VectorXd& l
   std::stable_sort(order.begin(), order.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return logOdds[a] > logOdds[b]; });
   const double positives = sampleWeights.dot(labels);
+  if (!(positives > 0)) return 0;
   double taken = 0, right = 0, area = 0;
   for (std::size_t first = 0; first < order.size();) {
     double found = 0;

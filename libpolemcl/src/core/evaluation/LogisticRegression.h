@@ -29,7 +29,7 @@ double averagePrecision(const Eigen::VectorXd& logOdds, const Eigen::VectorXd& l
 
 /// \brief Coefficients of a log-linear scale s = exp(terms · coefficients) of covariances:
 /// maximum likelihood for squared errors that, divided by s, are chi-square of two degrees of
-/// freedom. \throws Error when the sizes differ.
+/// freedom. \throws Error when the sizes differ, or without samples.
 Eigen::VectorXd fitCovarianceScale(const Eigen::MatrixXd& terms,
                                    const Eigen::VectorXd& squaredErrors,
                                    const Eigen::VectorXd& sampleWeights, double ridge);

@@ -8,14 +8,14 @@
 namespace polemcl {
 namespace {
 
-constexpr double kReach = 0.8;      ///< points farther from a place do not count, m
-constexpr double kCore = 0.3;       ///< middle of a place, m
-constexpr double kFarthest = 25;    ///< points farther from the sensor are too sparse, m
-constexpr double kNearPass = 20;    ///< m
-constexpr double kCell = 0.05;      ///< side of a voxel, m
-constexpr double kLayer = 0.1;      ///< height of a voxel, m
-constexpr int kWidth = 33;          ///< voxels from side to side of a place
-constexpr int kLowestLayer = -400;  ///< of what a key can hold
+constexpr double kReach = 0.8;         ///< points farther from a place do not count, m
+constexpr double kCore = 0.3;          ///< middle of a place, m
+constexpr double kFarthest = 25;       ///< points farther from the sensor are too sparse, m
+constexpr double kNearPass = 20;       ///< m
+constexpr double kCell = 0.05;         ///< side of a voxel, m
+constexpr double kLayer = 0.1;         ///< height of a voxel, m
+constexpr int kWidth = 33;             ///< voxels from side to side of a place
+constexpr int kLowestLayer = -100000;  ///< 10 km below the origin; a key holds ten times that
 constexpr int kSides = 16;
 constexpr double kGridCell = 2;
 
@@ -61,7 +61,6 @@ double middleOf(int cell) {
 struct Slice {
   enum class Kind { empty, slim, wide, mixed } kind = Kind::empty;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  std::uint16_t sides = 0;
 };
 
 using Cells = std::array<std::array<bool, kWidth>, kWidth>;

@@ -30,7 +30,7 @@ constexpr Weight kWeights[] = {
 #define CLASSIFIER_PRODUCT(a, b, weight) {Term::a, Term::b, weight},
 constexpr Product kProducts[] = {
 #include "core/extraction/classifier.inc"
-};
+    {Term::one, Term::one, 0}};  // a table may have no products
 #undef CLASSIFIER_TERM
 #undef CLASSIFIER_PRODUCT
 

@@ -120,8 +120,13 @@ void OdometryCalibration::compare(const PoseWithCovariance& estimate) {
   const Pose2D expected = chain(m_errors.scale, m_errors.yaw);
   constexpr double small = 1e-6;
   Eigen::Matrix<double, 3, 2> H;
-  H.col(0) = (asVector(chain(m_errors.scale + small, m_errors.yaw)) - asVector(expected)) / small;
-  H.col(1) = (asVector(chain(m_errors.scale, m_errors.yaw + small)) - asVector(expected)) / small;
+  const auto derivative = [&](const Pose2D& changed) {
+    Eigen::Vector3d change = asVector(changed) - asVector(expected);
+    change.z() = wrapAngle(change.z());
+    return Eigen::Vector3d(change / small);
+  };
+  H.col(0) = derivative(chain(m_errors.scale + small, m_errors.yaw));
+  H.col(1) = derivative(chain(m_errors.scale, m_errors.yaw + small));
   Eigen::Matrix3d R = motionCovariance(m_begin, estimate);
   R += walkedCovariance();
   Eigen::Vector3d innovation = asVector(relative(m_begin.mean, estimate.mean)) - asVector(expected);

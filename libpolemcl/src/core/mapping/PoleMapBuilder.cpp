@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <polemcl/core/common/PathSections.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>

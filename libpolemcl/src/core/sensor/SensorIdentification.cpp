@@ -227,7 +227,12 @@ std::optional<SensorIdentification> identifyOneByOne(const std::vector<PointsVie
                                                      bool onItsHead) {
   std::map<std::pair<std::string, bool>, std::vector<SensorIdentification>> fitting;
   for (const PointsView& scan : scans) {
-    SensorIdentification alone = identifyTogether({scan});
+    SensorIdentification alone;
+    try {
+      alone = identifyTogether({scan});
+    } catch (const Error&) {  // too few returns in this one alone
+      continue;
+    }
     const PresetFit* fit = alone.preset();
     if (fit && alone.onItsHead == onItsHead)
       fitting[{fit->model, fit->upsideDown}].push_back(std::move(alone));

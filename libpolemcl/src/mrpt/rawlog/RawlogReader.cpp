@@ -94,6 +94,7 @@ bool RawlogReader::next(RawlogEntry& entry) {
   while (auto read = nextObject()) {
     entry.offset = read->offset;
     if (const auto comment = std::dynamic_pointer_cast<CObservationComment>(read->object)) {
+      if (!m_comment.empty()) m_comment += '\n';
       m_comment += comment->text;
       continue;
     }

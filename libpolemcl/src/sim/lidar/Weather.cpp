@@ -1,5 +1,6 @@
 #include "sim/lidar/Weather.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace polemcl::sim {
