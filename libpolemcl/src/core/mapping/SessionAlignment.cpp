@@ -16,7 +16,7 @@ namespace {
 /// m: greatest distance of a pair, round by round. Errors of decimetres must fit into the first.
 constexpr double s_gates[] = {1.5, 1.0, 0.75, 0.5, 0.5, 0.5};
 constexpr int s_roundsWide = 3;  ///< rounds in which the gate widens the covariances
-constexpr double s_piece = 50;      ///< m of path, see AlignmentOptions::minPoles
+constexpr double s_piece = 50;   ///< m of path, see AlignmentOptions::minPoles
 /// Squared Mahalanobis distance at which a pair has a quarter of its weight.
 constexpr double s_halfway = 9;
 

@@ -92,7 +92,7 @@ struct PoleMapResult {
   std::size_t views = 0;             ///< keyframes: one scan of each occupied section, or all
   std::size_t detections = 0;        ///< used
   std::size_t clusters = 0;          ///< before counting
-  double bestCount = 0;              ///< greatest `counting` of a pole; minCount, or less, is needed
+  double bestCount = 0;  ///< greatest `counting` of a pole; minCount, or less, is needed
 };
 
 /// \brief Builds the map from scans in the order they were driven. The result does not depend on
