@@ -47,6 +47,9 @@ void* operator new[](std::size_t size) {
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return polemcl::tests::takeMemory(size);
 }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return polemcl::tests::takeMemory(size);
+}
 void operator delete(void* memory) noexcept {
   polemcl::tests::giveMemory(memory);
 }

@@ -1,54 +1,8 @@
 /// \file test_LocalizeMemory.cpp
 /// \brief pole-localize takes the same memory for a drive of any length.
 
-#include <malloc.h>
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "support/LocalizeTest.h"
-
-namespace {
-
-std::atomic<std::int64_t> heldBytes{0}, mostHeld{0};
-
-void* counted(std::size_t size) {
-  void* memory = std::malloc(size);
-  if (!memory) throw std::bad_alloc();
-  const std::int64_t now = heldBytes += static_cast<std::int64_t>(malloc_usable_size(memory));
-  std::int64_t most = mostHeld;
-  while (most < now && !mostHeld.compare_exchange_weak(most, now)) {
-  }
-  return memory;
-}
-
-void release(void* memory) {
-  heldBytes -= static_cast<std::int64_t>(malloc_usable_size(memory));
-  std::free(memory);
-}
-
-}  // namespace
-
-// These operators replace those of this test program and of the libraries it loads.
-void* operator new(std::size_t size) {
-  return counted(size);
-}
-void* operator new[](std::size_t size) {
-  return counted(size);
-}
-void operator delete(void* memory) noexcept {
-  release(memory);
-}
-void operator delete[](void* memory) noexcept {
-  release(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  release(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  release(memory);
-}
+#include "support/MemoryTaken.h"
 
 namespace polemcl::test_localize_memory {
 
@@ -86,13 +40,12 @@ class LocalizeMemory : public LocalizeTest {
   /// Bytes of the heap that were in use at the same time, at most, beyond those before.
   std::int64_t peakOf(std::size_t count) {
     writeDrive(count);
-    const std::int64_t before = heldBytes;
-    mostHeld = before;
-    const auto outcome = runWithTruth({"--runs", "2", "--particles", "50"});
-    const std::int64_t peak = mostHeld - before;
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::size_t peak = tests::memoryTakenBy([&] {
+      const auto outcome = runWithTruth({"--runs", "2", "--particles", "50"});
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+    });
     EXPECT_EQ(summary()["poses"], count);
-    return peak;
+    return static_cast<std::int64_t>(peak);
   }
 };
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include <polemcl/io/data/Cloud.h>
@@ -64,6 +65,14 @@ struct StorageFormat : CObservationPointCloud {
   }
 };
 
+/// Microseconds since the full hour. MRPT's gps_timestamp() binds a reference to this misaligned
+/// member, which is undefined.
+std::uint32_t timestampOf(const CObservationVelodyneScan::TVelodyneRawPacket& packet) {
+  std::uint32_t stamp = 0;
+  std::memcpy(&stamp, reinterpret_cast<const char*>(&packet) + sizeof packet.blocks, sizeof stamp);
+  return mrpt::toNativeEndianness(stamp);
+}
+
 /// Measuring times by the packets: the time stamp is that of the first firing, and azimuths of the
 /// device are clockwise. None if the packets do not show a turn (fewer than two, no clock).
 std::optional<ScanTiming> timingOf(
@@ -74,7 +83,7 @@ std::optional<ScanTiming> timingOf(
   const auto rotation = [&](std::size_t i) { return packets[i].blocks[0].rotation() % fullTurn; };
   double turned = 0, seconds = 0;
   for (std::size_t i = 1; i < packets.size(); ++i) {
-    const std::uint32_t from = packets[i - 1].gps_timestamp(), to = packets[i].gps_timestamp();
+    const std::uint32_t from = timestampOf(packets[i - 1]), to = timestampOf(packets[i]);
     turned += (rotation(i) - rotation(i - 1) + fullTurn) % fullTurn;
     seconds += (to >= from ? to - from : to + wholeHour - from) * 1e-6;
   }
