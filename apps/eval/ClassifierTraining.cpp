@@ -51,10 +51,9 @@ struct Weights {
   };
   std::vector<Product> products;
 
-  ClassifierTerms standardized(ClassifierTerms t) const {
-    for (int i = 1; i < kClassifierTerms; ++i)
-      t[i] = std::clamp((t[i] - mean[i]) * scale[i], -kFarthestTerm, kFarthestTerm);
-    return t;
+  ClassifierTerms standardized(const ClassifierTerms& terms) const {
+    return polemcl::standardized(
+        terms, [&](int i) { return mean[i]; }, [&](int i) { return scale[i]; });
   }
   double odds(const PoleFeatures& features) const {
     const ClassifierTerms t = standardized(classifierTerms(features));

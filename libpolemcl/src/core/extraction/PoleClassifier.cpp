@@ -42,11 +42,10 @@ constexpr bool inOrder() {
 }
 static_assert(inOrder(), "classifier.csv must list the terms in the order of ClassifierTerm");
 
-ClassifierTerms standardized(const PoleFeatures& f) {
-  ClassifierTerms t = classifierTerms(f);
-  for (int i = 1; i < kClassifierTerms; ++i)
-    t[i] = std::clamp((t[i] - kWeights[i].mean) * kWeights[i].scale, -kFarthestTerm, kFarthestTerm);
-  return t;
+ClassifierTerms standardTerms(const PoleFeatures& f) {
+  return standardized(
+      classifierTerms(f), [](int i) { return kWeights[i].mean; },
+      [](int i) { return kWeights[i].scale; });
 }
 
 double& at(ClassifierTerms& t, Term term) {
@@ -96,14 +95,14 @@ ClassifierTerms classifierTerms(const PoleFeatures& f) {
 }
 
 double roughOdds(const PoleFeatures& features) {
-  const ClassifierTerms t = standardized(features);
+  const ClassifierTerms t = standardTerms(features);
   double odds = 0;
   for (int i = 0; i < kClassifierTerms; ++i) odds += kWeights[i].rough * t[i];
   return odds;
 }
 
 double poleOdds(const PoleFeatures& features) {
-  ClassifierTerms t = standardized(features);
+  ClassifierTerms t = standardTerms(features);
   double odds = 0;
   for (int i = 0; i < kClassifierTerms; ++i) odds += kWeights[i].full * t[i];
   for (const Product& p : kProducts) odds += p.weight * at(t, p.a) * at(t, p.b);

@@ -6,8 +6,7 @@ namespace polemcl::sim {
 namespace {
 using V = Eigen::Vector3d;
 
-constexpr double kPostDepth = 0.4;    // depth of posts below ground, so that slopes leave no gap, m
-constexpr double kTruthHeight = 1.5;  // height at which TruePole gives position and radius, m
+constexpr double kPostDepth = 0.4;  // depth of posts below ground, so that slopes leave no gap, m
 
 /// \brief A straight axis with a random tilt: point at a height above ground.
 struct Axis {

@@ -9,8 +9,7 @@ namespace polemcl::sim {
 namespace {
 using V = Eigen::Vector3d;
 
-constexpr double kPiece = 0.6;       ///< length of the straight pieces of a bent post, m
-constexpr double kAxisHeight = 1.5;  ///< height at which TruePole gives position and radius, m
+constexpr double kPiece = 0.6;               ///< length of the straight pieces of a bent post, m
 constexpr std::uint32_t kNextPost = 200000;  ///< between the ids of posts that stand together
 
 double heightOn(const Site& site, const V& point) {
@@ -64,8 +63,8 @@ void bend(Piece& piece, const Site& site, Random& random) {
              wave * (std::sin(2.5 * h + phase) - std::sin(phase)) * other);
   };
   deform(piece.object, site, shift, [](double) { return 1.0; });
-  piece.pole->x += shift(kAxisHeight).x();
-  piece.pole->y += shift(kAxisHeight).y();
+  piece.pole->x += shift(kTruthHeight).x();
+  piece.pole->y += shift(kTruthHeight).y();
 }
 
 void taper(Piece& piece, const Site& site, Random& random) {
@@ -75,7 +74,7 @@ void taper(Piece& piece, const Site& site, Random& random) {
   };
   deform(
       piece.object, site, [](double) { return V(V::Zero()); }, thickness);
-  piece.pole->radius *= thickness(kAxisHeight);
+  piece.pole->radius *= thickness(kTruthHeight);
 }
 
 void lean(Piece& piece, const Site& site, Random& random) {
@@ -88,9 +87,9 @@ void lean(Piece& piece, const Site& site, Random& random) {
   }
   // Where the axis is at this height now.
   const V axis =
-      tilt * V(piece.pole->x - site.base.x(), piece.pole->y - site.base.y(), kAxisHeight);
+      tilt * V(piece.pole->x - site.base.x(), piece.pole->y - site.base.y(), kTruthHeight);
   const V up = tilt.col(2);
-  const V place = axis + (kAxisHeight - axis.z()) / up.z() * up;
+  const V place = axis + (kTruthHeight - axis.z()) / up.z() * up;
   piece.pole->x = site.base.x() + place.x();
   piece.pole->y = site.base.y() + place.y();
 }

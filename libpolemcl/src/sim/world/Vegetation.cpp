@@ -32,8 +32,8 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
                  level);
     const double nextWidth = radius * (1.05 - 0.35 * level / trunkTop) * random.uniform(0.96, 1.04);
     builder.post(place, next, width, nextWidth, materials::bark);
-    if (place.z() < 1.5 && level >= 1.5) {
-      const double share = (1.5 - place.z()) / (level - place.z());
+    if (place.z() < kTruthHeight && level >= kTruthHeight) {
+      const double share = (kTruthHeight - place.z()) / (level - place.z());
       truth = place + share * (next - place);
       truthRadius = width + share * (nextWidth - width);
     }

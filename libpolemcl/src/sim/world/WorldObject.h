@@ -46,6 +46,9 @@ constexpr bool ofOneDay(std::uint32_t id) {
   return id % kIdsPerStreet >= kFirstIdOfOneDay;
 }
 
+/// \brief Height above ground at which TruePole gives position and radius, m.
+constexpr double kTruthHeight = 1.5;
+
 /// \brief A true pole: slim, vertical, its top at least 2 m above ground.
 struct TruePole {
   std::uint32_t id = 0;  ///< the label of its points
