@@ -1,7 +1,7 @@
 /// \file main.cpp
-/// \brief The main function of each program, POLEMCL_PROGRAM. Loading MRPT takes a third of a
-/// second;
-/// `--version` and `--help` need none of it. Everything else is in a module, loaded when needed.
+/// \brief The main function of each program, POLEMCL_PROGRAM. Loading MRPT takes a third of
+/// a second; `--version` and `--help` need none of it. Everything else is in a module, loaded when
+/// needed.
 
 #include <dlfcn.h>
 

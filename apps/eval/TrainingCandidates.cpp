@@ -195,7 +195,7 @@ std::vector<Label> labelsByConsistency(const TrainingDrive& drive,
   std::vector<std::size_t> placeOf;
   placeOf.reserve(found.size());
   for (const FoundCandidate& each : found) placeOf.push_back(places.indexOf(each.place_map));
-  MultiScanLabels evidence(places.centres());
+  MultiScanLabels consistency(places.centres());
   const double topSlope = SensorModel(sensor).beam(0).slope;
   std::vector<Eigen::Vector3f> points_map;
   for (std::size_t i = 0; i < drive.size(); ++i) {
@@ -209,9 +209,9 @@ std::vector<Label> labelsByConsistency(const TrainingDrive& drive,
       points_map.push_back(T_map_lidar * Eigen::Vector3f(static_cast<float>(at.x()),
                                                          static_cast<float>(at.y()), cloud.z[k]));
     }
-    evidence.add(points_map, drive.T_map_lidar(i).translation(), topSlope);
+    consistency.add(points_map, drive.T_map_lidar(i).translation(), topSlope);
   }
-  const std::vector<Standing> verdicts = evidence.judge();
+  const std::vector<Standing> verdicts = consistency.judge();
   std::vector<Label> labels;
   labels.reserve(found.size());
   for (const std::size_t place : placeOf) labels.push_back({verdicts[place], std::nullopt});

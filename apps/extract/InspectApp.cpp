@@ -104,10 +104,11 @@ void printTiming(std::ostream& out, const std::optional<TimingEstimate>& found) 
     out << ", as far as the poles show";
   out << "\nclock             "
       << (timing.clock != 0 ? "clock_offset_s = " + io::fixed(timing.clock, 2) : "no offset seen")
-      << "\nevidence          " << found->pairs << " pairs of sightings, a pole moves by "
+      << "\nsignificance      " << found->pairs << " pairs of sightings, a pole moves by "
       << io::fixed(found->before, 4) << " m between two scans as they are, by "
       << io::fixed(found->after, 4) << " m\n                  with this timing; turn "
-      << io::fixed(found->turnEvidence, 1) << " and clock " << io::fixed(found->clockEvidence, 1)
+      << io::fixed(found->turnSignificance, 1) << " and clock "
+      << io::fixed(found->clockSignificance, 1)
       << " standard errors better than none (4 are needed)\n";
 }
 

@@ -150,7 +150,10 @@ ScanTiming timingOf(const ImportOptions& options) {
   if (options.timing) return *options.timing;
   const auto file = options.input / "scan_timing.ini";
   if (!std::filesystem::exists(file)) return datasetTiming(options.dataset);
-  return timingIn(io::readBytes(file), file.string());
+  const std::string text = io::readBytes(file);
+  if (text.find("[scan_timing]") == std::string::npos)
+    throw Error(file.string() + ": no section [scan_timing]; write it, or remove the file");
+  return timingIn(text, file.string());
 }
 
 /// Both files appear together, when both are complete.

@@ -196,9 +196,9 @@ std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job
           << io::fixed(c.alignment.meanShift, 3) << " m on average, at most "
           << io::fixed(c.alignment.largestShift, 3) << " m and "
           << io::fixed(c.alignment.largestTurn / degree, 2) << " deg\n";
-    if (c.withoutFreeRange > 0)
+    if (c.withoutVisibility > 0)
       out << "scans without visibility ranges, in which nothing counts as missed: "
-          << c.withoutFreeRange << '\n';
+          << c.withoutVisibility << '\n';
   }
   out << summary.skipped;
   return out.str();

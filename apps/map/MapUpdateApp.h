@@ -37,7 +37,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings
 /// \brief What the program prints.
 std::string summaryText(const MapUpdateSummary& summary, const MapUpdateJob& job);
 
-/// \brief A line for each session of which more than 5 % of the poles found "moved". Poles seldom
+/// \brief A line for each session of which more than 5 % of the poles in view "moved". Poles seldom
 /// do: rather the poses are wrong.
 std::vector<std::string> updateWarnings(const MapUpdateSummary& summary, const MapUpdateJob& job);
 

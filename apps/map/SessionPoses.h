@@ -21,17 +21,17 @@ enum class PoseKind {
 
 /// \brief The pose of one scan.
 struct ScanPose {
-  Pose2D pose;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw; zero for truth
+  Pose2D pose;                                           ///< of the robot in the map, m and rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw, m and rad; zero for truth
   bool isOk = true;  ///< false: the localizer was `degraded` or `lost` there
 };
 
+/// \brief The poses of one session, from one file.
 class SessionPoses {
  public:
-  /// \param file For truth: TUM, robot poses. For an estimate: `run_NN.tum` of `pole-localize`,
-  /// with
-  ///        its `run_NN_cov.csv` (which the poses are read from, too) and `run_NN_health.csv`
-  ///        beside it.
+  /// \param file For truth: TUM, robot poses. For an estimate: `run_NN.tum` of `pole-localize`;
+  /// poses and covariances are read from the `run_NN_cov.csv` beside it, its health from
+  /// `run_NN_health.csv`.
   /// \throws Error when a file cannot be read.
   SessionPoses(PoseKind kind, const std::filesystem::path& file);
 
@@ -39,7 +39,8 @@ class SessionPoses {
   /// \param scan Number of the scan in its rawlog. \param time Time of the scan, s.
   /// \throws Error when an estimate for this scan has another time: it is of another rawlog.
   std::optional<ScanPose> at(std::size_t scan, double time) const;
-  /// \brief Velocity from the poses before and after; zero where there is a gap.
+  /// \brief Velocity in the frame of the robot, from the poses before and after; zero where there
+  /// is a gap.
   Velocity velocityAt(double time) const;
 
  private:

@@ -103,7 +103,7 @@ adjust_by_planes() {
   for poses in published planes; do
     printf '%s: ' "$poses"
     "$bin/pole-extract" --inspect "$here/$poses.rawlog" --truth "$here/$poses.tum" |
-      sed -n 's/^evidence *//p'
+      sed -n 's/^significance *//p'
   done >"$here/spread.txt"
   rm "$here"/*.rawlog
 }

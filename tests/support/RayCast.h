@@ -91,7 +91,7 @@ inline double firstEcho(const Scene& scene, double azimuth, const Beam& beam, do
 inline PointList cast(const Scene& scene, const SensorModel& sensor, const Casting& casting = {}) {
   sim::Random random(casting.seed);
   PointList points;
-  for (int row = 0; row < sensor.rows(); ++row) {
+  for (int row = 0; row < sensor.beamCount(); ++row) {
     const Beam& beam = sensor.beam(row);
     const double phase = random.uniform();
     for (int column = 0; column < sensor.columns(); ++column) {

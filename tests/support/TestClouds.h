@@ -64,7 +64,7 @@ inline TestCloud castScan(const SensorOptions& options, const Eigen::Isometry3d&
   const SensorModel model(options);
   TestCloud cloud;
   for (int column = 0; column < model.columns(); ++column)
-    for (int row = 0; row < model.rows(); ++row) {
+    for (int row = 0; row < model.beamCount(); ++row) {
       const double azimuth = 2 * M_PI * column / model.columns() - M_PI;
       const auto [start, along] = ray(model, row, azimuth);
       const double range = castRay(T_robot_lidar * start, T_robot_lidar.linear() * along, poles);

@@ -8,7 +8,8 @@
 
 namespace polemcl {
 
-/// \brief Text of a comment: a section `[scan_timing]` as in INI files, the rest for people.
+/// \brief Text of a comment: a section `[scan_timing]` as in INI files, the text before it for
+/// people.
 std::string timingComment(const ScanTiming& timing);
 /// \brief The timing in a comment; `auto` if it has no such section.
 /// \param rawlog Name for messages. \throws Error when the section cannot be read.

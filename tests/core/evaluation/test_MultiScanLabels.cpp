@@ -92,10 +92,10 @@ TEST(MultiScanLabels, WhatWasThereOnceIsOther) {
 }
 
 TEST(MultiScanLabels, FewSidesFewScansAndLeaningThingsAreUnsure) {
-  EXPECT_EQ(judged([](Points& p, const auto&, int) {
-              post(p, Eigen::Vector3d(0, 0, 0), 10, 5, 0.1, 4, 0.4);
+  EXPECT_EQ(judged([](Points& p, const auto& at, int) {
+              post(p, at, 10 - 0.2 * 1.4, 5, 0.05, 2.6, 0.2);
             }),
-            Standing::unsure);
+            Standing::unsure);  // at half its height it stands at the place
   EXPECT_EQ(judged([](Points& p, const auto& at, int) { post(p, at, 10, 5, 0.1, 4); }, 2),
             Standing::unsure);
   MultiScanLabels fromOneSide({{10, 5}});

@@ -30,7 +30,7 @@ Wall board(double bearing, double distance, double half, double top) {
           distance * s + half * c,  -kSensorHeight,          top - kSensorHeight};
 }
 
-std::vector<float> freeRangeOf(const PointList& points, const SensorOptions& sensor) {
+std::vector<float> visibilityRangeOf(const PointList& points, const SensorOptions& sensor) {
   PoleExtractor extractor(sensor, {});
   extractor.extract(points.view());
   return extractor.visibilityRange();
@@ -70,7 +70,8 @@ TEST(VisibilityRange, EndsAtWallsAndGoesOnOverWhatIsLow) {
     scene.walls.push_back(board(0.5, 12.2, 3, 6));     // a house
     scene.walls.push_back(board(2.0, 8.0, 3, 0.45));   // a kerb's planter
     scene.walls.push_back(board(-1.5, 25.3, 4, 2.9));  // as high as poles
-    const auto ranges = freeRangeOf(castYard(sensorOptions(model), scene), sensorOptions(model));
+    const auto ranges =
+        visibilityRangeOf(castYard(sensorOptions(model), scene), sensorOptions(model));
     ASSERT_EQ(ranges.size(), 256u);
     EXPECT_EQ(at(ranges, 0.5), 12.0f);
     EXPECT_EQ(at(ranges, -1.5), 25.0f);
@@ -84,7 +85,7 @@ TEST(VisibilityRange, APoleEndsItAtItsFrontAndNothingElse) {
   Scene scene = plain();
   scene.cylinders.push_back({10, 4, 0.15, -kSensorHeight, 3});
   const auto ranges =
-      freeRangeOf(castYard(sensorOptions("hdl64e"), scene), sensorOptions("hdl64e"));
+      visibilityRangeOf(castYard(sensorOptions("hdl64e"), scene), sensorOptions("hdl64e"));
   const double bearing = std::atan2(4, 10), front = std::hypot(10, 4) - 0.15;
   EXPECT_LE(at(ranges, bearing), front);
   EXPECT_GT(at(ranges, bearing), front - 0.55);
@@ -98,7 +99,7 @@ TEST(VisibilityRange, SparseBeamsEndItWhereFewerThanTwoMeetPoles) {
   sensor.fovDown = -10 * kDegree;
   sensor.columns = 1800;
   sensor.checkBeams = false;
-  const auto ranges = freeRangeOf(castYard(sensor, plain()), sensor);
+  const auto ranges = visibilityRangeOf(castYard(sensor, plain()), sensor);
   // 1.5 m up: the level beam always passes at 1.5 m; +5° reaches 3 m after 17.1 m, -5° 0.5 m after
   // 11.4 m. The last step with two beams is at 17.0 m.
   EXPECT_EQ(at(ranges, 1.0), 17.0f);
@@ -107,7 +108,7 @@ TEST(VisibilityRange, SparseBeamsEndItWhereFewerThanTwoMeetPoles) {
 TEST(VisibilityRange, IsUnknownWhereNothingWasSeen) {
   const SensorOptions sensor = sensorOptions("hdl32e");
   const auto ranges =
-      freeRangeOf(cast(plain(), SensorModel(sensor), {0, 0, 5, 0.0, M_PI / 2}), sensor);
+      visibilityRangeOf(cast(plain(), SensorModel(sensor), {0, 0, 5, 0.0, M_PI / 2}), sensor);
   EXPECT_EQ(at(ranges, 0), 40.0f);
   EXPECT_EQ(at(ranges, 1.4), 40.0f);
   EXPECT_EQ(at(ranges, 2.0), 0.0f);
@@ -119,8 +120,8 @@ TEST(VisibilityRange, TurnsWithTheScan) {
   scene.walls.push_back(board(0.5, 12.2, 3, 6));
   const SensorOptions sensor = sensorOptions("hdl64e");
   const PointList points = castYard(sensor, scene);
-  const auto before = freeRangeOf(points, sensor);
-  const auto after = freeRangeOf(turned(points.view(), kTurn * 32 / 256), sensor);
+  const auto before = visibilityRangeOf(points, sensor);
+  const auto after = visibilityRangeOf(turned(points.view(), kTurn * 32 / 256), sensor);
   int different = 0;
   for (int i = 0; i < 256; ++i) different += before[i] != after[(i + 32) % 256];
   EXPECT_LE(different, 4) << "edges of sectors may round";

@@ -314,7 +314,7 @@ TEST(GlobalLocalizer, RanksItsHypothesesAndCountsWhatTheyMatch) {
     EXPECT_NEAR(robot.x, h.pose_map_robot.x, 1e-9);
     EXPECT_NEAR(robot.y, h.pose_map_robot.y, 1e-9);
     if (i == 0) continue;
-    EXPECT_LE(h.evidence, result.hypotheses[i - 1].evidence);
+    EXPECT_LE(h.logRatio, result.hypotheses[i - 1].logRatio);
     for (std::size_t k = 0; k < i; ++k) {
       const Pose2D between = relative(result.hypotheses[k].pose_map_robot, h.pose_map_robot);
       EXPECT_TRUE(std::hypot(between.x, between.y) > options.distinct ||
@@ -333,7 +333,7 @@ TEST(GlobalLocalizer, SaysTheSameTwice) {
   for (std::size_t i = 0; i < a.hypotheses.size(); ++i) {
     EXPECT_EQ(a.hypotheses[i].pose_map_robot.x, b.hypotheses[i].pose_map_robot.x);
     EXPECT_EQ(a.hypotheses[i].pose_map_robot.yaw, b.hypotheses[i].pose_map_robot.yaw);
-    EXPECT_EQ(a.hypotheses[i].evidence, b.hypotheses[i].evidence);
+    EXPECT_EQ(a.hypotheses[i].logRatio, b.hypotheses[i].logRatio);
   }
 }
 
@@ -419,7 +419,7 @@ TEST(GlobalLocalizer, LetsNoUnseenPolesOutvoteTheMatches) {
   ASSERT_EQ(result.verdict, GlobalVerdict::resolved);
   EXPECT_TRUE(isRight(result.hypotheses[0].pose_map_robot, drive.truth()));
   EXPECT_GT(result.hypotheses[0].unseen, 40u);
-  EXPECT_GT(result.hypotheses[0].evidence, 0);
+  EXPECT_GT(result.hypotheses[0].logRatio, 0);
 }
 
 TEST(GlobalLocalizer, TellsWhyThereIsNoAnswer) {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include <polemcl/core/mapping/MapUpdater.h>
+#include "core/mapping/MapSession.h"
 
 namespace polemcl::test_map_updater {
 
@@ -130,7 +131,7 @@ TEST(MapUpdater, WhatIsHiddenStays) {
   EXPECT_NEAR(find(map, 30, -6)->history.existence, 0.9, 1e-9);
 }
 
-TEST(MapUpdater, FreeRangesStandInTheSensorsFrame) {
+TEST(MapUpdater, VisibilityRangesStandInTheSensorsFrame) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   // The sensor looks along +x of the map: what lies to its right is hidden.
   for (SessionScan& scan : scans) {
@@ -146,12 +147,12 @@ TEST(MapUpdater, FreeRangesStandInTheSensorsFrame) {
                find(updatedBy(kept({{10, 5}, {30, -6}}), scans), 30, -6)->present);
 }
 
-TEST(MapUpdater, WithoutFreeRangesNothingIsMissed) {
+TEST(MapUpdater, WithoutVisibilityRangesNothingIsMissed) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   for (SessionScan& scan : scans) scan.visibilityRange.clear();
   MapUpdateCounts counts;
   const LandmarkMap map = updatedBy(kept({{10, 5}, {30, -6}}), scans, &counts);
-  EXPECT_EQ(counts.withoutFreeRange, 41u);
+  EXPECT_EQ(counts.withoutVisibility, 41u);
   EXPECT_EQ(presentPoles(map).size(), 2u);
   // Zero is unknown.
   for (SessionScan& scan : scans) scan.visibilityRange.assign(256, 0);
@@ -281,7 +282,7 @@ TEST(MapUpdater, TimeMakesUnsure) {
   upkeep.existence.lifetimeDays = 365;
   const LandmarkMap after = updateMap(map, drive({{10, 5}}, 375), {}, upkeep);
   EXPECT_NEAR(find(after, 300, 5)->history.existence, 0.9 / M_E, 0.02)
-      << "clamped by no evidence, decayed by a year";
+      << "clamped by nothing seen, decayed by a year";
 }
 
 TEST(MapUpdater, TimeCountsOnce) {
@@ -338,10 +339,12 @@ TEST(MapUpdater, AFreshMapGetsItsHistoryFromItsScans) {
 TEST(MapUpdater, RefusesBadScansAndOptions) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   scans[3].visibilityRange[7] = -1;
-  EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("free range of scan 3"), std::string::npos);
+  EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("visibility range of " + nameOf(scans[3])),
+            std::string::npos);
   scans = drive({{10, 5}});
   scans[4].pose_map_robot.x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("scan 4"), std::string::npos);
+  EXPECT_NE(refusal([&] { updatedBy({}, scans); }).find("pose of " + nameOf(scans[4])),
+            std::string::npos);
   const auto refused = [](auto field, auto value) {
     MapUpdateOptions o;
     o.*field = value;

@@ -32,7 +32,7 @@ ExistenceOptions options() {
 }  // namespace
 
 TEST(PoleExistence, OneScanCountsAsBayesHasIt) {
-  ExistenceEvidence found, missed;
+  ExistenceLikelihood found, missed;
   found.add(true, 0, options(), 0.8);
   missed.add(false, 0, options(), 0.8);
   // P(found | pole) / P(found | none) = 0.8 / 0.1 = 8; missed: 0.2 / 0.9.
@@ -45,25 +45,25 @@ TEST(PoleExistence, OneScanCountsAsBayesHasIt) {
 }
 
 TEST(PoleExistence, ScansOfOneLookCountOnce) {
-  ExistenceEvidence evidence;
-  for (int i = 0; i < 10; ++i) evidence.add(i < 5, 0.4 * i, options(), 0.8);  // 0 to 3.6 m
-  EXPECT_NEAR(evidence.logRatio(), 0.5 * std::log(8) + 0.5 * std::log(2.0 / 9), 1e-12);
-  evidence.add(true, 5.1, options(), 0.8);  // the next look
-  evidence.add(true, 9.9, options(), 0.8);
-  EXPECT_NEAR(evidence.logRatio(), 1.5 * std::log(8) + 0.5 * std::log(2.0 / 9), 1e-12);
-  EXPECT_EQ(evidence.found(), 7u);
-  EXPECT_EQ(evidence.missed(), 5u);
+  ExistenceLikelihood likelihood;
+  for (int i = 0; i < 10; ++i) likelihood.add(i < 5, 0.4 * i, options(), 0.8);  // 0 to 3.6 m
+  EXPECT_NEAR(likelihood.logRatio(), 0.5 * std::log(8) + 0.5 * std::log(2.0 / 9), 1e-12);
+  likelihood.add(true, 5.1, options(), 0.8);  // the next section
+  likelihood.add(true, 9.9, options(), 0.8);
+  EXPECT_NEAR(likelihood.logRatio(), 1.5 * std::log(8) + 0.5 * std::log(2.0 / 9), 1e-12);
+  EXPECT_EQ(likelihood.found(), 7u);
+  EXPECT_EQ(likelihood.missed(), 5u);
 }
 
 // Behind something, a find says less; where there was one, scans without a find count as well.
 TEST(PoleExistence, HiddenPlacesSayLess) {
-  ExistenceEvidence evidence;
-  evidence.add(false, 0, options(), 0.8, true);
-  EXPECT_EQ(evidence.logRatio(), 0);
-  evidence.add(true, 6, options(), 0.8, true);
-  EXPECT_NEAR(evidence.logRatio(), std::log(0.7 / 0.9) + std::log(3), 1e-12);
-  EXPECT_EQ(evidence.found(), 1u);
-  EXPECT_EQ(evidence.missed(), 0u);
+  ExistenceLikelihood likelihood;
+  likelihood.add(false, 0, options(), 0.8, true);
+  EXPECT_EQ(likelihood.logRatio(), 0);
+  likelihood.add(true, 6, options(), 0.8, true);
+  EXPECT_NEAR(likelihood.logRatio(), std::log(0.7 / 0.9) + std::log(3), 1e-12);
+  EXPECT_EQ(likelihood.found(), 1u);
+  EXPECT_EQ(likelihood.missed(), 0u);
 }
 
 TEST(PoleExistence, NothingIsEverCertain) {

@@ -135,7 +135,7 @@ TEST(PoleMapBuilder, TakesTheMiddleScanOfASection) {
   const PoleMapResult result = buildPoleMap(scans, sectionsOfOneMetre(1, 0));
   ASSERT_EQ(result.poles.size(), 1u);
   EXPECT_NEAR(result.poles[0].y, 3, 1e-12);
-  EXPECT_EQ(result.views, 1u);
+  EXPECT_EQ(result.keyframes, 1u);
   EXPECT_EQ(result.detections, 1u);
 }
 
@@ -147,7 +147,7 @@ TEST(PoleMapBuilder, EveryScanIsAViewButSectionsAreCounted) {
   const PoleMapResult result = buildPoleMap(scans, options);
   ASSERT_EQ(result.poles.size(), 1u);
   EXPECT_EQ(result.poles[0].count, 30u);
-  EXPECT_EQ(result.views, 30u);
+  EXPECT_EQ(result.keyframes, 30u);
   options.minCount = 4;
   EXPECT_TRUE(buildPoleMap(scans, options).poles.empty());
 }
@@ -273,7 +273,7 @@ TEST(PoleMapBuilder, TellsWhatItDid) {
   EXPECT_TRUE(result.poles.empty());
   EXPECT_EQ(result.sections, 7u);
   EXPECT_EQ(result.occupiedSections, 4u);
-  EXPECT_EQ(result.views, 4u);
+  EXPECT_EQ(result.keyframes, 4u);
   EXPECT_EQ(result.detections, 3u);
   EXPECT_EQ(result.clusters, 1u);
   EXPECT_EQ(result.bestCount, 3);

@@ -99,7 +99,7 @@ TEST(PoleMapPaper, OnlyMiddlesOfSectionsThatEndAreUsed) {
   const PoleMapResult map = buildPoleMap(scans, authors(1));
   ASSERT_EQ(map.poles.size(), 1u);
   EXPECT_NEAR(map.poles[0].x, 10, 1e-12);
-  EXPECT_EQ(map.views, 1u);
+  EXPECT_EQ(map.keyframes, 1u);
   EXPECT_EQ(map.sections, 1u);
   auto nearest = authors(1);
   nearest.middle = SectionMiddle::nearest;

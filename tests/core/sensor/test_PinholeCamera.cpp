@@ -47,7 +47,7 @@ template <class Line>
 void expectOwnRows(const PinholeCamera& c, int lines, Line line) {
   const Pixels pixels(c);
   const SensorModel model(c);
-  ASSERT_EQ(model.rows(), lines);
+  ASSERT_EQ(model.beamCount(), lines);
   GroundGrid ground;
   ground.build(pixels.view(), 0.5f, 50, 1.5f);
   ScanLines rows(model);
@@ -99,7 +99,7 @@ TEST(PinholeCamera, HeightOfARowOverAPlace) {
     const Pixels pixels(c);
     for (std::size_t i = 0; i < pixels.x.size(); i += 37) {
       const int row = static_cast<int>(i) / c.width, column = static_cast<int>(i) % c.width;
-      const int line = model.rows() == c.width      ? column
+      const int line = model.beamCount() == c.width ? column
                        : c.R_lidar_camera(2, 2) < 0 ? c.height - 1 - row
                                                     : row;
       EXPECT_NEAR(

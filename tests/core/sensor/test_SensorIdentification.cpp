@@ -80,7 +80,7 @@ TEST(SensorIdentification, GivesATableWhenNoPresetFits) {
   EXPECT_NEAR(options.height, 1.73, 0.1);
   ASSERT_NO_THROW(SensorModel{options});
   const SensorModel model(options);
-  ASSERT_EQ(model.rows(), 64);
+  ASSERT_EQ(model.beamCount(), 64);
   std::size_t near = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const float rho = std::hypot(points.x[i], points.y[i]);

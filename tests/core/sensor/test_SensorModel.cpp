@@ -41,7 +41,7 @@ SensorOptions table(const std::vector<double>& degrees) {
 /// A point made by each beam is given back to that beam, near and far.
 void expectOwnRows(const SensorModel& sensor, std::initializer_list<double> ranges) {
   for (const double rho : ranges)
-    for (int row = 0; row < sensor.rows(); ++row) {
+    for (int row = 0; row < sensor.beamCount(); ++row) {
       const Beam& beam = sensor.beam(row);
       const double z = rho * beam.slope + beam.offset;
       ASSERT_EQ(sensor.row(static_cast<float>(rho), static_cast<float>(z)), row) << rho;
@@ -69,7 +69,7 @@ const std::vector<std::pair<std::string, int>> kBeams = {
 
 TEST(SensorModel, PresetsHaveTheBeamsOfTheirNames) {
   for (const auto& [model, beams] : kBeams)
-    EXPECT_EQ(SensorModel(preset(model)).rows(), beams) << model;
+    EXPECT_EQ(SensorModel(preset(model)).beamCount(), beams) << model;
 }
 
 TEST(SensorModel, NamesAreWhatModelAccepts) {
@@ -87,7 +87,7 @@ TEST(SensorModel, OutermostBeamsAreThoseOfTheDataSheets) {
   const auto expectFan = [](const std::string& model, double topDeg, double bottomDeg) {
     const SensorModel sensor(preset(model));
     EXPECT_NEAR(std::atan(sensor.beam(0).slope), topDeg * kDegree, 0.002 * kDegree) << model;
-    EXPECT_NEAR(std::atan(sensor.beam(sensor.rows() - 1).slope), bottomDeg * kDegree,
+    EXPECT_NEAR(std::atan(sensor.beam(sensor.beamCount() - 1).slope), bottomDeg * kDegree,
                 0.002 * kDegree);
   };
   expectFan("hdl32e", 10.667, -30.667);
@@ -133,9 +133,9 @@ TEST(SensorModel, APointBetweenTwoBeamsIsGivenToTheNearer) {
     const SensorModel sensor(options);
     for (int i = 0; i < 5000; ++i) {
       const double slope =
-          random.uniform(sensor.beam(sensor.rows() - 1).slope, sensor.beam(0).slope);
+          random.uniform(sensor.beam(sensor.beamCount() - 1).slope, sensor.beam(0).slope);
       std::vector<double> distance;
-      for (int row = 0; row < sensor.rows(); ++row)
+      for (int row = 0; row < sensor.beamCount(); ++row)
         distance.push_back(std::abs(sensor.beam(row).slope - slope));
       const auto nearest = std::min_element(distance.begin(), distance.end());
       const int row = sensor.row(20, static_cast<float>(20 * slope));
@@ -167,8 +167,8 @@ TEST(SensorModel, OutsideTheFanThereIsNoRow) {
 TEST(SensorModel, UpsideDownTheFanIsMirrored) {
   for (const std::string model : {"hdl32e", "hdl64e", "vlp16"}) {
     const SensorModel upright(preset(model)), hanging(preset(model, true));
-    for (int row = 0; row < upright.rows(); ++row) {
-      const Beam &a = upright.beam(row), &b = hanging.beam(upright.rows() - 1 - row);
+    for (int row = 0; row < upright.beamCount(); ++row) {
+      const Beam &a = upright.beam(row), &b = hanging.beam(upright.beamCount() - 1 - row);
       EXPECT_DOUBLE_EQ(b.slope, -a.slope) << model;
       EXPECT_DOUBLE_EQ(b.offset, -a.offset) << model;
     }
@@ -178,7 +178,7 @@ TEST(SensorModel, UpsideDownTheFanIsMirrored) {
 
 TEST(SensorModel, ATableMayComeInAnyOrder) {
   const SensorModel sensor(table({-5, 10, 2}));
-  ASSERT_EQ(sensor.rows(), 3);
+  ASSERT_EQ(sensor.beamCount(), 3);
   EXPECT_DOUBLE_EQ(sensor.beam(0).slope, std::tan(10 * kDegree));
   EXPECT_DOUBLE_EQ(sensor.beam(1).slope, std::tan(2 * kDegree));
   EXPECT_DOUBLE_EQ(sensor.beam(2).slope, std::tan(-5 * kDegree));
@@ -193,7 +193,7 @@ TEST(SensorModel, ATableMayHaveALowerBlock) {
   options.upperApex = 0.2;
   options.lowerApex = 0.12;
   const SensorModel sensor(options);
-  ASSERT_EQ(sensor.rows(), 7);
+  ASSERT_EQ(sensor.beamCount(), 7);
   EXPECT_DOUBLE_EQ(sensor.beam(3).slope, std::tan(-4 * kDegree));
   EXPECT_EQ(sensor.beam(3).offset, 0.2);
   EXPECT_DOUBLE_EQ(sensor.beam(4).slope, std::tan(-6 * kDegree));
@@ -203,7 +203,7 @@ TEST(SensorModel, ATableMayHaveALowerBlock) {
 
 TEST(SensorModel, UniformBeamsAreEvenlySpaced) {
   const SensorModel sensor(uniform(5, 10, -30, 720));
-  ASSERT_EQ(sensor.rows(), 5);
+  ASSERT_EQ(sensor.beamCount(), 5);
   for (int row = 0; row < 5; ++row)
     EXPECT_NEAR(std::atan(sensor.beam(row).slope), (10 - 10 * row) * kDegree, 1e-12);
   EXPECT_EQ(sensor.columns(), 720);

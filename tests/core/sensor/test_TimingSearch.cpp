@@ -65,7 +65,7 @@ TEST(TimingSearch, FindsDirectionAndCut) {
     EXPECT_EQ(found.timing.turn, truth.turn);
     EXPECT_LE(turned(found.timing.cut, truth.cut), 16 * M_PI / 180);
     EXPECT_EQ(found.timing.clock, 0);
-    EXPECT_GT(found.turnEvidence, 10);
+    EXPECT_GT(found.turnSignificance, 10);
     EXPECT_LT(found.after, found.before);
     EXPECT_GT(found.pairs, 1000u);
   }

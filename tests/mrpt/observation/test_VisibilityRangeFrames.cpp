@@ -21,7 +21,7 @@ std::size_t differing(const std::vector<float>& a, const std::vector<float>& b, 
 
 }  // namespace
 
-TEST(FreeRangeFrames, LevelCloudsKeepThoseOfTheExtractor) {
+TEST(VisibilityRangeFrames, LevelCloudsKeepThoseOfTheExtractor) {
   const auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
   ObservationPoleExtractor extraction(options);
@@ -36,7 +36,7 @@ TEST(FreeRangeFrames, LevelCloudsKeepThoseOfTheExtractor) {
       << "its walls";
 }
 
-TEST(FreeRangeFrames, ABodyFrameWithZDownIsTurnedBack) {
+TEST(VisibilityRangeFrames, ABodyFrameWithZDownIsTurnedBack) {
   auto options = hdl32(1.5);
   const TestCloud cloud = plainCloud(options);
   ObservationPoleExtractor level(options);
@@ -52,7 +52,7 @@ TEST(FreeRangeFrames, ABodyFrameWithZDownIsTurnedBack) {
       << "edges of sectors";
 }
 
-TEST(FreeRangeFrames, RawlogsKeepThem) {
+TEST(VisibilityRangeFrames, RawlogsKeepThem) {
   auto options = hdl32(1.5);
   ObservationPoleExtractor extraction(options);
   const auto scan = extraction.process(*observationOf(plainCloud(options), CPose3D()));

@@ -85,7 +85,7 @@ CObservationPoles scanOf(std::size_t poles) {
 
 const std::vector<std::uint32_t> claims{70000, 220'000'000, 0xffffffff};
 
-TEST(ForgedLengths, OfFreeRanges) {
+TEST(ForgedLengths, OfVisibilityRanges) {
   const std::string ranges(number(128) + number(0x40e00000));  // 7
   for (const std::uint32_t claim : claims) {
     const std::string bytes =

@@ -171,7 +171,7 @@ TEST_F(DetectionSamplerTest, RefusesAnotherLidarOrHeight) {
   EXPECT_THROW(DetectionSampler(plainModel(), world, m_options), Error);
 }
 
-TEST_F(DetectionSamplerTest, FreeRangesEndAtHousesInTheFrameOfTheClouds) {
+TEST_F(DetectionSamplerTest, VisibilityRangesEndAtHousesInTheFrameOfTheClouds) {
   const World world = makeWorld(m_options.world);
   const Drive drive = makeDrive(world, m_options);
   const DetectionSampler sampler(plainModel(), world, m_options);

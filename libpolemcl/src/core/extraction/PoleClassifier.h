@@ -9,7 +9,7 @@ namespace polemcl {
 
 /// \brief What the score looks at. Heights in m above local ground.
 struct PoleFeatures {
-  // Known from segments and evidence.
+  // Known from segments and features.
   double segments = 1, points = 1;
   double extent = 0;         ///< from the lowest to the highest segment, m
   double passed = 0;         ///< share of the rows between that saw through
@@ -69,7 +69,7 @@ bool knownBeforeFit(ClassifierTerm term);
 ClassifierTerms classifierTerms(const PoleFeatures& features);
 
 /// \brief Terms brought to mean 0 and variance 1, cut off at kFarthestTerm; the first one is 1.
-/// \param mean, scale Of a term by its index; the scale is 1 / standard deviation.
+/// \param mean, scale Functions of a term's index; the scale is 1 / standard deviation.
 template <class Mean, class Scale>
 ClassifierTerms standardized(ClassifierTerms terms, Mean mean, Scale scale) {
   for (int i = 1; i < kClassifierTerms; ++i)

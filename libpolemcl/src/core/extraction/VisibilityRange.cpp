@@ -58,7 +58,7 @@ VisibilityRangeFinder::VisibilityRangeFinder(const SensorModel& sensor, double s
 
 void VisibilityRangeFinder::chooseBeams(const SensorModel& sensor, float sensorHeight) {
   std::vector<Span> all;
-  for (int row = 0; row < sensor.rows(); ++row) {
+  for (int row = 0; row < sensor.beamCount(); ++row) {
     Span span{row, m_steps, -1};
     for (int step = 0; step < m_steps; ++step) {
       const float range = kStep * static_cast<float>(step);

@@ -12,11 +12,11 @@ bool samePlace(const Pose2D& a, const Pose2D& b, const GlobalOptions& options) {
          std::abs(wrapAngle(a.yaw - b.yaw)) <= options.distinctYaw;
 }
 
-/// By falling evidence, of each place only the best.
+/// By falling logRatio, of each place only the best.
 void rank(std::vector<GlobalHypothesis>& all, const GlobalOptions& options) {
   std::stable_sort(
       all.begin(), all.end(),
-      [](const GlobalHypothesis& a, const GlobalHypothesis& b) { return a.evidence > b.evidence; });
+      [](const GlobalHypothesis& a, const GlobalHypothesis& b) { return a.logRatio > b.logRatio; });
   std::vector<GlobalHypothesis> kept;
   for (const GlobalHypothesis& next : all) {
     if (kept.size() >= static_cast<std::size_t>(options.maxHypotheses)) break;
@@ -26,8 +26,8 @@ void rank(std::vector<GlobalHypothesis>& all, const GlobalOptions& options) {
     if (!known) kept.push_back(next);
   }
   double sum = 0;
-  for (const GlobalHypothesis& h : kept) sum += std::exp(h.evidence - kept[0].evidence);
-  for (GlobalHypothesis& h : kept) h.weight = std::exp(h.evidence - kept[0].evidence) / sum;
+  for (const GlobalHypothesis& h : kept) sum += std::exp(h.logRatio - kept[0].logRatio);
+  for (GlobalHypothesis& h : kept) h.weight = std::exp(h.logRatio - kept[0].logRatio) / sum;
   all = std::move(kept);
 }
 
@@ -43,8 +43,8 @@ void decide(GlobalResult& result, const GlobalOptions& options) {
   if (best.matchedShare < options.minShare)
     return say(GlobalVerdict::none, GlobalReason::smallShare);
   // Against nothing at all it must lead as well.
-  const double second = result.hypotheses.size() > 1 ? result.hypotheses[1].evidence : 0;
-  if (best.evidence - std::max(0.0, second) < options.margin)
+  const double second = result.hypotheses.size() > 1 ? result.hypotheses[1].logRatio : 0;
+  if (best.logRatio - std::max(0.0, second) < options.margin)
     return say(GlobalVerdict::ambiguous, GlobalReason::rivals);
   say(GlobalVerdict::resolved, GlobalReason::clear);
 }

@@ -133,12 +133,12 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
     if (squared > s_gate * s_gate || !claim(hit.index) || queryPole.odds <= 0) continue;
     ++out.matched;
     const double sharpness = std::min(1.0, sharp / std::sqrt(S.determinant()));
-    out.evidence += std::log1p(queryPole.odds * sharpness * std::exp(-0.5 * squared));
+    out.logRatio += std::log1p(queryPole.odds * sharpness * std::exp(-0.5 * squared));
   }
   out.unseen = countUnseen(state);
   // On old maps or maps with false poles, unseen poles must not outweigh the matches.
   const double doubt = -std::log1p(-m_map.options.seen) * out.unseen;
-  out.evidence -= std::min(doubt, 0.5 * out.evidence);
+  out.logRatio -= std::min(doubt, 0.5 * out.logRatio);
   out.matchedShare = static_cast<double>(out.matched) / static_cast<double>(m_query.reliable());
   out.pose_map_robot = state.pose;
   out.pose_map_local = compose(state.pose, relative(m_poseLocal, Pose2D{}));

@@ -20,10 +20,10 @@ constexpr double kBeside = 0.15;
 /// m: a pole's own front ends the visibility range, a step of it is 0.5 m, and maps err.
 constexpr double kOwnFront = 0.75;
 
-void checkFreeRange(const SessionScan& scan, const std::string& where) {
+void checkVisibilityRange(const SessionScan& scan, const std::string& where) {
   for (const float range : scan.visibilityRange)
     if (!(std::isfinite(range) && range >= 0))
-      throw Error("a free range of " + where +
+      throw Error("a visibility range of " + where +
                   " is negative or not finite; extract the scan again");
 }
 
@@ -38,15 +38,19 @@ bool inView(const SessionScan& scan, const MapPole& pole) {
 
 }  // namespace
 
+std::string nameOf(const SessionScan& scan) {
+  return "the scan at " + std::to_string(scan.time) + " s";
+}
+
 Session::Session(const std::vector<SessionScan>& scans, const PoleMapOptions& mapping,
                  const MapUpdateOptions& options)
     : m_scans(scans), m_mapping(mapping), m_options(options), m_firstOfScan{0} {
   double along = 0;
   for (std::uint32_t number = 0; number < scans.size(); ++number) {
     const SessionScan& scan = scans[number];
-    const std::string where = "scan " + std::to_string(number);
+    const std::string where = nameOf(scan);
     checkScan(scan.pose_map_robot, scan.poles_robot, where);
-    checkFreeRange(scan, where);
+    checkVisibilityRange(scan, where);
     if (number > 0) {
       const Pose2D &a = scans[number - 1].pose_map_robot, &b = scan.pose_map_robot;
       along += std::hypot(b.x - a.x, b.y - a.y);
@@ -110,9 +114,9 @@ void Session::expect(std::size_t number, const KdTree2D& tree,
         !own.observations.empty() && m_observations[own.observations.back()].scan == number;
     const bool unknown = scan.visibilityRange.empty();
     if (unknown && !found) continue;
-    own.evidence.add(found, m_along[number], m_options.existence,
-                     detectionChance(poles[hit.index].history, m_options.existence),
-                     !unknown && !inView(scan, poles[hit.index].pole));
+    own.likelihood.add(found, m_along[number], m_options.existence,
+                       detectionChance(poles[hit.index].history, m_options.existence),
+                       !unknown && !inView(scan, poles[hit.index].pole));
   }
 }
 

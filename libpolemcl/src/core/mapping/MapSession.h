@@ -3,6 +3,7 @@
 /// \brief One session compared with the poles of a map: found and missed poles. Private to the
 /// library; see MapUpdater.h.
 
+#include <string>
 #include <vector>
 
 #include <polemcl/core/mapping/MapUpdater.h>
@@ -13,9 +14,13 @@ namespace polemcl {
 /// \brief Result of a session for one pole.
 struct SessionPole {
   std::vector<std::uint32_t> observations;  ///< indices into Session::observations(), of all ranges
-  ExistenceEvidence evidence;               ///< within range only
+  ExistenceLikelihood likelihood;           ///< within range only
 };
 
+/// \brief "the scan at 12.300000 s", for messages: scans may have been left out before.
+std::string nameOf(const SessionScan& scan);
+
+/// \brief The scans of a session, compared with a map.
 class Session {
  public:
   /// \throws Error as updateMap().

@@ -33,7 +33,7 @@ std::vector<SessionScan> certainScans(const std::vector<SessionScan>& scans,
   certain.reserve(scans.size());
   for (const SessionScan& scan : scans) {
     if (!isCovariance<3>(scan.poseCovariance))
-      throw Error("the pose of scan " + std::to_string(&scan - scans.data()) +
+      throw Error("the pose of " + nameOf(scan) +
                   " has a matrix that is no covariance; leave the scan out or correct it");
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
         scan.poseCovariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
@@ -51,7 +51,8 @@ class Update {
     m_poles = map.poles;
     m_known = m_poles.size();
     m_counts.scans = scans.size();
-    for (const SessionScan& scan : scans) m_counts.withoutFreeRange += scan.visibilityRange.empty();
+    for (const SessionScan& scan : scans)
+      m_counts.withoutVisibility += scan.visibilityRange.empty();
   }
 
   LandmarkMap run();
@@ -60,7 +61,7 @@ class Update {
  private:
   void bringForward();
   void addNew();
-  void applyEvidence();
+  void applyLikelihoods();
   void movePlaces();
   bool movePlace(LandmarkRecord& record, const MapPole& seen) const;
   void dropGhosts();
@@ -103,17 +104,17 @@ void Update::addNew() {
   }
 }
 
-void Update::applyEvidence() {
+void Update::applyLikelihoods() {
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
     LandmarkRecord& record = m_poles[i];
     const SessionPole& today = m_session.poles()[i];
-    const ExistenceEvidence& evidence = today.evidence;
-    m_counts.expectedOnMap += record.present && evidence.found() + evidence.missed() > 0;
-    m_counts.foundOnMap += record.present && evidence.found() > 0;
+    const ExistenceLikelihood& likelihood = today.likelihood;
+    m_counts.expectedOnMap += record.present && likelihood.found() + likelihood.missed() > 0;
+    m_counts.foundOnMap += record.present && likelihood.found() > 0;
     record.history.existence =
-        updated(record.history.existence, evidence.logRatio(), m_options.existence);
-    record.history.seen += evidence.found();
-    record.history.missed += evidence.missed();
+        updated(record.history.existence, likelihood.logRatio(), m_options.existence);
+    record.history.seen += likelihood.found();
+    record.history.missed += likelihood.missed();
     for (const std::uint32_t observation : today.observations)
       noteSeen(record.history, m_session.time(m_session.observations()[observation].scan));
   }
@@ -166,8 +167,8 @@ void Update::dropGhosts() {
   const KdTree2D tree(centresOf(m_poles));
   std::vector<PointHit> near;
   for (std::size_t i = 0; i < m_known; ++i) {
-    const ExistenceEvidence& evidence = m_session.poles()[i].evidence;
-    if (!m_session.poles()[i].observations.empty() || evidence.missed() == 0) continue;
+    const ExistenceLikelihood& likelihood = m_session.poles()[i].likelihood;
+    if (!m_session.poles()[i].observations.empty() || likelihood.missed() == 0) continue;
     tree.within(m_poles[i].pole.x, m_poles[i].pole.y, m_options.ghost, near);
     m_gone[i] = std::any_of(near.begin(), near.end(), [&](const PointHit& hit) {
       return hit.index >= m_known && m_poles[hit.index].history.existence >= m_options.present;
@@ -233,7 +234,7 @@ LandmarkMap Update::run() {
   addNew();
   m_session.observe(m_poles);
   m_gone.assign(m_poles.size(), false);
-  applyEvidence();
+  applyLikelihoods();
   movePlaces();
   dropGhosts();
   dropDoubles();
@@ -270,10 +271,10 @@ LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<Ses
   for (std::size_t i = 0; i < map.poles.size(); ++i) {
     PoleHistory& history = map.poles[i].history;
     const SessionPole& seen = session.poles()[i];
-    history.seen = seen.evidence.found();
-    history.missed = seen.evidence.missed();
+    history.seen = seen.likelihood.found();
+    history.missed = seen.likelihood.missed();
     history.existence =
-        std::max(options.present, updated(0.5, seen.evidence.logRatio(), options.existence));
+        std::max(options.present, updated(0.5, seen.likelihood.logRatio(), options.existence));
     for (const std::uint32_t observation : seen.observations)
       noteSeen(history, session.time(session.observations()[observation].scan));
   }

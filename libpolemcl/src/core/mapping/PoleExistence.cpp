@@ -38,30 +38,30 @@ double survived(double existence, double seconds, const ExistenceOptions& option
   return existence * std::exp(-std::max(0.0, seconds) / (kDay * options.lifetimeDays));
 }
 
-void ExistenceEvidence::LookSum::add(std::int64_t number, double value) {
-  if (number != look) *this = {total(), 0, 0, number};
+void ExistenceLikelihood::SectionSum::add(std::int64_t number, double value) {
+  if (number != section) *this = {total(), 0, 0, number};
   sum += value;
-  ++inLook;
+  ++inSection;
 }
 
-double ExistenceEvidence::LookSum::total() const {
-  return inLook > 0 ? done + sum / inLook : done;
+double ExistenceLikelihood::SectionSum::total() const {
+  return inSection > 0 ? done + sum / inSection : done;
 }
 
-void ExistenceEvidence::add(bool found, double along, const ExistenceOptions& options,
-                            double chance, bool hidden) {
+void ExistenceLikelihood::add(bool found, double along, const ExistenceOptions& options,
+                              double chance, bool hidden) {
   if (hidden) chance = std::min(chance, std::max(kHiddenChance, 2 * options.falseDetection));
-  const auto look = static_cast<std::int64_t>(along / options.decorrelation);
+  const auto section = static_cast<std::int64_t>(along / options.decorrelation);
   const double value = found ? std::log(chance / options.falseDetection)
                              : std::log((1 - chance) / (1 - options.falseDetection));
-  m_inView.add(look, hidden ? 0 : value);  // a look counts by the share of its scans in view
-  m_all.add(look, value);
+  m_inView.add(section, hidden ? 0 : value);  // a section counts by the share of its scans in view
+  m_all.add(section, value);
   m_found += found;
   m_missed += !found && !hidden;
   m_foundHidden |= found && hidden;
 }
 
-double ExistenceEvidence::logRatio() const {
+double ExistenceLikelihood::logRatio() const {
   return m_foundHidden ? m_all.total() : m_inView.total();
 }
 

@@ -162,7 +162,7 @@ PoleMapResult buildPoleMap(const std::vector<MappingScan>& scans, const PoleMapO
   result.pathLength = sections.length;
   result.sections = sections.count;
   result.occupiedSections = sections.occupied.size();
-  result.views = keyframes.size();
+  result.keyframes = keyframes.size();
   result.detections = observations.size();
   result.clusters = groups.size();
   return result;

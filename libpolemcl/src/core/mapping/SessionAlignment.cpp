@@ -9,6 +9,7 @@
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "core/mapping/DetectionToMap.h"
+#include "core/mapping/MapSession.h"
 
 namespace polemcl {
 namespace {
@@ -122,8 +123,8 @@ Pair Alignment::makePair(std::size_t scan, std::uint32_t detection, std::uint32_
   const double robust = s_halfway / (s_halfway + left.dot(pair.information * left));
   // Scans near each other show a pole from the same side, with the same error.
   const double step = scan > 0 ? m_along[scan] - m_along[scan - 1] : 0;
-  const double look = std::min(1.0, step / m_options.existence.decorrelation);
-  pair.information *= robust * robust * look * seen.confidence;
+  const double newShare = std::min(1.0, step / m_options.existence.decorrelation);
+  pair.information *= robust * robust * newShare * seen.confidence;
   return pair;
 }
 
@@ -227,8 +228,8 @@ std::vector<SessionScan> alignedSession(const std::vector<SessionScan>& scans,
                                         const LandmarkMap& map, const PoleMapOptions& mapping,
                                         const MapUpdateOptions& options,
                                         AlignmentSummary* summary) {
-  for (std::size_t i = 0; i < scans.size(); ++i)
-    checkScan(scans[i].pose_map_robot, scans[i].poles_robot, "scan " + std::to_string(i));
+  for (const SessionScan& scan : scans)
+    checkScan(scan.pose_map_robot, scan.poles_robot, nameOf(scan));
   return Alignment(scans, map, mapping, options).run(summary);
 }
 

@@ -40,15 +40,15 @@ double offsetFromBeam(const SensorModel& model, int row, double rho, double z) {
   const Beam& beam = model.beam(row);
   const double off = (z - beam.offset) / rho - beam.slope;
   int other = off > 0 ? row - 1 : row + 1;
-  if (other < 0 || other >= model.rows()) other = off > 0 ? row + 1 : row - 1;
+  if (other < 0 || other >= model.beamCount()) other = off > 0 ? row + 1 : row - 1;
   const double half = 0.5 * std::abs(model.beam(other).slope - beam.slope);
   return std::clamp(off / half, -1.0, 1.0);
 }
 
 /// Rows that hold beams of the sensor, each one alone, as a share of all that should.
 double shareAlone(const SensorModel& model, const BeamTableEstimate& beams) {
-  std::vector<int> owners(static_cast<std::size_t>(model.rows()), 0);
-  int first = model.rows(), last = -1;
+  std::vector<int> owners(static_cast<std::size_t>(model.beamCount()), 0);
+  int first = model.beamCount(), last = -1;
   for (const BeamBlock& block : beams.blocks)
     for (const double elevation : block.elevations) {
       // A beam that starts from another height is in other rows near by than far away.
@@ -89,7 +89,7 @@ bool BeamAgreement::good() const {
 BeamAgreement measureAgreement(const PointsView& points, const SensorModel& model, double minRange,
                                double maxRange) {
   BeamAgreement result;
-  const auto rows = static_cast<std::size_t>(model.rows());
+  const auto rows = static_cast<std::size_t>(model.beamCount());
   std::vector<Offsets> byRow(rows), byCell(rows * kCheckSectors);
   std::size_t outside = 0;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -111,7 +111,7 @@ BeamAgreement measureAgreement(const PointsView& points, const SensorModel& mode
   if (result.points == 0) return result;
   result.outOfView = static_cast<double>(outside) / static_cast<double>(result.points);
 
-  const double few = std::max(10.0, 0.02 * static_cast<double>(result.points) / model.rows());
+  const double few = std::max(10.0, 0.02 * static_cast<double>(result.points) / model.beamCount());
   const auto used = [&](const Offsets& row) { return row.count >= few; };
   const auto first = std::find_if(byRow.begin(), byRow.end(), used);
   const auto end = std::find_if(byRow.rbegin(), byRow.rend(), used).base();

@@ -76,7 +76,7 @@ double gapAt(const std::vector<double>& elevations, std::size_t i) {
 /// The preset's beams as blocks, each from its apex.
 std::vector<BeamBlock> blocksOf(const SensorModel& model) {
   std::vector<BeamBlock> blocks;
-  for (int row = 0; row < model.rows(); ++row) {
+  for (int row = 0; row < model.beamCount(); ++row) {
     const Beam& beam = model.beam(row);
     if (blocks.empty() || blocks.back().apex != beam.offset) blocks.push_back({beam.offset, {}});
     blocks.back().elevations.push_back(std::atan(beam.slope));
@@ -110,7 +110,7 @@ PresetFit fitPreset(const std::string& name, bool upsideDown, const BeamTableEst
   PresetFit fit;
   fit.model = name;
   fit.upsideDown = upsideDown;
-  fit.rows = model.rows();
+  fit.rows = model.beamCount();
   fit.found = beams.beams();
   fit.originZ = beams.blocks.front().apex - blocks.front().apex;
   if (blocks.size() != beams.blocks.size()) return fit;
@@ -129,7 +129,7 @@ PresetFit fitPreset(const std::string& name, bool upsideDown, const BeamTableEst
 }
 
 bool symmetrical(const SensorModel& model) {
-  return std::abs(model.beam(0).slope + model.beam(model.rows() - 1).slope) < 0.01;
+  return std::abs(model.beam(0).slope + model.beam(model.beamCount() - 1).slope) < 0.01;
 }
 
 std::vector<PresetFit> fitPresets(const BeamTableEstimate& beams) {

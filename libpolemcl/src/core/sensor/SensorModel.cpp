@@ -106,9 +106,9 @@ SensorModel::SensorModel(const SensorOptions& options) {
   std::sort(lower.rbegin(), lower.rend());
   for (double e : upper) m_beams.push_back({std::tan(e), offset});
   for (double e : lower) m_beams.push_back({std::tan(e), lowerOffset});
-  for (int i = 0; i < rows(); ++i) {
+  for (int i = 0; i < beamCount(); ++i) {
     const int a = std::max(0, i - 1);
-    const int b = std::min(rows() - 1, a + 1);
+    const int b = std::min(beamCount() - 1, a + 1);
     m_spacingAbove.push_back(a == b ? 0.02
                                     : std::atan(m_beams[a].slope) - std::atan(m_beams[b].slope));
   }
@@ -116,7 +116,7 @@ SensorModel::SensorModel(const SensorOptions& options) {
   m_lookup.cellsPerSlope = static_cast<float>(1 / kCellSlope);
   buildBlock(0, 0, split - 1);
   if (lower.empty()) return;
-  buildBlock(1, split, rows() - 1);
+  buildBlock(1, split, beamCount() - 1);
   m_lookup.splitSlope = static_cast<float>((m_beams[split - 1].slope + m_beams[split].slope) / 2);
   m_lookup.splitOffset =
       static_cast<float>((m_beams[split - 1].offset + m_beams[split].offset) / 2);

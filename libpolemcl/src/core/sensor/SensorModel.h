@@ -50,7 +50,7 @@ class SensorModel {
   /// \throws Error as PinholeCamera::validate().
   explicit SensorModel(const PinholeCamera& camera);
 
-  int rows() const { return static_cast<int>(m_beams.size()); }
+  int beamCount() const { return static_cast<int>(m_beams.size()); }
   int columns() const { return m_columns; }             ///< firing steps in a full turn
   double columnAngle() const { return m_columnAngle; }  ///< rad between firing steps
   const Beam& beam(int row) const { return m_beams[row]; }

@@ -32,7 +32,7 @@ class Search {
   std::vector<double> distances(const ScanTiming& timing) const;
   double mean(const ScanTiming& timing) const;
   /// Standard errors by which `better` is better; the pairs of a scan count as one sample.
-  double evidence(const ScanTiming& better, const ScanTiming& worse) const;
+  double significance(const ScanTiming& better, const ScanTiming& worse) const;
   ScanTiming bestTurn(double clock) const;
   double bestClock(ScanTiming timing) const;
 
@@ -130,7 +130,7 @@ double Search::mean(const ScanTiming& timing) const {
   return sum / static_cast<double>(m_pairs.size());
 }
 
-double Search::evidence(const ScanTiming& better, const ScanTiming& worse) const {
+double Search::significance(const ScanTiming& better, const ScanTiming& worse) const {
   const auto good = distances(better), bad = distances(worse);
   double sum = 0, squares = 0, here = 0;
   for (std::size_t k = 0; k < m_pairs.size(); ++k) {
@@ -192,12 +192,12 @@ TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeco
       shifted.clock = search.bestClock(shifted);
       shifted = search.bestTurn(shifted.clock);
     }
-    result.clockEvidence = search.evidence(shifted, best);
-    if (result.clockEvidence >= kEnough) best = shifted;
+    result.clockSignificance = search.significance(shifted, best);
+    if (result.clockSignificance >= kEnough) best = shifted;
     ScanTiming standing = still;
     standing.clock = best.clock;
-    result.turnEvidence = search.evidence(best, standing);
-    result.timing = result.turnEvidence >= kEnough ? best : standing;
+    result.turnSignificance = search.significance(best, standing);
+    result.timing = result.turnSignificance >= kEnough ? best : standing;
   }
   result.before = search.mean(still);
   result.after = search.mean(result.timing);

@@ -30,11 +30,11 @@ struct TimingEstimate {
   /// compensated, or the direction of turning, with `seconds` as given and `stamp` = 0.5. Its
   /// `clock` is 0 unless the drive shows another one.
   ScanTiming timing;
-  std::size_t pairs = 0;     ///< of sightings of one pole in two scans
-  double before = 0;         ///< mean distance of a pair, all as measured at the stamps, m
-  double after = 0;          ///< the same with `timing`, m
-  double turnEvidence = 0;   ///< standard errors by which turning is better than not turning
-  double clockEvidence = 0;  ///< standard errors by which the best clock is better than 0
+  std::size_t pairs = 0;         ///< of sightings of one pole in two scans
+  double before = 0;             ///< mean distance of a pair, all as measured at the stamps, m
+  double after = 0;              ///< the same with `timing`, m
+  double turnSignificance = 0;   ///< standard errors by which turning is better than not turning
+  double clockSignificance = 0;  ///< standard errors by which the best clock is better than 0
 };
 
 /// \brief Searches directions, cuts and clock offsets (±0.15 s).

@@ -191,8 +191,8 @@ std::vector<double> ObservationPoints::rowElevations(const CObservationRotatingS
   std::vector<double> elevations = upright.elevations;  // `table`: in the order of the rings
   if (upright.model != "table") {
     const SensorModel model(upright);  // topmost first
-    elevations.resize(static_cast<std::size_t>(model.rows()));
-    for (int row = 0; row < model.rows(); ++row)
+    elevations.resize(static_cast<std::size_t>(model.beamCount()));
+    for (int row = 0; row < model.beamCount(); ++row)
       elevations[static_cast<std::size_t>(row)] = std::atan(model.beam(row).slope);
   }
   if (static_cast<int>(elevations.size()) != rows)

@@ -49,7 +49,8 @@ void toPlanar(const LidarFrame& f, double z, PoleDetection& pole) {
 
 /// Converts the visibility ranges from the LiDAR frame to the planar sensor frame. A sector that
 /// overlaps two takes the smaller range. A horizontal offset between the origins is subtracted.
-std::vector<float> planarFreeRange(const LidarFrame& f, const std::vector<float>& visibilityRange) {
+std::vector<float> planarVisibilityRange(const LidarFrame& f,
+                                         const std::vector<float>& visibilityRange) {
   if (f.planarIsLidar || visibilityRange.empty()) return visibilityRange;
   const std::size_t n = visibilityRange.size();
   const Eigen::Matrix2d turn = f.R_planar_lidar.topLeftCorner<2, 2>().transpose();
@@ -197,7 +198,7 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
       result->poles = extractor.extract(points, upright(frames));
       m_impl->report = extractor.report();
       m_impl->setTimeOffsets(frames, result->poles);
-      result->visibilityRange = planarFreeRange(frames, extractor.visibilityRange());
+      result->visibilityRange = planarVisibilityRange(frames, extractor.visibilityRange());
       for (auto& pole : result->poles)
         toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
     }

@@ -16,7 +16,7 @@ struct OdometryStep {
 /// \brief Reads one motion after the other.
 ///
 /// Distance: wrong by `scale`, which sways with `drift`, and counted in whole ticks. Turns: wrong
-/// by `yawBias` per metre, which sways alike, and by `slip` of the turn itself. Sideways motion is
+/// by `yaw` per metre, which sways alike, and by `slip` of the turn itself. Sideways motion is
 /// not seen. White noise of 0.2 % of the distance and 0.01°/m^½ is added. The standard deviations
 /// are what a user would write down without knowing any of this: 2 % of the distance and 2 mm
 /// along, 1 % and 2 mm across, 0.1°/m, 2 % of the turn and 0.02° for the heading.

@@ -57,7 +57,7 @@ LidarModel listed(const SensorOptions& options) {
   const SensorModel model(options);
   LidarModel lidar = hdl32e();
   lidar.beams.clear();
-  for (int row = 0; row < model.rows(); ++row) {
+  for (int row = 0; row < model.beamCount(); ++row) {
     Beam beam;
     beam.elevation = std::atan(model.beam(row).slope);
     beam.rise = model.beam(row).offset;

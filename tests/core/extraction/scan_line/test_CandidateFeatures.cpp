@@ -35,7 +35,7 @@ constexpr float kClearance = 0.1f;  ///< of the returns used above ground
 constexpr double kDistance = 8.0;   ///< of the pole
 constexpr double kRadius = 0.1;
 
-/// The cluster of the pole at (kDistance, 0) in a scene, scanned by an HDL-32E, and its evidence.
+/// The cluster of the pole at (kDistance, 0) in a scene, scanned by an HDL-32E, and its features.
 struct Look {
   SensorModel sensor;
   ScanLines lines;
@@ -44,7 +44,7 @@ struct Look {
   std::vector<std::uint32_t> members;
   ClusterShape shape;
   PoleAxis axis;
-  CandidateFeatures evidence;
+  CandidateFeatures features;
   explicit Look(Scene scene, const GroundPlane& plane = {-kHeight, 0, 0})
       : sensor(hdl32e()), lines(sensor) {
     scene.ground = plane;
@@ -62,7 +62,7 @@ struct Look {
     EXPECT_GE(members.size(), 2u);
     shape = measureShape(segments, cluster());
     axis = {static_cast<float>(kDistance), 0, static_cast<float>(kRadius)};
-    evidence = computeFeatures(lines, sensor, ground, segments, cluster(), shape, axis);
+    features = computeFeatures(lines, sensor, ground, segments, cluster(), shape, axis);
   }
   SegmentCluster cluster() const { return {members.data(), members.size()}; }
   float clutter() const { return clutteredShare(lines, sensor, segments, cluster(), axis); }
@@ -71,7 +71,7 @@ struct Look {
   /// Beams that meet the front of the pole between two heights, lidar frame.
   int beamsBetween(double low, double high) const {
     int n = 0;
-    for (int row = 0; row < sensor.rows(); ++row) {
+    for (int row = 0; row < sensor.beamCount(); ++row) {
       const double z = (kDistance - kRadius) * sensor.beam(row).slope;
       n += z > low && z < high;
     }
@@ -151,44 +151,44 @@ TEST(CandidateFeatures, OfAPostAlone) {
   // Where the ground is is known to a few centimetres.
   EXPECT_GE(static_cast<int>(look.members.size()), look.beamsBetween(-1 + kClearance + 0.05, 0.9));
   EXPECT_LE(static_cast<int>(look.members.size()), look.beamsBetween(-1 + kClearance - 0.05, 0.9));
-  EXPECT_EQ(look.evidence.rowsPassed, 0);
-  EXPECT_EQ(look.evidence.rowsWide, 0);
+  EXPECT_EQ(look.features.rowsPassed, 0);
+  EXPECT_EQ(look.features.rowsWide, 0);
   EXPECT_LE(look.clutter(), look.groundShare());
-  EXPECT_GE(look.evidence.bottom, -0.02);
-  EXPECT_LE(look.evidence.bottom, kClearance + kBeamGap);
-  EXPECT_LE(look.evidence.top, 1.9);
-  EXPECT_GE(look.evidence.top, 1.9 - kBeamGap);
+  EXPECT_GE(look.features.bottom, -0.02);
+  EXPECT_LE(look.features.bottom, kClearance + kBeamGap);
+  EXPECT_LE(look.features.top, 1.9);
+  EXPECT_GE(look.features.top, 1.9 - kBeamGap);
   // The first beam that passed over it.
-  EXPECT_GT(look.evidence.topBound, 1.9);
-  EXPECT_LT(look.evidence.topBound, 1.9 + 1.05 * kBeamGap);
+  EXPECT_GT(look.features.topBound, 1.9);
+  EXPECT_LT(look.features.topBound, 1.9 + 1.05 * kBeamGap);
 }
 
 TEST(CandidateFeatures, OfAPostThatLeavesTheView) {
   const Look look({{part(-1, 5)}, {}, {}});
-  EXPECT_NEAR(look.evidence.top, kHeight + (kDistance - kRadius) * look.sensor.beam(0).slope, 0.05);
-  EXPECT_TRUE(std::isinf(look.evidence.topBound));
+  EXPECT_NEAR(look.features.top, kHeight + (kDistance - kRadius) * look.sensor.beam(0).slope, 0.05);
+  EXPECT_TRUE(std::isinf(look.features.topBound));
 }
 
 TEST(CandidateFeatures, RowsThatSeeThroughAreCounted) {
   const Look look({{part(-1, 0), part(0.6, 1.4)}, {}, {}});
   const int through = look.beamsBetween(0, 0.6);
   EXPECT_GE(through, 2);
-  EXPECT_EQ(look.evidence.rowsPassed, through);
-  EXPECT_EQ(look.evidence.rowsWide, 0);
+  EXPECT_EQ(look.features.rowsPassed, through);
+  EXPECT_EQ(look.features.rowsWide, 0);
 }
 
 TEST(CandidateFeatures, RowsThatMeetABoardAreWide) {
   const Look look({{part(-1, 1.4)}, {board(0, 0.6, 1.0)}, {}});
-  EXPECT_EQ(look.evidence.rowsWide, look.beamsBetween(0, 0.6));
-  EXPECT_EQ(look.evidence.rowsPassed, 0);
+  EXPECT_EQ(look.features.rowsWide, look.beamsBetween(0, 0.6));
+  EXPECT_EQ(look.features.rowsPassed, 0);
 }
 
 TEST(CandidateFeatures, WhatStandsOnThePoleIsItsTop) {
   const Look look({{part(-1, 0.5)}, {board(0.5, 1.2, 0.8)}, {}});
   EXPECT_LE(look.shape.high, 0.5);
-  EXPECT_LE(look.evidence.top, 2.2);
-  EXPECT_GE(look.evidence.top, 2.2 - kBeamGap);
-  EXPECT_GT(look.evidence.topBound, 2.2);
+  EXPECT_LE(look.features.top, 2.2);
+  EXPECT_GE(look.features.top, 2.2 - kBeamGap);
+  EXPECT_GT(look.features.topBound, 2.2);
 }
 
 TEST(CandidateFeatures, OneSilentRowDoesNotEndThePole) {
@@ -198,21 +198,21 @@ TEST(CandidateFeatures, OneSilentRowDoesNotEndThePole) {
   while (kDistance * sensor.beam(row).slope > 0.5) ++row;
   const double slit = (kDistance - kRadius) * sensor.beam(row).slope;
   const Look look({{part(-1, slit - 0.03)}, {board(slit + 0.03, 1.2, 0.8)}, {}});
-  EXPECT_GE(look.evidence.top, 2.2 - kBeamGap);
+  EXPECT_GE(look.features.top, 2.2 - kBeamGap);
 }
 
 TEST(CandidateFeatures, WhereSomethingHidesTheTopItIsUnknown) {
   const Look look({{part(-1, 1.4)}, {{4, -1, 4, 1, 0.3, 3}}, {}});
-  EXPECT_LT(look.evidence.top, 1.75);
-  EXPECT_TRUE(std::isinf(look.evidence.topBound));
+  EXPECT_LT(look.features.top, 1.75);
+  EXPECT_TRUE(std::isinf(look.features.topBound));
 }
 
 TEST(CandidateFeatures, HeightsAreAboveTheLocalGround) {
   const GroundPlane slope{-kHeight, 0.07, 0};
   const double base = slope.at(kDistance, 0);  // 0.56 m above the ground below the sensor
   const Look look({{part(base, base + 1.5)}, {}, {}}, slope);
-  EXPECT_NEAR(look.evidence.top, 1.5, kBeamGap + 0.25);
-  EXPECT_NEAR(look.evidence.bottom, 0, kBeamGap + 0.25);
+  EXPECT_NEAR(look.features.top, 1.5, kBeamGap + 0.25);
+  EXPECT_NEAR(look.features.bottom, 0, kBeamGap + 0.25);
 }
 
 TEST(CandidateFeatures, OtherThingsInTheRingClutter) {

@@ -52,7 +52,7 @@ PointList randomCloud(std::size_t size, std::uint64_t seed) {
 struct BruteForce {
   std::vector<std::vector<Return>> rows;
   WholeScanCounts counts;
-  BruteForce(const PointsView& points, const SensorModel& sensor) : rows(sensor.rows()) {
+  BruteForce(const PointsView& points, const SensorModel& sensor) : rows(sensor.beamCount()) {
     for (std::size_t i = 0; i < points.size; ++i) {
       const float x = points.x[i], y = points.y[i], z = points.z[i];
       const float rho = std::sqrt(x * x + y * y);
@@ -95,7 +95,7 @@ void expectEqualsBruteForce(const PointsView& points, const SensorModel& sensor,
   EXPECT_EQ(counts.dropped.outOfRange, expected.counts.dropped.outOfRange);
   EXPECT_EQ(counts.lines.outOfView, expected.counts.lines.outOfView);
   EXPECT_EQ(counts.lines.onGround, 0u);
-  ASSERT_EQ(lines.rows(), sensor.rows());
+  ASSERT_EQ(lines.rows(), sensor.beamCount());
   for (int row = 0; row < lines.rows(); ++row) {
     std::vector<Return> found(lines.begin(row), lines.end(row));
     std::sort(found.begin(), found.end(),

@@ -203,7 +203,7 @@ TEST(SegmentClustering, EqualsABruteForceOnRandomSlices) {
       std::vector<ScanLineSegment> segments;
       const double extent = seed % 3 ? 3 : 28;  // crowded, or to the end of the range
       for (int i = 0; i < 600; ++i)
-        segments.push_back(segmentAt(sensor, random.below(sensor.rows()),
+        segments.push_back(segmentAt(sensor, random.below(sensor.beamCount()),
                                      random.uniform(-extent, extent),
                                      random.uniform(-extent, extent)));
       sortByRow(segments);

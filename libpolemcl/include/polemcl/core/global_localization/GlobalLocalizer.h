@@ -54,8 +54,8 @@ struct POLEMCL_EXPORT GlobalHypothesis {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   double scale =
       0;  ///< error of the odometry's scale: true length = (1 + scale)·length by odometry
-  double evidence = 0;        ///< log-likelihood ratio to a place without any match, nats
-  double weight = 0;          ///< share of exp(evidence) among the hypotheses handed out
+  double logRatio = 0;        ///< log-likelihood ratio to a place without any match, nats
+  double weight = 0;          ///< share of exp(logRatio) among the hypotheses handed out
   std::uint32_t matched = 0;  ///< map poles matched, each once
   double matchedShare = 0;    ///< of the submap's poles with `minHits`
   std::uint32_t unseen = 0;   ///< map poles beside the path that are not in the submap
@@ -80,8 +80,8 @@ enum class GlobalReason {
 struct GlobalResult {
   GlobalVerdict verdict = GlobalVerdict::none;
   GlobalReason reason = GlobalReason::fewPoles;
-  std::vector<GlobalHypothesis> hypotheses;  ///< by falling evidence; may be empty
-  std::size_t poles = 0;                     ///< submap poles that gave evidence
+  std::vector<GlobalHypothesis> hypotheses;  ///< by falling logRatio; may be empty
+  std::size_t poles = 0;                     ///< submap poles that took part
   std::size_t candidates = 0;                ///< places tried
 };
 

@@ -66,15 +66,15 @@ struct SessionScan {
 
 /// \brief What a session changed.
 struct MapUpdateCounts {
-  std::size_t scans = 0;             ///< used
-  std::size_t uncertain = 0;         ///< left out: their positions are too uncertain
-  std::size_t withoutFreeRange = 0;  ///< of the used ones: nothing is missed in them
-  std::size_t expectedOnMap = 0;     ///< poles on the map before that a scan could see
-  std::size_t foundOnMap = 0;        ///< of these, found at least once
-  std::size_t entered = 0;           ///< new on the map
-  std::size_t left = 0;              ///< gone from the map, those moved away not counted
-  std::size_t moved = 0;             ///< in place, or a stride away
-  std::size_t candidates = 0;        ///< kept beside the map
+  std::size_t scans = 0;              ///< used
+  std::size_t uncertain = 0;          ///< left out: their positions are too uncertain
+  std::size_t withoutVisibility = 0;  ///< of the used ones: nothing is missed in them
+  std::size_t expectedOnMap = 0;      ///< poles on the map before that a scan could see
+  std::size_t foundOnMap = 0;         ///< of these, found at least once
+  std::size_t entered = 0;            ///< new on the map
+  std::size_t left = 0;               ///< gone from the map, those moved away not counted
+  std::size_t moved = 0;              ///< in place, or a stride away
+  std::size_t candidates = 0;         ///< kept beside the map
   std::size_t forgotten = 0;
   AlignmentSummary alignment;  ///< zero without alignment
 };
@@ -89,7 +89,7 @@ struct LandmarkMap {
 POLEMCL_EXPORT LandmarkMap landmarksFrom(const std::vector<MapPole>& poles);
 
 /// \brief Histories for a map just built from the same scans: places stay as they are, and all of
-/// it stays on the map, whatever the evidence.
+/// it stays on the map, whatever the scans say.
 POLEMCL_EXPORT LandmarkMap withHistory(const std::vector<MapPole>& poles,
                                        const std::vector<SessionScan>& scans,
                                        const PoleMapOptions& mapping,

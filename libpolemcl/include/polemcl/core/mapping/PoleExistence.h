@@ -57,8 +57,8 @@ POLEMCL_EXPORT double detectionChance(const PoleHistory& history, const Existenc
 /// \param seconds Since it was last updated; negative ones count as 0.
 POLEMCL_EXPORT double survived(double existence, double seconds, const ExistenceOptions& options);
 
-/// \brief Collects what the scans of a session say of one pole, look by look.
-class POLEMCL_EXPORT ExistenceEvidence {
+/// \brief Collects what the scans of a session say of one pole, section by section.
+class POLEMCL_EXPORT ExistenceLikelihood {
  public:
   /// \param along Way travelled to the scan, m; never less than before.
   /// \param hidden Something stands before the place. Such scans count with a small chance, and
@@ -69,26 +69,26 @@ class POLEMCL_EXPORT ExistenceEvidence {
            bool hidden = false);
   std::uint32_t found() const { return m_found; }
   std::uint32_t missed() const { return m_missed; }
-  /// \brief Log of the ratio of likelihoods, of a pole to none: the mean over the scans of a look,
-  /// summed over the looks.
+  /// \brief Log of the ratio of likelihoods, of a pole to none: the mean over the scans of a
+  /// section, summed over the sections.
   double logRatio() const;
 
  private:
-  /// Mean over the scans of a look, summed over the looks.
-  struct LookSum {
-    double done = 0;           ///< of the looks before
-    double sum = 0;            ///< of the look under way
-    std::uint32_t inLook = 0;  ///< scans in it
-    std::int64_t look = -1;    ///< its number
+  /// Mean over the scans of a section, summed over the sections.
+  struct SectionSum {
+    double done = 0;              ///< of the sections before
+    double sum = 0;               ///< of the section under way
+    std::uint32_t inSection = 0;  ///< scans in it
+    std::int64_t section = -1;    ///< its number
     void add(std::int64_t number, double value);
     double total() const;
   };
   std::uint32_t m_found = 0, m_missed = 0;
   bool m_foundHidden = false;
-  LookSum m_inView, m_all;
+  SectionSum m_inView, m_all;
 };
 
-/// \brief Probability after evidence, kept within `certain`.
+/// \brief Probability after likelihood, kept within `certain`.
 POLEMCL_EXPORT double updated(double existence, double logRatio, const ExistenceOptions& options);
 
 }  // namespace polemcl

@@ -89,7 +89,7 @@ struct PoleMapResult {
   double pathLength = 0;             ///< over all drives, scans not used included, m
   std::size_t sections = 0;          ///< along the path
   std::size_t occupiedSections = 0;  ///< with at least one scan: only these count and break runs
-  std::size_t views = 0;             ///< keyframes: one scan of each occupied section, or all
+  std::size_t keyframes = 0;         ///< one scan of each occupied section, or all
   std::size_t detections = 0;        ///< used
   std::size_t clusters = 0;          ///< before counting
   double bestCount = 0;  ///< greatest `counting` of a pole; minCount, or less, is needed

@@ -44,7 +44,7 @@ struct POLEMCL_EXPORT ScanTiming {
 /// \brief The words of INI files.
 POLEMCL_EXPORT const std::vector<std::pair<Turn, std::string>>& turnNames();
 
-/// \brief `turn`, `turn_s`, `cut_deg`, `stamp_turn` in the open section.
+/// \brief `turn`, `turn_s`, `cut_deg`, `stamp_turn`, `clock_offset_s` in the open section.
 POLEMCL_EXPORT void bindTiming(Binder& binder, ScanTiming& timing);
 
 }  // namespace polemcl

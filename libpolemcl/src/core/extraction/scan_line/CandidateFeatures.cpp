@@ -101,14 +101,14 @@ class Place {
 
 /// Walks up from the topmost segment while something stands there; one silent row may interrupt it.
 void topFeatures(const Place& place, const SensorModel& sensor, int row, float ground,
-                 CandidateFeatures& evidence) {
-  evidence.topBound = kInfinity;
+                 CandidateFeatures& features) {
+  features.topBound = kInfinity;
   float bound = kInfinity;
   for (int misses = 0, r = row - 1; r >= 0 && misses < 2; --r) {
     float z = 0;
     const Meeting meeting = place.meet(r, &z);
     if (meeting == Meeting::near) {
-      evidence.top = std::max(evidence.top, z - ground);
+      features.top = std::max(features.top, z - ground);
       misses = 0;
       bound = kInfinity;
     } else if (meeting == Meeting::occluded) {
@@ -117,7 +117,7 @@ void topFeatures(const Place& place, const SensorModel& sensor, int row, float g
       if (misses++ == 0) bound = place.heightOfRow(sensor, r) - ground;
     }
   }
-  evidence.topBound = bound;
+  features.topBound = bound;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ ScanLineExtractor::ScanLineExtractor(SensorModel model, const SensorOptions& sen
       m_lines(m_sensor),
       m_finder(m_sensor, options),
       m_clustering(m_sensor, options),
-      m_freeFinder(m_sensor, sensor.height, options.maxRange) {}
+      m_visibilityFinder(m_sensor, sensor.height, options.maxRange) {}
 
 void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
                                 std::vector<PoleDetection>& poles, ExtractionReport& report) {
@@ -63,7 +63,7 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
       m_tilts.push_back(tilt);
     }
   }
-  m_freeFinder.find(m_lines, m_ground, m_freeRange);
+  m_visibilityFinder.find(m_lines, m_ground, m_visibilityRange);
   setUpright(poles);
   report.refused[static_cast<int>(RejectionReason::duplicate)] = dropDuplicates(poles);
 }

@@ -33,7 +33,7 @@ class ScanLineExtractor {
   /// circle fits, however low their odds. Null (the default): none, and no work for it.
   void recordCandidates(std::vector<PoleCandidate>* candidates) { m_recorded = candidates; }
   /// \brief Visibility ranges of the last scan, as VisibilityRangeFinder gives them.
-  const std::vector<float>& visibilityRange() const { return m_freeRange; }
+  const std::vector<float>& visibilityRange() const { return m_visibilityRange; }
 
  private:
   /// \return Why the cluster is rejected; nothing when `pole` and `tilt` were filled.
@@ -58,8 +58,8 @@ class ScanLineExtractor {
   GroundGrid m_ground;
   ScanLineSegmenter m_finder;
   SegmentClustering m_clustering;
-  VisibilityRangeFinder m_freeFinder;
-  std::vector<float> m_freeRange;
+  VisibilityRangeFinder m_visibilityFinder;
+  std::vector<float> m_visibilityRange;
   std::vector<ScanLineSegment> m_segments;
   std::vector<std::uint32_t> m_fitSegments;
   std::vector<float> m_widths;

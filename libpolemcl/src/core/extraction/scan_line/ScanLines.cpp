@@ -67,7 +67,7 @@ bool sortSorted(Return* returns, std::size_t count, const Before& before) {
 
 ScanLines::ScanLines(const SensorModel& sensor)
     : m_sensor(sensor),
-      m_rows(sensor.rows()),
+      m_rows(sensor.beamCount()),
       m_streamBegin(2 * static_cast<std::size_t>(m_rows) + 1),
       m_streamEnd(m_streamBegin.size()),
       m_next(m_streamBegin.size()),

@@ -25,7 +25,7 @@ SegmentClustering::SegmentClustering(const SensorModel& sensor, const ScanLineOp
       m_block(static_cast<std::size_t>(m_cells) * m_cells) {
   // Beams may be wider apart than the gap allowed: the next beam always counts as neighbour, and
   // one silent beam between is bridged.
-  for (int row = 0; row < sensor.rows(); ++row)
+  for (int row = 0; row < sensor.beamCount(); ++row)
     m_beamGap.push_back(2.2f * static_cast<float>(sensor.spacingAbove(row)));
 }
 
