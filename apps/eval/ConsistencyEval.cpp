@@ -29,10 +29,12 @@ class RunReader {
     std::vector<ConsistencySample> samples;
     std::optional<Pose2D> last;
     double begin = 0, metres = 0;
+    bool isFirst = true;
     for (const EstimateRecord& row : readEstimates(cov)) {
       const auto pose = poseAt(truth, row.time, longestTruthGap);
       if (!pose) {
         ++m_result.unmatched;
+        isFirst = true;
         continue;
       }
       if (!last) begin = row.time;
@@ -41,9 +43,11 @@ class RunReader {
       if (row.time - begin < m_options.skipSeconds || metres < m_options.skipMetres) continue;
       if (judged && !health->isOk(row.scan)) {
         ++m_result.notOk;
+        isFirst = true;
         continue;
       }
-      samples.push_back({row.estimate, *pose});
+      samples.push_back({row.estimate, *pose, row.time, isFirst});
+      isFirst = false;
     }
     if (samples.empty())
       throw Error(cov.string() + ": no pose is left to judge after the first " +
@@ -77,6 +81,7 @@ nlohmann::ordered_json consistencyJson(const ConsistencyScore& score) {
           {"nees_position_mean", score.neesPositionMean},
           {"nees_heading_mean", score.neesHeadingMean},
           {"coverage_95", score.coverage95},
+          {"longest_beyond_5_sigma_s", score.longestBeyond5},
           {"poses", score.samples}};
 }
 

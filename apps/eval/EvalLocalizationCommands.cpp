@@ -39,17 +39,18 @@ Subcommand globalCommand(CLI::App& program) {
 
 std::string row(const std::string& name, const ConsistencyScore& s) {
   char line[200];
-  std::snprintf(line, sizeof line, "%-10s %8zu %8.3f %8.3f %9.3f %8.3f %9.4f\n", name.c_str(),
-                s.samples, s.neesMean, s.neesMedian, s.neesPositionMean, s.neesHeadingMean,
-                s.coverage95);
+  std::snprintf(line, sizeof line, "%-10s %8zu %8.3f %8.3f %9.3f %8.3f %9.4f %11.1f\n",
+                name.c_str(), s.samples, s.neesMean, s.neesMedian, s.neesPositionMean,
+                s.neesHeadingMean, s.coverage95, s.longestBeyond5);
   return line;
 }
 
 std::string localizationText(const ConsistencyResult& result) {
   std::ostringstream out;
   out << "normalised squared errors; right are 3, 2.37 (median), 2 (x y), 1 (yaw), and 0.95 of the "
-         "true positions within the 95 % ellipses\n"
-      << "run           poses     mean   median  position  heading  coverage\n";
+         "true positions within the 95 % ellipses; longest time in a row beyond 5 sigma of the "
+         "position\n"
+      << "run           poses     mean   median  position  heading  coverage  5 sigma, s\n";
   for (std::size_t i = 0; i < result.runs.size(); ++i)
     out << row(std::to_string(i), result.runs[i]);
   out << row("all", result.all);

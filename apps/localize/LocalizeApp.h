@@ -55,7 +55,7 @@ struct LocalizeResult {
 /// - `run_NN_cov.csv`: `scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw` of the same
 /// poses:
 ///   the estimate and its covariance, map frame, m², m·rad, rad²;
-/// - `run_NN_health.csv`: `scan,timestamp,state,reason,matched_share,evidence,innovation,
+/// - `run_NN_health.csv`: `scan,timestamp,state,reason,matched_share,seen_share,innovation,
 ///   effective_particles,particles,mode_share,spread_m,spread_deg,poles,relocalized` of every scan
 ///   (see LocalizationHealth.h; `relocalized` is 1 where the global search set the pose);
 /// - `run_NN_errors.csv`, with truth: `scan,timestamp,position_m,lateral_m,longitudinal_m,

@@ -18,7 +18,8 @@ RunFiles::RunFiles(const RunFolder& folder, std::size_t run,
   if (truth) m_evaluator.emplace(*truth);
   m_covariances.add("scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n");
   m_health.add(
-      "scan,timestamp,state,reason,matched_share,evidence,innovation,effective_particles,particles,"
+      "scan,timestamp,state,reason,matched_share,seen_share,innovation,effective_particles,"
+      "particles,"
       "mode_share,spread_m,spread_deg,poles,relocalized\n");
 }
 
@@ -55,7 +56,7 @@ void RunFiles::addHealth(const LocalizationUpdate& update) {
   char line[300];
   std::snprintf(line, sizeof line, "%zu,%.9f,%s,%s,%.4f,%.3f,%.4f,%.1f,%zu,%.4f,%.5f,%.5f,%zu,%d\n",
                 m_scan, update.time, name(health.state), name(health.reason), health.matchedShare,
-                health.evidence, health.innovation, health.effectiveParticles,
+                health.seenShare, health.innovation, health.effectiveParticles,
                 update.step.particles, health.modeShare, health.spread,
                 health.spreadHeading / degree, update.poles, int(update.relocalized));
   m_health.add(line);

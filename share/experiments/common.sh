@@ -75,21 +75,26 @@ json_value() {
   sed -n "s/.*\"$2\"[ ]*:[ ]*\\([-+.0-9eE]*\\).*/\\1/p" "$1" | head -n 1
 }
 
+# Odometry of simulated drives, unless a script says otherwise: wheel ticks and a gyroscope, with errors that
+# their covariances do not know (simulation.md).
+wheels="simulation.odometry=wheels simulation.odometry_scale=0.01 simulation.odometry_yaw_deg_m=0.01"
+
 # draw_drive PATH SETTINGS WORLD DAY [SECTION.KEY=VALUE...]: a drive whose poles are drawn from the model of an
-# HDL-32E, a scan every 0.5 m unless given. Leaves PATH.ini, PATH.rawlog (poles) and PATH.tum.
+# HDL-32E, a scan every 0.5 m and odometry of wheels unless given. Leaves PATH.ini, PATH.rawlog (poles) and PATH.tum.
 draw_drive() (
   path=$1
   from=$2
   seed=$3
   day=$4
   shift 4
+  # shellcheck disable=SC2086 # several words
   copy_settings "$from" "$path.ini" "simulation.detections=$top/share/models/hdl32e.json" \
-    simulation.spacing_m=0.5 "$@" "world.seed=$seed" "world.day=$day"
+    simulation.spacing_m=0.5 $wheels "$@" "world.seed=$seed" "world.day=$day"
   "$bin/pole-simulate" --quiet --config "$path.ini" --poles "$path.rawlog"
 )
 
 # simulate_day SETTINGS FOLDER WORLD LENGTH DAY [SECTION.KEY=VALUE...]: a day of a simulated street, a scan
-# every 0.5 m and odometry with 2 % noise unless given. Leaves dayN.ini, dayN.rawlog (poles), dayN.tum,
+# every 0.5 m and odometry of wheels unless given. Leaves dayN.ini, dayN.rawlog (poles), dayN.tum,
 # poles_dayN.csv in the folder; the scans are removed.
 simulate_day() (
   from=$1
@@ -99,7 +104,8 @@ simulate_day() (
   day=$5
   shift 5
   mkdir -p "$folder"
-  copy_settings "$from" "$folder/day$day.ini" simulation.spacing_m=0.5 simulation.odometry_noise=0.02 \
+  # shellcheck disable=SC2086 # several words
+  copy_settings "$from" "$folder/day$day.ini" simulation.spacing_m=0.5 $wheels \
     "world.length_m=$length" "world.seed=$seed" "world.day=$day" "$@"
   cd "$folder" || exit
   "$bin/pole-simulate" --quiet --config "day$day.ini" --output scans

@@ -19,7 +19,7 @@ mkdir -p "$out"
 
 # drive NAME WORLD DAY REVERSE: NAME.ini .rawlog .tum
 drive() {
-  draw_drive "$out/$1" "$top/config/hdl32e.ini" "$2" "$3" simulation.odometry_noise=0.02 \
+  draw_drive "$out/$1" "$top/config/hdl32e.ini" "$2" "$3" \
     "simulation.reverse=$4" "simulation.drive_seed=$2" world.length_m=600
 }
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks whether the localization notices faults, and recovers. Drives are simulated at 10 Hz and 7 m/s
 # along a 6 km road (poles drawn by the model of share/models/hdl32e.json, another day and another
-# drive than the map's, odometry with 2 % noise). 200 trials each on five worlds: kidnapped, wrong
+# drive than the map's, odometry of wheels, 1 % too long). 200 trials each on five worlds: kidnapped, wrong
 # map, blind, odometry stuck, odometry slipping. Also: half of the poles gone with twice the false
 # detections, and healthy drives of 10 h.
 # Usage: share/experiments/faults.sh [--quick] OUT [TRACK]
@@ -40,7 +40,7 @@ drive() {
   path=$out/$1 town=$2 day=$3 number=$4
   shift 4
   draw_drive "$path" "$top/config/hdl32e.ini" "$town" "$day" simulation.spacing_m=0.7 \
-    simulation.speed_m_s=7 simulation.odometry_noise=0.02 "simulation.drive_seed=$number" "$road" "$@"
+    simulation.speed_m_s=7 "simulation.drive_seed=$number" "$road" "$@"
 }
 
 # map_of WORLD: the map of day 0, mapWORLD.polemap.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # A simulated street of 1.5 km, an HDL-32E 1.0 m above the ground, a scan every 0.5 m: the map from
-# one day, localization on another day; odometry with 2 % noise, 1000 particles, filter seeds 1 to 5.
+# one day, localization on another day; odometry of wheels, 1000 particles, filter seeds 1 to 5.
 # Usage: share/experiments/hdl32-street.sh OUT [SEED [CONFIG]]
 #   OUT     gets the map, the trajectories, errors.txt and result.json (the scans are removed again)
 #   SEED    of the world, 1 unless given

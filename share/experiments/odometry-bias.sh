@@ -1,80 +1,127 @@
 #!/bin/sh
 # Odometry with a wrong scale and a yaw bias that its covariances do not know: errors, and whether they fit
 # the covariances of the poses, with and without calibration on the way.
-# Usage: share/experiments/odometry-bias.sh OUT [FIRST [WORLDS]]
-#   OUT    gets maps, drives, runs, result.json and table.txt
-#   FIRST  first world, 801 unless given; WORLDS: their number, 4 unless given
+# Usage: share/experiments/odometry-bias.sh OUT [--cast] [FIRST [WORLDS]]
+#   OUT     gets maps, drives, runs, result.json and table.txt
+#   --cast  scans are ray-cast and their poles extracted; else poles are drawn by share/models/hdl32e.json
+#   FIRST   first world, 801 unless given; WORLDS: their number, 4 unless given
 # Simulated streets of 600 m, an HDL-32E, the map of one day, two drives on another day, one per direction.
-# Poles are drawn by the model of share/models/hdl32e.json. Odometry is the truth with 2 % noise of each
-# component and these sigmas ("noise"), or wheel ticks and a gyroscope ("wheels", simulation.md), both with
-# the errors of the first columns. Programs: build/bin, or POLEMCL_BIN. Needs jq; five minutes.
+# Odometry is the truth with 2 % noise of each component and these sigmas ("noise"), or wheel ticks and a
+# gyroscope ("wheels", simulation.md), both with the errors of the first columns. "beyond s" is the longest
+# time in a row for which a pose called ok was more than five of its own sigmas off.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; a minute a world, two with --cast.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-check_arguments 1 3 "$@"
+check_arguments 1 4 "$@"
 out=$1
-first=${2:-801}
-last=$((first + ${3:-4} - 1))
+shift
+cast=no
+if [ "${1-}" = --cast ]; then
+  cast=yes
+  shift
+fi
+[ $# -le 2 ] || usage
+first=${1:-801}
+last=$((first + ${2:-4} - 1))
 settings=$top/config/hdl32e.ini
-find_programs pole-simulate pole-map pole-localize pole-eval
+find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 find_tools jq
 mkdir -p "$out"
+out=$(cd "$out" && pwd)
+all_errors="0,0 0.01,0.01 0.05,0.05"
 
-# score ODOMETRY SCALE YAW CALIBRATED DIRECTION: all worlds; adds a line to OUT/results.
+# drive NAME WORLD DAY REVERSE ODOMETRY SCALE YAW: NAME.ini, NAME.rawlog (poles) and NAME.tum. The scans
+# of a cast drive stay in $scans, for other odometry of the same drive.
+drive() (
+  name=$1 seed=$2 day=$3
+  set -- "simulation.reverse=$4" "simulation.drive_seed=$2" world.length_m=600 "simulation.odometry=$5" \
+    "simulation.odometry_scale=$6" "simulation.odometry_yaw_deg_m=$7"
+  if [ $cast = no ]; then
+    draw_drive "$name" "$settings" "$seed" "$day" "$@"
+    return
+  fi
+  copy_settings "$settings" "$name.ini" simulation.spacing_m=0.5 "$@" "world.seed=$seed" "world.day=$day"
+  [ -d "$scans" ] || "$bin/pole-simulate" --quiet --config "$name.ini" --output "$scans"
+  # The same drive of a LiDAR with hardly any points: only its odometry is used.
+  copy_settings "$name.ini" "$scans.ini" sensor.model=uniform sensor.rings=2 sensor.columns=16
+  "$bin/pole-simulate" --quiet --config "$scans.ini" --output "$scans.odometry"
+  cp "$scans.odometry/odometry.txt" "$scans/odometry.txt"
+  "$bin/pole-import" folder --quiet --input "$scans" --output "$scans.rawlog"
+  "$bin/pole-extract" --quiet --config "$name.ini" --input "$scans.rawlog" --output "$name.rawlog"
+  mv "$scans.tum" "$name.tum"
+  rm -r "$scans.rawlog" "$scans.ini" "$scans.odometry"
+)
+
+# localize NAME CALIBRATED: a run in NAME-CALIBRATED
+localize() {
+  "$bin/pole-localize" --quiet --config "$1.ini" --input "$1.rawlog" --map "$out/$world.polemap" \
+    --truth "$1.tum" --output "$1-$2" --seed "$world" --set "odometry_calibration.enabled=$2"
+}
+
+for world in $(seq "$first" "$last"); do
+  scans=$out/scans
+  drive "$out/$world-map" "$world" 0 false noise 0 0
+  "$bin/pole-map" build --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
+    --truth "$out/$world-map.tum" --output "$out/$world.polemap"
+  rm -rf "$scans"
+  for direction in forward reverse; do
+    [ $direction = reverse ] && back=true || back=false
+    for odometry in noise wheels; do
+      for errors in $all_errors; do
+        name=$out/$world-$direction-$odometry-$errors
+        drive "$name" "$world" 1 "$back" "$odometry" "${errors%,*}" "${errors#*,}"
+        for calibrated in true false; do localize "$name" $calibrated; done
+      done
+    done
+    rm -rf "$scans"
+  done
+done
+
+# score ODOMETRY ERRORS CALIBRATED DIRECTION: all worlds; adds a line to OUT/results.
 score() {
-  truth='' runs='' worst=0 sum=0
+  truth='' runs='' health='' means=
   for world in $(seq "$first" "$last"); do
-    name=$world-$5
-    "$bin/pole-localize" --quiet --config "$out/$name.ini" --input "$out/$name.rawlog" \
-      --map "$out/$world.polemap" --truth "$out/$name.tum" --output "$out/$name" --seed "$world" \
-      --set "odometry_calibration.enabled=$4"
-    truth="$truth $out/$name.tum"
-    runs="$runs $out/$name/run_00_cov.csv"
-    mean=$(awk -F , 'FNR > 1 { sum += $3; n++ } END { printf "%.6f", sum / n }' "$out/$name/run_00_errors.csv")
-    sum=$(echo "$sum $mean" | awk '{ print $1 + $2 }')
-    worst=$(echo "$worst $mean" | awk '{ print ($1 > $2 ? $1 : $2) }')
+    name=$out/$world-$4-$1-$2
+    truth="$truth $name.tum"
+    runs="$runs $name-$3/run_00_cov.csv"
+    health="$health $name-$3/run_00_health.csv"
+    means="$means $world:$(awk -F , 'FNR > 1 { sum += $3; n++ } END { printf "%.6f", sum / n }' \
+      "$name-$3/run_00_errors.csv")"
   done
   # shellcheck disable=SC2086 # lists of files
   "$bin/pole-eval" consistency --json "$out/score.json" --truth $truth --cov $runs >/dev/null
-  jq --arg odometry "$1" --argjson scale "$2" --argjson yaw "$3" --argjson calibrated "$4" \
-    --arg direction "$5" --argjson mean "$(echo "$sum $((last - first + 1))" | awk '{ print $1 / $2 }')" \
-    --argjson worst "$worst" '{odometry: $odometry, scale: $scale, yaw_deg_m: $yaw,
-      calibrated: $calibrated, direction: $direction, mean_m: $mean, worst_world_mean_m: $worst,
-      nees: .nees_mean, coverage_95: .coverage_95, not_ok: .not_ok}' "$out/score.json" >>"$out/results"
+  # shellcheck disable=SC2086
+  "$bin/pole-eval" consistency --json "$out/ok.json" --truth $truth --cov $runs --health $health >/dev/null
+  jq -n --arg odometry "$1" --argjson scale "${2%,*}" --argjson yaw "${2#*,}" --argjson calibrated "$3" \
+    --arg direction "$4" --arg means "$means" --slurpfile all "$out/score.json" --slurpfile ok "$out/ok.json" '
+    ($means | split(" ") | map(select(. != "") | split(":") | {world: .[0], m: (.[1] | tonumber)})) as $worlds
+    | {odometry: $odometry, scale: $scale, yaw_deg_m: $yaw, calibrated: $calibrated, direction: $direction,
+      mean_m: (($worlds | map(.m) | add) / ($worlds | length)),
+      worst_world: ($worlds | max_by(.m).world), worst_world_mean_m: ($worlds | max_by(.m).m),
+      nees: $all[0].nees_mean, coverage_95: $all[0].coverage_95, not_ok: $ok[0].not_ok,
+      ok_beyond_5_sigma_s: $ok[0].longest_beyond_5_sigma_s}' >>"$out/results"
 }
 
 : >"$out/results"
-for world in $(seq "$first" "$last"); do
-  draw_drive "$out/$world-map" "$settings" "$world" 0 "simulation.drive_seed=$world" world.length_m=600
-  "$bin/pole-map" build --quiet --config "$out/$world-map.ini" --input "$out/$world-map.rawlog" \
-    --truth "$out/$world-map.tum" --output "$out/$world.polemap"
-done
 for odometry in noise wheels; do
-  for errors in "0 0" "0.01 0.01" "0.05 0.05"; do
-    scale=${errors% *} yaw=${errors#* }
-    for world in $(seq "$first" "$last"); do
-      for direction in forward reverse; do
-        [ $direction = reverse ] && back=true || back=false
-        draw_drive "$out/$world-$direction" "$settings" "$world" 1 "simulation.reverse=$back" \
-          "simulation.drive_seed=$world" world.length_m=600 "simulation.odometry=$odometry" \
-          "simulation.odometry_scale=$scale" "simulation.odometry_yaw_deg_m=$yaw"
-      done
-    done
+  for errors in $all_errors; do
     for calibrated in true false; do
-      for direction in forward reverse; do score $odometry "$scale" "$yaw" $calibrated $direction; done
+      for direction in forward reverse; do score $odometry "$errors" $calibrated $direction; done
     done
   done
 done
 jq -s . "$out/results" >"$out/result.json"
-rm "$out/results" "$out/score.json"
-jq -r '.[] | [.odometry, .scale, .yaw_deg_m, .calibrated, .direction, .mean_m, .worst_world_mean_m, .nees,
-    .coverage_95] | @tsv' "$out/result.json" |
+rm "$out/results" "$out/score.json" "$out/ok.json"
+jq -r '.[] | [.odometry, .scale, .yaw_deg_m, .calibrated, .direction, .mean_m, .worst_world_mean_m, .worst_world,
+    .nees, .coverage_95, .not_ok, .ok_beyond_5_sigma_s] | @tsv' "$out/result.json" |
   awk -F '\t' 'BEGIN {
-      format = "%-8s %6s %9s %10s %9s %8s %8s %8s %9s\n"
-      printf format, "odometry", "scale", "yaw deg/m", "calibrated", "direction", "mean m", "worst m", "NEES",
-        "coverage" }
-    { printf "%-8s %6g %9g %10s %9s %8.4f %8.4f %8.2f %9.3f\n", $1, $2, $3, $4, $5, $6, $7, $8, $9 }
+      format = "%-8s %6s %9s %10s %9s %8s %8s %6s %8s %9s %6s %8s\n"
+      printf format, "odometry", "scale", "yaw deg/m", "calibrated", "direction", "mean m", "worst m", "world", \
+        "NEES", "coverage", "not ok", "beyond s" }
+    { printf "%-8s %6g %9g %10s %9s %8.4f %8.4f %6s %8.2f %9.3f %6d %8.1f\n", \
+        $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12 }
   ' >"$out/table.txt"
 cat "$out/table.txt"

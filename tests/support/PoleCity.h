@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
@@ -85,6 +86,14 @@ class PoleCity {
       : m_options(options), m_random(options.seed) {
     furnish(resample(road, 1));
     makeMap();
+  }
+
+  /// \brief Given poles, such as those of a real city.
+  static PoleCity ofPoles(const CityOptions& options, std::vector<Eigen::Vector2d> poles) {
+    PoleCity city(options, Way{Eigen::Vector2d::Zero()});  // a road without anything beside it
+    city.m_things.poles = std::move(poles);
+    city.makeMap();
+    return city;
   }
 
   const Surroundings& surroundings() const { return m_things; }

@@ -78,6 +78,10 @@ TEST_F(ConsistencyEval, CountsOnlyWhatIsOkWhenToldTheHealth) {
   EXPECT_EQ(result.notOk, 11u);
   EXPECT_EQ(result.unmatched, 10u);
   EXPECT_NEAR(result.all.neesMean, 1, 1e-6);
+  EXPECT_EQ(result.all.longestBeyond5, 0);
+  writeCov("cov.csv", 40, 0.6, 5);
+  EXPECT_NEAR(evalConsistency(options).all.longestBeyond5, 29 - 13, 1e-9)
+      << "12 is not ok, the truth ends with 29";
 }
 
 TEST_F(ConsistencyEval, RefusesWhatDoesNotFitTogether) {

@@ -176,7 +176,7 @@ TEST_F(LocalizeApp, CovarianceAndHealthOfEveryScan) {
 
   const std::string health = readText(out("run_00_health.csv"));
   EXPECT_EQ(health.substr(0, health.find('\n')),
-            "scan,timestamp,state,reason,matched_share,evidence,innovation,effective_particles,"
+            "scan,timestamp,state,reason,matched_share,seen_share,innovation,effective_particles,"
             "particles,mode_share,spread_m,spread_deg,poles,relocalized");
   EXPECT_EQ(lines(health), scans + 1);
   EXPECT_NE(health.find("\n0,100.000000000,degraded,converging,"), std::string::npos);

@@ -36,6 +36,20 @@ TEST(Consistency, FiguresByHand) {
   EXPECT_NEAR(score.coverage95, 2.0 / 3, 1e-12);  // 6.25 is beyond 5.99
 }
 
+TEST(Consistency, LongestTimeBeyondFiveSigmaEndsWithAGoodPoseAndWithAGap) {
+  const Eigen::Matrix3d covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();
+  std::vector<ConsistencySample> samples;
+  for (int i = 0; i < 40; ++i) {
+    const bool isFar = (i >= 3 && i < 10) || (i >= 20 && i < 36);
+    samples.push_back(sample(isFar ? 0.51 : 0.49, 0, 0, covariance));
+    samples.back().time = 0.5 * i;
+    samples.back().isFirst = i == 0;
+  }
+  EXPECT_NEAR(scoreConsistency(samples).longestBeyond5, 0.5 * 15, 1e-9);
+  samples[28].isFirst = true;  // 20 to 27 and 28 to 35
+  EXPECT_NEAR(scoreConsistency(samples).longestBeyond5, 0.5 * 7, 1e-9);
+}
+
 TEST(Consistency, ErrorsDrawnFromTheCovarianceAreConsistent) {
   Eigen::Matrix3d covariance;
   covariance << 0.04, 0.01, 0.002, 0.01, 0.02, -0.001, 0.002, -0.001, 0.001;

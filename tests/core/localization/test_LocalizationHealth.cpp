@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <polemcl/core/localization/LocalizationHealth.h>
 
@@ -149,8 +152,33 @@ TEST(LocalizationHealth, ANewPoseThatHardlyAnythingSpeaksForIsLostAtOnce) {
   Feed feed;
   feed.scans(3, 0.1);
   feed.expect(State::degraded, Reason::converging);
-  feed.scan(0.1);  // evidence of 40
+  feed.scan(0.1);  // 2 m
   feed.expect(State::lost, Reason::mismatch);
+}
+
+/// The same stories for a LiDAR that sees 3 poles a scan, 10, or 28.
+TEST(LocalizationHealth, ManyAndFewPolesAScanAreJudgedAlike) {
+  const auto story = [](int poles) {
+    Feed feed;
+    std::vector<std::string> states;
+    const auto tell = [&](int scans, double share, int seen) {
+      for (int i = 0; i < scans; ++i)
+        states.push_back(std::string(name(feed.scan(share, seen).state)) + " " +
+                         name(feed.last.reason));
+    };
+    tell(60, 1, poles);
+    tell(50, 0, poles);
+    tell(60, 1, poles);
+    tell(10, 0, 0);
+    feed.monitor.begin();  // a wrong pose
+    tell(30, 0, poles);
+    return states;
+  };
+  const auto few = story(3);
+  EXPECT_EQ(story(10), few);
+  EXPECT_EQ(story(28), few);
+  EXPECT_GT(std::count(few.begin(), few.end(), "lost mismatch"), 20);
+  EXPECT_GT(std::count(few.begin(), few.end(), "ok none"), 60);
 }
 
 TEST(LocalizationHealth, FewPolesSayNothingAgainstThePose) {
@@ -228,7 +256,7 @@ TEST(LocalizationHealth, PolesWithoutConfidenceAreNotSeen) {
 
 TEST(LocalizationHealth, FewMatchesBearNoPoseOut) {
   Feed feed;
-  feed.confidence = 0.04;  // in 8 m 17 viewpoints of 10 poles: evidence of 6.8
+  feed.confidence = 0.017;  // in 8 m 17 viewpoints of 10 poles: 2.9 poles
   feed.scans(100, 0.9);
   feed.expect(State::degraded, Reason::converging);
 }
@@ -276,11 +304,12 @@ TEST(LocalizationHealth, RefusesOptionsOutOfRange) {
   };
   EXPECT_NO_THROW(checkOptions(HealthOptions()));
   refused([](HealthOptions& o) { o.window = 0; });
-  refused([](HealthOptions& o) { o.minEvidence = NAN; });
+  refused([](HealthOptions& o) { o.minSeen = NAN; });
   refused([](HealthOptions& o) { o.lostShare = 1.1; });
   refused([](HealthOptions& o) { o.degradedShare = o.lostShare / 2; });
   refused([](HealthOptions& o) { o.confirmShare = o.degradedShare / 2; });
-  refused([](HealthOptions& o) { o.lostEvidence = 0; });
+  refused([](HealthOptions& o) { o.lostSeen = 1.1; });
+  refused([](HealthOptions& o) { o.usualWithin = 0; });
   refused([](HealthOptions& o) { o.lostSpread = INFINITY; });
   refused([](HealthOptions& o) { o.degradedSpread = o.lostSpread * 2; });
   refused([](HealthOptions& o) { o.degradedHeading = 0; });

@@ -1,6 +1,7 @@
 #include "core/evaluation/Consistency.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -27,6 +28,23 @@ void checkSample(const ConsistencySample& sample, std::size_t index) {
     refuseSample(index, "a covariance that is not symmetric positive definite");
 }
 
+/// Longest time in which one sample after the other is beyond 5 sigma.
+class LongestBeyond5 {
+ public:
+  /// \param squared Squared Mahalanobis distance of the position.
+  void add(const ConsistencySample& sample, double squared) {
+    const bool goesOn = m_isBeyond && !sample.isFirst;
+    m_isBeyond = squared > 25;
+    if (m_isBeyond && !goesOn) m_begin = sample.time;
+    if (m_isBeyond) m_longest = std::max(m_longest, sample.time - m_begin);
+  }
+  double seconds() const { return m_longest; }
+
+ private:
+  bool m_isBeyond = false;
+  double m_begin = 0, m_longest = 0;
+};
+
 }  // namespace
 
 ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples) {
@@ -37,6 +55,7 @@ ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples)
   all.reserve(samples.size());
   double sum = 0, position = 0, heading = 0;
   std::size_t covered = 0;
+  LongestBeyond5 beyond5;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     checkSample(samples[i], i);
     const Eigen::Matrix3d& covariance = samples[i].estimate.covariance;
@@ -49,6 +68,7 @@ ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples)
     position += planar;
     heading += error.z() * error.z() / covariance(2, 2);
     covered += planar <= chiSquare95of2 ? 1 : 0;
+    beyond5.add(samples[i], planar);
   }
   const double count = static_cast<double>(samples.size());
   score.neesMean = sum / count;
@@ -56,6 +76,7 @@ ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples)
   score.neesPositionMean = position / count;
   score.neesHeadingMean = heading / count;
   score.coverage95 = static_cast<double>(covered) / count;
+  score.longestBeyond5 = beyond5.seconds();
   return score;
 }
 

@@ -12,6 +12,8 @@ namespace polemcl {
 struct ConsistencySample {
   PoseWithCovariance estimate;
   Pose2D truth;
+  double time = 0;       ///< s
+  bool isFirst = false;  ///< something was left out before it, or it is the first of its run
 };
 
 /// \brief Figures over samples. Right, for Gaussian errors: 3, 2, 1 and 0.95.
@@ -22,6 +24,7 @@ struct ConsistencyScore {
   double neesPositionMean = 0;  ///< over x, y
   double neesHeadingMean = 0;   ///< over yaw
   double coverage95 = 0;        ///< share of samples whose 95 % position ellipse holds the truth
+  double longestBeyond5 = 0;    ///< longest time beyond 5 sigma of the position without a break, s
 };
 
 /// Square of the 95 % quantile of a two-dimensional Gaussian's Mahalanobis distance (χ², 2).

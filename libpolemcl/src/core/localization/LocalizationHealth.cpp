@@ -9,6 +9,7 @@ namespace polemcl {
 namespace {
 
 constexpr double s_hopeless = 0.3;   // a new pose is not waited for below this part of its share
+constexpr double s_fewest = 3;       // fewer poles in a window, by confidence, say nothing
 constexpr double s_viewpoint = 0.1;  // scans nearer to each other are of one viewpoint, m
 
 double worstSigma(const Eigen::Matrix3d& covariance) {
@@ -68,15 +69,27 @@ Health HealthMonitor::update(const HealthInput& input) {
   return m_health;
 }
 
+/// A complete viewpoint whose poles match counts in what is usual: like all others at first, then
+/// so that those `usualWithin` metres back have lost most of their weight.
+void HealthMonitor::learnUsual() {
+  if (m_viewpoints.empty()) return;
+  const Viewpoint& last = m_viewpoints.back();
+  if (last.matched < m_options.degradedShare * last.seen) return;
+  const double metres = std::max(m_driven - last.driven, s_viewpoint);
+  m_usualOver = std::min(m_usualOver + metres, m_options.usualWithin);
+  m_usual += std::min(1.0, metres / m_usualOver) * (last.seen - m_usual);
+}
+
 void HealthMonitor::remember(const HealthInput& input) {
   if (m_viewpoints.empty() || m_driven - m_viewpoints.back().driven >= s_viewpoint) {
+    learnUsual();
     m_viewpoints.emplace_back();
     m_viewpoints.back().driven = m_driven;
   }
   while (m_driven - m_viewpoints.front().driven > m_options.lostWindow) m_viewpoints.pop_front();
   Viewpoint scan;
   for (const PoleMatch& match : input.matches) {
-    scan.evidence += match.confidence;
+    scan.seen += match.confidence;
     if (!match.matched) continue;
     scan.matched += match.confidence;
     scan.squared += match.squared;
@@ -84,54 +97,61 @@ void HealthMonitor::remember(const HealthInput& input) {
   }
   Viewpoint& viewpoint = m_viewpoints.back();
   const double share = 1.0 / ++viewpoint.scans;
-  viewpoint.evidence += share * (scan.evidence - viewpoint.evidence);
+  viewpoint.seen += share * (scan.seen - viewpoint.seen);
   viewpoint.matched += share * (scan.matched - viewpoint.matched);
   viewpoint.squared += share * (scan.squared - viewpoint.squared);
   viewpoint.matches += share * (scan.matches - viewpoint.matches);
 }
 
-HealthMonitor::Viewpoint HealthMonitor::sumOver(double metres) const {
-  Viewpoint sum;
+HealthMonitor::Window HealthMonitor::sumOver(double metres) const {
+  Window sum;
   for (const Viewpoint& viewpoint : m_viewpoints) {
     if (m_driven - viewpoint.driven > metres) continue;
-    sum.evidence += viewpoint.evidence;
+    sum.seen += viewpoint.seen;
     sum.matched += viewpoint.matched;
     sum.squared += viewpoint.squared;
     sum.matches += viewpoint.matches;
+    ++sum.viewpoints;
   }
   return sum;
 }
 
+/// 1 while there is nothing to compare it with.
+double HealthMonitor::shareOfUsual(const Window& window) const {
+  const double mean = window.viewpoints > 0 ? window.seen / window.viewpoints : 0;
+  if (m_usual > 0) return mean / m_usual;
+  return mean > 0 ? 1 : 0;
+}
+
 void HealthMonitor::sumUp() {
-  const Viewpoint sum = sumOver(m_options.window), all = sumOver(m_options.lostWindow);
-  m_health.evidence = sum.evidence;
-  m_health.matchedShare = sum.evidence > 0 ? sum.matched / sum.evidence : 0;
-  m_health.innovation = sum.matches > 0 ? sum.squared / (2 * sum.matches) : 0;
-  m_longEvidence = all.evidence;
-  m_longShare = all.evidence > 0 ? all.matched / all.evidence : 0;
+  const Window window = sumOver(m_options.window), all = sumOver(m_options.lostWindow);
+  m_health.seenShare = shareOfUsual(window);
+  m_health.matchedShare = window.matchedShare();
+  m_health.innovation = window.matches > 0 ? window.squared / (2 * window.matches) : 0;
+  m_longShare = all.matchedShare();
+  m_isEnough = window.seen >= s_fewest && m_health.seenShare >= m_options.minSeen;
+  m_isEnoughLong = all.seen >= s_fewest && shareOfUsual(all) >= m_options.lostSeen;
 }
 
 /// Confirms a new pose after enough metres of good matches.
 void HealthMonitor::confirm(const HealthInput& input) {
   const HealthOptions& o = m_options;
   const Viewpoint& here = m_viewpoints.back();
-  if (here.evidence > 0 && here.matched >= o.degradedShare * here.evidence)
-    m_goodDriven += input.metres;
-  const bool good = m_health.evidence >= o.minEvidence &&
-                    m_health.matchedShare >= o.degradedShare && m_longShare >= o.confirmShare &&
-                    m_health.spread < o.degradedSpread &&
+  if (here.seen > 0 && here.matched >= o.degradedShare * here.seen) m_goodDriven += input.metres;
+  const bool good = m_isEnough && m_health.matchedShare >= o.degradedShare &&
+                    m_longShare >= o.confirmShare && m_health.spread < o.degradedSpread &&
                     m_health.spreadHeading < o.degradedHeading;
   if (good && m_goodDriven >= (m_found ? o.confirmFound : o.confirm)) m_confirmed = true;
 }
 
 void HealthMonitor::judge(const HealthInput& input) {
   const HealthOptions& o = m_options;
-  const bool enough = m_health.evidence >= o.minEvidence;
   const bool fewMatched = m_health.matchedShare < o.degradedShare;
   const double lostShare = m_confirmed ? o.lostShare : s_hopeless * o.confirmShare;
-  const bool bare = m_longEvidence >= o.lostEvidence && m_longShare < lostShare && fewMatched;
+  const bool bare =
+      m_isEnoughLong && m_driven >= o.confirmFound && m_longShare < lostShare && fewMatched;
   const bool unconfirmed =
-      enough && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
+      m_isEnough && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
   const bool wide =
       m_health.spread > o.degradedSpread || m_health.spreadHeading > o.degradedHeading;
   const bool severalModes = m_health.modeShare < o.modeShare;
@@ -149,12 +169,12 @@ void HealthMonitor::judge(const HealthInput& input) {
       {m_health.spread > o.lostSpread && !severalModes, State::lost, Reason::spread},
       {severalModes, State::degraded, Reason::ambiguous},
       {!m_confirmed, State::degraded, Reason::converging},
-      {enough && fewMatched, State::degraded, Reason::mismatch},
+      {m_isEnough && fewMatched, State::degraded, Reason::mismatch},
       {wide, State::degraded, Reason::spread},
       {m_driven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind, State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},
-      {enough && m_health.innovation > o.innovation, State::degraded, Reason::innovation},
+      {m_isEnough && m_health.innovation > o.innovation, State::degraded, Reason::innovation},
       {true, State::ok, Reason::none},
   };
   const auto* rule =

@@ -206,8 +206,10 @@ SensorIdentification identifyTogether(const std::vector<PointsView>& scans) {
   SensorIdentification result;
   result.scans = scans.size();
   std::vector<Cloud> clouds;
+  clouds.reserve(scans.size());
   for (const PointsView& scan : scans) clouds.push_back(withoutVehicle(scan));
   std::vector<PointsView> surroundings;
+  surroundings.reserve(clouds.size());
   for (const Cloud& cloud : clouds) surroundings.push_back(cloud.view());
   result.beams = estimateBeamTable(surroundings);
   measureRanges(scans, result);

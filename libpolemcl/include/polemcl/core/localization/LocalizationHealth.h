@@ -42,10 +42,14 @@ struct POLEMCL_EXPORT HealthOptions {
   /// Lost: scans over this longer distance agree, m. Where most poles are gone or new, few known
   /// poles are seen for some metres.
   double lostWindow = 18;
-  double minEvidence = 8;  ///< least sum of confidences in the window that says anything
-  /// Lost: least sum of confidences in the longer window. Where the poles of the map are gone, the
-  /// few new ones prove nothing.
-  double lostEvidence = 40;
+  /// Least number of poles a scan, by confidence, that says anything: as a share of what is usual
+  /// on this drive, so that it means the same for a LiDAR that sees 3 and for one that sees 28.
+  double minSeen = 0.07;
+  /// Lost: the same in the longer window. Where the poles of the map are gone, the few new ones
+  /// prove nothing.
+  double lostSeen = 0.15;
+  /// What is usual is the mean of scans whose poles match; it forgets over this distance, m.
+  double usualWithin = 200;
   /// Lost: a smaller share of the observed poles is on the map. A pose that has gone wrong was
   /// known well before, so matches by chance are rare: 0.002 for 20 cm round each pole.
   double lostShare = 0.03;
@@ -61,7 +65,7 @@ struct POLEMCL_EXPORT HealthOptions {
   double confirm = 5;       ///< distance with good matches until a new pose is `ok`, m
   double confirmFound = 2;  ///< the same for a pose found by a search, which its submap confirms, m
   /// Share of matched poles that confirms a new pose; particles drawn over metres find matches by
-  /// chance. With less than 0.3 of it the pose is lost as soon as there is `lostEvidence`.
+  /// chance. With less than 0.3 of it the pose is lost after `confirmFound` metres.
   double confirmShare = 0.5;
   double confirmWithin = 15;  ///< lost: a new pose is not confirmed within this distance, m
 };
@@ -84,7 +88,7 @@ struct Health {
   HealthState state = HealthState::lost;
   HealthReason reason = HealthReason::searching;
   double matchedShare = 0;  ///< of the window's observed poles, by confidence; 0 without any
-  double evidence = 0;      ///< sum of confidences in the window
+  double seenShare = 0;     ///< poles a scan in the window, by confidence, as a share of the usual
   double innovation = 0;    ///< mean m² per degree of freedom of the window's matches; 1 expected
   double effectiveParticles = 0;
   double modeShare = 1;
@@ -116,11 +120,19 @@ class POLEMCL_EXPORT HealthMonitor {
  private:
   /// Means of the scans from one viewpoint.
   struct Viewpoint {
-    double driven = 0, evidence = 0, matched = 0, squared = 0, matches = 0;
+    double driven = 0, seen = 0, matched = 0, squared = 0, matches = 0;
     int scans = 0;
   };
+  /// Sums over the viewpoints of a window.
+  struct Window {
+    double seen = 0, matched = 0, squared = 0, matches = 0;
+    int viewpoints = 0;
+    double matchedShare() const { return seen > 0 ? matched / seen : 0; }
+  };
+  void learnUsual();
   void remember(const HealthInput& input);
-  Viewpoint sumOver(double metres) const;
+  Window sumOver(double metres) const;
+  double shareOfUsual(const Window& window) const;
   void sumUp();
   void confirm(const HealthInput& input);
   void judge(const HealthInput& input);
@@ -129,11 +141,14 @@ class POLEMCL_EXPORT HealthMonitor {
   Health m_health;
   std::deque<Viewpoint> m_viewpoints;
   bool m_begun = false, m_found = false, m_confirmed = false;
-  double m_driven = 0, m_time = 0;             ///< at the last update
-  double m_longShare = 0, m_longEvidence = 0;  ///< over `lostWindow`
-  double m_seenDriven = 0, m_seenTime = 0;     ///< when a pole was last seen
-  double m_goodDriven = 0;                     ///< metres in a row with enough matches
-  double m_gapUntil = -1;                      ///< metres driven at which a time gap is forgotten
+  double m_driven = 0, m_time = 0;  ///< at the last update
+  double m_usual = 0;      ///< poles a viewpoint, by confidence; the one under way does not count
+  double m_usualOver = 0;  ///< distance that this mean is over, m
+  bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window, and the longer one
+  double m_longShare = 0;                           ///< of matched poles over `lostWindow`
+  double m_seenDriven = 0, m_seenTime = 0;          ///< when a pole was last seen
+  double m_goodDriven = 0;                          ///< metres in a row with enough matches
+  double m_gapUntil = -1;  ///< metres driven at which a time gap is forgotten
 };
 
 }  // namespace polemcl
