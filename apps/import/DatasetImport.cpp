@@ -19,7 +19,6 @@
 #include "io/dataset/Nclt.h"
 #include "io/dataset/ScanPoses.h"
 #include "io/file/AtomicFile.h"
-#include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 
@@ -150,10 +149,7 @@ ScanTiming timingOf(const ImportOptions& options) {
   if (options.timing) return *options.timing;
   const auto file = options.input / "scan_timing.ini";
   if (!std::filesystem::exists(file)) return datasetTiming(options.dataset);
-  const std::string text = io::readBytes(file);
-  if (text.find("[scan_timing]") == std::string::npos)
-    throw Error(file.string() + ": no section [scan_timing]; write it, or remove the file");
-  return timingIn(text, file.string());
+  return timingInFile(file.string());
 }
 
 /// Both files appear together, when both are complete.

@@ -1,5 +1,5 @@
 # Small helpers, sourced by the scripts here and by the demo, which set $top.
-# shellcheck shell=sh disable=SC2154
+# shellcheck shell=sh disable=SC2034,SC2154
 
 die() {
   echo "$(basename "$0"): $1" >&2
@@ -78,6 +78,8 @@ json_value() {
 # Odometry of simulated drives, unless a script says otherwise: wheel ticks and a gyroscope, with errors that
 # their covariances do not know (simulation.md).
 wheels="simulation.odometry=wheels simulation.odometry_scale=0.01 simulation.odometry_yaw_deg_m=0.01"
+# The true motion with noise of 2 % and that standard deviation, as the paper has it.
+noise="simulation.odometry=noise simulation.odometry_noise=0.02 simulation.odometry_scale=0 simulation.odometry_yaw_deg_m=0"
 
 # draw_drive PATH SETTINGS WORLD DAY [SECTION.KEY=VALUE...]: a drive whose poles are drawn from the model of an
 # HDL-32E, a scan every 0.5 m and odometry of wheels unless given. Leaves PATH.ini, PATH.rawlog (poles) and PATH.tum.

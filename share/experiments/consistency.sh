@@ -1,6 +1,7 @@
 #!/bin/sh
 # Checks whether errors of poses fit their covariances. Simulated streets of 600 m, an HDL-32E, the map of one
-# day, and two drives on another day for each world: one per direction, with own detections, noise and seed.
+# day, and two drives on another day for each world: one per direction, with own detections, noise and
+# seed. Odometry is the truth with 2 % noise.
 # Usage: share/experiments/consistency.sh OUT [FIRST [WORLDS]]
 #   OUT      gets maps, drives, runs, forward.json, reverse.json and all.json
 #   FIRST    first world, 701 unless given; WORLDS: their number, 30 unless given
@@ -19,7 +20,8 @@ mkdir -p "$out"
 
 # drive NAME WORLD DAY REVERSE: NAME.ini .rawlog .tum
 drive() {
-  draw_drive "$out/$1" "$top/config/hdl32e.ini" "$2" "$3" \
+  # shellcheck disable=SC2086,SC2154 # several words
+  draw_drive "$out/$1" "$top/config/hdl32e.ini" "$2" "$3" $noise \
     "simulation.reverse=$4" "simulation.drive_seed=$2" world.length_m=600
 }
 

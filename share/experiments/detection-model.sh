@@ -5,7 +5,7 @@
 #   OUT   gets hdl32e.json, the drives, result.json and table.txt; existing drives are used again
 #   SEED  of the worlds to compare on, 501 to 503 unless given; the model is fitted to 101 to 103
 # Per drive: pole-eval sightings and repeatability. Map of day 0, one to one at 0.5 m against all true
-# poles; localization on day 1 in it, 3 runs of 1000 particles, odometry of wheels: both cast, or both
+# poles; localization on day 1 in it, 3 runs of 1000 particles, odometry with 2 % noise: both cast, or both
 # drawn. Programs: build/bin, or POLEMCL_BIN. Needs jq, 4 minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)

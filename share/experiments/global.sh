@@ -5,7 +5,7 @@
 #   OUT      gets maps, drives, one JSON file a city and result.json
 #   --dense  about three times as many poles as the simulator's default
 #   --quick  one city, 40 starts
-# The poles of each scan are drawn from share/models/hdl32e.json. Worlds 601 to 604; settings
+# The poles of each scan are drawn from share/models/hdl32e.json; odometry is that of wheels. Worlds 601 to 604; settings
 # were chosen on other worlds. Programs: build/bin, or POLEMCL_BIN. Needs jq.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Measures how sigma, outlier share, gate and model of the likelihood change the accuracy: one setting at
-# a time, on simulated HDL-32E streets and on the real KITTI drive split. Writes a table, a plot
+# a time, on simulated HDL-32E streets (odometry with 2 % noise) and on the real KITTI drive split. Writes a table, a plot
 # and their data as JSON.
 # Usage: share/experiments/likelihood-sweep.sh DATA_DIR OUT [LENGTH [WORLD...]]
 #   DATA_DIR  a folder of real scans with poses (kitti_raw_0005)
@@ -26,8 +26,10 @@ mkdir -p "$out"
 for world in "$@"; do
   folder=$out/world$world
   [ -f "$folder/map.polemap" ] && continue
-  simulate_day "$top/config/hdl32e.ini" "$folder" "$world" "$length" 0
-  simulate_day "$top/config/hdl32e.ini" "$folder" "$world" "$length" 1
+  # shellcheck disable=SC2086,SC2154 # several words
+  for day in 0 1; do
+    simulate_day "$top/config/hdl32e.ini" "$folder" "$world" "$length" $day $noise
+  done
   "$bin/pole-map" build --quiet --config "$folder/day0.ini" --input "$folder/day0.rawlog" \
     --truth "$folder/day0.tum" --output "$folder/map.polemap"
 done

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Localization in one table: a simulated HDL-32E street of 1.5 km, the real KITTI drive split with
+# Localization in one table: a simulated HDL-32E street of 1.5 km with odometry of wheels, the real KITTI drive split with
 # true odometry + 2 %, and the same with the independent visual odometry that comes with it.
 # Usage: share/experiments/localization.sh DATA_DIR OUT [SEED]
 #   DATA_DIR  a folder of real scans with poses and odometry.txt (kitti_raw_0005)

@@ -31,6 +31,8 @@ find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole
 find_tools jq
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
+# Left by a run that was stopped: of another drive.
+rm -rf "$out"/scans "$out"/scans.*
 all_errors="0,0 0.01,0.01 0.05,0.05"
 
 # drive NAME WORLD DAY REVERSE ODOMETRY SCALE YAW: NAME.ini, NAME.rawlog (poles) and NAME.tum. The scans
@@ -46,7 +48,7 @@ drive() (
   copy_settings "$settings" "$name.ini" simulation.spacing_m=0.5 "$@" "world.seed=$seed" "world.day=$day"
   [ -d "$scans" ] || "$bin/pole-simulate" --quiet --config "$name.ini" --output "$scans"
   # The same drive of a LiDAR with hardly any points: only its odometry is used.
-  copy_settings "$name.ini" "$scans.ini" sensor.model=uniform sensor.rings=2 sensor.columns=16
+  copy_settings "$name.ini" "$scans.ini" sensor.model=uniform sensor.rings=2 sensor.columns=90
   "$bin/pole-simulate" --quiet --config "$scans.ini" --output "$scans.odometry"
   cp "$scans.odometry/odometry.txt" "$scans/odometry.txt"
   "$bin/pole-import" folder --quiet --input "$scans" --output "$scans.rawlog"
@@ -94,7 +96,8 @@ score() {
   # shellcheck disable=SC2086 # lists of files
   "$bin/pole-eval" consistency --json "$out/score.json" --truth $truth --cov $runs >/dev/null
   # shellcheck disable=SC2086
-  "$bin/pole-eval" consistency --json "$out/ok.json" --truth $truth --cov $runs --health $health >/dev/null
+  "$bin/pole-eval" consistency --json "$out/ok.json" --truth $truth --cov $runs --health $health \
+    --skip-metres 0 >/dev/null
   jq -n --arg odometry "$1" --argjson scale "${2%,*}" --argjson yaw "${2#*,}" --argjson calibrated "$3" \
     --arg direction "$4" --arg means "$means" --slurpfile all "$out/score.json" --slurpfile ok "$out/ok.json" '
     ($means | split(" ") | map(select(. != "") | split(":") | {world: .[0], m: (.[1] | tonumber)})) as $worlds

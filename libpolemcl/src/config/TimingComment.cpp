@@ -30,4 +30,15 @@ ScanTiming timingIn(const std::string& comment, const std::string& rawlog) {
   return timing;
 }
 
+ScanTiming timingInFile(const std::string& file) {
+  const ConfigFile config = ConfigFile::read(file);
+  if (!config.source().sectionExists("scan_timing"))
+    throw Error(file + ": no section [scan_timing]; write it, or remove the file");
+  ScanTiming timing;
+  ConfigReader reader(config);
+  bind(reader, timing);
+  reader.finish();
+  return timing;
+}
+
 }  // namespace polemcl

@@ -1,6 +1,6 @@
 #pragma once
 /// \file TimingComment.h
-/// \brief Measuring times of scans, stated in the comment of a rawlog.
+/// \brief Measuring times of scans, stated in the comment of a rawlog or in a file.
 
 #include <string>
 
@@ -14,5 +14,8 @@ std::string timingComment(const ScanTiming& timing);
 /// \brief The timing in a comment; `auto` if it has no such section.
 /// \param rawlog Name for messages. \throws Error when the section cannot be read.
 ScanTiming timingIn(const std::string& comment, const std::string& rawlog);
+/// \brief The timing in an INI file that has this section only.
+/// \throws Error naming the file when it cannot be read, lacks the section, or has another one.
+ScanTiming timingInFile(const std::string& file);
 
 }  // namespace polemcl

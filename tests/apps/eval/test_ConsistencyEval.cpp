@@ -82,6 +82,11 @@ TEST_F(ConsistencyEval, CountsOnlyWhatIsOkWhenToldTheHealth) {
   writeCov("cov.csv", 40, 0.6, 5);
   EXPECT_NEAR(evalConsistency(options).all.longestBeyond5, 29 - 13, 1e-9)
       << "12 is not ok, the truth ends with 29";
+  std::string rows;  // the truth again, without 20 to 22
+  for (int i = 0; i < 30; ++i)
+    if (i < 20 || i > 22) rows += std::to_string(i) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
+  writeText(folder / "truth.tum", rows);
+  EXPECT_NEAR(evalConsistency(options).all.longestBeyond5, 29 - 23, 1e-9);
 }
 
 TEST_F(ConsistencyEval, RefusesWhatDoesNotFitTogether) {

@@ -72,7 +72,8 @@ TEST_F(ImportApp, KeepsTheMeasuringTimesInTheRawlog) {
   EXPECT_HAS(commentOf(folder / "out.rawlog"), "turn = counterclockwise");
   writeText(folder / "in" / "scan_timing.ini", "[scan_timing]\nturn = around\n");
   expectFailure(run("folder"), {"scan_timing.ini", "turn = around"});
-  writeText(folder / "in" / "scan_timing.ini", "[scan-timing]\nturn = clockwise\n");
+  writeText(folder / "in" / "scan_timing.ini",
+            "; [scan_timing]\n[scan-timing]\nturn = clockwise\n");
   expectFailure(run("folder"), {"scan_timing.ini", "no section [scan_timing]"});
   EXPECT_EQ(run("folder", {"--cut-deg", "90"}).code, 2) << "needs --turn";
 }

@@ -20,10 +20,13 @@ TEST(Covariance, AcceptsSemidefiniteMatrices) {
 
 TEST(Covariance, AcceptsRoundingInProportionToTheMatrix) {
   for (const double scale : {1e-8, 1.0, 1e6}) {
-    EXPECT_TRUE(isCovariance<2>(scale * matrix(1, 0, 5e-10, 1)));
-    EXPECT_TRUE(isCovariance<2>(scale * matrix(1, 0, 0, -5e-10)));
-    EXPECT_FALSE(isCovariance<2>(scale * matrix(1, 0, 2e-9, 1)));
-    EXPECT_FALSE(isCovariance<2>(scale * matrix(1, 0, 0, -2e-9)));
+    const auto m = [&](double yx, double yy) -> Eigen::Matrix2d {
+      return scale * matrix(1, 0, yx, yy);
+    };
+    EXPECT_TRUE(isCovariance(m(5e-10, 1)));
+    EXPECT_TRUE(isCovariance(m(0, -5e-10)));
+    EXPECT_FALSE(isCovariance(m(2e-9, 1)));
+    EXPECT_FALSE(isCovariance(m(0, -2e-9)));
   }
 }
 
@@ -34,6 +37,13 @@ TEST(Covariance, RefusesOtherMatrices) {
   Eigen::Matrix3d indefinite = Eigen::Matrix3d::Identity();
   indefinite(0, 2) = indefinite(2, 0) = 1.1;
   EXPECT_FALSE(isCovariance(indefinite));
+}
+
+TEST(Covariance, LargestSigmaIsThatOfTheLongAxis) {
+  EXPECT_NEAR(largestSigma(matrix(9, 0, 0, 4)), 3, 1e-12);
+  EXPECT_NEAR(largestSigma(matrix(5, 4, 4, 5)), 3, 1e-12);
+  EXPECT_EQ(largestSigma(matrix(0, 0, 0, 0)), 0);
+  EXPECT_EQ(largestSigma(matrix(NAN, 0, 0, 1)), INFINITY);
 }
 
 }  // namespace polemcl::test_covariance

@@ -44,7 +44,7 @@ TEST(PoleExistence, OneScanCountsAsBayesHasIt) {
   EXPECT_EQ(missed.missed(), 1u);
 }
 
-TEST(PoleExistence, ScansOfOneLookCountOnce) {
+TEST(PoleExistence, ScansOfOneSectionCountOnce) {
   ExistenceLikelihood likelihood;
   for (int i = 0; i < 10; ++i) likelihood.add(i < 5, 0.4 * i, options(), 0.8);  // 0 to 3.6 m
   EXPECT_NEAR(likelihood.logRatio(), 0.5 * std::log(8) + 0.5 * std::log(2.0 / 9), 1e-12);

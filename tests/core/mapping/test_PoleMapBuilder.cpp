@@ -91,7 +91,7 @@ TEST(PoleMapBuilder, SectionsWithoutAScanNeitherCountNorBreak) {
 TEST(PoleMapBuilder, OneRunMustSufficeByItself) {
   EXPECT_EQ(polesOf("xx......xx", 3, 2), 0u);
   EXPECT_EQ(polesOf("xx......xxx", 3, 2), 1u);
-  // All views that saw it count for the pole itself, of whatever run.
+  // All keyframes that saw it count for the pole itself, of whatever run.
   EXPECT_EQ(buildPoleMap(pattern("xx......xxx"), sectionsOfOneMetre(3, 2)).poles.at(0).count, 5u);
 }
 
@@ -139,7 +139,7 @@ TEST(PoleMapBuilder, TakesTheMiddleScanOfASection) {
   EXPECT_EQ(result.detections, 1u);
 }
 
-TEST(PoleMapBuilder, EveryScanIsAViewButSectionsAreCounted) {
+TEST(PoleMapBuilder, EveryScanIsAKeyframeButSectionsAreCounted) {
   std::vector<MappingScan> scans;  // 0 to 2.9 m: three sections
   for (int i = 0; i < 30; ++i) scans.push_back(scanAt(0.1 * i, {{5, 3}}));
   PoleMapOptions options = sectionsOfOneMetre(3, 0);

@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "core/common/Angles.h"
+#include "core/common/Transform.h"
 #include "sim/drive/WheelOdometry.h"
 
 namespace polemcl::test_wheel_odometry {
 
+using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {
@@ -18,9 +20,8 @@ struct Sums {
     WheelOdometry odometry(bias, Random(1));
     for (int i = 0; i < 800; ++i) {
       const OdometryStep read = odometry.read({step, 0.01, 0.01});
-      metres += read.dx;
+      metres += std::hypot(read.dx, read.dy);
       turns += read.dyaw;
-      EXPECT_EQ(read.dy, 0) << "wheels do not see sideways motion";
     }
   }
 };
@@ -38,11 +39,26 @@ TEST(WheelOdometry, ScaleYawBiasAndSlipAddUp) {
   EXPECT_NEAR(Sums({0.03, 0.001, 0, 0, 0}, -0.5).turns, 8 - 0.001 * length, 0.02) << "backwards";
 }
 
+TEST(WheelOdometry, FollowsABendWithoutErrors) {
+  WheelOdometry odometry({0, 0, 0, 0, 0}, Random(1));
+  const double turn = 0.07, radius = 10;  // 22 steps of 0.7 m, a quarter of a circle
+  Pose2D truth, read;
+  for (int i = 0; i < 22; ++i) {
+    const Pose2D step{radius * std::sin(turn), radius * (1 - std::cos(turn)), turn};
+    const OdometryStep motion = odometry.read(step);
+    truth = compose(truth, step);
+    read = compose(read, {motion.dx, motion.dy, motion.dyaw});
+  }
+  EXPECT_NEAR(read.x, truth.x, 0.05);
+  EXPECT_NEAR(read.y, truth.y, 0.05);
+}
+
 TEST(WheelOdometry, DistancesAreWholeTicks) {
   WheelOdometry odometry({0.01, 0, 0.2, 0, 0.02}, Random(1));
   double sum = 0;
   for (int i = 0; i < 100; ++i) {
-    sum += odometry.read({0.013, 0, 0}).dx;
+    const OdometryStep read = odometry.read({0.013, 0, 0});
+    sum += std::hypot(read.dx, read.dy);
     EXPECT_NEAR(sum / 0.02, std::round(sum / 0.02), 1e-9);
   }
   EXPECT_NEAR(sum, 1.3, 0.05);

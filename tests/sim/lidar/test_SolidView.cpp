@@ -3,6 +3,7 @@
 #include <polemcl/core/common/Types.h>
 #include "sim/common/Random.h"
 #include "sim/lidar/SolidView.h"
+#include "sim/world/WorldObject.h"
 
 namespace polemcl::test_solid_view {
 
@@ -19,7 +20,7 @@ Solid randomSolid(Random& random) {
   solid.size = V(random.uniform(0.05, 3), random.uniform(0.05, 3), random.uniform(0.05, 4));
   if (solid.shape == Shape::frustum) {
     const V axis(random.normal(), random.normal(), random.normal());
-    solid.axes = Eigen::Quaterniond::FromTwoVectors(V::UnitZ(), axis).toRotationMatrix();
+    solid.axes = axesAlong(axis);
     solid.size = V(random.uniform(0.03, 0.5), random.uniform(0.03, 0.5), random.uniform(0.5, 6));
   }
   solid.density = solid.shape == Shape::thicket ? 0.5f : 0.0f;

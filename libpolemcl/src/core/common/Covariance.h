@@ -1,29 +1,23 @@
 #pragma once
 /// \file Covariance.h
-/// \brief What counts as a covariance matrix, in all parts of polemcl.
+/// \brief What counts as a covariance matrix, in all parts of polemcl. Eigen's solvers take long to
+/// compile: they are in the source file.
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 namespace polemcl {
 
 /// \brief Whether the matrix is finite, symmetric and positive semidefinite. Rounding may break
 /// symmetry and sign by 1e-9 of the largest element. The zero matrix is a covariance.
-template <int size>
-bool isCovariance(const Eigen::Matrix<double, size, size>& matrix) {
-  if (!matrix.allFinite()) return false;
-  const double tolerance = 1e-9 * matrix.cwiseAbs().maxCoeff();
-  if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > tolerance) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>> solver(
-      matrix, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0] >= -tolerance;
-}
+bool isCovariance(const Eigen::Matrix2d& matrix);
+bool isCovariance(const Eigen::Matrix3d& matrix);
 
 /// \brief Whether the matrix is a covariance that can be inverted.
-template <int size>
-bool isDefiniteCovariance(const Eigen::Matrix<double, size, size>& matrix) {
-  return isCovariance(matrix) &&
-         Eigen::LLT<Eigen::Matrix<double, size, size>>(matrix).info() == Eigen::Success;
-}
+bool isDefiniteCovariance(const Eigen::Matrix2d& matrix);
+bool isDefiniteCovariance(const Eigen::Matrix3d& matrix);
+
+/// \brief Standard deviation along the worst axis; 0 for a matrix without a positive eigenvalue,
+/// infinite for one that is not finite.
+double largestSigma(const Eigen::Matrix2d& covariance);
 
 }  // namespace polemcl

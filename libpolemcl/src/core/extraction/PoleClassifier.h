@@ -9,7 +9,7 @@ namespace polemcl {
 
 /// \brief What the score looks at. Heights in m above local ground.
 struct PoleFeatures {
-  // Known from segments and features.
+  // Known from segments and from what surrounds the candidate.
   double segments = 1, points = 1;
   double extent = 0;         ///< from the lowest to the highest segment, m
   double passed = 0;         ///< share of the rows between that saw through

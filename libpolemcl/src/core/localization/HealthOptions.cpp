@@ -29,9 +29,10 @@ void bind(Binder& b, HealthOptions& o) {
   b.number("window_m", o.window, positive, "m", "scans over this distance are judged together");
   b.number("lost_window_m", o.lostWindow, positive, "m",
            "lost: scans over this longer distance agree");
-  b.number("min_seen", o.minSeen, share, "share",
-           "least number of poles a scan that says anything, as a share of the usual number");
-  b.number("lost_seen", o.lostSeen, share, "share", "lost: the same in the longer window");
+  b.number("min_sightings", o.minSightings, positive, "",
+           "least sum of the confidences of poles in the window that says anything");
+  b.number("lost_seen", o.lostSeen, share, "share",
+           "lost: least number of poles a scan in the longer window, as a share of the usual");
   b.number("usual_m", o.usualWithin, positive, "m",
            "the usual number is a mean that forgets over this distance");
   b.number("lost_share", o.lostShare, share, "share",

@@ -1,22 +1,16 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include <polemcl/core/localization/LocalizationHealth.h>
+#include "core/common/Covariance.h"
 
 namespace polemcl {
 namespace {
 
-constexpr double s_hopeless = 0.3;   // a new pose is not waited for below this part of its share
-constexpr double s_fewest = 3;       // fewer poles in a window, by confidence, say nothing
-constexpr double s_viewpoint = 0.1;  // scans nearer to each other are of one viewpoint, m
-
-double worstSigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(position, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
-}
+constexpr double s_hopeless = 0.3;     // a new pose is not waited for below this part of its share
+constexpr double s_hopelessAfter = 2;  // but for this distance, m
+constexpr double s_viewpoint = 0.1;    // scans nearer to each other are of one viewpoint, m
 
 }  // namespace
 
@@ -41,7 +35,10 @@ void HealthMonitor::reset() {
 }
 
 void HealthMonitor::begin(bool found) {
+  const double usual = m_usual, over = m_usualOver;
   reset();
+  m_usual = usual;
+  m_usualOver = over;
   m_begun = true;
   m_found = found;
 }
@@ -62,7 +59,7 @@ Health HealthMonitor::update(const HealthInput& input) {
   }
   m_health.effectiveParticles = input.effectiveParticles;
   m_health.modeShare = input.modeShare;
-  m_health.spread = worstSigma(input.estimate.covariance);
+  m_health.spread = largestSigma(input.estimate.covariance.topLeftCorner<2, 2>());
   m_health.spreadHeading = std::sqrt(std::max(0.0, input.estimate.covariance(2, 2)));
   confirm(input);
   judge(input);
@@ -74,8 +71,8 @@ Health HealthMonitor::update(const HealthInput& input) {
 void HealthMonitor::learnUsual() {
   if (m_viewpoints.empty()) return;
   const Viewpoint& last = m_viewpoints.back();
-  if (last.matched < m_options.degradedShare * last.seen) return;
-  const double metres = std::max(m_driven - last.driven, s_viewpoint);
+  if (last.seen <= 0 || last.matched < m_options.degradedShare * last.seen) return;
+  const double metres = std::clamp(m_driven - last.driven, s_viewpoint, m_options.window);
   m_usualOver = std::min(m_usualOver + metres, m_options.usualWithin);
   m_usual += std::min(1.0, metres / m_usualOver) * (last.seen - m_usual);
 }
@@ -129,8 +126,8 @@ void HealthMonitor::sumUp() {
   m_health.matchedShare = window.matchedShare();
   m_health.innovation = window.matches > 0 ? window.squared / (2 * window.matches) : 0;
   m_longShare = all.matchedShare();
-  m_isEnough = window.seen >= s_fewest && m_health.seenShare >= m_options.minSeen;
-  m_isEnoughLong = all.seen >= s_fewest && shareOfUsual(all) >= m_options.lostSeen;
+  m_isEnough = window.seen >= m_options.minSightings;
+  m_isEnoughLong = all.seen >= m_options.minSightings && shareOfUsual(all) >= m_options.lostSeen;
 }
 
 /// Confirms a new pose after enough metres of good matches.
@@ -149,7 +146,7 @@ void HealthMonitor::judge(const HealthInput& input) {
   const bool fewMatched = m_health.matchedShare < o.degradedShare;
   const double lostShare = m_confirmed ? o.lostShare : s_hopeless * o.confirmShare;
   const bool bare =
-      m_isEnoughLong && m_driven >= o.confirmFound && m_longShare < lostShare && fewMatched;
+      m_isEnoughLong && m_driven >= s_hopelessAfter && m_longShare < lostShare && fewMatched;
   const bool unconfirmed =
       m_isEnough && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
   const bool wide =

@@ -32,12 +32,11 @@ std::vector<SessionScan> certainScans(const std::vector<SessionScan>& scans,
   std::vector<SessionScan> certain;
   certain.reserve(scans.size());
   for (const SessionScan& scan : scans) {
-    if (!isCovariance<3>(scan.poseCovariance))
+    if (!isCovariance(scan.poseCovariance))
       throw Error("the pose of " + nameOf(scan) +
                   " has a matrix that is no covariance; leave the scan out or correct it");
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
-        scan.poseCovariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
-    if (axes.eigenvalues()[1] <= options.maxSigma * options.maxSigma) certain.push_back(scan);
+    if (largestSigma(scan.poseCovariance.topLeftCorner<2, 2>()) <= options.maxSigma)
+      certain.push_back(scan);
   }
   return certain;
 }

@@ -2,11 +2,11 @@
 
 #include <mrpt/opengl/CText.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/common/Angles.h"
+#include "core/common/PrincipalAxes.h"
 #include "core/common/TickStep.h"
 #include "io/file/TextFile.h"
 
@@ -38,11 +38,11 @@ View directionFor(const Path& places) {
   for (const auto& place : places) mean += place / static_cast<double>(places.size());
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const auto& place : places) scatter += (place - mean) * (place - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter);
-  constexpr double slim = 16;  // ratio of the eigenvalues
+  const auto axes = principalAxes(scatter);
+  constexpr double slim = 16;  // ratio of the variances
   View view;
-  if (axes.eigenvalues()[1] <= slim * axes.eigenvalues()[0]) return view;
-  Eigen::Vector2d axis = axes.eigenvectors().col(1);
+  if (!axes || axes->first <= slim * axes->second) return view;
+  Eigen::Vector2d axis(axes->x, axes->y);
   if (axis.x() + axis.y() < 0) axis = -axis;
   view.azimuth = std::atan2(axis.y(), axis.x()) + 160 * degree;
   view.elevation = 22 * degree;

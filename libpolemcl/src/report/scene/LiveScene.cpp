@@ -1,6 +1,5 @@
 #include "report/scene/LiveScene.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
@@ -8,6 +7,8 @@
 #include <utility>
 
 #include "core/common/Angles.h"
+#include "core/common/Covariance.h"
+#include "core/common/PrincipalAxes.h"
 #include "core/common/TickStep.h"
 #include "report/picture/MapView.h"
 #include "report/scene/LiveObjects.h"
@@ -44,25 +45,20 @@ LiveMoment movedBy(LiveMoment moment, const Eigen::Vector2d& origin) {
   return moment;
 }
 
-/// Standard deviation of the position along its worst axis, m.
-double spreadOf(const PoseWithCovariance& pose) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pose.covariance.topLeftCorner<2, 2>(),
-                                                            Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(axes.eigenvalues()[1], 0.0));
-}
-
 }  // namespace
 
 std::vector<Eigen::Vector2d> ellipse95(const PoseWithCovariance& pose, int corners) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pose.covariance.topLeftCorner<2, 2>());
-  const Eigen::Vector2d lengths = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
+  // Without a covariance, the ellipse is a point.
+  const PrincipalAxes axes =
+      principalAxes(pose.covariance.topLeftCorner<2, 2>()).value_or(PrincipalAxes());
   const double radius = std::sqrt(-2 * std::log(0.05));  // of 95 %, two degrees of freedom
+  const Eigen::Vector2d first = radius * std::sqrt(axes.first) * Eigen::Vector2d(axes.x, axes.y);
+  const Eigen::Vector2d second = radius * std::sqrt(axes.second) * Eigen::Vector2d(-axes.y, axes.x);
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= corners; ++i) {
     const double angle = 2 * M_PI * (i % corners) / corners;
-    const Eigen::Vector2d unit(std::cos(angle), std::sin(angle));
-    points.emplace_back(Eigen::Vector2d(pose.mean.x, pose.mean.y) +
-                        radius * axes.eigenvectors() * lengths.cwiseProduct(unit));
+    points.emplace_back(Eigen::Vector2d(pose.mean.x, pose.mean.y) + std::cos(angle) * first +
+                        std::sin(angle) * second);
   }
   return points;
 }
@@ -181,7 +177,8 @@ void LiveScene::showClose(const LiveMoment& moment) {
     return;
   }
   // Steps, so that it does not breathe with every update.
-  const double half = tickStep(3 * std::max(spreadOf(*moment.estimate), 0.005), 1);
+  const double spread = largestSigma(moment.estimate->covariance.topLeftCorner<2, 2>());
+  const double half = tickStep(3 * std::max(spread, 0.005), 1);
   const double step = tickStep(2 * half, 8);
   caption.setViewportPosition(0.75, 0.02, 0.24, 0.05);
   viewport.setViewportPosition(0.75, 0.07, 0.24, 0.34);

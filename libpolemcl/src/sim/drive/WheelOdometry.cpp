@@ -24,9 +24,11 @@ OdometryStep WheelOdometry::read(const Pose2D& step) {
   const double before = m_counted;
   m_counted = m_bias.tick > 0 ? m_bias.tick * std::round(m_measured / m_bias.tick) : m_measured;
   OdometryStep read;
-  read.dx = m_counted - before;
   read.dyaw = step.yaw * (1 + m_bias.slip) + yawBias * forwards +
               0.01 * degree * std::sqrt(metres) * m_noise.normal();
+  // An arc: its chord points half the turn to the side.
+  read.dx = (m_counted - before) * std::cos(0.5 * read.dyaw);
+  read.dy = (m_counted - before) * std::sin(0.5 * read.dyaw);
   read.sx = 0.02 * metres + 0.002;
   read.sy = 0.01 * metres + 0.002;
   read.syaw = 0.1 * degree * metres + 0.02 * std::abs(step.yaw) + 0.02 * degree;

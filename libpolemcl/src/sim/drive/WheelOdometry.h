@@ -16,10 +16,11 @@ struct OdometryStep {
 /// \brief Reads one motion after the other.
 ///
 /// Distance: wrong by `scale`, which sways with `drift`, and counted in whole ticks. Turns: wrong
-/// by `yaw` per metre, which sways alike, and by `slip` of the turn itself. Sideways motion is
-/// not seen. White noise of 0.2 % of the distance and 0.01°/m^½ is added. The standard deviations
-/// are what a user would write down without knowing any of this: 2 % of the distance and 2 mm
-/// along, 1 % and 2 mm across, 0.1°/m, 2 % of the turn and 0.02° for the heading.
+/// by `yaw` per metre, which sways alike, and by `slip` of the turn itself. Both together are an
+/// arc; sideways motion of the vehicle itself is not seen. White noise of 0.2 % of the distance and
+/// 0.01°/m^½ is added. The standard deviations are what a user would write down without knowing any
+/// of this: 2 % of the distance and 2 mm along, 1 % and 2 mm across, 0.1°/m, 2 % of the turn and
+/// 0.02° for the heading.
 class WheelOdometry {
  public:
   WheelOdometry(const OdometryBias& bias, Random noise);

@@ -1,4 +1,3 @@
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -45,7 +44,7 @@ void deform(WorldObject& object, const Site& site, Shift shift, Thickness thickn
       Solid piece = solid;
       piece.position = a;
       piece.size = V(radius(from), radius(to), (b - a).norm());
-      piece.axes = Eigen::Quaterniond::FromTwoVectors(V::UnitZ(), b - a).toRotationMatrix();
+      piece.axes = axesAlong(b - a);
       solids.push_back(piece);
     }
   }

@@ -23,6 +23,10 @@ Eigen::Vector2d WorldObject::displacement(double time) const {
   return (phase < 1 ? phase : 2 - phase) * walk;
 }
 
+Eigen::Matrix3d axesAlong(const Eigen::Vector3d& direction) {
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction).toRotationMatrix();
+}
+
 ObjectBuilder::ObjectBuilder(Kind kind, const Site& site) : m_base(site.base) {
   m_object.kind = kind;
   m_turn = Eigen::AngleAxisd(site.heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -45,9 +49,7 @@ void ObjectBuilder::post(const Eigen::Vector3d& a, const Eigen::Vector3d& b, dou
   const Eigen::Vector3d along = b - a;
   Solid solid =
       placed(Shape::frustum, a, Eigen::Vector3d(radiusA, radiusB, along.norm()), material, 0);
-  solid.axes =
-      m_turn *
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
+  solid.axes = m_turn * axesAlong(along);
   m_object.solids.push_back(solid);
 }
 

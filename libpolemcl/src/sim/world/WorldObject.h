@@ -77,6 +77,9 @@ struct WorldObject {
   Eigen::Vector2d displacement(double time) const;
 };
 
+/// \brief Axes of a solid, as columns, whose z points along a direction of any length above 0.
+Eigen::Matrix3d axesAlong(const Eigen::Vector3d& direction);
+
 /// \brief Collects solids given in the frame of a site.
 class ObjectBuilder {
  public:

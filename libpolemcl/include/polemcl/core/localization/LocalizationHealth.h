@@ -42,11 +42,12 @@ struct POLEMCL_EXPORT HealthOptions {
   /// Lost: scans over this longer distance agree, m. Where most poles are gone or new, few known
   /// poles are seen for some metres.
   double lostWindow = 18;
-  /// Least number of poles a scan, by confidence, that says anything: as a share of what is usual
-  /// on this drive, so that it means the same for a LiDAR that sees 3 and for one that sees 28.
-  double minSeen = 0.07;
-  /// Lost: the same in the longer window. Where the poles of the map are gone, the few new ones
-  /// prove nothing.
+  /// Least number of sightings in a window that says anything: sum of the confidences of all poles
+  /// from all viewpoints.
+  double minSightings = 8;
+  /// Lost: least number of poles a scan in the longer window, as a share of what is usual on this
+  /// drive, so that it means the same for a LiDAR that sees 3 and for one that sees 28. Where the
+  /// poles of the map are gone, the few new ones prove nothing.
   double lostSeen = 0.15;
   /// What is usual is the mean of scans whose poles match; it forgets over this distance, m.
   double usualWithin = 200;
@@ -65,7 +66,7 @@ struct POLEMCL_EXPORT HealthOptions {
   double confirm = 5;       ///< distance with good matches until a new pose is `ok`, m
   double confirmFound = 2;  ///< the same for a pose found by a search, which its submap confirms, m
   /// Share of matched poles that confirms a new pose; particles drawn over metres find matches by
-  /// chance. With less than 0.3 of it the pose is lost after `confirmFound` metres.
+  /// chance. With less than 0.3 of it the pose is lost after 2 m.
   double confirmShare = 0.5;
   double confirmWithin = 15;  ///< lost: a new pose is not confirmed within this distance, m
 };
@@ -144,7 +145,7 @@ class POLEMCL_EXPORT HealthMonitor {
   double m_driven = 0, m_time = 0;  ///< at the last update
   double m_usual = 0;      ///< poles a viewpoint, by confidence; the one under way does not count
   double m_usualOver = 0;  ///< distance that this mean is over, m
-  bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window, and the longer one
+  bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window; to be lost
   double m_longShare = 0;                           ///< of matched poles over `lostWindow`
   double m_seenDriven = 0, m_seenTime = 0;          ///< when a pole was last seen
   double m_goodDriven = 0;                          ///< metres in a row with enough matches

@@ -62,9 +62,8 @@ class POLEMCL_EXPORT ExistenceLikelihood {
  public:
   /// \param along Way travelled to the scan, m; never less than before.
   /// \param hidden Something stands before the place. Such scans count with a small chance, and
-  /// only
-  ///        if one of them found the pole: then those that did not find it must count as well.
-  ///        They never count as missed().
+  /// only if one of them found the pole: then those that did not find it must count as well. They
+  /// never count as missed().
   void add(bool found, double along, const ExistenceOptions& options, double chance,
            bool hidden = false);
   std::uint32_t found() const { return m_found; }
@@ -88,7 +87,7 @@ class POLEMCL_EXPORT ExistenceLikelihood {
   SectionSum m_inView, m_all;
 };
 
-/// \brief Probability after likelihood, kept within `certain`.
+/// \brief Probability after a session, kept within `certain`.
 POLEMCL_EXPORT double updated(double existence, double logRatio, const ExistenceOptions& options);
 
 }  // namespace polemcl
