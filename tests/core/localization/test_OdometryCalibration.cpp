@@ -54,7 +54,11 @@ TEST(OdometryCalibration, CorrectsMotionsAndStatesWhatIsLeft) {
   const Pose2D step{0.5, 0.01, 0.1};
   const Eigen::Matrix3d stated = Eigen::Matrix3d::Identity() * 1e-6;
   const double before = bench.calibration.correct(step, stated).covariance(0, 0);
-  EXPECT_NEAR(before, 1e-6 + 0.25 * 0.02 * 0.02, 1e-12) << "2 % of the step, at the start";
+  // At the start 2 %, which over 3 m of such steps add up to 0.06 m.
+  const double metres = std::hypot(step.x, step.y), steps = 3 / metres;
+  EXPECT_NEAR(std::sqrt(steps * (before - 1e-6)), 3 * 0.02 * step.x / metres, 1e-9);
+  const Pose2D wide{5, 0, 0};  // longer than 3 m: counts as it is
+  EXPECT_NEAR(bench.calibration.correct(wide, stated).covariance(0, 0), 1e-6 + 0.01, 1e-12);
   bench.drive(200);
   const CorrectedMotion corrected = bench.calibration.correct(step, stated);
   EXPECT_NEAR(corrected.motion.x, 0.525, 0.0015);

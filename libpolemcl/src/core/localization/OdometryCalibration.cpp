@@ -1,4 +1,5 @@
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include <polemcl/core/localization/OdometryCalibration.h>
@@ -7,6 +8,7 @@
 namespace polemcl {
 namespace {
 
+constexpr double s_together = 3;  // distance over which errors of motions add up, m
 constexpr double s_furthest = 4;  // greatest innovation that is used, standard deviations
 
 Eigen::Vector3d asVector(const Pose2D& pose) {
@@ -65,8 +67,14 @@ CorrectedMotion OdometryCalibration::correct(const Pose2D& motion,
   if (!m_options.enabled) return {motion, covariance};
   Eigen::Matrix<double, 3, 2> byErrors;
   byErrors << motion.x, 0, motion.y, 0, 0, motion.x;
-  return {corrected(motion, m_errors.scale, m_errors.yaw),
-          covariance + symmetrized<3>(byErrors * m_errors.covariance * byErrors.transpose())};
+  // The errors of successive motions are the same ones: over a distance they add up as they are,
+  // not as their squares. A filter takes motions for independent, so each gets its share of the
+  // sum.
+  const double metres = std::hypot(motion.x, motion.y);
+  const double share = metres > 0 ? std::max(1.0, s_together / metres) : 1;
+  return {
+      corrected(motion, m_errors.scale, m_errors.yaw),
+      covariance + share * symmetrized<3>(byErrors * m_errors.covariance * byErrors.transpose())};
 }
 
 void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,
