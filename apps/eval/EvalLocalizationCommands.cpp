@@ -7,6 +7,7 @@
 #include "eval/EvalApp.h"
 #include "eval/FaultTrials.h"
 #include "eval/GlobalTrials.h"
+#include "eval/StartTrials.h"
 
 namespace polemcl::apps {
 namespace {
@@ -19,22 +20,36 @@ void declareFiles(CLI::App& cli, TrialDriveFiles& files) {
   cli.add_option("--truth", files.truth, "True robot poses of the drive (.tum)")->required();
 }
 
-Subcommand globalCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("global",
-                                      "Starts at random places without a pose: is the pose found?");
-  const auto shared = std::make_shared<GlobalTrialsOptions>();
-  GlobalTrialsOptions& options = *shared;
+/// A command that starts at random places of a drive.
+template <class Options>
+Subcommand trialCommand(CLI::App& program, const char* name, const char* meaning,
+                        std::string (*evaluate)(const Options&)) {
+  auto& cli = *program.add_subcommand(name, meaning);
+  const auto shared = std::make_shared<Options>();
+  Options& options = *shared;
   declareFiles(cli, options.files);
   addNumber(cli, "--trials", options.trials, "Random starts", CLI::Range(1, 1000000));
   cli.add_option("--seed", options.seed, "Seed of the starts; the filter of trial i uses seed + i")
       ->capture_default_str();
   addNumber(cli, "--metres", options.metres, "Longest path of a trial, m", positiveNumber());
   cli.add_option("--json", options.json, "Write the results to this file (JSON)");
-  return {&cli, [shared](bool quiet) {
+  return {&cli, [shared, evaluate](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
             shared->progress = [&] { progress.step(); };
-            return evalGlobal(*shared);
+            return evaluate(*shared);
           }};
+}
+
+Subcommand globalCommand(CLI::App& program) {
+  return trialCommand(program, "global",
+                      "Starts at random places without a pose: is the pose found?", evalGlobal);
+}
+
+Subcommand startsCommand(CLI::App& program) {
+  return trialCommand(program, "starts",
+                      "Starts at random places with a pose as rough as [start] says: does the "
+                      "filter find the true one?",
+                      evalStarts);
 }
 
 std::string row(const std::string& name, const ConsistencyScore& s) {
@@ -116,7 +131,8 @@ Subcommand faultsCommand(CLI::App& program) {
 }  // namespace
 
 std::vector<Subcommand> localizationCommands(CLI::App& program) {
-  return {globalCommand(program), consistencyCommand(program), faultsCommand(program)};
+  return {globalCommand(program), startsCommand(program), consistencyCommand(program),
+          faultsCommand(program)};
 }
 
 }  // namespace polemcl::apps

@@ -2,8 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <cmath>
-#include <random>
 #include <sstream>
 
 #include "cli/JsonFile.h"
@@ -86,26 +84,12 @@ void writeFigures(const std::filesystem::path& file, const nlohmann::ordered_jso
   writeJson(file.parent_path() / beside, times);
 }
 
-void requireUsable(const GlobalTrialsOptions& options, double length) {
-  if (options.trials < 1) throw Error("at least 1 trial is needed");
-  if (!(options.metres > 0)) throw Error("a trial must be longer than 0 m");
-  if (length <= options.metres)
-    throw Error("the drive is " + io::fixed(length, 1) + " m long, but each trial takes " +
-                io::fixed(options.metres, 1) + " m: give a longer one or fewer metres");
-}
-
 }  // namespace
 
 std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
                                          const GlobalTrialsOptions& options) {
   const std::vector<double> driven = distancesDriven(drive.truth);
-  requireUsable(options, driven.empty() ? 0 : driven.back());
-  const auto last = std::upper_bound(driven.begin(), driven.end(), driven.back() - options.metres);
-  const auto starts = static_cast<std::uint64_t>(last - driven.begin());
-  std::mt19937_64 random(options.seed);
-  std::vector<std::size_t> first;
-  first.reserve(options.trials);
-  for (int i = 0; i < options.trials; ++i) first.push_back(random() % starts);
+  const auto first = drawStarts(driven, options.trials, options.metres, options.seed);
   std::vector<GlobalTrial> trials(options.trials);
   tbb::parallel_for(0, options.trials, [&](int i) {
     trials[i] = runGlobalTrial(drive, driven, first[i], options.metres,

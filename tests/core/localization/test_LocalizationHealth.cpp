@@ -106,6 +106,21 @@ TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {
   EXPECT_LE(driven, feed.monitor.options().lostWindow);
 }
 
+TEST(LocalizationHealth, ChanceMatchesDoNotEndLost) {
+  Feed feed;
+  feed.scans(60, 0.8);
+  feed.scans(60, 0);
+  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(60, 0.1);
+  feed.expect(State::lost, Reason::mismatch);
+  feed.scans(60, 0.2);
+  feed.expect(State::degraded, Reason::mismatch);
+  Feed poor;  // never lost before
+  poor.scans(60, 0.8);
+  poor.scans(60, 0.1);
+  poor.expect(State::degraded, Reason::mismatch);
+}
+
 TEST(LocalizationHealth, AShortStretchWithoutMappedPolesDegradesOnly) {
   Feed feed;
   feed.scans(60, 0.9);

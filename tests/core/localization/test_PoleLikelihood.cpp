@@ -97,8 +97,11 @@ double oracle(const Scene& scene, const Pose2D& pose, const LikelihoodOptions& o
       sum -= confidence * (best ? std::min(0.5 * m2, cost) : cost);
     } else {
       const double p = (1 - o.outlier) * confidence;
-      sum += std::log(
-          (best ? p * squaredSigma / std::sqrt(S.determinant()) * std::exp(-0.5 * m2) : 0) + 1 - p);
+      const double beside =
+          std::exp(-0.5 * e.squaredNorm() / (o.outlierSigma * o.outlierSigma)) * confidence;
+      const double outlier = o.farOutlier + (best ? (1 - o.farOutlier) * beside : 0);
+      const double hit = p * squaredSigma / std::sqrt(S.determinant()) * std::exp(-0.5 * m2);
+      sum += std::log((best ? hit : 0) + (1 - p) * outlier);
     }
   }
   return sum;
@@ -137,11 +140,17 @@ TEST(PoleLikelihood, MixtureByHand) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
   options.sigma = 0.2;
   options.outlier = 0.1;
+  options.farOutlier = 0.25;
+  options.outlierSigma = 0.1;
   const PoleIndex index({mapPole(5, 5)});
-  const double matched = std::log(0.9 * std::exp(-0.125) + 0.1);  // off by 0.1 m: half a σ
+  // Off by 0.1 m: half a σ, and one of an outlier.
+  const double matched = std::log(0.9 * std::exp(-0.125) + 0.1 * (0.25 + 0.75 * std::exp(-0.5)));
   EXPECT_NEAR(logLikelihood({detection(5.1, 5)}, {}, index, options), matched, 1e-12);
   EXPECT_NEAR(logLikelihood({detection(5.1, 5), detection(20, 5)}, {}, index, options),
-              matched + std::log(0.1), 1e-12);
+              matched + std::log(0.025), 1e-12);
+  options.farOutlier = 1;  // all outliers alike
+  EXPECT_NEAR(logLikelihood({detection(5.1, 5)}, {}, index, options),
+              std::log(0.9 * std::exp(-0.125) + 0.1), 1e-12);
 }
 
 TEST(PoleLikelihood, FlooredByHand) {
@@ -295,7 +304,7 @@ TEST(PoleLikelihood, AnEmptyMapCostsTheFloorForEachDetection) {
   const PoleIndex index({});
   const std::vector<PoleDetection> poles{detection(1, 2), detection(3, 4)};
   EXPECT_NEAR(logLikelihood(poles, {}, index, optionsOf(LikelihoodModel::mixture, false)),
-              2 * std::log(0.05), 1e-12);
+              2 * std::log(0.05 * 0.1), 1e-12);
   EXPECT_NEAR(logLikelihood(poles, {}, index, optionsOf(LikelihoodModel::paper, false)),
               -2 / (2 * 0.15 * 0.15), 1e-9);
 }
@@ -304,7 +313,7 @@ TEST(PoleLikelihood, StaysFiniteWithThousandsOfUnmatchedPoles) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
   options.outlier = 1e-9;
   const std::vector<PoleDetection> poles(5000, detection(1, 2));
-  EXPECT_NEAR(logLikelihood(poles, {}, PoleIndex({}), options), 5000 * std::log(1e-9), 1e-6);
+  EXPECT_NEAR(logLikelihood(poles, {}, PoleIndex({}), options), 5000 * std::log(1e-10), 1e-6);
 }
 
 TEST(PoleLikelihood, StaysFiniteWithNumbersThatAreNone) {
@@ -330,7 +339,7 @@ TEST(PoleLikelihood, TheMixtureIsNotFlat) {
   const double lost = logLikelihood({detection(10, 0)}, {5, 0, 0}, index, options);
   EXPECT_GT(right - off, std::log(4));
   EXPECT_GT(off - lost, std::log(2));
-  EXPECT_NEAR(lost, std::log(options.outlier), 1e-12);
+  EXPECT_NEAR(lost, std::log(options.outlier * options.farOutlier), 1e-12);
 }
 
 TEST(PoleLikelihood, WeightsAnErrorByTheCovarianceAlongIt) {
@@ -359,8 +368,9 @@ TEST(PoleLikelihood, ADetectionWithoutConfidenceHasNoInfluence) {
   const PoleIndex index({mapPole(3, 3)});
   for (LikelihoodModel model : s_models) {
     const LikelihoodOptions options = optionsOf(model, true);
-    for (double x : {0.0, 0.2, 9.0})
-      EXPECT_NEAR(logLikelihood({doubtful}, {x, 0, 0}, index, options), 0, 1e-15);
+    const double at = logLikelihood({doubtful}, {}, index, options);
+    for (double x : {0.2, 9.0})
+      EXPECT_NEAR(logLikelihood({doubtful}, {x, 0, 0}, index, options), at, 1e-15);
     EXPECT_LT(logLikelihood({doubtful}, {9, 0, 0}, index, optionsOf(model, false)), -1);
   }
 }
@@ -376,10 +386,19 @@ TEST(PoleLikelihood, RefusesOptionsOutOfRange) {
     options = {};
     options.outlier = bad;
     expectRefused(options, "outlier");
+    options = {};
+    options.farOutlier = bad;
+    expectRefused(options, "far_outlier");
+    options = {};
+    options.outlierSigma = bad;
+    expectRefused(options, "outlier_sigma_m");
   }
   LikelihoodOptions options;
   options.outlier = 1;
   expectRefused(options, "outlier");
+  options.outlier = 1e-9;
+  options.farOutlier = 0.01;  // products of many factors would underflow
+  expectRefused(options, "far_outlier");
   std::vector<double> out;
   EXPECT_THROW(logLikelihood({}, {}, PoleIndex({}), options), Error);
   EXPECT_THROW(logLikelihoods({}, {}, PoleIndex({}), options, out), Error);

@@ -302,6 +302,30 @@ TEST_F(PoleLocalizationTest, ScansFarApartAreUsedAsTheyAre) {
   }
 }
 
+// What chance matches say about the place is not new while the vehicle stands.
+TEST_F(PoleLocalizationTest, FarOutliersCountByTheWay) {
+  driveFrom(1, 40);
+  const auto lastPose = [&](double farOutlier, bool stands) {
+    auto poles = std::make_shared<CPoleMap>(*map->poles);
+    poles->likelihoodOptions.farOutlier = farOutlier;
+    LocalizationPipeline localization({poles, GlobalOptions()}, options, 1);
+    localization.start(atTruth());
+    PoleFrame frame = frames[0];
+    frame.poles_robot.clear();  // the first scan would count in full
+    localization.step(frame);
+    Pose2D pose;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      frame = frames[stands ? 0 : i];
+      frame.time = frames[i].time;
+      if (stands) frame.motion->mean = {};
+      pose = localization.step(frame).estimate->mean;
+    }
+    return pose;
+  };
+  EXPECT_EQ(lastPose(0.1, true).x, lastPose(1, true).x);
+  EXPECT_NE(lastPose(0.1, false).x, lastPose(1, false).x);
+}
+
 TEST_F(PoleLocalizationTest, ByTheSectionTheFilterGetsPolesAtItsEnd) {
   driveFrom(9, 60);  // one scan per metre
   options.tracking.average = false;

@@ -250,6 +250,23 @@ TEST(PoleParticleFilter, TellsWhatAStepDid) {
   EXPECT_EQ(localizer.report().resampled, localizer.report().effectiveShare < 0.5);
 }
 
+TEST(PoleParticleFilter, FarOutliersCountByWhatIsNew) {
+  const PoleStreet street = makeStreet({});
+  const auto weights = [&](double farOutlier, double newShare) {
+    auto map = std::make_shared<CPoleMap>(*street.map);
+    map->likelihoodOptions.farOutlier = farOutlier;
+    FilterOptions options = still();
+    options.tempering = 0;
+    PoleParticleFilter localizer(map, options, 1);
+    localizer.start(at(street.truth[50], 2.5));
+    localizer.step(street.frames[50], newShare);
+    return localizer.logWeights();
+  };
+  EXPECT_EQ(weights(0.25, 0), weights(1, 1));
+  EXPECT_EQ(weights(0.25, 0.5), weights(0.5, 1));
+  EXPECT_NE(weights(0.25, 1), weights(0.5, 1));
+}
+
 // 10000 particles at the start, of which 1000 remain: a fifth of these is enough.
 TEST(PoleParticleFilter, TemperingIsMeasuredByTheParticlesThatAreKept) {
   const PoleStreet street = makeStreet({});

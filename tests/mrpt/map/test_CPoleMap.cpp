@@ -193,7 +193,7 @@ TEST(CPoleMap, ManyPosesGetTheSameBitsAsEachAlone) {
           std::vector<double> many;
           std::vector<std::vector<double>> widened;
           map.logLikelihoods(scan, together, many);
-          map.widenedLogLikelihoods(scan, together, widenings, widened);
+          map.widenedLogLikelihoods(scan, map.likelihoodOptions, together, widenings, widened);
           ASSERT_EQ(many.size(), together.size());
           ASSERT_EQ(widened.size(), widenings.size());
           EXPECT_EQ(widened[0], many);
@@ -304,6 +304,8 @@ TEST(CPoleMap, SurvivesSerialization) {
   map.likelihoodOptions.outlier = 0.125;
   map.likelihoodOptions.gate = 2;
   map.likelihoodOptions.floor = 0.375;
+  map.likelihoodOptions.farOutlier = 0.25;
+  map.likelihoodOptions.outlierSigma = 0.625;
   map.likelihoodOptions.weighted = !LikelihoodOptions().weighted;
   const std::string bytes = samples::bytesOf(map);
   const auto read = std::dynamic_pointer_cast<CPoleMap>(samples::objectFrom(bytes));
@@ -317,33 +319,39 @@ TEST(CPoleMap, SurvivesSerialization) {
   EXPECT_EQ(read->likelihoodOptions.outlier, 0.125);
   EXPECT_EQ(read->likelihoodOptions.gate, 2);
   EXPECT_EQ(read->likelihoodOptions.floor, 0.375);
+  EXPECT_EQ(read->likelihoodOptions.farOutlier, 0.25);
+  EXPECT_EQ(read->likelihoodOptions.outlierSigma, 0.625);
   EXPECT_EQ(read->likelihoodOptions.weighted, map.likelihoodOptions.weighted);
   EXPECT_EQ(read->index().nearest(10, 0, 1)->index, 1u);
   EXPECT_EQ(samples::bytesOf(*read), bytes);
 }
 
-TEST(CPoleMap, ReadsMapsFromBeforeTheFloor) {
-  CPoleMap map = sampleMap();
-  map.info.clear();
-  map.likelihoodOptions.floor = 0.375;
-  std::string bytes = samples::bytesOf(map);
-  const double value = 0.375;
-  const std::string floor(reinterpret_cast<const char*>(&value), sizeof value);
-  const std::size_t at = bytes.find(floor);
-  ASSERT_NE(at, std::string::npos);
-  bytes.erase(at, floor.size());
-  bytes[1 + std::string("polemcl::CPoleMap").size()] = 0;
-  const auto read = std::dynamic_pointer_cast<CPoleMap>(samples::objectFrom(bytes));
-  ASSERT_TRUE(read);
-  expectEqual(*read, map);
-  EXPECT_EQ(read->likelihoodOptions.floor, LikelihoodOptions().floor);
+TEST(CPoleMap, ReadsMapsOfOlderVersions) {
+  // Version 0 had no floor; neither 0 nor 1 told far outliers from others.
+  for (const int version : {0, 1}) {
+    CPoleMap map = sampleMap();
+    map.info.clear();
+    map.likelihoodOptions.floor = 0.375;
+    std::string bytes = samples::bytesOf(map);
+    const double value = 0.375;
+    const std::string floor(reinterpret_cast<const char*>(&value), sizeof value);
+    const std::size_t at = bytes.find(floor);
+    ASSERT_NE(at, std::string::npos);
+    bytes.erase(at + version * floor.size(), (3 - version) * floor.size());
+    bytes[1 + std::string("polemcl::CPoleMap").size()] = static_cast<char>(version);
+    const auto read = std::dynamic_pointer_cast<CPoleMap>(samples::objectFrom(bytes));
+    ASSERT_TRUE(read);
+    expectEqual(*read, map);
+    EXPECT_EQ(read->likelihoodOptions.floor, version == 0 ? LikelihoodOptions().floor : 0.375);
+    EXPECT_EQ(read->likelihoodOptions.farOutlier, 1);
+  }
 }
 
 TEST(CPoleMap, RefusesNewerVersions) {
   std::string bytes = samples::bytesOf(sampleMap());
   const std::string name = "polemcl::CPoleMap";
   ASSERT_EQ(bytes.substr(1, name.size()), name);
-  bytes[1 + name.size()] = 2;
+  bytes[1 + name.size()] = 3;
   EXPECT_ANY_THROW(samples::objectFrom(bytes));
 }
 

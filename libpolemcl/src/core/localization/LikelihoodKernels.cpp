@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 /// Poses worked on together: few enough for all that is kept of them to stay in the first cache.
 constexpr std::size_t kBlock = 128;
-/// Factors are at least 1e-9: a product of this number of factors cannot underflow.
+/// Factors are at least 1e-10: a product of this number of factors cannot underflow.
 constexpr std::size_t kFactorsPerLogarithm = 30;
 
 /// A block of poses, and of one detection seen from each.
@@ -199,6 +199,8 @@ class Evaluation {
     const V variance = hn::Load(m_d, b.variance + i);
     const auto found = hn::Ge(variance, hn::Zero(m_d));
     const bool none = hn::AllFalse(m_d, found);
+    V miss = hn::Zero(m_d);
+    if constexpr (model == LikelihoodModel::mixture) miss = outlier(term, dx, dy, found);
     for (std::size_t k = 0; k < m_levels; ++k) {
       V exponent = hn::Zero(m_d), height = exponent;
       if (!none) bell(term, i, dx, dy, variance, m_squaredSigma[k], exponent, height);
@@ -209,7 +211,7 @@ class Evaluation {
         const V factor = hn::Add(hn::Mul(bellShare, value), rest);
         hn::Store(hn::Mul(hn::Load(m_d, b.product[k] + i), factor), m_d, b.product[k] + i);
       } else if constexpr (model == LikelihoodModel::mixture) {
-        V factor = hn::Set(m_d, term.floor);
+        V factor = miss;
         if (!none) {
           const V value = exponential(m_d, hn::Neg(exponent));
           const V hit = hn::Mul(hn::Mul(hn::Set(m_d, term.share), height), value);
@@ -223,6 +225,18 @@ class Evaluation {
         hn::Store(hn::Sub(hn::Load(m_d, b.sum[k] + i), counted), m_d, b.sum[k] + i);
       }
     }
+  }
+
+  /// What the outliers add: (1-p)·o(d).
+  template <class Mask>
+  HWY_INLINE V outlier(const LikelihoodTerm& term, V dx, V dy, Mask found) const {
+    const double far = m_batch.options.farOutlier, sigma = m_batch.options.outlierSigma;
+    const V everywhere = hn::Set(m_d, far * term.floor);
+    if (far == 1 || hn::AllFalse(m_d, found)) return everywhere;
+    const V squared = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+    const V bell = exponential(m_d, hn::Mul(squared, hn::Set(m_d, -0.5 / (sigma * sigma))));
+    const V beside = hn::Mul(hn::Set(m_d, (1 - far) * term.confidence * term.floor), bell);
+    return hn::Add(everywhere, hn::IfThenElseZero(found, beside));
   }
 
   double costOfNoMatch(const LikelihoodTerm& term, std::size_t k) const {

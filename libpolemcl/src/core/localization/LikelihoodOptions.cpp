@@ -14,6 +14,11 @@ void bind(Binder& b, LikelihoodOptions& o) {
   b.tier(Tier::tuning);
   b.number("outlier", o.outlier, {1e-9, 1, false, true}, "",
            "model = mixture: share of detections that are not on the map");
+  b.number("far_outlier", o.farOutlier, {1e-3, 1, false, false}, "",
+           "model = mixture: weight of such a detection far from every map pole, where one beside "
+           "a map pole weighs 1; 1: all alike");
+  b.number("outlier_sigma_m", o.outlierSigma, Range::above(0), "m",
+           "model = mixture: distance from a map pole up to which an outlier is beside it");
   b.number("gate_m", o.gate, Range::above(0), "m", "farther poles are no match");
   b.tier(Tier::expert);
   b.choice<LikelihoodModel>("model", o.model,
@@ -27,8 +32,10 @@ void bind(Binder& b, LikelihoodOptions& o) {
   b.number("floor", o.floor, Range::above(0), "1/m",
            "model = floored: added to the normal density");
 
+  // Products of many factors must not underflow.
+  b.require(o.outlier * o.farOutlier >= 1e-10, "far_outlier", o.farOutlier,
+            "at least 1e-10 times outlier");
   if (o.model != LikelihoodModel::floored) return;
-  // Against the peak of the density, so that products of many factors do not underflow.
   const double peak = 1 / (o.sigma * std::sqrt(2 * M_PI));
   b.require(o.floor >= 1e-9 * (peak + o.floor), "floor", o.floor,
             "at least 1e-9 of the density's peak");

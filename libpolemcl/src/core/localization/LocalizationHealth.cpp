@@ -144,7 +144,9 @@ void HealthMonitor::confirm(const HealthInput& input) {
 void HealthMonitor::judge(const HealthInput& input) {
   const HealthOptions& o = m_options;
   const bool fewMatched = m_health.matchedShare < o.degradedShare;
-  const double lostShare = m_confirmed ? o.lostShare : s_hopeless * o.confirmShare;
+  // A lost filter spreads until it meets chance matches; they are no reason to believe it again.
+  const bool believed = m_confirmed && m_health.state != HealthState::lost;
+  const double lostShare = believed ? o.lostShare : s_hopeless * o.confirmShare;
   const bool bare =
       m_isEnoughLong && m_driven >= s_hopelessAfter && m_longShare < lostShare && fewMatched;
   const bool unconfirmed =

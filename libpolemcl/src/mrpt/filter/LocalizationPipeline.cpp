@@ -178,7 +178,9 @@ PoleFrame LocalizationPipeline::checkedMotion(const PoleFrame& frame, Localizati
 
 void LocalizationPipeline::track(const PoleFrame& frame, double metres,
                                  LocalizationUpdate& update) {
-  PoseWithCovariance estimate = m_filter.step(m_tracked);
+  // The first scan says all it can.
+  const double newShare = m_stepped ? std::min(1.0, metres / decorrelationMetres) : 1;
+  PoseWithCovariance estimate = m_filter.step(m_tracked, newShare);
   double modeShare = 1;
   if (isWide(estimate.covariance)) {
     const PoseMode mode = heaviestMode(m_filter.particles(), m_filter.logWeights());

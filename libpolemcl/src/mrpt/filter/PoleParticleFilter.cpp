@@ -145,9 +145,10 @@ void PoleParticleFilter::begin(int particles) {
   m_time.reset();
 }
 
-PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame) {
+PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame, double newShare) {
   if (!m_started) throw Error("the filter has no particles yet: call start() first");
   const auto action = actionTo(frame, m_time, m_options);
+  m_newShare = newShare;
   const auto observation = CObservationPoles::Create();
   observation->poles = frame.poles_robot;  // sensorPose stays identity: robot frame
   mrpt::obs::CSensoryFrame scan;
@@ -214,9 +215,11 @@ void PoleParticleFilter::predict(const mrpt::obs::CActionCollection& action,
 void PoleParticleFilter::update(const CObservationPoles& scan,
                                 const CParticleFilter::TParticleFilterOptions& mrptOptions) {
   m_report.poles += scan.poles.size();
+  LikelihoodOptions likelihood = m_map->likelihoodOptions;
+  likelihood.farOutlier = std::pow(likelihood.farOutlier, m_newShare);
   std::vector<std::vector<double>> values;  // by widening
   const auto evaluate = [&](const std::vector<double>& widenings) {
-    m_map->widenedLogLikelihoods(scan, particles(), widenings, values);
+    m_map->widenedLogLikelihoods(scan, likelihood, particles(), widenings, values);
     if (mrptOptions.powFactor == 1) return;
     for (auto& ofOneWidening : values)
       for (double& value : ofOneWidening) value *= mrptOptions.powFactor;

@@ -68,7 +68,7 @@ void CPoleMap::saveToPoleMapFile(const std::string& path) const {
 }
 
 uint8_t CPoleMap::serializeGetVersion() const {
-  return 1;  // 1: with the floor of the likelihood
+  return 2;  // 1: with the floor of the likelihood, 2: with its far outliers
 }
 
 void CPoleMap::serializeTo(CArchive& out) const {
@@ -76,18 +76,23 @@ void CPoleMap::serializeTo(CArchive& out) const {
   out << genericMapParams << insertionOptions.mergeDistance << insertionOptions.minConfidence;
   const auto& l = likelihoodOptions;
   out << static_cast<std::uint8_t>(l.model) << l.sigma << l.outlier << l.gate << l.weighted;
-  out << l.floor;
+  out << l.floor << l.farOutlier << l.outlierSigma;
   out << info << static_cast<std::uint32_t>(m_poles.size());
   for (const auto& pole : m_poles) writePole(out, pole, pole.count);
 }
 
 void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
-  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> genericMapParams >> insertionOptions.mergeDistance >> insertionOptions.minConfidence;
   auto& l = likelihoodOptions;
   l.model = static_cast<LikelihoodModel>(in.ReadAs<std::uint8_t>());
   in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
   if (version >= 1) in >> l.floor;
+  if (version >= 2) {
+    in >> l.farOutlier >> l.outlierSigma;
+  } else {
+    l.farOutlier = 1;  // as it was then
+  }
   insertionOptions.validate();
   checkOptions<LikelihoodOptions>(l);
   info = readTexts(in, io::mostMapFacts, io::longestMapFact, "facts about the map");
@@ -121,8 +126,8 @@ bool CPoleMap::internal_insertObservation(
   return true;
 }
 
-void CPoleMap::evaluate(const CObservationPoles& scan, const std::vector<Pose2D>& robotPoses,
-                        const std::vector<double>& widenings,
+void CPoleMap::evaluate(const CObservationPoles& scan, const LikelihoodOptions& options,
+                        const std::vector<Pose2D>& robotPoses, const std::vector<double>& widenings,
                         std::vector<std::vector<double>>& out) const {
   const Pose2D T_robot_sensor = scan.planarSensorPose();
   // Computed in the sensor frame: same value as in the robot frame, without moving every pole.
@@ -133,16 +138,17 @@ void CPoleMap::evaluate(const CObservationPoles& scan, const std::vector<Pose2D>
     for (const Pose2D& pose : robotPoses) sensorPoses.push_back(compose(pose, T_robot_sensor));
   }
   polemcl::widenedLogLikelihoods(scan.poles, sameFrame ? robotPoses : sensorPoses, *m_index,
-                                 likelihoodOptions, widenings, out);
+                                 options, widenings, out);
 }
 
 void CPoleMap::widenedLogLikelihoods(const mrpt::obs::CObservation& observation,
+                                     const LikelihoodOptions& options,
                                      const std::vector<Pose2D>& robotPoses,
                                      const std::vector<double>& widenings,
                                      std::vector<std::vector<double>>& out) const {
   const auto* scan = dynamic_cast<const CObservationPoles*>(&observation);
   if (scan && genericMapParams.enableObservationLikelihood)
-    evaluate(*scan, robotPoses, widenings, out);
+    evaluate(*scan, options, robotPoses, widenings, out);
   else
     out.assign(widenings.size(), std::vector<double>(robotPoses.size(), 0.0));
 }
@@ -152,7 +158,7 @@ void CPoleMap::logLikelihoods(const mrpt::obs::CObservation& observation,
                               std::vector<double>& out) const {
   std::vector<std::vector<double>> widened(1);
   widened[0].swap(out);
-  widenedLogLikelihoods(observation, robotPoses, {1}, widened);
+  widenedLogLikelihoods(observation, likelihoodOptions, robotPoses, {1}, widened);
   out.swap(widened[0]);
 }
 
@@ -161,7 +167,7 @@ double CPoleMap::internal_computeObservationLikelihood(
   const auto* scan = dynamic_cast<const CObservationPoles*>(&obs);
   if (!scan) return 0;
   std::vector<std::vector<double>> out;
-  evaluate(*scan, {planarPose(takenFrom)}, {1}, out);
+  evaluate(*scan, likelihoodOptions, {planarPose(takenFrom)}, {1}, out);
   return out[0][0];
 }
 

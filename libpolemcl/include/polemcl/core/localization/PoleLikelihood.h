@@ -14,7 +14,7 @@ namespace polemcl {
 enum class LikelihoodModel {
   paper,  ///< Eq. 3: product of exp(-d²/(2σ²)), d clipped at `gate` (a pole without a match costs
           ///< the gate)
-  mixture,  ///< (1-w)·exp(-d²/(2σ²)) + w per pole, w the outlier share: bounded, not flat
+  mixture,  ///< (1-w)·exp(-d²/(2σ²)) + w·o(d) per pole, w the outlier share: bounded, not flat
   floored   ///< N(d; 0, σ²) + floor per pole, d clipped at `gate` (first implementation)
 };
 
@@ -22,18 +22,25 @@ enum class LikelihoodModel {
 ///
 /// With `weighted`, detection i with covariance Σ_i and confidence c_i at the offset e from its map
 /// pole (covariance Σ_m) counts with S = (σ² + ½ tr Σ_m)·I + Σ_i and m² = eᵀ S⁻¹ e:
-///  - mixture: p·(σ²/√det S)·exp(-m²/2) + 1 - p with p = (1-w)·c_i. The factor σ²/√det S keeps an
-///    uncertain detection from weighing like a certain one; a confidence of 0 leaves no influence.
+///  - mixture: p·(σ²/√det S)·exp(-m²/2) + (1-p)·o(|e|) with p = (1-w)·c_i. The factor σ²/√det S
+///    keeps an uncertain detection from weighing like a certain one; with a confidence of 0 all
+///    poses are alike.
 ///  - paper: exp(-c_i·min(m²/2, cost)), where a pole without a match costs `gate` at the isotropic
 ///    part of S without Σ_m: cost = gate²/(2σ² + tr Σ_i).
+///
+/// o(d) = f + (1-f)·c_i·exp(-d²/(2σ_o²)), f without a match. A bad fit beside a map pole is
+/// likelier than a detection where the map has no pole. This tells a place where many poles fit
+/// roughly from one where few fit well, while no pole pulls harder than an outlier may.
 struct POLEMCL_EXPORT LikelihoodOptions {
   LikelihoodModel model = LikelihoodModel::mixture;
-  double sigma = 0.05;    ///< σ_d: standard deviation of a detection from its map pole, m
-  double outlier = 0.05;  ///< w: share of detections not on the map, in [1e-9, 1); mixture only
-  double floor = 0.2;     ///< added to the density, 1/m, > 0; floored only
-  double gate = 1.0;      ///< d_max: beyond it a pole has no match, m
-  bool weighted = true;   ///< true: each detection counts by its covariance and confidence; not
-                          ///< with `floored`
+  double sigma = 0.05;        ///< σ_d: standard deviation of a detection from its map pole, m
+  double outlier = 0.05;      ///< w: share of detections not on the map, in [1e-9, 1); mixture only
+  double farOutlier = 0.1;    ///< f: in [1e-3, 1]; 1: all outliers are alike; mixture only
+  double outlierSigma = 0.4;  ///< σ_o: distance of outliers beside a map pole, m; mixture only
+  double floor = 0.2;         ///< added to the density, 1/m, > 0; floored only
+  double gate = 1.0;          ///< d_max: beyond it a pole has no match, m
+  bool weighted = true;       ///< true: each detection counts by its covariance and confidence; not
+                              ///< with `floored`
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, LikelihoodOptions& options);  ///< `[likelihood]`

@@ -109,6 +109,9 @@ class POLEMCL_EXPORT LocalizationPipeline {
   static constexpr double unknownSpeed = 5;
   /// Above this distance between two scans their poles are not averaged, m.
   static constexpr double sparseMetres = 2;
+  /// Poles are seen again over this distance: what chance matches say about the place is new only
+  /// after it, m. See PoleParticleFilter::step().
+  static constexpr double decorrelationMetres = 10;
   /// A search result within these limits of the estimate counts as the same pose, m and rad.
   static constexpr double sameMetres = 0.5, sameRadians = 0.035;
   /// Re-initialize at the same pose anyway if the new pose matches at least this many more poles.

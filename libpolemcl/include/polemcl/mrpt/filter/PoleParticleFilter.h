@@ -80,11 +80,13 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   /// \brief Predicts by the motion of the frame, weighs by its poles, estimates, resamples.
   /// The start pose is the pose of the first frame after start(), so its motion is ignored. Frames
   /// without poles only predict.
+  /// \param newShare How much of what the poles say about the place the frames before have not
+  ///        said, 0 to 1: LikelihoodOptions::farOutlier is raised to this power.
   /// \return The estimate at FilterOptions::estimateTime, with the covariance of the particles
   ///         used.
   /// \throws Error before start(); when the time is not later than that of the previous frame; when
   ///         the motion is missing, or rejected by makeMotionAction(). The state is then unchanged.
-  PoseWithCovariance step(const PoleFrame& frame);
+  PoseWithCovariance step(const PoleFrame& frame, double newShare = 1);
 
   std::vector<Pose2D> particles() const;
   std::vector<double> logWeights() const;  ///< natural logarithms, up to a common constant
@@ -139,6 +141,7 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   mrpt::random::CRandomGenerator m_generator;
   bool m_started = false;
   std::optional<double> m_time;  ///< time of the last frame since the start, s
+  double m_newShare = 1;         ///< of the frame in step()
   PoseWithCovariance m_estimate;
   StepReport m_report;
   std::exception_ptr m_failure;

@@ -90,10 +90,11 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
   /// \throws Error as logLikelihood() of the core.
   void logLikelihoods(const mrpt::obs::CObservation& observation,
                       const std::vector<Pose2D>& robotPoses, std::vector<double>& out) const;
-  /// \brief As logLikelihoods(), for several sigmas that share the search for the nearest pole.
-  /// out[k][i] belongs to robotPoses[i] with widenings[k] times `likelihoodOptions.sigma`.
-  /// \throws Error also for more than `maxWidenings`.
+  /// \brief As logLikelihoods(), with other options, and for several sigmas that share the search
+  /// for the nearest pole. out[k][i] belongs to robotPoses[i] with widenings[k] times
+  /// `options.sigma`. \throws Error also for more than `maxWidenings`.
   void widenedLogLikelihoods(const mrpt::obs::CObservation& observation,
+                             const LikelihoodOptions& options,
                              const std::vector<Pose2D>& robotPoses,
                              const std::vector<double>& widenings,
                              std::vector<std::vector<double>>& out) const;
@@ -126,8 +127,9 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
   bool internal_canComputeObservationLikelihood(const mrpt::obs::CObservation& obs) const override;
 
  private:
-  void evaluate(const CObservationPoles& scan, const std::vector<Pose2D>& robotPoses,
-                const std::vector<double>& widenings, std::vector<std::vector<double>>& out) const;
+  void evaluate(const CObservationPoles& scan, const LikelihoodOptions& options,
+                const std::vector<Pose2D>& robotPoses, const std::vector<double>& widenings,
+                std::vector<std::vector<double>>& out) const;
 
   std::vector<MapPole> m_poles;
   std::shared_ptr<const PoleIndex> m_index;  ///< immutable, so copies may share it
