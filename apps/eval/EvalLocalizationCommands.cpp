@@ -21,12 +21,11 @@ void declareFiles(CLI::App& cli, TrialDriveFiles& files) {
 }
 
 /// A command that starts at random places of a drive.
-template <class Options>
 Subcommand trialCommand(CLI::App& program, const char* name, const char* meaning,
-                        std::string (*evaluate)(const Options&)) {
+                        std::string (*evaluate)(const RandomStartsOptions&)) {
   auto& cli = *program.add_subcommand(name, meaning);
-  const auto shared = std::make_shared<Options>();
-  Options& options = *shared;
+  const auto shared = std::make_shared<RandomStartsOptions>();
+  RandomStartsOptions& options = *shared;
   declareFiles(cli, options.files);
   addNumber(cli, "--trials", options.trials, "Random starts", CLI::Range(1, 1000000));
   cli.add_option("--seed", options.seed, "Seed of the starts; the filter of trial i uses seed + i")

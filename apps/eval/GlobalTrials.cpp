@@ -1,7 +1,5 @@
 #include "eval/GlobalTrials.h"
 
-#include <tbb/parallel_for.h>
-
 #include <sstream>
 
 #include "cli/JsonFile.h"
@@ -87,19 +85,11 @@ void writeFigures(const std::filesystem::path& file, const nlohmann::ordered_jso
 }  // namespace
 
 std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
-                                         const GlobalTrialsOptions& options) {
-  const std::vector<double> driven = distancesDriven(drive.truth);
-  const auto first = drawStarts(driven, options.trials, options.metres, options.seed);
-  std::vector<GlobalTrial> trials(options.trials);
-  tbb::parallel_for(0, options.trials, [&](int i) {
-    trials[i] = runGlobalTrial(drive, driven, first[i], options.metres,
-                               options.seed + static_cast<std::uint32_t>(i));
-    if (options.progress) options.progress();
-  });
-  return trials;
+                                         const RandomStartsOptions& options) {
+  return runTrials(drive, options, runGlobalTrial);
 }
 
-std::string evalGlobal(const GlobalTrialsOptions& options) {
+std::string evalGlobal(const RandomStartsOptions& options) {
   const TrialDrive drive = loadTrialDrive(options.files);
   const auto trials = runGlobalTrials(drive, options);
   const auto json = globalSummary(trials, drive), times = timings(trials);

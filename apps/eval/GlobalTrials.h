@@ -2,24 +2,12 @@
 /// \file GlobalTrials.h
 /// \brief `pole-eval global`: is a vehicle found that starts anywhere?
 
-#include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
-#include "localize/TrialDrive.h"
+#include "eval/RandomStarts.h"
 
 namespace polemcl::apps {
-
-struct GlobalTrialsOptions {
-  TrialDriveFiles files;
-  int trials = 200;
-  std::uint32_t seed = 1;  ///< of the starts; trial i filters with seed + i
-  double metres = 60;      ///< driven in each trial, at most
-  std::optional<std::filesystem::path> json;
-  /// Called after each trial, from any thread; may be empty.
-  std::function<void()> progress = {};
-};
 
 /// \brief One random start.
 struct GlobalTrial {
@@ -39,11 +27,11 @@ struct GlobalTrial {
 /// the same on any number of threads.
 /// \throws Error when the drive is shorter than `metres`, or options are out of range.
 std::vector<GlobalTrial> runGlobalTrials(const TrialDrive& drive,
-                                         const GlobalTrialsOptions& options);
+                                         const RandomStartsOptions& options);
 
 /// \brief The table, and the JSON file if one is wanted (keys `trials right wrong undecided
 /// right_share wrong_share metres_median metres_p95 metres_max error_median_m error_max_m ok_wrong
 /// map_poles`); beside it `<name>_timings.json` (`query_median_ms query_max_ms`).
-std::string evalGlobal(const GlobalTrialsOptions& options);
+std::string evalGlobal(const RandomStartsOptions& options);
 
 }  // namespace polemcl::apps

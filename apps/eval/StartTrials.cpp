@@ -1,7 +1,5 @@
 #include "eval/StartTrials.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -80,19 +78,12 @@ nlohmann::ordered_json startSummary(const std::vector<StartTrial>& trials,
 
 }  // namespace
 
-std::vector<StartTrial> runStartTrials(const TrialDrive& drive, const StartTrialsOptions& options) {
-  const std::vector<double> driven = distancesDriven(drive.truth);
-  const auto first = drawStarts(driven, options.trials, options.metres, options.seed);
-  std::vector<StartTrial> trials(options.trials);
-  tbb::parallel_for(0, options.trials, [&](int i) {
-    trials[i] = runStartTrial(drive, driven, first[i], options.metres,
-                              options.seed + static_cast<std::uint32_t>(i));
-    if (options.progress) options.progress();
-  });
-  return trials;
+std::vector<StartTrial> runStartTrials(const TrialDrive& drive,
+                                       const RandomStartsOptions& options) {
+  return runTrials(drive, options, runStartTrial);
 }
 
-std::string evalStarts(const StartTrialsOptions& options) {
+std::string evalStarts(const RandomStartsOptions& options) {
   const TrialDrive drive = loadTrialDrive(options.files);
   const auto json = startSummary(runStartTrials(drive, options), drive);
   if (options.json) writeJson(*options.json, json);

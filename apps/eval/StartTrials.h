@@ -2,24 +2,12 @@
 /// \file StartTrials.h
 /// \brief `pole-eval starts`: is the pose found that is known roughly at the start?
 
-#include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
-#include "localize/TrialDrive.h"
+#include "eval/RandomStarts.h"
 
 namespace polemcl::apps {
-
-struct StartTrialsOptions {
-  TrialDriveFiles files;
-  int trials = 200;
-  std::uint32_t seed = 1;  ///< of the starts; trial i filters with seed + i
-  double metres = 60;      ///< driven in each trial
-  std::optional<std::filesystem::path> json;
-  /// Called after each trial, from any thread; may be empty.
-  std::function<void()> progress = {};
-};
 
 /// \brief One start. The pose given to the filter is drawn as `[start]` draws particles: uniformly
 /// in the disc and the headings around the true pose.
@@ -35,11 +23,11 @@ struct StartTrial {
 
 /// \brief Each trial has a fresh chain. Trials run in parallel; figures are the same on any number
 /// of threads. \throws Error as drawStarts().
-std::vector<StartTrial> runStartTrials(const TrialDrive& drive, const StartTrialsOptions& options);
+std::vector<StartTrial> runStartTrials(const TrialDrive& drive, const RandomStartsOptions& options);
 
 /// \brief The table, and the JSON file if one is wanted (keys `trials right right_share ok_wrong
 /// mean_m end_median_m right_metres_median right_metres_p95 right_metres_max ok_metres_median
 /// map_poles`).
-std::string evalStarts(const StartTrialsOptions& options);
+std::string evalStarts(const RandomStartsOptions& options);
 
 }  // namespace polemcl::apps

@@ -39,11 +39,6 @@ bool isRight(const PlanarError& error);
 
 /// \brief Distance driven from the first pose to each, m.
 std::vector<double> distancesDriven(const std::vector<Pose2D>& truth);
-/// \brief Scans that trials start from: drawn uniformly among those after which `metres` are still
-/// driven. \param driven From distancesDriven().
-/// \throws Error when the drive is not longer than `metres`, or options are out of range.
-std::vector<std::size_t> drawStarts(const std::vector<double>& driven, int trials, double metres,
-                                    std::uint32_t seed);
 /// \brief The value below which this share of them lies, at the nearest rank; 0 without values.
 double rankedValue(const std::vector<double>& values, double share);
 

@@ -5,8 +5,7 @@
 
 #include "eval/EvalApp.h"
 #include "eval/FaultTrials.h"
-#include "mrpt/map/RegisterClasses.h"
-#include "support/CityFiles.h"
+#include "support/TrialCity.h"
 
 namespace polemcl::test_fault_trials {
 
@@ -17,14 +16,9 @@ using namespace testing_apps;
 namespace {
 
 /// A frame a metre, 5 m/s.
-class FaultTrials : public testing::Test {
+class FaultTrials : public TrialCity<FaultTrialsOptions> {
  protected:
-  FaultTrials() : city(400) {
-    registerClasses();
-    options.files = {city.at("city.ini"), city.at("city.polemap"), city.at("drive.rawlog"),
-                     city.at("drive.tum")};
-    options.trials = 6;
-    options.seed = 3;
+  FaultTrials() : TrialCity(400, 6) {
     options.fault.lead = 8;
     options.fault.duration = 6;
     options.fault.tail = 60;
@@ -36,8 +30,6 @@ class FaultTrials : public testing::Test {
     std::mt19937_64 random(seed);
     return injectFault(drive(), options.fault, random);
   }
-  CityFiles city;
-  FaultTrialsOptions options;
 };
 
 }  // namespace
@@ -178,18 +170,8 @@ TEST(FaultDemands, AreThoseOfEachFault) {
 }
 
 TEST_F(FaultTrials, TheProgramWritesTableAndJson) {
-  std::vector<std::string> line{"faults",
-                                "--config",
-                                options.files.config.string(),
-                                "--map",
-                                options.files.map.string(),
-                                "--input",
-                                options.files.input.string(),
-                                "--truth",
-                                options.files.truth.string()};
-  auto with = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), line.begin(), line.end());
-    return runProgram(evalMain, more);
+  const auto with = [&](const std::vector<std::string>& more) {
+    return runProgram(evalMain, arguments("faults", more));
   };
   auto outcome = with({"--fault", "slip", "--trials", "2", "--lead", "8", "--duration", "4",
                        "--tail", "40", "--json", city.at("slip.json")});

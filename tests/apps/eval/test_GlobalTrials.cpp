@@ -5,8 +5,7 @@
 
 #include "eval/EvalApp.h"
 #include "eval/GlobalTrials.h"
-#include "mrpt/map/RegisterClasses.h"
-#include "support/CityFiles.h"
+#include "support/TrialCity.h"
 
 namespace polemcl::test_global_trials {
 
@@ -16,30 +15,9 @@ using namespace testing_apps;
 
 namespace {
 
-class GlobalTrials : public testing::Test {
+class GlobalTrials : public TrialCity<RandomStartsOptions> {
  protected:
-  GlobalTrials() : city(250) {
-    registerClasses();
-    options.files = {city.at("city.ini"), city.at("city.polemap"), city.at("drive.rawlog"),
-                     city.at("drive.tum")};
-    options.trials = 12;
-    options.seed = 3;
-  }
-  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{"global",
-                                 "--config",
-                                 options.files.config.string(),
-                                 "--map",
-                                 options.files.map.string(),
-                                 "--input",
-                                 options.files.input.string(),
-                                 "--truth",
-                                 options.files.truth.string()};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-  CityFiles city;
-  GlobalTrialsOptions options;
+  GlobalTrials() : TrialCity(250, 12) {}
 };
 
 using Answer = GlobalTrial::Outcome;
@@ -86,8 +64,8 @@ TEST_F(GlobalTrials, OnAnotherCitysMapNothingIsFound) {
 
 TEST_F(GlobalTrials, TheProgramWritesTheSameFiguresOnAnyNumberOfThreads) {
   const auto figures = [&] {
-    const auto outcome =
-        runProgram(evalMain, arguments({"--trials", "12", "--seed", "3", "--json", city.at("j")}));
+    const auto outcome = runProgram(
+        evalMain, arguments("global", {"--trials", "12", "--seed", "3", "--json", city.at("j")}));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("right 12, wrong 0, undecided 0"), std::string::npos);
     EXPECT_GT(nlohmann::json::parse(readText(city.at("j_timings")))["query_max_ms"], 0);
@@ -101,12 +79,13 @@ TEST_F(GlobalTrials, TheProgramWritesTheSameFiguresOnAnyNumberOfThreads) {
 }
 
 TEST_F(GlobalTrials, RefusesWhatCannotBeTried) {
-  expectFailure(runProgram(evalMain, arguments({"--metres", "400"})), {"400", "fewer metres"});
+  expectFailure(runProgram(evalMain, arguments("global", {"--metres", "400"})),
+                {"400", "fewer metres"});
   auto truth = io::planar(io::readTum(city.at("drive.tum")));
   truth.resize(100);
   io::writeTum(city.at("drive.tum"), truth);
-  expectFailure(runProgram(evalMain, arguments()), {"drive.tum", "no true pose"});
-  expectUsageError(runProgram(evalMain, arguments({"--trials", "0"})));
+  expectFailure(runProgram(evalMain, arguments("global")), {"drive.tum", "no true pose"});
+  expectUsageError(runProgram(evalMain, arguments("global", {"--trials", "0"})));
 }
 
 }  // namespace polemcl::test_global_trials

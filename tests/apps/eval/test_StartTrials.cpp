@@ -5,8 +5,7 @@
 
 #include "eval/EvalApp.h"
 #include "eval/StartTrials.h"
-#include "mrpt/map/RegisterClasses.h"
-#include "support/CityFiles.h"
+#include "support/TrialCity.h"
 
 namespace polemcl::test_start_trials {
 
@@ -16,30 +15,9 @@ using namespace testing_apps;
 
 namespace {
 
-class StartTrials : public testing::Test {
+class StartTrials : public TrialCity<RandomStartsOptions> {
  protected:
-  StartTrials() : city(250) {
-    registerClasses();
-    options.files = {city.at("city.ini"), city.at("city.polemap"), city.at("drive.rawlog"),
-                     city.at("drive.tum")};
-    options.trials = 8;
-    options.seed = 3;
-  }
-  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{"starts",
-                                 "--config",
-                                 options.files.config.string(),
-                                 "--map",
-                                 options.files.map.string(),
-                                 "--input",
-                                 options.files.input.string(),
-                                 "--truth",
-                                 options.files.truth.string()};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-  CityFiles city;
-  StartTrialsOptions options;
+  StartTrials() : TrialCity(250, 8) {}
 };
 
 }  // namespace
@@ -77,8 +55,8 @@ TEST_F(StartTrials, AWrongPoseIsCalledWrong) {
 
 TEST_F(StartTrials, TheProgramWritesTheSameFiguresOnAnyNumberOfThreads) {
   const auto figures = [&] {
-    const auto outcome =
-        runProgram(evalMain, arguments({"--trials", "8", "--seed", "3", "--json", city.at("j")}));
+    const auto outcome = runProgram(
+        evalMain, arguments("starts", {"--trials", "8", "--seed", "3", "--json", city.at("j")}));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("right at the end 8; ok said of a wrong pose: 0"),
               std::string::npos);
@@ -92,8 +70,9 @@ TEST_F(StartTrials, TheProgramWritesTheSameFiguresOnAnyNumberOfThreads) {
 }
 
 TEST_F(StartTrials, RefuseWhatCannotBeTried) {
-  expectFailure(runProgram(evalMain, arguments({"--metres", "400"})), {"400", "fewer metres"});
-  expectUsageError(runProgram(evalMain, arguments({"--trials", "0"})));
+  expectFailure(runProgram(evalMain, arguments("starts", {"--metres", "400"})),
+                {"400", "fewer metres"});
+  expectUsageError(runProgram(evalMain, arguments("starts", {"--trials", "0"})));
 }
 
 }  // namespace polemcl::test_start_trials
