@@ -34,7 +34,7 @@ void bind(Binder& b, LikelihoodOptions& o) {
 
   // Products of many factors must not underflow.
   b.require(o.outlier * o.farOutlier >= 1e-10, "far_outlier", o.farOutlier,
-            "at least 1e-10 times outlier");
+            "at least 1e-10 / outlier");
   if (o.model != LikelihoodModel::floored) return;
   const double peak = 1 / (o.sigma * std::sqrt(2 * M_PI));
   b.require(o.floor >= 1e-9 * (peak + o.floor), "floor", o.floor,
