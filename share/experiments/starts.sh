@@ -18,7 +18,7 @@ out=$1
 first=${2:-771}
 worlds=${3:-4}
 trials=${4:-100}
-find_programs pole-simulate pole-map pole-eval
+find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq
 mkdir -p "$out"
 : >"$out/results"
@@ -34,7 +34,8 @@ try_starts() {
     "$out/$name-$4.json" >>"$out/results"
 }
 
-usual=$(sed -n 's/^| `far_outlier` | \([0-9.]*\) .*/\1/p' "$top/share/doc/settings.md")
+usual=$("$bin/pole-localize" --print-config --all --config "$top/config/hdl32e.ini" |
+  sed -n 's/^far_outlier = \([0-9.]*\).*/\1/p')
 world=$first
 while [ "$world" -lt $((first + worlds)) ]; do
   draw_drive "$out/$world" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
