@@ -1,6 +1,7 @@
 #!/bin/sh
 # A start pose known roughly (2.5 m, 5 degrees): random starts on simulated streets of 600 m, a year after their
-# map, in which none and half of the poles have been replaced, with a scan every 0.5 m and every 8 m, each with all outliers alike (likelihood.far_outlier = 1) and as the settings have it.
+# map, in which none and half of the poles have been replaced, with a scan every 0.5 m and every 8 m, each with
+# all outliers alike (likelihood.far_outlier = 1) and as the settings have it.
 # Usage: share/experiments/starts.sh OUT [FIRST [WORLDS [TRIALS]]]
 #   OUT     gets maps, drives, a JSON file for each case and world, table.txt and result.json
 #   FIRST   first world, 771 unless given; WORLDS: their number, 4 unless given
