@@ -5,18 +5,14 @@
 
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
+#include "core/common/PointsCopy.h"
 
 namespace polemcl {
 namespace {
 
-struct OwnedCloud {
-  std::vector<float> x, y, z;
-  PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
-};
-
-OwnedCloud turned(const PointsView& points, double yaw) {
+PointsCopy turned(const PointsView& points, double yaw) {
   const double c = std::cos(yaw), s = std::sin(yaw);
-  OwnedCloud cloud;
+  PointsCopy cloud;
   cloud.z.assign(points.z, points.z + points.size);
   for (std::size_t i = 0; i < points.size; ++i) {
     cloud.x.push_back(static_cast<float>(c * points.x[i] - s * points.y[i]));
@@ -75,7 +71,7 @@ void addRotations(PoleExtractor& extractor, const PointsView& points, double rad
   const std::vector<PoleDetection> poles = extractor.extract(points);
   for (int degrees = 30; degrees < 360; degrees += 30) {
     const double yaw = degrees * M_PI / 180;
-    const OwnedCloud cloud = turned(points, yaw);
+    const PointsCopy cloud = turned(points, yaw);
     const auto again = turnedCentres(extractor.extract(cloud.view()), 0);
     score.matched += greedyAssignment(turnedCentres(poles, yaw), again, radius).size();
     score.poles += poles.size();

@@ -19,8 +19,8 @@ struct BeamAgreement {
   double mixedCells = 0;   ///< the same of 32nds of rows: not smeared by motion correction
   double meanOffset = 0;   ///< mean distance of a row's returns from its beam, in half gaps
 
-  /// rief Nothing here needs a closer look. `mixedRows` has no say: it reaches 0.66 in clouds that
-  /// were corrected for motion.
+  /// \brief Nothing here needs a closer look. `mixedRows` has no say: it reaches 0.66 in clouds
+  /// that were corrected for motion.
   bool good() const;
 };
 BeamAgreement measureAgreement(const PointsView& points, const SensorModel& model, double minRange,

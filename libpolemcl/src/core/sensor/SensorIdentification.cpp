@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "core/common/PointsCopy.h"
 #include "core/common/Statistics.h"
 #include "core/sensor/AzimuthResolution.h"
 #include "core/sensor/ElevationHistogram.h"
@@ -19,22 +20,15 @@ constexpr double s_vehicleReach = 3;     ///< m, horizontal
 constexpr double s_vehicleBottom = 0.4;  ///< m
 constexpr double s_leastRest = 0.5;      ///< else the near returns are the surroundings, as indoors
 
-struct Cloud {
-  std::vector<float> x, y, z;
-  PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
-};
-
-Cloud withoutVehicle(const PointsView& scan) {
+PointsCopy withoutVehicle(const PointsView& scan) {
   const auto ground = findGroundPlane(scan);
-  Cloud rest;
+  PointsCopy rest;
   for (std::size_t i = 0; i < scan.size; ++i) {
     const Eigen::Vector3d point(scan.x[i], scan.y[i], scan.z[i]);
     if (ground && point.head<2>().norm() < s_vehicleReach && !point.isZero(0) &&
         ground->heightOf(point) > s_vehicleBottom)
       continue;
-    rest.x.push_back(scan.x[i]);
-    rest.y.push_back(scan.y[i]);
-    rest.z.push_back(scan.z[i]);
+    rest.add(scan, i);
   }
   const auto all = static_cast<double>(scan.size);
   if (static_cast<double>(rest.x.size()) < s_leastRest * all)
@@ -205,12 +199,12 @@ void findGround(const std::vector<PointsView>& scans, SensorIdentification& resu
 SensorIdentification identifyTogether(const std::vector<PointsView>& scans) {
   SensorIdentification result;
   result.scans = scans.size();
-  std::vector<Cloud> clouds;
+  std::vector<PointsCopy> clouds;
   clouds.reserve(scans.size());
   for (const PointsView& scan : scans) clouds.push_back(withoutVehicle(scan));
   std::vector<PointsView> surroundings;
   surroundings.reserve(clouds.size());
-  for (const Cloud& cloud : clouds) surroundings.push_back(cloud.view());
+  for (const PointsCopy& cloud : clouds) surroundings.push_back(cloud.view());
   result.beams = estimateBeamTable(surroundings);
   measureRanges(scans, result);
   result.columns = azimuthResolution(surroundings, result.beams);
