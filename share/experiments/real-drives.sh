@@ -10,7 +10,8 @@
 # 2.5 m and 5 degrees. "raw": detections as they were measured; "deskewed": corrected for the motion of
 # the vehicle while the LiDAR turned. "ok" is the share of the scans with this health, "mean ok" and "worst
 # ok" the errors of them, over all seeds. "nuscenes-planes": the poses of this drive adjusted by the planes
-# in its scans (plane_adjustment.py), in which no point of a pole takes part.
+# in its scans (plane_adjustment.py), in which no point of a pole takes part. pole_radii.py OUT then compares
+# the radii of the poles with those on the map.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq and python3-scipy; three minutes.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -76,6 +77,9 @@ drive() {
   "$bin/pole-localize" --quiet --config "$3" $settings $common --input "$here/scans.rawlog" \
     --map "$here/map.polemap" --truth "$here/scans.tum" --output "$here/runs" --particles 1000 \
     --runs 5 --seed 1
+  # shellcheck disable=SC2086
+  "$bin/pole-extract" --quiet --config "$3" $settings --input "$here/scans.rawlog" \
+    --output "$here/scans_poles.rawlog" --csv "$here/scans.csv"
   evaluate_runs "$here/runs" "$here/scans.tum" >/dev/null
   while_ok "$here/runs" >"$here/ok.json"
   jq -s --arg name "$1" --slurpfile ok "$here/ok.json" --argjson poles "$(($(wc -l <"$here/map.csv") - 1))" \

@@ -26,6 +26,7 @@ struct CityOptions {
   double missing = 0.1;      ///< share of standing poles that are not on the map
   double vanished = 0.05;    ///< share of map poles that no longer stand
   double mapNoise = 0.03;    ///< noise of a map pole, along an axis, m
+  double radiusSpread = 0;   ///< radii lie between 0.1 m and 0.1 m more than this
 };
 
 /// \brief A polyline sampled every `step` metres.
@@ -64,7 +65,17 @@ inline Way drivable(const Way& way) {
 struct Surroundings {
   std::vector<Eigen::Vector2d> poles;    ///< map frame, m
   std::vector<Eigen::Vector2d> clutter;  ///< detected as poles, not on any map
+  double radiusSpread = 0;               ///< CityOptions::radiusSpread, m
 };
+
+/// \brief Radius of the pole at this place, m: no two are alike, nor is there a pattern.
+inline double radiusAt(const Eigen::Vector2d& place, double spread) {
+  const auto bits = [](double value) {
+    return static_cast<std::uint64_t>(std::llround(value * 100));
+  };
+  sim::Random random(bits(place.x()) * 1000003 + bits(place.y()));
+  return 0.1 + spread * random.uniform();
+}
 
 class PoleCity {
  public:
@@ -180,6 +191,7 @@ class PoleCity {
   }
 
   void makeMap() {
+    m_things.radiusSpread = m_options.radiusSpread;
     std::vector<Eigen::Vector2d> standing;
     for (const Eigen::Vector2d& pole : m_things.poles) {
       if (!m_random.chance(m_options.vanished)) standing.push_back(pole);
@@ -187,6 +199,7 @@ class PoleCity {
       MapPole mapped;
       mapped.x = pole.x() + m_random.normal(0, m_options.mapNoise);
       mapped.y = pole.y() + m_random.normal(0, m_options.mapNoise);
+      mapped.radius = radiusAt(pole, m_options.radiusSpread);
       mapped.covariance = m_options.mapNoise * m_options.mapNoise * Eigen::Matrix2d::Identity();
       m_map.push_back(mapped);
     }
@@ -207,6 +220,7 @@ struct DriveOptions {
   double falsePerFrame = 1.5;   ///< false detections that do not repeat in other frames
   double odometryNoise = 0.02;  ///< σ of each component of a step, relative to it
   double scaleError = 0;        ///< of the odometry, common to all steps
+  double radiusNoise = 0.02;    ///< of a detection, where radii differ, m
 };
 
 /// \brief One frame of a drive.
@@ -222,8 +236,8 @@ inline Pose2D poseOn(const Way& way, std::size_t i) {
   return {way[i].x(), way[i].y(), std::atan2(ahead.y(), ahead.x())};
 }
 
-inline void detect(const std::vector<Eigen::Vector2d>& things, const Pose2D& truth,
-                   const DriveOptions& options, sim::Random& random,
+inline void detect(const std::vector<Eigen::Vector2d>& things, double radiusSpread,
+                   const Pose2D& truth, const DriveOptions& options, sim::Random& random,
                    std::vector<PoleDetection>& out) {
   for (const Eigen::Vector2d& thing : things) {
     const double range = std::hypot(thing.x() - truth.x, thing.y() - truth.y);
@@ -236,7 +250,8 @@ inline void detect(const std::vector<Eigen::Vector2d>& things, const Pose2D& tru
     PoleDetection detection;
     detection.x = seen.x + random.normal(0, sigma);
     detection.y = seen.y + random.normal(0, sigma);
-    detection.radius = 0.1;
+    detection.radius = radiusAt(thing, radiusSpread);
+    if (radiusSpread > 0) detection.radius += random.normal(0, options.radiusNoise);
     detection.covariance = sigma * sigma * Eigen::Matrix2d::Identity();
     out.push_back(detection);
   }
@@ -272,8 +287,8 @@ inline std::vector<Frame> drive(const Surroundings& things, const Way& way,
       frame.motion = {noisy(step.x), noisy(step.y),
                       step.yaw + random.normal() * options.odometryNoise * step.yaw};
     }
-    detect(things.poles, frame.truth, options, random, frame.poles_robot);
-    detect(things.clutter, frame.truth, options, random, frame.poles_robot);
+    detect(things.poles, things.radiusSpread, frame.truth, options, random, frame.poles_robot);
+    detect(things.clutter, things.radiusSpread, frame.truth, options, random, frame.poles_robot);
     addFalse(options, random, frame.poles_robot);
     frames.push_back(frame);
   }

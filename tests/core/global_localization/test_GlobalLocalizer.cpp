@@ -75,9 +75,10 @@ void start(const GlobalLocalizer& localizer, const std::vector<Frame>& frames, C
   ++count.undecided;
 }
 
-Count starts(const CityOptions& options, int count, const DriveOptions& driveOptions = {}) {
+Count starts(const CityOptions& options, int count, const DriveOptions& driveOptions = {},
+             const GlobalOptions& globalOptions = {}) {
   const PoleCity world(options);
-  const GlobalLocalizer localizer(world.map());
+  const GlobalLocalizer localizer(world.map(), globalOptions);
   sim::Random random(sim::hash(options.seed, 77));
   Count result;
   for (int i = 0; i < count; ++i)
@@ -141,6 +142,36 @@ TEST(GlobalLocalizer, IsNotWrongWhereLittleTellsPlacesApart) {
   record(sum);
   EXPECT_EQ(sum.wrong, 0);
   EXPECT_GT(sum.right, 5);
+}
+
+/// Rows of trees: all places alike, but for the radii.
+TEST(GlobalLocalizer, TellsRegularRowsApartByRadii) {
+  CityOptions options = regularCity(1023);
+  options.radiusSpread = 0.2;
+  const Count compared = starts(options, 20);
+  record(compared);
+  EXPECT_EQ(compared.wrong, 0);
+  EXPECT_GE(compared.right, 10);
+  GlobalOptions anyRadius;
+  anyRadius.radiusSigma = 1e6;
+  EXPECT_EQ(starts(options, 20, {}, anyRadius).undecided, 20);
+}
+
+TEST(GlobalLocalizer, TakesAMapWithoutRadii) {
+  CityOptions options = city(1024);
+  options.radiusSpread = 0.2;
+  const PoleCity world(options);
+  std::vector<MapPole> map = world.map();
+  for (MapPole& pole : map) pole.radius = 0;
+  GlobalOptions anyRadius;
+  anyRadius.radiusSigma = 1e6;
+  const Drive drive = driveFrom(world, 1, 60);
+  const GlobalResult result = GlobalLocalizer(map).localize(drive.submap);
+  ASSERT_EQ(result.verdict, GlobalVerdict::resolved);
+  EXPECT_EQ(result.hypotheses[0].logRatio,
+            GlobalLocalizer(map, anyRadius).localize(drive.submap).hypotheses[0].logRatio);
+  EXPECT_GT(result.hypotheses[0].logRatio,
+            GlobalLocalizer(world.map()).localize(drive.submap).hypotheses[0].logRatio);
 }
 
 TEST(GlobalLocalizer, IsNotFooledByAnotherCity) {
@@ -209,77 +240,6 @@ TEST(GlobalLocalizer, DoesNotDependOnTheMapsFrame) {
     EXPECT_NEAR(expected.y, got.y, 1e-4);
     EXPECT_NEAR(wrapAngle(expected.yaw - got.yaw), 0, 1e-6);
   }
-}
-
-namespace {
-
-/// Mean squared errors of resolved places, in units of their covariances.
-struct Consistency {
-  double pose = 0, position = 0, heading = 0;  ///< 3, 2 and 1 where covariances are right
-  int places = 0;
-};
-
-/// \param unknown Error of the map beyond what its covariances say, along an axis, m.
-Consistency consistencyOf(const DriveOptions& driving, const SubmapOptions& submapping,
-                          const Eigen::Matrix3d* motionCovariance, double unknown) {
-  Consistency sum;
-  for (const std::uint64_t seed : {1071, 1072, 1073, 1074}) {
-    const PoleCity world(city(seed));
-    std::vector<MapPole> map = world.map();
-    sim::Random off(seed);
-    for (MapPole& pole : map) pole.x += off.normal(0, unknown), pole.y += off.normal(0, unknown);
-    const GlobalLocalizer localizer(map);
-    for (std::uint64_t travel = 0; travel < 60; ++travel) {
-      sim::Random random(travel);
-      const auto frames =
-          tests::drive(world.surroundings(), world.randomWay(random, 60), driving, random);
-      LocalSubmap submap(submapping);
-      for (const Frame& frame : frames)
-        motionCovariance ? submap.add(frame.motion, *motionCovariance, frame.poles_robot)
-                         : submap.add(frame.motion, frame.poles_robot);
-      const GlobalResult result = localizer.localize(submap);
-      if (result.verdict != GlobalVerdict::resolved) continue;
-      const Pose2D &found = result.hypotheses[0].pose_map_robot, &truth = frames.back().truth;
-      const Eigen::Matrix3d& covariance = result.hypotheses[0].covariance;
-      const Eigen::Vector3d error(found.x - truth.x, found.y - truth.y,
-                                  wrapAngle(found.yaw - truth.yaw));
-      const Eigen::Vector2d offset = error.head<2>();
-      const Eigen::Matrix2d ofPosition = covariance.topLeftCorner<2, 2>();
-      sum.pose += error.dot(covariance.inverse() * error);
-      sum.position += offset.dot(ofPosition.inverse() * offset);
-      sum.heading += error.z() * error.z() / covariance(2, 2);
-      ++sum.places;
-    }
-  }
-  return {sum.pose / sum.places, sum.position / sum.places, sum.heading / sum.places, sum.places};
-}
-
-}  // namespace
-
-// Where all is as the options say: exact odometry, and map poles off by their covariance and sigma.
-TEST(GlobalLocalizer, ItsCovarianceIsWhatItsErrorsAre) {
-  DriveOptions exact;
-  exact.odometryNoise = 0;
-  SubmapOptions submap;
-  submap.floor = 0.001;
-  submap.scale = 0.0001;
-  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
-  const Consistency c = consistencyOf(exact, submap, &none, GlobalOptions().sigma);
-  ASSERT_GE(c.places, 235);
-  // 99 of 100 cases: 2.58·sqrt(2·degrees/235), of 3, 2 and 1 degrees of freedom.
-  EXPECT_NEAR(c.pose, 3, 0.412);
-  EXPECT_NEAR(c.position, 2, 0.337);
-  EXPECT_NEAR(c.heading, 1, 0.238);
-}
-
-// With the default options on a map as good as it says: sigma allows for worse ones, and the walks
-// for worse headings. Poles share the drift of the odometry, which is taken as each one's own.
-TEST(GlobalLocalizer, ItsCovarianceIsCautiousByDefault) {
-  const Consistency c = consistencyOf({}, {}, nullptr, 0);
-  ASSERT_GE(c.places, 235);
-  EXPECT_NEAR(c.pose, 1.90, 0.26);  // measured, ± 2.58 of its standard deviations
-  EXPECT_NEAR(c.position, 1.62, 0.27);
-  EXPECT_NEAR(c.heading, 0.27, 0.065);
 }
 
 TEST(GlobalLocalizer, FindsTheOdometrysScale) {

@@ -12,6 +12,8 @@ void bind(Binder& b, GlobalOptions& o) {
            "probability that a true pole of the submap is on the map");
   b.number("sigma_m", o.sigma, Range::between(0, 1), "m",
            "standard deviation of a pole from its map pole, beyond both covariances");
+  b.number("radius_sigma_m", o.radiusSigma, Range::above(0), "m",
+           "standard deviation of a pole's radius from that of its map pole");
   b.number("max_tolerance_m", o.maxTolerance, Range::aboveUpTo(0, 5), "m",
            "greatest distance of a pole from its map pole");
   b.number("min_baseline_m", o.minBaseline, Range::atLeast(1), "m",

@@ -133,7 +133,8 @@ void PoseRefinement::judge(const State& state, GlobalHypothesis& out) {
     if (squared > s_gate * s_gate || !claim(hit.index) || queryPole.odds <= 0) continue;
     ++out.matched;
     const double sharpness = std::min(1.0, sharp / std::sqrt(S.determinant()));
-    out.logRatio += std::log1p(queryPole.odds * sharpness * std::exp(-0.5 * squared));
+    const double alike = m_map.likeness(queryPole.pole->radius, hit.index);
+    out.logRatio += std::log1p(queryPole.odds * sharpness * alike * std::exp(-0.5 * squared));
   }
   out.unseen = countUnseen(state);
   // On old maps or maps with false poles, unseen poles must not outweigh the matches.

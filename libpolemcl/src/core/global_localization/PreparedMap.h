@@ -18,10 +18,15 @@ struct PreparedMap {
   /// \throws Error on options out of range, and as PoleIndex.
   PreparedMap(const std::vector<MapPole>& map, const GlobalOptions& globalOptions);
 
+  /// \brief How much a match with this map pole counts, by the radius of the pole seen, m: in
+  /// (0, 1], 1 where either radius is 0, unknown.
+  double likeness(double radius, std::uint32_t pole) const;
+
   const GlobalOptions options;
   const PoleIndex index;
   const PairDistanceIndex pairs;
-  double meanVariance = 0;  ///< mean of the poles' variances along an axis, m²
+  std::vector<double> radii;  ///< of the poles, m; 0: unknown
+  double meanVariance = 0;    ///< mean of the poles' variances along an axis, m²
 };
 
 }  // namespace polemcl

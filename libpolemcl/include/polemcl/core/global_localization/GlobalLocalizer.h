@@ -25,6 +25,7 @@ struct POLEMCL_EXPORT GlobalOptions {
   /// Probability that a true pole of the submap is on the map, in (0, 1).
   double mapped = 0.9;
   double sigma = 0.05;        ///< σ of a pole from its map pole, beyond both covariances, m
+  double radiusSigma = 0.02;  ///< σ of a pole's radius from that of its map pole, m
   double maxTolerance = 1.0;  ///< greatest distance of a pole from its map pole, m
   double minBaseline = 8, maxBaseline = 40;  ///< of pole pairs that give a candidate, m
   double corridor = 15;  ///< map poles nearer than this to the path should have been seen, m
