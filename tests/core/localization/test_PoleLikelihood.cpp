@@ -97,8 +97,7 @@ double oracle(const Scene& scene, const Pose2D& pose, const LikelihoodOptions& o
       sum -= confidence * (best ? std::min(0.5 * m2, cost) : cost);
     } else {
       const double p = (1 - o.outlier) * confidence;
-      const double beside =
-          std::exp(-0.5 * e.squaredNorm() / (o.outlierSigma * o.outlierSigma)) * confidence;
+      const double beside = std::pow(1 - e.squaredNorm() / (o.gate * o.gate), 3) * confidence;
       const double outlier = o.farOutlier + (best ? (1 - o.farOutlier) * beside : 0);
       const double hit = p * squaredSigma / std::sqrt(S.determinant()) * std::exp(-0.5 * m2);
       sum += std::log((best ? hit : 0) + (1 - p) * outlier);
@@ -141,10 +140,10 @@ TEST(PoleLikelihood, MixtureByHand) {
   options.sigma = 0.2;
   options.outlier = 0.1;
   options.farOutlier = 0.25;
-  options.outlierSigma = 0.1;
+  options.gate = 0.2;
   const PoleIndex index({mapPole(5, 5)});
-  // Off by 0.1 m: half a σ, and one of an outlier.
-  const double matched = std::log(0.9 * std::exp(-0.125) + 0.1 * (0.25 + 0.75 * std::exp(-0.5)));
+  // Off by 0.1 m: half a σ, and half of the gate.
+  const double matched = std::log(0.9 * std::exp(-0.125) + 0.1 * (0.25 + 0.75 * 27 / 64));
   EXPECT_NEAR(logLikelihood({detection(5.1, 5)}, {}, index, options), matched, 1e-12);
   EXPECT_NEAR(logLikelihood({detection(5.1, 5), detection(20, 5)}, {}, index, options),
               matched + std::log(0.025), 1e-12);
@@ -389,9 +388,6 @@ TEST(PoleLikelihood, RefusesOptionsOutOfRange) {
     options = {};
     options.farOutlier = bad;
     expectRefused(options, "far_outlier");
-    options = {};
-    options.outlierSigma = bad;
-    expectRefused(options, "outlier_sigma_m");
   }
   LikelihoodOptions options;
   options.outlier = 1;

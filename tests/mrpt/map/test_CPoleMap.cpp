@@ -305,7 +305,6 @@ TEST(CPoleMap, SurvivesSerialization) {
   map.likelihoodOptions.gate = 2;
   map.likelihoodOptions.floor = 0.375;
   map.likelihoodOptions.farOutlier = 0.25;
-  map.likelihoodOptions.outlierSigma = 0.625;
   map.likelihoodOptions.weighted = !LikelihoodOptions().weighted;
   const std::string bytes = samples::bytesOf(map);
   const auto read = std::dynamic_pointer_cast<CPoleMap>(samples::objectFrom(bytes));
@@ -320,7 +319,6 @@ TEST(CPoleMap, SurvivesSerialization) {
   EXPECT_EQ(read->likelihoodOptions.gate, 2);
   EXPECT_EQ(read->likelihoodOptions.floor, 0.375);
   EXPECT_EQ(read->likelihoodOptions.farOutlier, 0.25);
-  EXPECT_EQ(read->likelihoodOptions.outlierSigma, 0.625);
   EXPECT_EQ(read->likelihoodOptions.weighted, map.likelihoodOptions.weighted);
   EXPECT_EQ(read->index().nearest(10, 0, 1)->index, 1u);
   EXPECT_EQ(samples::bytesOf(*read), bytes);
@@ -337,7 +335,7 @@ TEST(CPoleMap, ReadsMapsOfOlderVersions) {
     const std::string floor(reinterpret_cast<const char*>(&value), sizeof value);
     const std::size_t at = bytes.find(floor);
     ASSERT_NE(at, std::string::npos);
-    bytes.erase(at + version * floor.size(), (3 - version) * floor.size());
+    bytes.erase(at + version * floor.size(), (2 - version) * floor.size());
     bytes[1 + std::string("polemcl::CPoleMap").size()] = static_cast<char>(version);
     const auto read = std::dynamic_pointer_cast<CPoleMap>(samples::objectFrom(bytes));
     ASSERT_TRUE(read);

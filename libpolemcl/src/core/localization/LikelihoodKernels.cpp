@@ -230,12 +230,13 @@ class Evaluation {
   /// What the outliers add: (1-p)·o(d).
   template <class Mask>
   HWY_INLINE V outlier(const LikelihoodTerm& term, V dx, V dy, Mask found) const {
-    const double far = m_batch.options.farOutlier, sigma = m_batch.options.outlierSigma;
+    const double far = m_batch.options.farOutlier, gate = m_batch.options.gate;
     const V everywhere = hn::Set(m_d, far * term.floor);
     if (far == 1 || hn::AllFalse(m_d, found)) return everywhere;
     const V squared = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
-    const V bell = exponential(m_d, hn::Mul(squared, hn::Set(m_d, -0.5 / (sigma * sigma))));
-    const V beside = hn::Mul(hn::Set(m_d, (1 - far) * term.confidence * term.floor), bell);
+    const V left = hn::Sub(hn::Set(m_d, 1.0), hn::Mul(squared, hn::Set(m_d, 1 / (gate * gate))));
+    const V cube = hn::Mul(left, hn::Mul(left, left));
+    const V beside = hn::Mul(hn::Set(m_d, (1 - far) * term.confidence * term.floor), cube);
     return hn::Add(everywhere, hn::IfThenElseZero(found, beside));
   }
 

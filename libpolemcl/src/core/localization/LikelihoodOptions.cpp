@@ -15,10 +15,8 @@ void bind(Binder& b, LikelihoodOptions& o) {
   b.number("outlier", o.outlier, {1e-9, 1, false, true}, "",
            "model = mixture: share of detections that are not on the map");
   b.number("far_outlier", o.farOutlier, {1e-3, 1, false, false}, "",
-           "model = mixture: weight of such a detection far from every map pole, where one beside "
-           "a map pole weighs 1; 1: all alike");
-  b.number("outlier_sigma_m", o.outlierSigma, Range::above(0), "m",
-           "model = mixture: distance from a map pole up to which an outlier is beside it");
+           "model = mixture: weight of such a detection without a match, where one at a map pole "
+           "weighs 1; 1: all alike");
   b.number("gate_m", o.gate, Range::above(0), "m", "farther poles are no match");
   b.tier(Tier::expert);
   b.choice<LikelihoodModel>("model", o.model,

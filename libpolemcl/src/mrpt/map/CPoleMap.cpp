@@ -76,7 +76,7 @@ void CPoleMap::serializeTo(CArchive& out) const {
   out << genericMapParams << insertionOptions.mergeDistance << insertionOptions.minConfidence;
   const auto& l = likelihoodOptions;
   out << static_cast<std::uint8_t>(l.model) << l.sigma << l.outlier << l.gate << l.weighted;
-  out << l.floor << l.farOutlier << l.outlierSigma;
+  out << l.floor << l.farOutlier;
   out << info << static_cast<std::uint32_t>(m_poles.size());
   for (const auto& pole : m_poles) writePole(out, pole, pole.count);
 }
@@ -89,7 +89,7 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
   if (version >= 1) in >> l.floor;
   if (version >= 2) {
-    in >> l.farOutlier >> l.outlierSigma;
+    in >> l.farOutlier;
   } else {
     l.farOutlier = 1;  // as it was then
   }

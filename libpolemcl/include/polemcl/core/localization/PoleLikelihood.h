@@ -28,19 +28,18 @@ enum class LikelihoodModel {
 ///  - paper: exp(-c_i·min(m²/2, cost)), where a pole without a match costs `gate` at the isotropic
 ///    part of S without Σ_m: cost = gate²/(2σ² + tr Σ_i).
 ///
-/// o(d) = f + (1-f)·c_i·exp(-d²/(2σ_o²)), f without a match. A bad fit beside a map pole is
+/// o(d) = f + (1-f)·c_i·(1-(d/gate)²)³, f without a match. A bad fit beside a map pole is
 /// likelier than a detection where the map has no pole. This tells a place where many poles fit
 /// roughly from one where few fit well, while no pole pulls harder than an outlier may.
 struct POLEMCL_EXPORT LikelihoodOptions {
   LikelihoodModel model = LikelihoodModel::mixture;
-  double sigma = 0.05;        ///< σ_d: standard deviation of a detection from its map pole, m
-  double outlier = 0.05;      ///< w: share of detections not on the map, in [1e-9, 1); mixture only
-  double farOutlier = 0.1;    ///< f: in [1e-3, 1]; 1: all outliers are alike; mixture only
-  double outlierSigma = 0.4;  ///< σ_o: distance of outliers beside a map pole, m; mixture only
-  double floor = 0.2;         ///< added to the density, 1/m, > 0; floored only
-  double gate = 1.0;          ///< d_max: beyond it a pole has no match, m
-  bool weighted = true;       ///< true: each detection counts by its covariance and confidence; not
-                              ///< with `floored`
+  double sigma = 0.05;      ///< σ_d: standard deviation of a detection from its map pole, m
+  double outlier = 0.05;    ///< w: share of detections not on the map, in [1e-9, 1); mixture only
+  double farOutlier = 0.1;  ///< f: in [1e-3, 1]; 1: all outliers are alike; mixture only
+  double floor = 0.2;       ///< added to the density, 1/m, > 0; floored only
+  double gate = 1.0;        ///< d_max: beyond it a pole has no match, m
+  bool weighted = true;     ///< true: each detection counts by its covariance and confidence; not
+                            ///< with `floored`
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, LikelihoodOptions& options);  ///< `[likelihood]`
