@@ -5,6 +5,7 @@
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "cli/JsonFile.h"
 #include "cli/RunRecords.h"
+#include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
@@ -46,7 +47,7 @@ class RunReader {
         isFirst = true;
         continue;
       }
-      samples.push_back({row.estimate, *pose, row.time, isFirst});
+      samples.push_back({withTruthSigma(row.estimate), *pose, row.time, isFirst});
       isFirst = false;
     }
     if (samples.empty())
@@ -58,6 +59,12 @@ class RunReader {
   }
 
  private:
+  PoseWithCovariance withTruthSigma(PoseWithCovariance estimate) const {
+    const double metres = m_options.truthSigma, yaw = m_options.truthSigmaYaw;
+    estimate.covariance.diagonal() += Eigen::Vector3d(metres, metres, yaw).cwiseAbs2();
+    return estimate;
+  }
+
   const EvalConsistencyOptions& m_options;
   ConsistencyResult& m_result;
 };
@@ -73,6 +80,8 @@ void requireFitting(const EvalConsistencyOptions& options) {
                 std::to_string(runs) + " runs: give one for each, or none");
   if (!(options.skipSeconds >= 0) || !(options.skipMetres >= 0))
     throw Error("what is skipped must be 0 s and 0 m or more");
+  if (!(options.truthSigma >= 0) || !(options.truthSigmaYaw >= 0))
+    throw Error("the standard deviations of the truth must be 0 or more");
 }
 
 nlohmann::ordered_json consistencyJson(const ConsistencyScore& score) {
@@ -90,6 +99,8 @@ nlohmann::ordered_json consistencyJson(const EvalConsistencyOptions& options,
   nlohmann::ordered_json out = consistencyJson(result.all);
   out["not_ok"] = result.notOk;
   out["unmatched"] = result.unmatched;
+  out["truth_sigma_m"] = options.truthSigma;
+  out["truth_sigma_deg"] = options.truthSigmaYaw / degree;
   out["skip_s"] = options.skipSeconds;
   out["skip_m"] = options.skipMetres;
   out["runs"] = nlohmann::ordered_json::array();

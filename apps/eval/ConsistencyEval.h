@@ -15,8 +15,10 @@ struct EvalConsistencyOptions {
   std::vector<std::filesystem::path> cov;     ///< `run_NN_cov.csv`, see LocalizeApp.h
   std::vector<std::filesystem::path> health;  ///< `run_NN_health.csv` of each run, or empty:
                                               ///< with them, only scans that are `ok` count
-  double skipSeconds = 0;                     ///< left out since the first pose, s
-  double skipMetres = 20;                     ///< and along the true path, m
+  /// Standard deviations of the truth, m and rad, added to the covariances.
+  double truthSigma = 0, truthSigmaYaw = 0;
+  double skipSeconds = 0;  ///< left out since the first pose, s
+  double skipMetres = 20;  ///< and along the true path, m
   std::optional<std::filesystem::path> json;
 };
 

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "cli/Progress.h"
+#include "core/common/Angles.h"
 #include "eval/ConsistencyEval.h"
 #include "eval/EvalApp.h"
 #include "eval/FaultTrials.h"
@@ -84,12 +85,20 @@ Subcommand consistencyCommand(CLI::App& program) {
       ->required();
   cli.add_option("--health", options->health,
                  "run_NN_health.csv of each run: count only poses that are ok");
+  addNumber(cli, "--truth-sigma-m", options->truthSigma,
+            "Standard deviation of the true positions along an axis, m", CLI::NonNegativeNumber);
+  const auto headingDeg = std::make_shared<double>(0);
+  addNumber(cli, "--truth-sigma-deg", *headingDeg, "The same of the true headings, deg",
+            CLI::NonNegativeNumber);
   addNumber(cli, "--skip-seconds", options->skipSeconds,
             "Time after the first pose that is left out, s", CLI::NonNegativeNumber);
   addNumber(cli, "--skip-metres", options->skipMetres,
             "Path after the first pose that is left out, m", CLI::NonNegativeNumber);
   cli.add_option("--json", options->json, "Write the results to this file (JSON)");
-  return {&cli, [options](bool) { return localizationText(evalConsistency(*options)); }};
+  return {&cli, [options, headingDeg](bool) {
+            options->truthSigmaYaw = *headingDeg * degree;
+            return localizationText(evalConsistency(*options));
+          }};
 }
 
 Subcommand faultsCommand(CLI::App& program) {

@@ -51,7 +51,7 @@ io::ScanFolder readDataset(const ImportOptions& options, const Eigen::Isometry3d
 class MotionSource {
  public:
   explicit MotionSource(const ImportOptions& options)
-      : m_noise(options.odometryNoise), m_generator(options.seed) {}
+      : m_options(options), m_generator(options.seed) {}
 
   /// \brief To be called for every scan of the dataset in turn, written or not.
   void pass(const io::ScanEntry& scan) {
@@ -68,9 +68,12 @@ class MotionSource {
     std::optional<io::PlanarMotion> motion = m_composed;
     if (!m_started) {
       motion = standstill();
-    } else if (m_noise) {
-      const auto here = io::planar(*scan.T_map_robot);
-      motion = io::noisyMotion(relative(m_last, here), *m_noise, m_generator);
+    } else if (m_options.odometryNoise) {
+      const Pose2D truth = relative(m_last, io::planar(*scan.T_map_robot));
+      motion = io::noisyMotion(truth, *m_options.odometryNoise, m_generator);
+      motion->mean.x += m_options.odometryScale * truth.x;
+      motion->mean.y += m_options.odometryScale * truth.y;
+      motion->mean.yaw = wrapAngle(motion->mean.yaw + m_options.odometryYaw * truth.x);
     }
     m_started = true;
     m_composed.reset();
@@ -79,7 +82,7 @@ class MotionSource {
   }
 
  private:
-  std::optional<double> m_noise;
+  const ImportOptions& m_options;
   std::mt19937_64 m_generator;
   std::optional<io::PlanarMotion> m_composed;
   Pose2D m_last;
@@ -167,6 +170,12 @@ void ImportOptions::validate() const {
   if (odometryNoise && !(*odometryNoise >= 0 && std::isfinite(*odometryNoise)))
     throw Error("--odometry-noise " + io::significant(*odometryNoise, 6) +
                 ": a share of 0 or more is allowed, such as 0.02 for 2 %");
+  if ((odometryScale != 0 || odometryYaw != 0) && !odometryNoise)
+    throw Error(
+        "--odometry-scale and --odometry-yaw-deg-m change the odometry that "
+        "--odometry-noise makes: give that as well (0 for none)");
+  if (!(std::abs(odometryScale) <= 0.5) || !(std::abs(odometryYaw) <= 10 * degree))
+    throw Error("--odometry-scale must lie in -0.5 to 0.5, --odometry-yaw-deg-m in -10 to 10");
   const auto extension = output.extension();
   if (extension != ".rawlog")
     throw Error("--output " + output.string() +

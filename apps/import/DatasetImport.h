@@ -32,6 +32,9 @@ struct ImportOptions {
   /// K: odometry is the true motion with noise of σ = K·|component|, instead of the folder's.
   std::optional<double> odometryNoise;
   std::uint64_t seed = 0;  ///< of that noise
+  /// Errors of that odometry that stay and that its covariance does not know: a share of the
+  /// distance, and rad per metre.
+  double odometryScale = 0, odometryYaw = 0;
   /// The sensor in the robot frame: stored in every observation, turns sensor poses into robot
   /// poses. Without it the dataset's own, see datasetSensorPose().
   std::optional<Eigen::Isometry3d> T_robot_sensor;

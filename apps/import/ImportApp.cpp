@@ -26,7 +26,7 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
 struct Texts {
   std::string sensorPose, posesOf = "robot", session, turn;
   ScanTiming timing;
-  double cutDeg = 180;
+  double cutDeg = 180, yawBiasDeg = 0;
   std::optional<ScanTiming> stated() const;
 };
 
@@ -68,6 +68,10 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
                  "Make odometry from the true motion, with noise of this share (0.02 for 2 %)")
       ->check(CLI::NonNegativeNumber);
   addNumber(cli, "--seed", options.seed, "Seed of that noise", CLI::NonNegativeNumber);
+  addNumber(cli, "--odometry-scale", options.odometryScale,
+            "Makes that odometry too long by this share (0.01 for 1 %)", CLI::Range(-0.5, 0.5));
+  addNumber(cli, "--odometry-yaw-deg-m", texts.yawBiasDeg,
+            "Turns that odometry too far, in deg per metre", CLI::Range(-10.0, 10.0));
   cli.add_option(
          "--sensor-pose", texts.sensorPose,
          "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\" (default: " +
@@ -139,6 +143,7 @@ int importMain(int argc, const char* const* argv) {
     if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);
     if (!texts.session.empty()) options.input /= texts.session;
     options.timing = texts.stated();
+    options.odometryYaw = texts.yawBiasDeg * degree;
     options.posesOfSensor = texts.posesOf == "sensor";
     const auto report = importDataset(options, Progress("import", 0, line.quiet()).updates());
     if (!line.quiet()) printImport(report, options);

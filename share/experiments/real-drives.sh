@@ -1,15 +1,18 @@
 #!/bin/sh
 # Real drives of three sensors, localized in maps of their own other scans, or of the way out.
-# Usage: share/experiments/real-drives.sh DATA_DIR OUT [SECTION.KEY=VALUE...]
-#   DATA_DIR  folder with kitti_raw_0005/, vlp16_loop/ and nuscenes_scene/
-#   OUT       gets maps, trajectories, result.json and table.txt
+# Usage: share/experiments/real-drives.sh DATA_DIR OUT [--odometry SCALE,YAW] [SECTION.KEY=VALUE...]
+#   DATA_DIR    folder with kitti_raw_0005/, vlp16_loop/ and nuscenes_scene/
+#   OUT         gets maps, trajectories, result.json and table.txt
+#   --odometry  errors of the odometry that stay: a share of the distance, and degrees per metre
 #   SECTION.KEY=VALUE  settings, for all drives
 # kitti_raw_0005 and nuscenes_scene: map of the even scans, localized on the odd ones. vlp16_loop: map of
 # the turns 0 to 175 (way out), localized on 176 to 203, which come back in the opposite direction.
-# Odometry is the true motion with 2 % noise (seed 7); 1000 particles, filter seeds 1 to 5, start within
+# Odometry is the true motion with 2 % noise (seed 7) and the errors given; 1000 particles, filter seeds 1 to 5, start within
 # 2.5 m and 5 degrees. "raw": detections as they were measured; "deskewed": corrected for the motion of
 # the vehicle while the LiDAR turned. "ok" is the share of the scans with this health, "mean ok" and "worst
-# ok" the errors of them, over all seeds. "nuscenes-planes": the poses of this drive adjusted by the planes
+# ok" the errors of them, over all seeds. NEES (3 where covariances are right) and
+# coverage of the 95 % ellipses are those of the poses that are ok, with the standard deviations of the true
+# poses (README of the data; for nuScenes plane_adjustment.py) added. "nuscenes-planes": the poses of this drive adjusted by the planes
 # in its scans (plane_adjustment.py), in which no point of a pole takes part. pole_radii.py OUT then compares
 # the radii of the poles with those on the map.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq and python3-scipy; three minutes.
@@ -23,7 +26,12 @@ data=$(cd "$1" && pwd)
 mkdir -p "$2"
 out=$(cd "$2" && pwd)
 shift 2
-common="" truth=""
+common="" truth="" errors=0,0
+if [ "${1-}" = --odometry ]; then
+  [ $# -ge 2 ] || usage
+  errors=$2
+  shift 2
+fi
 for assignment in "$@"; do common="$common --set $assignment"; done
 find_programs pole-import pole-map pole-localize pole-eval
 find_tools jq
@@ -46,7 +54,8 @@ import() {
   part "$1" "$3" "$4"
   # shellcheck disable=SC2086 # several words
   "$bin/pole-import" folder --quiet --embed --input "$out/part" --output "$here/$2.rawlog" \
-    --every "$5" --offset "$6" --sensor-pose "$mounting" --turn $turn --odometry-noise 0.02 --seed 7
+    --every "$5" --offset "$6" --sensor-pose "$mounting" --turn $turn --odometry-noise 0.02 --seed 7 \
+    --odometry-scale "${errors%,*}" --odometry-yaw-deg-m "${errors#*,}"
   rm -r "$out/part"
 }
 
@@ -82,10 +91,15 @@ drive() {
     --output "$here/scans_poles.rawlog" --csv "$here/scans.csv"
   evaluate_runs "$here/runs" "$here/scans.tum" >/dev/null
   while_ok "$here/runs" >"$here/ok.json"
-  jq -s --arg name "$1" --slurpfile ok "$here/ok.json" --argjson poles "$(($(wc -l <"$here/map.csv") - 1))" \
+  "$bin/pole-eval" consistency --quiet --truth "$here/scans.tum" --cov "$here"/runs/run_*_cov.csv \
+    --health "$here"/runs/run_*_health.csv --skip-metres 0 --truth-sigma-m "${sigmas%,*}" \
+    --truth-sigma-deg "${sigmas#*,}" --json "$here/consistency.json"
+  jq -s --arg name "$1" --slurpfile ok "$here/ok.json" \
+    --slurpfile fit "$here/consistency.json" --argjson poles "$(($(wc -l <"$here/map.csv") - 1))" \
     '{drive: $name, map_poles: $poles, pos_mean: (map(.pos_mean) | add / length),
       pos_least: (map(.pos_mean) | min), pos_most: (map(.pos_mean) | max),
-      ang_mean_deg: (map(.ang_mean_deg) | add / length), pos_max: (map(.pos_max) | max)} + $ok[0]' \
+      ang_mean_deg: (map(.ang_mean_deg) | add / length), pos_max: (map(.pos_max) | max)} + $ok[0] +
+      ($fit[0] | {nees_mean, coverage_95, truth_sigma_m, truth_sigma_deg})' \
     "$here"/runs/run_0?.json >>"$out/results"
   rm "$here"/*.rawlog
 }
@@ -121,24 +135,25 @@ both() {
 : >"$out/results"
 # These LiDARs turn clockwise, begin at the back, and are stamped when they face forward.
 turns="clockwise --cut-deg 180 --stamp-turn 0.5"
-mounting="0 0 0 0 0 0" settings=""
+mounting="0 0 0 0 0 0" settings="" sigmas=0.01,0.03
 both kitti_raw_0005 kitti_raw_0005 "$top/config/kitti.ini" "$turns" "0 79 2 0" "0 79 2 1"
-mounting="0 0 0 0 2.513 0.028" settings="--set sensor.height_m=1.77"
+mounting="0 0 0 0 2.513 0.028" settings="--set sensor.height_m=1.77" sigmas=0.015,0.03
 both vlp16_loop vlp16_loop "$top/config/vlp16.ini" "$turns" "0 175 1 0" "176 203 1 0"
-mounting="0 0 0 0 0 0" settings="--set sensor.height_m=1.84 --set sensor.min_range_m=2.5"
+mounting="0 0 0 0 0 0" settings="--set sensor.height_m=1.84 --set sensor.min_range_m=2.5" sigmas=0.08,0.23
 # Its scans are compensated: pole-extract --inspect finds no timing that fits better.
 drive nuscenes nuscenes_scene "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
 adjust_by_planes nuscenes_scene "$top/config/hdl32e.ini"
+sigmas=0.01,0.03
 drive nuscenes-planes nuscenes_scene "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
 
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
 jq -r '.[] | [.drive, .map_poles, .pos_mean, .pos_least, .pos_most, .ang_mean_deg, .pos_max, .ok,
-    .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg] | @tsv' "$out/result.json" |
+    .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg, .nees_mean, .coverage_95] | @tsv' "$out/result.json" |
   awk -F '\t' 'BEGIN {
-      format = "%-24s %9s %8s %17s %8s %8s %6s %16s %16s\n"
+      format = "%-24s %9s %8s %17s %8s %8s %6s %16s %16s %6s %9s\n"
       printf format, "drive", "map poles", "mean m", "(least to most)", "mean deg", "worst m", "ok",
-        "mean ok, m deg", "worst ok, m deg" }
-    { printf "%-24s %9d %8.4f %8.4f %8.4f %8.4f %8.4f %6.2f %8.4f %7.4f %8.4f %7.4f\n", $1, $2, $3, $4,
-        $5, $6, $7, $8, $9, $10, $11, $12 }' >"$out/table.txt"
+        "mean ok, m deg", "worst ok, m deg", "NEES", "coverage" }
+    { printf "%-24s %9d %8.4f %8.4f %8.4f %8.4f %8.4f %6.2f %8.4f %7.4f %8.4f %7.4f %6.2f %9.3f\n", $1, $2,
+        $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14 }' >"$out/table.txt"
 cat "$out/table.txt"

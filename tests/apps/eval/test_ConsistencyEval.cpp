@@ -89,6 +89,17 @@ TEST_F(ConsistencyEval, CountsOnlyWhatIsOkWhenToldTheHealth) {
   EXPECT_NEAR(evalConsistency(options).all.longestBeyond5, 29 - 23, 1e-9);
 }
 
+TEST_F(ConsistencyEval, AddsTheUncertaintyOfTheTruth) {
+  writeTruth(30);
+  writeCov("cov.csv", 30, 0.2, 0.2);
+  const auto outcome = run({"--truth", at("truth.tum"), "--cov", at("cov.csv"), "--truth-sigma-m",
+                            "0.1", "--truth-sigma-deg", "1", "--json", at("c.json")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(readText(folder / "c.json"));
+  EXPECT_NEAR(json["nees_mean"], 0.04 / 0.02, 1e-9);  // 4 without
+  EXPECT_NEAR(json["truth_sigma_deg"], 1, 1e-12);
+}
+
 TEST_F(ConsistencyEval, RefusesWhatDoesNotFitTogether) {
   writeTruth(30);
   writeCov("cov.csv", 30, 0.1, 5);
@@ -103,6 +114,7 @@ TEST_F(ConsistencyEval, RefusesWhatDoesNotFitTogether) {
   writeText(folder / "odd.csv", "scan,state\n4,ok\n");
   expectFailure(with({"--health", at("odd.csv")}), {"odd.csv:2", "scan 0 expected"});
   expectFailure(with({"--health", at("odd.csv"), at("odd.csv")}), {"2 health files"});
+  expectUsageError(with({"--truth-sigma-m", "-1"}));
   writeText(folder / "flat.csv", covHeader + "0,0,0,0,0,0,0,0,0,0,0\n");
   expectFailure(run({"--truth", at("truth.tum"), "--cov", at("flat.csv"), "--skip-metres", "0"}),
                 {"flat.csv", "positive definite"});

@@ -186,6 +186,17 @@ TEST_F(DatasetImport, NoiseIsRelativeToTheTrueMotionAndSeeded) {
   EXPECT_NE(readText(options.output), bytes);
 }
 
+TEST_F(DatasetImport, OdometryMayErrInAWayThatStays) {
+  writeLine(options.input, 3);
+  options.odometryNoise = 0;
+  options.odometryScale = 0.25;
+  options.odometryYaw = 0.125;
+  importDataset(options);
+  const auto pairs = readPairs(options.output);
+  EXPECT_TRUE(mean(pairs[2]).isApprox(Eigen::Vector3d(1.25, 0, 0.125), 1e-12));
+  EXPECT_LT(covariance(pairs[2])(0, 0), 1e-5) << "which the covariance does not know";
+}
+
 TEST_F(DatasetImport, NoiseOverridesTheOdometryOfTheFolder) {
   writeLine(options.input, 2);
   writeText(options.input / "odometry.txt", "7 7 1 1 1 1\n");
@@ -279,6 +290,12 @@ TEST_F(DatasetImport, RefusesOptionsThatMakeNoSense) {
   options = good;
   options.odometryNoise = -0.1;
   EXPECT_NE(errorOf().find("--odometry-noise -0.1"), std::string::npos) << errorOf();
+  options = good;
+  options.odometryScale = 0.01;
+  EXPECT_NE(errorOf().find("--odometry-noise makes"), std::string::npos) << errorOf();
+  options.odometryNoise = 0;
+  options.odometryScale = 0.6;
+  EXPECT_NE(errorOf().find("-0.5 to 0.5"), std::string::npos) << errorOf();
   options = good;
   options.output = folder / "out.tum";
   EXPECT_NE(errorOf().find("must end in .rawlog"), std::string::npos) << errorOf();
