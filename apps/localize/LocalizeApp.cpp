@@ -13,6 +13,7 @@
 #include "localize/LocalizePlayer.h"
 #include "localize/LocalizeReport.h"
 #include "localize/Pace.h"
+#include "localize/PoseStream.h"
 #include "localize/RunView.h"
 #include "localize/TrialDrive.h"
 
@@ -81,6 +82,7 @@ SequenceCounts play(const LocalizeJob& job, const Settings& settings, const RunV
   options.extraction = settings.poleExtraction();
   options.motion = settings.motion;
   options.allowTruncated = job.allowTruncated;
+  options.follow = job.follow;
   Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });
   options.pace = [&](double time) { return pace.waitFor(time); };
   Progress progress("localize", 0, job.quiet);
@@ -114,15 +116,19 @@ LocalizeResult localize(const LocalizeJob& job) {
 
   const LocalizationMap prepared(map, settings.global);
   const auto begin = ScanClock::now();
-  LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view);
+  std::optional<PoseStream> stream;
+  if (job.stream) stream.emplace(*job.stream);
+  LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view,
+                        stream ? &*stream : nullptr);
   facts.counts = play(job, settings, view, player);
   LocalizeResult result = player.finish();
   result.timings.wallSeconds = secondsSince(begin);
   result.timings.rate = rateOf(job, settings);
   writeResults(folder, facts, settings, result);
   if (!job.quiet) {
-    printTable(std::cout, facts, result);
-    std::cout << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
+    std::ostream& out = job.stream == "-" ? std::cerr : std::cout;
+    printTable(out, facts, result);
+    out << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
   }
   view.waitForWindow();
   return result;
@@ -171,6 +177,12 @@ int localizeMain(int argc, const char* const* argv) {
                "Start without a pose: search the whole map during the drive")
       ->excludes(start);
   addViewOptions(cli, job);
+  addNumber(cli, "--follow", job.follow,
+            "Wait at the end of a rawlog that still grows, until nothing has come for this time, s",
+            CLI::NonNegativeNumber);
+  cli.add_option("--stream", job.stream,
+                 "File for the poses of the first run as they are made, a line of JSON a scan; - "
+                 "for standard output");
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of a rawlog that ends too early");
   return line.run(argc, argv, [&] {

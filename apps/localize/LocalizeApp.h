@@ -30,6 +30,8 @@ struct LocalizeJob {
   std::optional<int> scenes, frameEvery;
   /// @}
   bool allowTruncated = false;
+  double follow = 0;                            ///< wait at the end of the rawlog for more, s
+  std::optional<std::filesystem::path> stream;  ///< see PoseStream; "-": standard output
   bool quiet = false;
 };
 
@@ -78,7 +80,8 @@ struct LocalizeResult {
 ///   that `total` contains the wait for the scans before it.
 ///
 /// Results grow in a hidden folder beside files of an earlier call, which they replace once
-/// everything is complete. Prints a table on stdout unless quiet.
+/// everything is complete. Prints a table on stdout unless quiet; on stderr when poses are streamed
+/// to stdout.
 /// \throws Error as the readers do, and when the map has no poles, scans lack odometry, no pole is
 ///         ever seen, there is no start pose or it is more than 1 km from all poles of the map, or
 ///         the truth covers less than half of the scans. The folder is as it was before then.

@@ -8,8 +8,13 @@ namespace polemcl::apps {
 
 LocalizePlayer::LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
                                const std::vector<StampedPose2D>* truth, const RunFolder& folder,
-                               RunView& view)
-    : m_facts(facts), m_map(map), m_truth(truth), m_folder(folder), m_view(view) {}
+                               RunView& view, PoseStream* stream)
+    : m_facts(facts),
+      m_map(map),
+      m_truth(truth),
+      m_folder(folder),
+      m_view(view),
+      m_stream(stream) {}
 
 void LocalizePlayer::take(const PoleScan& scan) {
   if (scan.index > 0 && !scan.motion)
@@ -22,6 +27,7 @@ void LocalizePlayer::take(const PoleScan& scan) {
   m_timings.total.add(secondsSince(scan.arrival));
 
   const auto found = ScanClock::now();
+  if (m_stream) m_stream->add(scan.index, steps[0].update);
   if (m_truth) m_covered += poseAt(*m_truth, frame.time, longestTruthGap).has_value();
   for (std::size_t i = 0; i < steps.size(); ++i) m_files[i].add(steps[i].update);
   m_view.show(m_runs->localization(0), frame, steps[0].update);

@@ -8,9 +8,11 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <zlib.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <set>
+#include <thread>
 
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/ExpectHas.h"
@@ -112,6 +114,25 @@ TEST(RawlogReader, ReadsPairs) {
     EXPECT_EQ(entry.offset, (action(1) + frame(10)).size());
     EXPECT_NEAR(entry.action->getBestMovementEstimation()->poseChange->getMeanVal().x(), 2, 1e-9);
     EXPECT_EQ(entry.frame->getObservationByClass<CObservationPoles>()->poles[0].x, 20);
+  }
+}
+
+TEST(RawlogReader, WaitsAtTheEndOfAFileThatGrows) {
+  const Bench bench;
+  const std::string bytes = action(1) + frame(10) + action(2) + frame(20);
+  for (const std::string& data : {bytes, gzipped(bytes, bench.folder)}) {
+    const std::size_t half = data.size() / 2;
+    writeFile(bench.path, data.substr(0, half));
+    RawlogReader reader(bench.path, false, 5);
+    std::thread writer([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      std::ofstream(bench.path, std::ios::app | std::ios::binary) << data.substr(half);
+    });
+    RawlogEntry entry;
+    EXPECT_TRUE(reader.next(entry));
+    EXPECT_TRUE(reader.next(entry));
+    EXPECT_EQ(entry.frame->getObservationByClass<CObservationPoles>()->poles[0].x, 20);
+    writer.join();
   }
 }
 

@@ -7,13 +7,15 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/ReadLimits.h"
 
 namespace polemcl {
 
-GzReadStream::GzReadStream(const std::string& path) : m_path(path) {
+GzReadStream::GzReadStream(const std::string& path, double follow)
+    : m_path(path), m_follow(follow) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw Error(path + ": no such file");
   if (!std::filesystem::is_regular_file(path, error)) throw Error(path + ": is not a file");
@@ -30,15 +32,27 @@ GzReadStream::~GzReadStream() {
 /// Makes bytes available; false at the end of the data, clean or damaged.
 bool GzReadStream::refill() {
   if (m_begin < m_end) return true;
-  const int got = gzread(m_file, m_buffer.data(), static_cast<unsigned>(m_buffer.size()));
   int code = Z_OK;
-  gzerror(m_file, &code);
+  const int got = readPiece(code);
   if (code == Z_ERRNO) throw Error(m_path + ": cannot be read: " + std::strerror(errno));
   // Z_BUF_ERROR: truncated gzip data; Z_DATA_ERROR: damaged data or wrong checksum.
   if (got <= 0 && code != Z_OK && code != Z_STREAM_END) m_cutShort = true;
   m_begin = 0;
   m_end = got > 0 ? static_cast<std::size_t>(got) : 0;
   return got > 0;
+}
+
+/// What the file has now; at its end, what comes within the time of waiting.
+int GzReadStream::readPiece(int& code) {
+  const auto end = std::chrono::steady_clock::now() + m_follow;
+  for (;;) {
+    const int got = gzread(m_file, m_buffer.data(), static_cast<unsigned>(m_buffer.size()));
+    gzerror(m_file, &code);
+    const bool atEnd = got <= 0 && (code == Z_OK || code == Z_BUF_ERROR);
+    if (!atEnd || std::chrono::steady_clock::now() >= end) return got;
+    gzclearerr(m_file);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 }
 
 /// Upper bound of the bytes that are left.
@@ -67,6 +81,7 @@ std::size_t GzReadStream::Read(void* buffer, std::size_t count) {
     m_position += piece;
     done += piece;
   }
+  if (m_follow.count() > 0) return done;
   const auto points = m_points.see(buffer, count);
   if (points && *points > mostLeft() / PointCountGuard::pointBytes) {
     m_cutShort = true;
@@ -84,6 +99,7 @@ std::uint64_t GzReadStream::Seek(std::int64_t, TSeekOrigin) {
 }
 
 double GzReadStream::progress() const {
+  if (m_follow.count() > 0) return 0;
   const auto at = gzoffset(m_file);
   return m_fileSize == 0 || at < 0
              ? 1.0

@@ -5,6 +5,7 @@
 
 #include <mrpt/io/CStream.h>
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,8 +21,10 @@ namespace polemcl {
 /// that the rest of the file cannot hold, before MRPT allocates memory for it.
 class GzReadStream : public mrpt::io::CStream {
  public:
+  /// \param follow For files that still grow: how long the end is waited at for more, s. The counts
+  ///        of points are not checked then.
   /// \throws Error when the file cannot be opened.
-  explicit GzReadStream(const std::string& path);
+  explicit GzReadStream(const std::string& path, double follow = 0);
   ~GzReadStream() override;
   GzReadStream(const GzReadStream&) = delete;
   GzReadStream& operator=(const GzReadStream&) = delete;
@@ -32,7 +35,7 @@ class GzReadStream : public mrpt::io::CStream {
   /// \brief True after a read beyond the end, a count of points that the rest cannot hold, or
   /// damaged gzip data.
   bool cutShort() const { return m_cutShort; }
-  /// \brief Fraction of the file read so far, 0 to 1.
+  /// \brief Fraction of the file read so far, 0 to 1; 0 while the file may grow.
   double progress() const;
 
   std::size_t Read(void* buffer, std::size_t count) override;
@@ -45,8 +48,10 @@ class GzReadStream : public mrpt::io::CStream {
 
  private:
   bool refill();
+  int readPiece(int& code);
   std::uint64_t mostLeft() const;
   std::string m_path;
+  std::chrono::duration<double> m_follow;
   gzFile_s* m_file = nullptr;
   std::vector<unsigned char> m_buffer = std::vector<unsigned char>(1 << 18);
   std::size_t m_begin = 0, m_end = 0;  ///< part of the buffer that is not consumed yet

@@ -33,7 +33,7 @@ class Stream {
   Stream(const std::string& path, const SequenceOptions& options)
       : m_path(path),
         m_pace(options.pace),
-        m_source(path, options.motion, options.allowTruncated),
+        m_source(path, options.motion, options.allowTruncated, options.follow),
         m_extractions([options] { return ObservationPoleExtractor(options.extraction); }) {
     m_extractions.local();  // reports invalid options here, for any rawlog
   }

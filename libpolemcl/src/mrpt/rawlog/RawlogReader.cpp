@@ -83,8 +83,8 @@ std::optional<RawlogReader::Object> RawlogReader::nextObject() {
   return object;
 }
 
-RawlogReader::RawlogReader(const std::string& path, bool allowTruncated)
-    : m_name(path), m_stream(path), m_allowTruncated(allowTruncated) {
+RawlogReader::RawlogReader(const std::string& path, bool allowTruncated, double follow)
+    : m_name(path), m_stream(path, follow), m_allowTruncated(allowTruncated) {
   registerClasses();
 }
 

@@ -29,8 +29,9 @@ struct RawlogEntry {
 class RawlogReader {
  public:
   /// \param allowTruncated true: a file that ends inside an object is read up to that object.
+  /// \param follow How long the end of a file that still grows is waited at for more, s.
   /// \throws Error when the file cannot be opened.
-  explicit RawlogReader(const std::string& path, bool allowTruncated = false);
+  explicit RawlogReader(const std::string& path, bool allowTruncated = false, double follow = 0);
 
   /// \return false at the end of the file.
   /// \throws Error on a class that is not registered (with its name), on an unreadable object, and

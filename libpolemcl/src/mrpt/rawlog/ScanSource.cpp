@@ -93,8 +93,9 @@ std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
   return motion;
 }
 
-ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated)
-    : m_path(path), m_options(motion), m_reader(path, allowTruncated) {
+ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated,
+                       double follow)
+    : m_path(path), m_options(motion), m_reader(path, allowTruncated, follow) {
   checkOptions(m_options);
   const std::filesystem::path file = std::filesystem::absolute(path);
   const std::filesystem::path images = file.parent_path() / (file.stem().string() + "_Images");

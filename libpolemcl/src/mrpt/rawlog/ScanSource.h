@@ -35,7 +35,8 @@ class ScanSource {
   };
   /// \brief Also sets the base folder of external files with relative names in MRPT: the folder
   /// that MRPT's tools use (`<rawlog>_Images`) if it exists, otherwise the folder of the rawlog.
-  ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated);
+  ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated,
+             double follow = 0);
 
   /// \brief The next scan; nullopt at the end. \throws Error as RawlogReader, with the scan.
   std::optional<Scan> next();
