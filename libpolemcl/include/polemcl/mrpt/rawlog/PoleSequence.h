@@ -26,7 +26,7 @@ struct SequenceOptions {
   MotionOptions motion;
   bool allowTruncated = false;
   double follow = 0;  ///< how long the end of a rawlog that still grows is waited at for more, s
-  int threads = 0;  ///< extracting, at most one per core; 0: that many. The result is the same
+  int threads = 0;    ///< extracting, at most one per core; 0: that many. The result is the same
   /// Sets the pace of the input. Called in order with the time (s) of each scan that has been read,
   /// from one thread at a time; may wait. Returns the moment at which the scan counts as there.
   /// Empty: no scan waits.
