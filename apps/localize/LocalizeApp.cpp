@@ -110,8 +110,12 @@ LocalizeResult localize(const LocalizeJob& job) {
   LocalizeFacts facts = factsOf(job, settings, map->poles().size());
   // Before the work, so that folders and windows that cannot be are known now.
   RunFolder folder(job.output);
-  for (const auto& input : {job.config, job.input, job.map, job.truth.value_or("")})
+  for (const auto& input : {job.config, job.input, job.map, job.truth.value_or("")}) {
     folder.protect(input);
+    std::error_code notThere;
+    if (job.stream && std::filesystem::equivalent(*job.stream, input, notThere))
+      throw Error("--stream " + job.stream->string() + ": is an input; choose another file");
+  }
   RunView view(settings.view, map->poles(), job.input.filename().string(), folder);
 
   const LocalizationMap prepared(map, settings.global);
@@ -179,7 +183,7 @@ int localizeMain(int argc, const char* const* argv) {
   addViewOptions(cli, job);
   addNumber(cli, "--follow", job.follow,
             "Wait at the end of a rawlog that still grows, until nothing has come for this time, s",
-            CLI::NonNegativeNumber);
+            CLI::Range(0, 86400));
   cli.add_option("--stream", job.stream,
                  "File for the poses of the first run as they are made, a line of JSON a scan; - "
                  "for standard output");

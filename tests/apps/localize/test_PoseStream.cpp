@@ -63,6 +63,13 @@ TEST_F(PoseStream, LeavesNothingElseOnStandardOutput) {
   EXPECT_NE(outcome.err.find("latency"), std::string::npos);
 }
 
+TEST_F(PoseStream, LeavesTheInputsAlone) {
+  const std::string map = readText(folder / "map.polemap");
+  expectFailure(runWithTruth({"--stream", (folder / "map.polemap").string()}),
+                {"--stream", "map.polemap: is an input"});
+  EXPECT_EQ(readText(folder / "map.polemap"), map);
+}
+
 TEST_F(PoseStream, NamesAFileThatCannotBe) {
   expectFailure(runWithTruth({"--stream", (folder / "none" / "poses.jsonl").string()}),
                 {"poses.jsonl", "cannot be created"});
