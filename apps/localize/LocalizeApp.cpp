@@ -183,7 +183,7 @@ int localizeMain(int argc, const char* const* argv) {
   addViewOptions(cli, job);
   addNumber(cli, "--follow", job.follow,
             "Wait at the end of a rawlog that still grows, until nothing has come for this time, s",
-            CLI::Range(0, 86400));
+            CLI::Range(0.0, 86400.0));
   cli.add_option("--stream", job.stream,
                  "File for the poses of the first run as they are made, a line of JSON a scan; - "
                  "for standard output");
