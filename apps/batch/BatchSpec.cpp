@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::vector<std::string> sources{"simulated", "poles", "scans",  "folder", "kitti-odometry",
-                                       "kitti-raw", "nclt",  "mulran", "pcd"};
+                                       "kitti-raw", "nclt",  "mulran", "pcd",    "rosbag2"};
 
 std::vector<std::string> words(const std::string& text) {
   std::istringstream stream(text);

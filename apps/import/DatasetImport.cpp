@@ -17,6 +17,7 @@
 #include "io/dataset/KittiRaw.h"
 #include "io/dataset/Mulran.h"
 #include "io/dataset/Nclt.h"
+#include "io/dataset/Rosbag2.h"
 #include "io/dataset/ScanPoses.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
@@ -24,6 +25,19 @@
 
 namespace polemcl::apps {
 namespace {
+
+/// A file that states the timing, where the reader does not.
+std::filesystem::path timingFile(const ImportOptions& options) {
+  return options.input / "scan_timing.ini";
+}
+
+io::ScanFolder readBag(const ImportOptions& options) {
+  io::Rosbag2Options bag;
+  bag.topics = options.topics;
+  bag.readsSensorPose = !options.T_robot_sensor;
+  bag.readsTiming = !options.timing && !std::filesystem::exists(timingFile(options));
+  return io::readRosbag2(options.input, bag);
+}
 
 io::ScanFolder readDataset(const ImportOptions& options, const Eigen::Isometry3d& T_robot_sensor,
                            const io::ReadProgress& progress) {
@@ -41,6 +55,8 @@ io::ScanFolder readDataset(const ImportOptions& options, const Eigen::Isometry3d
       return io::readMulran(options.input, T_robot_sensor);
     case Dataset::pcd:
       return io::readPcdFolder(options.input, T_robot_sensor);
+    case Dataset::rosbag2:
+      return readBag(options);
     case Dataset::folder:
       break;
   }
@@ -148,11 +164,11 @@ void protectPoses(const ImportOptions& options) {
                 options.output.string() + " would replace it; choose another name for --output");
 }
 
-ScanTiming timingOf(const ImportOptions& options) {
+ScanTiming timingOf(const ImportOptions& options, const io::ScanFolder& folder) {
   if (options.timing) return *options.timing;
-  const auto file = options.input / "scan_timing.ini";
-  if (!std::filesystem::exists(file)) return datasetTiming(options.dataset);
-  return timingInFile(file.string());
+  const auto file = timingFile(options);
+  if (std::filesystem::exists(file)) return timingInFile(file.string());
+  return folder.timing.turn != Turn::automatic ? folder.timing : datasetTiming(options.dataset);
 }
 
 /// Both files appear together, when both are complete.
@@ -199,6 +215,7 @@ ScanTiming datasetTiming(Dataset dataset) {
       return {Turn::clockwise, 0.1, 0, 0};
     case Dataset::folder:
     case Dataset::pcd:
+    case Dataset::rosbag2:
       break;
   }
   return {};
@@ -208,9 +225,10 @@ ImportReport importDataset(const ImportOptions& options,
                            const std::function<void(std::size_t, std::size_t)>& progress) {
   options.validate();
   protectPoses(options);
-  const Eigen::Isometry3d T_robot_sensor =
+  Eigen::Isometry3d T_robot_sensor =
       options.T_robot_sensor.value_or(datasetSensorPose(options.dataset));
   auto folder = readDataset(options, T_robot_sensor, progress);
+  if (folder.T_robot_sensor) T_robot_sensor = *folder.T_robot_sensor;
   if (options.poses) {
     const Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
     io::takeTumPoses(folder, *options.poses,
@@ -226,7 +244,7 @@ ImportReport importDataset(const ImportOptions& options,
   if (folder.scans.front().T_map_robot) truthFile.emplace(truthBeside(options.output));
   std::vector<io::StampedPose3D> truth;
   MotionSource motions(options);
-  if (const ScanTiming timing = timingOf(options); timing.turn != Turn::automatic)
+  if (const ScanTiming timing = timingOf(options, folder); timing.turn != Turn::automatic)
     rawlog.writeComment(timingComment(timing));
   for (std::size_t i = 0; i < folder.scans.size(); ++i) {
     const auto& scan = folder.scans[i];

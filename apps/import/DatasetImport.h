@@ -11,22 +11,24 @@
 #include <vector>
 
 #include <polemcl/core/sensor/ScanTiming.h>
+#include "io/dataset/Rosbag2.h"
 
 namespace polemcl::apps {
 
-enum class Dataset { folder, kittiOdometry, kittiRaw, nclt, mulran, pcd };
+enum class Dataset { folder, kittiOdometry, kittiRaw, nclt, mulran, pcd, rosbag2 };
 
 /// \brief What to import, and how.
 struct ImportOptions {
   Dataset dataset = Dataset::folder;
-  std::filesystem::path input;   ///< folder of the dataset
+  std::filesystem::path input;   ///< folder of the dataset; a bag may be one file
   std::filesystem::path output;  ///< `S.rawlog`; the truth goes to `S.tum`
   /// Folder of calib_imu_to_velo.txt, KITTI raw only; without it the folder that holds `input`.
   std::optional<std::filesystem::path> calibration;
   /// TUM file of poses that replace those of the dataset; see io::takeTumPoses().
   std::optional<std::filesystem::path> poses;
   bool posesOfSensor = false;  ///< they are of the sensor, not of the robot
-  bool embed = false;  ///< clouds inside the rawlog, not by absolute path; PCD and NCLT always are
+  /// Clouds inside the rawlog, not by absolute path; PCD, NCLT and bags always are.
+  bool embed = false;
   std::size_t every = 1;   ///< N: take scans K, K+N, …; at least 1
   std::size_t offset = 0;  ///< K, from 0, less than the number of scans
   /// K: odometry is the true motion with noise of σ = K·|component|, instead of the folder's.
@@ -36,11 +38,12 @@ struct ImportOptions {
   /// distance, and rad per metre.
   double odometryScale = 0, odometryYaw = 0;
   /// The sensor in the robot frame: stored in every observation, turns sensor poses into robot
-  /// poses. Without it the dataset's own, see datasetSensorPose().
+  /// poses. Without it that of the bag, else the dataset's own, see datasetSensorPose().
   std::optional<Eigen::Isometry3d> T_robot_sensor;
   /// When the points of a scan were measured; stored in the comment of the rawlog. Without it,
-  /// `scan_timing.ini` in the folder of the dataset, else datasetTiming().
+  /// `scan_timing.ini` in the folder of the dataset, else that of the bag, else datasetTiming().
   std::optional<ScanTiming> timing;
+  io::RosbagTopics topics;  ///< of a bag
   /// \throws Error naming the option.
   void validate() const;
 };

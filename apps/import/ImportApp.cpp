@@ -20,7 +20,8 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
     {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"},
     {Dataset::nclt, "nclt", "A session of NCLT, in a folder or as its downloader lays it out"},
     {Dataset::mulran, "mulran", "A sequence of MulRan: Ouster/*.bin, global_pose.csv"},
-    {Dataset::pcd, "pcd", "*.pcd (also compressed), always embedded; text files as for folder"}};
+    {Dataset::pcd, "pcd", "*.pcd (also compressed), always embedded; text files as for folder"},
+    {Dataset::rosbag2, "rosbag2", "A recording of ROS 2 (.db3): PointCloud2, Odometry, Imu"}};
 
 /// Options as they are typed.
 struct Texts {
@@ -40,7 +41,8 @@ std::optional<ScanTiming> Texts::stated() const {
 }
 
 std::string ownSensorPose(Dataset dataset) {
-  return dataset == Dataset::nclt ? "the body, turned upright, 0 0 0 0 0 180"
+  return dataset == Dataset::rosbag2 ? "that of /tf_static, else 0"
+         : dataset == Dataset::nclt  ? "the body, turned upright, 0 0 0 0 0 180"
          : dataset == Dataset::mulran
              ? "its calibration, 1.7042 -0.021 1.8047 179.6654 0.0003 0.0001"
              : "0";
@@ -48,30 +50,14 @@ std::string ownSensorPose(Dataset dataset) {
 
 std::string ownTiming(Dataset dataset) {
   const ScanTiming timing = datasetTiming(dataset);
+  if (dataset == Dataset::rosbag2) return "scan_timing.ini, if there, else the times of the points";
   for (const auto& [value, name] : turnNames())
     if (value == timing.turn) return value == Turn::automatic ? "scan_timing.ini, if there" : name;
   return {};
 }
 
-void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
-  cli.add_option("--input", options.input, "Folder of the dataset")->required();
-  cli.add_option("--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
-      ->required();
-  cli.add_flag("--embed", options.embed, "Store the clouds inside the rawlog");
-  addNumber(cli, "--every", options.every, "Take scans K, K+N, ...", CLI::PositiveNumber)
-      ->type_name("N");
-  cli.add_option("--offset", options.offset, "First scan to take, from 0")
-      ->type_name("K")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  cli.add_option("--odometry-noise", options.odometryNoise,
-                 "Make odometry from the true motion, with noise of this share (0.02 for 2 %)")
-      ->check(CLI::NonNegativeNumber);
-  addNumber(cli, "--seed", options.seed, "Seed of that noise", CLI::NonNegativeNumber);
-  addNumber(cli, "--odometry-scale", options.odometryScale,
-            "Makes that odometry too long by this share (0.01 for 1 %)", CLI::Range(-0.5, 0.5));
-  addNumber(cli, "--odometry-yaw-deg-m", texts.yawBiasDeg,
-            "Turns that odometry too far, in deg per metre", CLI::Range(-10.0, 10.0));
+/// What the robot and its LiDAR did: pose, turn, truth.
+void declareSensor(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
   cli.add_option(
          "--sensor-pose", texts.sensorPose,
          "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\" (default: " +
@@ -101,12 +87,52 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
       ->check(CLI::IsMember({"robot", "sensor"}))
       ->capture_default_str()
       ->needs(poses);
+}
+
+/// Options of one dataset only.
+void declareOwn(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
   if (dataset == Dataset::nclt)
     cli.add_option("--session", texts.session, "Session, when --input holds several: 2012-01-15")
         ->type_name("DATE");
   if (dataset == Dataset::kittiRaw)
     cli.add_option("--calib", options.calibration,
                    "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
+  if (dataset != Dataset::rosbag2) return;
+  auto& topics = options.topics;
+  cli.add_option("--cloud-topic", topics.cloud, "Topic of the clouds, when there are several")
+      ->type_name("TOPIC");
+  cli.add_option("--odometry-topic", topics.odometry,
+                 "Topic of the odometry, when there are several")
+      ->type_name("TOPIC");
+  cli.add_option("--imu-topic", topics.imu,
+                 "Topic of an IMU: its gyroscope gives the yaw, instead of the odometry")
+      ->type_name("TOPIC");
+}
+
+void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
+  cli.add_option("--input", options.input,
+                 dataset == Dataset::rosbag2 ? "Folder of the bag, or one .db3 file"
+                                             : "Folder of the dataset")
+      ->required();
+  cli.add_option("--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
+      ->required();
+  cli.add_flag("--embed", options.embed, "Store the clouds inside the rawlog");
+  addNumber(cli, "--every", options.every, "Take scans K, K+N, ...", CLI::PositiveNumber)
+      ->type_name("N");
+  cli.add_option("--offset", options.offset, "First scan to take, from 0")
+      ->type_name("K")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  cli.add_option("--odometry-noise", options.odometryNoise,
+                 "Make odometry from the true motion, with noise of this share (0.02 for 2 %)")
+      ->check(CLI::NonNegativeNumber);
+  addNumber(cli, "--seed", options.seed, "Seed of that noise", CLI::NonNegativeNumber);
+  addNumber(cli, "--odometry-scale", options.odometryScale,
+            "Makes that odometry too long by this share (0.01 for 1 %)", CLI::Range(-0.5, 0.5));
+  addNumber(cli, "--odometry-yaw-deg-m", texts.yawBiasDeg,
+            "Turns that odometry too far, in deg per metre", CLI::Range(-10.0, 10.0));
+  declareSensor(cli, dataset, options, texts);
+  declareOwn(cli, dataset, options, texts);
 }
 
 void printImport(const ImportReport& report, const ImportOptions& options) {

@@ -39,6 +39,7 @@ const std::vector<std::string> s_order{
     "core/evaluation",
     "io/file",
     "io/data",
+    "io/rosbag",
     "io/dataset",
     "io/map",
     "config",

@@ -1,7 +1,7 @@
 #include "io/dataset/NcltOdometry.h"
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/common/PoseInterpolation.h"
@@ -34,11 +34,6 @@ Eigen::Matrix3d planeChange(const Eigen::Isometry3d& T_robot_body) {
   change.topLeftCorner<2, 2>() = T_robot_body.linear().topLeftCorner<2, 2>();
   change(2, 2) = T_robot_body.linear()(2, 2);
   return change;
-}
-
-PlanarMotion shareOf(const PlanarMotion& motion, double share) {
-  return {{share * motion.mean.x, share * motion.mean.y, share * motion.mean.yaw},
-          share * motion.covariance};
 }
 
 /// The covariances of the steps, searched by time.
@@ -142,7 +137,7 @@ void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::st
       T_odom_body = T_odom_body * step;
       const auto covariance =
           covariances ? covariances->at(time, (time - *last) / 2) : std::nullopt;
-      if (covariance) m_steps.push_back({*last, time, {planar(step), *covariance}});
+      if (covariance) m_steps.add(*last, time, {planar(step), *covariance});
     }
     if (files.track.empty()) m_track.add(time, T_odom_body);
     last = time;
@@ -151,33 +146,17 @@ void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::st
   if (covariances) covariances->noteMismatch(steps, notes);
 }
 
-std::optional<Eigen::Matrix3d> NcltOdometry::covarianceBetween(double begin, double end) const {
-  auto step = std::upper_bound(m_steps.begin(), m_steps.end(), begin,
-                               [](double time, const Step& s) { return time < s.end; });
-  PlanarMotion sum;
-  double covered = 0;
-  for (; step != m_steps.end() && step->begin < end; ++step) {
-    const double between = std::min(end, step->end) - std::max(begin, step->begin);
-    sum = composeMotions(sum, shareOf(step->motion, between / (step->end - step->begin)));
-    covered += between;
-  }
-  if (covered < (end - begin) / 2) return std::nullopt;
-  return sum.covariance * ((end - begin) / covered);
-}
-
 PlanarMotion NcltOdometry::motion(const Eigen::Isometry3d& T_begin_end, double begin, double end,
                                   const Eigen::Isometry3d& T_robot_body) const {
   PlanarMotion motion;
   motion.mean = planar(T_robot_body * T_begin_end * T_robot_body.inverse());
-  if (const auto covariance = covarianceBetween(begin, end)) {
+  if (const auto covariance = m_steps.covarianceBetween(begin, end)) {
     const Eigen::Matrix3d change = planeChange(T_robot_body);
     motion.covariance = change * *covariance * change.transpose();
   } else {
-    const Eigen::Vector3d components(motion.mean.x, motion.mean.y, motion.mean.yaw);
-    motion.covariance = (relativeNoise * components).cwiseAbs2().asDiagonal();
+    motion.covariance = proportionalCovariance(motion.mean, relativeNoise);
   }
-  const Eigen::Vector3d floor(motionFloorMetres, motionFloorMetres, motionFloorRadians);
-  motion.covariance += Eigen::Matrix3d(floor.cwiseAbs2().asDiagonal());
+  motion.covariance += floorCovariance();
   return motion;
 }
 

@@ -3,11 +3,11 @@
 /// \brief Odometry of NCLT: motion of the body, with its uncertainty.
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <polemcl/io/data/PlanarMotion.h>
+#include "io/data/MotionSteps.h"
 #include "io/data/TrackSampler.h"
 #include "io/file/CsvRows.h"
 
@@ -51,19 +51,13 @@ class NcltOdometry {
                       const Eigen::Isometry3d& T_robot_body) const;
 
  private:
-  /// One row of the steps with its covariance, in the plane of the body (z down).
-  struct Step {
-    double begin = 0, end = 0;  ///< s
-    PlanarMotion motion;
-  };
   void readTrack(const std::filesystem::path& file, std::vector<std::string>& notes,
                  const ReadProgress& progress);
   void readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
                  const ReadProgress& progress);
-  std::optional<Eigen::Matrix3d> covarianceBetween(double begin, double end) const;
 
   TrackSampler m_track;
-  std::vector<Step> m_steps;
+  MotionSteps m_steps;  ///< rows of the steps with covariances, in the plane of the body (z down)
 };
 
 }  // namespace polemcl::io

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/sensor/ScanTiming.h>
 #include <polemcl/io/data/Cloud.h>
 #include <polemcl/io/data/PlanarMotion.h>
 
@@ -18,8 +19,8 @@ namespace polemcl::io {
 /// \brief One scan of a dataset. The cloud stays on disk.
 struct ScanEntry {
   std::filesystem::path cloud;  ///< absolute path; see ScanFolder::read
-  std::uint64_t offset = 0;     ///< start of the scan in a file with many scans, bytes
-  double time = 0;              ///< s; strictly increasing from entry to entry
+  std::uint64_t offset = 0;  ///< where the scan is in a file with many scans: bytes; in a bag, id
+  double time = 0;           ///< s; strictly increasing from entry to entry
   std::optional<Eigen::Isometry3d> T_map_robot =
       {};  ///< set in all entries of a folder or in no entry
   /// Motion since the previous entry, in the robot frame of that entry. Never set in the first
@@ -34,6 +35,9 @@ struct ScanFolder {
   /// which rawlogs can reference by its path.
   std::function<Cloud(const ScanEntry&)> read;
   bool nominalTimes = false;  ///< the dataset has no times: the entries have invented ones
+  /// Pose of the sensor in the robot frame, if the recording states it.
+  std::optional<Eigen::Isometry3d> T_robot_sensor = {};
+  ScanTiming timing = {};  ///< when points were measured, if the recording states it
 };
 
 /// \brief Reads the plain layout:

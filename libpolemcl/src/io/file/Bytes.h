@@ -1,6 +1,6 @@
 #pragma once
 /// \file Bytes.h
-/// \brief Whole files as bytes, and little-endian values in them, on any machine.
+/// \brief Whole files as bytes, and the numbers in them, on any machine.
 
 #include <cstdint>
 #include <cstring>
@@ -33,6 +33,14 @@ T loadLittleEndian(const char* bytes) {
   T value;
   std::memcpy(&value, &bits, sizeof(T));
   return value;
+}
+
+/// \brief The same, big-endian.
+template <class T>
+T loadBigEndian(const char* bytes) {
+  char reversed[sizeof(T)];
+  for (std::size_t i = 0; i < sizeof(T); ++i) reversed[i] = bytes[sizeof(T) - 1 - i];
+  return loadLittleEndian<T>(reversed);
 }
 
 /// \brief Appends values, little-endian, to a string of bytes.

@@ -1,0 +1,43 @@
+#include "io/data/MotionSteps.h"
+
+#include <algorithm>
+
+namespace polemcl::io {
+namespace {
+
+PlanarMotion shareOf(const PlanarMotion& motion, double share) {
+  return {{share * motion.mean.x, share * motion.mean.y, share * motion.mean.yaw},
+          share * motion.covariance};
+}
+
+}  // namespace
+
+void MotionSteps::add(double begin, double end, const PlanarMotion& motion) {
+  m_steps.push_back({begin, end, motion});
+}
+
+std::optional<Eigen::Matrix3d> MotionSteps::covarianceBetween(double begin, double end) const {
+  auto step = std::upper_bound(m_steps.begin(), m_steps.end(), begin,
+                               [](double time, const Step& s) { return time < s.end; });
+  PlanarMotion sum;
+  double covered = 0;
+  for (; step != m_steps.end() && step->begin < end; ++step) {
+    const double between = std::min(end, step->end) - std::max(begin, step->begin);
+    sum = composeMotions(sum, shareOf(step->motion, between / (step->end - step->begin)));
+    covered += between;
+  }
+  if (covered < (end - begin) / 2) return std::nullopt;
+  return sum.covariance * ((end - begin) / covered);
+}
+
+Eigen::Matrix3d proportionalCovariance(const Pose2D& motion, double share) {
+  const Eigen::Vector3d sigma = share * Eigen::Vector3d(motion.x, motion.y, motion.yaw);
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+Eigen::Matrix3d floorCovariance() {
+  const Eigen::Vector3d floor(motionFloorMetres, motionFloorMetres, motionFloorRadians);
+  return floor.cwiseAbs2().asDiagonal();
+}
+
+}  // namespace polemcl::io

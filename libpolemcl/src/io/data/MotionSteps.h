@@ -1,0 +1,40 @@
+#pragma once
+/// \file MotionSteps.h
+/// \brief Covariances of motions, from the steps that odometry measured.
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include <polemcl/io/data/PlanarMotion.h>
+
+namespace polemcl::io {
+
+/// \brief Steps of odometry, one after the other, with independent errors.
+class MotionSteps {
+ public:
+  /// \brief Adds a step from `begin` to `end`, s. Its times are not before those of the last one;
+  /// there may be gaps.
+  void add(double begin, double end, const PlanarMotion& motion);
+
+  /// \brief Covariance of (x, y, yaw) of the motion between two times: those of the steps,
+  /// composed. A step that lies only partly in the interval contributes in proportion. Gaps count
+  /// as the rest of the interval does. \return Nothing if steps cover less than half of the
+  /// interval.
+  std::optional<Eigen::Matrix3d> covarianceBetween(double begin, double end) const;
+
+ private:
+  struct Step {
+    double begin = 0, end = 0;  ///< s
+    PlanarMotion motion;
+  };
+  std::vector<Step> m_steps;
+};
+
+/// \brief Independent errors with a standard deviation of this share of each component.
+Eigen::Matrix3d proportionalCovariance(const Pose2D& motion, double share);
+
+/// \brief The variances of motionFloorMetres and motionFloorRadians.
+Eigen::Matrix3d floorCovariance();
+
+}  // namespace polemcl::io

@@ -1,0 +1,154 @@
+#include "io/dataset/Rosbag2.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "io/dataset/RosbagMotions.h"
+#include "io/file/TextFile.h"
+#include "io/rosbag/Bag.h"
+#include "io/rosbag/FrameTree.h"
+#include "io/rosbag/PointCloud2.h"
+#include "io/rosbag/PointTimes.h"
+#include "io/rosbag/RosMessages.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Enough bytes of a message for its header.
+constexpr std::size_t headerBytes = 1024;
+constexpr const char* defaultRobotFrame = "base_link";
+
+/// The topics with messages, of one type or all, for messages.
+std::string listTopics(const Bag& bag, const std::string& type = {}) {
+  std::string list;
+  for (const BagTopic& topic : bag.topics()) {
+    if (topic.messages == 0 || (!type.empty() && topic.type != type)) continue;
+    list += (list.empty() ? "" : ", ") + topic.name + " (" +
+            (type.empty() ? topic.type + ", " : "") + std::to_string(topic.messages) + " messages)";
+  }
+  return list.empty() ? "none" : list;
+}
+
+/// The topic of this name, or without a name the only one of its type that has messages.
+/// \return Nothing if no topic has this type. \throws Error when the choice is not clear.
+std::optional<std::size_t> chooseTopic(const Bag& bag, const std::string& type,
+                                       const std::string& name, const std::string& option) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < bag.topics().size(); ++i) {
+    const BagTopic& topic = bag.topics()[i];
+    if (topic.type == type && topic.messages > 0 && (name.empty() || topic.name == name))
+      found.push_back(i);
+  }
+  if (!name.empty() && found.empty())
+    throw Error(bag.path().string() + ": " + option + " " + name + ": no such topic of " + type +
+                "; there are: " + listTopics(bag, type));
+  if (found.size() > 1)
+    throw Error(bag.path().string() + ": several topics of " + type + ": " + listTopics(bag, type) +
+                "; choose one with " + option);
+  return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
+FrameTree readFrames(const Bag& bag) {
+  constexpr std::string_view ending = "tf_static";
+  FrameTree frames;
+  for (std::size_t i = 0; i < bag.topics().size(); ++i) {
+    const BagTopic& topic = bag.topics()[i];
+    const bool isStatic =
+        topic.name.size() >= ending.size() &&
+        topic.name.compare(topic.name.size() - ending.size(), ending.size(), ending) == 0;
+    if (topic.type != transformsType || !isStatic) continue;
+    for (const BagMessage& message : bag.messages(i))
+      for (const auto& link : decodeTransforms(bag.read(message), bag.place(message)))
+        frames.add(link.header.frame, link.child, link.T_parent_child);
+  }
+  return frames;
+}
+
+/// The scans with their stamps. \param frame Set to the frame of the clouds.
+ScanFolder listScans(const Bag& bag, std::size_t topic, std::string& frame) {
+  ScanFolder folder;
+  std::size_t unordered = 0, all = 0;
+  for (const BagMessage& message : bag.messages(topic)) {
+    const std::string where = bag.place(message);
+    const std::string bytes = bag.read(message, headerBytes);
+    CdrReader reader(bytes, where);
+    const RosHeader header = readHeader(reader);
+    if (all++ == 0) frame = header.frame;
+    if (header.frame != frame)
+      throw Error(where + "frame " + header.frame + ", that of the clouds before is " + frame +
+                  "; one LiDAR a topic is allowed");
+    if (!folder.scans.empty() && !(header.time > folder.scans.back().time))
+      ++unordered;
+    else
+      folder.scans.push_back(
+          {bag.file(message), static_cast<std::uint64_t>(message.id), header.time});
+  }
+  if (2 * unordered > all)
+    throw Error(bag.path().string() + ": " + bag.topics()[topic].name + ": the stamps of " +
+                std::to_string(unordered) + " of " + std::to_string(all) +
+                " clouds are not later than those before; record with stamps in the headers");
+  if (unordered > 0)
+    folder.notes.push_back(std::to_string(unordered) + " of " + std::to_string(all) +
+                           " scans left out, stamped not later than those before");
+  return folder;
+}
+
+RosCloud readScan(const Bag& bag, std::size_t topic, const ScanEntry& scan, bool withTimes) {
+  const BagMessage message = bag.message(topic, scan.cloud, static_cast<std::int64_t>(scan.offset));
+  return decodeCloud(bag.read(message), bag.place(message), withTimes);
+}
+
+void estimateTiming(const Bag& bag, std::size_t topic, ScanFolder& folder) {
+  TimingEstimate estimate;
+  for (const ScanEntry& scan : folder.scans) {
+    if (estimate.complete()) break;
+    estimate.add(readScan(bag, topic, scan, true));
+  }
+  folder.timing = estimate.timing();
+  folder.notes.push_back(estimate.note());
+}
+
+void findSensorPose(const FrameTree& frames, const std::string& robot, const std::string& sensor,
+                    ScanFolder& folder) {
+  folder.T_robot_sensor = frames.find(robot, sensor);
+  if (!folder.T_robot_sensor)
+    folder.notes.push_back("no static transform from " + robot + " to " + sensor +
+                           ": the LiDAR is taken for the robot; --sensor-pose states its pose");
+}
+
+}  // namespace
+
+ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
+  const auto bag = std::make_shared<const Bag>(path);
+  const auto clouds = chooseTopic(*bag, cloudType, options.topics.cloud, "--cloud-topic");
+  if (!clouds)
+    throw Error(path.string() + ": no clouds: a topic of " + cloudType + " is needed, it has " +
+                listTopics(*bag) + "; packets of a LiDAR become clouds in its driver");
+  const auto odometry =
+      chooseTopic(*bag, odometryType, options.topics.odometry, "--odometry-topic");
+  std::optional<std::size_t> imu;
+  if (!options.topics.imu.empty()) {
+    imu = chooseTopic(*bag, imuType, options.topics.imu, "--imu-topic");
+    if (!odometry)
+      throw Error(path.string() + ": --imu-topic gives the yaw only, and there is no topic of " +
+                  odometryType + "; leave --imu-topic out");
+  }
+  std::string sensor, robot = defaultRobotFrame;
+  ScanFolder folder = listScans(*bag, *clouds, sensor);
+  const FrameTree frames = readFrames(*bag);
+  if (odometry) {
+    const std::string child = addRosbagMotions(*bag, *odometry, imu, frames, folder);
+    if (!child.empty()) robot = child;
+  }
+  if (options.readsSensorPose) findSensorPose(frames, robot, sensor, folder);
+  if (options.readsTiming) estimateTiming(*bag, *clouds, folder);
+  folder.read = [bag, topic = *clouds](const ScanEntry& scan) {
+    return readScan(*bag, topic, scan, false).cloud;
+  };
+  return folder;
+}
+
+}  // namespace polemcl::io

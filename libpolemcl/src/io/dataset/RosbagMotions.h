@@ -1,0 +1,42 @@
+#pragma once
+/// \file RosbagMotions.h
+/// \brief Motions between the scans of a ROS 2 bag: odometry, and the gyroscope of an IMU.
+
+#include <optional>
+#include <string>
+
+#include "io/dataset/ScanFolder.h"
+#include "io/rosbag/Bag.h"
+#include "io/rosbag/FrameTree.h"
+
+namespace polemcl::io {
+
+/// \brief Standard deviation of each component of a motion, as a share of it, where the odometry
+/// (or for the yaw the IMU) states no covariance. Own choice.
+constexpr double defaultMotionNoise = 0.02;
+
+/// \brief Sets the motions between the scans.
+///
+/// The poses of the odometry are interpolated at the times of the scans. Scans at times without
+/// odometry are dropped, with a note; so are those without IMU, if it is used.
+///
+/// Covariances: the errors of the velocity are taken as independent from one message of the
+/// odometry to the next. A message thus adds its covariance of (vx, vy, yaw rate) times dt², dt
+/// being the time since the message before; the steps are composed, see MotionSteps. Messages
+/// without a covariance (all zero, negative, not finite) are left out; if they are half of a
+/// motion, defaultMotionNoise applies to it. The variances of motionFloorMetres and
+/// motionFloorRadians are added.
+///
+/// With an IMU, the yaw of a motion is the integral of the angular velocity about the robot's z
+/// axis, with the variance of the IMU in the same way. The displacement turns by half of the change
+/// of the yaw, as on an arc.
+/// \param odometry Topic, index in bag.topics(). \param imu The same; nothing: not used.
+/// \param frames Static transforms; if the pose of the IMU is not among them, its z axis is taken
+///        for that of the robot, with a note.
+/// \return Frame of the robot: the child frame of the odometry.
+/// \throws Error as decodeOdometry() and decodeImu(), or when the odometry has two child frames, or
+///         no scan has odometry (or IMU, if it is used) at its time.
+std::string addRosbagMotions(const Bag& bag, std::size_t odometry, std::optional<std::size_t> imu,
+                             const FrameTree& frames, ScanFolder& folder);
+
+}  // namespace polemcl::io

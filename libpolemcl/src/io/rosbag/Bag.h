@@ -1,0 +1,72 @@
+#pragma once
+/// \file Bag.h
+/// \brief ROS 2 bags in SQLite files (`.db3`), read without ROS.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct sqlite3;
+
+namespace polemcl::io {
+
+/// \brief A topic of a bag.
+struct BagTopic {
+  std::string name;          ///< "/points"
+  std::string type;          ///< "sensor_msgs/msg/PointCloud2"
+  std::size_t messages = 0;  ///< in all files
+};
+
+/// \brief A message that stays in the bag.
+struct BagMessage {
+  std::size_t file = 0;   ///< index of the file
+  std::size_t topic = 0;  ///< index in Bag::topics()
+  std::int64_t id = 0;    ///< of its row in the table `messages` of that file
+};
+
+/// \brief A bag that is open for reading.
+///
+/// A folder has one or several `.db3` files, read in the order of its `metadata.yaml` (without it,
+/// in the order of their numbers). One `.db3` file alone is a bag too. The files are only read.
+class Bag {
+ public:
+  /// \param bag Folder, or one `.db3` file.
+  /// \throws Error with the file: there is no file, not a bag in SQLite, another storage (MCAP), a
+  ///         compressed bag, a topic that has two types, another format than CDR.
+  explicit Bag(const std::filesystem::path& bag);
+
+  const std::filesystem::path& path() const { return m_path; }
+  /// \brief Sorted by name.
+  const std::vector<BagTopic>& topics() const { return m_topics; }
+  /// \brief The messages of a topic in the order in which they were recorded.
+  /// \param topic Index in topics().
+  std::vector<BagMessage> messages(std::size_t topic) const;
+  /// \brief A message by its file and id. \throws Error when the bag has no such file.
+  BagMessage message(std::size_t topic, const std::filesystem::path& file, std::int64_t id) const;
+  /// \brief The bytes of a message, at most the first `most`. \throws Error when they cannot be
+  ///        read.
+  std::string read(const BagMessage& message, std::size_t most = SIZE_MAX) const;
+  const std::filesystem::path& file(const BagMessage& message) const;
+  /// \brief "FILE: /points, message 17: ", the prefix of an error.
+  std::string place(const BagMessage& message) const;
+
+ private:
+  /// One `.db3` file.
+  struct File {
+    std::filesystem::path path;
+    std::uintmax_t bytes = 0;
+    std::unique_ptr<sqlite3, int (*)(sqlite3*)> database;
+    std::vector<std::int64_t> topicIds;  ///< for each topic of the bag; 0: not in this file
+  };
+  void open(const std::filesystem::path& file);
+  void addTopic(File& file, std::int64_t id, const BagTopic& topic, const std::string& format);
+  void sortTopics();
+
+  std::filesystem::path m_path;
+  std::vector<File> m_files;
+  std::vector<BagTopic> m_topics;
+};
+
+}  // namespace polemcl::io

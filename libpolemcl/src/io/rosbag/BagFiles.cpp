@@ -1,0 +1,129 @@
+#include "io/rosbag/BagFiles.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <utility>
+
+#include <polemcl/core/common/Types.h>
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* adviceToConvert =
+    "; write it as an uncompressed bag in SQLite with ros2 bag convert";
+
+/// What `metadata.yaml` says of the files.
+struct BagMetadata {
+  std::string storage, compression, mode;
+  std::vector<std::string> files;
+};
+
+/// The text without spaces and quotes around it.
+std::string unquoted(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
+      text.front() == text.back())
+    text = text.substr(1, text.size() - 2);
+  return std::string(text);
+}
+
+BagMetadata readBagMetadata(const fs::path& file) {
+  BagMetadata result;
+  bool inList = false;
+  for (const std::string& line : readLines(file)) {
+    const std::string_view text = trimmed(line);
+    if (inList && text.substr(0, 2) == "- ") {
+      result.files.push_back(unquoted(text.substr(2)));
+      continue;
+    }
+    const auto colon = text.find(':');
+    if (text.empty() || colon == std::string_view::npos) continue;
+    const std::string_view key = text.substr(0, colon);
+    const std::string value = unquoted(text.substr(colon + 1));
+    inList = key == "relative_file_paths";
+    if (key == "storage_identifier") result.storage = value;
+    if (key == "compression_format") result.compression = value;
+    if (key == "compression_mode") result.mode = value;
+  }
+  return result;
+}
+
+/// \throws Error when the bag is compressed or has another storage.
+void requirePlain(const fs::path& file, const BagMetadata& metadata) {
+  if (!metadata.storage.empty() && metadata.storage != "sqlite3")
+    throw Error(file.string() + ": the storage of the bag is " + metadata.storage +
+                adviceToConvert);
+  const bool uncompressed =
+      metadata.mode.empty() || metadata.mode == "NONE" || metadata.mode == "none";
+  if (!metadata.compression.empty() || !uncompressed)
+    throw Error(file.string() + ": the bag is compressed (" + metadata.compression + ", " +
+                metadata.mode + ")" + adviceToConvert);
+}
+
+void requireDatabase(const fs::path& file) {
+  if (file.extension() == ".db3") return;
+  if (file.extension() == ".zstd")
+    throw Error(file.string() + ": the bag is compressed (zstd)" + adviceToConvert);
+  throw Error(file.string() + ": not a .db3 file of a ROS 2 bag" + adviceToConvert);
+}
+
+/// The number before the extension: 12 for "drive_12.db3"; 0 without one.
+std::uint64_t numberInName(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  std::size_t begin = stem.size();
+  while (begin > 0 && stem.size() - begin < 18 &&
+         std::isdigit(static_cast<unsigned char>(stem[begin - 1])))
+    --begin;
+  return begin == stem.size() ? 0 : std::stoull(stem.substr(begin));
+}
+
+/// All files of a folder without a list of them.
+std::vector<fs::path> listedBagFiles(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path extension = entry.path().extension();
+    if (extension == ".db3" || extension == ".zstd" || extension == ".mcap")
+      files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return std::make_pair(numberInName(a), a) < std::make_pair(numberInName(b), b);
+  });
+  if (files.empty())
+    throw Error(folder.string() + ": no .db3 file in it; name the folder of a ROS 2 bag");
+  return files;
+}
+
+std::vector<fs::path> filesOfBag(const fs::path& folder) {
+  const fs::path file = folder / "metadata.yaml";
+  BagMetadata metadata;
+  if (fs::exists(file)) metadata = readBagMetadata(file);
+  requirePlain(file, metadata);
+  const fs::path absolute = fs::absolute(folder);
+  if (metadata.files.empty()) return listedBagFiles(absolute);
+  std::vector<fs::path> files;
+  // Old versions of rosbag2 write the name of the folder before that of the file.
+  for (const std::string& name : metadata.files)
+    files.push_back(absolute / fs::path(name).filename());
+  return files;
+}
+
+}  // namespace
+
+std::vector<fs::path> bagFiles(const fs::path& bag) {
+  if (!fs::exists(bag)) throw Error(bag.string() + ": there is no such bag");
+  const std::vector<fs::path> files =
+      fs::is_directory(bag) ? filesOfBag(bag) : std::vector<fs::path>{fs::absolute(bag)};
+  for (const fs::path& file : files) {
+    requireDatabase(file);
+    if (!fs::is_regular_file(file))
+      throw Error(file.string() + ": missing, although metadata.yaml of the bag names it");
+  }
+  return files;
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,191 @@
+#include "io/rosbag/PointTimes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "core/common/Angles.h"
+#include "core/common/Statistics.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+namespace {
+
+constexpr std::size_t enoughScans = 5, mostScans = 20;
+constexpr std::size_t sampledPoints = 4000;  ///< of one scan
+constexpr double tails = 0.001;              ///< share of points with times that are not trusted
+constexpr double onLine = 10 * degree;  ///< beams of one moment differ in azimuth by less than this
+constexpr double leastOnLine = 0.9;     ///< share of the points
+constexpr double mostSpread = 15 * degree;  ///< of the azimuth at the stamp, from scan to scan
+constexpr double roundedStamp = 0.005;      ///< so near to begin or end of the turn, it is there
+
+/// Points of a scan.
+struct TimedPoints {
+  std::vector<double> times, azimuths;  ///< s since the stamp; rad
+};
+
+TimedPoints sampled(const RosCloud& scan) {
+  TimedPoints result;
+  const std::size_t step = 1 + scan.offsets.size() / sampledPoints;
+  for (std::size_t i = 0; i < scan.offsets.size(); i += step) {
+    result.times.push_back(scan.offsets[i]);
+    result.azimuths.push_back(std::atan2(scan.cloud.y[i], scan.cloud.x[i]));
+  }
+  return result;
+}
+
+/// Whether there are points in three quarters of all directions.
+bool isFullTurn(const Cloud& cloud) {
+  std::array<bool, 36> seen{};
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double turns = std::atan2(cloud.y[i], cloud.x[i]) / (2 * M_PI) + 0.5;
+    seen[std::min<std::size_t>(35, static_cast<std::size_t>(36 * turns))] = true;
+  }
+  return std::count(seen.begin(), seen.end(), true) >= 27;
+}
+
+/// Mean of the points on a circle that turns with them: its length is 1 if all follow the rate.
+std::complex<double> meanDirection(const TimedPoints& samples, double rate) {
+  std::complex<double> sum;
+  for (std::size_t i = 0; i < samples.times.size(); ++i)
+    sum += std::polar(1.0, samples.azimuths[i] - rate * samples.times[i]);
+  return sum / static_cast<double>(samples.times.size());
+}
+
+/// The rate that the points follow best, among those of a turn that takes about `span` s.
+double coarseRate(const TimedPoints& samples, double span) {
+  double best = 0, bestLength = -1;
+  for (int percent = 70; percent <= 110; percent += 2) {
+    for (const int sign : {-1, 1}) {
+      const double rate = sign * 2 * M_PI * percent / (100 * span);
+      const double length = std::abs(meanDirection(samples, rate));
+      if (length <= bestLength) continue;
+      best = rate;
+      bestLength = length;
+    }
+  }
+  return best;
+}
+
+/// Differences of the azimuths from the line, rad.
+std::vector<double> residuals(const TimedPoints& samples, double rate, double atZero) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < samples.times.size(); ++i)
+    result.push_back(wrapAngle(samples.azimuths[i] - atZero - rate * samples.times[i]));
+  return result;
+}
+
+/// Improves the line by least squares over the points near it.
+void refine(const TimedPoints& samples, double& rate, double& atZero) {
+  const std::vector<double> errors = residuals(samples, rate, atZero);
+  double n = 0, sumT = 0, sumE = 0, sumTt = 0, sumTe = 0;  // times T, errors E
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (std::abs(errors[i]) > 3 * onLine) continue;
+    const double time = samples.times[i];
+    n += 1;
+    sumT += time;
+    sumE += errors[i];
+    sumTt += time * time;
+    sumTe += time * errors[i];
+  }
+  const double determinant = n * sumTt - sumT * sumT;
+  if (!(determinant > 0)) return;
+  rate += (n * sumTe - sumT * sumE) / determinant;
+  atZero += (sumE * sumTt - sumT * sumTe) / determinant;
+}
+
+double medianOf(const std::vector<double>& values) {
+  return *quantile(values, 0.5);
+}
+
+}  // namespace
+
+std::optional<TimingEstimate::Fit> TimingEstimate::fit(const RosCloud& scan) {
+  TimedPoints samples = sampled(scan);
+  const double begin = *quantile(scan.offsets, tails), end = *quantile(scan.offsets, 1 - tails);
+  const double middle = (begin + end) / 2;  // sums of large times would lose digits
+  for (double& time : samples.times) time -= middle;
+  double rate = coarseRate(samples, end - begin);
+  double atMiddle = std::arg(meanDirection(samples, rate));
+  for (int i = 0; i < 3; ++i) refine(samples, rate, atMiddle);
+  const auto errors = residuals(samples, rate, atMiddle);
+  const auto near = std::count_if(errors.begin(), errors.end(),
+                                  [](double error) { return std::abs(error) < onLine; });
+  const double turns = (end - begin) * std::abs(rate) / (2 * M_PI);
+  if (static_cast<double>(near) < leastOnLine * static_cast<double>(errors.size()) || turns < 0.7 ||
+      turns > 1.1)
+    return std::nullopt;
+  return Fit{rate, atMiddle - rate * middle, middle};
+}
+
+void TimingEstimate::add(const RosCloud& scan) {
+  ++m_scans;
+  const auto [first, last] = std::minmax_element(scan.offsets.begin(), scan.offsets.end());
+  if (scan.offsets.empty() || *first == *last) {
+    ++m_untimed;
+  } else if (!isFullTurn(scan.cloud)) {
+    ++m_partial;
+  } else if (const auto found = fit(scan)) {
+    m_fits.push_back(*found);
+  }
+}
+
+bool TimingEstimate::complete() const {
+  return m_scans - m_untimed - m_partial >= enoughScans || m_scans >= mostScans;
+}
+
+std::string TimingEstimate::problem() const {
+  if (m_untimed == m_scans) return "the points have no times of their own, or all the same time";
+  if (m_untimed + m_partial == m_scans) return "no scan is a full turn";
+  if (m_fits.size() < m_scans - m_untimed - m_partial)
+    return "the times of the points do not follow their azimuths";
+  const Fit& reference = m_fits.front();
+  for (const Fit& fit : m_fits) {
+    if (fit.rate * reference.rate < 0 || std::abs(fit.rate / reference.rate - 1) > 0.05 ||
+        std::abs(wrapAngle(fit.atStamp - reference.atStamp)) > mostSpread)
+      return "the scans begin at different azimuths";
+    const double stamp = 0.5 - fit.middle * std::abs(fit.rate) / (2 * M_PI);
+    if (stamp < -0.5 || stamp > 1.5)
+      return "the times of the points are far from the stamps of the scans";
+  }
+  return {};
+}
+
+ScanTiming TimingEstimate::timing() const {
+  if (!problem().empty()) return {};
+  std::vector<double> rates, middles, azimuths;
+  for (const Fit& fit : m_fits) {
+    rates.push_back(fit.rate);
+    middles.push_back(fit.middle);
+    azimuths.push_back(wrapAngle(fit.atStamp - m_fits.front().atStamp));
+  }
+  const double rate = medianOf(rates);
+  ScanTiming timing;
+  timing.turn = rate > 0 ? Turn::counterclockwise : Turn::clockwise;
+  timing.seconds = 2 * M_PI / std::abs(rate);
+  const double stamp = 0.5 - medianOf(middles) / timing.seconds;
+  timing.stamp = std::clamp(
+      std::abs(stamp - std::round(stamp)) < roundedStamp ? std::round(stamp) : stamp, 0.0, 1.0);
+  // A stamp outside the turn is one of another clock.
+  if (std::abs(timing.stamp - stamp) > roundedStamp)
+    timing.clock = (timing.stamp - stamp) * timing.seconds;
+  const double atStamp = m_fits.front().atStamp + medianOf(azimuths);
+  timing.cut = wrapAngle(atStamp + rate * (timing.clock - timing.stamp * timing.seconds));
+  return timing;
+}
+
+std::string TimingEstimate::note() const {
+  const std::string reason = problem();
+  if (!reason.empty())
+    return "when points were measured is not known: " + reason + "; --turn states it";
+  const ScanTiming found = timing();
+  std::string name;
+  for (const auto& [value, text] : turnNames())
+    if (value == found.turn) name = text;
+  return "times of the points: turns of " + significant(found.seconds, 4) + " s, " + name +
+         ", cut at " + significant(found.cut / degree, 4) + " deg, stamped at " +
+         significant(found.stamp, 3) + " of the turn";
+}
+
+}  // namespace polemcl::io

@@ -1,0 +1,96 @@
+#include "io/rosbag/RosMessages.h"
+
+#include <cmath>
+#include <utility>
+
+#include "io/file/TextFile.h"
+
+namespace polemcl::io {
+namespace {
+
+/// A frame without the slash that programs of ROS 1 put before it.
+std::string readFrame(CdrReader& reader) {
+  std::string frame = reader.getText();
+  if (!frame.empty() && frame.front() == '/') frame.erase(0, 1);
+  return frame;
+}
+
+Eigen::Vector3d readVector(CdrReader& reader) {
+  Eigen::Vector3d vector;
+  for (int i = 0; i < 3; ++i) vector[i] = reader.getFinite<double>();
+  return vector;
+}
+
+/// x, y, z, then the quaternion x, y, z, w.
+Eigen::Isometry3d readPose(CdrReader& reader) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = readVector(reader);
+  Eigen::Quaterniond rotation;
+  for (int i = 0; i < 4; ++i) rotation.coeffs()[i] = reader.getFinite<double>();
+  const double length = rotation.norm();
+  if (std::abs(length - 1) > 0.01)
+    reader.fail("a quaternion has the length " + significant(length, 6) + "; 1 is allowed");
+  pose.linear() = rotation.normalized().toRotationMatrix();
+  return pose;
+}
+
+/// Rows of a square matrix. The numbers are not checked: several drivers write what is not a
+/// covariance.
+template <int size>
+Eigen::Matrix<double, size, size> readCovariance(CdrReader& reader) {
+  Eigen::Matrix<double, size, size> matrix;
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) matrix(row, column) = reader.get<double>();
+  return matrix;
+}
+
+}  // namespace
+
+RosHeader readHeader(CdrReader& reader) {
+  const auto seconds = reader.get<std::int32_t>();
+  const auto nanoseconds = reader.get<std::uint32_t>();
+  if (nanoseconds >= 1000000000u)
+    reader.fail("the stamp has " + std::to_string(nanoseconds) +
+                " nanoseconds; less than 1000000000 are allowed");
+  return {seconds + nanoseconds * 1e-9, readFrame(reader)};
+}
+
+RosOdometry decodeOdometry(std::string_view message, const std::string& where) {
+  CdrReader reader(message, where);
+  RosOdometry odometry;
+  odometry.header = readHeader(reader);
+  odometry.child = readFrame(reader);
+  odometry.T_odom_child = readPose(reader);
+  readCovariance<6>(reader);  // of the pose, which grows without limit
+  readVector(reader);         // linear velocity
+  readVector(reader);         // angular velocity
+  odometry.twistCovariance = readCovariance<6>(reader);
+  return odometry;
+}
+
+RosImu decodeImu(std::string_view message, const std::string& where) {
+  CdrReader reader(message, where);
+  RosImu imu;
+  imu.header = readHeader(reader);
+  for (int i = 0; i < 4; ++i) reader.get<double>();  // orientation, which many IMUs do not have
+  readCovariance<3>(reader);
+  imu.rate = readVector(reader);
+  imu.rateCovariance = readCovariance<3>(reader);
+  for (int i = 0; i < 3; ++i) reader.get<double>();  // acceleration
+  readCovariance<3>(reader);
+  return imu;
+}
+
+std::vector<RosTransform> decodeTransforms(std::string_view message, const std::string& where) {
+  constexpr std::size_t least = 8 + 4 + 4 + 7 * 8;  // stamp, two empty names, seven numbers
+  CdrReader reader(message, where);
+  std::vector<RosTransform> transforms(reader.getCount(least));
+  for (RosTransform& transform : transforms) {
+    transform.header = readHeader(reader);
+    transform.child = readFrame(reader);
+    transform.T_parent_child = readPose(reader);
+  }
+  return transforms;
+}
+
+}  // namespace polemcl::io

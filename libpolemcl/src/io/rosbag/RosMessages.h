@@ -1,0 +1,57 @@
+#pragma once
+/// \file RosMessages.h
+/// \brief Messages of ROS 2 that bags hold: odometry, IMU, transforms. See PointCloud2.h for
+/// clouds.
+
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/rosbag/Cdr.h"
+
+namespace polemcl::io {
+
+/// \brief Names of the types, as bags state them.
+constexpr const char *cloudType = "sensor_msgs/msg/PointCloud2",
+                     *odometryType = "nav_msgs/msg/Odometry", *imuType = "sensor_msgs/msg/Imu",
+                     *transformsType = "tf2_msgs/msg/TFMessage";
+
+/// \brief std_msgs/msg/Header.
+struct RosHeader {
+  double time = 0;    ///< the stamp, s
+  std::string frame;  ///< without a slash at its begin
+};
+
+/// \brief nav_msgs/msg/Odometry.
+struct RosOdometry {
+  RosHeader header;
+  std::string child;                                               ///< frame of the robot
+  Eigen::Isometry3d T_odom_child = Eigen::Isometry3d::Identity();  ///< m
+  /// Covariance of (vx, vy, vz, wx, wy, wz) in the child frame; m, rad, s. As stored, not checked.
+  Eigen::Matrix<double, 6, 6> twistCovariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// \brief sensor_msgs/msg/Imu without orientation and acceleration.
+struct RosImu {
+  RosHeader header;
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< angular velocity, rad/s, frame of the IMU
+  Eigen::Matrix3d rateCovariance = Eigen::Matrix3d::Zero();  ///< (rad/s)², as stored
+};
+
+/// \brief One transform of a tf2_msgs/msg/TFMessage.
+struct RosTransform {
+  RosHeader header;  ///< its frame is the parent
+  std::string child;
+  Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();  ///< m
+};
+
+/// \brief Decode the message. \param where Prefix of error messages.
+/// \throws Error when it is cut short, a number is not finite, a quaternion is not of unit length
+///         (1 % off at most), or nanoseconds are a second or more.
+RosHeader readHeader(CdrReader& reader);
+RosOdometry decodeOdometry(std::string_view message, const std::string& where);
+RosImu decodeImu(std::string_view message, const std::string& where);
+std::vector<RosTransform> decodeTransforms(std::string_view message, const std::string& where);
+
+}  // namespace polemcl::io

@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+
+#include "io/data/MotionSteps.h"
+
+namespace polemcl::test_motion_steps {
+
+using namespace polemcl;
+using namespace polemcl::io;
+
+TEST(MotionSteps, ComposesStepsInProportion) {
+  MotionSteps steps;
+  const Eigen::Matrix3d first = Eigen::Vector3d(1, 2, 4).asDiagonal(),
+                        second = Eigen::Vector3d(3, 0, 0).asDiagonal();
+  steps.add(10, 12, {{}, first});
+  steps.add(12, 13, {{}, second});
+  EXPECT_TRUE(steps.covarianceBetween(10, 13)->isApprox(first + second));
+  EXPECT_TRUE(steps.covarianceBetween(11, 12.5)->isApprox(0.5 * first + 0.5 * second));
+  // The gap from 13 to 14 counts as the step before it.
+  EXPECT_TRUE(steps.covarianceBetween(12, 14)->isApprox(2 * second));
+  EXPECT_FALSE(steps.covarianceBetween(12, 14.1));
+}
+
+TEST(MotionSteps, TurnsMoveTheEnd) {
+  MotionSteps steps;
+  steps.add(0, 1, {{0, 0, 0}, Eigen::Vector3d(0, 0, 0.01).asDiagonal()});
+  steps.add(1, 2, {{5, 0, 0}, Eigen::Matrix3d::Zero()});
+  const auto covariance = *steps.covarianceBetween(0, 2);
+  EXPECT_NEAR(covariance(1, 1), 25 * 0.01, 1e-12);
+  EXPECT_NEAR(covariance(1, 2), 5 * 0.01, 1e-12);
+}
+
+TEST(MotionSteps, DefaultsAreSharesOfTheMotion) {
+  EXPECT_TRUE(proportionalCovariance({2, -1, 0.5}, 0.1)
+                  .isApprox(Eigen::Matrix3d(Eigen::Vector3d(0.04, 0.01, 0.0025).asDiagonal())));
+  EXPECT_EQ(floorCovariance().diagonal(), Eigen::Vector3d(1e-6, 1e-6, 1e-8));
+}
+
+}  // namespace polemcl::test_motion_steps

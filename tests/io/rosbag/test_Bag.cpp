@@ -1,0 +1,149 @@
+#include "io/rosbag/Bag.h"
+#include "support/IoFiles.h"
+#include "support/RosBags.h"
+
+namespace polemcl::test_bag {
+
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+using namespace polemcl::tests;
+
+namespace {
+
+class BagTest : public FolderTest {
+ protected:
+  std::string refusal(const std::string& name) const {
+    return messageOf([&] { Bag(path(name)); });
+  }
+  /// A file with messages of one topic.
+  void writeFile(const std::string& name, const std::vector<std::string>& messages,
+                 const std::string& type = "T") const {
+    TestBag bag(path(name));
+    const int other = bag.topic("/other", "O"), topic = bag.topic("/points", type);
+    std::int64_t time = 0;
+    for (const std::string& message : messages) bag.add(topic, ++time, message);
+    bag.add(other, 1, "other");
+  }
+  static std::vector<std::string> contents(const Bag& bag, std::size_t topic) {
+    std::vector<std::string> result;
+    for (const auto& message : bag.messages(topic)) result.push_back(bag.read(message));
+    return result;
+  }
+};
+
+}  // namespace
+
+TEST_F(BagTest, ReadsOneFileInTheOrderOfRecording) {
+  {
+    TestBag bag(path("a.db3"));
+    const int topic = bag.topic("/b", "B");
+    bag.topic("/a", "sensor_msgs/Imu", "");  // as the first versions of ROS 2 name types
+    bag.add(topic, 30, "third");
+    bag.add(topic, 10, "first");
+    bag.add(topic, 20, std::string("sec\0nd", 6));
+  }
+  const Bag bag(path("a.db3"));
+  ASSERT_EQ(bag.topics().size(), 2u);
+  EXPECT_EQ(bag.topics()[0].name, "/a");
+  EXPECT_EQ(bag.topics()[0].type, "sensor_msgs/msg/Imu");
+  EXPECT_EQ(bag.topics()[0].messages, 0u);
+  EXPECT_EQ(bag.topics()[1].type, "B");
+  EXPECT_EQ(bag.topics()[1].messages, 3u);
+  EXPECT_EQ(contents(bag, 1), (std::vector<std::string>{"first", {"sec\0nd", 6}, "third"}));
+  const BagMessage first = bag.messages(1).front();
+  EXPECT_EQ(bag.read(first, 3), "fir");
+  EXPECT_EQ(bag.place(first), path("a.db3").string() + ": /b, message 2: ");
+  EXPECT_EQ(bag.read(bag.message(1, path("a.db3"), 1)), "third");
+  EXPECT_THROW(bag.message(1, path("b.db3"), 1), Error);
+  expectIn(messageOf([&] { bag.read(bag.message(1, path("a.db3"), 99)); }), "/b, message 99: ");
+}
+
+TEST_F(BagTest, ReadsFilesInTheOrderOfTheMetadata) {
+  writeFile("in/x.db3", {"3", "4"});
+  writeFile("in/y.db3", {"1", "2"});
+  write("in/metadata.yaml", bagMetadata({"\"in/y.db3\"", "x.db3"}));
+  const Bag bag(path("in"));
+  EXPECT_EQ(bag.topics()[1].messages, 4u);
+  EXPECT_EQ(contents(bag, 1), (std::vector<std::string>{"1", "2", "3", "4"}));
+}
+
+TEST_F(BagTest, ReadsFilesInTheOrderOfTheirNumbersWithoutMetadata) {
+  for (const char* number : {"0", "2", "10"})
+    writeFile(std::string("in/drive_") + number + ".db3", {number});
+  EXPECT_EQ(contents(Bag(path("in")), 1), (std::vector<std::string>{"0", "2", "10"}));
+}
+
+TEST_F(BagTest, TopicsAreTheSameWhateverTheirIds) {
+  writeFile("in/a_0.db3", {"1"});
+  {
+    TestBag second(path("in/a_1.db3"));
+    second.add(second.topic("/points", "T"), 5, "2");
+  }
+  const Bag bag(path("in"));
+  ASSERT_EQ(bag.topics().size(), 2u);
+  EXPECT_EQ(contents(bag, 0), std::vector<std::string>{"other"});
+  EXPECT_EQ(contents(bag, 1), (std::vector<std::string>{"1", "2"}));
+}
+
+TEST_F(BagTest, NothingIsWrittenBesideTheBag) {
+  writeFile("a?b#c%20.db3", {"1"});
+  const Bag bag(path("a?b#c%20.db3"));
+  EXPECT_EQ(contents(bag, 1).size(), 1u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(m_folder), {}), 1);
+}
+
+TEST_F(BagTest, ReadsChangesThatWereNotMerged) {
+  TestBag open(path("a.db3"));
+  open.run("PRAGMA journal_mode = WAL");
+  const std::string message(50000, 'n');  // longer than the file without its changes
+  open.add(open.topic("/points", "T"), 1, message);
+  ASSERT_TRUE(fs::exists(path("a.db3-wal")));
+  EXPECT_EQ(contents(Bag(path("a.db3")), 0), std::vector<std::string>{message});
+}
+
+TEST_F(BagTest, RefusesCompressedBags) {
+  writeFile("in/a.db3", {"1"});
+  write("in/metadata.yaml", bagMetadata({"a.db3"}, "zstd", "MESSAGE"));
+  expectIn(refusal("in"), "metadata.yaml: the bag is compressed (zstd, MESSAGE)",
+           "ros2 bag convert");
+  write("in/metadata.yaml", bagMetadata({"a.db3"}, "\"\"", "NONE"));
+  EXPECT_EQ(Bag(path("in")).topics().size(), 2u);
+  write("file/a.db3.zstd", "");
+  expectIn(refusal("file"), "a.db3.zstd: the bag is compressed (zstd)", "ros2 bag convert");
+  expectIn(refusal("file/a.db3.zstd"), "the bag is compressed (zstd)");
+}
+
+TEST_F(BagTest, RefusesWhatIsNoBag) {
+  expectIn(refusal("nothing"), "nothing: there is no such bag");
+  write("text.db3", std::string(3000, 'x'));
+  expectIn(refusal("text.db3"), "text.db3: cannot be read as a ROS 2 bag: file is not a database");
+  write("empty.db3", "");
+  expectIn(refusal("empty.db3"), "empty.db3: cannot be read as a ROS 2 bag: no such table");
+  write("a.bag", "");
+  expectIn(refusal("a.bag"), "a.bag: not a .db3 file of a ROS 2 bag", "ros2 bag convert");
+  fs::create_directories(path("folder"));
+  expectIn(refusal("folder"), "folder: no .db3 file in it");
+  write("lost/metadata.yaml", bagMetadata({"a.db3"}));
+  expectIn(refusal("lost"), "a.db3: missing, although metadata.yaml of the bag names it");
+  write("mcap/metadata.yaml", bagMetadata({"a.mcap"}, "\"\"", "\"\"", "mcap"));
+  expectIn(refusal("mcap"), "metadata.yaml: the storage of the bag is mcap", "ros2 bag convert");
+}
+
+TEST_F(BagTest, RefusesTopicsThatContradictEachOther) {
+  writeFile("in/a_0.db3", {"1"});
+  writeFile("in/a_1.db3", {"2"}, "U");
+  expectIn(refusal("in"), "a_1.db3: /points has two types, T and U");
+  {
+    TestBag bag(path("a.db3"));
+    bag.topic("/points", "T", "protobuf");
+  }
+  expectIn(refusal("a.db3"), "/points: messages in the format protobuf; cdr is allowed");
+}
+
+TEST_F(BagTest, RefusesADamagedFile) {
+  writeFile("a.db3", {std::string(20000, 'x')});
+  fs::resize_file(path("a.db3"), 12288);  // three pages of four thousand bytes
+  expectIn(messageOf([&] { contents(Bag(path("a.db3")), 1); }), "a.db3", "malformed");
+}
+
+}  // namespace polemcl::test_bag

@@ -1,0 +1,102 @@
+#include "io/rosbag/PointTimes.h"
+#include "support/IoFiles.h"
+#include "support/RosBags.h"
+
+namespace polemcl::test_point_times {
+
+using namespace polemcl::io;
+using namespace polemcl::io::test;
+using namespace polemcl::tests;
+
+namespace {
+
+RosCloud turn(int sign, double cut, double begin, double seconds = 0.1) {
+  return decodeCloud(turningCloud(100, sign, cut, begin, seconds).message(), "", true);
+}
+
+TimingEstimate estimateOf(const std::vector<RosCloud>& scans) {
+  TimingEstimate estimate;
+  for (const RosCloud& scan : scans) estimate.add(scan);
+  return estimate;
+}
+
+/// The model of the timing gives each point its time, apart from the points next to the cut.
+void expectTimesOf(const RosCloud& scan, const ScanTiming& timing, double tolerance) {
+  for (std::size_t i = 20; i + 20 < scan.cloud.size(); ++i)
+    ASSERT_NEAR(timing.offset(std::atan2(scan.cloud.y[i], scan.cloud.x[i])), scan.offsets[i],
+                tolerance)
+        << i;
+}
+
+}  // namespace
+
+TEST(PointTimes, FindsBothDirectionsAndAnyStamp) {
+  for (const int sign : {-1, 1})
+    for (const double cut : {-3.0, 0.0, 2.0})
+      for (const double begin : {0.0, -0.05, -0.1}) {
+        const auto estimate = estimateOf({turn(sign, cut, begin), turn(sign, cut + 0.1, begin)});
+        const ScanTiming timing = estimate.timing();
+        EXPECT_EQ(timing.turn, sign > 0 ? Turn::counterclockwise : Turn::clockwise);
+        EXPECT_NEAR(timing.seconds, 0.1, 1e-5);
+        EXPECT_NEAR(timing.stamp, -10 * begin, 0.001);
+        EXPECT_NEAR(std::remainder(timing.cut - cut - 0.05, 2 * M_PI), 0, 0.01);
+        EXPECT_EQ(timing.clock, 0);
+        expectTimesOf(turn(sign, cut + 0.05, begin), timing, 1e-4);
+      }
+}
+
+TEST(PointTimes, StampsOutsideTheTurnBecomeAnOffsetOfTheClock) {
+  const RosCloud scan = turn(1, 1, -0.12, 0.1);  // stamped 20 ms after the end of the turn
+  const ScanTiming timing = estimateOf({scan}).timing();
+  EXPECT_EQ(timing.stamp, 1);
+  EXPECT_NEAR(timing.clock, -0.02, 1e-4);
+  expectTimesOf(scan, timing, 1e-4);
+}
+
+TEST(PointTimes, FalsePointsAreLeftAside) {
+  RosCloud scan = turn(-1, 2, 0);
+  for (std::size_t i = 0; i < scan.cloud.size(); i += 25) scan.cloud.y[i] = -scan.cloud.y[i];
+  scan.offsets[7] = 3;
+  const ScanTiming timing = estimateOf({scan}).timing();
+  EXPECT_EQ(timing.turn, Turn::clockwise);
+  EXPECT_NEAR(timing.seconds, 0.1, 5e-4);
+  EXPECT_NEAR(timing.stamp, 0, 0.005);
+  EXPECT_NEAR(timing.cut, 2, 0.03);
+}
+
+TEST(PointTimes, SaysWhyNothingIsFound) {
+  const auto expectNone = [](const std::vector<RosCloud>& scans, const std::string& why) {
+    const auto estimate = estimateOf(scans);
+    EXPECT_EQ(estimate.timing().turn, Turn::automatic);
+    expectIn(estimate.note(), why, "--turn states it");
+  };
+  RosCloud scan = turn(1, 0, 0);
+  const RosCloud good = scan;
+  scan.offsets.assign(scan.offsets.size(), 0.5);
+  expectNone({scan}, "no times of their own, or all the same time");
+  scan.offsets.clear();
+  expectNone({scan}, "no times of their own, or all the same time");
+  scan = good;
+  for (float& y : scan.cloud.y) y = std::abs(y);
+  expectNone({scan}, "no scan is a full turn");
+  scan = good;
+  for (std::size_t i = 0; i < scan.offsets.size(); ++i)
+    scan.offsets[i] = 0.1 * static_cast<double>(i * 7919 % 1800) / 1800;
+  expectNone({good, scan}, "do not follow their azimuths");
+  expectNone({good, turn(1, 1, 0)}, "begin at different azimuths");
+  expectNone({good, turn(-1, 0, 0)}, "begin at different azimuths");
+  expectNone({turn(1, 0, 4000)}, "far from the stamps");
+}
+
+TEST(PointTimes, PartialScansAreNotUsed) {
+  RosCloud half = turn(1, 0, 0);
+  for (auto* values : {&half.cloud.x, &half.cloud.y, &half.cloud.z, &half.cloud.intensity})
+    values->resize(900);
+  half.offsets.resize(900);
+  const auto estimate = estimateOf({half, turn(1, 0, 0)});
+  EXPECT_EQ(estimate.timing().turn, Turn::counterclockwise);
+  EXPECT_FALSE(estimate.complete());
+  expectIn(estimate.note(), "turns of 0.1 s, counterclockwise, cut at", "stamped at 0 of the turn");
+}
+
+}  // namespace polemcl::test_point_times
