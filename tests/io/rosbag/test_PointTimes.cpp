@@ -73,9 +73,9 @@ TEST(PointTimes, SaysWhyNothingIsFound) {
   RosCloud scan = turn(1, 0, 0);
   const RosCloud good = scan;
   scan.offsets.assign(scan.offsets.size(), 0.5);
-  expectNone({scan}, "no times of their own, or all the same time");
+  expectNone({scan}, "no times of their own, or one for all");
   scan.offsets.clear();
-  expectNone({scan}, "no times of their own, or all the same time");
+  expectNone({scan}, "no times of their own, or one for all");
   scan = good;
   for (float& y : scan.cloud.y) y = std::abs(y);
   expectNone({scan}, "no scan is a full turn");

@@ -136,7 +136,7 @@ bool TimingEstimate::complete() const {
 }
 
 std::string TimingEstimate::problem() const {
-  if (m_untimed == m_scans) return "the points have no times of their own, or all the same time";
+  if (m_untimed == m_scans) return "the points have no times of their own, or one for all";
   if (m_untimed + m_partial == m_scans) return "no scan is a full turn";
   if (m_fits.size() < m_scans - m_untimed - m_partial)
     return "the times of the points do not follow their azimuths";
