@@ -37,6 +37,7 @@ inline CObservationPoles observation() {
   scan.poles = {pole(5, 0), pole(-3, 4)};
   scan.poles[1].radius = 0.2;
   scan.poles[1].timeOffset = -0.02;
+  scan.poles[1].turnRate = -62.5;
   scan.visibilityRange = {1, 2.5, 0, 4};
   scan.points = 1234;
   return scan;

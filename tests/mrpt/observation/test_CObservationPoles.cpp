@@ -28,6 +28,7 @@ void expectEqual(const CObservationPoles& a, const CObservationPoles& b) {
     EXPECT_EQ(a.poles[i].covariance, b.poles[i].covariance);
     EXPECT_EQ(a.poles[i].points, b.poles[i].points);
     EXPECT_EQ(a.poles[i].timeOffset, b.poles[i].timeOffset);
+    EXPECT_EQ(a.poles[i].turnRate, b.poles[i].turnRate);
   }
 }
 
@@ -76,21 +77,26 @@ TEST(CObservationPoles, RefusesNewerVersions) {
   std::string bytes = samples::bytesOf(samples::observation());
   const std::string name = "polemcl::CObservationPoles";
   ASSERT_EQ(bytes.substr(1, name.size()), name);
-  ASSERT_EQ(bytes[1 + name.size()], 1);  // the current version
-  bytes[1 + name.size()] = 2;
+  ASSERT_EQ(bytes[1 + name.size()], 2);  // the current version
+  bytes[1 + name.size()] = 3;
   EXPECT_ANY_THROW(samples::objectFrom(bytes));
 }
 
-TEST(CObservationPoles, ReadsTheFirstVersionWithoutTimeOffsets) {
+TEST(CObservationPoles, ReadsOlderVersionsWithoutTimeOffsetsAndTurningRates) {
   CObservationPoles scan = samples::observation();
   std::string bytes = samples::bytesOf(scan);
-  const std::size_t offsets = scan.poles.size() * sizeof(double);
-  bytes.erase(bytes.size() - 1 - offsets, offsets);  // the last byte ends the object
-  bytes[1 + std::string("polemcl::CObservationPoles").size()] = 0;
-  const auto read = std::dynamic_pointer_cast<CObservationPoles>(samples::objectFrom(bytes));
-  ASSERT_TRUE(read);
+  const auto expectRead = [&](char version) {
+    const std::size_t dropped = scan.poles.size() * sizeof(double);
+    bytes.erase(bytes.size() - 1 - dropped, dropped);  // the last byte ends the object
+    bytes[1 + std::string("polemcl::CObservationPoles").size()] = version;
+    const auto read = std::dynamic_pointer_cast<CObservationPoles>(samples::objectFrom(bytes));
+    ASSERT_TRUE(read);
+    expectEqual(*read, scan);
+  };
+  for (auto& pole : scan.poles) pole.turnRate = 0;
+  expectRead(1);
   for (auto& pole : scan.poles) pole.timeOffset = 0;
-  expectEqual(*read, scan);
+  expectRead(0);
 }
 
 TEST(CObservationPoles, CutShortIsRefused) {

@@ -35,8 +35,10 @@ TEST(ObservationPoleExtractor, PolesHaveTheTimesOfTheirAzimuths) {
   const auto offsetsFit = [&](ObservationPoleExtractor& extraction, const CPose3D& pose, int sign) {
     const auto scan = extraction.process(*observationOf(cloud, pose));
     EXPECT_GE(scan->poles.size(), 6u);
-    for (const PoleDetection& pole : scan->poles)
+    for (const PoleDetection& pole : scan->poles) {
+      EXPECT_EQ(pole.turnRate, sign * 20 * M_PI);
       EXPECT_NEAR(pole.timeOffset, sign * 0.1 * std::atan2(pole.y, pole.x) / (2 * M_PI), 1e-9);
+    }
   };
   ObservationPoleExtractor recorded(options);
   offsetsFit(recorded, CPose3D(), 0);

@@ -12,6 +12,11 @@ double ScanTiming::offset(double azimuth) const {
   return clock + seconds * (turned - std::floor(turned) - stamp);
 }
 
+double ScanTiming::turnRate() const {
+  if (!known()) return 0;
+  return (turn == Turn::clockwise ? -2 : 2) * M_PI / seconds;
+}
+
 const std::vector<std::pair<Turn, std::string>>& turnNames() {
   static const std::vector<std::pair<Turn, std::string>> names{
       {Turn::automatic, "auto"},

@@ -116,8 +116,12 @@ LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
   return update;
 }
 
-/// The frame with its motion corrected for the known errors of the odometry.
+/// The frame with its motion and velocity corrected for the known errors of the odometry.
 PoleFrame LocalizationPipeline::calibrated(PoleFrame frame) const {
+  if (frame.velocity) {
+    const Pose2D second = motionAfter(*frame.velocity, 1);
+    frame.velocity = velocityOf(m_calibration.correct(second, Eigen::Matrix3d::Zero()).motion, 1);
+  }
   if (!m_stepped) return frame;
   const CorrectedMotion motion =
       m_calibration.correct(frame.motion->mean, frame.motion->covariance);

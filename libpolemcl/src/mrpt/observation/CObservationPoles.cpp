@@ -19,7 +19,7 @@ namespace polemcl {
 using mrpt::serialization::CArchive;
 
 uint8_t CObservationPoles::serializeGetVersion() const {
-  return 1;  // 1: with the time offsets of the poles
+  return 2;  // 1: with the time offsets of the poles; 2: with the turning rates
 }
 
 void CObservationPoles::serializeTo(CArchive& out) const {
@@ -33,10 +33,11 @@ void CObservationPoles::serializeTo(CArchive& out) const {
   for (const auto& pole : poles) writePole(out, pole, pole.points);
   out << visibilityRange;
   for (const auto& pole : poles) out << pole.timeOffset;
+  for (const auto& pole : poles) out << pole.turnRate;
 }
 
 void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
-  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> timestamp;
   sensorLabel = readText(in, io::mostOfAScan, "sensor label");
   in >> sensorPose >> points;
@@ -47,6 +48,8 @@ void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   visibilityRange = readFloats(in, io::mostOfAScan, "visibility ranges");
   if (version < 1) return;
   for (auto& pole : poles) in >> pole.timeOffset;
+  if (version < 2) return;
+  for (auto& pole : poles) in >> pole.turnRate;
 }
 
 Pose2D CObservationPoles::planarSensorPose() const {

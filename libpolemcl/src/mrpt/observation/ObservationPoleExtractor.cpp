@@ -153,6 +153,7 @@ void ObservationPoleExtractor::Impl::setTimeOffsets(const LidarFrame& frames,
     const Eigen::Vector3d cloud =
         frames.R_lidar_cloud.transpose() * Eigen::Vector3d(pole.x, pole.y, 0);
     pole.timeOffset = timing.offset(std::atan2(cloud.y(), cloud.x()));
+    pole.turnRate = timing.turnRate();
   }
 }
 

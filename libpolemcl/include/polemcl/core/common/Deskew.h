@@ -21,8 +21,12 @@ POLEMCL_EXPORT Velocity velocityOf(const Pose2D& motion, double seconds);
 /// start.
 POLEMCL_EXPORT Pose2D motionAfter(const Velocity& velocity, double seconds);
 
-/// \brief Moves each detection to where it is seen from at the time stamp of the scan, and sets its
-/// `timeOffset` to 0.
+/// \brief Corrects the radius of each detection for its motion while the beam crossed it, moves it
+/// to where it is seen from at the time stamp of the scan, and sets its `timeOffset` and `turnRate`
+/// to 0.
+///
+/// A pole that moves with the beam is swept for longer and looks wider, one that moves against it
+/// narrower. The LiDAR is taken to turn about the origin of the robot.
 /// \param poles Robot frame at the moment each was measured.
 POLEMCL_EXPORT void deskew(std::vector<PoleDetection>& poles, const Velocity& velocity);
 

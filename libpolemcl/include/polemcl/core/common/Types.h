@@ -65,6 +65,9 @@ struct PoleDetection {
   /// Time from the stamp of the scan to the moment the pole was measured, s: x, y and covariance
   /// are those of this moment. 0: at the stamp, or the scan was corrected for motion.
   double timeOffset = 0;
+  /// Turning rate of the LiDAR, rad/s, positive counterclockwise seen from above: radius, x and y
+  /// are those of a pole that stood still while the beam crossed it. 0: it did, or unknown.
+  double turnRate = 0;
 };
 
 /// \brief One pole of a map, map frame.

@@ -39,6 +39,8 @@ struct POLEMCL_EXPORT ScanTiming {
   /// `azimuth`, s; `clock` unless known().
   /// \param azimuth In the frame of the cloud, rad, any number of turns.
   double offset(double azimuth) const;
+  /// \brief rad/s, positive counterclockwise; 0 unless known().
+  double turnRate() const;
 };
 
 /// \brief The words of INI files.
