@@ -82,11 +82,22 @@ class Feature {
     const Json& geometry = m_json["geometry"];
     return geometry.is_object() && geometry.value("type", Json()) == "Point";
   }
-  Eigen::Vector2d lonLat() const {
+  Eigen::Vector2d coordinates() const {
     const Json& at = m_json["geometry"].value("coordinates", Json());
     if (!at.is_array() || at.size() < 2 || !at[0].is_number() || !at[1].is_number())
       fail("a point needs coordinates [longitude, latitude]");
-    Eigen::Vector2d found(at[0].get<double>(), at[1].get<double>());
+    return {at[0].get<double>(), at[1].get<double>()};
+  }
+  std::map<std::string, std::string> properties() const {
+    std::map<std::string, std::string> texts;
+    const auto found = m_json.find("properties");
+    if (found == m_json.end() || !found->is_object()) return texts;
+    for (const auto& [name, value] : found->items())
+      texts[name] = value.is_string() ? value.get<std::string>() : value.dump();
+    return texts;
+  }
+  Eigen::Vector2d lonLat() const {
+    const Eigen::Vector2d found = coordinates();
     if (!(std::abs(found.x()) <= 360 && std::abs(found.y()) <= 90))
       fail("longitude or latitude is out of range; GeoJSON has degrees, longitude first");
     return found;
@@ -245,6 +256,22 @@ void writeGeoJson(const std::filesystem::path& file, const io::PoleMapData& map)
     output.stream() << (i == 0 ? "\n" : ",\n") << features[i].dump();
   output.stream() << "\n]}\n";
   output.commit();
+}
+
+std::vector<GeoJsonPoint> readGeoJsonPoints(const std::filesystem::path& file, std::size_t& left) {
+  const Json json = parsed(file);
+  std::vector<GeoJsonPoint> points;
+  std::size_t number = 0;
+  left = 0;
+  for (const Json& entry : json["features"]) {
+    const std::string where = file.string() + ": feature " + std::to_string(number++) + ": ";
+    const Feature feature(entry, where);
+    if (feature.isPoint())
+      points.push_back({feature.coordinates(), feature.properties(), where});
+    else
+      ++left;
+  }
+  return points;
 }
 
 io::PoleMapData readGeoJson(const std::filesystem::path& file,

@@ -7,7 +7,10 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <polemcl/io/map/PoleMapFile.h>
 #include "io/map/Datum.h"
@@ -41,5 +44,17 @@ void writeGeoJson(const std::filesystem::path& file, const io::PoleMapData& map)
 io::PoleMapData readGeoJson(const std::filesystem::path& file,
                             const std::optional<io::Datum>& datum = std::nullopt,
                             std::size_t* left = nullptr);
+
+/// \brief A point of other people's GeoJSON.
+struct GeoJsonPoint {
+  Eigen::Vector2d coordinates;                    ///< first two, as in the file
+  std::map<std::string, std::string> properties;  ///< texts as they are, others as JSON
+  std::string where;                              ///< "FILE: feature N: ", for messages
+};
+
+/// \brief Reads the points of a FeatureCollection with whatever properties they have.
+/// \param left Gets the number of features that are no points.
+/// \throws Error naming the feature: not GeoJSON, no numbers as coordinates.
+std::vector<GeoJsonPoint> readGeoJsonPoints(const std::filesystem::path& file, std::size_t& left);
 
 }  // namespace polemcl

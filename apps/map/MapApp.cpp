@@ -7,6 +7,7 @@
 #include "map/MapBuildApp.h"
 #include "map/MapConvertApp.h"
 #include "map/MapDiffApp.h"
+#include "map/MapImportApp.h"
 #include "map/MapUpdateApp.h"
 
 namespace polemcl::apps {
@@ -141,15 +142,54 @@ Subcommand convertCommand(CLI::App& program) {
           }};
 }
 
+Subcommand importCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "import", "A map from an inventory: .csv, .geojson, or .osm of OpenStreetMap or Lanelet2");
+  const auto options = std::make_shared<MapImportOptions>();
+  const auto datum = std::make_shared<std::string>();
+  cli.add_option("--input", options->input, "Inventory to read")->required();
+  cli.add_option("--output", options->output, "Map to write, .polemap")->required();
+  cli.add_option("--crs", options->coordinates, "Coordinate system of the places, as EPSG:25833")
+      ->capture_default_str();
+  cli.add_option("--columns", options->columns, "CSV: columns of the place, east before north")
+      ->type_name("EAST,NORTH")
+      ->delimiter(',')
+      ->expected(2);
+  cli.add_option("--separator", options->separator, "CSV: character between fields")
+      ->capture_default_str();
+  cli.add_option(
+         "--keep", options->keep,
+         "Keep entries with this property; several: with any of them. OSM: kind=lamp, pole, "
+         "tree, sign, light, bollard")
+      ->type_name("NAME=VALUE")
+      ->check([](const std::string& text) {
+        return text.find('=') == std::string::npos ? "NAME=VALUE expected, not " + text
+                                                   : std::string();
+      });
+  cli.add_option("--radius-property", options->radiusProperty,
+                 "Column or property of the radius; unknown without");
+  addNumber(cli, "--radius-unit", options->radiusUnit, "Metres per unit of it", positiveNumber());
+  addNumber(cli, "--sigma-m", options->sigma, "Standard deviation of the places along an axis, m",
+            positiveNumber());
+  addNumber(cli, "--merge-m", options->merge, "Entries this near to an earlier one are left out, m",
+            CLI::NonNegativeNumber);
+  addDatumOption(cli, *datum, "the map (the middle of the poles)");
+  return {&cli, [options, datum](bool) {
+            options->datum = datumOf(*datum);
+            return summaryText(importMap(*options), *options);
+          }};
+}
+
 }  // namespace
 
 int mapMain(int argc, const char* const* argv) {
   CommandLine line("pole-map",
                    "Builds a pole map from scans, or poles, at known poses; updates it; compares "
-                   "two; converts them.");
+                   "two; converts them; imports inventories.");
   CLI::App& cli = line.cli();
   return line.run(argc, argv,
-                  {buildCommand(cli), updateCommand(cli), diffCommand(cli), convertCommand(cli)});
+                  {buildCommand(cli), updateCommand(cli), diffCommand(cli), convertCommand(cli),
+                   importCommand(cli)});
 }
 
 }  // namespace polemcl::apps

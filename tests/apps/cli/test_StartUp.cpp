@@ -62,7 +62,7 @@ TEST(StartUp, HelpAndVersionAreThoseOfThePrograms) {
 
 TEST(StartUp, HelpOfASubcommand) {
   const std::string command = (bin / "pole-map").string();
-  for (const std::string name : {"build", "update", "diff", "convert"}) {
+  for (const std::string name : {"build", "update", "diff", "convert", "import"}) {
     const Outcome help = shell(command + " " + name + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_EQ(words(help.out), words(shell(command + " " + name + " --quiet --help").out));

@@ -9,8 +9,8 @@
 namespace polemcl::io {
 namespace {
 
-/// Splits a line at commas; removes quotes and spaces around the fields.
-std::vector<std::string> splitCsv(std::string_view line, const std::string& where) {
+/// Splits a line at separators; removes quotes and spaces around the fields.
+std::vector<std::string> splitCsv(std::string_view line, char separator, const std::string& where) {
   std::vector<std::string> fields(1);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -19,7 +19,7 @@ std::vector<std::string> splitCsv(std::string_view line, const std::string& wher
       fields.back() += line[++i];  // a doubled quote stands for one
     } else if (c == '"') {
       quoted = !quoted;
-    } else if (c == ',' && !quoted) {
+    } else if (c == separator && !quoted) {
       fields.emplace_back();
     } else {
       fields.back() += c;
@@ -32,13 +32,13 @@ std::vector<std::string> splitCsv(std::string_view line, const std::string& wher
 
 }  // namespace
 
-CsvTable::CsvTable(const std::filesystem::path& file) : m_file(file) {
+CsvTable::CsvTable(const std::filesystem::path& file, char separator) : m_file(file) {
   const auto lines = readLines(file);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string_view line = trimmed(lines[i]);
     if (line.empty() || line.front() == '#') continue;
     const std::string where = io::at(file, i + 1);
-    Row row{i + 1, splitCsv(line, where)};
+    Row row{i + 1, splitCsv(line, separator, where)};
     if (m_header.fields.empty()) {
       m_header = std::move(row);
     } else if (row.fields.size() != m_header.fields.size()) {

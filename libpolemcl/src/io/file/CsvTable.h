@@ -10,15 +10,17 @@
 
 namespace polemcl::io {
 
-/// \brief A CSV file in memory. Fields are separated by commas and may be quoted. Blank lines and
-/// lines that start with `#` are skipped; the first other line names the columns.
+/// \brief A CSV file in memory. Fields are separated by commas, or as told, and may be quoted.
+/// Blank lines and lines that start with `#` are skipped; the first other line names the columns.
 class CsvTable {
  public:
   /// \throws Error with file and line: file not readable, empty, a quote that is not closed, a row
   ///         whose number of fields differs from the header.
-  explicit CsvTable(const std::filesystem::path& file);
+  explicit CsvTable(const std::filesystem::path& file, char separator = ',');
 
   std::size_t rows() const { return m_rows.size(); }
+  /// \brief Names of the columns, in their order.
+  const std::vector<std::string>& names() const { return m_header.fields; }
   /// \brief Index of the column with this name. \throws Error unless there is exactly one.
   std::size_t column(const std::string& name) const;
   /// \brief As column(), for optional columns. \throws Error when there are several.

@@ -1,0 +1,157 @@
+#include "map/MapImportApp.h"
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include <polemcl/io/map/PoleMapFile.h>
+#include "cli/Version.h"
+#include "io/file/ErrorPlace.h"
+#include "io/file/TextFile.h"
+#include "map/CoordinateSystem.h"
+#include "map/GeoJson.h"
+#include "map/Inventory.h"
+
+namespace polemcl::apps {
+namespace {
+
+constexpr double s_confidence = 0.9;  ///< inventories hold poles that are gone
+
+std::vector<InventoryEntry> readInventory(const MapImportOptions& options, std::size_t& left) {
+  const std::string ending = options.input.extension().string();
+  if (ending == ".csv") return readCsvInventory(options.input, options.columns, options.separator);
+  if (ending == ".geojson" || ending == ".json") return readGeoJsonInventory(options.input, left);
+  if (ending == ".osm" || ending == ".xml") return readOsmInventory(options.input);
+  throw Error(options.input.string() + ": unknown kind of inventory '" + ending +
+              "'; allowed: .csv, .geojson, .json, .osm, .xml");
+}
+
+bool isKept(const InventoryEntry& entry, const std::vector<std::string>& keep) {
+  if (keep.empty()) return true;
+  for (const std::string& wanted : keep) {
+    const auto equals = wanted.find('=');
+    const auto found = entry.properties.find(wanted.substr(0, equals));
+    if (found != entry.properties.end() && found->second == wanted.substr(equals + 1)) return true;
+  }
+  return false;
+}
+
+double radiusOf(const InventoryEntry& entry, const MapImportOptions& options) {
+  if (options.radiusProperty.empty()) return 0;
+  const auto found = entry.properties.find(options.radiusProperty);
+  if (found == entry.properties.end() || found->second.empty()) return 0;  // not known
+  const auto value = io::parseNumber(found->second);
+  const double radius = value ? *value * options.radiusUnit : -1;
+  if (!(radius >= 0 && radius <= 5))
+    throw Error(entry.where + options.radiusProperty + " = '" + found->second +
+                "' is no radius; with --radius-unit it must be from 0 to 5 m");
+  return radius;
+}
+
+/// Middle of the box round the places, to a millionth of a degree.
+io::Datum middleOf(const std::vector<Eigen::Vector2d>& lonLats) {
+  Eigen::Vector2d low = lonLats.front(), high = low;
+  for (const Eigen::Vector2d& at : lonLats) {
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  const Eigen::Vector2d middle = (low + high) / 2;
+  io::Datum datum;
+  datum.longitude = std::round(middle.x() * 1e6) / 1e6;
+  datum.latitude = std::round(middle.y() * 1e6) / 1e6;
+  return datum;
+}
+
+/// Tells whether an earlier place lies nearer than a distance.
+class Places {
+ public:
+  explicit Places(double distance) : m_distance(distance) {}
+  bool add(const Eigen::Vector2d& place) {
+    if (m_distance == 0) return true;
+    const auto column = cell(place.x()), row = cell(place.y());
+    for (auto c = column - 1; c <= column + 1; ++c)
+      for (auto r = row - 1; r <= row + 1; ++r)
+        if (const auto found = m_cells.find({c, r}); found != m_cells.end())
+          for (const Eigen::Vector2d& other : found->second)
+            if ((other - place).norm() < m_distance) return false;
+    m_cells[{column, row}].push_back(place);
+    return true;
+  }
+
+ private:
+  std::int64_t cell(double value) const {
+    return static_cast<std::int64_t>(std::floor(value / m_distance));
+  }
+  double m_distance;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Eigen::Vector2d>> m_cells;
+};
+
+std::vector<Eigen::Vector2d> lonLatsOf(const std::vector<InventoryEntry>& entries,
+                                       const std::string& coordinates) {
+  const CoordinateSystem system(coordinates);
+  std::vector<Eigen::Vector2d> lonLats;
+  for (const InventoryEntry& entry : entries)
+    lonLats.push_back(io::located(entry.where, [&] { return system.lonLat(entry.place); }));
+  return lonLats;
+}
+
+MapPole poleAt(const Eigen::Vector2d& place, double radius, double sigma) {
+  MapPole pole;
+  pole.x = place.x();
+  pole.y = place.y();
+  pole.radius = radius;
+  pole.confidence = s_confidence;
+  pole.covariance = Eigen::Matrix2d::Identity() * sigma * sigma;
+  pole.count = 1;
+  return pole;
+}
+
+}  // namespace
+
+MapImportSummary importMap(const MapImportOptions& options) {
+  if (options.output.extension() != ".polemap")
+    throw Error(options.output.string() + ": the map to write must end in .polemap");
+  MapImportSummary summary;
+  std::vector<InventoryEntry> entries;
+  for (InventoryEntry& entry : readInventory(options, summary.others)) {
+    if (isKept(entry, options.keep))
+      entries.push_back(std::move(entry));
+    else
+      ++summary.others;
+  }
+  if (entries.empty()) throw Error(options.input.string() + ": no pole in it that is kept");
+  const std::vector<Eigen::Vector2d> lonLats = lonLatsOf(entries, options.coordinates);
+  summary.datum = options.datum ? *options.datum : middleOf(lonLats);
+
+  io::PoleMapData map;
+  Places places(options.merge);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Eigen::Vector2d place =
+        io::located(entries[i].where, [&] { return onMap(lonLats[i], summary.datum); });
+    if (!places.add(place)) continue;
+    map.poles.push_back(poleAt(place, radiusOf(entries[i], options), options.sigma));
+  }
+  summary.poles = map.poles.size();
+  summary.doubles = entries.size() - map.poles.size();
+  io::setDatum(map.info, summary.datum, options.input.string() + ": ");
+  map.info["program"] = std::string("pole-map ") + version();
+  map.info["build"] = buildIdentity();
+  map.info["imported_from"] = options.input.filename().string();
+  map.info["sigma_m"] = io::significant(options.sigma, 9);
+  io::writePoleMap(options.output, map);
+  return summary;
+}
+
+std::string summaryText(const MapImportSummary& summary, const MapImportOptions& options) {
+  std::ostringstream out;
+  out << options.output.string() << ": " << summary.poles << " poles, datum "
+      << io::datumText(summary.datum) << '\n';
+  if (summary.others > 0)
+    out << "entries that are no points or not kept: " << summary.others << '\n';
+  if (summary.doubles > 0)
+    out << "entries nearer than " << io::significant(options.merge, 6)
+        << " m to an earlier one, left out: " << summary.doubles << '\n';
+  return out.str();
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+#include <mrpt/topography/conversions.h>
+
+#include <cmath>
+#include <fstream>
+
+#include <polemcl/io/map/PoleMapFile.h>
+#include "map/CoordinateSystem.h"
+#include "map/GeoJson.h"
+#include "map/MapApp.h"
+#include "support/ExpectHas.h"
+#include "support/TempFolder.h"
+
+namespace polemcl::test_map_import_app {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+class MapImportApp : public testing::Test {
+ protected:
+  Outcome import(const std::string& name, const std::string& text,
+                 const std::vector<std::string>& more = {}) {
+    std::ofstream(folder / name) << text;
+    std::vector<std::string> arguments{"import", "--input", (folder / name).string(), "--output",
+                                       (folder / "m.polemap").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  }
+  /// Error of a run that must fail and write nothing.
+  std::string failure(const std::string& name, const std::string& text,
+                      const std::vector<std::string>& more = {}) {
+    const Outcome outcome = import(name, text, more);
+    EXPECT_EQ(outcome.code, 1) << outcome.out;
+    EXPECT_FALSE(std::filesystem::exists(folder / "m.polemap"));
+    return outcome.err;
+  }
+  io::PoleMapData map() const { return io::readPoleMap(folder / "m.polemap"); }
+  TempFolder folder;
+};
+
+/// An upper-case letter of Latin-1 in UTF-8, as Norwegian columns have it.
+const std::string s_utm =
+    "Punkt;UTM33-Nord;UTM33-\xc3\x98st;Umfang cm\n"
+    "1;7023875.719;224681.943;62.8\n2;7023852.719;224712.845;\n3;7023852.8;224712.9;10\n";
+const std::vector<std::string> s_utmOptions{
+    "--separator", ";", "--columns", "UTM33-\xc3\x98st,UTM33-Nord", "--crs", "EPSG:25833"};
+
+const char* const s_osm = R"(<?xml version="1.0"?>
+<osm version="0.6">
+ <node id="1" lat="52.0" lon="13.0"><tag k="highway" v="street_lamp"/></node>
+ <node id="2" lat="52.0001" lon="13.0"/>
+ <node id="3" lat="52.0001" lon="13.0001"/>
+ <node id="4" lat="52.0002" lon="13.0002"><tag k="natural" v="tree"/></node>
+ <node id="5" lat="52.0003" lon="13.0"><tag k="highway" v="bus_stop"/></node>
+ <node id="6" lat="52.0004" lon="13.0"><tag k="traffic_sign" v="DE:274"/></node>
+ <way id="9"><nd ref="2"/><nd ref="3"/><nd ref="77"/><tag k="type" v="traffic_light"/></way>
+ <way id="10"><nd ref="2"/><nd ref="3"/><tag k="type" v="line_thin"/></way>
+</osm>
+)";
+
+}  // namespace
+
+// Against MRPT's own series, which is off by centimetres.
+TEST(CoordinateSystem, KnowsUtm) {
+  const CoordinateSystem utm("EPSG:32633");
+  const Eigen::Vector2d found = utm.lonLat({224681.943, 7023875.719});
+  double lat = 0, lon = 0;
+  mrpt::topography::UTMToGeodetic(224681.943, 7023875.719, 33, 'N', lon, lat);
+  EXPECT_NEAR(found.x(), lon, 1e-6);
+  EXPECT_NEAR(found.y(), lat, 1e-6);
+  EXPECT_EQ(CoordinateSystem("EPSG:4326").lonLat(found), found);
+}
+
+TEST_F(MapImportApp, TablesInUtmKeepDistancesAndRadii) {
+  std::vector<std::string> options = s_utmOptions;
+  options.insert(options.end(), {"--radius-property", "Umfang cm", "--radius-unit", "0.00159155",
+                                 "--sigma-m", "0.3"});
+  const Outcome outcome = import("a.csv", s_utm, options);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_HAS(outcome.out, "2 poles");
+  EXPECT_HAS(outcome.out, "left out: 1");
+  const auto data = map();
+  ASSERT_EQ(data.poles.size(), 2u);
+  // UTM is 0.9996 times the ground in its middle and more to the sides: here 1.0005 times.
+  const double there = std::hypot(7023875.719 - 7023852.719, 224681.943 - 224712.845);
+  const double here =
+      std::hypot(data.poles[0].x - data.poles[1].x, data.poles[0].y - data.poles[1].y);
+  EXPECT_NEAR(there / here, 1.0005, 0.0003);
+  EXPECT_NEAR(data.poles[0].x + data.poles[1].x, 0, 0.2);
+  EXPECT_NEAR(data.poles[0].radius, 0.1, 1e-4);
+  EXPECT_EQ(data.poles[1].radius, 0) << "not known";
+  EXPECT_NEAR(data.poles[0].covariance(0, 0), 0.09, 1e-12);
+  EXPECT_EQ(data.poles[0].covariance(0, 1), 0);
+  EXPECT_EQ(data.info.count("datum"), 1u);
+}
+
+TEST_F(MapImportApp, PointsOfGeoJsonWithOtherPeoplesProperties) {
+  const std::string json =
+      R"({"type":"FeatureCollection","features":[
+      {"type":"Feature","geometry":{"type":"Point","coordinates":[13,52,34]},
+       "properties":{"art":"Mast","radius":"unknown"}},
+      {"type":"Feature","geometry":{"type":"LineString","coordinates":[[13,52],[13,53]]}},
+      {"type":"Feature","geometry":{"type":"Point","coordinates":[13.0001,52]},
+       "properties":{"art":"Bank"}}]})";
+  const Outcome outcome =
+      import("a.geojson", json, {"--keep", "art=Mast", "--datum", "52,12.9999,90"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_HAS(outcome.out, "not kept: 2");
+  const auto data = map();
+  ASSERT_EQ(data.poles.size(), 1u);
+  EXPECT_NEAR(data.poles[0].x, 0, 0.01) << "x points north";
+  EXPECT_NEAR(data.poles[0].y, -6.867, 0.01);
+}
+
+TEST_F(MapImportApp, LampsTreesSignsAndLightsOfOpenStreetMap) {
+  ASSERT_EQ(import("a.osm", s_osm, {"--datum", "52,13"}).code, 0);
+  const auto data = map();
+  ASSERT_EQ(data.poles.size(), 4u);
+  EXPECT_NEAR(data.poles[0].x, 0, 1e-6);
+  EXPECT_NEAR(data.poles[1].y, 22.253, 0.01) << "the tree";
+  EXPECT_NEAR(data.poles[2].y, 44.507, 0.01) << "the sign";
+  EXPECT_NEAR(data.poles[3].x, 3.434, 0.01) << "middle of the light's known nodes";
+  ASSERT_EQ(import("a.osm", s_osm, {"--keep", "kind=tree", "kind=light"}).code, 0);
+  EXPECT_EQ(map().poles.size(), 2u);
+}
+
+TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
+  EXPECT_HAS(failure("a.txt", ""), "allowed: .csv, .geojson, .json, .osm, .xml");
+  EXPECT_HAS(failure("a.csv", s_utm), "--columns EAST,NORTH");
+  EXPECT_HAS(failure("a.csv", s_utm, {"--separator", ";", "--columns", "UTM33-Nord,Punkt"}),
+             "a.csv:2: the place 7023875.72 1 is not in the coordinate system EPSG:4326; --crs");
+  EXPECT_HAS(failure("a.csv", "lon,lat\n", {"--crs", "EPSG:1"}), "no pole in it that is kept");
+  EXPECT_HAS(failure("a.csv", "lon,lat\n1,1\n", {"--crs", "EPSG:1"}), "unknown coordinate system");
+  EXPECT_HAS(failure("a.csv", "lon,lat\n1,1\n3,3\n"), "km from the datum");
+  EXPECT_HAS(failure("a.csv", "lon,lat,r\n1,1,thick\n", {"--radius-property", "r"}),
+             "a.csv:2: r = 'thick' is no radius");
+  EXPECT_HAS(failure("a.osm", "<osm><node id='1' lat='1' lon='1'>"), "is no OSM XML");
+  EXPECT_HAS(failure("a.osm", "<gpx></gpx>"), "no element osm");
+  EXPECT_HAS(failure("a.osm", "<osm>\n<node id='1' lat='91' lon='1'/></osm>"),
+             "a.osm:2: a node needs id, lon and lat");
+  EXPECT_HAS(failure("a.osm", "<osm><way><nd ref='1'/><tag k='type' v='pole'/></way></osm>"),
+             "has no node of this file");
+  EXPECT_HAS(failure("a.json", "{}"), "is no GeoJSON FeatureCollection");
+  EXPECT_EQ(import("a.csv", s_utm, {"--keep", "tree"}).code, 2);
+  EXPECT_EQ(import("a.csv", s_utm, {"--columns", "a"}).code, 2);
+}
+
+}  // namespace polemcl::test_map_import_app
