@@ -49,6 +49,18 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
   });
 }
 
+CLI::Option* addEstimateOption(CLI::App& cli, MappingJob& job) {
+  auto* estimate = cli.add_option_function<std::vector<std::filesystem::path>>(
+      "--estimate",
+      [&job](const std::vector<std::filesystem::path>& files) {
+        job.poses = files;
+        job.kind = PoseKind::estimate;
+      },
+      "Instead of --truth: run_NN.tum of pole-localize, one file per rawlog");
+  estimate->excludes(cli.get_option("--truth"));
+  return estimate;
+}
+
 std::vector<std::string> warningsOf(const MapBuildSummary&, const MapBuildJob&) {
   return {};
 }
@@ -79,7 +91,15 @@ Subcommand buildCommand(CLI::App& program) {
                  "Map that keeps its scans; the rawlogs are added as later sessions");
   cli.add_flag("--keep-scans", job->keepScans,
                "Keep the poles of the used scans in the map, for a later --add");
-  return mappingCommand(cli, job, buildMap);
+  Subcommand command = mappingCommand(cli, job, buildMap);
+  auto* estimate = addEstimateOption(cli, *job);
+  cli.add_option("--inventory", job->inventory,
+                 "Map of `import` in which the rawlogs were localized: it is made as exact as the "
+                 "LiDAR")
+      ->needs(estimate)
+      ->excludes("--add");
+  estimate->needs("--inventory");
+  return command;
 }
 
 Subcommand updateCommand(CLI::App& program) {
@@ -89,14 +109,7 @@ Subcommand updateCommand(CLI::App& program) {
   cli.add_option("--map", job->map, "Map to begin with, .polemap")->required();
   cli.add_option("--json", job->json, "Also write what changed to this file (JSON)");
   Subcommand command = mappingCommand(cli, job, updateMapFile);
-  auto* estimate = cli.add_option_function<std::vector<std::filesystem::path>>(
-      "--estimate",
-      [job](const std::vector<std::filesystem::path>& files) {
-        job->poses = files;
-        job->kind = PoseKind::estimate;
-      },
-      "Instead of --truth: run_NN.tum of pole-localize, one file per rawlog");
-  estimate->excludes(cli.get_option("--truth"));
+  addEstimateOption(cli, *job);
   return command;
 }
 

@@ -1,10 +1,13 @@
 #include "map/MapBuildApp.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
 #include "cli/Version.h"
+#include "core/common/KdTree2D.h"
+#include "core/common/Transform.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 
@@ -23,13 +26,53 @@ MapAccumulator accumulator(const MapBuildJob& job, const Settings& settings) {
   });
 }
 
-/// The job's datum, or that of the map that is added to: both must be the same.
+/// The job's datum, or that of the map that is added to, or of the inventory: both must be the
+/// same.
 std::optional<io::Datum> datumFor(const MapBuildJob& job) {
-  if (!job.add) return job.datum;
-  const std::string where = job.add->string() + ": ";
-  auto info = io::readPoleMap(*job.add).info;
+  const auto& base = job.add ? job.add : job.inventory;
+  if (!base) return job.datum;
+  const std::string where = base->string() + ": ";
+  auto info = io::readPoleMap(*base).info;
   if (job.datum) io::setDatum(info, *job.datum, where);
   return io::datumOf(info, where);
+}
+
+/// Moves the poses of all drives so that their poles stand where the inventory has them.
+AdjustedDrives adjust(std::vector<MappingSession>& drives, const std::vector<MapPole>& inventory,
+                      const Settings& settings) {
+  std::vector<DrivenScan> scans;
+  for (const MappingSession& drive : drives)
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      DrivenScan scan{drive.scans[i].pose_map_robot, drive.scans[i].poles_robot, {}};
+      if (const auto& motion = drive.motions[i])
+        scan.motion = PoseWithCovariance{motion->mean, motion->covariance};
+      scans.push_back(std::move(scan));
+    }
+  const OdometryCalibrationOptions& calibration = settings.localization.odometryCalibration;
+  AdjustedDrives adjusted =
+      adjustDrives(scans, inventory,
+                   {settings.map, calibration.scaleSigma, calibration.yawSigma,
+                    settings.upkeep.existence.decorrelation});
+  std::size_t next = 0;
+  for (MappingSession& drive : drives)
+    for (SessionScan& scan : drive.scans) {
+      scan.pose_map_robot = adjusted.poses_map_robot[next++];
+      scan.poseCovariance.setZero();
+    }
+  return adjusted;
+}
+
+/// The poles of an inventory that no drive saw, and that no scan came nearer to than a range.
+std::vector<LandmarkRecord> outOfSight(const LandmarkMap& inventory, const AdjustedDrives& drives,
+                                       double range) {
+  const KdTree2D path(centresOf(drives.poses_map_robot));
+  const std::set<std::size_t> seen(drives.anchors.begin(), drives.anchors.end());
+  std::vector<LandmarkRecord> left;
+  std::size_t number = 0;  // among those on the map
+  for (const LandmarkRecord& pole : inventory.poles)
+    if (pole.present && seen.count(number++) == 0 && !path.nearest(pole.pole.x, pole.pole.y, range))
+      left.push_back(pole);
+  return left;
 }
 
 void addDrive(const MapBuildJob& job, std::size_t drive, MappingSession found,
@@ -110,6 +153,7 @@ std::map<std::string, std::string> facts(const Settings& settings, const MapBuil
       {"config", settingsText(settings)}};
   addShares(summary, info);
   if (datum) info[io::kDatumKey] = io::datumText(*datum);
+  if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
   return info;
 }
 
@@ -121,9 +165,19 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
   MapBuildSummary summary;
   const auto datum = datumFor(job);
   MapAccumulator sessions = accumulator(job, settings);
+  std::vector<MappingSession> drives;
   for (std::size_t i = 0; i < job.inputs.size(); ++i)
-    addDrive(job, i, loadMappingSession(job.session(i), settings, job.allowTruncated, progress),
-             sessions, summary);
+    drives.push_back(loadMappingSession(job.session(i), settings, job.allowTruncated, progress));
+  LandmarkMap inventory;
+  if (job.inventory) {
+    inventory = io::landmarkMap(io::readPoleMap(*job.inventory));
+    summary.inventory.emplace();
+    summary.inventory->drives = io::located(job.inventory->string() + ": ", [&] {
+      return adjust(drives, presentPoles(inventory), settings);
+    });
+  }
+  for (std::size_t i = 0; i < drives.size(); ++i)
+    addDrive(job, i, std::move(drives[i]), sessions, summary);
   countSessions(sessions.added(), summary);
   if (summary.scans == 0)
     throw Error(job.inputs.front().string() + ": no usable scan, " +
@@ -131,8 +185,13 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
   summary.map = sessions.build();
   if (summary.map.poles.empty()) throw Error(noPoles(summary, settings.map));
 
-  const io::PoleMapData map =
-      io::mapData(sessions.withHistories(summary.map.poles), facts(settings, summary, datum));
+  LandmarkMap landmarks = sessions.withHistories(summary.map.poles);
+  if (summary.inventory) {
+    const auto kept = outOfSight(inventory, summary.inventory->drives, settings.upkeep.range);
+    summary.inventory->kept = kept.size();
+    landmarks.poles.insert(landmarks.poles.end(), kept.begin(), kept.end());
+  }
+  const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, datum));
   writeViews(job, map, pathOf(sessions.added()));
   io::writePoleMap(job.output, map, job.keepScans || job.add ? &sessions.added() : nullptr);
   return summary;
@@ -149,6 +208,14 @@ std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) 
     for (const MapBuildSummary::Session& session : summary.sessions)
       out << session.name << ": " << session.used << " of " << session.scans
           << " scans used, f_map " << io::fixed(session.share, 4) << '\n';
+  if (summary.inventory) {
+    const AdjustedDrives& drives = summary.inventory->drives;
+    out << "inventory: " << drives.anchors.size() << " of its poles are among the " << drives.poles
+        << " poles seen, " << io::fixed(drives.anchorDistance, 2)
+        << " m from them (rms); the poses "
+        << "are certain to " << io::fixed(drives.sigma, 3)
+        << " m; poles of it out of sight, kept: " << summary.inventory->kept << '\n';
+  }
   out << summary.skipped;
   return out.str();
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mapping/DriveAdjustment.h"
 #include "core/mapping/MapAccumulator.h"
 #include "map/MappingSession.h"
 
@@ -17,6 +18,15 @@ struct MapBuildJob : MappingJob {
   /// `.polemap` that keeps its scans: the inputs are sessions after those it was made from.
   std::optional<std::filesystem::path> add = {};
   bool keepScans = false;  ///< in the map, for `add`; always when `add` is given
+  /// `.polemap` of poles known to metres (`pole-map import`): the inputs are localized in it, and
+  /// are adjusted to it together. Its poles out of their sight stay on the map.
+  std::optional<std::filesystem::path> inventory = {};
+};
+
+/// \brief How the drives fit an inventory.
+struct InventoryAdjustment {
+  AdjustedDrives drives;
+  std::size_t kept = 0;  ///< poles of the inventory that no drive came near
 };
 
 /// \brief What mapping did, summed over the inputs.
@@ -31,7 +41,8 @@ struct MapBuildSummary {
     std::size_t scans = 0, used = 0;  ///< at true poses; of these
     double share = 0;                 ///< used / scans, `f_map`
   };
-  std::vector<Session> sessions;  ///< in their order, those of `add` first
+  std::vector<Session> sessions;                 ///< in their order, those of `add` first
+  std::optional<InventoryAdjustment> inventory;  ///< when one was given
 };
 
 /// \brief Builds the map, with a history of each pole for later updates, and writes the files of

@@ -54,8 +54,10 @@ MappingSession loadMappingSession(const SessionFiles& files, const Settings& set
   MappingSession session;
   const SequenceCounts& counts = sequence.counts;
   session.skipped = {counts.emptyScans, 0, 0, counts.invalidPoints, counts.truncated};
+  std::optional<io::PlanarMotion> way;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
     const PoleFrame& frame = sequence.frames[i];
+    way = way && frame.motion ? std::optional(composeMotions(*way, *frame.motion)) : std::nullopt;
     if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
     const auto scan = poses.at(i, frame.time);
     session.skipped.unmatched += !scan;
@@ -66,6 +68,8 @@ MappingSession loadMappingSession(const SessionFiles& files, const Settings& set
     session.scans.push_back({frame.time, scan->pose, poles_robot, frame.visibilityRange,
                              frame.pose_robot_sensor, scan->covariance});
     session.path.push_back({frame.time, scan->pose});
+    session.motions.push_back(way);
+    way = io::PlanarMotion();
   }
   requireCovered(session, files, sequence);
   return session;

@@ -64,6 +64,9 @@ struct SkippedScans {
 struct MappingSession {
   std::vector<SessionScan> scans;
   std::vector<StampedPose2D> path;  ///< of the scans
+  /// Odometry to each scan from the one before that is here; none of the first, and where a motion
+  /// on the way is not known.
+  std::vector<std::optional<io::PlanarMotion>> motions;
   SkippedScans skipped;
 };
 

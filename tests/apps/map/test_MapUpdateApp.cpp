@@ -211,6 +211,57 @@ TEST_F(MapUpdateApp, DoubtfulPosesDoNotChangeTheMap) {
   expectFailure(updateByRun(), {"run_00_health.csv"});
 }
 
+// An inventory is off by 0.4 m, and knows a pole far away; a drive localized in it makes it exact.
+TEST_F(MapUpdateApp, AnInventoryBecomesAsExactAsTheLidar) {
+  drive("day1", today);
+  writeRun("ok", 1e-6);
+  io::PoleMapData inventory;
+  for (const auto& [x, y] : today) {
+    MapPole pole;
+    pole.x = x + 0.4 * std::cos(x + y);
+    pole.y = y + 0.4 * std::sin(x + y);
+    pole.covariance = Eigen::Matrix2d::Identity() * 0.25;
+    inventory.poles.push_back(pole);
+  }
+  inventory.poles.front().x = -400;
+  inventory.info = {{"datum", "52,13,0"}};
+  io::writePoleMap(folder / "inventory.polemap", inventory);
+  const std::vector<std::string> build{"build",
+                                       "--config",
+                                       config(),
+                                       "--input",
+                                       at("day1.rawlog"),
+                                       "--inventory",
+                                       at("inventory.polemap"),
+                                       "--output",
+                                       at("exact.polemap")};
+  auto arguments = build;
+  arguments.insert(arguments.end(), {"--estimate", at("run_00.tum")});
+  const auto outcome = runProgram(mapMain, arguments);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("out of sight, kept: 1"), std::string::npos) << outcome.out;
+  const auto map = io::readPoleMap(folder / "exact.polemap");
+  EXPECT_EQ(map.info.at("datum"), "52,13,0");
+  EXPECT_EQ(map.info.count("pose_sigma_m"), 1u);
+  EXPECT_TRUE(has(map.poles, -400, inventory.poles.front().y));
+  // Distances between poles are those of the street, wherever the whole stands.
+  const auto nearest = [&](const StreetPole& to) {
+    const auto found =
+        std::min_element(map.poles.begin(), map.poles.end(), [&](const auto& a, const auto& b) {
+          return std::hypot(a.x - to.x, a.y - to.y) < std::hypot(b.x - to.x, b.y - to.y);
+        });
+    return Eigen::Vector2d(found->x, found->y);
+  };
+  for (std::size_t i = 4; i < 12; ++i) {
+    const double right = std::hypot(today[i].x - today[3].x, today[i].y - today[3].y);
+    EXPECT_NEAR((nearest(today[i]) - nearest(today[3])).norm(), right, 0.05) << i;
+  }
+  expectUsageError(runProgram(mapMain, build));
+  arguments = build;
+  arguments.insert(arguments.end(), {"--truth", at("day1.tum")});
+  expectUsageError(runProgram(mapMain, arguments));
+}
+
 TEST_F(MapUpdateApp, WarnsWhenManyPolesHaveMoved) {
   mapYesterday();
   drive("day1", today);  // 1 of about 12 moved

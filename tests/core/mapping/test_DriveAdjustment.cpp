@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/mapping/DriveAdjustment.h"
+#include "support/ExpectHas.h"
+#include "support/PoleStreet.h"
+
+namespace polemcl::test_drive_adjustment {
+namespace {
+
+using tests::Dice;
+
+/// 400 m of street, an odometry that reads 2 % too much, poses to start from that wander by
+/// decimetres, and an inventory: poles off by 0.3 to 1 m, some missing, some that do not exist.
+struct Drive {
+  explicit Drive(std::uint64_t seed = 3) {
+    tests::StreetOptions options;
+    options.scans = 800;
+    options.detection = 0.03;
+    options.odometry = 0.01;
+    options.unmapped = 0.2;
+    options.seed = seed;
+    const tests::PoleStreet street = tests::makeStreet(options);
+    truth = street.truth;
+    Dice dice(seed + 100);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double way = 0.5 * static_cast<double>(i);
+      const Pose2D wrong{0.2 * std::sin(way / 15), 0.2 * std::cos(way / 19),
+                         0.004 * std::sin(way / 11)};
+      DrivenScan scan{{truth[i].x + wrong.x, truth[i].y + wrong.y, truth[i].yaw + wrong.yaw},
+                      street.frames[i].poles_robot,
+                      {}};
+      for (PoleDetection& pole : scan.poles_robot)
+        pole.covariance = Eigen::Matrix2d::Identity() * 9e-4;
+      io::PlanarMotion motion = *street.frames[i].motion;
+      motion.mean.x *= 1.02;
+      motion.mean.y *= 1.02;
+      if (i > 0) scan.motion = PoseWithCovariance{motion.mean, motion.covariance};
+      scans.push_back(scan);
+    }
+    for (MapPole pole : street.map->poles()) {
+      const double direction = dice.uniform(0, 2 * M_PI), distance = dice.uniform(0.3, 1);
+      pole.x += distance * std::cos(direction);
+      pole.y += distance * std::sin(direction);
+      pole.covariance = Eigen::Matrix2d::Identity() * 0.25;
+      inventory.push_back(pole);
+      if (dice.uniform() > 0.1) continue;
+      pole.x += dice.uniform(-10, 10);
+      pole.y += dice.uniform(-10, 10);
+      inventory.push_back(pole);
+    }
+  }
+  AdjustedDrives adjust() const { return adjustDrives(scans, inventory, DriveAdjustmentOptions()); }
+  double error(const Pose2D& pose, std::size_t i) const {
+    return std::hypot(pose.x - truth[i].x, pose.y - truth[i].y);
+  }
+  std::vector<Pose2D> truth;
+  std::vector<DrivenScan> scans;
+  std::vector<MapPole> inventory;
+};
+
+/// Greatest difference between the way of 40 m from a scan on and the true one.
+double worstWay(const std::vector<Pose2D>& poses, const std::vector<Pose2D>& truth) {
+  double worst = 0;
+  for (std::size_t i = 0; i + 80 < poses.size(); ++i) {
+    const Pose2D way = relative(poses[i], poses[i + 80]), right = relative(truth[i], truth[i + 80]);
+    worst = std::max(worst, std::hypot(way.x - right.x, way.y - right.y));
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST(DriveAdjustment, ShapeOfTheLidarPlaceOfTheInventory) {
+  for (const std::uint64_t seed : {3u, 4u, 5u}) {
+    SCOPED_TRACE(seed);
+    const Drive drive(seed);
+    const AdjustedDrives adjusted = drive.adjust();
+    ASSERT_EQ(adjusted.poses_map_robot.size(), drive.scans.size());
+    double before = 0, after = 0;
+    std::vector<Pose2D> start;
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      start.push_back(drive.scans[i].pose_map_robot);
+      before += drive.error(start[i], i) / static_cast<double>(drive.scans.size());
+      after +=
+          drive.error(adjusted.poses_map_robot[i], i) / static_cast<double>(drive.scans.size());
+    }
+    EXPECT_GT(before, 0.18);
+    EXPECT_LT(after, 3 * adjusted.sigma);
+    EXPECT_LT(adjusted.sigma, 0.2);
+    EXPECT_GT(adjusted.sigma, 0.03) << "the inventory's part does not average out";
+    EXPECT_GT(worstWay(start, drive.truth), 0.3);
+    EXPECT_LT(worstWay(adjusted.poses_map_robot, drive.truth), 0.1);
+    EXPECT_NEAR(adjusted.anchorDistance, 0.68, 0.15);  // rms of 0.3 to 1 m
+  }
+}
+
+TEST(DriveAdjustment, TwoDrivesGetOneShape) {
+  Drive drive;
+  const std::size_t count = drive.scans.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    DrivenScan again = drive.scans[i];  // the same way, from other poses
+    again.pose_map_robot.x -= 0.3;
+    if (i == 0) again.motion.reset();
+    drive.scans.push_back(again);
+  }
+  const AdjustedDrives adjusted = drive.adjust();
+  for (std::size_t i = 0; i < count; i += 50) {
+    const Pose2D &a = adjusted.poses_map_robot[i], &b = adjusted.poses_map_robot[count + i];
+    EXPECT_LT(std::hypot(a.x - b.x, a.y - b.y), 0.03) << i;
+  }
+}
+
+TEST(DriveAdjustment, NeedsPolesOfTheMap) {
+  Drive drive;
+  for (MapPole& pole : drive.inventory) pole.x += 500;
+  try {
+    drive.adjust();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_HAS(std::string(error.what()), "stand near one of the map; 3 are needed");
+  }
+}
+
+}  // namespace polemcl::test_drive_adjustment
