@@ -15,7 +15,7 @@ namespace polemcl {
 
 struct LiveQueueOptions {
   /// Most scans that wait; one more drops the oldest. Half a second of a LiDAR of 10 Hz: short
-  /// interruptions drop nothing, and under lasting overload poses are late by no more than that.
+  /// interruptions drop nothing, and under lasting overload no scan waits longer than that.
   std::size_t longest = 5;
   /// Longest wait of a scan for odometry of its time, s. Odometry usually is there before: the time
   /// of a scan is that of its first beam.

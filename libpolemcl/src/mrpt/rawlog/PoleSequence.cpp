@@ -167,11 +167,12 @@ SequenceCounts play(ScanSource& source, const std::string& name, const SequenceO
       return task;
     };
     const auto collect = [&](const TaskPtr& task) { stream.collect(*task, consume); };
+    // Scans of sensors that must wait do so where the oldest can be dropped, not in here.
+    const auto atOnce = static_cast<std::size_t>(source.isLive() ? threads + 1 : 2 * threads);
     tbb::parallel_pipeline(
-        2 * static_cast<std::size_t>(threads),
-        tbb::make_filter<void, TaskPtr>(tbb::filter_mode::serial_in_order, read) &
-            tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
-            tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));
+        atOnce, tbb::make_filter<void, TaskPtr>(tbb::filter_mode::serial_in_order, read) &
+                    tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
+                    tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));
   });
   return stream.finish();
 }

@@ -53,6 +53,7 @@ class ScanSource {
   const ScanTiming& timing() const { return m_timing; }
   std::size_t otherSensors() const { return m_otherSensors; }
   std::size_t unknownMotions() const { return m_unknownMotions; }
+  bool isLive() const { return m_entries->isLive(); }
   std::size_t dropped() const { return m_entries->dropped(); }
   bool truncated() const { return m_entries->truncated(); }
   /// \brief Estimated number of scans in the file, from the fraction read so far; 0: unknown.
