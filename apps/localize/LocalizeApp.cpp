@@ -10,6 +10,7 @@
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
+#include "localize/LiveDrive.h"
 #include "localize/LocalizePlayer.h"
 #include "localize/LocalizeReport.h"
 #include "localize/Pace.h"
@@ -72,12 +73,13 @@ LocalizeFacts factsOf(const LocalizeJob& job, const Settings& settings, std::siz
 
 /// Times as fast as it was recorded; none: full speed. `[view] rate` is for windows only.
 std::optional<double> rateOf(const LocalizeJob& job, const Settings& settings) {
+  if (job.isLive()) return 1;
   return job.rate || settings.view.live ? report::parseRate(settings.view.rate) : std::nullopt;
 }
 
-/// Streams the rawlog to the player.
-SequenceCounts play(const LocalizeJob& job, const Settings& settings, const RunView& view,
-                    LocalizePlayer& player) {
+/// Streams the rawlog, or the sensors, to the player. A rawlog has no failure.
+LiveDriveResult play(const LocalizeJob& job, const Settings& settings, const RunView& view,
+                     LocalizePlayer& player) {
   SequenceOptions options;
   options.extraction = settings.poleExtraction();
   options.motion = settings.motion;
@@ -86,10 +88,12 @@ SequenceCounts play(const LocalizeJob& job, const Settings& settings, const RunV
   Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });
   options.pace = [&](double time) { return pace.waitFor(time); };
   Progress progress("localize", 0, job.quiet);
-  return streamPoles(job.input.string(), options, [&](const PoleScan& scan) {
+  const auto take = [&](const PoleScan& scan) {
     player.take(scan);
     progress.update(scan.index + 1, scan.expected);
-  });
+  };
+  if (job.isLive()) return streamSensors({job.sensors, job.seconds}, options, take);
+  return {streamPoles(job.input.string(), options, take), ""};
 }
 
 void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings& settings,
@@ -110,13 +114,13 @@ LocalizeResult localize(const LocalizeJob& job) {
   LocalizeFacts facts = factsOf(job, settings, map->poles().size());
   // Before the work, so that folders and windows that cannot be are known now.
   RunFolder folder(job.output);
-  for (const auto& input : {job.config, job.input, job.map, job.truth.value_or("")}) {
+  for (const auto& input : {job.config, job.source(), job.map, job.truth.value_or("")}) {
     folder.protect(input);
     std::error_code notThere;
     if (job.stream && std::filesystem::equivalent(*job.stream, input, notThere))
       throw Error("--stream " + job.stream->string() + ": is an input; choose another file");
   }
-  RunView view(settings.view, map->poles(), job.input.filename().string(), folder);
+  RunView view(settings.view, map->poles(), job.source().filename().string(), folder);
 
   const LocalizationMap prepared(map, settings.global);
   const auto begin = ScanClock::now();
@@ -124,7 +128,8 @@ LocalizeResult localize(const LocalizeJob& job) {
   if (job.stream) stream.emplace(*job.stream);
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view,
                         stream ? &*stream : nullptr);
-  facts.counts = play(job, settings, view, player);
+  const auto [counts, failure] = play(job, settings, view, player);
+  facts.counts = counts;
   LocalizeResult result = player.finish();
   result.timings.wallSeconds = secondsSince(begin);
   result.timings.rate = rateOf(job, settings);
@@ -135,10 +140,31 @@ LocalizeResult localize(const LocalizeJob& job) {
     out << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
   }
   view.waitForWindow();
+  if (!failure.empty())
+    throw Error(failure + "; the results up to then are in " + job.output.string());
   return result;
 }
 
 namespace {
+
+/// A rawlog, or sensors; never both.
+void addSources(CLI::App& cli, LocalizeJob& job) {
+  auto* input = cli.add_option("--input", job.input, "Rawlog of scans or of poles, with odometry");
+  auto* sensors =
+      cli.add_option("--sensors", job.sensors,
+                     "In place of --input: sensors (.ini of MRPT's rawlog-grabber), until Ctrl-C")
+          ->excludes(input);
+  addNumber(cli, "--for", job.seconds, "End a drive with --sensors after this time, s",
+            CLI::Range(0.0, 1e6))
+      ->needs(sensors);
+  addNumber(cli, "--follow", job.follow,
+            "Wait at the end of a rawlog that still grows, until nothing has come for this time, s",
+            CLI::Range(0.0, 86400.0))
+      ->excludes(sensors);
+  cli.add_flag("--allow-truncated", job.allowTruncated,
+               "Use the readable part of a rawlog that ends too early")
+      ->excludes(sensors);
+}
 
 void addViewOptions(CLI::App& cli, LocalizeJob& job) {
   cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
@@ -159,12 +185,13 @@ void addViewOptions(CLI::App& cli, LocalizeJob& job) {
 }  // namespace
 
 int localizeMain(int argc, const char* const* argv) {
-  CommandLine line("pole-localize", "Localizes a vehicle in a pole map, from a rawlog.");
+  CommandLine line("pole-localize",
+                   "Localizes a vehicle in a pole map, from a rawlog or from sensors.");
   LocalizeJob job;
   auto& cli = line.cli();
   cli.add_option("--config", job.config, "Settings (.ini)")->required();
   addSetOption(cli, job.set);
-  cli.add_option("--input", job.input, "Rawlog of scans or of poles, with odometry")->required();
+  addSources(cli, job);
   cli.add_option("--map", job.map, "Pole map (.polemap)")->required();
   cli.add_option("--output", job.output, "Folder for the results")->required();
   cli.add_option("--truth", job.truth, "True robot poses (.tum): errors, and the start");
@@ -181,14 +208,13 @@ int localizeMain(int argc, const char* const* argv) {
                "Start without a pose: search the whole map during the drive")
       ->excludes(start);
   addViewOptions(cli, job);
-  addNumber(cli, "--follow", job.follow,
-            "Wait at the end of a rawlog that still grows, until nothing has come for this time, s",
-            CLI::Range(0.0, 86400.0));
+  cli.get_option("--sensors")->excludes(cli.get_option("--rate"));
   cli.add_option("--stream", job.stream,
                  "File for the poses of the first run as they are made, a line of JSON a scan; - "
                  "for standard output");
-  cli.add_flag("--allow-truncated", job.allowTruncated,
-               "Use the readable part of a rawlog that ends too early");
+  cli.parse_complete_callback([&] {
+    if (job.input.empty() && !job.isLive()) throw CLI::RequiredError("--input or --sensors");
+  });
   return line.run(argc, argv, [&] {
     job.quiet = line.quiet();
     localize(job);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file LocalizeApp.h
-/// \brief `pole-localize`: plays a rawlog against a pole map, and says how well it went.
+/// \brief `pole-localize`: plays a rawlog, or sensors, against a pole map, and says how well it
+/// went.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,7 +17,9 @@ namespace polemcl::apps {
 /// \brief What the command line says. Values given here take the place of the configuration's.
 struct LocalizeJob {
   std::filesystem::path config, input, map, output;
-  std::vector<std::string> set;                ///< `section.key=value`, see loadSettings()
+  std::filesystem::path sensors;  ///< in place of `input`: INI file of sensors; or empty
+  double seconds = 0;             ///< length of a drive with sensors, s; 0: no end
+  std::vector<std::string> set;   ///< `section.key=value`, see loadSettings()
   std::optional<std::filesystem::path> truth;  ///< TUM
   std::optional<int> runs, particles;
   std::optional<std::uint32_t> seed;
@@ -33,6 +36,10 @@ struct LocalizeJob {
   double follow = 0;                            ///< wait at the end of the rawlog for more, s
   std::optional<std::filesystem::path> stream;  ///< see PoseStream; "-": standard output
   bool quiet = false;
+
+  bool isLive() const { return !sensors.empty(); }
+  /// \brief Where the scans come from: `input` or `sensors`.
+  const std::filesystem::path& source() const { return isLive() ? sensors : input; }
 };
 
 struct LocalizeResult {
@@ -50,6 +57,10 @@ struct LocalizeResult {
 /// while the run is watched, the path of the estimate (24 bytes a metre). By default a scan follows
 /// the one before as fast as it goes. `--rate` sets a pace (see Pace.h); with a window `[view]
 /// rate` does (1x by default), until the user closes it.
+///
+/// With sensors, scans that come faster than they can be handled are dropped (see LiveQueue), and
+/// the drive ends with a signal (see LiveDrive.h). A sensor that fails ends it as well; its error
+/// comes after the results are complete.
 ///
 /// The folder `output` gets:
 /// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;
@@ -69,15 +80,18 @@ struct LocalizeResult {
 /// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
 ///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`;
 ///   `start_source` says who gave the start pose: the `truth` (at the first scan), the
-///   `configuration`, the `command line`, or nobody: the start is `anywhere`;
+///   `configuration`, the `command line`, or nobody: the start is `anywhere`; with sensors also
+///   `dropped_scans` and `scans_without_odometry`, which are left out;
 /// - `config.ini`: the effective configuration;
 /// - `timings.json`: the only file that differs from repetition to repetition. `wall_s`, `rate`
-///   (times the pace of the recording, or `max`), `filter_s` of each run, and in `latency_ms` for
-///   each stage `median p99 worst count` (see LocalizeTimings.h; to 0.5 %, `worst` exactly):
-///   `read`, `extract` (not for stored poles), `step` of each run, `write` with the view, and
-///   `total`, from the moment a scan is there until all runs have its pose. At a rate that is the
-///   moment at which the scan is due. At full speed it is the one at which it has been read, so
-///   that `total` contains the wait for the scans before it.
+///   (times the pace of the recording, 1 with sensors, or `max`), `filter_s` of each run, and in
+///   `latency_ms` for each stage `median p99 worst count` (see LocalizeTimings.h; to 0.5 %, `worst`
+///   exactly): `read` (with sensors the wait until the scan is taken), `extract` (not for stored
+///   poles), `step` of each run, `write` with the view, and `total`, from the moment a scan is
+///   there until all runs have its pose and it is streamed. With sensors that is the moment at
+///   which the driver gives the scan, at a rate the one at which the scan is due. At full speed it
+///   is the one at which it has been read, so that `total` contains the wait for the scans before
+///   it.
 ///
 /// Results grow in a hidden folder beside files of an earlier call, which they replace once
 /// everything is complete. Prints a table on stdout unless quiet; on stderr when poses are streamed

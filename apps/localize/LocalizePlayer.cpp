@@ -18,16 +18,16 @@ LocalizePlayer::LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
 
 void LocalizePlayer::take(const PoleScan& scan) {
   if (scan.index > 0 && !scan.motion)
-    throw Error(m_facts.job.input.string() + ": no odometry before scan " +
+    throw Error(m_facts.job.source().string() + ": no odometry before scan " +
                 std::to_string(scan.index) +
                 ": the filter needs it; import with an odometry file or with --odometry-noise");
   const PoleFrame frame = frameOf(scan);
   if (!m_runs) begin(frame);
   const std::vector<FilterStep>& steps = m_runs->step(frame);
+  const auto found = ScanClock::now();
+  if (m_stream) m_stream->add(scan.index, steps[0].update, scan.dropped);
   m_timings.total.add(secondsSince(scan.arrival));
 
-  const auto found = ScanClock::now();
-  if (m_stream) m_stream->add(scan.index, steps[0].update);
   if (m_truth) m_covered += poseAt(*m_truth, frame.time, longestTruthGap).has_value();
   for (std::size_t i = 0; i < steps.size(); ++i) m_files[i].add(steps[i].update);
   m_view.show(m_runs->localization(0), frame, steps[0].update);
@@ -51,9 +51,12 @@ void LocalizePlayer::begin(const PoleFrame& first) {
 }
 
 void LocalizePlayer::requireUsable() const {
-  const std::string input = m_facts.job.input.string();
+  const std::string input = m_facts.job.source().string();
   const SequenceCounts& counts = m_facts.counts;
   const std::string scans = std::to_string(counts.scans);
+  if (counts.scans == 0 && m_facts.job.isLive())
+    throw Error(input + ": no scan with odometry came (" + std::to_string(counts.unknownMotions) +
+                " without): check the drivers, their ports and the network");
   if (counts.scans == 0)
     throw Error(input + ": holds no scan and no poles; import or extract them first");
   if (counts.emptyScans == counts.scans)

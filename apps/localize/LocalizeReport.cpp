@@ -75,13 +75,17 @@ Json inputs(const LocalizeFacts& facts) {
   json["program"] = "pole-localize";
   json["version"] = version();
   json["config"] = job.config.string();
-  json["input"] = job.input.string();
+  json["input"] = job.source().string();
   json["map"] = job.map.string();
   if (job.truth) json["truth"] = job.truth->string();
   json["scans"] = counts.scans;
   json["empty_scans"] = counts.emptyScans;
   json["invalid_points"] = counts.invalidPoints;
   json["truncated"] = counts.truncated;
+  if (job.isLive()) {
+    json["dropped_scans"] = counts.dropped;
+    json["scans_without_odometry"] = counts.unknownMotions;
+  }
   json["poles_per_scan"] = static_cast<double>(counts.poles) / static_cast<double>(counts.scans);
   json["map_poles"] = facts.mapPoles;
   json["particles"] = facts.localization.filter.particles;
@@ -157,6 +161,9 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
                 facts.mapPoles, result.runs.size(), facts.localization.filter.particles);
   out << line;
   if (counts.truncated) out << "the rawlog is truncated: only its readable part was used\n";
+  if (facts.job.isLive())
+    out << counts.dropped << " scans dropped, " << counts.unknownMotions
+        << " left out without odometry\n";
   if (counts.emptyScans) out << counts.emptyScans << " scans without a valid point\n";
   if (counts.invalidPoints) out << counts.invalidPoints << " invalid points left out\n";
   printHealth(out, result);

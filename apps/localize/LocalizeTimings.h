@@ -15,11 +15,14 @@ namespace polemcl::apps {
 /// next ones are read and extracted, so `total` may be longer or shorter than what the stages add
 /// up to.
 struct LocalizeTimings {
-  LatencyHistogram read;     ///< from the rawlog; clouds in files of their own count for `extract`
+  /// From the rawlog; clouds in files of their own count for `extract`. Sensors: from the arrival
+  /// of a scan until it is taken.
+  LatencyHistogram read;
   LatencyHistogram extract;  ///< points and poles; empty where the rawlog holds poles
   LatencyHistogram step;     ///< of the filter, each run for itself
   LatencyHistogram write;    ///< results of all runs, and the view
-  /// From the moment a scan is there (read; with a rate: due) until all runs have its pose.
+  /// From the moment a scan is there (read; with a rate: due; from a sensor: arrived) until all
+  /// runs have its pose and it is streamed.
   LatencyHistogram total;
   std::vector<double> filterSeconds;  ///< of each run, all scans
   double wallSeconds = 0;             ///< from the first read to the last result

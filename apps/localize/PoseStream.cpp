@@ -13,7 +13,7 @@ PoseStream::PoseStream(const std::filesystem::path& target)
   if (!m_out) throw Error(target.string() + ": cannot be created for --stream");
 }
 
-void PoseStream::add(std::size_t scan, const LocalizationUpdate& update) {
+void PoseStream::add(std::size_t scan, const LocalizationUpdate& update, std::size_t dropped) {
   nlohmann::ordered_json line{{"scan", scan},   {"time", update.time}, {"x_m", nullptr},
                               {"y_m", nullptr}, {"yaw_rad", nullptr},  {"covariance", nullptr}};
   if (update.estimate) {
@@ -32,6 +32,7 @@ void PoseStream::add(std::size_t scan, const LocalizationUpdate& update) {
   line["relocalized"] = update.relocalized;
   line["odometry_scale"] = update.odometryErrors.scale;
   line["odometry_yaw_rad_m"] = update.odometryErrors.yaw;
+  line["dropped"] = dropped;
   m_out << line.dump() << std::endl;
   if (!m_out) throw Error(m_target.string() + ": cannot be written by --stream");
 }

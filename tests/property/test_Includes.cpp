@@ -49,6 +49,7 @@ const std::vector<std::string> s_order{
     "mrpt/map",
     "mrpt/rawlog",
     "mrpt/filter",
+    "mrpt/live",
     "sim/common",
     "sim/world",
     "sim/lidar",

@@ -8,6 +8,7 @@
 #include <exception>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "mrpt/rawlog/EntryStream.h"
 #include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl {
@@ -30,10 +31,10 @@ using TaskPtr = std::shared_ptr<Task>;
 
 class Stream {
  public:
-  Stream(const std::string& path, const SequenceOptions& options)
-      : m_path(path),
+  Stream(ScanSource& source, const std::string& name, const SequenceOptions& options)
+      : m_name(name),
         m_pace(options.pace),
-        m_source(path, options.motion, options.allowTruncated, options.follow),
+        m_source(source),
         m_extractions([options] { return ObservationPoleExtractor(options.extraction); }) {
     m_extractions.local();  // reports invalid options here, for any rawlog
   }
@@ -47,9 +48,9 @@ class Stream {
  private:
   void count(const PoleScan& scan);
 
-  std::string m_path;
+  std::string m_name;
   std::function<ScanClock::time_point(double)> m_pace;
-  ScanSource m_source;
+  ScanSource& m_source;
   tbb::enumerable_thread_specific<ObservationPoleExtractor> m_extractions;
   SequenceCounts m_counts;
   bool m_ended = false;
@@ -69,8 +70,10 @@ TaskPtr Stream::read() {
     task->scan = std::move(*scan);
     task->timing = m_source.timing();
     task->result.expected = m_source.expected();
-    task->result.readSeconds = secondsSince(begin);
-    task->result.arrival = m_pace ? m_pace(task->scan.time) : ScanClock::now();
+    const auto& arrival = task->scan.arrival;
+    task->result.readSeconds = secondsSince(arrival ? *arrival : begin);
+    task->result.dropped = task->scan.dropped;
+    task->result.arrival = arrival ? *arrival : m_pace ? m_pace(task->scan.time) : ScanClock::now();
   } catch (...) {
     m_ended = true;
     task->error = std::current_exception();
@@ -106,7 +109,7 @@ void Stream::extract(Task& task) {
     result.extractSeconds = secondsSince(begin);
   } catch (const std::exception& error) {
     task.error = std::make_exception_ptr(
-        Error(m_path + ": scan " + std::to_string(task.scan.index) + ": " + error.what()));
+        Error(m_name + ": scan " + std::to_string(task.scan.index) + ": " + error.what()));
   }
 }
 
@@ -137,17 +140,19 @@ SequenceCounts Stream::finish() const {
   SequenceCounts counts = m_counts;
   counts.otherSensors = m_source.otherSensors();
   counts.unknownMotions = m_source.unknownMotions();
+  counts.dropped = m_source.dropped();
   counts.truncated = m_source.truncated();
   return counts;
 }
 
-}  // namespace
-
-SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
-                           const std::function<void(const PoleScan&)>& consume) {
+void requireThreads(const SequenceOptions& options) {
   if (options.threads < 0)
     throw Error("threads = " + std::to_string(options.threads) + ": allowed is 0 or more");
-  Stream stream(path, options);
+}
+
+SequenceCounts play(ScanSource& source, const std::string& name, const SequenceOptions& options,
+                    const std::function<void(const PoleScan&)>& consume) {
+  Stream stream(source, name, options);
   const int cores = tbb::info::default_concurrency();  // TBB rejects more threads than that
   const int threads = options.threads > 0 ? std::min(options.threads, cores) : cores;
   tbb::task_arena arena(threads);
@@ -162,13 +167,31 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
       return task;
     };
     const auto collect = [&](const TaskPtr& task) { stream.collect(*task, consume); };
+    // Scans of sensors that must wait do so where the oldest can be dropped, not in here.
+    const auto atOnce = static_cast<std::size_t>(source.isLive() ? threads + 1 : 2 * threads);
     tbb::parallel_pipeline(
-        2 * static_cast<std::size_t>(threads),
-        tbb::make_filter<void, TaskPtr>(tbb::filter_mode::serial_in_order, read) &
-            tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
-            tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));
+        atOnce, tbb::make_filter<void, TaskPtr>(tbb::filter_mode::serial_in_order, read) &
+                    tbb::make_filter<TaskPtr, TaskPtr>(tbb::filter_mode::parallel, extract) &
+                    tbb::make_filter<TaskPtr, void>(tbb::filter_mode::serial_in_order, collect));
   });
   return stream.finish();
+}
+
+}  // namespace
+
+SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
+                           const std::function<void(const PoleScan&)>& consume) {
+  requireThreads(options);
+  ScanSource source(path, options.motion, options.allowTruncated, options.follow);
+  return play(source, path, options, consume);
+}
+
+SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::string& name,
+                           const SequenceOptions& options,
+                           const std::function<void(const PoleScan&)>& consume) {
+  requireThreads(options);
+  ScanSource source(std::move(entries), name, options.motion);
+  return play(source, name, options, consume);
 }
 
 PoleFrame frameOf(const PoleScan& scan) {

@@ -3,30 +3,18 @@
 /// \brief Reads rawlogs entry by entry and reports damage. (MRPT's reader treats damage as the end
 /// of the file.)
 
-#include <mrpt/obs/CActionCollection.h>
-#include <mrpt/obs/CObservation.h>
-#include <mrpt/obs/CSensoryFrame.h>
-
 #include <optional>
 #include <string>
 
 #include <polemcl/core/common/Types.h>
+#include "mrpt/rawlog/EntrySource.h"
 #include "mrpt/rawlog/GzReadStream.h"
 
 namespace polemcl {
 
-/// \brief One entry: an action, a frame, an action with its following frame, or an observation.
-/// Exactly one of {action and/or frame, observation} is set.
-struct RawlogEntry {
-  mrpt::obs::CActionCollection::Ptr action;
-  mrpt::obs::CSensoryFrame::Ptr frame;
-  mrpt::obs::CObservation::Ptr observation;
-  std::uint64_t offset = 0;  ///< byte offset of its first object in the (uncompressed) data
-};
-
 /// \brief Streams a plain or gzip rawlog with action and frame pairs or single observations.
 /// Other objects are skipped.
-class RawlogReader {
+class RawlogReader : public EntrySource {
  public:
   /// \param allowTruncated true: a file that ends inside an object is read up to that object.
   /// \param follow How long the end of a file that still grows is waited at for more, s.
@@ -37,13 +25,13 @@ class RawlogReader {
   /// \throws Error on a class that is not registered (with its name), on an unreadable object, and
   ///         on a file that is empty or ends inside an object (with the byte; unless allowed). A
   ///         plain file cut between two objects cannot be distinguished from a complete one.
-  bool next(RawlogEntry& entry);
+  bool next(RawlogEntry& entry) override;
   /// \brief Text of the comments read so far; those of RawlogWriter and of RawlogViewer come first.
-  const std::string& comment() const { return m_comment; }
+  const std::string& comment() const override { return m_comment; }
   /// \brief True when the file is truncated and this was allowed.
-  bool truncated() const { return m_truncated; }
+  bool truncated() const override { return m_truncated; }
   /// \brief Fraction of the file read so far, 0 to 1, for progress.
-  double progress() const { return m_stream.progress(); }
+  double progress() const override { return m_stream.progress(); }
 
  private:
   struct Object {

@@ -14,6 +14,7 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "config/TimingComment.h"
 #include "core/common/Covariance.h"
+#include "mrpt/rawlog/RawlogReader.h"
 
 namespace polemcl {
 
@@ -23,6 +24,9 @@ namespace {
 
 /// Most scans that wait for later odometry. Bounds the memory, and the delay without odometry.
 constexpr std::size_t mostWaiting = 32;
+
+/// Scans of sensors without any odometry before the drive is given up: 5 s at 10 Hz.
+constexpr std::size_t mostWithoutOdometry = 50;
 
 /// Time over which odometry readings give a velocity, s: a turn of most LiDARs.
 constexpr double shortWay = 0.1;
@@ -95,8 +99,7 @@ std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
 
 ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated,
                        double follow)
-    : m_path(path), m_options(motion), m_reader(path, allowTruncated, follow) {
-  checkOptions(m_options);
+    : ScanSource(std::make_shared<RawlogReader>(path, allowTruncated, follow), path, motion) {
   const std::filesystem::path file = std::filesystem::absolute(path);
   const std::filesystem::path images = file.parent_path() / (file.stem().string() + "_Images");
   std::error_code none;
@@ -104,7 +107,13 @@ ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, boo
       (std::filesystem::is_directory(images, none) ? images : file.parent_path()).string());
 }
 
-void ScanSource::take(const CObservation::Ptr& observation) {
+ScanSource::ScanSource(std::shared_ptr<EntrySource> entries, std::string name,
+                       const MotionOptions& motion)
+    : m_name(std::move(name)), m_options(motion), m_entries(std::move(entries)) {
+  checkOptions(m_options);
+}
+
+void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& entry) {
   const double time = mrpt::Clock::toDouble(observation->timestamp);
   if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
     m_odometry.add(time, planar(odometry->odometry));
@@ -117,9 +126,10 @@ void ScanSource::take(const CObservation::Ptr& observation) {
     return;
   }
   if (observation->timestamp == INVALID_TIMESTAMP)
-    throw Error(m_path + ": scan " + std::to_string(m_scans) + " has no time");
-  if (m_scans == 0) m_timing = timingIn(m_reader.comment(), m_path);
-  m_waiting.push_back({m_scans++, time, m_moved, {}, observation});
+    throw Error(m_name + ": scan " + std::to_string(m_scans) + " has no time");
+  if (m_scans == 0) m_timing = timingIn(m_entries->comment(), m_name);
+  m_waiting.push_back(
+      {m_scans++, time, m_moved, {}, observation, entry.arrival, m_entries->dropped()});
   m_moved.reset();
 }
 
@@ -130,27 +140,28 @@ void ScanSource::take(const RawlogEntry& entry) {
       if (const auto motion = motionOf(*entry.action, m_options))
         m_moved = m_moved ? io::composeMotions(*m_moved, *motion) : *motion;
     } catch (const Error& error) {
-      throw Error(m_path + ": before scan " + std::to_string(m_scans) + ": " + error.what());
+      throw Error(m_name + ": before scan " + std::to_string(m_scans) + ": " + error.what());
     }
   }
-  if (entry.observation) take(entry.observation);
+  if (entry.observation) take(entry.observation, entry);
   if (!entry.frame) return;
   if (m_sensor.empty())  // prefer poles in a frame with several scans
     if (const auto poles = entry.frame->getObservationByClass<CObservationPoles>())
       m_sensor = sensorOf(*poles);
-  for (const auto& observation : *entry.frame) take(observation);
+  for (const auto& observation : *entry.frame) take(observation, entry);
 }
 
 /// The first scan waits for the second, which tells its velocity; without actions, a scan waits for
-/// odometry later than itself.
+/// odometry later than itself. Those of sensors have waited.
 bool ScanSource::mustWait(const Scan& scan) const {
+  if (m_entries->isLive()) return false;
   if (!m_ended && m_released == 0 && m_waiting.size() < 2) return true;
   return !m_ended && !m_anyAction && !m_odometry.reaches(scan.time) &&
          m_waiting.size() < mostWaiting;
 }
 
 std::size_t ScanSource::expected() const {
-  const double share = m_reader.progress();
+  const double share = m_entries->progress();
   if (!(share > 0)) return 0;
   return std::max(m_scans,
                   static_cast<std::size_t>(std::llround(static_cast<double>(m_scans) / share)));
@@ -169,6 +180,7 @@ std::optional<Velocity> ScanSource::velocityAt(const Scan& scan) const {
 ScanSource::Scan ScanSource::release() {
   Scan scan = std::move(m_waiting.front());
   m_waiting.pop_front();
+  scan.index = m_released;
   scan.velocity = velocityAt(scan);
   if (m_released == 0) {
     scan.motion = io::PlanarMotion();
@@ -187,11 +199,22 @@ ScanSource::Scan ScanSource::release() {
   return scan;
 }
 
-std::optional<ScanSource::Scan> ScanSource::next() {
+/// Whether a scan of sensors has its odometry. The filter needs it from the first scan on.
+bool ScanSource::hasOdometry(const Scan& scan) {
+  if (scan.motion || m_odometry.at(scan.time)) return true;
+  if (++m_unknownMotions >= mostWithoutOdometry && m_odometry.empty())
+    throw Error(m_name + ": no odometry came with the first " + std::to_string(m_unknownMotions) +
+                " scans: the filter needs it; add a sensor that gives CObservationOdometry, such "
+                "as driver = CUdpOdometry");
+  return false;
+}
+
+/// Reads on until the first waiting scan can be released; false at the end.
+bool ScanSource::fill() {
   RawlogEntry entry;
   try {
     while (!m_ended && (m_waiting.empty() || mustWait(m_waiting.front()))) {
-      if (m_reader.next(entry))
+      if (m_entries->next(entry))
         take(entry);
       else
         m_ended = true;
@@ -200,7 +223,14 @@ std::optional<ScanSource::Scan> ScanSource::next() {
     m_ended = true;
     m_error = std::current_exception();  // reported later: the waiting scans come before it
   }
-  if (!m_waiting.empty()) return release();
+  return !m_waiting.empty();
+}
+
+std::optional<ScanSource::Scan> ScanSource::next() {
+  while (fill()) {
+    if (!m_entries->isLive() || hasOdometry(m_waiting.front())) return release();
+    m_waiting.pop_front();
+  }
   if (m_error) std::rethrow_exception(m_error);
   return std::nullopt;
 }

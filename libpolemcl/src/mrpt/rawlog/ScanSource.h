@@ -6,6 +6,7 @@
 
 #include <deque>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,8 +14,8 @@
 #include <polemcl/core/sensor/ScanTiming.h>
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
+#include "mrpt/rawlog/EntrySource.h"
 #include "mrpt/rawlog/OdometryTrack.h"
-#include "mrpt/rawlog/RawlogReader.h"
 
 namespace polemcl {
 
@@ -32,33 +33,44 @@ class ScanSource {
     std::optional<io::PlanarMotion> motion;
     std::optional<Velocity> velocity = {};  ///< see PoleScan
     mrpt::obs::CObservation::Ptr observation;
+    std::optional<std::chrono::steady_clock::time_point> arrival;  ///< as in RawlogEntry
+    std::size_t dropped = 0;  ///< scans of sensors that were dropped before it, in all
   };
   /// \brief Also sets the base folder of external files with relative names in MRPT: the folder
   /// that MRPT's tools use (`<rawlog>_Images`) if it exists, otherwise the folder of the rawlog.
   ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated,
              double follow = 0);
+  /// \brief From any source. \param name For messages.
+  ScanSource(std::shared_ptr<EntrySource> entries, std::string name, const MotionOptions& motion);
 
-  /// \brief The next scan; nullopt at the end. \throws Error as RawlogReader, with the scan.
+  /// \brief The next scan; nullopt at the end. Sensors: waits for it; a scan without odometry is
+  /// left out, and the motion goes on to the next one.
+  /// \throws Error as RawlogReader, with the scan; when no odometry came with many scans of
+  /// sensors.
   std::optional<Scan> next();
 
   /// \brief Measuring times of the scans, if the comment of the rawlog states them.
   const ScanTiming& timing() const { return m_timing; }
   std::size_t otherSensors() const { return m_otherSensors; }
   std::size_t unknownMotions() const { return m_unknownMotions; }
-  bool truncated() const { return m_reader.truncated(); }
+  bool isLive() const { return m_entries->isLive(); }
+  std::size_t dropped() const { return m_entries->dropped(); }
+  bool truncated() const { return m_entries->truncated(); }
   /// \brief Estimated number of scans in the file, from the fraction read so far; 0: unknown.
   std::size_t expected() const;
 
  private:
   void take(const RawlogEntry& entry);
-  void take(const mrpt::obs::CObservation::Ptr& observation);
+  void take(const mrpt::obs::CObservation::Ptr& observation, const RawlogEntry& entry);
+  bool fill();
+  bool hasOdometry(const Scan& scan);
   bool mustWait(const Scan& scan) const;
   Scan release();
   std::optional<Velocity> velocityAt(const Scan& scan) const;
 
-  std::string m_path;
+  std::string m_name;
   MotionOptions m_options;
-  RawlogReader m_reader;
+  std::shared_ptr<EntrySource> m_entries;
   std::optional<io::PlanarMotion> m_moved;  ///< motion by actions since the last scan
   OdometryTrack m_odometry;
   ScanTiming m_timing;

@@ -2,6 +2,7 @@
 /// \file WheelOdometry.h
 /// \brief Odometry as vehicles have it: wheel ticks and a gyroscope, with errors that stay.
 
+#include <polemcl/core/common/Types.h>
 #include "sim/common/Random.h"
 #include "sim/common/SimulationOptions.h"
 

@@ -42,7 +42,9 @@ struct SequenceCounts {
   std::size_t invalidPoints = 0;  ///< points dropped: NaN, infinite or at the origin
   std::size_t poles = 0;
   std::size_t otherSensors = 0;  ///< ignored scans, whose sensor label differs from the first one's
-  std::size_t unknownMotions = 0;  ///< scans after the first without odometry
+  std::size_t unknownMotions = 0;  ///< scans without odometry: after the first one; of sensors,
+                                   ///< these are left out
+  std::size_t dropped = 0;         ///< scans of sensors that nobody had time for
   bool truncated = false;          ///< the file is truncated, and this was allowed
 };
 
@@ -59,13 +61,15 @@ struct PoleScan {
   CObservationPoles::Ptr observation;  ///< never null
   /// Source of the poles; its points may still be in an external file. Null for stored poles.
   mrpt::obs::CObservation::Ptr scan;
-  std::size_t points = 0;         ///< valid points; 0 if stored poles do not state it
-  std::size_t invalid = 0;        ///< dropped points
-  ExtractionReport report;        ///< report of the extraction; all zero for stored poles
-  bool stored = false;            ///< true: read as poles, not extracted
-  ScanClock::time_point arrival;  ///< time when the scan was read, or due by SequenceOptions::pace
-  double readSeconds = 0;         ///< time spent on reading it
-  double extractSeconds = 0;      ///< time spent on loading points and extracting poles
+  std::size_t points = 0;   ///< valid points; 0 if stored poles do not state it
+  std::size_t invalid = 0;  ///< dropped points
+  ExtractionReport report;  ///< report of the extraction; all zero for stored poles
+  bool stored = false;      ///< true: read as poles, not extracted
+  /// Time when the scan was read, due by SequenceOptions::pace, or given by its sensor.
+  ScanClock::time_point arrival;
+  double readSeconds = 0;     ///< time spent on reading it; of sensors: the wait since arrival
+  double extractSeconds = 0;  ///< time spent on loading points and extracting poles
+  std::size_t dropped = 0;    ///< scans of sensors that were dropped before this one, in all
   /// Estimated number of scans in the rawlog, from the fraction of the file read so far; 0:
   /// unknown.
   std::size_t expected = 0;

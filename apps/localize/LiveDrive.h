@@ -1,0 +1,31 @@
+#pragma once
+/// \file LiveDrive.h
+/// \brief A drive that is not recorded: scans straight from the sensors. Private to the library.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+
+namespace polemcl::apps {
+
+struct LiveDriveOptions {
+  std::filesystem::path sensors;  ///< see startSensors(); also a name among the shipped ones
+  double seconds = 0;             ///< ends after this time, s; 0: never
+};
+
+struct LiveDriveResult {
+  SequenceCounts counts;
+  std::string failure;  ///< of a sensor, which ended the drive; or empty
+};
+
+/// \brief Streams poles from sensors until Ctrl-C (SIGINT) or SIGTERM, the end of a PCAP file, the
+/// failure of a sensor, or the given time. A second signal ends the program at once.
+///
+/// Scans that come faster than `consume` takes them are dropped, the oldest first, see LiveQueue.
+/// \throws Error as startSensors() and streamPoles(); the failure of a sensor before any scan.
+LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
+                              const std::function<void(const PoleScan&)>& consume);
+
+}  // namespace polemcl::apps

@@ -1,0 +1,37 @@
+#pragma once
+/// \file CUdpOdometry.h
+/// \brief Odometry from the network, as a sensor of MRPT: its own drivers give none.
+
+#include <mrpt/hwdrivers/CGenericSensor.h>
+
+#include <string>
+
+namespace polemcl {
+
+/// \brief Gives a CObservationOdometry for each UDP packet.
+///
+/// A packet is text: `x y yaw`, the pose of the robot in the frame of the odometry, m, m, rad,
+/// counterclockwise. Its time is that of its arrival, as that of a LiDAR without GPS. Keys:
+/// `udp_port` (1 to 65535) and `address`, the IPv4 address to listen at (default: 127.0.0.1, this
+/// computer only; 0.0.0.0: from anywhere).
+class CUdpOdometry : public mrpt::hwdrivers::CGenericSensor {
+  DEFINE_GENERIC_SENSOR(CUdpOdometry)
+ public:
+  CUdpOdometry() { m_sensorLabel = "odometry"; }
+  ~CUdpOdometry() override;
+  /// \throws std::exception when the port cannot be listened at.
+  void initialize() override;
+  /// \brief Waits a few milliseconds at most. \throws std::exception when a packet is not three
+  /// finite numbers.
+  void doProcess() override;
+
+ protected:
+  void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
+                                 const std::string& section) override;
+
+ private:
+  int m_port = 0, m_socket = -1;
+  std::string m_address = "127.0.0.1";
+};
+
+}  // namespace polemcl

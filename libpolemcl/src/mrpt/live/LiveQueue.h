@@ -1,0 +1,74 @@
+#pragma once
+/// \file LiveQueue.h
+/// \brief Between the sensors, each in a thread of its own, and the one who takes their scans.
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "mrpt/rawlog/EntrySource.h"
+
+namespace polemcl {
+
+struct LiveQueueOptions {
+  /// Most scans that wait; one more drops the oldest. Half a second of a LiDAR of 10 Hz: short
+  /// interruptions drop nothing, and under lasting overload no scan waits longer than that.
+  std::size_t longest = 5;
+  /// Longest wait of a scan for odometry of its time, s. Odometry usually is there before: the time
+  /// of a scan is that of its first beam.
+  double odometryWait = 0.2;
+  /// Asked every few milliseconds, from the taking thread. False ends the drive at once.
+  std::function<bool()> goesOn = {};
+};
+
+/// \brief Scans in the order of their times, each after the odometry of its time. Odometry is given
+/// as it comes and is never dropped, so no motion is lost with a scan. Other observations are not
+/// used.
+class LiveQueue : public EntrySource {
+ public:
+  explicit LiveQueue(LiveQueueOptions options = {});
+
+  /// \brief From any thread. A scan older than the last one taken is dropped. A scan of a second
+  /// sensor is a failure: poles are extracted from one.
+  void push(const mrpt::obs::CObservation::Ptr& observation);
+  /// \brief The first sensor has come to its end, or failed with this message: what waits is still
+  /// taken, then the drive ends. Only the first call counts. From any thread.
+  void end(const std::string& failure = "");
+  /// \brief Why the drive ended; empty when no sensor has failed.
+  std::string failure() const;
+
+  /// \brief Waits for the next observation. \return false when the drive has ended.
+  bool next(RawlogEntry& entry) override;
+  bool isLive() const override { return true; }
+  const std::string& comment() const override { return m_comment; }
+  std::size_t dropped() const override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Waiting {
+    double time;  ///< of the observation, s
+    Clock::time_point arrival;
+    mrpt::obs::CObservation::Ptr observation;
+  };
+  void pushScan(Waiting scan);
+  void endNow(const std::string& failure);
+  bool isDue(const Waiting& scan) const;
+
+  const LiveQueueOptions m_options;
+  const std::string m_comment;
+  mutable std::mutex m_mutex;  ///< of all below
+  std::condition_variable m_changed;
+  std::deque<Waiting> m_scans;  ///< in the order of their times
+  std::deque<mrpt::obs::CObservation::Ptr> m_odometry;
+  std::optional<double> m_reached;     ///< time of the latest odometry, s
+  std::optional<std::string> m_label;  ///< of the sensor of the scans
+  std::optional<double> m_taken;       ///< time of the last scan that was taken, s
+  std::size_t m_dropped = 0;
+  bool m_ended = false;
+  std::string m_failure;
+};
+
+}  // namespace polemcl

@@ -1,0 +1,152 @@
+#include "mrpt/live/SensorThread.h"
+
+#include <pthread.h>
+#include <sys/prctl.h>
+
+#include <csignal>
+
+#include <polemcl/core/common/Types.h>
+#include "mrpt/common/MrptReason.h"
+
+namespace polemcl {
+
+using mrpt::config::CConfigFileBase;
+using mrpt::hwdrivers::CGenericSensor;
+using mrpt::hwdrivers::CVelodyneScanner;
+
+namespace {
+
+constexpr double usualRate = 1000;  // calls of a driver in a second
+
+/// More packets than a turn of any Velodyne has. MRPT reads a file without any over and over.
+constexpr std::size_t mostPackets = 3000;
+
+/// MRPT keeps ports in a short, and compares with unsigned ones.
+short portOf(const CConfigFileBase& config, const std::string& section, const char* key,
+             int usual) {
+  const int port = config.read_int(section, key, usual);
+  if (port < 1 || port > 32767)
+    throw Error(std::string(key) + " = " + std::to_string(port) + ": allowed is 1 to 32767");
+  return static_cast<short>(port);
+}
+
+/// Signals are for the main thread: MRPT takes an interrupted wait for a packet as one that is
+/// there.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &m_before);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &m_before, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t m_before;
+};
+
+}  // namespace
+
+SensorThread::SensorThread(const std::string& file, const std::string& section,
+                           CConfigFileBase& config)
+    : m_section(section), m_place(file + ": [" + section + "]: ") {
+  m_driver = config.read_string(section, "driver", "");
+  if (m_driver.empty())
+    throw Error(m_place +
+                "no driver: name the class of the sensor, such as driver = CVelodyneScanner");
+  m_sensor = CGenericSensor::createSensorPtr(m_driver);
+  if (!m_sensor)
+    throw Error(m_place + "driver = " + m_driver +
+                ": is no sensor that MRPT knows; allowed are the classes of mrpt::hwdrivers, such "
+                "as CVelodyneScanner, and CUdpOdometry");
+  try {
+    open(config);
+  } catch (const std::exception& error) {
+    throw Error(m_place + m_driver + ": " + mrptReason(error.what()) + m_ports);
+  }
+}
+
+SensorThread::~SensorThread() {
+  {
+    const std::lock_guard lock(m_mutex);
+    m_stop = true;
+  }
+  m_stopping.notify_all();
+  if (m_thread.joinable()) m_thread.join();
+}
+
+void SensorThread::open(CConfigFileBase& config) {
+  if (!config.keyExists(m_section, "process_rate"))
+    config.write(m_section, "process_rate", usualRate);
+  m_scanner = dynamic_cast<CVelodyneScanner*>(m_sensor.get());
+  if (m_scanner) openVelodyne(config);
+  m_sensor->loadConfig(config, m_section);
+  if (!(m_sensor->getProcessRate() > 0))
+    throw Error("process_rate = " + config.read_string(m_section, "process_rate", "") +
+                ": allowed is more than 0, in calls a second");
+  m_sensor->initialize();
+}
+
+/// The ports are those of the class, which takes them when a device is opened.
+void SensorThread::openVelodyne(CConfigFileBase& config) {
+  m_pcap = config.read_string(m_section, "pcap_input", "");
+  if (!config.keyExists(m_section, "pcap_read_once"))
+    config.write(m_section, "pcap_read_once", true);
+  CVelodyneScanner::VELODYNE_DATA_UDP_PORT = portOf(config, m_section, "data_port", 2368);
+  CVelodyneScanner::VELODYNE_POSITION_UDP_PORT = portOf(config, m_section, "position_port", 8308);
+  m_ports = " (UDP ports " + std::to_string(CVelodyneScanner::VELODYNE_DATA_UDP_PORT) + " and " +
+            std::to_string(CVelodyneScanner::VELODYNE_POSITION_UDP_PORT) + ")";
+  m_scanner->setPCAPVerbosity(false);  // it would write to standard output, between the poses
+}
+
+void SensorThread::start(const SensorEvents& events) {
+  const SignalsBlocked blocked;  // the new thread takes this over
+  m_thread = std::thread([this, &events] { work(events); });
+}
+
+bool SensorThread::waitUntil(std::chrono::steady_clock::time_point next) {
+  std::unique_lock lock(m_mutex);
+  return !m_stopping.wait_until(lock, next, [this] { return m_stop; });
+}
+
+void SensorThread::work(const SensorEvents& events) {
+  using Clock = std::chrono::steady_clock;
+  // MRPT waits 1 ms for a position packet after each packet of a scan; the usual slack of 50 us
+  // would let it take a tenth fewer packets in a second.
+  prctl(PR_SET_TIMERSLACK, 1);
+  const auto period = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(1 / m_sensor->getProcessRate()));
+  try {
+    for (auto next = Clock::now(); waitUntil(next); next = std::max(next + period, Clock::now()))
+      if (!process(events)) return events.ended("");
+  } catch (const std::exception& error) {
+    events.ended(m_place + m_driver + ": " + mrptReason(error.what()));
+  }
+}
+
+/// \return false at the end of a PCAP file.
+bool SensorThread::process(const SensorEvents& events) {
+  if (m_scanner) return processVelodyne(events);
+  m_sensor->doProcess();
+  for (const auto& [time, object] : m_sensor->getObservations())
+    if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object))
+      events.observed(observation);
+  return true;
+}
+
+/// The first turn is cut: it begins somewhere. MRPT's doProcess() would report the end of a PCAP
+/// file as an error.
+bool SensorThread::processVelodyne(const SensorEvents& events) {
+  mrpt::obs::CObservationVelodyneScan::Ptr scan;
+  mrpt::obs::CObservationGPS::Ptr position;
+  if (!m_scanner->getNextObservation(scan, position)) return m_pcap.empty();
+  if (scan && m_turns++ > 0) events.observed(scan);
+  if (!m_pcap.empty() && m_turns == 0 && ++m_packets > mostPackets)
+    throw Error("no turn in the first " + std::to_string(mostPackets) + " packets of " + m_pcap +
+                ": check data_port and device_ip");
+  return true;
+}
+
+}  // namespace polemcl

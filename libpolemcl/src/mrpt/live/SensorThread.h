@@ -1,0 +1,51 @@
+#pragma once
+/// \file SensorThread.h
+/// \brief One sensor of MRPT in a thread of its own. Part of the module libpolemcl-sensors.so.
+
+#include <mrpt/config/CConfigFileBase.h>
+#include <mrpt/hwdrivers/CVelodyneScanner.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "mrpt/live/LiveSensors.h"
+
+namespace polemcl {
+
+class SensorThread {
+ public:
+  /// \brief Opens the device. \throws Error with file and section, see startSensors().
+  /// \param config The content of `file`; gets defaults of ours.
+  SensorThread(const std::string& file, const std::string& section,
+               mrpt::config::CConfigFileBase& config);
+  ~SensorThread();
+  SensorThread(const SensorThread&) = delete;
+  SensorThread& operator=(const SensorThread&) = delete;
+
+  /// \param events Must outlive this object.
+  void start(const SensorEvents& events);
+
+ private:
+  void open(mrpt::config::CConfigFileBase& config);
+  void openVelodyne(mrpt::config::CConfigFileBase& config);
+  void work(const SensorEvents& events);
+  bool process(const SensorEvents& events);
+  bool processVelodyne(const SensorEvents& events);
+  bool waitUntil(std::chrono::steady_clock::time_point next);
+
+  std::string m_section, m_driver, m_place;  ///< m_place: for messages
+  std::string m_ports;                       ///< of a Velodyne, for messages
+  mrpt::hwdrivers::CGenericSensor::Ptr m_sensor;
+  mrpt::hwdrivers::CVelodyneScanner* m_scanner = nullptr;  ///< m_sensor, if it is one
+  std::string m_pcap;         ///< file of packets in place of a device; or empty
+  std::size_t m_packets = 0;  ///< of the file, before the first turn
+  std::size_t m_turns = 0;
+  std::mutex m_mutex;
+  std::condition_variable m_stopping;
+  bool m_stop = false;
+  std::thread m_thread;  ///< last: it uses all of the above
+};
+
+}  // namespace polemcl

@@ -1,0 +1,216 @@
+/// \file test_LiveDrive.cpp
+/// \brief `pole-localize --sensors`: packets of a VLP-16 over the network or from a PCAP file, with
+/// the shipped example of an INI file.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include <polemcl/mrpt/map/CPoleMap.h>
+#include "io/data/Trajectory.h"
+#include "localize/LocalizeApp.h"
+#include "support/UdpSender.h"
+#include "support/VelodynePackets.h"
+
+namespace polemcl::test_live_drive {
+
+using namespace testing_apps;
+using namespace polemcl::apps;
+
+namespace {
+
+constexpr double step = 0.5;  // m from turn to turn
+
+class LiveDriveTest : public testing::Test {
+ protected:
+  LiveDriveTest() {
+    std::vector<MapPole> mapped;
+    for (const StreetPole& pole : poles) {
+      MapPole entry;
+      entry.x = pole.x, entry.y = pole.y;
+      entry.radius = streetPoleRadius, entry.top = streetPoleTop, entry.count = 5;
+      mapped.push_back(entry);
+    }
+    CPoleMap map;
+    map.setPoles(mapped);
+    map.saveToPoleMapFile((folder / "map.polemap").string());
+    writeSensors("");
+    std::signal(SIGINT, SIG_IGN);  // a signal after the drive must not end the tests
+  }
+  ~LiveDriveTest() override { std::signal(SIGINT, SIG_DFL); }
+
+  /// The shipped example with free ports. \param more Keys of the LiDAR.
+  void writeSensors(const std::string& more) {
+    std::string ini = readText(fs::path(POLEMCL_SOURCE_DIR) / "config/live/vlp16.ini");
+    const auto set = [&](const std::string& key, const std::string& value) {
+      const auto at = ini.find("\n" + key + " = ");
+      ASSERT_NE(at, std::string::npos) << key;
+      ini.replace(at, ini.find('\n', at + 1) - at, "\n" + key + " = " + value);
+    };
+    set("data_port", std::to_string(lidarPort));
+    set("position_port", std::to_string(freeUdpPort()) + "\n" + more);
+    set("udp_port", std::to_string(odometryPort));
+    writeText(folder / "sensors.ini", ini);
+  }
+
+  Outcome run(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> all{"--config",  std::string(POLEMCL_SOURCE_DIR) + "/config/vlp16.ini",
+                                 "--sensors", (folder / "sensors.ini").string(),
+                                 "--map",     (folder / "map.polemap").string(),
+                                 "--output",  (folder / "out").string(),
+                                 "--start",   "0,0,0,0.3,3",
+                                 "--stream",  (folder / "poses.jsonl").string()};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = runProgram(localizeMain, all);
+    ended = true;
+    return outcome;
+  }
+
+  std::vector<nlohmann::json> lines() const {
+    std::ifstream in(folder / "poses.jsonl");
+    std::vector<nlohmann::json> all;
+    for (std::string line; std::getline(in, line) && !in.eof();)
+      all.push_back(nlohmann::json::parse(line));
+    return all;
+  }
+  bool waitForLines(std::size_t count) const {
+    return waitFor([&] { return ended || lines().size() >= count; }) && !ended;
+  }
+  nlohmann::json result(const std::string& name) const {
+    return nlohmann::json::parse(readText(folder / "out" / name));
+  }
+
+  /// Sends turns of a drive along x, each between two packets of odometry with the same pose. A
+  /// turn is known to be complete when the next one begins; the first one is left out.
+  /// \param taken Called before each turn with the number of scans that are complete by then.
+  void drive(int turns, const std::function<void(std::size_t)>& beforeTurn) {
+    const UdpSender lidar(lidarPort), odometry(odometryPort);
+    if (!lidar.waitForListener() || !odometry.waitForListener()) return;
+    for (int turn = 0; turn < turns && !ended; ++turn) {
+      const double x = step * turn;
+      beforeTurn(static_cast<std::size_t>(std::max(0, turn - 2)));
+      const auto tellOdometry = [&] {
+        odometry.send(std::to_string(x) + " 0 0");
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the sensors' clock goes on
+      };
+      tellOdometry();
+      for (const std::string& packet : turnOfVlp16(poles, x, 0, 0)) lidar.send(packet);
+      tellOdometry();
+    }
+  }
+
+  void interrupt() { kill(getpid(), SIGINT); }
+
+  const std::vector<StreetPole> poles = streetPoles();
+  const int lidarPort = freeUdpPort(), odometryPort = freeUdpPort();
+  const TempFolder folder;
+  std::atomic<bool> ended{false};
+};
+
+}  // namespace
+
+/// Each turn waits for the pose of the one before the last, so none is dropped on a slow machine.
+TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
+  std::thread sender([this] {
+    drive(22, [this](std::size_t complete) { waitForLines(complete); });
+    waitForLines(20);
+    interrupt();
+  });
+  const Outcome outcome = run();
+  sender.join();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto all = lines();
+  ASSERT_EQ(all.size(), 20u);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i]["scan"], i);
+    EXPECT_EQ(all[i]["dropped"], 0);
+    EXPECT_GE(all[i]["poles"], 3);
+    ASSERT_FALSE(all[i]["x_m"].is_null());
+    EXPECT_NEAR(all[i]["x_m"], step * static_cast<double>(i + 1), 0.3) << i;
+    EXPECT_NEAR(all[i]["y_m"], 0, 0.2) << i;
+    if (i > 0) {
+      EXPECT_GT(all[i]["time"], all[i - 1]["time"]);
+    }
+  }
+  EXPECT_EQ(all.back()["state"], "ok");
+  EXPECT_EQ(names(folder / "out"),
+            (std::vector<std::string>{"config.ini", "run_00.tum", "run_00_cov.csv",
+                                      "run_00_health.csv", "summary.json", "timings.json"}));
+  EXPECT_EQ(io::readPlanarTum(folder / "out/run_00.tum").size(), 20u);
+  EXPECT_EQ(result("summary.json")["dropped_scans"], 0);
+  EXPECT_EQ(result("summary.json")["input"], (folder / "sensors.ini").string());
+  const auto latency = result("timings.json")["latency_ms"]["total"];
+  EXPECT_EQ(latency["count"], 20);
+  EXPECT_GT(latency["median"], 0);
+  EXPECT_LE(latency["median"], latency["p99"]);
+  EXPECT_LE(latency["p99"], latency["worst"].get<double>() * 1.01);
+  EXPECT_NE(outcome.out.find("0 scans dropped"), std::string::npos) << outcome.out;
+}
+
+/// A standing vehicle; the odometry comes over the network as before.
+TEST_F(LiveDriveTest, APcapFilePlaysAsIfLiveAndEnds) {
+  constexpr std::size_t turns = 12;
+  std::vector<std::string> packets;
+  for (std::size_t turn = 0; turn < turns; ++turn)
+    for (const std::string& packet : turnOfVlp16(poles, 0, 0, 0)) packets.push_back(packet);
+  writeText(folder / "drive.pcap", pcapFile(packets, lidarPort));
+  writeSensors("process_rate = 754\npcap_read_fast = true\npcap_input = " +
+               (folder / "drive.pcap").string());
+  std::thread sender([this] {
+    const UdpSender odometry(odometryPort);
+    while (!ended) odometry.send("0 0 0");
+  });
+  const Outcome outcome = run();
+  sender.join();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto summary = result("summary.json");
+  const auto all = lines();
+  // The first turn is cut, the end of the last one is not seen.
+  EXPECT_EQ(all.size() + summary["dropped_scans"].get<std::size_t>() +
+                summary["scans_without_odometry"].get<std::size_t>(),
+            turns - 2);
+  ASSERT_FALSE(all.empty());
+  EXPECT_NEAR(all.back()["x_m"], 0, 0.2);
+  EXPECT_NEAR(all.back()["y_m"], 0, 0.2);
+}
+
+TEST_F(LiveDriveTest, ASensorThatFailsEndsTheDriveWithItsResults) {
+  std::thread sender([this] {
+    drive(6, [this](std::size_t complete) { waitForLines(complete); });
+    waitForLines(4);
+    UdpSender(odometryPort).send("nonsense");
+  });
+  const Outcome outcome = run();
+  sender.join();
+  expectFailure(outcome, {"[odometry]: CUdpOdometry: a packet holds 'nonsense'",
+                          "the results up to then are in", "out"});
+  EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 4u);
+}
+
+TEST_F(LiveDriveTest, EndsAfterTheGivenTime) {
+  expectFailure(run({"--for", "0.3"}), {"sensors.ini: no scan with odometry came"});
+  EXPECT_FALSE(fs::exists(folder / "out/summary.json"));
+}
+
+TEST_F(LiveDriveTest, RefusesWhatIsForRawlogs) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--input", "x.rawlog"},
+                                               {"--rate", "1x"},
+                                               {"--follow", "1"},
+                                               {"--allow-truncated"}})
+    expectUsageError(run(more));
+  expectUsageError(runProgram(localizeMain, {"--config", "a", "--map", "b", "--output", "c"}));
+  expectUsageError(runProgram(localizeMain, {"--config", "a", "--map", "b", "--output", "c",
+                                             "--input", "d", "--for", "1"}));
+}
+
+TEST_F(LiveDriveTest, NamesAWrongFileOfSensors) {
+  writeText(folder / "sensors.ini", "[lidar]\nmodel = VLP16\n");
+  expectFailure(run(), {"sensors.ini: [lidar]: no driver"});
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+}  // namespace polemcl::test_live_drive

@@ -1,0 +1,204 @@
+/// \file test_LiveQueue.cpp
+/// \brief Order, odometry and overload of scans from sensors; times are numbers here.
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <thread>
+
+#include "mrpt/live/LiveQueue.h"
+#include "mrpt/rawlog/EntryStream.h"
+#include "support/ExpectHas.h"
+#include "support/SequenceFiles.h"
+
+namespace polemcl::test_live_queue {
+
+using namespace tests::sequence;
+
+namespace {
+
+CObservation::Ptr scan(double time, const std::string& label = "lidar") {
+  auto observation = std::make_shared<CObservationPoles>(poles(time));
+  observation->sensorLabel = label;
+  return observation;
+}
+
+CObservation::Ptr odometry(double time, double x) {
+  auto observation = CObservationOdometry::Create();
+  observation->timestamp = mrpt::Clock::fromDouble(time);
+  observation->odometry = {x, 0, 0};
+  return observation;
+}
+
+/// Takes everything from a queue that has ended: `s1.5 o2 ...`.
+std::string content(LiveQueue& queue) {
+  std::ostringstream all;
+  for (RawlogEntry entry; queue.next(entry);) {
+    const bool isScan = entry.arrival.has_value();
+    all << (isScan ? 's' : 'o') << mrpt::Clock::toDouble(entry.observation->timestamp) << ' ';
+  }
+  return all.str();
+}
+
+/// Never lets a scan wait for its odometry in vain.
+LiveQueueOptions patient() {
+  LiveQueueOptions options;
+  options.odometryWait = 1e6;
+  return options;
+}
+
+}  // namespace
+
+TEST(LiveQueue, GivesScansInTheOrderOfTheirTimesAfterTheOdometry) {
+  LiveQueue queue;
+  for (const double time : {3.0, 1.0, 2.0}) queue.push(scan(time));
+  for (const double time : {1.5, 3.5, 2.5}) queue.push(odometry(time, 0));
+  queue.end();
+  EXPECT_EQ(content(queue), "o1.5 o3.5 o2.5 s1 s2 s3 ");
+  EXPECT_EQ(queue.dropped(), 0u);
+}
+
+TEST(LiveQueue, DropsTheOldestScanThatWaitsAndNoOdometry) {
+  LiveQueue queue;
+  for (int i = 1; i <= 8; ++i) {
+    queue.push(odometry(i, i));
+    queue.push(scan(i));
+  }
+  queue.end();
+  EXPECT_EQ(content(queue), "o1 o2 o3 o4 o5 o6 o7 o8 s4 s5 s6 s7 s8 ");
+  EXPECT_EQ(queue.dropped(), 3u);
+}
+
+TEST(LiveQueue, DropsAScanOlderThanTheLastOneTaken) {
+  LiveQueue queue(patient());
+  queue.push(scan(2));
+  queue.push(odometry(9, 0));
+  RawlogEntry entry;
+  ASSERT_TRUE(queue.next(entry) && queue.next(entry));
+  queue.push(scan(1.5));
+  queue.push(scan(2));
+  queue.push(scan(3));
+  queue.end();
+  EXPECT_EQ(content(queue), "s3 ");
+  EXPECT_EQ(queue.dropped(), 2u);
+}
+
+/// Another thread asks; the scan must not come before the odometry of its time.
+TEST(LiveQueue, AScanWaitsForTheOdometryOfItsTime) {
+  LiveQueue queue(patient());
+  queue.push(odometry(0.9, 0));
+  queue.push(scan(1));
+  auto taken = std::async(std::launch::async, [&] {
+    std::string order;
+    for (RawlogEntry entry; order.size() < 3 && queue.next(entry);)
+      order += entry.arrival ? 's' : 'o';
+    return order;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));  // a wrong queue gives it meanwhile
+  queue.push(odometry(1, 0));
+  EXPECT_EQ(taken.get(), "oos");
+}
+
+TEST(LiveQueue, AScanDoesNotWaitForOdometryForever) {
+  LiveQueueOptions options;
+  options.odometryWait = 0.05;
+  LiveQueue queue(options);
+  const auto begin = std::chrono::steady_clock::now();
+  queue.push(scan(1));
+  RawlogEntry entry;
+  ASSERT_TRUE(queue.next(entry));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(50));
+  EXPECT_GE(*entry.arrival, begin);
+}
+
+TEST(LiveQueue, EndsAtOnceWhenTheDriveDoes) {
+  bool goesOn = true;
+  LiveQueueOptions options = patient();
+  options.goesOn = [&] { return goesOn; };
+  LiveQueue queue(options);
+  queue.push(odometry(1, 0));
+  queue.push(scan(1));
+  RawlogEntry entry;
+  EXPECT_TRUE(queue.next(entry));
+  goesOn = false;
+  EXPECT_FALSE(queue.next(entry));
+}
+
+TEST(LiveQueue, RefusesScansOfASecondSensor) {
+  LiveQueue queue;
+  queue.push(scan(1, "front"));
+  queue.push(scan(2, "rear"));
+  queue.push(scan(3, "front"));
+  EXPECT_EQ(content(queue), "s1 ");
+  EXPECT_HAS(queue.failure(), "two sensors, front and rear");
+  EXPECT_HAS(queue.failure(), "rawlog-grabber-ignore");
+  queue.end("another");
+  EXPECT_HAS(queue.failure(), "front and rear") << "the first reason counts";
+}
+
+/// One scan is worked on while 20 come: 5 are left. Their motions add up to the whole way.
+TEST(LiveQueue, UnderOverloadTheMotionOfDroppedScansIsKept) {
+  const auto queue = std::make_shared<LiveQueue>(patient());
+  SequenceOptions one = options();
+  one.threads = 1;
+  one.motion.covarianceFactor = 1;
+  queue->push(odometry(0, 0));
+  queue->push(scan(0));
+  double way = 0;
+  std::vector<double> times;
+  std::vector<std::size_t> dropped;
+  const auto counts = streamPoles(queue, "sensors.ini", one, [&](const PoleScan& taken) {
+    if (times.empty()) {
+      for (int i = 1; i <= 20; ++i) {
+        queue->push(odometry(i, 0.5 * i));
+        queue->push(scan(i));
+      }
+      queue->end();
+    }
+    EXPECT_EQ(taken.index, times.size());
+    times.push_back(taken.time);
+    dropped.push_back(taken.dropped);
+    way += taken.motion->mean.x;
+  });
+  EXPECT_EQ(times.size() + counts.dropped, 21u);
+  EXPECT_EQ(times, (std::vector<double>{0, 16, 17, 18, 19, 20}));
+  EXPECT_EQ(dropped, (std::vector<std::size_t>{0, 15, 15, 15, 15, 15}));
+  EXPECT_EQ(counts.dropped, 15u);
+  EXPECT_NEAR(way, 10, 1e-9);
+}
+
+TEST(LiveQueue, ScansWithoutOdometryAreLeftOutAndTheMotionGoesOn) {
+  const auto queue = std::make_shared<LiveQueue>();
+  // None before 1.5; a gap from 3 to 6.
+  for (const double time : {2.0, 2.5, 3.0, 6.0, 7.0}) queue->push(odometry(time, time));
+  for (const double time : {0.0, 2.0, 3.0, 7.8}) queue->push(scan(time));
+  queue->push(scan(7.4));
+  queue->end();
+  std::vector<double> times, motions;
+  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const PoleScan& taken) {
+    times.push_back(taken.time);
+    motions.push_back(taken.motion->mean.x);
+  });
+  EXPECT_EQ(times, (std::vector<double>{2, 3, 7.4}));
+  EXPECT_EQ(motions, (std::vector<double>{0, 1, 4}));
+  EXPECT_EQ(counts.unknownMotions, 2u);
+}
+
+TEST(LiveQueue, SaysThatThereIsNoOdometry) {
+  const auto queue = std::make_shared<LiveQueue>([] {
+    LiveQueueOptions many;
+    many.longest = 100;
+    return many;
+  }());
+  for (int i = 0; i < 60; ++i) queue->push(scan(i));
+  queue->end();
+  try {
+    streamPoles(queue, "sensors.ini", options(), [](const PoleScan&) {});
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_HAS(std::string(error.what()), "sensors.ini: no odometry came with the first 50 scans");
+    EXPECT_HAS(std::string(error.what()), "CUdpOdometry");
+  }
+}
+
+}  // namespace polemcl::test_live_queue

@@ -1,0 +1,91 @@
+#pragma once
+/// \file UdpSender.h
+/// \brief UDP on the loopback without losses: packets wait until those before have been read.
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace testing_apps {
+
+/// Waits for a condition that will come, on a slow machine too. \return False after two minutes.
+inline bool waitFor(const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+inline sockaddr_in loopback(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return address;
+}
+
+/// A port that nobody uses now, each time another one; differs between test programs that run side
+/// by side. Below those that the system gives away itself.
+inline int freeUdpPort() {
+  static int next = 10000 + 7 * (getpid() % 3000);
+  for (; next < 32768; ++next) {
+    const int probe = socket(AF_INET, SOCK_DGRAM, 0);
+    const auto address = loopback(next);
+    const bool isFree =
+        bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    close(probe);
+    if (isFree) return next++;
+  }
+  throw std::runtime_error("no free port");
+}
+
+/// Bytes that wait to be read at a UDP port of this computer; none when nobody listens.
+inline std::optional<std::size_t> bytesWaiting(int port) {
+  std::ifstream table("/proc/net/udp");
+  std::string line;
+  std::getline(table, line);
+  while (std::getline(table, line)) {
+    std::istringstream words(line);
+    std::string slot, local, remote, state, queues;
+    words >> slot >> local >> remote >> state >> queues;
+    if (std::stoi(local.substr(local.find(':') + 1), nullptr, 16) != port) continue;
+    return std::stoul(queues.substr(queues.find(':') + 1), nullptr, 16);
+  }
+  return std::nullopt;
+}
+
+class UdpSender {
+ public:
+  explicit UdpSender(int port) : m_port(port), m_socket(socket(AF_INET, SOCK_DGRAM, 0)) {}
+  ~UdpSender() { close(m_socket); }
+  UdpSender(const UdpSender&) = delete;
+  UdpSender& operator=(const UdpSender&) = delete;
+
+  bool waitForListener() const {
+    return waitFor([this] { return bytesWaiting(m_port).has_value(); });
+  }
+  /// Returns once the packet has been read, or nobody listens any more.
+  void send(const std::string& packet) const {
+    const auto address = loopback(m_port);
+    sendto(m_socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&address),
+           sizeof address);
+    waitFor([this] { return bytesWaiting(m_port).value_or(0) == 0; });
+  }
+
+ private:
+  int m_port, m_socket;
+};
+
+}  // namespace testing_apps
