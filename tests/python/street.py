@@ -5,7 +5,10 @@ import functools
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
+import threading
+import time
 
 import numpy as np
 
@@ -21,6 +24,35 @@ def program(name, *arguments):
     if done.returncode != 0:
         raise AssertionError(f"{command}: {done.stderr}")
     return done.stdout
+
+
+def lets_others_run(work):
+    """Whether another thread can run Python while work() is under way.
+
+    Python takes its lock away from no thread meanwhile, so that only work() itself can release it.
+    """
+    inside, seen = [False], [False]
+
+    def repeat():
+        for _ in range(500):
+            inside[0] = True
+            work()
+            inside[0] = False
+            if seen[0]:
+                return
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1000)
+    thread = threading.Thread(target=repeat)
+    try:
+        thread.start()
+        while thread.is_alive() and not seen[0]:
+            seen[0] = inside[0]
+            time.sleep(0)
+        thread.join()
+    finally:
+        sys.setswitchinterval(interval)
+    return seen[0]
 
 
 @functools.lru_cache(maxsize=None)

@@ -94,6 +94,10 @@ class PolesOfScans(unittest.TestCase):
             for poles, other in zip(found[name], expected, strict=True):
                 np.testing.assert_array_equal(poles, other)
 
+    def test_are_found_while_other_threads_run(self):
+        points = street.points()[0]
+        self.assertTrue(street.lets_others_run(lambda: self.extractor.extract(points)))
+
     def test_are_counted(self):
         points = street.points()[0].copy()
         points[:10, 0] = np.nan

@@ -2,6 +2,7 @@
 
 import csv
 import gc
+import itertools
 import threading
 import unittest
 
@@ -77,6 +78,13 @@ class Poses(unittest.TestCase):
         for thread in threads:
             thread.join()
         self.assertEqual(found, {0: expected, 1: expected})
+
+    def test_are_found_while_other_threads_run(self):
+        localizer, times = started(), itertools.count()
+        localizer.step(next(times), None, None, self.poles[0])
+        standing = ((0, 0, 0), np.eye(3) * 1e-4)
+        self.assertTrue(street.lets_others_run(
+            lambda: localizer.step(next(times), *standing, self.poles[0])))
 
     def test_are_none_until_the_global_search_finds_one(self):
         localizer = polemcl.Localizer(polemcl.PoleMap.load(street.map_file()), street.CONFIG,

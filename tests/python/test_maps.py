@@ -127,6 +127,13 @@ class BuiltMaps(unittest.TestCase):
             builder.add((2.0 * i, 0, 0), moved(late, -2.0 * i), velocity=(20, 0, 0))
         self.assertAlmostEqual(builder.build().poles["x"][0], 11, places=6)
 
+    def test_are_built_while_other_threads_run(self):
+        builder = polemcl.PoleMapBuilder()
+        seen = made_detections([(x, 5) for x in range(20)])
+        for i in range(100):
+            builder.add((i, 0, 0), moved(seen, -i))
+        self.assertTrue(street.lets_others_run(builder.build))
+
     def test_need_poses_and_detections(self):
         builder = polemcl.PoleMapBuilder()
         self.assertEqual(len(builder.build()), 0)
@@ -165,6 +172,11 @@ class Likelihoods(unittest.TestCase):
         strided = np.zeros((200, 6))
         strided[::2, ::2] = poses
         np.testing.assert_array_equal(likelihood.log_likelihoods(seen, strided[::2, ::2]), values)
+
+    def test_are_computed_while_other_threads_run(self):
+        likelihood = polemcl.PoleLikelihood(polemcl.PoleMap(made_poles([(5, 0), (0, 5)])))
+        seen, poses = made_detections([(x, 0) for x in range(40)]), np.zeros((400, 3))
+        self.assertTrue(street.lets_others_run(lambda: likelihood.log_likelihoods(seen, poses)))
 
     def test_refuse_other_shapes(self):
         likelihood = polemcl.PoleLikelihood(polemcl.PoleMap(made_poles([(5, 0)])))
