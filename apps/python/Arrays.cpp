@@ -250,7 +250,9 @@ py::array toArray(const std::vector<Pose2D>& poses) {
 }
 
 py::array toArray(const std::vector<double>& numbers) {
-  return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  py::array_t<double> array(static_cast<py::ssize_t>(numbers.size()));
+  std::copy(numbers.begin(), numbers.end(), array.mutable_data());
+  return array;
 }
 
 py::array toArray(const Pose2D& pose) {

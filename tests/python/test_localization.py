@@ -81,10 +81,8 @@ class Poses(unittest.TestCase):
 
     def test_are_found_while_other_threads_run(self):
         localizer, times = started(), itertools.count()
-        localizer.step(next(times), None, None, self.poles[0])
-        standing = ((0, 0, 0), np.eye(3) * 1e-4)
-        self.assertTrue(street.lets_others_run(
-            lambda: localizer.step(next(times), *standing, self.poles[0])))
+        arguments = (np.zeros(3), np.eye(3) * 1e-4, street.no_poles())
+        self.assertTrue(street.lets_others_run(lambda: localizer.step(next(times), *arguments)))
 
     def test_are_none_until_the_global_search_finds_one(self):
         localizer = polemcl.Localizer(polemcl.PoleMap.load(street.map_file()), street.CONFIG,
