@@ -8,6 +8,7 @@ import re
 import unittest
 
 import numpy as np
+import polemcl
 import street
 
 PAGE = pathlib.Path(__file__).parents[2] / "share" / "doc" / "python.md"
@@ -79,9 +80,12 @@ class Page(unittest.TestCase):
 
     def test_reads_maps(self):
         names, _ = self.block("street.csv")
-        self.assertEqual(names["positions"].shape, (len(names["street"]), 2))
-        self.assertTrue(np.all((names["sigma"] > 0) & (names["sigma"] < 0.1)))
-        self.assertTrue(0 < len(names["tall"]) <= len(names["street"]))
+        poles = polemcl.PoleMap.load(street.map_file()).poles
+        np.testing.assert_allclose(names["positions"][:, 0], poles["x"], atol=1e-6)
+        np.testing.assert_allclose(names["positions"][:, 1], poles["y"], atol=1e-6)
+        variance = (poles["cov_xx"] + poles["cov_yy"]) / 2
+        np.testing.assert_allclose(names["sigma"] ** 2, variance, rtol=1e-6)
+        self.assertEqual(len(names["tall"]), np.sum(poles["top"] > 3))
 
     def test_reads_poles_of_scans(self):
         names, _ = self.block("poles.csv")
