@@ -49,8 +49,11 @@ void bind(Binder& binder, Settings& settings) {
 }
 
 Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
+  return settingsFrom(ConfigFile::read(io::installedFile(path, "config").string()), assignments);
+}
+
+Settings settingsFrom(ConfigFile file, const std::vector<std::string>& assignments) {
   Settings settings;
-  ConfigFile file = ConfigFile::read(io::installedFile(path, "config").string());
   for (const auto& assignment : assignments) file.set(assignment);
   ConfigReader reader(file);
   bind(reader, settings);

@@ -19,6 +19,10 @@
 #include "report/scene/ViewOptions.h"
 #include "sim/common/SimulationOptions.h"
 
+namespace polemcl {
+class ConfigFile;
+}
+
 namespace polemcl::apps {
 
 /// \brief All settings of all programs. Sections that a file leaves out keep their defaults.
@@ -52,6 +56,8 @@ void bind(Binder& binder, Settings& settings);
 /// \throws Error naming file, section, key, value and what is allowed: unknown sections or keys,
 ///         wrong types, values out of range.
 Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments = {});
+/// \brief The same from an INI file in memory.
+Settings settingsFrom(ConfigFile file, const std::vector<std::string>& assignments);
 
 /// \brief Settings as an INI file, every key with unit, allowed values and meaning. Reading it
 /// with all tiers gives the same settings, bit for bit.

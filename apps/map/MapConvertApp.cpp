@@ -2,65 +2,14 @@
 
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "cli/Version.h"
-#include "core/mapping/MapAccumulator.h"
-#include "io/map/PolePositions.h"
-#include "io/map/PoleTables.h"
-#include "map/GeoJson.h"
+#include "map/MapFiles.h"
 
 namespace polemcl::apps {
-namespace {
-
-enum class Kind { polemap, csv, npz, geojson };
-
-Kind kindOf(const std::filesystem::path& file) {
-  const std::string ending = file.extension().string();
-  if (ending == ".polemap") return Kind::polemap;
-  if (ending == ".csv") return Kind::csv;
-  if (ending == ".npz") return Kind::npz;
-  if (ending == ".geojson") return Kind::geojson;
-  throw Error(file.string() + ": unknown kind of map '" + ending +
-              "'; allowed: .polemap, .csv, .npz, .geojson");
-}
-
-io::PoleMapData readMap(const MapConvertOptions& options, MapConvertSummary& summary) {
-  const auto& file = options.input;
-  switch (kindOf(file)) {
-    case Kind::polemap:
-      return io::readPoleMap(file);
-    case Kind::csv:
-      return io::readPoleCsv(file);
-    case Kind::npz:
-      return io::readPoleNpz(file);
-    case Kind::geojson:
-      break;
-  }
-  return readGeoJson(file, options.datum, &summary.otherFeatures);
-}
-
-void writeMap(const MapConvertOptions& options, const io::PoleMapData& map) {
-  switch (kindOf(options.output)) {
-    case Kind::polemap: {
-      std::optional<AddedSessions> scans;
-      if (kindOf(options.input) == Kind::polemap) scans = io::readMapScans(options.input);
-      return io::writePoleMap(options.output, map, scans ? &*scans : nullptr);
-    }
-    case Kind::csv:
-      return io::writePoleCsv(options.output, map.poles, map.histories);
-    case Kind::npz:
-      return io::writePoleNpz(options.output, map.poles);
-    case Kind::geojson:
-      return writeGeoJson(options.output, map);
-  }
-}
-
-}  // namespace
-
 MapConvertSummary convertMap(const MapConvertOptions& options) {
-  kindOf(options.output);  // before anything is read
-  MapConvertSummary summary;
-  io::PoleMapData map = readMap(options, summary);
+  const MapFileKind written = mapFileKind(options.output);  // before anything is read
+  MapContent content = readMapFile(options.input, options.datum);
+  io::PoleMapData& map = content.map;
   if (map.poles.empty()) throw Error(options.input.string() + ": no pole in it");
   if (options.datum) io::setDatum(map.info, *options.datum, options.input.string() + ": ");
   if (map.info.count("program") == 0) {
@@ -68,9 +17,11 @@ MapConvertSummary convertMap(const MapConvertOptions& options) {
     map.info["build"] = buildIdentity();
     map.info["converted_from"] = options.input.filename().string();
   }
-  writeMap(options, map);
+  writeMapFile(options.output, content);
+  MapConvertSummary summary;
   summary.poles = map.poles.size();
-  if (kindOf(options.output) != Kind::polemap) summary.candidates = map.candidates.size();
+  summary.otherFeatures = content.otherFeatures;
+  if (written != MapFileKind::polemap) summary.candidates = map.candidates.size();
   return summary;
 }
 

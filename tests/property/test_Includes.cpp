@@ -67,6 +67,7 @@ const std::vector<std::string> s_order{
     "apps/eval",
     "apps/batch",
     "apps/labels",
+    "apps/python",
 };
 
 /// Big rooms that a big room must not use, although they are above it.

@@ -1,0 +1,152 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <optional>
+
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include "python/Arrays.h"
+#include "python/Classes.h"
+#include "python/Maps.h"
+
+namespace py = pybind11;
+
+namespace polemcl::apps::python {
+namespace {
+
+LocalizationMap localizationMap(const PoleMap& map, const Settings& settings) {
+  auto poleMap = std::make_shared<CPoleMap>();
+  poleMap->likelihoodOptions = settings.likelihood;  // first: the index is prepared for its gate
+  poleMap->setPoles(map.content.map.poles);
+  return {poleMap, settings.global};
+}
+
+/// What pole-localize does in one run.
+class Localizer {
+ public:
+  Localizer(const std::shared_ptr<PoleMap>& map, const std::filesystem::path& configFile,
+            const py::dict& values, std::optional<std::uint32_t> seed)
+      : m_settings(settingsFrom(configFile, values)),
+        m_pipeline(localizationMap(*map, m_settings), m_settings.localization,
+                   seed.value_or(m_settings.runs.seed)) {}
+
+  void start(const py::object& pose, std::optional<double> radius, std::optional<double> heading) {
+    StartOptions start = m_settings.start;
+    start.pose = poseFrom(pose, "pose");
+    start.radius = radius.value_or(start.radius);
+    start.heading = heading.value_or(start.heading);
+    alone(m_mutex, [&] { m_pipeline.start(start); });
+  }
+
+  void initializeGlobally() {
+    alone(m_mutex, [&] { m_pipeline.initializeGlobally(); });
+  }
+
+  LocalizationUpdate step(double time, const py::object& motion, const py::object& covariance,
+                          const py::object& poles, const py::object& velocity) {
+    PoleFrame frame;
+    frame.time = time;
+    frame.poles_robot = detectionsFrom(poles);
+    if (!motion.is_none()) frame.motion = motionFrom(motion, covariance);
+    if (!velocity.is_none()) frame.velocity = velocityFrom(velocity);
+    return alone(m_mutex, [&] { return m_pipeline.step(frame); });
+  }
+
+  py::array particles() {
+    return toArray(alone(m_mutex, [&] {
+      return m_pipeline.hasPose() ? m_pipeline.filter().particles() : std::vector<Pose2D>();
+    }));
+  }
+
+ private:
+  io::PlanarMotion motionFrom(const py::object& motion, const py::object& covariance) const {
+    const Pose2D mean = poseFrom(motion, "motion");
+    if (covariance.is_none()) return {mean, motionCovariance(mean, m_settings.motion)};
+    return {mean, m_settings.motion.covarianceFactor * covarianceFrom(covariance)};
+  }
+
+  std::mutex m_mutex;
+  Settings m_settings;
+  LocalizationPipeline m_pipeline;
+};
+
+const char* nameOf(OdometryVerdict verdict) {
+  switch (verdict) {
+    case OdometryVerdict::agrees:
+      return "agrees";
+    case OdometryVerdict::contradicted:
+      return "contradicted";
+    case OdometryVerdict::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+void addUpdate(py::module_& module) {
+  py::class_<PoseWithCovariance>(module, "Estimate", "A pose on the map.")
+      .def_property_readonly(
+          "mean", [](const PoseWithCovariance& pose) { return toArray(pose.mean); },
+          "(3,): x, y (m), yaw (rad).")
+      .def_property_readonly(
+          "covariance", [](const PoseWithCovariance& pose) { return toArray(pose.covariance); },
+          "(3, 3), of x, y, yaw.");
+  py::class_<Health>(module, "Health", "Whether the pose can be trusted: share/doc/health.md.")
+      .def_property_readonly(
+          "state", [](const Health& health) { return name(health.state); },
+          "'ok', 'degraded' or 'lost'.")
+      .def_property_readonly("reason", [](const Health& health) { return name(health.reason); })
+      .def_readonly("matched_share", &Health::matchedShare)
+      .def_readonly("seen_share", &Health::seenShare)
+      .def_readonly("innovation", &Health::innovation)
+      .def_readonly("effective_particles", &Health::effectiveParticles)
+      .def_readonly("mode_share", &Health::modeShare)
+      .def_readonly("spread", &Health::spread, "m")
+      .def_readonly("spread_heading", &Health::spreadHeading, "rad")
+      .def("__repr__", [](const Health& health) {
+        return std::string("<Health ") + name(health.state) + ", " + name(health.reason) + ">";
+      });
+  py::class_<LocalizationUpdate>(module, "LocalizationUpdate", "What one scan brought.")
+      .def_readonly("time", &LocalizationUpdate::time, "s")
+      .def_property_readonly(
+          "estimate",
+          [](const LocalizationUpdate& update) -> py::object {
+            return update.estimate ? py::cast(*update.estimate) : py::none();
+          },
+          "An Estimate; None while no pose is known.")
+      .def_property_readonly("health",
+                             [](const LocalizationUpdate& update) { return update.health; })
+      .def_readonly("poles", &LocalizationUpdate::poles, "Number of poles in the scan.")
+      .def_readonly("relocalized", &LocalizationUpdate::relocalized,
+                    "True: the global search moved the pose to this place.")
+      .def_property_readonly(
+          "odometry", [](const LocalizationUpdate& update) { return nameOf(update.motion); },
+          "What the poles say of the motion: 'agrees', 'contradicted' or 'unknown'.");
+}
+
+}  // namespace
+
+void addLocalization(py::module_& module) {
+  addUpdate(module);
+  py::class_<Localizer>(module, "Localizer", "Localizes one drive, as a run of pole-localize does.")
+      .def(py::init<const std::shared_ptr<PoleMap>&, const std::filesystem::path&, const py::dict&,
+                    std::optional<std::uint32_t>>(),
+           py::arg("map").none(false), py::arg("config_file") = "",
+           py::arg("settings") = py::dict(), py::arg("seed") = py::none(),
+           "seed: None takes that of [runs].")
+      .def("start", &Localizer::start, py::arg("pose"), py::arg("radius") = py::none(),
+           py::arg("heading") = py::none(),
+           "pose: x, y (m), yaw (rad) at the first scan, right within radius (m) and heading "
+           "(rad); None takes those of [start].")
+      .def("initialize_globally", &Localizer::initializeGlobally,
+           "No pose is known: the whole map is searched during the drive.")
+      .def("step", &Localizer::step, py::arg("time"), py::arg("motion"), py::arg("covariance"),
+           py::arg("poles"), py::arg("velocity") = py::none(),
+           "The next scan. time: s; motion: x, y, yaw since the scan before, in the frame of the "
+           "robot then, None for the first scan; covariance: (3, 3) of it, None: by [motion]; "
+           "poles: of PoleExtractor; velocity: x, y (m/s), yaw (rad/s) at the scan, None: as the "
+           "motions tell. Returns a LocalizationUpdate.")
+      .def_property_readonly("particles", &Localizer::particles,
+                             "(n, 3): x, y, yaw of the particles; n = 0 while no pose is known.");
+}
+
+}  // namespace polemcl::apps::python
