@@ -6,7 +6,7 @@
 #   BUILD  folder of a complete build, build/ unless given
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
-build=${1-$top/build}
+build=$(cd "${1-$top/build}" && pwd)
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 prefix=$dir/prefix
