@@ -19,6 +19,8 @@ namespace {
 constexpr double s_pairGates[] = {0.8, 0.5, 0.5, 0.4};
 constexpr int s_steps = 4;               ///< of Gauss and Newton, in each round
 constexpr double s_anchorSigmas = 3;     ///< greatest distance from a pole of the map
+constexpr double s_nearAnchor = 0.5;     ///< m: but this at least, for the poses err as well
+constexpr double s_exactAnchor = 1e-3;   ///< m: added to what the map says of its poles
 constexpr double s_halfWeight = 9;       ///< as in SessionAlignment
 constexpr double s_motionSigma = 0.003;  ///< m: of each motion, beyond what it states
 constexpr double s_turnSigma = 3e-4;     ///< rad: the same
@@ -150,7 +152,8 @@ void DriveAdjustment::pairUp(double gate) {
 void DriveAdjustment::findAnchors() {
   double variance = 0;
   for (const MapPole& pole : m_map) variance = std::max(variance, pole.covariance.trace() / 2);
-  m_anchors = greedyAssignment(m_poles, centresOf(m_map), s_anchorSigmas * std::sqrt(variance));
+  m_anchors = greedyAssignment(m_poles, centresOf(m_map),
+                               std::max(s_nearAnchor, s_anchorSigmas * std::sqrt(variance)));
   if (m_anchors.size() < s_fewestAnchors)
     throw Error("only " + std::to_string(m_anchors.size()) + " of " +
                 std::to_string(m_poles.size()) + " poles seen stand near one of the map; " +
@@ -206,7 +209,8 @@ void DriveAdjustment::addSighting(const PoleSighting& sighting, NormalEquations&
 void DriveAdjustment::addAnchor(const AssignedPair& anchor, NormalEquations& equations) const {
   const MapPole& known = m_map[anchor.second];
   const Eigen::Vector2d residual = m_poles[anchor.first] - centreOf(known);
-  Eigen::Matrix2d information = known.covariance.inverse();
+  Eigen::Matrix2d information =
+      (known.covariance + s_exactAnchor * s_exactAnchor * Eigen::Matrix2d::Identity()).inverse();
   information *= robustWeight(residual.dot(information * residual)) * known.confidence;
   equations.add<2>({{poleAt(anchor.first), Eigen::Matrix2d::Identity()}}, residual, information);
 }
