@@ -90,6 +90,7 @@ std::vector<Eigen::Vector2d> lonLatsOf(const std::vector<InventoryEntry>& entrie
                                        const std::string& coordinates) {
   const CoordinateSystem system(coordinates);
   std::vector<Eigen::Vector2d> lonLats;
+  lonLats.reserve(entries.size());
   for (const InventoryEntry& entry : entries)
     lonLats.push_back(io::located(entry.where, [&] { return system.lonLat(entry.place); }));
   return lonLats;

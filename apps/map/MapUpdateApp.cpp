@@ -28,7 +28,7 @@ void requireSamePlace(const MapUpdateCounts& counts, const std::filesystem::path
   throw Error(input.string() + ": only " + std::to_string(counts.foundOnMap) + " of " +
               std::to_string(counts.expectedOnMap) + " poles of " + map.string() +
               " in its view were found; is its truth of the same place and datum? A new place "
-              "needs a new map");
+              "needs a new map, a map of pole-map import needs pole-map build --inventory");
 }
 
 /// A map is kept up from day to day. Within a day the order is not looked at: dates tell no more.

@@ -30,8 +30,8 @@ constexpr std::array<Meaning, 3> s_ways{{{"type", "pole", "pole"},
                                          {"type", "traffic_sign", "sign"},
                                          {"type", "traffic_light", "light"}}};
 
-template <std::size_t N>
-const char* kindOf(const Tags& tags, const std::array<Meaning, N>& meanings) {
+template <std::size_t size>
+const char* kindOf(const Tags& tags, const std::array<Meaning, size>& meanings) {
   for (const Meaning& meaning : meanings) {
     const auto tag = tags.find(meaning.key);
     if (tag != tags.end() && (!meaning.value || tag->second == meaning.value)) return meaning.kind;

@@ -57,7 +57,7 @@ bool hasShape(const py::array& array, const std::vector<py::ssize_t>& shape) {
 /// A structured array of one dimension.
 py::array recordsFrom(const py::object& object, const std::string& argument,
                       const std::string& type) {
-  const py::array array = arrayFrom(object, argument);
+  py::array array = arrayFrom(object, argument);
   if (array.ndim() != 1 || !array.dtype().has_fields())
     throw Error(argument + ": a structured array (n,) of polemcl." + type + " is needed, not " +
                 described(array));

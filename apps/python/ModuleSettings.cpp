@@ -19,7 +19,7 @@ fs::path configPath(const fs::path& name) {
   std::error_code ignored;
   if (!fs::exists(name, ignored) && dladdr(reinterpret_cast<void*>(&configPath), &module) != 0) {
     const fs::path folder = fs::canonical(module.dli_fname, ignored).parent_path();
-    const fs::path file = folder / ".." / ".." / ".." / "share" / "polemcl" / "config" / name;
+    fs::path file = folder / ".." / ".." / ".." / "share" / "polemcl" / "config" / name;
     if (fs::is_regular_file(file, ignored)) return file;
   }
   return name;

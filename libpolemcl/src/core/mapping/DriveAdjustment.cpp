@@ -73,7 +73,7 @@ class NormalEquations {
     Eigen::SparseMatrix<double> matrix(m_gradient.size(), m_gradient.size());
     matrix.setFromTriplets(m_entries.begin(), m_entries.end());
     factored.compute(matrix);
-    const Eigen::VectorXd step = factored.solve(-m_gradient);
+    Eigen::VectorXd step = factored.solve(-m_gradient);
     if (factored.info() != Eigen::Success || !step.allFinite())
       throw Error("the drives cannot be adjusted to the map: odometry and poles leave them open");
     return step;
@@ -248,7 +248,7 @@ double DriveAdjustment::sampledSigma() const {
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0; i < m_poses.size(); i += every)
-    for (const std::size_t axis : {0, 1}) {
+    for (const std::size_t axis : {0u, 1u}) {
       const auto unknown = static_cast<Eigen::Index>(3 * i + axis);
       const Eigen::VectorXd unit =
           Eigen::VectorXd::Unit(static_cast<Eigen::Index>(poleAt(m_poles.size())), unknown);
