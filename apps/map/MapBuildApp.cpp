@@ -37,6 +37,17 @@ std::optional<io::Datum> datumFor(const MapBuildJob& job) {
   return io::datumOf(info, where);
 }
 
+/// \throws Error when most scans of a drive have no odometry.
+void requireOdometry(const MappingSession& drive, const fs::path& input) {
+  const auto known = static_cast<std::size_t>(
+      std::count_if(drive.motions.begin(), drive.motions.end(),
+                    [](const auto& motion) { return motion.has_value(); }));
+  if (2 * (known + 1) < drive.motions.size())
+    throw Error(input.string() + ": only " + std::to_string(known) + " of " +
+                std::to_string(drive.motions.size()) +
+                " scans have odometry; --inventory needs it: write odometry to the rawlog");
+}
+
 /// Moves the poses of all drives so that their poles stand where the inventory has them.
 AdjustedDrives adjust(std::vector<MappingSession>& drives, const std::vector<MapPole>& inventory,
                       const Settings& settings) {
@@ -170,6 +181,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
     drives.push_back(loadMappingSession(job.session(i), settings, job.allowTruncated, progress));
   LandmarkMap inventory;
   if (job.inventory) {
+    for (std::size_t i = 0; i < drives.size(); ++i) requireOdometry(drives[i], job.inputs[i]);
     inventory = io::landmarkMap(io::readPoleMap(*job.inventory));
     summary.inventory.emplace();
     summary.inventory->drives = io::located(job.inventory->string() + ": ", [&] {

@@ -6,7 +6,7 @@
 # Simulated streets of 600 m, poles drawn from the model of an HDL-32E, odometry of wheels, 1 % too long and
 # 0.01 deg/m off. The inventory (erring-inventory.awk) is off by 0.3 to 1 m, misses 20 % of the poles and
 # invents 10 %. Starts within 2.5 m and 5 degrees of the true pose.
-#   inventory   the first drive, in the inventory, with likelihood.sigma_m = 0.5
+#   inventory   the first drive, in the inventory
 #   one drive   drives 2 (against) and 3 (along), in the map that pole-map build --inventory made of drive 1
 #   four        drive 5, in the map of drives 1 to 4
 #   truth       drives 2 and 3, in the map of drive 1 at its true poses: what the LiDAR can do
@@ -26,10 +26,10 @@ find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq
 /usr/bin/python3 -c "import numpy" 2>/dev/null || die "numpy is needed: install python3-numpy"
 
-# localize DRIVE MAP FOLDER [SECTION.KEY=VALUE]
+# localize DRIVE MAP FOLDER
 localize() {
   "$bin/pole-localize" --quiet --config "$1.ini" --input "$1.rawlog" --map "$2" --truth "$1.tum" \
-    --output "$3" --seed 1 ${4:+--set "$4"} >/dev/null
+    --output "$3" --seed 1 >/dev/null
 }
 
 # score NAME WORLD DRIVE FOLDER SIGMA: adds a line to OUT/results
@@ -85,7 +85,7 @@ for world in $(seq "$first" "$last"); do
     --crs "+proj=ortho +lat_0=52 +lon_0=13 +ellps=WGS84" --output "$here/inventory.polemap"
   map_score "$world" inventory "$here/inventory.polemap"
   for drive in 1 2 3 4; do
-    localize "$here/$drive" "$here/inventory.polemap" "$here/in-inventory-$drive" likelihood.sigma_m=0.5
+    localize "$here/$drive" "$here/inventory.polemap" "$here/in-inventory-$drive"
   done
   score inventory "$world" "$here/1" "$here/in-inventory-1" 0
   sharpen "$world" "$here/one.polemap" 1

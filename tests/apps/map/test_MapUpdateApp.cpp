@@ -260,6 +260,13 @@ TEST_F(MapUpdateApp, AnInventoryBecomesAsExactAsTheLidar) {
   arguments = build;
   arguments.insert(arguments.end(), {"--truth", at("day1.tum")});
   expectUsageError(runProgram(mapMain, arguments));
+
+  fs::remove(folder / "day1" / "odometry.txt");
+  import("day1");
+  arguments = build;
+  arguments.insert(arguments.end(), {"--estimate", at("run_00.tum")});
+  expectFailure(runProgram(mapMain, arguments),
+                {"day1.rawlog", "only 0 of 25 scans have odometry", "--inventory needs it"});
 }
 
 TEST_F(MapUpdateApp, WarnsWhenManyPolesHaveMoved) {

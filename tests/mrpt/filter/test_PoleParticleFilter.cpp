@@ -250,21 +250,24 @@ TEST(PoleParticleFilter, TellsWhatAStepDid) {
   EXPECT_EQ(localizer.report().resampled, localizer.report().effectiveShare < 0.5);
 }
 
-TEST(PoleParticleFilter, FarOutliersCountByWhatIsNew) {
+TEST(PoleParticleFilter, PolesCountByWhatIsNew) {
   const PoleStreet street = makeStreet({});
-  const auto weights = [&](double farOutlier, double newShare) {
+  const auto weights = [&](double farOutlier, const NewShares& shares) {
     auto map = std::make_shared<CPoleMap>(*street.map);
     map->likelihoodOptions.farOutlier = farOutlier;
     FilterOptions options = still();
     options.tempering = 0;
     PoleParticleFilter localizer(map, options, 1);
     localizer.start(at(street.truth[50], 2.5));
-    localizer.step(street.frames[50], newShare);
+    localizer.step(street.frames[50], shares);
     return localizer.logWeights();
   };
-  EXPECT_EQ(weights(0.25, 0), weights(1, 1));
-  EXPECT_EQ(weights(0.25, 0.5), weights(0.5, 1));
-  EXPECT_NE(weights(0.25, 1), weights(0.5, 1));
+  EXPECT_EQ(weights(0.25, {0, 1}), weights(1, {1, 1}));
+  EXPECT_EQ(weights(0.25, {0.5, 1}), weights(0.5, {1, 1}));
+  EXPECT_NE(weights(0.25, {1, 1}), weights(0.5, {1, 1}));
+  const std::vector<double> all = weights(1, {1, 1}), half = weights(1, {1, 0.5});
+  for (std::size_t i = 1; i < all.size(); ++i)
+    EXPECT_NEAR(half[i] - half[0], (all[i] - all[0]) / 2, 1e-9);
 }
 
 // 10000 particles at the start, of which 1000 remain: a fifth of these is enough.

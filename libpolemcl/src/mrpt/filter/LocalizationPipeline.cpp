@@ -32,6 +32,15 @@ bool isWide(const Eigen::Matrix3d& covariance) {
          covariance(2, 2) > LocalizationPipeline::wideRadians * LocalizationPipeline::wideRadians;
 }
 
+/// Median of the standard deviations of the poles' places along an axis, m.
+double medianSigma(const std::vector<MapPole>& poles) {
+  std::vector<double> sigmas;
+  for (const MapPole& pole : poles) sigmas.push_back(std::sqrt(pole.covariance.trace() / 2));
+  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
+  std::nth_element(sigmas.begin(), middle, sigmas.end());
+  return *middle;
+}
+
 }  // namespace
 
 LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
@@ -40,6 +49,13 @@ LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
   if (!poles || poles->poles().empty())
     throw Error("the map has no poles: nothing can be localized in it");
   search = std::make_shared<GlobalLocalizer>(poles->poles(), options);
+  const LikelihoodOptions& likelihood = poles->likelihoodOptions;
+  const double sigma = medianSigma(poles->poles());
+  if (!likelihood.weighted || !(sigma > coarseness * likelihood.sigma)) return;
+  const auto widened = std::make_shared<CPoleMap>(*poles);
+  widened->likelihoodOptions.sigma = sigma;
+  poles = widened;
+  coarse = true;
 }
 
 LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const LocalizationOptions& options,
@@ -180,11 +196,18 @@ PoleFrame LocalizationPipeline::checkedMotion(const PoleFrame& frame, Localizati
   return result;
 }
 
+NewShares LocalizationPipeline::newShares(double metres) const {
+  NewShares shares;
+  // No frame before the first one said anything by chance.
+  if (m_stepped) shares.chance = std::min(1.0, metres / decorrelationMetres);
+  const double apart = m_options.tracking.average ? m_options.tracking.every : 0;
+  if (m_map.coarse) shares.all = std::min(1.0, std::max(metres, apart) / coarseMetres);
+  return shares;
+}
+
 void LocalizationPipeline::track(const PoleFrame& frame, double metres,
                                  LocalizationUpdate& update) {
-  // The first scan says all it can.
-  const double newShare = m_stepped ? std::min(1.0, metres / decorrelationMetres) : 1;
-  PoseWithCovariance estimate = m_filter.step(m_tracked, newShare);
+  PoseWithCovariance estimate = m_filter.step(m_tracked, newShares(metres));
   double modeShare = 1;
   if (isWide(estimate.covariance)) {
     const PoseMode mode = heaviestMode(m_filter.particles(), m_filter.logWeights());

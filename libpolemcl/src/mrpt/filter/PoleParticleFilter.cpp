@@ -145,10 +145,10 @@ void PoleParticleFilter::begin(int particles) {
   m_time.reset();
 }
 
-PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame, double newShare) {
+PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame, const NewShares& shares) {
   if (!m_started) throw Error("the filter has no particles yet: call start() first");
   const auto action = actionTo(frame, m_time, m_options);
-  m_newShare = newShare;
+  m_newShares = shares;
   const auto observation = CObservationPoles::Create();
   observation->poles = frame.poles_robot;  // sensorPose stays identity: robot frame
   mrpt::obs::CSensoryFrame scan;
@@ -216,13 +216,14 @@ void PoleParticleFilter::update(const CObservationPoles& scan,
                                 const CParticleFilter::TParticleFilterOptions& mrptOptions) {
   m_report.poles += scan.poles.size();
   LikelihoodOptions likelihood = m_map->likelihoodOptions;
-  likelihood.farOutlier = std::pow(likelihood.farOutlier, m_newShare);
+  likelihood.farOutlier = std::pow(likelihood.farOutlier, m_newShares.chance);
+  const double power = mrptOptions.powFactor * m_newShares.all;
   std::vector<std::vector<double>> values;  // by widening
   const auto evaluate = [&](const std::vector<double>& widenings) {
     m_map->widenedLogLikelihoods(scan, likelihood, particles(), widenings, values);
-    if (mrptOptions.powFactor == 1) return;
+    if (power == 1) return;
     for (auto& ofOneWidening : values)
-      for (double& value : ofOneWidening) value *= mrptOptions.powFactor;
+      for (double& value : ofOneWidening) value *= power;
   };
   const auto weigh = [&](std::vector<double> ratios, const std::vector<double>& before) {
     for (std::size_t i = 0; i < before.size(); ++i) ratios[i] -= before[i];

@@ -80,11 +80,18 @@ struct LocalizationUpdate {
 };
 
 /// \brief The map with the data for the global search, prepared once and shared by many runs.
+///
+/// A map is coarse if `weighted` counts its covariances and the median of its poles' standard
+/// deviations (root of ½ tr Σ) is above `coarseness` times LikelihoodOptions::sigma: an inventory.
+/// Its likelihood then gets this median for sigma. The error of a pole stays the same as long as
+/// the pole is in view, so the pipeline counts detections in it by NewShares::all.
 struct POLEMCL_EXPORT LocalizationMap {
+  static constexpr double coarseness = 3;
   /// \throws Error on a map without poles, or options out of range.
   LocalizationMap(std::shared_ptr<const CPoleMap> poleMap, const GlobalOptions& options);
   std::shared_ptr<const CPoleMap> poles;
   std::shared_ptr<const GlobalLocalizer> search;
+  bool coarse = false;
 };
 
 /// \brief Localizes one drive. Results depend only on input and seed. Several objects may run in
@@ -110,8 +117,11 @@ class POLEMCL_EXPORT LocalizationPipeline {
   /// Above this distance between two scans their poles are not averaged, m.
   static constexpr double sparseMetres = 2;
   /// Poles are seen again over this distance: what chance matches say about the place is new only
-  /// after it, m. See PoleParticleFilter::step().
+  /// after it, m. See NewShares.
   static constexpr double decorrelationMetres = 10;
+  /// The same for all poles of a coarse map, m. Over longer distances the errors of its poles
+  /// remain alike, but the odometry forgets what they said.
+  static constexpr double coarseMetres = 5;
   /// A search result within these limits of the estimate counts as the same pose, m and rad.
   static constexpr double sameMetres = 0.5, sameRadians = 0.035;
   /// Re-initialize at the same pose anyway if the new pose matches at least this many more poles.
@@ -139,6 +149,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
   std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,
                                             const std::vector<PoleDetection>& poles_robot);
+  NewShares newShares(double metres) const;
   void track(const PoleFrame& frame, double metres, LocalizationUpdate& update);
   void doubtSubmap();
   bool searchIsDue() const;

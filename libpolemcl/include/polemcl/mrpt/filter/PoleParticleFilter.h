@@ -29,6 +29,15 @@ struct StepReport {
   bool resampled = false;     ///< whether resampling took place after the update
 };
 
+/// \brief How much of what the poles of a frame say the frames before have not said: shares from 0
+/// to 1.
+struct NewShares {
+  /// Of what they say about the place by having no match: LikelihoodOptions::farOutlier is raised
+  /// to this power.
+  double chance = 1;
+  double all = 1;  ///< of everything: log likelihoods are multiplied by it
+};
+
 /// \brief A possible pose of the vehicle, with a weight.
 struct PoseHypothesis {
   PoseWithCovariance pose;  ///< map frame
@@ -80,13 +89,11 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   /// \brief Predicts by the motion of the frame, weighs by its poles, estimates, resamples.
   /// The start pose is the pose of the first frame after start(), so its motion is ignored. Frames
   /// without poles only predict.
-  /// \param newShare How much of what the poles say about the place the frames before have not
-  ///        said, 0 to 1: LikelihoodOptions::farOutlier is raised to this power.
   /// \return The estimate at FilterOptions::estimateTime, with the covariance of the particles
   ///         used.
   /// \throws Error before start(); when the time is not later than that of the previous frame; when
   ///         the motion is missing, or rejected by makeMotionAction(). The state is then unchanged.
-  PoseWithCovariance step(const PoleFrame& frame, double newShare = 1);
+  PoseWithCovariance step(const PoleFrame& frame, const NewShares& shares = {});
 
   std::vector<Pose2D> particles() const;
   std::vector<double> logWeights() const;  ///< natural logarithms, up to a common constant
@@ -141,7 +148,7 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   mrpt::random::CRandomGenerator m_generator;
   bool m_started = false;
   std::optional<double> m_time;  ///< time of the last frame since the start, s
-  double m_newShare = 1;         ///< of the frame in step()
+  NewShares m_newShares;         ///< of the frame in step()
   PoseWithCovariance m_estimate;
   StepReport m_report;
   std::exception_ptr m_failure;
