@@ -64,8 +64,8 @@ TEST(LocalizationMap, IsCoarseWhenItsPolesAreFarLessCertainThanTheLikelihood) {
 }
 
 // Errors of an inventory stay while its poles are in view. Taken for new at each scan, they gave
-// covariances far too small: the squared error over the covariance, which should be 2 on average, was
-// 35 here. On this street with few poles it is now 4.3, in simulated cities about 2.
+// covariances far too small: the squared error over the covariance, which should be 2 on average,
+// was 35 here. On this street with few poles it is now 4.3, in simulated cities about 2.
 TEST(LocalizationPipeline, TellsHowUncertainItIsInAnInventory) {
   Errors mean;
   const int streets = 6;

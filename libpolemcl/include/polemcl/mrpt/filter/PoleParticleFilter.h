@@ -32,10 +32,8 @@ struct StepReport {
 /// \brief How much of what the poles of a frame say the frames before have not said: shares from 0
 /// to 1.
 struct NewShares {
-  /// Of what they say about the place by having no match: LikelihoodOptions::farOutlier is raised
-  /// to this power.
-  double chance = 1;
-  double all = 1;  ///< of everything: log likelihoods are multiplied by it
+  double chance = 1;  ///< poles without a match: power of LikelihoodOptions::farOutlier
+  double all = 1;     ///< all poles: factor on their log likelihoods
 };
 
 /// \brief A possible pose of the vehicle, with a weight.
