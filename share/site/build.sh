@@ -1,0 +1,35 @@
+#!/bin/sh
+# Builds the documentation site: pages from share/doc, README and reports, and the C++ reference from the headers.
+# Usage: share/site/build.sh OUT      OUT/site/index.html is its first page; it opens without a server
+# Needs Debian's mkdocs-material and doxygen. Broken links and faults in comments are errors.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+
+[ $# = 1 ] || {
+  echo "usage: share/site/build.sh OUT" >&2
+  exit 2
+}
+for tool in mkdocs doxygen; do
+  command -v "$tool" >/dev/null || {
+    echo "build.sh: no $tool here: install the Debian packages mkdocs-material and doxygen" >&2
+    exit 1
+  }
+done
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
+rm -rf "$out/source" "$out/site"
+mkdir -p "$out/source/share"
+cp "$top/README.md" "$top/CONTRIBUTING.md" "$top/CHANGELOG.md" "$out/source"
+for folder in doc examples figures reports; do
+  cp -R "$top/share/$folder" "$out/source/share"
+done
+cp "$top/share/site/mkdocs.yml" "$out"
+
+(cd "$top" && {
+  cat share/site/Doxyfile
+  echo "INPUT = libpolemcl/include"
+  echo "OUTPUT_DIRECTORY = $out/source/share/doc"
+  echo "HTML_OUTPUT = api"
+} | doxygen -)
+mkdocs build --quiet --strict --config-file "$out/mkdocs.yml"
+echo "$out/site/index.html"
