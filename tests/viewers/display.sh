@@ -1,5 +1,5 @@
 # Functions of the tests of viewers, sourced after share/experiments/common.sh.
-# shellcheck shell=sh disable=SC2034
+# shellcheck shell=sh disable=SC2034,SC2154
 
 fail() {
   echo "Test of viewers: FAILED: $1" >&2
@@ -67,7 +67,7 @@ close() {
 }
 
 # pixels_in PICTURE AREA COLOUR...: how many in the area, WIDTHxHEIGHT+X+Y or with per cents of the middle, have
-# one of the colours. $fuzz is the tolerance, as a share.
+# one of the colours. $fuzz is the tolerance, as a share; $gravity, the corner that the area is counted from.
 pixels_in() {
   picture=$1
   area=$2

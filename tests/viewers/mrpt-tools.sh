@@ -50,7 +50,7 @@ edit --cut --to-index 39 -i drive.rawlog -o few.rawlog >/dev/null
 poles_of few.rawlog >"$folder/few"
 left=$(grep -c '^Poles: ' "$folder/few")
 # Entries 0 to 39 are 20 pairs of motion and scan; MRPT counts one more or less.
-[ "$left" -ge 19 ] && [ "$left" -le 21 ] || fail "rawlog-edit --cut leaves $left scans, not 20"
+{ [ "$left" -ge 19 ] && [ "$left" -le 21 ]; } || fail "rawlog-edit --cut leaves $left scans, not 20"
 head -n "$(wc -l <"$folder/few")" "$folder/described" | cmp -s - "$folder/few" ||
   fail "rawlog-edit --cut changes poles"
 edit --keep-label lidar -i few.rawlog -o kept.rawlog >/dev/null
@@ -109,7 +109,7 @@ view few.rawlog "$pictures/rawlogviewer.png" -l "$library" ||
 # The text of the first scan is that of rawlog-edit, pole for pole.
 sed '/^---/,$d;/^$/d' "$folder/few" >"$folder/first"
 grep -v -x -F -f "$folder/text" "$folder/first" >"$folder/missing" || true
-[ -s "$folder/first" ] && [ ! -s "$folder/missing" ] || fail "RawLogViewer -l does not show: $(cat "$folder/missing")"
+{ [ -s "$folder/first" ] && [ ! -s "$folder/missing" ]; } || fail "RawLogViewer -l does not show: $(cat "$folder/missing")"
 [ "$(red "$pictures/rawlogviewer.png")" -gt 300 ] || fail "RawLogViewer -l draws no poles"
 # Without the plugin it shows neither: this test sees something.
 if view few.rawlog "$pictures/rawlogviewer_without.png"; then
