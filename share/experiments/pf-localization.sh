@@ -4,7 +4,7 @@
 # drive of another, odometry of wheels. Each run of MRPT is a process of its own, because its seed cannot be set.
 # Usage: share/experiments/pf-localization.sh OUT [RUNS [WORLD]]
 #   OUT    gets map, drive, the runs, table.txt and result.json
-#   RUNS   of each filter, 10 unless given; WORLD: 31 unless given
+#   RUNS   of each filter, at least 5 (the spread needs them), 10 unless given; WORLD: 31 unless given
 # Pairs: resampling at each scan with equal weights after it (MRPT: adaptiveSampleSize with equal bounds), and
 # resampling below half of the effective particles, where MRPT 2.5.8 keeps the old weights.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq, mrpt-apps; 8 minutes on 2 busy cores.
@@ -16,6 +16,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 check_arguments 1 3 "$@"
 runs=${2:-10}
 world=${3:-31}
+[ "$runs" -ge 5 ] || die "RUNS must be 5 or more, not $runs"
 find_programs pole-simulate pole-map pole-localize pole-eval
 find_tools jq pf-localization
 library=$(find "$bin/../lib" -name 'libpolemcl.so' 2>/dev/null | head -n 1)
