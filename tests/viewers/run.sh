@@ -1,38 +1,17 @@
 #!/bin/sh
 # Opens each kind of .3Dscene in MRPT's SceneViewer3D, untouched, and looks at the picture: poles and
-# paths in the middle of the window, in the map's frame and at UTM coordinates.
+# paths in the middle of the window, in the map's frame and at UTM coordinates. Then mrpt-tools.sh: the others.
 # Usage: tests/viewers/run.sh [PICTURES]; skips, and says why, where a program is missing.
 # Programs: build/bin, or POLEMCL_BIN. PICTURES: a folder that gets the screenshots.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
+# shellcheck source=tests/viewers/display.sh
+. "$top/tests/viewers/display.sh"
 find_programs pole-simulate pole-map pole-localize pole-eval
-
-for tool in Xvfb openbox SceneViewer3D import convert; do
-  if ! command -v "$tool" >/dev/null; then
-    echo "Test of viewers: skipped, no $tool here (packages xvfb, openbox, mrpt-apps, imagemagick)"
-    exit 0
-  fi
-done
-
-folder=$(mktemp -d)
-pictures=$folder
-if [ $# -gt 0 ]; then
-  mkdir -p "$1"
-  pictures=$(cd "$1" && pwd)
-fi
-running=
-finish() {
-  # shellcheck disable=SC2086 # several processes
-  [ -z "$running" ] || kill $running 2>/dev/null || true
-  rm -rf "$folder"
-}
-trap finish EXIT
-fail() {
-  echo "Test of viewers: FAILED: $1" >&2
-  exit 1
-}
+skip_without "xvfb, openbox, mrpt-apps, imagemagick" Xvfb openbox SceneViewer3D import convert
+open_folder "$@"
 
 # drive NAME DAY X Y: a day of the street, moved by X, Y: NAME.rawlog, NAME.tum.
 drive() {
@@ -66,13 +45,7 @@ scenes() {
 pixels() {
   picture=$1
   shift
-  total=0
-  for colour in "$@"; do
-    found=$(convert "$picture" -gravity center -crop 60%x60%+0+0 +repage -fuzz "$fuzz" \
-      -transparent "$colour" -alpha extract -negate -format '%[fx:round(mean*w*h)]' info:)
-    total=$((total + found))
-  done
-  echo "$total"
+  pixels_in "$picture" 60%x60%+0+0 "$@"
 }
 
 fuzz=9% # of a colour: cylinders are darker on one side
@@ -99,19 +72,19 @@ shows() {
   esac
 }
 
+# pictured PICTURE KIND: takes the picture, and says whether it shows that.
+pictured() {
+  import -window root "$1" 2>/dev/null && shows "$1" "$2"
+}
+
 # look SCENE KIND SECONDS PICTURE: opens it and waits until it shows what it should, no longer than that.
 look() {
   SceneViewer3D "$1" >"$folder/viewer.log" 2>&1 &
   viewer=$!
   running="$running $viewer"
-  seen=no
-  end=$(($(date +%s) + $3))
-  while [ $seen = no ] && [ "$(date +%s)" -lt "$end" ]; do
-    sleep 1
-    import -window root "$4" 2>/dev/null && shows "$4" "$2" && seen=yes
-  done
-  kill "$viewer" 2>/dev/null || true
-  wait "$viewer" 2>/dev/null || true
+  seen=yes
+  wait_for "$3" pictured "$4" "$2" || seen=no
+  close "$viewer"
   [ $seen = yes ]
 }
 
@@ -123,17 +96,7 @@ look() {
 scenes local 0 0
 scenes utm 448000 5417000
 
-HOME=$folder LIBGL_ALWAYS_SOFTWARE=1
-export HOME LIBGL_ALWAYS_SOFTWARE
-mkfifo "$folder/display"
-Xvfb -displayfd 3 -screen 0 1280x860x24 +extension GLX -nolisten tcp 3>"$folder/display" \
-  2>"$folder/xvfb.log" &
-running=$!
-read -r display <"$folder/display" || fail "no display: $(tail -n 1 "$folder/xvfb.log")"
-DISPLAY=:$display
-export DISPLAY
-openbox >/dev/null 2>&1 &
-running="$running $!"
+open_display
 
 for place in local utm; do
   for kind in map trajectory diff live; do
@@ -147,3 +110,4 @@ if look "$folder/broken.3Dscene" map 10 "$pictures/broken.png"; then
   fail "a broken scene passes: this test sees nothing"
 fi
 echo "Test of viewers: passed; SceneViewer3D shows maps, trajectories, changes and live scenes"
+"$top/tests/viewers/mrpt-tools.sh" "$@"

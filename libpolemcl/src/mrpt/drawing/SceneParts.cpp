@@ -9,6 +9,7 @@
 
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
+#include "mrpt/common/Compatibility.h"
 
 namespace polemcl::scene {
 namespace {
@@ -28,9 +29,9 @@ mrpt::math::TPoint3Df pointOf(const Eigen::Vector3d& p) {
 
 void light(COpenGLViewport& viewport) {
   auto& lights = viewport.lightParameters();
-  lights.ambient = {0.8f, 0.8f, 0.8f, 1.0f};
-  lights.diffuse = {0.28f, 0.28f, 0.28f, 1.0f};
-  lights.specular = {0.0f, 0.0f, 0.0f, 1.0f};
+  setLight(lights.ambient, 0.8f);
+  setLight(lights.diffuse, 0.28f);
+  setLight(lights.specular, 0.0f);
 }
 
 struct CountClass {

@@ -1,11 +1,11 @@
 #include <mrpt/config/CConfigFile.h>
-#include <mrpt/version.h>
 
 #include <ostream>
 
 #include <polemcl/config/Config.h>
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "mrpt/common/Compatibility.h"
 
 MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)
 
@@ -124,13 +124,6 @@ void CPoleMap::TMapDefinition::dumpToTextStream_map_specific(std::ostream& out) 
   insertionOpts.dumpToTextStream(out);
   likelihoodOpts.dumpToTextStream(out);
 }
-
-// MRPT_VERSION is 0x258 in 2.5.8 and 0x020A02 from 2.10.2 on: it grows, but not digit by digit.
-#if MRPT_VERSION >= 0x020B03
-using CreatedMap = mrpt::maps::CMetricMap::Ptr;
-#else
-using CreatedMap = mrpt::maps::CMetricMap*;  // owned by the caller
-#endif
 
 CreatedMap CPoleMap::internal_CreateFromMapDefinition(
     const mrpt::maps::TMetricMapInitializer& def) {
