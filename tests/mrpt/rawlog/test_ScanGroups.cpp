@@ -60,9 +60,9 @@ TEST(ScanGroups, ScansMayComeInAnotherOrderThanTheirTimes) {
 TEST(ScanGroups, AMissedScanDoesNotHoldUpTheOthersForLong) {
   ScanGroups g(vehicle());
   g.add(scan(0, 0));
-  g.reach(0.25);
-  EXPECT_EQ(groups(g), "") << "0.05 s within, 0.2 s waiting";
-  g.reach(0.26);
+  g.add(scan(0, 0.1));
+  EXPECT_EQ(groups(g), "") << "0.05 s within, 0.1 s waiting";
+  g.add(scan(0, 0.2));
   EXPECT_EQ(groups(g), "a0.00 | ");
 }
 
@@ -108,7 +108,7 @@ TEST(ScanGroups, ThreeLidarsAndOneThatNeverComes) {
     g.add(scan(1, 0.1 * i + 0.01));
     all += groups(g);
   }
-  EXPECT_EQ(all, "a0.00 b0.01 | a0.10 b0.11 | a0.20 b0.21 | ");
+  EXPECT_EQ(all, "a0.00 b0.01 | a0.10 b0.11 | a0.20 b0.21 | a0.30 b0.31 | ");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ ScanGroups::ScanGroups(const VehicleOptions& vehicle)
     : m_within(vehicle.fuseWithin), m_wait(vehicle.wait), m_latest(vehicle.lidars.size()) {}
 
 bool ScanGroups::add(LidarScan scan) {
-  reach(scan.time);
+  m_reached = std::max(m_reached.value_or(scan.time), scan.time);
   auto& latest = m_latest[scan.lidar];
   latest = std::max(latest.value_or(scan.time), scan.time);
   if (m_given && scan.time <= *m_given) return false;
@@ -17,10 +17,6 @@ bool ScanGroups::add(LidarScan scan) {
                        [](double time, const Waiting& other) { return time < other.scan.time; });
   m_waiting.insert(after, {std::move(scan), m_arrived++});
   return true;
-}
-
-void ScanGroups::reach(double time) {
-  m_reached = std::max(m_reached.value_or(time), time);
 }
 
 /// Number of waiting scans that form the first group, as far as is known.

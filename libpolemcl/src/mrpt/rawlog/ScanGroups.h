@@ -30,18 +30,16 @@ struct LidarScan {
 /// VehicleOptions::fuseWithin of the first, or no motion by an action is between them: odometry
 /// does not tell them apart then.
 ///
-/// A group is complete when each LiDAR has a scan in it or a later one, or when anything has come
-/// from VehicleOptions::fuseWithin plus VehicleOptions::wait after its first scan: a LiDAR that
-/// misses a scan does not hold up the others for longer. The result depends on the order of the
-/// calls only.
+/// A group is complete when each LiDAR has a scan in it or a later one, or when any scan has come
+/// from VehicleOptions::fuseWithin plus VehicleOptions::wait after its first: a LiDAR that misses a
+/// scan does not hold up the others for longer. (Odometry tells nothing here: it may come long
+/// before the scans of its time.) The result depends on the order of the calls only.
 class ScanGroups {
  public:
   explicit ScanGroups(const VehicleOptions& vehicle);
 
   /// \return false: the scan is older than the last group, so it comes too late and is dropped.
   bool add(LidarScan scan);
-  /// \brief Something with this time (s) has come.
-  void reach(double time);
   /// \brief The next complete group in the order of arrival; empty: none yet.
   /// \param ended Nothing will come: what waits is complete.
   std::vector<LidarScan> next(bool ended);
@@ -58,7 +56,7 @@ class ScanGroups {
   const double m_within, m_wait;
   std::vector<std::optional<double>> m_latest;  ///< time of the latest scan by LiDAR, s
   std::deque<Waiting> m_waiting;                ///< in the order of their times
-  std::optional<double> m_reached;              ///< latest time of all, s
+  std::optional<double> m_reached;              ///< time of the latest scan, s
   std::optional<double> m_given;                ///< time of the last scan given out, s
   std::size_t m_arrived = 0;
 };

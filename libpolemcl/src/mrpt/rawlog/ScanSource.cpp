@@ -16,6 +16,7 @@
 #include "config/TimingComment.h"
 #include "core/common/Covariance.h"
 #include "mrpt/observation/ObservationPoints.h"
+#include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/RawlogReader.h"
 
 namespace polemcl {
@@ -125,14 +126,16 @@ ScanSource::ScanSource(std::shared_ptr<EntrySource> entries, std::string name,
   if (!vehicle.lidars.empty()) m_groups.emplace(vehicle);
 }
 
-/// Which LiDAR an observation is from; none: not used. Poles that do not come from a LiDAR of the
-/// vehicle, and are the first, were fused before.
+/// Which LiDAR an observation is from; none: not used. Poles that were fused before are read as
+/// they are, if they come first.
 std::optional<std::size_t> ScanSource::lidarOf(const CObservation& observation) {
   if (m_groups) {
     if (const auto lidar = m_vehicle.indexOf(observation.sensorLabel)) return lidar;
     const bool isFirst = std::all_of(m_ofLidar.begin(), m_ofLidar.end(),
                                      [](std::size_t scans) { return scans == 0; });
-    if (!isFirst || !dynamic_cast<const CObservationPoles*>(&observation)) return std::nullopt;
+    if (!isFirst || observation.sensorLabel != fusedLabel ||
+        !dynamic_cast<const CObservationPoles*>(&observation))
+      return std::nullopt;
     m_groups.reset();
   }
   if (m_sensor.empty()) m_sensor = sensorOf(observation);
@@ -143,7 +146,6 @@ void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& e
   const double time = mrpt::Clock::toDouble(observation->timestamp);
   if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
     m_odometry.add(time, planar(odometry->odometry));
-    if (m_groups) m_groups->reach(time);
     return;
   }
   if (!isScan(*observation)) {

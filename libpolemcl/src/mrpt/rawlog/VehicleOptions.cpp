@@ -102,8 +102,8 @@ void bind(Binder& b, VehicleOptions& vehicle, const SensorOptions& sensor,
   b.number("fuse_within_s", vehicle.fuseWithin, Range::between(0, 10), "s",
            "greatest time between scans that are fused: half a turn of the fastest LiDAR");
   b.number("wait_s", vehicle.wait, Range::between(0, 10), "s",
-           "longest time from a stamp to the arrival of its scan; one that comes later is not "
-           "waited for");
+           "longest time by which a scan may come after later scans of other LiDARs; it is not "
+           "waited for longer");
   for (LidarOptions& lidar : vehicle.lidars) bind(b, lidar);
 }
 

@@ -30,7 +30,7 @@ struct POLEMCL_EXPORT VehicleOptions {
   /// Empty: the scans of one LiDAR are used, that of the first scan, without its label being known.
   std::vector<LidarOptions> lidars;
   double fuseWithin = 0.05;  ///< greatest time between scans that are fused, s (`fuse_within_s`)
-  double wait = 0.2;         ///< longest time from a stamp to the arrival of its scan, s (`wait_s`)
+  double wait = 0.1;         ///< longest time by which a scan comes after later ones, s (`wait_s`)
 
   std::optional<std::size_t> indexOf(const std::string& label) const;  ///< in `lidars`
 };
