@@ -27,9 +27,18 @@ ConfigWriter written(const Settings& settings, Tier most) {
 
 }  // namespace
 
+SequenceOptions Settings::reading() const {
+  SequenceOptions options;
+  options.extraction = poleExtraction();
+  options.motion = motion;
+  options.vehicle = vehicle;
+  return options;
+}
+
 void bind(Binder& binder, Settings& settings) {
   bind(binder, settings.sensor);
   bind(binder, settings.extraction);
+  bind(binder, settings.vehicle, settings.sensor, settings.extraction);
   bind(binder, settings.map);
   bind(binder, settings.upkeep);
   bind(binder, settings.likelihood);

@@ -16,6 +16,7 @@
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "report/scene/ViewOptions.h"
 #include "sim/common/SimulationOptions.h"
 
@@ -33,6 +34,7 @@ struct Settings {
   MapUpdateOptions upkeep;       ///< `[map_update]`
   LikelihoodOptions likelihood;  ///< `[likelihood]`
   MotionOptions motion;          ///< `[motion]`
+  VehicleOptions vehicle;        ///< `[vehicle]`, and the sections of its LiDARs
   /// `[filter] [tracking] [submap] [health] [search] [odometry_monitor]`
   LocalizationOptions localization;
   GlobalOptions global;               ///< `[global]`
@@ -43,6 +45,8 @@ struct Settings {
 
   /// \brief What the extraction needs.
   ObservationPoleExtractorOptions poleExtraction() const { return {sensor, extraction}; }
+  /// \brief What reading rawlogs and sensors needs.
+  SequenceOptions reading() const;
 };
 
 /// \brief Binds all sections, in the order of the reference page.

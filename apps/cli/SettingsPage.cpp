@@ -28,6 +28,17 @@ This page is made from the source code; a test compares it. To make it anew:
 `POLEMCL_WRITE_PAGES=1 build/bin/test_config --gtest_filter='SettingsPage.*'`
 )";
 
+/// Sections that exist only for the labels that are listed.
+constexpr const char* s_lidars = R"(
+## [sensor:LABEL], [range_image:LABEL], [scan_line:LABEL]
+For each label that `[vehicle] lidars` lists. Their keys are those of the sections without a label; what they leave out
+is as it is there. `[sensor:LABEL]` has one more:
+
+| key | default | unit | allowed | tier | meaning |
+|---|---|---|---|---|---|
+| `pose` |  | m and deg | six numbers, or none | sensor | x y z yaw_deg pitch_deg roll_deg of the LiDAR on the vehicle; empty: that of its observations |
+)";
+
 /// The text inside a cell of a table.
 std::string cell(const std::string& text) {
   std::string safe;
@@ -86,7 +97,7 @@ std::string settingsPage() {
   PageBinder binder;
   Settings defaults;
   bind(binder, defaults);
-  return binder.text();
+  return binder.text() + s_lidars;
 }
 
 }  // namespace polemcl::apps

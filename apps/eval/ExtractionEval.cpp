@@ -152,15 +152,14 @@ RotationScore evalRotation(const EvalRotationOptions& options, const Settings& s
   ObservationPoleExtractor source(settings.poleExtraction());
   PoleExtractor extractor(settings.sensor, settings.extraction);
   RotationScore score;
-  SequenceOptions sequence;
-  sequence.extraction = settings.poleExtraction();
-  sequence.motion = settings.motion;
+  SequenceOptions sequence = settings.reading();
+  sequence.vehicle.lidars.clear();
   streamPoles(options.input.string(), sequence, [&](const PoleScan& scan) {
     if (scan.stored)
       throw Error(options.input.string() + ": holds poles, not scans; only scans can be turned");
     if (options.progress) options.progress(scan.index + 1, scan.expected);
     if (scan.index % options.every != 0 || scan.points == 0) return;
-    const auto cloud = source.lidarPoints(*scan.scan);
+    const auto cloud = source.lidarPoints(*scan.sources.front());
     addRotations(extractor, cloud.view(), options.radius, score);
   });
   if (options.json) writeJson(*options.json, extractionJson(score));

@@ -5,6 +5,7 @@
 #include "cli/CommandLine.h"
 #include "cli/Progress.h"
 #include "cli/RawlogActions.h"
+#include "cli/SensorCounts.h"
 #include "extract/InspectApp.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
@@ -16,15 +17,6 @@ namespace polemcl::apps {
 namespace {
 
 constexpr int reasons = static_cast<int>(RejectionReason::count_);
-
-void add(const ExtractionReport& scan, ExtractionReport& sum) {
-  sum.points += scan.points;
-  sum.invalid += scan.invalid;
-  sum.outOfView += scan.outOfView;
-  sum.outOfRange += scan.outOfRange;
-  sum.candidates += scan.candidates;
-  for (int i = 0; i < reasons; ++i) sum.refused[i] += scan.refused[i];
-}
 
 void writeRows(std::ostream& out, const PoleScan& scan) {
   for (const auto& pole : scan.observation->polesInRobotFrame()) {
@@ -38,19 +30,41 @@ void writeRows(std::ostream& out, const PoleScan& scan) {
   }
 }
 
-/// The points of the scan in the frame of its poles: upright, turned as the sensor is.
-io::Cloud pointsOf(const PoleScan& scan, const SensorOptions& sensor) {
-  ObservationPoints source(sensor);
+/// The settings of the LiDAR that made a scan.
+LidarOptions lidarOf(const mrpt::obs::CObservation& scan, const Settings& settings) {
+  const auto named = settings.vehicle.indexOf(scan.sensorLabel);
+  return named ? settings.vehicle.lidars[*named]
+               : LidarOptions{"", settings.sensor, settings.extraction};
+}
+
+/// Appends the points of one LiDAR, turned upright, in the frame of the poles.
+/// \param T_poles_lidar Planar pose of the LiDAR in that frame.
+void addPoints(const mrpt::obs::CObservation& scan, const LidarOptions& lidar,
+               const Pose2D& T_poles_lidar, double above, io::Cloud& cloud) {
+  ObservationPoints source(lidar.sensor);
   const ObservationPoints::Loan loan(source);
-  const PointsView points = source.read(*scan.scan);
-  const auto& pose = scan.observation->sensorPose;
-  const mrpt::poses::CPose3D upright(0, 0, 0, 0, pose.pitch(), pose.roll());
-  io::Cloud cloud;
+  const PointsView points = source.read(scan);
+  const auto pose = lidar.extractor().poseOf(scan);
+  const mrpt::poses::CPose3D upright(T_poles_lidar.x, T_poles_lidar.y, above, T_poles_lidar.yaw,
+                                     pose.pitch(), pose.roll());
   for (std::size_t i = 0; i < points.size; ++i) {
     const auto point = upright.composePoint({points.x[i], points.y[i], points.z[i]});
     cloud.x.push_back(static_cast<float>(point.x));
     cloud.y.push_back(static_cast<float>(point.y));
     cloud.z.push_back(static_cast<float>(point.z));
+  }
+}
+
+/// The points of the scan in the frame of its poles; z is 0 at the height of the first LiDAR.
+io::Cloud pointsOf(const PoleScan& scan, const Settings& settings) {
+  io::Cloud cloud;
+  const double height = lidarOf(*scan.sources.front(), settings).sensor.height;
+  for (const auto& source : scan.sources) {
+    const LidarOptions lidar = lidarOf(*source, settings);
+    const auto pose = lidar.extractor().poseOf(*source);
+    const Pose2D T_poles_lidar =
+        relative(scan.observation->planarSensorPose(), {pose.x(), pose.y(), pose.yaw()});
+    addPoints(*source, lidar, T_poles_lidar, lidar.sensor.height - height, cloud);
   }
   return cloud;
 }
@@ -59,12 +73,13 @@ io::Cloud pointsOf(const PoleScan& scan, const SensorOptions& sensor) {
 void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& options) {
   const std::string where = options.input.string() + ": scan " + std::to_string(scan.index);
   if (scan.stored) throw Error(where + " holds poles, no points to draw");
-  const io::Cloud cloud = pointsOf(scan, settings.sensor);
+  const io::Cloud cloud = pointsOf(scan, settings);
   report::ScanView view;
   view.title = options.input.filename().string() + ", scan " + std::to_string(scan.index);
   view.points = cloud.view();
   view.poles = scan.observation->poles;
-  view.ground = scan.report.ground != 0 ? scan.report.ground : -settings.sensor.height;
+  view.ground = scan.report.ground != 0 ? scan.report.ground
+                                        : -lidarOf(*scan.sources.front(), settings).sensor.height;
   report::drawScanPng(view, *options.png);
 }
 
@@ -77,8 +92,7 @@ void print(const ExtractSummary& summary, const ExtractOptions& options) {
     std::cout << "scans without a valid point: " << counts.emptyScans << '\n';
   if (counts.storedScans > 0)
     std::cout << "scans that were poles already: " << counts.storedScans << '\n';
-  if (counts.otherSensors > 0)
-    std::cout << "scans of other sensors, not used: " << counts.otherSensors << '\n';
+  printSensors(std::cout, counts);
   if (counts.unknownMotions > 0)
     std::cout << "scans without odometry: " << counts.unknownMotions << '\n';
   std::cout << "points: " << sum.points << ", invalid " << sum.invalid << ", out of view "
@@ -104,7 +118,8 @@ void ExtractOptions::validate() const {
 ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
                             const ScanProgress& progress) {
   options.validate();
-  SequenceOptions sequence{settings.poleExtraction(), settings.motion, options.allowTruncated};
+  SequenceOptions sequence = settings.reading();
+  sequence.allowTruncated = options.allowTruncated;
   // Applied by whoever reads the poles; here it would count twice.
   sequence.motion.covarianceFactor = 1;
 
@@ -119,7 +134,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
     const auto motion = scan.index == 0 ? standstill() : scan.motion;
     rawlog.write(makeActions(motion, scan.observation->timestamp), scan.observation);
     if (csv) writeRows(csv->stream(), scan);
-    add(scan.report, summary.extraction);
+    summary.extraction += scan.report;
     if (options.png && scan.index == options.pngScan) draw(scan, settings, options);
     if (progress) progress(scan.index + 1, scan.expected);
   });

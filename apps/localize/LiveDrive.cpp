@@ -47,6 +47,8 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
   queueOptions.goesOn = [&] {
     return !s_signalled && !(drive.seconds > 0 && secondsSince(begin) >= drive.seconds);
   };
+  for (const LidarOptions& lidar : options.vehicle.lidars)
+    queueOptions.lidars.push_back(lidar.label);
   const auto queue = std::make_shared<LiveQueue>(queueOptions);
   const auto sensors = startSensors(
       io::installedFile(drive.sensors, "config").string(),

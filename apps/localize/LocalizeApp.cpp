@@ -80,9 +80,7 @@ std::optional<double> rateOf(const LocalizeJob& job, const Settings& settings) {
 /// Streams the rawlog, or the sensors, to the player. A rawlog has no failure.
 LiveDriveResult play(const LocalizeJob& job, const Settings& settings, const RunView& view,
                      LocalizePlayer& player) {
-  SequenceOptions options;
-  options.extraction = settings.poleExtraction();
-  options.motion = settings.motion;
+  SequenceOptions options = settings.reading();
   options.allowTruncated = job.allowTruncated;
   options.follow = job.follow;
   Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });

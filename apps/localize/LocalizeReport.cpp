@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/JsonFile.h"
+#include "cli/SensorCounts.h"
 #include "cli/Version.h"
 #include "core/common/Angles.h"
 
@@ -86,6 +87,7 @@ Json inputs(const LocalizeFacts& facts) {
     json["dropped_scans"] = counts.dropped;
     json["scans_without_odometry"] = counts.unknownMotions;
   }
+  if (!counts.lidars.empty()) json["lidars"] = lidarsJson(counts);
   json["poles_per_scan"] = static_cast<double>(counts.poles) / static_cast<double>(counts.scans);
   json["map_poles"] = facts.mapPoles;
   json["particles"] = facts.localization.filter.particles;
@@ -166,6 +168,7 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
         << " left out without odometry\n";
   if (counts.emptyScans) out << counts.emptyScans << " scans without a valid point\n";
   if (counts.invalidPoints) out << counts.invalidPoints << " invalid points left out\n";
+  printSensors(out, counts);
   printHealth(out, result);
   const std::vector<TrajectoryErrors> errors = known(result);
   if (errors.empty()) return;

@@ -22,12 +22,9 @@ std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
 
 TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
   const Settings settings = loadSettings(files.config.string(), files.set);
-  SequenceOptions reading;
-  reading.extraction = settings.poleExtraction();
-  reading.motion = settings.motion;
   TrialDrive drive{settings,
                    LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.global),
-                   readPoleSequence(files.input.string(), reading).frames,
+                   readPoleSequence(files.input.string(), settings.reading()).frames,
                    {}};
   const auto truth = io::readPlanarTum(files.truth);
   for (std::size_t i = 0; i < drive.frames.size(); ++i) {

@@ -1,8 +1,10 @@
 #include "map/MappingSession.h"
 
 #include <ostream>
+#include <sstream>
 
 #include <polemcl/core/common/Deskew.h>
+#include "cli/SensorCounts.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
 #include "io/map/PolePositions.h"
@@ -41,19 +43,31 @@ void requireCovered(const MappingSession& session, const SessionFiles& files,
               " s), at least half are needed; is it of this rawlog?");
 }
 
+/// A doubtful detection is worth keeping where others can confirm it.
+SequenceOptions readingOf(const Settings& settings) {
+  SequenceOptions options = settings.reading();
+  if (settings.map.minConfidence <= 0) return options;
+  options.extraction.extraction.scanLine.minConfidence = settings.map.minConfidence;
+  for (LidarOptions& lidar : options.vehicle.lidars)
+    lidar.extraction.scanLine.minConfidence = settings.map.minConfidence;
+  return options;
+}
+
 }  // namespace
 
 MappingSession loadMappingSession(const SessionFiles& files, const Settings& settings,
                                   bool allowTruncated, const ScanProgress& progress) {
-  SequenceOptions options{settings.poleExtraction(), settings.motion, allowTruncated};
-  // A doubtful detection is worth keeping where others can confirm it.
-  if (settings.map.minConfidence > 0)
-    options.extraction.extraction.scanLine.minConfidence = settings.map.minConfidence;
-  const PoleSequence sequence = readPoleSequence(files.input.string(), options, progress);
   const SessionPoses poses(files.kind, files.poses);
+  SequenceOptions options = readingOf(settings);
+  options.allowTruncated = allowTruncated;
+  options.velocity = [&](double time) { return poses.velocityAt(time); };
+  const PoleSequence sequence = readPoleSequence(files.input.string(), options, progress);
   MappingSession session;
   const SequenceCounts& counts = sequence.counts;
-  session.skipped = {counts.emptyScans, 0, 0, counts.invalidPoints, counts.truncated};
+  std::ostringstream sensors;
+  printSensors(sensors, counts);
+  session.skipped = {counts.emptyScans, 0, 0, counts.invalidPoints, counts.truncated,
+                     sensors.str()};
   std::optional<io::PlanarMotion> way;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
     const PoleFrame& frame = sequence.frames[i];
@@ -81,6 +95,7 @@ void SkippedScans::operator+=(const SkippedScans& other) {
   notOk += other.notOk;
   invalidPoints += other.invalidPoints;
   truncated += other.truncated;
+  sensors += other.sensors;
 }
 
 std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped) {
@@ -90,6 +105,7 @@ std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped) {
   if (skipped.notOk > 0)
     out << "scans at which the localizer was not ok, not used: " << skipped.notOk << '\n';
   if (skipped.invalidPoints > 0) out << "invalid points dropped: " << skipped.invalidPoints << '\n';
+  out << skipped.sensors;
   if (skipped.truncated > 0)
     out << "inputs that ended too early: " << skipped.truncated
         << "; what could be read was used\n";

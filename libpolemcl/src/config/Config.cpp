@@ -105,7 +105,7 @@ ConfigFile ConfigFile::read(const std::string& path) {
 
 void ConfigFile::set(const std::string& assignment) {
   const auto equals = assignment.find('=');
-  const auto dot = assignment.find('.');
+  const auto dot = assignment.substr(0, equals).rfind('.');  // labels in sections may have dots
   const auto part = [&](std::size_t from, std::size_t to) {
     return std::string(io::trimmed(assignment.substr(from, to - from)));
   };
@@ -156,7 +156,10 @@ void ConfigReader::finish() const {
     if (known == m_known.end()) {
       if (!m_fixedSection.empty()) continue;  // the other sections belong to others
       throw Error(place() + "section [" + section +
-                  "] is not known; known are: " + joined(knownSections));
+                  "] is not known; known are: " + joined(knownSections) +
+                  (section.find(':') == std::string::npos
+                       ? ""
+                       : "; [vehicle] lidars must list the label behind the colon"));
     }
     std::vector<std::string> keys;
     m_source->getAllKeys(section, keys);

@@ -131,9 +131,54 @@ TEST(LiveQueue, RefusesScansOfASecondSensor) {
   queue.push(scan(3, "front"));
   EXPECT_EQ(content(queue), "s1 ");
   EXPECT_HAS(queue.failure(), "two sensors, front and rear");
+  EXPECT_HAS(queue.failure(), "lidars = front rear in [vehicle]");
   EXPECT_HAS(queue.failure(), "rawlog-grabber-ignore");
   queue.end("another");
   EXPECT_HAS(queue.failure(), "front and rear") << "the first reason counts";
+}
+
+TEST(LiveQueue, TakesTheScansOfAllListedLidars) {
+  LiveQueueOptions options = patient();
+  options.lidars = {"front", "rear"};
+  LiveQueue queue(options);
+  queue.push(odometry(9, 0));
+  queue.push(scan(1, "front"));
+  RawlogEntry entry;
+  ASSERT_TRUE(queue.next(entry) && queue.next(entry));
+  queue.push(scan(0.97, "rear"));  // older than the last one taken, but of another LiDAR
+  queue.push(scan(1, "front"));    // this one is not newer
+  for (int i = 0; i < 10; ++i) queue.push(scan(2 + i, i % 2 ? "front" : "rear"));
+  queue.push(scan(20, "roof"));
+  EXPECT_EQ(content(queue), "s2 s3 s4 s5 s6 s7 s8 s9 s10 s11 ") << "five of each may wait";
+  EXPECT_EQ(queue.dropped(), 2u);
+  EXPECT_HAS(queue.failure(), "scans of the sensor roof, which [vehicle] lidars does not list");
+}
+
+/// The rear LiDAR fails after its first scan: scans of the front one come without it.
+TEST(LiveQueue, ALidarThatFailsDoesNotHoldUpTheOther) {
+  const auto queue = std::make_shared<LiveQueue>([] {
+    LiveQueueOptions two = patient();
+    two.lidars = {"front", "rear"};
+    two.longest = 100;
+    return two;
+  }());
+  SequenceOptions two = options();
+  for (const char* label : {"front", "rear"})
+    two.vehicle.lidars.push_back({label, two.extraction.sensor, two.extraction.extraction});
+  for (int i = 0; i < 20; ++i) {
+    queue->push(odometry(0.1 * i, i));
+    queue->push(scan(0.1 * i, "front"));
+    if (i == 0) queue->push(scan(0.01, "rear"));
+  }
+  queue->push(odometry(2, 20));
+  queue->end();
+  std::vector<double> ways;
+  const auto counts = streamPoles(queue, "sensors.ini", two, [&](const PoleScan& taken) {
+    ways.push_back(taken.motion->mean.x);
+  });
+  EXPECT_EQ(ways.size(), 20u);
+  EXPECT_EQ(counts.lidars[1].scans, 1u);
+  EXPECT_EQ(counts.lidars[1].missing, 19u);
 }
 
 /// One scan is worked on while 20 come: 5 are left. Their motions add up to the whole way.

@@ -13,10 +13,32 @@ using namespace samples;
 constexpr double kDegree = M_PI / 180;
 const std::vector<TestPole> kPoles = {{7, 0.4, 0.10, 4}, {9, -2.5, 0.15, 4}, {12, 3, 0.12, 4}};
 
+/// The ray (x right, y down, at depth 1) that a lens bends to this place, by Newton's method on
+/// Brown's model with numerical derivatives.
+Eigen::Vector2d undistorted(const Eigen::Vector2d& bent, const std::vector<double>& lens) {
+  if (lens.empty()) return bent;
+  const auto bend = [&](const Eigen::Vector2d& p) {
+    const double r2 = p.squaredNorm(), xy = p.x() * p.y();
+    const double radial = 1 + r2 * (lens[0] + r2 * (lens[1] + r2 * lens[4]));
+    return Eigen::Vector2d(p.x() * radial + 2 * lens[2] * xy + lens[3] * (r2 + 2 * p.x() * p.x()),
+                           p.y() * radial + lens[2] * (r2 + 2 * p.y() * p.y()) + 2 * lens[3] * xy);
+  };
+  Eigen::Vector2d ray = bent;
+  for (int i = 0; i < 10; ++i) {
+    constexpr double step = 1e-6;
+    Eigen::Matrix2d J;
+    J << (bend(ray + Eigen::Vector2d(step, 0)) - bend(ray)) / step,
+        (bend(ray + Eigen::Vector2d(0, step)) - bend(ray)) / step;
+    ray -= J.inverse() * (bend(ray) - bent);
+  }
+  return ray;
+}
+
 /// Casts a ray through every pixel: poles in front of a wall, on flat ground.
 /// \param mount Camera in the robot frame, ground at z = 0.
+/// \param lens k1, k2, p1, p2, k3 of a lens that distorts; empty: none.
 CObservation3DRangeScan depthImage(const CPose3D& mount, bool rangeIsDepth = true, int height = 480,
-                                   int width = 640) {
+                                   int width = 640, const std::vector<double>& lens = {}) {
   CObservation3DRangeScan scan;
   scan.sensorPose = mount;
   scan.hasRangeImage = true;
@@ -24,12 +46,17 @@ CObservation3DRangeScan depthImage(const CPose3D& mount, bool rangeIsDepth = tru
   scan.rangeUnits = 0.001f;
   scan.cameraParams.setIntrinsicParamsFromValues(525, 520, 0.5 * width - 3, 0.5 * height + 2);
   scan.rangeImage.resize(height, width);
+  if (!lens.empty()) {
+    scan.cameraParams.distortion = mrpt::img::DistortionModel::plumb_bob;
+    scan.cameraParams.setDistortionPlumbBob(lens[0], lens[1], lens[2], lens[3], lens[4]);
+  }
   const auto& camera = scan.cameraParams;
   const Eigen::Isometry3d T = isometry(mount);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
-      Eigen::Vector3d along(1, (camera.cx() - column) / camera.fx(),
-                            (camera.cy() - row) / camera.fy());
+      const Eigen::Vector2d ray = undistorted(
+          {(column - camera.cx()) / camera.fx(), (row - camera.cy()) / camera.fy()}, lens);
+      Eigen::Vector3d along(1, -ray.x(), -ray.y());
       if (!rangeIsDepth) along.normalize();
       const double depth = castRay(T.translation(), T.linear() * along, kPoles);
       scan.rangeImage(row, column) = static_cast<std::uint16_t>(std::lround(depth * 1000));
@@ -70,6 +97,35 @@ void expectAllPoles(const CPose3D& mount, bool rangeIsDepth = true) {
 TEST(DepthImage, LevelCamera) {
   expectAllPoles(CPose3D(0.5, 0.1, 1.5, 0, 0, 0));
 }
+/// The poles stand up to 16 deg aside, where this lens moves them by 13 pixels.
+TEST(DepthImage, ALensThatDistorts) {
+  const std::vector<double> lens{-0.3, 0.1, 0.002, -0.001, -0.01};
+  const CPose3D mount(0.5, 0.1, 1.5, 0, 0, 0);
+  for (const bool rangeIsDepth : {true, false}) {
+    ObservationPoleExtractor extraction(options());
+    auto image = depthImage(mount, rangeIsDepth, 480, 640, lens);
+    const auto scan = extraction.process(image);
+    EXPECT_EQ(scan->poles.size(), kPoles.size());
+    for (const auto& pole : kPoles) {
+      const PoleDetection p = nearest(*scan, pole);
+      EXPECT_LT(std::hypot(p.x - pole.x, p.y - pole.y), 0.03) << pole.x;
+      EXPECT_NEAR(p.radius, pole.radius, 0.02) << pole.x;
+    }
+    // The same object, then a camera without distortion.
+    EXPECT_EQ(extraction.process(depthImage(mount, rangeIsDepth))->poles.size(), kPoles.size());
+  }
+}
+
+TEST(DepthImage, CoefficientsOfALensThatDoesNotDistortAreIgnored) {
+  auto scan = depthImage(CPose3D(0.5, 0.1, 1.5, 0, 0, 0));
+  ObservationPoleExtractor extraction(options());
+  const auto plain = extraction.process(scan)->poles;
+  scan.cameraParams.k1(-0.3);
+  const auto ignored = extraction.process(scan)->poles;
+  ASSERT_EQ(plain.size(), ignored.size());
+  EXPECT_EQ(plain[0].x, ignored[0].x);
+}
+
 TEST(DepthImage, RangesAlongTheRay) {
   expectAllPoles(CPose3D(0.5, 0.1, 1.5, 0, 0, 0), false);
 }
@@ -172,6 +228,15 @@ TEST(DepthImage, RefusesBadIntrinsics) {
   scan.rangeUnits = 0;
   EXPECT_NE(refusalOf(scan).find("rangeUnits"), std::string::npos);
   EXPECT_NE(refusalOf(depthImage(CPose3D(), true, 1, 30)).find("30 x 1"), std::string::npos);
+}
+
+TEST(DepthImage, RefusesLensesThatItCannotUndistort) {
+  auto scan = depthImage(CPose3D(), true, 20, 30);
+  scan.cameraParams.distortion = mrpt::img::DistortionModel::kannala_brandt;
+  EXPECT_NE(refusalOf(scan).find("distortion is kannala_brandt: allowed are"), std::string::npos);
+  scan.cameraParams.distortion = mrpt::img::DistortionModel::plumb_bob;
+  scan.cameraParams.k5(0.1);
+  EXPECT_NE(refusalOf(scan).find("plumb_bob with k4, k5, k6: allowed"), std::string::npos);
 }
 
 }  // namespace

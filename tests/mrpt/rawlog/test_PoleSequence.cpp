@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 
 #include <cmath>
 
@@ -184,6 +185,16 @@ TEST(PoleSequence, ThreadsDoNotMatter) {
       }
     }
   }
+}
+
+TEST(PoleSequence, RefusesRawlogsOfPlanarScansAndSaysWhy) {
+  const Bench bench;
+  mrpt::obs::CObservation2DRangeScan planar;
+  planar.timestamp = mrpt::Clock::fromDouble(1);
+  const std::string message = bench.refusal(samples::bytesOf(planar));
+  EXPECT_HAS(message, "from a mrpt::obs::CObservation2DRangeScan: one plane does not show");
+  EXPECT_HAS(message, bench.path);
+  EXPECT_EQ(bench.read(samples::bytesOf(planar) + frame(poles(2))).frames.size(), 1u);
 }
 
 TEST(PoleSequence, EmptyScansStayFrames) {

@@ -1,6 +1,7 @@
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include "core/common/Angles.h"
+#include "core/extraction/ExtractionKeys.h"
 
 namespace polemcl {
 namespace {
@@ -36,6 +37,10 @@ void bindChoices(Binder& b, RangeImageOptions& o) {
 
 void bind(Binder& b, RangeImageOptions& o) {
   b.section("range_image", "Algorithm 1 of the paper, for method = range_image", Tier::expert);
+  bindKeys(b, o);
+}
+
+void bindKeys(Binder& b, RangeImageOptions& o) {
   b.integer("rows", o.rows, Range::between(2, 1024), "px", "height of the range image");
   b.integer("columns", o.columns, Range::between(16, 65536), "px", "width of the range image");
   b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90), "elevation of the upper border");
@@ -75,6 +80,10 @@ void bind(Binder& b, RangeImageOptions& o) {
 
 void bind(Binder& b, ScanLineOptions& o) {
   b.section("scan_line", "Scan lines of real beams, for method = scan_line");
+  bindKeys(b, o);
+}
+
+void bindKeys(Binder& b, ScanLineOptions& o) {
   b.number("min_top_m", o.minTop, s_from0, "m", "least height of a pole's top above local ground");
   b.number("max_range_m", o.maxRange, Range::aboveUpTo(0, 300), "m",
            "poles farther away are not looked for");

@@ -22,4 +22,15 @@ const char* name(RejectionReason reason) {
   return names[static_cast<int>(reason)];
 }
 
+ExtractionReport& ExtractionReport::operator+=(const ExtractionReport& other) {
+  points += other.points;
+  invalid += other.invalid;
+  outOfView += other.outOfView;
+  outOfRange += other.outOfRange;
+  candidates += other.candidates;
+  for (std::size_t i = 0; i < std::size(refused); ++i) refused[i] += other.refused[i];
+  if (ground == 0) ground = other.ground;
+  return *this;
+}
+
 }  // namespace polemcl

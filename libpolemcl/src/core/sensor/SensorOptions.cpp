@@ -3,6 +3,7 @@
 
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/sensor/SensorKeys.h"
 #include "core/sensor/SensorModel.h"
 
 namespace polemcl {
@@ -26,6 +27,10 @@ void requireTable(const Binder& b, const SensorOptions& o) {
 
 void bind(Binder& b, SensorOptions& o) {
   b.section("sensor", "The LiDAR and how it is mounted", Tier::sensor);
+  bindKeys(b, o);
+}
+
+void bindKeys(Binder& b, SensorOptions& o) {
   b.choice("model", o.model, SensorModel::modelNames(),
            "rings of a data sheet, of elevations_deg, or evenly from fov_up_deg to fov_down_deg");
   b.flag("upside_down", o.upsideDown, "true: the elevations of the model change sign");

@@ -39,14 +39,28 @@ void LiveQueue::push(const CObservation::Ptr& observation) {
   m_changed.notify_one();
 }
 
+/// Whether scans of this sensor are used; otherwise the drive ends and the failure says why.
+bool LiveQueue::isExpected(const std::string& label) {
+  if (!m_label) m_label = label;
+  const auto& lidars = m_options.lidars;
+  const bool isListed = std::find(lidars.begin(), lidars.end(), label) != lidars.end();
+  if (lidars.empty() ? label == *m_label : isListed) return true;
+  const std::string ignore =
+      ", or set rawlog-grabber-ignore = true in its section of the file of the sensors";
+  if (lidars.empty())
+    endNow("scans of two sensors, " + *m_label + " and " + label +
+           ": to fuse them, write lidars = " + *m_label + " " + label + " in [vehicle]" + ignore);
+  else
+    endNow("scans of the sensor " + label + ", which [vehicle] lidars does not list: add it there" +
+           ignore);
+  return false;
+}
+
 void LiveQueue::pushScan(Waiting scan) {
   const std::string& label = scan.observation->sensorLabel;
-  if (!m_label) m_label = label;
-  if (label != *m_label)
-    return endNow("scans of two sensors, " + *m_label + " and " + label +
-                  ": poles are extracted from one; set rawlog-grabber-ignore = true in the section "
-                  "of the other");
-  if (m_taken && scan.time <= *m_taken) {
+  if (!isExpected(label)) return;
+  const auto taken = m_taken.find(label);
+  if (taken != m_taken.end() && scan.time <= taken->second) {
     ++m_dropped;
     return;
   }
@@ -54,7 +68,8 @@ void LiveQueue::pushScan(Waiting scan) {
       std::upper_bound(m_scans.begin(), m_scans.end(), scan.time,
                        [](double time, const Waiting& other) { return time < other.time; });
   m_scans.insert(after, std::move(scan));
-  if (m_scans.size() <= m_options.longest) return;
+  if (m_scans.size() <= m_options.longest * std::max<std::size_t>(1, m_options.lidars.size()))
+    return;
   m_scans.pop_front();
   ++m_dropped;
 }
@@ -98,7 +113,7 @@ bool LiveQueue::next(RawlogEntry& entry) {
       return true;
     }
     if (!m_scans.empty() && isDue(m_scans.front())) {
-      m_taken = m_scans.front().time;
+      m_taken[m_scans.front().observation->sensorLabel] = m_scans.front().time;
       entry.arrival = m_scans.front().arrival;
       entry.observation = std::move(m_scans.front().observation);
       m_scans.pop_front();

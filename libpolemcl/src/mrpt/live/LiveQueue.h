@@ -5,17 +5,22 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mrpt/rawlog/EntrySource.h"
 
 namespace polemcl {
 
 struct LiveQueueOptions {
-  /// Most scans that wait; one more drops the oldest. Half a second of a LiDAR of 10 Hz: short
-  /// interruptions drop nothing, and under lasting overload no scan waits longer than that.
+  /// Sensor labels of the LiDARs to be fused; empty: one LiDAR with any label.
+  std::vector<std::string> lidars = {};
+  /// Most scans of each LiDAR that wait; one more drops the oldest. Half a second of a LiDAR of 10
+  /// Hz: short interruptions drop nothing, and under lasting overload no scan waits longer than
+  /// that.
   std::size_t longest = 5;
   /// Longest wait of a scan for odometry of its time, s. Odometry usually is there before: the time
   /// of a scan is that of its first beam.
@@ -31,8 +36,8 @@ class LiveQueue : public EntrySource {
  public:
   explicit LiveQueue(LiveQueueOptions options = {});
 
-  /// \brief From any thread. A scan older than the last one taken is dropped. A scan of a second
-  /// sensor is a failure: poles are extracted from one.
+  /// \brief From any thread. A scan older than the last one of its LiDAR that was taken is dropped.
+  /// A scan of another sensor than those of the options is a failure.
   void push(const mrpt::obs::CObservation::Ptr& observation);
   /// \brief The first sensor has come to its end, or failed with this message: what waits is still
   /// taken, then the drive ends. Only the first call counts. From any thread.
@@ -54,6 +59,7 @@ class LiveQueue : public EntrySource {
     mrpt::obs::CObservation::Ptr observation;
   };
   void pushScan(Waiting scan);
+  bool isExpected(const std::string& label);
   void endNow(const std::string& failure);
   bool isDue(const Waiting& scan) const;
 
@@ -63,9 +69,9 @@ class LiveQueue : public EntrySource {
   std::condition_variable m_changed;
   std::deque<Waiting> m_scans;  ///< in the order of their times
   std::deque<mrpt::obs::CObservation::Ptr> m_odometry;
-  std::optional<double> m_reached;     ///< time of the latest odometry, s
-  std::optional<std::string> m_label;  ///< of the sensor of the scans
-  std::optional<double> m_taken;       ///< time of the last scan that was taken, s
+  std::optional<double> m_reached;        ///< time of the latest odometry, s
+  std::optional<std::string> m_label;     ///< of the first scan
+  std::map<std::string, double> m_taken;  ///< time of the last scan taken, s, by label
   std::size_t m_dropped = 0;
   bool m_ended = false;
   std::string m_failure;

@@ -2,6 +2,7 @@
 
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/maps/CPointsMap.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRotatingScan.h>
@@ -15,7 +16,6 @@
 
 #include <polemcl/io/data/Cloud.h>
 #include "core/sensor/SensorModel.h"
-#include "mrpt/observation/DepthImage.h"
 
 namespace polemcl {
 
@@ -41,10 +41,19 @@ PointsView ObservationPoints::read(const CObservation& observation) {
     return readDepth(*depth);
   if (const auto* scan = dynamic_cast<const CObservationRotatingScan*>(&observation))
     return readRotating(*scan);
-  throw Error(std::string("no poles can be extracted from a ") +
-              observation.GetRuntimeClass()->className +
-              "; allowed are CObservationPointCloud, CObservationVelodyneScan, "
-              "CObservation3DRangeScan and CObservationRotatingScan");
+  throw Error(refusalOf(observation));
+}
+
+std::string ObservationPoints::refusalOf(const CObservation& observation) {
+  const std::string what =
+      std::string("no poles can be extracted from a ") + observation.GetRuntimeClass()->className;
+  if (dynamic_cast<const CObservation2DRangeScan*>(&observation))
+    return what +
+           ": one plane does not show how high a thing is, so a leg or a corner looks like a pole; "
+           "a LiDAR with several rings or a depth camera is needed";
+  return what +
+         "; allowed are CObservationPointCloud, CObservationVelodyneScan, CObservation3DRangeScan "
+         "and CObservationRotatingScan";
 }
 
 void ObservationPoints::release() noexcept {
@@ -174,7 +183,8 @@ PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observati
   const CObservation3DRangeScan& scan = stored ? *copy : observation;
   if (hasPixels(scan)) {
     m_camera = cameraOf(scan);
-    m_dropped = unproject(scan, *m_camera, {m_x, m_y, m_z});
+    m_pixels.prepare(scan, *m_camera);
+    m_dropped = unproject(scan, *m_camera, m_pixels, {m_x, m_y, m_z});
     return owned();
   }
   if (!scan.hasPoints3D) return {};

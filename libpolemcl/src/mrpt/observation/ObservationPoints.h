@@ -5,11 +5,13 @@
 #include <mrpt/obs/CObservation.h>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/sensor/PinholeCamera.h>
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "mrpt/observation/DepthImage.h"
 
 namespace mrpt::obs {
 class CObservationPointCloud;
@@ -28,6 +30,8 @@ class ObservationPoints {
   explicit ObservationPoints(SensorOptions sensor) : m_sensor(std::move(sensor)) {}
 
   static bool canRead(const mrpt::obs::CObservation& observation);
+  /// \brief Why there are no points of poles in an observation that canRead() denies.
+  static std::string refusalOf(const mrpt::obs::CObservation& observation);
   /// \brief Points in the frame of the observation's sensor pose; they may contain NaN and zeros.
   /// Valid until the next read() or release(), and as long as the observation exists.
   /// \throws Error for other classes, and when the points are not available.
@@ -66,6 +70,7 @@ class ObservationPoints {
   std::vector<float> m_x, m_y, m_z;
   std::size_t m_dropped = 0;
   std::optional<PinholeCamera> m_camera;
+  UndistortedPixels m_pixels;  ///< of the last depth image
   std::optional<ScanTiming> m_timing;
   const mrpt::obs::CObservation* m_loaded = nullptr;  ///< must be unloaded
 };

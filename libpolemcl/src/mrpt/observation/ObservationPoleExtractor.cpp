@@ -84,6 +84,13 @@ void readingPoints(const mrpt::obs::CObservation& observation, const Work& work)
 
 }  // namespace
 
+mrpt::poses::CPose3D ObservationPoleExtractorOptions::poseOf(
+    const mrpt::obs::CObservation& observation) const {
+  mrpt::poses::CPose3D pose;
+  observation.getSensorPose(pose);
+  return sensorPose.value_or(pose);
+}
+
 struct ObservationPoleExtractor::Impl {
   explicit Impl(const ObservationPoleExtractorOptions& o)
       : sensor(o.sensor),
@@ -92,6 +99,7 @@ struct ObservationPoleExtractor::Impl {
         fromCloud(o.extraction.method == ExtractionMethod::rangeImage &&
                   o.extraction.rangeImage.projectFrom == "cloud"),
         points(o.sensor),
+        options(o),
         extractor(o.sensor, o.extraction),
         check(o.sensor, o.extraction.method == ExtractionMethod::scanLine) {}
 
@@ -100,6 +108,7 @@ struct ObservationPoleExtractor::Impl {
   ScanLineOptions scanLine;
   bool fromCloud;  ///< the range image is projected from the origin of the clouds
   ObservationPoints points;
+  ObservationPoleExtractorOptions options;
   PoleExtractor extractor;
   std::optional<PoleExtractor> cameraExtractor;  ///< for the last camera
   PinholeCamera camera;
@@ -186,7 +195,7 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
   auto result = std::make_shared<CObservationPoles>();
   result->timestamp = observation.timestamp;
   result->sensorLabel = observation.sensorLabel;
-  observation.getSensorPose(result->sensorPose);
+  result->sensorPose = m_impl->options.poseOf(observation);
   m_impl->report = ExtractionReport();
   readingPoints(observation, [&] {
     const ObservationPoints::Loan loan(m_impl->points);
@@ -211,8 +220,7 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
 }
 
 io::Cloud ObservationPoleExtractor::lidarPoints(const mrpt::obs::CObservation& observation) {
-  mrpt::poses::CPose3D sensorPose;
-  observation.getSensorPose(sensorPose);
+  const mrpt::poses::CPose3D sensorPose = m_impl->options.poseOf(observation);
   io::Cloud cloud;
   readingPoints(observation, [&] {
     const ObservationPoints::Loan loan(m_impl->points);

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
 
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/EntryStream.h"
 #include "mrpt/rawlog/ScanSource.h"
 
@@ -25,6 +27,7 @@ struct Task {
   ScanSource::Scan scan;
   ScanTiming timing;  ///< as the rawlog states it
   PoleScan result;
+  std::vector<FusionAgreement> agreements;  ///< of the parts, if LiDARs are fused
   std::exception_ptr error;
 };
 using TaskPtr = std::shared_ptr<Task>;
@@ -35,8 +38,10 @@ class Stream {
       : m_name(name),
         m_pace(options.pace),
         m_source(source),
-        m_extractions([options] { return ObservationPoleExtractor(options.extraction); }) {
+        m_velocity(options.velocity),
+        m_extractions([options] { return extractorsFor(options); }) {
     m_extractions.local();  // reports invalid options here, for any rawlog
+    for (const LidarOptions& lidar : options.vehicle.lidars) m_lidars.push_back({lidar.label});
   }
 
   TaskPtr read();
@@ -46,12 +51,19 @@ class Stream {
   SequenceCounts finish() const;
 
  private:
+  using Extractors = std::vector<ObservationPoleExtractor>;
+  static Extractors extractorsFor(const SequenceOptions& options);
+  CObservationPoles::Ptr polesOf(const LidarScan& part, const ScanTiming& timing, PoleScan& result);
+  void fuse(Task& task, const std::vector<CObservationPoles::Ptr>& parts) const;
   void count(const PoleScan& scan);
+  void countLidars(const Task& task);
 
   std::string m_name;
   std::function<ScanClock::time_point(double)> m_pace;
   ScanSource& m_source;
-  tbb::enumerable_thread_specific<ObservationPoleExtractor> m_extractions;
+  std::function<Velocity(double)> m_velocity;
+  tbb::enumerable_thread_specific<Extractors> m_extractions;  ///< one for each LiDAR
+  std::vector<LidarCounts> m_lidars;  ///< sums of squares in `apart`, `apartSigmas`
   SequenceCounts m_counts;
   bool m_ended = false;
   std::atomic<bool> m_failed{false};
@@ -81,36 +93,65 @@ TaskPtr Stream::read() {
   return task;
 }
 
+/// Without named LiDARs, there is one.
+Stream::Extractors Stream::extractorsFor(const SequenceOptions& options) {
+  Extractors extractors;
+  for (const LidarOptions& lidar : options.vehicle.lidars)
+    extractors.emplace_back(lidar.extractor());
+  if (extractors.empty()) extractors.emplace_back(options.extraction);
+  return extractors;
+}
+
+/// The poles of one LiDAR's scan; adds to the report what the extraction did.
+CObservationPoles::Ptr Stream::polesOf(const LidarScan& part, const ScanTiming& timing,
+                                       PoleScan& result) {
+  if (auto stored = std::dynamic_pointer_cast<CObservationPoles>(part.observation)) return stored;
+  ObservationPoleExtractor& extraction = m_extractions.local()[part.lidar];
+  // By number, so that the result does not depend on the threads.
+  extraction.setRecordedTiming(timing);
+  extraction.checkNext(part.ordinal < 3);
+  auto poles = extraction.process(*part.observation);
+  result.sources.push_back(part.observation);
+  result.report += extraction.report();
+  return poles;
+}
+
+void Stream::fuse(Task& task, const std::vector<CObservationPoles::Ptr>& parts) const {
+  const double time = task.scan.time;
+  const Velocity velocity = m_velocity ? m_velocity(time) : task.scan.moving.value_or(Velocity());
+  FusedScan fused = fuseScans(parts, time, velocity);
+  task.result.observation = fused.observation;
+  task.agreements = std::move(fused.agreements);
+}
+
 void Stream::extract(Task& task) {
   if (task.error) return;
-  const auto observation = std::move(task.scan.observation);
   PoleScan& result = task.result;
   result.index = task.scan.index;
   result.time = task.scan.time;
   result.motion = task.scan.motion;
   result.velocity = task.scan.velocity;
-  result.observation = std::dynamic_pointer_cast<CObservationPoles>(observation);
-  result.stored = result.observation != nullptr;
-  if (result.stored) {
-    result.points = result.observation->points;
-    return;
-  }
   const auto begin = ScanClock::now();
+  std::vector<CObservationPoles::Ptr> parts;
+  std::string label;
   try {
-    ObservationPoleExtractor& extraction = m_extractions.local();
-    // By index, so that the result does not depend on the threads.
-    extraction.setRecordedTiming(task.timing);
-    extraction.checkNext(task.scan.index < 3);
-    result.observation = extraction.process(*observation);
-    result.scan = observation;
-    result.points = result.observation->points;
-    result.report = extraction.report();
-    result.invalid = result.report.invalid;
-    result.extractSeconds = secondsSince(begin);
+    for (const LidarScan& part : task.scan.parts) {
+      if (task.scan.isFused) label = "LiDAR " + m_lidars[part.lidar].label + ": ";
+      parts.push_back(polesOf(part, task.timing, result));
+    }
+    if (task.scan.isFused)
+      fuse(task, parts);
+    else
+      result.observation = parts.front();
   } catch (const std::exception& error) {
     task.error = std::make_exception_ptr(
-        Error(m_name + ": scan " + std::to_string(task.scan.index) + ": " + error.what()));
+        Error(m_name + ": scan " + std::to_string(task.scan.index) + ": " + label + error.what()));
+    return;
   }
+  result.stored = result.sources.empty();
+  result.points = result.observation->points;
+  result.invalid = result.report.invalid;
+  if (!result.stored) result.extractSeconds = secondsSince(begin);
 }
 
 /// An exception must not leave the pipeline: TBB would lose the task that caused it.
@@ -119,6 +160,7 @@ void Stream::collect(Task& task, const std::function<void(const PoleScan&)>& con
   try {
     if (task.error) std::rethrow_exception(task.error);
     count(task.result);
+    if (task.scan.isFused) countLidars(task);
     consume(task.result);
   } catch (...) {
     m_failure = std::current_exception();
@@ -135,10 +177,31 @@ void Stream::count(const PoleScan& scan) {
   m_counts.poles += scan.observation->poles.size();
 }
 
+void Stream::countLidars(const Task& task) {
+  for (std::size_t i = 0; i < task.scan.parts.size(); ++i) {
+    LidarCounts& lidar = m_lidars[task.scan.parts[i].lidar];
+    ++lidar.scans;
+    lidar.shared += task.agreements[i].poles;
+    lidar.apart += task.agreements[i].squaredMetres;
+    lidar.apartSigmas += task.agreements[i].squaredSigmas;
+  }
+}
+
 SequenceCounts Stream::finish() const {
   if (m_failure) std::rethrow_exception(m_failure);
   SequenceCounts counts = m_counts;
+  if (m_source.isFused()) counts.lidars = m_lidars;
+  for (std::size_t i = 0; i < counts.lidars.size(); ++i) {
+    LidarCounts& lidar = counts.lidars[i];
+    lidar.missing = counts.scans - lidar.scans;
+    lidar.late = m_source.late(i);
+    if (lidar.shared == 0) continue;
+    const auto poles = static_cast<double>(lidar.shared);
+    lidar.apart = std::sqrt(lidar.apart / poles);
+    lidar.apartSigmas = std::sqrt(lidar.apartSigmas / (2 * poles));
+  }
   counts.otherSensors = m_source.otherSensors();
+  counts.otherLabels = m_source.otherLabels();
   counts.unknownMotions = m_source.unknownMotions();
   counts.dropped = m_source.dropped();
   counts.truncated = m_source.truncated();
@@ -182,7 +245,7 @@ SequenceCounts play(ScanSource& source, const std::string& name, const SequenceO
 SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
                            const std::function<void(const PoleScan&)>& consume) {
   requireThreads(options);
-  ScanSource source(path, options.motion, options.allowTruncated, options.follow);
+  ScanSource source(path, options.motion, options.allowTruncated, options.follow, options.vehicle);
   return play(source, path, options, consume);
 }
 
@@ -190,7 +253,7 @@ SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::stri
                            const SequenceOptions& options,
                            const std::function<void(const PoleScan&)>& consume) {
   requireThreads(options);
-  ScanSource source(std::move(entries), name, options.motion);
+  ScanSource source(std::move(entries), name, options.motion, options.vehicle);
   return play(source, name, options, consume);
 }
 

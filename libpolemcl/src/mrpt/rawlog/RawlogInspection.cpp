@@ -74,8 +74,8 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   std::vector<PointsView> views;
   for (const auto& scan : scans) {
     try {
-      requireBeams(*scan.observation);
-      clouds.push_back(reader.lidarPoints(*scan.observation));
+      requireBeams(*scan.parts.front().observation);
+      clouds.push_back(reader.lidarPoints(*scan.parts.front().observation));
     } catch (const Error& error) {
       throw Error(path + ": scan " + std::to_string(scan.index) + ": " + error.what());
     }
@@ -83,7 +83,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   }
   views.reserve(clouds.size());
   for (const io::Cloud& cloud : clouds) views.push_back(cloud.view());
-  const auto& first = *scans.front().observation;
+  const auto& first = *scans.front().parts.front().observation;
   result.label = std::string(first.GetRuntimeClass()->className) +
                  (first.sensorLabel.empty() ? "" : " " + first.sensorLabel);
   first.getSensorPose(result.sensorPose);

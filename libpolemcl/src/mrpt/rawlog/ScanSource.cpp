@@ -3,6 +3,7 @@
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
@@ -14,6 +15,8 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "config/TimingComment.h"
 #include "core/common/Covariance.h"
+#include "mrpt/observation/ObservationPoints.h"
+#include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/RawlogReader.h"
 
 namespace polemcl {
@@ -27,6 +30,9 @@ constexpr std::size_t mostWaiting = 32;
 
 /// Scans of sensors without any odometry before the drive is given up: 5 s at 10 Hz.
 constexpr std::size_t mostWithoutOdometry = 50;
+
+/// Fused scans without any of one LiDAR before a rawlog is given up: 5 s at 10 Hz.
+constexpr std::size_t mostWithoutLidar = 50;
 
 /// Time over which odometry readings give a velocity, s: a turn of most LiDARs.
 constexpr double shortWay = 0.1;
@@ -98,8 +104,9 @@ std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
 }
 
 ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated,
-                       double follow)
-    : ScanSource(std::make_shared<RawlogReader>(path, allowTruncated, follow), path, motion) {
+                       double follow, const VehicleOptions& vehicle)
+    : ScanSource(std::make_shared<RawlogReader>(path, allowTruncated, follow), path, motion,
+                 vehicle) {
   const std::filesystem::path file = std::filesystem::absolute(path);
   const std::filesystem::path images = file.parent_path() / (file.stem().string() + "_Images");
   std::error_code none;
@@ -108,9 +115,31 @@ ScanSource::ScanSource(const std::string& path, const MotionOptions& motion, boo
 }
 
 ScanSource::ScanSource(std::shared_ptr<EntrySource> entries, std::string name,
-                       const MotionOptions& motion)
-    : m_name(std::move(name)), m_options(motion), m_entries(std::move(entries)) {
+                       const MotionOptions& motion, const VehicleOptions& vehicle)
+    : m_name(std::move(name)),
+      m_options(motion),
+      m_entries(std::move(entries)),
+      m_vehicle(vehicle),
+      m_ofLidar(vehicle.lidars.size()),
+      m_late(vehicle.lidars.size()) {
   checkOptions(m_options);
+  if (!vehicle.lidars.empty()) m_groups.emplace(vehicle);
+}
+
+/// Which LiDAR an observation is from; none: not used. Poles that were fused before are read as
+/// they are, if they come first.
+std::optional<std::size_t> ScanSource::lidarOf(const CObservation& observation) {
+  if (m_groups) {
+    if (const auto lidar = m_vehicle.indexOf(observation.sensorLabel)) return lidar;
+    const bool isFirst = std::all_of(m_ofLidar.begin(), m_ofLidar.end(),
+                                     [](std::size_t scans) { return scans == 0; });
+    if (!isFirst || observation.sensorLabel != fusedLabel ||
+        !dynamic_cast<const CObservationPoles*>(&observation))
+      return std::nullopt;
+    m_groups.reset();
+  }
+  if (m_sensor.empty()) m_sensor = sensorOf(observation);
+  return sensorOf(observation) == m_sensor ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
 void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& entry) {
@@ -119,33 +148,85 @@ void ScanSource::take(const CObservation::Ptr& observation, const RawlogEntry& e
     m_odometry.add(time, planar(odometry->odometry));
     return;
   }
-  if (!isScan(*observation)) return;
-  if (m_sensor.empty()) m_sensor = sensorOf(*observation);
-  if (sensorOf(*observation) != m_sensor) {
+  if (!isScan(*observation)) {
+    if (!m_planar && dynamic_cast<const CObservation2DRangeScan*>(observation.get()))
+      m_planar = observation;
+    return;
+  }
+  const auto lidar = lidarOf(*observation);
+  if (!lidar) {
     ++m_otherSensors;
+    m_otherLabels.insert(sensorOf(*observation));
     return;
   }
   if (observation->timestamp == INVALID_TIMESTAMP)
     throw Error(m_name + ": scan " + std::to_string(m_scans) + " has no time");
   if (m_scans == 0) m_timing = timingIn(m_entries->comment(), m_name);
-  m_waiting.push_back(
-      {m_scans++, time, m_moved, {}, observation, entry.arrival, m_entries->dropped()});
-  m_moved.reset();
+  add({observation, *lidar, time, 0, m_motions, m_moved, entry.arrival});
+}
+
+void ScanSource::add(LidarScan scan) {
+  if (!m_groups) {
+    scan.ordinal = m_scans;
+    m_waiting.push_back({m_scans++,
+                         scan.time,
+                         scan.motion,
+                         {},
+                         {},
+                         {scan},
+                         false,
+                         scan.arrival,
+                         m_entries->dropped()});
+    m_moved.reset();
+    return;
+  }
+  const std::size_t lidar = scan.lidar;
+  scan.time += m_vehicle.lidars[lidar].sensor.timing.clock;
+  scan.ordinal = m_ofLidar[lidar]++;
+  if (m_groups->add(std::move(scan)))
+    m_moved.reset();
+  else
+    ++m_late[lidar];  // its motion goes on to the next scan
+}
+
+/// Makes scans of the groups that are complete.
+void ScanSource::takeGroups() {
+  if (!m_groups) return;
+  for (auto parts = m_groups->next(m_ended); !parts.empty(); parts = m_groups->next(m_ended)) {
+    Scan scan;
+    scan.index = m_scans++;
+    scan.dropped = m_entries->dropped();
+    scan.time = parts.front().time;
+    for (const LidarScan& part : parts) {
+      scan.time = std::max(scan.time, part.time);
+      if (part.motion)
+        scan.motion = scan.motion ? io::composeMotions(*scan.motion, *part.motion) : *part.motion;
+      if (part.arrival)
+        scan.arrival = std::max(scan.arrival.value_or(*part.arrival), *part.arrival);
+    }
+    const auto byLidar = [](const LidarScan& a, const LidarScan& b) { return a.lidar < b.lidar; };
+    std::sort(parts.begin(), parts.end(), byLidar);
+    scan.parts = std::move(parts);
+    scan.isFused = true;
+    m_waiting.push_back(std::move(scan));
+  }
 }
 
 void ScanSource::take(const RawlogEntry& entry) {
   if (entry.action) {
     m_anyAction = true;
     try {
-      if (const auto motion = motionOf(*entry.action, m_options))
+      if (const auto motion = motionOf(*entry.action, m_options)) {
         m_moved = m_moved ? io::composeMotions(*m_moved, *motion) : *motion;
+        ++m_motions;
+      }
     } catch (const Error& error) {
       throw Error(m_name + ": before scan " + std::to_string(m_scans) + ": " + error.what());
     }
   }
   if (entry.observation) take(entry.observation, entry);
   if (!entry.frame) return;
-  if (m_sensor.empty())  // prefer poles in a frame with several scans
+  if (m_sensor.empty() && !m_groups)  // prefer poles in a frame with several scans
     if (const auto poles = entry.frame->getObservationByClass<CObservationPoles>())
       m_sensor = sensorOf(*poles);
   for (const auto& observation : *entry.frame) take(observation, entry);
@@ -182,6 +263,7 @@ ScanSource::Scan ScanSource::release() {
   m_waiting.pop_front();
   scan.index = m_released;
   scan.velocity = velocityAt(scan);
+  scan.moving = scan.velocity;
   if (m_released == 0) {
     scan.motion = io::PlanarMotion();
   } else if (!scan.motion) {
@@ -193,6 +275,8 @@ ScanSource::Scan ScanSource::release() {
       ++m_unknownMotions;
     }
   }
+  if (!scan.moving && scan.motion && m_released > 0 && scan.time > m_lastTime)
+    scan.moving = velocityOf(scan.motion->mean, scan.time - m_lastTime);
   if (scan.time > m_lastTime) m_odometry.forgetBefore(scan.time - shortWay);
   m_lastTime = scan.time;
   ++m_released;
@@ -209,6 +293,21 @@ bool ScanSource::hasOdometry(const Scan& scan) {
   return false;
 }
 
+/// Each LiDAR of the vehicle must be in a rawlog; known at its end, or when others have come often.
+void ScanSource::requireLidars() const {
+  if (!m_groups || m_entries->isLive() || !(m_ended || m_scans >= mostWithoutLidar)) return;
+  for (std::size_t i = 0; i < m_ofLidar.size(); ++i) {
+    if (m_ofLidar[i] > 0) continue;
+    std::string others;
+    for (const std::string& label : m_otherLabels) others += (others.empty() ? "" : ", ") + label;
+    throw Error(m_name + ": no scan of the LiDAR " + m_vehicle.lidars[i].label +
+                " that [vehicle] lidars lists" +
+                (m_ended ? "" : " in the first " + std::to_string(m_scans) + " scans") +
+                "; scans of other sensors: " + (others.empty() ? "none" : others) +
+                "; write the sensor labels that are in the rawlog");
+  }
+}
+
 /// Reads on until the first waiting scan can be released; false at the end.
 bool ScanSource::fill() {
   RawlogEntry entry;
@@ -218,10 +317,13 @@ bool ScanSource::fill() {
         take(entry);
       else
         m_ended = true;
+      takeGroups();
+      requireLidars();
     }
   } catch (...) {
     m_ended = true;
     m_error = std::current_exception();  // reported later: the waiting scans come before it
+    takeGroups();
   }
   return !m_waiting.empty();
 }
@@ -232,6 +334,8 @@ std::optional<ScanSource::Scan> ScanSource::next() {
     m_waiting.pop_front();
   }
   if (m_error) std::rethrow_exception(m_error);
+  if (m_released == 0 && m_planar)
+    throw Error(m_name + ": " + ObservationPoints::refusalOf(*m_planar));
   return std::nullopt;
 }
 

@@ -8,7 +8,9 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/sensor/ScanTiming.h>
@@ -16,6 +18,7 @@
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
 #include "mrpt/rawlog/EntrySource.h"
 #include "mrpt/rawlog/OdometryTrack.h"
+#include "mrpt/rawlog/ScanGroups.h"
 
 namespace polemcl {
 
@@ -32,26 +35,34 @@ class ScanSource {
     double time = 0;        ///< s
     std::optional<io::PlanarMotion> motion;
     std::optional<Velocity> velocity = {};  ///< see PoleScan
-    mrpt::obs::CObservation::Ptr observation;
+    std::optional<Velocity> moving = {};    ///< best guess of the velocity at that time
+    std::vector<LidarScan> parts;           ///< at least one; in the order of the LiDARs
+    bool isFused = false;                   ///< the parts are to be fused
     std::optional<std::chrono::steady_clock::time_point> arrival;  ///< as in RawlogEntry
     std::size_t dropped = 0;  ///< scans of sensors that were dropped before it, in all
   };
   /// \brief Also sets the base folder of external files with relative names in MRPT: the folder
   /// that MRPT's tools use (`<rawlog>_Images`) if it exists, otherwise the folder of the rawlog.
   ScanSource(const std::string& path, const MotionOptions& motion, bool allowTruncated,
-             double follow = 0);
+             double follow = 0, const VehicleOptions& vehicle = {});
   /// \brief From any source. \param name For messages.
-  ScanSource(std::shared_ptr<EntrySource> entries, std::string name, const MotionOptions& motion);
+  ScanSource(std::shared_ptr<EntrySource> entries, std::string name, const MotionOptions& motion,
+             const VehicleOptions& vehicle = {});
 
   /// \brief The next scan; nullopt at the end. Sensors: waits for it; a scan without odometry is
   /// left out, and the motion goes on to the next one.
   /// \throws Error as RawlogReader, with the scan; when no odometry came with many scans of
-  /// sensors.
+  /// sensors, or a rawlog has no scan of a LiDAR of the vehicle.
   std::optional<Scan> next();
 
   /// \brief Measuring times of the scans, if the comment of the rawlog states them.
   const ScanTiming& timing() const { return m_timing; }
   std::size_t otherSensors() const { return m_otherSensors; }
+  const std::set<std::string>& otherLabels() const { return m_otherLabels; }
+  /// \brief Whether the scans are those of LiDARs to be fused.
+  bool isFused() const { return m_groups.has_value(); }
+  /// \brief Scans of a LiDAR that came too late.
+  std::size_t late(std::size_t lidar) const { return m_late[lidar]; }
   std::size_t unknownMotions() const { return m_unknownMotions; }
   bool isLive() const { return m_entries->isLive(); }
   std::size_t dropped() const { return m_entries->dropped(); }
@@ -62,6 +73,10 @@ class ScanSource {
  private:
   void take(const RawlogEntry& entry);
   void take(const mrpt::obs::CObservation::Ptr& observation, const RawlogEntry& entry);
+  std::optional<std::size_t> lidarOf(const mrpt::obs::CObservation& observation);
+  void add(LidarScan scan);
+  void takeGroups();
+  void requireLidars() const;
   bool fill();
   bool hasOdometry(const Scan& scan);
   bool mustWait(const Scan& scan) const;
@@ -79,6 +94,12 @@ class ScanSource {
   double m_lastTime = 0;       ///< time of the last scan released
   std::exception_ptr m_error;  ///< reason why reading ended
   bool m_ended = false, m_anyAction = false;
+  const VehicleOptions m_vehicle;
+  std::optional<ScanGroups> m_groups;          ///< of several LiDARs; not for poles fused before
+  std::vector<std::size_t> m_ofLidar, m_late;  ///< scans of each LiDAR: all, and those too late
+  std::set<std::string> m_otherLabels;
+  mrpt::obs::CObservation::Ptr m_planar;  ///< the first scan of one plane only
+  std::size_t m_motions = 0;              ///< by actions, so far
   std::size_t m_scans = 0, m_released = 0, m_otherSensors = 0, m_unknownMotions = 0;
 };
 

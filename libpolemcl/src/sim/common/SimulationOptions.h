@@ -71,7 +71,8 @@ struct SimulationOptions {
   double height = 1.0;      ///< optical centre above ground, m. Programs take it from `[sensor]`.
   bool upsideDown = false;  ///< the sensor hangs; its beams are given as seen upright, z up
   /// Optical centre in the frame of the written clouds and poses, x forward, z up, m (NCLT's lie
-  /// below the sensor). Programs take it from `[sensor]`.
+  /// below the sensor). With x and y, the sensor is another one on the same vehicle: the drive
+  /// stays the same. Programs take it from `[sensor]`.
   double originX = 0, originY = 0, originZ = 0;
   double spacing = 0.5;  ///< distance between scans, m (`spacing_m`)
   double speed = 5;      ///< m/s (`speed_m_s`)

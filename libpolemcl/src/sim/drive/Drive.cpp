@@ -27,7 +27,8 @@ struct Sways {
       : lane(0.12, 60, random), roll(0.004, 14, random), pitch(0.004, 11, random) {}
 };
 
-/// \brief Pose of the sensor at path length s: perpendicular to the slope, with a little sway.
+/// \brief Pose of the sensor at path length s: perpendicular to the slope, with a little sway. The
+/// path is that of the place at which x and y of the origin are 0.
 Eigen::Isometry3d sensorAt(const World& world, const SimulationOptions& options, const Sways& sways,
                            double s) {
   const auto place = [&](double at) {
@@ -52,7 +53,8 @@ Eigen::Isometry3d sensorAt(const World& world, const SimulationOptions& options,
   const double level =
       0.25 * (ground(1.3, 0.75) + ground(1.3, -0.75) + ground(-1.3, 0.75) + ground(-1.3, -0.75));
   pose.translation() =
-      Eigen::Vector3d(here.x, here.y, level) + options.height * pose.linear().col(2);
+      Eigen::Vector3d(here.x, here.y, level) +
+      pose.linear() * Eigen::Vector3d(options.originX, options.originY, options.height);
   return pose;
 }
 

@@ -35,6 +35,9 @@ struct ExtractionReport {
   std::size_t candidates = 0;
   std::size_t refused[static_cast<int>(RejectionReason::count_)] = {};
   double ground = 0;  ///< median height of the ground below the sensor origin, m (negative)
+
+  /// \brief Adds the counters of another scan; the height of the ground is that of the first.
+  POLEMCL_EXPORT ExtractionReport& operator+=(const ExtractionReport& other);
 };
 
 }  // namespace polemcl

@@ -3,6 +3,7 @@
 /// \brief Preprocessor: converts any LiDAR or depth observation of MRPT to CObservationPoles.
 
 #include <memory>
+#include <optional>
 
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include <polemcl/core/extraction/PoleExtractor.h>
@@ -13,9 +14,13 @@
 
 namespace polemcl {
 
-struct ObservationPoleExtractorOptions {
+struct POLEMCL_EXPORT ObservationPoleExtractorOptions {
   SensorOptions sensor;
   ExtractionOptions extraction;
+  /// Pose of the sensor in the robot frame, in the place of that of the observations.
+  std::optional<mrpt::poses::CPose3D> sensorPose = {};
+
+  mrpt::poses::CPose3D poseOf(const mrpt::obs::CObservation& observation) const;
 };
 
 /// \brief Extracts the poles of observations. Reuses its buffers: use one object per thread.
@@ -35,10 +40,10 @@ struct ObservationPoleExtractorOptions {
 /// Sources of the points by class:
 /// - CObservationPointCloud: the cloud as it is; external storage is loaded and unloaded.
 /// - CObservationVelodyneScan: its cloud; without one, a cloud generated on a copy.
-/// - CObservation3DRangeScan: its depth image, with the camera's intrinsics (without distortion).
-///   The method scan_line treats pixel rows as rings for any `model`, in a level frame at the
-///   optical centre (`origin` is not used). Without an image, its cloud is treated as that of a
-///   LiDAR.
+/// - CObservation3DRangeScan: its depth image, with the camera's intrinsics and lens distortion
+///   (plumb_bob; what lies outside the undistorted image of the same size is not used). The method
+///   scan_line treats pixel rows as rings for any `model`, in a level frame at the optical centre
+///   (`origin` is not used). Without an image, its cloud is treated as that of a LiDAR.
 /// - CObservationRotatingScan: its range image, with elevations from `[sensor]`. The number of
 ///   rings must equal the number of the sensor's beams.
 class POLEMCL_EXPORT ObservationPoleExtractor {
@@ -52,8 +57,8 @@ class POLEMCL_EXPORT ObservationPoleExtractor {
   /// \brief Whether the class is in the list above.
   static bool canProcess(const mrpt::obs::CObservation& observation);
 
-  /// \brief The poles, with time, label and sensor pose of the observation. A scan without valid
-  /// points gives no poles and `points` = 0.
+  /// \brief The poles, with time, label and sensor pose of the observation (or that of the
+  /// options). A scan without valid points gives no poles and `points` = 0.
   ///
   /// The first three scans with enough points are compared with the configuration
   /// (SensorConfigCheck), unless `SensorOptions::checkBeams` is off. Depth images are not compared.

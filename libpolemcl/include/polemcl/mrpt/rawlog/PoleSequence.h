@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
+#include <polemcl/mrpt/rawlog/VehicleOptions.h>
 
 namespace polemcl {
 
@@ -31,6 +33,22 @@ struct SequenceOptions {
   /// from one thread at a time; may wait. Returns the moment at which the scan counts as there.
   /// Empty: no scan waits.
   std::function<ScanClock::time_point(double)> pace = {};
+  /// Several LiDARs; with none, `extraction` holds for the one that is used.
+  VehicleOptions vehicle = {};
+  /// Velocity of the robot at a time (s), where it is known better than from the odometry; may be
+  /// called from several threads. Several LiDARs measure a pole at different moments.
+  std::function<Velocity(double)> velocity = {};
+};
+
+/// \brief What became of the scans of one LiDAR of several.
+struct LidarCounts {
+  std::string label;
+  std::size_t scans = 0;    ///< used
+  std::size_t missing = 0;  ///< fused scans without one of this LiDAR
+  std::size_t late = 0;     ///< dropped: they came after later scans had been fused
+  std::size_t shared = 0;   ///< its poles that LiDARs listed before it saw as well
+  double apart = 0;         ///< rms distance between the places of those poles, m
+  double apartSigmas = 0;   ///< rms, in standard deviations of each axis; 1 is expected
 };
 
 /// \brief Statistics of the rawlog.
@@ -41,7 +59,9 @@ struct SequenceCounts {
   std::size_t points = 0;         ///< valid points of all scans
   std::size_t invalidPoints = 0;  ///< points dropped: NaN, infinite or at the origin
   std::size_t poles = 0;
-  std::size_t otherSensors = 0;  ///< ignored scans, whose sensor label differs from the first one's
+  std::size_t otherSensors = 0;            ///< ignored scans of other sensors
+  std::set<std::string> otherLabels = {};  ///< class and sensor label of those
+  std::vector<LidarCounts> lidars = {};    ///< as in VehicleOptions; empty if none was fused
   std::size_t unknownMotions = 0;  ///< scans without odometry: after the first one; of sensors,
                                    ///< these are left out
   std::size_t dropped = 0;         ///< scans of sensors that nobody had time for
@@ -59,8 +79,9 @@ struct PoleScan {
   /// that on the way to the second, and where there are odometry readings around a scan.
   std::optional<Velocity> velocity;
   CObservationPoles::Ptr observation;  ///< never null
-  /// Source of the poles; its points may still be in an external file. Null for stored poles.
-  mrpt::obs::CObservation::Ptr scan;
+  /// Sources of the poles; their points may still be in external files. Several if LiDARs were
+  /// fused; none of stored poles.
+  std::vector<mrpt::obs::CObservation::Ptr> sources;
   std::size_t points = 0;   ///< valid points; 0 if stored poles do not state it
   std::size_t invalid = 0;  ///< dropped points
   ExtractionReport report;  ///< report of the extraction; all zero for stored poles
@@ -83,7 +104,10 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///
 /// Scans are the observations that ObservationPoleExtractor can process, and CObservationPoles.
 /// Only those with the class and sensor label of the first one are used; if the first frame holds
-/// poles and other scans, the poles are used. External files with relative names are searched in
+/// poles and other scans, the poles are used. If SequenceOptions::vehicle lists LiDARs, their scans
+/// are used instead, and those that belong together become one scan of the robot: its label is
+/// `fused`, its sensor pose the identity, its time that of the latest of them. Such scans of stored
+/// poles are read as they are. External files with relative names are searched in
 /// `<rawlog>_Images` if it exists, otherwise beside the rawlog. (MRPT has one such folder for the
 /// whole program.)
 ///
@@ -96,8 +120,8 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// The next scans are read and extracted while a scan is consumed. An error ends the stream at its
 /// position: all scans before it have been returned.
 /// \param consume Called in order, from one thread at a time.
-/// \throws Error as RawlogReader and ObservationPoleExtractor do, with file and scan. Exceptions of
-///         `consume` are passed on.
+/// \throws Error as RawlogReader and ObservationPoleExtractor do, with file and scan; when a LiDAR
+///         of SequenceOptions::vehicle is not in the rawlog. Exceptions of `consume` are passed on.
 POLEMCL_EXPORT SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
                                           const std::function<void(const PoleScan&)>& consume);
 

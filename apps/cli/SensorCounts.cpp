@@ -1,0 +1,55 @@
+#include "cli/SensorCounts.h"
+
+#include <ostream>
+
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace {
+
+/// Beyond this, poses or clocks of two LiDARs contradict each other, in standard deviations: their
+/// covariances are right within a factor of two.
+constexpr double s_disagreement = 3;
+
+void print(std::ostream& out, const LidarCounts& lidar) {
+  out << "LiDAR " << lidar.label << ": " << lidar.scans << " scans, missing " << lidar.missing
+      << " times";
+  if (lidar.late > 0) out << ", " << lidar.late << " dropped that came too late";
+  if (lidar.shared > 0)
+    out << "; " << lidar.shared << " poles that others saw, " << io::fixed(lidar.apart, 3)
+        << " m apart (rms, " << io::fixed(lidar.apartSigmas, 1) << " sigma)";
+  out << '\n';
+  if (lidar.apartSigmas > s_disagreement)
+    out << "LiDAR " << lidar.label
+        << " disagrees with the others: check pose and clock_offset_s in "
+        << "[sensor:" << lidar.label << "]\n";
+}
+
+}  // namespace
+
+void printSensors(std::ostream& out, const SequenceCounts& counts) {
+  for (const LidarCounts& lidar : counts.lidars) print(out, lidar);
+  if (counts.otherSensors == 0) return;
+  out << "scans of other sensors, not used: " << counts.otherSensors << " (";
+  bool first = true;
+  for (const std::string& label : counts.otherLabels) {
+    out << (first ? "" : ", ") << label;
+    first = false;
+  }
+  out << "); [vehicle] lidars lists the sensor labels to use\n";
+}
+
+Json lidarsJson(const SequenceCounts& counts) {
+  Json list = Json::array();
+  for (const LidarCounts& lidar : counts.lidars)
+    list.push_back({{"label", lidar.label},
+                    {"scans", lidar.scans},
+                    {"missing", lidar.missing},
+                    {"late", lidar.late},
+                    {"shared_poles", lidar.shared},
+                    {"apart_m", lidar.apart},
+                    {"apart_sigmas", lidar.apartSigmas}});
+  return list;
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,19 @@
+#pragma once
+/// \file SensorCounts.h
+/// \brief What people and scripts are told of the sensors of a rawlog.
+
+#include <iosfwd>
+
+#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "cli/JsonFile.h"
+
+namespace polemcl::apps {
+
+/// \brief A line for each LiDAR that was fused, with how well it agrees with the others; a line for
+/// scans that were not used, with their sensors and what to write in order to use them.
+void printSensors(std::ostream& out, const SequenceCounts& counts);
+
+/// \brief An object for each LiDAR that was fused, in a list.
+Json lidarsJson(const SequenceCounts& counts);
+
+}  // namespace polemcl::apps

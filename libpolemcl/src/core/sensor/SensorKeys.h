@@ -1,0 +1,12 @@
+#pragma once
+/// \file SensorKeys.h
+/// \brief The keys of `[sensor]` in a section of another name.
+
+#include <polemcl/core/sensor/SensorOptions.h>
+
+namespace polemcl {
+
+/// \brief As bind(), in the open section.
+void bindKeys(Binder& binder, SensorOptions& options);
+
+}  // namespace polemcl

@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <polemcl/config/Config.h>
+#include "cli/Settings.h"
+#include "support/ExpectHas.h"
+
+namespace polemcl::test_vehicle_settings {
+namespace {
+
+using apps::Settings;
+
+Settings load(const std::string& text) {
+  return apps::settingsFrom(ConfigFile::fromText(text, "t.ini"), {});
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    load(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string s_two =
+    "[sensor]\nmodel = vlp16\nheight_m = 1.2\n[scan_line]\nmax_range_m = 30\n"
+    "[vehicle]\nlidars = front os/rear.1\nfuse_within_s = 0.03\n"
+    "[sensor:os/rear.1]\nmodel = hdl32e\npose = -1 0.2 1.5 180 5 0\nclock_offset_s = -0.02\n"
+    "[scan_line:front]\nmin_points = 7\n[range_image:front]\nrows = 16\n";
+
+TEST(VehicleSettings, ALidarHasWhatItsSectionsSayAndElseWhatAllHave) {
+  const Settings all = load(s_two);
+  ASSERT_EQ(all.vehicle.lidars.size(), 2u);
+  const LidarOptions &front = all.vehicle.lidars[0], &rear = all.vehicle.lidars[1];
+  EXPECT_EQ(front.label, "front");
+  EXPECT_EQ(front.sensor.model, "vlp16");
+  EXPECT_EQ(front.sensor.height, 1.2);
+  EXPECT_EQ(front.extraction.scanLine.maxRange, 30);
+  EXPECT_EQ(front.extraction.scanLine.minPoints, 7);
+  EXPECT_EQ(front.extraction.rangeImage.rows, 16);
+  EXPECT_TRUE(front.pose.empty());
+  EXPECT_FALSE(front.extractor().sensorPose);
+  EXPECT_EQ(rear.sensor.model, "hdl32e");
+  EXPECT_EQ(rear.sensor.height, 1.2);
+  EXPECT_EQ(rear.sensor.timing.clock, -0.02);
+  EXPECT_EQ(rear.extraction.scanLine.minPoints, ScanLineOptions().minPoints);
+  ASSERT_TRUE(rear.extractor().sensorPose);
+  EXPECT_NEAR(rear.extractor().sensorPose->pitch(), 5 * M_PI / 180, 1e-12);
+  EXPECT_EQ(all.reading().vehicle.fuseWithin, 0.03);
+}
+
+TEST(VehicleSettings, WrittenSettingsAreReadBackTheSame) {
+  const Settings all = load(s_two);
+  const std::string text = apps::settingsText(all);
+  EXPECT_HAS(text, "[sensor:os/rear.1]");
+  EXPECT_HAS(text, "pose = -1 0.2 1.5 180 5 0");
+  EXPECT_EQ(apps::settingsText(load(text)), text);
+}
+
+TEST(VehicleSettings, AssignmentsReachTheSectionsOfALidar) {
+  const Settings all =
+      apps::settingsFrom(ConfigFile::fromText(s_two, "t.ini"), {"sensor:os/rear.1.height_m=2.5"});
+  EXPECT_EQ(all.vehicle.lidars[1].sensor.height, 2.5);
+  EXPECT_EQ(all.vehicle.lidars[0].sensor.height, 1.2);
+}
+
+TEST(VehicleSettings, Refusals) {
+  EXPECT_HAS(refusal("[sensor:front]\nheight_m = 1\n"),
+             "[vehicle] lidars must list the label behind the colon");
+  EXPECT_HAS(refusal("[vehicle]\nlidars = front Front\n"), "each label once");
+  EXPECT_HAS(refusal("[vehicle]\nlidars = front re[ar\n"), "re[ar is not one");
+  EXPECT_HAS(refusal("[vehicle]\nlidars = a\n[sensor:a]\npose = 1 2 3\n"),
+             "[sensor:a] pose = 3: allowed is six numbers");
+  EXPECT_HAS(refusal("[vehicle]\nlidars = a\n[sensor:a]\nmodel = table\n"),
+             "[sensor:a] elevations_deg");
+  EXPECT_HAS(refusal("[vehicle]\nfuse_within_s = -1\n"), "[vehicle] fuse_within_s = -1");
+}
+
+}  // namespace
+}  // namespace polemcl::test_vehicle_settings
