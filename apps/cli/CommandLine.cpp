@@ -100,8 +100,8 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
   auto* quiet = m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors and warnings");
   m_cli
       .add_flag("--verbose", m_verbose,
-                "Say which build, files and threads are used, how long it took, and where in the "
-                "code an error arose")
+                "Say which build, settings and threads are used, and how long it took; show MRPT's "
+                "errors in full")
       ->excludes(quiet);
   addNumber(m_cli, "--threads", m_threads, "Number of threads at most; 0: one for each core",
             CLI::Range(0, 10000));

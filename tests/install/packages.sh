@@ -40,7 +40,7 @@ inside() {
     DEBIAN_FRONTEND=noninteractive "$@"
 }
 as_user() {
-  chroot "$root" su -s /bin/bash walker -c "cd && export LANG=C.UTF-8 && set -e && $1"
+  chroot "$root" env -i PATH=/usr/bin:/bin LANG=C.UTF-8 su -s /bin/bash walker -c "cd && set -e && $1"
 }
 apt_get() {
   quietly inside apt-get -qq -y --no-install-recommends -o Dpkg::Use-Pty=0 "$@"
