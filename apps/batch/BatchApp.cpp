@@ -17,6 +17,7 @@
 #include "batch/BatchSlurm.h"
 #include "batch/BatchSpec.h"
 #include "cli/CommandLine.h"
+#include "cli/Messages.h"
 #include "cli/Progress.h"
 #include "cli/ProgressLog.h"
 #include "io/file/Bytes.h"
@@ -34,7 +35,7 @@ std::size_t jobsOf(const BatchOptions& options) {
 Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
                  const std::vector<const BatchTask*>& open) {
   const std::size_t all = plan.tasks.size();
-  Progress progress("batch", all, options.quiet);
+  Progress progress("batch", all, options.quiet || !errorsAreOnTerminal());
   ProgressLogger log("batch", all, all - open.size(), options.quiet);
   return runBatch(folder, open, all, {jobsOf(options), options.imports},
                   [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
@@ -55,7 +56,7 @@ Failures runThere(const BatchOptions& options, const BatchFolder& folder, const 
                   const std::vector<const BatchTask*>& open) {
   SlurmOptions slurm;
   slurm.arguments = options.sbatch;
-  Progress progress("batch on Slurm", open.size(), options.quiet);
+  Progress progress("batch on Slurm", open.size(), options.quiet || !errorsAreOnTerminal());
   ProgressLogger log("batch on Slurm", open.size(), 0, options.quiet);
   runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) {
     progress.update(done);
@@ -186,15 +187,16 @@ int batchMain(int argc, const char* const* argv) {
   std::string task;
   bool dry = false;
   auto& cli = line.cli();
-  auto* batch = cli.add_option("batch", options.batch, "Batch (.ini), see config/batches/");
-  cli.add_option("--output", options.output, "Folder of the batch: intermediate files, report");
-  cli.add_option("--data", options.data, "Folder of the dataset: {data} in the batch");
-  cli.add_option("--jobs", options.jobs, "Number of tasks at the same time; 0: one for each core")
-      ->check(CLI::Range(0, 4096));
-  cli.add_option("--imports", options.imports,
-                 "Number of imports among them; 0: no limit. Scans lie on disk during an "
-                 "import")
-      ->check(CLI::Range(0, 4096));
+  auto* batch = cli.add_option("batch", options.batch,
+                               "Batch: a file, or an installed one such as batches/year.ini")
+                    ->type_name("INI");
+  addFolder(cli, "--output", options.output, "Folder of the batch: intermediate files, report");
+  addFolder(cli, "--data", options.data, "Folder of the dataset: {data} in the batch");
+  addNumber(cli, "--jobs", options.jobs, "Number of tasks at the same time; 0: one for each core",
+            CLI::Range(0, 4096));
+  addNumber(cli, "--imports", options.imports,
+            "Number of imports among them; 0: no limit. Scans lie on disk during an import",
+            CLI::Range(0, 4096));
   addSetOption(cli, options.set);
   cli.add_flag("--resume", options.resume, "Continue the batch in the folder");
   auto* slurm = cli.add_flag("--slurm", options.slurm, "Run on a Slurm cluster, as job arrays");
@@ -204,7 +206,8 @@ int batchMain(int argc, const char* const* argv) {
       ->expected(1)
       ->needs(slurm);
   cli.add_flag("--dry-run", dry, "Print the tasks and their commands, do nothing");
-  auto* one = cli.add_option("--task", task, "Do this one task of the batch in --output");
+  auto* one = cli.add_option("--task", task, "Do this one task of the batch in --output")
+                  ->type_name("TASK");
   batch->excludes(one);
   cli.parse_complete_callback([&] {
     if (task.empty() && batch->count() == 0) throw CLI::RequiredError("batch");

@@ -3,11 +3,17 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <set>
 
+#include "cli/HelpFormatter.h"
+#include "cli/Messages.h"
+#include "cli/OptionText.h"
+#include "cli/Progress.h"
 #include "cli/Settings.h"
 #include "cli/Version.h"
 #include "io/file/TextFile.h"
@@ -17,6 +23,8 @@ namespace polemcl::apps {
 namespace {
 
 constexpr double s_largest = 1e6;  // of metres, seconds and the like
+
+const std::function<void(CLI::App&)>* s_visitor = nullptr;  // of visitOptions()
 
 /// What broken files bring into messages becomes question marks.
 std::string printable(const std::string& text) {
@@ -34,9 +42,9 @@ bool lacksSubcommand(const CLI::App& cli) {
   return cli.get_require_subcommand_min() > 0 && cli.get_subcommands().empty();
 }
 
-std::string subcommandsOf(CLI::App& cli) {
+std::string subcommandNames(const CLI::App& cli) {
   std::string names;
-  for (const CLI::App* command : cli.get_subcommands([](CLI::App*) { return true; }))
+  for (const CLI::App* command : subcommandsOf(cli))
     names += (names.empty() ? "" : ", ") + command->get_name();
   return names;
 }
@@ -46,7 +54,7 @@ bool offerPrintConfig(CLI::App& app) {
   bool offered = app.get_option_no_throw("--config") != nullptr;
   if (offered && app.get_option_no_throw("--print-config") == nullptr) {
     auto* print = app.add_flag("--print-config", "Print the effective settings, and end");
-    app.add_flag("--all", "With --print-config: the expert settings, too")->needs(print);
+    app.add_flag("--all", "Print the expert settings, too")->needs(print);
   }
   for (CLI::App* below : app.get_subcommands({})) offered |= offerPrintConfig(*below);
   return offered;
@@ -86,43 +94,67 @@ void printConfig(const PrintRequest& request) {
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
     : m_program(program), m_cli(description, program) {
-  m_cli.set_version_flag("--version", versionLine(program));
-  m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors");
-  m_cli.add_option("--threads", m_threads, "Number of threads at most; 0: one for each core")
-      ->check(CLI::Range(0, 10000));
+  m_cli.formatter(std::make_shared<HelpFormatter>());
+  m_cli.set_help_flag("-h,--help", "Print this help, and end");
+  m_cli.set_version_flag("--version", versionLine(program), "Print version and build, and end");
+  auto* quiet = m_cli.add_flag("--quiet", m_quiet, "Print nothing but errors and warnings");
+  m_cli
+      .add_flag("--verbose", m_verbose,
+                "Say which build, settings and threads are used, and how long it took; show MRPT's "
+                "errors in full")
+      ->excludes(quiet);
+  addNumber(m_cli, "--threads", m_threads, "Number of threads at most; 0: one for each core",
+            CLI::Range(0, 10000));
   // So that `pole-eval map --quiet` works as well as `pole-eval --quiet map`.
   m_cli.fallthrough();
 }
 
 int CommandLine::usageError(const std::string& what) const {
-  std::cerr << m_program << ": " << oneLine(what) << "\nTry `" << m_program << " --help`.\n";
+  std::cerr << m_program << ": " << coloured(Colour::red, oneLine(what)) << "\nTry `" << m_program
+            << " --help`.\n";
   return exitUsage;
 }
 
 int CommandLine::run(int argc, const char* const* argv, const std::function<void()>& work) {
   std::optional<PrintRequest> request;
   try {
-    if (offerPrintConfig(m_cli)) request = printRequest(argc, argv);
+    const bool offered = offerPrintConfig(m_cli);
+    if (s_visitor) {
+      (*s_visitor)(m_cli);
+      return exitDone;
+    }
+    if (offered) request = printRequest(argc, argv);
     if (!request) m_cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
-      return usageError(lacksSubcommand(m_cli) ? "a subcommand is needed: " + subcommandsOf(m_cli)
+      return usageError(lacksSubcommand(m_cli) ? "a subcommand is needed: " + subcommandNames(m_cli)
                                                : e.what());
     m_cli.exit(e);  // prints what --help or --version ask for
     return exitDone;
   }
+  return this->work([&] { request ? printConfig(*request) : work(); });
+}
+
+int CommandLine::work(const std::function<void()>& work) const {
   registerClasses();
   std::optional<tbb::global_control> limit;
   if (m_threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism,
                   static_cast<std::size_t>(m_threads));
+  setVerbose(m_program, m_verbose);
+  const auto begin = std::chrono::steady_clock::now();
+  sayDetail(versionLine(m_program));
+  sayDetail("threads: at most " + std::to_string(tbb::global_control::active_value(
+                                      tbb::global_control::max_allowed_parallelism)));
   try {
-    request ? printConfig(*request) : work();
+    work();
+    sayDetail("took " + resourcesTaken(secondsSince(begin)));
     return exitDone;
   } catch (const std::exception& e) {
-    std::cerr << m_program << ": " << oneLine(e.what()) << '\n';
+    if (oneLine(e.what()) != e.what()) sayDetail(std::string("in full: ") + e.what());
+    std::cerr << m_program << ": " << coloured(Colour::red, oneLine(e.what())) << '\n';
   } catch (...) {
-    std::cerr << m_program << ": failed for an unknown reason\n";
+    std::cerr << m_program << ": " << coloured(Colour::red, "failed for an unknown reason") << '\n';
   }
   return exitFailed;
 }
@@ -138,8 +170,16 @@ int CommandLine::run(int argc, const char* const* argv, const std::vector<Subcom
   });
 }
 
+void visitOptions(int (*program)(int argc, const char* const* argv), const char* name,
+                  const std::function<void(CLI::App&)>& visit) {
+  s_visitor = &visit;
+  const char* const argv[] = {name, nullptr};
+  program(1, argv);
+  s_visitor = nullptr;
+}
+
 void addSetOption(CLI::App& cli, std::vector<std::string>& assignments) {
-  cli.add_option("--set", assignments, "Overrides a setting of the INI file; may be repeated")
+  cli.add_option("--set", assignments, "Replaces a setting of the INI file; may be repeated")
       ->type_name("SECTION.KEY=VALUE")
       ->take_all()
       ->expected(1);

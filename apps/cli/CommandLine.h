@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace polemcl::apps {
@@ -25,12 +27,12 @@ struct Subcommand {
   std::function<std::string(bool quiet)> run;
 };
 
-/// \brief Declares `--help`, `--version`, `--quiet` and `--threads`; the program declares the rest
-/// on `cli()`.
+/// \brief Declares `--help`, `--version`, `--quiet`, `--verbose` and `--threads`; the program
+/// declares the rest on `cli()`.
 ///
 /// Use: declare options on `cli()`, then `return line.run(argc, argv, [&] { work(options); });`.
 /// `--quiet` also works behind a subcommand. Where a program declares `--config`, run() adds
-/// `--print-config` and `--all`.
+/// `--print-config` and `--all`. Examples for `--help` stand in Guides.cpp.
 class CommandLine {
  public:
   /// \param program Name as the user types it, such as `pole-map`.
@@ -51,12 +53,66 @@ class CommandLine {
 
  private:
   int usageError(const std::string& what) const;
+  int work(const std::function<void()>& work) const;
 
   std::string m_program;
   CLI::App m_cli;
-  bool m_quiet = false;
+  bool m_quiet = false, m_verbose = false;
   int m_threads = 0;  ///< at most; 0: one for each core
 };
+
+/// \brief Calls `visit` with the options that a program declares; the program does no work.
+/// \param program Its main function.
+void visitOptions(int (*program)(int argc, const char* const* argv), const char* name,
+                  const std::function<void(CLI::App&)>& visit);
+
+/// \brief Options for files and folders, in place of CLI11's add_option(): completion and `--help`
+/// tell them apart.
+template <class Path>
+CLI::Option* addFile(CLI::App& cli, const std::string& flag, Path& value,
+                     const std::string& meaning) {
+  return cli.add_option(flag, value, meaning)->type_name("FILE");
+}
+template <class Path>
+CLI::Option* addFolder(CLI::App& cli, const std::string& flag, Path& value,
+                       const std::string& meaning) {
+  return cli.add_option(flag, value, meaning)->type_name("FOLDER");
+}
+
+/// \brief Declares `--config INI`. \param purpose What of the settings is used, if not all.
+template <class Path>
+CLI::Option* addConfigOption(CLI::App& cli, Path& value, const std::string& purpose = "") {
+  return cli
+      .add_option("--config", value,
+                  "Settings" + purpose + ": a file, or an installed one such as hdl32e.ini")
+      ->type_name("INI");
+}
+
+/// \brief An option for one of some words, each of which stands for a value.
+template <class Value>
+CLI::Option* addChoice(CLI::App& cli, const std::string& flag, Value& value,
+                       const std::vector<std::pair<std::string, Value>>& choices,
+                       const std::string& meaning) {
+  std::vector<std::string> words;
+  for (const auto& choice : choices) words.push_back(choice.first);
+  return cli
+      .add_option_function<std::string>(
+          flag,
+          [&value, choices](const std::string& word) {
+            for (const auto& choice : choices)
+              if (choice.first == word) value = choice.second;
+          },
+          meaning)
+      ->check(CLI::IsMember(words));
+}
+
+/// \brief The default of an option that takes the place of a setting: "[runs] runs, else 1".
+template <class Number>
+std::string unlessSet(const std::string& setting, const Number& value) {
+  std::ostringstream text;
+  text << setting << ", else " << value;
+  return text.str();
+}
 
 /// \brief Declares `--set SECTION.KEY=VALUE`, which may be given several times.
 void addSetOption(CLI::App& cli, std::vector<std::string>& assignments);

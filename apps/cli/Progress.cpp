@@ -1,19 +1,21 @@
 #include "cli/Progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <utility>
 
+#include "cli/Messages.h"
+
 namespace polemcl::apps {
 
-Progress::Progress(std::string label, std::size_t total, bool quiet)
+Progress::Progress(std::string label, std::size_t total, bool quiet, std::chrono::seconds every)
     : m_label(std::move(label)),
       m_total(total),
-      m_shown(!quiet && ::isatty(STDERR_FILENO) == 1),
+      m_shown(!quiet),
+      m_terminal(errorsAreOnTerminal()),
+      m_every(every),
       m_start(Clock::now()),
       m_last(m_start) {}
 
@@ -31,11 +33,18 @@ void Progress::update(std::size_t done) {
   const auto now = Clock::now();
   if (done < m_done) m_start = now;
   m_done = done;
+  if (!m_terminal && now - m_last < m_every) return;
   if (m_drawn && now - m_last < std::chrono::milliseconds(100)) return;
   m_last = now;
-  m_drawn = true;
-  const double seconds = std::chrono::duration<double>(now - m_start).count();
-  std::cerr << '\r' << progressLine(m_label, done, m_total, seconds) << "\033[K" << std::flush;
+  draw(std::chrono::duration<double>(now - m_start).count());
+}
+
+void Progress::draw(double seconds) {
+  m_drawn = m_terminal;
+  if (m_terminal)
+    std::cerr << '\r' << progressLine(m_label, m_done, m_total, seconds) << "\033[K" << std::flush;
+  else
+    std::cerr << progressLine(m_label, m_done, m_total, seconds, 0) + '\n' << std::flush;
 }
 
 void Progress::step() {
@@ -49,15 +58,16 @@ void Progress::say(const std::string& line) {
 }
 
 std::string progressLine(const std::string& label, std::size_t done, std::size_t total,
-                         double seconds) {
+                         double seconds, std::size_t width) {
   std::string line = label + ' ';
-  if (total > 0) {
-    constexpr std::size_t width = 20;
+  if (total > 0 && width > 0) {
     const std::size_t filled = std::min(done, total) * width / total;
-    line += '[' + std::string(filled, '#') + std::string(width - filled, '-') + "] ";
+    line += '[' + coloured(Colour::green, std::string(filled, '#')) +
+            std::string(width - filled, '-') + "] ";
   }
   line += std::to_string(done);
   if (total > 0) line += '/' + std::to_string(total);
+  if (total > 0 && width == 0) line += " (" + std::to_string(100 * done / total) + " %)";
   if (done == 0 || seconds <= 0) return line;
 
   const double rate = static_cast<double>(done) / seconds;

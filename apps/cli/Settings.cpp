@@ -1,6 +1,7 @@
 #include "cli/Settings.h"
 
 #include <polemcl/config/Config.h>
+#include "cli/Messages.h"
 #include "io/file/InstalledFiles.h"
 
 namespace polemcl::apps {
@@ -58,7 +59,9 @@ void bind(Binder& binder, Settings& settings) {
 }
 
 Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
-  return settingsFrom(ConfigFile::read(io::installedFile(path, "config").string()), assignments);
+  const std::string file = io::installedFile(path, "config").string();
+  sayDetail("settings: " + file);
+  return settingsFrom(ConfigFile::read(file), assignments);
 }
 
 Settings settingsFrom(ConfigFile file, const std::vector<std::string>& assignments) {

@@ -43,14 +43,14 @@ Subcommand mapCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("map", "Precision, recall and F1 of a pole map");
   const auto shared = std::make_shared<EvalMapOptions>();
   EvalMapOptions& options = *shared;
-  cli.add_option("--truth", options.truth, "True poles: .polemap, .csv with x,y columns, or .npz")
+  addFile(cli, "--truth", options.truth, "True poles: .polemap, .csv with x,y columns, or .npz")
       ->required();
-  cli.add_option("--map", options.map, "Poles to score, in any of these formats")->required();
+  addFile(cli, "--map", options.map, "Poles to score, in any of these formats")->required();
   addNumber(cli, "--radius", options.radius, "Distance within which a pole is right, m",
             CLI::PositiveNumber);
   cli.add_flag("--one-to-one", options.oneToOne,
-               "Match each pole at most once (default: count map poles near any true pole)");
-  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
+               "Match each pole at most once; otherwise, map poles near any true pole are right");
+  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool) { return scoreText(evalMap(*shared)); }};
 }
 
@@ -58,19 +58,18 @@ Subcommand trajectoryCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("trajectory", "Errors of a trajectory");
   const auto shared = std::make_shared<EvalTrajectoryOptions>();
   EvalTrajectoryOptions& options = *shared;
-  cli.add_option("--truth", options.truth, "True robot poses, TUM")->required();
-  cli.add_option("--estimate", options.estimate, "Estimated robot poses, TUM")->required();
-  const std::map<std::string, Sampling> samplings{{"pose", Sampling::perPose},
-                                                  {"metre", Sampling::perMetre}};
-  cli.add_option("--per", options.sampling,
-                 "Evaluate at each `pose`, or every `metre` along the true path (default: pose)")
-      ->transform(CLI::CheckedTransformer(samplings))
-      ->type_name("pose|metre");
-  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
-  cli.add_option("--map", options.map, "Pole map to draw under the trajectories");
-  cli.add_option("--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
-  cli.add_option("--png", options.png, "Write a picture of map, truth and estimate");
-  cli.add_option("--title", options.title, "Title of the picture (default: the estimate's file)");
+  addFile(cli, "--truth", options.truth, "True robot poses, TUM")->required();
+  addFile(cli, "--estimate", options.estimate, "Estimated robot poses, TUM")->required();
+  addChoice<Sampling>(cli, "--per", options.sampling,
+                      {{"pose", Sampling::perPose}, {"metre", Sampling::perMetre}},
+                      "Evaluate at each pose, or every metre along the true path")
+      ->default_str("pose");
+  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
+  addFile(cli, "--map", options.map, "Pole map to draw under the trajectories");
+  addFile(cli, "--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
+  addFile(cli, "--png", options.png, "Write a picture of map, truth and estimate");
+  cli.add_option("--title", options.title, "Title of the picture")
+      ->default_str("the file of the estimate");
   return {&cli, [shared](bool) { return scoreText(evalTrajectory(*shared)); }};
 }
 

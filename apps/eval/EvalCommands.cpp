@@ -55,14 +55,13 @@ Subcommand detectionsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "detections", "Compares the poles of single scans with the true poles of a simulated folder");
   const auto options = std::make_shared<EvalDetectionsOptions>();
-  cli.add_option("--scans", options->scans, "Folder that pole-simulate wrote")->required();
-  cli.add_option("--poles", options->poles, "Rawlog of poles extracted from these scans")
-      ->required();
+  addFolder(cli, "--scans", options->scans, "Folder that pole-simulate wrote")->required();
+  addFile(cli, "--poles", options->poles, "Rawlog of poles extracted from these scans")->required();
   addNumber(cli, "--radius", options->radius, "Distance within which a pole is right, m",
             CLI::PositiveNumber);
-  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
-  cli.add_option("--visible", options->visible,
-                 "Write the true poles visible in the scans to this table (CSV)");
+  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
+  addFile(cli, "--visible", options->visible,
+          "Write the true poles visible in the scans to this table (CSV)");
   addNumber(cli, "--min-scans", options->minScans,
             "Least number of scans that see a pole of that table", CLI::PositiveNumber);
   return {&cli, [options](bool) { return scoreText(evalDetections(*options)); }};
@@ -72,9 +71,9 @@ Subcommand repeatabilityCommand(CLI::App& program) {
   auto& cli =
       *program.add_subcommand("repeatability", "Share of poles found again in the next scans");
   const auto options = std::make_shared<EvalRepeatabilityOptions>();
-  cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
-  cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
-  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
+  addFile(cli, "--poles", options->poles, "Rawlog of poles")->required();
+  addFile(cli, "--truth", options->truth, "True robot poses, TUM")->required();
+  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalRepeatability(*options)); }};
 }
 
@@ -83,15 +82,15 @@ Subcommand rotationCommand(CLI::App& program) {
                                       "Share of poles found again when scans are turned about z");
   const auto options = std::make_shared<EvalRotationOptions>();
   const auto config = std::make_shared<std::string>();
-  cli.add_option("--config", *config, "INI file, see config/")->required();
+  addConfigOption(cli, *config)->required();
   const auto set = std::make_shared<std::vector<std::string>>();
   addSetOption(cli, *set);
-  cli.add_option("--input", options->input, "Rawlog of scans")->required();
+  addFile(cli, "--input", options->input, "Rawlog of scans")->required();
   addNumber(cli, "--every", options->every, "Turn every N-th scan only", CLI::PositiveNumber)
       ->type_name("N");
   addNumber(cli, "--radius", options->radius, "Distance within which a pole is found again, m",
             CLI::PositiveNumber);
-  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
+  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options, config, set](bool quiet) {
             Progress progress("turn", 0, quiet);
             options->progress = progress.updates();
@@ -112,10 +111,10 @@ Subcommand modelCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "model", "Fits a model of detections ([simulation] detections) to ray-cast drives");
   const auto options = std::make_shared<FitModelOptions>();
-  cli.add_option("--drives", options->drives,
-                 "Rawlogs of pole-simulate --poles: for each street two, of two days")
+  addFile(cli, "--drives", options->drives,
+          "Rawlogs of pole-simulate --poles: for each street two, of two days")
       ->required();
-  cli.add_option("--model", options->model, "Model to write (JSON)")->required();
+  addFile(cli, "--model", options->model, "Model to write (JSON)")->required();
   return {&cli, [options](bool) { return scoreText(fitModel(*options), *options); }};
 }
 
@@ -139,8 +138,8 @@ Subcommand sightingsCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "sightings", "Compares the poles of a simulated drive with the true poles; needs no scans");
   const auto options = std::make_shared<EvalObservationsOptions>();
-  cli.add_option("--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
-  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
+  addFile(cli, "--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
+  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalObservations(*options)); }};
 }
 
@@ -176,12 +175,12 @@ Subcommand motionCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "motion", "Compares the true poses with the motion of the poles from scan to scan");
   const auto options = std::make_shared<EvalMotionOptions>();
-  cli.add_option("--poles", options->poles, "Rawlog of poles")->required();
-  cli.add_option("--truth", options->truth, "True robot poses, TUM")->required();
+  addFile(cli, "--poles", options->poles, "Rawlog of poles")->required();
+  addFile(cli, "--truth", options->truth, "True robot poses, TUM")->required();
   addNumber(cli, "--every", options->every, "Compare each scan with the N-th after it",
             CLI::PositiveNumber)
       ->type_name("N");
-  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
+  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalMotion(*options)); }};
 }
 

@@ -14,11 +14,11 @@ namespace polemcl::apps {
 namespace {
 
 void declareFiles(CLI::App& cli, TrialDriveFiles& files) {
-  cli.add_option("--config", files.config, "Settings (.ini)")->required();
+  addConfigOption(cli, files.config)->required();
   addSetOption(cli, files.set);
-  cli.add_option("--map", files.map, "Pole map (.polemap)")->required();
-  cli.add_option("--input", files.input, "Rawlog of poles, with odometry")->required();
-  cli.add_option("--truth", files.truth, "True robot poses of the drive (.tum)")->required();
+  addFile(cli, "--map", files.map, "Pole map (.polemap)")->required();
+  addFile(cli, "--input", files.input, "Rawlog of poles, with odometry")->required();
+  addFile(cli, "--truth", files.truth, "True robot poses of the drive (.tum)")->required();
 }
 
 /// A command that starts at random places of a drive.
@@ -28,11 +28,11 @@ Subcommand trialCommand(CLI::App& program, const char* name, const char* meaning
   const auto shared = std::make_shared<RandomStartsOptions>();
   RandomStartsOptions& options = *shared;
   declareFiles(cli, options.files);
-  addNumber(cli, "--trials", options.trials, "Random starts", CLI::Range(1, 1000000));
+  addNumber(cli, "--trials", options.trials, "Number of random starts", CLI::Range(1, 1000000));
   cli.add_option("--seed", options.seed, "Seed of the starts; the filter of trial i uses seed + i")
       ->capture_default_str();
   addNumber(cli, "--metres", options.metres, "Longest path of a trial, m", positiveNumber());
-  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
+  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared, evaluate](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
             shared->progress = [&] { progress.step(); };
@@ -78,13 +78,13 @@ Subcommand consistencyCommand(CLI::App& program) {
   auto& cli =
       *program.add_subcommand("consistency", "Compares the errors of poses with their covariances");
   const auto options = std::make_shared<EvalConsistencyOptions>();
-  cli.add_option("--truth", options->truth,
-                 "True robot poses, TUM: one file for all runs, or one per run")
+  addFile(cli, "--truth", options->truth,
+          "True robot poses, TUM: one file for all runs, or one per run")
       ->required();
-  cli.add_option("--cov", options->cov, "run_NN_cov.csv of pole-localize, one or several")
+  addFile(cli, "--cov", options->cov, "run_NN_cov.csv of pole-localize, one or several")
       ->required();
-  cli.add_option("--health", options->health,
-                 "run_NN_health.csv of each run: count only poses that are ok");
+  addFile(cli, "--health", options->health,
+          "run_NN_health.csv of each run: count only poses that are ok");
   addNumber(cli, "--truth-sigma-m", options->truthSigma,
             "Standard deviation of the true positions along an axis, m", CLI::NonNegativeNumber);
   const auto headingDeg = std::make_shared<double>(0);
@@ -94,7 +94,7 @@ Subcommand consistencyCommand(CLI::App& program) {
             "Time after the first pose that is left out, s", CLI::NonNegativeNumber);
   addNumber(cli, "--skip-metres", options->skipMetres,
             "Path after the first pose that is left out, m", CLI::NonNegativeNumber);
-  cli.add_option("--json", options->json, "Write the results to this file (JSON)");
+  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options, headingDeg](bool) {
             options->truthSigmaYaw = *headingDeg * degree;
             return localizationText(evalConsistency(*options));
@@ -107,15 +107,14 @@ Subcommand faultsCommand(CLI::App& program) {
   const auto shared = std::make_shared<FaultTrialsOptions>();
   FaultTrialsOptions& options = *shared;
   declareFiles(cli, options.files);
-  std::map<std::string, Fault> faults;
+  std::vector<std::pair<std::string, Fault>> faults;
   for (const Fault fault :
        {Fault::none, Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck, Fault::slip})
-    faults[name(fault)] = fault;
-  cli.add_option("--fault", options.fault.fault, "Kind of fault; none: the whole drive as it is")
-      ->required()
-      ->transform(CLI::CheckedTransformer(faults))
-      ->type_name("none|kidnap|wrong-map|blind|stuck|slip");
-  cli.add_option("--other-map", options.otherMap, "The wrong map (.polemap), for wrong-map");
+    faults.emplace_back(name(fault), fault);
+  addChoice(cli, "--fault", options.fault.fault, faults,
+            "Kind of fault; none: the whole drive as it is")
+      ->required();
+  addFile(cli, "--other-map", options.otherMap, "The wrong map (.polemap), for wrong-map");
   addNumber(cli, "--trials", options.trials,
             "Number of trials, each with the fault at another place", CLI::Range(1, 1000000));
   cli.add_option("--seed", options.seed, "Seed of the faults; the filter of trial i uses seed + i")
@@ -126,9 +125,9 @@ Subcommand faultsCommand(CLI::App& program) {
   number("--lead", options.fault.lead, "Time before the fault, s");
   number("--duration", options.fault.duration, "Duration of blind, stuck and slip, s");
   number("--tail", options.fault.tail, "Path after the fault, m");
-  addNumber(cli, "--slip", options.fault.slip, "Error of the slipping odometry's scale",
+  addNumber(cli, "--slip", options.fault.slip, "Error of the slipping odometry's scale, as a share",
             positiveNumber() & CLI::Range(0.0, 1.0));
-  cli.add_option("--json", options.json, "Write the results to this file (JSON)");
+  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
             shared->progress = [&] { progress.step(); };

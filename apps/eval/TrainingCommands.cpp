@@ -38,21 +38,22 @@ Subcommand candidatesCommand(CLI::App& program) {
   const auto config = std::make_shared<std::string>();
   const auto pose = std::make_shared<std::string>("0 0 0 0 0 0");
   const auto set = std::make_shared<std::vector<std::string>>();
-  cli.add_option("--config", *config, "INI file, see config/")->required();
+  addConfigOption(cli, *config)->required();
   addSetOption(cli, *set);
-  cli.add_option("--scans", options->scans,
-                 "Folder with velodyne/*.bin or *.pcd, and poses.txt; in the LiDAR's own frame")
+  addFolder(cli, "--scans", options->scans,
+            "Folder with velodyne/*.bin or *.pcd, and poses.txt; in the LiDAR's own frame")
       ->required();
-  cli.add_option("--sensor-pose", *pose,
-                 "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\"")
+  cli.add_option("--sensor-pose", *pose, "Frame of the clouds on the robot, m and deg")
+      ->type_name("'X Y Z YAW_DEG PITCH_DEG ROLL_DEG'")
+      ->default_str("0")
       ->check(
           [](const std::string& text) { return io::problemOf([&] { parseSensorPose(text); }); });
-  cli.add_option("--poles", options->poles,
-                 "True poles (CSV: id, x, y, radius, top); without them, candidates are labelled "
-                 "by what all scans together show at their place");
+  addFile(cli, "--poles", options->poles,
+          "True poles (CSV: id, x, y, radius, top); without them, candidates are labelled "
+          "by what all scans together show at their place");
   addNumber(cli, "--every", options->every, "Take every N-th scan only", CLI::PositiveNumber)
       ->type_name("N");
-  cli.add_option("--output", options->output, "Table to write (CSV)")->required();
+  addFile(cli, "--output", options->output, "Table to write (CSV)")->required();
   return {&cli, [options, config, pose, set](bool) {
             options->T_robot_sensor = parseSensorPose(*pose);
             return scoreText(writeCandidates(*options, loadSettings(*config, *set)));
@@ -63,20 +64,21 @@ Subcommand trainCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "train", "Fits the confidence of poles and their covariance to labelled candidates");
   const auto options = std::make_shared<TrainOptions>();
-  cli.add_option("--candidates", options->candidates, "Tables of `candidates`, one per drive")
+  addFile(cli, "--candidates", options->candidates, "Tables of `candidates`, one per drive")
       ->required();
-  cli.add_option("--test", options->test, "Tables that are only scored");
+  addFile(cli, "--test", options->test, "Tables that are only scored");
   addNumber(cli, "--products", options->products, "Number of products of two terms",
             CLI::Range(0, 100));
-  addNumber(cli, "--ridge", options->ridge, "Penalty of squared weights", positiveNumber());
+  addNumber(cli, "--ridge", options->ridge, "Penalty of squared weights, a factor without unit",
+            positiveNumber());
   addNumber(cli, "--real-weight", options->realWeight,
-            "Weight of a candidate of a real drive; one of a simulated drive has 1",
+            "Weight of a candidate of a real drive, as a multiple of one of a simulated drive",
             positiveNumber());
   cli.add_flag("!--no-cross-validation", options->crossValidate,
                "Do not score each drive by weights fitted to the others");
-  cli.add_option("--classifier", options->classifier, "Weights to write (CSV)")->required();
-  cli.add_option("--covariance", options->covariance, "Scale of the covariances to write (CSV)");
-  cli.add_option("--json", options->json, "Write the scores to this file (JSON)");
+  addFile(cli, "--classifier", options->classifier, "Weights to write (CSV)")->required();
+  addFile(cli, "--covariance", options->covariance, "Scale of the covariances to write (CSV)");
+  addFile(cli, "--json", options->json, "Write the scores to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(trainClassifier(*options)); }};
 }
 

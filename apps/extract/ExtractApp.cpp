@@ -176,22 +176,23 @@ int extractMain(int argc, const char* const* argv) {
   std::vector<std::string> set;
   auto& cli = line.cli();
   addSetOption(cli, set);
-  auto* inspected = cli.add_option("--inspect", inspection.input,
-                                   "Rawlog of scans: estimate its LiDAR's beams and mounting, and "
-                                   "from its poles and motion when the points were measured");
-  cli.add_option("--write-config", inspection.writeConfig, "INI file to write for that LiDAR")
+  auto* inspected = addFile(cli, "--inspect", inspection.input,
+                            "Rawlog of scans: estimate its LiDAR's beams and mounting, and "
+                            "from its poles and motion when the points were measured");
+  addFile(cli, "--write-config", inspection.writeConfig, "INI file to write for that LiDAR")
       ->needs(inspected);
-  cli.add_option("--truth", inspection.truth, "TUM file of true poses for --inspect")
+  addFile(cli, "--truth", inspection.truth, "TUM file of true poses for --inspect")
       ->needs(inspected);
   cli.add_option("--turn-s", inspection.turnSeconds, "Duration of a turn for --inspect, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->needs(inspected);
-  auto* configured = cli.add_option("--config", config, "INI file, see config/");
-  auto* input = cli.add_option("--input", options.input, "Rawlog of scans");
-  auto* output = cli.add_option("--output", options.output, "Rawlog of poles to write");
-  auto* csv = cli.add_option("--csv", options.csv, "Also write the poles to this table");
-  auto* png = cli.add_option("--png", options.png, "Draw one scan from above with its poles");
+  auto* configured = addConfigOption(cli, config, ", needed without --inspect");
+  auto* input = addFile(cli, "--input", options.input, "Rawlog of scans, needed without --inspect");
+  auto* output = addFile(cli, "--output", options.output,
+                         "Rawlog of poles to write, needed without --inspect");
+  auto* csv = addFile(cli, "--csv", options.csv, "Also write the poles to this table");
+  auto* png = addFile(cli, "--png", options.png, "Draw one scan from above with its poles");
   cli.add_option("--png-scan", options.pngScan, "The scan to draw, from 0")
       ->type_name("K")
       ->check(CLI::NonNegativeNumber)

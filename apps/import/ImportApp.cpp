@@ -58,31 +58,30 @@ std::string ownTiming(Dataset dataset) {
 
 /// What the robot and its LiDAR did: pose, turn, truth.
 void declareSensor(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
-  cli.add_option(
-         "--sensor-pose", texts.sensorPose,
-         "Frame of the clouds on the robot, \"x y z yaw_deg pitch_deg roll_deg\" (default: " +
-             ownSensorPose(dataset) + ")")
+  cli.add_option("--sensor-pose", texts.sensorPose, "Frame of the clouds on the robot, m and deg")
+      ->type_name("'X Y Z YAW_DEG PITCH_DEG ROLL_DEG'")
+      ->default_str(ownSensorPose(dataset))
       ->check(
           [](const std::string& text) { return io::problemOf([&] { parseSensorPose(text); }); });
   auto* turn = cli.add_option("--turn", texts.turn,
                               "How the LiDAR turns while it measures a scan, seen from above; "
-                              "compensated: the scans are corrected for motion (default: " +
-                                  ownTiming(dataset) + ")");
-  turn->check(CLI::IsMember({"compensated", "clockwise", "counterclockwise"}));
+                              "compensated: the scans are corrected for motion");
+  turn->default_str(ownTiming(dataset))
+      ->check(CLI::IsMember({"compensated", "clockwise", "counterclockwise"}));
   cli.add_option("--turn-s", texts.timing.seconds, "Duration of a turn, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->needs(turn);
-  cli.add_option("--cut-deg", texts.cutDeg, "Azimuth at which a scan begins and ends")
+  cli.add_option("--cut-deg", texts.cutDeg, "Azimuth at which a scan begins and ends, deg")
       ->capture_default_str()
       ->needs(turn);
   cli.add_option("--stamp-turn", texts.timing.stamp,
-                 "Moment of the time stamps: 0 begin of the turn, 1 end of it")
+                 "Moment of the time stamps, as a share of the turn: 0 its begin, 1 its end")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str()
       ->needs(turn);
-  auto* poses = cli.add_option("--poses", options.poses,
-                               "TUM file of true poses, instead of those of the dataset");
+  auto* poses = addFile(cli, "--poses", options.poses,
+                        "TUM file of true poses, instead of those of the dataset");
   cli.add_option("--poses-of", texts.posesOf, "Whose poses these are")
       ->check(CLI::IsMember({"robot", "sensor"}))
       ->capture_default_str()
@@ -95,8 +94,8 @@ void declareOwn(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& t
     cli.add_option("--session", texts.session, "Session, when --input holds several: 2012-01-15")
         ->type_name("DATE");
   if (dataset == Dataset::kittiRaw)
-    cli.add_option("--calib", options.calibration,
-                   "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
+    addFolder(cli, "--calib", options.calibration,
+              "Folder of calib_imu_to_velo.txt (default: the one that holds --input)");
   if (dataset != Dataset::rosbag2) return;
   auto& topics = options.topics;
   cli.add_option("--cloud-topic", topics.cloud, "Topic of the clouds, when there are several")
@@ -110,27 +109,28 @@ void declareOwn(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& t
 }
 
 void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
-  cli.add_option("--input", options.input,
-                 dataset == Dataset::rosbag2 ? "Folder of the bag, or one .db3 file"
-                                             : "Folder of the dataset")
+  addFolder(
+      cli, "--input", options.input,
+      dataset == Dataset::rosbag2 ? "Folder of the bag, or one .db3 file" : "Folder of the dataset")
       ->required();
-  cli.add_option("--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
+  addFile(cli, "--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
       ->required();
   cli.add_flag("--embed", options.embed, "Store the clouds inside the rawlog");
-  addNumber(cli, "--every", options.every, "Take scans K, K+N, ...", CLI::PositiveNumber)
+  addNumber(cli, "--every", options.every, "Take every N-th scan", CLI::PositiveNumber)
       ->type_name("N");
   cli.add_option("--offset", options.offset, "First scan to take, from 0")
       ->type_name("K")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   cli.add_option("--odometry-noise", options.odometryNoise,
-                 "Make odometry from the true motion, with noise of this share (0.02 for 2 %)")
-      ->check(CLI::NonNegativeNumber);
+                 "Make odometry from the true motion, with noise of this share, such as 0.02")
+      ->check(CLI::NonNegativeNumber)
+      ->default_str("odometry of the dataset");
   addNumber(cli, "--seed", options.seed, "Seed of that noise", CLI::NonNegativeNumber);
   addNumber(cli, "--odometry-scale", options.odometryScale,
-            "Makes that odometry too long by this share (0.01 for 1 %)", CLI::Range(-0.5, 0.5));
+            "Make that odometry too long by this share, such as 0.01", CLI::Range(-0.5, 0.5));
   addNumber(cli, "--odometry-yaw-deg-m", texts.yawBiasDeg,
-            "Turns that odometry too far, in deg per metre", CLI::Range(-10.0, 10.0));
+            "Turn that odometry too far, deg per metre", CLI::Range(-10.0, 10.0));
   declareSensor(cli, dataset, options, texts);
   declareOwn(cli, dataset, options, texts);
 }

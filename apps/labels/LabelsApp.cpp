@@ -35,13 +35,13 @@ void write(const LabelsOptions& options, const LabelsSummary& summary,
 
 void addLabelsOptions(CLI::App& cli, LabelsOptions& options) {
   LabelMapOptions& labels = options.labels;
-  cli.add_option("--input", options.input, "Folder sequences/NN of SemanticKITTI")->required();
-  cli.add_option("--output", options.output, "Poles to write, .polemap or .csv")->required();
+  addFolder(cli, "--input", options.input, "Folder sequences/NN of SemanticKITTI")->required();
+  addFile(cli, "--output", options.output, "Poles to write, .polemap or .csv")->required();
   const auto number = [&](const char* name, auto& value, const char* what) {
     cli.add_option(name, value, what)->capture_default_str();
   };
-  number("--stems", labels.stems, "Classes of trunks and poles");
-  number("--signs", labels.signs, "Classes of signs and lights on poles");
+  number("--stems", labels.stems, "Classes of trunks and poles, as SemanticKITTI numbers them");
+  number("--signs", labels.signs, "Classes of signs and lights on poles, in the same way");
   number("--max-range", labels.maxRange, "Range of the points used, m");
   number("--max-width", labels.maxWidth, "Largest width of one pole, m");
   number("--min-height", labels.minHeight,

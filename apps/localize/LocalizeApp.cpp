@@ -147,17 +147,21 @@ namespace {
 
 /// A rawlog, or sensors; never both.
 void addSources(CLI::App& cli, LocalizeJob& job) {
-  auto* input = cli.add_option("--input", job.input, "Rawlog of scans or of poles, with odometry");
+  auto* input = addFile(cli, "--input", job.input,
+                        "Rawlog of scans or of poles, with odometry; this or --sensors is needed");
   auto* sensors =
       cli.add_option("--sensors", job.sensors,
                      "In place of --input: sensors (.ini of MRPT's rawlog-grabber), until Ctrl-C")
+          ->type_name("INI")
           ->excludes(input);
-  addNumber(cli, "--for", job.seconds, "End a drive with --sensors after this time, s",
+  addNumber(cli, "--for", job.seconds, "End a drive with --sensors after this time, s; 0: never",
             CLI::Range(0.0, 1e6))
       ->needs(sensors);
-  addNumber(cli, "--follow", job.follow,
-            "Wait at the end of a rawlog that still grows, until nothing has come for this time, s",
-            CLI::Range(0.0, 86400.0))
+  addNumber(
+      cli, "--follow", job.follow,
+      "Wait at the end of a rawlog that still grows, until nothing has come for this time, s; "
+      "0: do not wait",
+      CLI::Range(0.0, 86400.0))
       ->excludes(sensors);
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of a rawlog that ends too early")
@@ -167,17 +171,19 @@ void addSources(CLI::App& cli, LocalizeJob& job) {
 void addViewOptions(CLI::App& cli, LocalizeJob& job) {
   cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
   cli.add_flag("--hold", job.hold, "As --live, and keep the window until it is closed");
-  cli.add_option("--rate", job.rate,
-                 "Speed of the input: 1x as driven, 2.5x, max. Default: max; with a window "
-                 "[view] rate")
+  cli.add_option("--rate", job.rate, "Speed of the input: 1x as driven, 2.5x, max")
+      ->type_name("SPEED")
+      ->default_str("max; with a window [view] rate")
       ->check(
           [](const std::string& text) { return io::problemOf([&] { report::parseRate(text); }); });
   cli.add_option("--scenes", job.scenes,
-                 "Write a .3Dscene every N scans, into OUTPUT/run_00_scenes")
-      ->check(CLI::Range(0, 1000000000));
-  cli.add_option("--frames", job.frames, "Folder for PNG frames; needs no display");
+                 "Write a .3Dscene every N scans, into OUTPUT/run_00_scenes; 0: none")
+      ->check(CLI::Range(0, 1000000000))
+      ->default_str(unlessSet("[view] scenes", report::ViewOptions().scenes));
+  addFolder(cli, "--frames", job.frames, "Folder for PNG frames; needs no display");
   cli.add_option("--frame-every", job.frameEvery, "Write a frame every N scans")
-      ->check(CLI::Range(1, 1000000000));
+      ->check(CLI::Range(1, 1000000000))
+      ->default_str(unlessSet("[view] frame_every", report::ViewOptions().frameEvery));
 }
 
 }  // namespace
@@ -187,29 +193,34 @@ int localizeMain(int argc, const char* const* argv) {
                    "Localizes a vehicle in a pole map, from a rawlog or from sensors.");
   LocalizeJob job;
   auto& cli = line.cli();
-  cli.add_option("--config", job.config, "Settings (.ini)")->required();
+  addConfigOption(cli, job.config)->required();
   addSetOption(cli, job.set);
   addSources(cli, job);
-  cli.add_option("--map", job.map, "Pole map (.polemap)")->required();
-  cli.add_option("--output", job.output, "Folder for the results")->required();
-  cli.add_option("--truth", job.truth, "True robot poses (.tum): errors, and the start");
-  cli.add_option("--runs", job.runs, "Runs, each with its own seed")->check(CLI::Range(1, 10000));
-  cli.add_option("--seed", job.seed, "Seed of the first run; run i uses seed + i");
-  cli.add_option("--particles", job.particles, "Particles of the filter")
-      ->check(CLI::Range(1, 1000000));
-  auto* start =
-      cli.add_option("--start", job.start,
-                     "Start: X,Y,YAW_DEG and its uncertainty RADIUS,HEADING_DEG, m and deg")
-          ->delimiter(',')
-          ->expected(5);
+  addFile(cli, "--map", job.map, "Pole map (.polemap)")->required();
+  addFolder(cli, "--output", job.output, "Folder for the results")->required();
+  addFile(cli, "--truth", job.truth, "True robot poses (.tum): errors, and the start");
+  cli.add_option("--runs", job.runs, "Number of runs, each with its own seed")
+      ->check(CLI::Range(1, 10000))
+      ->default_str(unlessSet("[runs] runs", RunOptions().runs));
+  cli.add_option("--seed", job.seed, "Seed of the first run; run i uses seed + i")
+      ->default_str(unlessSet("[runs] seed", RunOptions().seed));
+  cli.add_option("--particles", job.particles, "Number of particles of the filter")
+      ->check(CLI::Range(1, 1000000))
+      ->default_str(unlessSet("[filter] particles", FilterOptions().particles));
+  auto* start = cli.add_option("--start", job.start,
+                               "Pose at the start, and how far off it can be; m and deg")
+                    ->type_name("X,Y,YAW_DEG,RADIUS,HEADING_DEG")
+                    ->default_str("[start], else the truth")
+                    ->delimiter(',')
+                    ->expected(5);
   cli.add_flag("--global", job.anywhere,
                "Start without a pose: search the whole map during the drive")
       ->excludes(start);
   addViewOptions(cli, job);
   cli.get_option("--sensors")->excludes(cli.get_option("--rate"));
-  cli.add_option("--stream", job.stream,
-                 "File for the poses of the first run as they are made, a line of JSON a scan; - "
-                 "for standard output");
+  addFile(cli, "--stream", job.stream,
+          "File for the poses of the first run as they are made, a line of JSON a scan; - "
+          "for standard output");
   cli.parse_complete_callback([&] {
     if (job.input.empty() && !job.isLive()) throw CLI::RequiredError("--input or --sensors");
   });

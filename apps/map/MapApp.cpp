@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/CommandLine.h"
+#include "cli/Messages.h"
 #include "cli/Progress.h"
 #include "map/MapBuildApp.h"
 #include "map/MapConvertApp.h"
@@ -30,16 +31,17 @@ std::optional<io::Datum> datumOf(const std::string& text) {
 }
 
 void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
-  cli.add_option("--config", line.config, "INI file, see config/")->required();
+  addConfigOption(cli, line.config)->required();
   addSetOption(cli, line.set);
-  cli.add_option("--input", job.inputs, "Rawlogs of scans or poles, one per session")->required();
-  cli.add_option("--truth", job.poses, "True robot poses, TUM, one file per rawlog");
-  cli.add_option("--output", job.output, "Map to write, .polemap")->required();
+  addFile(cli, "--input", job.inputs, "Rawlogs of scans or poles, one per session")->required();
+  addFile(cli, "--truth", job.poses, "True robot poses, TUM, one file per rawlog");
+  addFile(cli, "--output", job.output, "Map to write, .polemap")->required();
   cli.add_option("--date", job.dates,
-                 "Day of each rawlog, YYYY-MM-DD, when its times do not tell it");
+                 "Day of each rawlog, YYYY-MM-DD, when its times do not tell it")
+      ->type_name("DATE");
   addDatumOption(cli, line.datum, "the truth");
-  cli.add_option("--scene", job.scene, "Also write a .3Dscene of the map and the paths");
-  cli.add_option("--csv", job.csv, "Also write the poles to this table");
+  addFile(cli, "--scene", job.scene, "Also write a .3Dscene of the map and the paths");
+  addFile(cli, "--csv", job.csv, "Also write the poles to this table");
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of rawlogs that were cut short");
   cli.parse_complete_callback([&job] {
@@ -57,7 +59,7 @@ CLI::Option* addEstimateOption(CLI::App& cli, MappingJob& job) {
         job.kind = PoseKind::estimate;
       },
       "Instead of --truth: run_NN.tum of pole-localize, one file per rawlog");
-  estimate->excludes(cli.get_option("--truth"));
+  estimate->type_name("FILE")->excludes(cli.get_option("--truth"));
   return estimate;
 }
 
@@ -79,7 +81,7 @@ Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const 
             Progress progress(name, 0, quiet);
             const auto summary = work(*job, settings, progress.updates());
             for (const std::string& warning : warningsOf(summary, *job))
-              progress.say("pole-map: warning: " + warning);
+              progress.say(warningLine("pole-map", warning));
             return summaryText(summary, *job);
           }};
 }
@@ -87,15 +89,15 @@ Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const 
 Subcommand buildCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand("build", "Builds a map from sessions at true poses");
   const auto job = std::make_shared<MapBuildJob>();
-  cli.add_option("--add", job->add,
-                 "Map that keeps its scans; the rawlogs are added as later sessions");
+  addFile(cli, "--add", job->add,
+          "Map that keeps its scans; the rawlogs are added as later sessions");
   cli.add_flag("--keep-scans", job->keepScans,
                "Keep the poles of the used scans in the map, for a later --add");
   Subcommand command = mappingCommand(cli, job, buildMap);
   auto* estimate = addEstimateOption(cli, *job);
-  cli.add_option("--inventory", job->inventory,
-                 "Map of `import` in which the rawlogs were localized: it is made as exact as the "
-                 "LiDAR")
+  addFile(cli, "--inventory", job->inventory,
+          "Map of `import` in which the rawlogs were localized: it is made as exact as the "
+          "LiDAR")
       ->needs(estimate)
       ->excludes("--add");
   estimate->needs("--inventory");
@@ -106,8 +108,8 @@ Subcommand updateCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "update", "Updates a map by new sessions, one after the other, see [map_update]");
   const auto job = std::make_shared<MapUpdateJob>();
-  cli.add_option("--map", job->map, "Map to begin with, .polemap")->required();
-  cli.add_option("--json", job->json, "Also write what changed to this file (JSON)");
+  addFile(cli, "--map", job->map, "Map to begin with, .polemap")->required();
+  addFile(cli, "--json", job->json, "Also write what changed to this file (JSON)");
   Subcommand command = mappingCommand(cli, job, updateMapFile);
   addEstimateOption(cli, *job);
   return command;
@@ -122,14 +124,14 @@ Subcommand diffCommand(CLI::App& program) {
   };
   const auto shared = std::make_shared<Line>();
   Line& line = *shared;
-  cli.add_option("before", line.files.before, "Map of the earlier day, .polemap")->required();
-  cli.add_option("after", line.files.after, "Map of the later day, .polemap")->required();
-  cli.add_option("--config", line.config, "INI file: [map_update] moved_m, ghost_m");
+  addFile(cli, "before", line.files.before, "Map of the earlier day, .polemap")->required();
+  addFile(cli, "after", line.files.after, "Map of the later day, .polemap")->required();
+  addConfigOption(cli, line.config, " ([map_update] moved_m, ghost_m)");
   addSetOption(cli, line.set);
   cli.get_option("--set")->needs("--config");
-  cli.add_option("--scene", line.files.scene, "Also write a .3Dscene of the changes");
-  cli.add_option("--csv", line.files.csv, "Also write the changes to this table");
-  cli.add_option("--png", line.files.png, "Also draw the changes");
+  addFile(cli, "--scene", line.files.scene, "Also write a .3Dscene of the changes");
+  addFile(cli, "--csv", line.files.csv, "Also write the changes to this table");
+  addFile(cli, "--png", line.files.png, "Also draw the changes");
   cli.parse_complete_callback([&line] {
     requireDistinct({line.files.csv, line.files.scene, line.files.png});
   });
@@ -146,8 +148,8 @@ Subcommand convertCommand(CLI::App& program) {
       "convert", "Converts a map; endings name the kinds: .polemap, .csv, .npz, .geojson");
   const auto options = std::make_shared<MapConvertOptions>();
   const auto datum = std::make_shared<std::string>();
-  cli.add_option("input", options->input, "Map to read")->required();
-  cli.add_option("--output", options->output, "Map to write")->required();
+  addFile(cli, "input", options->input, "Map to read")->required();
+  addFile(cli, "--output", options->output, "Map to write")->required();
   addDatumOption(cli, *datum, "the map");
   return {&cli, [options, datum](bool) {
             options->datum = datumOf(*datum);
@@ -160,8 +162,8 @@ Subcommand importCommand(CLI::App& program) {
       "import", "A map from an inventory: .csv, .geojson, or .osm of OpenStreetMap or Lanelet2");
   const auto options = std::make_shared<MapImportOptions>();
   const auto datum = std::make_shared<std::string>();
-  cli.add_option("--input", options->input, "Inventory to read")->required();
-  cli.add_option("--output", options->output, "Map to write, .polemap")->required();
+  addFile(cli, "--input", options->input, "Inventory to read")->required();
+  addFile(cli, "--output", options->output, "Map to write, .polemap")->required();
   cli.add_option("--crs", options->coordinates, "Coordinate system of the places, as EPSG:25833")
       ->capture_default_str();
   cli.add_option("--columns", options->columns, "CSV: columns of the place, east before north")
@@ -180,8 +182,9 @@ Subcommand importCommand(CLI::App& program) {
                                                    : std::string();
       });
   cli.add_option("--radius-property", options->radiusProperty,
-                 "Column or property of the radius; unknown without");
-  addNumber(cli, "--radius-unit", options->radiusUnit, "Metres per unit of it", positiveNumber());
+                 "Column or property of the radius; without it, radii are unknown");
+  addNumber(cli, "--radius-unit", options->radiusUnit,
+            "Length of a unit of that column or property, m", positiveNumber());
   addNumber(cli, "--sigma-m", options->sigma, "Standard deviation of the places along an axis, m",
             positiveNumber());
   addNumber(cli, "--merge-m", options->merge, "Entries this near to an earlier one are left out, m",

@@ -11,6 +11,7 @@
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "sim/drive/Drive.h"
+#include "sim/lidar/LidarModel.h"
 
 namespace polemcl::apps {
 namespace {
@@ -51,6 +52,13 @@ void print(const PoleDriveSummary& summary, const SimulateOptions& options) {
 const std::vector<std::string> folderNames{"velodyne",     "labels",       "times.txt", "poses.txt",
                                            "odometry.txt", "poles_gt.csv", "config.ini"};
 const std::string folderMarker = "poles_gt.csv";
+
+/// The models of the simulator, and the two that `[sensor]` describes.
+std::vector<std::string> sensorNames() {
+  std::vector<std::string> names = sim::lidarNames();
+  names.insert(names.end(), {"table", "uniform"});
+  return names;
+}
 
 }  // namespace
 
@@ -94,17 +102,27 @@ int simulateMain(int argc, const char* const* argv) {
                    "Simulates a drive through an urban street, as a folder of LiDAR scans or a "
                    "rawlog of their poles.");
   SimulateOptions options;
-  line.cli().add_option("--config", options.config, "Settings (INI)")->required();
+  addConfigOption(line.cli(), options.config)->required();
   addSetOption(line.cli(), options.set);
-  const auto* output = line.cli().add_option(
-      "--output", options.output, "Folder of scans to write; replaces an earlier simulation");
-  const auto* poles = line.cli().add_option(
-      "--poles", options.poles,
-      "Rawlog of poles to write, with P.tum, P_poles_gt.csv, P_config.ini beside it");
-  line.cli().add_option("--seed", options.seed, "Seed of the street ([world] seed)");
-  line.cli().add_option("--day", options.day, "Day; 0 is the day of the map ([world] day)");
-  line.cli().add_option("--length", options.length, "Length of the street, m ([world] length_m)");
-  line.cli().add_option("--sensor", options.sensor, "LiDAR model ([sensor] model)");
+  const auto* output = addFolder(
+      line.cli(), "--output", options.output,
+      "Folder of scans to write; replaces an earlier simulation; this or --poles is needed");
+  const auto* poles =
+      addFile(line.cli(), "--poles", options.poles,
+              "Rawlog of poles to write, with P.tum, P_poles_gt.csv, P_config.ini beside it");
+  line.cli()
+      .add_option("--seed", options.seed, "Seed of the street")
+      ->default_str(unlessSet("[world] seed", sim::WorldOptions().seed));
+  line.cli()
+      .add_option("--day", options.day, "Day; 0 is the day of the map")
+      ->default_str(unlessSet("[world] day", sim::WorldOptions().day));
+  line.cli()
+      .add_option("--length", options.length, "Length of the street, m")
+      ->default_str(unlessSet("[world] length_m", sim::WorldOptions().length));
+  line.cli()
+      .add_option("--sensor", options.sensor, "Model of the LiDAR")
+      ->check(CLI::IsMember(sensorNames()))
+      ->default_str(unlessSet("[sensor] model", sim::SimulationOptions().sensor));
   line.cli().parse_complete_callback([&] {
     if (output->count() + poles->count() == 0) throw CLI::RequiredError("--output or --poles");
   });

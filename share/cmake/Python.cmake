@@ -10,3 +10,6 @@ set(POLEMCL_PYTHON_EXECUTABLE ${Python3_EXECUTABLE} CACHE INTERNAL "Python of th
 # At the same place below the build as below the prefix of the installation: there the module finds
 # installed settings. With the prefix /usr/local, Debian's Python finds the module by itself.
 set(POLEMCL_PYTHON_FOLDER lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages)
+if(CMAKE_INSTALL_PREFIX STREQUAL /usr)  # where Debian keeps the modules of packages
+  set(POLEMCL_PYTHON_FOLDER lib/python3/dist-packages)
+endif()

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <string>
+
 #include "cli/Progress.h"
 
 namespace polemcl::test_progress {
@@ -22,13 +26,20 @@ TEST(Progress, LeavesOutWhatIsNotKnown) {
   EXPECT_EQ(progressLine("read", 10, 10, 5.0), "read [####################] 10/10  2.0/s");
 }
 
-TEST(Progress, IsSilentWithoutATerminal) {
+TEST(Progress, WritesLinesNowAndThenWithoutATerminal) {
+  EXPECT_EQ(progressLine("extract", 25, 100, 2.0, 0), "extract 25/100 (25 %)  12.5/s  0:06 left");
+  EXPECT_EQ(progressLine("read", 50, 0, 10.0, 0), "read 50  5.0/s");
   testing::internal::CaptureStderr();
   {
-    Progress progress("extract", 10, false);
-    for (std::size_t i = 1; i <= 10; ++i) progress.update(i);
+    Progress seldom("extract", 10, false), always("map", 10, false, std::chrono::seconds(0)),
+        quiet("hush", 10, true, std::chrono::seconds(0));
+    for (std::size_t i = 1; i <= 10; ++i)
+      for (Progress* each : {&seldom, &always, &quiet}) each->update(i);
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  const std::string lines = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 10) << lines;
+  EXPECT_EQ(lines.rfind("map 1/10 (10 %)", 0), 0u) << lines;
+  EXPECT_EQ(lines.find_first_of("[#\r\033"), std::string::npos) << lines;
 }
 
 }  // namespace polemcl::test_progress

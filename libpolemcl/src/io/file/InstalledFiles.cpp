@@ -24,7 +24,9 @@ fs::path installedFile(const fs::path& file, const std::string& folder) {
 fs::path installedModule(const std::string& name) {
   const fs::path program = programFolder();
   std::error_code ignored;
-  for (const fs::path& folder : {program, program.parent_path() / "lib", fs::path(POLEMCL_LIBDIR)})
+  const fs::path libraries = program.parent_path() / "lib";
+  for (const fs::path& folder :
+       {program, libraries, libraries / "polemcl", fs::path(POLEMCL_LIBDIR)})
     if (fs::exists(folder / name, ignored)) return folder / name;
   return name;
 }

@@ -19,8 +19,8 @@ std::filesystem::path programFolder();
 std::filesystem::path installedFile(const std::filesystem::path& file, const std::string& folder);
 
 /// \brief A module, by its name, that is loaded when it is needed: beside the program, in `../lib`
-/// beside its folder, or where it was to be installed. \return The bare name when it is in none of
-/// these: it is left to the loader.
+/// or `../lib/polemcl` beside its folder, or where it was to be installed. \return The bare name
+/// when it is in none of these: it is left to the loader.
 std::filesystem::path installedModule(const std::string& name);
 
 }  // namespace polemcl::io

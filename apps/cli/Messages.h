@@ -1,0 +1,30 @@
+#pragma once
+/// \file Messages.h
+/// \brief What programs say on standard error besides progress: in colour for people, and in detail
+/// with `--verbose`.
+
+#include <string>
+
+namespace polemcl::apps {
+
+/// \brief True when standard error is a terminal.
+bool errorsAreOnTerminal();
+
+/// \brief Colours of a terminal.
+enum class Colour { red, yellow, green };
+/// \brief A text for standard error in a colour. Without a terminal, with `TERM=dumb` or with a
+/// non-empty `NO_COLOR` in the environment: the text as it is.
+std::string coloured(Colour colour, const std::string& text);
+
+/// \brief The line "pole-map: warning: <text>".
+std::string warningLine(const std::string& program, const std::string& text);
+
+/// \brief From now on, sayDetail() writes its lines in the name of a program; or not.
+void setVerbose(const std::string& program, bool verbose);
+/// \brief With `--verbose`, the line "pole-map: <text>".
+void sayDetail(const std::string& text);
+
+/// \brief Time and memory that the process took, such as `3.2 s, at most 120 MB of memory`.
+std::string resourcesTaken(double seconds);
+
+}  // namespace polemcl::apps

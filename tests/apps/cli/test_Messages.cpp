@@ -1,0 +1,81 @@
+/// \file test_Messages.cpp
+/// \brief What programs write on a terminal, elsewhere, with `--quiet` and with `--verbose`.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "cli/Messages.h"
+#include "support/Shell.h"
+
+namespace polemcl::test_messages {
+
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+const std::string bin = POLEMCL_BIN_DIR;
+const std::string red = "\033[31m", green = "\033[32m", end = "\033[0m";
+
+const std::string failing = bin + "/pole-map convert missing.polemap --output none.csv";
+
+/// A short simulated drive of poles in a new folder.
+std::string simulation(const TempFolder& folder, const std::string& more = "") {
+  return bin + "/pole-simulate --config demo.ini --length 30 --sensor vlp16 --poles " +
+         (folder / "poles.rawlog").string() + " " + more;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST(Messages, ErrorsAreRedOnATerminalOnly) {
+  const Outcome shown = onTerminal("env -u NO_COLOR TERM=xterm " + failing);
+  EXPECT_EQ(shown.code, 1);
+  EXPECT_EQ(shown.out.rfind("pole-map: " + red + "cannot read missing.polemap", 0), 0u)
+      << shown.out;
+  EXPECT_TRUE(has(shown.out, end)) << shown.out;
+  for (const std::string environment : {"NO_COLOR=1 TERM=xterm", "-u NO_COLOR TERM=dumb"}) {
+    const Outcome plain = onTerminal("env " + environment + " " + failing);
+    EXPECT_EQ(plain.out.rfind("pole-map: cannot read missing.polemap", 0), 0u)
+        << environment << plain.out;
+    EXPECT_FALSE(has(plain.out, "\033")) << environment << plain.out;
+  }
+  EXPECT_FALSE(has(shell("env -u NO_COLOR TERM=xterm " + failing).out, "\033"));
+}
+
+TEST(Messages, ABarIsForTerminals) {
+  const TempFolder folder;
+  const Outcome shown = onTerminal("env -u NO_COLOR TERM=xterm " + simulation(folder));
+  EXPECT_EQ(shown.code, 0) << shown.out;
+  EXPECT_TRUE(has(shown.out, "\rsimulate [" + green)) << shown.out;
+  EXPECT_TRUE(has(shown.out, "\r\033[K")) << "the bar is taken off the screen";
+  const Outcome plain = onTerminal("env NO_COLOR=1 TERM=xterm " + simulation(folder));
+  EXPECT_TRUE(has(plain.out, "\rsimulate [")) << plain.out;
+  EXPECT_FALSE(has(plain.out, green)) << plain.out;
+  EXPECT_EQ(onTerminal(simulation(folder, "--quiet")).out, "");
+  EXPECT_FALSE(has(shell(simulation(folder)).out, "simulate [")) << "without a terminal";
+}
+
+TEST(Messages, VerboseSaysBuildSettingsAndTime) {
+  const TempFolder folder;
+  const Outcome shown = shell(simulation(folder, "--verbose --threads 1"));
+  EXPECT_EQ(shown.code, 0) << shown.out;
+  for (const std::string text :
+       {"pole-simulate: pole-simulate 0.", "pole-simulate: threads: at most 1\n",
+        "pole-simulate: settings: ", "share/polemcl/config/demo.ini\n", "pole-simulate: took ",
+        " MB of memory\n"})
+    EXPECT_TRUE(has(shown.out, text)) << text << " is not in: " << shown.out;
+  EXPECT_FALSE(has(shell(simulation(folder)).out, "took "));
+  EXPECT_EQ(shell(simulation(folder, "--quiet --verbose")).code, 2);
+}
+
+TEST(Messages, WarningsNameTheProgram) {
+  EXPECT_TRUE(has(warningLine("pole-map", "old"), "pole-map: ")) << "of a test, perhaps in colour";
+  EXPECT_TRUE(has(warningLine("pole-map", "old"), "warning:"));
+}
+
+}  // namespace polemcl::test_messages

@@ -1,0 +1,144 @@
+#!/bin/sh
+# Makes the Debian packages, checks them with lintian, installs them in an empty Debian 12 and tries them
+# there as a user without the sources: a street, a map, a localized drive, man pages, completion, an
+# example against the headers, the Python module. Then removes them and looks for what was left behind.
+# Usage: tests/install/packages.sh     Needs root, and a mirror of Debian (that of this machine).
+# The empty Debian is kept in ~/.cache/polemcl for the next time.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+base=${XDG_CACHE_HOME:-$HOME/.cache}/polemcl/bookworm.tar
+names="libpolemcl0 polemcl libpolemcl-dev polemcl-doc python3-polemcl"
+[ "$(id -u)" = 0 ] || {
+  echo "tests/install/packages.sh: needs root, for chroot" >&2
+  exit 1
+}
+dir=$(mktemp -d)
+root=$dir/root
+
+clean_up() {
+  umount "$root/proc" 2>/dev/null || :
+  rm -rf --one-file-system "$dir"
+}
+trap clean_up EXIT
+
+fail() {
+  echo "tests/install/packages.sh: $1" >&2
+  exit 1
+}
+
+# quietly COMMAND...: shows what it prints only when it fails.
+quietly() {
+  "$@" >"$dir/log" 2>&1 || {
+    tail -n 40 "$dir/log" >&2
+    fail "this failed: $*"
+  }
+}
+
+# inside COMMAND...: as root in the new Debian.  as_user SCRIPT: as a normal user there.
+inside() {
+  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive "$@"
+}
+as_user() {
+  chroot "$root" env -i PATH=/usr/bin:/bin LANG=C.UTF-8 su -s /bin/bash walker -c "cd && set -e && $1"
+}
+apt_get() {
+  quietly inside apt-get -qq -y --no-install-recommends -o Dpkg::Use-Pty=0 "$@"
+}
+
+# files: all files of the new Debian that are not of apt, dpkg or caches, nor of the kernel.
+files() {
+  (cd "$root" && find . -xdev \( -path ./proc -o -path ./dev -o -path ./home -o -path ./packages \
+    -o -path ./var/lib/dpkg -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log \
+    -o -path ./tmp -o -path ./run \) -prune -o -print | LC_ALL=C sort)
+}
+
+echo "1/7 Packages"
+quietly "$top/share/setup/build.sh" package package
+mkdir "$dir/packages"
+for name in $names; do
+  cp "$top/build-package/$name"_*.deb "$dir/packages/" || fail "no package $name"
+done
+# Nobody has asked for the packages in Debian's list of bugs.
+quietly lintian --allow-root --fail-on error,warning --tag-display-limit 0 \
+  --suppress-tags initial-upload-closes-no-bugs,maintscript-calls-ldconfig "$dir"/packages/*.deb
+
+echo "2/7 An empty Debian 12"
+mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null |
+  sed -n 's/^URIs: *\([^ ]*\/debian\/*\) *$/\1/p; s/^deb \(\[.*\] \)*\([^ ]*\/debian\/*\) bookworm .*/\2/p' |
+  head -n 1)
+if [ ! -s "$base" ]; then
+  mkdir -p "$(dirname "$base")"
+  quietly debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}"
+  tar -C "$root" -cf "$base.new" .
+  mv "$base.new" "$base"
+else
+  mkdir "$root"
+  tar -C "$root" -xf "$base"
+fi
+cp /etc/resolv.conf "$root/etc/"
+[ ! -d /etc/apt/apt.conf.d ] || grep -rhi '^[^/]*proxy' /etc/apt/apt.conf.d >"$root/etc/apt/apt.conf.d/90proxy" || :
+printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" # no services here
+chmod 755 "$root/usr/sbin/policy-rc.d"
+echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fast" # it need not survive a crash
+mount -t proc proc "$root/proc"
+quietly inside useradd --create-home walker
+apt_get update
+# What only this test needs is there before.
+apt_get install g++ cmake make man-db bash-completion
+files >"$dir/before"
+inside dpkg --get-selections | cut -f1 | LC_ALL=C sort >"$dir/installed"
+
+echo "3/7 Installing the packages"
+cp -r "$dir/packages" "$root/packages"
+# shellcheck disable=SC2046 # one name a word
+apt_get install $(find "$root/packages" -name '*.deb' -printf '/packages/%f ')
+quietly inside dpkg --verify libpolemcl0 polemcl libpolemcl-dev polemcl-doc python3-polemcl
+
+echo "4/7 A street, a map and a localized drive, as a user"
+quietly as_user '
+  pole-simulate --quiet --config demo.ini --length 120 --output scans
+  pole-import folder --quiet --input scans --output drive.rawlog
+  pole-map build --quiet --config demo.ini --input drive.rawlog --truth drive.tum --output street.polemap
+  pole-localize --quiet --config demo.ini --input drive.rawlog --map street.polemap --truth drive.tum --output out
+  pole-eval trajectory --truth drive.tum --estimate out/run_00.tum --json error.json --map street.polemap --png run.png
+  pole-simulate --quiet --config hdl32e.ini --length 60 --poles poles.rawlog --set simulation.detections=hdl32e.json'
+error=$(jq .pos_mean "$root/home/walker/error.json") || fail "no errors were written"
+awk "BEGIN { exit !($error > 0 && $error < 0.1) }" || fail "the mean error is $error m"
+[ -s "$root/home/walker/run.png" ] || fail "no picture was drawn"
+# Without sensors there is a message of the module that drives them, not one that it is missing.
+as_user 'pole-localize --config vlp16.ini --sensors live/vlp16.ini --map street.polemap --start 0,0,0,2,5 \
+  --output live --for 1' >"$dir/live" 2>&1 && fail "a drive without sensors was no error"
+! grep -qi 'module\|cannot open shared' "$dir/live" || fail "the drivers of sensors cannot be loaded: $(cat "$dir/live")"
+
+echo "5/7 Man pages, completion, Python, the example against the headers"
+for page in pole-simulate pole-map pole-map-build pole-eval-faults; do
+  quietly as_user "man -w $page && man $page | grep -q EXAMPLES"
+done
+# shellcheck disable=SC2016 # for the bash inside
+offered=$(as_user 'set +e; source /usr/share/bash-completion/bash_completion; _completion_loader pole-map
+  COMP_WORDS=(pole-map build --config hdl) COMP_CWORD=3; _polemcl; echo "${COMPREPLY[*]}"') || :
+[ "$offered" = hdl32e.ini ] || fail "completion offers '$offered' instead of hdl32e.ini"
+quietly as_user 'python3 -c "import polemcl; polemcl.PoleExtractor(\"hdl32e.ini\")"'
+for example in extract map; do
+  quietly as_user "cmake -S /usr/share/doc/polemcl/share/examples/$example -B $example && cmake --build $example"
+done
+quietly as_user './extract/extract scans/velodyne/000040.bin | grep -q . && ./map/map scans example.polemap'
+
+echo "6/7 Removing the packages"
+# shellcheck disable=SC2086 # word splitting wanted
+apt_get purge $names
+apt_get autoremove --purge
+inside dpkg --get-selections | cut -f1 | LC_ALL=C sort >"$dir/left"
+diff "$dir/installed" "$dir/left" >"$dir/log" || {
+  cat "$dir/log" >&2
+  fail "packages were left behind"
+}
+
+echo "7/7 What is left behind"
+files >"$dir/after"
+LC_ALL=C comm -13 "$dir/before" "$dir/after" | grep -i pole >"$dir/log" && {
+  cat "$dir/log" >&2
+  fail "files were left behind"
+}
+echo "Packages: all checks passed"
