@@ -1,10 +1,9 @@
 #include "mrpt/drawing/OverviewScene.h"
 
-#include <mrpt/opengl/CText.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/mrpt/common/Compatibility.h>
 #include "core/common/Angles.h"
 #include "core/common/PrincipalAxes.h"
 #include "core/common/TickStep.h"
@@ -106,8 +105,7 @@ std::vector<Path> partsOf(const Path& path, double spacing) {
 }  // namespace
 
 OverviewScene::OverviewScene(const Path& places_map, const std::string& title)
-    : m_scene(mrpt::opengl::COpenGLScene::Create()),
-      m_content(mrpt::opengl::CSetOfObjects::Create()) {
+    : m_scene(viz::Scene::Create()), m_content(viz::CSetOfObjects::Create()) {
   Eigen::AlignedBox2d box_map;
   for (const auto& place : places_map) box_map.extend(place);
   if (box_map.isEmpty()) box_map.extend(Eigen::Vector2d::Zero());
@@ -124,7 +122,7 @@ OverviewScene::OverviewScene(const Path& places_map, const std::string& title)
 void OverviewScene::addPoles(const std::string& name, const std::vector<MapPole>& poles,
                              const std::function<TColor(const MapPole&)>& color) {
   constexpr double pixels = 7;
-  auto objects = mrpt::opengl::CSetOfObjects::Create();
+  auto objects = viz::CSetOfObjects::Create();
   std::vector<Dot> dots;
   for (std::size_t i = 0; i < poles.size(); ++i) {
     const MapPole& pole = poles[i];
@@ -145,7 +143,7 @@ void OverviewScene::addRibbons(const std::string& name, const std::vector<Path>&
   // Heights that viewers can resolve: grid, truth and estimate lie above each other.
   const double height = std::max(0.03, m_extent / 5000) * (ribbon.bothSides ? 1 : 2);
   const double width = ribbon.width > 0 ? ribbon.width : std::max(1.0, m_extent / 500);
-  auto triangles = mrpt::opengl::CSetOfTriangles::Create();
+  auto triangles = viz::CSetOfTriangles::Create();
   for (const Path& path : paths_map)
     for (Path& part : partsOf(path, width / 2)) {
       for (auto& place : part) place -= m_origin;
@@ -174,8 +172,8 @@ double OverviewScene::addGround() {
   ground->getPlaneLimits(x[0], x[1], y[0], y[1]);
   for (int corner = 0; corner < 4; ++corner) {
     const Eigen::Vector2d place(x[corner % 2], y[corner / 2]), place_map = place + m_origin;
-    auto label = mrpt::opengl::CText::Create(io::fixed(place_map.x(), 0) + ", " +
-                                             io::fixed(place_map.y(), 0));
+    auto label =
+        viz::CText::Create(io::fixed(place_map.x(), 0) + ", " + io::fixed(place_map.y(), 0));
     label->setFont("sans", 20);
     label->setColor_u8(textColor);
     label->setLocation(place.x(), place.y(), 0);
@@ -184,7 +182,7 @@ double OverviewScene::addGround() {
   return step;
 }
 
-mrpt::opengl::COpenGLScene::Ptr OverviewScene::finish() {
+viz::Scene::Ptr OverviewScene::finish() {
   const auto viewport = m_scene->getViewport();
   prepare(*viewport);
   const double step = addGround();

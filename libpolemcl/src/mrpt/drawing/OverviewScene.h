@@ -36,7 +36,7 @@ class OverviewScene {
                   const Ribbon& ribbon);
   void addLegend(const std::vector<scene::LegendLine>& lines);
   /// \brief The scene with ground, legend and camera. Call it once.
-  mrpt::opengl::COpenGLScene::Ptr finish();
+  viz::Scene::Ptr finish();
 
  private:
   double addGround();  ///< grid with labelled corners; returns its step, m
@@ -47,8 +47,8 @@ class OverviewScene {
   double m_extent = 0;       ///< the longer side of the box, m
   double m_unit = 1;         ///< length of a viewer's unit, m
   std::vector<scene::LegendLine> m_legend;
-  mrpt::opengl::COpenGLScene::Ptr m_scene;
-  mrpt::opengl::CSetOfObjects::Ptr m_content;
+  viz::Scene::Ptr m_scene;
+  viz::CSetOfObjects::Ptr m_content;
 };
 
 }  // namespace polemcl

@@ -1,22 +1,21 @@
 #include "mrpt/drawing/SceneParts.h"
 
 #include <mrpt/io/CMemoryStream.h>
-#include <mrpt/opengl/CCylinder.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include <polemcl/mrpt/common/Compatibility.h>
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
-#include "mrpt/common/Compatibility.h"
 
 namespace polemcl::scene {
 namespace {
 
-using mrpt::opengl::COpenGLScene;
-using mrpt::opengl::COpenGLViewport;
-using mrpt::opengl::CSetOfTriangles;
+using viz::CSetOfTriangles;
+using viz::Scene;
+using viz::Viewport;
 
 double roundOrigin(double centre) {
   constexpr double far = 10000, step = 1000;  // m
@@ -27,11 +26,8 @@ mrpt::math::TPoint3Df pointOf(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
-void light(COpenGLViewport& viewport) {
-  auto& lights = viewport.lightParameters();
-  setLight(lights.ambient, 0.8f);
-  setLight(lights.diffuse, 0.28f);
-  setLight(lights.specular, 0.0f);
+void light(Viewport& viewport) {
+  setLight(viewport.lightParameters(), 0.8f, 0.28f, 0.0f);
 }
 
 struct CountClass {
@@ -72,21 +68,20 @@ std::string originText(const Eigen::Vector2d& origin_map) {
          " m of the map";
 }
 
-void prepare(COpenGLViewport& viewport) {
+void prepare(Viewport& viewport) {
   viewport.setCustomBackgroundColor({1.0f, 1.0f, 1.0f});
   light(viewport);
 }
 
-void put(COpenGLViewport& viewport, const std::string& name,
-         const mrpt::opengl::CRenderizable::Ptr& object) {
+void put(Viewport& viewport, const std::string& name, const viz::CVisualObject::Ptr& object) {
   if (auto old = viewport.getByName(name)) viewport.removeObject(old);
   if (!object) return;
   object->setName(name);
   viewport.insert(object);
 }
 
-COpenGLViewport& panelOf(COpenGLScene& scene, const std::string& name, double border) {
-  COpenGLViewport* panel = nullptr;
+Viewport& panelOf(Scene& scene, const std::string& name, double border) {
+  Viewport* panel = nullptr;
   for (const auto& viewport : scene.viewports())
     if (viewport->getName() == name) panel = viewport.get();
   if (!panel) panel = scene.createViewport(name).get();
@@ -97,23 +92,22 @@ COpenGLViewport& panelOf(COpenGLScene& scene, const std::string& name, double bo
   return *panel;
 }
 
-mrpt::opengl::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step) {
+viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step) {
   const auto down = [&](double value) {
     return static_cast<float>(std::floor(value / step) * step);
   };
   const auto up = [&](double value) { return static_cast<float>(std::ceil(value / step) * step); };
-  auto grid = mrpt::opengl::CGridPlaneXY::Create(down(box.min().x()), up(box.max().x()),
-                                                 down(box.min().y()), up(box.max().y()), 0.0f,
-                                                 static_cast<float>(step));
+  auto grid = viz::CGridPlaneXY::Create(down(box.min().x()), up(box.max().x()), down(box.min().y()),
+                                        up(box.max().y()), 0.0f, static_cast<float>(step));
   grid->setColor_u8(groundColor);
   return grid;
 }
 
-void drawPole(mrpt::opengl::CSetOfObjects& objects, double x, double y, double radius,
-              double bottom, double top, const TColor& color, const std::string& name) {
+void drawPole(viz::CSetOfObjects& objects, double x, double y, double radius, double bottom,
+              double top, const TColor& color, const std::string& name) {
   const auto drawn = static_cast<float>(std::max(radius, 0.05));
   const auto height = static_cast<float>(std::max(top - bottom, 0.1));
-  auto cylinder = mrpt::opengl::CCylinder::Create(drawn, drawn, height);
+  auto cylinder = viz::CCylinder::Create(drawn, drawn, height);
   cylinder->setSlicesCount(12);
   cylinder->setLocation(x, y, bottom);
   cylinder->setColor_u8(color);
@@ -121,8 +115,8 @@ void drawPole(mrpt::opengl::CSetOfObjects& objects, double x, double y, double r
   objects.insert(cylinder);
 }
 
-mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<Dot>& dots, double pixels) {
-  auto points = mrpt::opengl::CPointCloudColoured::Create();
+viz::CPointCloudColoured::Ptr makeDots(const std::vector<Dot>& dots, double pixels) {
+  auto points = viz::CPointCloudColoured::Create();
   points->reserve(dots.size());
   for (const Dot& dot : dots) {
     const auto p = pointOf(dot.place);
@@ -135,7 +129,7 @@ mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<Dot>& dots, do
 
 void insertFace(CSetOfTriangles& triangles, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                 const Eigen::Vector3d& c, const TColor& color) {
-  mrpt::opengl::TTriangle triangle(pointOf(a), pointOf(b), pointOf(c));
+  viz::TTriangle triangle(pointOf(a), pointOf(b), pointOf(c));
   triangle.computeNormals();
   triangle.setColor(color);
   triangles.insertTriangle(triangle);
@@ -174,8 +168,7 @@ std::vector<LegendLine> countLegend(const std::vector<MapPole>& poles) {
   return lines;
 }
 
-void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, double scale,
-                Corner corner) {
+void showLegend(Scene& scene, const std::vector<LegendLine>& lines, double scale, Corner corner) {
   constexpr double margin = 10, spacing = 6, mark = 10, indent = 18;  // pixels
   constexpr double letter = 0.82;  // width of a letter relative to its size
   double height = 2 * margin - spacing, width = 0;
@@ -189,7 +182,7 @@ void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, doubl
     constexpr double off = 10;
     return far ? -(off + length) * scale : off * scale;
   };
-  COpenGLViewport& panel = panelOf(scene, "text", scale);
+  Viewport& panel = panelOf(scene, "text", scale);
   panel.setViewportPosition(place(corner.right, width), place(corner.top, height), width * scale,
                             height * scale);
   panel.getCamera().setNoProjection();
@@ -204,7 +197,7 @@ void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, doubl
       marks.push_back(
           {{2 * (margin + mark / 2) / width - 1, 2 * (y + line.size / 2) / height - 1, 0},
            *line.mark});
-    mrpt::opengl::TFontParams font;
+    viz::TFontParams font;
     font.vfont_name = "sans";
     font.vfont_scale = static_cast<float>(line.size * scale);
     font.color = mrpt::img::TColorf(line.color);
@@ -215,7 +208,7 @@ void showLegend(COpenGLScene& scene, const std::vector<LegendLine>& lines, doubl
   put(panel, "marks", makeDots(marks, mark * scale));
 }
 
-void save(const COpenGLScene& scene, const std::filesystem::path& file) {
+void save(const Scene& scene, const std::filesystem::path& file) {
   // Written to memory first: MRPT's file streams do not report a full disk.
   mrpt::io::CMemoryStream bytes;
   mrpt::serialization::archiveFrom(bytes) << scene;

@@ -5,12 +5,6 @@
 ///
 /// Unless stated otherwise, coordinates are those of the scene, m, with the ground at z = 0.
 
-#include <mrpt/opengl/CGridPlaneXY.h>
-#include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/opengl/CPointCloudColoured.h>
-#include <mrpt/opengl/CSetOfObjects.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
-
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
@@ -18,6 +12,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
+#include <polemcl/mrpt/common/Compatibility.h>
 
 namespace polemcl::scene {
 
@@ -36,36 +31,34 @@ Eigen::Vector2d originFor(const Eigen::AlignedBox2d& box_map);
 std::string originText(const Eigen::Vector2d& origin_map);
 
 /// \brief White background, light from all sides: colours look as in the legend.
-void prepare(mrpt::opengl::COpenGLViewport& viewport);
+void prepare(viz::Viewport& viewport);
 /// \brief Replaces the object with this name; a null object removes it.
-void put(mrpt::opengl::COpenGLViewport& viewport, const std::string& name,
-         const mrpt::opengl::CRenderizable::Ptr& object);
+void put(viz::Viewport& viewport, const std::string& name, const viz::CVisualObject::Ptr& object);
 /// \brief A viewport with a border over the main one; created on first use.
-mrpt::opengl::COpenGLViewport& panelOf(mrpt::opengl::COpenGLScene& scene, const std::string& name,
-                                       double border);
+viz::Viewport& panelOf(viz::Scene& scene, const std::string& name, double border);
 
 /// \brief A grid that covers the box, with lines at multiples of `step`.
-mrpt::opengl::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step);
+viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step);
 
 /// \brief Inserts a vertical cylinder. \param bottom,top Heights above z = 0, m.
 /// Radii below 5 cm are drawn as 5 cm, because thinner poles are not visible.
-void drawPole(mrpt::opengl::CSetOfObjects& objects, double x, double y, double radius,
-              double bottom, double top, const TColor& color, const std::string& name = "");
+void drawPole(viz::CSetOfObjects& objects, double x, double y, double radius, double bottom,
+              double top, const TColor& color, const std::string& name = "");
 
 struct Dot {
   Eigen::Vector3d place;
   TColor color;
 };
 /// \brief Squares of constant size in pixels at any distance: poles seen from far away.
-mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<Dot>& dots, double pixels);
+viz::CPointCloudColoured::Ptr makeDots(const std::vector<Dot>& dots, double pixels);
 
 /// \brief One triangle of one colour.
-void insertFace(mrpt::opengl::CSetOfTriangles& triangles, const Eigen::Vector3d& a,
-                const Eigen::Vector3d& b, const Eigen::Vector3d& c, const TColor& color);
+void insertFace(viz::CSetOfTriangles& triangles, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                const Eigen::Vector3d& c, const TColor& color);
 /// \brief A flat band along the path with joined edges at the bends (software renderers draw lines
 /// only one pixel wide). \param left Offset of the band to the left of the path, m.
-void insertRibbon(mrpt::opengl::CSetOfTriangles& triangles, const Path& path, double height,
-                  double width, const TColor& color, double left = 0);
+void insertRibbon(viz::CSetOfTriangles& triangles, const Path& path, double height, double width,
+                  const TColor& color, double left = 0);
 
 /// \brief Colour of a map pole by its number of detections, in classes from 1, 3, 10, 30 and 100.
 TColor colorOfCount(std::uint32_t count);
@@ -84,10 +77,10 @@ struct Corner {
 };
 /// \brief Panel `text` in a corner, with the lines from top to bottom.
 /// \param scale Factor on the size of letters and marks.
-void showLegend(mrpt::opengl::COpenGLScene& scene, const std::vector<LegendLine>& lines,
-                double scale = 1, Corner corner = {});
+void showLegend(viz::Scene& scene, const std::vector<LegendLine>& lines, double scale = 1,
+                Corner corner = {});
 
 /// \brief Writes a `.3Dscene`, atomically. \throws Error when it cannot be written.
-void save(const mrpt::opengl::COpenGLScene& scene, const std::filesystem::path& file);
+void save(const viz::Scene& scene, const std::filesystem::path& file);
 
 }  // namespace polemcl::scene

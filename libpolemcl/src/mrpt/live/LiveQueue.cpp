@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include <polemcl/mrpt/observation/CObservationPoles.h>
-#include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl {
 
@@ -14,11 +13,6 @@ using mrpt::obs::CObservation;
 namespace {
 
 constexpr std::chrono::milliseconds glance{10};  // between two questions whether the drive goes on
-
-bool isScan(const CObservation& observation) {
-  return dynamic_cast<const CObservationPoles*>(&observation) ||
-         ObservationPoleExtractor::canProcess(observation);
-}
 
 }  // namespace
 

@@ -190,7 +190,7 @@ void CPoleMap::saveMetricMapRepresentationToFile(const std::string& filNamePrefi
   scene::save(*overview.finish(), filNamePrefix + ".3Dscene");
 }
 
-void CPoleMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& outObj) const {
+void CPoleMap::getVisualizationInto(viz::CSetOfObjects& outObj) const {
   if (!genericMapParams.enableSaveAs3DObject) return;
   for (std::size_t i = 0; i < m_poles.size(); ++i) {
     const auto& pole = m_poles[i];

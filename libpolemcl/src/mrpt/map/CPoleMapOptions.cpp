@@ -4,8 +4,8 @@
 
 #include <polemcl/config/Config.h>
 #include <polemcl/core/common/Binder.h>
+#include <polemcl/mrpt/common/Compatibility.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
-#include "mrpt/common/Compatibility.h"
 
 MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)
 

@@ -64,10 +64,6 @@ std::vector<PoleDetection> CObservationPoles::polesInRobotFrame() const {
   return poles_robot;
 }
 
-void CObservationPoles::getSensorPose(mrpt::poses::CPose3D& out_sensorPose) const {
-  out_sensorPose = sensorPose;
-}
-
 void CObservationPoles::setSensorPose(const mrpt::poses::CPose3D& newSensorPose) {
   sensorPose = newSensorPose;
 }
@@ -104,7 +100,7 @@ std::string CObservationPoles::exportTxtDataRow() const {
   return row.str();
 }
 
-void CObservationPoles::getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const {
+void CObservationPoles::getVisualizationInto(viz::CSetOfObjects& o) const {
   for (const auto& pole : polesInRobotFrame()) {
     const double sure = std::clamp(pole.confidence, 0.0, 1.0);
     const auto strength = static_cast<std::uint8_t>(80 + 175 * sure);

@@ -37,12 +37,15 @@ class OutputStream : public mrpt::io::CStream {
 };
 
 void requireSurvives(const mrpt::obs::CActionCollection& actions) {
-  for (std::size_t i = 0; i < actions.size(); ++i) {
-    const auto* move = dynamic_cast<const mrpt::obs::CActionRobotMovement2D*>(&actions.get(i));
+  std::size_t index = 0;
+  for (const auto& action : actions) {
+    const auto move =
+        std::dynamic_pointer_cast<mrpt::obs::CActionRobotMovement2D>(action.get_ptr());
     if (move && move->estimationMethod == mrpt::obs::CActionRobotMovement2D::emOdometry)
-      throw Error("action " + std::to_string(i) +
+      throw Error("action " + std::to_string(index) +
                   ": emOdometry would lose its poseChange in a file; set estimationMethod = "
                   "emScan2DMatching");
+    ++index;
   }
 }
 

@@ -79,16 +79,16 @@ void requireUsable(const io::PlanarMotion& motion) {
     throw Error("the covariance of the odometry is not positive semidefinite");
 }
 
-bool isScan(const CObservation& observation) {
-  return dynamic_cast<const CObservationPoles*>(&observation) ||
-         ObservationPoleExtractor::canProcess(observation);
-}
-
 std::string sensorOf(const CObservation& observation) {
   return std::string(observation.GetRuntimeClass()->className) + " " + observation.sensorLabel;
 }
 
 }  // namespace
+
+bool isScan(const CObservation& observation) {
+  return dynamic_cast<const CObservationPoles*>(&observation) ||
+         ObservationPoleExtractor::canProcess(observation);
+}
 
 std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
                                          const MotionOptions& options) {
@@ -96,8 +96,8 @@ std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
   if (const auto best = actions.getBestMovementEstimation())
     motion = motionOf2D(*best, options);
   else
-    for (std::size_t i = 0; i < actions.size() && !motion; ++i)
-      if (const auto* move = dynamic_cast<const CActionRobotMovement3D*>(&actions.get(i)))
+    for (auto action = actions.begin(); action != actions.end() && !motion; ++action)
+      if (const auto move = std::dynamic_pointer_cast<CActionRobotMovement3D>(action->get_ptr()))
         motion = motionOf3D(*move, options);
   if (motion) requireUsable(*motion);
   return motion;

@@ -22,6 +22,9 @@
 
 namespace polemcl {
 
+/// \brief Whether it is a scan: one with poles, or one that poles can be extracted from.
+bool isScan(const mrpt::obs::CObservation& observation);
+
 /// \brief The planar motion in an action; nullopt when it holds no movement.
 /// \throws Error when it is not finite or its covariance is not positive semidefinite.
 std::optional<io::PlanarMotion> motionOf(const mrpt::obs::CActionCollection& actions,

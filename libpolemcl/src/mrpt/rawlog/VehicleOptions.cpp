@@ -92,12 +92,11 @@ void bind(Binder& b, LidarOptions& lidar) {
 
 void bind(Binder& b, VehicleOptions& vehicle, const SensorOptions& sensor,
           const ExtractionOptions& extraction) {
-  b.section("vehicle", "Several LiDARs on one vehicle", Tier::sensor);
+  b.section("vehicle", "Several LiDARs on one vehicle", Tier::tuning);
   std::string labels = joined(vehicle.lidars);
   b.text("lidars", labels,
          "sensor labels of the LiDARs to use, with blanks between; their poles are fused. Empty: "
          "one LiDAR, that of the first scan");
-  b.tier(Tier::tuning);
   vehicle.lidars = lidarsOf(b, labels, vehicle, {"", sensor, extraction});
   b.number("fuse_within_s", vehicle.fuseWithin, Range::between(0, 10), "s",
            "greatest time between scans that are fused: half a turn of the fastest LiDAR");

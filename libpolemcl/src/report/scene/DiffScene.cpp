@@ -16,7 +16,7 @@ std::vector<MapPole> laterOf(const std::vector<MapDiff::Pair>& pairs) {
 
 }  // namespace
 
-mrpt::opengl::COpenGLScene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title) {
+viz::Scene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title) {
   struct Kind {
     const char *name, *text;
     std::vector<MapPole> poles;

@@ -2,10 +2,9 @@
 /// \file DiffScene.h
 /// \brief What changed between two maps as a 3D scene of stock MRPT objects.
 
-#include <mrpt/opengl/COpenGLScene.h>
-
 #include <string>
 
+#include <polemcl/mrpt/common/Compatibility.h>
 #include "core/mapping/MapDiff.h"
 
 namespace polemcl::report {
@@ -15,6 +14,6 @@ namespace polemcl::report {
 ///
 /// Names of the objects: `same`, `new`, `vanished`, `moved`, each with `<name> dots`; `moves`.
 /// \throws Error when both maps are empty.
-mrpt::opengl::COpenGLScene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title = "");
+viz::Scene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title = "");
 
 }  // namespace polemcl::report

@@ -16,7 +16,7 @@ namespace {
 class DisplayWindow : public LiveWindow {
  public:
   DisplayWindow(const std::string& title, unsigned width, unsigned height,
-                const mrpt::opengl::COpenGLScene::Ptr& scene)
+                const viz::Scene::Ptr& scene)
       : m_window(title, width, height) {
     if (!m_window.isOpen())
       throw Error(
@@ -30,7 +30,7 @@ class DisplayWindow : public LiveWindow {
     return const_cast<mrpt::gui::CDisplayWindow3D&>(m_window).isOpen();
   }
 
-  void update(const std::function<void()>& change, const mrpt::opengl::CCamera& camera) override {
+  void update(const std::function<void()>& change, const viz::CCamera& camera) override {
     m_window.get3DSceneAndLock();
     try {
       change();
@@ -45,7 +45,7 @@ class DisplayWindow : public LiveWindow {
 
  private:
   /// The window has a camera of its own, which the user turns; it gets the scene's movements.
-  void follow(const mrpt::opengl::CCamera& camera) {
+  void follow(const viz::CCamera& camera) {
     m_window.setCameraPointingToPoint(camera.getPointingAtX(), camera.getPointingAtY(),
                                       camera.getPointingAtZ());
     const float azimuth = camera.getAzimuthDegrees(), zoom = camera.getZoomDistance(),
@@ -88,7 +88,7 @@ void requireDisplay() {
 
 extern "C" __attribute__((visibility("default"))) polemcl::report::LiveWindow* polemclOpenWindow(
     const std::string& title, unsigned width, unsigned height,
-    const mrpt::opengl::COpenGLScene::Ptr& scene) {
+    const polemcl::viz::Scene::Ptr& scene) {
   polemcl::report::requireDisplay();
   return new polemcl::report::DisplayWindow(title, width, height, scene);
 }

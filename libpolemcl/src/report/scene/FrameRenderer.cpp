@@ -14,7 +14,7 @@ struct Rectangle {
 };
 
 /// A viewport's place in the picture, from its upper left corner. Positions up to 1 are shares.
-Rectangle pixelsOf(mrpt::opengl::COpenGLViewport& viewport, int width, int height) {
+Rectangle pixelsOf(viz::Viewport& viewport, int width, int height) {
   double x = 0, y = 0, w = 0, h = 0;
   viewport.getViewportPosition(x, y, w, h);
   const auto pixels = [](double value, int whole) {
@@ -28,9 +28,8 @@ Rectangle pixelsOf(mrpt::opengl::COpenGLViewport& viewport, int width, int heigh
 
 struct FrameRenderer::Buffer {
   Buffer(unsigned width, unsigned height) : renderer(width, height) {}
-  void render(const mrpt::opengl::COpenGLScene& scene, mrpt::opengl::COpenGLViewport& viewport,
-              mrpt::img::CImage& image) {
-    renderer.setCamera(scene, viewport.getCamera());
+  void render(const viz::Scene& scene, const viz::Viewport& viewport, mrpt::img::CImage& image) {
+    useCamera(renderer, scene, viewport.getCamera());
     renderer.render_RGB(scene, image);
   }
   mrpt::opengl::CFBORender renderer;
@@ -49,8 +48,7 @@ FrameRenderer::FrameRenderer(unsigned width, unsigned height) {
 
 FrameRenderer::~FrameRenderer() = default;
 
-void FrameRenderer::render(const mrpt::opengl::COpenGLScene& scene,
-                           const std::filesystem::path& file) {
+void FrameRenderer::render(const viz::Scene& scene, const std::filesystem::path& file) {
   Buffer& b = *m_buffer;
   b.render(scene, *scene.getViewport(), b.large);
   // CFBORender looks at all viewports with one camera: those over the main one, once more, and
@@ -64,9 +62,8 @@ void FrameRenderer::render(const mrpt::opengl::COpenGLScene& scene,
     const Rectangle part = pixelsOf(*viewport, static_cast<int>(b.large.getWidth()),
                                     static_cast<int>(b.large.getHeight()));
     b.render(scene, *viewport, b.other);
-    b.other.extract_patch(b.patch, static_cast<unsigned>(part.x), static_cast<unsigned>(part.y),
-                          static_cast<unsigned>(part.width), static_cast<unsigned>(part.height));
-    b.large.drawImage(part.x, part.y, b.patch);
+    copyPatch(b.other, b.patch, part.x, part.y, part.width, part.height);
+    drawImage(b.large, part.x, part.y, b.patch);
   }
   show(true);
   b.large.scaleHalf(b.small, mrpt::img::IMG_INTERP_AREA);

@@ -2,10 +2,10 @@
 /// \file FrameRenderer.h
 /// \brief A scene as a PNG, without a display.
 
-#include <mrpt/opengl/COpenGLScene.h>
-
 #include <filesystem>
 #include <memory>
+
+#include <polemcl/mrpt/common/Compatibility.h>
 
 namespace polemcl::report {
 
@@ -24,7 +24,7 @@ class FrameRenderer {
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
   /// \throws Error when the file, a `.png`, cannot be written. It is written in place.
-  void render(const mrpt::opengl::COpenGLScene& scene, const std::filesystem::path& file);
+  void render(const viz::Scene& scene, const std::filesystem::path& file);
 
  private:
   struct Buffer;

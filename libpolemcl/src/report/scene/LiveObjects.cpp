@@ -1,20 +1,18 @@
 #include "report/scene/LiveObjects.h"
 
-#include <mrpt/opengl/CSetOfLines.h>
-#include <mrpt/opengl/CText.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include <polemcl/mrpt/common/Compatibility.h>
 #include "report/scene/LiveScene.h"
 
 namespace polemcl::report::live {
 namespace {
 
-using mrpt::opengl::CSetOfLines;
-using mrpt::opengl::CSetOfObjects;
-using mrpt::opengl::CSetOfTriangles;
+using viz::CSetOfLines;
+using viz::CSetOfObjects;
+using viz::CSetOfTriangles;
 
 constexpr double aboveGround = 0.05;  // m; the grid would flicker through
 
@@ -45,8 +43,7 @@ CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles) {
   return objects;
 }
 
-mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& poles,
-                                                double pointSize) {
+viz::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& poles, double pointSize) {
   std::vector<scene::Dot> dots;
   dots.reserve(poles.size());
   for (const MapPole& pole : poles) dots.push_back({{pole.x, pole.y, 0.1}, mapColor});
@@ -119,7 +116,7 @@ CSetOfObjects::Ptr makeHypotheses(const std::vector<GlobalHypothesis>& places, d
     // Those that nothing speaks for are small, but there.
     const double size = length * (0.4 + 0.6 * std::clamp(place.weight, 0.0, 1.0));
     objects->insert(makeArrow(place.pose_map_robot, size, hypothesisColor));
-    auto share = mrpt::opengl::CText::Create(
+    auto share = viz::CText::Create(
         std::to_string(std::lround(100 * std::clamp(place.weight, 0.0, 1.0))) + "%");
     share->setFont("sans", letters);
     share->setColor_u8(hypothesisColor);
@@ -129,8 +126,8 @@ CSetOfObjects::Ptr makeHypotheses(const std::vector<GlobalHypothesis>& places, d
   return objects;
 }
 
-mrpt::opengl::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, double height,
-                                                     double pointSize) {
+viz::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, double height,
+                                            double pointSize) {
   if (moment.particles.empty()) return nullptr;
   std::vector<std::size_t> order(moment.particles.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -20,23 +20,21 @@ inline const TColor mapColor(0x8a, 0x93, 0x9f), matchedColor(0x00, 0x9e, 0x63),
 /// Colour of the words and of the vehicle: blue, amber, red.
 TColor colorOf(HealthState state);
 
-mrpt::opengl::CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles);
+viz::CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles);
 /// For views from far above, where cylinders are thinner than a pixel.
-mrpt::opengl::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& poles,
-                                                double pointSize);
+viz::CPointCloudColoured::Ptr makeDots(const std::vector<MapPole>& poles, double pointSize);
 /// Observed poles whose match is `matched`, at the estimate.
-mrpt::opengl::CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched);
+viz::CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched);
 /// A ribbon; null without a way.
-mrpt::opengl::CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way);
+viz::CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way);
 /// An arrow of this length, m, in the direction of the pose, its middle on the pose.
-mrpt::opengl::CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& color);
-mrpt::opengl::CSetOfObjects::Ptr makeHypotheses(const std::vector<GlobalHypothesis>& places,
-                                                double length, int letters);
+viz::CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& color);
+viz::CSetOfObjects::Ptr makeHypotheses(const std::vector<GlobalHypothesis>& places, double length,
+                                       int letters);
 /// Light ones first, so that heavy ones are not hidden.
-mrpt::opengl::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, double height,
-                                                     double pointSize);
+viz::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, double height,
+                                            double pointSize);
 /// \param width Width of the band, m.
-mrpt::opengl::CSetOfTriangles::Ptr makeEllipse(const PoseWithCovariance& pose, double height,
-                                               double width);
+viz::CSetOfTriangles::Ptr makeEllipse(const PoseWithCovariance& pose, double height, double width);
 
 }  // namespace polemcl::report::live

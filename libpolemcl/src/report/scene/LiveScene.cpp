@@ -17,8 +17,8 @@ namespace polemcl::report {
 namespace {
 
 using namespace live;
-using mrpt::opengl::COpenGLViewport;
 using scene::put;
+using viz::Viewport;
 
 /// As printf, for short lines.
 __attribute__((format(printf, 1, 2))) std::string line(const char* format, ...) {
@@ -30,7 +30,7 @@ __attribute__((format(printf, 1, 2))) std::string line(const char* format, ...) 
   return text;
 }
 
-mrpt::opengl::CGridPlaneXY::Ptr makeGrid(double x, double y, double half, double step) {
+viz::CGridPlaneXY::Ptr makeGrid(double x, double y, double half, double step) {
   const Eigen::Vector2d centre(x, y), reach(half, half);
   return scene::makeGround({centre - reach, centre + reach}, step);
 }
@@ -87,10 +87,7 @@ std::vector<std::string> describe(const LiveMoment& moment) {
 }
 
 LiveScene::LiveScene(const std::vector<MapPole>& map, std::string title, double textScale)
-    : m_title(std::move(title)),
-      m_textScale(textScale),
-      m_map(map),
-      m_scene(mrpt::opengl::COpenGLScene::Create()) {
+    : m_title(std::move(title)), m_textScale(textScale), m_map(map), m_scene(viz::Scene::Create()) {
   MapView view;
   view.poles = map;
   const Bounds bounds = boundsOf(view);
@@ -107,7 +104,7 @@ LiveScene::LiveScene(const std::vector<MapPole>& map, std::string title, double 
   m_scene->enableFollowCamera(true);
 }
 
-const mrpt::opengl::CCamera& LiveScene::camera() const {
+const viz::CCamera& LiveScene::camera() const {
   return m_scene->getViewport()->getCamera();
 }
 
@@ -146,7 +143,7 @@ void LiveScene::aim(const LiveMoment& moment) {
 }
 
 void LiveScene::showObjects(const LiveMoment& moment) {
-  COpenGLViewport& viewport = *m_scene->getViewport();
+  Viewport& viewport = *m_scene->getViewport();
   const bool known = moment.estimate.has_value();
   const Pose2D pose = known ? moment.estimate->mean : Pose2D{m_centre.x(), m_centre.y(), 0};
   put(viewport, "ground",
@@ -165,12 +162,12 @@ void LiveScene::showObjects(const LiveMoment& moment) {
 }
 
 void LiveScene::showClose(const LiveMoment& moment) {
-  COpenGLViewport& viewport = scene::panelOf(*m_scene, "close", m_textScale);
-  COpenGLViewport& caption = scene::panelOf(*m_scene, "caption", m_textScale);
+  Viewport& viewport = scene::panelOf(*m_scene, "close", m_textScale);
+  Viewport& caption = scene::panelOf(*m_scene, "caption", m_textScale);
   if (!moment.estimate) {  // viewports cannot be taken away: this one is a dot without content
     viewport.clear();
     caption.clearTextMessages();
-    for (COpenGLViewport* panel : {&viewport, &caption}) {
+    for (Viewport* panel : {&viewport, &caption}) {
       panel->setBorderSize(0);
       panel->setViewportPosition(0, 0, 0.001, 0.001);
     }
@@ -196,7 +193,7 @@ void LiveScene::showClose(const LiveMoment& moment) {
   put(viewport, "ground", makeGrid(0, 0, 2 * half, step));
   put(viewport, "particles", makeParticles(near, 0.01 * half, 3 * m_textScale));
   put(viewport, "ellipse", makeEllipse(*near.estimate, 0.02 * half, 0.015 * half));
-  mrpt::opengl::TFontParams font;
+  viz::TFontParams font;
   font.vfont_name = "sans";
   font.vfont_scale = static_cast<float>(11 * m_textScale);
   font.color = mrpt::img::TColorf(scene::textColor);

@@ -2,12 +2,10 @@
 /// \file LiveScene.h
 /// \brief A running localization as a 3D scene of stock MRPT objects, moment by moment.
 
-#include <mrpt/opengl/CCamera.h>
-#include <mrpt/opengl/COpenGLScene.h>
-
 #include <string>
 #include <vector>
 
+#include <polemcl/mrpt/common/Compatibility.h>
 #include "report/scene/LiveMoment.h"
 
 namespace polemcl::report {
@@ -39,9 +37,9 @@ class LiveScene {
   /// camera turns with the vehicle gently, by the metres between two of them.
   void show(const LiveMoment& moment);
 
-  const mrpt::opengl::COpenGLScene::Ptr& scene() const { return m_scene; }
+  const viz::Scene::Ptr& scene() const { return m_scene; }
   /// \brief That of the main viewport.
-  const mrpt::opengl::CCamera& camera() const;
+  const viz::CCamera& camera() const;
 
  private:
   void showText(const LiveMoment& moment);
@@ -56,7 +54,7 @@ class LiveScene {
   Eigen::Vector2d m_centre;                            ///< of the map, in the scene's frame, m
   double m_extent = 0;                                 ///< of the map, m
   std::optional<Pose2D> m_aimed;                       ///< the camera's heading is its yaw
-  mrpt::opengl::COpenGLScene::Ptr m_scene;
+  viz::Scene::Ptr m_scene;
 };
 
 /// \brief The points of the ellipse that holds 95 % of a Gaussian's positions, the first again at

@@ -10,8 +10,7 @@
 namespace polemcl::report {
 namespace {
 
-using Factory = LiveWindow* (*)(const std::string&, unsigned, unsigned,
-                                const mrpt::opengl::COpenGLScene::Ptr&);
+using Factory = LiveWindow* (*)(const std::string&, unsigned, unsigned, const viz::Scene::Ptr&);
 
 constexpr const char* moduleName = "libpolemcl-window.so";
 
@@ -32,8 +31,7 @@ Factory loadFactory() {
 }  // namespace
 
 std::unique_ptr<LiveWindow> openLiveWindow(const std::string& title, unsigned width,
-                                           unsigned height,
-                                           const mrpt::opengl::COpenGLScene::Ptr& scene) {
+                                           unsigned height, const viz::Scene::Ptr& scene) {
   // Before anything is loaded: MRPT would wait for seconds and then go on without a window.
   if (!isSet("DISPLAY") && !isSet("WAYLAND_DISPLAY"))
     throw Error(

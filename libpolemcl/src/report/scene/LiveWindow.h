@@ -5,12 +5,11 @@
 /// MRPT's windows bring wxWidgets and GTK along, which would slow the start of every program. So
 /// the window is a module of its own, `libpolemcl-window.so`, loaded when the first one is opened.
 
-#include <mrpt/opengl/CCamera.h>
-#include <mrpt/opengl/COpenGLScene.h>
-
 #include <functional>
 #include <memory>
 #include <string>
+
+#include <polemcl/mrpt/common/Compatibility.h>
 
 namespace polemcl::report {
 
@@ -23,13 +22,12 @@ class LiveWindow {
   /// moves, from wherever the user has turned it to.
   /// \param change Called with the window's drawing stopped.
   /// \param camera That of the scene, read after the change.
-  virtual void update(const std::function<void()>& change, const mrpt::opengl::CCamera& camera) = 0;
+  virtual void update(const std::function<void()>& change, const viz::CCamera& camera) = 0;
 };
 
 /// \brief Opens a window that shows this scene. \param width,height Pixels.
 /// \throws Error without a display, or when the module is missing.
 std::unique_ptr<LiveWindow> openLiveWindow(const std::string& title, unsigned width,
-                                           unsigned height,
-                                           const mrpt::opengl::COpenGLScene::Ptr& scene);
+                                           unsigned height, const viz::Scene::Ptr& scene);
 
 }  // namespace polemcl::report

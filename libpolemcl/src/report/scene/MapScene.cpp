@@ -13,7 +13,7 @@ scene::Path pathOf(const std::vector<StampedPose2D>& poses) {
 
 }  // namespace
 
-mrpt::opengl::COpenGLScene::Ptr makeMapScene(const MapView& view) {
+viz::Scene::Ptr makeMapScene(const MapView& view) {
   boundsOf(view);  // refuses what cannot be shown
   const scene::Path truth = pathOf(view.truth), estimate = pathOf(view.estimate);
   scene::Path places = truth;

@@ -2,8 +2,7 @@
 /// \file MapScene.h
 /// \brief The drive as a 3D scene of stock MRPT objects: SceneViewer3D opens it without a plugin.
 
-#include <mrpt/opengl/COpenGLScene.h>
-
+#include <polemcl/mrpt/common/Compatibility.h>
 #include "mrpt/drawing/SceneParts.h"
 #include "report/picture/MapView.h"
 
@@ -14,6 +13,6 @@ namespace polemcl::report {
 ///
 /// Names of the objects: `ground`, `poles`, `poles dots`, `truth`, `estimate`.
 /// \throws Error when there is nothing to show, or a coordinate is not finite.
-mrpt::opengl::COpenGLScene::Ptr makeMapScene(const MapView& view);
+viz::Scene::Ptr makeMapScene(const MapView& view);
 
 }  // namespace polemcl::report

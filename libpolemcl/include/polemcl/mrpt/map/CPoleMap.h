@@ -14,6 +14,7 @@
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/export.h>
+#include <polemcl/mrpt/common/Compatibility.h>
 
 namespace polemcl {
 
@@ -107,7 +108,7 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
   /// \brief A cylinder from bottom to top for each pole, map frame, ground at z = 0, coloured by
   /// count. Nothing when `genericMapParams.enableSaveAs3DObject` is false. At UTM coordinates
   /// OpenGL cannot draw them.
-  void getVisualizationInto(mrpt::opengl::CSetOfObjects& outObj) const override;
+  void getVisualizationInto(viz::CSetOfObjects& outObj) const override;
 
   MAP_DEFINITION_START(CPoleMap)
   std::string mapFile;  ///< `.polemap` to load at creation; empty: no file

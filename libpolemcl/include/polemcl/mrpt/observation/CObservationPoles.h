@@ -3,13 +3,13 @@
 /// \brief The poles of one scan as an observation of MRPT.
 
 #include <mrpt/obs/CObservation.h>
-#include <mrpt/opengl/Visualizable.h>
 #include <mrpt/poses/CPose3D.h>
 
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
+#include <polemcl/mrpt/common/Compatibility.h>
 
 namespace polemcl {
 
@@ -18,8 +18,7 @@ namespace polemcl {
 /// Frame: the *planar sensor frame*, with its origin at x, y of `sensorPose`, rotated by its yaw, z
 /// up. A pole in the robot frame is `Pose2D(sensorPose) ⊕ (x, y)`. Heights are above local ground
 /// and independent of the frame. Covariances are in the planar sensor frame.
-class POLEMCL_EXPORT CObservationPoles : public mrpt::obs::CObservation,
-                                         public mrpt::opengl::Visualizable {
+class POLEMCL_EXPORT CObservationPoles : public mrpt::obs::CObservation, public viz::Visualizable {
   DEFINE_SERIALIZABLE(CObservationPoles, polemcl)
 
  public:
@@ -39,7 +38,7 @@ class POLEMCL_EXPORT CObservationPoles : public mrpt::obs::CObservation,
 
   using CObservation::getSensorPose;
   using CObservation::setSensorPose;
-  void getSensorPose(mrpt::poses::CPose3D& out_sensorPose) const override;
+  POLEMCL_GET_SENSOR_POSE(sensorPose)
   void setSensorPose(const mrpt::poses::CPose3D& newSensorPose) override;
   void getDescriptionAsText(std::ostream& o) const override;
   bool exportTxtSupported() const override { return true; }
@@ -47,7 +46,7 @@ class POLEMCL_EXPORT CObservationPoles : public mrpt::obs::CObservation,
   /// \brief Number of poles, then x y radius bottom top confidence of each.
   std::string exportTxtDataRow() const override;
   /// \brief A cylinder from bottom to top for each pole, robot frame, ground at z = 0.
-  void getVisualizationInto(mrpt::opengl::CSetOfObjects& o) const override;
+  void getVisualizationInto(viz::CSetOfObjects& o) const override;
 };
 
 }  // namespace polemcl
