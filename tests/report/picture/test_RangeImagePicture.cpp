@@ -91,9 +91,9 @@ TEST_F(RangeImagePicture, SameInputSameBytes) {
 
 TEST_F(RangeImagePicture, RefusesWhatCannotBeDrawn) {
   EXPECT_THROW(drawRangeImagePng(view, "/nowhere/range.png"), Error);
-  view.options.rows = 0;
+  view.options.epsilon = -1;
   EXPECT_THROW(drawRangeImagePng(view, file), Error);
-  view.options.rows = 64;
+  view.options.epsilon = 0.2;
   view.points = {};
   EXPECT_THROW(drawRangeImagePng(view, file), Error);
 }
