@@ -11,6 +11,7 @@
 #include "io/file/TextFile.h"
 #include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/rawlog/RawlogWriter.h"
+#include "report/picture/RangeImagePicture.h"
 #include "report/picture/ScanPicture.h"
 
 namespace polemcl::apps {
@@ -70,17 +71,34 @@ io::Cloud pointsOf(const PoleScan& scan, const Settings& settings) {
 }
 
 /// The scan from above with the poles that were found in it.
-void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& options) {
-  const std::string where = options.input.string() + ": scan " + std::to_string(scan.index);
-  if (scan.stored) throw Error(where + " holds poles, no points to draw");
+void drawFromAbove(const PoleScan& scan, const Settings& settings, const std::string& title,
+                   const std::filesystem::path& png) {
   const io::Cloud cloud = pointsOf(scan, settings);
   report::ScanView view;
-  view.title = options.input.filename().string() + ", scan " + std::to_string(scan.index);
+  view.title = title;
   view.points = cloud.view();
   view.poles = scan.observation->poles;
   view.ground = scan.report.ground != 0 ? scan.report.ground
                                         : -lidarOf(*scan.sources.front(), settings).sensor.height;
-  report::drawScanPng(view, *options.png);
+  report::drawScanPng(view, png);
+}
+
+/// The steps of the range-image method; of the first LiDAR if there are several.
+void drawRangeImage(const PoleScan& scan, const Settings& settings, const std::string& title,
+                    const std::filesystem::path& png) {
+  const mrpt::obs::CObservation& source = *scan.sources.front();
+  const LidarOptions lidar = lidarOf(source, settings);
+  const io::Cloud cloud = ObservationPoleExtractor(lidar.extractor()).lidarPoints(source);
+  report::drawRangeImagePng({title, cloud.view(), lidar.sensor, lidar.extraction.rangeImage}, png);
+}
+
+void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& options) {
+  const std::string number = std::to_string(scan.index);
+  if (scan.stored)
+    throw Error(options.input.string() + ": scan " + number + " holds poles, no points to draw");
+  const std::string title = options.input.filename().string() + ", scan " + number;
+  if (options.png) drawFromAbove(scan, settings, title, *options.png);
+  if (options.rangeImage) drawRangeImage(scan, settings, title, *options.rangeImage);
 }
 
 void print(const ExtractSummary& summary, const ExtractOptions& options) {
@@ -120,6 +138,11 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
   options.validate();
   SequenceOptions sequence = settings.reading();
   sequence.allowTruncated = options.allowTruncated;
+  if (options.rangeImage && settings.extraction.method != ExtractionMethod::rangeImage)
+    throw Error(
+        "--range-image draws [extraction] method = range_image, but the settings say "
+        "scan_line; add --set extraction.method=range_image, or leave the picture out");
+  const bool drawing = options.png || options.rangeImage;
   // Applied by whoever reads the poles; here it would count twice.
   sequence.motion.covarianceFactor = 1;
 
@@ -135,13 +158,13 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
     rawlog.write(makeActions(motion, scan.observation->timestamp), scan.observation);
     if (csv) writeRows(csv->stream(), scan);
     summary.extraction += scan.report;
-    if (options.png && scan.index == options.pngScan) draw(scan, settings, options);
+    if (drawing && scan.index == options.pngScan) draw(scan, settings, options);
     if (progress) progress(scan.index + 1, scan.expected);
   });
   if (summary.counts.scans == summary.counts.emptyScans)
     throw Error(options.input.string() + ": no usable scan, " +
                 std::to_string(summary.counts.emptyScans) + " scans in it, all without a point");
-  if (options.png && summary.counts.scans <= options.pngScan)
+  if (drawing && summary.counts.scans <= options.pngScan)
     throw Error(options.input.string() + ": no scan " + std::to_string(options.pngScan) +
                 " to draw; there are " + std::to_string(summary.counts.scans) +
                 ", numbered from 0");
@@ -193,11 +216,15 @@ int extractMain(int argc, const char* const* argv) {
                          "Rawlog of poles to write, needed without --inspect");
   auto* csv = addFile(cli, "--csv", options.csv, "Also write the poles to this table");
   auto* png = addFile(cli, "--png", options.png, "Draw one scan from above with its poles");
+  auto* rangeImage =
+      addFile(cli, "--range-image", options.rangeImage,
+              "Draw the steps of method = range_image: ranges, segments, refused ones, poles");
   cli.add_option("--png-scan", options.pngScan, "The scan to draw, from 0")
       ->type_name("K")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  for (auto* option : {configured, input, output, csv, png}) inspected->excludes(option);
+  for (auto* option : {configured, input, output, csv, png, rangeImage})
+    inspected->excludes(option);
   cli.add_flag("--allow-truncated", options.allowTruncated,
                "Use the readable part of a rawlog that was cut short");
   cli.parse_complete_callback([&] {

@@ -23,7 +23,8 @@ cp "$top/README.md" "$top/CONTRIBUTING.md" "$top/CHANGELOG.md" "$out/source"
 for folder in doc examples figures reports; do
   cp -R "$top/share/$folder" "$out/source/share"
 done
-cp "$top/share/site/mkdocs.yml" "$out"
+cp "$top/share/site/mkdocs.yml" "$top/share/site/lists.py" "$out"
+cp "$top/share/site/extra.css" "$out/source"
 
 (cd "$top" && {
   cat share/site/Doxyfile
@@ -31,5 +32,8 @@ cp "$top/share/site/mkdocs.yml" "$out"
   echo "OUTPUT_DIRECTORY = $out/source/share/doc"
   echo "HTML_OUTPUT = api"
 } | doxygen -)
-mkdocs build --quiet --strict --config-file "$out/mkdocs.yml"
+mkdocs build --strict --config-file "$out/mkdocs.yml" >"$out/mkdocs.log" 2>&1 || {
+  grep -v '^INFO' "$out/mkdocs.log" >&2
+  exit 1
+}
 echo "$out/site/index.html"

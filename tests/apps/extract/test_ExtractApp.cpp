@@ -98,6 +98,20 @@ TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
                 {at("poles.rawlog"), "holds poles"});
 }
 
+TEST_F(ExtractApp, DrawsTheStepsOfTheRangeImageMethodOnly) {
+  writeStreet(folder / "in", 1);
+  import("in");
+  const std::vector<std::string> arguments{"--config",      config(),       "--input",
+                                           at("in.rawlog"), "--output",     at("poles.rawlog"),
+                                           "--range-image", at("range.png")};
+  expectFailure(runProgram(extractMain, arguments), {"--range-image", "method = range_image"});
+  auto all = arguments;
+  all.insert(all.end(), {"--set", "extraction.method=range_image"});
+  const auto outcome = runProgram(extractMain, all);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(readText(folder / "range.png").substr(1, 3), "PNG");
+}
+
 TEST_F(ExtractApp, KeepsMotionsTimesAndSensorPose) {
   writeStreet(folder / "in", 3);
   import("in", true, "0.5 0 0 90 0 0");

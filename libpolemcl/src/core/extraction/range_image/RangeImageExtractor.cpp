@@ -17,7 +17,7 @@ RangeImageExtractor::RangeImageExtractor(const SensorOptions& sensor,
       m_cells(2 * (static_cast<int>(std::ceil(options.maxRange)) + 1)) {}
 
 void RangeImageExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,
-                                  ExtractionReport& report) {
+                                  ExtractionReport& report, std::vector<SegmentOutcome>* outcomes) {
   const PointCounts counts = project(points, m_options, m_minRange, m_heightOffset, m_image);
   report.points = points.size;
   report.invalid = counts.invalid;
@@ -38,6 +38,7 @@ void RangeImageExtractor::extract(const PointsView& points, std::vector<PoleDete
       ++report.refused[static_cast<int>(*rejection)];
     else
       poles.push_back(pole);
+    if (outcomes) outcomes->push_back({segmentation.segments()[i].pixels, rejection});
   }
 }
 

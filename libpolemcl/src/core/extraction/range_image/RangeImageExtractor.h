@@ -10,11 +10,20 @@
 
 namespace polemcl {
 
+/// \brief What became of one segment.
+struct SegmentOutcome {
+  std::vector<Pixel> pixels;
+  std::optional<RejectionReason> rejection;  ///< why it is not a pole; empty for a pole
+};
+
 class RangeImageExtractor {
  public:
   RangeImageExtractor(const SensorOptions& sensor, const RangeImageOptions& options);
+  /// \param[out] outcomes One for each segment, for those who draw them.
   void extract(const PointsView& points, std::vector<PoleDetection>& poles,
-               ExtractionReport& report);
+               ExtractionReport& report, std::vector<SegmentOutcome>* outcomes = nullptr);
+  /// \brief The image of the last scan.
+  const RangeImage& image() const { return m_image; }
 
  private:
   /// Square around a circle and its segment of heights, frame of the points.
