@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ostream>
 
+#include <polemcl/config/Config.h>
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "core/common/PoseInterpolation.h"
 #include "io/data/Trajectory.h"
@@ -84,11 +85,15 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
     out << "fits              no preset; model = table with the elevations above\n";
 }
 
-void printTiming(std::ostream& out, const std::optional<TimingEstimate>& found) {
+void printTiming(std::ostream& out, const Inspection& inspection) {
+  const std::optional<TimingEstimate>& found = inspection.timing;
   out << "scan timing       ";
   if (!found) {
-    out << "unknown: clouds that stand upright are needed, and odometry between all scans or\n"
-           "                  true poses (--truth)\n";
+    out << (inspection.sensor.sensor.onItsHead
+                ? "not looked for in clouds that are upside down\n"
+                : "not looked for: this rawlog has no odometry between all scans; --truth S.tum\n"
+                  "                  gives the motion (pole-import writes S.tum beside "
+                  "S.rawlog)\n");
     return;
   }
   if (found->pairs == 0) {
@@ -140,6 +145,13 @@ std::optional<TimingEstimate> findTiming(const InspectOptions& options, Settings
   return searchTiming(scans, options.turnSeconds);
 }
 
+/// Only what was looked for: all other keys keep their defaults.
+void saveSensor(Settings settings, const std::filesystem::path& file) {
+  ConfigWriter writer(Tier::tuning);
+  bind(writer, settings.sensor);
+  writer.save(file.string());
+}
+
 }  // namespace
 
 Settings settingsFor(const Inspection& inspection) {
@@ -155,7 +167,7 @@ Inspection inspect(const InspectOptions& options, const ScanProgress& progress) 
   Inspection result{inspectRawlog(options.input.string(), options.allowTruncated), {}};
   if (!result.sensor.sensor.onItsHead)  // else poles are not found
     result.timing = findTiming(options, settingsFor(result), progress);
-  if (options.writeConfig) saveSettings(settingsFor(result), options.writeConfig->string());
+  if (options.writeConfig) saveSensor(settingsFor(result), *options.writeConfig);
   return result;
 }
 
@@ -166,7 +178,7 @@ void printInspection(std::ostream& out, const Inspection& inspection) {
   printBeams(out, scans.sensor);
   printMounting(out, scans);
   printPresets(out, scans);
-  printTiming(out, inspection.timing);
+  printTiming(out, inspection);
 }
 
 }  // namespace polemcl::apps

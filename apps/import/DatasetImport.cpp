@@ -172,6 +172,17 @@ ScanTiming timingOf(const ImportOptions& options, const io::ScanFolder& folder) 
 }
 
 /// Both files appear together, when both are complete.
+/// Poses in a camera's frame move along z, as no vehicle does.
+std::optional<std::string> climbNote(const std::vector<io::StampedPose3D>& truth) {
+  Eigen::AlignedBox3d box;
+  for (const auto& stamped : truth) box.extend(stamped.pose.translation());
+  if (box.isEmpty() || box.sizes().z() < 5 || box.sizes().z() < box.sizes().head<2>().norm())
+    return std::nullopt;
+  return "the true poses span " + io::fixed(box.sizes().z(), 1) + " m in z and " +
+         io::fixed(box.sizes().head<2>().norm(), 1) +
+         " m in x and y: z must point up, so these may be in the frame of a camera";
+}
+
 void publish(RawlogWriter& rawlog, std::optional<io::AtomicFile>& truthFile,
              const std::vector<io::StampedPose3D>& truth) {
   if (truthFile) io::writeTum(truthFile->temporaryPath(), truth);
@@ -271,6 +282,7 @@ ImportReport importDataset(const ImportOptions& options,
     throw Error(options.input.string() + ": no usable scan, all " +
                 std::to_string(report.emptyScans) + " selected ones are empty");
   publish(rawlog, truthFile, truth);
+  if (const auto note = climbNote(truth)) report.notes.push_back(*note);
   report.hasTruth = truthFile.has_value();
   return report;
 }

@@ -144,9 +144,11 @@ void printImport(const ImportReport& report, const ImportOptions& options) {
               << " invalid ones dropped";
   std::cout << '\n'
             << (report.hasTruth ? "truth: beside it, .tum\n" : "truth: none in the dataset\n")
-            << (report.hasMotion ? options.odometryNoise ? "odometry: true motion with noise\n"
-                                                         : "odometry: from the dataset\n"
-                                 : "odometry: none; good for mapping, not for localization\n");
+            << (report.hasMotion  ? options.odometryNoise ? "odometry: true motion with noise\n"
+                                                          : "odometry: from the dataset\n"
+                : report.hasTruth ? "odometry: none; good for mapping, not for localization\n"
+                                  : "odometry: none; without it and without true poses (--poses) "
+                                    "only poles can be extracted\n");
   for (const auto& note : report.notes) std::cout << "note: " << note << '\n';
 }
 

@@ -24,6 +24,7 @@ void forEachRun(std::size_t runs, const Work& work) {
 
 void FilterRun::add(const LocalizationUpdate& update) {
   ++states[static_cast<int>(update.health.state)];
+  if (update.health.state != HealthState::ok) ++reasons[update.health.reason];
   if (update.estimate && !firstPose) firstPose = scans;
   relocalizations += update.relocalized ? 1 : 0;
   resampled += update.step.resampled ? 1 : 0;

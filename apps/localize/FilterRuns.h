@@ -3,6 +3,7 @@
 /// \brief The same drive localized several times, side by side, each run with its own seed.
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,11 +16,12 @@ namespace polemcl::apps {
 struct FilterRun {
   std::uint32_t seed = 0;
   std::size_t scans = 0;
-  std::size_t states[3] = {};            ///< scans in each HealthState
-  std::optional<std::size_t> firstPose;  ///< 0-based scan from which on the pose was known
-  std::size_t relocalizations = 0;       ///< scans at which the global search set the pose
-  std::size_t resampled = 0;             ///< scans after which the filter resampled
-  double seconds = 0;                    ///< spent in the localization
+  std::size_t states[3] = {};                   ///< scans in each HealthState
+  std::map<HealthReason, std::size_t> reasons;  ///< scans that were not ok, by reason
+  std::optional<std::size_t> firstPose;         ///< 0-based scan from which on the pose was known
+  std::size_t relocalizations = 0;              ///< scans at which the global search set the pose
+  std::size_t resampled = 0;                    ///< scans after which the filter resampled
+  double seconds = 0;                           ///< spent in the localization
 
   /// \brief One scan more.
   void add(const LocalizationUpdate& update);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <utility>
 
 #include "cli/JsonFile.h"
@@ -50,18 +51,27 @@ Json healthSummary(const FilterRun& run) {
 
 void printHealth(std::ostream& out, const LocalizeResult& result) {
   std::size_t all = 0, counts[3] = {}, unknown = 0;
+  std::map<HealthReason, std::size_t> why;
   for (const auto& run : result.runs) {
     all += run.scans;
     unknown += !run.firstPose;
     for (int state = 0; state < 3; ++state) counts[state] += run.states[state];
+    for (const auto& [reason, scans] : run.reasons) why[reason] += scans;
   }
   const auto percent = [all](std::size_t count) {
     return 100.0 * static_cast<double>(count) / static_cast<double>(all);
   };
   char line[200];
-  std::snprintf(line, sizeof line, "health: %.1f %% ok, %.1f %% degraded, %.1f %% lost\n",
+  std::snprintf(line, sizeof line, "health: %.1f %% ok, %.1f %% degraded, %.1f %% lost",
                 percent(counts[0]), percent(counts[1]), percent(counts[2]));
   out << line;
+  const char* before = " (";
+  for (const auto& [reason, scans] : why) {
+    std::snprintf(line, sizeof line, "%s%s %.1f %%", before, name(reason), percent(scans));
+    out << line;
+    before = ", ";
+  }
+  out << (why.empty() ? "\n" : ")\n");
   if (unknown > 0) out << unknown << " of " << result.runs.size() << " runs never found a pose\n";
 }
 

@@ -134,7 +134,12 @@ std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& option
          ", min_count = " + io::significant(options.minCount, 4) +
          " are needed (less where scans are far apart), max_gap = " +
          std::to_string(options.maxGap) +
-         (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]");
+         (map.detections == 0 ? "; see [sensor] and [extraction]" : "; see [map]") +
+         // Poles that are found again and again fall into few places.
+         (map.detections > 0 && 2 * map.clusters > map.detections
+              ? "; most places hold one detection: check that the true poses fit the scans (frame, "
+                "z up, times)"
+              : "");
 }
 
 /// `f_map.NAME` of each session; of equal names the second is `f_map.NAME.2`.

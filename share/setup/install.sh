@@ -36,7 +36,7 @@ else
   fail "missing packages, and neither root nor sudo to install them; ask for: apt-get install$missing"
 fi
 
-echo "Installing:$missing"
+echo "Installing, which takes some minutes and is silent:$missing"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 # A source list that cannot be refreshed need not matter: the installation decides.

@@ -172,8 +172,11 @@ TEST(Config, HoldsRulesBetweenFields) {
 TEST(Config, RefusesUnknownNames) {
   const std::string key = refusal("[sample]\nlenght_m = 3 # m\n");
   EXPECT_HAS(key, "test.ini: [sample] lenght_m = 3: key is not known; known are: angle_deg");
+  EXPECT_HAS(key, "; is length_m meant?");
   const std::string section = refusal("[sample]\n[smaple]\ncount = 3\n");
-  EXPECT_HAS(section, "test.ini: section [smaple] is not known; known are: sample");
+  EXPECT_HAS(section,
+             "test.ini: section [smaple] is not known; known are: sample; is sample meant?");
+  EXPECT_EQ(refusal("[sample]\nwheels = 3\n").find("meant?"), std::string::npos);
 }
 
 TEST(Config, RefusesWhatIsGivenTwice) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 
 #include <polemcl/config/Config.h>
 #include "io/file/AtomicFile.h"
@@ -29,6 +30,32 @@ std::string withoutComment(const std::string& line) {
 std::string joined(const std::set<std::string>& words) {
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// Letters to change, to add or to drop until both are the same (Levenshtein).
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The words that are known, and of these the one that was probably meant.
+std::string knownWords(const std::set<std::string>& words, const std::string& found) {
+  const auto distance = [&](const std::string& word) { return editDistance(lower(found), word); };
+  const auto nearest =
+      std::min_element(words.begin(), words.end(),
+                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  std::string text = "known are: " + joined(words);
+  if (nearest != words.end() && distance(*nearest) <= 2) text += "; is " + *nearest + " meant?";
   return text;
 }
 
@@ -155,11 +182,11 @@ void ConfigReader::finish() const {
     const auto known = m_known.find(lower(section));
     if (known == m_known.end()) {
       if (!m_fixedSection.empty()) continue;  // the other sections belong to others
-      throw Error(place() + "section [" + section +
-                  "] is not known; known are: " + joined(knownSections) +
+      throw Error(place() + "section [" + section + "] is not known; " +
                   (section.find(':') == std::string::npos
-                       ? ""
-                       : "; [vehicle] lidars must list the label behind the colon"));
+                       ? knownWords(knownSections, section)
+                       : "[vehicle] lidars must list the label behind the colon; known are: " +
+                             joined(knownSections)));
     }
     std::vector<std::string> keys;
     m_source->getAllKeys(section, keys);
@@ -167,7 +194,7 @@ void ConfigReader::finish() const {
       if (!known->second.count(lower(key)))
         throw Error(place() + "[" + section + "] " + key + " = " +
                     withoutComment(m_source->read_string(section, key, "")) +
-                    ": key is not known; known are: " + joined(known->second));
+                    ": key is not known; " + knownWords(known->second, key));
   }
 }
 

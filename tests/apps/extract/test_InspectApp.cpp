@@ -67,9 +67,13 @@ TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   EXPECT_TRUE(has(outcome.out, "beams             32")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "fits              model = hdl32e")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "tilt")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "no odometry between all scans; --truth S.tum")) << outcome.out;
   const Settings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
   EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
+  const std::string text = readText(folder / "found.ini");
+  EXPECT_TRUE(has(text, "[sensor]") && has(text, "clock_offset_s")) << text;
+  EXPECT_FALSE(has(text, "[scan_line]")) << "only what was looked for";
   const auto extracted = run(
       {"--config", at("found.ini"), "--input", at("in.rawlog"), "--output", at("poles.rawlog")});
   EXPECT_EQ(extracted.code, 0) << extracted.err;
@@ -107,6 +111,7 @@ TEST_F(InspectApp, SaysWhenCloudsStandOnTheirHead) {
   const auto outcome = inspectInput();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(has(outcome.out, "--sensor-pose whose roll is 180 deg")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "not looked for in clouds that are upside down")) << outcome.out;
 }
 
 TEST_F(InspectApp, RefusesPolesAndEmptyRawlogs) {

@@ -78,13 +78,24 @@ TEST_F(ImportApp, KeepsTheMeasuringTimesInTheRawlog) {
   EXPECT_EQ(run("folder", {"--cut-deg", "90"}).code, 2) << "needs --turn";
 }
 
+TEST_F(ImportApp, NotesPosesThatClimbLikeThoseOfACamera) {
+  writeLine(folder / "in", 3);
+  writeText(folder / "in" / "poses.txt",
+            "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0.1 0 0 1 3\n1 0 0 0 0 1 0 0 0 0 1 6\n");
+  EXPECT_HAS(run("folder").out, "note: the true poses span 6.0 m in z and 0.1 m in x and y");
+  writeText(folder / "in" / "poses.txt",
+            "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 7 0 0 1 3\n1 0 0 0 0 1 0 0 0 0 1 6\n");
+  EXPECT_EQ(run("folder").out.find("note:"), std::string::npos) << "a steep street";
+}
+
 TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
   for (const char* name : {"1.pcd", "2.pcd"})
     writeText(folder / "in" / name,
               "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\nnan 0 0\n");
   const auto outcome = run("pcd");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* words : {"2 scans; 2 points, 2 invalid", "truth: none", "0.1 s apart"})
+  for (const char* words : {"2 scans; 2 points, 2 invalid", "truth: none",
+                            "only poles can be extracted", "0.1 s apart"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
   fs::remove_all(folder / "in");  // the points are inside
   polemcl::RawlogReader reader((folder / "out.rawlog").string());

@@ -100,12 +100,14 @@ TEST_F(FilterRunsTest, CountsWhatTheUpdatesSay) {
       counted.resampled += update.step.resampled;
       counted.relocalizations += update.relocalized;
       ++counted.states[static_cast<int>(update.health.state)];
+      if (update.health.state != HealthState::ok) ++counted.reasons[update.health.reason];
       ++scan;
     }
     EXPECT_EQ(figures[i].scans, results[i].size());
     EXPECT_EQ(figures[i].firstPose, counted.firstPose);
     EXPECT_EQ(figures[i].resampled, counted.resampled);
     EXPECT_EQ(figures[i].relocalizations, counted.relocalizations);
+    EXPECT_EQ(figures[i].reasons, counted.reasons);
     for (int state = 0; state < 3; ++state)
       EXPECT_EQ(figures[i].states[state], counted.states[state]) << state;
   }

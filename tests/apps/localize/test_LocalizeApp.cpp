@@ -155,7 +155,8 @@ TEST_F(LocalizeApp, OldRunsGoWhenNewOnesAreComplete) {
 }
 
 TEST_F(LocalizeApp, CovarianceAndHealthOfEveryScan) {
-  ASSERT_EQ(runWithTruth().code, 0);
+  const auto outcome = runWithTruth();
+  ASSERT_EQ(outcome.code, 0);
   const std::string covariances = readText(out("run_00_cov.csv"));
   EXPECT_EQ(covariances.substr(0, covariances.find('\n')),
             "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw");
@@ -182,6 +183,7 @@ TEST_F(LocalizeApp, CovarianceAndHealthOfEveryScan) {
   EXPECT_NE(health.find("\n0,100.000000000,degraded,converging,"), std::string::npos);
   EXPECT_NE(health.find(",ok,none,"), std::string::npos);
   EXPECT_EQ(health.find(",lost,"), std::string::npos);
+  EXPECT_NE(outcome.out.find("% lost (converging "), std::string::npos) << outcome.out;
   const auto counted = summary()["runs"][0]["health"];
   EXPECT_EQ(counted["ok"].get<int>() + counted["degraded"].get<int>(), int(scans));
   EXPECT_EQ(counted["first_pose_scan"], 0);

@@ -156,12 +156,21 @@ TEST_F(MapApp, RefusesWhenNoPoleIsFound) {
   EXPECT_EQ(readText(folder / "street.polemap"), "old");
 }
 
+TEST_F(MapApp, SaysThatTheTruthMayNotFit) {
+  drive("in", 6);
+  auto truth = io::readTum(folder / "in.tum");
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    truth[i].pose.translation().y() += 3 * static_cast<double>(i);
+  io::writeTum(folder / "in.tum", truth);
+  expectFailure(run({"in"}), {"no pole found", "check that the true poses fit the scans"});
+}
+
 TEST_F(MapApp, NamesTheCountWhenNoPoleIsSeenOftenEnough) {
   drive("in", 6);
   writeText(folder / "strict.ini",
             "[sensor]\nmodel = hdl32e\nheight_m = 1.0\n[map]\nmin_count = 50\n");
   expectFailure(run({"in"}, {"--csv", at("street.csv")}, at("strict.ini")),
-                {"no pole", "min_count = 50", "[map]"});
+                {"no pole", "min_count = 50", "[map]\n"});
   EXPECT_FALSE(hasMap());
   EXPECT_FALSE(fs::exists(folder / "street.csv"));
 }

@@ -212,7 +212,8 @@ TEST_F(PoleMapFileTest, RefusesAMissingFile) {
 }
 
 TEST_F(PoleMapFileTest, RefusesOtherFiles) {
-  expectIn(refusal("x,y\n1,2\n"), path("m.polemap").string(), "not a pole map");
+  expectIn(refusal("x,y\n1,2\n"), path("m.polemap").string(), "not a pole map",
+           "`pole-map convert`");
   expectIn(refusal(""), "not a pole map");
 }
 

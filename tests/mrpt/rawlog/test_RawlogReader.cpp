@@ -269,7 +269,8 @@ TEST(RawlogReader, RefusesWhatIsNoRawlog) {
   const Bench bench;
   EXPECT_HAS(bench.read("x y z\n1 2 3\n4 5 6\n").error, "is not a rawlog");
   EXPECT_HAS(readAll(bench.folder / "none.rawlog").error, "none.rawlog: no such file");
-  EXPECT_HAS(readAll(bench.folder / "").error, "is not a file");
+  EXPECT_HAS(readAll(bench.folder / "").error, "is a folder, not a rawlog; pole-import");
+  EXPECT_HAS(readAll("/dev/null").error, "is not a file");
 }
 
 // Reason for this reader: MRPT's own ends silently in all of these cases.

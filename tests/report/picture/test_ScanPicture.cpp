@@ -101,6 +101,23 @@ TEST_F(ScanPicture, PolesGetRingsAndTheViewGrowsWithThem) {
   EXPECT_NEAR(at.y(), 84 + 328 + 10 * metre, 2);
 }
 
+TEST_F(ScanPicture, LabelsStayInsideTheFrame) {
+  Scan scan;
+  scan.patch(0, 5, 0.5);
+  ScanView view = scan.view();
+  view.poles = {pole(30, 0)};  // 726 px, 412 px: no room to the right
+  drawScanPng(view, file, 800);
+  const Pixels image(file);
+  const auto darkBetween = [&](int left, int right) {
+    int dark = 0;
+    for (int y = 402; y < 422; ++y)
+      for (int x = left; x < right; ++x) dark += (image.at(x, y) & 0xff) < 0x60;
+    return dark;
+  };
+  EXPECT_EQ(darkBetween(742, 774), 0);
+  EXPECT_GT(darkBetween(600, 712), 20);
+}
+
 TEST_F(ScanPicture, SameInputSameBytes) {
   Scan scan;
   scan.patch(0, 5, 0.5);

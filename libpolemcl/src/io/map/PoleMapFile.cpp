@@ -176,7 +176,9 @@ void readPoles(ByteReader& chunk, const std::string& where, PoleMapData& data) {
 /// The payload of a whole file, after all checks.
 std::string_view checkedPayload(std::string_view bytes, const std::string& where) {
   if (bytes.substr(0, polemapMagic.size()) != polemapMagic) {
-    throw Error(where + "not a pole map (it does not start like a .polemap file)");
+    throw Error(where +
+                "not a pole map (it does not start like a .polemap file); `pole-map convert` "
+                "makes one of CSV, NPZ and GeoJSON");
   }
   ByteReader header(bytes.substr(polemapMagic.size()), where + "cut short: ");
   const auto found = header.get<std::uint32_t>();

@@ -18,6 +18,8 @@ GzReadStream::GzReadStream(const std::string& path, double follow)
     : m_path(path), m_follow(follow) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw Error(path + ": no such file");
+  if (std::filesystem::is_directory(path, error))
+    throw Error(path + ": is a folder, not a rawlog; pole-import makes a rawlog of a dataset");
   if (!std::filesystem::is_regular_file(path, error)) throw Error(path + ": is not a file");
   m_fileSize = std::filesystem::file_size(path, error);
   m_file = gzopen(path.c_str(), "rb");

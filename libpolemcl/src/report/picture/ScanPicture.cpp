@@ -60,13 +60,15 @@ bool overlap(const Rect& a, const Rect& b) {
   return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
 }
 
-/// Beside the ring, above or below it: the first place where no text is yet, else the last tried.
-Rect labelPlace(const Eigen::Vector2d& at, double ring, double width,
+/// Beside the ring, above or below it, inside the frame: the first place where no text is yet, else
+/// the last tried.
+Rect labelPlace(const Rect& frame, const Eigen::Vector2d& at, double ring, double width,
                 const std::vector<Rect>& taken) {
   constexpr double height = 15;
   Rect place;
   for (const double y : {-0.5 * height, -ring - height, ring})
     for (const double x : {ring + 4, -ring - 4 - width}) {
+      if (at.x() + x + width > frame.right()) continue;
       place = {at.x() + x, at.y() + y, width, height};
       if (std::none_of(taken.begin(), taken.end(),
                        [&](const Rect& other) { return overlap(place, other); }))
@@ -86,7 +88,7 @@ void drawPoles(Canvas& canvas, const PlotAxes& axes, const ScanView& view) {
   }
   for (const PoleDetection& pole : view.poles) {
     const std::string label = io::fixed(pole.top, 1) + " m · " + io::fixed(pole.confidence, 2);
-    const Rect place = labelPlace(axes.toPixel(pole.x, pole.y), ringOf(axes, pole),
+    const Rect place = labelPlace(axes.frame, axes.toPixel(pole.x, pole.y), ringOf(axes, pole),
                                   canvas.textWidth(label, style), taken);
     canvas.text(label, {place.x, place.bottom() - 3}, style);
     taken.push_back(place);
