@@ -101,6 +101,7 @@ TEST(Settings, KnowsEverySection) {
                                           "[extraction]",
                                           "[range_image]",
                                           "[scan_line]",
+                                          "[vehicle]",
                                           "[map]",
                                           "[map_update]",
                                           "[likelihood]",

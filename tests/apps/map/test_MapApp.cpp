@@ -199,8 +199,10 @@ TEST_F(MapApp, RefusesUnknownClasses) {
 }
 
 TEST_F(MapApp, RefusesMissingFilesAndOtherEndings) {
-  expectFailure(run({"in"}), {"in.rawlog"});
   drive("in", 2);
+  fs::rename(folder / "in.rawlog", folder / "away.rawlog");
+  expectFailure(run({"in"}), {"in.rawlog"});
+  fs::rename(folder / "away.rawlog", folder / "in.rawlog");
   fs::remove(folder / "in.tum");
   expectFailure(run({"in"}), {"in.tum"});
   expectFailure(runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"),
