@@ -79,6 +79,15 @@ std::uint32_t countFrom(double value, const std::string& field) {
   return static_cast<std::uint32_t>(value);
 }
 
+/// Fills a field of whole numbers of all poles.
+template <class Pole, class Count>
+void fillCounts(const py::array& records, const char* name, Count Pole::*field,
+                std::vector<Pole>& poles) {
+  const std::vector<double> values = fieldOf(records, "poles", name);
+  for (std::size_t i = 0; i < poles.size(); ++i)
+    poles[i].*field = countFrom(values[i], std::string("poles['") + name + "']");
+}
+
 /// The fields that detections and map poles share.
 template <class Pole>
 std::vector<Pole> polesFrom(const py::array& records, const std::string& argument) {
@@ -161,9 +170,7 @@ Points pointsFrom(const py::object& object) {
 std::vector<PoleDetection> detectionsFrom(const py::object& object) {
   const py::array records = recordsFrom(object, "poles", "detection_type");
   auto poles = polesFrom<PoleDetection>(records, "poles");
-  const std::vector<double> points = fieldOf(records, "poles", "points");
-  for (std::size_t i = 0; i < poles.size(); ++i)
-    poles[i].points = countFrom(points[i], "poles['points']");
+  fillCounts(records, "points", &PoleDetection::points, poles);
   const py::object names = records.dtype().attr("names");
   const auto fillKnown = [&](const char* name, double PoleDetection::*field) {
     if (!names.contains(name)) return;
@@ -178,9 +185,7 @@ std::vector<PoleDetection> detectionsFrom(const py::object& object) {
 std::vector<MapPole> mapPolesFrom(const py::object& object) {
   const py::array records = recordsFrom(object, "poles", "map_pole_type");
   auto poles = polesFrom<MapPole>(records, "poles");
-  const std::vector<double> counts = fieldOf(records, "poles", "count");
-  for (std::size_t i = 0; i < poles.size(); ++i)
-    poles[i].count = countFrom(counts[i], "poles['count']");
+  fillCounts(records, "count", &MapPole::count, poles);
   return poles;
 }
 

@@ -55,6 +55,13 @@ TEST(ScanFusion, ADirectionIsSeenAsFarAsOneOfTheLidarsSees) {
   EXPECT_EQ(fusedVisibility({left, right})[64], 5);
 }
 
+// Such ranges can only come from a damaged rawlog; the search along a ray never ended.
+TEST(ScanFusion, EndsOnRangesWithoutEnd) {
+  const auto damaged = part(1, {}, {});
+  damaged->visibilityRange.assign(4, INFINITY);
+  EXPECT_EQ(fusedVisibility({damaged})[0], 1000);
+}
+
 TEST(ScanFusion, VisibilityIsAroundTheRobot) {
   const auto ahead = part(1, {4, 0, 0, M_PI, 0, 0}, {});
   ahead->visibilityRange.assign(256, 10);

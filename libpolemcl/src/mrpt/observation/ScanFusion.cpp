@@ -8,13 +8,16 @@
 namespace polemcl {
 namespace {
 
+/// No LiDAR sees farther, m; poles from a damaged rawlog may say so.
+constexpr double s_farthest = 1000;
+
 /// How far one LiDAR sees along a ray from the robot's origin, m: up to the first step that it does
 /// not see.
 float seenAlong(double azimuth, const CObservationPoles& part) {
   const auto& ranges = part.visibilityRange;
   if (ranges.empty()) return 0;
   const Pose2D lidar = part.planarSensorPose();
-  const double most = *std::max_element(ranges.begin(), ranges.end());
+  const double most = std::min<double>(s_farthest, *std::max_element(ranges.begin(), ranges.end()));
   float seen = 0;
   for (float reach = VisibilityRangeFinder::kStep;; reach += VisibilityRangeFinder::kStep) {
     const Pose2D place = relative(lidar, {reach * std::cos(azimuth), reach * std::sin(azimuth), 0});
