@@ -2,6 +2,7 @@
 /// \file Settings.h
 /// \brief One INI serves all programs: the union of all option structs.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -70,8 +71,9 @@ std::string settingsText(const Settings& settings, Tier most = Tier::expert);
 /// \brief Writes settingsText(), atomically. \throws Error when it cannot be written.
 void saveSettings(const Settings& settings, const std::string& path);
 
-/// \brief The reference page of all settings, share/doc/settings.md: for each section a table with
-/// key, default, allowed values, tier and meaning. Markdown.
-std::string settingsPage();
+/// \brief The reference pages of all settings: names of files in share/doc and their Markdown.
+/// settings.md says what is where; each other page has sections, as tables with key, default,
+/// allowed values, tier and meaning.
+std::map<std::string, std::string> settingsPages();
 
 }  // namespace polemcl::apps

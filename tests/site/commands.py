@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the commands on the pages: each option of a program of ours is in its --help, each key of --set is on the
+"""Checks the commands on the pages: each option of a program of ours is in its --help, each key of --set is on a
 page of settings. Usage: commands.py SOURCES PROGRAMS
 
 Commands are the lines of blocks marked sh, or not marked, and code within lines that begins with a program's name.
@@ -35,11 +35,12 @@ def known_options(programs, name, arguments):
 def settings_of(sources):
     """All keys as (section, key)."""
     found, section = set(), ""
-    for line in (sources / "share/doc/settings.md").read_text(encoding="utf-8").splitlines():
-        heading, row = re.match(r"## \[(\w+)\]", line), re.match(r"\| `(\w+)`", line)
-        section = heading[1] if heading else section
-        if row:
-            found.add((section, row[1]))
+    for page in sorted((sources / "share/doc").glob("settings-*.md")):
+        for line in page.read_text(encoding="utf-8").splitlines():
+            heading, row = re.match(r"## \[(\w+)\]", line), re.match(r"\| `(\w+)`", line)
+            section = heading[1] if heading else section
+            if row:
+                found.add((section, row[1]))
     return found
 
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the documentation site and checks it: links and anchors lead somewhere, commands on the pages have options
-# that their programs know, and no page is wider than a phone.
+# that their programs know, and no page is longer than ten minutes of reading or wider than a phone.
 # Usage: tests/site/run.sh [OUT]; skips, and says why, where a program is missing.
 #   OUT  a folder that keeps the site
 # Programs: build/bin, or POLEMCL_BIN.
@@ -33,6 +33,7 @@ fail() {
 out=$(cd "$out" && pwd)
 python3 "$top/tests/site/links.py" "$out/site" || fail "there are broken links"
 python3 "$top/tests/site/commands.py" "$top" "$bin" || fail "there are commands that would be refused"
+python3 "$top/tests/site/length.py" "$top" || fail "there are pages that are too long or have no place"
 
 # All pages in frames as wide as a phone; each frame writes the width of its content.
 pages=$(cd "$out/site" && find . -name '*.html' ! -path './share/doc/api/*' ! -name 404.html | sort)
@@ -61,4 +62,4 @@ count=$(echo "$pages" | wc -l)
 [ "$(wc -l <"$folder/widths")" = "$count" ] || fail "Chromium shows $(wc -l <"$folder/widths") of $count pages"
 wide=$(awk '$4 > $3 { print $2 " (" $4 " of " $3 " pixels)" }' "$folder/widths")
 [ -z "$wide" ] || fail "wider than a phone: $wide"
-echo "Test of the site: passed; $count pages, links, commands, width"
+echo "Test of the site: passed; $count pages, links, commands, length, width"

@@ -49,7 +49,7 @@ struct PoseHypothesis {
 /// a Gaussian motion also handles all particles at once. Two defects of MRPT 2.5.8 are avoided. Its
 /// resampling keeps the old weights; here they are reset. Its getCovarianceAndMean() loses the sign
 /// of heading errors in the cross terms; here the covariance is computed by the core.
-/// share/doc/architecture.md describes each step.
+/// share/doc/filter.md describes each step.
 ///
 /// Random numbers come from MRPT's generator of the calling thread. During start() and step() it is
 /// replaced by a generator that belongs to the object. (Seeding MRPT's own generator is not enough:
