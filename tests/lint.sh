@@ -13,17 +13,22 @@ sources() {
   git ls-files '*.cpp' '*.h'
 }
 
+# Not pictures, nor what programs wrote.
+texts() {
+  git ls-files | grep -v '\.png$\|\.svg$\|\.gif$\|^tests/releases/[0-9]'
+}
+
 format() {
   sources | xargs clang-format --dry-run -Werror
 }
 
 spelling() {
-  git ls-files | grep -v '\.png$\|\.svg$' | xargs codespell
+  texts | xargs codespell
 }
 
 files() {
   # The file whose last character is no newline, or whose last line is empty; spaces at a line's end.
-  bad=$(git ls-files | grep -v '\.png$\|\.svg$' | while read -r name; do
+  bad=$(texts | while read -r name; do
     [ -s "$name" ] || continue
     [ -z "$(tail -c 1 "$name")" ] || echo "$name: the last line has no newline at its end"
     [ -n "$(tail -n 1 "$name")" ] || echo "$name: empty lines at the end"

@@ -52,6 +52,7 @@ case $how in
   quick) run_tests "$top/build" --label-regex '^unit$' ;;
   *)
     run_tests "$top/build"
+    "$top/tests/releases/run.sh"
     "$top/tests/install/run.sh" "$top/build"
     ;;
 esac

@@ -106,15 +106,18 @@ class Planner {
   }
 
   void requireInputs() const {
-    std::string missing;
+    std::string missing;  // of the first sessions: enough to see what is wrong
+    int count = 0;
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;
       std::string what = obstacle(session);
       if (what.empty() && isScored(session)) what = truthObstacle(session);
-      if (!what.empty()) missing += (missing.empty() ? "" : "; ") + session.name + ": " + what;
+      if (!what.empty() && ++count <= 3)
+        missing += (count > 1 ? "; " : "") + session.name + ": " + what;
     }
-    if (!missing.empty())
-      throw Error("batch " + m_spec.name + ": inputs are missing: " + missing +
+    if (count > 0)
+      throw Error("batch " + m_spec.name + ": inputs of " + std::to_string(count) +
+                  " sessions are missing: " + missing + (count > 3 ? "; and so on" : "") +
                   "; check --data, [sessions] input and truth_map, or leave these sessions out");
     if (!m_spec.publishedSessions.empty()) report::readPublishedSessions(m_spec.publishedSessions);
   }

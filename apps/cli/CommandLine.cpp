@@ -90,6 +90,20 @@ void printConfig(const PrintRequest& request) {
                             request.all ? Tier::expert : Tier::tuning);
 }
 
+/// The message of a wrong command line; where values are missing or too many, also what the option
+/// takes.
+std::string explained(const CLI::App& cli, const CLI::ParseError& error) {
+  const std::string what = error.what();
+  if (error.get_name() != "ArgumentMismatch") return what;
+  const std::string name = what.substr(0, what.find(':'));
+  auto apps = cli.get_subcommands();
+  apps.insert(apps.begin(), const_cast<CLI::App*>(&cli));
+  for (const auto* app : apps)
+    if (const auto* option = app->get_option_no_throw(name))
+      return what + "; it takes " + option->get_type_name();
+  return what;
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
@@ -128,7 +142,7 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
       return usageError(lacksSubcommand(m_cli) ? "a subcommand is needed: " + subcommandNames(m_cli)
-                                               : e.what());
+                                               : explained(m_cli, e));
     m_cli.exit(e);  // prints what --help or --version ask for
     return exitDone;
   }

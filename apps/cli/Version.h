@@ -7,7 +7,7 @@
 #include <polemcl/version.h>
 
 namespace polemcl::apps {
-/// \brief Version of polemcl, as `--version` prints it first: "0.1.0".
+/// \brief Version of polemcl, as `--version` prints it first: "1.0.0".
 inline const char* version() {
   return POLEMCL_VERSION_TEXT;
 }

@@ -47,16 +47,17 @@ maps of them, and localizes a vehicle in such a map with the particle
 filter of MRPT.
 .
 ")
+set(library libpolemcl${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})  # by the SOVERSION, as Debian wants it
 set(same "(= ${PROJECT_VERSION}-1)")
 set(CPACK_COMPONENTS_ALL "")
-polemcl_package(library libpolemcl0 libs "" "Pole-based LiDAR localization: library and plugin of MRPT"
+polemcl_package(library ${library} libs "" "Pole-based LiDAR localization: library and plugin of MRPT"
   "${method}This package holds the library, which programs of MRPT load as a
 plugin, and the drivers of sensors.")
-polemcl_package(programs polemcl science "libpolemcl0 ${same}" "Pole-based LiDAR localization: programs"
+polemcl_package(programs polemcl science "${library} ${same}" "Pole-based LiDAR localization: programs"
   "${method}This package holds the programs, their settings, models, man pages
 and completion.")
 polemcl_package(dev libpolemcl-dev libdevel
-  "libpolemcl0 ${same}, libeigen3-dev, libhwy-dev, libmrpt-config-dev, libmrpt-maps-dev, libmrpt-obs-dev, libmrpt-opengl-dev, libmrpt-slam-dev"
+  "${library} ${same}, libeigen3-dev, libhwy-dev, libmrpt-config-dev, libmrpt-maps-dev, libmrpt-obs-dev, libmrpt-opengl-dev, libmrpt-slam-dev"
   "Pole-based LiDAR localization: headers"
   "${method}This package holds the headers, the library without MRPT, and the
 CMake package.")

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Makes the picture of the live view, share/figures/live.png, as pole-localize --live shows it. The street is
-# 400 m long and localized on another day; the poles are drawn from the detection model.
-# Usage: share/figures/live.sh [PICTURE]
+# Makes the animation of the live view, share/figures/live.gif, as pole-localize --live shows it. The street is
+# 400 m long and localized on another day, without a start pose; the poles are drawn from the detection model.
+# Usage: share/figures/live.sh [GIF]     Needs ImageMagick.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -9,6 +9,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 0 1 "$@"
 find_programs pole-simulate pole-map pole-localize
+find_tools convert
 
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
@@ -17,7 +18,14 @@ for day in 0 1; do
 done
 "$bin/pole-map" build --quiet --config "$out/day0.ini" --input "$out/day0.rawlog" \
   --truth "$out/day0.tum" --output "$out/map.polemap" >/dev/null
-"$bin/pole-localize" --quiet --config "$out/day1.ini" --input "$out/day1.rawlog" \
-  --map "$out/map.polemap" --truth "$out/day1.tum" --output "$out/run" --seed 1 \
-  --frames "$out/frames" --frame-every 20
-cp "$out/frames/000080.png" "${1:-$top/share/figures/live.png}"
+"$bin/pole-localize" --quiet --config "$out/day1.ini" --input "$out/day1.rawlog" --global \
+  --map "$out/map.polemap" --output "$out/run" --seed 1 --frames "$out/frames" >/dev/null
+
+# The search, slowly, then every third scan.
+set -- "${1:-$top/share/figures/live.gif}" "$out"/frames/00000[0234].png -delay 20
+for scan in $(seq -f %06.0f 6 3 60); do
+  set -- "$@" "$out/frames/$scan.png"
+done
+gif=$1
+shift
+convert -delay 70 "$@" -resize 640x +dither -colors 64 -layers OptimizePlus -loop 0 "$gif"

@@ -7,7 +7,7 @@
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 base=${XDG_CACHE_HOME:-$HOME/.cache}/polemcl/bookworm.tar
-names="libpolemcl0 polemcl libpolemcl-dev polemcl-doc python3-polemcl"
+names="libpolemcl1.0 polemcl libpolemcl-dev polemcl-doc python3-polemcl"
 [ "$(id -u)" = 0 ] || {
   echo "tests/install/packages.sh: needs root, for chroot" >&2
   exit 1
@@ -93,7 +93,8 @@ echo "3/7 Installing the packages"
 cp -r "$dir/packages" "$root/packages"
 # shellcheck disable=SC2046 # one name a word
 apt_get install $(find "$root/packages" -name '*.deb' -printf '/packages/%f ')
-quietly inside dpkg --verify libpolemcl0 polemcl libpolemcl-dev polemcl-doc python3-polemcl
+# shellcheck disable=SC2086 # word splitting wanted
+quietly inside dpkg --verify $names
 
 echo "4/7 A street, a map and a localized drive, as a user"
 quietly as_user '

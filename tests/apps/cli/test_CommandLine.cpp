@@ -31,6 +31,8 @@ Result runWith(
   std::string input;
   line.cli().add_option("--input", input, "A file")->required();
   line.cli().add_option("--radius", result.radius, "Metres");
+  std::vector<double> place;
+  line.cli().add_option("--place", place, "m")->type_name("X,Y,Z")->delimiter(',')->expected(3);
   arguments.insert(arguments.begin(), "pole-test");
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
@@ -110,6 +112,14 @@ TEST(CommandLine, WrongUsageIsTwoWithAHint) {
     EXPECT_NE(result.err.find("\nTry `pole-test --help`.\n"), std::string::npos) << result.err;
     EXPECT_EQ(result.out, "");
   }
+}
+
+TEST(CommandLine, TellsWhatAnOptionTakes) {
+  const auto result = runWith({"--input", "a", "--place", "1,2"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("--place: At least 3 required but received 2; it takes X,Y,Z\n"),
+            std::string::npos)
+      << result.err;
 }
 
 TEST(CommandLine, ErrorsAreOneWithOneLine) {

@@ -65,7 +65,7 @@ TEST(Messages, VerboseSaysBuildSettingsAndTime) {
   const Outcome shown = shell(simulation(folder, "--verbose --threads 1"));
   EXPECT_EQ(shown.code, 0) << shown.out;
   for (const std::string text :
-       {"pole-simulate: pole-simulate 0.", "pole-simulate: threads: at most 1\n",
+       {"pole-simulate: pole-simulate 1.", "pole-simulate: threads: at most 1\n",
         "pole-simulate: settings: ", "share/polemcl/config/demo.ini\n", "pole-simulate: took ",
         " MB of memory\n"})
     EXPECT_TRUE(has(shown.out, text)) << text << " is not in: " << shown.out;
