@@ -21,9 +21,9 @@ done
 "$bin/pole-localize" --quiet --config "$out/day1.ini" --input "$out/day1.rawlog" --global \
   --map "$out/map.polemap" --output "$out/run" --seed 1 --frames "$out/frames" >/dev/null
 
-# The search, slowly, then every third scan.
+# The search, slowly, then every fourth scan.
 set -- "${1:-$top/share/figures/live.gif}" "$out"/frames/00000[0234].png -delay 20
-for scan in $(seq -f %06.0f 6 3 60); do
+for scan in $(seq -f %06.0f 6 4 62); do
   set -- "$@" "$out/frames/$scan.png"
 done
 gif=$1
