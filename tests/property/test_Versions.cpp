@@ -36,6 +36,7 @@ TEST(Versions, AreTheSameEverywhere) {
   const std::string version = POLEMCL_VERSION_TEXT;
   EXPECT_EQ(firstMatch("CHANGELOG.md", R"(\n## \[(\d[^\]]*)\])"), version);
   EXPECT_EQ(firstMatch("CITATION.cff", R"(\nversion: (\S+))"), version);
+  EXPECT_EQ(firstMatch("share/doc/cite.md", R"(version = \{([^}]*)\})"), version);
   EXPECT_EQ(firstMatch("tests/install/packages.sh", R"(libpolemcl(\d\S*))"), minorVersion);
   EXPECT_EQ(firstMatch("share/doc/programs.md", R"(`libpolemcl(\d[^`]*)`)"), minorVersion);
   EXPECT_EQ(firstMatch("share/doc/compatibility.md", R"(`libpolemcl\.so\.(\d[^`]*)`)"),
