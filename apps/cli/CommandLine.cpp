@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include <polemcl/mrpt/common/RegisterClasses.h>
 #include "cli/HelpFormatter.h"
 #include "cli/Messages.h"
 #include "cli/OptionText.h"
@@ -17,7 +18,6 @@
 #include "cli/Settings.h"
 #include "cli/Version.h"
 #include "io/file/TextFile.h"
-#include "mrpt/map/RegisterClasses.h"
 
 namespace polemcl::apps {
 namespace {

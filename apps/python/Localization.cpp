@@ -35,11 +35,17 @@ class Localizer {
     start.pose = poseFrom(pose, "pose");
     start.radius = radius.value_or(start.radius);
     start.heading = heading.value_or(start.heading);
-    alone(m_mutex, [&] { m_pipeline.start(start); });
+    alone(m_mutex, [&] {
+      m_pipeline.start(start);
+      m_started = true;
+    });
   }
 
   void initializeGlobally() {
-    alone(m_mutex, [&] { m_pipeline.initializeGlobally(); });
+    alone(m_mutex, [&] {
+      m_pipeline.initializeGlobally();
+      m_started = true;
+    });
   }
 
   LocalizationUpdate step(double time, const py::object& motion, const py::object& covariance,
@@ -49,7 +55,12 @@ class Localizer {
     frame.poles_robot = detectionsFrom(poles);
     if (!motion.is_none()) frame.motion = motionFrom(motion, covariance);
     if (!velocity.is_none()) frame.velocity = velocityFrom(velocity);
-    return alone(m_mutex, [&] { return m_pipeline.step(frame); });
+    return alone(m_mutex, [&] {
+      if (!m_started)
+        throw Error(
+            "the localization has not been started: call start() or initialize_globally() first");
+      return m_pipeline.step(frame);
+    });
   }
 
   py::array particles() {
@@ -68,6 +79,7 @@ class Localizer {
   std::mutex m_mutex;
   Settings m_settings;
   LocalizationPipeline m_pipeline;
+  bool m_started = false;
 };
 
 const char* nameOf(OdometryVerdict verdict) {

@@ -28,7 +28,8 @@ cp "$top/share/site/extra.css" "$out/source"
 
 (cd "$top" && {
   cat share/site/Doxyfile
-  echo "INPUT = libpolemcl/include"
+  echo "INPUT = libpolemcl/include share/site/reference.md"
+  echo "USE_MDFILE_AS_MAINPAGE = share/site/reference.md"
   echo "OUTPUT_DIRECTORY = $out/source/share/doc"
   echo "HTML_OUTPUT = api"
 } | doxygen -)

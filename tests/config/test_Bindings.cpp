@@ -236,6 +236,15 @@ TEST(Bindings, CheckStructsAsTheyCheckFiles) {
   EXPECT_THROW(checkOptions(start), Error);
 }
 
+// A program of others binds what it needs; the reader knows all sections of our programs.
+TEST(Bindings, SectionsOfAllProgramsArePassedOver) {
+  const ConfigFile file = ConfigFile::fromText(written(Settings()), "config.ini");
+  ConfigReader reader(file);
+  Settings settings;
+  bind(reader, settings.sensor);
+  EXPECT_NO_THROW(reader.finish());
+}
+
 TEST(Bindings, TiersFollowEachOther) {
   const auto count = [](Tier most) { return keys(settingsText(Settings(), most)).size(); };
   EXPECT_LT(count(Tier::sensor), 25u);

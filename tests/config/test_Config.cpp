@@ -179,6 +179,15 @@ TEST(Config, RefusesUnknownNames) {
   EXPECT_EQ(refusal("[sample]\nwheels = 3\n").find("meant?"), std::string::npos);
 }
 
+TEST(Config, PassesOverSectionsOfOtherPrograms) {
+  EXPECT_EQ(load("[sample]\ncount = 3\n[World]\nseed = 1\n[map]\nwhatever = 2\n").count, 3);
+  EXPECT_NO_THROW(load("[vehicle]\nlidars = left\n[sensor:left]\nmodel = vlp16\n"));
+  EXPECT_HAS(refusal("[simulaton]\nspacing_m = 1\n"),
+             "test.ini: section [simulaton] is not known; known are: sample; is simulation meant?");
+  EXPECT_HAS(refusal("[sample]\nseeds = 1\n"), "key is not known");
+  EXPECT_HAS(refusal("[map:left]\nmodel = vlp16\n"), "section [map:left] is not known");
+}
+
 TEST(Config, RefusesWhatIsGivenTwice) {
   const std::string key = refusal("[sample]\ncount = 3\n\nCount = 3\n");
   EXPECT_HAS(key, "test.ini:4: key 'Count' of [sample] is given twice, first in line 2");

@@ -38,7 +38,7 @@ lib=$(find "$prefix" -name libpolemcl.so -exec dirname {} \;)
 [ -n "$lib" ] || fail "libpolemcl.so was not installed"
 bin=$prefix/bin
 
-echo "1/6 Headers and symbols"
+echo "1/8 Headers and symbols"
 headers=$(find "$prefix/include/polemcl" -mindepth 2 -name '*.h' | wc -l)
 if [ "$headers" -lt 20 ] || [ "$headers" -gt 45 ]; then
   fail "$headers public headers; 20 to 45 were meant"
@@ -50,7 +50,7 @@ foreign=$(nm -DC --defined-only "$lib/libpolemcl.so" | cut -d' ' -f3- |
 [ "$own" -ge 100 ] || fail "libpolemcl.so exports $own symbols of polemcl; at least 100 were meant"
 [ "$foreign" -eq 0 ] || fail "libpolemcl.so exports $foreign symbols of other libraries"
 
-echo "2/6 Installed programs, with installed settings and models by their names"
+echo "2/8 Installed programs, with installed settings and models by their names"
 cd "$dir"
 quietly "$bin/pole-simulate" --quiet --config demo.ini --length 60 --output scans
 quietly "$bin/pole-simulate" --quiet --config hdl32e.ini --length 60 --poles poles.rawlog \
@@ -61,14 +61,14 @@ if "$bin/pole-simulate" --quiet --config nobody.ini --output none 2>error.txt; t
 fi
 grep -q '^pole-simulate: .*nobody\.ini' error.txt || fail "the message does not name the file: $(cat error.txt)"
 
-echo "3/6 extract: poles of one scan, without MRPT"
+echo "3/8 extract: poles of one scan, without MRPT"
 example extract -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-obs=ON -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-maps=ON
 ! ldd extract/extract | grep -q mrpt || fail "the example of polemcl::core links MRPT"
 extract/extract scans/velodyne/000040.bin >extracted.txt
 awk 'NF != 3 || $3 <= 0 || $3 > 0.5 { exit 1 } END { if (NR < 3) exit 1 }' extracted.txt ||
   fail "extract did not print three poles or more: $(cat extracted.txt)"
 
-echo "4/6 map: scans at known poses to a map"
+echo "4/8 map: scans at known poses to a map"
 example map
 map/map scans street.polemap >mapped.txt
 "$bin/pole-eval" map --quiet --one-to-one --truth scans/poles_gt.csv --map street.polemap \
@@ -76,7 +76,7 @@ map/map scans street.polemap >mapped.txt
 jq -e '.precision > 0.7 and .recall > 0.4' score.json >/dev/null ||
   fail "the map of the example is poor: $(cat mapped.txt score.json)"
 
-echo "5/6 localize: points to poses"
+echo "5/8 localize: points to poses"
 example localize
 # The true poses as x, y; the start is 0.5 m off.
 awk '{ print $4, $8, atan2($5, $1) }' scans/poses.txt >true.txt
@@ -91,9 +91,33 @@ paste -d' ' poses.txt true.txt | tail -n 40 |
 if localize/localize scans missing.polemap 0 0 0 2>error.txt; then fail "a missing map was read"; fi
 grep -q '^localize: .*missing\.polemap' error.txt ||
   fail "polemcl::Error was not caught outside the library: $(cat error.txt)"
+
+echo "6/8 rawlog: a rawlog of poles to poses, those of pole-localize"
+example rawlog
+start=$(awk "BEGIN { print $x + 0.3, $y - 0.4, $yaw * 57.29577951308232 }" | tr ' ' ',')
+quietly "$bin/pole-localize" --quiet --config demo.ini --input poles.rawlog --map street.polemap --output run \
+  --start "$start,1,5" --seed 7
+rawlog/rawlog poles.rawlog street.polemap run/config.ini >same.txt
+cut -d' ' -f1-3 run/run_00.tum | grep -v '^#' >tum.txt
+cut -d' ' -f1-3 same.txt | cmp -s - tum.txt || fail "the poses of the example are not those of pole-localize"
+[ "$(wc -l <tum.txt)" -ge 40 ] || fail "pole-localize gave few poses"
+[ "$(awk '$6 == "ok"' same.txt | wc -l)" -gt 20 ] || fail "the poses of the example are not ok: $(cat same.txt)"
+# Installed settings by their name, with sections of other programs; what they lack is a start.
+if rawlog/rawlog poles.rawlog street.polemap demo.ini 2>error.txt; then fail "it started without a pose"; fi
+grep -q '^rawlog: no start pose: set StartOptions::pose' error.txt || fail "demo.ini was refused: $(cat error.txt)"
+
+echo "7/8 mrpt: MRPT's filter on a pole map, known by name, with a linker that drops unused libraries"
+example mrpt -DCMAKE_EXE_LINKER_FLAGS=-Wl,--as-needed
+cp street.polemap map.polemap
+mrpt/mrpt poles.rawlog "$prefix/share/polemcl/config/mrpt/pf-localization.ini" "$x" "$y" "$yaw" >filtered.txt ||
+  fail "MRPT does not know the classes of the library"
+paste -d' ' filtered.txt tum.txt | tail -n 40 |
+  awk '{ e = sqrt(($2 - $6) ^ 2 + ($3 - $7) ^ 2); if (e > most) most = e }
+       END { if (!(NR == 40 && most < 0.3)) { print most; exit 1 } }' ||
+  fail "the poses of MRPT's filter are more than 0.3 m from those of pole-localize"
 module=$(find "$prefix" -path '*/dist-packages/polemcl.*.so')
 if grep -q '^POLEMCL_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
-  echo "6/6 Python: scans to a map and to poses; installed settings by their names"
+  echo "8/8 Python: scans to a map and to poses; installed settings by their names"
   [ -n "$module" ] || fail "the Python module was not installed"
   python=$(sed -n 's/^POLEMCL_PYTHON_EXECUTABLE:INTERNAL=//p' "$build/CMakeCache.txt")
   PYTHONPATH=$(dirname "$module")
@@ -104,7 +128,7 @@ if grep -q '^POLEMCL_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
   entries=$(nm -D --defined-only "$module" | cut -d' ' -f3-)
   [ "$entries" = PyInit_polemcl ] || fail "the Python module exports more than its entry: $entries"
 else
-  echo "6/6 Python: the module was not built (POLEMCL_PYTHON)"
+  echo "8/8 Python: the module was not built (POLEMCL_PYTHON)"
   [ -z "$module" ] || fail "a Python module was installed that was not to be built"
 fi
 echo "Installed tree: all checks passed"

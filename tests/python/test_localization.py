@@ -153,7 +153,7 @@ class WrongArguments(unittest.TestCase):
 
     def test_of_the_start_are_refused(self):
         street_map = polemcl.PoleMap.load(street.map_file())
-        with self.assertRaisesRegex(polemcl.Error, "has not been started"):
+        with self.assertRaisesRegex(polemcl.Error, r"has not been started.* initialize_globally\(\)"):
             polemcl.Localizer(street_map).step(0, None, None, np.zeros(0, polemcl.detection_type))
         with self.assertRaisesRegex(polemcl.Error, "from the nearest pole"):
             polemcl.Localizer(street_map).start((1e6, 0, 0))

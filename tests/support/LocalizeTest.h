@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <polemcl/mrpt/common/RegisterClasses.h>
 #include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
 #include "localize/LocalizeApp.h"
-#include "mrpt/map/RegisterClasses.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/PoleStreet.h"
 #include "support/TempFolder.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mrpt/map/RegisterClasses.h"
+#include <polemcl/mrpt/common/RegisterClasses.h>
 #include "support/CityFiles.h"
 
 namespace testing_apps {

@@ -8,6 +8,7 @@
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/io/map/PoleMapFile.h>
 #include <polemcl/mrpt/common/Compatibility.h>
+#include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/filter/FilterOptions.h>
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>

@@ -7,6 +7,7 @@
 
 #include <polemcl/config/Config.h>
 #include "io/file/AtomicFile.h"
+#include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl {
@@ -33,6 +34,33 @@ std::string joined(const std::set<std::string>& words) {
   return text;
 }
 
+/// The sections of all programs. Some are of rooms below this one: no struct here has them.
+const std::set<std::string> s_programSections{"extraction",
+                                              "filter",
+                                              "global",
+                                              "health",
+                                              "likelihood",
+                                              "map",
+                                              "map_update",
+                                              "motion",
+                                              "odometry_calibration",
+                                              "odometry_monitor",
+                                              "range_image",
+                                              "realism",
+                                              "runs",
+                                              "scan_line",
+                                              "search",
+                                              "sensor",
+                                              "simulation",
+                                              "start",
+                                              "submap",
+                                              "tracking",
+                                              "vehicle",
+                                              "view",
+                                              "world"};
+/// Those that each LiDAR of [vehicle] has too, as in [sensor:front].
+const std::set<std::string> s_lidarSections{"range_image", "scan_line", "sensor"};
+
 /// Letters to change, to add or to drop until both are the same (Levenshtein).
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -48,13 +76,16 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// The words that are known, and of these the one that was probably meant.
-std::string knownWords(const std::set<std::string>& words, const std::string& found) {
+/// The words that are known, and of these or the others the one that was probably meant.
+std::string knownWords(std::set<std::string> words, const std::string& found,
+                       const std::set<std::string>& others = {}) {
+  const std::string known = joined(words);
+  words.insert(others.begin(), others.end());
   const auto distance = [&](const std::string& word) { return editDistance(lower(found), word); };
   const auto nearest =
       std::min_element(words.begin(), words.end(),
                        [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  std::string text = "known are: " + joined(words);
+  std::string text = "known are: " + known;
   if (nearest != words.end() && distance(*nearest) <= 2) text += "; is " + *nearest + " meant?";
   return text;
 }
@@ -130,6 +161,10 @@ ConfigFile ConfigFile::read(const std::string& path) {
   return fromText(text, path);
 }
 
+ConfigFile ConfigFile::readInstalled(const std::string& pathOrName) {
+  return read(io::installedFile(pathOrName, "config").string());
+}
+
 void ConfigFile::set(const std::string& assignment) {
   const auto equals = assignment.find('=');
   const auto dot = assignment.substr(0, equals).rfind('.');  // labels in sections may have dots
@@ -173,6 +208,14 @@ std::string ConfigReader::place() const {
   return m_name + ": ";
 }
 
+/// Whether a section that was not bound belongs to a program that has bound it.
+bool ConfigReader::belongsToOthers(const std::string& section) const {
+  if (!m_fixedSection.empty()) return true;
+  const auto colon = section.find(':');
+  if (colon == section.npos) return s_programSections.count(section) > 0;
+  return s_lidarSections.count(section.substr(0, colon)) > 0 && m_known.count("vehicle") == 0;
+}
+
 void ConfigReader::finish() const {
   std::vector<std::string> sections;
   m_source->getAllSections(sections);
@@ -181,10 +224,10 @@ void ConfigReader::finish() const {
   for (const auto& section : sections) {
     const auto known = m_known.find(lower(section));
     if (known == m_known.end()) {
-      if (!m_fixedSection.empty()) continue;  // the other sections belong to others
+      if (belongsToOthers(lower(section))) continue;
       throw Error(place() + "section [" + section + "] is not known; " +
                   (section.find(':') == std::string::npos
-                       ? knownWords(knownSections, section)
+                       ? knownWords(knownSections, section, s_programSections)
                        : "[vehicle] lidars must list the label behind the colon; known are: " +
                              joined(knownSections)));
     }

@@ -38,7 +38,7 @@ int main(int count, char** arguments) try {
       const polemcl::Pose2D& pose = update.estimate->mean;
       std::printf("%.3f %.3f %.3f %.4f\n", frame.time, pose.x, pose.y, pose.yaw);
     }
-    polemcl::Pose2D moved, sigma;  // to the next scan, in the robot frame now
+    polemcl::Pose2D moved, sigma;  // from this scan to the next: the row of the next one
     odometry >> moved.x >> moved.y >> moved.yaw >> sigma.x >> sigma.y >> sigma.yaw;
     frame.motion->mean = moved;
     frame.motion->covariance.diagonal() << sigma.x * sigma.x, sigma.y * sigma.y,

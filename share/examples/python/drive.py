@@ -37,7 +37,7 @@ def build_map(folder):
 
 def localize(folder, pole_map, start):
     times = np.loadtxt(folder / "times.txt")
-    odometry = np.loadtxt(folder / "odometry.txt")  # from each scan to the next, with sigmas
+    odometry = np.loadtxt(folder / "odometry.txt")  # row i: from scan i to i + 1, with sigmas
     localizer = polemcl.Localizer(pole_map, seed=1)
     localizer.start(start)
     motion = covariance = None  # none before the first scan

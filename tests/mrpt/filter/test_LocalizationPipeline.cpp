@@ -418,6 +418,21 @@ TEST_F(PoleLocalizationTest, RefusesAStartFarFromTheMap) {
   }
 }
 
+TEST_F(PoleLocalizationTest, RefusesAStartThatIsNoNumber) {
+  driveFrom(1, 5);
+  LocalizationPipeline localization = chain();
+  StartOptions start = atTruth();
+  start.pose->y = NAN;
+  try {
+    localization.start(start);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is not finite; set StartOptions::pose"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(PoleLocalizationTest, RefusesFramesBeforeTheStartAndBadFramesWithoutChange) {
   driveFrom(1, 30);
   LocalizationPipeline localization = chain(), untouched = chain();

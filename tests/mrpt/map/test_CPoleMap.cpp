@@ -12,9 +12,9 @@
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
+#include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "io/map/PolePositions.h"
-#include "mrpt/map/RegisterClasses.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_cpole_map {

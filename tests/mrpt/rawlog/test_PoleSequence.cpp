@@ -31,6 +31,23 @@ TEST(PoleSequence, StoredPolesWithActions) {
   EXPECT_EQ(sequence.counts.unknownMotions, 0u);
 }
 
+TEST(PoleSequence, ObservationsFromElsewhereGiveTheSameFrames) {
+  const Bench bench;
+  bench.read(frame(poles(10.5)) + action({1, 0.5, 0.1}) + frame(poles(11, 6)));
+  std::size_t scans = 0;
+  streamPoles(bench.path, options(), [&](const PoleScan& scan) {
+    const PoleFrame streamed = frameOf(scan), own = frameOf(*scan.observation, scan.motion);
+    EXPECT_EQ(own.time, streamed.time);
+    EXPECT_EQ(own.motion->mean.y, scans == 0 ? 0 : 0.5);
+    ASSERT_EQ(own.poles_robot.size(), streamed.poles_robot.size());
+    EXPECT_EQ(own.poles_robot[0].y, streamed.poles_robot[0].y);
+    EXPECT_EQ(own.pose_robot_sensor.y, streamed.pose_robot_sensor.y);
+    EXPECT_EQ(own.points, 0u);
+    ++scans;
+  });
+  EXPECT_EQ(scans, 2u);
+}
+
 TEST(PoleSequence, SeveralActionsAreComposed) {
   const Bench bench;
   const auto sequence =

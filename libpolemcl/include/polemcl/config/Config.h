@@ -27,7 +27,12 @@ class POLEMCL_EXPORT ConfigFile {
  public:
   /// \throws Error when the file cannot be read, a line is not a section, key or comment, or a
   ///         section or key is given twice (the message names both lines).
+  /// \param path As it is, or from the working folder.
   static ConfigFile read(const std::string& path);
+  /// \brief As read(), and a name that is no file there is looked for among the installed settings:
+  /// `hdl32e.ini`. They lie in `share/polemcl/config`, beside the program's folder, above the
+  /// library, or where the library was configured to be installed.
+  static ConfigFile readInstalled(const std::string& pathOrName);
   /// \param name Name of the file in messages.
   static ConfigFile fromText(const std::string& text, const std::string& name);
 
@@ -46,8 +51,8 @@ class POLEMCL_EXPORT ConfigFile {
   std::shared_ptr<mrpt::config::CConfigFileBase> m_source;
 };
 
-/// \brief Fills option structs. Bind every struct that the programs know, then call finish():
-/// \code
+/// \brief Fills option structs. Bind every struct that you use, then call finish(). A struct that
+/// is not bound keeps its defaults, whatever the file says: \code
 ///   ConfigReader reader(ConfigFile::read(path));
 ///   bind(reader, settings.sensor);
 ///   bind(reader, settings.extraction);
@@ -62,7 +67,11 @@ class POLEMCL_EXPORT ConfigReader : public Binder {
                const std::string& fixedSection);
   /// \brief Known keys of the open section that other code reads.
   void knownElsewhere(std::initializer_list<std::string> keys);
-  /// \throws Error on a section or key that was not bound, with the known ones.
+  /// \brief Checks that nothing in the file was passed over by mistake. One file serves all
+  /// programs: their sections that were not bound here, such as `[world]`, belong to other programs
+  /// and are not looked into.
+  /// \throws Error on an unknown key of a section that was bound, and on a section that no program
+  ///         knows, with the known ones.
   void finish() const;
 
  protected:
@@ -71,6 +80,8 @@ class POLEMCL_EXPORT ConfigReader : public Binder {
   std::string place() const override;
 
  private:
+  bool belongsToOthers(const std::string& section) const;
+
   std::shared_ptr<const mrpt::config::CConfigFileBase> m_owned;
   const mrpt::config::CConfigFileBase* m_source;
   std::string m_name;

@@ -1,10 +1,33 @@
 #include "io/file/InstalledFiles.h"
 
+#include <dlfcn.h>
+
 #include <system_error>
+#include <vector>
 
 namespace polemcl::io {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Where files may be installed: beside the program's folder; above this library or module, which
+/// is up to three folders below the one that holds share/; the folder chosen when it was built.
+std::vector<fs::path> dataFolders() {
+  const fs::path data = fs::path("share") / "polemcl";
+  std::vector<fs::path> folders{programFolder().parent_path() / data};
+  Dl_info library = {};
+  std::error_code ignored;
+  if (dladdr(reinterpret_cast<void*>(&dataFolders), &library) != 0) {
+    fs::path above = fs::canonical(library.dli_fname, ignored).parent_path();  // empty: not known
+    for (int i = 0; i < 3 && !above.empty(); ++i)
+      folders.push_back((above = above.parent_path()) / data);
+  }
+  folders.emplace_back(POLEMCL_DATADIR);
+  return folders;
+}
+
+}  // namespace
 
 fs::path programFolder() {
   return fs::read_symlink("/proc/self/exe").parent_path();
@@ -13,8 +36,7 @@ fs::path programFolder() {
 fs::path installedFile(const fs::path& file, const std::string& folder) {
   std::error_code ignored;
   if (file.empty() || file.is_absolute() || fs::exists(file, ignored)) return file;
-  for (const fs::path& data :
-       {programFolder().parent_path() / "share" / "polemcl", fs::path(POLEMCL_DATADIR)}) {
+  for (const fs::path& data : dataFolders()) {
     fs::path candidate = data / folder / file;
     if (fs::is_regular_file(candidate, ignored)) return candidate;
   }

@@ -26,6 +26,14 @@ Velocity extrapolated(const Velocity& before, const Velocity& last) {
           last.yaw + (last.yaw - before.yaw) / 2};
 }
 
+void requireFinite(const Pose2D& start) {
+  if (std::isfinite(start.x) && std::isfinite(start.y) && std::isfinite(start.yaw)) return;
+  std::ostringstream text;
+  text << "the start pose x y yaw = " << start.x << ' ' << start.y << ' ' << start.yaw
+       << " is not finite; set StartOptions::pose (position_m and yaw_deg in [start]) to numbers";
+  throw Error(text.str());
+}
+
 bool isWide(const Eigen::Matrix3d& covariance) {
   const double square = LocalizationPipeline::wideMetres * LocalizationPipeline::wideMetres;
   return covariance(0, 0) > square || covariance(1, 1) > square ||
@@ -72,6 +80,7 @@ LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const Localizati
 
 void LocalizationPipeline::start(const StartOptions& start) {
   if (start.pose) {
+    requireFinite(*start.pose);
     const auto nearest = m_map.poles->index().nearest(start.pose->x, start.pose->y, INFINITY);
     const double distance = nearest ? nearest->distance - start.radius : INFINITY;
     if (!(distance <= maxStartDistance)) {

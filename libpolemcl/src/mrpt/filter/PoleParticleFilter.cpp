@@ -103,7 +103,9 @@ PoleParticleFilter::PoleParticleFilter(std::shared_ptr<const CPoleMap> map,
 void PoleParticleFilter::start(const StartOptions& start) {
   checkOptions(start);
   if (!start.pose)
-    throw Error("no start pose: set position_m and yaw_deg in [start], or give the truth");
+    throw Error(
+        "no start pose: set StartOptions::pose (position_m and yaw_deg in [start]), or give the "
+        "truth");
   begin(start.particles);
   const GeneratorLoan loan(m_generator);
   CRandomGenerator& random = getRandomGenerator();

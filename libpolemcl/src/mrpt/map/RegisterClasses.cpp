@@ -1,8 +1,7 @@
-#include "mrpt/map/RegisterClasses.h"
-
 #include <mrpt/core/initializer.h>
 #include <mrpt/rtti/CObject.h>
 
+#include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 

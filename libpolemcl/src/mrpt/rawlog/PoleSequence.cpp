@@ -257,14 +257,23 @@ SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::stri
   return play(source, name, options, consume);
 }
 
+PoleFrame frameOf(const CObservationPoles& observation,
+                  const std::optional<io::PlanarMotion>& motion) {
+  PoleFrame frame;
+  frame.time = mrpt::Clock::toDouble(observation.timestamp);
+  frame.motion = motion;
+  frame.poles_robot = observation.polesInRobotFrame();
+  frame.visibilityRange = observation.visibilityRange;
+  frame.pose_robot_sensor = observation.planarSensorPose();
+  return frame;
+}
+
 PoleFrame frameOf(const PoleScan& scan) {
-  return {scan.time,
-          scan.motion,
-          scan.observation->polesInRobotFrame(),
-          scan.points,
-          scan.observation->visibilityRange,
-          scan.observation->planarSensorPose(),
-          scan.velocity};
+  PoleFrame frame = frameOf(*scan.observation, scan.motion);
+  frame.time = scan.time;
+  frame.points = scan.points;
+  frame.velocity = scan.velocity;
+  return frame;
 }
 
 PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,

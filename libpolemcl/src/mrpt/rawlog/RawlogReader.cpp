@@ -3,8 +3,8 @@
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <polemcl/mrpt/common/RegisterClasses.h>
 #include "mrpt/common/MrptReason.h"
-#include "mrpt/map/RegisterClasses.h"
 
 namespace polemcl {
 

@@ -15,6 +15,7 @@
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/export.h>
 #include <polemcl/mrpt/common/Compatibility.h>
+#include <polemcl/mrpt/common/RegisterClasses.h>
 
 namespace polemcl {
 

@@ -119,7 +119,8 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///
 /// The next scans are read and extracted while a scan is consumed. An error ends the stream at its
 /// position: all scans before it have been returned.
-/// \param consume Called in order, from one thread at a time.
+/// \param consume Called in order and never twice at once, but from changing threads: it needs no
+/// lock, and must not rely on thread-local state (an OpenGL context, `thread_local`).
 /// \throws Error as RawlogReader and ObservationPoleExtractor do, with file and scan; when a LiDAR
 ///         of SequenceOptions::vehicle is not in the rawlog. Exceptions of `consume` are passed on.
 POLEMCL_EXPORT SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
@@ -139,6 +140,12 @@ struct PoleFrame {
 
 /// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().
 POLEMCL_EXPORT PoleFrame frameOf(const PoleScan& scan);
+/// \brief The same from an observation that comes from elsewhere: from a sensor through
+/// ObservationPoleExtractor::process(), or from a rawlog that the caller reads.
+/// \param motion Since the scan before, in its robot frame; nullopt: not known, which is right for
+/// the first scan only. `points` and `velocity` of the frame stay unknown.
+POLEMCL_EXPORT PoleFrame frameOf(const CObservationPoles& observation,
+                                 const std::optional<io::PlanarMotion>& motion);
 
 struct PoleSequence {
   std::vector<PoleFrame> frames;
