@@ -72,9 +72,11 @@ Failures runThere(const BatchOptions& options, const BatchFolder& folder, const 
   return failures;
 }
 
-/// The command that does it again, without where it lies on this machine.
-std::string commandOf(const BatchOptions& options) {
-  std::string command = "pole-batch " + options.batch.filename().string() +
+/// The command that does it again, without where it lies on this machine; an installed batch has
+/// its name.
+std::string commandOf(const BatchOptions& options, const BatchSpec& spec) {
+  const auto batch = spec.file == options.batch ? spec.file.filename() : options.batch;
+  std::string command = "pole-batch " + batch.string() +
                         (options.data.empty() ? "" : " --data DATA") + " --output OUT";
   for (const auto& assignment : options.set) command += " --set '" + assignment + "'";
   return command;
@@ -142,7 +144,7 @@ void doBatch(const BatchOptions& options) {
   const BatchPlan plan = planBatch(spec);
   BatchFolder folder(options.output);
   folder.take(spec.name, options.resume);
-  folder.store(plan, options.batch);
+  folder.store(plan, spec.file);
   const OpenTasks open = openTasks(folder, plan);
   for (const BatchTask* task : open.outdated) folder.remove(*task);
   if (!options.quiet) printOpen(plan, open);
@@ -157,7 +159,7 @@ void doBatch(const BatchOptions& options) {
     timings.jobs = options.slurm ? 0 : jobsOf(options);
   }
   try {
-    const auto results = collectBatch(folder, plan, spec, failures, commandOf(options));
+    const auto results = collectBatch(folder, plan, spec, failures, commandOf(options, spec));
     writeBatchFiles(folder, results, timings);
     if (!options.quiet)
       std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;

@@ -9,11 +9,10 @@
 
 #include <polemcl/config/Config.h>
 #include "batch/BatchCommands.h"
+#include "batch/BatchInputs.h"
 #include "cli/Settings.h"
-#include "io/dataset/Nclt.h"
 #include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
-#include "report/batch/PublishedResults.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -43,8 +42,9 @@ class Planner {
   }
 
   BatchPlan plan() {
-    requireInputs();
+    requirePublished(m_spec);
     for (const auto& configuration : m_spec.configurations) freeze(configuration);
+    requireInputs();
     for (const auto& session : m_spec.sessions)
       if (isUsed(session.name)) addPoles(session);
     for (const auto& session : m_spec.sessions)
@@ -81,37 +81,12 @@ class Planner {
                        [&](const auto& configuration) { return isScored(configuration, session); });
   }
 
-  /// What is wrong with a session's input; empty when nothing is.
-  static std::string obstacle(const BatchSession& session) {
-    const bool isFile =
-        session.source == "simulated" || session.source == "poles" || session.source == "scans";
-    if (session.source == "nclt" && io::isNcltSession(session.input)) return {};
-    if (!fs::exists(session.input)) return session.input + " is not there";
-    if (isFile && !fs::is_regular_file(session.input)) return session.input + " is no file";
-    if (!isFile && !fs::is_directory(session.input)) return session.input + " is no folder";
-    const fs::path truth = fs::path(session.input).replace_extension(".tum");
-    if (isFile && session.source != "simulated" && !fs::is_regular_file(truth))
-      return truth.string() + ", its true poses, is not there";
-    return {};
-  }
-
-  /// The same for its true poles.
-  static std::string truthObstacle(const BatchSession& session) {
-    if (session.truthMap != truthFromLabels)
-      return fs::is_regular_file(session.truthMap)
-                 ? ""
-                 : session.truthMap + ", its truth_map, is not there";
-    const fs::path labels = fs::path(session.input) / "labels";
-    return fs::is_directory(labels) ? "" : labels.string() + " is not there";
-  }
-
   void requireInputs() const {
     std::string missing;  // of the first sessions: enough to see what is wrong
     int count = 0;
     for (const auto& session : m_spec.sessions) {
       if (!isUsed(session.name)) continue;
-      std::string what = obstacle(session);
-      if (what.empty() && isScored(session)) what = truthObstacle(session);
+      const std::string what = inputObstacle(session, isScored(session));
       if (!what.empty() && ++count <= 3)
         missing += (count > 1 ? "; " : "") + session.name + ": " + what;
     }
@@ -119,7 +94,6 @@ class Planner {
       throw Error("batch " + m_spec.name + ": inputs of " + std::to_string(count) +
                   " sessions are missing: " + missing + (count > 3 ? "; and so on" : "") +
                   "; check --data, [sessions] input and truth_map, or leave these sessions out");
-    if (!m_spec.publishedSessions.empty()) report::readPublishedSessions(m_spec.publishedSessions);
   }
 
   /// A frozen file, as the commands of a task name it, whose outputs depend on it.
@@ -144,7 +118,7 @@ class Planner {
   }
 
   void freeze(const BatchConfiguration& configuration) {
-    const Settings settings = loadSettings(configuration.config, configuration.set);
+    const Settings settings = settingsFor(m_spec, configuration);
     const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), m_groups.size());
     m_group[configuration.name] = group->second;
     if (isNew) m_groups.push_back({configuration.name, mapConfidence(settings)});

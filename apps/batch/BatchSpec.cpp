@@ -68,6 +68,16 @@ class Placeholders {
     const std::string full = filled(text, session);
     return full.empty() ? full : (m_folder / full).lexically_normal().string();
   }
+  /// The same, or an installed file where that is not there. The batch itself is not meant: a batch
+  /// nclt.ini may have config = nclt.ini.
+  std::string installed(const std::string& text, const std::string& session,
+                        const std::string& folder) const {
+    const std::string beside = path(text, session);
+    std::error_code none;
+    if (fs::exists(beside, none) && !fs::equivalent(beside, m_file, none)) return beside;
+    const fs::path found = io::fileOfDataFolder(filled(text, session), folder);
+    return found.empty() ? beside : fs::absolute(found).lexically_normal().string();
+  }
 
  private:
   static void replace(std::string& text, const std::string& what, const std::string& with) {
@@ -105,7 +115,8 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
                       const std::string& where) {
   BatchSession s = text.session;
   s.name = name;
-  s.input = fill.path(s.input, name);
+  s.input =
+      s.source == "simulated" ? fill.installed(s.input, name, "config") : fill.path(s.input, name);
   s.poses = fill.path(s.poses, name);
   s.calib = fill.path(s.calib, name);
   if (s.truthMap != truthFromLabels) s.truthMap = fill.path(s.truthMap, name);
@@ -122,7 +133,18 @@ BatchSession finished(const SessionText& text, const std::string& name, const Pl
   return s;
 }
 
+/// Names as the file itself has them; --set may choose among these.
+std::vector<std::string> namesIn(const ConfigFile& file, const std::string& section,
+                                 const std::string& key) {
+  ConfigReader reader(file);
+  std::string text;
+  reader.section(section, "");
+  reader.text(key, text, "");
+  return words(text);
+}
+
 std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders& fill,
+                                       const std::vector<std::string>& inFile,
                                        const std::string& where) {
   SessionText common;
   common.session.source = "folder";
@@ -141,6 +163,11 @@ std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders&
     own.set = common.set + " " + own.set;
     sessions.push_back(finished(own, name, fill, where));
   }
+  for (const auto& name : inFile) {  // those left out have keys as well
+    SessionText unused = common;
+    reader.section("session " + name, "What is different");
+    bindSession(reader, unused);
+  }
   return sessions;
 }
 
@@ -148,6 +175,10 @@ std::vector<BatchSession> readSessions(ConfigReader& reader, const Placeholders&
 std::vector<std::string> chosen(const std::string& text, const std::vector<BatchSession>& sessions,
                                 const std::string& where) {
   if (text == "first") return {sessions.front().name};
+  if (text == "later" && sessions.size() == 1)
+    throw Error(where + " = later: two sessions or more are needed, [sessions] names has only " +
+                sessions.front().name +
+                "; add one, or choose settings without this one (--set batch.settings=NAMES)");
   std::vector<std::string> names = words(text);
   if (text == "all" || text == "later") {
     names.clear();
@@ -181,38 +212,59 @@ void requireMaps(const BatchConfiguration& configuration, const std::vector<Batc
   }
 }
 
-BatchConfiguration readConfiguration(ConfigReader& reader, const std::string& name,
-                                     const Placeholders& fill,
-                                     const std::vector<BatchSession>& sessions,
-                                     const std::string& where) {
+/// Texts of a configuration as they stand in the file.
+struct ConfigurationText {
   BatchConfiguration configuration;
-  configuration.name = name;
   std::string set, mapSessions = "first", localized = "all";
-  const std::string here = where + "[setting " + name + "] ";
-  reader.section("setting " + name, "One way to map and to localize");
-  reader.text("title", configuration.title, "a sentence for the report");
-  reader.text("config", configuration.config, "INI file, relative to this file");
-  reader.text("set", set, "settings in place of those of config, section.key=value …");
-  reader.text("map_sessions", mapSessions, "names, all, first, or later (all but the first)");
-  reader.text("sessions", localized, "those localized: names, all, later, or none");
-  reader.choice<MapProtocol>("maps", configuration.protocol,
-                             {{MapProtocol::together, "together"},
-                              {MapProtocol::upkeep, "upkeep"},
-                              {MapProtocol::each, "each"}},
-                             "how they come about");
-  reader.choice<MapTime>("map", configuration.map,
-                         {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
-                         "the one that sessions are localized in");
-  reader.choice<MapPoses>("poses", configuration.poses,
-                          {{MapPoses::truth, "truth"}, {MapPoses::estimate, "estimate"}},
-                          "maps = upkeep: poses of updates; estimate: those of the first run");
+};
+
+void bindConfiguration(Binder& b, ConfigurationText& text) {
+  BatchConfiguration& configuration = text.configuration;
+  b.section("setting " + configuration.name, "One way to map and to localize");
+  b.text("title", configuration.title, "a sentence for the report");
+  b.text("config", configuration.config, "INI file: relative to this file, or an installed one");
+  b.text("set", text.set, "settings in place of those of config, section.key=value …");
+  b.text("map_sessions", text.mapSessions, "names, all, first, or later (all but the first)");
+  b.text("sessions", text.localized, "those localized: names, all, later, or none");
+  b.choice<MapProtocol>("maps", configuration.protocol,
+                        {{MapProtocol::together, "together"},
+                         {MapProtocol::upkeep, "upkeep"},
+                         {MapProtocol::each, "each"}},
+                        "how they come about");
+  b.choice<MapTime>("map", configuration.map,
+                    {{MapTime::before, "before"}, {MapTime::finished, "finished"}},
+                    "the one that sessions are localized in");
+  b.choice<MapPoses>("poses", configuration.poses,
+                     {{MapPoses::truth, "truth"}, {MapPoses::estimate, "estimate"}},
+                     "maps = upkeep: poses of updates; estimate: those of the first run");
+}
+
+BatchConfiguration finished(const ConfigurationText& text, const Placeholders& fill,
+                            const std::vector<BatchSession>& sessions, const std::string& here) {
+  BatchConfiguration configuration = text.configuration;
   if (configuration.config.empty())
     throw Error(here + "config is missing (each of [batch] settings has a section of its own)");
-  configuration.config = fill.path(configuration.config, "");
-  configuration.set = words(set);
-  configuration.mapSessions = chosen(mapSessions, sessions, here + "map_sessions");
-  if (localized != "none") configuration.sessions = chosen(localized, sessions, here + "sessions");
+  configuration.config = fill.installed(configuration.config, "", "config");
+  configuration.set = words(text.set);
+  configuration.mapSessions = chosen(text.mapSessions, sessions, here + "map_sessions");
+  if (text.localized != "none")
+    configuration.sessions = chosen(text.localized, sessions, here + "sessions");
   return configuration;
+}
+
+void readConfigurations(ConfigReader& reader, const std::vector<std::string>& names,
+                        const Placeholders& fill, const std::vector<std::string>& inFile,
+                        BatchSpec& spec) {
+  const auto textOf = [&](const std::string& name) {
+    ConfigurationText text;
+    text.configuration.name = name;
+    bindConfiguration(reader, text);
+    return text;
+  };
+  for (const auto& name : names)
+    spec.configurations.push_back(finished(textOf(name), fill, spec.sessions,
+                                           spec.file.string() + ": [setting " + name + "] "));
+  for (const auto& name : inFile) textOf(name);  // those left out have keys as well
 }
 
 /// Sessions with maps of their own are localized in these.
@@ -279,11 +331,14 @@ BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,
                         const std::vector<std::string>& set) {
   const fs::path file = io::installedFile(wanted, "config");
   ConfigFile source = ConfigFile::read(file.string());
+  const auto allSessions = namesIn(source, "sessions", "names");
+  const auto allConfigurations = namesIn(source, "batch", "settings");
   for (const auto& assignment : set) source.set(assignment);
   const std::string where = file.string() + ": ";
   const Placeholders fill(file, data);
   ConfigReader reader(source);
   BatchSpec spec;
+  spec.file = file;
   spec.name = file.stem().string();
   std::string names;
   reader.section("batch", "What is done");
@@ -293,7 +348,7 @@ BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,
   for (const auto& dataset : report::publishedDatasets()) published.push_back(dataset.key);
   reader.choice("published", spec.published, published, "published figures shown beside");
   reader.text("published_sessions", spec.publishedSessions,
-              "CSV of such figures by session, relative to this file");
+              "CSV of such figures by session: relative to this file, or an installed one");
   reader.integer("runs", spec.runs, Range::between(1, 10000), "", "of each session and setting");
   reader.integer("seed", spec.seed, Range::atLeast(0), "", "of all random numbers");
   reader.choice<bool>("errors", spec.perMetre, {{false, "scan"}, {true, "metre"}},
@@ -301,10 +356,10 @@ BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,
   reader.text("settings", names, "names; each has a section of its own");
   requireName(spec.name, where + "[batch] name (the file's unless given)");
   requireNames(words(names), where + "[batch] settings");
-  spec.publishedSessions = fill.path(spec.publishedSessions, "");
-  spec.sessions = readSessions(reader, fill, where);
-  for (const auto& name : words(names))
-    spec.configurations.push_back(readConfiguration(reader, name, fill, spec.sessions, where));
+  if (!spec.publishedSessions.empty())
+    spec.publishedSessions = fill.installed(spec.publishedSessions, "", "published");
+  spec.sessions = readSessions(reader, fill, allSessions, where);
+  readConfigurations(reader, words(names), fill, allConfigurations, spec);
   reader.finish();
   for (const auto& configuration : spec.configurations) {
     const std::string here = where + "[setting " + configuration.name + "] ";

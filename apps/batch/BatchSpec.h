@@ -12,7 +12,8 @@ namespace polemcl::apps {
 
 /// \brief One drive: where it comes from. `[sessions]` holds what all have in common, a section
 /// `[session NAME]` what is different. In all values `{session}` stands for the name, `{data}` for
-/// what `--data` gives, `{here}` for the folder of the batch file; paths are relative to that.
+/// what `--data` gives, `{here}` for the folder of the batch file; paths are relative to that. INI
+/// files and published figures that are not there are looked for among the installed ones.
 struct BatchSession {
   std::string name;
   /// `simulated` (input: its INI), `poles` or `scans` (input: a rawlog, the truth beside it), or a
@@ -66,8 +67,9 @@ struct BatchConfiguration {
 };
 
 struct BatchSpec {
-  std::string name;   ///< of the batch: letters, digits, `_` and `-`
-  std::string title;  ///< for the report
+  std::filesystem::path file;  ///< where it was read
+  std::string name;            ///< of the batch: letters, digits, `_` and `-`
+  std::string title;           ///< for the report
   /// Published figures to show beside: `none`, or a key of PublishedResults.h.
   std::string published = "none";
   std::string publishedSessions;  ///< CSV of published figures by session; empty: none
@@ -87,6 +89,8 @@ bool has(const std::vector<std::string>& names, const std::string& name);
 /// \param data What stands for `{data}`; empty: not given.
 /// \param file The batch, or the name of an installed one such as `batches/year.ini`.
 /// \param set Values in place of the file's, `section.key=value`, as ConfigFile::set() takes them.
+///        They may choose among the file's own sessions and configurations: sections of those that
+///        are not chosen are left out, and only their keys are checked.
 /// \throws Error naming file, section and key: what ConfigReader refuses, names that are given
 ///         twice or have other characters, unknown sessions and configurations, `{data}` without
 ///         `--data`, a session localized in the map before it when no map comes before it, a

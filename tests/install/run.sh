@@ -50,12 +50,19 @@ foreign=$(nm -DC --defined-only "$lib/libpolemcl.so" | cut -d' ' -f3- |
 [ "$own" -ge 100 ] || fail "libpolemcl.so exports $own symbols of polemcl; at least 100 were meant"
 [ "$foreign" -eq 0 ] || fail "libpolemcl.so exports $foreign symbols of other libraries"
 
-echo "2/8 Installed programs, with installed settings and models by their names"
+echo "2/8 Installed programs, with installed settings, models and batches by their names"
 cd "$dir"
 quietly "$bin/pole-simulate" --quiet --config demo.ini --length 60 --output scans
 quietly "$bin/pole-simulate" --quiet --config hdl32e.ini --length 60 --poles poles.rawlog \
   --set simulation.detections=hdl32e.json
 [ -s poles.rawlog ] || fail "no poles were simulated by the installed model"
+# The names of a source tree are found as well; a batch by its name, with what it names.
+quietly "$bin/pole-simulate" --quiet --config config/demo.ini --length 20 --output named
+quietly "$bin/pole-batch" batches/year.ini --quiet --output year --set batch.settings=never --set batch.runs=1 \
+  --set 'sessions.names=may june' --set 'sessions.set=simulation.detections=hdl32e.json world.length_m=120'
+[ -s year/report.html ] || fail "the installed batch left no report"
+mkdir -p nclt/2012-01-08 nclt/2012-01-15
+quietly "$bin/pole-batch" config/batches/nclt.ini --data nclt --dry-run --set 'sessions.names=2012-01-08 2012-01-15'
 if "$bin/pole-simulate" --quiet --config nobody.ini --output none 2>error.txt; then
   fail "settings that do not exist were read"
 fi

@@ -254,6 +254,22 @@ TEST_F(BatchApp, PrintsItsPlan) {
       << outcome.out;
 }
 
+TEST_F(BatchApp, AnInstalledBatchIsDoneByItsName) {
+  BatchOptions options = optionsFor("year");
+  options.batch = "batches/year.ini";
+  options.set = {"batch.settings=never", "batch.runs=1", "sessions.names=may june",
+                 "session june.set=world.day=30",
+                 "sessions.set=simulation.detections=hdl32e.json "
+                 "world.seed=500 world.length_m=120"};
+  doBatch(options);
+  const auto results = resultsIn(*s_folder / "year");
+  EXPECT_EQ(resultOf(results, "never", "june")["runs"][0]["failure"], "");
+  const std::string command = results["command"];
+  EXPECT_EQ(command.rfind("pole-batch batches/year.ini --output OUT --set ", 0), 0u) << command;
+  EXPECT_EQ(readText(*s_folder / "year/batch.ini"),
+            readText(fs::path(POLEMCL_SOURCE_DIR) / "config/batches/year.ini"));
+}
+
 TEST_F(BatchApp, ScoresItsMaps) {
   BatchOptions options = optionsFor("scored");
   // Poles where the first map has them, but for one; and one that it has not.
@@ -263,11 +279,6 @@ TEST_F(BatchApp, ScoresItsMaps) {
     truth += io::fixed(map[i].x, 3) + ',' + io::fixed(map[i].y, 3) + '\n';
   writeText(*s_folder / "truth.csv", truth);
   options.set = {"sessions.truth_map=truth.csv", "batch.runs=1", "batch.settings=once"};
-  std::string text = readText(*s_folder / "street-batch.ini");
-  const auto kept = text.find("[setting kept]");
-  text.erase(kept, text.find("[setting once]") - kept);
-  writeText(*s_folder / "once.ini", text);
-  options.batch = *s_folder / "once.ini";
   doBatch(options);
   const auto results = resultsIn(*s_folder / "scored");
   const auto score = resultOf(results, "once", "s0")["map_score"];

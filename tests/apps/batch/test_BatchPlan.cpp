@@ -347,6 +347,28 @@ TEST(BatchPlan, TheProjectsOwnBatchesCanBePlanned) {
   EXPECT_GE(batches, 6u);
 }
 
+TEST(BatchPlan, NamesWhereAFileIsMissingBeforeTheData) {
+  const TempFolder folder;
+  const auto refusal = [&](const std::string& batch, const std::string& setting) {
+    writeText(folder / "a.ini", "[batch]\nsettings = one\n" + batch +
+                                    "[sessions]\nnames = s t\ninput = /not/there\n"
+                                    "[setting one]\n" +
+                                    setting);
+    return messageOf([&] { planBatch(readBatchSpec(folder / "a.ini")); });
+  };
+  EXPECT_EQ(refusal("", "config = nobody.ini\nsessions = later\n")
+                .rfind("batch a: [setting one] config: " + (folder / "nobody.ini").string() +
+                           " is not there; name a file beside the batch, or an installed one",
+                       0),
+            0u);
+  EXPECT_NE(refusal("", "config = nclt.ini\nset = filter.particles=-1\nsessions = later\n")
+                .find("batch a: [setting one] "),
+            std::string::npos);
+  EXPECT_EQ(refusal("published_sessions = mine.csv\n", "config = nclt.ini\nsessions = later\n")
+                .rfind("batch a: [batch] published_sessions: ", 0),
+            0u);
+}
+
 TEST(BatchPlan, KeysStandForTheBuild) {
   const TempFolder folder;
   const BatchSpec spec = readBatchSpec(writeStreetBatch(folder), "");

@@ -131,9 +131,58 @@ TEST(BatchSpec, LaterSessionsAreAllButTheFirst) {
   const auto spec =
       read("[batch]\nsettings = one\n" + sessions + configuration + "sessions = later\n");
   EXPECT_EQ(spec.configurations[0].sessions, (std::vector<std::string>{"b", "c"}));
-  EXPECT_HAS(refusal("[batch]\nsettings = one\n[sessions]\nnames = a\ninput = x\n" + configuration +
-                     "sessions = later\n"),
-             "sessions: at least one name");
+  EXPECT_HAS(
+      refusal("[batch]\nsettings = one\n[sessions]\nnames = a\ninput = x\n" + configuration +
+              "sessions = later\n"),
+      "[setting one] sessions = later: two sessions or more are needed, [sessions] names has "
+      "only a; ");
+}
+
+TEST(BatchSpec, InstalledFilesAreFoundByTheirNames) {
+  const TempFolder folder;
+  // Called as the settings that it names.
+  writeText(folder / "hdl32e.ini",
+            "[batch]\nsettings = a b own\npublished_sessions = nclt-table3.csv\n"
+            "[sessions]\nnames = s t\nsource = simulated\ninput = config/hdl32e.ini\n"
+            "[session t]\ninput = street.ini\n"
+            "[setting a]\nconfig = hdl32e.ini\nsessions = t\n"
+            "[setting b]\nconfig = config/paper/nclt.ini\nsessions = t\n"
+            "[setting own]\nconfig = nclt.ini\nsessions = t\n");
+  writeText(folder / "nclt.ini", "");
+  const BatchSpec spec = readBatchSpec(folder / "hdl32e.ini");
+  const auto same = [](const fs::path& file, const std::string& inSource) {
+    return fs::equivalent(file, fs::path(POLEMCL_SOURCE_DIR) / inSource);
+  };
+  EXPECT_EQ(spec.file, folder / "hdl32e.ini");
+  EXPECT_TRUE(same(spec.publishedSessions, "share/published/nclt-table3.csv"));
+  EXPECT_TRUE(same(spec.session("s").input, "config/hdl32e.ini"));
+  EXPECT_EQ(spec.session("t").input, folder / "street.ini");
+  EXPECT_TRUE(same(spec.configurations[0].config, "config/hdl32e.ini"));
+  EXPECT_TRUE(same(spec.configurations[1].config, "config/paper/nclt.ini"));
+  EXPECT_EQ(spec.configurations[2].config, folder / "nclt.ini");
+  for (const char* name : {"batches/year.ini", "config/batches/year.ini"})
+    EXPECT_TRUE(same(readBatchSpec(name).file, "config/batches/year.ini")) << name;
+}
+
+TEST(BatchSpec, ValuesGivenMayChooseAmongWhatTheFileHas) {
+  const TempFolder folder;
+  writeText(folder / "a.ini", "[batch]\nsettings = one two\n" + sessions +
+                                  "[session c]\ndate = 2026-01-01\n" + configuration +
+                                  "map_sessions = first\nsessions = later\n"
+                                  "[setting two]\nconfig = d.ini\nsessions = c\n");
+  const auto with = [&](const std::vector<std::string>& set) {
+    return readBatchSpec(folder / "a.ini", {}, set);
+  };
+  const BatchSpec spec = with({"batch.settings=one", "sessions.names=a b"});
+  ASSERT_EQ(spec.configurations.size(), 1u);
+  EXPECT_EQ(spec.configurations[0].sessions, std::vector<std::string>{"b"});
+  EXPECT_EQ(spec.sessions.size(), 2u);
+  // What the file itself does not list stays an error, and so do keys of what is left out.
+  EXPECT_HAS(messageOf([&] {
+               with({"batch.settings=one", "session d.every=2"});
+             }),
+             "[session d] is not known");
+  EXPECT_HAS(messageOf([&] { with({"batch.settings=one", "setting two.confg=x"}); }), "confg");
 }
 
 TEST(BatchSpec, MapsAloneAndMapsOfEachNeedSense) {

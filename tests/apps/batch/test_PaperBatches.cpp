@@ -29,10 +29,13 @@ class PaperBatches : public testing::Test {
   }
 
   nlohmann::json run(const std::string& batch, const std::vector<std::string>& set) {
+    return runFile(fs::path(POLEMCL_SOURCE_DIR) / "config/batches" / (batch + ".ini"), set);
+  }
+  nlohmann::json runFile(const fs::path& batch, const std::vector<std::string>& set) {
     BatchOptions options;
-    options.batch = fs::path(POLEMCL_SOURCE_DIR) / "config/batches" / (batch + ".ini");
+    options.batch = batch;
     options.data = data.path();
-    options.output = output / batch;
+    options.output = output / batch.stem().string();
     options.set = set;
     options.quiet = true;
     try {
@@ -127,6 +130,21 @@ TEST_F(PaperBatches, TableOneOfNclt) {
   // The paper's 0.115 m and 20.4 cm of these sessions, in the unit of the column.
   EXPECT_NE(report.find("<td>11.5</td>"), std::string::npos);
   EXPECT_NE(report.find("<td>20.4</td>"), std::string::npos);
+  // What the rows are means of, not what the whole batch would be.
+  EXPECT_NE(report.find("2 sessions, 1 run of each. One map of 2 sessions"), std::string::npos);
+  const std::string latex = readText(output / "nclt/table.tex");
+  EXPECT_NE(latex.find("\\emph{ours-strict}: 1 session, 1 run. Each session"), std::string::npos);
+  EXPECT_EQ(latex.find("27 sessions"), latex.rfind("27 sessions"));  // the published ones
+
+  // The variation on the page about batches, in a folder without any other file.
+  const std::string page = readText(fs::path(POLEMCL_SOURCE_DIR) / "share/doc/batch.md");
+  const auto at = page.find("```ini\n", page.find("## NCLT with a variation of mine")) + 7;
+  writeText(output / "own/mine.ini", page.substr(at, page.find("```", at) - at));
+  const auto mine = runFile(output / "own/mine.ini", {"batch.settings=mine", "batch.runs=1",
+                                                      "sessions.names=2012-01-08 2012-01-15"});
+  expectLocalized(mine, 0.15);
+  ASSERT_EQ(mine["settings"].size(), 1u);
+  expectRows({"Schaefer et al. 2019", "Dong et al. 2021", "polemcl, mine"});
 }
 
 TEST_F(PaperBatches, TableOneOfSemanticKitti) {

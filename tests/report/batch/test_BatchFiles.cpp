@@ -160,7 +160,13 @@ TEST(BatchFiles, LatexTableHoldsThePapersColumns) {
             std::string::npos)
       << text;
   EXPECT_NE(text.find("two\\_2 & 25.0 & 0.400 & 0.800 & 0.800 & 1.600 \\\\\n"), std::string::npos);
-  EXPECT_NE(text.find("6 runs, 2 lost, 1 failed."), std::string::npos);
+  EXPECT_NE(text.find("3 sessions, 2 runs of each, 2 lost, 1 failed. paper: own data in the map.}"),
+            std::string::npos);
+  EXPECT_NE(text.find("published results and those of this batch. Published: Evaluated at every"),
+            std::string::npos);
+  EXPECT_NE(text.find("This batch: \\emph{plain}: 3 sessions, 2 runs of each, 2 lost, 1 failed. "
+                      "paper: own data in the map. \\emph{up\\_keep 100 \\%}: 1 session, 1 run.}"),
+            std::string::npos);
   EXPECT_NE(text.find("Dong et al. 2021 & -- & 48.0 & 0.270 \\\\\n"), std::string::npos);
   EXPECT_NE(text.find("polemcl, up\\_keep 100 \\% & 0.400 & 7.1 & 1.000 \\\\\n"), std::string::npos)
       << text;
@@ -180,6 +186,9 @@ TEST(BatchFiles, LatexTablesHoldScoresAndPublishedSessions) {
                                                                       << text;
   };
   expectRow("Dong et al. 2021 & 0.525 & 0.713 & 0.605 & -- & -- & -- & -- & -- & --");
+  EXPECT_NE(text.find("This batch: \\emph{plain}: 1 map. paper: own data in the map. "
+                      "\\emph{up\\_keep 100 \\%}: 1 map.}"),
+            std::string::npos);
   expectRow(
       "polemcl, plain & 0.750 & 0.600 & 0.667 & 0.625 & 0.500 & 0.556 & 0.500 & 0.400 & 0.444");
   expectRow(

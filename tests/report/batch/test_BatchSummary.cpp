@@ -85,6 +85,14 @@ TEST(BatchSummary, ScoresAreMeansOverTheMaps) {
   EXPECT_TRUE(std::isnan(summarize(smallBatch())[0].scores.near.f1));
 }
 
+TEST(BatchSummary, SharesOfTheMapAreThoseOfTheLocalizedSessions) {
+  BatchResults batch = smallBatch();
+  batch.results[0].runs.clear();  // mapped only
+  EXPECT_EQ(summarize(batch)[0].mapShare.mean, 0.25);
+  for (SessionResult& result : batch.results) result.runs.clear();
+  EXPECT_EQ(summarize(batch)[0].mapShare.mean, 0.625);
+}
+
 TEST(BatchSummary, OneSessionHasNothingToCompareTheLastWith) {
   const ConfigurationSummary upkeep = summarize(smallBatch())[1];
   ASSERT_EQ(upkeep.sessions.size(), 1u);

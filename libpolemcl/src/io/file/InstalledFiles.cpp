@@ -33,14 +33,21 @@ fs::path programFolder() {
   return fs::read_symlink("/proc/self/exe").parent_path();
 }
 
+fs::path fileOfDataFolder(const fs::path& file, const std::string& folder) {
+  if (file.empty() || file.is_absolute()) return {};
+  std::error_code ignored;
+  for (const fs::path& data : dataFolders()) {
+    if (fs::is_regular_file(data / folder / file, ignored)) return data / folder / file;
+    if (*file.begin() == folder && fs::is_regular_file(data / file, ignored)) return data / file;
+  }
+  return {};
+}
+
 fs::path installedFile(const fs::path& file, const std::string& folder) {
   std::error_code ignored;
-  if (file.empty() || file.is_absolute() || fs::exists(file, ignored)) return file;
-  for (const fs::path& data : dataFolders()) {
-    fs::path candidate = data / folder / file;
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
-  }
-  return file;
+  if (file.empty() || fs::exists(file, ignored)) return file;
+  const fs::path installed = fileOfDataFolder(file, folder);
+  return installed.empty() ? file : installed;
 }
 
 fs::path installedModule(const std::string& name) {

@@ -10,13 +10,21 @@ namespace polemcl::io {
 /// \brief The folder of the running program, links resolved.
 std::filesystem::path programFolder();
 
-/// \brief A file by its path, or by its name among the files installed with the programs.
+/// \brief A file by its name among those installed with the programs, whatever the working folder
+/// holds.
 ///
-/// A path to an existing file is returned as it is. Another relative path is looked for in
-/// `../share/polemcl/FOLDER` beside the folder of the program, then in `share/polemcl/FOLDER` of
-/// the three folders above this library or module, then in the data folder chosen when it was
-/// built. \param folder `config` or `models`. \return `file` as it is when it is found nowhere, so
-/// that messages name what the user typed.
+/// It is looked for in `../share/polemcl/FOLDER` beside the folder of the program, then in
+/// `share/polemcl/FOLDER` of the three folders above this library or module, then in the data folder
+/// chosen when it was built. The name may begin with FOLDER, as in a source tree:
+/// `config/nclt.ini`. \param folder `config`, `models` or `published`. \return Empty when it is in
+/// neither, or when `file` is empty or absolute.
+std::filesystem::path fileOfDataFolder(const std::filesystem::path& file,
+                                       const std::string& folder);
+
+/// \brief A file by its path, or by its name among the installed ones.
+///
+/// A path to an existing file is returned as it is; another one is given to fileOfDataFolder().
+/// \return `file` as it is when it is found nowhere, so that messages name what the user typed.
 std::filesystem::path installedFile(const std::filesystem::path& file, const std::string& folder);
 
 /// \brief A module, by its name, that is loaded when it is needed: beside the program, in `../lib`

@@ -21,10 +21,17 @@ std::string latexWithSpread(const MetricColumn& column, const Spread& spread) {
   return '$' + number(column, spread.mean) + " \\pm " + number(column, spread.deviation) + '$';
 }
 
-/// What went wrong, for the caption; figures without it would flatter.
-std::string losses(const RunCounts& counts) {
-  return std::to_string(counts.runs) + " runs, " + std::to_string(counts.lost) + " lost, " +
-         std::to_string(counts.failed) + " failed.";
+/// What the rows of this batch are, for captions: the settings with their sessions, runs and maps.
+template <typename Text>
+std::string rowsOfThisBatch(const BatchResults& results, const Summaries& summaries,
+                            const Text& textOf) {
+  std::string text = " This batch:";
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    const BatchConfiguration& configuration = results.configurations[i];
+    const std::string row = textOf(configuration, summaries[i]);
+    if (!row.empty()) text += " \\emph{" + latexText(configuration.name) + "}: " + latexText(row);
+  }
+  return text;
 }
 
 void beginTable(std::ostream& out, const std::string& caption, const std::string& columns) {
@@ -45,9 +52,12 @@ void writeConfiguration(std::ostream& out, const BatchResults& results, std::siz
   std::string caption = latexText(results.title) + ", setting \\emph{" +
                         latexText(configuration.name) +
                         "}. Mean and standard deviation over the runs of each session. ";
-  if (!configuration.protocol.empty()) caption += latexText(sentence(configuration.protocol)) + " ";
-  if (systems > 0) caption += "Published means beside ours, and below over the same sessions. ";
-  beginTable(out, caption + losses(summary.counts), "lr" + std::string(4 * (1 + systems), 'r'));
+  caption += latexText(rowText(configuration, summary));
+  if (systems > 0)
+    caption +=
+        " Published means of each session beside them, and below over the sessions of this table "
+        "alone.";
+  beginTable(out, caption, "lr" + std::string(4 * (1 + systems), 'r'));
   out << "    Session & $f_\\mathrm{map}$ [\\%]";
   std::vector<MetricColumn> units;
   for (const SessionColumn& column : sessionColumns) {
@@ -94,6 +104,11 @@ void writeScores(std::ostream& out, const BatchResults& results, const Published
                         "pole within 1 m) and one to one within 1 m and 0.5 m.";
   if (dataset && !dataset->maps.empty())
     caption += " Published: " + latexText(dataset->mapProtocol);
+  caption += rowsOfThisBatch(
+      results, summaries,
+      [](const BatchConfiguration& configuration, const ConfigurationSummary& summary) {
+        return summary.scores.maps > 0 ? scoreRowText(configuration, summary) : std::string();
+      });
   beginTable(out, caption, 'l' + std::string(9, 'r'));
   out << "    System & P & R & F1 & P & R & F1 & P & R & F1 \\\\\n    \\midrule\n";
   if (dataset)
@@ -117,10 +132,10 @@ void writeScores(std::ostream& out, const BatchResults& results, const Published
 void writeComparison(std::ostream& out, const BatchResults& results,
                      const PublishedDataset& dataset, const Summaries& summaries) {
   const std::vector<ComparedColumn> columns = comparedColumns(dataset);
-  beginTable(
-      out,
-      latexText(dataset.title) + ": published figures and ours. " + latexText(dataset.protocol),
-      'l' + std::string(columns.size(), 'r'));
+  beginTable(out,
+             latexText(dataset.title) + ": published results and those of this batch. Published: " +
+                 latexText(dataset.protocol) + rowsOfThisBatch(results, summaries, rowText),
+             'l' + std::string(columns.size(), 'r'));
   out << "    System";
   std::vector<MetricColumn> units;
   for (const ComparedColumn& column : columns) {
@@ -187,7 +202,10 @@ void writeLatexTable(const std::filesystem::path& file, const BatchResults& resu
     if (summaries[i].counts.runs > 0) writeConfiguration(out.stream(), results, i, summaries[i]);
   const PublishedDataset* dataset = publishedResults(results.dataset);
   writeScores(out.stream(), results, dataset, summaries);
-  if (dataset && !dataset->figures.empty())
+  const bool localized =
+      std::any_of(summaries.begin(), summaries.end(),
+                  [](const ConfigurationSummary& summary) { return summary.counts.runs > 0; });
+  if (dataset && !dataset->figures.empty() && localized)
     writeComparison(out.stream(), results, *dataset, summaries);
   out.commit();
 }

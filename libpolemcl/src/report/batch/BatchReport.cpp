@@ -3,6 +3,7 @@
 
 #include "io/file/AtomicFile.h"
 #include "report/batch/BatchFiles.h"
+#include "report/batch/ComparedResults.h"
 #include "report/batch/Html.h"
 #include "report/batch/NumberFormat.h"
 #include "report/batch/PublishedResults.h"
@@ -61,10 +62,11 @@ Section configurationsSection(Page& page) {
 Section publishedSection(const Page& page) {
   const PublishedDataset* dataset = publishedResults(page.results.dataset);
   if (!dataset || dataset->figures.empty() || !page.localized()) return {};
-  return {"published", "Published figures beside ours",
-          paragraph(escaped(dataset->protocol)) + publishedTable(page.results, page.summaries) +
+  return {"published", "Published results and those of this batch",
+          paragraph("Published: " + escaped(dataset->protocol)) +
+              publishedTable(page.results, page.summaries) +
               paragraph("A dash: not published. Figures are comparable only under the same "
-                        "protocol; ours is named with each setting below.",
+                        "protocol and over the same sessions.",
                         "note")};
 }
 
@@ -76,14 +78,21 @@ Section scoresSection(const Page& page) {
   std::string content;
   if (dataset && !dataset->maps.empty())
     content += paragraph("Published: " + escaped(dataset->mapProtocol));
-  content +=
-      table + paragraph(
-                  "P is the share of a map's poles that are true ones, R the share of the true "
-                  "ones that it has, F1 their harmonic mean. The authors count a map pole with "
-                  "a true one within 1\xC2\xA0m as found, in P and in R, so that two map poles "
-                  "may share a true one. One to one, each pole is matched at most once. A "
-                  "dash: not published.",
-                  "note");
+  std::string rows;
+  for (std::size_t i = 0; i < page.summaries.size(); ++i)
+    if (page.summaries[i].scores.maps > 0)
+      rows += element("li", "polemcl, " +
+                                escaped(page.configuration(i).name + ": " +
+                                        scoreRowText(page.configuration(i), page.summaries[i]))) +
+              '\n';
+  content += table + element("ul", "class=\"note\"", '\n' + rows) + '\n' +
+             paragraph(
+                 "P is the share of a map's poles that are true ones, R the share of the true "
+                 "ones that it has, F1 their harmonic mean. The authors count a map pole with "
+                 "a true one within 1\xC2\xA0m as found, in P and in R, so that two map poles "
+                 "may share a true one. One to one, each pole is matched at most once. A "
+                 "dash: not published.",
+                 "note");
   const std::string every = everyScoreTable(page.results);
   if (!every.empty()) content += foldable("Map by map", every, true);
   return {"scores", "Map scores", content};
@@ -203,34 +212,38 @@ Section terms(const Page& page) {
   };
   return {
       "terms", "What the figures mean",
-      element("dl", "class=\"terms\"",
-              '\n' +
-                  term("<i>f</i><sub>map</sub>",
-                       "Share of a session's scans that were used to build the map.") +
-                  term("Δ<sub>pos</sub>, RMSE<sub>pos</sub>",
-                       "Mean and root mean square of the distance between estimate and truth "
-                       "in the plane, the first metres until the filter has converged "
-                       "included.") +
-                  term("Δ<sub>ang</sub>, RMSE<sub>ang</sub>",
-                       "The same for the absolute heading error.") +
-                  term("Δ<sub>lat</sub>, Δ<sub>lon</sub>, σ<sub>lat</sub>, σ<sub>lon</sub>",
-                       "Means of the absolute errors across and along the true heading, and "
-                       "standard deviations of the signed ones.") +
-                  term("RMSE per axis",
-                       "Root of half the mean of <i>x</i>² + <i>y</i>²: the position RMSE "
-                       "divided by √2.") +
-                  term("mean ± spread",
-                       "Mean and standard deviation over the runs of a session, which differ "
-                       "in their seeds. Means over sessions give every session the same "
-                       "weight.") +
-                  term("lost", "No pose could be compared, or the position error is larger than " +
-                                   metricText(page.results.lostBound, 1) +
-                                   "\xC2\xA0m on average or at the end of the run. In the table of "
-                                   "health: what the run said of itself, scan by scan.") +
-                  term("m, cm",
-                       "A column of position errors is in centimetres if any of them is below "
-                       "0.1\xC2\xA0m: these have two significant digits.") +
-                  term("failed", "The run has no result: its task ended with an error."))};
+      element(
+          "dl", "class=\"terms\"",
+          '\n' +
+              term("<i>f</i><sub>map</sub>",
+                   "Share of a session's scans that were used to build the map; its mean is over "
+                   "the localized sessions. A dash: there is no map with the session in it, as "
+                   "where it is localized before it goes into the map and none comes after "
+                   "it.") +
+              term("Δ<sub>pos</sub>, RMSE<sub>pos</sub>",
+                   "Mean and root mean square of the distance between estimate and truth "
+                   "in the plane, the first metres until the filter has converged "
+                   "included.") +
+              term("Δ<sub>ang</sub>, RMSE<sub>ang</sub>",
+                   "The same for the absolute heading error.") +
+              term("Δ<sub>lat</sub>, Δ<sub>lon</sub>, σ<sub>lat</sub>, σ<sub>lon</sub>",
+                   "Means of the absolute errors across and along the true heading, and "
+                   "standard deviations of the signed ones.") +
+              term("RMSE per axis",
+                   "Root of half the mean of <i>x</i>² + <i>y</i>²: the position RMSE "
+                   "divided by √2.") +
+              term("mean ± spread",
+                   "Mean and standard deviation over the runs of a session, which differ "
+                   "in their seeds. Means over sessions give every session the same "
+                   "weight.") +
+              term("lost", "No pose could be compared, or the position error is larger than " +
+                               metricText(page.results.lostBound, 1) +
+                               "\xC2\xA0m on average or at the end of the run. In the table of "
+                               "health: what the run said of itself, scan by scan.") +
+              term("m, cm",
+                   "A column of position errors is in centimetres if any of them is below "
+                   "0.1\xC2\xA0m: these have two significant digits.") +
+              term("failed", "The run has no result: its task ended with an error."))};
 }
 
 std::string headOfPage(const Page& page, const std::vector<Section>& sections) {
@@ -247,7 +260,7 @@ std::string headOfPage(const Page& page, const std::vector<Section>& sections) {
                      element("p", "class=\"meta\"",
                              plural(results.sessions.size(), "session") + ", " +
                                  plural(results.configurations.size(), "setting") + ", " +
-                                 plural(runCount, "run") +
+                                 plural(runCount, "run") + (runCount > 1 ? " in all" : "") +
                                  (results.date.empty() ? "" : " · " + escaped(results.date))) +
                      '\n' + headlines(results, page.summaries) +
                      configurationCards(results, page.summaries) +

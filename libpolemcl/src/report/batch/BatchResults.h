@@ -140,7 +140,7 @@ struct FailedTask {
 /// \brief A whole batch.
 struct BatchResults {
   std::string name;     ///< "nclt"
-  std::string title;    ///< "NCLT: 27 sessions over 15 months"
+  std::string title;    ///< "NCLT, long-term localization"
   std::string dataset;  ///< key of published figures (PublishedResults.h), or empty
   std::vector<PublishedSession> published;  ///< figures by session, system after system
   std::string date;                         ///< only if the caller gives one

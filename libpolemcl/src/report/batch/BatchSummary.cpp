@@ -71,13 +71,16 @@ Spread overSessions(const std::vector<SessionSummary>& sessions, Spread MetricSp
 
 void sumUp(ConfigurationSummary& configuration) {
   std::vector<double> shares, means;
+  const bool localizes =
+      std::any_of(configuration.sessions.begin(), configuration.sessions.end(),
+                  [](const SessionSummary& session) { return session.counts.runs > 0; });
   for (const SessionSummary& session : configuration.sessions) {
     const RunCounts& counts = session.counts;
     configuration.counts.runs += counts.runs;
     configuration.counts.lost += counts.lost;
     configuration.counts.failed += counts.failed;
     configuration.lostSessions += counts.runs > 0 && counts.lost + counts.failed == counts.runs;
-    shares.push_back(session.mapShare);
+    if (!localizes || counts.runs > 0) shares.push_back(session.mapShare);
     if (session.figures.posMean.count > 0) means.push_back(session.figures.posMean.mean);
   }
   configuration.localized = means.size();

@@ -66,7 +66,7 @@ struct ConfigurationSummary {
   /// Over the sessions' means: every session has the same weight, as in the paper. `largest` is
   /// that of all runs.
   MetricSpreads figures;
-  Spread mapShare;
+  Spread mapShare;  ///< over the localized sessions, as the errors; over all if there are none
   ScoreSummary scores;
   /// posMean of the last localized session over that of the first; none with less than two.
   double lastOverFirst = noFigure;

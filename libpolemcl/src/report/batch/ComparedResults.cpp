@@ -3,7 +3,39 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/batch/NumberFormat.h"
+
 namespace polemcl::report {
+namespace {
+
+/// "1 run", "2 runs"; digits alone, for LaTeX as well.
+std::string counted(std::size_t count, const std::string& word) {
+  return std::to_string(count) + ' ' + word + (count == 1 ? "" : "s");
+}
+
+/// "2 sessions, 10 runs of each", "3 sessions, 7 runs in all", "1 session, 1 run".
+std::string sampleText(const ConfigurationSummary& summary) {
+  std::size_t sessions = 0, most = 0;
+  for (const SessionSummary& session : summary.sessions) {
+    sessions += session.counts.runs > 0;
+    most = std::max(most, session.counts.runs);
+  }
+  if (sessions == 0) return "no session localized";
+  const std::string runs = sessions == 1 ? counted(most, "run")
+                           : summary.counts.runs == most * sessions
+                               ? counted(most, "run") + " of each"
+                               : counted(summary.counts.runs, "run") + " in all";
+  const std::string figures =
+      summary.localized < sessions ? std::to_string(summary.localized) + " with figures of " : "";
+  return figures + counted(sessions, "session") + ", " + runs;
+}
+
+std::string withProtocol(const std::string& text, const BatchConfiguration& configuration) {
+  const std::string& protocol = configuration.protocol;
+  return text + '.' + (protocol.empty() ? "" : ' ' + sentence(protocol));
+}
+
+}  // namespace
 
 std::vector<ComparedColumn> comparedColumns(const PublishedDataset& dataset) {
   using P = PublishedResult;
@@ -47,6 +79,19 @@ double PublishedRows::mean(std::size_t system, const ConfigurationSummary& confi
   for (const SessionSummary& session : configuration.sessions)
     if (session.figures.posMean.count > 0) values.push_back(figure(system, session, wanted));
   return spreadOf(values).mean;
+}
+
+std::string rowText(const BatchConfiguration& configuration, const ConfigurationSummary& summary) {
+  std::string text = sampleText(summary);
+  if (summary.counts.lost > 0) text += ", " + std::to_string(summary.counts.lost) + " lost";
+  if (summary.counts.failed > 0) text += ", " + std::to_string(summary.counts.failed) + " failed";
+  return withProtocol(text, configuration);
+}
+
+std::string scoreRowText(const BatchConfiguration& configuration,
+                         const ConfigurationSummary& summary) {
+  const std::size_t maps = summary.scores.maps;
+  return withProtocol((maps > 1 ? "Mean of " : "") + counted(maps, "map"), configuration);
 }
 
 PublishedRows publishedRows(const BatchResults& results) {

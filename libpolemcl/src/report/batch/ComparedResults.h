@@ -56,6 +56,13 @@ struct PublishedRows {
 };
 PublishedRows publishedRows(const BatchResults& results);
 
+/// \brief What a row of this batch is a mean of, as plain text: "2 sessions, 10 runs of each, 1
+/// lost. One map of 2 sessions."
+std::string rowText(const BatchConfiguration& configuration, const ConfigurationSummary& summary);
+/// \brief The same for the scores of its maps: "Mean of 11 maps. A map of each session."
+std::string scoreRowText(const BatchConfiguration& configuration,
+                         const ConfigurationSummary& summary);
+
 /// \brief The figures of a column that decide on its unit: ours and those published.
 MetricColumn unitOf(const SessionColumn& column, const ConfigurationSummary& configuration,
                     const PublishedRows& published);

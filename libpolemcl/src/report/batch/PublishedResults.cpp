@@ -1,6 +1,7 @@
 #include "report/batch/PublishedResults.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/CsvTable.h"
@@ -84,7 +85,7 @@ PublishedDataset mulran() {
       "mulran-kaist",
       "MulRan, KAIST 01 localized in a map of KAIST 02",
       "Evaluated at every scan. The authors' code averages squares over the axes, so that 0.48 m "
-      "per axis stands for about 0.68 m in the plane; ours is given both ways.",
+      "per axis stands for about 0.68 m in the plane; that of this batch is given both ways.",
       {first, chen, second},
       "",
       {}};
@@ -104,8 +105,28 @@ const PublishedDataset* publishedResults(const std::string& key) {
   return found == all.end() ? nullptr : &*found;
 }
 
+namespace {
+
+constexpr const char* sessionTableColumns =
+    "system,session,f_map,pos_mean,pos_rmse,ang_mean_deg,ang_rmse_deg";
+
+/// All that are missing at once.
+void requireSessionColumns(const io::CsvTable& table, const std::filesystem::path& file) {
+  std::istringstream wanted(sessionTableColumns);
+  std::string missing;
+  for (std::string name; std::getline(wanted, name, ',');)
+    if (!table.find(name)) missing += (missing.empty() ? "" : ",") + name;
+  if (!missing.empty())
+    throw Error(file.string() + ": columns are missing: " + missing +
+                "; the first line must name " + sessionTableColumns +
+                " (m and degrees; f_map a share; fields may be empty)");
+}
+
+}  // namespace
+
 std::vector<PublishedSession> readPublishedSessions(const std::filesystem::path& file) {
   const io::CsvTable table(file);
+  requireSessionColumns(table, file);
   const std::pair<const char*, double PublishedSession::*> columns[] = {
       {"f_map", &PublishedSession::mapShare},
       {"pos_mean", &PublishedSession::posMean},

@@ -77,7 +77,7 @@ std::string configurationsTable(const BatchResults& results, const Summaries& su
   const MetricColumn largest = columnOf(Quantity::length, [](const ConfigurationSummary& summary) {
     return summary.figures.posMax.largest;
   });
-  head.insert(head.end(), {{largest.head("Largest")}, {"Last against first"}, {"Runs"}});
+  head.insert(head.end(), {{largest.head("Largest")}, {"Last against first"}, {"Runs in all"}});
   table.head(head);
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     const ConfigurationSummary& summary = summaries[i];
@@ -155,12 +155,12 @@ class SessionRows {
   void head(HtmlTable& table) const {
     const std::size_t systems = m_published.systems.size();
     std::vector<HeadCell> groups{{""}, {"<i>f</i><sub>map</sub> (%)", 1 + m_withShares.size()}};
-    std::vector<HeadCell> names{{"Session"}, {"ours"}};
+    std::vector<HeadCell> names{{"Session"}, {"this run"}};
     for (std::size_t system : m_withShares)
       names.push_back({firstWord(m_published.systems[system])});
     for (std::size_t i = 0; i < m_columns.size(); ++i) {
       groups.push_back({m_columns[i].head(sessionColumns[i].html), 1 + systems});
-      names.push_back({"ours"});
+      names.push_back({"this run"});
       for (const std::string& system : m_published.systems) names.push_back({firstWord(system)});
     }
     groups.push_back({systems > 0 ? "" : "Runs"});
@@ -189,7 +189,7 @@ class SessionRows {
         [&](std::size_t system, double PublishedSession::*figure) {
           return m_published.mean(system, m_configuration, figure);
         },
-        runsText(m_configuration.counts));
+        runsText(m_configuration.counts) + " in all");
   }
   std::string caption() const {
     std::string text = ": mean ± standard deviation over the runs of each session";
@@ -197,7 +197,7 @@ class SessionRows {
     text += ", and the means published: ";
     for (std::size_t i = 0; i < m_published.systems.size(); ++i)
       text += (i == 0 ? "" : ", ") + m_published.systems[i];
-    return text + ". Published means below are over the same sessions.";
+    return text + ". Published means below are over the sessions of this table alone.";
   }
 
  private:
@@ -241,7 +241,7 @@ std::string publishedTable(const BatchResults& results, const Summaries& summari
   const PublishedDataset* dataset = publishedResults(results.dataset);
   if (!dataset || dataset->figures.empty()) return "";
   const std::vector<ComparedColumn> columns = comparedColumns(*dataset);
-  HtmlTable table(dataset->title + ": published figures, and ours below.");
+  HtmlTable table(dataset->title + ": published results, and those of this batch below.");
   std::vector<HeadCell> head{{"System"}};
   std::vector<MetricColumn> units;
   for (const ComparedColumn& column : columns) {
@@ -268,8 +268,7 @@ std::string publishedTable(const BatchResults& results, const Summaries& summari
     table.row(cells, "ours");
     const std::string& description = results.configurations[i].description;
     remark(ours, (description.empty() ? "" : sentence(escaped(description)) + ' ') +
-                     plural(summaries[i].localized, "session") +
-                     ", runs: " + runsText(summaries[i].counts));
+                     escaped(rowText(results.configurations[i], summaries[i])));
   }
   return table.str() + element("ul", "class=\"note\"", '\n' + remarks) + '\n';
 }

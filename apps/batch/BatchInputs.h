@@ -1,0 +1,24 @@
+#pragma once
+/// \file BatchInputs.h
+/// \brief The files that a batch needs before anything is done.
+
+#include <string>
+
+#include "batch/BatchSpec.h"
+#include "cli/Settings.h"
+
+namespace polemcl::apps {
+
+/// \brief What is wrong with a session's input; empty when nothing is.
+/// \param scored Whether its true poles (truthMap) are needed as well.
+std::string inputObstacle(const BatchSession& session, bool scored);
+
+/// \brief The settings of a configuration. \throws Error as loadSettings(), naming batch and
+/// configuration, and when its config is not there.
+Settings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration);
+
+/// \brief Reads the published figures of a batch, if it has any. \throws Error as
+/// report::readPublishedSessions(), naming batch and key.
+void requirePublished(const BatchSpec& spec);
+
+}  // namespace polemcl::apps
