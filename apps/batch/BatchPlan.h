@@ -84,8 +84,8 @@ struct BatchPlan {
 /// use them and have the same `[sensor] [extraction] [range_image] [scan_line]`; maps are built
 /// once for all sessions and runs. Maps that a configuration's last map session completes (with
 /// `maps = each`: all) are scored where that session has a truthMap. \throws Error as
-/// loadSettings() and readPublishedSessions(), and when the input or the true
-///         poles of a session are not there (all that are missing are named).
+/// settingsFor() and requirePublished(), and when the input or the true poles of a session are not
+/// there (their number and the first three are named).
 /// \param build Build of the programs that do the tasks. Tasks done by another build are open.
 BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdentity());
 
