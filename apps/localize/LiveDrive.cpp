@@ -1,13 +1,18 @@
 #include "localize/LiveDrive.h"
 
+#include <mrpt/obs/CObservationOdometry.h>
+
 #include <atomic>
 #include <csignal>
+#include <mutex>
 
 #include "cli/Progress.h"
 #include "io/file/InstalledFiles.h"
+#include "io/file/TextFile.h"
 #include "mrpt/live/LiveQueue.h"
 #include "mrpt/live/LiveSensors.h"
 #include "mrpt/rawlog/EntryStream.h"
+#include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl::apps {
 namespace {
@@ -37,25 +42,91 @@ class EndSignals {
   struct sigaction m_interrupt, m_terminate;
 };
 
+/// Notices that nothing is consumed, and says what the sensors do not give.
+class GapWatch {
+ public:
+  explicit GapWatch(const LiveDriveOptions& drive) : m_drive(drive) {}
+
+  void observed(const mrpt::obs::CObservation& observation) {
+    const std::lock_guard lock(m_mutex);
+    if (isScan(observation))
+      m_scan = Clock::now();
+    else if (dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation))
+      m_odometry = Clock::now();
+  }
+  void consume(const PoleScan& scan, const std::function<void(const PoleScan&)>& consume) {
+    setBusy(true);
+    consume(scan);
+    setBusy(false);
+  }
+  /// Called every few milliseconds.
+  void look() {
+    std::string warning;
+    {
+      const std::lock_guard lock(m_mutex);
+      if (m_isBusy || secondsSince(m_told) < m_drive.longestGap) return;
+      m_told = Clock::now();
+      if (!m_isWarned) warning = text();
+      m_isWarned = true;
+    }
+    if (m_drive.gap) m_drive.gap();
+    if (!warning.empty() && m_drive.warn) m_drive.warn(warning);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void setBusy(bool isBusy) {
+    const std::lock_guard lock(m_mutex);
+    m_isBusy = isBusy;
+    m_isWarned = false;
+    m_told = Clock::now();
+  }
+  std::string text() const {
+    const std::string time = " for " + io::fixed(m_drive.longestGap, 1) + " s";
+    const std::string file = m_drive.sensors.string() + ": ";
+    const double silent = m_drive.longestGap / 2;  // not all fall silent at the same moment
+    const bool noScan = secondsSince(m_scan) >= silent;
+    const bool noOdometry = secondsSince(m_odometry) >= silent;
+    if (noScan && noOdometry) return file + "no scan and no odometry" + time;
+    if (noScan) return file + "no scan" + time;
+    if (noOdometry) return file + "no odometry" + time + ": scans without it are left out";
+    return file + "no scan has odometry of its time" + time + ": check the clocks";
+  }
+
+  const LiveDriveOptions& m_drive;
+  std::mutex m_mutex;  ///< of all below
+  Clock::time_point m_scan = Clock::now(), m_odometry = m_scan, m_told = m_scan;
+  bool m_isBusy = false, m_isWarned = false;
+};
+
 }  // namespace
 
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
                               const std::function<void(const PoleScan&)>& consume) {
   const EndSignals signals;
   const auto begin = ScanClock::now();
+  GapWatch watch(drive);
   LiveQueueOptions queueOptions;
   queueOptions.goesOn = [&] {
-    return !s_signalled && !(drive.seconds > 0 && secondsSince(begin) >= drive.seconds);
+    watch.look();
+    return !s_signalled && !(drive.seconds > 0 && secondsSince(begin) >= drive.seconds) &&
+           (!drive.goesOn || drive.goesOn());
   };
   for (const LidarOptions& lidar : options.vehicle.lidars)
     queueOptions.lidars.push_back(lidar.label);
   const auto queue = std::make_shared<LiveQueue>(queueOptions);
-  const auto sensors = startSensors(
-      io::installedFile(drive.sensors, "config").string(),
-      {[&](const mrpt::obs::CObservation::Ptr& observation) { queue->push(observation); },
-       [&](const std::string& failure) { queue->end(failure); }});
+  const auto sensors = startSensors(io::installedFile(drive.sensors, "config").string(),
+                                    {[&](const mrpt::obs::CObservation::Ptr& observation) {
+                                       watch.observed(*observation);
+                                       queue->push(observation);
+                                     },
+                                     [&](const std::string& failure) { queue->end(failure); },
+                                     [&](const std::string& warning) {
+                                       if (drive.warn) drive.warn(warning);
+                                     }});
   LiveDriveResult result;
-  result.counts = streamPoles(queue, drive.sensors.string(), options, consume);
+  result.counts = streamPoles(queue, drive.sensors.string(), options,
+                              [&](const PoleScan& scan) { watch.consume(scan, consume); });
   result.failure = queue->failure();
   if (!result.failure.empty() && result.counts.scans == 0) throw Error(result.failure);
   return result;

@@ -11,8 +11,15 @@
 namespace polemcl::apps {
 
 struct LiveDriveOptions {
-  std::filesystem::path sensors;  ///< see startSensors(); also a name among the shipped ones
-  double seconds = 0;             ///< ends after this time, s; 0: never
+  std::filesystem::path sensors;      ///< see startSensors(); also a name among the shipped ones
+  double seconds = 0;                 ///< ends after this time, s; 0: never
+  double longestGap = 2;              ///< more time without a scan is told, s
+  std::function<bool()> goesOn = {};  ///< false ends the drive; called from one thread at a time
+  /// Called after each `longestGap` without a scan, also before the first one. May be called while
+  /// a scan is consumed.
+  std::function<void()> gap = {};
+  /// What is not right but does not end the drive. From any thread.
+  std::function<void(const std::string&)> warn = {};
 };
 
 struct LiveDriveResult {

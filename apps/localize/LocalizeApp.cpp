@@ -1,9 +1,11 @@
 #include "localize/LocalizeApp.h"
 
 #include <iostream>
+#include <mutex>
 
 #include "cli/CommandLine.h"
 #include "cli/JsonFile.h"
+#include "cli/Messages.h"
 #include "cli/Progress.h"
 #include "cli/RunFolder.h"
 #include "cli/Settings.h"
@@ -17,6 +19,7 @@
 #include "localize/PoseStream.h"
 #include "localize/RunView.h"
 #include "localize/TrialDrive.h"
+#include "localize/TurnCheck.h"
 
 namespace polemcl::apps {
 
@@ -77,21 +80,36 @@ std::optional<double> rateOf(const LocalizeJob& job, const Settings& settings) {
   return job.rate || settings.view.live ? report::parseRate(settings.view.rate) : std::nullopt;
 }
 
-/// Streams the rawlog, or the sensors, to the player. A rawlog has no failure.
+/// Streams the rawlog, or the sensors, to the player. A rawlog has no failure. A drive ends when
+/// its stream does; a rawlog is read to its end.
 LiveDriveResult play(const LocalizeJob& job, const Settings& settings, const RunView& view,
-                     LocalizePlayer& player) {
+                     LocalizePlayer& player, PoseStream* stream) {
   SequenceOptions options = settings.reading();
   options.allowTruncated = job.allowTruncated;
   options.follow = job.follow;
   Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });
   options.pace = [&](double time) { return pace.waitFor(time); };
   Progress progress("localize", 0, job.quiet);
+  std::mutex ofProgress;
+  const auto warn = [&](const std::string& text) {
+    const std::lock_guard lock(ofProgress);
+    progress.say(warningLine("pole-localize", oneLine(text)));
+  };
   const auto take = [&](const PoleScan& scan) {
     player.take(scan);
+    if (job.isLive() && scan.index == 0)
+      for (const std::string& text : turnWarnings(scan, options)) warn(text);
+    const std::lock_guard lock(ofProgress);
     progress.update(scan.index + 1, scan.expected);
   };
-  if (job.isLive()) return streamSensors({job.sensors, job.seconds}, options, take);
-  return {streamPoles(job.input.string(), options, take), ""};
+  if (!job.isLive()) return {streamPoles(job.input.string(), options, take), ""};
+  LiveDriveOptions drive{job.sensors, job.seconds, settings.localization.health.maxGap};
+  drive.warn = warn;
+  if (stream) {
+    drive.gap = [stream] { stream->addGap(); };
+    drive.goesOn = [stream] { return stream->failure().empty(); };
+  }
+  return streamSensors(drive, options, take);
 }
 
 void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings& settings,
@@ -126,8 +144,10 @@ LocalizeResult localize(const LocalizeJob& job) {
   if (job.stream) stream.emplace(*job.stream);
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view,
                         stream ? &*stream : nullptr);
-  const auto [counts, failure] = play(job, settings, view, player);
-  facts.counts = counts;
+  const LiveDriveResult drive = play(job, settings, view, player, stream ? &*stream : nullptr);
+  const std::string failure = drive.failure.empty() && stream ? stream->failure() : drive.failure;
+  if (!failure.empty() && drive.counts.scans == 0) throw Error(failure);
+  facts.counts = drive.counts;
   LocalizeResult result = player.finish();
   result.timings.wallSeconds = secondsSince(begin);
   result.timings.rate = rateOf(job, settings);
@@ -139,7 +159,9 @@ LocalizeResult localize(const LocalizeJob& job) {
   }
   view.waitForWindow();
   if (!failure.empty())
-    throw Error(failure + "; the results up to then are in " + job.output.string());
+    throw Error(failure +
+                (job.isLive() ? "; the results up to then are in " : "; the results are in ") +
+                job.output.string());
   return result;
 }
 

@@ -6,29 +6,44 @@
 #include <filesystem>
 #include <fstream>
 #include <iosfwd>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
 
 namespace polemcl::apps {
 
-/// \brief Writes and flushes a line for each scan. The keys, always all of them: `scan` (from 0),
-/// `time` (s), `x_m`, `y_m`, `yaw_rad` (map frame) and `covariance` (xx, xy, xyaw, yy, yyaw,
-/// yawyaw; m², m·rad, rad²), which are null while the pose is unknown; `state` and `reason` of the
-/// health, `matched_share`, `spread_m`, `poles` (observed), `relocalized`, what is known of the
-/// odometry, `odometry_scale` and `odometry_yaw_rad_m`, and `dropped`: scans of sensors that were
-/// dropped so far.
+/// \brief Writes and flushes a line for each scan, from any thread. The keys, always all of them:
+/// `scan` (from 0), `time` (s), `x_m`, `y_m`, `yaw_rad` (map frame) and `covariance` (xx, xy, xyaw,
+/// yy, yyaw, yawyaw; m², m·rad, rad²), which are null while the pose is unknown; `state` and
+/// `reason` of the health, `matched_share`, `spread_m`, `poles` (observed), `relocalized`, what is
+/// known of the odometry, `odometry_scale` and `odometry_yaw_rad_m`, and `dropped`: scans of
+/// sensors that were dropped so far.
+///
+/// A line that cannot be written is the last one: the results do not depend on who reads the poses.
+/// From then on the program ignores SIGPIPE, also when it ends and the C library flushes.
 class PoseStream {
  public:
   /// \param target A file, which is emptied first; "-": standard output.
   /// \throws Error when the file cannot be created.
   explicit PoseStream(const std::filesystem::path& target);
-  /// \throws Error when it cannot be written.
   void add(std::size_t scan, const LocalizationUpdate& update, std::size_t dropped);
+  /// \brief A line for a time without scans. What only a scan can tell is null in it, also `scan`
+  /// and `time`. The pose stays lost if it was; otherwise it is degraded, by `time_gap`.
+  void addGap();
+  /// \brief Why lines are not written any more; or empty.
+  std::string failure() const;
 
  private:
-  std::filesystem::path m_target;
+  void write(const nlohmann::ordered_json& line);
+
+  const std::filesystem::path m_target;
+  mutable std::mutex m_mutex;  ///< of all below
   std::ofstream m_file;
   std::ostream& m_out;
+  nlohmann::ordered_json m_last;  ///< line of the last scan; before it, of a pose that is not known
+  std::string m_failure;
 };
 
 }  // namespace polemcl::apps

@@ -3,7 +3,9 @@
 /// the shipped example of an INI file.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -42,8 +44,8 @@ class LiveDriveTest : public testing::Test {
   }
   ~LiveDriveTest() override { std::signal(SIGINT, SIG_DFL); }
 
-  /// The shipped example with free ports. \param more Keys of the LiDAR.
-  void writeSensors(const std::string& more) {
+  /// The shipped example with free ports. \param more Keys of the LiDAR. \param other Sections.
+  void writeSensors(const std::string& more, const std::string& other = "") {
     std::string ini = readText(fs::path(POLEMCL_SOURCE_DIR) / "config/live/vlp16.ini");
     const auto set = [&](const std::string& key, const std::string& value) {
       const auto at = ini.find("\n" + key + " = ");
@@ -53,6 +55,7 @@ class LiveDriveTest : public testing::Test {
     set("data_port", std::to_string(lidarPort));
     set("position_port", std::to_string(freeUdpPort()) + "\n" + more);
     set("udp_port", std::to_string(odometryPort));
+    ini.insert(0, other + "\n");  // the last Velodyne has the ports
     writeText(folder / "sensors.ini", ini);
   }
 
@@ -62,7 +65,8 @@ class LiveDriveTest : public testing::Test {
                                  "--map",     (folder / "map.polemap").string(),
                                  "--output",  (folder / "out").string(),
                                  "--start",   "0,0,0,0.3,3",
-                                 "--stream",  (folder / "poses.jsonl").string()};
+                                 "--stream",  (folder / streamed).string(),
+                                 "--set",     "health.max_gap_s=60"};  // slow machines
     all.insert(all.end(), more.begin(), more.end());
     const Outcome outcome = runProgram(localizeMain, all);
     ended = true;
@@ -86,7 +90,8 @@ class LiveDriveTest : public testing::Test {
   /// Sends turns of a drive along x, each between two packets of odometry with the same pose. A
   /// turn is known to be complete when the next one begins; the first one is left out.
   /// \param taken Called before each turn with the number of scans that are complete by then.
-  void drive(int turns, const std::function<void(std::size_t)>& beforeTurn) {
+  /// \param clock The packets state their times.
+  void drive(int turns, const std::function<void(std::size_t)>& beforeTurn, bool clock = false) {
     const UdpSender lidar(lidarPort), odometry(odometryPort);
     if (!lidar.waitForListener() || !odometry.waitForListener()) return;
     for (int turn = 0; turn < turns && !ended; ++turn) {
@@ -97,16 +102,27 @@ class LiveDriveTest : public testing::Test {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the sensors' clock goes on
       };
       tellOdometry();
-      for (const std::string& packet : turnOfVlp16(poles, x, 0, 0)) lidar.send(packet);
+      std::uint32_t microseconds = 100000 * static_cast<std::uint32_t>(turn);
+      for (std::string packet : turnOfVlp16(poles, x, 0, 0)) {
+        if (clock) std::memcpy(&packet[packet.size() - 6], &(microseconds += 1333), 4);
+        lidar.send(packet);
+      }
       tellOdometry();
     }
   }
 
+  static std::size_t countOf(const std::string& words, const std::string& text) {
+    std::size_t count = 0;
+    for (auto at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+      ++count;
+    return count;
+  }
   void interrupt() { kill(getpid(), SIGINT); }
 
   const std::vector<StreetPole> poles = streetPoles();
   const int lidarPort = freeUdpPort(), odometryPort = freeUdpPort();
   const TempFolder folder;
+  std::string streamed = "poses.jsonl";
   std::atomic<bool> ended{false};
 };
 
@@ -178,17 +194,137 @@ TEST_F(LiveDriveTest, APcapFilePlaysAsIfLiveAndEnds) {
   EXPECT_NEAR(all.back()["y_m"], 0, 0.2);
 }
 
+/// A second LiDAR, which plays a file, gives its first scan after 3 s: nobody listed the two.
 TEST_F(LiveDriveTest, ASensorThatFailsEndsTheDriveWithItsResults) {
-  std::thread sender([this] {
-    drive(6, [this](std::size_t complete) { waitForLines(complete); });
-    waitForLines(4);
-    UdpSender(odometryPort).send("nonsense");
-  });
+  std::vector<std::string> packets;
+  for (int turn = 0; turn < 3; ++turn)
+    for (const std::string& packet : turnOfVlp16(poles, 0, 0, 0)) packets.push_back(packet);
+  writeText(folder / "drive.pcap", pcapFile(packets, lidarPort));
+  writeSensors("",
+               "[another]\ndriver = CVelodyneScanner\nmodel = VLP16\nsensorLabel = another\n"
+               "process_rate = 50\npcap_read_fast = true\ndata_port = " +
+                   std::to_string(lidarPort) +
+                   "\npcap_input = " + (folder / "drive.pcap").string() + "\n");
+  std::thread sender([&] { drive(6, [this](std::size_t complete) { waitForLines(complete); }); });
   const Outcome outcome = run();
   sender.join();
-  expectFailure(outcome, {"[odometry]: CUdpOdometry: a packet holds 'nonsense'",
-                          "the results up to then are in", "out"});
+  expectFailure(outcome, {"scans of two sensors", "the results up to then are in", "out"});
   EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 4u);
+}
+
+/// Before the first scan, between scans, and without odometry. A turn is reported when the next one
+/// begins, so the first line after a gap is that of the turn before it.
+TEST_F(LiveDriveTest, SaysThatNoScanComes) {
+  const auto gaps = [this] {
+    const auto all = lines();
+    return std::count_if(all.begin(), all.end(), [](const auto& l) { return l["scan"].is_null(); });
+  };
+  std::thread sender([&] {
+    waitForLines(2);
+    drive(30, [&](std::size_t complete) {
+      waitFor([&] { return ended || lines().size() - gaps() >= complete; });
+      if (complete != 24) return;
+      const auto before = gaps();
+      waitFor([&] { return ended || gaps() >= before + 2; });
+    });
+    interrupt();
+  });
+  const Outcome outcome = run({"--set", "health.max_gap_s=0.5"});
+  sender.join();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto all = lines();
+  ASSERT_GE(all.size(), 30u);
+  EXPECT_TRUE(all[0]["scan"].is_null() && all[1]["scan"].is_null());
+  EXPECT_EQ(all[0]["state"], "lost");
+  const auto at24 =
+      std::find_if(all.begin(), all.end(), [](const auto& l) { return l["scan"] == 23; });
+  ASSERT_LT(at24 + 3, all.end());
+  ASSERT_EQ(at24->at("state"), "ok");
+  const auto& gap = *(at24 + 1);
+  for (const auto& [key, value] : at24->items()) EXPECT_TRUE(gap.contains(key)) << key;
+  EXPECT_EQ(gap.size(), at24->size());
+  for (const char* key : {"scan", "time", "x_m", "y_m", "yaw_rad", "covariance", "poles"})
+    EXPECT_TRUE(gap[key].is_null()) << key;
+  EXPECT_EQ(gap["state"], "degraded");
+  EXPECT_EQ(gap["reason"], "time_gap");
+  EXPECT_EQ(*(at24 + 2), gap);
+  EXPECT_EQ(all.back()["reason"], "time_gap") << "of scans after the gap, too";
+  EXPECT_NE(outcome.err.find("sensors.ini: no scan and no odometry for 0.5 s"), std::string::npos);
+  std::size_t silences = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    silences += all[i]["scan"].is_null() && (i == 0 || !all[i - 1]["scan"].is_null());
+  EXPECT_GE(silences, 2u);
+  EXPECT_EQ(countOf("sensors.ini: no ", outcome.err), silences) << outcome.err;
+  EXPECT_EQ(io::readPlanarTum(folder / "out/run_00.tum").size() + gaps(), all.size());
+}
+
+TEST_F(LiveDriveTest, WarnsAndGoesOn) {
+  std::thread sender([this] {
+    drive(
+        8,
+        [this](std::size_t complete) {
+          waitForLines(complete);
+          UdpSender(odometryPort).send("nan 1,2 \x01 hello");
+        },
+        true);
+    waitForLines(6);
+    interrupt();
+  });
+  const Outcome outcome = run({"--quiet", "--set", "sensor.turn=counterclockwise"});
+  sender.join();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(lines().size(), 6u);
+  EXPECT_EQ(countOf("[odometry]: CUdpOdometry: a packet holds 'nan 1,2 ? hello'", outcome.err), 1u);
+  EXPECT_EQ(countOf("warning: [sensor] turn = counterclockwise", outcome.err), 1u);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
+}
+
+/// What `turn` says does not matter where the LiDAR states nothing, and auto is always right.
+TEST_F(LiveDriveTest, DoesNotWarnOfTurnsThatFit) {
+  struct Case {
+    bool clock;
+    std::vector<std::string> set;
+  };
+  for (const Case& one :
+       {Case{false, {"sensor.turn=counterclockwise"}}, Case{true, {"sensor.turn=auto"}},
+        Case{true, {"sensor.turn=clockwise", "sensor.cut_deg=0", "sensor.stamp_turn=0"}}}) {
+    ended = false;
+    fs::remove(folder / "poses.jsonl");
+    std::thread sender([&] {
+      drive(
+          5, [this](std::size_t complete) { waitForLines(complete); }, one.clock);
+      waitForLines(3);
+      interrupt();
+    });
+    std::vector<std::string> more{"--quiet"};
+    for (const auto& set : one.set) more.insert(more.end(), {"--set", set});
+    const Outcome outcome = run(more);
+    sender.join();
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.err, "");
+  }
+}
+
+TEST_F(LiveDriveTest, ALostReaderOfTheStreamEndsTheDriveWithItsResults) {
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::thread sender([this] {
+    std::atomic<std::size_t> read{0};
+    std::thread reader([&] {
+      std::ifstream in(folder / "pipe");
+      for (std::string line; read < 4 && std::getline(in, line);) ++read;
+      in.close();
+      read = 100;
+    });
+    drive(40, [&](std::size_t complete) {
+      waitFor([&] { return ended || read >= std::min<std::size_t>(complete, 100); });
+    });
+    reader.join();
+  });
+  streamed = "pipe";
+  const Outcome outcome = run();
+  sender.join();
+  expectFailure(outcome, {"pipe: cannot be written by --stream; the results up to then are in"});
+  EXPECT_GE(io::readPlanarTum(folder / "out/run_00.tum").size(), 5u);
 }
 
 TEST_F(LiveDriveTest, EndsAfterTheGivenTime) {

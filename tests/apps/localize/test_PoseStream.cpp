@@ -75,6 +75,14 @@ TEST_F(PoseStream, NamesAFileThatCannotBe) {
                 {"poses.jsonl", "cannot be created"});
 }
 
+TEST_F(PoseStream, CompletesTheResultsWhereItCannotBeWritten) {
+  ASSERT_EQ(runWithTruth().code, 0);
+  const std::string all = bytes();
+  const auto outcome = runWithTruth({"--quiet", "--stream", "/dev/full"});
+  expectFailure(outcome, {"/dev/full: cannot be written by --stream; the results are in"});
+  EXPECT_EQ(bytes(), all);
+}
+
 /// The first half is there; its poses come before the second half is written.
 TEST_F(PoseStream, FollowsARawlogThatGrows) {
   const std::string bytes = readText(folder / "in.rawlog");

@@ -19,17 +19,16 @@ namespace polemcl {
 namespace {
 
 constexpr int longestWait = 10;  // ms
-constexpr std::size_t longestPacket = 200;
+constexpr std::size_t longestPacket = 200, longestShown = 60;
 
-mrpt::poses::CPose2D parse(const std::string& text) {
+/// None unless the text is three finite numbers.
+std::optional<mrpt::poses::CPose2D> parse(const std::string& text) {
   std::istringstream in(text);
   double x = 0, y = 0, yaw = 0;
   std::string rest;
   const bool good = (in >> x >> y >> yaw) && !(in >> rest);
-  if (!good || !std::isfinite(x + y + yaw))
-    throw Error("a packet holds '" + text.substr(0, 60) +
-                "': allowed are three numbers, x y yaw, in m and rad");
-  return {x, y, yaw};
+  if (!good || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(yaw)) return std::nullopt;
+  return mrpt::poses::CPose2D(x, y, yaw);
 }
 
 }  // namespace
@@ -65,10 +64,16 @@ void CUdpOdometry::doProcess() {
   char packet[longestPacket];
   const auto size = recv(m_socket, packet, sizeof packet, MSG_DONTWAIT);
   if (size < 0) return;
+  const std::string text(packet, static_cast<std::size_t>(size));
+  const auto pose = parse(text);
+  if (!pose) {
+    if (!m_ignored) m_ignored = text.substr(0, longestShown);
+    return;
+  }
   const auto odometry = mrpt::obs::CObservationOdometry::Create();
   odometry->timestamp = mrpt::Clock::now();
   odometry->sensorLabel = m_sensorLabel;
-  odometry->odometry = parse({packet, static_cast<std::size_t>(size)});
+  odometry->odometry = *pose;
   appendObservation(odometry);
 }
 

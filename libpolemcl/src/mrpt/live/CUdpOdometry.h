@@ -4,6 +4,7 @@
 
 #include <mrpt/hwdrivers/CGenericSensor.h>
 
+#include <optional>
 #include <string>
 
 namespace polemcl {
@@ -11,9 +12,9 @@ namespace polemcl {
 /// \brief Gives a CObservationOdometry for each UDP packet.
 ///
 /// A packet is text: `x y yaw`, the pose of the robot in the frame of the odometry, m, m, rad,
-/// counterclockwise. Its time is that of its arrival, as that of a LiDAR without GPS. Keys:
-/// `udp_port` (1 to 65535) and `address`, the IPv4 address to listen at (default: 127.0.0.1, this
-/// computer only; 0.0.0.0: from anywhere).
+/// counterclockwise. Packets that are not three finite numbers are ignored. Its time is that of its
+/// arrival, as that of a LiDAR without GPS. Keys: `udp_port` (1 to 65535) and `address`, the IPv4
+/// address to listen at (default: 127.0.0.1, this computer only; 0.0.0.0: from anywhere).
 class CUdpOdometry : public mrpt::hwdrivers::CGenericSensor {
   DEFINE_GENERIC_SENSOR(CUdpOdometry)
  public:
@@ -21,9 +22,10 @@ class CUdpOdometry : public mrpt::hwdrivers::CGenericSensor {
   ~CUdpOdometry() override;
   /// \throws std::exception when the port cannot be listened at.
   void initialize() override;
-  /// \brief Waits a few milliseconds at most. \throws std::exception when a packet is not three
-  /// finite numbers.
+  /// \brief Waits a few milliseconds at most.
   void doProcess() override;
+  /// \brief What the first packet that was ignored held; none yet.
+  const std::optional<std::string>& ignored() const { return m_ignored; }
 
  protected:
   void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
@@ -32,6 +34,7 @@ class CUdpOdometry : public mrpt::hwdrivers::CGenericSensor {
  private:
   int m_port = 0, m_socket = -1;
   std::string m_address = "127.0.0.1";
+  std::optional<std::string> m_ignored;
 };
 
 }  // namespace polemcl

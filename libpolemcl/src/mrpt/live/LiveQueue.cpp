@@ -98,9 +98,8 @@ bool LiveQueue::isDue(const Waiting& scan) const {
 
 bool LiveQueue::next(RawlogEntry& entry) {
   entry = RawlogEntry();
-  std::unique_lock lock(m_mutex);
-  for (;; m_changed.wait_for(lock, glance)) {
-    if (m_options.goesOn && !m_options.goesOn()) return false;
+  while (!m_options.goesOn || m_options.goesOn()) {
+    std::unique_lock lock(m_mutex);
     if (!m_odometry.empty()) {
       entry.observation = std::move(m_odometry.front());
       m_odometry.pop_front();
@@ -114,7 +113,9 @@ bool LiveQueue::next(RawlogEntry& entry) {
       return true;
     }
     if (m_ended && m_scans.empty()) return false;
+    m_changed.wait_for(lock, glance);
   }
+  return false;
 }
 
 }  // namespace polemcl

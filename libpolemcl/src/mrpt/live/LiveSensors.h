@@ -19,6 +19,8 @@ struct SensorEvents {
   std::function<void(const mrpt::obs::CObservation::Ptr&)> observed;
   /// A sensor has come to its end (a PCAP file), or has failed with this message.
   std::function<void(const std::string& failure)> ended;
+  /// Something is not right, but the sensor goes on.
+  std::function<void(const std::string& warning)> warned;
 };
 
 /// \brief Sensors at work, each in a thread of its own. The destructor ends them and waits.

@@ -81,6 +81,7 @@ void SensorThread::open(CConfigFileBase& config) {
   if (!config.keyExists(m_section, "process_rate"))
     config.write(m_section, "process_rate", usualRate);
   m_scanner = dynamic_cast<CVelodyneScanner*>(m_sensor.get());
+  m_odometry = dynamic_cast<const CUdpOdometry*>(m_sensor.get());
   if (m_scanner) openVelodyne(config);
   m_sensor->loadConfig(config, m_section);
   if (!(m_sensor->getProcessRate() > 0))
@@ -130,10 +131,20 @@ void SensorThread::work(const SensorEvents& events) {
 bool SensorThread::process(const SensorEvents& events) {
   if (m_scanner) return processVelodyne(events);
   m_sensor->doProcess();
+  if (m_odometry) warnOfOdometry(events);
   for (const auto& [time, object] : m_sensor->getObservations())
     if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object))
       events.observed(observation);
   return true;
+}
+
+/// Once, as a broken sender would fill the screen.
+void SensorThread::warnOfOdometry(const SensorEvents& events) {
+  if (m_warned || !m_odometry->ignored()) return;
+  m_warned = true;
+  events.warned(m_place + m_driver + ": a packet holds '" + *m_odometry->ignored() +
+                "': it is ignored, and so are others that are not three numbers, x y yaw, in m and "
+                "rad");
 }
 
 /// The first turn is cut: it begins somewhere. MRPT's doProcess() would report the end of a PCAP

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "mrpt/live/CUdpOdometry.h"
 #include "mrpt/live/LiveSensors.h"
 
 namespace polemcl {
@@ -32,6 +33,7 @@ class SensorThread {
   void openVelodyne(mrpt::config::CConfigFileBase& config);
   void work(const SensorEvents& events);
   bool process(const SensorEvents& events);
+  void warnOfOdometry(const SensorEvents& events);
   bool processVelodyne(const SensorEvents& events);
   bool waitUntil(std::chrono::steady_clock::time_point next);
 
@@ -39,6 +41,8 @@ class SensorThread {
   std::string m_ports;                       ///< of a Velodyne, for messages
   mrpt::hwdrivers::CGenericSensor::Ptr m_sensor;
   mrpt::hwdrivers::CVelodyneScanner* m_scanner = nullptr;  ///< m_sensor, if it is one
+  const CUdpOdometry* m_odometry = nullptr;                ///< m_sensor, if it is one
+  bool m_warned = false;                                   ///< of a packet of odometry
   std::string m_pcap;         ///< file of packets in place of a device; or empty
   std::size_t m_packets = 0;  ///< of the file, before the first turn
   std::size_t m_turns = 0;
