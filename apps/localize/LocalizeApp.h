@@ -59,8 +59,8 @@ struct LocalizeResult {
 /// rate` does (1x by default), until the user closes it.
 ///
 /// With sensors, scans that come faster than they can be handled are dropped (see LiveQueue), and
-/// the drive ends with a signal (see LiveDrive.h). A sensor that fails ends it as well; its error
-/// comes after the results are complete.
+/// the drive ends with a signal (see LiveDrive.h). A sensor that fails ends it as well, and so does
+/// a stream that cannot be written; the error comes after the results are complete.
 ///
 /// The folder `output` gets:
 /// - `run_NN.tum`: the estimated robot poses, a row per scan, the first included, at its time;
