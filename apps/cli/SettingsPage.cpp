@@ -21,6 +21,8 @@ model = hdl32e      ; which LiDAR
 height_m = 1.0      # metres above the ground
 ```
 - `--set SECTION.KEY=VALUE` puts a value in the place of the file's.
+- `--config` takes a path or the name of an installed file. `config/nclt.ini`, as these pages write it, and `nclt.ini` both work in any folder: what is not
+  there is looked for in `/usr/share/polemcl/config`.
 - `--print-config` prints the effective settings of the tiers *sensor* and *tuning*, `--print-config --all` all of them;
   the program then ends.
 - The defaults are the settings that were measured as the best. Those of `config/paper/` are the paper's.
