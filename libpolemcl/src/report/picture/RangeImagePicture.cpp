@@ -110,14 +110,14 @@ void drawRangeImagePng(const RangeImageView& view, const std::filesystem::path& 
   extractor.extract(view.points, poles, report, &segments);
   const RangeImage& image = extractor.image();
 
-  constexpr double margin = 24, top = 92, caption = 44;
-  ImagePanel panel{margin, top, std::max(1, 1500 / image.columns()) * 1.0,
+  constexpr double edge = 24, top = 92, caption = 44;
+  ImagePanel panel{edge, top, std::max(1, 1500 / image.columns()) * 1.0,
                    std::max(2, 220 / image.rows()) * 1.0};
   const double width = panel.cellWidth * image.columns();
   const double height = panel.cellHeight * image.rows();
-  Canvas canvas(static_cast<int>(width + 2 * margin),
-                static_cast<int>(top + 3 * height + 2 * caption + margin));
-  canvas.text(view.title, {margin, 38}, {22, ink, Align::left, true});
+  Canvas canvas(static_cast<int>(width + 2 * edge),
+                static_cast<int>(top + 3 * height + 2 * caption + edge));
+  canvas.text(view.title, {edge, 38}, {22, ink, Align::left, true});
   const std::array<std::string, 2> captions{
       "1. Range: dark is near, grey has no return that is used. The middle looks ahead, the first "
       "quarter to the left",
@@ -130,9 +130,9 @@ void drawRangeImagePng(const RangeImageView& view, const std::filesystem::path& 
     if (step == 2) drawFates(canvas, panel, segments);
     canvas.outline(frame, rgb(0xb8bfc8), 1);
     if (step < 2)
-      canvas.text(captions[step], {margin, panel.y - 12}, {17, ink});
+      canvas.text(captions[step], {edge, panel.y - 12}, {17, ink});
     else
-      drawFateLegend(canvas, margin, panel.y - 12, segments);
+      drawFateLegend(canvas, edge, panel.y - 12, segments);
     panel.y += height + caption;
   }
   canvas.writePng(file);
