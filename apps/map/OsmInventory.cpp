@@ -85,7 +85,13 @@ class OsmReader {
     if (m_problem.empty()) m_problem = here() + what;
     XML_StopParser(m_parser, XML_FALSE);
   }
-  std::string here() const { return io::at(m_file, XML_GetCurrentLineNumber(m_parser)); }
+  std::string here() const {
+#if XML_MAJOR_VERSION * 100 + XML_MINOR_VERSION >= 209
+    return io::at(m_file, XML_GetCurrentLineNumber64(m_parser));
+#else
+    return io::at(m_file, XML_GetCurrentLineNumber(m_parser));
+#endif
+  }
 
   void begin(const std::string& name, const char** attributes) {
     if (name == "osm") {

@@ -1,51 +1,30 @@
 #!/bin/sh
-# Makes the Debian packages, checks them with lintian, installs them in an empty Debian 12 and tries them
-# there as a user without the sources: the commands of the start page, man pages, completion, an
-# example against the headers, the Python module. Then removes them and looks for what was left behind.
-# Usage: tests/install/packages.sh     Needs root, and a mirror of Debian (that of this machine).
-# The empty Debian is kept in ~/.cache/polemcl for the next time.
+# Checks the Debian packages with lintian, installs them in an empty Debian and tries them there as a
+# user without the sources: the commands of the start page, man pages, completion, an example against
+# the headers, the Python module. Then removes them and looks for what was left behind.
+# Usage: tests/install/packages.sh bookworm | trixie FOLDER
+#   FOLDER  holds the packages, which were made on that release (commands.sh does both)
+# Needs root, and a mirror of Debian (that of this machine).
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
-base=${XDG_CACHE_HOME:-$HOME/.cache}/polemcl/bookworm.tar
 names="libpolemcl1.0 polemcl libpolemcl-dev polemcl-doc python3-polemcl"
-[ "$(id -u)" = 0 ] || {
-  echo "tests/install/packages.sh: needs root, for chroot" >&2
-  exit 1
-}
+case "$#:${1-}" in
+  2:bookworm | 2:trixie) release=$1 ;;
+  *)
+    echo "usage: tests/install/packages.sh bookworm | trixie FOLDER" >&2
+    exit 2
+    ;;
+esac
 dir=$(mktemp -d)
-root=$dir/root
-
-clean_up() {
-  umount "$root/proc" 2>/dev/null || :
-  rm -rf --one-file-system "$dir"
-}
+# shellcheck source=tests/install/debian.sh
+. "$top/tests/install/debian.sh"
+[ "$(id -u)" = 0 ] || fail "needs root, for chroot"
 trap clean_up EXIT
 
-fail() {
-  echo "tests/install/packages.sh: $1" >&2
-  exit 1
-}
-
-# quietly COMMAND...: shows what it prints only when it fails.
-quietly() {
-  "$@" >"$dir/log" 2>&1 || {
-    tail -n 40 "$dir/log" >&2
-    fail "this failed: $*"
-  }
-}
-
-# inside COMMAND...: as root in the new Debian.  as_user SCRIPT: as a normal user there.
-inside() {
-  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-    DEBIAN_FRONTEND=noninteractive "$@"
-}
+# as_user SCRIPT: as a normal user in the new Debian.
 as_user() {
   chroot "$root" env -i PATH=/usr/bin:/bin LANG=C.UTF-8 su -s /bin/bash walker -c "cd && set -e && $1"
 }
-apt_get() {
-  quietly inside apt-get -qq -y --no-install-recommends -o Dpkg::Use-Pty=0 "$@"
-}
-
 # files: all files of the new Debian that are not of apt, dpkg or caches, nor of the kernel.
 files() {
   (cd "$root" && find . -xdev \( -path ./proc -o -path ./dev -o -path ./home -o -path ./packages \
@@ -54,36 +33,17 @@ files() {
 }
 
 echo "1/7 Packages"
-quietly "$top/share/setup/build.sh" package package
 mkdir "$dir/packages"
 for name in $names; do
-  cp "$top/build-package/$name"_*.deb "$dir/packages/" || fail "no package $name"
+  cp "$2/$name"_*.deb "$dir/packages/" || fail "no package $name in $2"
 done
 # Nobody has asked for the packages in Debian's list of bugs.
 quietly lintian --allow-root --fail-on error,warning --tag-display-limit 0 \
   --suppress-tags initial-upload-closes-no-bugs,maintscript-calls-ldconfig "$dir"/packages/*.deb
 
-echo "2/7 An empty Debian 12"
-mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null |
-  sed -n 's/^URIs: *\([^ ]*\/debian\/*\) *$/\1/p; s/^deb \(\[.*\] \)*\([^ ]*\/debian\/*\) bookworm .*/\2/p' |
-  head -n 1)
-if [ ! -s "$base" ]; then
-  mkdir -p "$(dirname "$base")"
-  quietly debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}"
-  tar -C "$root" -cf "$base.new" .
-  mv "$base.new" "$base"
-else
-  mkdir "$root"
-  tar -C "$root" -xf "$base"
-fi
-cp /etc/resolv.conf "$root/etc/"
-[ ! -d /etc/apt/apt.conf.d ] || grep -rhi '^[^/]*proxy' /etc/apt/apt.conf.d >"$root/etc/apt/apt.conf.d/90proxy" || :
-printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" # no services here
-chmod 755 "$root/usr/sbin/policy-rc.d"
-echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fast" # it need not survive a crash
-mount -t proc proc "$root/proc"
+echo "2/7 An empty Debian: $release"
+make_root
 quietly inside useradd --create-home walker
-apt_get update
 # What only this test needs is there before.
 apt_get install g++ cmake make man-db bash-completion
 files >"$dir/before"

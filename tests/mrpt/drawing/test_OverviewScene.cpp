@@ -101,7 +101,7 @@ TEST(OverviewScene, TheCornersTellWhereOnTheMapTheyLie) {
   const auto label = scene->getViewport()->getByClass<mrpt::opengl::CText>();
   ASSERT_TRUE(label);
   EXPECT_EQ(label->getString(), "448009, 5417009");
-  EXPECT_NEAR(label->getPoseX(), 9, 1e-6);
+  EXPECT_NEAR(label->getPose().x, 9, 1e-6);
 }
 
 TEST(OverviewScene, AMapWithoutPolesHasAScene) {

@@ -381,8 +381,8 @@ TEST(CPoleMap, DrawsPolesColouredByCount) {
   ASSERT_EQ(scene->size(), 3u);
   const auto seldom = scene->getByClass<mrpt::opengl::CCylinder>(0);
   const auto often = scene->getByClass<mrpt::opengl::CCylinder>(1);
-  EXPECT_NEAR(often->getPoseX(), 10, 1e-6);
-  EXPECT_NEAR(often->getPoseZ(), 0.1, 1e-6);
+  EXPECT_NEAR(often->getPose().x, 10, 1e-6);
+  EXPECT_NEAR(often->getPose().z, 0.1, 1e-6);
   EXPECT_NEAR(often->getHeight(), 3.9, 1e-6);
   EXPECT_NEAR(often->getTopRadius(), 0.15, 1e-6);
   EXPECT_FALSE(seldom->getColor_u8() == often->getColor_u8());

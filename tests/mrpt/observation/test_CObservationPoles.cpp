@@ -172,9 +172,9 @@ TEST(CObservationPoles, DrawsACylinderForEachPole) {
   ASSERT_EQ(scene.size(), 2u);
   const auto cylinder = scene.getByClass<mrpt::opengl::CCylinder>(0);
   ASSERT_TRUE(cylinder);
-  EXPECT_NEAR(cylinder->getPoseX(), 1, 1e-6);
-  EXPECT_NEAR(cylinder->getPoseY(), 7, 1e-6);
-  EXPECT_NEAR(cylinder->getPoseZ(), 0.25, 1e-6);
+  EXPECT_NEAR(cylinder->getPose().x, 1, 1e-6);
+  EXPECT_NEAR(cylinder->getPose().y, 7, 1e-6);
+  EXPECT_NEAR(cylinder->getPose().z, 0.25, 1e-6);
   EXPECT_NEAR(cylinder->getHeight(), 3.25, 1e-6);
   EXPECT_NEAR(cylinder->getTopRadius(), 0.125, 1e-6);
 }

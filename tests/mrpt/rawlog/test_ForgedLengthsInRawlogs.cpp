@@ -171,7 +171,8 @@ TEST(ForgedLengths, InARawlogOfScans) {
   const samples::Folder folder("ForgedLengths");
   auto cloud = mrpt::obs::CObservationPointCloud::Create();
   auto points = mrpt::maps::CPointsMapXYZI::Create();
-  for (int i = 0; i < 200; ++i) points->insertPoint(1.5f, 0.5f, 1.f);
+  points->resize(200);
+  for (int i = 0; i < 200; ++i) points->setPointFast(i, 1.5f, 0.5f, 1.f);
   cloud->pointcloud = points;
   mrpt::obs::CSensoryFrame frame;
   frame.insert(cloud);

@@ -220,7 +220,8 @@ TEST(PoleSequence, EmptyScansStayFrames) {
   nothing.timestamp = mrpt::Clock::fromDouble(7);
   CObservationPointCloud invalid = nothing;
   auto points = mrpt::maps::CPointsMapXYZI::Create();
-  for (int i = 0; i < 5; ++i) points->insertPoint(0, 0, 0);
+  points->resize(5);
+  for (int i = 0; i < 5; ++i) points->setPointFast(i, 0, 0, 0);
   invalid.pointcloud = points;
   const auto sequence = bench.read(frame(nothing) + frame(invalid));
   ASSERT_EQ(sequence.frames.size(), 2u);

@@ -6,6 +6,7 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/version.h>
 #include <zlib.h>
 
 #include <chrono>
@@ -50,7 +51,8 @@ std::string odometry(double x) {
 std::string cloudFrame() {
   auto cloud = CObservationPointCloud::Create();
   auto points = mrpt::maps::CPointsMapXYZI::Create();
-  for (int i = 0; i < 200; ++i) points->insertPoint(static_cast<float>(i), 0.5F, 1.F);
+  points->resize(200);
+  for (int i = 0; i < 200; ++i) points->setPointFast(i, static_cast<float>(i), 0.5F, 1.F);
   cloud->pointcloud = points;
   CSensoryFrame frame;
   frame.insert(cloud);
@@ -314,6 +316,12 @@ TEST(RawlogReader, ReadsTheSamplesOfMrpt) {
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     if (file.path().extension() != ".rawlog") continue;
     ++files;
+    // MRPT 2.12 changed what rotating scans hold, not their version: it cannot read its own
+    // samples.
+    if (MRPT_VERSION >= 0x020C00 && file.path().filename().string().rfind("rot_scan", 0) == 0) {
+      EXPECT_HAS(readAll(file.path().string()).error, "truncated");
+      continue;
+    }
     CRawlog log;
     ASSERT_TRUE(log.loadFromRawLogFile(file.path().string()));
     const Reading reading = readAll(file.path().string());

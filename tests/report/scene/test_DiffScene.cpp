@@ -21,9 +21,9 @@ TEST(DiffScene, EachKindInItsGroup) {
 TEST(DiffScene, PlacesAndHeightsAreThoseOfThePoles) {
   const auto poles = cylindersOf(makeDiffScene(diffMaps({}, {poleAt(3, 4)})), "new");
   ASSERT_EQ(poles.size(), 1u);
-  EXPECT_EQ(poles[0]->getPoseX(), 3);
-  EXPECT_EQ(poles[0]->getPoseY(), 4);
-  EXPECT_EQ(poles[0]->getPoseZ(), 0.5);
+  EXPECT_EQ(poles[0]->getPose().x, 3);
+  EXPECT_EQ(poles[0]->getPose().y, 4);
+  EXPECT_EQ(poles[0]->getPose().z, 0.5);
   EXPECT_NEAR(poles[0]->getHeight(), 4, 1e-6);
 }
 
@@ -32,8 +32,8 @@ TEST(DiffScene, UtmCoordinatesKeepTheirCentimetres) {
       {poleAt(448010.25, 5417000.5)}, {poleAt(448011.25, 5417000.5), poleAt(448050, 5417000)}));
   const auto moved = cylindersOf(scene, "moved");
   ASSERT_EQ(moved.size(), 1u);
-  EXPECT_NEAR(moved[0]->getPoseX(), 11.25, 1e-6);
-  EXPECT_NEAR(moved[0]->getPoseY(), 0.5, 1e-6);
+  EXPECT_NEAR(moved[0]->getPose().x, 11.25, 1e-6);
+  EXPECT_NEAR(moved[0]->getPose().y, 0.5, 1e-6);
   EXPECT_NEAR(boxOf(scene, "moves").min.x, 10.25, 1e-4);
   EXPECT_NEAR(boxOf(scene, "moves").max.x, 11.25, 1e-4);
   EXPECT_NE(legendOf(scene).find("x 448000, y 5417000"), std::string::npos);

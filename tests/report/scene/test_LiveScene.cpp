@@ -31,16 +31,16 @@ TEST(LiveScene, ShowsTheMapAndWhatWasObservedWhereItStands) {
   LiveScene scene(smallMap(), "drive");
   scene.show(knownMoment());
   ASSERT_EQ(cylindersOf(scene.scene(), "map").size(), 4u);
-  EXPECT_NEAR(cylindersOf(scene.scene(), "map")[1]->getPoseX(), 20, 1e-6);
+  EXPECT_NEAR(cylindersOf(scene.scene(), "map")[1]->getPose().x, 20, 1e-6);
   const auto matched = cylindersOf(scene.scene(), "matched"),
              unmatched = cylindersOf(scene.scene(), "unmatched");
   ASSERT_EQ(matched.size(), 1u);  // robot (-5, -10), turned by 90 degrees, from (10, 0)
-  EXPECT_NEAR(matched[0]->getPoseX(), 20, 1e-6);
-  EXPECT_NEAR(matched[0]->getPoseY(), -5, 1e-6);
+  EXPECT_NEAR(matched[0]->getPose().x, 20, 1e-6);
+  EXPECT_NEAR(matched[0]->getPose().y, -5, 1e-6);
   EXPECT_NEAR(matched[0]->getBoundingBox().max.z, 3, 1e-4);
   ASSERT_EQ(unmatched.size(), 1u);
-  EXPECT_NEAR(unmatched[0]->getPoseX(), 10, 1e-6);
-  EXPECT_NEAR(unmatched[0]->getPoseY(), 3, 1e-6);
+  EXPECT_NEAR(unmatched[0]->getPose().x, 10, 1e-6);
+  EXPECT_NEAR(unmatched[0]->getPose().y, 3, 1e-6);
   EXPECT_NE(matched[0]->getColor_u8(), unmatched[0]->getColor_u8());
   EXPECT_NE(matched[0]->getColor_u8(), cylindersOf(scene.scene(), "map")[0]->getColor_u8());
 }
@@ -108,9 +108,9 @@ TEST(LiveScene, WithoutAPoseItShowsThePlacesSupposedAndTheWholeMap) {
   ASSERT_TRUE(places);
   ASSERT_EQ(places->size(), 4u);  // two arrows, each with its share
   EXPECT_EQ(shareOf(**(places->begin() + 1)), "90%");
-  EXPECT_NEAR((*(places->begin() + 1))->getPoseX(), 20, 1e-6);
+  EXPECT_NEAR((*(places->begin() + 1))->getPose().x, 20, 1e-6);
   EXPECT_EQ(shareOf(**(places->begin() + 3)), "10%");
-  EXPECT_NEAR((*(places->begin() + 3))->getPoseX(), 40, 1e-6);
+  EXPECT_NEAR((*(places->begin() + 3))->getPose().x, 40, 1e-6);
   EXPECT_NEAR(scene.camera().getPointingAtX(), 30, 1e-3);
   EXPECT_GT(scene.camera().getZoomDistance(), 60);
   EXPECT_NE(legendOf(scene.scene()).find("lost: searching"), std::string::npos);
@@ -172,8 +172,8 @@ TEST(LiveScene, MapsInUtmKeepTheirCentimetres) {
     EXPECT_NEAR(boxOf(far.scene(), name).max.y, boxOf(near.scene(), name).max.y + 0.5, 1e-3)
         << name;
   }
-  EXPECT_NEAR(cylindersOf(far.scene(), "map")[1]->getPoseX(), 20.25, 1e-4);
-  EXPECT_NEAR(cylindersOf(far.scene(), "matched")[0]->getPoseY(), -4.5, 1e-4);
+  EXPECT_NEAR(cylindersOf(far.scene(), "map")[1]->getPose().x, 20.25, 1e-4);
+  EXPECT_NEAR(cylindersOf(far.scene(), "matched")[0]->getPose().y, -4.5, 1e-4);
   EXPECT_NE(legendOf(far.scene()).find("x 352000, y 4027000"), std::string::npos);
 }
 

@@ -33,8 +33,8 @@ mrpt::opengl::COpenGLScene::Ptr writtenAndRead(const mrpt::opengl::COpenGLScene&
 TEST(MapScene, PolesAreUprightCylindersFromBottomToTop) {
   const auto cylinders = cylindersOf(makeMapScene(smallDrive()), "poles");
   ASSERT_EQ(cylinders.size(), 4u);
-  EXPECT_NEAR(cylinders[1]->getPoseX(), 8, 1e-6);
-  EXPECT_NEAR(cylinders[1]->getPoseY(), -6, 1e-6);
+  EXPECT_NEAR(cylinders[1]->getPose().x, 8, 1e-6);
+  EXPECT_NEAR(cylinders[1]->getPose().y, -6, 1e-6);
   const auto box = cylinders[1]->getBoundingBox();
   EXPECT_NEAR(box.min.z, 0.5, 1e-4);
   EXPECT_NEAR(box.max.z, 4.5, 1e-4);
@@ -120,8 +120,8 @@ TEST(MapScene, UtmCoordinatesKeepTheirCentimetres) {
     EXPECT_NEAR(there.min.x, here.min.x + 0.25, most) << name;
     EXPECT_NEAR(there.max.y, here.max.y + 0.5, most) << name;
   }
-  EXPECT_NEAR(cylindersOf(far, "poles")[1]->getPoseX(), 8.25, 1e-6);
-  EXPECT_NEAR(cylindersOf(far, "poles")[1]->getPoseY(), -5.5, 1e-6);
+  EXPECT_NEAR(cylindersOf(far, "poles")[1]->getPose().x, 8.25, 1e-6);
+  EXPECT_NEAR(cylindersOf(far, "poles")[1]->getPose().y, -5.5, 1e-6);
   const auto &camera = far->getViewport()->getCamera(), &wanted = near->getViewport()->getCamera();
   EXPECT_NEAR(camera.getPointingAtX(), wanted.getPointingAtX() + 0.25, 1e-4);
   EXPECT_NEAR(camera.getPointingAtY(), wanted.getPointingAtY() + 0.5, 1e-4);

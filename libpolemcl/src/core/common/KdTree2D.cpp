@@ -47,6 +47,7 @@ class NearestResult {
     }
     return true;
   }
+  void sort() {}  // asked for by nanoflann from 1.5 on
   PointHit hit() const { return m_hit; }
 
  private:
@@ -65,6 +66,7 @@ class WithinResult {
     if (squaredDistance < m_limit) m_out.push_back({index, squaredDistance});
     return true;
   }
+  void sort() {}  // within() sorts by index
 
  private:
   double m_limit;
@@ -103,7 +105,7 @@ PointHit KdTree2D::nearest(double x, double y, double radius) const {
   if (size() == 0 || !std::isfinite(x) || !std::isfinite(y) || !(radius > 0)) return {};
   NearestResult result(radius * radius);
   const double query[2] = {x, y};
-  m_impl->tree.findNeighbors(result, query, nanoflann::SearchParams());
+  m_impl->tree.findNeighbors(result, query, {});
   return result.hit();
 }
 
@@ -112,7 +114,7 @@ void KdTree2D::within(double x, double y, double radius, std::vector<PointHit>& 
   if (size() == 0 || !std::isfinite(x) || !std::isfinite(y) || !(radius > 0)) return;
   WithinResult result(radius * radius, out);
   const double query[2] = {x, y};
-  m_impl->tree.findNeighbors(result, query, nanoflann::SearchParams());
+  m_impl->tree.findNeighbors(result, query, {});
   std::sort(out.begin(), out.end(),
             [](const PointHit& a, const PointHit& b) { return a.index < b.index; });
 }

@@ -93,7 +93,7 @@ MeasuredTrack readImu(const Bag& bag, std::size_t topic, const std::vector<doubl
                       const std::string& robot, const FrameTree& frames,
                       std::vector<std::string>& notes) {
   MeasuredTrack track(times, imuGap);
-  Eigen::Vector3d axis;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   double yaw = 0, lastTime = 0, lastRate = 0;
   for (const BagMessage& message : bag.messages(topic)) {
     const RosImu imu = decodeImu(bag.read(message), bag.place(message));

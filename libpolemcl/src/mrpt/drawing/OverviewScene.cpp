@@ -154,7 +154,7 @@ void OverviewScene::addRibbons(const std::string& name, const std::vector<Path>&
         insertRibbon(*triangles, part, height, width, ribbon.color);
     }
   triangles->setName(name);
-  triangles->setColor_u8(ribbon.color);
+  setColor(*triangles, ribbon.color);
   m_content->insert(triangles);
 }
 

@@ -151,6 +151,10 @@ void insertRibbon(CSetOfTriangles& triangles, const Path& path, double height, d
   }
 }
 
+void setColor(CSetOfTriangles& triangles, const TColor& color) {
+  triangles.viz::CVisualObject::setColor_u8(color);
+}
+
 TColor colorOfCount(std::uint32_t count) {
   return classOf(count).color;
 }

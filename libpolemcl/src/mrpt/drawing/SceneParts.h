@@ -60,6 +60,10 @@ void insertFace(viz::CSetOfTriangles& triangles, const Eigen::Vector3d& a, const
 void insertRibbon(viz::CSetOfTriangles& triangles, const Path& path, double height, double width,
                   const TColor& color, double left = 0);
 
+/// \brief Sets the colour of the object itself, beside that of its faces. (From MRPT 2.14 on its
+/// own setColor_u8() calls itself without end.)
+void setColor(viz::CSetOfTriangles& triangles, const TColor& color);
+
 /// \brief Colour of a map pole by its number of detections, in classes from 1, 3, 10, 30 and 100.
 TColor colorOfCount(std::uint32_t count);
 

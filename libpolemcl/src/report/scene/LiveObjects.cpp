@@ -87,7 +87,7 @@ CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way) {
   }
   finish();
   if (bands->getTrianglesCount() == 0) return nullptr;
-  bands->setColor_u8(scene::estimateColor);
+  scene::setColor(*bands, scene::estimateColor);
   return bands;
 }
 
@@ -102,7 +102,7 @@ CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& co
   scene::insertFace(*triangles, tip, ridge, right, color);
   scene::insertFace(*triangles, notch, ridge, left, color);
   scene::insertFace(*triangles, notch, right, ridge, color);
-  triangles->setColor_u8(color);
+  scene::setColor(*triangles, color);
   auto arrow = CSetOfObjects::Create();
   arrow->insert(triangles);
   return arrow;
@@ -145,7 +145,7 @@ viz::CPointCloudColoured::Ptr makeParticles(const LiveMoment& moment, double hei
 CSetOfTriangles::Ptr makeEllipse(const PoseWithCovariance& pose, double height, double width) {
   auto band = CSetOfTriangles::Create();
   scene::insertRibbon(*band, ellipse95(pose), height, width, ellipseColor);
-  band->setColor_u8(ellipseColor);
+  scene::setColor(*band, ellipseColor);
   return band;
 }
 

@@ -2,8 +2,8 @@
 /// \file Compatibility.h
 /// \brief What newer releases of MRPT have changed in what this project uses.
 ///
-/// Everything is built and tested with MRPT 2.5.8. The lines for later releases are untested: only
-/// their syntax was checked, with the headers of 2.15.19 and 3.1.2 (share/doc/mrpt.md).
+/// Everything is built and tested with MRPT 2.5.8 (Debian 12) and 2.14.7 (Debian 13). The lines for
+/// 3 are untested (share/doc/mrpt.md).
 
 #include <mrpt/img/CImage.h>
 #include <mrpt/maps/CMetricMap.h>
@@ -67,7 +67,7 @@ using Viewport = mrpt::opengl::COpenGLViewport;
 }  // namespace viz
 
 /// \brief What CPoleMap::internal_CreateFromMapDefinition() returns.
-#if MRPT_VERSION >= 0x020B03  // untested
+#if MRPT_VERSION >= 0x020B03
 using CreatedMap = mrpt::maps::CMetricMap::Ptr;
 #else
 using CreatedMap = mrpt::maps::CMetricMap*;  // owned by the caller

@@ -1,0 +1,37 @@
+#!/bin/sh
+# Runs both commands of the README in an empty Debian, from a copy of the files that git knows: they
+# install what they need themselves. Then makes the Debian packages there and tries them (packages.sh).
+# Usage: tests/install/commands.sh bookworm | trixie    Needs root, and a mirror of Debian.
+# With POLEMCL_DATA, the tests on real scans run, too.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+case "$#:${1-}" in
+  1:bookworm | 1:trixie) release=$1 ;;
+  *)
+    echo "usage: tests/install/commands.sh bookworm | trixie" >&2
+    exit 2
+    ;;
+esac
+dir=$(mktemp -d)
+# shellcheck source=tests/install/debian.sh
+. "$top/tests/install/debian.sh"
+[ "$(id -u)" = 0 ] || fail "needs root, for chroot"
+trap clean_up EXIT
+
+echo "An empty Debian: $release"
+make_root
+mkdir "$root/polemcl"
+(cd "$top" && git ls-files -z | tar -c --null -T - --ignore-failed-read) | tar -C "$root/polemcl" -x
+data=
+if [ -n "${POLEMCL_DATA-}" ]; then
+  mkdir "$root/data"
+  mount --bind -o ro "$POLEMCL_DATA" "$root/data"
+  data=POLEMCL_DATA=/data
+fi
+echo "share/demo/run.sh"
+inside /polemcl/share/demo/run.sh
+echo "tests/run.sh"
+inside env $data /polemcl/tests/run.sh
+echo "Packages"
+inside /polemcl/share/setup/build.sh package package
+"$top/tests/install/packages.sh" "$release" "$root/polemcl/build-package"
