@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPose2D.h>
 #include <zlib.h>
 
 #include <cstring>
@@ -185,6 +187,64 @@ TEST(ForgedLengths, InARawlogOfScans) {
   const std::string bad =
       forged(good, number(200) + number(0x3fc00000), number(3'000'000'000) + number(0x3fc00000));
   EXPECT_HAS(rawlogRefusal(folder, good + bad, true), "truncated: the file ends inside");
+}
+
+std::string header(const std::string& name) {
+  return static_cast<char>(0x80 | name.size()) + name;
+}
+
+// MRPT follows the pointers of a collection without a look at them, and crashes.
+TEST(ForgedLengths, ElementsOfCollectionsThatAreNullOrForeign) {
+  const samples::Folder folder("ForgedLengths");
+  const std::string null = header("nullptr") + "\x88", end = "\x88", zero(1, '\0');
+  const std::string pose = bytesOf(mrpt::poses::CPose2D());
+  const std::string actions = header("mrpt::obs::CActionCollection") + zero + number(1);
+  for (const std::string& version : {std::string("\0", 1), std::string("\1"), std::string("\2")}) {
+    const std::string frame = header("mrpt::obs::CSensoryFrame") + version +
+                              (version == "\2" ? "" : number(7)) +
+                              (version == zero ? std::string(8, '\1') : "") + number(1);
+    EXPECT_HAS(rawlogRefusal(folder, frame + null + end),
+               "element 0 of its collection is null, not an observation");
+    EXPECT_HAS(rawlogRefusal(folder, frame + pose + end),
+               "is a mrpt::poses::CPose2D, not an observation");
+  }
+  EXPECT_HAS(rawlogRefusal(folder, actions + null + end),
+             "element 0 of its collection is null, not an action");
+  EXPECT_HAS(rawlogRefusal(folder, actions + pose + end),
+             "is a mrpt::poses::CPose2D, not an action");
+}
+
+TEST(ForgedLengths, CountsOfCollections) {
+  const samples::Folder folder("ForgedLengths");
+  for (const char* name : {"mrpt::obs::CActionCollection", "mrpt::obs::CSensoryFrame"}) {
+    const std::string version = name[12] == 'A' ? std::string(1, '\0') : "\2";
+    EXPECT_HAS(rawlogRefusal(folder, header(name) + version + number(3'000'000'000)),
+               "truncated: the file ends inside an object");
+  }
+}
+
+// Frames of MRPT before 0.5.5 and of each version since hold the same observations.
+TEST(ForgedLengths, OldCollectionsAreRead) {
+  const samples::Folder folder("ForgedLengths");
+  mrpt::obs::CObservationOdometry odometry;
+  odometry.timestamp = mrpt::Clock::fromDouble(5);
+  const std::string element = bytesOf(odometry);
+  const std::uint64_t ticks = mrpt::Clock::fromDouble(9).time_since_epoch().count();
+  const std::string time(reinterpret_cast<const char*>(&ticks), sizeof ticks);
+  const std::string name = "mrpt::obs::CSensoryFrame";
+  const auto timeOf = [&](const std::string& bytes) {
+    const std::string path = folder / "old.rawlog";
+    std::ofstream(path, std::ios::binary) << bytes;
+    RawlogReader reader(path);
+    RawlogEntry entry;
+    EXPECT_TRUE(reader.next(entry) && entry.frame && entry.frame->size() == 1) << bytes;
+    return mrpt::Clock::toDouble((*entry.frame->begin())->timestamp);
+  };
+  const std::string list = number(1) + element, end = "\x88";
+  EXPECT_EQ(timeOf(header(name) + '\2' + list + end), 5);
+  EXPECT_EQ(timeOf(header(name) + '\1' + number(7) + list + end), 5);
+  EXPECT_EQ(timeOf(header(name) + '\0' + number(7) + time + list + end), 9);
+  EXPECT_EQ(timeOf(number(static_cast<std::uint32_t>(name.size())) + name + number(2) + list), 5);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "mrpt/rawlog/RawlogReader.h"
 
 #include <mrpt/obs/CObservationComment.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
 #include "mrpt/common/MrptReason.h"
+#include "mrpt/rawlog/RawlogArchive.h"
 
 namespace polemcl {
 
@@ -61,9 +61,7 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
   }
   std::string what;
   try {
-    auto archive = mrpt::serialization::archiveFrom(m_stream);
-    Object object{archive.ReadObject(), offset};
-    if (!object.object) throw std::runtime_error("an object of no class");
+    Object object{RawlogArchive(m_stream).readEntry(), offset};
     ++m_objects;
     return object;
   } catch (const std::exception& error) {

@@ -1,0 +1,36 @@
+#pragma once
+/// \file RawlogArchive.h
+/// \brief Reads the objects of a rawlog. Collections are read element by element.
+
+#include <mrpt/serialization/CArchive.h>
+
+#include <string>
+
+#include "mrpt/rawlog/GzReadStream.h"
+
+namespace polemcl {
+
+/// \brief MRPT's own reading of a CSensoryFrame or a CActionCollection takes memory for the count
+/// in the file before it reads an element, and crashes if an element is null or of a foreign class.
+/// Here memory grows with the elements that the file holds, and each is checked.
+class RawlogArchive : public mrpt::serialization::CArchiveStreamBase<GzReadStream> {
+ public:
+  using CArchiveStreamBase::CArchiveStreamBase;
+
+  /// \brief The next object of the file, never null.
+  /// \throws std::exception when it is damaged or its class is unknown.
+  mrpt::serialization::CSerializable::Ptr readEntry();
+
+ private:
+  struct Header {
+    std::string name;
+    bool old = false;  ///< written before MRPT 0.5.5
+    std::int8_t version = 0;
+  };
+  mrpt::serialization::CSerializable::Ptr readFrame(const Header& header);
+  mrpt::serialization::CSerializable::Ptr readActions(const Header& header);
+  template <class Element>
+  typename Element::Ptr readElement(std::uint32_t index, const char* wanted);
+};
+
+}  // namespace polemcl
