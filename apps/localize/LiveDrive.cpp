@@ -112,6 +112,7 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
     return !s_signalled && !(drive.seconds > 0 && secondsSince(begin) >= drive.seconds) &&
            (!drive.goesOn || drive.goesOn());
   };
+  queueOptions.warn = drive.warn;
   for (const LidarOptions& lidar : options.vehicle.lidars)
     queueOptions.lidars.push_back(lidar.label);
   const auto queue = std::make_shared<LiveQueue>(queueOptions);
@@ -127,7 +128,7 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
   LiveDriveResult result;
   result.counts = streamPoles(queue, drive.sensors.string(), options,
                               [&](const PoleScan& scan) { watch.consume(scan, consume); });
-  result.failure = queue->failure();
+  result.failure = result.counts.failure.empty() ? queue->failure() : result.counts.failure;
   if (!result.failure.empty() && result.counts.scans == 0) throw Error(result.failure);
   return result;
 }

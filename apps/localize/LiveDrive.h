@@ -24,7 +24,7 @@ struct LiveDriveOptions {
 
 struct LiveDriveResult {
   SequenceCounts counts;
-  std::string failure;  ///< of a sensor, which ended the drive; or empty
+  std::string failure;  ///< what ended the drive before its time; or empty
 };
 
 /// \brief Streams poles from sensors until Ctrl-C (SIGINT) or SIGTERM, the end of a PCAP file, the

@@ -95,10 +95,14 @@ LiveDriveResult play(const LocalizeJob& job, const Settings& settings, const Run
     const std::lock_guard lock(ofProgress);
     progress.say(warningLine("pole-localize", oneLine(text)));
   };
+  std::size_t jumps = 0;
   const auto take = [&](const PoleScan& scan) {
     player.take(scan);
     if (job.isLive() && scan.index == 0)
       for (const std::string& text : turnWarnings(scan, options)) warn(text);
+    if (job.isLive() && scan.odometryJumps > jumps)
+      warn(job.source().string() + ": the odometry jumped: the motion before goes on instead");
+    jumps = scan.odometryJumps;
     const std::lock_guard lock(ofProgress);
     progress.update(scan.index + 1, scan.expected);
   };

@@ -97,6 +97,7 @@ Json inputs(const LocalizeFacts& facts) {
     json["dropped_scans"] = counts.dropped;
     json["scans_without_odometry"] = counts.unknownMotions;
   }
+  json["odometry_jumps"] = counts.odometryJumps;
   if (!counts.lidars.empty()) json["lidars"] = lidarsJson(counts);
   json["poles_per_scan"] = static_cast<double>(counts.poles) / static_cast<double>(counts.scans);
   json["map_poles"] = facts.mapPoles;
@@ -176,6 +177,8 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
   if (facts.job.isLive())
     out << counts.dropped << " scans dropped, " << counts.unknownMotions
         << " left out without odometry\n";
+  if (counts.odometryJumps)
+    out << counts.odometryJumps << " jumps of the odometry, bridged by the motion before\n";
   if (counts.emptyScans) out << counts.emptyScans << " scans without a valid point\n";
   if (counts.invalidPoints) out << counts.invalidPoints << " invalid points left out\n";
   printSensors(out, counts);
@@ -193,6 +196,7 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
   for (std::size_t i = 0; i < result.errors.size(); ++i)
     if (result.errors[i])
       row(runName(i), [&](int k) { return (*result.errors[i]).*trajectoryMetrics[k].second; });
+  if (errors.size() < 2) return;
   row("mean", [&](int k) { return spread(k).mean; });
   row("spread", [&](int k) { return spread(k).deviation; });
 }

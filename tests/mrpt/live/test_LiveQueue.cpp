@@ -83,6 +83,42 @@ TEST(LiveQueue, DropsAScanOlderThanTheLastOneTaken) {
   EXPECT_EQ(queue.dropped(), 2u);
 }
 
+/// The computer's clock is set back by 60 s while odometry of before is still on its way.
+TEST(LiveQueue, AClockThatIsSetBackDoesNotSilenceTheSensors) {
+  LiveQueueOptions options = patient();
+  std::vector<std::string> warnings;
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  LiveQueue queue(options);
+  const auto odometer = [](double time) {
+    const auto observation = odometry(time, 0);
+    observation->sensorLabel = "wheels";
+    return observation;
+  };
+  queue.push(odometer(100));
+  queue.push(scan(100));
+  queue.push(scan(40.5));
+  queue.push(odometer(100.25));
+  queue.push(odometer(40.5));
+  queue.push(odometer(41));
+  queue.push(scan(41));
+  queue.end();
+  std::vector<double> scans, odometries;
+  for (RawlogEntry entry; queue.next(entry);)
+    (entry.arrival ? scans : odometries)
+        .push_back(mrpt::Clock::toDouble(entry.observation->timestamp));
+  // The first scan after the step counts for the time of its arrival, here at once.
+  ASSERT_EQ(scans.size(), 3u);
+  ASSERT_EQ(odometries.size(), 4u);
+  EXPECT_NEAR(scans[1], 100, 0.5);
+  EXPECT_NEAR(scans[2] - scans[1], 0.5, 1e-6);
+  EXPECT_NEAR(odometries[1], 100.25, 1e-6);
+  EXPECT_NEAR(odometries[2], scans[1], 1e-6) << "the same moment of the same clock";
+  EXPECT_NEAR(odometries[3], scans[2], 1e-6);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_HAS(warnings[0], "the clock of lidar was set back by 59.5 s");
+  EXPECT_HAS(warnings[1], "the clock of wheels was set back by 59.5 s");
+}
+
 /// Another thread asks; the scan must not come before the odometry of its time.
 TEST(LiveQueue, AScanWaitsForTheOdometryOfItsTime) {
   LiveQueue queue(patient());
@@ -227,6 +263,44 @@ TEST(LiveQueue, ScansWithoutOdometryAreLeftOutAndTheMotionGoesOn) {
   EXPECT_EQ(times, (std::vector<double>{2, 3, 7.4}));
   EXPECT_EQ(motions, (std::vector<double>{0, 1, 4}));
   EXPECT_EQ(counts.unknownMotions, 2u);
+}
+
+/// As after a restart of an encoder's node: one packet far off, then readings from a new origin.
+TEST(LiveQueue, AJumpOfTheOdometryIsBridged) {
+  LiveQueueOptions many;
+  many.longest = 100;
+  const auto queue = std::make_shared<LiveQueue>(many);
+  for (int i = 0; i <= 20; ++i) {
+    const double time = 0.1 * i;
+    queue->push(odometry(time, i == 10 ? 1e3 : i > 10 ? 0.1 * (i - 11) - 700 : 0.1 * i));
+    queue->push(scan(time));
+  }
+  queue->end();
+  std::size_t jumps = 0;
+  double way = 0;
+  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const PoleScan& taken) {
+    EXPECT_GE(taken.odometryJumps, jumps);
+    jumps = taken.odometryJumps;
+    way += taken.motion->mean.x;
+  });
+  EXPECT_EQ(counts.odometryJumps, 2u);
+  EXPECT_EQ(jumps, 2u);
+  EXPECT_NEAR(way, 2, 1e-9);
+}
+
+/// A drive cannot be repeated: what ends it must not take what was before.
+TEST(LiveQueue, WhatEndsADriveIsToldWithItsCounts) {
+  const auto queue = std::make_shared<LiveQueue>();
+  for (int i = 0; i < 5; ++i) {
+    queue->push(odometry(i, 0));
+    queue->push(scan(i));
+  }
+  queue->end();
+  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const PoleScan& taken) {
+    if (taken.index == 3) throw Error("enough");
+  });
+  EXPECT_EQ(counts.failure, "enough");
+  EXPECT_EQ(counts.scans, 4u);
 }
 
 TEST(LiveQueue, SaysThatThereIsNoOdometry) {

@@ -79,10 +79,6 @@ const Element& sectionOf(const Element& page, const char* id) {
   return only(page.all([&](const Element& e) { return e.at("id") == id; }));
 }
 
-const Element& leadOf(const Element& page) {
-  return only(page.all([](const Element& e) { return e.hasClass("lead"); }));
-}
-
 /// The cells of the row of the first table in the section whose header is that, as text.
 std::vector<std::string> cellsOf(const Element& section, const std::string& header) {
   for (const Element* row : section.named("tr"))
@@ -217,7 +213,7 @@ TEST(BatchReport, SessionsAreInThePapersLayout) {
 
 TEST(BatchReport, HeadlinesTellWhatWasLost) {
   const Element page = parsePage(batchReport(smallBatch()));
-  const Element& lead = leadOf(page);
+  const Element lead = only(page.all([](const Element& e) { return e.hasClass("lead"); }));
   const std::string text = lead.allText();
   EXPECT_NE(text.find("2 of 7 runs lost the pose and 1 failed."), std::string::npos) << text;
   EXPECT_NE(text.find("No run got through session three"), std::string::npos) << text;
@@ -247,7 +243,7 @@ TEST(BatchReport, OfManyConfigurationsTheBestAndTheWorstAreNamed) {
       batch.results.push_back(result);
     }
   const Element page = parsePage(batchReport(batch));
-  const Element& lead = leadOf(page);
+  const Element lead = only(page.all([](const Element& e) { return e.hasClass("lead"); }));
   std::set<std::string> named;
   for (const Element* name : lead.named("em")) named.insert(name->text);
   EXPECT_EQ(named, (std::set<std::string>{"B", "C"}));

@@ -3,7 +3,9 @@
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "io/file/TextFile.h"
 #include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl {
@@ -16,13 +18,46 @@ constexpr std::chrono::milliseconds glance{10};  // between two questions whethe
 
 }  // namespace
 
+double SteadyTimes::of(const std::string& sensor, double time, Clock::time_point arrival) {
+  const auto [at, isNew] = m_sensors.try_emplace(sensor);
+  Sensor& known = at->second;
+  if (!isNew && time + known.offset < known.last - latest) {
+    const double expected =
+        known.last + std::chrono::duration<double>(arrival - known.arrival).count();
+    if (std::abs(time + m_offset - expected) > latest) m_offset = expected - time;
+    known.offset = m_offset;
+  }
+  known.last = time + known.offset;
+  known.arrival = arrival;
+  return known.last;
+}
+
+double SteadyTimes::offset(const std::string& sensor) const {
+  const auto at = m_sensors.find(sensor);
+  return at == m_sensors.end() ? 0 : at->second.offset;
+}
+
 LiveQueue::LiveQueue(LiveQueueOptions options) : m_options(std::move(options)) {}
 
+/// The time of the observation, which it has then; a step back of its clock is told.
+double LiveQueue::steadyTime(CObservation& observation) {
+  const std::string& sensor = observation.sensorLabel;
+  const double before = m_times.offset(sensor);
+  const double stated = mrpt::Clock::toDouble(observation.timestamp);
+  const double time = m_times.of(sensor, stated, Clock::now());
+  const double offset = m_times.offset(sensor);
+  if (offset != 0) observation.timestamp = mrpt::Clock::fromDouble(time);
+  if (offset != before && m_options.warn)
+    m_options.warn("the clock of " + sensor + " was set back by " + io::fixed(offset - before, 1) +
+                   " s: its times go on without that step");
+  return time;
+}
+
 void LiveQueue::push(const CObservation::Ptr& observation) {
-  const double time = mrpt::Clock::toDouble(observation->timestamp);
   {
     const std::lock_guard lock(m_mutex);
     if (m_ended) return;
+    const double time = steadyTime(*observation);
     if (isScan(*observation)) {
       pushScan({time, Clock::now(), observation});
     } else if (dynamic_cast<const mrpt::obs::CObservationOdometry*>(observation.get())) {

@@ -27,6 +27,30 @@ struct LiveQueueOptions {
   double odometryWait = 0.2;
   /// Asked every few milliseconds, from the taking thread. False ends the drive at once.
   std::function<bool()> goesOn = {};
+  /// What is not right but does not end the drive. From any thread.
+  std::function<void(const std::string&)> warn = {};
+};
+
+/// \brief Times of sensors that never go far back: where a clock is set back, they go on as the
+/// time of arrival does. All sensors of one clock get the same offset, so what belongs together
+/// stays so.
+class SteadyTimes {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// \brief An observation may be this late without a clock that was set back, s.
+  static constexpr double latest = 3;
+  /// \param time As the sensor states it, s. \return What to count it for, s.
+  double of(const std::string& sensor, double time, Clock::time_point arrival);
+  /// \brief What is added to the times of a sensor, s.
+  double offset(const std::string& sensor) const;
+
+ private:
+  struct Sensor {
+    double offset = 0, last = 0;  ///< s
+    Clock::time_point arrival;    ///< of the last observation
+  };
+  std::map<std::string, Sensor> m_sensors;
+  double m_offset = 0;  ///< since the last step of a clock, s
 };
 
 /// \brief Scans in the order of their times, each after the odometry of its time. Odometry is given
@@ -58,6 +82,7 @@ class LiveQueue : public EntrySource {
     Clock::time_point arrival;
     mrpt::obs::CObservation::Ptr observation;
   };
+  double steadyTime(mrpt::obs::CObservation& observation);
   void pushScan(Waiting scan);
   bool isExpected(const std::string& label);
   void endNow(const std::string& failure);
@@ -67,6 +92,7 @@ class LiveQueue : public EntrySource {
   const std::string m_comment;
   mutable std::mutex m_mutex;  ///< of all below
   std::condition_variable m_changed;
+  SteadyTimes m_times;
   std::deque<Waiting> m_scans;  ///< in the order of their times
   std::deque<mrpt::obs::CObservation::Ptr> m_odometry;
   std::optional<double> m_reached;        ///< time of the latest odometry, s

@@ -13,6 +13,7 @@ namespace polemcl {
 /// without odometry at its time is left out, and the motion goes on to the next.
 /// \param name The source, for messages.
 /// \param options `pace`, `allowTruncated` and `follow` have no effect on sensors.
+/// \return For sensors also why the drive ended, after its first scan: `failure`.
 /// \throws Error as streamPoles(); when no odometry came with many scans of sensors.
 SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::string& name,
                            const SequenceOptions& options,

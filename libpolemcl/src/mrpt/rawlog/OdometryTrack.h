@@ -10,12 +10,22 @@
 namespace polemcl {
 
 /// \brief Readings may come in any order. Poses are in the odometry frame.
+///
+/// A step that no vehicle makes is a jump: the node of an encoder was started anew, or a packet is
+/// wrong. Over a jump, the motion before goes on; later readings continue from there.
 class OdometryTrack {
  public:
+  /// \brief A longer step between two readings is a jump: `nearest + fastest * dt`, m and m/s.
+  static constexpr double nearestJump = 1, fastest = 70;
+  /// \brief The same for the heading, rad and rad/s.
+  static constexpr double leastTurn = 0.5, fastestTurn = 10;
+
   /// \brief The first and last pose are also valid for this time before and after the readings, s.
   static constexpr double reach = 0.5;
 
-  void add(double time, const Pose2D& pose) { m_readings[time] = pose; }
+  void add(double time, const Pose2D& pose);
+  /// \brief Number of jumps so far.
+  std::size_t jumps() const { return m_jumps; }
   bool empty() const { return m_readings.empty(); }
   /// \brief Whether there is a reading at `time` or later.
   bool reaches(double time) const {
@@ -31,7 +41,12 @@ class OdometryTrack {
   void forgetBefore(double time);
 
  private:
-  std::map<double, Pose2D> m_readings;  ///< s
+  bool isJump(double time, const Pose2D& pose) const;
+  Pose2D goneOn(double time) const;
+
+  std::map<double, Pose2D> m_readings;  ///< s; without jumps
+  Pose2D m_origin;                      ///< of the readings since the last jump
+  std::size_t m_jumps = 0;
 };
 
 }  // namespace polemcl

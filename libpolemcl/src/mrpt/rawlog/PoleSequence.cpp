@@ -85,6 +85,7 @@ TaskPtr Stream::read() {
     const auto& arrival = task->scan.arrival;
     task->result.readSeconds = secondsSince(arrival ? *arrival : begin);
     task->result.dropped = task->scan.dropped;
+    task->result.odometryJumps = m_source.odometryJumps();
     task->result.arrival = arrival ? *arrival : m_pace ? m_pace(task->scan.time) : ScanClock::now();
   } catch (...) {
     m_ended = true;
@@ -187,9 +188,19 @@ void Stream::countLidars(const Task& task) {
   }
 }
 
+std::string reasonOf(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 SequenceCounts Stream::finish() const {
-  if (m_failure) std::rethrow_exception(m_failure);
   SequenceCounts counts = m_counts;
+  // A drive cannot be repeated: what came before the failure counts.
+  if (m_failure && !(m_source.isLive() && counts.scans > 0)) std::rethrow_exception(m_failure);
+  if (m_failure) counts.failure = reasonOf(m_failure);
   if (m_source.isFused()) counts.lidars = m_lidars;
   for (std::size_t i = 0; i < counts.lidars.size(); ++i) {
     LidarCounts& lidar = counts.lidars[i];
@@ -204,6 +215,7 @@ SequenceCounts Stream::finish() const {
   counts.otherLabels = m_source.otherLabels();
   counts.unknownMotions = m_source.unknownMotions();
   counts.dropped = m_source.dropped();
+  counts.odometryJumps = m_source.odometryJumps();
   counts.truncated = m_source.truncated();
   return counts;
 }

@@ -67,6 +67,8 @@ class ScanSource {
   /// \brief Scans of a LiDAR that came too late.
   std::size_t late(std::size_t lidar) const { return m_late[lidar]; }
   std::size_t unknownMotions() const { return m_unknownMotions; }
+  /// \brief Jumps of the odometry so far, see OdometryTrack.
+  std::size_t odometryJumps() const { return m_odometry.jumps(); }
   bool isLive() const { return m_entries->isLive(); }
   std::size_t dropped() const { return m_entries->dropped(); }
   bool truncated() const { return m_entries->truncated(); }

@@ -65,7 +65,10 @@ struct SequenceCounts {
   std::size_t unknownMotions = 0;  ///< scans without odometry: after the first one; of sensors,
                                    ///< these are left out
   std::size_t dropped = 0;         ///< scans of sensors that nobody had time for
+  std::size_t odometryJumps = 0;   ///< steps of the odometry that no vehicle makes, bridged by
+                                   ///< the motion before
   bool truncated = false;          ///< the file is truncated, and this was allowed
+  std::string failure = {};        ///< why a drive from sensors ended before its time; or empty
 };
 
 /// \brief One scan from the stream.
@@ -88,9 +91,10 @@ struct PoleScan {
   bool stored = false;      ///< true: read as poles, not extracted
   /// Time when the scan was read, due by SequenceOptions::pace, or given by its sensor.
   ScanClock::time_point arrival;
-  double readSeconds = 0;     ///< time spent on reading it; of sensors: the wait since arrival
-  double extractSeconds = 0;  ///< time spent on loading points and extracting poles
-  std::size_t dropped = 0;    ///< scans of sensors that were dropped before this one, in all
+  double readSeconds = 0;         ///< time spent on reading it; of sensors: the wait since arrival
+  double extractSeconds = 0;      ///< time spent on loading points and extracting poles
+  std::size_t dropped = 0;        ///< scans of sensors that were dropped before this one, in all
+  std::size_t odometryJumps = 0;  ///< before this scan was read, in all
   /// Estimated number of scans in the rawlog, from the fraction of the file read so far; 0:
   /// unknown.
   std::size_t expected = 0;
