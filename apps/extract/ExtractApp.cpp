@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "cli/CommandLine.h"
+#include "cli/Messages.h"
 #include "cli/Progress.h"
 #include "cli/RawlogActions.h"
 #include "cli/SensorCounts.h"
@@ -178,6 +179,10 @@ namespace {
 void runExtraction(const ExtractOptions& options, const Settings& settings, bool quiet) {
   const auto summary = extractPoles(options, settings, Progress("extract", 0, quiet).updates());
   if (!quiet) print(summary, options);
+  if (summary.counts.poles == 0)
+    std::cerr << warningLine("pole-extract", options.input.string() + ": no pole in any of " +
+                                                 std::to_string(summary.counts.scans) +
+                                                 " scans: check [sensor] and [extraction]\n");
 }
 
 void runInspection(const InspectOptions& options, bool quiet) {

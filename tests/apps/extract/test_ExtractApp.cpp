@@ -78,6 +78,29 @@ TEST_F(ExtractApp, FindsThePolesOfEveryScan) {
   for (std::size_t count : right) EXPECT_GE(count, 6u);
 }
 
+TEST_F(ExtractApp, SaysWhenNoScanHasAPole) {
+  writeStreet(folder / "in", 2);
+  import("in");
+  EXPECT_EQ(run().err.find("warning"), std::string::npos);
+  const auto outcome = run({"--quiet", "--set", "scan_line.min_radius_m=0.39"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "pole-extract: warning: " + at("in.rawlog") +
+                             ": no pole in any of 2 scans: check [sensor] and [extraction]\n");
+}
+
+TEST_F(ExtractApp, TheRangeImageMethodFitsTheSensorByItself) {
+  writeStreet(folder / "in", 4);
+  import("in");
+  const auto outcome = run({"--csv", at("poles.csv"), "--set", "extraction.method=range_image"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  // Rows and borders of another LiDAR find nothing in these scans.
+  EXPECT_GE(readCsv(folder / "poles.csv").size(), 12u);
+  const auto kitti =
+      run({"--set", "extraction.method=range_image", "--set", "range_image.rows=64", "--set",
+           "range_image.fov_up_deg=3", "--set", "range_image.fov_down_deg=-25"});
+  EXPECT_NE(kitti.err.find("no pole in any"), std::string::npos) << kitti.out;
+}
+
 TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
   writeStreet(folder / "in", 2);
   import("in");

@@ -41,9 +41,13 @@ void bind(Binder& b, RangeImageOptions& o) {
 }
 
 void bindKeys(Binder& b, RangeImageOptions& o) {
-  b.integer("rows", o.rows, Range::between(2, 1024), "px", "height of the range image");
-  b.integer("columns", o.columns, Range::between(16, 65536), "px", "width of the range image");
-  b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90), "elevation of the upper border");
+  b.integer("rows", o.rows, Range::between(0, 1024), "px",
+            "height of the range image; 0: a row for each ring of the sensor, fewer where they are "
+            "not even");
+  b.integer("columns", o.columns, Range::between(0, 65536), "px",
+            "width of the range image; 0: 500, or the firing steps of the sensor if fewer");
+  b.angleDeg("fov_up_deg", o.fovUp, Range::between(-90, 90),
+             "elevation of the upper border; both borders 0: those of the sensor");
   b.angleDeg("fov_down_deg", o.fovDown, Range::between(-90, 90),
              "elevation of the lower border, negative below the horizon");
   b.number("min_z_m", o.minZ, Range::any(), "m", "lower cut, see heights_above_ground");
@@ -72,8 +76,10 @@ void bindKeys(Binder& b, RangeImageOptions& o) {
            "points allowed in the free space, as a share of those fitted");
   bindChoices(b, o);
 
-  b.require(o.fovUp > o.fovDown, "fov_up_deg", o.fovUp / degree,
-            "more than fov_down_deg (negative below the horizon)");
+  b.require(o.rows != 1, "rows", o.rows, "0, or at least 2");
+  b.require(o.columns == 0 || o.columns >= 16, "columns", o.columns, "0, or at least 16");
+  b.require(o.fovUp > o.fovDown || (o.fovUp == 0 && o.fovDown == 0), "fov_up_deg", o.fovUp / degree,
+            "more than fov_down_deg (negative below the horizon), or both 0");
   b.require(o.maxZ > o.minZ, "max_z_m", o.maxZ, "more than min_z_m");
   b.require(o.maxRadius > o.minRadius, "max_radius_m", o.maxRadius, "more than min_radius_m");
 }

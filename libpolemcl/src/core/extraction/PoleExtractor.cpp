@@ -13,23 +13,28 @@ struct PoleExtractor::Impl {
   std::optional<RangeImageExtractor> rangeImage;
   std::vector<PoleDetection> poles;
   ExtractionReport report;
+
+  void emplace(const SensorModel& beams, const SensorOptions& sensor,
+               const ExtractionOptions& extraction) {
+    if (extraction.method == ExtractionMethod::scanLine)
+      scanLine.emplace(beams, sensor, extraction.scanLine);
+    else
+      rangeImage.emplace(beams, sensor, extraction.rangeImage);
+  }
 };
 
 PoleExtractor::PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction)
     : m_impl(std::make_unique<Impl>()) {
   checkOptions(extraction);
   checkOptions(sensor);
-  if (extraction.method == ExtractionMethod::scanLine)
-    m_impl->scanLine.emplace(SensorModel(sensor), sensor, extraction.scanLine);
-  else
-    m_impl->rangeImage.emplace(sensor, extraction.rangeImage);
+  m_impl->emplace(SensorModel(sensor), sensor, extraction);
 }
 PoleExtractor::PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
-                             const ScanLineOptions& options)
+                             const ExtractionOptions& extraction)
     : m_impl(std::make_unique<Impl>()) {
-  checkOptions(options);
+  checkOptions(extraction);
   checkOptions(sensor);
-  m_impl->scanLine.emplace(SensorModel(camera), sensor, options);
+  m_impl->emplace(SensorModel(camera), sensor, extraction);
 }
 PoleExtractor::~PoleExtractor() = default;
 PoleExtractor::PoleExtractor(PoleExtractor&&) noexcept = default;

@@ -94,8 +94,6 @@ mrpt::poses::CPose3D ObservationPoleExtractorOptions::poseOf(
 struct ObservationPoleExtractor::Impl {
   explicit Impl(const ObservationPoleExtractorOptions& o)
       : sensor(o.sensor),
-        method(o.extraction.method),
-        scanLine(o.extraction.scanLine),
         fromCloud(o.extraction.method == ExtractionMethod::rangeImage &&
                   o.extraction.rangeImage.projectFrom == "cloud"),
         points(o.sensor),
@@ -104,8 +102,6 @@ struct ObservationPoleExtractor::Impl {
         check(o.sensor, o.extraction.method == ExtractionMethod::scanLine) {}
 
   SensorOptions sensor;
-  ExtractionMethod method;
-  ScanLineOptions scanLine;
   bool fromCloud;  ///< the range image is projected from the origin of the clouds
   ObservationPoints points;
   ObservationPoleExtractorOptions options;
@@ -123,9 +119,8 @@ struct ObservationPoleExtractor::Impl {
   LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
   PoleExtractor& extractorFor(const LidarFrame& frames);
   void setTimeOffsets(const LidarFrame& frames, std::vector<PoleDetection>& poles) const;
-  /// Whether the last points read are treated as an image. The range image of the paper is
-  /// spherical, so its method treats them as a cloud.
-  bool pinhole() const { return points.camera() && method == ExtractionMethod::scanLine; }
+  /// Whether the last points read are those of a depth image.
+  bool pinhole() const { return points.camera().has_value(); }
 };
 
 /// Frame for the last points read. Points of a depth image are levelled; its rows are planes in any
@@ -143,7 +138,7 @@ PoleExtractor& ObservationPoleExtractor::Impl::extractorFor(const LidarFrame& fr
   PinholeCamera seen = *points.camera();
   seen.R_lidar_camera = frames.R_lidar_cloud;
   if (!cameraExtractor || !(seen == camera)) {
-    cameraExtractor.emplace(seen, sensor, scanLine);
+    cameraExtractor.emplace(seen, sensor, options.extraction);
     camera = seen;
   }
   return *cameraExtractor;
@@ -210,7 +205,10 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
       m_impl->setTimeOffsets(frames, result->poles);
       result->visibilityRange = planarVisibilityRange(frames, extractor.visibilityRange());
       for (auto& pole : result->poles)
-        toPlanar(frames, heightOfCentre(frames, m_impl->method, m_impl->report.ground, pole), pole);
+        toPlanar(
+            frames,
+            heightOfCentre(frames, m_impl->options.extraction.method, m_impl->report.ground, pole),
+            pole);
     }
     m_impl->report.points += m_impl->points.dropped();
     m_impl->report.invalid += m_impl->points.dropped();

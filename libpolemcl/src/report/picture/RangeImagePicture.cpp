@@ -103,7 +103,7 @@ void drawFateLegend(Canvas& canvas, double x, double baseline,
 void drawRangeImagePng(const RangeImageView& view, const std::filesystem::path& file) {
   if (view.points.size == 0) throw Error(file.string() + ": a scan without points to draw");
   checkOptions(view.options);
-  RangeImageExtractor extractor(view.sensor, view.options);
+  RangeImageExtractor extractor(SensorModel(view.sensor), view.sensor, view.options);
   std::vector<PoleDetection> poles;
   ExtractionReport report;
   std::vector<SegmentOutcome> segments;

@@ -22,6 +22,7 @@ struct Scene {
   HeightRange heights{-99, -99};
 
   explicit Scene(double top = 2.5, int columns = 1) {
+    options.minTop = 0.7, options.maxBottom = 1.5;
     for (int r = 0; r < image.rows(); ++r)
       for (int c = 0; c < image.columns(); ++c) {
         const bool thing = c >= kColumn && c < kColumn + columns && r >= kTopRow && r < kTopRow + 6;

@@ -117,6 +117,8 @@ TEST(RangeImage, StraightAheadIsTheMiddleColumnAndAzimuthFallsWithTheColumn) {
 // this sensor would lie in row 57.
 TEST(RangeImage, RowZeroIsTopmostWhenTheViewIsNotSymmetric) {
   View options;
+  options.rows = 64;
+  options.columns = 500;
   options.fovUp = 3 * kDegree;
   options.fovDown = -25 * kDegree;
   PointList points;
@@ -384,13 +386,14 @@ TEST(RangeImage, IsEmptiedBeforeEachProjection) {
 }
 
 TEST(RangeImageView, RefusesSizesOutOfBounds) {
-  EXPECT_NE(refusal([](auto& o) { o.rows = 1; }).find("2 to 1024"), std::string::npos);
+  EXPECT_NE(refusal([](auto& o) { o.rows = 1; }).find("0, or at least 2"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.rows = 1025; }).find("1025"), std::string::npos);
-  EXPECT_NE(refusal([](auto& o) { o.columns = 15; }).find("16 to 65536"), std::string::npos);
+  EXPECT_NE(refusal([](auto& o) { o.columns = 15; }).find("0, or at least 16"), std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.columns = 65537; }).find("65537"), std::string::npos);
 }
 TEST(RangeImageView, RefusesAViewTheWrongWayRound) {
-  EXPECT_NE(refusal([](auto& o) { o.fovUp = o.fovDown; }).find("fov_up_deg"), std::string::npos);
+  EXPECT_NE(refusal([](auto& o) { o.fovUp = o.fovDown = -0.1; }).find("fov_up_deg"),
+            std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.fovDown = std::nan(""); }).find("fov_down_deg"),
             std::string::npos);
 }

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
+#include "core/extraction/range_image/RangeImageExtractor.h"
 #include "support/KnownScene.h"
 
 namespace polemcl::test_range_image_extractor {
@@ -13,12 +14,16 @@ using namespace polemcl::clouds;
 
 namespace {
 
-/// Algorithm 1 with an image that fits the OS1-64, the sensor of these scans.
-ExtractionOptions paperOptions() {
+/// Algorithm 1 with heights as the authors compare them. The view fits the OS1-64, the sensor of
+/// these scans.
+ExtractionOptions paperOptions(double fovUp = 17 * kDegree, double fovDown = -17 * kDegree) {
   ExtractionOptions options;
   options.method = ExtractionMethod::rangeImage;
-  options.rangeImage.fovUp = 17 * kDegree;
-  options.rangeImage.fovDown = -17 * kDegree;
+  RangeImageOptions& o = options.rangeImage;
+  o.rows = 64, o.columns = 500;
+  o.fovUp = fovUp, o.fovDown = fovDown;
+  o.heightsAboveGround = false;
+  o.minZ = -1.3, o.maxZ = 6, o.minTop = 0.7, o.maxBottom = 1.5, o.fitMaxZ = 3;
   return options;
 }
 
@@ -56,6 +61,36 @@ void expectYard(const Result& result, double tolerance) {
 
 }  // namespace
 
+// Nothing is said but the method: size, field of view and heights are those of the sensor.
+TEST(RangeImageExtractor, FitsEachSensorByItself) {
+  ExtractionOptions options;
+  options.method = ExtractionMethod::rangeImage;
+  for (const std::string model : {"hdl64e", "hdl32e", "os1_64", "vlp16"}) {
+    const auto result = extract(castYard(sensorOptions(model)), options, model);
+    EXPECT_EQ(result.poles.size(), 4u) << model;
+    // The blocks of an HDL-64E stand above its origin: near points lie higher than its rings.
+    if (model != "hdl64e") {
+      EXPECT_EQ(result.report.outOfView, 0u) << model;
+    }
+  }
+}
+
+TEST(RangeImageExtractor, TakesSizeAndViewFromTheBeams) {
+  const SensorModel vlp16(sensorOptions("vlp16"));
+  RangeImageOptions stated;
+  const auto all = adaptedTo(vlp16, stated);
+  EXPECT_EQ(all.rows, 16);
+  EXPECT_EQ(all.columns, 500);
+  EXPECT_NEAR(all.fovUp, 16 * kDegree, 1e-6);
+  EXPECT_NEAR(all.fovDown, -16 * kDegree, 1e-6);
+  stated.rows = 8, stated.columns = 100, stated.fovUp = 0.1, stated.fovDown = -0.2;
+  const auto none = adaptedTo(vlp16, stated);
+  EXPECT_EQ(none.rows, 8);
+  EXPECT_EQ(none.columns, 100);
+  EXPECT_EQ(none.fovUp, 0.1);
+  EXPECT_EQ(none.fovDown, -0.2);
+}
+
 TEST(RangeImageExtractor, FindsThePolesOfAKnownScene) {
   expectYard(extract(yardPoints(), paperOptions()), 0.06);
 }
@@ -81,8 +116,7 @@ TEST(RangeImageExtractor, HeightsInResultsAreAboveGround) {
 // rise by 2°, are not so high before 20 m.
 TEST(RangeImageExtractor, HeightsAboveGroundBringsBackTheNearPoles) {
   const PointList points = castYard(sensorOptions("hdl64e"));
-  ExtractionOptions options;
-  options.method = ExtractionMethod::rangeImage;
+  ExtractionOptions options = paperOptions(3 * kDegree, -25 * kDegree);
   const Result asStated = extract(points, options, "hdl64e");
   EXPECT_TRUE(asStated.poles.empty());
   EXPECT_GE(asStated.of(RejectionReason::tooLow), 4u);

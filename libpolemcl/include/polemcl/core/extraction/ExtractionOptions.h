@@ -13,27 +13,31 @@ namespace polemcl {
 enum class ExtractionMethod { rangeImage, scanLine };
 
 /// \brief The paper's Algorithm 1. `[range_image]` in INI files; departures are named options.
+///
+/// Heights are those of the authors for KITTI, counted from the ground, 1.73 m below that LiDAR.
+/// The exception is `minTop`: the authors mean a height above ground, but compare it with z.
 struct POLEMCL_EXPORT RangeImageOptions {
-  int rows = 64, columns = 500;              ///< range image, px
-  double fovUp = 0.0524, fovDown = -0.4363;  ///< rad
-  double minZ = -1.3, maxZ = 6;              ///< height cut, m; see `heights_above_ground`
-  double maxRange = 50;                      ///< m
-  double epsilon = 0.2;                      ///< ε: range step inside a cluster, m
-  int minPixels = 3;                         ///< ζ: clusters need strictly more pixels
-  int maxWidthPx = 10;                       ///< px
-  double minAspect = 1;                      ///< least h/w, px
-  double foreground = 0.7;  ///< δ: least share of pixels not behind a side neighbour
-  double minTop = 0.7;      ///< α, m
-  double maxBottom = 1.5;   ///< β, m
-  double minHeight = 0.6;   ///< γ, m
+  int rows = 0;                     ///< px; 0: a row for each ring; fewer where rings are not even
+  int columns = 0;                  ///< px; 0: 500, as the paper, or the sensor's if it has fewer
+  double fovUp = 0, fovDown = 0;    ///< rad; both 0: from the uppermost to the lowest ring
+  double minZ = 0.43, maxZ = 7.73;  ///< height cut, m; see `heights_above_ground`
+  double maxRange = 50;             ///< m
+  double epsilon = 0.2;             ///< ε: range step inside a cluster, m
+  int minPixels = 3;                ///< ζ: clusters need strictly more pixels
+  int maxWidthPx = 10;              ///< px
+  double minAspect = 1;             ///< least h/w, px
+  double foreground = 0.7;          ///< δ: least share of pixels not behind a side neighbour
+  double minTop = 1.73;             ///< α, m
+  double maxBottom = 3.23;          ///< β, m
+  double minHeight = 0.6;           ///< γ, m
   double minRadius = 0.02, maxRadius = 0.4;  ///< b, a, m
   double fitMargin = 0.1;                    ///< box for the fit: ± (R + margin), m
-  double fitMaxZ = 3;                        ///< highest point of the fit, m
+  double fitMaxZ = 4.73;                     ///< highest point of the fit, m
   int minFitPoints = 6;
   double freeRing = 0.5;    ///< width of the free space, m
   double freeShare = 0.15;  ///< μ: allowed points there as a share of the fitted ones
   bool heightsAboveGround =
-      false;  ///< false: z in the sensor frame, as the paper; true: z + `height_m`
+      true;  ///< true: z + `height_m`; false: z in the sensor frame, as the authors' code
   /// Origin of the range image. `sensor`: the optical centre, as in the paper; `cloud`: the origin
   /// of the clouds, whatever `[sensor] origin` says (authors' code: NCLT's body frame).
   std::string projectFrom = "sensor";

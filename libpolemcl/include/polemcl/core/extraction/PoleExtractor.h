@@ -20,12 +20,12 @@ class POLEMCL_EXPORT PoleExtractor {
  public:
   /// \throws Error when an option is out of range or the sensor's geometry is unknown.
   explicit PoleExtractor(const SensorOptions& sensor, const ExtractionOptions& extraction);
-  /// \brief For the depth images of one camera, by the scan-line method. Only the height
-  /// and the ranges of `sensor` are used. extract() takes points in a level frame with the origin
+  /// \brief For the depth images of one camera. Only the height and the ranges of `sensor` are
+  /// used. extract() takes points in a level frame with the origin
   /// at the optical centre, in which the camera stands as `R_lidar_camera` says.
   /// \throws Error when an option or an intrinsic is out of range.
   PoleExtractor(const PinholeCamera& camera, const SensorOptions& sensor,
-                const ScanLineOptions& options);
+                const ExtractionOptions& extraction);
   ~PoleExtractor();
   PoleExtractor(PoleExtractor&&) noexcept;
   PoleExtractor& operator=(PoleExtractor&&) noexcept;

@@ -7,13 +7,30 @@
 
 namespace polemcl {
 
-RangeImageExtractor::RangeImageExtractor(const SensorOptions& sensor,
+RangeImageOptions adaptedTo(const SensorModel& beams, RangeImageOptions options) {
+  constexpr int paperColumns = 500;
+  const int lowest = beams.beamCount() - 1;
+  if (options.columns == 0) options.columns = std::clamp(beams.columns(), 16, paperColumns);
+  if (options.fovUp == 0 && options.fovDown == 0) {  // half a gap beyond the outer rings
+    options.fovUp = std::atan(beams.beam(0).slope) + beams.spacingAbove(0) / 2;
+    options.fovDown = std::atan(beams.beam(lowest).slope) - beams.spacingAbove(lowest) / 2;
+  }
+  if (options.rows == 0) {  // no row lies between two rings, or clusters would end there
+    double widest = 0;
+    for (int row = 0; row <= lowest; ++row) widest = std::max(widest, beams.spacingAbove(row));
+    const double fit = (options.fovUp - options.fovDown) / widest + 1e-3;
+    options.rows = std::clamp(static_cast<int>(fit), 2, std::max(2, beams.beamCount()));
+  }
+  return options;
+}
+
+RangeImageExtractor::RangeImageExtractor(const SensorModel& beams, const SensorOptions& sensor,
                                          const RangeImageOptions& options)
-    : m_options(options),
+    : m_options(adaptedTo(beams, options)),
       m_minRange(sensor.minRange),
       m_height(sensor.height - (options.projectFrom == "cloud" ? sensor.originZ : 0)),
       m_heightOffset(options.heightsAboveGround ? m_height : 0),
-      m_image(options.rows, options.columns),
+      m_image(m_options.rows, m_options.columns),
       m_cells(2 * (static_cast<int>(std::ceil(options.maxRange)) + 1)) {}
 
 void RangeImageExtractor::extract(const PointsView& points, std::vector<PoleDetection>& poles,

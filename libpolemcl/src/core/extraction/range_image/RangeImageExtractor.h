@@ -7,6 +7,7 @@
 #include "core/extraction/range_image/CircleFit.h"
 #include "core/extraction/range_image/PoleCandidates.h"
 #include "core/extraction/range_image/RangeImage.h"
+#include "core/sensor/SensorModel.h"
 
 namespace polemcl {
 
@@ -16,9 +17,14 @@ struct SegmentOutcome {
   std::optional<RejectionReason> rejection;  ///< why it is not a pole; empty for a pole
 };
 
+/// \brief The options with the size and the field of view that they leave to the sensor.
+RangeImageOptions adaptedTo(const SensorModel& beams, RangeImageOptions options);
+
 class RangeImageExtractor {
  public:
-  RangeImageExtractor(const SensorOptions& sensor, const RangeImageOptions& options);
+  /// \param beams Rings of the sensor, or lines of pixels of a depth camera.
+  RangeImageExtractor(const SensorModel& beams, const SensorOptions& sensor,
+                      const RangeImageOptions& options);
   /// \param[out] outcomes One for each segment, for those who draw them.
   void extract(const PointsView& points, std::vector<PoleDetection>& poles,
                ExtractionReport& report, std::vector<SegmentOutcome>* outcomes = nullptr);
