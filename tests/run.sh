@@ -3,9 +3,9 @@
 # Usage: tests/run.sh [--quick | --full]
 #   --quick  runs the unit tests only: less than a minute after the build
 #   --full   also checks format, spelling and clang-tidy, opens scenes in MRPT's viewer, tries batches
-#            on a Slurm cluster of its own (as root), installs Debian packages in an empty Debian (as
-#            root), builds and checks the documentation site, builds with clang, and runs the tests
-#            again under the address and undefined-behaviour sanitizers
+#            on a Slurm cluster of its own (as root), runs both commands and tries the packages in an
+#            empty Debian 13 and 12 (as root), builds and checks the documentation site, builds with
+#            clang, and runs the tests again under the address and undefined-behaviour sanitizers
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
@@ -61,7 +61,8 @@ if [ "$how" = full ]; then
   "$top/tests/lint.sh" tidy
   "$top/tests/viewers/run.sh"
   "$top/tests/slurm/run.sh"
-  "$top/tests/install/packages.sh"
+  "$top/tests/install/commands.sh" trixie
+  "$top/tests/install/commands.sh" bookworm
   "$top/tests/site/run.sh"
   "$top/share/setup/build.sh" clang all
   "$top/share/setup/build.sh" sanitize all

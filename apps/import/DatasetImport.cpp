@@ -1,6 +1,7 @@
 #include "import/DatasetImport.h"
 
 #include <mrpt/core/Clock.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 
 #include <cmath>
@@ -8,7 +9,6 @@
 #include <sstream>
 
 #include <polemcl/io/data/Cloud.h>
-#include <polemcl/mrpt/common/Compatibility.h>
 #include "cli/RawlogActions.h"
 #include "config/TimingComment.h"
 #include "core/common/Angles.h"
@@ -126,11 +126,11 @@ mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanFolder& fol
   report.points += cloud.size();
   report.invalidPoints += cloud.invalid;
   if (cloud.size() == 0) return nullptr;
-  auto points = IntensityCloud::Create();
-  resizeCloud(*points, cloud.size());
+  auto points = mrpt::maps::CPointsMapXYZI::Create();
+  points->resize(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     points->setPointFast(i, cloud.x[i], cloud.y[i], cloud.z[i]);
-    setIntensity(*points, i, cloud.intensity[i]);
+    points->setPointIntensity(i, cloud.intensity[i]);
   }
   observation->pointcloud = points;
   return observation;

@@ -1,6 +1,7 @@
 #include "simulate/SimulatedPoles.h"
 
 #include <mrpt/core/Clock.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/mrpt/common/Compatibility.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "cli/RawlogActions.h"
 #include "io/data/Trajectory.h"
@@ -90,8 +90,8 @@ void writeInBlocks(const sim::Drive& drive, PoleDriveWriter& writer,
 mrpt::obs::CObservationPointCloud cloudOf(const sim::SimulatedScan& scan) {
   mrpt::obs::CObservationPointCloud observation;
   observation.sensorLabel = "lidar";
-  auto points = IntensityCloud::Create();
-  resizeCloud(*points, scan.size());
+  auto points = mrpt::maps::CPointsMapXYZI::Create();
+  points->resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i)
     points->setPointFast(i, scan.x[i], scan.y[i], scan.z[i]);
   observation.pointcloud = points;

@@ -8,7 +8,9 @@ set(documents ${PROJECT_BINARY_DIR}/packages)
 set(date_of_changelog "${POLEMCL_DATE}T12:00:00Z")
 execute_process(COMMAND date --utc --date=${date_of_changelog} "+%a, %d %b %Y %H:%M:%S +0000"
                 OUTPUT_VARIABLE date_of_changelog OUTPUT_STRIP_TRAILING_WHITESPACE)
-file(WRITE ${documents}/changelog.Debian "polemcl (${PROJECT_VERSION}-1) bookworm; urgency=medium
+execute_process(COMMAND sh -c ". /etc/os-release; echo \${VERSION_CODENAME:-unstable}"
+                OUTPUT_VARIABLE release OUTPUT_STRIP_TRAILING_WHITESPACE)
+file(WRITE ${documents}/changelog.Debian "polemcl (${PROJECT_VERSION}-1) ${release}; urgency=medium
 
   * Built from the project's sources. What changed: CHANGELOG.md in polemcl-doc.
 

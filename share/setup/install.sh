@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs the packages of packages.txt that are missing; does nothing when none is.
 # Usage: install.sh [full]   full: also what only tests/run.sh --full needs, the lines "#full NAME"
-# Needs Debian 12 (or another system with these packages) and root, or sudo.
+# Needs Debian 13 or 12 (or another system with these packages) and root, or sudo.
 set -eu
 list=$(dirname "$0")/packages.txt
 wanted='s/#.*//'

@@ -34,6 +34,7 @@ double widened(double squaredDistance) {
 class NearestResult {
  public:
   using DistanceType = double;
+  using IndexType = std::uint32_t;  // asked for by nanoflann 1.12
   explicit NearestResult(double squaredRadius) : m_limit(squaredRadius) {}
   bool full() const { return true; }
   double worstDist() const { return widened(m_limit); }
@@ -58,6 +59,7 @@ class NearestResult {
 class WithinResult {
  public:
   using DistanceType = double;
+  using IndexType = std::uint32_t;  // asked for by nanoflann 1.12
   WithinResult(double squaredRadius, std::vector<PointHit>& out)
       : m_limit(squaredRadius), m_out(out) {}
   bool full() const { return true; }

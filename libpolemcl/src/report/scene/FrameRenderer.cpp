@@ -29,7 +29,7 @@ Rectangle pixelsOf(viz::Viewport& viewport, int width, int height) {
 struct FrameRenderer::Buffer {
   Buffer(unsigned width, unsigned height) : renderer(width, height) {}
   void render(const viz::Scene& scene, const viz::Viewport& viewport, mrpt::img::CImage& image) {
-    useCamera(renderer, scene, viewport.getCamera());
+    renderer.setCamera(scene, viewport.getCamera());
     renderer.render_RGB(scene, image);
   }
   mrpt::opengl::CFBORender renderer;
@@ -62,8 +62,10 @@ void FrameRenderer::render(const viz::Scene& scene, const std::filesystem::path&
     const Rectangle part = pixelsOf(*viewport, static_cast<int>(b.large.getWidth()),
                                     static_cast<int>(b.large.getHeight()));
     b.render(scene, *viewport, b.other);
-    copyPatch(b.other, b.patch, part.x, part.y, part.width, part.height);
-    drawImage(b.large, part.x, part.y, b.patch);
+    const auto pixels = [](int number) { return static_cast<unsigned>(number); };
+    b.other.extract_patch(b.patch, pixels(part.x), pixels(part.y), pixels(part.width),
+                          pixels(part.height));
+    b.large.drawImage(part.x, part.y, b.patch);
   }
   show(true);
   b.large.scaleHalf(b.small, mrpt::img::IMG_INTERP_AREA);

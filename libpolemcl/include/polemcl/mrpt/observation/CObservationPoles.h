@@ -38,7 +38,9 @@ class POLEMCL_EXPORT CObservationPoles : public mrpt::obs::CObservation, public 
 
   using CObservation::getSensorPose;
   using CObservation::setSensorPose;
-  POLEMCL_GET_SENSOR_POSE(sensorPose)
+  void getSensorPose(mrpt::poses::CPose3D& out_sensorPose) const override {
+    out_sensorPose = sensorPose;
+  }
   void setSensorPose(const mrpt::poses::CPose3D& newSensorPose) override;
   void getDescriptionAsText(std::ostream& o) const override;
   bool exportTxtSupported() const override { return true; }

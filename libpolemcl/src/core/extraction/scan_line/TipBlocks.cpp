@@ -78,7 +78,7 @@ namespace polemcl {
 HWY_EXPORT(nearestTipKernel);
 
 NearestTip nearestTip() {
-  return &HWY_DYNAMIC_DISPATCH(nearestTipKernel);
+  return HWY_DYNAMIC_DISPATCH(nearestTipKernel);
 }
 }  // namespace polemcl
 #endif
