@@ -1,8 +1,9 @@
 #!/bin/sh
 # Runs both commands of the README in an empty Debian, from a copy of the files that git knows: they
-# install what they need themselves. Then makes the Debian packages there and tries them (packages.sh).
+# install what they need themselves. Then opens what MRPT's viewers show, reads here what was written
+# there and there what was written here, makes the Debian packages there, and tries them (packages.sh).
 # Usage: tests/install/commands.sh bookworm | trixie    Needs root, and a mirror of Debian.
-# With POLEMCL_DATA, the tests on real scans run, too.
+# Programs here: build/bin, or POLEMCL_BIN. With POLEMCL_DATA, the tests on real scans run, too.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 case "$#:${1-}" in
@@ -32,6 +33,14 @@ echo "share/demo/run.sh"
 inside /polemcl/share/demo/run.sh
 echo "tests/run.sh"
 inside env $data /polemcl/tests/run.sh
+echo "MRPT's viewers"
+apt_get install xvfb openbox imagemagick xdotool xclip
+inside /polemcl/tests/viewers/run.sh
+echo "Files from here to there, and back"
+"$top/tests/releases/write.sh" "$root/here"
+inside /polemcl/tests/releases/run.sh /here
+inside /polemcl/tests/releases/write.sh /there
+"$top/tests/releases/run.sh" "$root/there"
 echo "Packages"
 inside /polemcl/share/setup/build.sh package package
 "$top/tests/install/packages.sh" "$release" "$root/polemcl/build-package"

@@ -1,13 +1,15 @@
 #!/bin/sh
 # Reads the files that releases wrote (tests/releases/VERSION, made by write.sh) with the programs of today:
 # maps, drives, settings and results, as share/doc/compatibility.md promises.
-# Usage: tests/releases/run.sh     Programs: build/bin, or POLEMCL_BIN. Needs python3.
+# Usage: tests/releases/run.sh [FOLDER]     Programs: build/bin, or POLEMCL_BIN. Needs python3.
+#   FOLDER  only these files, which this version wrote on another system (write.sh); the values must be the same, too
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-check_arguments 0 0 "$@"
+check_arguments 0 1 "$@"
+[ $# = 0 ] || only=$(cd "$1" && pwd)
 find_programs pole-simulate pole-extract pole-map pole-localize pole-eval
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -75,7 +77,14 @@ read_scans() {
   compare keys "$old/poles.csv" poles.csv
 }
 
-for old in "$top"/tests/releases/*/; do
+# same_values: poses and poles are those of the other system; compare.py has the tolerance.
+same_values() {
+  compare values "$old/results/run_00_errors.csv" results/run_00_errors.csv
+  compare values "$old/poles.csv" poles.csv
+}
+
+# shellcheck disable=SC2048 # each folder that matches
+for old in ${only:-"$top"/tests/releases/*/}; do
   old=${old%/}
   release=$(basename "$old")
   mkdir "$work/$release"
@@ -90,5 +99,6 @@ for old in "$top"/tests/releases/*/; do
   read_drive
   read_model
   [ ! -f "$old/scans.polemap" ] || read_scans
+  [ -z "${only-}" ] || same_values
   echo "Files of $release: read"
 done
