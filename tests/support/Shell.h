@@ -25,4 +25,9 @@ inline Outcome onTerminal(const std::string& command) {
   return shell("script --quiet --return --command '" + command + "' /dev/null </dev/null");
 }
 
+/// Whether a pseudo terminal can be had: not in a root folder without /dev/pts.
+inline bool terminalsExist() {
+  return onTerminal("true").code == 0;
+}
+
 }  // namespace testing_apps

@@ -33,6 +33,7 @@ bool has(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST(Messages, ErrorsAreRedOnATerminalOnly) {
+  if (!terminalsExist()) GTEST_SKIP() << "no pseudo terminal: is /dev/pts mounted?";
   const Outcome shown = onTerminal("env -u NO_COLOR TERM=xterm " + failing);
   EXPECT_EQ(shown.code, 1);
   EXPECT_EQ(shown.out.rfind("pole-map: " + red + "cannot read missing.polemap", 0), 0u)
@@ -48,6 +49,7 @@ TEST(Messages, ErrorsAreRedOnATerminalOnly) {
 }
 
 TEST(Messages, ABarIsForTerminals) {
+  if (!terminalsExist()) GTEST_SKIP() << "no pseudo terminal: is /dev/pts mounted?";
   const TempFolder folder;
   const Outcome shown = onTerminal("env -u NO_COLOR TERM=xterm " + simulation(folder));
   EXPECT_EQ(shown.code, 0) << shown.out;
