@@ -165,6 +165,21 @@ TEST(DepthImage, SeesMoreOfPolesThanTheBeamsOfALidar) {
   }
 }
 
+// Rows and borders of the range image follow the lines of pixels, not those of a LiDAR.
+TEST(DepthImage, TheRangeImageMethodFitsTheCamera) {
+  auto o = options();
+  o.extraction.method = ExtractionMethod::rangeImage;
+  for (const double pitch : {0.0, 8.0, -8.0}) {
+    ObservationPoleExtractor extraction(o);
+    const auto scan = extraction.process(depthImage(CPose3D(0, 0, 1.5, 0, pitch * kDegree, 0)));
+    EXPECT_EQ(scan->poles.size(), kPoles.size()) << pitch;
+    for (const auto& pole : kPoles) {
+      const PoleDetection found = nearest(*scan, pole);
+      EXPECT_LT(std::hypot(found.x - pole.x, found.y - pole.y), 0.1) << pitch;
+    }
+  }
+}
+
 TEST(DepthImage, CountsPixelsWithoutDepth) {
   auto scan = depthImage(CPose3D(0, 0, 1.5, 0, 0, 0));
   std::size_t empty = 0;
