@@ -1,6 +1,6 @@
 /// \file bench_map_builder.cpp
 /// \brief Building a map from drives of different length: the time must grow linearly with the
-/// detections.
+/// detections. Inserting one scan into maps of different size: the time must not grow.
 ///
 /// A road with a pole every 10 m on both sides, a scan every 0.5 m that detects 60 % of the poles
 /// within 40 m, and one false detection per scan.
@@ -11,6 +11,7 @@
 #include <random>
 
 #include <polemcl/core/mapping/PoleMapBuilder.h>
+#include "core/mapping/IncrementalMerge.h"
 
 using namespace polemcl;
 
@@ -53,6 +54,22 @@ void buildMap(benchmark::State& state) {
   state.counters["poles"] = static_cast<double>(result.poles.size());
   state.SetComplexityN(static_cast<std::int64_t>(result.detections));
 }
+/// A scan of ten poles into a map of poles 10 m apart.
+void insertScan(benchmark::State& state) {
+  const auto side = static_cast<int>(std::sqrt(state.range(0)));
+  std::vector<MapPole> poles(static_cast<std::size_t>(side * side));
+  for (int i = 0; i < side * side; ++i) {
+    poles[static_cast<std::size_t>(i)].x = 10 * (i % side);
+    poles[static_cast<std::size_t>(i)].y = 10 * (i / side);
+    poles[static_cast<std::size_t>(i)].count = 1;
+  }
+  IncrementalMerge merge(poles, 0.5);
+  std::vector<PoleDetection> scan(10);
+  for (std::size_t i = 0; i < scan.size(); ++i) scan[i].x = 10.1 * static_cast<double>(i);
+  for (auto _ : state) merge.insertScan(poles, scan);
+}
+BENCHMARK(insertScan)->ArgName("poles")->Arg(100)->Arg(100000)->Unit(benchmark::kMicrosecond);
+
 BENCHMARK(buildMap)
     ->ArgNames({"scans", "everyScan"})
     ->ArgsProduct({{1000, 4000, 16000}, {0, 1}})

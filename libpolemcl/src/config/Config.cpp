@@ -217,6 +217,12 @@ bool ConfigReader::belongsToOthers(const std::string& section) const {
 }
 
 void ConfigReader::finish() const {
+  const auto unknown = unknownEntries();
+  if (!unknown.empty()) throw Error(unknown.front());
+}
+
+std::vector<std::string> ConfigReader::unknownEntries() const {
+  std::vector<std::string> messages;
   std::vector<std::string> sections;
   m_source->getAllSections(sections);
   std::set<std::string> knownSections;
@@ -225,20 +231,23 @@ void ConfigReader::finish() const {
     const auto known = m_known.find(lower(section));
     if (known == m_known.end()) {
       if (belongsToOthers(lower(section))) continue;
-      throw Error(place() + "section [" + section + "] is not known; " +
-                  (section.find(':') == std::string::npos
-                       ? knownWords(knownSections, section, s_programSections)
-                       : "[vehicle] lidars must list the label behind the colon; known are: " +
-                             joined(knownSections)));
+      messages.push_back(
+          place() + "section [" + section + "] is not known; " +
+          (section.find(':') == std::string::npos
+               ? knownWords(knownSections, section, s_programSections)
+               : "[vehicle] lidars must list the label behind the colon; known are: " +
+                     joined(knownSections)));
+      continue;
     }
     std::vector<std::string> keys;
     m_source->getAllKeys(section, keys);
     for (const auto& key : keys)
       if (!known->second.count(lower(key)))
-        throw Error(place() + "[" + section + "] " + key + " = " +
-                    withoutComment(m_source->read_string(section, key, "")) +
-                    ": key is not known; " + knownWords(known->second, key));
+        messages.push_back(place() + "[" + section + "] " + key + " = " +
+                           withoutComment(m_source->read_string(section, key, "")) +
+                           ": key is not known; " + knownWords(known->second, key));
   }
+  return messages;
 }
 
 void ConfigWriter::openSection(const std::string& comment) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "core/mapping/IncrementalMerge.h"
 
@@ -19,7 +20,8 @@ PoleDetection at(double x, double y) {
 
 TEST(IncrementalMerge, FirstScanBecomesThePoles) {
   std::vector<MapPole> poles;
-  mergeScan(poles, PoleIndex(poles), {at(1, 2), at(1.1, 2)}, 0.5);
+  IncrementalMerge merge(poles, 0.5);
+  merge.insertScan(poles, {at(1, 2), at(1.1, 2)});
   ASSERT_EQ(poles.size(), 2u);  // both of one scan: two poles, however near
   EXPECT_EQ(poles[0].x, 1);
   EXPECT_EQ(poles[1].x, 1.1);
@@ -29,6 +31,7 @@ TEST(IncrementalMerge, FirstScanBecomesThePoles) {
 
 TEST(IncrementalMerge, MeansOfManyScans) {
   std::vector<MapPole> poles;
+  IncrementalMerge merge(poles, 0.5);
   const double xs[] = {1.0, 1.2, 0.9, 1.05};
   double sum = 0;
   for (const double x : xs) {
@@ -38,7 +41,7 @@ TEST(IncrementalMerge, MeansOfManyScans) {
     seen.bottom = x;
     seen.top = x + 1;
     seen.covariance = Eigen::Matrix2d::Identity() * 0.04;
-    mergeScan(poles, PoleIndex(poles), {seen}, 0.5);
+    merge.insertScan(poles, {seen});
     sum += x;
   }
   ASSERT_EQ(poles.size(), 1u);
@@ -55,8 +58,9 @@ TEST(IncrementalMerge, MeansOfManyScans) {
 
 TEST(IncrementalMerge, OneDetectionPerPoleNearestFirst) {
   std::vector<MapPole> poles;
-  mergeScan(poles, PoleIndex(poles), {at(0, 0)}, 0.5);
-  mergeScan(poles, PoleIndex(poles), {at(0.4, 0), at(-0.1, 0)}, 0.5);
+  IncrementalMerge merge(poles, 0.5);
+  merge.insertScan(poles, {at(0, 0)});
+  merge.insertScan(poles, {at(0.4, 0), at(-0.1, 0)});
   ASSERT_EQ(poles.size(), 2u);
   EXPECT_NEAR(poles[0].x, -0.05, 1e-12);  // took the nearer one
   EXPECT_EQ(poles[0].count, 2u);
@@ -65,12 +69,34 @@ TEST(IncrementalMerge, OneDetectionPerPoleNearestFirst) {
 
 TEST(IncrementalMerge, TheGateIsOpen) {
   std::vector<MapPole> poles;
-  mergeScan(poles, PoleIndex(poles), {at(0, 0)}, 0.5);
-  mergeScan(poles, PoleIndex(poles), {at(0.5, 0)}, 0.5);
+  IncrementalMerge merge(poles, 0.5);
+  merge.insertScan(poles, {at(0, 0)});
+  merge.insertScan(poles, {at(0.5, 0)});
   EXPECT_EQ(poles.size(), 2u);
-  mergeScan(poles, PoleIndex(poles), {at(0.25 - 1e-9, 0)}, 0.5);
+  merge.insertScan(poles, {at(0.25 - 1e-9, 0)});
   EXPECT_EQ(poles.size(), 2u);
   EXPECT_EQ(poles[0].count, 2u);
+}
+
+// Poles drift from cell to cell; a merge that begins with the poles of now is the oracle.
+TEST(IncrementalMerge, FollowsPolesThatMove) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-8, 8);
+  std::vector<MapPole> poles;
+  IncrementalMerge merge(poles, 0.5);
+  for (int scan = 0; scan < 200; ++scan) {
+    std::vector<PoleDetection> seen;
+    for (int i = 0; i < 10; ++i) seen.push_back(at(anywhere(random), anywhere(random)));
+    std::vector<MapPole> expected = poles;
+    IncrementalMerge(expected, 0.5).insertScan(expected, seen);
+    merge.insertScan(poles, seen);
+    ASSERT_EQ(poles.size(), expected.size());
+    for (std::size_t i = 0; i < poles.size(); ++i) {
+      ASSERT_EQ(poles[i].x, expected[i].x) << scan;
+      ASSERT_EQ(poles[i].count, expected[i].count) << scan;
+    }
+  }
+  EXPECT_LT(poles.size(), 800u);
 }
 
 }  // namespace

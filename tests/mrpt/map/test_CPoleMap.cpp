@@ -57,6 +57,13 @@ void expectEqual(const CPoleMap& a, const CPoleMap& b) {
   EXPECT_EQ(a.info, b.info);
 }
 
+/// Two poles, at (2, 1) and (6, 0) of the robot.
+CObservationPoles scanOfTwo() {
+  CObservationPoles scan;
+  scan.poles = {samples::pole(2, 1), samples::pole(6, 0)};
+  return scan;
+}
+
 mrpt::maps::CMultiMetricMap::Ptr fromIni(const std::string& text) {
   const mrpt::config::CConfigFileMemory ini(text);
   mrpt::maps::TSetOfMetricMapInitializers list;
@@ -267,6 +274,30 @@ TEST(CPoleMap, InsertsAtTheRobotPose) {
   EXPECT_EQ(map.poles().size(), 2u);
 }
 
+// A copy shares what is needed for inserting; neither changes the other.
+TEST(CPoleMap, CopiesInsertIndependently) {
+  const CObservationPoles scan = scanOfTwo();
+  CPoleMap map;
+  map.insertObservation(scan, CPose3D());
+  CPoleMap copy = map;
+  copy.insertObservation(scan, CPose3D(20, 0, 0));
+  map.insertObservation(scan, CPose3D(0, 0.1, 0));
+  ASSERT_EQ(map.poles().size(), 2u);
+  EXPECT_NEAR(map.poles()[0].y, 1.05, 1e-12);
+  ASSERT_EQ(copy.poles().size(), 4u);
+  EXPECT_EQ(copy.poles()[0].y, 1);
+  EXPECT_TRUE(copy.index().nearest(22, 1, 0.1));
+  EXPECT_FALSE(map.index().nearest(22, 1, 0.1));
+}
+
+TEST(CPoleMap, RefusesToInsertWhatIsNoPlace) {
+  CPoleMap map = sampleMap();
+  CObservationPoles scan = scanOfTwo();
+  scan.poles[1].x = std::nan("");
+  EXPECT_THROW(map.insertObservation(scan, CPose3D()), std::exception);
+  expectEqual(map, sampleMap());
+}
+
 TEST(CPoleMap, InsertsOnlyWhatIsSureEnough) {
   CPoleMap map;
   map.insertionOptions.minConfidence = 0.8;
@@ -372,7 +403,13 @@ TEST(CPoleMap, SavesRepresentations) {
   EXPECT_EQ(io::readPolePositions(folder / "m.csv").size(), 3u);
   mrpt::opengl::COpenGLScene scene;
   ASSERT_TRUE(scene.loadFromFile(folder / "m.3Dscene"));
-  EXPECT_TRUE(scene.getByName("pole 2"));
+  const auto pole = std::dynamic_pointer_cast<mrpt::opengl::CCylinder>(scene.getByName("pole 2"));
+  ASSERT_TRUE(pole);
+  EXPECT_NEAR(pole->getPose().y, 10, 1e-6);  // map frame, m: no scale
+  const auto group =
+      std::dynamic_pointer_cast<mrpt::opengl::CSetOfObjects>(*scene.getViewport()->begin());
+  ASSERT_TRUE(group);
+  EXPECT_EQ(group->getScaleX(), 1);
 }
 
 TEST(CPoleMap, DrawsPolesColouredByCount) {
@@ -418,14 +455,22 @@ TEST(CPoleMap, RefusesBadIni) {
   const auto has = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  has(refusal(one + "[MetricMap_poleMap_00_likelihoodOpts]\nsigma = 0.2\n"),
-      "sigma = 0.2: key is not known");  // MRPT breaks the line of the message after the section
   has(refusal(one + "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0\n"), "sigma_m = 0");
   has(refusal(one + "[MetricMap_poleMap_00_insertOpts]\nmerge_distance = 3x\n"), "3x");
   has(refusal(one + "[MetricMap_poleMap_00_insertOpts]\nmin_confidence = 1.5\n"), "1.5");
-  has(refusal(one + "[MetricMap_poleMap_00_creationOpts]\nmapfile = a\n"), "mapfile");
   has(refusal(one + "[MetricMap_poleMap_00_creationOpts]\nmap_file = /no/such.polemap\n"),
       "/no/such.polemap");
+}
+
+// As MRPT's options do, but not silently.
+TEST(CPoleMap, PassesOverUnknownKeysWithAWarning) {
+  for (const std::string section : {"creationOpts", "insertOpts", "likelihoodOpts"}) {
+    testing::internal::CaptureStderr();
+    const auto maps = fromIni(one + "[MetricMap_poleMap_00_" + section + "]\nof_mrpt_3 = 0.2\n");
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_TRUE(maps->mapByClass<CPoleMap>());
+    EXPECT_NE(said.find("of_mrpt_3 = 0.2: key is not known"), std::string::npos) << said;
+  }
 }
 
 TEST(CPoleMap, OptionsSurviveIni) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/CCylinder.h>
+#include <mrpt/opengl/CEllipsoid2D.h>
+#include <mrpt/opengl/CGridPlaneXY.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 
 #include <cmath>
@@ -166,10 +168,19 @@ TEST(CObservationPoles, ExportsOneRow) {
   EXPECT_EQ(CObservationPoles().exportTxtDataRow(), "0");
 }
 
-TEST(CObservationPoles, DrawsACylinderForEachPole) {
+TEST(CObservationPoles, DrawsPolesAxesGroundAndCovariances) {
   mrpt::opengl::CSetOfObjects scene;
   samples::observation().getVisualizationInto(scene);
-  ASSERT_EQ(scene.size(), 2u);
+  ASSERT_EQ(scene.size(), 6u);  // ground, axes, two poles with an ellipse each
+  EXPECT_TRUE(scene.getByClass<mrpt::opengl::CGridPlaneXY>(0));
+  const auto axes = scene.getByClass<mrpt::opengl::CSetOfObjects>(0);
+  ASSERT_TRUE(axes);
+  EXPECT_NEAR(axes->getPose().z, 1.5, 1e-6);  // at the sensor
+  const auto ellipse = scene.getByClass<mrpt::opengl::CEllipsoid2D>(0);
+  ASSERT_TRUE(ellipse);
+  EXPECT_NEAR(ellipse->getPose().x, 1, 1e-6);
+  // The sensor is turned by a quarter: variances 0.04 and 0.09 change places.
+  EXPECT_NEAR(ellipse->getCovMatrix()(0, 0), 0.09, 1e-6);
   const auto cylinder = scene.getByClass<mrpt::opengl::CCylinder>(0);
   ASSERT_TRUE(cylinder);
   EXPECT_NEAR(cylinder->getPose().x, 1, 1e-6);

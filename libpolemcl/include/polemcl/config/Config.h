@@ -73,6 +73,8 @@ class POLEMCL_EXPORT ConfigReader : public Binder {
   /// \throws Error on an unknown key of a section that was bound, and on a section that no program
   ///         knows, with the known ones.
   void finish() const;
+  /// \brief The messages of all errors that finish() could throw; empty: none.
+  std::vector<std::string> unknownEntries() const;
 
  protected:
   void openSection(const std::string& comment) override;

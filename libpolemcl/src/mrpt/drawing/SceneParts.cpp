@@ -103,6 +103,22 @@ viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step) {
   return grid;
 }
 
+viz::CEllipsoid2D::Ptr makeEllipse(const PoleDetection& pole) {
+  auto ellipse = viz::CEllipsoid2D::Create();
+  mrpt::math::CMatrixDouble22 covariance;
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 2; ++column)
+      covariance(row, column) = pole.covariance(row, column);
+  ellipse->setCovMatrix(covariance);
+  ellipse->setQuantiles(10);
+  ellipse->enableDrawSolid3D(false);
+  ellipse->setLineWidth(2);
+  ellipse->setLocation(pole.x, pole.y, 0.02);
+  ellipse->setColor_u8(TColor(40, 80, 200));
+  ellipse->setName("10 standard deviations");
+  return ellipse;
+}
+
 void drawPole(viz::CSetOfObjects& objects, double x, double y, double radius, double bottom,
               double top, const TColor& color, const std::string& name) {
   const auto drawn = static_cast<float>(std::max(radius, 0.05));

@@ -42,6 +42,9 @@ viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step);
 
 /// \brief Inserts a vertical cylinder. \param bottom,top Heights above z = 0, m.
 /// Radii below 5 cm are drawn as 5 cm, because thinner poles are not visible.
+/// \brief An outline on the ground at ten standard deviations, since centimetres cannot be seen.
+viz::CEllipsoid2D::Ptr makeEllipse(const PoleDetection& pole);
+
 void drawPole(viz::CSetOfObjects& objects, double x, double y, double radius, double bottom,
               double top, const TColor& color, const std::string& name = "");
 

@@ -14,7 +14,7 @@
 #include "io/file/ReadLimits.h"
 #include "io/map/PolePositions.h"
 #include "mrpt/common/BoundedRead.h"
-#include "mrpt/drawing/OverviewScene.h"
+#include "mrpt/drawing/SceneParts.h"
 
 IMPLEMENTS_SERIALIZABLE(CPoleMap, CMetricMap, polemcl)
 
@@ -38,9 +38,11 @@ void requireStorable(const CPoleMap& map) {
                 std::to_string(io::longestMapFact) + " bytes, fits into no archive of MRPT");
 }
 
-void requireUsable(const MapPole& pole, std::size_t i) {
-  if (!std::isfinite(pole.x) || !std::isfinite(pole.y))
-    throw Error("pole " + std::to_string(i) + ": the position must be finite");
+template <class Pole>
+void requireUsable(const Pole& pole, std::size_t i) {
+  if (!(std::abs(pole.x) <= PoleIndex::farthest && std::abs(pole.y) <= PoleIndex::farthest))
+    throw Error("pole " + std::to_string(i) + ": the position must be finite, and at most " +
+                "1e9 m from the origin");
   if (!isCovariance(pole.covariance))
     throw Error("pole " + std::to_string(i) +
                 ": the covariance must be symmetric positive semidefinite");
@@ -48,13 +50,26 @@ void requireUsable(const MapPole& pole, std::size_t i) {
 
 }  // namespace
 
-CPoleMap::CPoleMap() : m_index(std::make_shared<PoleIndex>(m_poles)) {}
+CPoleMap::CPoleMap() = default;
+
+const PoleIndex& CPoleMap::index() const {
+  return m_index.of(m_poles, likelihoodOptions.gate);
+}
+
+const PoleIndex& CPoleMap::LazyIndex::of(const std::vector<MapPole>& poles, double gate) const {
+  auto index = std::atomic_load(&m_index);
+  if (!index) {
+    const auto built = std::make_shared<const PoleIndex>(poles, gate);
+    if (std::atomic_compare_exchange_strong(&m_index, &index, built)) index = built;
+  }
+  return *index;  // m_index keeps it until the poles change
+}
 
 void CPoleMap::setPoles(std::vector<MapPole> poles) {
   for (std::size_t i = 0; i < poles.size(); ++i) requireUsable(poles[i], i);
-  auto index = std::make_shared<PoleIndex>(poles, likelihoodOptions.gate);
+  m_index = LazyIndex(std::make_shared<PoleIndex>(poles, likelihoodOptions.gate));
   m_poles = std::move(poles);
-  m_index = std::move(index);
+  m_merge.reset();
 }
 
 void CPoleMap::loadFromPoleMapFile(const std::string& path) {
@@ -120,9 +135,12 @@ bool CPoleMap::internal_insertObservation(
     if (pole.confidence >= insertionOptions.minConfidence)
       detections_map.push_back(moved(T_map_sensor, pole));
   if (detections_map.empty()) return false;
-  std::vector<MapPole> poles = m_poles;
-  mergeScan(poles, *m_index, detections_map, insertionOptions.mergeDistance);
-  setPoles(std::move(poles));
+  for (std::size_t i = 0; i < detections_map.size(); ++i) requireUsable(detections_map[i], i);
+  // A copy of this map shares what the map last inserted with, until one of them inserts.
+  if (m_merge.use_count() != 1 || m_merge->mergeDistance() != insertionOptions.mergeDistance)
+    m_merge = std::make_shared<IncrementalMerge>(m_poles, insertionOptions.mergeDistance);
+  m_merge->insertScan(m_poles, detections_map);
+  m_index = {};
   return true;
 }
 
@@ -137,8 +155,8 @@ void CPoleMap::evaluate(const CObservationPoles& scan, const LikelihoodOptions& 
     sensorPoses.reserve(robotPoses.size());
     for (const Pose2D& pose : robotPoses) sensorPoses.push_back(compose(pose, T_robot_sensor));
   }
-  polemcl::widenedLogLikelihoods(scan.poles, sameFrame ? robotPoses : sensorPoses, *m_index,
-                                 options, widenings, out);
+  polemcl::widenedLogLikelihoods(scan.poles, sameFrame ? robotPoses : sensorPoses, index(), options,
+                                 widenings, out);
 }
 
 void CPoleMap::widenedLogLikelihoods(const mrpt::obs::CObservation& observation,
@@ -182,12 +200,9 @@ std::string CPoleMap::asString() const {
 void CPoleMap::saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const {
   saveToPoleMapFile(filNamePrefix + ".polemap");
   io::writePoleCsv(filNamePrefix + ".csv", m_poles);
-  OverviewScene overview(centresOf(m_poles),
-                         std::filesystem::path(filNamePrefix).filename().string());
-  overview.addPoles("poles", m_poles,
-                    [](const MapPole& pole) { return scene::colorOfCount(pole.count); });
-  overview.addLegend(scene::countLegend(m_poles));
-  scene::save(*overview.finish(), filNamePrefix + ".3Dscene");
+  viz::Scene scene;
+  scene.insert(getVisualization());
+  scene::save(scene, filNamePrefix + ".3Dscene");
 }
 
 void CPoleMap::getVisualizationInto(viz::CSetOfObjects& outObj) const {

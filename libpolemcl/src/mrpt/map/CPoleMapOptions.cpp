@@ -1,6 +1,6 @@
 #include <mrpt/config/CConfigFile.h>
 
-#include <ostream>
+#include <iostream>
 
 #include <polemcl/config/Config.h>
 #include <polemcl/core/common/Binder.h>
@@ -28,12 +28,18 @@ std::string nameOf(const Source& source) {
   return file ? file->getAssociatedFile() : "map options";
 }
 
+/// MRPT's own options pass over keys that they do not know; so do these, but they say it.
+void warnOfUnknown(const ConfigReader& reader) {
+  for (const std::string& text : reader.unknownEntries())
+    std::cerr << "polemcl: warning: " + text + "; it is ignored\n";
+}
+
 /// Fills options from one section of a configuration that MRPT hands over.
 template <class Options>
 void load(const Source& source, const std::string& section, Options& options) {
   ConfigReader reader(source, nameOf(source), section);
   bind(reader, options);
-  reader.finish();
+  warnOfUnknown(reader);
 }
 
 /// Writes options to one section of an MRPT configuration.
@@ -114,7 +120,7 @@ void CPoleMap::TMapDefinition::loadFromConfigFile_map_specific(
   reader.text("map_file", mapFile, "a .polemap to load");
   reader.knownElsewhere({"enableSaveAs3DObject", "enableObservationLikelihood",
                          "enableObservationInsertion"});  // genericMapParams, read by MRPT
-  reader.finish();
+  warnOfUnknown(reader);
   insertionOpts.loadFromConfigFile(source, sectionNamePrefix + "_insertOpts");
   likelihoodOpts.loadFromConfigFile(source, sectionNamePrefix + "_likelihoodOpts");
 }

@@ -1,3 +1,4 @@
+#include <mrpt/opengl/stock_objects.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
@@ -101,7 +102,16 @@ std::string CObservationPoles::exportTxtDataRow() const {
 }
 
 void CObservationPoles::getVisualizationInto(viz::CSetOfObjects& o) const {
-  for (const auto& pole : polesInRobotFrame()) {
+  constexpr double step = 10;  // of the ground's grid, m
+  Eigen::AlignedBox2d around(Eigen::Vector2d(-step, -step), Eigen::Vector2d(step, step));
+  const auto polesHere = polesInRobotFrame();
+  for (const auto& pole : polesHere) around.extend(Eigen::Vector2d(pole.x, pole.y));
+  o.insert(scene::makeGround(around, step));
+  const auto axes = mrpt::opengl::stock_objects::CornerXYZSimple(1.0f, 3.0f);
+  axes->setPose(sensorPose);
+  o.insert(axes);
+  for (const auto& pole : polesHere) {
+    o.insert(scene::makeEllipse(pole));
     const double sure = std::clamp(pole.confidence, 0.0, 1.0);
     const auto strength = static_cast<std::uint8_t>(80 + 175 * sure);
     scene::drawPole(o, pole.x, pole.y, pole.radius, pole.bottom, pole.top,

@@ -20,9 +20,10 @@
 namespace polemcl {
 
 class CObservationPoles;
+class IncrementalMerge;
 
-/// \brief Poles in the map frame, with an index that is rebuilt whenever the poles change. A const
-/// map may be shared between threads; copies are independent.
+/// \brief Poles in the map frame, with an index of them. A const map may be shared between threads;
+/// copies are independent.
 ///
 /// Name in INI files of MRPT's tools: `poleMap`. Set `poleMap_count = 1` and add the sections
 /// `<prefix>_poleMap_00_creationOpts` (`map_file`: a `.polemap` to load, relative to the working
@@ -40,8 +41,8 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
   /// \throws Error on a position or covariance that is not finite, or a covariance that is not
   ///         positive semidefinite.
   void setPoles(std::vector<MapPole> poles);
-  /// \brief Index i is poles()[i].
-  const PoleIndex& index() const { return *m_index; }
+  /// \brief Index i is poles()[i]. After an insertion, the first call builds it anew.
+  const PoleIndex& index() const;
 
   /// \brief Facts about the map (name -> value), stored in the `.polemap` too.
   std::map<std::string, std::string> info;
@@ -57,7 +58,7 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
     double mergeDistance =
         0.5;  ///< a detection this near to a pole is that pole, m (`merge_distance`)
     double minConfidence = 0;  ///< detections below are not inserted (`min_confidence`)
-    /// \throws Error on unknown keys, wrong types and values out of range.
+    /// \brief Unknown keys get a warning. \throws Error on wrong types and values out of range.
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
     void saveToConfigFile(mrpt::config::CConfigFileBase& target,
@@ -70,7 +71,7 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
   struct TLikelihoodOptions : public mrpt::config::CLoadableOptions, public LikelihoodOptions {
     TLikelihoodOptions() = default;
     TLikelihoodOptions& operator=(const LikelihoodOptions& options);
-    /// \throws Error on unknown keys, wrong types and values out of range.
+    /// \brief Unknown keys get a warning. \throws Error on wrong types and values out of range.
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
     void saveToConfigFile(mrpt::config::CConfigFileBase& target,
@@ -102,9 +103,33 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
                              std::vector<std::vector<double>>& out) const;
   /// @}
 
+  /// \name Matching with another pole map, as MRPT's ICP asks for it
+  /// Each pole of the other map is paired with the nearest pole of this map (with all of them,
+  /// unless `params.onlyKeepTheClosest`). Poles are points of the plane: heights do not count.
+  /// \throws Error when the other map is not a CPoleMap, or parameters exclude each other.
+  /// @{
+  void determineMatching2D(const mrpt::maps::CMetricMap* otherMap,
+                           const mrpt::poses::CPose2D& otherMapPose,
+                           mrpt::tfest::TMatchingPairList& correspondences,
+                           const mrpt::maps::TMatchingParams& params,
+                           mrpt::maps::TMatchingExtraResults& extraResults) const override;
+  void determineMatching3D(const mrpt::maps::CMetricMap* otherMap,
+                           const mrpt::poses::CPose3D& otherMapPose,
+                           mrpt::tfest::TMatchingPairList& correspondences,
+                           const mrpt::maps::TMatchingParams& params,
+                           mrpt::maps::TMatchingExtraResults& extraResults) const override;
+  /// \return Share of the other map's poles with a pole of this map nearer than `maxDistForCorr`.
+  float compute3DMatchingRatio(const mrpt::maps::CMetricMap* otherMap,
+                               const mrpt::poses::CPose3D& otherMapPose,
+                               const mrpt::maps::TMatchingRatioParams& params) const override;
+  /// @}
+  /// \return Squared distance to the nearest pole, m²; infinite without poles.
+  float squareDistanceToClosestCorrespondence(float x0, float y0) const override;
+
   bool isEmpty() const override { return m_poles.empty(); }
   std::string asString() const override;
-  /// \brief Writes `<prefix>.polemap`, `<prefix>.csv` and `<prefix>.3Dscene` (an OverviewScene).
+  /// \brief Writes `<prefix>.polemap`, `<prefix>.csv` and `<prefix>.3Dscene` (getVisualization() in
+  /// the map frame, m).
   void saveMetricMapRepresentationToFile(const std::string& filNamePrefix) const override;
   /// \brief A cylinder from bottom to top for each pole, map frame, ground at z = 0, coloured by
   /// count. Nothing when `genericMapParams.enableSaveAs3DObject` is false. At UTM coordinates
@@ -133,8 +158,25 @@ class POLEMCL_EXPORT CPoleMap : public mrpt::maps::CMetricMap {
                 const std::vector<Pose2D>& robotPoses, const std::vector<double>& widenings,
                 std::vector<std::vector<double>>& out) const;
 
+  /// An index that is never changed, so copies share it; none: it is built when it is asked for.
+  class LazyIndex {
+   public:
+    LazyIndex() = default;
+    explicit LazyIndex(std::shared_ptr<const PoleIndex> index) : m_index(std::move(index)) {}
+    LazyIndex(const LazyIndex& other) : m_index(std::atomic_load(&other.m_index)) {}
+    LazyIndex& operator=(const LazyIndex& other) {
+      std::atomic_store(&m_index, std::atomic_load(&other.m_index));
+      return *this;
+    }
+    const PoleIndex& of(const std::vector<MapPole>& poles, double gate) const;
+
+   private:
+    mutable std::shared_ptr<const PoleIndex> m_index;
+  };
+
   std::vector<MapPole> m_poles;
-  std::shared_ptr<const PoleIndex> m_index;  ///< immutable, so copies may share it
+  LazyIndex m_index;
+  std::shared_ptr<IncrementalMerge> m_merge;  ///< of m_poles; null: nothing was inserted yet
 };
 
 }  // namespace polemcl
