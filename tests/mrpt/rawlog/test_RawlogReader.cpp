@@ -233,6 +233,11 @@ TEST(RawlogReader, EmptyFile) {
   EXPECT_TRUE(lax.truncated);
 }
 
+TEST(RawlogReader, NamesZstd) {
+  const Bench bench;
+  EXPECT_HAS(bench.read(std::string("\x28\xB5\x2F\xFD") + action(0)).error, "zstd -d");
+}
+
 /// The same bytes with a class name replaced by another of the same length.
 std::string renamed(std::string bytes, const std::string& from, const std::string& to) {
   const auto at = bytes.find(from);

@@ -31,6 +31,10 @@ LineReader::LineReader(const std::filesystem::path& file)
 void LineReader::readBlock() {
   std::array<char, 65536> block;
   const int got = gzread(m_stream.get(), block.data(), block.size());
+  int code = Z_OK;
+  const char* message = gzerror(m_stream.get(), &code);
+  // A truncated gzip file is readable to its end first, and zlib 1.3.2 tells only once that it is.
+  if (code == Z_BUF_ERROR) m_cutShort = true;
   if (got > 0) {
     m_text.erase(0, m_begin);
     m_begin = 0;
@@ -43,14 +47,11 @@ void LineReader::readBlock() {
     return;
   }
   m_ended = true;
-  // A truncated gzip file is readable to its end first; the error is reported only here.
-  int code = Z_OK;
-  const char* message = gzerror(m_stream.get(), &code);
-  if (got < 0 || code != Z_OK)
+  if (got < 0 || code != Z_OK || m_cutShort)
     throw Error("cannot read " + m_file.string() + ": " +
-                (code == Z_ERRNO       ? std::strerror(errno)
-                 : code == Z_BUF_ERROR ? "the gzip data is cut short"
-                                       : message));
+                (code == Z_ERRNO ? std::strerror(errno)
+                 : m_cutShort    ? "the gzip data is cut short"
+                                 : message));
 }
 
 bool LineReader::next(std::string& line) {

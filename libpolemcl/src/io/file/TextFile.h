@@ -38,7 +38,7 @@ class LineReader {
   std::string m_text;  ///< text read; the part from m_begin on is not returned yet
   std::size_t m_begin = 0;
   std::size_t m_read = 0;  ///< bytes, uncompressed
-  bool m_ended = false;
+  bool m_ended = false, m_cutShort = false;
 };
 
 /// \brief All lines, see LineReader. \throws Error as LineReader does.

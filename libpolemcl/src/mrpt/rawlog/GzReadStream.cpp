@@ -3,9 +3,11 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <thread>
 
@@ -13,6 +15,18 @@
 #include "io/file/ReadLimits.h"
 
 namespace polemcl {
+
+namespace {
+
+void refuseZstd(const std::string& path) {
+  std::array<char, 4> head{};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+  if (std::memcmp(head.data(), "\x28\xB5\x2F\xFD", head.size()) == 0)
+    throw Error(path + ": is compressed with zstd, as MRPT from 2.15 on does; zstd -d makes a " +
+                "rawlog of it that can be read here");
+}
+
+}  // namespace
 
 GzReadStream::GzReadStream(const std::string& path, double follow)
     : m_path(path), m_follow(follow) {
@@ -22,6 +36,7 @@ GzReadStream::GzReadStream(const std::string& path, double follow)
     throw Error(path + ": is a folder, not a rawlog; pole-import makes a rawlog of a dataset");
   if (!std::filesystem::is_regular_file(path, error)) throw Error(path + ": is not a file");
   m_fileSize = std::filesystem::file_size(path, error);
+  refuseZstd(path);
   m_file = gzopen(path.c_str(), "rb");
   if (!m_file) throw Error(path + ": cannot be opened: " + std::strerror(errno));
   gzbuffer(m_file, 1 << 18);
@@ -38,7 +53,8 @@ bool GzReadStream::refill() {
   const int got = readPiece(code);
   if (code == Z_ERRNO) throw Error(m_path + ": cannot be read: " + std::strerror(errno));
   // Z_BUF_ERROR: truncated gzip data; Z_DATA_ERROR: damaged data or wrong checksum.
-  if (got <= 0 && code != Z_OK && code != Z_STREAM_END) m_cutShort = true;
+  if (got <= 0 && (m_endsEarly || (code != Z_OK && code != Z_STREAM_END))) m_cutShort = true;
+  m_endsEarly = got > 0 && code == Z_BUF_ERROR;  // zlib 1.3.2 does not tell it again
   m_begin = 0;
   m_end = got > 0 ? static_cast<std::size_t>(got) : 0;
   return got > 0;

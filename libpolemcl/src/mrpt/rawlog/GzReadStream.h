@@ -57,7 +57,7 @@ class GzReadStream : public mrpt::io::CStream {
   std::size_t m_begin = 0, m_end = 0;  ///< part of the buffer that is not consumed yet
   PointCountGuard m_points;
   std::uint64_t m_position = 0, m_fileSize = 0;
-  bool m_cutShort = false;
+  bool m_cutShort = false, m_endsEarly = false;
 };
 
 }  // namespace polemcl
