@@ -8,12 +8,12 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
 #include "cli/HelpFormatter.h"
 #include "cli/Messages.h"
 #include "cli/OptionText.h"
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "cli/Settings.h"
 #include "cli/Version.h"
@@ -108,6 +108,7 @@ std::string explained(const CLI::App& cli, const CLI::ParseError& error) {
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
     : m_program(program), m_cli(description, program) {
+  forgetOutputs();
   m_cli.formatter(std::make_shared<HelpFormatter>());
   m_cli.set_help_flag("-h,--help", "Print this help, and end");
   m_cli.set_version_flag("--version", versionLine(program), "Print version and build, and end");
@@ -139,6 +140,7 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
     }
     if (offered) request = printRequest(argc, argv);
     if (!request) m_cli.parse(argc, argv);
+    requireDistinctOutputs(m_cli);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
       return usageError(lacksSubcommand(m_cli) ? "a subcommand is needed: " + subcommandNames(m_cli)
@@ -146,7 +148,10 @@ int CommandLine::run(int argc, const char* const* argv, const std::function<void
     m_cli.exit(e);  // prints what --help or --version ask for
     return exitDone;
   }
-  return this->work([&] { request ? printConfig(*request) : work(); });
+  return this->work([&] {
+    requireInputsKept(m_cli);
+    request ? printConfig(*request) : work();
+  });
 }
 
 int CommandLine::work(const std::function<void()>& work) const {
@@ -197,13 +202,6 @@ void addSetOption(CLI::App& cli, std::vector<std::string>& assignments) {
       ->type_name("SECTION.KEY=VALUE")
       ->take_all()
       ->expected(1);
-}
-
-void requireDistinct(const std::vector<std::optional<std::filesystem::path>>& outputs) {
-  std::set<std::filesystem::path> names;
-  for (const auto& output : outputs)
-    if (output && !names.insert(output->lexically_normal()).second)
-      throw CLI::ValidationError(output->string(), "is given for two outputs");
 }
 
 CLI::Validator positiveNumber() {

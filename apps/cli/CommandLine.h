@@ -117,10 +117,6 @@ std::string unlessSet(const std::string& setting, const Number& value) {
 /// \brief Declares `--set SECTION.KEY=VALUE`, which may be given several times.
 void addSetOption(CLI::App& cli, std::vector<std::string>& assignments);
 
-/// \brief Wrong usage when two outputs have one name: one of them would be lost.
-/// \throws CLI::ValidationError
-void requireDistinct(const std::vector<std::optional<std::filesystem::path>>& outputs);
-
 /// \brief Check of an option: a number above 0 and up to 1e6. (CLI11's own takes nan.)
 CLI::Validator positiveNumber();
 

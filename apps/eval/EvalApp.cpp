@@ -5,6 +5,7 @@
 
 #include <polemcl/io/map/PoleMapFile.h>
 #include "cli/JsonFile.h"
+#include "cli/Outputs.h"
 #include "core/common/Angles.h"
 #include "core/evaluation/MapShift.h"
 #include "io/data/Trajectory.h"
@@ -50,7 +51,7 @@ Subcommand mapCommand(CLI::App& program) {
             CLI::PositiveNumber);
   cli.add_flag("--one-to-one", options.oneToOne,
                "Match each pole at most once; otherwise, map poles near any true pole are right");
-  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool) { return scoreText(evalMap(*shared)); }};
 }
 
@@ -64,10 +65,10 @@ Subcommand trajectoryCommand(CLI::App& program) {
                       {{"pose", Sampling::perPose}, {"metre", Sampling::perMetre}},
                       "Evaluate at each pose, or every metre along the true path")
       ->default_str("pose");
-  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options.json, "Write the results to this file (JSON)");
   addFile(cli, "--map", options.map, "Pole map to draw under the trajectories");
-  addFile(cli, "--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
-  addFile(cli, "--png", options.png, "Write a picture of map, truth and estimate");
+  addOutput(cli, "--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
+  addOutput(cli, "--png", options.png, "Write a picture of map, truth and estimate");
   cli.add_option("--title", options.title, "Title of the picture")
       ->default_str("the file of the estimate");
   return {&cli, [shared](bool) { return scoreText(evalTrajectory(*shared)); }};

@@ -3,6 +3,7 @@
 #include <memory>
 #include <sstream>
 
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "eval/DetectionModelApp.h"
 #include "eval/EvalApp.h"
@@ -59,9 +60,9 @@ Subcommand detectionsCommand(CLI::App& program) {
   addFile(cli, "--poles", options->poles, "Rawlog of poles extracted from these scans")->required();
   addNumber(cli, "--radius", options->radius, "Distance within which a pole is right, m",
             CLI::PositiveNumber);
-  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
-  addFile(cli, "--visible", options->visible,
-          "Write the true poles visible in the scans to this table (CSV)");
+  addOutput(cli, "--json", options->json, "Write the results to this file (JSON)");
+  addOutput(cli, "--visible", options->visible,
+            "Write the true poles visible in the scans to this table (CSV)");
   addNumber(cli, "--min-scans", options->minScans,
             "Least number of scans that see a pole of that table", CLI::PositiveNumber);
   return {&cli, [options](bool) { return scoreText(evalDetections(*options)); }};
@@ -73,7 +74,7 @@ Subcommand repeatabilityCommand(CLI::App& program) {
   const auto options = std::make_shared<EvalRepeatabilityOptions>();
   addFile(cli, "--poles", options->poles, "Rawlog of poles")->required();
   addFile(cli, "--truth", options->truth, "True robot poses, TUM")->required();
-  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalRepeatability(*options)); }};
 }
 
@@ -90,7 +91,7 @@ Subcommand rotationCommand(CLI::App& program) {
       ->type_name("N");
   addNumber(cli, "--radius", options->radius, "Distance within which a pole is found again, m",
             CLI::PositiveNumber);
-  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options, config, set](bool quiet) {
             Progress progress("turn", 0, quiet);
             options->progress = progress.updates();
@@ -114,7 +115,7 @@ Subcommand modelCommand(CLI::App& program) {
   addFile(cli, "--drives", options->drives,
           "Rawlogs of pole-simulate --poles: for each street two, of two days")
       ->required();
-  addFile(cli, "--model", options->model, "Model to write (JSON)")->required();
+  addOutput(cli, "--model", options->model, "Model to write (JSON)")->required();
   return {&cli, [options](bool) { return scoreText(fitModel(*options), *options); }};
 }
 
@@ -139,7 +140,7 @@ Subcommand sightingsCommand(CLI::App& program) {
       "sightings", "Compares the poles of a simulated drive with the true poles; needs no scans");
   const auto options = std::make_shared<EvalObservationsOptions>();
   addFile(cli, "--poles", options->poles, "Rawlog that pole-simulate --poles wrote")->required();
-  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalObservations(*options)); }};
 }
 
@@ -180,7 +181,7 @@ Subcommand motionCommand(CLI::App& program) {
   addNumber(cli, "--every", options->every, "Compare each scan with the N-th after it",
             CLI::PositiveNumber)
       ->type_name("N");
-  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(evalMotion(*options)); }};
 }
 

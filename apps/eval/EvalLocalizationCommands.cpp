@@ -2,6 +2,7 @@
 #include <memory>
 #include <sstream>
 
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "core/common/Angles.h"
 #include "eval/ConsistencyEval.h"
@@ -32,7 +33,7 @@ Subcommand trialCommand(CLI::App& program, const char* name, const char* meaning
   cli.add_option("--seed", options.seed, "Seed of the starts; the filter of trial i uses seed + i")
       ->capture_default_str();
   addNumber(cli, "--metres", options.metres, "Longest path of a trial, m", positiveNumber());
-  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared, evaluate](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
             shared->progress = [&] { progress.step(); };
@@ -94,7 +95,7 @@ Subcommand consistencyCommand(CLI::App& program) {
             "Time after the first pose that is left out, s", CLI::NonNegativeNumber);
   addNumber(cli, "--skip-metres", options->skipMetres,
             "Path after the first pose that is left out, m", CLI::NonNegativeNumber);
-  addFile(cli, "--json", options->json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options->json, "Write the results to this file (JSON)");
   return {&cli, [options, headingDeg](bool) {
             options->truthSigmaYaw = *headingDeg * degree;
             return localizationText(evalConsistency(*options));
@@ -127,7 +128,7 @@ Subcommand faultsCommand(CLI::App& program) {
   number("--tail", options.fault.tail, "Path after the fault, m");
   addNumber(cli, "--slip", options.fault.slip, "Error of the slipping odometry's scale, as a share",
             positiveNumber() & CLI::Range(0.0, 1.0));
-  addFile(cli, "--json", options.json, "Write the results to this file (JSON)");
+  addOutput(cli, "--json", options.json, "Write the results to this file (JSON)");
   return {&cli, [shared](bool quiet) {
             Progress progress("trials", static_cast<std::size_t>(shared->trials), quiet);
             shared->progress = [&] { progress.step(); };

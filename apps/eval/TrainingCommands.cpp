@@ -2,6 +2,7 @@
 #include <memory>
 #include <sstream>
 
+#include "cli/Outputs.h"
 #include "eval/ClassifierTraining.h"
 #include "eval/EvalApp.h"
 #include "import/DatasetImport.h"
@@ -53,7 +54,7 @@ Subcommand candidatesCommand(CLI::App& program) {
           "by what all scans together show at their place");
   addNumber(cli, "--every", options->every, "Take every N-th scan only", CLI::PositiveNumber)
       ->type_name("N");
-  addFile(cli, "--output", options->output, "Table to write (CSV)")->required();
+  addOutput(cli, "--output", options->output, "Table to write (CSV)")->required();
   return {&cli, [options, config, pose, set](bool) {
             options->T_robot_sensor = parseSensorPose(*pose);
             return scoreText(writeCandidates(*options, loadSettings(*config, *set)));
@@ -76,9 +77,9 @@ Subcommand trainCommand(CLI::App& program) {
             positiveNumber());
   cli.add_flag("!--no-cross-validation", options->crossValidate,
                "Do not score each drive by weights fitted to the others");
-  addFile(cli, "--classifier", options->classifier, "Weights to write (CSV)")->required();
-  addFile(cli, "--covariance", options->covariance, "Scale of the covariances to write (CSV)");
-  addFile(cli, "--json", options->json, "Write the scores to this file (JSON)");
+  addOutput(cli, "--classifier", options->classifier, "Weights to write (CSV)")->required();
+  addOutput(cli, "--covariance", options->covariance, "Scale of the covariances to write (CSV)");
+  addOutput(cli, "--json", options->json, "Write the scores to this file (JSON)");
   return {&cli, [options](bool) { return scoreText(trainClassifier(*options)); }};
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/CommandLine.h"
 #include "cli/Messages.h"
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "cli/RawlogActions.h"
 #include "cli/SensorCounts.h"
@@ -129,9 +130,6 @@ void print(const ExtractSummary& summary, const ExtractOptions& options) {
 void ExtractOptions::validate() const {
   if (output.extension() != ".rawlog")
     throw Error("--output " + output.string() + ": the name must end in .rawlog");
-  std::error_code ignored;
-  if (std::filesystem::equivalent(input, output, ignored))
-    throw Error("--output " + output.string() + ": is the input; give another name");
 }
 
 ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
@@ -207,7 +205,7 @@ int extractMain(int argc, const char* const* argv) {
   auto* inspected = addFile(cli, "--inspect", inspection.input,
                             "Rawlog of scans: estimate its LiDAR's beams and mounting, and "
                             "from its poles and motion when the points were measured");
-  addFile(cli, "--write-config", inspection.writeConfig, "INI file to write for that LiDAR")
+  addOutput(cli, "--write-config", inspection.writeConfig, "INI file to write for that LiDAR")
       ->needs(inspected);
   addFile(cli, "--truth", inspection.truth, "TUM file of true poses for --inspect")
       ->needs(inspected);
@@ -217,13 +215,13 @@ int extractMain(int argc, const char* const* argv) {
       ->needs(inspected);
   auto* configured = addConfigOption(cli, config, ", needed without --inspect");
   auto* input = addFile(cli, "--input", options.input, "Rawlog of scans, needed without --inspect");
-  auto* output = addFile(cli, "--output", options.output,
-                         "Rawlog of poles to write, needed without --inspect");
-  auto* csv = addFile(cli, "--csv", options.csv, "Also write the poles to this table");
-  auto* png = addFile(cli, "--png", options.png, "Draw one scan from above with its poles");
+  auto* output = addOutput(cli, "--output", options.output,
+                           "Rawlog of poles to write, needed without --inspect");
+  auto* csv = addOutput(cli, "--csv", options.csv, "Also write the poles to this table");
+  auto* png = addOutput(cli, "--png", options.png, "Draw one scan from above with its poles");
   auto* rangeImage =
-      addFile(cli, "--range-image", options.rangeImage,
-              "Draw the steps of method = range_image: ranges, segments, refused ones, poles");
+      addOutput(cli, "--range-image", options.rangeImage,
+                "Draw the steps of method = range_image: ranges, segments, refused ones, poles");
   cli.add_option("--png-scan", options.pngScan, "The scan to draw, from 0")
       ->type_name("K")
       ->check(CLI::NonNegativeNumber)

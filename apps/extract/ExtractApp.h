@@ -20,7 +20,7 @@ struct ExtractOptions {
   std::optional<std::filesystem::path> png;  ///< picture of one scan with its poles, when given
   std::size_t pngScan = 0;                   ///< the scan drawn, 0-based
   std::optional<std::filesystem::path> rangeImage;  ///< picture of its range image, when given
-  /// \throws Error when the output is the input, or does not end in .rawlog.
+  /// \throws Error when the output does not end in .rawlog.
   void validate() const;
 };
 

@@ -6,9 +6,11 @@
 
 #include <polemcl/core/common/Types.h>
 #include "cli/CommandLine.h"
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "core/common/Angles.h"
 #include "import/DatasetImport.h"
+#include "import/MrptTruth.h"
 #include "io/file/ErrorPlace.h"
 
 namespace polemcl::apps {
@@ -113,8 +115,10 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
       cli, "--input", options.input,
       dataset == Dataset::rosbag2 ? "Folder of the bag, or one .db3 file" : "Folder of the dataset")
       ->required();
-  addFile(cli, "--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
-      ->required();
+  markOutput(
+      addFile(cli, "--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")
+          ->required(),
+      {".tum"});
   cli.add_flag("--embed", options.embed, "Store the clouds inside the rawlog");
   addNumber(cli, "--every", options.every, "Take every N-th scan", CLI::PositiveNumber)
       ->type_name("N");
@@ -133,6 +137,11 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
             "Turn that odometry too far, deg per metre", CLI::Range(-10.0, 10.0));
   declareSensor(cli, dataset, options, texts);
   declareOwn(cli, dataset, options, texts);
+}
+
+void declareTruth(CLI::App& cli, ImportOptions& options) {
+  addFile(cli, "--input", options.input, "True poses, .tum")->required();
+  addOutput(cli, "--output", options.output, "File to write")->required();
 }
 
 void printImport(const ImportReport& report, const ImportOptions& options) {
@@ -165,7 +174,11 @@ int importMain(int argc, const char* const* argv) {
     declare(*command, dataset, options, texts);
     commands.emplace_back(command, dataset);
   }
+  const auto* truth = line.cli().add_subcommand(
+      "mrpt-truth", "True poses (.tum) for MRPT's pf-localization: time x y yaw");
+  declareTruth(*line.cli().get_subcommand("mrpt-truth"), options);
   return line.run(argc, argv, [&] {
+    if (truth->parsed()) return writeMrptTruth(options.input, options.output);
     for (const auto& [command, dataset] : commands)
       if (command->parsed()) options.dataset = dataset;
     if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);

@@ -4,6 +4,7 @@
 
 #include <polemcl/io/map/PoleMapFile.h>
 #include "cli/CommandLine.h"
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "cli/Version.h"
 #include "io/dataset/KittiOdometry.h"
@@ -36,7 +37,7 @@ void write(const LabelsOptions& options, const LabelsSummary& summary,
 void addLabelsOptions(CLI::App& cli, LabelsOptions& options) {
   LabelMapOptions& labels = options.labels;
   addFolder(cli, "--input", options.input, "Folder sequences/NN of SemanticKITTI")->required();
-  addFile(cli, "--output", options.output, "Poles to write, .polemap or .csv")->required();
+  addOutput(cli, "--output", options.output, "Poles to write, .polemap or .csv")->required();
   const auto number = [&](const char* name, auto& value, const char* what) {
     cli.add_option(name, value, what)->capture_default_str();
   };

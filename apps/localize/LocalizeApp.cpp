@@ -6,6 +6,7 @@
 #include "cli/CommandLine.h"
 #include "cli/JsonFile.h"
 #include "cli/Messages.h"
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "cli/RunFolder.h"
 #include "cli/Settings.h"
@@ -223,7 +224,8 @@ int localizeMain(int argc, const char* const* argv) {
   addSetOption(cli, job.set);
   addSources(cli, job);
   addFile(cli, "--map", job.map, "Pole map (.polemap)")->required();
-  addFolder(cli, "--output", job.output, "Folder for the results")->required();
+  markOutput(addFolder(cli, "--output", job.output, "Folder for the results")->required(),
+             {"/config.ini", "/summary.json"});
   addFile(cli, "--truth", job.truth, "True robot poses (.tum): errors, and the start");
   cli.add_option("--runs", job.runs, "Number of runs, each with its own seed")
       ->check(CLI::Range(1, 10000))
@@ -244,9 +246,9 @@ int localizeMain(int argc, const char* const* argv) {
       ->excludes(start);
   addViewOptions(cli, job);
   cli.get_option("--sensors")->excludes(cli.get_option("--rate"));
-  addFile(cli, "--stream", job.stream,
-          "File for the poses of the first run as they are made, a line of JSON a scan; - "
-          "for standard output");
+  addOutput(cli, "--stream", job.stream,
+            "File for the poses of the first run as they are made, a line of JSON a scan; - "
+            "for standard output");
   cli.parse_complete_callback([&] {
     if (job.input.empty() && !job.isLive()) throw CLI::RequiredError("--input or --sensors");
   });

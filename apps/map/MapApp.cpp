@@ -4,6 +4,7 @@
 
 #include "cli/CommandLine.h"
 #include "cli/Messages.h"
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "map/MapBuildApp.h"
 #include "map/MapConvertApp.h"
@@ -35,17 +36,16 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
   addSetOption(cli, line.set);
   addFile(cli, "--input", job.inputs, "Rawlogs of scans or poles, one per session")->required();
   addFile(cli, "--truth", job.poses, "True robot poses, TUM, one file per rawlog");
-  addFile(cli, "--output", job.output, "Map to write, .polemap")->required();
+  addOutput(cli, "--output", job.output, "Map to write, .polemap")->required();
   cli.add_option("--date", job.dates,
                  "Day of each rawlog, YYYY-MM-DD, when its times do not tell it")
       ->type_name("DATE");
   addDatumOption(cli, line.datum, "the truth");
-  addFile(cli, "--scene", job.scene, "Also write a .3Dscene of the map and the paths");
-  addFile(cli, "--csv", job.csv, "Also write the poles to this table");
+  addOutput(cli, "--scene", job.scene, "Also write a .3Dscene of the map and the paths");
+  addOutput(cli, "--csv", job.csv, "Also write the poles to this table");
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of rawlogs that were cut short");
   cli.parse_complete_callback([&job] {
-    requireDistinct(job.outputs());
     if (const std::string wrong = job.wrongCounts(); !wrong.empty())
       throw CLI::ValidationError(wrong);
   });
@@ -109,7 +109,7 @@ Subcommand updateCommand(CLI::App& program) {
       "update", "Updates a map by new sessions, one after the other, see [map_update]");
   const auto job = std::make_shared<MapUpdateJob>();
   addFile(cli, "--map", job->map, "Map to begin with, .polemap")->required();
-  addFile(cli, "--json", job->json, "Also write what changed to this file (JSON)");
+  addOutput(cli, "--json", job->json, "Also write what changed to this file (JSON)");
   Subcommand command = mappingCommand(cli, job, updateMapFile);
   addEstimateOption(cli, *job);
   return command;
@@ -129,12 +129,9 @@ Subcommand diffCommand(CLI::App& program) {
   addConfigOption(cli, line.config, " ([map_update] moved_m, ghost_m)");
   addSetOption(cli, line.set);
   cli.get_option("--set")->needs("--config");
-  addFile(cli, "--scene", line.files.scene, "Also write a .3Dscene of the changes");
-  addFile(cli, "--csv", line.files.csv, "Also write the changes to this table");
-  addFile(cli, "--png", line.files.png, "Also draw the changes");
-  cli.parse_complete_callback([&line] {
-    requireDistinct({line.files.csv, line.files.scene, line.files.png});
-  });
+  addOutput(cli, "--scene", line.files.scene, "Also write a .3Dscene of the changes");
+  addOutput(cli, "--csv", line.files.csv, "Also write the changes to this table");
+  addOutput(cli, "--png", line.files.png, "Also draw the changes");
   return {&cli, [shared](bool) {
             const auto& [files, config, set] = *shared;
             const MapUpdateOptions options =
@@ -149,7 +146,7 @@ Subcommand convertCommand(CLI::App& program) {
   const auto options = std::make_shared<MapConvertOptions>();
   const auto datum = std::make_shared<std::string>();
   addFile(cli, "input", options->input, "Map to read")->required();
-  addFile(cli, "--output", options->output, "Map to write")->required();
+  addOutput(cli, "--output", options->output, "Map to write")->required();
   addDatumOption(cli, *datum, "the map");
   return {&cli, [options, datum](bool) {
             options->datum = datumOf(*datum);
@@ -163,7 +160,7 @@ Subcommand importCommand(CLI::App& program) {
   const auto options = std::make_shared<MapImportOptions>();
   const auto datum = std::make_shared<std::string>();
   addFile(cli, "--input", options->input, "Inventory to read")->required();
-  addFile(cli, "--output", options->output, "Map to write, .polemap")->required();
+  addOutput(cli, "--output", options->output, "Map to write, .polemap")->required();
   cli.add_option("--crs", options->coordinates, "Coordinate system of the places, as EPSG:25833")
       ->capture_default_str();
   cli.add_option("--columns", options->columns, "CSV: columns of the place, east before north")

@@ -42,10 +42,6 @@ struct MappingJob {
   std::string wrongCounts() const;
   /// \throws Error naming the option.
   void validate() const;
-  /// \brief All files to write; they must differ.
-  std::vector<std::optional<std::filesystem::path>> outputs() const {
-    return {output, csv, scene, json};
-  }
   /// \brief The files of one of the inputs.
   SessionFiles session(std::size_t i) const;
 };

@@ -5,6 +5,7 @@
 
 #include "cli/CommandLine.h"
 #include "cli/OutputFolder.h"
+#include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "cli/Settings.h"
 #include "core/sensor/SensorModel.h"
@@ -107,9 +108,10 @@ int simulateMain(int argc, const char* const* argv) {
   const auto* output = addFolder(
       line.cli(), "--output", options.output,
       "Folder of scans to write; replaces an earlier simulation; this or --poles is needed");
-  const auto* poles =
+  const auto* poles = markOutput(
       addFile(line.cli(), "--poles", options.poles,
-              "Rawlog of poles to write, with P.tum, P_poles_gt.csv, P_config.ini beside it");
+              "Rawlog of poles to write, with P.tum, P_poles_gt.csv, P_config.ini beside it"),
+      {".tum", "_poles_gt.csv", "_config.ini"});
   line.cli()
       .add_option("--seed", options.seed, "Seed of the street")
       ->default_str(unlessSet("[world] seed", sim::WorldOptions().seed));

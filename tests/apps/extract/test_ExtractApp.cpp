@@ -258,8 +258,23 @@ TEST_F(ExtractApp, RefusesToReplaceItsInput) {
   const auto bytes = readText(folder / "in.rawlog");
   expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("in.rawlog"),
                                          "--output", at("in.rawlog")}),
-                {"--output", "is the input"});
+                {"--output", "which is read as --input"});
   EXPECT_EQ(readText(folder / "in.rawlog"), bytes);
+}
+
+// Whatever the way of writing the name, and for all outputs of all programs.
+TEST_F(ExtractApp, SideOutputsReplaceNoInput) {
+  writeStreet(folder / "in", 1);
+  import("in");
+  const auto settings = readText(config());
+  const std::string same = at("") + "./" + fs::path(config()).filename().string();
+  for (const std::string option : {"--csv", "--png"})
+    expectFailure(run({option, same}), {option + " would replace", "which is read as --config"});
+  expectFailure(
+      runProgram(extractMain, {"--inspect", at("in.rawlog"), "--write-config", at("in.rawlog")}),
+      {"--write-config would replace", "which is read as --inspect"});
+  EXPECT_EQ(readText(config()), settings);
+  EXPECT_EQ(run({"--csv", at("poles.rawlog")}).code, exitUsage);
 }
 
 TEST_F(ExtractApp, RefusesUnknownSettings) {
