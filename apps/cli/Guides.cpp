@@ -116,6 +116,9 @@ const std::map<std::string, Guide> s_guides{
     {"pole-eval sightings",
      {{"pole-eval sightings --poles drive.rawlog --json sightings.json"},
       "Fit a model of detections to such drives: pole-eval model --help."}},
+    {"pole-eval mrpt-truth",
+     {{"pole-eval mrpt-truth --truth drive.tum --output truth.txt"},
+      "Name it in the settings of pf-localization: ground_truth_path_file = truth.txt."}},
     {"pole-eval motion",
      {{"pole-eval motion --poles poles.rawlog --truth drive.tum --every 4"},
       "If the poses disagree, mend the times or the poses of the dataset before you build a "

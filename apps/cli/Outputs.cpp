@@ -20,15 +20,16 @@ struct NamedFile {
   fs::path file;
 };
 
-/// Whether the new map takes the place of the one that it continues.
+/// Whether the new map takes the place of the one that it continues or converts.
 bool continues(const NamedFile& out, const NamedFile& in) {
-  return out.option == "--output" && (in.option == "--add" || in.option == "--map");
+  return out.option == "--output" &&
+         (in.option == "--add" || in.option == "--map" || in.option == "input");
 }
 
 bool isSame(const fs::path& a, const fs::path& b) {
   std::error_code ignored;
-  return fs::equivalent(a, b, ignored) ||
-         fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+  return fs::equivalent(a, b, ignored) || fs::weakly_canonical(fs::absolute(a), ignored) ==
+                                              fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
 /// What an option names, and what is written beside it.
@@ -37,8 +38,7 @@ std::vector<NamedFile> namedBy(const CLI::Option& option, const std::vector<std:
   for (const std::string& value : option.results()) {
     const std::string stem = (fs::path(value).parent_path() / fs::path(value).stem()).string();
     files.push_back({option.get_name(), value});
-    for (const std::string& name : beside)
-      files.push_back({option.get_name(), (name[0] == '/' ? value : stem) + name});
+    for (const std::string& name : beside) files.push_back({option.get_name(), stem + name});
   }
   return files;
 }
@@ -88,8 +88,8 @@ void requireInputsKept(const CLI::App& cli) {
   for (const auto& out : files.written)
     for (const auto& in : files.read)
       if (!continues(out, in) && isSame(out.file, in.file))
-        throw Error(out.option + " would replace " + out.file.string() + ", which is read as " +
-                    in.option + "; give another name");
+        throw Error(out.option + " " + out.file.string() + ": is an input (" + in.option +
+                    "); give another name");
 }
 
 }  // namespace polemcl::apps

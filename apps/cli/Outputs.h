@@ -13,7 +13,7 @@ namespace polemcl::apps {
 /// \brief A new program begins: the options of the one before it are gone.
 void forgetOutputs();
 /// \brief Notes that the value of an option names a file to write. \param beside What is written
-/// beside a file `S.rawlog`, such as `.tum` for `S.tum`, or in a folder, such as `/config.ini`.
+/// beside a file `S.rawlog`, such as `.tum` for `S.tum`.
 CLI::Option* markOutput(CLI::Option* option, const std::vector<std::string>& beside = {});
 /// \brief addFile() and markOutput().
 template <class Path>
@@ -28,7 +28,7 @@ CLI::Option* addOutput(CLI::App& cli, const std::string& flag, Path& value,
 void requireDistinctOutputs(const CLI::App& cli);
 /// \brief Options that addFile(), addFolder() and addConfigOption() declared and that are not
 /// marked are inputs. \throws Error when a file to write is also read, except a map that `pole-map`
-/// continues (`--add`, `--map`), which `--output` may replace.
+/// continues (`--add`, `--map`) or converts, which `--output` may replace.
 void requireInputsKept(const CLI::App& cli);
 /// @}
 

@@ -9,6 +9,7 @@
 #include "eval/EvalApp.h"
 #include "eval/ExtractionEval.h"
 #include "eval/MotionEval.h"
+#include "eval/MrptTruth.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -108,6 +109,19 @@ std::string scoreText(const sim::DetectionModel& m, const FitModelOptions& optio
   return out.str();
 }
 
+Subcommand mrptTruthCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "mrpt-truth", "Writes true poses as MRPT's pf-localization reads them: time x y yaw");
+  const auto truth = std::make_shared<std::filesystem::path>();
+  const auto output = std::make_shared<std::filesystem::path>();
+  addFile(cli, "--truth", *truth, "True robot poses, TUM")->required();
+  addOutput(cli, "--output", *output, "File to write")->required();
+  return {&cli, [truth, output](bool) {
+            writeMrptTruth(*truth, *output);
+            return output->string() + ": true poses for pf-localization\n";
+          }};
+}
+
 Subcommand modelCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
       "model", "Fits a model of detections ([simulation] detections) to ray-cast drives");
@@ -189,7 +203,8 @@ Subcommand motionCommand(CLI::App& program) {
 
 std::vector<Subcommand> extractionCommands(CLI::App& program) {
   return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program),
-          modelCommand(program),      sightingsCommand(program),     motionCommand(program)};
+          modelCommand(program),      mrptTruthCommand(program),     sightingsCommand(program),
+          motionCommand(program)};
 }
 
 }  // namespace polemcl::apps

@@ -10,7 +10,6 @@
 #include "cli/Progress.h"
 #include "core/common/Angles.h"
 #include "import/DatasetImport.h"
-#include "import/MrptTruth.h"
 #include "io/file/ErrorPlace.h"
 
 namespace polemcl::apps {
@@ -139,11 +138,6 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
   declareOwn(cli, dataset, options, texts);
 }
 
-void declareTruth(CLI::App& cli, ImportOptions& options) {
-  addFile(cli, "--input", options.input, "True poses, .tum")->required();
-  addOutput(cli, "--output", options.output, "File to write")->required();
-}
-
 void printImport(const ImportReport& report, const ImportOptions& options) {
   std::cout << options.output.string() << ": " << report.scans << " scans";
   if (report.skipped > 0) std::cout << ", " << report.skipped << " left out as asked";
@@ -174,11 +168,7 @@ int importMain(int argc, const char* const* argv) {
     declare(*command, dataset, options, texts);
     commands.emplace_back(command, dataset);
   }
-  const auto* truth = line.cli().add_subcommand(
-      "mrpt-truth", "True poses (.tum) for MRPT's pf-localization: time x y yaw");
-  declareTruth(*line.cli().get_subcommand("mrpt-truth"), options);
   return line.run(argc, argv, [&] {
-    if (truth->parsed()) return writeMrptTruth(options.input, options.output);
     for (const auto& [command, dataset] : commands)
       if (command->parsed()) options.dataset = dataset;
     if (!texts.sensorPose.empty()) options.T_robot_sensor = parseSensorPose(texts.sensorPose);

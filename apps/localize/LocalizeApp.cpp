@@ -135,12 +135,8 @@ LocalizeResult localize(const LocalizeJob& job) {
   LocalizeFacts facts = factsOf(job, settings, map->poles().size());
   // Before the work, so that folders and windows that cannot be are known now.
   RunFolder folder(job.output);
-  for (const auto& input : {job.config, job.source(), job.map, job.truth.value_or("")}) {
+  for (const auto& input : {job.config, job.source(), job.map, job.truth.value_or("")})
     folder.protect(input);
-    std::error_code notThere;
-    if (job.stream && std::filesystem::equivalent(*job.stream, input, notThere))
-      throw Error("--stream " + job.stream->string() + ": is an input; choose another file");
-  }
   RunView view(settings.view, map->poles(), job.source().filename().string(), folder);
 
   const LocalizationMap prepared(map, settings.global);
@@ -224,8 +220,7 @@ int localizeMain(int argc, const char* const* argv) {
   addSetOption(cli, job.set);
   addSources(cli, job);
   addFile(cli, "--map", job.map, "Pole map (.polemap)")->required();
-  markOutput(addFolder(cli, "--output", job.output, "Folder for the results")->required(),
-             {"/config.ini", "/summary.json"});
+  addFolder(cli, "--output", job.output, "Folder for the results")->required();
   addFile(cli, "--truth", job.truth, "True robot poses (.tum): errors, and the start");
   cli.add_option("--runs", job.runs, "Number of runs, each with its own seed")
       ->check(CLI::Range(1, 10000))

@@ -31,9 +31,7 @@ draw_drive "$out/map" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
 draw_drive "$out/drive" "$top/config/hdl32e.ini" "$world" 1 world.length_m=600 simulation.drive_seed=1
 "$bin/pole-map" build --quiet --config "$out/map.ini" --input "$out/map.rawlog" --truth "$out/map.tum" \
   --output "$out/map.polemap"
-# MRPT takes times whose first two are whole numbers for indices: the first pose, at 0 s, is left out.
-awk '!/^#/ && n++ { printf "%s %s %s %.9f\n", $1, $2, $3, 2 * atan2($7, $8) }' "$out/drive.tum" \
-  >"$out/truth.txt"
+"$bin/pole-eval" mrpt-truth --quiet --truth "$out/drive.tum" --output "$out/truth.txt"
 awk '!/^#/ && n++ >= settle' settle=$settle "$out/drive.tum" >"$out/settled.tum"
 awk '!/^#/ { print $2, $3, 2 * atan2($7, $8) * 57.29577951308232; exit }' "$out/drive.tum" >"$out/start"
 read -r x y yaw <"$out/start"

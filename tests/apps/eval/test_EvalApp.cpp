@@ -194,4 +194,20 @@ TEST_F(EvalApp, FailsWhenTheJsonCannotBeWritten) {
                 {"no/folder"});
 }
 
+TEST_F(EvalApp, WritesTheTruthOfPfLocalization) {
+  writeText(folder / "drive.tum",
+            "0 1 2 0 0 0 0 1\n0.1 1.5 2 0 0 0 0 1\n0.2 2 2.5 0 0 0 0.7071067812 0.7071067812\n");
+  const auto outcome =
+      runProgram(evalMain, {"mrpt-truth", "--truth", (folder / "drive.tum").string(), "--output",
+                            (folder / "truth.txt").string()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(readText(folder / "truth.txt"),
+            "0.100000000 1.500000000 2.000000000 0.000000000\n"
+            "0.200000000 2.000000000 2.500000000 1.570796327\n");
+  writeText(folder / "whole.tum", "0 1 2 0 0 0 0 1\n1 1.5 2 0 0 0 0 1\n");
+  expectFailure(runProgram(evalMain, {"mrpt-truth", "--truth", (folder / "whole.tum").string(),
+                                      "--output", (folder / "none.txt").string()}),
+                {"whole.tum", "no whole seconds"});
+}
+
 }  // namespace polemcl::test_eval_app

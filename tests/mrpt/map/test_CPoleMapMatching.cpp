@@ -4,6 +4,8 @@
 #include <mrpt/slam/CICP.h>
 #include <mrpt/tfest/TMatchingPair.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -32,13 +34,19 @@ CPoleMap randomMap(unsigned seed, int poles) {
   return map;
 }
 
+Eigen::Vector2d composed(const CPose2D& pose, double x, double y) {
+  return Eigen::Rotation2Dd(pose.phi()) * Eigen::Vector2d(x, y) +
+         Eigen::Vector2d(pose.x(), pose.y());
+}
+
 /// The same poles, as a vehicle at this pose sees them.
 CPoleMap seenFrom(const CPoleMap& map, const CPose2D& pose) {
   std::vector<MapPole> poles = map.poles();
   for (auto& pole : poles) {
-    const auto local = pose.inverseComposePoint(mrpt::math::TPoint2D(pole.x, pole.y));
-    pole.x = local.x;
-    pole.y = local.y;
+    const Eigen::Vector2d local =
+        Eigen::Rotation2Dd(-pose.phi()) * Eigen::Vector2d(pole.x - pose.x(), pole.y - pose.y());
+    pole.x = local.x();
+    pole.y = local.y();
   }
   CPoleMap seen;
   seen.setPoles(poles);
@@ -53,15 +61,15 @@ std::vector<Pair> bruteForce(const CPoleMap& map, const CPoleMap& other, const C
   std::vector<Pair> pairs;
   for (std::size_t i = params.offset_other_map_points; i < other.poles().size();
        i += params.decimation_other_map_points) {
-    const auto place =
-        pose.composePoint(mrpt::math::TPoint2D(other.poles()[i].x, other.poles()[i].y));
-    const double radius =
-        params.maxDistForCorrespondence + params.maxAngularDistForCorrespondence *
-                                              std::hypot(place.x - params.angularDistPivotPoint.x,
-                                                         place.y - params.angularDistPivotPoint.y);
+    const auto place = composed(pose, other.poles()[i].x, other.poles()[i].y);
+    const double radius = params.maxDistForCorrespondence +
+                          params.maxAngularDistForCorrespondence *
+                              std::hypot(place.x() - params.angularDistPivotPoint.x,
+                                         place.y() - params.angularDistPivotPoint.y);
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t k = 0; k < map.poles().size(); ++k) {
-      const double distance = std::hypot(map.poles()[k].x - place.x, map.poles()[k].y - place.y);
+      const double distance =
+          std::hypot(map.poles()[k].x - place.x(), map.poles()[k].y - place.y());
       if (distance < radius) near.push_back({distance, k});
     }
     std::sort(near.begin(), near.end());
@@ -116,8 +124,8 @@ TEST(CPoleMapMatching, PairsAreThoseOfBruteForce) {
     EXPECT_EQ(indices(solid), expected);
     double squares = 0;
     for (const auto& pair : flat) {
-      const auto place = pose.composePoint(mrpt::math::TPoint2D(pair.local.x, pair.local.y));
-      squares += std::pow(pair.global.x - place.x, 2) + std::pow(pair.global.y - place.y, 2);
+      const auto place = composed(pose, pair.local.x, pair.local.y);
+      squares += std::pow(pair.global.x - place.x(), 2) + std::pow(pair.global.y - place.y, 2);
     }
     EXPECT_NEAR(results.sumSqrDist, squares / static_cast<double>(flat.size()), 1e-4);
   }

@@ -1,4 +1,4 @@
-#include "import/MrptTruth.h"
+#include "eval/MrptTruth.h"
 
 #include <algorithm>
 #include <cmath>
