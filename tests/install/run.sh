@@ -122,6 +122,15 @@ paste -d' ' filtered.txt tum.txt | tail -n 40 |
   awk '{ e = sqrt(($2 - $6) ^ 2 + ($3 - $7) ^ 2); if (e > most) most = e }
        END { if (!(NR == 40 && most < 0.3)) { print most; exit 1 } }' ||
   fail "the poses of MRPT's filter are more than 0.3 m from those of pole-localize"
+# The lines at the head of the settings, and the program itself.
+mkdir pf
+cp "$prefix/share/polemcl/config/mrpt/pf-localization.ini" pf
+sed -n 's/^;   pole-/pole-/p' pf/pf-localization.ini >pf/example.sh
+[ "$(wc -l <pf/example.sh)" -eq 4 ] || fail "pf-localization.ini has no example of four lines"
+(cd pf && PATH="$bin:$PATH" quietly sh -e example.sh)
+(cd pf && LD_PRELOAD="$lib/libpolemcl.so" quietly pf-localization pf-localization.ini </dev/null)
+awk 'NR > 40 { sum += $1; ++n } END { if (!(n > 300 && sum / n < 0.05)) { print n, sum / n; exit 1 } }' \
+  pf/pf_000_*/GT_error.txt || fail "the example of pf-localization.ini misses the truth by more than 0.05 m"
 module=$(find "$prefix" -path '*/dist-packages/polemcl.*.so')
 if grep -q '^POLEMCL_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
   echo "8/8 Python: scans to a map and to poses; installed settings by their names"

@@ -125,7 +125,7 @@ TEST(CPoleMapMatching, PairsAreThoseOfBruteForce) {
     double squares = 0;
     for (const auto& pair : flat) {
       const auto place = composed(pose, pair.local.x, pair.local.y);
-      squares += std::pow(pair.global.x - place.x(), 2) + std::pow(pair.global.y - place.y, 2);
+      squares += std::pow(pair.global.x - place.x(), 2) + std::pow(pair.global.y - place.y(), 2);
     }
     EXPECT_NEAR(results.sumSqrDist, squares / static_cast<double>(flat.size()), 1e-4);
   }
