@@ -5,6 +5,7 @@
 
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
+#include "core/evaluation/MotionCheck.h"
 #include "eval/DetectionModelApp.h"
 #include "eval/EvalApp.h"
 #include "eval/ExtractionEval.h"
@@ -170,19 +171,22 @@ std::string scoreText(const std::vector<MotionComparison>& stretches) {
   const std::string none = std::string(16, ' ') + '-';
   out << " scan  truth m     deg  odom. m     deg  poles m     deg  pairs\n";
   double metres = 0, radians = 0, way = 0;
+  MotionCheck check;
   for (const MotionComparison& stretch : stretches) {
     const Pose2D &truth = stretch.truth, &poles = stretch.poles.motion;
     const bool tell = stretch.poles.pairs >= 3;
     out << std::setw(5) << stretch.scan << cells(truth)
         << (stretch.odometry ? cells(*stretch.odometry) : none) << (tell ? cells(poles) : none)
         << std::setw(7) << stretch.poles.pairs << '\n';
+    check.add(stretch.poles, truth);
     if (!tell) continue;
     way += std::hypot(truth.x, truth.y);
     metres += std::hypot(poles.x, poles.y) - std::hypot(truth.x, truth.y);
     radians += wrapAngle(poles.yaw - truth.yaw);
   }
   out << "the poles say " << io::fixed(metres, 3) << " m and " << io::fixed(radians * 180 / M_PI, 2)
-      << " deg more than the truth, over " << io::fixed(way, 1) << " m\n";
+      << " deg more than the truth, over " << io::fixed(way, 1) << " m\n"
+      << check.verdict() << '\n';
   return out.str();
 }
 

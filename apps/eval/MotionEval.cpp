@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cli/JsonFile.h"
+#include "core/evaluation/MotionCheck.h"
 #include "io/data/Trajectory.h"
 #include "localize/TrialDrive.h"
 
@@ -42,8 +43,8 @@ std::vector<MotionComparison> evalMotion(const EvalMotionOptions& options) {
     const auto poles = scan.observation->polesInRobotFrame();
     if (scan.index > 0) {
       const Pose2D motion = relative(poseBefore, pose);
-      result.push_back({scan.index - options.every, motion, odometry,
-                        refineMotion(before, poles, motion, RegistrationOptions())});
+      result.push_back(
+          {scan.index - options.every, motion, odometry, motionOfPoles(before, poles, motion)});
     }
     before = poles;
     poseBefore = pose;

@@ -63,8 +63,8 @@ CLI::Option* addEstimateOption(CLI::App& cli, MappingJob& job) {
   return estimate;
 }
 
-std::vector<std::string> warningsOf(const MapBuildSummary&, const MapBuildJob&) {
-  return {};
+std::vector<std::string> warningsOf(const MapBuildSummary& summary, const MapBuildJob& job) {
+  return buildWarnings(summary, job);
 }
 std::vector<std::string> warningsOf(const MapUpdateSummary& summary, const MapUpdateJob& job) {
   return updateWarnings(summary, job);

@@ -14,6 +14,9 @@
 namespace polemcl::apps {
 namespace {
 
+constexpr double s_twin = 1;          ///< m; real poles seldom stand nearer to each other
+constexpr double s_manyTwins = 0.25;  ///< share of the poles
+
 /// The sessions before; empty unless `add` is given.
 MapAccumulator accumulator(const MapBuildJob& job, const Settings& settings) {
   if (!job.add) return {settings.map, settings.upkeep};
@@ -109,6 +112,22 @@ std::vector<StampedPose2D> pathOf(const AddedSessions& added) {
   return path;
 }
 
+std::size_t countTwins(const std::vector<MapPole>& poles) {
+  const KdTree2D tree(centresOf(poles));
+  std::size_t twins = 0;
+  std::vector<PointHit> hits;  // the pole itself is one
+  for (const MapPole& pole : poles) {
+    tree.within(pole.x, pole.y, s_twin, hits);
+    twins += hits.size() > 1;
+  }
+  return twins;
+}
+
+double scanSpacing(const MapBuildSummary& summary) {
+  const std::size_t steps = summary.visited - std::min(summary.visited, summary.sessions.size());
+  return steps > 0 ? summary.map.pathLength / static_cast<double>(steps) : 0;
+}
+
 const char* counted(PoleCounting counting) {
   switch (counting) {
     case PoleCounting::members:
@@ -123,9 +142,8 @@ const char* counted(PoleCounting counting) {
 
 std::string noPoles(const MapBuildSummary& summary, const PoleMapOptions& options) {
   const auto& map = summary.map;
-  const std::size_t steps = summary.visited - std::min(summary.visited, summary.sessions.size());
-  const double spacing = steps > 0 ? map.pathLength / static_cast<double>(steps) : 0;
-  return "no pole found: " + std::to_string(summary.scans) + " scans " + io::fixed(spacing, 2) +
+  return "no pole found: " + std::to_string(summary.scans) + " scans " +
+         io::fixed(scanSpacing(summary), 2) +
          " m apart on average; sections of section_length_m = " +
          io::significant(options.sectionLength, 6) + ", " + std::to_string(map.occupiedSections) +
          " of " + std::to_string(map.sections) + " with a scan; " + std::to_string(map.detections) +
@@ -153,6 +171,7 @@ void addShares(const MapBuildSummary& summary, std::map<std::string, std::string
 }
 
 std::map<std::string, std::string> facts(const Settings& settings, const MapBuildSummary& summary,
+                                         const MapBuildJob& job,
                                          const std::optional<io::Datum>& datum) {
   std::string names;
   for (const MapBuildSummary::Session& session : summary.sessions)
@@ -169,6 +188,7 @@ std::map<std::string, std::string> facts(const Settings& settings, const MapBuil
       {"config", settingsText(settings)}};
   addShares(summary, info);
   if (datum) info[io::kDatumKey] = io::datumText(*datum);
+  keepWarnings(buildWarnings(summary, job), info);
   if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
   return info;
 }
@@ -184,6 +204,8 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
   std::vector<MappingSession> drives;
   for (std::size_t i = 0; i < job.inputs.size(); ++i)
     drives.push_back(loadMappingSession(job.session(i), settings, job.allowTruncated, progress));
+  if (job.kind == PoseKind::truth)
+    for (const MappingSession& drive : drives) summary.motions.push_back(checkMotion(drive.scans));
   LandmarkMap inventory;
   if (job.inventory) {
     for (std::size_t i = 0; i < drives.size(); ++i) requireOdometry(drives[i], job.inputs[i]);
@@ -201,6 +223,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
                 std::to_string(summary.skipped.emptyScans) + " without a valid point");
   summary.map = sessions.build();
   if (summary.map.poles.empty()) throw Error(noPoles(summary, settings.map));
+  summary.twins = countTwins(summary.map.poles);
 
   LandmarkMap landmarks = sessions.withHistories(summary.map.poles);
   if (summary.inventory) {
@@ -208,10 +231,26 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
     summary.inventory->kept = kept.size();
     landmarks.poles.insert(landmarks.poles.end(), kept.begin(), kept.end());
   }
-  const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, datum));
+  const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, job, datum));
   writeViews(job, map, pathOf(sessions.added()));
   io::writePoleMap(job.output, map, job.keepScans || job.add ? &sessions.added() : nullptr);
   return summary;
+}
+
+std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < summary.motions.size(); ++i)
+    if (summary.motions[i].contradicts())
+      warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +
+                         "; check " + job.poses[i].filename().string());
+  const std::size_t poles = summary.map.poles.size();
+  if (static_cast<double>(summary.twins) > s_manyTwins * static_cast<double>(poles))
+    warnings.push_back(std::to_string(summary.twins) + " of " + std::to_string(poles) +
+                       " poles have a twin nearer than 1 m (the scans are " +
+                       io::fixed(scanSpacing(summary), 2) +
+                       " m apart); mostly the poses of some scans are wrong, check them with "
+                       "pole-eval motion");
+  return warnings;
 }
 
 std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) {
@@ -225,6 +264,9 @@ std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) 
     for (const MapBuildSummary::Session& session : summary.sessions)
       out << session.name << ": " << session.used << " of " << session.scans
           << " scans used, f_map " << io::fixed(session.share, 4) << '\n';
+  for (std::size_t i = 0; i < summary.motions.size(); ++i)
+    if (!summary.motions[i].contradicts())  // else it is a warning
+      out << job.inputs[i].filename().string() << ": " << summary.motions[i].verdict() << '\n';
   if (summary.inventory) {
     const AdjustedDrives& drives = summary.inventory->drives;
     out << "inventory: " << drives.anchors.size() << " of its poles are among the " << drives.poles

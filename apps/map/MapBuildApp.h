@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/MotionCheck.h"
 #include "core/mapping/DriveAdjustment.h"
 #include "core/mapping/MapAccumulator.h"
 #include "map/MappingSession.h"
@@ -43,6 +44,8 @@ struct MapBuildSummary {
   };
   std::vector<Session> sessions;                 ///< in their order, those of `add` first
   std::optional<InventoryAdjustment> inventory;  ///< when one was given
+  std::vector<MotionCheck> motions;              ///< of each input, when its poses are a truth
+  std::size_t twins = 0;                         ///< poles with another nearer than 1 m
 };
 
 /// \brief Builds the map, with a history of each pole for later updates, and writes the files of
@@ -56,6 +59,10 @@ struct MapBuildSummary {
 ///         another `unvisited_m`, or has another datum.
 MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
                          const ScanProgress& progress = {});
+
+/// \brief Signs that the poses are wrong: poles that contradict them, many twins. Also in the map's
+/// info, key `warnings`.
+std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job);
 
 /// \brief What the program prints.
 std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job);

@@ -152,10 +152,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings
     summary.skipped += session.skipped;
     path.insert(path.end(), session.path.begin(), session.path.end());
   }
-  const std::vector<std::string> warnings = updateWarnings(summary, job);
-  info.erase("warnings");
-  for (const std::string& warning : warnings)
-    info["warnings"] += (info["warnings"].empty() ? "" : "; ") + warning;
+  keepWarnings(updateWarnings(summary, job), info);
   const io::PoleMapData after = io::mapData(map, info);
   summary.poles = after.poles.size();
   if (after.poles.empty())

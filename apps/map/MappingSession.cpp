@@ -123,6 +123,13 @@ void writeViews(const MappingJob& job, const io::PoleMapData& map,
   scene::save(*report::makeMapScene(view), *job.scene);
 }
 
+void keepWarnings(const std::vector<std::string>& warnings,
+                  std::map<std::string, std::string>& info) {
+  info.erase("warnings");
+  for (const std::string& warning : warnings)
+    info["warnings"] += (info["warnings"].empty() ? "" : "; ") + warning;
+}
+
 SessionFiles MappingJob::session(std::size_t i) const {
   return {inputs[i], poses[i], kind};
 }

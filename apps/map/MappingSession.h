@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +81,10 @@ std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped);
 /// \brief Writes table and scene of a new map, when the job names them.
 void writeViews(const MappingJob& job, const io::PoleMapData& map,
                 const std::vector<StampedPose2D>& path);
+
+/// \brief Puts warnings in the place of those in a map's info, key `warnings`; none without one.
+void keepWarnings(const std::vector<std::string>& warnings,
+                  std::map<std::string, std::string>& info);
 
 /// \brief The scans on another day: their times count from the first one.
 /// \param date YYYY-MM-DD. \throws Error when it is not a date.

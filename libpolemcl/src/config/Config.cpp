@@ -7,6 +7,7 @@
 
 #include <polemcl/config/Config.h>
 #include "io/file/AtomicFile.h"
+#include "io/file/FileKind.h"
 #include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 
@@ -156,6 +157,9 @@ ConfigFile ConfigFile::fromText(const std::string& text, const std::string& name
 }
 
 ConfigFile ConfigFile::read(const std::string& path) {
+  if (const std::string kind = io::otherKind(path, ".ini"); !kind.empty())
+    throw Error(path + ": " + kind + "not an INI file of settings; installed are kitti.ini, " +
+                "hdl32e.ini and others");
   std::string text;
   for (const auto& line : io::readLines(path)) text += line + "\n";
   return fromText(text, path);

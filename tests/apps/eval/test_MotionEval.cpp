@@ -115,6 +115,25 @@ TEST_F(MotionEvalTest, TheTableSumsUpWhatThePolesSayMore) {
   EXPECT_FALSE(compare(2)[0].odometry);
 }
 
+TEST_F(MotionEvalTest, EndsWithAVerdict) {
+  writeDrive(13);
+  const auto verdict = [this](double scale) {
+    writeTruth(13, scale);
+    return run({"motion", "--poles", at("p.rawlog"), "--truth", at("t.tum")}).out;
+  };
+  EXPECT_NE(verdict(1).find("\nthe poles agree with these poses (in 3 of 3 stretches)\n"),
+            std::string::npos);
+  EXPECT_NE(verdict(0.9).find("\nthe poles contradict these poses: truth of another drive, wrong "
+                              "time or wrong scan timing (in 3 of 3 stretches)\n"),
+            std::string::npos);
+  // 6.4 m too far: farther off than pairs are looked for around the true motion.
+  EXPECT_NE(verdict(5).find("(in 3 of 3 stretches)\n"), std::string::npos);
+  writeTruth(13, 1);
+  EXPECT_NE(run({"motion", "--poles", at("p.rawlog"), "--truth", at("t.tum"), "--every", "12"})
+                .out.find("agree with these poses (in 1 of 1"),
+            std::string::npos);
+}
+
 TEST_F(MotionEvalTest, RefusesWhatCannotBeCompared) {
   writeDrive(5);
   writeTruth(3, 1);

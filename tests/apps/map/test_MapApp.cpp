@@ -165,6 +165,46 @@ TEST_F(MapApp, SaysThatTheTruthMayNotFit) {
   expectFailure(run({"in"}), {"no pole found", "check that the true poses fit the scans"});
 }
 
+TEST_F(MapApp, AgreesWithATrueDrive) {
+  drive("in", 12);
+  const auto outcome = run({"in"});
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("in.rawlog: the poles agree with these poses"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("warnings"), 0u);
+}
+
+TEST_F(MapApp, WarnsOfTheTruthOfAnotherDrive) {
+  drive("in", 16);
+  auto truth = io::readTum(folder / "in.tum");
+  for (std::size_t i = 0; i < truth.size(); ++i)  // of a slower one, at the same times
+    truth[i].pose.translation().x() *= 0.8;
+  io::writeTum(folder / "in.tum", truth);
+  const auto outcome = run({"in"}, {"--set", "map.min_count=1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* part : {"warning: in.rawlog: the poles contradict these poses: truth of another "
+                           "drive, wrong time or wrong scan timing (in 3 of 3 stretches)",
+                           "check in.tum"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  const auto info = io::readPoleMap(folder / "street.polemap").info;
+  EXPECT_EQ(info.at("warnings").rfind("in.rawlog: the poles contradict", 0), 0u);
+}
+
+TEST_F(MapApp, NotesTwinPoles) {
+  drive("in", 16);
+  auto truth = io::readTum(folder / "in.tum");
+  // Each fourth scan is right, so comparing these shows nothing; two of four are a scan late.
+  for (std::size_t i = truth.size(); i-- > 1;)
+    if (i % 4 > 1) truth[i].pose.translation().x() -= 0.7;
+  io::writeTum(folder / "in.tum", truth);
+  const auto outcome = run({"in"}, {"--set", "map.min_count=1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("the poles agree"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("poles have a twin nearer than 1 m (the scans are 0."),
+            std::string::npos)
+      << outcome.err;
+}
+
 TEST_F(MapApp, NamesTheCountWhenNoPoleIsSeenOftenEnough) {
   drive("in", 6);
   writeText(folder / "strict.ini",

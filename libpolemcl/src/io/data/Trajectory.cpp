@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "io/file/AtomicFile.h"
+#include "io/file/FileKind.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {
@@ -14,13 +15,25 @@ namespace {
 constexpr const char* tumLayout = "time x y z qx qy qz qw (s, m)";
 constexpr int decimals = 9;
 
+/// The first row, or the reason why this file has none.
+bool firstRow(NumberRowReader& rows, const std::filesystem::path& file, NumberRow& row) {
+  try {
+    return rows.next(row);
+  } catch (const Error&) {
+    const std::string kind = otherKind(file, ".tum");
+    if (kind.empty()) throw;
+    throw Error(file.string() + ": " + kind + "not a trajectory; expected: " + tumLayout);
+  }
+}
+
 /// Reads a TUM file and passes each pose to `consume`.
 void readTumRows(const std::filesystem::path& file,
                  const std::function<void(const StampedPose3D&)>& consume) {
   NumberRowReader rows(file, 8, tumLayout);
   StampedPose3D entry;
   std::size_t count = 0;
-  for (NumberRow row; rows.next(row); ++count) {
+  NumberRow row;
+  for (bool more = firstRow(rows, file, row); more; more = rows.next(row), ++count) {
     const std::vector<double>& v = row.values;
     if (count > 0 && !(v[0] > entry.time)) {
       throw Error(at(file, row.line) + "time " + significant(v[0], 17) + " is not after " +
