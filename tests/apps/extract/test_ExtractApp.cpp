@@ -262,6 +262,17 @@ TEST_F(ExtractApp, RefusesToReplaceItsInput) {
   EXPECT_EQ(readText(folder / "in.rawlog"), bytes);
 }
 
+TEST_F(ExtractApp, NamesWhatAFileInTheWrongPlaceIs) {
+  writeStreet(folder / "in", 1);
+  import("in");
+  expectFailure(runProgram(extractMain, {"--config", at("in.rawlog"), "--input", at("in.rawlog"),
+                                         "--output", at("poles.rawlog")}),
+                {"in.rawlog: it is a rawlog, not an INI file"});
+  writeText(folder / "map.csv", "x,y\n1,2\n");
+  expectFailure(runProgram(extractMain, {"--inspect", at("in.rawlog"), "--truth", at("map.csv")}),
+                {"map.csv", "not a trajectory"});
+}
+
 // Whatever the way of writing the name, and for all outputs of all programs.
 TEST_F(ExtractApp, SideOutputsReplaceNoInput) {
   writeStreet(folder / "in", 1);

@@ -19,12 +19,12 @@ ScanRegistration motionOfPoles(const std::vector<PoleDetection>& before,
 /// \brief Sums up the stretches of a drive.
 class MotionCheck {
  public:
-  /// \param poles Of motionOfPoles(). \param truth The same motion by the poses.
+  /// \param poles From motionOfPoles(). \param truth The same motion by the poses.
   void add(const ScanRegistration& poles, const Pose2D& truth);
 
   std::size_t told() const { return m_told; }  ///< stretches of which the poles tell
-  /// \brief Of these, how many contradict the poses: beyond chance (0.1 %), with errors of poses of
-  /// 2 cm and 0.1°.
+  /// \brief How many of them contradict the poses: beyond chance (0.1 %), if the poses err by 2 cm
+  /// and 0.1°.
   std::size_t contradicting() const { return m_contradicting; }
   /// \brief Most stretches contradict the poses.
   bool contradicts() const { return 2 * m_contradicting > m_told; }

@@ -14,7 +14,7 @@ namespace polemcl {
 /// much in a large map as in a small one.
 class IncrementalMerge {
  public:
-  /// \param poles Of the map so far. \param mergeDistance > 0, m.
+  /// \param poles The map so far. \param mergeDistance > 0, m.
   IncrementalMerge(const std::vector<MapPole>& poles, double mergeDistance);
 
   double mergeDistance() const { return m_mergeDistance; }
