@@ -16,7 +16,7 @@ void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& 
 
 nlohmann::ordered_json readJson(const std::filesystem::path& file) {
   try {
-    return nlohmann::ordered_json::parse(io::readBytes(file));
+    return parsedFile<nlohmann::ordered_json>(file);
   } catch (const nlohmann::json::exception& error) {
     throw Error(file.string() + ": " + error.what());
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/JsonFile.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
 #include "io/file/Date.h"
@@ -177,7 +178,7 @@ PoleHistory historyOf(const Feature& feature) {
 Json parsed(const std::filesystem::path& file) {
   Json json;
   try {
-    json = Json::parse(io::readBytes(file));
+    json = apps::parsedFile<Json>(file);
   } catch (const Json::exception& error) {
     throw Error(file.string() + ": is no JSON: " + error.what());
   }

@@ -202,6 +202,7 @@ TEST_F(GeoJson, RefusesWhatItCannotPlace) {
 
 TEST_F(GeoJson, RefusesWhatIsNone) {
   EXPECT_HAS(refusal(""), "is no JSON");
+  EXPECT_HAS(refusal(std::string(100000, '[') + std::string(100000, ']')), "nested more than 64");
   EXPECT_HAS(refusal("[1]"), "FeatureCollection");
   EXPECT_HAS(refusal(R"({"type":"FeatureCollection"})"), "FeatureCollection");
   EXPECT_HAS(refusal(points(""), home), "no point in it");

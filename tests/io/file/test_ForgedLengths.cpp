@@ -94,7 +94,7 @@ TEST_F(ForgedLengths, InTheScansOfAMap) {
   expectIn(unpack(1ull << 40, data), "x: ", "cannot hold 1099511627776");
   // A size that deflate could just reach, but this data does not.
   const std::string large = data + std::string(100000, 'x');
-  expectIn(unpack(90 * megabyte, large), "x: ", "cannot be decompressed");
+  expectIn(unpack(20 * megabyte, large), "x: ", "cannot be decompressed");
   for (const std::uint64_t sessions : {0xffffffffull, 2ull}) {
     const std::string scans = zlibbed(little(0, 8) + little(sessions, 4) + little(1, 4) + "s" +
                                       little(~0ull, 8) + std::string(200, '\0'));
@@ -125,7 +125,7 @@ TEST_F(ForgedLengths, InAnArchiveOfArrays) {
   expectIn(open(zip({{"a.npy", array, true}})), "a.npz", "do not fit its shape");
   std::string claim = zip({{"a.npy", array + std::string(100000, '\7'), false}});
   claim[claim.find("PK\x01\x02") + 10] = 8;  // stored data marked as deflated
-  claim.replace(claim.find("PK\x01\x02") + 24, 4, little(90 * megabyte, 4));
+  claim.replace(claim.find("PK\x01\x02") + 24, 4, little(20 * megabyte, 4));
   expectIn(open(claim), "a.npz", "decompressed");
   const std::string header = std::string("\x93NUMPY\x02\0", 8) + little(0xffffffff, 4);
   expectIn(refusal([&] { parseNpy(header + std::string(1800, ' '), "x: "); }), "x: ", "4294967295");
@@ -167,7 +167,7 @@ TEST_F(ForgedLengths, InCompressedText) {
   for (std::size_t i = 0; i <= mostTextBytes / megabyte; ++i)
     gzwrite(stream, line.data(), static_cast<unsigned>(line.size()));
   gzclose(stream);
-  expectIn(refusal([&] { readLines(file); }, 4 * mostTextBytes), "a.txt.gz", "128 MB of text");
+  expectIn(refusal([&] { readLines(file); }, 4 * mostTextBytes), "a.txt.gz", "MB of text, uncompressed");
 }
 
 }  // namespace polemcl::test_forged_lengths

@@ -64,6 +64,13 @@ TEST_F(TextFileTest, RefusesGzipCutShort) {
   expectIn(messageOf([&] { readLines(path("f.gz")); }), path("f.gz").string(), "cut short");
 }
 
+// 60 MB of one byte take 60 kB: no table shrinks like that.
+TEST_F(TextFileTest, RefusesTextThatNoTableHolds) {
+  writeGzip(path("bomb.gz"), std::string(60 << 20, 'a'));
+  expectIn(messageOf([&] { readLines(path("bomb.gz")); }), path("bomb.gz").string(),
+           "more than 18 MB");
+}
+
 TEST_F(TextFileTest, RefusesDamagedGzip) {
   writeGzip(path("f.gz"), std::string(1000, 'a') + std::string(1000, 'b'));
   std::string bytes = read(path("f.gz"));

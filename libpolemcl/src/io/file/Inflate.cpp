@@ -29,9 +29,9 @@ uInt piece(std::uint64_t bytes) {
 
 std::string inflated(std::string_view data, std::uint64_t size, Deflated kind,
                      const std::string& where) {
-  if (size > greatestDeflateRatio * data.size() + 64)
+  if (size > mostInflated(data.size()))
     throw Error(where + "damaged: " + std::to_string(data.size()) + " bytes cannot hold " +
-                std::to_string(size));
+                std::to_string(size) + " of numbers");
   Stream stream;
   if (inflateInit2(&stream, kind == Deflated::bare ? -MAX_WBITS : MAX_WBITS) != Z_OK)
     throw Error(where + "out of memory");

@@ -14,7 +14,7 @@ enum class Deflated { zlib, bare };  ///< with zlib's header and checksum; raw, 
 /// the actual content.
 /// \param size Uncompressed size that the file claims. \param where Prefix of error messages.
 /// \throws Error when the data are damaged, hold more or less than `size`, or cannot hold it (see
-///         greatestDeflateRatio).
+///         mostInflated()).
 std::string inflated(std::string_view data, std::uint64_t size, Deflated kind,
                      const std::string& where);
 

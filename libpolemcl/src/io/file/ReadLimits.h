@@ -12,7 +12,12 @@ namespace polemcl::io {
 /// Largest text of a table, plain or gzip, bytes after decompression: a small gzip file can hold
 /// very much.
 inline constexpr std::size_t mostTextBytes = std::size_t{128} << 20;
-/// Largest compression ratio of deflated data (`.npz`, scans of a `.polemap`).
+/// Most bytes that compressed tables, maps and scans may hold, by the bytes that they take. Numbers
+/// and text shrink to a third or a tenth of their size; the first part allows small empty ones.
+constexpr std::uint64_t mostInflated(std::uint64_t compressed) {
+  return (std::uint64_t{16} << 20) + 50 * compressed;
+}
+/// Largest compression ratio of deflated data (rawlogs).
 inline constexpr std::uint64_t greatestDeflateRatio = 1032;
 /// Largest compression ratio of LZF data (compressed PCD): three bytes hold up to 264.
 inline constexpr std::uint64_t greatestLzfRatio = 88;

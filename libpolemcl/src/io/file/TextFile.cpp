@@ -21,6 +21,8 @@ LineReader::LineReader(const std::filesystem::path& file)
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
+  const auto size = std::filesystem::file_size(file, ignored);
+  if (!ignored) m_most = std::min<std::uint64_t>(mostTextBytes, mostInflated(size));
   errno = 0;
   m_stream.reset(gzopen(file.c_str(), "rb"));
   if (!m_stream) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");
@@ -40,10 +42,10 @@ void LineReader::readBlock() {
     m_begin = 0;
     m_text.append(block.data(), static_cast<std::size_t>(got));
     m_read += static_cast<std::size_t>(got);
-    if (m_read > mostTextBytes)
+    if (m_read > m_most)
       throw Error("cannot read " + m_file.string() + ": it holds more than " +
-                  std::to_string(mostTextBytes >> 20) +
-                  " MB of text, uncompressed; no table is that large");
+                  std::to_string(m_most >> 20) +
+                  " MB of text, uncompressed; no table of its size is that large");
     return;
   }
   m_ended = true;

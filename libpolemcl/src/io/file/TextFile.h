@@ -3,12 +3,15 @@
 /// \brief Strict tables of numbers, and conversion of numbers to and from text, always in the "C"
 /// locale.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "io/file/ReadLimits.h"
 
 struct gzFile_s;
 
@@ -38,6 +41,7 @@ class LineReader {
   std::string m_text;  ///< text read; the part from m_begin on is not returned yet
   std::size_t m_begin = 0;
   std::size_t m_read = 0;  ///< bytes, uncompressed
+  std::uint64_t m_most = mostTextBytes;
   bool m_ended = false, m_cutShort = false;
 };
 
