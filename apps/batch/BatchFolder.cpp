@@ -35,6 +35,22 @@ std::uint32_t checksumOf(const fs::path& file) {
   return static_cast<std::uint32_t>(crc);
 }
 
+bool isDoneNote(const Json& done) {
+  const auto has = [](const Json& object, const char* key, auto isOfItsKind) {
+    return object.is_object() && object.contains(key) && isOfItsKind(object.at(key));
+  };
+  const auto isText = [](const Json& value) { return value.is_string(); };
+  const auto isNumber = [](const Json& value) { return value.is_number_unsigned(); };
+  const auto isOutput = [&](const Json& output) {
+    return has(output, "file", isText) && has(output, "bytes", isNumber) &&
+           has(output, "crc32", isNumber);
+  };
+  return has(done, "key", isText) && (!done.contains("build") || has(done, "build", isText)) &&
+         has(done, "outputs", [&](const Json& outputs) {
+           return outputs.is_array() && std::all_of(outputs.begin(), outputs.end(), isOutput);
+         });
+}
+
 /// Discarded when there is no such file, or no JSON in it.
 Json noteIn(const fs::path& file) {
   try {
@@ -42,6 +58,12 @@ Json noteIn(const fs::path& file) {
   } catch (const Error&) {
     return Json::value_t::discarded;
   }
+}
+
+/// Discarded also when it is not what commit() writes.
+Json doneIn(const fs::path& folder) {
+  Json done = noteIn(folder / "done.json");
+  return isDoneNote(done) ? done : Json(Json::value_t::discarded);
 }
 
 /// What is wrong with an output; empty when nothing is.
@@ -114,12 +136,12 @@ void BatchFolder::store(const BatchPlan& plan, const fs::path& batchFile) {
 }
 
 bool BatchFolder::isDone(const BatchTask& task) const {
-  const Json done = noteIn(work(task.id) / "done.json");
+  const Json done = doneIn(work(task.id));
   return done.is_object() && done.value("key", "") == task.key;
 }
 
 std::string BatchFolder::buildOf(const BatchTask& task) const {
-  const Json done = noteIn(work(task.id) / "done.json");
+  const Json done = doneIn(work(task.id));
   return done.is_object() ? done.value("build", "an earlier version") : "";
 }
 
@@ -138,9 +160,8 @@ BatchFolder::State BatchFolder::state(const BatchTask& task, std::string* why) c
     return State::damaged;
   };
   const std::string changed = (folder / "done.json").string() + " is not what was written";
-  const Json done = noteIn(folder / "done.json");
-  if (!done.is_object() || !done.contains("key") || !done.contains("outputs"))
-    return damaged(changed);
+  const Json done = doneIn(folder);
+  if (!done.is_object()) return damaged(changed);
   if (done.at("key") != task.key) return State::open;
   if (done.at("outputs").size() != task.outputs.size()) return damaged(changed);
   for (const auto& output : done.at("outputs"))

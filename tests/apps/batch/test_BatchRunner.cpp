@@ -177,6 +177,15 @@ TEST_F(BatchRunner, DamagedOutputsAreDoneAgain) {
   writeText(m_batch.work("c") / "done.json", "{");
   EXPECT_EQ(m_batch.state(m_plan.task("c")), State::damaged);
   EXPECT_EQ(run(), Names{"c"});
+  for (const std::string damaged :
+       {"{\"key\": 1, \"outputs\": []}", "{\"key\": \"key of c\", \"outputs\": [{}]}",
+        "{\"key\": \"key of c\", \"build\": [], \"outputs\": []}",
+        "{\"key\": \"key of c\", \"outputs\": [{\"file\": 1, \"bytes\": 2, \"crc32\": 3}]}"}) {
+    writeText(m_batch.work("c") / "done.json", damaged);
+    EXPECT_EQ(m_batch.state(m_plan.task("c"), &why), State::damaged) << damaged;
+    EXPECT_NE(why.find("c/done.json is not what was written"), std::string::npos) << why;
+    EXPECT_EQ(run(), Names{"c"}) << damaged;
+  }
 }
 
 TEST_F(BatchRunner, RemainsOfTasksCutShortGo) {
