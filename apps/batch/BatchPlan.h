@@ -93,7 +93,8 @@ BatchPlan planBatch(const BatchSpec& spec, const std::string& build = buildIdent
 std::vector<std::vector<std::string>> levels(const BatchPlan& plan);
 
 void writePlan(const std::filesystem::path& file, const BatchPlan& plan);
-/// \throws Error when it cannot be read or is no plan of this version.
+/// \throws Error when it cannot be read or is no plan of this version; when a task would run what
+/// is no program of a batch, or has an id or an output that leads out of its folder.
 BatchPlan readPlan(const std::filesystem::path& file);
 
 }  // namespace polemcl::apps

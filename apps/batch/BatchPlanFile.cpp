@@ -1,14 +1,18 @@
-#include <fstream>
+#include <algorithm>
 
 #include <polemcl/core/common/Types.h>
 #include "batch/BatchPlan.h"
 #include "cli/JsonFile.h"
+#include "io/file/ParsedJson.h"
 
 namespace polemcl::apps {
 namespace {
 
 constexpr const char* s_format = "polemcl batch plan 2";
 constexpr const char* s_kinds[] = {"poles", "truth", "map", "score", "run"};  // by TaskKind
+/// What tasks may run: a plan that somebody else wrote must not run anything else.
+constexpr const char* s_programs[] = {"copy",     "pole-import",   "pole-simulate", "pole-extract",
+                                      "pole-map", "pole-localize", "pole-eval",     "pole-labels"};
 
 Json toJson(const BatchTask& task) {
   return {{"id", task.id},           {"kind", name(task.kind)},
@@ -26,13 +30,38 @@ Json toJson(const Experiment& experiment) {
           {"seeds", experiment.seeds}};
 }
 
+/// Ids name folders, which are removed. \see TaskPath::id()
+void requireId(const std::string& id, TaskKind kind) {
+  const std::string begin = std::string(name(kind)) + ".";
+  if (id.size() <= begin.size() || id.compare(0, begin.size(), begin) != 0 ||
+      id.find('/') != std::string::npos)
+    throw Error("'" + id + "' is no id of a task; it begins with '" + begin + "' and has no '/'");
+}
+
+void requireKnownProgram(const std::vector<std::string>& command) {
+  if (command.empty()) throw Error("a command is empty");
+  if (std::find(std::begin(s_programs), std::end(s_programs), command.front()) ==
+      std::end(s_programs))
+    throw Error("'" + command.front() + "' is no program that a batch runs");
+}
+
+/// A file that a task keeps: in its own folder.
+void requireInside(const std::string& file) {
+  const std::filesystem::path path(file);
+  if (file.empty() || path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
+    throw Error("the output '" + file + "' lies outside the folder of its task");
+}
+
 BatchTask taskFrom(const Json& json) {
   BatchTask task;
   json.at("id").get_to(task.id);
   task.kind = taskKind(json.at("kind"));
+  requireId(task.id, task.kind);
   json.at("needs").get_to(task.needs);
   json.at("commands").get_to(task.commands);
+  for (const auto& command : task.commands) requireKnownProgram(command);
   json.at("outputs").get_to(task.outputs);
+  for (const auto& output : task.outputs) requireInside(output);
   json.at("key").get_to(task.key);
   return task;
 }
@@ -80,10 +109,10 @@ void writePlan(const std::filesystem::path& file, const BatchPlan& plan) {
 }
 
 BatchPlan readPlan(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Error(file.string() + ": cannot be read; is this the folder of a batch?");
+  if (!std::filesystem::is_regular_file(file))
+    throw Error(file.string() + ": cannot be read; is this the folder of a batch?");
   try {
-    const Json json = Json::parse(stream);
+    const Json json = io::parsedJson<Json>(file);
     if (json.at("format") != s_format)
       throw Error("format is " + json.at("format").dump() + ", this program reads \"" + s_format +
                   "\"");

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <mutex>
 #include <set>
+#include <system_error>
 #include <thread>
 
 #include <polemcl/core/common/Types.h>
@@ -263,9 +264,14 @@ std::map<std::string, std::string> runBatch(const BatchFolder& folder,
                                             std::size_t all, const BatchLimits& limits,
                                             const Queue::Report& report) {
   Queue queue(folder, open, all, limits.imports, report);
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < limits.jobs; ++i) threads.emplace_back([&queue] { queue.work(); });
-  for (auto& thread : threads) thread.join();
+  std::vector<std::thread> others;
+  try {
+    while (others.size() + 1 < limits.jobs) others.emplace_back([&queue] { queue.work(); });
+  } catch (const std::system_error&) {
+    // No memory for another thread: as many tasks at a time as there are threads.
+  }
+  queue.work();
+  for (auto& thread : others) thread.join();
   return queue.failures();
 }
 

@@ -3,7 +3,7 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/Version.h"
 #include "io/file/AtomicFile.h"
-#include "io/file/Bytes.h"
+#include "io/file/ParsedJson.h"
 
 namespace polemcl::apps {
 
@@ -16,7 +16,7 @@ void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& 
 
 nlohmann::ordered_json readJson(const std::filesystem::path& file) {
   try {
-    return parsedFile<nlohmann::ordered_json>(file);
+    return io::parsedJson<nlohmann::ordered_json>(file);
   } catch (const nlohmann::json::exception& error) {
     throw Error(file.string() + ": " + error.what());
   }

@@ -7,9 +7,6 @@
 #include <optional>
 #include <string>
 
-#include <polemcl/core/common/Types.h>
-#include "io/file/Bytes.h"
-
 /// Values that may be missing: `null` then.
 template <class T>
 struct nlohmann::adl_serializer<std::optional<T>> {
@@ -30,17 +27,5 @@ void writeJson(const std::filesystem::path& file, const Json& value);
 
 /// \throws Error naming the file when it cannot be read or holds no JSON.
 Json readJson(const std::filesystem::path& file);
-
-/// \brief The content of a file. \throws Error when it cannot be read or is nested more than 64
-/// deep: such a file would use up the stack. \throws nlohmann::json::exception when it is no JSON.
-template <class Kind>
-Kind parsedFile(const std::filesystem::path& file) {
-  constexpr int deepest = 64;
-  return Kind::parse(io::readBytes(file), [&](int depth, typename Kind::parse_event_t, Kind&) {
-    if (depth > deepest)
-      throw Error(file.string() + ": is nested more than " + std::to_string(deepest) + " deep");
-    return true;
-  });
-}
 
 }  // namespace polemcl::apps

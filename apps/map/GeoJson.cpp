@@ -6,11 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/JsonFile.h"
 #include "io/file/AtomicFile.h"
-#include "io/file/Bytes.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
+#include "io/file/ParsedJson.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl {
@@ -178,7 +177,7 @@ PoleHistory historyOf(const Feature& feature) {
 Json parsed(const std::filesystem::path& file) {
   Json json;
   try {
-    json = apps::parsedFile<Json>(file);
+    json = io::parsedJson<Json>(file);
   } catch (const Json::exception& error) {
     throw Error(file.string() + ": is no JSON: " + error.what());
   }

@@ -8,6 +8,7 @@
 #include "cli/Version.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
+#include "io/file/AtomicFile.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 
@@ -232,8 +233,10 @@ MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
     landmarks.poles.insert(landmarks.poles.end(), kept.begin(), kept.end());
   }
   const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, job, datum));
+  io::AtomicFiles files;
   writeViews(job, map, pathOf(sessions.added()));
   io::writePoleMap(job.output, map, job.keepScans || job.add ? &sessions.added() : nullptr);
+  files.commit();
   return summary;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/JsonFile.h"
 #include "cli/Version.h"
 #include "core/common/Angles.h"
+#include "io/file/AtomicFile.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
 
@@ -157,9 +158,11 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings
   summary.poles = after.poles.size();
   if (after.poles.empty())
     throw Error(job.map.string() + ": no pole is left on the map; see [map_update]");
+  io::AtomicFiles files;
   writeViews(job, after, path);
   if (job.json) writeJson(*job.json, summaryJson(summary, job));
   io::writePoleMap(job.output, after);
+  files.commit();
   return summary;
 }
 

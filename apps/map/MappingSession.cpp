@@ -53,6 +53,16 @@ SequenceOptions readingOf(const Settings& settings) {
   return options;
 }
 
+void requireTimeGoesOn(const SessionFiles& files, const PoleSequence& sequence) {
+  const auto& frames = sequence.frames;
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    if (!(frames[i].time > frames[i - 1].time))
+      throw Error(files.input.string() + ": time does not increase: scan " + std::to_string(i) +
+                  " at " + io::fixed(frames[i].time, 6) + " s comes after one at " +
+                  io::fixed(frames[i - 1].time, 6) +
+                  " s; poses are found by time, so each scan needs its own, later than the last");
+}
+
 }  // namespace
 
 MappingSession loadMappingSession(const SessionFiles& files, const Settings& settings,
@@ -62,6 +72,7 @@ MappingSession loadMappingSession(const SessionFiles& files, const Settings& set
   options.allowTruncated = allowTruncated;
   options.velocity = [&](double time) { return poses.velocityAt(time); };
   const PoleSequence sequence = readPoleSequence(files.input.string(), options, progress);
+  requireTimeGoesOn(files, sequence);
   MappingSession session;
   const SequenceCounts& counts = sequence.counts;
   std::ostringstream sensors;

@@ -2,6 +2,7 @@
 
 #include "batch/BatchPlan.h"
 #include "support/BatchTestFiles.h"
+#include "support/ExpectHas.h"
 
 namespace polemcl::test_batch_plan {
 
@@ -414,6 +415,28 @@ TEST(BatchPlan, SurvivesItsFile) {
   writeText(folder / "plan.json", readText(folder / "plan.json").substr(0, 100));
   EXPECT_NE(messageOf([&] { readPlan(folder / "plan.json"); }).find("is no plan of a batch"),
             std::string::npos);
+}
+
+TEST(BatchPlan, OfSomebodyElseCannotDoHarm) {
+  const TempFolder folder;
+  const auto refusal = [&](auto change) {
+    BatchPlan plan = planOf();
+    change(plan.tasks.front());
+    writePlan(folder / "plan.json", plan);
+    return messageOf([&] { readPlan(folder / "plan.json"); });
+  };
+  EXPECT_EQ(refusal([](BatchTask&) {}), "no error");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.id = "../../x"; }), "is no id of a task");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.id = "poles./../../x"; }), "is no id of a task");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.id = "poles."; }), "is no id of a task");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.commands.front().front() = "../../bin/rm"; }),
+             "'../../bin/rm' is no program that a batch runs");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.commands.front().clear(); }), "is empty");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.outputs.front() = "../x"; }), "lies outside");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.outputs.front() = "/tmp/x"; }), "lies outside");
+  EXPECT_HAS(refusal([](BatchTask& task) { task.outputs.front() = ""; }), "lies outside");
+  writeText(folder / "plan.json", std::string(100000, '[') + std::string(100000, ']'));
+  EXPECT_HAS(messageOf([&] { readPlan(folder / "plan.json"); }), "nested more than 64");
 }
 
 }  // namespace polemcl::test_batch_plan

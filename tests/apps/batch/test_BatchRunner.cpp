@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <set>
@@ -237,15 +239,32 @@ TEST_F(BatchRunner, AsManyImportsAsAllowed) {
   EXPECT_TRUE(m_failures.empty()) << m_failures.begin()->second;
 }
 
+/// Ends a test's child process with exit code 0 when a batch of 64 jobs is done in little memory.
+TEST_F(BatchRunner, DoesWithFewerThreadsWhereMemoryIsShort) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need address space";
+#endif
+  addProgram("one", "echo 1 > out");
+  add("a", {{"one"}});
+  const auto inLittleMemory = [this] {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t most = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{64} << 20);
+    const rlimit limit = {most, most};
+    ::setrlimit(RLIMIT_AS, &limit);
+    run(64);
+    ::_exit(m_failures.empty() ? 0 : 1);
+  };
+  EXPECT_EXIT(inLittleMemory(), ::testing::ExitedWithCode(0), "");
+}
+
 TEST(BatchFolder, IsForOneBatchAlone) {
   const TempFolder folder;
   const fs::path path = folder / "batch";
   writeText(folder / "batch.ini", "[batch]\n");
   BatchPlan plan;
   plan.name = "one";
-  BatchTask task;
-  task.id = "a";
-  plan.tasks = {task};
+  plan.tasks = {BatchTask({TaskKind::poles, {"a"}})};
   {
     BatchFolder first(path);
     first.take("one", false);

@@ -5,6 +5,7 @@
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapBuildApp.h"
+#include "support/IoFiles.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_app {
@@ -188,6 +189,26 @@ TEST_F(MapApp, WarnsOfTheTruthOfAnotherDrive) {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   const auto info = io::readPoleMap(folder / "street.polemap").info;
   EXPECT_EQ(info.at("warnings").rfind("in.rawlog: the poles contradict", 0), 0u);
+}
+
+TEST_F(MapApp, RefusesTimesThatGoBack) {
+  drive("in", 12);
+  const std::string drive = readText(folder / "in.rawlog");
+  writeText(folder / "in.rawlog", drive + drive);
+  const auto outcome = run({"in"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_HAS(outcome.err, "in.rawlog: time does not increase: scan 12 at 50.000000 s comes after");
+  EXPECT_FALSE(hasMap());
+}
+
+TEST_F(MapApp, SideFilesDoNotComeWithoutTheMap) {
+  drive("in", 12);
+  const io::test::FileSizeLimit limit(4096);  // stands in for a full disk
+  const auto outcome = run({"in"}, {"--csv", at("side.csv"), "--keep-scans"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_HAS(outcome.err, "street.polemap: a write failed");
+  EXPECT_FALSE(hasMap());
+  EXPECT_FALSE(fs::exists(folder / "side.csv"));
 }
 
 TEST_F(MapApp, NotesTwinPoles) {

@@ -1,4 +1,7 @@
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "io/file/AtomicFile.h"
 #include "support/IoFiles.h"
@@ -61,8 +64,28 @@ TEST_F(AtomicFileTest, TwoWritersOfOneNameDoNotMix) {
   EXPECT_EQ(entries(m_folder), 1u);
 }
 
-TEST_F(AtomicFileTest, PassesOverALeftoverTemporary) {
-  // The next name is the last name with its number plus one.
+TEST_F(AtomicFileTest, RemovesWhatAKilledProcessLeft) {
+  // A process that ends without running destructors, as after SIGKILL.
+  const auto killed = [&] {
+    AtomicFile file(path("out"));
+    file.stream() << "half" << std::flush;
+    ::_exit(9);
+  };
+  EXPECT_EXIT(killed(), testing::ExitedWithCode(9), "");
+  ASSERT_EQ(entries(m_folder), 1u);
+  write("out.12-3.tmp.kept", "no temporary of ours");
+  write("out.note-3.tmp", "nor this");
+  AtomicFile other(path("other"));  // in the same folder: not its business
+  EXPECT_EQ(entries(m_folder), 4u);
+  AtomicFile underWay(path("out"));
+  EXPECT_EQ(entries(m_folder), 4u) << "the leftover is gone, the new one is there";
+  AtomicFile second(path("out"));
+  EXPECT_TRUE(fs::exists(underWay.temporaryPath()));
+}
+
+TEST_F(AtomicFileTest, PassesOverATemporaryOfAnother) {
+  // As on a file system of two machines: the next name, that of the last with its number plus one,
+  // is there, and its owner is alive.
   fs::path next;
   {
     AtomicFile probe(path("out"));
@@ -72,9 +95,35 @@ TEST_F(AtomicFileTest, PassesOverALeftoverTemporary) {
     next = name.substr(0, dash + 1) + std::to_string(number + 1) + ".tmp";
   }
   std::ofstream(next) << "of another";
+  const int owner = ::open(next.c_str(), O_RDONLY);
+  ASSERT_EQ(::flock(owner, LOCK_EX), 0);
   AtomicFile file(path("out"));
   EXPECT_NE(file.temporaryPath(), next);
   EXPECT_EQ(read(next), "of another");
+  ::close(owner);
+}
+
+TEST_F(AtomicFileTest, FilesAppearTogether) {
+  write("b", "before");
+  {
+    const io::AtomicFiles files;
+    io::writeFile(path("a"), "1");
+    io::writeFile(path("b"), "2");
+    EXPECT_FALSE(fs::exists(path("a")));
+  }
+  EXPECT_EQ(entries(m_folder), 1u);
+  EXPECT_EQ(read(path("b")), "before");
+  {
+    io::AtomicFiles files;
+    io::writeFile(path("a"), "1");
+    io::writeFile(path("b"), "2");
+    files.commit();
+    EXPECT_EQ(read(path("a")) + read(path("b")), "12");
+    EXPECT_NE(messageOf([] { io::AtomicFiles(); }), "no error");
+  }
+  EXPECT_EQ(entries(m_folder), 2u);
+  io::writeFile(path("c"), "3");
+  EXPECT_EQ(read(path("c")), "3");
 }
 
 TEST_F(AtomicFileTest, KeepsALinkAndReplacesWhatItNames) {

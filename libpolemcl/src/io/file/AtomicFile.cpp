@@ -1,11 +1,14 @@
 #include "io/file/AtomicFile.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <polemcl/core/common/Types.h>
 
@@ -37,54 +40,106 @@ fs::path checkedTarget(const fs::path& path) {
   return named;
 }
 
-/// Creates a new file beside the target.
-fs::path createTemporary(const fs::path& target) {
-  static std::atomic<unsigned> counter{0};
-  while (true) {
-    fs::path temporary = target;
-    temporary += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
-    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0) {
-      ::close(descriptor);
-      return temporary;
-    }
-    // Leftover of an earlier process with our process id: try the next name.
-    if (errno != EEXIST) throw cannotWrite(target, std::strerror(errno));
+/// True for `TARGET.PID-NUMBER.tmp`.
+bool isTemporaryOf(const std::string& target, const std::string& name) {
+  const std::string begin = target + ".", end = ".tmp";
+  if (name.size() <= begin.size() + end.size() || name.compare(0, begin.size(), begin) != 0 ||
+      name.compare(name.size() - end.size(), end.size(), end) != 0)
+    return false;
+  const auto middle = name.substr(begin.size(), name.size() - begin.size() - end.size());
+  return middle.find_first_not_of("0123456789-") == std::string::npos;
+}
+
+/// Removes temporary files of a target that nobody has locked: a killed process left them.
+void removeLeftovers(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (!isTemporaryOf(target.filename().string(), entry.path().filename().string())) continue;
+    const int descriptor = ::open(entry.path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(descriptor);
   }
 }
+
+/// Locks a new file. \return False when another process has removed it before.
+bool lock(int descriptor) {
+  struct stat status {};
+  ::flock(descriptor, LOCK_EX);  // where files cannot be locked, none are taken for leftovers
+  return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+}
+
+thread_local AtomicFiles* t_together = nullptr;
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& path)
-    : m_target(checkedTarget(path)), m_temporary(createTemporary(m_target)) {
-  m_stream.open(m_temporary, std::ios::binary | std::ios::out | std::ios::trunc);
-  if (!m_stream) {
-    const int reason = errno;
-    std::error_code ignored;
-    fs::remove(m_temporary, ignored);
-    throw cannotWrite(m_target, std::strerror(reason));
+TemporaryFile::TemporaryFile(fs::path target) : m_target(std::move(target)) {
+  static std::atomic<unsigned> counter{0};
+  removeLeftovers(m_target);
+  while (true) {
+    m_path = m_target;
+    m_path += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
+    m_lock = ::open(m_path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (m_lock >= 0 && lock(m_lock)) return;
+    if (m_lock >= 0)
+      ::close(m_lock);
+    else if (errno != EEXIST)  // a process on another machine may have our process id
+      throw cannotWrite(m_target, std::strerror(errno));
   }
 }
 
-AtomicFile::~AtomicFile() {
-  if (!m_open) return;
-  m_stream.close();
+TemporaryFile::TemporaryFile(TemporaryFile&& other) noexcept
+    : m_target(std::move(other.m_target)),
+      m_path(std::exchange(other.m_path, {})),
+      m_lock(std::exchange(other.m_lock, -1)) {}
+
+TemporaryFile::~TemporaryFile() {
   std::error_code ignored;
-  fs::remove(m_temporary, ignored);
+  if (!m_path.empty()) fs::remove(m_path, ignored);
+  if (m_lock >= 0) ::close(m_lock);
+}
+
+void TemporaryFile::rename() {
+  std::error_code error;
+  fs::rename(m_path, m_target, error);
+  if (error) throw cannotWrite(m_target, error.message());
+  m_path.clear();
+}
+
+AtomicFile::AtomicFile(const fs::path& path) : m_temporary(checkedTarget(path)) {
+  m_stream.open(m_temporary.path(), std::ios::binary | std::ios::out | std::ios::trunc);
+  if (!m_stream) throw cannotWrite(m_temporary.target(), std::strerror(errno));
 }
 
 void AtomicFile::commit() {
-  if (!m_open) throw cannotWrite(m_target, "commit() was called before");
+  const fs::path& target = m_temporary.target();
+  if (m_committed) throw cannotWrite(target, "commit() was called before");
   errno = 0;
   m_stream.close();  // flushes the buffer; failures of earlier writes are still set
   if (m_stream.fail()) {
     const std::string why = errno != 0 ? std::strerror(errno) : "a write failed";
-    throw cannotWrite(m_target, why + " (the disk may be full); nothing was changed");
+    throw cannotWrite(target, why + " (the disk may be full); nothing was changed");
   }
-  std::error_code error;
-  fs::rename(m_temporary, m_target, error);
-  if (error) throw cannotWrite(m_target, error.message());
-  m_open = false;
+  m_committed = true;
+  if (t_together)
+    t_together->m_complete.push_back(std::move(m_temporary));
+  else
+    m_temporary.rename();
+}
+
+AtomicFiles::AtomicFiles() {
+  if (t_together) throw Error("files that appear together: one such group at a time");
+  t_together = this;
+}
+
+AtomicFiles::~AtomicFiles() {
+  t_together = nullptr;
+}
+
+void AtomicFiles::commit() {
+  for (TemporaryFile& file : m_complete) file.rename();
+  m_complete.clear();
 }
 
 void writeFile(const fs::path& file, std::string_view content) {

@@ -6,8 +6,30 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <vector>
 
 namespace polemcl::io {
+
+/// \brief A file beside its target that nobody else writes, named `TARGET.….tmp`; removed unless it
+/// is renamed. It is locked, so that what a killed process has left can be told from it: that is
+/// removed when another one for the same target is made.
+class TemporaryFile {
+ public:
+  /// \throws Error when the folder is missing or not writable.
+  explicit TemporaryFile(std::filesystem::path target);
+  ~TemporaryFile();
+  TemporaryFile(TemporaryFile&& other) noexcept;
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+
+  const std::filesystem::path& target() const { return m_target; }
+  const std::filesystem::path& path() const { return m_path; }
+  /// \brief Gives it the name of its target. \throws Error when that fails.
+  void rename();
+
+ private:
+  std::filesystem::path m_target, m_path;  ///< no path: renamed, or moved from
+  int m_lock = -1;                         ///< descriptor that holds the lock
+};
 
 /// \brief A file that appears under its name only once it is complete.
 ///
@@ -23,23 +45,39 @@ class AtomicFile {
   /// \throws Error when the folder is missing or not writable, or when `path` exists but is not a
   ///         regular file (a folder, a device).
   explicit AtomicFile(const std::filesystem::path& path);
-  ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// \brief The stream to write to; binary.
   std::ofstream& stream() { return m_stream; }
   /// \brief Path for writers that open files themselves. They must close the file before commit().
-  const std::filesystem::path& temporaryPath() const { return m_temporary; }
-  /// \brief Completes the file and renames it to the target, replacing an existing file.
+  const std::filesystem::path& temporaryPath() const { return m_temporary.path(); }
+  /// \brief Completes the file and renames it to the target, replacing an existing file; see
+  /// AtomicFiles.
   /// \throws Error when a write failed (full disk); the target is then unchanged. Also when called
   ///         twice.
   void commit();
 
  private:
-  std::filesystem::path m_target, m_temporary;
+  TemporaryFile m_temporary;
   std::ofstream m_stream;
-  bool m_open = true;  ///< the temporary file exists and belongs to this object
+  bool m_committed = false;
+};
+
+/// \brief Files that appear together: while it exists, files that this thread commits keep their
+/// temporary names. commit() gives them their own; otherwise none of them appears.
+class AtomicFiles {
+ public:
+  AtomicFiles();
+  ~AtomicFiles();
+  AtomicFiles(const AtomicFiles&) = delete;
+  AtomicFiles& operator=(const AtomicFiles&) = delete;
+  /// \brief Call it once. \throws Error when a file cannot be renamed.
+  void commit();
+
+ private:
+  friend class AtomicFile;
+  std::vector<TemporaryFile> m_complete;
 };
 
 /// \brief Writes a whole file. \throws Error when it cannot be written.

@@ -1,10 +1,10 @@
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "io/file/AtomicFile.h"
 #include "io/file/ErrorPlace.h"
+#include "io/file/ParsedJson.h"
 #include "io/file/TextFile.h"
 #include "sim/detections/DetectionModel.h"
 
@@ -235,11 +235,14 @@ void print(std::ostream& out, const Json& value, const std::string& indent) {
 }  // namespace
 
 DetectionModel readDetectionModel(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Error(file.string() + ": cannot be read");
-  const Json json = Json::parse(stream, nullptr, false);
-  if (json.is_discarded()) throw Error(file.string() + ": is not JSON");
-  DetectionModel model = fromJson(json, file.string() + ": ");
+  const auto parsed = [&] {
+    try {
+      return io::parsedJson<Json>(file);
+    } catch (const Json::exception&) {
+      throw Error(file.string() + ": is not JSON");
+    }
+  };
+  DetectionModel model = fromJson(parsed(), file.string() + ": ");
   io::located(file.string() + ": ", [&] { model.validate(); });
   return model;
 }

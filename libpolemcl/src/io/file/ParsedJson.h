@@ -1,0 +1,26 @@
+#pragma once
+/// \file ParsedJson.h
+/// \brief Reads JSON files that may be damaged or foreign.
+
+#include <filesystem>
+#include <string>
+
+#include <polemcl/core/common/Types.h>
+#include "io/file/Bytes.h"
+
+namespace polemcl::io {
+
+/// \brief The content of a file. \tparam Kind A kind of nlohmann::basic_json.
+/// \throws Error when it cannot be read or is nested more than 64 deep: such a file would use up
+/// the stack. \throws nlohmann::json::exception when it is no JSON.
+template <class Kind>
+Kind parsedJson(const std::filesystem::path& file) {
+  constexpr int deepest = 64;
+  return Kind::parse(readBytes(file), [&](int depth, typename Kind::parse_event_t, Kind&) {
+    if (depth > deepest)
+      throw Error(file.string() + ": is nested more than " + std::to_string(deepest) + " deep");
+    return true;
+  });
+}
+
+}  // namespace polemcl::io
