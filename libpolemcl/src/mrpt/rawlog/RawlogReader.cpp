@@ -2,8 +2,12 @@
 
 #include <mrpt/obs/CObservationComment.h>
 
+#include <limits>
+
 #include <polemcl/mrpt/common/RegisterClasses.h>
+#include "io/file/ReadLimits.h"
 #include "mrpt/common/MrptReason.h"
+#include "mrpt/rawlog/AllocationLimit.h"
 #include "mrpt/rawlog/RawlogArchive.h"
 
 namespace polemcl {
@@ -47,6 +51,12 @@ void RawlogReader::explain(std::uint64_t offset, const std::string& what) {
               " is damaged: " + mrptReason(what));
 }
 
+/// A part of an object that is larger than this is one that the file does not hold.
+std::size_t RawlogReader::mostAtATime() const {
+  return m_growing ? std::numeric_limits<std::size_t>::max()
+                   : io::mostInflated(m_stream.getTotalBytesCount());
+}
+
 /// Reads one object of the file; nullopt at its end.
 std::optional<RawlogReader::Object> RawlogReader::readObject() {
   if (m_ended) return std::nullopt;
@@ -59,6 +69,7 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
     }
     return std::nullopt;
   }
+  const AllocationLimit limit(mostAtATime());
   std::string what;
   try {
     Object object{RawlogArchive(m_stream).readEntry(), offset};
@@ -69,7 +80,8 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
     if (what.rfind(m_name + ": ", 0) == 0) throw;  // about the file itself, not its content
   }
   // An unknown class may also be the first to reach the end of the data.
-  if (!m_stream.cutShort() || !unregisteredClass(what).empty()) explain(offset, what);
+  const bool endsBefore = m_stream.cutShort() || limit.reached();
+  if (!endsBefore || !unregisteredClass(what).empty()) explain(offset, what);
   endsHere(offset);
   return std::nullopt;
 }
@@ -82,7 +94,10 @@ std::optional<RawlogReader::Object> RawlogReader::nextObject() {
 }
 
 RawlogReader::RawlogReader(const std::string& path, bool allowTruncated, double follow)
-    : m_name(path), m_stream(path, follow), m_allowTruncated(allowTruncated) {
+    : m_name(path),
+      m_stream(path, follow),
+      m_allowTruncated(allowTruncated),
+      m_growing(follow > 0) {
   registerClasses();
 }
 

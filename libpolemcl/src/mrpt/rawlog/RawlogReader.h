@@ -38,6 +38,7 @@ class RawlogReader : public EntrySource {
     mrpt::serialization::CSerializable::Ptr object;
     std::uint64_t offset = 0;
   };
+  std::size_t mostAtATime() const;
   std::optional<Object> readObject();
   std::optional<Object> nextObject();
   void endsHere(std::uint64_t offset);
@@ -45,7 +46,7 @@ class RawlogReader : public EntrySource {
 
   std::string m_name;
   GzReadStream m_stream;
-  bool m_allowTruncated, m_truncated = false, m_ended = false;
+  bool m_allowTruncated, m_growing, m_truncated = false, m_ended = false;
   std::optional<Object> m_pending;  ///< object after an action, read ahead
   std::string m_comment;
   std::uint64_t m_objects = 0;  ///< number of objects read so far

@@ -1,0 +1,54 @@
+/// \file LimitedNew.cpp
+/// \brief Replaces `new` and `aligned_alloc` in the programs, so that AllocationLimit can bound
+/// them. Not with sanitizers, which bring their own.
+
+#include <cstdlib>
+#include <new>
+
+#include "mrpt/rawlog/AllocationLimit.h"
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+PolemclAllocationLimit* polemclAllocationLimit() {
+  static thread_local PolemclAllocationLimit limit;
+  return &limit;
+}
+
+namespace {
+
+void requireAllowed(std::size_t size) {
+  PolemclAllocationLimit& limit = *polemclAllocationLimit();
+  if (size <= limit.most) return;
+  limit.reached = true;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+// The other forms of new and delete call these.
+void* operator new(std::size_t size) {
+  requireAllowed(size);
+  if (void* const memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+// MRPT's point maps, scans and images take their memory here, and write to it even when there is
+// none. Its own name, as the one of the C library must not throw.
+extern "C" [[gnu::visibility("default")]] void* polemclAlignedAlloc(
+    std::size_t alignment, std::size_t size) __asm__("aligned_alloc");
+void* polemclAlignedAlloc(std::size_t alignment, std::size_t size) {
+  requireAllowed(size);
+  void* memory = nullptr;
+  if (::posix_memalign(&memory, alignment, size) != 0) throw std::bad_alloc();
+  return memory;
+}
+
+#endif

@@ -1,0 +1,17 @@
+#include "mrpt/rawlog/AllocationLimit.h"
+
+namespace polemcl {
+
+AllocationLimit::AllocationLimit(std::size_t most) {
+  if (polemclAllocationLimit) *polemclAllocationLimit() = {most, false};
+}
+
+AllocationLimit::~AllocationLimit() {
+  if (polemclAllocationLimit) *polemclAllocationLimit() = {};
+}
+
+bool AllocationLimit::reached() const {
+  return polemclAllocationLimit && polemclAllocationLimit()->reached;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,74 @@
+/// \file test_AllocationLimit.cpp
+/// \brief Programs take no memory for what a rawlog only claims to hold.
+
+#include <gtest/gtest.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationOdometry.h>
+
+#include "support/ExpectHas.h"
+#include "support/Samples.h"
+#include "support/Shell.h"
+
+namespace polemcl::test_allocation_limit {
+
+using namespace testing_apps;
+
+namespace {
+
+const fs::path bin = POLEMCL_BIN_DIR;
+
+std::string number(std::uint32_t value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+/// A rawlog in which one number is another takes neither the memory that it claims nor 4 GB.
+void expectRefused(const mrpt::obs::CObservation& observation, const std::string& there,
+                   const std::string& instead) {
+  const TempFolder folder;
+  std::string bytes = samples::bytesOf(observation);
+  const auto at = bytes.find(there);
+  EXPECT_NE(at, std::string::npos);
+  bytes.replace(at, there.size(), instead);
+  writeText(folder / "forged.rawlog", bytes);
+  const Outcome outcome = shell("ulimit -v 4000000; '" + (bin / "pole-extract").string() +
+                                "' --inspect '" + (folder / "forged.rawlog").string() + "'");
+  EXPECT_EQ(outcome.code, 1) << outcome.out;
+  EXPECT_HAS(outcome.out, "forged.rawlog: truncated: the file ends inside an object");
+}
+
+}  // namespace
+
+// Without the limit, MRPT asks for the memory: the program has it, or ends with std::bad_alloc or
+// SIGSEGV.
+class AllocationLimit : public testing::Test {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers have a new of their own";
+#endif
+  }
+};
+
+TEST_F(AllocationLimit, FalseLengthsOfLabels) {
+  mrpt::obs::CObservationOdometry odometry;
+  odometry.sensorLabel = "wheels";
+  for (const std::uint32_t claim : {0x03000000u, 0x0fffffffu, 0xfffffff0u})
+    expectRefused(odometry, number(6) + "wheels", number(claim) + "wheels");
+}
+
+TEST_F(AllocationLimit, FalseSizesOfDepthImages) {
+  mrpt::obs::CObservation3DRangeScan scan;
+  scan.hasRangeImage = true;
+  scan.rangeImage_setSize(37, 41);
+  for (const std::uint32_t claim : {10000u, 60000u})
+    expectRefused(scan, number(37) + number(41), number(claim) + number(claim));
+}
+
+TEST_F(AllocationLimit, FalseNumbersOfBeams) {
+  mrpt::obs::CObservation2DRangeScan scan;
+  scan.resizeScanAndAssign(41, 3.F, true);
+  expectRefused(scan, number(41), number(0x7fffffff));
+}
+
+}  // namespace polemcl::test_allocation_limit
