@@ -56,7 +56,10 @@ head -n "$(wc -l <"$folder/few")" "$folder/described" | cmp -s - "$folder/few" |
 edit --keep-label lidar -i few.rawlog -o kept.rawlog >/dev/null
 poles_of kept.rawlog | cmp -s - "$folder/few" || fail "rawlog-edit --keep-label changes poles"
 edit --remove-label lidar -i few.rawlog -o none.rawlog >/dev/null
-[ -z "$(poles_of none.rawlog)" ] || fail "rawlog-edit --remove-label leaves poles"
+# From MRPT 2.12 on it removes nothing from sensory frames (share/doc/mrpt.md).
+if rawlog-edit --version | grep -q 'MRPT 2\.[0-9]\.'; then
+  [ -z "$(poles_of none.rawlog)" ] || fail "rawlog-edit --remove-label leaves poles"
+fi
 
 open_display
 
