@@ -42,7 +42,7 @@ open_display() {
   mkfifo "$folder/display"
   Xvfb -displayfd 3 -screen 0 1280x860x24 +extension GLX -nolisten tcp 3>"$folder/display" \
     2>"$folder/xvfb.log" &
-  running=$!
+  running="$running $!"
   read -r display <"$folder/display" || fail "no display: $(tail -n 1 "$folder/xvfb.log")"
   DISPLAY=:$display
   export DISPLAY

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs MRPT's programs, untouched, on a rawlog of poles, with the library as a plugin: rawlog-edit describes, cuts
-# and filters it; RawLogViewer lists the poles, draws them and shows their text; icp-slam and observations2map make
-# a pole map of it, which SceneViewer3D shows.
+# and filters it; rawlog-grabber records odometry; RawLogViewer lists the poles, draws them and shows their text;
+# icp-slam and observations2map make a pole map of it, which SceneViewer3D shows.
 # Usage: tests/viewers/mrpt-tools.sh [PICTURES]; skips, and says why, where a program is missing.
 # Programs: build/bin, or POLEMCL_BIN. PICTURES: a folder that gets the screenshots.
 set -eu
@@ -12,7 +12,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 . "$top/tests/viewers/display.sh"
 find_programs pole-simulate
 skip_without "xvfb, openbox, mrpt-apps, imagemagick, xdotool, xclip" Xvfb openbox import convert xdotool \
-  xclip rawlog-edit RawLogViewer icp-slam observations2map SceneViewer3D
+  xclip rawlog-edit rawlog-grabber RawLogViewer icp-slam observations2map SceneViewer3D
 library=$(cd "$bin/../lib" && pwd)/libpolemcl.so
 [ -f "$library" ] || die "no $library: build first"
 open_folder "$@"
@@ -60,6 +60,42 @@ edit --remove-label lidar -i few.rawlog -o none.rawlog >/dev/null
 if rawlog-edit --version | grep -q 'MRPT 2\.[0-9]\.'; then
   [ -z "$(poles_of none.rawlog)" ] || fail "rawlog-edit --remove-label leaves poles"
 fi
+
+# rawlog-grabber records odometry that comes from the network, until it gets a key. It says nothing when
+# it is ready: packets go on until it has saved some.
+sensors=$(find "$bin/.." -name libpolemcl-sensors.so | head -n 1)
+cat >"$folder/grab.ini" <<END
+[global]
+rawlog_prefix = $folder/grabbed
+time_between_launches = 300
+SF_max_time_span = 0.25
+use_sensoryframes = 0
+GRABBER_PERIOD_MS = 100
+[odometry]
+driver = CUdpOdometry
+sensorLabel = wheels
+process_rate = 100
+udp_port = 9871
+END
+python3 - <<'END' &
+import socket, time
+sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+for i in range(1200):
+    sender.sendto(b"%d 2 0.5 %.3f" % (i, time.time() - 1), ("127.0.0.1", 9871))
+    time.sleep(0.05)
+END
+running=$!
+mkfifo "$folder/keys"
+rawlog-grabber -p "$sensors" "$folder/grab.ini" <"$folder/keys" >"$folder/grab.log" 2>&1 &
+grabber=$!
+running="$running $grabber"
+exec 4>"$folder/keys"
+wait_for 60 says "Saved 2 objects" "$folder/grab.log" || fail "rawlog-grabber: $(tail -n 3 "$folder/grab.log")"
+echo >&4
+wait "$grabber" || fail "rawlog-grabber: $(tail -n 3 "$folder/grab.log")"
+exec 4>&-
+(cd "$folder" && rawlog-edit --info -i grabbed*.rawlog >info)
+says "wheels" "$folder/info" || fail "rawlog-grabber records no odometry of CUdpOdometry"
 
 open_display
 
@@ -129,8 +165,11 @@ tool observations2map "$top/config/mrpt/observations2map.ini" drive.simplemap ma
 made=$(grep -c -v '^#' "$folder/map_polemcl__CPoleMap_00.csv")
 [ "$made" -gt 20 ] || fail "observations2map makes a map of $made poles"
 
-# map_is_shown: takes a picture of the screen, and says whether there are poles in it.
+# map_is_shown: steps back with the wheel of the mouse, as the map is in metres; takes a picture of the screen,
+# and says whether there are poles in it.
 map_is_shown() {
+  xdotool mousemove 640 450 click --repeat 2 5 2>/dev/null || return 1
+  sleep 1
   import -window root "$pictures/observations2map.png" 2>/dev/null || return 1
   fuzz=9%
   gravity=center

@@ -128,13 +128,33 @@ TEST_F(LiveSensorsTest, OdometryComesFromTheNetwork) {
   EXPECT_EQ(ended(), 0u);
 }
 
+TEST_F(LiveSensorsTest, OdometryMayCarryItsTime) {
+  const int port = freeUdpPort();
+  const auto sensors =
+      start("[odo]\ndriver = CUdpOdometry\nudp_port = " + std::to_string(port) + "\n");
+  const UdpSender sender(port);
+  ASSERT_TRUE(sender.waitForListener());
+  const double now = mrpt::Clock::nowDouble();
+  std::ostringstream late, wrong;
+  late << std::fixed << "1 2 0.5 " << now - 0.75;
+  wrong << std::fixed << "7 7 7 " << now - 3600;
+  sender.send(wrong.str());
+  sender.send(late.str());
+  ASSERT_TRUE(waitFor([&] { return observed() >= 1; }));
+  const std::lock_guard lock(mutex);
+  EXPECT_NEAR(mrpt::Clock::toDouble(observations[0]->timestamp), now - 0.75, 1e-6);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_HAS(warnings[0], "a packet holds '7 7 7 ");
+}
+
 TEST_F(LiveSensorsTest, OdometryThatIsNotThreeNumbersIsIgnoredWithOneWarning) {
   const int port = freeUdpPort();
   const auto sensors =
       start("[odo]\ndriver = CUdpOdometry\nudp_port = " + std::to_string(port) + "\n");
   const UdpSender sender(port);
   ASSERT_TRUE(sender.waitForListener());
-  for (const std::string packet : {"nan 1,2 hello", "", "1 2", "1 2 3 4", "1 2 nan", "1e999 2 3"})
+  for (const std::string packet :
+       {"nan 1,2 hello", "", "1 2", "1 2 3 4", "1 2 3 4 5", "1 2 nan", "1e999 2 3"})
     sender.send(packet);
   sender.send("4 5 0.5");
   ASSERT_TRUE(waitFor([&] { return observed() + ended() >= 1; }));

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <sstream>
+#include <vector>
 
 #include <polemcl/core/common/Types.h>
 
@@ -21,15 +22,27 @@ namespace {
 constexpr int longestWait = 10;  // ms
 constexpr std::size_t longestPacket = 200, longestShown = 60;
 
-/// None unless the text is three finite numbers.
-std::optional<mrpt::poses::CPose2D> parse(const std::string& text) {
+constexpr double farthestTime = 10;  // s
+
+/// None for packets that are ignored. \param now The clock here, Unix time, s: for those without
+/// time.
+mrpt::obs::CObservationOdometry::Ptr parse(const std::string& text, double now) {
   std::istringstream in(text);
-  double x = 0, y = 0, yaw = 0;
-  std::string rest;
-  const bool good = (in >> x >> y >> yaw) && !(in >> rest);
-  if (!good || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(yaw)) return std::nullopt;
-  return mrpt::poses::CPose2D(x, y, yaw);
+  std::vector<double> numbers;
+  for (double number = 0; in >> number;) numbers.push_back(number);
+  if (!in.eof() || numbers.size() < 3 || numbers.size() > 4) return nullptr;
+  numbers.push_back(now);
+  for (const double number : numbers)
+    if (!std::isfinite(number)) return nullptr;
+  if (std::abs(numbers[3] - now) > farthestTime) return nullptr;
+  auto odometry = mrpt::obs::CObservationOdometry::Create();
+  odometry->odometry = mrpt::poses::CPose2D(numbers[0], numbers[1], numbers[2]);
+  odometry->timestamp = mrpt::Clock::fromDouble(numbers[3]);
+  return odometry;
 }
+
+// Known as soon as the module is loaded.
+[[maybe_unused]] const bool s_registered = (CUdpOdometry::doRegister(), true);
 
 }  // namespace
 
@@ -65,15 +78,12 @@ void CUdpOdometry::doProcess() {
   const auto size = recv(m_socket, packet, sizeof packet, MSG_DONTWAIT);
   if (size < 0) return;
   const std::string text(packet, static_cast<std::size_t>(size));
-  const auto pose = parse(text);
-  if (!pose) {
+  const auto odometry = parse(text, mrpt::Clock::nowDouble());
+  if (!odometry) {
     if (!m_ignored) m_ignored = text.substr(0, longestShown);
     return;
   }
-  const auto odometry = mrpt::obs::CObservationOdometry::Create();
-  odometry->timestamp = mrpt::Clock::now();
   odometry->sensorLabel = m_sensorLabel;
-  odometry->odometry = *pose;
   appendObservation(odometry);
 }
 

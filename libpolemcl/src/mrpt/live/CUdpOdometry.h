@@ -12,9 +12,12 @@ namespace polemcl {
 /// \brief Gives a CObservationOdometry for each UDP packet.
 ///
 /// A packet is text: `x y yaw`, the pose of the robot in the frame of the odometry, m, m, rad,
-/// counterclockwise. Packets that are not three finite numbers are ignored. Its time is that of its
-/// arrival, as that of a LiDAR without GPS. Keys: `udp_port` (1 to 65535) and `address`, the IPv4
-/// address to listen at (default: 127.0.0.1, this computer only; 0.0.0.0: from anywhere).
+/// counterclockwise; then, if it is known, the time of that pose, Unix time, s. Without it, the
+/// time is that of the arrival, as for a LiDAR without GPS. Packets that are not three or four
+/// finite numbers are ignored, as are those whose time is more than 10 s from the clock here. In
+/// MRPT's `rawlog-grabber` the class is known once the module libpolemcl-sensors.so is loaded as a
+/// plugin. Keys: `udp_port` (1 to 65535) and `address`, the IPv4 address to listen at (default:
+/// 127.0.0.1, this computer only; 0.0.0.0: from anywhere).
 class CUdpOdometry : public mrpt::hwdrivers::CGenericSensor {
   DEFINE_GENERIC_SENSOR(CUdpOdometry)
  public:

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include "mrpt/live/CUdpOdometry.h"
 #include "mrpt/live/LiveSensors.h"
 #include "mrpt/live/SensorThread.h"
 
@@ -43,6 +42,5 @@ class SensorThreads : public LiveSensors {
 
 extern "C" __attribute__((visibility("default"))) polemcl::LiveSensors* polemclStartSensors(
     const std::string& file, polemcl::SensorEvents events) {
-  polemcl::CUdpOdometry::doRegister();
   return new polemcl::SensorThreads(file, std::move(events));
 }

@@ -143,8 +143,8 @@ void SensorThread::warnOfOdometry(const SensorEvents& events) {
   if (m_warned || !m_odometry->ignored()) return;
   m_warned = true;
   events.warned(m_place + m_driver + ": a packet holds '" + *m_odometry->ignored() +
-                "': it is ignored, and so are others that are not three numbers, x y yaw, in m and "
-                "rad");
+                "': it is ignored, and so are others that are not x y yaw (m, m, rad), with or "
+                "without a Unix time within 10 s of the clock here");
 }
 
 /// The first turn is cut: it begins somewhere. MRPT's doProcess() would report the end of a PCAP
