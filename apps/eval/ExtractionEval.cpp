@@ -138,7 +138,7 @@ RepeatabilityScore evalRepeatability(const EvalRepeatabilityOptions& options) {
   streamStoredPoles(options.poles, [&](const PoleScan& scan) {
     const Pose2D pose = truePose(truth, options.truth, scan.time, scan.index, options.poles);
     scans_map.emplace_back();
-    for (const PoleDetection& pole : scan.observation->polesInRobotFrame())
+    for (const PoleDetection& pole : trulyDeskewed(scan, truth))
       scans_map.back().push_back(inMap(pose, pole));
   });
   const RepeatabilityScore score =

@@ -40,7 +40,7 @@ std::vector<MotionComparison> evalMotion(const EvalMotionOptions& options) {
     if (!scan.motion) odometry.reset();
     if (scan.index % options.every != 0) return;
     const Pose2D pose = truePose(truth, options.truth, scan.time, scan.index, options.poles);
-    const auto poles = scan.observation->polesInRobotFrame();
+    const auto poles = trulyDeskewed(scan, truth);
     if (scan.index > 0) {
       const Pose2D motion = relative(poseBefore, pose);
       result.push_back(

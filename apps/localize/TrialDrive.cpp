@@ -62,6 +62,14 @@ Pose2D truePose(const std::vector<StampedPose2D>& truth, const std::filesystem::
   return *pose;
 }
 
+std::vector<PoleDetection> trulyDeskewed(const PoleScan& scan,
+                                         const std::vector<StampedPose2D>& truth) {
+  constexpr double half = 0.05;  // s: half a turn of most LiDARs
+  auto poles_robot = scan.observation->polesInRobotFrame();
+  deskew(poles_robot, velocityAt(truth, scan.time, half, longestTruthGap));
+  return poles_robot;
+}
+
 void streamStoredPoles(const std::filesystem::path& rawlog,
                        const std::function<void(const PoleScan&)>& consume) {
   streamPoles(rawlog.string(), {}, [&](const PoleScan& scan) {

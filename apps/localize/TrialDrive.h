@@ -47,6 +47,11 @@ double rankedValue(const std::vector<double>& values, double share);
 Pose2D truePose(const std::vector<StampedPose2D>& truth, const std::filesystem::path& truthFile,
                 double time, std::size_t scan, const std::filesystem::path& rawlog);
 
+/// \brief The poles of a scan in the robot frame, where they are seen from at its time: corrected
+/// for the true motion during the scan.
+std::vector<PoleDetection> trulyDeskewed(const PoleScan& scan,
+                                         const std::vector<StampedPose2D>& truth);
+
 /// \brief Streams a rawlog of poles. \throws Error as streamPoles(), and when it holds scans.
 void streamStoredPoles(const std::filesystem::path& rawlog,
                        const std::function<void(const PoleScan&)>& consume);

@@ -36,6 +36,9 @@ Eigen::Vector2d CoordinateSystem::lonLat(const Eigen::Vector2d& place) const {
   if (!(std::abs(found.lp.lam) <= 360 && std::abs(found.lp.phi) <= 90))
     throw Error("the place " + io::significant(place.x(), 9) + ' ' + io::significant(place.y(), 9) +
                 " is not in the coordinate system " + m_name +
+                (std::abs(place.x()) <= 90 && std::abs(place.y()) <= 360
+                     ? "; are longitude and latitude swapped?"
+                     : "") +
                 "; --crs names another, --columns the order east, north");
   return {found.lp.lam, found.lp.phi};
 }

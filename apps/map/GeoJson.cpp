@@ -199,6 +199,15 @@ std::map<std::string, std::string> infoOf(const Json& json, const std::string& w
   return info;
 }
 
+/// Far away as it stands, near the other way round.
+void requireNotSwapped(const Eigen::Vector2d& lonLat, double distance, const io::Datum& datum) {
+  const TGeodeticCoords swapped(lonLat.x(), lonLat.y(), 0);
+  if (distance > farthest && eastNorthUp(swapped, datum).norm() <= farthest)
+    throw Error("longitude " + io::significant(lonLat.x(), 9) + ", latitude " +
+                io::significant(lonLat.y(), 9) + " is far from the datum " + io::datumText(datum) +
+                ", but near it with the two swapped: longitude comes first");
+}
+
 }  // namespace
 
 Eigen::Vector2d geographic(const Eigen::Vector2d& place, const io::Datum& datum) {
@@ -222,6 +231,7 @@ Eigen::Vector2d geographic(const Eigen::Vector2d& place, const io::Datum& datum)
 Eigen::Vector2d onMap(const Eigen::Vector2d& lonLat, const io::Datum& datum) {
   TGeodeticCoords at(lonLat.y(), lonLat.x(), 0);
   Eigen::Vector3d found = eastNorthUp(at, datum);
+  requireNotSwapped(lonLat, found.norm(), datum);
   requireNear(found.norm(), datum);
   for (int i = 0; i < mostSteps && std::abs(found.z()) >= closeEnough; ++i) {
     at.height -= found.z();  // up to the map's plane

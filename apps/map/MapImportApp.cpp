@@ -1,7 +1,9 @@
 #include "map/MapImportApp.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <polemcl/io/map/PoleMapFile.h>
@@ -34,6 +36,41 @@ bool isKept(const InventoryEntry& entry, const std::vector<std::string>& keep) {
     if (found != entry.properties.end() && found->second == wanted.substr(equals + 1)) return true;
   }
   return false;
+}
+
+/// The first of them with their counts: "lamp (12), tree (3), …".
+std::string listed(const std::map<std::string, std::size_t>& counts) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  std::size_t number = 0;
+  for (const auto& [name, count] : counts) {
+    if (number++ > 0) text += ", ";
+    if (number > most) return text + "…";
+    text += name + " (" + std::to_string(count) + ")";
+  }
+  return text;
+}
+
+/// What the entries have for the properties that --keep names: "kind: lamp (12), tree (3)"; for one
+/// that none has, the names that they do have.
+std::string found(const std::vector<InventoryEntry>& entries,
+                  const std::vector<std::string>& keep) {
+  std::set<std::string> wanted;
+  for (const std::string& assignment : keep)
+    wanted.insert(assignment.substr(0, assignment.find('=')));
+  std::string text;
+  for (const std::string& name : wanted) {
+    std::map<std::string, std::size_t> values, names;
+    for (const InventoryEntry& entry : entries)
+      for (const auto& [property, value] : entry.properties) {
+        ++names[property];
+        if (property == name) ++values[value];
+      }
+    if (!text.empty()) text += "; ";
+    text += values.empty() ? "no entry has '" + name + "', but " + listed(names)
+                           : name + ": " + listed(values);
+  }
+  return text;
 }
 
 double radiusOf(const InventoryEntry& entry, const MapImportOptions& options) {
@@ -113,14 +150,17 @@ MapImportSummary importMap(const MapImportOptions& options) {
   if (options.output.extension() != ".polemap")
     throw Error(options.output.string() + ": the map to write must end in .polemap");
   MapImportSummary summary;
-  std::vector<InventoryEntry> entries;
-  for (InventoryEntry& entry : readInventory(options, summary.others)) {
-    if (isKept(entry, options.keep))
-      entries.push_back(std::move(entry));
-    else
-      ++summary.others;
-  }
-  if (entries.empty()) throw Error(options.input.string() + ": no pole in it that is kept");
+  std::vector<InventoryEntry> entries = readInventory(options, summary.others);
+  if (entries.empty()) throw Error(options.input.string() + ": no pole in it");
+  summary.found = found(entries, options.keep);
+  const auto kept =
+      std::remove_if(entries.begin(), entries.end(),
+                     [&](const InventoryEntry& entry) { return !isKept(entry, options.keep); });
+  summary.others += static_cast<std::size_t>(entries.end() - kept);
+  entries.erase(kept, entries.end());
+  if (entries.empty())
+    throw Error(options.input.string() + ": no pole in it that --keep keeps; there is " +
+                summary.found);
   const std::vector<Eigen::Vector2d> lonLats = lonLatsOf(entries, options.coordinates);
   summary.datum = options.datum ? *options.datum : middleOf(lonLats);
 
@@ -149,6 +189,7 @@ std::string summaryText(const MapImportSummary& summary, const MapImportOptions&
       << io::datumText(summary.datum) << '\n';
   if (summary.others > 0)
     out << "entries that are no points or not kept: " << summary.others << '\n';
+  if (!summary.found.empty()) out << "found: " << summary.found << '\n';
   if (summary.doubles > 0)
     out << "entries nearer than " << io::significant(options.merge, 6)
         << " m to an earlier one, left out: " << summary.doubles << '\n';

@@ -32,6 +32,7 @@ struct MapImportSummary {
   std::size_t others = 0;   ///< features that are no points, or not kept
   std::size_t doubles = 0;  ///< left out, as a pole stands there already
   io::Datum datum;
+  std::string found;  ///< values of the properties that `keep` names, with counts
 };
 
 /// \brief Reads an inventory and writes a `.polemap`. Poles have the covariance `sigma`², the

@@ -58,13 +58,7 @@ Velocity SessionPoses::velocityAt(double time) const {
   // Half a turn of most LiDARs. Estimates vary from scan to scan: over a longer time, that matters
   // less.
   const double half = m_kind == PoseKind::truth ? 0.05 : 0.25;
-  const auto here = poseAt(m_trajectory, time, longestTruthGap);
-  const auto before = poseAt(m_trajectory, time - half, longestTruthGap);
-  const auto after = poseAt(m_trajectory, time + half, longestTruthGap);
-  if (before && after) return velocityOf(relative(*before, *after), 2 * half);
-  if (after && here) return velocityOf(relative(*here, *after), half);
-  if (before && here) return velocityOf(relative(*before, *here), half);
-  return {};
+  return polemcl::velocityAt(m_trajectory, time, half, longestTruthGap);
 }
 
 }  // namespace polemcl::apps

@@ -6,6 +6,7 @@
 #include "cli/RawlogActions.h"
 #include "eval/EvalApp.h"
 #include "eval/ExtractionEval.h"
+#include "eval/MotionEval.h"
 #include "extract/ExtractApp.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/StreetTest.h"
@@ -167,6 +168,37 @@ TEST_F(ExtractionEval, PolesOfAStreetAreFoundAgain) {
   wrong.poles = folder / "poles.rawlog";
   wrong.truth = folder / "still.tum";
   EXPECT_LT(evalRepeatability(wrong).share, 0.1);
+}
+
+TEST_F(ExtractionEval, RepeatabilityAndMotionKnowTheMotionWithinAScan) {
+  // At 10 m/s, a pole is measured 0.05 s before or after the time of the scan: in turn.
+  RawlogWriter writer(at("p.rawlog"));
+  std::string rows;
+  for (int i = 0; i < 10; ++i) {
+    rows += std::to_string(i) + " " + std::to_string(10 * i) + " 0 0 0 0 0 1\n";
+    auto scan = std::make_shared<CObservationPoles>();
+    scan->timestamp = mrpt::Clock::fromDouble(i);
+    for (const double x : {30., 55., 80.}) {
+      const double offset = i % 2 == 0 ? 0.05 : -0.05;
+      scan->poles.push_back(detection(x - 10 * (i + offset), 5, 0.9));
+      scan->poles.back().timeOffset = offset;
+    }
+    writer.write(makeActions(standstill(), scan->timestamp), scan);
+  }
+  writer.commit();
+  writeText(folder / "t.tum", rows);
+  EvalRepeatabilityOptions options;
+  options.poles = folder / "p.rawlog";
+  options.truth = folder / "t.tum";
+  EXPECT_EQ(evalRepeatability(options).share, 1);
+  EvalMotionOptions motion;
+  motion.poles = folder / "p.rawlog";
+  motion.truth = folder / "t.tum";
+  motion.every = 1;
+  for (const MotionComparison& stretch : evalMotion(motion)) {
+    EXPECT_EQ(stretch.poles.pairs, 3u);
+    EXPECT_NEAR(stretch.poles.motion.x, 10, 1e-6);
+  }
 }
 
 TEST_F(ExtractionEval, RepeatabilityRefusesWhatCannotBeCompared) {

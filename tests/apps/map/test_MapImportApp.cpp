@@ -123,7 +123,9 @@ TEST_F(MapImportApp, LampsTreesSignsAndLightsOfOpenStreetMap) {
   EXPECT_NEAR(data.poles[1].y, 22.253, 0.01) << "the tree";
   EXPECT_NEAR(data.poles[2].y, 44.507, 0.01) << "the sign";
   EXPECT_NEAR(data.poles[3].x, 3.434, 0.01) << "middle of the light's known nodes";
-  ASSERT_EQ(import("a.osm", s_osm, {"--keep", "kind=tree", "kind=light"}).code, 0);
+  const Outcome outcome = import("a.osm", s_osm, {"--keep", "kind=tree", "kind=light"});
+  ASSERT_EQ(outcome.code, 0);
+  EXPECT_HAS(outcome.out, "found: kind: lamp (1), light (1), sign (1), tree (1)");
   EXPECT_EQ(map().poles.size(), 2u);
 }
 
@@ -132,7 +134,15 @@ TEST_F(MapImportApp, BadInventoriesAreRefusedWithTheirPlace) {
   EXPECT_HAS(failure("a.csv", s_utm), "--columns EAST,NORTH");
   EXPECT_HAS(failure("a.csv", s_utm, {"--separator", ";", "--columns", "UTM33-Nord,Punkt"}),
              "a.csv:2: the place 7023875.72 1 is not in the coordinate system EPSG:4326; --crs");
-  EXPECT_HAS(failure("a.csv", "lon,lat\n", {"--crs", "EPSG:1"}), "no pole in it that is kept");
+  EXPECT_HAS(failure("a.csv", "lon,lat\n", {"--crs", "EPSG:1"}), "no pole in it");
+  EXPECT_HAS(
+      failure("a.osm", s_osm, {"--keep", "kind=lamps"}),
+      "no pole in it that --keep keeps; there is kind: lamp (1), light (1), sign (1), tree (1)");
+  EXPECT_HAS(failure("a.osm", s_osm, {"--keep", "art=lamp"}), "no entry has 'art', but ");
+  EXPECT_HAS(failure("a.csv", "lon,lat\n13,120\n"), "are longitude and latitude swapped?");
+  EXPECT_HAS(
+      failure("a.csv", "lon,lat\n52,13\n", {"--datum", "52,13"}),
+      "a.csv:2: longitude 52, latitude 13 is far from the datum 52,13,0, but near it with the");
   EXPECT_HAS(failure("a.csv", "lon,lat\n1,1\n", {"--crs", "EPSG:1"}), "unknown coordinate system");
   EXPECT_HAS(failure("a.csv", "lon,lat\n1,1\n3,3\n"), "km from the datum");
   EXPECT_HAS(failure("a.csv", "lon,lat,r\n1,1,thick\n", {"--radius-property", "r"}),

@@ -136,6 +136,18 @@ TEST_F(MapUpdateApp, ListsAndDrawsWhatChanged) {
   EXPECT_GT(fs::file_size(folder / "d.3Dscene"), 1000u);
 }
 
+TEST_F(MapUpdateApp, MapsOfDifferentDatumsAreNotCompared) {
+  for (const std::string name : {"a", "b"}) {
+    io::PoleMapData map;
+    map.poles.push_back({});
+    map.info["datum"] = name == "a" ? "52,13" : "52,13,90";
+    io::writePoleMap(folder / (name + ".polemap"), map);
+  }
+  expectFailure(runProgram(mapMain, {"diff", at("a.polemap"), at("b.polemap")}),
+                {"b.polemap: its datum is 52,13,90, but that of ", "a.polemap is 52,13,0;"});
+  EXPECT_EQ(runProgram(mapMain, {"diff", at("a.polemap"), at("a.polemap")}).code, 0);
+}
+
 TEST_F(MapUpdateApp, RefusesASessionOfAnotherPlace) {
   mapYesterday();
   auto elsewhere = yesterday;

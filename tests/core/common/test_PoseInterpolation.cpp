@@ -47,4 +47,16 @@ TEST(PoseInterpolation, KnowsNothingOutsideAndInGaps) {
   EXPECT_FALSE(poseAt({}, 1.0, 2.0));
 }
 
+TEST(PoseInterpolation, VelocityIsThatOfTheRobot) {
+  const std::vector<StampedPose2D> north{{0, {0, 0, M_PI / 2}}, {1, {0, 5, M_PI / 2}}};
+  for (const double time : {0.0, 0.5, 1.0}) {
+    const Velocity velocity = velocityAt(north, time, 0.25, 2.0);
+    EXPECT_NEAR(velocity.x, 5, 1e-9);
+    EXPECT_NEAR(velocity.y, 0, 1e-9);
+    EXPECT_NEAR(velocity.yaw, 0, 1e-9);
+  }
+  EXPECT_EQ(velocityAt(north, 3, 0.25, 2.0).x, 0);
+  EXPECT_EQ(velocityAt(north, 0.5, 0.25, 0.5).x, 0) << "a gap";
+}
+
 }  // namespace polemcl::test_pose_interpolation

@@ -27,4 +27,15 @@ std::optional<Pose2D> poseAt(const std::vector<StampedPose2D>& trajectory, doubl
                 wrapAngle(a.yaw + share * wrapAngle(b.yaw - a.yaw))};
 }
 
+Velocity velocityAt(const std::vector<StampedPose2D>& trajectory, double time, double half,
+                    double maxGap) {
+  const auto here = poseAt(trajectory, time, maxGap);
+  const auto before = poseAt(trajectory, time - half, maxGap);
+  const auto after = poseAt(trajectory, time + half, maxGap);
+  if (before && after) return velocityOf(relative(*before, *after), 2 * half);
+  if (after && here) return velocityOf(relative(*here, *after), half);
+  if (before && here) return velocityOf(relative(*before, *here), half);
+  return {};
+}
+
 }  // namespace polemcl

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/common/Types.h>
 
 namespace polemcl {
@@ -19,5 +20,11 @@ constexpr double sampleTolerance = 2e-6;
 /// \return None outside the span of the trajectory and inside gaps, and for an empty trajectory.
 std::optional<Pose2D> poseAt(const std::vector<StampedPose2D>& trajectory, double time,
                              double maxGap);
+
+/// \brief Velocity in the frame of the robot, from the poses `half` a span before and after; at the
+/// ends of the trajectory and of gaps from one of them. Zero where neither is known.
+/// \param half s. Other parameters as those of poseAt().
+Velocity velocityAt(const std::vector<StampedPose2D>& trajectory, double time, double half,
+                    double maxGap);
 
 }  // namespace polemcl
