@@ -125,6 +125,19 @@ void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings&
   folder.commit();
 }
 
+void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) {
+  if (!check.contradicts()) return;
+  std::cerr << warningLine("pole-localize",
+                           std::to_string(100 * check.beyond / check.ok) +
+                               " % of the scans that were ok are more than 0.5 m and 5 times the "
+                               "spread of the pose away from " +
+                               truth.string() +
+                               ": truth of another drive, of other times or of another datum than "
+                               "the map's, or a sure but wrong pose; pole-eval motion compares it "
+                               "with the poles")
+            << '\n';
+}
+
 }  // namespace
 
 LocalizeResult localize(const LocalizeJob& job) {
@@ -158,6 +171,7 @@ LocalizeResult localize(const LocalizeJob& job) {
     printTable(out, facts, result);
     out << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
   }
+  if (job.truth) warnOfErrors(result.spreadCheck, *job.truth);
   view.waitForWindow();
   if (!failure.empty())
     throw Error(failure +

@@ -11,6 +11,7 @@
 #include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "localize/FilterRuns.h"
 #include "localize/LocalizeTimings.h"
+#include "localize/RunFiles.h"
 
 namespace polemcl::apps {
 
@@ -47,6 +48,7 @@ struct LocalizeResult {
   /// Errors of each run, without those of single poses; empty without truth; none for a run that
   /// never found its pose.
   std::vector<std::optional<TrajectoryErrors>> errors;
+  SpreadCheck spreadCheck;  ///< of all runs
   LocalizeTimings timings;
 };
 
@@ -78,10 +80,11 @@ struct LocalizeResult {
 /// - `run_00_scenes/NNNNNN.3Dscene`, if asked for: the first run after scan NNNNNN (see
 ///   report/LiveScene.h; stock objects);
 /// - `summary.json`: what went in; with truth the figures of `pole-eval trajectory` as means over
-///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`;
-///   `start_source` says who gave the start pose: the `truth` (at the first scan), the
-///   `configuration`, the `command line`, or nobody: the start is `anywhere`; with sensors also
-///   `dropped_scans` and `scans_without_odometry`, which are left out;
+///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`,
+///   and in `ok_beyond_spread` the scans of all runs that were `ok` though the error was above 0.5
+///   m and 5 times the spread; `start_source` says who gave the start pose: the `truth` (at the
+///   first scan), the `configuration`, the `command line`, or nobody: the start is `anywhere`; with
+///   sensors also `dropped_scans` and `scans_without_odometry`, which are left out;
 /// - `config.ini`: the effective configuration;
 /// - `timings.json`: the only file that differs from repetition to repetition. `wall_s`, `rate`
 ///   (times the pace of the recording, 1 with sensors, or `max`), `filter_s` of each run, and in

@@ -78,6 +78,8 @@ LocalizeResult LocalizePlayer::finish() {
   for (RunFiles& files : m_files) {
     const auto errors = files.finish();
     if (m_truth) result.errors.push_back(errors);
+    result.spreadCheck.ok += files.spreadCheck().ok;
+    result.spreadCheck.beyond += files.spreadCheck().beyond;
   }
   m_view.finish();
   result.runs = m_runs->results();

@@ -156,6 +156,7 @@ Json makeSummary(const LocalizeFacts& facts, const LocalizeResult& result) {
     json["poses"] = errors[0].poses;  // the scans are the same in every run with a start pose
     json["unmatched"] = errors[0].unmatched;
     json["spread"] = deviations;
+    json["ok_beyond_spread"] = result.spreadCheck.beyond;
   }
   json["runs_without_pose"] = std::count_if(result.runs.begin(), result.runs.end(),
                                             [](const FilterRun& run) { return !run.firstPose; });

@@ -1,5 +1,6 @@
 #include "localize/RunFiles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -8,6 +9,12 @@
 #include "localize/LocalizeReport.h"
 
 namespace polemcl::apps {
+namespace {
+
+constexpr double s_leastError = 0.5;  ///< m; true poses may be off, too
+constexpr double s_mostSpreads = 5;   ///< of the pose
+
+}  // namespace
 
 RunFiles::RunFiles(const RunFolder& folder, std::size_t run,
                    const std::vector<StampedPose2D>* truth)
@@ -73,6 +80,10 @@ void RunFiles::addError(const PoseError& error, const LocalizationUpdate& update
                 error.position, error.lateral, error.longitudinal, error.heading / degree,
                 update.poles, update.step.effectiveShare);
   m_errors->add(line);
+  if (update.health.state != HealthState::ok) return;
+  ++m_spreadCheck.ok;
+  m_spreadCheck.beyond +=
+      error.position > std::max(s_leastError, s_mostSpreads * update.health.spread);
 }
 
 }  // namespace polemcl::apps

@@ -13,6 +13,14 @@
 
 namespace polemcl::apps {
 
+/// \brief Errors at scans that were `ok`, against the spread of the pose.
+struct SpreadCheck {
+  std::size_t ok = 0;      ///< scans that were `ok` and have a true pose
+  std::size_t beyond = 0;  ///< of them: error above 0.5 m and 5 times the spread
+  /// True when this is so at a tenth of them: such errors have no normal cause.
+  bool contradicts() const { return beyond > 0 && 10 * beyond >= ok; }
+};
+
 /// \brief `run_NN.tum`, `run_NN_cov.csv`, `run_NN_health.csv` and, with truth, `run_NN_errors.csv`:
 /// see LocalizeApp.h.
 class RunFiles {
@@ -27,6 +35,7 @@ class RunFiles {
   /// \return The errors; none without truth, or when no pose was ever known.
   /// \throws Error when a file cannot be written, or the truth covers less than half of the poses.
   std::optional<TrajectoryErrors> finish();
+  const SpreadCheck& spreadCheck() const { return m_spreadCheck; }
 
  private:
   void addPose(const LocalizationUpdate& update);
@@ -37,6 +46,7 @@ class RunFiles {
   io::GrowingFile m_trajectory, m_covariances, m_health;
   std::optional<io::GrowingFile> m_errors;  ///< from the first error on
   std::optional<TrajectoryEvaluator> m_evaluator;
+  SpreadCheck m_spreadCheck;
   std::size_t m_scan = 0;  ///< taken so far
 };
 

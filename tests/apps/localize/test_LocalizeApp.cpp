@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "support/CityFiles.h"
+#include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
 
 namespace polemcl::test_localize_app {
@@ -239,6 +240,20 @@ TEST_F(LocalizeApp, RefusesATruthOfAnotherDrive) {
   truth.resize(scans / 2 - 1);
   io::writeTum(folder / "truth.tum", truth);
   expectFailure(runWithTruth(), {"truth.tum", "19 of 40"});
+}
+
+TEST_F(LocalizeApp, WarnsOfATruthThatTheSpreadContradicts) {
+  EXPECT_EQ(runWithTruth().err.find("5 times the spread"), std::string::npos);
+  EXPECT_EQ(summary()["ok_beyond_spread"], 0);
+  auto truth = io::planar(io::readTum(folder / "truth.tum"));
+  for (std::size_t i = truth.size() / 2; i < truth.size(); ++i) truth[i].pose.y += 3;
+  io::writeTum(folder / "truth.tum", truth);
+  const Outcome outcome = runWithTruth();
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_HAS(outcome.err,
+             " % of the scans that were ok are more than 0.5 m and 5 times the spread");
+  EXPECT_HAS(outcome.err, "truth.tum: truth of another drive");
+  EXPECT_GT(summary()["ok_beyond_spread"], 10);
 }
 
 TEST_F(LocalizeApp, RefusesADriveOnWhichNoPoleWasSeen) {
