@@ -40,8 +40,8 @@ void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
-// MRPT's point maps, scans and images take their memory here, and write to it even when there is
-// none. Its own name, as the one of the C library must not throw.
+// MRPT's point maps, scans and images take their memory here, and write to it even if they got a
+// null pointer. Its own name, as the one of the C library must not throw.
 extern "C" [[gnu::visibility("default")]] void* polemclAlignedAlloc(
     std::size_t alignment, std::size_t size) __asm__("aligned_alloc");
 void* polemclAlignedAlloc(std::size_t alignment, std::size_t size) {

@@ -138,7 +138,7 @@ TEST_F(SimulatedPoles, RefusesAModelOfAnotherLidar) {
 
 TEST_F(SimulatedPoles, RefusesAModelThatIsNotThere) {
   configure("detections = nothing.json\n");
-  expectFailure(run("p.rawlog"), {"nothing.json", "cannot be read"});
+  expectFailure(run("p.rawlog"), {"nothing.json", "cannot read nothing.json"});
 }
 
 TEST_F(SimulatedPoles, RefusesScansOfADriveThatHasNone) {

@@ -12,12 +12,12 @@ TEST(NumberFormat, ShortLengthsAreCentimetresWithTwoSignificantDigits) {
   EXPECT_EQ(lengthText(0.0724, " "), "7.2 cm");
   EXPECT_EQ(lengthText(0.0996, " "), "10 cm");
   EXPECT_EQ(lengthText(0.009951, " "), "1.0 cm");
-  EXPECT_EQ(lengthText(0.1, " "), "0.100 m");
-  EXPECT_EQ(lengthText(0.1744, " "), "0.174 m");
+  EXPECT_EQ(lengthText(0.1, " "), "10.0 cm");
+  EXPECT_EQ(lengthText(0.1744, " "), "17.4 cm");
   EXPECT_EQ(lengthText(5.48, " "), "5.480 m");
   EXPECT_EQ(lengthText(0, " "), "0.0 cm");
   EXPECT_EQ(lengthText(NAN, " "), "\xE2\x80\x93 m");
-  EXPECT_EQ(lengthText(0.5), "0.500\xC2\xA0m");
+  EXPECT_EQ(lengthText(1.5), "1.500\xC2\xA0m");
 }
 
 TEST(NumberFormat, AColumnHasOneUnit) {

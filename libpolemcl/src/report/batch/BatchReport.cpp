@@ -236,13 +236,17 @@ Section terms(const Page& page) {
                    "Mean and standard deviation over the runs of a session, which differ "
                    "in their seeds. Means over sessions give every session the same "
                    "weight.") +
-              term("lost", "No pose could be compared, or the position error is larger than " +
-                               metricText(page.results.lostBound, 1) +
-                               "\xC2\xA0m on average or at the end of the run. In the table of "
-                               "health: what the run said of itself, scan by scan.") +
+              term("wrong",
+                   "A run of which no pose could be compared, or whose position error is larger "
+                   "than " +
+                       metricText(page.results.lostBound, 1) +
+                       "\xC2\xA0m on average or at the end. CSV and JSON call it lost.") +
+              term("ok, degraded, lost",
+                   "What a run said of itself, scan by scan, without knowing the truth.") +
               term("m, cm",
                    "A column of position errors is in centimetres if any of them is below "
-                   "0.1\xC2\xA0m: these have two significant digits.") +
+                   "0.1\xC2\xA0m: these have two significant digits. Elsewhere errors below "
+                   "1\xC2\xA0m are in centimetres.") +
               term("failed", "The run has no result: its task ended with an error."))};
 }
 

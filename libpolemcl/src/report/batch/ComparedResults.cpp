@@ -83,7 +83,7 @@ double PublishedRows::mean(std::size_t system, const ConfigurationSummary& confi
 
 std::string rowText(const BatchConfiguration& configuration, const ConfigurationSummary& summary) {
   std::string text = sampleText(summary);
-  if (summary.counts.lost > 0) text += ", " + std::to_string(summary.counts.lost) + " lost";
+  if (summary.counts.lost > 0) text += ", " + std::to_string(summary.counts.lost) + " wrong";
   if (summary.counts.failed > 0) text += ", " + std::to_string(summary.counts.failed) + " failed";
   return withProtocol(text, configuration);
 }

@@ -22,9 +22,10 @@ std::string percentText(double share, const std::string& none) {
 
 namespace {
 
-constexpr double shortLength = 0.1;  // m; shorter ones are shown in centimetres
-constexpr int decimals = 3;          // of metres and degrees
-constexpr int mostDecimals = 3;      // of centimetres
+constexpr double shortLength = 0.1;     // m; a column with shorter ones is shown in centimetres
+constexpr double centimetreLength = 1;  // m; so are single errors below it
+constexpr int decimals = 3;             // of metres and degrees
+constexpr int mostDecimals = 3;         // of centimetres
 
 /// Decimals that leave two significant digits once the value is rounded to them.
 int decimalsOfTwoDigits(double value) {
@@ -44,8 +45,8 @@ std::string centimetres(double metres) {
 
 std::string lengthText(double metres, const std::string& space) {
   if (!std::isfinite(metres)) return enDash + space + "m";
-  return std::abs(metres) < shortLength ? centimetres(metres) + space + "cm"
-                                        : metricText(metres, decimals) + space + "m";
+  return std::abs(metres) < centimetreLength ? centimetres(metres) + space + "cm"
+                                             : metricText(metres, decimals) + space + "m";
 }
 
 MetricColumn::MetricColumn(Quantity quantity, const std::vector<double>& values)

@@ -13,9 +13,9 @@ inline constexpr const char* enDash = "\xE2\x80\x93";
 std::string metricText(double value, int decimals, const std::string& none = enDash);
 /// \brief A share in percent, without the sign: 0.174 is "17.4".
 std::string percentText(double share, const std::string& none = enDash);
-/// \brief An error in the unit that reads best: 0.0072 m is "0.72 cm", 0.174 m "0.174 m". Below 0.1
-/// m centimetres with two significant digits, from there metres with three decimals. \param space
-/// Between number and unit.
+/// \brief An error in the unit that reads best: 0.0072 m is "0.72 cm", 0.174 m "17.4 cm". Below
+/// 1 m centimetres with two significant digits or one decimal, from there metres with three. \param
+/// space Between number and unit.
 std::string lengthText(double metres, const std::string& space = "\xC2\xA0");
 
 /// \brief What a figure measures.

@@ -110,7 +110,7 @@ std::string runsTable(const BatchResults& results, std::size_t configuration) {
 }
 
 std::string troublesTables(const BatchResults& results) {
-  HtmlTable table("Runs that failed or were lost.");
+  HtmlTable table("Runs that failed or went wrong.");
   table.head({{"Session"},
               {"Setting"},
               {"Run"},
@@ -131,14 +131,14 @@ std::string troublesTables(const BatchResults& results) {
                    std::to_string(run.run), std::to_string(run.seed),
                    lengthText(run.errors.posMean), lengthText(run.errors.posEnd),
                    state == RunState::failed ? "failed: " + escaped(run.failure)
-                   : run.errors.poses == 0   ? "lost: never knew a pose"
-                                             : "lost"});
+                   : run.errors.poses == 0   ? "never knew a pose"
+                                             : "wrong pose"});
       }
     }
   std::string failed = failedTasks(results.failures);
   if (count == 0) return failed;
   return failed + (count <= mostOpenRows ? table.str("remark")
-                                         : foldable(plural(count, "run") + " failed or lost",
+                                         : foldable(plural(count, "run") + " failed or wrong",
                                                     table.str("remark"), false));
 }
 

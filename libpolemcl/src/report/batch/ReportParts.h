@@ -48,9 +48,9 @@ std::string timingsTable(const BatchTimings& timings);
 /// empty when there are none.
 std::string differencesTable(const BatchResults& results);
 
-/// \brief "+8 %" for 1.08, "−3 %" for 0.97.
+/// \brief "+8 %" for 1.08, "−3 %" for 0.97, "17 times" for 17.
 std::string changeText(double ratio);
-/// \brief "10", "10, 1 lost", "10, 2 failed".
+/// \brief "10", "10, 1 wrong", "10, 2 failed".
 std::string runsText(const RunCounts& counts);
 
 /// \brief Gives each plot of a page an id of its own.

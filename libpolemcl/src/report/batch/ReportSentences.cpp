@@ -74,8 +74,8 @@ std::string changeSentence(const BatchResults& results, const Summaries& summari
                            ? " with " + emphasized(results.configurations[i])
                            : std::string()));
   if (parts.empty()) return "";
-  return element(
-      "p", "From the first localized session to the last, it changes by " + listed(parts) + ".");
+  return element("p",
+                 "Its change from the first localized session to the last: " + listed(parts) + ".");
 }
 
 std::string fact(const std::string& name, const std::string& value) {
@@ -139,10 +139,10 @@ std::string troubleSentence(const BatchResults& results, const Summaries& summar
                             " kept " + (counts.runs == 1 ? "its" : "their") +
                             " pose; none failed.");
   std::string text = countText(counts.lost) + " of " + plural(counts.runs, "run") +
-                     " lost the pose and " + countText(counts.failed) + " failed.";
+                     " had a wrong pose and " + countText(counts.failed) + " failed.";
   text += lostSessions(results, summaries);
   if (counts.lost > 0)
-    text += " Means include lost runs as far as they had a pose; failed runs have no figures.";
+    text += " Means include wrong runs as far as they had a pose; failed runs have no figures.";
   if (!results.failures.empty())
     text += ' ' + plural(results.failures.size(), "task") + " of the batch failed.";
   return element("p", "class=\"alarm\"", text + " <a href=\"#troubles\">What went wrong</a>");

@@ -46,14 +46,16 @@ std::string healthBar(const MetricSpreads& figures) {
 }  // namespace
 
 std::string changeText(double ratio) {
+  constexpr double several = 3;  // from there on, per cent are hard to read
   if (!std::isfinite(ratio)) return enDash;
+  if (ratio >= several) return metricText(ratio, ratio < 10 ? 1 : 0) + " times";
   const std::string text = metricText(std::abs(100 * (ratio - 1)), 0);
   return (text == "0" ? "±" : ratio > 1 ? "+" : "\xE2\x88\x92") + text + " %";
 }
 
 std::string runsText(const RunCounts& counts) {
   std::string text = countText(counts.runs);
-  if (counts.lost > 0) text += ", " + countText(counts.lost) + " lost";
+  if (counts.lost > 0) text += ", " + countText(counts.lost) + " wrong";
   if (counts.failed > 0) text += ", " + countText(counts.failed) + " failed";
   return text;
 }
