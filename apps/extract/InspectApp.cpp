@@ -1,5 +1,6 @@
 #include "extract/InspectApp.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 
@@ -11,6 +12,9 @@
 
 namespace polemcl::apps {
 namespace {
+
+constexpr double s_movingArc = 10 * M_PI / 180;  ///< rad; wider than lasers of one firing differ
+constexpr double s_usualDistance = 0.08;         ///< m; see share/doc/motion.md
 
 std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians * 180 / M_PI, digits);
@@ -85,6 +89,33 @@ void printPresets(std::ostream& out, const RawlogInspection& inspection) {
     out << "fits              no preset; model = table with the elevations above\n";
 }
 
+/// The arc in which all scans begin, rad; 0 if the order of their points does not tell it.
+double beginArc(const std::vector<PointOrder>& orders) {
+  double least = 0, most = 0;
+  for (const PointOrder& order : orders) {
+    const double away = std::remainder(order.begin - orders.front().begin, 2 * M_PI);
+    least = std::min(least, away);
+    most = std::max(most, away);
+  }
+  return most - least;
+}
+
+void printCut(std::ostream& out, const ScanTiming& timing, double arc) {
+  if (timing.movingCut)
+    out << ", each scan cut at its first point (these lie " << degrees(arc, 0) << " deg apart)";
+  else
+    out << ", cut at " << degrees(timing.cut, 0) << " deg";
+  out << ", stamped in the middle of the turn";
+  if (!timing.movingCut && arc > s_movingArc)
+    out << "\n                  but the scans begin at points " << degrees(arc, 0)
+        << " deg apart: no single cut fits them";
+}
+
+const char* judged(double distance) {
+  return distance > s_usualDistance ? " (below 0.08 m is usual: poses, clock or timing are off)"
+                                    : " (below 0.08 m is usual)";
+}
+
 void printTiming(std::ostream& out, const Inspection& inspection) {
   const std::optional<TimingEstimate>& found = inspection.timing;
   out << "scan timing       ";
@@ -104,27 +135,29 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
   for (const auto& [turn, name] : turnNames())
     if (turn == timing.turn) out << name;
   if (timing.known())
-    out << ", cut at " << degrees(timing.cut, 0) << " deg, stamped in the middle of the turn";
+    printCut(out, timing, beginArc(inspection.sensor.orders));
   else
     out << ", as far as the poles show";
   out << "\nclock             "
       << (timing.clock != 0 ? "clock_offset_s = " + io::fixed(timing.clock, 2) : "no offset seen")
       << "\nsignificance      " << found->pairs << " pairs of sightings, a pole moves by "
       << io::fixed(found->before, 4) << " m between two scans as they are, by "
-      << io::fixed(found->after, 4) << " m\n                  with this timing; turn "
+      << io::fixed(found->after, 4) << " m\n                  with this timing"
+      << judged(found->after) << ";\n                  turn "
       << io::fixed(found->turnSignificance, 1) << " and clock "
       << io::fixed(found->clockSignificance, 1)
       << " standard errors better than none (4 are needed)\n";
 }
 
-/// A turn of one second from azimuth 0: the time offset of a detection tells its azimuth.
-ScanTiming azimuthAsTime() {
-  return {Turn::counterclockwise, 1, 0, 0};
+/// A turn of one second from azimuth 0, or from the first point: the time offset of a detection
+/// tells its azimuth.
+ScanTiming azimuthAsTime(bool movingCut) {
+  return {Turn::counterclockwise, 1, 0, 0, 0, movingCut};
 }
 
 std::optional<TimingEstimate> findTiming(const InspectOptions& options, Settings settings,
-                                         const ScanProgress& progress) {
-  settings.sensor.timing = azimuthAsTime();
+                                         bool movingCut, const ScanProgress& progress) {
+  settings.sensor.timing = azimuthAsTime(movingCut);
   const PoleSequence drive = readPoleSequence(
       options.input.string(), {settings.poleExtraction(), settings.motion, options.allowTruncated},
       progress);
@@ -143,6 +176,24 @@ std::optional<TimingEstimate> findTiming(const InspectOptions& options, Settings
     scans.push_back(std::move(scan));
   }
   return searchTiming(scans, options.turnSeconds);
+}
+
+/// The timing, with the first point of each scan as its cut where these lie far apart and the poles
+/// agree.
+std::optional<TimingEstimate> findTiming(const InspectOptions& options, const Inspection& found,
+                                         const ScanProgress& progress) {
+  constexpr double nearBegin = M_PI / 6;  // cuts are searched in steps of half of it
+  const Settings settings = settingsFor(found);
+  if (beginArc(found.sensor.orders) > s_movingArc) {
+    auto moving = findTiming(options, settings, true, progress);
+    if (moving && moving->timing.turn == found.sensor.orders.front().turn &&
+        std::abs(std::remainder(moving->timing.cut, 2 * M_PI)) <= nearBegin) {
+      moving->timing.cut = ScanTiming().cut;  // not used
+      moving->timing.movingCut = true;
+      return moving;
+    }
+  }
+  return findTiming(options, settings, false, progress);
 }
 
 /// Only what was looked for: all other keys keep their defaults.
@@ -166,7 +217,7 @@ Settings settingsFor(const Inspection& inspection) {
 Inspection inspect(const InspectOptions& options, const ScanProgress& progress) {
   Inspection result{inspectRawlog(options.input.string(), options.allowTruncated), {}};
   if (!result.sensor.sensor.onItsHead)  // else poles are not found
-    result.timing = findTiming(options, settingsFor(result), progress);
+    result.timing = findTiming(options, result, progress);
   if (options.writeConfig) saveSensor(settingsFor(result), *options.writeConfig);
   return result;
 }

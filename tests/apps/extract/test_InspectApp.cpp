@@ -1,10 +1,17 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
+#include <sstream>
 
 #include <polemcl/core/common/Types.h>
 #include "extract/ExtractApp.h"
 #include "extract/InspectApp.h"
+#include "io/data/Trajectory.h"
 #include "sim/drive/Drive.h"
 #include "sim/lidar/Scanner.h"
+#include "simulate/SimulateApp.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_inspect_app {
@@ -39,6 +46,37 @@ void writeSimulated(const fs::path& folder, const std::string& lidar, double hei
   }
   writeText(folder / "times.txt", times);
   writeText(folder / "poses.txt", poses);
+}
+
+/// The turns of a simulated VLP-16 in `folder/sim`, 8 m/s, clockwise, cut anew after each 1.03
+/// turns: `folder/in`, with its points in the order of measuring.
+void cutAnew(const fs::path& folder, std::size_t turns) {
+  struct Measured {
+    double time;
+    std::array<float, 4> point;
+  };
+  std::vector<Measured> all;
+  for (std::size_t i = 0; i < turns; ++i) {
+    const std::string bytes = readText(folder / "sim" / "velodyne" / scanName(i));
+    std::vector<std::array<float, 4>> points(bytes.size() / sizeof(std::array<float, 4>));
+    std::memcpy(points.data(), bytes.data(), bytes.size());
+    for (const auto& point : points) {
+      const double turned = (M_PI - std::atan2(point[1], point[0])) / (2 * M_PI);
+      all.push_back({0.1 * (static_cast<double>(i) + turned - 0.5), point});
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Measured& a, const Measured& b) { return a.time < b.time; });
+  constexpr double span = 0.103;
+  std::string stamps;
+  std::size_t at = 0, number = 0;
+  for (double begin = all.front().time; begin + span < all.back().time; begin += span) {
+    Points points;
+    for (; all[at].time < begin + span; ++at) points.push_back(all[at].point);
+    writeBin(folder / "in" / "velodyne" / scanName(number++), points);
+    stamps += std::to_string(begin + span / 2) + '\n';
+  }
+  writeText(folder / "in" / "times.txt", stamps);
 }
 
 class InspectApp : public StreetTest {
@@ -167,6 +205,32 @@ TEST_F(InspectApp, KnowsTheLidarOfKitti) {
   EXPECT_EQ(inspection.options.model, "hdl64e");
   EXPECT_NEAR(inspection.options.height, 1.73, 0.1);
   EXPECT_EQ(inspection.options.originZ, 0);
+}
+
+TEST_F(InspectApp, FindsACutThatMoves) {
+  const auto simulated =
+      runProgram(simulateMain,
+                 {"--quiet", "--config", "vlp16.ini", "--length", "100", "--output", at("sim"),
+                  "--set", "simulation.motion_distortion=true", "--set", "simulation.spacing_m=0.8",
+                  "--set", "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise"});
+  ASSERT_EQ(simulated.code, 0) << simulated.err;
+  import("sim", false);  // for its true poses
+  cutAnew(folder.path(), io::readTum(folder / "sim.tum").size());
+  import("in", false);
+  InspectOptions files;
+  files.input = folder / "in.rawlog";
+  files.writeConfig = folder / "found.ini";
+  files.truth = folder / "sim.tum";
+  files.turnSeconds = 0.103;
+  const Inspection found = inspect(files);
+  ASSERT_TRUE(found.timing);
+  EXPECT_EQ(found.timing->timing.turn, Turn::clockwise);
+  EXPECT_TRUE(found.timing->timing.movingCut);
+  EXPECT_LT(found.timing->after, 0.5 * found.timing->before);
+  EXPECT_TRUE(has(readText(folder / "found.ini"), "moving_cut = true"));
+  std::ostringstream text;
+  printInspection(text, found);
+  EXPECT_TRUE(has(text.str(), "each scan cut at its first point (these lie ")) << text.str();
 }
 
 TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {

@@ -28,6 +28,38 @@ TEST(ObservationPoleExtractor, LevelCloudsGoThroughUntouched) {
   EXPECT_GE(found(*scan, 0.05), 6);
 }
 
+TEST(ObservationPoleExtractor, AMovingCutIsAtTheFirstPoint) {
+  auto options = hdl32(1.5);
+  options.sensor.timing = {Turn::clockwise, 0.1, M_PI, 0, 0, true};
+  const TestCloud cloud = plainCloud(options);
+  ObservationPoleExtractor extraction(options);
+  /// The same points in another order: smallest value first.
+  const auto process = [&](const std::function<double(float x, float y, float z)>& value) {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < cloud.x.size(); ++i)
+      order.emplace_back(value(cloud.x[i], cloud.y[i], cloud.z[i]), i);
+    std::sort(order.begin(), order.end());
+    TestCloud sorted = cloud;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      sorted.x[i] = cloud.x[order[i].second];
+      sorted.y[i] = cloud.y[order[i].second];
+      sorted.z[i] = cloud.z[order[i].second];
+    }
+    return extraction.process(*observationOf(sorted, CPose3D()));
+  };
+  for (const double begin : {0.3, -2.5}) {
+    const auto turned = [&](double x, double y) {
+      const double share = (begin - std::atan2(y, x)) / (2 * M_PI);
+      return share - std::floor(share);
+    };
+    const auto scan = process([&](float x, float y, float) { return turned(x, y); });
+    EXPECT_GE(scan->poles.size(), 6u);
+    for (const PoleDetection& pole : scan->poles)
+      EXPECT_NEAR(std::remainder(pole.timeOffset - 0.1 * turned(pole.x, pole.y), 0.1), 0, 1e-3);
+  }
+  EXPECT_THROW(process([](float, float, float z) { return z; }), Error);
+}
+
 // Clockwise from the back, stamped at the front: what is at the left was measured before.
 TEST(ObservationPoleExtractor, PolesHaveTheTimesOfTheirAzimuths) {
   auto options = hdl32(1.5);

@@ -36,6 +36,9 @@ void bindTiming(Binder& b, ScanTiming& timing) {
   b.number("stamp_turn", timing.stamp, Range::between(0, 1), "turns",
            "moment of the time stamp: 0 begin of the turn, 1 end of it");
   b.tier(Tier::tuning);
+  b.flag("moving_cut", timing.movingCut,
+         "each scan begins at the azimuth of its first point, not at cut_deg: for clouds in the "
+         "order of measuring whose begin moves");
   b.number("clock_offset_s", timing.clock, Range::between(-1, 1), "s",
            "added to the time stamps of scans, where odometry and truth have another clock");
 }

@@ -7,6 +7,7 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
+#include "core/sensor/PointOrder.h"
 #include "core/sensor/SensorConfigCheck.h"
 #include "mrpt/common/MrptReason.h"
 #include "mrpt/observation/LidarFrame.h"
@@ -118,7 +119,9 @@ struct ObservationPoleExtractor::Impl {
                const mrpt::poses::CPose3D& sensorPose);
   LidarFrame frameOf(const mrpt::poses::CPose3D& sensorPose) const;
   PoleExtractor& extractorFor(const LidarFrame& frames);
-  void setTimeOffsets(const LidarFrame& frames, std::vector<PoleDetection>& poles) const;
+  ScanTiming timingOf(const PointsView& cloud) const;
+  void setTimeOffsets(const LidarFrame& frames, const ScanTiming& timing,
+                      std::vector<PoleDetection>& poles) const;
   /// Whether the last points read are those of a depth image.
   bool pinhole() const { return points.camera().has_value(); }
 };
@@ -144,14 +147,27 @@ PoleExtractor& ObservationPoleExtractor::Impl::extractorFor(const LidarFrame& fr
   return *cameraExtractor;
 }
 
-/// \param poles In the LiDAR frame.
-void ObservationPoleExtractor::Impl::setTimeOffsets(const LidarFrame& frames,
-                                                    std::vector<PoleDetection>& poles) const {
+/// \param cloud The last points read.
+ScanTiming ObservationPoleExtractor::Impl::timingOf(const PointsView& cloud) const {
   ScanTiming timing = sensor.timing;
   if (timing.turn == Turn::automatic) {
     timing = points.timing().value_or(recorded);
     timing.clock += sensor.timing.clock;
   }
+  if (!timing.known() || !timing.movingCut) return timing;
+  const auto order = pointOrder(cloud);
+  if (!order)
+    throw Error(
+        "the points of the cloud are not in the order of measuring, so moving_cut = true finds no "
+        "begin of the scan; cut_deg names a fixed one");
+  timing.cut = order->begin;
+  return timing;
+}
+
+/// \param poles In the LiDAR frame.
+void ObservationPoleExtractor::Impl::setTimeOffsets(const LidarFrame& frames,
+                                                    const ScanTiming& timing,
+                                                    std::vector<PoleDetection>& poles) const {
   if (!timing.known() && timing.clock == 0) return;
   for (PoleDetection& pole : poles) {
     const Eigen::Vector3d cloud =
@@ -202,7 +218,7 @@ CObservationPoles::Ptr ObservationPoleExtractor::process(
       PoleExtractor& extractor = m_impl->extractorFor(frames);
       result->poles = extractor.extract(points, upright(frames));
       m_impl->report = extractor.report();
-      m_impl->setTimeOffsets(frames, result->poles);
+      m_impl->setTimeOffsets(frames, m_impl->timingOf(cloud), result->poles);
       result->visibilityRange = planarVisibilityRange(frames, extractor.visibilityRange());
       for (auto& pole : result->poles)
         toPlanar(

@@ -45,6 +45,16 @@ void requireBeams(const mrpt::obs::CObservation& scan) {
         "[sensor], or give elevations_deg in the order of the rings");
 }
 
+std::vector<PointOrder> ordersOf(const std::vector<PointsView>& scans) {
+  std::vector<PointOrder> orders;
+  for (const PointsView& scan : scans) {
+    const auto order = pointOrder(scan);
+    if (!order) return {};
+    orders.push_back(*order);
+  }
+  return orders;
+}
+
 /// The options of a sensor identified in its own axes, for clouds with this sensor pose.
 SensorOptions mounted(const SensorIdentification& sensor, const mrpt::poses::CPose3D& pose) {
   SensorOptions options = sensor.options();
@@ -83,6 +93,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   }
   views.reserve(clouds.size());
   for (const io::Cloud& cloud : clouds) views.push_back(cloud.view());
+  result.orders = ordersOf(views);
   const auto& first = *scans.front().parts.front().observation;
   result.label = std::string(first.GetRuntimeClass()->className) +
                  (first.sensorLabel.empty() ? "" : " " + first.sensorLabel);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sensor/PointOrder.h"
 #include "core/sensor/SensorIdentification.h"
 
 namespace polemcl {
@@ -21,6 +22,8 @@ struct RawlogInspection {
   /// `[sensor]` for this rawlog; `origin` is along the robot's axes. If `sensor.onItsHead`, the
   /// options are for the same clouds with a sensor pose that is corrected accordingly.
   SensorOptions options;
+  /// One for each examined scan; empty if the points of one are not in the order of measuring.
+  std::vector<PointOrder> orders;
 };
 
 /// \brief Examines up to eight scans, spread over the rawlog.

@@ -32,6 +32,9 @@ struct POLEMCL_EXPORT ScanTiming {
   /// Added to the stamps: the clocks of scans and odometry or truth may differ, s
   /// (`clock_offset_s`). For compensated scans as well.
   double clock = 0;
+  /// Each scan begins at its first point, not at `cut`: for clouds in the order of measuring whose
+  /// begin moves (`moving_cut`).
+  bool movingCut = false;
 
   /// \brief Whether points have measuring times of their own.
   bool known() const { return turn == Turn::clockwise || turn == Turn::counterclockwise; }
@@ -46,7 +49,7 @@ struct POLEMCL_EXPORT ScanTiming {
 /// \brief The words of INI files.
 POLEMCL_EXPORT const std::vector<std::pair<Turn, std::string>>& turnNames();
 
-/// \brief `turn`, `turn_s`, `cut_deg`, `stamp_turn`, `clock_offset_s` in the open section.
+/// \brief `turn`, `turn_s`, `cut_deg`, `moving_cut`, `stamp_turn`, `clock_offset_s` in the open section.
 POLEMCL_EXPORT void bindTiming(Binder& binder, ScanTiming& timing);
 
 }  // namespace polemcl

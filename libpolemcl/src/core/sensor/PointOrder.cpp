@@ -1,0 +1,39 @@
+#include "core/sensor/PointOrder.h"
+
+#include <cmath>
+
+namespace polemcl {
+namespace {
+
+constexpr double s_nearest = 1;                    // m; nearer ones may be the vehicle
+constexpr double s_longestStep = 20 * M_PI / 180;  // lasers of one firing look to different sides
+constexpr double s_mostJumps = 0.1;                // share of the steps that are longer
+constexpr double s_least = 300 * M_PI / 180, s_most = 420 * M_PI / 180;  // of a turn
+
+}  // namespace
+
+std::optional<PointOrder> pointOrder(const PointsView& points) {
+  PointOrder order;
+  std::size_t steps = 0, jumps = 0;
+  double turned = 0, before = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const double x = points.x[i], y = points.y[i];
+    if (!(std::hypot(x, y) > s_nearest)) continue;  // also those that are no numbers
+    const double azimuth = std::atan2(y, x);
+    if (steps == 0) order.begin = azimuth;
+    const double step = steps == 0 ? 0 : std::remainder(azimuth - before, 2 * M_PI);
+    before = azimuth;
+    ++steps;
+    if (std::abs(step) < s_longestStep)
+      turned += step;
+    else
+      ++jumps;
+  }
+  const bool oneTurn = std::abs(turned) > s_least && std::abs(turned) < s_most;
+  if (!oneTurn || static_cast<double>(jumps) > s_mostJumps * static_cast<double>(steps))
+    return std::nullopt;
+  order.turn = turned > 0 ? Turn::counterclockwise : Turn::clockwise;
+  return order;
+}
+
+}  // namespace polemcl

@@ -1,0 +1,22 @@
+#pragma once
+/// \file PointOrder.h
+/// \brief How a LiDAR turned, as the order of the points of a scan tells it.
+
+#include <optional>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/core/sensor/ScanTiming.h>
+
+namespace polemcl {
+
+/// \brief A turn whose points are in the order in which they were measured.
+struct PointOrder {
+  Turn turn = Turn::clockwise;  ///< or counterclockwise
+  double begin = 0;             ///< azimuth of the first point, rad, frame of the points
+};
+
+/// \brief None unless the azimuths of successive points make one turn: rings one after the other
+/// make as many as there are, mixed points none.
+std::optional<PointOrder> pointOrder(const PointsView& points);
+
+}  // namespace polemcl

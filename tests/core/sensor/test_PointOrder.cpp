@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/sensor/PointOrder.h"
+
+namespace polemcl::test_point_order {
+
+using namespace polemcl;
+
+namespace {
+
+/// Points at these azimuths, deg, 10 m away.
+std::optional<PointOrder> orderOf(const std::vector<double>& azimuths, float range = 10) {
+  std::vector<float> x, y, z;
+  for (const double azimuth : azimuths) {
+    x.push_back(range * static_cast<float>(std::cos(azimuth * M_PI / 180)));
+    y.push_back(range * static_cast<float>(std::sin(azimuth * M_PI / 180)));
+    z.push_back(0);
+  }
+  return pointOrder({x.data(), y.data(), z.data(), x.size()});
+}
+
+std::vector<double> turn(double begin, double step, double span = 360) {
+  std::vector<double> azimuths;
+  for (int i = 0; i * std::abs(step) < span; ++i) azimuths.push_back(begin + i * step);
+  return azimuths;
+}
+
+}  // namespace
+
+TEST(PointOrder, OneTurnTellsDirectionAndBegin) {
+  const auto left = orderOf(turn(100, 0.5)), right = orderOf(turn(-170, -0.5));
+  ASSERT_TRUE(left && right);
+  EXPECT_EQ(left->turn, Turn::counterclockwise);
+  EXPECT_NEAR(left->begin, 100 * M_PI / 180, 1e-6);
+  EXPECT_EQ(right->turn, Turn::clockwise);
+  EXPECT_NEAR(right->begin, -170 * M_PI / 180, 1e-6);
+}
+
+TEST(PointOrder, LasersOfOneFiringMayLookToDifferentSides) {
+  std::vector<double> azimuths;
+  for (const double azimuth : turn(20, -0.5))
+    for (const double aside : {-4.0, 4.0, -1.0, 1.0}) azimuths.push_back(azimuth + aside);
+  const auto order = orderOf(azimuths);
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->turn, Turn::clockwise);
+  EXPECT_NEAR(order->begin, 16 * M_PI / 180, 1e-6);
+}
+
+TEST(PointOrder, RingsHalvesAndMixedPointsTellNothing) {
+  std::vector<double> rings = turn(0, 0.5), again = rings, mixed;
+  rings.insert(rings.end(), again.begin(), again.end());
+  EXPECT_FALSE(orderOf(rings));
+  EXPECT_FALSE(orderOf(turn(0, 0.5, 180)));
+  for (int i = 0; i < 1000; ++i) mixed.push_back(std::fmod(i * 222.49, 360));
+  EXPECT_FALSE(orderOf(mixed));
+  EXPECT_FALSE(orderOf(turn(0, 0.5), 0.5f)) << "nearer than 1 m";
+  EXPECT_FALSE(orderOf({}));
+}
+
+}  // namespace polemcl::test_point_order
