@@ -41,8 +41,10 @@ OutputFolder::OutputFolder(const fs::path& target, const std::string& what,
     refuseForeign(m_target, what, known, marker);
     m_temporary = m_target;
     m_temporary += "." + std::to_string(::getpid()) + ".tmp";
+    io::removeLeftovers(m_target);
     if (!fs::create_directory(m_temporary))
       throw Error(m_temporary.string() + ": exists already; remove it");
+    m_lock = io::PathLock(m_temporary);
   } catch (const fs::filesystem_error& error) {
     throw Error(m_target.string() + ": cannot be created: " + error.code().message());
   }

@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "io/file/Leftovers.h"
+
 namespace polemcl::apps {
 
 /// \brief A folder that appears under its name only once it is complete: filled beside its place
-/// under a temporary name ending in `.tmp`, then renamed. Removed again unless committed.
+/// under a temporary name ending in `.tmp`, then renamed. Removed again unless committed; what a
+/// killed process left is removed by the next one for the same target.
 class OutputFolder {
  public:
   /// \param target Where the folder shall appear. What is there is replaced if it is an empty
@@ -31,6 +34,7 @@ class OutputFolder {
 
  private:
   std::filesystem::path m_target, m_temporary;
+  io::PathLock m_lock;  ///< on `m_temporary`
 };
 
 }  // namespace polemcl::apps

@@ -4,6 +4,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
+
+#include "io/file/Leftovers.h"
 
 namespace polemcl::apps {
 
@@ -21,6 +24,9 @@ class RunFolder {
   /// \brief Where to write a file, or make a folder of files, that commit() moves into the folder.
   std::filesystem::path staged(const std::string& name) const { return m_staging / name; }
 
+  /// \brief What runs left here that were killed: their results up to then.
+  std::vector<std::filesystem::path> leftovers() const;
+
   /// \brief \throws Error if commit() would take this file away or replace it.
   void protect(const std::filesystem::path& input) const;
 
@@ -35,6 +41,7 @@ class RunFolder {
   void requireFreeNames() const;
 
   std::filesystem::path m_folder, m_staging;
+  io::PathLock m_lock;     ///< on `m_staging`
   bool m_created = false;  ///< the folder itself
 };
 

@@ -150,6 +150,13 @@ LocalizeResult localize(const LocalizeJob& job) {
   RunFolder folder(job.output);
   for (const auto& input : {job.config, job.source(), job.map, job.truth.value_or("")})
     folder.protect(input);
+  for (const std::filesystem::path& left : folder.leftovers())
+    std::cerr << warningLine(
+                     "pole-localize",
+                     left.string() +
+                         ": is left of a run that was killed, its results up to then are in "
+                         "it; remove it when you do not need them")
+              << '\n';
   RunView view(settings.view, map->poles(), job.source().filename().string(), folder);
 
   const LocalizationMap prepared(map, settings.global);

@@ -43,6 +43,20 @@ TEST_F(OutputFolderTest, LeavesNothingWithoutCommit) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST_F(OutputFolderTest, RemovesWhatAKilledProcessLeft) {
+  const auto killed = [&] {
+    const OutputFolder out = open("out");
+    writeText(out.temporary() / "data", "half");
+    ::_exit(9);
+  };
+  EXPECT_EXIT(killed(), testing::ExitedWithCode(9), "");
+  ASSERT_EQ(names(folder.path()).size(), 1u);
+  const OutputFolder other = open("out.2");  // another output, under way
+  EXPECT_EQ(names(folder.path()).size(), 2u);
+  open("out");
+  EXPECT_EQ(names(folder.path()), std::vector<std::string>{other.temporary().filename()});
+}
+
 TEST_F(OutputFolderTest, ReplacesAnEarlierOutputAndAnEmptyFolder) {
   writeText(folder / "out" / "mark", "old");
   writeText(folder / "out" / "data", "old");

@@ -43,6 +43,20 @@ TEST(RunFolder, ScenesOfOldRunsGoAndOtherFoldersStay) {
   EXPECT_EQ(names(folder / "run_00_scenes"), Names({"000001.3Dscene"}));
 }
 
+TEST(RunFolder, KnowsWhatAKilledRunLeft) {
+  const TempFolder folder;
+  const auto killed = [&] {
+    const RunFolder results(folder.path());
+    writeText(results.staged("run_00.tum"), "half");
+    ::_exit(9);
+  };
+  EXPECT_EXIT(killed(), testing::ExitedWithCode(9), "");
+  const RunFolder underWay(folder.path());
+  const RunFolder results(folder.path());
+  ASSERT_EQ(results.leftovers().size(), 1u);
+  EXPECT_EQ(readText(results.leftovers()[0] / "run_00.tum"), "half");
+}
+
 TEST(RunFolder, WithoutCommitTheOldStays) {
   const TempFolder folder;
   writeText(folder / "run_00.tum", "old");

@@ -1,8 +1,6 @@
 #include "io/file/AtomicFile.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -40,36 +38,6 @@ fs::path checkedTarget(const fs::path& path) {
   return named;
 }
 
-/// True for `TARGET.PID-NUMBER.tmp`.
-bool isTemporaryOf(const std::string& target, const std::string& name) {
-  const std::string begin = target + ".", end = ".tmp";
-  if (name.size() <= begin.size() + end.size() || name.compare(0, begin.size(), begin) != 0 ||
-      name.compare(name.size() - end.size(), end.size(), end) != 0)
-    return false;
-  const auto middle = name.substr(begin.size(), name.size() - begin.size() - end.size());
-  return middle.find_first_not_of("0123456789-") == std::string::npos;
-}
-
-/// Removes temporary files of a target that nobody has locked: a killed process left them.
-void removeLeftovers(const fs::path& target) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    if (!isTemporaryOf(target.filename().string(), entry.path().filename().string())) continue;
-    const int descriptor = ::open(entry.path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
-    if (descriptor < 0) continue;
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
-    ::close(descriptor);
-  }
-}
-
-/// Locks a new file. \return False when another process has removed it before.
-bool lock(int descriptor) {
-  struct stat status {};
-  ::flock(descriptor, LOCK_EX);  // where files cannot be locked, none are taken for leftovers
-  return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
-}
-
 thread_local AtomicFiles* t_together = nullptr;
 
 }  // namespace
@@ -80,24 +48,24 @@ TemporaryFile::TemporaryFile(fs::path target) : m_target(std::move(target)) {
   while (true) {
     m_path = m_target;
     m_path += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
-    m_lock = ::open(m_path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (m_lock >= 0 && lock(m_lock)) return;
-    if (m_lock >= 0)
-      ::close(m_lock);
-    else if (errno != EEXIST)  // a process on another machine may have our process id
+    const int made = ::open(m_path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (made < 0 && errno != EEXIST)  // a process on another machine may have our process id
       throw cannotWrite(m_target, std::strerror(errno));
+    if (made < 0) continue;
+    m_lock = PathLock(made);
+    std::error_code none;
+    if (fs::exists(m_path, none)) return;  // else it was taken for a leftover
   }
 }
 
 TemporaryFile::TemporaryFile(TemporaryFile&& other) noexcept
     : m_target(std::move(other.m_target)),
       m_path(std::exchange(other.m_path, {})),
-      m_lock(std::exchange(other.m_lock, -1)) {}
+      m_lock(std::move(other.m_lock)) {}
 
 TemporaryFile::~TemporaryFile() {
   std::error_code ignored;
   if (!m_path.empty()) fs::remove(m_path, ignored);
-  if (m_lock >= 0) ::close(m_lock);
 }
 
 void TemporaryFile::rename() {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file/Leftovers.h"
+
 namespace polemcl::io {
 
 /// \brief A file beside its target that nobody else writes, named `TARGET.….tmp`; removed unless it
@@ -28,7 +30,7 @@ class TemporaryFile {
 
  private:
   std::filesystem::path m_target, m_path;  ///< no path: renamed, or moved from
-  int m_lock = -1;                         ///< descriptor that holds the lock
+  PathLock m_lock;
 };
 
 /// \brief A file that appears under its name only once it is complete.

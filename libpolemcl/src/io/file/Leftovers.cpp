@@ -1,0 +1,75 @@
+#include "io/file/Leftovers.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <utility>
+
+namespace polemcl::io {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* s_ending = ".tmp";
+
+bool isLinked(int descriptor) {
+  struct stat status {};
+  return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+}
+
+}  // namespace
+
+PathLock::PathLock(const fs::path& path)
+    : PathLock(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)) {}
+
+PathLock::PathLock(int descriptor)
+    : m_descriptor(descriptor),
+      m_isHeld(descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 &&
+               isLinked(descriptor)) {}
+
+PathLock::~PathLock() {
+  if (m_descriptor >= 0) ::close(m_descriptor);
+}
+
+PathLock::PathLock(PathLock&& other) noexcept
+    : m_descriptor(std::exchange(other.m_descriptor, -1)),
+      m_isHeld(std::exchange(other.m_isHeld, false)) {}
+
+PathLock& PathLock::operator=(PathLock&& other) noexcept {
+  std::swap(m_descriptor, other.m_descriptor);
+  std::swap(m_isHeld, other.m_isHeld);
+  return *this;
+}
+
+std::vector<fs::path> leftoversIn(const fs::path& folder,
+                                  const std::function<bool(const std::string& name)>& isTemporary) {
+  std::vector<fs::path> leftovers;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (isTemporary(entry.path().filename().string()) && PathLock(entry.path()).isHeld())
+      leftovers.push_back(entry.path());
+  return leftovers;
+}
+
+bool isTemporaryOf(const std::string& target, const std::string& name) {
+  const std::string begin = target + ".", end = s_ending;
+  if (name.size() <= begin.size() + end.size() || name.compare(0, begin.size(), begin) != 0 ||
+      name.compare(name.size() - end.size(), end.size(), end) != 0)
+    return false;
+  const auto middle = name.substr(begin.size(), name.size() - begin.size() - end.size());
+  return middle.find_first_not_of("0123456789-") == std::string::npos;
+}
+
+void removeLeftovers(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  const std::string own = target.filename().string();
+  std::error_code none;
+  for (const fs::path& left :
+       leftoversIn(folder, [&](const std::string& name) { return isTemporaryOf(own, name); })) {
+    const PathLock lock(left);  // so that nobody begins to use it
+    if (lock.isHeld()) fs::remove_all(left, none);
+  }
+}
+
+}  // namespace polemcl::io

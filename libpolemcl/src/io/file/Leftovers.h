@@ -1,0 +1,44 @@
+#pragma once
+/// \file Leftovers.h
+/// \brief Tells the temporary files and folders of a running process from what a killed one left:
+/// the former are locked.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace polemcl::io {
+
+/// \brief A lock on a file or folder, until the object or the process ends.
+class PathLock {
+ public:
+  PathLock() = default;
+  /// \brief Locks what is there; isHeld() tells whether that worked.
+  explicit PathLock(const std::filesystem::path& path);
+  /// \brief Takes over an open descriptor.
+  explicit PathLock(int descriptor);
+  ~PathLock();
+  PathLock(PathLock&& other) noexcept;
+  PathLock& operator=(PathLock&& other) noexcept;
+  /// \brief False also when another process has removed the file or folder before it was locked.
+  bool isHeld() const { return m_isHeld; }
+
+ private:
+  int m_descriptor = -1;
+  bool m_isHeld = false;
+};
+
+/// \brief Files and folders in `folder` that nobody has locked.
+/// \param isTemporary Whether a name is one of ours.
+std::vector<std::filesystem::path> leftoversIn(
+    const std::filesystem::path& folder,
+    const std::function<bool(const std::string& name)>& isTemporary);
+
+/// \brief True for `TARGET.…tmp` with nothing but digits and dashes between.
+bool isTemporaryOf(const std::string& target, const std::string& name);
+
+/// \brief Removes what killed processes left of `target`, by the names of isTemporaryOf().
+void removeLeftovers(const std::filesystem::path& target);
+
+}  // namespace polemcl::io
