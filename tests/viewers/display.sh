@@ -48,6 +48,7 @@ open_display() {
   export DISPLAY
   openbox >/dev/null 2>&1 &
   running="$running $!"
+  wait_for 60 xdotool get_num_desktops >/dev/null 2>&1 || fail "openbox does not start"
 }
 
 # wait_for SECONDS COMMAND...: repeats the command until it succeeds, no longer than that.
