@@ -68,7 +68,10 @@ polemcl_package(doc polemcl-doc doc "" "Pole-based LiDAR localization: documents
 reports of experiments.")
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 if(POLEMCL_PYTHON)
-  polemcl_package(python python3-polemcl python "polemcl ${same}, python3 (>= 3.11), python3 (<< 3.12), python3-numpy"
+  # The module is for the Python that it was built with.
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(python "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next})")
+  polemcl_package(python python3-polemcl python "polemcl ${same}, ${python}, python3-numpy"
     "Pole-based LiDAR localization: Python module"
     "${method}This package holds the Python module, which takes and gives arrays of
 NumPy.")
