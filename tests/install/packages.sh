@@ -88,7 +88,8 @@ quietly as_user './extract/extract monday/velodyne/000040.bin | grep -q . && ./m
 echo "6/7 Removing the packages"
 # shellcheck disable=SC2086 # word splitting wanted
 apt_get purge $names
-apt_get autoremove --purge
+# Debian 13 keeps what others merely recommend or suggest.
+apt_get -o APT::AutoRemove::RecommendsImportant=0 -o APT::AutoRemove::SuggestsImportant=0 autoremove --purge
 inside dpkg --get-selections | cut -f1 | LC_ALL=C sort >"$dir/left"
 diff "$dir/installed" "$dir/left" >"$dir/log" || {
   cat "$dir/log" >&2
