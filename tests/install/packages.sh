@@ -44,8 +44,9 @@ quietly lintian --allow-root --fail-on error,warning --tag-display-limit 0 \
 echo "2/7 An empty Debian: $release"
 make_root
 quietly inside useradd --create-home walker
-# What only this test needs is there before.
-apt_get install g++ cmake make man-db bash-completion
+# What only this test needs is there before, and systemd, which every real Debian has: MRPT's packages bring it, and
+# apt never removes it.
+apt_get install g++ cmake make man-db bash-completion adduser systemd-sysv
 files >"$dir/before"
 inside dpkg --get-selections | cut -f1 | LC_ALL=C sort >"$dir/installed"
 
