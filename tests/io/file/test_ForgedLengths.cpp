@@ -167,7 +167,8 @@ TEST_F(ForgedLengths, InCompressedText) {
   for (std::size_t i = 0; i <= mostTextBytes / megabyte; ++i)
     gzwrite(stream, line.data(), static_cast<unsigned>(line.size()));
   gzclose(stream);
-  expectIn(refusal([&] { readLines(file); }, 4 * mostTextBytes), "a.txt.gz", "MB of text, uncompressed");
+  expectIn(refusal([&] { readLines(file); }, 4 * mostTextBytes), "a.txt.gz",
+           "MB of text, uncompressed");
 }
 
 }  // namespace polemcl::test_forged_lengths

@@ -160,8 +160,9 @@ TEST(BatchFiles, LatexTableHoldsThePapersColumns) {
             std::string::npos)
       << text;
   EXPECT_NE(text.find("two\\_2 & 25.0 & 0.400 & 0.800 & 0.800 & 1.600 \\\\\n"), std::string::npos);
-  EXPECT_NE(text.find("3 sessions, 2 runs of each, 2 wrong, 1 failed. paper: own data in the map.}"),
-            std::string::npos);
+  EXPECT_NE(
+      text.find("3 sessions, 2 runs of each, 2 wrong, 1 failed. paper: own data in the map.}"),
+      std::string::npos);
   EXPECT_NE(text.find("published results and those of this batch. Published: Evaluated at every"),
             std::string::npos);
   EXPECT_NE(text.find("This batch: \\emph{plain}: 3 sessions, 2 runs of each, 2 wrong, 1 failed. "

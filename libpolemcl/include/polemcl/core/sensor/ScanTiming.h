@@ -49,7 +49,8 @@ struct POLEMCL_EXPORT ScanTiming {
 /// \brief The words of INI files.
 POLEMCL_EXPORT const std::vector<std::pair<Turn, std::string>>& turnNames();
 
-/// \brief `turn`, `turn_s`, `cut_deg`, `moving_cut`, `stamp_turn`, `clock_offset_s` in the open section.
+/// \brief `turn`, `turn_s`, `cut_deg`, `moving_cut`, `stamp_turn`, `clock_offset_s` in the open
+/// section.
 POLEMCL_EXPORT void bindTiming(Binder& binder, ScanTiming& timing);
 
 }  // namespace polemcl
