@@ -14,7 +14,7 @@ namespace py = pybind11;
 namespace polemcl::apps::python {
 namespace {
 
-LocalizationMap localizationMap(const PoleMap& map, const Settings& settings) {
+LocalizationMap localizationMap(const PoleMap& map, const AllSettings& settings) {
   auto poleMap = std::make_shared<CPoleMap>();
   poleMap->likelihoodOptions = settings.likelihood;  // first: the index is prepared for its gate
   poleMap->setPoles(map.content.map.poles);
@@ -77,7 +77,7 @@ class Localizer {
   }
 
   std::mutex m_mutex;
-  Settings m_settings;
+  AllSettings m_settings;
   LocalizationPipeline m_pipeline;
   bool m_started = false;
 };
