@@ -56,7 +56,7 @@ struct Localizer::Impl {
 };
 
 LocalizationUpdate Localizer::Impl::step(const PoleFrame& frame) {
-  if (!isStarted) throw Error("the localizer was not started: call start() or startAnywhere()");
+  if (!isStarted) throw Error("the localizer has not been started: start it near a pose, or anywhere");
   LocalizationUpdate update = pipeline.step(frame);
   poles_robot = frame.poles_robot;
   return update;

@@ -96,7 +96,7 @@ TEST_F(LocalizerTest, AJumpOfTheOdometryIsBridged) {
 
 TEST_F(LocalizerTest, SaysWhatIsWrong) {
   Localizer own = localizer();
-  EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], {}); }), "call start() or startAnywhere()");
+  EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], {}); }), "has not been started");
   EXPECT_HAS(messageOf([&] { own.start({1e6, 0, 0}); }), "pole");
   own.startAnywhere();
   own.step(scans_poles[1], odometry[1]);
