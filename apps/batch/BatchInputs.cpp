@@ -37,7 +37,7 @@ std::string inputObstacle(const BatchSession& session, bool scored) {
   return what.empty() && scored ? truthObstacle(session) : what;
 }
 
-Settings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration) {
+AllSettings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration) {
   const std::string where = "batch " + spec.name + ": [setting " + configuration.name + "] ";
   if (!fs::is_regular_file(configuration.config))
     throw Error(

@@ -15,7 +15,7 @@ std::string inputObstacle(const BatchSession& session, bool scored);
 
 /// \brief The settings of a configuration. \throws Error as loadSettings(), naming batch and
 /// configuration, and when its config is not there.
-Settings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration);
+AllSettings settingsFor(const BatchSpec& spec, const BatchConfiguration& configuration);
 
 /// \brief Reads the published figures of a batch, if it has any. \throws Error as
 /// report::readPublishedSessions(), naming batch and key.

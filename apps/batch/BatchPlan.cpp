@@ -20,13 +20,13 @@ namespace {
 
 /// Least confidence of poles for maps where it is another than for localization, see
 /// loadMappingSession().
-std::string mapConfidence(const Settings& settings) {
+std::string mapConfidence(const AllSettings& settings) {
   const double map = settings.map.minConfidence, each = settings.extraction.scanLine.minConfidence;
   return map > 0 && map != each ? io::significant(map, 9) : "";
 }
 
 /// What the extraction depends on: configurations with the same text share their poles.
-std::string extractionText(Settings settings) {
+std::string extractionText(AllSettings settings) {
   ConfigWriter writer;
   bind(writer, settings.sensor);
   bind(writer, settings.extraction);
@@ -118,7 +118,7 @@ class Planner {
   }
 
   void freeze(const BatchConfiguration& configuration) {
-    const Settings settings = settingsFor(m_spec, configuration);
+    const AllSettings settings = settingsFor(m_spec, configuration);
     const auto [group, isNew] = m_groupOf.emplace(extractionText(settings), m_groups.size());
     m_group[configuration.name] = group->second;
     if (isNew) m_groups.push_back({configuration.name, mapConfidence(settings)});
@@ -156,7 +156,7 @@ class Planner {
   }
 
   void simulate(const BatchSession& session, BatchTask& task) {
-    Settings settings = loadSettings(session.input, session.set);
+    AllSettings settings = loadSettings(session.input, session.set);
     settings.simulation.detections = frozenCopy(settings.simulation.detections, task);
     settings.simulation.world.track = frozenCopy(settings.simulation.world.track, task);
     const std::string file = "settings/simulate." + session.name + ".ini";

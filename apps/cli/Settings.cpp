@@ -8,7 +8,7 @@ namespace polemcl::apps {
 namespace {
 
 /// The simulated LiDAR is the one that the extraction is told of.
-void shareSensor(Settings& settings) {
+void shareSensor(AllSettings& settings) {
   // What the extraction calls hdl64e are the angles of KITTI's unit, not those of the data sheet.
   settings.simulation.sensor =
       settings.sensor.model == "hdl64e" ? "hdl64e_kitti" : settings.sensor.model;
@@ -19,53 +19,29 @@ void shareSensor(Settings& settings) {
   settings.simulation.originZ = settings.sensor.originZ;
 }
 
-ConfigWriter written(const Settings& settings, Tier most) {
+ConfigWriter written(const AllSettings& settings, Tier most) {
   ConfigWriter writer(most);
-  Settings copy = settings;
+  AllSettings copy = settings;
   bind(writer, copy);
   return writer;
 }
 
 }  // namespace
 
-SequenceOptions Settings::reading() const {
-  SequenceOptions options;
-  options.extraction = poleExtraction();
-  options.motion = motion;
-  options.vehicle = vehicle;
-  return options;
-}
-
-void bind(Binder& binder, Settings& settings) {
-  bind(binder, settings.sensor);
-  bind(binder, settings.extraction);
-  bind(binder, settings.vehicle, settings.sensor, settings.extraction);
-  bind(binder, settings.map);
-  bind(binder, settings.upkeep);
-  bind(binder, settings.likelihood);
-  bind(binder, settings.motion);
-  bind(binder, settings.localization.filter);
-  bind(binder, settings.start);
-  bind(binder, settings.localization.tracking);
-  bind(binder, settings.localization.submap);
-  bind(binder, settings.global);
-  bind(binder, settings.localization.health);
-  bind(binder, settings.localization.search);
-  bind(binder, settings.localization.odometryMonitor);
-  bind(binder, settings.localization.odometryCalibration);
-  bind(binder, settings.runs);
+void bind(Binder& binder, AllSettings& settings) {
+  bind(binder, static_cast<SettingsValues&>(settings));
   bind(binder, settings.view);
   bind(binder, settings.simulation);
 }
 
-Settings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
+AllSettings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
   const std::string file = io::installedFile(path, "config").string();
   sayDetail("settings: " + file);
   return settingsFrom(ConfigFile::read(file), assignments);
 }
 
-Settings settingsFrom(ConfigFile file, const std::vector<std::string>& assignments) {
-  Settings settings;
+AllSettings settingsFrom(ConfigFile file, const std::vector<std::string>& assignments) {
+  AllSettings settings;
   for (const auto& assignment : assignments) file.set(assignment);
   ConfigReader reader(file);
   bind(reader, settings);
@@ -76,11 +52,11 @@ Settings settingsFrom(ConfigFile file, const std::vector<std::string>& assignmen
   return settings;
 }
 
-std::string settingsText(const Settings& settings, Tier most) {
+std::string settingsText(const AllSettings& settings, Tier most) {
   return written(settings, most).text();
 }
 
-void saveSettings(const Settings& settings, const std::string& path) {
+void saveSettings(const AllSettings& settings, const std::string& path) {
   written(settings, Tier::expert).save(path);
 }
 

@@ -173,7 +173,7 @@ void checkGroups(const PageBinder& binder) {
 
 std::map<std::string, std::string> settingsPages() {
   PageBinder binder;
-  Settings defaults;
+  AllSettings defaults;
   bind(binder, defaults);
   checkGroups(binder);
   std::map<std::string, std::string> pages;

@@ -13,7 +13,7 @@ namespace {
 
 /// A drive with what it needs to be looked at: the world is built again from its settings.
 struct LoadedDrive {
-  Settings settings;
+  AllSettings settings;
   std::unique_ptr<sim::SimulatedDrive> drive;
   sim::ObservedDrive observed;
 

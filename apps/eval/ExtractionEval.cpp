@@ -147,7 +147,7 @@ RepeatabilityScore evalRepeatability(const EvalRepeatabilityOptions& options) {
   return score;
 }
 
-RotationScore evalRotation(const EvalRotationOptions& options, const Settings& settings) {
+RotationScore evalRotation(const EvalRotationOptions& options, const AllSettings& settings) {
   if (options.every < 1) throw Error("--every 0 takes no scan: a number from 1 on is allowed");
   ObservationPoleExtractor source(settings.poleExtraction());
   PoleExtractor extractor(settings.sensor, settings.extraction);

@@ -49,6 +49,6 @@ struct EvalRotationOptions {
 };
 /// \brief Poles found again when a scan is turned about the vertical.
 /// \throws Error naming the file: a rawlog of poles instead of scans.
-RotationScore evalRotation(const EvalRotationOptions& options, const Settings& settings);
+RotationScore evalRotation(const EvalRotationOptions& options, const AllSettings& settings);
 
 }  // namespace polemcl::apps

@@ -95,7 +95,7 @@ struct FoundCandidate {
 };
 
 std::vector<FoundCandidate> findCandidates(const TrainingDrive& drive, std::size_t every,
-                                           const Settings& settings,
+                                           const AllSettings& settings,
                                            const Eigen::Matrix3d& R_robot_sensor) {
   ScanLineExtractor extractor(SensorModel(settings.sensor), settings.sensor,
                               settings.extraction.scanLine);
@@ -236,7 +236,7 @@ void requireOwnFrame(const SensorOptions& sensor) {
 
 }  // namespace
 
-CandidatesSummary writeCandidates(const CandidatesOptions& options, const Settings& settings) {
+CandidatesSummary writeCandidates(const CandidatesOptions& options, const AllSettings& settings) {
   requireOwnFrame(settings.sensor);
   const TrainingDrive drive(options, settings.sensor.timing);
   const auto found =

@@ -48,7 +48,7 @@ struct LabelledDrive {
 /// \brief Extracts the candidates of each scan, labels them and writes the table.
 /// \throws Error naming the file: no poses, unreadable scans or poles; a sensor that hangs or has
 ///         an origin of its own.
-CandidatesSummary writeCandidates(const CandidatesOptions& options, const Settings& settings);
+CandidatesSummary writeCandidates(const CandidatesOptions& options, const AllSettings& settings);
 
 /// \brief Reads a table of writeCandidates(). \throws Error with file and line.
 LabelledDrive readCandidates(const std::filesystem::path& file);

@@ -34,7 +34,7 @@ void writeRows(std::ostream& out, const PoleScan& scan) {
 }
 
 /// The settings of the LiDAR that made a scan.
-LidarOptions lidarOf(const mrpt::obs::CObservation& scan, const Settings& settings) {
+LidarOptions lidarOf(const mrpt::obs::CObservation& scan, const AllSettings& settings) {
   const auto named = settings.vehicle.indexOf(scan.sensorLabel);
   return named ? settings.vehicle.lidars[*named]
                : LidarOptions{"", settings.sensor, settings.extraction};
@@ -59,7 +59,7 @@ void addPoints(const mrpt::obs::CObservation& scan, const LidarOptions& lidar,
 }
 
 /// The points of the scan in the frame of its poles; z is 0 at the height of the first LiDAR.
-io::Cloud pointsOf(const PoleScan& scan, const Settings& settings) {
+io::Cloud pointsOf(const PoleScan& scan, const AllSettings& settings) {
   io::Cloud cloud;
   const double height = lidarOf(*scan.sources.front(), settings).sensor.height;
   for (const auto& source : scan.sources) {
@@ -73,7 +73,7 @@ io::Cloud pointsOf(const PoleScan& scan, const Settings& settings) {
 }
 
 /// The scan from above with the poles that were found in it.
-void drawFromAbove(const PoleScan& scan, const Settings& settings, const std::string& title,
+void drawFromAbove(const PoleScan& scan, const AllSettings& settings, const std::string& title,
                    const std::filesystem::path& png) {
   const io::Cloud cloud = pointsOf(scan, settings);
   report::ScanView view;
@@ -86,7 +86,7 @@ void drawFromAbove(const PoleScan& scan, const Settings& settings, const std::st
 }
 
 /// The steps of the range-image method; of the first LiDAR if there are several.
-void drawRangeImage(const PoleScan& scan, const Settings& settings, const std::string& title,
+void drawRangeImage(const PoleScan& scan, const AllSettings& settings, const std::string& title,
                     const std::filesystem::path& png) {
   const mrpt::obs::CObservation& source = *scan.sources.front();
   const LidarOptions lidar = lidarOf(source, settings);
@@ -94,7 +94,7 @@ void drawRangeImage(const PoleScan& scan, const Settings& settings, const std::s
   report::drawRangeImagePng({title, cloud.view(), lidar.sensor, lidar.extraction.rangeImage}, png);
 }
 
-void draw(const PoleScan& scan, const Settings& settings, const ExtractOptions& options) {
+void draw(const PoleScan& scan, const AllSettings& settings, const ExtractOptions& options) {
   const std::string number = std::to_string(scan.index);
   if (scan.stored)
     throw Error(options.input.string() + ": scan " + number + " holds poles, no points to draw");
@@ -132,7 +132,7 @@ void ExtractOptions::validate() const {
     throw Error("--output " + output.string() + ": the name must end in .rawlog");
 }
 
-ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
+ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& settings,
                             const ScanProgress& progress) {
   options.validate();
   SequenceOptions sequence = settings.reading();
@@ -174,7 +174,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const Settings& setti
 
 namespace {
 
-void runExtraction(const ExtractOptions& options, const Settings& settings, bool quiet) {
+void runExtraction(const ExtractOptions& options, const AllSettings& settings, bool quiet) {
   const auto summary = extractPoles(options, settings, Progress("extract", 0, quiet).updates());
   if (!quiet) print(summary, options);
   if (summary.counts.poles == 0)

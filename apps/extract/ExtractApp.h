@@ -44,7 +44,7 @@ struct ExtractSummary {
 /// \param progress May be empty.
 /// \throws Error as streamPoles(), when no scan has a valid point, and when the scan to be drawn is
 ///         not there, has no points or is one of poles.
-ExtractSummary extractPoles(const ExtractOptions& options, const Settings& settings,
+ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& settings,
                             const ScanProgress& progress = {});
 
 /// \brief The program. \return An ExitCode.

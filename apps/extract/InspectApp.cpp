@@ -155,7 +155,7 @@ ScanTiming azimuthAsTime(bool movingCut) {
   return {Turn::counterclockwise, 1, 0, 0, 0, movingCut};
 }
 
-std::optional<TimingEstimate> findTiming(const InspectOptions& options, Settings settings,
+std::optional<TimingEstimate> findTiming(const InspectOptions& options, AllSettings settings,
                                          bool movingCut, const ScanProgress& progress) {
   settings.sensor.timing = azimuthAsTime(movingCut);
   const PoleSequence drive = readPoleSequence(
@@ -183,7 +183,7 @@ std::optional<TimingEstimate> findTiming(const InspectOptions& options, Settings
 std::optional<TimingEstimate> findTiming(const InspectOptions& options, const Inspection& found,
                                          const ScanProgress& progress) {
   constexpr double nearBegin = M_PI / 6;  // cuts are searched in steps of half of it
-  const Settings settings = settingsFor(found);
+  const AllSettings settings = settingsFor(found);
   if (beginArc(found.sensor.orders) > s_movingArc) {
     auto moving = findTiming(options, settings, true, progress);
     if (moving && moving->timing.turn == found.sensor.orders.front().turn &&
@@ -197,7 +197,7 @@ std::optional<TimingEstimate> findTiming(const InspectOptions& options, const In
 }
 
 /// Only what was looked for: all other keys keep their defaults.
-void saveSensor(Settings settings, const std::filesystem::path& file) {
+void saveSensor(AllSettings settings, const std::filesystem::path& file) {
   ConfigWriter writer(Tier::tuning);
   bind(writer, settings.sensor);
   writer.save(file.string());
@@ -205,8 +205,8 @@ void saveSensor(Settings settings, const std::filesystem::path& file) {
 
 }  // namespace
 
-Settings settingsFor(const Inspection& inspection) {
-  Settings settings;
+AllSettings settingsFor(const Inspection& inspection) {
+  AllSettings settings;
   settings.sensor = inspection.sensor.options;
   if (inspection.timing &&
       (inspection.timing->timing.known() || inspection.timing->timing.clock != 0))

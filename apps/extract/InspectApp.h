@@ -34,7 +34,7 @@ struct Inspection {
 Inspection inspect(const InspectOptions& options, const ScanProgress& progress = {});
 
 /// \brief Defaults of all programs, with the sensor that was found, and its timing if it turns.
-Settings settingsFor(const Inspection& inspection);
+AllSettings settingsFor(const Inspection& inspection);
 
 /// \brief A table for people: beams, columns, view, mounting, which preset fits how well, timing.
 void printInspection(std::ostream& out, const Inspection& inspection);

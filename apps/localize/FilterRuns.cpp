@@ -31,12 +31,13 @@ void FilterRun::add(const LocalizationUpdate& update) {
   ++scans;
 }
 
-FilterRuns::FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
-                       const StartOptions& start, const RunOptions& runs) {
+FilterRuns::FilterRuns(const LocalizationMap& map, const SettingsValues& settings) {
+  const RunOptions& runs = settings.runs;
+  const StartOptions& start = settings.start;
   checkOptions(runs);
   const auto count = static_cast<std::size_t>(runs.runs);
   const auto particles =
-      static_cast<std::size_t>(std::max(start.particles, options.filter.particles));
+      static_cast<std::size_t>(std::max(start.particles, settings.localization.filter.particles));
   if (count * particles > mostParticles)
     throw Error(std::to_string(count) + " runs of " + std::to_string(particles) +
                 " particles side by side: at most " + std::to_string(mostParticles) +
@@ -47,11 +48,7 @@ FilterRuns::FilterRuns(const LocalizationMap& map, const LocalizationOptions& op
   forEachRun(count, [&](std::size_t i) {
     const auto begin = ScanClock::now();
     const std::uint32_t seed = runs.seed + static_cast<std::uint32_t>(i);
-    m_filters[i] = std::make_unique<LocalizationPipeline>(map, options, seed);
-    if (start.anywhere)
-      m_filters[i]->initializeGlobally();
-    else
-      m_filters[i]->start(start);
+    m_filters[i] = std::make_unique<Localizer>(Settings(settings), map, seed);
     m_results[i].seed = seed;
     m_results[i].seconds = secondsSince(begin);
   });

@@ -8,7 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include <polemcl/localizer/Localizer.h>
+#include "localizer/SettingsValues.h"
 
 namespace polemcl::apps {
 
@@ -41,8 +42,7 @@ class FilterRuns {
 
   /// \throws Error as LocalizationPipeline does, on its options and on the start, and on more than
   /// `mostParticles`.
-  FilterRuns(const LocalizationMap& map, const LocalizationOptions& options,
-             const StartOptions& start, const RunOptions& runs);
+  FilterRuns(const LocalizationMap& map, const SettingsValues& settings);
 
   /// \brief One scan more. \return What each run made of it, until the next call.
   /// \throws Error as LocalizationPipeline::step(); the runs are of no use then.
@@ -50,10 +50,12 @@ class FilterRuns {
 
   std::size_t size() const { return m_filters.size(); }
   const std::vector<FilterRun>& results() const { return m_results; }
-  const LocalizationPipeline& localization(std::size_t run) const { return *m_filters[run]; }
+  const LocalizationPipeline& localization(std::size_t run) const {
+    return m_filters[run]->pipeline();
+  }
 
  private:
-  std::vector<std::unique_ptr<LocalizationPipeline>> m_filters;
+  std::vector<std::unique_ptr<Localizer>> m_filters;
   std::vector<FilterRun> m_results;
   std::vector<FilterStep> m_steps;  ///< of the last scan, element i of run i
 };

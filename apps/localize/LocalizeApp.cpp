@@ -44,8 +44,8 @@ void setView(report::ViewOptions& view, const LocalizeJob& job) {
   view.validate();
 }
 
-Settings effectiveSettings(const LocalizeJob& job) {
-  Settings settings = loadSettings(job.config.string(), job.set);
+AllSettings effectiveSettings(const LocalizeJob& job) {
+  AllSettings settings = loadSettings(job.config.string(), job.set);
   if (job.runs) settings.runs.runs = *job.runs;
   if (job.seed) settings.runs.seed = *job.seed;
   if (job.particles) settings.localization.filter.particles = *job.particles;
@@ -59,13 +59,13 @@ Settings effectiveSettings(const LocalizeJob& job) {
 }
 
 /// What is known before the first scan; the truth gives the start where nothing else does.
-LocalizeFacts factsOf(const LocalizeJob& job, const Settings& settings, std::size_t mapPoles) {
-  LocalizeFacts facts{job, settings.localization, settings.start, "", settings.runs, {}, mapPoles};
-  if (facts.start.anywhere)
+LocalizeFacts factsOf(const LocalizeJob& job, const AllSettings& settings, std::size_t mapPoles) {
+  LocalizeFacts facts{job, settings, "", {}, mapPoles};
+  if (facts.settings.start.anywhere)
     facts.startSource = "anywhere";
   else if (!job.start.empty())
     facts.startSource = "command line";
-  else if (facts.start.pose)
+  else if (facts.settings.start.pose)
     facts.startSource = "configuration";
   else if (job.truth)
     facts.startSource = "truth";
@@ -76,14 +76,14 @@ LocalizeFacts factsOf(const LocalizeJob& job, const Settings& settings, std::siz
 }
 
 /// Times as fast as it was recorded; none: full speed. `[view] rate` is for windows only.
-std::optional<double> rateOf(const LocalizeJob& job, const Settings& settings) {
+std::optional<double> rateOf(const LocalizeJob& job, const AllSettings& settings) {
   if (job.isLive()) return 1;
   return job.rate || settings.view.live ? report::parseRate(settings.view.rate) : std::nullopt;
 }
 
 /// Streams the rawlog, or the sensors, to the player. A rawlog has no failure. A drive ends when
 /// its stream does; a rawlog is read to its end.
-LiveDriveResult play(const LocalizeJob& job, const Settings& settings, const RunView& view,
+LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const RunView& view,
                      LocalizePlayer& player, PoseStream* stream) {
   SequenceOptions options = settings.reading();
   options.allowTruncated = job.allowTruncated;
@@ -117,7 +117,7 @@ LiveDriveResult play(const LocalizeJob& job, const Settings& settings, const Run
   return streamSensors(drive, options, take);
 }
 
-void writeResults(RunFolder& folder, const LocalizeFacts& facts, const Settings& settings,
+void writeResults(RunFolder& folder, const LocalizeFacts& facts, const AllSettings& settings,
                   const LocalizeResult& result) {
   saveSettings(settings, folder.staged("config.ini").string());
   writeJson(folder.staged("timings.json"), timingsJson(result.timings));
@@ -141,7 +141,7 @@ void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) 
 }  // namespace
 
 LocalizeResult localize(const LocalizeJob& job) {
-  const Settings settings = effectiveSettings(job);
+  const AllSettings settings = effectiveSettings(job);
   const auto map = loadPoleMap(job.map, settings.likelihood);
   std::vector<StampedPose2D> truth;
   if (job.truth) truth = io::readPlanarTum(*job.truth);

@@ -38,14 +38,14 @@ void LocalizePlayer::take(const PoleScan& scan) {
 }
 
 void LocalizePlayer::begin(const PoleFrame& first) {
-  StartOptions& start = m_facts.start;
+  StartOptions& start = m_facts.settings.start;
   if (!start.anywhere && !start.pose) {
     start.pose = poseAt(*m_truth, first.time, longestTruthGap);
     if (!start.pose)
       throw Error(m_facts.job.truth->string() + ": the truth does not reach the first scan, at " +
                   std::to_string(first.time) + " s: set position_m and yaw_deg in [start]");
   }
-  m_runs = std::make_unique<FilterRuns>(m_map, m_facts.localization, start, m_facts.runs);
+  m_runs = std::make_unique<FilterRuns>(m_map, m_facts.settings);
   m_files.reserve(m_runs->size());
   for (std::size_t i = 0; i < m_runs->size(); ++i) m_files.emplace_back(m_folder, i, m_truth);
 }

@@ -101,17 +101,17 @@ Json inputs(const LocalizeFacts& facts) {
   if (!counts.lidars.empty()) json["lidars"] = lidarsJson(counts);
   json["poles_per_scan"] = static_cast<double>(counts.poles) / static_cast<double>(counts.scans);
   json["map_poles"] = facts.mapPoles;
-  json["particles"] = facts.localization.filter.particles;
-  json["seed"] = facts.runs.seed;
-  if (facts.start.anywhere) {
+  json["particles"] = facts.settings.localization.filter.particles;
+  json["seed"] = facts.settings.runs.seed;
+  if (facts.settings.start.anywhere) {
     json["start"] = "anywhere";
   } else {
-    const Pose2D& pose = *facts.start.pose;
+    const Pose2D& pose = *facts.settings.start.pose;
     json["start"] = {{"x", pose.x},
                      {"y", pose.y},
                      {"yaw_deg", pose.yaw / degree},
-                     {"radius_m", facts.start.radius},
-                     {"heading_deg", facts.start.heading / degree}};
+                     {"radius_m", facts.settings.start.radius},
+                     {"heading_deg", facts.settings.start.heading / degree}};
   }
   json["start_source"] = facts.startSource;
   return json;
@@ -172,7 +172,7 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
   std::snprintf(line, sizeof line,
                 "%zu scans, %.1f poles per scan, map of %zu poles, %zu runs of %d particles\n",
                 counts.scans, static_cast<double>(counts.poles) / static_cast<double>(counts.scans),
-                facts.mapPoles, result.runs.size(), facts.localization.filter.particles);
+                facts.mapPoles, result.runs.size(), facts.settings.localization.filter.particles);
   out << line;
   if (counts.truncated) out << "the rawlog is truncated: only its readable part was used\n";
   if (facts.job.isLive())

@@ -15,10 +15,8 @@ namespace polemcl::apps {
 /// \brief Everything the summary tells, gathered by localize().
 struct LocalizeFacts {
   LocalizeJob job;
-  LocalizationOptions localization;
-  StartOptions start;
+  SettingsValues settings;
   std::string startSource;  ///< `truth`, `configuration`, `command line` or `anywhere`
-  RunOptions runs;
   SequenceCounts counts;
   std::size_t mapPoles = 0;
 };

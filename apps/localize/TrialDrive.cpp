@@ -21,7 +21,7 @@ std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
 }
 
 TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
-  const Settings settings = loadSettings(files.config.string(), files.set);
+  const AllSettings settings = loadSettings(files.config.string(), files.set);
   TrialDrive drive{settings,
                    LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.global),
                    readPoleSequence(files.input.string(), settings.reading()).frames,

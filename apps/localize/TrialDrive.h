@@ -19,7 +19,7 @@ struct TrialDriveFiles {
 };
 
 struct TrialDrive {
-  Settings settings;
+  AllSettings settings;
   LocalizationMap map;
   std::vector<PoleFrame> frames;
   std::vector<Pose2D> truth;  ///< of each frame

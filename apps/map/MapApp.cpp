@@ -77,7 +77,7 @@ Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const 
   declare(cli, *job, *line);
   return {&cli, [job, line, work, name = cli.get_name()](bool quiet) {
             job->datum = datumOf(line->datum);
-            const Settings settings = loadSettings(line->config, line->set);
+            const AllSettings settings = loadSettings(line->config, line->set);
             Progress progress(name, 0, quiet);
             const auto summary = work(*job, settings, progress.updates());
             for (const std::string& warning : warningsOf(summary, *job))

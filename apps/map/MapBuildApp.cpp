@@ -19,7 +19,7 @@ constexpr double s_twin = 1;          ///< m; real poles seldom stand nearer to 
 constexpr double s_manyTwins = 0.25;  ///< share of the poles
 
 /// The sessions before; empty unless `add` is given.
-MapAccumulator accumulator(const MapBuildJob& job, const Settings& settings) {
+MapAccumulator accumulator(const MapBuildJob& job, const AllSettings& settings) {
   if (!job.add) return {settings.map, settings.upkeep};
   auto scans = io::readMapScans(*job.add);
   if (!scans)
@@ -54,7 +54,7 @@ void requireOdometry(const MappingSession& drive, const fs::path& input) {
 
 /// Moves the poses of all drives so that their poles stand where the inventory has them.
 AdjustedDrives adjust(std::vector<MappingSession>& drives, const std::vector<MapPole>& inventory,
-                      const Settings& settings) {
+                      const AllSettings& settings) {
   std::vector<DrivenScan> scans;
   for (const MappingSession& drive : drives)
     for (std::size_t i = 0; i < drive.scans.size(); ++i) {
@@ -171,8 +171,8 @@ void addShares(const MapBuildSummary& summary, std::map<std::string, std::string
   }
 }
 
-std::map<std::string, std::string> facts(const Settings& settings, const MapBuildSummary& summary,
-                                         const MapBuildJob& job,
+std::map<std::string, std::string> facts(const AllSettings& settings,
+                                         const MapBuildSummary& summary, const MapBuildJob& job,
                                          const std::optional<io::Datum>& datum) {
   std::string names;
   for (const MapBuildSummary::Session& session : summary.sessions)
@@ -196,7 +196,7 @@ std::map<std::string, std::string> facts(const Settings& settings, const MapBuil
 
 }  // namespace
 
-MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
+MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress) {
   job.validate();
   MapBuildSummary summary;

@@ -57,7 +57,7 @@ struct MapBuildSummary {
 ///         scans of an input; when no scan is usable; when no pole was found (names the section
 ///         length, the scan spacing and the counts); when `add` keeps no scans, or ones chosen by
 ///         another `unvisited_m`, or has another datum.
-MapBuildSummary buildMap(const MapBuildJob& job, const Settings& settings,
+MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress = {});
 
 /// \brief Signs that the poses are wrong: poles that contradict them, many twins. Also in the map's

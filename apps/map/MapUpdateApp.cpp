@@ -74,7 +74,8 @@ const char* name(PoseKind kind) {
 }
 
 std::map<std::string, std::string> updateFacts(std::map<std::string, std::string> info,
-                                               const MapUpdateJob& job, const Settings& settings) {
+                                               const MapUpdateJob& job,
+                                               const AllSettings& settings) {
   std::string& updates = info["updates"];
   for (const auto& input : job.inputs)
     updates += (updates.empty() ? "" : " ") + input.filename().string();
@@ -126,7 +127,7 @@ Json summaryJson(const MapUpdateSummary& summary, const MapUpdateJob& job) {
 
 }  // namespace
 
-MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings,
+MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& settings,
                                const ScanProgress& progress) {
   job.validate();
   const io::PoleMapData before = io::readPoleMap(job.map);

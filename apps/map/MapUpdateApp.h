@@ -31,7 +31,7 @@ struct MapUpdateSummary {
 ///         the map's; when a session has no usable scan; when fewer than a fifth of at least ten
 ///         map poles in free view were found: a session of another place, or of another datum, must
 ///         not spoil a map; when no scan is left because the localizer was not `ok`.
-MapUpdateSummary updateMapFile(const MapUpdateJob& job, const Settings& settings,
+MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& settings,
                                const ScanProgress& progress = {});
 
 /// \brief What the program prints.

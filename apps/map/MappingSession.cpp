@@ -44,7 +44,7 @@ void requireCovered(const MappingSession& session, const SessionFiles& files,
 }
 
 /// A doubtful detection is worth keeping where others can confirm it.
-SequenceOptions readingOf(const Settings& settings) {
+SequenceOptions readingOf(const AllSettings& settings) {
   SequenceOptions options = settings.reading();
   if (settings.map.minConfidence <= 0) return options;
   options.extraction.extraction.scanLine.minConfidence = settings.map.minConfidence;
@@ -65,7 +65,7 @@ void requireTimeGoesOn(const SessionFiles& files, const PoleSequence& sequence) 
 
 }  // namespace
 
-MappingSession loadMappingSession(const SessionFiles& files, const Settings& settings,
+MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& settings,
                                   bool allowTruncated, const ScanProgress& progress) {
   const SessionPoses poses(files.kind, files.poses);
   SequenceOptions options = readingOf(settings);

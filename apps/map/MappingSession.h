@@ -72,7 +72,7 @@ struct MappingSession {
 /// \param progress May be empty.
 /// \throws Error as readPoleSequence() and SessionPoses; when less than half of the scans have a
 ///         pose; when the time of a scan is not later than that of the one before.
-MappingSession loadMappingSession(const SessionFiles& files, const Settings& settings,
+MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& settings,
                                   bool allowTruncated, const ScanProgress& progress);
 
 /// \brief A line for each count above 0.

@@ -19,7 +19,7 @@ namespace polemcl::apps::python {
 /// \param values `section.key` -> value, in the place of the file's. Text, numbers, true or false,
 ///        or a list of numbers.
 /// \throws Error as loadSettings().
-Settings settingsFrom(const std::filesystem::path& configFile, const pybind11::dict& values);
+AllSettings settingsFrom(const std::filesystem::path& configFile, const pybind11::dict& values);
 
 void addExtraction(pybind11::module_& module);    ///< PoleExtractor
 void addMaps(pybind11::module_& module);          ///< PoleMap, PoleMapBuilder, PoleLikelihood

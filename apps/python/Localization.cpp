@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include <polemcl/localizer/Localizer.h>
 #include "python/Arrays.h"
 #include "python/Classes.h"
 #include "python/Maps.h"
@@ -14,38 +14,29 @@ namespace py = pybind11;
 namespace polemcl::apps::python {
 namespace {
 
-LocalizationMap localizationMap(const PoleMap& map, const Settings& settings) {
+LocalizationMap localizationMap(const PoleMap& map, const AllSettings& settings) {
   auto poleMap = std::make_shared<CPoleMap>();
   poleMap->likelihoodOptions = settings.likelihood;  // first: the index is prepared for its gate
   poleMap->setPoles(map.content.map.poles);
   return {poleMap, settings.global};
 }
 
-/// What pole-localize does in one run.
-class Localizer {
+/// A polemcl::Localizer with its lock.
+class DriveLocalizer {
  public:
-  Localizer(const std::shared_ptr<PoleMap>& map, const std::filesystem::path& configFile,
-            const py::dict& values, std::optional<std::uint32_t> seed)
+  DriveLocalizer(const std::shared_ptr<PoleMap>& map, const std::filesystem::path& configFile,
+                 const py::dict& values, std::optional<std::uint32_t> seed)
       : m_settings(settingsFrom(configFile, values)),
-        m_pipeline(localizationMap(*map, m_settings), m_settings.localization,
-                   seed.value_or(m_settings.runs.seed)) {}
+        m_localizer(Settings(m_settings), localizationMap(*map, m_settings),
+                    seed.value_or(m_settings.runs.seed)) {}
 
   void start(const py::object& pose, std::optional<double> radius, std::optional<double> heading) {
-    StartOptions start = m_settings.start;
-    start.pose = poseFrom(pose, "pose");
-    start.radius = radius.value_or(start.radius);
-    start.heading = heading.value_or(start.heading);
-    alone(m_mutex, [&] {
-      m_pipeline.start(start);
-      m_started = true;
-    });
+    const Pose2D at = poseFrom(pose, "pose");
+    alone(m_mutex, [&] { m_localizer.start(at, radius, heading); });
   }
 
-  void initializeGlobally() {
-    alone(m_mutex, [&] {
-      m_pipeline.initializeGlobally();
-      m_started = true;
-    });
+  void startAnywhere() {
+    alone(m_mutex, [&] { m_localizer.startAnywhere(); });
   }
 
   LocalizationUpdate step(double time, const py::object& motion, const py::object& covariance,
@@ -55,17 +46,13 @@ class Localizer {
     frame.poles_robot = detectionsFrom(poles);
     if (!motion.is_none()) frame.motion = motionFrom(motion, covariance);
     if (!velocity.is_none()) frame.velocity = velocityFrom(velocity);
-    return alone(m_mutex, [&] {
-      if (!m_started)
-        throw Error(
-            "the localization has not been started: call start() or initialize_globally() first");
-      return m_pipeline.step(frame);
-    });
+    return alone(m_mutex, [&] { return m_localizer.step(frame); });
   }
 
   py::array particles() {
     return toArray(alone(m_mutex, [&] {
-      return m_pipeline.hasPose() ? m_pipeline.filter().particles() : std::vector<Pose2D>();
+      const LocalizationPipeline& pipeline = m_localizer.pipeline();
+      return pipeline.hasPose() ? pipeline.filter().particles() : std::vector<Pose2D>();
     }));
   }
 
@@ -77,9 +64,8 @@ class Localizer {
   }
 
   std::mutex m_mutex;
-  Settings m_settings;
-  LocalizationPipeline m_pipeline;
-  bool m_started = false;
+  AllSettings m_settings;
+  Localizer m_localizer;
 };
 
 const char* nameOf(OdometryVerdict verdict) {
@@ -139,25 +125,27 @@ void addUpdate(py::module_& module) {
 
 void addLocalization(py::module_& module) {
   addUpdate(module);
-  py::class_<Localizer>(module, "Localizer", "Localizes one drive, as a run of pole-localize does.")
+  py::class_<DriveLocalizer>(module, "Localizer",
+                             "Localizes one drive, as a run of pole-localize does.")
       .def(py::init<const std::shared_ptr<PoleMap>&, const std::filesystem::path&, const py::dict&,
                     std::optional<std::uint32_t>>(),
            py::arg("map").none(false), py::arg("config_file") = "",
            py::arg("settings") = py::dict(), py::arg("seed") = py::none(),
            "seed: None takes that of [runs].")
-      .def("start", &Localizer::start, py::arg("pose"), py::arg("radius") = py::none(),
+      .def("start", &DriveLocalizer::start, py::arg("pose"), py::arg("radius") = py::none(),
            py::arg("heading") = py::none(),
            "pose: x, y (m), yaw (rad) at the first scan, right within radius (m) and heading "
            "(rad); None takes those of [start].")
-      .def("initialize_globally", &Localizer::initializeGlobally,
+      .def("start_anywhere", &DriveLocalizer::startAnywhere,
            "No pose is known: the whole map is searched during the drive.")
-      .def("step", &Localizer::step, py::arg("time"), py::arg("motion"), py::arg("covariance"),
+      .def("initialize_globally", &DriveLocalizer::startAnywhere, "The former name.")
+      .def("step", &DriveLocalizer::step, py::arg("time"), py::arg("motion"), py::arg("covariance"),
            py::arg("poles"), py::arg("velocity") = py::none(),
            "The next scan. time: s; motion: x, y, yaw since the scan before, in the frame of the "
            "robot then, None for the first scan; covariance: (3, 3) of it, None: by [motion]; "
            "poles: of PoleExtractor; velocity: x, y (m/s), yaw (rad/s) at the scan, None: as the "
            "motions tell. Returns a LocalizationUpdate.")
-      .def_property_readonly("particles", &Localizer::particles,
+      .def_property_readonly("particles", &DriveLocalizer::particles,
                              "(n, 3): x, y, yaw of the particles; n = 0 while no pose is known.");
 }
 

@@ -21,7 +21,7 @@ std::string textOf(const py::handle& value) {
 
 }  // namespace
 
-Settings settingsFrom(const fs::path& configFile, const py::dict& values) {
+AllSettings settingsFrom(const fs::path& configFile, const py::dict& values) {
   std::vector<std::string> assignments;
   for (const auto& [key, value] : values)
     assignments.push_back(std::string(py::str(key)) + "=" + textOf(value));

@@ -17,8 +17,8 @@
 namespace polemcl::apps {
 namespace {
 
-Settings simulationSettings(const SimulateOptions& options) {
-  Settings settings = loadSettings(options.config.string(), options.set);
+AllSettings simulationSettings(const SimulateOptions& options) {
+  AllSettings settings = loadSettings(options.config.string(), options.set);
   sim::SimulationOptions& simulation = settings.simulation;
   if (options.seed) simulation.world.seed = *options.seed;
   if (options.day) simulation.world.day = *options.day;
@@ -64,7 +64,7 @@ std::vector<std::string> sensorNames() {
 }  // namespace
 
 sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet) {
-  const Settings settings = simulationSettings(options);
+  const AllSettings settings = simulationSettings(options);
   OutputFolder folder(*options.output, "a simulated drive", folderNames, folderMarker);
   saveSettings(settings, (folder.temporary() / "config.ini").string());
   Progress progress("simulate", 0, quiet);
@@ -76,7 +76,7 @@ sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet)
 
 PoleDriveSummary simulatePoles(const SimulateOptions& options, bool quiet) {
   const PoleDriveFiles files = poleDriveFiles(*options.poles);
-  const Settings settings = simulationSettings(options);
+  const AllSettings settings = simulationSettings(options);
   if (options.output && !settings.simulation.detections.empty())
     throw Error(options.config.string() +
                 ": [simulation] detections samples poles without scans, so --output has nothing to "

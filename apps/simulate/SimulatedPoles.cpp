@@ -53,7 +53,7 @@ class PoleDriveWriter {
     m_summary.points += observation->points;
   }
 
-  PoleDriveSummary commit(const sim::World& world, const Settings& settings) {
+  PoleDriveSummary commit(const sim::World& world, const AllSettings& settings) {
     io::writeTum(m_truth.temporaryPath(), m_poses);
     sim::writeTruePoles(m_files.poles, world.poles());
     saveSettings(settings, m_files.config.string());
@@ -112,7 +112,7 @@ PoleDriveFiles poleDriveFiles(const std::filesystem::path& rawlog) {
   return {rawlog, beside(".tum"), beside("_poles_gt.csv"), beside("_config.ini")};
 }
 
-PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const Settings& settings,
+PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const AllSettings& settings,
                            const PoleDriveFiles& files, const sim::ScanFolderWriter* folder,
                            const std::function<void(std::size_t)>& progress) {
   const ObservationPoleExtractorOptions options = settings.poleExtraction();
@@ -133,7 +133,7 @@ PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const Settings& set
   return writer.commit(drive.world(), settings);
 }
 
-PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const Settings& settings,
+PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const AllSettings& settings,
                              const PoleDriveFiles& files,
                              const std::function<void(std::size_t)>& progress) {
   const std::string& file = drive.options().detections;

@@ -36,14 +36,14 @@ struct PoleDriveSummary {
 /// \param folder Also gets every scan when given.
 /// \param progress Called with the number of scans done.
 /// \throws Error when a file cannot be written, or `[extraction]` refuses the scans.
-PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const Settings& settings,
+PoleDriveSummary castPoles(const sim::SimulatedDrive& drive, const AllSettings& settings,
                            const PoleDriveFiles& files, const sim::ScanFolderWriter* folder,
                            const std::function<void(std::size_t)>& progress = {});
 
 /// \brief Draws the poles of each scan from the model `[simulation] detections` instead, and writes
 /// them as castPoles(). \throws Error naming the model's file: cannot be read, or is of another
 /// LiDAR.
-PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const Settings& settings,
+PoleDriveSummary samplePoles(const sim::SimulatedDrive& drive, const AllSettings& settings,
                              const PoleDriveFiles& files,
                              const std::function<void(std::size_t)>& progress = {});
 

@@ -10,7 +10,7 @@
 namespace polemcl::test_bindings {
 namespace {
 
-using apps::Settings;
+using apps::AllSettings;
 
 /// A key with its section, value and what is allowed, as the writer gives them.
 struct WrittenKey {
@@ -18,7 +18,7 @@ struct WrittenKey {
   std::string value, allowed;
 };
 
-std::string written(Settings settings) {
+std::string written(AllSettings settings) {
   ConfigWriter writer;
   bind(writer, settings);
   return writer.text();
@@ -48,19 +48,19 @@ std::vector<WrittenKey> keys(const std::string& text) {
 }
 
 /// Settings from assignments `section.key=value`.
-Settings loadWith(const std::vector<std::string>& assignments) {
+AllSettings loadWith(const std::vector<std::string>& assignments) {
   ConfigFile file = ConfigFile::fromText("", "t.ini");
   for (const auto& assignment : assignments) file.set(assignment);
   ConfigReader reader(file);
-  Settings settings;
+  AllSettings settings;
   bind(reader, settings);
   reader.finish();
   return settings;
 }
 
-Settings load(const std::string& text) {
+AllSettings load(const std::string& text) {
   ConfigReader reader(ConfigFile::fromText(text, "t.ini"));
-  Settings settings;
+  AllSettings settings;
   bind(reader, settings);
   reader.finish();
   return settings;
@@ -104,7 +104,7 @@ const std::vector<std::string> s_base{"map.every_scan=false", "tracking.average=
                                       "likelihood.weighted=false"};
 
 TEST(Bindings, DefaultsSurvive) {
-  const std::string text = written(Settings());
+  const std::string text = written(AllSettings());
   EXPECT_EQ(written(load(text)), text);
 }
 
@@ -143,7 +143,7 @@ TEST(Bindings, EachKeyOfEachSectionHasAFieldOfItsOwn) {
 }
 
 TEST(Bindings, ReadsHandPickedValues) {
-  const Settings all = load(
+  const AllSettings all = load(
       "[sensor]\nmodel = table\nelevations_deg = 10 0 -10\ncolumns = 900\nheight_m = 1.2\n"
       "origin = 0 0 0.957\nupside_down = true\n"
       "[extraction]\nmethod = range_image\n"
@@ -238,19 +238,19 @@ TEST(Bindings, CheckStructsAsTheyCheckFiles) {
 
 // A program of others binds what it needs; the reader knows all sections of our programs.
 TEST(Bindings, SectionsOfAllProgramsArePassedOver) {
-  const ConfigFile file = ConfigFile::fromText(written(Settings()), "config.ini");
+  const ConfigFile file = ConfigFile::fromText(written(AllSettings()), "config.ini");
   ConfigReader reader(file);
-  Settings settings;
+  AllSettings settings;
   bind(reader, settings.sensor);
   EXPECT_NO_THROW(reader.finish());
 }
 
 TEST(Bindings, TiersFollowEachOther) {
-  const auto count = [](Tier most) { return keys(settingsText(Settings(), most)).size(); };
+  const auto count = [](Tier most) { return keys(settingsText(AllSettings(), most)).size(); };
   EXPECT_LT(count(Tier::sensor), 25u);
   EXPECT_LT(count(Tier::sensor), count(Tier::tuning));
   EXPECT_LT(count(Tier::tuning), count(Tier::expert));
-  EXPECT_EQ(settingsText(Settings(), Tier::expert), written(Settings()));
+  EXPECT_EQ(settingsText(AllSettings(), Tier::expert), written(AllSettings()));
 }
 
 }  // namespace

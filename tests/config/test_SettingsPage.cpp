@@ -57,7 +57,7 @@ TEST(SettingsPage, EachKeyOfAnIniFileIsOnOnePage) {
         shown.insert(section + line.substr(3, line.find('`', 3) - 3));
     }
   }
-  std::istringstream ini(apps::settingsText(apps::Settings{}));
+  std::istringstream ini(apps::settingsText(apps::AllSettings{}));
   std::size_t keys = 0;
   std::string section;
   for (std::string line; std::getline(ini, line);) {

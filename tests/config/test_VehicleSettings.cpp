@@ -7,9 +7,9 @@
 namespace polemcl::test_vehicle_settings {
 namespace {
 
-using apps::Settings;
+using apps::AllSettings;
 
-Settings load(const std::string& text) {
+AllSettings load(const std::string& text) {
   return apps::settingsFrom(ConfigFile::fromText(text, "t.ini"), {});
 }
 
@@ -29,7 +29,7 @@ const std::string s_two =
     "[scan_line:front]\nmin_points = 7\n[range_image:front]\nrows = 16\n";
 
 TEST(VehicleSettings, ALidarHasWhatItsSectionsSayAndElseWhatAllHave) {
-  const Settings all = load(s_two);
+  const AllSettings all = load(s_two);
   ASSERT_EQ(all.vehicle.lidars.size(), 2u);
   const LidarOptions &front = all.vehicle.lidars[0], &rear = all.vehicle.lidars[1];
   EXPECT_EQ(front.label, "front");
@@ -50,7 +50,7 @@ TEST(VehicleSettings, ALidarHasWhatItsSectionsSayAndElseWhatAllHave) {
 }
 
 TEST(VehicleSettings, WrittenSettingsAreReadBackTheSame) {
-  const Settings all = load(s_two);
+  const AllSettings all = load(s_two);
   const std::string text = apps::settingsText(all);
   EXPECT_HAS(text, "[sensor:os/rear.1]");
   EXPECT_HAS(text, "pose = -1 0.2 1.5 180 5 0");
@@ -58,7 +58,7 @@ TEST(VehicleSettings, WrittenSettingsAreReadBackTheSame) {
 }
 
 TEST(VehicleSettings, AssignmentsReachTheSectionsOfALidar) {
-  const Settings all =
+  const AllSettings all =
       apps::settingsFrom(ConfigFile::fromText(s_two, "t.ini"), {"sensor:os/rear.1.height_m=2.5"});
   EXPECT_EQ(all.vehicle.lidars[1].sensor.height, 2.5);
   EXPECT_EQ(all.vehicle.lidars[0].sensor.height, 1.2);

@@ -50,6 +50,7 @@ const std::vector<std::string> s_order{
     "mrpt/rawlog",
     "mrpt/filter",
     "mrpt/live",
+    "localizer",
     "sim/common",
     "sim/world",
     "sim/lidar",

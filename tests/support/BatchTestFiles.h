@@ -3,24 +3,14 @@
 /// \brief Batches for tests: files of simulated sessions, plans of made-up tasks.
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include <polemcl/core/common/Types.h>
 #include "batch/BatchPlan.h"
+#include "support/Refusal.h"
 #include "support/TempFolder.h"
 
 namespace testing_apps {
-
-inline std::string messageOf(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const polemcl::Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 /// A batch of three short simulated drives with sampled poles, two runs with two configurations.
 inline fs::path writeStreetBatch(const TempFolder& folder) {

@@ -18,7 +18,7 @@ class StreetTest : public testing::Test {
               "[likelihood]\nsigma_m = 0.15\nweighted = false\n");
   }
   std::string config() const { return (configFolder / "street.ini").string(); }
-  polemcl::apps::Settings settings() const { return polemcl::apps::loadSettings(config()); }
+  polemcl::apps::AllSettings settings() const { return polemcl::apps::loadSettings(config()); }
   std::string at(const std::string& name) const { return (folder / name).string(); }
 
   /// Imports `folder/NAME` as `folder/NAME.rawlog` and `folder/NAME.tum`.

@@ -7,6 +7,8 @@
 #include <polemcl/io/data/Cloud.h>
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/io/map/PoleMapFile.h>
+#include <polemcl/localizer/Localizer.h>
+#include <polemcl/localizer/Settings.h>
 #include <polemcl/mrpt/common/Compatibility.h>
 #include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/filter/FilterOptions.h>

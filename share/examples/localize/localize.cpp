@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
 #include <string>
 
 #include <polemcl/polemcl.h>
@@ -11,38 +10,27 @@
 int main(int count, char** arguments) try {
   if (count != 6) throw polemcl::Error("usage: localize FOLDER MAP.polemap X Y YAW");
   const std::string folder = arguments[1];
-  polemcl::SensorOptions sensor;
-  sensor.model = "hdl32e";
-  sensor.height = 1.0;
-  polemcl::PoleExtractor extractor(sensor, polemcl::ExtractionOptions());
-  auto map = std::make_shared<polemcl::CPoleMap>();
-  map->loadFromPoleMapFile(arguments[2]);
-  const polemcl::LocalizationOptions options;
-  polemcl::LocalizationPipeline pipeline({map, polemcl::GlobalOptions()}, options, 1);
-  polemcl::StartOptions start;
-  start.pose =
-      polemcl::Pose2D{std::atof(arguments[3]), std::atof(arguments[4]), std::atof(arguments[5])};
-  pipeline.start(start);
+  polemcl::Localizer localizer(polemcl::Settings("hdl32e.ini"), arguments[2]);
+  localizer.start({std::atof(arguments[3]), std::atof(arguments[4]), std::atof(arguments[5])});
 
-  std::ifstream times(folder + "/times.txt"), odometry(folder + "/odometry.txt");
-  std::string heading;
-  std::getline(odometry, heading);
-  polemcl::PoleFrame frame;
-  frame.motion = polemcl::io::PlanarMotion();  // none before the first scan
-  for (int i = 0; times >> frame.time; ++i) {
+  std::ifstream times(folder + "/times.txt"), motions(folder + "/odometry.txt");
+  std::string line;
+  std::getline(motions, line);  // heading
+  polemcl::Pose2D odometry;     // the way of the robot, as its wheels tell it
+  double time = 0;
+  for (int i = 0; times >> time; ++i) {
     char name[32];
     std::snprintf(name, sizeof name, "/velodyne/%06d.bin", i);
-    frame.poles_robot = extractor.extract(polemcl::io::readKittiBin(folder + name).view());
-    const auto update = pipeline.step(frame);
+    const polemcl::io::Cloud cloud = polemcl::io::readKittiBin(folder + name);
+    const auto update = localizer.step(time, cloud.view(), odometry);
     if (update.estimate) {
       const polemcl::Pose2D& pose = update.estimate->mean;
-      std::printf("%.3f %.3f %.3f %.4f\n", frame.time, pose.x, pose.y, pose.yaw);
+      std::printf("%.3f %.3f %.3f %.4f\n", time, pose.x, pose.y, pose.yaw);
     }
-    polemcl::Pose2D moved, sigma;  // from this scan to the next: the row of the next one
-    odometry >> moved.x >> moved.y >> moved.yaw >> sigma.x >> sigma.y >> sigma.yaw;
-    frame.motion->mean = moved;
-    frame.motion->covariance.diagonal() << sigma.x * sigma.x, sigma.y * sigma.y,
-        sigma.yaw * sigma.yaw;
+    polemcl::Pose2D moved;  // from this scan to the next
+    motions >> moved.x >> moved.y >> moved.yaw;
+    std::getline(motions, line);  // how exact that is
+    odometry = compose(odometry, moved);
   }
   return 0;
 } catch (const polemcl::Error& error) {

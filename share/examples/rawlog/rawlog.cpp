@@ -3,38 +3,13 @@
 // and health of each scan. With the config.ini of a pole-localize the poses are the same.
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include <polemcl/polemcl.h>
 
 int main(int count, char** arguments) try {
   if (count != 4) throw polemcl::Error("usage: rawlog DRIVE.rawlog MAP.polemap SETTINGS.ini");
-  polemcl::SequenceOptions reading;
-  auto map = std::make_shared<polemcl::CPoleMap>();
-  polemcl::LocalizationOptions options;
-  polemcl::GlobalOptions global;
-  polemcl::StartOptions start;
-  polemcl::RunOptions runs;
-  polemcl::ConfigReader reader(polemcl::ConfigFile::readInstalled(arguments[3]));
-  bind(reader, reading.extraction.sensor);
-  bind(reader, reading.extraction.extraction);
-  bind(reader, reading.vehicle, reading.extraction.sensor, reading.extraction.extraction);
-  bind(reader, reading.motion);
-  bind(reader, map->likelihoodOptions);  // before the map is loaded: its index is made for them
-  bind(reader, options);
-  bind(reader, global);
-  bind(reader, start);
-  bind(reader, runs);
-  reader.finish();
-
-  map->loadFromPoleMapFile(arguments[2]);
-  polemcl::LocalizationPipeline pipeline({map, global}, options, runs.seed);
-  if (start.anywhere)
-    pipeline.initializeGlobally();
-  else
-    pipeline.start(start);
-  polemcl::streamPoles(arguments[1], reading, [&](const polemcl::PoleScan& scan) {
-    const auto update = pipeline.step(polemcl::frameOf(scan));
+  polemcl::Localizer localizer(polemcl::Settings(arguments[3]), arguments[2]);
+  localizer.play(arguments[1], [](const polemcl::LocalizationUpdate& update) {
     if (!update.estimate) return;  // not found yet
     const auto& [pose, covariance] = *update.estimate;
     const double sigma = std::sqrt((covariance(0, 0) + covariance(1, 1)) / 2);

@@ -92,7 +92,7 @@ TEST(Settings, TheMendedPaperDiffersInOneHeight) {
 }
 
 TEST(Settings, KnowsEverySection) {
-  const Settings defaults;
+  const AllSettings defaults;
   std::istringstream lines(settingsText(defaults));
   std::vector<std::string> sections;
   for (std::string line; std::getline(lines, line);)

@@ -119,7 +119,7 @@ TEST_F(ClassifierTraining, RefusesOtherTables) {
 }
 
 TEST_F(ClassifierTraining, CandidatesOfASimulatedStreetAreLabelledByItsPoles) {
-  Settings settings = this->settings();
+  AllSettings settings = this->settings();
   settings.simulation.sensor = "hdl32e";
   settings.simulation.world.length = 80;
   settings.simulation.spacing = 8;
@@ -171,7 +171,7 @@ TEST_F(ClassifierTraining, CandidatesNeedPosesAndTheLidarsOwnFrame) {
   options.scans = folder / "nothing";
   options.output = folder / "out.csv";
   EXPECT_THROW(writeCandidates(options, settings()), Error);
-  Settings hanging = settings();
+  AllSettings hanging = settings();
   hanging.sensor.upsideDown = true;
   EXPECT_THROW(writeCandidates(options, hanging), Error);
 }

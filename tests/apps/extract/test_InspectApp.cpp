@@ -106,7 +106,7 @@ TEST_F(InspectApp, WritesAConfigurationThatExtracts) {
   EXPECT_TRUE(has(outcome.out, "fits              model = hdl32e")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "tilt")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "no odometry between all scans; --truth S.tum")) << outcome.out;
-  const Settings settings = loadSettings(at("found.ini"));
+  const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
   EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
   const std::string text = readText(folder / "found.ini");
@@ -124,7 +124,7 @@ TEST_F(InspectApp, WritesATableOfTwoBlocks) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(has(outcome.out, "block of 32 starting")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "no preset")) << outcome.out;
-  const Settings settings = loadSettings(at("found.ini"));
+  const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.elevations.size(), 32u);
   EXPECT_EQ(settings.sensor.lowerElevations.size(), 32u);
   EXPECT_NEAR(settings.sensor.upperApex, 0.2, 0.01);
@@ -138,7 +138,7 @@ TEST_F(InspectApp, UnderstandsASensorPoseThatTurnsCloudsOver) {
   const auto outcome = inspectInput({"--write-config", at("found.ini")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_FALSE(has(outcome.out, "upside down       ")) << outcome.out;
-  const Settings settings = loadSettings(at("found.ini"));
+  const AllSettings settings = loadSettings(at("found.ini"));
   EXPECT_EQ(settings.sensor.model, "hdl32e");
   EXPECT_NEAR(settings.sensor.height, 1.0, 0.1);
 }

@@ -25,9 +25,16 @@ class FilterRunsTest : public testing::Test {
     runs.runs = 5;
     runs.seed = 40;
   }
+  SettingsValues settings(const RunOptions& which) const {
+    SettingsValues values;
+    values.localization = options;
+    values.start = start;
+    values.runs = which;
+    return values;
+  }
   /// Element [i][k]: what run i made of scan k.
   std::vector<Updates> run(const RunOptions& which) {
-    FilterRuns filters({street.map, GlobalOptions()}, options, start, which);
+    FilterRuns filters({street.map, GlobalOptions()}, settings(which));
     std::vector<Updates> results(filters.size());
     for (const PoleFrame& frame : street.frames) {
       const auto& steps = filters.step(frame);
@@ -124,7 +131,7 @@ TEST_F(FilterRunsTest, RefusesMoreParticlesThanFitSideBySide) {
   runs.runs = 51;
   start.particles = 1000000;
   try {
-    FilterRuns({street.map, GlobalOptions()}, options, start, runs);
+    FilterRuns({street.map, GlobalOptions()}, settings(runs));
     ADD_FAILURE() << "not refused";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("51 runs of 1000000 particles"), std::string::npos)

@@ -23,11 +23,11 @@ namespace {
 
 constexpr double degree = M_PI / 180;
 
-Settings load(const std::string& name, const std::vector<std::string>& set = {}) {
+AllSettings load(const std::string& name, const std::vector<std::string>& set = {}) {
   return loadSettings((fs::path(POLEMCL_SOURCE_DIR) / "config" / name).string(), set);
 }
 
-std::shared_ptr<CPoleMap> mapOf(const std::vector<MapPole>& poles, const Settings& settings) {
+std::shared_ptr<CPoleMap> mapOf(const std::vector<MapPole>& poles, const AllSettings& settings) {
   auto map = std::make_shared<CPoleMap>();
   map->likelihoodOptions = settings.likelihood;
   map->setPoles(poles);
@@ -48,7 +48,7 @@ std::vector<StampedPose2D> localized(const LocalizationMap& map,
 }
 
 /// How many of 20 kidnapped vehicles are within 2 m of the truth at the end of the drive.
-int recovered(const Settings& settings) {
+int recovered(const AllSettings& settings) {
   const tests::PoleCity city{tests::CityOptions()};
   const LocalizationMap map(mapOf(city.map(), settings), settings.global);
   int count = 0;
@@ -86,7 +86,7 @@ int recovered(const Settings& settings) {
 class Parity {
  public:
   Parity(const std::vector<Pose2D>& poses, const std::vector<std::vector<PoleDetection>>& poles,
-         const Settings& settings)
+         const AllSettings& settings)
       : m_poses(poses), m_poles(poles), m_settings(settings) {
     std::vector<MappingScan> scans;
     for (std::size_t i = 0; i < poses.size(); i += 2) scans.push_back({poses[i], poles[i]});
@@ -138,7 +138,7 @@ class Parity {
 
   std::vector<Pose2D> m_poses;
   std::vector<std::vector<PoleDetection>> m_poles;
-  Settings m_settings;
+  AllSettings m_settings;
   std::shared_ptr<CPoleMap> m_map;
 };
 
@@ -169,7 +169,7 @@ class PaperModeOnKitti : public testing::Test {
     return poles;
   }
   /// What `settings` find.
-  std::vector<std::vector<PoleDetection>> ourPoles(const Settings& settings) const {
+  std::vector<std::vector<PoleDetection>> ourPoles(const AllSettings& settings) const {
     const TempFolder folder;
     const std::string rawlog = (folder / "all.rawlog").string();
     const auto outcome =
@@ -184,7 +184,7 @@ class PaperModeOnKitti : public testing::Test {
     return poles;
   }
   /// The protocol's cadence and particles stand in for those of the file.
-  static Settings protocol(const std::string& name) {
+  static AllSettings protocol(const std::string& name) {
     return load(name, {"map.every_scan=true", "map.middle=nearest", "tracking.cadence=scan",
                        "filter.particles=1000", "start.particles=1000"});
   }
@@ -197,7 +197,7 @@ class PaperModeOnKitti : public testing::Test {
 TEST(PaperMode, NothingBeyondThePaperIsOn) {
   for (const char* name : {"kitti", "kitti-mended", "nclt", "mulran"}) {
     SCOPED_TRACE(name);
-    const Settings s = load("paper/" + std::string(name) + ".ini");
+    const AllSettings s = load("paper/" + std::string(name) + ".ini");
     EXPECT_EQ(s.extraction.method, ExtractionMethod::rangeImage);
     EXPECT_FALSE(s.localization.search.recover);
     EXPECT_FALSE(s.localization.odometryMonitor.enabled);
@@ -233,7 +233,7 @@ TEST(PaperMode, AKidnappedVehicleStaysLost) {
 // from 2.5 m and 0.032 m (0.021 to 0.047) from 0.5 m with poses_scan_matching.txt, 0.049 m and
 // 0.030 m with poses.txt.
 TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsPoles) {
-  const Settings settings = protocol("paper/kitti.ini");
+  const AllSettings settings = protocol("paper/kitti.ini");
   const auto theirs = theirPoles();
   const Parity old(poses("poses_scan_matching.txt"), theirs, settings);
   EXPECT_LE(old.run(0.5, 20).mean, 0.038);
@@ -246,7 +246,7 @@ TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsPoles) {
 }
 
 TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsOwnPoles) {
-  const Settings settings = protocol("paper/kitti.ini");
+  const AllSettings settings = protocol("paper/kitti.ini");
   const auto ours = ourPoles(settings);
   ASSERT_EQ(ours.size(), 80u);
   const Parity old(poses("poses_scan_matching.txt"), ours, settings);

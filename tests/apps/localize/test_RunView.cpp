@@ -41,11 +41,11 @@ class RunViewTest : public testing::Test {
     return done;
   }
   Updates play(RunView& watched) {
-    StartOptions start;
-    start.pose = street.truth[0];
-    RunOptions two;
-    two.runs = 2;
-    FilterRuns runs({street.map, GlobalOptions()}, localization, start, two);
+    SettingsValues settings;
+    settings.localization = localization;
+    settings.start.pose = street.truth[0];
+    settings.runs.runs = 2;
+    FilterRuns runs({street.map, GlobalOptions()}, settings);
     Updates done;
     for (const PoleFrame& frame : street.frames) {
       done.push_back(runs.step(frame)[0].update);

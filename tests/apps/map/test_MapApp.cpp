@@ -5,6 +5,7 @@
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapBuildApp.h"
+#include "support/ExpectHas.h"
 #include "support/IoFiles.h"
 #include "support/StreetTest.h"
 
@@ -91,7 +92,7 @@ TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {
   options.inputs = {folder / "in.rawlog"};
   options.poses = {folder / "in.tum"};
   options.output = folder / "street.polemap";
-  Settings settings = loadSettings(config());
+  AllSettings settings = loadSettings(config());
   settings.extraction.scanLine.minConfidence = 1;  // nothing is that sure
   const auto ignore = [](std::size_t, std::size_t) {};
   EXPECT_THROW(buildMap(options, settings, ignore), Error);

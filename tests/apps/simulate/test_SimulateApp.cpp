@@ -37,7 +37,7 @@ TEST_F(SimulateApp, WritesTheFolderLayoutAndTheEffectiveSettings) {
             (std::vector<std::string>{"config.ini", "labels", "odometry.txt", "poles_gt.csv",
                                       "poses.txt", "times.txt", "velodyne"}));
   EXPECT_EQ(io::readScanFolder(folder / "drive", Eigen::Isometry3d::Identity()).scans.size(), 3u);
-  const Settings effective = loadSettings(at("drive/config.ini"));
+  const AllSettings effective = loadSettings(at("drive/config.ini"));
   EXPECT_EQ(effective.simulation.world.seed, 7u);
   EXPECT_EQ(effective.simulation.world.day, 2);
   EXPECT_EQ(effective.simulation.world.length, 50);

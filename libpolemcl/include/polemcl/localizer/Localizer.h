@@ -1,0 +1,89 @@
+#pragma once
+/// \file Localizer.h
+/// \brief From scans and odometry to poses on a map of poles: what a run of pole-localize does.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polemcl/core/common/Types.h>
+#include <polemcl/localizer/Settings.h>
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+
+namespace mrpt::obs {
+class CObservation;
+}
+
+namespace polemcl {
+
+/// \brief Localizes one drive. \code
+///   Localizer localizer(Settings("hdl32e.ini"), "street.polemap");
+///   localizer.startAnywhere();
+///   auto update = localizer.step(time, points, odometry);  // for each scan
+///   if (update.estimate) drive(update.estimate->mean, update.health);
+/// \endcode
+/// The same settings, seed, scans and odometry give the same poses. Not for several threads at
+/// once.
+class POLEMCL_EXPORT Localizer {
+ public:
+  /// \param map A `.polemap`. \throws Error when it cannot be read or has no poles.
+  Localizer(const Settings& settings, const std::filesystem::path& map);
+  /// \brief One of several on a map that is loaded once. \param seed In place of `[runs] seed`.
+  Localizer(const Settings& settings, LocalizationMap map, std::uint32_t seed);
+  Localizer(Localizer&&) noexcept;
+  Localizer& operator=(Localizer&&) noexcept;
+  ~Localizer();
+
+  /// \brief Starts near a pose. Not needed where `[start]` of the settings says where.
+  /// \param pose_map_robot At the first scan, m and rad.
+  /// \param radius, heading How far it may be off, m and rad; unless given those of `[start]`.
+  /// \throws Error on values that are not finite, or far from every pole of the map.
+  void start(const Pose2D& pose_map_robot, std::optional<double> radius = {},
+             std::optional<double> heading = {});
+  /// \brief Starts without a pose: the poles of the first metres tell it.
+  void startAnywhere();
+
+  /// \brief The next scan.
+  /// \param time s, greater than that of the scan before.
+  /// \param points One turn of the LiDAR, m, in its frame: x ahead, z up. The pose is that of this
+  /// frame on the ground. Rows that are no numbers or zero are left out.
+  /// \param odometry Pose of the robot in the frame of its odometry at that time, m and rad. Only
+  /// its change matters; `[motion]` says how exact it is.
+  /// \throws Error when nothing was started, time does not increase, or the points contradict
+  /// `[sensor]`.
+  LocalizationUpdate step(double time, const PointsView& points, const Pose2D& odometry);
+  /// \brief The same from an observation of MRPT with its time stamp and sensor pose: point clouds,
+  /// Velodyne and rotating scans, depth images, CObservationPoles.
+  LocalizationUpdate step(const mrpt::obs::CObservation& scan, const Pose2D& odometry);
+  /// \brief The same from poles that were found elsewhere. \param poles_robot Frame of the robot.
+  LocalizationUpdate step(double time, const std::vector<PoleDetection>& poles_robot,
+                          const Pose2D& odometry);
+
+  /// \brief The same from poles with a motion whose covariance is known, of one or several LiDARs.
+  LocalizationUpdate step(const PoleFrame& frame);
+
+  /// \brief All scans of a rawlog of scans or poles with odometry; several LiDARs are fused.
+  /// \param consume Gets what each scan brings, from changing threads, one call at a time.
+  /// \throws Error as step(), and when the rawlog cannot be read.
+  void play(const std::string& rawlog,
+            const std::function<void(const LocalizationUpdate&)>& consume);
+
+  /// \brief For drawing: particles, submap, matches.
+  const LocalizationPipeline& pipeline() const;
+
+  /// \brief Steps of the odometry so far that no vehicle makes, as after a restart of its node. The
+  /// motion before went on in their place.
+  std::size_t odometryJumps() const;
+  /// \brief The poles of the last scan, frame of the robot.
+  const std::vector<PoleDetection>& poles() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace polemcl

@@ -1,0 +1,144 @@
+#include <mrpt/obs/CObservationOdometry.h>
+
+#include <cmath>
+
+#include <polemcl/io/data/Cloud.h>
+#include <polemcl/localizer/Localizer.h>
+#include "map/MapApp.h"
+#include "support/ExpectHas.h"
+#include "support/LocalizeTest.h"
+#include "support/Refusal.h"
+#include "support/Samples.h"
+#include "support/StreetTest.h"
+
+namespace polemcl::test_localizer {
+
+using namespace testing_apps;
+
+namespace {
+
+/// The street with odometry as poses, beside the scans of poles.
+class LocalizerTest : public LocalizeTest {
+ protected:
+  LocalizerTest() {
+    std::string rawlog;
+    Pose2D at;
+    for (std::size_t i = 0; i < street.frames.size(); ++i) {
+      const PoleFrame& frame = street.frames[i];
+      if (i > 0 && frame.motion) at = compose(at, frame.motion->mean);
+      mrpt::obs::CObservationOdometry reading;
+      reading.timestamp = mrpt::Clock::fromDouble(frame.time);
+      reading.odometry = mrpt::poses::CPose2D(at.x, at.y, at.yaw);
+      odometry.push_back({reading.odometry.x(), reading.odometry.y(), reading.odometry.phi()});
+      CObservationPoles poles;
+      poles.timestamp = reading.timestamp;
+      poles.poles = frame.poles_robot;
+      poles.points = static_cast<std::uint32_t>(frame.points);
+      scans_poles.push_back(poles);
+      rawlog += samples::bytesOf(reading) + samples::bytesOf(poles);
+    }
+    writeText(folder / "in.rawlog", rawlog);
+  }
+  Localizer localizer() const {
+    return {Settings((folder / "config.ini").string()), folder / "map.polemap"};
+  }
+  std::vector<Pose2D> odometry;
+  std::vector<CObservationPoles> scans_poles;
+};
+
+}  // namespace
+
+TEST_F(LocalizerTest, GivesThePosesOfPoleLocalize) {
+  const Pose2D& start = street.truth.front();
+  const std::string text = std::to_string(start.x) + "," + std::to_string(start.y) + "," +
+                           std::to_string(start.yaw * 180 / M_PI) + ",0.5,3";
+  const Outcome outcome = run({"--start", text});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto expected = io::planar(io::readTum(out("run_00.tum")));
+  ASSERT_EQ(expected.size(), scans);
+  Localizer own(Settings(out("config.ini").string()), folder / "map.polemap");
+  for (std::size_t i = 0; i < scans; ++i) {
+    const auto update = own.step(scans_poles[i], odometry[i]);
+    ASSERT_TRUE(update.estimate);
+    const Pose2D& pose = update.estimate->mean;
+    EXPECT_NEAR(pose.x, expected[i].pose.x, 1e-6) << i;  // the digits of the file
+    EXPECT_NEAR(pose.y, expected[i].pose.y, 1e-6);
+    EXPECT_NEAR(pose.yaw, expected[i].pose.yaw, 1e-8);
+    EXPECT_EQ(own.poles().size(), scans_poles[i].poles.size());
+  }
+  EXPECT_EQ(own.odometryJumps(), 0u);
+}
+
+TEST_F(LocalizerTest, PolesAndObservationsAreTheSame) {
+  Localizer a = localizer(), b = localizer();
+  a.start(street.truth.front());
+  b.start(street.truth.front());
+  for (std::size_t i = 0; i < scans; ++i) {
+    const auto first = a.step(scans_poles[i], odometry[i]);
+    const auto other = b.step(street.frames[i].time, scans_poles[i].poles, odometry[i]);
+    EXPECT_EQ(first.estimate->mean.x, other.estimate->mean.x);
+    EXPECT_EQ(first.health.state, other.health.state);
+  }
+}
+
+TEST_F(LocalizerTest, AJumpOfTheOdometryIsBridged) {
+  Localizer own = localizer();
+  own.start(street.truth.front());
+  for (std::size_t i = 0; i < scans; ++i) {
+    Pose2D reading = odometry[i];
+    if (i >= scans / 2) reading.x += 1000;
+    const auto update = own.step(scans_poles[i], reading);
+    ASSERT_TRUE(update.estimate);
+    EXPECT_NEAR(update.estimate->mean.x, street.truth[i].x, 0.3);
+  }
+  EXPECT_EQ(own.odometryJumps(), 1u);
+}
+
+TEST_F(LocalizerTest, SaysWhatIsWrong) {
+  Localizer own = localizer();
+  EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], {}); }), "has not been started");
+  EXPECT_HAS(messageOf([&] { own.start({1e6, 0, 0}); }), "pole");
+  own.startAnywhere();
+  own.step(scans_poles[1], odometry[1]);
+  EXPECT_HAS(messageOf([&] { own.step(scans_poles[0], odometry[0]); }), "time does not increase");
+  EXPECT_HAS(messageOf([&] { own.step(scans_poles[2], {NAN, 0, 0}); }), "finite");
+  EXPECT_HAS(messageOf([&] { Localizer(Settings(), folder / "none.polemap"); }), "none.polemap");
+}
+
+TEST(SettingsTest, AreReadReplacedAndWritten) {
+  Settings settings("hdl32e.ini", {"filter.particles=123"});
+  EXPECT_HAS(settings.text(), "particles = 123 ");
+  EXPECT_HAS(settings.text(), "model = hdl32e ");
+  const std::string before = settings.text();
+  EXPECT_HAS(messageOf([&] { settings.set("filter.particle=1"); }), "is particles meant?");
+  EXPECT_EQ(settings.text(), before);
+  Settings copy = settings;
+  copy.set("sensor.model=vlp16");
+  EXPECT_HAS(copy.text(), "model = vlp16 ");
+  EXPECT_EQ(settings.text(), before);
+  EXPECT_HAS(messageOf([] { Settings("none.ini"); }), "none.ini");
+}
+
+TEST_F(StreetTest, PointsBecomePoses) {
+  constexpr std::size_t number = 25;
+  writeStreet(folder / "in", number);
+  import("in");
+  const Outcome mapped =
+      runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--truth",
+                           at("in.tum"), "--output", at("map.polemap")});
+  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  const auto truth = io::planar(io::readTum(folder / "in.tum"));
+  Localizer localizer(Settings(config()), folder / "map.polemap");
+  localizer.start(truth[0].pose, 0.5, 0.1);
+  for (std::size_t i = 0; i < number; ++i) {
+    const io::Cloud cloud = io::readKittiBin(folder / "in" / "velodyne" / scanName(i));
+    const auto update = localizer.step(truth[i].time, cloud.view(), truth[i].pose);
+    EXPECT_GE(localizer.poles().size(), 4u);
+    if (i < 5) continue;  // converging
+    ASSERT_TRUE(update.estimate);
+    EXPECT_NEAR(update.estimate->mean.x, truth[i].pose.x, 0.1);
+    EXPECT_NEAR(update.estimate->mean.y, truth[i].pose.y, 0.1);
+  }
+}
+
+}  // namespace polemcl::test_localizer
