@@ -109,9 +109,19 @@ cut -d' ' -f1-3 run/run_00.tum | grep -v '^#' >tum.txt
 cut -d' ' -f1-3 same.txt | cmp -s - tum.txt || fail "the poses of the example are not those of pole-localize"
 [ "$(wc -l <tum.txt)" -ge 40 ] || fail "pole-localize gave few poses"
 [ "$(awk '$6 == "ok"' same.txt | wc -l)" -gt 20 ] || fail "the poses of the example are not ok: $(cat same.txt)"
+# The program of the README, as it stands.
+mkdir readme
+sed 's/rawlog/readme/g' "$top/share/examples/rawlog/CMakeLists.txt" >readme/CMakeLists.txt
+awk '/^```/ { on = /cpp$/; next } on' "$top/README.md" >readme/readme.cpp
+quietly cmake -S readme -B readme/build -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+quietly cmake --build readme/build
+cp poles.rawlog drive.rawlog
+readme/build/readme >readme.txt
+[ "$(wc -l <readme.txt)" -gt 20 ] || fail "the program of the README gave $(wc -l <readme.txt) poses"
 # Installed settings by their name, with sections of other programs; what they lack is a start.
 if rawlog/rawlog poles.rawlog street.polemap demo.ini 2>error.txt; then fail "it started without a pose"; fi
-grep -q '^rawlog: no start pose: set StartOptions::pose' error.txt || fail "demo.ini was refused: $(cat error.txt)"
+grep -q '^rawlog: the localizer has not been started' error.txt || fail "demo.ini was refused: $(cat error.txt)"
 
 echo "7/8 mrpt: MRPT's filter on a pole map, known by name, with a linker that drops unused libraries"
 example mrpt -DCMAKE_EXE_LINKER_FLAGS=-Wl,--as-needed

@@ -35,9 +35,9 @@ def folder_of_results():
     return folder
 
 
-def run(code):
-    """The names that the code leaves, and what it prints."""
-    names, printed, before = {}, io.StringIO(), os.getcwd()
+def run(code, **given):
+    """The names that the code leaves, and what it prints. given: names that it finds."""
+    names, printed, before = dict(given), io.StringIO(), os.getcwd()
     os.chdir(folder_of_results())
     try:
         with contextlib.redirect_stdout(printed):
@@ -45,6 +45,24 @@ def run(code):
     finally:
         os.chdir(before)
     return names, printed.getvalue()
+
+
+class Readme(unittest.TestCase):
+    def test_localizes(self):
+        text = (PAGE.parents[2] / "README.md").read_text(encoding="utf-8")
+        (code,) = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
+        folder = folder_of_results()
+        motions = np.loadtxt(folder / "odometry.txt")
+        drive = []
+        scans = len(list((folder / "velodyne").glob("*.bin")))
+        for i in range(scans):
+            points = np.fromfile(folder / f"velodyne/{i:06}.bin", np.float32).reshape(-1, 4)
+            motion, sigmas = (motions[i - 1, :3], motions[i - 1, 3:]) if i else (None, np.zeros(3))
+            drive.append((0.1 * i, points, motion, np.diag(sigmas**2)))
+        names, _ = run(code, drive=drive, pose=street.true_poses()[0])
+        last = names["updates"][-1]
+        self.assertIsNotNone(last.estimate)
+        self.assertLess(np.hypot(*(last.estimate.mean - street.true_poses()[scans - 1])[:2]), 0.2)
 
 
 class Page(unittest.TestCase):

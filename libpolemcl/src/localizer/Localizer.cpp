@@ -56,7 +56,10 @@ struct Localizer::Impl {
 };
 
 LocalizationUpdate Localizer::Impl::step(const PoleFrame& frame) {
-  if (!isStarted) throw Error("the localizer has not been started: start it near a pose, or anywhere");
+  if (!isStarted)
+    throw Error(
+        "the localizer has not been started: start it near a pose or anywhere, or say where in "
+        "[start] of the settings");
   LocalizationUpdate update = pipeline.step(frame);
   poles_robot = frame.poles_robot;
   return update;
