@@ -3,6 +3,7 @@
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -103,17 +104,23 @@ viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step) {
   return grid;
 }
 
-viz::CEllipsoid2D::Ptr makeEllipse(const PoleDetection& pole) {
-  auto ellipse = viz::CEllipsoid2D::Create();
-  mrpt::math::CMatrixDouble22 covariance;
-  for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 2; ++column)
-      covariance(row, column) = pole.covariance(row, column);
-  ellipse->setCovMatrix(covariance);
-  ellipse->setQuantiles(10);
-  ellipse->enableDrawSolid3D(false);
+viz::CSetOfLines::Ptr makeEllipse(const PoleDetection& pole) {
+  constexpr int corners = 32;
+  constexpr double deviations = 10, height = 0.02;  // m
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pole.covariance);
+  const Eigen::Matrix2d shape =
+      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  auto ellipse = viz::CSetOfLines::Create();
+  Eigen::Vector2d before = deviations * shape.col(0);
+  for (int i = 1; i <= corners; ++i) {
+    const double angle = 2 * M_PI * i / corners;
+    const Eigen::Vector2d corner =
+        deviations * shape * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    ellipse->appendLine(before.x(), before.y(), 0.0, corner.x(), corner.y(), 0.0);
+    before = corner;
+  }
   ellipse->setLineWidth(2);
-  ellipse->setLocation(pole.x, pole.y, 0.02);
+  ellipse->setLocation(pole.x, pole.y, height);
   ellipse->setColor_u8(TColor(40, 80, 200));
   ellipse->setName("10 standard deviations");
   return ellipse;

@@ -40,11 +40,11 @@ viz::Viewport& panelOf(viz::Scene& scene, const std::string& name, double border
 /// \brief A grid that covers the box, with lines at multiples of `step`.
 viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step);
 
+/// \brief An outline on the ground at ten standard deviations, since centimetres cannot be seen.
+viz::CSetOfLines::Ptr makeEllipse(const PoleDetection& pole);
+
 /// \brief Inserts a vertical cylinder. \param bottom,top Heights above z = 0, m.
 /// Radii below 5 cm are drawn as 5 cm, because thinner poles are not visible.
-/// \brief An outline on the ground at ten standard deviations, since centimetres cannot be seen.
-viz::CEllipsoid2D::Ptr makeEllipse(const PoleDetection& pole);
-
 void drawPole(viz::CSetOfObjects& objects, double x, double y, double radius, double bottom,
               double top, const TColor& color, const std::string& name = "");
 

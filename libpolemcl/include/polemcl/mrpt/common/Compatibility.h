@@ -6,7 +6,6 @@
 #include <mrpt/maps/CMetricMap.h>
 #include <mrpt/opengl/CCamera.h>
 #include <mrpt/opengl/CCylinder.h>
-#include <mrpt/opengl/CEllipsoid2D.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
