@@ -24,7 +24,7 @@ std::vector<double> weightsOf(const std::vector<double>& logWeights) {
     throw Error("all particles have a weight of zero; at least one must count");
   std::vector<double> weights = logWeights;
   for (double& weight : weights) weight -= greatest;
-  exponentials(weights.data(), weights.size(), weights.data());
+  exponentials(weights.data(), weights.size());
   return weights;
 }
 

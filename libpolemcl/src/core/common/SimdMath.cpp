@@ -1,81 +1,71 @@
 #include "core/common/SimdMath.h"
 
 #include <algorithm>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/common/SimdMath.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/common/VectorMath.inc"
+#include <hwy/contrib/algo/transform-inl.h>
+#include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace polemcl {
 namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(double);
+struct Exponential {
+  template <class D, class V>
+  HWY_INLINE V operator()(D d, V value) const {
+    return hn::Exp(d, value);
+  }
+};
 
-/// Calls body(in, out) for whole vectors; the rest goes through buffers, filled up with zeros.
-template <class D, class Body>
-void forVectors(D d, std::size_t count, const double* in, const Body& body) {
-  const std::size_t lanes = hn::Lanes(d);
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) body(in + i, i, lanes);
-  if (i == count) return;
-  double rest[kMostLanes] = {};
-  std::copy(in + i, in + count, rest);
-  body(rest, i, count - i);
-}
+struct Sine {
+  template <class D, class V>
+  HWY_INLINE V operator()(D d, V, V angle) const {
+    return hn::Sin(d, angle);
+  }
+};
 
-/// The first `count` lanes.
-template <class D, class V>
-HWY_INLINE void store(D d, V v, double* out, std::size_t count) {
-  if (count == hn::Lanes(d)) return hn::StoreU(v, d, out);
-  double all[kMostLanes];
-  hn::StoreU(v, d, all);
-  std::copy(all, all + count, out);
-}
+struct Cosine {
+  template <class D, class V>
+  HWY_INLINE V operator()(D d, V, V angle) const {
+    return hn::Cos(d, angle);
+  }
+};
 
-void exponentials(const double* values, std::size_t count, double* out) {
-  const hn::ScalableTag<double> d;
-  forVectors(d, count, values, [&](const double* in, std::size_t i, std::size_t n) {
-    store(d, exponential(d, hn::LoadU(d, in)), out + i, n);
-  });
+/// The length of a pair of normal deviates, from a number uniform in (0, 1).
+struct Radius {
+  template <class D, class V>
+  HWY_INLINE V operator()(D d, V uniform) const {
+    return hn::Sqrt(hn::Mul(hn::Set(d, -2.0), hn::Log(d, uniform)));
+  }
+};
+
+void exponentials(double* values, std::size_t count) {
+  hn::Transform(hn::ScalableTag<double>(), values, count, Exponential());
 }
 
 void sinesAndCosines(const double* angles, std::size_t count, double* sines, double* cosines) {
   const hn::ScalableTag<double> d;
-  forVectors(d, count, angles, [&](const double* in, std::size_t i, std::size_t n) {
-    hn::Vec<decltype(d)> s, c;
-    sineAndCosine(d, hn::LoadU(d, in), s, c);
-    store(d, s, sines + i, n);
-    store(d, c, cosines + i, n);
-  });
+  hn::Transform1(d, sines, count, angles, Sine());
+  hn::Transform1(d, cosines, count, angles, Cosine());
 }
 
 void normalDeviates(const std::uint32_t* uniform, std::size_t pairs, double* out) {
-  const hn::ScalableTag<double> d;
-  constexpr std::size_t block = 64;
-  double first[block], second[block];
-  for (std::size_t begin = 0; begin < pairs; begin += block) {
-    const std::size_t n = std::min(block, pairs - begin);
-    for (std::size_t i = 0; i < block; ++i) {  // the middles of 2^32 equal steps
-      const std::size_t from = 2 * (begin + std::min(i, n - 1));
-      first[i] = (uniform[from] + 0.5) * 0x1p-32;
-      second[i] = (uniform[from + 1] + 0.5) * (0x1p-31 * 3.14159265358979323846);
-    }
-    for (std::size_t i = 0; i < block; i += hn::Lanes(d)) {
-      const auto radius =
-          hn::Sqrt(hn::Mul(hn::Set(d, -2.0), logarithm(d, hn::LoadU(d, first + i))));
-      hn::Vec<decltype(d)> s, c;
-      sineAndCosine(d, hn::LoadU(d, second + i), s, c);
-      hn::StoreU(hn::Mul(radius, c), d, first + i);
-      hn::StoreU(hn::Mul(radius, s), d, second + i);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      out[2 * (begin + i)] = first[i];
-      out[2 * (begin + i) + 1] = second[i];
-    }
+  std::vector<double> radius(pairs), angle(pairs), sine(pairs), cosine(pairs);
+  for (std::size_t i = 0; i < pairs; ++i) {  // the middles of 2^32 equal steps
+    radius[i] = (uniform[2 * i] + 0.5) * 0x1p-32;
+    angle[i] = (uniform[2 * i + 1] + 0.5) * (0x1p-31 * 3.14159265358979323846);
+  }
+  hn::Transform(hn::ScalableTag<double>(), radius.data(), pairs, Radius());
+  sinesAndCosines(angle.data(), pairs, sine.data(), cosine.data());
+  for (std::size_t i = 0; i < pairs; ++i) {
+    out[2 * i] = radius[i] * cosine[i];
+    out[2 * i + 1] = radius[i] * sine[i];
   }
 }
 
@@ -89,8 +79,8 @@ HWY_EXPORT(exponentials);
 HWY_EXPORT(sinesAndCosines);
 HWY_EXPORT(normalDeviates);
 
-void exponentials(const double* values, std::size_t count, double* out) {
-  HWY_DYNAMIC_DISPATCH(exponentials)(values, count, out);
+void exponentials(double* values, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(exponentials)(values, count);
 }
 
 void sinesAndCosines(const double* angles, std::size_t count, double* sines, double* cosines) {

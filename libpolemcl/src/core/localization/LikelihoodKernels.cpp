@@ -11,11 +11,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/common/VectorMath.inc"
+#include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace polemcl {
 namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
 /// Poses worked on together: few enough for all that is kept of them to stay in the first cache.
 constexpr std::size_t kBlock = 128;
@@ -74,10 +75,9 @@ class Evaluation {
       b.cosine[i] = pose.yaw;
     }
     for (std::size_t i = 0; i < m_size; i += m_lanes) {
-      V sine, cosine;
-      sineAndCosine(m_d, hn::Load(m_d, b.cosine + i), sine, cosine);
-      hn::Store(sine, m_d, b.sine + i);
-      hn::Store(cosine, m_d, b.cosine + i);
+      const V yaw = hn::Load(m_d, b.cosine + i);
+      hn::Store(hn::Sin(m_d, yaw), m_d, b.sine + i);
+      hn::Store(hn::Cos(m_d, yaw), m_d, b.cosine + i);
     }
     for (std::size_t k = 0; k < m_levels; ++k) {
       std::fill(b.product[k], b.product[k] + m_size, 1.0);
@@ -206,14 +206,14 @@ class Evaluation {
       if (!none) bell(term, i, dx, dy, variance, m_squaredSigma[k], exponent, height);
       if constexpr (model == LikelihoodModel::floored) {
         const V clipped = hn::Set(m_d, costOfNoMatch(term, k));
-        const V value = exponential(m_d, hn::Neg(hn::IfThenElse(found, exponent, clipped)));
+        const V value = hn::Exp(m_d, hn::Neg(hn::IfThenElse(found, exponent, clipped)));
         const V bellShare = hn::Set(m_d, m_bellShare[k]), rest = hn::Set(m_d, m_floorShare[k]);
         const V factor = hn::Add(hn::Mul(bellShare, value), rest);
         hn::Store(hn::Mul(hn::Load(m_d, b.product[k] + i), factor), m_d, b.product[k] + i);
       } else if constexpr (model == LikelihoodModel::mixture) {
         V factor = miss;
         if (!none) {
-          const V value = exponential(m_d, hn::Neg(exponent));
+          const V value = hn::Exp(m_d, hn::Neg(exponent));
           const V hit = hn::Mul(hn::Mul(hn::Set(m_d, term.share), height), value);
           factor = hn::Add(factor, hn::IfThenElseZero(found, hit));
         }
@@ -250,7 +250,7 @@ class Evaluation {
     for (std::size_t k = 0; k < m_levels; ++k) {
       double *product = m_block.product[k], *sum = m_block.sum[k];
       for (std::size_t i = 0; i < m_size; i += m_lanes) {
-        const V value = logarithm(m_d, hn::Load(m_d, product + i));
+        const V value = hn::Log(m_d, hn::Load(m_d, product + i));
         hn::Store(hn::Add(hn::Load(m_d, sum + i), value), m_d, sum + i);
         hn::Store(hn::Set(m_d, 1.0), m_d, product + i);
       }

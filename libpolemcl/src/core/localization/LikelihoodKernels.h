@@ -1,7 +1,7 @@
 #pragma once
 /// \file LikelihoodKernels.h
 /// \brief The likelihood of many poses at once, vectorised and chosen at run time. Private to the
-/// library. Every instruction set gives the same bits.
+/// library.
 
 #include <vector>
 

@@ -67,7 +67,7 @@ std::vector<std::size_t> drawIndices(Resampling method, const std::vector<double
   const double greatest = *std::max_element(logWeights.begin(), logWeights.end());
   std::vector<double> sums = logWeights;
   for (double& sum : sums) sum -= greatest;
-  exponentials(sums.data(), sums.size(), sums.data());
+  exponentials(sums.data(), sums.size());
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
   auto& generator = getRandomGenerator();
   const double common = generator.drawUniform(0.0, 1.0);
