@@ -57,7 +57,7 @@ const std::vector<Group>& groups() {
       {"settings-localization", "Localization",
        "start filter likelihood tracking motion runs view"},
       {"settings-health", "Health, search, odometry",
-       "health search global submap odometry_monitor odometry_calibration"},
+       "health search odometry_monitor odometry_calibration"},
       {"settings-simulation", "Simulation", "simulation world realism"},
       {"settings-paper", "The paper's extraction", "range_image"}};
   return groups;

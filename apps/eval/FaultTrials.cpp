@@ -174,8 +174,7 @@ std::vector<FaultTrial> runFaultTrials(const TrialDrive& drive, const FaultTrial
     throw Error("a drive without fault has no trials: runHealthy() drives it");
   if (options.fault.fault == Fault::wrongMap) {
     if (!options.otherMap) throw Error("--fault wrong-map needs --other-map, the wrong one");
-    map = LocalizationMap(loadPoleMap(*options.otherMap, drive.settings.likelihood),
-                          drive.settings.global);
+    map = LocalizationMap(loadPoleMap(*options.otherMap, drive.settings.likelihood));
   }
   std::vector<FaultTrial> trials(options.trials);
   tbb::parallel_for(0, options.trials, [&](int i) {

@@ -108,7 +108,7 @@ LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const 
     progress.update(scan.index + 1, scan.expected);
   };
   if (!job.isLive()) return {streamPoles(job.input.string(), options, take), ""};
-  LiveDriveOptions drive{job.sensors, job.seconds, settings.localization.health.maxGap};
+  LiveDriveOptions drive{job.sensors, job.seconds, settings.localization.maxGap};
   drive.warn = warn;
   if (stream) {
     drive.gap = [stream] { stream->addGap(); };
@@ -159,7 +159,7 @@ LocalizeResult localize(const LocalizeJob& job) {
               << '\n';
   RunView view(settings.view, map->poles(), job.source().filename().string(), folder);
 
-  const LocalizationMap prepared(map, settings.global);
+  const LocalizationMap prepared(map);
   const auto begin = ScanClock::now();
   std::optional<PoseStream> stream;
   if (job.stream) stream.emplace(*job.stream);

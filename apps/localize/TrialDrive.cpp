@@ -23,7 +23,7 @@ std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
 TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
   const AllSettings settings = loadSettings(files.config.string(), files.set);
   TrialDrive drive{settings,
-                   LocalizationMap(loadPoleMap(files.map, settings.likelihood), settings.global),
+                   LocalizationMap(loadPoleMap(files.map, settings.likelihood)),
                    readPoleSequence(files.input.string(), settings.reading()).frames,
                    {}};
   const auto truth = io::readPlanarTum(files.truth);

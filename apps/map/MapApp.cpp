@@ -136,7 +136,7 @@ Subcommand diffCommand(CLI::App& program) {
             const auto& [files, config, set] = *shared;
             const MapUpdateOptions options =
                 config.empty() ? MapUpdateOptions() : loadSettings(config, set).upkeep;
-            return summaryText(diffMapFiles(files, {options.moved, options.ghost}));
+            return summaryText(diffMapFiles(files, {options.moved}));
           }};
 }
 

@@ -63,11 +63,9 @@ AdjustedDrives adjust(std::vector<MappingSession>& drives, const std::vector<Map
         scan.motion = PoseWithCovariance{motion->mean, motion->covariance};
       scans.push_back(std::move(scan));
     }
-  const OdometryCalibrationOptions& calibration = settings.localization.odometryCalibration;
-  AdjustedDrives adjusted =
-      adjustDrives(scans, inventory,
-                   {settings.map, calibration.scaleSigma, calibration.yawSigma,
-                    settings.upkeep.existence.decorrelation});
+  AdjustedDrives adjusted = adjustDrives(scans, inventory,
+                                         {settings.map, OdometryCalibration::scaleSigma,
+                                          OdometryCalibration::yawSigma, kDecorrelation});
   std::size_t next = 0;
   for (MappingSession& drive : drives)
     for (SessionScan& scan : drive.scans) {

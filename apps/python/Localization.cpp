@@ -18,7 +18,7 @@ LocalizationMap localizationMap(const PoleMap& map, const AllSettings& settings)
   auto poleMap = std::make_shared<CPoleMap>();
   poleMap->likelihoodOptions = settings.likelihood;  // first: the index is prepared for its gate
   poleMap->setPoles(map.content.map.poles);
-  return {poleMap, settings.global};
+  return {poleMap};
 }
 
 /// A polemcl::Localizer with its lock.

@@ -179,13 +179,32 @@ TEST(Config, RefusesUnknownNames) {
   EXPECT_EQ(refusal("[sample]\nwheels = 3\n").find("meant?"), std::string::npos);
 }
 
-TEST(Config, PassesOverSectionsOfOtherPrograms) {
-  EXPECT_EQ(load("[sample]\ncount = 3\n[World]\nseed = 1\n[map]\nwhatever = 2\n").count, 3);
-  EXPECT_NO_THROW(load("[vehicle]\nlidars = left\n[sensor:left]\nmodel = vlp16\n"));
-  EXPECT_HAS(refusal("[simulaton]\nspacing_m = 1\n"),
+TEST(Config, PassesOverTheSectionsThatAreNamed) {
+  const std::set<std::string> others{"world", "simulation"};
+  const auto load = [&](const std::string& text) {
+    const ConfigFile file = ConfigFile::fromText(text, "test.ini");
+    ConfigReader reader(file);
+    Sample sample;
+    bind(reader, sample);
+    reader.finish(others);
+    return sample.count;
+  };
+  EXPECT_EQ(load("[sample]\ncount = 3\n[World]\nseed = 1\n"), 3);
+  const auto refused = [&](const std::string& text) { return refusal([&] { load(text); }); };
+  EXPECT_HAS(refused("[simulaton]\nspacing_m = 1\n"),
              "test.ini: section [simulaton] is not known; known are: sample; is simulation meant?");
-  EXPECT_HAS(refusal("[sample]\nseeds = 1\n"), "key is not known");
-  EXPECT_HAS(refusal("[map:left]\nmodel = vlp16\n"), "section [map:left] is not known");
+  EXPECT_HAS(refused("[sample]\nseeds = 1\n"), "key is not known");
+  EXPECT_HAS(refused("[map:left]\nmodel = vlp16\n"), "section [map:left] is not known");
+}
+
+// Files of version 1 hold all its settings, many of which are constants now.
+TEST(Config, SettingsOfVersionOneMayStateTheValueThatIsFixedNow) {
+  EXPECT_NO_THROW(load("[health]\nwindow_m = 8.0\n"));
+  EXPECT_NO_THROW(load("[range_image]\ncircle_fit = kasa\nwrap_around = True\n"));
+  EXPECT_EQ(refusal("[health]\nwindow_m = 9 # m\n"),
+            "test.ini: [health] window_m = 9: is no setting since version 2; it is always 8. "
+            "Remove the line");
+  EXPECT_HAS(refusal("[health]\nwindow = 8\n"), "section [health] is not known");
 }
 
 TEST(Config, RefusesWhatIsGivenTwice) {

@@ -26,7 +26,7 @@ const std::string s_two =
     "[sensor]\nmodel = vlp16\nheight_m = 1.2\n[scan_line]\nmax_range_m = 30\n"
     "[vehicle]\nlidars = front os/rear.1\nfuse_within_s = 0.03\n"
     "[sensor:os/rear.1]\nmodel = hdl32e\npose = -1 0.2 1.5 180 5 0\nclock_offset_s = -0.02\n"
-    "[scan_line:front]\nmin_points = 7\n[range_image:front]\nrows = 16\n";
+    "[scan_line:front]\nmin_top_m = 3\n[range_image:front]\nrows = 16\n";
 
 TEST(VehicleSettings, ALidarHasWhatItsSectionsSayAndElseWhatAllHave) {
   const AllSettings all = load(s_two);
@@ -36,14 +36,14 @@ TEST(VehicleSettings, ALidarHasWhatItsSectionsSayAndElseWhatAllHave) {
   EXPECT_EQ(front.sensor.model, "vlp16");
   EXPECT_EQ(front.sensor.height, 1.2);
   EXPECT_EQ(front.extraction.scanLine.maxRange, 30);
-  EXPECT_EQ(front.extraction.scanLine.minPoints, 7);
+  EXPECT_EQ(front.extraction.scanLine.minTop, 3);
   EXPECT_EQ(front.extraction.rangeImage.rows, 16);
   EXPECT_TRUE(front.pose.empty());
   EXPECT_FALSE(front.extractor().sensorPose);
   EXPECT_EQ(rear.sensor.model, "hdl32e");
   EXPECT_EQ(rear.sensor.height, 1.2);
   EXPECT_EQ(rear.sensor.timing.clock, -0.02);
-  EXPECT_EQ(rear.extraction.scanLine.minPoints, ScanLineOptions().minPoints);
+  EXPECT_EQ(rear.extraction.scanLine.minTop, ScanLineOptions().minTop);
   ASSERT_TRUE(rear.extractor().sensorPose);
   EXPECT_NEAR(rear.extractor().sensorPose->pitch(), 5 * M_PI / 180, 1e-12);
   EXPECT_EQ(all.reading().vehicle.fuseWithin, 0.03);

@@ -197,6 +197,7 @@ bool exists(const std::string& header) {
   const fs::path file(header);
   for (const std::string base : {"libpolemcl/src", "libpolemcl/include", "apps"}) {
     if (fs::exists(s_top / base / file)) return true;
+    if (fs::exists(s_top / base / (header + ".in"))) return true;  // the build makes it
     // Rows of C++ that the build makes from a table of this name.
     const fs::path table = s_top / base / fs::path(file).replace_extension(".csv");
     if (file.extension() == ".inc" && fs::exists(table)) return true;

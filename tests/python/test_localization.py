@@ -86,7 +86,7 @@ class Poses(unittest.TestCase):
 
     def test_are_none_until_the_global_search_finds_one(self):
         localizer = polemcl.Localizer(polemcl.PoleMap.load(street.map_file()), street.CONFIG,
-                                      {"global.min_matched": 5, "search.every_m": 1}, 1)
+                                      {}, 1)
         localizer.start_anywhere()
         first = localizer.step(0, None, None, self.poles[0])
         self.assertIsNone(first.estimate)
@@ -110,10 +110,10 @@ class Poses(unittest.TestCase):
         self.assertEqual(particles.shape[1], 3)
 
     def test_take_the_covariance_from_the_settings(self):
-        settings = {"motion.xy_per_m": 0.1, "motion.xy_per_rad": 0, "motion.min_xy_m": 0,
-                    "motion.yaw_per_m_deg": 0, "motion.yaw_per_rad": 0, "motion.min_yaw_deg": 1}
+        settings = {"motion.xy_per_m": 0.1, "motion.xy_per_rad": 0,
+                    "motion.yaw_per_m_deg": 0, "motion.yaw_per_rad": 0}
         motion = (1.0, 0, 0)
-        stated = np.diag([0.1**2, 0.1**2, np.radians(1) ** 2])
+        stated = np.diag([0.105**2, 0.105**2, 0.00087**2])  # with the floors of each motion
         means = []
         for covariance in (None, stated):
             localizer = started(settings=settings)

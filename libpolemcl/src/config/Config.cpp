@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include <polemcl/config/Config.h>
+#include "config/RemovedSettings.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/FileKind.h"
 #include "io/file/InstalledFiles.h"
@@ -34,33 +35,6 @@ std::string joined(const std::set<std::string>& words) {
   for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
 }
-
-/// The sections of all programs. Some are of rooms below this one: no struct here has them.
-const std::set<std::string> s_programSections{"extraction",
-                                              "filter",
-                                              "global",
-                                              "health",
-                                              "likelihood",
-                                              "map",
-                                              "map_update",
-                                              "motion",
-                                              "odometry_calibration",
-                                              "odometry_monitor",
-                                              "range_image",
-                                              "realism",
-                                              "runs",
-                                              "scan_line",
-                                              "search",
-                                              "sensor",
-                                              "simulation",
-                                              "start",
-                                              "submap",
-                                              "tracking",
-                                              "vehicle",
-                                              "view",
-                                              "world"};
-/// Those that each LiDAR of [vehicle] has too, as in [sensor:front].
-const std::set<std::string> s_lidarSections{"range_image", "scan_line", "sensor"};
 
 /// Letters to change, to add or to drop until both are the same (Levenshtein).
 std::size_t editDistance(const std::string& a, const std::string& b) {
@@ -132,6 +106,26 @@ class Lint {
   std::string m_name, m_section, m_clean;
   std::map<std::string, std::size_t> m_sections, m_keys;  ///< lower case -> line
 };
+
+/// Whether two values are the same, as numbers if both are.
+bool sameValue(const std::string& a, const std::string& b) {
+  char *endA = nullptr, *endB = nullptr;
+  const double numberA = std::strtod(a.c_str(), &endA), numberB = std::strtod(b.c_str(), &endB);
+  const bool numbers = !a.empty() && !b.empty() && *endA == 0 && *endB == 0;
+  return numbers ? std::abs(numberA - numberB) <= 1e-9 * std::abs(numberB) : lower(a) == lower(b);
+}
+
+/// The fault of a setting that version 1 had: empty if it has the value that is fixed now.
+/// \return Nothing for a key that version 1 had not.
+std::optional<std::string> faultOfRemoved(const std::string& section, const std::string& key,
+                                          const std::string& value) {
+  static const ConfigFile removed = ConfigFile::fromText(removedSettings, "removed settings");
+  const auto& source = removed.source();
+  if (!source.keyExists(section, key)) return std::nullopt;
+  const std::string fixed = withoutComment(source.read_string(section, key, ""));
+  if (sameValue(value, fixed)) return "";
+  return "is no setting since version 2; it is always " + fixed + ". Remove the line";
+}
 
 }  // namespace
 
@@ -212,46 +206,45 @@ std::string ConfigReader::place() const {
   return m_name + ": ";
 }
 
-/// Whether a section that was not bound belongs to a program that has bound it.
-bool ConfigReader::belongsToOthers(const std::string& section) const {
-  if (!m_fixedSection.empty()) return true;
-  const auto colon = section.find(':');
-  if (colon == section.npos) return s_programSections.count(section) > 0;
-  return s_lidarSections.count(section.substr(0, colon)) > 0 && m_known.count("vehicle") == 0;
-}
-
-void ConfigReader::finish() const {
-  const auto unknown = unknownEntries();
+void ConfigReader::finish(const std::set<std::string>& others) const {
+  const auto unknown = unknownEntries(others);
   if (!unknown.empty()) throw Error(unknown.front());
 }
 
-std::vector<std::string> ConfigReader::unknownEntries() const {
+std::vector<std::string> ConfigReader::unknownEntries(const std::set<std::string>& others) const {
   std::vector<std::string> messages;
   std::vector<std::string> sections;
   m_source->getAllSections(sections);
-  std::set<std::string> knownSections;
-  for (const auto& [section, keys] : m_known) knownSections.insert(section);
   for (const auto& section : sections) {
     const auto known = m_known.find(lower(section));
-    if (known == m_known.end()) {
-      if (belongsToOthers(lower(section))) continue;
-      messages.push_back(
-          place() + "section [" + section + "] is not known; " +
-          (section.find(':') == std::string::npos
-               ? knownWords(knownSections, section, s_programSections)
-               : "[vehicle] lidars must list the label behind the colon; known are: " +
-                     joined(knownSections)));
-      continue;
-    }
+    const bool bound = known != m_known.end();
+    if (!bound && (others.count(lower(section)) > 0 || !m_fixedSection.empty())) continue;
     std::vector<std::string> keys;
     m_source->getAllKeys(section, keys);
-    for (const auto& key : keys)
-      if (!known->second.count(lower(key)))
-        messages.push_back(place() + "[" + section + "] " + key + " = " +
-                           withoutComment(m_source->read_string(section, key, "")) +
-                           ": key is not known; " + knownWords(known->second, key));
+    bool removed = !bound && !keys.empty();
+    for (const auto& key : keys) {
+      if (bound && known->second.count(lower(key))) continue;
+      const std::string value = withoutComment(m_source->read_string(section, key, ""));
+      const auto fault = faultOfRemoved(lower(section), lower(key), value);
+      removed = removed && fault;
+      if (fault == "" || (!bound && !fault)) continue;
+      messages.push_back(place() + "[" + section + "] " + key + " = " + value + ": " +
+                         (fault ? *fault : "key is not known; " + knownWords(known->second, key)));
+    }
+    if (!bound && !removed) messages.push_back(place() + unknownSection(section, others));
   }
   return messages;
+}
+
+std::string ConfigReader::unknownSection(const std::string& section,
+                                         const std::set<std::string>& others) const {
+  std::set<std::string> known;
+  for (const auto& [name, keys] : m_known) known.insert(name);
+  return "section [" + section + "] is not known; " +
+         (section.find(':') == std::string::npos
+              ? knownWords(known, section, others)
+              : "[vehicle] lidars must list the label behind the colon; known are: " +
+                    joined(known));
 }
 
 void ConfigWriter::openSection(const std::string& comment) {

@@ -18,7 +18,7 @@ LocalizationMap loaded(const std::filesystem::path& file, const SettingsValues& 
   auto map = std::make_shared<CPoleMap>();
   map->likelihoodOptions = settings.likelihood;  // first: the index is prepared for its gate
   map->loadFromPoleMapFile(file.string());
-  return {map, settings.global};
+  return {map};
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ SettingsValues read(ConfigFile file, const std::vector<std::string>& assignments
   SettingsValues values;
   ConfigReader reader(file);
   bind(reader, values);
-  reader.finish();
+  reader.finish({"view", "simulation", "world", "realism"});  // of the programs
   return values;
 }
 
@@ -32,15 +32,8 @@ void bind(Binder& binder, SettingsValues& values) {
   bind(binder, values.upkeep);
   bind(binder, values.likelihood);
   bind(binder, values.motion);
-  bind(binder, values.localization.filter);
   bind(binder, values.start);
-  bind(binder, values.localization.tracking);
-  bind(binder, values.localization.submap);
-  bind(binder, values.global);
-  bind(binder, values.localization.health);
-  bind(binder, values.localization.search);
-  bind(binder, values.localization.odometryMonitor);
-  bind(binder, values.localization.odometryCalibration);
+  bind(binder, values.localization);
   bind(binder, values.runs);
 }
 

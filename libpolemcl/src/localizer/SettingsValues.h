@@ -4,7 +4,6 @@
 
 #include <polemcl/core/common/Binder.h>
 #include <polemcl/core/extraction/ExtractionOptions.h>
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/core/mapping/MapUpdater.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
@@ -26,11 +25,10 @@ struct POLEMCL_EXPORT SettingsValues {
   LikelihoodOptions likelihood;  ///< `[likelihood]`
   MotionOptions motion;          ///< `[motion]`
   VehicleOptions vehicle;        ///< `[vehicle]`, and the sections of its LiDARs
-  /// `[filter] [tracking] [submap] [health] [search] [odometry_monitor] [odometry_calibration]`
+  /// `[filter] [tracking] [search] [odometry_monitor] [odometry_calibration]`
   LocalizationOptions localization;
-  GlobalOptions global;  ///< `[global]`
-  StartOptions start;    ///< `[start]`
-  RunOptions runs;       ///< `[runs]`
+  StartOptions start;  ///< `[start]`
+  RunOptions runs;     ///< `[runs]`
 
   /// \brief What the extraction needs.
   ObservationPoleExtractorOptions poleExtraction() const { return {sensor, extraction}; }

@@ -82,7 +82,7 @@ TEST_F(ExtractApp, SaysWhenNoScanHasAPole) {
   writeStreet(folder / "in", 2);
   import("in");
   EXPECT_EQ(run().err.find("warning"), std::string::npos);
-  const auto outcome = run({"--quiet", "--set", "scan_line.min_radius_m=0.39"});
+  const auto outcome = run({"--quiet", "--set", "scan_line.min_height_m=50"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "pole-extract: warning: " + at("in.rawlog") +
                              ": no pole in any of 2 scans: check [sensor] and [extraction]\n");

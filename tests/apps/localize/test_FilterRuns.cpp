@@ -34,7 +34,7 @@ class FilterRunsTest : public testing::Test {
   }
   /// Element [i][k]: what run i made of scan k.
   std::vector<Updates> run(const RunOptions& which) {
-    FilterRuns filters({street.map, GlobalOptions()}, settings(which));
+    FilterRuns filters({street.map}, settings(which));
     std::vector<Updates> results(filters.size());
     for (const PoleFrame& frame : street.frames) {
       const auto& steps = filters.step(frame);
@@ -131,7 +131,7 @@ TEST_F(FilterRunsTest, RefusesMoreParticlesThanFitSideBySide) {
   runs.runs = 51;
   start.particles = 1000000;
   try {
-    FilterRuns({street.map, GlobalOptions()}, settings(runs));
+    FilterRuns({street.map}, settings(runs));
     ADD_FAILURE() << "not refused";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("51 runs of 1000000 particles"), std::string::npos)

@@ -50,7 +50,7 @@ std::vector<StampedPose2D> localized(const LocalizationMap& map,
 /// How many of 20 kidnapped vehicles are within 2 m of the truth at the end of the drive.
 int recovered(const AllSettings& settings) {
   const tests::PoleCity city{tests::CityOptions()};
-  const LocalizationMap map(mapOf(city.map(), settings), settings.global);
+  const LocalizationMap map(mapOf(city.map(), settings));
   int count = 0;
   for (int run = 0; run < 20; ++run) {
     std::vector<PoleFrame> frames;
@@ -131,7 +131,7 @@ class Parity {
     StartOptions start = m_settings.start;
     start.pose = m_poses[1];
     start.radius = radius;
-    const LocalizationMap map(m_map, m_settings.global);
+    const LocalizationMap map(m_map);
     return evaluateTrajectory(truth, localized(map, frames, m_settings.localization, start, seed),
                               Sampling::perPose);
   }
@@ -199,8 +199,8 @@ TEST(PaperMode, NothingBeyondThePaperIsOn) {
     SCOPED_TRACE(name);
     const AllSettings s = load("paper/" + std::string(name) + ".ini");
     EXPECT_EQ(s.extraction.method, ExtractionMethod::rangeImage);
-    EXPECT_FALSE(s.localization.search.recover);
-    EXPECT_FALSE(s.localization.odometryMonitor.enabled);
+    EXPECT_FALSE(s.localization.recover);
+    EXPECT_FALSE(s.localization.monitorOdometry);
     EXPECT_FALSE(s.localization.tracking.average);
     EXPECT_EQ(s.localization.tracking.cadence, Cadence::section);
     EXPECT_EQ(s.localization.tracking.localMaps.sectionLength, s.map.sectionLength);

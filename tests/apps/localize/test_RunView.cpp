@@ -45,7 +45,7 @@ class RunViewTest : public testing::Test {
     settings.localization = localization;
     settings.start.pose = street.truth[0];
     settings.runs.runs = 2;
-    FilterRuns runs({street.map, GlobalOptions()}, settings);
+    FilterRuns runs({street.map}, settings);
     Updates done;
     for (const PoleFrame& frame : street.frames) {
       done.push_back(runs.step(frame)[0].update);

@@ -47,8 +47,8 @@ class SensorModels : public testing::TestWithParam<Sensor> {
               "[sensor]\n" + GetParam().keys +
                   "height_m = 1.7\n[map]\nmin_count = 1\nevery_scan = false\nmin_share = 0\n"
                   "[likelihood]\nsigma_m = 0.15\nweighted = false\n[filter]\nparticles = "
-                  "100\n[start]\nparticles = 100\nradius_m = 0.1\nheading_deg = 0.5\n[health]\n"
-                  "confirm_m = 2\n[simulation]\nspacing_m = 3\nscans = 8\n"
+                  "100\n[start]\nparticles = 100\nradius_m = 0.1\nheading_deg = 0.5\n"
+                  "[simulation]\nspacing_m = 3\nscans = 8\n"
                   "[world]\nlength_m = 30\nlamp_spacing_m = 10\n");
   }
   std::string at(const std::string& name) const { return (folder / name).string(); }

@@ -234,7 +234,7 @@ TEST(PoleExtractor, EveryReasonHasItsName) {
 
 TEST(PoleExtractor, RefusesBadOptions) {
   ExtractionOptions options;
-  options.scanLine.maxWidth = 0;
+  options.scanLine.maxRange = 0;
   EXPECT_THROW(PoleExtractor(SensorOptions(), options), Error);
   EXPECT_THROW(PoleExtractor(sensorOptions("no such sensor"), {}), Error);
 }

@@ -327,26 +327,6 @@ TEST(LocalSubmap, RefusesNumbersThatAreNone) {
   EXPECT_EQ(submap.poles()[0].hits, 1u);
 }
 
-TEST(LocalSubmap, RefusesOptionsOutOfRange) {
-  const auto refused = [](double SubmapOptions::*field, double value, const std::string& name) {
-    SubmapOptions options;
-    options.*field = value;
-    expectRefused([&] { LocalSubmap submap(options); }, name);
-  };
-  refused(&SubmapOptions::length, 0, "length_m");
-  refused(&SubmapOptions::gate, s_nan, "gate");
-  refused(&SubmapOptions::floor, 0, "floor_m");
-  refused(&SubmapOptions::viewRange, -1, "view_range_m");
-  refused(&SubmapOptions::minShare, 1.5, "min_share");
-  refused(&SubmapOptions::positionWalk, -0.1, "position_walk");
-  refused(&SubmapOptions::headingWalk, s_nan, "heading_walk_deg");
-  refused(&SubmapOptions::turnWalk, -1, "turn_walk");
-  refused(&SubmapOptions::scale, 2, "scale");
-  SubmapOptions options;
-  options.sureHits = 0;
-  expectRefused([&] { checkOptions(options); }, "sure_hits");
-}
-
 TEST(LocalSubmap, TakesEachDetectionOnceAveraged) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 2, 0.01)});

@@ -82,9 +82,7 @@ TEST(OdometryCalibration, AJumpOfThePoseIsNoScale) {
 }
 
 TEST(OdometryCalibration, SwitchedOffItChangesNothing) {
-  OdometryCalibrationOptions options;
-  options.enabled = false;
-  const OdometryCalibration calibration(options);
+  const OdometryCalibration calibration(false);
   const CorrectedMotion motion = calibration.correct({1, 2, 3}, Eigen::Matrix3d::Identity());
   EXPECT_EQ(motion.motion.x, 1);
   EXPECT_EQ(motion.covariance, Eigen::Matrix3d::Identity());

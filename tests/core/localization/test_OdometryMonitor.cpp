@@ -169,19 +169,17 @@ TEST(OdometryMonitor, WithoutPolesTheOdometryIsAllThereIs) {
 
 TEST(OdometryMonitor, BlindAmidAFaultItKeepsTheSpeedForAWhile) {
   const CheckedDrive drive(13, 210);
-  OdometryMonitorOptions options;
-  options.hold = 2;
-  OdometryMonitor check(options);
+  OdometryMonitor check;
   CheckedDrive blinded = drive;
   for (std::size_t i = 100; i < 200; ++i) blinded.frames[i].poles_robot.clear();
   const auto results = blinded.run(
       check, [](std::size_t i, const Pose2D& motion) { return i >= 50 ? Pose2D() : motion; });
-  for (std::size_t i = 100; i < 119; ++i) {
+  for (std::size_t i = 100; i < 149; ++i) {  // 5 s at 10 Hz
     EXPECT_TRUE(results[i].replaced);
     EXPECT_NEAR(results[i].motion.x, 0.7, 0.25) << i;
     EXPECT_GT(results[i].covariance(0, 0), 0.01);
   }
-  for (std::size_t i = 125; i < 200; ++i) EXPECT_FALSE(results[i].replaced) << i;
+  for (std::size_t i = 155; i < 200; ++i) EXPECT_FALSE(results[i].replaced) << i;
 }
 
 TEST(OdometryMonitor, AnUncertainOdometryIsNotContradictedForWhatItAdmits) {
@@ -210,29 +208,6 @@ TEST(OdometryMonitor, AGapEndsTheComparison) {
       EXPECT_EQ(result.verdict, OdometryVerdict::unknown);
     }
   }
-}
-
-TEST(OdometryMonitor, RefusesOptionsOutOfRange) {
-  const auto refuses = [](const std::function<void(OdometryMonitorOptions&)>& change) {
-    OdometryMonitorOptions options;
-    change(options);
-    EXPECT_THROW(OdometryMonitor{options}, Error);
-  };
-  refuses([](auto& o) { o.window = 0; });
-  refuses([](auto& o) { o.scale = 1; });
-  refuses([](auto& o) { o.metres = -1; });
-  refuses([](auto& o) { o.turn = NAN; });
-  refuses([](auto& o) { o.sigmas = 0; });
-  refuses([](auto& o) { o.minPairs = 2; });
-  refuses([](auto& o) { o.minShare = 1.1; });
-  refuses([](auto& o) { o.margin = -1; });
-  refuses([](auto& o) { o.settle = 2; });
-  refuses([](auto& o) { o.hold = -1; });
-  refuses([](auto& o) { o.maxSpeed = 0; });
-  refuses([](auto& o) { o.maxTurnRate = 0; });
-  refuses([](auto& o) { o.alignment.sigma = 0; });
-  refuses([](auto& o) { o.alignment.gate = 0; });
-  refuses([](auto& o) { o.alignment.reach = 0; });
 }
 
 }  // namespace polemcl::test_odometry_monitor

@@ -279,7 +279,7 @@ TEST(MapUpdater, TimeMakesUnsure) {
   LandmarkMap map = kept({{10, 5}, {300, 5}});
   map.poles[1].history.lastSeen = 86400 * 10;
   MapUpdateOptions upkeep;
-  upkeep.existence.lifetimeDays = 365;
+  upkeep.lifetimeDays = 365;
   const LandmarkMap after = updateMap(map, drive({{10, 5}}, 375), {}, upkeep);
   EXPECT_NEAR(find(after, 300, 5)->history.existence, 0.9 / M_E, 0.02)
       << "clamped by nothing seen, decayed by a year";
@@ -290,8 +290,7 @@ TEST(MapUpdater, TimeCountsOnce) {
   LandmarkMap map = kept({{10, 5}, {300, 5}});
   for (LandmarkRecord& pole : map.poles) pole.history.lastSeen = 86400 * 10;
   MapUpdateOptions upkeep;
-  upkeep.existence.lifetimeDays = 365;
-  upkeep.forget = 0.01;
+  upkeep.lifetimeDays = 365;
   for (int month = 1; month <= 12; ++month)
     map = updateMap(map, drive({{10, 5}}, 10 + month * 365.0 / 12), {}, upkeep);
   ASSERT_TRUE(find(map, 300, 5));
@@ -353,13 +352,9 @@ TEST(MapUpdater, RefusesBadScansAndOptions) {
   EXPECT_EQ(refusal([] { checkOptions(MapUpdateOptions()); }), "");
   EXPECT_NE(refused(&MapUpdateOptions::range, 0.0).find("range_m"), std::string::npos);
   EXPECT_NE(refused(&MapUpdateOptions::minSeen, 0).find("min_seen"), std::string::npos);
-  EXPECT_NE(refused(&MapUpdateOptions::present, 0.995).find("present"), std::string::npos);
-  EXPECT_NE(refused(&MapUpdateOptions::absent, 0.95).find("absent"), std::string::npos);
-  EXPECT_NE(refused(&MapUpdateOptions::forget, 0.5).find("forget"), std::string::npos);
   EXPECT_NE(refused(&MapUpdateOptions::sessionSigma, -1.0).find("session_sigma_m"),
             std::string::npos);
   EXPECT_NE(refused(&MapUpdateOptions::moved, 0.0).find("moved_m"), std::string::npos);
-  EXPECT_NE(refused(&MapUpdateOptions::ghost, -1.0).find("ghost_m"), std::string::npos);
 }
 
 TEST(MapUpdater, NothingComesOfNothing) {

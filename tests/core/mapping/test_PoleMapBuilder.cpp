@@ -380,13 +380,10 @@ TEST(PoleMapBuilder, NoScansNoMap) {
   EXPECT_EQ(result.sections, 0u);
 }
 
-TEST(PoleMapBuilder, RefusesSharesAndRangesThatAreNone) {
+TEST(PoleMapBuilder, RefusesSharesThatAreNone) {
   PoleMapOptions options;
   options.minShare = 1.1;
   expectRefused(options, "min_share");
-  options.minShare = 0.5;
-  options.nearRange = 0;
-  expectRefused(options, "near_range");
 }
 
 TEST(PoleMapBuilder, RefusesOptionsOutOfRange) {
@@ -395,9 +392,6 @@ TEST(PoleMapBuilder, RefusesOptionsOutOfRange) {
   for (double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
     options.sectionLength = bad;
     expectRefused(options, "section_length");
-    options = {};
-    options.mergeDistance = bad;
-    expectRefused(options, "merge_distance");
     options = {};
   }
   for (double bad : {-0.1, 1.1, nan}) {
@@ -415,9 +409,6 @@ TEST(PoleMapBuilder, RefusesOptionsOutOfRange) {
   options = {};
   options.minCount = 0;
   expectRefused(options, "min_count");
-  options = {};
-  options.maxGap = -1;
-  expectRefused(options, "max_gap");
 }
 
 TEST(PoleMapBuilder, RefusesWhatIsNotFiniteAndSaysWhere) {

@@ -164,7 +164,7 @@ TEST(SessionAlignment, ErringSessionsDoNotMoveThePoles) {
   EXPECT_EQ(counts.moved, 0u);
   EXPECT_EQ(presentPoles(map).size(), street().size());
   EXPECT_EQ(counts.alignment.scans, right.size());
-  options.alignment.sigma = 0;  // without the alignment they move or come twice
+  options.alignSigma = 0;  // without the alignment they move or come twice
   updateMap(landmarksFrom(street()), erring(right), {}, options, &counts);
   EXPECT_GT(counts.moved + counts.entered + counts.left, 10u);
   EXPECT_EQ(counts.alignment.scans, 0u);

@@ -24,7 +24,7 @@ LocalizationMap inventoryOf(const tests::PoleStreet& street, double sigma, std::
   const auto map = std::make_shared<CPoleMap>();
   map->likelihoodOptions.weighted = weighted;
   map->setPoles(poles);
-  return {map, GlobalOptions()};
+  return {map};
 }
 
 struct Errors {

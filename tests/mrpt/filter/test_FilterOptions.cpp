@@ -136,14 +136,8 @@ TEST(FilterOptions, ValidateRefusesEachFieldOutOfRange) {
 }
 
 TEST(FilterOptions, ReadsAdaptiveSampling) {
-  const All all = load(
-      "[filter]\nadaptive = true\nkld_epsilon = 0.02\nkld_delta = 0.05\nkld_bin_m = 0.25\n"
-      "kld_bin_deg = 2\nmin_particles = 50\nmax_particles = 3000\n");
+  const All all = load("[filter]\nadaptive = true\nmin_particles = 50\nmax_particles = 3000\n");
   EXPECT_TRUE(all.filter.adaptive);
-  EXPECT_EQ(all.filter.kld.epsilon, 0.02);
-  EXPECT_EQ(all.filter.kld.delta, 0.05);
-  EXPECT_EQ(all.filter.kld.bin, 0.25);
-  EXPECT_NEAR(all.filter.kld.binYaw, 2 * M_PI / 180, 1e-15);
   EXPECT_EQ(all.filter.kld.minParticles, 50);
   EXPECT_EQ(all.filter.kld.maxParticles, 3000);
   const auto never =

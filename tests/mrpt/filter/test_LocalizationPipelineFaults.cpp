@@ -21,7 +21,7 @@ class PoleLocalizationFaults : public testing::Test {
     poles->likelihoodOptions.sigma = 0.05;
     poles->likelihoodOptions.weighted = true;
     poles->setPoles(city.map());
-    map = std::make_unique<LocalizationMap>(poles, GlobalOptions());
+    map = std::make_unique<LocalizationMap>(poles);
     sim::Random random(3);
     const auto way = tests::resample(city.randomWay(random, metres), step);
     for (const tests::Frame& seen : tests::drive(city.surroundings(), way, {}, random)) {
@@ -100,7 +100,7 @@ TEST_F(PoleLocalizationFaults, ASlippingOdometryIsDegradedAndThePoseStaysRight) 
 TEST_F(PoleLocalizationFaults, TheCheckChangesNothingWhilePolesAgree) {
   drive(140);
   const auto checked = run();
-  options.odometryMonitor.enabled = false;
+  options.monitorOdometry = false;
   const auto unchecked = run();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(checked[i].estimate->mean.x, unchecked[i].estimate->mean.x);

@@ -40,8 +40,7 @@ TEST(MotionOptions, RefusesEachBadField) {
   EXPECT_NO_THROW(checkOptions(MotionOptions()));
   for (double MotionOptions::*field :
        {&MotionOptions::xyPerMetre, &MotionOptions::xyPerRadian, &MotionOptions::yawPerMetre,
-        &MotionOptions::yawPerRadian, &MotionOptions::minXy, &MotionOptions::minYaw,
-        &MotionOptions::covarianceFactor})
+        &MotionOptions::yawPerRadian, &MotionOptions::covarianceFactor})
     for (const double bad : {-0.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
       MotionOptions options;
       options.*field = bad;

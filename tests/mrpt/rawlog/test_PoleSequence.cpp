@@ -382,8 +382,8 @@ TEST(PoleSequence, RefusesBadOptions) {
   o.threads = -1;
   EXPECT_HAS(bench.refusal(bytes, o), "threads = -1");
   o = options();
-  o.motion.minXy = -1;
-  EXPECT_HAS(bench.refusal(bytes, o), "min_xy_m");
+  o.motion.xyPerMetre = -1;
+  EXPECT_HAS(bench.refusal(bytes, o), "xy_per_m");
   o = options();
   o.extraction.sensor.model = "none";
   EXPECT_HAS(bench.refusal(bytes, o), "model");

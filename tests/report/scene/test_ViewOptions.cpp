@@ -27,15 +27,12 @@ TEST(ViewOptions, RefusesWhatIsOutOfRange) {
   };
   refused([](ViewOptions& o) { o.rate = "soon"; });
   refused([](ViewOptions& o) { o.scenes = -1; });
-  refused([](ViewOptions& o) { o.frameEvery = 0; });
-  refused([](ViewOptions& o) { o.width = 100; });
-  refused([](ViewOptions& o) { o.height = 10000; });
 }
 
 TEST(ViewOptions, AreReadAndWritten) {
   ViewOptions options;
   options.live = true, options.rate = "3x", options.scenes = 7, options.frames = "pictures";
-  options.frameEvery = 5, options.width = 800, options.height = 600, options.hold = true;
+  options.hold = true;
   ConfigWriter writer;
   bind(writer, options);
   ViewOptions read;
@@ -46,9 +43,6 @@ TEST(ViewOptions, AreReadAndWritten) {
   EXPECT_EQ(read.rate, "3x");
   EXPECT_EQ(read.scenes, 7);
   EXPECT_EQ(read.frames, "pictures");
-  EXPECT_EQ(read.frameEvery, 5);
-  EXPECT_EQ(read.width, 800);
-  EXPECT_EQ(read.height, 600);
   ConfigReader bad(ConfigFile::fromText("[view]\nrate = soon\n", "a.ini"));
   EXPECT_THROW(bind(bad, read), Error);
 }

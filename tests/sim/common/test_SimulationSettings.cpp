@@ -11,7 +11,6 @@ using namespace polemcl::sim;
 TEST(SimulationSettings, WhatIsWrittenReadsBackTheSame) {
   SimulationOptions written;
   written.spacing = 0.31;
-  written.laneOffset = 1.7;
   written.motionDistortion = true;
   written.reverse = true;
   written.scans = 12;
@@ -19,10 +18,8 @@ TEST(SimulationSettings, WhatIsWrittenReadsBackTheSame) {
   written.world.day = 4;
   written.world.track = "road.txt.gz";
   written.world.treeSpacing = 6.5;
-  written.world.peopleMove = true;
   written.world.replacedPerYear = 0.1;
   written.world.dayOfYear = 135;
-  written.world.snowBank = 0.4;
   written.world.buildingSites = 2.5;
   written.world.sideStreets = 2;
   written.detour = 2;
@@ -33,7 +30,6 @@ TEST(SimulationSettings, WhatIsWrittenReadsBackTheSame) {
   bind(reader, read);
   reader.finish();
   EXPECT_EQ(read.spacing, written.spacing);
-  EXPECT_EQ(read.laneOffset, written.laneOffset);
   EXPECT_TRUE(read.motionDistortion);
   EXPECT_TRUE(read.reverse);
   EXPECT_EQ(read.scans, 12);
@@ -41,10 +37,8 @@ TEST(SimulationSettings, WhatIsWrittenReadsBackTheSame) {
   EXPECT_EQ(read.world.day, 4);
   EXPECT_EQ(read.world.track, "road.txt.gz");
   EXPECT_EQ(read.world.treeSpacing, 6.5);
-  EXPECT_TRUE(read.world.peopleMove);
   EXPECT_EQ(read.world.replacedPerYear, 0.1);
   EXPECT_EQ(read.world.dayOfYear, 135);
-  EXPECT_EQ(read.world.snowBank, 0.4);
   EXPECT_EQ(read.world.buildingSites, 2.5);
   EXPECT_EQ(read.world.sideStreets, 2);
   EXPECT_EQ(read.detour, 2);
@@ -61,13 +55,6 @@ TEST(SimulationSettings, RefusesWhatIsOutOfRangeWithFileSectionAndKey) {
     for (const char* part : {"street.ini", "world", "tree_share", "1.2", "0 to 1"})
       EXPECT_NE(message.find(part), std::string::npos) << part << " in " << message;
   }
-}
-
-TEST(SimulationSettings, RefusesALaneBesideTheRoad) {
-  ConfigReader reader(ConfigFile::fromText(
-      "[simulation]\nlane_offset_m = 3\n[world]\nroad_width_m = 8\n", "street.ini"));
-  SimulationOptions options;
-  EXPECT_THROW(bind(reader, options), Error);
 }
 
 }  // namespace polemcl::test_simulation_settings

@@ -67,14 +67,13 @@ class POLEMCL_EXPORT ConfigReader : public Binder {
                const std::string& fixedSection);
   /// \brief Known keys of the open section that other code reads.
   void knownElsewhere(std::initializer_list<std::string> keys);
-  /// \brief Checks that nothing in the file was passed over by mistake. One file serves all
-  /// programs: their sections that were not bound here, such as `[world]`, belong to other programs
-  /// and are not looked into.
-  /// \throws Error on an unknown key of a section that was bound, and on a section that no program
-  ///         knows, with the known ones.
-  void finish() const;
+  /// \brief Checks that nothing in the file was passed over by mistake.
+  /// \param others Sections of other programs, in lower case; they are not looked into.
+  /// \throws Error on an unknown key or section, with the known ones. Settings that version 1 had
+  ///         are passed over if they have the value that is fixed now.
+  void finish(const std::set<std::string>& others = {}) const;
   /// \brief The messages of all errors that finish() could throw; empty: none.
-  std::vector<std::string> unknownEntries() const;
+  std::vector<std::string> unknownEntries(const std::set<std::string>& others = {}) const;
 
  protected:
   void openSection(const std::string& comment) override;
@@ -82,7 +81,7 @@ class POLEMCL_EXPORT ConfigReader : public Binder {
   std::string place() const override;
 
  private:
-  bool belongsToOthers(const std::string& section) const;
+  std::string unknownSection(const std::string& section, const std::set<std::string>& others) const;
 
   std::shared_ptr<const mrpt::config::CConfigFileBase> m_owned;
   const mrpt::config::CConfigFileBase* m_source;

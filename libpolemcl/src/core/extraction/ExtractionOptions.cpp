@@ -17,20 +17,12 @@ void bindChoices(Binder& b, RangeImageOptions& o) {
   b.number("coordinate_step_m", o.coordinateStep, Range::between(0, 1), "m",
            "coordinates are rounded to multiples of this step; 0: used as read");
   b.flag("single_precision", o.singlePrecision, "true: projection and fit in float");
-  b.flag("clamp_to_view", o.clampToView,
-         "true: points outside the image go to its border pixels; false: they are dropped");
-  b.flag("wrap_around", o.wrapAround,
-         "true: the image closes at +-180 deg; false: it is open, and its border rows and "
-         "columns hold no clusters");
-  b.flag("grow_upwards", o.growUpwards,
-         "true: clusters also grow up; false: left, right and down only");
-  b.choice("foreground_test", o.foregroundTest, {"not_behind", "in_front"},
-           "pixels that count for foreground: those without a nearer neighbour beside, or those "
-           "with neighbours beside that are all farther");
-  b.choice("circle_fit", o.circleFit, {"kasa", "kasa_mean", "taubin", "silhouette"},
-           "how a circle is fitted");
-  b.choice("free_space", o.freeSpace, {"ring", "corners", "cut_corners"},
-           "shape of the free space; cut_corners: as in the authors' code");
+  b.choice<ExtractionDetails>(
+      "details", o.details,
+      {{ExtractionDetails::mended, "mended"},
+       {ExtractionDetails::paper, "paper"},
+       {ExtractionDetails::authors, "authors"}},
+      "where text and code of the authors differ: ours, the text, the code");
 }
 
 }  // namespace
@@ -58,22 +50,14 @@ void bindKeys(Binder& b, RangeImageOptions& o) {
   b.number("epsilon_m", o.epsilon, s_above0, "m", "greatest step in range inside a cluster");
   b.integer("min_pixels", o.minPixels, s_from0, "px", "a cluster needs more pixels than this");
   b.integer("max_width_px", o.maxWidthPx, Range::atLeast(1), "px", "greatest width of a cluster");
-  b.number("min_aspect", o.minAspect, s_from0, "", "least height / width of a cluster");
   b.number("foreground", o.foreground, s_0to1, "",
-           "least share of a cluster's pixels that pass foreground_test");
+           "least share of a cluster's pixels without a nearer neighbour beside; details = paper: "
+           "in front of both neighbours");
   b.number("min_top_m", o.minTop, Range::any(), "m", "least height of a pole's top");
   b.number("max_bottom_m", o.maxBottom, Range::any(), "m", "greatest height of a pole's bottom");
   b.number("min_height_m", o.minHeight, s_from0, "m", "least distance from bottom to top");
-  b.number("min_radius_m", o.minRadius, s_from0, "m", "thinner circles are refused");
-  b.number("max_radius_m", o.maxRadius, s_above0, "m", "thicker circles are refused");
-  b.number("fit_margin_m", o.fitMargin, s_from0, "m",
-           "half width of the box of the fit beyond the radius");
   b.number("fit_max_z_m", o.fitMaxZ, Range::any(), "m", "greatest height of the points fitted");
-  b.integer("min_fit_points", o.minFitPoints, Range::atLeast(3), "",
-            "least number of points fitted");
   b.number("free_ring_m", o.freeRing, s_from0, "m", "width of the free space round a pole");
-  b.number("free_share", o.freeShare, s_from0, "",
-           "points allowed in the free space, as a share of those fitted");
   bindChoices(b, o);
 
   b.require(o.rows != 1, "rows", o.rows, "0, or at least 2");
@@ -81,7 +65,6 @@ void bindKeys(Binder& b, RangeImageOptions& o) {
   b.require(o.fovUp > o.fovDown || (o.fovUp == 0 && o.fovDown == 0), "fov_up_deg", o.fovUp / degree,
             "more than fov_down_deg (negative below the horizon), or both 0");
   b.require(o.maxZ > o.minZ, "max_z_m", o.maxZ, "more than min_z_m");
-  b.require(o.maxRadius > o.minRadius, "max_radius_m", o.maxRadius, "more than min_radius_m");
 }
 
 void bind(Binder& b, ScanLineOptions& o) {
@@ -97,29 +80,9 @@ void bindKeys(Binder& b, ScanLineOptions& o) {
            "poles with a lower confidence are refused");
   b.number("max_radius_m", o.maxRadius, s_above0, "m", "thicker poles are refused");
   b.tier(Tier::expert);
-  b.number("max_width_m", o.maxWidth, s_above0, "m", "greatest width of a segment of a pole");
-  b.number("connect_step_m", o.connectStep, s_above0, "m",
-           "greatest step in range between neighbours in a segment");
-  b.number("edge_step_m", o.edgeStep, s_above0, "m",
-           "least step in range from a segment's edge to what lies behind it");
-  // Cells of twice the reach cover the square that the range spans.
-  b.number("stack_reach_m", o.stackReach, Range::atLeast(0.05), "m",
-           "greatest horizontal step between segments of a pole");
-  b.number("stack_gap_m", o.stackGap, s_from0, "m",
-           "greatest vertical step between segments of a pole");
-  b.number("max_bottom_m", o.maxBottom, s_above0, "m", "greatest height of a pole's lowest return");
   b.number("min_height_m", o.minHeight, s_from0, "m", "least visible height of a pole");
-  b.number("min_radius_m", o.minRadius, s_from0, "m", "thinner poles are refused");
-  b.integer("min_points", o.minPoints, Range::atLeast(2), "", "least number of returns of a pole");
-  b.angleDeg("max_tilt_deg", o.maxTilt, Range::aboveUpTo(0, 85),
-             "greatest tilt of the axis from the vertical");
-  b.number("max_scatter_m", o.maxScatter, s_above0, "m",
-           "greatest rms distance of the segments from the axis");
-  b.number("min_spacing_m", o.minSpacing, s_from0, "m",
-           "two poles nearer than this: the less confident one is dropped");
 
-  b.require(o.edgeStep >= o.connectStep, "edge_step_m", o.edgeStep, "connect_step_m or more");
-  b.require(o.maxRadius > o.minRadius, "max_radius_m", o.maxRadius, "more than min_radius_m");
+  b.require(o.maxRadius > o.minRadius, "max_radius_m", o.maxRadius, "more than 0.02 m");
 }
 
 void bind(Binder& b, ExtractionOptions& o) {

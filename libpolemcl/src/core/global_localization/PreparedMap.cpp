@@ -13,7 +13,7 @@ constexpr double s_radiusUnsure = 0.2;
 }  // namespace
 
 PreparedMap::PreparedMap(const std::vector<MapPole>& map, const GlobalOptions& globalOptions)
-    : options((checkOptions(globalOptions), globalOptions)),
+    : options(globalOptions),
       index(map, options.maxTolerance),
       pairs(centresOf(map), options.minBaseline, options.maxBaseline) {
   for (std::size_t i = 0; i < map.size(); ++i) {

@@ -12,14 +12,6 @@ namespace polemcl {
 void bind(Binder& b, KldOptions& o) {
   const Range particles = Range::between(1, 1000000);
   b.section("filter", "The particle filter that localizes", Tier::expert);
-  b.number("kld_epsilon", o.epsilon, Range::aboveUpTo(0, 1), "nat",
-           "adaptive: greatest Kullback-Leibler distance to the posterior in bins");
-  b.number("kld_delta", o.delta, Range::aboveUpTo(0, 0.5), "",
-           "adaptive: probability of a greater distance");
-  b.number("kld_bin_m", o.bin, Range::between(0.001, 100), "m",
-           "adaptive: size of a bin in x and y");
-  b.angleDeg("kld_bin_deg", o.binYaw, Range::between(0.001, 180),
-             "adaptive: size of a bin in heading");
   b.integer("min_particles", o.minParticles, particles, "", "adaptive: least number of particles");
   b.integer("max_particles", o.maxParticles, particles, "",
             "adaptive: greatest number of particles");

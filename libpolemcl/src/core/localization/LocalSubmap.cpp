@@ -42,9 +42,7 @@ Eigen::Matrix3d walkCovariance(const Pose2D& motion, const SubmapOptions& option
   return Eigen::Vector3d(position, position, heading).asDiagonal();
 }
 
-LocalSubmap::LocalSubmap(const SubmapOptions& options) : m_options(options) {
-  checkOptions(options);
-}
+LocalSubmap::LocalSubmap(const SubmapOptions& options) : m_options(options) {}
 
 void LocalSubmap::add(const Pose2D& motion, const std::vector<PoleDetection>& poles_robot) {
   add(motion, walkCovariance(motion, m_options), poles_robot);

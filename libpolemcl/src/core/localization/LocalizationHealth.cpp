@@ -8,9 +8,41 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_hopeless = 0.3;     // a new pose is not waited for below this part of its share
-constexpr double s_hopelessAfter = 2;  // but for this distance, m
-constexpr double s_viewpoint = 0.1;    // scans nearer to each other are of one viewpoint, m
+/// Scans over this distance are judged together, m. Scans from one viewpoint count as one: a
+/// vehicle that stands beside something odd is not lost.
+constexpr double kWindow = 8;
+/// Lost: scans over this longer distance agree, m. Where most poles are gone or new, few known
+/// poles are seen for some metres.
+constexpr double kLostWindow = 18;
+/// Least number of sightings in a window that says anything: sum of the confidences of all poles
+/// from all viewpoints.
+constexpr double kMinSightings = 8;
+/// Lost: least number of poles a scan in the longer window, as a share of what is usual on this
+/// drive. It means the same for a LiDAR that sees 3 poles and for one that sees 28. Where the poles
+/// of the map are gone, the few new ones prove nothing.
+constexpr double kLostSeen = 0.15;
+/// What is usual is the mean of scans whose poles match; it forgets over this distance, m.
+constexpr double kUsualWithin = 200;
+/// Lost: a smaller share of the observed poles is on the map. A pose that has gone wrong was known
+/// well before, so matches by chance are rare: 0.002 for 20 cm round each pole.
+constexpr double kLostShare = 0.03;
+constexpr double kDegradedShare = 0.4;      // degraded: a smaller share of them is on the map
+constexpr double kLostSpread = 5;           // lost: greater σ of the position, m
+constexpr double kDegradedSpread = 0.2;     // degraded: greater σ of the position, m
+constexpr double kDegradedHeading = 0.052;  // degraded: greater σ of the heading, rad
+constexpr double kInnovation = 4;    // degraded: greater mean m² per degree of freedom of matches
+constexpr double kModeShare = 0.95;  // degraded: smaller share of the weight at the estimate
+constexpr double kBlindSeconds = 2;  // degraded: no pole for a longer time, s
+constexpr double kBlindMetres = 20;  // degraded: no pole over a longer distance, m
+constexpr double kConfirm = 5;       // distance with good matches until a new pose is ok, m
+constexpr double kConfirmFound = 2;  // the same for a pose that a search found, m
+/// Share of matched poles that confirms a new pose. Particles drawn over metres find matches by
+/// chance.
+constexpr double kConfirmShare = 0.5;
+constexpr double kConfirmWithin = 15;  // lost: a new pose is not confirmed within this distance, m
+constexpr double kHopelessShare = 0.15;  // lost: a new pose has a smaller share of matches
+constexpr double kHopelessAfter = 2;     // but only after this distance, m
+constexpr double kViewpoint = 0.1;       // scans nearer to each other are of one viewpoint, m
 
 }  // namespace
 
@@ -26,12 +58,8 @@ const char* name(HealthReason reason) {
   return names[static_cast<int>(reason)];
 }
 
-HealthMonitor::HealthMonitor(const HealthOptions& options) : m_options(options) {
-  checkOptions(options);
-}
-
 void HealthMonitor::reset() {
-  *this = HealthMonitor(m_options);
+  *this = HealthMonitor(m_maxGap);
 }
 
 void HealthMonitor::begin(bool found) {
@@ -46,8 +74,7 @@ void HealthMonitor::begin(bool found) {
 Health HealthMonitor::update(const HealthInput& input) {
   if (!m_begun) return m_health;
   const bool first = m_viewpoints.empty();
-  if (!first && input.time - m_time > m_options.maxGap)
-    m_gapUntil = m_driven + input.metres + m_options.confirm;
+  if (!first && input.time - m_time > m_maxGap) m_gapUntil = m_driven + input.metres + kConfirm;
   m_driven += input.metres;
   m_time = input.time;
   remember(input);
@@ -67,23 +94,23 @@ Health HealthMonitor::update(const HealthInput& input) {
 }
 
 /// A complete viewpoint whose poles match counts in what is usual: like all others at first, then
-/// so that those `usualWithin` metres back have lost most of their weight.
+/// so that those kUsualWithin metres back have lost most of their weight.
 void HealthMonitor::learnUsual() {
   if (m_viewpoints.empty()) return;
   const Viewpoint& last = m_viewpoints.back();
-  if (last.seen <= 0 || last.matched < m_options.degradedShare * last.seen) return;
-  const double metres = std::clamp(m_driven - last.driven, s_viewpoint, m_options.window);
-  m_usualOver = std::min(m_usualOver + metres, m_options.usualWithin);
+  if (last.seen <= 0 || last.matched < kDegradedShare * last.seen) return;
+  const double metres = std::clamp(m_driven - last.driven, kViewpoint, kWindow);
+  m_usualOver = std::min(m_usualOver + metres, kUsualWithin);
   m_usual += std::min(1.0, metres / m_usualOver) * (last.seen - m_usual);
 }
 
 void HealthMonitor::remember(const HealthInput& input) {
-  if (m_viewpoints.empty() || m_driven - m_viewpoints.back().driven >= s_viewpoint) {
+  if (m_viewpoints.empty() || m_driven - m_viewpoints.back().driven >= kViewpoint) {
     learnUsual();
     m_viewpoints.emplace_back();
     m_viewpoints.back().driven = m_driven;
   }
-  while (m_driven - m_viewpoints.front().driven > m_options.lostWindow) m_viewpoints.pop_front();
+  while (m_driven - m_viewpoints.front().driven > kLostWindow) m_viewpoints.pop_front();
   Viewpoint scan;
   for (const PoleMatch& match : input.matches) {
     scan.seen += match.confidence;
@@ -121,41 +148,37 @@ double HealthMonitor::shareOfUsual(const Window& window) const {
 }
 
 void HealthMonitor::sumUp() {
-  const Window window = sumOver(m_options.window), all = sumOver(m_options.lostWindow);
+  const Window window = sumOver(kWindow), all = sumOver(kLostWindow);
   m_health.seenShare = shareOfUsual(window);
   m_health.matchedShare = window.matchedShare();
   m_health.innovation = window.matches > 0 ? window.squared / (2 * window.matches) : 0;
   m_longShare = all.matchedShare();
-  m_isEnough = window.seen >= m_options.minSightings;
-  m_isEnoughLong = all.seen >= m_options.minSightings && shareOfUsual(all) >= m_options.lostSeen;
+  m_isEnough = window.seen >= kMinSightings;
+  m_isEnoughLong = all.seen >= kMinSightings && shareOfUsual(all) >= kLostSeen;
 }
 
 /// Confirms a new pose after enough metres of good matches.
 void HealthMonitor::confirm(const HealthInput& input) {
-  const HealthOptions& o = m_options;
   const Viewpoint& here = m_viewpoints.back();
-  if (here.seen > 0 && here.matched >= o.degradedShare * here.seen) m_goodDriven += input.metres;
-  const bool good = m_isEnough && m_health.matchedShare >= o.degradedShare &&
-                    m_longShare >= o.confirmShare && m_health.spread < o.degradedSpread &&
-                    m_health.spreadHeading < o.degradedHeading;
-  if (good && m_goodDriven >= (m_found ? o.confirmFound : o.confirm)) m_confirmed = true;
+  if (here.seen > 0 && here.matched >= kDegradedShare * here.seen) m_goodDriven += input.metres;
+  const bool good = m_isEnough && m_health.matchedShare >= kDegradedShare &&
+                    m_longShare >= kConfirmShare && m_health.spread < kDegradedSpread &&
+                    m_health.spreadHeading < kDegradedHeading;
+  if (good && m_goodDriven >= (m_found ? kConfirmFound : kConfirm)) m_confirmed = true;
 }
 
 void HealthMonitor::judge(const HealthInput& input) {
-  const HealthOptions& o = m_options;
-  const bool fewMatched = m_health.matchedShare < o.degradedShare;
+  const bool fewMatched = m_health.matchedShare < kDegradedShare;
   // A lost filter spreads until it meets chance matches; they are no reason to believe it again.
   const bool believed = m_confirmed && m_health.state != HealthState::lost;
-  const double lostShare = believed ? o.lostShare : s_hopeless * o.confirmShare;
+  const double lostShare = believed ? kLostShare : kHopelessShare;
   const bool bare =
-      m_isEnoughLong && m_driven >= s_hopelessAfter && m_longShare < lostShare && fewMatched;
+      m_isEnoughLong && m_driven >= kHopelessAfter && m_longShare < lostShare && fewMatched;
   const bool unconfirmed =
-      m_isEnough && !m_confirmed && m_driven >= o.confirmWithin && m_longShare < o.confirmShare;
-  const bool wide =
-      m_health.spread > o.degradedSpread || m_health.spreadHeading > o.degradedHeading;
-  const bool severalModes = m_health.modeShare < o.modeShare;
-  const bool blind =
-      m_time - m_seenTime > o.blindSeconds || m_driven - m_seenDriven > o.blindMetres;
+      m_isEnough && !m_confirmed && m_driven >= kConfirmWithin && m_longShare < kConfirmShare;
+  const bool wide = m_health.spread > kDegradedSpread || m_health.spreadHeading > kDegradedHeading;
+  const bool severalModes = m_health.modeShare < kModeShare;
+  const bool blind = m_time - m_seenTime > kBlindSeconds || m_driven - m_seenDriven > kBlindMetres;
 
   using State = HealthState;
   using Reason = HealthReason;
@@ -165,7 +188,7 @@ void HealthMonitor::judge(const HealthInput& input) {
     HealthReason reason;
   } rules[] = {
       {bare || unconfirmed, State::lost, Reason::mismatch},
-      {m_health.spread > o.lostSpread && !severalModes, State::lost, Reason::spread},
+      {m_health.spread > kLostSpread && !severalModes, State::lost, Reason::spread},
       {severalModes, State::degraded, Reason::ambiguous},
       {!m_confirmed, State::degraded, Reason::converging},
       {m_isEnough && fewMatched, State::degraded, Reason::mismatch},
@@ -173,7 +196,7 @@ void HealthMonitor::judge(const HealthInput& input) {
       {m_driven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind, State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},
-      {m_isEnough && m_health.innovation > o.innovation, State::degraded, Reason::innovation},
+      {m_isEnough && m_health.innovation > kInnovation, State::degraded, Reason::innovation},
       {true, State::ok, Reason::none},
   };
   const auto* rule =

@@ -8,8 +8,12 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_together = 3;  // distance over which errors of motions add up, m
-constexpr double s_furthest = 4;  // greatest innovation that is used, standard deviations
+constexpr double kLength = 8;  // distance over which motions are compared, m
+constexpr double kScaleWalk =
+    0.0005;  // growth of the scale's standard deviation, per root of a metre
+constexpr double kYawWalk = 1.7e-5;  // growth of the yaw bias's, rad/m per root of a metre
+constexpr double kTogether = 3;      // distance over which errors of motions add up, m
+constexpr double kFurthest = 4;      // greatest innovation that is used, standard deviations
 
 Eigen::Vector3d asVector(const Pose2D& pose) {
   return {pose.x, pose.y, pose.yaw};
@@ -39,39 +43,20 @@ Eigen::Matrix3d motionCovariance(const PoseWithCovariance& from, const PoseWithC
 
 }  // namespace
 
-void bind(Binder& b, OdometryCalibrationOptions& o) {
-  b.section("odometry_calibration",
-            "Scale error and yaw bias of the odometry are estimated while driving");
-  b.flag("enabled", o.enabled, "false: the odometry is taken as it is");
-  b.number("scale_sigma", o.scaleSigma, Range::between(0, 1), "share",
-           "standard deviation of the scale error at the start");
-  b.angleDeg("yaw_sigma_deg_m", o.yawSigma, Range::between(0, 10),
-             "standard deviation of the yaw bias at the start, in deg per metre");
-  b.tier(Tier::expert);
-  b.number("scale_walk", o.scaleWalk, Range::between(0, 1), "",
-           "growth of the scale's standard deviation, per root of a metre");
-  b.angleDeg("yaw_walk_deg_m", o.yawWalk, Range::between(0, 10),
-             "growth of the yaw bias's standard deviation, in deg per metre, per root of a metre");
-  b.number("length_m", o.length, Range::above(0), "m", "distance over which motions are compared");
-}
-
-OdometryCalibration::OdometryCalibration(const OdometryCalibrationOptions& options)
-    : m_options(options) {
-  checkOptions(options);
-  m_errors.covariance =
-      Eigen::Vector2d(options.scaleSigma, options.yawSigma).cwiseAbs2().asDiagonal();
+OdometryCalibration::OdometryCalibration(bool enabled) : m_enabled(enabled) {
+  m_errors.covariance = Eigen::Vector2d(scaleSigma, yawSigma).cwiseAbs2().asDiagonal();
 }
 
 CorrectedMotion OdometryCalibration::correct(const Pose2D& motion,
                                              const Eigen::Matrix3d& covariance) const {
-  if (!m_options.enabled) return {motion, covariance};
+  if (!m_enabled) return {motion, covariance};
   Eigen::Matrix<double, 3, 2> byErrors;
   byErrors << motion.x, 0, motion.y, 0, 0, motion.x;
   // The errors of successive motions are the same ones: over a distance they add up as they are,
   // not as their squares. A filter takes motions for independent, so each gets its share of the
   // sum.
   const double metres = std::hypot(motion.x, motion.y);
-  const double share = metres > 0 ? std::max(1.0, s_together / metres) : 1;
+  const double share = metres > 0 ? std::max(1.0, kTogether / metres) : 1;
   return {
       corrected(motion, m_errors.scale, m_errors.yaw),
       covariance + share * symmetrized<3>(byErrors * m_errors.covariance * byErrors.transpose())};
@@ -79,10 +64,10 @@ CorrectedMotion OdometryCalibration::correct(const Pose2D& motion,
 
 void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covariance,
                               const PoseWithCovariance* estimate) {
-  if (!m_options.enabled) return;
+  if (!m_enabled) return;
   const double metres = std::hypot(motion.x, motion.y);
-  m_errors.covariance(0, 0) += metres * m_options.scaleWalk * m_options.scaleWalk;
-  m_errors.covariance(1, 1) += metres * m_options.yawWalk * m_options.yawWalk;
+  m_errors.covariance(0, 0) += metres * kScaleWalk * kScaleWalk;
+  m_errors.covariance(1, 1) += metres * kYawWalk * kYawWalk;
   if (!estimate) {
     m_begun = false;
     return;
@@ -90,7 +75,7 @@ void OdometryCalibration::add(const Pose2D& motion, const Eigen::Matrix3d& covar
   if (m_begun) {
     m_steps.push_back({motion, covariance});
     m_driven += metres;
-    if (m_driven < m_options.length) return;
+    if (m_driven < kLength) return;
     compare(*estimate);
   }
   m_begin = *estimate;
@@ -141,7 +126,7 @@ void OdometryCalibration::compare(const PoseWithCovariance& estimate) {
   innovation.z() = wrapAngle(innovation.z());
   const Eigen::Matrix3d S = H * m_errors.covariance * H.transpose() + R;
   const Eigen::Matrix3d inverse = S.inverse();
-  if (!(innovation.dot(inverse * innovation) < s_furthest * s_furthest)) return;
+  if (!(innovation.dot(inverse * innovation) < kFurthest * kFurthest)) return;
   const Eigen::Matrix<double, 2, 3> gain = m_errors.covariance * H.transpose() * inverse;
   const Eigen::Vector2d change = gain * innovation;
   m_errors.scale += change.x();

@@ -8,12 +8,26 @@
 namespace polemcl {
 namespace {
 
-constexpr double s_lags[] = {0, 0.3, 1};  // of the window: the scans compared with
-constexpr int s_surePairs = 5;            // pairs that decide at once; fewer need two scans running
-constexpr double s_leastSigma = 0.02;     // of a motion by poles, m
-constexpr double s_leastTurn = 0.002;     // rad
-constexpr double s_mostVariance = 1;      // m²; above it, the motion by poles is too uncertain
-constexpr double s_mostDoubt = 5;         // m
+constexpr double kComparedTime = 1;      // longest time over which scans are compared, s
+constexpr double kLags[] = {0, 0.3, 1};  // of the window: the scans compared with
+constexpr double kScaleTolerance =
+    0.05;                           // tolerated error of the odometry, as a share of the distance
+constexpr double kTolerance = 0.1;  // tolerated error of any motion, m
+constexpr double kTurnTolerance = 0.02;  // tolerated error of any turn, rad
+constexpr double kSigmas = 5;  // least difference beyond that contradicts, standard deviations
+constexpr int kMinPairs = 3;   // least number of poles in common that contradict
+constexpr int kSurePairs = 5;  // pairs that decide at once; fewer need two scans running
+constexpr double kMinShare =
+    0.4;                          // least share of the poles of the scan with fewer that are paired
+constexpr double kMargin = 1.5;   // least lead of the poles' motion over the odometry's, in pairs
+constexpr double kSettle = 0.5;   // time of agreement until the odometry is believed again, s
+constexpr double kHold = 5;       // time for which the last speed is kept without enough poles, s
+constexpr double kMaxSpeed = 40;  // greatest speed of the vehicle, m/s
+constexpr double kMaxTurnRate = 1.5;  // greatest turn rate, rad/s
+constexpr double kLeastSigma = 0.02;  // of a motion by poles, m
+constexpr double kLeastTurn = 0.002;  // rad
+constexpr double kMostVariance = 1;   // m²; above it, the motion by poles is too uncertain
+constexpr double kMostDoubt = 5;      // m
 
 std::vector<PoleDetection> usable(const std::vector<PoleDetection>& poles) {
   std::vector<PoleDetection> result;
@@ -38,8 +52,8 @@ Pose2D middle(const Pose2D& a, const Pose2D& b) {
 
 /// Whether the pairs determine the motion.
 bool isCertain(const Eigen::Matrix3d& covariance) {
-  return covariance.allFinite() && covariance(0, 0) + covariance(1, 1) < s_mostVariance &&
-         covariance(2, 2) < s_mostVariance / 100;
+  return covariance.allFinite() && covariance(0, 0) + covariance(1, 1) < kMostVariance &&
+         covariance(2, 2) < kMostVariance / 100;
 }
 
 /// A share of the change between two motions, as a standard deviation; bounded like the motions of
@@ -47,9 +61,9 @@ bool isCertain(const Eigen::Matrix3d& covariance) {
 Eigen::Matrix3d doubt(const Pose2D& from, const Pose2D& to, double share) {
   const Pose2D change = relative(from, to);
   const double length = std::hypot(change.x, change.y);
-  const double shorter = length > s_mostDoubt ? s_mostDoubt / length : 1;
+  const double shorter = length > kMostDoubt ? kMostDoubt / length : 1;
   const Eigen::Vector3d vector(shorter * change.x, shorter * change.y,
-                               std::clamp(change.yaw, -0.1 * s_mostDoubt, 0.1 * s_mostDoubt));
+                               std::clamp(change.yaw, -0.1 * kMostDoubt, 0.1 * kMostDoubt));
   return share * share * vector * vector.transpose();
 }
 
@@ -60,12 +74,8 @@ double outside(double value, double tolerance) {
 
 }  // namespace
 
-OdometryMonitor::OdometryMonitor(const OdometryMonitorOptions& options) : m_options(options) {
-  checkOptions(options);
-}
-
 void OdometryMonitor::clear() {
-  *this = OdometryMonitor(m_options);
+  *this = OdometryMonitor(m_enabled);
 }
 
 MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
@@ -74,9 +84,9 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
   MonitoredMotion result;
   result.motion = motion;
   result.covariance = covariance;
-  if (!m_options.enabled) return result;
+  if (!m_enabled) return result;
   while (!m_past.empty() && m_past.back().time >= time) m_past.pop_back();
-  if (!m_past.empty() && time - m_past.back().time > m_options.window) clear();
+  if (!m_past.empty() && time - m_past.back().time > kComparedTime) clear();
   Reference now;
   now.time = time;
   now.poles = usable(poles_robot);
@@ -90,16 +100,16 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
   }
   m_past.push_back(now);
   // One scan older than the window stays, so that the window is full.
-  while (m_past.size() > 2 && time - m_past[1].time >= m_options.window) m_past.pop_front();
+  while (m_past.size() > 2 && time - m_past[1].time >= kComparedTime) m_past.pop_front();
   return result;
 }
 
 /// Indices of the scans to compare with, the latest first.
 std::vector<std::size_t> OdometryMonitor::chosen(double time) const {
   std::vector<std::size_t> result;
-  for (const double lag : s_lags) {
+  for (const double lag : kLags) {
     std::size_t i = m_past.size() - 1;
-    while (i > 0 && time - m_past[i].time < lag * m_options.window - 1e-6) --i;
+    while (i > 0 && time - m_past[i].time < lag * kComparedTime - 1e-6) --i;
     if (result.empty() || result.back() != i) result.push_back(i);
   }
   return result;
@@ -112,20 +122,20 @@ ScanRegistration OdometryMonitor::align(const Reference& reference, const Refere
   const double seconds = now.time - reference.time;
   const Pose2D coasted = compose(last.used, coast(now.time - last.time));
   ScanRegistration best = refineMotion(reference.poles, now.poles,
-                                       relative(reference.used, now.used), m_options.alignment);
+                                       relative(reference.used, now.used), RegistrationOptions());
   const auto keep = [&](const ScanRegistration& other) {
     if (other.score > best.score + 0.5) best = other;
   };
   const double possible =
-      m_options.minShare * static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
-  const auto poor = [&] { return best.pairs < m_options.minPairs || best.score < possible; };
+      kMinShare * static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
+  const auto poor = [&] { return best.pairs < kMinPairs || best.score < possible; };
   if (poor())
     keep(refineMotion(reference.poles, now.poles, relative(reference.used, coasted),
-                      m_options.alignment));
+                      RegistrationOptions()));
   if (!search || !poor()) return best;
-  RegistrationOptions wide = m_options.alignment;
-  wide.maxMetres = m_options.maxSpeed * seconds;
-  wide.maxRadians = m_options.maxTurnRate * seconds + 0.05;
+  RegistrationOptions wide = RegistrationOptions();
+  wide.maxMetres = kMaxSpeed * seconds;
+  wide.maxRadians = kMaxTurnRate * seconds + 0.05;
   keep(searchMotion(reference.poles, now.poles, relative(reference.used, coasted), wide));
   return best;
 }
@@ -133,7 +143,7 @@ ScanRegistration OdometryMonitor::align(const Reference& reference, const Refere
 bool OdometryMonitor::suffices(const ScanRegistration& alignment, const Reference& reference,
                                const Reference& now) const {
   const auto fewer = static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
-  return alignment.pairs >= m_options.minPairs && alignment.pairs >= m_options.minShare * fewer &&
+  return alignment.pairs >= kMinPairs && alignment.pairs >= kMinShare * fewer &&
          isCertain(alignment.covariance);
 }
 
@@ -143,10 +153,10 @@ double OdometryMonitor::beyondTolerance(const Pose2D& odometry, const Pose2D& ot
   const Pose2D difference = relative(odometry, other);
   const double way = std::hypot(odometry.x, odometry.y);
   const double length = std::hypot(difference.x, difference.y);
-  const double left = outside(length, m_options.metres + m_options.scale * way);
+  const double left = outside(length, kTolerance + kScaleTolerance * way);
   Eigen::Vector3d rest = vectorOf(difference);
   rest.head<2>() *= length > 0 ? left / length : 0;
-  rest.z() = outside(difference.yaw, m_options.turn + m_options.scale * std::abs(odometry.yaw));
+  rest.z() = outside(difference.yaw, kTurnTolerance + kScaleTolerance * std::abs(odometry.yaw));
   return std::sqrt(std::max(0.0, rest.dot(covariance.inverse() * rest)));
 }
 
@@ -161,14 +171,13 @@ OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, co
   // Errors of the headings on the way move the end.
   const double carried =
       (now.spent - reference.spent)(2, 2) * (odometry.x * odometry.x + odometry.y * odometry.y) / 3;
-  covariance += Eigen::Vector3d(s_leastSigma * s_leastSigma + carried,
-                                s_leastSigma * s_leastSigma + carried, s_leastTurn * s_leastTurn)
+  covariance += Eigen::Vector3d(kLeastSigma * kLeastSigma + carried,
+                                kLeastSigma * kLeastSigma + carried, kLeastTurn * kLeastTurn)
                     .asDiagonal();
   finding.beyond = beyondTolerance(odometry, found.motion, covariance);
   const ScanRegistration stated =
-      judgeMotion(reference.poles, now.poles, odometry, m_options.alignment);
-  const bool contradicts =
-      finding.beyond > m_options.sigmas && found.score >= stated.score + m_options.margin;
+      judgeMotion(reference.poles, now.poles, odometry, RegistrationOptions());
+  const bool contradicts = finding.beyond > kSigmas && found.score >= stated.score + kMargin;
   finding.verdict = contradicts ? OdometryVerdict::contradicted : OdometryVerdict::agrees;
   return finding;
 }
@@ -194,7 +203,7 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
 MonitoredMotion OdometryMonitor::contradict(Reference& now, const Reference& reference,
                                             const ScanRegistration& alignment,
                                             const MonitoredMotion& odometry) {
-  const bool decides = m_state == State::suspected || alignment.pairs >= s_surePairs;
+  const bool decides = m_state == State::suspected || alignment.pairs >= kSurePairs;
   MonitoredMotion result = take(now, reference, alignment);
   if (decides) {
     m_state = State::contradicted;
@@ -230,9 +239,9 @@ MonitoredMotion OdometryMonitor::take(Reference& now, const Reference& reference
   rotation << c, s, 0, -s, c, 0, 0, 0, 1;
   const Eigen::Matrix3d turned = rotation * alignment.covariance * rotation.transpose();
   result.covariance = symmetrized(turned);
-  result.covariance += Eigen::Vector3d(s_leastSigma * s_leastSigma, s_leastSigma * s_leastSigma,
-                                       s_leastTurn * s_leastTurn)
-                           .asDiagonal();
+  result.covariance +=
+      Eigen::Vector3d(kLeastSigma * kLeastSigma, kLeastSigma * kLeastSigma, kLeastTurn * kLeastTurn)
+          .asDiagonal();
   return result;
 }
 
@@ -249,7 +258,7 @@ MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& 
     if (!suffices(alignment, m_past[i], now)) continue;
     result = take(now, m_past[i], alignment);
     m_knownTime = now.time;
-    const bool old = now.time - m_past[i].time >= s_lags[1] * m_options.window - 1e-6;
+    const bool old = now.time - m_past[i].time >= kLags[1] * kComparedTime - 1e-6;
     m_keyTime = old ? now.time : m_past[i].time;
     found = true;
     break;
@@ -263,11 +272,10 @@ MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& 
     now.known = false;
     result.covariance += doubt(result.motion, odometry.motion, 0.5);
   }
-  if (hasSettled(now) || now.time - m_knownTime > m_options.hold) {
+  if (hasSettled(now) || now.time - m_knownTime > kHold) {
     m_state = State::believed;
     // Earlier scans are not compared with any more: the odometry was wrong then.
-    while (m_past.size() > 1 && now.time - m_past.front().time > m_options.settle)
-      m_past.pop_front();
+    while (m_past.size() > 1 && now.time - m_past.front().time > kSettle) m_past.pop_front();
   }
   return result;
 }
@@ -282,12 +290,12 @@ std::size_t OdometryMonitor::keyScan() const {
 /// Whether odometry and poles have agreed for the settling time.
 bool OdometryMonitor::hasSettled(const Reference& now) const {
   std::size_t i = m_past.size() - 1;
-  while (i > 0 && now.time - m_past[i].time < m_options.settle - 1e-6) --i;
-  if (!now.known || now.time - m_past[i].time < m_options.settle - 1e-6) return false;
+  while (i > 0 && now.time - m_past[i].time < kSettle - 1e-6) --i;
+  if (!now.known || now.time - m_past[i].time < kSettle - 1e-6) return false;
   for (std::size_t k = i; k < m_past.size(); ++k)
     if (!m_past[k].known) return false;
   const Reference& then = m_past[i];
-  const double sigma = 2 * m_options.alignment.sigma;
+  const double sigma = 2 * RegistrationOptions().sigma;
   const Eigen::Matrix3d covariance =
       now.spent - then.spent +
       Eigen::Matrix3d(Eigen::Vector3d(sigma * sigma, sigma * sigma, 1e-4).asDiagonal());

@@ -29,7 +29,7 @@ struct DriveAdjustmentOptions {
   PoleMapOptions mapping;     ///< makes the poles of the drives
   double scaleSigma = 0.02;   ///< standard deviation of the scale error of an odometry, as a share
   double yawSigma = 0.00052;  ///< of its yaw bias, rad per metre driven forwards
-  double decorrelation = 5;   ///< as ExistenceOptions: scans within this distance count as one, m
+  double decorrelation = 5;   ///< scans within this distance count as one, m
 };
 
 struct AdjustedDrives {

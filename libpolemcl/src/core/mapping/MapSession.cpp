@@ -114,8 +114,7 @@ void Session::expect(std::size_t number, const KdTree2D& tree,
         !own.observations.empty() && m_observations[own.observations.back()].scan == number;
     const bool unknown = scan.visibilityRange.empty();
     if (unknown && !found) continue;
-    own.likelihood.add(found, m_along[number], m_options.existence,
-                       detectionChance(poles[hit.index].history, m_options.existence),
+    own.likelihood.add(found, m_along[number], detectionChance(poles[hit.index].history),
                        !unknown && !inView(scan, poles[hit.index].pole));
   }
 }

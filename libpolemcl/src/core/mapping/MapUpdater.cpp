@@ -15,6 +15,14 @@
 namespace polemcl {
 namespace {
 
+constexpr double kPresent = 0.9;  // a pole enters the map from this probability on
+constexpr double kAbsent = 0.4;   // a pole leaves the map below this; it is remembered
+constexpr double kForget = 0.05;  // a pole is forgotten below this probability
+/// A missed pole that is nearer than this to a new one has been moved there, m. It leaves no ghost.
+constexpr double kGhost = 1.5;
+/// Scans whose position has a greater standard deviation along any axis change nothing, m.
+constexpr double kMaxSigma = 0.25;
+
 constexpr double kFarEllipse = 13.8;        ///< 99.9 % of squared distances, 2 degrees of freedom
 constexpr std::uint32_t kWeightedTo = 200;  ///< observations: older ones do not outweigh today's
 constexpr double kWithoutHistory = 0.9;     ///< existence of a pole of an old map
@@ -27,15 +35,14 @@ void sortByPlace(std::vector<LandmarkRecord>& poles) {
 }
 
 /// The scans whose positions are known well enough.
-std::vector<SessionScan> certainScans(const std::vector<SessionScan>& scans,
-                                      const MapUpdateOptions& options) {
+std::vector<SessionScan> certainScans(const std::vector<SessionScan>& scans) {
   std::vector<SessionScan> certain;
   certain.reserve(scans.size());
   for (const SessionScan& scan : scans) {
     if (!isCovariance(scan.poseCovariance))
       throw Error("the pose of " + nameOf(scan) +
                   " has a matrix that is no covariance; leave the scan out or correct it");
-    if (largestSigma(scan.poseCovariance.topLeftCorner<2, 2>()) <= options.maxSigma)
+    if (largestSigma(scan.poseCovariance.topLeftCorner<2, 2>()) <= kMaxSigma)
       certain.push_back(scan);
   }
   return certain;
@@ -86,7 +93,7 @@ void Update::bringForward() {
   if (!isDate(last) || !isDate(m_session.firstTime())) return;
   for (LandmarkRecord& record : m_poles)
     record.history.existence =
-        survived(record.history.existence, m_session.firstTime() - last, m_options.existence);
+        survived(record.history.existence, m_session.firstTime() - last, m_options.lifetimeDays);
 }
 
 /// Clusters the observations without a pole and makes new poles of them.
@@ -98,7 +105,7 @@ void Update::addNew() {
     LandmarkRecord record;
     record.pole = fuse(loose, group);
     record.pole.count = 0;  // movePlaces() counts its observations
-    record.history.existence = m_options.existence.prior;
+    record.history.existence = kPrior;
     m_poles.push_back(record);
   }
 }
@@ -110,8 +117,7 @@ void Update::applyLikelihoods() {
     const ExistenceLikelihood& likelihood = today.likelihood;
     m_counts.expectedOnMap += record.present && likelihood.found() + likelihood.missed() > 0;
     m_counts.foundOnMap += record.present && likelihood.found() > 0;
-    record.history.existence =
-        updated(record.history.existence, likelihood.logRatio(), m_options.existence);
+    record.history.existence = updated(record.history.existence, likelihood.logRatio());
     record.history.seen += likelihood.found();
     record.history.missed += likelihood.missed();
     for (const std::uint32_t observation : today.observations)
@@ -168,9 +174,9 @@ void Update::dropGhosts() {
   for (std::size_t i = 0; i < m_known; ++i) {
     const ExistenceLikelihood& likelihood = m_session.poles()[i].likelihood;
     if (!m_session.poles()[i].observations.empty() || likelihood.missed() == 0) continue;
-    tree.within(m_poles[i].pole.x, m_poles[i].pole.y, m_options.ghost, near);
+    tree.within(m_poles[i].pole.x, m_poles[i].pole.y, kGhost, near);
     m_gone[i] = std::any_of(near.begin(), near.end(), [&](const PointHit& hit) {
-      return hit.index >= m_known && m_poles[hit.index].history.existence >= m_options.present;
+      return hit.index >= m_known && m_poles[hit.index].history.existence >= kPresent;
     });
     m_counts.moved += m_gone[i] && m_poles[i].present;
   }
@@ -216,12 +222,12 @@ void Update::decidePresence() {
     const bool was = record.present;
     const double existence = record.history.existence;
     const bool seenEnough = record.pole.count >= static_cast<std::uint32_t>(m_options.minSeen);
-    if (existence < m_options.absent) record.present = false;
-    if (existence >= m_options.present && seenEnough) record.present = true;
+    if (existence < kAbsent) record.present = false;
+    if (existence >= kPresent && seenEnough) record.present = true;
     m_counts.entered += record.present && !was && !m_gone[i];
     m_counts.left += was && !record.present && !m_gone[i];
     if (m_gone[i]) continue;
-    m_gone[i] = existence < m_options.forget || record.pole.count == 0;
+    m_gone[i] = existence < kForget || record.pole.count == 0;
     m_counts.forgotten += m_gone[i];
     m_counts.candidates += !record.present && !m_gone[i];
   }
@@ -272,8 +278,7 @@ LandmarkMap withHistory(const std::vector<MapPole>& poles, const std::vector<Ses
     const SessionPole& seen = session.poles()[i];
     history.seen = seen.likelihood.found();
     history.missed = seen.likelihood.missed();
-    history.existence =
-        std::max(options.present, updated(0.5, seen.likelihood.logRatio(), options.existence));
+    history.existence = std::max(kPresent, updated(0.5, seen.likelihood.logRatio()));
     for (const std::uint32_t observation : seen.observations)
       noteSeen(history, session.time(session.observations()[observation].scan));
   }
@@ -285,9 +290,9 @@ LandmarkMap updateMap(const LandmarkMap& map, const std::vector<SessionScan>& sc
                       MapUpdateCounts* counts) {
   checkOptions(mapping);
   checkOptions(options);
-  std::vector<SessionScan> used = certainScans(scans, options);
+  std::vector<SessionScan> used = certainScans(scans);
   AlignmentSummary alignment;
-  if (options.alignment.sigma > 0) used = alignedSession(used, map, mapping, options, &alignment);
+  if (options.alignSigma > 0) used = alignedSession(used, map, mapping, options, &alignment);
   Update update(map, used, mapping, options);
   LandmarkMap result = update.run();
   if (!counts) return result;

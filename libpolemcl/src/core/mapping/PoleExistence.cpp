@@ -28,14 +28,14 @@ void noteSeen(PoleHistory& history, double seconds) {
   history.lastSeen = std::max(history.lastSeen, seconds);
 }
 
-double detectionChance(const PoleHistory& history, const ExistenceOptions& options) {
+double detectionChance(const PoleHistory& history) {
   const double chances = static_cast<double>(history.seen) + history.missed;
-  const double own = (kPriorScans * options.detection + history.seen) / (kPriorScans + chances);
-  return std::clamp(own, 2 * options.falseDetection, options.detection);
+  const double own = (kPriorScans * kDetection + history.seen) / (kPriorScans + chances);
+  return std::clamp(own, 2 * kFalseDetection, kDetection);
 }
 
-double survived(double existence, double seconds, const ExistenceOptions& options) {
-  return existence * std::exp(-std::max(0.0, seconds) / (kDay * options.lifetimeDays));
+double survived(double existence, double seconds, double lifetimeDays) {
+  return existence * std::exp(-std::max(0.0, seconds) / (kDay * lifetimeDays));
 }
 
 void ExistenceLikelihood::SectionSum::add(std::int64_t number, double value) {
@@ -48,12 +48,11 @@ double ExistenceLikelihood::SectionSum::total() const {
   return inSection > 0 ? done + sum / inSection : done;
 }
 
-void ExistenceLikelihood::add(bool found, double along, const ExistenceOptions& options,
-                              double chance, bool hidden) {
-  if (hidden) chance = std::min(chance, std::max(kHiddenChance, 2 * options.falseDetection));
-  const auto section = static_cast<std::int64_t>(along / options.decorrelation);
-  const double value = found ? std::log(chance / options.falseDetection)
-                             : std::log((1 - chance) / (1 - options.falseDetection));
+void ExistenceLikelihood::add(bool found, double along, double chance, bool hidden) {
+  if (hidden) chance = std::min(chance, std::max(kHiddenChance, 2 * kFalseDetection));
+  const auto section = static_cast<std::int64_t>(along / kDecorrelation);
+  const double value =
+      found ? std::log(chance / kFalseDetection) : std::log((1 - chance) / (1 - kFalseDetection));
   m_inView.add(section, hidden ? 0 : value);  // a section counts by the share of its scans in view
   m_all.add(section, value);
   m_found += found;
@@ -65,11 +64,11 @@ double ExistenceLikelihood::logRatio() const {
   return m_foundHidden ? m_all.total() : m_inView.total();
 }
 
-double updated(double existence, double logRatio, const ExistenceOptions& options) {
-  const double low = 1 - options.certain;
-  if (logRatio == 0) return std::clamp(existence, low, options.certain);  // to the last bit
-  const double odds = logOdds(std::clamp(existence, low, options.certain)) + logRatio;
-  return std::clamp(1 / (1 + std::exp(-odds)), low, options.certain);
+double updated(double existence, double logRatio) {
+  const double low = 1 - kCertain;
+  if (logRatio == 0) return std::clamp(existence, low, kCertain);  // to the last bit
+  const double odds = logOdds(std::clamp(existence, low, kCertain)) + logRatio;
+  return std::clamp(1 / (1 + std::exp(-odds)), low, kCertain);
 }
 
 }  // namespace polemcl

@@ -16,14 +16,8 @@ void bind(Binder& b, PoleMapOptions& o) {
            "length of a section of the path");
   b.flag("every_scan", o.everyScan,
          "true: all scans are used; false: the middle one of each section (paper)");
-  b.integer("max_gap", o.maxGap, Range::atLeast(0), "",
-            "sections with scans that may miss the pole inside a run");
   b.number("min_share", o.minShare, Range::between(0, 1), "",
-           "least share of the sections within near_range_m that saw the pole, see counting");
-  b.number("near_range_m", o.nearRange, Range::above(0), "m",
-           "distance from a section's middle up to which min_share counts it");
-  b.number("merge_distance_m", o.mergeDistance, Range::above(0), "m",
-           "merging = gated: greatest distance of a detection from its pole");
+           "least share of the sections within 15 m that saw the pole, see counting");
   b.number("pose_sigma_m", o.poseSigma, Range::atLeast(0), "m",
            "standard deviation of the true positions");
   b.angleDeg("heading_sigma_deg", o.headingSigma, Range::between(0, 57),

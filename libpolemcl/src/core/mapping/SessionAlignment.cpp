@@ -16,8 +16,13 @@ namespace {
 
 /// m: greatest distance of a pair, round by round. Errors of decimetres must fit into the first.
 constexpr double s_gates[] = {1.5, 1.0, 0.75, 0.5, 0.5, 0.5};
-constexpr int s_roundsWide = 3;  ///< rounds in which the gate widens the covariances
-constexpr double s_piece = 50;   ///< m of path, see AlignmentOptions::minPoles
+constexpr int s_roundsWide = 3;          ///< rounds in which the gate widens the covariances
+constexpr double kHeadingSigma = 0.007;  ///< of the errors of a session's headings, rad
+/// Distance over which the errors of a session are correlated: their correlation falls by e, m.
+constexpr double kLength = 100;
+constexpr double kPiece = 50;  ///< m of path
+/// Least number of map poles seen within a piece. Pieces with fewer follow the pieces beside them.
+constexpr std::size_t kMinPoles = 5;
 /// Squared Mahalanobis distance at which a pair has a quarter of its weight.
 constexpr double s_halfway = 9;
 
@@ -45,9 +50,8 @@ class Alignment {
         m_landmarks(presentPoles(map)),
         m_tree(centresOf(m_landmarks)),
         m_corrections(scans.size(), Eigen::Vector3d::Zero()) {
-    const AlignmentOptions& alignment = options.alignment;
-    m_prior = Eigen::Vector3d(std::pow(alignment.sigma, 2), std::pow(alignment.sigma, 2),
-                              std::pow(alignment.headingSigma, 2))
+    m_prior = Eigen::Vector3d(std::pow(options.alignSigma, 2), std::pow(options.alignSigma, 2),
+                              std::pow(kHeadingSigma, 2))
                   .asDiagonal();
     observe();
   }
@@ -65,7 +69,7 @@ class Alignment {
   Estimate measured(const Estimate& predicted, std::size_t scan) const;
   /// Correlation of the errors of a scan and of the one before.
   double correlation(std::size_t scan) const {
-    return std::exp((m_along[scan - 1] - m_along[scan]) / m_options.alignment.length);
+    return std::exp((m_along[scan - 1] - m_along[scan]) / kLength);
   }
 
   const std::vector<SessionScan>& m_scans;
@@ -123,7 +127,7 @@ Pair Alignment::makePair(std::size_t scan, std::uint32_t detection, std::uint32_
   const double robust = s_halfway / (s_halfway + left.dot(pair.information * left));
   // Scans near each other show a pole from the same side, with the same error.
   const double step = scan > 0 ? m_along[scan] - m_along[scan - 1] : 0;
-  const double newShare = std::min(1.0, step / m_options.existence.decorrelation);
+  const double newShare = std::min(1.0, step / kDecorrelation);
   pair.information *= robust * robust * newShare * seen.confidence;
   return pair;
 }
@@ -153,12 +157,12 @@ void Alignment::dropSparse() {
   std::map<std::uint32_t, int> inPiece;  // how many scans of the piece show each landmark
   std::size_t begin = 0, end = 0;
   for (std::size_t i = 0; i < m_scans.size(); ++i) {
-    for (; end < m_scans.size() && m_along[end] <= m_along[i] + s_piece / 2; ++end)
+    for (; end < m_scans.size() && m_along[end] <= m_along[i] + kPiece / 2; ++end)
       for (const Pair& pair : m_pairs[end]) ++inPiece[pair.landmark];
-    for (; m_along[begin] < m_along[i] - s_piece / 2; ++begin)
+    for (; m_along[begin] < m_along[i] - kPiece / 2; ++begin)
       for (const Pair& pair : m_pairs[begin])
         if (--inPiece[pair.landmark] == 0) inPiece.erase(pair.landmark);
-    sparse[i] = inPiece.size() < static_cast<std::size_t>(m_options.alignment.minPoles);
+    sparse[i] = inPiece.size() < kMinPoles;
   }
   for (std::size_t i = 0; i < m_scans.size(); ++i)
     if (sparse[i]) m_pairs[i].clear();

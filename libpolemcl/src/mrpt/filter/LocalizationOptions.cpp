@@ -20,27 +20,20 @@ void bind(Binder& b, TrackingOptions& o) {
             "scan where average = true");
 }
 
-void bind(Binder& b, SearchOptions& o) {
-  b.section("search", "When the whole map is searched for the vehicle");
-  b.flag("recover", o.recover, "true: the map is searched when the vehicle is lost");
-  b.number("patience_m", o.patience, Range::atLeast(0), "m",
-           "distance travelled until an ambiguous answer is used");
-  b.tier(Tier::expert);
-  b.number("every_m", o.every, Range::above(0), "m", "distance travelled between two searches");
-  b.number("every_s", o.everySeconds, Range::above(0), "s",
-           "time between two searches of a vehicle that stands");
-  b.integer("particles", o.particles, Range::between(1, 1000000), "",
-            "number of particles drawn round the places of an answer");
-}
-
 void bind(Binder& b, LocalizationOptions& o) {
   bind(b, o.filter);
   bind(b, o.tracking);
-  bind(b, o.submap);
-  bind(b, o.health);
-  bind(b, o.search);
-  bind(b, o.odometryMonitor);
-  bind(b, o.odometryCalibration);
+  b.section("search", "When the whole map is searched for the vehicle");
+  b.flag("recover", o.recover, "true: the map is searched when the vehicle is lost");
+  b.section("health", "How far a pose can be trusted");
+  b.number("max_gap_s", o.maxGap, Range::above(0), "s",
+           "a longer time between two scans degrades the pose");
+  b.section("odometry_monitor",
+            "Detects faults of the odometry by the poles; their motion then replaces it");
+  b.flag("enabled", o.monitorOdometry, "false: the odometry is always believed");
+  b.section("odometry_calibration",
+            "Scale error and yaw bias of the odometry are estimated while driving");
+  b.flag("enabled", o.calibrateOdometry, "false: the odometry is taken as it is");
 }
 
 }  // namespace polemcl

@@ -10,6 +10,12 @@
 namespace polemcl {
 namespace {
 
+constexpr double kSearchEvery = 4;         // distance travelled between two searches, m
+constexpr double kSearchEverySeconds = 5;  // time between two searches of a vehicle that stands, s
+/// Distance travelled until an ambiguous answer is used, m; until then the next metres may tell.
+constexpr double kPatience = 30;
+constexpr int kSearchParticles = 4000;  // drawn round the places of an answer
+
 const LocalizationOptions& checked(const LocalizationOptions& options) {
   checkOptions(options);
   return options;
@@ -51,12 +57,11 @@ double medianSigma(const std::vector<MapPole>& poles) {
 
 }  // namespace
 
-LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap,
-                                 const GlobalOptions& options)
+LocalizationMap::LocalizationMap(std::shared_ptr<const CPoleMap> poleMap)
     : poles(std::move(poleMap)) {
   if (!poles || poles->poles().empty())
     throw Error("the map has no poles: nothing can be localized in it");
-  search = std::make_shared<GlobalLocalizer>(poles->poles(), options);
+  search = std::make_shared<GlobalLocalizer>(poles->poles());
   const LikelihoodOptions& likelihood = poles->likelihoodOptions;
   const double sigma = medianSigma(poles->poles());
   if (!likelihood.weighted || !(sigma > coarseness * likelihood.sigma)) return;
@@ -71,12 +76,10 @@ LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const Localizati
     : m_map(std::move(map)),
       m_options(checked(options)),
       m_filter(m_map.poles, options.filter, seed),
-      m_submap(options.submap),
-      m_tracks(options.submap),
       m_localMaps(options.tracking.localMaps),
-      m_odometryMonitor(options.odometryMonitor),
-      m_calibration(options.odometryCalibration),
-      m_monitor(options.health) {}
+      m_odometryMonitor(options.monitorOdometry),
+      m_calibration(options.calibrateOdometry),
+      m_monitor(options.maxGap) {}
 
 void LocalizationPipeline::start(const StartOptions& start) {
   if (start.pose) {
@@ -102,7 +105,7 @@ void LocalizationPipeline::initializeGlobally() {
   m_tracks.clear();
   m_localMaps.clear();
   m_odometryMonitor.clear();
-  m_calibration = OdometryCalibration(m_options.odometryCalibration);
+  m_calibration = OdometryCalibration(m_options.calibrateOdometry);
   m_meanVelocity.reset();
   m_monitor.reset();
   m_search = {};
@@ -123,7 +126,7 @@ LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
   const PoleFrame frame = checkedMotion(deskewed(calibrated(seen)), update);
   const Pose2D motion = m_stepped ? frame.motion->mean : Pose2D();
   const double metres = std::hypot(motion.x, motion.y);
-  Eigen::Matrix3d covariance = walkCovariance(motion, m_options.submap);
+  Eigen::Matrix3d covariance = walkCovariance(motion, m_submap.options());
   if (m_stepped) covariance += frame.motion->covariance;
   m_submap.add(motion, covariance, frame.poles_robot);
   m_tracked = frame;
@@ -253,15 +256,15 @@ void LocalizationPipeline::doubtSubmap() {
 
 bool LocalizationPipeline::searchIsDue() const {
   if (m_hasPose) {
-    if (!m_options.search.recover) return false;
+    if (!m_options.recover) return false;
     const Health& health = m_monitor.health();
     const bool doubtful =
         health.state == HealthState::lost || health.reason == HealthReason::mismatch ||
         health.reason == HealthReason::ambiguous || health.reason == HealthReason::spread;
     if (!doubtful) return false;
   }
-  return m_submap.driven() - m_searchedAt >= m_options.search.every ||
-         m_time - m_searchTime >= m_options.search.everySeconds;
+  return m_submap.driven() - m_searchedAt >= kSearchEvery ||
+         m_time - m_searchTime >= kSearchEverySeconds;
 }
 
 void LocalizationPipeline::search(const PoleFrame& frame, LocalizationUpdate& update) {
@@ -275,7 +278,7 @@ void LocalizationPipeline::search(const PoleFrame& frame, LocalizationUpdate& up
   if (!resolved) {
     // The filter already covers several places, or a few more metres may resolve the ambiguity.
     if (m_hasPose && m_monitor.health().state != HealthState::lost) return;
-    if (m_submap.driven() < m_options.search.patience) return;
+    if (m_submap.driven() < kPatience) return;
   } else if (here && !fitsBetter(m_search.hypotheses[0], frame)) {
     return;
   }
@@ -315,7 +318,7 @@ void LocalizationPipeline::adopt(const PoleFrame& frame, bool resolved,
     places.push_back(toFilter(place));
     if (resolved) break;
   }
-  m_filter.start(places, m_options.search.particles);
+  m_filter.start(places, kSearchParticles);
   m_hasPose = true;
   m_monitor.begin(resolved);
   track(frame, 0, update);

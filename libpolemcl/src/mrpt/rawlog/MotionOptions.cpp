@@ -26,10 +26,6 @@ void bind(Binder& b, MotionOptions& o) {
              "standard deviation of the heading per metre travelled");
   b.number("yaw_per_rad", o.yawPerRadian, notNegative, "rad/rad",
            "standard deviation of the heading per radian turned");
-  b.number("min_xy_m", o.minXy, notNegative, "m",
-           "added to the standard deviation of x and y of each motion");
-  b.angleDeg("min_yaw_deg", o.minYaw, notNegative,
-             "added to the standard deviation of the heading of each motion");
 }
 
 }  // namespace polemcl

@@ -8,8 +8,6 @@
 namespace polemcl::report {
 namespace {
 
-constexpr double minSide = 160, maxSide = 8192;  // pixels; what OpenGL's textures take, halved
-
 constexpr double minRate = 0.001;  // slower ones never end
 
 }  // namespace
@@ -28,7 +26,6 @@ std::optional<double> parseRate(const std::string& text) {
 }
 
 void bind(Binder& b, ViewOptions& o) {
-  const Range side = Range::between(minSide, maxSide);
   b.section("view", "How the first run is watched; results stay the same");
   b.flag("live", o.live, "true: a window shows the run as it goes");
   b.flag("hold", o.hold, "true: the window stays until it is closed");
@@ -36,10 +33,6 @@ void bind(Binder& b, ViewOptions& o) {
   b.integer("scenes", o.scenes, Range::atLeast(0), "scans",
             "number of scans from one .3Dscene to the next; 0: no scenes");
   b.text("frames", o.frames, "folder of PNG frames; empty: no frames");
-  b.integer("frame_every", o.frameEvery, Range::atLeast(1), "scans",
-            "number of scans from one frame to the next");
-  b.integer("width", o.width, side, "pixels", "width of frames and window");
-  b.integer("height", o.height, side, "pixels", "height of frames and window");
   b.require(io::problemOf([&] { parseRate(o.rate); }).empty(), "rate", o.rate,
             "max, or a factor on the recorded speed such as 1x or 2.5x, at least 0.001x");
 }

@@ -13,8 +13,6 @@ void bindSeasons(Binder& b, WorldOptions& o) {
            "share of the poles that go for good within 365 days; as many new ones come");
   b.integer("day_of_year", o.dayOfYear, Range::between(0, 365), "",
             "date of day 0 for leaves and snow, 1: 1 January; 0: no seasons");
-  b.number("snow_bank_m", o.snowBank, Range::between(0, 2), "m",
-           "height of midwinter's snow banks along the kerb");
   b.number("building_sites", o.buildingSites, Range::between(0, 6), "1/km",
            "number of construction sites per km of street");
   b.integer("side_streets", o.sideStreets, Range::between(0, 2), "",
@@ -32,10 +30,6 @@ void bind(Binder& b, WorldOptions& o) {
            "length of the street, unless a track is given");
   b.text("track", o.track,
          "file of poses that the road follows, 12 numbers a line, plain or gzip; or empty");
-  b.number("curviness", o.curviness, Range::between(0, 2), "", "scale of the bends; 0: straight");
-  b.number("relief", o.relief, Range::between(0, 3), "", "scale of slopes and bumps; 0: flat");
-  b.number("road_width_m", o.roadWidth, Range::between(6, 20), "m",
-           "width of the road from kerb to kerb");
   b.number("lamp_spacing_m", o.lampSpacing, Range::between(8, 1000), "m",
            "mean distance of lamp posts on each side");
   b.number("sign_spacing_m", o.signSpacing, Range::between(8, 1000), "m",
@@ -44,15 +38,10 @@ void bind(Binder& b, WorldOptions& o) {
            "mean distance of trees in a row");
   b.number("tree_share", o.treeShare, s_shareOfSimulation, "",
            "share of the street lined with trees");
-  b.number("parked_share", o.parkedShare, s_shareOfSimulation, "", "share of parking places taken");
-  b.number("clutter", o.clutter, Range::between(0, 3), "",
-           "scale of the numbers of people, bins, bollards and bicycles");
   b.number("removed_share", o.removedShare, s_shareOfSimulation, "",
            "share of the poles that are gone on another day");
   b.number("added_share", o.addedShare, s_shareOfSimulation, "",
            "share of the poles new on another day");
-  b.number("foliage", o.foliage, Range::between(0, 2), "", "density of leaves; 0: bare branches");
-  b.flag("people_move", o.peopleMove, "true: people walk during the drive");
   bindSeasons(b, o);
   bind(b, o.realism);
 }
@@ -61,8 +50,6 @@ void bind(Binder& b, SimulationOptions& o) {
   b.section("simulation", "The simulated drive");
   b.number("spacing_m", o.spacing, Range::between(0.05, 50), "m", "distance between scans");
   b.number("speed_m_s", o.speed, Range::between(0.1, 50), "m/s", "speed of the vehicle");
-  b.number("lane_offset_m", o.laneOffset, Range::between(-10, 10), "m",
-           "offset of the drive from the middle of the road, + left");
   b.number("odometry_noise", o.odometryNoise, s_shareOfSimulation, "",
            "standard deviation as a share of each component of the motion");
   b.choice<OdometryModel>("odometry", o.odometry,
@@ -73,12 +60,6 @@ void bind(Binder& b, SimulationOptions& o) {
            "error of the distance that stays");
   b.angleDeg("odometry_yaw_deg_m", o.odometryBias.yaw, Range::between(-10, 10),
              "error of the heading that stays, in deg per metre");
-  b.number("odometry_drift", o.odometryBias.drift, Range::between(0, 1), "share",
-           "odometry = wheels: slow change of these two, as a share of them");
-  b.number("wheel_slip", o.odometryBias.slip, Range::between(-0.5, 0.5), "share",
-           "odometry = wheels: error of turns");
-  b.number("wheel_tick_m", o.odometryBias.tick, Range::between(0, 1), "m",
-           "odometry = wheels: distance per tick; 0: not counted in ticks");
   b.flag("reverse", o.reverse, "true: from the far end of the street, in the other lane");
   b.flag("motion_distortion", o.motionDistortion, "true: the sensor moves while it turns");
   b.integer("scans", o.scans, Range::between(0, 1e7), "",
@@ -93,10 +74,6 @@ void bind(Binder& b, SimulationOptions& o) {
            "scale of the false detections of that model");
   bind(b, o.world);
   b.section("simulation", "");
-  // Half of a vehicle has to fit between the sensor and the kerb.
-  const double room = o.world.roadWidth / 2 - 1.2;
-  b.require(Range::between(-room, room).contains(o.laneOffset), "lane_offset_m", o.laneOffset,
-            Range::between(-room, room).text() + " m with this [world] road_width_m");
   b.require(o.detour <= o.world.sideStreets, "detour", o.detour, "[world] side_streets or less");
 }
 

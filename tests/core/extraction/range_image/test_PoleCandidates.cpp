@@ -95,7 +95,7 @@ TEST(PoleCandidates, APixelWithNearerThingsOnBothSidesCountsOnce) {
 TEST(PoleCandidates, InFrontOnlyPixelsAtTheEdgeCount) {
   Scene scene(2.5, 3);
   EXPECT_EQ(scene.test(), std::nullopt);
-  scene.options.foregroundTest = "in_front";
+  scene.options.details = ExtractionDetails::paper;
   EXPECT_EQ(scene.test(), RejectionReason::notForeground);
   scene.options.foreground = 0.66;
   EXPECT_EQ(scene.test(), std::nullopt);
@@ -106,13 +106,13 @@ TEST(PoleCandidates, InFrontWhatHasNothingBesideItIsNotInTheForeground) {
   for (int r = 0; r < Scene::kRows + Scene::kTopRow; ++r)
     for (const int c : {Scene::kColumn - 1, Scene::kColumn + 1}) scene.image.set(r, c, 0, -1);
   EXPECT_EQ(scene.test(), std::nullopt);
-  scene.options.foregroundTest = "in_front";
+  scene.options.details = ExtractionDetails::paper;
   EXPECT_EQ(scene.test(), RejectionReason::notForeground);
 }
 
 TEST(PoleCandidates, InFrontANearerNeighbourCountsAgainstAPixel) {
   Scene scene;
-  scene.options.foregroundTest = "in_front";
+  scene.options.details = ExtractionDetails::paper;
   EXPECT_EQ(scene.test(), std::nullopt);
   for (const int row : {0, 3}) scene.set(Scene::kTopRow + row, Scene::kColumn - 1, 5, 0);
   EXPECT_EQ(scene.test(), RejectionReason::notForeground);  // 4 of 6: 0.67

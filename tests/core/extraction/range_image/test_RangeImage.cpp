@@ -283,7 +283,7 @@ TEST(RangeImage, ClampedPointsOutsideTheViewGoToTheBorderRows) {
   View options = smallImage();
   RangeImage image(4, 16);
   EXPECT_EQ(projectInto(image, points, options).outOfView, 2u);
-  options.clampToView = true;
+  options.details = ExtractionDetails::authors;
   const PointCounts counts = projectInto(image, points, options);
   EXPECT_EQ(counts.used, 2u);
   EXPECT_EQ(counts.outOfView, 0u);
@@ -298,7 +298,7 @@ TEST(RangeImage, ClampedTheSeamBelongsToTheLastColumn) {
   RangeImage image(4, 16);
   projectInto(image, points, options);
   EXPECT_TRUE(image.valid(1, 0));
-  options.clampToView = true;
+  options.details = ExtractionDetails::authors;
   projectInto(image, points, options);
   EXPECT_TRUE(image.valid(1, 15));
   EXPECT_FALSE(image.valid(1, 0));

@@ -95,15 +95,6 @@ TEST(RangeImageExtractor, FindsThePolesOfAKnownScene) {
   expectYard(extract(yardPoints(), paperOptions()), 0.06);
 }
 
-TEST(RangeImageExtractor, EveryCircleFitFindsThem) {
-  for (const std::string fit : {"kasa", "kasa_mean", "taubin", "silhouette"}) {
-    SCOPED_TRACE(fit);
-    ExtractionOptions options = paperOptions();
-    options.rangeImage.circleFit = fit;
-    expectYard(extract(yardPoints(), options), 0.08);
-  }
-}
-
 TEST(RangeImageExtractor, HeightsInResultsAreAboveGround) {
   for (const PoleDetection& pole : extract(yardPoints(), paperOptions()).poles) {
     EXPECT_NEAR(pole.top, 3.2, 0.2);
@@ -127,7 +118,7 @@ TEST(RangeImageExtractor, HeightsAboveGroundBringsBackTheNearPoles) {
 
 TEST(RangeImageExtractor, WithoutWrapThePoleOnTheSeamIsLost) {
   ExtractionOptions options = paperOptions();
-  options.rangeImage.wrapAround = false;
+  options.rangeImage.details = ExtractionDetails::authors;
   const Result result = extract(yardPoints(), options);
   EXPECT_FALSE(nearest(result.poles, -9, 0, 0.06));
   EXPECT_TRUE(nearest(result.poles, 8, 3, 0.06));
@@ -142,12 +133,11 @@ TEST(RangeImageExtractor, WhatCrowdsThePoleRefusesIt) {
   }
   const PointList points = castYard(sensorOptions("os1_64"), scene);
   ExtractionOptions options = paperOptions();
-  options.rangeImage.freeSpace = "ring";
+  options.rangeImage.details = ExtractionDetails::paper;
   const Result crowded = extract(points, options);
   EXPECT_GE(crowded.of(RejectionReason::notFree), 1u);
   EXPECT_FALSE(nearest(crowded.poles, 8, 3, 0.1));
-  EXPECT_TRUE(nearest(crowded.poles, -9, 0, 0.1));
-  options.rangeImage.freeShare = 1e9;
+  options.rangeImage.freeRing = 0;
   EXPECT_EQ(extract(points, options).of(RejectionReason::notFree), 0u);
 }
 
@@ -158,18 +148,18 @@ TEST(RangeImageExtractor, CornersLookBesideTheBoxOnly) {
   const PointList points = castYard(sensorOptions("os1_64"), scene);
   ExtractionOptions options = paperOptions();
   EXPECT_TRUE(nearest(extract(points, options).poles, 8, 3, 0.1));
-  options.rangeImage.freeSpace = "ring";
+  options.rangeImage.details = ExtractionDetails::paper;
   EXPECT_FALSE(nearest(extract(points, options).poles, 8, 3, 0.1));
 }
 
 // Sticks 0.45 m farther and 0.5 m aside: in a corner, but at lower y beyond the cut one, which is
 // 0.1 m high for this pole.
 TEST(RangeImageExtractor, CutCornersMissHalfOfWhatStandsInCorners) {
-  const auto finds = [](double aside, const std::string& freeSpace, bool mirrored) {
+  const auto finds = [](double aside, ExtractionDetails details, bool mirrored) {
     Scene scene = yard();
     scene.cylinders.push_back({8 + (aside < 0 ? 0.45 : -0.45), 3 + aside, 0.06, -3, 1.7});
     ExtractionOptions options = paperOptions();
-    options.rangeImage.freeSpace = freeSpace;
+    options.rangeImage.details = details;
     options.rangeImage.mirrored = mirrored;
     const Result result = extract(castYard(sensorOptions("os1_64"), scene), options);
     return nearest(result.poles, 8, 3, 0.1) != nullptr;
@@ -177,8 +167,8 @@ TEST(RangeImageExtractor, CutCornersMissHalfOfWhatStandsInCorners) {
   for (const double aside : {-0.5, 0.5})
     for (const bool mirrored : {false, true}) {
       SCOPED_TRACE(aside);
-      EXPECT_FALSE(finds(aside, "corners", mirrored));
-      EXPECT_EQ(finds(aside, "cut_corners", mirrored), mirrored == (aside > 0));
+      EXPECT_FALSE(finds(aside, ExtractionDetails::mended, mirrored));
+      EXPECT_EQ(finds(aside, ExtractionDetails::authors, mirrored), mirrored == (aside > 0));
     }
 }
 
@@ -212,7 +202,7 @@ PointList flatFront() {
 
 TEST(RangeImageExtractor, TheFirstCircleMayBeOfAnySize) {
   ExtractionOptions options = paperOptions();
-  options.rangeImage.circleFit = "kasa_mean";
+  options.rangeImage.details = ExtractionDetails::authors;
   const Result result = extract(flatFront(), options);
   ASSERT_EQ(result.poles.size(), 1u);
   EXPECT_NEAR(result.poles[0].radius, 0.05, 0.01);
@@ -224,7 +214,7 @@ TEST(RangeImageExtractor, TheFirstCircleMayBeOfAnySize) {
 TEST(RangeImageExtractor, TheFitTakesPointsBeyondTheRange) {
   PointList points = flatFront();
   ExtractionOptions options = paperOptions();
-  options.rangeImage.circleFit = "kasa_mean";
+  options.rangeImage.details = ExtractionDetails::authors;
   options.rangeImage.maxRange = 10.2;
   for (int i = 0; i < 2000; ++i) points.add(12.6, 0.1 * (i % 20) - 1, 0.3);  // a wall behind
   const Result result = extract(points, options);
@@ -235,7 +225,7 @@ TEST(RangeImageExtractor, TheFitTakesPointsBeyondTheRange) {
 // Floats of -0.6 and 1.2 lie beyond these: as exact multiples of the step they are between.
 TEST(RangeImageExtractor, ExactCoordinatesPutTheOutermostRowsIntoTheFit) {
   ExtractionOptions options = paperOptions();
-  options.rangeImage.circleFit = "kasa_mean";
+  options.rangeImage.details = ExtractionDetails::authors;
   options.rangeImage.coordinateStep = 0.0001;
   const Result result = extract(flatFront(), options);
   ASSERT_EQ(result.poles.size(), 1u);
@@ -253,12 +243,6 @@ TEST(RangeImageExtractor, HeightsCountFromTheOriginOfTheProjection) {
       EXPECT_NEAR(pole.top, fromCloud ? 2.8 : 3.2, 0.2);
     EXPECT_NEAR(extractor.report().ground, fromCloud ? -1.1 : -1.5, 1e-12);
   }
-}
-
-TEST(RangeImageExtractor, GrowingUpwardsFindsNoFewer) {
-  ExtractionOptions options = paperOptions();
-  options.rangeImage.growUpwards = true;
-  expectYard(extract(yardPoints(), options), 0.06);
 }
 
 TEST(RangeImageExtractor, PointsAreCounted) {

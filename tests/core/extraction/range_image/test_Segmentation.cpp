@@ -26,11 +26,10 @@ RangeImage draw(const std::vector<std::string>& rows) {
   return image;
 }
 
-RangeImageOptions growing(double epsilon, bool wrap, bool upwards) {
+RangeImageOptions growing(double epsilon, bool wrap) {
   RangeImageOptions options;
   options.epsilon = epsilon;
-  options.wrapAround = wrap;
-  options.growUpwards = upwards;
+  options.details = wrap ? ExtractionDetails::mended : ExtractionDetails::authors;
   return options;
 }
 
@@ -45,10 +44,10 @@ std::vector<std::string> labels(const RangeImage& image, const Segmentation& seg
   return out;
 }
 
-std::vector<std::string> segment(const std::vector<std::string>& rows, bool wrap, bool upwards,
+std::vector<std::string> segment(const std::vector<std::string>& rows, bool wrap,
                                  double epsilon = 0.5) {
   const RangeImage image = draw(rows);
-  return labels(image, Segmentation(image, growing(epsilon, wrap, upwards)));
+  return labels(image, Segmentation(image, growing(epsilon, wrap)));
 }
 
 using Rows = std::vector<std::string>;
@@ -69,38 +68,6 @@ bool inside(const RangeImage& image, bool wrap, int row, int column) {
   const int border = wrap ? 0 : 1;
   return row >= border && row < image.rows() - border &&
          (wrap || (column >= 1 && column < image.columns() - 1));
-}
-
-/// Connected components by union-find over left and upper neighbours; numbered in reading order.
-std::vector<int> components(const RangeImage& image, double epsilon, bool wrap) {
-  std::vector<int> parent(static_cast<std::size_t>(image.rows()) * image.columns());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i];
-    return i;
-  };
-  const auto join = [&](int r, int c, int r2, int c2) {
-    if (!inside(image, wrap, r2, c2) || !image.valid(r2, c2)) return;
-    if (std::abs(image.range(r, c) - image.range(r2, c2)) >= epsilon) return;
-    const int a = root(static_cast<int>(image.index(r, c)));
-    const int b = root(static_cast<int>(image.index(r2, c2)));
-    parent[std::max(a, b)] = std::min(a, b);
-  };
-  for (int r = 0; r < image.rows(); ++r)
-    for (int c = 0; c < image.columns(); ++c) {
-      if (!inside(image, wrap, r, c) || !image.valid(r, c)) continue;
-      if (wrap || c > 0) join(r, c, r, (c + image.columns() - 1) % image.columns());
-      if (r > 0) join(r, c, r - 1, c);
-    }
-  std::vector<int> number(parent.size(), -1);
-  int next = 0;
-  for (std::size_t i = 0; i < parent.size(); ++i) {
-    const int r = static_cast<int>(i) / image.columns(), c = static_cast<int>(i) % image.columns();
-    if (!inside(image, wrap, r, c) || !image.valid(r, c)) continue;
-    const int top = root(static_cast<int>(i));
-    number[i] = top == static_cast<int>(i) ? next++ : number[top];
-  }
-  return number;
 }
 
 /// Algorithm 1 as it is written: an open set, and clusters that take from it whatever lies left of,
@@ -181,11 +148,11 @@ TEST(Segmentation, SeedsAreTakenInReadingOrder) {
 
 TEST(Segmentation, GrowsAcrossTheSeamWhenWrapped) {
   const Rows image = {"......", ".7..7.", "77..77", "......"};
-  EXPECT_EQ(segment(image, true, false), (Rows{"......", ".a..b.", "aa..aa", "......"}));
+  EXPECT_EQ(segment(image, true), (Rows{"......", ".a..b.", "aa..aa", "......"}));
 }
 
 TEST(Segmentation, WithoutWrapTheBordersAreLeftOut) {
-  EXPECT_EQ(segment({"777777", "777.77", "77..77", "777777"}, false, false),
+  EXPECT_EQ(segment({"777777", "777.77", "77..77", "777777"}, false),
             (Rows{"......", ".aa.b.", ".a..b.", "......"}));
 }
 
@@ -194,27 +161,26 @@ TEST(Segmentation, APieceThatOnlyConnectsUpwardsIsItsOwn) {
                      ".4.4.",  // the right arm is above what the left one reaches
                      ".444.",  //
                      "....."};
-  EXPECT_EQ(segment(hook, true, true), (Rows{".a...", ".a.a.", ".aaa.", "....."}));
-  EXPECT_EQ(segment(hook, true, false), (Rows{".a...", ".a.b.", ".aaa.", "....."}));
+  EXPECT_EQ(segment(hook, true), (Rows{".a...", ".a.b.", ".aaa.", "....."}));
 }
 
 TEST(Segmentation, EpsilonIsStrict) {
   RangeImage image(2, 16);
   image.set(0, 3, 5.f, 0);
   image.set(0, 4, 5.25f, 1);
-  const Segmentation strict(image, growing(0.25, true, true));
+  const Segmentation strict(image, growing(0.25, true));
   EXPECT_EQ(strict.segments().size(), 2u);
-  const Segmentation wider(image, growing(0.2500001, true, true));
+  const Segmentation wider(image, growing(0.2500001, true));
   EXPECT_EQ(wider.segments().size(), 1u);
 }
 
 TEST(Segmentation, ASlopeOfSmallStepsIsOneSegment) {
-  EXPECT_EQ(segment({".123456789."}, true, false, 1.5), (Rows{".aaaaaaaaa."}));
+  EXPECT_EQ(segment({".123456789."}, true, 1.5), (Rows{".aaaaaaaaa."}));
 }
 
 TEST(Segmentation, BoxIsCountedAcrossTheSeam) {
   const RangeImage image = draw({"......", "7....7", "77...7", "......"});
-  const Segmentation segmentation(image, growing(0.5, true, false));
+  const Segmentation segmentation(image, growing(0.5, true));
   ASSERT_EQ(segmentation.segments().size(), 1u);
   const Segment& s = segmentation.segments()[0];
   EXPECT_EQ(s.width, 3);
@@ -229,7 +195,7 @@ TEST(Segmentation, BoxIsCountedAcrossTheSeam) {
 TEST(Segmentation, AClosedRingIsAsWideAsTheImage) {
   for (const int columns : {16, 17}) {
     const RangeImage image = draw({std::string(columns, '3'), std::string(columns, '.')});
-    const Segmentation segmentation(image, growing(0.5, true, false));
+    const Segmentation segmentation(image, growing(0.5, true));
     ASSERT_EQ(segmentation.segments().size(), 1u);
     EXPECT_EQ(segmentation.segments()[0].width, columns);
     EXPECT_EQ(segmentation.segments()[0].height(), 1);
@@ -238,24 +204,14 @@ TEST(Segmentation, AClosedRingIsAsWideAsTheImage) {
 
 TEST(Segmentation, AnEmptyImageHasNoSegments) {
   const RangeImage image(4, 16);
-  EXPECT_TRUE(Segmentation(image, growing(0.5, true, true)).segments().empty());
+  EXPECT_TRUE(Segmentation(image, growing(0.5, true)).segments().empty());
 }
 
-TEST(Segmentation, GrowingUpwardsGivesConnectedComponents) {
+TEST(Segmentation, EqualsAlgorithmOneAsWritten) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const RangeImage image = randomImage(seed, 12, 20);
     for (const bool wrap : {true, false})
-      expectLabels(image, Segmentation(image, growing(0.3, wrap, true)),
-                   components(image, 0.3, wrap));
-  }
-}
-
-TEST(Segmentation, OtherwiseItEqualsAlgorithmOneAsWritten) {
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const RangeImage image = randomImage(seed, 12, 20);
-    for (const bool wrap : {true, false})
-      expectLabels(image, Segmentation(image, growing(0.3, wrap, false)),
-                   algorithmOne(image, 0.3, wrap));
+      expectLabels(image, Segmentation(image, growing(0.3, wrap)), algorithmOne(image, 0.3, wrap));
   }
 }
 
@@ -264,7 +220,7 @@ TEST(Segmentation, TakesALargeImageOfOneSegment) {
   RangeImage image(512, 8192);
   for (int r = 0; r < image.rows(); ++r)
     for (int c = 0; c < image.columns(); ++c) image.set(r, c, 10, 0);
-  const Segmentation segmentation(image, growing(0.2, true, false));
+  const Segmentation segmentation(image, growing(0.2, true));
   ASSERT_EQ(segmentation.segments().size(), 1u);
   EXPECT_EQ(segmentation.segments()[0].pixels.size(), 512u * 8192u);
   EXPECT_EQ(segmentation.segments()[0].height(), 512);

@@ -154,7 +154,7 @@ TEST(PoleFitting, IsMuchBetterThanACircleThroughThePoints) {
         const Return& r = scan.lines.begin(s.row)[i];
         xy.emplace_back(scan.lines.x(r), scan.lines.y(r));
       }
-    const auto c = fitCircleTaubin(xy);
+    const auto c = fitCircleKasa(xy);
     if (!c) return std::nullopt;
     PoleFit fit;
     fit.x = static_cast<float>(c->x);

@@ -12,6 +12,28 @@ namespace polemcl {
 
 enum class ExtractionMethod { rangeImage, scanLine };
 
+/// \brief Where the paper's text and its authors' code differ, in five details.
+enum class ExtractionDetails {
+  /// Points outside the image are dropped, and it closes at ±180°. Pixels of the foreground are
+  /// those
+  /// without a nearer side neighbour outside the cluster. Algebraic fit (Kåsa). The free space is
+  /// four
+  /// squares at the corners of the box of the fit.
+  mended,
+  /// As the text: as above, but pixels of the foreground need side neighbours outside the cluster,
+  /// all
+  /// farther. The free space is what is nearer than its width to the circle around the box of the
+  /// fit.
+  paper,
+  /// As the code: points outside the image go to its border pixels. The image is open, and its
+  /// first
+  /// and last rows and columns hold no pixels of clusters. The radius is the mean distance to the
+  /// centre
+  /// of the fit. The two squares at lower y are cut to the height `ring - 2 (R + margin)` by a sign
+  /// slip.
+  authors
+};
+
 /// \brief The paper's Algorithm 1. `[range_image]` in INI files; departures are named options.
 ///
 /// Heights are those of the authors for KITTI, counted from the ground, 1.73 m below that LiDAR.
@@ -25,17 +47,12 @@ struct POLEMCL_EXPORT RangeImageOptions {
   double epsilon = 0.2;             ///< ε: range step inside a cluster, m
   int minPixels = 3;                ///< ζ: clusters need strictly more pixels
   int maxWidthPx = 10;              ///< px
-  double minAspect = 1;             ///< least h/w, px
   double foreground = 0.7;          ///< δ: least share of pixels not behind a side neighbour
   double minTop = 1.73;             ///< α, m
   double maxBottom = 3.23;          ///< β, m
   double minHeight = 0.6;           ///< γ, m
-  double minRadius = 0.02, maxRadius = 0.4;  ///< b, a, m
-  double fitMargin = 0.1;                    ///< box for the fit: ± (R + margin), m
-  double fitMaxZ = 4.73;                     ///< highest point of the fit, m
-  int minFitPoints = 6;
-  double freeRing = 0.5;    ///< width of the free space, m
-  double freeShare = 0.15;  ///< μ: allowed points there as a share of the fitted ones
+  double fitMaxZ = 4.73;            ///< highest point of the fit, m
+  double freeRing = 0.5;            ///< width of the free space, m
   bool heightsAboveGround =
       true;  ///< true: z + `height_m`; false: z in the sensor frame, as the authors' code
   /// Origin of the range image. `sensor`: the optical centre, as in the paper; `cloud`: the origin
@@ -48,24 +65,15 @@ struct POLEMCL_EXPORT RangeImageOptions {
   double coordinateStep = 0;
   /// true: projection and fit in float (authors' code for KITTI); false: in double.
   bool singlePrecision = false;
-  /// true: points outside the image go to its border pixels (authors' code); false: dropped.
-  bool clampToView = false;
-  /// true: the image closes at +-180 deg; false: it is open, and its first and last rows and
-  /// columns hold no pixels of clusters (authors' code).
-  bool wrapAround = true;
-  bool growUpwards = false;  ///< true: clusters grow up too; false: left, right, below
-  /// Which pixels count for `foreground`. `not_behind`: those without a nearer side neighbour
-  /// outside the cluster (authors' code); `in_front`: those with side neighbours outside the
-  /// cluster, all farther (paper).
-  std::string foregroundTest = "not_behind";
-  /// `kasa` (the paper's algebraic fit), `kasa_mean` (its centre, the mean distance of the points
-  /// as radius: authors' code), `taubin` (less biased), `silhouette` (radius from the width seen,
-  /// centre behind the front: not biased on short arcs).
-  std::string circleFit = "kasa";
-  /// `ring`: all that is nearer than the ring's width to the circle around the box of the fit
-  /// (paper); `corners`: four squares at the corners of that box; `cut_corners`: the same, but the
-  /// two at lower y are cut to the height `ring - 2 (R + margin)` by a sign slip (authors' code).
-  std::string freeSpace = "corners";
+  ExtractionDetails details = ExtractionDetails::mended;
+  /// \name Constants of the method; tests change them
+  /// @{
+  double minAspect = 1;                      ///< least h/w, px
+  double minRadius = 0.02, maxRadius = 0.4;  ///< b, a, m
+  double fitMargin = 0.1;                    ///< box for the fit: ± (R + margin), m
+  int minFitPoints = 6;
+  double freeShare = 0.15;  ///< μ: allowed points there as a share of the fitted ones
+  /// @}
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, RangeImageOptions& options);  ///< `[range_image]`

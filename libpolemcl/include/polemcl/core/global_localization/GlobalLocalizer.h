@@ -12,14 +12,13 @@
 #include <memory>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/LocalSubmap.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
 
-/// \brief `[global]` in INI files.
+/// \brief Constants of the method; tests change some. Measured in share/doc/global.md.
 struct POLEMCL_EXPORT GlobalOptions {
   int minHits = 2;  ///< poles of the submap with fewer hits are not used
   /// Probability that a true pole of the submap is on the map, in (0, 1).
@@ -36,15 +35,13 @@ struct POLEMCL_EXPORT GlobalOptions {
   double minShare = 0.4;      ///< least share of the submap's poles that are matched, in [0, 1]
   double margin = 7;          ///< least lead in log-likelihood over every other place, nats
   double distinct = 2;        ///< places farther apart than this are different ones, m
-  double distinctYaw = 0.17;  ///< places turned by more are different, rad (`distinct_yaw_deg`)
+  double distinctYaw = 0.17;  ///< places turned by more are different, rad
   /// @}
   int maxPairs = 40;           ///< greatest number of pole pairs that are looked up
   int maxCandidates = 100000;  ///< greatest number of places that are tried; bounds the time
   int maxRefined = 64;         ///< greatest number of places that are refined
   int maxHypotheses = 20;      ///< greatest number of places in an answer
 };
-
-POLEMCL_EXPORT void bind(Binder& binder, GlobalOptions& options);  ///< `[global]`
 
 /// \brief A place where the submap may lie.
 struct POLEMCL_EXPORT GlobalHypothesis {
@@ -92,7 +89,7 @@ struct PreparedMap;
 /// but map, options and submap.
 class POLEMCL_EXPORT GlobalLocalizer {
  public:
-  /// \throws Error on options out of range or a map pole whose centre or covariance is not finite.
+  /// \throws Error on a map pole whose centre or covariance is not finite.
   explicit GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOptions& options = {});
 
   GlobalResult localize(const LocalSubmap& submap) const;

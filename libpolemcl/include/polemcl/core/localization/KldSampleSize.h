@@ -12,12 +12,12 @@
 
 namespace polemcl {
 
-/// \brief Settings of KLD sampling, part of `[filter]`.
+/// \brief KLD sampling. The numbers of particles are settings of `[filter]`.
 struct POLEMCL_EXPORT KldOptions {
   double epsilon = 0.05;  ///< greatest Kullback-Leibler distance to the posterior in bins, nat
   double delta = 0.01;    ///< probability of a greater distance, in (0, 0.5]
   double bin = 0.1;       ///< size of a bin in x and y, m
-  double binYaw = 0.017453292519943296;  ///< in heading, rad (`kld_bin_deg`, 1°)
+  double binYaw = 0.017453292519943296;  ///< in heading, rad (1°)
   int minParticles = 200;
   int maxParticles = 10000;
 };

@@ -11,14 +11,13 @@
 #include <cstdint>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/OdometryDrift.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
 
-/// \brief `[submap]` in INI files.
+/// \brief Constants of the method; tests change some. Measured in share/doc/global.md.
 struct POLEMCL_EXPORT SubmapOptions {
   double length = 60;  ///< poles not seen over this distance travelled are dropped, m
   double gate = 3.5;   ///< greatest Mahalanobis distance of a detection from its pole
@@ -33,13 +32,11 @@ struct POLEMCL_EXPORT SubmapOptions {
   /// \name Odometry without a covariance
   /// @{
   double positionWalk = 0.02;   ///< σ of position after a metre; grows with √distance, m/√m
-  double headingWalk = 0.0007;  ///< σ of heading after a metre, rad/√m (`heading_walk_deg`)
+  double headingWalk = 0.0007;  ///< σ of heading after a metre, rad/√m
   double turnWalk = 0.01;  ///< σ of heading after a radian turned; grows with √angle, rad/√rad
   /// @}
   double scale = 0.01;  ///< σ of the scale error that all steps of the odometry share
 };
-
-POLEMCL_EXPORT void bind(Binder& binder, SubmapOptions& options);  ///< `[submap]`
 
 /// \brief Covariance of (x, y, yaw) of a motion by the walks of the options, m², m·rad, rad².
 /// \param motion In the robot frame before it.
@@ -71,7 +68,6 @@ struct POLEMCL_EXPORT SubmapPole {
 /// \brief Poles of the last metres. Deterministic; not to be shared between threads while adding.
 class POLEMCL_EXPORT LocalSubmap {
  public:
-  /// \throws Error on options out of range.
   explicit LocalSubmap(const SubmapOptions& options = {});
 
   /// \brief One frame more: moves on, associates the detections one to one by ascending Mahalanobis

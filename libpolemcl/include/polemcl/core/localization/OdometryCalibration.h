@@ -12,25 +12,11 @@
 #include <Eigen/Core>
 #include <deque>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-/// \brief `[odometry_calibration]` in INI files.
-struct POLEMCL_EXPORT OdometryCalibrationOptions {
-  bool enabled = true;
-  double scaleSigma = 0.02;   ///< standard deviation of the scale error at the start, as a share
-  double yawSigma = 0.00052;  ///< of the yaw bias at the start, rad/m (`yaw_sigma_deg_m`)
-  double scaleWalk = 0.0005;  ///< growth of the scale's standard deviation, per root of a metre
-  double yawWalk = 1.7e-5;    ///< growth of the yaw bias's, rad/m per root of a metre
-  double length = 8;          ///< distance over which motions are compared, m (`length_m`)
-};
-
-POLEMCL_EXPORT void bind(Binder& binder,
-                         OdometryCalibrationOptions& options);  ///< `[odometry_calibration]`
 
 /// \brief What is known of the errors of the odometry.
 struct POLEMCL_EXPORT OdometryErrors {
@@ -49,8 +35,11 @@ struct POLEMCL_EXPORT CorrectedMotion {
 /// \brief Follows one drive. Deterministic.
 class POLEMCL_EXPORT OdometryCalibration {
  public:
-  /// \throws Error on options out of range.
-  explicit OdometryCalibration(const OdometryCalibrationOptions& options = {});
+  /// At the start, standard deviations of the scale error, as a share, and of the yaw bias, rad/m.
+  static constexpr double scaleSigma = 0.02, yawSigma = 0.00052;
+
+  /// \param enabled false: the odometry is taken as it is.
+  explicit OdometryCalibration(bool enabled = true);
 
   /// \brief The motion without the errors known of, with their uncertainty in its covariance.
   /// \param motion, covariance As the odometry has them.
@@ -71,7 +60,7 @@ class POLEMCL_EXPORT OdometryCalibration {
   Eigen::Matrix3d walkedCovariance() const;
   void compare(const PoseWithCovariance& estimate);
 
-  OdometryCalibrationOptions m_options;
+  bool m_enabled;
   OdometryErrors m_errors;
   PoseWithCovariance m_begin;  ///< pose at which the steps begin
   std::deque<Step> m_steps;    ///< as the odometry has them

@@ -13,33 +13,11 @@
 #include <deque>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/ScanRegistration.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
-
-/// \brief `[odometry_monitor]` in INI files.
-struct POLEMCL_EXPORT OdometryMonitorOptions {
-  bool enabled = true;
-  double window = 1;         ///< longest time over which scans are compared, s
-  double scale = 0.05;       ///< tolerated error of the odometry, as a share of the distance
-  double metres = 0.1;       ///< tolerated error of any motion, m (`tolerance_m`)
-  double turn = 0.02;        ///< tolerated error of any turn, rad (`tolerance_deg`)
-  double sigmas = 5;         ///< least difference beyond that contradicts, in standard deviations
-  int minPairs = 3;          ///< least number of poles in common that contradict
-  double minShare = 0.4;     ///< least share of the poles of the scan with fewer that are paired
-  double margin = 1.5;       ///< least lead of the poles' motion over the odometry's, in pairs
-  double settle = 0.5;       ///< time of agreement after which the odometry is believed again, s
-  double hold = 5;           ///< time for which the last speed is kept without enough poles, s
-  double maxSpeed = 40;      ///< greatest speed of the vehicle, m/s
-  double maxTurnRate = 1.5;  ///< greatest turn rate, rad/s (`max_turn_rate_deg_s`)
-  RegistrationOptions alignment;  ///< sigma, gate, reach (`sigma_m`, `gate`, `reach_m`)
-};
-
-POLEMCL_EXPORT void bind(Binder& binder,
-                         OdometryMonitorOptions& options);  ///< `[odometry_monitor]`
 
 enum class OdometryVerdict {
   agrees,        ///< the poles support the odometry
@@ -59,8 +37,8 @@ struct POLEMCL_EXPORT MonitoredMotion {
 /// \brief Follows one drive. Deterministic.
 class POLEMCL_EXPORT OdometryMonitor {
  public:
-  /// \throws Error on options out of range.
-  explicit OdometryMonitor(const OdometryMonitorOptions& options = {});
+  /// \param enabled false: the odometry is always believed.
+  explicit OdometryMonitor(bool enabled = true) : m_enabled(enabled) {}
 
   /// \brief One scan more. After a gap longer than the window, and for the first scan, there is
   /// nothing to compare with.
@@ -72,7 +50,6 @@ class POLEMCL_EXPORT OdometryMonitor {
                       const std::vector<PoleDetection>& poles_robot);
   /// \brief Forgets all scans: the next is a first one.
   void clear();
-  const OdometryMonitorOptions& options() const { return m_options; }
 
  private:
   /// A scan to compare with. Chains of motions since the first scan: as the odometry has them, and
@@ -112,7 +89,7 @@ class POLEMCL_EXPORT OdometryMonitor {
   Pose2D coast(double seconds) const;
   std::size_t keyScan() const;
 
-  OdometryMonitorOptions m_options;
+  bool m_enabled;
   std::deque<Reference> m_past;
   State m_state = State::believed;
   Pose2D m_speed;          ///< of the last motion handed out, per second

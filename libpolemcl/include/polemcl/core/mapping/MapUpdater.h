@@ -20,25 +20,19 @@ namespace polemcl {
 
 /// \brief `[map_update]` in INI files. Gates and pose errors are those of `[map]`.
 struct POLEMCL_EXPORT MapUpdateOptions {
-  ExistenceOptions existence;
-  AlignmentOptions alignment;
-  double range = 20;     ///< a scan is expected to find poles in view up to here, m (`range_m`)
-  int minSeen = 5;       ///< least number of scans that found a pole on the map
-  double present = 0.9;  ///< a pole enters the map from this probability on
-  double absent = 0.4;   ///< a pole leaves the map below this probability; it is remembered
-  double forget = 0.05;  ///< a pole is forgotten below this probability
+  double range = 20;  ///< a scan is expected to find poles in view up to here, m (`range_m`)
+  int minSeen = 5;    ///< least number of scans that found a pole on the map
+  /// Mean time that a pole stands, days (`lifetime_days`): its existence decays between sessions.
+  double lifetimeDays = 3650;
   /// Standard deviation of one session's positions against those of others, m
   /// (`session_sigma_m`).
   double sessionSigma = 0.02;
   /// A pole that a session puts farther than this from its place, beyond its 99.9 % ellipse, has
   /// been moved, m (`moved_m`). Its place is the new one; nothing is averaged.
   double moved = 0.25;
-  /// A missed pole that is nearer than this to a new one has been moved there, m (`ghost_m`). It
-  /// leaves no ghost.
-  double ghost = 1.5;
-  /// Scans whose position has a greater standard deviation along any axis change nothing, m
-  /// (`max_sigma_m`). See SessionScan::poseCovariance.
-  double maxSigma = 0.25;
+  /// Standard deviation of the errors of a session's positions along an axis before it is aligned
+  /// to the map, m (`align_sigma_m`); 0: sessions are taken as they are.
+  double alignSigma = 0.2;
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, MapUpdateOptions& options);  ///< `[map_update]`
@@ -95,7 +89,7 @@ POLEMCL_EXPORT LandmarkMap withHistory(const std::vector<MapPole>& poles,
                                        const PoleMapOptions& mapping,
                                        const MapUpdateOptions& options);
 
-/// \brief Updates a map by one session, which is first aligned to it (AlignmentOptions). Scans in
+/// \brief Updates a map by one session, which is first aligned to it (`align_sigma_m`). Scans in
 /// the order they were driven; the result does not depend on the order of the detections in a scan.
 /// \param counts If given: what changed.
 /// \throws Error on options out of range, on scans as buildPoleMap(), and on a visibility

@@ -11,27 +11,20 @@
 
 #include <cstdint>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
 
-/// \brief The part of `[map_update]` in INI files that tells what scans say.
-struct POLEMCL_EXPORT ExistenceOptions {
-  /// Probability that a scan finds a pole in view (`detection`). The pole's own counts are used
-  /// where they say less.
-  double detection = 0.75;
-  /// Probability that a scan finds something where no pole is (`false_detection`). With these two,
-  /// a place found in more than about 0.37 of the scans that could see it stays a pole.
-  double falseDetection = 0.08;
-  double decorrelation = 5;  ///< scans within this distance count as one, m (`decorrelation_m`)
-  double prior = 0.2;        ///< prior probability that a newly observed object is a pole (`prior`)
-  double certain = 0.99;  ///< greatest probability of existence; the least is 1 - this (`certain`)
-  double lifetimeDays = 3650;  ///< mean time that a pole stands, days (`lifetime_days`)
-};
-
-POLEMCL_EXPORT void bind(Binder& binder, ExistenceOptions& options);  ///< `[map_update]`
+/// Probability that a scan finds a pole in view. The pole's own counts are used where they say
+/// less.
+constexpr double kDetection = 0.75;
+/// Probability that a scan finds something where no pole is. With these two, a place found in more
+/// than about 0.37 of the scans that could see it stays a pole.
+constexpr double kFalseDetection = 0.08;
+constexpr double kDecorrelation = 5;  ///< scans within this distance count as one, m
+constexpr double kPrior = 0.2;        ///< probability that a newly observed object is a pole
+constexpr double kCertain = 0.99;     ///< greatest probability of existence; the least is 1 - this
 
 /// \brief What is known of a pole over the sessions.
 struct PoleHistory {
@@ -51,11 +44,11 @@ POLEMCL_EXPORT void noteSeen(PoleHistory& history, double seconds);
 /// \brief Chance that a pole is found in a scan that could see it: from its counts, with
 /// `detection` counting as 20 scans; at most `detection`, and at least twice `falseDetection`, so
 /// that misses always count against it.
-POLEMCL_EXPORT double detectionChance(const PoleHistory& history, const ExistenceOptions& options);
+POLEMCL_EXPORT double detectionChance(const PoleHistory& history);
 
 /// \brief Probability after a time without news: it decays as exp(-days / lifetime).
 /// \param seconds Since it was last updated; negative ones count as 0.
-POLEMCL_EXPORT double survived(double existence, double seconds, const ExistenceOptions& options);
+POLEMCL_EXPORT double survived(double existence, double seconds, double lifetimeDays);
 
 /// \brief Collects what the scans of a session say of one pole, section by section.
 class POLEMCL_EXPORT ExistenceLikelihood {
@@ -64,8 +57,7 @@ class POLEMCL_EXPORT ExistenceLikelihood {
   /// \param hidden Something stands before the place. Such scans count with a small chance, and
   /// only if one of them found the pole: then those that did not find it must count as well. They
   /// never count as missed().
-  void add(bool found, double along, const ExistenceOptions& options, double chance,
-           bool hidden = false);
+  void add(bool found, double along, double chance, bool hidden = false);
   std::uint32_t found() const { return m_found; }
   std::uint32_t missed() const { return m_missed; }
   /// \brief Log of the ratio of likelihoods, of a pole to none: the mean over the scans of a
@@ -88,6 +80,6 @@ class POLEMCL_EXPORT ExistenceLikelihood {
 };
 
 /// \brief Probability after a session, kept within `certain`.
-POLEMCL_EXPORT double updated(double existence, double logRatio, const ExistenceOptions& options);
+POLEMCL_EXPORT double updated(double existence, double logRatio);
 
 }  // namespace polemcl

@@ -46,20 +46,21 @@ struct POLEMCL_EXPORT PoleMapOptions {
   SectionMiddle middle = SectionMiddle::nearest;
   MapMerging merging = MapMerging::gated;
   PoleCounting counting = PoleCounting::confidences;
-  double mergeDistance = 0.5;  ///< detections of one pole lie within this of its mean, m
+  double mergeDistance =
+      0.5;  ///< detections of one pole lie within this of its mean, m; no setting
   /// Poles nearer to each other than mergeDistance stay apart when at least this share of the
   /// keyframes of the one seen more often shows both; otherwise they are one.
   static constexpr double apartShare = 0.25;
   /// Least `counting` of a pole. With `confidences`, of a drive whose scans are so far apart that
   /// only a share of the sections has one, this share of it, but 1.5 at least.
   double minCount = 3;
-  int maxGap = 2;            ///< most *occupied* sections in a row that may miss it inside a run
+  int maxGap = 2;  ///< most *occupied* sections in a row that may miss it inside a run; no setting
   double minConfidence = 0;  ///< detections below are not used, in [0, 1]; those of 0 never are
   /// Least share of the occupied sections with middles within `nearRange` that saw the pole, in
   /// [0, 1]; each counts by its confidence if `counting` says so. Clutter looks like a pole from
   /// few places, a pole from nearly all. A pole without such sections needs `minCount` alone.
   double minShare = 0.15;
-  double nearRange = 15;  ///< m
+  double nearRange = 15;  ///< m; no setting
   /// Standard deviation of the scans' positions, m: added to each detection, so that the nearest
   /// one does not count alone.
   double poseSigma = 0.02;

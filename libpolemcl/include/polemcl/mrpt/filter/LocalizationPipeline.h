@@ -19,18 +19,6 @@
 
 namespace polemcl {
 
-/// \brief When the global search is asked. `[search]` in INI files.
-struct POLEMCL_EXPORT SearchOptions {
-  bool recover = true;      ///< true: the map is searched when the vehicle is lost
-  double every = 4;         ///< distance travelled between two searches, m
-  double everySeconds = 5;  ///< time between two searches of a vehicle that stands, s
-  /// Distance travelled until an ambiguous answer is used, m; until then the next metres may tell.
-  double patience = 30;
-  int particles = 4000;  ///< number of particles drawn round the places of an answer
-};
-
-POLEMCL_EXPORT void bind(Binder& binder, SearchOptions& options);  ///< `[search]`
-
 /// \brief When the filter gets detections.
 enum class Cadence {
   scan,    ///< at every scan
@@ -52,16 +40,19 @@ struct POLEMCL_EXPORT TrackingOptions {
 
 POLEMCL_EXPORT void bind(Binder& binder, TrackingOptions& options);  ///< `[tracking]`
 
-/// \brief All settings of the chain, but those of the search on the map, which LocalizationMap
-/// takes.
+/// \brief All settings of the chain.
 struct POLEMCL_EXPORT LocalizationOptions {
   FilterOptions filter;
   TrackingOptions tracking;
-  SubmapOptions submap;
-  HealthOptions health;
-  SearchOptions search;
-  OdometryMonitorOptions odometryMonitor;
-  OdometryCalibrationOptions odometryCalibration;
+  double maxGap =
+      2;  ///< a longer time between two scans degrades the pose, s (`[health] max_gap_s`)
+  bool recover = true;  ///< the map is searched when the vehicle is lost (`[search] recover`)
+  /// Faults of the odometry are detected by the poles; their motion then replaces it
+  /// (`[odometry_monitor] enabled`).
+  bool monitorOdometry = true;
+  /// Scale error and yaw bias of the odometry are estimated while driving
+  /// (`[odometry_calibration] enabled`).
+  bool calibrateOdometry = true;
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, LocalizationOptions& options);  ///< their sections
@@ -87,8 +78,8 @@ struct LocalizationUpdate {
 /// the pole is in view, so the pipeline counts detections in it by NewShares::all.
 struct POLEMCL_EXPORT LocalizationMap {
   static constexpr double coarseness = 3;
-  /// \throws Error on a map without poles, or options out of range.
-  LocalizationMap(std::shared_ptr<const CPoleMap> poleMap, const GlobalOptions& options);
+  /// \throws Error on a map without poles.
+  LocalizationMap(std::shared_ptr<const CPoleMap> poleMap);
   std::shared_ptr<const CPoleMap> poles;
   std::shared_ptr<const GlobalLocalizer> search;
   bool coarse = false;

@@ -93,29 +93,6 @@ std::optional<Circle> fitCircleKasaMean(const std::vector<Eigen::Vector2d>& poin
   return singlePrecision ? fitKasaMean<float>(points) : fitKasaMean<double>(points);
 }
 
-std::optional<Circle> fitCircleTaubin(const std::vector<Eigen::Vector2d>& points) {
-  if (points.size() < 3) return std::nullopt;
-  const Moments m = moments(points);
-  const double z = m.xx + m.yy;
-  const double covariance = m.xx * m.yy - m.xy * m.xy;
-  const double variance = m.zz - z * z;
-  const double a3 = 4 * z, a2 = -3 * z * z - m.zz;
-  const double a1 = variance * z + 4 * covariance * z - m.xz * m.xz - m.yz * m.yz;
-  const double a0 = m.xz * (m.xz * m.yy - m.yz * m.xy) + m.yz * (m.yz * m.xx - m.xz * m.xy) -
-                    variance * covariance;
-  double shift = 0, value = a0;
-  for (int i = 0; i < 50; ++i) {  // Newton from 0 decreases towards the smallest root
-    const double slope = a1 + shift * (2 * a2 + 3 * a3 * shift);
-    const double next = shift - value / slope;
-    if (!std::isfinite(next) || next == shift) break;
-    const double nextValue = a0 + next * (a1 + next * (a2 + next * a3));
-    if (std::abs(nextValue) >= std::abs(value)) break;
-    shift = next;
-    value = nextValue;
-  }
-  return solveCircle(m, shift);
-}
-
 std::optional<Circle> fitCircleSilhouette(const std::vector<Eigen::Vector2d>& points,
                                           double extraWidth) {
   if (points.size() < 2) return std::nullopt;

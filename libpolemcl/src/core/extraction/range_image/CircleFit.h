@@ -23,10 +23,6 @@ std::optional<Circle> fitCircleKasa(const std::vector<Eigen::Vector2d>& points);
 std::optional<Circle> fitCircleKasaMean(const std::vector<Eigen::Vector2d>& points,
                                         bool singlePrecision);
 
-/// \brief Taubin's fit (1991): gradient-weighted, nearly unbiased; by Newton's method on the
-/// characteristic polynomial as in Chernov's book (2010).
-std::optional<Circle> fitCircleTaubin(const std::vector<Eigen::Vector2d>& points);
-
 /// \brief Half the width seen from the origin is the radius; the centre lies on the bisector so far
 /// behind the front that the points' mean distance to it is the radius. Not biased on short arcs.
 /// \param extraWidth Added to the width seen, m: a firing step less the beam's footprint.

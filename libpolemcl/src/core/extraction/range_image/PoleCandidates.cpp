@@ -6,7 +6,7 @@
 namespace polemcl {
 namespace {
 
-/// Share of pixels that count: see RangeImageOptions::foregroundTest.
+/// Share of pixels that count: see ExtractionDetails.
 double foregroundShare(const RangeImage& image, const Segmentation& segmentation,
                        std::int32_t label, bool inFront) {
   const Segment& segment = segmentation.segments()[label];
@@ -39,7 +39,7 @@ std::optional<RejectionReason> testCandidate(const RangeImage& image,
     return RejectionReason::tooFewPoints;
   if (segment.height() < options.minAspect * segment.width || segment.width > options.maxWidthPx)
     return RejectionReason::tooWide;
-  if (foregroundShare(image, segmentation, label, options.foregroundTest == "in_front") <
+  if (foregroundShare(image, segmentation, label, options.details == ExtractionDetails::paper) <
       options.foreground)
     return RejectionReason::notForeground;
 

@@ -84,7 +84,7 @@ PointCounts projectIn(const PointsView& points, const RangeImageOptions& options
       continue;
     }
     auto [v, u] = projection.pixel(p);
-    if (options.clampToView) {
+    if (options.details == ExtractionDetails::authors) {
       v = std::clamp(v, 0.0, image.rows() - 1.0);
       u = std::min(u, image.columns() - 1.0);
     } else if (v < 0 || v >= image.rows()) {

@@ -71,9 +71,8 @@ std::vector<Eigen::Vector2d> RangeImageExtractor::segmentPoints(const Segment& s
 
 std::optional<Circle> RangeImageExtractor::fit(const std::vector<Eigen::Vector2d>& points,
                                                bool singlePrecision) const {
-  if (m_options.circleFit == "kasa_mean") return fitCircleKasaMean(points, singlePrecision);
-  if (m_options.circleFit == "taubin") return fitCircleTaubin(points);
-  if (m_options.circleFit == "silhouette") return fitCircleSilhouette(points, 0);
+  if (m_options.details == ExtractionDetails::authors)
+    return fitCircleKasaMean(points, singlePrecision);
   return fitCircleKasa(points);
 }
 
@@ -122,7 +121,8 @@ bool RangeImageExtractor::isFree(const Box& box, std::size_t fitted,
   const double outer = box.half + m_options.freeRing;
   const double side = m_options.mirrored ? -1 : 1;
   const double x = box.centre.x, y = side * box.centre.y;
-  const bool cut = m_options.freeSpace == "cut_corners", ring = m_options.freeSpace == "ring";
+  const bool cut = m_options.details == ExtractionDetails::authors,
+             ring = m_options.details == ExtractionDetails::paper;
   const double lowest = cut ? y + box.half - m_options.freeRing : y - outer;
   std::size_t intruders = 0;
   eachNear(box, outer, points, [&](const Point& p) {

@@ -9,7 +9,7 @@ Segmentation::Segmentation(const RangeImage& image, const RangeImageOptions& opt
     : m_image(image),
       m_options(options),
       m_label(static_cast<std::size_t>(image.rows()) * image.columns(), -1) {
-  const int border = options.wrapAround ? 0 : 1;
+  const int border = options.details == ExtractionDetails::authors ? 1 : 0;
   for (int row = border; row < image.rows() - border; ++row)
     for (int column = border; column < image.columns() - border; ++column)
       if (image.valid(row, column) && label(row, column) < 0)
@@ -24,15 +24,14 @@ void Segmentation::grow(int row, int column, std::int32_t label) {
   segment.minRow = segment.maxRow = row;
   int minColumn = column, maxColumn = column;
 
-  static constexpr int kSteps[4][2] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}};
-  const int directions = m_options.growUpwards ? 4 : 3;
+  static constexpr int kSteps[3][2] = {{0, -1}, {0, 1}, {1, 0}};  // left, right, below
   for (std::size_t i = 0; i < segment.pixels.size(); ++i) {
     const Pixel pixel = segment.pixels[i];
     const int unwrapped = m_unwrapped[i];
-    for (int d = 0; d < directions; ++d) {
-      const int r = pixel.row + kSteps[d][0];
-      int c = pixel.column + kSteps[d][1];
-      if (m_options.wrapAround) {
+    for (const auto& step : kSteps) {
+      const int r = pixel.row + step[0];
+      int c = pixel.column + step[1];
+      if (m_options.details != ExtractionDetails::authors) {
         if (r < 0 || r >= m_image.rows()) continue;
         c = m_image.wrap(c);
       } else if (r < 1 || r >= m_image.rows() - 1 || c < 1 || c >= m_image.columns() - 1) {
@@ -45,7 +44,7 @@ void Segmentation::grow(int row, int column, std::int32_t label) {
         continue;
       m_label[index] = label;
       segment.pixels.push_back({static_cast<std::int16_t>(r), c});
-      m_unwrapped.push_back(unwrapped + kSteps[d][1]);
+      m_unwrapped.push_back(unwrapped + step[1]);
       segment.minRow = std::min(segment.minRow, r);
       segment.maxRow = std::max(segment.maxRow, r);
       minColumn = std::min(minColumn, m_unwrapped.back());

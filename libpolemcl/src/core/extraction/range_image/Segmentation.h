@@ -27,7 +27,7 @@ struct Segment {
 class Segmentation {
  public:
   /// \brief Seeds are taken row by row from the top, in a row by column, as the open set is read.
-  /// \param options epsilon, wrapAround and growUpwards are used.
+  /// \param options epsilon and details are used.
   Segmentation(const RangeImage& image, const RangeImageOptions& options);
   const std::vector<Segment>& segments() const { return m_segments; }
   /// \brief Index of the segment a pixel belongs to, -1 for none.
