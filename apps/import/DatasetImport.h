@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include "io/dataset/Rosbag2.h"
 
 namespace polemcl::apps {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl {
 

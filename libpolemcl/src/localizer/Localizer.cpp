@@ -1,13 +1,12 @@
-#include <mrpt/maps/CSimplePointsMap.h>
-#include <mrpt/obs/CObservationPointCloud.h>
-
 #include <polemcl/localizer/Localizer.h>
+#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "core/common/Transform.h"
+#include "localizer/PointsObservation.h"
 #include "localizer/SettingsValues.h"
 #include "mrpt/rawlog/OdometryTrack.h"
 
@@ -82,8 +81,8 @@ LocalizationUpdate Localizer::Impl::step(PoleFrame frame, const Pose2D& odometry
 
 Localizer::Localizer(const Settings& settings, const std::filesystem::path& map)
     : Localizer(settings, loaded(map, settings.values()), settings.values().runs.seed) {}
-Localizer::Localizer(const Settings& settings, LocalizationMap map, std::uint32_t seed)
-    : m_impl(std::make_unique<Impl>(settings.values(), std::move(map), seed)) {}
+Localizer::Localizer(const Settings& settings, const LocalizationMap& map, std::uint32_t seed)
+    : m_impl(std::make_unique<Impl>(settings.values(), map, seed)) {}
 Localizer::Localizer(Localizer&&) noexcept = default;
 Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 Localizer::~Localizer() = default;
@@ -103,14 +102,7 @@ void Localizer::startAnywhere() {
 }
 
 LocalizationUpdate Localizer::step(double time, const PointsView& points, const Pose2D& odometry) {
-  mrpt::obs::CObservationPointCloud scan;
-  const auto map = mrpt::maps::CSimplePointsMap::Create();
-  map->resize(points.size);
-  for (std::size_t i = 0; i < points.size; ++i)
-    map->setPointFast(i, points.x[i], points.y[i], points.z[i]);
-  scan.pointcloud = map;
-  scan.timestamp = mrpt::Clock::fromDouble(time);
-  return step(scan, odometry);
+  return step(observationOf(time, points), odometry);
 }
 
 LocalizationUpdate Localizer::step(const mrpt::obs::CObservation& scan, const Pose2D& odometry) {

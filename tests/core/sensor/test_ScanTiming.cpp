@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl::test_scan_timing {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include "support/PoleCity.h"
 

@@ -4,7 +4,7 @@
 
 #include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/extraction/PoleExtractor.h>
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include "sim/lidar/Scanner.h"
 
 namespace polemcl::test_moving_scan {

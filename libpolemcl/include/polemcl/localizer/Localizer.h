@@ -10,15 +10,19 @@
 #include <string>
 #include <vector>
 
+#include <polemcl/core/common/PoleScan.h>
 #include <polemcl/core/common/Types.h>
+#include <polemcl/core/localization/LocalizationUpdate.h>
 #include <polemcl/localizer/Settings.h>
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 
 namespace mrpt::obs {
 class CObservation;
 }
 
 namespace polemcl {
+
+class LocalizationPipeline;  // private to the library
+struct LocalizationMap;
 
 /// \brief Localizes one drive. \code
 ///   Localizer localizer(Settings("hdl32e.ini"), "street.polemap");
@@ -33,7 +37,7 @@ class POLEMCL_EXPORT Localizer {
   /// \param map A `.polemap`. \throws Error when it cannot be read or has no poles.
   Localizer(const Settings& settings, const std::filesystem::path& map);
   /// \brief One of several on a map that is loaded once. \param seed In place of `[runs] seed`.
-  Localizer(const Settings& settings, LocalizationMap map, std::uint32_t seed);
+  Localizer(const Settings& settings, const LocalizationMap& map, std::uint32_t seed);
   Localizer(Localizer&&) noexcept;
   Localizer& operator=(Localizer&&) noexcept;
   ~Localizer();

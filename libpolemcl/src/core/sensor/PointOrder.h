@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl {
 

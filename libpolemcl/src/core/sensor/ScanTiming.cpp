@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <polemcl/core/common/Binder.h>
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl {
 

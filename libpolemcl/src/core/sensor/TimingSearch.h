@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/io/data/Cloud.h>
 #include <polemcl/io/data/PlanarMotion.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include "io/rosbag/PointCloud2.h"
 
 namespace polemcl::io {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Deskew.h>
-#include <polemcl/core/sensor/ScanTiming.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
 #include "mrpt/rawlog/EntrySource.h"

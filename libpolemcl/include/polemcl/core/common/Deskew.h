@@ -9,12 +9,6 @@
 
 namespace polemcl {
 
-/// \brief Planar velocity in the robot frame.
-struct POLEMCL_EXPORT Velocity {
-  double x = 0, y = 0;  ///< m/s
-  double yaw = 0;       ///< rad/s
-};
-
 /// \brief Constant velocity that leads to `motion` in `seconds` (> 0), along a circular arc.
 POLEMCL_EXPORT Velocity velocityOf(const Pose2D& motion, double seconds);
 /// \brief Pose after moving at constant velocity for `seconds` (may be negative), relative to the

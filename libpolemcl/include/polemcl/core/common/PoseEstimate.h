@@ -10,12 +10,6 @@
 
 namespace polemcl {
 
-struct POLEMCL_EXPORT PoseWithCovariance {
-  Pose2D mean;
-  /// Covariance of (x, y, yaw) about the mean, m, m, rad; heading differences wrapped.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
 /// \brief Weighted mean; headings averaged on the circle, and where they cancel out exactly that of
 /// the heaviest particle (lower index of equals).
 /// \param particles Finite poses, map frame.

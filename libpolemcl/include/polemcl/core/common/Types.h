@@ -29,12 +29,25 @@ struct Pose2D {
   double yaw = 0;
 };
 
-/// \brief this ⊕ other: `other`, given in the frame of `base`, expressed in base's parent frame.
+/// \brief base ⊕ other: the pose `other`, given in the frame `base`, in the parent frame of `base`.
 POLEMCL_EXPORT Pose2D compose(const Pose2D& base, const Pose2D& other);
 /// \brief The pose `to` expressed in the frame of `from` (⊖).
 POLEMCL_EXPORT Pose2D relative(const Pose2D& from, const Pose2D& to);
 /// \brief Wraps an angle into (-pi, pi].
 POLEMCL_EXPORT double wrapAngle(double angle);
+
+/// \brief A pose or a motion with its uncertainty.
+struct POLEMCL_EXPORT PoseWithCovariance {
+  Pose2D mean;
+  /// Covariance of (x, y, yaw), m², m·rad, rad².
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// \brief Planar velocity in the robot frame.
+struct POLEMCL_EXPORT Velocity {
+  double x = 0, y = 0;  ///< m/s
+  double yaw = 0;       ///< rad/s
+};
 
 struct StampedPose2D {
   double time = 0;  ///< s

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
+
+class Binder;
 
 enum class ExtractionMethod { rangeImage, scanLine };
 

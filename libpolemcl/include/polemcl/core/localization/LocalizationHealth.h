@@ -9,29 +9,9 @@
 #include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/core/localization/MapAssociation.h>
 #include <polemcl/export.h>
+#include <polemcl/core/localization/LocalizationUpdate.h>
 
 namespace polemcl {
-
-enum class HealthState { ok, degraded, lost };
-
-/// \brief Why the state is not `ok`; the first that applies in this order.
-enum class HealthReason {
-  none,        ///< ok
-  searching,   ///< lost: no pose is known yet
-  elsewhere,   ///< lost: the poles of the last metres fit another place of the map
-  mismatch,    ///< lost or degraded: too few of the observed poles stand on the map
-  spread,      ///< lost or degraded: the pose is too uncertain
-  ambiguous,   ///< degraded: several places are about as likely
-  converging,  ///< degraded: not yet confirmed since the start or since the last search
-  timeGap,   ///< degraded: no scan for longer than `max_gap_s`, until poles confirm the pose again
-  noPoles,   ///< degraded: no pole was seen for 2 s or 20 m
-  odometry,  ///< degraded: the poles contradict the odometry
-  innovation,  ///< degraded: matched poles lie farther off than their covariances say
-};
-
-/// \brief The words of the CSV and of the live view, in the order of the enumerators.
-POLEMCL_EXPORT const char* name(HealthState state);
-POLEMCL_EXPORT const char* name(HealthReason reason);
 
 /// \brief What one update brings.
 struct HealthInput {
@@ -42,19 +22,6 @@ struct HealthInput {
   double effectiveParticles = 0;  ///< number
   double modeShare = 1;           ///< of the weight of particles round the estimate, in [0, 1]
   bool odometryContradicted = false;
-};
-
-/// \brief The verdict with what it is made of.
-struct Health {
-  HealthState state = HealthState::lost;
-  HealthReason reason = HealthReason::searching;
-  double matchedShare = 0;  ///< of the window's observed poles, by confidence; 0 without any
-  double seenShare = 0;     ///< poles a scan in the window, by confidence, as a share of the usual
-  double innovation = 0;    ///< mean m² per degree of freedom of the window's matches; 1 expected
-  double effectiveParticles = 0;
-  double modeShare = 1;
-  double spread = 0;         ///< standard deviation of the position along its worst axis, m
-  double spreadHeading = 0;  ///< standard deviation of the heading, rad
 };
 
 /// \brief Follows one run. Deterministic.

@@ -15,16 +15,9 @@
 #include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
+#include <polemcl/core/localization/LocalizationUpdate.h>
 
 namespace polemcl {
-
-/// \brief What is known of the errors of the odometry.
-struct POLEMCL_EXPORT OdometryErrors {
-  double scale = 0;  ///< true distance / odometry - 1
-  double yaw = 0;    ///< true turn - odometry, rad per metre driven forwards
-  /// Covariance of (scale, yaw).
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-};
 
 /// \brief A motion with the covariance of its error.
 struct POLEMCL_EXPORT CorrectedMotion {

@@ -16,14 +16,9 @@
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/ScanRegistration.h>
 #include <polemcl/export.h>
+#include <polemcl/core/localization/LocalizationUpdate.h>
 
 namespace polemcl {
-
-enum class OdometryVerdict {
-  agrees,        ///< the poles support the odometry
-  contradicted,  ///< they do not: the motion is the poles', or the last known speed's
-  unknown        ///< too few poles to tell: the motion is the odometry's
-};
 
 /// \brief The motion to use for this step.
 struct POLEMCL_EXPORT MonitoredMotion {

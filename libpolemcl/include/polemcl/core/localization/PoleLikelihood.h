@@ -4,12 +4,13 @@
 
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
-#include <polemcl/core/common/PoleIndex.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
+
+class Binder;
+class PoleIndex;  // private to the library
 
 enum class LikelihoodModel {
   paper,  ///< Eq. 3: product of exp(-d²/(2σ²)), d clipped at `gate` (a pole without a match costs

@@ -10,11 +10,12 @@
 
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 
 namespace polemcl {
+
+class Binder;
 
 /// \brief Which scan is the keyframe of a section.
 enum class SectionMiddle {

@@ -10,13 +10,6 @@
 
 namespace polemcl::io {
 
-/// \brief Planar motion, in the robot frame before the motion.
-struct POLEMCL_EXPORT PlanarMotion {
-  Pose2D mean;  ///< m, m, rad
-  /// Covariance of (x, y, yaw), m², m·rad, rad².
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
 /// \brief Composes two motions: `a`, then `b` (given in the robot frame after `a`).
 /// The covariance is propagated to first order; `a` and `b` are assumed independent.
 POLEMCL_EXPORT PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b);

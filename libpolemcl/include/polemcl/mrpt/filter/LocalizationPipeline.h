@@ -16,6 +16,7 @@
 #include <polemcl/core/localization/OdometryMonitor.h>
 #include <polemcl/export.h>
 #include <polemcl/mrpt/filter/PoleParticleFilter.h>
+#include <polemcl/core/localization/LocalizationUpdate.h>
 
 namespace polemcl {
 
@@ -56,19 +57,6 @@ struct POLEMCL_EXPORT LocalizationOptions {
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, LocalizationOptions& options);  ///< their sections
-
-/// \brief Result of one scan.
-struct LocalizationUpdate {
-  double time = 0;                             ///< time of the scan, s
-  std::optional<PoseWithCovariance> estimate;  ///< map frame; nullopt while the pose is unknown
-  Health health;
-  std::size_t poles = 0;  ///< poles observed in the scan
-  /// Report of the filter, all zero without a pose. Its `poles` are those given to the filter.
-  StepReport step;
-  bool relocalized = false;  ///< the global search moved the filter to this pose in this step
-  OdometryVerdict motion = OdometryVerdict::unknown;  ///< verdict of the odometry monitor
-  OdometryErrors odometryErrors;                      ///< as estimated so far
-};
 
 /// \brief The map with the data for the global search, prepared once and shared by many runs.
 ///

@@ -17,17 +17,9 @@
 #include <polemcl/mrpt/filter/FilterOptions.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include <polemcl/core/localization/LocalizationUpdate.h>
 
 namespace polemcl {
-
-/// \brief Report of one step.
-struct StepReport {
-  std::size_t poles = 0;      ///< number of observed poles
-  std::size_t particles = 0;  ///< number before resampling
-  double effectiveShare = 1;  ///< of the particles, after the update, before resampling
-  int temperingStages = 0;    ///< resamplings in the update (see FilterOptions::tempering)
-  bool resampled = false;     ///< whether resampling took place after the update
-};
 
 /// \brief How much of what the poles of a frame say the frames before have not said: shares from 0
 /// to 1.

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/PoleIndex.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/export.h>
@@ -21,6 +20,7 @@ namespace polemcl {
 
 class CObservationPoles;
 class IncrementalMerge;
+class PoleIndex;  // private to the library
 
 /// \brief Poles in the map frame, with an index of them. A const map may be shared between threads;
 /// copies are independent.

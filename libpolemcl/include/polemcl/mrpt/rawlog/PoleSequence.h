@@ -17,6 +17,7 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include <polemcl/mrpt/rawlog/MotionOptions.h>
 #include <polemcl/mrpt/rawlog/VehicleOptions.h>
+#include <polemcl/core/common/PoleScan.h>
 
 namespace polemcl {
 
@@ -129,18 +130,6 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///         of SequenceOptions::vehicle is not in the rawlog. Exceptions of `consume` are passed on.
 POLEMCL_EXPORT SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
                                           const std::function<void(const PoleScan&)>& consume);
-
-/// \brief One scan in the form that map and filter need.
-struct PoleFrame {
-  double time = 0;                         ///< s
-  std::optional<io::PlanarMotion> motion;  ///< as in PoleScan
-  std::vector<PoleDetection> poles_robot;
-  std::size_t points = 0;                   ///< valid points of the scan; 0: none or unknown
-  std::vector<float> visibilityRange = {};  ///< as in CObservationPoles; may be empty
-  Pose2D pose_robot_sensor = {};            ///< pose of the frame of visibilityRange
-  /// As in PoleScan.
-  std::optional<Velocity> velocity = {};
-};
 
 /// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().
 POLEMCL_EXPORT PoleFrame frameOf(const PoleScan& scan);
