@@ -10,14 +10,14 @@
 #include <set>
 #include <thread>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-#include <polemcl/io/map/PoleMapFile.h>
 #include "batch/BatchCommands.h"
 #include "cli/JsonFile.h"
 #include "cli/Version.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
 #include "report/batch/BatchFiles.h"
 #include "report/batch/BatchMeasures.h"
 #include "report/batch/PublishedResults.h"

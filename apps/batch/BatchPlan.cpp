@@ -7,10 +7,10 @@
 #include <optional>
 #include <set>
 
-#include <polemcl/config/Config.h>
 #include "batch/BatchCommands.h"
 #include "batch/BatchInputs.h"
 #include "cli/Settings.h"
+#include "config/Config.h"
 #include "io/file/Bytes.h"
 #include "io/file/TextFile.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include <polemcl/config/Config.h>
+#include "config/Config.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/InstalledFiles.h"

@@ -5,7 +5,7 @@
 
 namespace polemcl::apps {
 
-mrpt::obs::CActionCollection makeActions(const std::optional<io::PlanarMotion>& motion,
+mrpt::obs::CActionCollection makeActions(const std::optional<PoseWithCovariance>& motion,
                                          const mrpt::Clock::time_point& stamp) {
   mrpt::obs::CActionCollection collection;
   if (!motion) return collection;
@@ -20,7 +20,7 @@ mrpt::obs::CActionCollection makeActions(const std::optional<io::PlanarMotion>& 
   return collection;
 }
 
-io::PlanarMotion standstill() {
+PoseWithCovariance standstill() {
   const Eigen::Vector3d sigma(io::motionFloorMetres, io::motionFloorMetres, io::motionFloorRadians);
   return {Pose2D{}, sigma.cwiseAbs2().asDiagonal()};
 }

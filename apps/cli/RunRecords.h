@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <polemcl/core/common/PoseEstimate.h>
+#include "core/common/PoseEstimate.h"
 
 namespace polemcl::apps {
 

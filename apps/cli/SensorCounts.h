@@ -4,8 +4,8 @@
 
 #include <iosfwd>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/JsonFile.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

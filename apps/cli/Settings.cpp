@@ -1,7 +1,7 @@
 #include "cli/Settings.h"
 
-#include <polemcl/config/Config.h>
 #include "cli/Messages.h"
+#include "config/Config.h"
 #include "io/file/InstalledFiles.h"
 
 namespace polemcl::apps {

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include "cli/Settings.h"
+#include "core/common/Binder.h"
 
 namespace polemcl::apps {
 namespace {

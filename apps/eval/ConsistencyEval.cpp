@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "cli/JsonFile.h"
 #include "cli/RunRecords.h"
 #include "core/common/Angles.h"
 #include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
 

@@ -21,7 +21,7 @@ struct LoadedDrive {
       : settings(loadSettings(poleDriveFiles(rawlog).config.string())),
         drive(std::make_unique<sim::SimulatedDrive>(settings.simulation, settings.sensor)) {
     observed.drive = drive.get();
-    streamStoredPoles(rawlog, [&](const PoleScan& scan) {
+    streamStoredPoles(rawlog, [&](const ReadScan& scan) {
       observed.poles.push_back(scan.observation->poles);
       observed.points.push_back(scan.observation->points);
     });

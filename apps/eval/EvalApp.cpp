@@ -3,7 +3,6 @@
 #include <memory>
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "cli/JsonFile.h"
 #include "cli/Outputs.h"
 #include "core/common/Angles.h"
@@ -11,6 +10,7 @@
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "localize/LocalizeReport.h"
 #include "report/picture/MapPicture.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "cli/CommandLine.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::apps {
 

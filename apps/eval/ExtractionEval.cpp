@@ -62,7 +62,7 @@ class SimulatedDrive {
   }
 
   /// The true poles in the planar sensor frame of the observation.
-  std::vector<TruePoleInScan> polesFor(const PoleScan& scan) {
+  std::vector<TruePoleInScan> polesFor(const ReadScan& scan) {
     const io::ScanEntry& entry = at(scan);
     const Eigen::Isometry3d& T_map_cloud = *entry.T_map_robot;
     const auto labelled = io::readLabelledCloud(entry.cloud, io::labelFile(entry.cloud));
@@ -86,7 +86,7 @@ class SimulatedDrive {
   }
 
  private:
-  const io::ScanEntry& at(const PoleScan& scan) const {
+  const io::ScanEntry& at(const ReadScan& scan) const {
     // Rawlogs keep times in steps of 100 ns, times.txt often in microseconds.
     const auto entry = std::lower_bound(
         m_scans.begin(), m_scans.end(), scan.time - sampleTolerance,
@@ -99,7 +99,7 @@ class SimulatedDrive {
   }
 
   /// The planar sensor frame keeps the yaw of the cloud's frame and stands upright.
-  static Eigen::Isometry3d planarFromCloud(const PoleScan& scan) {
+  static Eigen::Isometry3d planarFromCloud(const ReadScan& scan) {
     const auto& pose = scan.observation->sensorPose;
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = Eigen::AngleAxisd(-pose.yaw(), Eigen::Vector3d::UnitZ()).toRotationMatrix() *
@@ -123,7 +123,7 @@ Eigen::Vector2d inMap(const Pose2D& pose, const PoleDetection& pole) {
 DetectionScore evalDetections(const EvalDetectionsOptions& options) {
   DetectionEvaluation evaluation(options.radius);
   SimulatedDrive drive(options.scans);
-  streamStoredPoles(options.poles, [&](const PoleScan& scan) {
+  streamStoredPoles(options.poles, [&](const ReadScan& scan) {
     evaluation.add(scan.observation->poles, drive.polesFor(scan));
   });
   const DetectionScore score = evaluation.score();
@@ -135,7 +135,7 @@ DetectionScore evalDetections(const EvalDetectionsOptions& options) {
 RepeatabilityScore evalRepeatability(const EvalRepeatabilityOptions& options) {
   const auto truth = io::readPlanarTum(options.truth);
   std::vector<std::vector<Eigen::Vector2d>> scans_map;
-  streamStoredPoles(options.poles, [&](const PoleScan& scan) {
+  streamStoredPoles(options.poles, [&](const ReadScan& scan) {
     const Pose2D pose = truePose(truth, options.truth, scan.time, scan.index, options.poles);
     scans_map.emplace_back();
     for (const PoleDetection& pole : trulyDeskewed(scan, truth))
@@ -154,7 +154,7 @@ RotationScore evalRotation(const EvalRotationOptions& options, const AllSettings
   RotationScore score;
   SequenceOptions sequence = settings.reading();
   sequence.vehicle.lidars.clear();
-  streamPoles(options.input.string(), sequence, [&](const PoleScan& scan) {
+  streamPoles(options.input.string(), sequence, [&](const ReadScan& scan) {
     if (scan.stored)
       throw Error(options.input.string() + ": holds poles, not scans; only scans can be turned");
     if (options.progress) options.progress(scan.index + 1, scan.expected);

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
 #include "core/evaluation/DetectionEvaluation.h"
 #include "core/evaluation/Repeatability.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

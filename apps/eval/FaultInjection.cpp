@@ -130,7 +130,7 @@ class Injector {
     const bool longer = m_random() % 2 == 0;
     const double factor = 1 + (longer ? m_options.slip : -m_options.slip);
     for (std::size_t i = result.begin; i < result.end; ++i) {
-      PoleFrame& frame = result.frames[i];
+      PoleScan& frame = result.frames[i];
       if (m_options.fault == Fault::blind) frame.poles_robot.clear();
       if (!frame.motion) continue;
       if (m_options.fault == Fault::stuck) {

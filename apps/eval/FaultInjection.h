@@ -31,7 +31,7 @@ struct FaultOptions {
 
 /// \brief A piece of the drive with the fault in it. Element i of the lists is scan i.
 struct FaultyDrive {
-  std::vector<PoleFrame> frames;
+  std::vector<PoleScan> frames;
   std::vector<Pose2D> truth;
   std::vector<double> driven;  ///< along the true path since the first scan, jumps left out, m
   std::size_t begin = 0;       ///< first scan with the fault

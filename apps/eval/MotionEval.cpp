@@ -35,7 +35,7 @@ std::vector<MotionComparison> evalMotion(const EvalMotionOptions& options) {
   std::vector<PoleDetection> before;
   Pose2D poseBefore;
   std::optional<Pose2D> odometry = Pose2D();
-  streamStoredPoles(options.poles, [&](const PoleScan& scan) {
+  streamStoredPoles(options.poles, [&](const ReadScan& scan) {
     if (odometry && scan.motion) odometry = compose(*odometry, scan.motion->mean);
     if (!scan.motion) odometry.reset();
     if (scan.index % options.every != 0) return;

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/localization/ScanRegistration.h>
+#include "core/localization/ScanRegistration.h"
 
 namespace polemcl::apps {
 

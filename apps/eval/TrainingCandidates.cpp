@@ -4,7 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include <polemcl/core/common/Deskew.h>
+#include "core/common/Deskew.h"
 #include "core/common/Transform.h"
 #include "core/evaluation/MultiScanLabels.h"
 #include "core/extraction/scan_line/ScanLineExtractor.h"

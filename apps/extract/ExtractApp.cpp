@@ -21,7 +21,7 @@ namespace {
 
 constexpr int reasons = static_cast<int>(RejectionReason::count_);
 
-void writeRows(std::ostream& out, const PoleScan& scan) {
+void writeRows(std::ostream& out, const ReadScan& scan) {
   for (const auto& pole : scan.observation->polesInRobotFrame()) {
     out << scan.index << ',' << io::fixed(scan.time, 6);
     for (double value : {pole.x, pole.y, pole.radius, pole.bottom, pole.top, pole.confidence})
@@ -59,7 +59,7 @@ void addPoints(const mrpt::obs::CObservation& scan, const LidarOptions& lidar,
 }
 
 /// The points of the scan in the frame of its poles; z is 0 at the height of the first LiDAR.
-io::Cloud pointsOf(const PoleScan& scan, const AllSettings& settings) {
+io::Cloud pointsOf(const ReadScan& scan, const AllSettings& settings) {
   io::Cloud cloud;
   const double height = lidarOf(*scan.sources.front(), settings).sensor.height;
   for (const auto& source : scan.sources) {
@@ -73,7 +73,7 @@ io::Cloud pointsOf(const PoleScan& scan, const AllSettings& settings) {
 }
 
 /// The scan from above with the poles that were found in it.
-void drawFromAbove(const PoleScan& scan, const AllSettings& settings, const std::string& title,
+void drawFromAbove(const ReadScan& scan, const AllSettings& settings, const std::string& title,
                    const std::filesystem::path& png) {
   const io::Cloud cloud = pointsOf(scan, settings);
   report::ScanView view;
@@ -86,7 +86,7 @@ void drawFromAbove(const PoleScan& scan, const AllSettings& settings, const std:
 }
 
 /// The steps of the range-image method; of the first LiDAR if there are several.
-void drawRangeImage(const PoleScan& scan, const AllSettings& settings, const std::string& title,
+void drawRangeImage(const ReadScan& scan, const AllSettings& settings, const std::string& title,
                     const std::filesystem::path& png) {
   const mrpt::obs::CObservation& source = *scan.sources.front();
   const LidarOptions lidar = lidarOf(source, settings);
@@ -94,7 +94,7 @@ void drawRangeImage(const PoleScan& scan, const AllSettings& settings, const std
   report::drawRangeImagePng({title, cloud.view(), lidar.sensor, lidar.extraction.rangeImage}, png);
 }
 
-void draw(const PoleScan& scan, const AllSettings& settings, const ExtractOptions& options) {
+void draw(const ReadScan& scan, const AllSettings& settings, const ExtractOptions& options) {
   const std::string number = std::to_string(scan.index);
   if (scan.stored)
     throw Error(options.input.string() + ": scan " + number + " holds poles, no points to draw");
@@ -152,7 +152,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
     csv->stream() << "scan,timestamp,x,y,radius,bottom,top,confidence,points,cxx,cxy,cyy\n";
   }
   ExtractSummary summary;
-  summary.counts = streamPoles(options.input.string(), sequence, [&](const PoleScan& scan) {
+  summary.counts = streamPoles(options.input.string(), sequence, [&](const ReadScan& scan) {
     const auto motion = scan.index == 0 ? standstill() : scan.motion;
     rawlog.write(makeActions(motion, scan.observation->timestamp), scan.observation);
     if (csv) writeRows(csv->stream(), scan);

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <ostream>
 
-#include <polemcl/config/Config.h>
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "config/Config.h"
 #include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 
@@ -165,7 +165,7 @@ std::optional<TimingEstimate> findTiming(const InspectOptions& options, AllSetti
   if (options.truth) truth = io::readPlanarTum(*options.truth);
   std::vector<TimedScan> scans;
   Pose2D dead;  // reckoning
-  for (const PoleFrame& frame : drive.frames) {
+  for (const PoleScan& frame : drive.frames) {
     if (!options.truth && !frame.motion) return std::nullopt;
     if (!options.truth) dead = compose(dead, frame.motion->mean);
     const auto pose = options.truth ? poseAt(truth, frame.time, longestTruthGap) : dead;

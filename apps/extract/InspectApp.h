@@ -6,9 +6,9 @@
 #include <iosfwd>
 #include <optional>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
 #include "core/sensor/TimingSearch.h"
+#include "mrpt/rawlog/PoleSequence.h"
 #include "mrpt/rawlog/RawlogInspection.h"
 
 namespace polemcl::apps {

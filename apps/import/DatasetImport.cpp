@@ -80,8 +80,8 @@ class MotionSource {
 
   /// \brief The motion since the last scan that was written, up to this one, which gets written.
   /// None when nothing is known of it.
-  std::optional<io::PlanarMotion> take(const io::ScanEntry& scan) {
-    std::optional<io::PlanarMotion> motion = m_composed;
+  std::optional<PoseWithCovariance> take(const io::ScanEntry& scan) {
+    std::optional<PoseWithCovariance> motion = m_composed;
     if (!m_started) {
       motion = standstill();
     } else if (m_options.odometryNoise) {
@@ -100,7 +100,7 @@ class MotionSource {
  private:
   const ImportOptions& m_options;
   std::mt19937_64 m_generator;
-  std::optional<io::PlanarMotion> m_composed;
+  std::optional<PoseWithCovariance> m_composed;
   Pose2D m_last;
   bool m_started = false;
 };

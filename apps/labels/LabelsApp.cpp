@@ -2,13 +2,13 @@
 
 #include <iostream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "cli/CommandLine.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "cli/Version.h"
 #include "io/dataset/KittiOdometry.h"
 #include "io/dataset/LabelledScans.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 
 namespace polemcl::apps {

@@ -54,7 +54,7 @@ FilterRuns::FilterRuns(const LocalizationMap& map, const SettingsValues& setting
   });
 }
 
-const std::vector<FilterStep>& FilterRuns::step(const PoleFrame& frame) {
+const std::vector<FilterStep>& FilterRuns::step(const PoleScan& frame) {
   forEachRun(m_filters.size(), [&](std::size_t i) {
     const auto begin = ScanClock::now();
     m_steps[i].update = m_filters[i]->step(frame);

@@ -46,7 +46,7 @@ class FilterRuns {
 
   /// \brief One scan more. \return What each run made of it, until the next call.
   /// \throws Error as LocalizationPipeline::step(); the runs are of no use then.
-  const std::vector<FilterStep>& step(const PoleFrame& frame);
+  const std::vector<FilterStep>& step(const PoleScan& frame);
 
   std::size_t size() const { return m_filters.size(); }
   const std::vector<FilterRun>& results() const { return m_results; }

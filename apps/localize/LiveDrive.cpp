@@ -54,7 +54,7 @@ class GapWatch {
     else if (dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation))
       m_odometry = Clock::now();
   }
-  void consume(const PoleScan& scan, const std::function<void(const PoleScan&)>& consume) {
+  void consume(const ReadScan& scan, const std::function<void(const ReadScan&)>& consume) {
     setBusy(true);
     consume(scan);
     setBusy(false);
@@ -102,7 +102,7 @@ class GapWatch {
 }  // namespace
 
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
-                              const std::function<void(const PoleScan&)>& consume) {
+                              const std::function<void(const ReadScan&)>& consume) {
   const EndSignals signals;
   const auto begin = ScanClock::now();
   GapWatch watch(drive);
@@ -127,7 +127,7 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
                                      }});
   LiveDriveResult result;
   result.counts = streamPoles(queue, drive.sensors.string(), options,
-                              [&](const PoleScan& scan) { watch.consume(scan, consume); });
+                              [&](const ReadScan& scan) { watch.consume(scan, consume); });
   result.failure = result.counts.failure.empty() ? queue->failure() : result.counts.failure;
   if (!result.failure.empty() && result.counts.scans == 0) throw Error(result.failure);
   return result;

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 
@@ -33,6 +33,6 @@ struct LiveDriveResult {
 /// Scans that come faster than `consume` takes them are dropped, the oldest first, see LiveQueue.
 /// \throws Error as startSensors() and streamPoles(); the failure of a sensor before any scan.
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
-                              const std::function<void(const PoleScan&)>& consume);
+                              const std::function<void(const ReadScan&)>& consume);
 
 }  // namespace polemcl::apps

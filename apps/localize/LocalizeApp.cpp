@@ -97,7 +97,7 @@ LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const 
     progress.say(warningLine("pole-localize", oneLine(text)));
   };
   std::size_t jumps = 0;
-  const auto take = [&](const PoleScan& scan) {
+  const auto take = [&](const ReadScan& scan) {
     player.take(scan);
     if (job.isLive() && scan.index == 0)
       for (const std::string& text : turnWarnings(scan, options)) warn(text);

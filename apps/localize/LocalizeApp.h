@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "localize/FilterRuns.h"
 #include "localize/LocalizeTimings.h"
 #include "localize/RunFiles.h"

@@ -1,8 +1,8 @@
 #include "localize/LocalizePlayer.h"
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "cli/Progress.h"
 #include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::apps {
 
@@ -16,12 +16,12 @@ LocalizePlayer::LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
       m_view(view),
       m_stream(stream) {}
 
-void LocalizePlayer::take(const PoleScan& scan) {
+void LocalizePlayer::take(const ReadScan& scan) {
   if (scan.index > 0 && !scan.motion)
     throw Error(m_facts.job.source().string() + ": no odometry before scan " +
                 std::to_string(scan.index) +
                 ": the filter needs it; import with an odometry file or with --odometry-noise");
-  const PoleFrame frame = frameOf(scan);
+  const PoleScan frame = frameOf(scan);
   if (!m_runs) begin(frame);
   const std::vector<FilterStep>& steps = m_runs->step(frame);
   const auto found = ScanClock::now();
@@ -37,7 +37,7 @@ void LocalizePlayer::take(const PoleScan& scan) {
   if (!scan.stored) m_timings.extract.add(scan.extractSeconds);
 }
 
-void LocalizePlayer::begin(const PoleFrame& first) {
+void LocalizePlayer::begin(const PoleScan& first) {
   StartOptions& start = m_facts.settings.start;
   if (!start.anywhere && !start.pose) {
     start.pose = poseAt(*m_truth, first.time, longestTruthGap);

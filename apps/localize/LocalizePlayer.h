@@ -29,7 +29,7 @@ class LocalizePlayer {
   /// \brief The next scan of the drive.
   /// \throws Error when it has no odometry, when there is no start pose, and as FilterRuns,
   ///         RunFiles and RunView do.
-  void take(const PoleScan& scan);
+  void take(const ReadScan& scan);
 
   /// \brief After the last scan; `facts.counts` are known now. Completes the files.
   /// \throws Error when nothing could be localized: no scan, no valid point, no pole in any scan;
@@ -37,7 +37,7 @@ class LocalizePlayer {
   LocalizeResult finish();
 
  private:
-  void begin(const PoleFrame& first);
+  void begin(const PoleScan& first);
   void requireUsable() const;
 
   LocalizeFacts& m_facts;

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "localize/LocalizeApp.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include "mrpt/filter/LocalizationPipeline.h"
 
 namespace polemcl::apps {
 

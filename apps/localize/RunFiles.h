@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include "cli/RunFolder.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/file/GrowingFile.h"
+#include "mrpt/filter/LocalizationPipeline.h"
 
 namespace polemcl::apps {
 

@@ -52,7 +52,7 @@ bool RunView::isOpen() const {
   return m_screen && m_screen->isOpen();
 }
 
-void RunView::show(const LocalizationPipeline& localization, const PoleFrame& frame,
+void RunView::show(const LocalizationPipeline& localization, const PoleScan& frame,
                    const LocalizationUpdate& update) {
   if (!m_screen && !m_recorder) return;
   if (m_scan == 0) m_start = frame.time;

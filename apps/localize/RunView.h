@@ -27,7 +27,7 @@ class RunView {
 
   /// \brief To be called with each step of one run, in order, from one thread at a time.
   /// \throws Error when an earlier scene or frame could not be written.
-  void show(const LocalizationPipeline& localization, const PoleFrame& frame,
+  void show(const LocalizationPipeline& localization, const PoleScan& frame,
             const LocalizationUpdate& update);
   /// \brief A window is there, and the user has not closed it. From any thread.
   bool isOpen() const;

@@ -28,7 +28,7 @@ TrialDrive loadTrialDrive(const TrialDriveFiles& files) {
                    {}};
   const auto truth = io::readPlanarTum(files.truth);
   for (std::size_t i = 0; i < drive.frames.size(); ++i) {
-    const PoleFrame& frame = drive.frames[i];
+    const PoleScan& frame = drive.frames[i];
     if (i > 0 && !frame.motion)
       throw Error(files.input.string() + ": no odometry before scan " + std::to_string(i) +
                   ": the filter needs it");
@@ -62,7 +62,7 @@ Pose2D truePose(const std::vector<StampedPose2D>& truth, const std::filesystem::
   return *pose;
 }
 
-std::vector<PoleDetection> trulyDeskewed(const PoleScan& scan,
+std::vector<PoleDetection> trulyDeskewed(const ReadScan& scan,
                                          const std::vector<StampedPose2D>& truth) {
   constexpr double half = 0.05;  // s: half a turn of most LiDARs
   auto poles_robot = scan.observation->polesInRobotFrame();
@@ -71,8 +71,8 @@ std::vector<PoleDetection> trulyDeskewed(const PoleScan& scan,
 }
 
 void streamStoredPoles(const std::filesystem::path& rawlog,
-                       const std::function<void(const PoleScan&)>& consume) {
-  streamPoles(rawlog.string(), {}, [&](const PoleScan& scan) {
+                       const std::function<void(const ReadScan&)>& consume) {
+  streamPoles(rawlog.string(), {}, [&](const ReadScan& scan) {
     if (!scan.stored)
       throw Error(rawlog.string() +
                   ": holds scans, not poles; extract them with pole-extract first");

@@ -7,9 +7,9 @@
 #include <functional>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 
@@ -21,7 +21,7 @@ struct TrialDriveFiles {
 struct TrialDrive {
   AllSettings settings;
   LocalizationMap map;
-  std::vector<PoleFrame> frames;
+  std::vector<PoleScan> frames;
   std::vector<Pose2D> truth;  ///< of each frame
 };
 
@@ -49,12 +49,12 @@ Pose2D truePose(const std::vector<StampedPose2D>& truth, const std::filesystem::
 
 /// \brief The poles of a scan in the robot frame, where they are seen from at its time: corrected
 /// for the true motion during the scan.
-std::vector<PoleDetection> trulyDeskewed(const PoleScan& scan,
+std::vector<PoleDetection> trulyDeskewed(const ReadScan& scan,
                                          const std::vector<StampedPose2D>& truth);
 
 /// \brief Streams a rawlog of poles. \throws Error as streamPoles(), and when it holds scans.
 void streamStoredPoles(const std::filesystem::path& rawlog,
-                       const std::function<void(const PoleScan&)>& consume);
+                       const std::function<void(const ReadScan&)>& consume);
 
 /// \brief A map for `settings` from a file. \throws Error when it cannot be read or has no poles.
 std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,

@@ -28,7 +28,7 @@ const std::string& nameOf(Turn turn) {
 
 }  // namespace
 
-std::vector<std::string> turnWarnings(const PoleScan& scan, const SequenceOptions& options) {
+std::vector<std::string> turnWarnings(const ReadScan& scan, const SequenceOptions& options) {
   std::vector<std::string> warnings;
   for (const auto& source : scan.sources) {
     const auto lidar = options.vehicle.indexOf(source->sensorLabel);

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 
 /// \brief A warning for each LiDAR of a scan that states its measuring times where `turn` and the
 /// keys beside it set others. The settings win, so the poles are then moved wrongly.
-std::vector<std::string> turnWarnings(const PoleScan& scan, const SequenceOptions& options);
+std::vector<std::string> turnWarnings(const ReadScan& scan, const SequenceOptions& options);
 
 }  // namespace polemcl::apps

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 
 namespace polemcl {
 

@@ -4,13 +4,13 @@
 #include <set>
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "cli/Version.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
 
 namespace polemcl::apps {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 #include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 #include "mrpt/drawing/SceneParts.h"
 #include "report/picture/DiffPicture.h"
 #include "report/scene/DiffScene.h"

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <optional>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "core/mapping/MapAccumulator.h"
 #include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 
 namespace polemcl::apps {
 

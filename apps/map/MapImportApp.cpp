@@ -6,10 +6,10 @@
 #include <set>
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "cli/Version.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
 #include "map/CoordinateSystem.h"
 #include "map/GeoJson.h"
 #include "map/Inventory.h"

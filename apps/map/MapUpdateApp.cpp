@@ -5,13 +5,13 @@
 #include <cmath>
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "cli/JsonFile.h"
 #include "cli/Version.h"
 #include "core/common/Angles.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
 
 namespace polemcl::apps {
 namespace {

@@ -3,8 +3,8 @@
 #include <ostream>
 #include <sstream>
 
-#include <polemcl/core/common/Deskew.h>
 #include "cli/SensorCounts.h"
+#include "core/common/Deskew.h"
 #include "io/file/Date.h"
 #include "io/file/TextFile.h"
 #include "io/map/PolePositions.h"
@@ -79,9 +79,9 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
   printSensors(sensors, counts);
   session.skipped = {counts.emptyScans, 0, 0, counts.invalidPoints, counts.truncated,
                      sensors.str()};
-  std::optional<io::PlanarMotion> way;
+  std::optional<PoseWithCovariance> way;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
-    const PoleFrame& frame = sequence.frames[i];
+    const PoleScan& frame = sequence.frames[i];
     way = way && frame.motion ? std::optional(composeMotions(*way, *frame.motion)) : std::nullopt;
     if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
     const auto scan = poses.at(i, frame.time);
@@ -94,7 +94,7 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
                              frame.pose_robot_sensor, scan->covariance});
     session.path.push_back({frame.time, scan->pose});
     session.motions.push_back(way);
-    way = io::PlanarMotion();
+    way = PoseWithCovariance();
   }
   requireCovered(session, files, sequence);
   return session;

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-#include <polemcl/core/mapping/MapUpdater.h>
-#include <polemcl/io/map/PoleMapFile.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/mapping/MapUpdater.h"
 #include "io/map/Datum.h"
+#include "io/map/PoleMapFile.h"
 #include "map/SessionPoses.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::apps {
 
@@ -64,7 +64,7 @@ struct MappingSession {
   std::vector<StampedPose2D> path;  ///< of the scans
   /// Odometry to each scan from the one before that is here; none of the first, and where a motion
   /// on the way is not known.
-  std::vector<std::optional<io::PlanarMotion>> motions;
+  std::vector<std::optional<PoseWithCovariance>> motions;
   SkippedScans skipped;
 };
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "cli/RunRecords.h"
 #include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/common/Types.h>
+#include "core/common/Deskew.h"
 
 namespace polemcl::apps {
 

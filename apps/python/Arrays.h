@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/common/Types.h>
+#include "core/common/Deskew.h"
 
 namespace polemcl::apps::python {
 

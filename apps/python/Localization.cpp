@@ -41,7 +41,7 @@ class DriveLocalizer {
 
   LocalizationUpdate step(double time, const py::object& motion, const py::object& covariance,
                           const py::object& poles, const py::object& velocity) {
-    PoleFrame frame;
+    PoleScan frame;
     frame.time = time;
     frame.poles_robot = detectionsFrom(poles);
     if (!motion.is_none()) frame.motion = motionFrom(motion, covariance);
@@ -57,7 +57,7 @@ class DriveLocalizer {
   }
 
  private:
-  io::PlanarMotion motionFrom(const py::object& motion, const py::object& covariance) const {
+  PoseWithCovariance motionFrom(const py::object& motion, const py::object& covariance) const {
     const Pose2D mean = poseFrom(motion, "motion");
     if (covariance.is_none()) return {mean, motionCovariance(mean, m_settings.motion)};
     return {mean, m_settings.motion.covarianceFactor * covarianceFrom(covariance)};

@@ -1,6 +1,6 @@
 #include <filesystem>
 
-#include <polemcl/config/Config.h>
+#include "config/Config.h"
 #include "python/Classes.h"
 
 namespace py = pybind11;

@@ -28,10 +28,10 @@ mrpt::Clock::time_point stampOf(const sim::Drive& drive, std::size_t i) {
   return mrpt::Clock::fromDouble(std::round(drive.time[i] * 1e6) / 1e6);
 }
 
-io::PlanarMotion motionTo(const sim::Drive& drive, std::size_t i) {
+PoseWithCovariance motionTo(const sim::Drive& drive, std::size_t i) {
   if (i == 0) return standstill();
   const sim::OdometryStep& step = drive.odometry[i - 1];
-  io::PlanarMotion motion;
+  PoseWithCovariance motion;
   motion.mean = {step.dx, step.dy, step.dyaw};
   motion.covariance = Eigen::Vector3d(step.sx, step.sy, step.syaw).cwiseAbs2().asDiagonal();
   return motion;

@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
+#include "core/global_localization/GlobalLocalizer.h"
 #include "core/global_localization/PreparedMap.h"
 #include "support/PoleCity.h"
 

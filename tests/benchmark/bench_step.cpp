@@ -13,8 +13,8 @@
 #include <cmath>
 #include <random>
 
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
 #include "mrpt/filter/MotionAction.h"
+#include "mrpt/filter/PoleParticleFilter.h"
 
 using namespace polemcl;
 
@@ -58,7 +58,7 @@ class Scene {
 
   const Pose2D truth{700, 1, 0.02};
   std::shared_ptr<CPoleMap> map;
-  PoleFrame frame;
+  PoleScan frame;
 
  private:
   void observe(const MapPole& pole) {

@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include <polemcl/config/Config.h>
 #include "cli/Settings.h"
+#include "config/Config.h"
 #include "core/common/Angles.h"
 #include "io/file/TextFile.h"
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-#include <polemcl/config/Config.h>
+#include "config/Config.h"
 #include "io/file/AtomicFile.h"
 #include "support/ExpectHas.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <polemcl/config/Config.h>
 #include "cli/Settings.h"
+#include "config/Config.h"
 #include "support/ExpectHas.h"
 
 namespace polemcl::test_vehicle_settings {

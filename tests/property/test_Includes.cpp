@@ -328,7 +328,7 @@ TEST(Includes, RightIncludesAreLeftAlone) {
       {"libpolemcl/src/io/file/A.cpp", "#include <zlib.h>"},
       {"libpolemcl/src/config/A.cpp", "#include <mrpt/config/CConfigFileBase.h>"},
       {"libpolemcl/src/mrpt/map/A.cpp", "#include \"io/file/AtomicFile.h\""},
-      {"libpolemcl/src/sim/common/A.cpp", "#include <polemcl/config/Config.h>"},
+      {"libpolemcl/src/sim/common/A.cpp", "#include " config / Config.h ""},
       {"libpolemcl/src/report/scene/A.cpp", "#include \"sim/world/World.h\""},
       {"apps/map/A.cpp", "#include \"map/MapApp.h\""},
       {"libpolemcl/include/polemcl/core/common/A.h", "#include <polemcl/export.h>"},

@@ -47,7 +47,7 @@ class CityFiles {
       poles->timestamp = mrpt::Clock::fromDouble(time(i));
       poles->poles = frames[i].poles_robot;
       poles->points = 1000;
-      io::PlanarMotion motion;
+      PoseWithCovariance motion;
       motion.mean = frames[i].motion;
       const Eigen::Vector3d moved(motion.mean.x, motion.mean.y, motion.mean.yaw);
       motion.covariance = (0.02 * moved).cwiseAbs2().asDiagonal();  // as sampled by the drive

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+#include "mrpt/filter/PoleParticleFilter.h"
 #include "support/PoleStreet.h"
 
 namespace polemcl::tests {
@@ -32,8 +32,8 @@ inline std::shared_ptr<CPoleMap> smallMap() {
   return makeStreet({}).map;
 }
 
-inline PoleFrame emptyFrame(double time, const io::PlanarMotion& motion = {}) {
-  PoleFrame frame;
+inline PoleScan emptyFrame(double time, const PoseWithCovariance& motion = {}) {
+  PoleScan frame;
   frame.time = time;
   frame.motion = motion;
   return frame;

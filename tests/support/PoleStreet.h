@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl::tests {
 
@@ -29,7 +29,7 @@ class Dice {
 struct PoleStreet {
   std::shared_ptr<CPoleMap> map;
   std::vector<Pose2D> truth;
-  std::vector<PoleFrame> frames;
+  std::vector<PoleScan> frames;
 };
 
 struct StreetOptions {
@@ -79,9 +79,9 @@ inline PoleStreet makeStreet(const StreetOptions& options = {}) {
   likelihood.outlier = 0.01;
   street.map->likelihoodOptions = likelihood;
   for (int i = 0; i < options.scans; ++i) {
-    PoleFrame frame;
+    PoleScan frame;
     frame.time = 100 + 0.1 * i;
-    io::PlanarMotion motion;
+    PoseWithCovariance motion;
     if (i > 0) {
       const Pose2D move = relative(street.truth[i - 1], street.truth[i]);
       const double sigmas[3] = {options.odometry * std::abs(move.x),

@@ -13,7 +13,7 @@
 
 #include <fstream>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "mrpt/rawlog/PoleSequence.h"
 #include "support/Samples.h"
 #include "support/TestClouds.h"
 
@@ -105,7 +105,7 @@ struct Bench {
   }
 };
 
-inline void expectMotion(const PoleFrame& frame, double x, double y, double yaw) {
+inline void expectMotion(const PoleScan& frame, double x, double y, double yaw) {
   ASSERT_TRUE(frame.motion);
   EXPECT_NEAR(frame.motion->mean.x, x, 1e-6);
   EXPECT_NEAR(frame.motion->mean.y, y, 1e-6);

@@ -1,3 +1,5 @@
+#include "config/Config.h"
+
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/config/config_parser.h>
 
@@ -5,7 +7,6 @@
 #include <cctype>
 #include <numeric>
 
-#include <polemcl/config/Config.h>
 #include "config/RemovedSettings.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/FileKind.h"

@@ -1,6 +1,6 @@
 #include "config/TimingComment.h"
 
-#include <polemcl/config/Config.h>
+#include "config/Config.h"
 
 namespace polemcl {
 namespace {

@@ -1,14 +1,14 @@
 #include <polemcl/localizer/Localizer.h>
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-#include <polemcl/mrpt/rawlog/MotionOptions.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "core/common/Transform.h"
 #include "localizer/PointsObservation.h"
 #include "localizer/SettingsValues.h"
+#include "mrpt/filter/LocalizationPipeline.h"
+#include "mrpt/rawlog/MotionOptions.h"
 #include "mrpt/rawlog/OdometryTrack.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
 namespace {
@@ -41,8 +41,8 @@ struct Localizer::Impl {
     pipeline.initializeGlobally();
     isStarted = true;
   }
-  LocalizationUpdate step(const PoleFrame& frame);
-  LocalizationUpdate step(PoleFrame frame, const Pose2D& odometry);
+  LocalizationUpdate step(const PoleScan& frame);
+  LocalizationUpdate step(PoleScan frame, const Pose2D& odometry);
 
   SettingsValues settings;
   ObservationPoleExtractor extractor;
@@ -54,7 +54,7 @@ struct Localizer::Impl {
   std::vector<PoleDetection> poles_robot;
 };
 
-LocalizationUpdate Localizer::Impl::step(const PoleFrame& frame) {
+LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {
   if (!isStarted)
     throw Error(
         "the localizer has not been started: start it near a pose or anywhere, or say where in "
@@ -64,13 +64,13 @@ LocalizationUpdate Localizer::Impl::step(const PoleFrame& frame) {
   return update;
 }
 
-LocalizationUpdate Localizer::Impl::step(PoleFrame frame, const Pose2D& odometry) {
+LocalizationUpdate Localizer::Impl::step(PoleScan frame, const Pose2D& odometry) {
   track.add(frame.time, odometry);
   const auto pose = track.at(frame.time);
   if (!pose) throw Error("odometry: x, y and yaw must be finite");
   if (odometryBefore) {
     const Pose2D motion = relative(*odometryBefore, *pose);
-    frame.motion = io::PlanarMotion{motion, motionCovariance(motion, settings.motion)};
+    frame.motion = PoseWithCovariance{motion, motionCovariance(motion, settings.motion)};
   }
   LocalizationUpdate update = step(frame);
   track.forgetBefore(timeBefore);  // the last motion goes on over a jump
@@ -115,20 +115,20 @@ LocalizationUpdate Localizer::step(const mrpt::obs::CObservation& scan, const Po
 
 LocalizationUpdate Localizer::step(double time, const std::vector<PoleDetection>& poles_robot,
                                    const Pose2D& odometry) {
-  PoleFrame frame;
+  PoleScan frame;
   frame.time = time;
   frame.poles_robot = poles_robot;
   return m_impl->step(std::move(frame), odometry);
 }
 
-LocalizationUpdate Localizer::step(const PoleFrame& frame) {
+LocalizationUpdate Localizer::step(const PoleScan& frame) {
   return m_impl->step(frame);
 }
 
 void Localizer::play(const std::string& rawlog,
                      const std::function<void(const LocalizationUpdate&)>& consume) {
   streamPoles(rawlog, m_impl->settings.reading(),
-              [&](const PoleScan& scan) { consume(step(frameOf(scan))); });
+              [&](const ReadScan& scan) { consume(step(frameOf(scan))); });
 }
 
 const LocalizationPipeline& Localizer::pipeline() const {

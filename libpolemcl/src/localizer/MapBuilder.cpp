@@ -1,15 +1,15 @@
 #include <cmath>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-#include <polemcl/io/map/PoleMapFile.h>
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "core/common/PoseInterpolation.h"
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "core/mapping/MapAccumulator.h"
+#include "io/map/PoleMapFile.h"
 #include "localizer/PointsObservation.h"
 #include "localizer/SettingsValues.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
 namespace {
@@ -39,7 +39,7 @@ struct MapBuilder::Impl {
 };
 
 void MapBuilder::Impl::add(const CObservationPoles& observation, const Pose2D& pose_map_robot) {
-  const PoleFrame frame = frameOf(observation, {});
+  const PoleScan frame = frameOf(observation, {});
   if (!std::isfinite(pose_map_robot.x + pose_map_robot.y + pose_map_robot.yaw))
     throw Error("pose of scan " + std::to_string(path.size()) + ": x, y and yaw must be finite");
   if (!path.empty() && !(frame.time > path.back().time))
@@ -61,8 +61,7 @@ MapAccumulator MapBuilder::Impl::mapped() const {
   return map;
 }
 
-MapBuilder::MapBuilder(const Settings& settings)
-    : m_impl(std::make_unique<Impl>(settings)) {}
+MapBuilder::MapBuilder(const Settings& settings) : m_impl(std::make_unique<Impl>(settings)) {}
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
 MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
 MapBuilder::~MapBuilder() = default;

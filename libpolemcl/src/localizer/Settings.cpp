@@ -1,5 +1,5 @@
-#include <polemcl/config/Config.h>
 #include <polemcl/localizer/Settings.h>
+#include "config/Config.h"
 #include "localizer/SettingsValues.h"
 
 namespace polemcl {

@@ -2,18 +2,18 @@
 /// \file SettingsValues.h
 /// \brief What Settings holds: the options of all rooms of the library.
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include <polemcl/core/localization/PoleLikelihood.h>
-#include <polemcl/core/mapping/MapUpdater.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/localizer/Settings.h>
-#include <polemcl/mrpt/filter/FilterOptions.h>
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-#include <polemcl/mrpt/rawlog/MotionOptions.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "core/common/Binder.h"
+#include "core/mapping/MapUpdater.h"
+#include "mrpt/filter/FilterOptions.h"
+#include "mrpt/filter/LocalizationPipeline.h"
+#include "mrpt/rawlog/MotionOptions.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
 

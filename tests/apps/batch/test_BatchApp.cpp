@@ -6,10 +6,10 @@
 
 #include <cstdlib>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "batch/BatchApp.h"
 #include "batch/BatchFolder.h"
 #include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
 #include "support/BatchTestFiles.h"
 
 namespace polemcl::test_batch_app {

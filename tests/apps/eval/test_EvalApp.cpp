@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/io/map/PoleMapFile.h>
 #include "eval/EvalApp.h"
+#include "io/map/PoleMapFile.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_eval_app {

@@ -54,7 +54,7 @@ TEST_F(FaultTrials, WindowsHoldLeadFaultAndTail) {
     for (std::size_t i = 1; i < slip.frames.size(); ++i) {
       const double factor = i >= slip.begin && i < slip.end ? slipping : 1;
       EXPECT_NEAR(factorOf(i), factor, 1e-6) << i;
-      const io::PlanarMotion& before = *whole.frames[slip.origin + i].motion;
+      const PoseWithCovariance& before = *whole.frames[slip.origin + i].motion;
       EXPECT_TRUE(slip.frames[i].motion->covariance.isApprox(factor * factor * before.covariance))
           << i;
       EXPECT_NEAR(slip.frames[i].time - slip.frames[i - 1].time, 0.2, 1e-5);

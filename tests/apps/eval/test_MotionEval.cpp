@@ -39,7 +39,7 @@ class MotionEvalTest : public StreetTest {
         pole.covariance = Eigen::Matrix2d::Identity() * 1e-4;
         scan->poles.push_back(pole);
       }
-      io::PlanarMotion motion;
+      PoseWithCovariance motion;
       motion.mean = i == 0 ? Pose2D() : Pose2D{1.1 * s_step, 0, s_turn};
       motion.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
       writer.write(odometry ? makeActions(motion, scan->timestamp) : mrpt::obs::CActionCollection(),

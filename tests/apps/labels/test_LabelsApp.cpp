@@ -1,10 +1,10 @@
 #include <cmath>
 #include <set>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-#include <polemcl/io/map/PoleMapFile.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/LabelledScans.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "labels/LabelsApp.h"
 #include "sim/drive/Simulation.h"

@@ -36,7 +36,7 @@ class FilterRunsTest : public testing::Test {
   std::vector<Updates> run(const RunOptions& which) {
     FilterRuns filters({street.map}, settings(which));
     std::vector<Updates> results(filters.size());
-    for (const PoleFrame& frame : street.frames) {
+    for (const PoleScan& frame : street.frames) {
       const auto& steps = filters.step(frame);
       for (std::size_t i = 0; i < steps.size(); ++i) results[i].push_back(steps[i].update);
     }

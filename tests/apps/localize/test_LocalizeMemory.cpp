@@ -27,7 +27,7 @@ class LocalizeMemory : public LocalizeTest {
       poles->poles = street.frames[at].poles_robot;
       poles->points = 1000;
       poles->visibilityRange.assign(directions, 20.0f);
-      io::PlanarMotion motion;
+      PoseWithCovariance motion;
       motion.mean = relative(street.truth[before], street.truth[at]);
       motion.covariance = 1e-4 * Eigen::Matrix3d::Identity();
       writer.write(makeActions(motion, poles->timestamp), poles);

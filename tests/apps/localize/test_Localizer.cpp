@@ -24,7 +24,7 @@ class LocalizerTest : public LocalizeTest {
     std::string rawlog;
     Pose2D at;
     for (std::size_t i = 0; i < street.frames.size(); ++i) {
-      const PoleFrame& frame = street.frames[i];
+      const PoleScan& frame = street.frames[i];
       if (i > 0 && frame.motion) at = compose(at, frame.motion->mean);
       mrpt::obs::CObservationOdometry reading;
       reading.timestamp = mrpt::Clock::fromDouble(frame.time);

@@ -4,12 +4,12 @@
 
 #include <cstdlib>
 
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "cli/Settings.h"
 #include "import/ImportApp.h"
 #include "io/data/Trajectory.h"
 #include "io/file/CsvTable.h"
+#include "mrpt/filter/LocalizationPipeline.h"
+#include "mrpt/rawlog/PoleSequence.h"
 #include "support/PoleCity.h"
 #include "support/TempFolder.h"
 
@@ -36,13 +36,13 @@ std::shared_ptr<CPoleMap> mapOf(const std::vector<MapPole>& poles, const AllSett
 
 /// The estimates of one run, one a frame.
 std::vector<StampedPose2D> localized(const LocalizationMap& map,
-                                     const std::vector<PoleFrame>& frames,
+                                     const std::vector<PoleScan>& frames,
                                      const LocalizationOptions& options, const StartOptions& start,
                                      std::uint32_t seed) {
   LocalizationPipeline localization(map, options, seed);
   localization.start(start);
   std::vector<StampedPose2D> poses;
-  for (const PoleFrame& frame : frames)
+  for (const PoleScan& frame : frames)
     poses.push_back({frame.time, localization.step(frame).estimate->mean});
   return poses;
 }
@@ -53,7 +53,7 @@ int recovered(const AllSettings& settings) {
   const LocalizationMap map(mapOf(city.map(), settings));
   int count = 0;
   for (int run = 0; run < 20; ++run) {
-    std::vector<PoleFrame> frames;
+    std::vector<PoleScan> frames;
     Pose2D first, last;
     for (const double metres : {40.0, 100.0}) {  // the second part begins somewhere else
       sim::Random random(1000 + 2 * run + (frames.empty() ? 0 : 1));
@@ -61,9 +61,9 @@ int recovered(const AllSettings& settings) {
            tests::drive(city.surroundings(), city.randomWay(random, metres), {}, random)) {
         if (frames.empty()) first = seen.truth;
         last = seen.truth;
-        PoleFrame frame;
+        PoleScan frame;
         frame.time = 0.2 * static_cast<double>(frames.size());
-        io::PlanarMotion motion;
+        PoseWithCovariance motion;
         motion.mean = seen.motion;
         motion.covariance = Eigen::Vector3d(4e-4, 1e-6, 1e-6).asDiagonal();
         frame.motion = motion;
@@ -114,13 +114,13 @@ class Parity {
  private:
   TrajectoryErrors runOnce(double radius, std::uint32_t seed) const {
     std::mt19937_64 random(seed);
-    std::vector<PoleFrame> frames;
+    std::vector<PoleScan> frames;
     std::vector<StampedPose2D> truth;
     for (std::size_t i = 1; i < m_poses.size(); i += 2) {
-      PoleFrame frame;
+      PoleScan frame;
       frame.time = 0.1 * static_cast<double>(i);
       const Pose2D move = i > 1 ? relative(m_poses[i - 2], m_poses[i]) : Pose2D();
-      io::PlanarMotion motion = io::noisyMotion(move, 0.02, random);
+      PoseWithCovariance motion = io::noisyMotion(move, 0.02, random);
       const Eigen::Vector3d sigma = 0.02 * Eigen::Vector3d(move.x, move.y, move.yaw);
       motion.covariance = sigma.cwiseAbs2().asDiagonal();  // exactly that of the noise
       frame.motion = motion;
@@ -179,7 +179,7 @@ class PaperModeOnKitti : public testing::Test {
     SequenceOptions options;
     options.extraction = settings.poleExtraction();
     std::vector<std::vector<PoleDetection>> poles;
-    for (const PoleFrame& frame : readPoleSequence(rawlog, options).frames)
+    for (const PoleScan& frame : readPoleSequence(rawlog, options).frames)
       poles.push_back(frame.poles_robot);
     return poles;
   }

@@ -47,7 +47,7 @@ class RunViewTest : public testing::Test {
     settings.runs.runs = 2;
     FilterRuns runs({street.map}, settings);
     Updates done;
-    for (const PoleFrame& frame : street.frames) {
+    for (const PoleScan& frame : street.frames) {
       done.push_back(runs.step(frame)[0].update);
       watched.show(runs.localization(0), frame, done.back());
     }

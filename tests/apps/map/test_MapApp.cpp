@@ -1,7 +1,7 @@
 #include <polemcl/core/common/Types.h>
-#include <polemcl/io/map/PoleMapFile.h>
 #include "extract/ExtractApp.h"
 #include "io/data/Trajectory.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapBuildApp.h"

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "core/mapping/MapAccumulator.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapConvertApp.h"

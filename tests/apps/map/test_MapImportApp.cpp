@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
+#include "io/map/PoleMapFile.h"
 #include "map/CoordinateSystem.h"
 #include "map/GeoJson.h"
 #include "map/MapApp.h"

@@ -1,9 +1,9 @@
 /// \file test_MapSessions.cpp
 /// \brief pole-map with several sessions: the paper's protocol, and sessions added one by one.
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "extract/ExtractApp.h"
 #include "io/file/Bytes.h"
+#include "io/map/PoleMapFile.h"
 #include "map/MapApp.h"
 #include "support/StreetTest.h"
 

@@ -3,9 +3,9 @@
 #include <iomanip>
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "cli/JsonFile.h"
 #include "io/data/Trajectory.h"
+#include "io/map/PoleMapFile.h"
 #include "map/MapApp.h"
 #include "map/MapDiffApp.h"
 #include "map/MapUpdateApp.h"

@@ -1,11 +1,11 @@
 #include <tbb/task_arena.h>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "eval/EvalApp.h"
 #include "extract/ExtractApp.h"
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
 #include "io/map/PolePositions.h"
+#include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
 #include "support/TempFolder.h"
 
@@ -63,7 +63,7 @@ TEST_F(SimulatedPoles, AreThoseOfSimulatingImportingAndExtracting) {
   ASSERT_EQ(extracted.frames.size(), 5u);
   std::size_t poles = 0;
   for (std::size_t i = 0; i < 5; ++i) {
-    const PoleFrame &a = streamed.frames[i], &b = extracted.frames[i];
+    const PoleScan &a = streamed.frames[i], &b = extracted.frames[i];
     EXPECT_EQ(a.time, b.time);
     EXPECT_EQ(a.points, b.points);
     EXPECT_NEAR(a.motion->mean.x, b.motion->mean.x, 1e-8);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/core/common/Deskew.h>
+#include "core/common/Deskew.h"
 
 namespace polemcl::test_deskew {
 

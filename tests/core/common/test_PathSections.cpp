@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include <polemcl/core/common/PathSections.h>
+#include "core/common/PathSections.h"
 
 namespace polemcl::test_path_sections {
 

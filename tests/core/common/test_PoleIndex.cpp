@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include <polemcl/core/common/PoleIndex.h>
+#include "core/common/PoleIndex.h"
 
 namespace polemcl::test_pole_index {
 

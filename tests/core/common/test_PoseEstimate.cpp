@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include <polemcl/core/common/PoseEstimate.h>
+#include "core/common/PoseEstimate.h"
 
 namespace polemcl::test_pose_estimate {
 

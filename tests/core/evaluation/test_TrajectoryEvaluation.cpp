@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::test_trajectory_evaluation {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
+#include "core/global_localization/GlobalLocalizer.h"
 #include "support/PoleCity.h"
 
 namespace polemcl::test_global_localizer {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
+#include "core/global_localization/GlobalLocalizer.h"
 #include "support/PoleCity.h"
 
 namespace polemcl::test_global_localizer_covariance {

@@ -12,7 +12,7 @@
 #include <functional>
 #include <string>
 
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
+#include "core/global_localization/GlobalLocalizer.h"
 #include "io/file/Npz.h"
 #include "io/map/PolePositions.h"
 #include "support/PoleCity.h"

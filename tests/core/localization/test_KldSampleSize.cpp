@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <polemcl/core/localization/KldSampleSize.h>
+#include "core/localization/KldSampleSize.h"
 
 namespace polemcl::test_kld_sample_size {
 

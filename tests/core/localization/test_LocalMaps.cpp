@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/core/localization/LocalMaps.h>
+#include "core/localization/LocalMaps.h"
 
 namespace polemcl::test_local_maps {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <polemcl/core/localization/LocalSubmap.h>
+#include "core/localization/LocalSubmap.h"
 #include "support/PoleCity.h"
 
 namespace polemcl::test_local_submap {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/localization/LocalizationHealth.h>
+#include "core/localization/LocalizationHealth.h"
 
 namespace polemcl::test_localization_health {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <polemcl/core/localization/MapAssociation.h>
+#include "core/localization/MapAssociation.h"
 
 namespace polemcl::test_map_association {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include <polemcl/core/localization/OdometryCalibration.h>
+#include "core/localization/OdometryCalibration.h"
 
 namespace polemcl::test_odometry_calibration {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include <polemcl/core/localization/OdometryDrift.h>
+#include "core/localization/OdometryDrift.h"
 #include "sim/common/Random.h"
 
 namespace polemcl::test_odometry_drift {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include <polemcl/core/localization/OdometryMonitor.h>
+#include "core/localization/OdometryMonitor.h"
 #include "support/PoleCity.h"
 
 namespace polemcl::test_odometry_monitor {

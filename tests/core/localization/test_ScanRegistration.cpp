@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/core/localization/ScanRegistration.h>
+#include "core/localization/ScanRegistration.h"
 #include "sim/common/Random.h"
 
 namespace polemcl::test_scan_registration {

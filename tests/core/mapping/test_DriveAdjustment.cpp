@@ -33,7 +33,7 @@ struct Drive {
                       {}};
       for (PoleDetection& pole : scan.poles_robot)
         pole.covariance = Eigen::Matrix2d::Identity() * 9e-4;
-      io::PlanarMotion motion = *street.frames[i].motion;
+      PoseWithCovariance motion = *street.frames[i].motion;
       motion.mean.x *= 1.02;
       motion.mean.y *= 1.02;
       if (i > 0) scan.motion = PoseWithCovariance{motion.mean, motion.covariance};

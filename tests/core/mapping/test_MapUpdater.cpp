@@ -8,8 +8,8 @@
 #include <functional>
 #include <limits>
 
-#include <polemcl/core/mapping/MapUpdater.h>
 #include "core/mapping/MapSession.h"
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl::test_map_updater {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
-#include <polemcl/core/mapping/MapUpdater.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
+#include "core/mapping/MapUpdater.h"
 #include "sim/common/Random.h"
 #include "sim/detections/DetectionSampler.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/core/mapping/PoleExistence.h>
+#include "core/mapping/PoleExistence.h"
 
 namespace polemcl::test_pole_existence {
 

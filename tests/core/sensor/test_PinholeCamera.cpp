@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include <polemcl/core/sensor/PinholeCamera.h>
 #include "core/extraction/scan_line/ScanLines.h"
+#include "core/sensor/PinholeCamera.h"
 
 namespace polemcl::test_pinhole_camera {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include <polemcl/core/common/Deskew.h>
+#include "core/common/Deskew.h"
 #include "core/sensor/TimingSearch.h"
 
 namespace polemcl::test_timing_search {

@@ -79,7 +79,7 @@ TEST_F(NcltTest, MapIsEastNorthUpAndTheRobotUpright) {
 TEST_F(NcltTest, MotionsAreThoseOfTheTrackWithTheCovariancesOfTheSteps) {
   const ScanFolder session = load();
   EXPECT_FALSE(session.scans[0].motion);
-  const PlanarMotion& motion = *session.scans[2].motion;
+  const PoseWithCovariance& motion = *session.scans[2].motion;
   EXPECT_NEAR(motion.mean.x, 1, 1e-6);  // forward
   EXPECT_NEAR(motion.mean.y, 0, 1e-6);
   // Half of one step and half of the next. Computed by hand, with y and heading negated (z up). The

@@ -118,7 +118,7 @@ TEST_F(Rosbag2Test, WithoutCovariancesTwoPercent) {
     writeDrive(3, {variance, 0, 0});
     const ScanFolder folder = load();
     expectNote(folder, "/odom: 4 messages, 4 without a covariance");
-    const PlanarMotion& motion = *folder.scans[2].motion;
+    const PoseWithCovariance& motion = *folder.scans[2].motion;
     EXPECT_TRUE(
         motion.covariance.isApprox(proportionalCovariance(motion.mean, 0.02) + floorCovariance()));
   }
@@ -147,7 +147,7 @@ TEST_F(Rosbag2Test, TheGyroscopeGivesTheYaw) {
   options.topics.imu = "/imu";
   const ScanFolder folder = load();
   ASSERT_EQ(folder.scans.size(), 4u);
-  const PlanarMotion& motion = *folder.scans[2].motion;
+  const PoseWithCovariance& motion = *folder.scans[2].motion;
   EXPECT_NEAR(motion.mean.yaw, 0.1, 1e-6);
   const double half = 20 * std::sin(0.025), chord = std::hypot(motion.mean.x, motion.mean.y);
   EXPECT_NEAR(chord, 2 * half * std::cos(0.025), 1e-5);
@@ -162,7 +162,7 @@ TEST_F(Rosbag2Test, AnImuOfUnknownPoseIsTakenAsUpright) {
   options.topics.imu = "/imu";
   const ScanFolder folder = load();
   expectNote(folder, "no static transform from base_link to imu");
-  const PlanarMotion& motion = *folder.scans[1].motion;
+  const PoseWithCovariance& motion = *folder.scans[1].motion;
   EXPECT_NEAR(motion.mean.yaw, 0.2, 1e-6);
   EXPECT_NEAR(motion.covariance(2, 2), 0.004 * 0.004 + 1e-8, 1e-9) << "2 % of the yaw";
 }

@@ -75,7 +75,7 @@ TEST_F(ScanFolderTest, MotionsAndTheirVariances) {
     write(name, "# dx dy dyaw sx sy syaw\n0.5 -0.01 0.02 0.1 0.2 0.3\n0.6 0 -3.14159 0 0 0\n");
     const ScanFolder folder = readScanFolder(m_folder, identity);
     EXPECT_FALSE(folder.scans[0].motion);
-    const PlanarMotion& motion = *folder.scans[1].motion;
+    const PoseWithCovariance& motion = *folder.scans[1].motion;
     EXPECT_EQ(motion.mean.x, 0.5);
     EXPECT_EQ(motion.mean.y, -0.01);
     EXPECT_EQ(motion.mean.yaw, 0.02);

@@ -15,7 +15,7 @@ ScanFolder line(std::size_t scans) {
   for (std::size_t i = 0; i < scans; ++i) {
     ScanEntry entry;
     entry.time = 10 + static_cast<double>(i);
-    if (i > 0) entry.motion = PlanarMotion{{1, 0, 0}, Eigen::Matrix3d::Identity()};
+    if (i > 0) entry.motion = PoseWithCovariance{{1, 0, 0}, Eigen::Matrix3d::Identity()};
     folder.scans.push_back(entry);
   }
   return folder;

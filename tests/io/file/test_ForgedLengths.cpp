@@ -5,7 +5,6 @@
 
 #include <functional>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "io/data/PcdFile.h"
 #include "io/dataset/NcltScans.h"
 #include "io/file/Bytes.h"
@@ -14,6 +13,7 @@
 #include "io/file/ReadLimits.h"
 #include "io/file/TextFile.h"
 #include "io/map/MapScans.h"
+#include "io/map/PoleMapFile.h"
 #include "support/IoFiles.h"
 #include "support/MemoryTaken.h"
 #include "support/NcltSamples.h"

@@ -1,8 +1,8 @@
 #include <random>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "core/mapping/MapAccumulator.h"
 #include "io/map/MapScans.h"
+#include "io/map/PoleMapFile.h"
 #include "support/IoFiles.h"
 
 namespace polemcl::test_map_scans {

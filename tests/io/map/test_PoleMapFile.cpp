@@ -4,8 +4,8 @@
 #include <limits>
 #include <random>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "io/file/Bytes.h"
+#include "io/map/PoleMapFile.h"
 #include "support/IoFiles.h"
 
 namespace polemcl::test_pole_map_file {

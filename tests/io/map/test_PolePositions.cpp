@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "io/file/Npz.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "support/IoFiles.h"
 #include "support/NumpyFiles.h"

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/map/PolePositions.h"
 
 namespace polemcl::test_published_maps {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleStreet.h"
 
 namespace polemcl::test_coarse_map {

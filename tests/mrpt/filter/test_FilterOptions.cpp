@@ -3,8 +3,8 @@
 #include <cmath>
 #include <functional>
 
-#include <polemcl/config/Config.h>
-#include <polemcl/mrpt/filter/FilterOptions.h>
+#include "config/Config.h"
+#include "mrpt/filter/FilterOptions.h"
 
 namespace polemcl::test_filter_options {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <polemcl/core/sensor/SensorOptions.h>
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
 
 namespace polemcl::test_localization_pipeline {
@@ -33,9 +33,9 @@ class PoleLocalizationTest : public testing::Test {
     const auto drive =
         tests::drive(city.surroundings(), city.randomWay(random, metres), {}, random);
     for (const tests::Frame& seen : drive) {
-      PoleFrame frame;
+      PoleScan frame;
       frame.time = 1e9 + 0.2 * static_cast<double>(frames.size());
-      io::PlanarMotion motion;
+      PoseWithCovariance motion;
       motion.mean = seen.motion;
       motion.covariance = Eigen::Vector3d(4e-4, 1e-6, 1e-6).asDiagonal();
       frame.motion = motion;
@@ -55,7 +55,7 @@ class PoleLocalizationTest : public testing::Test {
   }
 
   /// Mean error after the first 20 m.
-  double meanError(const std::vector<PoleFrame>& drive) const {
+  double meanError(const std::vector<PoleScan>& drive) const {
     LocalizationPipeline localization = chain();
     localization.start(atTruth());
     double sum = 0;
@@ -69,7 +69,7 @@ class PoleLocalizationTest : public testing::Test {
   LocalizationOptions options;
   tests::PoleCity city;
   std::unique_ptr<LocalizationMap> map;
-  std::vector<PoleFrame> frames;
+  std::vector<PoleScan> frames;
   std::vector<Pose2D> truth;
 };
 
@@ -102,8 +102,8 @@ TEST_F(PoleLocalizationTest, TracksFromAStartPoseAndSaysOk) {
 }
 
 /// The drive as a LiDAR that turns clockwise from the back sees it while it moves.
-std::vector<PoleFrame> seenMoving(std::vector<PoleFrame> frames, const std::vector<Pose2D>& truth,
-                                  double turnSeconds) {
+std::vector<PoleScan> seenMoving(std::vector<PoleScan> frames, const std::vector<Pose2D>& truth,
+                                 double turnSeconds) {
   const ScanTiming timing{Turn::clockwise, turnSeconds, M_PI, 0.5};
   for (std::size_t i = 1; i + 1 < frames.size(); ++i) {
     frames[i].velocity = velocityOf(relative(truth[i - 1], truth[i + 1]), 0.4);
@@ -122,10 +122,10 @@ std::vector<PoleFrame> seenMoving(std::vector<PoleFrame> frames, const std::vect
 // way, those behind by 25 cm.
 TEST_F(PoleLocalizationTest, PolesMeasuredWhileMovingAreCorrected) {
   driveFrom(1, 150);
-  std::vector<PoleFrame> moving = seenMoving(frames, truth, 0.1);
-  for (PoleFrame& frame : moving) frame.velocity.reset();
-  std::vector<PoleFrame> uncorrected = moving;
-  for (PoleFrame& frame : uncorrected)
+  std::vector<PoleScan> moving = seenMoving(frames, truth, 0.1);
+  for (PoleScan& frame : moving) frame.velocity.reset();
+  std::vector<PoleScan> uncorrected = moving;
+  for (PoleScan& frame : uncorrected)
     for (PoleDetection& pole : frame.poles_robot) pole.timeOffset = 0;
   const double standing = meanError(frames);
   EXPECT_LT(meanError(moving), 1.2 * standing);
@@ -135,9 +135,9 @@ TEST_F(PoleLocalizationTest, PolesMeasuredWhileMovingAreCorrected) {
 // Odometry that states its velocity, 5 % too great as its motions are: both are corrected.
 TEST_F(PoleLocalizationTest, StatedVelocitiesAreCalibratedAsMotionsAre) {
   driveFrom(1, 150);
-  std::vector<PoleFrame> moving = seenMoving(frames, truth, 0.8);
+  std::vector<PoleScan> moving = seenMoving(frames, truth, 0.8);
   const double unbiased = meanError(moving);
-  for (PoleFrame& frame : moving) {
+  for (PoleScan& frame : moving) {
     frame.motion->mean.x *= 1.05;
     frame.motion->mean.y *= 1.05;
     if (!frame.velocity) continue;
@@ -150,7 +150,7 @@ TEST_F(PoleLocalizationTest, StatedVelocitiesAreCalibratedAsMotionsAre) {
 TEST_F(PoleLocalizationTest, OdometryWithAWrongScaleAndABiasIsCalibrated) {
   driveFrom(1, 300);
   const double unbiased = meanError(frames);
-  for (PoleFrame& frame : frames) {
+  for (PoleScan& frame : frames) {
     frame.motion->mean.yaw += 0.0009 * frame.motion->mean.x;  // 0.05 deg/m
     frame.motion->mean.x *= 1.05;
     frame.motion->mean.y *= 1.05;
@@ -159,7 +159,7 @@ TEST_F(PoleLocalizationTest, OdometryWithAWrongScaleAndABiasIsCalibrated) {
   LocalizationPipeline localization = chain();
   localization.start(atTruth());
   LocalizationUpdate update;
-  for (const PoleFrame& frame : frames) update = localization.step(frame);
+  for (const PoleScan& frame : frames) update = localization.step(frame);
   EXPECT_NEAR(update.odometryErrors.scale, 1 / 1.05 - 1, 0.01);
   EXPECT_NEAR(update.odometryErrors.yaw, -0.0009, 0.0003);
   options.calibrateOdometry = false;
@@ -220,7 +220,7 @@ TEST_F(PoleLocalizationTest, AKidnappedVehicleIsLostAndFoundAgain) {
 
 TEST_F(PoleLocalizationTest, AFilterThatSettledBesideTheTruthIsPutRightByTheSearch) {
   driveFrom(9, 80);
-  for (PoleFrame& frame : frames)  // odometry much too certain to move the filter
+  for (PoleScan& frame : frames)  // odometry much too certain to move the filter
     frame.motion->covariance = Eigen::Vector3d(1e-8, 1e-10, 1e-10).asDiagonal();
   options.filter.extraSigma = options.filter.extraSigmaYaw = 1e-6;
   options.monitorOdometry = false;
@@ -267,7 +267,7 @@ TEST_F(PoleLocalizationTest, WithoutRecoveryItStaysLost) {
   LocalizationPipeline localization = chain();
   localization.start(atTruth());
   LocalizationUpdate last;
-  for (const PoleFrame& frame : frames) last = localization.step(frame);
+  for (const PoleScan& frame : frames) last = localization.step(frame);
   EXPECT_EQ(last.health.state, HealthState::lost);
   EXPECT_EQ(localization.searches(), 0u);
 }
@@ -297,7 +297,7 @@ TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {
     LocalizationPipeline localization = chain();
     localization.start(atTruth());
     std::vector<std::size_t> poles;
-    for (const PoleFrame& frame : frames) poles.push_back(localization.step(frame).step.poles);
+    for (const PoleScan& frame : frames) poles.push_back(localization.step(frame).step.poles);
     return poles;
   };
   const auto all = used(false, 1), every = used(true, 1), seldom = used(true, 5);
@@ -319,7 +319,7 @@ TEST_F(PoleLocalizationTest, ScansFarApartAreUsedAsTheyAre) {
   localization.step(frames[0]);
   const std::size_t apart = 3;  // frames are a metre apart
   for (std::size_t i = apart; i < frames.size(); i += apart) {
-    PoleFrame frame = frames[i];
+    PoleScan frame = frames[i];
     frame.motion->mean = relative(truth[i - apart], truth[i]);
     EXPECT_EQ(localization.step(frame).step.poles, frame.poles_robot.size());
   }
@@ -333,7 +333,7 @@ TEST_F(PoleLocalizationTest, FarOutliersCountByTheWay) {
     poles->likelihoodOptions.farOutlier = farOutlier;
     LocalizationPipeline localization({poles}, options, 1);
     localization.start(atTruth());
-    PoleFrame frame = frames[0];
+    PoleScan frame = frames[0];
     frame.poles_robot.clear();  // the first scan would count in full
     localization.step(frame);
     Pose2D pose;
@@ -397,7 +397,7 @@ TEST_F(PoleLocalizationTest, SameSeedSameBytes) {
     LocalizationPipeline localization = chain(seed);
     localization.start(atTruth());
     std::vector<double> values;
-    for (const PoleFrame& frame : frames)
+    for (const PoleScan& frame : frames)
       values.push_back(localization.step(frame).estimate->mean.x);
     return values;
   };
@@ -442,7 +442,7 @@ TEST_F(PoleLocalizationTest, RefusesFramesBeforeTheStartAndBadFramesWithoutChang
   localization.step(frames[0]);
   untouched.step(frames[0]);
   EXPECT_THROW(localization.step(frames[0]), Error);  // same time again
-  PoleFrame bad = frames[1];
+  PoleScan bad = frames[1];
   bad.motion.reset();
   EXPECT_THROW(localization.step(bad), Error);
   bad.motion = frames[1].motion;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
 
 namespace polemcl::test_localization_pipeline_faults {
@@ -25,9 +25,9 @@ class PoleLocalizationFaults : public testing::Test {
     sim::Random random(3);
     const auto way = tests::resample(city.randomWay(random, metres), step);
     for (const tests::Frame& seen : tests::drive(city.surroundings(), way, {}, random)) {
-      PoleFrame frame;
+      PoleScan frame;
       frame.time = 1e9 + 0.1 * static_cast<double>(frames.size());
-      frame.motion = io::PlanarMotion{seen.motion, covarianceOf(seen.motion)};
+      frame.motion = PoseWithCovariance{seen.motion, covarianceOf(seen.motion)};
       frame.poles_robot = seen.poles_robot;
       frames.push_back(frame);
       truth.push_back(seen.truth);
@@ -48,7 +48,7 @@ class PoleLocalizationFaults : public testing::Test {
   std::vector<LocalizationUpdate> run() const {
     LocalizationPipeline localization = started();
     std::vector<LocalizationUpdate> updates;
-    for (const PoleFrame& frame : frames) updates.push_back(localization.step(frame));
+    for (const PoleScan& frame : frames) updates.push_back(localization.step(frame));
     return updates;
   }
   double error(const LocalizationUpdate& update, std::size_t i) const {
@@ -65,7 +65,7 @@ class PoleLocalizationFaults : public testing::Test {
 
   LocalizationOptions options;
   std::unique_ptr<LocalizationMap> map;
-  std::vector<PoleFrame> frames;
+  std::vector<PoleScan> frames;
   std::vector<Pose2D> truth;
 };
 
@@ -73,7 +73,8 @@ class PoleLocalizationFaults : public testing::Test {
 
 TEST_F(PoleLocalizationFaults, AStuckOdometryIsDegradedAndThePoseStaysRight) {
   drive(210);
-  for (std::size_t i = 100; i < 200; ++i) frames[i].motion = io::PlanarMotion{{}, covarianceOf({})};
+  for (std::size_t i = 100; i < 200; ++i)
+    frames[i].motion = PoseWithCovariance{{}, covarianceOf({})};
   const auto updates = run();
   for (std::size_t i = 105; i < 200; ++i) {
     EXPECT_EQ(updates[i].health.state, HealthState::degraded) << i;
@@ -123,7 +124,7 @@ TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {
   drive(210);
   // Five minutes and 70 m without a scan; the odometry continued.
   const std::size_t gap = 100, later = 200;
-  io::PlanarMotion across = *frames[gap].motion;
+  PoseWithCovariance across = *frames[gap].motion;
   for (std::size_t i = gap + 1; i <= later; ++i)
     across = io::composeMotions(across, *frames[i].motion);
   frames.erase(frames.begin() + gap, frames.begin() + later);
@@ -141,8 +142,8 @@ TEST_F(PoleLocalizationFaults, AGapOfMinutesIsNamedUntilPolesConfirmThePose) {
 TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
   drive(20);
   LocalizationPipeline localization = started(), untouched = started();
-  const auto refused = [&](const io::PlanarMotion& motion, const char* word) {
-    PoleFrame bad = frames[10];
+  const auto refused = [&](const PoseWithCovariance& motion, const char* word) {
+    PoleScan bad = frames[10];
     bad.motion = motion;
     try {
       localization.step(bad);
@@ -153,14 +154,14 @@ TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
     }
   };
   for (std::size_t i = 0; i < 10; ++i) localization.step(frames[i]), untouched.step(frames[i]);
-  io::PlanarMotion indefinite = *frames[10].motion, huge = indefinite, notANumber = indefinite;
+  PoseWithCovariance indefinite = *frames[10].motion, huge = indefinite, notANumber = indefinite;
   indefinite.covariance(0, 1) = indefinite.covariance(1, 0) = 1;
   huge.covariance(1, 1) = 1e6;
   notANumber.mean.yaw = NAN;
   refused(indefinite, "negative eigenvalue");
   refused(huge, "too uncertain");
   refused(notANumber, "not finite");
-  PoleFrame early = frames[10];
+  PoleScan early = frames[10];
   early.time = frames[8].time;
   EXPECT_THROW(localization.step(early), Error);
   for (std::size_t i = 10; i < frames.size(); ++i) {

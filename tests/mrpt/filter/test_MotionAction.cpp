@@ -17,8 +17,8 @@ using namespace polemcl;
 
 namespace {
 
-io::PlanarMotion usual() {
-  io::PlanarMotion motion;
+PoseWithCovariance usual() {
+  PoseWithCovariance motion;
   motion.mean = {0.5, -0.1, 0.2};
   motion.covariance << 0.04, -0.01, 0.004, -0.01, 0.02, 0.001, 0.004, 0.001, 0.0009;
   return motion;
@@ -32,8 +32,8 @@ FilterOptions extra(double metres, double radians) {
 }
 
 /// The error message for a motion changed by `change`; empty if the motion is accepted.
-std::string refusal(const std::function<void(io::PlanarMotion&)>& change) {
-  io::PlanarMotion motion = usual();
+std::string refusal(const std::function<void(PoseWithCovariance&)>& change) {
+  PoseWithCovariance motion = usual();
   change(motion);
   try {
     makeMotionAction(motion, {});
@@ -75,14 +75,14 @@ TEST(MotionAction, CarriesMeanAndCovarianceAlsoThroughAFile) {
 }
 
 TEST(MotionAction, TakesNoCovarianceAtAll) {
-  io::PlanarMotion motion;
+  PoseWithCovariance motion;
   EXPECT_NO_THROW(makeMotionAction(motion, extra(0, 0)));
 }
 
 TEST(MotionAction, SamplesOfSingularCovariancesAreFinite) {
   // Rank one: rounding may make eigenvalues negative, and their roots NaN.
   for (int i = 1; i <= 500; ++i) {
-    io::PlanarMotion motion;
+    PoseWithCovariance motion;
     const Eigen::Vector3d direction(std::sin(i), std::cos(2 * i), 0.1 * std::sin(3 * i));
     motion.covariance = direction * direction.transpose();
     const auto action = makeMotionAction(motion, extra(0, 0));
@@ -122,7 +122,7 @@ TEST(MotionAction, RefusesAnIndefiniteCovariance) {
 
 TEST(MotionAction, RefusesAHugeCovariance) {
   const auto sigma = [](int i, double value) {
-    return [=](io::PlanarMotion& m) {
+    return [=](PoseWithCovariance& m) {
       m.covariance.setZero();
       m.covariance(i, i) = value * value;
     };

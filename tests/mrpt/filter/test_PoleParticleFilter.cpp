@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+#include "mrpt/filter/PoleParticleFilter.h"
 #include "support/FilterSamples.h"
 
 namespace polemcl::test_pole_particle_filter {
@@ -104,7 +104,7 @@ TEST(PoleParticleFilter, BatchEqualsTheMapsLikelihood) {
       street.map->likelihoodOptions = likelihood;
       PoleParticleFilter localizer(street.map, still(), 1);
       localizer.start(at(street.truth[50], 1.5, M_PI));
-      PoleFrame frame;
+      PoleScan frame;
       frame.poles_robot = observation->poles;
       localizer.step(frame);
       const auto particles = localizer.particles();
@@ -182,7 +182,7 @@ TEST(PoleParticleFilter, MotionHasTheGivenCovarianceAndTheExtraNoise) {
   const Pose2D start{10, 20, M_PI / 2};
   localizer.start(at(start, 0, 0));
   localizer.step(emptyFrame(0));
-  io::PlanarMotion motion;
+  PoseWithCovariance motion;
   motion.mean = {1, 0.5, 0.25};
   motion.covariance << 0.04, -0.01, 0.004, -0.01, 0.02, 0.001, 0.004, 0.001, 0.0009;
   const PoseWithCovariance estimate = localizer.step(emptyFrame(1, motion));
@@ -199,7 +199,7 @@ TEST(PoleParticleFilter, MotionHasTheGivenCovarianceAndTheExtraNoise) {
 TEST(PoleParticleFilter, FirstFrameIsWhereTheStartPoseIs) {
   PoleParticleFilter localizer(smallMap(), still(), 1);
   localizer.start(at({1, 2, 3}, 0, 0));
-  io::PlanarMotion motion;
+  PoseWithCovariance motion;
   motion.mean = {5, 5, 1};
   EXPECT_NEAR(localizer.step(emptyFrame(0, motion)).mean.x, 1, 1e-12);
   EXPECT_GT(std::abs(localizer.step(emptyFrame(1, motion)).mean.x - 1), 1);
@@ -210,7 +210,7 @@ TEST(PoleParticleFilter, FirstFrameIsWhereTheStartPoseIs) {
 TEST(PoleParticleFilter, FramesWithoutPolesOnlyPredict) {
   PoleParticleFilter localizer(smallMap(), {}, 1);
   localizer.start(at({0, 0, 0}, 0, 0));
-  io::PlanarMotion motion;
+  PoseWithCovariance motion;
   motion.mean = {1, 0, 0};
   localizer.step(emptyFrame(0));
   double before = 0;
@@ -341,7 +341,7 @@ TEST(PoleParticleFilter, WhatTheLikelihoodRefusesIsSaidInFull) {
   StartOptions start;
   start.pose = street.truth[0];
   localizer.start(start);
-  PoleFrame frame = street.frames[0];
+  PoleScan frame = street.frames[0];
   frame.poles_robot[0].confidence = 2;
   try {
     localizer.step(frame);
@@ -370,7 +370,7 @@ TEST(PoleParticleFilter, RefusesBadFramesAndStaysAsItWas) {
   localizer.start(at({0, 0, 0}));
   localizer.step(emptyFrame(5));
   const auto before = localizer.particles();
-  std::vector<PoleFrame> bad(5, emptyFrame(6));
+  std::vector<PoleScan> bad(5, emptyFrame(6));
   bad[0].time = 5;    // repeated
   bad[1].time = 4.5;  // backwards
   bad[2].time = NAN;

@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+#include "mrpt/filter/PoleParticleFilter.h"
 #include "support/PoleStreet.h"
 
 namespace polemcl::test_pole_particle_filter_mrpt {
@@ -178,7 +178,7 @@ TEST(PoleLocalizerMrpt, CovarianceKeepsTheSignOfHeadingErrors) {
   PoleParticleFilter localizer(makeStreet({}).map, withoutJitter(), 1);
   localizer.start(atOrigin());
   leanLeft(localizer);
-  PoleFrame frame;
+  PoleScan frame;
   const Eigen::Matrix3d covariance = localizer.step(frame).covariance;
   Eigen::Matrix3d expected;  // variance of a uniform number: 1/12
   expected << 1, 2, -0.1, 2, 4, -0.2, -0.1, -0.2, 0.01;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+#include "mrpt/filter/PoleParticleFilter.h"
 #include "support/FilterSamples.h"
 
 namespace polemcl::test_pole_particle_filter_start {

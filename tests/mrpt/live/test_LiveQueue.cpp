@@ -209,7 +209,7 @@ TEST(LiveQueue, ALidarThatFailsDoesNotHoldUpTheOther) {
   queue->push(odometry(2, 20));
   queue->end();
   std::vector<double> ways;
-  const auto counts = streamPoles(queue, "sensors.ini", two, [&](const PoleScan& taken) {
+  const auto counts = streamPoles(queue, "sensors.ini", two, [&](const ReadScan& taken) {
     ways.push_back(taken.motion->mean.x);
   });
   EXPECT_EQ(ways.size(), 20u);
@@ -228,7 +228,7 @@ TEST(LiveQueue, UnderOverloadTheMotionOfDroppedScansIsKept) {
   double way = 0;
   std::vector<double> times;
   std::vector<std::size_t> dropped;
-  const auto counts = streamPoles(queue, "sensors.ini", one, [&](const PoleScan& taken) {
+  const auto counts = streamPoles(queue, "sensors.ini", one, [&](const ReadScan& taken) {
     if (times.empty()) {
       for (int i = 1; i <= 20; ++i) {
         queue->push(odometry(i, 0.5 * i));
@@ -256,7 +256,7 @@ TEST(LiveQueue, ScansWithoutOdometryAreLeftOutAndTheMotionGoesOn) {
   queue->push(scan(7.4));
   queue->end();
   std::vector<double> times, motions;
-  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const PoleScan& taken) {
+  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const ReadScan& taken) {
     times.push_back(taken.time);
     motions.push_back(taken.motion->mean.x);
   });
@@ -278,7 +278,7 @@ TEST(LiveQueue, AJumpOfTheOdometryIsBridged) {
   queue->end();
   std::size_t jumps = 0;
   double way = 0;
-  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const PoleScan& taken) {
+  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const ReadScan& taken) {
     EXPECT_GE(taken.odometryJumps, jumps);
     jumps = taken.odometryJumps;
     way += taken.motion->mean.x;
@@ -296,7 +296,7 @@ TEST(LiveQueue, WhatEndsADriveIsToldWithItsCounts) {
     queue->push(scan(i));
   }
   queue->end();
-  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const PoleScan& taken) {
+  const auto counts = streamPoles(queue, "sensors.ini", options(), [&](const ReadScan& taken) {
     if (taken.index == 3) throw Error("enough");
   });
   EXPECT_EQ(counts.failure, "enough");
@@ -312,7 +312,7 @@ TEST(LiveQueue, SaysThatThereIsNoOdometry) {
   for (int i = 0; i < 60; ++i) queue->push(scan(i));
   queue->end();
   try {
-    streamPoles(queue, "sensors.ini", options(), [](const PoleScan&) {});
+    streamPoles(queue, "sensors.ini", options(), [](const ReadScan&) {});
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_HAS(std::string(error.what()), "sensors.ini: no odometry came with the first 50 scans");

@@ -11,9 +11,9 @@
 #include <random>
 #include <sstream>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "support/Samples.h"
 

@@ -13,8 +13,8 @@
 #include <fstream>
 #include <sstream>
 
-#include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "core/common/PoseEstimate.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "support/ExpectHas.h"
@@ -147,7 +147,7 @@ TEST(Plugin, ExportsWhatPublicHeadersDeclare) {
   const std::vector<std::string> symbols = exportedSymbols();
   for (const std::string wanted : {"typeinfo for polemcl::Error", "vtable for polemcl::CPoleMap",
                                    "polemcl::CPoleMap::TInsertionOptions::validate() const",
-                                   "polemcl::LocalizationPipeline::step(polemcl::PoleFrame const&)",
+                                   "polemcl::LocalizationPipeline::step(polemcl::PoleScan const&)",
                                    "polemcl::PoleExtractor::report() const",
                                    "polemcl::compose(polemcl::Pose2D const&, "
                                    "polemcl::Pose2D const&)"})

@@ -59,7 +59,7 @@ TEST(FusedSequence, EachPoleOnceAtTheTimeOfTheLatestScan) {
            samples::bytesOf(scan(10.04, "rear", s_rear, 0.4));
   const auto sequence = bench.read(bytes, twoLidars());
   ASSERT_EQ(sequence.frames.size(), 1u);
-  const PoleFrame& frame = sequence.frames[0];
+  const PoleScan& frame = sequence.frames[0];
   EXPECT_NEAR(frame.time, 10.04, 1e-6);
   EXPECT_EQ(frame.poles_robot.size(), samples::testPoles().size());
   auto poles = frame.poles_robot;

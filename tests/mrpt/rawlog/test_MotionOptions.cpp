@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <polemcl/mrpt/rawlog/MotionOptions.h>
+#include "mrpt/rawlog/MotionOptions.h"
 
 namespace polemcl::test_motion_options {
 namespace {

@@ -35,8 +35,8 @@ TEST(PoleSequence, ObservationsFromElsewhereGiveTheSameFrames) {
   const Bench bench;
   bench.read(frame(poles(10.5)) + action({1, 0.5, 0.1}) + frame(poles(11, 6)));
   std::size_t scans = 0;
-  streamPoles(bench.path, options(), [&](const PoleScan& scan) {
-    const PoleFrame streamed = frameOf(scan), own = frameOf(*scan.observation, scan.motion);
+  streamPoles(bench.path, options(), [&](const ReadScan& scan) {
+    const PoleScan streamed = frameOf(scan), own = frameOf(*scan.observation, scan.motion);
     EXPECT_EQ(own.time, streamed.time);
     EXPECT_EQ(own.motion->mean.y, scans == 0 ? 0 : 0.5);
     ASSERT_EQ(own.poles_robot.size(), streamed.poles_robot.size());
@@ -54,8 +54,8 @@ TEST(PoleSequence, SeveralActionsAreComposed) {
       bench.read(frame(poles(1)) + action({1, 0, M_PI / 2}) + action({2, 0, 0}) + frame(poles(2)));
   ASSERT_EQ(sequence.frames.size(), 2u);
   expectMotion(sequence.frames[1], 1, 2, M_PI / 2);
-  const io::PlanarMotion a{{1, 0, M_PI / 2}, Eigen::Vector3d(0.01, 0.02, 0.03).asDiagonal()};
-  const io::PlanarMotion b{{2, 0, 0}, Eigen::Vector3d(0.01, 0.02, 0.03).asDiagonal()};
+  const PoseWithCovariance a{{1, 0, M_PI / 2}, Eigen::Vector3d(0.01, 0.02, 0.03).asDiagonal()};
+  const PoseWithCovariance b{{2, 0, 0}, Eigen::Vector3d(0.01, 0.02, 0.03).asDiagonal()};
   EXPECT_NEAR((sequence.frames[1].motion->covariance - io::composeMotions(a, b).covariance).norm(),
               0, 1e-9);
 }
@@ -275,7 +275,7 @@ TEST(PoleSequence, ScansAreLetGoOnceTheyAreConsumed) {
     o.threads = threads;
     std::vector<std::weak_ptr<CObservationPoles>> consumed;
     std::size_t alive = 0;
-    streamPoles(bench.path, o, [&](const PoleScan& scan) {
+    streamPoles(bench.path, o, [&](const ReadScan& scan) {
       // One may still be leaving the pipeline.
       for (std::size_t i = 0; i + 1 < consumed.size(); ++i) alive += !consumed[i].expired();
       consumed.push_back(scan.observation);
@@ -298,14 +298,14 @@ TEST(PoleSequence, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
     return begin + std::chrono::seconds(asked.size());
   };
   std::size_t consumed = 0;
-  streamPoles(bench.path, o, [&](const PoleScan& scan) {
+  streamPoles(bench.path, o, [&](const ReadScan& scan) {
     EXPECT_EQ(scan.arrival, begin + std::chrono::seconds(++consumed));
     EXPECT_GE(scan.readSeconds, 0);
   });
   ASSERT_EQ(asked.size(), 20u);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(asked[i], double(i + 1), 1e-6);
   o.pace = [](double) -> ScanClock::time_point { throw std::domain_error("enough"); };
-  EXPECT_THROW(streamPoles(bench.path, o, [](const PoleScan&) {}), std::domain_error);
+  EXPECT_THROW(streamPoles(bench.path, o, [](const ReadScan&) {}), std::domain_error);
 }
 
 // The first error of the file is reported, after the scans before it, with any number of threads.
@@ -325,7 +325,7 @@ TEST(PoleSequence, ErrorsComeInTheirPlace) {
     std::size_t handedOut = 0;
     std::string text;
     try {
-      streamPoles(bench.path, o, [&](const PoleScan&) { ++handedOut; });
+      streamPoles(bench.path, o, [&](const ReadScan&) { ++handedOut; });
     } catch (const Error& error) {
       text = error.what();
     }
@@ -339,7 +339,7 @@ TEST(PoleSequence, WhatTheConsumerThrowsComesThrough) {
   const Bench bench;
   bench.read(frame(poles(1)) + frame(poles(2)));
   EXPECT_THROW(streamPoles(bench.path, options(),
-                           [](const PoleScan&) { throw std::domain_error("enough"); }),
+                           [](const ReadScan&) { throw std::domain_error("enough"); }),
                std::domain_error);
 }
 

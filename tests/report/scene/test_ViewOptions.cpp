@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <polemcl/config/Config.h>
+#include "config/Config.h"
 #include "report/scene/ViewOptions.h"
 
 namespace polemcl::report::test_view_options {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <polemcl/config/Config.h>
+#include "config/Config.h"
 #include "sim/common/SimulationOptions.h"
 
 namespace polemcl::test_simulation_settings {

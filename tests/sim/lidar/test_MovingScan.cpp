@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/extraction/PoleExtractor.h>
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/common/Deskew.h"
 #include "sim/lidar/Scanner.h"
 
 namespace polemcl::test_moving_scan {

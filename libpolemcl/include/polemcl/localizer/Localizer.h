@@ -68,7 +68,7 @@ class POLEMCL_EXPORT Localizer {
                           const Pose2D& odometry);
 
   /// \brief The same from poles with a motion whose covariance is known, of one or several LiDARs.
-  LocalizationUpdate step(const PoleFrame& frame);
+  LocalizationUpdate step(const PoleScan& frame);
 
   /// \brief All scans of a rawlog of scans or poles with odometry; several LiDARs are fused.
   /// \param consume Gets what each scan brings, from changing threads, one call at a time.

@@ -1,8 +1,8 @@
+#include "core/common/Binder.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-
-#include <polemcl/core/common/Binder.h>
 
 namespace polemcl {
 namespace {

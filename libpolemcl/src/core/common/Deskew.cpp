@@ -1,7 +1,8 @@
+#include "core/common/Deskew.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/core/common/Deskew.h>
 #include "core/common/Transform.h"
 
 namespace polemcl {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/common/Types.h>
+#include "core/common/Deskew.h"
 
 namespace polemcl {
 

@@ -1,7 +1,7 @@
+#include "core/common/PathSections.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include <polemcl/core/common/PathSections.h>
 
 namespace polemcl {
 namespace {

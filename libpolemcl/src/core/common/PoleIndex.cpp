@@ -1,8 +1,9 @@
+#include "core/common/PoleIndex.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include <polemcl/core/common/PoleIndex.h>
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
 

@@ -1,8 +1,9 @@
+#include "core/common/PoseEstimate.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include <polemcl/core/common/PoseEstimate.h>
 #include "core/common/SimdMath.h"
 
 namespace polemcl {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <polemcl/core/common/PoseEstimate.h>
+#include "core/common/PoseEstimate.h"
 
 namespace polemcl {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/localization/ScanRegistration.h>
-#include <polemcl/core/mapping/MapUpdater.h>
+#include "core/localization/ScanRegistration.h"
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 

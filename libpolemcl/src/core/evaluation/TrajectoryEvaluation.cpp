@@ -1,9 +1,10 @@
+#include "core/evaluation/TrajectoryEvaluation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
 #include "core/common/BipartiteMatching.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/PoseInterpolation.h"

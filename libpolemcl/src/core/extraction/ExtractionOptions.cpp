@@ -1,6 +1,6 @@
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include "core/common/Angles.h"
+#include "core/common/Binder.h"
 #include "core/extraction/ExtractionKeys.h"
 
 namespace polemcl {

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
-#include <polemcl/core/localization/LocalSubmap.h>
+#include "core/global_localization/GlobalLocalizer.h"
+#include "core/localization/LocalSubmap.h"
 
 namespace polemcl {
 

@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include <polemcl/core/common/PoleIndex.h>
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
+#include "core/common/PoleIndex.h"
+#include "core/global_localization/GlobalLocalizer.h"
 #include "core/global_localization/PairDistanceIndex.h"
 
 namespace polemcl {

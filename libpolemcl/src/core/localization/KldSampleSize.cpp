@@ -1,10 +1,11 @@
+#include "core/localization/KldSampleSize.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
-#include <polemcl/core/common/Binder.h>
-#include <polemcl/core/localization/KldSampleSize.h>
+#include "core/common/Binder.h"
 #include "core/common/Statistics.h"
 
 namespace polemcl {

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/localization/PoleLikelihood.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

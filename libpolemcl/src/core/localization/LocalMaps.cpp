@@ -1,7 +1,8 @@
+#include "core/localization/LocalMaps.h"
+
 #include <cmath>
 
-#include <polemcl/core/common/Binder.h>
-#include <polemcl/core/localization/LocalMaps.h>
+#include "core/common/Binder.h"
 #include "core/common/Transform.h"
 #include "core/mapping/BoxMerging.h"
 

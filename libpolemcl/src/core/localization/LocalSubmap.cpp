@@ -1,10 +1,11 @@
+#include "core/localization/LocalSubmap.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include <polemcl/core/localization/LocalSubmap.h>
 #include "core/common/Covariance.h"
 #include "core/common/DetectionCheck.h"
 #include "core/common/GreedyAssignment.h"

@@ -1,8 +1,9 @@
+#include "core/localization/LocalizationHealth.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include <polemcl/core/localization/LocalizationHealth.h>
 #include "core/common/Covariance.h"
 
 namespace polemcl {

@@ -1,7 +1,8 @@
+#include "core/localization/MapAssociation.h"
+
 #include <Eigen/LU>
 #include <utility>
 
-#include <polemcl/core/localization/MapAssociation.h>
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"

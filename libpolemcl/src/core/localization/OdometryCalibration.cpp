@@ -1,8 +1,9 @@
+#include "core/localization/OdometryCalibration.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/core/localization/OdometryCalibration.h>
 #include "core/common/Transform.h"
 
 namespace polemcl {

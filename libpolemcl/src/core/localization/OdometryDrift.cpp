@@ -1,4 +1,5 @@
-#include <polemcl/core/localization/OdometryDrift.h>
+#include "core/localization/OdometryDrift.h"
+
 #include "core/common/Transform.h"
 
 namespace polemcl {

@@ -1,8 +1,9 @@
+#include "core/localization/OdometryMonitor.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/core/localization/OdometryMonitor.h>
 #include "core/common/Transform.h"
 
 namespace polemcl {

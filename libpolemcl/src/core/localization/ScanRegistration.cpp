@@ -1,10 +1,11 @@
+#include "core/localization/ScanRegistration.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <polemcl/core/localization/ScanRegistration.h>
 #include "core/common/GreedyAssignment.h"
 #include "core/common/Transform.h"
 

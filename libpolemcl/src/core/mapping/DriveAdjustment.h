@@ -12,8 +12,8 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/common/PoseEstimate.h>
-#include <polemcl/core/mapping/MapUpdater.h>
+#include "core/common/PoseEstimate.h"
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/mapping/MapUpdater.h>
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/mapping/MapUpdater.h>
 #include "core/mapping/LandmarkFusion.h"
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 

@@ -1,5 +1,5 @@
-#include <polemcl/core/common/Binder.h>
-#include <polemcl/core/mapping/MapUpdater.h>
+#include "core/common/Binder.h"
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 void bind(Binder& b, MapUpdateOptions& o) {

@@ -1,10 +1,11 @@
+#include "core/mapping/MapUpdater.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <tuple>
 
-#include <polemcl/core/mapping/MapUpdater.h>
 #include "core/common/Covariance.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"

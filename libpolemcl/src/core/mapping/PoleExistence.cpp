@@ -1,7 +1,7 @@
+#include "core/mapping/PoleExistence.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include <polemcl/core/mapping/PoleExistence.h>
 
 namespace polemcl {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <tuple>
 
-#include <polemcl/core/common/PathSections.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
+#include "core/common/PathSections.h"
 #include "core/mapping/BoxMerging.h"
 #include "core/mapping/DetectionToMap.h"
 #include "core/mapping/LandmarkFusion.h"

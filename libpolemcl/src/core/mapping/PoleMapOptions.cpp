@@ -1,5 +1,5 @@
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

@@ -12,7 +12,7 @@
 
 #include <vector>
 
-#include <polemcl/core/mapping/MapUpdater.h>
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 

@@ -1,8 +1,9 @@
+#include "core/sensor/PinholeCamera.h"
+
 #include <cmath>
 #include <string>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/sensor/PinholeCamera.h>
 
 namespace polemcl {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/sensor/PinholeCamera.h>
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/sensor/PinholeCamera.h"
 
 namespace polemcl {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/common/Binder.h"
 #include "core/sensor/SensorKeys.h"
 #include "core/sensor/SensorModel.h"
 

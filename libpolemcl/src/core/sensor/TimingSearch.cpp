@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <polemcl/core/common/Deskew.h>
+#include "core/common/Deskew.h"
 #include "core/common/KdTree2D.h"
 
 namespace polemcl {

@@ -5,21 +5,21 @@
 namespace polemcl::io {
 namespace {
 
-PlanarMotion shareOf(const PlanarMotion& motion, double share) {
+PoseWithCovariance shareOf(const PoseWithCovariance& motion, double share) {
   return {{share * motion.mean.x, share * motion.mean.y, share * motion.mean.yaw},
           share * motion.covariance};
 }
 
 }  // namespace
 
-void MotionSteps::add(double begin, double end, const PlanarMotion& motion) {
+void MotionSteps::add(double begin, double end, const PoseWithCovariance& motion) {
   m_steps.push_back({begin, end, motion});
 }
 
 std::optional<Eigen::Matrix3d> MotionSteps::covarianceBetween(double begin, double end) const {
   auto step = std::upper_bound(m_steps.begin(), m_steps.end(), begin,
                                [](double time, const Step& s) { return time < s.end; });
-  PlanarMotion sum;
+  PoseWithCovariance sum;
   double covered = 0;
   for (; step != m_steps.end() && step->begin < end; ++step) {
     const double between = std::min(end, step->end) - std::max(begin, step->begin);

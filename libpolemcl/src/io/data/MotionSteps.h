@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/io/data/PlanarMotion.h>
+#include "io/data/PlanarMotion.h"
 
 namespace polemcl::io {
 
@@ -15,7 +15,7 @@ class MotionSteps {
  public:
   /// \brief Adds a step from `begin` to `end`, s. Its times are not before those of the last one;
   /// there may be gaps.
-  void add(double begin, double end, const PlanarMotion& motion);
+  void add(double begin, double end, const PoseWithCovariance& motion);
 
   /// \brief Covariance of (x, y, yaw) of the motion between two times: those of the steps,
   /// composed. A step that lies only partly in the interval contributes in proportion. Gaps count
@@ -26,7 +26,7 @@ class MotionSteps {
  private:
   struct Step {
     double begin = 0, end = 0;  ///< s
-    PlanarMotion motion;
+    PoseWithCovariance motion;
   };
   std::vector<Step> m_steps;
 };

@@ -1,12 +1,13 @@
+#include "io/data/PlanarMotion.h"
+
 #include <array>
 #include <cmath>
 
-#include <polemcl/io/data/PlanarMotion.h>
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {
 
-PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b) {
+PoseWithCovariance composeMotions(const PoseWithCovariance& a, const PoseWithCovariance& b) {
   const double c = std::cos(a.mean.yaw), s = std::sin(a.mean.yaw);
   const double x = b.mean.x, y = b.mean.y;
   // Derivatives of a ⊕ b with respect to a and to b.
@@ -17,7 +18,7 @@ PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b) {
   byB << c, -s, 0,  //
       s, c, 0,      //
       0, 0, 1;
-  PlanarMotion result;
+  PoseWithCovariance result;
   result.mean = compose(a.mean, b.mean);
   const Eigen::Matrix3d sum =
       byA * a.covariance * byA.transpose() + byB * b.covariance * byB.transpose();
@@ -38,7 +39,7 @@ std::array<double, 2> normalPair(std::mt19937_64& generator) {
 
 }  // namespace
 
-PlanarMotion noisyMotion(const Pose2D& trueMotion, double k, std::mt19937_64& generator) {
+PoseWithCovariance noisyMotion(const Pose2D& trueMotion, double k, std::mt19937_64& generator) {
   if (!(k >= 0) || !std::isfinite(k)) {
     throw Error("odometry noise " + significant(k, 6) +
                 " is not allowed: a relative standard deviation >= 0 is (0.02 for 2 %)");
@@ -49,7 +50,7 @@ PlanarMotion noisyMotion(const Pose2D& trueMotion, double k, std::mt19937_64& ge
   const Eigen::Vector3d sigma =
       k * Eigen::Vector3d(trueMotion.x, trueMotion.y, trueMotion.yaw).cwiseAbs();
   const Eigen::Vector3d floor(motionFloorMetres, motionFloorMetres, motionFloorRadians);
-  PlanarMotion motion;
+  PoseWithCovariance motion;
   motion.mean = {trueMotion.x + sigma[0] * n0, trueMotion.y + sigma[1] * n1,
                  wrapAngle(trueMotion.yaw + sigma[2] * n2)};
   motion.covariance = (sigma.cwiseAbs2() + floor.cwiseAbs2()).asDiagonal();

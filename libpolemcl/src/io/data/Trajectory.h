@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::io {
 

@@ -146,9 +146,9 @@ void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::st
   if (covariances) covariances->noteMismatch(steps, notes);
 }
 
-PlanarMotion NcltOdometry::motion(const Eigen::Isometry3d& T_begin_end, double begin, double end,
-                                  const Eigen::Isometry3d& T_robot_body) const {
-  PlanarMotion motion;
+PoseWithCovariance NcltOdometry::motion(const Eigen::Isometry3d& T_begin_end, double begin,
+                                        double end, const Eigen::Isometry3d& T_robot_body) const {
+  PoseWithCovariance motion;
   motion.mean = planar(T_robot_body * T_begin_end * T_robot_body.inverse());
   if (const auto covariance = m_steps.covarianceBetween(begin, end)) {
     const Eigen::Matrix3d change = planeChange(T_robot_body);

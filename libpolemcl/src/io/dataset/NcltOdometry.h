@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/io/data/PlanarMotion.h>
 #include "io/data/MotionSteps.h"
+#include "io/data/PlanarMotion.h"
 #include "io/data/TrackSampler.h"
 #include "io/file/CsvRows.h"
 
@@ -47,8 +47,8 @@ class NcltOdometry {
   /// `T_robot_body`. If the dataset has no covariances, the standard deviations are 5 % of each
   /// component. The variances of motionFloorMetres and motionFloorRadians are added.
   /// \param T_begin_end Motion of the body from the track. \param begin,end s.
-  PlanarMotion motion(const Eigen::Isometry3d& T_begin_end, double begin, double end,
-                      const Eigen::Isometry3d& T_robot_body) const;
+  PoseWithCovariance motion(const Eigen::Isometry3d& T_begin_end, double begin, double end,
+                            const Eigen::Isometry3d& T_robot_body) const;
 
  private:
   void readTrack(const std::filesystem::path& file, std::vector<std::string>& notes,

@@ -108,7 +108,7 @@ MeasuredTrack readImu(const Bag& bag, std::size_t topic, const std::vector<doubl
     if (!isStated(imu.rateCovariance)) {
       ++track.uncertain;
     } else if (!first) {
-      PlanarMotion step;
+      PoseWithCovariance step;
       step.covariance(2, 2) = axis.dot(imu.rateCovariance * axis) * dt * dt;
       track.steps.add(lastTime, time, step);
     }
@@ -129,9 +129,10 @@ Pose2D motionOf(const MeasuredTrack& track, const ScanInterval& interval) {
   return planar(poses[interval.from]->inverse() * *poses[interval.to]);
 }
 
-PlanarMotion motionBetween(const MeasuredTrack& odometry, const std::optional<MeasuredTrack>& imu,
-                           const ScanInterval& interval) {
-  PlanarMotion motion;
+PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
+                                 const std::optional<MeasuredTrack>& imu,
+                                 const ScanInterval& interval) {
+  PoseWithCovariance motion;
   motion.mean = motionOf(odometry, interval);
   const auto stated = odometry.steps.covarianceBetween(interval.begin, interval.end);
   motion.covariance = stated.value_or(proportionalCovariance(motion.mean, defaultMotionNoise));

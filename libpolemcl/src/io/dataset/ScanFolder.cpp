@@ -70,7 +70,7 @@ void readPoses(const fs::path& file, const Eigen::Isometry3d& T_robot_sensor, co
   }
 }
 
-PlanarMotion motionFromRow(const fs::path& file, const NumberRow& row) {
+PoseWithCovariance motionFromRow(const fs::path& file, const NumberRow& row) {
   const std::vector<double>& v = row.values;
   for (int i = 3; i < 6; ++i) {
     if (v[i] < 0) {
@@ -83,7 +83,7 @@ PlanarMotion motionFromRow(const fs::path& file, const NumberRow& row) {
     throw Error(at(file, row.line) + "turn of " + significant(v[2], 9) +
                 " rad between two scans; radians within -pi ... pi are expected");
   }
-  PlanarMotion motion;
+  PoseWithCovariance motion;
   motion.mean = {v[0], v[1], wrapAngle(v[2])};
   motion.covariance = Eigen::Vector3d(v[3] * v[3], v[4] * v[4], v[5] * v[5]).asDiagonal();
   return motion;

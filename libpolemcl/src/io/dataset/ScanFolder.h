@@ -12,7 +12,7 @@
 
 #include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/io/data/Cloud.h>
-#include <polemcl/io/data/PlanarMotion.h>
+#include "io/data/PlanarMotion.h"
 
 namespace polemcl::io {
 
@@ -25,7 +25,7 @@ struct ScanEntry {
       {};  ///< set in all entries of a folder or in no entry
   /// Motion since the previous entry, in the robot frame of that entry. Never set in the first
   /// entry; set in all others or in no entry.
-  std::optional<PlanarMotion> motion = {};
+  std::optional<PoseWithCovariance> motion = {};
 };
 
 struct ScanFolder {

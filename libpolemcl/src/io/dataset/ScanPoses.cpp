@@ -48,7 +48,7 @@ std::vector<double> timesOf(const ScanFolder& folder) {
 
 void keepScans(ScanFolder& folder, const std::vector<bool>& keep, const std::string& why) {
   std::vector<ScanEntry> kept;
-  std::optional<PlanarMotion> pending;  // motion since the last remaining scan
+  std::optional<PoseWithCovariance> pending;  // motion since the last remaining scan
   const std::size_t all = folder.scans.size();
   for (std::size_t i = 0; i < all; ++i) {
     ScanEntry& scan = folder.scans[i];

@@ -1,9 +1,10 @@
+#include "io/map/PoleMapFile.h"
+
 #include <zlib.h>
 
 #include <cmath>
 #include <utility>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "core/common/Covariance.h"
 #include "core/mapping/MapAccumulator.h"
 #include "io/file/AtomicFile.h"

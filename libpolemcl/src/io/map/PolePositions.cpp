@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include "core/common/Transform.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/CsvTable.h"
 #include "io/file/Date.h"
 #include "io/file/Npz.h"
 #include "io/file/TextFile.h"
+#include "io/map/PoleMapFile.h"
 
 namespace polemcl::io {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/mapping/PoleExistence.h>
+#include "core/mapping/PoleExistence.h"
 
 namespace polemcl::io {
 

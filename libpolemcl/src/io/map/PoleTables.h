@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include <polemcl/io/map/PoleMapFile.h>
+#include "io/map/PoleMapFile.h"
 
 namespace polemcl::io {
 

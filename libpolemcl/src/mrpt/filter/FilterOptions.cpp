@@ -1,7 +1,8 @@
+#include "mrpt/filter/FilterOptions.h"
+
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
-#include <polemcl/mrpt/filter/FilterOptions.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 namespace {

@@ -1,5 +1,5 @@
-#include <polemcl/core/common/Binder.h>
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include "core/common/Binder.h"
+#include "mrpt/filter/LocalizationPipeline.h"
 
 namespace polemcl {
 

@@ -1,9 +1,10 @@
+#include "mrpt/filter/LocalizationPipeline.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <utility>
 
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
 #include "core/localization/PoseModes.h"
 #include "mrpt/filter/MotionAction.h"
 
@@ -116,14 +117,14 @@ void LocalizationPipeline::initializeGlobally() {
   m_hasPose = m_stepped = m_mistrusted = false;
 }
 
-LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
+LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (!m_started)
     throw Error(
         "the localization has not been started: call start() or initializeGlobally() first");
   actionTo(seen, m_stepped ? std::optional(m_time) : std::nullopt, m_options.filter);  // checks
   LocalizationUpdate update;
   update.time = seen.time;
-  const PoleFrame frame = checkedMotion(deskewed(calibrated(seen)), update);
+  const PoleScan frame = checkedMotion(deskewed(calibrated(seen)), update);
   const Pose2D motion = m_stepped ? frame.motion->mean : Pose2D();
   const double metres = std::hypot(motion.x, motion.y);
   Eigen::Matrix3d covariance = walkCovariance(motion, m_submap.options());
@@ -145,7 +146,7 @@ LocalizationUpdate LocalizationPipeline::step(const PoleFrame& seen) {
 }
 
 /// The frame with its motion and velocity corrected for the known errors of the odometry.
-PoleFrame LocalizationPipeline::calibrated(PoleFrame frame) const {
+PoleScan LocalizationPipeline::calibrated(PoleScan frame) const {
   if (frame.velocity) {
     const Pose2D second = motionAfter(*frame.velocity, 1);
     frame.velocity = velocityOf(m_calibration.correct(second, Eigen::Matrix3d::Zero()).motion, 1);
@@ -153,12 +154,12 @@ PoleFrame LocalizationPipeline::calibrated(PoleFrame frame) const {
   if (!m_stepped) return frame;
   const CorrectedMotion motion =
       m_calibration.correct(frame.motion->mean, frame.motion->covariance);
-  frame.motion = io::PlanarMotion{motion.motion, motion.covariance};
+  frame.motion = PoseWithCovariance{motion.motion, motion.covariance};
   return frame;
 }
 
 /// Learns the errors of the odometry while the pose is certain.
-void LocalizationPipeline::calibrate(const io::PlanarMotion& motion, LocalizationUpdate& update) {
+void LocalizationPipeline::calibrate(const PoseWithCovariance& motion, LocalizationUpdate& update) {
   const bool certain = update.estimate && update.health.state == HealthState::ok &&
                        !update.relocalized && update.motion != OdometryVerdict::contradicted;
   m_calibration.add(motion.mean, motion.covariance, certain ? &*update.estimate : nullptr);
@@ -182,7 +183,7 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
 /// The frame with its poles as seen from the pose at its time stamp. Unless the frame states it,
 /// the velocity is that of the motion to it, extrapolated by half of its change since the motion
 /// before.
-PoleFrame LocalizationPipeline::deskewed(PoleFrame frame) {
+PoleScan LocalizationPipeline::deskewed(PoleScan frame) {
   std::optional<Velocity> velocity = frame.velocity;
   if (m_stepped) {
     const Velocity mean = velocityOf(frame.motion->mean, frame.time - m_time);
@@ -198,13 +199,13 @@ PoleFrame LocalizationPipeline::deskewed(PoleFrame frame) {
 }
 
 /// The frame; its motion is replaced if the poles contradict the odometry.
-PoleFrame LocalizationPipeline::checkedMotion(const PoleFrame& frame, LocalizationUpdate& update) {
-  const io::PlanarMotion odometry = m_stepped ? *frame.motion : io::PlanarMotion();
+PoleScan LocalizationPipeline::checkedMotion(const PoleScan& frame, LocalizationUpdate& update) {
+  const PoseWithCovariance odometry = m_stepped ? *frame.motion : PoseWithCovariance();
   const MonitoredMotion checked =
       m_odometryMonitor.add(frame.time, odometry.mean, odometry.covariance, frame.poles_robot);
   update.motion = checked.verdict;
-  PoleFrame result = frame;
-  if (checked.replaced) result.motion = io::PlanarMotion{checked.motion, checked.covariance};
+  PoleScan result = frame;
+  if (checked.replaced) result.motion = PoseWithCovariance{checked.motion, checked.covariance};
   return result;
 }
 
@@ -217,8 +218,7 @@ NewShares LocalizationPipeline::newShares(double metres) const {
   return shares;
 }
 
-void LocalizationPipeline::track(const PoleFrame& frame, double metres,
-                                 LocalizationUpdate& update) {
+void LocalizationPipeline::track(const PoleScan& frame, double metres, LocalizationUpdate& update) {
   PoseWithCovariance estimate = m_filter.step(m_tracked, newShares(metres));
   double modeShare = 1;
   if (isWide(estimate.covariance)) {
@@ -267,7 +267,7 @@ bool LocalizationPipeline::searchIsDue() const {
          m_time - m_searchTime >= kSearchEverySeconds;
 }
 
-void LocalizationPipeline::search(const PoleFrame& frame, LocalizationUpdate& update) {
+void LocalizationPipeline::search(const PoleScan& frame, LocalizationUpdate& update) {
   m_searchedAt = m_submap.driven();
   m_searchTime = m_time;
   ++m_searches;
@@ -295,7 +295,7 @@ bool LocalizationPipeline::agrees(const GlobalHypothesis& place) const {
 }
 
 /// A filter that converged to a wrong pose on matching poles is too certain to leave it by itself.
-bool LocalizationPipeline::fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const {
+bool LocalizationPipeline::fitsBetter(const GlobalHypothesis& place, const PoleScan& frame) const {
   const auto sum = [](const std::vector<PoleMatch>& matches) {
     double matched = 0;
     for (const PoleMatch& match : matches) matched += match.matched ? match.confidence : 0;
@@ -305,14 +305,13 @@ bool LocalizationPipeline::fitsBetter(const GlobalHypothesis& place, const PoleF
   return sum(match(frame, pose)) > sum(m_matches) + betterPoles;
 }
 
-std::vector<PoleMatch> LocalizationPipeline::match(const PoleFrame& frame,
+std::vector<PoleMatch> LocalizationPipeline::match(const PoleScan& frame,
                                                    const PoseWithCovariance& pose) const {
   return associate(frame.poles_robot, pose, m_map.poles->index(),
                    {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
 }
 
-void LocalizationPipeline::adopt(const PoleFrame& frame, bool resolved,
-                                 LocalizationUpdate& update) {
+void LocalizationPipeline::adopt(const PoleScan& frame, bool resolved, LocalizationUpdate& update) {
   std::vector<PoseHypothesis> places;
   for (const GlobalHypothesis& place : m_search.hypotheses) {
     places.push_back(toFilter(place));

@@ -14,7 +14,7 @@ namespace polemcl {
 
 namespace {
 
-void requireFinite(const io::PlanarMotion& motion) {
+void requireFinite(const PoseWithCovariance& motion) {
   if (!std::isfinite(motion.mean.x) || !std::isfinite(motion.mean.y) ||
       !std::isfinite(motion.mean.yaw) || !motion.covariance.allFinite())
     throw Error("the motion is not finite: check the odometry");
@@ -46,7 +46,7 @@ void requireCertain(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motion,
+mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& motion,
                                                    const FilterOptions& options) {
   requireFinite(motion);
   requireCovariance(motion.covariance);
@@ -66,7 +66,7 @@ mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motio
   return action;
 }
 
-mrpt::obs::CActionCollection::Ptr actionTo(const PoleFrame& frame, std::optional<double> before,
+mrpt::obs::CActionCollection::Ptr actionTo(const PoleScan& frame, std::optional<double> before,
                                            const FilterOptions& options) {
   const std::string when = std::to_string(frame.time) + " s";
   if (!std::isfinite(frame.time) || (before && frame.time <= *before))

@@ -6,9 +6,9 @@
 
 #include <optional>
 
-#include <polemcl/io/data/PlanarMotion.h>
-#include <polemcl/mrpt/filter/FilterOptions.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
+#include "io/data/PlanarMotion.h"
+#include "mrpt/filter/FilterOptions.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
 
@@ -24,14 +24,14 @@ constexpr double maxMotionStep = 10000;
 /// \throws Error when the motion is not finite or too long. Also when its covariance is not
 ///         symmetric, not positive semidefinite (tolerance for both: 1e-9 of the largest element),
 ///         or above the limits.
-mrpt::obs::CActionCollection::Ptr makeMotionAction(const io::PlanarMotion& motion,
+mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& motion,
                                                    const FilterOptions& options);
 
 /// \brief The action that leads to a frame; null for the first frame, whose motion is ignored.
 /// \param before Time of the frame before, s; nullopt for the first frame.
 /// \throws Error when the time is not later than `before`, or the motion is missing; also as
 ///         makeMotionAction(), with the time of the frame.
-mrpt::obs::CActionCollection::Ptr actionTo(const PoleFrame& frame, std::optional<double> before,
+mrpt::obs::CActionCollection::Ptr actionTo(const PoleScan& frame, std::optional<double> before,
                                            const FilterOptions& options);
 
 }  // namespace polemcl

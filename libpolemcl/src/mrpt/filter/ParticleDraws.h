@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
+#include "mrpt/filter/PoleParticleFilter.h"
 
 namespace polemcl {
 

@@ -1,3 +1,5 @@
+#include "mrpt/filter/PoleParticleFilter.h"
+
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
@@ -7,7 +9,6 @@
 #include <numeric>
 #include <utility>
 
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
 #include "core/common/SimdMath.h"
 #include "mrpt/filter/MotionAction.h"
 #include "mrpt/filter/ParticleDraws.h"
@@ -147,7 +148,7 @@ void PoleParticleFilter::begin(int particles) {
   m_time.reset();
 }
 
-PoseWithCovariance PoleParticleFilter::step(const PoleFrame& frame, const NewShares& shares) {
+PoseWithCovariance PoleParticleFilter::step(const PoleScan& frame, const NewShares& shares) {
   if (!m_started) throw Error("the filter has no particles yet: call start() first");
   const auto action = actionTo(frame, m_time, m_options);
   m_newShares = shares;

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polemcl/io/map/PoleMapFile.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include "core/common/Covariance.h"
 #include "core/common/Transform.h"
 #include "core/mapping/IncrementalMerge.h"
 #include "io/file/ReadLimits.h"
+#include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "mrpt/common/BoundedRead.h"
 #include "mrpt/drawing/SceneParts.h"

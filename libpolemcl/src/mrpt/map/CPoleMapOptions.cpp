@@ -2,10 +2,10 @@
 
 #include <iostream>
 
-#include <polemcl/config/Config.h>
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/mrpt/common/Compatibility.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "config/Config.h"
+#include "core/common/Binder.h"
 
 MAP_DEFINITION_REGISTER("polemcl::CPoleMap,poleMap", polemcl::CPoleMap)
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/sensor/PinholeCamera.h>
+#include "core/sensor/PinholeCamera.h"
 
 namespace mrpt::obs {
 class CObservation3DRangeScan;

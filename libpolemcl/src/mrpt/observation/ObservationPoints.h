@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/sensor/PinholeCamera.h>
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/sensor/PinholeCamera.h"
 #include "mrpt/observation/DepthImage.h"
 
 namespace mrpt::obs {

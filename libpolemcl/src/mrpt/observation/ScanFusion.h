@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/Deskew.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
+#include "core/common/Deskew.h"
 #include "core/common/DetectionFusion.h"
 
 namespace polemcl {

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "mrpt/rawlog/EntrySource.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
 
@@ -17,6 +17,6 @@ namespace polemcl {
 /// \throws Error as streamPoles(); when no odometry came with many scans of sensors.
 SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::string& name,
                            const SequenceOptions& options,
-                           const std::function<void(const PoleScan&)>& consume);
+                           const std::function<void(const ReadScan&)>& consume);
 
 }  // namespace polemcl

@@ -1,6 +1,6 @@
-#include <cmath>
+#include "mrpt/rawlog/MotionOptions.h"
 
-#include <polemcl/mrpt/rawlog/MotionOptions.h>
+#include <cmath>
 
 namespace polemcl {
 

@@ -1,3 +1,5 @@
+#include "mrpt/rawlog/PoleSequence.h"
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
@@ -8,7 +10,6 @@
 #include <cmath>
 #include <exception>
 
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/EntryStream.h"
 #include "mrpt/rawlog/ScanSource.h"
@@ -26,7 +27,7 @@ double secondsSince(ScanClock::time_point begin) {
 struct Task {
   ScanSource::Scan scan;
   ScanTiming timing;  ///< as the rawlog states it
-  PoleScan result;
+  ReadScan result;
   std::vector<FusionAgreement> agreements;  ///< of the parts, if LiDARs are fused
   std::exception_ptr error;
 };
@@ -46,16 +47,16 @@ class Stream {
 
   TaskPtr read();
   void extract(Task& task);
-  void collect(Task& task, const std::function<void(const PoleScan&)>& consume);
+  void collect(Task& task, const std::function<void(const ReadScan&)>& consume);
   /// \brief After the pipeline. \throws What went wrong first.
   SequenceCounts finish() const;
 
  private:
   using Extractors = std::vector<ObservationPoleExtractor>;
   static Extractors extractorsFor(const SequenceOptions& options);
-  CObservationPoles::Ptr polesOf(const LidarScan& part, const ScanTiming& timing, PoleScan& result);
+  CObservationPoles::Ptr polesOf(const LidarScan& part, const ScanTiming& timing, ReadScan& result);
   void fuse(Task& task, const std::vector<CObservationPoles::Ptr>& parts) const;
-  void count(const PoleScan& scan);
+  void count(const ReadScan& scan);
   void countLidars(const Task& task);
 
   std::string m_name;
@@ -105,7 +106,7 @@ Stream::Extractors Stream::extractorsFor(const SequenceOptions& options) {
 
 /// The poles of one LiDAR's scan; adds to the report what the extraction did.
 CObservationPoles::Ptr Stream::polesOf(const LidarScan& part, const ScanTiming& timing,
-                                       PoleScan& result) {
+                                       ReadScan& result) {
   if (auto stored = std::dynamic_pointer_cast<CObservationPoles>(part.observation)) return stored;
   ObservationPoleExtractor& extraction = m_extractions.local()[part.lidar];
   // By number, so that the result does not depend on the threads.
@@ -127,7 +128,7 @@ void Stream::fuse(Task& task, const std::vector<CObservationPoles::Ptr>& parts) 
 
 void Stream::extract(Task& task) {
   if (task.error) return;
-  PoleScan& result = task.result;
+  ReadScan& result = task.result;
   result.index = task.scan.index;
   result.time = task.scan.time;
   result.motion = task.scan.motion;
@@ -156,7 +157,7 @@ void Stream::extract(Task& task) {
 }
 
 /// An exception must not leave the pipeline: TBB would lose the task that caused it.
-void Stream::collect(Task& task, const std::function<void(const PoleScan&)>& consume) {
+void Stream::collect(Task& task, const std::function<void(const ReadScan&)>& consume) {
   if (m_failed) return;
   try {
     if (task.error) std::rethrow_exception(task.error);
@@ -169,7 +170,7 @@ void Stream::collect(Task& task, const std::function<void(const PoleScan&)>& con
   }
 }
 
-void Stream::count(const PoleScan& scan) {
+void Stream::count(const ReadScan& scan) {
   ++m_counts.scans;
   m_counts.storedScans += scan.stored ? 1 : 0;
   m_counts.emptyScans += scan.points == 0 && scan.observation->poles.empty() ? 1 : 0;
@@ -226,7 +227,7 @@ void requireThreads(const SequenceOptions& options) {
 }
 
 SequenceCounts play(ScanSource& source, const std::string& name, const SequenceOptions& options,
-                    const std::function<void(const PoleScan&)>& consume) {
+                    const std::function<void(const ReadScan&)>& consume) {
   Stream stream(source, name, options);
   const int cores = tbb::info::default_concurrency();  // TBB rejects more threads than that
   const int threads = options.threads > 0 ? std::min(options.threads, cores) : cores;
@@ -255,7 +256,7 @@ SequenceCounts play(ScanSource& source, const std::string& name, const SequenceO
 }  // namespace
 
 SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
-                           const std::function<void(const PoleScan&)>& consume) {
+                           const std::function<void(const ReadScan&)>& consume) {
   requireThreads(options);
   ScanSource source(path, options.motion, options.allowTruncated, options.follow, options.vehicle);
   return play(source, path, options, consume);
@@ -263,15 +264,15 @@ SequenceCounts streamPoles(const std::string& path, const SequenceOptions& optio
 
 SequenceCounts streamPoles(std::shared_ptr<EntrySource> entries, const std::string& name,
                            const SequenceOptions& options,
-                           const std::function<void(const PoleScan&)>& consume) {
+                           const std::function<void(const ReadScan&)>& consume) {
   requireThreads(options);
   ScanSource source(std::move(entries), name, options.motion, options.vehicle);
   return play(source, name, options, consume);
 }
 
-PoleFrame frameOf(const CObservationPoles& observation,
-                  const std::optional<io::PlanarMotion>& motion) {
-  PoleFrame frame;
+PoleScan frameOf(const CObservationPoles& observation,
+                 const std::optional<PoseWithCovariance>& motion) {
+  PoleScan frame;
   frame.time = mrpt::Clock::toDouble(observation.timestamp);
   frame.motion = motion;
   frame.poles_robot = observation.polesInRobotFrame();
@@ -280,8 +281,8 @@ PoleFrame frameOf(const CObservationPoles& observation,
   return frame;
 }
 
-PoleFrame frameOf(const PoleScan& scan) {
-  PoleFrame frame = frameOf(*scan.observation, scan.motion);
+PoleScan frameOf(const ReadScan& scan) {
+  PoleScan frame = frameOf(*scan.observation, scan.motion);
   frame.time = scan.time;
   frame.points = scan.points;
   frame.velocity = scan.velocity;
@@ -291,7 +292,7 @@ PoleFrame frameOf(const PoleScan& scan) {
 PoleSequence readPoleSequence(const std::string& path, const SequenceOptions& options,
                               const ScanProgress& progress) {
   PoleSequence sequence;
-  sequence.counts = streamPoles(path, options, [&](const PoleScan& scan) {
+  sequence.counts = streamPoles(path, options, [&](const ReadScan& scan) {
     sequence.frames.push_back(frameOf(scan));
     if (progress) progress(sequence.frames.size(), scan.expected);
   });

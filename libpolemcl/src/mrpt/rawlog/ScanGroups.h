@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/io/data/PlanarMotion.h>
-#include <polemcl/mrpt/rawlog/VehicleOptions.h>
+#include "io/data/PlanarMotion.h"
+#include "mrpt/rawlog/VehicleOptions.h"
 
 namespace polemcl {
 
@@ -21,7 +21,7 @@ struct LidarScan {
   double time = 0;          ///< s, in the clock of the odometry
   std::size_t ordinal = 0;  ///< 0-based among the scans of this LiDAR
   std::size_t motions = 0;  ///< number of motions by actions before it; 0: none
-  std::optional<io::PlanarMotion> motion = {};  ///< by actions, since the scan read before it
+  std::optional<PoseWithCovariance> motion = {};  ///< by actions, since the scan read before it
   std::optional<std::chrono::steady_clock::time_point> arrival = {};  ///< as in RawlogEntry
 };
 

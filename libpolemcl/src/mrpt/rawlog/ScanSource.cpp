@@ -41,11 +41,11 @@ Pose2D planar(const mrpt::poses::CPose2D& pose) {
   return {pose.x(), pose.y(), pose.phi()};
 }
 
-std::optional<io::PlanarMotion> motionOf2D(const CActionRobotMovement2D& action,
-                                           const MotionOptions& options) {
+std::optional<PoseWithCovariance> motionOf2D(const CActionRobotMovement2D& action,
+                                             const MotionOptions& options) {
   const bool isGaussian =
       dynamic_cast<const mrpt::poses::CPosePDFGaussian*>(action.poseChange.get()) != nullptr;
-  io::PlanarMotion motion;
+  PoseWithCovariance motion;
   if (action.estimationMethod == CActionRobotMovement2D::emOdometry) {
     // The reading itself: the motion model may have turned it into random samples.
     motion.mean = planar(action.rawOdometryIncrementReading);
@@ -60,10 +60,10 @@ std::optional<io::PlanarMotion> motionOf2D(const CActionRobotMovement2D& action,
   return motion;
 }
 
-io::PlanarMotion motionOf3D(const CActionRobotMovement3D& action, const MotionOptions& options) {
+PoseWithCovariance motionOf3D(const CActionRobotMovement3D& action, const MotionOptions& options) {
   const auto& pose = action.poseChange;
   const int use[] = {0, 1, 3};  // x, y, yaw of x, y, z, yaw, pitch, roll
-  io::PlanarMotion motion;
+  PoseWithCovariance motion;
   motion.mean = {pose.mean.x(), pose.mean.y(), pose.mean.yaw()};
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
@@ -71,7 +71,7 @@ io::PlanarMotion motionOf3D(const CActionRobotMovement3D& action, const MotionOp
   return motion;
 }
 
-void requireUsable(const io::PlanarMotion& motion) {
+void requireUsable(const PoseWithCovariance& motion) {
   const Eigen::Vector3d mean(motion.mean.x, motion.mean.y, motion.mean.yaw);
   if (!mean.allFinite() || !motion.covariance.allFinite())
     throw Error("the odometry is not finite");
@@ -90,9 +90,9 @@ bool isScan(const CObservation& observation) {
          ObservationPoleExtractor::canProcess(observation);
 }
 
-std::optional<io::PlanarMotion> motionOf(const CActionCollection& actions,
-                                         const MotionOptions& options) {
-  std::optional<io::PlanarMotion> motion;
+std::optional<PoseWithCovariance> motionOf(const CActionCollection& actions,
+                                           const MotionOptions& options) {
+  std::optional<PoseWithCovariance> motion;
   if (const auto best = actions.getBestMovementEstimation())
     motion = motionOf2D(*best, options);
   else
@@ -265,12 +265,12 @@ ScanSource::Scan ScanSource::release() {
   scan.velocity = velocityAt(scan);
   scan.moving = scan.velocity;
   if (m_released == 0) {
-    scan.motion = io::PlanarMotion();
+    scan.motion = PoseWithCovariance();
   } else if (!scan.motion) {
     const auto from = m_odometry.at(m_lastTime), to = m_odometry.at(scan.time);
     if (from && to) {
       const Pose2D mean = relative(*from, *to);
-      scan.motion = io::PlanarMotion{mean, motionCovariance(mean, m_options)};
+      scan.motion = PoseWithCovariance{mean, motionCovariance(mean, m_options)};
     } else {
       ++m_unknownMotions;
     }

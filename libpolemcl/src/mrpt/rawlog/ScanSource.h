@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/Deskew.h>
 #include <polemcl/core/sensor/SensorOptions.h>
-#include <polemcl/io/data/PlanarMotion.h>
-#include <polemcl/mrpt/rawlog/MotionOptions.h>
+#include "core/common/Deskew.h"
+#include "io/data/PlanarMotion.h"
 #include "mrpt/rawlog/EntrySource.h"
+#include "mrpt/rawlog/MotionOptions.h"
 #include "mrpt/rawlog/OdometryTrack.h"
 #include "mrpt/rawlog/ScanGroups.h"
 
@@ -27,8 +27,8 @@ bool isScan(const mrpt::obs::CObservation& observation);
 
 /// \brief The planar motion in an action; nullopt when it holds no movement.
 /// \throws Error when it is not finite or its covariance is not positive semidefinite.
-std::optional<io::PlanarMotion> motionOf(const mrpt::obs::CActionCollection& actions,
-                                         const MotionOptions& options);
+std::optional<PoseWithCovariance> motionOf(const mrpt::obs::CActionCollection& actions,
+                                           const MotionOptions& options);
 
 /// \brief Reads scans without loading their points.
 class ScanSource {
@@ -36,8 +36,8 @@ class ScanSource {
   struct Scan {
     std::size_t index = 0;  ///< 0-based
     double time = 0;        ///< s
-    std::optional<io::PlanarMotion> motion;
-    std::optional<Velocity> velocity = {};  ///< see PoleScan
+    std::optional<PoseWithCovariance> motion;
+    std::optional<Velocity> velocity = {};  ///< see ReadScan
     std::optional<Velocity> moving = {};    ///< best guess of the velocity at that time
     std::vector<LidarScan> parts;           ///< at least one; in the order of the LiDARs
     bool isFused = false;                   ///< the parts are to be fused
@@ -91,7 +91,7 @@ class ScanSource {
   std::string m_name;
   MotionOptions m_options;
   std::shared_ptr<EntrySource> m_entries;
-  std::optional<io::PlanarMotion> m_moved;  ///< motion by actions since the last scan
+  std::optional<PoseWithCovariance> m_moved;  ///< motion by actions since the last scan
   OdometryTrack m_odometry;
   ScanTiming m_timing;
   std::deque<Scan> m_waiting;  ///< scans waiting for later odometry

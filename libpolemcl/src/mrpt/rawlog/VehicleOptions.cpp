@@ -1,8 +1,9 @@
+#include "mrpt/rawlog/VehicleOptions.h"
+
 #include <algorithm>
 #include <cctype>
 #include <sstream>
 
-#include <polemcl/mrpt/rawlog/VehicleOptions.h>
 #include "core/common/Angles.h"
 #include "core/extraction/ExtractionKeys.h"
 #include "core/sensor/SensorKeys.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "report/batch/BatchResults.h"
 
 namespace polemcl::report {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::report {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 #include "report/picture/PlotAxes.h"
 
 namespace polemcl::report {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/evaluation/TrajectoryEvaluation.h>
+#include "core/evaluation/TrajectoryEvaluation.h"
 
 namespace polemcl::report {
 

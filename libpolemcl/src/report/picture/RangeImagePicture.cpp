@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include <polemcl/core/common/Binder.h>
+#include "core/common/Binder.h"
 #include "core/extraction/range_image/RangeImageExtractor.h"
 #include "report/picture/Canvas.h"
 

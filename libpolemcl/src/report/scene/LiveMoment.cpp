@@ -29,7 +29,7 @@ void Way::add(const LocalizationUpdate& update) {
   m_broken = false;
 }
 
-LiveMoment momentOf(const LocalizationPipeline& localization, const PoleFrame& frame,
+LiveMoment momentOf(const LocalizationPipeline& localization, const PoleScan& frame,
                     const LocalizationUpdate& update, std::size_t scan, double start,
                     const Way& way) {
   LiveMoment moment;

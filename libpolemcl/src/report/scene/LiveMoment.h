@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/localization/MapAssociation.h>
-#include <polemcl/mrpt/filter/LocalizationPipeline.h>
+#include "core/localization/MapAssociation.h"
+#include "mrpt/filter/LocalizationPipeline.h"
 
 namespace polemcl::report {
 
@@ -49,7 +49,7 @@ struct LiveMoment {
 };
 
 /// \brief \param start Time of the first scan, s. \param way Up to this update.
-LiveMoment momentOf(const LocalizationPipeline& localization, const PoleFrame& frame,
+LiveMoment momentOf(const LocalizationPipeline& localization, const PoleScan& frame,
                     const LocalizationUpdate& update, std::size_t scan, double start,
                     const Way& way);
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <polemcl/core/common/Binder.h>
+#include "core/common/Binder.h"
 
 namespace polemcl::report {
 

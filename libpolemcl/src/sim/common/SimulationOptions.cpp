@@ -1,6 +1,6 @@
 #include "sim/common/SimulationOptions.h"
 
-#include <polemcl/core/common/Binder.h>
+#include "core/common/Binder.h"
 
 namespace polemcl::sim {
 namespace {

@@ -5,9 +5,9 @@
 #include <map>
 #include <sstream>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include "core/common/Angles.h"
+#include "core/common/Binder.h"
 #include "core/sensor/SensorModel.h"
 #include "sim/common/Random.h"
 

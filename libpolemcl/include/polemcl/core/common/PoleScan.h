@@ -11,8 +11,8 @@
 namespace polemcl {
 
 /// \brief One scan in the form that map and filter need.
-struct PoleFrame {
-  double time = 0;                         ///< s
+struct PoleScan {
+  double time = 0;  ///< s
   /// Motion since the previous scan, in its robot frame. Ignored for the first scan; nullopt:
   /// unknown.
   std::optional<PoseWithCovariance> motion;

@@ -7,11 +7,11 @@
 
 #include <polemcl/core/extraction/ExtractionOptions.h>
 #include <polemcl/core/extraction/PoleExtractor.h>
-#include <polemcl/core/sensor/PinholeCamera.h>
 #include <polemcl/core/sensor/SensorOptions.h>
 #include "core/extraction/PoleClassifier.h"
 #include "core/extraction/VisibilityRange.h"
 #include "core/extraction/scan_line/CandidateFeatures.h"
+#include "core/sensor/PinholeCamera.h"
 
 namespace polemcl {
 

@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/Deskew.h>
+#include <polemcl/core/common/PoleScan.h>
 #include <polemcl/export.h>
-#include <polemcl/io/data/PlanarMotion.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-#include <polemcl/mrpt/rawlog/MotionOptions.h>
-#include <polemcl/mrpt/rawlog/VehicleOptions.h>
-#include <polemcl/core/common/PoleScan.h>
+#include "core/common/Deskew.h"
+#include "io/data/PlanarMotion.h"
+#include "mrpt/rawlog/MotionOptions.h"
+#include "mrpt/rawlog/VehicleOptions.h"
 
 namespace polemcl {
 
@@ -73,12 +73,12 @@ struct SequenceCounts {
 };
 
 /// \brief One scan from the stream.
-struct PoleScan {
+struct ReadScan {
   std::size_t index = 0;  ///< 0-based among the scans of the rawlog
   double time = 0;        ///< time of the observation, s
   /// Motion since the previous scan, in its robot frame. Identity without covariance for the first
   /// scan; nullopt if the rawlog has no odometry in between.
-  std::optional<io::PlanarMotion> motion;
+  std::optional<PoseWithCovariance> motion;
   /// Velocity at the time of the scan, where the motions up to it do not tell: for the first scan
   /// that on the way to the second, and where there are odometry readings around a scan.
   std::optional<Velocity> velocity;
@@ -129,19 +129,19 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// \throws Error as RawlogReader and ObservationPoleExtractor do, with file and scan; when a LiDAR
 ///         of SequenceOptions::vehicle is not in the rawlog. Exceptions of `consume` are passed on.
 POLEMCL_EXPORT SequenceCounts streamPoles(const std::string& path, const SequenceOptions& options,
-                                          const std::function<void(const PoleScan&)>& consume);
+                                          const std::function<void(const ReadScan&)>& consume);
 
 /// \brief Reduces a scan to what map and filter need. \param scan From streamPoles().
-POLEMCL_EXPORT PoleFrame frameOf(const PoleScan& scan);
+POLEMCL_EXPORT PoleScan frameOf(const ReadScan& scan);
 /// \brief The same from an observation that comes from elsewhere: from a sensor through
 /// ObservationPoleExtractor::process(), or from a rawlog that the caller reads.
 /// \param motion Since the scan before, in its robot frame; nullopt: not known, which is right for
 /// the first scan only. `points` and `velocity` of the frame stay unknown.
-POLEMCL_EXPORT PoleFrame frameOf(const CObservationPoles& observation,
-                                 const std::optional<io::PlanarMotion>& motion);
+POLEMCL_EXPORT PoleScan frameOf(const CObservationPoles& observation,
+                                const std::optional<PoseWithCovariance>& motion);
 
 struct PoleSequence {
-  std::vector<PoleFrame> frames;
+  std::vector<PoleScan> frames;
   SequenceCounts counts;
 };
 

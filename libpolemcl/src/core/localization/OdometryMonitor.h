@@ -14,9 +14,9 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/localization/ScanRegistration.h>
-#include <polemcl/export.h>
 #include <polemcl/core/localization/LocalizationUpdate.h>
+#include <polemcl/export.h>
+#include "core/localization/ScanRegistration.h"
 
 namespace polemcl {
 

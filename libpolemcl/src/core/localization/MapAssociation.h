@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include <polemcl/core/common/PoleIndex.h>
-#include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
+#include "core/common/PoleIndex.h"
+#include "core/common/PoseEstimate.h"
 
 namespace polemcl {
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <optional>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/localization/KldSampleSize.h>
 #include <polemcl/export.h>
+#include "core/common/Binder.h"
+#include "core/localization/KldSampleSize.h"
 
 namespace polemcl {
 

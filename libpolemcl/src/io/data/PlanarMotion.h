@@ -12,7 +12,8 @@ namespace polemcl::io {
 
 /// \brief Composes two motions: `a`, then `b` (given in the robot frame after `a`).
 /// The covariance is propagated to first order; `a` and `b` are assumed independent.
-POLEMCL_EXPORT PlanarMotion composeMotions(const PlanarMotion& a, const PlanarMotion& b);
+POLEMCL_EXPORT PoseWithCovariance composeMotions(const PoseWithCovariance& a,
+                                                 const PoseWithCovariance& b);
 
 /// \brief Minimum standard deviations of noisyMotion(). They keep the covariance of a standing
 /// vehicle positive definite.
@@ -27,7 +28,7 @@ constexpr double motionFloorMetres = 1e-3, motionFloorRadians = 1e-4;
 /// The covariance is diagonal: the variances of the noise plus the variances of the minimum
 /// standard deviations above. No noise is drawn for those minimums.
 /// \param k Relative noise, >= 0. \throws Error when it is negative or not finite.
-POLEMCL_EXPORT PlanarMotion noisyMotion(const Pose2D& trueMotion, double k,
-                                        std::mt19937_64& generator);
+POLEMCL_EXPORT PoseWithCovariance noisyMotion(const Pose2D& trueMotion, double k,
+                                              std::mt19937_64& generator);
 
 }  // namespace polemcl::io

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/localization/LocalSubmap.h>
 #include <polemcl/export.h>
+#include "core/localization/LocalSubmap.h"
 
 namespace polemcl {
 

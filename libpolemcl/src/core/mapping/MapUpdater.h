@@ -9,12 +9,12 @@
 
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/mapping/AlignmentOptions.h>
-#include <polemcl/core/mapping/PoleExistence.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include <polemcl/export.h>
+#include "core/common/Binder.h"
+#include "core/mapping/AlignmentOptions.h"
+#include "core/mapping/PoleExistence.h"
 
 namespace polemcl {
 

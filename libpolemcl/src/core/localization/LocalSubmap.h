@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/localization/OdometryDrift.h>
 #include <polemcl/export.h>
+#include "core/localization/OdometryDrift.h"
 
 namespace polemcl {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/export.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

@@ -6,10 +6,10 @@
 #include <deque>
 #include <vector>
 
-#include <polemcl/core/common/PoseEstimate.h>
-#include <polemcl/core/localization/MapAssociation.h>
-#include <polemcl/export.h>
 #include <polemcl/core/localization/LocalizationUpdate.h>
+#include <polemcl/export.h>
+#include "core/common/PoseEstimate.h"
+#include "core/localization/MapAssociation.h"
 
 namespace polemcl {
 

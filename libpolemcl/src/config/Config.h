@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
 #include <polemcl/export.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

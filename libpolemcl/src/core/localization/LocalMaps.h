@@ -6,10 +6,10 @@
 #include <deque>
 #include <vector>
 
-#include <polemcl/core/common/Binder.h>
-#include <polemcl/core/common/PathSections.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
+#include "core/common/Binder.h"
+#include "core/common/PathSections.h"
 
 namespace polemcl {
 

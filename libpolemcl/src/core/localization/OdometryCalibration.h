@@ -12,10 +12,10 @@
 #include <Eigen/Core>
 #include <deque>
 
-#include <polemcl/core/common/PoseEstimate.h>
 #include <polemcl/core/common/Types.h>
-#include <polemcl/export.h>
 #include <polemcl/core/localization/LocalizationUpdate.h>
+#include <polemcl/export.h>
+#include "core/common/PoseEstimate.h"
 
 namespace polemcl {
 

@@ -12,12 +12,12 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/common/PoseEstimate.h>
-#include <polemcl/export.h>
-#include <polemcl/mrpt/filter/FilterOptions.h>
-#include <polemcl/mrpt/map/CPoleMap.h>
-#include <polemcl/mrpt/rawlog/PoleSequence.h>
 #include <polemcl/core/localization/LocalizationUpdate.h>
+#include <polemcl/export.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
+#include "core/common/PoseEstimate.h"
+#include "mrpt/filter/FilterOptions.h"
+#include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
 
@@ -83,7 +83,7 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   ///         used.
   /// \throws Error before start(); when the time is not later than that of the previous frame; when
   ///         the motion is missing, or rejected by makeMotionAction(). The state is then unchanged.
-  PoseWithCovariance step(const PoleFrame& frame, const NewShares& shares = {});
+  PoseWithCovariance step(const PoleScan& frame, const NewShares& shares = {});
 
   std::vector<Pose2D> particles() const;
   std::vector<double> logWeights() const;  ///< natural logarithms, up to a common constant

@@ -7,16 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include <polemcl/core/common/Deskew.h>
-#include <polemcl/core/global_localization/GlobalLocalizer.h>
-#include <polemcl/core/localization/LocalMaps.h>
-#include <polemcl/core/localization/LocalSubmap.h>
-#include <polemcl/core/localization/LocalizationHealth.h>
-#include <polemcl/core/localization/OdometryCalibration.h>
-#include <polemcl/core/localization/OdometryMonitor.h>
-#include <polemcl/export.h>
-#include <polemcl/mrpt/filter/PoleParticleFilter.h>
 #include <polemcl/core/localization/LocalizationUpdate.h>
+#include <polemcl/export.h>
+#include "core/common/Deskew.h"
+#include "core/global_localization/GlobalLocalizer.h"
+#include "core/localization/LocalMaps.h"
+#include "core/localization/LocalSubmap.h"
+#include "core/localization/LocalizationHealth.h"
+#include "core/localization/OdometryCalibration.h"
+#include "core/localization/OdometryMonitor.h"
+#include "mrpt/filter/PoleParticleFilter.h"
 
 namespace polemcl {
 
@@ -88,7 +88,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
 
   /// \brief Processes the next scan. The motion of the first frame is ignored.
   /// \throws Error as PoleParticleFilter::step(); the state is then unchanged.
-  LocalizationUpdate step(const PoleFrame& frame);
+  LocalizationUpdate step(const PoleScan& frame);
 
   static constexpr double maxStartDistance = 1000;  ///< m
   /// Standard deviation of the velocity during a first scan that does not state it, m/s.
@@ -122,21 +122,21 @@ class POLEMCL_EXPORT LocalizationPipeline {
   /// @}
 
  private:
-  PoleFrame calibrated(PoleFrame frame) const;
-  void calibrate(const io::PlanarMotion& motion, LocalizationUpdate& update);
-  PoleFrame deskewed(PoleFrame frame);
-  PoleFrame checkedMotion(const PoleFrame& frame, LocalizationUpdate& update);
+  PoleScan calibrated(PoleScan frame) const;
+  void calibrate(const PoseWithCovariance& motion, LocalizationUpdate& update);
+  PoleScan deskewed(PoleScan frame);
+  PoleScan checkedMotion(const PoleScan& frame, LocalizationUpdate& update);
   std::vector<PoleDetection> polesForFilter(const Pose2D& motion, const Eigen::Matrix3d& covariance,
                                             const std::vector<PoleDetection>& poles_robot);
   NewShares newShares(double metres) const;
-  void track(const PoleFrame& frame, double metres, LocalizationUpdate& update);
+  void track(const PoleScan& frame, double metres, LocalizationUpdate& update);
   void doubtSubmap();
   bool searchIsDue() const;
-  void search(const PoleFrame& frame, LocalizationUpdate& update);
+  void search(const PoleScan& frame, LocalizationUpdate& update);
   bool agrees(const GlobalHypothesis& place) const;
-  bool fitsBetter(const GlobalHypothesis& place, const PoleFrame& frame) const;
-  std::vector<PoleMatch> match(const PoleFrame& frame, const PoseWithCovariance& pose) const;
-  void adopt(const PoleFrame& frame, bool resolved, LocalizationUpdate& update);
+  bool fitsBetter(const GlobalHypothesis& place, const PoleScan& frame) const;
+  std::vector<PoleMatch> match(const PoleScan& frame, const PoseWithCovariance& pose) const;
+  void adopt(const PoleScan& frame, bool resolved, LocalizationUpdate& update);
 
   LocalizationMap m_map;
   LocalizationOptions m_options;
@@ -148,7 +148,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   OdometryCalibration m_calibration;
   HealthMonitor m_monitor;
   std::optional<Velocity> m_meanVelocity;  ///< of the last motion
-  PoleFrame m_tracked;                     ///< the last frame with the poles given to the filter
+  PoleScan m_tracked;                      ///< the last frame with the poles given to the filter
   GlobalResult m_search;
   std::vector<PoleMatch> m_matches;
   PoseWithCovariance m_estimate;

@@ -23,8 +23,8 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
-#include <polemcl/core/mapping/MapUpdater.h>
 #include <polemcl/export.h>
+#include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 struct AddedSessions;
