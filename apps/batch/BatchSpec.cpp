@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "config/Config.h"
+#include "core/common/Binder.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/InstalledFiles.h"

@@ -17,6 +17,7 @@
 #include "cli/Progress.h"
 #include "cli/Settings.h"
 #include "cli/Version.h"
+#include "core/common/Binder.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {

@@ -2,6 +2,7 @@
 
 #include "cli/Messages.h"
 #include "config/Config.h"
+#include "core/common/Binder.h"
 #include "io/file/InstalledFiles.h"
 
 namespace polemcl::apps {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/common/Binder.h"
 #include "localizer/SettingsValues.h"
 #include "report/scene/ViewOptions.h"
 #include "sim/common/SimulationOptions.h"

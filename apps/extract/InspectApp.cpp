@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "config/Config.h"
+#include "core/common/Binder.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"

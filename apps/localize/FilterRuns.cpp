@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/Progress.h"
+#include "core/common/Binder.h"
 
 namespace polemcl::apps {
 

@@ -11,6 +11,7 @@
 #include "cli/RunFolder.h"
 #include "cli/Settings.h"
 #include "core/common/Angles.h"
+#include "core/common/Binder.h"
 #include "io/data/Trajectory.h"
 #include "io/file/ErrorPlace.h"
 #include "localize/LiveDrive.h"

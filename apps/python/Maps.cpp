@@ -8,6 +8,7 @@
 
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include <polemcl/core/mapping/PoleMapBuilder.h>
+#include "core/common/PoleIndex.h"
 #include "python/Arrays.h"
 #include "python/Classes.h"
 

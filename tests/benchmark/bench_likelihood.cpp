@@ -11,6 +11,7 @@
 #include <polemcl/core/localization/PoleLikelihood.h>
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
+#include "core/common/PoleIndex.h"
 
 using namespace polemcl;
 

@@ -5,6 +5,7 @@
 #include "cli/Settings.h"
 #include "config/Config.h"
 #include "core/common/Angles.h"
+#include "core/common/Binder.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::test_bindings {

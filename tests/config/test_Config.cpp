@@ -8,6 +8,7 @@
 #include <random>
 
 #include "config/Config.h"
+#include "core/common/Binder.h"
 #include "io/file/AtomicFile.h"
 #include "support/ExpectHas.h"
 

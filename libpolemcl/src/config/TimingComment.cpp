@@ -1,6 +1,7 @@
 #include "config/TimingComment.h"
 
 #include "config/Config.h"
+#include "core/common/Binder.h"
 
 namespace polemcl {
 namespace {

@@ -1,5 +1,6 @@
 #include <polemcl/localizer/Settings.h>
 #include "config/Config.h"
+#include "core/common/Binder.h"
 #include "localizer/SettingsValues.h"
 
 namespace polemcl {

@@ -5,6 +5,7 @@
 
 #include "cli/CommandLine.h"
 #include "cli/Settings.h"
+#include "core/common/Binder.h"
 
 namespace polemcl::test_print_config {
 

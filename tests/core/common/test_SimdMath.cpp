@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <polemcl/core/localization/PoleLikelihood.h>
+#include "core/common/PoleIndex.h"
 #include "core/common/SimdMath.h"
 
 namespace polemcl::test_simd_math {

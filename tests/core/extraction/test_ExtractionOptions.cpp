@@ -7,6 +7,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/extraction/ExtractionOptions.h>
+#include "core/common/Binder.h"
 
 namespace polemcl::test_extraction_options {
 

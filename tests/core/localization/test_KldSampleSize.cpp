@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/common/Binder.h"
 #include "core/localization/KldSampleSize.h"
 
 namespace polemcl::test_kld_sample_size {

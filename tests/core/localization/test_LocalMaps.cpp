@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/common/Binder.h"
 #include "core/localization/LocalMaps.h"
 
 namespace polemcl::test_local_maps {

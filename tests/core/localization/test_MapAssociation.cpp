@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/common/PoleIndex.h"
 #include "core/localization/MapAssociation.h"
 
 namespace polemcl::test_map_association {

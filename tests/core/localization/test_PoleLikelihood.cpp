@@ -7,6 +7,8 @@
 #include <random>
 
 #include <polemcl/core/localization/PoleLikelihood.h>
+#include "core/common/Binder.h"
+#include "core/common/PoleIndex.h"
 
 namespace polemcl::test_pole_likelihood {
 

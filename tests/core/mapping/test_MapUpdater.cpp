@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/common/Binder.h"
 #include "core/mapping/MapSession.h"
 #include "core/mapping/MapUpdater.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <polemcl/core/mapping/PoleMapBuilder.h>
+#include "core/common/Binder.h"
 
 namespace polemcl::test_pole_map_paper {
 

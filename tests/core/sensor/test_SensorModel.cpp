@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/common/Binder.h"
 #include "core/sensor/SensorModel.h"
 #include "support/Clouds.h"
 

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "config/Config.h"
+#include "core/common/Binder.h"
 #include "mrpt/filter/FilterOptions.h"
 
 namespace polemcl::test_filter_options {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/common/Binder.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
 

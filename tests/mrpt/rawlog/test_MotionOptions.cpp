@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/common/Binder.h"
 #include "mrpt/rawlog/MotionOptions.h"
 
 namespace polemcl::test_motion_options {

@@ -3,6 +3,7 @@
 /// \brief The keys of `[range_image]` and `[scan_line]` in sections of other names.
 
 #include <polemcl/core/extraction/ExtractionOptions.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

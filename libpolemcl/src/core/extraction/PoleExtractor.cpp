@@ -3,8 +3,10 @@
 #include <optional>
 
 #include <polemcl/core/extraction/PoleExtractor.h>
+#include "core/common/Binder.h"
 #include "core/extraction/range_image/RangeImageExtractor.h"
 #include "core/extraction/scan_line/ScanLineExtractor.h"
+#include "core/sensor/PinholeCamera.h"
 
 namespace polemcl {
 

@@ -5,13 +5,13 @@
 
 #include "core/common/KdTree2D.h"
 #include "core/common/PoleGrid.h"
+#include "core/common/PoleIndex.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/localization/LikelihoodKernels.cpp"
+#include <hwy/contrib/math/math-inl.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
-#include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace polemcl {

@@ -5,6 +5,7 @@
 
 #include "core/common/GreedyAssignment.h"
 #include "core/common/KdTree2D.h"
+#include "core/common/PoleIndex.h"
 #include "core/common/Transform.h"
 
 namespace polemcl {

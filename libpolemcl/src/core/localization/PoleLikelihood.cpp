@@ -2,6 +2,8 @@
 #include <optional>
 
 #include <polemcl/core/localization/PoleLikelihood.h>
+#include "core/common/Binder.h"
+#include "core/common/PoleIndex.h"
 #include "core/common/PrincipalAxes.h"
 #include "core/localization/LikelihoodKernels.h"
 

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/common/Binder.h"
 #include "core/common/KdTree2D.h"
 
 namespace polemcl {

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/common/Binder.h"
 #include "core/common/Covariance.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include <polemcl/core/mapping/PoleMapBuilder.h>
+#include "core/common/Binder.h"
 #include "core/common/PathSections.h"
 #include "core/mapping/BoxMerging.h"
 #include "core/mapping/DetectionToMap.h"

@@ -3,6 +3,7 @@
 /// \brief The keys of `[sensor]` in a section of another name.
 
 #include <polemcl/core/sensor/SensorOptions.h>
+#include "core/common/Binder.h"
 
 namespace polemcl {
 

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "core/common/Angles.h"
+#include "core/common/Binder.h"
+#include "core/sensor/PinholeCamera.h"
 
 namespace polemcl {
 namespace {

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/common/Binder.h"
 #include "core/localization/PoseModes.h"
 #include "mrpt/filter/MotionAction.h"
 

@@ -9,6 +9,7 @@
 
 #include <polemcl/core/localization/LocalizationUpdate.h>
 #include <polemcl/export.h>
+#include "core/common/Binder.h"
 #include "core/common/Deskew.h"
 #include "core/global_localization/GlobalLocalizer.h"
 #include "core/localization/LocalMaps.h"

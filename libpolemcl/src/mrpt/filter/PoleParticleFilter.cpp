@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/common/Binder.h"
 #include "core/common/SimdMath.h"
 #include "mrpt/filter/MotionAction.h"
 #include "mrpt/filter/ParticleDraws.h"

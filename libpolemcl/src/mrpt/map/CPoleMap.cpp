@@ -8,6 +8,7 @@
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include "core/common/Covariance.h"
+#include "core/common/PoleIndex.h"
 #include "core/common/Transform.h"
 #include "core/mapping/IncrementalMerge.h"
 #include "io/file/ReadLimits.h"

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "core/common/PoleIndex.h"
 
 namespace polemcl {
 

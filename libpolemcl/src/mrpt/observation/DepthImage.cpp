@@ -8,6 +8,7 @@
 #include <string>
 
 #include <polemcl/core/common/Types.h>
+#include "core/sensor/PinholeCamera.h"
 
 namespace polemcl {
 

@@ -7,6 +7,7 @@
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "core/common/Transform.h"
 #include "core/extraction/VisibilityRange.h"
+#include "core/sensor/PinholeCamera.h"
 #include "core/sensor/PointOrder.h"
 #include "core/sensor/SensorConfigCheck.h"
 #include "mrpt/common/MrptReason.h"

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/common/Binder.h"
+
 namespace polemcl {
 
 Eigen::Matrix3d motionCovariance(const Pose2D& motion, const MotionOptions& options) {

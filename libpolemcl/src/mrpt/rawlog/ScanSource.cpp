@@ -14,6 +14,7 @@
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "config/TimingComment.h"
+#include "core/common/Binder.h"
 #include "core/common/Covariance.h"
 #include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/observation/ScanFusion.h"

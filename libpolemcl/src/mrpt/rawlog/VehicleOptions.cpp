@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/common/Angles.h"
+#include "core/common/Binder.h"
 #include "core/extraction/ExtractionKeys.h"
 #include "core/sensor/SensorKeys.h"
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/common/Binder.h"
 #include "io/file/ErrorPlace.h"
 
 namespace polemcl::report {

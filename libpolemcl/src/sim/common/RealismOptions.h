@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/common/Binder.h"
+
 namespace polemcl {
 class Binder;
 }

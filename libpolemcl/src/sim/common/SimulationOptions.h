@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/common/Binder.h"
 #include "sim/common/RealismOptions.h"
 
 namespace polemcl {
