@@ -122,7 +122,7 @@ LocalizationUpdate LocalizationPipeline::step(const PoleScan& seen) {
   if (!m_started)
     throw Error(
         "the localization has not been started: call start() or initializeGlobally() first");
-  actionTo(seen, m_stepped ? std::optional(m_time) : std::nullopt, m_options.filter);  // checks
+  requireStep(seen, m_stepped ? std::optional(m_time) : std::nullopt);
   LocalizationUpdate update;
   update.time = seen.time;
   const PoleScan frame = checkedMotion(deskewed(calibrated(seen)), update);

@@ -44,13 +44,17 @@ void requireCertain(const Eigen::Matrix3d& covariance) {
   throw Error(text.str());
 }
 
+void requireMotion(const PoseWithCovariance& motion) {
+  requireFinite(motion);
+  requireCovariance(motion.covariance);
+  requireCertain(motion.covariance);
+}
+
 }  // namespace
 
 mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& motion,
                                                    const FilterOptions& options) {
-  requireFinite(motion);
-  requireCovariance(motion.covariance);
-  requireCertain(motion.covariance);
+  requireMotion(motion);
   // MRPT's sampler takes roots of eigenvalues. The floor of 1 µm and 1 µrad keeps rounding errors
   // from making them negative.
   const double xy = options.extraSigma * options.extraSigma + 1e-12;
@@ -66,17 +70,16 @@ mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& mot
   return action;
 }
 
-mrpt::obs::CActionCollection::Ptr actionTo(const PoleScan& frame, std::optional<double> before,
-                                           const FilterOptions& options) {
-  const std::string when = std::to_string(frame.time) + " s";
-  if (!std::isfinite(frame.time) || (before && frame.time <= *before))
+void requireStep(const PoleScan& scan, std::optional<double> before) {
+  const std::string when = std::to_string(scan.time) + " s";
+  if (!std::isfinite(scan.time) || (before && scan.time <= *before))
     throw Error("time does not increase: a scan at " + when + " comes after one at " +
                 std::to_string(before.value_or(0)) + " s");
-  if (!before) return nullptr;
-  if (!frame.motion)
+  if (!before) return;
+  if (!scan.motion)
     throw Error("no motion leads to the scan at " + when + ": the filter needs odometry");
   try {
-    return makeMotionAction(*frame.motion, options);
+    requireMotion(*scan.motion);
   } catch (const Error& error) {
     throw Error("scan at " + when + ": " + error.what());
   }

@@ -27,11 +27,10 @@ constexpr double maxMotionStep = 10000;
 mrpt::obs::CActionCollection::Ptr makeMotionAction(const PoseWithCovariance& motion,
                                                    const FilterOptions& options);
 
-/// \brief The action that leads to a frame; null for the first frame, whose motion is ignored.
-/// \param before Time of the frame before, s; nullopt for the first frame.
+/// \brief Checks the time of a scan and the motion to it; the first scan needs no motion.
+/// \param before Time of the scan before, s; nullopt for the first one.
 /// \throws Error when the time is not later than `before`, or the motion is missing; also as
-///         makeMotionAction(), with the time of the frame.
-mrpt::obs::CActionCollection::Ptr actionTo(const PoleScan& frame, std::optional<double> before,
-                                           const FilterOptions& options);
+///         makeMotionAction(), with the time of the scan.
+void requireStep(const PoleScan& scan, std::optional<double> before);
 
 }  // namespace polemcl

@@ -151,21 +151,18 @@ void PoleParticleFilter::begin(int particles) {
 
 PoseWithCovariance PoleParticleFilter::step(const PoleScan& frame, const NewShares& shares) {
   if (!m_started) throw Error("the filter has no particles yet: call start() first");
-  const auto action = actionTo(frame, m_time, m_options);
-  m_newShares = shares;
+  requireStep(frame, m_time);
   const auto observation = CObservationPoles::Create();
   observation->poles = frame.poles_robot;  // sensorPose stays identity: robot frame
+  // For no particles at all: refuses bad detections before anything changes.
+  std::vector<std::vector<double>> none;
+  m_map->widenedLogLikelihoods(*observation, m_map->likelihoodOptions, {}, {1}, none);
   mrpt::obs::CSensoryFrame scan;
   scan.insert(observation);
-
+  const auto action = m_time ? makeMotionAction(*frame.motion, m_options) : nullptr;
+  m_newShares = shares;
   const GeneratorLoan loan(m_generator);
-  m_failure = nullptr;
-  try {
-    m_filter.executeOn(*this, action.get(), &scan);
-  } catch (...) {  // MRPT replaces exceptions of its steps by a text without its beginning
-    if (m_failure) std::rethrow_exception(m_failure);
-    throw;
-  }
+  m_filter.executeOn(*this, action.get(), &scan);
   m_time = frame.time;
   return m_estimate;
 }
@@ -178,7 +175,7 @@ void PoleParticleFilter::prediction_and_update_pfStandardProposal(
   if (observation)
     for (const auto& part : *observation)
       if (const auto* poles = dynamic_cast<const CObservationPoles*>(part.get()))
-        updateRemembering(*poles, mrptOptions);
+        update(*poles, mrptOptions);
   // Estimate now: executeOn() resamples next, which erases the weights.
   const std::vector<double> weights = logWeights();
   m_report.effectiveShare = effectiveShare(weights);
@@ -285,16 +282,6 @@ std::optional<std::size_t> PoleParticleFilter::narrowestDense(
   std::size_t k = widenings.size();
   while (k > 0 && areDense(poses, sigma * widenings[k - 1])) --k;
   return k < widenings.size() ? std::optional(k) : std::nullopt;
-}
-
-void PoleParticleFilter::updateRemembering(
-    const CObservationPoles& scan, const CParticleFilter::TParticleFilterOptions& filterOptions) {
-  try {
-    update(scan, filterOptions);
-  } catch (...) {
-    m_failure = std::current_exception();
-    throw;
-  }
 }
 
 void PoleParticleFilter::addToLogWeights(const std::vector<double>& values) {

@@ -7,7 +7,6 @@
 #include <mrpt/slam/CMonteCarloLocalization2D.h>
 
 #include <cstdint>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,8 +20,8 @@
 
 namespace polemcl {
 
-/// \brief How much of what the poles of a frame say the frames before have not said: shares from 0
-/// to 1.
+/// \brief Shares, from 0 to 1, of the information in a scan that is new: the scans before have
+/// not brought it.
 struct NewShares {
   double chance = 1;  ///< poles without a match: power of LikelihoodOptions::farOutlier
   double all = 1;     ///< all poles: factor on their log likelihoods
@@ -82,7 +81,8 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   /// \return The estimate at FilterOptions::estimateTime, with the covariance of the particles
   ///         used.
   /// \throws Error before start(); when the time is not later than that of the previous frame; when
-  ///         the motion is missing, or rejected by makeMotionAction(). The state is then unchanged.
+  ///         the motion is missing, or rejected by makeMotionAction(); as logLikelihoods() of the
+  ///         map. The state is then unchanged.
   PoseWithCovariance step(const PoleScan& frame, const NewShares& shares = {});
 
   std::vector<Pose2D> particles() const;
@@ -116,9 +116,6 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
                const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
   void update(const CObservationPoles& scan,
               const mrpt::bayes::CParticleFilter::TParticleFilterOptions& mrptOptions);
-  /// \brief As update(); keeps a thrown exception for step().
-  void updateRemembering(const CObservationPoles& scan,
-                         const mrpt::bayes::CParticleFilter::TParticleFilterOptions& options);
   PoseWithCovariance estimate(const std::vector<double>& weights) const;
   void addToLogWeights(const std::vector<double>& values);
   /// \brief Whether enough effective particles remain with these values added to the log weights.
@@ -141,7 +138,6 @@ class POLEMCL_EXPORT PoleParticleFilter : public mrpt::slam::CMonteCarloLocaliza
   NewShares m_newShares;         ///< of the frame in step()
   PoseWithCovariance m_estimate;
   StepReport m_report;
-  std::exception_ptr m_failure;
 };
 
 }  // namespace polemcl
