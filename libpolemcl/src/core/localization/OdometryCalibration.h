@@ -6,8 +6,8 @@
 /// read. A Kalman filter keeps both errors as slowly varying states (random walks over the distance
 /// travelled). Motions are corrected by its estimate, and its uncertainty is added to theirs: a
 /// wrong wheel radius is thus no surprise to the particle filter. Errors common to successive
-/// motions add up; as a filter takes motions for independent, so much is added to each that their
-/// sum over 3 m is right.
+/// motions add up, but a particle filter takes motions as independent. The variance of each motion
+/// is therefore increased, so that the variance of their sum over 3 m is right.
 
 #include <Eigen/Core>
 #include <deque>

@@ -54,9 +54,9 @@ POLEMCL_EXPORT double survived(double existence, double seconds, double lifetime
 class POLEMCL_EXPORT ExistenceLikelihood {
  public:
   /// \param along Way travelled to the scan, m; never less than before.
-  /// \param hidden Something stands before the place. Such scans count with a small chance, and
-  /// only if one of them found the pole: then those that did not find it must count as well. They
-  /// never count as missed().
+  /// \param hidden Something stands before the place. Such scans count with a small chance of
+  /// detection. They count only if one of them found the pole; then all of them do, also those
+  /// that did not find it. They never count as missed().
   void add(bool found, double along, double chance, bool hidden = false);
   std::uint32_t found() const { return m_found; }
   std::uint32_t missed() const { return m_missed; }
