@@ -29,8 +29,8 @@ struct StepReport {
   bool resampled = false;     ///< whether resampling took place after the update
 };
 
-/// \brief How much of what the poles of a frame say the frames before have not said: shares from 0
-/// to 1.
+/// \brief Share of a frame's information that is new. Frames that follow each other closely see the
+/// same poles with the same errors, so they count less than once. Each share is from 0 to 1.
 struct NewShares {
   double chance = 1;  ///< poles without a match: power of LikelihoodOptions::farOutlier
   double all = 1;     ///< all poles: factor on their log likelihoods
