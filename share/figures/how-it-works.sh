@@ -42,7 +42,7 @@ street october 152 800 simulation.detour=1
   --truth "$out/october.tum" --output "$out/run" --seed 1 --global --frames "$out/frames" --frame-every 10 >/dev/null
 cp "$out/frames/000010.png" "$pictures/particles.png"
 python3 "$top/share/figures/plots.py" health "$out/run/run_00_health.csv" "$pictures/health.svg"
-python3 "$top/share/figures/plots.py" year "$top/share/reports/year-2026-11-23.json" "$pictures/year.svg"
+python3 "$top/share/figures/plots.py" year "$top/share/reports/year.json" "$pictures/year.svg"
 
 street first_may 0 400
 street next_may 365 400

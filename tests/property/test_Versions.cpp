@@ -39,8 +39,7 @@ TEST(Versions, AreTheSameEverywhere) {
   EXPECT_EQ(firstMatch("share/doc/cite.md", R"(version = \{([^}]*)\})"), version);
   EXPECT_EQ(firstMatch("tests/install/packages.sh", R"(libpolemcl(\d\S*))"), minorVersion);
   EXPECT_EQ(firstMatch("share/doc/programs.md", R"(`libpolemcl(\d[^`]*)`)"), minorVersion);
-  EXPECT_EQ(firstMatch("share/doc/compatibility.md", R"(`libpolemcl\.so\.(\d[^`]*)`)"),
-            minorVersion);
+  EXPECT_EQ(firstMatch("share/doc/files.md", R"(`libpolemcl\.so\.(\d[^`]*)`)"), minorVersion);
 }
 
 // Later versions are tried on the files of this one: share/doc/releasing.md.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Reads the files that releases wrote (tests/releases/VERSION, made by write.sh) with the programs of today:
-# maps, drives, settings and results, as share/doc/compatibility.md promises.
+# maps, drives, settings and results, as share/doc/files.md promises.
 # Usage: tests/releases/run.sh [FOLDER]     Programs: build/bin, or POLEMCL_BIN. Needs python3.
 #   FOLDER  only these files, which this version wrote on another system (write.sh); the values must be the same, too
 set -eu

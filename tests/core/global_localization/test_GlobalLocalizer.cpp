@@ -88,7 +88,7 @@ Count starts(const CityOptions& options, int count, const DriveOptions& driveOpt
   return result;
 }
 
-/// Read from the XML report for share/doc/global.md.
+/// Read from the XML report for share/reports/BENCHMARK.md.
 void record(const Count& count) {
   testing::Test::RecordProperty("right", count.right);
   testing::Test::RecordProperty("wrong", count.wrong);

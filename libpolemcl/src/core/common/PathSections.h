@@ -12,10 +12,11 @@ namespace polemcl {
 
 /// \brief Middles and ends of sections, as a vehicle passes them one scan after the other.
 ///
-/// The rule of the first implementation: the middle of section n is the first scan at or past
-/// n + 1/2 sections of the path, its end the first scan past n + 1. A scan is the middle of one
-/// section at most. So where scans are farther apart than a section is long, each scan is a middle,
-/// and the sections left behind are made up for later, by a standing vehicle too.
+/// This is the rule of the first implementation. The middle of section n is the first scan at or
+/// past n + 1/2 sections of the path. The end of section n is the first scan past n + 1. A scan is
+/// the middle of at most one section. Scans may be farther apart than a section is long: then each
+/// scan is a middle, and the count of sections falls behind. Later scans catch up, one section
+/// each, also while the vehicle stands.
 class POLEMCL_EXPORT SectionMarks {
  public:
   /// \param length Length of a section, > 0, m.
@@ -60,9 +61,9 @@ POLEMCL_EXPORT PathSections splitPath(const std::vector<Pose2D>& poses,
                                       const std::vector<std::uint32_t>& drives,
                                       double sectionLength, const std::vector<bool>& used = {});
 
-/// \brief The same by SectionMarks: a section has one scan, its middle, and is there only if its
-/// end was reached. All steps between poses add to the distance, the jitter of a vehicle that
-/// stands too.
+/// \brief Splits the distance travelled by the rule of SectionMarks. A section has one scan, its
+/// middle. A section whose end was not reached is left out. All steps between poses add to the
+/// distance, also the jitter of a standing vehicle.
 POLEMCL_EXPORT PathSections passSections(const std::vector<Pose2D>& poses,
                                          const std::vector<std::uint32_t>& drives,
                                          double sectionLength, const std::vector<bool>& used = {});

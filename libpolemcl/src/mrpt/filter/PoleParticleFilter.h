@@ -20,8 +20,8 @@
 
 namespace polemcl {
 
-/// \brief Shares, from 0 to 1, of the information in a scan that is new: the scans before have
-/// not brought it.
+/// \brief Share of a frame's information that is new. Frames that follow each other closely see the
+/// same poles with the same errors, so they count less than once. Each share is from 0 to 1.
 struct NewShares {
   double chance = 1;  ///< poles without a match: power of LikelihoodOptions::farOutlier
   double all = 1;     ///< all poles: factor on their log likelihoods

@@ -28,7 +28,7 @@ struct SequenceOptions {
   ObservationPoleExtractorOptions extraction;
   MotionOptions motion;
   bool allowTruncated = false;
-  double follow = 0;  ///< how long the end of a rawlog that still grows is waited at for more, s
+  double follow = 0;  ///< s; reading ends when a rawlog has not grown for this time
   int threads = 0;    ///< extracting, at most one per core; 0: that many. The result is the same
   /// Sets the pace of the input. Called in order with the time (s) of each scan that has been read,
   /// from one thread at a time; may wait. Returns the moment at which the scan counts as there.
@@ -79,8 +79,9 @@ struct ReadScan {
   /// Motion since the previous scan, in its robot frame. Identity without covariance for the first
   /// scan; nullopt if the rawlog has no odometry in between.
   std::optional<PoseWithCovariance> motion;
-  /// Velocity at the time of the scan, where the motions up to it do not tell: for the first scan
-  /// that on the way to the second, and where there are odometry readings around a scan.
+  /// Velocity at the time of the scan, where it is known better than from the motion before. The
+  /// first scan has the velocity on the way to the second. Odometry readings around a scan also
+  /// give it.
   std::optional<Velocity> velocity;
   CObservationPoles::Ptr observation;  ///< never null
   /// Sources of the poles; their points may still be in external files. Several if LiDARs were

@@ -1,7 +1,7 @@
 #pragma once
 /// \file DetectionModel.h
 /// \brief Statistical model of an extractor's detections. It replaces ray casting and pole
-/// extraction on long drives. share/doc/drawn.md describes it.
+/// extraction on long drives. share/doc/simulation.md describes it.
 
 #include <array>
 #include <filesystem>

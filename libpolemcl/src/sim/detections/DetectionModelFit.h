@@ -23,7 +23,7 @@ struct ObservedStreet {
   ObservedDrive first, second;
 };
 
-/// \brief Fits all parts of the model by counting (share/doc/drawn.md). Detections within 0.5
+/// \brief Fits all parts of the model by counting (share/doc/simulation.md). Detections within 0.5
 /// m of a true pole belong to this pole. Other detections are clutter if three or more fall on one
 /// place.
 /// \param maxRange Range of the extraction, m. \param fittedOn Description for humans.

@@ -29,7 +29,8 @@ struct Pose2D {
   double yaw = 0;
 };
 
-/// \brief base ⊕ other: the pose `other`, given in the frame `base`, in the parent frame of `base`.
+/// \brief Composition `base ⊕ other`. \param other In the frame of `base`.
+/// \return The same pose in the frame in which `base` is given.
 POLEMCL_EXPORT Pose2D compose(const Pose2D& base, const Pose2D& other);
 /// \brief The pose `to` expressed in the frame of `from` (⊖).
 POLEMCL_EXPORT Pose2D relative(const Pose2D& from, const Pose2D& to);
