@@ -4,6 +4,8 @@
 
 #include <polemcl/io/data/Cloud.h>
 #include <polemcl/localizer/Localizer.h>
+#include <polemcl/localizer/MapBuilder.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
 #include "map/MapApp.h"
 #include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
@@ -139,6 +141,37 @@ TEST_F(StreetTest, PointsBecomePoses) {
     EXPECT_NEAR(update.estimate->mean.x, truth[i].pose.x, 0.1);
     EXPECT_NEAR(update.estimate->mean.y, truth[i].pose.y, 0.1);
   }
+}
+
+TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
+  constexpr std::size_t number = 12;
+  writeStreet(folder / "in", number);
+  import("in");
+  const Outcome mapped =
+      runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--truth",
+                           at("in.tum"), "--output", at("map.polemap")});
+  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  const auto truth = io::planar(io::readTum(folder / "in.tum"));
+  MapBuilder builder{Settings(config())};
+  EXPECT_HAS(messageOf([&] { builder.save(folder / "none.polemap"); }), "no pole found in 0 scans");
+  for (std::size_t i = 0; i < number; ++i)
+    builder.add(truth[i].time, io::readKittiBin(folder / "in" / "velodyne" / scanName(i)).view(),
+                truth[i].pose);
+  builder.save(folder / "own.polemap");
+  CPoleMap expected, own;
+  expected.loadFromPoleMapFile(at("map.polemap"));
+  own.loadFromPoleMapFile(at("own.polemap"));
+  ASSERT_GE(own.poles().size(), 4u);
+  ASSERT_EQ(own.poles().size(), expected.poles().size());
+  for (std::size_t i = 0; i < own.poles().size(); ++i) {
+    EXPECT_EQ(own.poles()[i].x, expected.poles()[i].x);
+    EXPECT_EQ(own.poles()[i].count, expected.poles()[i].count);
+  }
+  const auto wrong = [&](double time, double x) {
+    return messageOf([&] { builder.add(time, {}, {x, 0, 0}); });
+  };
+  EXPECT_HAS(wrong(truth[0].time, 0), "time does not increase: scan 12");
+  EXPECT_HAS(wrong(truth.back().time + 1, NAN), "pose of scan 12: x, y and yaw must be finite");
 }
 
 }  // namespace polemcl::test_localizer
