@@ -1,29 +1,95 @@
 #!/bin/sh
 # Installs what is missing, builds, and runs every test.
-# Usage: tests/run.sh [--quick | --full]
-#   --quick  runs the unit tests only: less than a minute after the build
-#   --full   also checks format, spelling and clang-tidy, opens scenes in MRPT's viewer, tries batches
-#            on a Slurm cluster of its own (as root), runs both commands and tries the packages in an
-#            empty Debian 13 and 12 (as root), builds and checks the documentation site, builds with
-#            clang, and runs the tests again under the address and undefined-behaviour sanitizers
+# Usage: tests/run.sh [--quick | --full | STEP...]
+#   --quick   the unit tests only: less than a minute after the build
+#   --full    all steps, which take hours
+#   lint      format, spelling, ends of lines and files
+#   unit      the unit tests
+#   test      all tests, files of earlier releases, the installed programs and examples
+#   tidy      clang-tidy
+#   viewers   scenes in MRPT's viewer
+#   slurm     batches on a Slurm cluster of its own (as root)
+#   debian    both commands and the packages in an empty Debian 13 and 12 (as root)
+#   site      the documentation site
+#   clang     a build with clang
+#   sanitize  the tests under the address and undefined-behaviour sanitizers
+#   coverage  lines and branches that the tests reach, room by room
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 
-how=all
+usage() {
+  sed -n '2,17s/^# //p' "$0"
+  exit "$1"
+}
+
+# Usage: run_tests BUILD_FOLDER [options of ctest]
+run_tests() {
+  build=$1
+  shift
+  [ -n "${POLEMCL_DATA-}" ] || echo "POLEMCL_DATA is not set: tests on real scans will be skipped"
+  ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)" "$@"
+}
+
+build() {
+  "$top/share/setup/build.sh" "$1" all
+}
+
+lint() {
+  "$top/tests/lint.sh" format spelling files
+}
+
+unit() {
+  build ci
+  run_tests "$top/build" --label-regex '^unit$'
+}
+
+all_tests() {
+  build ci
+  run_tests "$top/build"
+  "$top/tests/releases/run.sh"
+  "$top/tests/install/run.sh" "$top/build"
+}
+
+sanitize() {
+  build sanitize
+  # Fontconfig, which Cairo uses for texts, keeps some memory for good; MRPT loses map definitions,
+  # and a filter of packets for each PCAP file that it opens.
+  printf 'leak:libfontconfig\nleak:TSetOfMetricMapInitializers\nleak:libpcap\n' >"$top/build-sanitize/leaks.txt"
+  # GCC 12's leak sanitizer reads wrong sizes of thread-local storage in loaded libraries, and crashes.
+  LSAN_OPTIONS="suppressions=$top/build-sanitize/leaks.txt" ASAN_OPTIONS=intercept_tls_get_addr=0 \
+    run_tests "$top/build-sanitize"
+}
+
+run_step() {
+  case $1 in
+    lint | unit | sanitize) "$1" ;;
+    test) all_tests ;;
+    tidy) "$top/tests/lint.sh" tidy ;;
+    viewers | slurm | site) "$top/tests/$1/run.sh" ;;
+    debian)
+      "$top/tests/install/commands.sh" trixie
+      "$top/tests/install/commands.sh" bookworm
+      ;;
+    clang) build clang ;;
+    coverage) "$top/tests/coverage.sh" ;;
+  esac
+}
+
 case "$#:${1-}" in
-  0:) ;;
-  1:--quick) how=quick ;;
-  1:--full) how=full ;;
-  1:-h | 1:--help)
-    sed -n '2,9s/^# //p' "$0"
-    exit 0
-    ;;
-  *)
-    echo "usage: tests/run.sh [--quick | --full]" >&2
-    exit 2
-    ;;
+  0:) set -- test ;;
+  1:--quick) set -- unit ;;
+  1:--full) set -- lint test tidy viewers slurm debian site clang sanitize coverage ;;
+  1:-h | 1:--help) usage 0 ;;
 esac
+packages=
+for step in "$@"; do
+  case $step in
+    unit | test | sanitize) ;;
+    lint | tidy | viewers | slurm | debian | site | clang | coverage) packages=full ;;
+    *) usage 2 >&2 ;;
+  esac
+done
 
 if [ -n "${POLEMCL_DATA-}" ]; then
   POLEMCL_DATA=$(cd "$POLEMCL_DATA" && pwd) || {
@@ -31,45 +97,7 @@ if [ -n "${POLEMCL_DATA-}" ]; then
     exit 1
   }
   export POLEMCL_DATA
-elif [ "$how" != quick ]; then
-  echo "POLEMCL_DATA is not set: tests on real scans will be skipped"
 fi
-
-# Usage: run_tests BUILD_FOLDER [options of ctest]
-run_tests() {
-  build=$1
-  shift
-  ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)" "$@"
-}
-
-"$top/share/setup/install.sh"
-if [ "$how" = full ]; then
-  "$top/share/setup/install.sh" full
-  "$top/tests/lint.sh" format spelling files
-fi
-"$top/share/setup/build.sh" ci all
-case $how in
-  quick) run_tests "$top/build" --label-regex '^unit$' ;;
-  *)
-    run_tests "$top/build"
-    "$top/tests/releases/run.sh"
-    "$top/tests/install/run.sh" "$top/build"
-    ;;
-esac
-
-if [ "$how" = full ]; then
-  "$top/tests/lint.sh" tidy
-  "$top/tests/viewers/run.sh"
-  "$top/tests/slurm/run.sh"
-  "$top/tests/install/commands.sh" trixie
-  "$top/tests/install/commands.sh" bookworm
-  "$top/tests/site/run.sh"
-  "$top/share/setup/build.sh" clang all
-  "$top/share/setup/build.sh" sanitize all
-  # Fontconfig, which Cairo uses for texts, keeps some memory for good; MRPT loses map definitions,
-  # and a filter of packets for each PCAP file that it opens.
-  printf 'leak:libfontconfig\nleak:TSetOfMetricMapInitializers\nleak:libpcap\n' >"$top/build-sanitize/leaks.txt"
-  # GCC 12's leak sanitizer reads wrong sizes of thread-local storage in loaded libraries, and crashes.
-  LSAN_OPTIONS="suppressions=$top/build-sanitize/leaks.txt" ASAN_OPTIONS=intercept_tls_get_addr=0 \
-    run_tests "$top/build-sanitize"
-fi
+# shellcheck disable=SC2086 # one word or none
+"$top/share/setup/install.sh" $packages
+for step in "$@"; do run_step "$step"; done

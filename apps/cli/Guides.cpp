@@ -70,7 +70,7 @@ const std::map<std::string, Guide> s_guides{
     {"pole-map convert",
      {{"pole-map convert street.polemap --output street.csv",
        "pole-map convert street.polemap --output street.geojson --datum 52.5,13.4,90"},
-      "Tables open in a spreadsheet, .npz in NumPy, .geojson in QGIS."}},
+      "Tables open in a spreadsheet, .geojson in QGIS."}},
     {"pole-map import",
      {{"pole-map import --input district.osm --keep kind=lamp kind=tree --sigma-m 1 --output "
        "city.polemap",

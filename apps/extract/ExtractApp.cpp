@@ -19,7 +19,7 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr int reasons = static_cast<int>(RejectionReason::count_);
+constexpr int kReasons = static_cast<int>(RejectionReason::count_);
 
 void writeRows(std::ostream& out, const ReadScan& scan) {
   for (const auto& pole : scan.observation->polesInRobotFrame()) {
@@ -118,7 +118,7 @@ void print(const ExtractSummary& summary, const ExtractOptions& options) {
   std::cout << "points: " << sum.points << ", invalid " << sum.invalid << ", out of view "
             << sum.outOfView << ", out of range " << sum.outOfRange << '\n'
             << "candidates: " << sum.candidates;
-  for (int i = 0; i < reasons; ++i)
+  for (int i = 0; i < kReasons; ++i)
     if (sum.refused[i] > 0)
       std::cout << ", " << name(static_cast<RejectionReason>(i)) << ' ' << sum.refused[i];
   std::cout << '\n';

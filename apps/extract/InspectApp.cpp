@@ -14,8 +14,8 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double s_movingArc = 10 * M_PI / 180;  ///< rad; wider than lasers of one firing differ
-constexpr double s_usualDistance = 0.08;         ///< m; see share/doc/motion.md
+constexpr double kMovingArc = 10 * M_PI / 180;  ///< rad; wider than lasers of one firing differ
+constexpr double kUsualDistance = 0.08;         ///< m; see share/doc/motion.md
 
 std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians * 180 / M_PI, digits);
@@ -107,14 +107,14 @@ void printCut(std::ostream& out, const ScanTiming& timing, double arc) {
   else
     out << ", cut at " << degrees(timing.cut, 0) << " deg";
   out << ", stamped in the middle of the turn";
-  if (!timing.movingCut && arc > s_movingArc)
+  if (!timing.movingCut && arc > kMovingArc)
     out << "\n                  but the scans begin at points " << degrees(arc, 0)
         << " deg apart: no single cut fits them";
 }
 
 const char* judged(double distance) {
-  return distance > s_usualDistance ? " (below 0.08 m is usual: poses, clock or timing are off)"
-                                    : " (below 0.08 m is usual)";
+  return distance > kUsualDistance ? " (below 0.08 m is usual: poses, clock or timing are off)"
+                                   : " (below 0.08 m is usual)";
 }
 
 void printTiming(std::ostream& out, const Inspection& inspection) {
@@ -183,12 +183,12 @@ std::optional<TimingEstimate> findTiming(const InspectOptions& options, AllSetti
 /// agree.
 std::optional<TimingEstimate> findTiming(const InspectOptions& options, const Inspection& found,
                                          const ScanProgress& progress) {
-  constexpr double nearBegin = M_PI / 6;  // cuts are searched in steps of half of it
+  constexpr double kNearBegin = M_PI / 6;  // cuts are searched in steps of half of it
   const AllSettings settings = settingsFor(found);
-  if (beginArc(found.sensor.orders) > s_movingArc) {
+  if (beginArc(found.sensor.orders) > kMovingArc) {
     auto moving = findTiming(options, settings, true, progress);
     if (moving && moving->timing.turn == found.sensor.orders.front().turn &&
-        std::abs(std::remainder(moving->timing.cut, 2 * M_PI)) <= nearBegin) {
+        std::abs(std::remainder(moving->timing.cut, 2 * M_PI)) <= kNearBegin) {
       moving->timing.cut = ScanTiming().cut;  // not used
       moving->timing.movingCut = true;
       return moving;

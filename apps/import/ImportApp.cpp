@@ -15,7 +15,7 @@
 namespace polemcl::apps {
 namespace {
 
-const std::vector<std::tuple<Dataset, const char*, const char*>> datasets{
+const std::vector<std::tuple<Dataset, const char*, const char*>> kDatasets{
     {Dataset::folder, "folder", "velodyne/*.bin, times.txt, poses.txt, odometry.txt"},
     {Dataset::kittiOdometry, "kitti-odometry", "A sequence of the KITTI odometry benchmark"},
     {Dataset::kittiRaw, "kitti-raw", "A synchronised drive of KITTI raw"},
@@ -163,7 +163,7 @@ int importMain(int argc, const char* const* argv) {
   Texts texts;
   line.cli().require_subcommand(1);
   std::vector<std::pair<const CLI::App*, Dataset>> commands;
-  for (const auto& [dataset, name, description] : datasets) {
+  for (const auto& [dataset, name, description] : kDatasets) {
     auto* command = line.cli().add_subcommand(name, description);
     declare(*command, dataset, options, texts);
     commands.emplace_back(command, dataset);

@@ -1,8 +1,5 @@
 #include "map/GeoJson.h"
 
-#include <mrpt/topography/conversions.h>
-
-#include <Eigen/Geometry>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -10,42 +7,12 @@
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/ParsedJson.h"
-#include "io/file/TextFile.h"
+#include "map/MapPlane.h"
 
 namespace polemcl {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using mrpt::topography::TGeodeticCoords;
-
-constexpr double farthest = 1e5;      ///< m: a map is no continent
-constexpr double closeEnough = 1e-7;  ///< m
-constexpr int mostSteps = 20;
-
-TGeodeticCoords originOf(const io::Datum& datum) {
-  return {datum.latitude, datum.longitude, 0};
-}
-
-Eigen::Vector3d eastNorthUp(const TGeodeticCoords& place, const io::Datum& datum) {
-  mrpt::math::TPoint3D point;
-  mrpt::topography::geodeticToENU_WGS84(place, point, originOf(datum));
-  return {point.x, point.y, point.z};
-}
-
-Eigen::Rotation2Dd turnOf(const io::Datum& datum) {
-  return Eigen::Rotation2Dd(datum.yawDeg * M_PI / 180);
-}
-
-void requireNear(double distance, const io::Datum& datum) {
-  if (!(distance < farthest))
-    throw Error("a pole " + io::fixed(distance / 1000, 0) + " km from the datum " +
-                io::datumText(datum) + " is not on the same map");
-}
-
-Eigen::Vector2d lengthsOfDegrees(const io::Datum& datum) {
-  constexpr double metres = 111320;  // of a degree, roughly: only the way to the answer
-  return {metres * std::max(0.01, std::cos(datum.latitude * M_PI / 180)), metres};
-}
 
 /// A number with this many decimals. (nlohmann prints 17 digits of 0.1 + 0.2.)
 double rounded(double value, double steps) {
@@ -102,9 +69,9 @@ class Feature {
       fail("longitude or latitude is out of range; GeoJSON has degrees, longitude first");
     return found;
   }
-  Eigen::Vector2d place(const io::Datum& datum) const {
+  Eigen::Vector2d place(const MapPlane& plane) const {
     const Eigen::Vector2d found = lonLat();
-    return io::located(m_where, [&] { return onMap(found, datum); });
+    return io::located(m_where, [&] { return plane.place(found); });
   }
   bool has(const char* name) const {
     const auto found = m_json.find("properties");
@@ -148,11 +115,11 @@ class Feature {
   std::string m_where;
 };
 
-MapPole poleOf(const Feature& feature, const io::Datum& datum) {
+MapPole poleOf(const Feature& feature, const MapPlane& plane) {
   MapPole pole;
   pole.radius = 0.1;
   pole.count = 1;
-  const Eigen::Vector2d place = feature.place(datum);
+  const Eigen::Vector2d place = feature.place(plane);
   pole.x = place.x();
   pole.y = place.y();
   feature.take("radius", pole.radius);
@@ -199,57 +166,19 @@ std::map<std::string, std::string> infoOf(const Json& json, const std::string& w
   return info;
 }
 
-/// Far away as it stands, near the other way round.
-void requireNotSwapped(const Eigen::Vector2d& lonLat, double distance, const io::Datum& datum) {
-  const TGeodeticCoords swapped(lonLat.x(), lonLat.y(), 0);
-  if (distance > farthest && eastNorthUp(swapped, datum).norm() <= farthest)
-    throw Error("longitude " + io::significant(lonLat.x(), 9) + ", latitude " +
-                io::significant(lonLat.y(), 9) + " is far from the datum " + io::datumText(datum) +
-                ", but near it with the two swapped: longitude comes first");
-}
-
 }  // namespace
-
-Eigen::Vector2d geographic(const Eigen::Vector2d& place, const io::Datum& datum) {
-  requireNear(place.norm(), datum);
-  const Eigen::Vector2d wanted = turnOf(datum) * place;
-  const Eigen::Vector2d metresPerDegree = lengthsOfDegrees(datum);
-  TGeodeticCoords at = originOf(datum);
-  // MRPT's way from ENU to degrees is an approximation; the other way is exact, so it is inverted.
-  for (int i = 0; i < mostSteps; ++i) {
-    const Eigen::Vector3d found = eastNorthUp(at, datum);
-    const Eigen::Vector2d off = wanted - found.head<2>();
-    if (off.norm() < closeEnough && std::abs(found.z()) < closeEnough)
-      return {at.lon.decimal_value, at.lat.decimal_value};
-    at.lon.decimal_value += off.x() / metresPerDegree.x();
-    at.lat.decimal_value += off.y() / metresPerDegree.y();
-    at.height -= found.z();
-  }
-  throw Error("datum " + io::datumText(datum) + ": too near to a pole of the Earth");
-}
-
-Eigen::Vector2d onMap(const Eigen::Vector2d& lonLat, const io::Datum& datum) {
-  TGeodeticCoords at(lonLat.y(), lonLat.x(), 0);
-  Eigen::Vector3d found = eastNorthUp(at, datum);
-  requireNotSwapped(lonLat, found.norm(), datum);
-  requireNear(found.norm(), datum);
-  for (int i = 0; i < mostSteps && std::abs(found.z()) >= closeEnough; ++i) {
-    at.height -= found.z();  // up to the map's plane
-    found = eastNorthUp(at, datum);
-  }
-  return turnOf(datum).inverse() * Eigen::Vector2d(found.head<2>());
-}
 
 void writeGeoJson(const std::filesystem::path& file, const io::PoleMapData& map) {
   const auto datum = io::datumOf(map.info, file.string() + ": ");
   if (!datum)
     throw Error("cannot write " + file.string() +
                 ": the map has no datum; say where on Earth it lies with --datum");
+  const MapPlane plane(*datum);
   Json json{{"type", "FeatureCollection"}};
   for (const auto& [key, value] : map.info) json["polemcl"][key] = value;
   json["features"] = Json::array();
   for (std::size_t i = 0; i < map.poles.size(); ++i) {
-    const Eigen::Vector2d at = geographic({map.poles[i].x, map.poles[i].y}, *datum);
+    const Eigen::Vector2d at = plane.lonLat({map.poles[i].x, map.poles[i].y});
     Json feature{{"type", "Feature"}, {"id", i}};
     feature["geometry"] = {{"type", "Point"},
                            {"coordinates", {rounded(at.x(), 1e10), rounded(at.y(), 1e10)}}};
@@ -293,6 +222,7 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
   if (datum) io::setDatum(map.info, *datum, where);
   const auto origin = io::datumOf(map.info, where);
   if (!origin) throw Error(where + "no datum in it; say where the map's origin is with --datum");
+  const MapPlane plane(*origin);
   std::size_t others = 0, number = 0;
   for (const Json& entry : json["features"]) {
     const Feature feature(entry, where + "feature " + std::to_string(number++) + ": ");
@@ -300,7 +230,7 @@ io::PoleMapData readGeoJson(const std::filesystem::path& file,
       ++others;
       continue;
     }
-    map.poles.push_back(poleOf(feature, *origin));
+    map.poles.push_back(poleOf(feature, plane));
     if (feature.has("existence")) map.histories.push_back(historyOf(feature));
   }
   if (map.poles.empty()) throw Error(where + "no point in it");

@@ -1,9 +1,6 @@
 #pragma once
 /// \file GeoJson.h
 /// \brief Pole maps for geographic programs: GeoJSON (RFC 7946) points on WGS 84.
-///
-/// The map's plane touches the ellipsoid at its datum: a pole's longitude and latitude are those of
-/// the place straight below (or above) it, along the vertical there. Heights play no part.
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -16,14 +13,6 @@
 #include "io/map/PoleMapFile.h"
 
 namespace polemcl {
-
-/// \brief Longitude and latitude (x, y of the result), deg, of a place on the map, m.
-/// \throws Error when it lies 100 km and more from the datum, or that beside a pole of the Earth.
-Eigen::Vector2d geographic(const Eigen::Vector2d& place, const io::Datum& datum);
-
-/// \brief The other way round, to a thousandth of a millimetre.
-/// \param lonLat deg. \throws Error as geographic().
-Eigen::Vector2d onMap(const Eigen::Vector2d& lonLat, const io::Datum& datum);
 
 /// \brief Writes the poles on the map (no candidates) as a FeatureCollection of points, atomically.
 ///

@@ -142,7 +142,7 @@ Subcommand diffCommand(CLI::App& program) {
 
 Subcommand convertCommand(CLI::App& program) {
   auto& cli = *program.add_subcommand(
-      "convert", "Converts a map; endings name the kinds: .polemap, .csv, .npz, .geojson");
+      "convert", "Converts a map; endings name the kinds: .polemap, .csv, .geojson; .npz as input");
   const auto options = std::make_shared<MapConvertOptions>();
   const auto datum = std::make_shared<std::string>();
   addFile(cli, "input", options->input, "Map to read")->required();

@@ -15,8 +15,8 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double s_twin = 1;          ///< m; real poles seldom stand nearer to each other
-constexpr double s_manyTwins = 0.25;  ///< share of the poles
+constexpr double kTwin = 1;          ///< m; real poles seldom stand nearer to each other
+constexpr double kManyTwins = 0.25;  ///< share of the poles
 
 /// The sessions before; empty unless `add` is given.
 MapAccumulator accumulator(const MapBuildJob& job, const AllSettings& settings) {
@@ -116,7 +116,7 @@ std::size_t countTwins(const std::vector<MapPole>& poles) {
   std::size_t twins = 0;
   std::vector<PointHit> hits;  // the pole itself is one
   for (const MapPole& pole : poles) {
-    tree.within(pole.x, pole.y, s_twin, hits);
+    tree.within(pole.x, pole.y, kTwin, hits);
     twins += hits.size() > 1;
   }
   return twins;
@@ -245,7 +245,7 @@ std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const Map
       warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +
                          "; check " + job.poses[i].filename().string());
   const std::size_t poles = summary.map.poles.size();
-  if (static_cast<double>(summary.twins) > s_manyTwins * static_cast<double>(poles))
+  if (static_cast<double>(summary.twins) > kManyTwins * static_cast<double>(poles))
     warnings.push_back(std::to_string(summary.twins) + " of " + std::to_string(poles) +
                        " poles have a twin nearer than 1 m (the scans are " +
                        io::fixed(scanSpacing(summary), 2) +

@@ -44,7 +44,9 @@ void writeMapFile(const std::filesystem::path& file, const MapContent& content) 
     case MapFileKind::csv:
       return io::writePoleCsv(file, map.poles, map.histories);
     case MapFileKind::npz:
-      return io::writePoleNpz(file, map.poles);
+      throw Error(file.string() +
+                  ": .npz files are read only; write .csv, or save the map in Python: "
+                  "polemcl.PoleMap.load(\"MAP.polemap\").save(\"MAP.npz\")");
     case MapFileKind::geojson:
       return writeGeoJson(file, map);
   }

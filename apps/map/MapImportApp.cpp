@@ -11,13 +11,13 @@
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
 #include "map/CoordinateSystem.h"
-#include "map/GeoJson.h"
 #include "map/Inventory.h"
+#include "map/MapPlane.h"
 
 namespace polemcl::apps {
 namespace {
 
-constexpr double s_confidence = 0.9;  ///< inventories hold poles that are gone
+constexpr double kConfidence = 0.9;  ///< inventories hold poles that are gone
 
 std::vector<InventoryEntry> readInventory(const MapImportOptions& options, std::size_t& left) {
   const std::string ending = options.input.extension().string();
@@ -40,12 +40,12 @@ bool isKept(const InventoryEntry& entry, const std::vector<std::string>& keep) {
 
 /// The first of them with their counts: "lamp (12), tree (3), …".
 std::string listed(const std::map<std::string, std::size_t>& counts) {
-  constexpr std::size_t most = 10;
+  constexpr std::size_t kMost = 10;
   std::string text;
   std::size_t number = 0;
   for (const auto& [name, count] : counts) {
     if (number++ > 0) text += ", ";
-    if (number > most) return text + "…";
+    if (number > kMost) return text + "…";
     text += name + " (" + std::to_string(count) + ")";
   }
   return text;
@@ -138,7 +138,7 @@ MapPole poleAt(const Eigen::Vector2d& place, double radius, double sigma) {
   pole.x = place.x();
   pole.y = place.y();
   pole.radius = radius;
-  pole.confidence = s_confidence;
+  pole.confidence = kConfidence;
   pole.covariance = Eigen::Matrix2d::Identity() * sigma * sigma;
   pole.count = 1;
   return pole;
@@ -165,10 +165,11 @@ MapImportSummary importMap(const MapImportOptions& options) {
   summary.datum = options.datum ? *options.datum : middleOf(lonLats);
 
   io::PoleMapData map;
+  const MapPlane plane(summary.datum);
   Places places(options.merge);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Eigen::Vector2d place =
-        io::located(entries[i].where, [&] { return onMap(lonLats[i], summary.datum); });
+        io::located(entries[i].where, [&] { return plane.place(lonLats[i]); });
     if (!places.add(place)) continue;
     map.poles.push_back(poleAt(place, radiusOf(entries[i], options), options.sigma));
   }

@@ -16,15 +16,15 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr std::size_t enoughExpected = 10;  ///< poles; fewer tell nothing of the place
-constexpr double leastFound = 0.2;          ///< share; half a map does not vanish over night
-constexpr double s_manyMoved = 0.05;        ///< share of the poles in view; more is suspicious
+constexpr std::size_t kEnoughExpected = 10;  ///< poles; fewer tell nothing of the place
+constexpr double kLeastFound = 0.2;          ///< share; half a map does not vanish over night
+constexpr double kManyMoved = 0.05;          ///< share of the poles in view; more is suspicious
 
 void requireSamePlace(const MapUpdateCounts& counts, const std::filesystem::path& input,
                       const std::filesystem::path& map) {
-  if (counts.expectedOnMap < enoughExpected ||
+  if (counts.expectedOnMap < kEnoughExpected ||
       static_cast<double>(counts.foundOnMap) >=
-          leastFound * static_cast<double>(counts.expectedOnMap))
+          kLeastFound * static_cast<double>(counts.expectedOnMap))
     return;
   throw Error(input.string() + ": only " + std::to_string(counts.foundOnMap) + " of " +
               std::to_string(counts.expectedOnMap) + " poles of " + map.string() +
@@ -57,12 +57,12 @@ void requireScans(const MappingSession& session, const std::filesystem::path& in
 /// Sessions of a map lie near it; one in another frame mostly does not.
 void requireNearby(const std::vector<StampedPose2D>& path, const LandmarkMap& map,
                    const std::filesystem::path& input, const std::filesystem::path& file) {
-  constexpr double farthest = 10000;  // m
+  constexpr double kFarthest = 10000;  // m
   Eigen::AlignedBox2d driven, mapped;
   for (const auto& [time, pose] : path) driven.extend(Eigen::Vector2d(pose.x, pose.y));
   for (const LandmarkRecord& kept : map.poles)
     mapped.extend(Eigen::Vector2d(kept.pole.x, kept.pole.y));
-  if (mapped.isEmpty() || driven.exteriorDistance(mapped) <= farthest) return;
+  if (mapped.isEmpty() || driven.exteriorDistance(mapped) <= kFarthest) return;
   throw Error(input.string() + ": its poses are " +
               std::to_string(std::lround(driven.exteriorDistance(mapped) / 1000)) +
               " km from the poles of " + file.string() +
@@ -171,7 +171,7 @@ std::vector<std::string> updateWarnings(const MapUpdateSummary& summary, const M
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < summary.sessions.size(); ++i) {
     const MapUpdateCounts& c = summary.sessions[i];
-    if (!(movedShare(c) > s_manyMoved)) continue;
+    if (!(movedShare(c) > kManyMoved)) continue;
     std::ostringstream line;
     line << job.inputs[i].string() << ": " << c.moved << " of " << c.expectedOnMap
          << " poles in view (" << io::fixed(100 * movedShare(c), 1)

@@ -19,16 +19,16 @@ using Tags = std::map<std::string, std::string>;
 struct Meaning {
   const char *key, *value, *kind;  ///< value null: any
 };
-constexpr std::array<Meaning, 7> s_nodes{{{"highway", "street_lamp", "lamp"},
-                                          {"power", "pole", "pole"},
-                                          {"man_made", "utility_pole", "pole"},
-                                          {"natural", "tree", "tree"},
-                                          {"traffic_sign", nullptr, "sign"},
-                                          {"highway", "traffic_signals", "light"},
-                                          {"barrier", "bollard", "bollard"}}};
-constexpr std::array<Meaning, 3> s_ways{{{"type", "pole", "pole"},
-                                         {"type", "traffic_sign", "sign"},
-                                         {"type", "traffic_light", "light"}}};
+constexpr std::array<Meaning, 7> kNodes{{{"highway", "street_lamp", "lamp"},
+                                         {"power", "pole", "pole"},
+                                         {"man_made", "utility_pole", "pole"},
+                                         {"natural", "tree", "tree"},
+                                         {"traffic_sign", nullptr, "sign"},
+                                         {"highway", "traffic_signals", "light"},
+                                         {"barrier", "bollard", "bollard"}}};
+constexpr std::array<Meaning, 3> kWays{{{"type", "pole", "pole"},
+                                        {"type", "traffic_sign", "sign"},
+                                        {"type", "traffic_light", "light"}}};
 
 template <std::size_t size>
 const char* kindOf(const Tags& tags, const std::array<Meaning, size>& meanings) {
@@ -121,9 +121,9 @@ class OsmReader {
 
   void end(const std::string& name) {
     if (name == "node") {
-      if (const char* kind = kindOf(m_tags, s_nodes)) add(m_place, kind);
+      if (const char* kind = kindOf(m_tags, kNodes)) add(m_place, kind);
     } else if (name == "way") {
-      if (const char* kind = kindOf(m_tags, s_ways)) addWay(kind);
+      if (const char* kind = kindOf(m_tags, kWays)) addWay(kind);
     }
   }
 

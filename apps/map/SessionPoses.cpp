@@ -11,7 +11,7 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double s_sameTime = 1e-3;  ///< s: rawlogs and tables round times
+constexpr double kSameTime = 1e-3;  ///< s: rawlogs and tables round times
 
 /// `run_NN_cov.csv` of `run_NN.tum`.
 std::filesystem::path besides(const std::filesystem::path& run, const std::string& ending) {
@@ -48,7 +48,7 @@ std::optional<ScanPose> SessionPoses::estimateOf(std::size_t scan, double time) 
   const auto found = m_estimates.find(scan);
   if (found == m_estimates.end()) return std::nullopt;
   const auto& [ownTime, pose] = found->second;
-  if (std::abs(ownTime - time) <= s_sameTime) return pose;
+  if (std::abs(ownTime - time) <= kSameTime) return pose;
   throw Error(m_file.string() + ": scan " + std::to_string(scan) + " is of " +
               io::fixed(ownTime, 6) + " s, but that of the rawlog of " + io::fixed(time, 6) +
               " s; is it a run over this rawlog?");

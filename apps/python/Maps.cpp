@@ -36,7 +36,18 @@ MapPtr load(const std::filesystem::path& file) {
   return std::make_shared<PoleMap>(readMapFile(file));
 }
 
+/// The array `polemeans` of the first implementation: x, y, radius of each pole.
+void saveNpz(const PoleMap& map, const std::filesystem::path& file) {
+  const std::vector<MapPole>& poles = map.content.map.poles;
+  py::array_t<double> means({static_cast<py::ssize_t>(poles.size()), py::ssize_t{3}});
+  double* mean = means.mutable_data();
+  for (const MapPole& pole : poles)
+    for (const double value : {pole.x, pole.y, pole.radius}) *mean++ = value;
+  py::module_::import("numpy").attr("savez")(file, py::arg("polemeans") = means);
+}
+
 void save(const PoleMap& map, const std::filesystem::path& file) {
+  if (file.extension() == ".npz") return saveNpz(map, file);
   const py::gil_scoped_release released;
   writeMapFile(file, map.content);
 }
@@ -124,7 +135,8 @@ void addMaps(py::module_& module) {
       .def_static("load", &load, py::arg("file"),
                   "From .polemap, .csv, .npz or .geojson, as pole-map convert reads them.")
       .def("save", &save, py::arg("file"),
-           "To .polemap, .csv, .npz or .geojson, as pole-map convert writes them.")
+           "To .polemap, .csv or .geojson, as pole-map convert writes them; to .npz by "
+           "numpy.savez: the array polemeans, x, y, radius of each pole.")
       .def_property_readonly(
           "poles", [](const PoleMap& map) { return toArray(map.content.map.poles); },
           "A copy of the poles, an array of map_pole_type.")

@@ -50,9 +50,9 @@ void print(const PoleDriveSummary& summary, const SimulateOptions& options) {
             << " true poles: " << options.poles->string() << '\n';
 }
 
-const std::vector<std::string> folderNames{"velodyne",     "labels",       "times.txt", "poses.txt",
-                                           "odometry.txt", "poles_gt.csv", "config.ini"};
-const std::string folderMarker = "poles_gt.csv";
+const std::vector<std::string> kFolderNames{
+    "velodyne", "labels", "times.txt", "poses.txt", "odometry.txt", "poles_gt.csv", "config.ini"};
+const std::string kFolderMarker = "poles_gt.csv";
 
 /// The models of the simulator, and the two that `[sensor]` describes.
 std::vector<std::string> sensorNames() {
@@ -65,7 +65,7 @@ std::vector<std::string> sensorNames() {
 
 sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet) {
   const AllSettings settings = simulationSettings(options);
-  OutputFolder folder(*options.output, "a simulated drive", folderNames, folderMarker);
+  OutputFolder folder(*options.output, "a simulated drive", kFolderNames, kFolderMarker);
   saveSettings(settings, (folder.temporary() / "config.ini").string());
   Progress progress("simulate", 0, quiet);
   const auto summary =
@@ -83,7 +83,7 @@ PoleDriveSummary simulatePoles(const SimulateOptions& options, bool quiet) {
                 "hold; leave one of them out");
   std::optional<OutputFolder> folder;
   if (options.output) {
-    folder.emplace(*options.output, "a simulated drive", folderNames, folderMarker);
+    folder.emplace(*options.output, "a simulated drive", kFolderNames, kFolderMarker);
     saveSettings(settings, (folder->temporary() / "config.ini").string());
   }
   const sim::SimulatedDrive drive(settings.simulation, settings.sensor);

@@ -21,7 +21,7 @@ namespace polemcl::apps {
 namespace {
 
 /// Scans worked on at a time: enough for the threads, few enough for the memory.
-constexpr std::size_t scansAtOnce = 64;
+constexpr std::size_t kScansAtOnce = 64;
 
 /// The time of a scan in whole microseconds, as times.txt keeps it.
 mrpt::Clock::time_point stampOf(const sim::Drive& drive, std::size_t i) {
@@ -78,9 +78,9 @@ void writeInBlocks(const sim::Drive& drive, PoleDriveWriter& writer,
                    const std::function<CObservationPoles::Ptr(std::size_t)>& polesOf,
                    const std::function<void(std::size_t)>& progress) {
   const std::size_t scans = drive.time.size();
-  std::vector<CObservationPoles::Ptr> block(scansAtOnce);
-  for (std::size_t first = 0; first < scans; first += scansAtOnce) {
-    const std::size_t end = std::min(first + scansAtOnce, scans);
+  std::vector<CObservationPoles::Ptr> block(kScansAtOnce);
+  for (std::size_t first = 0; first < scans; first += kScansAtOnce) {
+    const std::size_t end = std::min(first + kScansAtOnce, scans);
     tbb::parallel_for(first, end, [&](std::size_t i) { block[i - first] = polesOf(i); });
     for (std::size_t i = first; i < end; ++i) writer.write(drive, i, block[i - first]);
     if (progress) progress(end);

@@ -24,7 +24,7 @@ done
 # An empty program, linked to what MRPT's libraries the programs need.
 echo 'int main() {}' >"$out/empty.cpp"
 c++ -O1 "$out/empty.cpp" -o "$out/empty" -Wl,--no-as-needed -lmrpt-slam -lmrpt-maps -lmrpt-obs \
-  -lmrpt-opengl -lmrpt-topography -lmrpt-config
+  -lmrpt-opengl -lmrpt-config
 
 python3 - "$top/config/kitti.ini" "$out" "$@" <<'END'
 import os, resource, statistics, subprocess, sys

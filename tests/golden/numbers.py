@@ -9,7 +9,6 @@ Left out are names and keys, strings, effective settings, the identity of the bu
 that depends on the clock. Numbers come in one form: 5, 5.0 and 5.000 are equal.
   .csv .tum .txt       fields that are a number as a whole, without comments
   .json .geojson       numbers in the order of the document; null is printed as nan
-  .npz                 the arrays, in the order of the archive
   .polemap             poles, candidates and histories; kept scans as a checksum
   .rawlog              a checksum of the bytes without the names of classes
   .bin .label          a checksum of the bytes
@@ -66,17 +65,6 @@ def of_json(data, _):
             yield form(node)
 
     yield from walk(json.loads(data))
-
-
-def of_npz(_, path):
-    with zipfile.ZipFile(path) as archive:
-        for name in archive.namelist():
-            array = archive.read(name)
-            header = 10 + struct.unpack_from("<H", array, 8)[0]
-            if b"'<f8'" not in array[:header]:
-                raise ValueError(f"{name} holds no doubles")
-            for (value,) in struct.iter_unpack("<d", array[header:]):
-                yield form(value)
 
 
 def of_polemap(data, _):
@@ -138,7 +126,6 @@ READERS = {
     "geojson": of_json,
     "json": of_json,
     "label": of_bytes,
-    "npz": of_npz,
     "polemap": of_polemap,
     "rawlog": of_rawlog,
     "tum": of_text,

@@ -333,9 +333,8 @@ upkeep() {
   result added.polemap
   map_convert kept.polemap earth.geojson --datum 49.01,8.4,30
   map_convert kept.polemap plain.csv
-  map_convert kept.polemap plain.npz
   map_convert plain.csv again.polemap
-  for file in earth.geojson plain.csv plain.npz again.polemap; do result $file; done
+  for file in earth.geojson plain.csv again.polemap; do result $file; done
   finish
 }
 

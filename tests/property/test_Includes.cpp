@@ -73,6 +73,11 @@ const std::vector<std::string> s_order{
 
 /// Big rooms that a big room must not use, although they are above it.
 const std::map<std::string, std::set<std::string>> s_strangers{{"sim", {"mrpt"}}};
+/// The laboratory: big rooms that simulate and judge. Only these rooms outside of it use it.
+const std::set<std::string> s_laboratory{"sim"}, s_laboratoryUsers{"apps/simulate", "apps/eval"};
+/// Its settings, which the settings of all programs hold: one INI serves all programs.
+const std::pair<std::string, std::string> s_laboratorySettings{"apps/cli",
+                                                               "sim/common/SimulationOptions.h"};
 /// A line above that a room must not use: two methods for the same purpose.
 const std::map<std::string, std::set<std::string>> s_strangerRooms{
     {"core/extraction/scan_line", {"core/extraction/range_image"}}};
@@ -168,8 +173,14 @@ std::string includeOf(const std::string& line) {
   return std::regex_match(line, match, include) ? match[1].str() : "";
 }
 
+bool mayUseLaboratory(const std::string& room, const std::string& header) {
+  return s_laboratory.count(bigRoomOf(room)) || s_laboratoryUsers.count(room) ||
+         std::pair(room, header) == s_laboratorySettings;
+}
+
 bool mayIncludeOwn(const std::string& room, const std::string& header) {
   const std::string target = roomOfHeader(header);
+  if (s_laboratory.count(bigRoomOf(target)) && !mayUseLaboratory(room, header)) return false;
   const auto has = [](const auto& map, const std::string& key, const std::string& value) {
     const auto found = map.find(key);
     return found != map.end() && found->second.count(value) > 0;
@@ -305,6 +316,10 @@ TEST(Includes, WrongIncludesAreFound) {
       {"libpolemcl/src/sim/world/A.cpp", "#include <polemcl/mrpt/map/CPoleMap.h>"},
       {"libpolemcl/src/sim/world/A.cpp", "#include <mrpt/poses/CPose2D.h>"},
       {"libpolemcl/src/report/scene/A.cpp", "#include \"cli/CommandLine.h\""},
+      {"libpolemcl/src/report/scene/A.cpp", "#include \"sim/world/World.h\""},
+      {"apps/localize/A.cpp", "#include \"sim/drive/Simulation.h\""},
+      {"apps/cli/A.cpp", "#include \"sim/world/World.h\""},
+      {"apps/map/A.cpp", "#include \"sim/common/SimulationOptions.h\""},
       {"libpolemcl/src/elsewhere/A.cpp", "#include <vector>"},
       {"libpolemcl/include/polemcl/core/sensor/A.h", "#include \"core/common/KdTree2D.h\""},
       {"libpolemcl/include/polemcl/mrpt/map/A.h", "#include <polemcl/core/common/KdTree2D.h>"},
@@ -329,7 +344,8 @@ TEST(Includes, RightIncludesAreLeftAlone) {
       {"libpolemcl/src/config/A.cpp", "#include <mrpt/config/CConfigFileBase.h>"},
       {"libpolemcl/src/mrpt/map/A.cpp", "#include \"io/file/AtomicFile.h\""},
       {"libpolemcl/src/sim/common/A.cpp", "#include " config / Config.h ""},
-      {"libpolemcl/src/report/scene/A.cpp", "#include \"sim/world/World.h\""},
+      {"apps/eval/A.cpp", "#include \"sim/world/World.h\""},
+      {"apps/cli/A.cpp", "#include \"sim/common/SimulationOptions.h\""},
       {"apps/map/A.cpp", "#include \"map/MapApp.h\""},
       {"libpolemcl/include/polemcl/core/common/A.h", "#include <polemcl/export.h>"},
   };

@@ -29,9 +29,7 @@ done
   --datum 50.7,7.1,30 --date 2026-03-02 --output "$out/scans.polemap" --csv "$out/scans.csv" >/dev/null
 "$bin/pole-map" update --quiet --config day1.ini --map "$out/scans.polemap" --input day1.rawlog --truth day1.tum \
   --date 2026-03-06 --output "$out/street.polemap" --csv "$out/street.csv" >/dev/null
-for kind in npz geojson; do
-  "$bin/pole-map" convert --quiet "$out/street.polemap" --output "$out/street.$kind" >/dev/null
-done
+"$bin/pole-map" convert --quiet "$out/street.polemap" --output "$out/street.geojson" >/dev/null
 
 # A drive and its results; of the settings, all keys.
 cp "$out/street.polemap" .

@@ -104,15 +104,14 @@ TEST_F(ForgedLengths, InTheScansOfAMap) {
 
 TEST_F(ForgedLengths, InCompressedData) {
   const std::string content(5 * megabyte, 'a'), packed = zlibbed(content);
-  EXPECT_EQ(inflated(packed, content.size(), Deflated::zlib, "x: "), content);
-  EXPECT_EQ(inflated(zlibbed(""), 0, Deflated::zlib, "x: "), "");
+  EXPECT_EQ(inflated(packed, content.size(), "x: "), content);
+  EXPECT_EQ(inflated(zlibbed(""), 0, "x: "), "");
   for (const std::uint64_t size : {std::uint64_t{0}, content.size() - 1, content.size() + 1})
-    expectIn(messageOf([&] { inflated(packed, size, Deflated::zlib, "x: "); }), "x: ");
+    expectIn(messageOf([&] { inflated(packed, size, "x: "); }), "x: ");
   // Data beyond a small claimed size are not decompressed.
-  refusal([&] { inflated(packed, 100, Deflated::zlib, "x: "); });
-  expectIn(messageOf([&] { inflated(packed + "x", content.size(), Deflated::zlib, "x: "); }),
+  refusal([&] { inflated(packed, 100, "x: "); });
+  expectIn(messageOf([&] { inflated(packed + "x", content.size(), "x: "); }),
            "cannot be decompressed");
-  EXPECT_EQ(inflated(deflated(content), content.size(), Deflated::bare, "x: "), content);
 }
 
 TEST_F(ForgedLengths, InAnArchiveOfArrays) {
@@ -122,13 +121,10 @@ TEST_F(ForgedLengths, InAnArchiveOfArrays) {
     const fs::path file = write("a.npz", bytes);
     return refusal([&] { NpzFile(file).array("a"); });
   };
-  expectIn(open(zip({{"a.npy", array, true}})), "a.npz", "do not fit its shape");
-  std::string claim = zip({{"a.npy", array + std::string(100000, '\7'), false}});
-  claim[claim.find("PK\x01\x02") + 10] = 8;  // stored data marked as deflated
+  expectIn(open(zip({{"a.npy", array}})), "a.npz", "do not fit its shape");
+  std::string claim = zip({{"a.npy", array}});
   claim.replace(claim.find("PK\x01\x02") + 24, 4, little(20 * megabyte, 4));
-  expectIn(open(claim), "a.npz", "decompressed");
-  const std::string header = std::string("\x93NUMPY\x02\0", 8) + little(0xffffffff, 4);
-  expectIn(refusal([&] { parseNpy(header + std::string(1800, ' '), "x: "); }), "x: ", "4294967295");
+  expectIn(open(claim), "a.npz", "beyond its end");
 }
 
 TEST_F(ForgedLengths, InPointClouds) {
@@ -164,10 +160,10 @@ TEST_F(ForgedLengths, InCompressedText) {
   const fs::path file = path("a.txt.gz");
   const gzFile stream = gzopen(file.c_str(), "wb1");
   const std::string line(megabyte, '1');
-  for (std::size_t i = 0; i <= mostTextBytes / megabyte; ++i)
+  for (std::size_t i = 0; i <= kMostTextBytes / megabyte; ++i)
     gzwrite(stream, line.data(), static_cast<unsigned>(line.size()));
   gzclose(stream);
-  expectIn(refusal([&] { readLines(file); }, 4 * mostTextBytes), "a.txt.gz",
+  expectIn(refusal([&] { readLines(file); }, 4 * kMostTextBytes), "a.txt.gz",
            "MB of text, uncompressed");
 }
 

@@ -19,7 +19,7 @@ TEST_F(GrowingFileTest, HoldsAllThatWasAdded) {
     file.add(row);
     all += row;
     // Only the last piece may wait.
-    ASSERT_GE(fs::file_size(path("f")) + GrowingFile::piece, all.size());
+    ASSERT_GE(fs::file_size(path("f")) + GrowingFile::kPiece, all.size());
   }
   file.flush();
   file.flush();
@@ -44,8 +44,8 @@ TEST_F(GrowingFileTest, RefusesWhatCannotBeWritten) {
 
 TEST_F(GrowingFileTest, RefusesWhenTheDiskIsFull) {
   GrowingFile file(path("f"));
-  const FileSizeLimit limit(GrowingFile::piece / 2);
-  expectIn(messageOf([&] { file.add(std::string(GrowingFile::piece, 'a')); }), "cannot write");
+  const FileSizeLimit limit(GrowingFile::kPiece / 2);
+  expectIn(messageOf([&] { file.add(std::string(GrowingFile::kPiece, 'a')); }), "cannot write");
 }
 
 }  // namespace polemcl::test_growing_file

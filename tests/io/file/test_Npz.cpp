@@ -29,102 +29,62 @@ class NpzTest : public FolderTest {
     const NpzFile npz(write("a.npz", bytes));
     return messageOf([&] { npz.array(name); });
   }
+  /// Of an archive with this one array.
+  std::string npyRefusal(const std::string& npy) const {
+    return arrayRefusal(zip({{"a.npy", npy}}));
+  }
+  NumberArray parsed(const std::string& npy) const {
+    return NpzFile(write("a.npz", zip({{"a.npy", npy}}))).array("a");
+  }
 };
-
-std::string npyRefusal(const std::string& bytes) {
-  return messageOf([&] { parseNpy(bytes, "f: "); });
-}
 
 }  // namespace
 
-TEST(Npy, ReadsCOrderByHand) {
-  const NumberArray array = parseNpy(sample, "");
+TEST_F(NpzTest, ReadsArraysByHand) {
+  const NumberArray array = parsed(sample);
   EXPECT_EQ(array.shape, (Shape{3, 2}));
   EXPECT_EQ(array.values, (Values{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(parsed(npy(dictionary("<f8", "False", "(6,)"), sixDoubles)).shape, (Shape{6}));
+  EXPECT_EQ(parsed(npy(dictionary("<f8", "False", "()"), doubles({7}))).values, (Values{7}));
+  EXPECT_EQ(parsed(npy(dictionary("<f8", "False", "(0, 2)"), "")).shape, (Shape{0, 2}));
 }
 
-TEST(Npy, ReadsFortranOrderByHand) {
-  // Columns one after the other: (1 2 3) and (4 5 6).
-  const NumberArray array = parseNpy(npy(dictionary("<f8", "True", "(3, 2)"), sixDoubles), "");
-  EXPECT_EQ(array.values, (Values{1, 4, 2, 5, 3, 6}));
-  // First index fastest: element (i, j, k) is number i + 2j + 2k of shape (2, 1, 3).
-  const NumberArray cube = parseNpy(npy(dictionary("<f8", "True", "(2, 1, 3)"), sixDoubles), "");
-  EXPECT_EQ(cube.values, (Values{1, 3, 5, 2, 4, 6}));
+TEST_F(NpzTest, RefusesWhatIsNoNpy) {
+  expectIn(npyRefusal("PK abcdefgh"), path("a.npz").string() + ": array a: not .npy data");
+  expectIn(npyRefusal(""), "array a: cut short");
+  std::string later = sample;
+  later[6] = 2;
+  expectIn(npyRefusal(later), "version 1.0");
 }
 
-TEST(Npy, ReadsFloat32AndVersions) {
-  const std::string data = floats({0.5f, -1, 2, 1e10f});
-  for (const int version : {1, 2, 3}) {
-    const NumberArray array =
-        parseNpy(npy(dictionary("<f4", "False", "(2, 2)"), data, version), "");
-    EXPECT_EQ(array.values, (Values{0.5, -1, 2, 1e10f}));
-  }
-}
-
-TEST(Npy, ReadsOtherShapes) {
-  EXPECT_EQ(parseNpy(npy(dictionary("<f8", "False", "(6,)"), sixDoubles), "").shape, (Shape{6}));
-  EXPECT_EQ(parseNpy(npy(dictionary("<f8", "False", "()"), doubles({7})), "").values, (Values{7}));
-  EXPECT_EQ(parseNpy(npy(dictionary("<f8", "False", "(0, 2)"), ""), "").shape, (Shape{0, 2}));
-}
-
-TEST(Npy, RefusesWhatIsNoNpy) {
-  expectIn(npyRefusal("PK abcdefgh"), "f: ", "not .npy data");
-  expectIn(npyRefusal(""), "not .npy data");
-}
-
-TEST(Npy, RefusesOtherVersions) {
-  expectIn(npyRefusal(npy(cDictionary, sixDoubles, 4)), "version 4");
-}
-
-TEST(Npy, RefusesOtherTypes) {
-  for (const char* type : {"<i8", ">f8", "<f2", "|O", "<f80", "<U4"}) {
-    expectIn(npyRefusal(npy(dictionary(type, "False", "(3, 2)"), sixDoubles)), type, "'<f8'");
-  }
-}
-
-TEST(Npy, RefusesMalformedHeaders) {
-  expectIn(npyRefusal(npy("{'fortran_order': False, 'shape': (6,), }", sixDoubles)), "no descr");
-  expectIn(npyRefusal(npy("{'descr': '<f8', 'shape': (6,), }", sixDoubles)), "no fortran_order");
-  expectIn(npyRefusal(npy("{'descr': '<f8', 'fortran_order': False}", sixDoubles)), "no shape");
-  expectIn(npyRefusal(npy(dictionary("<f8", "Maybe", "(6,)"), sixDoubles)), "fortran_order");
-  for (const char* shape :
-       {"6", "(6", "(6;)", "(-6,)", "(,)", "(6.0,)", "(99999999999999999999,)"}) {
+TEST_F(NpzTest, RefusesOtherLayouts) {
+  for (const char* type : {"<f4", "<i8", ">f8", "|O", "<f80"})
+    expectIn(npyRefusal(npy(dictionary(type, "False", "(3, 2)"), sixDoubles)), "numpy.savez(");
+  expectIn(npyRefusal(npy(dictionary("<f8", "True", "(3, 2)"), sixDoubles)), "C order");
+  expectIn(npyRefusal(npy("{'shape': (6,), }", sixDoubles)), "float64");
+  for (const char* shape : {"(6", "(6;)", "(-6,)", "(,)", "(6.0,)", "(99999999999999999999,)"})
     expectIn(npyRefusal(npy(dictionary("<f8", "False", shape), sixDoubles)), "shape");
-  }
 }
 
-TEST(Npy, RefusesDataThatDoesNotFitTheShape) {
+TEST_F(NpzTest, RefusesDataThatDoesNotFitTheShape) {
   for (const char* shape :
        {"(5,)", "(7,)", "(3, 3)", "(0,)", "(4294967296, 4294967296)", "(9223372036854775808, 2)",
-        "(18446744073709551615, 18446744073709551615)"}) {
+        "(18446744073709551615, 18446744073709551615)"})
     expectIn(npyRefusal(npy(dictionary("<f8", "False", shape), sixDoubles)),
              "do not fit its shape");
-  }
+  for (std::size_t size = 0; size < sample.size(); ++size)
+    EXPECT_NE(npyRefusal(sample.substr(0, size)), "no error") << size;
 }
 
-TEST(Npy, RefusesEveryPrefix) {
-  for (std::size_t size = 0; size < sample.size(); ++size) {
-    EXPECT_THROW(parseNpy(std::string_view(sample).substr(0, size), ""), Error) << size;
-  }
-}
-
-TEST_F(NpzTest, ReadsStoredAndDeflatedMembers) {
-  const NpzFile npz(
-      write("a.npz", zip({{"b.npy", npy(dictionary("<f8", "False", "(1,)"), doubles({9}))},
-                          {"a.npy", sample, true}})));
+TEST_F(NpzTest, ReadsSeveralArrays) {
+  const NpzFile npz(write(
+      "a.npz",
+      zip({{"b.npy", npy(dictionary("<f8", "False", "(1,)"), doubles({9}))}, {"a.npy", sample}})));
   EXPECT_EQ(npz.names(), (std::vector<std::string>{"a", "b"}));
   EXPECT_TRUE(npz.contains("a"));
   EXPECT_FALSE(npz.contains("c"));
   EXPECT_EQ(npz.array("a").values, (Values{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(npz.array("b").values, (Values{9}));
-}
-
-TEST_F(NpzTest, ReadsLargeDeflatedMembers) {
-  // Very compressible, near the greatest ratio of deflate.
-  const std::string zeros(8000000, '\0');
-  const NpzFile npz(
-      write("a.npz", zip({{"a.npy", npy(dictionary("<f8", "False", "(1000000,)"), zeros), true}})));
-  EXPECT_EQ(npz.array("a").values, Values(1000000, 0.0));
 }
 
 TEST_F(NpzTest, ReadsArchivesWithAComment) {
@@ -177,41 +137,16 @@ TEST_F(NpzTest, RefusesAnArrayThatIsNotThere) {
   expectIn(arrayRefusal(zip({{"a.npy", sample}}), "b"), path("a.npz").string(), "no array b");
 }
 
-TEST_F(NpzTest, RefusesEncryptedMembers) {
+TEST_F(NpzTest, RefusesCompressedArrays) {
   std::string bytes = zip({{"a.npy", sample}});
-  bytes[bytes.find("PK\x01\x02") + 8] = 1;
-  expectIn(arrayRefusal(bytes), "encrypted");
-}
-
-TEST_F(NpzTest, RefusesOtherCompression) {
-  std::string bytes = zip({{"a.npy", sample}});
-  bytes[bytes.find("PK\x01\x02") + 10] = 14;  // LZMA
-  expectIn(arrayRefusal(bytes), "method 14");
+  bytes[bytes.find("PK\x01\x02") + 10] = 8;  // deflated
+  expectIn(arrayRefusal(bytes), "compressed", "numpy.savez");
 }
 
 TEST_F(NpzTest, RefusesAWrongChecksum) {
   std::string bytes = zip({{"a.npy", sample}});
   bytes[bytes.find("PK\x01\x02") - 1] ^= 1;  // the last byte of the data
   expectIn(arrayRefusal(bytes), "array a", "CRC-32");
-}
-
-TEST_F(NpzTest, RefusesDeflateDataThatIsDamaged) {
-  std::string bytes = zip({{"a.npy", sample, true}});
-  const std::size_t data = 30 + 5 + 20;
-  bytes[data] = '\x07';  // a block of the reserved kind
-  expectIn(arrayRefusal(bytes), "decompressed");
-}
-
-TEST_F(NpzTest, RefusesClaimsThatNoDataCanFulfil) {
-  std::string bytes = zip({{"a.npy", sample, true}});
-  bytes.replace(bytes.find("PK\x01\x02") + 24, 4, little(0xfffffff0, 4));
-  expectIn(arrayRefusal(bytes), "cannot hold 4294967280");
-}
-
-TEST_F(NpzTest, RefusesAStoredMemberOfTwoSizes) {
-  std::string bytes = zip({{"a.npy", sample}});
-  bytes.replace(bytes.find("PK\x01\x02") + 24, 4, little(sample.size() - 1, 4));
-  expectIn(arrayRefusal(bytes), "two different sizes");
 }
 
 TEST_F(NpzTest, RefusesALocalHeaderThatIsNone) {
@@ -221,38 +156,34 @@ TEST_F(NpzTest, RefusesALocalHeaderThatIsNone) {
 }
 
 TEST_F(NpzTest, RefusesEveryPrefixOfAFile) {
-  for (const bool deflate : {false, true}) {
-    const std::string bytes = zip({{"a.npy", sample, deflate}});
-    for (std::size_t size = 0; size < bytes.size(); ++size) {
-      const fs::path file = write("a.npz", bytes.substr(0, size));
-      EXPECT_THROW(NpzFile(file).array("a"), Error) << size;
-    }
+  const std::string bytes = zip({{"a.npy", sample}});
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const fs::path file = write("a.npz", bytes.substr(0, size));
+    EXPECT_THROW(NpzFile(file).array("a"), Error) << size;
   }
 }
 
 TEST_F(NpzTest, AFlippedBitIsRefusedOrOfNoConsequence) {
   // Dates, versions and unused sizes of a zip archive have no checksum and are not read. Any other
   // flip must be rejected; other values must never be returned.
-  for (const bool deflate : {false, true}) {
-    const std::string bytes = zip({{"a.npy", sample, deflate}});
-    std::size_t refused = 0;
-    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
-      std::string damaged = bytes;
-      damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
-      const fs::path file = write("a.npz", damaged);
-      try {
-        EXPECT_EQ(NpzFile(file).array("a").values, (Values{1, 2, 3, 4, 5, 6})) << bit;
-      } catch (const Error&) {
-        ++refused;
-      }
+  const std::string bytes = zip({{"a.npy", sample}});
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    std::string damaged = bytes;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+    const fs::path file = write("a.npz", damaged);
+    try {
+      EXPECT_EQ(NpzFile(file).array("a").values, (Values{1, 2, 3, 4, 5, 6})) << bit;
+    } catch (const Error&) {
+      ++refused;
     }
-    // At least all bits of the data itself and of the records' signatures.
-    EXPECT_GE(refused, 8 * ((deflate ? deflated(sample) : sample).size() + 12));
   }
+  // At least all bits of the data itself and of the records' signatures.
+  EXPECT_GE(refused, 8 * (sample.size() + 12));
 }
 
 TEST_F(NpzTest, ManyFlippedBytesNeverCrash) {
-  const std::string bytes = zip({{"a.npy", sample, true}, {"b.npy", sample}});
+  const std::string bytes = zip({{"a.npy", sample}, {"b.npy", sample}});
   std::mt19937_64 generator(9);
   int refused = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -269,32 +200,6 @@ TEST_F(NpzTest, ManyFlippedBytesNeverCrash) {
     }
   }
   EXPECT_GT(refused, 1000);
-}
-
-TEST(Npy, WritesWhatItsDocumentSays) {
-  EXPECT_EQ(npyBytes({{3, 2}, {1, 2, 3, 4, 5, 6}}), sample);
-  EXPECT_EQ(npyBytes({{2}, {1, 2}}), npy(dictionary("<f8", "False", "(2, )"), doubles({1, 2})));
-  EXPECT_EQ(npyBytes({{}, {7}}), npy(dictionary("<f8", "False", "()"), doubles({7})));
-  EXPECT_THROW(npyBytes({{3, 2}, {1, 2, 3}}), Error);
-}
-
-TEST_F(NpzTest, WritesWhatItReads) {
-  const std::map<std::string, NumberArray> arrays{
-      {"polemeans", {{2, 3}, {1, 2, 3, 4, 5, 6}}}, {"empty", {{0, 3}, {}}}, {"one", {{}, {7}}}};
-  writeNpz(path("w.npz"), arrays);
-  const NpzFile npz(path("w.npz"));
-  EXPECT_EQ(npz.names(), (std::vector<std::string>{"empty", "one", "polemeans"}));
-  for (const auto& [name, array] : arrays) {
-    EXPECT_EQ(npz.array(name).shape, array.shape);
-    EXPECT_EQ(npz.array(name).values, array.values);
-  }
-  // An independent program accepts the file.
-  const std::string check = "python3 -m zipfile -t " + path("w.npz").string() + " > " +
-                            path("out.txt").string() + " 2>&1 && grep -q 'Done testing' " +
-                            path("out.txt").string();
-  if (std::system("python3 -c pass 2> /dev/null") == 0) {
-    EXPECT_EQ(std::system(check.c_str()), 0);
-  }
 }
 
 }  // namespace polemcl::test_npz

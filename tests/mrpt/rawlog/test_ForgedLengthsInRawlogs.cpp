@@ -119,10 +119,10 @@ TEST(ForgedLengths, OfALabel) {
 }
 
 TEST(ForgedLengths, WhatCannotBeReadIsNotWritten) {
-  EXPECT_NO_THROW(bytesOf(scanOf(io::mostOfAScan)));
-  EXPECT_ANY_THROW(bytesOf(scanOf(io::mostOfAScan + 1)));
+  EXPECT_NO_THROW(bytesOf(scanOf(io::kMostOfAScan)));
+  EXPECT_ANY_THROW(bytesOf(scanOf(io::kMostOfAScan + 1)));
   CPoleMap map;
-  map.info["config"] = std::string(io::longestMapFact + 1, 'x');
+  map.info["config"] = std::string(io::kLongestMapFact + 1, 'x');
   EXPECT_ANY_THROW(bytesOf(map));
 }
 

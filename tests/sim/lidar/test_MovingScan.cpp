@@ -43,7 +43,7 @@ class MovingScan : public ::testing::Test {
     std::vector<WorldObject> objects;
     for (const V& place : places()) {
       ObjectBuilder builder(Kind::lampPost, Site{place, 0});
-      builder.post(V(0, 0, -0.2), V(0, 0, 4), radius, radius, materials::metal);
+      builder.post(V(0, 0, -0.2), V(0, 0, 4), radius, radius, materials::kMetal);
       objects.push_back(builder.build(static_cast<std::uint32_t>(objects.size()) + 1));
     }
     return World(options, street, Terrain(options, street, {}), std::move(objects), {});

@@ -24,7 +24,7 @@ World emptyPlace(std::vector<WorldObject> objects) {
 }
 WorldObject post(double x, double y, double radius, double height, std::uint32_t id) {
   ObjectBuilder builder(Kind::lampPost, Site{V(x, y, 0), 0});
-  builder.post(V(0, 0, -0.2), V(0, 0, height), radius, radius, materials::metal);
+  builder.post(V(0, 0, -0.2), V(0, 0, height), radius, radius, materials::kMetal);
   return builder.build(id);
 }
 Eigen::Isometry3d at(double x, double y, double z, double yaw = 0) {
@@ -104,7 +104,7 @@ TEST(Scanner, GroundLiesWhereItIs) {
 
 TEST(Scanner, RangeNoiseIsThatOfTheLidar) {
   ObjectBuilder builder(Kind::wall, Site{});
-  Material smooth = materials::plaster;
+  Material smooth = materials::kPlaster;
   smooth.roughness = 0;
   builder.box(V(10.5, 0, 0), V(0.5, 5, 8), smooth);
   const World world = emptyPlace({builder.build(1)});
@@ -129,7 +129,7 @@ TEST(Scanner, RangeNoiseIsThatOfTheLidar) {
 
 TEST(Scanner, WhatStandsInFrontHidesWhatIsBehind) {
   ObjectBuilder builder(Kind::wall, Site{});
-  builder.box(V(5, 0, 2), V(0.2, 3, 3), materials::brick);
+  builder.box(V(5, 0, 2), V(0.2, 3, 3), materials::kBrick);
   const World world =
       emptyPlace({builder.build(1), post(10, 0, 0.2, 4, 2), post(0, 10, 0.2, 4, 3)});
   const Eigen::Isometry3d pose = at(0, 0, 1.5);
@@ -143,7 +143,7 @@ TEST(Scanner, PartsOfAPulseMeltAtNearStepsOnly) {
   // The front of the post is at 11.85 m; the wall behind it at 12.6 m or 15 m.
   for (const double wall : {12.6, 15.0}) {
     ObjectBuilder builder(Kind::wall, Site{});
-    builder.box(V(wall + 0.1, 0, 2), V(0.1, 6, 4), materials::plaster);
+    builder.box(V(wall + 0.1, 0, 2), V(0.1, 6, 4), materials::kPlaster);
     const World world = emptyPlace({builder.build(1), post(11.9, 0, 0.05, 5, 2)});
     int between = 0;
     for (int turn = 0; turn < 8; ++turn) {  // so that rays hit the post at many places

@@ -56,9 +56,9 @@ TEST(SightLines, BoardsAndContainersHideAndMeshIsToldApart) {
   const auto world = [&](Kind kind) {
     ObjectBuilder builder(kind, Site{{10, 0, 0}, 0});
     if (kind == Kind::siteFence)
-      builder.thicket({0, 0, 1}, {0.01, 3, 0.9}, materials::metal, 0.2);
+      builder.thicket({0, 0, 1}, {0.01, 3, 0.9}, materials::kMetal, 0.2);
     else
-      builder.box({0, 0, 1.1}, {0.02, 3, 1.1}, materials::wood);
+      builder.box({0, 0, 1.1}, {0.02, 3, 1.1}, materials::kWood);
     return World(options, street, Terrain(options, street, {}), {builder.build(1)}, {});
   };
   const auto blocked = [&](Kind kind, Obstacle obstacle) {

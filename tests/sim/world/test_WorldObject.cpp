@@ -13,7 +13,7 @@ using V = Eigen::Vector3d;
 TEST(WorldObject, SolidsAreTurnedAndMovedToTheSite) {
   const Site site{V(10, 20, 1), M_PI / 2};  // local x points to map y
   ObjectBuilder builder(Kind::car, site);
-  builder.box(V(2, 1, 0.5), V(1, 0.5, 0.25), materials::metal);
+  builder.box(V(2, 1, 0.5), V(1, 0.5, 0.25), materials::kMetal);
   const WorldObject object = builder.build(7);
   ASSERT_EQ(object.solids.size(), 1u);
   EXPECT_TRUE(object.solids[0].position.isApprox(V(9, 22, 1.5)));
@@ -23,7 +23,7 @@ TEST(WorldObject, SolidsAreTurnedAndMovedToTheSite) {
 
 TEST(WorldObject, PostsRunFromOneEndToTheOther) {
   ObjectBuilder builder(Kind::lampPost, Site{});
-  builder.post(V(0, 0, 1), V(3, 0, 5), 0.2, 0.1, materials::metal);
+  builder.post(V(0, 0, 1), V(3, 0, 5), 0.2, 0.1, materials::kMetal);
   const WorldObject object = builder.build(1);
   const Solid& post = object.solids[0];
   EXPECT_NEAR(post.size.z(), 5, 1e-12);
@@ -33,9 +33,9 @@ TEST(WorldObject, PostsRunFromOneEndToTheOther) {
 
 TEST(WorldObject, TheCircleHoldsAllSolids) {
   ObjectBuilder builder(Kind::house, Site{V(5, 5, 0), 0.4});
-  builder.box(V(4, 0, 1), V(3, 2, 1), materials::brick, 0.3);
-  builder.post(V(-2, 0, 0), V(-4, 1, 1), 0.3, 0.2, materials::metal);
-  builder.ellipsoid(V(0, 6, 1), V(1, 2, 1), materials::leaves);
+  builder.box(V(4, 0, 1), V(3, 2, 1), materials::kBrick, 0.3);
+  builder.post(V(-2, 0, 0), V(-4, 1, 1), 0.3, 0.2, materials::kMetal);
+  builder.ellipsoid(V(0, 6, 1), V(1, 2, 1), materials::kLeaves);
   const WorldObject object = builder.build(1);
   for (const Solid& solid : object.solids)
     for (int i = 0; i < 64; ++i) {  // corners and ends of every solid
@@ -54,9 +54,9 @@ TEST(WorldObject, TheCircleHoldsAllSolids) {
 
 TEST(WorldObject, CrownsAreLabelledApartFromTheTrunk) {
   ObjectBuilder builder(Kind::tree, Site{});
-  builder.post(V(0, 0, 0), V(0, 0, 3), 0.2, 0.2, materials::bark);
+  builder.post(V(0, 0, 0), V(0, 0, 3), 0.2, 0.2, materials::kBark);
   builder.startCrown();
-  builder.ellipsoid(V(0, 0, 4), V(1, 1, 1), materials::leaves, 0.1);
+  builder.ellipsoid(V(0, 0, 4), V(1, 1, 1), materials::kLeaves, 0.1);
   const WorldObject tree = builder.build(9);
   EXPECT_EQ(tree.solids[0].object, 9u);
   EXPECT_EQ(tree.solids[1].object, 9u | kFoliageBit);

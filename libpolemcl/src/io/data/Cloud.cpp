@@ -6,7 +6,7 @@
 namespace polemcl::io {
 
 namespace {
-constexpr std::size_t pointBytes = 16;
+constexpr std::size_t kPointBytes = 16;
 }
 
 bool Cloud::add(double px, double py, double pz, double pointIntensity) {
@@ -23,15 +23,15 @@ bool Cloud::add(double px, double py, double pz, double pointIntensity) {
 
 Cloud readKittiBin(const std::filesystem::path& file) {
   const std::string bytes = readBytes(file);
-  if (bytes.size() % pointBytes != 0) {
+  if (bytes.size() % kPointBytes != 0) {
     throw Error(file.string() + ": cut short: " + std::to_string(bytes.size()) +
                 " bytes are not a multiple of 16 (float32 x y z intensity a point)");
   }
   Cloud cloud;
   for (auto* field : {&cloud.x, &cloud.y, &cloud.z, &cloud.intensity}) {
-    field->reserve(bytes.size() / pointBytes);
+    field->reserve(bytes.size() / kPointBytes);
   }
-  for (std::size_t i = 0; i < bytes.size(); i += pointBytes) {
+  for (std::size_t i = 0; i < bytes.size(); i += kPointBytes) {
     const char* point = bytes.data() + i;
     cloud.add(loadLittleEndian<float>(point), loadLittleEndian<float>(point + 4),
               loadLittleEndian<float>(point + 8), loadLittleEndian<float>(point + 12));

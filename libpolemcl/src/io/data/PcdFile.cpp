@@ -206,13 +206,14 @@ Cloud readBinary(const Header& header, std::string_view data, const std::filesys
 /// The data start with two uint32 sizes (compressed, uncompressed); LZF data follow.
 std::string decompress(const Header& header, std::string_view data,
                        const std::filesystem::path& file) {
-  constexpr std::size_t sizes = 8;
-  const std::size_t packed = data.size() < sizes ? 0 : loadLittleEndian<std::uint32_t>(data.data());
-  if (data.size() < sizes || data.size() - sizes < packed)
+  constexpr std::size_t kSizes = 8;
+  const std::size_t packed =
+      data.size() < kSizes ? 0 : loadLittleEndian<std::uint32_t>(data.data());
+  if (data.size() < kSizes || data.size() - kSizes < packed)
     throw Error(file.string() + ": cut short: " + std::to_string(data.size()) +
-                " bytes of compressed points, " + std::to_string(sizes + packed) + " expected");
+                " bytes of compressed points, " + std::to_string(kSizes + packed) + " expected");
   const std::size_t size = loadLittleEndian<std::uint32_t>(data.data() + 4);
-  if (size > greatestLzfRatio * packed)
+  if (size > kGreatestLzfRatio * packed)
     throw Error(file.string() + ": damaged: " + std::to_string(packed) +
                 " bytes of compressed points cannot hold " + std::to_string(size));
   // Divide instead of multiply: the sizes in the header may be forged and overflow.
@@ -221,7 +222,7 @@ std::string decompress(const Header& header, std::string_view data,
                 std::to_string(header.points) + " points of " + std::to_string(header.pointBytes) +
                 " bytes expected");
   std::string points(size, '\0');
-  if (size > 0 && lzf_decompress(data.data() + sizes, static_cast<unsigned>(packed), points.data(),
+  if (size > 0 && lzf_decompress(data.data() + kSizes, static_cast<unsigned>(packed), points.data(),
                                  static_cast<unsigned>(size)) != size)
     throw Error(file.string() + ": its compressed points are damaged (LZF)");
   return points;

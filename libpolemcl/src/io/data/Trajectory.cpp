@@ -12,8 +12,8 @@ namespace polemcl::io {
 
 namespace {
 
-constexpr const char* tumLayout = "time x y z qx qy qz qw (s, m)";
-constexpr int decimals = 9;
+constexpr const char* kTumLayout = "time x y z qx qy qz qw (s, m)";
+constexpr int kDecimals = 9;
 
 /// The first row, or the reason why this file has none.
 bool firstRow(NumberRowReader& rows, const std::filesystem::path& file, NumberRow& row) {
@@ -22,14 +22,14 @@ bool firstRow(NumberRowReader& rows, const std::filesystem::path& file, NumberRo
   } catch (const Error&) {
     const std::string kind = otherKind(file, ".tum");
     if (kind.empty()) throw;
-    throw Error(file.string() + ": " + kind + "not a trajectory; expected: " + tumLayout);
+    throw Error(file.string() + ": " + kind + "not a trajectory; expected: " + kTumLayout);
   }
 }
 
 /// Reads a TUM file and passes each pose to `consume`.
 void readTumRows(const std::filesystem::path& file,
                  const std::function<void(const StampedPose3D&)>& consume) {
-  NumberRowReader rows(file, 8, tumLayout);
+  NumberRowReader rows(file, 8, kTumLayout);
   StampedPose3D entry;
   std::size_t count = 0;
   NumberRow row;
@@ -42,14 +42,14 @@ void readTumRows(const std::filesystem::path& file,
     const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
     if (std::abs(q.norm() - 1) > 0.01) {
       throw Error(at(file, row.line) + "qx qy qz qw have length " + significant(q.norm(), 6) +
-                  ", not 1; expected: " + tumLayout);
+                  ", not 1; expected: " + kTumLayout);
     }
     entry.time = v[0];
     entry.pose.linear() = q.normalized().toRotationMatrix();
     entry.pose.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
     consume(entry);
   }
-  if (count == 0) throw Error(file.string() + ": no pose in it; expected: " + tumLayout);
+  if (count == 0) throw Error(file.string() + ": no pose in it; expected: " + kTumLayout);
 }
 
 bool isFinite(double time, const Eigen::Isometry3d& pose) {
@@ -59,10 +59,10 @@ bool isFinite(double time, const Eigen::Isometry3d& pose) {
 std::string tumRow(double time, const Eigen::Isometry3d& pose) {
   Eigen::Quaterniond q(pose.linear());
   q.normalize();
-  std::string row = fixed(time, decimals);
+  std::string row = fixed(time, kDecimals);
   for (const double value : {pose.translation().x(), pose.translation().y(), pose.translation().z(),
                              q.x(), q.y(), q.z(), q.w()}) {
-    row += ' ' + fixed(value, decimals);
+    row += ' ' + fixed(value, kDecimals);
   }
   return row + '\n';
 }

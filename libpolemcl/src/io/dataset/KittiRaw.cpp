@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double earthRadius = 6378137;  ///< m, as in the devkit
-constexpr std::size_t oxtsFields = 30;
+constexpr double kEarthRadius = 6378137;  ///< m, as in the devkit
+constexpr std::size_t kOxtsFields = 30;
 
 double radians(double degrees) {
   return degrees * M_PI / 180;
@@ -45,7 +45,7 @@ std::vector<double> readStamps(const fs::path& file, const std::vector<std::uint
 }
 
 OxtsPose readOxts(const fs::path& file) {
-  const auto rows = readNumberRows(file, oxtsFields, "lat lon alt roll pitch yaw … of one frame");
+  const auto rows = readNumberRows(file, kOxtsFields, "lat lon alt roll pitch yaw … of one frame");
   if (rows.size() != 1) {
     throw Error(file.string() + ": " + std::to_string(rows.size()) +
                 " lines of numbers, 1 expected");
@@ -144,8 +144,8 @@ void noteOffsets(const fs::path& file, const Drive& drive, std::vector<std::stri
 
 Eigen::Isometry3d mercatorPose(const OxtsPose& measurement, double scale) {
   return poseFromAngles(
-      {scale * earthRadius * radians(measurement.longitude),
-       scale * earthRadius * std::log(std::tan(M_PI / 4 + radians(measurement.latitude) / 2)),
+      {scale * kEarthRadius * radians(measurement.longitude),
+       scale * kEarthRadius * std::log(std::tan(M_PI / 4 + radians(measurement.latitude) / 2)),
        measurement.altitude},
       measurement.roll, measurement.pitch, measurement.yaw);
 }

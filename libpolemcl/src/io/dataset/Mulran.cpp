@@ -23,14 +23,14 @@ fs::path findIn(const fs::path& sequence, const std::string& name) {
 /// Converts nanoseconds to seconds. The whole seconds are converted separately: a double cannot
 /// hold all digits of the nanoseconds.
 double seconds(std::uint64_t nanoseconds) {
-  constexpr std::uint64_t second = 1000000000;
-  const std::uint64_t whole = nanoseconds / second;
-  return static_cast<double>(whole) + static_cast<double>(nanoseconds % second) * 1e-9;
+  constexpr std::uint64_t kSecond = 1000000000;
+  const std::uint64_t whole = nanoseconds / kSecond;
+  return static_cast<double>(whole) + static_cast<double>(nanoseconds % kSecond) * 1e-9;
 }
 
 void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
                     ScanFolder& result) {
-  TrackSampler track(timesOf(result), trackGap);
+  TrackSampler track(timesOf(result), kTrackGap);
   CsvRows rows(file, 13, "time in ns, the vehicle's pose as row-major 3x4 matrix [R|t], m");
   std::vector<double> row, matrix;
   std::size_t unused = 0;

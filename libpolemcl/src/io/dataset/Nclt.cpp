@@ -96,7 +96,7 @@ void addTruth(const fs::path& file, const Eigen::Isometry3d& T_robot_body,
   Eigen::Isometry3d T_map_truth = Eigen::Isometry3d::Identity();  // truth: north east down
   T_map_truth.linear() << 0, 1, 0, 1, 0, 0, 0, 0, -1;
   const Eigen::Isometry3d T_body_robot = T_robot_body.inverse();
-  TrackSampler track(timesOf(result), trackGap);
+  TrackSampler track(timesOf(result), kTrackGap);
   CsvRows rows(file, 7, "utime, x, y, z, roll, pitch, heading (us, m, rad)", progress);
   std::vector<double> row;
   std::size_t unknown = 0, disordered = 0;

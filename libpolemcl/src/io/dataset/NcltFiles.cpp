@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Folders that NCLT's downloader makes for the archives of all sessions.
-constexpr const char *scanArchives = "velodyne_data", *sensorArchives = "sensor_data";
+constexpr const char *kScanArchives = "velodyne_data", *kSensorArchives = "sensor_data";
 
 bool isFolder(const fs::path& path) {
   std::error_code ignored;
@@ -56,13 +56,13 @@ Places placesOf(const fs::path& session) {
   Places places;
   places.date = dateIn(whole.filename().string());
   places.root = whole.parent_path();
-  if (places.root.filename() == scanArchives) places.root = places.root.parent_path();
+  if (places.root.filename() == kScanArchives) places.root = places.root.parent_path();
   std::vector<fs::path> folders{session};
   if (!places.date.empty()) {
     for (const std::string end : {"", "_vel"})
-      folders.push_back(places.root / scanArchives / (places.date + end));
+      folders.push_back(places.root / kScanArchives / (places.date + end));
     for (const std::string end : {"", "_sen"})
-      folders.push_back(places.root / sensorArchives / (places.date + end));
+      folders.push_back(places.root / kSensorArchives / (places.date + end));
     places.shared = {places.root, places.root / "ground_truth", places.root / "ground_truth_cov"};
   }
   for (std::size_t i = 0; i < folders.size(); ++i) {
@@ -123,7 +123,7 @@ bool hasScans(const fs::path& folder) {
 std::set<std::string> datesIn(const fs::path& root) {
   std::set<std::string> dates;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(root / scanArchives, ignored)) {
+  for (const auto& entry : fs::directory_iterator(root / kScanArchives, ignored)) {
     const std::string date = dateIn(entry.path().filename().string());
     if (!date.empty()) dates.insert(date);
   }
@@ -132,12 +132,12 @@ std::set<std::string> datesIn(const fs::path& root) {
 
 /// The session in a folder of the downloader that holds only one; any other folder unchanged.
 fs::path onlySession(const fs::path& folder) {
-  if (!isFolder(folder / scanArchives)) return folder;
+  if (!isFolder(folder / kScanArchives)) return folder;
   const auto dates = datesIn(folder);
   if (dates.size() == 1) return folder / *dates.begin();
   std::string names;
   for (const std::string& date : dates) names += " " + date;
-  throw Error((folder / scanArchives).string() +
+  throw Error((folder / kScanArchives).string() +
               (dates.empty() ? ": no session in it; unpack DATE_vel.tar.gz of NCLT there"
                              : ": several sessions in it; choose one with --session:" + names));
 }
@@ -156,7 +156,7 @@ NcltFiles findNcltFiles(const fs::path& folder) {
   if (files.sync.empty() && hasScans(session)) files.sync = session;
   files.hits = findNamed(places.own, "velodyne_hits.bin");
   if (files.sync.empty() && files.hits.empty()) {
-    const fs::path archive = places.root / scanArchives / (places.date + "_vel.tar.gz");
+    const fs::path archive = places.root / kScanArchives / (places.date + "_vel.tar.gz");
     if (isThere(archive)) throw Error(archive.string() + ": is not unpacked; unpack it there");
     throw Error(session.string() + (isNcltSession(session)
                                         ? ": neither velodyne_sync/ nor velodyne_hits.bin in it "

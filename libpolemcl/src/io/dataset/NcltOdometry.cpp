@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double relativeNoise = 0.05;  ///< per component, without covariances; own choice
-constexpr const char* poseLayout = "utime, x, y, z, roll, pitch, heading (us, m, rad)";
-constexpr const char* covarianceLayout =
+constexpr double kRelativeNoise = 0.05;  ///< per component, without covariances; own choice
+constexpr const char* kPoseLayout = "utime, x, y, z, roll, pitch, heading (us, m, rad)";
+constexpr const char* kCovarianceLayout =
     "utime, 21 numbers: the upper triangle of the covariance of x y z roll pitch heading";
 
 /// Covariance of x, y and heading, from the 21 numbers of an upper triangle at `values`.
@@ -39,7 +39,7 @@ Eigen::Matrix3d planeChange(const Eigen::Isometry3d& T_robot_body) {
 /// The covariances of the steps, searched by time.
 class CovarianceRows {
  public:
-  explicit CovarianceRows(const fs::path& file) : m_rows(file, 22, covarianceLayout) { advance(); }
+  explicit CovarianceRows(const fs::path& file) : m_rows(file, 22, kCovarianceLayout) { advance(); }
 
   /// The covariance of the row nearest to `time`; nullopt if it is more than `reach` s away. Calls
   /// must have increasing times.
@@ -95,7 +95,7 @@ Eigen::Isometry3d ncltPose(const double* values) {
 
 NcltOdometry::NcltOdometry(const NcltOdometryFiles& files, std::vector<double> times,
                            std::vector<std::string>& notes, const ReadProgress& progress)
-    : m_track(std::move(times), trackGap) {
+    : m_track(std::move(times), kTrackGap) {
   if (!files.track.empty()) readTrack(files.track, notes, progress);
   if (!files.steps.empty()) readSteps(files, notes, progress);
   if (files.steps.empty() || files.covariances.empty())
@@ -106,7 +106,7 @@ NcltOdometry::NcltOdometry(const NcltOdometryFiles& files, std::vector<double> t
 
 void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& notes,
                              const ReadProgress& progress) {
-  CsvRows rows(file, 7, poseLayout, progress);
+  CsvRows rows(file, 7, kPoseLayout, progress);
   std::vector<double> row;
   std::size_t unused = 0;
   while (rows.next(row)) {
@@ -117,7 +117,7 @@ void NcltOdometry::readTrack(const fs::path& file, std::vector<std::string>& not
 
 void NcltOdometry::readSteps(const NcltOdometryFiles& files, std::vector<std::string>& notes,
                              const ReadProgress& progress) {
-  CsvRows rows(files.steps, 7, poseLayout, progress);
+  CsvRows rows(files.steps, 7, kPoseLayout, progress);
   std::optional<CovarianceRows> covariances;
   if (!files.covariances.empty()) covariances.emplace(files.covariances);
   std::vector<double> row;
@@ -154,7 +154,7 @@ PoseWithCovariance NcltOdometry::motion(const Eigen::Isometry3d& T_begin_end, do
     const Eigen::Matrix3d change = planeChange(T_robot_body);
     motion.covariance = change * *covariance * change.transpose();
   } else {
-    motion.covariance = proportionalCovariance(motion.mean, relativeNoise);
+    motion.covariance = proportionalCovariance(motion.mean, kRelativeNoise);
   }
   motion.covariance += floorCovariance();
   return motion;

@@ -17,11 +17,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t hitBytes = 8, hitHeaderBytes = 24;
-constexpr std::uint16_t hitMagic = 44444;
-constexpr double nearest = 0.5;          ///< m; nearer points are not returns
-constexpr double longestPause = 0.05;    ///< longest time between packets, s; usual: 0.55 ms
-constexpr double widestStep = M_PI / 4;  ///< largest step of azimuth between packets; usual: 2°
+constexpr std::size_t kHitBytes = 8, kHitHeaderBytes = 24;
+constexpr std::uint16_t kHitMagic = 44444;
+constexpr double kNearest = 0.5;          ///< m; nearer points are not returns
+constexpr double kLongestPause = 0.05;    ///< longest time between packets, s; usual: 0.55 ms
+constexpr double kWidestStep = M_PI / 4;  ///< largest step of azimuth between packets; usual: 2°
 
 double metres(const char* value) {
   return loadLittleEndian<std::uint16_t>(value) * 0.005 - 100.0;
@@ -33,7 +33,7 @@ Eigen::Vector3d pointAt(const char* bytes) {
 
 /// Adds `count` points, transformed by `move`.
 void addPoints(const char* bytes, std::size_t count, const Eigen::Isometry3d& move, Cloud& cloud) {
-  for (std::size_t i = 0; i < count; ++i, bytes += hitBytes) {
+  for (std::size_t i = 0; i < count; ++i, bytes += kHitBytes) {
     const Eigen::Vector3d raw = pointAt(bytes);
     if (raw.squaredNorm() < 1e-6) {  // no return
       ++cloud.invalid;
@@ -51,7 +51,7 @@ struct Packet {
   std::uint64_t offset = 0;  ///< offset of its header, bytes
   double time = 0;           ///< s
   std::string points;        ///< raw bytes from the file
-  std::uint64_t bytes() const { return hitHeaderBytes + points.size(); }
+  std::uint64_t bytes() const { return kHitHeaderBytes + points.size(); }
 };
 
 /// Reads packet after packet.
@@ -68,19 +68,19 @@ class PacketReader {
   bool next(Packet& packet) {
     if (m_position == m_end) return false;
     packet.offset = m_position;
-    std::array<char, hitHeaderBytes> header;
+    std::array<char, kHitHeaderBytes> header;
     take(header.data(), header.size());
     for (std::size_t i = 0; i < 4; ++i) {
-      if (loadLittleEndian<std::uint16_t>(header.data() + 2 * i) != hitMagic)
+      if (loadLittleEndian<std::uint16_t>(header.data() + 2 * i) != kHitMagic)
         throw Error(where(packet.offset) +
                     "no packet of velodyne_hits.bin begins here (four times 44444 expected)");
     }
     const auto count = loadLittleEndian<std::uint32_t>(header.data() + 8);
-    if (count > mostPacketPoints)
+    if (count > kMostPacketPoints)
       throw Error(where(packet.offset) + "a packet of " + std::to_string(count) +
-                  " points; at most " + std::to_string(mostPacketPoints) + " are allowed");
+                  " points; at most " + std::to_string(kMostPacketPoints) + " are allowed");
     packet.time = static_cast<double>(loadLittleEndian<std::uint64_t>(header.data() + 12)) * 1e-6;
-    packet.points.resize(count * hitBytes);
+    packet.points.resize(count * kHitBytes);
     take(packet.points.data(), packet.points.size());
     return true;
   }
@@ -104,9 +104,9 @@ class PacketReader {
 
 /// Azimuth of the first return; nullopt if the packet has no return.
 std::optional<double> azimuthOf(const Packet& packet) {
-  for (std::size_t i = 0; i < packet.points.size(); i += hitBytes) {
+  for (std::size_t i = 0; i < packet.points.size(); i += kHitBytes) {
     const Eigen::Vector3d point = pointAt(packet.points.data() + i);
-    if (point.head<2>().norm() >= nearest) return std::atan2(point.y(), point.x());
+    if (point.head<2>().norm() >= kNearest) return std::atan2(point.y(), point.x());
   }
   return std::nullopt;
 }
@@ -143,8 +143,8 @@ class TurnFinder {
   bool follows(const Packet& packet, const std::optional<double>& azimuth) const {
     const double pause = packet.time - m_turn.end;
     const bool near =
-        !azimuth || !m_azimuth || std::abs(wrapAngle(*azimuth - *m_azimuth)) <= widestStep;
-    return pause >= 0 && pause <= longestPause && near;
+        !azimuth || !m_azimuth || std::abs(wrapAngle(*azimuth - *m_azimuth)) <= kWidestStep;
+    return pause >= 0 && pause <= kLongestPause && near;
   }
   void open(const Packet& packet) {
     m_turn = {packet.offset, 0, packet.time, 0, packet.time};
@@ -181,11 +181,11 @@ Eigen::Isometry3d toMiddle(double time, const NcltTurn& turn,
 
 Cloud readNcltSync(const fs::path& file) {
   const std::string bytes = readBytes(file);
-  if (bytes.size() % hitBytes != 0)
+  if (bytes.size() % kHitBytes != 0)
     throw Error(file.string() + ": cut short: " + std::to_string(bytes.size()) +
                 " bytes are not a multiple of 8 (uint16 x y z, uint8 intensity, laser a point)");
   Cloud cloud;
-  addPoints(bytes.data(), bytes.size() / hitBytes, Eigen::Isometry3d::Identity(), cloud);
+  addPoints(bytes.data(), bytes.size() / kHitBytes, Eigen::Isometry3d::Identity(), cloud);
   return cloud;
 }
 
@@ -201,10 +201,10 @@ std::vector<NcltTurn> findNcltTurns(const fs::path& file, std::vector<std::strin
   PacketReader reader(file, 0, size);
   TurnFinder finder;
   Packet packet;
-  constexpr std::uint64_t megabyte = 1000000;
+  constexpr std::uint64_t kMegabyte = 1000000;
   for (std::size_t packets = 0; reader.next(packet); ++packets) {
     finder.add(packet);
-    if (progress && packets % 1000 == 0) progress(packet.offset / megabyte, size / megabyte);
+    if (progress && packets % 1000 == 0) progress(packet.offset / kMegabyte, size / kMegabyte);
   }
   if (finder.turns.empty())
     throw Error(file.string() + ": no whole turn of the LiDAR in its " + std::to_string(size) +
@@ -222,7 +222,7 @@ Cloud readNcltTurn(const fs::path& file, const NcltTurn& turn,
   Cloud cloud;
   Packet packet;
   while (reader.next(packet)) {
-    addPoints(packet.points.data(), packet.points.size() / hitBytes,
+    addPoints(packet.points.data(), packet.points.size() / kHitBytes,
               toMiddle(packet.time, turn, motion) * T_body_lidar, cloud);
   }
   return cloud;

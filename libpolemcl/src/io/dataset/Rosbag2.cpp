@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Enough bytes of a message for its header.
-constexpr std::size_t headerBytes = 1024;
-constexpr const char* defaultRobotFrame = "base_link";
+constexpr std::size_t kHeaderBytes = 1024;
+constexpr const char* kDefaultRobotFrame = "base_link";
 
 /// The topics with messages, of one type or all, for messages.
 std::string listTopics(const Bag& bag, const std::string& type = {}) {
@@ -52,14 +52,14 @@ std::optional<std::size_t> chooseTopic(const Bag& bag, const std::string& type,
 }
 
 FrameTree readFrames(const Bag& bag) {
-  constexpr std::string_view ending = "tf_static";
+  constexpr std::string_view kEnding = "tf_static";
   FrameTree frames;
   for (std::size_t i = 0; i < bag.topics().size(); ++i) {
     const BagTopic& topic = bag.topics()[i];
     const bool isStatic =
-        topic.name.size() >= ending.size() &&
-        topic.name.compare(topic.name.size() - ending.size(), ending.size(), ending) == 0;
-    if (topic.type != transformsType || !isStatic) continue;
+        topic.name.size() >= kEnding.size() &&
+        topic.name.compare(topic.name.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
+    if (topic.type != kTransformsType || !isStatic) continue;
     for (const BagMessage& message : bag.messages(i))
       for (const auto& link : decodeTransforms(bag.read(message), bag.place(message)))
         frames.add(link.header.frame, link.child, link.T_parent_child);
@@ -73,7 +73,7 @@ ScanFolder listScans(const Bag& bag, std::size_t topic, std::string& frame) {
   std::size_t unordered = 0, all = 0;
   for (const BagMessage& message : bag.messages(topic)) {
     const std::string where = bag.place(message);
-    const std::string bytes = bag.read(message, headerBytes);
+    const std::string bytes = bag.read(message, kHeaderBytes);
     CdrReader reader(bytes, where);
     const RosHeader header = readHeader(reader);
     if (all++ == 0) frame = header.frame;
@@ -123,20 +123,20 @@ void findSensorPose(const FrameTree& frames, const std::string& robot, const std
 
 ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
   const auto bag = std::make_shared<const Bag>(path);
-  const auto clouds = chooseTopic(*bag, cloudType, options.topics.cloud, "--cloud-topic");
+  const auto clouds = chooseTopic(*bag, kCloudType, options.topics.cloud, "--cloud-topic");
   if (!clouds)
-    throw Error(path.string() + ": no clouds: a topic of " + cloudType + " is needed, it has " +
+    throw Error(path.string() + ": no clouds: a topic of " + kCloudType + " is needed, it has " +
                 listTopics(*bag) + "; packets of a LiDAR become clouds in its driver");
   const auto odometry =
-      chooseTopic(*bag, odometryType, options.topics.odometry, "--odometry-topic");
+      chooseTopic(*bag, kOdometryType, options.topics.odometry, "--odometry-topic");
   std::optional<std::size_t> imu;
   if (!options.topics.imu.empty()) {
-    imu = chooseTopic(*bag, imuType, options.topics.imu, "--imu-topic");
+    imu = chooseTopic(*bag, kImuType, options.topics.imu, "--imu-topic");
     if (!odometry)
       throw Error(path.string() + ": --imu-topic gives the yaw only, and there is no topic of " +
-                  odometryType + "; leave --imu-topic out");
+                  kOdometryType + "; leave --imu-topic out");
   }
-  std::string sensor, robot = defaultRobotFrame;
+  std::string sensor, robot = kDefaultRobotFrame;
   ScanFolder folder = listScans(*bag, *clouds, sensor);
   const FrameTree frames = readFrames(*bag);
   if (odometry) {

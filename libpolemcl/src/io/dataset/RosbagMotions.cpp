@@ -16,7 +16,7 @@ namespace polemcl::io {
 namespace {
 
 /// Longest time between two messages of an IMU over which it is integrated, s.
-constexpr double imuGap = 0.2;
+constexpr double kImuGap = 0.2;
 
 /// What a topic says of the motion.
 struct MeasuredTrack {
@@ -38,11 +38,11 @@ void noteTrack(const BagTopic& topic, const MeasuredTrack& track, std::vector<st
 
 /// Covariance of (vx, vy, yaw rate).
 Eigen::Matrix3d planarTwist(const RosOdometry& odometry) {
-  constexpr int index[] = {0, 1, 5};
+  constexpr int kIndex[] = {0, 1, 5};
   Eigen::Matrix3d planar;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
-      planar(row, column) = odometry.twistCovariance(index[row], index[column]);
+      planar(row, column) = odometry.twistCovariance(kIndex[row], kIndex[column]);
   return planar;
 }
 
@@ -53,7 +53,7 @@ bool isStated(const Eigen::Matrix3d& covariance) {
 /// \param child Set to the child frame.
 MeasuredTrack readOdometry(const Bag& bag, std::size_t topic, const std::vector<double>& times,
                            std::string& child) {
-  MeasuredTrack track(times, trackGap);
+  MeasuredTrack track(times, kTrackGap);
   std::optional<RosOdometry> last;
   for (const BagMessage& message : bag.messages(topic)) {
     const std::string where = bag.place(message);
@@ -92,7 +92,7 @@ Eigen::Vector3d robotAxis(const std::string& imuFrame, const std::string& robot,
 MeasuredTrack readImu(const Bag& bag, std::size_t topic, const std::vector<double>& times,
                       const std::string& robot, const FrameTree& frames,
                       std::vector<std::string>& notes) {
-  MeasuredTrack track(times, imuGap);
+  MeasuredTrack track(times, kImuGap);
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   double yaw = 0, lastTime = 0, lastRate = 0;
   for (const BagMessage& message : bag.messages(topic)) {
@@ -135,7 +135,7 @@ PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
   PoseWithCovariance motion;
   motion.mean = motionOf(odometry, interval);
   const auto stated = odometry.steps.covarianceBetween(interval.begin, interval.end);
-  motion.covariance = stated.value_or(proportionalCovariance(motion.mean, defaultMotionNoise));
+  motion.covariance = stated.value_or(proportionalCovariance(motion.mean, kDefaultMotionNoise));
   if (imu) {
     const double yaw = motionOf(*imu, interval).yaw;
     // On an arc the chord points along the mean of both headings.
@@ -144,7 +144,7 @@ PoseWithCovariance motionBetween(const MeasuredTrack& odometry,
     motion.mean.yaw = yaw;
     const auto ofGyro = imu->steps.covarianceBetween(interval.begin, interval.end);
     const Eigen::Matrix3d byYaw =
-        ofGyro.value_or(proportionalCovariance({0, 0, yaw}, defaultMotionNoise));
+        ofGyro.value_or(proportionalCovariance({0, 0, yaw}, kDefaultMotionNoise));
     motion.covariance.row(2).setZero();
     motion.covariance.col(2).setZero();
     motion.covariance(2, 2) = byYaw(2, 2);

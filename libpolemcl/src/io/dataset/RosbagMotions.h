@@ -13,7 +13,7 @@ namespace polemcl::io {
 
 /// \brief Standard deviation of each component of a motion, as a share of it, where the odometry
 /// (or for the yaw the IMU) states no covariance. Own choice.
-constexpr double defaultMotionNoise = 0.02;
+constexpr double kDefaultMotionNoise = 0.02;
 
 /// \brief Sets the motions between the scans.
 ///

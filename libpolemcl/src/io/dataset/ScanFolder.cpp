@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double nominalPeriod = 0.1;  ///< period of scans without times, s
+constexpr double kNominalPeriod = 0.1;  ///< period of scans without times, s
 
 /// The scans of a folder, with what is needed to assign rows to them.
 struct Scans {
@@ -137,7 +137,7 @@ ScanFolder readPcdFolder(const fs::path& folder, const Eigen::Isometry3d& T_robo
     readTimes(folder / "times.txt", scans, result);
   } else {
     for (std::size_t i = 0; i < result.scans.size(); ++i)
-      result.scans[i].time = nominalPeriod * static_cast<double>(i);
+      result.scans[i].time = kNominalPeriod * static_cast<double>(i);
     result.nominalTimes = true;
     result.notes.push_back("no times.txt: scans are assumed to be 0.1 s apart");
   }

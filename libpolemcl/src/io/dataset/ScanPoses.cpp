@@ -91,7 +91,7 @@ void takeTumPoses(ScanFolder& folder, const fs::path& file, const Eigen::Isometr
   for (StampedPose3D& row : rows) row.pose = row.pose * T_pose_robot;
   if (folder.nominalTimes) return pairInTurn(folder, file, rows);
 
-  TrackSampler track(timesOf(folder), trackGap);
+  TrackSampler track(timesOf(folder), kTrackGap);
   for (const StampedPose3D& row : rows) track.add(row.time, row.pose);
   takePoses(folder, track, file, "pose", "at times without a pose in " + file.filename().string());
 }

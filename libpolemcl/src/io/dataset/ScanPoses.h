@@ -8,7 +8,7 @@
 namespace polemcl::io {
 
 /// \brief Longest gap of a track that is interpolated, s: the vehicle may turn during longer gaps.
-constexpr double trackGap = 1.0;
+constexpr double kTrackGap = 1.0;
 
 /// \brief Adds a note if rows of a track were ignored.
 void noteUnusedRows(std::size_t rows, const std::filesystem::path& file,

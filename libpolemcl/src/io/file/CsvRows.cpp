@@ -13,8 +13,8 @@
 namespace polemcl::io {
 namespace {
 
-constexpr std::size_t linesPerReport = 10000;
-constexpr std::uint64_t megabyte = 1000000;
+constexpr std::size_t kLinesPerReport = 10000;
+constexpr std::uint64_t kMegabyte = 1000000;
 
 }  // namespace
 
@@ -48,8 +48,8 @@ bool CsvRows::next(std::vector<double>& values) {
   while (std::getline(m_stream, m_text)) {
     ++m_line;
     m_read += m_text.size() + 1;
-    if (m_progress && m_line % linesPerReport == 0)
-      m_progress(m_read / megabyte, m_size / megabyte);
+    if (m_progress && m_line % kLinesPerReport == 0)
+      m_progress(m_read / kMegabyte, m_size / kMegabyte);
     std::string_view rest = trimmed(m_text);
     if (rest.empty() || rest.front() == '#') continue;
     for (bool more = true; more;) {

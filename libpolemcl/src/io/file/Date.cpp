@@ -9,8 +9,8 @@
 namespace polemcl::io {
 
 std::string dateText(double seconds) {
-  constexpr double latest = 253402300800;  // the year 10000
-  if (!(seconds > 0 && seconds < latest)) return "";
+  constexpr double kLatest = 253402300800;  // the year 10000
+  if (!(seconds > 0 && seconds < kLatest)) return "";
   const auto time = static_cast<std::time_t>(std::floor(seconds));
   std::tm parts{};
   ::gmtime_r(&time, &parts);

@@ -28,7 +28,7 @@ GrowingFile::GrowingFile(std::filesystem::path file) : m_file(std::move(file)) {
 
 void GrowingFile::add(std::string_view text) {
   m_collected += text;
-  if (m_collected.size() >= piece) flush();
+  if (m_collected.size() >= kPiece) flush();
 }
 
 void GrowingFile::flush() {

@@ -13,7 +13,7 @@ namespace polemcl::io {
 /// complete.
 class GrowingFile {
  public:
-  static constexpr std::size_t piece = 4096;  ///< bytes collected before a write
+  static constexpr std::size_t kPiece = 4096;  ///< bytes collected before a write
 
   /// \brief Creates an empty file. \throws Error when that fails.
   explicit GrowingFile(std::filesystem::path file);

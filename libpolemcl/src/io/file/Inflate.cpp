@@ -11,9 +11,9 @@
 namespace polemcl::io {
 namespace {
 
-constexpr std::uint64_t firstBlock = 1 << 16;
+constexpr std::uint64_t kFirstBlock = 1 << 16;
 
-/// Calls inflateEnd() for inflateInit2().
+/// Calls inflateEnd() for inflateInit().
 struct Stream : z_stream {
   Stream() : z_stream() {}
   ~Stream() { inflateEnd(this); }
@@ -27,21 +27,19 @@ uInt piece(std::uint64_t bytes) {
 
 }  // namespace
 
-std::string inflated(std::string_view data, std::uint64_t size, Deflated kind,
-                     const std::string& where) {
+std::string inflated(std::string_view data, std::uint64_t size, const std::string& where) {
   if (size > mostInflated(data.size()))
     throw Error(where + "damaged: " + std::to_string(data.size()) + " bytes cannot hold " +
                 std::to_string(size) + " of numbers");
   Stream stream;
-  if (inflateInit2(&stream, kind == Deflated::bare ? -MAX_WBITS : MAX_WBITS) != Z_OK)
-    throw Error(where + "out of memory");
+  if (inflateInit(&stream) != Z_OK) throw Error(where + "out of memory");
   std::string result;
   std::size_t used = 0, taken = 0;
   int code = Z_OK;
   while (code == Z_OK) {
     // One byte more than claimed, to detect data beyond the claimed size.
     if (used == result.size())
-      result.resize(std::min<std::uint64_t>(size + 1, std::max(firstBlock, 2 * result.size())));
+      result.resize(std::min<std::uint64_t>(size + 1, std::max(kFirstBlock, 2 * result.size())));
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data())) + taken;
     stream.avail_in = piece(data.size() - taken);
     stream.next_out = reinterpret_cast<Bytef*>(result.data()) + used;

@@ -11,7 +11,7 @@ namespace polemcl::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* s_ending = ".tmp";
+constexpr const char* kEnding = ".tmp";
 
 bool isLinked(int descriptor) {
   struct stat status {};
@@ -53,7 +53,7 @@ std::vector<fs::path> leftoversIn(const fs::path& folder,
 }
 
 bool isTemporaryOf(const std::string& target, const std::string& name) {
-  const std::string begin = target + ".", end = s_ending;
+  const std::string begin = target + ".", end = kEnding;
   if (name.size() <= begin.size() + end.size() || name.compare(0, begin.size(), begin) != 0 ||
       name.compare(name.size() - end.size(), end.size(), end) != 0)
     return false;

@@ -15,10 +15,10 @@ namespace polemcl::io {
 /// the stack. \throws nlohmann::json::exception when it is no JSON.
 template <class Kind>
 Kind parsedJson(const std::filesystem::path& file) {
-  constexpr int deepest = 64;
+  constexpr int kDeepest = 64;
   return Kind::parse(readBytes(file), [&](int depth, typename Kind::parse_event_t, Kind&) {
-    if (depth > deepest)
-      throw Error(file.string() + ": is nested more than " + std::to_string(deepest) + " deep");
+    if (depth > kDeepest)
+      throw Error(file.string() + ": is nested more than " + std::to_string(kDeepest) + " deep");
     return true;
   });
 }

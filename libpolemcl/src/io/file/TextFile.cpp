@@ -22,7 +22,7 @@ LineReader::LineReader(const std::filesystem::path& file)
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw fail("it is a folder, not a file");
   const auto size = std::filesystem::file_size(file, ignored);
-  if (!ignored) m_most = std::min<std::uint64_t>(mostTextBytes, mostInflated(size));
+  if (!ignored) m_most = std::min<std::uint64_t>(kMostTextBytes, mostInflated(size));
   errno = 0;
   m_stream.reset(gzopen(file.c_str(), "rb"));
   if (!m_stream) throw fail(errno != 0 ? std::strerror(errno) : "out of memory");

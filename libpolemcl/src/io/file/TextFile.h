@@ -41,7 +41,7 @@ class LineReader {
   std::string m_text;  ///< text read; the part from m_begin on is not returned yet
   std::size_t m_begin = 0;
   std::size_t m_read = 0;  ///< bytes, uncompressed
-  std::uint64_t m_most = mostTextBytes;
+  std::uint64_t m_most = kMostTextBytes;
   bool m_ended = false, m_cutShort = false;
 };
 

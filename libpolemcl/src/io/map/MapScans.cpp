@@ -8,7 +8,7 @@
 namespace polemcl::io {
 namespace {
 
-constexpr std::uint64_t scanBytes = 4 * 8 + 4, poleBytes = 10 * 8 + 4;  ///< smallest size of each
+constexpr std::uint64_t kScanBytes = 4 * 8 + 4, kPoleBytes = 10 * 8 + 4;  ///< smallest size of each
 
 void put(ByteWriter& writer, const Pose2D& pose) {
   for (const double value : {pose.x, pose.y, pose.yaw}) writer.put(value);
@@ -77,7 +77,7 @@ bool getScan(ByteReader& reader, const std::string& where, SessionScan& scan) {
   if (used > 1) throw Error(where + "damaged: a scan is neither used nor not");
   if (used == 0) return false;
   scan.pose_robot_sensor = getPose(reader);
-  const auto poles = countOf<std::uint32_t>(reader, poleBytes, where);
+  const auto poles = countOf<std::uint32_t>(reader, kPoleBytes, where);
   scan.poles_robot.reserve(poles);
   for (std::uint32_t i = 0; i < poles; ++i) scan.poles_robot.push_back(getPole(reader));
   scan.visibilityRange.resize(countOf<std::uint32_t>(reader, 4, where));
@@ -106,8 +106,7 @@ std::string packMapScans(const AddedSessions& added) {
 AddedSessions unpackMapScans(std::string_view content, const std::string& where) {
   ByteReader packed(content, where);
   const auto size = packed.get<std::uint64_t>();
-  const std::string bytes =
-      inflated(packed.getRaw(packed.remaining()), size, Deflated::zlib, where);
+  const std::string bytes = inflated(packed.getRaw(packed.remaining()), size, where);
   ByteReader reader(bytes, where);
   AddedSessions added;
   added.unvisited = reader.get<double>();
@@ -115,7 +114,7 @@ AddedSessions unpackMapScans(std::string_view content, const std::string& where)
   for (std::uint32_t i = 0; i < sessions; ++i) {
     AddedSession& session = added.sessions.emplace_back();
     session.name = reader.getText();
-    const auto scans = countOf<std::uint64_t>(reader, scanBytes, where);
+    const auto scans = countOf<std::uint64_t>(reader, kScanBytes, where);
     session.scans.resize(scans);
     session.used.reserve(scans);
     for (SessionScan& scan : session.scans) session.used.push_back(getScan(reader, where, scan));

@@ -16,10 +16,10 @@ namespace polemcl::io {
 namespace {
 
 constexpr std::string_view polemapMagic("\x89PMAP\r\n\x1a", 8);
-constexpr std::uint32_t version = 1;
-constexpr std::size_t headerBytes = 8 + 4 + 8 + 4;
-constexpr std::uint32_t recordBytes = 9 * 8 + 4;
-constexpr std::uint32_t historyBytes = 3 * 8 + 2 * 4;
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeaderBytes = 8 + 4 + 8 + 4;
+constexpr std::uint32_t kRecordBytes = 9 * 8 + 4;
+constexpr std::uint32_t kHistoryBytes = 3 * 8 + 2 * 4;
 
 std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -97,13 +97,13 @@ std::string payloadOf(const PoleMapData& data, const AddedSessions* scans) {
     info.putText(key);
     info.putText(value);
   }
-  poles.put(recordBytes + (data.histories.empty() ? 0 : historyBytes));
+  poles.put(kRecordBytes + (data.histories.empty() ? 0 : kHistoryBytes));
   poles.put(static_cast<std::uint64_t>(data.poles.size()));
   for (std::size_t i = 0; i < data.poles.size(); ++i) {
     putPole(poles, data.poles[i]);
     if (!data.histories.empty()) putHistory(poles, data.histories[i]);
   }
-  candidates.put(recordBytes + historyBytes);
+  candidates.put(kRecordBytes + kHistoryBytes);
   candidates.put(static_cast<std::uint64_t>(data.candidates.size()));
   for (const LandmarkRecord& kept : data.candidates) {
     putPole(candidates, kept.pole);
@@ -150,11 +150,11 @@ bool readRecords(ByteReader& chunk, const std::string& where,
                  std::vector<LandmarkRecord>& records) {
   const auto size = chunk.get<std::uint32_t>();
   const auto count = chunk.get<std::uint64_t>();
-  if (size < recordBytes || count > chunk.remaining() / size) {
+  if (size < kRecordBytes || count > chunk.remaining() / size) {
     throw Error(where + "damaged: " + std::to_string(count) + " poles of " + std::to_string(size) +
                 " bytes do not fit into " + std::to_string(chunk.remaining()));
   }
-  const bool withHistory = size >= recordBytes + historyBytes;
+  const bool withHistory = size >= kRecordBytes + kHistoryBytes;
   records.reserve(count);
   for (std::uint64_t i = 0; i < count; ++i) {
     ByteReader record(chunk.getRaw(size), where);
@@ -183,9 +183,9 @@ std::string_view checkedPayload(std::string_view bytes, const std::string& where
   }
   ByteReader header(bytes.substr(polemapMagic.size()), where + "cut short: ");
   const auto found = header.get<std::uint32_t>();
-  if (found != version) {
+  if (found != kVersion) {
     throw Error(where + "version " + std::to_string(found) + " of the format; this program reads " +
-                std::to_string(version) + ": update polemcl, or the file is damaged");
+                std::to_string(kVersion) + ": update polemcl, or the file is damaged");
   }
   const auto size = header.get<std::uint64_t>();
   const auto crc = header.get<std::uint32_t>();
@@ -193,7 +193,7 @@ std::string_view checkedPayload(std::string_view bytes, const std::string& where
     throw Error(where + "cut short or damaged: " + std::to_string(header.remaining()) +
                 " bytes after the header, " + std::to_string(size) + " expected");
   }
-  const std::string_view payload = bytes.substr(headerBytes);
+  const std::string_view payload = bytes.substr(kHeaderBytes);
   if (checksum(payload) != crc) throw Error(where + "damaged: the checksum (CRC-32) is wrong");
   return payload;
 }
@@ -241,7 +241,7 @@ void writePoleMap(const std::filesystem::path& file, const PoleMapData& data,
   const std::string payload = payloadOf(data, scans);
   ByteWriter header;
   header.putRaw(polemapMagic);
-  header.put(version);
+  header.put(kVersion);
   header.put(static_cast<std::uint64_t>(payload.size()));
   header.put(checksum(payload));
   writeFile(file, header.bytes() + payload);

@@ -111,11 +111,4 @@ PoleMapData readPoleNpz(const std::filesystem::path& file) {
   return map;
 }
 
-void writePoleNpz(const std::filesystem::path& file, const std::vector<MapPole>& poles) {
-  NumberArray means{{poles.size(), 3}, {}};
-  for (const MapPole& pole : poles)
-    means.values.insert(means.values.end(), {pole.x, pole.y, pole.radius});
-  writeNpz(file, {{"polemeans", means}});
-}
-
 }  // namespace polemcl::io

@@ -1,6 +1,6 @@
 #pragma once
 /// \file PoleTables.h
-/// \brief Whole pole maps from and to tables of other programs: CSV, and the NPZ of the first
+/// \brief Whole pole maps from tables of other programs: CSV, and the NPZ of the first
 /// implementation. Values missing in a table get defaults: radius 0.1 m, bottom 0 and top 0 (not
 /// known), confidence 1, count 1, covariance 0.01 m² in x and y.
 
@@ -19,9 +19,5 @@ PoleMapData readPoleCsv(const std::filesystem::path& file);
 /// columns, radius).
 /// \throws Error as readPolePositions(). Also when a radius is negative or not finite.
 PoleMapData readPoleNpz(const std::filesystem::path& file);
-
-/// \brief Writes the array `polemeans`: x, y, radius of each pole, float64. \throws Error when the
-/// file cannot be written.
-void writePoleNpz(const std::filesystem::path& file, const std::vector<MapPole>& poles);
 
 }  // namespace polemcl::io

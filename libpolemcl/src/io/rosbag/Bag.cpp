@@ -29,8 +29,8 @@ std::string uriOf(const fs::path& file) {
   std::string uri = "file:";
   for (const char c : file.string()) {
     if (c == '%' || c == '?' || c == '#') {
-      constexpr const char* digits = "0123456789abcdef";
-      uri += {'%', digits[c >> 4], digits[c & 15]};
+      constexpr const char* kDigits = "0123456789abcdef";
+      uri += {'%', kDigits[c >> 4], kDigits[c & 15]};
     } else {
       uri += c;
     }

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* adviceToConvert =
+constexpr const char* kAdviceToConvert =
     "; write it as an uncompressed bag in SQLite with ros2 bag convert";
 
 /// What `metadata.yaml` says of the files.
@@ -57,19 +57,19 @@ BagMetadata readBagMetadata(const fs::path& file) {
 void requirePlain(const fs::path& file, const BagMetadata& metadata) {
   if (!metadata.storage.empty() && metadata.storage != "sqlite3")
     throw Error(file.string() + ": the storage of the bag is " + metadata.storage +
-                adviceToConvert);
+                kAdviceToConvert);
   const bool uncompressed =
       metadata.mode.empty() || metadata.mode == "NONE" || metadata.mode == "none";
   if (!metadata.compression.empty() || !uncompressed)
     throw Error(file.string() + ": the bag is compressed (" + metadata.compression + ", " +
-                metadata.mode + ")" + adviceToConvert);
+                metadata.mode + ")" + kAdviceToConvert);
 }
 
 void requireDatabase(const fs::path& file) {
   if (file.extension() == ".db3") return;
   if (file.extension() == ".zstd")
-    throw Error(file.string() + ": the bag is compressed (zstd)" + adviceToConvert);
-  throw Error(file.string() + ": not a .db3 file of a ROS 2 bag" + adviceToConvert);
+    throw Error(file.string() + ": the bag is compressed (zstd)" + kAdviceToConvert);
+  throw Error(file.string() + ": not a .db3 file of a ROS 2 bag" + kAdviceToConvert);
 }
 
 /// The number before the extension: 12 for "drive_12.db3"; 0 without one.

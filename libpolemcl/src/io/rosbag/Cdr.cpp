@@ -8,16 +8,16 @@
 namespace polemcl::io {
 namespace {
 
-constexpr std::size_t encapsulationBytes = 4;
+constexpr std::size_t kEncapsulationBytes = 4;
 /// First bytes of data compressed by zstd.
-constexpr std::string_view zstdMagic = "\x28\xb5\x2f\xfd";
+constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd";
 
 }  // namespace
 
 CdrReader::CdrReader(std::string_view message, std::string where) : m_where(std::move(where)) {
-  if (message.substr(0, zstdMagic.size()) == zstdMagic)
+  if (message.substr(0, kZstdMagic.size()) == kZstdMagic)
     fail("the message is compressed (zstd); write the bag uncompressed with ros2 bag convert");
-  if (message.size() < encapsulationBytes)
+  if (message.size() < kEncapsulationBytes)
     fail("cut short: " + std::to_string(message.size()) + " bytes, at least 4 expected");
   if (message[0] != 0 || (message[1] != 0 && message[1] != 1))
     fail("not CDR: it begins with the bytes " +
@@ -25,7 +25,7 @@ CdrReader::CdrReader(std::string_view message, std::string where) : m_where(std:
          std::to_string(static_cast<unsigned char>(message[1])) +
          "; 0 0 (big-endian) and 0 1 (little-endian) are allowed");
   m_bigEndian = message[1] == 0;
-  m_content = message.substr(encapsulationBytes);
+  m_content = message.substr(kEncapsulationBytes);
 }
 
 std::string CdrReader::getText() {

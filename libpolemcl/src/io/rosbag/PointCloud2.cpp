@@ -18,7 +18,7 @@ enum class FieldType : std::uint8_t {
   float64
 };
 
-constexpr std::array<std::size_t, 9> fieldBytes{0, 1, 1, 2, 2, 4, 4, 4, 8};
+constexpr std::array<std::size_t, 9> kFieldBytes{0, 1, 1, 2, 2, 4, 4, 4, 8};
 
 struct CloudField {
   std::string name;
@@ -64,13 +64,13 @@ double fieldValue(const char* point, const CloudField& field, bool bigEndian) {
 }
 
 std::vector<CloudField> readFields(CdrReader& reader) {
-  constexpr std::size_t least = 4 + 4 + 1 + 4;  // an empty name, offset, type, count
-  std::vector<CloudField> fields(reader.getCount(least));
+  constexpr std::size_t kLeast = 4 + 4 + 1 + 4;  // an empty name, offset, type, count
+  std::vector<CloudField> fields(reader.getCount(kLeast));
   for (CloudField& field : fields) {
     field.name = reader.getText();
     field.offset = reader.get<std::uint32_t>();
     const auto type = reader.get<std::uint8_t>();
-    if (type < 1 || type >= fieldBytes.size())
+    if (type < 1 || type >= kFieldBytes.size())
       reader.fail("the field " + field.name + " has the type " + std::to_string(type) +
                   "; 1 to 8 are allowed");
     field.type = static_cast<FieldType>(type);
@@ -106,7 +106,7 @@ const CloudField* findField(const CdrReader& reader, const CloudLayout& layout,
                             const std::string& name) {
   for (const CloudField& field : layout.fields) {
     if (field.name != name) continue;
-    if (field.offset + fieldBytes[static_cast<std::size_t>(field.type)] > layout.pointBytes)
+    if (field.offset + kFieldBytes[static_cast<std::size_t>(field.type)] > layout.pointBytes)
       reader.fail("the field " + name + " lies outside its point of " +
                   std::to_string(layout.pointBytes) + " bytes");
     return &field;
@@ -137,10 +137,10 @@ const CloudField* findTime(const CdrReader& reader, const CloudLayout& layout) {
 
 /// Time since the stamp, s, from what the field holds.
 double timeSince(double stamp, double fieldTime, FieldType type) {
-  constexpr double since1970 = 1e8, nanosecondsSince1970 = 1e17;
+  constexpr double kSince1970 = 1e8, kNanosecondsSince1970 = 1e17;
   if (type == FieldType::uint32) return fieldTime * 1e-9;
-  if (type == FieldType::float32 || std::abs(fieldTime) < since1970) return fieldTime;
-  return (std::abs(fieldTime) < nanosecondsSince1970 ? fieldTime : fieldTime * 1e-9) - stamp;
+  if (type == FieldType::float32 || std::abs(fieldTime) < kSince1970) return fieldTime;
+  return (std::abs(fieldTime) < kNanosecondsSince1970 ? fieldTime : fieldTime * 1e-9) - stamp;
 }
 
 }  // namespace

@@ -12,13 +12,14 @@
 namespace polemcl::io {
 namespace {
 
-constexpr std::size_t enoughScans = 5, mostScans = 20;
-constexpr std::size_t sampledPoints = 4000;  ///< of one scan
-constexpr double tails = 0.001;              ///< share of points with times that are not trusted
-constexpr double onLine = 10 * degree;  ///< beams of one moment differ in azimuth by less than this
-constexpr double leastOnLine = 0.9;     ///< share of the points
-constexpr double mostSpread = 15 * degree;  ///< of the azimuth at the stamp, from scan to scan
-constexpr double roundedStamp = 0.005;      ///< so near to begin or end of the turn, it is there
+constexpr std::size_t kEnoughScans = 5, kMostScans = 20;
+constexpr std::size_t kSampledPoints = 4000;  ///< of one scan
+constexpr double kTails = 0.001;              ///< share of points with times that are not trusted
+constexpr double kOnLine =
+    10 * degree;                      ///< beams of one moment differ in azimuth by less than this
+constexpr double kLeastOnLine = 0.9;  ///< share of the points
+constexpr double kMostSpread = 15 * degree;  ///< of the azimuth at the stamp, from scan to scan
+constexpr double kRoundedStamp = 0.005;      ///< so near to begin or end of the turn, it is there
 
 /// Points of a scan.
 struct TimedPoints {
@@ -27,7 +28,7 @@ struct TimedPoints {
 
 TimedPoints sampled(const RosCloud& scan) {
   TimedPoints result;
-  const std::size_t step = 1 + scan.offsets.size() / sampledPoints;
+  const std::size_t step = 1 + scan.offsets.size() / kSampledPoints;
   for (std::size_t i = 0; i < scan.offsets.size(); i += step) {
     result.times.push_back(scan.offsets[i]);
     result.azimuths.push_back(std::atan2(scan.cloud.y[i], scan.cloud.x[i]));
@@ -81,7 +82,7 @@ void refine(const TimedPoints& samples, double& rate, double& atZero) {
   const std::vector<double> errors = residuals(samples, rate, atZero);
   double n = 0, sumT = 0, sumE = 0, sumTt = 0, sumTe = 0;  // times T, errors E
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (std::abs(errors[i]) > 3 * onLine) continue;
+    if (std::abs(errors[i]) > 3 * kOnLine) continue;
     const double time = samples.times[i];
     n += 1;
     sumT += time;
@@ -103,7 +104,7 @@ double medianOf(const std::vector<double>& values) {
 
 std::optional<TimingEstimate::Fit> TimingEstimate::fit(const RosCloud& scan) {
   TimedPoints samples = sampled(scan);
-  const double begin = *quantile(scan.offsets, tails), end = *quantile(scan.offsets, 1 - tails);
+  const double begin = *quantile(scan.offsets, kTails), end = *quantile(scan.offsets, 1 - kTails);
   const double middle = (begin + end) / 2;  // sums of large times would lose digits
   for (double& time : samples.times) time -= middle;
   double rate = coarseRate(samples, end - begin);
@@ -111,10 +112,10 @@ std::optional<TimingEstimate::Fit> TimingEstimate::fit(const RosCloud& scan) {
   for (int i = 0; i < 3; ++i) refine(samples, rate, atMiddle);
   const auto errors = residuals(samples, rate, atMiddle);
   const auto near = std::count_if(errors.begin(), errors.end(),
-                                  [](double error) { return std::abs(error) < onLine; });
+                                  [](double error) { return std::abs(error) < kOnLine; });
   const double turns = (end - begin) * std::abs(rate) / (2 * M_PI);
-  if (static_cast<double>(near) < leastOnLine * static_cast<double>(errors.size()) || turns < 0.7 ||
-      turns > 1.1)
+  if (static_cast<double>(near) < kLeastOnLine * static_cast<double>(errors.size()) ||
+      turns < 0.7 || turns > 1.1)
     return std::nullopt;
   return Fit{rate, atMiddle - rate * middle, middle};
 }
@@ -132,7 +133,7 @@ void TimingEstimate::add(const RosCloud& scan) {
 }
 
 bool TimingEstimate::complete() const {
-  return m_scans - m_untimed - m_partial >= enoughScans || m_scans >= mostScans;
+  return m_scans - m_untimed - m_partial >= kEnoughScans || m_scans >= kMostScans;
 }
 
 std::string TimingEstimate::problem() const {
@@ -143,7 +144,7 @@ std::string TimingEstimate::problem() const {
   const Fit& reference = m_fits.front();
   for (const Fit& fit : m_fits) {
     if (fit.rate * reference.rate < 0 || std::abs(fit.rate / reference.rate - 1) > 0.05 ||
-        std::abs(wrapAngle(fit.atStamp - reference.atStamp)) > mostSpread)
+        std::abs(wrapAngle(fit.atStamp - reference.atStamp)) > kMostSpread)
       return "the scans begin at different azimuths";
     const double stamp = 0.5 - fit.middle * std::abs(fit.rate) / (2 * M_PI);
     if (stamp < -0.5 || stamp > 1.5)
@@ -166,9 +167,9 @@ ScanTiming TimingEstimate::timing() const {
   timing.seconds = 2 * M_PI / std::abs(rate);
   const double stamp = 0.5 - medianOf(middles) / timing.seconds;
   timing.stamp = std::clamp(
-      std::abs(stamp - std::round(stamp)) < roundedStamp ? std::round(stamp) : stamp, 0.0, 1.0);
+      std::abs(stamp - std::round(stamp)) < kRoundedStamp ? std::round(stamp) : stamp, 0.0, 1.0);
   // A stamp outside the turn is one of another clock.
-  if (std::abs(timing.stamp - stamp) > roundedStamp)
+  if (std::abs(timing.stamp - stamp) > kRoundedStamp)
     timing.clock = (timing.stamp - stamp) * timing.seconds;
   const double atStamp = m_fits.front().atStamp + medianOf(azimuths);
   timing.cut = wrapAngle(atStamp + rate * (timing.clock - timing.stamp * timing.seconds));

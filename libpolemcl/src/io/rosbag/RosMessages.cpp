@@ -82,9 +82,9 @@ RosImu decodeImu(std::string_view message, const std::string& where) {
 }
 
 std::vector<RosTransform> decodeTransforms(std::string_view message, const std::string& where) {
-  constexpr std::size_t least = 8 + 4 + 4 + 7 * 8;  // stamp, two empty names, seven numbers
+  constexpr std::size_t kLeast = 8 + 4 + 4 + 7 * 8;  // stamp, two empty names, seven numbers
   CdrReader reader(message, where);
-  std::vector<RosTransform> transforms(reader.getCount(least));
+  std::vector<RosTransform> transforms(reader.getCount(kLeast));
   for (RosTransform& transform : transforms) {
     transform.header = readHeader(reader);
     transform.child = readFrame(reader);

@@ -13,9 +13,9 @@
 namespace polemcl::io {
 
 /// \brief Names of the types, as bags state them.
-constexpr const char *cloudType = "sensor_msgs/msg/PointCloud2",
-                     *odometryType = "nav_msgs/msg/Odometry", *imuType = "sensor_msgs/msg/Imu",
-                     *transformsType = "tf2_msgs/msg/TFMessage";
+constexpr const char *kCloudType = "sensor_msgs/msg/PointCloud2",
+                     *kOdometryType = "nav_msgs/msg/Odometry", *kImuType = "sensor_msgs/msg/Imu",
+                     *kTransformsType = "tf2_msgs/msg/TFMessage";
 
 /// \brief std_msgs/msg/Header.
 struct RosHeader {

@@ -10,7 +10,7 @@ using mrpt::serialization::CArchive;
 
 namespace {
 
-constexpr std::size_t blockBytes = 1 << 16;
+constexpr std::size_t kBlockBytes = 1 << 16;
 
 void requireAtMost(std::uint32_t count, std::uint32_t most, const char* what) {
   if (count > most)
@@ -23,7 +23,7 @@ template <class Container>
 void append(CArchive& in, std::size_t count, const char* what, Container& to) {
   using Element = typename Container::value_type;
   while (count > 0) {
-    const std::size_t block = std::min(count, blockBytes / sizeof(Element));
+    const std::size_t block = std::min(count, kBlockBytes / sizeof(Element));
     const std::size_t begin = to.size();
     to.resize(begin + block);
     // Some MRPT streams return less than requested at their end.
@@ -58,9 +58,9 @@ std::vector<float> readFloats(CArchive& in, std::uint32_t most, const char* what
 
 std::map<std::string, std::string> readTexts(CArchive& in, std::uint32_t most,
                                              std::uint32_t longest, const char* what) {
-  constexpr std::uint32_t longestName = 64;
+  constexpr std::uint32_t kLongestName = 64;
   for (const char* expected : {"std::map", "std::string", "std::string"}) {
-    const std::string found = readText(in, longestName, what);
+    const std::string found = readText(in, kLongestName, what);
     if (found != expected)
       throw Error(std::string(what) + ": '" + found + "' where '" + expected + "' is expected");
   }

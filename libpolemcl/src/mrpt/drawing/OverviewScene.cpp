@@ -14,9 +14,9 @@ namespace {
 
 using namespace scene;
 
-constexpr double highest = 6;         ///< height that must be visible, m
-constexpr double halfHeight = 0.268;  ///< tangent of half the opening angle of MRPT's cameras
-constexpr double aspect = 1.35;       ///< of a rather narrow viewer window
+constexpr double kHighest = 6;         ///< height that must be visible, m
+constexpr double kHalfHeight = 0.268;  ///< tangent of half the opening angle of MRPT's cameras
+constexpr double kAspect = 1.35;       ///< of a rather narrow viewer window
 
 /// A camera in MRPT's convention, at `distance` from its target.
 struct View {
@@ -38,9 +38,9 @@ View directionFor(const Path& places) {
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const auto& place : places) scatter += (place - mean) * (place - mean).transpose();
   const auto axes = principalAxes(scatter);
-  constexpr double slim = 16;  // ratio of the variances
+  constexpr double kSlim = 16;  // ratio of the variances
   View view;
-  if (!axes || axes->first <= slim * axes->second) return view;
+  if (!axes || axes->first <= kSlim * axes->second) return view;
   Eigen::Vector2d axis(axes->x, axes->y);
   if (axis.x() + axis.y() < 0) axis = -axis;
   view.azimuth = std::atan2(axis.y(), axis.x()) + 160 * degree;
@@ -50,13 +50,13 @@ View directionFor(const Path& places) {
 
 /// Moves the camera as near as possible while all places are visible, on the ground and above it.
 void fit(View& view, const Path& places) {
-  constexpr double share = 0.92, nearest = 40;  // used share of the window; m
-  const double vertical = share * halfHeight, horizontal = aspect * vertical;
+  constexpr double kShare = 0.92, kNearest = 40;  // used share of the window; m
+  const double vertical = kShare * kHalfHeight, horizontal = kAspect * vertical;
   const Eigen::Vector3d back = view.back(), right = view.right(), up = view.up();
   // A place is visible if |right| <= horizontal * (distance - back); similarly for up.
   double r[2] = {-HUGE_VAL, -HUGE_VAL}, u[2] = {-HUGE_VAL, -HUGE_VAL};
   for (const auto& place : places)
-    for (double z : {0.0, highest}) {
+    for (double z : {0.0, kHighest}) {
       const Eigen::Vector3d p(place.x(), place.y(), z);
       for (int side : {0, 1}) {
         const int sign = side == 0 ? 1 : -1;
@@ -66,7 +66,7 @@ void fit(View& view, const Path& places) {
     }
   const double away = std::max((r[0] + r[1]) / (2 * horizontal), (u[0] + u[1]) / (2 * vertical));
   view.target = (r[0] - r[1]) / 2 * right + (u[0] - u[1]) / 2 * up;
-  view.distance = std::max(away, nearest);
+  view.distance = std::max(away, kNearest);
   // Move the target onto the ground, because viewers rotate about it; the camera stays in place.
   const double slide = view.target.z() / back.z();
   view.target -= slide * back;
@@ -75,13 +75,13 @@ void fit(View& view, const Path& places) {
 
 /// The corner where the legend hides the fewest places.
 Corner emptiest(const View& view, const Path& places) {
-  constexpr double width = 0.65, height = 0.6;  // of the legend; the window has 2 by 2
+  constexpr double kWidth = 0.65, kHeight = 0.6;  // of the legend; the window has 2 by 2
   const auto hidden = [&](const Corner& corner) {
     return std::count_if(places.begin(), places.end(), [&](const Eigen::Vector2d& place) {
       const Eigen::Vector3d p = Eigen::Vector3d(place.x(), place.y(), 0) - view.target;
-      const double away = halfHeight * (view.distance - view.back().dot(p));
-      const double x = view.right().dot(p) / away / aspect, y = view.up().dot(p) / away;
-      return (corner.right ? x : -x) > 1 - width && (corner.top ? y : -y) > 1 - height;
+      const double away = kHalfHeight * (view.distance - view.back().dot(p));
+      const double x = view.right().dot(p) / away / kAspect, y = view.up().dot(p) / away;
+      return (corner.right ? x : -x) > 1 - kWidth && (corner.top ? y : -y) > 1 - kHeight;
     });
   };
   const Corner corners[] = {{false, false}, {false, true}, {true, true}, {true, false}};
@@ -91,12 +91,12 @@ Corner emptiest(const View& view, const Path& places) {
 
 /// Splits a path at gaps and thins it: a drive has more poses than a ribbon needs corners.
 std::vector<Path> partsOf(const Path& path, double spacing) {
-  constexpr double gap = 50;  // m
+  constexpr double kGap = 50;  // m
   std::vector<Path> parts;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    if (i == 0 || (path[i] - path[i - 1]).norm() > gap) parts.emplace_back();
+    if (i == 0 || (path[i] - path[i - 1]).norm() > kGap) parts.emplace_back();
     Path& part = parts.back();
-    const bool last = i + 1 == path.size() || (path[i + 1] - path[i]).norm() > gap;
+    const bool last = i + 1 == path.size() || (path[i + 1] - path[i]).norm() > kGap;
     if (part.empty() || last || (path[i] - part.back()).norm() >= spacing) part.push_back(path[i]);
   }
   return parts;
@@ -114,14 +114,14 @@ OverviewScene::OverviewScene(const Path& places_map, const std::string& title)
   for (const auto& place : places_map) m_places.push_back(place - m_origin);
   if (m_places.empty()) m_places.push_back(m_box.center());
   m_extent = std::max(m_box.sizes().maxCoeff(), 10.0);
-  constexpr double longest = 20;  // units
-  m_unit = std::pow(10, std::max(0.0, std::ceil(std::log10(m_extent / longest))));
+  constexpr double kLongest = 20;  // units
+  m_unit = std::pow(10, std::max(0.0, std::ceil(std::log10(m_extent / kLongest))));
   m_legend.push_back({title, {}, 15});
 }
 
 void OverviewScene::addPoles(const std::string& name, const std::vector<MapPole>& poles,
                              const std::function<TColor(const MapPole&)>& color) {
-  constexpr double pixels = 7;
+  constexpr double kPixels = 7;
   auto objects = viz::CSetOfObjects::Create();
   std::vector<Dot> dots;
   for (std::size_t i = 0; i < poles.size(); ++i) {
@@ -133,7 +133,7 @@ void OverviewScene::addPoles(const std::string& name, const std::vector<MapPole>
   }
   objects->setName(name);
   m_content->insert(objects);
-  auto points = makeDots(dots, pixels);
+  auto points = makeDots(dots, kPixels);
   points->setName(name + " dots");
   m_content->insert(points);
 }

@@ -19,8 +19,8 @@ using viz::Scene;
 using viz::Viewport;
 
 double roundOrigin(double centre) {
-  constexpr double far = 10000, step = 1000;  // m
-  return std::abs(centre) > far ? std::round(centre / step) * step : 0;
+  constexpr double kFar = 10000, kStep = 1000;  // m
+  return std::abs(centre) > kFar ? std::round(centre / kStep) * kStep : 0;
 }
 
 mrpt::math::TPoint3Df pointOf(const Eigen::Vector3d& p) {
@@ -36,10 +36,10 @@ struct CountClass {
   TColor color;
   const char* text;
 };
-constexpr std::size_t countClasses = 6;
+constexpr std::size_t kCountClasses = 6;
 /// From light to dark, without the blue and the grey of the paths.
 const CountClass& classOf(std::uint32_t count) {
-  static const CountClass classes[countClasses] = {
+  static const CountClass classes[kCountClasses] = {
       {100, {0x46, 0x03, 0x9f}, "100 or more"}, {30, {0x9c, 0x17, 0x9e}, "30 to 99"},
       {10, {0xd8, 0x45, 0x6c}, "10 to 29"},     {3, {0xed, 0x79, 0x33}, "3 to 9"},
       {1, {0xf5, 0xb7, 0x00}, "1 or 2"},        {0, {0x8a, 0x93, 0x9f}, "not stated"}};
@@ -105,22 +105,22 @@ viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step) {
 }
 
 viz::CSetOfLines::Ptr makeEllipse(const PoleDetection& pole) {
-  constexpr int corners = 32;
-  constexpr double deviations = 10, height = 0.02;  // m
+  constexpr int kCorners = 32;
+  constexpr double kDeviations = 10, kHeight = 0.02;  // m
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pole.covariance);
   const Eigen::Matrix2d shape =
       axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   auto ellipse = viz::CSetOfLines::Create();
-  Eigen::Vector2d before = deviations * shape.col(0);
-  for (int i = 1; i <= corners; ++i) {
-    const double angle = 2 * M_PI * i / corners;
+  Eigen::Vector2d before = kDeviations * shape.col(0);
+  for (int i = 1; i <= kCorners; ++i) {
+    const double angle = 2 * M_PI * i / kCorners;
     const Eigen::Vector2d corner =
-        deviations * shape * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        kDeviations * shape * Eigen::Vector2d(std::cos(angle), std::sin(angle));
     ellipse->appendLine(before.x(), before.y(), 0.0, corner.x(), corner.y(), 0.0);
     before = corner;
   }
   ellipse->setLineWidth(2);
-  ellipse->setLocation(pole.x, pole.y, height);
+  ellipse->setLocation(pole.x, pole.y, kHeight);
   ellipse->setColor_u8(TColor(40, 80, 200));
   ellipse->setName("10 standard deviations");
   return ellipse;
@@ -196,18 +196,18 @@ std::vector<LegendLine> countLegend(const std::vector<MapPole>& poles) {
 }
 
 void showLegend(Scene& scene, const std::vector<LegendLine>& lines, double scale, Corner corner) {
-  constexpr double margin = 10, spacing = 6, mark = 10, indent = 18;  // pixels
-  constexpr double letter = 0.82;  // width of a letter relative to its size
-  double height = 2 * margin - spacing, width = 0;
+  constexpr double kMargin = 10, kSpacing = 6, kMark = 10, kIndent = 18;  // pixels
+  constexpr double kLetter = 0.82;  // width of a letter relative to its size
+  double height = 2 * kMargin - kSpacing, width = 0;
   for (const LegendLine& line : lines) {
-    height += line.size + spacing;
-    width = std::max(width, letter * line.size * static_cast<double>(line.text.size()) +
-                                (line.mark ? indent : 0));
+    height += line.size + kSpacing;
+    width = std::max(width, kLetter * line.size * static_cast<double>(line.text.size()) +
+                                (line.mark ? kIndent : 0));
   }
-  width += 2 * margin;
+  width += 2 * kMargin;
   const auto place = [&](bool far, double length) {  // MRPT: negative counts from far side
-    constexpr double off = 10;
-    return far ? -(off + length) * scale : off * scale;
+    constexpr double kOff = 10;
+    return far ? -(kOff + length) * scale : kOff * scale;
   };
   Viewport& panel = panelOf(scene, "text", scale);
   panel.setViewportPosition(place(corner.right, width), place(corner.top, height), width * scale,
@@ -215,24 +215,24 @@ void showLegend(Scene& scene, const std::vector<LegendLine>& lines, double scale
   panel.getCamera().setNoProjection();
   panel.clearTextMessages();
   std::vector<Dot> marks;
-  double y = height - margin;
+  double y = height - kMargin;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const LegendLine& line = lines[i];
     y -= line.size;
     // Without projection, a viewport reaches from -1 to 1.
     if (line.mark)
       marks.push_back(
-          {{2 * (margin + mark / 2) / width - 1, 2 * (y + line.size / 2) / height - 1, 0},
+          {{2 * (kMargin + kMark / 2) / width - 1, 2 * (y + line.size / 2) / height - 1, 0},
            *line.mark});
     viz::TFontParams font;
     font.vfont_name = "sans";
     font.vfont_scale = static_cast<float>(line.size * scale);
     font.color = mrpt::img::TColorf(line.color);
-    panel.addTextMessage((margin + (line.mark ? indent : 0)) * scale, y * scale, asciiOf(line.text),
-                         i, font);
-    y -= spacing;
+    panel.addTextMessage((kMargin + (line.mark ? kIndent : 0)) * scale, y * scale,
+                         asciiOf(line.text), i, font);
+    y -= kSpacing;
   }
-  put(panel, "marks", makeDots(marks, mark * scale));
+  put(panel, "marks", makeDots(marks, kMark * scale));
 }
 
 void save(const Scene& scene, const std::filesystem::path& file) {

@@ -7,7 +7,7 @@
 namespace polemcl {
 namespace {
 
-const Range s_shareOfFilter = Range::between(0, 1), s_particleNumber = Range::between(1, 1000000);
+const Range kShareOfFilter = Range::between(0, 1), kParticleNumber = Range::between(1, 1000000);
 
 void bindEstimate(Binder& b, FilterOptions& o) {
   b.choice<Resampling>("resampling", o.resampling,
@@ -39,8 +39,8 @@ void bind(Binder& b, FilterOptions& o) {
   b.angleDeg("extra_sigma_deg", o.extraSigmaYaw, Range::between(0, 57),
              "standard deviation of the noise added to each motion in heading");
   b.tier(Tier::tuning);
-  b.integer("particles", o.particles, s_particleNumber, "", "number of particles");
-  b.number("resample_below", o.resampleBelow, s_shareOfFilter, "share",
+  b.integer("particles", o.particles, kParticleNumber, "", "number of particles");
+  b.number("resample_below", o.resampleBelow, kShareOfFilter, "share",
            "effective share of the particles below which they are resampled; 0: never");
   b.flag("adaptive", o.adaptive,
          "true: resampling keeps the number of particles that the posterior needs (KLD sampling)");
@@ -48,9 +48,9 @@ void bind(Binder& b, FilterOptions& o) {
   b.tier(Tier::expert);
   bindEstimate(b, o);
   b.number(
-      "regularization", o.regularization, s_shareOfFilter, "share",
+      "regularization", o.regularization, kShareOfFilter, "share",
       "resampled particles are moved by this share of the spread of all; 0: they stay (paper)");
-  b.number("tempering", o.tempering, s_shareOfFilter, "share",
+  b.number("tempering", o.tempering, kShareOfFilter, "share",
            "a scan that would leave a lower effective share is used in steps; 0: at once (paper)");
 
   b.require(o.tempering <= o.resampleBelow, "tempering", o.tempering,
@@ -79,7 +79,7 @@ void bind(Binder& b, StartOptions& o) {
            "radius of the disc of positions (paper: 2.5)");
   b.angleDeg("heading_deg", o.heading, Range::between(0, 180),
              "headings are uniform in plus or minus this (paper: 5)");
-  b.integer("particles", o.particles, s_particleNumber, "",
+  b.integer("particles", o.particles, kParticleNumber, "",
             "number of particles until the first resampling");
   b.tier(Tier::expert);
   b.choice<StartPositions>(

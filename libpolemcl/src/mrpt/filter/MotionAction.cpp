@@ -19,9 +19,9 @@ void requireFinite(const PoseWithCovariance& motion) {
       !std::isfinite(motion.mean.yaw) || !motion.covariance.allFinite())
     throw Error("the motion is not finite: check the odometry");
   const double metres = std::hypot(motion.mean.x, motion.mean.y);
-  if (metres <= maxMotionStep) return;
+  if (metres <= kMaxMotionStep) return;
   std::ostringstream text;
-  text << "the motion is " << metres << " m long; at most " << maxMotionStep
+  text << "the motion is " << metres << " m long; at most " << kMaxMotionStep
        << " m from one scan to the next are allowed: check the odometry";
   throw Error(text.str());
 }
@@ -36,10 +36,10 @@ void requireCovariance(const Eigen::Matrix3d& covariance) {
 void requireCertain(const Eigen::Matrix3d& covariance) {
   const double metres = std::sqrt(std::max({0.0, covariance(0, 0), covariance(1, 1)}));
   const double radians = std::sqrt(std::max(0.0, covariance(2, 2)));
-  if (metres <= maxMotionMetres && radians <= maxMotionRadians) return;
+  if (metres <= kMaxMotionMetres && radians <= kMaxMotionRadians) return;
   std::ostringstream text;
   text << "the motion is too uncertain, with standard deviations of " << metres << " m and "
-       << radians << " rad; at most " << maxMotionMetres << " m and " << maxMotionRadians
+       << radians << " rad; at most " << kMaxMotionMetres << " m and " << kMaxMotionRadians
        << " rad are allowed: check the odometry, or [motion]";
   throw Error(text.str());
 }

@@ -13,10 +13,10 @@
 namespace polemcl {
 
 /// Largest standard deviations of a motion, m (x, y) and rad. Beyond them odometry is useless.
-constexpr double maxMotionMetres = 10, maxMotionRadians = 1;
+constexpr double kMaxMotionMetres = 10, kMaxMotionRadians = 1;
 
 /// Longest motion between two consecutive scans, m.
-constexpr double maxMotionStep = 10000;
+constexpr double kMaxMotionStep = 10000;
 
 /// \brief An action with one `CActionRobotMovement2D` of kind `emScan2DMatching` (this kind
 /// survives serialization). It is a Gaussian whose variances are those of the motion plus the

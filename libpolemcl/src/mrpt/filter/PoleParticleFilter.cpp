@@ -22,7 +22,7 @@ using mrpt::random::getRandomGenerator;
 
 namespace {
 
-constexpr int s_mostParticles = 1000000;
+constexpr int kMostParticles = 1000000;
 
 CParticleFilter::TParticleFilterOptions toMrpt(const FilterOptions& options) {
   CParticleFilter::TParticleFilterOptions result;
@@ -125,9 +125,9 @@ void PoleParticleFilter::start(const StartOptions& start) {
 
 void PoleParticleFilter::start(const std::vector<PoseHypothesis>& hypotheses, int particles) {
   particlesPerHypothesis(hypotheses, 1);  // rejects invalid hypotheses before any change
-  if (particles < 1 || particles > s_mostParticles)
+  if (particles < 1 || particles > kMostParticles)
     throw Error("the filter cannot start with " + std::to_string(particles) + " particles; 1 to " +
-                std::to_string(s_mostParticles) + " are allowed");
+                std::to_string(kMostParticles) + " are allowed");
   begin(particles);
   const GeneratorLoan loan(m_generator);
   const auto counts = particlesPerHypothesis(hypotheses, m_particles.size());

@@ -19,10 +19,10 @@ IMPLEMENTS_GENERIC_SENSOR(CUdpOdometry, polemcl)
 namespace polemcl {
 namespace {
 
-constexpr int longestWait = 10;  // ms
-constexpr std::size_t longestPacket = 200, longestShown = 60;
+constexpr int kLongestWait = 10;  // ms
+constexpr std::size_t kLongestPacket = 200, kLongestShown = 60;
 
-constexpr double farthestTime = 10;  // s
+constexpr double kFarthestTime = 10;  // s
 
 /// None for packets that are ignored. \param now The clock here, Unix time, s: for those without
 /// time.
@@ -34,7 +34,7 @@ mrpt::obs::CObservationOdometry::Ptr parse(const std::string& text, double now) 
   numbers.push_back(now);
   for (const double number : numbers)
     if (!std::isfinite(number)) return nullptr;
-  if (std::abs(numbers[3] - now) > farthestTime) return nullptr;
+  if (std::abs(numbers[3] - now) > kFarthestTime) return nullptr;
   auto odometry = mrpt::obs::CObservationOdometry::Create();
   odometry->odometry = mrpt::poses::CPose2D(numbers[0], numbers[1], numbers[2]);
   odometry->timestamp = mrpt::Clock::fromDouble(numbers[3]);
@@ -42,7 +42,7 @@ mrpt::obs::CObservationOdometry::Ptr parse(const std::string& text, double now) 
 }
 
 // Known as soon as the module is loaded.
-[[maybe_unused]] const bool s_registered = (CUdpOdometry::doRegister(), true);
+[[maybe_unused]] const bool kRegistered = (CUdpOdometry::doRegister(), true);
 
 }  // namespace
 
@@ -73,14 +73,14 @@ void CUdpOdometry::initialize() {
 void CUdpOdometry::doProcess() {
   m_state = ssWorking;
   pollfd ready{m_socket, POLLIN, 0};
-  if (poll(&ready, 1, longestWait) <= 0) return;
-  char packet[longestPacket];
+  if (poll(&ready, 1, kLongestWait) <= 0) return;
+  char packet[kLongestPacket];
   const auto size = recv(m_socket, packet, sizeof packet, MSG_DONTWAIT);
   if (size < 0) return;
   const std::string text(packet, static_cast<std::size_t>(size));
   const auto odometry = parse(text, mrpt::Clock::nowDouble());
   if (!odometry) {
-    if (!m_ignored) m_ignored = text.substr(0, longestShown);
+    if (!m_ignored) m_ignored = text.substr(0, kLongestShown);
     return;
   }
   odometry->sensorLabel = m_sensorLabel;

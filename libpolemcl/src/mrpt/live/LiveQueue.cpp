@@ -14,17 +14,17 @@ using mrpt::obs::CObservation;
 
 namespace {
 
-constexpr std::chrono::milliseconds glance{10};  // between two questions whether the drive goes on
+constexpr std::chrono::milliseconds kGlance{10};  // between two questions whether the drive goes on
 
 }  // namespace
 
 double SteadyTimes::of(const std::string& sensor, double time, Clock::time_point arrival) {
   const auto [at, isNew] = m_sensors.try_emplace(sensor);
   Sensor& known = at->second;
-  if (!isNew && time + known.offset < known.last - latest) {
+  if (!isNew && time + known.offset < known.last - kLatest) {
     const double expected =
         known.last + std::chrono::duration<double>(arrival - known.arrival).count();
-    if (std::abs(time + m_offset - expected) > latest) m_offset = expected - time;
+    if (std::abs(time + m_offset - expected) > kLatest) m_offset = expected - time;
     known.offset = m_offset;
   }
   known.last = time + known.offset;
@@ -148,7 +148,7 @@ bool LiveQueue::next(RawlogEntry& entry) {
       return true;
     }
     if (m_ended && m_scans.empty()) return false;
-    m_changed.wait_for(lock, glance);
+    m_changed.wait_for(lock, kGlance);
   }
   return false;
 }

@@ -38,7 +38,7 @@ class SteadyTimes {
  public:
   using Clock = std::chrono::steady_clock;
   /// \brief An observation may be this late without a clock that was set back, s.
-  static constexpr double latest = 3;
+  static constexpr double kLatest = 3;
   /// \param time As the sensor states it, s. \return What to count it for, s.
   double of(const std::string& sensor, double time, Clock::time_point arrival);
   /// \brief What is added to the times of a sensor, s.

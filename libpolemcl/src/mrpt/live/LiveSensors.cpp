@@ -10,11 +10,11 @@ namespace {
 
 using Factory = LiveSensors* (*)(const std::string&, SensorEvents);
 
-constexpr const char* moduleName = "libpolemcl-sensors.so";
+constexpr const char* kModuleName = "libpolemcl-sensors.so";
 
 /// Loaded once and never closed: MRPT's registry of classes keeps what it holds.
 Factory loadFactory() {
-  void* module = dlopen(io::installedModule(moduleName).c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* module = dlopen(io::installedModule(kModuleName).c_str(), RTLD_NOW | RTLD_LOCAL);
   void* factory = module ? dlsym(module, "polemclStartSensors") : nullptr;
   if (!factory) throw Error(std::string("no sensor can be used: ") + dlerror());
   return reinterpret_cast<Factory>(factory);

@@ -16,10 +16,10 @@ using mrpt::hwdrivers::CVelodyneScanner;
 
 namespace {
 
-constexpr double usualRate = 1000;  // calls of a driver in a second
+constexpr double kUsualRate = 1000;  // calls of a driver in a second
 
 /// More packets than a turn of any Velodyne has. MRPT reads a file without any over and over.
-constexpr std::size_t mostPackets = 3000;
+constexpr std::size_t kMostPackets = 3000;
 
 /// MRPT keeps ports in a short, and compares with unsigned ones.
 short portOf(const CConfigFileBase& config, const std::string& section, const char* key,
@@ -79,7 +79,7 @@ SensorThread::~SensorThread() {
 
 void SensorThread::open(CConfigFileBase& config) {
   if (!config.keyExists(m_section, "process_rate"))
-    config.write(m_section, "process_rate", usualRate);
+    config.write(m_section, "process_rate", kUsualRate);
   m_scanner = dynamic_cast<CVelodyneScanner*>(m_sensor.get());
   m_odometry = dynamic_cast<const CUdpOdometry*>(m_sensor.get());
   if (m_scanner) openVelodyne(config);
@@ -154,8 +154,8 @@ bool SensorThread::processVelodyne(const SensorEvents& events) {
   mrpt::obs::CObservationGPS::Ptr position;
   if (!m_scanner->getNextObservation(scan, position)) return m_pcap.empty();
   if (scan && m_turns++ > 0) events.observed(scan);
-  if (!m_pcap.empty() && m_turns == 0 && ++m_packets > mostPackets)
-    throw Error("no turn in the first " + std::to_string(mostPackets) + " packets of " + m_pcap +
+  if (!m_pcap.empty() && m_turns == 0 && ++m_packets > kMostPackets)
+    throw Error("no turn in the first " + std::to_string(kMostPackets) + " packets of " + m_pcap +
                 ": check data_port and device_ip");
   return true;
 }

@@ -30,13 +30,13 @@ Pose2D planarPose(const mrpt::poses::CPose3D& pose) {
 }
 
 void requireStorable(const CPoleMap& map) {
-  bool fits = map.poles().size() <= io::mostMapPoles && map.info.size() <= io::mostMapFacts;
+  bool fits = map.poles().size() <= io::kMostMapPoles && map.info.size() <= io::kMostMapFacts;
   for (const auto& [key, value] : map.info)
-    fits = fits && std::max(key.size(), value.size()) <= io::longestMapFact;
+    fits = fits && std::max(key.size(), value.size()) <= io::kLongestMapFact;
   if (!fits)
-    throw Error("a map of more than " + std::to_string(io::mostMapPoles) + " poles or " +
-                std::to_string(io::mostMapFacts) + " facts, or with one of more than " +
-                std::to_string(io::longestMapFact) + " bytes, fits into no archive of MRPT");
+    throw Error("a map of more than " + std::to_string(io::kMostMapPoles) + " poles or " +
+                std::to_string(io::kMostMapFacts) + " facts, or with one of more than " +
+                std::to_string(io::kLongestMapFact) + " bytes, fits into no archive of MRPT");
 }
 
 template <class Pole>
@@ -111,10 +111,10 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   }
   insertionOptions.validate();
   checkOptions<LikelihoodOptions>(l);
-  info = readTexts(in, io::mostMapFacts, io::longestMapFact, "facts about the map");
+  info = readTexts(in, io::kMostMapFacts, io::kLongestMapFact, "facts about the map");
   std::vector<MapPole> poles;
   // One by one: a count in a damaged file must not decide how much memory is allocated.
-  for (std::uint32_t left = readCount(in, io::mostMapPoles, "poles"); left > 0; --left)
+  for (std::uint32_t left = readCount(in, io::kMostMapPoles, "poles"); left > 0; --left)
     poles.push_back(readPole(in, &MapPole::count));
   setPoles(std::move(poles));
 }

@@ -25,10 +25,10 @@ uint8_t CObservationPoles::serializeGetVersion() const {
 
 void CObservationPoles::serializeTo(CArchive& out) const {
   for (const std::size_t count : {sensorLabel.size(), poles.size(), visibilityRange.size()})
-    if (count > io::mostOfAScan)
+    if (count > io::kMostOfAScan)
       throw Error("a scan with " + std::to_string(count) +
                   " poles, visibility ranges or bytes of its label cannot be stored; at most " +
-                  std::to_string(io::mostOfAScan) + " are allowed of each");
+                  std::to_string(io::kMostOfAScan) + " are allowed of each");
   out << timestamp << sensorLabel << sensorPose << points;
   out << static_cast<std::uint32_t>(poles.size());
   for (const auto& pole : poles) writePole(out, pole, pole.points);
@@ -40,13 +40,13 @@ void CObservationPoles::serializeTo(CArchive& out) const {
 void CObservationPoles::serializeFrom(CArchive& in, uint8_t version) {
   if (version > 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> timestamp;
-  sensorLabel = readText(in, io::mostOfAScan, "sensor label");
+  sensorLabel = readText(in, io::kMostOfAScan, "sensor label");
   in >> sensorPose >> points;
   poles.clear();
   // One by one: a count in a damaged file must not decide how much memory is allocated.
-  for (std::uint32_t left = readCount(in, io::mostOfAScan, "poles"); left > 0; --left)
+  for (std::uint32_t left = readCount(in, io::kMostOfAScan, "poles"); left > 0; --left)
     poles.push_back(readPole(in, &PoleDetection::points));
-  visibilityRange = readFloats(in, io::mostOfAScan, "visibility ranges");
+  visibilityRange = readFloats(in, io::kMostOfAScan, "visibility ranges");
   if (version < 1) return;
   for (auto& pole : poles) in >> pole.timeOffset;
   if (version < 2) return;
@@ -102,11 +102,11 @@ std::string CObservationPoles::exportTxtDataRow() const {
 }
 
 void CObservationPoles::getVisualizationInto(viz::CSetOfObjects& o) const {
-  constexpr double step = 10;  // of the ground's grid, m
-  Eigen::AlignedBox2d around(Eigen::Vector2d(-step, -step), Eigen::Vector2d(step, step));
+  constexpr double kStep = 10;  // of the ground's grid, m
+  Eigen::AlignedBox2d around(Eigen::Vector2d(-kStep, -kStep), Eigen::Vector2d(kStep, kStep));
   const auto polesHere = polesInRobotFrame();
   for (const auto& pole : polesHere) around.extend(Eigen::Vector2d(pole.x, pole.y));
-  o.insert(scene::makeGround(around, step));
+  o.insert(scene::makeGround(around, kStep));
   const auto axes = mrpt::opengl::stock_objects::CornerXYZSimple(1.0f, 3.0f);
   axes->setPose(sensorPose);
   o.insert(axes);

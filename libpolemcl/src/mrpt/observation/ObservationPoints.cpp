@@ -86,19 +86,19 @@ std::uint32_t timestampOf(const CObservationVelodyneScan::TVelodyneRawPacket& pa
 /// device are clockwise. None if the packets do not show a turn (fewer than two, no clock).
 std::optional<ScanTiming> timingOf(
     const std::vector<CObservationVelodyneScan::TVelodyneRawPacket>& packets) {
-  constexpr int fullTurn = 36000;                     // 1/100 degree
-  constexpr std::uint32_t wholeHour = 3'600'000'000;  // microseconds
+  constexpr int kFullTurn = 36000;                     // 1/100 degree
+  constexpr std::uint32_t kWholeHour = 3'600'000'000;  // microseconds
   if (packets.size() < 2) return std::nullopt;
-  const auto rotation = [&](std::size_t i) { return packets[i].blocks[0].rotation() % fullTurn; };
+  const auto rotation = [&](std::size_t i) { return packets[i].blocks[0].rotation() % kFullTurn; };
   double turned = 0, seconds = 0;
   for (std::size_t i = 1; i < packets.size(); ++i) {
     const std::uint32_t from = timestampOf(packets[i - 1]), to = timestampOf(packets[i]);
-    turned += (rotation(i) - rotation(i - 1) + fullTurn) % fullTurn;
-    seconds += (to >= from ? to - from : to + wholeHour - from) * 1e-6;
+    turned += (rotation(i) - rotation(i - 1) + kFullTurn) % kFullTurn;
+    seconds += (to >= from ? to - from : to + kWholeHour - from) * 1e-6;
   }
   if (!(turned > 0 && seconds > 0)) return std::nullopt;
-  return ScanTiming{Turn::clockwise, seconds * fullTurn / turned,
-                    -rotation(0) * 2 * M_PI / fullTurn, 0};
+  return ScanTiming{Turn::clockwise, seconds * kFullTurn / turned,
+                    -rotation(0) * 2 * M_PI / kFullTurn, 0};
 }
 
 /// Measuring times by the columns of the image; none if the scan does not state its duration.

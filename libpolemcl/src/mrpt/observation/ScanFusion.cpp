@@ -9,7 +9,7 @@ namespace polemcl {
 namespace {
 
 /// No LiDAR sees farther, m; poles from a damaged rawlog may say so.
-constexpr double s_farthest = 1000;
+constexpr double kFarthest = 1000;
 
 /// How far one LiDAR sees along a ray from the robot's origin, m: up to the first step that it does
 /// not see.
@@ -17,7 +17,7 @@ float seenAlong(double azimuth, const CObservationPoles& part) {
   const auto& ranges = part.visibilityRange;
   if (ranges.empty()) return 0;
   const Pose2D lidar = part.planarSensorPose();
-  const double most = std::min<double>(s_farthest, *std::max_element(ranges.begin(), ranges.end()));
+  const double most = std::min<double>(kFarthest, *std::max_element(ranges.begin(), ranges.end()));
   float seen = 0;
   for (float reach = VisibilityRangeFinder::kStep;; reach += VisibilityRangeFinder::kStep) {
     const Pose2D place = relative(lidar, {reach * std::cos(azimuth), reach * std::sin(azimuth), 0});
@@ -31,7 +31,7 @@ float seenAlong(double azimuth, const CObservationPoles& part) {
 
 }  // namespace
 
-const char* const fusedLabel = "fused";
+const char* const kFusedLabel = "fused";
 
 std::vector<float> fusedVisibility(const std::vector<CObservationPoles::Ptr>& parts) {
   std::size_t sectors = 0;
@@ -51,7 +51,7 @@ FusedScan fuseScans(const std::vector<CObservationPoles::Ptr>& parts, double tim
   result.observation = std::make_shared<CObservationPoles>();
   CObservationPoles& fused = *result.observation;
   fused.timestamp = mrpt::Clock::fromDouble(time);
-  fused.sensorLabel = fusedLabel;
+  fused.sensorLabel = kFusedLabel;
   for (const auto& part : parts) {
     auto poles = part->polesInRobotFrame();
     const double shift = mrpt::Clock::toDouble(part->timestamp) - time;

@@ -13,7 +13,7 @@ namespace polemcl {
 
 /// \brief Sensor label of observations that were fused; also where one LiDAR alone saw the scan, so
 /// that the scans of a drive have one label.
-extern const char* const fusedLabel;
+extern const char* const kFusedLabel;
 
 struct FusedScan {
   CObservationPoles::Ptr observation;

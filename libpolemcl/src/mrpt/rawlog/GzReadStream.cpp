@@ -76,9 +76,9 @@ int GzReadStream::readPiece(int& code) {
 /// Upper bound of the bytes that are left.
 std::uint64_t GzReadStream::mostLeft() const {
   if (gzdirect(m_file)) return m_fileSize - std::min(m_fileSize, m_position);
-  constexpr std::uint64_t buffered = 1 << 20;  // by zlib and by this class
+  constexpr std::uint64_t kBuffered = 1 << 20;  // by zlib and by this class
   const auto at = static_cast<std::uint64_t>(std::max<z_off_t>(0, gzoffset(m_file)));
-  return buffered + io::greatestDeflateRatio * (m_fileSize - std::min(m_fileSize, at));
+  return kBuffered + io::kGreatestDeflateRatio * (m_fileSize - std::min(m_fileSize, at));
 }
 
 bool GzReadStream::atCleanEnd() {
@@ -101,7 +101,7 @@ std::size_t GzReadStream::Read(void* buffer, std::size_t count) {
   }
   if (m_follow.count() > 0) return done;
   const auto points = m_points.see(buffer, count);
-  if (points && *points > mostLeft() / PointCountGuard::pointBytes) {
+  if (points && *points > mostLeft() / PointCountGuard::kPointBytes) {
     m_cutShort = true;
     throw std::runtime_error("the data ends before its " + std::to_string(*points) + " points");
   }

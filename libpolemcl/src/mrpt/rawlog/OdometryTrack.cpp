@@ -21,8 +21,8 @@ bool OdometryTrack::isJump(double time, const Pose2D& pose) const {
   const auto& [last, before] = *m_readings.rbegin();
   const Pose2D step = relative(before, pose);
   const double dt = time - last;
-  return std::hypot(step.x, step.y) > nearestJump + fastest * dt ||
-         std::abs(step.yaw) > leastTurn + fastestTurn * dt;
+  return std::hypot(step.x, step.y) > kNearestJump + kFastest * dt ||
+         std::abs(step.yaw) > kLeastTurn + kFastestTurn * dt;
 }
 
 /// The pose at a time after the readings if the last motion goes on.
@@ -37,12 +37,12 @@ Pose2D OdometryTrack::goneOn(double time) const {
 std::optional<Pose2D> OdometryTrack::at(double time) const {
   const auto after = m_readings.lower_bound(time);  // at or after
   if (after == m_readings.end()) {
-    if (m_readings.empty() || time - m_readings.rbegin()->first > reach) return std::nullopt;
+    if (m_readings.empty() || time - m_readings.rbegin()->first > kReach) return std::nullopt;
     return m_readings.rbegin()->second;
   }
   if (after->first == time) return after->second;
   if (after == m_readings.begin()) {
-    if (after->first - time > reach) return std::nullopt;
+    if (after->first - time > kReach) return std::nullopt;
     return after->second;
   }
   const auto before = std::prev(after);

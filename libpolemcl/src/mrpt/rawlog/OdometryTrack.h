@@ -16,12 +16,12 @@ namespace polemcl {
 class OdometryTrack {
  public:
   /// \brief A longer step between two readings is a jump: `nearest + fastest * dt`, m and m/s.
-  static constexpr double nearestJump = 1, fastest = 70;
+  static constexpr double kNearestJump = 1, kFastest = 70;
   /// \brief The same for the heading, rad and rad/s.
-  static constexpr double leastTurn = 0.5, fastestTurn = 10;
+  static constexpr double kLeastTurn = 0.5, kFastestTurn = 10;
 
   /// \brief The first and last pose are also valid for this time before and after the readings, s.
-  static constexpr double reach = 0.5;
+  static constexpr double kReach = 0.5;
 
   void add(double time, const Pose2D& pose);
   /// \brief Number of jumps so far.

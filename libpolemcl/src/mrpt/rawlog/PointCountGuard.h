@@ -19,7 +19,7 @@ class PointCountGuard {
   /// \return The count of points, if this block is one.
   std::optional<std::uint32_t> see(const void* piece, std::size_t size);
   /// A point has at least x, y and z.
-  static constexpr std::uint64_t pointBytes = 12;
+  static constexpr std::uint64_t kPointBytes = 12;
 
  private:
   enum class Next { length, name, version, count };

@@ -27,16 +27,16 @@ using namespace mrpt::obs;
 namespace {
 
 /// Most scans that wait for later odometry. Bounds the memory, and the delay without odometry.
-constexpr std::size_t mostWaiting = 32;
+constexpr std::size_t kMostWaiting = 32;
 
 /// Scans of sensors without any odometry before the drive is given up: 5 s at 10 Hz.
-constexpr std::size_t mostWithoutOdometry = 50;
+constexpr std::size_t kMostWithoutOdometry = 50;
 
 /// Fused scans without any of one LiDAR before a rawlog is given up: 5 s at 10 Hz.
-constexpr std::size_t mostWithoutLidar = 50;
+constexpr std::size_t kMostWithoutLidar = 50;
 
 /// Time over which odometry readings give a velocity, s: a turn of most LiDARs.
-constexpr double shortWay = 0.1;
+constexpr double kShortWay = 0.1;
 
 Pose2D planar(const mrpt::poses::CPose2D& pose) {
   return {pose.x(), pose.y(), pose.phi()};
@@ -134,7 +134,7 @@ std::optional<std::size_t> ScanSource::lidarOf(const CObservation& observation) 
     if (const auto lidar = m_vehicle.indexOf(observation.sensorLabel)) return lidar;
     const bool isFirst = std::all_of(m_ofLidar.begin(), m_ofLidar.end(),
                                      [](std::size_t scans) { return scans == 0; });
-    if (!isFirst || observation.sensorLabel != fusedLabel ||
+    if (!isFirst || observation.sensorLabel != kFusedLabel ||
         !dynamic_cast<const CObservationPoles*>(&observation))
       return std::nullopt;
     m_groups.reset();
@@ -239,7 +239,7 @@ bool ScanSource::mustWait(const Scan& scan) const {
   if (m_entries->isLive()) return false;
   if (!m_ended && m_released == 0 && m_waiting.size() < 2) return true;
   return !m_ended && !m_anyAction && !m_odometry.reaches(scan.time) &&
-         m_waiting.size() < mostWaiting;
+         m_waiting.size() < kMostWaiting;
 }
 
 std::size_t ScanSource::expected() const {
@@ -250,9 +250,9 @@ std::size_t ScanSource::expected() const {
 }
 
 std::optional<Velocity> ScanSource::velocityAt(const Scan& scan) const {
-  if (m_odometry.covers(scan.time - shortWay, scan.time))
-    return velocityOf(relative(*m_odometry.at(scan.time - shortWay), *m_odometry.at(scan.time)),
-                      shortWay);
+  if (m_odometry.covers(scan.time - kShortWay, scan.time))
+    return velocityOf(relative(*m_odometry.at(scan.time - kShortWay), *m_odometry.at(scan.time)),
+                      kShortWay);
   if (m_released > 0 || m_waiting.empty()) return std::nullopt;
   const Scan& next = m_waiting.front();
   if (!next.motion || next.time <= scan.time) return std::nullopt;
@@ -278,7 +278,7 @@ ScanSource::Scan ScanSource::release() {
   }
   if (!scan.moving && scan.motion && m_released > 0 && scan.time > m_lastTime)
     scan.moving = velocityOf(scan.motion->mean, scan.time - m_lastTime);
-  if (scan.time > m_lastTime) m_odometry.forgetBefore(scan.time - shortWay);
+  if (scan.time > m_lastTime) m_odometry.forgetBefore(scan.time - kShortWay);
   m_lastTime = scan.time;
   ++m_released;
   return scan;
@@ -287,7 +287,7 @@ ScanSource::Scan ScanSource::release() {
 /// Whether a scan of sensors has its odometry. The filter needs it from the first scan on.
 bool ScanSource::hasOdometry(const Scan& scan) {
   if (scan.motion || m_odometry.at(scan.time)) return true;
-  if (++m_unknownMotions >= mostWithoutOdometry && m_odometry.empty())
+  if (++m_unknownMotions >= kMostWithoutOdometry && m_odometry.empty())
     throw Error(m_name + ": no odometry came with the first " + std::to_string(m_unknownMotions) +
                 " scans: the filter needs it; add a sensor that gives CObservationOdometry, such "
                 "as driver = CUdpOdometry");
@@ -296,7 +296,7 @@ bool ScanSource::hasOdometry(const Scan& scan) {
 
 /// Each LiDAR of the vehicle must be in a rawlog; known at its end, or when others have come often.
 void ScanSource::requireLidars() const {
-  if (!m_groups || m_entries->isLive() || !(m_ended || m_scans >= mostWithoutLidar)) return;
+  if (!m_groups || m_entries->isLive() || !(m_ended || m_scans >= kMostWithoutLidar)) return;
   for (std::size_t i = 0; i < m_ofLidar.size(); ++i) {
     if (m_ofLidar[i] > 0) continue;
     std::string others;

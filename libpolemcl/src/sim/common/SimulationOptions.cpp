@@ -5,8 +5,7 @@
 namespace polemcl::sim {
 namespace {
 
-const Range s_shareOfSimulation = Range::between(0, 1),
-            s_seedOfSimulation = Range::between(0, 9e15);
+const Range kShareOfSimulation = Range::between(0, 1), kSeedOfSimulation = Range::between(0, 9e15);
 
 void bindSeasons(Binder& b, WorldOptions& o) {
   b.number("replaced_per_year", o.replacedPerYear, Range::between(0, 0.9), "",
@@ -23,7 +22,7 @@ void bindSeasons(Binder& b, WorldOptions& o) {
 
 void bind(Binder& b, WorldOptions& o) {
   b.section("world", "The simulated street and what stands there");
-  b.integer("seed", o.seed, s_seedOfSimulation, "", "another seed gives another street");
+  b.integer("seed", o.seed, kSeedOfSimulation, "", "another seed gives another street");
   b.integer("day", o.day, Range::between(0, 36500), "",
             "0: the day of the map; on other days things have moved");
   b.number("length_m", o.length, Range::between(20, 50000), "m",
@@ -36,11 +35,11 @@ void bind(Binder& b, WorldOptions& o) {
            "mean distance of traffic signs on each side");
   b.number("tree_spacing_m", o.treeSpacing, Range::between(4, 100), "m",
            "mean distance of trees in a row");
-  b.number("tree_share", o.treeShare, s_shareOfSimulation, "",
+  b.number("tree_share", o.treeShare, kShareOfSimulation, "",
            "share of the street lined with trees");
-  b.number("removed_share", o.removedShare, s_shareOfSimulation, "",
+  b.number("removed_share", o.removedShare, kShareOfSimulation, "",
            "share of the poles that are gone on another day");
-  b.number("added_share", o.addedShare, s_shareOfSimulation, "",
+  b.number("added_share", o.addedShare, kShareOfSimulation, "",
            "share of the poles new on another day");
   bindSeasons(b, o);
   bind(b, o.realism);
@@ -50,7 +49,7 @@ void bind(Binder& b, SimulationOptions& o) {
   b.section("simulation", "The simulated drive");
   b.number("spacing_m", o.spacing, Range::between(0.05, 50), "m", "distance between scans");
   b.number("speed_m_s", o.speed, Range::between(0.1, 50), "m/s", "speed of the vehicle");
-  b.number("odometry_noise", o.odometryNoise, s_shareOfSimulation, "",
+  b.number("odometry_noise", o.odometryNoise, kShareOfSimulation, "",
            "standard deviation as a share of each component of the motion");
   b.choice<OdometryModel>("odometry", o.odometry,
                           {{OdometryModel::noise, "noise"}, {OdometryModel::wheels, "wheels"}},
@@ -64,7 +63,7 @@ void bind(Binder& b, SimulationOptions& o) {
   b.flag("motion_distortion", o.motionDistortion, "true: the sensor moves while it turns");
   b.integer("scans", o.scans, Range::between(0, 1e7), "",
             "greatest number of scans; 0: to the end of the road");
-  b.integer("drive_seed", o.driveSeed, s_seedOfSimulation, "",
+  b.integer("drive_seed", o.driveSeed, kSeedOfSimulation, "",
             "another seed gives another drive of the same day, with its own noise");
   b.integer("detour", o.detour, Range::between(0, 2), "",
             "number of the side street that the drive takes; 0: straight on");

@@ -76,9 +76,9 @@ void requireReported(const std::string& key, Reported reported, const Quantiles&
 }  // namespace
 
 const char* name(DetectionClass c) {
-  static constexpr const char* names[] = {"lamp_post", "sign",    "traffic_light",
-                                          "tree",      "clutter", "passing"};
-  return names[static_cast<int>(c)];
+  static constexpr const char* kNames[] = {"lamp_post", "sign",    "traffic_light",
+                                           "tree",      "clutter", "passing"};
+  return kNames[static_cast<int>(c)];
 }
 
 DetectionClass classOf(Kind kind) {
@@ -89,10 +89,10 @@ DetectionClass classOf(Kind kind) {
 }
 
 const char* name(Reported r) {
-  static constexpr const char* names[] = {"sigma_along_m", "sigma_across_m", "error_along",
-                                          "error_across",  "confidence",     "radius_m",
-                                          "bottom_m",      "top_m",          "points"};
-  return names[static_cast<int>(r)];
+  static constexpr const char* kNames[] = {"sigma_along_m", "sigma_across_m", "error_along",
+                                           "error_across",  "confidence",     "radius_m",
+                                           "bottom_m",      "top_m",          "points"};
+  return kNames[static_cast<int>(r)];
 }
 
 double valueAt(const Quantiles& quantiles, double z) {

@@ -39,8 +39,8 @@ double PulseReturnModel::deviation(const Beam& beam, double ratio) const {
 
 const Material& PulseReturnModel::material(const SubHit& hit) const {
   if (hit.solid >= 0) return m_solids[hit.solid].material;
-  if (hit.solid == SubHit::kRoad) return materials::asphalt;
-  return hit.solid == SubHit::kPavement ? materials::paving : materials::grass;
+  if (hit.solid == SubHit::kRoad) return materials::kAsphalt;
+  return hit.solid == SubHit::kPavement ? materials::kPaving : materials::kGrass;
 }
 
 std::optional<PulseReturn> PulseReturnModel::make(const SubHit* hits, const Beam& beam,

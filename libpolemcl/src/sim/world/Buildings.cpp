@@ -32,7 +32,8 @@ struct Front {
         wall(x, x + door, random.uniform(0.15, 0.6), -kBuried, 2.3);
         wall(x, x + door, 0, 2.3, storey);
         if (random.chance(0.4))
-          builder.box(V(x + door / 2, -0.25, 0), V(door / 2 + 0.2, 0.3, 0.17), materials::concrete);
+          builder.box(V(x + door / 2, -0.25, 0), V(door / 2 + 0.2, 0.3, 0.17),
+                      materials::kConcrete);
         x += door;
       }
     }
@@ -44,15 +45,15 @@ struct Front {
     const double sillOut = random.uniform(0.05, 0.15);
     for (double x = -length / 2 + spacing / 2; x < length / 2 - half; x += spacing)
       for (double low = 1.0; low + 1.5 < height; low += storey) {
-        builder.box(V(x, 0, low + 0.75), V(half, 0.012, 0.7), materials::houseGlass);
-        if (sills) builder.box(V(x, 0, low), V(half + 0.06, sillOut, 0.04), materials::concrete);
+        builder.box(V(x, 0, low + 0.75), V(half, 0.012, 0.7), materials::kHouseGlass);
+        if (sills) builder.box(V(x, 0, low), V(half + 0.06, sillOut, 0.04), materials::kConcrete);
       }
   }
   void ledges(double storey) {
     const double out = random.uniform(0.03, 0.12);
     for (double level = storey; level < height; level += storey)
       builder.box(V(0, 0, level), V(length / 2, out, random.uniform(0.06, 0.15)), material);
-    builder.box(V(0, 0, 0.2), V(length / 2, 0.5 * out, 0.5), materials::concrete);  // plinth
+    builder.box(V(0, 0, 0.2), V(length / 2, 0.5 * out, 0.5), materials::kConcrete);  // plinth
   }
   void pilasters() {
     const double spacing = random.uniform(2.5, 5), half = random.uniform(0.12, 0.35);
@@ -64,7 +65,7 @@ struct Front {
   void drainPipe(double x) {
     const double radius = random.uniform(0.04, 0.055);
     builder.post(V(x, -radius - random.uniform(0.02, 0.06), 0.1), V(x, -radius - 0.04, height),
-                 radius, radius, materials::metal);
+                 radius, radius, materials::kMetal);
   }
   void bay() {
     const double half = random.uniform(0.8, 1.6), out = random.uniform(0.4, 1.0);
@@ -75,8 +76,8 @@ struct Front {
   void balconies(double storey) {
     const double x = random.uniform(-0.3, 0.3) * length, half = random.uniform(1, 2);
     for (double level = storey; level + 2 < height; level += storey) {
-      builder.box(V(x, -0.6, level), V(half, 0.6, 0.09), materials::concrete);
-      builder.thicket(V(x, -1.17, level + 0.55), V(half, 0.02, 0.45), materials::metal, 0.3);
+      builder.box(V(x, -0.6, level), V(half, 0.6, 0.09), materials::kConcrete);
+      builder.thicket(V(x, -1.17, level + 0.55), V(half, 0.02, 0.45), materials::kMetal, 0.3);
     }
   }
 };
@@ -91,7 +92,7 @@ WorldObject makeHouse(const Site& site, std::uint32_t id, double length, double 
               length,
               depth,
               storey * (1 + random.below(4)) + random.uniform(0.5, 2),
-              random.chance(0.4) ? materials::brick : materials::plaster};
+              random.chance(0.4) ? materials::kBrick : materials::kPlaster};
   front.body(storey);
   front.windows(storey);
   if (random.chance(0.5)) front.ledges(storey);
@@ -106,7 +107,7 @@ WorldObject makeHouse(const Site& site, std::uint32_t id, double length, double 
 WorldObject makeWall(const Site& site, std::uint32_t id, double length, Random& random) {
   ObjectBuilder builder(Kind::wall, site);
   const double height = random.uniform(0.8, 2.4), half = random.uniform(0.1, 0.2);
-  const Material material = random.chance(0.5) ? materials::brick : materials::concrete;
+  const Material material = random.chance(0.5) ? materials::kBrick : materials::kConcrete;
   builder.box(V(0, 0, 0.5 * (height - kBuried)), V(length / 2, half, 0.5 * (height + kBuried)),
               material);
   if (random.chance(0.7)) {

@@ -128,7 +128,7 @@ void addBox(Piece& piece, const Site& site, Random& random) {
   ObjectBuilder builder(piece.object.kind, turned);
   const V half(random.uniform(0.1, 0.25), random.uniform(0.06, 0.15), random.uniform(0.15, 0.4));
   builder.box(V(0, piece.pole->radius + half.y(), random.uniform(0.7, 2.2)), half,
-              materials::plastic);
+              materials::kPlastic);
   attach(piece, builder.build(0));
 }
 
@@ -137,7 +137,7 @@ void addIvy(Piece& piece, const Site& site, Random& random) {
   builder.startCrown();
   const double half = random.uniform(0.6, 1.4),
                radius = piece.pole->radius + random.uniform(0.08, 0.25);
-  builder.ellipsoid(V(0, 0, half * 0.9), V(radius, radius, half), materials::leaves,
+  builder.ellipsoid(V(0, 0, half * 0.9), V(radius, radius, half), materials::kLeaves,
                     random.uniform(0.2, 0.5));
   attach(piece, builder.build(0));
 }

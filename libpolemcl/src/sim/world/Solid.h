@@ -15,13 +15,13 @@ struct Material {
 };
 
 namespace materials {
-constexpr Material asphalt{0.15f, 0.004f, 0}, paving{0.25f, 0.006f, 0}, grass{0.45f, 0.025f, 0},
-    metal{0.35f, 0.001f, 0}, darkMetal{0.12f, 0.001f, 0}, signFace{2.5f, 0.001f, 0},
-    bark{0.28f, 0.008f, 0}, leaves{0.45f, 0.01f, 0}, plaster{0.4f, 0.004f, 0},
-    brick{0.25f, 0.006f, 0}, wood{0.3f, 0.004f, 0}, concrete{0.3f, 0.004f, 0},
-    cloth{0.25f, 0.012f, 0}, skin{0.45f, 0.003f, 0}, rubber{0.05f, 0.004f, 0},
-    carGlass{0.06f, 0.001f, 0.75f}, houseGlass{0.004f, 0.001f, 0}, plastic{0.2f, 0.002f, 0},
-    snow{0.8f, 0.02f, 0};
+constexpr Material kAsphalt{0.15f, 0.004f, 0}, kPaving{0.25f, 0.006f, 0}, kGrass{0.45f, 0.025f, 0},
+    kMetal{0.35f, 0.001f, 0}, kDarkMetal{0.12f, 0.001f, 0}, kSignFace{2.5f, 0.001f, 0},
+    kBark{0.28f, 0.008f, 0}, kLeaves{0.45f, 0.01f, 0}, kPlaster{0.4f, 0.004f, 0},
+    kBrick{0.25f, 0.006f, 0}, kWood{0.3f, 0.004f, 0}, kConcrete{0.3f, 0.004f, 0},
+    kCloth{0.25f, 0.012f, 0}, kSkin{0.45f, 0.003f, 0}, kRubber{0.05f, 0.004f, 0},
+    kCarGlass{0.06f, 0.001f, 0.75f}, kHouseGlass{0.004f, 0.001f, 0}, kPlastic{0.2f, 0.002f, 0},
+    kSnow{0.8f, 0.02f, 0};
 }
 
 enum class Shape : std::uint8_t {

@@ -122,9 +122,9 @@ Site StreetLayout::site(int side, double s, double lateral) const {
 bool StreetLayout::claim(const Site& place, double gap, Ground ground) {
   const double x = place.base.x(), y = place.base.y(), edge = m_terrain.edge(x, y);
   if (ground == Ground::road ? edge < -2.6 || edge > -0.6 : edge < 0.25) return false;
-  constexpr double spacing = 4;
-  const auto cellX = static_cast<std::int64_t>(std::floor(x / spacing));
-  const auto cellY = static_cast<std::int64_t>(std::floor(y / spacing));
+  constexpr double kSpacing = 4;
+  const auto cellX = static_cast<std::int64_t>(std::floor(x / kSpacing));
+  const auto cellY = static_cast<std::int64_t>(std::floor(y / kSpacing));
   for (std::int64_t i = cellX - 1; i <= cellX + 1; ++i)
     for (std::int64_t j = cellY - 1; j <= cellY + 1; ++j) {
       const auto cell = m_taken.find(i * 0x100000000ll + j);

@@ -11,7 +11,7 @@ void addWheels(ObjectBuilder& builder, double axle, double halfWidth, double rad
   for (const double x : {-axle, axle})
     for (const double side : {-1.0, 1.0})
       builder.post(V(x, side * (halfWidth - 0.24), radius), V(x, side * (halfWidth - 0.02), radius),
-                   radius, radius, materials::rubber);
+                   radius, radius, materials::kRubber);
 }
 
 /// \brief Roof on slim pillars with glass between, as on cars.
@@ -29,9 +29,9 @@ void addCabin(ObjectBuilder& builder, double rear, double front, double halfWidt
   }
   builder.box(V(middle - 0.05, 0, 0.5 * (sill + top)),
               V(0.5 * (front - rear) - 0.3, halfWidth - 0.12, 0.5 * (top - sill) - 0.02),
-              materials::carGlass);
+              materials::kCarGlass);
   for (const double seat : {middle + 0.35, middle - 0.6})
-    builder.box(V(seat, 0, sill), V(0.12, halfWidth - 0.3, 0.25), materials::cloth);
+    builder.box(V(seat, 0, sill), V(0.12, halfWidth - 0.3, 0.25), materials::kCloth);
 }
 }  // namespace
 
@@ -61,7 +61,7 @@ WorldObject makeVehicle(const Site& site, std::uint32_t id, Random& random) {
                  top = lorry ? random.uniform(2.8, 3.5) : random.uniform(1.9, 2.6);
     builder.box(V(-0.5, 0, 0.5 * (0.35 + top)), V(half - 0.5, wide, 0.5 * (top - 0.35)), paint);
     builder.box(V(half - 0.5, 0, 0.75), V(0.5, wide, 0.4), paint);
-    builder.box(V(half - 0.85, 0, 1.5), V(0.35, wide - 0.1, 0.4), materials::carGlass);
+    builder.box(V(half - 0.85, 0, 1.5), V(0.35, wide - 0.1, 0.4), materials::kCarGlass);
     addWheels(builder, half - 0.9, wide, lorry ? 0.45 : 0.34);
   }
   return builder.build(id);
@@ -76,16 +76,16 @@ WorldObject makePerson(const Site& site, std::uint32_t id, Random& random) {
   const V hip(0, 0, 0.5 * height), shoulder(0, 0, 0.83 * height);
   for (const double side : {-1.0, 1.0}) {
     builder.post(side * (0.09 * aside + stride * ahead), hip + 0.08 * side * aside, 0.05, 0.085,
-                 materials::cloth);
+                 materials::kCloth);
     builder.post(shoulder + side * wide * 1.1 * aside,
                  hip + side * (wide * 1.35 * aside - 0.8 * stride * ahead), 0.05, 0.035,
-                 materials::cloth);
+                 materials::kCloth);
   }
   builder.ellipsoid(V(0, 0, 0.66 * height), V(wide * 0.7, wide * 1.15, 0.2 * height),
-                    materials::cloth, 0, yaw);
-  builder.ellipsoid(V(0, 0, 0.93 * height), V(0.085, 0.075, 0.07 * height), materials::skin);
+                    materials::kCloth, 0, yaw);
+  builder.ellipsoid(V(0, 0, 0.93 * height), V(0.085, 0.075, 0.07 * height), materials::kSkin);
   if (random.chance(0.3))  // bag or rucksack
-    builder.box(shoulder - 0.2 * ahead - V(0, 0, 0.2), V(0.1, 0.14, 0.22), materials::cloth, yaw);
+    builder.box(shoulder - 0.2 * ahead - V(0, 0, 0.2), V(0.1, 0.14, 0.22), materials::kCloth, yaw);
   return builder.build(id);
 }
 

@@ -31,7 +31,7 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
     const V next(leanX * level + random.normal(0, 0.012), leanY * level + random.normal(0, 0.012),
                  level);
     const double nextWidth = radius * (1.05 - 0.35 * level / trunkTop) * random.uniform(0.96, 1.04);
-    builder.post(place, next, width, nextWidth, materials::bark);
+    builder.post(place, next, width, nextWidth, materials::kBark);
     if (place.z() < kTruthHeight && level >= kTruthHeight) {
       const double share = (kTruthHeight - place.z()) / (level - place.z());
       truth = place + share * (next - place);
@@ -50,7 +50,7 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
     builder.post(
         from,
         from + V(reach * std::cos(turn), reach * std::sin(turn), random.uniform(0.5, 1.2) * reach),
-        radius * 0.4, 0.015, materials::bark);
+        radius * 0.4, 0.015, materials::kBark);
   }
   const int tufts = foliage > 0 ? 3 + random.below(4) : 0;
   for (int i = 0; i < tufts; ++i) {
@@ -60,7 +60,7 @@ Piece makeTree(const Site& site, std::uint32_t id, const TreeStyle& style, doubl
     const double wide = style.crownRadius * random.uniform(0.5, 0.8);
     const double low = crownBase + half * random.uniform(0.75, 1.3);
     builder.ellipsoid(V(out * std::cos(turn), out * std::sin(turn), low), V(wide, wide, half),
-                      materials::leaves, std::min(0.5, foliage * random.uniform(0.03, 0.09)));
+                      materials::kLeaves, std::min(0.5, foliage * random.uniform(0.03, 0.09)));
   }
   return {builder.build(id), poleAt(site, id, Kind::tree, truth, truthRadius, trunkTop)};
 }
@@ -73,7 +73,7 @@ WorldObject makeBush(const Site& site, std::uint32_t id, double foliage, Random&
     const V half(size * random.uniform(0.6, 1.1), size * random.uniform(0.6, 1.1),
                  size * random.uniform(0.6, 1.2));
     builder.ellipsoid(V(random.normal(0, 0.4) * size, random.normal(0, 0.4) * size, half.z() * 0.8),
-                      half, materials::leaves,
+                      half, materials::kLeaves,
                       std::max(0.06, 0.8 * foliage * random.uniform(0.15, 0.4)));
   }
   return builder.build(id);
@@ -87,7 +87,7 @@ WorldObject makeHedge(const Site& site, std::uint32_t id, double length, double 
     const double piece = std::min(random.uniform(1.5, 4), length / 2 - x);
     const double tall = height * random.uniform(0.9, 1.1);
     builder.thicket(V(x + piece / 2, random.normal(0, 0.04), tall - 0.1),
-                    V(piece / 2, half * random.uniform(0.9, 1.1), tall + 0.1), materials::leaves,
+                    V(piece / 2, half * random.uniform(0.9, 1.1), tall + 0.1), materials::kLeaves,
                     std::max(0.15, foliage * random.uniform(0.35, 0.6)));
     x += piece;
   }
