@@ -4,6 +4,7 @@
 #   format    clang-format would change no source file
 #   spelling  codespell knows no misspelling
 #   files     text files end with one newline, and have no spaces at line ends (Markdown may)
+#   words     no phrases that readers with another first language stumble over
 #   tidy      clang-tidy has nothing to say (.clang-tidy); takes many minutes
 # Needs the packages that share/setup/install.sh full installs.
 set -eu
@@ -41,6 +42,13 @@ files() {
   }
 }
 
+words() {
+  # "there is none", as "is None" is Python. The list itself does not count.
+  ! git grep -niwE \
+    'so many|by so much|there is none|likewise|borne out|all the same|of no consequence|as it were' \
+    -- ':!tests/lint.sh' ':!tests/releases' ':!*.svg'
+}
+
 tidy() {
   cmake --preset clang -G Ninja >/dev/null
   # Not the tests, nor the generated identity of the build.
@@ -50,9 +58,9 @@ tidy() {
 [ $# -gt 0 ] || set -- --help
 for check in "$@"; do
   case $check in
-    format | spelling | files | tidy) ;;
+    format | spelling | files | words | tidy) ;;
     *)
-      sed -n '2,8s/^# //p' "$0"
+      sed -n '2,9s/^# //p' "$0"
       [ "$check" = -h ] || [ "$check" = --help ] || exit 2
       exit 0
       ;;

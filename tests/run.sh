@@ -3,10 +3,12 @@
 # Usage: tests/run.sh [--quick | --full | STEP...]
 #   --quick   the unit tests only: less than a minute after the build
 #   --full    all steps, which take hours
-#   lint      format, spelling, ends of lines and files
+#   lint      format, spelling, hard phrases, ends of lines and files
 #   unit      the unit tests
 #   test      all tests, files of earlier releases, the installed programs and examples
 #   tidy      clang-tidy
+#   golden    figures compared with those of the last release
+#   mutation  whether the tests notice faults put into the program
 #   viewers   scenes in MRPT's viewer
 #   slurm     batches on a Slurm cluster of its own (as root)
 #   debian    both commands and the packages in an empty Debian 13 and 12 (as root)
@@ -19,7 +21,7 @@ set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 usage() {
-  sed -n '2,17s/^# //p' "$0"
+  sed -n '2,19s/^# //p' "$0"
   exit "$1"
 }
 
@@ -36,7 +38,7 @@ build() {
 }
 
 lint() {
-  "$top/tests/lint.sh" format spelling files
+  "$top/tests/lint.sh" format spelling files words
 }
 
 unit() {
@@ -66,7 +68,7 @@ run_step() {
     lint | unit | sanitize) "$1" ;;
     test) all_tests ;;
     tidy) "$top/tests/lint.sh" tidy ;;
-    viewers | slurm | site) "$top/tests/$1/run.sh" ;;
+    golden | mutation | viewers | slurm | site) "$top/tests/$1/run.sh" ;;
     debian)
       "$top/tests/install/commands.sh" trixie
       "$top/tests/install/commands.sh" bookworm
@@ -79,14 +81,14 @@ run_step() {
 case "$#:${1-}" in
   0:) set -- test ;;
   1:--quick) set -- unit ;;
-  1:--full) set -- lint test tidy viewers slurm debian site clang sanitize coverage ;;
+  1:--full) set -- lint test tidy golden mutation viewers slurm debian site clang sanitize coverage ;;
   1:-h | 1:--help) usage 0 ;;
 esac
 packages=
 for step in "$@"; do
   case $step in
-    unit | test | sanitize) ;;
-    lint | tidy | viewers | slurm | debian | site | clang | coverage) packages=full ;;
+    unit | test | golden | sanitize) ;;
+    lint | tidy | mutation | viewers | slurm | debian | site | clang | coverage) packages=full ;;
     *) usage 2 >&2 ;;
   esac
 done

@@ -61,20 +61,20 @@ class BuildIdentity : public testing::Test {
   fs::path m_folder;
 };
 
-const std::string built = ", GNU 12.2.0, Release, -O3 -DNDEBUG";
+const std::string kBuilt = ", GNU 12.2.0, Release, -O3 -DNDEBUG";
 
 }  // namespace
 
 TEST_F(BuildIdentity, IsTheCommitWithAMarkForChangedSources) {
   if (!git("init -q") || !commit()) GTEST_SKIP() << "git is not here";
   const std::string clean = identity();
-  EXPECT_TRUE(std::regex_match(clean, std::regex("[0-9a-f]{12}" + built))) << clean;
+  EXPECT_TRUE(std::regex_match(clean, std::regex("[0-9a-f]{12}" + kBuilt))) << clean;
   write("share/doc/a.md", "# B\n");
   EXPECT_EQ(identity(), clean) << "a document is not built";
 
   write("apps/b.cpp", "int c;\n");
   const std::string changed = identity();
-  EXPECT_TRUE(std::regex_match(changed, std::regex("[0-9a-f]{12}\\+[0-9a-f]{12}" + built)))
+  EXPECT_TRUE(std::regex_match(changed, std::regex("[0-9a-f]{12}\\+[0-9a-f]{12}" + kBuilt)))
       << changed;
   EXPECT_EQ(changed.substr(0, 12), clean.substr(0, 12));
   write("apps/b.cpp", "int d;\n");
@@ -86,14 +86,14 @@ TEST_F(BuildIdentity, IsTheCommitWithAMarkForChangedSources) {
 
   ASSERT_TRUE(commit());
   const std::string next = identity();
-  EXPECT_TRUE(std::regex_match(next, std::regex("[0-9a-f]{12}" + built))) << next;
+  EXPECT_TRUE(std::regex_match(next, std::regex("[0-9a-f]{12}" + kBuilt))) << next;
   EXPECT_NE(next, clean);
   EXPECT_NE(identity("-O0"), next);
 }
 
 TEST_F(BuildIdentity, IsAHashOfTheSourcesWithoutGit) {
   const std::string archive = identity();
-  EXPECT_TRUE(std::regex_match(archive, std::regex("sources-[0-9a-f]{12}" + built))) << archive;
+  EXPECT_TRUE(std::regex_match(archive, std::regex("sources-[0-9a-f]{12}" + kBuilt))) << archive;
   write("share/doc/a.md", "# B\n");
   EXPECT_EQ(identity(), archive);
   write("libpolemcl/src/a.cpp", "int f;\n");

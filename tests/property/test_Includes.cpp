@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path s_top = POLEMCL_SOURCE_DIR;
+const fs::path kTop = POLEMCL_SOURCE_DIR;
 
-constexpr std::size_t s_mostLines = 500;
-constexpr std::size_t s_mostLinesOfAMain = 60;
+constexpr std::size_t kMostLines = 500;
+constexpr std::size_t kMostLinesOfAMain = 60;
 
 /// Rooms and sub-rooms in the order of the document. A file may include headers of its own line and
 /// of the lines above. Lines with the same first part belong to one big room.
-const std::vector<std::string> s_order{
+const std::vector<std::string> kOrder{
     "core/common",
     "core/sensor",
     "core/extraction/range_image",
@@ -72,17 +72,17 @@ const std::vector<std::string> s_order{
 };
 
 /// Big rooms that a big room must not use, although they are above it.
-const std::map<std::string, std::set<std::string>> s_strangers{{"sim", {"mrpt"}}};
+const std::map<std::string, std::set<std::string>> kStrangers{{"sim", {"mrpt"}}};
 /// The laboratory: big rooms that simulate and judge. Only these rooms outside of it use it.
-const std::set<std::string> s_laboratory{"sim"}, s_laboratoryUsers{"apps/simulate", "apps/eval"};
+const std::set<std::string> kLaboratory{"sim"}, kLaboratoryUsers{"apps/simulate", "apps/eval"};
 /// Its settings, which the settings of all programs hold: one INI serves all programs.
-const std::pair<std::string, std::string> s_laboratorySettings{"apps/cli",
+const std::pair<std::string, std::string> kLaboratorySettings{"apps/cli",
                                                                "sim/common/SimulationOptions.h"};
 /// A line above that a room must not use: two methods for the same purpose.
-const std::map<std::string, std::set<std::string>> s_strangerRooms{
+const std::map<std::string, std::set<std::string>> kStrangerRooms{
     {"core/extraction/scan_line", {"core/extraction/range_image"}}};
 /// Settings and report of the surrounding room, shared by its sub-rooms.
-const std::map<std::string, std::set<std::string>> s_sharedHeaders{
+const std::map<std::string, std::set<std::string>> kSharedHeaders{
     {"core/extraction",
      {"CovarianceScale.h", "ExtractionOptions.h", "ExtractionReport.h", "PoleClassifier.h",
       "VisibilityRange.h"}}};
@@ -109,10 +109,10 @@ bool isSource(const fs::path& path) {
 std::vector<Source> sourcesBelow(const std::vector<std::string>& folders) {
   std::vector<Source> sources;
   for (const std::string& folder : folders) {
-    if (!fs::exists(s_top / folder)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(s_top / folder)) {
+    if (!fs::exists(kTop / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(kTop / folder)) {
       // share/demo/out is output of the demo, not source.
-      const fs::path path = fs::relative(entry.path(), s_top);
+      const fs::path path = fs::relative(entry.path(), kTop);
       if (entry.is_regular_file() && isSource(path) &&
           path.string().rfind("share/demo/out", 0) != 0) {
         sources.push_back({path, readLines(entry.path())});
@@ -126,11 +126,11 @@ std::vector<Source> sourcesBelow(const std::vector<std::string>& folders) {
 
 /// Position in the order; its size if it is not a room.
 std::size_t placeOf(const std::string& room) {
-  return std::find(s_order.begin(), s_order.end(), room) - s_order.begin();
+  return std::find(kOrder.begin(), kOrder.end(), room) - kOrder.begin();
 }
 
 bool isRoom(const std::string& name) {
-  return placeOf(name) < s_order.size();
+  return placeOf(name) < kOrder.size();
 }
 
 std::string bigRoomOf(const std::string& room) {
@@ -138,9 +138,9 @@ std::string bigRoomOf(const std::string& room) {
 }
 
 /// Public headers that stand above all rooms.
-const std::set<std::string> s_aboveRooms{"polemcl/export.h", "polemcl/version.h"};
+const std::set<std::string> kAboveRooms{"polemcl/export.h", "polemcl/version.h"};
 /// Public headers that include the others, for users.
-const std::set<std::string> s_allTogether{"core.h", "polemcl.h"};
+const std::set<std::string> kAllTogether{"core.h", "polemcl.h"};
 
 bool isPublic(const fs::path& path) {
   return path.generic_string().rfind("libpolemcl/include/polemcl/", 0) == 0;
@@ -174,21 +174,21 @@ std::string includeOf(const std::string& line) {
 }
 
 bool mayUseLaboratory(const std::string& room, const std::string& header) {
-  return s_laboratory.count(bigRoomOf(room)) || s_laboratoryUsers.count(room) ||
-         std::pair(room, header) == s_laboratorySettings;
+  return kLaboratory.count(bigRoomOf(room)) || kLaboratoryUsers.count(room) ||
+         std::pair(room, header) == kLaboratorySettings;
 }
 
 bool mayIncludeOwn(const std::string& room, const std::string& header) {
   const std::string target = roomOfHeader(header);
-  if (s_laboratory.count(bigRoomOf(target)) && !mayUseLaboratory(room, header)) return false;
+  if (kLaboratory.count(bigRoomOf(target)) && !mayUseLaboratory(room, header)) return false;
   const auto has = [](const auto& map, const std::string& key, const std::string& value) {
     const auto found = map.find(key);
     return found != map.end() && found->second.count(value) > 0;
   };
-  if (has(s_strangers, bigRoomOf(room), bigRoomOf(target)) || has(s_strangerRooms, room, target))
+  if (has(kStrangers, bigRoomOf(room), bigRoomOf(target)) || has(kStrangerRooms, room, target))
     return false;
   if (room.rfind(target + '/', 0) == 0)  // the surrounding room
-    return has(s_sharedHeaders, target, fs::path(header).filename().string());
+    return has(kSharedHeaders, target, fs::path(header).filename().string());
   return placeOf(target) <= placeOf(room);
 }
 
@@ -207,10 +207,10 @@ bool mayIncludeForeign(const std::string& room, const std::string& header) {
 bool exists(const std::string& header) {
   const fs::path file(header);
   for (const std::string base : {"libpolemcl/src", "libpolemcl/include", "apps"}) {
-    if (fs::exists(s_top / base / file)) return true;
-    if (fs::exists(s_top / base / (header + ".in"))) return true;  // the build makes it
+    if (fs::exists(kTop / base / file)) return true;
+    if (fs::exists(kTop / base / (header + ".in"))) return true;  // the build makes it
     // Rows of C++ that the build makes from a table of this name.
-    const fs::path table = s_top / base / fs::path(file).replace_extension(".csv");
+    const fs::path table = kTop / base / fs::path(file).replace_extension(".csv");
     if (file.extension() == ".inc" && fs::exists(table)) return true;
   }
   return false;
@@ -225,10 +225,10 @@ std::string whyNot(const fs::path& file, const std::string& include) {
   if (!quoted && include.front() != '<') return "only plain includes can be checked";
   if (quoted && isPublic(file)) return "a public header includes public headers only";
   if (quoted && (ours || !exists(header))) return "quotes are for private headers, by their path";
-  if (s_aboveRooms.count(header)) return "";
+  if (kAboveRooms.count(header)) return "";
   if (ours && !isRoom(fs::path(header.substr(8)).parent_path().generic_string()))
     return "sources include the header they need, not all";
-  if (ours && !fs::exists(s_top / "libpolemcl/include" / header))
+  if (ours && !fs::exists(kTop / "libpolemcl/include" / header))
     return "there is no such public header";
   if (quoted || ours) return mayIncludeOwn(room, header) ? "" : "it stands below the room " + room;
   return mayIncludeForeign(room, header) ? "" : "the room " + room + " does not use that library";
@@ -265,10 +265,10 @@ TEST(Includes, OrderOfRoomsIsThatOfTheDocument) {
   std::vector<std::string> documented;
   static const std::regex row("\\| `([a-z_/]+)/` \\|.*");
   std::smatch match;
-  for (const std::string& line : readLines(s_top / "share/doc/architecture.md")) {
+  for (const std::string& line : readLines(kTop / "share/doc/architecture.md")) {
     if (std::regex_match(line, match, row)) documented.push_back(match[1]);
   }
-  EXPECT_EQ(documented, s_order);
+  EXPECT_EQ(documented, kOrder);
 }
 
 TEST(Includes, EverySourceIsInARoom) {
@@ -281,8 +281,8 @@ TEST(Includes, EverySourceIsInARoom) {
 /// `<polemcl/core.h>` has all of the room core, `<polemcl/polemcl.h>` that and all else.
 TEST(Includes, HeadersForUsersIncludeAllPublicHeaders) {
   std::set<std::string> included, expected{"<polemcl/core.h>", "<polemcl/version.h>"};
-  for (const std::string& name : s_allTogether) {
-    for (const std::string& line : readLines(s_top / "libpolemcl/include/polemcl" / name)) {
+  for (const std::string& name : kAllTogether) {
+    for (const std::string& line : readLines(kTop / "libpolemcl/include/polemcl" / name)) {
       const std::string include = includeOf(line);
       if (include.empty()) continue;
       included.insert(include);
@@ -357,13 +357,13 @@ TEST(Includes, NoSourceIsLongerThanFiveHundredLines) {
   const std::vector<Source> sources =
       sourcesBelow({"libpolemcl", "apps", "tests", "share", "config"});
   ASSERT_FALSE(sources.empty());
-  for (const Source& source : sources) EXPECT_LE(source.lines.size(), s_mostLines) << source.path;
+  for (const Source& source : sources) EXPECT_LE(source.lines.size(), kMostLines) << source.path;
 }
 
 TEST(Includes, MainsAreShort) {
   for (const Source& source : sourcesBelow({"apps"})) {
     if (source.path.filename() == "main.cpp") {
-      EXPECT_LE(source.lines.size(), s_mostLinesOfAMain) << source.path;
+      EXPECT_LE(source.lines.size(), kMostLinesOfAMain) << source.path;
     }
   }
 }

@@ -26,7 +26,7 @@ std::string firstMatch(const std::string& name, const std::string& pattern) {
   return std::regex_search(text, match, std::regex(pattern)) ? match[1].str() : "";
 }
 
-const std::string minorVersion =
+const std::string kMinorVersion =
     std::to_string(POLEMCL_VERSION_MAJOR) + "." + std::to_string(POLEMCL_VERSION_MINOR);
 
 }  // namespace
@@ -37,14 +37,14 @@ TEST(Versions, AreTheSameEverywhere) {
   EXPECT_EQ(firstMatch("CHANGELOG.md", R"(\n## \[(\d[^\]]*)\])"), version);
   EXPECT_EQ(firstMatch("CITATION.cff", R"(\nversion: (\S+))"), version);
   EXPECT_EQ(firstMatch("share/doc/cite.md", R"(version = \{([^}]*)\})"), version);
-  EXPECT_EQ(firstMatch("tests/install/packages.sh", R"(libpolemcl(\d\S*))"), minorVersion);
-  EXPECT_EQ(firstMatch("share/doc/programs.md", R"(`libpolemcl(\d[^`]*)`)"), minorVersion);
-  EXPECT_EQ(firstMatch("share/doc/files.md", R"(`libpolemcl\.so\.(\d[^`]*)`)"), minorVersion);
+  EXPECT_EQ(firstMatch("tests/install/packages.sh", R"(libpolemcl(\d\S*))"), kMinorVersion);
+  EXPECT_EQ(firstMatch("share/doc/programs.md", R"(`libpolemcl(\d[^`]*)`)"), kMinorVersion);
+  EXPECT_EQ(firstMatch("share/doc/files.md", R"(`libpolemcl\.so\.(\d[^`]*)`)"), kMinorVersion);
 }
 
 // Later versions are tried on the files of this one: share/doc/releasing.md.
 TEST(Versions, HaveFilesToReadLater) {
-  EXPECT_FALSE(textOf("tests/releases/" + minorVersion + ".0/street.polemap").empty());
+  EXPECT_FALSE(textOf("tests/releases/" + kMinorVersion + ".0/street.polemap").empty());
 }
 
 }  // namespace polemcl::test_versions

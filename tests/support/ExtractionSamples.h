@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include "support/Refusal.h"
 #include "support/Samples.h"
 #include "support/TestClouds.h"
 
@@ -84,12 +85,7 @@ inline int found(const CObservationPoles& scan, double tolerance) {
 
 inline std::string refusal(ObservationPoleExtractor& extraction,
                            const mrpt::obs::CObservation& observation) {
-  try {
-    extraction.process(observation);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return tests::messageOf([&] { extraction.process(observation); });
 }
 
 inline TestCloud plainCloud(const ObservationPoleExtractorOptions& options) {

@@ -11,14 +11,25 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <polemcl/core/common/Types.h>
+#include "support/Refusal.h"
 
 namespace polemcl::io::test {
 
 namespace fs = std::filesystem;
+
+inline std::string read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+using tests::messageOf;
 
 /// A test with a folder of its own.
 class FolderTest : public ::testing::Test {
@@ -42,6 +53,31 @@ class FolderTest : public ::testing::Test {
     return path(name);
   }
 
+  /// A file that a reader must refuse, and what the message must say.
+  struct FileFault {
+    std::string file;
+    std::optional<std::string> content;  ///< none: the file is missing
+    std::vector<std::string> parts;
+  };
+  /// Each fault alone: the file is put back as it was.
+  void expectRefused(const std::vector<FileFault>& faults,
+                     const std::function<void()>& reading) const {
+    for (const FileFault& fault : faults) {
+      std::optional<std::string> before;
+      if (fs::exists(path(fault.file))) before = read(path(fault.file));
+      put(fault.file, fault.content);
+      EXPECT_TRUE(tests::says(messageOf(reading), fault.parts))
+          << fault.file << ": " << fault.content.value_or("missing");
+      put(fault.file, before);
+    }
+  }
+  void put(const std::string& name, const std::optional<std::string>& content) const {
+    if (content)
+      write(name, *content);
+    else
+      fs::remove(path(name));
+  }
+
   fs::path m_folder;
 };
 
@@ -63,30 +99,10 @@ class FileSizeLimit {
   rlimit m_before{};
 };
 
-inline std::string read(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// The message of the Error that `action` throws; fails the test when it throws none.
-template <class Action>
-std::string messageOf(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return {};
-}
-
 /// Fails unless the message is one line and contains all texts.
 template <class... Texts>
 void expectIn(const std::string& message, const Texts&... texts) {
-  for (const std::string& text : {std::string(texts)...}) {
-    EXPECT_NE(message.find(text), std::string::npos) << "'" << text << "' not in: " << message;
-  }
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  EXPECT_TRUE(tests::says(message, {texts...}));
 }
 
 /// float32 values as the bytes of a file (tests run on little-endian machines).

@@ -11,14 +11,13 @@
 #include <string>
 
 #include <polemcl/mrpt/observation/CObservationPoles.h>
+#include "support/Poles.h"
 
 namespace polemcl::samples {
 
 /// \brief A detection with different values in all fields, to detect mix-ups.
 inline PoleDetection pole(double x, double y) {
-  PoleDetection p;
-  p.x = x;
-  p.y = y;
+  PoleDetection p = tests::detectionAt(x, y);
   p.radius = 0.125;
   p.bottom = 0.25;
   p.top = 3.5;

@@ -14,6 +14,7 @@
 #include <fstream>
 
 #include "mrpt/rawlog/PoleSequence.h"
+#include "support/Refusal.h"
 #include "support/Samples.h"
 #include "support/TestClouds.h"
 
@@ -96,13 +97,12 @@ struct Bench {
     return readPoleSequence(path, o);
   }
   std::string refusal(const std::string& bytes, const SequenceOptions& o = options()) const {
-    try {
-      read(bytes, o);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return tests::messageOf([&] { read(bytes, o); });
   }
+};
+
+struct BenchTest : testing::Test {
+  const Bench bench{};
 };
 
 inline void expectMotion(const PoleScan& frame, double x, double y, double yaw) {

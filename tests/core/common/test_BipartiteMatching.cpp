@@ -7,7 +7,6 @@
 
 namespace polemcl::test_bipartite_matching {
 
-using namespace polemcl;
 using Edges = std::vector<std::vector<std::uint32_t>>;
 
 namespace {

@@ -4,18 +4,17 @@
 
 #include "core/common/DetectionFusion.h"
 #include "core/common/Transform.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_detection_fusion {
+
+using namespace polemcl::tests;
+
 namespace {
 
 PoleDetection pole(double x, double y, double variance, double time = 0) {
-  PoleDetection p;
-  p.x = x;
-  p.y = y;
-  p.radius = 0.1;
-  p.covariance = Eigen::Matrix2d::Identity() * variance;
+  PoleDetection p = detectionAt(x, y, variance);
   p.timeOffset = time;
-  p.points = 10;
   return p;
 }
 

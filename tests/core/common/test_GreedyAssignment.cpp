@@ -8,7 +8,6 @@
 
 namespace polemcl::test_greedy_assignment {
 
-using namespace polemcl;
 using Points = std::vector<Eigen::Vector2d>;
 
 TEST(GreedyAssignment, TakesTheClosestPairFirst) {

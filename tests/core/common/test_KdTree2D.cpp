@@ -9,8 +9,6 @@
 
 namespace polemcl::test_kd_tree2_d {
 
-using namespace polemcl;
-
 namespace {
 
 std::vector<Eigen::Vector2d> randomPoints(std::mt19937_64& random, std::size_t count,

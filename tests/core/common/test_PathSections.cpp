@@ -7,8 +7,6 @@
 
 namespace polemcl::test_path_sections {
 
-using namespace polemcl;
-
 namespace {
 
 PathSections split(const std::vector<Pose2D>& poses, double length) {

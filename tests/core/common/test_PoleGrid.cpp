@@ -9,8 +9,6 @@
 
 namespace polemcl::test_pole_grid {
 
-using namespace polemcl;
-
 namespace {
 
 double uniform(std::mt19937_64& random, double low, double high) {

@@ -9,11 +9,9 @@
 
 namespace polemcl::test_pose_estimate {
 
-using namespace polemcl;
-
 namespace {
 
-constexpr double s_infinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void expectPose(const Pose2D& pose, double x, double y, double yaw) {
   EXPECT_NEAR(pose.x, x, 1e-12);
@@ -123,34 +121,25 @@ TEST(PoseEstimate, BestShareTakesAtLeastOneAndNoMoreThanTold) {
 }
 
 TEST(PoseEstimate, AWeightOfZeroCountsForNothing) {
-  const auto estimate = weightedMean({{1, 1, 0}, {100, 100, 3}}, {0, -s_infinity});
+  const auto estimate = weightedMean({{1, 1, 0}, {100, 100, 3}}, {0, -kInfinity});
   expectPose(estimate.mean, 1, 1, 0);
   EXPECT_EQ(estimate.covariance.norm(), 0);
 }
 
 TEST(PoseEstimate, EffectiveShareByHand) {
   EXPECT_DOUBLE_EQ(effectiveShare({3, 3, 3, 3}), 1);
-  EXPECT_DOUBLE_EQ(effectiveShare({0, -s_infinity, -s_infinity, -s_infinity}), 0.25);
+  EXPECT_DOUBLE_EQ(effectiveShare({0, -kInfinity, -kInfinity, -kInfinity}), 0.25);
   // Weights 1 1 2: 16 / 6 / 3.
   EXPECT_NEAR(effectiveShare({-500, -500, -500 + std::log(2.0)}), 16.0 / 18, 1e-12);
 }
 
-TEST(PoseEstimate, RefusesNoParticles) {
+TEST(PoseEstimate, RefusesBadInput) {
   EXPECT_THROW(weightedMean({}, {}), Error);
   EXPECT_THROW(effectiveShare({}), Error);
-}
-
-TEST(PoseEstimate, RefusesADifferentNumberOfWeights) {
   EXPECT_THROW(weightedMean({{0, 0, 0}}, {0, 0}), Error);
-}
-
-TEST(PoseEstimate, RefusesWeightsThatAreNone) {
   EXPECT_THROW(weightedMean({{}, {}}, {0, std::nan("")}), Error);
-  EXPECT_THROW(weightedMean({{}, {}}, {0, s_infinity}), Error);
-  EXPECT_THROW(effectiveShare({-s_infinity, -s_infinity}), Error);
-}
-
-TEST(PoseEstimate, RefusesAShareOutsideZeroToOne) {
+  EXPECT_THROW(weightedMean({{}, {}}, {0, kInfinity}), Error);
+  EXPECT_THROW(effectiveShare({-kInfinity, -kInfinity}), Error);
   for (double share : {0.0, -0.1, 1.01, std::nan("")})
     EXPECT_THROW(bestShareMean({{}}, {0}, share), Error);
 }

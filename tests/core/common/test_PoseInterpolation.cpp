@@ -6,15 +6,13 @@
 
 namespace polemcl::test_pose_interpolation {
 
-using namespace polemcl;
-
 namespace {
-const std::vector<StampedPose2D> track{
+const std::vector<StampedPose2D> kTrack{
     {10.0, {0, 0, 3.0}}, {11.0, {4, -2, -3.0}}, {15.0, {8, 2, -3.0}}, {16.0, {9, 2, 0}}};
 }
 
 TEST(PoseInterpolation, IsLinearAndTurnsTheShortWay) {
-  const auto pose = poseAt(track, 10.25, 2.0);
+  const auto pose = poseAt(kTrack, 10.25, 2.0);
   ASSERT_TRUE(pose);
   EXPECT_DOUBLE_EQ(pose->x, 1.0);
   EXPECT_DOUBLE_EQ(pose->y, -0.5);
@@ -23,8 +21,8 @@ TEST(PoseInterpolation, IsLinearAndTurnsTheShortWay) {
 }
 
 TEST(PoseInterpolation, SamplesAreThemselves) {
-  for (const auto& sample : track) {
-    const auto pose = poseAt(track, sample.time, 2.0);
+  for (const auto& sample : kTrack) {
+    const auto pose = poseAt(kTrack, sample.time, 2.0);
     ASSERT_TRUE(pose);
     EXPECT_EQ(pose->x, sample.pose.x);
     EXPECT_EQ(pose->yaw, sample.pose.yaw);
@@ -32,18 +30,18 @@ TEST(PoseInterpolation, SamplesAreThemselves) {
 }
 
 TEST(PoseInterpolation, RoundedClocksStillHit) {
-  ASSERT_TRUE(poseAt(track, 10.0 - 1e-6, 2.0));
-  ASSERT_TRUE(poseAt(track, 16.0 + 1e-6, 2.0));
-  const auto pose = poseAt(track, 15.0 - 1e-6, 2.0);  // its other side is a gap
+  ASSERT_TRUE(poseAt(kTrack, 10.0 - 1e-6, 2.0));
+  ASSERT_TRUE(poseAt(kTrack, 16.0 + 1e-6, 2.0));
+  const auto pose = poseAt(kTrack, 15.0 - 1e-6, 2.0);  // its other side is a gap
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->x, 8);
 }
 
 TEST(PoseInterpolation, KnowsNothingOutsideAndInGaps) {
-  EXPECT_FALSE(poseAt(track, 9.99, 2.0));
-  EXPECT_FALSE(poseAt(track, 16.01, 2.0));
-  EXPECT_FALSE(poseAt(track, 13.0, 2.0));
-  EXPECT_TRUE(poseAt(track, 13.0, 4.0));
+  EXPECT_FALSE(poseAt(kTrack, 9.99, 2.0));
+  EXPECT_FALSE(poseAt(kTrack, 16.01, 2.0));
+  EXPECT_FALSE(poseAt(kTrack, 13.0, 2.0));
+  EXPECT_TRUE(poseAt(kTrack, 13.0, 4.0));
   EXPECT_FALSE(poseAt({}, 1.0, 2.0));
 }
 

@@ -7,8 +7,6 @@
 
 namespace polemcl::test_principal_axes {
 
-using namespace polemcl;
-
 namespace {
 
 Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {

@@ -12,8 +12,6 @@
 
 namespace polemcl::test_simd_math {
 
-using namespace polemcl;
-
 namespace {
 
 /// Odd in number, so that vectors of any length leave a rest.

@@ -6,8 +6,6 @@
 
 namespace polemcl::test_types {
 
-using namespace polemcl;
-
 TEST(Types, WrapAngleKeepsPiAndLeavesMinusPiOut) {
   EXPECT_DOUBLE_EQ(wrapAngle(M_PI), M_PI);
   EXPECT_DOUBLE_EQ(wrapAngle(-M_PI), M_PI);

@@ -8,8 +8,6 @@
 
 namespace polemcl::test_consistency {
 
-using namespace polemcl;
-
 namespace {
 
 ConsistencySample sample(double dx, double dy, double dyaw, const Eigen::Matrix3d& covariance) {

@@ -3,20 +3,18 @@
 #include <cmath>
 
 #include "core/evaluation/DetectionEvaluation.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_detection_evaluation {
 
-using namespace polemcl;
+using namespace polemcl::tests;
 
 namespace {
 
 PoleDetection detection(double x, double y, double confidence, double radius = 0.1) {
-  PoleDetection d;
-  d.x = x;
-  d.y = y;
+  PoleDetection d = detectionAt(x, y);
   d.confidence = confidence;
   d.radius = radius;
-  d.covariance = Eigen::Matrix2d::Identity() * 0.01;
   return d;
 }
 

@@ -4,8 +4,6 @@
 
 namespace polemcl::test_pole_visibility {
 
-using namespace polemcl;
-
 namespace {
 
 struct Cloud {
@@ -24,8 +22,8 @@ struct Cloud {
   PointsView view() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
-const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
-constexpr std::uint32_t foliage = 0x80000000u;
+const Eigen::Isometry3d kHere = Eigen::Isometry3d::Identity();
+constexpr std::uint32_t kFoliage = 0x80000000u;
 
 }  // namespace
 
@@ -38,7 +36,7 @@ TEST(PoleVisibility, SixReturnsOverSixtyCentimetresWithinFortyMetres) {
   cloud.column(39.5, 3, 9, 0.0, 2.0, 5);
   const std::vector<WorldPole> poles{{1, 10, 0},   {2, 10, 5},   {3, 10, 10},
                                      {4, 40.5, 0}, {5, 39.5, 3}, {6, 5, 5}};
-  const auto sights = sightPoles(cloud.view(), cloud.labels, here, poles);
+  const auto sights = sightPoles(cloud.view(), cloud.labels, kHere, poles);
   const std::vector<bool> expected{true, false, false, false, true, false};
   for (std::size_t i = 0; i < poles.size(); ++i) EXPECT_EQ(sights[i].visible, expected[i]) << i;
   EXPECT_EQ(sights[2].returns, 20u);
@@ -48,9 +46,9 @@ TEST(PoleVisibility, SixReturnsOverSixtyCentimetresWithinFortyMetres) {
 TEST(PoleVisibility, FoliageAndOtherThingsDoNotCount) {
   Cloud cloud;
   cloud.column(10, 0, 5, 0.0, 2.0, 7);
-  cloud.column(10, 0, 30, 2.0, 5.0, 7 | foliage);
+  cloud.column(10, 0, 30, 2.0, 5.0, 7 | kFoliage);
   cloud.column(10, 0, 30, 0.0, 2.0, 0);
-  const auto sights = sightPoles(cloud.view(), cloud.labels, here, {{7, 10, 0}});
+  const auto sights = sightPoles(cloud.view(), cloud.labels, kHere, {{7, 10, 0}});
   EXPECT_EQ(sights[0].returns, 5u);
   EXPECT_FALSE(sights[0].visible);
 }
@@ -88,8 +86,8 @@ TEST(PoleVisibility, APoleIsTakenAtTheHeightOfALeaningSensor) {
 TEST(PoleVisibility, RefusesWhatDoesNotBelongTogether) {
   Cloud cloud;
   cloud.add(1, 0, 0, 1);
-  EXPECT_THROW(sightPoles(cloud.view(), {}, here, {}), Error);
-  EXPECT_THROW(sightPoles(cloud.view(), cloud.labels, here, {{1, 0, 0}, {1, 2, 0}}), Error);
+  EXPECT_THROW(sightPoles(cloud.view(), {}, kHere, {}), Error);
+  EXPECT_THROW(sightPoles(cloud.view(), cloud.labels, kHere, {{1, 0, 0}, {1, 2, 0}}), Error);
 }
 
 }  // namespace polemcl::test_pole_visibility

@@ -6,7 +6,6 @@
 
 namespace polemcl::test_repeatability {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 using Scans = std::vector<std::vector<Eigen::Vector2d>>;
 

@@ -8,7 +8,6 @@
 
 namespace polemcl::test_trajectory_evaluation {
 
-using namespace polemcl;
 using Points = std::vector<Eigen::Vector2d>;
 
 namespace {
@@ -20,7 +19,7 @@ std::vector<StampedPose2D> straightTruth(int last) {
   return truth;
 }
 
-constexpr double s_degree = M_PI / 180;
+constexpr double kDegree = M_PI / 180;
 
 /// By trying every pair: the two ways of counting matches.
 std::size_t bruteMatches(const Points& truth, const Points& map, double radius) {
@@ -48,15 +47,15 @@ std::size_t bruteOneToOne(const Points& truth, const Points& map, double radius,
 TEST(Evaluation, ErrorsByHand) {
   // At 1 s 0.3 m ahead, 0.4 m to the left, 2° to the left; at 2 s 0.5 m behind, 4° to the right.
   const auto e = evaluateTrajectory(straightTruth(3),
-                                    {{1, {1.3, 0.4, 2 * s_degree}}, {2, {1.5, 0, -4 * s_degree}}},
+                                    {{1, {1.3, 0.4, 2 * kDegree}}, {2, {1.5, 0, -4 * kDegree}}},
                                     Sampling::perPose);
   ASSERT_EQ(e.errors.size(), 2u);
   EXPECT_NEAR(e.errors[0].longitudinal, 0.3, 1e-12);
   EXPECT_NEAR(e.errors[0].lateral, 0.4, 1e-12);
   EXPECT_NEAR(e.errors[0].position, 0.5, 1e-12);
-  EXPECT_NEAR(e.errors[0].heading, 2 * s_degree, 1e-12);
+  EXPECT_NEAR(e.errors[0].heading, 2 * kDegree, 1e-12);
   EXPECT_NEAR(e.errors[1].longitudinal, -0.5, 1e-12);
-  EXPECT_NEAR(e.errors[1].heading, -4 * s_degree, 1e-12);
+  EXPECT_NEAR(e.errors[1].heading, -4 * kDegree, 1e-12);
   EXPECT_EQ(e.errors[1].time, 2);
   EXPECT_EQ(e.poses, 2u);
   EXPECT_EQ(e.unmatched, 0u);

@@ -12,7 +12,6 @@
 
 namespace polemcl::test_pole_extractor {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {

@@ -15,7 +15,6 @@
 
 namespace polemcl::test_pole_extractor_on_streets {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {

@@ -6,10 +6,9 @@
 
 #include <atomic>
 #include <cstdlib>
-#include <cstring>
 #include <new>
 
-#include "support/Clouds.h"
+#include "support/KnownScene.h"
 #include "support/SimulatedScans.h"
 
 namespace {
@@ -50,25 +49,14 @@ void operator delete[](void* memory, std::size_t) noexcept {
 
 namespace polemcl::test_pole_extractor_resources {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {
 
 PoleExtractor extractorFor(const std::string& model, double height) {
-  SensorOptions sensor;
-  sensor.model = model;
+  SensorOptions sensor = sensorOptions(model);
   sensor.height = height;
   return PoleExtractor(sensor, {});
-}
-
-bool sameBytes(const std::vector<PoleDetection>& a, const std::vector<PoleDetection>& b) {
-  const auto same = [](const PoleDetection& p, const PoleDetection& q) {
-    return p.x == q.x && p.y == q.y && p.radius == q.radius && p.bottom == q.bottom &&
-           p.top == q.top && p.confidence == q.confidence && p.covariance == q.covariance &&
-           p.points == q.points;
-  };
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), same);
 }
 
 /// Lets Highway choose by itself again, whatever becomes of a test.
@@ -92,7 +80,7 @@ TEST(PoleExtractorResources, EveryInstructionSetGivesTheSameBytes) {
       for (const std::int64_t target : targets) {
         hwy::SetSupportedTargetsForTest(target);
         ASSERT_EQ(hwy::SupportedTargets(), target);
-        EXPECT_TRUE(sameBytes(extract.extract(s.scan.view()), expected)) << hwy::TargetName(target);
+        EXPECT_TRUE(same(extract.extract(s.scan.view()), expected)) << hwy::TargetName(target);
         EXPECT_EQ(extract.report().candidates, report.candidates) << hwy::TargetName(target);
         EXPECT_EQ(extract.report().outOfRange, report.outOfRange) << hwy::TargetName(target);
       }

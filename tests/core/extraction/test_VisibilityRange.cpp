@@ -10,7 +10,6 @@
 
 namespace polemcl::test_visibility_range {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {

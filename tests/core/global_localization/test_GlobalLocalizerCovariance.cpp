@@ -10,7 +10,6 @@
 
 namespace polemcl::test_global_localizer_covariance {
 
-using namespace polemcl;
 using tests::CityOptions;
 using tests::DriveOptions;
 using tests::Frame;

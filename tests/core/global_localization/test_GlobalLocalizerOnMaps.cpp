@@ -19,7 +19,6 @@
 
 namespace polemcl::test_global_localizer_on_maps {
 
-using namespace polemcl;
 using tests::Way;
 
 namespace {

@@ -11,8 +11,6 @@
 
 namespace polemcl::test_pair_distance_index {
 
-using namespace polemcl;
-
 namespace {
 
 std::vector<Eigen::Vector2d> scatter(std::uint64_t seed, int count, double extent) {

@@ -5,31 +5,25 @@
 
 #include "core/common/PoleIndex.h"
 #include "core/localization/MapAssociation.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_map_association {
 
-using namespace polemcl;
+using namespace polemcl::tests;
 
 namespace {
 
 MapPole mapPole(double x, double y, double sigma) {
-  MapPole pole;
-  pole.x = x;
-  pole.y = y;
-  pole.covariance = sigma * sigma * Eigen::Matrix2d::Identity();
-  return pole;
+  return mapPoleAt(x, y, sigma * sigma);
 }
 
 PoleDetection detection(double x, double y, double sigma, double confidence = 1) {
-  PoleDetection pole;
-  pole.x = x;
-  pole.y = y;
+  PoleDetection pole = detectionAt(x, y, sigma * sigma);
   pole.confidence = confidence;
-  pole.covariance = sigma * sigma * Eigen::Matrix2d::Identity();
   return pole;
 }
 
-const AssociationOptions exact{0.05, 3.5, 1.0};
+const AssociationOptions kExact{0.05, 3.5, 1.0};
 
 }  // namespace
 
@@ -37,7 +31,7 @@ TEST(MapAssociation, SquaredDistanceAddsUpAllCovariances) {
   const PoleIndex index({mapPole(10, 0, 0.04)});
   PoseWithCovariance robot;
   robot.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-4).asDiagonal();
-  const auto matches = associate({detection(10.1, 0.2, 0.03, 0.7)}, robot, index, exact);
+  const auto matches = associate({detection(10.1, 0.2, 0.03, 0.7)}, robot, index, kExact);
   ASSERT_EQ(matches.size(), 1u);
   EXPECT_TRUE(matches[0].matched);
   EXPECT_EQ(matches[0].confidence, 0.7);
@@ -56,23 +50,23 @@ TEST(MapAssociation, TurnsDetectionsAndTheirCovariances) {
   robot.mean = {3, 2, M_PI / 2};  // ahead is +y
   PoleDetection seen = detection(5.2, 0, 0.1);
   seen.covariance << 0.04, 0, 0, 0.0001;  // uncertain ahead
-  const auto matches = associate({seen}, robot, index, exact);
+  const auto matches = associate({seen}, robot, index, kExact);
   EXPECT_NEAR(matches[0].squared, 0.04 / (0.04 + 0.0025), 1e-12);
 }
 
 TEST(MapAssociation, EachMapPoleCountsOnceAndTheNearerPairWins) {
   const PoleIndex index({mapPole(5, 0, 0.1), mapPole(5.4, 0, 0.1)});
   const auto matches =
-      associate({detection(5.15, 0, 0.1), detection(5.01, 0, 0.1)}, {}, index, exact);
+      associate({detection(5.15, 0, 0.1), detection(5.01, 0, 0.1)}, {}, index, kExact);
   EXPECT_TRUE(matches[0].matched);
   EXPECT_EQ(matches[0].pole, 1u);  // the first map pole is taken by the second detection
   EXPECT_TRUE(matches[1].matched);
   EXPECT_EQ(matches[1].pole, 0u);
-  const auto lone = associate({detection(5.05, 0, 0.1)}, {}, index, exact);
+  const auto lone = associate({detection(5.05, 0, 0.1)}, {}, index, kExact);
   EXPECT_EQ(lone[0].pole, 0u);  // both are within reach
   EXPECT_NEAR(lone[0].squared, 0.05 * 0.05 / (0.1 * 0.1 + 0.1 * 0.1 + 0.05 * 0.05), 1e-12);
   const auto crowd = associate({detection(5.01, 0, 0.1), detection(5.02, 0, 0.1)}, {},
-                               PoleIndex({mapPole(5, 0, 0.1)}), exact);
+                               PoleIndex({mapPole(5, 0, 0.1)}), kExact);
   EXPECT_TRUE(crowd[0].matched);
   EXPECT_FALSE(crowd[1].matched);
 }
@@ -91,9 +85,9 @@ TEST(MapAssociation, NothingBeyondTheGateOrTheReach) {
 TEST(MapAssociation, WhatIsNotFiniteMatchesNothing) {
   const PoleIndex index({mapPole(0, 0, 0.1)});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(associate({detection(nan, 0, 0.1)}, {}, index, exact)[0].matched);
-  EXPECT_FALSE(associate({detection(0, 0, nan)}, {}, index, exact)[0].matched);
-  EXPECT_TRUE(associate({}, {}, index, exact).empty());
+  EXPECT_FALSE(associate({detection(nan, 0, 0.1)}, {}, index, kExact)[0].matched);
+  EXPECT_FALSE(associate({detection(0, 0, nan)}, {}, index, kExact)[0].matched);
+  EXPECT_TRUE(associate({}, {}, index, kExact).empty());
 }
 
 }  // namespace polemcl::test_map_association

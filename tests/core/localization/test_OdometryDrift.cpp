@@ -8,8 +8,6 @@
 
 namespace polemcl::test_odometry_drift {
 
-using namespace polemcl;
-
 namespace {
 
 Eigen::Matrix3d diagonal(double x, double y, double yaw) {

@@ -7,8 +7,6 @@
 
 namespace polemcl::test_pose_modes {
 
-using namespace polemcl;
-
 namespace {
 
 struct Cloud {

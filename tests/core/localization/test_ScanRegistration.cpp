@@ -4,21 +4,18 @@
 
 #include "core/localization/ScanRegistration.h"
 #include "sim/common/Random.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_scan_registration {
 
-using namespace polemcl;
+using namespace polemcl::tests;
 
 namespace {
 
 using Poles = std::vector<PoleDetection>;
 
 PoleDetection pole(double x, double y, double sigma = 0.03) {
-  PoleDetection result;
-  result.x = x;
-  result.y = y;
-  result.covariance = sigma * sigma * Eigen::Matrix2d::Identity();
-  return result;
+  return detectionAt(x, y, sigma * sigma);
 }
 
 /// The same poles from a robot that has moved on.
@@ -33,7 +30,7 @@ Poles after(const Poles& before, const Pose2D& motion, sim::Random* random = nul
   return result;
 }
 
-const Poles street = {pole(5, 6), pole(14, -7), pole(-9, 8), pole(22, 5), pole(-3, -6)};
+const Poles kStreet = {pole(5, 6), pole(14, -7), pole(-9, 8), pole(22, 5), pole(-3, -6)};
 
 void expectNear(const Pose2D& a, const Pose2D& b, double metres, double radians) {
   EXPECT_NEAR(a.x, b.x, metres);
@@ -45,32 +42,32 @@ void expectNear(const Pose2D& a, const Pose2D& b, double metres, double radians)
 
 TEST(ScanRegistration, FindsTheExactMotionFromNearAndFromAfar) {
   const Pose2D motion{1.3, -0.2, 0.1};
-  const Poles moved = after(street, motion);
-  const ScanRegistration near = refineMotion(street, moved, {1.0, 0.0, 0.08}, {});
+  const Poles moved = after(kStreet, motion);
+  const ScanRegistration near = refineMotion(kStreet, moved, {1.0, 0.0, 0.08}, {});
   expectNear(near.motion, motion, 1e-6, 1e-7);
   EXPECT_EQ(near.pairs, 5);
   EXPECT_NEAR(near.score, 5, 1e-6);
   RegistrationOptions wide;
   wide.maxMetres = 10;
-  expectNear(searchMotion(street, after(street, {7, 1, -0.3}), {}, wide).motion, {7, 1, -0.3}, 1e-6,
-             1e-7);
+  expectNear(searchMotion(kStreet, after(kStreet, {7, 1, -0.3}), {}, wide).motion, {7, 1, -0.3},
+             1e-6, 1e-7);
 }
 
 TEST(ScanRegistration, SearchesNoFartherThanTold) {
   RegistrationOptions options;
   options.maxMetres = 3;
-  EXPECT_LT(searchMotion(street, after(street, {7, 1, 0}), {}, options).pairs, 3);
-  EXPECT_EQ(searchMotion(street, after(street, {7, 1, 0}), {6, 0, 0}, options).pairs, 5);
+  EXPECT_LT(searchMotion(kStreet, after(kStreet, {7, 1, 0}), {}, options).pairs, 3);
+  EXPECT_EQ(searchMotion(kStreet, after(kStreet, {7, 1, 0}), {6, 0, 0}, options).pairs, 5);
   options.maxRadians = 0.1;
-  EXPECT_LT(searchMotion(street, after(street, {1, 0, 0.3}), {}, options).pairs, 3);
+  EXPECT_LT(searchMotion(kStreet, after(kStreet, {1, 0, 0.3}), {}, options).pairs, 3);
 }
 
 TEST(ScanRegistration, OutliersAndMissedPolesDoNotMoveIt) {
   const Pose2D motion{0.9, 0.05, -0.02};
-  Poles moved = after(street, motion);
+  Poles moved = after(kStreet, motion);
   moved.erase(moved.begin());
   moved.insert(moved.begin(), {pole(3, 3), pole(-4, 12), pole(21, -9)});
-  const ScanRegistration found = refineMotion(street, moved, {0.5, 0, 0}, {});
+  const ScanRegistration found = refineMotion(kStreet, moved, {0.5, 0, 0}, {});
   expectNear(found.motion, motion, 1e-6, 1e-7);
   EXPECT_EQ(found.pairs, 4);
 }
@@ -84,9 +81,9 @@ TEST(ScanRegistration, CovarianceIsThatOfTheErrors) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero(), stated = Eigen::Matrix3d::Zero();
   const int trials = 2000;
   for (int i = 0; i < trials; ++i) {
-    Poles noisy = after(street, {0, 0, 0}, &random);
+    Poles noisy = after(kStreet, {0, 0, 0}, &random);
     const ScanRegistration found =
-        refineMotion(noisy, after(street, motion, &random), motion, options);
+        refineMotion(noisy, after(kStreet, motion, &random), motion, options);
     ASSERT_EQ(found.pairs, 5);
     const Eigen::Vector3d error(found.motion.x - motion.x, found.motion.y - motion.y,
                                 wrapAngle(found.motion.yaw - motion.yaw));
@@ -101,12 +98,12 @@ TEST(ScanRegistration, CovarianceIsThatOfTheErrors) {
 }
 
 TEST(ScanRegistration, NothingInCommonGivesNoPairs) {
-  const ScanRegistration none = refineMotion(street, {}, {1, 2, 0.3}, {});
+  const ScanRegistration none = refineMotion(kStreet, {}, {1, 2, 0.3}, {});
   EXPECT_EQ(none.pairs, 0);
   EXPECT_DOUBLE_EQ(none.motion.x, 1);
-  EXPECT_EQ(searchMotion({}, street, {}, {}).pairs, 0);
-  EXPECT_EQ(judgeMotion(street, street, {5, 0, 0}, {}).pairs, 0);
-  EXPECT_EQ(judgeMotion(street, street, {}, {}).pairs, 5);
+  EXPECT_EQ(searchMotion({}, kStreet, {}, {}).pairs, 0);
+  EXPECT_EQ(judgeMotion(kStreet, kStreet, {5, 0, 0}, {}).pairs, 0);
+  EXPECT_EQ(judgeMotion(kStreet, kStreet, {}, {}).pairs, 5);
 }
 
 }  // namespace polemcl::test_scan_registration

@@ -8,8 +8,6 @@
 
 namespace polemcl::test_box_merging {
 
-using namespace polemcl;
-
 namespace {
 
 using Groups = std::vector<std::vector<std::uint32_t>>;

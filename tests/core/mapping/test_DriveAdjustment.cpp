@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/mapping/DriveAdjustment.h"
-#include "support/ExpectHas.h"
 #include "support/PoleStreet.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_drive_adjustment {
 namespace {
@@ -126,12 +126,7 @@ TEST(DriveAdjustment, ExactPolesPullThePosesToTheirPlace) {
 TEST(DriveAdjustment, NeedsPolesOfTheMap) {
   Drive drive;
   for (MapPole& pole : drive.inventory) pole.x += 500;
-  try {
-    drive.adjust();
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_HAS(std::string(error.what()), "stand near one of the map; 3 are needed");
-  }
+  EXPECT_REFUSED(drive.adjust(), "stand near one of the map; 3 are needed");
 }
 
 }  // namespace polemcl::test_drive_adjustment

@@ -4,24 +4,18 @@
 #include <random>
 
 #include "core/mapping/IncrementalMerge.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_incremental_merge {
-namespace {
 
-PoleDetection at(double x, double y) {
-  PoleDetection pole;
-  pole.x = x;
-  pole.y = y;
-  pole.radius = 0.1;
-  pole.bottom = 0.5;
-  pole.top = 3;
-  return pole;
-}
+using namespace polemcl::tests;
+
+namespace {
 
 TEST(IncrementalMerge, FirstScanBecomesThePoles) {
   std::vector<MapPole> poles;
   IncrementalMerge merge(poles, 0.5);
-  merge.insertScan(poles, {at(1, 2), at(1.1, 2)});
+  merge.insertScan(poles, {detectionAt(1, 2), detectionAt(1.1, 2)});
   ASSERT_EQ(poles.size(), 2u);  // both of one scan: two poles, however near
   EXPECT_EQ(poles[0].x, 1);
   EXPECT_EQ(poles[1].x, 1.1);
@@ -35,7 +29,7 @@ TEST(IncrementalMerge, MeansOfManyScans) {
   const double xs[] = {1.0, 1.2, 0.9, 1.05};
   double sum = 0;
   for (const double x : xs) {
-    PoleDetection seen = at(x, 2 * x);
+    PoleDetection seen = detectionAt(x, 2 * x);
     seen.radius = x / 10;
     seen.confidence = x / 2;
     seen.bottom = x;
@@ -59,8 +53,8 @@ TEST(IncrementalMerge, MeansOfManyScans) {
 TEST(IncrementalMerge, OneDetectionPerPoleNearestFirst) {
   std::vector<MapPole> poles;
   IncrementalMerge merge(poles, 0.5);
-  merge.insertScan(poles, {at(0, 0)});
-  merge.insertScan(poles, {at(0.4, 0), at(-0.1, 0)});
+  merge.insertScan(poles, {detectionAt(0, 0)});
+  merge.insertScan(poles, {detectionAt(0.4, 0), detectionAt(-0.1, 0)});
   ASSERT_EQ(poles.size(), 2u);
   EXPECT_NEAR(poles[0].x, -0.05, 1e-12);  // took the nearer one
   EXPECT_EQ(poles[0].count, 2u);
@@ -70,10 +64,10 @@ TEST(IncrementalMerge, OneDetectionPerPoleNearestFirst) {
 TEST(IncrementalMerge, TheGateIsOpen) {
   std::vector<MapPole> poles;
   IncrementalMerge merge(poles, 0.5);
-  merge.insertScan(poles, {at(0, 0)});
-  merge.insertScan(poles, {at(0.5, 0)});
+  merge.insertScan(poles, {detectionAt(0, 0)});
+  merge.insertScan(poles, {detectionAt(0.5, 0)});
   EXPECT_EQ(poles.size(), 2u);
-  merge.insertScan(poles, {at(0.25 - 1e-9, 0)});
+  merge.insertScan(poles, {detectionAt(0.25 - 1e-9, 0)});
   EXPECT_EQ(poles.size(), 2u);
   EXPECT_EQ(poles[0].count, 2u);
 }
@@ -86,7 +80,7 @@ TEST(IncrementalMerge, FollowsPolesThatMove) {
   IncrementalMerge merge(poles, 0.5);
   for (int scan = 0; scan < 200; ++scan) {
     std::vector<PoleDetection> seen;
-    for (int i = 0; i < 10; ++i) seen.push_back(at(anywhere(random), anywhere(random)));
+    for (int i = 0; i < 10; ++i) seen.push_back(detectionAt(anywhere(random), anywhere(random)));
     std::vector<MapPole> expected = poles;
     IncrementalMerge(expected, 0.5).insertScan(expected, seen);
     merge.insertScan(poles, seen);

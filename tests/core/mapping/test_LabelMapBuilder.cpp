@@ -9,11 +9,9 @@
 
 namespace polemcl::test_label_map_builder {
 
-using namespace polemcl;
-
 namespace {
 
-constexpr std::uint32_t trunk = 71, pole = 80, sign = 81, car = 10;
+constexpr std::uint32_t kTrunk = 71, kPole = 80, kSign = 81, kCar = 10;
 
 /// Points with labels, gathered in the map frame, handed out as the scan of a LiDAR at a pose.
 struct Scan {
@@ -60,9 +58,9 @@ std::vector<MapPole> polesOf(const Scan& scan, int times, LabelMapOptions option
 
 TEST(LabelMapBuilder, PolesStandWhereTheirPointsAre) {
   Scan scan;
-  scan.stem(10, 5, 0.1, 0, 4, pole);
-  scan.stem(4, -6, 0.2, 0.3, 3.3, trunk | 7u << 16);  // the upper half is an instance
-  scan.stem(7, 3, 0.3, 0, 3, car);
+  scan.stem(10, 5, 0.1, 0, 4, kPole);
+  scan.stem(4, -6, 0.2, 0.3, 3.3, kTrunk | 7u << 16);  // the upper half is an instance
+  scan.stem(7, 3, 0.3, 0, 3, kCar);
   const auto poles = polesOf(scan, 5);
   ASSERT_EQ(poles.size(), 2u);
   EXPECT_NEAR(poles[0].x, 4, 0.03);
@@ -77,11 +75,11 @@ TEST(LabelMapBuilder, PolesStandWhereTheirPointsAre) {
 
 TEST(LabelMapBuilder, ASignHangsOnItsPole) {
   Scan scan;
-  scan.stem(10, 5, 0.05, 0, 2.5, pole);
+  scan.stem(10, 5, 0.05, 0, 2.5, kPole);
   for (double across = 0.1; across < 0.9; across += 0.05)
-    for (double z = 2; z < 2.9; z += 0.1) scan.put({10 + across, 5, z}, sign);
+    for (double z = 2; z < 2.9; z += 0.1) scan.put({10 + across, 5, z}, kSign);
   for (double across = -0.4; across < 0.4; across += 0.05)
-    for (double z = 2; z < 2.9; z += 0.1) scan.put({30 + across, 5, z}, sign);
+    for (double z = 2; z < 2.9; z += 0.1) scan.put({30 + across, 5, z}, kSign);
   const auto poles = polesOf(scan, 3);
   ASSERT_EQ(poles.size(), 2u);
   EXPECT_NEAR(poles[0].x, 10, 0.05);  // not drawn to the sign
@@ -91,10 +89,10 @@ TEST(LabelMapBuilder, ASignHangsOnItsPole) {
 
 TEST(LabelMapBuilder, NeighboursStayApart) {
   Scan scan;
-  for (double x = 0; x < 6; x += 0.8) scan.stem(x, 5, 0.1, 0, 3, trunk);
+  for (double x = 0; x < 6; x += 0.8) scan.stem(x, 5, 0.1, 0, 3, kTrunk);
   EXPECT_EQ(polesOf(scan, 3).size(), 8u);
   Scan hedge;  // one thing 4 m long: poles of at most 1.5 m
-  for (double x = 0; x < 4; x += 0.1) hedge.stem(x, 5, 0.1, 0, 3, trunk);
+  for (double x = 0; x < 4; x += 0.1) hedge.stem(x, 5, 0.1, 0, 3, kTrunk);
   const auto poles = polesOf(hedge, 3);
   EXPECT_GE(poles.size(), 3u);
   for (std::size_t i = 1; i < poles.size(); ++i) EXPECT_GT(poles[i].x - poles[i - 1].x, 0.5);
@@ -102,18 +100,18 @@ TEST(LabelMapBuilder, NeighboursStayApart) {
 
 TEST(LabelMapBuilder, LittleIsNoPole) {
   Scan scan;
-  scan.stem(10, 5, 0.1, 0, 4, pole);
+  scan.stem(10, 5, 0.1, 0, 4, kPole);
   EXPECT_EQ(polesOf(scan, 2).size(), 0u);  // three scans are needed
   EXPECT_EQ(polesOf(scan, 3).size(), 1u);
   Scan low;
-  low.stem(10, 5, 0.1, 0, 0.4, pole);
+  low.stem(10, 5, 0.1, 0, 0.4, kPole);
   EXPECT_EQ(polesOf(low, 9).size(), 0u);
   Scan thin;
-  for (double z = 0; z < 3; z += 0.6) thin.put({10, 5, z}, pole);
+  for (double z = 0; z < 3; z += 0.6) thin.put({10, 5, z}, kPole);
   EXPECT_EQ(polesOf(thin, 3).size(), 0u);  // 15 points
   EXPECT_EQ(polesOf(thin, 4).size(), 1u);  // 20
   Scan far;
-  far.stem(60, 5, 0.1, 0, 4, pole);
+  far.stem(60, 5, 0.1, 0, 4, kPole);
   EXPECT_EQ(polesOf(far, 3).size(), 0u);
 }
 
@@ -122,7 +120,7 @@ TEST(LabelMapBuilder, TheOrderOfPointsIsNobodysBusiness) {
   Scan scan;
   for (int i = 0; i < 30; ++i)
     scan.stem(static_cast<double>(random() % 40), static_cast<double>(random() % 20) - 9.9, 0.15, 0,
-              3, i % 2 ? pole : trunk);
+              3, i % 2 ? kPole : kTrunk);
   Scan other = scan;
   std::reverse(other.points.begin(), other.points.end());
   std::reverse(other.labels.begin(), other.labels.end());
@@ -138,7 +136,7 @@ TEST(LabelMapBuilder, TheOrderOfPointsIsNobodysBusiness) {
 
 TEST(LabelMapBuilder, KeepsColumnsNotPoints) {
   Scan scan;
-  scan.stem(10, 5, 0.1, 0, 4, pole);
+  scan.stem(10, 5, 0.1, 0, 4, kPole);
   LabelMapBuilder map;
   for (int i = 0; i < 50; ++i) scan.addTo(map, pose(0, 0));
   EXPECT_EQ(map.points(), 50 * scan.points.size());

@@ -7,18 +7,15 @@
 #include <random>
 
 #include "core/mapping/LandmarkFusion.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_landmark_fusion {
-
-using namespace polemcl;
 
 namespace {
 
 LandmarkObservation observation(double x, double y, double variance = 0.01) {
   LandmarkObservation s;
-  s.pole.x = x;
-  s.pole.y = y;
-  s.pole.covariance = variance * Eigen::Matrix2d::Identity();
+  s.pole = tests::detectionAt(x, y, variance);
   return s;
 }
 

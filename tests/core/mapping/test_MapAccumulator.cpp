@@ -7,10 +7,10 @@
 #include <string>
 
 #include "core/mapping/MapAccumulator.h"
+#include "support/Poles.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_map_accumulator {
-
-using namespace polemcl;
 
 namespace {
 
@@ -24,12 +24,7 @@ SessionScan scanAt(double x, double y, const std::vector<Eigen::Vector2d>& poles
   scan.visibilityRange.assign(256, 12.0f);
   for (const Eigen::Vector2d& p : poles) {
     if (std::hypot(p.x() - x, p.y() - y) > 12) continue;
-    PoleDetection pole;
-    pole.x = p.x() - x;
-    pole.y = p.y() - y;
-    pole.radius = 0.1;
-    pole.top = 4;
-    scan.poles_robot.push_back(pole);
+    scan.poles_robot.push_back(tests::detectionAt(p.x() - x, p.y() - y));
   }
   return scan;
 }
@@ -194,17 +189,10 @@ TEST(MapAccumulator, RefusesWhatItCannotGoOnFrom) {
   AddedSessions kept;
   kept.unvisited = 10;
   const auto message = [&](double unvisited) -> std::string {
-    try {
-      MapAccumulator map(mapping(unvisited), {}, kept);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return tests::messageOf([&] { MapAccumulator map(mapping(unvisited), {}, kept); });
   };
-  EXPECT_NE(message(5).find("unvisited_m = 5, but the scans of the map were chosen with 10"),
-            std::string::npos)
-      << message(5);
-  EXPECT_EQ(message(10), "");
+  EXPECT_HAS(message(5), "unvisited_m = 5, but the scans of the map were chosen with 10");
+  EXPECT_EQ(message(10), "no error");
   EXPECT_THROW(fresh(-1), Error);
   EXPECT_THROW(fresh(kNan), Error);
   MapAccumulator map = fresh(10);
@@ -215,13 +203,7 @@ TEST(MapAccumulator, RefusesASessionInAnotherFrame) {
   MapAccumulator map = fresh(0);
   map.add("one", drive(0, 100, 0));
   map.add("near", drive(9000, 9100, 0));
-  try {
-    map.add("utm", drive(9000, 9100, 25000));
-    FAIL() << "taken";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("session utm: its poses are 25 km"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_REFUSED(map.add("utm", drive(9000, 9100, 25000)), "session utm: its poses are 25 km");
   EXPECT_EQ(map.added().sessions.size(), 2u);
   EXPECT_NO_THROW(map.add("farther", drive(19000, 19050, 0)));  // near one of them
 }

@@ -1,21 +1,17 @@
 #include <gtest/gtest.h>
 
 #include "core/mapping/MapDiff.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_map_diff {
 
-using namespace polemcl;
+using namespace polemcl::tests;
 
 namespace {
 
 std::vector<MapPole> polesAt(const std::vector<std::pair<double, double>>& places) {
   std::vector<MapPole> poles;
-  for (const auto& [x, y] : places) {
-    MapPole pole;
-    pole.x = x;
-    pole.y = y;
-    poles.push_back(pole);
-  }
+  for (const auto& [x, y] : places) poles.push_back(mapPoleAt(x, y));
   return poles;
 }
 

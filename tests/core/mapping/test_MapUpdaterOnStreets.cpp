@@ -13,8 +13,6 @@
 
 namespace polemcl::test_map_updater_on_streets {
 
-using namespace polemcl;
-
 namespace {
 
 using Positions = std::vector<Eigen::Vector2d>;

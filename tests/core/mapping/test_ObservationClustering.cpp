@@ -6,19 +6,17 @@
 #include <set>
 
 #include "core/mapping/ObservationClustering.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_observation_clustering {
 
-using namespace polemcl;
 using Groups = std::vector<std::vector<std::uint32_t>>;
 
 namespace {
 
 LandmarkObservation observation(double x, double y, std::uint32_t view) {
   LandmarkObservation s;
-  s.pole.x = x;
-  s.pole.y = y;
-  s.pole.covariance = 0.0025 * Eigen::Matrix2d::Identity();
+  s.pole = tests::detectionAt(x, y, 0.0025);
   s.scan = view;
   return s;
 }

@@ -4,10 +4,9 @@
 
 #include <polemcl/core/mapping/PoleMapBuilder.h>
 #include "core/common/Binder.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_pole_map_paper {
-
-using namespace polemcl;
 
 namespace {
 
@@ -32,11 +31,8 @@ std::vector<MappingScan> drive(const std::vector<std::vector<Eigen::Vector2d>>& 
     MappingScan scan;
     scan.pose_map_robot = {scans.size() - 0.5, 0, 0};
     for (const Eigen::Vector2d& p : poles) {
-      PoleDetection pole;
-      pole.x = p.x() - scan.pose_map_robot.x;
-      pole.y = p.y();
-      pole.radius = 0.125;
-      scan.poles_robot.push_back(pole);
+      scan.poles_robot.push_back(tests::detectionAt(p.x() - scan.pose_map_robot.x, p.y()));
+      scan.poles_robot.back().radius = 0.125;
     }
     scans.push_back(scan);
   }

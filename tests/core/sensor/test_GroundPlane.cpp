@@ -7,7 +7,6 @@
 
 namespace polemcl::test_ground_plane {
 
-using namespace polemcl;
 using polemcl::clouds::kDegree;
 using polemcl::clouds::PointList;
 

@@ -7,8 +7,6 @@
 
 namespace polemcl::test_point_order {
 
-using namespace polemcl;
-
 namespace {
 
 /// Points at these azimuths, deg, 10 m away.

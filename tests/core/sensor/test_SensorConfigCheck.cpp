@@ -4,22 +4,16 @@
 
 #include "core/sensor/SensorConfigCheck.h"
 #include "support/Clouds.h"
+#include "support/Sensors.h"
 #include "support/SimulatedScans.h"
 
 namespace polemcl::test_sensor_config_check {
 
-using namespace polemcl;
 using polemcl::clouds::kDegree;
 using polemcl::clouds::PointList;
+using tests::sensorNamed;
 
 namespace {
-
-SensorOptions preset(const std::string& model, bool upsideDown = false) {
-  SensorOptions options;
-  options.model = model;
-  options.upsideDown = upsideDown;
-  return options;
-}
 
 PointList street(const std::string& lidar, double height) {
   PointList points;
@@ -58,7 +52,7 @@ TEST(SensorConfigCheck, AcceptsEachLidarUnderItsOwnName) {
         std::pair{"os1_128", "os1_128"}, std::pair{"os0_64", "os0_64"},
         std::pair{"hdl64e_kitti", "hdl64e"}, std::pair{"hdl64e", "hdl64e"},
         std::pair{"os1_64_gen2", "os1_64_gen2"}})
-    EXPECT_EQ(contradiction(preset(model), street(lidar, 1.5)), "") << lidar;
+    EXPECT_EQ(contradiction(sensorNamed(model), street(lidar, 1.5)), "") << lidar;
 }
 
 TEST(SensorConfigCheck, RefusesLidarsUnderOthersNames) {
@@ -68,7 +62,7 @@ TEST(SensorConfigCheck, RefusesLidarsUnderOthersNames) {
          {"hdl64e", "hdl32e", "vlp16", "os1_64", "os1_64_gen2", "os1_128", "os0_64"}) {
       if (lidar.rfind(model, 0) == 0 && lidar != "os1_64_gen2") continue;
       if (lidar == model) continue;
-      const std::string what = contradiction(preset(model), points);
+      const std::string what = contradiction(sensorNamed(model), points);
       EXPECT_TRUE(has(what, "model = " + model)) << lidar << " as " << model << ": " << what;
       EXPECT_TRUE(has(what, "pole-extract --inspect")) << what;
     }
@@ -76,21 +70,21 @@ TEST(SensorConfigCheck, RefusesLidarsUnderOthersNames) {
 }
 
 TEST(SensorConfigCheck, NamesThePresetThatFits) {
-  const std::string what = contradiction(preset("os0_64"), street("hdl32e", 1.0));
+  const std::string what = contradiction(sensorNamed("os0_64"), street("hdl32e", 1.0));
   EXPECT_TRUE(has(what, "as model = hdl32e has")) << what;
   EXPECT_TRUE(has(what, "32 beams from 10.7 to -30.7 deg")) << what;
 }
 
 TEST(SensorConfigCheck, KnowsAMirroredFan) {
-  const std::string what = contradiction(preset("hdl32e", true), street("hdl32e", 1.0));
+  const std::string what = contradiction(sensorNamed("hdl32e", true), street("hdl32e", 1.0));
   EXPECT_TRUE(has(what, "model = hdl32e upside down")) << what;
   EXPECT_TRUE(has(what, "as model = hdl32e has")) << what;
 }
 
 TEST(SensorConfigCheck, RefusesOneOriginWhereTheModelHasTwo) {
-  const std::string what = contradiction(preset("hdl64e"), singleOrigin(64, 2, -24.8));
+  const std::string what = contradiction(sensorNamed("hdl64e"), singleOrigin(64, 2, -24.8));
   EXPECT_TRUE(has(what, "model = hdl64e")) << what;
-  SensorOptions uniform = preset("uniform");
+  SensorOptions uniform = sensorNamed("uniform");
   uniform.rings = 64;
   uniform.fovUp = 2 * kDegree;
   uniform.fovDown = -24.8 * kDegree;
@@ -101,7 +95,7 @@ TEST(SensorConfigCheck, RefusesOneOriginWhereTheModelHasTwo) {
 TEST(SensorConfigCheck, FindsAWrongOrigin) {
   PointList points = street("hdl32e", 1.0);
   for (float& z : points.z) z += 0.957f;
-  const std::string what = contradiction(preset("hdl32e"), points);
+  const std::string what = contradiction(sensorNamed("hdl32e"), points);
   EXPECT_TRUE(has(what, "from 0.96 m above its origin (set [sensor] origin)")) << what;
 }
 
@@ -112,7 +106,7 @@ TEST(SensorConfigCheck, FindsACloudUpsideDown) {
     points.z[i] = -points.z[i];
   }
   for (const bool beams : {true, false}) {
-    const std::string what = contradiction(preset("vlp16"), points, beams);
+    const std::string what = contradiction(sensorNamed("vlp16"), points, beams);
     EXPECT_TRUE(has(what, "ground lies above the sensor")) << what;
     EXPECT_TRUE(has(what, "--sensor-pose")) << what;
   }
@@ -124,25 +118,25 @@ TEST(SensorConfigCheck, RefusesMergedClouds) {
   for (int k = 0; k < 4; ++k)
     for (std::size_t i = 0; i < points.size(); ++i)
       merged.add(points.x[i] + 0.9 * k, points.y[i] + 0.2 * k, points.z[i] + 0.13 * k);
-  EXPECT_TRUE(has(contradiction(preset("hdl32e"), merged), "model = hdl32e"));
+  EXPECT_TRUE(has(contradiction(sensorNamed("hdl32e"), merged), "model = hdl32e"));
 }
 
 TEST(SensorConfigCheck, DoesNotJudgeBeamsWhenTold) {
-  EXPECT_EQ(contradiction(preset("os1_128"), street("hdl32e", 1.0), false), "");
+  EXPECT_EQ(contradiction(sensorNamed("os1_128"), street("hdl32e", 1.0), false), "");
 }
 
 TEST(SensorConfigCheck, DoesNotJudgeFewPoints) {
   PointList few;
   for (std::size_t i = 0; i + 1 < SensorConfigCheck::kFewestPoints; ++i)
     few.addPolar(0.003 * static_cast<double>(i), 0.5, 10);
-  EXPECT_EQ(contradiction(preset("hdl32e"), few), "");
-  EXPECT_EQ(contradiction(preset("hdl32e"), PointList()), "");
+  EXPECT_EQ(contradiction(sensorNamed("hdl32e"), few), "");
+  EXPECT_EQ(contradiction(sensorNamed("hdl32e"), PointList()), "");
 }
 
 // Counted by hand: 3000 points on two of three beams, half of one beam's 10 % off its cone, 100
 // above the view.
 TEST(BeamAgreement, IsMeasured) {
-  SensorOptions options = preset("table");
+  SensorOptions options = sensorNamed("table");
   options.elevations = {std::atan(0.1), 0, std::atan(-0.1)};
   options.columns = 1000;
   PointList points;

@@ -9,7 +9,6 @@
 
 namespace polemcl::test_sensor_identification {
 
-using namespace polemcl;
 using polemcl::clouds::kDegree;
 using polemcl::clouds::PointList;
 

@@ -8,8 +8,6 @@
 
 namespace polemcl::test_timing_search {
 
-using namespace polemcl;
-
 namespace {
 
 /// A drive of 300 m with bends and changing speed, poles on both sides, 2 cm of noise, a scan each

@@ -6,7 +6,6 @@
 
 namespace polemcl::test_cloud {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 
@@ -44,12 +43,12 @@ TEST_F(CloudTest, AnEmptyFileIsAnEmptyCloud) {
 
 TEST_F(CloudTest, RefusesAFileCutShort) {
   const fs::path file = write("a.bin", floats({1, 2, 3, 4}) + "abc");
-  expectIn(messageOf([&] { readKittiBin(file); }), file.string(), "cut short", "19 bytes");
+  EXPECT_REFUSED(readKittiBin(file), file.string(), "cut short", "19 bytes");
 }
 
 TEST_F(CloudTest, RefusesAMissingFile) {
-  expectIn(messageOf([&] { readKittiBin(path("no.bin")); }), path("no.bin").string(),
-           "No such file or directory");
+  EXPECT_REFUSED(readKittiBin(path("no.bin")), path("no.bin").string(),
+                 "No such file or directory");
 }
 
 TEST_F(CloudTest, ReadsARealScan) {

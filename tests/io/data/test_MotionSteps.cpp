@@ -4,7 +4,6 @@
 
 namespace polemcl::test_motion_steps {
 
-using namespace polemcl;
 using namespace polemcl::io;
 
 TEST(MotionSteps, ComposesStepsInProportion) {

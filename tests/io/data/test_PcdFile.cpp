@@ -8,7 +8,6 @@
 
 namespace polemcl::test_pcd_file {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 
@@ -146,7 +145,7 @@ TEST_F(PcdFileTest, RefusesWhatIsNoPcd) {
   expectIn(refusal("FIELDS x y z\nCOUNT 1 1 5000\nDATA ascii\n"), "field z", "COUNT 5000");
   expectIn(refusal("FIELDS x y z\nWIDTH\nDATA ascii\n"), ":2: ", "WIDTH");
   expectIn(refusal(header("x y z", "4 4 4", "F F F", 1, "packed")), ":11: ", "'packed'");
-  expectIn(messageOf([&] { readPcd(path("no.pcd")); }), "no.pcd", "No such file");
+  EXPECT_REFUSED(readPcd(path("no.pcd")), "no.pcd", "No such file");
 }
 
 TEST_F(PcdFileTest, RefusesPointsThatAreMissingOrNoNumbers) {

@@ -4,14 +4,13 @@
 
 namespace polemcl::test_mulran {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 
 namespace {
 
-constexpr const char* names[] = {"1561000444390857630", "1561000444489636410",
-                                 "1561000444590000000"};
+constexpr const char* kNames[] = {"1561000444390857630", "1561000444489636410",
+                                  "1561000444590000000"};
 
 /// The vehicle drives and looks east at 10 m/s, in UTM; one row per 10 ms.
 std::string drive(int rows) {
@@ -29,7 +28,7 @@ class MulranTest : public FolderTest {
  protected:
   void SetUp() override {
     FolderTest::SetUp();
-    for (const char* name : names)
+    for (const char* name : kNames)
       write("KAIST01/Ouster/" + std::string(name) + ".bin", floats({1, 2, 3, 100}));
     write("KAIST01/global_pose.csv", drive(40));
   }
@@ -70,7 +69,7 @@ TEST_F(MulranTest, ReadsTheLayoutWithSensorData) {
   fs::create_directories(path("KAIST01/sensor_data"));
   fs::rename(path("KAIST01/Ouster"), path("KAIST01/sensor_data/Ouster"));
   write("KAIST01/sensor_data/ouster_front_stamp.csv",
-        std::string(names[0]) + "\n" + names[1] + "\n1561000444500000000\n" + names[2] + "\n");
+        std::string(kNames[0]) + "\n" + kNames[1] + "\n1561000444500000000\n" + kNames[2] + "\n");
   const ScanFolder sequence = load();
   ASSERT_EQ(sequence.scans.size(), 3u);
   expectIn(sequence.notes.at(0), "ouster_front_stamp.csv", "1 of its 4 times have no scan");
@@ -98,10 +97,10 @@ TEST_F(MulranTest, RefusesWhatIsDamaged) {
   write("KAIST01/global_pose.csv", "1,1,0,0,0,0,1,0,0,0,0,1,0\n");
   expectIn(refusal(), "global_pose.csv", "no truth at the time of any scan",
            "1561000444.391 ... 1561000444.590 s");
-  write("KAIST01/ouster_front_stamp.csv", std::string(names[0]) + "\nx\n");
+  write("KAIST01/ouster_front_stamp.csv", std::string(kNames[0]) + "\nx\n");
   expectIn(refusal(), "ouster_front_stamp.csv:2: ", "'x' is not a time");
-  write("KAIST01/Ouster/" + std::string(names[1]) + ".bin", "12345");
-  expectIn(refusal(), names[1], "cut short: 5 bytes");
+  write("KAIST01/Ouster/" + std::string(kNames[1]) + ".bin", "12345");
+  expectIn(refusal(), kNames[1], "cut short: 5 bytes");
   fs::remove_all(path("KAIST01/Ouster"));
   expectIn(refusal(), path("KAIST01/Ouster").string(), "No such file");
 }

@@ -10,25 +10,24 @@
 
 namespace polemcl::test_rosbag2 {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
 
 namespace {
 
-constexpr double start = 1700000000;  ///< s; a double holds it to 0.2 us
+constexpr double kStart = 1700000000;  ///< s; a double holds it to 0.2 us
 
 std::string cloudAt(double time, const std::string& frame = "lidar") {
   TestCloud cloud;
-  cloud.time = start + time;
+  cloud.time = kStart + time;
   cloud.frame = frame;
   cloud.point(static_cast<float>(time), 2, 3, 4);
   return cloud.message();
 }
 
 std::string odometryAt(TestOdometry odometry) {
-  odometry.time += start;
+  odometry.time += kStart;
   return odometryMessage(odometry);
 }
 
@@ -65,7 +64,7 @@ class Rosbag2Test : public FolderTest {
 void expectNote(const ScanFolder& folder, const std::string& text) {
   std::string all;
   for (const auto& note : folder.notes) all += note + " | ";
-  EXPECT_NE(all.find(text), std::string::npos) << all;
+  EXPECT_HAS(all, text);
 }
 
 }  // namespace
@@ -78,7 +77,7 @@ TEST_F(Rosbag2Test, ReadsCloudsOneByOne) {
   expectNote(folder, "1 of 4 scans left out, stamped not later");
   expectNote(folder, "no static transform from base_link to lidar");
   expectNote(folder, "no times of their own");
-  EXPECT_EQ(folder.scans[0].time, start + 0.5);
+  EXPECT_EQ(folder.scans[0].time, kStart + 0.5);
   EXPECT_FALSE(folder.scans[1].motion);
   EXPECT_FALSE(folder.scans[1].T_map_robot);
   EXPECT_FALSE(folder.T_robot_sensor);
@@ -143,7 +142,7 @@ TEST_F(Rosbag2Test, TheGyroscopeGivesTheYaw) {
   tilt.put(std::sqrt(0.5)).put(0.0).put(0.0).put(std::sqrt(0.5));
   bag->add(transforms, 0, tilt.message());
   for (int i = 0; i < 50; ++i)
-    bag->add(imu, i, imuMessage(start + 0.01 * i, "imu", {7, 1, 7}, 0.09));
+    bag->add(imu, i, imuMessage(kStart + 0.01 * i, "imu", {7, 1, 7}, 0.09));
   options.topics.imu = "/imu";
   const ScanFolder folder = load();
   ASSERT_EQ(folder.scans.size(), 4u);
@@ -158,7 +157,7 @@ TEST_F(Rosbag2Test, TheGyroscopeGivesTheYaw) {
 TEST_F(Rosbag2Test, AnImuOfUnknownPoseIsTakenAsUpright) {
   writeDrive(3, {});
   const int imu = bag->topic("/imu", imu2);
-  for (int i = 0; i < 50; ++i) bag->add(imu, i, imuMessage(start + 0.01 * i, "imu", {7, 7, 2}, 0));
+  for (int i = 0; i < 50; ++i) bag->add(imu, i, imuMessage(kStart + 0.01 * i, "imu", {7, 7, 2}, 0));
   options.topics.imu = "/imu";
   const ScanFolder folder = load();
   expectNote(folder, "no static transform from base_link to imu");
@@ -180,7 +179,7 @@ TEST_F(Rosbag2Test, TheSensorPoseIsTheChainOfStaticTransforms) {
 
 TEST_F(Rosbag2Test, TheTimingComesFromThePoints) {
   for (int i = 0; i < 3; ++i)
-    bag->add(clouds, i, turningCloud(start + 0.1 * i, -1, M_PI, -0.1, 0.1).message());
+    bag->add(clouds, i, turningCloud(kStart + 0.1 * i, -1, M_PI, -0.1, 0.1).message());
   const ScanFolder folder = load();
   EXPECT_EQ(folder.timing.turn, Turn::clockwise);
   EXPECT_EQ(folder.timing.stamp, 1);
@@ -223,7 +222,7 @@ TEST_F(Rosbag2Test, RefusesAnImuWithoutOdometry) {
 TEST_F(Rosbag2Test, RefusesAnImuAtOtherScansThanTheOdometry) {
   for (const double time : {1.0, 2.0}) bag->add(clouds, 0, cloudAt(time));
   bag->add(odometry, 0, odometryAt({1}));
-  bag->add(bag->topic("/imu", imu2), 0, imuMessage(start + 2, "imu", {}, 0));
+  bag->add(bag->topic("/imu", imu2), 0, imuMessage(kStart + 2, "imu", {}, 0));
   options.topics.imu = "/imu";
   expectIn(refusal(), "no scan has both odometry and IMU", "1700000001.000", "1700000002.000");
 }
@@ -252,8 +251,7 @@ TEST_F(Rosbag2Test, RefusesTruncatedMessages) {
   bag->run("UPDATE messages SET data = substr(data, 1, length(data) - 10) WHERE id = 2");
   const ScanFolder folder = load();  // clouds are read later
   EXPECT_EQ(folder.read(folder.scans[0]).size(), 1u);
-  expectIn(messageOf([&] { folder.read(folder.scans[1]); }),
-           "a.db3: /points, message 2: cut short");
+  EXPECT_REFUSED(folder.read(folder.scans[1]), "a.db3: /points, message 2: cut short");
   bag->run("UPDATE messages SET data = substr(data, 1, 300) WHERE id = 5");
   expectIn(refusal(), "a.db3: /odom, message 5: cut short");
   bag->run("UPDATE messages SET data = substr(data, 1, 9) WHERE id = 3");

@@ -29,7 +29,7 @@ TEST_F(CsvRowsTest, ReadsRowAfterRow) {
   std::vector<double> row;
   ASSERT_TRUE(rows.next(row));
   EXPECT_EQ(row, (std::vector<double>{1326652795280148, -2.5, 300}));
-  EXPECT_NE(rows.at().find("a.csv:2: "), std::string::npos);
+  EXPECT_HAS(rows.at(), "a.csv:2: ");
   ASSERT_TRUE(rows.next(row));
   EXPECT_TRUE(row[0] == 4 && std::isnan(row[1]) && std::isnan(row[2]));
   ASSERT_TRUE(rows.next(row));
@@ -61,8 +61,8 @@ TEST_F(CsvRowsTest, TellsHowFarItIs) {
 }
 
 TEST_F(CsvRowsTest, RefusesFilesThatCannotBeRead) {
-  expectIn(messageOf([&] { CsvRows(path("no.csv"), 3, ""); }), "no.csv", "No such file");
-  expectIn(messageOf([&] { CsvRows(m_folder, 3, ""); }), "it is a folder");
+  EXPECT_REFUSED(CsvRows(path("no.csv"), 3, ""), "no.csv", "No such file");
+  EXPECT_REFUSED(CsvRows(m_folder, 3, ""), "it is a folder");
 }
 
 }  // namespace polemcl::test_csv_rows

@@ -3,7 +3,6 @@
 
 namespace polemcl::test_csv_table {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 

@@ -5,7 +5,6 @@
 
 namespace polemcl::test_date {
 
-using namespace polemcl;
 using namespace polemcl::io;
 
 TEST(Date, KnownDays) {

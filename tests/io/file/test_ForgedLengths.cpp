@@ -21,22 +21,22 @@
 
 namespace polemcl::test_forged_lengths {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 using namespace polemcl::tests;
 
 namespace {
 
-constexpr std::size_t megabyte = 1 << 20;
+constexpr std::size_t kMegabyte = 1 << 20;
 
 class ForgedLengths : public FolderTest {
  protected:
   /// The error message of `reading`, which may take at most `most` bytes.
-  static std::string refusal(const std::function<void()>& reading, std::size_t most = megabyte) {
+  static std::string refusal(const std::function<void()>& reading, std::size_t most = kMegabyte) {
     std::string message;
     const std::size_t taken = memoryTakenBy([&] { message = messageOf(reading); });
     EXPECT_LT(taken, most) << message;
+    EXPECT_NE(message, "no error");
     return message;
   }
 };
@@ -71,8 +71,8 @@ std::string poleMap(const std::string& tag, const std::string& content,
 }  // namespace
 
 TEST_F(ForgedLengths, TheCounterSeesWhatTheLibraryTakes) {
-  const fs::path file = write("a.bin", std::string(3 * megabyte, 'x'));
-  EXPECT_GT(memoryTakenBy([&] { readBytes(file); }), 3 * megabyte);
+  const fs::path file = write("a.bin", std::string(3 * kMegabyte, 'x'));
+  EXPECT_GT(memoryTakenBy([&] { readBytes(file); }), 3 * kMegabyte);
 }
 
 TEST_F(ForgedLengths, InAPoleMap) {
@@ -94,7 +94,7 @@ TEST_F(ForgedLengths, InTheScansOfAMap) {
   expectIn(unpack(1ull << 40, data), "x: ", "cannot hold 1099511627776");
   // A size that deflate could just reach, but this data does not.
   const std::string large = data + std::string(100000, 'x');
-  expectIn(unpack(20 * megabyte, large), "x: ", "cannot be decompressed");
+  expectIn(unpack(20 * kMegabyte, large), "x: ", "cannot be decompressed");
   for (const std::uint64_t sessions : {0xffffffffull, 2ull}) {
     const std::string scans = zlibbed(little(0, 8) + little(sessions, 4) + little(1, 4) + "s" +
                                       little(~0ull, 8) + std::string(200, '\0'));
@@ -103,15 +103,15 @@ TEST_F(ForgedLengths, InTheScansOfAMap) {
 }
 
 TEST_F(ForgedLengths, InCompressedData) {
-  const std::string content(5 * megabyte, 'a'), packed = zlibbed(content);
+  const std::string content(5 * kMegabyte, 'a'), packed = zlibbed(content);
   EXPECT_EQ(inflated(packed, content.size(), "x: "), content);
   EXPECT_EQ(inflated(zlibbed(""), 0, "x: "), "");
   for (const std::uint64_t size : {std::uint64_t{0}, content.size() - 1, content.size() + 1})
-    expectIn(messageOf([&] { inflated(packed, size, "x: "); }), "x: ");
+    EXPECT_REFUSED(inflated(packed, size, "x: "), "x: ");
   // Data beyond a small claimed size are not decompressed.
   refusal([&] { inflated(packed, 100, "x: "); });
-  expectIn(messageOf([&] { inflated(packed + "x", content.size(), "x: "); }),
-           "cannot be decompressed");
+  EXPECT_REFUSED(inflated(packed + "x", content.size(), "x: "),
+                 "cannot be decompressed");
 }
 
 TEST_F(ForgedLengths, InAnArchiveOfArrays) {
@@ -123,7 +123,7 @@ TEST_F(ForgedLengths, InAnArchiveOfArrays) {
   };
   expectIn(open(zip({{"a.npy", array}})), "a.npz", "do not fit its shape");
   std::string claim = zip({{"a.npy", array}});
-  claim.replace(claim.find("PK\x01\x02") + 24, 4, little(20 * megabyte, 4));
+  claim.replace(claim.find("PK\x01\x02") + 24, 4, little(20 * kMegabyte, 4));
   expectIn(open(claim), "a.npz", "beyond its end");
 }
 
@@ -159,8 +159,8 @@ TEST_F(ForgedLengths, InPacketsOfNclt) {
 TEST_F(ForgedLengths, InCompressedText) {
   const fs::path file = path("a.txt.gz");
   const gzFile stream = gzopen(file.c_str(), "wb1");
-  const std::string line(megabyte, '1');
-  for (std::size_t i = 0; i <= kMostTextBytes / megabyte; ++i)
+  const std::string line(kMegabyte, '1');
+  for (std::size_t i = 0; i <= kMostTextBytes / kMegabyte; ++i)
     gzwrite(stream, line.data(), static_cast<unsigned>(line.size()));
   gzclose(stream);
   expectIn(refusal([&] { readLines(file); }, 4 * kMostTextBytes), "a.txt.gz",

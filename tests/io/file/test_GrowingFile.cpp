@@ -3,7 +3,6 @@
 
 namespace polemcl::test_growing_file {
 
-using namespace polemcl;
 using namespace polemcl::io::test;
 using polemcl::io::GrowingFile;
 
@@ -34,18 +33,18 @@ TEST_F(GrowingFileTest, AnyNumberGrowAtATime) {
 }
 
 TEST_F(GrowingFileTest, RefusesWhatCannotBeWritten) {
-  expectIn(messageOf([&] { GrowingFile(path("none/f")); }), path("none/f").string());
+  EXPECT_REFUSED(GrowingFile(path("none/f")), path("none/f").string());
   GrowingFile file(path("f"));
   fs::remove(path("f"));
   fs::create_directory(path("f"));
   file.add("row\n");
-  expectIn(messageOf([&] { file.flush(); }), "cannot write " + path("f").string());
+  EXPECT_REFUSED(file.flush(), "cannot write " + path("f").string());
 }
 
 TEST_F(GrowingFileTest, RefusesWhenTheDiskIsFull) {
   GrowingFile file(path("f"));
   const FileSizeLimit limit(GrowingFile::kPiece / 2);
-  expectIn(messageOf([&] { file.add(std::string(GrowingFile::kPiece, 'a')); }), "cannot write");
+  EXPECT_REFUSED(file.add(std::string(GrowingFile::kPiece, 'a')), "cannot write");
 }
 
 }  // namespace polemcl::test_growing_file

@@ -4,10 +4,10 @@
 #include "io/map/MapScans.h"
 #include "io/map/PoleMapFile.h"
 #include "support/IoFiles.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_map_scans {
 
-using namespace polemcl;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 
@@ -47,17 +47,6 @@ AddedSessions sample() {
   return added;
 }
 
-void expectSame(const PoleDetection& a, const PoleDetection& b) {
-  EXPECT_EQ(a.x, b.x);
-  EXPECT_EQ(a.y, b.y);
-  EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.bottom, b.bottom);
-  EXPECT_EQ(a.top, b.top);
-  EXPECT_EQ(a.confidence, b.confidence);
-  EXPECT_EQ(a.covariance, b.covariance);
-  EXPECT_EQ(a.points, b.points);
-}
-
 void expectSame(const Pose2D& a, const Pose2D& b) {
   EXPECT_EQ(a.x, b.x);
   EXPECT_EQ(a.y, b.y);
@@ -79,7 +68,7 @@ void expectSame(const AddedSessions& a, const AddedSessions& b) {
       EXPECT_EQ(one.scans[i].visibilityRange, two.scans[i].visibilityRange);
       ASSERT_EQ(one.scans[i].poles_robot.size(), two.scans[i].poles_robot.size());
       for (std::size_t k = 0; k < one.scans[i].poles_robot.size(); ++k)
-        expectSame(one.scans[i].poles_robot[k], two.scans[i].poles_robot[k]);
+        tests::expectSame(one.scans[i].poles_robot[k], two.scans[i].poles_robot[k]);
     }
   }
 }

@@ -7,29 +7,17 @@
 #include "io/file/Bytes.h"
 #include "io/map/PoleMapFile.h"
 #include "support/IoFiles.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_pole_map_file {
 
-using namespace polemcl;
+using namespace polemcl::tests;
 using namespace polemcl::io;
 using namespace polemcl::io::test;
 
 namespace {
 
-constexpr std::size_t headerBytes = 24;
-
-MapPole pole(double x, double y) {
-  MapPole p;
-  p.x = x;
-  p.y = y;
-  p.radius = 0.125;
-  p.bottom = 0.25;
-  p.top = 4.5;
-  p.confidence = 0.75;
-  p.covariance << 0.04, 0.01, 0.01, 0.09;
-  p.count = 17;
-  return p;
-}
+constexpr std::size_t kHeaderBytes = 24;
 
 /// A whole file around a payload, with its checksum.
 std::string wrapped(const std::string& payload, std::uint32_t version = 1) {
@@ -57,7 +45,7 @@ std::string poleChunk(const std::string& fields, std::uint64_t count, const std:
   return chunk("POLE", writer.bytes() + fields + std::string("\x11\0\0\0", 4) + extra);
 }
 
-const std::string fieldsByHand = doubles({1, 2, 0.125, 0.25, 4.5, 0.75, 0.04, 0.01, 0.09});
+const std::string kFieldsByHand = doubles({1, 2, 0.125, 0.25, 4.5, 0.75, 0.04, 0.01, 0.09});
 
 class PoleMapFileTest : public FolderTest {
  protected:
@@ -67,27 +55,16 @@ class PoleMapFileTest : public FolderTest {
   }
   std::string writeRefusal(const MapPole& bad) const {
     PoleMapData data;
-    data.poles = {pole(0, 0), bad};
+    data.poles = {variedMapPole(0, 0), bad};
     return messageOf([&] { writePoleMap(path("m.polemap"), data); });
   }
 };
-
-void expectSame(const MapPole& a, const MapPole& b) {
-  EXPECT_EQ(a.x, b.x);
-  EXPECT_EQ(a.y, b.y);
-  EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.bottom, b.bottom);
-  EXPECT_EQ(a.top, b.top);
-  EXPECT_EQ(a.confidence, b.confidence);
-  EXPECT_EQ(a.covariance, b.covariance);
-  EXPECT_EQ(a.count, b.count);
-}
 
 }  // namespace
 
 TEST_F(PoleMapFileTest, ComesBack) {
   PoleMapData data;
-  for (int i = 0; i < 100; ++i) data.poles.push_back(pole(0.1 * i - 3, 1e6 / (i + 1.0)));
+  for (int i = 0; i < 100; ++i) data.poles.push_back(variedMapPole(0.1 * i - 3, 1e6 / (i + 1.0)));
   data.info = {
       {"config", "[map]\nmin_count = 3\n"}, {"empty", ""}, {"käse", std::string("a\0b", 3)}};
   writePoleMap(path("m.polemap"), data);
@@ -99,7 +76,7 @@ TEST_F(PoleMapFileTest, ComesBack) {
 
 TEST_F(PoleMapFileTest, ASemidefiniteCovarianceComesBack) {
   PoleMapData data;
-  data.poles = {pole(1, 2), pole(3, 4)};
+  data.poles = {variedMapPole(1, 2), variedMapPole(3, 4)};
   data.poles[0].covariance << 0.01, 0.01, 0.01, 0.01;
   data.poles[1].covariance.setZero();
   writePoleMap(path("m.polemap"), data);
@@ -116,30 +93,31 @@ TEST_F(PoleMapFileTest, AnEmptyMapComesBackEmpty) {
 
 TEST_F(PoleMapFileTest, BytesByHand) {
   PoleMapData data;
-  data.poles = {pole(1, 2)};
+  data.poles = {variedMapPole(1, 2)};
   data.info = {{"k", "vw"}};
   writePoleMap(path("m.polemap"), data);
   const std::string info = std::string("\1\0\0\0\1\0\0\0k\2\0\0\0vw", 15);
-  EXPECT_EQ(read(path("m.polemap")), wrapped(chunk("INFO", info) + poleChunk(fieldsByHand, 1, "")));
+  EXPECT_EQ(read(path("m.polemap")),
+            wrapped(chunk("INFO", info) + poleChunk(kFieldsByHand, 1, "")));
 }
 
 TEST_F(PoleMapFileTest, ReadsWhatLaterVersionsAppend) {
   const fs::path file = write(
-      "m.polemap", wrapped(chunk("NEWS", "unknown") + poleChunk(fieldsByHand, 1, "later field")));
+      "m.polemap", wrapped(chunk("NEWS", "unknown") + poleChunk(kFieldsByHand, 1, "later field")));
   const PoleMapData data = readPoleMap(file);
   ASSERT_EQ(data.poles.size(), 1u);
-  expectSame(data.poles[0], pole(1, 2));
+  expectSame(data.poles[0], variedMapPole(1, 2));
 }
 
 TEST_F(PoleMapFileTest, HistoriesAndCandidatesComeBack) {
   PoleMapData data;
-  data.poles = {pole(1, 2), pole(3, 4)};
+  data.poles = {variedMapPole(1, 2), variedMapPole(3, 4)};
   data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}, {0, 0, 0.5, 0, 0}};
-  data.candidates = {{pole(5, 6), {2, 1, 0.25, 1.35e9, 1.35e9}, false}};
+  data.candidates = {{variedMapPole(5, 6), {2, 1, 0.25, 1.35e9, 1.35e9}, false}};
   writePoleMap(path("m.polemap"), data);
   const PoleMapData back = readPoleMap(path("m.polemap"));
   ASSERT_EQ(back.poles.size(), 2u);
-  expectSame(back.poles[1], pole(3, 4));
+  expectSame(back.poles[1], variedMapPole(3, 4));
   ASSERT_EQ(back.histories.size(), 2u);
   EXPECT_EQ(back.histories[0].seen, 7u);
   EXPECT_EQ(back.histories[0].missed, 3u);
@@ -147,28 +125,28 @@ TEST_F(PoleMapFileTest, HistoriesAndCandidatesComeBack) {
   EXPECT_EQ(back.histories[0].firstSeen, 1.3e9);
   EXPECT_EQ(back.histories[0].lastSeen, 1.4e9);
   ASSERT_EQ(back.candidates.size(), 1u);
-  expectSame(back.candidates[0].pole, pole(5, 6));
+  expectSame(back.candidates[0].pole, variedMapPole(5, 6));
   EXPECT_EQ(back.candidates[0].history.existence, 0.25);
   EXPECT_FALSE(back.candidates[0].present);
 }
 
 TEST_F(PoleMapFileTest, HistoryByHand) {
   PoleMapData data;
-  data.poles = {pole(1, 2)};
+  data.poles = {variedMapPole(1, 2)};
   data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}};
   writePoleMap(path("m.polemap"), data);
   // Behind the fields that older programs know: they read 108 bytes per record and skip 32.
   const std::string info("\0\0\0\0", 4);
   const std::string history = doubles({0.875, 1.3e9, 1.4e9}) + std::string("\7\0\0\0\3\0\0\0", 8);
   EXPECT_EQ(read(path("m.polemap")),
-            wrapped(chunk("INFO", info) + poleChunk(fieldsByHand, 1, history)));
+            wrapped(chunk("INFO", info) + poleChunk(kFieldsByHand, 1, history)));
 }
 
 TEST_F(PoleMapFileTest, KeptMapsGoThereAndBack) {
   PoleMapData data;
-  data.poles = {pole(1, 2)};
+  data.poles = {variedMapPole(1, 2)};
   data.histories = {{7, 3, 0.875, 1.3e9, 1.4e9}};
-  data.candidates = {{pole(5, 6), {2, 1, 0.25, 1.35e9, 1.35e9}, false}};
+  data.candidates = {{variedMapPole(5, 6), {2, 1, 0.25, 1.35e9, 1.35e9}, false}};
   const LandmarkMap map = landmarkMap(data);
   ASSERT_EQ(map.poles.size(), 2u);
   EXPECT_TRUE(map.poles[0].present);
@@ -191,7 +169,7 @@ TEST_F(PoleMapFileTest, KeptMapsGoThereAndBack) {
 
 TEST_F(PoleMapFileTest, RefusesHistoriesThatCannotBe) {
   PoleMapData data;
-  data.poles = {pole(0, 0)};
+  data.poles = {variedMapPole(0, 0)};
   data.histories = {{}, {}};
   const auto refused = [&] { return messageOf([&] { writePoleMap(path("m.polemap"), data); }); };
   expectIn(refused(), "2 histories for 1 poles");
@@ -200,33 +178,24 @@ TEST_F(PoleMapFileTest, RefusesHistoriesThatCannotBe) {
   data.histories = {{1, 1, 0.5, -1, 0}};
   expectIn(refused(), "pole 0", "date");
   data.histories.clear();
-  data.candidates = {{pole(0, 0), {}, false}};
+  data.candidates = {{variedMapPole(0, 0), {}, false}};
   data.candidates[0].pole.radius = -1;
   expectIn(refused(), "candidate 0", "radius");
   EXPECT_FALSE(fs::exists(path("m.polemap")));
 }
 
-TEST_F(PoleMapFileTest, RefusesAMissingFile) {
-  expectIn(messageOf([&] { readPoleMap(path("no.polemap")); }), path("no.polemap").string(),
-           "No such file or directory");
-}
-
-TEST_F(PoleMapFileTest, RefusesOtherFiles) {
+TEST_F(PoleMapFileTest, RefusesBadInput) {
+  EXPECT_REFUSED(readPoleMap(path("no.polemap")), path("no.polemap").string(),
+                 "No such file or directory");
   expectIn(refusal("x,y\n1,2\n"), path("m.polemap").string(), "not a pole map",
            "`pole-map convert`");
   expectIn(refusal(""), "not a pole map");
-}
-
-TEST_F(PoleMapFileTest, RefusesANewerVersion) {
-  expectIn(refusal(wrapped(poleChunk(fieldsByHand, 1, ""), 2)), "version 2", "reads 1");
-}
-
-TEST_F(PoleMapFileTest, RefusesATail) {
-  expectIn(refusal(wrapped(poleChunk(fieldsByHand, 1, "")) + "x"), "expected");
+  expectIn(refusal(wrapped(poleChunk(kFieldsByHand, 1, ""), 2)), "version 2", "reads 1");
+  expectIn(refusal(wrapped(poleChunk(kFieldsByHand, 1, "")) + "x"), "expected");
 }
 
 TEST_F(PoleMapFileTest, RefusesAWrongChecksum) {
-  std::string bytes = wrapped(poleChunk(fieldsByHand, 1, ""));
+  std::string bytes = wrapped(poleChunk(kFieldsByHand, 1, ""));
   bytes.back() ^= 1;
   expectIn(refusal(bytes), "CRC-32");
 }
@@ -234,9 +203,10 @@ TEST_F(PoleMapFileTest, RefusesAWrongChecksum) {
 // The following files have damaged content and valid checksums, as from a faulty writer.
 
 TEST_F(PoleMapFileTest, RefusesMorePolesThanThereIsRoomFor) {
-  expectIn(refusal(wrapped(poleChunk(fieldsByHand, 2, ""))), "2 poles of 76 bytes");
-  expectIn(refusal(wrapped(poleChunk(fieldsByHand, std::numeric_limits<std::uint64_t>::max(), ""))),
-           "do not fit");
+  expectIn(refusal(wrapped(poleChunk(kFieldsByHand, 2, ""))), "2 poles of 76 bytes");
+  expectIn(
+      refusal(wrapped(poleChunk(kFieldsByHand, std::numeric_limits<std::uint64_t>::max(), ""))),
+      "do not fit");
 }
 
 TEST_F(PoleMapFileTest, RefusesRecordsThatAreTooShort) {
@@ -252,14 +222,14 @@ TEST_F(PoleMapFileTest, RefusesAFileWithoutPoleList) {
 }
 
 TEST_F(PoleMapFileTest, RefusesAChunkBeyondTheEnd) {
-  std::string payload = poleChunk(fieldsByHand, 1, "");
+  std::string payload = poleChunk(kFieldsByHand, 1, "");
   payload[4] = static_cast<char>(payload[4] + 1);
   expectIn(refusal(wrapped(payload)), "mid-value");
 }
 
 TEST_F(PoleMapFileTest, RefusesInfoBeyondItsChunk) {
   const std::string info("\1\0\0\0\xff\xff\0\0k", 9);
-  expectIn(refusal(wrapped(chunk("INFO", info) + poleChunk(fieldsByHand, 1, ""))), "mid-value");
+  expectIn(refusal(wrapped(chunk("INFO", info) + poleChunk(kFieldsByHand, 1, ""))), "mid-value");
 }
 
 TEST_F(PoleMapFileTest, RefusesStoredPolesThatAreUnsound) {
@@ -275,35 +245,32 @@ TEST_F(PoleMapFileTest, RefusesToWriteValuesThatAreNotFinite) {
   for (double MapPole::*field : {&MapPole::x, &MapPole::y, &MapPole::radius, &MapPole::bottom,
                                  &MapPole::top, &MapPole::confidence}) {
     for (const double value : bad) {
-      MapPole p = pole(0, 0);
+      MapPole p = variedMapPole(0, 0);
       p.*field = value;
       expectIn(writeRefusal(p), path("m.polemap").string(), "pole 1", "not finite");
     }
   }
-  MapPole p = pole(0, 0);
+  MapPole p = variedMapPole(0, 0);
   p.covariance(1, 1) = bad[0];
   expectIn(writeRefusal(p), "covariance is not finite");
   EXPECT_TRUE(fs::is_empty(m_folder));
 }
 
 TEST_F(PoleMapFileTest, RefusesToWriteANegativeRadius) {
-  MapPole p = pole(0, 0);
+  MapPole p = variedMapPole(0, 0);
   p.radius = -0.1;
   expectIn(writeRefusal(p), "pole 1", "radius");
 }
 
-TEST_F(PoleMapFileTest, RefusesToWriteAConfidenceOutOfRange) {
+TEST_F(PoleMapFileTest, RefusesMoreBadInput) {
   for (const double confidence : {-0.1, 1.1}) {
-    MapPole p = pole(0, 0);
+    MapPole p = variedMapPole(0, 0);
     p.confidence = confidence;
     expectIn(writeRefusal(p), "pole 1", "confidence");
   }
-}
-
-TEST_F(PoleMapFileTest, RefusesToWriteACovarianceThatIsNone) {
   for (const auto& [xx, xy, yx, yy] : std::vector<std::array<double, 4>>{
            {0.01, 0.02, 0.02, 0.01}, {-0.01, 0, 0, -0.01}, {0.01, 1e-3, 0, 0.01}}) {
-    MapPole p = pole(0, 0);
+    MapPole p = variedMapPole(0, 0);
     p.covariance << xx, xy, yx, yy;
     expectIn(writeRefusal(p), "pole 1", "positive semidefinite");
   }
@@ -311,11 +278,11 @@ TEST_F(PoleMapFileTest, RefusesToWriteACovarianceThatIsNone) {
 
 TEST_F(PoleMapFileTest, RefusesEveryPrefixOfAFile) {
   PoleMapData data;
-  data.poles = {pole(1, 2), pole(3, 4)};
+  data.poles = {variedMapPole(1, 2), variedMapPole(3, 4)};
   data.info = {{"key", "value"}};
   writePoleMap(path("whole.polemap"), data);
   const std::string bytes = read(path("whole.polemap"));
-  ASSERT_GT(bytes.size(), headerBytes);
+  ASSERT_GT(bytes.size(), kHeaderBytes);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const fs::path file = write("m.polemap", bytes.substr(0, size));
     EXPECT_THROW(readPoleMap(file), Error) << size;
@@ -324,7 +291,7 @@ TEST_F(PoleMapFileTest, RefusesEveryPrefixOfAFile) {
 
 TEST_F(PoleMapFileTest, RefusesEverySingleFlippedBit) {
   PoleMapData data;
-  data.poles = {pole(1, 2), pole(3, 4)};
+  data.poles = {variedMapPole(1, 2), variedMapPole(3, 4)};
   data.info = {{"key", "value"}};
   writePoleMap(path("whole.polemap"), data);
   const std::string bytes = read(path("whole.polemap"));
@@ -339,7 +306,7 @@ TEST_F(PoleMapFileTest, RefusesEverySingleFlippedBit) {
 TEST_F(PoleMapFileTest, DamageUnderARightChecksumNeverCrashes) {
   // The checksum does not protect the parser here: it must read or throw an Error.
   const std::string payload = chunk("INFO", std::string("\1\0\0\0\1\0\0\0k\2\0\0\0vw", 15)) +
-                              poleChunk(fieldsByHand, 1, "");
+                              poleChunk(kFieldsByHand, 1, "");
   std::mt19937_64 generator(5);
   int refused = 0, read = 0;
   for (int i = 0; i < 3000; ++i) {

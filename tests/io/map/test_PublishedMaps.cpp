@@ -11,8 +11,6 @@
 
 namespace polemcl::test_published_maps {
 
-using namespace polemcl;
-
 namespace {
 
 class PublishedMaps : public testing::Test {

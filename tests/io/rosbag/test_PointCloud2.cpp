@@ -108,8 +108,7 @@ TEST(PointCloud2, RefusesSizesThatDoNotFit) {
   expectIn(refusal(bad), "the field intensity has the type 9; 1 to 8");
   const std::string message = good.message();
   for (std::size_t size = 0; size < message.size(); ++size)
-    expectIn(messageOf([&] { decodeCloud(message.substr(0, size), "a.db3: ", true); }),
-             "a.db3: ", "cut short");
+    EXPECT_REFUSED(decodeCloud(message.substr(0, size), "a.db3: ", true), "a.db3: ", "cut short");
 }
 
 }  // namespace polemcl::test_point_cloud2

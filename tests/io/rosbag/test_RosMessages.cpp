@@ -19,7 +19,7 @@ namespace {
 void expectRefusedWhenCut(const std::string& message,
                           const std::function<void(const std::string&)>& decode) {
   for (std::size_t size = 0; size < message.size(); size += 7)
-    expectIn(messageOf([&] { decode(message.substr(0, size)); }), "a.db3: ", "cut short");
+    EXPECT_REFUSED(decode(message.substr(0, size)), "a.db3: ", "cut short");
 }
 
 }  // namespace

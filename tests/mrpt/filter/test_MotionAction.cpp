@@ -7,13 +7,11 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "mrpt/filter/MotionAction.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_motion_action {
-
-using namespace polemcl;
 
 namespace {
 
@@ -35,12 +33,7 @@ FilterOptions extra(double metres, double radians) {
 std::string refusal(const std::function<void(PoseWithCovariance&)>& change) {
   PoseWithCovariance motion = usual();
   change(motion);
-  try {
-    makeMotionAction(motion, {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return tests::messageOf([&] { makeMotionAction(motion, {}); });
 }
 
 bool holds(const std::string& text, const std::string& part) {
@@ -104,16 +97,10 @@ TEST(MotionAction, RefusesWhatIsNotFinite) {
   }
 }
 
-TEST(MotionAction, RefusesALeap) {
+TEST(MotionAction, RefusesBadInput) {
   EXPECT_TRUE(holds(refusal([](auto& m) { m.mean.x = 8000, m.mean.y = -8000; }), "11313.7 m long"));
-  EXPECT_EQ(refusal([](auto& m) { m.mean.x = 9999; }), "");
-}
-
-TEST(MotionAction, RefusesACovarianceThatIsNotSymmetric) {
+  EXPECT_EQ(refusal([](auto& m) { m.mean.x = 9999; }), "no error");
   EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(0, 1) += 1e-6; }), "not symmetric"));
-}
-
-TEST(MotionAction, RefusesAnIndefiniteCovariance) {
   EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(1, 1) = -0.02; }), "negative eigenvalue"));
   // Positive variances, but a correlation greater than one.
   EXPECT_TRUE(holds(refusal([](auto& m) { m.covariance(0, 1) = m.covariance(1, 0) = 0.03; }),
@@ -127,8 +114,8 @@ TEST(MotionAction, RefusesAHugeCovariance) {
       m.covariance(i, i) = value * value;
     };
   };
-  EXPECT_EQ(refusal(sigma(0, 9.99)), "");
-  EXPECT_EQ(refusal(sigma(2, 0.99)), "");
+  EXPECT_EQ(refusal(sigma(0, 9.99)), "no error");
+  EXPECT_EQ(refusal(sigma(2, 0.99)), "no error");
   EXPECT_TRUE(holds(refusal(sigma(0, 10.01)), "too uncertain"));
   EXPECT_TRUE(holds(refusal(sigma(1, 10.01)), "too uncertain"));
   EXPECT_TRUE(holds(refusal(sigma(2, 1.01)), "too uncertain"));

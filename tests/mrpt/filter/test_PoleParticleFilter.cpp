@@ -7,10 +7,10 @@
 
 #include "mrpt/filter/PoleParticleFilter.h"
 #include "support/FilterSamples.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_pole_particle_filter {
 
-using namespace polemcl;
 using tests::at;
 using tests::degree;
 using tests::Dice;
@@ -343,14 +343,7 @@ TEST(PoleParticleFilter, WhatTheLikelihoodRefusesIsSaidInFull) {
   localizer.start(start);
   PoleScan frame = street.frames[0];
   frame.poles_robot[0].confidence = 2;
-  try {
-    localizer.step(frame);
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()).find("pole detection 0 has a confidence outside [0, 1]"),
-              0u)
-        << error.what();
-  }
+  EXPECT_REFUSED(localizer.step(frame), "pole detection 0 has a confidence outside [0, 1]");
 }
 
 TEST(PoleParticleFilter, RefusesToStepBeforeTheStart) {

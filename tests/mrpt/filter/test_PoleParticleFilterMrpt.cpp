@@ -12,7 +12,6 @@
 
 namespace polemcl::test_pole_particle_filter_mrpt {
 
-using namespace polemcl;
 using mrpt::random::getRandomGenerator;
 using tests::makeStreet;
 using tests::PoleStreet;

@@ -9,7 +9,6 @@
 
 namespace polemcl::test_pole_particle_filter_start {
 
-using namespace polemcl;
 using tests::at;
 using tests::degree;
 using tests::emptyFrame;

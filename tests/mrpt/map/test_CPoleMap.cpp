@@ -15,6 +15,7 @@
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
+#include "support/ExpectHas.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_cpole_map {
@@ -23,9 +24,7 @@ namespace {
 using mrpt::poses::CPose3D;
 
 MapPole mapPole(double x, double y, std::uint32_t count = 3) {
-  MapPole p;
-  p.x = x;
-  p.y = y;
+  MapPole p = tests::variedMapPole(x, y);
   p.radius = 0.15;
   p.bottom = 0.1;
   p.top = 4;
@@ -44,16 +43,7 @@ CPoleMap sampleMap() {
 
 void expectEqual(const CPoleMap& a, const CPoleMap& b) {
   ASSERT_EQ(a.poles().size(), b.poles().size());
-  for (std::size_t i = 0; i < a.poles().size(); ++i) {
-    EXPECT_EQ(a.poles()[i].x, b.poles()[i].x);
-    EXPECT_EQ(a.poles()[i].y, b.poles()[i].y);
-    EXPECT_EQ(a.poles()[i].radius, b.poles()[i].radius);
-    EXPECT_EQ(a.poles()[i].bottom, b.poles()[i].bottom);
-    EXPECT_EQ(a.poles()[i].top, b.poles()[i].top);
-    EXPECT_EQ(a.poles()[i].confidence, b.poles()[i].confidence);
-    EXPECT_EQ(a.poles()[i].covariance, b.poles()[i].covariance);
-    EXPECT_EQ(a.poles()[i].count, b.poles()[i].count);
-  }
+  for (std::size_t i = 0; i < a.poles().size(); ++i) tests::expectSame(a.poles()[i], b.poles()[i]);
   EXPECT_EQ(a.info, b.info);
 }
 
@@ -75,7 +65,7 @@ std::string refusal(const std::string& ini) {
   return "";
 }
 
-const std::string one = "[MetricMap]\npoleMap_count = 1\n";
+const std::string kOne = "[MetricMap]\npoleMap_count = 1\n";
 
 TEST(CPoleMap, StartsEmpty) {
   const CPoleMap map;
@@ -359,7 +349,7 @@ TEST(CPoleMap, DrawsPolesColouredByCount) {
 }
 
 TEST(CPoleMap, IsCreatedFromIni) {
-  const auto maps = fromIni(one +
+  const auto maps = fromIni(kOne +
                             "[MetricMap_poleMap_00_creationOpts]\nenableSaveAs3DObject = false\n"
                             "[MetricMap_poleMap_00_insertOpts]\nmerge_distance = 0.3\n"
                             "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0.2 // m\n"
@@ -378,29 +368,26 @@ TEST(CPoleMap, LoadsItsFileAtCreation) {
   const samples::Folder folder("CPoleMapIni");
   sampleMap().saveToPoleMapFile(folder / "m.polemap");
   const auto maps =
-      fromIni(one + "[MetricMap_poleMap_00_creationOpts]\nmap_file = " + (folder / "m.polemap"));
+      fromIni(kOne + "[MetricMap_poleMap_00_creationOpts]\nmap_file = " + (folder / "m.polemap"));
   expectEqual(*maps->mapByClass<CPoleMap>(), sampleMap());
 }
 
 TEST(CPoleMap, RefusesBadIni) {
-  const auto has = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-  };
-  has(refusal(one + "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0\n"), "sigma_m = 0");
-  has(refusal(one + "[MetricMap_poleMap_00_insertOpts]\nmerge_distance = 3x\n"), "3x");
-  has(refusal(one + "[MetricMap_poleMap_00_insertOpts]\nmin_confidence = 1.5\n"), "1.5");
-  has(refusal(one + "[MetricMap_poleMap_00_creationOpts]\nmap_file = /no/such.polemap\n"),
-      "/no/such.polemap");
+  EXPECT_HAS(refusal(kOne + "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0\n"), "sigma_m = 0");
+  EXPECT_HAS(refusal(kOne + "[MetricMap_poleMap_00_insertOpts]\nmerge_distance = 3x\n"), "3x");
+  EXPECT_HAS(refusal(kOne + "[MetricMap_poleMap_00_insertOpts]\nmin_confidence = 1.5\n"), "1.5");
+  EXPECT_HAS(refusal(kOne + "[MetricMap_poleMap_00_creationOpts]\nmap_file = /no/such.polemap\n"),
+             "/no/such.polemap");
 }
 
 // As MRPT's options do, but not silently.
 TEST(CPoleMap, PassesOverUnknownKeysWithAWarning) {
   for (const std::string section : {"creationOpts", "insertOpts", "likelihoodOpts"}) {
     testing::internal::CaptureStderr();
-    const auto maps = fromIni(one + "[MetricMap_poleMap_00_" + section + "]\nof_mrpt_3 = 0.2\n");
+    const auto maps = fromIni(kOne + "[MetricMap_poleMap_00_" + section + "]\nof_mrpt_3 = 0.2\n");
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_TRUE(maps->mapByClass<CPoleMap>());
-    EXPECT_NE(said.find("of_mrpt_3 = 0.2: key is not known"), std::string::npos) << said;
+    EXPECT_HAS(said, "of_mrpt_3 = 0.2: key is not known");
   }
 }
 
@@ -421,13 +408,13 @@ TEST(CPoleMap, OptionsSurviveIni) {
 }
 
 TEST(CPoleMap, ShowsItsDefinition) {
-  const mrpt::config::CConfigFileMemory ini(one);
+  const mrpt::config::CConfigFileMemory ini(kOne);
   mrpt::maps::TSetOfMetricMapInitializers list;
   list.loadFromConfigFile(ini, "MetricMap");
   std::ostringstream text;
   list.dumpToTextStream(text);
   for (const char* part : {"polemcl::CPoleMap", "map_file", "merge_distance", "sigma_m"})
-    EXPECT_NE(text.str().find(part), std::string::npos) << part;
+    EXPECT_HAS(text.str(), part) << part;
 }
 
 TEST(CPoleMap, LikelihoodOptionsTakeTheCores) {
@@ -439,7 +426,7 @@ TEST(CPoleMap, LikelihoodOptionsTakeTheCores) {
 }
 
 TEST(CPoleMap, TravelsInAMultiMetricMap) {
-  auto maps = fromIni(one);
+  auto maps = fromIni(kOne);
   *maps->mapByClass<CPoleMap>() = sampleMap();
   const auto read = std::dynamic_pointer_cast<mrpt::maps::CMultiMetricMap>(
       samples::objectFrom(samples::bytesOf(*maps)));

@@ -10,6 +10,7 @@
 #include <random>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "support/Refusal.h"
 
 namespace polemcl::test_cpole_map_matching {
 namespace {
@@ -89,12 +90,8 @@ std::string refusal(const CPoleMap& map, const mrpt::maps::CMetricMap* other,
                     const TMatchingParams& params = {}) {
   TMatchingPairList pairs;
   TMatchingExtraResults results;
-  try {
-    map.determineMatching2D(other, CPose2D(), pairs, params, results);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return tests::messageOf(
+      [&] { map.determineMatching2D(other, CPose2D(), pairs, params, results); });
 }
 
 }  // namespace
@@ -191,14 +188,14 @@ TEST(CPoleMapMatching, IcpFindsThePose) {
 TEST(CPoleMapMatching, RefusesOtherMapsAndParameters) {
   const CPoleMap map = randomMap(5, 3);
   const mrpt::maps::CSimplePointsMap points;
-  EXPECT_NE(refusal(map, &points).find("not with mrpt::maps::CSimplePointsMap"), std::string::npos);
+  EXPECT_HAS(refusal(map, &points), "not with mrpt::maps::CSimplePointsMap");
   TMatchingParams params;
   params.offset_other_map_points = 1;
-  EXPECT_NE(refusal(map, &map, params).find("offset_other_map_points"), std::string::npos);
+  EXPECT_HAS(refusal(map, &map, params), "offset_other_map_points");
   params = {};
   params.onlyUniqueRobust = true;
   params.onlyKeepTheClosest = false;
-  EXPECT_NE(refusal(map, &map, params).find("onlyUniqueRobust"), std::string::npos);
+  EXPECT_HAS(refusal(map, &map, params), "onlyUniqueRobust");
 }
 
 }  // namespace polemcl::test_cpole_map_matching

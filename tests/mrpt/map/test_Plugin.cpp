@@ -32,15 +32,7 @@ struct Street {
   samples::Folder folder{"Plugin"};
   Street() {
     std::vector<MapPole> poles;
-    for (int i = 0; i < 8; ++i) {
-      MapPole pole;
-      pole.x = 5 * i;
-      pole.y = i % 2 ? 4 : -4;
-      pole.radius = 0.1;
-      pole.top = 3;
-      pole.count = 3;
-      poles.push_back(pole);
-    }
+    for (int i = 0; i < 8; ++i) poles.push_back(tests::mapPoleAt(5 * i, i % 2 ? 4 : -4));
     CPoleMap map;
     map.setPoles(poles);
     map.saveToPoleMapFile(folder / "m.polemap");
@@ -105,8 +97,8 @@ bool has(const char* program) {
 #else
 #define NEEDS_OF_MRPT(program) NEEDS(program)
 #endif
-const std::string plugin = std::string(" -p '") + POLEMCL_LIB + "' ";
-const std::string preload = std::string("LD_PRELOAD='") + POLEMCL_LIB + "' ";
+const std::string kPlugin = std::string(" -p '") + POLEMCL_LIB + "' ";
+const std::string kPreload = std::string("LD_PRELOAD='") + POLEMCL_LIB + "' ";
 
 long objects(const std::string& info) {
   const auto at = info.find("Overall number of objects");
@@ -160,7 +152,7 @@ TEST(Plugin, ExportsWhatPublicHeadersDeclare) {
 TEST(Plugin, RawlogEditReadsPoles) {
   NEEDS_OF_MRPT("rawlog-edit");
   const Street street;
-  const std::string info = street.run("rawlog-edit" + plugin + "--info -i p.rawlog");
+  const std::string info = street.run("rawlog-edit" + kPlugin + "--info -i p.rawlog");
   EXPECT_EQ(objects(info), 2 * scans) << info;
   EXPECT_HAS(info, "LIDAR");
   // Reason for the library: without it, the program stops silently at the first pole observation.
@@ -170,9 +162,9 @@ TEST(Plugin, RawlogEditReadsPoles) {
 TEST(Plugin, RawlogEditDescribesAndExportsPoles) {
   NEEDS_OF_MRPT("rawlog-edit");
   const Street street;
-  EXPECT_HAS(street.run("rawlog-edit" + plugin + "--describe -i p.rawlog"),
+  EXPECT_HAS(street.run("rawlog-edit" + kPlugin + "--describe -i p.rawlog"),
              "Poles: 3 (planar sensor frame, m)");
-  street.run("rawlog-edit" + plugin + "--export-txt -i p.rawlog");
+  street.run("rawlog-edit" + kPlugin + "--export-txt -i p.rawlog");
   std::ifstream file(street.folder / "p_LIDAR.txt");
   int rows = 0;
   for (std::string line; std::getline(file, line);) rows += line.find('%') == std::string::npos;
@@ -182,7 +174,7 @@ TEST(Plugin, RawlogEditDescribesAndExportsPoles) {
 TEST(Plugin, RawlogEditCutsRawlogsOfPoles) {
   NEEDS_OF_MRPT("rawlog-edit");
   const Street street;
-  street.run("rawlog-edit" + plugin + "--cut --to-index 9 -i p.rawlog -o cut.rawlog");
+  street.run("rawlog-edit" + kPlugin + "--cut --to-index 9 -i p.rawlog -o cut.rawlog");
   RawlogReader reader(street.folder / "cut.rawlog");
   RawlogEntry entry;
   int frames = 0;
@@ -198,7 +190,7 @@ TEST(Plugin, Observations2mapBuildsAPoleMap) {
   street.write("c.ini",
                "[Maps]\npoleMap_count = 1\n"
                "[Maps_poleMap_00_insertOpts]\nmerge_distance = 0.4\n");
-  street.run(preload + "observations2map c.ini p.simplemap out -s Maps");
+  street.run(kPreload + "observations2map c.ini p.simplemap out -s Maps");
   CPoleMap built, truth;
   built.loadFromPoleMapFile(street.folder / "out_polemcl__CPoleMap_00.polemap");
   truth.loadFromPoleMapFile(street.folder / "m.polemap");
@@ -252,7 +244,7 @@ Outcome localize(const Street& street, const std::string& likelihood) {
                    "[MetricMap_poleMap_00_creationOpts]\nmap_file = m.polemap\n"
                    "[MetricMap_poleMap_00_likelihoodOpts]\nsigma_m = 0.2\nweighted = false\n" +
                    likelihood);
-  street.run(preload + "pf-localization c.ini");
+  street.run(kPreload + "pf-localization c.ini");
   const std::string log = street.folder / "LOG_000_0002000/";
   Outcome run;
   run.distance = numbersIn(log + "GT_error.txt");

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "support/ExpectHas.h"
+#include "support/Poles.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_cobservation_poles {
@@ -20,18 +22,7 @@ void expectEqual(const CObservationPoles& a, const CObservationPoles& b) {
   EXPECT_EQ(a.visibilityRange, b.visibilityRange);
   EXPECT_EQ(a.points, b.points);
   ASSERT_EQ(a.poles.size(), b.poles.size());
-  for (std::size_t i = 0; i < a.poles.size(); ++i) {
-    EXPECT_EQ(a.poles[i].x, b.poles[i].x);
-    EXPECT_EQ(a.poles[i].y, b.poles[i].y);
-    EXPECT_EQ(a.poles[i].radius, b.poles[i].radius);
-    EXPECT_EQ(a.poles[i].bottom, b.poles[i].bottom);
-    EXPECT_EQ(a.poles[i].top, b.poles[i].top);
-    EXPECT_EQ(a.poles[i].confidence, b.poles[i].confidence);
-    EXPECT_EQ(a.poles[i].covariance, b.poles[i].covariance);
-    EXPECT_EQ(a.poles[i].points, b.poles[i].points);
-    EXPECT_EQ(a.poles[i].timeOffset, b.poles[i].timeOffset);
-    EXPECT_EQ(a.poles[i].turnRate, b.poles[i].turnRate);
-  }
+  for (std::size_t i = 0; i < a.poles.size(); ++i) tests::expectSame(a.poles[i], b.poles[i]);
 }
 
 TEST(CObservationPoles, IsRegistered) {
@@ -154,7 +145,7 @@ TEST(CObservationPoles, DescribesItself) {
   samples::observation().getDescriptionAsText(text);
   for (const char* part :
        {"LIDAR", "polemcl::CObservationPoles", "Poles: 2", "1234", "5.000", "3.500", "0.200", "42"})
-    EXPECT_NE(text.str().find(part), std::string::npos) << part << " in\n" << text.str();
+    EXPECT_HAS(text.str(), part) << part << " in\n" << text.str();
 }
 
 TEST(CObservationPoles, ExportsOneRow) {

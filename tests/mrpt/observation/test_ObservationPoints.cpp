@@ -75,10 +75,10 @@ TEST(ObservationPoints, LoadsAndUnloadsOtherExternalFiles) {
   EXPECT_HAS(refusal(extraction, missing), "1.gz");
 }
 
-const std::string datasets = "/usr/share/mrpt/datasets/";
+const std::string kDatasets = "/usr/share/mrpt/datasets/";
 
 CObservation::Ptr firstOf(const std::string& file) {
-  RawlogReader reader(datasets + file);
+  RawlogReader reader(kDatasets + file);
   RawlogEntry entry;
   while (reader.next(entry))
     if (entry.observation && ObservationPoleExtractor::canProcess(*entry.observation))
@@ -94,7 +94,7 @@ ObservationPoleExtractorOptions vlp16() {
 }
 
 TEST(ObservationPoints, GeneratesVelodyneCloudsOnACopy) {
-  if (!std::filesystem::exists(datasets)) GTEST_SKIP() << datasets << " is not there";
+  if (!std::filesystem::exists(kDatasets)) GTEST_SKIP() << kDatasets << " is not there";
   const auto scan =
       std::dynamic_pointer_cast<CObservationVelodyneScan>(firstOf("test_velodyne_VLP16.rawlog"));
   ASSERT_TRUE(scan);
@@ -111,7 +111,7 @@ TEST(ObservationPoints, GeneratesVelodyneCloudsOnACopy) {
 // MRPT makes a rotating scan of its Velodyne sample, sparse and with rings in firing order. Range
 // and height of the results must agree with the Velodyne cloud.
 TEST(ObservationPoints, RotatingScanMatchesTheVelodyneScanItCameFrom) {
-  if (!std::filesystem::exists(datasets)) GTEST_SKIP() << datasets << " is not there";
+  if (!std::filesystem::exists(kDatasets)) GTEST_SKIP() << kDatasets << " is not there";
   const auto velodyne =
       std::dynamic_pointer_cast<CObservationVelodyneScan>(firstOf("test_velodyne_VLP16.rawlog"));
   ASSERT_TRUE(velodyne);
@@ -157,14 +157,14 @@ CObservationRotatingScan rotatingScan(const SensorOptions& sensor, const std::ve
   return scan;
 }
 
-const CPose3D up(0, 0, 1.5, 0, 0, 0);
+const CPose3D kUp(0, 0, 1.5, 0, 0, 0);
 
 TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   auto options = hdl32(1.5);
   std::vector<int> topDown(32);
   for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
   ObservationPoleExtractor byModel(options);
-  EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown, up)), 0.05), 6);
+  EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown, kUp)), 0.05), 6);
 
   // Rings in another order: only a table can describe it.
   std::vector<int> mixed;
@@ -176,7 +176,7 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
     mixed.push_back((i * 7) % 32);
     table.sensor.elevations.push_back(std::atan(model.beam(mixed.back()).slope));
   }
-  const auto scan = rotatingScan(options.sensor, mixed, up);
+  const auto scan = rotatingScan(options.sensor, mixed, kUp);
   ObservationPoleExtractor byTable(table);
   EXPECT_GE(found(*byTable.process(scan), 0.05), 6);
   // Beams near the horizon hardly change; few of the other points remain.
@@ -203,7 +203,7 @@ TEST(ObservationPoints, RotatingScanClockwise) {
   const auto options = hdl32(1.5);
   std::vector<int> topDown(32);
   for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
-  const auto ccw = rotatingScan(options.sensor, topDown, up);
+  const auto ccw = rotatingScan(options.sensor, topDown, kUp);
   auto cw = ccw;
   cw.azimuthSpan = -2 * M_PI;
   cw.startAzimuth = M_PI;
@@ -231,7 +231,7 @@ TEST(ObservationPoints, RefusesRotatingScansOfUnknownElevations) {
 }
 
 TEST(ObservationPoints, UnprojectsDepthImagesOnACopy) {
-  if (!std::filesystem::exists(datasets)) GTEST_SKIP() << datasets << " is not there";
+  if (!std::filesystem::exists(kDatasets)) GTEST_SKIP() << kDatasets << " is not there";
   const auto depth =
       std::dynamic_pointer_cast<CObservation3DRangeScan>(firstOf("tests_rgbd.rawlog"));
   ASSERT_TRUE(depth && depth->hasRangeImage);

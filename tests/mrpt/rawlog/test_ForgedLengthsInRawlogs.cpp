@@ -25,7 +25,7 @@ namespace {
 using samples::bytesOf;
 using samples::objectFrom;
 
-constexpr std::size_t megabyte = 1 << 20;
+constexpr std::size_t kMegabyte = 1 << 20;
 
 std::string number(std::uint32_t value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
@@ -50,7 +50,7 @@ std::string refusal(const std::string& bytes) {
       message = error.what();
     }
   });
-  EXPECT_LT(taken, megabyte) << message;
+  EXPECT_LT(taken, kMegabyte) << message;
   return message;
 }
 
@@ -73,7 +73,7 @@ std::string rawlogRefusal(const samples::Folder& folder, const std::string& byte
       message = error.what();
     }
   });
-  EXPECT_LT(taken, 2 * megabyte) << message;
+  EXPECT_LT(taken, 2 * kMegabyte) << message;
   return message;
 }
 
@@ -85,11 +85,11 @@ CObservationPoles scanOf(std::size_t poles) {
   return scan;
 }
 
-const std::vector<std::uint32_t> claims{70000, 220'000'000, 0xffffffff};
+const std::vector<std::uint32_t> kClaims{70000, 220'000'000, 0xffffffff};
 
 TEST(ForgedLengths, OfVisibilityRanges) {
   const std::string ranges(number(128) + number(0x40e00000));  // 7
-  for (const std::uint32_t claim : claims) {
+  for (const std::uint32_t claim : kClaims) {
     const std::string bytes =
         forged(bytesOf(scanOf(2)), ranges, number(claim) + number(0x40e00000));
     EXPECT_HAS(refusal(bytes), std::to_string(claim) + " visibility ranges");
@@ -101,7 +101,7 @@ TEST(ForgedLengths, OfVisibilityRanges) {
 TEST(ForgedLengths, OfPoles) {
   CObservationPoles scan = scanOf(2);
   scan.points = 0x01020304;
-  for (const std::uint32_t claim : claims) {
+  for (const std::uint32_t claim : kClaims) {
     const std::string bytes =
         forged(bytesOf(scan), number(scan.points) + number(2), number(scan.points) + number(claim));
     EXPECT_HAS(refusal(bytes), std::to_string(claim) + " poles");
@@ -110,7 +110,7 @@ TEST(ForgedLengths, OfPoles) {
 
 TEST(ForgedLengths, OfALabel) {
   const std::string label = "LIDAR of a forger";
-  for (const std::uint32_t claim : claims) {
+  for (const std::uint32_t claim : kClaims) {
     const std::string bytes =
         forged(bytesOf(scanOf(2)), number(static_cast<std::uint32_t>(label.size())) + label,
                number(claim) + label);

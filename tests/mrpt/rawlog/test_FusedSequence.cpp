@@ -13,6 +13,7 @@ namespace polemcl::test_fused_sequence {
 namespace {
 
 using namespace tests::sequence;
+using FusedSequenceTest = BenchTest;
 using mrpt::poses::CPose3D;
 
 /// LiDARs `front` and `rear`, both as options() says.
@@ -35,7 +36,7 @@ CObservationPointCloud scan(double time, const std::string& label, const CPose3D
   return observation;
 }
 
-const CPose3D s_front(1, 0.3, 1.2, 0.2, 0, 0), s_rear(-1, -0.2, 1.2, M_PI, 0, 0);
+const CPose3D kFront(1, 0.3, 1.2, 0.2, 0, 0), kRear(-1, -0.2, 1.2, M_PI, 0, 0);
 
 CObservationPoles stored(double time, const std::string& label) {
   CObservationPoles observation = poles(time);
@@ -51,12 +52,11 @@ double missedBy(const std::vector<PoleDetection>& poles, double x, double y) {
 }
 
 /// 10 m/s; the rear LiDAR is 40 ms behind the front one, so at the stamp the robot is at 0.4 m.
-TEST(FusedSequence, EachPoleOnceAtTheTimeOfTheLatestScan) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, EachPoleOnceAtTheTimeOfTheLatestScan) {
   std::string bytes;
   for (int i = 0; i < 12; ++i) bytes += odometry(9.5 + 0.1 * i, {-5.0 + i, 0, 0});
-  bytes += samples::bytesOf(scan(10, "front", s_front, 0)) +
-           samples::bytesOf(scan(10.04, "rear", s_rear, 0.4));
+  bytes += samples::bytesOf(scan(10, "front", kFront, 0)) +
+           samples::bytesOf(scan(10.04, "rear", kRear, 0.4));
   const auto sequence = bench.read(bytes, twoLidars());
   ASSERT_EQ(sequence.frames.size(), 1u);
   const PoleScan& frame = sequence.frames[0];
@@ -73,12 +73,11 @@ TEST(FusedSequence, EachPoleOnceAtTheTimeOfTheLatestScan) {
   EXPECT_GT(sequence.counts.lidars[1].apart, 0);
 }
 
-TEST(FusedSequence, AWrongPoseOrClockShowsInTheDistanceBetweenTheLidars) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, AWrongPoseOrClockShowsInTheDistanceBetweenTheLidars) {
   std::string bytes;
   for (int i = 0; i < 12; ++i) bytes += odometry(9.5 + 0.1 * i, {-5.0 + i, 0, 0});
-  bytes += samples::bytesOf(scan(10, "front", s_front, 0)) +
-           samples::bytesOf(scan(10.04, "rear", s_rear, 0.4));
+  bytes += samples::bytesOf(scan(10, "front", kFront, 0)) +
+           samples::bytesOf(scan(10.04, "rear", kRear, 0.4));
   const auto right = bench.read(bytes, twoLidars()).counts.lidars[1];
   SequenceOptions turned = twoLidars(), late = twoLidars();
   turned.vehicle.lidars[1].pose = {-1, -0.2, 1.2, 179, 0, 0};
@@ -91,17 +90,16 @@ TEST(FusedSequence, AWrongPoseOrClockShowsInTheDistanceBetweenTheLidars) {
   }
 }
 
-TEST(FusedSequence, ThePoseOfTheSettingsTakesThePlaceOfThatOfTheScan) {
-  const Bench bench;
-  const std::string bytes = samples::bytesOf(scan(10, "front", s_front, 0)) +
-                            samples::bytesOf(scan(10, "rear", s_rear, 0));
-  auto unknown = scan(10, "rear", s_rear, 0);
+TEST_F(FusedSequenceTest, ThePoseOfTheSettingsTakesThePlaceOfThatOfTheScan) {
+  const std::string bytes =
+      samples::bytesOf(scan(10, "front", kFront, 0)) + samples::bytesOf(scan(10, "rear", kRear, 0));
+  auto unknown = scan(10, "rear", kRear, 0);
   unknown.sensorPose = CPose3D();
   SequenceOptions o = twoLidars();
   o.vehicle.lidars[1].pose = {-1, -0.2, 1.2, 180, 0, 0};
   const auto expected = bench.read(bytes, twoLidars()).frames[0].poles_robot;
   const auto found =
-      bench.read(samples::bytesOf(scan(10, "front", s_front, 0)) + samples::bytesOf(unknown), o)
+      bench.read(samples::bytesOf(scan(10, "front", kFront, 0)) + samples::bytesOf(unknown), o)
           .frames[0]
           .poles_robot;
   ASSERT_EQ(found.size(), expected.size());
@@ -109,8 +107,7 @@ TEST(FusedSequence, ThePoseOfTheSettingsTakesThePlaceOfThatOfTheScan) {
 }
 
 /// Each LiDAR has frames of its own, with an action before each.
-TEST(FusedSequence, MotionsOfAllScansAddUp) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, MotionsOfAllScansAddUp) {
   std::string bytes;
   for (int i = 0; i < 4; ++i) {
     bytes += action({0.6, 0, 0}) + frame(stored(1 + 0.1 * i, "front"));
@@ -128,8 +125,7 @@ TEST(FusedSequence, MotionsOfAllScansAddUp) {
 }
 
 /// The clock of the rear LiDAR is wrong by more than `fuse_within_s`.
-TEST(FusedSequence, OneActionForBothKeepsThemTogether) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, OneActionForBothKeepsThemTogether) {
   std::string bytes;
   for (int i = 0; i < 3; ++i)
     bytes += action({1, 0, 0}) + frame(stored(1 + 0.1 * i, "front")) +
@@ -139,8 +135,7 @@ TEST(FusedSequence, OneActionForBothKeepsThemTogether) {
   EXPECT_EQ(sequence.counts.unknownMotions, 0u);
 }
 
-TEST(FusedSequence, ALateScanIsDroppedAndItsMotionIsNot) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, ALateScanIsDroppedAndItsMotionIsNot) {
   const std::string bytes = action({}) + frame(stored(1, "front")) + action({1, 0, 0}) +
                             frame(stored(1.1, "rear")) + action({1, 0, 0}) +
                             frame(stored(1.0, "rear")) + action({1, 0, 0}) +
@@ -152,8 +147,7 @@ TEST(FusedSequence, ALateScanIsDroppedAndItsMotionIsNot) {
   EXPECT_EQ(sequence.counts.lidars[1].late, 1u);
 }
 
-TEST(FusedSequence, PolesThatWereFusedBeforeAreReadAsTheyAre) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, PolesThatWereFusedBeforeAreReadAsTheyAre) {
   const auto sequence = bench.read(
       frame(stored(1, "fused")) + action({1, 0, 0}) + frame(stored(1.1, "fused")), twoLidars());
   EXPECT_EQ(sequence.frames.size(), 2u);
@@ -161,8 +155,7 @@ TEST(FusedSequence, PolesThatWereFusedBeforeAreReadAsTheyAre) {
   EXPECT_TRUE(sequence.counts.lidars.empty());
 }
 
-TEST(FusedSequence, OneListedLidarIsUsedAlone) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, OneListedLidarIsUsedAlone) {
   SequenceOptions o = twoLidars();
   o.vehicle.lidars.erase(o.vehicle.lidars.begin());
   const auto sequence = bench.read(frame(stored(1, "front")) + frame(stored(1.01, "rear")), o);
@@ -171,10 +164,9 @@ TEST(FusedSequence, OneListedLidarIsUsedAlone) {
   EXPECT_EQ(sequence.counts.otherSensors, 1u);
 }
 
-TEST(FusedSequence, SaysWhichLidarIsNotInTheRawlog) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, SaysWhichLidarIsNotInTheRawlog) {
   const std::string end = bench.refusal(
-      samples::bytesOf(scan(1, "front", s_front, 0)) + samples::bytesOf(scan(1, "back", s_rear, 0)),
+      samples::bytesOf(scan(1, "front", kFront, 0)) + samples::bytesOf(scan(1, "back", kRear, 0)),
       twoLidars());
   EXPECT_HAS(end, "no scan of the LiDAR rear that [vehicle] lidars lists;");
   EXPECT_HAS(end, "CObservationPointCloud back");
@@ -183,28 +175,25 @@ TEST(FusedSequence, SaysWhichLidarIsNotInTheRawlog) {
   EXPECT_HAS(bench.refusal(bytes, twoLidars()), "lists in the first 50 scans");
 }
 
-TEST(FusedSequence, SaysWhoseScansAreNotUsedWithoutNames) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, SaysWhoseScansAreNotUsedWithoutNames) {
   const auto sequence = bench.read(frame(stored(1, "front")) + frame(stored(1.01, "rear")));
   EXPECT_EQ(sequence.frames.size(), 1u);
   EXPECT_EQ(sequence.counts.otherLabels, std::set<std::string>{"polemcl::CObservationPoles rear"});
 }
 
-TEST(FusedSequence, ErrorsNameTheLidar) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, ErrorsNameTheLidar) {
   SequenceOptions o = twoLidars();
   o.vehicle.lidars[1].sensor.model = "hdl64e";
-  const std::string bytes = samples::bytesOf(scan(10, "front", s_front, 0)) +
-                            samples::bytesOf(scan(10, "rear", s_rear, 0));
+  const std::string bytes =
+      samples::bytesOf(scan(10, "front", kFront, 0)) + samples::bytesOf(scan(10, "rear", kRear, 0));
   EXPECT_HAS(bench.refusal(bytes, o), "scan 0: LiDAR rear: ");
 }
 
-TEST(FusedSequence, ThreadsDoNotMatter) {
-  const Bench bench;
+TEST_F(FusedSequenceTest, ThreadsDoNotMatter) {
   std::string bytes;
   for (int i = 0; i < 10; ++i)
-    bytes += action({0.1, 0, 0}) + frame(scan(1 + 0.1 * i, "front", s_front, 0.1 * i)) +
-             frame(scan(1.01 + 0.1 * i, "rear", s_rear, 0.1 * i));
+    bytes += action({0.1, 0, 0}) + frame(scan(1 + 0.1 * i, "front", kFront, 0.1 * i)) +
+             frame(scan(1.01 + 0.1 * i, "rear", kRear, 0.1 * i));
   SequenceOptions one = twoLidars(), many = one;
   one.threads = 1;
   const auto a = bench.read(bytes, one), b = bench.read(bytes, many);

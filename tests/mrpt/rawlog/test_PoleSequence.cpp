@@ -10,9 +10,9 @@ namespace polemcl::test_pole_sequence {
 namespace {
 
 using namespace tests::sequence;
+using PoleSequenceTest = BenchTest;
 
-TEST(PoleSequence, StoredPolesWithActions) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, StoredPolesWithActions) {
   const auto sequence = bench.read(action({9, 9, 1}) + frame(poles(10.5)) + action({1, 0.5, 0.1}) +
                                    frame(poles(11, 6)));
   ASSERT_EQ(sequence.frames.size(), 2u);
@@ -31,8 +31,7 @@ TEST(PoleSequence, StoredPolesWithActions) {
   EXPECT_EQ(sequence.counts.unknownMotions, 0u);
 }
 
-TEST(PoleSequence, ObservationsFromElsewhereGiveTheSameFrames) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ObservationsFromElsewhereGiveTheSameFrames) {
   bench.read(frame(poles(10.5)) + action({1, 0.5, 0.1}) + frame(poles(11, 6)));
   std::size_t scans = 0;
   streamPoles(bench.path, options(), [&](const ReadScan& scan) {
@@ -48,8 +47,7 @@ TEST(PoleSequence, ObservationsFromElsewhereGiveTheSameFrames) {
   EXPECT_EQ(scans, 2u);
 }
 
-TEST(PoleSequence, SeveralActionsAreComposed) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, SeveralActionsAreComposed) {
   const auto sequence =
       bench.read(frame(poles(1)) + action({1, 0, M_PI / 2}) + action({2, 0, 0}) + frame(poles(2)));
   ASSERT_EQ(sequence.frames.size(), 2u);
@@ -60,8 +58,7 @@ TEST(PoleSequence, SeveralActionsAreComposed) {
               0, 1e-9);
 }
 
-TEST(PoleSequence, CovarianceFactorAppliesToActions) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, CovarianceFactorAppliesToActions) {
   auto o = options();
   o.motion.covarianceFactor = 4;
   const auto sequence = bench.read(frame(poles(1)) + action({1, 0, 0}) + frame(poles(2)), o);
@@ -69,8 +66,7 @@ TEST(PoleSequence, CovarianceFactorAppliesToActions) {
 }
 
 // The default emOdometry is rebuilt from the file by a motion model; the reading must be kept.
-TEST(PoleSequence, OdometryActionsGiveTheirReading) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, OdometryActionsGiveTheirReading) {
   for (const auto model : {CActionRobotMovement2D::mmGaussian, CActionRobotMovement2D::mmThrun}) {
     CActionRobotMovement2D::TMotionModelOptions motionModel;
     motionModel.modelSelection = model;
@@ -91,8 +87,7 @@ TEST(PoleSequence, OdometryActionsGiveTheirReading) {
   }
 }
 
-TEST(PoleSequence, SpatialActionsArePlanar) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, SpatialActionsArePlanar) {
   CActionRobotMovement3D move;
   move.estimationMethod = CActionRobotMovement3D::emVisualOdometry;
   move.poseChange.mean = mrpt::poses::CPose3D(1, 2, 3, 0.4, 0, 0);
@@ -105,8 +100,7 @@ TEST(PoleSequence, SpatialActionsArePlanar) {
   EXPECT_NEAR(sequence.frames[1].motion->covariance(2, 2), 0.04, 1e-9);  // yaw
 }
 
-TEST(PoleSequence, WithoutOdometryTheMotionIsUnknown) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, WithoutOdometryTheMotionIsUnknown) {
   const auto sequence =
       bench.read(frame(poles(1)) + frame(poles(2)) + action({1, 0, 0}) + frame(poles(3)));
   ASSERT_EQ(sequence.frames.size(), 3u);
@@ -117,8 +111,7 @@ TEST(PoleSequence, WithoutOdometryTheMotionIsUnknown) {
 }
 
 // A straight drive at 2 m/s, odometry at 10 Hz, scans at other times.
-TEST(PoleSequence, BareOdometryIsInterpolated) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, BareOdometryIsInterpolated) {
   std::string bytes;
   for (int i = 0; i < 30; ++i) {
     bytes += odometry(100 + 0.1 * i, {0.2 * i, 1, 0});
@@ -132,15 +125,13 @@ TEST(PoleSequence, BareOdometryIsInterpolated) {
   EXPECT_NEAR((sequence.frames[1].motion->covariance - expected).norm(), 0, 1e-6);
 }
 
-TEST(PoleSequence, OdometryThatTurns) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, OdometryThatTurns) {
   const auto sequence = bench.read(odometry(0, {3, 4, M_PI / 2}) + samples::bytesOf(poles(0)) +
                                    odometry(2, {3, 6, M_PI}) + samples::bytesOf(poles(2)));
   expectMotion(sequence.frames[1], 2, 0, M_PI / 2);
 }
 
-TEST(PoleSequence, OdometryFarFromTheScanIsUnknown) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, OdometryFarFromTheScanIsUnknown) {
   const auto sequence = bench.read(samples::bytesOf(poles(1)) + samples::bytesOf(poles(2)) +
                                    odometry(2.4, {0, 0, 0}) + odometry(3, {1, 0, 0}) +
                                    samples::bytesOf(poles(3)) + samples::bytesOf(poles(5)));
@@ -151,8 +142,7 @@ TEST(PoleSequence, OdometryFarFromTheScanIsUnknown) {
   EXPECT_EQ(sequence.counts.unknownMotions, 2u);
 }
 
-TEST(PoleSequence, ManyScansWithoutOdometryDoNotPileUp) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ManyScansWithoutOdometryDoNotPileUp) {
   std::string bytes;
   for (int i = 0; i < 100; ++i) bytes += samples::bytesOf(poles(i));
   const auto sequence = bench.read(bytes);
@@ -160,8 +150,7 @@ TEST(PoleSequence, ManyScansWithoutOdometryDoNotPileUp) {
   EXPECT_EQ(sequence.counts.unknownMotions, 99u);
 }
 
-TEST(PoleSequence, ExtractsClouds) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ExtractsClouds) {
   const auto sequence = bench.read(action({0, 0, 0}) + frame(cloud(1, 0)) + action({0.5, 0, 0}) +
                                    frame(cloud(2, 0.5)));
   ASSERT_EQ(sequence.frames.size(), 2u);
@@ -176,8 +165,7 @@ TEST(PoleSequence, ExtractsClouds) {
 }
 
 // Scans with very different run times, on any number of threads: the same frames in the same order.
-TEST(PoleSequence, ThreadsDoNotMatter) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ThreadsDoNotMatter) {
   std::string bytes;
   for (int i = 0; i < 24; ++i)
     bytes += action({0.1, 0, 0}) +
@@ -204,8 +192,7 @@ TEST(PoleSequence, ThreadsDoNotMatter) {
   }
 }
 
-TEST(PoleSequence, RefusesRawlogsOfPlanarScansAndSaysWhy) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, RefusesRawlogsOfPlanarScansAndSaysWhy) {
   mrpt::obs::CObservation2DRangeScan planar;
   planar.timestamp = mrpt::Clock::fromDouble(1);
   const std::string message = bench.refusal(samples::bytesOf(planar));
@@ -214,8 +201,7 @@ TEST(PoleSequence, RefusesRawlogsOfPlanarScansAndSaysWhy) {
   EXPECT_EQ(bench.read(samples::bytesOf(planar) + frame(poles(2))).frames.size(), 1u);
 }
 
-TEST(PoleSequence, EmptyScansStayFrames) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, EmptyScansStayFrames) {
   CObservationPointCloud nothing;
   nothing.timestamp = mrpt::Clock::fromDouble(7);
   CObservationPointCloud invalid = nothing;
@@ -231,8 +217,7 @@ TEST(PoleSequence, EmptyScansStayFrames) {
   EXPECT_TRUE(sequence.frames[1].poles_robot.empty());
 }
 
-TEST(PoleSequence, OneSensorOnly) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, OneSensorOnly) {
   CObservationPoles other = poles(1.5);
   other.sensorLabel = "REAR";
   const auto sequence = bench.read(frame(poles(1)) + frame(other) + frame(poles(2)));
@@ -240,8 +225,7 @@ TEST(PoleSequence, OneSensorOnly) {
   EXPECT_EQ(sequence.counts.otherSensors, 1u);
 }
 
-TEST(PoleSequence, PrefersPolesToTheCloudTheyCameFrom) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, PrefersPolesToTheCloudTheyCameFrom) {
   CSensoryFrame both;
   both.insert(std::make_shared<CObservationPointCloud>(cloud(1, 0)));
   both.insert(std::make_shared<CObservationPoles>(poles(1)));
@@ -251,8 +235,7 @@ TEST(PoleSequence, PrefersPolesToTheCloudTheyCameFrom) {
   EXPECT_EQ(sequence.counts.otherSensors, 1u);
 }
 
-TEST(PoleSequence, TruncatedFiles) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, TruncatedFiles) {
   const std::string bytes = frame(poles(1)) + frame(poles(2));
   EXPECT_HAS(bench.refusal(bytes.substr(0, bytes.size() - 10)), "truncated");
   auto o = options();
@@ -264,8 +247,7 @@ TEST(PoleSequence, TruncatedFiles) {
 }
 
 // For any length of the rawlog, only the scans in process are in memory.
-TEST(PoleSequence, ScansAreLetGoOnceTheyAreConsumed) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ScansAreLetGoOnceTheyAreConsumed) {
   std::string bytes;
   for (int i = 0; i < 300; ++i)
     bytes += action({0.1, 0, 0}) + (i % 2 ? frame(poles(i + 1)) : frame(poles(i + 1, 7)));
@@ -285,8 +267,7 @@ TEST(PoleSequence, ScansAreLetGoOnceTheyAreConsumed) {
   }
 }
 
-TEST(PoleSequence, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
   std::string bytes;
   for (int i = 0; i < 20; ++i) bytes += frame(poles(i + 1));
   bench.read(bytes);
@@ -309,9 +290,8 @@ TEST(PoleSequence, ThePaceSeesEachScanInOrderBeforeItIsConsumed) {
 }
 
 // The first error of the file is reported, after the scans before it, with any number of threads.
-TEST(PoleSequence, ErrorsComeInTheirPlace) {
+TEST_F(PoleSequenceTest, ErrorsComeInTheirPlace) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
-  const Bench bench;
   CObservationPointCloud first, second;
   first.setAsExternalStorage(bench.folder / "first.bin", Format::KittiBinFile);
   second.setAsExternalStorage(bench.folder / "second.bin", Format::KittiBinFile);
@@ -335,17 +315,15 @@ TEST(PoleSequence, ErrorsComeInTheirPlace) {
   }
 }
 
-TEST(PoleSequence, WhatTheConsumerThrowsComesThrough) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, WhatTheConsumerThrowsComesThrough) {
   bench.read(frame(poles(1)) + frame(poles(2)));
   EXPECT_THROW(streamPoles(bench.path, options(),
                            [](const ReadScan&) { throw std::domain_error("enough"); }),
                std::domain_error);
 }
 
-TEST(PoleSequence, RelativeExternalFiles) {
+TEST_F(PoleSequenceTest, RelativeExternalFiles) {
   using Format = CObservationPointCloud::ExternalStorageFormat;
-  const Bench bench;
   std::filesystem::create_directory(bench.folder / "s_Images");
   CObservationPointCloud external;
   external.setAsExternalStorage("0.bin", Format::KittiBinFile);
@@ -360,23 +338,20 @@ TEST(PoleSequence, RelativeExternalFiles) {
   }
 }
 
-TEST(PoleSequence, RefusesBadMotions) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, RefusesBadMotions) {
   EXPECT_HAS(bench.refusal(frame(poles(1)) + action({std::nan(""), 0, 0}) + frame(poles(2))),
              "before scan 1: the odometry is not finite");
   EXPECT_HAS(bench.refusal(frame(poles(1)) + action({1, 0, 0}, -0.01) + frame(poles(2))),
              "before scan 1: the covariance of the odometry is not positive semidefinite");
 }
 
-TEST(PoleSequence, RefusesScansWithoutTime) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, RefusesScansWithoutTime) {
   CObservationPoles scan = poles(1);
   scan.timestamp = INVALID_TIMESTAMP;
   EXPECT_HAS(bench.refusal(frame(scan)), "scan 0 has no time");
 }
 
-TEST(PoleSequence, RefusesBadOptions) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, RefusesBadOptions) {
   const std::string bytes = frame(poles(1));
   auto o = options();
   o.threads = -1;
@@ -389,8 +364,7 @@ TEST(PoleSequence, RefusesBadOptions) {
   EXPECT_HAS(bench.refusal(bytes, o), "model");
 }
 
-TEST(PoleSequence, ReportsProgress) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ReportsProgress) {
   bench.read(frame(poles(1)) + frame(poles(2)) + frame(poles(3)));
   std::vector<std::size_t> calls;
   readPoleSequence(bench.path, options(),
@@ -398,8 +372,7 @@ TEST(PoleSequence, ReportsProgress) {
   EXPECT_EQ(calls, (std::vector<std::size_t>{1, 2, 3}));
 }
 
-TEST(PoleSequence, ExpectsAsManyScansAsTheFileIsLong) {
-  const Bench bench;
+TEST_F(PoleSequenceTest, ExpectsAsManyScansAsTheFileIsLong) {
   CObservationPoles large = poles(1);
   large.visibilityRange.resize(20000);  // few are read ahead by bytes, but many by number
   for (std::size_t i = 0; i < large.visibilityRange.size(); ++i)

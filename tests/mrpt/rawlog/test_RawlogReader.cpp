@@ -102,8 +102,11 @@ struct Bench {
   }
 };
 
-TEST(RawlogReader, ReadsPairs) {
-  const Bench bench;
+struct RawlogReaderTest : testing::Test {
+  const Bench bench{};
+};
+
+TEST_F(RawlogReaderTest, ReadsPairs) {
   const std::string bytes = action(1) + frame(10) + action(2) + frame(20);
   for (const std::string& data : {bytes, gzipped(bytes, bench.folder)}) {
     const Reading reading = bench.read(data);
@@ -119,8 +122,7 @@ TEST(RawlogReader, ReadsPairs) {
   }
 }
 
-TEST(RawlogReader, WaitsAtTheEndOfAFileThatGrows) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, WaitsAtTheEndOfAFileThatGrows) {
   const std::string bytes = action(1) + frame(10) + action(2) + frame(20);
   for (const std::string& data : {bytes, gzipped(bytes, bench.folder)}) {
     const std::size_t half = data.size() / 2;
@@ -138,8 +140,7 @@ TEST(RawlogReader, WaitsAtTheEndOfAFileThatGrows) {
   }
 }
 
-TEST(RawlogReader, ReadsBareObservations) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, ReadsBareObservations) {
   CObservationComment comment;
   comment.text = "made by a test";
   const Reading reading = bench.read(samples::bytesOf(comment) + odometry(1) +
@@ -152,8 +153,7 @@ TEST(RawlogReader, ReadsBareObservations) {
 }
 
 // MRPT's reader loses the first of two actions, and frames without an action.
-TEST(RawlogReader, LosesNoActionAndNoFrame) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, LosesNoActionAndNoFrame) {
   const Reading reading =
       bench.read(frame(1) + action(1) + action(2) + frame(2) + action(3) + odometry(7) + frame(3));
   ASSERT_EQ(reading.error, "");
@@ -166,8 +166,7 @@ TEST(RawlogReader, LosesNoActionAndNoFrame) {
   EXPECT_TRUE(!reading.entries[5].action && reading.entries[5].frame);
 }
 
-TEST(RawlogReader, JoinedFilesAreOneFile) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, JoinedFilesAreOneFile) {
   const std::string one = action(1) + frame(1), two = action(2) + frame(2);
   EXPECT_EQ(bench.read(one + two).entries.size(), 2u);
   EXPECT_EQ(bench.read(gzipped(one, bench.folder) + gzipped(two, bench.folder)).entries.size(), 2u);
@@ -175,8 +174,7 @@ TEST(RawlogReader, JoinedFilesAreOneFile) {
 
 // At many lengths: either an error that says "truncated" and where, or, if allowed, all entries
 // before. Only a cut between two objects cannot be detected.
-TEST(RawlogReader, TruncatedAnywhere) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, TruncatedAnywhere) {
   const std::size_t a = action(1).size(), f = frame(1).size();
   const std::string bytes = action(1) + frame(1) + action(2) + frame(2);
   const std::set<std::size_t> between = {a, a + f, 2 * a + f};
@@ -200,8 +198,7 @@ TEST(RawlogReader, TruncatedAnywhere) {
   }
 }
 
-TEST(RawlogReader, TruncatedInsideABigVector) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, TruncatedInsideABigVector) {
   const std::string bytes = frame(1) + cloudFrame();
   const std::size_t cut = bytes.size() - 1000;
   const Reading strict = bench.read(bytes.substr(0, cut));
@@ -210,8 +207,7 @@ TEST(RawlogReader, TruncatedInsideABigVector) {
   EXPECT_EQ(bench.read(bytes.substr(0, cut), true).entries.size(), 1u);
 }
 
-TEST(RawlogReader, TruncatedGzip) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, TruncatedGzip) {
   std::string bytes;
   for (int i = 0; i < 50; ++i) bytes += action(i) + frame(i * 1.1);
   const std::string packed = gzipped(bytes, bench.folder);
@@ -225,16 +221,14 @@ TEST(RawlogReader, TruncatedGzip) {
   }
 }
 
-TEST(RawlogReader, EmptyFile) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, EmptyFile) {
   EXPECT_HAS(bench.read("").error, "is empty");
   const Reading lax = bench.read("", true);
   EXPECT_EQ(lax.error, "");
   EXPECT_TRUE(lax.truncated);
 }
 
-TEST(RawlogReader, NamesZstd) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, NamesZstd) {
   EXPECT_HAS(bench.read(std::string("\x28\xB5\x2F\xFD") + action(0)).error, "zstd -d");
 }
 
@@ -245,8 +239,7 @@ std::string renamed(std::string bytes, const std::string& from, const std::strin
   return bytes.replace(at, from.size(), to);
 }
 
-TEST(RawlogReader, NamesUnknownClasses) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, NamesUnknownClasses) {
   const std::string strange =
       renamed(odometry(1), "mrpt::obs::CObservationOdometry", "other::lib::CObservationUnheard");
   const std::string inFrame =
@@ -261,8 +254,7 @@ TEST(RawlogReader, NamesUnknownClasses) {
   }
 }
 
-TEST(RawlogReader, ReportsDamage) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, ReportsDamage) {
   std::string bytes = odometry(0) + odometry(1) + odometry(2);
   const std::size_t size = odometry(0).size();
   bytes[2 * size - 1] = 0;  // the end flag of the second
@@ -272,8 +264,7 @@ TEST(RawlogReader, ReportsDamage) {
   EXPECT_HAS(bench.read(bytes, true).error, "is damaged");  // damage is not truncation
 }
 
-TEST(RawlogReader, RefusesWhatIsNoRawlog) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, RefusesWhatIsNoRawlog) {
   EXPECT_HAS(bench.read("x y z\n1 2 3\n4 5 6\n").error, "is not a rawlog");
   EXPECT_HAS(readAll(bench.folder / "none.rawlog").error, "none.rawlog: no such file");
   EXPECT_HAS(readAll(bench.folder / "").error, "is a folder, not a rawlog; pole-import");
@@ -281,8 +272,7 @@ TEST(RawlogReader, RefusesWhatIsNoRawlog) {
 }
 
 // Reason for this reader: MRPT's own ends silently in all of these cases.
-TEST(RawlogReader, StockReaderStopsSilently) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, StockReaderStopsSilently) {
   const std::string strange =
       renamed(odometry(1), "mrpt::obs::CObservationOdometry", "other::lib::CObservationUnheard");
   const std::string whole = odometry(0) + odometry(1);
@@ -298,8 +288,7 @@ TEST(RawlogReader, StockReaderStopsSilently) {
   }
 }
 
-TEST(RawlogReader, ShowsProgress) {
-  const Bench bench;
+TEST_F(RawlogReaderTest, ShowsProgress) {
   std::string bytes;
   for (int i = 0; i < 3; ++i) bytes += frame(i);
   writeFile(bench.path, bytes);

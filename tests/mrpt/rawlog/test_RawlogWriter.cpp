@@ -10,6 +10,7 @@
 
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"
+#include "support/ExpectHas.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_rawlog_writer {
@@ -136,7 +137,7 @@ TEST(RawlogWriter, ReportsAFullDisk) {
   }
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
-  EXPECT_NE(error.find("s.rawlog"), std::string::npos) << error;
+  EXPECT_HAS(error, "s.rawlog");
   EXPECT_LT(written, 1000);  // noticed before the end
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
 }

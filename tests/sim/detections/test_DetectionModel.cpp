@@ -5,10 +5,10 @@
 #include <polemcl/core/common/Types.h>
 #include "sim/common/NormalDistribution.h"
 #include "support/DetectionModels.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_detection_model {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 using testing_sim::plainModel;
 
@@ -88,12 +88,7 @@ TEST(DetectionModel, RefusesWhatMakesNoSense) {
   for (const auto& [key, spoil] : spoilt) {
     DetectionModel model = plainModel();
     spoil(model);
-    try {
-      model.validate();
-      ADD_FAILURE() << key;
-    } catch (const Error& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(std::string(key) + ":", 0), 0u) << error.what();
-    }
+    EXPECT_REFUSED(model.validate(), std::string(key) + ":");
   }
 }
 

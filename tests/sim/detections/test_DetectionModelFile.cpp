@@ -1,48 +1,33 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include <polemcl/core/common/Types.h>
 #include "sim/detections/DetectionModel.h"
 #include "support/DetectionModels.h"
+#include "support/Refusal.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::test_detection_model_file {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 namespace fs = std::filesystem;
 
 namespace {
-const fs::path s_models = fs::path(POLEMCL_SOURCE_DIR) / "share" / "models";
-
-std::string textOf(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
+const fs::path kModels = fs::path(POLEMCL_SOURCE_DIR) / "share" / "models";
 
 class DetectionModelFile : public testing::Test {
  protected:
-  DetectionModelFile() { fs::create_directories(m_folder); }
-  ~DetectionModelFile() override { fs::remove_all(m_folder); }
   /// The error message for the plain model's file with one text replaced.
   std::string refusal(const std::string& text, const std::string& by) {
     writeDetectionModel(file, testing_sim::plainModel());
-    std::string content = textOf(file);
+    std::string content = testing_apps::readText(file);
     const auto at = content.find(text);
     EXPECT_NE(at, std::string::npos) << text;
     std::ofstream(file) << content.replace(at, text.size(), by);
-    try {
-      readDetectionModel(file);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "read without complaint";
+    return tests::messageOf([&] { readDetectionModel(file); });
   }
-  fs::path m_folder = fs::temp_directory_path() / ("model_" + std::to_string(getpid()));
+  testing_apps::TempFolder m_folder;
   fs::path file = m_folder / "model.json";
 };
 }  // namespace
@@ -67,16 +52,16 @@ TEST_F(DetectionModelFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.season.fence, -1.5);
   EXPECT_EQ(read.season.siteClutter, 0.25);
   EXPECT_EQ(read.of(DetectionClass::tree).reported[7], model.of(DetectionClass::tree).reported[7]);
-  const std::string first = textOf(file);
+  const std::string first = testing_apps::readText(file);
   writeDetectionModel(file, read);
-  EXPECT_EQ(textOf(file), first);
+  EXPECT_EQ(testing_apps::readText(file), first);
 }
 
 TEST_F(DetectionModelFile, WithoutSeasonsTheyChangeNothing) {
   DetectionModel model = testing_sim::plainModel();
   model.season.fence = -1;
   writeDetectionModel(file, model);
-  std::string text = textOf(file);
+  std::string text = testing_apps::readText(file);
   const auto from = text.find("  \"season\": {"), to = text.find("  \"persistence\"");
   ASSERT_LT(from, to);
   std::ofstream(file) << text.erase(from, to - from);
@@ -88,7 +73,7 @@ TEST_F(DetectionModelFile, WithoutSeasonsTheyChangeNothing) {
 
 TEST_F(DetectionModelFile, ShippedModelsCanBeRead) {
   std::size_t models = 0;
-  for (const auto& entry : fs::directory_iterator(s_models)) {
+  for (const auto& entry : fs::directory_iterator(kModels)) {
     EXPECT_NO_THROW(readDetectionModel(entry.path())) << entry.path();
     ++models;
   }
@@ -98,8 +83,8 @@ TEST_F(DetectionModelFile, ShippedModelsCanBeRead) {
 TEST_F(DetectionModelFile, NamesFileKeyAndWhatIsAllowed) {
   const auto expect = [&](const std::string& text, const std::string& by, const std::string& word) {
     const std::string said = refusal(text, by);
-    EXPECT_NE(said.find("model.json: "), std::string::npos) << said;
-    EXPECT_NE(said.find(word), std::string::npos) << said;
+    EXPECT_HAS(said, "model.json: ");
+    EXPECT_HAS(said, word);
   };
   expect("detection model 1", "detection model 9", "format: only");
   expect("\"height_m\": 1.0", "\"height_m\": \"high\"", "height_m: a number");

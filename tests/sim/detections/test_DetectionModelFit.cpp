@@ -9,7 +9,6 @@
 
 namespace polemcl::test_detection_model_fit {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {

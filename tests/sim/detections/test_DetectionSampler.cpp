@@ -11,7 +11,6 @@
 
 namespace polemcl::test_detection_sampler {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 using testing_sim::plainModel;
 

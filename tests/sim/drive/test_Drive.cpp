@@ -7,7 +7,6 @@
 
 namespace polemcl::test_drive {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {

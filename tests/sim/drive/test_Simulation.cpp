@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 #include <fstream>
-#include <sstream>
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/io/data/Cloud.h>
@@ -11,10 +9,10 @@
 #include "io/map/PolePositions.h"
 #include "sim/drive/Drive.h"
 #include "sim/drive/Simulation.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::test_simulation {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 namespace fs = std::filesystem;
 
@@ -25,24 +23,15 @@ class Simulation : public testing::Test {
     m_options.sensor = "vlp16";
     m_options.scans = 6;
     m_options.world.length = 60;
-    fs::create_directories(m_folder);
   }
-  ~Simulation() override { fs::remove_all(m_folder); }
   fs::path folder(const std::string& name) const {
     fs::create_directories(m_folder / name);
     return m_folder / name;
   }
-  static std::string bytes(const fs::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
-  }
   SimulationOptions m_options;
 
  private:
-  fs::path m_folder =
-      fs::temp_directory_path() / ("simulation_" + std::to_string(getpid()) + "_" +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  testing_apps::TempFolder m_folder;
 };
 }  // namespace
 
@@ -125,7 +114,9 @@ TEST_F(Simulation, BytesDoNotDependOnTheNumberOfThreads) {
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(one)) {
     if (!entry.is_regular_file()) continue;
-    EXPECT_EQ(bytes(entry.path()), bytes(many / fs::relative(entry.path(), one))) << entry.path();
+    EXPECT_EQ(testing_apps::readText(entry.path()),
+              testing_apps::readText(many / fs::relative(entry.path(), one)))
+        << entry.path();
     ++files;
   }
   EXPECT_EQ(files, 16u + 16u + 4u);

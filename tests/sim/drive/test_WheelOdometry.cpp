@@ -8,7 +8,6 @@
 
 namespace polemcl::test_wheel_odometry {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {

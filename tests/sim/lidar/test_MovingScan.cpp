@@ -13,9 +13,9 @@ namespace {
 using namespace sim;
 using V = Eigen::Vector3d;
 
-constexpr double s_speed = 15;    // m/s
-constexpr double s_height = 1.8;  // m
-constexpr int s_scans = 60;
+constexpr double kSpeed = 15;    // m/s
+constexpr double kHeight = 1.8;  // m
+constexpr int kScans = 60;
 
 /// Means over the scans of one post.
 struct Seen {
@@ -28,7 +28,7 @@ class MovingScan : public ::testing::Test {
   /// Ten posts beside the road and one ahead, on a flat empty place.
   MovingScan() : world(worldOf()) {
     sensor.model = "os1_64";
-    sensor.height = s_height;
+    sensor.height = kHeight;
   }
   static std::vector<V> places() {
     std::vector<V> places{{20, 0, 0}};
@@ -56,9 +56,9 @@ class MovingScan : public ::testing::Test {
     Motion motion;
     motion.velocity = V(speed, 0, 0);
     std::vector<Seen> seen(places().size());
-    for (int i = 0; i < s_scans; ++i) {
+    for (int i = 0; i < kScans; ++i) {
       // Elsewhere in each scan, so that the columns meet the posts elsewhere.
-      const V from(0.013 * i, 0.007 * i, s_height);
+      const V from(0.013 * i, 0.007 * i, kHeight);
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.translation() = from;
       const SimulatedScan scan = scanner.scan(pose, i, 0, motion);
@@ -95,7 +95,7 @@ class MovingScan : public ::testing::Test {
 
 // The beam turns clockwise: what stands to the right of the way moves with it.
 TEST_F(MovingScan, PolesBesideTheRoadKeepTheirRadiusAndPlace) {
-  const auto still = see(0, false), moving = see(s_speed, false), corrected = see(s_speed, true);
+  const auto still = see(0, false), moving = see(kSpeed, false), corrected = see(kSpeed, true);
   for (std::size_t k = 0; k < still.size(); ++k) {
     EXPECT_NEAR(corrected[k].radius, still[k].radius, 0.001) << places()[k].transpose();
     EXPECT_NEAR(corrected[k].x, still[k].x, 0.002) << places()[k].transpose();

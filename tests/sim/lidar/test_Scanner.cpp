@@ -9,7 +9,6 @@
 
 namespace polemcl::test_scanner {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 using V = Eigen::Vector3d;
 

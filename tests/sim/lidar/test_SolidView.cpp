@@ -7,7 +7,6 @@
 
 namespace polemcl::test_solid_view {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 using V = Eigen::Vector3d;
 

@@ -4,10 +4,10 @@
 
 #include <polemcl/core/common/Types.h>
 #include "sim/drive/Drive.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_detour {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {
@@ -130,12 +130,7 @@ TEST(Detour, TheStreetItselfIsDrivenAsWithoutSideStreets) {
 TEST(Detour, RefusesAStreetWithoutRoomAndASideStreetThatIsNotThere) {
   SimulationOptions options = withSideStreets(65, 0);
   options.world.length = 300;
-  try {
-    makeWorld(options.world);
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("400 m"), std::string::npos) << error.what();
-  }
+  EXPECT_REFUSED(makeWorld(options.world), "400 m");
   options.world.sideStreets = 1;
   options.detour = 2;
   EXPECT_THROW(options.validate(), Error);

@@ -8,16 +8,15 @@
 
 namespace polemcl::test_pole_deviations {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {
 
-const Site site{{10, 20, 3}, 0.7};
+const Site kSite{{10, 20, 3}, 0.7};
 
 Piece sign() {
   Random random(5);
-  return makeSign(site, 7, random);
+  return makeSign(kSite, 7, random);
 }
 
 /// All rates zero but one.
@@ -33,14 +32,14 @@ RealismOptions only(double RealismOptions::*rate) {
 }
 
 std::vector<Piece> with(double RealismOptions::*rate, std::uint64_t seed = 1) {
-  return deviating(sign(), site, only(rate), Random(seed));
+  return deviating(sign(), kSite, only(rate), Random(seed));
 }
 
 /// Middle of the posts' axes at a height above ground, and the radius there.
 Eigen::Vector3d axisAt(const WorldObject& object, double height) {
   for (const Solid& solid : object.solids) {
     const Eigen::Vector3d up = solid.axes.col(2);
-    const double share = (site.base.z() + height - solid.position.z()) / (solid.size.z() * up.z());
+    const double share = (kSite.base.z() + height - solid.position.z()) / (solid.size.z() * up.z());
     if (solid.shape != Shape::frustum || share < 0 || share > 1) continue;
     const Eigen::Vector3d place = solid.position + share * solid.size.z() * up;
     return {place.x(), place.y(), solid.size.x() + share * (solid.size.y() - solid.size.x())};

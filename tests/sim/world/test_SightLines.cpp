@@ -6,7 +6,6 @@
 
 namespace polemcl::test_sight_lines {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {

@@ -5,34 +5,20 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <map>
 #include <set>
 
 #include <polemcl/core/common/Types.h>
 #include "sim/world/World.h"
+#include "support/Worlds.h"
 
 namespace polemcl::test_world {
 
-using namespace polemcl;
 using namespace polemcl::sim;
-
-namespace {
-WorldOptions street(std::uint64_t seed, int day = 0, double length = 400) {
-  WorldOptions options;
-  options.seed = seed;
-  options.day = day;
-  options.length = length;
-  return options;
-}
-std::map<std::uint32_t, TruePole> byId(const World& world) {
-  std::map<std::uint32_t, TruePole> poles;
-  for (const TruePole& pole : world.poles()) poles[pole.id] = pole;
-  return poles;
-}
-}  // namespace
+using namespace polemcl::tests;
 
 TEST(World, SameSeedSameWorldAndAnotherSeedAnother) {
-  const World a = makeWorld(street(1)), b = makeWorld(street(1)), c = makeWorld(street(2));
+  const World a = makeWorld(streetOptions(1)), b = makeWorld(streetOptions(1)),
+              c = makeWorld(streetOptions(2));
   ASSERT_EQ(a.objects().size(), b.objects().size());
   for (std::size_t i = 0; i < a.objects().size(); ++i) {
     ASSERT_EQ(a.objects()[i].id, b.objects()[i].id);
@@ -45,7 +31,7 @@ TEST(World, SameSeedSameWorldAndAnotherSeedAnother) {
 TEST(World, EveryKindStandsSomewhere) {
   std::set<Kind> kinds;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const World world = makeWorld(street(seed));
+    const World world = makeWorld(streetOptions(seed));
     for (const WorldObject& object : world.objects()) kinds.insert(object.kind);
   }
   EXPECT_EQ(kinds.size(), static_cast<std::size_t>(Kind::column) + 1);
@@ -53,7 +39,7 @@ TEST(World, EveryKindStandsSomewhere) {
 
 TEST(World, PolesAreSlimTallAndBesideTheRoad) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const World world = makeWorld(street(seed));
+    const World world = makeWorld(streetOptions(seed));
     EXPECT_GT(world.poles().size(), 60u);
     for (const TruePole& pole : world.poles()) {
       EXPECT_GE(pole.top, 2.0);
@@ -65,8 +51,8 @@ TEST(World, PolesAreSlimTallAndBesideTheRoad) {
 }
 
 TEST(World, TruthLiesOnTheAxisOfTheTrunk) {
-  const World world = makeWorld(street(4));
-  const auto poles = byId(world);
+  const World world = makeWorld(streetOptions(4));
+  const auto poles = polesById(world);
   int checked = 0;
   for (const WorldObject& object : world.objects()) {
     const auto pole = poles.find(object.id);
@@ -96,7 +82,8 @@ TEST(World, TruthLiesOnTheAxisOfTheTrunk) {
 TEST(World, AnotherDayRemovesAFewPolesAddsAFewAndLeavesTheRest) {
   int before = 0, gone = 0, added = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const auto today = byId(makeWorld(street(seed, 0))), later = byId(makeWorld(street(seed, 3)));
+    const auto today = polesById(makeWorld(streetOptions(seed, 0))),
+               later = polesById(makeWorld(streetOptions(seed, 3)));
     before += static_cast<int>(today.size());
     for (const auto& [id, pole] : today) {
       const auto same = later.find(id);
@@ -115,7 +102,7 @@ TEST(World, AnotherDayRemovesAFewPolesAddsAFewAndLeavesTheRest) {
 }
 
 TEST(World, CarsAndPeopleAreElsewhereOnAnotherDay) {
-  const World today = makeWorld(street(5, 0)), later = makeWorld(street(5, 1));
+  const World today = makeWorld(streetOptions(5, 0)), later = makeWorld(streetOptions(5, 1));
   const auto places = [](const World& world, Kind kind) {
     std::set<std::pair<double, double>> found;
     for (const WorldObject& object : world.objects())
@@ -141,7 +128,7 @@ TEST(World, NoPoleStandsInAHouseOrACar) {
     for (int i = 1; i < 36; ++i) file << "1 0 0 250 0 1 0 " << i << " 0 0 1 0\n";
     for (int i = 250; i >= 0; --i) file << "1 0 0 " << i << " 0 1 0 36 0 0 1 0\n";
   }
-  WorldOptions options = street(6);
+  WorldOptions options = streetOptions(6);
   options.track = track;
   const World world = makeWorld(options);
   std::remove(track.c_str());
@@ -162,7 +149,7 @@ TEST(World, NoPoleStandsInAHouseOrACar) {
 }
 
 TEST(World, ObjectsWithinEqualsBruteForce) {
-  const World world = makeWorld(street(2));
+  const World world = makeWorld(streetOptions(2));
   for (int i = 0; i < 50; ++i) {
     const Pose2D place = world.street().at(8.0 * i, 3);
     const double radius = 2 + i;
@@ -178,7 +165,7 @@ TEST(World, ObjectsWithinEqualsBruteForce) {
 }
 
 TEST(World, BareBranchesHaveNoLeaves) {
-  WorldOptions options = street(3);
+  WorldOptions options = streetOptions(3);
   options.foliage = 0;
   const World world = makeWorld(options);
   for (const WorldObject& object : world.objects()) {

@@ -9,27 +9,18 @@
 #include <set>
 
 #include "sim/world/World.h"
+#include "support/Worlds.h"
 
 namespace polemcl::test_world_year {
 
-using namespace polemcl;
 using namespace polemcl::sim;
 
 namespace {
 
 WorldOptions street(std::uint64_t seed, int day, double length = 400) {
-  WorldOptions options;
-  options.seed = seed;
-  options.day = day;
-  options.length = length;
+  WorldOptions options = tests::streetOptions(seed, day, length);
   options.removedShare = options.addedShare = 0;
   return options;
-}
-
-std::map<std::uint32_t, TruePole> byId(const World& world) {
-  std::map<std::uint32_t, TruePole> poles;
-  for (const TruePole& pole : world.poles()) poles[pole.id] = pole;
-  return poles;
 }
 
 double distance(const BuildingSite& site, double x, double y) {
@@ -46,7 +37,7 @@ TEST(WorldYear, PolesThatGoStayGoneAndThoseThatComeStay) {
   for (int day = 0; day <= 720; day += 40) {
     WorldOptions options = street(31, day);
     options.replacedPerYear = 0.3;
-    const auto today = byId(makeWorld(options));
+    const auto today = tests::polesById(makeWorld(options));
     for (const auto& [id, pole] : before) {
       const auto same = today.find(id);
       if (same == today.end()) {
@@ -74,9 +65,9 @@ TEST(WorldYear, TheGivenShareIsReplacedInAYear) {
   for (std::uint64_t seed = 41; seed <= 44; ++seed) {
     WorldOptions options = street(seed, 0, 600);
     options.replacedPerYear = kShare;
-    const auto first = byId(makeWorld(options));
+    const auto first = tests::polesById(makeWorld(options));
     options.day = 365;
-    const auto last = byId(makeWorld(options));
+    const auto last = tests::polesById(makeWorld(options));
     all += static_cast<double>(first.size());
     for (const auto& [id, pole] : first) gone += last.count(id) == 0;
     for (const auto& [id, pole] : last) {
@@ -186,13 +177,13 @@ TEST(WorldYear, BuildingSitesStandForTheirTimeAndNoLonger) {
 
 TEST(WorldYear, PolesComeBackWhenTheWorkIsDone) {
   WorldOptions options = street(55, 100);
-  const auto usual = byId(makeWorld(options));
+  const auto usual = tests::polesById(makeWorld(options));
   options.buildingSites = 6;
   std::size_t missing = 0, extra = 0;
   for (const int day : {100, 200, 300}) {
     options.day = day;
     const World world = makeWorld(options);
-    const auto today = byId(world);
+    const auto today = tests::polesById(world);
     const auto& sites = world.buildingSites();
     const auto atSite = [&](const TruePole& pole, double reach) {
       return std::any_of(sites.begin(), sites.end(), [&](const BuildingSite& site) {

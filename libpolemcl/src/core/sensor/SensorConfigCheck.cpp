@@ -92,7 +92,7 @@ std::string modelName(const std::string& model, bool upsideDown) {
 
 const char* kWhatToDo =
     "; `pole-extract --inspect S.rawlog --write-config F.ini` finds the right [sensor], "
-    "check_beams = false uses this one all the same";
+    "check_beams = false uses this one anyway";
 
 }  // namespace
 

@@ -8,7 +8,6 @@
 
 namespace polemcl::test_candidate_features {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {

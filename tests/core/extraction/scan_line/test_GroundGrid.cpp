@@ -5,10 +5,10 @@
 
 #include "core/extraction/scan_line/GroundGrid.h"
 #include "support/RayCast.h"
+#include "support/Sensors.h"
 
 namespace polemcl::test_ground_grid {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {
@@ -20,9 +20,7 @@ GroundGrid built(const PointList& points, double sensorHeight) {
 }
 
 SensorModel sensorModel(const std::string& model) {
-  SensorOptions options;
-  options.model = model;
-  return SensorModel(options);
+  return SensorModel(tests::sensorNamed(model));
 }
 
 /// Greatest errors of the grid below and above the true ground, over places `from` to `to` away.

@@ -8,24 +8,18 @@
 #include "core/extraction/range_image/CircleFit.h"
 #include "core/extraction/scan_line/PoleFitting.h"
 #include "support/RayCast.h"
+#include "support/Sensors.h"
 #include "support/WholeScan.h"
 
 namespace polemcl::test_pole_fitting {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {
 
 /// Twelve beams, the number that meets a pole of 1 m at 10 m; firing steps of 3 mrad.
 SensorModel twelveBeams() {
-  SensorOptions options;
-  options.model = "uniform";
-  options.rings = 12;
-  options.fovUp = 2 * kDegree;
-  options.fovDown = -4 * kDegree;
-  options.columns = 2094;
-  return SensorModel(options);
+  return SensorModel(tests::uniformSensor(12, 2, -4, 2094));
 }
 
 /// A pole before far walls, scanned with beams 2 mrad wide, and its segments.

@@ -5,24 +5,18 @@
 
 #include "core/extraction/scan_line/ScanLineSegmenter.h"
 #include "support/Clouds.h"
+#include "support/Sensors.h"
 #include "support/WholeScan.h"
 
 namespace polemcl::test_scan_line_segmenter {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {
 
 /// Two beams, ±1°; 720 firing steps of 0.5°: 8.7 cm at 10 m.
 SensorModel twoBeams() {
-  SensorOptions options;
-  options.model = "uniform";
-  options.rings = 2;
-  options.fovUp = 1 * kDegree;
-  options.fovDown = -1 * kDegree;
-  options.columns = 720;
-  return SensorModel(options);
+  return SensorModel(tests::uniformSensor(2, 1, -1, 720));
 }
 
 /// A scan drawn by firing steps: step 0 looks to -x, steps count counter-clockwise.

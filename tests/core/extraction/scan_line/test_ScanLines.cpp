@@ -7,11 +7,11 @@
 
 #include "core/extraction/scan_line/ScanLines.h"
 #include "support/Clouds.h"
+#include "support/Sensors.h"
 #include "support/WholeScan.h"
 
 namespace polemcl::test_scan_lines {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {
@@ -19,9 +19,7 @@ namespace {
 constexpr float kMinRange = 1, kMaxRange = 60;
 
 SensorModel sensorModel(const std::string& model = "hdl64e") {
-  SensorOptions options;
-  options.model = model;
-  return SensorModel(options);
+  return SensorModel(tests::sensorNamed(model));
 }
 
 /// Points in and around the view, and every thirtieth of them not a point.

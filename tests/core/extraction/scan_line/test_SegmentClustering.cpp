@@ -5,18 +5,16 @@
 
 #include "core/extraction/scan_line/SegmentClustering.h"
 #include "support/Clouds.h"
+#include "support/Sensors.h"
 
 namespace polemcl::test_segment_clustering {
 
-using namespace polemcl;
 using namespace polemcl::clouds;
 
 namespace {
 
 SensorModel sensorModel(const std::string& model = "hdl64e") {
-  SensorOptions options;
-  options.model = model;
-  return SensorModel(options);
+  return SensorModel(tests::sensorNamed(model));
 }
 
 /// What a beam sees of a thin pole at (x, y).

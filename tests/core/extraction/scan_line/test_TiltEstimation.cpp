@@ -4,8 +4,6 @@
 
 namespace polemcl::test_tilt_estimation {
 
-using namespace polemcl;
-
 namespace {
 
 using Vector = Eigen::Vector2f;

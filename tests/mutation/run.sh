@@ -1,0 +1,80 @@
+#!/bin/sh
+# Says for each fault in mutations.txt whether the tests notice it.
+# Usage: tests/mutation/run.sh [NUMBER...]
+#   NUMBER  only these faults, counted from 1
+# All faults go into one copy of the sources (build-mutation/), each behind a switch, so that one build
+# serves all of them; POLEMCL_FAULT=NUMBER switches one on. The test programs of build/ are linked with
+# the objects that hold faults. Exits with 1 if a fault is not noticed. Needs python3 and ninja.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+case ${1-} in
+  -h | --help)
+    sed -n '2,7s/^# //p' "$0"
+    exit 0
+    ;;
+esac
+copy=$top/build-mutation
+export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
+
+faults=$(python3 -IS "$top/tests/mutation/insert.py" "$top" "$copy")
+programs=$(echo "$faults" | cut -f 2 | sort -u | sed 's/^/test_/')
+{
+  # shellcheck disable=SC2086 # several names
+  cmake --build "$top/build" --target $programs
+  cd "$copy"
+  cmake --preset ci
+} >"$copy/build.log" || {
+  cat "$copy/build.log" >&2
+  exit 1
+}
+
+# The objects that hold faults: of a unity file, or of a source that is compiled alone.
+objects=$(cd "$copy/build" && echo "$faults" | cut -f 4 | sed 's/:.*//' | sort -u | while read -r source; do
+  unity=$(grep -l "/$source\"" libpolemcl/src/*/CMakeFiles/*.dir/Unity/*.cxx || :)
+  if [ -n "$unity" ]; then
+    echo "$unity.o"
+  else
+    ninja -t targets all | sed -n "s|:.*||; \\|${source##*/}\\.o$|p"
+  fi
+done | sort -u)
+# shellcheck disable=SC2086 # several names
+ninja -C "$copy/build" $objects >"$copy/build.log" || {
+  cat "$copy/build.log" >&2
+  exit 1
+}
+# Linked first, they take the place of the same objects in the libraries.
+first=$(echo "$objects" | sed "s|^|$copy/build/|" | tr '\n' ' ')
+for program in $programs; do
+  link=$(ninja -C "$top/build" -t commands "bin/$program" | sed -n "\$s|-o bin/$program|$first &|; \$s|-o bin/|-o $copy/|; \$s/ && cd .*//p")
+  (cd "$top/build" && eval "$link")
+done
+
+cd "$copy"
+# passes NUMBER PROGRAM FILTER: whether the tests pass with this fault; 0 is none.
+passes() {
+  POLEMCL_FAULT=$1 timeout 300 "./test_$2" --gtest_brief=1 --gtest_fail_fast \
+    --gtest_filter="$3" >run.log 2>&1
+}
+
+status=0
+while IFS="$(printf '\t')" read -r number program filter place old new; do
+  [ $# = 0 ] || echo " $* " | grep -q " $number " || continue
+  passes 0 "$program" "$filter" || {
+    echo "tests/mutation/run.sh: test_$program $filter fails without any fault:" >&2
+    cat run.log >&2
+    exit 1
+  }
+  grep -q 'PASSED.* [1-9]' run.log || {
+    echo "tests/mutation/run.sh: test_$program has no tests $filter" >&2
+    exit 1
+  }
+  if passes "$number" "$program" "$filter"; then
+    said='NOT NOTICED' status=1
+  else
+    said=noticed
+  fi
+  echo "$number $said: $place: $old -> $new"
+done <<END
+$faults
+END
+exit $status
