@@ -140,15 +140,11 @@ const std::map<std::string, Guide> s_guides{
      {{"pole-eval faults --config demo.ini --map street.polemap --input poles.rawlog --truth "
        "drive.tum --fault kidnap --trials 50"},
       "Compare with a drive without a fault: --fault none."}},
-    {"pole-eval candidates",
-     {{"pole-eval candidates --config hdl32e.ini --scans scans --poles scans/poles_gt.csv "
-       "--output candidates.csv"},
-      "Fit weights to the tables of several drives: pole-eval train --help."}},
-    {"pole-eval train",
-     {{"pole-eval train --candidates a.csv b.csv --test c.csv --classifier weights.csv "
-       "--covariance scale.csv"},
-      "The weights are compiled into the library: see share/experiments/train-classifier.sh in "
-      "the sources."}},
+    {"pole-eval features",
+     {{"pole-eval features --config hdl32e.ini --scans scans --poles scans/poles_gt.csv "
+       "--output features.csv"},
+      "Weights are fitted to the tables of several drives: see "
+      "share/experiments/train-classifier.sh in the sources."}},
     {"pole-simulate",
      {{"pole-simulate --config demo.ini --length 300 --output scans",
        "pole-simulate --config hdl32e.ini --length 1000 --day 30 --poles drive.rawlog"},

@@ -148,7 +148,6 @@ int evalMain(int argc, const char* const* argv) {
   std::vector<Subcommand> commands{mapCommand(line.cli()), trajectoryCommand(line.cli())};
   for (auto& command : extractionCommands(line.cli())) commands.push_back(std::move(command));
   for (auto& command : localizationCommands(line.cli())) commands.push_back(std::move(command));
-  for (auto& command : trainingCommands(line.cli())) commands.push_back(std::move(command));
   return line.run(argc, argv, commands);
 }
 

@@ -39,14 +39,12 @@ struct EvalTrajectoryOptions {
 /// \throws Error naming the file and what is wrong, or when under half of the poses are matched.
 TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options);
 
-/// \brief Declares `detections`, `repeatability`, `rotation`, `model`, `sightings` and `motion`.
+/// \brief Declares `detections`, `repeatability`, `rotation`, `model`, `sightings`, `motion` and
+/// `features`.
 std::vector<Subcommand> extractionCommands(CLI::App& program);
 
 /// \brief Declares `global`, `consistency` and `faults`.
 std::vector<Subcommand> localizationCommands(CLI::App& program);
-
-/// \brief Declares `candidates` and `train`.
-std::vector<Subcommand> trainingCommands(CLI::App& program);
 
 /// \brief The program. \return An ExitCode.
 int evalMain(int argc, const char* const* argv);

@@ -9,8 +9,11 @@
 #include "eval/DetectionModelApp.h"
 #include "eval/EvalApp.h"
 #include "eval/ExtractionEval.h"
+#include "eval/LabelledFeatures.h"
 #include "eval/MotionEval.h"
 #include "eval/MrptTruth.h"
+#include "import/DatasetImport.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -203,12 +206,46 @@ Subcommand motionCommand(CLI::App& program) {
   return {&cli, [options](bool) { return scoreText(evalMotion(*options)); }};
 }
 
+std::string scoreText(const FeaturesSummary& s) {
+  std::ostringstream out;
+  out << "scans " << s.scans << ", candidates: " << s.poles << " poles, " << s.others << " others, "
+      << s.unsure << " unsure (left out)\n";
+  return out.str();
+}
+
+Subcommand featuresCommand(CLI::App& program) {
+  auto& cli = *program.add_subcommand(
+      "features", "Writes the features of the candidates of a drive, with labels");
+  const auto options = std::make_shared<FeaturesOptions>();
+  const auto config = std::make_shared<std::string>();
+  const auto pose = std::make_shared<std::string>("0 0 0 0 0 0");
+  const auto set = std::make_shared<std::vector<std::string>>();
+  addConfigOption(cli, *config)->required();
+  addSetOption(cli, *set);
+  addFolder(cli, "--scans", options->scans,
+            "Folder with velodyne/*.bin or *.pcd, and poses.txt; in the LiDAR's own frame")
+      ->required();
+  cli.add_option("--sensor-pose", *pose, "Frame of the clouds on the robot, m and deg")
+      ->type_name("'X Y Z YAW_DEG PITCH_DEG ROLL_DEG'")
+      ->default_str("0")
+      ->check(
+          [](const std::string& text) { return io::problemOf([&] { parseSensorPose(text); }); });
+  addFile(cli, "--poles", options->poles,
+          "True poles (CSV: id, x, y, radius, top); without them, all scans together label the "
+          "candidates");
+  addOutput(cli, "--output", options->output, "Table to write (CSV)")->required();
+  return {&cli, [options, config, pose, set](bool) {
+            options->T_robot_sensor = parseSensorPose(*pose);
+            return scoreText(writeFeatures(*options, loadSettings(*config, *set)));
+          }};
+}
+
 }  // namespace
 
 std::vector<Subcommand> extractionCommands(CLI::App& program) {
   return {detectionsCommand(program), repeatabilityCommand(program), rotationCommand(program),
           modelCommand(program),      mrptTruthCommand(program),     sightingsCommand(program),
-          motionCommand(program)};
+          motionCommand(program),     featuresCommand(program)};
 }
 
 }  // namespace polemcl::apps

@@ -169,3 +169,11 @@ runs_json() {
   echo '  ]'
   echo '}'
 }
+
+# link_scans DRIVE FOLDER FIRST LAST: the scans FIRST to LAST (from 1) of a drive as a folder of their own, as links.
+link_scans() (
+  rm -rf "$2"
+  mkdir -p "$2/velodyne"
+  for file in times.txt poses.txt; do grep -v '^#' "$1/$file" | sed -n "$3,$4p" >"$2/$file"; done
+  find "$1/velodyne/" -name '*.bin' | sort | sed -n "$3,$4p" | while read -r scan; do ln -s "$scan" "$2/velodyne/"; done
+)

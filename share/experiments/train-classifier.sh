@@ -2,16 +2,17 @@
 # Fits the confidence and the covariance of the method scan_line: libpolemcl/src/core/extraction/classifier.csv
 # and covariance.csv, which the next build compiles in.
 # Usage: share/experiments/train-classifier.sh [--quick] DATA_DIR OUT
-#   DATA_DIR  folder of real drives: kitti_raw_0005/, vlp16_loop/, nuscenes_scene/; missing ones are left
-#             out. Nothing else is read: kitti_odom_00*/ and published/ are for tests only.
-#   OUT       gets classifier.csv, covariance.csv, report.json (scores of each drive by weights fitted to the
-#             others, and of the test worlds) and the tables of candidates; existing tables are used again
-#   --quick   one world a kind: a test of the script
-# Fitted to worlds 101 to 106 without and 111 to 116 with [realism] scale = 1, 17 scans 10 m apart with each
+#   DATA_DIR  folder of the real drives kitti_raw_0005/ (scans 0 to 39), vlp16_loop/ and nuscenes_scene/.
+#             Nothing else is read: kitti_odom_00*/ and published/ are for tests only.
+#   OUT       gets classifier.csv, covariance.csv, scores.json and the tables of features; existing tables are
+#             used again
+#   --quick   two worlds, without real drives: a test of the script
+# Fitted to worlds 101 to 104 without and 111 to 114 with [realism] scale = 1, 17 scans 10 m apart with each
 # of HDL-64E, HDL-32E, OS1-64, VLP-16, labelled by the true poles; and to the real drives, labelled by what all
-# their scans together show (pole-eval candidates). Tested on worlds 301 to 303 and 311 to 313, alike.
+# their scans together show (pole-eval features). Scored on worlds 401 to 403 and 411 to 413, alike, on the scans
+# 40 to 79 of kitti_raw_0005, and on each real drive by weights fitted to the others.
 # To take a result over: cp OUT/classifier.csv OUT/covariance.csv libpolemcl/src/core/extraction/
-# Programs: build/bin, or POLEMCL_BIN. Needs 15 minutes on 2 cores.
+# Programs: build/bin, or POLEMCL_BIN. Needs python3-sklearn and 10 minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -28,6 +29,7 @@ check_arguments 2 2 "$@"
 data=$1
 out=$2
 find_programs pole-simulate pole-eval
+/usr/bin/python3 -c 'import sklearn' 2>/dev/null || die "scikit-learn is needed: install python3-sklearn"
 mkdir -p "$out"
 
 # simulated SENSOR SEED SCALE: the table SENSOR-SEED.csv.
@@ -36,7 +38,7 @@ simulated() {
   rm -rf "$out/scans"
   "$bin/pole-simulate" --quiet --config "$(scan_line_settings "$1")" --output "$out/scans" --seed "$2" \
     --length 162 --set simulation.spacing_m=10 --set realism.scale="$3"
-  "$bin/pole-eval" candidates --quiet --config "$(scan_line_settings "$1")" --scans "$out/scans" \
+  "$bin/pole-eval" features --quiet --config "$(scan_line_settings "$1")" --scans "$out/scans" \
     --poles "$out/scans/poles_gt.csv" --output "$out/$1-$2.csv"
   rm -r "$out/scans"
 }
@@ -50,15 +52,22 @@ worlds() {
   done
 }
 
-# real DRIVE CONFIG OPTION...: the table DRIVE.csv, when the drive is there.
+# real NAME FOLDER CONFIG OPTION...: the table NAME.csv.
 real() {
-  drive=$1
-  config=$2
-  shift 2
-  [ -d "$data/$drive" ] && [ ! -f "$out/$drive.csv" ] || return 0
-  echo "$drive:"
-  "$bin/pole-eval" candidates --config "$top/config/$config.ini" --scans "$data/$drive" \
-    --output "$out/$drive.csv" "$@"
+  name=$1
+  folder=$2
+  config=$3
+  shift 3
+  [ -f "$out/$name.csv" ] || "$bin/pole-eval" features --quiet --config "$top/config/$config.ini" \
+    --scans "$folder" --output "$out/$name.csv" "$@"
+}
+
+# half NAME FIRST LAST: the table of these scans of kitti_raw_0005.
+half() {
+  link_scans "$data/kitti_raw_0005" "$out/part" "$2" "$3"
+  # shellcheck disable=SC2086 # several words
+  real "$1" "$out/part" kitti $turning
+  rm -r "$out/part"
 }
 
 # tables SEED...: those of these worlds.
@@ -68,26 +77,25 @@ tables() {
   done
 }
 
-fit="101 102 103 104 105 106" fit_real="111 112 113 114 115 116" test="301 302 303" test_real="311 312 313"
-[ "$quick" = no ] || fit=101 fit_real=111 test=301 test_real=311
+fit="101 102 103 104" fit_realism="111 112 113 114" test="401 402 403" test_realism="411 412 413"
+drives="kitti_raw_0005-first vlp16_loop nuscenes_scene" test_drives=$out/kitti_raw_0005-second.csv
+[ "$quick" = no ] || fit=101 fit_realism=111 test=401 test_realism="" drives="" test_drives=""
 # shellcheck disable=SC2086 # several words
 worlds 0 $fit $test
 # shellcheck disable=SC2086
-worlds 1 $fit_real $test_real
+worlds 1 $fit_realism $test_realism
 
-# These LiDARs turn clockwise, begin at the back, and are stamped when they face forward.
-turning="--set sensor.turn=clockwise --set sensor.cut_deg=180 --set sensor.stamp_turn=0.5"
-# shellcheck disable=SC2086
-real kitti_raw_0005 kitti $turning
-# shellcheck disable=SC2086
-real vlp16_loop vlp16 --sensor-pose "0 0 0 0 2.513 0.028" --set sensor.height_m=1.77 $turning
-real nuscenes_scene hdl32e --set sensor.height_m=1.84 --set sensor.min_range_m=2.5
+if [ "$quick" = no ]; then
+  # These LiDARs turn clockwise, begin at the back, and are stamped when they face forward.
+  turning="--set sensor.turn=clockwise --set sensor.cut_deg=180 --set sensor.stamp_turn=0.5"
+  half kitti_raw_0005-first 1 40
+  half kitti_raw_0005-second 41 80
+  # shellcheck disable=SC2086
+  real vlp16_loop "$data/vlp16_loop" vlp16 --sensor-pose "0 0 0 0 2.513 0.028" --set sensor.height_m=1.77 $turning
+  real nuscenes_scene "$data/nuscenes_scene" hdl32e --set sensor.height_m=1.84 --set sensor.min_range_m=2.5
+fi
 
-drives=
-for drive in kitti_raw_0005 vlp16_loop nuscenes_scene; do
-  [ ! -f "$out/$drive.csv" ] || drives="$drives $out/$drive.csv"
-done
 # shellcheck disable=SC2086,SC2046
-"$bin/pole-eval" train --candidates $(tables $fit $fit_real) $drives --test $(tables $test $test_real) \
-  --classifier "$out/classifier.csv" --covariance "$out/covariance.csv" --json "$out/report.json" |
-  tee "$out/table.txt"
+/usr/bin/python3 "$top/share/experiments/fit_classifier.py" $(tables $fit $fit_realism) \
+  $(for drive in $drives; do echo "$out/$drive.csv"; done) --test $(tables $test $test_realism) $test_drives \
+  --classifier "$out/classifier.csv" --covariance "$out/covariance.csv" --json "$out/scores.json"

@@ -11,7 +11,7 @@ struct ScaleWeight {
   CovarianceTerm term;
   double weight;
 };
-// The table is covariance.csv, in the form that pole-eval train writes.
+// The table is covariance.csv, which share/experiments/fit_classifier.py wrote.
 #define COVARIANCE_TERM(term, weight) {CovarianceTerm::term, weight},
 constexpr ScaleWeight kScaleWeights[] = {
 #include "core/extraction/covariance.inc"

@@ -18,7 +18,7 @@ struct Product {
   double weight;
 };
 
-// Both tables are classifier.csv, in the form that pole-eval train writes.
+// Both tables are classifier.csv, which share/experiments/fit_classifier.py wrote.
 #define CLASSIFIER_TERM(term, mean, scale, full, rough) {Term::term, mean, scale, full, rough},
 #define CLASSIFIER_PRODUCT(a, b, weight)
 constexpr Weight kWeights[] = {
@@ -42,10 +42,24 @@ constexpr bool inOrder() {
 }
 static_assert(inOrder(), "classifier.csv must list the terms in the order of ClassifierTerm");
 
-ClassifierTerms standardTerms(const PoleFeatures& f) {
-  return standardized(
-      classifierTerms(f), [](int i) { return kWeights[i].mean; },
-      [](int i) { return kWeights[i].scale; });
+/// What is measured by or after the fit of a cylinder is not known to roughOdds().
+constexpr bool roughIsKnownBeforeFit() {
+  for (const Term term : {Term::clutter, Term::excess, Term::radius, Term::density})
+    if (kWeights[static_cast<int>(term)].rough != 0) return false;
+  return true;
+}
+static_assert(roughIsKnownBeforeFit(), "classifier.csv weighs a term before it is known");
+
+/// Greatest distance of a term from its mean, in standard deviations; more counts as this.
+constexpr double kFarthestTerm = 3;
+
+/// The terms brought to mean 0 and variance 1, cut off at kFarthestTerm; the first one is 1.
+ClassifierTerms standardTerms(const PoleFeatures& features) {
+  ClassifierTerms terms = classifierTerms(features);
+  for (int i = 1; i < kClassifierTerms; ++i)
+    terms[i] = std::clamp((terms[i] - kWeights[i].mean) * kWeights[i].scale, -kFarthestTerm,
+                          kFarthestTerm);
+  return terms;
 }
 
 double& at(ClassifierTerms& t, Term term) {
@@ -61,11 +75,6 @@ const char* name(ClassifierTerm term) {
       "excess",  "highBottom",  "tilt",      "range",       "radius", "density"};
   static_assert(std::size(names) == kClassifierTerms);
   return names[static_cast<int>(term)];
-}
-
-bool knownBeforeFit(ClassifierTerm term) {
-  return term != Term::clutter && term != Term::excess && term != Term::radius &&
-         term != Term::density;
 }
 
 ClassifierTerms classifierTerms(const PoleFeatures& f) {

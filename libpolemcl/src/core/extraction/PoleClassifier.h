@@ -2,7 +2,6 @@
 /// \file PoleClassifier.h
 /// \brief How likely a candidate is a pole: logistic regression. Private to the library.
 
-#include <algorithm>
 #include <array>
 
 namespace polemcl {
@@ -58,24 +57,10 @@ enum class ClassifierTerm {
 constexpr int kClassifierTerms = static_cast<int>(ClassifierTerm::count_);
 using ClassifierTerms = std::array<double, kClassifierTerms>;
 
-/// \brief Greatest distance of a term from its mean, in standard deviations; more counts as this.
-constexpr double kFarthestTerm = 3;
-
 /// \brief Name as in classifier.csv.
 const char* name(ClassifierTerm term);
-/// \brief Whether the term is known before the fit, so that roughOdds() has it.
-bool knownBeforeFit(ClassifierTerm term);
 /// \brief The terms as they are, before they are brought to mean 0 and variance 1.
 ClassifierTerms classifierTerms(const PoleFeatures& features);
-
-/// \brief Terms brought to mean 0 and variance 1, cut off at kFarthestTerm; the first one is 1.
-/// \param mean, scale Functions of a term's index; the scale is 1 / standard deviation.
-template <class Mean, class Scale>
-ClassifierTerms standardized(ClassifierTerms terms, Mean mean, Scale scale) {
-  for (int i = 1; i < kClassifierTerms; ++i)
-    terms[i] = std::clamp((terms[i] - mean(i)) * scale(i), -kFarthestTerm, kFarthestTerm);
-  return terms;
-}
 
 /// \brief Log odds from what is known before the fit; clearly low ones need no fit.
 double roughOdds(const PoleFeatures& features);

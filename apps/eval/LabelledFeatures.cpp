@@ -1,4 +1,4 @@
-#include "eval/TrainingCandidates.h"
+#include "eval/LabelledFeatures.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include "core/common/Deskew.h"
 #include "core/common/Transform.h"
 #include "core/evaluation/MultiScanLabels.h"
+#include "core/extraction/CovarianceScale.h"
 #include "core/extraction/scan_line/ScanLineExtractor.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/dataset/ScanFolder.h"
 #include "io/file/AtomicFile.h"
-#include "io/file/CsvTable.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -20,35 +20,14 @@ namespace {
 constexpr double kPoleRadius = 0.3;   ///< a candidate this near to a true pole is one, m
 constexpr double kOtherRadius = 0.5;  ///< one farther away is something else; between is unsure
 constexpr double kSamePlace = 0.2;    ///< candidates nearer than this are one place, m
-
-struct Column {
-  const char* name;
-  double PoleFeatures::*value;
-};
-constexpr Column kColumns[] = {{"segments", &PoleFeatures::segments},
-                               {"points", &PoleFeatures::points},
-                               {"extent", &PoleFeatures::extent},
-                               {"passed", &PoleFeatures::passed},
-                               {"wide", &PoleFeatures::wide},
-                               {"not_whole", &PoleFeatures::notWhole},
-                               {"scatter", &PoleFeatures::scatter},
-                               {"width_spread", &PoleFeatures::widthSpread},
-                               {"tilt", &PoleFeatures::tilt},
-                               {"top", &PoleFeatures::top},
-                               {"missing_top", &PoleFeatures::missingTop},
-                               {"bottom", &PoleFeatures::bottom},
-                               {"rough_radius", &PoleFeatures::roughRadius},
-                               {"range", &PoleFeatures::range},
-                               {"column_width", &PoleFeatures::columnWidth},
-                               {"hidden_edges", &PoleFeatures::hiddenEdges},
-                               {"clutter", &PoleFeatures::clutter},
-                               {"residual", &PoleFeatures::residual},
-                               {"radius", &PoleFeatures::radius}};
+constexpr int kDigits = 9;            ///< significant ones in the table
+/// Terms of the covariance from here on do not depend on the weights.
+constexpr int kFirstMeasured = static_cast<int>(CovarianceTerm::residual);
 
 /// The scans of a drive with poses, corrected for motion where the timing is known.
-class TrainingDrive {
+class LabelledDrive {
  public:
-  TrainingDrive(const CandidatesOptions& options, const ScanTiming& timing)
+  LabelledDrive(const FeaturesOptions& options, const ScanTiming& timing)
       : m_mounting(options.T_robot_sensor),
         m_timing(timing),
         m_folder(std::filesystem::is_directory(options.scans / "velodyne")
@@ -94,8 +73,7 @@ struct FoundCandidate {
   Eigen::Vector2d place_map;
 };
 
-std::vector<FoundCandidate> findCandidates(const TrainingDrive& drive, std::size_t every,
-                                           const AllSettings& settings,
+std::vector<FoundCandidate> findCandidates(const LabelledDrive& drive, const AllSettings& settings,
                                            const Eigen::Matrix3d& R_robot_sensor) {
   ScanLineExtractor extractor(SensorModel(settings.sensor), settings.sensor,
                               settings.extraction.scanLine);
@@ -106,7 +84,7 @@ std::vector<FoundCandidate> findCandidates(const TrainingDrive& drive, std::size
   std::vector<FoundCandidate> all;
   std::vector<PoleDetection> poles;
   ExtractionReport report;
-  for (std::size_t i = 0; i < drive.size(); i += every) {
+  for (std::size_t i = 0; i < drive.size(); ++i) {
     const io::Cloud cloud = drive.cloud(i);
     poles.clear();
     report = {};
@@ -130,7 +108,7 @@ struct Label {
 };
 
 /// Labels by the true poles, which are upright in the map: compared at the height of the sensor.
-std::vector<Label> labelsByPoles(const TrainingDrive& drive,
+std::vector<Label> labelsByPoles(const LabelledDrive& drive,
                                  const std::vector<FoundCandidate>& found,
                                  const std::vector<WorldPole>& poles) {
   std::vector<Label> labels;
@@ -188,14 +166,14 @@ class Places {
 };
 
 /// Labels by what all scans of the drive show at the place of a candidate.
-std::vector<Label> labelsByConsistency(const TrainingDrive& drive,
-                                       const std::vector<FoundCandidate>& found,
-                                       const SensorOptions& sensor) {
+std::vector<Label> labelsByManyScans(const LabelledDrive& drive,
+                                     const std::vector<FoundCandidate>& found,
+                                     const SensorOptions& sensor) {
   Places places;
   std::vector<std::size_t> placeOf;
   placeOf.reserve(found.size());
   for (const FoundCandidate& each : found) placeOf.push_back(places.indexOf(each.place_map));
-  MultiScanLabels consistency(places.centres());
+  MultiScanLabels evidence(places.centres());
   const double topSlope = SensorModel(sensor).beam(0).slope;
   std::vector<Eigen::Vector3f> points_map;
   for (std::size_t i = 0; i < drive.size(); ++i) {
@@ -209,90 +187,71 @@ std::vector<Label> labelsByConsistency(const TrainingDrive& drive,
       points_map.push_back(T_map_lidar * Eigen::Vector3f(static_cast<float>(at.x()),
                                                          static_cast<float>(at.y()), cloud.z[k]));
     }
-    consistency.add(points_map, drive.T_map_lidar(i).translation(), topSlope);
+    evidence.add(points_map, drive.T_map_lidar(i).translation(), topSlope);
   }
-  const std::vector<Standing> verdicts = consistency.judge();
+  const std::vector<Standing> verdicts = evidence.judge();
   std::vector<Label> labels;
   labels.reserve(found.size());
   for (const std::size_t place : placeOf) labels.push_back({verdicts[place], std::nullopt});
   return labels;
 }
 
-void writeRow(std::ostream& out, const FoundCandidate& each, const Label& label) {
+/// The terms of both regressions but the constant one and the odds, which depend on the weights.
+void writeHeader(std::ostream& out, const FeaturesOptions& options, const std::string& sensor) {
+  out << "# sensor " << sensor << "\n# labels " << (options.poles ? "true_poles" : "many_scans")
+      << "\nscan,x,y,pole,squared_error,odds";
+  for (int i = 1; i < kClassifierTerms; ++i) out << ',' << name(static_cast<ClassifierTerm>(i));
+  for (int i = kFirstMeasured; i < kCovarianceTerms; ++i)
+    out << ",covariance_" << name(static_cast<CovarianceTerm>(i));
+  out << '\n';
+}
+
+void writeRow(std::ostream& out, const FoundCandidate& each, const Label& label,
+              double columnAngle) {
+  const double odds = poleOdds(each.candidate.features);
+  const ClassifierTerms terms = classifierTerms(each.candidate.features);
+  const CovarianceTerms scaleTerms = covarianceTerms(each.candidate.features, odds, columnAngle);
   out << each.scan << ',' << io::fixed(each.place_map.x(), 3) << ','
       << io::fixed(each.place_map.y(), 3) << ',' << (label.standing == Standing::pole) << ',';
-  if (label.squaredError) out << io::significant(*label.squaredError, 6);
-  for (const Column& column : kColumns)
-    out << ',' << io::significant(each.candidate.features.*column.value, 6);
+  if (label.squaredError) out << io::significant(*label.squaredError, kDigits);
+  out << ',' << io::significant(odds, kDigits);
+  for (int i = 1; i < kClassifierTerms; ++i) out << ',' << io::significant(terms[i], kDigits);
+  for (int i = kFirstMeasured; i < kCovarianceTerms; ++i)
+    out << ',' << io::significant(scaleTerms[i], kDigits);
   out << '\n';
 }
 
 void requireOwnFrame(const SensorOptions& sensor) {
   if (sensor.upsideDown || sensor.originX != 0 || sensor.originY != 0 || sensor.originZ != 0)
     throw Error(
-        "pole-eval candidates takes clouds in the LiDAR's own frame, upright: remove [sensor] "
+        "pole-eval features takes clouds in the LiDAR's own frame, upright: remove [sensor] "
         "upside_down and origin");
 }
 
 }  // namespace
 
-CandidatesSummary writeCandidates(const CandidatesOptions& options, const AllSettings& settings) {
+FeaturesSummary writeFeatures(const FeaturesOptions& options, const AllSettings& settings) {
   requireOwnFrame(settings.sensor);
-  const TrainingDrive drive(options, settings.sensor.timing);
-  const auto found =
-      findCandidates(drive, options.every, settings, options.T_robot_sensor.linear());
+  const LabelledDrive drive(options, settings.sensor.timing);
+  const auto found = findCandidates(drive, settings, options.T_robot_sensor.linear());
   const auto labels = options.poles
                           ? labelsByPoles(drive, found, io::readWorldPoles(*options.poles))
-                          : labelsByConsistency(drive, found, settings.sensor);
+                          : labelsByManyScans(drive, found, settings.sensor);
   io::AtomicFile file(options.output);
   std::ostream& out = file.stream();
-  out << "# sensor " << settings.sensor.model << "\n# labels "
-      << (options.poles ? "true_poles" : "consistency") << "\n# column_angle "
-      << io::significant(SensorModel(settings.sensor).columnAngle(), 9)
-      << "\nscan,x,y,pole,squared_error";
-  for (const Column& column : kColumns) out << ',' << column.name;
-  out << '\n';
-  CandidatesSummary summary;
-  summary.scans = (drive.size() + options.every - 1) / options.every;
+  const SensorModel sensor(settings.sensor);
+  writeHeader(out, options, settings.sensor.model);
+  FeaturesSummary summary;
+  summary.scans = drive.size();
   for (std::size_t i = 0; i < found.size(); ++i) {
     summary.poles += labels[i].standing == Standing::pole;
     summary.others += labels[i].standing == Standing::other;
     summary.unsure += labels[i].standing == Standing::unsure;
-    if (labels[i].standing != Standing::unsure) writeRow(out, found[i], labels[i]);
+    if (labels[i].standing != Standing::unsure)
+      writeRow(out, found[i], labels[i], sensor.columnAngle());
   }
   file.commit();
   return summary;
-}
-
-LabelledDrive readCandidates(const std::filesystem::path& file) {
-  LabelledDrive drive;
-  drive.name = file.stem().string();
-  double columnAngle = 0;
-  for (const std::string& line : io::readLines(file)) {
-    if (line.rfind("# sensor ", 0) == 0) drive.sensor = line.substr(9);
-    if (line.rfind("# labels ", 0) == 0) drive.real = line.substr(9) == "consistency";
-    if (line.rfind("# column_angle ", 0) == 0)
-      columnAngle = io::parseNumber(line.substr(15)).value_or(0);
-    if (line.empty() || line[0] != '#') break;
-  }
-  if (drive.sensor.empty() || columnAngle <= 0)
-    throw Error(file.string() + ": is no table of pole-eval candidates; its head names no sensor");
-  const io::CsvTable table(file);
-  const std::size_t pole = table.column("pole"), error = table.column("squared_error");
-  std::vector<std::size_t> columns;
-  columns.reserve(std::size(kColumns));
-  for (const Column& column : kColumns) columns.push_back(table.column(column.name));
-  drive.candidates.reserve(table.rows());
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    LabelledCandidate each;
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      each.features.*kColumns[k].value = table.number(row, columns[k]);
-    each.columnAngle = columnAngle;
-    each.pole = table.count(row, pole) == 1;
-    if (!table.text(row, error).empty()) each.squaredError = table.number(row, error);
-    drive.candidates.push_back(each);
-  }
-  return drive;
 }
 
 }  // namespace polemcl::apps

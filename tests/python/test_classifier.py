@@ -1,0 +1,99 @@
+"""share/experiments/fit_classifier.py finds the weights that made up a table of features."""
+
+import importlib.util
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+HAS_SKLEARN = importlib.util.find_spec("sklearn") is not None
+TERMS = ["extent", "clutter", "tilt"]
+SCALE_TERMS = ["covariance_tilt", "covariance_range"]
+
+
+def script():
+    specification = importlib.util.spec_from_file_location(
+        "fit_classifier", SOURCE / "share/experiments/fit_classifier.py")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+@unittest.skipUnless(HAS_SKLEARN, "python3-sklearn is not installed")
+class FitClassifier(unittest.TestCase):
+    """Labels drawn with odds -0.5 + 2 extent - clutter + 0.8 extent * tilt; errors of the scale exp(-1 + tilt)."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.fit = script()
+
+    def table(self, name, seed, rows=30000):
+        random = np.random.default_rng(seed)
+        terms, scale_terms = random.normal(size=(rows, 3)), random.uniform(size=(rows, 2))
+        odds = -0.5 + 2 * terms[:, 0] - terms[:, 1] + 0.8 * terms[:, 0] * terms[:, 2]
+        poles = random.uniform(size=rows) < 1 / (1 + np.exp(-odds))
+        errors = np.exp(-1 + scale_terms[:, 0]) * random.chisquare(2, size=rows)
+        lines = ["# sensor hdl32e", "# labels true_poles",
+                 ",".join(["scan,x,y,pole,squared_error,odds", *TERMS, *SCALE_TERMS])]
+        for i in range(rows):
+            cells = [0, 1, 2, int(poles[i]), errors[i] if poles[i] else "", odds[i], *terms[i], *scale_terms[i]]
+            lines.append(",".join(map(str, cells)))
+        (self.folder / name).write_text("\n".join(lines) + "\n")
+        return self.fit.Drive(self.folder / name)
+
+    def test_finds_the_weights_that_drew_the_labels(self):
+        drive = self.table("a.csv", 1)
+        classifier = self.fit.Classifier([drive], 1, ridge=1e-3, products=1)
+        self.assertEqual(classifier.pairs, [(0, 2)])
+        # Weights belong to terms of variance 1 by the sample; the standard errors are about 0.03.
+        np.testing.assert_allclose(classifier.full, [-0.5, 2, -1, 0, 0.8], atol=0.1)
+        self.assertEqual(classifier.rough[2], 0)  # clutter is not known before the fit
+        test = self.table("b.csv", 2, 5000)
+        self.assertLess(self.fit.score(test, classifier.odds(test))["log_loss"],
+                        self.fit.score(test, test.built_in)["log_loss"] + 0.003)
+
+    def test_finds_the_scale_of_the_errors(self):
+        drive = self.table("a.csv", 3)
+        classifier = self.fit.Classifier([drive], 1, ridge=1e-3, products=1)
+        self.fit.write_covariance(self.folder / "covariance.csv", [drive], 1, classifier)
+        rows = (self.folder / "covariance.csv").read_text().split("term,weight\n")[1].split()
+        fitted = dict(row.split(",") for row in rows)
+        self.assertEqual(list(fitted), ["one", "odds", "tilt", "range"])
+        np.testing.assert_allclose([float(value) for value in fitted.values()], [-1, 0, 1, 0], atol=0.12)
+
+    def test_a_table_that_is_read_again_has_the_same_weights(self):
+        drive = self.table("a.csv", 4, 2000)
+        classifier = self.fit.Classifier([drive], 1, products=2)
+        classifier.write(self.folder / "classifier.csv")
+        lines = (self.folder / "classifier.csv").read_text().splitlines()
+        rows = [line.split(",") for line in lines[lines.index("term,mean,scale,full,rough") + 1 :]]
+        self.assertEqual([row[0] for row in rows[:4]], ["one", *TERMS])
+        self.assertEqual(len(rows), 4 + 2)
+        written = [float(row[3]) for row in rows[:4]] + [float(row[1]) for row in rows[4:]]
+        np.testing.assert_allclose(written, classifier.full, rtol=1e-5)
+
+    def test_sensors_weigh_alike(self):
+        drives = [self.table("a.csv", 5, 300), self.table("b.csv", 6, 100), self.table("c.csv", 7, 200)]
+        drives[2].sensor, drives[2].real = "vlp16", True
+        weights = self.fit.sample_weights(drives, 4)
+        self.assertAlmostEqual(weights[:400].sum(), weights[400:].sum())
+        self.assertAlmostEqual(weights.mean(), 1)
+        drives[1].real = True
+        weights = self.fit.sample_weights(drives, 4)
+        self.assertAlmostEqual(weights[300] / weights[0], 4)
+
+    def test_refuses_tables_without_known_errors(self):
+        drive = self.table("a.csv", 8, 500)
+        drive.errors[:] = np.nan
+        classifier = self.fit.Classifier([drive], 1, products=0)
+        with self.assertRaisesRegex(SystemExit, "no pole has a known error"):
+            self.fit.write_covariance(self.folder / "covariance.csv", [drive], 1, classifier)
+        self.assertFalse((self.folder / "covariance.csv").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
