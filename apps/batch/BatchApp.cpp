@@ -19,7 +19,6 @@
 #include "cli/CommandLine.h"
 #include "cli/Messages.h"
 #include "cli/Progress.h"
-#include "cli/ProgressLog.h"
 #include "io/file/Bytes.h"
 
 namespace polemcl::apps {
@@ -35,14 +34,12 @@ std::size_t jobsOf(const BatchOptions& options) {
 Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
                  const std::vector<const BatchTask*>& open) {
   const std::size_t all = plan.tasks.size();
-  Progress progress("batch", all, options.quiet || !errorsAreOnTerminal());
-  ProgressLogger log("batch", all, all - open.size(), options.quiet);
+  Progress progress("batch", all, options.quiet);
   return runBatch(folder, open, all, {jobsOf(options), options.imports},
                   [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
                     if (!outcome.failure.empty() && !outcome.blocked)
                       progress.say("pole-batch: " + task.id + " failed: " + outcome.failure);
                     progress.update(now.done + now.failed);
-                    log.update(now.done, now.failed);
                   });
 }
 
@@ -56,12 +53,8 @@ Failures runThere(const BatchOptions& options, const BatchFolder& folder, const 
                   const std::vector<const BatchTask*>& open) {
   SlurmOptions slurm;
   slurm.arguments = options.sbatch;
-  Progress progress("batch on Slurm", open.size(), options.quiet || !errorsAreOnTerminal());
-  ProgressLogger log("batch on Slurm", open.size(), 0, options.quiet);
-  runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) {
-    progress.update(done);
-    log.update(done, 0);
-  });
+  Progress progress("batch on Slurm", open.size(), options.quiet);
+  runOnSlurm(folder, plan, open, slurm, [&](std::size_t done) { progress.update(done); });
   Failures failures;
   for (const auto* task : open) {
     if (folder.isDone(*task) || isBlocked(folder, plan, *task)) continue;
@@ -180,11 +173,20 @@ void endWithAHint(int signal) {
   std::raise(signal);
 }
 
+const Guides kBatchGuides{
+    {"",
+     {{"pole-batch batches/year.ini --output year",
+       "pole-batch batches/kitti.ini --data KITTI --output kitti --jobs 4 --resume"},
+      "Open report.html in the folder of the batch. After an interruption, go on with "
+      "--resume."}},
+};
+
 }  // namespace
 
 int batchMain(int argc, const char* const* argv) {
   CommandLine line("pole-batch",
-                   "Imports, maps and localizes sessions x settings x runs, and writes a report.");
+                   "Imports, maps and localizes sessions x settings x runs, and writes a report.",
+                   kBatchGuides);
   BatchOptions options;
   std::string task;
   bool dry = false;

@@ -10,9 +10,7 @@
 #include <optional>
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
-#include "cli/HelpFormatter.h"
 #include "cli/Messages.h"
-#include "cli/OptionText.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
 #include "cli/Settings.h"
@@ -23,9 +21,7 @@
 namespace polemcl::apps {
 namespace {
 
-constexpr double s_largest = 1e6;  // of metres, seconds and the like
-
-const std::function<void(CLI::App&)>* s_visitor = nullptr;  // of visitOptions()
+constexpr double kLargest = 1e6;  // of metres, seconds and the like
 
 /// What broken files bring into messages becomes question marks.
 std::string printable(const std::string& text) {
@@ -39,76 +35,46 @@ std::string printable(const std::string& text) {
   return clean;
 }
 
-bool lacksSubcommand(const CLI::App& cli) {
-  return cli.get_require_subcommand_min() > 0 && cli.get_subcommands().empty();
-}
-
-std::string subcommandNames(const CLI::App& cli) {
-  std::string names;
-  for (const CLI::App* command : subcommandsOf(cli))
-    names += (names.empty() ? "" : ", ") + command->get_name();
-  return names;
-}
-
-/// Declares `--print-config` where `--config` is declared; whether it is anywhere.
-bool offerPrintConfig(CLI::App& app) {
-  bool offered = app.get_option_no_throw("--config") != nullptr;
-  if (offered && app.get_option_no_throw("--print-config") == nullptr) {
-    auto* print = app.add_flag("--print-config", "Print the effective settings, and end");
-    app.add_flag("--all", "Print the expert settings, too")->needs(print);
-  }
-  for (CLI::App* below : app.get_subcommands({})) offered |= offerPrintConfig(*below);
-  return offered;
-}
-
-/// What `--print-config` prints.
+/// What `--print-config` asks for; thrown as soon as it is parsed, so that nothing else is
+/// required.
 struct PrintRequest {
   std::string config;
   std::vector<std::string> assignments;
-  bool all = false;
+  Tier tier;
 };
 
-/// The request of a command line, if it has one. Its other arguments do not matter, so that none of
-/// them is required. \throws CLI::ParseError without `--config`.
-std::optional<PrintRequest> printRequest(int argc, const char* const* argv) {
-  const auto isRequest = [](const char* argument) {
-    return std::string(argument) == "--print-config";
+/// Declares `--print-config` wherever `--config` is declared.
+void offerPrintConfig(CLI::App& app) {
+  for (CLI::App* below : app.get_subcommands({})) offerPrintConfig(*below);
+  const CLI::Option* config = app.get_option_no_throw("--config");
+  if (!config) return;
+  const auto request = [&app, config] {
+    if (config->results().empty()) throw CLI::RequiredError("--config");
+    const CLI::Option* set = app.get_option_no_throw("--set");
+    throw PrintRequest{config->results().front(), set ? set->results() : std::vector<std::string>(),
+                       app.count("--all") > 0 ? Tier::expert : Tier::tuning};
   };
-  if (std::none_of(argv, argv + argc, isRequest)) return std::nullopt;
-  CLI::App cli;
-  PrintRequest request;
-  cli.allow_extras();
-  cli.add_option("--config", request.config)->required();
-  addSetOption(cli, request.assignments);
-  cli.add_flag("--print-config");
-  cli.add_flag("--all", request.all);
-  cli.parse(argc, argv);
-  return request;
+  auto* print =
+      app.add_flag_callback("--print-config", request, "Print the effective settings, and end");
+  app.add_flag("--all", "Print the expert settings, too")->needs(print);
 }
 
 void printConfig(const PrintRequest& request) {
-  std::cout << settingsText(loadSettings(request.config, request.assignments),
-                            request.all ? Tier::expert : Tier::tuning);
+  std::cout << settingsText(loadSettings(request.config, request.assignments), request.tier);
 }
 
-/// The message of a wrong command line; where values are missing or too many, also what the option
-/// takes.
-std::string explained(const CLI::App& cli, const CLI::ParseError& error) {
-  const std::string what = error.what();
-  if (error.get_name() != "ArgumentMismatch") return what;
-  const std::string name = what.substr(0, what.find(':'));
-  auto apps = cli.get_subcommands();
-  apps.insert(apps.begin(), const_cast<CLI::App*>(&cli));
-  for (const auto* app : apps)
-    if (const auto* option = app->get_option_no_throw(name))
-      return what + "; it takes " + option->get_type_name();
-  return what;
+/// What is wrong with a command line; where a subcommand is missing, which ones there are.
+std::string problemOf(const CLI::App& cli, const CLI::ParseError& error) {
+  if (cli.get_require_subcommand_min() == 0 || !cli.get_subcommands().empty()) return error.what();
+  std::vector<std::string> names;
+  for (const CLI::App* command : cli.get_subcommands({})) names.push_back(command->get_name());
+  return "a subcommand is needed: " + CLI::detail::join(names, ", ");
 }
 
 }  // namespace
 
-CommandLine::CommandLine(const std::string& program, const std::string& description)
-    : m_program(program), m_cli(description, program) {
+CommandLine::CommandLine(const std::string& program, const std::string& description, Guides guides)
+    : m_program(program), m_cli(description, program), m_guides(std::move(guides)) {
   forgetOutputs();
   m_cli.formatter(std::make_shared<HelpFormatter>());
   m_cli.set_help_flag("-h,--help", "Print this help, and end");
@@ -126,32 +92,31 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
 }
 
 int CommandLine::usageError(const std::string& what) const {
-  std::cerr << m_program << ": " << coloured(Colour::red, oneLine(what)) << "\nTry `" << m_program
+  std::string command = m_program;
+  for (const CLI::App* chosen : m_cli.get_subcommands()) command += ' ' + chosen->get_name();
+  std::cerr << m_program << ": " << coloured(Colour::red, oneLine(what)) << "\nTry `" << command
             << " --help`.\n";
   return exitUsage;
 }
 
 int CommandLine::run(int argc, const char* const* argv, const std::function<void()>& work) {
-  std::optional<PrintRequest> request;
   try {
-    const bool offered = offerPrintConfig(m_cli);
-    if (s_visitor) {
-      (*s_visitor)(m_cli);
-      return exitDone;
-    }
-    if (offered) request = printRequest(argc, argv);
-    if (!request) m_cli.parse(argc, argv);
+    for (const auto& [name, guide] : m_guides)
+      (name.empty() ? &m_cli : m_cli.get_subcommand(name))->footer(guideText(guide));
+    offerPrintConfig(m_cli);
+    m_cli.parse(argc, argv);
     requireDistinctOutputs(m_cli);
+  } catch (const PrintRequest& request) {
+    return this->work([&] { printConfig(request); });
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
-      return usageError(lacksSubcommand(m_cli) ? "a subcommand is needed: " + subcommandNames(m_cli)
-                                               : explained(m_cli, e));
+      return usageError(problemOf(m_cli, e));
     m_cli.exit(e);  // prints what --help or --version ask for
     return exitDone;
   }
   return this->work([&] {
     requireInputsKept(m_cli);
-    request ? printConfig(*request) : work();
+    work();
   });
 }
 
@@ -190,14 +155,6 @@ int CommandLine::run(int argc, const char* const* argv, const std::vector<Subcom
   });
 }
 
-void visitOptions(int (*program)(int argc, const char* const* argv), const char* name,
-                  const std::function<void(CLI::App&)>& visit) {
-  s_visitor = &visit;
-  const char* const argv[] = {name, nullptr};
-  program(1, argv);
-  s_visitor = nullptr;
-}
-
 void addSetOption(CLI::App& cli, std::vector<std::string>& assignments) {
   cli.add_option("--set", assignments, "Replaces a setting of the INI file; may be repeated")
       ->type_name("SECTION.KEY=VALUE")
@@ -209,7 +166,7 @@ CLI::Validator positiveNumber() {
   return {
       [](std::string& text) {
         double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= s_largest;
+        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= kLargest;
         return good ? std::string() : "allowed is a number above 0, up to 1e6, not '" + text + "'";
       },
       "above 0"};
@@ -224,15 +181,9 @@ std::string oneLine(const std::string& message) {
     text = text.substr(at + label.size());
     text = text.substr(0, text.find("\nLocation:"));
   }
+  std::istringstream words(text);
   std::string line;
-  for (char c : text) {
-    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
-    if (!blank)
-      line += c;
-    else if (!line.empty() && line.back() != ' ')
-      line += ' ';
-  }
-  if (!line.empty() && line.back() == ' ') line.pop_back();
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
   return printable(line);
 }
 

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/HelpFormatter.h"
+
 namespace polemcl::apps {
 
 /// \brief What a program ends with.
@@ -32,12 +34,12 @@ struct Subcommand {
 ///
 /// Use: declare options on `cli()`, then `return line.run(argc, argv, [&] { work(options); });`.
 /// `--quiet` also works behind a subcommand. Where a program declares `--config`, run() adds
-/// `--print-config` and `--all`. Examples for `--help` stand in Guides.cpp.
+/// `--print-config` and `--all`.
 class CommandLine {
  public:
   /// \param program Name as the user types it, such as `pole-map`.
-  /// \param description One sentence for `--help`.
-  CommandLine(const std::string& program, const std::string& description);
+  /// \param description One sentence for `--help`. \param guides For `--help` of all subcommands.
+  CommandLine(const std::string& program, const std::string& description, Guides guides = {});
 
   /// \brief CLI11's application, to declare options and subcommands on.
   CLI::App& cli() { return m_cli; }
@@ -57,14 +59,10 @@ class CommandLine {
 
   std::string m_program;
   CLI::App m_cli;
+  Guides m_guides;
   bool m_quiet = false, m_verbose = false;
   int m_threads = 0;  ///< at most; 0: one for each core
 };
-
-/// \brief Calls `visit` with the options that a program declares; the program does no work.
-/// \param program Its main function.
-void visitOptions(int (*program)(int argc, const char* const* argv), const char* name,
-                  const std::function<void(CLI::App&)>& visit);
 
 /// \brief Options for files and folders, in place of CLI11's add_option(): completion and `--help`
 /// tell them apart.

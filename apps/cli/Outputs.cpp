@@ -15,9 +15,11 @@ std::map<const CLI::Option*, std::vector<std::string>>& outputs() {
   return options;
 }
 
+/// A file that the command line names.
 struct NamedFile {
   std::string option;
   fs::path file;
+  bool isWritten;
 };
 
 /// Whether the new map takes the place of the one that it continues or converts.
@@ -26,41 +28,33 @@ bool continues(const NamedFile& out, const NamedFile& in) {
          (in.option == "--add" || in.option == "--map" || in.option == "input");
 }
 
-bool isSame(const fs::path& a, const fs::path& b) {
+bool isSame(const NamedFile& a, const NamedFile& b) {
   std::error_code ignored;
-  return fs::equivalent(a, b, ignored) || fs::weakly_canonical(fs::absolute(a), ignored) ==
-                                              fs::weakly_canonical(fs::absolute(b), ignored);
+  return fs::equivalent(a.file, b.file, ignored) ||
+         fs::weakly_canonical(fs::absolute(a.file), ignored) ==
+             fs::weakly_canonical(fs::absolute(b.file), ignored);
 }
 
-/// What an option names, and what is written beside it.
-std::vector<NamedFile> namedBy(const CLI::Option& option, const std::vector<std::string>& beside) {
-  std::vector<NamedFile> files;
+/// Adds what an option names, and what is written beside it.
+void addFilesOf(const CLI::Option& option, std::vector<NamedFile>& files) {
+  const std::string type = option.get_type_name();
+  const auto output = outputs().find(&option);
+  const bool isWritten = output != outputs().end();
+  if (!isWritten && type != "FILE" && type != "FOLDER" && type != "INI") return;
   for (const std::string& value : option.results()) {
+    files.push_back({option.get_name(), value, isWritten});
+    if (!isWritten) continue;
     const std::string stem = (fs::path(value).parent_path() / fs::path(value).stem()).string();
-    files.push_back({option.get_name(), value});
-    for (const std::string& name : beside) files.push_back({option.get_name(), stem + name});
+    for (const std::string& end : output->second)
+      files.push_back({option.get_name(), stem + end, isWritten});
   }
-  return files;
 }
 
-struct Files {
-  std::vector<NamedFile> read, written;
-};
-
-Files filesOf(const CLI::App& cli) {
-  Files files;
-  std::vector<const CLI::App*> apps{&cli};
-  for (const CLI::App* command : cli.get_subcommands()) apps.push_back(command);
-  for (const CLI::App* app : apps)
-    for (const CLI::Option* option : app->get_options()) {
-      const std::string type = option->get_type_name();
-      const auto output = outputs().find(option);
-      const bool isWritten = output != outputs().end();
-      if (!isWritten && type != "FILE" && type != "FOLDER" && type != "INI") continue;
-      auto& list = isWritten ? files.written : files.read;
-      for (auto& file : namedBy(*option, isWritten ? output->second : std::vector<std::string>()))
-        list.push_back(std::move(file));
-    }
+std::vector<NamedFile> filesOf(const CLI::App& cli) {
+  std::vector<NamedFile> files;
+  for (const CLI::Option* option : cli.get_options()) addFilesOf(*option, files);
+  for (const CLI::App* command : cli.get_subcommands())
+    for (const CLI::Option* option : command->get_options()) addFilesOf(*option, files);
   return files;
 }
 
@@ -76,18 +70,18 @@ CLI::Option* markOutput(CLI::Option* option, const std::vector<std::string>& bes
 }
 
 void requireDistinctOutputs(const CLI::App& cli) {
-  const Files files = filesOf(cli);
-  for (std::size_t i = 0; i < files.written.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (isSame(files.written[i].file, files.written[k].file))
-        throw CLI::ValidationError(files.written[i].file.string(), "is given for two outputs");
+  const auto files = filesOf(cli);
+  for (auto a = files.begin(); a != files.end(); ++a)
+    for (auto b = files.begin(); b != a; ++b)
+      if (a->isWritten && b->isWritten && isSame(*a, *b))
+        throw CLI::ValidationError(a->file.string(), "is given for two outputs");
 }
 
 void requireInputsKept(const CLI::App& cli) {
-  const Files files = filesOf(cli);
-  for (const auto& out : files.written)
-    for (const auto& in : files.read)
-      if (!continues(out, in) && isSame(out.file, in.file))
+  const auto files = filesOf(cli);
+  for (const auto& out : files)
+    for (const auto& in : files)
+      if (out.isWritten && !in.isWritten && !continues(out, in) && isSame(out, in))
         throw Error(out.option + " " + out.file.string() + ": is an input (" + in.option +
                     "); give another name");
 }

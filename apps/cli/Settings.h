@@ -2,7 +2,6 @@
 /// \file Settings.h
 /// \brief One INI serves all programs: the union of all option structs.
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -43,10 +42,5 @@ AllSettings settingsFrom(ConfigFile file, const std::vector<std::string>& assign
 std::string settingsText(const AllSettings& settings, Tier most = Tier::expert);
 /// \brief Writes settingsText(), atomically. \throws Error when it cannot be written.
 void saveSettings(const AllSettings& settings, const std::string& path);
-
-/// \brief The reference pages of all settings: names of files in share/doc and their Markdown.
-/// settings.md says what is where; each other page has sections, as tables with key, default,
-/// allowed values, tier and meaning.
-std::map<std::string, std::string> settingsPages();
 
 }  // namespace polemcl::apps

@@ -100,6 +100,73 @@ std::string against(const std::filesystem::path& result, const std::filesystem::
   return result.string() + " against " + truth.string() + ": ";
 }
 
+/// By subcommand; the first one is that of the program.
+const Guides kEvalGuides{
+    {"",
+     {{"pole-eval trajectory --truth drive.tum --estimate out/run_00.tum --map street.polemap "
+       "--png run.png",
+       "pole-eval map --truth scans/poles_gt.csv --map street.polemap --one-to-one"},
+      "See the options of one subcommand, such as pole-eval map --help."}},
+    {"map",
+     {{"pole-eval map --truth scans/poles_gt.csv --map street.polemap --one-to-one --radius 0.5 "
+       "--json score.json"},
+      "If too few poles are found, see the settings in [map]: pole-map build --config demo.ini "
+      "--print-config."}},
+    {"trajectory",
+     {{"pole-eval trajectory --truth drive.tum --estimate out/run_00.tum --per metre --map "
+       "street.polemap --png run.png"},
+      "See whether the errors fit the covariances: pole-eval consistency --help."}},
+    {"detections",
+     {{"pole-eval detections --scans scans --poles poles.rawlog --json detections.json"},
+      "See how often poles are found again: pole-eval repeatability --help."}},
+    {"repeatability",
+     {{"pole-eval repeatability --poles poles.rawlog --truth drive.tum"},
+      "Check the true poses: pole-eval motion --help."}},
+    {"rotation",
+     {{"pole-eval rotation --config demo.ini --input drive.rawlog --every 10"},
+      "Compare with another configuration, such as paper/kitti.ini."}},
+    {"model",
+     {{"pole-eval model --drives a0.rawlog a1.rawlog b0.rawlog b1.rawlog --model my.json"},
+      "Simulate long drives with it: pole-simulate --config hdl32e.ini --set "
+      "simulation.detections=my.json --length 1000 --poles long.rawlog."}},
+    {"sightings",
+     {{"pole-eval sightings --poles drive.rawlog --json sightings.json"},
+      "Fit a model of detections to such drives: pole-eval model --help."}},
+    {"mrpt-truth",
+     {{"pole-eval mrpt-truth --truth drive.tum --output truth.txt"},
+      "Name it in the settings of pf-localization: ground_truth_path_file = truth.txt."}},
+    {"motion",
+     {{"pole-eval motion --poles poles.rawlog --truth drive.tum --every 4"},
+      "If the poses disagree, mend the times or the poses of the dataset before you build a "
+      "map."}},
+    {"global",
+     {{"pole-eval global --config demo.ini --map street.polemap --input poles.rawlog --truth "
+       "drive.tum --trials 50"},
+      "See the settings in [global]: pole-eval global --config demo.ini --print-config."}},
+    {"starts",
+     {{"pole-eval starts --config demo.ini --map street.polemap --input poles.rawlog --truth "
+       "drive.tum --trials 50"},
+      "Start without any pose: pole-eval global --help."}},
+    {"consistency",
+     {{"pole-eval consistency --truth drive.tum --cov out/run_00_cov.csv --health "
+       "out/run_00_health.csv"},
+      "If the errors are larger than the covariances say, state the error of the truth "
+      "(--truth-sigma-m), or check it: pole-eval motion --help."}},
+    {"faults",
+     {{"pole-eval faults --config demo.ini --map street.polemap --input poles.rawlog --truth "
+       "drive.tum --fault kidnap --trials 50"},
+      "Compare with a drive without a fault: --fault none."}},
+    {"candidates",
+     {{"pole-eval candidates --config hdl32e.ini --scans scans --poles scans/poles_gt.csv "
+       "--output candidates.csv"},
+      "Fit weights to the tables of several drives: pole-eval train --help."}},
+    {"train",
+     {{"pole-eval train --candidates a.csv b.csv --test c.csv --classifier weights.csv "
+       "--covariance scale.csv"},
+      "The weights are compiled into the library: see share/experiments/train-classifier.sh in "
+      "the sources."}},
+};
+
 }  // namespace
 
 MapScore evalMap(const EvalMapOptions& options) {
@@ -144,7 +211,8 @@ TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
 }
 
 int evalMain(int argc, const char* const* argv) {
-  CommandLine line("pole-eval", "Scores pole maps, trajectories, extractors and localization.");
+  CommandLine line("pole-eval", "Scores pole maps, trajectories, extractors and localization.",
+                   kEvalGuides);
   std::vector<Subcommand> commands{mapCommand(line.cli()), trajectoryCommand(line.cli())};
   for (auto& command : extractionCommands(line.cli())) commands.push_back(std::move(command));
   for (auto& command : localizationCommands(line.cli())) commands.push_back(std::move(command));

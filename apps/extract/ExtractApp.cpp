@@ -191,11 +191,21 @@ void runInspection(const InspectOptions& options, bool quiet) {
     std::cout << "written           " << options.writeConfig->string() << '\n';
 }
 
+const Guides kExtractGuides{
+    {"",
+     {{"pole-extract --config demo.ini --input drive.rawlog --output poles.rawlog --csv "
+       "poles.csv --png scan.png",
+       "pole-extract --inspect drive.rawlog --write-config my.ini"},
+      "Rawlogs of poles take the place of rawlogs of scans: pole-map build --config demo.ini "
+      "--input poles.rawlog --truth drive.tum --output street.polemap."}},
+};
+
 }  // namespace
 
 int extractMain(int argc, const char* const* argv) {
   CommandLine line("pole-extract",
-                   "Extracts the poles of every scan of a rawlog, or inspects its LiDAR.");
+                   "Extracts the poles of every scan of a rawlog, or inspects its LiDAR.",
+                   kExtractGuides);
   ExtractOptions options;
   InspectOptions inspection;
   std::string config;

@@ -155,10 +155,51 @@ void printImport(const ImportReport& report, const ImportOptions& options) {
   for (const auto& note : report.notes) std::cout << "note: " << note << '\n';
 }
 
+/// By subcommand; the first one is that of the program.
+const Guides kImportGuides{
+    {"",
+     {{"pole-import folder --input scans --output drive.rawlog",
+       "pole-import kitti-odometry --input dataset/sequences/00 --output 00.rawlog"},
+      "See the options of one dataset, such as pole-import folder --help."}},
+    {"folder",
+     {{"pole-import folder --input scans --output drive.rawlog",
+       "pole-import folder --input scans --output odd.rawlog --every 2 --offset 1 "
+       "--odometry-noise 0.02 --seed 7"},
+      "Build a map of the drive: pole-map build --config demo.ini --input drive.rawlog --truth "
+      "drive.tum --output street.polemap."}},
+    {"kitti-odometry",
+     {{"pole-import kitti-odometry --input dataset/sequences/00 --output 00.rawlog "
+       "--odometry-noise 0.02"},
+      "Build a map of the drive, with the configuration kitti.ini: pole-map build --help."}},
+    {"kitti-raw",
+     {{"pole-import kitti-raw --input 2011_09_26/2011_09_26_drive_0009_sync --output "
+       "0009.rawlog"},
+      "Build a map of the drive, with the configuration kitti.ini: pole-map build --help."}},
+    {"nclt",
+     {{"pole-import nclt --input 2012-01-15 --output 2012-01-15.rawlog",
+       "pole-import nclt --input NCLT --session 2012-01-15 --output 2012-01-15.rawlog"},
+      "Build a map of the session, with the configuration nclt.ini: pole-map build --help."}},
+    {"mulran",
+     {{"pole-import mulran --input KAIST01 --output kaist01.rawlog --odometry-noise 0.02 --seed "
+       "7"},
+      "Build a map of the sequence, with the configuration mulran.ini: pole-map build --help."}},
+    {"pcd",
+     {{"pole-import pcd --input scans --output drive.rawlog --turn clockwise"},
+      "Find out about the LiDAR: pole-extract --inspect drive.rawlog --write-config my.ini. Then "
+      "build a map: pole-map build --help."}},
+    {"rosbag2",
+     {{"pole-import rosbag2 --input bag --output drive.rawlog",
+       "pole-import rosbag2 --input bag --output drive.rawlog --cloud-topic /points --imu-topic "
+       "/imu --poses truth.tum"},
+      "Find out about the LiDAR: pole-extract --inspect drive.rawlog --write-config my.ini. Then "
+      "build a map: pole-map build --help."}},
+};
+
 }  // namespace
 
 int importMain(int argc, const char* const* argv) {
-  CommandLine line("pole-import", "Turns a LiDAR dataset into a rawlog, with the truth beside it.");
+  CommandLine line("pole-import", "Turns a LiDAR dataset into a rawlog, with the truth beside it.",
+                   kImportGuides);
   ImportOptions options;
   Texts texts;
   line.cli().require_subcommand(1);

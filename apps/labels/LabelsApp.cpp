@@ -51,6 +51,13 @@ void addLabelsOptions(CLI::App& cli, LabelsOptions& options) {
   number("--min-points", labels.minPoints, "Least number of points of a pole");
 }
 
+const Guides kLabelsGuides{
+    {"",
+     {{"pole-labels --input dataset/sequences/00 --output 00-truth.polemap"},
+      "Score a map with it: pole-eval map --truth 00-truth.polemap --map 00.polemap "
+      "--one-to-one."}},
+};
+
 }  // namespace
 
 LabelsSummary mapLabels(const LabelsOptions& options,
@@ -78,7 +85,8 @@ LabelsSummary mapLabels(const LabelsOptions& options,
 
 int labelsMain(int argc, const char* const* argv) {
   CommandLine line("pole-labels",
-                   "Builds a map of the true poles from the labels and poses of SemanticKITTI.");
+                   "Builds a map of the true poles from the labels and poses of SemanticKITTI.",
+                   kLabelsGuides);
   LabelsOptions options;
   addLabelsOptions(line.cli(), options);
   return line.run(argc, argv, [&] {

@@ -8,7 +8,6 @@
 #include "cli/Messages.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
-#include "cli/RunFolder.h"
 #include "cli/Settings.h"
 #include "core/common/Angles.h"
 #include "core/common/Binder.h"
@@ -19,6 +18,7 @@
 #include "localize/LocalizeReport.h"
 #include "localize/Pace.h"
 #include "localize/PoseStream.h"
+#include "localize/RunFolder.h"
 #include "localize/RunView.h"
 #include "localize/TrialDrive.h"
 #include "localize/TurnCheck.h"
@@ -231,11 +231,24 @@ void addViewOptions(CLI::App& cli, LocalizeJob& job) {
       ->default_str(unlessSet("[view] frame_every", report::ViewOptions().frameEvery));
 }
 
+const Guides kLocalizeGuides{
+    {"",
+     {{"pole-localize --config demo.ini --input drive.rawlog --map street.polemap --truth "
+       "drive.tum --output out --runs 5",
+       "pole-localize --config demo.ini --input drive.rawlog --map street.polemap --global "
+       "--output out --live",
+       "pole-localize --config vlp16.ini --sensors live/vlp16.ini --map street.polemap --start "
+       "0,0,0,2,5 --output out --stream -"},
+      "Evaluate and draw a run: pole-eval trajectory --truth drive.tum --estimate out/run_00.tum "
+      "--map street.polemap --png run.png."}},
+};
+
 }  // namespace
 
 int localizeMain(int argc, const char* const* argv) {
   CommandLine line("pole-localize",
-                   "Localizes a vehicle in a pole map, from a rawlog or from sensors.");
+                   "Localizes a vehicle in a pole map, from a rawlog or from sensors.",
+                   kLocalizeGuides);
   LocalizeJob job;
   auto& cli = line.cli();
   addConfigOption(cli, job.config)->required();

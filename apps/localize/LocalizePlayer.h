@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/RunFolder.h"
 #include "localize/FilterRuns.h"
 #include "localize/LocalizeReport.h"
 #include "localize/PoseStream.h"
 #include "localize/RunFiles.h"
+#include "localize/RunFolder.h"
 #include "localize/RunView.h"
 
 namespace polemcl::apps {

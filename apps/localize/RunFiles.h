@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/RunFolder.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/file/GrowingFile.h"
+#include "localize/RunFolder.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 
 namespace polemcl::apps {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "cli/RunFolder.h"
+#include "localize/RunFolder.h"
 #include "localize/SceneRecorder.h"
 
 namespace polemcl::apps {

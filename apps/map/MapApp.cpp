@@ -193,12 +193,48 @@ Subcommand importCommand(CLI::App& program) {
           }};
 }
 
+/// By subcommand; the first one is that of the program.
+const Guides kMapGuides{
+    {"",
+     {{"pole-map build --config demo.ini --input drive.rawlog --truth drive.tum --output "
+       "street.polemap",
+       "pole-map convert street.polemap --output street.csv"},
+      "See the options of one subcommand, such as pole-map build --help."}},
+    {"build",
+     {{"pole-map build --config demo.ini --input drive.rawlog --truth drive.tum --output "
+       "street.polemap",
+       "pole-map build --config hdl32e.ini --input a.rawlog b.rawlog --truth a.tum b.tum "
+       "--output campus.polemap --keep-scans --scene campus.3Dscene",
+       "pole-map build --config hdl32e.ini --input drive.rawlog --estimate out/run_00.tum "
+       "--inventory city.polemap --output exact.polemap"},
+      "Localize another drive in the map: pole-localize --help. Where the true poles are known, "
+      "score the map: pole-eval map --help."}},
+    {"update",
+     {{"pole-map update --config demo.ini --map street.polemap --input friday.rawlog --truth "
+       "friday.tum --output friday.polemap --date 2026-03-06"},
+      "List what changed: pole-map diff street.polemap friday.polemap --png changes.png."}},
+    {"diff",
+     {{"pole-map diff street.polemap friday.polemap --png changes.png --csv changes.csv"},
+      "Open a scene written with --scene in MRPT's SceneViewer3D."}},
+    {"convert",
+     {{"pole-map convert street.polemap --output street.csv",
+       "pole-map convert street.polemap --output street.geojson --datum 52.5,13.4,90"},
+      "Tables open in a spreadsheet, .npz in NumPy, .geojson in QGIS."}},
+    {"import",
+     {{"pole-map import --input district.osm --keep kind=lamp kind=tree --sigma-m 1 --output "
+       "city.polemap",
+       "pole-map import --input trees.csv --separator ';' --columns Rechtswert,Hochwert --crs "
+       "EPSG:25833 --output city.polemap"},
+      "Localize a drive in it, and make it exact: pole-map build --inventory."}},
+};
+
 }  // namespace
 
 int mapMain(int argc, const char* const* argv) {
   CommandLine line("pole-map",
                    "Builds a pole map from scans, or poles, at known poses; updates it; compares "
-                   "two; converts them; imports inventories.");
+                   "two; converts them; imports inventories.",
+                   kMapGuides);
   CLI::App& cli = line.cli();
   return line.run(argc, argv,
                   {buildCommand(cli), updateCommand(cli), diffCommand(cli), convertCommand(cli),

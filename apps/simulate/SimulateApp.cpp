@@ -61,6 +61,14 @@ std::vector<std::string> sensorNames() {
   return names;
 }
 
+const Guides kSimulateGuides{
+    {"",
+     {{"pole-simulate --config demo.ini --length 300 --output scans",
+       "pole-simulate --config hdl32e.ini --length 1000 --day 30 --poles drive.rawlog"},
+      "Make a rawlog of the scans: pole-import folder --input scans --output drive.rawlog. A "
+      "rawlog of poles goes to pole-map and pole-localize as it is."}},
+};
+
 }  // namespace
 
 sim::SimulationSummary simulateDrive(const SimulateOptions& options, bool quiet) {
@@ -101,7 +109,8 @@ PoleDriveSummary simulatePoles(const SimulateOptions& options, bool quiet) {
 int simulateMain(int argc, const char* const* argv) {
   CommandLine line("pole-simulate",
                    "Simulates a drive through an urban street, as a folder of LiDAR scans or a "
-                   "rawlog of their poles.");
+                   "rawlog of their poles.",
+                   kSimulateGuides);
   SimulateOptions options;
   addConfigOption(line.cli(), options.config)->required();
   addSetOption(line.cli(), options.set);

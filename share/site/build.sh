@@ -1,7 +1,9 @@
 #!/bin/sh
-# Builds the documentation site: pages from share/doc, README and reports, and the C++ reference from the headers.
+# Builds the documentation site: pages from share/doc, README and reports, what the programs print for --help, and the
+# C++ reference from the headers.
 # Usage: share/site/build.sh OUT      OUT/site/index.html is its first page; it opens without a server
 # Needs Debian's mkdocs-material and doxygen. Broken links and faults in comments are errors.
+# Programs: build/bin, or POLEMCL_BIN.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 
@@ -15,6 +17,11 @@ for tool in mkdocs doxygen; do
     exit 1
   }
 done
+bin=${POLEMCL_BIN:-$top/build/bin}
+[ -x "$bin/pole-map" ] || {
+  echo "build.sh: no program $bin/pole-map: build first (share/setup/build.sh release programs)" >&2
+  exit 1
+}
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
 rm -rf "$out/source" "$out/site"
@@ -25,6 +32,25 @@ for folder in doc examples figures reports; do
 done
 cp "$top/share/site/mkdocs.yml" "$top/share/site/lists.py" "$out"
 cp "$top/share/site/extra.css" "$out/source"
+
+# help_of PROGRAM [SUBCOMMAND]: a block with what it prints.
+help_of() {
+  printf '\n```text\n'
+  "$@" --help
+  printf '```\n'
+}
+mkdir "$out/source/help"
+for name in import extract map localize eval batch simulate labels; do
+  {
+    echo "# pole-$name"
+    help_of "$bin/pole-$name"
+    # shellcheck disable=SC2013 # one word a line
+    for command in $("$bin/pole-$name" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z0-9-]*\).*/\1/p'); do
+      printf '\n## pole-%s %s\n' "$name" "$command"
+      help_of "$bin/pole-$name" "$command"
+    done
+  } >"$out/source/help/pole-$name.md"
+done
 
 (cd "$top" && {
   cat share/site/Doxyfile

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "cli/Settings.h"
+#include "config/SettingsPage.h"
 
 namespace polemcl::test_settings_page {
 

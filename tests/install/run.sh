@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs into a folder of its own, builds the examples against that and checks what they print.
 # Also: programs and the Python module find settings, models and the window from where they are
-# installed; the libraries export the project's own symbols only.
+# installed; there are man pages; the libraries export the project's own symbols only.
 # Usage: tests/install/run.sh [BUILD]
 #   BUILD  folder of a complete build, build/ unless given
 set -eu
@@ -67,6 +67,16 @@ if "$bin/pole-simulate" --quiet --config nobody.ini --output none 2>error.txt; t
   fail "settings that do not exist were read"
 fi
 grep -q '^pole-simulate: .*nobody\.ini' error.txt || fail "the message does not name the file: $(cat error.txt)"
+
+# Each subcommand has its page; mandoc has nothing to say of any.
+pages=$prefix/share/man/man1
+[ "$(find "$pages" -name 'pole-*.1' | wc -l)" -gt 25 ] || fail "there are few man pages; is help2man installed?"
+quietly mandoc -Tlint -W warning "$pages"/*.1
+mandoc -Tascii "$pages/pole-map-build.1" | sed 's/.\x08//g' >page.txt
+for text in 'pole-map-build - Builds a map' '--keep-scans' '\$ pole-map build --config' NO_COLOR 'pole-localize(1)'; do
+  grep -q -e "$text" page.txt || fail "the man page of pole-map build lacks '$text'"
+done
+[ -s "$prefix/share/bash-completion/completions/pole-map" ] || fail "completion was not installed"
 
 echo "3/8 extract: poles of one scan, without MRPT"
 example extract -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-obs=ON -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-maps=ON

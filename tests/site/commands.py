@@ -20,7 +20,7 @@ def help_of(*command):
     """The options and the subcommands that a program names in its help."""
     printed = subprocess.run([*command, "--help"], capture_output=True, text=True, check=True).stdout
     options, _, subcommands = printed.partition("\nSubcommands:\n")
-    return (set(OPTION.findall(" ".join(re.findall(r"^  (\S+)", options, re.M)))),
+    return ({"--help", *OPTION.findall(" ".join(re.findall(r"^  (\S+)", options, re.M)))},
             re.findall(r"^  ([a-z][\w-]*)", subcommands, re.M))
 
 

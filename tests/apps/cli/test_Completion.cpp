@@ -1,5 +1,5 @@
 /// \file test_Completion.cpp
-/// \brief The completion that the build wrote, in bash.
+/// \brief The completion in bash, which asks the programs.
 
 #include <gtest/gtest.h>
 
@@ -20,9 +20,8 @@ std::string offered(const std::string& words) {
   static const TempFolder folder;
   for (const std::string name : {"drive.rawlog", "my own.ini", "out/a.rawlog"})
     writeText(folder / name, "");
-  const fs::path script =
-      bin.parent_path() / "share" / "bash-completion" / "completions" / "pole-map";
-  writeText(folder / "try.sh", "PATH=" + bin.string() + ":$PATH\nsource " + script.string() +
+  const std::string script = POLEMCL_SOURCE_DIR "/share/completion/polemcl.bash";
+  writeText(folder / "try.sh", "PATH=" + bin.string() + ":$PATH\nsource " + script +
                                    "\nrm try.sh\nCOMP_WORDS=(" + words +
                                    ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n"
                                    "complete -p \"${COMP_WORDS[0]##*/}\" >/dev/null || exit 1\n"

@@ -1,27 +1,24 @@
 #include <gtest/gtest.h>
 
+#include <iostream>
 #include <string>
 #include <vector>
 
 #include "cli/CommandLine.h"
 #include "cli/Settings.h"
 #include "core/common/Binder.h"
+#include "support/ExpectHas.h"
+#include "support/TempFolder.h"
 
 namespace polemcl::test_print_config {
 
 using namespace polemcl::apps;
+using namespace testing_apps;
 
 namespace {
 
-struct Result {
-  int code = -1;
-  std::string out, err;
-  bool worked = false;
-};
-
-/// A program that needs a file and settings, both itself and below a subcommand.
-Result run(std::vector<std::string> arguments, bool takesConfig = true) {
-  Result result;
+/// A program that needs a file and settings, both itself and below a subcommand; prints "worked".
+Outcome run(const std::vector<std::string>& arguments, bool takesConfig = true) {
   CommandLine line("pole-test", "Tries things.");
   std::string input, config;
   std::vector<std::string> set;
@@ -31,54 +28,49 @@ Result run(std::vector<std::string> arguments, bool takesConfig = true) {
     if (takesConfig) app->add_option("--config", config, "Settings")->required();
     if (takesConfig) addSetOption(*app, set);
   }
-  std::vector<const char*> all{"pole-test"};
-  for (const auto& argument : arguments) all.push_back(argument.c_str());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  result.code = line.run(static_cast<int>(all.size()), all.data(), [&] { result.worked = true; });
-  result.out = testing::internal::GetCapturedStdout();
-  result.err = testing::internal::GetCapturedStderr();
-  return result;
+  const auto main = [&](int argc, const char* const* argv) {
+    return line.run(argc, argv, [] { std::cout << "worked"; });
+  };
+  return runProgram(main, arguments);
 }
 
-const std::string s_kitti = std::string(POLEMCL_SOURCE_DIR) + "/config/kitti.ini";
+const std::string kKitti = std::string(POLEMCL_SOURCE_DIR) + "/config/kitti.ini";
 
 }  // namespace
 
 TEST(PrintConfig, PrintsAndEndsWithoutTheOtherArguments) {
-  const Result result = run({"--config", s_kitti, "--print-config"});
+  const Outcome result = run({"--config", kKitti, "--print-config"});
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_FALSE(result.worked);
-  EXPECT_EQ(result.out, settingsText(loadSettings(s_kitti), Tier::tuning));
+  EXPECT_EQ(result.out, settingsText(loadSettings(kKitti), Tier::tuning));
   EXPECT_EQ(result.err, "");
 }
 
 TEST(PrintConfig, PrintsTheExpertSettingsWithAll) {
-  const Result result = run({"--print-config", "--all", "--config", s_kitti, "--input", "a"});
+  const Outcome result = run({"--print-config", "--all", "--config", kKitti, "--input", "a"});
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(result.out, settingsText(loadSettings(s_kitti)));
+  EXPECT_EQ(result.out, settingsText(loadSettings(kKitti)));
 }
 
 TEST(PrintConfig, PrintsWhatIsSetOnTheCommandLine) {
   const std::vector<std::string> set{"filter.particles=77", "map.min_count=9"};
-  const Result result =
-      run({"--config", s_kitti, "--set", set[0], "--print-config", "--set", set[1]});
-  EXPECT_EQ(result.out, settingsText(loadSettings(s_kitti, set), Tier::tuning));
+  const Outcome result =
+      run({"--config", kKitti, "--set", set[0], "--print-config", "--set", set[1]});
+  EXPECT_EQ(result.out, settingsText(loadSettings(kKitti, set), Tier::tuning));
   EXPECT_NE(result.out.find("particles = 77"), std::string::npos);
 }
 
 TEST(PrintConfig, WorksBelowASubcommand) {
-  const Result result = run({"below", "--config", s_kitti, "--print-config"});
-  EXPECT_EQ(result.out, settingsText(loadSettings(s_kitti), Tier::tuning));
+  const Outcome result = run({"below", "--config", kKitti, "--print-config"});
+  EXPECT_EQ(result.out, settingsText(loadSettings(kKitti), Tier::tuning));
 }
 
 TEST(PrintConfig, RefusesWhatCannotBePrinted) {
-  const Result none = run({"--print-config"});
+  const Outcome none = run({"--print-config"});
   EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.err.find("--config"), std::string::npos) << none.err;
+  EXPECT_HAS(none.err, "--config");
   EXPECT_EQ(run({"--print-config", "--config", "no.ini"}).code, 1);
-  EXPECT_EQ(run({"--print-config", "--config", s_kitti}, false).code, 2);  // takes no settings
-  EXPECT_EQ(run({"--all", "--config", s_kitti, "--input", "a"}).code, 2);
+  EXPECT_EQ(run({"--print-config", "--config", kKitti}, false).code, 2);  // takes no settings
+  EXPECT_EQ(run({"--all", "--config", kKitti, "--input", "a"}).code, 2);
 }
 
 TEST(PrintConfig, StandsInTheHelp) {

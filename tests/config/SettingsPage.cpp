@@ -1,3 +1,5 @@
+#include "config/SettingsPage.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "cli/RunFolder.h"
+#include "localize/RunFolder.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,5 +1,5 @@
 #include <polemcl/core/common/Types.h>
-#include "cli/RunFolder.h"
+#include "localize/RunFolder.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_run_folder {

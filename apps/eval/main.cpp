@@ -1,0 +1,5 @@
+#include "eval/EvalApp.h"
+
+int main(int argc, char** argv) {
+  return polemcl::apps::evalMain(argc, argv);
+}

@@ -1,0 +1,5 @@
+#include "extract/ExtractApp.h"
+
+int main(int argc, char** argv) {
+  return polemcl::apps::extractMain(argc, argv);
+}
