@@ -146,7 +146,7 @@ void doBatch(const BatchOptions& options) {
   const Failures failures = options.slurm ? runThere(options, folder, plan, open.tasks)
                                           : runHere(options, folder, plan, open.tasks);
   folder.sweep();
-  report::BatchTimings timings = collectTimings(folder, plan);
+  BatchTimings timings = collectTimings(folder, plan);
   if (open.tasks.size() == plan.tasks.size()) {
     timings.wall = secondsSince(begin);
     timings.jobs = options.slurm ? 0 : jobsOf(options);
@@ -154,6 +154,7 @@ void doBatch(const BatchOptions& options) {
   try {
     const auto results = collectBatch(folder, plan, spec, failures, commandOf(options, spec));
     writeBatchFiles(folder, results, timings);
+    writeReport(folder);
     if (!options.quiet)
       std::cout << "report: " << (folder.path() / "report.html").string() << std::endl;
     requireAllDone(folder, plan, results);

@@ -11,11 +11,13 @@
 #include <thread>
 
 #include "batch/BatchCommands.h"
+#include "batch/BatchRunner.h"
 #include "cli/JsonFile.h"
 #include "cli/Version.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "io/data/Trajectory.h"
 #include "io/file/Bytes.h"
+#include "io/file/InstalledFiles.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
 #include "report/batch/BatchFiles.h"
@@ -27,6 +29,8 @@ namespace fs = std::filesystem;
 namespace {
 
 using report::noFigure;
+
+constexpr const char* kPython = "/usr/bin/python3";  // the one that Debian's packages are for
 
 /// Without the sections that tell of simulation, views and numbers of runs: a batch has its own.
 std::string settingsShown(const std::string& ini) {
@@ -279,8 +283,8 @@ report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& pl
   return results;
 }
 
-report::BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan) {
-  report::BatchTimings timings;
+BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan) {
+  BatchTimings timings;
   timings.machine = machine();
   for (const auto& task : plan.tasks) {
     const double seconds = folder.seconds(task.id);
@@ -294,14 +298,29 @@ report::BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& 
 }
 
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
-                     const report::BatchTimings& timings) {
+                     const BatchTimings& timings) {
   const fs::path& path = folder.path();
   report::writeResultsJson(path / "results.json", results);
   report::writeRunsCsv(path / "runs.csv", results);
   report::writeSessionsCsv(path / "sessions.csv", results);
   report::writeMapsCsv(path / "maps.csv", results);
-  report::writeLatexTable(path / "table.tex", results);
-  report::writeBatchReport(results, &timings, path / "report.html");
+  Json times = {{"machine", timings.machine}, {"wall_s", timings.wall}, {"jobs", timings.jobs}};
+  times["tasks"] = Json::array();
+  for (const TaskTimes& task : timings.tasks)
+    times["tasks"].push_back({{"kind", task.kind}, {"seconds", task.seconds}});
+  writeJson(path / "timings.json", times);
+}
+
+void writeReport(const BatchFolder& folder) {
+  const fs::path script = io::fileOfDataFolder("report.py", "report");
+  try {
+    if (script.empty()) throw Error("report/report.py is not among the installed files");
+    runCommand({kPython, "-B", fs::absolute(script), "."}, folder.path(),
+               fs::absolute(folder.log("report")));
+  } catch (const Error& error) {
+    throw Error("report.html and table.tex are not written, all other results are: " +
+                std::string(error.what()));
+  }
 }
 
 }  // namespace polemcl::apps

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "batch/BatchFolder.h"
 #include "batch/BatchPlan.h"
@@ -21,12 +22,29 @@ report::BatchResults collectBatch(const BatchFolder& folder, const BatchPlan& pl
                                   const std::map<std::string, std::string>& failures,
                                   const std::string& command);
 
-/// \brief How long the tasks took, each the last time that it was done.
-report::BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan);
+/// \brief Times of the tasks of one kind ("extract"), s.
+struct TaskTimes {
+  std::string kind;
+  std::vector<double> seconds;  ///< one for each task
+};
+/// \brief How long a batch took: the only part of a report that differs from one time to the next.
+struct BatchTimings {
+  std::string machine;             ///< "2 cores, AMD EPYC"; may be empty
+  double wall = report::noFigure;  ///< s, from the first task to the last
+  std::size_t jobs = 0;            ///< at the same time; 0 when not known
+  std::vector<TaskTimes> tasks;
+};
 
-/// \brief Writes `report.html`, `results.json`, `runs.csv`, `sessions.csv`, `maps.csv`, `table.tex`
-/// into the batch's folder. \throws Error when one cannot be written.
+/// \brief How long the tasks took, each the last time that it was done.
+BatchTimings collectTimings(const BatchFolder& folder, const BatchPlan& plan);
+
+/// \brief Writes `results.json`, `runs.csv`, `sessions.csv`, `maps.csv` and `timings.json` into the
+/// batch's folder. \throws Error when one cannot be written.
 void writeBatchFiles(const BatchFolder& folder, const report::BatchResults& results,
-                     const report::BatchTimings& timings);
+                     const BatchTimings& timings);
+
+/// \brief Makes `report.html` and `table.tex` of these files, by the script share/report/report.py.
+/// \throws Error with the script's last line, which names the packages that it misses.
+void writeReport(const BatchFolder& folder);
 
 }  // namespace polemcl::apps

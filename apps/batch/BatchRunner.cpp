@@ -74,7 +74,8 @@ std::string lastLine(const fs::path& log) {
   ::_exit(s_notStarted);
 }
 
-/// Runs a program in `folder`. \return What it ended with, as waitpid() has it.
+/// Runs a program, of the project or by its path, in `folder`. \return What it ended with, as
+/// waitpid() has it.
 int spawn(const std::vector<std::string>& command, const fs::path& folder, const fs::path& log) {
   const std::string program = (programFolder() / command.front()).string();
   if (::access(program.c_str(), X_OK) != 0)
@@ -92,27 +93,6 @@ int spawn(const std::vector<std::string>& command, const fs::path& folder, const
   if (WIFEXITED(status) && WEXITSTATUS(status) == s_notStarted)
     throw Error(program + ": cannot be started in " + folder.string());
   return status;
-}
-
-void runCommand(const std::vector<std::string>& command, const fs::path& folder,
-                const fs::path& log) {
-  {
-    std::ofstream stream(log, std::ios::app);
-    stream << "$";
-    for (const auto& argument : command) stream << ' ' << shellQuoted(argument);
-    stream << '\n';
-    if (!stream.flush()) throw Error(log.string() + ": cannot be written; is the disk full?");
-  }
-  if (command.front() == "copy") return copyFiles(command, folder);
-  const int status = spawn(command, folder, log);
-  if (WIFSIGNALED(status))
-    throw Error(command.front() + " was ended by signal " + std::to_string(WTERMSIG(status)) +
-                " (" + strsignal(WTERMSIG(status)) + ")");
-  if (WEXITSTATUS(status) == 0) return;
-  const std::string said = lastLine(log);
-  throw Error(said.empty() || said[0] == '$'
-                  ? command.front() + " ended with exit code " + std::to_string(WEXITSTATUS(status))
-                  : said);
 }
 
 void doTask(const BatchFolder& folder, const BatchTask& task) {
@@ -217,6 +197,27 @@ fs::path programFolder() {
   if (const char* folder = std::getenv("POLEMCL_BIN"); folder && *folder)
     return fs::absolute(folder);
   return io::programFolder();
+}
+
+void runCommand(const std::vector<std::string>& command, const fs::path& folder,
+                const fs::path& log) {
+  {
+    std::ofstream stream(log, std::ios::app);
+    stream << "$";
+    for (const auto& argument : command) stream << ' ' << shellQuoted(argument);
+    stream << '\n';
+    if (!stream.flush()) throw Error(log.string() + ": cannot be written; is the disk full?");
+  }
+  if (command.front() == "copy") return copyFiles(command, folder);
+  const int status = spawn(command, folder, log);
+  if (WIFSIGNALED(status))
+    throw Error(command.front() + " was ended by signal " + std::to_string(WTERMSIG(status)) +
+                " (" + strsignal(WTERMSIG(status)) + ")");
+  if (WEXITSTATUS(status) == 0) return;
+  const std::string said = lastLine(log);
+  throw Error(said.empty() || said[0] == '$'
+                  ? command.front() + " ended with exit code " + std::to_string(WEXITSTATUS(status))
+                  : said);
 }
 
 TaskOutcome runTask(const BatchFolder& folder, const BatchTask& task) {

@@ -346,7 +346,7 @@ BatchSpec readBatchSpec(const fs::path& wanted, const fs::path& data,
   reader.text("name", spec.name, "of the batch; the file's unless given");
   reader.text("title", spec.title, "for the report");
   std::vector<std::string> published{"none"};
-  for (const auto& dataset : report::publishedDatasets()) published.push_back(dataset.key);
+  for (const auto& dataset : report::publishedDatasets()) published.push_back(dataset);
   reader.choice("published", spec.published, published, "published figures shown beside");
   reader.text("published_sessions", spec.publishedSessions,
               "CSV of such figures by session: relative to this file, or an installed one");

@@ -55,7 +55,8 @@ set(CPACK_COMPONENTS_ALL "")
 polemcl_package(library ${library} libs "" "Pole-based LiDAR localization: library and plugin of MRPT"
   "${method}This package holds the library, which programs of MRPT load as a
 plugin, and the drivers of sensors.")
-polemcl_package(programs polemcl science "${library} ${same}" "Pole-based LiDAR localization: programs"
+polemcl_package(programs polemcl science "${library} ${same}, python3, python3-jinja2, python3-matplotlib"
+  "Pole-based LiDAR localization: programs"
   "${method}This package holds the programs, their settings, models, man pages
 and completion.")
 polemcl_package(dev libpolemcl-dev libdevel

@@ -85,7 +85,8 @@ class BatchApp : public testing::Test {
     auto all = contents(*s_folder / output, "times/");
     for (auto file = all.begin(); file != all.end();)
       file = file->first.rfind("logs/", 0) == 0 || file->first.rfind("slurm/", 0) == 0 ||
-                     file->first == ".lock" || file->first == "report.html"
+                     file->first == ".lock" || file->first == "report.html" ||
+                     file->first == "timings.json"
                  ? all.erase(file)
                  : std::next(file);
     return all;
@@ -219,6 +220,27 @@ TEST_F(BatchApp, ASessionWithoutReadableTruthIsReportedAlone) {
   EXPECT_NE(resultOf(results, "once", "s2")["runs"][0]["failure"], "");
   EXPECT_EQ(resultOf(results, "once", "s1")["runs"][0]["failure"], "");
   EXPECT_TRUE(fs::exists(*s_folder / "truth/report.html"));
+}
+
+TEST_F(BatchApp, WithoutItsPackagesTheReportAloneIsMissing) {
+  fs::copy(*s_folder / "done", *s_folder / "bare", fs::copy_options::recursive);
+  for (const char* file : {"report.html", "table.tex", "results.json", "runs.csv"})
+    fs::remove(*s_folder / "bare" / file);
+  writeText(*s_folder / "python/matplotlib.py", "raise ImportError('No Matplotlib here')\n");
+  ::setenv("PYTHONPATH", (*s_folder / "python").c_str(), 1);
+  BatchOptions options = optionsFor("bare");
+  options.resume = true;
+  const std::string message = messageOf([&] { doBatch(options); });
+  ::unsetenv("PYTHONPATH");
+  EXPECT_EQ(message.rfind("report.html and table.tex are not written, all other results are: No "
+                          "Matplotlib here; install the packages python3-jinja2 and "
+                          "python3-matplotlib; ",
+                          0),
+            0u)
+      << message;
+  EXPECT_FALSE(fs::exists(*s_folder / "bare/report.html"));
+  doBatch(options);
+  EXPECT_EQ(left("bare"), left("done"));
 }
 
 TEST_F(BatchApp, TasksDoneByHandNeedTheSettingsOfTheBatch) {

@@ -131,9 +131,9 @@ TEST_F(PaperBatches, TableOneOfNclt) {
   EXPECT_NE(report.find("<td>11.5</td>"), std::string::npos);
   EXPECT_NE(report.find("<td>20.4</td>"), std::string::npos);
   // What the rows are means of, not what the whole batch would be.
-  EXPECT_NE(report.find("2 sessions, 1 run of each. One map of 2 sessions"), std::string::npos);
+  EXPECT_NE(report.find("2 sessions, runs: 2. One map of 2 sessions"), std::string::npos);
   const std::string latex = readText(output / "nclt/table.tex");
-  EXPECT_NE(latex.find("\\emph{ours-strict}: 1 session, 1 run. Each session"), std::string::npos);
+  EXPECT_NE(latex.find("\\emph{ours-strict}: 1 session, runs: 1. Each session"), std::string::npos);
   EXPECT_EQ(latex.find("27 sessions"), latex.rfind("27 sessions"));  // the published ones
 
   // The variation on the page about batches, in a folder without any other file.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -23,20 +24,6 @@ nlohmann::json jsonOf(const BatchResults& batch) {
   const TempFolder folder;
   writeResultsJson(folder / "a.json", batch);
   return nlohmann::json::parse(readText(folder / "a.json"));
-}
-
-/// Every row has as many cells as its table has columns.
-void expectFullRows(const std::filesystem::path& file) {
-  const std::regex begin(R"(\\begin\{tabular\}\{([lr]+)\})");
-  std::size_t columns = 0;
-  for (const std::string& line : io::readLines(file)) {
-    std::smatch match;
-    if (std::regex_search(line, match, begin)) columns = match[1].length();
-    if (line.size() < 3 || line.substr(line.size() - 3) != " \\\\") continue;
-    std::size_t cells = 1;
-    for (std::size_t i = 1; i < line.size(); ++i) cells += line[i] == '&' && line[i - 1] != '\\';
-    EXPECT_EQ(cells, columns) << line;
-  }
 }
 
 }  // namespace
@@ -67,6 +54,16 @@ TEST(BatchFiles, JsonHoldsAllThatTheBatchTells) {
   EXPECT_EQ(plots["position_largest_m"], nlohmann::json({0.1, nullptr, 0.35, 0.2}));
   EXPECT_EQ(plots["heading_histogram"], nlohmann::json(smallPlots().headingErrors.counts));
   EXPECT_EQ(json["failures"][0]["log"], "logs/a<b.log");
+}
+
+TEST(BatchFiles, TheReportIsTestedOnTheSampleBatch) {
+  // tests/report/batch/test_report.py reads this file.
+  const std::string sample = std::string(POLEMCL_SOURCE_DIR) + "/tests/report/batch/sample.json";
+  if (std::getenv("POLEMCL_WRITE_PAGES")) writeResultsJson(sample, scoredBatch());
+  const TempFolder folder;
+  writeResultsJson(folder / "a.json", scoredBatch());
+  EXPECT_EQ(readText(folder / "a.json"), readText(sample))
+      << "write it anew with POLEMCL_WRITE_PAGES=1";
 }
 
 TEST(BatchFiles, JsonHoldsScoresAndPublishedSessions) {
@@ -140,69 +137,10 @@ TEST(BatchFiles, SessionsAsATable) {
   EXPECT_EQ(table.number(3, table.column("f_map")), 0);
 }
 
-TEST(BatchFiles, LatexShowsEveryLetter) {
-  EXPECT_EQ(latexText("a_b & 5 % #1 $x$ {y}"), "a\\_b \\& 5 \\% \\#1 \\$x\\$ \\{y\\}");
-  EXPECT_EQ(latexText("\\~^<>|"),
-            "\\textbackslash{}\\textasciitilde{}\\textasciicircum{}\\textless{}\\textgreater{}"
-            "\\textbar{}");
-  EXPECT_EQ(latexText("--jobs ''"), "-{}-jobs '{}'");
-  EXPECT_EQ(latexText("two\nlines"), "two lines");
-}
-
-TEST(BatchFiles, LatexTableHoldsThePapersColumns) {
-  const TempFolder folder;
-  BatchResults batch = smallBatch();
-  batch.dataset = "mulran-kaist";
-  writeLatexTable(folder / "table.tex", batch);
-  const std::string text = readText(folder / "table.tex");
-  EXPECT_NE(text.find("one\\textless{}\\&\"\\textgreater{} & 100.0 & $0.200 \\pm 0.141$ & "
-                      "$0.400 \\pm 0.283$ & $0.300 \\pm 0.141$ & $0.600 \\pm 0.283$ \\\\\n"),
-            std::string::npos)
-      << text;
-  EXPECT_NE(text.find("two\\_2 & 25.0 & 0.400 & 0.800 & 0.800 & 1.600 \\\\\n"), std::string::npos);
-  EXPECT_NE(
-      text.find("3 sessions, 2 runs of each, 2 wrong, 1 failed. paper: own data in the map.}"),
-      std::string::npos);
-  EXPECT_NE(text.find("published results and those of this batch. Published: Evaluated at every"),
-            std::string::npos);
-  EXPECT_NE(text.find("This batch: \\emph{plain}: 3 sessions, 2 runs of each, 2 wrong, 1 failed. "
-                      "paper: own data in the map. \\emph{up\\_keep 100 \\%}: 1 session, 1 run.}"),
-            std::string::npos);
-  EXPECT_NE(text.find("Dong et al. 2021 & -- & 48.0 & 0.270 \\\\\n"), std::string::npos);
-  EXPECT_NE(text.find("polemcl, up\\_keep 100 \\% & 0.400 & 7.1 & 1.000 \\\\\n"), std::string::npos)
-      << text;
-  EXPECT_NE(text.find("$\\mathrm{RMSE}_\\mathrm{axis}$ [cm]"), std::string::npos);
-  EXPECT_NE(text.find("$\\mathrm{RMSE}_\\mathrm{pos}$ [m]"), std::string::npos);
-  expectFullRows(folder / "table.tex");
-}
-
-TEST(BatchFiles, LatexTablesHoldScoresAndPublishedSessions) {
-  const TempFolder folder;
-  BatchResults batch = scoredBatch();
-  batch.dataset = "nclt";
-  writeLatexTable(folder / "table.tex", batch);
-  const std::string text = readText(folder / "table.tex");
-  const auto expectRow = [&](const std::string& row) {
-    EXPECT_NE(text.find("    " + row + " \\\\\n"), std::string::npos) << row << " is not in\n"
-                                                                      << text;
-  };
-  expectRow("Dong et al. 2021 & 0.525 & 0.713 & 0.605 & -- & -- & -- & -- & -- & --");
-  EXPECT_NE(text.find("This batch: \\emph{plain}: 1 map. paper: own data in the map. "
-                      "\\emph{up\\_keep 100 \\%}: 1 map.}"),
-            std::string::npos);
-  expectRow(
-      "polemcl, plain & 0.750 & 0.600 & 0.667 & 0.625 & 0.500 & 0.556 & 0.500 & 0.400 & 0.444");
-  expectRow(
-      "two\\_2 & 25.0 & 0.400 & 0.120 & 0.130 & 0.800 & 0.146 & 0.178 & 0.800 & 0.626 & 0.663 & "
-      "1.600 & 0.810 & 0.857");
-  expectFullRows(folder / "table.tex");
-}
-
 TEST(BatchFiles, NoFigureIsNeverPrinted) {
   const TempFolder folder;
   writeRunsCsv(folder / "runs.csv", smallBatch());
   writeSessionsCsv(folder / "sessions.csv", smallBatch());
-  writeLatexTable(folder / "table.tex", smallBatch());
   writeResultsJson(folder / "results.json", smallBatch());
   const std::regex notANumber("\\b(nan|inf)\\b", std::regex::icase);
   for (const std::string& name : testing_apps::names(folder.path()))

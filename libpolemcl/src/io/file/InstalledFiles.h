@@ -16,8 +16,8 @@ std::filesystem::path programFolder();
 /// It is looked for in `../share/polemcl/FOLDER` beside the folder of the program, then in
 /// `share/polemcl/FOLDER` of the three folders above this library or module, then in the data
 /// folder chosen when it was built. The name may begin with FOLDER, as in a source tree:
-/// `config/nclt.ini`. \param folder `config`, `models` or `published`. \return Empty when it is in
-/// neither, or when `file` is empty or absolute.
+/// `config/nclt.ini`. \param folder `config`, `models`, `published` or `report`. \return Empty when
+/// it is in neither, or when `file` is empty or absolute.
 std::filesystem::path fileOfDataFolder(const std::filesystem::path& file,
                                        const std::string& folder);
 

@@ -60,7 +60,6 @@ void writeSession(std::ostream& out, const SessionSummary& summary) {
 }  // namespace
 
 void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results) {
-  results.validate();
   io::AtomicFile out(file);
   out.stream() << "setting,session,run,seed,state,reason";
   for (const MetricName& name : metricNames) out.stream() << ',' << name.key;
@@ -77,7 +76,6 @@ void writeRunsCsv(const std::filesystem::path& file, const BatchResults& results
 }
 
 void writeMapsCsv(const std::filesystem::path& file, const BatchResults& results) {
-  results.validate();
   io::AtomicFile out(file);
   out.stream() << "setting,session,truth,map_poles,truth_poles";
   for (const ScoreName& name : scoreNames)
@@ -102,7 +100,6 @@ void writeMapsCsv(const std::filesystem::path& file, const BatchResults& results
 }
 
 void writeSessionsCsv(const std::filesystem::path& file, const BatchResults& results) {
-  results.validate();
   io::AtomicFile out(file);
   out.stream() << "setting,session,date,length_m,scans,f_map,map_poles,runs,lost,failed";
   for (const MetricName& name : metricNames)

@@ -3,7 +3,7 @@
 /// \brief All that a finished batch has to tell: sessions x configurations x runs, as plain data.
 ///
 /// Filled from run folders by the program, measured with BatchMeasures.h, summed up by
-/// BatchSummary.h, written by BatchFiles.h and BatchReport.h. It holds no clock and no timing: the
+/// BatchSummary.h, written by BatchFiles.h. It holds no clock and no timing: the
 /// same batch gives the same bytes. A figure that does not exist is NaN; it is shown as a dash, an
 /// empty field or `null`.
 
@@ -139,9 +139,9 @@ struct FailedTask {
 
 /// \brief A whole batch.
 struct BatchResults {
-  std::string name;     ///< "nclt"
-  std::string title;    ///< "NCLT, long-term localization"
-  std::string dataset;  ///< key of published figures (PublishedResults.h), or empty
+  std::string name;                         ///< "nclt"
+  std::string title;                        ///< "NCLT, long-term localization"
+  std::string dataset;                      ///< one of publishedDatasets(), or empty
   std::vector<PublishedSession> published;  ///< figures by session, system after system
   std::string date;                         ///< only if the caller gives one
   std::string command;                      ///< that makes the batch again
@@ -157,22 +157,6 @@ struct BatchResults {
 
   /// \brief The result of a session under a configuration, or null.
   const SessionResult* find(std::size_t configuration, std::size_t session) const;
-  /// \throws Error: nothing to report, indices out of range, a name or a pair that appears twice, a
-  ///         share or a precision outside [0, 1], plots with coordinates that are not finite.
-  void validate() const;
-};
-
-/// \brief Times of the tasks of one kind ("extract"), s.
-struct TaskTimes {
-  std::string kind;
-  std::vector<double> seconds;  ///< one for each task
-};
-/// \brief How long a batch took: the only part of a report that differs from one time to the next.
-struct BatchTimings {
-  std::string machine;     ///< "2 cores, AMD EPYC"; may be empty
-  double wall = noFigure;  ///< s, from the first task to the last
-  std::size_t jobs = 0;    ///< at the same time; 0 when not known
-  std::vector<TaskTimes> tasks;
 };
 
 }  // namespace polemcl::report
