@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "cli/JsonFile.h"
-#include "localize/TrialDrive.h"
+#include "eval/DriveTruth.h"
 #include "sim/detections/DetectionModelFit.h"
 #include "simulate/SimulatedPoles.h"
 

@@ -1,104 +1,7 @@
 #include "eval/EvalApp.h"
 
-#include <memory>
-#include <sstream>
-
-#include "cli/JsonFile.h"
-#include "cli/Outputs.h"
-#include "core/common/Angles.h"
-#include "core/evaluation/MapShift.h"
-#include "io/data/Trajectory.h"
-#include "io/file/ErrorPlace.h"
-#include "io/file/TextFile.h"
-#include "io/map/PoleMapFile.h"
-#include "io/map/PolePositions.h"
-#include "localize/LocalizeReport.h"
-#include "report/picture/MapPicture.h"
-#include "report/scene/MapScene.h"
-
 namespace polemcl::apps {
 namespace {
-
-std::string scoreText(const MapScore& score) {
-  std::ostringstream out;
-  out << "map poles " << score.mapPoles << ", truth poles " << score.truthPoles << ", matches "
-      << score.matches << '\n'
-      << "precision " << io::fixed(score.precision, 4) << "  recall " << io::fixed(score.recall, 4)
-      << "  F1 " << io::fixed(score.f1, 4) << '\n';
-  return out.str();
-}
-
-std::string scoreText(const TrajectoryErrors& errors) {
-  std::ostringstream out;
-  out << "poses    " << errors.poses << " compared, " << errors.unmatched << " unmatched\n"
-      << "position mean " << io::fixed(errors.posMean, 4) << "  RMSE "
-      << io::fixed(errors.posRmse, 4) << "  max " << io::fixed(errors.posMax, 4) << " m\n"
-      << "lateral  mean " << io::fixed(errors.latMean, 4) << "  longitudinal mean "
-      << io::fixed(errors.lonMean, 4) << " m\n"
-      << "heading  mean " << io::fixed(errors.angMeanDeg, 4) << "  RMSE "
-      << io::fixed(errors.angRmseDeg, 4) << " deg\n";
-  return out.str();
-}
-
-Subcommand mapCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("map", "Precision, recall and F1 of a pole map");
-  const auto shared = std::make_shared<EvalMapOptions>();
-  EvalMapOptions& options = *shared;
-  addFile(cli, "--truth", options.truth, "True poles: .polemap, .csv with x,y columns, or .npz")
-      ->required();
-  addFile(cli, "--map", options.map, "Poles to score, in any of these formats")->required();
-  addNumber(cli, "--radius", options.radius, "Distance within which a pole is right, m",
-            CLI::PositiveNumber);
-  cli.add_flag("--one-to-one", options.oneToOne,
-               "Match each pole at most once; otherwise, map poles near any true pole are right");
-  addOutput(cli, "--json", options.json, "Write the results to this file (JSON)");
-  return {&cli, [shared](bool) { return scoreText(evalMap(*shared)); }};
-}
-
-Subcommand trajectoryCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("trajectory", "Errors of a trajectory");
-  const auto shared = std::make_shared<EvalTrajectoryOptions>();
-  EvalTrajectoryOptions& options = *shared;
-  addFile(cli, "--truth", options.truth, "True robot poses, TUM")->required();
-  addFile(cli, "--estimate", options.estimate, "Estimated robot poses, TUM")->required();
-  addChoice<Sampling>(cli, "--per", options.sampling,
-                      {{"pose", Sampling::perPose}, {"metre", Sampling::perMetre}},
-                      "Evaluate at each pose, or every metre along the true path")
-      ->default_str("pose");
-  addOutput(cli, "--json", options.json, "Write the results to this file (JSON)");
-  addFile(cli, "--map", options.map, "Pole map to draw under the trajectories");
-  addOutput(cli, "--scene", options.scene, "Write a .3Dscene of map, truth and estimate");
-  addOutput(cli, "--png", options.png, "Write a picture of map, truth and estimate");
-  cli.add_option("--title", options.title, "Title of the picture")
-      ->default_str("the file of the estimate");
-  return {&cli, [shared](bool) { return scoreText(evalTrajectory(*shared)); }};
-}
-
-std::vector<Eigen::Vector2d> readPoles(const std::filesystem::path& file) {
-  auto poles = io::readPolePositions(file);
-  if (poles.empty()) throw Error(file.string() + ": holds no pole, so there is nothing to score");
-  return poles;
-}
-
-/// Poles to draw; of files that only hold positions, as slim poles of 2 m.
-std::vector<MapPole> polesToDraw(const std::filesystem::path& file) {
-  if (file.extension() == ".polemap") return io::readPoleMap(file).poles;
-  std::vector<MapPole> poles;
-  for (const auto& position : io::readPolePositions(file)) {
-    MapPole pole;
-    pole.x = position.x();
-    pole.y = position.y();
-    pole.radius = 0.1;
-    pole.top = 2;
-    poles.push_back(pole);
-  }
-  return poles;
-}
-
-/// Where errors of a comparison come from.
-std::string against(const std::filesystem::path& result, const std::filesystem::path& truth) {
-  return result.string() + " against " + truth.string() + ": ";
-}
 
 /// By subcommand; the first one is that of the program.
 const Guides kEvalGuides{
@@ -142,7 +45,7 @@ const Guides kEvalGuides{
     {"global",
      {{"pole-eval global --config demo.ini --map street.polemap --input poles.rawlog --truth "
        "drive.tum --trials 50"},
-      "See the settings in [global]: pole-eval global --config demo.ini --print-config."}},
+      "Put faults into a drive: pole-eval faults --help."}},
     {"starts",
      {{"pole-eval starts --config demo.ini --map street.polemap --input poles.rawlog --truth "
        "drive.tum --trials 50"},
@@ -156,66 +59,24 @@ const Guides kEvalGuides{
      {{"pole-eval faults --config demo.ini --map street.polemap --input poles.rawlog --truth "
        "drive.tum --fault kidnap --trials 50"},
       "Compare with a drive without a fault: --fault none."}},
-    {"candidates",
-     {{"pole-eval candidates --config hdl32e.ini --scans scans --poles scans/poles_gt.csv "
-       "--output candidates.csv"},
-      "Fit weights to the tables of several drives: pole-eval train --help."}},
-    {"train",
-     {{"pole-eval train --candidates a.csv b.csv --test c.csv --classifier weights.csv "
-       "--covariance scale.csv"},
-      "The weights are compiled into the library: see share/experiments/train-classifier.sh in "
-      "the sources."}},
+    {"features",
+     {{"pole-eval features --config hdl32e.ini --scans scans --poles scans/poles_gt.csv "
+       "--output features.csv"},
+      "Weights are fitted to the tables of several drives: see "
+      "share/experiments/train-classifier.sh in the sources."}},
 };
 
 }  // namespace
 
-MapScore evalMap(const EvalMapOptions& options) {
-  const auto truth = readPoles(options.truth);
-  const auto map = readPoles(options.map);
-  const auto score = io::located(against(options.map, options.truth), [&] {
-    return scoreMap(truth, map, options.radius, options.oneToOne);
-  });
-  const MapShift moved = mapShift(truth, map, options.radius);
-  if (options.json)
-    writeJson(*options.json, {{"precision", score.precision},
-                              {"recall", score.recall},
-                              {"f1", score.f1},
-                              {"matches", score.matches},
-                              {"map_poles", score.mapPoles},
-                              {"truth_poles", score.truthPoles},
-                              {"radius", options.radius},
-                              {"one_to_one", options.oneToOne},
-                              {"shift_x_m", moved.shift.x()},
-                              {"shift_y_m", moved.shift.y()},
-                              {"rotation_deg", moved.rotation / degree}});
-  return score;
-}
-
-TrajectoryErrors evalTrajectory(const EvalTrajectoryOptions& options) {
-  report::MapView view;
-  view.truth = io::readPlanarTum(options.truth);
-  view.estimate = io::readPlanarTum(options.estimate);
-  if (options.map) view.poles = polesToDraw(*options.map);
-  auto errors = io::located(against(options.estimate, options.truth), [&] {
-    return evaluateTrajectory(view.truth, view.estimate, options.sampling);
-  });
-  view.title = options.title.empty() ? options.estimate.filename().string() : options.title;
-  if (options.scene) scene::save(*report::makeMapScene(view), *options.scene);
-  if (options.png) report::drawMapPng(view, *options.png);
-  if (options.json) {
-    auto json = errorsJson(errors);
-    json["per"] = options.sampling == Sampling::perMetre ? "metre" : "pose";
-    writeJson(*options.json, json);
-  }
-  return errors;
-}
-
 int evalMain(int argc, const char* const* argv) {
   CommandLine line("pole-eval", "Scores pole maps, trajectories, extractors and localization.",
                    kEvalGuides);
-  std::vector<Subcommand> commands{mapCommand(line.cli()), trajectoryCommand(line.cli())};
-  for (auto& command : extractionCommands(line.cli())) commands.push_back(std::move(command));
-  for (auto& command : localizationCommands(line.cli())) commands.push_back(std::move(command));
+  std::vector<Subcommand> commands;
+  for (const auto command : {mapCommand, trajectoryCommand, detectionsCommand, repeatabilityCommand,
+                             rotationCommand, mrptTruthCommand, motionCommand, consistencyCommand})
+    commands.push_back(command(line.cli()));
+  for (const auto list : {trialCommands, modelCommands})
+    for (Subcommand& command : list(line.cli())) commands.push_back(std::move(command));
   return line.run(argc, argv, commands);
 }
 

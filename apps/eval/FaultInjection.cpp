@@ -9,37 +9,25 @@
 namespace polemcl::apps {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 class Injector {
  public:
   Injector(const TrialDrive& drive, const FaultOptions& options, std::mt19937_64& random)
-      : m_drive(drive),
-        m_options(options),
-        m_random(random),
-        m_driven(distancesDriven(drive.truth)) {}
+      : m_drive(drive), m_options(options), m_random(random) {}
 
-  FaultyDrive inject() {
-    if (m_options.fault == Fault::kidnap) return kidnapped();
-    FaultyDrive result;
+  Trial inject() {
     if (m_options.fault == Fault::none) {
-      append(result, 0, m_drive.frames.size());
-      result.begin = result.end = result.frames.size();
+      append(0, m_drive.frames.size());
+      m_trial.begin = m_trial.end = m_trial.frames.size();
     } else if (m_options.fault == Fault::wrongMap) {
-      result.origin = drawStart(0, 0);
-      append(result, result.origin, scanAfterMetres(result.origin));
+      m_trial.origin = drawStart(0, 0);
+      append(m_trial.origin, scanAfterMetres(m_trial.origin));
+    } else if (m_options.fault == Fault::kidnap) {
+      kidnap();
     } else {
-      result.origin = drawStart(m_options.lead, m_options.duration);
-      const std::size_t begin = scanAfterSeconds(result.origin, m_options.lead);
-      const std::size_t end = scanAfterSeconds(begin, m_options.duration);
-      append(result, result.origin, scanAfterMetres(end));
-      result.begin = begin - result.origin;
-      result.end = end - result.origin;
-      spoil(result);
+      spoil();
     }
-    return result;
+    m_trial.start = m_trial.truth.at(0);
+    return std::move(m_trial);
   }
 
  private:
@@ -52,15 +40,19 @@ class Injector {
   }
   /// The scan that is the tail's length farther along, or the end.
   std::size_t scanAfterMetres(std::size_t from) const {
-    const auto at = std::lower_bound(m_driven.begin() + static_cast<std::ptrdiff_t>(from),
-                                     m_driven.end(), m_driven[from] + m_options.tail);
-    return static_cast<std::size_t>(at - m_driven.begin());
+    const auto& driven = m_drive.driven;
+    const auto at = std::lower_bound(driven.begin() + static_cast<std::ptrdiff_t>(from),
+                                     driven.end(), driven[from] + m_options.tail);
+    return static_cast<std::size_t>(at - driven.begin());
+  }
+  bool tailFits(std::size_t from) const {
+    return m_drive.driven.back() - m_drive.driven[from] >= m_options.tail;
   }
   bool fits(std::size_t start, double lead, double lasting) const {
     const std::size_t begin = scanAfterSeconds(start, lead);
     if (begin >= m_drive.frames.size()) return false;
     const std::size_t end = scanAfterSeconds(begin, lasting);
-    return end < m_drive.frames.size() && m_driven.back() - m_driven[end] >= m_options.tail;
+    return end < m_drive.frames.size() && tailFits(end);
   }
   /// A scan from which lead, fault and tail fit into the drive, uniform among them.
   std::size_t drawStart(double lead, double lasting) const {
@@ -78,34 +70,31 @@ class Injector {
     return m_random() % (good + 1);
   }
 
-  void append(FaultyDrive& result, std::size_t from, std::size_t to) const {
+  /// Scans `from` to `to`. After a jump the clock goes on as before.
+  void append(std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
-      const bool first = result.frames.empty();
-      const double step = i > 0 ? time(i) - time(i - 1) : 0;
-      const double way = first || i == from ? 0 : m_driven[i] - m_driven[i - 1];
-      result.driven.push_back(first ? 0 : result.driven.back() + way);
-      result.frames.push_back(m_drive.frames[i]);
-      if (!first && i == from) {
-        // After a jump the clock goes on as before.
-        const std::size_t before = result.frames.size() - 2;
-        result.frames.back().time = result.frames[before].time + std::max(step, 1e-3);
-      } else if (!first) {
-        result.frames.back().time = result.frames[result.frames.size() - 2].time + step;
+      PoleScan frame = m_drive.frames[i];
+      double driven = 0;
+      if (!m_trial.frames.empty()) {
+        const double step = time(i) - time(i - 1);
+        const bool jumps = i == from;
+        frame.time = m_trial.frames.back().time + (jumps ? std::max(step, 1e-3) : step);
+        driven = m_trial.driven.back() + (jumps ? 0 : m_drive.driven[i] - m_drive.driven[i - 1]);
       }
-      result.truth.push_back(m_drive.truth[i]);
+      m_trial.driven.push_back(driven);
+      m_trial.frames.push_back(std::move(frame));
+      m_trial.truth.push_back(m_drive.truth[i]);
     }
   }
 
-  FaultyDrive kidnapped() const {
-    FaultyDrive result;
-    result.origin = drawStart(m_options.lead, 0);
-    const std::size_t from = scanAfterSeconds(result.origin, m_options.lead);
+  void kidnap() {
+    m_trial.origin = drawStart(m_options.lead, 0);
+    const std::size_t from = scanAfterSeconds(m_trial.origin, m_options.lead);
     const std::size_t to = drawJump(from);
-    append(result, result.origin, from);
-    result.begin = result.end = result.frames.size();
-    append(result, to, scanAfterMetres(to));
-    result.jump = errorOf(m_drive.truth[to], m_drive.truth[from]).metres;
-    return result;
+    append(m_trial.origin, from);
+    m_trial.begin = m_trial.end = m_trial.frames.size();
+    append(to, scanAfterMetres(to));
+    m_trial.jump = errorOf(m_drive.truth[to], m_drive.truth[from]).metres;
   }
 
   /// A scan as far away as drawn, within 5 m; from it, the tail fits in.
@@ -113,8 +102,7 @@ class Injector {
     for (int attempt = 0; attempt < 100; ++attempt) {
       const double wanted = uniform(m_random, m_options.minJump, m_options.maxJump);
       std::vector<std::size_t> places;
-      for (std::size_t i = 1; i < m_drive.frames.size(); ++i) {
-        if (m_driven.back() - m_driven[i] < m_options.tail) break;
+      for (std::size_t i = 1; i < m_drive.frames.size() && tailFits(i); ++i) {
         const double distance = errorOf(m_drive.truth[i], m_drive.truth[from]).metres;
         if (std::abs(distance - wanted) < 5 && distance >= m_options.minJump &&
             distance <= m_options.maxJump)
@@ -126,11 +114,17 @@ class Injector {
                 io::fixed(m_options.maxJump, 0) + " m from its scan " + std::to_string(from));
   }
 
-  void spoil(FaultyDrive& result) const {
+  void spoil() {
+    m_trial.origin = drawStart(m_options.lead, m_options.duration);
+    const std::size_t begin = scanAfterSeconds(m_trial.origin, m_options.lead);
+    const std::size_t end = scanAfterSeconds(begin, m_options.duration);
+    append(m_trial.origin, scanAfterMetres(end));
+    m_trial.begin = begin - m_trial.origin;
+    m_trial.end = end - m_trial.origin;
     const bool longer = m_random() % 2 == 0;
     const double factor = 1 + (longer ? m_options.slip : -m_options.slip);
-    for (std::size_t i = result.begin; i < result.end; ++i) {
-      PoleScan& frame = result.frames[i];
+    for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
+      PoleScan& frame = m_trial.frames[i];
       if (m_options.fault == Fault::blind) frame.poles_robot.clear();
       if (!frame.motion) continue;
       if (m_options.fault == Fault::stuck) {
@@ -146,18 +140,21 @@ class Injector {
   const TrialDrive& m_drive;
   const FaultOptions& m_options;
   std::mt19937_64& m_random;
-  std::vector<double> m_driven;
+  Trial m_trial;
 };
 
 }  // namespace
 
 const char* name(Fault fault) {
-  static constexpr const char* names[] = {"none", "kidnap", "wrong-map", "blind", "stuck", "slip"};
-  return names[static_cast<int>(fault)];
+  static constexpr const char* kNames[] = {"none", "kidnap", "wrong-map", "blind", "stuck", "slip"};
+  return kNames[static_cast<int>(fault)];
 }
 
-FaultyDrive injectFault(const TrialDrive& drive, const FaultOptions& options,
-                        std::mt19937_64& random) {
+double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+Trial injectFault(const TrialDrive& drive, const FaultOptions& options, std::mt19937_64& random) {
   return Injector(drive, options, random).inject();
 }
 

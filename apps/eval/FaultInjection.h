@@ -2,11 +2,9 @@
 /// \file FaultInjection.h
 /// \brief Faults put into a recorded drive: what the localization sees, and what is true.
 
-#include <cstdint>
 #include <random>
-#include <vector>
 
-#include "localize/TrialDrive.h"
+#include "eval/Trial.h"
 
 namespace polemcl::apps {
 
@@ -29,20 +27,12 @@ struct FaultOptions {
   double minJump = 20, maxJump = 500;  ///< straight distance of the kidnapping, m
 };
 
-/// \brief A piece of the drive with the fault in it. Element i of the lists is scan i.
-struct FaultyDrive {
-  std::vector<PoleScan> frames;
-  std::vector<Pose2D> truth;
-  std::vector<double> driven;  ///< along the true path since the first scan, jumps left out, m
-  std::size_t begin = 0;       ///< first scan with the fault
-  std::size_t end = 0;         ///< first scan after it; kidnap, wrongMap: `begin`
-  std::size_t origin = 0;      ///< scan of the whole drive that is the first here
-  double jump = 0;             ///< distance of the kidnapping, m
-};
+/// \brief Uniform in an interval; the same numbers on every machine.
+double uniform(std::mt19937_64& random, double low, double high);
 
-/// \brief Draws a place for the fault and puts it in; `none` leaves the whole drive.
+/// \brief Draws a place for the fault and puts it in; `none` leaves the whole drive. The trial
+/// starts at its true pose.
 /// \throws Error when the drive is too short for it, or no place lies as far off as demanded.
-FaultyDrive injectFault(const TrialDrive& drive, const FaultOptions& options,
-                        std::mt19937_64& random);
+Trial injectFault(const TrialDrive& drive, const FaultOptions& options, std::mt19937_64& random);
 
 }  // namespace polemcl::apps

@@ -20,7 +20,6 @@
 #include "localize/PoseStream.h"
 #include "localize/RunFolder.h"
 #include "localize/RunView.h"
-#include "localize/TrialDrive.h"
 #include "localize/TurnCheck.h"
 
 namespace polemcl::apps {
@@ -140,6 +139,16 @@ void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) 
 }
 
 }  // namespace
+
+std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
+                                            const LikelihoodOptions& likelihood) {
+  auto map = std::make_shared<CPoleMap>();
+  map->likelihoodOptions = likelihood;  // first: loading prepares the index for its gate
+  map->loadFromPoleMapFile(file.string());
+  if (map->poles().empty())
+    throw Error(file.string() + ": the map has no poles: nothing can be localized in it");
+  return map;
+}
 
 LocalizeResult localize(const LocalizeJob& job) {
   const AllSettings settings = effectiveSettings(job);

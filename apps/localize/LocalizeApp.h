@@ -104,6 +104,10 @@ struct LocalizeResult {
 ///         the truth covers less than half of the scans. The folder is as it was before then.
 LocalizeResult localize(const LocalizeJob& job);
 
+/// \brief A map for `settings` from a file. \throws Error when it cannot be read or has no poles.
+std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
+                                            const LikelihoodOptions& likelihood);
+
 /// \brief The program. \return Its exit code.
 int localizeMain(int argc, const char* const* argv);
 

@@ -15,6 +15,8 @@
 namespace polemcl::apps {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr double kTwin = 1;          ///< m; real poles seldom stand nearer to each other
 constexpr double kManyTwins = 0.25;  ///< share of the poles
 

@@ -1,15 +1,5 @@
-#include <mrpt/obs/CObservationPointCloud.h>
-
-#include <nlohmann/json.hpp>
-
-#include <polemcl/mrpt/observation/CObservationPoles.h>
-#include "cli/RawlogActions.h"
-#include "eval/EvalApp.h"
-#include "eval/ExtractionEval.h"
-#include "eval/MotionEval.h"
 #include "extract/ExtractApp.h"
-#include "mrpt/rawlog/RawlogWriter.h"
-#include "support/StreetTest.h"
+#include "support/EvalTest.h"
 
 namespace polemcl::test_extraction_eval {
 
@@ -19,21 +9,9 @@ using namespace testing_apps;
 
 namespace {
 
-PoleDetection detection(double x, double y, double confidence) {
-  PoleDetection d;
-  d.x = x;
-  d.y = y;
-  d.radius = 0.12;
-  d.confidence = confidence;
-  return d;
-}
-
-class ExtractionEval : public StreetTest {
+class ExtractionEval : public EvalTest {
  protected:
-  Outcome run(const std::vector<std::string>& arguments) { return runProgram(evalMain, arguments); }
-  nlohmann::json json(const std::string& name) const {
-    return nlohmann::json::parse(readText(folder / name));
-  }
+  ExtractionEval() { writeLabelled("sim"); }
 
   /// Two scans at (5, 0) heading along y, in which the pole 1 at (5, 10) has eight returns over
   /// 1.4 m, the pole 2 at (2, 0) three and the pole 3 at (25, 0) none.
@@ -61,87 +39,76 @@ class ExtractionEval : public StreetTest {
               "id,x,y,radius,top,kind\n1,5,10,0.1,4,sign\n2,2,0,0.1,4,sign\n3,25,0,0.1,4,sign\n");
   }
 
-  /// A rawlog of poles, all scans alike.
-  void writePoles(const std::string& name, const std::vector<double>& times,
-                  const std::vector<PoleDetection>& poles,
-                  const mrpt::poses::CPose3D& sensorPose = {}) {
-    RawlogWriter writer(at(name));
-    for (const double time : times) {
-      auto scan = std::make_shared<CObservationPoles>();
-      scan->timestamp = mrpt::Clock::fromDouble(time);
-      scan->sensorPose = sensorPose;
-      scan->poles = poles;
-      writer.write(makeActions(standstill(), scan->timestamp), scan);
-    }
-    writer.commit();
+  /// All scans alike.
+  void writeAlike(const std::string& name, const std::vector<double>& times, const Poles& poles,
+                  const mrpt::poses::CPose3D& sensorPose = {}) const {
+    writePoles(
+        name, times, [&](std::size_t) { return poles; }, standstill(), sensorPose);
+  }
+  Arguments detections(const std::string& poles) const {
+    return {"detections", "--scans", at("sim"), "--poles", at(poles)};
+  }
+  Arguments repeatability(const std::string& poles, const std::string& truth) const {
+    return {"repeatability", "--poles", at(poles), "--truth", at(truth)};
   }
 };
 
 }  // namespace
 
 TEST_F(ExtractionEval, DetectionsAreScoredAgainstTheLabels) {
-  writeLabelled("sim");
   // In the scans' frame pole 1 is at (10, 0), pole 2 at (0, 3): 3 cm beyond and 4 cm left of the
   // first, exactly at the second, which is not visible, and one where nothing is.
-  writePoles("p.rawlog", {20.25, 21.25},
+  writeAlike("p.rawlog", {20.25, 21.25},
              {detection(10.03, 0.04, 0.9), detection(0, 3, 0.8), detection(-8, 1, 0.6)});
-  const auto outcome = run({"detections", "--scans", at("sim"), "--poles", at("p.rawlog"), "--json",
-                            at("s.json"), "--visible", at("v.csv")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("0.6667"), std::string::npos) << outcome.out;
-  const auto score = json("s.json");
-  EXPECT_EQ(score["scans"], 2);
-  EXPECT_EQ(score["detections"], 6);
-  EXPECT_EQ(score["right"], 4);
-  EXPECT_EQ(score["visible"], 2);
-  EXPECT_EQ(score["found"], 2);
-  EXPECT_NEAR(score["precision"], 2.0 / 3, 1e-12);
-  EXPECT_EQ(score["recall"], 1.0);
-  EXPECT_NEAR(score["centre_mean_m"], 0.025, 1e-9);
-  EXPECT_NEAR(score["bias_along_m"], 0.015, 1e-9);
-  EXPECT_NEAR(score["bias_across_m"], 0.02, 1e-9);
-  EXPECT_NEAR(score["radius_bias_m"], 0.02, 1e-9);
-  EXPECT_NEAR(score["nees_mean"], 0.125, 1e-9);
-  EXPECT_EQ(score["auc"], 1.0);
-  EXPECT_EQ(readText(folder / "v.csv"),
-            "id,x,y,radius,top,scans\n1,5.0000,10.0000,0.1000,4.0000,2\n");
+  Arguments command = detections("p.rawlog");
+  command.insert(command.end(), {"--visible", at("v.csv")});
+  const auto score = figures(command);
+  const std::map<std::string, double> expected{{"scans", 2},
+                                               {"detections", 6},
+                                               {"right", 4},
+                                               {"visible", 2},
+                                               {"found", 2},
+                                               {"precision", 2.0 / 3},
+                                               {"recall", 1},
+                                               {"centre_mean_m", 0.025},
+                                               {"bias_along_m", 0.015},
+                                               {"bias_across_m", 0.02},
+                                               {"radius_bias_m", 0.02},
+                                               {"nees_mean", 0.125},
+                                               {"auc", 1}};
+  for (const auto& [key, value] : expected) EXPECT_NEAR(score[key], value, 1e-9) << key;
+  EXPECT_EQ(readText(at("v.csv")), "id,x,y,radius,top,scans\n1,5.0000,10.0000,0.1000,4.0000,2\n");
+  const std::string text = run(command).out;
+  EXPECT_NE(text.find("\nprecision 0.6667  recall 1.0000\ncentre error: median 2.5  mean 2.5  "),
+            std::string::npos)
+      << text;
 }
 
 TEST_F(ExtractionEval, ThePolesOfTheMapAreSeenFromWhateverFrameTheCloudHas) {
-  writeLabelled("sim");
   // The cloud's frame upside down on the robot: its y axis points the other way, and up is down.
   std::string poses;
   for (int i = 0; i < 2; ++i) poses += "0 1 0 5 1 0 0 0 0 0 -1 2\n";
-  writeText(folder / "sim/poses.txt", poses);
-  writePoles("p.rawlog", {20.25}, {detection(10, 0.1, 0.9)},
+  writeText(at("sim/poses.txt"), poses);
+  writeAlike("p.rawlog", {20.25}, {detection(10, 0.1, 0.9)},
              mrpt::poses::CPose3D(1, 2, 3, 0.7, 0, M_PI));
-  EvalDetectionsOptions options;
-  options.scans = folder / "sim";
-  options.poles = folder / "p.rawlog";
-  const auto score = evalDetections(options);
-  EXPECT_EQ(score.found, 1u);
-  EXPECT_NEAR(*score.biasAcross, 0.1, 1e-9);
-  options.minScans = 2;  // of the one scan that has poles
-  options.visible = folder / "v.csv";
-  evalDetections(options);
-  EXPECT_EQ(readText(folder / "v.csv"), "id,x,y,radius,top,scans\n");
+  Arguments command = detections("p.rawlog");
+  const auto score = figures(command);
+  EXPECT_EQ(score["found"], 1);
+  EXPECT_NEAR(score["bias_across_m"], 0.1, 1e-9);
+  // Two scans, of the one that has poles.
+  command.insert(command.end(), {"--visible", at("v.csv"), "--min-scans", "2"});
+  figures(command);
+  EXPECT_EQ(readText(at("v.csv")), "id,x,y,radius,top,scans\n");
 }
 
 TEST_F(ExtractionEval, RefusesScansThatDoNotBelongToThePoles) {
-  writeLabelled("sim");
-  writePoles("late.rawlog", {20.25, 22.25}, {});
-  expectFailure(run({"detections", "--scans", at("sim"), "--poles", at("late.rawlog")}),
-                {at("sim"), "22.25", "scan 1"});
-  writePoles("p.rawlog", {20.25}, {});
-  fs::remove(folder / "sim/labels/000000.label");
-  expectFailure(run({"detections", "--scans", at("sim"), "--poles", at("p.rawlog")}),
-                {"000000.label"});
-  fs::remove(folder / "sim/poses.txt");
-  expectFailure(run({"detections", "--scans", at("sim"), "--poles", at("p.rawlog")}),
-                {"poses.txt"});
-  fs::remove(folder / "sim/poles_gt.csv");
-  expectFailure(run({"detections", "--scans", at("sim"), "--poles", at("p.rawlog")}),
-                {"poles_gt.csv"});
+  writeAlike("late.rawlog", {20.25, 22.25}, {});
+  expectFailure(run(detections("late.rawlog")), {at("sim"), "22.25", "scan 1"});
+  writeAlike("p.rawlog", {20.25}, {});
+  for (const char* missing : {"labels/000000.label", "poses.txt", "poles_gt.csv"}) {
+    fs::remove(at("sim") + '/' + missing);
+    expectFailure(run(detections("p.rawlog")), {missing});
+  }
   expectUsageError(run({"detections", "--scans", at("sim")}));
 }
 
@@ -152,92 +119,64 @@ TEST_F(ExtractionEval, PolesOfAStreetAreFoundAgain) {
   options.input = folder / "street.rawlog";
   options.output = folder / "poles.rawlog";
   extractPoles(options, settings());
-  const auto outcome = run({"repeatability", "--poles", at("poles.rawlog"), "--truth",
-                            at("street.tum"), "--json", at("r.json")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const auto score = json("r.json");
+  const auto score = figures(repeatability("poles.rawlog", "street.tum"));
   EXPECT_EQ(score["scans"], 9);
   EXPECT_GT(score["per_scan"], 5);
   EXPECT_GE(score["share"], 0.9);  // some leave the view
-  // With poses that stand still they are not where they were.
-  writeText(folder / "still.tum", "0 0 0 0 0 0 0 1\n");
-  std::string still;
-  for (int i = 0; i < 100; ++i) still += std::to_string(i) + " 0 0 0 0 0 0 1\n";
-  writeText(folder / "still.tum", still);
-  EvalRepeatabilityOptions wrong;
-  wrong.poles = folder / "poles.rawlog";
-  wrong.truth = folder / "still.tum";
-  EXPECT_LT(evalRepeatability(wrong).share, 0.1);
+  writeWay("still.tum", 100, 0);   // then they are not where they were
+  EXPECT_LT(figures(repeatability("poles.rawlog", "still.tum"))["share"], 0.1);
 }
 
 TEST_F(ExtractionEval, RepeatabilityAndMotionKnowTheMotionWithinAScan) {
   // At 10 m/s, a pole is measured 0.05 s before or after the time of the scan: in turn.
-  RawlogWriter writer(at("p.rawlog"));
-  std::string rows;
-  for (int i = 0; i < 10; ++i) {
-    rows += std::to_string(i) + " " + std::to_string(10 * i) + " 0 0 0 0 0 1\n";
-    auto scan = std::make_shared<CObservationPoles>();
-    scan->timestamp = mrpt::Clock::fromDouble(i);
+  writePoles("p.rawlog", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, [](std::size_t i) {
+    const double offset = i % 2 == 0 ? 0.05 : -0.05;
+    Poles poles;
     for (const double x : {30., 55., 80.}) {
-      const double offset = i % 2 == 0 ? 0.05 : -0.05;
-      scan->poles.push_back(detection(x - 10 * (i + offset), 5, 0.9));
-      scan->poles.back().timeOffset = offset;
+      poles.push_back(detection(x - 10 * (static_cast<double>(i) + offset), 5));
+      poles.back().timeOffset = offset;
     }
-    writer.write(makeActions(standstill(), scan->timestamp), scan);
-  }
-  writer.commit();
-  writeText(folder / "t.tum", rows);
-  EvalRepeatabilityOptions options;
-  options.poles = folder / "p.rawlog";
-  options.truth = folder / "t.tum";
-  EXPECT_EQ(evalRepeatability(options).share, 1);
-  EvalMotionOptions motion;
-  motion.poles = folder / "p.rawlog";
-  motion.truth = folder / "t.tum";
-  motion.every = 1;
-  for (const MotionComparison& stretch : evalMotion(motion)) {
-    EXPECT_EQ(stretch.poles.pairs, 3u);
-    EXPECT_NEAR(stretch.poles.motion.x, 10, 1e-6);
+    return poles;
+  });
+  writeWay("t.tum", 10, 10);
+  EXPECT_EQ(figures(repeatability("p.rawlog", "t.tum"))["share"], 1);
+  const auto stretches =
+      figures({"motion", "--poles", at("p.rawlog"), "--truth", at("t.tum"), "--every", "1"});
+  EXPECT_EQ(stretches.size(), 9u);
+  for (const auto& stretch : stretches) {
+    EXPECT_EQ(stretch["pairs"], 3);
+    EXPECT_NEAR(stretch["poles"]["m"], 10, 1e-6);
   }
 }
 
 TEST_F(ExtractionEval, RepeatabilityRefusesWhatCannotBeCompared) {
-  writePoles("p.rawlog", {1, 2, 3, 4, 5}, {});
-  std::string rows;
-  for (int i = 0; i < 5; ++i) rows += std::to_string(i) + " 0 0 0 0 0 0 1\n";
-  writeText(folder / "t.tum", rows);
-  expectFailure(run({"repeatability", "--poles", at("p.rawlog"), "--truth", at("t.tum")}),
-                {at("t.tum"), "5.000000 s", "scan 4"});
-  writeText(folder / "t.tum", rows + "5 0 0 0 0 0 0 1\n");
-  expectFailure(run({"repeatability", "--poles", at("p.rawlog"), "--truth", at("t.tum")}),
-                {at("p.rawlog"), "5 scans"});
+  writeAlike("p.rawlog", {1, 2, 3, 4, 5}, {});
+  writeWay("short.tum", 5);
+  writeWay("t.tum", 6);
   writeStreet(folder / "street", 2);
   import("street");
-  expectFailure(run({"repeatability", "--poles", at("street.rawlog"), "--truth", at("street.tum")}),
-                {"pole-extract"});
+  expectRefusals({
+      {repeatability("p.rawlog", "short.tum"), {at("short.tum"), "5.000000 s", "scan 4"}},
+      {repeatability("p.rawlog", "t.tum"), {at("p.rawlog"), "5 scans"}},
+      {repeatability("street.rawlog", "street.tum"), {"pole-extract"}},
+  });
 }
 
 TEST_F(ExtractionEval, TurnedScansOfAStreetHaveTheSamePoles) {
   writeStreet(folder / "street", 3);
   import("street", false);
-  const auto outcome = run({"rotation", "--config", config(), "--input", at("street.rawlog"),
-                            "--every", "2", "--json", at("r.json")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const auto score = json("r.json");
+  const auto rotation = [&](const std::string& input, const std::string& every) {
+    return Arguments{"rotation", "--config", config(), "--input", at(input), "--every", every};
+  };
+  const auto score = figures(rotation("street.rawlog", "2"));
   EXPECT_EQ(score["scans"], 2);
   EXPECT_EQ(score["turns"], 22);
   EXPECT_GT(score["poles"], 22 * 5);
   EXPECT_GE(score["share"], 0.98);
   EXPECT_GE(score["back_share"], 0.98);
-  writePoles("p.rawlog", {1}, {});
-  expectFailure(run({"rotation", "--config", config(), "--input", at("p.rawlog")}),
-                {at("p.rawlog"), "only scans can be turned"});
-  expectUsageError(
-      run({"rotation", "--config", config(), "--input", at("p.rawlog"), "--every", "0"}));
-  EvalRotationOptions none;
-  none.input = folder / "street.rawlog";
-  none.every = 0;
-  EXPECT_THROW(evalRotation(none, settings()), Error);
+  writeAlike("p.rawlog", {1}, {});
+  expectFailure(run(rotation("p.rawlog", "1")), {at("p.rawlog"), "only scans can be turned"});
+  expectUsageError(run(rotation("p.rawlog", "0")));
 }
 
 }  // namespace polemcl::test_extraction_eval

@@ -1,53 +1,31 @@
-#include "eval/ExtractionEval.h"
+/// \file DetectionsEval.cpp
+/// \brief `pole-eval detections`: the poles of each scan against the true ones of a simulated
+/// folder (core/DetectionEvaluation.h), visible as core/PoleVisibility.h says. Scans and poles
+/// belong together by their times.
 
 #include <algorithm>
 #include <cmath>
 
-#include "cli/JsonFile.h"
 #include "core/common/PoseInterpolation.h"
+#include "core/evaluation/DetectionEvaluation.h"
 #include "core/evaluation/PoleVisibility.h"
-#include "io/data/Trajectory.h"
+#include "eval/DriveTruth.h"
+#include "eval/EvalApp.h"
+#include "eval/Figures.h"
 #include "io/dataset/LabelledScans.h"
 #include "io/dataset/ScanFolder.h"
 #include "io/file/AtomicFile.h"
-#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
-#include "localize/TrialDrive.h"
 
 namespace polemcl::apps {
 namespace {
 
-nlohmann::ordered_json extractionJson(const DetectionScore& s) {
-  return {{"scans", s.scans},
-          {"detections", s.detections},
-          {"right", s.right},
-          {"visible", s.visible},
-          {"found", s.found},
-          {"precision", s.precision},
-          {"recall", s.recall},
-          {"centre_mean_m", s.centreMean},
-          {"centre_median_m", s.centreMedian},
-          {"centre_p90_m", s.centre90},
-          {"radius_bias_m", s.radiusMean},
-          {"radius_abs_median_m", s.radiusMedian},
-          {"nees_mean", s.neesMean},
-          {"nees_median", s.neesMedian},
-          {"bias_along_m", s.biasAlong},
-          {"bias_across_m", s.biasAcross},
-          {"auc", s.auc}};
-}
-
-nlohmann::ordered_json extractionJson(const RepeatabilityScore& s) {
-  return {{"scans", s.scans},       {"detections", s.detections}, {"judged", s.judged},
-          {"repeated", s.repeated}, {"per_scan", s.perScan},      {"share", s.share}};
-}
-
-nlohmann::ordered_json extractionJson(const RotationScore& s) {
-  return {{"scans", s.scans},         {"turns", s.turns},
-          {"poles", s.poles},         {"turned_poles", s.turnedPoles},
-          {"matched", s.matched},     {"share", s.share},
-          {"back_share", s.backShare}};
-}
+struct DetectionsOptions : EvalOptions {
+  std::filesystem::path scans, poles;
+  double radius = 0.5;
+  std::optional<std::filesystem::path> visible;
+  std::size_t minScans = 1;
+};
 
 /// A simulated drive: its scans, its poles, and how many scans each pole was visible in.
 class SimulatedDrive {
@@ -113,57 +91,64 @@ class SimulatedDrive {
   std::vector<std::size_t> m_visibleIn;
 };
 
-Eigen::Vector2d inMap(const Pose2D& pose, const PoleDetection& pole) {
-  const Pose2D moved = compose(pose, {pole.x, pole.y, 0});
-  return {moved.x, moved.y};
-}
-
-}  // namespace
-
-DetectionScore evalDetections(const EvalDetectionsOptions& options) {
+Figures detectionsFigures(const DetectionsOptions& options) {
   DetectionEvaluation evaluation(options.radius);
   SimulatedDrive drive(options.scans);
   streamStoredPoles(options.poles, [&](const ReadScan& scan) {
     evaluation.add(scan.observation->poles, drive.polesFor(scan));
   });
-  const DetectionScore score = evaluation.score();
+  const DetectionScore s = evaluation.score();
   if (options.visible) drive.writeVisible(*options.visible, options.minScans);
-  if (options.json) writeJson(*options.json, extractionJson(score));
-  return score;
+  const Json json{{"scans", s.scans},
+                  {"detections", s.detections},
+                  {"right", s.right},
+                  {"visible", s.visible},
+                  {"found", s.found},
+                  {"precision", s.precision},
+                  {"recall", s.recall},
+                  {"centre_mean_m", s.centreMean},
+                  {"centre_median_m", s.centreMedian},
+                  {"centre_p90_m", s.centre90},
+                  {"radius_bias_m", s.radiusMean},
+                  {"radius_abs_median_m", s.radiusMedian},
+                  {"nees_mean", s.neesMean},
+                  {"nees_median", s.neesMedian},
+                  {"bias_along_m", s.biasAlong},
+                  {"bias_across_m", s.biasAcross},
+                  {"auc", s.auc}};
+  return {json,
+          filled("scans {scans}, detections {detections} ({right} right), visible poles {visible} "
+                 "({found} found)\n"
+                 "precision {precision:4}  recall {recall:4}\n"
+                 "centre error: median {centre_median_m:1*100}  mean {centre_mean_m:1*100}  90 % "
+                 "{centre_p90_m:1*100} cm; mean along the ray {bias_along_m:1*100}  across "
+                 "{bias_across_m:1*100} cm\n"
+                 "radius error: mean {radius_bias_m:1*100}  median of the absolute "
+                 "{radius_abs_median_m:1*100} cm\n"
+                 "normalised squared error: mean {nees_mean:2}  median {nees_median:2} (2 and 1.39 "
+                 "are right)\n"
+                 "confidence: area under the ROC {auc:4}\n",
+                 json)};
 }
 
-RepeatabilityScore evalRepeatability(const EvalRepeatabilityOptions& options) {
-  const auto truth = io::readPlanarTum(options.truth);
-  std::vector<std::vector<Eigen::Vector2d>> scans_map;
-  streamStoredPoles(options.poles, [&](const ReadScan& scan) {
-    const Pose2D pose = truePose(truth, options.truth, scan.time, scan.index, options.poles);
-    scans_map.emplace_back();
-    for (const PoleDetection& pole : trulyDeskewed(scan, truth))
-      scans_map.back().push_back(inMap(pose, pole));
-  });
-  const RepeatabilityScore score =
-      io::located(options.poles.string() + ": ", [&] { return evaluateRepeatability(scans_map); });
-  if (options.json) writeJson(*options.json, extractionJson(score));
-  return score;
+void declareDetections(CLI::App& cli, DetectionsOptions& options) {
+  addFolder(cli, "--scans", options.scans, "Folder that pole-simulate wrote")->required();
+  addFile(cli, "--poles", options.poles, "Rawlog of poles extracted from these scans")->required();
+  addNumber(cli, "--radius", options.radius, "Distance within which a pole is right, m",
+            CLI::PositiveNumber);
+  addOutput(cli, "--visible", options.visible,
+            "Write the true poles visible in the scans to this table (CSV)");
+  addNumber(cli, "--min-scans", options.minScans,
+            "Least number of scans that see a pole of that table", CLI::PositiveNumber);
 }
 
-RotationScore evalRotation(const EvalRotationOptions& options, const AllSettings& settings) {
-  if (options.every < 1) throw Error("--every 0 takes no scan: a number from 1 on is allowed");
-  ObservationPoleExtractor source(settings.poleExtraction());
-  PoleExtractor extractor(settings.sensor, settings.extraction);
-  RotationScore score;
-  SequenceOptions sequence = settings.reading();
-  sequence.vehicle.lidars.clear();
-  streamPoles(options.input.string(), sequence, [&](const ReadScan& scan) {
-    if (scan.stored)
-      throw Error(options.input.string() + ": holds poles, not scans; only scans can be turned");
-    if (options.progress) options.progress(scan.index + 1, scan.expected);
-    if (scan.index % options.every != 0 || scan.points == 0) return;
-    const auto cloud = source.lidarPoints(*scan.sources.front());
-    addRotations(extractor, cloud.view(), options.radius, score);
-  });
-  if (options.json) writeJson(*options.json, extractionJson(score));
-  return score;
+}  // namespace
+
+Subcommand detectionsCommand(CLI::App& program) {
+  return evalCommand<DetectionsOptions>(
+      program, "detections",
+      "Compares the poles of single scans with the true poles of a simulated folder",
+      declareDetections, detectionsFigures);
 }
 
 }  // namespace polemcl::apps

@@ -1,0 +1,403 @@
+#include <tbb/global_control.h>
+
+#include <atomic>
+#include <nlohmann/json.hpp>
+
+#include <polemcl/mrpt/common/RegisterClasses.h>
+#include "eval/EvalApp.h"
+#include "eval/Trials.h"
+#include "support/CityFiles.h"
+
+namespace polemcl::test_trials {
+
+using namespace polemcl;
+using namespace polemcl::apps;
+using namespace testing_apps;
+
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+/// Trials on a drive through a city of poles, a frame a metre, 5 m/s.
+class Trials : public testing::Test {
+ protected:
+  explicit Trials(double metres = 250, int trials = 8) : city(metres) {
+    registerClasses();
+    options.files = {city.at("city.ini"), city.at("city.polemap"), city.at("drive.rawlog"),
+                     city.at("drive.tum")};
+    options.trials = trials;
+    options.seed = 3;
+  }
+  TrialDrive drive() const { return loadTrialDrive(options.files); }
+  std::vector<TrialOutcome> outcomes(const TrialDrive& of,
+                                     TrialMaker (*maker)(const TrialDrive&, const TrialOptions&)) {
+    std::atomic<std::size_t> told{0};
+    options.progress = [&] { ++told; };
+    auto result = runTrials(of, options, maker(of, options));
+    EXPECT_EQ(told, result.size());
+    EXPECT_EQ(result.size(), static_cast<std::size_t>(options.trials));
+    return result;
+  }
+  Outcome run(const std::string& command, const Arguments& more = {}) const {
+    Arguments all{command,
+                  "--config",
+                  city.at("city.ini"),
+                  "--map",
+                  city.at("city.polemap"),
+                  "--input",
+                  city.at("drive.rawlog"),
+                  "--truth",
+                  city.at("drive.tum")};
+    all.insert(all.end(), more.begin(), more.end());
+    return runProgram(evalMain, all);
+  }
+  /// What the command writes, the same on one thread as on all; `words` are in its text.
+  nlohmann::json figures(const std::string& command, Arguments more, const std::string& words) {
+    more.insert(more.end(), {"--seed", "3", "--json", city.at("j")});
+    const auto once = [&] {
+      const auto outcome = run(command, more);
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
+      return readText(city.at("j"));
+    };
+    const std::string together = once();
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(once(), together);
+    return nlohmann::json::parse(together);
+  }
+  CityFiles city;
+  TrialOptions options;
+};
+
+class FaultTrials : public Trials {
+ protected:
+  FaultTrials() : Trials(400, 6) {
+    options.fault.lead = 8;
+    options.fault.duration = 6;
+    options.fault.tail = 60;
+    options.fault.maxJump = 200;
+  }
+  Trial inject(Fault fault, std::uint64_t seed = 1) {
+    options.fault.fault = fault;
+    std::mt19937_64 random(seed);
+    return injectFault(drive(), options.fault, random);
+  }
+};
+
+/// A trial of 1 m and 0.5 s a scan. Each letter is a scan: `o` ok, `d` degraded, `l` lost, `a`
+/// ambiguous; a capital: with a pose 3 m off; `-`: lost without a pose.
+TrialOutcome judged(const std::string& letters, std::size_t begin = 0, std::size_t end = 0) {
+  Trial trial;
+  trial.begin = begin;
+  trial.end = end;
+  std::vector<TrialScan> scans;
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    const char letter = letters[i], low = static_cast<char>(std::tolower(letter));
+    const auto at = static_cast<double>(i);
+    trial.truth.push_back({at, 0, 0});
+    const double error = letter == '-' ? INFINITY : letter == low ? 0.1 : 3;
+    scans.push_back({0.5 * at,
+                     at,
+                     {error, 0},
+                     low == 'o'                 ? HealthState::ok
+                     : low == 'd' || low == 'a' ? HealthState::degraded
+                                                : HealthState::lost,
+                     low == 'o'   ? HealthReason::none
+                     : low == 'a' ? HealthReason::ambiguous
+                     : low == 'd' ? HealthReason::converging
+                                  : HealthReason::spread,
+                     false,
+                     std::nullopt});
+  }
+  return outcomeOf(trial, scans);
+}
+
+double metres(const std::optional<Delay>& delay) {
+  return delay ? delay->metres : -1;
+}
+
+}  // namespace
+
+TEST(TrialOutcomes, SayWhenWhatCameToBe) {
+  const TrialOutcome start = judged("-lAaDOodo");
+  EXPECT_EQ(metres(start.said), 4);  // not lost, not ambiguous
+  EXPECT_EQ(start.said->seconds, 2);
+  EXPECT_EQ(start.saidError.metres, 3);
+  EXPECT_EQ(metres(start.saidOk), 5);
+  EXPECT_EQ(metres(start.ok), 6);  // with the right pose
+  EXPECT_EQ(metres(start.rightForGood), 6);
+  EXPECT_TRUE(start.okWrong);
+  EXPECT_EQ(start.okWrongMetres, 1);
+  EXPECT_EQ(start.errorMax, 3);
+  EXPECT_EQ(start.endError, 0.1);
+  EXPECT_EQ(metres(judged("aal").said), -1);
+  EXPECT_NEAR(judged("oO").meanError, (0.1 + 3) / 2, 1e-12);
+  EXPECT_EQ(metres(judged("ooO").rightForGood), -1);
+
+  const TrialOutcome fault = judged("OooDLlDooooDoooooo" + std::string(10, 'o') + "DD", 3, 6);
+  EXPECT_TRUE(fault.okBefore);
+  EXPECT_EQ(metres(fault.degraded), 0);
+  EXPECT_EQ(metres(fault.lost), 1);
+  EXPECT_EQ(fault.lostReason, "spread");
+  EXPECT_EQ(metres(fault.ok), 1);                                     // since the end
+  EXPECT_EQ(metres(fault.right), 6);                                  // over the next 5 m
+  EXPECT_NEAR(fault.errorAfter.value(), (20 * 0.1 + 3) / 21, 1e-12);  // over 20 m
+  EXPECT_FALSE(fault.okWrong);  // what was before the fault does not count
+  EXPECT_FALSE(judged("dooo", 1, 1).okBefore);
+}
+
+TEST(TrialOutcomes, CountHealthFromTheFirstOkOn) {
+  const HealthCounts health = judged("-ldoddlloOdd").health;
+  EXPECT_EQ(health.lostBefore, 2u);
+  EXPECT_EQ(health.scans, 9u);
+  EXPECT_EQ(health.ok, 3u);
+  EXPECT_EQ(health.degraded, 4u);
+  EXPECT_EQ(health.lost, 2u);
+  EXPECT_EQ(health.lostTimes, 1u);
+  EXPECT_EQ(health.degradedTimes, 2u);
+  EXPECT_EQ(health.longestSeconds, 2);
+  EXPECT_EQ(health.seconds, 4);
+  EXPECT_EQ(health.metres, 8);
+  EXPECT_EQ(health.wrongOk, 1u);
+  EXPECT_EQ(health.errorMax, 3);
+  EXPECT_NEAR(health.errorSum, 8 * 0.1 + 3, 1e-12);
+  EXPECT_EQ(health.reasons, (std::map<std::string, std::size_t>{{"converging", 4}, {"spread", 2}}));
+  EXPECT_EQ(judged("dl-").health.scans, 0u);
+}
+
+TEST(TrialOutcomes, PassWhatIsDemandedOfEachFault) {
+  TrialOutcome outcome;
+  for (const Fault fault : {Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck})
+    EXPECT_FALSE(passes(fault, outcome));
+  const auto passesWhenLost = [&](Fault fault, double seconds, double metres) {
+    outcome.lost = Delay{seconds, metres};
+    return passes(fault, outcome);
+  };
+  EXPECT_TRUE(passesWhenLost(Fault::kidnap, 6, 19));
+  EXPECT_TRUE(passesWhenLost(Fault::wrongMap, 6, 19));
+  EXPECT_TRUE(passesWhenLost(Fault::kidnap, 4, 30));
+  EXPECT_FALSE(passesWhenLost(Fault::wrongMap, 4, 30));
+  EXPECT_FALSE(passesWhenLost(Fault::kidnap, 6, 30));
+  const auto passesWhenBack = [&](double seconds, double metres) {
+    outcome.degraded = Delay{seconds, 50};
+    outcome.ok = Delay{9, metres};
+    return passes(Fault::blind, outcome);
+  };
+  EXPECT_TRUE(passesWhenBack(5, 20));
+  EXPECT_FALSE(passesWhenBack(5.1, 20));
+  EXPECT_FALSE(passesWhenBack(1, 20.1));
+}
+
+TEST_F(Trials, AVehicleIsFoundInItsCity) {
+  const auto trials = outcomes(drive(), startsAnywhere);
+  for (const TrialOutcome& trial : trials) {
+    ASSERT_TRUE(trial.said);
+    EXPECT_TRUE(trial.saidError.isRight());
+    EXPECT_GE(trial.said->metres, 2);  // a pole takes two hits
+    EXPECT_LE(trial.said->metres, 60);
+    EXPECT_LE(trial.scan, 190u);  // with 60 m still to drive
+    EXPECT_FALSE(trial.okWrong);
+    EXPECT_FALSE(trial.searchSeconds.empty());
+  }
+  EXPECT_NE(trials[0].scan, trials[1].scan);
+}
+
+TEST_F(Trials, AKnownStartIsFound) {
+  for (const TrialOutcome& trial : outcomes(drive(), startsNearby)) {
+    ASSERT_TRUE(trial.rightForGood && trial.saidOk);
+    EXPECT_LT(trial.rightForGood->metres, 20);
+    EXPECT_GE(trial.saidOk->metres, 5);  // [health] confirm_m
+    EXPECT_LT(trial.endError, 0.1);
+    EXPECT_GT(trial.meanError, 0);
+    EXPECT_LE(trial.scan, 190u);
+    EXPECT_FALSE(trial.okWrong);
+  }
+}
+
+TEST_F(Trials, StartsAreDrawnInTheDiscAndTheHeadingsOfTheSettings) {
+  const TrialDrive whole = drive();
+  const TrialMaker maker = startsNearby(whole, options);
+  double farthest = 0, mostTurned = 0;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const Trial trial = maker(i);
+    const PlanarError off = errorOf(trial.start.value(), trial.truth[0]);
+    farthest = std::max(farthest, off.metres);
+    mostTurned = std::max(mostTurned, off.radians);
+    EXPECT_EQ(trial.truth[0].x, whole.truth[trial.origin].x);
+    EXPECT_NEAR(trial.driven.back(), 60, 2.5);
+  }
+  EXPECT_LE(farthest, whole.settings.start.radius);
+  EXPECT_GT(farthest, 0.5 * whole.settings.start.radius);
+  EXPECT_LE(mostTurned, whole.settings.start.heading);
+  EXPECT_GT(mostTurned, 0.5 * whole.settings.start.heading);
+}
+
+TEST_F(Trials, AWrongPoseIsCalledWrong) {
+  TrialDrive moved = drive();
+  for (Pose2D& pose : moved.truth) pose.x += 1;  // so that no answer can be right
+  for (const auto maker : {startsAnywhere, startsNearby}) {
+    int ok = 0;
+    const auto trials = outcomes(moved, maker);
+    if (maker == startsAnywhere) {
+      const Json json = globalFigures(moved, options, trials).json;
+      EXPECT_EQ(json["wrong"], 8);
+      EXPECT_EQ(json["right"], 0);
+      EXPECT_GT(json["ok_wrong"], 4);
+    }
+    for (const TrialOutcome& trial : trials) {
+      EXPECT_FALSE(trial.rightForGood);
+      EXPECT_NEAR(trial.endError, 1, 0.2);
+      EXPECT_EQ(trial.okWrong, trial.saidOk.has_value());
+      ok += trial.okWrong;
+    }
+    EXPECT_GT(ok, 4);  // said ok in the belief of a true map
+  }
+}
+
+TEST_F(Trials, OnAnotherCitysMapNothingIsFound) {
+  const CityFiles other(10, 99);
+  options.files.map = other.at("city.polemap");
+  const TrialDrive elsewhere = drive();
+  const Json json = globalFigures(elsewhere, options, outcomes(elsewhere, startsAnywhere)).json;
+  EXPECT_EQ(json["undecided"], 8);
+  EXPECT_EQ(json["wrong"], 0);
+}
+
+TEST_F(Trials, SettingsDoNotSayWhereATrialStarts) {
+  writeText(city.at("city.ini"), readText(city.at("city.ini")) + "[start]\nposition_m = 5000 0\n");
+  for (const TrialOutcome& trial : outcomes(drive(), startsNearby)) EXPECT_LT(trial.endError, 0.1);
+}
+
+TEST_F(Trials, TheProgramWritesTheSameFiguresOnAnyNumberOfThreads) {
+  const auto global = figures("global", {"--trials", "8"}, "right 8, wrong 0, undecided 0; ok");
+  EXPECT_EQ(global["right_share"], 1.0);
+  EXPECT_EQ(global["ok_wrong"], 0);
+  EXPECT_GT(nlohmann::json::parse(readText(city.at("j_timings")))["query_max_ms"], 0);
+  const auto starts =
+      figures("starts", {"--trials", "8"}, "right at the end 8; ok said of a wrong pose: 0");
+  EXPECT_EQ(starts["right_share"], 1.0);
+  EXPECT_EQ(starts["trials"], 8);
+}
+
+TEST_F(Trials, RefuseWhatCannotBeTried) {
+  for (const char* command : {"global", "starts"}) {
+    expectFailure(run(command, {"--metres", "400"}), {"400", "fewer metres"});
+    expectUsageError(run(command, {"--trials", "0"}));
+  }
+  expectFailure(run("faults", {"--fault", "wrong-map"}), {"--other-map"});
+  expectFailure(run("faults", {"--fault", "blind", "--tail", "4000"}), {"too short"});
+  for (const char* bad : {"nan", "0", "-1", "inf", "1e7"})
+    expectUsageError(run("faults", {"--fault", "blind", "--duration", bad}));
+  expectUsageError(run("faults", {"--fault", "flood"}));
+  expectUsageError(run("faults"));
+  auto truth = io::planar(io::readTum(city.at("drive.tum")));
+  truth.resize(100);
+  io::writeTum(city.at("drive.tum"), truth);
+  expectFailure(run("global"), {"drive.tum", "no true pose"});
+}
+
+TEST_F(FaultTrials, WindowsHoldLeadFaultAndTail) {
+  const TrialDrive whole = drive();
+  int longer = 0;
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    options.fault.fault = Fault::slip;
+    std::mt19937_64 random(seed);
+    const Trial slip = injectFault(whole, options.fault, random);
+    EXPECT_EQ(slip.begin, 40u);  // 8 s of 0.2 s
+    EXPECT_EQ(slip.end, 70u);
+    ASSERT_EQ(slip.frames.size(), slip.truth.size());
+    EXPECT_NEAR(slip.driven.back() - slip.driven[slip.end], 60, 2.5);
+    const auto motion = [&](std::size_t i) { return *whole.frames[slip.origin + i].motion; };
+    const auto factorOf = [&](std::size_t i) {
+      return slip.frames[i].motion->mean.x / motion(i).mean.x;
+    };
+    const double slipping = factorOf(slip.begin);
+    EXPECT_NEAR(std::abs(slipping - 1), 0.2, 1e-6);
+    longer += slipping > 1;
+    for (std::size_t i = 1; i < slip.frames.size(); ++i) {
+      const double factor = i >= slip.begin && i < slip.end ? slipping : 1;
+      EXPECT_NEAR(factorOf(i), factor, 1e-6) << i;
+      EXPECT_NEAR(slip.frames[i].motion->mean.yaw, factor * motion(i).mean.yaw, 1e-12) << i;
+      EXPECT_TRUE(
+          slip.frames[i].motion->covariance.isApprox(factor * factor * motion(i).covariance))
+          << i;
+      EXPECT_NEAR(slip.frames[i].time - slip.frames[i - 1].time, 0.2, 1e-5);
+      EXPECT_EQ(slip.truth[i].x, whole.truth[slip.origin + i].x);
+    }
+  }
+  EXPECT_GT(longer, 3);  // of 19: half, by chance
+  EXPECT_LT(longer, 16);
+}
+
+TEST_F(FaultTrials, EachFaultSpoilsItsOwn) {
+  const Trial blind = inject(Fault::blind), stuck = inject(Fault::stuck);
+  const auto faulty = [](const Trial& trial, std::size_t i) {
+    return i >= trial.begin && i < trial.end;
+  };
+  for (std::size_t i = 1; i < blind.frames.size(); ++i)
+    EXPECT_EQ(blind.frames[i].poles_robot.empty(), faulty(blind, i)) << i;
+  for (std::size_t i = 1; i < stuck.frames.size(); ++i) {
+    EXPECT_EQ(stuck.frames[i].motion->mean.x == 0, faulty(stuck, i)) << i;
+    // It is sure of standing still.
+    const double sigma = std::sqrt(stuck.frames[i].motion->covariance(0, 0));
+    EXPECT_EQ(sigma <= io::motionFloorMetres * (1 + 1e-9), faulty(stuck, i)) << i << ' ' << sigma;
+  }
+}
+
+TEST_F(FaultTrials, AKidnappingJumpsAsFarAsToldAndTimeGoesOn) {
+  for (std::uint64_t seed = 1; seed < 8; ++seed) {
+    const Trial jump = inject(Fault::kidnap, seed);
+    const double distance = errorOf(jump.truth[jump.begin], jump.truth[jump.begin - 1]).metres;
+    EXPECT_GT(distance, 18);
+    EXPECT_LT(distance, 202);
+    EXPECT_NEAR(jump.jump, distance, 2);
+    for (std::size_t i = 1; i < jump.frames.size(); ++i)
+      EXPECT_NEAR(jump.frames[i].time - jump.frames[i - 1].time, 0.2, 1e-5);
+    EXPECT_LT(std::abs(jump.frames[jump.begin].motion->mean.x), 2);  // nothing of the jump
+    EXPECT_EQ(jump.driven[jump.begin], jump.driven[jump.begin - 1]);
+  }
+}
+
+TEST_F(FaultTrials, FaultsAreNoticedAndRecoveredFrom) {
+  for (const Fault fault : {Fault::kidnap, Fault::blind, Fault::stuck}) {
+    options.fault.fault = fault;
+    for (const TrialOutcome& trial : outcomes(drive(), faultyStretches)) {
+      EXPECT_TRUE(trial.okBefore);
+      EXPECT_TRUE(passes(fault, trial)) << name(fault) << " at " << trial.scan;
+      ASSERT_TRUE(trial.ok);
+      EXPECT_LT(trial.errorAfter.value(), 0.2);
+    }
+  }
+}
+
+TEST_F(FaultTrials, AWrongMapIsNoticed) {
+  const CityFiles other(20, 77);
+  const auto json = figures("faults",
+                            {"--fault", "wrong-map", "--other-map", other.at("city.polemap"),
+                             "--trials", "3", "--tail", "60"},
+                            "fault wrong-map: 3 of 3 as demanded; ok before the fault: 0\n");
+  EXPECT_EQ(json["lost"]["trials"], 3);
+  EXPECT_EQ(json["ok"]["trials"], 0);
+}
+
+TEST_F(FaultTrials, AHealthyDriveIsOk) {
+  const auto json = figures("faults", {"--fault", "none", "--trials", "2"}, "no fault: 2 runs, ");
+  EXPECT_EQ(json["runs"], 2);
+  EXPECT_EQ(json["lost_times"], 0);
+  EXPECT_EQ(json["ok_with_wrong_pose"], 0);
+  const double scans = json["scans"];
+  EXPECT_GT(scans * json["ok_share"].get<double>(), 2 * 350);
+  EXPECT_NEAR(json["hours"].get<double>() * 3600, 0.2 * (scans - 2), 1e-3);
+  EXPECT_NEAR(json["kilometres"].get<double>() * 1000, scans - 2, 10);
+}
+
+TEST_F(FaultTrials, TheProgramListsWhatFailed) {
+  const auto json = figures(
+      "faults",
+      {"--fault", "slip", "--trials", "3", "--lead", "8", "--duration", "4", "--tail", "40"},
+      "\nright     ");
+  EXPECT_EQ(json["trials"], 3);
+  EXPECT_EQ(json["passed"].get<int>() + json["failed"].size(), 3u);
+}
+
+}  // namespace polemcl::test_trials
