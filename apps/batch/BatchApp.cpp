@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <iostream>
 #include <thread>
@@ -34,7 +35,8 @@ std::size_t jobsOf(const BatchOptions& options) {
 Failures runHere(const BatchOptions& options, const BatchFolder& folder, const BatchPlan& plan,
                  const std::vector<const BatchTask*>& open) {
   const std::size_t all = plan.tasks.size();
-  Progress progress("batch", all, options.quiet);
+  const std::chrono::seconds always{0};  // in a log, a line after each task
+  Progress progress("batch", all, options.quiet, always);
   return runBatch(folder, open, all, {jobsOf(options), options.imports},
                   [&](const BatchTask& task, const TaskOutcome& outcome, const BatchProgress& now) {
                     if (!outcome.failure.empty() && !outcome.blocked)

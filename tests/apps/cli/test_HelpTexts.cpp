@@ -116,7 +116,7 @@ TEST(HelpTexts, EveryCommandHasExamplesThatParse) {
 }
 
 TEST(HelpTexts, WhatToDoNextNamesOptionsThatExist) {
-  const std::regex command("pole-[a-z]+ (?:[^.:;,]|\\.[a-z])*");
+  const std::regex command("pole-[a-z]+ (?:[^.:;,]|\\.[a-z])+");
   std::size_t found = 0;
   for (const auto& [name, help] : helps()) {
     std::string next;
@@ -125,8 +125,11 @@ TEST(HelpTexts, WhatToDoNextNamesOptionsThatExist) {
       const Words words = typed(it->str());
       const auto below = helps().find(words[0] + ' ' + words[1]);
       const std::string& known = below == helps().end() ? helps().at(words[0]) : below->second;
-      for (const std::string& word : words)
-        if (word.rfind("--", 0) == 0) EXPECT_HAS(known, ' ' + word) << name << ": " << it->str();
+      for (const std::string& word : words) {
+        if (word.rfind("--", 0) == 0) {
+          EXPECT_HAS(known, ' ' + word) << name << ": " << it->str();
+        }
+      }
       ++found;
     }
   }
