@@ -2,6 +2,7 @@
 /// \file Maps.h
 /// \brief The map that the classes of the Python module share.
 
+#include "core/common/PoleIndex.h"
 #include "map/MapFiles.h"
 
 namespace polemcl::apps::python {
