@@ -51,7 +51,8 @@ def write(path, data):
 def main():
     top, copy = map(pathlib.Path, sys.argv[1:])
     faults = table(top / "tests/mutation/mutations.txt")
-    names = subprocess.check_output(["git", "-C", top, "ls-files", "-z"], text=True).split("\0")
+    listing = ["git", "-C", top, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    names = subprocess.check_output(listing, text=True).split("\0")
     places = {}
     for name in filter(None, names):
         if not (top / name).is_file():

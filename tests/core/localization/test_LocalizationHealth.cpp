@@ -83,6 +83,14 @@ TEST(LocalizationHealth, APoseThatASearchFoundIsBorneOutSooner) {
   feed.expect(State::ok, Reason::none);
 }
 
+// 50 m with ten poles a scan, then 10 m with four: (50 · 10 + 10 · 4) / 60 = 9 are usual.
+TEST(LocalizationHealth, WhatIsSeenIsComparedWithTheMeanOfALongWay) {
+  Feed feed;
+  feed.scans(100, 1, 10);
+  EXPECT_NEAR(feed.last.seenShare, 1, 1e-9);
+  EXPECT_NEAR(feed.scans(20, 1, 4).seenShare, 4.0 / 9, 0.02);
+}
+
 TEST(LocalizationHealth, TooFewMatchesDegradeThenLose) {
   Feed feed;
   feed.scans(40, 0.9);

@@ -66,6 +66,20 @@ TEST(OdometryCalibration, CorrectsMotionsAndStatesWhatIsLeft) {
   EXPECT_LT(corrected.covariance(0, 0), before / 10);
 }
 
+// By the odometry just less than half a turn, by the poses just more.
+TEST(OdometryCalibration, LearnsFromATurnBack) {
+  Bench bench(0.02, 0.0009);
+  const double before = bench.calibration.errors().covariance(0, 0);
+  const Pose2D odometry{0.5, 0, (M_PI - 0.003) / 16};
+  for (int i = 0; i <= 16; ++i) {
+    if (i > 0)
+      bench.pose.mean = compose(bench.pose.mean, {0.5 * 1.02, 0, odometry.yaw + 0.0009 * 0.5});
+    bench.calibration.add(odometry, Eigen::Vector3d(1e-6, 1e-6, 1e-8).asDiagonal(), &bench.pose);
+  }
+  EXPECT_LT(bench.pose.mean.yaw, 0);
+  EXPECT_LT(bench.calibration.errors().covariance(0, 0), before / 2);
+}
+
 TEST(OdometryCalibration, LearnsNothingWithoutPoses) {
   Bench bench(0.05, 0.0009);
   bench.drive(100, false);

@@ -18,6 +18,10 @@ using namespace polemcl::tests;
 
 namespace {
 
+PoleDetection exactAt(double x, double y) {
+  return detectionAt(x, y, 0);
+}
+
 LikelihoodOptions optionsOf(LikelihoodModel model, bool weighted) {
   LikelihoodOptions options;
   options.model = model;
@@ -41,7 +45,7 @@ Scene randomScene(std::uint64_t seed) {
   for (int i = 0; i < 200; ++i)
     scene.map.push_back(mapPoleAt(uniform(-40, 40), uniform(-40, 40), uniform(0, 0.02)));
   for (int i = 0; i < 12; ++i) {
-    PoleDetection pole = detectionAt(uniform(-30, 30), uniform(-30, 30));
+    PoleDetection pole = exactAt(uniform(-30, 30), uniform(-30, 30));
     Eigen::Matrix2d root;
     root << uniform(0, 0.3), uniform(-0.2, 0.2), 0, uniform(0.01, 0.2);
     pole.covariance = root * root.transpose();
@@ -110,12 +114,12 @@ TEST(PoleLikelihood, PaperByHand) {
   // Seen from (1, 0) looking to +y: (0, -9) lies at (10, 0), off by 0; (10.6, 1) at (0, 10.6), off
   // by 0.6.
   const Pose2D pose{1, 0, M_PI / 2};
-  EXPECT_NEAR(logLikelihood({detectionAt(0, -9)}, pose, index, options), 0, 1e-12);
-  EXPECT_NEAR(logLikelihood({detectionAt(0, -9), detectionAt(10.6, 1)}, pose, index, options),
-              -0.36 / 0.5, 1e-12);
+  EXPECT_NEAR(logLikelihood({exactAt(0, -9)}, pose, index, options), 0, 1e-12);
+  EXPECT_NEAR(logLikelihood({exactAt(0, -9), exactAt(10.6, 1)}, pose, index, options), -0.36 / 0.5,
+              1e-12);
   // Without a match a pole costs the gate, 2²/(2·0.5²) = 8, as one just inside it does.
-  EXPECT_NEAR(logLikelihood({detectionAt(50, 50)}, pose, index, options), -8, 1e-12);
-  EXPECT_NEAR(logLikelihood({detectionAt(0, -10.999999)}, pose, index, options), -8, 1e-4);
+  EXPECT_NEAR(logLikelihood({exactAt(50, 50)}, pose, index, options), -8, 1e-12);
+  EXPECT_NEAR(logLikelihood({exactAt(0, -10.999999)}, pose, index, options), -8, 1e-4);
 }
 
 TEST(PoleLikelihood, MixtureByHand) {
@@ -127,11 +131,11 @@ TEST(PoleLikelihood, MixtureByHand) {
   const PoleIndex index({mapPoleAt(5, 5, 0)});
   // Off by 0.1 m: half a σ, and half of the gate.
   const double matched = std::log(0.9 * std::exp(-0.125) + 0.1 * (0.25 + 0.75 * 27 / 64));
-  EXPECT_NEAR(logLikelihood({detectionAt(5.1, 5)}, {}, index, options), matched, 1e-12);
-  EXPECT_NEAR(logLikelihood({detectionAt(5.1, 5), detectionAt(20, 5)}, {}, index, options),
+  EXPECT_NEAR(logLikelihood({exactAt(5.1, 5)}, {}, index, options), matched, 1e-12);
+  EXPECT_NEAR(logLikelihood({exactAt(5.1, 5), exactAt(20, 5)}, {}, index, options),
               matched + std::log(0.025), 1e-12);
   options.farOutlier = 1;  // all outliers alike
-  EXPECT_NEAR(logLikelihood({detectionAt(5.1, 5)}, {}, index, options),
+  EXPECT_NEAR(logLikelihood({exactAt(5.1, 5)}, {}, index, options),
               std::log(0.9 * std::exp(-0.125) + 0.1), 1e-12);
 }
 
@@ -141,14 +145,14 @@ TEST(PoleLikelihood, FlooredByHand) {
   const PoleIndex index({mapPoleAt(5, 5, 0)});
   // A constant apart: the densities of the standard normal distribution at 0, 0.5 and 1, from a
   // table, and 0.2. A pole without a match counts as one at the gate of 1 m.
-  const double exact = logLikelihood({detectionAt(5, 5)}, {}, index, options);
-  const double half = logLikelihood({detectionAt(5.5, 5)}, {}, index, options);
-  const double none = logLikelihood({detectionAt(9, 5)}, {}, index, options);
+  const double exact = logLikelihood({exactAt(5, 5)}, {}, index, options);
+  const double half = logLikelihood({exactAt(5.5, 5)}, {}, index, options);
+  const double none = logLikelihood({exactAt(9, 5)}, {}, index, options);
   EXPECT_NEAR(half - exact, std::log((0.352065 + 0.2) / (0.398942 + 0.2)), 1e-5);
   EXPECT_NEAR(none - exact, std::log((0.241971 + 0.2) / (0.398942 + 0.2)), 1e-5);
-  EXPECT_NEAR(logLikelihood({detectionAt(5, 5.999999)}, {}, index, options), none, 1e-5);
-  EXPECT_NEAR(logLikelihood({detectionAt(9, 5), detectionAt(5.5, 5)}, {}, index, options),
-              none + half, 1e-12);
+  EXPECT_NEAR(logLikelihood({exactAt(5, 5.999999)}, {}, index, options), none, 1e-5);
+  EXPECT_NEAR(logLikelihood({exactAt(9, 5), exactAt(5.5, 5)}, {}, index, options), none + half,
+              1e-12);
 }
 
 TEST(PoleLikelihood, FlooredEqualsItsFormula) {
@@ -284,7 +288,7 @@ TEST(PoleLikelihood, NoDetectionsSayNothing) {
 
 TEST(PoleLikelihood, AnEmptyMapCostsTheFloorForEachDetection) {
   const PoleIndex index({});
-  const std::vector<PoleDetection> poles{detectionAt(1, 2), detectionAt(3, 4)};
+  const std::vector<PoleDetection> poles{exactAt(1, 2), exactAt(3, 4)};
   EXPECT_NEAR(logLikelihood(poles, {}, index, optionsOf(LikelihoodModel::mixture, false)),
               2 * std::log(0.05 * 0.1), 1e-12);
   EXPECT_NEAR(logLikelihood(poles, {}, index, optionsOf(LikelihoodModel::paper, false)),
@@ -294,7 +298,7 @@ TEST(PoleLikelihood, AnEmptyMapCostsTheFloorForEachDetection) {
 TEST(PoleLikelihood, StaysFiniteWithThousandsOfUnmatchedPoles) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
   options.outlier = 1e-9;
-  const std::vector<PoleDetection> poles(5000, detectionAt(1, 2));
+  const std::vector<PoleDetection> poles(5000, exactAt(1, 2));
   EXPECT_NEAR(logLikelihood(poles, {}, PoleIndex({}), options), 5000 * std::log(1e-10), 1e-6);
 }
 
@@ -304,11 +308,11 @@ TEST(PoleLikelihood, StaysFiniteWithNumbersThatAreNone) {
   for (LikelihoodModel model : kModels) {
     for (bool weighted : {false, true}) {
       const LikelihoodOptions options = optionsOf(model, weighted);
-      const double unmatched = logLikelihood({detectionAt(50, 50)}, {}, index, options);
-      EXPECT_EQ(logLikelihood({detectionAt(0, 0)}, {nan, 0, 0}, index, options), unmatched);
-      EXPECT_EQ(logLikelihood({detectionAt(0, 0)}, {0, infinity, 0}, index, options), unmatched);
-      EXPECT_EQ(logLikelihood({detectionAt(0, 0)}, {0, 0, nan}, index, options), unmatched);
-      EXPECT_EQ(logLikelihood({detectionAt(nan, 0)}, {}, index, options), unmatched);
+      const double unmatched = logLikelihood({exactAt(50, 50)}, {}, index, options);
+      EXPECT_EQ(logLikelihood({exactAt(0, 0)}, {nan, 0, 0}, index, options), unmatched);
+      EXPECT_EQ(logLikelihood({exactAt(0, 0)}, {0, infinity, 0}, index, options), unmatched);
+      EXPECT_EQ(logLikelihood({exactAt(0, 0)}, {0, 0, nan}, index, options), unmatched);
+      EXPECT_EQ(logLikelihood({exactAt(nan, 0)}, {}, index, options), unmatched);
     }
   }
 }
@@ -316,9 +320,9 @@ TEST(PoleLikelihood, StaysFiniteWithNumbersThatAreNone) {
 TEST(PoleLikelihood, TheMixtureIsNotFlat) {
   const PoleIndex index({mapPoleAt(10, 0, 0)});
   const LikelihoodOptions options = optionsOf(LikelihoodModel::mixture, false);
-  const double right = logLikelihood({detectionAt(10, 0)}, {}, index, options);
-  const double off = logLikelihood({detectionAt(10, 0)}, {0.3, 0, 0}, index, options);
-  const double lost = logLikelihood({detectionAt(10, 0)}, {5, 0, 0}, index, options);
+  const double right = logLikelihood({exactAt(10, 0)}, {}, index, options);
+  const double off = logLikelihood({exactAt(10, 0)}, {0.3, 0, 0}, index, options);
+  const double lost = logLikelihood({exactAt(10, 0)}, {5, 0, 0}, index, options);
   EXPECT_GT(right - off, std::log(4));
   EXPECT_GT(off - lost, std::log(2));
   EXPECT_NEAR(lost, std::log(options.outlier * options.farOutlier), 1e-12);
@@ -328,7 +332,7 @@ TEST(PoleLikelihood, WeightsAnErrorByTheCovarianceAlongIt) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::paper, true);
   options.sigma = 0.1;
   const PoleIndex index({mapPoleAt(0, 20, 0)});
-  PoleDetection pole = detectionAt(20, 0);
+  PoleDetection pole = exactAt(20, 0);
   pole.covariance << 0.08, 0, 0, 0;  // 0.28 m along the line of sight, certain across it
   // The robot looks to +y, so along the line of sight is along the map's y.
   const double along = logLikelihood({pole}, {0, 0.3, M_PI / 2}, index, options);
@@ -340,12 +344,12 @@ TEST(PoleLikelihood, WeightsAnErrorByTheCovarianceAlongIt) {
 TEST(PoleLikelihood, AnUncertainMapPoleCountsForLess) {
   LikelihoodOptions options = optionsOf(LikelihoodModel::paper, true);
   options.sigma = 0.1;
-  EXPECT_NEAR(logLikelihood({detectionAt(1.2, 1)}, {}, PoleIndex({mapPoleAt(1, 1, 0.03)}), options),
+  EXPECT_NEAR(logLikelihood({exactAt(1.2, 1)}, {}, PoleIndex({mapPoleAt(1, 1, 0.03)}), options),
               -0.5 * 0.04 / 0.04, 1e-9);
 }
 
 TEST(PoleLikelihood, ADetectionWithoutConfidenceHasNoInfluence) {
-  PoleDetection doubtful = detectionAt(3, 3);
+  PoleDetection doubtful = exactAt(3, 3);
   doubtful.confidence = 0;
   const PoleIndex index({mapPoleAt(3, 3, 0)});
   for (LikelihoodModel model : kModels) {
@@ -374,7 +378,7 @@ TEST(PoleLikelihood, RefusesWeightsThatAreNone) {
     EXPECT_THROW(logLikelihood({pole}, {}, index, optionsOf(LikelihoodModel::mixture, true)),
                  Error);
   };
-  PoleDetection pole = detectionAt(1, 1);
+  PoleDetection pole = exactAt(1, 1);
   pole.covariance << 0.01, 0.02, 0.02, 0.01;  // indefinite
   refuses(pole);
   pole.covariance << 0.01, 0.001, 0, 0.01;  // not symmetric
@@ -382,7 +386,7 @@ TEST(PoleLikelihood, RefusesWeightsThatAreNone) {
   pole.covariance << std::nan(""), 0, 0, 0.01;
   refuses(pole);
   for (double confidence : {-0.1, 1.1, std::nan("")}) {
-    pole = detectionAt(1, 1);
+    pole = exactAt(1, 1);
     pole.confidence = confidence;
     refuses(pole);
   }

@@ -97,6 +97,19 @@ TEST(ScanRegistration, CovarianceIsThatOfTheErrors) {
   }
 }
 
+TEST(ScanRegistration, DetectionsWorseThanTheySayWidenTheCovariance) {
+  Poles wrong = after(kStreet, {1, 0, 0});
+  for (std::size_t i = 0; i < wrong.size(); ++i)
+    wrong[i].x += i % 2 ? 0.14 : -0.14;  // they say 0.03
+  RegistrationOptions options;
+  options.gate = 10;
+  const ScanRegistration exact =
+      refineMotion(kStreet, after(kStreet, {1, 0, 0}), {1, 0, 0}, options);
+  const ScanRegistration found = refineMotion(kStreet, wrong, {1, 0, 0}, options);
+  ASSERT_EQ(found.pairs, 5);
+  EXPECT_GT(found.covariance(0, 0), 2 * exact.covariance(0, 0));
+}
+
 TEST(ScanRegistration, NothingInCommonGivesNoPairs) {
   const ScanRegistration none = refineMotion(kStreet, {}, {1, 2, 0.3}, {});
   EXPECT_EQ(none.pairs, 0);

@@ -117,6 +117,17 @@ TEST(MapUpdater, WhatIsMissedInFreeViewFades) {
   EXPECT_TRUE(find(map, 10, 5)->present);
 }
 
+// It stands 19.5 m ahead of the last scan, and more than 20 m, where nothing is expected, of the
+// others.
+TEST(MapUpdater, ASingleSightingIsNoCandidate) {
+  const std::vector<SessionScan> seen = drive({{59.5, 0}});
+  std::vector<SessionScan> scans = drive({});
+  scans[40].poles_robot = seen[40].poles_robot;
+  EXPECT_TRUE(updatedBy(kept({}), scans).poles.empty());
+  scans[39].poles_robot = seen[39].poles_robot;
+  EXPECT_EQ(updatedBy(kept({}), scans).poles.size(), 1u);
+}
+
 TEST(MapUpdater, WhatIsHiddenStays) {
   std::vector<SessionScan> scans = drive({{10, 5}});
   const std::size_t half = 128;

@@ -230,21 +230,37 @@ TEST(PoleFitting, TurningTheScanTurnsCentreAndCovariance) {
   }
 }
 
-// A wall hides the right half. Its edge is no edge of the pole, so the left one has to do.
+// A wall hides one half. Its edge is no edge of the pole, so the other one has to do.
 TEST(PoleFitting, APoleHalfHiddenIsNotPulledAside) {
   const double radius = 0.15;
-  double lateral = 0;
-  for (int i = 0; i < 20; ++i) {
-    const Scan scan(10, 0, radius, 50 + i, 0.02, {{5, -3, 5, 0}});
-    ASSERT_FALSE(scan.segments.empty());
-    for (const ScanLineSegment& s : scan.segments) ASSERT_EQ(s.right, Side::occluded);
-    const auto fit = scan.fit();
-    ASSERT_TRUE(fit);
-    EXPECT_NEAR(fit->x, 10, 0.1);
-    EXPECT_NEAR(fit->y, 0, 0.1);
-    lateral += fit->y / 20;
+  for (const bool rightHidden : {true, false}) {
+    double lateral = 0;
+    for (int i = 0; i < 20; ++i) {
+      const Wall wall = rightHidden ? Wall{5, -3, 5, 0} : Wall{5, 0, 5, 3};
+      const Scan scan(10, 0, radius, 50 + i, 0.02, {wall});
+      ASSERT_FALSE(scan.segments.empty());
+      for (const ScanLineSegment& s : scan.segments)
+        ASSERT_EQ(rightHidden ? s.right : s.left, Side::occluded);
+      const auto fit = scan.fit();
+      ASSERT_TRUE(fit);
+      EXPECT_NEAR(fit->x, 10, 0.1);
+      EXPECT_NEAR(fit->y, 0, 0.1);
+      lateral += fit->y / 20;
+    }
+    EXPECT_LT(std::abs(lateral), 0.04);  // the middle of what is seen is 0.075 m aside
   }
-  EXPECT_LT(std::abs(lateral), 0.04);  // the middle of what is seen is 0.075 m aside
+}
+
+// The fit is moved to the height of the sensor, but not beyond what was seen of the pole.
+TEST(PoleFitting, IsGivenAtTheSegmentNearestToTheSensorsHeight) {
+  Scan scan(10, 0.3, 0.1, 1);
+  EXPECT_EQ(scan.fit()->tilt.gap, 0);
+  std::vector<std::uint32_t> below;
+  for (const std::uint32_t u : scan.used)
+    if (scan.segments[u].z < -0.1f) below.push_back(u);
+  ASSERT_GE(below.size(), 3u);
+  scan.used = below;
+  EXPECT_FLOAT_EQ(scan.fit()->tilt.gap, -scan.segments[below.front()].z);
 }
 
 TEST(PoleFitting, OfNoSlicesThereIsNoFit) {
