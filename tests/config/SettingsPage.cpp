@@ -38,9 +38,23 @@ height_m = 1.0      # metres above the ground
 | expert | nobody, except to study the method: the measured value serves everywhere |
 
 Which key helps against which fault: [tuning by symptom](tuning.md).
-
-## Sections
 )";
+/// Those that people set, as `section.key`; they come first.
+const std::vector<std::string> kUsual{"sensor.model",
+                                      "sensor.height_m",
+                                      "sensor.turn",
+                                      "sensor.clock_offset_s",
+                                      "sensor.min_range_m",
+                                      "sensor.upside_down",
+                                      "sensor.origin",
+                                      "scan_line.min_top_m",
+                                      "scan_line.max_range_m",
+                                      "map.section_length_m",
+                                      "map.min_count",
+                                      "likelihood.sigma_m",
+                                      "motion.covariance_factor",
+                                      "start.radius_m",
+                                      "filter.particles"};
 constexpr const char* s_columns =
     "| key | meaning | default | unit | allowed | tier |\n|---|---|---|---|---|---|\n";
 constexpr const char* s_foot = R"(
@@ -158,6 +172,21 @@ GroupPage pageOf(const Group& group, const PageBinder& binder) {
   return page;
 }
 
+/// The table of the settings that people set.
+std::string usualSettings(const PageBinder& binder) {
+  std::string text = "\n## The fifteen that people set\n| section |" + std::string(s_columns + 1);
+  text.insert(text.find("|---"), "|---");
+  for (const std::string& name : kUsual) {
+    const std::size_t dot = name.find('.');
+    const std::string sectionName = name.substr(0, dot), start = "| `" + name.substr(dot + 1) + "`";
+    const std::string& rows = binder.section(sectionName).rows;
+    const std::size_t at = rows.find(start);
+    if (at == rows.npos) throw Error("there is no setting " + name);
+    text += "| `[" + sectionName + "]` " + rows.substr(at, rows.find('\n', at) + 1 - at);
+  }
+  return text + "\n## Sections\n";
+}
+
 /// \throws Error naming a section that is on no page or on two.
 void checkGroups(const PageBinder& binder) {
   std::istringstream all(std::accumulate(
@@ -180,6 +209,7 @@ std::map<std::string, std::string> settingsPages() {
   checkGroups(binder);
   std::map<std::string, std::string> pages;
   std::string& index = pages["settings.md"] = s_head;
+  index += usualSettings(binder);
   index += "| page | section | sets |\n|---|---|---|\n";
   for (const Group& group : groups()) {
     const GroupPage page = pageOf(group, binder);
