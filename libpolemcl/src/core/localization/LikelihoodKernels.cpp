@@ -9,9 +9,12 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/localization/LikelihoodKernels.cpp"
-#include <hwy/contrib/math/math-inl.h>
+// foreach_target.h stands before all that it compiles again.
+// clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace polemcl {
