@@ -106,8 +106,6 @@ TEST(Settings, KnowsEverySection) {
                                           "[filter]",
                                           "[start]",
                                           "[tracking]",
-                                          "[submap]",
-                                          "[global]",
                                           "[health]",
                                           "[search]",
                                           "[odometry_monitor]",

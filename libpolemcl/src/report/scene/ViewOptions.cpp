@@ -34,6 +34,8 @@ void bind(Binder& b, ViewOptions& o) {
   b.integer("scenes", o.scenes, Range::atLeast(0), "scans",
             "number of scans from one .3Dscene to the next; 0: no scenes");
   b.text("frames", o.frames, "folder of PNG frames; empty: no frames");
+  b.integer("frame_every", o.frameEvery, Range::atLeast(1), "scans",
+            "number of scans from one frame to the next");
   b.require(io::problemOf([&] { parseRate(o.rate); }).empty(), "rate", o.rate,
             "max, or a factor on the recorded speed such as 1x or 2.5x, at least 0.001x");
 }
