@@ -82,7 +82,8 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
   std::optional<PoseWithCovariance> way;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
     const PoleScan& frame = sequence.frames[i];
-    way = way && frame.motion ? std::optional(composeMotions(*way, *frame.motion)) : std::nullopt;
+    way =
+        way && frame.motion ? std::optional(io::composeMotions(*way, *frame.motion)) : std::nullopt;
     if (frame.poles_robot.empty() && frame.points == 0) continue;  // blind: neither seen nor missed
     const auto scan = poses.at(i, frame.time);
     session.skipped.unmatched += !scan;
