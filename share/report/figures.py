@@ -66,8 +66,8 @@ class Plot:
         name = f"p{next(self._ids)}"
         out = io.StringIO()
         with matplotlib.rc_context({"svg.hashsalt": name}):
-            self.figure.savefig(out, format="svg", metadata=dict.fromkeys(
-                ("Creator", "Date", "Format", "Type")))
+            self.figure.savefig(out, format="svg")
+        # What comes before, with the date, and the style for the whole page are left out.
         shapes = re.search(r"</style>\s*</defs>(.*)</svg>", out.getvalue(), re.DOTALL)[1]
         shapes = re.sub(r"<!--.*?-->|(?<=\n) +", "", shapes, flags=re.DOTALL)
         shapes = re.sub(r"<[^>]*>", lambda tag: self._tag(tag[0]), shapes)

@@ -177,6 +177,15 @@ class Report:
         return [(key, row) for key in keys if len(set(row := [one.get(key) for one in values])) > 1]
 
 
+def shares(score):
+    return [quantities.number(score[key], 3) for key in ("precision", "recall", "f1")]
+
+
+def scores(map_score):
+    """Shares in all ways to count."""
+    return [share for way in WAYS for share in shares(map_score[way])]
+
+
 def runs(counts):
     """10, 1 wrong, 2 failed."""
     text = quantities.count(counts["runs"])
@@ -204,11 +213,12 @@ def sentences(*texts):
 
 
 def environment(**options):
-    made = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), undefined=jinja2.StrictUndefined,
-                              extensions=["jinja2.ext.do"], trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, **options)
+    made = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE), undefined=jinja2.StrictUndefined, extensions=["jinja2.ext.do"],
+        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, **options)
     for name in ("number", "percent", "metres", "count", "plural", "change", "duration"):
         made.filters[name] = getattr(quantities, name)
-    made.filters.update(runs=runs, sample=sample, sentence=sentences)
+    made.filters.update(runs=runs, shares=shares, scores=scores, sample=sample, sentence=sentences)
     made.globals.update(DASH=quantities.DASH, WAYS=WAYS, figures=figures)
     return made
 

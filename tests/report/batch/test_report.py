@@ -121,7 +121,7 @@ class Pages(unittest.TestCase):
             self.assertEqual(len(widths), 1, table)
 
     def test_hostile_texts_are_text(self):
-        evil = "<script>alert('x')</script>&\"]]>-->$x$\x01"
+        evil = "$x$<script>alert('x')</script>&\"]]>-->\x01"
 
         def change(results):
             old, new = "plain", evil + "plain"
@@ -132,6 +132,7 @@ class Pages(unittest.TestCase):
 
         text = page("nclt", {**TIMES, "machine": evil}, change)
         self.assertNotIn("script", [tag for tag, _ in Page(text).tags])
+        self.assertIn(">$x$&lt;script&gt;alert…</text>", text)  # no formula of Matplotlib
         self.assertEqual(Page(text).text["h1"], evil.replace("\x01", "\ufffd"))
 
     def test_only_timings_change_with_the_time(self):
@@ -163,11 +164,12 @@ class Pages(unittest.TestCase):
     def test_of_a_long_batch_stay_below_ten_megabytes(self):
         def change(results):
             plots = results["results"][0]["plots"]
-            plots["map_poles_xy"] = [400 * math.cos(1.3 * i) for i in range(6000)]
+            plots["map_poles_xy"] = [250 * math.cos(1.3 * i) for i in range(6000)]
             plots["truth_xy"] = [300 * math.sin(0.017 * i) for i in range(3000)]
-        one = len(page(change=change)) - len(PLAIN)
-        self.assertGreater(one, 20e3)
-        self.assertLess(54 * one, 10e6)
+        text = page(change=change)
+        dots = re.search(r'<path d="([^"]*)"[^>]*stroke-linecap: round"', text)[1]
+        self.assertEqual((dots.count("M"), dots.count("L")), (3000, 3000))
+        self.assertLess(54 * (len(text) - len(PLAIN)), 10e6)
 
 
 class Tables(unittest.TestCase):
@@ -186,6 +188,11 @@ class Tables(unittest.TestCase):
             "0.626", "0.663", "1.600", "0.810", "0.857", "2, 1 failed"])
         mean = read.row("sessions", "Mean of sessions")  # over the sessions that both have
         self.assertEqual((mean[2], mean[4], mean[5]), ("37.5", "0.183", "0.130"))
+
+        def change(results):  # session three without a figure of ours
+            results["summary"][0]["sessions"][2]["figures"]["pos_mean"].update(
+                mean=None, deviation=None, count=0)
+        self.assertEqual(Page(page(change=change)).row("sessions", "Mean of sessions")[4], "0.120")
 
     def test_published_figures_stand_beside_ours_for_their_dataset(self):
         self.assertNotIn("published", Page(PLAIN).rows)
@@ -230,13 +237,16 @@ class Tables(unittest.TestCase):
 
 class Plots(unittest.TestCase):
     def test_maps_keep_shapes_with_north_up(self):
-        svg = re.search('<svg class="plot map.*?</svg>', PLAIN, re.DOTALL)[0]
+        def change(results):  # higher than the plot may be
+            results["results"][0]["plots"]["truth_xy"] = [0, 0, 40, 0, 40, 300]
+
+        svg = re.search('<svg class="plot map.*?</svg>', page(change=change), re.DOTALL)[0]
         path = re.search(r'<path d="([^"]*)"[^>]*stroke: var\(--truth\)', svg)[1]
         (x0, y0), (x1, y1), (x2, y2) = [map(float, point) for point in
                                         re.findall(r"[ML] ([\d.]+) ([\d.]+)", path)]
         self.assertAlmostEqual(y1, y0, delta=0.11)
         self.assertAlmostEqual(x2, x1, delta=0.11)
-        self.assertAlmostEqual((y1 - y2) / (x1 - x0), 0.75, delta=0.005)  # 40 m east, 30 m north
+        self.assertAlmostEqual((y1 - y2) / (x1 - x0), 7.5, delta=0.05)  # 40 m east, 300 m north
 
     def test_gaps_in_the_error_are_gaps_in_its_line(self):
         svg = re.search('aria-labelledby[^>]*>\n<title[^>]*>Position error over.*?</svg>', PLAIN,
