@@ -77,7 +77,7 @@ const std::map<std::string, std::set<std::string>> kStrangers{{"sim", {"mrpt"}}}
 const std::set<std::string> kLaboratory{"sim"}, kLaboratoryUsers{"apps/simulate", "apps/eval"};
 /// Its settings, which the settings of all programs hold: one INI serves all programs.
 const std::pair<std::string, std::string> kLaboratorySettings{"apps/cli",
-                                                               "sim/common/SimulationOptions.h"};
+                                                              "sim/common/SimulationOptions.h"};
 /// A line above that a room must not use: two methods for the same purpose.
 const std::map<std::string, std::set<std::string>> kStrangerRooms{
     {"core/extraction/scan_line", {"core/extraction/range_image"}}};
@@ -343,7 +343,7 @@ TEST(Includes, RightIncludesAreLeftAlone) {
       {"libpolemcl/src/io/file/A.cpp", "#include <zlib.h>"},
       {"libpolemcl/src/config/A.cpp", "#include <mrpt/config/CConfigFileBase.h>"},
       {"libpolemcl/src/mrpt/map/A.cpp", "#include \"io/file/AtomicFile.h\""},
-      {"libpolemcl/src/sim/common/A.cpp", "#include " config / Config.h ""},
+      {"libpolemcl/src/sim/common/A.cpp", "#include \"config/Config.h\""},
       {"apps/eval/A.cpp", "#include \"sim/world/World.h\""},
       {"apps/cli/A.cpp", "#include \"sim/common/SimulationOptions.h\""},
       {"apps/map/A.cpp", "#include \"map/MapApp.h\""},

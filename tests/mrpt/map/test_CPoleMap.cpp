@@ -13,6 +13,7 @@
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "core/common/PoleIndex.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "support/ExpectHas.h"

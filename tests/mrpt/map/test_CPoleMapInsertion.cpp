@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "core/common/PoleIndex.h"
 #include "support/Samples.h"
 
 namespace polemcl::test_cpole_map_insertion {

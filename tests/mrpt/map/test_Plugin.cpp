@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include <polemcl/mrpt/map/CPoleMap.h>
+#include "core/common/PoleIndex.h"
 #include "core/common/PoseEstimate.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "mrpt/rawlog/RawlogWriter.h"

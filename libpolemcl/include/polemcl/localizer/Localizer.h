@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/PoleScan.h>
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/LocalizationUpdate.h>
 #include <polemcl/localizer/Settings.h>

@@ -1,6 +1,6 @@
 #include <iterator>
 
-#include <polemcl/core/extraction/PoleExtractor.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
 
 namespace polemcl {
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/common/Binder.h"
+#include "core/common/PoleIndex.h"
 #include "core/localization/PoseModes.h"
 #include "mrpt/filter/MotionAction.h"
 

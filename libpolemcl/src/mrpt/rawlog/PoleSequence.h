@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <polemcl/core/common/PoleScan.h>
+#include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>

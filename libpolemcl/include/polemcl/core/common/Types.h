@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -82,6 +83,20 @@ struct PoleDetection {
   /// Turning rate of the LiDAR, rad/s, positive counterclockwise seen from above: radius, x and y
   /// are those of a pole that stood still while the beam crossed it. 0: it did, or unknown.
   double turnRate = 0;
+};
+
+/// \brief One scan in the form that map and filter need.
+struct PoleScan {
+  double time = 0;  ///< s
+  /// Motion since the previous scan, in its robot frame. Ignored for the first scan; nullopt:
+  /// unknown.
+  std::optional<PoseWithCovariance> motion;
+  std::vector<PoleDetection> poles_robot;
+  std::size_t points = 0;                   ///< valid points of the scan; 0: none or unknown
+  std::vector<float> visibilityRange = {};  ///< as in CObservationPoles; may be empty
+  Pose2D pose_robot_sensor = {};            ///< pose of the frame of visibilityRange
+  /// Velocity at the time of the scan, where the motions up to it do not tell.
+  std::optional<Velocity> velocity = {};
 };
 
 /// \brief One pole of a map, map frame.

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <polemcl/core/extraction/ExtractionOptions.h>
-#include <polemcl/core/extraction/PoleExtractor.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
 #include "core/extraction/range_image/Segmentation.h"
 
 namespace polemcl {

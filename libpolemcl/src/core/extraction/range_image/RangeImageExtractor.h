@@ -2,7 +2,7 @@
 /// \file RangeImageExtractor.h
 /// \brief Algorithm 1 of Dong et al. 2021, A to B3, on one screen. Private to the library.
 
-#include <polemcl/core/extraction/PoleExtractor.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
 #include <polemcl/core/sensor/SensorOptions.h>
 #include "core/extraction/range_image/CircleFit.h"
 #include "core/extraction/range_image/PoleCandidates.h"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <polemcl/core/extraction/ExtractionOptions.h>
-#include <polemcl/core/extraction/PoleExtractor.h>
+#include <polemcl/core/extraction/ExtractionReport.h>
 #include <polemcl/core/sensor/SensorOptions.h>
 #include "core/extraction/PoleClassifier.h"
 #include "core/extraction/VisibilityRange.h"
