@@ -102,10 +102,7 @@ TEST(SettingRanges, ValuesThatContradictEachOtherAreRefused) {
       {"[range_image]\ncolumns = 15\n", "columns = 15: allowed is 0, or at least 16"},
       {"[range_image]\nfov_up_deg = -20\nfov_down_deg = -20\n", "[range_image] fov_up_deg = -20"},
       {"[range_image]\nmin_z_m = 1\nmax_z_m = 1\n", "max_z_m = 1: allowed is more than min_z_m"},
-      {"[range_image]\nmin_radius_m = 0.2\nmax_radius_m = 0.2\n",
-       "[range_image] max_radius_m = 0.2"},
-      {"[scan_line]\nconnect_step_m = 0.4\nedge_step_m = 0.2\n", "[scan_line] edge_step_m = 0.2"},
-      {"[scan_line]\nmin_radius_m = 0.2\nmax_radius_m = 0.2\n", "[scan_line] max_radius_m = 0.2"},
+      {"[scan_line]\nmax_radius_m = 0.02\n", "max_radius_m = 0.02: allowed is more than 0.02 m"},
       {"[sensor]\nmodel = hdl128\n", "model = hdl128"},
       {"[sensor]\nmodel = table\nelevations_deg = 1\ncolumns = 900\n", "[sensor] elevations_deg"},
       {"[sensor]\nmodel = table\nelevations_deg = 1 -1\n", "[sensor] columns = 0"},
@@ -129,7 +126,6 @@ TEST(SettingRanges, ValuesThatContradictEachOtherAreRefused) {
       {"[filter]\nparticle = 10\n", "particle"},
       {"[start]\nposition_m = 1\n", "position_m = 1: allowed is two numbers"},
       {"[runs]\nseed = 4294967295\n", "[runs] seed = 4294967295"},
-      {"[simulation]\nlane_offset_m = 4\n", "lane_offset_m = 4"},  // 10 m of road leave 3.8 m
       {"[simulation]\ndetour = 1\n", "detour = 1: allowed is [world] side_streets or less"},
   };
   for (const auto& [text, part] : rules) {

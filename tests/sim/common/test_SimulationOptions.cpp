@@ -19,9 +19,6 @@ TEST(SimulationOptions, RefusesWhatItCannotSimulate) {
   options.sensor = "lms200";
   EXPECT_REFUSED(makeLidar(options), "lms200");
   options = {};
-  options.laneOffset = 4;  // 10 m of road leave 3.8 m for the centre of a vehicle
-  EXPECT_REFUSED(options.validate(), "lane_offset_m = 4", "allowed");
-  options = {};
   options.world.replacedPerYear = 1;
   EXPECT_REFUSED(options.validate(), "[world] replaced_per_year = 1", "allowed");
 }
