@@ -40,8 +40,8 @@ bin=$prefix/bin
 
 echo "1/8 Headers and symbols"
 headers=$(find "$prefix/include/polemcl" -mindepth 2 -name '*.h' | wc -l)
-if [ "$headers" -lt 20 ] || [ "$headers" -gt 45 ]; then
-  fail "$headers public headers; 20 to 45 were meant"
+if [ "$headers" -lt 12 ] || [ "$headers" -gt 18 ]; then
+  fail "$headers public headers; 12 to 18 in the rooms were meant"
 fi
 grep -rhoE '#include "[^"]*"' "$prefix/include" && fail "a public header includes a private one"
 own=$(nm -DC --defined-only "$lib/libpolemcl.so" | grep -c 'polemcl::' || :)

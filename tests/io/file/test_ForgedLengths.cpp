@@ -110,8 +110,7 @@ TEST_F(ForgedLengths, InCompressedData) {
     EXPECT_REFUSED(inflated(packed, size, "x: "), "x: ");
   // Data beyond a small claimed size are not decompressed.
   refusal([&] { inflated(packed, 100, "x: "); });
-  EXPECT_REFUSED(inflated(packed + "x", content.size(), "x: "),
-                 "cannot be decompressed");
+  EXPECT_REFUSED(inflated(packed + "x", content.size(), "x: "), "cannot be decompressed");
 }
 
 TEST_F(ForgedLengths, InAnArchiveOfArrays) {
