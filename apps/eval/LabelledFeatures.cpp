@@ -91,7 +91,13 @@ std::vector<FoundCandidate> findCandidates(const LabelledDrive& drive, const All
     extractor.extract(cloud.view(), upright, poles, report);
     const Velocity velocity = drive.velocity(i);
     const Eigen::Isometry3d T_map_lidar = drive.T_map_lidar(i);
+    const Eigen::Vector3f trueUp = T_map_lidar.linear().row(2).cast<float>();
+    const Eigen::Vector2f trueUpright = trueUp.head<2>() / trueUp.z();
     for (PoleCandidate each : recorded) {
+      // A detection is moved by the estimated tilt of the sensor, which depends on the classifier.
+      const Eigen::Vector2f shift = shiftBy(each.tilt, upright, trueUpright);
+      each.x += shift.x();
+      each.y += shift.y();
       const Eigen::Vector2d at = drive.atStamp(velocity, each.x, each.y);
       each.x = at.x();
       each.y = at.y();

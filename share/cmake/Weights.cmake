@@ -1,21 +1,17 @@
 # Turns a table of fitted weights into rows of C++: the columns after the first, which names the term.
 #   polemcl_weights(CSV HEADER MACRO)
-# A row "name,1,2" becomes MACRO_TERM(name, 1, 2), a row "a*b,1,2" becomes MACRO_PRODUCT(a, b, 1, 2).
+# A row "name,1,2" becomes MACRO_TERM(name, 1, 2).
 function(polemcl_weights csv header macro)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${csv})
   file(STRINGS ${csv} rows REGEX "^[^#]")
   list(POP_FRONT rows)  # names of the columns
   set(text "")
   foreach(row IN LISTS rows)
-    if(NOT row MATCHES "^[A-Za-z]+([*][A-Za-z]+)?(,[-+.0-9e]+)+$")
+    if(NOT row MATCHES "^[A-Za-z]+(,[-+.0-9e]+)+$")
       message(FATAL_ERROR "${csv}: cannot read the row \"${row}\"")
     endif()
-    set(kind TERM)
-    if(row MATCHES "[*]")
-      set(kind PRODUCT)
-    endif()
-    string(REGEX REPLACE "[*,]" ", " cells ${row})
-    string(APPEND text "${macro}_${kind}(${cells})\n")
+    string(REPLACE "," ", " cells ${row})
+    string(APPEND text "${macro}_TERM(${cells})\n")
   endforeach()
   file(CONFIGURE OUTPUT ${header} CONTENT "${text}" @ONLY)
 endfunction()

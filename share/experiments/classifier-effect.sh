@@ -94,10 +94,12 @@ real() {
   config=$top/config/kitti.ini
   {
     if [ -n "$3" ]; then
+      # shellcheck disable=SC2086 # several words
       import all "$2" $turning
       build_map all
       map_scores 1 "$3" "$4"
     fi
+    # shellcheck disable=SC2086
     [ "$1" = kitti_odom_00_long ] || poses "$2" $turning
   } | jq -s --arg drive "$1" '{drive: $drive} + add' >"$out/$1.json"
 }

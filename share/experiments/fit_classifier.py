@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Fits the confidence of poles and the scale of their covariance to tables of `pole-eval features`.
 
-Confidence: logistic regression on the terms and on the products of two terms that raise its likelihood most.
+Confidence: gradient-boosted trees on the terms. Before the fit of a cylinder, rough odds: logistic regression.
 Covariance: a scale, log-linear in its terms. Squared errors divided by the true covariance are chi-square of
 two degrees of freedom, an exponential distribution: a gamma regression.
-Drives of one sensor share one weight, so that all sensors weigh alike. Terms are brought to mean 0 and variance
-1 and cut off at 3, as PoleClassifier.cpp does. Needs python3-sklearn.
+Drives of one sensor share one weight, so that all sensors weigh alike. For the regression, terms are brought to
+mean 0 and variance 1 and cut off at 3, as PoleClassifier.cpp does. Needs python3-sklearn.
 """
 import argparse
 import csv
@@ -13,15 +13,20 @@ import json
 import pathlib
 
 import numpy as np
+from sklearn.ensemble import HistGradientBoostingClassifier
 from sklearn.linear_model import GammaRegressor, LogisticRegression
 from sklearn.metrics import average_precision_score, log_loss
 
 KNOWN_AFTER_FIT = {"clutter", "excess", "radius", "density"}  # terms that the rough odds do not have
 FARTHEST_TERM = 3  # standard deviations
 HIGHEST_ODDS = 7  # that the covariance distinguishes
-FAR_ERROR = 100  # a squared error beyond is not that of the pole's own centre
+FAR_ERROR = 13.8  # one in 1000 squared errors is greater; more are not those of the pole's own centre
 RIDGE = 100
-PRODUCTS = 20
+# More of these never speaks for a pole, or always does. PoleClassifier relies on that of clutter.
+DIRECTIONS = {"clutter": -1, "wide": -1, "notWhole": -1, "scatter": -1, "lowTop": -1, "excess": -1, "extent": 1}
+REAL_WEIGHT = 6  # of a candidate of a real drive: simulated worlds are many
+TREES = {"max_iter": 300, "learning_rate": 0.1, "max_leaf_nodes": 8, "max_depth": 4, "l2_regularization": 20,
+         "min_samples_leaf": 80, "early_stopping": False}
 WRITTEN_BY = "written by\n# share/experiments/fit_classifier.py (train-classifier.sh).\n"
 
 
@@ -44,93 +49,85 @@ class Drive:
         self.built_in = values[:, columns.index("odds")]
 
 
-def sample_weights(drives, real_weight):
-    """One array: all sensors weigh alike, a candidate of a real drive real_weight times a simulated one."""
-    each = [np.full(len(drive.poles), float(real_weight if drive.real else 1)) for drive in drives]
-    for sensor in {drive.sensor for drive in drives}:
-        own = [weights for drive, weights in zip(drives, each) if drive.sensor == sensor]
-        total = sum(weights.sum() for weights in own)
-        for weights in own:
-            weights /= total
-    weights = np.concatenate(each)
-    return weights * len(weights) / weights.sum()
+def sample_weights(drives):
+    """One array: all sensors weigh alike, and so do all candidates of a sensor but for REAL_WEIGHT."""
+    sensors = np.concatenate([[drive.sensor] * len(drive.poles) for drive in drives])
+    names, index, counts = np.unique(sensors, return_inverse=True, return_counts=True)
+    real = np.concatenate([[REAL_WEIGHT if drive.real else 1] * len(drive.poles) for drive in drives])
+    return real * len(sensors) / (len(names) * counts[index])
 
 
-def logistic(terms, poles, weights, ridge):
-    return LogisticRegression(C=1 / ridge, tol=1e-6, max_iter=1000).fit(terms, poles, weights)
+def rows_of_tree(nodes, names):
+    """The rows of trees.csv: (term, value, step), the left child behind its parent."""
+    rows = []
 
+    def append(index):
+        node, row = nodes[index], len(rows)
+        rows.append(None)
+        if node["is_leaf"]:
+            rows[row] = ("one", node["value"], None)
+            return
+        append(node["left"])
+        rows[row] = (names[node["feature_idx"]], node["num_threshold"], len(rows) - row)
+        append(node["right"])
 
-def best_product(terms, poles, weights, probabilities, taken):
-    """The pair with the greatest score statistic: gradient squared by information."""
-    residuals = weights * (poles - probabilities)
-    information = weights * probabilities * (1 - probabilities)
-    gradients = terms.T @ (terms * residuals[:, None])
-    squares = (terms**2).T @ (terms**2 * information[:, None])
-    score = np.divide(gradients**2, squares, out=np.zeros_like(squares), where=squares > 0)
-    score[np.tril_indices(len(score))] = -1
-    for pair in taken:
-        score[pair] = -1
-    return np.unravel_index(np.argmax(score), score.shape)
+    append(0)
+    return [(term, value, row - len(rows) if step is None else step) for row, (term, value, step) in enumerate(rows)]
 
 
 class Classifier:
-    """Weights of both regressions, as in classifier.csv."""
+    """Both tables: the weights of the rough odds (classifier.csv) and the trees (trees.csv)."""
 
-    def __init__(self, drives, real_weight, ridge=RIDGE, products=PRODUCTS):
+    def __init__(self, drives, ridge=RIDGE, **trees):
         self.names = drives[0].names
         terms = np.concatenate([drive.terms for drive in drives])
         poles = np.concatenate([drive.poles for drive in drives])
-        weights = sample_weights(drives, real_weight)
+        weights = sample_weights(drives)
         self.mean = np.average(terms, axis=0, weights=weights)
         deviation = np.sqrt(np.average((terms - self.mean) ** 2, axis=0, weights=weights))
         self.scale = np.divide(1, deviation, out=np.zeros_like(deviation), where=deviation > 1e-9)
-        terms = self.standardized(terms)
+        standard = np.clip((terms - self.mean) * self.scale, -FARTHEST_TERM, FARTHEST_TERM)
         known = np.array([name not in KNOWN_AFTER_FIT for name in self.names])
-        rough = logistic(terms * known, poles, weights, ridge)
+        rough = LogisticRegression(C=1 / ridge, solver="newton-cholesky", tol=1e-8)
+        rough.fit(standard * known, poles, weights)
         self.rough = np.r_[rough.intercept_, rough.coef_[0] * known]
-        self.pairs, columns = [], terms
-        full = logistic(columns, poles, weights, ridge)
-        for _ in range(products):
-            pair = best_product(terms, poles, weights, full.predict_proba(columns)[:, 1], self.pairs)
-            self.pairs.append(pair)
-            columns = np.c_[columns, terms[:, pair[0]] * terms[:, pair[1]]]
-            full = logistic(columns, poles, weights, ridge)
-        self.full = np.r_[full.intercept_, full.coef_[0]]
-
-    def standardized(self, terms):
-        return np.clip((terms - self.mean) * self.scale, -FARTHEST_TERM, FARTHEST_TERM)
+        directions = [DIRECTIONS.get(name, 0) for name in self.names]
+        self.trees = HistGradientBoostingClassifier(monotonic_cst=directions, **{**TREES, **trees})
+        self.trees.fit(terms, poles, weights)
 
     def odds(self, drive):
-        terms = self.standardized(drive.terms)
-        products = [terms[:, a] * terms[:, b] for a, b in self.pairs]
-        return self.full[0] + np.column_stack([terms, *products]) @ self.full[1:]
+        return self.trees.decision_function(drive.terms)
 
-    def write(self, path):
-        lines = ["one,0,1,%.6g,%.6g" % (self.full[0], self.rough[0])]
-        for row in zip(self.names, self.mean, self.scale, self.full[1:], self.rough[1:]):
-            lines.append("%s,%.6g,%.6g,%.6g,%.6g" % row)
-        for (a, b), weight in zip(self.pairs, self.full[1 + len(self.names) :]):
-            lines.append("%s*%s,%.6g" % (self.names[a], self.names[b], weight))
-        pathlib.Path(path).write_text(
-            "# Weights of PoleClassifier, " + WRITTEN_BY + "# Rows \"a*b\": products of two terms brought to mean 0 "
-            "and variance 1, and their weight.\nterm,mean,scale,full,rough\n" + "\n".join(lines) + "\n")
+    def rows_of_trees(self):
+        first = ("one", float(np.ravel(self.trees._baseline_prediction)[0]), -1)
+        return [first] + [row for [tree] in self.trees._predictors for row in rows_of_tree(tree.nodes, self.names)]
+
+    def write(self, classifier, trees):
+        rows = [("one", 0, 1, self.rough[0]), *zip(self.names, self.mean, self.scale, self.rough[1:])]
+        classifier.write_text("# Weights of roughOdds(), " + WRITTEN_BY + "term,mean,scale,rough\n"
+                              + "".join("%s,%.6g,%.6g,%.6g\n" % row for row in rows))
+        trees.write_text("# Trees of poleOdds(), " + WRITTEN_BY + "term,value,step\n"
+                         + "".join("%s,%.9g,%d\n" % row for row in self.rows_of_trees()))
 
 
-def write_covariance(path, drives, real_weight, classifier):
+def write_covariance(path, drives, classifier):
     """Fits the scale to the poles with a known error that the classifier accepts."""
     odds = np.concatenate([classifier.odds(drive) for drive in drives])
     errors = np.concatenate([drive.errors for drive in drives])
     terms = np.concatenate([drive.scale_terms for drive in drives])
     terms = np.c_[np.clip(odds, 0, HIGHEST_ODDS), terms]
-    used = (np.concatenate([drive.poles for drive in drives]) == 1) & (odds >= 0) & (errors <= FAR_ERROR)
+    used = (np.concatenate([drive.poles for drive in drives]) == 1) & (odds >= 0) & (errors >= 0)
     if not used.any():
         raise SystemExit("fit_classifier.py: no pole has a known error; a simulated drive is needed")
-    scale = GammaRegressor(alpha=1e-7, tol=1e-7, max_iter=10000)
-    # The mean of chi-square of two degrees of freedom is 2; its density at 0 is finite, that of gamma is not.
-    scale.fit(terms[used], np.maximum(errors[used], 1e-9) / 2, sample_weights(drives, real_weight)[used])
+    scale = GammaRegressor(alpha=1e-7, solver="newton-cholesky", tol=1e-8)
+    weights, near = sample_weights(drives), used
+    for _ in range(5):
+        # The mean of chi-square of two degrees of freedom is 2. The regression refuses zeros.
+        scale.fit(terms[near], np.maximum(errors[near], 1e-9) / 2, weights[near])
+        near = used & (errors <= FAR_ERROR * scale.predict(terms))
     names = ["one", "odds"] + [name[len("covariance_") :] for name in drives[0].scale_names]
     rows = zip(names, np.r_[scale.intercept_, scale.coef_])
-    pathlib.Path(path).write_text("# Log-linear scale of the covariance of poles, " + WRITTEN_BY + "term,weight\n"
+    path.write_text("# Log-linear scale of the covariance of poles, " + WRITTEN_BY + "term,weight\n"
                                   + "".join("%s,%.6g\n" % row for row in rows))
 
 
@@ -150,26 +147,22 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("tables", nargs="+", help="tables to fit to, one per drive")
     options.add_argument("--test", nargs="*", default=[], help="tables that are only scored")
-    options.add_argument("--real-weight", type=float, default=4,
-                         help="weight of a candidate of a real drive; one of a simulated drive has 1")
-    options.add_argument("--products", type=int, default=PRODUCTS, help="products of two terms")
-    options.add_argument("--classifier", required=True, help="weights to write (CSV)")
-    options.add_argument("--covariance", required=True, help="scale of the covariances to write (CSV)")
+    options.add_argument("--output", required=True, type=pathlib.Path,
+                         help="folder of classifier.csv, trees.csv, covariance.csv to write")
     options.add_argument("--json", help="scores to write; each real drive also by a fit to the others")
     options = options.parse_args()
     drives = [Drive(table) for table in options.tables]
-    weight = options.real_weight
-    classifier = Classifier(drives, weight, products=options.products)
-    write_covariance(options.covariance, drives, weight, classifier)
-    classifier.write(options.classifier)
+    classifier = Classifier(drives)
+    write_covariance(options.output / "covariance.csv", drives, classifier)
+    classifier.write(options.output / "classifier.csv", options.output / "trees.csv")
     if not options.json:
         return
     scores = [report(drive, classifier, False) for drive in map(Drive, options.test)]
     for drive in drives:
         if drive.real:
             others = [other for other in drives if other is not drive]
-            scores.append(report(drive, Classifier(others, weight, products=options.products), True))
-    pathlib.Path(options.json).write_text(json.dumps({"real_weight": weight, "scores": scores}, indent=2) + "\n")
+            scores.append(report(drive, Classifier(others), True))
+    pathlib.Path(options.json).write_text(json.dumps({"scores": scores}, indent=2) + "\n")
     for row in scores:
         print("%-24s %5d of %5d  log loss %.4f now, %.4f new" % (
             row["drive"], row["poles"], row["candidates"], row["built_in"]["log_loss"], row["new"]["log_loss"]))

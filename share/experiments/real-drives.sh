@@ -40,13 +40,8 @@ find_tools jq
 # part DRIVE FIRST LAST: the scans FIRST to LAST (from 0) as a folder of their own, with the poses of the
 # drive, or of the file $truth.
 part() {
-  rm -rf "$out/part"
-  mkdir -p "$out/part/velodyne"
-  lines=$(($2 + 1)),$(($3 + 1))p
-  grep -v '^#' "$data/$1/times.txt" | sed -n "$lines" >"$out/part/times.txt"
-  grep -v '^#' "${truth:-$data/$1/poses.txt}" | sed -n "$lines" >"$out/part/poses.txt"
-  find "$data/$1/velodyne/" -name '*.bin' | sort | sed -n "$lines" |
-    while read -r scan; do ln -s "$scan" "$out/part/velodyne/"; done
+  link_scans "$data/$1" "$out/part" $(($2 + 1)) $(($3 + 1))
+  [ -z "$truth" ] || grep -v '^#' "$truth" | sed -n "$(($2 + 1)),$(($3 + 1))p" >"$out/part/poses.txt"
 }
 
 # import DRIVE NAME FIRST LAST EVERY OFFSET: $here/NAME.rawlog and $here/NAME.tum, with $turn.

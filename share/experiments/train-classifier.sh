@@ -1,17 +1,17 @@
 #!/bin/sh
-# Fits the confidence and the covariance of the method scan_line: libpolemcl/src/core/extraction/classifier.csv
-# and covariance.csv, which the next build compiles in.
+# Fits the confidence and the covariance of the method scan_line: classifier.csv, trees.csv and covariance.csv
+# in libpolemcl/src/core/extraction/, which the next build compiles in.
 # Usage: share/experiments/train-classifier.sh [--quick] DATA_DIR OUT
 #   DATA_DIR  folder of the real drives kitti_raw_0005/ (scans 0 to 39), vlp16_loop/ and nuscenes_scene/.
 #             Nothing else is read: kitti_odom_00*/ and published/ are for tests only.
-#   OUT       gets classifier.csv, covariance.csv, scores.json and the tables of features; existing tables are
-#             used again
+#   OUT       gets these tables, scores.json and the tables of features; existing tables of features are used
+#             again
 #   --quick   two worlds, without real drives: a test of the script
-# Fitted to worlds 101 to 104 without and 111 to 114 with [realism] scale = 1, 17 scans 10 m apart with each
+# Fitted to worlds 101 to 110 and 121 to 150 without, 111 to 120 and 151 to 180 with [realism] scale = 1, 17 scans 10 m apart with each
 # of HDL-64E, HDL-32E, OS1-64, VLP-16, labelled by the true poles; and to the real drives, labelled by what all
 # their scans together show (pole-eval features). Scored on worlds 401 to 403 and 411 to 413, alike, on the scans
 # 40 to 79 of kitti_raw_0005, and on each real drive by weights fitted to the others.
-# To take a result over: cp OUT/classifier.csv OUT/covariance.csv libpolemcl/src/core/extraction/
+# To take a result over: cp OUT/classifier.csv OUT/trees.csv OUT/covariance.csv libpolemcl/src/core/extraction/
 # Programs: build/bin, or POLEMCL_BIN. Needs python3-sklearn and 10 minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -77,7 +77,7 @@ tables() {
   done
 }
 
-fit="101 102 103 104" fit_realism="111 112 113 114" test="401 402 403" test_realism="411 412 413"
+fit="$(seq 101 110) $(seq 121 150)" fit_realism="$(seq 111 120) $(seq 151 180)" test="401 402 403" test_realism="411 412 413"
 drives="kitti_raw_0005-first vlp16_loop nuscenes_scene" test_drives=$out/kitti_raw_0005-second.csv
 [ "$quick" = no ] || fit=101 fit_realism=111 test=401 test_realism="" drives="" test_drives=""
 # shellcheck disable=SC2086 # several words
@@ -98,4 +98,4 @@ fi
 # shellcheck disable=SC2086,SC2046
 /usr/bin/python3 "$top/share/experiments/fit_classifier.py" $(tables $fit $fit_realism) \
   $(for drive in $drives; do echo "$out/$drive.csv"; done) --test $(tables $test $test_realism) $test_drives \
-  --classifier "$out/classifier.csv" --covariance "$out/covariance.csv" --json "$out/scores.json"
+  --output "$out" --json "$out/scores.json"

@@ -21,6 +21,18 @@ def script():
     return module
 
 
+def odds_of_rows(rows, terms):
+    """The sum of the trees, as PoleClassifier.cpp makes it; terms by their names."""
+    odds, at = 0, 0
+    while at < len(rows):
+        while rows[at][2] > 0:
+            term, value, step = rows[at]
+            at += 1 if terms[term] <= value else step
+        odds += rows[at][1]
+        at -= rows[at][2]
+    return odds
+
+
 @unittest.skipUnless(HAS_SKLEARN, "python3-sklearn is not installed")
 class FitClassifier(unittest.TestCase):
     """Labels drawn with odds -0.5 + 2 extent - clutter + 0.8 extent * tilt; errors of the scale exp(-1 + tilt)."""
@@ -45,53 +57,60 @@ class FitClassifier(unittest.TestCase):
         (self.folder / name).write_text("\n".join(lines) + "\n")
         return self.fit.Drive(self.folder / name)
 
-    def test_finds_the_weights_that_drew_the_labels(self):
+    def test_finds_the_odds_that_drew_the_labels(self):
         drive = self.table("a.csv", 1)
-        classifier = self.fit.Classifier([drive], 1, ridge=1e-3, products=1)
-        self.assertEqual(classifier.pairs, [(0, 2)])
+        classifier = self.fit.Classifier([drive], ridge=1e-3)
         # Weights belong to terms of variance 1 by the sample; the standard errors are about 0.03.
-        np.testing.assert_allclose(classifier.full, [-0.5, 2, -1, 0, 0.8], atol=0.1)
+        self.assertGreater(classifier.rough[1], 1)
         self.assertEqual(classifier.rough[2], 0)  # clutter is not known before the fit
         test = self.table("b.csv", 2, 5000)
         self.assertLess(self.fit.score(test, classifier.odds(test))["log_loss"],
-                        self.fit.score(test, test.built_in)["log_loss"] + 0.003)
+                        self.fit.score(test, test.built_in)["log_loss"] + 0.02)
+
+    def test_odds_never_grow_with_clutter(self):
+        classifier = self.fit.Classifier([self.table("a.csv", 1)])
+        test = self.table("b.csv", 2, 1000)
+        less = classifier.odds(test)
+        test.terms[:, 1] += 0.5
+        self.assertTrue((classifier.odds(test) <= less).all())
+        self.assertLess(classifier.odds(test).mean(), less.mean() - 0.2)
 
     def test_finds_the_scale_of_the_errors(self):
         drive = self.table("a.csv", 3)
-        classifier = self.fit.Classifier([drive], 1, ridge=1e-3, products=1)
-        self.fit.write_covariance(self.folder / "covariance.csv", [drive], 1, classifier)
+        classifier = self.fit.Classifier([drive], max_iter=20)
+        self.fit.write_covariance(self.folder / "covariance.csv", [drive], classifier)
         rows = (self.folder / "covariance.csv").read_text().split("term,weight\n")[1].split()
         fitted = dict(row.split(",") for row in rows)
         self.assertEqual(list(fitted), ["one", "odds", "tilt", "range"])
         np.testing.assert_allclose([float(value) for value in fitted.values()], [-1, 0, 1, 0], atol=0.12)
 
-    def test_a_table_that_is_read_again_has_the_same_weights(self):
+    def test_tables_that_are_read_again_have_the_same_odds(self):
         drive = self.table("a.csv", 4, 2000)
-        classifier = self.fit.Classifier([drive], 1, products=2)
-        classifier.write(self.folder / "classifier.csv")
+        classifier = self.fit.Classifier([drive])
+        classifier.write(self.folder / "classifier.csv", self.folder / "trees.csv")
         lines = (self.folder / "classifier.csv").read_text().splitlines()
-        rows = [line.split(",") for line in lines[lines.index("term,mean,scale,full,rough") + 1 :]]
-        self.assertEqual([row[0] for row in rows[:4]], ["one", *TERMS])
-        self.assertEqual(len(rows), 4 + 2)
-        written = [float(row[3]) for row in rows[:4]] + [float(row[1]) for row in rows[4:]]
-        np.testing.assert_allclose(written, classifier.full, rtol=1e-5)
+        rows = [line.split(",") for line in lines[lines.index("term,mean,scale,rough") + 1 :]]
+        self.assertEqual([row[0] for row in rows], ["one", *TERMS])
+        np.testing.assert_allclose([float(row[3]) for row in rows], classifier.rough, rtol=1e-5)
+        lines = (self.folder / "trees.csv").read_text().splitlines()
+        rows = [line.split(",") for line in lines[lines.index("term,value,step") + 1 :]]
+        rows = [(term, float(value), int(step)) for term, value, step in rows]
+        odds = [odds_of_rows(rows, dict(zip(TERMS, terms))) for terms in drive.terms[:300]]
+        np.testing.assert_allclose(odds, classifier.odds(drive)[:300], atol=1e-6)
 
     def test_sensors_weigh_alike(self):
         drives = [self.table("a.csv", 5, 300), self.table("b.csv", 6, 100), self.table("c.csv", 7, 200)]
-        drives[2].sensor, drives[2].real = "vlp16", True
-        weights = self.fit.sample_weights(drives, 4)
-        self.assertAlmostEqual(weights[:400].sum(), weights[400:].sum())
-        self.assertAlmostEqual(weights.mean(), 1)
-        drives[1].real = True
-        weights = self.fit.sample_weights(drives, 4)
-        self.assertAlmostEqual(weights[300] / weights[0], 4)
+        drives[2].sensor = "vlp16"
+        weights = self.fit.sample_weights(drives)
+        np.testing.assert_allclose(weights[:400], 0.75)
+        np.testing.assert_allclose(weights[400:], 1.5)
 
     def test_refuses_tables_without_known_errors(self):
         drive = self.table("a.csv", 8, 500)
         drive.errors[:] = np.nan
-        classifier = self.fit.Classifier([drive], 1, products=0)
+        classifier = self.fit.Classifier([drive], max_iter=5)
         with self.assertRaisesRegex(SystemExit, "no pole has a known error"):
-            self.fit.write_covariance(self.folder / "covariance.csv", [drive], 1, classifier)
+            self.fit.write_covariance(self.folder / "covariance.csv", [drive], classifier)
         self.assertFalse((self.folder / "covariance.csv").exists())
 
 

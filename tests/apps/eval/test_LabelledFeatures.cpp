@@ -74,28 +74,6 @@ TEST_F(LabelledFeatures, TruePolesLabelWhatIsNearThem) {
   EXPECT_GT(static_cast<double>(right) / static_cast<double>(table.rows()), 0.85);
 }
 
-// The tables in the sources, applied here to the features, give what the library computes.
-TEST_F(LabelledFeatures, OddsAreThoseOfTheTableInTheSources) {
-  writeFeatures(m_options, m_settings);
-  const io::CsvTable table(m_options.output);
-  const auto weights = weightsOf("classifier.csv");
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const auto term = [&](const std::string& name) {
-      const auto& w = weights.at(name);
-      return std::clamp((table.number(i, table.column(name)) - w[0]) * w[1], -3.0, 3.0);
-    };
-    double odds = 0;
-    for (const auto& [name, w] : weights) {
-      const auto star = name.find('*');
-      if (star != std::string::npos)
-        odds += w[0] * term(name.substr(0, star)) * term(name.substr(star + 1));
-      else
-        odds += w[2] * (name == "one" ? 1 : term(name));
-    }
-    ASSERT_NEAR(odds, table.number(i, table.column("odds")), 1e-6);
-  }
-}
-
 TEST_F(LabelledFeatures, ScaleOfTheCovarianceIsThatOfTheTableInTheSources) {
   PoleFeatures features;
   features.residual = 0.05;

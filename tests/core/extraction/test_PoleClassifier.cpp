@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/extraction/PoleClassifier.h"
 #include "sim/common/Random.h"
@@ -14,29 +15,36 @@ namespace polemcl::test_pole_classifier {
 namespace {
 
 struct Row {
-  double mean, scale, full, rough;
+  std::string term;
+  std::vector<double> values;
 };
 
-/// The table that the library is built with, read by other means.
-struct Table {
-  std::map<std::string, Row> terms;
-  std::map<std::string, double> products;  ///< by "a*b"
-  Table() {
-    std::ifstream file(std::string(POLEMCL_SOURCE_DIR) +
-                       "/libpolemcl/src/core/extraction/classifier.csv");
-    for (std::string line; std::getline(file, line);) {
-      std::replace(line.begin(), line.end(), ',', ' ');
-      std::istringstream fields(line);
-      std::string name;
-      Row row{};
-      if (!(fields >> name) || name[0] == '#' || !(fields >> row.mean)) continue;
-      if (fields >> row.scale >> row.full >> row.rough)
-        terms[name] = row;
-      else
-        products[name] = row.mean;
-    }
+/// The rows of a table that the library is built with, read by other means.
+std::vector<Row> readTable(const char* name) {
+  std::ifstream file(std::string(POLEMCL_SOURCE_DIR) + "/libpolemcl/src/core/extraction/" + name);
+  std::vector<Row> rows;
+  for (std::string line; std::getline(file, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    Row row;
+    fields >> row.term;
+    for (double value; fields >> value;) row.values.push_back(value);
+    if (!row.values.empty() && row.term[0] != '#') rows.push_back(row);
   }
-};
+  return rows;
+}
+
+/// The value of the tree whose root is at `rows[i]`; `end` becomes the row after it.
+double valueOf(const std::vector<Row>& rows, std::size_t i,
+               const std::map<std::string, double>& terms, std::size_t& end) {
+  const double value = rows[i].values[0], step = rows[i].values[1];
+  if (step < 0) {
+    end = i + static_cast<std::size_t>(-step);
+    return value;
+  }
+  const bool near = terms.at(rows[i].term) <= value;
+  return valueOf(rows, i + (near ? 1 : static_cast<std::size_t>(step)), terms, end);
+}
 
 /// The terms by their meaning.
 std::map<std::string, double> termsOf(const PoleFeatures& f) {
@@ -82,27 +90,49 @@ PoleFeatures randomFeatures(sim::Random& random) {
 
 }  // namespace
 
-TEST(PoleClassifier, OddsAreTheWeightedSumOfTheTable) {
-  const Table table;
-  ASSERT_EQ(table.terms.size(), static_cast<std::size_t>(kClassifierTerms));
+TEST(PoleClassifier, OddsAreTheSumOfTheTrees) {
+  const std::vector<Row> rows = readTable("trees.csv");
   sim::Random random(3);
   for (int i = 0; i < 500; ++i) {
     const PoleFeatures features = randomFeatures(random);
-    std::map<std::string, double> terms = termsOf(features);
-    double full = 0, rough = 0;
-    for (auto& [name, value] : terms) {
-      const Row& row = table.terms.at(name);
-      if (name != "one") value = std::clamp((value - row.mean) * row.scale, -3.0, 3.0);
-      full += row.full * value;
-      rough += row.rough * value;
-    }
-    for (const auto& [name, weight] : table.products) {
-      const auto star = name.find('*');
-      full += weight * terms.at(name.substr(0, star)) * terms.at(name.substr(star + 1));
-    }
-    ASSERT_NEAR(poleOdds(features), full, 1e-9);
-    ASSERT_NEAR(roughOdds(features), rough, 1e-9);
+    double odds = 0;
+    for (std::size_t at = 0; at < rows.size();) odds += valueOf(rows, at, termsOf(features), at);
+    ASSERT_NEAR(poleOdds(features), odds, 1e-9);
   }
+}
+
+TEST(PoleClassifier, RoughOddsAreTheWeightedSumOfTheTable) {
+  const std::vector<Row> rows = readTable("classifier.csv");
+  ASSERT_EQ(rows.size(), static_cast<std::size_t>(kClassifierTerms));
+  sim::Random random(4);
+  for (int i = 0; i < 500; ++i) {
+    const PoleFeatures features = randomFeatures(random);
+    const auto terms = termsOf(features);
+    double odds = 0;
+    for (const auto& [term, row] : rows) {
+      const double standard = (terms.at(term) - row[0]) * row[1];
+      odds += row[2] * (term == "one" ? 1 : std::clamp(standard, -3.0, 3.0));
+    }
+    ASSERT_NEAR(roughOdds(features), odds, 1e-9);
+  }
+}
+
+// The extractor leaves out candidates that clutter could only make less likely.
+TEST(PoleClassifier, OddsNeverGrowWithClutter) {
+  sim::Random random(5);
+  double fall = 0;
+  for (int i = 0; i < 500; ++i) {
+    PoleFeatures features = randomFeatures(random);
+    double before = 1e9;
+    for (const double clutter : {0.0, 0.1, 0.3, 0.6, 1.0}) {
+      features.clutter = clutter;
+      const double odds = poleOdds(features);
+      ASSERT_LE(odds, before);
+      if (clutter > 0) fall += before - odds;
+      before = odds;
+    }
+  }
+  EXPECT_GT(fall, 100);
 }
 
 }  // namespace polemcl::test_pole_classifier

@@ -8,31 +8,31 @@ namespace {
 
 using Term = ClassifierTerm;
 
-/// One term: how it is brought to mean 0 and variance 1, and its weights.
+/// One term of roughOdds(): how it is brought to mean 0 and variance 1, and its weight.
 struct Weight {
   Term term;
-  double mean, scale, full, rough;
+  double mean, scale, rough;
 };
-struct Product {
-  Term a, b;
-  double weight;
-};
-
-// Both tables are classifier.csv, which share/experiments/fit_classifier.py wrote.
-#define CLASSIFIER_TERM(term, mean, scale, full, rough) {Term::term, mean, scale, full, rough},
-#define CLASSIFIER_PRODUCT(a, b, weight)
+// The table is classifier.csv, which share/experiments/fit_classifier.py wrote.
+#define CLASSIFIER_TERM(term, mean, scale, rough) {Term::term, mean, scale, rough},
 constexpr Weight kWeights[] = {
 #include "core/extraction/classifier.inc"
 };
 #undef CLASSIFIER_TERM
-#undef CLASSIFIER_PRODUCT
-#define CLASSIFIER_TERM(term, mean, scale, full, rough)
-#define CLASSIFIER_PRODUCT(a, b, weight) {Term::a, Term::b, weight},
-constexpr Product kProducts[] = {
-#include "core/extraction/classifier.inc"
-    {Term::one, Term::one, 0}};  // a table may have no products
-#undef CLASSIFIER_TERM
-#undef CLASSIFIER_PRODUCT
+
+/// Where a term is at most `value`, the next node follows; elsewhere that `step` nodes farther on.
+/// A leaf has a negative step: `value` counts, and the next tree begins -`step` nodes farther on.
+struct TreeNode {
+  Term term;
+  double value;
+  int step;
+};
+// The table is trees.csv, by the same script. The first tree is a leaf alone.
+#define TREES_TERM(term, value, step) {Term::term, value, step},
+constexpr TreeNode kTrees[] = {
+#include "core/extraction/trees.inc"
+};
+#undef TREES_TERM
 
 constexpr bool inOrder() {
   int expected = 0;
@@ -41,6 +41,16 @@ constexpr bool inOrder() {
   return expected == kClassifierTerms;
 }
 static_assert(inOrder(), "classifier.csv must list the terms in the order of ClassifierTerm");
+
+constexpr bool noStepLeavesTheTable() {
+  int rows = static_cast<int>(std::size(kTrees));
+  for (const TreeNode& node : kTrees) {
+    if (node.step < 0 ? -node.step > rows : node.step < 2 || node.step >= rows) return false;
+    --rows;  // that are left, from the next node on
+  }
+  return true;
+}
+static_assert(noStepLeavesTheTable(), "trees.csv has a step that leads out of it");
 
 /// What is measured by or after the fit of a cylinder is not known to roughOdds().
 constexpr bool roughIsKnownBeforeFit() {
@@ -111,10 +121,13 @@ double roughOdds(const PoleFeatures& features) {
 }
 
 double poleOdds(const PoleFeatures& features) {
-  ClassifierTerms t = standardTerms(features);
+  ClassifierTerms t = classifierTerms(features);
   double odds = 0;
-  for (int i = 0; i < kClassifierTerms; ++i) odds += kWeights[i].full * t[i];
-  for (const Product& p : kProducts) odds += p.weight * at(t, p.a) * at(t, p.b);
+  for (const TreeNode* node = kTrees; node != std::end(kTrees);) {
+    while (node->step > 0) node += at(t, node->term) <= node->value ? 1 : node->step;
+    odds += node->value;
+    node -= node->step;
+  }
   return odds;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file PoleClassifier.h
-/// \brief How likely a candidate is a pole: logistic regression. Private to the library.
+/// \brief How likely a candidate is a pole: boosted decision trees. Private to the library.
 
 #include <array>
 
@@ -30,7 +30,7 @@ struct PoleFeatures {
   double radius = 0.1;  ///< fitted, m
 };
 
-/// \brief Terms of the regression, functions of the features.
+/// \brief What regression and trees see: functions of the features.
 enum class ClassifierTerm {
   one,
   logSegments,
@@ -62,9 +62,11 @@ const char* name(ClassifierTerm term);
 /// \brief The terms as they are, before they are brought to mean 0 and variance 1.
 ClassifierTerms classifierTerms(const PoleFeatures& features);
 
-/// \brief Log odds from what is known before the fit; clearly low ones need no fit.
+/// \brief Log odds from what is known before the fit, by logistic regression; clearly low ones need
+/// no fit.
 double roughOdds(const PoleFeatures& features);
-/// \brief Log odds of a pole: ln(p / (1 - p)).
+/// \brief Log odds of a pole, ln(p / (1 - p)): the sum of the trees (gradient boosting, Friedman
+/// 2001). It never grows with clutter.
 double poleOdds(const PoleFeatures& features);
 
 }  // namespace polemcl

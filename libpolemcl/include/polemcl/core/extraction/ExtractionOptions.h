@@ -95,8 +95,8 @@ struct POLEMCL_EXPORT ScanLineOptions {
   double maxTilt = 0.2;      ///< greatest tilt of the axis from the vertical, rad (`max_tilt_deg`)
   double maxScatter = 0.12;  ///< greatest rms distance of the segments from the axis, m
   double minSpacing = 0.4;   ///< two poles nearer than this: the less confident is dropped, m
-  double minConfidence = 0.5;  ///< poles with a lower confidence are refused
-  double maxRange = 40;        ///< poles farther away are not looked for, m
+  double minConfidence = 0.65;  ///< poles with a lower confidence are refused
+  double maxRange = 40;         ///< poles farther away are not looked for, m
 };
 
 POLEMCL_EXPORT void bind(Binder& binder, ScanLineOptions& options);  ///< `[scan_line]`

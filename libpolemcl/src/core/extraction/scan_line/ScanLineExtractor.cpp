@@ -51,7 +51,6 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
   const std::vector<SegmentCluster>& clusters = m_clustering.cluster(m_segments);
   report.candidates = clusters.size();
   m_tilts.clear();
-  m_recordedTilts.clear();
   if (m_recorded) m_recorded->clear();
   for (const SegmentCluster& cluster : clusters) {
     PoleDetection pole;
@@ -75,11 +74,6 @@ void ScanLineExtractor::setUpright(std::vector<PoleDetection>& poles) const {
     const Eigen::Vector2f shift = shiftBy(m_tilts[i], m_upright, common);
     poles[i].x += shift.x();
     poles[i].y += shift.y();
-  }
-  for (std::size_t i = 0; i < m_recordedTilts.size(); ++i) {
-    const Eigen::Vector2f shift = shiftBy(m_recordedTilts[i], m_upright, common);
-    (*m_recorded)[i].x += shift.x();
-    (*m_recorded)[i].y += shift.y();
   }
 }
 
@@ -179,8 +173,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
 void ScanLineExtractor::record(const SegmentCluster& cluster, PoleFeatures features,
                                const PoleAxis& axis, const PoleFit& fit) {
   features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);
-  m_recorded->push_back({features, fit.x, fit.y, fit.covariance});
-  m_recordedTilts.push_back(fit.tilt);
+  m_recorded->push_back({features, fit.x, fit.y, fit.covariance, fit.tilt});
 }
 
 PoleFeatures ScanLineExtractor::describe(const SegmentCluster& cluster, const ClusterShape& shape,

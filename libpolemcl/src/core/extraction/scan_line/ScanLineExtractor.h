@@ -18,8 +18,9 @@ namespace polemcl {
 /// \brief A candidate with all that the classifier and the covariance are fitted on.
 struct PoleCandidate {
   PoleFeatures features;
-  double x = 0, y = 0;         ///< as of a detection, frame of the points, m
+  double x = 0, y = 0;         ///< along its own tilt, frame of the points, m
   Eigen::Matrix2d covariance;  ///< of the fit alone, m²
+  PoleTilt tilt;
 };
 
 class ScanLineExtractor {
@@ -30,7 +31,8 @@ class ScanLineExtractor {
   void extract(const PointsView& points, const Eigen::Vector2f& upright,
                std::vector<PoleDetection>& poles, ExtractionReport& report);
   /// \brief For training: extract() replaces the contents of `candidates` by all candidates that a
-  /// circle fits, however low their odds. Null (the default): none, and no work for it.
+  /// circle fits, however low their odds; no weight of the classifier changes them. Null (the
+  /// default): none, and no work for it.
   void recordCandidates(std::vector<PoleCandidate>* candidates) { m_recorded = candidates; }
   /// \brief Visibility ranges of the last scan, as VisibilityRangeFinder gives them.
   const std::vector<float>& visibilityRange() const { return m_visibilityRange; }
@@ -65,7 +67,6 @@ class ScanLineExtractor {
   std::vector<float> m_widths;
   std::vector<PoleTilt> m_tilts;  ///< of the poles found, in the order they were found
   std::vector<PoleCandidate>* m_recorded = nullptr;
-  std::vector<PoleTilt> m_recordedTilts;
 };
 
 }  // namespace polemcl
