@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 """Fits the confidence of poles and the scale of their covariance to tables of `pole-eval features`.
 
-Confidence: gradient-boosted trees on the terms. Before the fit of a cylinder, rough odds: logistic regression.
+Confidence: gradient-boosted trees on the terms, and fewer on those that are known before the fit of a cylinder.
 Covariance: a scale, log-linear in its terms. Squared errors divided by the true covariance are chi-square of
 two degrees of freedom, an exponential distribution: a gamma regression.
-Drives of one sensor share one weight, so that all sensors weigh alike. For the regression, terms are brought to
-mean 0 and variance 1 and cut off at 3, as PoleClassifier.cpp does. Needs python3-sklearn.
+Drives of one sensor share one weight, so that all sensors weigh alike. Needs python3-sklearn.
 """
 import argparse
 import csv
@@ -14,19 +13,18 @@ import pathlib
 
 import numpy as np
 from sklearn.ensemble import HistGradientBoostingClassifier
-from sklearn.linear_model import GammaRegressor, LogisticRegression
+from sklearn.linear_model import GammaRegressor
 from sklearn.metrics import average_precision_score, log_loss
 
-KNOWN_AFTER_FIT = {"clutter", "excess", "radius", "density"}  # terms that the rough odds do not have
-FARTHEST_TERM = 3  # standard deviations
+KNOWN_AFTER_FIT = {"clutter", "excess", "radius", "density"}  # terms that the rough trees do not see
 HIGHEST_ODDS = 7  # that the covariance distinguishes
 FAR_ERROR = 13.8  # one in 1000 squared errors is greater; more are not those of the pole's own centre
-RIDGE = 100
 # More of these never speaks for a pole, or always does. PoleClassifier relies on that of clutter.
 DIRECTIONS = {"clutter": -1, "wide": -1, "notWhole": -1, "scatter": -1, "lowTop": -1, "excess": -1, "extent": 1}
 REAL_WEIGHT = 6  # of a candidate of a real drive: simulated worlds are many
-TREES = {"max_iter": 300, "learning_rate": 0.1, "max_leaf_nodes": 8, "max_depth": 4, "l2_regularization": 20,
-         "min_samples_leaf": 80, "early_stopping": False}
+TREES = {"max_iter": 150, "learning_rate": 0.15, "max_leaf_nodes": 16, "max_depth": 4, "l2_regularization": 20,
+         "min_samples_leaf": 80, "early_stopping": False}  # PoleClassifier.cpp has room for this depth
+ROUGH_TREES = {"max_iter": 40, "learning_rate": 0.3}  # otherwise the same
 WRITTEN_BY = "written by\n# share/experiments/fit_classifier.py (train-classifier.sh).\n"
 
 
@@ -58,7 +56,7 @@ def sample_weights(drives):
 
 
 def rows_of_tree(nodes, names):
-    """The rows of trees.csv: (term, value, step), the left child behind its parent."""
+    """Rows of a table: (term, value, step), the left child behind its parent."""
     rows = []
 
     def append(index):
@@ -75,39 +73,42 @@ def rows_of_tree(nodes, names):
     return [(term, value, row - len(rows) if step is None else step) for row, (term, value, step) in enumerate(rows)]
 
 
-class Classifier:
-    """Both tables: the weights of the rough odds (classifier.csv) and the trees (trees.csv)."""
+class Trees:
+    """Boosted trees, and the terms that they see."""
 
-    def __init__(self, drives, ridge=RIDGE, **trees):
-        self.names = drives[0].names
-        terms = np.concatenate([drive.terms for drive in drives])
-        poles = np.concatenate([drive.poles for drive in drives])
-        weights = sample_weights(drives)
-        self.mean = np.average(terms, axis=0, weights=weights)
-        deviation = np.sqrt(np.average((terms - self.mean) ** 2, axis=0, weights=weights))
-        self.scale = np.divide(1, deviation, out=np.zeros_like(deviation), where=deviation > 1e-9)
-        standard = np.clip((terms - self.mean) * self.scale, -FARTHEST_TERM, FARTHEST_TERM)
-        known = np.array([name not in KNOWN_AFTER_FIT for name in self.names])
-        rough = LogisticRegression(C=1 / ridge, solver="newton-cholesky", tol=1e-8)
-        rough.fit(standard * known, poles, weights)
-        self.rough = np.r_[rough.intercept_, rough.coef_[0] * known]
+    def __init__(self, drives, unseen, options):
+        self.unseen = unseen
+        self.names = [name for name in drives[0].names if name not in unseen]
         directions = [DIRECTIONS.get(name, 0) for name in self.names]
-        self.trees = HistGradientBoostingClassifier(monotonic_cst=directions, **{**TREES, **trees})
-        self.trees.fit(terms, poles, weights)
+        self.model = HistGradientBoostingClassifier(monotonic_cst=directions, **options)
+        poles = np.concatenate([drive.poles for drive in drives])
+        self.model.fit(np.concatenate([self.terms(drive) for drive in drives]), poles, sample_weights(drives))
+
+    def terms(self, drive):
+        return drive.terms[:, [name not in self.unseen for name in drive.names]]
 
     def odds(self, drive):
-        return self.trees.decision_function(drive.terms)
+        return self.model.decision_function(self.terms(drive))
 
-    def rows_of_trees(self):
-        first = ("one", float(np.ravel(self.trees._baseline_prediction)[0]), -1)
-        return [first] + [row for [tree] in self.trees._predictors for row in rows_of_tree(tree.nodes, self.names)]
+    def write(self, path):
+        rows = [("one", float(np.ravel(self.model._baseline_prediction)[0]), -1)]
+        for [tree] in self.model._predictors:
+            rows += rows_of_tree(tree.nodes, self.names)
+        path.write_text("# Trees of PoleClassifier.cpp, " + WRITTEN_BY + "term,value,step\n"
+                        + "".join("%s,%.9g,%d\n" % row for row in rows))
 
-    def write(self, classifier, trees):
-        rows = [("one", 0, 1, self.rough[0]), *zip(self.names, self.mean, self.scale, self.rough[1:])]
-        classifier.write_text("# Weights of roughOdds(), " + WRITTEN_BY + "term,mean,scale,rough\n"
-                              + "".join("%s,%.6g,%.6g,%.6g\n" % row for row in rows))
-        trees.write_text("# Trees of poleOdds(), " + WRITTEN_BY + "term,value,step\n"
-                         + "".join("%s,%.9g,%d\n" % row for row in self.rows_of_trees()))
+
+class Classifier:
+    def __init__(self, drives, **options):
+        self.trees = Trees(drives, set(), {**TREES, **options})
+        self.rough = Trees(drives, KNOWN_AFTER_FIT, {**TREES, **ROUGH_TREES, **options})
+
+    def odds(self, drive):
+        return self.trees.odds(drive)
+
+    def write(self, folder):
+        self.trees.write(folder / "trees.csv")
+        self.rough.write(folder / "rough_trees.csv")
 
 
 def write_covariance(path, drives, classifier):
@@ -148,13 +149,13 @@ def main():
     options.add_argument("tables", nargs="+", help="tables to fit to, one per drive")
     options.add_argument("--test", nargs="*", default=[], help="tables that are only scored")
     options.add_argument("--output", required=True, type=pathlib.Path,
-                         help="folder of classifier.csv, trees.csv, covariance.csv to write")
+                         help="folder of trees.csv, rough_trees.csv, covariance.csv to write")
     options.add_argument("--json", help="scores to write; each real drive also by a fit to the others")
     options = options.parse_args()
     drives = [Drive(table) for table in options.tables]
     classifier = Classifier(drives)
     write_covariance(options.output / "covariance.csv", drives, classifier)
-    classifier.write(options.output / "classifier.csv", options.output / "trees.csv")
+    classifier.write(options.output)
     if not options.json:
         return
     scores = [report(drive, classifier, False) for drive in map(Drive, options.test)]

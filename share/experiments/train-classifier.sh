@@ -1,5 +1,5 @@
 #!/bin/sh
-# Fits the confidence and the covariance of the method scan_line: classifier.csv, trees.csv and covariance.csv
+# Fits the confidence and the covariance of the method scan_line: trees.csv, rough_trees.csv and covariance.csv
 # in libpolemcl/src/core/extraction/, which the next build compiles in.
 # Usage: share/experiments/train-classifier.sh [--quick] DATA_DIR OUT
 #   DATA_DIR  folder of the real drives kitti_raw_0005/ (scans 0 to 39), vlp16_loop/ and nuscenes_scene/.
@@ -11,7 +11,7 @@
 # of HDL-64E, HDL-32E, OS1-64, VLP-16, labelled by the true poles; and to the real drives, labelled by what all
 # their scans together show (pole-eval features). Scored on worlds 401 to 403 and 411 to 413, alike, on the scans
 # 40 to 79 of kitti_raw_0005, and on each real drive by weights fitted to the others.
-# To take a result over: cp OUT/classifier.csv OUT/trees.csv OUT/covariance.csv libpolemcl/src/core/extraction/
+# To take a result over: cp OUT/trees.csv OUT/rough_trees.csv OUT/covariance.csv libpolemcl/src/core/extraction/
 # Programs: build/bin, or POLEMCL_BIN. Needs python3-sklearn and 10 minutes on 2 cores.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)

@@ -71,6 +71,13 @@ std::map<std::string, double> termsOf(const PoleFeatures& f) {
           {"density", std::log(f.points / f.segments / expected)}};
 }
 
+double sumOf(const std::vector<Row>& rows, const PoleFeatures& features) {
+  const auto terms = termsOf(features);
+  double odds = 0;
+  for (std::size_t at = 0; at < rows.size();) odds += valueOf(rows, at, terms, at);
+  return odds;
+}
+
 PoleFeatures randomFeatures(sim::Random& random) {
   PoleFeatures f;
   f.segments = std::floor(random.uniform(1, 30));
@@ -91,29 +98,12 @@ PoleFeatures randomFeatures(sim::Random& random) {
 }  // namespace
 
 TEST(PoleClassifier, OddsAreTheSumOfTheTrees) {
-  const std::vector<Row> rows = readTable("trees.csv");
+  const std::vector<Row> trees = readTable("trees.csv"), rough = readTable("rough_trees.csv");
   sim::Random random(3);
   for (int i = 0; i < 500; ++i) {
     const PoleFeatures features = randomFeatures(random);
-    double odds = 0;
-    for (std::size_t at = 0; at < rows.size();) odds += valueOf(rows, at, termsOf(features), at);
-    ASSERT_NEAR(poleOdds(features), odds, 1e-9);
-  }
-}
-
-TEST(PoleClassifier, RoughOddsAreTheWeightedSumOfTheTable) {
-  const std::vector<Row> rows = readTable("classifier.csv");
-  ASSERT_EQ(rows.size(), static_cast<std::size_t>(kClassifierTerms));
-  sim::Random random(4);
-  for (int i = 0; i < 500; ++i) {
-    const PoleFeatures features = randomFeatures(random);
-    const auto terms = termsOf(features);
-    double odds = 0;
-    for (const auto& [term, row] : rows) {
-      const double standard = (terms.at(term) - row[0]) * row[1];
-      odds += row[2] * (term == "one" ? 1 : std::clamp(standard, -3.0, 3.0));
-    }
-    ASSERT_NEAR(roughOdds(features), odds, 1e-9);
+    ASSERT_NEAR(poleOdds(features), sumOf(trees, features), 1e-5);
+    ASSERT_NEAR(roughOdds(features), sumOf(rough, features), 1e-5);
   }
 }
 

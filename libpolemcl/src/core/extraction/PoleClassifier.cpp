@@ -2,74 +2,98 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace polemcl {
 namespace {
 
 using Term = ClassifierTerm;
 
-/// One term of roughOdds(): how it is brought to mean 0 and variance 1, and its weight.
-struct Weight {
-  Term term;
-  double mean, scale, rough;
-};
-// The table is classifier.csv, which share/experiments/fit_classifier.py wrote.
-#define CLASSIFIER_TERM(term, mean, scale, rough) {Term::term, mean, scale, rough},
-constexpr Weight kWeights[] = {
-#include "core/extraction/classifier.inc"
-};
-#undef CLASSIFIER_TERM
-
-/// Where a term is at most `value`, the next node follows; elsewhere that `step` nodes farther on.
-/// A leaf has a negative step: `value` counts, and the next tree begins -`step` nodes farther on.
-struct TreeNode {
+/// A row of a table of trees. Where a term is at most `value`, the next row follows; elsewhere that
+/// `step` rows farther on. A leaf has a negative step: `value` counts, and the next tree begins
+/// -`step` rows farther on. The first tree is a leaf alone.
+struct TreeRow {
   Term term;
   double value;
   int step;
 };
-// The table is trees.csv, by the same script. The first tree is a leaf alone.
+// The tables are rough_trees.csv and trees.csv, which share/experiments/fit_classifier.py wrote.
 #define TREES_TERM(term, value, step) {Term::term, value, step},
-constexpr TreeNode kTrees[] = {
+constexpr TreeRow kRoughRows[] = {
+#include "core/extraction/rough_trees.inc"
+};
+constexpr TreeRow kRows[] = {
 #include "core/extraction/trees.inc"
 };
 #undef TREES_TERM
 
-constexpr bool inOrder() {
-  int expected = 0;
-  for (const Weight& weight : kWeights)
-    if (static_cast<int>(weight.term) != expected++) return false;
-  return expected == kClassifierTerms;
-}
-static_assert(inOrder(), "classifier.csv must list the terms in the order of ClassifierTerm");
-
-constexpr bool noStepLeavesTheTable() {
-  int rows = static_cast<int>(std::size(kTrees));
-  for (const TreeNode& node : kTrees) {
-    if (node.step < 0 ? -node.step > rows : node.step < 2 || node.step >= rows) return false;
-    --rows;  // that are left, from the next node on
-  }
-  return true;
-}
-static_assert(noStepLeavesTheTable(), "trees.csv has a step that leads out of it");
-
-/// What is measured by or after the fit of a cylinder is not known to roughOdds().
 constexpr bool roughIsKnownBeforeFit() {
-  for (const Term term : {Term::clutter, Term::excess, Term::radius, Term::density})
-    if (kWeights[static_cast<int>(term)].rough != 0) return false;
+  for (const TreeRow& row : kRoughRows)
+    for (const Term term : {Term::clutter, Term::excess, Term::radius, Term::density})
+      if (row.term == term) return false;
   return true;
 }
-static_assert(roughIsKnownBeforeFit(), "classifier.csv weighs a term before it is known");
+static_assert(roughIsKnownBeforeFit(), "rough_trees.csv asks for a term before it is known");
 
-/// Greatest distance of a term from its mean, in standard deviations; more counts as this.
-constexpr double kFarthestTerm = 3;
+constexpr int kDepth = 4;
+constexpr int kSplits = (1 << kDepth) - 1;
 
-/// The terms brought to mean 0 and variance 1, cut off at kFarthestTerm; the first one is 1.
-ClassifierTerms standardTerms(const PoleFeatures& features) {
-  ClassifierTerms terms = classifierTerms(features);
-  for (int i = 1; i < kClassifierTerms; ++i)
-    terms[i] = std::clamp((terms[i] - kWeights[i].mean) * kWeights[i].scale, -kFarthestTerm,
-                          kFarthestTerm);
-  return terms;
+/// A tree with all splits down to kDepth, so that no branch depends on the terms: those that the
+/// table lacks always go to the first of two equal leaves. The children of i are 2 i + 1, 2 i + 2.
+struct Tree {
+  std::array<Term, kSplits> term{};
+  std::array<float, kSplits> limit{};
+  std::array<float, kSplits + 1> leaf{};
+};
+
+/// Fills the part of `tree` below `node` from rows[i] on; returns the row of its last leaf.
+/// Deeper trees than kDepth do not compile.
+template <std::size_t n>
+constexpr std::size_t unpack(const TreeRow (&rows)[n], std::size_t i, int node, Tree& tree) {
+  const TreeRow& row = rows[i];
+  if (node >= kSplits) {
+    if (row.step > 0) throw "deeper than kDepth";
+    tree.leaf[node - kSplits] = static_cast<float>(row.value);
+    return i;
+  }
+  const bool leaf = row.step < 0;
+  tree.term[node] = leaf ? Term::one : row.term;
+  tree.limit[node] = leaf ? std::numeric_limits<float>::infinity() : static_cast<float>(row.value);
+  unpack(rows, leaf ? i : i + 1, 2 * node + 1, tree);
+  return unpack(rows, leaf ? i : i + row.step, 2 * node + 2, tree);
+}
+
+/// How many leaves end a tree: those whose step leads just behind them.
+template <std::size_t n>
+constexpr int countTrees(const TreeRow (&rows)[n]) {
+  int trees = 0;
+  for (const TreeRow& row : rows) trees += row.step == -1;
+  return trees;
+}
+
+template <int trees, std::size_t n>
+constexpr std::array<Tree, trees> unpackAll(const TreeRow (&rows)[n]) {
+  std::array<Tree, trees> all{};
+  std::size_t i = 0;
+  for (Tree& tree : all) i = unpack(rows, i, 0, tree) + 1;
+  if (i != n) throw "rows behind the last tree";
+  return all;
+}
+constexpr auto kRoughTrees = unpackAll<countTrees(kRoughRows)>(kRoughRows);
+constexpr auto kTrees = unpackAll<countTrees(kRows)>(kRows);
+
+template <std::size_t n>
+double sum(const std::array<Tree, n>& trees, const ClassifierTerms& terms) {
+  std::array<float, kClassifierTerms> t;
+  std::copy(terms.begin(), terms.end(), t.begin());
+  double odds = 0;
+  for (const Tree& tree : trees) {
+    int node = 0;
+    for (int level = 0; level < kDepth; ++level)
+      node = 2 * node + 2 - (t[static_cast<int>(tree.term[node])] <= tree.limit[node]);
+    odds += tree.leaf[node - kSplits];
+  }
+  return odds;
 }
 
 double& at(ClassifierTerms& t, Term term) {
@@ -114,21 +138,11 @@ ClassifierTerms classifierTerms(const PoleFeatures& f) {
 }
 
 double roughOdds(const PoleFeatures& features) {
-  const ClassifierTerms t = standardTerms(features);
-  double odds = 0;
-  for (int i = 0; i < kClassifierTerms; ++i) odds += kWeights[i].rough * t[i];
-  return odds;
+  return sum(kRoughTrees, classifierTerms(features));
 }
 
 double poleOdds(const PoleFeatures& features) {
-  ClassifierTerms t = classifierTerms(features);
-  double odds = 0;
-  for (const TreeNode* node = kTrees; node != std::end(kTrees);) {
-    while (node->step > 0) node += at(t, node->term) <= node->value ? 1 : node->step;
-    odds += node->value;
-    node -= node->step;
-  }
-  return odds;
+  return sum(kTrees, classifierTerms(features));
 }
 
 }  // namespace polemcl

@@ -30,8 +30,8 @@ struct PoleFeatures {
   double radius = 0.1;  ///< fitted, m
 };
 
-/// \brief What regression and trees see: functions of the features.
-enum class ClassifierTerm {
+/// \brief What the trees see: functions of the features.
+enum class ClassifierTerm : unsigned char {
   one,
   logSegments,
   logPoints,
@@ -57,12 +57,11 @@ enum class ClassifierTerm {
 constexpr int kClassifierTerms = static_cast<int>(ClassifierTerm::count_);
 using ClassifierTerms = std::array<double, kClassifierTerms>;
 
-/// \brief Name as in classifier.csv.
+/// \brief Name as in trees.csv.
 const char* name(ClassifierTerm term);
-/// \brief The terms as they are, before they are brought to mean 0 and variance 1.
 ClassifierTerms classifierTerms(const PoleFeatures& features);
 
-/// \brief Log odds from what is known before the fit, by logistic regression; clearly low ones need
+/// \brief Log odds by trees of their own from what is known before the fit; clearly low ones need
 /// no fit.
 double roughOdds(const PoleFeatures& features);
 /// \brief Log odds of a pole, ln(p / (1 - p)): the sum of the trees (gradient boosting, Friedman

@@ -15,8 +15,8 @@ namespace {
 constexpr float kClearance = 0.1f;
 /// m above ground: below, a pole's foot is seldom free.
 constexpr float kFirmHeight = 0.6f;
-/// Candidates whose odds are lower before the fit are not fitted: 0.2 % of the poles found.
-constexpr double kHopelessOdds = -3;
+/// Candidates whose odds are lower before the fit are not fitted: 0.3 % of the poles found.
+constexpr double kHopelessOdds = -2.5;
 
 double confidence(double logOdds) {
   return 1 / (1 + std::exp(-logOdds));
