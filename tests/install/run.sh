@@ -126,7 +126,8 @@ awk '/^```/ { on = /cpp$/; next } on' "$top/README.md" >readme/readme.cpp
 quietly cmake -S readme -B readme/build -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" \
   -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
 quietly cmake --build readme/build
-cp poles.rawlog drive.rawlog
+cp poles.rawlog another_day.rawlog
+cp street.polemap map.polemap
 readme/build/readme >readme.txt
 [ "$(wc -l <readme.txt)" -gt 20 ] || fail "the program of the README gave $(wc -l <readme.txt) poses"
 # Installed settings by their name, with sections of other programs; what they lack is a start.
@@ -135,7 +136,6 @@ grep -q '^rawlog: the localizer has not been started' error.txt || fail "demo.in
 
 echo "7/8 mrpt: MRPT's filter on a pole map, known by name, with a linker that drops unused libraries"
 example mrpt -DCMAKE_EXE_LINKER_FLAGS=-Wl,--as-needed
-cp street.polemap map.polemap
 mrpt/mrpt poles.rawlog "$prefix/share/polemcl/config/mrpt/pf-localization.ini" "$x" "$y" "$yaw" >filtered.txt ||
   fail "MRPT does not know the classes of the library"
 paste -d' ' filtered.txt tum.txt | tail -n 40 |

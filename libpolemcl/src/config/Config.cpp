@@ -161,7 +161,12 @@ ConfigFile ConfigFile::read(const std::string& path) {
 }
 
 ConfigFile ConfigFile::readInstalled(const std::string& pathOrName) {
-  return read(io::installedFile(pathOrName, "config").string());
+  const std::filesystem::path file = io::installedFile(pathOrName, "config");
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw Error("cannot read " + pathOrName + ": no such file here, and none of that name is " +
+                "installed; installed are kitti.ini, hdl32e.ini and others");
+  return read(file.string());
 }
 
 void ConfigFile::set(const std::string& assignment) {

@@ -112,6 +112,19 @@ TEST(SensorConfigCheck, FindsACloudUpsideDown) {
   }
 }
 
+TEST(SensorConfigCheck, FindsMillimetresAndKilometres) {
+  const PointList points = street("hdl32e", 1.0);
+  PointList mm, km;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    mm.add(points.x[i] * 1000, points.y[i] * 1000, points.z[i] * 1000);
+    km.add(points.x[i] / 1000, points.y[i] / 1000, points.z[i] / 1000);
+  }
+  for (const bool beams : {true, false}) {
+    EXPECT_HAS(contradiction(sensorNamed("hdl32e"), mm, beams), "beyond [sensor] max_range_m");
+    EXPECT_HAS(contradiction(sensorNamed("hdl32e"), km, beams), "nearer than [sensor] min_range_m");
+  }
+}
+
 TEST(SensorConfigCheck, RefusesMergedClouds) {
   const PointList points = street("hdl32e", 1.0);
   PointList merged;

@@ -428,8 +428,7 @@ TEST_F(PoleLocalizationTest, RefusesAStartThatIsNoNumber) {
     localization.start(start);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("is not finite; set StartOptions::pose"),
-              std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("is not finite; set position_m"), std::string::npos)
         << error.what();
   }
 }

@@ -21,7 +21,7 @@ class CObservation;
 namespace polemcl {
 
 class LocalizationPipeline;  // private to the library
-struct LocalizationMap;
+struct LocalizationMap;      // private to the library
 
 /// \brief Localizes one drive. \code
 ///   Localizer localizer(Settings("hdl32e.ini"), "street.polemap");
@@ -52,10 +52,11 @@ class POLEMCL_EXPORT Localizer {
 
   /// \brief The next scan.
   /// \param time s, greater than that of the scan before.
-  /// \param points One turn of the LiDAR, m, in its frame: x ahead, z up. The pose is that of this
-  /// frame on the ground. Rows that are no numbers or zero are left out.
-  /// \param odometry Pose of the robot in the frame of its odometry at that time, m and rad. Only
-  /// its change matters; `[motion]` says how exact it is.
+  /// \param points One turn of the LiDAR, m, in its frame: x ahead, z up. Rows that are no numbers
+  /// or zero are left out.
+  /// \param odometry Pose of that frame on the ground, in the frame of the odometry at that time,
+  /// m and rad. Only its change matters; `[motion]` says how exact it is. The update's pose is of
+  /// the same frame. Where the robot's frame is another one, the overload below knows both.
   /// \throws Error when nothing was started, time does not increase, or the points contradict
   /// `[sensor]`.
   LocalizationUpdate step(double time, const PointsView& points, const Pose2D& odometry);

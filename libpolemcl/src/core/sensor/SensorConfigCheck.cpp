@@ -24,6 +24,9 @@ constexpr double kLeastAlone = 0.65;
 /// Most of the returns outside the view: right presets leave out 0.01.
 constexpr double kMostOutside = 0.08;
 
+/// Less than this share of usable points does not come from a LiDAR on the ground.
+constexpr double kLeastUsable = 0.05;
+
 /// Points that are compared: enough for shares of a percent.
 constexpr std::size_t kMostCompared = 32768;
 
@@ -88,6 +91,30 @@ std::string percent(double share) {
 
 std::string modelName(const std::string& model, bool upsideDown) {
   return model + (upsideDown ? " upside down" : "");
+}
+
+/// Says that nearly all points are too far or too near for [sensor]; empty otherwise.
+std::string wrongUnit(const PointsView& points, const SensorOptions& options) {
+  std::vector<float> ranges;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float range = std::hypot(points.x[i], points.y[i]);
+    if (std::isfinite(range) && range > 0) ranges.push_back(range);
+  }
+  if (ranges.size() < SensorConfigCheck::kFewestPoints) return {};
+  const auto rank = [&](double share) {
+    const auto at = ranges.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(ranges.size() - 1));
+    std::nth_element(ranges.begin(), at, ranges.end());
+    return *at;
+  };
+  const bool far = rank(kLeastUsable) > options.maxRange;
+  if (!far && rank(1 - kLeastUsable) >= options.minRange) return {};
+  std::ostringstream text;
+  text << "nearly all points lie "
+       << (far ? "beyond [sensor] max_range_m = " : "nearer than [sensor] min_range_m = ")
+       << (far ? options.maxRange : options.minRange) << " m (half of them beyond " << rank(0.5)
+       << " m); coordinates must be in m, not in mm or km";
+  return text.str();
 }
 
 const char* kWhatToDo =
@@ -156,6 +183,7 @@ SensorConfigCheck::SensorConfigCheck(const SensorOptions& options, bool beams)
 std::string SensorConfigCheck::contradiction(const PointsView& points) const {
   const PointsCopy part = points.size > kMostCompared ? thinned(points) : PointsCopy();
   const PointsView compared = points.size > kMostCompared ? part.view() : points;
+  if (const std::string unit = wrongUnit(compared, m_options); !unit.empty()) return unit;
   const BeamAgreement agreement =
       measureAgreement(compared, m_model, m_options.minRange, m_options.maxRange);
   if (agreement.points < kFewestPoints) return {};

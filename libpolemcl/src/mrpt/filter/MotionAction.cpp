@@ -77,7 +77,9 @@ void requireStep(const PoleScan& scan, std::optional<double> before) {
                 std::to_string(before.value_or(0)) + " s");
   if (!before) return;
   if (!scan.motion)
-    throw Error("no motion leads to the scan at " + when + ": the filter needs odometry");
+    throw Error("no motion leads to the scan at " + when +
+                ": the filter needs odometry; was there any when the "
+                "scans were recorded or imported?");
   try {
     requireMotion(*scan.motion);
   } catch (const Error& error) {

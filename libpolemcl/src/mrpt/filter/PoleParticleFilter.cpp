@@ -106,7 +106,7 @@ void PoleParticleFilter::start(const StartOptions& start) {
   checkOptions(start);
   if (!start.pose)
     throw Error(
-        "no start pose: set StartOptions::pose (position_m and yaw_deg in [start]), or give the "
+        "no start pose: set position_m and yaw_deg in [start], or start at a pose, or give the "
         "truth");
   begin(start.particles);
   const GeneratorLoan loan(m_generator);

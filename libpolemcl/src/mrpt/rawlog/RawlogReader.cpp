@@ -46,6 +46,8 @@ void RawlogReader::explain(std::uint64_t offset, const std::string& what) {
   if (printable(unknown))
     throw Error(m_name + ": class '" + unknown + "'" + at +
                 " is unknown: load the library that defines it");
+  if (const std::string kind = io::otherKind(m_name, ".rawlog"); m_objects == 0 && !kind.empty())
+    throw Error(m_name + ": " + kind + "not a rawlog of scans or poles");
   if (m_objects == 0) throw Error(m_name + ": is not a rawlog: " + mrptReason(what));
   throw Error(m_name + ": object " + std::to_string(m_objects) + at +
               " is damaged: " + mrptReason(what));
