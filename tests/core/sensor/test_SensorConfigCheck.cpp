@@ -4,6 +4,7 @@
 
 #include "core/sensor/SensorConfigCheck.h"
 #include "support/Clouds.h"
+#include "support/ExpectHas.h"
 #include "support/Sensors.h"
 #include "support/SimulatedScans.h"
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
+#include "io/file/FileKind.h"
 #include "io/file/ReadLimits.h"
 #include "mrpt/common/MrptReason.h"
 #include "mrpt/rawlog/AllocationLimit.h"
