@@ -25,7 +25,8 @@ def folder_of_results():
     if folder.exists():
         return folder
     folder.mkdir()
-    for name, source in {"street.polemap": street.map_file(), "map.polemap": street.map_file(), "poles.csv": street.pole_table(),
+    for name, source in {"street.polemap": street.map_file(), "map.polemap": street.map_file(),
+                         "poles.csv": street.pole_table(),
                          "out": street.localized(),
                          "odometry.txt": street.scans_folder() / "odometry.txt",
                          "velodyne": street.scans_folder() / "velodyne"}.items():
