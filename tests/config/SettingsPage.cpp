@@ -29,7 +29,8 @@ height_m = 1.0      # metres above the ground
   the program then ends.
 - The defaults are the settings that were measured as the best. Those of `config/paper/` are the paper's.
 - Angles are in degrees in files and rounded on these pages. A number outside the allowed values is refused, with file,
-  section, key and what is allowed. Unknown sections and keys are refused as well.
+  section, key and what is allowed. Unknown sections and keys are refused as well, but for the sections of the simulator
+  and of the view in programs that have no use for them.
 
 | tier | who sets it |
 |---|---|
