@@ -1,8 +1,11 @@
 #!/bin/sh
 # Real drives of three sensors, localized in maps of their own other scans, or of the way out.
-# Usage: share/experiments/real-drives.sh DATA_DIR OUT [--odometry SCALE,YAW] [SECTION.KEY=VALUE...]
+# Usage: share/experiments/real-drives.sh DATA_DIR OUT [--kilometre SCANS] [--odometry SCALE,YAW] [SECTION.KEY=VALUE...]
 #   DATA_DIR    folder with kitti_raw_0005/, vlp16_loop/ and nuscenes_scene/
 #   OUT         gets maps, trajectories, result.json and table.txt
+#   --kilometre  the scans of DATA_DIR/kitti_odom_00_km as a folder (its README.md says how to lay them out).
+#               Then this drive alone, odd scans in the map of the even ones: with odometry as in the other
+#               drives, and with that of laser_odometry.txt ("kilometre-laser")
 #   --odometry  errors of the odometry that stay: a share of the distance, and degrees per metre
 #   SECTION.KEY=VALUE  settings, for all drives
 # kitti_raw_0005 and nuscenes_scene: map of the even scans, localized on the odd ones. vlp16_loop: map of
@@ -26,7 +29,12 @@ data=$(cd "$1" && pwd)
 mkdir -p "$2"
 out=$(cd "$2" && pwd)
 shift 2
-common="" truth="" errors=0,0
+common="" truth="" errors=0,0 kilometre=""
+if [ "${1-}" = --kilometre ]; then
+  [ $# -ge 2 ] || usage
+  kilometre=$(cd "$2" && pwd)
+  shift 2
+fi
 if [ "${1-}" = --odometry ]; then
   [ $# -ge 2 ] || usage
   errors=$2
@@ -37,20 +45,25 @@ find_programs pole-import pole-map pole-localize pole-eval
 find_tools jq
 /usr/bin/python3 -c 'import scipy' 2>/dev/null || die "scipy is needed: install python3-scipy"
 
-# part DRIVE FIRST LAST: the scans FIRST to LAST (from 0) as a folder of their own, with the poses of the
+# part FOLDER FIRST LAST: the scans FIRST to LAST (from 0) as a folder of their own, with the poses of the
 # drive, or of the file $truth.
 part() {
-  link_scans "$data/$1" "$out/part" $(($2 + 1)) $(($3 + 1))
+  link_scans "$1" "$out/part" $(($2 + 1)) $(($3 + 1))
   [ -z "$truth" ] || grep -v '^#' "$truth" | sed -n "$(($2 + 1)),$(($3 + 1))p" >"$out/part/poses.txt"
 }
 
-# import DRIVE NAME FIRST LAST EVERY OFFSET: $here/NAME.rawlog and $here/NAME.tum, with $turn.
+# import DRIVE NAME FIRST LAST EVERY OFFSET: $here/NAME.rawlog and $here/NAME.tum, with $turn. Odometry is
+# the file $motions, or the true motion with noise.
 import() {
   part "$1" "$3" "$4"
+  odometry="--odometry-noise 0.02 --seed 7 --odometry-scale ${errors%,*} --odometry-yaw-deg-m ${errors#*,}"
+  if [ -n "$motions" ]; then
+    cp "$motions" "$out/part/odometry.txt"
+    odometry=""
+  fi
   # shellcheck disable=SC2086 # several words
   "$bin/pole-import" folder --quiet --embed --input "$out/part" --output "$here/$2.rawlog" \
-    --every "$5" --offset "$6" --sensor-pose "$mounting" --turn $turn --odometry-noise 0.02 --seed 7 \
-    --odometry-scale "${errors%,*}" --odometry-yaw-deg-m "${errors#*,}"
+    --every "$5" --offset "$6" --sensor-pose "$mounting" --turn $turn $odometry
   rm -r "$out/part"
 }
 
@@ -109,7 +122,7 @@ adjust_by_planes() {
   # shellcheck disable=SC2086 # several words
   "$bin/pole-extract" --quiet --config "$2" $settings --input "$here/published.rawlog" \
     --output "$here/poles.rawlog" --csv "$here/poles.csv"
-  /usr/bin/python3 "$top/share/experiments/plane_adjustment.py" "$data/$1" "$here/poles.csv" \
+  /usr/bin/python3 "$top/share/experiments/plane_adjustment.py" "$1" "$here/poles.csv" \
     "$here/poses.txt" >"$here/adjustment.txt"
   truth=$here/poses.txt
   import "$1" planes 0 100000 1 0
@@ -127,19 +140,33 @@ both() {
   drive "$1-deskewed" "$2" "$3" "$4" "$5" "$6"
 }
 
+# The three short drives.
+short_drives() {
+  mounting="0 0 0 0 0 0" settings="" sigmas=0.01,0.03
+  both kitti_raw_0005 "$data/kitti_raw_0005" "$top/config/kitti.ini" "$turns" "0 79 2 0" "0 79 2 1"
+  mounting="0 0 0 0 2.513 0.028" settings="--set sensor.height_m=1.77" sigmas=0.015,0.03
+  both vlp16_loop "$data/vlp16_loop" "$top/config/vlp16.ini" "$turns" "0 175 1 0" "176 203 1 0"
+  mounting="0 0 0 0 0 0" settings="--set sensor.height_m=1.84 --set sensor.min_range_m=2.5" sigmas=0.08,0.23
+  # Its scans are compensated: pole-extract --inspect finds no timing that fits better.
+  drive nuscenes "$data/nuscenes_scene" "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
+  adjust_by_planes "$data/nuscenes_scene" "$top/config/hdl32e.ini"
+  sigmas=0.01,0.03
+  drive nuscenes-planes "$data/nuscenes_scene" "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
+}
+
+half_kilometre() {
+  mounting="0 0 0 0 0 0" settings="" sigmas=0.01,0.03
+  drive kilometre "$kilometre" "$top/config/kitti.ini" "$turns" "0 227 2 0" "0 227 2 1"
+  motions=$out/laser.txt
+  /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" "$motions"
+  drive kilometre-laser "$kilometre" "$top/config/kitti.ini" "$turns" "0 227 2 0" "0 227 2 1"
+}
+
 : >"$out/results"
 # These LiDARs turn clockwise, begin at the back, and are stamped when they face forward.
 turns="clockwise --cut-deg 180 --stamp-turn 0.5"
-mounting="0 0 0 0 0 0" settings="" sigmas=0.01,0.03
-both kitti_raw_0005 kitti_raw_0005 "$top/config/kitti.ini" "$turns" "0 79 2 0" "0 79 2 1"
-mounting="0 0 0 0 2.513 0.028" settings="--set sensor.height_m=1.77" sigmas=0.015,0.03
-both vlp16_loop vlp16_loop "$top/config/vlp16.ini" "$turns" "0 175 1 0" "176 203 1 0"
-mounting="0 0 0 0 0 0" settings="--set sensor.height_m=1.84 --set sensor.min_range_m=2.5" sigmas=0.08,0.23
-# Its scans are compensated: pole-extract --inspect finds no timing that fits better.
-drive nuscenes nuscenes_scene "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
-adjust_by_planes nuscenes_scene "$top/config/hdl32e.ini"
-sigmas=0.01,0.03
-drive nuscenes-planes nuscenes_scene "$top/config/hdl32e.ini" compensated "0 38 2 0" "0 38 2 1"
+motions=""
+if [ -n "$kilometre" ]; then half_kilometre; else short_drives; fi
 
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
