@@ -45,7 +45,7 @@ void bindKeys(Binder& b, SensorOptions& o) {
   b.angleDeg("fov_down_deg", o.fovDown, s_elevation, "lowest ring of model = uniform");
   b.integer("columns", o.columns, Range::between(0, 65536), "",
             "firing steps of a turn; 0: those of the model");
-  b.number("height_m", o.height, Range::any(), "m", "optical centre above ground");
+  b.number("height_m", o.height, Range::between(0, 100), "m", "optical centre above ground");
   b.numbers("origin", {&o.originX, &o.originY, &o.originZ}, Range::any(), "m",
             "optical centre x y z, along the robot's axes from the origin of the clouds");
   b.number("min_range_m", o.minRange, Range::atLeast(0), "m", "nearer returns are the vehicle");
