@@ -26,7 +26,7 @@ Columns of labels.csv:
                         10 points
   detections, conf_least, conf_median, conf_most
                         detections within 1 m, down to confidence 0
-  used                  of these, those with the least confidence of the map, 0.3, or more
+  used                  of these, those with a confidence of 0.3 or more, the least of the map in 1.0.0
   weak_m, weak_seen     nearest pole of the map without thresholds, if within 1 m, and its sightings
 """
 

@@ -9,7 +9,7 @@
 #   --quick   two worlds, without real drives: a test of the script
 # Fitted to worlds 101 to 110 and 121 to 150 without, 111 to 120 and 151 to 180 with [realism] scale = 1, 17 scans 10 m apart with each
 # of HDL-64E, HDL-32E, OS1-64, VLP-16, labelled by the true poles; and to the real drives, labelled by what all
-# their scans together show (pole-eval features). Scored on worlds 401 to 403 and 411 to 413, alike, on the scans
+# their scans together show (pole-eval features). Scored on worlds 401 to 403, 601 to 603, 411 to 413 and 611 to 613, alike, on the scans
 # 40 to 79 of kitti_raw_0005, and on each real drive by weights fitted to the others.
 # To take a result over: cp OUT/trees.csv OUT/rough_trees.csv OUT/covariance.csv libpolemcl/src/core/extraction/
 # Programs: build/bin, or POLEMCL_BIN. Needs python3-sklearn and 10 minutes on 2 cores.
@@ -77,7 +77,7 @@ tables() {
   done
 }
 
-fit="$(seq 101 110) $(seq 121 150)" fit_realism="$(seq 111 120) $(seq 151 180)" test="401 402 403" test_realism="411 412 413"
+fit="$(seq 101 110) $(seq 121 150)" fit_realism="$(seq 111 120) $(seq 151 180)" test="401 402 403 601 602 603" test_realism="411 412 413 611 612 613"
 drives="kitti_raw_0005-first vlp16_loop nuscenes_scene" test_drives=$out/kitti_raw_0005-second.csv
 [ "$quick" = no ] || fit=101 fit_realism=111 test=401 test_realism="" drives="" test_drives=""
 # shellcheck disable=SC2086 # several words

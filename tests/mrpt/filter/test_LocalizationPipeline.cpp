@@ -428,7 +428,10 @@ TEST_F(PoleLocalizationTest, RefusesAStartThatIsNoNumber) {
     localization.start(start);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("is not finite; set position_m"), std::string::npos)
+    EXPECT_NE(std::string(error.what())
+                  .find("is not finite; position_m and yaw_deg in [start], or the pose given, must "
+                        "be numbers"),
+              std::string::npos)
         << error.what();
   }
 }

@@ -59,6 +59,7 @@ using ClassifierTerms = std::array<double, kClassifierTerms>;
 
 /// \brief Name as in trees.csv.
 const char* name(ClassifierTerm term);
+/// \brief The terms of a candidate, before any scaling.
 ClassifierTerms classifierTerms(const PoleFeatures& features);
 
 /// \brief Log odds by trees of their own from what is known before the fit; clearly low ones need

@@ -39,7 +39,7 @@ void requireFinite(const Pose2D& start) {
   if (std::isfinite(start.x) && std::isfinite(start.y) && std::isfinite(start.yaw)) return;
   std::ostringstream text;
   text << "the start pose x y yaw = " << start.x << ' ' << start.y << ' ' << start.yaw
-       << " is not finite; set position_m and yaw_deg in [start], or start at a pose to numbers";
+       << " is not finite; position_m and yaw_deg in [start], or the pose given, must be numbers";
   throw Error(text.str());
 }
 

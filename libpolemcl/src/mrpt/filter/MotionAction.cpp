@@ -78,8 +78,8 @@ void requireStep(const PoleScan& scan, std::optional<double> before) {
   if (!before) return;
   if (!scan.motion)
     throw Error("no motion leads to the scan at " + when +
-                ": the filter needs odometry; was there any when the "
-                "scans were recorded or imported?");
+                ": the filter needs odometry; was "
+                "there any when the scans were recorded or imported?");
   try {
     requireMotion(*scan.motion);
   } catch (const Error& error) {

@@ -106,8 +106,7 @@ void PoleParticleFilter::start(const StartOptions& start) {
   checkOptions(start);
   if (!start.pose)
     throw Error(
-        "no start pose: set position_m and yaw_deg in [start], or start at a pose, or give the "
-        "truth");
+        "no start pose: set position_m and yaw_deg in [start], or give a pose or the truth");
   begin(start.particles);
   const GeneratorLoan loan(m_generator);
   CRandomGenerator& random = getRandomGenerator();
