@@ -25,8 +25,9 @@ while [ $# -gt 0 ]; do
 done
 
 "$top/share/setup/install.sh"
-"$top/share/setup/build.sh" release programs
-find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
+set -- pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
+"$top/share/setup/build.sh" release "$@"
+find_programs "$@"
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 started=$(date +%s)

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Builds one target of a preset (CMakePresets.json); a second time only what changed.
-# Usage: share/setup/build.sh PRESET TARGET
+# Builds targets of a preset (CMakePresets.json); a second time only what changed.
+# Usage: share/setup/build.sh PRESET TARGET...
 set -eu
 cd "$(dirname "$0")/../.."
 preset=$1
-target=$2
+shift
 
 # Ninja for a new folder; a folder that is configured keeps its generator.
 export CMAKE_GENERATOR="${CMAKE_GENERATOR:-Ninja}"
@@ -15,4 +15,4 @@ if ! cmake --preset "$preset" >"$log" 2>&1; then
   echo "build.sh: could not configure the preset $preset (see above)" >&2
   exit 1
 fi
-cmake --build --preset "$preset" --target "$target" --parallel "$(nproc)"
+cmake --build --preset "$preset" --target "$@" --parallel "$(nproc)"

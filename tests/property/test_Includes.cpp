@@ -23,7 +23,6 @@ namespace {
 const fs::path kTop = POLEMCL_SOURCE_DIR;
 
 constexpr std::size_t kMostLines = 500;
-constexpr std::size_t kMostLinesOfAMain = 60;
 
 /// Rooms and sub-rooms in the order of the document. A file may include headers of its own line and
 /// of the lines above. Lines with the same first part belong to one big room.
@@ -358,14 +357,6 @@ TEST(Includes, NoSourceIsLongerThanFiveHundredLines) {
       sourcesBelow({"libpolemcl", "apps", "tests", "share", "config"});
   ASSERT_FALSE(sources.empty());
   for (const Source& source : sources) EXPECT_LE(source.lines.size(), kMostLines) << source.path;
-}
-
-TEST(Includes, MainsAreShort) {
-  for (const Source& source : sourcesBelow({"apps"})) {
-    if (source.path.filename() == "main.cpp") {
-      EXPECT_LE(source.lines.size(), kMostLinesOfAMain) << source.path;
-    }
-  }
 }
 
 TEST(Includes, HeadersEndInHAndAreReadOnce) {

@@ -1,5 +1,0 @@
-#include "eval/EvalApp.h"
-
-int main(int argc, char** argv) {
-  return polemcl::apps::evalMain(argc, argv);
-}

@@ -1,5 +1,0 @@
-#include "extract/ExtractApp.h"
-
-int main(int argc, char** argv) {
-  return polemcl::apps::extractMain(argc, argv);
-}
