@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kMovingArc = 10 * M_PI / 180;  ///< rad; wider than lasers of one firing differ
 constexpr double kUsualDistance = 0.08;         ///< m; see share/doc/motion.md
+constexpr double kEnough = 4;                   ///< standard errors
 
 std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians * 180 / M_PI, digits);
@@ -150,14 +151,38 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
       << " standard errors better than none (4 are needed)\n";
 }
 
+bool isClear(const std::optional<RangeCorrection>& found) {
+  return found && found->significance >= kEnough;
+}
+
+void printRanges(std::ostream& out, const Inspection& inspection) {
+  const std::optional<RangeCorrection>& found = inspection.ranges;
+  out << "ranges of poles   ";
+  if (!found) {
+    out << "not looked for; --truth S.tum gives the motion\n";
+    return;
+  }
+  if (isClear(found))
+    out << "range_offset_m = " << io::fixed(found->offset, 3)
+        << ", range_scale = " << io::fixed(found->scale, 4) << '\n';
+  else
+    out << "no error seen\n";
+  out << "                  a pole moves by " << io::fixed(found->before, 4)
+      << " m between two scans, with offset and scale by " << io::fixed(found->after, 4)
+      << " m;\n                  " << io::fixed(found->significance, 1)
+      << " standard errors better than none (4 are needed)\n";
+}
+
 /// A turn of one second from azimuth 0, or from the first point: the time offset of a detection
 /// tells its azimuth.
 ScanTiming azimuthAsTime(bool movingCut) {
   return {Turn::counterclockwise, 1, 0, 0, 0, movingCut};
 }
 
-std::optional<TimingEstimate> findTiming(const InspectOptions& options, AllSettings settings,
-                                         bool movingCut, const ScanProgress& progress) {
+/// The places of the poles of a drive, with azimuths in the place of time offsets. None if a scan
+/// has no motion.
+std::optional<std::vector<TimedScan>> readDrive(const InspectOptions& options, AllSettings settings,
+                                                bool movingCut, const ScanProgress& progress) {
   settings.sensor.timing = azimuthAsTime(movingCut);
   const PoleSequence drive = readPoleSequence(
       options.input.string(), {settings.poleExtraction(), settings.motion, options.allowTruncated},
@@ -176,25 +201,40 @@ std::optional<TimingEstimate> findTiming(const InspectOptions& options, AllSetti
       scan.poles_robot.push_back({pole.x, pole.y, 2 * M_PI * pole.timeOffset});
     scans.push_back(std::move(scan));
   }
-  return searchTiming(scans, options.turnSeconds);
+  return scans;
+}
+
+/// Looks for timing and ranges. \return Whether the drive can tell.
+bool searchDrive(const InspectOptions& options, bool movingCut, Inspection& found,
+                 const ScanProgress& progress) {
+  const auto scans = readDrive(options, settingsFor(found), movingCut, progress);
+  if (!scans) return false;
+  found.timing = searchTiming(*scans, options.turnSeconds);
+  if (!options.truth) return true;
+  const mrpt::poses::CPose3D& mount = found.sensor.sensorPose;
+  const SensorOptions& sensor = found.sensor.options;
+  found.ranges = searchRangeCorrection(*scans, found.timing->timing,
+                                       {mount.x() + sensor.originX, mount.y() + sensor.originY});
+  return true;
 }
 
 /// The timing, with the first point of each scan as its cut where these lie far apart and the poles
-/// agree.
-std::optional<TimingEstimate> findTiming(const InspectOptions& options, const Inspection& found,
-                                         const ScanProgress& progress) {
+/// agree; and the ranges.
+void searchDrive(const InspectOptions& options, Inspection& result, const ScanProgress& progress) {
   constexpr double kNearBegin = M_PI / 6;  // cuts are searched in steps of half of it
-  const AllSettings settings = settingsFor(found);
-  if (beginArc(found.sensor.orders) > kMovingArc) {
-    auto moving = findTiming(options, settings, true, progress);
-    if (moving && moving->timing.turn == found.sensor.orders.front().turn &&
-        std::abs(std::remainder(moving->timing.cut, 2 * M_PI)) <= kNearBegin) {
-      moving->timing.cut = ScanTiming().cut;  // not used
-      moving->timing.movingCut = true;
-      return moving;
+  const std::vector<PointOrder>& orders = result.sensor.orders;
+  if (beginArc(orders) > kMovingArc) {
+    Inspection moving{result.sensor, {}, {}};
+    if (searchDrive(options, true, moving, progress) &&
+        moving.timing->timing.turn == orders.front().turn &&
+        std::abs(std::remainder(moving.timing->timing.cut, 2 * M_PI)) <= kNearBegin) {
+      moving.timing->timing.cut = ScanTiming().cut;  // not used
+      moving.timing->timing.movingCut = true;
+      result = moving;
+      return;
     }
   }
-  return findTiming(options, settings, false, progress);
+  searchDrive(options, false, result, progress);
 }
 
 /// Only what was looked for: all other keys keep their defaults.
@@ -212,13 +252,17 @@ AllSettings settingsFor(const Inspection& inspection) {
   if (inspection.timing &&
       (inspection.timing->timing.known() || inspection.timing->timing.clock != 0))
     settings.sensor.timing = inspection.timing->timing;
+  if (isClear(inspection.ranges)) {
+    settings.sensor.rangeOffset = std::round(1e3 * inspection.ranges->offset) / 1e3;
+    settings.sensor.rangeScale = std::round(1e4 * inspection.ranges->scale) / 1e4;
+  }
   return settings;
 }
 
 Inspection inspect(const InspectOptions& options, const ScanProgress& progress) {
-  Inspection result{inspectRawlog(options.input.string(), options.allowTruncated), {}};
+  Inspection result{inspectRawlog(options.input.string(), options.allowTruncated), {}, {}};
   if (!result.sensor.sensor.onItsHead)  // else poles are not found
-    result.timing = findTiming(options, result, progress);
+    searchDrive(options, result, progress);
   if (options.writeConfig) saveSensor(settingsFor(result), *options.writeConfig);
   return result;
 }
@@ -231,6 +275,7 @@ void printInspection(std::ostream& out, const Inspection& inspection) {
   printMounting(out, scans);
   printPresets(out, scans);
   printTiming(out, inspection);
+  printRanges(out, inspection);
 }
 
 }  // namespace polemcl::apps

@@ -27,13 +27,15 @@ struct Inspection {
   /// None if the clouds are upside down, or if there are neither odometry between all scans nor
   /// true poses.
   std::optional<TimingEstimate> timing;
+  std::optional<RangeCorrection> ranges;  ///< looked for only with true poses
 };
 
 /// \brief Inspects, writes the INI file if one is wanted. \throws Error as inspectRawlog(), and
 /// when the file cannot be written; it is then as it was before.
 Inspection inspect(const InspectOptions& options, const ScanProgress& progress = {});
 
-/// \brief Defaults of all programs, with the sensor that was found, and its timing if it turns.
+/// \brief Defaults of all programs, with the sensor that was found, its timing if it turns, and its
+/// ranges if they are off.
 AllSettings settingsFor(const Inspection& inspection);
 
 /// \brief A table for people: beams, columns, view, mounting, which preset fits how well, timing.

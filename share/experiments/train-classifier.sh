@@ -32,13 +32,18 @@ find_programs pole-simulate pole-eval
 /usr/bin/python3 -c 'import sklearn' 2>/dev/null || die "scikit-learn is needed: install python3-sklearn"
 mkdir -p "$out"
 
+# The shipped weights were fitted before kitti.ini corrected ranges.
+ranges="--set sensor.range_offset_m=0 --set sensor.range_scale=1"
+
 # simulated SENSOR SEED SCALE: the table SENSOR-SEED.csv.
 simulated() {
   [ ! -f "$out/$1-$2.csv" ] || return 0
   rm -rf "$out/scans"
-  "$bin/pole-simulate" --quiet --config "$(scan_line_settings "$1")" --output "$out/scans" --seed "$2" \
+  # shellcheck disable=SC2086 # several words
+  "$bin/pole-simulate" --quiet --config "$(scan_line_settings "$1")" $ranges --output "$out/scans" --seed "$2" \
     --length 162 --set simulation.spacing_m=10 --set realism.scale="$3"
-  "$bin/pole-eval" features --quiet --config "$(scan_line_settings "$1")" --scans "$out/scans" \
+  # shellcheck disable=SC2086
+  "$bin/pole-eval" features --quiet --config "$(scan_line_settings "$1")" $ranges --scans "$out/scans" \
     --poles "$out/scans/poles_gt.csv" --output "$out/$1-$2.csv"
   rm -r "$out/scans"
 }
@@ -58,7 +63,8 @@ real() {
   folder=$2
   config=$3
   shift 3
-  [ -f "$out/$name.csv" ] || "$bin/pole-eval" features --quiet --config "$top/config/$config.ini" \
+  # shellcheck disable=SC2086
+  [ -f "$out/$name.csv" ] || "$bin/pole-eval" features --quiet --config "$top/config/$config.ini" $ranges \
     --scans "$folder" --output "$out/$name.csv" "$@"
 }
 

@@ -207,12 +207,13 @@ TEST_F(InspectApp, KnowsTheLidarOfKitti) {
   EXPECT_EQ(inspection.options.originZ, 0);
 }
 
-TEST_F(InspectApp, FindsACutThatMoves) {
+TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
   const auto simulated =
       runProgram(simulateMain,
                  {"--quiet", "--config", "vlp16.ini", "--length", "100", "--output", at("sim"),
                   "--set", "simulation.motion_distortion=true", "--set", "simulation.spacing_m=0.8",
-                  "--set", "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise"});
+                  "--set", "simulation.speed_m_s=8", "--set", "sensor.turn=clockwise", "--set",
+                  "sensor.range_offset_m=0.1", "--set", "sensor.range_scale=0.995"});
   ASSERT_EQ(simulated.code, 0) << simulated.err;
   import("sim", false);  // for its true poses
   cutAnew(folder.path(), io::readTum(folder / "sim.tum").size());
@@ -231,6 +232,14 @@ TEST_F(InspectApp, FindsACutThatMoves) {
   std::ostringstream text;
   printInspection(text, found);
   EXPECT_TRUE(has(text.str(), "each scan cut at its first point (these lie ")) << text.str();
+  ASSERT_TRUE(found.ranges);
+  EXPECT_NEAR(found.ranges->offset, 0.1, 0.02);
+  EXPECT_NEAR(found.ranges->scale, 0.995, 0.0015);
+  EXPECT_GT(found.ranges->significance, 4);
+  EXPECT_TRUE(has(text.str(), "\nranges of poles   range_offset_m = 0.")) << text.str();
+  const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
+  EXPECT_NEAR(written.rangeOffset, found.ranges->offset, 0.0005);
+  EXPECT_NEAR(written.rangeScale, found.ranges->scale, 0.00005);
 }
 
 TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
@@ -244,10 +253,13 @@ TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   files.input = folder / "in.rawlog";
   files.writeConfig = folder / "found.ini";
   files.truth = folder / "in.tum";
-  const auto timing = inspect(files).timing;
+  const Inspection found = inspect(files);
+  const auto& timing = found.timing;
   ASSERT_TRUE(timing);
   EXPECT_EQ(timing->timing.turn, Turn::clockwise);
   EXPECT_NEAR(std::abs(timing->timing.cut), M_PI, 0.3);
+  ASSERT_TRUE(found.ranges);
+  EXPECT_NEAR(found.ranges->offset, 0.055, 0.025);  // as in config/kitti.ini
   EXPECT_EQ(timing->timing.clock, 0);
   EXPECT_NE(readText(folder / "found.ini").find("turn = clockwise"), std::string::npos);
 }

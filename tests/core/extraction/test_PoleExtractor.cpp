@@ -117,6 +117,23 @@ TEST(PoleExtractor, PolesBeyondTheRangeAreNotLookedFor) {
   EXPECT_EQ(extract(castYard(sensor), sensor, options).size(), 3u);
 }
 
+TEST(PoleExtractor, DistancesAreCorrectedAsTheSettingsSay) {
+  SensorOptions sensor = sensorOptions("os1_64");
+  const PointList points = castYard(sensor);
+  const auto before = extract(points, sensor);
+  sensor.rangeOffset = 0.07;
+  sensor.rangeScale = 0.99;
+  const auto after = extract(points, sensor);
+  ASSERT_EQ(after.size(), before.size());
+  ASSERT_FALSE(before.empty());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double distance = std::hypot(before[i].x, before[i].y);
+    EXPECT_NEAR(std::hypot(after[i].x, after[i].y), 0.99 * distance + 0.07, 1e-9);
+    EXPECT_NEAR(std::atan2(after[i].y, after[i].x), std::atan2(before[i].y, before[i].x), 1e-12);
+    EXPECT_EQ(after[i].radius, before[i].radius);
+  }
+}
+
 TEST(PoleExtractor, OrderOfPointsIsOfNoConsequence) {
   const SensorOptions sensor = sensorOptions("hdl64e");
   const PointList points = castYard(sensor);

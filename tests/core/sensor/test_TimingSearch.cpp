@@ -87,11 +87,37 @@ TEST(TimingSearch, FindsTheOffsetOfTheClocks) {
   EXPECT_NEAR(both.timing.clock, -0.05, 0.016);
 }
 
+TEST(TimingSearch, FindsRangesThatAreOff) {
+  const ScanTiming timing{Turn::clockwise, 0.1, M_PI, 0.5};
+  const Eigen::Vector2d lidar(1.5, 0.3);
+  std::vector<TimedScan> scans = drive(timing);
+  const RangeCorrection none = searchRangeCorrection(scans, timing, lidar);
+  EXPECT_NEAR(none.offset, 0, 0.004);
+  EXPECT_NEAR(none.scale, 1, 0.0003);
+  EXPECT_LT(none.significance, 4);
+  for (TimedScan& scan : scans) {
+    for (TimedPole& pole : scan.poles_robot) {
+      const Eigen::Vector2d ray = Eigen::Vector2d(pole.x, pole.y) - lidar;
+      const Eigen::Vector2d measured =
+          lidar + ray.normalized() * (ray.norm() - 0.06) / 0.998;  // scale * measured + offset
+      pole.x = measured.x();
+      pole.y = measured.y();
+    }
+  }
+  const RangeCorrection found = searchRangeCorrection(scans, timing, lidar);
+  EXPECT_NEAR(found.offset, 0.06, 0.005);
+  EXPECT_NEAR(found.scale, 0.998, 0.0004);
+  EXPECT_GT(found.significance, 10);
+  EXPECT_NEAR(found.after, none.before, 0.002);
+  EXPECT_GT(found.before, found.after + 0.002);
+}
+
 TEST(TimingSearch, SaysNothingWithoutPairs) {
   const TimingEstimate none = searchTiming({}, 0.1);
   EXPECT_EQ(none.pairs, 0u);
   EXPECT_EQ(none.timing.turn, Turn::compensated);
   EXPECT_EQ(searchTiming({{0, {}, {{5, 5, 0}}}}, 0.1).pairs, 0u);
+  EXPECT_EQ(searchRangeCorrection({}, {}, {0, 0}).significance, 0);
 }
 
 }  // namespace polemcl::test_timing_search

@@ -54,6 +54,10 @@ void bindKeys(Binder& b, SensorOptions& o) {
          "true: a scan that contradicts the settings above is refused; the first three are "
          "checked");
   bindTiming(b, o.timing);
+  b.number("range_offset_m", o.rangeOffset, Range::between(-0.5, 0.5), "m",
+           "added to the distance of each pole: what the LiDAR measures too short");
+  b.number("range_scale", o.rangeScale, Range::between(0.9, 1.1), "",
+           "the distance of each pole is multiplied by this first");
 
   if (o.model == "table") requireTable(b, o);
   if (o.model == "uniform")

@@ -1,11 +1,14 @@
 #include "core/sensor/TimingSearch.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/common/Deskew.h"
 #include "core/common/KdTree2D.h"
+#include "core/common/Statistics.h"
 
 namespace polemcl {
 namespace {
@@ -14,9 +17,10 @@ constexpr double kAway[] = {1, 2, 4, 8};   // m between the two scans of a pair
 constexpr double kLongestPause = 1;        // s between successive scans, else no velocity
 constexpr double kWidest = 1, kFar = 0.3;  // m: gate of a pair, and greatest distance that counts
 constexpr std::size_t kMostPairs = 30000;
-constexpr double kEnough = 4;     // standard errors
-constexpr double kGreatest = 15;  // clock offsets, in steps
-constexpr double kStep = 0.01;    // s
+constexpr double kEnough = 4;              // standard errors
+constexpr double kGreatest = 15;           // clock offsets, in steps
+constexpr double kStep = 0.01;             // s
+constexpr std::size_t kFewestPairs = 100;  // for a correction of the ranges
 
 /// Sightings of one pole in two scans.
 struct Resighting {
@@ -33,11 +37,17 @@ class Search {
   double mean(const ScanTiming& timing) const;
   /// Standard errors by which `better` is better; the pairs of a scan count as one sample.
   double significance(const ScanTiming& better, const ScanTiming& worse) const;
+  /// The same for distances of all pairs.
+  double significance(const std::vector<double>& good, const std::vector<double>& bad) const;
+  RangeCorrection bestRanges(const ScanTiming& timing, const Eigen::Vector2d& lidar_robot) const;
   ScanTiming bestTurn(double clock) const;
   double bestClock(ScanTiming timing) const;
 
  private:
   Eigen::Vector2d place(std::size_t scan, const TimedPole& pole, const ScanTiming& timing) const;
+  /// From the LiDAR to the pole when it was measured, map frame, m.
+  Eigen::Vector2d ray(std::size_t scan, const TimedPole& pole, const ScanTiming& timing,
+                      const Eigen::Vector2d& lidar_robot) const;
   std::vector<std::size_t> partners(std::size_t scan) const;
 
   const std::vector<TimedScan>& m_scans;
@@ -73,6 +83,13 @@ Eigen::Vector2d Search::place(std::size_t scan, const TimedPole& pole,
   const Pose2D moved = motionAfter(m_velocity[scan], timing.offset(pole.azimuth));
   const Pose2D at = compose(m_scans[scan].pose_map_robot, compose(moved, {pole.x, pole.y, 0}));
   return {at.x, at.y};
+}
+
+Eigen::Vector2d Search::ray(std::size_t scan, const TimedPole& pole, const ScanTiming& timing,
+                            const Eigen::Vector2d& lidar_robot) const {
+  const double turned = timing.offset(pole.azimuth) * m_velocity[scan].yaw;
+  return Eigen::Rotation2Dd(m_scans[scan].pose_map_robot.yaw + turned) *
+         (Eigen::Vector2d(pole.x, pole.y) - lidar_robot);
 }
 
 std::vector<std::size_t> Search::partners(std::size_t scan) const {
@@ -131,7 +148,10 @@ double Search::mean(const ScanTiming& timing) const {
 }
 
 double Search::significance(const ScanTiming& better, const ScanTiming& worse) const {
-  const auto good = distances(better), bad = distances(worse);
+  return significance(distances(better), distances(worse));
+}
+
+double Search::significance(const std::vector<double>& good, const std::vector<double>& bad) const {
   double sum = 0, squares = 0, here = 0;
   for (std::size_t k = 0; k < m_pairs.size(); ++k) {
     here += bad[k] - good[k];
@@ -141,6 +161,50 @@ double Search::significance(const ScanTiming& better, const ScanTiming& worse) c
     here = 0;
   }
   return squares > 0 ? sum / std::sqrt(squares) : 0;
+}
+
+RangeCorrection Search::bestRanges(const ScanTiming& timing,
+                                   const Eigen::Vector2d& lidar_robot) const {
+  const auto count = static_cast<Eigen::Index>(m_pairs.size());
+  // By pair: how its vector from the first place to the second changes with offset and scale.
+  Eigen::MatrixX2d apart(count, 2), byOffset(count, 2), byScale(count, 2);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Resighting& pair = m_pairs[static_cast<std::size_t>(k)];
+    const TimedPole& a = m_scans[pair.scanA].poles_robot[pair.poleA];
+    const TimedPole& b = m_scans[pair.scanB].poles_robot[pair.poleB];
+    const Eigen::Vector2d rayA = ray(pair.scanA, a, timing, lidar_robot),
+                          rayB = ray(pair.scanB, b, timing, lidar_robot);
+    apart.row(k) = place(pair.scanB, b, timing) - place(pair.scanA, a, timing);
+    byOffset.row(k) = rayB.normalized() - rayA.normalized();
+    byScale.row(k) = rayB - rayA;
+  }
+  const auto remaining = [&](const Eigen::Vector2d& fit) -> Eigen::VectorXd {
+    return (apart + fit[0] * byOffset + fit[1] * byScale).rowwise().norm();
+  };
+  Eigen::Vector2d fit(0, 0);
+  for (int round = 0; round < 20; ++round) {
+    const Eigen::VectorXd error = remaining(fit);
+    const double usual = 2 * nearestRank({error.begin(), error.end()}, 0.5) + 1e-6;
+    const Eigen::VectorXd weight = (1 + (error / usual).array().square()).inverse();
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right(0, 0);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      Eigen::Matrix2d design;
+      design << byOffset.row(k).transpose(), byScale.row(k).transpose();
+      normal += weight[k] * design.transpose() * design;
+      right -= weight[k] * design.transpose() * apart.row(k).transpose();
+    }
+    fit = normal.ldlt().solve(right);
+  }
+  const auto clipped = [&](const Eigen::Vector2d& by) {
+    const Eigen::VectorXd error = remaining(by).cwiseMin(kFar);
+    return std::vector<double>(error.begin(), error.end());
+  };
+  const auto good = clipped(fit), bad = clipped(Eigen::Vector2d::Zero());
+  const auto mean = [&](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(count);
+  };
+  return {fit[0], 1 + fit[1], mean(bad), mean(good), significance(good, bad)};
 }
 
 /// The best of not turning, and of turning with cuts in steps of 15°.
@@ -202,6 +266,14 @@ TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeco
   result.before = search.mean(still);
   result.after = search.mean(result.timing);
   return result;
+}
+
+RangeCorrection searchRangeCorrection(const std::vector<TimedScan>& scans, const ScanTiming& timing,
+                                      const Eigen::Vector2d& lidar_robot) {
+  Search search(scans, timing.seconds);
+  search.associate(timing);
+  if (search.pairs().size() < kFewestPairs) return {};
+  return search.bestRanges(timing, lidar_robot);
 }
 
 }  // namespace polemcl

@@ -1,9 +1,10 @@
 #pragma once
 /// \file TimingSearch.h
-/// \brief When the points of a scan were measured, found from the poles of a drive alone.
+/// \brief When the points of a scan were measured, and how far off its ranges are, found from the
+/// poles of a drive.
 ///
-/// A standing pole has one place. With the right measuring times, successive scans agree on it
-/// best.
+/// A standing pole has one place. With the right measuring times and ranges, successive scans agree
+/// on it best.
 
 #include <vector>
 
@@ -37,9 +38,25 @@ struct TimingEstimate {
   double clockSignificance = 0;  ///< standard errors by which the best clock is better than 0
 };
 
+/// \brief What corrects the distance of a pole from the LiDAR: scale * distance + offset.
+struct RangeCorrection {
+  double offset = 0;  ///< m
+  double scale = 1;
+  double before = 0, after = 0;  ///< mean distance of a pair without and with it, m
+  double significance = 0;       ///< standard errors by which it is better than none
+};
+
 /// \brief Searches directions, cuts and clock offsets (±0.15 s).
 /// \param turnSeconds Duration of a turn of the LiDAR, s.
 /// \return `pairs` is 0 where no pole was seen twice.
 TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeconds);
+
+/// \brief Fits the pairs by least squares (Cauchy's weights). A pole that one drives past shows the
+/// offset: ahead and behind, it errs in opposite directions. A scale of the poses cannot be told
+/// from one of the ranges.
+/// \param timing As found. \param lidar_robot The LiDAR in the robot frame, m.
+/// \return No correction where fewer than 100 pairs are there.
+RangeCorrection searchRangeCorrection(const std::vector<TimedScan>& scans, const ScanTiming& timing,
+                                      const Eigen::Vector2d& lidar_robot);
 
 }  // namespace polemcl

@@ -178,10 +178,7 @@ void checkMounting(SimulationOptions options) {
                  Range::between(-10, 10), "m", "of a simulated sensor");
 }
 
-}  // namespace
-
-LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beams) {
-  checkMounting(options);
+LidarModel lidarOfSettings(const SimulationOptions& options, const SensorOptions& beams) {
   if (options.sensor != "table" && options.sensor != "uniform")
     return makeLidar(options.sensor, options.upsideDown);
   SensorOptions mounted = beams;
@@ -191,6 +188,16 @@ LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beam
   addOffsets(lidar, 1);
   lidar.startAzimuth = M_PI;
   if (options.upsideDown) lidar.clockwise = !lidar.clockwise;
+  return lidar;
+}
+
+}  // namespace
+
+LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beams) {
+  checkMounting(options);
+  LidarModel lidar = lidarOfSettings(options, beams);
+  lidar.rangeOffset = beams.rangeOffset;
+  lidar.rangeScale = beams.rangeScale;
   return lidar;
 }
 

@@ -39,6 +39,9 @@ struct LidarModel {
   /// are.
   bool calibrated = false;
   double dropout = 0.004;  ///< share of pulses lost at random
+  /// The true range is rangeScale * measured range + rangeOffset, as `[sensor]` says.
+  double rangeOffset = 0;  ///< m
+  double rangeScale = 1;
 };
 
 /// Standard deviation of Beam::rangeBias as a share of LidarModel::rangeNoise.
@@ -54,8 +57,8 @@ LidarModel makeLidar(const std::string& name, bool upsideDown = false, unsigned 
 /// \brief The LiDAR of a simulation. `table` and `uniform` have the beams and firing steps of
 /// `beams`, and the accuracy of an HDL-32E. Their name states the number of beams and the field of
 /// view.
-/// \param beams `[sensor]`; used for these two only, and without its mounting, which comes from
-///        `options`.
+/// \param beams `[sensor]`: beams for these two only; ranges that are off for all. Its mounting
+///        is not used; that comes from `options`.
 /// \throws Error for an unknown name, invalid beams, or a height or origin that the simulation does
 ///         not support. (Programs that do not simulate accept such sensors.)
 LidarModel makeLidar(const SimulationOptions& options, const SensorOptions& beams = {});

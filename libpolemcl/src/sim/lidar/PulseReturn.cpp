@@ -94,6 +94,7 @@ std::optional<PulseReturn> PulseReturnModel::strongest(const SubHit* hits, const
   const double noise = m_lidar.rangeNoise * std::sqrt(1 + 0.5 / ratio);
   range += beam.rangeBias + std::hypot(noise, material(hit).roughness) * random.normal();
   range += deviation(beam, ratio);
+  range = (range - m_lidar.rangeOffset) / m_lidar.rangeScale;
   range = std::round(range / m_lidar.rangeStep) * m_lidar.rangeStep;
   if (range < m_lidar.minRange || range > m_lidar.maxRange) return std::nullopt;
   const double shine = best.signal * (0.85 + 0.3 * random.uniform());

@@ -79,6 +79,10 @@ struct POLEMCL_EXPORT SensorOptions {
   double originX = 0, originY = 0, originZ = 0;
   double minRange = 1.0;   ///< m, nearer returns are the vehicle
   double maxRange = 60.0;  ///< m
+  /// Corrects the distance of each pole: scale * distance + offset. LiDARs measure some centimetres
+  /// too short or too long; the error often depends on the distance.
+  double rangeOffset = 0;  ///< m (`range_offset_m`)
+  double rangeScale = 1;   ///< (`range_scale`)
   ScanTiming timing;       ///< when the points of a scan are measured (`turn`, …)
   /// ObservationPoleExtractor and the programs compare the first scans with the rings above and
   /// refuse scans that contradict them. PoleExtractor does not.
