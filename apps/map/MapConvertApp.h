@@ -12,7 +12,7 @@
 namespace polemcl::apps {
 
 /// \brief Files of `pole-map convert`; their endings say what they are: `.polemap`, `.csv`,
-/// `.npz` (the first implementation's, input only), `.geojson`.
+/// `.npz` (the authors' program's, input only), `.geojson`.
 struct MapConvertOptions {
   std::filesystem::path input, output;
   /// Datum of the map. Needed when the input has none; otherwise both must agree.

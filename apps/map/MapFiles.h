@@ -12,7 +12,7 @@
 
 namespace polemcl::apps {
 
-/// \brief `.polemap`, `.csv`, `.npz` (the first implementation's, read only), `.geojson`.
+/// \brief `.polemap`, `.csv`, `.npz` (the authors' program's, read only), `.geojson`.
 enum class MapFileKind { polemap, csv, npz, geojson };
 
 /// \throws Error on any other ending.

@@ -36,7 +36,7 @@ MapPtr load(const std::filesystem::path& file) {
   return std::make_shared<PoleMap>(readMapFile(file));
 }
 
-/// The array `polemeans` of the first implementation: x, y, radius of each pole.
+/// The array `polemeans` of the authors' program: x, y, radius of each pole.
 void saveNpz(const PoleMap& map, const std::filesystem::path& file) {
   const std::vector<MapPole>& poles = map.content.map.poles;
   py::array_t<double> means({static_cast<py::ssize_t>(poles.size()), py::ssize_t{3}});

@@ -1,5 +1,5 @@
 /// \file test_PaperMode.cpp
-/// \brief config/paper is the first implementation: nothing beyond it is on, a kidnapped vehicle
+/// \brief config/paper is the authors' program: nothing beyond it is on, a kidnapped vehicle
 /// stays lost, and on its own detections of a real drive the errors are those it has.
 
 #include <cstdlib>
@@ -81,7 +81,7 @@ int recovered(const AllSettings& settings) {
   return count;
 }
 
-/// A real drive by the protocol of the comparison with the first implementation: map from the even
+/// A real drive by the protocol of the comparison with the authors' program: map from the even
 /// scans, localized on the odd ones, at each of which the filter is updated.
 class Parity {
  public:
@@ -155,7 +155,7 @@ class PaperModeOnKitti : public testing::Test {
       result.push_back(io::planar(pose));
     return result;
   }
-  /// What the first implementation found.
+  /// What the authors' program found.
   std::vector<std::vector<PoleDetection>> theirPoles() const {
     std::vector<std::vector<PoleDetection>> poles(80);
     const io::CsvTable table(m_data / "first_implementation" / "kitti_raw_0005.csv");
@@ -229,7 +229,7 @@ TEST(PaperMode, AKidnappedVehicleStaysLost) {
   EXPECT_EQ(recovered(load("kitti.ini")), 20);
 }
 
-// The first implementation's program has, over 20 seeds on the same input, 0.051 m (0.028 to 0.141)
+// The authors' program's program has, over 20 seeds on the same input, 0.051 m (0.028 to 0.141)
 // from 2.5 m and 0.032 m (0.021 to 0.047) from 0.5 m with poses_scan_matching.txt, 0.049 m and
 // 0.030 m with poses.txt.
 TEST_F(PaperModeOnKitti, LocalizesAsTheFirstImplementationOnItsPoles) {

@@ -10,7 +10,7 @@ namespace polemcl::test_pole_map_paper {
 
 namespace {
 
-/// The first implementation's map, with sections of 1 m.
+/// The authors' program's map, with sections of 1 m.
 PoleMapOptions authors(int minCount) {
   PoleMapOptions options;
   options.sectionLength = 1;

@@ -82,7 +82,7 @@ TEST(PoleParticleFilter, FollowsAStreetAsThePaperDoes) {
       PoleParticleFilter localizer(street.map, paper, seed);
       sum += drive(localizer, street, StartPositions::radius).position;
     }
-    // Measured: 0.038 m with Eq. 3, 0.043 m as the first implementation.
+    // Measured: 0.038 m with Eq. 3, 0.043 m as the authors' program.
     EXPECT_LT(sum / 10, model == LikelihoodModel::paper ? 0.042 : 0.047);
   }
 }

@@ -12,7 +12,7 @@ namespace polemcl {
 
 /// \brief Middles and ends of sections, as a vehicle passes them one scan after the other.
 ///
-/// This is the rule of the first implementation. The middle of section n is the first scan at or
+/// This is the rule of the authors' program. The middle of section n is the first scan at or
 /// past n + 1/2 sections of the path. The end of section n is the first scan past n + 1. A scan is
 /// the middle of at most one section. Scans may be farther apart than a section is long: then each
 /// scan is a middle, and the count of sections falls behind. Later scans catch up, one section

@@ -24,7 +24,7 @@ void bind(Binder& b, LikelihoodOptions& o) {
                              {LikelihoodModel::mixture, "mixture"},
                              {LikelihoodModel::floored, "floored"}},
                             "Eq. 3 of the paper, a mixture with outliers, or a density with a "
-                            "floor (first implementation)");
+                            "floor (authors' program)");
   b.flag("weighted", o.weighted,
          "true: each detection counts by its covariance and confidence; false: all alike (paper)");
   b.number("floor", o.floor, Range::above(0), "1/m",

@@ -1,6 +1,6 @@
 #pragma once
 /// \file LocalMaps.h
-/// \brief One scan a section for the filter, as the first implementation localizes.
+/// \brief One scan a section for the filter, as the authors' program localizes.
 
 #include <cstdint>
 #include <deque>
@@ -15,7 +15,7 @@ namespace polemcl {
 
 /// \brief What LocalMaps gives out.
 struct POLEMCL_EXPORT LocalMapOptions {
-  double sectionLength = 1.5;  ///< of odometry, m (first implementation: 0.25 NCLT, else 1.5)
+  double sectionLength = 1.5;  ///< of odometry, m (authors' program: 0.25 NCLT, else 1.5)
   int maps = 1;  ///< newest sections whose poles are compared (NCLT 6, MulRan 3, KITTI 1)
   /// Least number of these maps' poles whose boxes overlap with a pole's, in a connected component
   /// and with itself (NCLT and MulRan 2, KITTI 1).

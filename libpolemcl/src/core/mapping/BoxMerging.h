@@ -1,6 +1,6 @@
 #pragma once
 /// \file BoxMerging.h
-/// \brief Groups of observations whose boxes overlap, as in the first implementation.
+/// \brief Groups of observations whose boxes overlap, as in the authors' program.
 
 #include <cstdint>
 #include <vector>

@@ -2,7 +2,7 @@
 /// \file ObservationClustering.h
 /// \brief Groups observations of the same pole: by gated distance to its centre, one per scan.
 ///
-/// Overlapping boxes merged as connected components, as the first implementation does, run together
+/// Overlapping boxes merged as connected components, as the authors' program does, run together
 /// in chains. Here an observation belongs to a pole by its distance to the pole's own centre, and
 /// two of one scan are two poles.
 

@@ -25,18 +25,18 @@ void bind(Binder& b, PoleMapOptions& o) {
   b.tier(Tier::expert);
   b.choice<SectionMiddle>(
       "middle", o.middle, {{SectionMiddle::nearest, "nearest"}, {SectionMiddle::passed, "passed"}},
-      "middle scan of a section: the nearest to its middle, or the first past it (first "
-      "implementation)");
-  b.choice<MapMerging>("merging", o.merging,
-                       {{MapMerging::gated, "gated"}, {MapMerging::boxes, "boxes"}},
-                       "detections are one pole by distance, or where their boxes overlap (first "
-                       "implementation)");
+      "middle scan of a section: the nearest to its middle, or the first past it (authors' "
+      "program)");
+  b.choice<MapMerging>(
+      "merging", o.merging, {{MapMerging::gated, "gated"}, {MapMerging::boxes, "boxes"}},
+      "detections are one pole by distance, or where their boxes overlap (authors' "
+      "program)");
   b.choice<PoleCounting>("counting", o.counting,
                          {{PoleCounting::run, "run"},
                           {PoleCounting::confidences, "confidences"},
                           {PoleCounting::members, "members"}},
                          "count of a pole: sections of one run (paper), the sum of their greatest "
-                         "confidences, or detections (first implementation)");
+                         "confidences, or detections (authors' program)");
   b.number("unvisited_m", o.unvisited, Range::atLeast(0), "m",
            "later sessions: least distance of a scan from all places visited before; 0: all");
 

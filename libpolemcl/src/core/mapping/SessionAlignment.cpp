@@ -46,7 +46,6 @@ class Alignment {
             const PoleMapOptions& mapping, const MapUpdateOptions& options)
       : m_scans(scans),
         m_mapping(mapping),
-        m_options(options),
         m_landmarks(presentPoles(map)),
         m_tree(centresOf(m_landmarks)),
         m_corrections(scans.size(), Eigen::Vector3d::Zero()) {
@@ -74,7 +73,6 @@ class Alignment {
 
   const std::vector<SessionScan>& m_scans;
   const PoleMapOptions& m_mapping;
-  const MapUpdateOptions& m_options;
   std::vector<MapPole> m_landmarks;
   KdTree2D m_tree;
   Eigen::Matrix3d m_prior;

@@ -24,7 +24,7 @@ void bindEstimate(Binder& b, FilterOptions& o) {
                          {{EstimateTime::beforeResampling, "before_resampling"},
                           {EstimateTime::afterResampling, "after_resampling"}},
                          "estimate by the weights of the scan, or by the equal copies after "
-                         "resampling (first implementation)");
+                         "resampling (authors' program)");
   b.flag("heaviest_place", o.heaviestPlace,
          "true: particles in several places give the mean of the heaviest place; false: always "
          "as estimate says (paper)");
@@ -85,8 +85,8 @@ void bind(Binder& b, StartOptions& o) {
   b.choice<StartPositions>(
       "positions", o.positions,
       {{StartPositions::area, "area"}, {StartPositions::radius, "radius"}},
-      "uniform in the area of the disc, or in the distance from its centre (first "
-      "implementation)");
+      "uniform in the area of the disc, or in the distance from its centre (authors' "
+      "program)");
 }
 
 void bind(Binder& b, RunOptions& o) {

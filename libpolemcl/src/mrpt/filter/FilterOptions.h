@@ -18,14 +18,14 @@ enum class PoseEstimator { mean, bestShare };
 enum class EstimateTime {
   beforeResampling,
   /// After resampling, if the scan led to it. All weights are then equal, so `best_share` takes an
-  /// arbitrary part of the particles (first implementation).
+  /// arbitrary part of the particles (authors' program).
   afterResampling
 };
 
 /// \brief `[filter]` in INI files. The paper's filter: `estimate = best_share`, heaviest_place
 /// false, and regularization, tempering and the extra sigmas 0.
 struct POLEMCL_EXPORT FilterOptions {
-  int particles = 1000;  ///< (paper: 1000 NCLT; first implementation: 500 to 2000)
+  int particles = 1000;  ///< (paper: 1000 NCLT; authors' program: 500 to 2000)
   /// true: resampling keeps the number of particles that the posterior needs, by the bins it
   /// covers: many while it is spread, few once it has converged. `particles` then only serves
   /// `tempering`.
@@ -61,7 +61,7 @@ struct POLEMCL_EXPORT FilterOptions {
 /// \brief Distribution of the start positions in the disc.
 enum class StartPositions {
   area,   ///< uniform over the area
-  radius  ///< uniform in distance from the centre, so denser there (first implementation)
+  radius  ///< uniform in distance from the centre, so denser there (authors' program)
 };
 
 /// \brief Where the filter starts. `[start]` in INI files.

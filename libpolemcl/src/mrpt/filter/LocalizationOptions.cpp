@@ -14,7 +14,7 @@ void bind(Binder& b, TrackingOptions& o) {
   b.choice<Cadence>(
       "cadence", o.cadence, {{Cadence::scan, "scan"}, {Cadence::section, "section"}},
       "detections are used at every scan, or at the end of each section those of its middle scan "
-      "(first implementation)");
+      "(authors' program)");
   bind(b, o.localMaps);
   b.require(!o.average || o.cadence == Cadence::scan, "cadence", "section",
             "scan where average = true");

@@ -24,8 +24,8 @@ namespace polemcl {
 /// \brief When the filter gets detections.
 enum class Cadence {
   scan,    ///< at every scan
-  section  ///< at the end of each section, with the detections of its middle scan (first
-           ///< implementation)
+  section  ///< at the end of each section, with the detections of its middle scan (authors'
+           ///< program)
 };
 
 /// \brief Which detections the filter is given. `[tracking]` in INI files.

@@ -16,7 +16,7 @@ enum class LikelihoodModel {
   paper,  ///< Eq. 3: product of exp(-d²/(2σ²)), d clipped at `gate` (a pole without a match costs
           ///< the gate)
   mixture,  ///< (1-w)·exp(-d²/(2σ²)) + w·o(d) per pole, w the outlier share: bounded, not flat
-  floored   ///< N(d; 0, σ²) + floor per pole, d clipped at `gate` (first implementation)
+  floored   ///< N(d; 0, σ²) + floor per pole, d clipped at `gate` (authors' program)
 };
 
 /// \brief `[likelihood]` in INI files.

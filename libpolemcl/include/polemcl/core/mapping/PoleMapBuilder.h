@@ -5,7 +5,7 @@
 /// The path is split into sections of equal length (PathSections); detections of different scans
 /// are merged by gated distance (ObservationClustering) and averaged by their certainty
 /// (LandmarkFusion); a pole stays if enough sections in a continuous run saw it, each counted by
-/// its confidence. The options have the paper's and the first implementation's way of each step as
+/// its confidence. The options have the paper's and the authors' program's way of each step as
 /// well.
 
 #include <vector>
@@ -20,21 +20,21 @@ class Binder;
 /// \brief Which scan is the keyframe of a section.
 enum class SectionMiddle {
   nearest,  ///< the one nearest to the middle of the section
-  passed    ///< the first at or past the middle (first implementation, see SectionMarks)
+  passed    ///< the first at or past the middle (authors' program, see SectionMarks)
 };
 
 /// \brief Which detections are one pole, and what becomes of them.
 enum class MapMerging {
   /// By distance to the pole's centre, one a keyframe; mean by certainty, without outliers.
   gated,
-  boxes  ///< all whose boxes overlap, chains too; plain mean (first implementation)
+  boxes  ///< all whose boxes overlap, chains too; plain mean (authors' program)
 };
 
 /// \brief What is counted against PoleMapOptions::minCount.
 enum class PoleCounting {
   run,          ///< sections of one continuous run that saw the pole (paper)
   confidences,  ///< the sum of their greatest confidences: how many of them were right
-  members       ///< detections of the pole, wherever they were made (first implementation)
+  members       ///< detections of the pole, wherever they were made (authors' program)
 };
 
 /// \brief `[map]` in INI files.
