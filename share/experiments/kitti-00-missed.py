@@ -37,46 +37,12 @@ import sys
 
 import numpy as np
 
-REACH, NEAR, MATCH = 1.0, 20.0, 1.0
+from label_matching import MATCH, distance, matching, places, table
+
+REACH, NEAR = 1.0, 20.0
 LOW, HIGH, STEP = 0.5, 4.0, 0.1
 RADII, RING, BAND = (0.2, 0.4), 0.3, 0.5
 USED = 0.3
-
-
-def table(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
-
-
-def places(path):
-    rows = table(path)
-    return np.array([[float(row["x"]), float(row["y"])] for row in rows]).reshape(-1, 2)
-
-
-def distance(a, b):
-    return np.hypot(a[..., 0] - b[..., 0], a[..., 1] - b[..., 1])
-
-
-def matching(labels, poles):
-    """Greatest one-to-one matching within MATCH; pairs begin with the nearest."""
-    near = [[j for j in np.argsort(distance(poles, label), kind="stable") if distance(poles[j], label) <= MATCH]
-            for label in labels]
-    owner = {}
-
-    def assign(label, tried):
-        for pole in near[label]:
-            if pole not in tried:
-                tried.add(pole)
-                if pole not in owner or assign(owner[pole], tried):
-                    owner[pole] = label
-                    return True
-        return False
-
-    order = sorted((k for k in range(len(labels)) if near[k]),
-                   key=lambda k: (distance(poles[near[k][0]], labels[k]), k))
-    for k in order:
-        assign(k, set())
-    return set(owner.values())
 
 
 def points_near(drive, poses, labels):

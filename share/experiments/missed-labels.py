@@ -9,7 +9,6 @@ Usage: missed-labels.py SCANS TRUTH MAP OUT
 One to one within 1 m. In the view from above, heights of 0.8 to 2.5 m; + is the label, x a pole of the map. Colours
 are times. Needs python3-scipy and python3-matplotlib.
 """
-import csv
 import pathlib
 import sys
 
@@ -20,27 +19,12 @@ from scipy.spatial.transform import Rotation
 matplotlib.use("Agg")
 from matplotlib import pyplot  # pylint: disable=wrong-import-position
 
-RADIUS = 1.0  # m, of a match
+from label_matching import matching, places  # pylint: disable=wrong-import-position
+
 TURN = 0.1037  # s, of the LiDAR
 FARTHEST = 25  # m, from the sensor to the label
 HALF_SIDE = 2  # m, of a picture
 PER_PICTURE = 6
-
-
-def positions(path):
-    lines = [line for line in pathlib.Path(path).read_text().splitlines() if not line.startswith("#")]
-    return np.array([(float(row["x"]), float(row["y"])) for row in csv.DictReader(lines)])
-
-
-def missed(labels, poles):
-    """Numbers of the labels without a pole; the nearest pairs come first."""
-    distances = np.linalg.norm(labels[:, None] - poles[None], axis=2)
-    left, taken = set(range(len(labels))), set()
-    for i, j in sorted(np.argwhere(distances < RADIUS).tolist(), key=lambda pair: distances[tuple(pair)]):
-        if i in left and j not in taken:
-            left.remove(i)
-            taken.add(j)
-    return sorted(left)
 
 
 class Drive:
@@ -87,8 +71,8 @@ def draw(axes, points, place, poles):
 
 
 def main(scans, truth, map_file, out):
-    drive, labels, poles = Drive(scans), positions(truth), positions(map_file)
-    numbers = missed(labels, poles)
+    drive, labels, poles = Drive(scans), places(truth), places(map_file)
+    numbers = sorted(set(range(len(labels))) - matching(labels, poles))
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
     around = drive.around(labels[numbers])

@@ -12,11 +12,11 @@ struct ScaleWeight {
   double weight;
 };
 // The table is covariance.csv, which share/experiments/fit_classifier.py wrote.
-#define COVARIANCE_TERM(term, weight) {CovarianceTerm::term, weight},
+#define TERM(term, weight) {CovarianceTerm::term, weight},
 constexpr ScaleWeight kScaleWeights[] = {
 #include "core/extraction/covariance.inc"
 };
-#undef COVARIANCE_TERM
+#undef TERM
 
 constexpr bool scaleInOrder() {
   int expected = 0;

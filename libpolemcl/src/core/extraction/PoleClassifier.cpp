@@ -18,14 +18,14 @@ struct TreeRow {
   int step;
 };
 // The tables are rough_trees.csv and trees.csv, which share/experiments/fit_classifier.py wrote.
-#define TREES_TERM(term, value, step) {Term::term, value, step},
+#define TERM(term, value, step) {Term::term, value, step},
 constexpr TreeRow kRoughRows[] = {
 #include "core/extraction/rough_trees.inc"
 };
 constexpr TreeRow kRows[] = {
 #include "core/extraction/trees.inc"
 };
-#undef TREES_TERM
+#undef TERM
 
 constexpr bool roughIsKnownBeforeFit() {
   for (const TreeRow& row : kRoughRows)
