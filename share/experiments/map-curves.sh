@@ -1,0 +1,72 @@
+#!/bin/sh
+# Precision and recall of maps of the real kilometre as thresholds change, ours and the paper's method.
+# Usage: share/experiments/map-curves.sh DATA_DIR KILOMETRE OUT
+#   DATA_DIR   has kitti_odom_00_km/ with truth_20m.csv and truth_40m.csv
+#   KILOMETRE  its scans as a folder (real-drives.sh)
+#   OUT        gets result.json and table.txt
+# Maps of all scans from true poses, both methods corrected for motion. Ours (config/kitti.ini): [map]
+# min_confidence and min_count; the paper's method (config/paper/kitti-mended.ini and kitti.ini): min_count. One to
+# one within 1 m: precision against the labels within 40 m of the path, recall of those within 20 m. F1 is that of
+# these two. The best thresholds are chosen on these labels, for each method alike.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; one minute.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+check_arguments 3 3 "$@"
+labels=$(cd "$1/kitti_odom_00_km" && pwd)
+kilometre=$(cd "$2" && pwd)
+mkdir -p "$3"
+out=$(cd "$3" && pwd)
+find_programs pole-import pole-extract pole-map pole-eval
+find_tools jq
+
+# score METHOD CONFIG [SECTION.KEY=VALUE...]: a map; adds a line to $out/results.
+score() {
+  method=$1 config=$2
+  shift 2
+  thresholds=$*
+  for assignment in "$@"; do
+    set -- "$@" --set "$assignment"
+    shift
+  done
+  "$bin/pole-map" build --quiet --config "$config" --set sensor.turn=auto "$@" --input "$out/$method.rawlog" \
+    --truth "$out/scans.tum" --output "$out/map.polemap" 2>/dev/null
+  for metres in 20 40; do
+    "$bin/pole-eval" map --quiet --one-to-one --radius 1 --truth "$labels/truth_${metres}m.csv" \
+      --map "$out/map.polemap" --json "$out/$metres.json" >/dev/null
+  done
+  jq -n --arg method "$method" --arg thresholds "$thresholds" --slurpfile near "$out/20.json" \
+    --slurpfile far "$out/40.json" '{method: $method, thresholds: $thresholds, precision: $far[0].precision,
+      recall: $near[0].recall} | .f1 = 2 * .precision * .recall / (.precision + .recall)' >>"$out/results"
+}
+
+# extract METHOD CONFIG [OPTION...]
+extract() {
+  method=$1 config=$2
+  shift 2
+  "$bin/pole-extract" --quiet --config "$config" --set sensor.turn=auto "$@" --input "$out/scans.rawlog" \
+    --output "$out/$method.rawlog"
+}
+
+: >"$out/results"
+"$bin/pole-import" folder --quiet --input "$kilometre" --output "$out/scans.rawlog" --turn clockwise --cut-deg 180 \
+  --stamp-turn 0.5
+extract ours "$top/config/kitti.ini" --set scan_line.min_confidence=0.3
+for confidence in 0.3 0.5 0.65 0.8 0.9; do
+  for count in 1.5 2 3 4 6 8; do
+    score ours "$top/config/kitti.ini" map.min_confidence=$confidence map.min_count=$count
+  done
+done
+for name in kitti kitti-mended; do
+  extract paper-$name "$top/config/paper/$name.ini"
+  for count in 1 2 3 4 5 6 7 8 9 10 12; do score paper-$name "$top/config/paper/$name.ini" map.min_count=$count; done
+done
+rm "$out"/*.rawlog
+jq -s . "$out/results" >"$out/result.json"
+rm "$out/results"
+jq -r '(group_by(.method) | map(max_by(.f1))) + map(select(.thresholds == "map.min_confidence=0.65 map.min_count=3" or
+    .thresholds == "map.min_count=1")) | .[] | [.method, .thresholds, .precision, .recall, .f1] | @tsv' "$out/result.json" |
+  awk -F '\t' '{ printf "%-20s %-44s %.3f %.3f %.3f\n", $1, $2, $3, $4, $5 }' >"$out/table.txt"
+cat "$out/table.txt"
