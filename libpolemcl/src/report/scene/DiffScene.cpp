@@ -22,12 +22,12 @@ viz::Scene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title) {
     std::vector<MapPole> poles;
     TColor color;
   };
-  const TColor movedColor(0x00, 0x72, 0xb2);
+  const TColor movedTint(0x00, 0x72, 0xb2);
   const Kind kinds[] = {
       {"same", "on both maps", laterOf(diff.same), {0x9a, 0xa2, 0xad}},
       {"new", "new, on the later map only", diff.appeared, {0x00, 0x9e, 0x73}},
       {"vanished", "vanished, on the earlier map only", diff.vanished, {0xd5, 0x5e, 0x00}},
-      {"moved", "moved, with a ribbon from the old place", laterOf(diff.moved), movedColor}};
+      {"moved", "moved, with a ribbon from the old place", laterOf(diff.moved), movedTint}};
   scene::Path places;
   for (const Kind& kind : kinds)
     for (const MapPole& pole : kind.poles) places.emplace_back(pole.x, pole.y);
@@ -41,7 +41,7 @@ viz::Scene::Ptr makeDiffScene(const MapDiff& diff, const std::string& title) {
   std::vector<scene::Path> moves;
   for (const MapDiff::Pair& pair : diff.moved)
     moves.push_back({{pair.before.x, pair.before.y}, {pair.after.x, pair.after.y}});
-  overview.addRibbons("moves", moves, {movedColor, false, 0.3});
+  overview.addRibbons("moves", moves, {movedTint, false, 0.3});
   return overview.finish();
 }
 
