@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kMovingArc = 10 * M_PI / 180;  ///< rad; wider than lasers of one firing differ
 constexpr double kUsualDistance = 0.08;         ///< m; see share/doc/motion.md
-constexpr double kEnough = 4;                   ///< standard errors
 
 std::string degrees(double radians, int digits = 2) {
   return io::fixed(radians * 180 / M_PI, digits);
@@ -151,18 +150,14 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
       << " standard errors better than none (4 are needed)\n";
 }
 
-bool isClear(const std::optional<RangeCorrection>& found) {
-  return found && found->significance >= kEnough;
-}
-
 void printRanges(std::ostream& out, const Inspection& inspection) {
   const std::optional<RangeCorrection>& found = inspection.ranges;
   out << "ranges of poles   ";
   if (!found) {
-    out << "not looked for; --truth S.tum gives the motion\n";
+    out << "unknown: needs --truth S.tum, and poles that were seen from two places 100 times\n";
     return;
   }
-  if (isClear(found))
+  if (found->isClear())
     out << "range_offset_m = " << io::fixed(found->offset, 3)
         << ", range_scale = " << io::fixed(found->scale, 4) << '\n';
   else
@@ -252,7 +247,7 @@ AllSettings settingsFor(const Inspection& inspection) {
   if (inspection.timing &&
       (inspection.timing->timing.known() || inspection.timing->timing.clock != 0))
     settings.sensor.timing = inspection.timing->timing;
-  if (isClear(inspection.ranges)) {
+  if (inspection.ranges && inspection.ranges->isClear()) {
     settings.sensor.rangeOffset = std::round(1e3 * inspection.ranges->offset) / 1e3;
     settings.sensor.rangeScale = std::round(1e4 * inspection.ranges->scale) / 1e4;
   }

@@ -91,10 +91,11 @@ TEST(TimingSearch, FindsRangesThatAreOff) {
   const ScanTiming timing{Turn::clockwise, 0.1, M_PI, 0.5};
   const Eigen::Vector2d lidar(1.5, 0.3);
   std::vector<TimedScan> scans = drive(timing);
-  const RangeCorrection none = searchRangeCorrection(scans, timing, lidar);
+  const RangeCorrection none = searchRangeCorrection(scans, timing, lidar).value();
   EXPECT_NEAR(none.offset, 0, 0.004);
   EXPECT_NEAR(none.scale, 1, 0.0003);
   EXPECT_LT(none.significance, 4);
+  EXPECT_FALSE(none.isClear());
   for (TimedScan& scan : scans) {
     for (TimedPole& pole : scan.poles_robot) {
       const Eigen::Vector2d ray = Eigen::Vector2d(pole.x, pole.y) - lidar;
@@ -104,10 +105,13 @@ TEST(TimingSearch, FindsRangesThatAreOff) {
       pole.y = measured.y();
     }
   }
-  const RangeCorrection found = searchRangeCorrection(scans, timing, lidar);
+  const RangeCorrection found = searchRangeCorrection(scans, timing, lidar).value();
   EXPECT_NEAR(found.offset, 0.06, 0.005);
   EXPECT_NEAR(found.scale, 0.998, 0.0004);
   EXPECT_GT(found.significance, 10);
+  EXPECT_TRUE(found.isClear());
+  EXPECT_FALSE((RangeCorrection{0.6, 1, 0.1, 0.05, 20}.isClear()));  // [sensor] would refuse them
+  EXPECT_FALSE((RangeCorrection{0, 1.2, 0.1, 0.05, 20}.isClear()));
   EXPECT_NEAR(found.after, none.before, 0.002);
   EXPECT_GT(found.before, found.after + 0.002);
 }
@@ -117,7 +121,7 @@ TEST(TimingSearch, SaysNothingWithoutPairs) {
   EXPECT_EQ(none.pairs, 0u);
   EXPECT_EQ(none.timing.turn, Turn::compensated);
   EXPECT_EQ(searchTiming({{0, {}, {{5, 5, 0}}}}, 0.1).pairs, 0u);
-  EXPECT_EQ(searchRangeCorrection({}, {}, {0, 0}).significance, 0);
+  EXPECT_FALSE(searchRangeCorrection({}, {}, {0, 0}));
 }
 
 }  // namespace polemcl::test_timing_search

@@ -17,7 +17,6 @@ constexpr double kAway[] = {1, 2, 4, 8};   // m between the two scans of a pair
 constexpr double kLongestPause = 1;        // s between successive scans, else no velocity
 constexpr double kWidest = 1, kFar = 0.3;  // m: gate of a pair, and greatest distance that counts
 constexpr std::size_t kMostPairs = 30000;
-constexpr double kEnough = 4;              // standard errors
 constexpr double kGreatest = 15;           // clock offsets, in steps
 constexpr double kStep = 0.01;             // s
 constexpr std::size_t kFewestPairs = 100;  // for a correction of the ranges
@@ -257,23 +256,29 @@ TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeco
       shifted = search.bestTurn(shifted.clock);
     }
     result.clockSignificance = search.significance(shifted, best);
-    if (result.clockSignificance >= kEnough) best = shifted;
+    if (result.clockSignificance >= kEnoughErrors) best = shifted;
     ScanTiming standing = still;
     standing.clock = best.clock;
     result.turnSignificance = search.significance(best, standing);
-    result.timing = result.turnSignificance >= kEnough ? best : standing;
+    result.timing = result.turnSignificance >= kEnoughErrors ? best : standing;
   }
   result.before = search.mean(still);
   result.after = search.mean(result.timing);
   return result;
 }
 
-RangeCorrection searchRangeCorrection(const std::vector<TimedScan>& scans, const ScanTiming& timing,
-                                      const Eigen::Vector2d& lidar_robot) {
+bool RangeCorrection::isClear() const {
+  return significance >= kEnoughErrors && std::abs(offset) <= 0.5 && std::abs(scale - 1) <= 0.1;
+}
+
+std::optional<RangeCorrection> searchRangeCorrection(const std::vector<TimedScan>& scans,
+                                                     const ScanTiming& timing,
+                                                     const Eigen::Vector2d& lidar_robot) {
   Search search(scans, timing.seconds);
   search.associate(timing);
-  if (search.pairs().size() < kFewestPairs) return {};
-  return search.bestRanges(timing, lidar_robot);
+  if (search.pairs().size() < kFewestPairs) return std::nullopt;
+  const RangeCorrection found = search.bestRanges(timing, lidar_robot);
+  return std::isfinite(found.offset + found.scale) ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace polemcl

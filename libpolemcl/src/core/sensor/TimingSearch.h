@@ -6,12 +6,16 @@
 /// A standing pole has one place. With the right measuring times and ranges, successive scans agree
 /// on it best.
 
+#include <optional>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/sensor/SensorOptions.h>
 
 namespace polemcl {
+
+/// \brief Standard errors by which an estimate must be better than none.
+constexpr double kEnoughErrors = 4;
 
 /// \brief A pole as it was measured.
 struct TimedPole {
@@ -44,6 +48,8 @@ struct RangeCorrection {
   double scale = 1;
   double before = 0, after = 0;  ///< mean distance of a pair without and with it, m
   double significance = 0;       ///< standard errors by which it is better than none
+  /// \brief Whether it is better, and within what `[sensor]` allows.
+  bool isClear() const;
 };
 
 /// \brief Searches directions, cuts and clock offsets (±0.15 s).
@@ -55,8 +61,10 @@ TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeco
 /// offset: ahead and behind, it errs in opposite directions. A scale of the poses cannot be told
 /// from one of the ranges.
 /// \param timing As found. \param lidar_robot The LiDAR in the robot frame, m.
-/// \return No correction where fewer than 100 pairs are there.
-RangeCorrection searchRangeCorrection(const std::vector<TimedScan>& scans, const ScanTiming& timing,
-                                      const Eigen::Vector2d& lidar_robot);
+/// \return None with fewer than 100 pairs, or where they do not tell it, as those of a vehicle that
+///         stands.
+std::optional<RangeCorrection> searchRangeCorrection(const std::vector<TimedScan>& scans,
+                                                     const ScanTiming& timing,
+                                                     const Eigen::Vector2d& lidar_robot);
 
 }  // namespace polemcl
