@@ -2,7 +2,8 @@
 # Prints the share of lines and branches that the tests reach, for each room of share/doc/architecture.md.
 # Usage: tests/coverage.sh [TEST_PROGRAM...]
 #   TEST_PROGRAM  builds and runs only these (test_core, test_io, ...); without: all tests
-# Builds in build-coverage, without optimization. Needs gcovr, which share/setup/install.sh full installs.
+# Builds in build-coverage, little optimized. Counts of code that runs in several threads are not exact.
+# Needs gcovr, which share/setup/install.sh full installs.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 build=$top/build-coverage

@@ -123,7 +123,8 @@ TEST(Config, AssignmentsAreAsStrictAsFiles) {
     EXPECT_HAS(refusal([&] { loadWith("", {wrong}); }), "write section.key=value");
   EXPECT_HAS(refusal([&] { loadWith("", {"sample.cuont=5"}); }), "key is not known");
   EXPECT_HAS(refusal([&] { loadWith("", {"simple.count=5"}); }), "section [simple] is not known");
-  EXPECT_HAS(refusal([&] { loadWith("", {"sample.count=many"}); }), "count = many");
+  EXPECT_HAS(refusal([&] { loadWith("", {"sample.count=many"}); }),
+             "test.ini, changed with --set: [sample] count = many");
 }
 
 TEST(Config, KeepsDefaultsOfMissingKeys) {

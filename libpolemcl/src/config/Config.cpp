@@ -180,12 +180,13 @@ void ConfigFile::set(const std::string& assignment) {
     throw Error("'" + assignment + "' is not an assignment; write section.key=value, as in " +
                 "filter.particles=500");
   m_source->write(part(0, dot), part(dot + 1, equals), part(equals + 1, assignment.size()));
+  m_changed = true;
 }
 
 ConfigReader::ConfigReader(const ConfigFile& file)
     : m_owned(std::shared_ptr<const mrpt::config::CConfigFileBase>(file.m_source)),
       m_source(&file.source()),
-      m_name(file.name()) {}
+      m_name(file.name() + (file.m_changed ? ", changed with --set" : "")) {}
 
 ConfigReader::ConfigReader(const mrpt::config::CConfigFileBase& source, const std::string& name,
                            const std::string& fixedSection)

@@ -48,6 +48,7 @@ class POLEMCL_EXPORT ConfigFile {
   friend class ConfigReader;
   ConfigFile() = default;
   std::string m_name;
+  bool m_changed = false;  ///< by set()
   std::shared_ptr<mrpt::config::CConfigFileBase> m_source;
 };
 
