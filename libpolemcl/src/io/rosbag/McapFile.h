@@ -47,7 +47,7 @@ class McapFile {
   std::optional<McapRecord> recordAt(std::uint64_t offset) const;
   /// \brief The first `most` bytes of the content of a record.
   std::string read(const McapRecord& record, std::uint64_t most = UINT64_MAX) const;
-  /// \brief Bytes of the file. \throws Error when it has not so many.
+  /// \brief Bytes of the file. \throws Error when it is shorter.
   std::string read(std::uint64_t offset, std::uint64_t size) const;
   /// \brief "FILE: ", the prefix of an error.
   const std::string& where() const { return m_where; }
