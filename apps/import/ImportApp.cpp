@@ -22,7 +22,8 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> kDatasets{
     {Dataset::nclt, "nclt", "A session of NCLT, in a folder or as its downloader lays it out"},
     {Dataset::mulran, "mulran", "A sequence of MulRan: Ouster/*.bin, global_pose.csv"},
     {Dataset::pcd, "pcd", "*.pcd (also compressed), always embedded; text files as for folder"},
-    {Dataset::rosbag2, "rosbag2", "A recording of ROS 2 (.db3): PointCloud2, Odometry, Imu"}};
+    {Dataset::rosbag2, "rosbag2",
+     "A recording of ROS 2 (.mcap, .db3): PointCloud2, Odometry, Imu"}};
 
 /// Options as they are typed.
 struct Texts {
@@ -110,9 +111,9 @@ void declareOwn(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& t
 }
 
 void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {
-  addFolder(
-      cli, "--input", options.input,
-      dataset == Dataset::rosbag2 ? "Folder of the bag, or one .db3 file" : "Folder of the dataset")
+  addFolder(cli, "--input", options.input,
+            dataset == Dataset::rosbag2 ? "Folder of the bag, or one .mcap or .db3 file"
+                                        : "Folder of the dataset")
       ->required();
   markOutput(
       addFile(cli, "--output", options.output, "Rawlog to write, S.rawlog; the truth goes to S.tum")

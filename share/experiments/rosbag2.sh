@@ -1,6 +1,6 @@
 #!/bin/sh
 # Imports a ROS 2 bag without ROS: a simulated street of 60 m (world 512), scanned while driving, is
-# written as a bag by Python's own sqlite3, and imported from the bag and from the folder.
+# written as bags in SQLite and MCAP by Python alone, and imported from the bags and from the folder.
 # Usage: share/experiments/rosbag2.sh OUT
 # Programs: build/bin, or POLEMCL_BIN.
 set -eu
@@ -11,7 +11,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 check_arguments 1 1 "$@"
 out=$1
 find_programs pole-simulate pole-import pole-extract
-mkdir -p "$out/bag"
+mkdir -p "$out/bag" "$out/mcap"
 rm -f "$out/bag/street_0.db3"
 
 config=$out/street.ini
@@ -21,8 +21,8 @@ copy_settings "$top/config/hdl32e.ini" "$config" simulation.spacing_m=1 simulati
 "$bin/pole-import" folder --quiet --input "$out/scans" --output "$out/direct.rawlog"
 
 # Clouds as a driver sends them, with ring and time since the stamp; odometry at the stamps.
-python3 - "$out/scans" "$out/bag/street_0.db3" <<'PYTHON'
-import math, sqlite3, struct, sys
+python3 - "$out/scans" "$out/bag/street_0.db3" "$out/mcap/street_0.mcap" <<'PYTHON'
+import math, sqlite3, struct, sys, zlib
 from pathlib import Path
 
 
@@ -62,7 +62,26 @@ def numbers(file):
     return [[float(word) for word in line] for line in lines if line]
 
 
+def record(opcode, *parts):
+    """A record of MCAP: numbers come with their format, texts with their length."""
+    content = b"".join(part if isinstance(part, bytes) else struct.pack("<I", len(part)) + part.encode()
+                       if isinstance(part, str) else struct.pack("<" + part[0], *part[1:]) for part in parts)
+    return struct.pack("<BQ", opcode, len(content)) + content
+
+
+def mcap_chunk(records):
+    return record(6, ("QQQI", 0, 0, len(records), zlib.crc32(records)), "", ("Q", len(records)), records)
+
+
+def mcap_topic(number, name, kind):
+    return record(3, ("H", number), kind, "ros2msg", "") + record(4, ("HH", number, number), name, "cdr", "")
+
+
 folder = Path(sys.argv[1])
+magic = b"\x89MCAP0\r\n"
+mcap = open(sys.argv[3], "wb")
+mcap.write(magic + record(1, "ros2", "") + mcap_topic(1, "/points", "sensor_msgs/msg/PointCloud2")
+           + mcap_topic(2, "/odom", "nav_msgs/msg/Odometry"))
 bag = sqlite3.connect(sys.argv[2])
 bag.executescript("""
 CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT, offered_qos_profiles TEXT);
@@ -81,13 +100,21 @@ for (time,), motion, scan in zip(numbers(folder / "times.txt"), motions, scans):
     for topic, message in ((1, cloud(time, list(struct.iter_unpack("<4f", scan.read_bytes())))), (2, odometry)):
         bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
                     (topic, round(time * 1e9), b"\0\1\0\0" + message.data))
+        mcap.write(mcap_chunk(record(5, ("HIQQ", topic, 0, round(time * 1e9), round(time * 1e9)),
+                                     b"\0\1\0\0" + message.data)))
 bag.commit()
+mcap.write(record(15, ("I", 0)) + record(2, ("QQI", 0, 0, 0)) + magic)
+mcap.close()
 PYTHON
 
-"$bin/pole-import" rosbag2 --input "$out/bag" --output "$out/bag.rawlog"
-for way in direct bag; do
+for way in bag mcap; do
+  "$bin/pole-import" rosbag2 --input "$out/$way" --output "$out/$way.rawlog"
+done
+for way in direct bag mcap; do
   "$bin/pole-extract" --quiet --config "$config" --input "$out/$way.rawlog" \
     --output "$out/$way-poles.rawlog" --csv "$out/$way.csv"
   cut -d, -f1,3- "$out/$way.csv" >"$out/$way.cut" # without the times, which differ by 1.5e9 s
 done
-cmp "$out/bag.cut" "$out/direct.cut" && echo "poles of all scans: the same"
+for way in bag mcap; do
+  cmp "$out/$way.cut" "$out/direct.cut" && echo "$way: poles of all scans: the same"
+done

@@ -138,6 +138,8 @@ ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
   }
   std::string sensor, robot = kDefaultRobotFrame;
   ScanFolder folder = listScans(*bag, *clouds, sensor);
+  const std::vector<std::string> notes = bag->notes();
+  folder.notes.insert(folder.notes.begin(), notes.begin(), notes.end());
   const FrameTree frames = readFrames(*bag);
   if (odometry) {
     const std::string child = addRosbagMotions(*bag, *odometry, imu, frames, folder);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Rosbag2.h
-/// \brief Recordings of ROS 2 in SQLite (`.db3`), read without ROS.
+/// \brief Recordings of ROS 2 in SQLite (`.db3`) and MCAP, read without ROS.
 
 #include "io/dataset/ScanFolder.h"
 
@@ -27,7 +27,7 @@ struct Rosbag2Options {
 /// frame of the odometry, or `base_link` without odometry. The pose of the sensor is the static
 /// transform from the frame of the clouds to that frame; without it nothing is set, with a note.
 /// The timing comes from the times of the points, see TimingEstimate.
-/// \param bag Folder, or one `.db3` file.
+/// \param bag Folder, or one `.db3` or `.mcap` file.
 /// \throws Error with the file, the topic and the id of the message: as Bag, several topics of a
 ///         type and none of them chosen, no clouds, stamps that do not increase, a message that
 ///         cannot be decoded, odometry at the time of no scan.

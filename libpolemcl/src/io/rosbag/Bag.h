@@ -1,6 +1,6 @@
 #pragma once
 /// \file Bag.h
-/// \brief ROS 2 bags in SQLite files (`.db3`), read without ROS.
+/// \brief ROS 2 bags in SQLite (`.db3`) and MCAP (`.mcap`) files, read without ROS.
 
 #include <cstdint>
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-struct sqlite3;
+#include "io/rosbag/BagStorage.h"
 
 namespace polemcl::io {
 
@@ -23,18 +23,18 @@ struct BagTopic {
 struct BagMessage {
   std::size_t file = 0;   ///< index of the file
   std::size_t topic = 0;  ///< index in Bag::topics()
-  std::int64_t id = 0;    ///< of its row in the table `messages` of that file
+  std::int64_t id = 0;    ///< as the storage of that file counts
 };
 
 /// \brief A bag that is open for reading.
 ///
-/// A folder has one or several `.db3` files, read in the order of its `metadata.yaml` (without it,
-/// in the order of their numbers). One `.db3` file alone is a bag too. The files are only read.
+/// A folder has one or several files, read in the order of its `metadata.yaml` (without it, in the
+/// order of their numbers). One file alone is a bag too. The files are only read.
 class Bag {
  public:
-  /// \param bag Folder, or one `.db3` file.
-  /// \throws Error with the file: there is no file, not a bag in SQLite, another storage (MCAP), a
-  ///         compressed bag, a topic that has two types, another format than CDR.
+  /// \param bag Folder, or one `.db3` or `.mcap` file.
+  /// \throws Error with the file: there is no file, not a bag in SQLite or MCAP, files that are
+  ///         compressed as a whole, a topic that has two types, another format than CDR.
   explicit Bag(const std::filesystem::path& bag);
 
   const std::filesystem::path& path() const { return m_path; }
@@ -48,23 +48,24 @@ class Bag {
   /// \brief The bytes of a message, at most the first `most`. \throws Error when they cannot be
   ///        read.
   std::string read(const BagMessage& message, std::size_t most = SIZE_MAX) const;
+  /// \brief What is to know of the files: a recording that was cut short.
+  std::vector<std::string> notes() const;
   const std::filesystem::path& file(const BagMessage& message) const;
   /// \brief "FILE: /points, message 17: ", the prefix of an error.
   std::string place(const BagMessage& message) const;
 
  private:
-  /// One `.db3` file.
   struct File {
     std::filesystem::path path;
-    std::uintmax_t bytes = 0;
-    std::unique_ptr<sqlite3, int (*)(sqlite3*)> database;
+    std::unique_ptr<BagStorage> storage;
     std::vector<std::int64_t> topicIds;  ///< for each topic of the bag; 0: not in this file
   };
   void open(const std::filesystem::path& file);
-  void addTopic(File& file, std::int64_t id, const BagTopic& topic, const std::string& format);
+  void addTopic(File& file, const StoredTopic& topic);
   void sortTopics();
 
   std::filesystem::path m_path;
+  bool m_compressed = false;  ///< each message by itself, with Zstandard
   std::vector<File> m_files;
   std::vector<BagTopic> m_topics;
 };

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kAdviceToConvert =
-    "; write it as an uncompressed bag in SQLite with ros2 bag convert";
+    "; write it as an uncompressed bag in MCAP or SQLite with ros2 bag convert";
 
 /// What `metadata.yaml` says of the files.
 struct BagMetadata {
@@ -53,23 +53,27 @@ BagMetadata readBagMetadata(const fs::path& file) {
   return result;
 }
 
-/// \throws Error when the bag is compressed or has another storage.
-void requirePlain(const fs::path& file, const BagMetadata& metadata) {
-  if (!metadata.storage.empty() && metadata.storage != "sqlite3")
+/// Whether each message is compressed by itself. \throws Error when the files are, or when the bag
+/// has another storage.
+bool messagesCompressed(const fs::path& file, const BagMetadata& metadata) {
+  if (!metadata.storage.empty() && metadata.storage != "sqlite3" && metadata.storage != "mcap")
     throw Error(file.string() + ": the storage of the bag is " + metadata.storage +
                 kAdviceToConvert);
-  const bool uncompressed =
-      metadata.mode.empty() || metadata.mode == "NONE" || metadata.mode == "none";
+  const std::string& mode = metadata.mode;
+  const bool eachMessage = mode == "MESSAGE" || mode == "message";
+  if (eachMessage && metadata.compression == "zstd") return true;
+  const bool uncompressed = mode.empty() || mode == "NONE" || mode == "none";
   if (!metadata.compression.empty() || !uncompressed)
-    throw Error(file.string() + ": the bag is compressed (" + metadata.compression + ", " +
-                metadata.mode + ")" + kAdviceToConvert);
+    throw Error(file.string() + ": the bag is compressed (" + metadata.compression + ", " + mode +
+                ")" + kAdviceToConvert);
+  return false;
 }
 
-void requireDatabase(const fs::path& file) {
-  if (file.extension() == ".db3") return;
+void requireBagFile(const fs::path& file) {
+  if (file.extension() == ".db3" || file.extension() == ".mcap") return;
   if (file.extension() == ".zstd")
     throw Error(file.string() + ": the bag is compressed (zstd)" + kAdviceToConvert);
-  throw Error(file.string() + ": not a .db3 file of a ROS 2 bag" + kAdviceToConvert);
+  throw Error(file.string() + ": not a .db3 or .mcap file of a ROS 2 bag" + kAdviceToConvert);
 }
 
 /// The number before the extension: 12 for "drive_12.db3"; 0 without one.
@@ -94,36 +98,39 @@ std::vector<fs::path> listedBagFiles(const fs::path& folder) {
     return std::make_pair(numberInName(a), a) < std::make_pair(numberInName(b), b);
   });
   if (files.empty())
-    throw Error(folder.string() + ": no .db3 file in it; name the folder of a ROS 2 bag");
+    throw Error(folder.string() + ": no .db3 or .mcap file in it; name the folder of a ROS 2 bag");
   return files;
 }
 
-std::vector<fs::path> filesOfBag(const fs::path& folder) {
+BagFiles filesOfBag(const fs::path& folder) {
   const fs::path file = folder / "metadata.yaml";
   BagMetadata metadata;
   if (fs::exists(file)) metadata = readBagMetadata(file);
-  requirePlain(file, metadata);
+  BagFiles result;
+  result.compressedMessages = messagesCompressed(file, metadata);
   const fs::path absolute = fs::absolute(folder);
-  if (metadata.files.empty()) return listedBagFiles(absolute);
-  std::vector<fs::path> files;
+  if (metadata.files.empty()) {
+    result.files = listedBagFiles(absolute);
+    return result;
+  }
   // Old versions of rosbag2 write the name of the folder before that of the file.
   for (const std::string& name : metadata.files)
-    files.push_back(absolute / fs::path(name).filename());
-  return files;
+    result.files.push_back(absolute / fs::path(name).filename());
+  return result;
 }
 
 }  // namespace
 
-std::vector<fs::path> bagFiles(const fs::path& bag) {
+BagFiles bagFiles(const fs::path& bag) {
   if (!fs::exists(bag)) throw Error(bag.string() + ": there is no such bag");
-  const std::vector<fs::path> files =
-      fs::is_directory(bag) ? filesOfBag(bag) : std::vector<fs::path>{fs::absolute(bag)};
-  for (const fs::path& file : files) {
-    requireDatabase(file);
+  const BagFiles result =
+      fs::is_directory(bag) ? filesOfBag(bag) : BagFiles{{fs::absolute(bag)}, false};
+  for (const fs::path& file : result.files) {
+    requireBagFile(file);
     if (!fs::is_regular_file(file))
       throw Error(file.string() + ": missing, although metadata.yaml of the bag names it");
   }
-  return files;
+  return result;
 }
 
 }  // namespace polemcl::io

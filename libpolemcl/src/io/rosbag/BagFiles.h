@@ -7,12 +7,19 @@
 
 namespace polemcl::io {
 
-/// \brief The `.db3` files of a bag, in the order of recording.
+/// \brief What a bag consists of.
+struct BagFiles {
+  std::vector<std::filesystem::path> files;  ///< `.db3` or `.mcap`, in the order of recording
+  bool compressedMessages = false;           ///< each message by itself, with Zstandard
+};
+
+/// \brief Finds the files of a bag.
 ///
 /// From `metadata.yaml` come the storage, the compression and the list of files, in the layout in
 /// which rosbag2 writes them.
-/// \param bag Folder, or one `.db3` file.
-/// \throws Error with the file: there is no such file, a compressed bag, another storage (MCAP).
-std::vector<std::filesystem::path> bagFiles(const std::filesystem::path& bag);
+/// \param bag Folder, or one `.db3` or `.mcap` file.
+/// \throws Error with the file: there is no such file, files that are compressed as a whole,
+///         another storage.
+BagFiles bagFiles(const std::filesystem::path& bag);
 
 }  // namespace polemcl::io

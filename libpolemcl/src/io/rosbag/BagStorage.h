@@ -1,0 +1,39 @@
+#pragma once
+/// \file BagStorage.h
+/// \brief What a bag of ROS 2 asks of one of its files, whatever its format.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace polemcl::io {
+
+/// \brief A topic of one file.
+struct StoredTopic {
+  std::int64_t id = 0;       ///< positive
+  std::string name;          ///< "/points"
+  std::string type;          ///< "sensor_msgs/msg/PointCloud2"
+  std::string format;        ///< of its messages: "cdr"; some programs leave it empty
+  std::size_t messages = 0;  ///< may be none
+};
+
+/// \brief One file of a bag, open for reading.
+class BagStorage {
+ public:
+  BagStorage() = default;
+  BagStorage(const BagStorage&) = delete;
+  BagStorage& operator=(const BagStorage&) = delete;
+  virtual ~BagStorage() = default;
+  virtual std::vector<StoredTopic> topics() const = 0;
+  /// \brief Ids of the messages of a topic in the order in which they were recorded.
+  virtual std::vector<std::int64_t> messages(std::int64_t topic) const = 0;
+  /// \brief The bytes of a message, at most the first `most`. \param where Prefix of errors.
+  /// \throws Error when they cannot be read.
+  virtual std::string read(std::int64_t message, std::size_t most,
+                           const std::string& where) const = 0;
+  /// \brief What its user should know: a recording that was cut short. Empty if there is nothing.
+  virtual std::string note() const { return {}; }
+};
+
+}  // namespace polemcl::io
