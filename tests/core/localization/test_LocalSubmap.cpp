@@ -350,6 +350,19 @@ TEST(LocalSubmap, TakesEachDetectionOnceAveraged) {
   EXPECT_NEAR(second[0].covariance(0, 0), 0.01, 1e-6);
 }
 
+// Frames are a little less than the distance apart: waiting for the next would double it.
+TEST(LocalSubmap, TakesAtTheFrameNearestToTheDistance) {
+  LocalSubmap submap(exact());
+  const Eigen::Matrix3d sure = Eigen::Matrix3d::Zero();
+  submap.add({}, {seen(10, 2)});
+  submap.add({}, {seen(10, 2)});
+  ASSERT_EQ(submap.take(2, 0.5).size(), 1u);
+  submap.add({0.2, 0, 0}, sure, {seen(9.8, 2)});
+  EXPECT_TRUE(submap.take(2, 0.5).empty());
+  submap.add({0.29, 0, 0}, sure, {seen(9.51, 2)});
+  EXPECT_EQ(submap.take(2, 0.5).size(), 1u);
+}
+
 TEST(LocalSubmap, TakesOnlyWhatIsSeenNow) {
   LocalSubmap submap(exact());
   submap.add({}, {seen(10, 2)});

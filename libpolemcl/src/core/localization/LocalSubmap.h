@@ -110,8 +110,9 @@ class POLEMCL_EXPORT LocalSubmap {
 
   /// \brief Gives each detection out once, averaged: the poles detected in the latest frame that
   /// have `minHits` and were not given out for `metres`, as the mean of their detections since
-  /// then. Robot frame, covariance with `floor`, `points` the number of hits. Afterwards these
-  /// poles begin anew: their place is that of the next detection.
+  /// then. Of two frames the one nearer to `metres` counts. Robot frame, covariance with `floor`,
+  /// `points` the number of hits. Afterwards these poles begin anew: their place is that of the
+  /// next detection.
   std::vector<PoleDetection> take(std::uint32_t minHits, double metres);
 
  private:
@@ -127,6 +128,7 @@ class POLEMCL_EXPORT LocalSubmap {
   std::vector<SubmapPole> m_poles;
   Pose2D m_pose;
   double m_driven = 0;
+  double m_step = 0;  ///< length of the last motion, m
   std::size_t m_frames = 0;
   OdometryDrift m_drift;
   std::vector<Eigen::Vector2d> m_path;
