@@ -6,8 +6,8 @@ Usage: virtual_scans.py FOLDER OUT
   OUT     gets the same with virtual scans, and settings.ini, which describes their sensor
 
 Points of all scans are corrected for motion, moved by the poses and thinned to one in each cube of 5 cm. A virtual scan
-keeps the nearest point in each of 64 rows and 1024 columns, so what stands behind a wall stays hidden. Any point
-cloud can be shown that way: poles are then extracted by the usual method.
+keeps the nearest point in each of 64 rows and 1024 columns, so what stands behind a wall stays hidden. Poles are then
+extracted by the usual method.
 """
 import pathlib
 import shutil
