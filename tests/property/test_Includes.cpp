@@ -35,6 +35,7 @@ const std::vector<std::string> kOrder{
     "core/mapping",
     "core/localization",
     "core/global_localization",
+    "core/slam",
     "core/evaluation",
     "io/file",
     "io/data",
