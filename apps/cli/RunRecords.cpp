@@ -7,8 +7,7 @@
 
 namespace polemcl::apps {
 
-const char* const kEstimateColumns =
-    "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n";
+const char* const kEstimateColumns = "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n";
 
 std::string estimateRow(std::size_t scan, double time, const PoseWithCovariance& estimate) {
   const auto& [mean, C] = estimate;

@@ -7,6 +7,7 @@
 #include "core/mapping/PoleExistence.h"
 #include "io/data/Trajectory.h"
 #include "io/file/AtomicFile.h"
+#include "io/file/ErrorPlace.h"
 
 namespace polemcl::apps {
 namespace {
@@ -63,8 +64,11 @@ AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
   return adjusted;
 }
 
-MappedDrives findPoses(std::vector<MappingSession>& drives, const AllSettings& settings) {
-  MappedDrives mapped = mapDrives(scansOf(drives), trustOf(settings));
+MappedDrives findPoses(std::vector<MappingSession>& drives,
+                       const std::vector<std::filesystem::path>& inputs,
+                       const AllSettings& settings) {
+  MappedDrives mapped = io::located(inputs.front().string() + ": ",
+                                    [&] { return mapDrives(scansOf(drives), trustOf(settings)); });
   setPoses(drives, [&](std::size_t scan) { return mapped.poses[scan].mean; });
   return mapped;
 }

@@ -22,10 +22,12 @@ AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
 
 /// \brief Finds the poses of drives that only know their odometry; frame of the first scan.
 /// \throws Error as mapDrives().
-MappedDrives findPoses(std::vector<MappingSession>& drives, const AllSettings& settings);
+MappedDrives findPoses(std::vector<MappingSession>& drives,
+                       const std::vector<std::filesystem::path>& inputs,
+                       const AllSettings& settings);
 
-/// \brief Writes the path of a drive as TUM, and the covariances beside it (`a_cov.csv` of `a.tum`).
-/// \param poses Of all drives. \param first Of the drive.
+/// \brief Writes the path of a drive as TUM, and the covariances beside it (`a_cov.csv` of
+/// `a.tum`). \param poses Of all drives. \param first Of the drive.
 void writeTrajectory(const std::filesystem::path& file, const std::vector<StampedPose2D>& path,
                      const std::vector<PoseWithCovariance>& poses, std::size_t first);
 

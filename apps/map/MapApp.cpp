@@ -57,6 +57,8 @@ void settle(MapBuildJob& job) {
     throw CLI::ValidationError("--trajectory: one file per --input is needed, " +
                                std::to_string(job.inputs.size()) + ", not " +
                                std::to_string(job.trajectories.size()));
+  if (found && job.inputs.size() > 1)
+    throw CLI::ValidationError("--input: without --truth, the map is made of one rawlog");
   if (found && job.add)
     throw CLI::ValidationError("--add needs --truth: the map keeps no odometry of its drives");
 }
@@ -118,9 +120,10 @@ Subcommand buildCommand(CLI::App& program) {
       ->needs(estimate)
       ->excludes("--add");
   estimate->needs("--inventory");
-  markOutput(addFile(cli, "--trajectory", job->trajectories,
-                     "Without --truth: also write the poses found (TUM, covariances beside it), one "
-                     "file per rawlog"));
+  markOutput(
+      addFile(cli, "--trajectory", job->trajectories,
+              "Without --truth: also write the poses found (TUM, covariances beside it), one "
+              "file per rawlog"));
   addOutput(cli, "--png", job->png, "Also draw the map, the paths and the loops");
   return command;
 }

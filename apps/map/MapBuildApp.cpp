@@ -232,7 +232,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
       return adjustToInventory(drives, job.inputs, presentPoles(inventory), settings);
     });
   }
-  if (job.kind == PoseKind::odometry) summary.mapped = findPoses(drives, settings);
+  if (job.kind == PoseKind::odometry) summary.mapped = findPoses(drives, job.inputs, settings);
   const auto paths = pathsOf(drives);
   for (std::size_t i = 0; i < drives.size(); ++i)
     addDrive(job, i, std::move(drives[i]), sessions, summary);

@@ -71,8 +71,8 @@ std::vector<StampedPose2D> deadReckoning(const SessionFiles& files, const PoleSe
       throw Error(files.input.string() + ": no odometry leads to scan " +
                   std::to_string(path.size()) + " at " + io::fixed(frame.time, 3) +
                   " s; a map without --truth needs it: write odometry to the rawlog");
-    path.push_back({frame.time, path.empty() ? Pose2D()
-                                             : compose(path.back().pose, frame.motion->mean)});
+    path.push_back(
+        {frame.time, path.empty() ? Pose2D() : compose(path.back().pose, frame.motion->mean)});
   }
   return path;
 }

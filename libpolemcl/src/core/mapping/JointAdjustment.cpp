@@ -148,10 +148,9 @@ void JointAdjustment::Impl::addMotions() {
     }
     Eigen::Matrix3d covariance = scans[i].motion->covariance;
     covariance.diagonal() += Eigen::Vector3d(kMotionSigma, kMotionSigma, kTurnSigma).cwiseAbs2();
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<OdometryCost, 3, 3, 3, 2>(
-            new OdometryCost{scans[i].motion->mean, whitening<3>(covariance)}),
-        nullptr, pose(i - 1), pose(i), errors);
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<OdometryCost, 3, 3, 3, 2>(
+                                 new OdometryCost{scans[i].motion->mean, whitening<3>(covariance)}),
+                             nullptr, pose(i - 1), pose(i), errors);
   }
 }
 
@@ -175,14 +174,13 @@ void JointAdjustment::Impl::addSighting(const PoleSighting& sighting) {
 void JointAdjustment::Impl::addAnchor(const PoleAnchor& anchor) {
   const Eigen::Matrix2d covariance =
       anchor.known.covariance + kExact * kExact * Eigen::Matrix2d::Identity();
-  problem.AddResidualBlock(
-      new ceres::NormalPrior(whitening<2>(covariance), centreOf(anchor.known)),
-      fading(anchor.known.confidence), pole(anchor.pole));
+  problem.AddResidualBlock(new ceres::NormalPrior(whitening<2>(covariance), centreOf(anchor.known)),
+                           fading(anchor.known.confidence), pole(anchor.pole));
 }
 
 void JointAdjustment::Impl::addTie(const PoseTie& tie) {
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<TieCost, 3, 3, 3>(new TieCost{
-                               tie.motion.mean, whitening<3>(tie.motion.covariance)}),
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<TieCost, 3, 3, 3>(
+                               new TieCost{tie.motion.mean, whitening<3>(tie.motion.covariance)}),
                            nullptr, pose(tie.first), pose(tie.second));
 }
 
@@ -212,11 +210,13 @@ void JointAdjustment::solve(int iterations) {
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.num_threads = 1;
   options.max_num_iterations = iterations;
+  // Long drives bend at little cost: full steps, and no end before they are straight.
+  options.initial_trust_region_radius = 1e12;
+  options.function_tolerance = 1e-9;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &m_impl->problem, &summary);
-  if (!summary.IsSolutionUsable())
-    throw Error(kOpen);
+  if (!summary.IsSolutionUsable()) throw Error(kOpen);
   for (Pose2D& pose : m_impl->state.poses) pose.yaw = wrapAngle(pose.yaw);
 }
 
@@ -249,10 +249,12 @@ Eigen::MatrixXd covarianceOf(const Eigen::SparseMatrix<double>& information,
   for (const Eigen::Index unknown : unknowns) asked[static_cast<std::size_t>(unknown)] = true;
   std::vector<int> sequence;
   for (Eigen::Index i = 0; i < order.size(); ++i)
-    if (!asked[static_cast<std::size_t>(order.indices()[i])]) sequence.push_back(order.indices()[i]);
+    if (!asked[static_cast<std::size_t>(order.indices()[i])])
+      sequence.push_back(order.indices()[i]);
   for (const Eigen::Index unknown : unknowns) sequence.push_back(static_cast<int>(unknown));
   Permutation places(information.rows());  // of each unknown in the sequence
-  for (std::size_t i = 0; i < sequence.size(); ++i) places.indices()[sequence[i]] = static_cast<int>(i);
+  for (std::size_t i = 0; i < sequence.size(); ++i)
+    places.indices()[sequence[i]] = static_cast<int>(i);
   Eigen::SparseMatrix<double> permuted(information.rows(), information.cols());
   permuted = information.twistedBy(places);
   const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>

@@ -11,13 +11,14 @@
 namespace polemcl {
 namespace {
 
-constexpr double kKnotSpacing = 10;    ///< m
-constexpr int kIterations = 30;        ///< of the least squares, at most
-constexpr int kRounds = 3;             ///< of looking for loops
-constexpr double kTieGate = 16.3;      ///< squared Mahalanobis distance: 99.9 %
+constexpr double kKnotSpacing = 10;  ///< m
+constexpr int kIterations = 30;      ///< of the least squares, at most
+constexpr int kRounds = 2;           ///< of looking for loops
+constexpr double kTieGate = 16.3;    ///< squared Mahalanobis distance: 99.9 %
 /// m: greatest distance between the tracks of one pole, round by round.
 constexpr double kMergeGates[] = {0.8, 0.5}, kLastGate = 0.4;
-constexpr std::size_t kFewestTracks = 2;
+constexpr std::uint32_t kFollowed = 3;  ///< scans that see a pole at least
+constexpr std::ptrdiff_t kFewestTracks = 2;
 
 /// Sets of tracks that are one pole.
 class TrackSets {
@@ -47,11 +48,13 @@ class DriveMapping {
  private:
   void chain();
   void track();
+  void requirePoles() const;
   enum class Covariance { open, known };
   void adjust(const std::vector<PoseTie>& ties, Covariance covariance);
   std::vector<PoseTie> ties() const;
   void closeLoops();
   void merge(double gate, Covariance covariance);
+  Eigen::Matrix3d covarianceOf(std::size_t scan) const;
   MappedDrives result() const;
 
   std::vector<DrivenScan> m_scans;
@@ -91,6 +94,15 @@ std::vector<PoseTie> DriveMapping::ties() const {
   std::vector<PoseTie> ties;
   for (const Loop& loop : m_loops) ties.push_back(loop.tie);
   return ties;
+}
+
+void DriveMapping::requirePoles() const {
+  const auto followed = std::count_if(m_tracks.tracks.begin(), m_tracks.tracks.end(),
+                                      [](const PoleTrack& pole) { return pole.hits >= kFollowed; });
+  if (followed < kFewestTracks)
+    throw Error("only " + std::to_string(followed) + " poles were seen in " +
+                std::to_string(kFollowed) + " scans or more; " + std::to_string(kFewestTracks) +
+                " are needed: without poles nothing corrects the odometry");
 }
 
 void DriveMapping::adjust(const std::vector<PoseTie>& ties, Covariance covariance) {
@@ -140,6 +152,7 @@ void DriveMapping::merge(double gate, Covariance covariance) {
 MappedDrives DriveMapping::run() {
   chain();
   track();
+  requirePoles();
   adjust({}, Covariance::open);
   for (int i = 0; i < kRounds; ++i) closeLoops();
   for (const double gate : kMergeGates) merge(gate, Covariance::open);
@@ -147,17 +160,29 @@ MappedDrives DriveMapping::run() {
   return result();
 }
 
+/// Linear between the knots before and after.
+Eigen::Matrix3d DriveMapping::covarianceOf(std::size_t scan) const {
+  const auto& knots = m_knots.scans;
+  const auto block = [&](std::size_t knot) -> Eigen::Matrix3d {
+    const auto at = static_cast<Eigen::Index>(3 * knot);
+    return m_knots.covariance.block<3, 3>(at, at);
+  };
+  const auto after =
+      static_cast<std::size_t>(std::lower_bound(knots.begin(), knots.end(), scan) - knots.begin());
+  if (knots[after] == scan) return block(after);
+  const std::size_t before = after - 1;
+  const double share =
+      static_cast<double>(scan - knots[before]) / static_cast<double>(knots[after] - knots[before]);
+  return (1 - share) * block(before) + share * block(after);
+}
+
 MappedDrives DriveMapping::result() const {
   MappedDrives result;
   result.odometry = m_state.odometry;
-  std::size_t knot = 0;
-  for (std::size_t i = 0; i < m_scans.size(); ++i) {
-    while (knot + 1 < m_knots.scans.size() && m_knots.scans[knot + 1] <= i) ++knot;
-    const auto at = static_cast<Eigen::Index>(3 * knot);
-    result.poses.push_back({m_state.poses[i], m_knots.covariance.block<3, 3>(at, at)});
-  }
+  for (std::size_t i = 0; i < m_scans.size(); ++i)
+    result.poses.push_back({m_state.poses[i], covarianceOf(i)});
   for (const Loop& loop : m_loops) result.loops.push_back({loop.tie.first, loop.tie.second});
-  for (const PoleTrack& track : m_tracks.tracks) result.tracks += track.hits > 1 ? 1 : 0;
+  for (const PoleTrack& track : m_tracks.tracks) result.tracks += track.hits >= kFollowed ? 1 : 0;
   result.driven = m_knots.driven.back();
   return result;
 }

@@ -22,12 +22,12 @@ struct MappedDrives {
   std::vector<PoseWithCovariance> poses;  ///< one a scan; the covariance is against the first
   std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each drive
   std::vector<ClosedLoop> loops;
-  std::size_t tracks = 0;  ///< poles seen in two scans or more
+  std::size_t tracks = 0;  ///< poles seen in three scans or more, once for each time passed
   double driven = 0;       ///< m
 };
 
 /// \brief Finds the poses. The poses given are not used.
-/// \throws Error when hardly any pole is seen twice, or a drive shares no place with those before.
+/// \throws Error when fewer than two poles are followed.
 MappedDrives mapDrives(std::vector<DrivenScan> scans, const AdjustmentTrust& trust);
 
 }  // namespace polemcl
