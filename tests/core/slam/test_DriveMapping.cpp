@@ -151,6 +151,25 @@ TEST(DriveMapping, PlacesThatLookAlikeAreNoLoop) {
   EXPECT_LT(drive.worst(mapped), 1);
 }
 
+/// Four blocks, each the one before turned by a quarter: the first three corners lead to nothing
+/// new, and the drive ends before it comes round.
+TEST(DriveMapping, EqualBlocksAreNoLoop) {
+  Dice dice(8);
+  const double radius = 60, block = M_PI / 2 * radius;
+  std::vector<Eigen::Vector2d> poles;
+  for (double way = 0; way < block - 5; way += dice.uniform(5, 10)) {
+    const double out = radius + (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 10);
+    for (int corner = 0; corner < 4; ++corner) {
+      const double angle = way / radius + corner * M_PI / 2;
+      poles.emplace_back(out * std::sin(angle), radius - out * std::cos(angle));
+    }
+  }
+  const Drive drive(4 * block - 60, 1 / radius, poles, 8);
+  const MappedDrives mapped = mapDrives(drive.scans, {});
+  EXPECT_EQ(mapped.loops.size(), 0u);
+  EXPECT_LT(drive.worst(mapped), 0.5);
+}
+
 TEST(DriveMapping, BeginsAtTheFirstScanAndIsTheSameEachTime) {
   const Drive drive = ringDrive(4);
   const MappedDrives a = mapDrives(drive.scans, {}), b = mapDrives(drive.scans, {});
