@@ -1,10 +1,22 @@
 #include "cli/RunRecords.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include "io/file/CsvTable.h"
 
 namespace polemcl::apps {
+
+const char* const kEstimateColumns = "scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n";
+
+std::string estimateRow(std::size_t scan, double time, const PoseWithCovariance& estimate) {
+  const auto& [mean, C] = estimate;
+  char line[300];
+  std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.9f,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", scan,
+                time, mean.x, mean.y, mean.yaw, C(0, 0), C(0, 1), C(0, 2), C(1, 1), C(1, 2),
+                C(2, 2));
+  return line;
+}
 
 std::vector<EstimateRecord> readEstimates(const std::filesystem::path& file) {
   const io::CsvTable table(file);

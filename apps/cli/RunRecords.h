@@ -1,8 +1,9 @@
 #pragma once
 /// \file RunRecords.h
-/// \brief Reads the files of a run of `pole-localize`: estimates with covariances, and the health.
+/// \brief Files of a run of `pole-localize`: estimates with covariances, and the health.
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/common/PoseEstimate.h"
@@ -15,6 +16,10 @@ struct EstimateRecord {
   double time = 0;  ///< s
   PoseWithCovariance estimate;
 };
+
+/// \brief The head of such a table, and one row of it, each with its line end.
+extern const char* const kEstimateColumns;
+std::string estimateRow(std::size_t scan, double time, const PoseWithCovariance& estimate);
 
 /// \throws Error as CsvTable.
 std::vector<EstimateRecord> readEstimates(const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cli/RunRecords.h"
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
 #include "localize/LocalizeReport.h"
@@ -23,7 +24,7 @@ RunFiles::RunFiles(const RunFolder& folder, std::size_t run,
       m_covariances(folder.staged(runName(run) + "_cov.csv")),
       m_health(folder.staged(runName(run) + "_health.csv")) {
   if (truth) m_evaluator.emplace(*truth);
-  m_covariances.add("scan,timestamp,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw\n");
+  m_covariances.add(kEstimateColumns);
   m_health.add(
       "scan,timestamp,state,reason,matched_share,seen_share,innovation,effective_particles,"
       "particles,"
@@ -46,14 +47,9 @@ std::optional<TrajectoryErrors> RunFiles::finish() {
 }
 
 void RunFiles::addPose(const LocalizationUpdate& update) {
-  const auto& [mean, C] = *update.estimate;
-  const StampedPose2D pose{update.time, mean};
+  const StampedPose2D pose{update.time, update.estimate->mean};
   m_trajectory.add(io::tumRow(pose));
-  char line[300];
-  std::snprintf(line, sizeof line, "%zu,%.9f,%.6f,%.6f,%.9f,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
-                m_scan, update.time, mean.x, mean.y, mean.yaw, C(0, 0), C(0, 1), C(0, 2), C(1, 1),
-                C(1, 2), C(2, 2));
-  m_covariances.add(line);
+  m_covariances.add(estimateRow(m_scan, update.time, *update.estimate));
   if (!m_evaluator) return;
   if (const auto error = m_evaluator->add(pose)) addError(*error, update);
 }

@@ -45,11 +45,24 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
   addOutput(cli, "--csv", job.csv, "Also write the poles to this table");
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of rawlogs that were cut short");
-  cli.parse_complete_callback([&job] {
-    if (const std::string wrong = job.wrongCounts(); !wrong.empty())
-      throw CLI::ValidationError(wrong);
-  });
 }
+
+/// Without poses, a map is built from odometry.
+void settle(MapBuildJob& job) {
+  if (job.poses.empty()) job.kind = PoseKind::odometry;
+  const bool found = job.kind == PoseKind::odometry;
+  if (!found && !job.trajectories.empty())
+    throw CLI::ValidationError("--trajectory: the poses are given; leave it out");
+  if (!job.trajectories.empty() && job.trajectories.size() != job.inputs.size())
+    throw CLI::ValidationError("--trajectory: one file per --input is needed, " +
+                               std::to_string(job.inputs.size()) + ", not " +
+                               std::to_string(job.trajectories.size()));
+  if (found && job.inputs.size() > 1)
+    throw CLI::ValidationError("--input: without --truth, the map is made of one rawlog");
+  if (found && job.add)
+    throw CLI::ValidationError("--add needs --truth: the map keeps no odometry of its drives");
+}
+void settle(MapUpdateJob&) {}
 
 CLI::Option* addEstimateOption(CLI::App& cli, MappingJob& job) {
   auto* estimate = cli.add_option_function<std::vector<std::filesystem::path>>(
@@ -75,6 +88,11 @@ template <class Job, class Work>
 Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const Work& work) {
   const auto line = std::make_shared<MappingLine>();
   declare(cli, *job, *line);
+  cli.parse_complete_callback([job] {
+    settle(*job);
+    if (const std::string wrong = job->wrongCounts(); !wrong.empty())
+      throw CLI::ValidationError(wrong);
+  });
   return {&cli, [job, line, work, name = cli.get_name()](bool quiet) {
             job->datum = datumOf(line->datum);
             const AllSettings settings = loadSettings(line->config, line->set);
@@ -87,7 +105,8 @@ Subcommand mappingCommand(CLI::App& cli, const std::shared_ptr<Job>& job, const 
 }
 
 Subcommand buildCommand(CLI::App& program) {
-  auto& cli = *program.add_subcommand("build", "Builds a map from sessions at true poses");
+  auto& cli = *program.add_subcommand(
+      "build", "Builds a map from sessions, at true poses or with odometry alone");
   const auto job = std::make_shared<MapBuildJob>();
   addFile(cli, "--add", job->add,
           "Map that keeps its scans; the rawlogs are added as later sessions");
@@ -101,6 +120,11 @@ Subcommand buildCommand(CLI::App& program) {
       ->needs(estimate)
       ->excludes("--add");
   estimate->needs("--inventory");
+  markOutput(
+      addFile(cli, "--trajectory", job->trajectories,
+              "Without --truth: also write the poses found (TUM, covariances beside it), one "
+              "file per rawlog"));
+  addOutput(cli, "--png", job->png, "Also draw the map, the paths and the loops");
   return command;
 }
 

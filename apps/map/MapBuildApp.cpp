@@ -1,6 +1,7 @@
 #include "map/MapBuildApp.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -11,6 +12,8 @@
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
+#include "map/DrivePoses.h"
+#include "report/picture/MapPicture.h"
 
 namespace polemcl::apps {
 namespace {
@@ -43,40 +46,6 @@ std::optional<io::Datum> datumFor(const MapBuildJob& job) {
   return io::datumOf(info, where);
 }
 
-/// \throws Error when most scans of a drive have no odometry.
-void requireOdometry(const MappingSession& drive, const fs::path& input) {
-  const auto known = static_cast<std::size_t>(
-      std::count_if(drive.motions.begin(), drive.motions.end(),
-                    [](const auto& motion) { return motion.has_value(); }));
-  if (2 * (known + 1) < drive.motions.size())
-    throw Error(input.string() + ": only " + std::to_string(known) + " of " +
-                std::to_string(drive.motions.size()) +
-                " scans have odometry; --inventory needs it: write odometry to the rawlog");
-}
-
-/// Moves the poses of all drives so that their poles stand where the inventory has them.
-AdjustedDrives adjust(std::vector<MappingSession>& drives, const std::vector<MapPole>& inventory,
-                      const AllSettings& settings) {
-  std::vector<DrivenScan> scans;
-  for (const MappingSession& drive : drives)
-    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
-      DrivenScan scan{drive.scans[i].pose_map_robot, drive.scans[i].poles_robot, {}};
-      if (const auto& motion = drive.motions[i])
-        scan.motion = PoseWithCovariance{motion->mean, motion->covariance};
-      scans.push_back(std::move(scan));
-    }
-  AdjustedDrives adjusted = adjustDrives(scans, inventory,
-                                         {settings.map, OdometryCalibration::scaleSigma,
-                                          OdometryCalibration::yawSigma, kDecorrelation});
-  std::size_t next = 0;
-  for (MappingSession& drive : drives)
-    for (SessionScan& scan : drive.scans) {
-      scan.pose_map_robot = adjusted.poses_map_robot[next++];
-      scan.poseCovariance.setZero();
-    }
-  return adjusted;
-}
-
 /// The poles of an inventory that no drive saw, and that no scan came nearer to than a range.
 std::vector<LandmarkRecord> outOfSight(const LandmarkMap& inventory, const AdjustedDrives& drives,
                                        double range) {
@@ -104,6 +73,32 @@ void countSessions(const AddedSessions& added, MapBuildSummary& summary) {
     summary.visited += session.scans.size();
     summary.scans += session.usedCount();
   }
+}
+
+std::vector<std::vector<StampedPose2D>> pathsOf(const std::vector<MappingSession>& drives) {
+  std::vector<std::vector<StampedPose2D>> paths;
+  for (const MappingSession& drive : drives) paths.push_back(drive.path);
+  return paths;
+}
+
+/// The trajectories, and the picture of map, paths and loops.
+void writePoses(const MapBuildJob& job, const MapBuildSummary& summary, const io::PoleMapData& map,
+                const std::vector<std::vector<StampedPose2D>>& paths) {
+  report::MapView view;
+  view.title = job.output.filename().string();
+  view.poles = map.poles;
+  for (std::size_t i = 0, first = 0; i < paths.size(); first += paths[i++].size()) {
+    if (i < job.trajectories.size())
+      writeTrajectory(job.trajectories[i], paths[i], summary.mapped->poses, first);
+    auto& drawn = job.kind == PoseKind::truth ? view.truth : view.estimate;
+    drawn.insert(drawn.end(), paths[i].begin(), paths[i].end());
+  }
+  if (!job.png) return;
+  if (summary.mapped)
+    for (const ClosedLoop& loop : summary.mapped->loops)
+      view.loops.push_back({centreOf(summary.mapped->poses[loop.first].mean),
+                            centreOf(summary.mapped->poses[loop.second].mean)});
+  report::drawMapPng(view, *job.png);
 }
 
 std::vector<StampedPose2D> pathOf(const AddedSessions& added) {
@@ -190,8 +185,30 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
   addShares(summary, info);
   if (datum) info[io::kDatumKey] = io::datumText(*datum);
   keepWarnings(buildWarnings(summary, job), info);
+  if (summary.mapped) {
+    info["poses"] = "odometry";
+    info["loops"] = std::to_string(summary.mapped->loops.size());
+  }
   if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
   return info;
+}
+
+/// Standard deviation along an axis, m.
+double lastSigma(const MappedDrives& mapped) {
+  return std::sqrt(mapped.poses.back().covariance.topLeftCorner<2, 2>().trace() / 2);
+}
+
+std::string foundText(const MappedDrives& mapped, const MapBuildJob& job) {
+  std::ostringstream out;
+  out << "poses by odometry and " << mapped.tracks << " poles followed over "
+      << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
+      << " places passed again; the last pose is certain to " << io::fixed(lastSigma(mapped), 2)
+      << " m against the first\n";
+  for (std::size_t i = 0; i < mapped.odometry.size(); ++i)
+    out << job.inputs[i].filename().string() << ": its odometry is "
+        << io::fixed(-100 * mapped.odometry[i].x(), 2) << " % long, and turns "
+        << io::fixed(-mapped.odometry[i].y() * 180 / M_PI, 4) << " deg/m\n";
+  return out.str();
 }
 
 }  // namespace
@@ -209,13 +226,14 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
     for (const MappingSession& drive : drives) summary.motions.push_back(checkMotion(drive.scans));
   LandmarkMap inventory;
   if (job.inventory) {
-    for (std::size_t i = 0; i < drives.size(); ++i) requireOdometry(drives[i], job.inputs[i]);
     inventory = io::landmarkMap(io::readPoleMap(*job.inventory));
     summary.inventory.emplace();
     summary.inventory->drives = io::located(job.inventory->string() + ": ", [&] {
-      return adjust(drives, presentPoles(inventory), settings);
+      return adjustToInventory(drives, job.inputs, presentPoles(inventory), settings);
     });
   }
+  if (job.kind == PoseKind::odometry) summary.mapped = findPoses(drives, job.inputs, settings);
+  const auto paths = pathsOf(drives);
   for (std::size_t i = 0; i < drives.size(); ++i)
     addDrive(job, i, std::move(drives[i]), sessions, summary);
   countSessions(sessions.added(), summary);
@@ -234,6 +252,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   }
   const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, job, datum));
   io::AtomicFiles files;
+  writePoses(job, summary, map, paths);
   writeViews(job, map, pathOf(sessions.added()));
   io::writePoleMap(job.output, map, job.keepScans || job.add ? &sessions.added() : nullptr);
   files.commit();
@@ -278,6 +297,7 @@ std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) 
         << "are certain to " << io::fixed(drives.sigma, 3)
         << " m; poles of it out of sight, kept: " << summary.inventory->kept << '\n';
   }
+  if (summary.mapped) out << foundText(*summary.mapped, job);
   out << summary.skipped;
   return out.str();
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file MapBuildApp.h
-/// \brief `pole-map build`: scans or poles at true poses -> a pole map.
+/// \brief `pole-map build`: scans or poles, at true poses or with odometry -> a pole map.
 
 #include <filesystem>
 #include <optional>
@@ -10,6 +10,7 @@
 #include "core/evaluation/MotionCheck.h"
 #include "core/mapping/DriveAdjustment.h"
 #include "core/mapping/MapAccumulator.h"
+#include "core/slam/DriveMapping.h"
 #include "map/MappingSession.h"
 
 namespace polemcl::apps {
@@ -22,6 +23,11 @@ struct MapBuildJob : MappingJob {
   /// `.polemap` of poles known to metres (`pole-map import`): the inputs are localized in it, and
   /// are adjusted to it together. Its poles out of their sight stay on the map.
   std::optional<std::filesystem::path> inventory = {};
+  /// \name Without poses: those that were found
+  /// @{
+  std::vector<std::filesystem::path> trajectories = {};  ///< TUM, one per input, or none
+  std::optional<std::filesystem::path> png = {};         ///< map, paths and loops, when given
+  /// @}
 };
 
 /// \brief How the drives fit an inventory.
@@ -44,6 +50,7 @@ struct MapBuildSummary {
   };
   std::vector<Session> sessions;                 ///< in their order, those of `add` first
   std::optional<InventoryAdjustment> inventory;  ///< when one was given
+  std::optional<MappedDrives> mapped;            ///< when odometry stood for poses
   std::vector<MotionCheck> motions;              ///< of each input, when its poses are a truth
   std::size_t twins = 0;                         ///< poles with another nearer than 1 m
 };

@@ -15,7 +15,7 @@ namespace polemcl::apps {
 std::string MappingJob::wrongCounts() const {
   const std::string files = std::to_string(inputs.size());
   if (inputs.empty()) return "--input: at least one rawlog is needed";
-  if (inputs.size() != poses.size())
+  if (kind != PoseKind::odometry && inputs.size() != poses.size())
     return std::string(kind == PoseKind::truth ? "--truth" : "--estimate") +
            ": one file per --input is needed, " + files + ", not " + std::to_string(poses.size());
   if (!dates.empty() && dates.size() != inputs.size())
@@ -63,16 +63,33 @@ void requireTimeGoesOn(const SessionFiles& files, const PoleSequence& sequence) 
                   " s; poses are found by time, so each scan needs its own, later than the last");
 }
 
+/// Motions one behind the other. \throws Error where one is missing.
+std::vector<StampedPose2D> deadReckoning(const SessionFiles& files, const PoleSequence& sequence) {
+  std::vector<StampedPose2D> path;
+  for (const PoleScan& frame : sequence.frames) {
+    if (!path.empty() && !frame.motion)
+      throw Error(files.input.string() + ": no odometry leads to scan " +
+                  std::to_string(path.size()) + " at " + io::fixed(frame.time, 3) +
+                  " s; a map without --truth needs it: write odometry to the rawlog");
+    path.push_back(
+        {frame.time, path.empty() ? Pose2D() : compose(path.back().pose, frame.motion->mean)});
+  }
+  return path;
+}
+
 }  // namespace
 
 MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& settings,
                                   bool allowTruncated, const ScanProgress& progress) {
-  const SessionPoses poses(files.kind, files.poses);
+  const bool odometry = files.kind == PoseKind::odometry;
+  SessionPoses poses =
+      odometry ? SessionPoses(std::vector<StampedPose2D>()) : SessionPoses(files.kind, files.poses);
   SequenceOptions options = readingOf(settings);
   options.allowTruncated = allowTruncated;
-  options.velocity = [&](double time) { return poses.velocityAt(time); };
+  if (!odometry) options.velocity = [&](double time) { return poses.velocityAt(time); };
   const PoleSequence sequence = readPoleSequence(files.input.string(), options, progress);
   requireTimeGoesOn(files, sequence);
+  if (odometry) poses = SessionPoses(deadReckoning(files, sequence));
   MappingSession session;
   const SequenceCounts& counts = sequence.counts;
   std::ostringstream sensors;
@@ -143,7 +160,7 @@ void keepWarnings(const std::vector<std::string>& warnings,
 }
 
 SessionFiles MappingJob::session(std::size_t i) const {
-  return {inputs[i], poses[i], kind};
+  return {inputs[i], poses.empty() ? std::filesystem::path() : poses[i], kind};
 }
 
 void setDate(std::vector<SessionScan>& scans, const std::string& date) {

@@ -29,14 +29,14 @@ struct SessionFiles {
 /// \brief Files of a job that maps sessions, as the command line names them.
 struct MappingJob {
   std::vector<std::filesystem::path> inputs;       ///< rawlogs of scans or poles, one per session
-  std::vector<std::filesystem::path> poses;        ///< robot poses, one file per input
+  std::vector<std::filesystem::path> poses;        ///< robot poses, one file per input, or none
   std::filesystem::path output;                    ///< `.polemap`
   std::optional<std::filesystem::path> scene;      ///< `.3Dscene` of map and paths, when given
   std::optional<std::filesystem::path> csv;        ///< poles as a table, when given
   bool allowTruncated = false;                     ///< use the readable part of damaged rawlogs
   std::vector<std::string> dates = {};             ///< YYYY-MM-DD, one per input, or empty
   std::optional<io::Datum> datum = {};             ///< of the truths: goes into the map's info
-  PoseKind kind = PoseKind::truth;                 ///< of `poses`
+  PoseKind kind = PoseKind::truth;                 ///< of `poses`; odometry: there are none
   std::optional<std::filesystem::path> json = {};  ///< summary for scripts, when given
 
   /// \brief What is wrong with the numbers of files and dates; empty when nothing is.
@@ -70,7 +70,8 @@ struct MappingSession {
 
 /// \brief Reads a rawlog of scans or poles; doubtful detections down to `[map] min_confidence`.
 /// \param progress May be empty.
-/// \throws Error as readPoleSequence() and SessionPoses; when less than half of the scans have a
+/// \throws Error as readPoleSequence() and SessionPoses; when a motion is missing that stands for
+///         poses; when less than half of the scans have a
 ///         pose; when the time of a scan is not later than that of the one before.
 MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& settings,
                                   bool allowTruncated, const ScanProgress& progress);

@@ -38,6 +38,9 @@ SessionPoses::SessionPoses(PoseKind kind, const std::filesystem::path& file)
   }
 }
 
+SessionPoses::SessionPoses(std::vector<StampedPose2D> odometry)
+    : m_kind(PoseKind::odometry), m_trajectory(std::move(odometry)) {}
+
 std::optional<ScanPose> SessionPoses::at(std::size_t scan, double time) const {
   if (m_kind == PoseKind::estimate) return estimateOf(scan, time);
   const auto pose = poseAt(m_trajectory, time, longestTruthGap);
@@ -57,7 +60,7 @@ std::optional<ScanPose> SessionPoses::estimateOf(std::size_t scan, double time) 
 Velocity SessionPoses::velocityAt(double time) const {
   // Half a turn of most LiDARs. Estimates vary from scan to scan: over a longer time, that matters
   // less.
-  const double half = m_kind == PoseKind::truth ? 0.05 : 0.25;
+  const double half = m_kind == PoseKind::estimate ? 0.25 : 0.05;
   return polemcl::velocityAt(m_trajectory, time, half, longestTruthGap);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file SessionPoses.h
-/// \brief Where a session's scans were taken: by its truth, or by the localizer's own estimates.
+/// \brief Where a session's scans were taken: by its truth, by the localizer's own estimates, or by
+/// its odometry alone.
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -15,8 +16,9 @@ namespace polemcl::apps {
 
 /// \brief Where poses of sessions come from.
 enum class PoseKind {
-  truth,    ///< a TUM file
-  estimate  ///< a run of `pole-localize`
+  truth,     ///< a TUM file
+  estimate,  ///< a run of `pole-localize`
+  odometry   ///< no file: motions one behind the other, for mapDrives() to make better
 };
 
 /// \brief The pose of one scan.
@@ -34,6 +36,8 @@ class SessionPoses {
   /// `run_NN_health.csv`.
   /// \throws Error when a file cannot be read.
   SessionPoses(PoseKind kind, const std::filesystem::path& file);
+  /// \brief Poses by the odometry, from the first scan on.
+  explicit SessionPoses(std::vector<StampedPose2D> odometry);
 
   /// \brief None where the file says nothing.
   /// \param scan Number of the scan in its rawlog. \param time Time of the scan, s.

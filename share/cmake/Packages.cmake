@@ -60,7 +60,7 @@ polemcl_package(programs polemcl science "${library} ${same}, python3, python3-j
   "${method}This package holds the programs, their settings, models, man pages
 and completion.")
 polemcl_package(dev libpolemcl-dev libdevel
-  "${library} ${same}, libeigen3-dev, libhwy-dev, libmrpt-config-dev, libmrpt-maps-dev, libmrpt-obs-dev, libmrpt-opengl-dev, libmrpt-slam-dev"
+  "${library} ${same}, libceres-dev, libeigen3-dev, libhwy-dev, libmrpt-config-dev, libmrpt-maps-dev, libmrpt-obs-dev, libmrpt-opengl-dev, libmrpt-slam-dev"
   "Pole-based LiDAR localization: headers"
   "${method}This package holds the headers, the library without MRPT, and the
 CMake package.")

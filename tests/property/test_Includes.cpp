@@ -35,6 +35,7 @@ const std::vector<std::string> kOrder{
     "core/mapping",
     "core/localization",
     "core/global_localization",
+    "core/slam",
     "core/evaluation",
     "io/file",
     "io/data",
@@ -196,7 +197,7 @@ bool mayIncludeForeign(const std::string& room, const std::string& header) {
   const bool standard = header.find_first_of("./") == std::string::npos;
   if (big == "core") {
     return standard || header.rfind("Eigen/", 0) == 0 || header.rfind("hwy/", 0) == 0 ||
-           header == "nanoflann.hpp";
+           header.rfind("ceres/", 0) == 0 || header == "nanoflann.hpp";
   }
   const bool mrpt = header.rfind("mrpt/", 0) == 0;
   if (big == "config") return !mrpt || header.rfind("mrpt/config/", 0) == 0;

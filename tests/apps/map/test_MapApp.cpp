@@ -1,4 +1,5 @@
 #include <polemcl/core/common/Types.h>
+#include "cli/RunRecords.h"
 #include "extract/ExtractApp.h"
 #include "io/data/Trajectory.h"
 #include "io/map/PoleMapFile.h"
@@ -84,6 +85,50 @@ TEST_F(MapApp, ScansAndStoredPolesGiveTheSameMap) {
     EXPECT_EQ(fromPoles[i].y, fromScans[i].y);
     EXPECT_EQ(fromPoles[i].count, fromScans[i].count);
   }
+}
+
+TEST_F(MapApp, WithoutTruthOdometryAndPolesGiveThePoses) {
+  writeStreet(folder / "in", 40, streetPoles(), 50, 0);
+  ImportOptions import;
+  import.input = folder / "in";
+  import.output = folder / "in.rawlog";
+  import.odometryNoise = 0.02;
+  import.odometryScale = 0.03;
+  importDataset(import);
+  const auto outcome = runProgram(
+      mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--output",
+                at("street.polemap"), "--trajectory", at("found.tum"), "--png", at("map.png")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("poses by odometry"), std::string::npos) << outcome.out;
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("poses"), "odometry");
+  const auto truth = io::readPlanarTum(folder / "in.tum"),
+             found = io::readPlanarTum(folder / "found.tum");
+  ASSERT_EQ(found.size(), truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Pose2D right = relative(truth[0].pose, truth[i].pose);
+    EXPECT_NEAR(found[i].pose.x, right.x, 0.1) << i;
+    EXPECT_NEAR(found[i].pose.y, right.y, 0.1) << i;
+  }
+  EXPECT_EQ(readEstimates(folder / "found_cov.csv").size(), truth.size());
+  EXPECT_GT(fs::file_size(folder / "map.png"), 10000u);
+}
+
+TEST_F(MapApp, WithoutTruthOdometryIsNeeded) {
+  writeStreet(folder / "in", 6);
+  fs::remove(folder / "in" / "odometry.txt");
+  import("in");
+  const auto build = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"build",        "--config",           config(),
+                                       "--output",     at("street.polemap"), "--input",
+                                       at("in.rawlog")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  };
+  expectFailure(build({}), {"in.rawlog: no odometry leads to scan 1", "--truth"});
+  EXPECT_EQ(build({at("in.rawlog")}).code, 2) << "two rawlogs";
+  EXPECT_EQ(build({"--trajectory", at("a.tum"), at("b.tum")}).code, 2);
+  EXPECT_EQ(build({"--truth", at("in.tum"), "--trajectory", at("a.tum")}).code, 2);
+  EXPECT_FALSE(hasMap());
 }
 
 TEST_F(MapApp, ItsOwnConfidenceTakesTheExtractorsPlace) {

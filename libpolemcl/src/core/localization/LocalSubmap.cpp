@@ -119,6 +119,7 @@ void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {
     detectionTaken[pair.first] = poleTaken[pair.second] = true;
     update(m_poles[pair.second], poles_robot[pair.first], placed[pair.first].centre,
            placed[pair.first].covariance);
+    m_poles[pair.second].detection = pair.first;
   }
   const Eigen::Vector2d here(m_pose.x, m_pose.y);
   for (std::size_t p = 0; p < m_poles.size(); ++p)
@@ -129,6 +130,8 @@ void LocalSubmap::associate(const std::vector<PoleDetection>& poles_robot) {
     m_poles.emplace_back();
     m_poles.back().bottom = poles_robot[d].bottom;
     m_poles.back().top = poles_robot[d].top;
+    m_poles.back().detection = d;
+    m_poles.back().number = m_opened++;
     update(m_poles.back(), poles_robot[d], placed[d].centre, placed[d].covariance);
   }
 }

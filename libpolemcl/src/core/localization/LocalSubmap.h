@@ -62,7 +62,9 @@ struct POLEMCL_EXPORT SubmapPole {
   double seenAt = 0;                                   ///< metres driven by then
   std::size_t seenFrame = 0;                           ///< number of frames by then
   OdometryDrift drift;                                 ///< what the odometry had gathered by then
+  std::size_t detection = 0;                           ///< which one of that frame it was
   /// @}
+  std::size_t number = 0;  ///< how many poles were opened before it
 };
 
 /// \brief Poles of the last metres. Deterministic; not to be shared between threads while adding.
@@ -130,6 +132,7 @@ class POLEMCL_EXPORT LocalSubmap {
   double m_driven = 0;
   double m_step = 0;  ///< length of the last motion, m
   std::size_t m_frames = 0;
+  std::size_t m_opened = 0;  ///< poles
   OdometryDrift m_drift;
   std::vector<Eigen::Vector2d> m_path;
   std::vector<double> m_pathDriven;  ///< metres driven at each place of m_path

@@ -4,32 +4,21 @@
 /// library.
 ///
 /// The LiDAR and the odometry tell where the poles stand to each other; the map, an inventory of a
-/// city say, tells where they stand on Earth, each with an error of its own. One least-squares
-/// problem (Dellaert and Kaess 2006) holds all poses, the places of the poles seen, and scale error
-/// and yaw bias of each drive's odometry. Pairs are formed anew in each of several rounds; Geman
-/// and McClure's weights let go of pairs that do not fit, such as poles that do not exist.
+/// city say, tells where they stand on Earth, each with an error of its own. JointAdjustment holds
+/// both together. Pairs are formed anew in each of several rounds; those that do not fit let go,
+/// such as poles that do not exist.
 
-#include <optional>
 #include <vector>
 
-#include "core/common/PoseEstimate.h"
+#include "core/mapping/JointAdjustment.h"
 #include "core/mapping/MapUpdater.h"
 
 namespace polemcl {
 
-/// \brief One scan of a drive.
-struct DrivenScan {
-  Pose2D pose_map_robot;                     ///< where to start from, within decimetres
-  std::vector<PoleDetection> poles_robot;    ///< seen from one place: deskewed
-  std::optional<PoseWithCovariance> motion;  ///< since the scan before; none: another drive begins
-};
-
 /// \brief What an adjustment may use.
 struct DriveAdjustmentOptions {
-  PoleMapOptions mapping;     ///< makes the poles of the drives
-  double scaleSigma = 0.02;   ///< standard deviation of the scale error of an odometry, as a share
-  double yawSigma = 0.00052;  ///< of its yaw bias, rad per metre driven forwards
-  double decorrelation = 5;   ///< scans within this distance count as one, m
+  PoleMapOptions mapping;  ///< makes the poles of the drives
+  AdjustmentTrust trust;
 };
 
 struct AdjustedDrives {

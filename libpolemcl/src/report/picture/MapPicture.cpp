@@ -15,6 +15,7 @@ namespace {
 // Colours that stay apart for colour-blind eyes (Okabe and Ito 2008).
 constexpr Color truthColor = rgb(0xaab2bd);
 constexpr Color estimateColor = rgb(0x0072b2);
+constexpr Color loopColor = rgb(0xcc79a7);
 constexpr Color headingColor = rgb(0x009e73);
 
 std::optional<TrajectoryErrors> compared(const MapView& view) {
@@ -93,6 +94,11 @@ void drawMap(Canvas& canvas, const Rect& frame, const Bounds& bounds, const MapV
   for (const MapPole& pole : view.poles)
     canvas.disc(axes.toPixel(pole.x, pole.y), std::max(smallest, pole.radius * metre), poleColor,
                 white, 0.25 * smallest);
+  for (const auto& [first, second] : view.loops) {
+    canvas.line({axes.toPixel(first.x(), first.y()), axes.toPixel(second.x(), second.y())},
+                loopColor, 2);
+    canvas.disc(axes.toPixel(second.x(), second.y()), 5, loopColor, white, 1);
+  }
   drawEnds(canvas, axes, view.truth.empty() ? view.estimate : view.truth);
   drawScaleBar(canvas, axes, view);
   canvas.unclip();
@@ -114,6 +120,8 @@ double drawLegend(Canvas& canvas, double rightEdge, double baseline, const MapVi
       canvas.line({{from, y}, {from + 42, y}}, color, width);
     };
   };
+  if (!view.loops.empty())
+    entry("loops (" + std::to_string(view.loops.size()) + ")", stroke(loopColor, 5), 42);
   if (!view.estimate.empty()) entry("estimate", stroke(estimateColor, 2.6), 42);
   if (!view.truth.empty()) entry("truth", stroke(truthColor, 9), 42);
   if (!view.poles.empty())

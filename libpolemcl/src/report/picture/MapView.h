@@ -2,7 +2,9 @@
 /// \file MapView.h
 /// \brief What a picture of a localized drive shows: map, truth, estimate. All in the map frame.
 
+#include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
@@ -16,6 +18,7 @@ struct MapView {
   std::vector<MapPole> poles;
   std::vector<StampedPose2D> truth;
   std::vector<StampedPose2D> estimate;
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> loops = {};  ///< places passed twice
 };
 
 /// \brief What the view covers, m.

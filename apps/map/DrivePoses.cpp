@@ -1,0 +1,86 @@
+#include "map/DrivePoses.h"
+
+#include <algorithm>
+
+#include "cli/RunRecords.h"
+#include "core/localization/OdometryCalibration.h"
+#include "core/mapping/PoleExistence.h"
+#include "io/data/Trajectory.h"
+#include "io/file/AtomicFile.h"
+#include "io/file/ErrorPlace.h"
+
+namespace polemcl::apps {
+namespace {
+
+AdjustmentTrust trustOf(const AllSettings& settings) {
+  return {OdometryCalibration::scaleSigma, OdometryCalibration::yawSigma, kDecorrelation,
+          settings.map.poseSigma};
+}
+
+std::vector<DrivenScan> scansOf(const std::vector<MappingSession>& drives) {
+  std::vector<DrivenScan> scans;
+  for (const MappingSession& drive : drives)
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      DrivenScan scan{drive.scans[i].pose_map_robot, drive.scans[i].poles_robot, {}};
+      if (const auto& motion = drive.motions[i])
+        scan.motion = PoseWithCovariance{motion->mean, motion->covariance};
+      scans.push_back(std::move(scan));
+    }
+  return scans;
+}
+
+/// \throws Error when most scans of a drive have no odometry.
+void requireOdometry(const MappingSession& drive, const std::filesystem::path& input) {
+  const auto known = static_cast<std::size_t>(
+      std::count_if(drive.motions.begin(), drive.motions.end(),
+                    [](const auto& motion) { return motion.has_value(); }));
+  if (2 * (known + 1) < drive.motions.size())
+    throw Error(input.string() + ": only " + std::to_string(known) + " of " +
+                std::to_string(drive.motions.size()) +
+                " scans have odometry; --inventory needs it: write odometry to the rawlog");
+}
+
+/// \param poseOf Of the scan with this number, over all drives.
+template <class PoseOf>
+void setPoses(std::vector<MappingSession>& drives, const PoseOf& poseOf) {
+  std::size_t next = 0;
+  for (MappingSession& drive : drives)
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      drive.scans[i].pose_map_robot = drive.path[i].pose = poseOf(next++);
+      drive.scans[i].poseCovariance.setZero();
+    }
+}
+
+}  // namespace
+
+AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
+                                 const std::vector<std::filesystem::path>& inputs,
+                                 const std::vector<MapPole>& inventory,
+                                 const AllSettings& settings) {
+  for (std::size_t i = 0; i < drives.size(); ++i) requireOdometry(drives[i], inputs[i]);
+  AdjustedDrives adjusted =
+      adjustDrives(scansOf(drives), inventory, {settings.map, trustOf(settings)});
+  setPoses(drives, [&](std::size_t scan) { return adjusted.poses_map_robot[scan]; });
+  return adjusted;
+}
+
+MappedDrives findPoses(std::vector<MappingSession>& drives,
+                       const std::vector<std::filesystem::path>& inputs,
+                       const AllSettings& settings) {
+  MappedDrives mapped = io::located(inputs.front().string() + ": ",
+                                    [&] { return mapDrives(scansOf(drives), trustOf(settings)); });
+  setPoses(drives, [&](std::size_t scan) { return mapped.poses[scan].mean; });
+  return mapped;
+}
+
+void writeTrajectory(const std::filesystem::path& file, const std::vector<StampedPose2D>& path,
+                     const std::vector<PoseWithCovariance>& poses, std::size_t first) {
+  io::writeTum(file, path);
+  io::AtomicFile covariances(file.parent_path() / (file.stem().string() + "_cov.csv"));
+  covariances.stream() << kEstimateColumns;
+  for (std::size_t i = 0; i < path.size(); ++i)
+    covariances.stream() << estimateRow(i, path[i].time, poses[first + i]);
+  covariances.commit();
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,34 @@
+#pragma once
+/// \file DrivePoses.h
+/// \brief The poses of drives where no truth tells them: by odometry and poles, or adjusted to an
+/// inventory.
+
+#include <filesystem>
+#include <vector>
+
+#include "core/mapping/DriveAdjustment.h"
+#include "core/slam/DriveMapping.h"
+#include "map/MappingSession.h"
+
+namespace polemcl::apps {
+
+/// \brief Moves the poses of all drives so that their poles stand where the inventory has them.
+/// \param inputs Files of the drives, for messages.
+/// \throws Error as adjustDrives(); when most scans of a drive have no odometry.
+AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
+                                 const std::vector<std::filesystem::path>& inputs,
+                                 const std::vector<MapPole>& inventory,
+                                 const AllSettings& settings);
+
+/// \brief Finds the poses of drives that only know their odometry; frame of the first scan.
+/// \throws Error as mapDrives().
+MappedDrives findPoses(std::vector<MappingSession>& drives,
+                       const std::vector<std::filesystem::path>& inputs,
+                       const AllSettings& settings);
+
+/// \brief Writes the path of a drive as TUM, and the covariances beside it (`a_cov.csv` of
+/// `a.tum`). \param poses Of all drives. \param first Of the drive.
+void writeTrajectory(const std::filesystem::path& file, const std::vector<StampedPose2D>& path,
+                     const std::vector<PoseWithCovariance>& poses, std::size_t first);
+
+}  // namespace polemcl::apps

@@ -1,0 +1,44 @@
+#pragma once
+/// \file LoopSearch.h
+/// \brief Places of a drive that it passed before: each submap is searched on all poles seen
+/// earlier. Private to the library.
+///
+/// The search is that of a robot without a start pose (GlobalLocalizer), among the poles where the
+/// drive may be by its own uncertainty. A place counts only if it fits that uncertainty, clearly
+/// beats all others that do, and if the submaps before or after find the same: streets that look
+/// alike are left open.
+
+#include <vector>
+
+#include "core/slam/PoleTracks.h"
+
+namespace polemcl {
+
+/// \brief A place passed twice.
+struct Loop {
+  PoseTie tie;
+  Pose2D place;                      ///< of the second scan, as found among the poles before
+  std::vector<std::size_t> tracks;   ///< of the submap
+  std::vector<std::size_t> earlier;  ///< tracks that it was searched among
+};
+
+/// \brief Scans some metres apart, whose places are known with their covariance.
+struct Knots {
+  std::vector<std::size_t> scans;
+  std::vector<double> driven;  ///< m, at each
+  Eigen::MatrixXd covariance;  ///< of all of them, as JointAdjustment::poseCovariance()
+};
+
+/// \param spacing m. \return The first scan of each drive, scans so far apart, and the last one.
+Knots chooseKnots(const std::vector<DrivenScan>& scans, const std::vector<Pose2D>& poses,
+                  double spacing);
+
+/// \brief The loops that several submaps agree on, in the order they were driven.
+/// \param tracks Of the same poses. \param state With a pole for each track.
+std::vector<Loop> findLoops(const std::vector<DrivenScan>& scans, const AdjustedState& state,
+                            const PoleTracks& tracks, const Knots& knots);
+
+/// \brief Squared Mahalanobis distance of a tie from the poses, by the tie's covariance and `more`.
+double misfit(const PoseTie& tie, const std::vector<Pose2D>& poses, const Eigen::Matrix3d& more);
+
+}  // namespace polemcl

@@ -1,0 +1,70 @@
+#!/usr/bin/python3
+"""Errors of a trajectory in a frame of its own, after the best rigid motion, as a line of JSON.
+
+Usage: aligned_error.py TRUTH.tum ESTIMATE.tum COVARIANCES.csv [SIGMA_M,SIGMA_DEG]
+"rms" and "max": positions, after the best rigid motion of the whole drive, m. "local": mean rms of pieces of 60 m,
+each after a motion of its own, m (null for shorter drives). "end_percent": error of the last position, the first
+poses laid on each other, in percent of the way. "nees": mean normalized squared error of x, y, yaw against the first
+pose; 3 is expected. The sigmas are those of the true poses. Needs python3-numpy.
+"""
+import json
+import sys
+
+import numpy as np
+
+
+def read(file):
+    rows = np.loadtxt(file)
+    return rows[:, 0], rows[:, 1:3], 2 * np.arctan2(rows[:, 6], rows[:, 7])
+
+
+def turned(points, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, s], [-s, c]])
+
+
+def rigid_errors(found, right):
+    a, b = found - found.mean(0), right - right.mean(0)
+    cross = a.T @ b
+    return np.hypot(*(turned(a, np.arctan2(cross[0, 1] - cross[1, 0], np.trace(cross))) - b).T)
+
+
+def local_error(found, right, way, metres=60):
+    pieces = [(way >= begin) & (way <= begin + metres) for begin in np.arange(0, way[-1] - metres, 5)]
+    errors = [np.sqrt((rigid_errors(found[p], right[p]) ** 2).mean()) for p in pieces]
+    return round(float(np.mean(errors)), 4) if errors else None
+
+
+def nees(errors, file, sigmas):
+    table = np.loadtxt(file, delimiter=",", skiprows=1)[:, 5:]
+    extra = np.diag([sigmas[0], sigmas[0], np.radians(sigmas[1])]) ** 2
+    values = []
+    for error, (xx, xy, xt, yy, yt, tt) in list(zip(errors, table))[1:]:
+        covariance = np.array([[xx, xy, xt], [xy, yy, yt], [xt, yt, tt]]) + 2 * extra
+        values.append(error @ np.linalg.solve(covariance + 1e-12 * np.eye(3), error))
+    return float(np.mean(values))
+
+
+def main(truth, estimate, covariances, sigmas):
+    times, right, heading = read(truth)
+    stamps, found, yaw = read(estimate)
+    chosen = [np.abs(times - stamp).argmin() for stamp in stamps]
+    right, heading = right[chosen], heading[chosen]
+    way = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(right, axis=0).T))])
+    errors = rigid_errors(found, right)
+    # Both in the frame of the first pose.
+    own = turned(right - right[0], -heading[0]) - turned(found - found[0], -yaw[0])
+    turns = heading - heading[0] - yaw + yaw[0]
+    turns = np.arctan2(np.sin(turns), np.cos(turns))
+    print(json.dumps({
+        "length": round(float(way[-1]), 1),
+        "rms": round(float(np.sqrt((errors ** 2).mean())), 4),
+        "max": round(float(errors.max()), 4),
+        "local": local_error(found, right, way),
+        "end_percent": round(100 * float(np.hypot(*own[-1])) / float(way[-1]), 3),
+        "nees": round(nees(np.column_stack([own, turns]), covariances, sigmas), 2)}))
+
+
+if len(sys.argv) not in (4, 5):
+    sys.exit(__doc__)
+main(*sys.argv[1:4], [float(s) for s in sys.argv[4].split(",")] if len(sys.argv) == 5 else [0, 0])

@@ -1,0 +1,127 @@
+#!/bin/sh
+# Maps from LiDAR and odometry alone: errors of the poses that `pole-map build` finds without --truth.
+# Usage: share/experiments/map-without-truth.sh DATA_DIR OUT [--kilometre SCANS] [--tracks DIR]
+#   DATA_DIR     folder with kitti_raw_0005/, vlp16_loop/ and nuscenes_scene/
+#   OUT          gets maps, pictures, trajectories, result.json and table.txt
+#   --kilometre  the scans of DATA_DIR/kitti_odom_00_km as a folder (its README.md says how to lay them out)
+#   --tracks     folder of the road kaist01.txt.gz (sensor poses, 12 numbers a line)
+# Odometry is the true motion with 2 % noise, 1 % too long and 0.01 deg/m off (seeds 7 to 11 on the VLP-16 loop, 7 on
+# the others); on the kilometre also that of a real laser odometry. nuScenes has the poses by the planes in its scans
+# (plane_adjustment.py). "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is
+# false.
+# "localized": a second day of the streets 701 to 704 in the map without truth and in that of the true poses: share
+# of the scans that are ok, and errors after the best rigid motion within 60 m (local_error.py).
+# Programs: build/bin, or POLEMCL_BIN. Needs jq, python3-numpy and python3-scipy; 15 minutes.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+check_arguments 2 6 "$@"
+data=$(cd "$1" && pwd)
+mkdir -p "$2"
+out=$(cd "$2" && pwd)
+shift 2
+kilometre="" tracks=""
+while [ $# -gt 0 ]; do
+  [ $# -ge 2 ] || usage
+  case $1 in
+    --kilometre) kilometre=$(cd "$2" && pwd) ;;
+    --tracks) tracks=$(cd "$2" && pwd) ;;
+    *) usage ;;
+  esac
+  shift 2
+done
+find_programs pole-simulate pole-import pole-extract pole-map pole-localize
+find_tools jq
+/usr/bin/python3 -c 'import scipy' 2>/dev/null || die "scipy is needed: install python3-scipy"
+clockwise="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
+biased="--odometry-noise 0.02 --odometry-scale 0.01 --odometry-yaw-deg-m 0.01"
+cd "$out"
+: >results
+
+# map NAME CONFIG INPUT.rawlog TRUTH.tum SIGMAS [OPTION...]: a line of results.
+map() {
+  name=$1 truth=$4 sigmas=$5
+  config=$2 input=$3
+  shift 5
+  begin=$(date +%s)
+  "$bin/pole-map" build --config "$config" "$@" --input "$input" --output "$name.polemap" --trajectory "$name-found.tum" \
+    --png "$name.png" >"$name.txt"
+  seconds=$(($(date +%s) - begin))
+  loops=$(sed -n 's/.*; \([0-9]*\) places passed again.*/\1/p' "$name.txt")
+  /usr/bin/python3 "$top/share/experiments/aligned_error.py" "$truth" "$name-found.tum" "$name-found_cov.csv" "$sigmas" |
+    jq -c --arg drive "$name" --argjson loops "$loops" --argjson seconds $seconds \
+      '{drive: $drive, loops: $loops} + . + {seconds: $seconds}' >>results
+}
+
+# real NAME FOLDER CONFIG SIGMAS MOUNTING "IMPORT OPTIONS" [OPTION...]
+real() {
+  name=$1 folder=$2 config=$3 sigmas=$4 mounting=$5 options=$6
+  shift 6
+  # shellcheck disable=SC2086 # several words
+  "$bin/pole-import" folder --quiet --input "$folder" --output "$name.scans.rawlog" --sensor-pose "$mounting" $options
+  "$bin/pole-extract" --quiet --config "$config" "$@" --input "$name.scans.rawlog" --output "$name.rawlog"
+  map "$name" "$config" "$name.rawlog" "$name.scans.tum" "$sigmas" "$@"
+  rm "$name.scans.rawlog"
+}
+
+# nuScenes with the poses by planes.
+nuscenes() {
+  set -- --set sensor.height_m=1.84 --set sensor.min_range_m=2.5
+  "$bin/pole-import" folder --quiet --input "$data/nuscenes_scene" --output planes.rawlog
+  "$bin/pole-extract" --quiet --config "$top/config/hdl32e.ini" "$@" --input planes.rawlog --output planes-poles.rawlog \
+    --csv planes.csv
+  /usr/bin/python3 "$top/share/experiments/plane_adjustment.py" "$data/nuscenes_scene" planes.csv planes.txt >planes.log
+  rm -rf planes planes*.rawlog
+  link_scans "$data/nuscenes_scene" "$out/planes" 1 39
+  cp planes.txt planes/poses.txt
+  real nuscenes-planes planes "$top/config/hdl32e.ini" 0.01,0.03 "0 0 0 0 0 0" "$biased --seed 7" "$@"
+}
+
+# The second day of a street in both maps of the first.
+localized() {
+  draw_drive "$out/again-$1" "$top/config/hdl32e.ini" "$1" 1 world.length_m=600
+  "$bin/pole-map" build --quiet --config "street-$1.ini" --input "street-$1.rawlog" --truth "street-$1.tum" \
+    --output "true-$1.polemap" >/dev/null
+  for kind in street true; do
+    "$bin/pole-localize" --quiet --config "again-$1.ini" --input "again-$1.rawlog" --map "$kind-$1.polemap" --global \
+      --output "localized-$kind-$1" >/dev/null
+    error=$(/usr/bin/python3 "$top/share/experiments/local_error.py" "again-$1.tum" "localized-$kind-$1/run_00.tum")
+    awk -F, -v kind=$kind -v world="$1" -v error="$error" 'FNR > 1 { n++; ok += $3 == "ok" }
+      END { printf "{\"localized\": %d, \"map\": \"%s\", \"ok\": %.4f, \"local\": %s}\n", world,
+            kind == "true" ? "true poses" : "without truth", ok / n, error }' "localized-$kind-$1/run_00_health.csv" >>results
+  done
+}
+
+for seed in 7 8 9 10 11; do
+  real "vlp16-$seed" "$data/vlp16_loop" "$top/config/vlp16.ini" 0.015,0.03 "0 0 0 0 2.513 0.028" \
+    "$clockwise $biased --seed $seed" --set sensor.height_m=1.77
+done
+real kitti_raw_0005 "$data/kitti_raw_0005" "$top/config/kitti.ini" 0.01,0.03 "0 0 0 0 0 0" "$clockwise $biased --seed 7"
+nuscenes
+if [ -n "$kilometre" ]; then
+  real kilometre "$kilometre" "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise $biased --seed 7"
+  link_scans "$kilometre" "$out/laser" 1 228
+  /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" laser/odometry.txt
+  real kilometre-laser laser "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise"
+fi
+if [ -n "$tracks" ]; then
+  draw_drive "$out/kaist01" "$top/config/hdl32e.ini" 601 0 "world.track=$tracks/kaist01.txt.gz"
+  map kaist01 kaist01.ini kaist01.rawlog kaist01.tum 0,0
+fi
+for world in $(seq 701 720); do
+  draw_drive "$out/street-$world" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
+  map "street-$world" "street-$world.ini" "street-$world.rawlog" "street-$world.tum" 0,0
+done
+for world in $(seq 701 704); do localized "$world"; done
+
+jq -s . results >result.json
+rm results
+jq -r '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end_percent, .nees, .seconds] | @tsv' result.json |
+  awk -F '\t' 'BEGIN {
+      format = "%-18s %6s %8s %8s %8s %8s %8s %6s %8s\n"
+      printf format, "drive", "loops", "way m", "rms m", "max m", "local m", "end %", "NEES", "seconds" }
+    { printf format, $1, $2, $3, $4, $5, $6, $7, $8, $9 }' >table.txt
+jq -r '.[] | select(.localized) | "localized in \(.localized), \(.map): ok \(.ok), \(.local) m"' result.json >>table.txt
+cat table.txt

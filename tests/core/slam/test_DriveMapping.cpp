@@ -1,0 +1,209 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+
+#include "core/common/Transform.h"
+#include "core/slam/DriveMapping.h"
+#include "support/PoleStreet.h"
+#include "support/Refusal.h"
+
+namespace polemcl::test_drive_mapping {
+namespace {
+
+using tests::Dice;
+
+constexpr double kStep = 0.5;        // m
+constexpr double kRange = 25;        // m
+constexpr double kDetection = 0.03;  // m
+
+/// A drive with an odometry that reads 1 % too much, turns 0.01 deg/m too far and has noise of 2 %.
+struct Drive {
+  /// \param turn Curvature by the way, rad/m.
+  Drive(double length, const std::function<double(double)>& turn,
+        const std::vector<Eigen::Vector2d>& poles, std::uint64_t seed) {
+    Dice dice(seed);
+    Pose2D pose;
+    for (std::size_t i = 0; kStep * static_cast<double>(i) < length; ++i) {
+      const Pose2D motion{kStep, 0, turn(kStep * static_cast<double>(i)) * kStep};
+      if (i > 0) pose = compose(pose, motion);
+      truth.push_back(pose);
+      scans.push_back({{}, seen(pose, poles, dice), {}});
+      if (i > 0) scans.back().motion = read(motion, dice);
+    }
+  }
+  static std::vector<PoleDetection> seen(const Pose2D& pose,
+                                         const std::vector<Eigen::Vector2d>& poles, Dice& dice) {
+    std::vector<PoleDetection> detections;
+    for (const Eigen::Vector2d& pole : poles) {
+      const Pose2D at = relative(pose, {pole.x(), pole.y(), 0});
+      if (std::hypot(at.x, at.y) > kRange || dice.uniform() < 0.2) continue;
+      PoleDetection detection;
+      detection.x = at.x + kDetection * dice.normal();
+      detection.y = at.y + kDetection * dice.normal();
+      detection.radius = 0.1;
+      detection.confidence = 0.9;
+      detection.covariance = Eigen::Matrix2d::Identity() * kDetection * kDetection;
+      detections.push_back(detection);
+    }
+    return detections;
+  }
+  static PoseWithCovariance read(const Pose2D& motion, Dice& dice) {
+    const Eigen::Vector3d sigma(0.02 * kStep, 0.001, 0.0005);
+    return {{1.01 * motion.x + sigma.x() * dice.normal(), sigma.y() * dice.normal(),
+             motion.yaw + 0.01 * M_PI / 180 * kStep + sigma.z() * dice.normal()},
+            sigma.cwiseAbs2().asDiagonal()};
+  }
+  /// Greatest error of a position after the best rigid motion.
+  double worst(const std::vector<Pose2D>& poses) const {
+    Eigen::Matrix2Xd found(2, poses.size()), right(2, poses.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      found.col(static_cast<Eigen::Index>(i)) = centreOf(poses[i]);
+      right.col(static_cast<Eigen::Index>(i)) = centreOf(truth[i]);
+    }
+    const Eigen::Matrix3d motion = Eigen::umeyama(found, right, false);
+    return ((motion * found.colwise().homogeneous()).topRows<2>() - right)
+        .colwise()
+        .norm()
+        .maxCoeff();
+  }
+  double worst(const MappedDrives& mapped) const {
+    std::vector<Pose2D> poses;
+    for (const PoseWithCovariance& pose : mapped.poses) poses.push_back(pose.mean);
+    return worst(poses);
+  }
+  double worstOfOdometry() const {
+    std::vector<Pose2D> poses;
+    for (const DrivenScan& scan : scans)
+      poses.push_back(scan.motion ? compose(poses.back(), scan.motion->mean) : Pose2D());
+    return worst(poses);
+  }
+  std::vector<Pose2D> truth;
+  std::vector<DrivenScan> scans;
+};
+
+std::function<double(double)> ring(double radius) {
+  return [radius](double) { return 1 / radius; };
+}
+double straight(double) {
+  return 0;
+}
+
+/// A ring road of this radius; poles on both sides about every 15 m.
+std::vector<Eigen::Vector2d> ringPoles(double radius, std::uint64_t seed) {
+  Dice dice(seed);
+  std::vector<Eigen::Vector2d> poles;
+  for (double way = 0; way < 2 * M_PI * radius; way += dice.uniform(5, 10)) {
+    const double out = radius + (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 10);
+    const double angle = way / radius;
+    poles.emplace_back(out * std::sin(angle), radius - out * std::cos(angle));
+  }
+  return poles;
+}
+
+Drive ringDrive(std::uint64_t seed) {
+  return {560, ring(70), ringPoles(70, seed + 50), seed};  // 1.27 times round
+}
+
+/// Lamps opposite each other, every 25 m: each place looks like the next.
+std::vector<Eigen::Vector2d> evenPoles(double length) {
+  std::vector<Eigen::Vector2d> poles;
+  for (double way = 0; way < length + kRange; way += 25)
+    for (const double side : {-6.0, 6.0}) poles.emplace_back(way, side);
+  return poles;
+}
+
+}  // namespace
+
+TEST(DriveMapping, ClosesTheLoopOfARingRoad) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    SCOPED_TRACE(seed);
+    const Drive drive = ringDrive(seed);
+    const MappedDrives mapped = mapDrives(drive.scans, {});
+    ASSERT_EQ(mapped.poses.size(), drive.scans.size());
+    EXPECT_GT(drive.worstOfOdometry(), 2);
+    EXPECT_LT(drive.worst(mapped), 0.15);
+    EXPECT_GE(mapped.loops.size(), 4u);
+    for (const ClosedLoop& loop : mapped.loops) {
+      const Pose2D &a = drive.truth[loop.first], &b = drive.truth[loop.second];
+      EXPECT_LT(std::hypot(a.x - b.x, a.y - b.y), 60) << "a place passed twice";
+    }
+    // Noise of the odometry adds up as well.
+    EXPECT_NEAR(mapped.odometry.at(0).x(), 1 / 1.01 - 1, 0.002);
+    EXPECT_NEAR(mapped.odometry.at(0).y(), -0.01 * M_PI / 180, 1e-4);
+  }
+}
+
+TEST(DriveMapping, SigmasFitTheErrors) {
+  double sum = 0;
+  int count = 0;
+  for (const std::uint64_t seed : {11u, 12u, 13u, 14u, 15u, 16u}) {
+    const Drive drive = ringDrive(seed);
+    const MappedDrives mapped = mapDrives(drive.scans, {});
+    for (std::size_t i = 100; i < drive.truth.size(); i += 100, ++count) {
+      const Pose2D &right = drive.truth[i], &found = mapped.poses[i].mean;
+      const Eigen::Vector3d error(found.x - right.x, found.y - right.y,
+                                  wrapAngle(found.yaw - right.yaw));
+      sum += error.dot(mapped.poses[i].covariance.inverse() * error);
+    }
+  }
+  EXPECT_GT(sum / count, 1);
+  EXPECT_LT(sum / count, 5) << "3 is expected";
+}
+
+TEST(DriveMapping, PlacesThatLookAlikeAreNoLoop) {
+  const Drive drive(600, straight, evenPoles(600), 5);
+  const MappedDrives mapped = mapDrives(drive.scans, {});
+  EXPECT_EQ(mapped.loops.size(), 0u);
+  EXPECT_GT(drive.worstOfOdometry(), 5);
+  EXPECT_LT(drive.worst(mapped), 1);
+}
+
+/// There and back: only what the drive knows of itself tells one lamp from the next.
+TEST(DriveMapping, ItsOwnCovarianceDecidesBetweenPlacesThatLookAlike) {
+  const auto turn = [](double way) { return way > 200 && way < 220 ? M_PI / 20 : 0; };
+  const Drive drive(400, turn, evenPoles(200), 6);
+  const MappedDrives mapped = mapDrives(drive.scans, {});
+  EXPECT_GE(mapped.loops.size(), 2u);
+  EXPECT_LT(drive.worst(mapped), 0.5);
+}
+
+/// Four blocks, each the one before turned by a quarter: the first three corners lead to nothing
+/// new, and the drive ends before it comes round.
+TEST(DriveMapping, EqualBlocksAreNoLoop) {
+  Dice dice(8);
+  const double radius = 60, block = M_PI / 2 * radius;
+  std::vector<Eigen::Vector2d> poles;
+  for (double way = 0; way < block - 5; way += dice.uniform(5, 10)) {
+    const double out = radius + (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 10);
+    for (int corner = 0; corner < 4; ++corner) {
+      const double angle = way / radius + corner * M_PI / 2;
+      poles.emplace_back(out * std::sin(angle), radius - out * std::cos(angle));
+    }
+  }
+  const Drive drive(4 * block - 60, ring(radius), poles, 8);
+  const MappedDrives mapped = mapDrives(drive.scans, {});
+  EXPECT_EQ(mapped.loops.size(), 0u);
+  EXPECT_LT(drive.worst(mapped), 0.5);
+}
+
+TEST(DriveMapping, BeginsAtTheFirstScanAndIsTheSameEachTime) {
+  const Drive drive = ringDrive(4);
+  const MappedDrives a = mapDrives(drive.scans, {}), b = mapDrives(drive.scans, {});
+  EXPECT_NEAR(a.poses.front().mean.x, 0, 1e-6);
+  EXPECT_NEAR(a.poses.front().mean.yaw, 0, 1e-6);
+  EXPECT_LT(a.poses.front().covariance.trace(), 1e-6);
+  for (std::size_t i = 0; i < a.poses.size(); ++i) {
+    EXPECT_EQ(a.poses[i].mean.x, b.poses[i].mean.x);
+    EXPECT_EQ(a.poses[i].covariance, b.poses[i].covariance);
+  }
+}
+
+TEST(DriveMapping, NeedsPoles) {
+  const Drive none(50, straight, {}, 1), one(50, straight, {{20, 5}}, 1);
+  EXPECT_REFUSED(mapDrives(none.scans, {}), "only 0 poles", "2 are needed");
+  EXPECT_REFUSED(mapDrives(one.scans, {}), "only 1 poles", "2 are needed");
+}
+
+}  // namespace polemcl::test_drive_mapping
