@@ -38,7 +38,7 @@ TEST(Completion, OfSubcommandsAndOptions) {
   EXPECT_EQ(offered("pole-map --quiet u"), "update");
   EXPECT_EQ(offered("pole-map build --in"), "--input,--inventory");
   EXPECT_EQ(offered("pole-map build --verb"), "--verbose");
-  EXPECT_EQ(offered("pole-map build --png"), "");
+  EXPECT_EQ(offered("pole-map update --png"), "");
   EXPECT_EQ(offered("pole-batch --dr"), "--dry-run");
   EXPECT_EQ(offered((bin / "pole-localize").string() + " --glo"), "--global");
 }

@@ -101,7 +101,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   static constexpr double decorrelationMetres = 10;
   /// The same for all poles of a coarse map, m. Over longer distances the errors of its poles
   /// remain alike, but the odometry forgets what they said.
-  static constexpr double coarseMetres = 5;
+  static constexpr double coarseMetres = 6;
   /// A search result within these limits of the estimate counts as the same pose, m and rad.
   static constexpr double sameMetres = 0.5, sameRadians = 0.035;
   /// Re-initialize at the same pose anyway if the new pose matches at least this many more poles.
