@@ -177,3 +177,12 @@ link_scans() (
   for file in times.txt poses.txt; do grep -v '^#' "$1/$file" | sed -n "$3,$4p" >"$2/$file"; done
   find "$1/velodyne/" -name '*.bin' | sort | sed -n "$3,$4p" | while read -r scan; do ln -s "$scan" "$2/velodyne/"; done
 )
+
+# kilometre_arguments DATA_DIR KILOMETRE OUT: sets labels, kilometre and out, which is made.
+kilometre_arguments() {
+  check_arguments 3 3 "$@"
+  labels=$(cd "$1/kitti_odom_00_km" && pwd)
+  kilometre=$(cd "$2" && pwd)
+  mkdir -p "$3"
+  out=$(cd "$3" && pwd)
+}

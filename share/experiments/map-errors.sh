@@ -14,11 +14,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
 . "$top/share/experiments/common.sh"
 
-check_arguments 3 3 "$@"
-labels=$(cd "$1/kitti_odom_00_km" && pwd)
-kilometre=$(cd "$2" && pwd)
-mkdir -p "$3"
-out=$(cd "$3" && pwd)
+kilometre_arguments "$@"
 find_programs pole-import pole-extract pole-map
 /usr/bin/python3 -c 'import numpy' 2>/dev/null || die "no numpy for Python: install python3-numpy"
 config=$top/config/kitti.ini

@@ -94,7 +94,7 @@ TEST_F(McapTest, ReadsWhatIsWholeOfARecordingThatWasCutShort) {
   EXPECT_EQ(contentsOf(whole.substr(0, whole.size() - 1)), std::vector<std::string>{"first"});
   EXPECT_HAS(noteOf(whole.substr(0, whole.size() - 1)), "cut short; 1 messages before it are read");
   EXPECT_EQ(contentsOf(whole + std::string(4096, '\0')).size(), 2u);
-  // Of the index of the chunk only that of another channel was written.
+  // The recorder was killed after it wrote the index of another channel.
   const std::string chunk =
       mcapChunk(about + mcapChannel(8, 1, "/other") + first + mcapMessage(8, 1, "other"), "zstd");
   const std::string half = mcapIndex(8, {{1, about.size() + 1}});

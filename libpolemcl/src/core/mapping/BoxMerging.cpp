@@ -2,33 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
+#include "core/common/DisjointSets.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 
 namespace polemcl {
 namespace {
-
-/// Disjoint sets; the root of a set is its lowest index.
-class Sets {
- public:
-  explicit Sets(std::size_t size) : m_parent(size) {
-    std::iota(m_parent.begin(), m_parent.end(), std::uint32_t{0});
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (m_parent[i] != i) i = m_parent[i] = m_parent[m_parent[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    const auto [low, high] = std::minmax({root(a), root(b)});
-    m_parent[high] = low;
-  }
-
- private:
-  std::vector<std::uint32_t> m_parent;
-};
 
 /// The same sums of coordinates and radii as the boxes are made of, so that rounding decides alike.
 bool overlap(const PoleDetection& a, const PoleDetection& b) {
@@ -44,7 +25,7 @@ std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
   for (const LandmarkObservation& observation : observations)
     widest = std::max(widest, observation.pole.radius);
   const KdTree2D tree(centresOf(observations));
-  Sets sets(observations.size());
+  DisjointSets sets(observations.size());
   std::vector<PointHit> near;
   for (std::uint32_t i = 0; i < observations.size(); ++i) {
     const PoleDetection& pole = observations[i].pole;
@@ -57,7 +38,7 @@ std::vector<std::vector<std::uint32_t>> joinOverlappingBoxes(
   std::vector<std::vector<std::uint32_t>> groups;
   std::vector<std::size_t> groupOf(observations.size());
   for (std::uint32_t i = 0; i < observations.size(); ++i) {
-    const std::uint32_t root = sets.root(i);
+    const std::size_t root = sets.root(i);
     if (root == i) {
       groupOf[i] = groups.size();
       groups.emplace_back();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "core/common/DisjointSets.h"
 #include "core/common/GreedyAssignment.h"
 #include "core/common/Transform.h"
 #include "core/slam/LoopSearch.h"
@@ -19,25 +19,6 @@ constexpr double kTieGate = 16.3;    ///< squared Mahalanobis distance: 99.9 %
 constexpr double kMergeGates[] = {0.8, 0.5}, kLastGate = 0.4;
 constexpr std::uint32_t kFollowed = 3;  ///< scans that see a pole at least
 constexpr std::ptrdiff_t kFewestTracks = 2;
-
-/// Sets of tracks that are one pole.
-class TrackSets {
- public:
-  explicit TrackSets(std::size_t count) : m_parents(count) {
-    std::iota(m_parents.begin(), m_parents.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t track) {
-    while (m_parents[track] != track) track = m_parents[track] = m_parents[m_parents[track]];
-    return track;
-  }
-  void join(std::size_t a, std::size_t b) {
-    const auto [low, high] = std::minmax({find(a), find(b)});
-    m_parents[high] = low;
-  }
-
- private:
-  std::vector<std::size_t> m_parents;
-};
 
 class DriveMapping {
  public:
@@ -133,7 +114,7 @@ void DriveMapping::closeLoops() {
 
 /// The tracks of a submap become one with those seen earlier, where a loop was closed.
 void DriveMapping::merge(double gate, Covariance covariance) {
-  TrackSets sets(m_tracks.tracks.size());
+  DisjointSets sets(m_tracks.tracks.size());  // tracks that are one pole
   std::vector<Eigen::Vector2d> places = m_state.poles;
   for (const Loop& loop : m_loops) {
     std::vector<Eigen::Vector2d> own, earlier;
@@ -143,10 +124,10 @@ void DriveMapping::merge(double gate, Covariance covariance) {
       sets.join(loop.tracks[pair.first], loop.earlier[pair.second]);
   }
   m_factors.sightings = m_tracks.sightings;
-  for (PoleSighting& sighting : m_factors.sightings) sighting.pole = sets.find(sighting.pole);
+  for (PoleSighting& sighting : m_factors.sightings) sighting.pole = sets.root(sighting.pole);
   adjust({}, covariance);
   for (std::size_t i = 0; i < m_tracks.tracks.size(); ++i)
-    m_state.poles[i] = m_state.poles[sets.find(i)];
+    m_state.poles[i] = m_state.poles[sets.root(i)];
 }
 
 MappedDrives DriveMapping::run() {
