@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/RunRecords.h"
+#include "core/common/Transform.h"
 #include "core/localization/OdometryCalibration.h"
 #include "core/mapping/PoleExistence.h"
 #include "io/data/Trajectory.h"
@@ -12,13 +13,14 @@
 namespace polemcl::apps {
 namespace {
 
+constexpr double kKeptSigma = 0.001;  ///< m, rad: of motions between poses that stay
+
 AdjustmentTrust trustOf(const AllSettings& settings) {
   return {OdometryCalibration::scaleSigma, OdometryCalibration::yawSigma, kDecorrelation,
           settings.map.poseSigma};
 }
 
-std::vector<DrivenScan> scansOf(const std::vector<MappingSession>& drives) {
-  std::vector<DrivenScan> scans;
+void addScans(const std::vector<MappingSession>& drives, std::vector<DrivenScan>& scans) {
   for (const MappingSession& drive : drives)
     for (std::size_t i = 0; i < drive.scans.size(); ++i) {
       DrivenScan scan{drive.scans[i].pose_map_robot, drive.scans[i].poles_robot, {}};
@@ -26,7 +28,20 @@ std::vector<DrivenScan> scansOf(const std::vector<MappingSession>& drives) {
         scan.motion = PoseWithCovariance{motion->mean, motion->covariance};
       scans.push_back(std::move(scan));
     }
-  return scans;
+}
+
+/// Sessions of a map. Between their poses, which stay, the odometry matters little.
+void addScans(const AddedSessions& sessions, std::vector<DrivenScan>& scans) {
+  for (const AddedSession& session : sessions.sessions)
+    for (std::size_t i = 0; i < session.scans.size(); ++i) {
+      const Pose2D& pose = session.scans[i].pose_map_robot;
+      DrivenScan scan{pose, session.scans[i].poles_robot, {}};
+      if (i > 0)
+        scan.motion =
+            PoseWithCovariance{relative(session.scans[i - 1].pose_map_robot, pose),
+                               kKeptSigma * kKeptSigma * Eigen::Matrix3d::Identity()};
+      scans.push_back(std::move(scan));
+    }
 }
 
 /// \throws Error when most scans of a drive have no odometry.
@@ -58,18 +73,24 @@ AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
                                  const std::vector<MapPole>& inventory,
                                  const AllSettings& settings) {
   for (std::size_t i = 0; i < drives.size(); ++i) requireOdometry(drives[i], inputs[i]);
-  AdjustedDrives adjusted =
-      adjustDrives(scansOf(drives), inventory, {settings.map, trustOf(settings)});
+  std::vector<DrivenScan> scans;
+  addScans(drives, scans);
+  AdjustedDrives adjusted = adjustDrives(scans, inventory, {settings.map, trustOf(settings)});
   setPoses(drives, [&](std::size_t scan) { return adjusted.poses_map_robot[scan]; });
   return adjusted;
 }
 
 MappedDrives findPoses(std::vector<MappingSession>& drives,
                        const std::vector<std::filesystem::path>& inputs,
-                       const AllSettings& settings) {
-  MappedDrives mapped = io::located(inputs.front().string() + ": ",
-                                    [&] { return mapDrives(scansOf(drives), trustOf(settings)); });
-  setPoses(drives, [&](std::size_t scan) { return mapped.poses[scan].mean; });
+                       const AddedSessions& before, const AllSettings& settings) {
+  DrivesToMap job;
+  addScans(before, job.scans);
+  for (const AddedSession& session : before.sessions) job.names.push_back(session.name);
+  job.held = job.scans.size();
+  addScans(drives, job.scans);
+  for (const auto& input : inputs) job.names.push_back(input.string());
+  MappedDrives mapped = mapDrives(std::move(job), trustOf(settings));
+  setPoses(drives, [&](std::size_t scan) { return mapped.poses[mapped.held + scan].mean; });
   return mapped;
 }
 

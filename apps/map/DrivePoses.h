@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/mapping/DriveAdjustment.h"
+#include "core/mapping/MapAccumulator.h"
 #include "core/slam/DriveMapping.h"
 #include "map/MappingSession.h"
 
@@ -20,11 +21,13 @@ AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
                                  const std::vector<MapPole>& inventory,
                                  const AllSettings& settings);
 
-/// \brief Finds the poses of drives that only know their odometry; frame of the first scan.
+/// \brief Finds the poses of drives that only know their odometry; frame of the first scan, or of the
+/// sessions before.
+/// \param before Sessions whose poses stay; may be empty.
 /// \throws Error as mapDrives().
 MappedDrives findPoses(std::vector<MappingSession>& drives,
                        const std::vector<std::filesystem::path>& inputs,
-                       const AllSettings& settings);
+                       const AddedSessions& before, const AllSettings& settings);
 
 /// \brief Writes the path of a drive as TUM, and the covariances beside it (`a_cov.csv` of
 /// `a.tum`). \param poses Of all drives. \param first Of the drive.

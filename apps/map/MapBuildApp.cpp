@@ -87,7 +87,8 @@ void writePoses(const MapBuildJob& job, const MapBuildSummary& summary, const io
   report::MapView view;
   view.title = job.output.filename().string();
   view.poles = map.poles;
-  for (std::size_t i = 0, first = 0; i < paths.size(); first += paths[i++].size()) {
+  const std::size_t held = summary.mapped ? summary.mapped->held : 0;
+  for (std::size_t i = 0, first = held; i < paths.size(); first += paths[i++].size()) {
     if (i < job.trajectories.size())
       writeTrajectory(job.trajectories[i], paths[i], summary.mapped->poses, first);
     auto& drawn = job.kind == PoseKind::truth ? view.truth : view.estimate;
@@ -232,7 +233,8 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
       return adjustToInventory(drives, job.inputs, presentPoles(inventory), settings);
     });
   }
-  if (job.kind == PoseKind::odometry) summary.mapped = findPoses(drives, job.inputs, settings);
+  if (job.kind == PoseKind::odometry)
+    summary.mapped = findPoses(drives, job.inputs, sessions.added(), settings);
   const auto paths = pathsOf(drives);
   for (std::size_t i = 0; i < drives.size(); ++i)
     addDrive(job, i, std::move(drives[i]), sessions, summary);

@@ -22,9 +22,8 @@ constexpr double kDetection = 0.03;  // m
 struct Drive {
   /// \param turn Curvature by the way, rad/m.
   Drive(double length, const std::function<double(double)>& turn,
-        const std::vector<Eigen::Vector2d>& poles, std::uint64_t seed) {
+        const std::vector<Eigen::Vector2d>& poles, std::uint64_t seed, Pose2D pose = {}) {
     Dice dice(seed);
-    Pose2D pose;
     for (std::size_t i = 0; kStep * static_cast<double>(i) < length; ++i) {
       const Pose2D motion{kStep, 0, turn(kStep * static_cast<double>(i)) * kStep};
       if (i > 0) pose = compose(pose, motion);
@@ -83,6 +82,23 @@ struct Drive {
   std::vector<DrivenScan> scans;
 };
 
+MappedDrives map(const std::vector<Drive>& drives, std::size_t held = 0) {
+  DrivesToMap job;
+  for (const Drive& drive : drives) {
+    job.scans.insert(job.scans.end(), drive.scans.begin(), drive.scans.end());
+    job.names.push_back("drive " + std::to_string(job.names.size()));
+  }
+  job.held = held;
+  return mapDrives(std::move(job), {});
+}
+
+/// All poses of the drives, one behind the other.
+Drive joined(std::vector<Drive> drives) {
+  for (std::size_t i = 1; i < drives.size(); ++i)
+    drives[0].truth.insert(drives[0].truth.end(), drives[i].truth.begin(), drives[i].truth.end());
+  return drives[0];
+}
+
 std::function<double(double)> ring(double radius) {
   return [radius](double) { return 1 / radius; };
 }
@@ -120,7 +136,7 @@ TEST(DriveMapping, ClosesTheLoopOfARingRoad) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     SCOPED_TRACE(seed);
     const Drive drive = ringDrive(seed);
-    const MappedDrives mapped = mapDrives(drive.scans, {});
+    const MappedDrives mapped = map({drive});
     ASSERT_EQ(mapped.poses.size(), drive.scans.size());
     EXPECT_GT(drive.worstOfOdometry(), 2);
     EXPECT_LT(drive.worst(mapped), 0.15);
@@ -140,7 +156,7 @@ TEST(DriveMapping, SigmasFitTheErrors) {
   int count = 0;
   for (const std::uint64_t seed : {11u, 12u, 13u, 14u, 15u, 16u}) {
     const Drive drive = ringDrive(seed);
-    const MappedDrives mapped = mapDrives(drive.scans, {});
+    const MappedDrives mapped = map({drive});
     for (std::size_t i = 100; i < drive.truth.size(); i += 100, ++count) {
       const Pose2D &right = drive.truth[i], &found = mapped.poses[i].mean;
       const Eigen::Vector3d error(found.x - right.x, found.y - right.y,
@@ -154,7 +170,7 @@ TEST(DriveMapping, SigmasFitTheErrors) {
 
 TEST(DriveMapping, PlacesThatLookAlikeAreNoLoop) {
   const Drive drive(600, straight, evenPoles(600), 5);
-  const MappedDrives mapped = mapDrives(drive.scans, {});
+  const MappedDrives mapped = map({drive});
   EXPECT_EQ(mapped.loops.size(), 0u);
   EXPECT_GT(drive.worstOfOdometry(), 5);
   EXPECT_LT(drive.worst(mapped), 1);
@@ -164,7 +180,7 @@ TEST(DriveMapping, PlacesThatLookAlikeAreNoLoop) {
 TEST(DriveMapping, ItsOwnCovarianceDecidesBetweenPlacesThatLookAlike) {
   const auto turn = [](double way) { return way > 200 && way < 220 ? M_PI / 20 : 0; };
   const Drive drive(400, turn, evenPoles(200), 6);
-  const MappedDrives mapped = mapDrives(drive.scans, {});
+  const MappedDrives mapped = map({drive});
   EXPECT_GE(mapped.loops.size(), 2u);
   EXPECT_LT(drive.worst(mapped), 0.5);
 }
@@ -183,14 +199,14 @@ TEST(DriveMapping, EqualBlocksAreNoLoop) {
     }
   }
   const Drive drive(4 * block - 60, ring(radius), poles, 8);
-  const MappedDrives mapped = mapDrives(drive.scans, {});
+  const MappedDrives mapped = map({drive});
   EXPECT_EQ(mapped.loops.size(), 0u);
   EXPECT_LT(drive.worst(mapped), 0.5);
 }
 
 TEST(DriveMapping, BeginsAtTheFirstScanAndIsTheSameEachTime) {
   const Drive drive = ringDrive(4);
-  const MappedDrives a = mapDrives(drive.scans, {}), b = mapDrives(drive.scans, {});
+  const MappedDrives a = map({drive}), b = map({drive});
   EXPECT_NEAR(a.poses.front().mean.x, 0, 1e-6);
   EXPECT_NEAR(a.poses.front().mean.yaw, 0, 1e-6);
   EXPECT_LT(a.poses.front().covariance.trace(), 1e-6);
@@ -200,10 +216,58 @@ TEST(DriveMapping, BeginsAtTheFirstScanAndIsTheSameEachTime) {
   }
 }
 
+/// Arcs of a ring road, in any order and direction: the second shares places only with the third.
+TEST(DriveMapping, ConnectsDrives) {
+  const auto poles = ringPoles(70, 61);
+  const auto at = [](double way) {
+    return Pose2D{70 * std::sin(way / 70), 70 - 70 * std::cos(way / 70), way / 70};
+  };
+  Pose2D end = at(400);
+  end.yaw += M_PI;
+  const std::vector<Drive> drives{{140, ring(70), poles, 1, at(0)},
+                                  {140, ring(70), poles, 2, at(220)},
+                                  {400, ring(-70), poles, 3, end}};
+  const MappedDrives mapped = map(drives);
+  EXPECT_GE(mapped.loops.size(), 8u);
+  EXPECT_LT(joined(drives).worst(mapped), 0.25);
+  EXPECT_NEAR(mapped.driven, 680, 2);
+  ASSERT_EQ(mapped.odometry.size(), 3u);
+  EXPECT_NEAR(mapped.poses.front().mean.x, 0, 1e-6) << "the frame of the first scan";
+}
+
+TEST(DriveMapping, RefusesDrivesOfDifferentPlaces) {
+  EXPECT_REFUSED(map({ringDrive(1), ringDrive(2)}), "drive 1: none of its places was found");
+}
+
+/// Known poses of a drive stay, and another drive finds its place among them.
+TEST(DriveMapping, AddsADriveToPosesThatAreKnown) {
+  const auto poles = ringPoles(70, 71);
+  const Pose2D start{300000, 5000000, 3.1};
+  std::vector<Eigen::Vector2d> moved;
+  for (const Eigen::Vector2d& pole : poles)
+    moved.push_back(centreOf(compose(start, {pole.x(), pole.y(), 0})));
+  Drive before(440, ring(70), moved, 5, start);
+  for (std::size_t i = 0; i < before.scans.size(); ++i) {
+    before.scans[i].pose_map_robot = before.truth[i];
+    if (i > 0)
+      before.scans[i].motion = PoseWithCovariance{relative(before.truth[i - 1], before.truth[i]),
+                                                  1e-6 * Eigen::Matrix3d::Identity()};
+  }
+  const Drive added(200, ring(70), moved, 6, compose(start, {70, 70, M_PI / 2}));
+  const MappedDrives mapped = map({before, added}, before.scans.size());
+  for (std::size_t i = 0; i < before.truth.size() + added.truth.size(); ++i) {
+    const bool known = i < before.truth.size();
+    const Pose2D& truth = known ? before.truth[i] : added.truth[i - before.truth.size()];
+    const Pose2D& found = mapped.poses[i].mean;
+    ASSERT_LT(std::hypot(found.x - truth.x, found.y - truth.y), known ? 0.03 : 0.08) << i;
+    ASSERT_NEAR(wrapAngle(found.yaw - truth.yaw), 0, 0.003) << i;
+  }
+}
+
 TEST(DriveMapping, NeedsPoles) {
   const Drive none(50, straight, {}, 1), one(50, straight, {{20, 5}}, 1);
-  EXPECT_REFUSED(mapDrives(none.scans, {}), "only 0 poles", "2 are needed");
-  EXPECT_REFUSED(mapDrives(one.scans, {}), "only 1 poles", "2 are needed");
+  EXPECT_REFUSED(map({none}), "only 0 poles", "2 are needed");
+  EXPECT_REFUSED(map({one}), "only 1 poles", "2 are needed");
 }
 
 }  // namespace polemcl::test_drive_mapping

@@ -19,7 +19,6 @@ constexpr double kQuarterWeight = 9;
 constexpr double kMotionSigma = 0.003;  ///< m: of each motion, beyond what it states
 constexpr double kTurnSigma = 3e-4;     ///< rad: the same
 constexpr double kExact = 1e-3;         ///< m: added to what is known of an anchor's place
-constexpr double kStart = 1e-4;         ///< m, rad: how firmly a fixed start stands
 constexpr double kAnywhere = 1e3;       ///< m, rad: keeps what nothing holds from falling out
 
 constexpr const char* kOpen = "the drives cannot be adjusted: odometry and poles leave them open";
@@ -83,6 +82,18 @@ struct TieCost {
   }
 };
 
+struct KnownPoseCost {
+  Pose2D known;
+  Eigen::Matrix3d white;
+  template <class T>
+  bool operator()(const T* pose, T* residual) const {
+    Eigen::Map<Eigen::Matrix<T, 3, 1>> out(residual);
+    out = white * Eigen::Matrix<T, 3, 1>(pose[0] - known.x, pose[1] - known.y,
+                                         wrapped<T>(pose[2] - known.yaw));
+    return true;
+  }
+};
+
 struct SightingCost {
   Eigen::Vector2d seen;
   Eigen::Matrix2d white;
@@ -124,7 +135,7 @@ struct JointAdjustment::Impl {
   void addSighting(const PoleSighting& sighting);
   void addAnchor(const PoleAnchor& anchor);
   void addTie(const PoseTie& tie);
-  void addStart();
+  void addKnown(const KnownPose& known);
   Eigen::SparseMatrix<double> information();
   double newShare(std::size_t scan) const;
 
@@ -184,11 +195,10 @@ void JointAdjustment::Impl::addTie(const PoseTie& tie) {
                            nullptr, pose(tie.first), pose(tie.second));
 }
 
-void JointAdjustment::Impl::addStart() {
-  const Pose2D& start = state.poses.front();
-  problem.AddResidualBlock(new ceres::NormalPrior(Eigen::Matrix3d::Identity() / kStart,
-                                                  Eigen::Vector3d(start.x, start.y, start.yaw)),
-                           nullptr, pose(0));
+void JointAdjustment::Impl::addKnown(const KnownPose& known) {
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<KnownPoseCost, 3, 3>(new KnownPoseCost{
+                               known.pose.mean, whitening<3>(known.pose.covariance)}),
+                           nullptr, pose(known.scan));
 }
 
 JointAdjustment::JointAdjustment(const std::vector<DrivenScan>& scans, const AdjustmentTrust& trust,
@@ -198,7 +208,7 @@ JointAdjustment::JointAdjustment(const std::vector<DrivenScan>& scans, const Adj
   for (const PoleSighting& sighting : factors.sightings) m_impl->addSighting(sighting);
   for (const PoleAnchor& anchor : factors.anchors) m_impl->addAnchor(anchor);
   for (const PoseTie& tie : factors.ties) m_impl->addTie(tie);
-  if (factors.fixedStart) m_impl->addStart();
+  for (const KnownPose& known : factors.known) m_impl->addKnown(known);
 }
 
 JointAdjustment::~JointAdjustment() = default;

@@ -48,6 +48,12 @@ struct PoleAnchor {
   MapPole known;
 };
 
+/// \brief A pose that is known, with a covariance.
+struct KnownPose {
+  std::size_t scan = 0;
+  PoseWithCovariance pose;
+};
+
 /// \brief What the poles say of the way from one scan to a later one.
 struct PoseTie {
   std::size_t first = 0, second = 0;  ///< scans
@@ -59,7 +65,8 @@ struct AdjustmentFactors {
   std::vector<PoleSighting> sightings;
   std::vector<PoleAnchor> anchors;
   std::vector<PoseTie> ties;
-  bool fixedStart = false;  ///< the first pose stays: needed where no anchor says where it is
+  /// One at least of all drives that hang together, where no anchor says where they are.
+  std::vector<KnownPose> known;
 };
 
 /// \brief Scans before the first motion of each drive and after it, numbered: the drive of each.

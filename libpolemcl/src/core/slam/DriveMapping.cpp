@@ -6,7 +6,7 @@
 #include "core/common/DisjointSets.h"
 #include "core/common/GreedyAssignment.h"
 #include "core/common/Transform.h"
-#include "core/slam/LoopSearch.h"
+#include "core/slam/DriveFrames.h"
 
 namespace polemcl {
 namespace {
@@ -15,6 +15,8 @@ constexpr double kKnotSpacing = 10;  ///< m
 constexpr int kIterations = 30;      ///< of the least squares, at most
 constexpr int kRounds = 2;           ///< of looking for loops
 constexpr double kTieGate = 16.3;    ///< squared Mahalanobis distance: 99.9 %
+constexpr double kStart = 1e-4;      ///< m, rad: how firmly the first pose of a frame stands
+constexpr double kHeld = 0.02, kHeldYaw = 0.002;  ///< m, rad: σ of poses that are known
 /// m: greatest distance between the tracks of one pole, round by round.
 constexpr double kMergeGates[] = {0.8, 0.5}, kLastGate = 0.4;
 constexpr std::uint32_t kFollowed = 3;  ///< scans that see a pole at least
@@ -22,8 +24,12 @@ constexpr std::ptrdiff_t kFewestTracks = 2;
 
 class DriveMapping {
  public:
-  DriveMapping(std::vector<DrivenScan> scans, const AdjustmentTrust& trust)
-      : m_scans(std::move(scans)), m_trust(trust) {}
+  DriveMapping(DrivesToMap drives, const AdjustmentTrust& trust)
+      : m_scans(std::move(drives.scans)),
+        m_names(std::move(drives.names)),
+        m_held(drives.held),
+        m_trust(trust),
+        m_drives(drivesOf(m_scans)) {}
   MappedDrives run();
 
  private:
@@ -33,13 +39,19 @@ class DriveMapping {
   enum class Covariance { open, known };
   void adjust(const std::vector<PoseTie>& ties, Covariance covariance);
   std::vector<PoseTie> ties() const;
-  void closeLoops();
+  bool closeLoops();
+  std::vector<KnownPose> known() const;
+  void requireConnected() const;
   void merge(double gate, Covariance covariance);
   Eigen::Matrix3d covarianceOf(std::size_t scan) const;
   MappedDrives result() const;
 
   std::vector<DrivenScan> m_scans;
+  std::vector<std::string> m_names;
+  std::size_t m_held;
   AdjustmentTrust m_trust;
+  std::vector<std::size_t> m_drives;  ///< of each scan
+  std::vector<std::size_t> m_frames;  ///< of each scan's pose: the first drive in the same frame
   AdjustedState m_state;
   PoleTracks m_tracks;
   AdjustmentFactors m_factors;
@@ -47,13 +59,32 @@ class DriveMapping {
   Knots m_knots;
 };
 
-/// Poses by the odometry alone.
+/// Poses by the odometry alone; each drive in a frame of its own.
 void DriveMapping::chain() {
-  for (const DrivenScan& scan : m_scans)
-    m_state.poses.push_back(scan.motion && !m_state.poses.empty()
-                                ? compose(m_state.poses.back(), scan.motion->mean)
-                                : Pose2D());
-  m_state.odometry.assign(drivesOf(m_scans).back() + 1, Eigen::Vector2d::Zero());
+  for (std::size_t i = 0; i < m_scans.size(); ++i) {
+    const DrivenScan& scan = m_scans[i];
+    m_state.poses.push_back(i < m_held || !scan.motion || i == 0
+                                ? scan.pose_map_robot
+                                : compose(m_state.poses.back(), scan.motion->mean));
+    m_frames.push_back(i < m_held ? 0 : m_drives[i]);
+  }
+  m_state.odometry.assign(m_drives.back() + 1, Eigen::Vector2d::Zero());
+}
+
+/// What says where each frame is: poses that are held, or else the first one.
+std::vector<KnownPose> DriveMapping::known() const {
+  std::vector<KnownPose> known;
+  const Eigen::Matrix3d held =
+      Eigen::Vector3d(kHeld, kHeld, kHeldYaw).cwiseAbs2().asDiagonal();
+  for (std::size_t i = 0; i < m_scans.size(); ++i) {
+    const bool begins = i == 0 || m_drives[i] != m_drives[i - 1];
+    if (i < m_held)
+      known.push_back({i, {m_scans[i].pose_map_robot, held}});
+    else if (begins && m_frames[i] == m_drives[i])
+      known.push_back(
+          {i, {m_state.poses[i], kStart * kStart * Eigen::Matrix3d::Identity()}});
+  }
+  return known;
 }
 
 /// Follows the poles anew, and places each where its sightings have it on average.
@@ -81,13 +112,13 @@ void DriveMapping::requirePoles() const {
   const auto followed = std::count_if(m_tracks.tracks.begin(), m_tracks.tracks.end(),
                                       [](const PoleTrack& pole) { return pole.hits >= kFollowed; });
   if (followed < kFewestTracks)
-    throw Error("only " + std::to_string(followed) + " poles were seen in " +
+    throw Error(m_names.back() + ": only " + std::to_string(followed) + " poles were seen in " +
                 std::to_string(kFollowed) + " scans or more; " + std::to_string(kFewestTracks) +
                 " are needed: without poles nothing corrects the odometry");
 }
 
 void DriveMapping::adjust(const std::vector<PoseTie>& ties, Covariance covariance) {
-  m_factors.fixedStart = true;
+  m_factors.known = known();
   m_factors.ties = ties;
   JointAdjustment adjustment(m_scans, m_trust, m_factors, m_state);
   adjustment.solve(kIterations);
@@ -97,11 +128,12 @@ void DriveMapping::adjust(const std::vector<PoseTie>& ties, Covariance covarianc
 }
 
 /// Looks for loops by what is known now, and lets go of those that do not fit when all are adjusted
-/// together.
-void DriveMapping::closeLoops() {
+/// together. \return Whether drives were connected that were not before.
+bool DriveMapping::closeLoops() {
   track();
   adjust(ties(), Covariance::known);
-  m_loops = findLoops(m_scans, m_state, m_tracks, m_knots);
+  m_loops = findLoops(m_scans, m_state, m_tracks, m_knots, m_frames);
+  const bool connected = connectFrames(m_loops, m_tracks, m_frames, m_state);
   for (bool changed = !m_loops.empty(); changed;) {
     adjust(ties(), Covariance::open);
     const auto wrong = std::remove_if(m_loops.begin(), m_loops.end(), [&](const Loop& loop) {
@@ -110,6 +142,16 @@ void DriveMapping::closeLoops() {
     changed = wrong != m_loops.end();
     m_loops.erase(wrong, m_loops.end());
   }
+  return connected;
+}
+
+void DriveMapping::requireConnected() const {
+  for (std::size_t i = 0; i < m_scans.size(); ++i)
+    if (m_frames[i] != 0)
+      throw Error(m_names.at(m_drives[i]) +
+                  ": none of its places was found in the other drives; a map is made of drives "
+                  "that pass the same places, over at least 60 m: leave it out, or make another "
+                  "map of it");
 }
 
 /// The tracks of a submap become one with those seen earlier, where a loop was closed.
@@ -135,7 +177,9 @@ MappedDrives DriveMapping::run() {
   track();
   requirePoles();
   adjust({}, Covariance::open);
-  for (int i = 0; i < kRounds; ++i) closeLoops();
+  for (int left = kRounds; left > 0; --left)
+    if (closeLoops()) left = std::max(left, 2);  // what is connected now is searched once more
+  requireConnected();
   for (const double gate : kMergeGates) merge(gate, Covariance::open);
   merge(kLastGate, Covariance::known);
   return result();
@@ -159,19 +203,25 @@ Eigen::Matrix3d DriveMapping::covarianceOf(std::size_t scan) const {
 
 MappedDrives DriveMapping::result() const {
   MappedDrives result;
-  result.odometry = m_state.odometry;
+  const std::size_t heldDrives = m_held == 0 ? 0 : m_drives[m_held - 1] + 1;
+  result.held = m_held;
+  result.odometry.assign(m_state.odometry.begin() + static_cast<std::ptrdiff_t>(heldDrives),
+                         m_state.odometry.end());
   for (std::size_t i = 0; i < m_scans.size(); ++i)
     result.poses.push_back({m_state.poses[i], covarianceOf(i)});
   for (const Loop& loop : m_loops) result.loops.push_back({loop.tie.first, loop.tie.second});
   for (const PoleTrack& track : m_tracks.tracks) result.tracks += track.hits >= kFollowed ? 1 : 0;
-  result.driven = m_knots.driven.back();
+  for (std::size_t i = m_held + 1; i < m_scans.size(); ++i)
+    if (m_drives[i] == m_drives[i - 1])
+      result.driven +=
+          (centreOf(m_state.poses[i]) - centreOf(m_state.poses[i - 1])).norm();
   return result;
 }
 
 }  // namespace
 
-MappedDrives mapDrives(std::vector<DrivenScan> scans, const AdjustmentTrust& trust) {
-  return DriveMapping(std::move(scans), trust).run();
+MappedDrives mapDrives(DrivesToMap drives, const AdjustmentTrust& trust) {
+  return DriveMapping(std::move(drives), trust).run();
 }
 
 }  // namespace polemcl

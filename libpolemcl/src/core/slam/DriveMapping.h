@@ -4,9 +4,11 @@
 /// and mapping. Private to the library.
 ///
 /// Poles are followed from scan to scan, which corrects the odometry; submaps are searched among
-/// the poles seen earlier (LoopSearch); all is adjusted together (JointAdjustment), and repeated
-/// with what is known by then. The frame is that of the first scan.
+/// the poles seen earlier (LoopSearch), which closes loops and connects drives; all is adjusted
+/// together (JointAdjustment), and repeated with what is known by then. The frame is that of the
+/// first scan.
 
+#include <string>
 #include <vector>
 
 #include "core/mapping/JointAdjustment.h"
@@ -18,16 +20,25 @@ struct ClosedLoop {
   std::size_t first = 0, second = 0;
 };
 
-struct MappedDrives {
-  std::vector<PoseWithCovariance> poses;  ///< one a scan; the covariance is against the first
-  std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each drive
-  std::vector<ClosedLoop> loops;
-  std::size_t tracks = 0;  ///< poles seen in three scans or more, once for each time passed
-  double driven = 0;       ///< m
+struct DrivesToMap {
+  std::vector<DrivenScan> scans;
+  std::vector<std::string> names;  ///< of the drives, for messages
+  /// The poses of so many scans, all of the first drives, are known and stay. Of the others only
+  /// those where a drive begins count, and only the first is where it begins.
+  std::size_t held = 0;
 };
 
-/// \brief Finds the poses. The poses given are not used.
-/// \throws Error when fewer than two poles are followed.
-MappedDrives mapDrives(std::vector<DrivenScan> scans, const AdjustmentTrust& trust);
+struct MappedDrives {
+  std::vector<PoseWithCovariance> poses;  ///< one a scan; the covariance is against the first
+  std::size_t held = 0;                   ///< so many of the poses were known
+  std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each other drive
+  std::vector<ClosedLoop> loops;
+  std::size_t tracks = 0;  ///< poles seen in three scans or more, once for each time passed
+  double driven = 0;       ///< by the drives that are not held, m
+};
+
+/// \brief Finds the poses.
+/// \throws Error when fewer than two poles are followed, or a drive shares no place with the others.
+MappedDrives mapDrives(DrivesToMap drives, const AdjustmentTrust& trust);
 
 }  // namespace polemcl

@@ -4,7 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <optional>
+#include <set>
 
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
@@ -48,14 +51,32 @@ Eigen::Matrix3d wayCovariance(const Knots& knots, std::size_t a, std::size_t b, 
 class LoopSearch {
  public:
   LoopSearch(const std::vector<DrivenScan>& scans, const AdjustedState& state,
-             const PoleTracks& tracks, const Knots& knots)
-      : m_scans(scans), m_state(state), m_tracks(tracks), m_knots(knots), m_tree(state.poles) {}
+             const PoleTracks& tracks, const Knots& knots, const std::vector<std::size_t>& frames)
+      : m_scans(scans),
+        m_state(state),
+        m_tracks(tracks),
+        m_knots(knots),
+        m_frames(frames),
+        m_tree(state.poles) {}
   std::vector<Loop> run();
 
  private:
-  void search(std::size_t knot, const LocalSubmap& submap, std::size_t before);
-  std::optional<PoseTie> tieOf(std::size_t knot, const GlobalHypothesis& place,
-                               double length) const;
+  /// A submap, and where it is searched.
+  struct Query {
+    std::size_t knot = 0;
+    const LocalSubmap& submap;
+    std::size_t before = 0;  ///< see SubmapVisitor
+    std::size_t frame = 0;   ///< whose poles it is searched among
+  };
+  void search(const Query& query);
+  std::vector<std::size_t> candidates(const Query& query, double sigma) const;
+  std::vector<MapPole> polesOf(const std::vector<std::size_t>& tracks) const;
+  const GlobalHypothesis* choose(const Query& query, const GlobalResult& found,
+                                 const GlobalOptions& options, PoseTie& tie) const;
+  std::optional<PoseTie> tieOf(const Query& query, const GlobalHypothesis& place) const;
+  bool isConnected(const Query& query) const {
+    return m_frames[m_knots.scans[query.knot]] == query.frame;
+  }
   double positionSigma(std::size_t knot) const;
   bool agree(const Loop& a, const Loop& b) const;
 
@@ -63,8 +84,9 @@ class LoopSearch {
   const AdjustedState& m_state;
   const PoleTracks& m_tracks;
   const Knots& m_knots;
+  const std::vector<std::size_t>& m_frames;
   KdTree2D m_tree;  ///< of the tracks
-  std::vector<Loop> m_loops;
+  std::map<std::size_t, std::vector<Loop>> m_loops;  ///< by the frame searched
 };
 
 double LoopSearch::positionSigma(std::size_t knot) const {
@@ -73,12 +95,12 @@ double LoopSearch::positionSigma(std::size_t knot) const {
 }
 
 /// The way to the knot from the nearest one that was passed long before, if the place fits it.
-std::optional<PoseTie> LoopSearch::tieOf(std::size_t knot, const GlobalHypothesis& place,
-                                         double length) const {
+std::optional<PoseTie> LoopSearch::tieOf(const Query& query, const GlobalHypothesis& place) const {
   std::optional<std::size_t> nearest;
   double least = kReach;
-  for (std::size_t i = 0; i < knot; ++i) {
-    if (m_knots.driven[i] > m_knots.driven[knot] - length) break;
+  for (std::size_t i = 0; i < query.knot; ++i) {
+    if (m_knots.driven[i] > m_knots.driven[query.knot] - query.submap.options().length) break;
+    if (m_frames[m_knots.scans[i]] != query.frame) continue;
     const Pose2D& pose = m_state.poses[m_knots.scans[i]];
     const double distance =
         std::hypot(pose.x - place.pose_map_robot.x, pose.y - place.pose_map_robot.y);
@@ -87,7 +109,7 @@ std::optional<PoseTie> LoopSearch::tieOf(std::size_t knot, const GlobalHypothesi
     nearest = i;
   }
   if (!nearest) return std::nullopt;
-  const std::size_t first = m_knots.scans[*nearest], second = m_knots.scans[knot];
+  const std::size_t first = m_knots.scans[*nearest], second = m_knots.scans[query.knot];
   const Pose2D &from = m_state.poses[first], &to = m_state.poses[second];
   PoseTie tie{first, second, {relative(from, place.pose_map_robot), place.covariance}};
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
@@ -96,62 +118,93 @@ std::optional<PoseTie> LoopSearch::tieOf(std::size_t knot, const GlobalHypothesi
   tie.motion.covariance.diagonal() +=
       Eigen::Vector3d(kTieSigma, kTieSigma, kTieYawSigma).cwiseAbs2();
   const bool fits =
-      misfit(tie, m_state.poses, wayCovariance(m_knots, *nearest, knot, from, to)) <= kGate;
+      !isConnected(query) ||
+      misfit(tie, m_state.poses, wayCovariance(m_knots, *nearest, query.knot, from, to)) <= kGate;
   return fits ? std::optional(tie) : std::nullopt;
 }
 
-void LoopSearch::search(std::size_t knot, const LocalSubmap& submap, std::size_t before) {
-  const std::size_t scan = m_knots.scans[knot];
-  const Pose2D& pose = m_state.poses[scan];
+/// Tracks seen before, where the drive may be.
+std::vector<std::size_t> LoopSearch::candidates(const Query& query, double sigma) const {
+  const std::size_t scan = m_knots.scans[query.knot];
   std::vector<bool> own(m_tracks.tracks.size());
-  Loop loop;
-  for (const SubmapPole& pole : submap.poles()) {
-    own[before + pole.number] = true;
-    if (pole.hits > 1) loop.tracks.push_back(before + pole.number);
+  for (const SubmapPole& pole : query.submap.poles()) own[query.before + pole.number] = true;
+  std::vector<std::size_t> near;
+  if (isConnected(query)) {
+    std::vector<PointHit> hits;
+    m_tree.within(m_state.poses[scan].x, m_state.poses[scan].y, kReach + kRegionSigmas * sigma,
+                  hits);
+    for (const PointHit& hit : hits) near.push_back(hit.index);
+  } else {
+    near.resize(m_tracks.tracks.size());
+    std::iota(near.begin(), near.end(), std::size_t{0});
   }
-  const double sigma = positionSigma(knot);
-  std::vector<PointHit> hits;
-  m_tree.within(pose.x, pose.y, kReach + kRegionSigmas * sigma, hits);
+  std::vector<std::size_t> chosen;
+  for (const std::size_t index : near) {
+    const PoleTrack& track = m_tracks.tracks[index];
+    if (!own[index] && track.last < scan && track.hits >= kFewestHits &&
+        m_frames[track.last] == query.frame)
+      chosen.push_back(index);
+  }
+  return chosen;
+}
+
+std::vector<MapPole> LoopSearch::polesOf(const std::vector<std::size_t>& tracks) const {
   std::vector<MapPole> map;
-  for (const PointHit& hit : hits) {
-    const PoleTrack& track = m_tracks.tracks[hit.index];
-    if (own[hit.index] || track.last >= scan || track.hits < kFewestHits) continue;
+  for (const std::size_t track : tracks) {
     MapPole pole;
-    pole.x = m_state.poles[hit.index].x();
-    pole.y = m_state.poles[hit.index].y();
-    pole.radius = track.radius;
+    pole.x = m_state.poles[track].x();
+    pole.y = m_state.poles[track].y();
+    pole.radius = m_tracks.tracks[track].radius;
     pole.covariance = kTrackSigma * kTrackSigma * Eigen::Matrix2d::Identity();
     map.push_back(pole);
-    loop.earlier.push_back(hit.index);
   }
-  GlobalOptions options;
-  if (3 * sigma < kNear) options.minMatched = kFewMatched;
-  if (map.size() < static_cast<std::size_t>(options.minMatched)) return;
-  const GlobalResult found = GlobalLocalizer(map, options).localize(submap);
+  return map;
+}
+
+/// The best place that fits, if it clearly beats all others that do; with the tie to it.
+const GlobalHypothesis* LoopSearch::choose(const Query& query, const GlobalResult& found,
+                                           const GlobalOptions& options, PoseTie& tie) const {
   double second = 0;  // against no place at all it must lead as well
   const GlobalHypothesis* best = nullptr;
   for (const GlobalHypothesis& place : found.hypotheses) {
-    const auto tie = tieOf(knot, place, submap.options().length);
-    if (!tie) continue;
+    const auto fitting = tieOf(query, place);
+    if (!fitting) continue;
     if (best) {
       second = std::max(second, place.logRatio);
       break;
     }
     best = &place;
-    loop.tie = *tie;
+    tie = *fitting;
   }
-  if (!best || best->matched < static_cast<std::uint32_t>(options.minMatched) ||
-      best->matchedShare < options.minShare || best->logRatio - second < options.margin)
-    return;
+  const bool clear = best && best->matched >= static_cast<std::uint32_t>(options.minMatched) &&
+                     best->matchedShare >= options.minShare &&
+                     best->logRatio - second >= options.margin;
+  return clear ? best : nullptr;
+}
+
+void LoopSearch::search(const Query& query) {
+  Loop loop;
+  for (const SubmapPole& pole : query.submap.poles())
+    if (pole.hits > 1) loop.tracks.push_back(query.before + pole.number);
+  const double sigma = positionSigma(query.knot);
+  loop.earlier = candidates(query, sigma);
+  GlobalOptions options;
+  if (isConnected(query) && 3 * sigma < kNear) options.minMatched = kFewMatched;
+  if (loop.earlier.size() < static_cast<std::size_t>(options.minMatched)) return;
+  const GlobalResult found =
+      GlobalLocalizer(polesOf(loop.earlier), options).localize(query.submap);
+  const GlobalHypothesis* best = choose(query, found, options, loop.tie);
+  if (!best) return;
   loop.place = best->pose_map_robot;
-  m_loops.push_back(std::move(loop));
+  m_loops[query.frame].push_back(std::move(loop));
 }
 
 /// Whether the correction that one loop asks for is that of the other.
 bool LoopSearch::agree(const Loop& a, const Loop& b) const {
   const Pose2D &poseA = m_state.poses[a.tie.second], &poseB = m_state.poses[b.tie.second];
   const Pose2D way = relative(poseA, poseB), asked = relative(a.place, b.place);
-  return std::hypot(way.x, way.y) < kNeighbours &&
+  return m_frames[a.tie.second] == m_frames[b.tie.second] &&
+         std::hypot(way.x, way.y) < kNeighbours &&
          std::hypot(way.x - asked.x, way.y - asked.y) < kSamePlace &&
          std::abs(wrapAngle(way.yaw - asked.yaw)) < kSameYaw;
 }
@@ -160,14 +213,19 @@ std::vector<Loop> LoopSearch::run() {
   std::size_t next = 0;
   trackPoles(m_scans, m_state.poses,
              [&](std::size_t scan, const LocalSubmap& submap, std::size_t before) {
-               if (next < m_knots.scans.size() && m_knots.scans[next] == scan)
-                 search(next++, submap, before);
+               if (next == m_knots.scans.size() || m_knots.scans[next] != scan) return;
+               const std::set<std::size_t> frames(m_frames.begin(),
+                                                  m_frames.begin() +
+                                                      static_cast<std::ptrdiff_t>(scan) + 1);
+               for (const std::size_t frame : frames) search({next, submap, before, frame});
+               ++next;
              });
   std::vector<Loop> supported;
-  for (std::size_t i = 0; i < m_loops.size(); ++i)
-    if ((i > 0 && agree(m_loops[i - 1], m_loops[i])) ||
-        (i + 1 < m_loops.size() && agree(m_loops[i], m_loops[i + 1])))
-      supported.push_back(m_loops[i]);
+  for (const auto& [frame, loops] : m_loops)
+    for (std::size_t i = 0; i < loops.size(); ++i)
+      if ((i > 0 && agree(loops[i - 1], loops[i])) ||
+          (i + 1 < loops.size() && agree(loops[i], loops[i + 1])))
+        supported.push_back(loops[i]);
   return supported;
 }
 
@@ -196,8 +254,9 @@ double misfit(const PoseTie& tie, const std::vector<Pose2D>& poses, const Eigen:
 }
 
 std::vector<Loop> findLoops(const std::vector<DrivenScan>& scans, const AdjustedState& state,
-                            const PoleTracks& tracks, const Knots& knots) {
-  return LoopSearch(scans, state, tracks, knots).run();
+                            const PoleTracks& tracks, const Knots& knots,
+                            const std::vector<std::size_t>& frames) {
+  return LoopSearch(scans, state, tracks, knots, frames).run();
 }
 
 }  // namespace polemcl

@@ -1,12 +1,12 @@
 #pragma once
 /// \file LoopSearch.h
-/// \brief Places of a drive that it passed before: each submap is searched on all poles seen
-/// earlier. Private to the library.
+/// \brief Places that were passed before: each submap is searched on all poles seen earlier, by its
+/// drive or by others. Private to the library.
 ///
 /// The search is that of a robot without a start pose (GlobalLocalizer), among the poles where the
 /// drive may be by its own uncertainty. A place counts only if it fits that uncertainty, clearly
 /// beats all others that do, and if the submaps before or after find the same: streets that look
-/// alike are left open.
+/// alike are left open. Poles of drives whose place is not known yet are searched as a whole.
 
 #include <vector>
 
@@ -17,7 +17,7 @@ namespace polemcl {
 /// \brief A place passed twice.
 struct Loop {
   PoseTie tie;
-  Pose2D place;                      ///< of the second scan, as found among the poles before
+  Pose2D place;                      ///< of the second scan, in the frame of the first
   std::vector<std::size_t> tracks;   ///< of the submap
   std::vector<std::size_t> earlier;  ///< tracks that it was searched among
 };
@@ -33,10 +33,12 @@ struct Knots {
 Knots chooseKnots(const std::vector<DrivenScan>& scans, const std::vector<Pose2D>& poses,
                   double spacing);
 
-/// \brief The loops that several submaps agree on, in the order they were driven.
+/// \brief The loops that several submaps agree on, by frames, then in the order they were driven.
 /// \param tracks Of the same poses. \param state With a pole for each track.
+/// \param frames In which each scan's pose is; drives in different ones are not connected yet.
 std::vector<Loop> findLoops(const std::vector<DrivenScan>& scans, const AdjustedState& state,
-                            const PoleTracks& tracks, const Knots& knots);
+                            const PoleTracks& tracks, const Knots& knots,
+                            const std::vector<std::size_t>& frames);
 
 /// \brief Squared Mahalanobis distance of a tie from the poses, by the tie's covariance and `more`.
 double misfit(const PoseTie& tie, const std::vector<Pose2D>& poses, const Eigen::Matrix3d& more);

@@ -1,0 +1,19 @@
+#pragma once
+/// \file DriveFrames.h
+/// \brief Brings drives into one frame where loops lead from one to the other. Private to the
+/// library.
+
+#include <vector>
+
+#include "core/slam/LoopSearch.h"
+
+namespace polemcl {
+
+/// \brief Moves the poses and poles of drives to the frame of earlier ones, by the rigid motion that
+/// most of the loops between them agree on, two at least.
+/// \param loops Those that lead to a drive still in another frame, or disagree, are removed.
+/// \param frames Of each scan, see findLoops(). \return Whether anything was connected.
+bool connectFrames(std::vector<Loop>& loops, const PoleTracks& tracks,
+                   std::vector<std::size_t>& frames, AdjustedState& state);
+
+}  // namespace polemcl
