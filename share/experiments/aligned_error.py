@@ -2,6 +2,7 @@
 """Errors of a trajectory in a frame of its own, after the best rigid motion, as a line of JSON.
 
 Usage: aligned_error.py TRUTH.tum ESTIMATE.tum COVARIANCES.csv [SIGMA_M,SIGMA_DEG]
+Several drives in one frame: the files of each kind with commas between them.
 "rms" and "max": positions, after the best rigid motion of the whole drive, m. "local": mean rms of pieces of 60 m,
 each after a motion of its own, m (null for shorter drives). "end_percent": error of the last position, the first
 poses laid on each other, in percent of the way. "nees": mean normalized squared error of x, y, yaw against the first
@@ -32,11 +33,11 @@ def rigid_errors(found, right):
 def local_error(found, right, way, metres=60):
     pieces = [(way >= begin) & (way <= begin + metres) for begin in np.arange(0, way[-1] - metres, 5)]
     errors = [np.sqrt((rigid_errors(found[p], right[p]) ** 2).mean()) for p in pieces]
-    return round(float(np.mean(errors)), 4) if errors else None
+    return float(np.mean(errors)) if errors else None
 
 
-def nees(errors, file, sigmas):
-    table = np.loadtxt(file, delimiter=",", skiprows=1)[:, 5:]
+def nees(errors, files, sigmas):
+    table = np.vstack([np.loadtxt(file, delimiter=",", skiprows=1) for file in files])[:, 5:]
     extra = np.diag([sigmas[0], sigmas[0], np.radians(sigmas[1])]) ** 2
     values = []
     for error, (xx, xy, xt, yy, yt, tt) in list(zip(errors, table))[1:]:
@@ -45,24 +46,37 @@ def nees(errors, file, sigmas):
     return float(np.mean(values))
 
 
-def main(truth, estimate, covariances, sigmas):
+def drive(truth, estimate):
+    """Positions and headings of the truth and of the estimate, and the way driven."""
     times, right, heading = read(truth)
     stamps, found, yaw = read(estimate)
     chosen = [np.abs(times - stamp).argmin() for stamp in stamps]
     right, heading = right[chosen], heading[chosen]
     way = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(right, axis=0).T))])
+    return right, heading, found, yaw, way
+
+
+def mean(values):
+    known = [value for value in values if value is not None]
+    return round(float(np.mean(known)), 4) if known else None
+
+
+def main(truths, estimates, covariances, sigmas):
+    drives = [drive(*files) for files in zip(truths.split(","), estimates.split(","))]
+    right, heading, found, yaw = [np.concatenate([d[i] for d in drives]) for i in range(4)]
+    length = float(sum(d[4][-1] for d in drives))
     errors = rigid_errors(found, right)
     # Both in the frame of the first pose.
     own = turned(right - right[0], -heading[0]) - turned(found - found[0], -yaw[0])
     turns = heading - heading[0] - yaw + yaw[0]
     turns = np.arctan2(np.sin(turns), np.cos(turns))
     print(json.dumps({
-        "length": round(float(way[-1]), 1),
+        "length": round(length, 1),
         "rms": round(float(np.sqrt((errors ** 2).mean())), 4),
         "max": round(float(errors.max()), 4),
-        "local": local_error(found, right, way),
-        "end_percent": round(100 * float(np.hypot(*own[-1])) / float(way[-1]), 3),
-        "nees": round(nees(np.column_stack([own, turns]), covariances, sigmas), 2)}))
+        "local": mean([local_error(found, right, way) for right, _, found, _, way in drives]),
+        "end_percent": round(100 * float(np.hypot(*own[-1])) / length, 3),
+        "nees": round(nees(np.column_stack([own, turns]), covariances.split(","), sigmas), 2)}))
 
 
 if len(sys.argv) not in (4, 5):

@@ -334,7 +334,7 @@ TEST_F(BatchApp, AFullDiskLosesNothing) {
   const std::string run = " \"" + program + "\" \"" + (*s_folder / "street-batch.ini").string() +
                           "\" --quiet --output \"" + output.string() + "\" 2>/dev/null";
   // Elsewhere: a file of coverage counts that is cut short spoils those of all tests.
-  const std::string counts = "export GCOV_PREFIX='" + s_folder->string() + "'; ";
+  const std::string counts = "export GCOV_PREFIX='" + (*s_folder / "counts").string() + "'; ";
   EXPECT_NE(std::system((counts + "trap '' XFSZ; ulimit -f 64;" + run).c_str()), 0);
   for (const auto& entry : fs::directory_iterator(output / "tasks"))
     EXPECT_TRUE(fs::exists(entry.path() / "done.json")) << entry.path();
