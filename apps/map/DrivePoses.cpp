@@ -37,9 +37,8 @@ void addScans(const AddedSessions& sessions, std::vector<DrivenScan>& scans) {
       const Pose2D& pose = session.scans[i].pose_map_robot;
       DrivenScan scan{pose, session.scans[i].poles_robot, {}};
       if (i > 0)
-        scan.motion =
-            PoseWithCovariance{relative(session.scans[i - 1].pose_map_robot, pose),
-                               kKeptSigma * kKeptSigma * Eigen::Matrix3d::Identity()};
+        scan.motion = PoseWithCovariance{relative(session.scans[i - 1].pose_map_robot, pose),
+                                         kKeptSigma * kKeptSigma * Eigen::Matrix3d::Identity()};
       scans.push_back(std::move(scan));
     }
 }
@@ -82,8 +81,10 @@ AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
 
 MappedDrives findPoses(std::vector<MappingSession>& drives,
                        const std::vector<std::filesystem::path>& inputs,
-                       const AddedSessions& before, const AllSettings& settings) {
+                       const AddedSessions& before, std::vector<DriveFix> fixes,
+                       const AllSettings& settings) {
   DrivesToMap job;
+  job.fixes = std::move(fixes);
   addScans(before, job.scans);
   for (const AddedSession& session : before.sessions) job.names.push_back(session.name);
   job.held = job.scans.size();

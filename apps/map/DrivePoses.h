@@ -21,13 +21,14 @@ AdjustedDrives adjustToInventory(std::vector<MappingSession>& drives,
                                  const std::vector<MapPole>& inventory,
                                  const AllSettings& settings);
 
-/// \brief Finds the poses of drives that only know their odometry; frame of the first scan, or of the
-/// sessions before.
-/// \param before Sessions whose poses stay; may be empty.
-/// \throws Error as mapDrives().
+/// \brief Finds the poses of drives that only know their odometry; frame of the sessions
+/// before, or of the fixes, else of the first scan.
+/// \param before Sessions whose poses stay; may be empty. \param fixes On the plane of the map,
+/// their scans counted from the first of `before`; may be empty. \throws Error as mapDrives().
 MappedDrives findPoses(std::vector<MappingSession>& drives,
                        const std::vector<std::filesystem::path>& inputs,
-                       const AddedSessions& before, const AllSettings& settings);
+                       const AddedSessions& before, std::vector<DriveFix> fixes,
+                       const AllSettings& settings);
 
 /// \brief Writes the path of a drive as TUM, and the covariances beside it (`a_cov.csv` of
 /// `a.tum`). \param poses Of all drives. \param first Of the drive.

@@ -51,6 +51,12 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
 void settle(MapBuildJob& job) {
   if (job.poses.empty()) job.kind = PoseKind::odometry;
   const bool found = job.kind == PoseKind::odometry;
+  if (!found && !job.gnss.empty())
+    throw CLI::ValidationError("--gnss: the poses are given; leave it out");
+  if (!job.gnss.empty() && job.gnss.size() != job.inputs.size())
+    throw CLI::ValidationError("--gnss: one file per --input is needed, " +
+                               std::to_string(job.inputs.size()) + ", not " +
+                               std::to_string(job.gnss.size()));
   if (!found && !job.trajectories.empty())
     throw CLI::ValidationError("--trajectory: the poses are given; leave it out");
   if (!job.trajectories.empty() && job.trajectories.size() != job.inputs.size())
@@ -116,6 +122,9 @@ Subcommand buildCommand(CLI::App& program) {
       ->needs(estimate)
       ->excludes("--add");
   estimate->needs("--inventory");
+  addFile(cli, "--gnss", job->gnss,
+          "Without --truth: positions from satellites (CSV: time, latitude, longitude, sigma), one "
+          "file per rawlog; the map gets their datum");
   markOutput(
       addFile(cli, "--trajectory", job->trajectories,
               "Without --truth: also write the poses found (TUM, covariances beside it), one "

@@ -12,6 +12,7 @@
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
+#include "map/DriveFixFiles.h"
 #include "map/DrivePoses.h"
 #include "report/picture/MapPicture.h"
 
@@ -189,27 +190,50 @@ std::map<std::string, std::string> facts(const AllSettings& settings,
   if (summary.mapped) {
     info["poses"] = "odometry";
     info["loops"] = std::to_string(summary.mapped->loops.size());
+    if (summary.mapped->fixes > 0) info["fixes"] = std::to_string(summary.mapped->fixes);
   }
   if (summary.inventory) info["pose_sigma_m"] = io::fixed(summary.inventory->drives.sigma, 4);
   return info;
 }
 
-/// Standard deviation along an axis, m.
-double lastSigma(const MappedDrives& mapped) {
-  return std::sqrt(mapped.poses.back().covariance.topLeftCorner<2, 2>().trace() / 2);
+/// Standard deviation of a place along an axis, m.
+double sigmaOf(const PoseWithCovariance& pose) {
+  return std::sqrt(pose.covariance.topLeftCorner<2, 2>().trace() / 2);
 }
 
 std::string foundText(const MappedDrives& mapped, const MapBuildJob& job) {
   std::ostringstream out;
   out << "poses by odometry and " << mapped.tracks << " poles followed over "
       << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
-      << " places passed again; the last pose is certain to " << io::fixed(lastSigma(mapped), 2)
-      << " m against the first\n";
+      << " places passed again; the last pose is certain to "
+      << io::fixed(sigmaOf(mapped.poses.back()), 2)
+      << (mapped.fixes + mapped.held > 0 ? " m\n" : " m against the first\n");
+  if (mapped.fixes > 0)
+    out << "placed by " << mapped.fixes
+        << " positions from satellites; the first pose is certain to "
+        << io::fixed(sigmaOf(mapped.poses.at(mapped.held)), 2) << " m\n";
   for (std::size_t i = 0; i < mapped.odometry.size(); ++i)
     out << job.inputs[i].filename().string() << ": its odometry is "
         << io::fixed(-100 * mapped.odometry[i].x(), 2) << " % long, and turns "
         << io::fixed(-mapped.odometry[i].y() * 180 / M_PI, 4) << " deg/m\n";
   return out.str();
+}
+
+/// The datum becomes that of the fixes, where there are some.
+MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
+                         const AddedSessions& before, std::optional<io::Datum>& datum,
+                         const AllSettings& settings) {
+  if (job.add && !job.gnss.empty() && !datum)
+    throw Error(job.add->string() +
+                ": has no datum, so that fixes cannot be placed on it; leave "
+                "out --gnss");
+  auto fixes = readDriveFixes(job.gnss, drives, before.scans(), datum);
+  MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(fixes), settings);
+  if (!job.gnss.empty() && mapped.fixes == 0)
+    throw Error(job.gnss.front().string() +
+                ": its fixes are too few, or too near to each other, to place a drive: five are "
+                "needed, over 40 m; leave out --gnss");
+  return mapped;
 }
 
 }  // namespace
@@ -218,7 +242,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress) {
   job.validate();
   MapBuildSummary summary;
-  const auto datum = datumFor(job);
+  auto datum = datumFor(job);
   MapAccumulator sessions = accumulator(job, settings);
   std::vector<MappingSession> drives;
   for (std::size_t i = 0; i < job.inputs.size(); ++i)
@@ -234,7 +258,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
     });
   }
   if (job.kind == PoseKind::odometry)
-    summary.mapped = findPoses(drives, job.inputs, sessions.added(), settings);
+    summary.mapped = findPosesOf(drives, job, sessions.added(), datum, settings);
   const auto paths = pathsOf(drives);
   for (std::size_t i = 0; i < drives.size(); ++i)
     addDrive(job, i, std::move(drives[i]), sessions, summary);

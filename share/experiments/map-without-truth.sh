@@ -9,9 +9,13 @@
 # the others); on the kilometre also that of a real laser odometry. nuScenes has the poses by the planes in its scans
 # (plane_adjustment.py). "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is
 # false.
+# "several drives": the even and the odd key frames of the kilometre, each with an odometry of its own (seeds 7, 8),
+# at once and the odd ones added to the map of the even; two days of the streets 701 to 704 at once. "apart": each
+# street and the next one, which are different places: 20 pairs that must be refused. "gnss": fixes drawn by
+# gnss_fixes.py (seed 7) for the streets 701 to 704 and KAIST 01.
 # "localized": a second day of the streets 701 to 704 in the map without truth and in that of the true poses: share
 # of the scans that are ok, and errors after the best rigid motion within 60 m (local_error.py).
-# Programs: build/bin, or POLEMCL_BIN. Needs jq, python3-numpy and python3-scipy; 15 minutes.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq, python3-numpy and python3-scipy; 20 minutes.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -40,17 +44,28 @@ biased="--odometry-noise 0.02 --odometry-scale 0.01 --odometry-yaw-deg-m 0.01"
 cd "$out"
 : >results
 
-# map NAME CONFIG INPUT.rawlog TRUTH.tum SIGMAS [OPTION...]: a line of results.
+# with_ending ENDING SEPARATOR NAME...: names of files.
+with_ending() {
+  ending=$1 separator=$2 files=""
+  shift 2
+  for file in "$@"; do files="$files${files:+$separator}$file$ending"; done
+  echo "$files"
+}
+
+# map NAME CONFIG "DRIVE..." "TRUTH..." SIGMAS [OPTION...]: a line of results. Drives and truths without endings.
+# shellcheck disable=SC2086,SC2046 # lists of words
 map() {
-  name=$1 truth=$4 sigmas=$5
-  config=$2 input=$3
+  name=$1 drives=$3 truths=$4 sigmas=$5
+  config=$2
   shift 5
+  found=$(for drive in $drives; do echo "$name-$drive-found"; done)
   begin=$(date +%s)
-  "$bin/pole-map" build --config "$config" "$@" --input "$input" --output "$name.polemap" --trajectory "$name-found.tum" \
-    --png "$name.png" >"$name.txt"
+  "$bin/pole-map" build --config "$config" "$@" --input $(with_ending .rawlog " " $drives) --output "$name.polemap" \
+    --trajectory $(with_ending .tum " " $found) --png "$name.png" >"$name.txt"
   seconds=$(($(date +%s) - begin))
   loops=$(sed -n 's/.*; \([0-9]*\) places passed again.*/\1/p' "$name.txt")
-  /usr/bin/python3 "$top/share/experiments/aligned_error.py" "$truth" "$name-found.tum" "$name-found_cov.csv" "$sigmas" |
+  /usr/bin/python3 "$top/share/experiments/aligned_error.py" "$(with_ending .tum , $truths)" \
+    "$(with_ending .tum , $found)" "$(with_ending _cov.csv , $found)" "$sigmas" |
     jq -c --arg drive "$name" --argjson loops "$loops" --argjson seconds $seconds \
       '{drive: $drive, loops: $loops} + . + {seconds: $seconds}' >>results
 }
@@ -62,7 +77,7 @@ real() {
   # shellcheck disable=SC2086 # several words
   "$bin/pole-import" folder --quiet --input "$folder" --output "$name.scans.rawlog" --sensor-pose "$mounting" $options
   "$bin/pole-extract" --quiet --config "$config" "$@" --input "$name.scans.rawlog" --output "$name.rawlog"
-  map "$name" "$config" "$name.rawlog" "$name.scans.tum" "$sigmas" "$@"
+  map "$name" "$config" "$name" "$name.scans" "$sigmas" "$@"
   rm "$name.scans.rawlog"
 }
 
@@ -94,6 +109,46 @@ localized() {
   done
 }
 
+# gnss DRIVE: the same with fixes; "earth": rms of the positions as they are on the plane, m, and their NEES.
+gnss() {
+  /usr/bin/python3 "$top/share/experiments/gnss_fixes.py" "$1.tum" 7 >"$1.csv"
+  map "gnss-$1" "$1.ini" "$1" "$1" 0,0 --gnss "$1.csv" --datum 48,9
+  earth=$(/usr/bin/python3 "$top/share/experiments/plane_error.py" "$1.tum" "gnss-$1-$1-found.tum" "gnss-$1-$1-found_cov.csv")
+  jq -c --argjson earth "$earth" '.nees = null | . + $earth' <<END >results.last
+$(tail -n 1 results)
+END
+  sed -i '$d' results
+  cat results.last >>results
+  rm results.last
+}
+
+# apart WORLD OTHER: whether one map of both is refused.
+apart() {
+  refused=true
+  "$bin/pole-map" build --quiet --config "street-$1.ini" --input "street-$1.rawlog" "street-$2.rawlog" \
+    --output "apart-$1.polemap" >/dev/null 2>"apart-$1.txt" && refused=false
+  grep -q "none of its places was found" "apart-$1.txt" || refused=false
+  echo "{\"apart\": \"$1 $2\", \"refused\": $refused}" >>results
+}
+
+# Even and odd key frames of the kilometre as two drives, at once and one after the other.
+two_halves() {
+  for half in even:0:7 odd:1:8; do
+    IFS=: read -r part offset seed <<END
+$half
+END
+    # shellcheck disable=SC2086 # several words
+    "$bin/pole-import" folder --quiet --input "$kilometre" --output scans.rawlog --every 2 --offset "$offset" \
+      --seed "$seed" $clockwise $biased
+    mv scans.tum "$part.tum"
+    "$bin/pole-extract" --quiet --config "$top/config/kitti.ini" --input scans.rawlog --output "$part.rawlog"
+    rm scans.rawlog
+  done
+  map kilometre-two "$top/config/kitti.ini" "even odd" "even odd" 0.025,0.03
+  map kilometre-even "$top/config/kitti.ini" even even 0.025,0.03 --keep-scans
+  map kilometre-added "$top/config/kitti.ini" odd odd 0.025,0.03 --add kilometre-even.polemap
+}
+
 for seed in 7 8 9 10 11; do
   real "vlp16-$seed" "$data/vlp16_loop" "$top/config/vlp16.ini" 0.015,0.03 "0 0 0 0 2.513 0.028" \
     "$clockwise $biased --seed $seed" --set sensor.height_m=1.77
@@ -105,16 +160,23 @@ if [ -n "$kilometre" ]; then
   link_scans "$kilometre" "$out/laser" 1 228
   /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" laser/odometry.txt
   real kilometre-laser laser "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise"
+  two_halves
 fi
 if [ -n "$tracks" ]; then
   draw_drive "$out/kaist01" "$top/config/hdl32e.ini" 601 0 "world.track=$tracks/kaist01.txt.gz"
-  map kaist01 kaist01.ini kaist01.rawlog kaist01.tum 0,0
+  map kaist01 kaist01.ini kaist01 kaist01 0,0
+  gnss kaist01
 fi
 for world in $(seq 701 720); do
   draw_drive "$out/street-$world" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
-  map "street-$world" "street-$world.ini" "street-$world.rawlog" "street-$world.tum" 0,0
+  map "street-$world" "street-$world.ini" "street-$world" "street-$world" 0,0
 done
-for world in $(seq 701 704); do localized "$world"; done
+for world in $(seq 701 704); do
+  localized "$world"
+  map "days-$world" "street-$world.ini" "street-$world again-$world" "street-$world again-$world" 0,0
+  gnss "street-$world"
+done
+for world in $(seq 701 720); do apart "$world" $((world == 720 ? 701 : world + 1)); done
 
 jq -s . results >result.json
 rm results
@@ -123,5 +185,9 @@ jq -r '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end
       format = "%-18s %6s %8s %8s %8s %8s %8s %6s %8s\n"
       printf format, "drive", "loops", "way m", "rms m", "max m", "local m", "end %", "NEES", "seconds" }
     { printf format, $1, $2, $3, $4, $5, $6, $7, $8, $9 }' >table.txt
-jq -r '.[] | select(.localized) | "localized in \(.localized), \(.map): ok \(.ok), \(.local) m"' result.json >>table.txt
+{
+  jq -r '.[] | select(.localized) | "localized in \(.localized), \(.map): ok \(.ok), \(.local) m"' result.json
+  jq -r '[.[] | select(.apart) | .refused] | "two streets, refused: \(map(select(.)) | length) of \(length)"' result.json
+  jq -r '.[] | select(.earth_rms) | "\(.drive) on Earth: \(.earth_rms) m, NEES \(.earth_nees)"' result.json
+} >>table.txt
 cat table.txt

@@ -2,10 +2,12 @@
 #include "cli/RunRecords.h"
 #include "extract/ExtractApp.h"
 #include "io/data/Trajectory.h"
+#include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapBuildApp.h"
+#include "map/MapPlane.h"
 #include "support/ExpectHas.h"
 #include "support/IoFiles.h"
 #include "support/StreetTest.h"
@@ -146,20 +148,58 @@ TEST_F(MapApp, WithoutTruthDrivesOfAStreetShareAMap) {
     EXPECT_EQ(readEstimates(folder / (fs::path(file).stem().string() + "_cov.csv")).size(),
               truth.size());
   };
-  const std::string both =
-      build({"--input", at("a.rawlog"), at("b.rawlog"), "--output", at("both.polemap"),
-             "--trajectory", at("a1.tum"), at("b1.tum")});
+  const std::string both = build({"--input", at("a.rawlog"), at("b.rawlog"), "--output",
+                                  at("both.polemap"), "--trajectory", at("a1.tum"), at("b1.tum")});
   EXPECT_NE(both.find("b.rawlog: its odometry is"), std::string::npos) << both;
   expectPlaces("b1.tum");
   build({"--input", at("a.rawlog"), "--output", at("a.polemap"), "--keep-scans"});
-  const std::string added = build({"--add", at("a.polemap"), "--input", at("b.rawlog"), "--output",
-                                   at("added.polemap"), "--trajectory", at("b2.tum"), "--png",
-                                   at("added.png")});
+  const std::string added =
+      build({"--add", at("a.polemap"), "--input", at("b.rawlog"), "--output", at("added.polemap"),
+             "--trajectory", at("b2.tum"), "--png", at("added.png")});
   EXPECT_EQ(added.find("a.rawlog: its odometry is"), std::string::npos) << added;
   expectPlaces("b2.tum");
   const auto info = io::readPoleMap(folder / "added.polemap").info;
   EXPECT_EQ(info.at("inputs"), "a.rawlog b.rawlog");
   EXPECT_EQ(info.at("poses"), "odometry");
+}
+
+/// Fixes beside the rawlog: the map lies on Earth.
+TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
+  writeStreet(folder / "in", 60, streetPoles(), 50, 0);
+  import("in");
+  std::string fixes = "time,latitude,longitude,sigma\n";
+  const MapPlane plane({48, 9, 0});
+  for (const StampedPose2D& at : io::readPlanarTum(folder / "in.tum")) {
+    const Eigen::Vector2d lonLat = plane.lonLat({100 + at.pose.x, 50 + at.pose.y});
+    fixes += io::fixed(at.time + 0.01, 3) + ',' + io::fixed(lonLat.y(), 10) + ',' +
+             io::fixed(lonLat.x(), 10) + ",0.02\n";
+  }
+  writeText(folder / "fixes.csv", fixes);
+  const auto build = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "build",    "--config",           config(),       "--input",      at("in.rawlog"),
+        "--output", at("street.polemap"), "--trajectory", at("found.tum")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(mapMain, arguments);
+  };
+  const auto outcome = build({"--gnss", at("fixes.csv"), "--datum", "48,9"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("placed by 59 positions"), std::string::npos) << outcome.out;
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum"), "48,9,0");
+  const auto truth = io::readPlanarTum(folder / "in.tum"),
+             found = io::readPlanarTum(folder / "found.tum");
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_NEAR(found[i].pose.x, 100 + truth[i].pose.x, 0.1) << i;
+    EXPECT_NEAR(found[i].pose.y, 50 + truth[i].pose.y, 0.1) << i;
+  }
+  EXPECT_EQ(build({"--gnss", at("fixes.csv")}).code, 0) << "the first fix is the datum";
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
+  EXPECT_EQ(build({"--gnss", at("fixes.csv"), at("fixes.csv")}).code, 2);
+  EXPECT_EQ(build({"--gnss", at("fixes.csv"), "--truth", at("in.tum")}).code, 2);
+  writeText(folder / "few.csv", fixes.substr(0, fixes.find('\n', 130) + 1));
+  expectFailure(build({"--gnss", at("few.csv")}), {"few.csv", "too few", "leave out --gnss"});
+  writeText(folder / "late.csv", "time,latitude,longitude,sigma\n1000,48,9,1\n");
+  expectFailure(build({"--gnss", at("late.csv")}), {"late.csv", "none of its times"});
 }
 
 TEST_F(MapApp, WithoutTruthOdometryIsNeeded) {

@@ -82,8 +82,33 @@ struct Drive {
   std::vector<DrivenScan> scans;
 };
 
-MappedDrives map(const std::vector<Drive>& drives, std::size_t held = 0) {
+/// Once a scan: 1.5 m of noise, 3 m that last, and every tenth one is 40 m off.
+std::vector<DriveFix> fixesOf(const Drive& drive, const Eigen::Vector2d& antenna,
+                              std::size_t firstScan, Dice& dice) {
+  std::vector<DriveFix> fixes;
+  Eigen::Vector2d lasting(3 * dice.normal(), 3 * dice.normal());
+  for (std::size_t i = 0; i + 1 < drive.truth.size(); ++i) {
+    const Pose2D &a = drive.truth[i], &b = drive.truth[i + 1];
+    DriveFix fix;
+    fix.time = static_cast<double>(firstScan + i);
+    fix.scan = firstScan + i;
+    fix.share = 0.5;
+    fix.sigma = 1.5;
+    fix.antenna_robot = antenna;
+    const double kept = std::exp(-1.0 / 200), fresh = 3 * std::sqrt(1 - kept * kept);
+    lasting = kept * lasting + fresh * Eigen::Vector2d(dice.normal(), dice.normal());
+    fix.position = 0.5 * (centreOf(a) + centreOf(b)) + rotationOf(a.yaw) * antenna + lasting +
+                   1.5 * Eigen::Vector2d(dice.normal(), dice.normal());
+    if (i % 10 == 5) fix.position.x() += 40;
+    fixes.push_back(fix);
+  }
+  return fixes;
+}
+
+MappedDrives map(const std::vector<Drive>& drives, std::size_t held = 0,
+                 std::vector<DriveFix> fixes = {}) {
   DrivesToMap job;
+  job.fixes = std::move(fixes);
   for (const Drive& drive : drives) {
     job.scans.insert(job.scans.end(), drive.scans.begin(), drive.scans.end());
     job.names.push_back("drive " + std::to_string(job.names.size()));
@@ -262,6 +287,43 @@ TEST(DriveMapping, AddsADriveToPosesThatAreKnown) {
     ASSERT_LT(std::hypot(found.x - truth.x, found.y - truth.y), known ? 0.03 : 0.08) << i;
     ASSERT_NEAR(wrapAngle(found.yaw - truth.yaw), 0, 0.003) << i;
   }
+}
+
+/// Drives that pass no place again: satellites say where they are, and keep them from bending.
+TEST(DriveMapping, PositionsFromSatellitesPlaceADrive) {
+  double shape = 0, nees = 0;
+  for (const std::uint64_t seed : {3u, 4u, 5u, 6u}) {
+    Dice dice(seed + 90);
+    const Pose2D start{500, -200, 2};
+    std::vector<Eigen::Vector2d> poles;
+    for (double way = -20; way < 820; way += dice.uniform(5, 10))
+      poles.push_back(centreOf(
+          compose(start, {way, (dice.uniform() < 0.5 ? -1 : 1) * dice.uniform(4, 10), 0})));
+    const Drive drive(800, straight, poles, seed, start);
+    const MappedDrives found = map({drive}, 0, fixesOf(drive, {0.5, -0.3}, 0, dice));
+    EXPECT_EQ(found.fixes, drive.truth.size() - 1);
+    shape += drive.worst(found) / 4;
+    for (std::size_t i = 0; i < drive.truth.size(); ++i) {
+      const Pose2D &right = drive.truth[i], &pose = found.poses[i].mean;
+      const Eigen::Vector3d error(pose.x - right.x, pose.y - right.y,
+                                  wrapAngle(pose.yaw - right.yaw));
+      ASSERT_LT(error.head<2>().norm(), 5) << i;
+      nees += error.dot(found.poses[i].covariance.inverse() * error) /
+              static_cast<double>(4 * drive.truth.size());
+    }
+  }
+  EXPECT_GT(nees, 1.5);
+  EXPECT_LT(nees, 6) << "3 is expected";
+  EXPECT_LT(shape, 1) << "a third of what the fixes are off";
+}
+
+TEST(DriveMapping, PositionsFromSatellitesConnectDrivesOfDifferentPlaces) {
+  Dice dice(92);
+  const Drive a = ringDrive(1), b = ringDrive(2);
+  auto fixes = fixesOf(a, {0, 0}, 0, dice);
+  EXPECT_REFUSED(map({a, b}, 0, fixes), "drive 1: none of its places was found");
+  for (const DriveFix& fix : fixesOf(b, {0, 0}, a.truth.size(), dice)) fixes.push_back(fix);
+  EXPECT_LT(joined({a, b}).worst(map({a, b}, 0, fixes)), 8);
 }
 
 TEST(DriveMapping, NeedsPoles) {

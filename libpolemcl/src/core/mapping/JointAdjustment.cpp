@@ -109,6 +109,35 @@ struct SightingCost {
   }
 };
 
+/// A position beyond what pose, antenna and lasting error make of it.
+struct FixCost {
+  PositionFix fix;
+  double sigma;
+  template <class T>
+  bool operator()(const T* a, const T* b, const T* error, const T* antenna, T* residual) const {
+    using std::cos;
+    using std::sin;
+    const T c = cos(a[2]), s = sin(a[2]), share(fix.share);
+    residual[0] = (a[0] + share * (b[0] - a[0]) + c * antenna[0] - s * antenna[1] + error[0] -
+                   fix.position.x()) /
+                  sigma;
+    residual[1] = (a[1] + share * (b[1] - a[1]) + s * antenna[0] + c * antenna[1] + error[1] -
+                   fix.position.y()) /
+                  sigma;
+    return true;
+  }
+};
+
+struct LastingCost {
+  double correlation, sigma;
+  template <class T>
+  bool operator()(const T* before, const T* now, T* residual) const {
+    for (int axis = 0; axis < 2; ++axis)
+      residual[axis] = (now[axis] - correlation * before[axis]) / sigma;
+    return true;
+  }
+};
+
 ceres::LossFunction* fading(double share) {
   return new ceres::ScaledLoss(new FadingLoss, share, ceres::TAKE_OWNERSHIP);
 }
@@ -136,6 +165,7 @@ struct JointAdjustment::Impl {
   void addAnchor(const PoleAnchor& anchor);
   void addTie(const PoseTie& tie);
   void addKnown(const KnownPose& known);
+  void addFixes(const FixFactors& gnss);
   Eigen::SparseMatrix<double> information();
   double newShare(std::size_t scan) const;
 
@@ -201,6 +231,36 @@ void JointAdjustment::Impl::addKnown(const KnownPose& known) {
                            nullptr, pose(known.scan));
 }
 
+ceres::CostFunction* priorOf(const Eigen::Vector2d& mean, double sigma) {
+  return new ceres::NormalPrior(Eigen::Matrix2d::Identity() / sigma, mean);
+}
+
+void JointAdjustment::Impl::addFixes(const FixFactors& gnss) {
+  if (gnss.fixes.empty()) return;
+  for (std::size_t i = 0; i < gnss.errors.size(); ++i) {
+    double* error = state.fixErrors[i].data();
+    const LastingError& lasting = gnss.errors[i];
+    if (lasting.correlation <= 0) {
+      problem.AddResidualBlock(priorOf(Eigen::Vector2d::Zero(), lasting.sigma), nullptr, error);
+      continue;
+    }
+    const double fresh = lasting.sigma * std::sqrt(1 - std::pow(lasting.correlation, 2));
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LastingCost, 2, 2, 2>(
+                                 new LastingCost{lasting.correlation, fresh}),
+                             nullptr, state.fixErrors[i - 1].data(), error);
+  }
+  for (std::size_t i = 0; i < gnss.antennas.size(); ++i)
+    problem.AddResidualBlock(priorOf(gnss.antennas[i].stated, gnss.antennas[i].sigma), nullptr,
+                             state.antennas[i].data());
+  const std::vector<std::size_t> drives = drivesOf(scans);
+  for (const PositionFix& fix : gnss.fixes)
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<FixCost, 2, 3, 3, 2, 2>(
+                                 new FixCost{fix, gnss.widening * fix.sigma}),
+                             fading(1), pose(fix.scan), pose(fix.scan + 1),
+                             state.fixErrors[fix.error].data(),
+                             state.antennas[drives[fix.scan]].data());
+}
+
 JointAdjustment::JointAdjustment(const std::vector<DrivenScan>& scans, const AdjustmentTrust& trust,
                                  const AdjustmentFactors& factors, AdjustedState& state)
     : m_impl(std::make_unique<Impl>(scans, trust, state)) {
@@ -209,6 +269,7 @@ JointAdjustment::JointAdjustment(const std::vector<DrivenScan>& scans, const Adj
   for (const PoleAnchor& anchor : factors.anchors) m_impl->addAnchor(anchor);
   for (const PoseTie& tie : factors.ties) m_impl->addTie(tie);
   for (const KnownPose& known : factors.known) m_impl->addKnown(known);
+  m_impl->addFixes(factors.gnss);
 }
 
 JointAdjustment::~JointAdjustment() = default;
@@ -235,8 +296,9 @@ Eigen::SparseMatrix<double> JointAdjustment::Impl::information() {
   ceres::Problem::EvaluateOptions options;
   for (Pose2D& pose : state.poses) options.parameter_blocks.push_back(&pose.x);
   for (Eigen::Vector2d& errors : state.odometry) options.parameter_blocks.push_back(errors.data());
-  for (Eigen::Vector2d& pole : state.poles)
-    if (problem.HasParameterBlock(pole.data())) options.parameter_blocks.push_back(pole.data());
+  for (auto* places : {&state.poles, &state.fixErrors, &state.antennas})
+    for (Eigen::Vector2d& place : *places)
+      if (problem.HasParameterBlock(place.data())) options.parameter_blocks.push_back(place.data());
   ceres::CRSMatrix rows;
   problem.Evaluate(options, nullptr, nullptr, nullptr, &rows);
   const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(

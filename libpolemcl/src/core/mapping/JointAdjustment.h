@@ -32,9 +32,11 @@ struct AdjustmentTrust {
 
 /// \brief What is adjusted.
 struct AdjustedState {
-  std::vector<Pose2D> poses;              ///< one a scan
-  std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each drive
-  std::vector<Eigen::Vector2d> poles;     ///< centres, m
+  std::vector<Pose2D> poses;               ///< one a scan
+  std::vector<Eigen::Vector2d> odometry;   ///< scale error and yaw bias (rad/m) of each drive
+  std::vector<Eigen::Vector2d> poles;      ///< centres, m
+  std::vector<Eigen::Vector2d> fixErrors;  ///< lasting ones of positions from satellites, m
+  std::vector<Eigen::Vector2d> antennas;   ///< of each drive, frame of the robot, m
 };
 
 /// \brief A detection of a scan that is a pole.
@@ -60,6 +62,35 @@ struct PoseTie {
   PoseWithCovariance motion;          ///< from the first to the second, frame of the first
 };
 
+/// \brief A position from satellites between a scan and the next one of its drive.
+struct PositionFix {
+  std::size_t scan = 0;
+  double share = 0;                                    ///< of the way to the next scan, 0 to 1
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< of the antenna by the receiver, m
+  double sigma = 0;       ///< along each axis, beyond the lasting error, m
+  std::size_t error = 0;  ///< the lasting one, see AdjustedState::fixErrors
+};
+
+/// \brief A lasting error of a receiver: a Gauss-Markov process.
+struct LastingError {
+  double sigma = 0;        ///< along each axis, m
+  double correlation = 0;  ///< with the one before; 0: another drive begins
+};
+
+/// \brief The antenna of a drive.
+struct AntennaPlace {
+  Eigen::Vector2d stated = Eigen::Vector2d::Zero();  ///< frame of the robot, m
+  double sigma = 0;                                  ///< along each axis, m
+};
+
+/// \brief Positions from satellites.
+struct FixFactors {
+  std::vector<PositionFix> fixes;
+  std::vector<LastingError> errors;
+  std::vector<AntennaPlace> antennas;  ///< of each drive
+  double widening = 1;                 ///< of the sigmas, while the poses are still bent
+};
+
 /// \brief What holds the state together, besides the motions of the scans.
 struct AdjustmentFactors {
   std::vector<PoleSighting> sightings;
@@ -67,6 +98,7 @@ struct AdjustmentFactors {
   std::vector<PoseTie> ties;
   /// One at least of all drives that hang together, where no anchor says where they are.
   std::vector<KnownPose> known;
+  FixFactors gnss;
 };
 
 /// \brief Scans before the first motion of each drive and after it, numbered: the drive of each.

@@ -35,8 +35,7 @@ bool near(const Pose2D& a, const Pose2D& b) {
 }
 
 bool agree(const Bridge& a, const Bridge& b) {
-  return a.low == b.low && a.high == b.high &&
-         near(compose(a.motion(), b.pose_high), b.pose_low);
+  return a.low == b.low && a.high == b.high && near(compose(a.motion(), b.pose_high), b.pose_low);
 }
 
 /// The bridge that most others agree with; none if too few do.
@@ -60,21 +59,19 @@ std::optional<Bridge> bestBridge(const std::vector<Loop>& loops,
   return best;
 }
 
-void move(const Bridge& by, const PoleTracks& tracks, std::vector<std::size_t>& frames,
-          AdjustedState& state) {
-  const Pose2D motion = by.motion();
+}  // namespace
+
+void moveFrame(std::size_t from, std::size_t to, const Pose2D& motion, const PoleTracks& tracks,
+               std::vector<std::size_t>& frames, AdjustedState& state) {
   for (std::size_t i = 0; i < tracks.tracks.size(); ++i)
-    if (frames[tracks.tracks[i].last] == by.high)
-      state.poles[i] =
-          centreOf(compose(motion, {state.poles[i].x(), state.poles[i].y(), 0}));
+    if (frames[tracks.tracks[i].last] == from)
+      state.poles[i] = centreOf(compose(motion, {state.poles[i].x(), state.poles[i].y(), 0}));
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i] != by.high) continue;
+    if (frames[i] != from) continue;
     state.poses[i] = compose(motion, state.poses[i]);
-    frames[i] = by.low;
+    frames[i] = to;
   }
 }
-
-}  // namespace
 
 bool connectFrames(std::vector<Loop>& loops, const PoleTracks& tracks,
                    std::vector<std::size_t>& frames, AdjustedState& state) {
@@ -86,7 +83,7 @@ bool connectFrames(std::vector<Loop>& loops, const PoleTracks& tracks,
   loops.erase(between, loops.end());
   bool connected = false;
   while (const auto best = bestBridge(bridges, frames, state.poses)) {
-    move(*best, tracks, frames, state);
+    moveFrame(best->high, best->low, best->motion(), tracks, frames, state);
     connected = true;
   }
   for (Loop& loop : bridges) {

@@ -16,6 +16,8 @@ constexpr int kIterations = 30;      ///< of the least squares, at most
 constexpr int kRounds = 2;           ///< of looking for loops
 constexpr double kTieGate = 16.3;    ///< squared Mahalanobis distance: 99.9 %
 constexpr double kStart = 1e-4;      ///< m, rad: how firmly the first pose of a frame stands
+/// Of the sigmas of fixes, one after the other, until a drive that is bent lies on them.
+constexpr double kWidenings[] = {20, 5, 1};
 constexpr double kHeld = 0.02, kHeldYaw = 0.002;  ///< m, rad: σ of poses that are known
 /// m: greatest distance between the tracks of one pole, round by round.
 constexpr double kMergeGates[] = {0.8, 0.5}, kLastGate = 0.4;
@@ -28,6 +30,7 @@ class DriveMapping {
       : m_scans(std::move(drives.scans)),
         m_names(std::move(drives.names)),
         m_held(drives.held),
+        m_fixes(std::move(drives.fixes)),
         m_trust(trust),
         m_drives(drivesOf(m_scans)) {}
   MappedDrives run();
@@ -39,6 +42,8 @@ class DriveMapping {
   enum class Covariance { open, known };
   void adjust(const std::vector<PoseTie>& ties, Covariance covariance);
   std::vector<PoseTie> ties() const;
+  void layOnFixes();
+  void useFixes(double widening);
   bool closeLoops();
   std::vector<KnownPose> known() const;
   void requireConnected() const;
@@ -49,9 +54,11 @@ class DriveMapping {
   std::vector<DrivenScan> m_scans;
   std::vector<std::string> m_names;
   std::size_t m_held;
+  std::vector<DriveFix> m_fixes;
   AdjustmentTrust m_trust;
   std::vector<std::size_t> m_drives;  ///< of each scan
-  std::vector<std::size_t> m_frames;  ///< of each scan's pose: the first drive in the same frame
+  /// Of each scan's pose: 0 is that of the map, n + 1 that of the start of drive n.
+  std::vector<std::size_t> m_frames;
   AdjustedState m_state;
   PoleTracks m_tracks;
   AdjustmentFactors m_factors;
@@ -66,7 +73,7 @@ void DriveMapping::chain() {
     m_state.poses.push_back(i < m_held || !scan.motion || i == 0
                                 ? scan.pose_map_robot
                                 : compose(m_state.poses.back(), scan.motion->mean));
-    m_frames.push_back(i < m_held ? 0 : m_drives[i]);
+    m_frames.push_back(i < m_held ? 0 : m_drives[i] + 1);
   }
   m_state.odometry.assign(m_drives.back() + 1, Eigen::Vector2d::Zero());
 }
@@ -74,15 +81,13 @@ void DriveMapping::chain() {
 /// What says where each frame is: poses that are held, or else the first one.
 std::vector<KnownPose> DriveMapping::known() const {
   std::vector<KnownPose> known;
-  const Eigen::Matrix3d held =
-      Eigen::Vector3d(kHeld, kHeld, kHeldYaw).cwiseAbs2().asDiagonal();
+  const Eigen::Matrix3d held = Eigen::Vector3d(kHeld, kHeld, kHeldYaw).cwiseAbs2().asDiagonal();
   for (std::size_t i = 0; i < m_scans.size(); ++i) {
     const bool begins = i == 0 || m_drives[i] != m_drives[i - 1];
     if (i < m_held)
       known.push_back({i, {m_scans[i].pose_map_robot, held}});
-    else if (begins && m_frames[i] == m_drives[i])
-      known.push_back(
-          {i, {m_state.poses[i], kStart * kStart * Eigen::Matrix3d::Identity()}});
+    else if (begins && m_frames[i] == m_drives[i] + 1)
+      known.push_back({i, {m_state.poses[i], kStart * kStart * Eigen::Matrix3d::Identity()}});
   }
   return known;
 }
@@ -127,6 +132,35 @@ void DriveMapping::adjust(const std::vector<PoseTie>& ties, Covariance covarianc
   m_knots.covariance = adjustment.poseCovariance(m_knots.scans);
 }
 
+/// Fixes of the drives that lie on the plane.
+void DriveMapping::useFixes(double widening) {
+  std::vector<DriveFix> placed;
+  std::copy_if(m_fixes.begin(), m_fixes.end(), std::back_inserter(placed),
+               [&](const DriveFix& fix) { return m_frames[fix.scan] == 0; });
+  m_factors.gnss = fixFactors(placed, m_drives);
+  m_factors.gnss.widening = widening;
+  m_state.fixErrors.assign(m_factors.gnss.errors.size(), Eigen::Vector2d::Zero());
+  m_state.antennas.clear();
+  for (const AntennaPlace& antenna : m_factors.gnss.antennas)
+    m_state.antennas.push_back(antenna.stated);
+}
+
+/// Lays each drive that has fixes on the plane, and bends it gently to them.
+void DriveMapping::layOnFixes() {
+  if (m_fixes.empty()) return;
+  for (std::size_t drive = 0; drive <= m_drives.back(); ++drive) {
+    std::vector<DriveFix> own;
+    std::copy_if(m_fixes.begin(), m_fixes.end(), std::back_inserter(own),
+                 [&](const DriveFix& fix) { return m_drives[fix.scan] == drive; });
+    if (const auto motion = motionOntoFixes(own, m_state.poses))
+      moveFrame(drive + 1, 0, *motion, m_tracks, m_frames, m_state);
+  }
+  for (const double widening : kWidenings) {
+    useFixes(widening);
+    adjust({}, Covariance::open);
+  }
+}
+
 /// Looks for loops by what is known now, and lets go of those that do not fit when all are adjusted
 /// together. \return Whether drives were connected that were not before.
 bool DriveMapping::closeLoops() {
@@ -147,7 +181,7 @@ bool DriveMapping::closeLoops() {
 
 void DriveMapping::requireConnected() const {
   for (std::size_t i = 0; i < m_scans.size(); ++i)
-    if (m_frames[i] != 0)
+    if (m_frames[i] != m_frames[0])
       throw Error(m_names.at(m_drives[i]) +
                   ": none of its places was found in the other drives; a map is made of drives "
                   "that pass the same places, over at least 60 m: leave it out, or make another "
@@ -177,8 +211,12 @@ MappedDrives DriveMapping::run() {
   track();
   requirePoles();
   adjust({}, Covariance::open);
+  layOnFixes();
   for (int left = kRounds; left > 0; --left)
-    if (closeLoops()) left = std::max(left, 2);  // what is connected now is searched once more
+    if (closeLoops()) {
+      useFixes(1);
+      left = std::max(left, 2);  // what is connected now is searched once more
+    }
   requireConnected();
   for (const double gate : kMergeGates) merge(gate, Covariance::open);
   merge(kLastGate, Covariance::known);
@@ -205,6 +243,7 @@ MappedDrives DriveMapping::result() const {
   MappedDrives result;
   const std::size_t heldDrives = m_held == 0 ? 0 : m_drives[m_held - 1] + 1;
   result.held = m_held;
+  result.fixes = m_factors.gnss.fixes.size();
   result.odometry.assign(m_state.odometry.begin() + static_cast<std::ptrdiff_t>(heldDrives),
                          m_state.odometry.end());
   for (std::size_t i = 0; i < m_scans.size(); ++i)
@@ -213,8 +252,7 @@ MappedDrives DriveMapping::result() const {
   for (const PoleTrack& track : m_tracks.tracks) result.tracks += track.hits >= kFollowed ? 1 : 0;
   for (std::size_t i = m_held + 1; i < m_scans.size(); ++i)
     if (m_drives[i] == m_drives[i - 1])
-      result.driven +=
-          (centreOf(m_state.poses[i]) - centreOf(m_state.poses[i - 1])).norm();
+      result.driven += (centreOf(m_state.poses[i]) - centreOf(m_state.poses[i - 1])).norm();
   return result;
 }
 

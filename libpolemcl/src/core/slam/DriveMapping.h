@@ -6,12 +6,13 @@
 /// Poles are followed from scan to scan, which corrects the odometry; submaps are searched among
 /// the poles seen earlier (LoopSearch), which closes loops and connects drives; all is adjusted
 /// together (JointAdjustment), and repeated with what is known by then. The frame is that of the
-/// first scan.
+/// poses that are known, or that of positions from satellites, else that of the first scan.
 
 #include <string>
 #include <vector>
 
 #include "core/mapping/JointAdjustment.h"
+#include "core/slam/DriveFixes.h"
 
 namespace polemcl {
 
@@ -26,6 +27,8 @@ struct DrivesToMap {
   /// The poses of so many scans, all of the first drives, are known and stay. Of the others only
   /// those where a drive begins count, and only the first is where it begins.
   std::size_t held = 0;
+  /// By scans. They are on the plane of the map, whose frame is that of the poses found then.
+  std::vector<DriveFix> fixes;
 };
 
 struct MappedDrives {
@@ -34,11 +37,13 @@ struct MappedDrives {
   std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each other drive
   std::vector<ClosedLoop> loops;
   std::size_t tracks = 0;  ///< poles seen in three scans or more, once for each time passed
+  std::size_t fixes = 0;   ///< positions from satellites that were used; 0: the frame is not theirs
   double driven = 0;       ///< by the drives that are not held, m
 };
 
 /// \brief Finds the poses.
-/// \throws Error when fewer than two poles are followed, or a drive shares no place with the others.
+/// \throws Error when fewer than two poles are followed, or a drive shares no place with the
+/// others.
 MappedDrives mapDrives(DrivesToMap drives, const AdjustmentTrust& trust);
 
 }  // namespace polemcl

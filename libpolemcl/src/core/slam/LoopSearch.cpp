@@ -85,7 +85,7 @@ class LoopSearch {
   const PoleTracks& m_tracks;
   const Knots& m_knots;
   const std::vector<std::size_t>& m_frames;
-  KdTree2D m_tree;  ///< of the tracks
+  KdTree2D m_tree;                                   ///< of the tracks
   std::map<std::size_t, std::vector<Loop>> m_loops;  ///< by the frame searched
 };
 
@@ -191,8 +191,7 @@ void LoopSearch::search(const Query& query) {
   GlobalOptions options;
   if (isConnected(query) && 3 * sigma < kNear) options.minMatched = kFewMatched;
   if (loop.earlier.size() < static_cast<std::size_t>(options.minMatched)) return;
-  const GlobalResult found =
-      GlobalLocalizer(polesOf(loop.earlier), options).localize(query.submap);
+  const GlobalResult found = GlobalLocalizer(polesOf(loop.earlier), options).localize(query.submap);
   const GlobalHypothesis* best = choose(query, found, options, loop.tie);
   if (!best) return;
   loop.place = best->pose_map_robot;
@@ -214,9 +213,8 @@ std::vector<Loop> LoopSearch::run() {
   trackPoles(m_scans, m_state.poses,
              [&](std::size_t scan, const LocalSubmap& submap, std::size_t before) {
                if (next == m_knots.scans.size() || m_knots.scans[next] != scan) return;
-               const std::set<std::size_t> frames(m_frames.begin(),
-                                                  m_frames.begin() +
-                                                      static_cast<std::ptrdiff_t>(scan) + 1);
+               const std::set<std::size_t> frames(
+                   m_frames.begin(), m_frames.begin() + static_cast<std::ptrdiff_t>(scan) + 1);
                for (const std::size_t frame : frames) search({next, submap, before, frame});
                ++next;
              });

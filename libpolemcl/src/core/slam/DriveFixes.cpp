@@ -1,0 +1,103 @@
+#include "core/slam/DriveFixes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/common/Transform.h"
+
+namespace polemcl {
+namespace {
+
+constexpr double kLasting = 2;         ///< σ of the lasting error, in stated sigmas
+constexpr double kLastingTime = 200;   ///< s, over which its correlation falls by e
+constexpr double kNewError = 10;       ///< s, after which it is another unknown
+constexpr double kAntennaSigma = 0.5;  ///< m, along each axis
+constexpr std::size_t kFewest = 5;     ///< fixes that lay a drive on the plane
+constexpr double kSpread = 10;         ///< m: least rms distance of these from their mean
+constexpr double kFarOff = 2.5;        ///< distances from the motion, in median ones
+constexpr int kFits = 10;
+
+Eigen::Matrix2Xd columns(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Matrix2Xd matrix(2, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    matrix.col(static_cast<Eigen::Index>(i)) = points[i];
+  return matrix;
+}
+
+double spreadOf(const Eigen::Matrix2Xd& points) {
+  return std::sqrt((points.colwise() - points.rowwise().mean()).colwise().squaredNorm().mean());
+}
+
+/// The rigid motion with the least squares (Umeyama 1991, in the plane).
+Pose2D bestMotion(const std::vector<Eigen::Vector2d>& from,
+                  const std::vector<Eigen::Vector2d>& to) {
+  const Eigen::Matrix2Xd a = columns(from), b = columns(to);
+  const Eigen::Vector2d meanA = a.rowwise().mean(), meanB = b.rowwise().mean();
+  const Eigen::Matrix2d cross = (b.colwise() - meanB) * (a.colwise() - meanA).transpose();
+  const double yaw = std::atan2(cross(1, 0) - cross(0, 1), cross.trace());
+  const Eigen::Vector2d shift = meanB - rotationOf(yaw) * meanA;
+  return {shift.x(), shift.y(), yaw};
+}
+
+/// Of the points whose distance from where the motion has them is not far above the median.
+std::vector<std::size_t> fitting(const std::vector<double>& distances) {
+  std::vector<double> sorted = distances;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    if (distances[i] <= kFarOff * *middle) near.push_back(i);
+  return near;
+}
+
+}  // namespace
+
+FixFactors fixFactors(const std::vector<DriveFix>& fixes, const std::vector<std::size_t>& drives) {
+  FixFactors factors;
+  if (fixes.empty()) return factors;
+  factors.antennas.assign(drives.back() + 1, {Eigen::Vector2d::Zero(), kAntennaSigma});
+  std::optional<std::size_t> drive;
+  double since = 0;
+  for (const DriveFix& fix : fixes) {
+    const bool begins = drive != drives[fix.scan];
+    drive = drives[fix.scan];
+    if (begins || fix.time - since >= kNewError) {
+      const double correlation = begins ? 0 : std::exp((since - fix.time) / kLastingTime);
+      factors.errors.push_back({kLasting * fix.sigma, correlation});
+      since = fix.time;
+    }
+    factors.antennas[*drive].stated = fix.antenna_robot;
+    factors.fixes.push_back(
+        {fix.scan, fix.share, fix.position, fix.sigma, factors.errors.size() - 1});
+  }
+  return factors;
+}
+
+std::optional<Pose2D> motionOntoFixes(const std::vector<DriveFix>& fixes,
+                                      const std::vector<Pose2D>& poses) {
+  std::vector<Eigen::Vector2d> driven, told;
+  for (const DriveFix& fix : fixes) {
+    const Pose2D &a = poses[fix.scan], &b = poses[fix.scan + 1];
+    driven.push_back(centreOf(a) + fix.share * (centreOf(b) - centreOf(a)) +
+                     rotationOf(a.yaw) * fix.antenna_robot);
+    told.push_back(fix.position);
+  }
+  if (driven.size() < kFewest || spreadOf(columns(driven)) < kSpread) return std::nullopt;
+  Pose2D motion = bestMotion(driven, told);
+  for (int round = 0; round < kFits; ++round) {
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < driven.size(); ++i) {
+      const Pose2D moved = compose(motion, {driven[i].x(), driven[i].y(), 0});
+      distances.push_back((centreOf(moved) - told[i]).norm());
+    }
+    std::vector<Eigen::Vector2d> from, to;
+    for (const std::size_t i : fitting(distances)) {
+      from.push_back(driven[i]);
+      to.push_back(told[i]);
+    }
+    motion = bestMotion(from, to);
+  }
+  return motion;
+}
+
+}  // namespace polemcl
