@@ -87,11 +87,11 @@ MappedDrives findPoses(std::vector<MappingSession>& drives,
   job.fixes = std::move(fixes);
   addScans(before, job.scans);
   for (const AddedSession& session : before.sessions) job.names.push_back(session.name);
-  job.held = job.scans.size();
+  job.known = job.scans.size();
   addScans(drives, job.scans);
   for (const auto& input : inputs) job.names.push_back(input.string());
   MappedDrives mapped = mapDrives(std::move(job), trustOf(settings));
-  setPoses(drives, [&](std::size_t scan) { return mapped.poses[mapped.held + scan].mean; });
+  setPoses(drives, [&](std::size_t scan) { return mapped.poses[mapped.known + scan].mean; });
   return mapped;
 }
 

@@ -88,8 +88,8 @@ void writePoses(const MapBuildJob& job, const MapBuildSummary& summary, const io
   report::MapView view;
   view.title = job.output.filename().string();
   view.poles = map.poles;
-  const std::size_t held = summary.mapped ? summary.mapped->held : 0;
-  for (std::size_t i = 0, first = held; i < paths.size(); first += paths[i++].size()) {
+  const std::size_t before = summary.mapped ? summary.mapped->known : 0;
+  for (std::size_t i = 0, first = before; i < paths.size(); first += paths[i++].size()) {
     if (i < job.trajectories.size())
       writeTrajectory(job.trajectories[i], paths[i], summary.mapped->poses, first);
     auto& drawn = job.kind == PoseKind::truth ? view.truth : view.estimate;
@@ -207,11 +207,11 @@ std::string foundText(const MappedDrives& mapped, const MapBuildJob& job) {
       << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
       << " places passed again; the last pose is certain to "
       << io::fixed(sigmaOf(mapped.poses.back()), 2)
-      << (mapped.fixes + mapped.held > 0 ? " m\n" : " m against the first\n");
+      << (mapped.fixes + mapped.known > 0 ? " m\n" : " m against the first\n");
   if (mapped.fixes > 0)
     out << "placed by " << mapped.fixes
         << " positions from satellites; the first pose is certain to "
-        << io::fixed(sigmaOf(mapped.poses.at(mapped.held)), 2) << " m\n";
+        << io::fixed(sigmaOf(mapped.poses.at(mapped.known)), 2) << " m\n";
   for (std::size_t i = 0; i < mapped.odometry.size(); ++i)
     out << job.inputs[i].filename().string() << ": its odometry is "
         << io::fixed(-100 * mapped.odometry[i].x(), 2) << " % long, and turns "

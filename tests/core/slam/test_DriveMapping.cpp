@@ -105,7 +105,7 @@ std::vector<DriveFix> fixesOf(const Drive& drive, const Eigen::Vector2d& antenna
   return fixes;
 }
 
-MappedDrives map(const std::vector<Drive>& drives, std::size_t held = 0,
+MappedDrives map(const std::vector<Drive>& drives, std::size_t knownScans = 0,
                  std::vector<DriveFix> fixes = {}) {
   DrivesToMap job;
   job.fixes = std::move(fixes);
@@ -113,7 +113,7 @@ MappedDrives map(const std::vector<Drive>& drives, std::size_t held = 0,
     job.scans.insert(job.scans.end(), drive.scans.begin(), drive.scans.end());
     job.names.push_back("drive " + std::to_string(job.names.size()));
   }
-  job.held = held;
+  job.known = knownScans;
   return mapDrives(std::move(job), {});
 }
 

@@ -18,7 +18,7 @@ constexpr double kTieGate = 16.3;    ///< squared Mahalanobis distance: 99.9 %
 constexpr double kStart = 1e-4;      ///< m, rad: how firmly the first pose of a frame stands
 /// Of the sigmas of fixes, one after the other, until a drive that is bent lies on them.
 constexpr double kWidenings[] = {20, 5, 1};
-constexpr double kHeld = 0.02, kHeldYaw = 0.002;  ///< m, rad: σ of poses that are known
+constexpr double kKnown = 0.02, kKnownYaw = 0.002;  ///< m, rad: σ of poses that are known
 /// m: greatest distance between the tracks of one pole, round by round.
 constexpr double kMergeGates[] = {0.8, 0.5}, kLastGate = 0.4;
 constexpr std::uint32_t kFollowed = 3;  ///< scans that see a pole at least
@@ -29,7 +29,7 @@ class DriveMapping {
   DriveMapping(DrivesToMap drives, const AdjustmentTrust& trust)
       : m_scans(std::move(drives.scans)),
         m_names(std::move(drives.names)),
-        m_held(drives.held),
+        m_knownCount(drives.known),
         m_fixes(std::move(drives.fixes)),
         m_trust(trust),
         m_drives(drivesOf(m_scans)) {}
@@ -53,7 +53,7 @@ class DriveMapping {
 
   std::vector<DrivenScan> m_scans;
   std::vector<std::string> m_names;
-  std::size_t m_held;
+  std::size_t m_knownCount;
   std::vector<DriveFix> m_fixes;
   AdjustmentTrust m_trust;
   std::vector<std::size_t> m_drives;  ///< of each scan
@@ -70,22 +70,23 @@ class DriveMapping {
 void DriveMapping::chain() {
   for (std::size_t i = 0; i < m_scans.size(); ++i) {
     const DrivenScan& scan = m_scans[i];
-    m_state.poses.push_back(i < m_held || !scan.motion || i == 0
+    m_state.poses.push_back(i < m_knownCount || !scan.motion || i == 0
                                 ? scan.pose_map_robot
                                 : compose(m_state.poses.back(), scan.motion->mean));
-    m_frames.push_back(i < m_held ? 0 : m_drives[i] + 1);
+    m_frames.push_back(i < m_knownCount ? 0 : m_drives[i] + 1);
   }
   m_state.odometry.assign(m_drives.back() + 1, Eigen::Vector2d::Zero());
 }
 
-/// What says where each frame is: poses that are held, or else the first one.
+/// What says where each frame is: poses that are known, or else the first one.
 std::vector<KnownPose> DriveMapping::known() const {
   std::vector<KnownPose> known;
-  const Eigen::Matrix3d held = Eigen::Vector3d(kHeld, kHeld, kHeldYaw).cwiseAbs2().asDiagonal();
+  const Eigen::Matrix3d covariance =
+      Eigen::Vector3d(kKnown, kKnown, kKnownYaw).cwiseAbs2().asDiagonal();
   for (std::size_t i = 0; i < m_scans.size(); ++i) {
     const bool begins = i == 0 || m_drives[i] != m_drives[i - 1];
-    if (i < m_held)
-      known.push_back({i, {m_scans[i].pose_map_robot, held}});
+    if (i < m_knownCount)
+      known.push_back({i, {m_scans[i].pose_map_robot, covariance}});
     else if (begins && m_frames[i] == m_drives[i] + 1)
       known.push_back({i, {m_state.poses[i], kStart * kStart * Eigen::Matrix3d::Identity()}});
   }
@@ -241,16 +242,16 @@ Eigen::Matrix3d DriveMapping::covarianceOf(std::size_t scan) const {
 
 MappedDrives DriveMapping::result() const {
   MappedDrives result;
-  const std::size_t heldDrives = m_held == 0 ? 0 : m_drives[m_held - 1] + 1;
-  result.held = m_held;
+  const std::size_t knownDrives = m_knownCount == 0 ? 0 : m_drives[m_knownCount - 1] + 1;
+  result.known = m_knownCount;
   result.fixes = m_factors.gnss.fixes.size();
-  result.odometry.assign(m_state.odometry.begin() + static_cast<std::ptrdiff_t>(heldDrives),
+  result.odometry.assign(m_state.odometry.begin() + static_cast<std::ptrdiff_t>(knownDrives),
                          m_state.odometry.end());
   for (std::size_t i = 0; i < m_scans.size(); ++i)
     result.poses.push_back({m_state.poses[i], covarianceOf(i)});
   for (const Loop& loop : m_loops) result.loops.push_back({loop.tie.first, loop.tie.second});
   for (const PoleTrack& track : m_tracks.tracks) result.tracks += track.hits >= kFollowed ? 1 : 0;
-  for (std::size_t i = m_held + 1; i < m_scans.size(); ++i)
+  for (std::size_t i = m_knownCount + 1; i < m_scans.size(); ++i)
     if (m_drives[i] == m_drives[i - 1])
       result.driven += (centreOf(m_state.poses[i]) - centreOf(m_state.poses[i - 1])).norm();
   return result;

@@ -24,21 +24,21 @@ struct ClosedLoop {
 struct DrivesToMap {
   std::vector<DrivenScan> scans;
   std::vector<std::string> names;  ///< of the drives, for messages
-  /// The poses of so many scans, all of the first drives, are known and stay. Of the others only
-  /// those where a drive begins count, and only the first is where it begins.
-  std::size_t held = 0;
+  /// Number of scans at the begin, all of the first drives, whose poses are known and stay. Of the
+  /// others only those where a drive begins count, and only the first is where it begins.
+  std::size_t known = 0;
   /// By scans. They are on the plane of the map, whose frame is that of the poses found then.
   std::vector<DriveFix> fixes;
 };
 
 struct MappedDrives {
   std::vector<PoseWithCovariance> poses;  ///< one a scan; the covariance is against the first
-  std::size_t held = 0;                   ///< so many of the poses were known
+  std::size_t known = 0;                  ///< number of poses at the begin that were known
   std::vector<Eigen::Vector2d> odometry;  ///< scale error and yaw bias (rad/m) of each other drive
   std::vector<ClosedLoop> loops;
   std::size_t tracks = 0;  ///< poles seen in three scans or more, once for each time passed
   std::size_t fixes = 0;   ///< positions from satellites that were used; 0: the frame is not theirs
-  double driven = 0;       ///< by the drives that are not held, m
+  double driven = 0;       ///< by the drives whose poses were not known, m
 };
 
 /// \brief Finds the poses.
