@@ -12,6 +12,8 @@
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
 #include "mrpt/observation/ObservationPoints.h"
+#include "mrpt/rawlog/GnssFixes.h"
+#include "mrpt/rawlog/GnssWriter.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 #include "report/picture/RangeImagePicture.h"
 #include "report/picture/ScanPicture.h"
@@ -146,6 +148,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
   sequence.motion.covarianceFactor = 1;
 
   RawlogWriter rawlog(options.output.string());
+  GnssWriter gnss(rawlog, readGnssObservations(options.input.string(), options.allowTruncated));
   std::optional<io::AtomicFile> csv;
   if (options.csv) {
     csv.emplace(*options.csv);
@@ -154,6 +157,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
   ExtractSummary summary;
   summary.counts = streamPoles(options.input.string(), sequence, [&](const ReadScan& scan) {
     const auto motion = scan.index == 0 ? standstill() : scan.motion;
+    gnss.writeBefore(scan.observation->timestamp);
     rawlog.write(makeActions(motion, scan.observation->timestamp), scan.observation);
     if (csv) writeRows(csv->stream(), scan);
     summary.extraction += scan.report;
@@ -167,6 +171,7 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
     throw Error(options.input.string() + ": no scan " + std::to_string(options.pngScan) +
                 " to draw; there are " + std::to_string(summary.counts.scans) +
                 ", numbered from 0");
+  gnss.writeRest();
   rawlog.commit();
   if (csv) csv->commit();
   return summary;

@@ -36,6 +36,8 @@ struct ExtractSummary {
 /// The output holds pairs: an action with the motion since the scan before (empty when the input
 /// has no odometry), and a frame with one CObservationPoles. Scans without a valid point stay in it
 /// without poles, so that scan i is scan i of the input.
+/// Every CObservationGPS of the input that has a time is copied, as a single one before the first
+/// scan later than it.
 /// The CSV has the columns `scan,timestamp,x,y,radius,bottom,top,confidence,points,cxx,cxy,cyy`:
 /// 0-based index of the scan in the input, s, then per pole its centre in the robot frame and its
 /// radius (m), lowest and highest return above local ground (m), confidence in [0, 1], returns that

@@ -21,6 +21,8 @@
 #include "io/dataset/ScanPoses.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/TextFile.h"
+#include "mrpt/rawlog/GnssFixes.h"
+#include "mrpt/rawlog/GnssWriter.h"
 #include "mrpt/rawlog/RawlogWriter.h"
 
 namespace polemcl::apps {
@@ -134,6 +136,12 @@ mrpt::obs::CObservationPointCloud::Ptr makeObservation(const io::ScanFolder& fol
   }
   observation->pointcloud = points;
   return observation;
+}
+
+std::vector<mrpt::obs::CObservationGPS::Ptr> gnssObservations(const io::ScanFolder& folder) {
+  std::vector<mrpt::obs::CObservationGPS::Ptr> observations;
+  for (const GnssFix& fix : folder.fixes) observations.push_back(gnssObservation(fix));
+  return observations;
 }
 
 void checkSelection(const ImportOptions& options, const io::ScanFolder& folder) {
@@ -255,6 +263,7 @@ ImportReport importDataset(const ImportOptions& options,
   if (folder.scans.front().T_map_robot) truthFile.emplace(truthBeside(options.output));
   std::vector<io::StampedPose3D> truth;
   MotionSource motions(options);
+  GnssWriter gnss(rawlog, gnssObservations(folder));
   if (const ScanTiming timing = timingOf(options, folder); timing.turn != Turn::automatic)
     rawlog.writeComment(timingComment(timing));
   for (std::size_t i = 0; i < folder.scans.size(); ++i) {
@@ -272,6 +281,7 @@ ImportReport importDataset(const ImportOptions& options,
     }
     const auto motion = motions.take(scan);
     if (report.scans > 0 && motion) report.hasMotion = true;
+    gnss.writeBefore(observation->timestamp);
     rawlog.write(makeActions(motion, observation->timestamp), observation);
     // The time as the rawlog keeps it (steps of 100 ns), so that both files agree to the digit.
     const double time = mrpt::Clock::toDouble(observation->timestamp);
@@ -281,6 +291,7 @@ ImportReport importDataset(const ImportOptions& options,
   if (report.scans == 0)
     throw Error(options.input.string() + ": no usable scan, all " +
                 std::to_string(report.emptyScans) + " selected ones are empty");
+  gnss.writeRest();
   publish(rawlog, truthFile, truth);
   if (const auto note = climbNote(truth)) report.notes.push_back(*note);
   report.hasTruth = truthFile.has_value();

@@ -76,6 +76,8 @@ struct ImportReport {
 /// left out are composed, covariances too; noise is put on the true motion between the scans
 /// written. Both files appear once both are complete; until then older ones stay as they are.
 /// One cloud is in memory at a time.
+/// Positions from satellites become single `CObservationGPS`, each before the first scan later than
+/// it; see gnssObservation().
 /// \param progress Called with scans done and in all, before that with MB where a large file is
 ///        searched for scans; may be empty.
 /// \throws Error when the dataset cannot be read (see the readers in io/), nothing usable is left,

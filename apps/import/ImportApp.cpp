@@ -108,6 +108,9 @@ void declareOwn(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& t
   cli.add_option("--imu-topic", topics.imu,
                  "Topic of an IMU: its gyroscope gives the yaw, instead of the odometry")
       ->type_name("TOPIC");
+  cli.add_option("--gnss-topic", topics.fixes,
+                 "Topic of the positions from satellites, when there are several")
+      ->type_name("TOPIC");
 }
 
 void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& texts) {

@@ -91,6 +91,23 @@ inline std::string imuMessage(double time, const std::string& frame,
   return writer.zeros(3 + 9).message();
 }
 
+struct TestFix {
+  double time = 0, latitude = 0, longitude = 0;  ///< s, deg
+  std::array<double, 2> variances{4, 9};         ///< east, north, m²
+  std::uint8_t covarianceType = 2;
+  std::int8_t status = 0;
+  std::string frame = "gnss";
+};
+
+inline std::string fixMessage(const TestFix& fix, bool bigEndian = false) {
+  CdrWriter writer(bigEndian);
+  writer.header(fix.time, fix.frame).put(fix.status).put(std::uint16_t{1});
+  writer.put(fix.latitude).put(fix.longitude).put(110.0);
+  for (int i = 0; i < 9; ++i)
+    writer.put(i == 0 ? fix.variances[0] : i == 4 ? fix.variances[1] : i == 8 ? 100.0 : 0.5);
+  return writer.put(fix.covarianceType).message();
+}
+
 struct TestTransform {
   std::string parent, child;
   double x = 0, y = 0, z = 0, yaw = 0;
@@ -225,6 +242,6 @@ inline std::string bagMetadata(const std::vector<std::string>& files,
 
 constexpr const char *pointCloud2 = "sensor_msgs/msg/PointCloud2",
                      *odometry2 = "nav_msgs/msg/Odometry", *imu2 = "sensor_msgs/msg/Imu",
-                     *transforms2 = "tf2_msgs/msg/TFMessage";
+                     *transforms2 = "tf2_msgs/msg/TFMessage", *fix2 = "sensor_msgs/msg/NavSatFix";
 
 }  // namespace polemcl::tests

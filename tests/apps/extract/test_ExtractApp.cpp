@@ -5,7 +5,9 @@
 
 #include <polemcl/core/common/Types.h>
 #include "extract/ExtractApp.h"
+#include "mrpt/rawlog/GnssFixes.h"
 #include "mrpt/rawlog/RawlogReader.h"
+#include "support/Samples.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_extract_app {
@@ -166,6 +168,34 @@ TEST_F(ExtractApp, KeepsMotionsTimesAndSensorPose) {
   }
   EXPECT_EQ(entries, 3u);
   EXPECT_FALSE(before.next(scan));
+}
+
+TEST_F(ExtractApp, PositionsFromSatellitesSurvive) {
+  writeStreet(folder / "in", 3);  // at 50, 50.2, 50.4 s
+  import("in");
+  ASSERT_EQ(run().code, 0);
+  const std::string plain = readText(folder / "poles.rawlog");
+
+  std::vector<mrpt::obs::CObservationGPS::Ptr> received;
+  for (const double time : {49.0, 50.1, 50.2, 60.0})
+    received.push_back(gnssObservation({time, 49, 8 + time / 1e4, 3, {1, 2}}));
+  std::string late;
+  for (const std::size_t i : {2, 0, 3, 1}) late += samples::bytesOf(*received[i]);
+  writeText(folder / "in.rawlog", readText(folder / "in.rawlog") + late);
+  ASSERT_EQ(run().code, 0);
+
+  std::string kinds;
+  RawlogReader reader(at("poles.rawlog"));
+  RawlogEntry entry;
+  while (reader.next(entry)) kinds += entry.observation ? 'g' : entry.action ? 'p' : '?';
+  EXPECT_EQ(kinds, "gpgpgpg");
+  std::string rest = readText(folder / "poles.rawlog");
+  for (const auto& observation : received) {
+    const std::string bytes = samples::bytesOf(*observation);
+    ASSERT_NE(rest.find(bytes), std::string::npos);
+    rest.erase(rest.find(bytes), bytes.size());
+  }
+  EXPECT_EQ(rest, plain) << "nothing else has changed";
 }
 
 TEST_F(ExtractApp, CsvIsInTheRobotFrame) {

@@ -8,6 +8,7 @@
 #include "config/TimingComment.h"
 #include "import/ImportApp.h"
 #include "io/data/Trajectory.h"
+#include "mrpt/rawlog/GnssFixes.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/ExpectHas.h"
 #include "support/RosBags.h"
@@ -130,6 +131,36 @@ TEST_F(RosbagImport, ChoosesTopics) {
   const auto outcome = run({"--cloud-topic", "/rear", "--odometry-topic", "/odom"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_HAS(outcome.out, "1 scans; 1 points");
+}
+
+TEST_F(RosbagImport, PositionsFromSatellitesComeBeforeTheNextScan) {
+  writeBag();
+  {
+    TestBag more(folder / "in" / "in_1.db3");
+    for (const char* name : {"/fix", "/rtk"}) {
+      const int topic = more.topic(name, fix2);
+      for (const double time : {0.15, -5.0, 0.2, 9.0})
+        more.add(topic, 9, fixMessage({start + time, 49, 8.5, {2, 6}}));
+    }
+  }
+  fs::remove(folder / "in" / "metadata.yaml");
+  EXPECT_HAS(run().out, "/fix (4 messages), /rtk (4 messages); none is used");
+  EXPECT_TRUE(readGnssFixes((folder / "out.rawlog").string(), false).empty());
+  const auto outcome = run({"--gnss-topic", "/fix"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_HAS(outcome.out, "/fix: 4 positions from satellites");
+
+  RawlogReader reader((folder / "out.rawlog").string());
+  RawlogEntry entry;
+  std::string kinds;
+  while (reader.next(entry)) kinds += entry.observation ? 'g' : entry.action ? 's' : '?';
+  EXPECT_EQ(kinds, "gssgsgsg");
+  const auto fixes = readGnssFixes((folder / "out.rawlog").string(), false);
+  ASSERT_EQ(fixes.size(), 4u);
+  EXPECT_NEAR(fixes[1].time, start + 0.15, 1e-6);
+  EXPECT_EQ(fixes[1].latitude, 49);
+  EXPECT_EQ(fixes[1].longitude, 8.5);
+  EXPECT_NEAR(fixes[1].sigma, 2, 1e-6);
 }
 
 TEST_F(RosbagImport, BadInputAndWrongUsage) {

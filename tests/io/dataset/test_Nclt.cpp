@@ -250,4 +250,23 @@ TEST_F(NcltTest, RefusesSeveralSessionsInOneFolder) {
                  "2012-01-22");
 }
 
+TEST_F(NcltTest, TakesPositionsFromSatellites) {
+  EXPECT_TRUE(load().fixes.empty());
+  std::string rows;
+  for (const int mode : {3, 1, 0, 2})
+    rows += std::to_string(scanTime(mode)) + "," + std::to_string(mode) +
+            ",7,0.738,-1.461,270.5,nan,0.1\n";
+  write("2012-01-15/gps.csv", rows + std::to_string(start) + ",3,7,nan,nan,nan,nan,nan\n");
+  const ScanFolder session = load();
+  expectIn(notes(session), "gps.csv: 2 positions from satellites");
+  ASSERT_EQ(session.fixes.size(), 2u);
+  EXPECT_NEAR(session.fixes[0].time, scanTime(2) * 1e-6, 1e-6);
+  EXPECT_NEAR(session.fixes[0].latitude, 42.284285, 1e-6);
+  EXPECT_NEAR(session.fixes[0].longitude, -83.709134, 1e-6);
+  EXPECT_EQ(session.fixes[0].sigma, 2.5);
+  EXPECT_NEAR(session.fixes[1].time, scanTime(3) * 1e-6, 1e-6);
+  write("2012-01-15/gps.csv", "1,3,7,0.7\n");
+  expectIn(refusal(), "gps.csv:1: ", "4 numbers, 8 expected");
+}
+
 }  // namespace polemcl::test_nclt

@@ -258,4 +258,41 @@ TEST_F(Rosbag2Test, RefusesTruncatedMessages) {
   expectIn(refusal(), "a.db3: /points, message 3: cut short");
 }
 
+TEST_F(Rosbag2Test, TakesPositionsFromSatellites) {
+  writeDrive(3, {});
+  const int fixes = bag->topic("/fix", fix2);
+  bag->add(transforms, 0, transformsMessage({{"base_link", "gnss", -0.5, 0.25, 2, 0}}));
+  const double none = std::nan(""), start = kStart;
+  const std::vector<TestFix> messages{
+      {start, 49, 8, {2, 6}},     {start + 1, none, none},           {start + 2, 49, 8, {2, 6}, 0},
+      {start + 3, 49, 8, {0, 0}}, {start + 4, 49, 8, {2, 6}, 2, -1}, {start + 5, 49, 181}};
+  for (const TestFix& fix : messages) bag->add(fixes, 0, fixMessage(fix));
+  const ScanFolder folder = load();
+  expectNote(folder, "/fix: 3 positions from satellites");
+  ASSERT_EQ(folder.fixes.size(), 3u);
+  EXPECT_EQ(folder.fixes[0].time, kStart);
+  EXPECT_EQ(folder.fixes[0].latitude, 49);
+  EXPECT_EQ(folder.fixes[0].longitude, 8);
+  EXPECT_EQ(folder.fixes[0].sigma, 2);
+  EXPECT_EQ(folder.fixes[0].antenna_robot, Eigen::Vector2d(-0.5, 0.25));
+  EXPECT_EQ(folder.fixes[1].sigma, 2.5) << "covariance not known";
+  EXPECT_EQ(folder.fixes[2].sigma, 2.5) << "no variances";
+}
+
+TEST_F(Rosbag2Test, OfSeveralReceiversOneIsChosen) {
+  writeDrive(3, {});
+  for (const char* name : {"/fix", "/rtk"}) {
+    const int topic = bag->topic(name, fix2);
+    bag->add(topic, 0, fixMessage({kStart, name == std::string("/fix") ? 49.0 : 50.0, 8}));
+  }
+  EXPECT_TRUE(load().fixes.empty());
+  expectNote(load(), "/fix (1 messages), /rtk (1 messages); none is used");
+  options.topics.fixes = "/rtk";
+  ASSERT_EQ(load().fixes.size(), 1u);
+  EXPECT_EQ(load().fixes[0].latitude, 50);
+  EXPECT_EQ(load().fixes[0].antenna_robot, Eigen::Vector2d(0, 0));
+  options.topics.fixes = "/points";
+  expectIn(refusal(), "--gnss-topic /points: no such topic");
+}
+
 }  // namespace polemcl::test_rosbag2

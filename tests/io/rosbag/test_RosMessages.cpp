@@ -51,6 +51,22 @@ TEST(RosMessages, Imu) {
   expectRefusedWhenCut(message, [](const std::string& part) { decodeImu(part, "a.db3: "); });
 }
 
+TEST(RosMessages, NavSatFixInBothByteOrders) {
+  for (const bool bigEndian : {false, true}) {
+    const auto message = fixMessage({12.5, 49, -8.5, {4, 9}, 3, -1, "/gnss"}, bigEndian);
+    const RosNavSatFix fix = decodeNavSatFix(message, "a.db3: ");
+    EXPECT_EQ(fix.header.time, 12.5);
+    EXPECT_EQ(fix.header.frame, "gnss");
+    EXPECT_EQ(fix.status, -1);
+    EXPECT_EQ(fix.latitude, 49);
+    EXPECT_EQ(fix.longitude, -8.5);
+    EXPECT_EQ(fix.covariance.diagonal(), Eigen::Vector3d(4, 9, 100));
+    EXPECT_EQ(fix.covarianceType, 3);
+  }
+  expectRefusedWhenCut(fixMessage({}),
+                       [](const std::string& part) { decodeNavSatFix(part, "a.db3: "); });
+}
+
 TEST(RosMessages, Transforms) {
   const auto message = transformsMessage({{"base_link", "mast", 1, 2, 3, 0}, {"mast", "lidar"}});
   const auto transforms = decodeTransforms(message, "a.db3: ");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/dataset/NcltFiles.h"
+#include "io/dataset/NcltGps.h"
 #include "io/dataset/NcltOdometry.h"
 #include "io/dataset/ScanFiles.h"
 #include "io/dataset/ScanPoses.h"
@@ -171,6 +172,7 @@ ScanFolder readNclt(const fs::path& session, const Eigen::Isometry3d& T_robot_bo
     auto motions = turnMotions(turns, odometry ? &*odometry : nullptr);
     readTurns(std::move(turns), std::move(motions), result);
   }
+  if (!files.gps.empty()) addNcltFixes(files.gps, progress, result);
   if (files.truth.empty()) {
     result.notes.push_back("no groundtruth_DATE.csv");
   } else {

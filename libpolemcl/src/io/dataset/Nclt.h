@@ -14,9 +14,9 @@ Eigen::Isometry3d ncltRobotBody();
 /// \brief Reads a session. Scans: `velodyne_sync/*.bin` (file names are times in µs; the files may
 /// also lie directly in the folder), otherwise `velodyne_hits.bin`. Optional:
 /// `groundtruth_DATE.csv`, `cov_DATE.csv`, `odometry_mu_100hz.csv`, `odometry_mu.csv`,
-/// `odometry_cov.csv`. Each file may lie in the folder or one level below. The ground truth may
-/// also lie beside the folder or in `../ground_truth`; its date must then be the date in the
-/// folder's name.
+/// `odometry_cov.csv`, `gps.csv`. Each file may lie in the folder or one level below. The ground
+/// truth may also lie beside the folder or in `../ground_truth`; its date must then be the date in
+/// the folder's name.
 ///
 /// The folders of NCLT's own downloader are supported: ROOT/velodyne_data/DATE (or DATE_vel),
 /// ROOT/sensor_data/DATE (or DATE_sen), ROOT/ground_truth, ROOT/ground_truth_cov. Name such a

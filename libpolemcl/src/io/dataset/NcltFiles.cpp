@@ -166,6 +166,7 @@ NcltFiles findNcltFiles(const fs::path& folder) {
   }
   files.truth = findDated(places, "groundtruth");
   files.covariances = findDated(places, "cov");
+  files.gps = findNamed(places.own, "gps.csv");
   files.odometry = {findNamed(places.own, "odometry_mu_100hz.csv"),
                     findNamed(places.own, "odometry_mu.csv"),
                     findNamed(places.own, "odometry_cov.csv")};

@@ -12,6 +12,7 @@ namespace polemcl::io {
 struct NcltFiles {
   std::filesystem::path sync, hits;  ///< folder of scans; file of packets
   std::filesystem::path truth, covariances;
+  std::filesystem::path gps;
   NcltOdometryFiles odometry;
 };
 

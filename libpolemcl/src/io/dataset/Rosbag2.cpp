@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "io/dataset/RosbagFixes.h"
 #include "io/dataset/RosbagMotions.h"
 #include "io/file/TextFile.h"
 #include "io/rosbag/Bag.h"
@@ -32,16 +33,23 @@ std::string listTopics(const Bag& bag, const std::string& type = {}) {
   return list.empty() ? "none" : list;
 }
 
-/// The topic of this name, or without a name the only one of its type that has messages.
-/// \return Nothing if no topic has this type. \throws Error when the choice is not clear.
-std::optional<std::size_t> chooseTopic(const Bag& bag, const std::string& type,
-                                       const std::string& name, const std::string& option) {
+/// The topics of a type that have messages; with a name only that one.
+std::vector<std::size_t> topicsOf(const Bag& bag, const std::string& type,
+                                  const std::string& name = {}) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < bag.topics().size(); ++i) {
     const BagTopic& topic = bag.topics()[i];
     if (topic.type == type && topic.messages > 0 && (name.empty() || topic.name == name))
       found.push_back(i);
   }
+  return found;
+}
+
+/// The topic of this name, or without a name the only one of its type that has messages.
+/// \return Nothing if no topic has this type. \throws Error when the choice is not clear.
+std::optional<std::size_t> chooseTopic(const Bag& bag, const std::string& type,
+                                       const std::string& name, const std::string& option) {
+  const std::vector<std::size_t> found = topicsOf(bag, type, name);
   if (!name.empty() && found.empty())
     throw Error(bag.path().string() + ": " + option + " " + name + ": no such topic of " + type +
                 "; there are: " + listTopics(bag, type));
@@ -119,6 +127,18 @@ void findSensorPose(const FrameTree& frames, const std::string& robot, const std
                            ": the LiDAR is taken for the robot; --sensor-pose states its pose");
 }
 
+/// Adds the positions from satellites. Nobody needs them, so several topics are no error.
+void findFixes(const Bag& bag, const std::string& name, const FrameTree& frames,
+               const std::string& robot, ScanFolder& folder) {
+  std::optional<std::size_t> topic;
+  if (name.empty() && topicsOf(bag, kFixType).size() > 1)
+    folder.notes.push_back("several topics of " + std::string(kFixType) + ": " +
+                           listTopics(bag, kFixType) + "; none is used, choose with --gnss-topic");
+  else
+    topic = chooseTopic(bag, kFixType, name, "--gnss-topic");
+  if (topic) addRosbagFixes(bag, *topic, frames, robot, folder);
+}
+
 }  // namespace
 
 ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
@@ -145,6 +165,7 @@ ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
     const std::string child = addRosbagMotions(*bag, *odometry, imu, frames, folder);
     if (!child.empty()) robot = child;
   }
+  findFixes(*bag, options.topics.fixes, frames, robot, folder);
   if (options.readsSensorPose) findSensorPose(frames, robot, sensor, folder);
   if (options.readsTiming) estimateTiming(*bag, *clouds, folder);
   folder.read = [bag, topic = *clouds](const ScanEntry& scan) {

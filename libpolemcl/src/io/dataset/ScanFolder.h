@@ -12,6 +12,7 @@
 
 #include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/io/data/Cloud.h>
+#include "core/common/GnssFix.h"
 #include "io/data/PlanarMotion.h"
 
 namespace polemcl::io {
@@ -37,7 +38,8 @@ struct ScanFolder {
   bool nominalTimes = false;  ///< the dataset has no times: the entries have invented ones
   /// Pose of the sensor in the robot frame, if the recording states it.
   std::optional<Eigen::Isometry3d> T_robot_sensor = {};
-  ScanTiming timing = {};  ///< when points were measured, if the recording states it
+  ScanTiming timing = {};           ///< when points were measured, if the recording states it
+  std::vector<GnssFix> fixes = {};  ///< from satellites, in order of time; often none
 };
 
 /// \brief Reads the plain layout:

@@ -81,6 +81,20 @@ RosImu decodeImu(std::string_view message, const std::string& where) {
   return imu;
 }
 
+RosNavSatFix decodeNavSatFix(std::string_view message, const std::string& where) {
+  CdrReader reader(message, where);
+  RosNavSatFix fix;
+  fix.header = readHeader(reader);
+  fix.status = reader.get<std::int8_t>();
+  reader.get<std::uint16_t>();  // systems of satellites in use
+  fix.latitude = reader.get<double>();
+  fix.longitude = reader.get<double>();
+  reader.get<double>();  // height
+  fix.covariance = readCovariance<3>(reader);
+  fix.covarianceType = reader.get<std::uint8_t>();
+  return fix;
+}
+
 std::vector<RosTransform> decodeTransforms(std::string_view message, const std::string& where) {
   constexpr std::size_t kLeast = 8 + 4 + 4 + 7 * 8;  // stamp, two empty names, seven numbers
   CdrReader reader(message, where);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file RosMessages.h
-/// \brief Messages of ROS 2 that bags hold: odometry, IMU, transforms. See PointCloud2.h for
-/// clouds.
+/// \brief Messages of ROS 2 that bags hold: odometry, IMU, transforms, positions. See PointCloud2.h
+/// for clouds.
 
 #include <Eigen/Geometry>
 #include <string>
@@ -15,7 +15,8 @@ namespace polemcl::io {
 /// \brief Names of the types, as bags state them.
 constexpr const char *kCloudType = "sensor_msgs/msg/PointCloud2",
                      *kOdometryType = "nav_msgs/msg/Odometry", *kImuType = "sensor_msgs/msg/Imu",
-                     *kTransformsType = "tf2_msgs/msg/TFMessage";
+                     *kTransformsType = "tf2_msgs/msg/TFMessage",
+                     *kFixType = "sensor_msgs/msg/NavSatFix";
 
 /// \brief std_msgs/msg/Header.
 struct RosHeader {
@@ -46,12 +47,23 @@ struct RosTransform {
   Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();  ///< m
 };
 
+/// \brief sensor_msgs/msg/NavSatFix without height. Its numbers are as stored, not checked: they
+/// may be NaN where there is no fix.
+struct RosNavSatFix {
+  RosHeader header;                                      ///< its frame is that of the antenna
+  int status = 0;                                        ///< negative: no fix
+  double latitude = 0, longitude = 0;                    ///< deg on WGS 84
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (east, north, up), m²
+  int covarianceType = 0;                                ///< 0: the covariance is not known
+};
+
 /// \brief Decode the message. \param where Prefix of error messages.
 /// \throws Error when it is cut short, a number is not finite, a quaternion is not of unit length
 ///         (1 % off at most), or nanoseconds are a second or more.
 RosHeader readHeader(CdrReader& reader);
 RosOdometry decodeOdometry(std::string_view message, const std::string& where);
 RosImu decodeImu(std::string_view message, const std::string& where);
+RosNavSatFix decodeNavSatFix(std::string_view message, const std::string& where);
 std::vector<RosTransform> decodeTransforms(std::string_view message, const std::string& where);
 
 }  // namespace polemcl::io
