@@ -5,6 +5,7 @@
 #include "io/data/GnssCsv.h"
 #include "io/file/TextFile.h"
 #include "map/MapPlane.h"
+#include "mrpt/rawlog/GnssFixes.h"
 
 namespace polemcl::apps {
 namespace {
@@ -28,13 +29,15 @@ std::optional<DriveFix> between(const GnssFix& fix, const MappingSession& drive)
 
 }  // namespace
 
-std::vector<DriveFix> readDriveFixes(const std::vector<std::filesystem::path>& files,
+std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
                                      const std::vector<MappingSession>& drives,
                                      std::size_t firstScan, std::optional<io::Datum>& datum) {
   std::vector<DriveFix> fixes;
-  for (std::size_t i = 0; i < files.size(); ++i) {
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const bool table = !job.gnss.empty();
     const std::size_t known = fixes.size();
-    for (const GnssFix& fix : io::readGnssCsv(files[i])) {
+    for (const GnssFix& fix : table ? io::readGnssCsv(job.gnss[i])
+                                    : readGnssFixes(job.inputs[i].string(), job.allowTruncated)) {
       auto placed = between(fix, drives[i]);
       if (!placed) continue;
       if (!datum) datum = io::Datum{fix.latitude, fix.longitude, 0};
@@ -42,8 +45,8 @@ std::vector<DriveFix> readDriveFixes(const std::vector<std::filesystem::path>& f
       placed->position = MapPlane(*datum).place({fix.longitude, fix.latitude});
       fixes.push_back(*placed);
     }
-    if (fixes.size() == known)
-      throw Error(files[i].string() + ": none of its times is within those of the rawlog (" +
+    if (table && fixes.size() == known)
+      throw Error(job.gnss[i].string() + ": none of its times is within those of the rawlog (" +
                   io::fixed(drives[i].path.front().time, 3) + " to " +
                   io::fixed(drives[i].path.back().time, 3) + " s)");
     firstScan += drives[i].scans.size();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file DriveFixFiles.h
-/// \brief Positions from satellites beside rawlogs.
+/// \brief Positions from satellites, in tables beside rawlogs or in these.
 
 #include <filesystem>
 #include <optional>
@@ -8,16 +8,17 @@
 
 #include "core/slam/DriveFixes.h"
 #include "io/map/Datum.h"
-#include "map/MappingSession.h"
+#include "map/MapBuildApp.h"
 
 namespace polemcl::apps {
 
-/// \brief Reads the fixes of drives (readGnssCsv()), onto the plane of a datum. Those before the
-/// first scan, after the last one, or between scans more than 2 s apart are left out.
-/// \param files One per drive. \param firstScan Number of the first scan of these drives.
+/// \brief Reads the fixes of drives onto the plane of a datum: of the tables (readGnssCsv()), or
+/// without tables those in the rawlogs (readGnssFixes()). Those before the first scan, after the
+/// last one, or between scans more than 2 s apart are left out.
+/// \param firstScan Number of the first scan of these drives.
 /// \param datum If none is given: becomes the first fix.
-/// \throws Error as readGnssCsv(); when no fix of a file lies within its drive.
-std::vector<DriveFix> readDriveFixes(const std::vector<std::filesystem::path>& files,
+/// \throws Error as the readers; when no fix of a table lies within its drive.
+std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
                                      const std::vector<MappingSession>& drives,
                                      std::size_t firstScan, std::optional<io::Datum>& datum);
 

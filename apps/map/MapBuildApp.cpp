@@ -219,16 +219,20 @@ std::string foundText(const MappedDrives& mapped, const MapBuildJob& job) {
   return out.str();
 }
 
-/// The datum becomes that of the fixes, where there are some.
+/// The datum becomes that of the fixes, where these place the map. Fixes that merely lie in a
+/// rawlog may be of no use; a table of them must not.
 MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
                          const AddedSessions& before, std::optional<io::Datum>& datum,
                          const AllSettings& settings) {
-  if (job.add && !job.gnss.empty() && !datum)
+  const bool usable = !job.add || datum;
+  if (!usable && !job.gnss.empty())
     throw Error(job.add->string() +
-                ": has no datum, so that fixes cannot be placed on it; leave "
-                "out --gnss");
-  auto fixes = readDriveFixes(job.gnss, drives, before.scans(), datum);
+                ": has no datum, so that fixes cannot be placed on it; leave out --gnss");
+  auto plane = datum;
+  auto fixes =
+      usable ? readDriveFixes(job, drives, before.scans(), plane) : std::vector<DriveFix>();
   MappedDrives mapped = findPoses(drives, job.inputs, before, std::move(fixes), settings);
+  if (mapped.fixes > 0) datum = plane;
   if (!job.gnss.empty() && mapped.fixes == 0)
     throw Error(job.gnss.front().string() +
                 ": its fixes are too few, or too near to each other, to place a drive: five are "

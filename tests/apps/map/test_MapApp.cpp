@@ -1,6 +1,7 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/RunRecords.h"
 #include "extract/ExtractApp.h"
+#include "io/data/GnssCsv.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
@@ -8,8 +9,10 @@
 #include "map/MapApp.h"
 #include "map/MapBuildApp.h"
 #include "map/MapPlane.h"
+#include "mrpt/rawlog/GnssFixes.h"
 #include "support/ExpectHas.h"
 #include "support/IoFiles.h"
+#include "support/Samples.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_app {
@@ -194,6 +197,17 @@ TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
   }
   EXPECT_EQ(build({"--gnss", at("fixes.csv")}).code, 0) << "the first fix is the datum";
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
+  fs::copy_file(folder / "in.rawlog", folder / "bare.rawlog");
+  const auto given = io::readGnssCsv(folder / "fixes.csv");
+  std::string received;
+  for (const GnssFix& fix : given) received += samples::bytesOf(*gnssObservation(fix));
+  writeText(folder / "in.rawlog", readText(folder / "in.rawlog") + received);
+  const auto kept = build({});
+  EXPECT_NE(kept.out.find("placed by 59 positions"), std::string::npos) << kept.out << kept.err;
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
+  fs::copy_file(folder / "bare.rawlog", folder / "in.rawlog", fs::copy_options::overwrite_existing);
+  ASSERT_EQ(build({}).code, 0);
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("datum"), 0u);
   EXPECT_EQ(build({"--gnss", at("fixes.csv"), at("fixes.csv")}).code, 2);
   EXPECT_EQ(build({"--gnss", at("fixes.csv"), "--truth", at("in.tum")}).code, 2);
   writeText(folder / "few.csv", fixes.substr(0, fixes.find('\n', 130) + 1));
