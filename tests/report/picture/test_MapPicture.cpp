@@ -108,6 +108,23 @@ TEST(MapPicture, ErrorsAreDrawnOnlyWhenThereIsATruth) {
   EXPECT_EQ(Pixels(folder / "without.png").count(grey), 0u);
 }
 
+TEST(MapPicture, NoLineJoinsTwoDrives) {
+  MapView view = smallDrive();
+  view.truth.clear();
+  view.estimate.clear();
+  for (const double y : {0.0, 40.0})  // the second drive begins at the time of the first one
+    for (int i = 0; i <= 10; ++i) view.estimate.push_back({0.1 * i, {4.0 * i, y, 0}});
+  const TestFolder folder;
+  drawMapPng(view, folder / "two.png");
+  for (std::size_t i = 0; i < view.estimate.size(); ++i)
+    view.estimate[i].time = 0.1 * static_cast<double>(i);
+  drawMapPng(view, folder / "one.png");
+  const std::size_t two = Pixels(folder / "two.png").count(blue);
+  EXPECT_GT(two, 500u);
+  EXPECT_LT(static_cast<double>(two),
+            0.8 * static_cast<double>(Pixels(folder / "one.png").count(blue)));
+}
+
 TEST(MapPicture, AMapAloneIsAPicture) {
   MapView view;
   view.poles = {poleAt(100, 200)};

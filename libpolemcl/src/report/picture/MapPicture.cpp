@@ -32,6 +32,21 @@ std::vector<Eigen::Vector2d> pixels(const PlotAxes& axes, const std::vector<Stam
   return points;
 }
 
+/// A line for each drive: another one begins where the time goes back, or on by minutes.
+void drawPath(Canvas& canvas, const PlotAxes& axes, const std::vector<StampedPose2D>& path,
+              Color color, double width) {
+  constexpr double longestGap = 120;  // s
+  for (auto begin = path.begin(); begin != path.end();) {
+    const auto last =
+        std::adjacent_find(begin, path.end(), [](const StampedPose2D& a, const StampedPose2D& b) {
+          return b.time < a.time || b.time > a.time + longestGap;
+        });
+    const auto end = last == path.end() ? last : std::next(last);
+    canvas.line(pixels(axes, {begin, end}), color, width);
+    begin = end;
+  }
+}
+
 void drawEnds(Canvas& canvas, const PlotAxes& axes, const std::vector<StampedPose2D>& path) {
   if (path.empty()) return;
   const auto mark = [&](const StampedPose2D& pose, const char* label, const Color& color) {
@@ -88,8 +103,8 @@ void drawMap(Canvas& canvas, const Rect& frame, const Bounds& bounds, const MapV
   canvas.clip(frame);
   // Thinner on large maps, so that both sides of a street stay apart.
   const double metre = axes.pixelsPerX();
-  canvas.line(pixels(axes, view.truth), truthColor, std::clamp(2.5 * metre, 5.0, 9.0));
-  canvas.line(pixels(axes, view.estimate), estimateColor, std::clamp(0.8 * metre, 1.8, 2.6));
+  drawPath(canvas, axes, view.truth, truthColor, std::clamp(2.5 * metre, 5.0, 9.0));
+  drawPath(canvas, axes, view.estimate, estimateColor, std::clamp(0.8 * metre, 1.8, 2.6));
   const double smallest = std::clamp(1.5 * metre, 2.6, 4.5);
   for (const MapPole& pole : view.poles)
     canvas.disc(axes.toPixel(pole.x, pole.y), std::max(smallest, pole.radius * metre), poleColor,

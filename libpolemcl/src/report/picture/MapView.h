@@ -12,7 +12,8 @@
 
 namespace polemcl::report {
 
-/// \brief Any part may be empty; what is empty is not drawn. Poses in time order, m, rad, s.
+/// \brief Any part may be empty; what is empty is not drawn. Poses in time order, m, rad, s; drives
+/// one behind the other.
 struct MapView {
   std::string title;  ///< one line, UTF-8
   std::vector<MapPole> poles;
