@@ -33,6 +33,7 @@ std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
                                      const std::vector<MappingSession>& drives,
                                      std::size_t firstScan, std::optional<io::Datum>& datum) {
   std::vector<DriveFix> fixes;
+  std::optional<MapPlane> plane;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const bool table = !job.gnss.empty();
     const std::size_t known = fixes.size();
@@ -42,7 +43,8 @@ std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
       if (!placed) continue;
       if (!datum) datum = io::Datum{fix.latitude, fix.longitude, 0};
       placed->scan += firstScan;
-      placed->position = MapPlane(*datum).place({fix.longitude, fix.latitude});
+      if (!plane) plane.emplace(*datum);
+      placed->position = plane->place({fix.longitude, fix.latitude});
       fixes.push_back(*placed);
     }
     if (table && fixes.size() == known)

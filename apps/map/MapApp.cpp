@@ -51,18 +51,17 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
 void settle(MapBuildJob& job) {
   if (job.poses.empty()) job.kind = PoseKind::odometry;
   const bool found = job.kind == PoseKind::odometry;
-  if (!found && !job.gnss.empty())
-    throw CLI::ValidationError("--gnss: the poses are given; leave it out");
-  if (!job.gnss.empty() && job.gnss.size() != job.inputs.size())
-    throw CLI::ValidationError("--gnss: one file per --input is needed, " +
-                               std::to_string(job.inputs.size()) + ", not " +
-                               std::to_string(job.gnss.size()));
-  if (!found && !job.trajectories.empty())
-    throw CLI::ValidationError("--trajectory: the poses are given; leave it out");
-  if (!job.trajectories.empty() && job.trajectories.size() != job.inputs.size())
-    throw CLI::ValidationError("--trajectory: one file per --input is needed, " +
-                               std::to_string(job.inputs.size()) + ", not " +
-                               std::to_string(job.trajectories.size()));
+  const auto check = [&](const std::vector<std::filesystem::path>& files, const char* option) {
+    if (files.empty()) return;
+    if (!found)
+      throw CLI::ValidationError(std::string(option) + ": the poses are given; leave it out");
+    if (files.size() != job.inputs.size())
+      throw CLI::ValidationError(std::string(option) + ": one file per --input is needed, " +
+                                 std::to_string(job.inputs.size()) + ", not " +
+                                 std::to_string(files.size()));
+  };
+  check(job.gnss, "--gnss");
+  check(job.trajectories, "--trajectory");
 }
 void settle(MapUpdateJob&) {}
 

@@ -39,7 +39,7 @@ Pose2D bestMotion(const std::vector<Eigen::Vector2d>& from,
   return {shift.x(), shift.y(), yaw};
 }
 
-/// Of the points whose distance from where the motion has them is not far above the median.
+/// Indices of the distances that are not far above the median.
 std::vector<std::size_t> fitting(const std::vector<double>& distances) {
   std::vector<double> sorted = distances;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);

@@ -16,7 +16,7 @@ constexpr int kIterations = 30;      ///< of the least squares, at most
 constexpr int kRounds = 2;           ///< of looking for loops
 constexpr double kTieGate = 16.3;    ///< squared Mahalanobis distance: 99.9 %
 constexpr double kStart = 1e-4;      ///< m, rad: how firmly the first pose of a frame stands
-/// Of the sigmas of fixes, one after the other, until a drive that is bent lies on them.
+/// Factors of the sigmas of fixes, in this order: wide at first, while the drive is still bent.
 constexpr double kWidenings[] = {20, 5, 1};
 constexpr double kKnown = 0.02, kKnownYaw = 0.002;  ///< m, rad: σ of poses that are known
 /// m: greatest distance between the tracks of one pole, round by round.
@@ -57,7 +57,7 @@ class DriveMapping {
   std::vector<DriveFix> m_fixes;
   AdjustmentTrust m_trust;
   std::vector<std::size_t> m_drives;  ///< of each scan
-  /// Of each scan's pose: 0 is that of the map, n + 1 that of the start of drive n.
+  /// Frame of each scan's pose. 0: the map. n + 1: begins where drive n begins.
   std::vector<std::size_t> m_frames;
   AdjustedState m_state;
   PoleTracks m_tracks;
