@@ -10,6 +10,8 @@
 namespace polemcl::apps {
 namespace {
 
+constexpr double kFixesWithin = 5e4;  ///< m, of a drive from its middle, and of this from the datum
+
 /// The scan before the fix, and how far it is on the way to the next one.
 std::optional<DriveFix> between(const GnssFix& fix, const MappingSession& drive) {
   const auto next =
@@ -27,6 +29,48 @@ std::optional<DriveFix> between(const GnssFix& fix, const MappingSession& drive)
   return placed;
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The datum of the median latitude and longitude. \param fixes At least one.
+io::Datum middleOf(const std::vector<GnssFix>& fixes) {
+  std::vector<double> latitudes, longitudes;
+  for (const GnssFix& fix : fixes) {
+    latitudes.push_back(fix.latitude);
+    longitudes.push_back(fix.longitude);
+  }
+  return {median(std::move(latitudes)), median(std::move(longitudes)), 0};
+}
+
+/// Without those that no drive can explain: what receivers tell before they know anything.
+std::vector<GnssFix> withoutGlitches(std::vector<GnssFix> fixes) {
+  if (fixes.empty()) return fixes;
+  const MapPlane plane(middleOf(fixes));
+  const auto isFar = [&](const GnssFix& fix) {
+    return plane.distanceTo({fix.longitude, fix.latitude}) > kFixesWithin;
+  };
+  fixes.erase(std::remove_if(fixes.begin(), fixes.end(), isFar), fixes.end());
+  return fixes;
+}
+
+std::vector<GnssFix> fixesOf(const MapBuildJob& job, std::size_t i) {
+  if (!job.gnss.empty()) return withoutGlitches(io::readGnssCsv(job.gnss[i]));
+  if (!job.gnssOfRawlogs) return {};
+  return withoutGlitches(readGnssFixes(job.inputs[i].string(), job.allowTruncated));
+}
+
+void requireNear(const io::Datum& datum, const GnssFix& fix, const std::filesystem::path& file,
+                 const char* without) {
+  const double distance = MapPlane(datum).distanceTo({fix.longitude, fix.latitude});
+  if (distance <= kFixesWithin) return;
+  throw Error(file.string() + ": its positions from satellites are " +
+              io::fixed(distance / 1000, 0) + " km from the datum " + io::datumText(datum) +
+              " of the map; are they of this place? Without them: " + without);
+}
+
 }  // namespace
 
 std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
@@ -35,20 +79,22 @@ std::vector<DriveFix> readDriveFixes(const MapBuildJob& job,
   std::vector<DriveFix> fixes;
   std::optional<MapPlane> plane;
   for (std::size_t i = 0; i < drives.size(); ++i) {
-    const bool table = !job.gnss.empty();
     const std::size_t known = fixes.size();
-    for (const GnssFix& fix : table ? io::readGnssCsv(job.gnss[i])
-                                    : readGnssFixes(job.inputs[i].string(), job.allowTruncated)) {
+    const bool table = !job.gnss.empty();
+    const auto& file = table ? job.gnss[i] : job.inputs[i];
+    for (const GnssFix& fix : fixesOf(job, i)) {
       auto placed = between(fix, drives[i]);
       if (!placed) continue;
       if (!datum) datum = io::Datum{fix.latitude, fix.longitude, 0};
+      if (fixes.size() == known)
+        requireNear(*datum, fix, file, table ? "leave out --gnss" : "--no-gnss");
       placed->scan += firstScan;
       if (!plane) plane.emplace(*datum);
       placed->position = plane->place({fix.longitude, fix.latitude});
       fixes.push_back(*placed);
     }
     if (table && fixes.size() == known)
-      throw Error(job.gnss[i].string() + ": none of its times is within those of the rawlog (" +
+      throw Error(file.string() + ": none of its times is within those of the rawlog (" +
                   io::fixed(drives[i].path.front().time, 3) + " to " +
                   io::fixed(drives[i].path.back().time, 3) + " s)");
     firstScan += drives[i].scans.size();

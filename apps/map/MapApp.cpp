@@ -123,7 +123,10 @@ Subcommand buildCommand(CLI::App& program) {
   estimate->needs("--inventory");
   addFile(cli, "--gnss", job->gnss,
           "Without --truth: positions from satellites (CSV: time, latitude, longitude, sigma), one "
-          "file per rawlog; the map gets their datum");
+          "file per rawlog; the map gets their datum. Without this option, those in the rawlogs");
+  cli.add_flag("!--no-gnss", job->gnssOfRawlogs,
+               "Use no positions from satellites, though the rawlogs have some")
+      ->excludes("--gnss");
   markOutput(
       addFile(cli, "--trajectory", job->trajectories,
               "Without --truth: also write the poses found (TUM, covariances beside it), one "

@@ -25,7 +25,8 @@ struct MapBuildJob : MappingJob {
   std::optional<std::filesystem::path> inventory = {};
   /// \name Without poses: those that were found
   /// @{
-  std::vector<std::filesystem::path> gnss = {};          ///< CSV of fixes, one per input, or none
+  std::vector<std::filesystem::path> gnss = {};  ///< CSV of fixes, one per input, or none
+  bool gnssOfRawlogs = true;                     ///< without `gnss`: use those in the inputs
   std::vector<std::filesystem::path> trajectories = {};  ///< TUM, one per input, or none
   std::optional<std::filesystem::path> png = {};         ///< map, paths and loops, when given
   /// @}

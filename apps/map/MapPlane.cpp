@@ -57,6 +57,10 @@ Eigen::Vector2d MapPlane::lonLat(const Eigen::Vector2d& place) const {
   return {found.lp.lam, found.lp.phi};
 }
 
+double MapPlane::distanceTo(const Eigen::Vector2d& lonLat) const {
+  return eastNorthUp(lonLat, 0).norm();
+}
+
 Eigen::Vector2d MapPlane::place(const Eigen::Vector2d& lonLat) const {
   const Eigen::Vector3d ground = eastNorthUp(lonLat, 0);
   const double distance = ground.norm();

@@ -28,6 +28,9 @@ class MapPlane {
   /// \param lonLat deg. \throws Error as lonLat(); it says when the two numbers are swapped.
   Eigen::Vector2d place(const Eigen::Vector2d& lonLat) const;
 
+  /// \brief Straight from the datum, m. \param lonLat deg.
+  double distanceTo(const Eigen::Vector2d& lonLat) const;
+
  private:
   struct Projection;
   Eigen::Vector3d eastNorthUp(const Eigen::Vector2d& lonLat, double height) const;

@@ -197,6 +197,13 @@ TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
   }
   EXPECT_EQ(build({"--gnss", at("fixes.csv")}).code, 0) << "the first fix is the datum";
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
+  const std::size_t firstRow = fixes.find('\n') + 1;
+  writeText(folder / "cold.csv", std::string(fixes).insert(firstRow, "50.005,0,0,5\n"));
+  const auto cold = build({"--gnss", at("cold.csv")});
+  EXPECT_NE(cold.out.find("placed by 59 positions"), std::string::npos) << cold.out << cold.err;
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
+  expectFailure(build({"--gnss", at("fixes.csv"), "--datum", "49,9"}),
+                {"fixes.csv", "111 km from the datum 49,9,0", "leave out --gnss"});
   fs::copy_file(folder / "in.rawlog", folder / "bare.rawlog");
   const auto given = io::readGnssCsv(folder / "fixes.csv");
   std::string received;
@@ -205,6 +212,10 @@ TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
   const auto kept = build({});
   EXPECT_NE(kept.out.find("placed by 59 positions"), std::string::npos) << kept.out << kept.err;
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.at("datum").rfind("48.0004", 0), 0u);
+  ASSERT_EQ(build({"--no-gnss"}).code, 0);
+  EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("datum"), 0u);
+  EXPECT_EQ(build({"--no-gnss", "--gnss", at("fixes.csv")}).code, 2);
+  expectFailure(build({"--datum", "49,9"}), {"in.rawlog", "111 km from", "--no-gnss"});
   fs::copy_file(folder / "bare.rawlog", folder / "in.rawlog", fs::copy_options::overwrite_existing);
   ASSERT_EQ(build({}).code, 0);
   EXPECT_EQ(io::readPoleMap(folder / "street.polemap").info.count("datum"), 0u);

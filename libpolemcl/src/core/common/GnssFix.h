@@ -3,6 +3,7 @@
 /// \brief A position from satellites (GPS, Galileo, ...). Private to the library.
 
 #include <Eigen/Core>
+#include <cmath>
 
 namespace polemcl {
 
@@ -14,5 +15,10 @@ struct GnssFix {
   double sigma = 0;                                         ///< along each horizontal axis, m
   Eigen::Vector2d antenna_robot = Eigen::Vector2d::Zero();  ///< m
 };
+
+/// \brief Whether latitude is within ±90 and longitude within ±180 deg; false for NaN.
+inline bool isOnGlobe(const GnssFix& fix) {
+  return std::abs(fix.latitude) <= 90 && std::abs(fix.longitude) <= 180;
+}
 
 }  // namespace polemcl

@@ -29,9 +29,8 @@ std::vector<GnssFix> readGnssCsv(const std::filesystem::path& file) {
     fix.sigma = table.number(row, sigma);
     if (x) fix.antenna_robot.x() = table.number(row, *x);
     if (y) fix.antenna_robot.y() = table.number(row, *y);
-    require(std::abs(fix.latitude) <= 90, table, row, "latitude must be within -90 and 90 deg");
-    require(std::abs(fix.longitude) <= 360, table, row,
-            "longitude must be within -360 and 360 deg");
+    require(isOnGlobe(fix), table, row,
+            "latitude must be within -90 and 90 deg, longitude within -180 and 180");
     require(fix.sigma > 0, table, row, "sigma must be above 0 m");
     require(fixes.empty() || fix.time >= fixes.back().time, table, row,
             "time goes back; fixes must come in order");

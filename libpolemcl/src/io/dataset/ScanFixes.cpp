@@ -6,8 +6,7 @@
 namespace polemcl::io {
 
 void takeFix(const GnssFix& fix, ScanFolder& folder) {
-  const bool isOnGlobe = std::abs(fix.latitude) <= 90 && std::abs(fix.longitude) <= 180;
-  if (isOnGlobe && std::isfinite(fix.time)) folder.fixes.push_back(fix);
+  if (isOnGlobe(fix) && std::isfinite(fix.time)) folder.fixes.push_back(fix);
 }
 
 void finishFixes(const std::string& source, ScanFolder& folder) {
