@@ -3,7 +3,7 @@
 # day, and two drives on another day for each world: one per direction, with own detections, noise and
 # seed. Odometry is the truth with 2 % noise.
 # Usage: share/experiments/consistency.sh OUT [FIRST [WORLDS]]
-#   OUT      gets maps, drives, runs, forward.json, reverse.json and all.json
+#   OUT      gets maps, drives, runs, and result.json
 #   FIRST    first world, 701 unless given; WORLDS: their number, 30 unless given
 # Poles are drawn by the model of share/models/hdl32e.json. Programs: build/bin, or POLEMCL_BIN.
 set -eu
@@ -68,4 +68,5 @@ sed -n 2p "$(
   score all $forward_truth $reverse_truth --cov $forward $reverse >>"$out/table.txt"
   echo "$out/all.txt"
 )"
+jq -s '{forward: .[0], reverse: .[1], all: .[2]}' "$out/forward.json" "$out/reverse.json" "$out/all.json" >"$out/result.json"
 cat "$out/table.txt"

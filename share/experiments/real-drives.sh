@@ -15,7 +15,7 @@
 # the vehicle while the LiDAR turned. "ok" is the share of the scans with this health, "mean ok" and "worst
 # ok" the errors of them, over all seeds. NEES (3 where covariances are right) and
 # coverage of the 95 % ellipses are those of the poses that are ok, with the standard deviations of the true
-# poses (README of the data; for nuScenes plane_adjustment.py) added. "nuscenes-planes": the poses of this drive adjusted by the planes
+# poses (README of the data; for nuScenes plane_adjustment.py) added; "alone" is without these. "nuscenes-planes": the poses of this drive adjusted by the planes
 # in its scans (plane_adjustment.py), in which no point of a pole takes part. pole_radii.py OUT then compares
 # the radii of the poles with those on the map.
 # Programs: build/bin, or POLEMCL_BIN. Needs jq and python3-scipy; three minutes.
@@ -78,6 +78,14 @@ while_ok() {
       printf "\"worst_ok_m\": %.4f, \"worst_ok_deg\": %.4f}", far, turned }'
 }
 
+# score_consistency NAME SIGMAS: $here/NAME.json, with these standard deviations of the true poses, m and degrees.
+score_consistency() {
+  "$bin/pole-eval" consistency --quiet --truth "$here/scans.tum" --cov "$here"/runs/run_*_cov.csv \
+    --health "$here"/runs/run_*_health.csv --skip-metres 0 --truth-sigma-m "${2%,*}" \
+    --truth-sigma-deg "${2#*,}" --json "$here/$1.json" ||
+    echo '{}' >"$here/$1.json" # no pose was ok
+}
+
 # drive NAME DRIVE CONFIG TURN "MAP SCANS" "SCANS": map and localization, scans as FIRST LAST EVERY OFFSET.
 # Uses $mounting and $settings. Adds a line to $out/results.
 drive() {
@@ -100,16 +108,15 @@ drive() {
     --output "$here/scans_poles.rawlog" --csv "$here/scans.csv"
   evaluate_runs "$here/runs" "$here/scans.tum" >/dev/null
   while_ok "$here/runs" >"$here/ok.json"
-  "$bin/pole-eval" consistency --quiet --truth "$here/scans.tum" --cov "$here"/runs/run_*_cov.csv \
-    --health "$here"/runs/run_*_health.csv --skip-metres 0 --truth-sigma-m "${sigmas%,*}" \
-    --truth-sigma-deg "${sigmas#*,}" --json "$here/consistency.json" ||
-    echo '{}' >"$here/consistency.json" # no pose was ok
+  score_consistency consistency "$sigmas"
+  score_consistency alone 0,0
   jq -s --arg name "$1" --slurpfile ok "$here/ok.json" \
-    --slurpfile fit "$here/consistency.json" --argjson poles "$(($(wc -l <"$here/map.csv") - 1))" \
+    --slurpfile fit "$here/consistency.json" --slurpfile alone "$here/alone.json" --argjson poles "$(($(wc -l <"$here/map.csv") - 1))" \
     '{drive: $name, map_poles: $poles, pos_mean: (map(.pos_mean) | add / length),
       pos_least: (map(.pos_mean) | min), pos_most: (map(.pos_mean) | max),
       ang_mean_deg: (map(.ang_mean_deg) | add / length), pos_max: (map(.pos_max) | max)} + $ok[0] +
-      ($fit[0] | {nees_mean, coverage_95, truth_sigma_m, truth_sigma_deg})' \
+      ($fit[0] | {nees_mean, coverage_95, truth_sigma_m, truth_sigma_deg}) +
+      ($alone[0] | {nees_alone: .nees_mean, coverage_95_alone: .coverage_95})' \
     "$here"/runs/run_0?.json >>"$out/results"
   rm "$here"/*.rawlog
 }
@@ -184,11 +191,11 @@ if [ -n "$kilometre" ]; then half_kilometre; else short_drives; fi
 jq -s . "$out/results" >"$out/result.json"
 rm "$out/results"
 jq -r '.[] | [.drive, .map_poles, .pos_mean, .pos_least, .pos_most, .ang_mean_deg, .pos_max, .ok,
-    .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg, .nees_mean, .coverage_95] | @tsv' "$out/result.json" |
+    .mean_ok_m, .mean_ok_deg, .worst_ok_m, .worst_ok_deg, .nees_mean, .coverage_95, .nees_alone, .coverage_95_alone] | @tsv' "$out/result.json" |
   awk -F '\t' 'BEGIN {
-      format = "%-24s %9s %8s %17s %8s %8s %6s %16s %16s %6s %9s\n"
+      format = "%-24s %9s %8s %17s %8s %8s %6s %16s %16s %6s %9s %6s %9s\n"
       printf format, "drive", "map poles", "mean m", "(least to most)", "mean deg", "worst m", "ok",
-        "mean ok, m deg", "worst ok, m deg", "NEES", "coverage" }
-    { printf "%-24s %9d %8.4f %8.4f %8.4f %8.4f %8.4f %6.2f %8.4f %7.4f %8.4f %7.4f %6.2f %9.3f\n", $1, $2,
-        $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14 }' >"$out/table.txt"
+        "mean ok, m deg", "worst ok, m deg", "NEES", "coverage", "alone", "coverage" }
+    { printf "%-24s %9d %8.4f %8.4f %8.4f %8.4f %8.4f %6.2f %8.4f %7.4f %8.4f %7.4f %6.2f %9.3f %6.2f %9.3f\n", $1, $2,
+        $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16 }' >"$out/table.txt"
 cat "$out/table.txt"
