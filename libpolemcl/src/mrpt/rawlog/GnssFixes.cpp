@@ -59,8 +59,7 @@ std::optional<GnssFix> fixOf(const CObservationGPS& observation) {
   fix.longitude = gga.longitude_degrees;
   fix.sigma = sigmaOf(gga);
   fix.antenna_robot = {observation.sensorPose.x(), observation.sensorPose.y()};
-  const bool isUsable =
-      isOnGlobe(fix) && std::isfinite(fix.sigma) && fix.antenna_robot.allFinite();
+  const bool isUsable = isOnGlobe(fix) && std::isfinite(fix.sigma) && fix.antenna_robot.allFinite();
   return isUsable ? std::optional(fix) : std::nullopt;
 }
 
