@@ -49,7 +49,7 @@ measure() {
     failed="${failed-} $name"
     return 0
   fi
-  cp "$out/$name/$file" "$out/reports/$report"
+  sed "s#$out/##g" "$out/$name/$file" >"$out/reports/$report"
   echo "$name,$commit,$(date +%F),$((($(date +%s) - begun + 59) / 60))" >>"$out/reports/measured.csv"
 }
 
