@@ -54,5 +54,5 @@ for sensor in hdl64e hdl32e os1_64 vlp16; do
 done
 
 summarize "$quick" >"$out/result.json"
-table "$out/result.json" >"$out/table.txt"
+table "$out/result.json" | sed "s/ *$//" >"$out/table.txt"
 cat "$out/table.txt"
