@@ -49,7 +49,7 @@ AllSettings effectiveSettings(const LocalizeJob& job) {
   if (job.runs) settings.runs.runs = *job.runs;
   if (job.seed) settings.runs.seed = *job.seed;
   if (job.particles) settings.localization.filter.particles = *job.particles;
-  if (job.anywhere) settings.start.anywhere = true;
+  if (job.anywhere || job.startByGnss) settings.start.anywhere = true;
   if (!job.start.empty()) setStart(settings.start, job.start);
   setView(settings.view, job);
   checkOptions(settings.runs);
@@ -59,9 +59,16 @@ AllSettings effectiveSettings(const LocalizeJob& job) {
 }
 
 /// What is known before the first scan; the truth gives the start where nothing else does.
-LocalizeFacts factsOf(const LocalizeJob& job, const AllSettings& settings, std::size_t mapPoles) {
-  LocalizeFacts facts{job, settings, "", {}, mapPoles};
-  if (facts.settings.start.anywhere)
+LocalizeFacts factsOf(const LocalizeJob& job, const AllSettings& settings, const CPoleMap& map) {
+  LocalizeFacts facts{job, settings, "", {}, map.poles().size(), {}};
+  if (job.startByGnss) {
+    facts.datum = io::datumOf(map.info, job.map.string());
+    if (!facts.datum)
+      throw Error(job.map.string() +
+                  ": has no datum, so a position from satellites says nothing "
+                  "about places on it: start with --start or --global");
+    facts.startSource = "gnss";
+  } else if (facts.settings.start.anywhere)
     facts.startSource = "anywhere";
   else if (!job.start.empty())
     facts.startSource = "command line";
@@ -155,7 +162,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   const auto map = loadPoleMap(job.map, settings.likelihood);
   std::vector<StampedPose2D> truth;
   if (job.truth) truth = io::readPlanarTum(*job.truth);
-  LocalizeFacts facts = factsOf(job, settings, map->poles().size());
+  LocalizeFacts facts = factsOf(job, settings, *map);
   // Before the work, so that folders and windows that cannot be are known now.
   RunFolder folder(job.output);
   for (const auto& input : {job.config, job.source(), job.map, job.truth.value_or("")})
@@ -280,9 +287,15 @@ int localizeMain(int argc, const char* const* argv) {
                     ->default_str("[start], else the truth")
                     ->delimiter(',')
                     ->expected(5);
-  cli.add_flag("--global", job.anywhere,
-               "Start without a pose: search the whole map during the drive")
-      ->excludes(start);
+  auto* global = cli.add_flag("--global", job.anywhere,
+                              "Start without a pose: search the whole map during the drive")
+                     ->excludes(start);
+  cli.add_flag("--start-gnss", job.startByGnss,
+               "Search the map only near the rawlog's first position from satellites; the map "
+               "needs a datum")
+      ->excludes(start)
+      ->excludes(global)
+      ->excludes(cli.get_option("--sensors"));
   addViewOptions(cli, job);
   cli.get_option("--sensors")->excludes(cli.get_option("--rate"));
   addOutput(cli, "--stream", job.stream,

@@ -26,6 +26,7 @@ struct LocalizeJob {
   std::optional<std::uint32_t> seed;
   std::vector<double> start;  ///< x, y (m), yaw (deg), radius (m), heading (deg); or empty
   bool anywhere = false;      ///< no start pose: global search
+  bool startByGnss = false;   ///< global search near the first fix of `input`
   /// \name How the drive is played and its first run watched, as in `[view]`
   /// @{
   bool live = false, hold = false;
@@ -83,8 +84,9 @@ struct LocalizeResult {
 ///   the runs (`pos_max`: the largest), their standard deviations in `spread`, each run in `runs`,
 ///   and in `ok_beyond_spread` the scans of all runs that were `ok` though the error was above 0.5
 ///   m and 5 times the spread; `start_source` says who gave the start pose: the `truth` (at the
-///   first scan), the `configuration`, the `command line`, or nobody: the start is `anywhere`; with
-///   sensors also `dropped_scans` and `scans_without_odometry`, which are left out;
+///   first scan), the `configuration`, the `command line`, or nobody: the start is `anywhere`, or
+///   near the first fix of the rawlog (`gnss`); with sensors also `dropped_scans` and
+///   `scans_without_odometry`, which are left out;
 /// - `config.ini`: the effective configuration;
 /// - `timings.json`: the only file that differs from repetition to repetition. `wall_s`, `rate`
 ///   (times the pace of the recording, 1 with sensors, or `max`), `filter_s` of each run, and in

@@ -3,6 +3,7 @@
 #include "cli/Progress.h"
 #include "core/common/PoseInterpolation.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
+#include "localize/GnssStart.h"
 
 namespace polemcl::apps {
 
@@ -39,10 +40,13 @@ void LocalizePlayer::take(const ReadScan& scan) {
 
 void LocalizePlayer::begin(const PoleScan& first) {
   StartOptions& start = m_facts.settings.start;
+  const LocalizeJob& job = m_facts.job;
+  if (m_facts.datum)
+    start.area = gnssStart(job.input, job.allowTruncated, first.time, *m_facts.datum);
   if (!start.anywhere && !start.pose) {
     start.pose = poseAt(*m_truth, first.time, longestTruthGap);
     if (!start.pose)
-      throw Error(m_facts.job.truth->string() + ": the truth does not reach the first scan, at " +
+      throw Error(job.truth->string() + ": the truth does not reach the first scan, at " +
                   std::to_string(first.time) + " s: set position_m and yaw_deg in [start]");
   }
   m_runs = std::make_unique<FilterRuns>(m_map, m_facts.settings);

@@ -103,7 +103,10 @@ Json inputs(const LocalizeFacts& facts) {
   json["map_poles"] = facts.mapPoles;
   json["particles"] = facts.settings.localization.filter.particles;
   json["seed"] = facts.settings.runs.seed;
-  if (facts.settings.start.anywhere) {
+  if (const auto& area = facts.settings.start.area) {
+    json["start"] = {
+        {"x", area->centre_map.x()}, {"y", area->centre_map.y()}, {"radius_m", area->radius}};
+  } else if (facts.settings.start.anywhere) {
     json["start"] = "anywhere";
   } else {
     const Pose2D& pose = *facts.settings.start.pose;

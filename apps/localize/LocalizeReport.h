@@ -3,10 +3,12 @@
 /// \brief What `pole-localize` writes and prints about its runs.
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
 
+#include "io/map/Datum.h"
 #include "localize/LocalizeApp.h"
 #include "mrpt/rawlog/PoleSequence.h"
 
@@ -16,9 +18,10 @@ namespace polemcl::apps {
 struct LocalizeFacts {
   LocalizeJob job;
   SettingsValues settings;
-  std::string startSource;  ///< `truth`, `configuration`, `command line` or `anywhere`
+  std::string startSource;  ///< `truth`, `configuration`, `command line`, `gnss` or `anywhere`
   SequenceCounts counts;
   std::size_t mapPoles = 0;
+  std::optional<io::Datum> datum;  ///< of the map, where a position from satellites gives the start
 };
 
 /// \brief The errors of a trajectory by their names in JSON: m and degrees.

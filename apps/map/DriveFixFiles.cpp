@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "cli/MapPlane.h"
 #include "io/data/GnssCsv.h"
 #include "io/file/TextFile.h"
-#include "map/MapPlane.h"
 #include "mrpt/rawlog/GnssFixes.h"
 
 namespace polemcl::apps {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/MapPlane.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Date.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/ParsedJson.h"
-#include "map/MapPlane.h"
 
 namespace polemcl {
 namespace {

@@ -6,13 +6,13 @@
 #include <set>
 #include <sstream>
 
+#include "cli/MapPlane.h"
 #include "cli/Version.h"
 #include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PoleMapFile.h"
 #include "map/CoordinateSystem.h"
 #include "map/Inventory.h"
-#include "map/MapPlane.h"
 
 namespace polemcl::apps {
 namespace {

@@ -39,6 +39,10 @@ class DriveLocalizer {
     alone(m_mutex, [&] { m_localizer.startAnywhere(); });
   }
 
+  void startWithin(double x, double y, double radius) {
+    alone(m_mutex, [&] { m_localizer.startWithin(x, y, radius); });
+  }
+
   LocalizationUpdate step(double time, const py::object& motion, const py::object& covariance,
                           const py::object& poles, const py::object& velocity) {
     PoleScan frame;
@@ -138,6 +142,9 @@ void addLocalization(py::module_& module) {
            "(rad); None takes those of [start].")
       .def("start_anywhere", &DriveLocalizer::startAnywhere,
            "No pose is known: the whole map is searched during the drive.")
+      .def("start_within", &DriveLocalizer::startWithin, py::arg("x"), py::arg("y"),
+           py::arg("radius"),
+           "The heading is not known: the map is searched within radius of x, y (m).")
       .def("initialize_globally", &DriveLocalizer::startAnywhere, "The former name.")
       .def("step", &DriveLocalizer::step, py::arg("time"), py::arg("motion"), py::arg("covariance"),
            py::arg("poles"), py::arg("velocity") = py::none(),

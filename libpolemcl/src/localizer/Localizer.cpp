@@ -28,7 +28,7 @@ struct Localizer::Impl {
         extractor(settings.poleExtraction()),
         pipeline(std::move(map), settings.localization, seed) {
     if (settings.start.anywhere)
-      startAnywhere();
+      startAnywhere(settings.start.area);
     else if (settings.start.pose)
       start(settings.start);
   }
@@ -37,8 +37,8 @@ struct Localizer::Impl {
     pipeline.start(options);
     isStarted = true;
   }
-  void startAnywhere() {
-    pipeline.initializeGlobally();
+  void startAnywhere(const std::optional<SearchArea>& area = {}) {
+    pipeline.initializeGlobally(area);
     isStarted = true;
   }
   LocalizationUpdate step(const PoleScan& frame);
@@ -99,6 +99,10 @@ void Localizer::start(const Pose2D& pose_map_robot, std::optional<double> radius
 
 void Localizer::startAnywhere() {
   m_impl->startAnywhere();
+}
+
+void Localizer::startWithin(double x, double y, double radius) {
+  m_impl->startAnywhere(SearchArea{{x, y}, radius});
 }
 
 LocalizationUpdate Localizer::step(double time, const PointsView& points, const Pose2D& odometry) {

@@ -2,9 +2,13 @@
 
 #include <sstream>
 
+#include "cli/MapPlane.h"
+#include "io/map/Datum.h"
+#include "mrpt/rawlog/GnssFixes.h"
 #include "support/CityFiles.h"
 #include "support/ExpectHas.h"
 #include "support/LocalizeTest.h"
+#include "support/Samples.h"
 
 namespace polemcl::test_localize_app {
 
@@ -305,6 +309,47 @@ TEST(LocalizeAppAnywhere, FindsTheVehicleAndTellsFromWhenOn) {
   const std::string health = readText(city.folder / "out/run_01_health.csv");
   EXPECT_NE(health.find("lost,searching"), std::string::npos);
   EXPECT_EQ(lines(health), city.frames.size() + 1);
+}
+
+TEST(LocalizeAppAnywhere, ThePositionFromSatellitesSaysWhereToSearch) {
+  registerClasses();
+  const CityFiles city(80);
+  const io::Datum datum{50, 7, 0};
+  const auto start = [&](const std::string& map) {
+    return runProgram(localizeMain,
+                      {"--config", city.at("city.ini"), "--input", city.at("drive.rawlog"), "--map",
+                       city.at(map), "--output", city.at("out"), "--start-gnss"});
+  };
+  expectFailure(start("city.polemap"), {"city.polemap", "no datum", "--global"});
+  CPoleMap map;
+  map.loadFromPoleMapFile(city.at("city.polemap"));
+  io::setDatum(map.info, datum, "city");
+  map.saveToPoleMapFile(city.at("placed.polemap"));
+  expectFailure(start("placed.polemap"), {"drive.rawlog", "no position from satellites"});
+
+  const Pose2D& begin = city.frames[0].truth;
+  const auto fixAt = [&](double x, double time) {
+    const Eigen::Vector2d place = MapPlane(datum).lonLat({begin.x + x, begin.y});
+    return samples::bytesOf(*gnssObservation({time, place.y(), place.x(), 2, {0, 0}}));
+  };
+  const std::string drive = readText(city.folder / "drive.rawlog");
+  const std::string cold =  // what a receiver tells before it knows anything
+      samples::bytesOf(*gnssObservation({CityFiles::time(0), 0, 0, 5, {0, 0}}));
+  writeText(city.folder / "drive.rawlog", drive + fixAt(0, CityFiles::time(0) + 6));
+  expectFailure(start("placed.polemap"), {"drive.rawlog", "6.0 s from the first scan"});
+  writeText(city.folder / "drive.rawlog", cold + fixAt(8, CityFiles::time(1)) + drive);
+  const auto outcome = start("placed.polemap");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(readText(city.folder / "out/summary.json"));
+  EXPECT_EQ(json["start_source"], "gnss");
+  EXPECT_NEAR(json["start"]["x"], begin.x + 8, 0.01);
+  EXPECT_NEAR(json["start"]["radius_m"], 5 * 2 + 10 + 40 * 0.2, 0.01);
+  const std::size_t first = json["runs"][0]["health"]["first_pose_scan"];
+  const auto estimate = io::planar(io::readTum(city.at("out/run_00.tum")));
+  for (std::size_t i = 0; i < estimate.size(); ++i)
+    EXPECT_NEAR(estimate[i].pose.x, city.frames[first + i].truth.x, 0.5);
+  writeText(city.folder / "drive.rawlog", fixAt(5000, CityFiles::time(0)) + drive);
+  expectFailure(start("placed.polemap"), {"from the nearest pole of the map"});
 }
 
 TEST(LocalizeAppAnywhere, ARunThatFindsNothingIsNoErrorButSaysSo) {

@@ -1,4 +1,5 @@
 #include <polemcl/core/common/Types.h>
+#include "cli/MapPlane.h"
 #include "cli/RunRecords.h"
 #include "extract/ExtractApp.h"
 #include "io/data/GnssCsv.h"
@@ -8,7 +9,6 @@
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapBuildApp.h"
-#include "map/MapPlane.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "support/ExpectHas.h"
 #include "support/IoFiles.h"

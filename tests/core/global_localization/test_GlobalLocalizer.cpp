@@ -208,6 +208,30 @@ TEST(GlobalLocalizer, NamesBothOfTwoEqualPlaces) {
   EXPECT_NEAR(result.hypotheses[1].weight, 0.5, 0.01);
 }
 
+/// Where the drive began, to within 20 m, decides between the two.
+TEST(GlobalLocalizer, DecidesByTheAreaWhereTheDriveBegan) {
+  const PoleCity world(city(1051));
+  std::vector<MapPole> map = world.map();
+  const std::size_t half = map.size();
+  for (std::size_t i = 0; i < half; ++i) {
+    map.push_back(map[i]);
+    map.back().x += 5000;
+  }
+  const GlobalLocalizer localizer(map);
+  const Drive drive = driveFrom(world, 1, 60);
+  const Pose2D& begin = drive.frames.front().truth;
+  for (const double copy : {0.0, 5000.0}) {
+    const SearchArea area{{begin.x + copy + 15, begin.y}, 20};
+    const GlobalResult result = localizer.localize(drive.submap, area);
+    ASSERT_EQ(result.verdict, GlobalVerdict::resolved);
+    Pose2D truth = drive.truth();
+    truth.x += copy;
+    EXPECT_TRUE(isRight(result.hypotheses[0].pose_map_robot, truth));
+  }
+  const SearchArea elsewhere{{begin.x + 30, begin.y}, 20};
+  EXPECT_EQ(localizer.localize(drive.submap, elsewhere).verdict, GlobalVerdict::none);
+}
+
 /// A map turned and moved gives the same answer, turned and moved.
 TEST(GlobalLocalizer, DoesNotDependOnTheMapsFrame) {
   const PoleCity world(city(1061));

@@ -155,6 +155,18 @@ TEST_F(KittiRawTest, TheSensorPoseGivesRobotPoses) {
   EXPECT_TRUE(readDrive(T_robot_sensor).scans[0].T_map_robot->translation().isZero(1e-6));
 }
 
+TEST_F(KittiRawTest, OxtsFramesAreFixesOfTheImu) {
+  const ScanFolder drive = readDrive();
+  ASSERT_EQ(drive.fixes.size(), 5u);
+  const GnssFix& fix = drive.fixes[3];
+  EXPECT_EQ(fix.time, drive.scans[3].time);
+  EXPECT_NEAR(fix.latitude, 49, 1e-12);
+  EXPECT_NEAR(fix.longitude, 8.40003, 1e-12);
+  EXPECT_EQ(fix.sigma, 23);  // number 24 of the row
+  EXPECT_NEAR(fix.antenna_robot.x(), 0.8, 1e-12);
+  EXPECT_NEAR(fix.antenna_robot.y(), -0.3, 1e-12);
+}
+
 TEST_F(KittiRawTest, MissingScansArePairedByNumberAndNoted) {
   removeScan(1);
   removeScan(2);

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "io/data/Trajectory.h"
 #include "io/dataset/Mulran.h"
 #include "support/IoFiles.h"
@@ -87,6 +89,23 @@ TEST_F(MulranTest, TheTruthMayBeMissing) {
   const ScanFolder sequence = load();
   EXPECT_FALSE(sequence.scans[0].T_map_robot);
   expectIn(sequence.notes.at(0), "no global_pose.csv");
+}
+
+TEST_F(MulranTest, ReadsPositionsFromSatellites) {
+  write("KAIST01/sensor_data/gps.csv",
+        "1561000444500000000,36.37,127.36,60,9,0,0,0,16,0,0,0,40\n"
+        "1561000444400000000,36.38,127.35,60,0,0,0,0,0,0,0,0,0\n"
+        "1561000444600000000,136.38,127.35,60,1,0,0,0,1,0,0,0,1\n");
+  const ScanFolder sequence = load();
+  ASSERT_EQ(sequence.fixes.size(), 2u) << "one is not on the globe";
+  EXPECT_NEAR(sequence.fixes[0].time, 1561000444.4, 1e-6);
+  EXPECT_EQ(sequence.fixes[0].sigma, 2.5);
+  EXPECT_EQ(sequence.fixes[1].latitude, 36.37);
+  EXPECT_EQ(sequence.fixes[1].longitude, 127.36);
+  EXPECT_NEAR(sequence.fixes[1].sigma, std::sqrt((9 + 16) / 2.0), 1e-12);
+  expectIn(sequence.notes.at(0), "gps.csv: 2 positions from satellites");
+  write("KAIST01/sensor_data/gps.csv", "1561000444500000000,36.37,127.36\n");
+  expectIn(refusal(), "gps.csv:1:");
 }
 
 TEST_F(MulranTest, RefusesWhatIsDamaged) {

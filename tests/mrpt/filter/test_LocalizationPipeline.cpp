@@ -6,6 +6,7 @@
 #include "core/common/Binder.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
+#include "support/Refusal.h"
 
 namespace polemcl::test_localization_pipeline {
 
@@ -288,6 +289,23 @@ TEST_F(RegularCity, WhereAllLooksAlikeSeveralPlacesAreKept) {
     EXPECT_GT(update.health.spread, 10);  // the covariance includes the other places
   }
   EXPECT_TRUE(adopted);
+}
+
+/// Only places near where the drive began are left, so that the first answer is the right one.
+TEST_F(RegularCity, WhereAllLooksAlikeTheAreaOfTheStartDecides) {
+  driveFrom(3, 55);
+  LocalizationPipeline localization = chain();
+  localization.initializeGlobally(SearchArea{{truth[0].x + 3, truth[0].y}, 10});
+  std::size_t known = frames.size();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const LocalizationUpdate update = localization.step(frames[i]);
+    if (!update.estimate) continue;
+    known = std::min(known, i);
+    EXPECT_LT(error(update, i), 0.5);
+  }
+  EXPECT_LT(known, 30u);
+  LocalizationPipeline elsewhere = chain();
+  EXPECT_REFUSED(elsewhere.initializeGlobally(SearchArea{{1e5, 0}, 10}), "from the nearest pole");
 }
 
 TEST_F(PoleLocalizationTest, TheFilterGetsPolesSeenBeforeAndNotTooOften) {

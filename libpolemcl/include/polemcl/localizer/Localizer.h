@@ -49,6 +49,10 @@ class POLEMCL_EXPORT Localizer {
              std::optional<double> heading = {});
   /// \brief Starts without a pose: the poles of the first metres tell it.
   void startAnywhere();
+  /// \brief Starts without a heading, as by a position from satellites: places farther than
+  /// `radius` from x, y on the map are not considered until a pose is known, m.
+  /// \throws Error on values that are not finite, or far from every pole of the map.
+  void startWithin(double x, double y, double radius);
 
   /// \brief The next scan.
   /// \param time s, greater than that of the scan before.

@@ -23,11 +23,14 @@ double oddsOf(const SubmapPole& pole, const GlobalOptions& options) {
 
 }  // namespace
 
-Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& options)
-    : m_scale(submap.options().scale) {
+Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& options,
+                             const std::optional<SearchArea>& area)
+    : m_area(area), m_scale(submap.options().scale) {
   const Pose2D& pose = submap.pose();
   const Eigen::Vector2d here(pose.x, pose.y);
   const Eigen::Matrix2d rotation = rotationOf(-pose.yaw);
+  m_begin = rotation * -here;
+  if (m_area) m_area->radius += SearchArea::drift * submap.driven();
   for (const SubmapPole& pole : submap.poles()) {
     m_queryPoles.push_back({rotation * (pole.centre - here),
                             rotation * submap.presentCovariance(pole, false) * rotation.transpose(),
@@ -45,6 +48,13 @@ Constellation::Constellation(const LocalSubmap& submap, const GlobalOptions& opt
     const Eigen::Vector2d seen = rotation * (place - here);
     if (m_path.empty() || (seen - m_path.back()).norm() >= s_pathStep) m_path.push_back(seen);
   }
+}
+
+bool Constellation::beganInArea(const Pose2D& pose_map_robot) const {
+  if (!m_area) return true;
+  const Eigen::Vector2d begin = Eigen::Vector2d(pose_map_robot.x, pose_map_robot.y) +
+                                rotationOf(pose_map_robot.yaw) * m_begin;
+  return (begin - m_area->centre_map).squaredNorm() <= m_area->radius * m_area->radius;
 }
 
 double Constellation::driftVariance(const QueryPole& a, const QueryPole& b) const {

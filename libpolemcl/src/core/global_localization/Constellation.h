@@ -4,6 +4,7 @@
 /// library; see GlobalLocalizer.h.
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/global_localization/GlobalLocalizer.h"
@@ -24,13 +25,16 @@ struct QueryPole {
 
 class Constellation {
  public:
-  Constellation(const LocalSubmap& submap, const GlobalOptions& options);
+  Constellation(const LocalSubmap& submap, const GlobalOptions& options,
+                const std::optional<SearchArea>& area = std::nullopt);
 
   /// \brief Query poles with odds first, by falling odds; then the others.
   const std::vector<QueryPole>& queryPoles() const { return m_queryPoles; }
   std::size_t reliable() const { return m_reliable; }  ///< query poles with odds
   /// \brief Robot's places of the last metres, robot frame of now, a few metres apart, m.
   const std::vector<Eigen::Vector2d>& path() const { return m_path; }
+  /// \brief Whether the submap began within the area, if the robot is at the pose now.
+  bool beganInArea(const Pose2D& pose_map_robot) const;
   double scaleSigma() const { return m_scale; }
   /// \brief Variance along an axis of what two query poles' distance vector may be off by, m²: what
   /// each was measured with, and the odometry between them.
@@ -44,6 +48,8 @@ class Constellation {
   std::vector<QueryPole> m_queryPoles;
   std::size_t m_reliable = 0;
   std::vector<Eigen::Vector2d> m_path;
+  std::optional<SearchArea> m_area;
+  Eigen::Vector2d m_begin;  ///< robot frame of now, m
   double m_scale = 0;
 };
 

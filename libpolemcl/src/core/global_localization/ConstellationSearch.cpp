@@ -131,8 +131,9 @@ void ConstellationSearch::tryPlace(const QueryPair& pair, const Eigen::Vector2d&
         x + c * probe.x - s * probe.y, y + s * probe.x + c * probe.y, probe.squaredTolerance));
     if (hits < leastHits(++tried)) return;
   }
-  if (hits < 2) return;
-  m_seeds.push_back({{x, y, std::atan2(s, c)}, hits, pair.first, pair.second});
+  const Pose2D place{x, y, std::atan2(s, c)};
+  if (hits < 2 || !m_query.beganInArea(place)) return;
+  m_seeds.push_back({place, hits, pair.first, pair.second});
 }
 
 std::vector<PoseCandidate> ConstellationSearch::bestSeeds() {

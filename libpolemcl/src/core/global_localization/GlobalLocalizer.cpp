@@ -54,10 +54,11 @@ void decide(GlobalResult& result, const GlobalOptions& options) {
 GlobalLocalizer::GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOptions& options)
     : m_map(std::make_shared<const PreparedMap>(map, options)) {}
 
-GlobalResult GlobalLocalizer::localize(const LocalSubmap& submap) const {
+GlobalResult GlobalLocalizer::localize(const LocalSubmap& submap,
+                                       const std::optional<SearchArea>& area) const {
   const GlobalOptions& options = m_map->options;
   GlobalResult result;
-  const Constellation query(submap, options);
+  const Constellation query(submap, options, area);
   result.poles = query.reliable();
   if (result.poles < static_cast<std::size_t>(options.minMatched)) return result;
   ConstellationSearch search(*m_map, query);

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
@@ -41,6 +42,13 @@ struct POLEMCL_EXPORT GlobalOptions {
   int maxCandidates = 100000;  ///< greatest number of places that are tried; bounds the time
   int maxRefined = 64;         ///< greatest number of places that are refined
   int maxHypotheses = 20;      ///< greatest number of places in an answer
+};
+
+/// \brief Where the robot was when the submap began; places that disagree are not tried.
+struct POLEMCL_EXPORT SearchArea {
+  Eigen::Vector2d centre_map = Eigen::Vector2d::Zero();  ///< m
+  double radius = 0;                                     ///< m; grows with `drift`
+  static constexpr double drift = 0.05;                  ///< of the distance driven since
 };
 
 /// \brief A place where the submap may lie.
@@ -92,7 +100,9 @@ class POLEMCL_EXPORT GlobalLocalizer {
   /// \throws Error on a map pole whose centre or covariance is not finite.
   explicit GlobalLocalizer(const std::vector<MapPole>& map, const GlobalOptions& options = {});
 
-  GlobalResult localize(const LocalSubmap& submap) const;
+  /// \param area None: the whole map.
+  GlobalResult localize(const LocalSubmap& submap,
+                        const std::optional<SearchArea>& area = std::nullopt) const;
 
  private:
   std::shared_ptr<const PreparedMap> m_map;  ///< never changed, so copies share it

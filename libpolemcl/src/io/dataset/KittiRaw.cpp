@@ -7,6 +7,7 @@
 
 #include "io/data/Trajectory.h"
 #include "io/dataset/ScanFiles.h"
+#include "io/dataset/ScanFixes.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::io {
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kEarthRadius = 6378137;  ///< m, as in the devkit
 constexpr std::size_t kOxtsFields = 30;
+constexpr double kLeastFixSigma = 0.02;  ///< m
 
 double radians(double degrees) {
   return degrees * M_PI / 180;
@@ -55,7 +57,7 @@ OxtsPose readOxts(const fs::path& file) {
     throw Error(at(file, rows.front().line) + "latitude " + significant(v[0], 12) + ", longitude " +
                 significant(v[1], 12) + " are out of range");
   }
-  return {v[0], v[1], v[2], v[3], v[4], v[5]};
+  return {v[0], v[1], v[2], v[3], v[4], v[5], v[23]};
 }
 
 /// Pose of the IMU in the LiDAR frame, from the lines "R: nine numbers" and "T: three numbers".
@@ -203,9 +205,13 @@ ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
   for (std::size_t i = 0; i < frames.scans.size(); ++i) {
     const auto oxts = frames.oxts.find(frames.scanNumbers[i]);
     if (oxts == frames.oxts.end()) continue;
-    result.scans.push_back(
-        {frames.scans[i], 0, frames.scanTimes[i],
-         T_world_map.inverse() * mercatorPose(readOxts(oxts->second), scale) * T_imu_robot});
+    const OxtsPose measured = readOxts(oxts->second);
+    result.scans.push_back({frames.scans[i], 0, frames.scanTimes[i],
+                            T_world_map.inverse() * mercatorPose(measured, scale) * T_imu_robot});
+    takeFix({frames.scanTimes[i], measured.latitude, measured.longitude,
+             std::max(measured.accuracy, kLeastFixSigma),
+             T_imu_robot.inverse().translation().head<2>()},
+            result);
   }
   if (result.scans.empty()) {
     throw Error(drive.string() + ": no scan has the number of an oxts frame (scans " +

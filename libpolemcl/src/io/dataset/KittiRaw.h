@@ -6,11 +6,12 @@
 
 namespace polemcl::io {
 
-/// \brief One GPS/IMU measurement: the first six of the thirty numbers in an oxts file.
+/// \brief One GPS/IMU measurement: numbers 1 to 6 and 24 of the thirty in an oxts file.
 struct OxtsPose {
   double latitude = 0, longitude = 0;   ///< deg
   double altitude = 0;                  ///< m
   double roll = 0, pitch = 0, yaw = 0;  ///< rad; yaw 0 = east, counter-clockwise
+  double accuracy = 0;                  ///< of north and east, m
 };
 
 /// \brief Pose of the IMU in a plane with x east, y north, z up. Mercator projection of the KITTI
@@ -33,7 +34,8 @@ double parseKittiTime(std::string_view text, const std::string& where);
 /// timestamps.txt (when the LiDAR faces forward) and the pose of its oxts frame.
 ///
 /// Map frame: the first oxts frame, levelled. Origin at the IMU, x along its heading, z up.
-/// T_map_lidar = T_map_imu · T_velo_imu⁻¹. There is no odometry.
+/// T_map_lidar = T_map_imu · T_velo_imu⁻¹. There is no odometry. Each oxts frame of a scan is also
+/// a fix, with the IMU as antenna.
 /// \param calibration Folder of calib_imu_to_velo.txt.
 /// \param T_robot_sensor Pose of the LiDAR in the robot frame; converts LiDAR poses to robot poses.
 /// \throws Error with file and line: as readScanFolder(), no scan with an oxts frame, malformed

@@ -1,10 +1,12 @@
 #include "io/dataset/Mulran.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/common/Angles.h"
 #include "io/data/Trajectory.h"
 #include "io/dataset/ScanFiles.h"
+#include "io/dataset/ScanFixes.h"
 #include "io/dataset/ScanPoses.h"
 #include "io/file/CsvRows.h"
 
@@ -42,6 +44,21 @@ void addMulranTruth(const fs::path& file, const Eigen::Isometry3d& T_base_robot,
   }
   noteUnusedRows(unused, file, result.notes);
   takePoses(result, track, file, "truth", "at times without truth");
+}
+
+void addMulranFixes(const fs::path& file, ScanFolder& result) {
+  CsvRows rows(file, 13, "time in ns, latitude, longitude, altitude, 3x3 covariance");
+  std::vector<double> row;
+  while (rows.next(row)) {
+    GnssFix fix;
+    fix.time = row[0] * 1e-9;
+    fix.latitude = row[1];
+    fix.longitude = row[2];
+    const double variance = (row[4] + row[8]) / 2;
+    fix.sigma = variance > 0 && std::isfinite(variance) ? std::sqrt(variance) : kAssumedFixSigma;
+    takeFix(fix, result);
+  }
+  finishFixes(file.filename().string(), result);
 }
 
 /// Adds a note about scans that were recorded but are missing in the folder.
@@ -85,6 +102,8 @@ ScanFolder readMulran(const fs::path& sequence, const Eigen::Isometry3d& T_robot
     addMulranTruth(truth, mulranBaseLidar() * T_robot_lidar.inverse(), result);
   else
     result.notes.push_back("no global_pose.csv");
+  const fs::path gps = findIn(sequence, "gps.csv");
+  if (isThere(gps)) addMulranFixes(gps, result);
   return result;
 }
 

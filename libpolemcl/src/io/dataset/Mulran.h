@@ -14,7 +14,9 @@ Eigen::Isometry3d mulranBaseLidar();
 /// \brief Reads a sequence. `Ouster/*.bin`: float32 x y z intensity in the LiDAR frame, file names
 /// are times in ns. `global_pose.csv` (optional): time in ns, pose of the vehicle in UTM as
 /// row-major 3×4. `ouster_front_stamp.csv` (optional): the times of all scans. Each of them may
-/// also lie in `sensor_data/`.
+/// also lie in `sensor_data/`. So may `gps.csv` (optional): time in ns, latitude, longitude (deg),
+/// altitude, 3×3 covariance (m², east and north first), one row a position from satellites; rows
+/// without a covariance get the assumed sigma, and the antenna counts as at the robot.
 ///
 /// Poses are interpolated at the times of the scans. Scans without a pose are dropped, with a note.
 /// Map frame: UTM, x east, y north, z up. There is no odometry.

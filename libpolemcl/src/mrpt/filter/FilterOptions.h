@@ -8,6 +8,7 @@
 #include <polemcl/core/common/Types.h>
 #include <polemcl/export.h>
 #include "core/common/Binder.h"
+#include "core/global_localization/GlobalLocalizer.h"
 #include "core/localization/KldSampleSize.h"
 
 namespace polemcl {
@@ -66,8 +67,9 @@ enum class StartPositions {
 
 /// \brief Where the filter starts. `[start]` in INI files.
 struct POLEMCL_EXPORT StartOptions {
-  bool anywhere = false;       ///< true: no start pose, the global search finds it (`anywhere`)
-  std::optional<Pose2D> pose;  ///< map frame (`position_m`, `yaw_deg`); none: from the truth
+  bool anywhere = false;           ///< true: no start pose, the global search finds it (`anywhere`)
+  std::optional<SearchArea> area;  ///< with `anywhere`: only there; no key of INI files
+  std::optional<Pose2D> pose;      ///< map frame (`position_m`, `yaw_deg`); none: from the truth
   static constexpr double maxRadius = 10000;  ///< m; farther off the search (`anywhere`) is better
   double radius = 2.5;                        ///< radius of the disc of positions, m (paper)
   StartPositions positions = StartPositions::area;

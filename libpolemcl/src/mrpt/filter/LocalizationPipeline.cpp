@@ -87,15 +87,7 @@ LocalizationPipeline::LocalizationPipeline(LocalizationMap map, const Localizati
 void LocalizationPipeline::start(const StartOptions& start) {
   if (start.pose) {
     requireFinite(*start.pose);
-    const auto nearest = m_map.poles->index().nearest(start.pose->x, start.pose->y, INFINITY);
-    const double distance = nearest ? nearest->distance - start.radius : INFINITY;
-    if (!(distance <= maxStartDistance)) {
-      std::ostringstream text;
-      text << "the start at " << start.pose->x << ' ' << start.pose->y << " m lies " << distance
-           << " m from the nearest pole of the map, allowed are " << maxStartDistance
-           << " m: is it in the frame of this map?";
-      throw Error(text.str());
-    }
+    requireNearMap(start.pose->x, start.pose->y, start.radius);
   }
   m_filter.start(start);
   initializeGlobally();
@@ -103,7 +95,23 @@ void LocalizationPipeline::start(const StartOptions& start) {
   m_monitor.begin();
 }
 
-void LocalizationPipeline::initializeGlobally() {
+void LocalizationPipeline::requireNearMap(double x, double y, double radius) const {
+  const auto nearest = m_map.poles->index().nearest(x, y, INFINITY);
+  const double distance = nearest ? nearest->distance - radius : INFINITY;
+  if (distance <= maxStartDistance) return;
+  std::ostringstream text;
+  text << "the start at " << x << ' ' << y << " m lies " << distance
+       << " m from the nearest pole of the map, allowed are " << maxStartDistance
+       << " m: is it in the frame of this map?";
+  throw Error(text.str());
+}
+
+void LocalizationPipeline::initializeGlobally(const std::optional<SearchArea>& area) {
+  if (area) {
+    requireFinite({area->centre_map.x(), area->centre_map.y(), area->radius});
+    requireNearMap(area->centre_map.x(), area->centre_map.y(), area->radius);
+  }
+  m_area = area;
   m_submap.clear();
   m_tracks.clear();
   m_localMaps.clear();
@@ -250,6 +258,7 @@ void LocalizationPipeline::doubtSubmap() {
   const bool mismatch = m_hasPose && m_monitor.health().reason == HealthReason::mismatch;
   if (mismatch && !m_mistrusted) {
     m_submap.clear();
+    m_area.reset();
     m_searchedAt = 0;
     m_searchTime = m_time;
   }
@@ -273,7 +282,7 @@ void LocalizationPipeline::search(const PoleScan& frame, LocalizationUpdate& upd
   m_searchedAt = m_submap.driven();
   m_searchTime = m_time;
   ++m_searches;
-  m_search = m_map.search->localize(m_submap);
+  m_search = m_map.search->localize(m_submap, m_area);
   if (m_search.verdict == GlobalVerdict::none) return;
   const bool resolved = m_search.verdict == GlobalVerdict::resolved;
   const bool here = resolved && m_hasPose && agrees(m_search.hypotheses[0]);
@@ -321,6 +330,7 @@ void LocalizationPipeline::adopt(const PoleScan& frame, bool resolved, Localizat
   }
   m_filter.start(places, kSearchParticles);
   m_hasPose = true;
+  if (resolved) m_area.reset();
   m_monitor.begin(resolved);
   track(frame, 0, update);
   update.relocalized = true;

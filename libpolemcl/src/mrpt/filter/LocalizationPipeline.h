@@ -85,7 +85,9 @@ class POLEMCL_EXPORT LocalizationPipeline {
   /// is farther than `maxStartDistance` from every pole of the map.
   void start(const StartOptions& start);
   /// \brief Starts without a pose: the global search finds it during the drive.
-  void initializeGlobally();
+  /// \param area Where the robot is now; none: anywhere. Used until a pose is known.
+  /// \throws Error when the area is not finite, or as far from the map as in start().
+  void initializeGlobally(const std::optional<SearchArea>& area = std::nullopt);
 
   /// \brief Processes the next scan. The motion of the first frame is ignored.
   /// \throws Error as PoleParticleFilter::step(); the state is then unchanged.
@@ -132,6 +134,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   NewShares newShares(double metres) const;
   void track(const PoleScan& frame, double metres, LocalizationUpdate& update);
   void doubtSubmap();
+  void requireNearMap(double x, double y, double radius) const;
   bool searchIsDue() const;
   void search(const PoleScan& frame, LocalizationUpdate& update);
   bool agrees(const GlobalHypothesis& place) const;
@@ -142,9 +145,10 @@ class POLEMCL_EXPORT LocalizationPipeline {
   LocalizationMap m_map;
   LocalizationOptions m_options;
   PoleParticleFilter m_filter;
-  LocalSubmap m_submap;   ///< for the global search
-  LocalSubmap m_tracks;   ///< for the filter
-  LocalMaps m_localMaps;  ///< for the filter with Cadence::section
+  LocalSubmap m_submap;              ///< for the global search
+  std::optional<SearchArea> m_area;  ///< where m_submap began, until a pose is known
+  LocalSubmap m_tracks;              ///< for the filter
+  LocalMaps m_localMaps;             ///< for the filter with Cadence::section
   OdometryMonitor m_odometryMonitor;
   OdometryCalibration m_calibration;
   HealthMonitor m_monitor;

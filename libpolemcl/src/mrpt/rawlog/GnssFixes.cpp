@@ -63,22 +63,30 @@ std::optional<GnssFix> fixOf(const CObservationGPS& observation) {
   return isUsable ? std::optional(fix) : std::nullopt;
 }
 
+/// Gives all CObservationGPS that have a time, in the order of the file, until `take` says false.
+void forEachGnss(const std::string& rawlog, bool allowTruncated,
+                 const std::function<bool(const CObservationGPS::Ptr&)>& take) {
+  const auto goesOn = [&](const CObservation::Ptr& observation) {
+    const auto gps = std::dynamic_pointer_cast<CObservationGPS>(observation);
+    return !gps || gps->timestamp == INVALID_TIMESTAMP || take(gps);
+  };
+  RawlogReader reader(rawlog, allowTruncated);
+  RawlogEntry entry;
+  while (reader.next(entry)) {
+    if (entry.observation && !goesOn(entry.observation)) return;
+    if (entry.frame && !std::all_of(entry.frame->begin(), entry.frame->end(), goesOn)) return;
+  }
+}
+
 }  // namespace
 
 std::vector<CObservationGPS::Ptr> readGnssObservations(const std::string& rawlog,
                                                        bool allowTruncated) {
   std::vector<CObservationGPS::Ptr> found;
-  const auto take = [&](const CObservation::Ptr& observation) {
-    const auto gps = std::dynamic_pointer_cast<CObservationGPS>(observation);
-    if (gps && gps->timestamp != INVALID_TIMESTAMP) found.push_back(gps);
-  };
-  RawlogReader reader(rawlog, allowTruncated);
-  RawlogEntry entry;
-  while (reader.next(entry)) {
-    if (entry.observation) take(entry.observation);
-    if (!entry.frame) continue;
-    for (const auto& observation : *entry.frame) take(observation);
-  }
+  forEachGnss(rawlog, allowTruncated, [&](const CObservationGPS::Ptr& observation) {
+    found.push_back(observation);
+    return true;
+  });
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a->timestamp < b->timestamp; });
   return found;
@@ -89,6 +97,17 @@ std::vector<GnssFix> readGnssFixes(const std::string& rawlog, bool allowTruncate
   for (const auto& observation : readGnssObservations(rawlog, allowTruncated))
     if (const auto fix = fixOf(*observation)) fixes.push_back(*fix);
   return fixes;
+}
+
+std::optional<GnssFix> findGnssFix(const std::string& rawlog, bool allowTruncated,
+                                   const std::function<bool(const GnssFix&)>& accept) {
+  std::optional<GnssFix> found;
+  forEachGnss(rawlog, allowTruncated, [&](const CObservationGPS::Ptr& observation) {
+    const auto fix = fixOf(*observation);
+    if (fix && accept(*fix)) found = fix;
+    return !found;
+  });
+  return found;
 }
 
 CObservationGPS::Ptr gnssObservation(const GnssFix& fix) {

@@ -4,6 +4,8 @@
 
 #include <mrpt/obs/CObservationGPS.h>
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,10 @@ std::vector<mrpt::obs::CObservationGPS::Ptr> readGnssObservations(const std::str
 /// for the others. An HDOP that is not stated counts as 1.
 /// \throws Error as RawlogReader.
 std::vector<GnssFix> readGnssFixes(const std::string& rawlog, bool allowTruncated);
+
+/// \brief The first of these positions in the order of the file that is accepted; reads no farther.
+std::optional<GnssFix> findGnssFix(const std::string& rawlog, bool allowTruncated,
+                                   const std::function<bool(const GnssFix&)>& accept);
 
 /// \brief The observation, labelled `gnss`, for which readGnssFixes() gives this fix: of quality 1,
 /// with the HDOP of its sigma. It has no height.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "map/MapPlane.h"
+#include "cli/MapPlane.h"
 #include "support/ExpectHas.h"
 #include "support/Refusal.h"
 

@@ -1,4 +1,4 @@
-#include "map/MapPlane.h"
+#include "cli/MapPlane.h"
 
 #include <proj.h>
 
