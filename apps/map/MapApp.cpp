@@ -41,7 +41,7 @@ void declare(CLI::App& cli, MappingJob& job, MappingLine& line) {
                  "Day of each rawlog, YYYY-MM-DD, when its times do not tell it")
       ->type_name("DATE");
   addDatumOption(cli, line.datum, "the truth");
-  addOutput(cli, "--scene", job.scene, "Also write a .3Dscene of the map and the paths");
+  addOutput(cli, "--scene", job.scene, "Also write a .3Dscene of map, paths and loops");
   addOutput(cli, "--csv", job.csv, "Also write the poles to this table");
   cli.add_flag("--allow-truncated", job.allowTruncated,
                "Use the readable part of rawlogs that were cut short");

@@ -82,32 +82,31 @@ std::vector<std::vector<StampedPose2D>> pathsOf(const std::vector<MappingSession
   return paths;
 }
 
-/// The trajectories, and the picture of map, paths and loops.
-void writePoses(const MapBuildJob& job, const MapBuildSummary& summary, const io::PoleMapData& map,
-                const std::vector<std::vector<StampedPose2D>>& paths) {
-  report::MapView view;
-  view.title = job.output.filename().string();
-  view.poles = map.poles;
-  const std::size_t before = summary.mapped ? summary.mapped->known : 0;
-  for (std::size_t i = 0, first = before; i < paths.size(); first += paths[i++].size()) {
-    if (i < job.trajectories.size())
-      writeTrajectory(job.trajectories[i], paths[i], summary.mapped->poses, first);
-    auto& drawn = job.kind == PoseKind::truth ? view.truth : view.estimate;
-    drawn.insert(drawn.end(), paths[i].begin(), paths[i].end());
-  }
-  if (!job.png) return;
-  if (summary.mapped)
-    for (const ClosedLoop& loop : summary.mapped->loops)
-      view.loops.push_back({centreOf(summary.mapped->poses[loop.first].mean),
-                            centreOf(summary.mapped->poses[loop.second].mean)});
-  report::drawMapPng(view, *job.png);
-}
-
 std::vector<StampedPose2D> pathOf(const AddedSessions& added) {
   std::vector<StampedPose2D> path;
   for (const AddedSession& session : added.sessions)
     for (const SessionScan& scan : session.scans) path.push_back({scan.time, scan.pose_map_robot});
   return path;
+}
+
+void writeTrajectories(const MapBuildJob& job, const MappedDrives& mapped,
+                       const std::vector<std::vector<StampedPose2D>>& paths) {
+  for (std::size_t i = 0, first = mapped.known; i < job.trajectories.size();
+       first += paths[i++].size())
+    writeTrajectory(job.trajectories[i], paths[i], mapped.poses, first);
+}
+
+report::MapView viewOf(const MapBuildJob& job, const MapBuildSummary& summary,
+                       const io::PoleMapData& map, const std::vector<StampedPose2D>& path) {
+  report::MapView view;
+  view.title = job.output.filename().string();
+  view.poles = map.poles;
+  (job.kind == PoseKind::truth ? view.truth : view.estimate) = path;
+  if (!summary.mapped) return view;
+  for (const ClosedLoop& loop : summary.mapped->loops)
+    view.loops.push_back({centreOf(summary.mapped->poses[loop.first].mean),
+                          centreOf(summary.mapped->poses[loop.second].mean)});
+  return view;
 }
 
 std::size_t countTwins(const std::vector<MapPole>& poles) {
@@ -282,8 +281,10 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   }
   const io::PoleMapData map = io::mapData(landmarks, facts(settings, summary, job, datum));
   io::AtomicFiles files;
-  writePoses(job, summary, map, paths);
-  writeViews(job, map, pathOf(sessions.added()));
+  if (summary.mapped) writeTrajectories(job, *summary.mapped, paths);
+  const report::MapView view = viewOf(job, summary, map, pathOf(sessions.added()));
+  writeViews(job, map, view);
+  if (job.png) report::drawMapPng(view, *job.png);
   io::writePoleMap(job.output, map, job.keepScans || job.add ? &sessions.added() : nullptr);
   files.commit();
   return summary;

@@ -160,7 +160,7 @@ MapUpdateSummary updateMapFile(const MapUpdateJob& job, const AllSettings& setti
   if (after.poles.empty())
     throw Error(job.map.string() + ": no pole is left on the map; see [map_update]");
   io::AtomicFiles files;
-  writeViews(job, after, path);
+  writeViews(job, after, {job.output.filename().string(), after.poles, path, {}});
   if (job.json) writeJson(*job.json, summaryJson(summary, job));
   io::writePoleMap(job.output, after);
   files.commit();

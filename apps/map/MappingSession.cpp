@@ -141,15 +141,9 @@ std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped) {
   return out;
 }
 
-void writeViews(const MappingJob& job, const io::PoleMapData& map,
-                const std::vector<StampedPose2D>& path) {
+void writeViews(const MappingJob& job, const io::PoleMapData& map, const report::MapView& view) {
   if (job.csv) io::writePoleCsv(*job.csv, map.poles, map.histories);
-  if (!job.scene) return;
-  report::MapView view;
-  view.title = job.output.filename().string();
-  view.poles = map.poles;
-  view.truth = path;
-  scene::save(*report::makeMapScene(view), *job.scene);
+  if (job.scene) scene::save(*report::makeMapScene(view), *job.scene);
 }
 
 void keepWarnings(const std::vector<std::string>& warnings,

@@ -16,6 +16,7 @@
 #include "io/map/PoleMapFile.h"
 #include "map/SessionPoses.h"
 #include "mrpt/rawlog/PoleSequence.h"
+#include "report/picture/MapView.h"
 
 namespace polemcl::apps {
 
@@ -80,8 +81,7 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
 std::ostream& operator<<(std::ostream& out, const SkippedScans& skipped);
 
 /// \brief Writes table and scene of a new map, when the job names them.
-void writeViews(const MappingJob& job, const io::PoleMapData& map,
-                const std::vector<StampedPose2D>& path);
+void writeViews(const MappingJob& job, const io::PoleMapData& map, const report::MapView& view);
 
 /// \brief Puts warnings in the place of those in a map's info, key `warnings`; none without one.
 void keepWarnings(const std::vector<std::string>& warnings,

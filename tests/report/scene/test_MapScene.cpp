@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "report/scene/MapScene.h"
+#include "support/ExpectHas.h"
 #include "support/SampleViews.h"
 #include "support/Scenes.h"
 
@@ -26,6 +27,12 @@ mrpt::opengl::COpenGLScene::Ptr writtenAndRead(const mrpt::opengl::COpenGLScene&
   auto loaded = mrpt::opengl::COpenGLScene::Create();
   EXPECT_TRUE(loaded->loadFromFile((folder / "a.3Dscene").string()));
   return loaded;
+}
+
+std::size_t trianglesOf(const mrpt::opengl::COpenGLScene::Ptr& scene, const std::string& name) {
+  const auto triangles =
+      std::dynamic_pointer_cast<mrpt::opengl::CSetOfTriangles>(scene->getByName(name));
+  return triangles ? triangles->getTrianglesCount() : 0;
 }
 
 }  // namespace
@@ -99,6 +106,20 @@ TEST(MapScene, TruthAndEstimateAreToldApart) {
   const auto scene = makeMapScene(smallDrive());
   EXPECT_NE(scene->getByName("truth")->getColor_u8(), scene->getByName("estimate")->getColor_u8());
   EXPECT_NE(legendOf(scene).find("path of the estimate\ntrue path"), std::string::npos);
+}
+
+TEST(MapScene, DrivesAreNotJoinedAndLoopsAreBars) {
+  MapView view = smallDrive(0.1);
+  view.loops = {{{1, 2}, {1, 2}}, {{0, 0}, {0, 8}}};
+  const auto once = makeMapScene(view);
+  EXPECT_HAS(legendOf(once), "2 loops\n");
+  const auto box = boxOf(once, "loops");
+  EXPECT_NEAR(box.max.x - box.min.x, 5, 1e-6);  // the first has no length of its own
+  EXPECT_NEAR(box.max.y, 8, 1e-6);
+
+  const std::size_t triangles = trianglesOf(once, "estimate");
+  for (const StampedPose2D& pose : smallDrive(0.1).estimate) view.estimate.push_back(pose);
+  EXPECT_EQ(trianglesOf(makeMapScene(view), "estimate"), 2 * triangles);
 }
 
 TEST(MapScene, GroundReachesBeyondAllAndLiesAtZero) {

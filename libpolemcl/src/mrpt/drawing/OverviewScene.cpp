@@ -141,7 +141,9 @@ void OverviewScene::addPoles(const std::string& name, const std::vector<MapPole>
 void OverviewScene::addRibbons(const std::string& name, const std::vector<Path>& paths_map,
                                const Ribbon& ribbon) {
   // Heights that viewers can resolve: grid, truth and estimate lie above each other.
-  const double height = std::max(0.03, m_extent / 5000) * (ribbon.bothSides ? 1 : 2);
+  const double height = std::max(0.03, m_extent / 5000) * (ribbon.above       ? 3
+                                                           : ribbon.bothSides ? 1
+                                                                              : 2);
   const double width = ribbon.width > 0 ? ribbon.width : std::max(1.0, m_extent / 500);
   auto triangles = viz::CSetOfTriangles::Create();
   for (const Path& path : paths_map)

@@ -29,7 +29,8 @@ class OverviewScene {
   struct Ribbon {
     scene::TColor color;
     bool bothSides = false;
-    double width = 0;  ///< m; 0: chosen by the size of the scene, at least 1 m
+    double width = 0;    ///< m; 0: chosen by the size of the scene, at least 1 m
+    bool above = false;  ///< over the other ribbons
   };
   /// \brief A ribbon along each path, with gaps where two positions are more than 50 m apart.
   void addRibbons(const std::string& name, const std::vector<scene::Path>& paths_map,

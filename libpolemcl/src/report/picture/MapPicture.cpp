@@ -32,19 +32,9 @@ std::vector<Eigen::Vector2d> pixels(const PlotAxes& axes, const std::vector<Stam
   return points;
 }
 
-/// A line for each drive: another one begins where the time goes back, or on by minutes.
 void drawPath(Canvas& canvas, const PlotAxes& axes, const std::vector<StampedPose2D>& path,
               Color color, double width) {
-  constexpr double longestGap = 120;  // s
-  for (auto begin = path.begin(); begin != path.end();) {
-    const auto last =
-        std::adjacent_find(begin, path.end(), [](const StampedPose2D& a, const StampedPose2D& b) {
-          return b.time < a.time || b.time > a.time + longestGap;
-        });
-    const auto end = last == path.end() ? last : std::next(last);
-    canvas.line(pixels(axes, {begin, end}), color, width);
-    begin = end;
-  }
+  for (const auto& drive : drivesOf(path)) canvas.line(pixels(axes, drive), color, width);
 }
 
 void drawEnds(Canvas& canvas, const PlotAxes& axes, const std::vector<StampedPose2D>& path) {

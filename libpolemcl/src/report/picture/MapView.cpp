@@ -19,6 +19,18 @@ void include(Bounds& bounds, double x, double y, const char* what, std::size_t i
 
 }  // namespace
 
+std::vector<std::vector<StampedPose2D>> drivesOf(const std::vector<StampedPose2D>& path) {
+  constexpr double longestGap = 120;  // s
+  std::vector<std::vector<StampedPose2D>> drives;
+  for (const StampedPose2D& pose : path) {
+    const bool goesOn = !drives.empty() && pose.time >= drives.back().back().time &&
+                        pose.time <= drives.back().back().time + longestGap;
+    if (!goesOn) drives.emplace_back();
+    drives.back().push_back(pose);
+  }
+  return drives;
+}
+
 Bounds boundsOf(const MapView& view) {
   if (view.poles.empty() && view.truth.empty() && view.estimate.empty())
     throw Error("picture: nothing to show: no poles, no truth, no estimate");

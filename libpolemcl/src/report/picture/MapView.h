@@ -22,6 +22,9 @@ struct MapView {
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> loops = {};  ///< places passed twice
 };
 
+/// \brief The drives of a path: another one begins where the time goes back, or on by minutes.
+std::vector<std::vector<StampedPose2D>> drivesOf(const std::vector<StampedPose2D>& path);
+
 /// \brief What the view covers, m.
 struct Bounds {
   double xMin = 0, xMax = 0, yMin = 0, yMax = 0;

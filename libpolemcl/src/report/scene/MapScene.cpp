@@ -1,34 +1,61 @@
 #include "report/scene/MapScene.h"
 
+#include <algorithm>
+
 #include "mrpt/drawing/OverviewScene.h"
 
 namespace polemcl::report {
 namespace {
 
-scene::Path pathOf(const std::vector<StampedPose2D>& poses) {
-  scene::Path path;
-  for (const StampedPose2D& stamped : poses) path.emplace_back(stamped.pose.x, stamped.pose.y);
-  return path;
+const scene::TColor kLoopColor(204, 121, 167);
+constexpr double kShortestLoop = 5;  // m, of the bar that shows it; more in large scenes
+
+std::vector<scene::Path> pathsOf(const std::vector<StampedPose2D>& poses) {
+  std::vector<scene::Path> paths;
+  for (const auto& drive : drivesOf(poses)) {
+    scene::Path& path = paths.emplace_back();
+    for (const StampedPose2D& stamped : drive) path.emplace_back(stamped.pose.x, stamped.pose.y);
+  }
+  return paths;
+}
+
+/// From place to place, and beyond them where they are near to each other.
+std::vector<scene::Path> barsOf(const MapView& view, const Bounds& bounds) {
+  const double span = std::max(bounds.xMax - bounds.xMin, bounds.yMax - bounds.yMin);
+  const double shortest = std::max(kShortestLoop, span / 100);
+  std::vector<scene::Path> bars;
+  for (const auto& [first, second] : view.loops) {
+    const Eigen::Vector2d way = second - first, middle = 0.5 * (first + second);
+    const Eigen::Vector2d along = way.norm() > 0 ? way.normalized() : Eigen::Vector2d::UnitX();
+    const Eigen::Vector2d half = 0.5 * std::max(way.norm(), shortest) * along;
+    bars.push_back({middle - half, middle + half});
+  }
+  return bars;
 }
 
 }  // namespace
 
 viz::Scene::Ptr makeMapScene(const MapView& view) {
-  boundsOf(view);  // refuses what cannot be shown
-  const scene::Path truth = pathOf(view.truth), estimate = pathOf(view.estimate);
-  scene::Path places = truth;
-  places.insert(places.end(), estimate.begin(), estimate.end());
+  const Bounds bounds = boundsOf(view);  // refuses what cannot be shown
+  const auto truth = pathsOf(view.truth), estimate = pathsOf(view.estimate);
+  scene::Path places;
+  for (const auto* paths : {&truth, &estimate})
+    for (const scene::Path& path : *paths) places.insert(places.end(), path.begin(), path.end());
   for (const MapPole& pole : view.poles) places.emplace_back(pole.x, pole.y);
 
   OverviewScene overview(places, view.title);
   if (!estimate.empty()) {
-    overview.addRibbons("estimate", {estimate}, {scene::estimateColor});
+    overview.addRibbons("estimate", estimate, {scene::estimateColor});
     overview.addLegend({{"path of the estimate", scene::estimateColor}});
   }
   if (!truth.empty()) {
-    overview.addRibbons("truth", {truth}, {scene::truthColor, !estimate.empty()});
+    overview.addRibbons("truth", truth, {scene::truthColor, !estimate.empty()});
     overview.addLegend(
         {{estimate.empty() ? "true path" : "true path, at both sides of it", scene::truthColor}});
+  }
+  if (!view.loops.empty()) {
+    overview.addRibbons("loops", barsOf(view, bounds), {kLoopColor, false, 0, true});
+    overview.addLegend({{std::to_string(view.loops.size()) + " loops", kLoopColor}});
   }
   if (!view.poles.empty()) {
     overview.addPoles("poles", view.poles,

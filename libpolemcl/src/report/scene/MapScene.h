@@ -9,9 +9,9 @@
 namespace polemcl::report {
 
 /// \brief Poles coloured by count, the estimate as a ribbon, the truth as one at either side of it,
-/// ground and legend: an OverviewScene.
+/// loops as bars from place to place, ground and legend: an OverviewScene.
 ///
-/// Names of the objects: `ground`, `poles`, `poles dots`, `truth`, `estimate`.
+/// Names of the objects: `ground`, `poles`, `poles dots`, `truth`, `estimate`, `loops`.
 /// \throws Error when there is nothing to show, or a coordinate is not finite.
 viz::Scene::Ptr makeMapScene(const MapView& view);
 
