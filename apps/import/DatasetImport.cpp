@@ -166,10 +166,10 @@ std::filesystem::path truthBeside(std::filesystem::path rawlog) {
 
 void protectPoses(const ImportOptions& options) {
   std::error_code notThere;
-  if (options.poses &&
-      std::filesystem::equivalent(*options.poses, truthBeside(options.output), notThere))
-    throw Error(options.poses->string() + ": is an input, and the truth beside " +
-                options.output.string() + " would replace it; choose another name for --output");
+  for (const auto& file : {options.poses, options.odometry})
+    if (file && std::filesystem::equivalent(*file, truthBeside(options.output), notThere))
+      throw Error(file->string() + ": is an input, and the truth beside " +
+                  options.output.string() + " would replace it; choose another name for --output");
 }
 
 ScanTiming timingOf(const ImportOptions& options, const io::ScanFolder& folder) {
@@ -248,11 +248,12 @@ ImportReport importDataset(const ImportOptions& options,
       options.T_robot_sensor.value_or(datasetSensorPose(options.dataset));
   auto folder = readDataset(options, T_robot_sensor, progress);
   if (folder.T_robot_sensor) T_robot_sensor = *folder.T_robot_sensor;
-  if (options.poses) {
-    const Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
-    io::takeTumPoses(folder, *options.poses,
-                     options.posesOfSensor ? T_robot_sensor.inverse() : robot);
-  }
+  const auto robotIn = [&](bool sensor) {
+    return sensor ? T_robot_sensor.inverse() : Eigen::Isometry3d::Identity();
+  };
+  if (options.poses) io::takeTumPoses(folder, *options.poses, robotIn(options.posesOfSensor));
+  if (options.odometry)
+    io::takeTumMotions(folder, *options.odometry, robotIn(options.odometryOfSensor));
   checkSelection(options, folder);
 
   ImportReport report;

@@ -27,6 +27,9 @@ struct ImportOptions {
   /// TUM file of poses that replace those of the dataset; see io::takeTumPoses().
   std::optional<std::filesystem::path> poses;
   bool posesOfSensor = false;  ///< they are of the sensor, not of the robot
+  /// TUM file of an odometry that replaces that of the dataset; see io::takeTumMotions().
+  std::optional<std::filesystem::path> odometry;
+  bool odometryOfSensor = false;  ///< it is of the sensor, not of the robot
   /// Clouds inside the rawlog, not by absolute path; PCD, NCLT and bags always are.
   bool embed = false;
   std::size_t every = 1;   ///< N: take scans K, K+N, …; at least 1

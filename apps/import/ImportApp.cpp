@@ -27,7 +27,7 @@ const std::vector<std::tuple<Dataset, const char*, const char*>> kDatasets{
 
 /// Options as they are typed.
 struct Texts {
-  std::string sensorPose, posesOf = "robot", session, turn;
+  std::string sensorPose, posesOf = "robot", odometryOf = "robot", session, turn;
   ScanTiming timing;
   double cutDeg = 180, yawBiasDeg = 0;
   std::optional<ScanTiming> stated() const;
@@ -129,10 +129,18 @@ void declare(CLI::App& cli, Dataset dataset, ImportOptions& options, Texts& text
       ->type_name("K")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  auto* odometry = addFile(cli, "--odometry", options.odometry,
+                           "TUM file of an odometry, such as that of a LiDAR odometry program, "
+                           "instead of that of the dataset");
+  cli.add_option("--odometry-of", texts.odometryOf, "Whose poses these are")
+      ->check(CLI::IsMember({"robot", "sensor"}))
+      ->capture_default_str()
+      ->needs(odometry);
   cli.add_option("--odometry-noise", options.odometryNoise,
                  "Make odometry from the true motion, with noise of this share, such as 0.02")
       ->check(CLI::NonNegativeNumber)
-      ->default_str("odometry of the dataset");
+      ->default_str("odometry of the dataset")
+      ->excludes(odometry);
   addNumber(cli, "--seed", options.seed, "Seed of that noise", CLI::NonNegativeNumber);
   addNumber(cli, "--odometry-scale", options.odometryScale,
             "Make that odometry too long by this share, such as 0.01", CLI::Range(-0.5, 0.5));
@@ -152,6 +160,7 @@ void printImport(const ImportReport& report, const ImportOptions& options) {
   std::cout << '\n'
             << (report.hasTruth ? "truth: beside it, .tum\n" : "truth: none in the dataset\n")
             << (report.hasMotion  ? options.odometryNoise ? "odometry: true motion with noise\n"
+                                    : options.odometry    ? "odometry: from --odometry\n"
                                                           : "odometry: from the dataset\n"
                 : report.hasTruth ? "odometry: none; good for mapping, not for localization\n"
                                   : "odometry: none; without it and without true poses (--poses) "
@@ -221,6 +230,7 @@ int importMain(int argc, const char* const* argv) {
     options.timing = texts.stated();
     options.odometryYaw = texts.yawBiasDeg * degree;
     options.posesOfSensor = texts.posesOf == "sensor";
+    options.odometryOfSensor = texts.odometryOf == "sensor";
     const auto report = importDataset(options, Progress("import", 0, line.quiet()).updates());
     if (!line.quiet()) printImport(report, options);
   });

@@ -89,6 +89,44 @@ TEST_F(ScanPosesTest, ScansWithoutTimesTakeThoseOfTheRows) {
   EXPECT_REFUSED(takeTumPoses(folder, file, identity), "p.tum", "2 poses for 3 scans", "times.txt");
 }
 
+TEST_F(ScanPosesTest, TakesMotionsFromAnOdometryOfTheSensor) {
+  ScanFolder folder = line(5);
+  Eigen::Isometry3d T_robot_sensor = identity;  // 2 m in front, looking left
+  T_robot_sensor.translate(Eigen::Vector3d(2, 0, 0))
+      .rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  // The sensor looks along y at first, so the robot along x; none at 10 and 12 s, for a gap.
+  const fs::path file = write("o.tum",
+                              "10.5 5 7 0 0 0 0.7071067811865476 0.7071067811865476\n"
+                              "11 5.5 7 0 0 0 0.7071067811865476 0.7071067811865476\n"
+                              "12.9 8 7 0 0 0 0.7071067811865476 0.7071067811865476\n"
+                              "13.1 8 7 0 0 0 0.7071067811865476 0.7071067811865476\n"
+                              "14 9 9 0 0 0 1 0\n");
+  takeTumMotions(folder, file, T_robot_sensor.inverse());
+  ASSERT_EQ(folder.scans.size(), 3u);
+  EXPECT_EQ(folder.scans[0].time, 11);
+  EXPECT_FALSE(folder.scans[0].motion);
+  const PoseWithCovariance& ahead = *folder.scans[1].motion;
+  EXPECT_NEAR(ahead.mean.x, 2.5, 1e-9);
+  EXPECT_NEAR(ahead.mean.y, 0, 1e-9);
+  EXPECT_NEAR(ahead.mean.yaw, 0, 1e-9);
+  EXPECT_NEAR(ahead.covariance(0, 0), 0.05 * 0.05 + 1e-6, 1e-9);
+  // The robot turns by 90 degrees round the sensor's new place: it ends 2 m below (9, 9).
+  const PoseWithCovariance& turn = *folder.scans[2].motion;
+  EXPECT_NEAR(turn.mean.x, 9 - 6, 1e-9);
+  EXPECT_NEAR(turn.mean.y, 9 - 2 - 7, 1e-9);
+  EXPECT_NEAR(turn.mean.yaw, M_PI / 2, 1e-9);
+  expectIn(folder.notes.at(0), "2 of 5 scans left out, at times without odometry in o.tum");
+
+  ScanFolder paired = line(5);
+  paired.nominalTimes = true;
+  takeTumMotions(paired, file, identity);
+  EXPECT_EQ(paired.scans[1].time, 11);
+  EXPECT_NEAR(paired.scans[1].motion->mean.y, -0.5, 1e-9);
+  ScanFolder late = line(2);
+  EXPECT_REFUSED(takeTumMotions(late, write("l.tum", "20 1 0 0 0 0 0 1\n"), identity), "l.tum",
+                 "no odometry at the time of any scan");
+}
+
 TEST_F(ScanPosesTest, RefusesTimesThatDoNotOverlap) {
   ScanFolder folder = line(3);
   const fs::path file = write("p.tum", "20 1 0 0 0 0 0 1\n21.5 2 0 0 0 0 0 1\n");

@@ -11,10 +11,6 @@
 
 namespace polemcl::io {
 
-/// \brief Standard deviation of each component of a motion, as a share of it, where the odometry
-/// (or for the yaw the IMU) states no covariance. Own choice.
-constexpr double kDefaultMotionNoise = 0.02;
-
 /// \brief Sets the motions between the scans.
 ///
 /// The poses of the odometry are interpolated at the times of the scans. Scans at times without

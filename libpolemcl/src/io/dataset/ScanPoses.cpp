@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/data/MotionSteps.h"
 #include "io/data/Trajectory.h"
 #include "io/file/TextFile.h"
 
@@ -16,19 +17,26 @@ std::string span(const ScanFolder& folder) {
   return fixed(folder.scans.front().time, 3) + " ... " + fixed(folder.scans.back().time, 3) + " s";
 }
 
-/// Row i belongs to scan i: both counts must agree.
+/// Row i belongs to scan i, which takes its time: both counts must agree.
 void pairInTurn(ScanFolder& folder, const fs::path& file, const std::vector<StampedPose3D>& rows) {
   if (rows.size() != folder.scans.size())
     throw Error(file.string() + ": " + std::to_string(rows.size()) + " poses for " +
                 std::to_string(folder.scans.size()) +
                 " scans that have no times of their own; give them a times.txt");
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    folder.scans[i].time = rows[i].time;
-    folder.scans[i].T_map_robot = rows[i].pose;
-  }
+  for (std::size_t i = 0; i < rows.size(); ++i) folder.scans[i].time = rows[i].time;
   folder.nominalTimes = false;
   folder.notes.push_back("times of the scans: those of " + file.filename().string() +
                          ", which has as many rows");
+}
+
+/// The rows as poses of the robot, at the times of the scans.
+TrackSampler sampled(ScanFolder& folder, const fs::path& file,
+                     const Eigen::Isometry3d& T_pose_robot) {
+  const std::vector<StampedPose3D> rows = readTum(file);
+  if (folder.nominalTimes) pairInTurn(folder, file, rows);
+  TrackSampler track(timesOf(folder), kTrackGap);
+  for (const StampedPose3D& row : rows) track.add(row.time, row.pose * T_pose_robot);
+  return track;
 }
 
 }  // namespace
@@ -87,13 +95,30 @@ void takePoses(ScanFolder& folder, const TrackSampler& track, const fs::path& fi
 }
 
 void takeTumPoses(ScanFolder& folder, const fs::path& file, const Eigen::Isometry3d& T_pose_robot) {
-  std::vector<StampedPose3D> rows = readTum(file);
-  for (StampedPose3D& row : rows) row.pose = row.pose * T_pose_robot;
-  if (folder.nominalTimes) return pairInTurn(folder, file, rows);
+  takePoses(folder, sampled(folder, file, T_pose_robot), file, "pose",
+            "at times without a pose in " + file.filename().string());
+}
 
-  TrackSampler track(timesOf(folder), kTrackGap);
-  for (const StampedPose3D& row : rows) track.add(row.time, row.pose);
-  takePoses(folder, track, file, "pose", "at times without a pose in " + file.filename().string());
+void takeTumMotions(ScanFolder& folder, const fs::path& file,
+                    const Eigen::Isometry3d& T_pose_robot) {
+  const TrackSampler track = sampled(folder, file, T_pose_robot);
+  requireOverlap(folder, track, file, "odometry");
+  std::vector<bool> keep;
+  const Eigen::Isometry3d* last = nullptr;
+  for (std::size_t i = 0; i < folder.scans.size(); ++i) {
+    const auto& pose = track.poses()[i];
+    keep.push_back(pose.has_value());
+    folder.scans[i].motion.reset();
+    if (!pose) continue;
+    PoseWithCovariance motion;
+    if (last) motion.mean = planar(last->inverse() * *pose);
+    motion.covariance =
+        proportionalCovariance(motion.mean, kDefaultMotionNoise) + floorCovariance();
+    folder.scans[i].motion = motion;
+    last = &*pose;
+  }
+  keepScans(folder, keep, "at times without odometry in " + file.filename().string());
+  folder.scans.front().motion.reset();
 }
 
 }  // namespace polemcl::io

@@ -1,6 +1,6 @@
 #pragma once
 /// \file ScanPoses.h
-/// \brief True poses for the scans of a folder, from tracks with other time stamps.
+/// \brief True poses and odometry for the scans of a folder, from tracks with other time stamps.
 
 #include "io/data/TrackSampler.h"
 #include "io/dataset/ScanFolder.h"
@@ -9,6 +9,10 @@ namespace polemcl::io {
 
 /// \brief Longest gap of a track that is interpolated, s: the vehicle may turn during longer gaps.
 constexpr double kTrackGap = 1.0;
+
+/// \brief Standard deviation of each component of a motion, as a share of it, where the odometry
+/// (or for the yaw the IMU) states no covariance. Own choice.
+constexpr double kDefaultMotionNoise = 0.02;
 
 /// \brief Adds a note if rows of a track were ignored.
 void noteUnusedRows(std::size_t rows, const std::filesystem::path& file,
@@ -43,5 +47,11 @@ void takePoses(ScanFolder& folder, const TrackSampler& track, const std::filesys
 ///         number of scans without times.
 void takeTumPoses(ScanFolder& folder, const std::filesystem::path& file,
                   const Eigen::Isometry3d& T_pose_robot);
+
+/// \brief Replaces the motions of the scans by those between the poses of a TUM file, which may
+/// drift: the result of an odometry. Covariances: 2 % of each component, 1 mm and 0.1 mrad added.
+/// Scans without a pose, times, parameters and errors are those of takeTumPoses().
+void takeTumMotions(ScanFolder& folder, const std::filesystem::path& file,
+                    const Eigen::Isometry3d& T_pose_robot);
 
 }  // namespace polemcl::io
