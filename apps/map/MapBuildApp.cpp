@@ -200,7 +200,8 @@ double sigmaOf(const PoseWithCovariance& pose) {
   return std::sqrt(pose.covariance.topLeftCorner<2, 2>().trace() / 2);
 }
 
-std::string foundText(const MappedDrives& mapped, const MapBuildJob& job) {
+std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
+  const MappedDrives& mapped = *summary.mapped;
   std::ostringstream out;
   out << "poses by odometry and " << mapped.tracks << " poles followed over "
       << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
@@ -211,10 +212,19 @@ std::string foundText(const MappedDrives& mapped, const MapBuildJob& job) {
     out << "placed by " << mapped.fixes
         << " positions from satellites; the first pose is certain to "
         << io::fixed(sigmaOf(mapped.poses.at(mapped.known)), 2) << " m\n";
-  for (std::size_t i = 0; i < mapped.odometry.size(); ++i)
-    out << job.inputs[i].filename().string() << ": its odometry is "
-        << io::fixed(-100 * mapped.odometry[i].x(), 2) << " % long, and turns "
-        << io::fixed(-mapped.odometry[i].y() * 180 / M_PI, 4) << " deg/m\n";
+  for (std::size_t i = 0; i < mapped.odometry.size(); ++i) {
+    const FilledMotions& filled = summary.filled[i];
+    const std::size_t missing = filled.byPoles + filled.coasted;
+    const std::string drive = job.inputs[i].filename().string();
+    if (missing > 0)
+      out << drive << ": no odometry leads to " << missing << " scans; the poles told the way to "
+          << filled.byPoles
+          << (filled.coasted > 0 ? ", the others go on as before: look there\n" : "\n");
+    if (filled.all) continue;
+    out << drive << ": its odometry is " << io::fixed(-100 * mapped.odometry[i].x(), 2)
+        << " % long, and turns " << io::fixed(-mapped.odometry[i].y() * 180 / M_PI, 4)
+        << " deg/m\n";
+  }
   return out.str();
 }
 
@@ -260,6 +270,8 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
       return adjustToInventory(drives, job.inputs, presentPoles(inventory), settings);
     });
   }
+  if (job.kind == PoseKind::odometry)
+    for (const MappingSession& drive : drives) summary.filled.push_back(drive.filled);
   if (job.kind == PoseKind::odometry)
     summary.mapped = findPosesOf(drives, job, sessions.added(), datum, settings);
   const auto paths = pathsOf(drives);
@@ -328,7 +340,7 @@ std::string summaryText(const MapBuildSummary& summary, const MapBuildJob& job) 
         << "are certain to " << io::fixed(drives.sigma, 3)
         << " m; poles of it out of sight, kept: " << summary.inventory->kept << '\n';
   }
-  if (summary.mapped) out << foundText(*summary.mapped, job);
+  if (summary.mapped) out << foundText(summary, job);
   out << summary.skipped;
   return out.str();
 }

@@ -40,8 +40,9 @@ struct InventoryAdjustment {
 
 /// \brief What mapping did, summed over the inputs.
 struct MapBuildSummary {
-  std::size_t scans = 0;    ///< used
-  std::size_t visited = 0;  ///< scans at true poses, used or not
+  std::size_t scans = 0;              ///< used
+  std::size_t visited = 0;            ///< scans at true poses, used or not
+  std::vector<FilledMotions> filled;  ///< of each input, where poses come from odometry
   SkippedScans skipped;
   PoleMapResult map;
   /// \brief How much of a session is in the map.

@@ -5,7 +5,9 @@
 
 #include "cli/SensorCounts.h"
 #include "core/common/Deskew.h"
+#include "core/slam/PoleMotions.h"
 #include "io/file/Date.h"
+#include "io/file/ErrorPlace.h"
 #include "io/file/TextFile.h"
 #include "io/map/PolePositions.h"
 #include "report/scene/MapScene.h"
@@ -63,17 +65,12 @@ void requireTimeGoesOn(const SessionFiles& files, const PoleSequence& sequence) 
                   " s; poses are found by time, so each scan needs its own, later than the last");
 }
 
-/// Motions one behind the other. \throws Error where one is missing.
-std::vector<StampedPose2D> deadReckoning(const SessionFiles& files, const PoleSequence& sequence) {
+/// Motions one behind the other.
+std::vector<StampedPose2D> deadReckoning(const PoleSequence& sequence) {
   std::vector<StampedPose2D> path;
-  for (const PoleScan& frame : sequence.frames) {
-    if (!path.empty() && !frame.motion)
-      throw Error(files.input.string() + ": no odometry leads to scan " +
-                  std::to_string(path.size()) + " at " + io::fixed(frame.time, 3) +
-                  " s; a map without --truth needs it: write odometry to the rawlog");
+  for (const PoleScan& frame : sequence.frames)
     path.push_back(
         {frame.time, path.empty() ? Pose2D() : compose(path.back().pose, frame.motion->mean)});
-  }
   return path;
 }
 
@@ -87,10 +84,14 @@ MappingSession loadMappingSession(const SessionFiles& files, const AllSettings& 
   SequenceOptions options = readingOf(settings);
   options.allowTruncated = allowTruncated;
   if (!odometry) options.velocity = [&](double time) { return poses.velocityAt(time); };
-  const PoleSequence sequence = readPoleSequence(files.input.string(), options, progress);
+  PoleSequence sequence = readPoleSequence(files.input.string(), options, progress);
   requireTimeGoesOn(files, sequence);
-  if (odometry) poses = SessionPoses(deadReckoning(files, sequence));
   MappingSession session;
+  if (odometry) {
+    session.filled =
+        io::located(files.input.string() + ": ", [&] { return fillMotions(sequence.frames); });
+    poses = SessionPoses(deadReckoning(sequence));
+  }
   const SequenceCounts& counts = sequence.counts;
   std::ostringstream sensors;
   printSensors(sensors, counts);

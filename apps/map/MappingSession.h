@@ -12,6 +12,7 @@
 #include "cli/Settings.h"
 #include "core/evaluation/TrajectoryEvaluation.h"
 #include "core/mapping/MapUpdater.h"
+#include "core/slam/PoleMotions.h"
 #include "io/map/Datum.h"
 #include "io/map/PoleMapFile.h"
 #include "map/SessionPoses.h"
@@ -66,6 +67,7 @@ struct MappingSession {
   /// Odometry to each scan from the one before that is here; none of the first, and where a motion
   /// on the way is not known.
   std::vector<std::optional<PoseWithCovariance>> motions;
+  FilledMotions filled;  ///< motions that the odometry did not tell
   SkippedScans skipped;
 };
 

@@ -9,6 +9,8 @@
 # the others); on the kilometre also that of a real laser odometry. nuScenes has the poses by the planes in its scans
 # (plane_adjustment.py). "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is
 # false.
+# "-alone": without any odometry, by the poles alone; "cast-630" to "cast-633" also: streets of 400 m, a scan a metre,
+# the next numbers that nothing was looked at on.
 # "several drives": the even and the odd key frames of the kilometre, each with an odometry of its own (seeds 7, 8),
 # at once and the odd ones added to the map of the even; two days of the streets 701 to 704 at once. "apart": each
 # street and the next one, which are different places: 20 pairs that must be refused. "gnss": fixes drawn by
@@ -81,6 +83,22 @@ real() {
   rm "$name.scans.rawlog"
 }
 
+# alone NAME FOLDER CONFIG SIGMAS MOUNTING "IMPORT OPTIONS" [OPTION...]: real() without any odometry.
+alone() {
+  name=$1 folder=$2
+  shift 2
+  link_scans "$folder" "$out/alone" 1 99999
+  real "$name-alone" alone "$@"
+  rm -r alone
+}
+
+cast_street() {
+  "$bin/pole-simulate" --quiet --config "$top/config/hdl32e.ini" --seed "$1" --length 400 \
+    --set simulation.spacing_m=1 --output cast >/dev/null
+  alone "cast-$1" cast "$top/config/hdl32e.ini" 0,0 "0 0 0 0 0 0" ""
+  rm -r cast*
+}
+
 # nuScenes with the poses by planes.
 nuscenes() {
   set -- --set sensor.height_m=1.84 --set sensor.min_range_m=2.5
@@ -92,6 +110,7 @@ nuscenes() {
   link_scans "$data/nuscenes_scene" "$out/planes" 1 39
   cp planes.txt planes/poses.txt
   real nuscenes-planes planes "$top/config/hdl32e.ini" 0.01,0.03 "0 0 0 0 0 0" "$biased --seed 7" "$@"
+  alone nuscenes-planes planes "$top/config/hdl32e.ini" 0.01,0.03 "0 0 0 0 0 0" "" "$@"
 }
 
 # The second day of a street in both maps of the first.
@@ -155,7 +174,12 @@ for seed in 7 8 9 10 11; do
 done
 real kitti_raw_0005 "$data/kitti_raw_0005" "$top/config/kitti.ini" 0.01,0.03 "0 0 0 0 0 0" "$clockwise $biased --seed 7"
 nuscenes
+alone vlp16 "$data/vlp16_loop" "$top/config/vlp16.ini" 0.015,0.03 "0 0 0 0 2.513 0.028" "$clockwise" \
+  --set sensor.height_m=1.77
+alone kitti_raw_0005 "$data/kitti_raw_0005" "$top/config/kitti.ini" 0.01,0.03 "0 0 0 0 0 0" "$clockwise"
+for world in 630 631 632 633; do cast_street $world; done
 if [ -n "$kilometre" ]; then
+  alone kilometre "$kilometre" "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise"
   real kilometre "$kilometre" "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise $biased --seed 7"
   link_scans "$kilometre" "$out/laser" 1 228
   /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" laser/odometry.txt

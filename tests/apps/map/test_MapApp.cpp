@@ -227,8 +227,8 @@ TEST_F(MapApp, PositionsFromSatellitesGiveTheDatum) {
   expectFailure(build({"--gnss", at("late.csv")}), {"late.csv", "none of its times"});
 }
 
-TEST_F(MapApp, WithoutTruthOdometryIsNeeded) {
-  writeStreet(folder / "in", 6);
+TEST_F(MapApp, WithoutTruthOdometryOrPolesTellTheWay) {
+  writeStreet(folder / "in", 20);
   fs::remove(folder / "in" / "odometry.txt");
   import("in");
   const auto build = [&](const std::vector<std::string>& more) {
@@ -238,7 +238,16 @@ TEST_F(MapApp, WithoutTruthOdometryIsNeeded) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(mapMain, arguments);
   };
-  expectFailure(build({}), {"in.rawlog: no odometry leads to scan 1", "--truth"});
+  const auto outcome = build({});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_HAS(outcome.out, "in.rawlog: no odometry leads to 19 scans; the poles told the way to 19");
+  EXPECT_EQ(outcome.out.find("its odometry is"), std::string::npos);
+  fs::remove(folder / "street.polemap");
+  fs::remove_all(folder / "in");
+  writeStreet(folder / "in", 20, {});
+  fs::remove(folder / "in" / "odometry.txt");
+  import("in");
+  expectFailure(build({}), {"in.rawlog: no odometry leads to scan", "poles"});
   EXPECT_EQ(build({"--trajectory", at("a.tum"), at("b.tum")}).code, 2);
   EXPECT_EQ(build({"--truth", at("in.tum"), "--trajectory", at("a.tum")}).code, 2);
   EXPECT_FALSE(hasMap());

@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/slam/PoleMotions.h"
+#include "support/PoleCity.h"
+#include "support/Refusal.h"
+
+namespace polemcl::test_pole_motions {
+namespace {
+
+using tests::Frame;
+using tests::PoleCity;
+
+/// A drive of 80 m, a scan each metre, with the odometry of the city's drives.
+class PoleMotionsTest : public testing::Test {
+ protected:
+  PoleMotionsTest() {
+    tests::CityOptions options;
+    options.seed = 1201;
+    const PoleCity city(options);
+    sim::Random random(5);
+    const std::vector<Frame> frames =
+        tests::drive(city.surroundings(), city.randomWay(random, 80), {}, random);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      PoleScan scan;
+      scan.time = 0.1 * static_cast<double>(i);
+      scan.poles_robot = frames[i].poles_robot;
+      if (i > 0) scan.motion = PoseWithCovariance{frames[i].motion, Eigen::Matrix3d::Identity()};
+      scans.push_back(scan);
+      truth.push_back(frames[i].truth);
+    }
+  }
+  void forgetMotions(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) scans[i].motion.reset();
+  }
+  void blind(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) scans[i].poles_robot.clear();
+  }
+  /// Greatest error of a motion that is within its covariance by five sigmas, m.
+  double worst(std::size_t begin, std::size_t end) const {
+    double most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Pose2D off = relative(relative(truth[i - 1], truth[i]), scans[i].motion->mean);
+      EXPECT_LT(std::hypot(off.x, off.y), 5 * std::sqrt(scans[i].motion->covariance(0, 0))) << i;
+      EXPECT_LT(std::abs(off.yaw), 5 * std::sqrt(scans[i].motion->covariance(2, 2))) << i;
+      most = std::max(most, std::hypot(off.x, off.y));
+    }
+    return most;
+  }
+  std::vector<PoleScan> scans;
+  std::vector<Pose2D> truth;
+};
+
+}  // namespace
+
+TEST_F(PoleMotionsTest, AllMotionsByThePoles) {
+  forgetMotions(1, scans.size());
+  const FilledMotions filled = fillMotions(scans);
+  EXPECT_TRUE(filled.all);
+  EXPECT_LE(filled.coasted, 3u);  // the first metres tell no speed
+  EXPECT_LT(worst(1, scans.size()), 0.25);
+}
+
+TEST_F(PoleMotionsTest, OnlyTheGapsAreFilled) {
+  const std::vector<PoleScan> before = scans;
+  forgetMotions(30, 50);
+  const FilledMotions filled = fillMotions(scans);
+  EXPECT_FALSE(filled.all);
+  EXPECT_EQ(filled.byPoles + filled.coasted, 20u);
+  EXPECT_LT(worst(30, 50), 0.25);
+  for (std::size_t i = 1; i < scans.size(); ++i)
+    EXPECT_TRUE((i >= 30 && i < 50) || scans[i].motion->mean.x == before[i].motion->mean.x);
+}
+
+/// The motion goes on for a while, with a covariance that says so.
+TEST_F(PoleMotionsTest, CoastsOverAFewBlindScans) {
+  forgetMotions(1, scans.size());
+  blind(40, 45);
+  const FilledMotions filled = fillMotions(scans);
+  EXPECT_GE(filled.coasted, 5u);  // the first one after them has poles in common with scan 39
+  EXPECT_LE(filled.coasted, 8u);
+  worst(1, scans.size());
+  EXPECT_GT(scans[42].motion->covariance(0, 0), scans[30].motion->covariance(0, 0));
+}
+
+TEST_F(PoleMotionsTest, RefusesWhereNothingTellsTheWay) {
+  forgetMotions(1, scans.size());
+  blind(40, 65);
+  EXPECT_REFUSED(fillMotions(scans), "no odometry leads to scan 60 at 6.0", "poles");
+  blind(0, 25);
+  forgetMotions(1, scans.size());
+  EXPECT_REFUSED(fillMotions(scans), "no odometry leads to scan 21 at 2.1");
+}
+
+}  // namespace polemcl::test_pole_motions
