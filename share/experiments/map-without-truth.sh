@@ -95,7 +95,7 @@ alone() {
 cast_street() {
   "$bin/pole-simulate" --quiet --config "$top/config/hdl32e.ini" --seed "$1" --length 400 \
     --set simulation.spacing_m=1 --output cast >/dev/null
-  alone "cast-$1" cast "$top/config/hdl32e.ini" 0,0 "0 0 0 0 0 0" ""
+  alone "cast-$1" "$out/cast" "$top/config/hdl32e.ini" 0,0 "0 0 0 0 0 0" ""
   rm -r cast*
 }
 
@@ -110,7 +110,7 @@ nuscenes() {
   link_scans "$data/nuscenes_scene" "$out/planes" 1 39
   cp planes.txt planes/poses.txt
   real nuscenes-planes planes "$top/config/hdl32e.ini" 0.01,0.03 "0 0 0 0 0 0" "$biased --seed 7" "$@"
-  alone nuscenes-planes planes "$top/config/hdl32e.ini" 0.01,0.03 "0 0 0 0 0 0" "" "$@"
+  alone nuscenes-planes "$out/planes" "$top/config/hdl32e.ini" 0.01,0.03 "0 0 0 0 0 0" "" "$@"
 }
 
 # The second day of a street in both maps of the first.
