@@ -18,6 +18,7 @@
 #include "localize/LocalizeReport.h"
 #include "localize/Pace.h"
 #include "localize/PoseStream.h"
+#include "localize/RunBag.h"
 #include "localize/RunFolder.h"
 #include "localize/RunView.h"
 #include "localize/TurnCheck.h"
@@ -180,8 +181,10 @@ LocalizeResult localize(const LocalizeJob& job) {
   const auto begin = ScanClock::now();
   std::optional<PoseStream> stream;
   if (job.stream) stream.emplace(*job.stream);
+  std::optional<RunBag> bag;
+  if (job.bag) bag.emplace(*job.bag);
   LocalizePlayer player(facts, prepared, job.truth ? &truth : nullptr, folder, view,
-                        stream ? &*stream : nullptr);
+                        stream ? &*stream : nullptr, bag ? &*bag : nullptr);
   const LiveDriveResult drive = play(job, settings, view, player, stream ? &*stream : nullptr);
   const std::string failure = drive.failure.empty() && stream ? stream->failure() : drive.failure;
   if (!failure.empty() && drive.counts.scans == 0) throw Error(failure);
@@ -189,6 +192,7 @@ LocalizeResult localize(const LocalizeJob& job) {
   LocalizeResult result = player.finish();
   result.timings.wallSeconds = secondsSince(begin);
   result.timings.rate = rateOf(job, settings);
+  if (bag) bag->commit();
   writeResults(folder, facts, settings, result);
   if (!job.quiet) {
     std::ostream& out = job.stream == "-" ? std::cerr : std::cout;
@@ -301,6 +305,13 @@ int localizeMain(int argc, const char* const* argv) {
   addOutput(cli, "--stream", job.stream,
             "File for the poses of the first run as they are made, a line of JSON a scan; - "
             "for standard output");
+  addOutput(
+      cli, "--mcap", job.bag,
+      "Bag of ROS 2 (.mcap) of the first run, for Foxglove and rviz: poses, path, poles, health")
+      ->check([](const std::string& file) {
+        return std::filesystem::path(file).extension() == ".mcap" ? ""
+                                                                  : file + ": must end in .mcap";
+      });
   cli.parse_complete_callback([&] {
     if (job.input.empty() && !job.isLive()) throw CLI::RequiredError("--input or --sensors");
   });

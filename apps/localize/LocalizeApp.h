@@ -37,6 +37,7 @@ struct LocalizeJob {
   bool allowTruncated = false;
   double follow = 0;                            ///< wait at the end of the rawlog for more, s
   std::optional<std::filesystem::path> stream;  ///< see PoseStream; "-": standard output
+  std::optional<std::filesystem::path> bag;     ///< MCAP of the first run, see RunBag
   bool quiet = false;
 
   bool isLive() const { return !sensors.empty(); }
@@ -97,6 +98,8 @@ struct LocalizeResult {
 ///   which the driver gives the scan, at a rate the one at which the scan is due. At full speed it
 ///   is the one at which it has been read, so that `total` contains the wait for the scans before
 ///   it.
+///
+/// The bag of the first run, if asked for, appears under its name when it is complete (RunBag.h).
 ///
 /// Results grow in a hidden folder beside files of an earlier call, which they replace once
 /// everything is complete. Prints a table on stdout unless quiet; on stderr when poses are streamed

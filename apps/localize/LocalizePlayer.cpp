@@ -9,13 +9,14 @@ namespace polemcl::apps {
 
 LocalizePlayer::LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
                                const std::vector<StampedPose2D>* truth, const RunFolder& folder,
-                               RunView& view, PoseStream* stream)
+                               RunView& view, PoseStream* stream, RunBag* bag)
     : m_facts(facts),
       m_map(map),
       m_truth(truth),
       m_folder(folder),
       m_view(view),
-      m_stream(stream) {}
+      m_stream(stream),
+      m_bag(bag) {}
 
 void LocalizePlayer::take(const ReadScan& scan) {
   if (scan.index > 0 && !scan.motion)
@@ -31,6 +32,7 @@ void LocalizePlayer::take(const ReadScan& scan) {
 
   if (m_truth) m_covered += poseAt(*m_truth, frame.time, longestTruthGap).has_value();
   for (std::size_t i = 0; i < steps.size(); ++i) m_files[i].add(steps[i].update);
+  if (m_bag) m_bag->add(m_runs->localization(0), frame, steps[0].update);
   m_view.show(m_runs->localization(0), frame, steps[0].update);
   m_timings.write.add(secondsSince(found));
   for (const FilterStep& step : steps) m_timings.step.add(step.seconds);

@@ -10,6 +10,7 @@
 #include "localize/FilterRuns.h"
 #include "localize/LocalizeReport.h"
 #include "localize/PoseStream.h"
+#include "localize/RunBag.h"
 #include "localize/RunFiles.h"
 #include "localize/RunFolder.h"
 #include "localize/RunView.h"
@@ -21,10 +22,11 @@ namespace polemcl::apps {
 class LocalizePlayer {
  public:
   /// \param facts Its start may be without a pose: the truth gives it then, at the first scan.
-  /// \param truth Null without. \param stream Null without. All must outlive this object.
+  /// \param truth Null without. \param stream Null without. \param bag Null without.
+  /// All must outlive this object.
   LocalizePlayer(LocalizeFacts& facts, const LocalizationMap& map,
                  const std::vector<StampedPose2D>* truth, const RunFolder& folder, RunView& view,
-                 PoseStream* stream = nullptr);
+                 PoseStream* stream = nullptr, RunBag* bag = nullptr);
 
   /// \brief The next scan of the drive.
   /// \throws Error when it has no odometry, when there is no start pose, and as FilterRuns,
@@ -46,6 +48,7 @@ class LocalizePlayer {
   const RunFolder& m_folder;
   RunView& m_view;
   PoseStream* m_stream;
+  RunBag* m_bag;
   std::unique_ptr<FilterRuns> m_runs;  ///< from the first scan on
   std::vector<RunFiles> m_files;
   std::size_t m_covered = 0;  ///< scans at whose time there is a true pose

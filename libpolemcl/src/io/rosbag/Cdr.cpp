@@ -69,4 +69,22 @@ void CdrReader::requireFinite(double value) const {
   if (!std::isfinite(value)) fail("it holds a number that is not finite");
 }
 
+CdrEncoder::CdrEncoder() {
+  m_message.putRaw(std::string_view("\0\1\0\0", kEncapsulationBytes));
+}
+
+void CdrEncoder::putText(std::string_view text) {
+  putCount(text.size() + 1);
+  m_message.putRaw(text);
+  m_message.put(char{0});
+}
+
+void CdrEncoder::putCount(std::size_t count) {
+  put(static_cast<std::uint32_t>(count));
+}
+
+void CdrEncoder::align(std::size_t size) {
+  while ((m_message.bytes().size() - kEncapsulationBytes) % size > 0) m_message.put(char{0});
+}
+
 }  // namespace polemcl::io

@@ -55,4 +55,25 @@ class CdrReader {
   bool m_bigEndian = false;
 };
 
+/// \brief Writes one message, little-endian.
+class CdrEncoder {
+ public:
+  CdrEncoder();
+  template <class T>
+  void put(T value) {
+    align(sizeof(T));
+    m_message.put(value);
+  }
+  /// \brief A text; the zero byte at its end is added.
+  void putText(std::string_view text);
+  /// \brief Number of elements of a sequence.
+  void putCount(std::size_t count);
+  const std::string& message() const { return m_message.bytes(); }
+
+ private:
+  void align(std::size_t size);
+
+  ByteWriter m_message;
+};
+
 }  // namespace polemcl::io

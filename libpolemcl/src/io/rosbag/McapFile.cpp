@@ -9,8 +9,6 @@ namespace polemcl::io {
 
 namespace {
 
-constexpr std::string_view kMagicBytes("\x89MCAP0\r\n", kMcapMagic);
-
 McapRecord parsePrefix(std::string_view prefix, std::uint64_t offset) {
   return {static_cast<McapOpcode>(prefix.front()), offset + kMcapPrefix,
           loadLittleEndian<std::uint64_t>(prefix.data() + 1)};
@@ -38,9 +36,9 @@ McapFile::McapFile(const std::filesystem::path& file)
     : m_where(file.string() + ": "),
       m_stream(file, std::ios::binary),
       m_end(std::filesystem::file_size(file)) {
-  if (m_end < kMcapMagic || read(0, kMcapMagic) != kMagicBytes)
+  if (m_end < kMcapMagic || read(0, kMcapMagic) != kMcapMagicBytes)
     throw Error(m_where + "cannot be read as a ROS 2 bag: it does not begin as MCAP, version 0");
-  m_complete = m_end >= 2 * kMcapMagic && read(m_end - kMcapMagic, kMcapMagic) == kMagicBytes;
+  m_complete = m_end >= 2 * kMcapMagic && read(m_end - kMcapMagic, kMcapMagic) == kMcapMagicBytes;
   if (m_complete) m_end -= kMcapMagic;
 }
 

@@ -12,12 +12,17 @@
 namespace polemcl::io {
 
 enum class McapOpcode : std::uint8_t {
+  header = 1,
   footer = 2,
   schema = 3,
   channel = 4,
   message = 5,
   chunk = 6,
-  messageIndex = 7
+  messageIndex = 7,
+  chunkIndex = 8,
+  statistics = 11,
+  summaryOffset = 14,
+  dataEnd = 15
 };
 
 /// \brief Where the content of a record lies, in the file or in a decompressed chunk.
@@ -29,8 +34,9 @@ struct McapRecord {
 
 /// \brief Opcode and size before the content of each record.
 constexpr std::uint64_t kMcapPrefix = 9;
-/// \brief The magic bytes at the begin and at the end.
+/// \brief The magic bytes at the begin and at the end, and their number.
 constexpr std::uint64_t kMcapMagic = 8;
+constexpr std::string_view kMcapMagicBytes("\x89MCAP0\r\n", kMcapMagic);
 
 /// \brief The record at `offset` of decompressed records. \throws Error when it does not fit.
 McapRecord mcapRecordAt(std::string_view records, std::uint64_t offset, const std::string& where);

@@ -117,6 +117,8 @@ void McapStorage::takeRecord(const McapRecord& record) {
       return addIndex(m_file.read(record));
     case McapOpcode::footer:
       return checkSummary(record);
+    default:
+      return;  // not needed
   }
 }
 
