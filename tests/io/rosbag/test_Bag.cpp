@@ -101,15 +101,34 @@ TEST_F(BagTest, ReadsChangesThatWereNotMerged) {
   EXPECT_EQ(contents(Bag(path("a.db3")), 0), std::vector<std::string>{message});
 }
 
-TEST_F(BagTest, RefusesCompressedBags) {
+TEST_F(BagTest, NamesTheCommandThatUnpacksFiles) {
+  for (const char* name : {"a.db3.zstd", "a.mcap.zst"}) {
+    const std::string packed = path(name).string();
+    const std::string plain = packed.substr(0, packed.rfind('.'));
+    write(name, "");
+    expectIn(refusal(name), packed + ": the file is compressed as a whole (zstd)",
+             "unpack it: zstd -d " + packed + " -o " + plain);
+  }
+  write("in/a.db3.zstd", "");
+  expectIn(refusal("in"), "a.db3.zstd: the file is compressed as a whole");
+  write("in/metadata.yaml", bagMetadata({"a.db3.zstd"}, "zstd", "FILE"));
+  expectIn(refusal("in"), "a.db3.zstd: the file is compressed as a whole");
+}
+
+TEST_F(BagTest, ReadsUnpackedFilesBesideCompressedOnes) {
+  write("in/a.db3.zstd", "");
   writeFile("in/a.db3", {"1"});
-  write("in/metadata.yaml", bagMetadata({"a.db3"}, "zstd", "FILE"));
-  expectIn(refusal("in"), "metadata.yaml: the bag is compressed (zstd, FILE)", "ros2 bag convert");
+  EXPECT_EQ(contents(Bag(path("in")), 1), std::vector<std::string>{"1"});
+  write("in/metadata.yaml", bagMetadata({"a.db3.zstd"}, "zstd", "FILE"));
+  EXPECT_EQ(contents(Bag(path("in")), 1), std::vector<std::string>{"1"});
+}
+
+TEST_F(BagTest, RefusesOtherCompressions) {
+  writeFile("in/a.db3", {"1"});
+  write("in/metadata.yaml", bagMetadata({"a.db3"}, "lz4", "FILE"));
+  expectIn(refusal("in"), "metadata.yaml: the bag is compressed (lz4, FILE)", "ros2 bag convert");
   write("in/metadata.yaml", bagMetadata({"a.db3"}, "\"\"", "NONE"));
   EXPECT_EQ(Bag(path("in")).topics().size(), 2u);
-  write("file/a.db3.zstd", "");
-  expectIn(refusal("file"), "a.db3.zstd: the bag is compressed (zstd)", "ros2 bag convert");
-  expectIn(refusal("file/a.db3.zstd"), "the bag is compressed (zstd)");
 }
 
 TEST_F(BagTest, RefusesWhatIsNoBag) {
@@ -132,11 +151,24 @@ TEST_F(BagTest, RefusesTopicsThatContradictEachOther) {
   writeFile("in/a_0.db3", {"1"});
   writeFile("in/a_1.db3", {"2"}, "U");
   expectIn(refusal("in"), "a_1.db3: /points has two types, T and U");
+}
+
+TEST_F(BagTest, LeavesTopicsInOtherFormatsOut) {
   {
     TestBag bag(path("a.db3"));
     bag.topic("/points", "T", "protobuf");
   }
-  expectIn(refusal("a.db3"), "/points: messages in the format protobuf; cdr is allowed");
+  expectIn(refusal("a.db3"), "a.db3: no messages in the format cdr, only /points (protobuf)");
+  {
+    TestBag bag(path("b.db3"));
+    bag.topic("/state", "S", "json");
+    bag.add(bag.topic("/points", "T"), 1, "first");
+  }
+  const Bag bag(path("b.db3"));
+  ASSERT_EQ(bag.topics().size(), 1u);
+  EXPECT_EQ(contents(bag, 0), std::vector<std::string>{"first"});
+  ASSERT_EQ(bag.notes().size(), 1u);
+  expectIn(bag.notes()[0], "topics in other formats than cdr are left out: /state (json)");
 }
 
 TEST_F(BagTest, RefusesADamagedFile) {

@@ -157,11 +157,22 @@ TEST_F(McapTest, StopsDecompressingWhereTheClaimEnds) {
 
 TEST_F(McapTest, RefusesOtherFormatsAndSchemas) {
   expectIn(refusalOf(mcapFile(mcapSchema(1, "T") + mcapChannel(7, 1, "/points", "json"))),
-           "/points: messages in the format json; cdr is allowed");
+           "no messages in the format cdr, only /points (json)");
   expectIn(refusalOf(mcapFile(mcapSchema(1, "T", "protobuf") + mcapChannel(7, 1, "/points"))),
-           "/points: a schema in protobuf; ros2msg and ros2idl are allowed");
+           "only /points (cdr with a schema in protobuf)");
   expectIn(refusalOf(mcapFile(about + mcapSchema(2, "U") + mcapChannel(8, 2, "/points"))),
            "/points has two types, T and U");
+}
+
+TEST_F(McapTest, LeavesChannelsInOtherFormatsOut) {
+  const std::string others = mcapSchema(2, "S", "jsonschema") + mcapSchema(3, "U", "protobuf") +
+                             mcapChannel(8, 2, "/state", "json") +
+                             mcapChannel(9, 3, "/points", "protobuf");
+  const std::string file =
+      mcapFile(about + others + first + mcapMessage(8, 1, "{}") + mcapMessage(9, 1, "x"));
+  EXPECT_EQ(contentsOf(file), std::vector<std::string>{"first"});
+  EXPECT_HAS(noteOf(file),
+             "left out: /points (protobuf with a schema in protobuf), /state (json with a schema");
 }
 
 TEST_F(McapTest, ChannelsOfOneTopicAreReadTogether) {

@@ -59,7 +59,10 @@ TEST(RosResults, MarkersReplaceThoseBefore) {
       EXPECT_EQ(reader.get<std::int32_t>(), expected);
     std::vector<double> numbers;
     for (int i = 0; i < 10; ++i) numbers.push_back(reader.get<double>());
-    if (action == 0) EXPECT_EQ(numbers, (std::vector<double>{5, 6, 2.5, 0, 0, 0, 1, 0.4, 0.4, 3}));
+    const std::vector<double> cylinder{5, 6, 2.5, 0, 0, 0, 1, 0.4, 0.4, 3};
+    if (action == 0) {
+      EXPECT_EQ(numbers, cylinder);
+    }
     for (int i = 0; i < 4; ++i) reader.get<float>();
     reader.get<std::int32_t>();
     reader.get<std::uint32_t>();

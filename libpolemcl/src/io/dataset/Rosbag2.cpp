@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 1024;
 constexpr const char* kDefaultRobotFrame = "base_link";
 
-/// The topics with messages, of one type or all, for messages.
+/// The topics with messages, of one type or all, and those left out, for messages.
 std::string listTopics(const Bag& bag, const std::string& type = {}) {
   std::string list;
   for (const BagTopic& topic : bag.topics()) {
@@ -30,7 +30,9 @@ std::string listTopics(const Bag& bag, const std::string& type = {}) {
     list += (list.empty() ? "" : ", ") + topic.name + " (" +
             (type.empty() ? topic.type + ", " : "") + std::to_string(topic.messages) + " messages)";
   }
-  return list.empty() ? "none" : list;
+  if (list.empty()) list = "none";
+  for (const std::string& topic : bag.leftOut()) list += ", left out: " + topic;
+  return list;
 }
 
 /// The topics of a type that have messages; with a name only that one.

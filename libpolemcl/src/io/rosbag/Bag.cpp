@@ -23,12 +23,21 @@ std::string currentName(std::string type) {
   return type;
 }
 
+std::string joined(const std::set<std::string>& texts) {
+  std::string list;
+  for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + text;
+  return list;
+}
+
 }  // namespace
 
 Bag::Bag(const fs::path& bag) : m_path(bag) {
   const BagFiles files = bagFiles(bag);
   m_compressed = files.compressedMessages;
   for (const fs::path& file : files.files) open(file);
+  if (m_topics.empty() && !m_leftOut.empty())
+    throw Error(bag.string() + ": no messages in the format cdr, only " + joined(m_leftOut) +
+                "; record it with ROS 2");
   sortTopics();
 }
 
@@ -40,11 +49,12 @@ void Bag::open(const fs::path& path) {
 }
 
 void Bag::addTopic(File& file, const StoredTopic& topic) {
-  const std::string type = currentName(topic.type);
   // Some programs leave the format empty.
-  if (!topic.format.empty() && topic.format != "cdr")
-    throw Error(file.path.string() + ": " + topic.name + ": messages in the format " +
-                topic.format + "; cdr is allowed, ros2 bag convert writes it");
+  if (!topic.format.empty() && topic.format != "cdr") {
+    m_leftOut.insert(topic.name + " (" + topic.format + ")");
+    return;
+  }
+  const std::string type = currentName(topic.type);
   auto known = std::find_if(m_topics.begin(), m_topics.end(),
                             [&](const BagTopic& other) { return other.name == topic.name; });
   if (known == m_topics.end()) {
@@ -103,6 +113,9 @@ std::vector<std::string> Bag::notes() const {
   std::vector<std::string> result;
   for (const File& file : m_files)
     if (const std::string note = file.storage->note(); !note.empty()) result.push_back(note);
+  if (!m_leftOut.empty())
+    result.push_back(m_path.string() +
+                     ": topics in other formats than cdr are left out: " + joined(m_leftOut));
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ class Bag {
  public:
   /// \param bag Folder, or one `.db3` or `.mcap` file.
   /// \throws Error with the file: there is no file, not a bag in SQLite or MCAP, files that are
-  ///         compressed as a whole, a topic that has two types, another format than CDR.
+  ///         compressed as a whole, a topic that has two types, no topic in CDR but others.
   explicit Bag(const std::filesystem::path& bag);
 
   const std::filesystem::path& path() const { return m_path; }
@@ -48,7 +49,9 @@ class Bag {
   /// \brief The bytes of a message, at most the first `most`. \throws Error when they cannot be
   ///        read.
   std::string read(const BagMessage& message, std::size_t most = SIZE_MAX) const;
-  /// \brief What is to know of the files: a recording that was cut short.
+  /// \brief Topics in other formats than CDR, which are left out: "/state (json)". Sorted.
+  const std::set<std::string>& leftOut() const { return m_leftOut; }
+  /// \brief What is to know of the files: a recording that was cut short, topics left out.
   std::vector<std::string> notes() const;
   const std::filesystem::path& file(const BagMessage& message) const;
   /// \brief "FILE: /points, message 17: ", the prefix of an error.
@@ -68,6 +71,7 @@ class Bag {
   bool m_compressed = false;  ///< each message by itself, with Zstandard
   std::vector<File> m_files;
   std::vector<BagTopic> m_topics;
+  std::set<std::string> m_leftOut;
 };
 
 }  // namespace polemcl::io

@@ -53,8 +53,8 @@ BagMetadata readBagMetadata(const fs::path& file) {
   return result;
 }
 
-/// Whether each message is compressed by itself. \throws Error when the files are, or when the bag
-/// has another storage.
+/// Whether each message is compressed by itself. \throws Error when the compression is not zstd, or
+/// the bag has another storage.
 bool messagesCompressed(const fs::path& file, const BagMetadata& metadata) {
   if (!metadata.storage.empty() && metadata.storage != "sqlite3" && metadata.storage != "mcap")
     throw Error(file.string() + ": the storage of the bag is " + metadata.storage +
@@ -63,16 +63,31 @@ bool messagesCompressed(const fs::path& file, const BagMetadata& metadata) {
   const bool eachMessage = mode == "MESSAGE" || mode == "message";
   if (eachMessage && metadata.compression == "zstd") return true;
   const bool uncompressed = mode.empty() || mode == "NONE" || mode == "none";
+  const bool wholeFiles = mode == "FILE" || mode == "file";  // unpackedFile() judges these
+  if (wholeFiles && metadata.compression == "zstd") return false;
   if (!metadata.compression.empty() || !uncompressed)
     throw Error(file.string() + ": the bag is compressed (" + metadata.compression + ", " + mode +
                 ")" + kAdviceToConvert);
   return false;
 }
 
+/// Whether the file is compressed as a whole.
+bool isPacked(const fs::path& file) {
+  return file.extension() == ".zstd" || file.extension() == ".zst";
+}
+
+/// The unpacked file beside a compressed one, if it is there; else the file itself.
+fs::path unpackedFile(const fs::path& file) {
+  if (!isPacked(file)) return file;
+  const fs::path unpacked = fs::path(file).replace_extension();
+  return fs::is_regular_file(unpacked) ? unpacked : file;
+}
+
 void requireBagFile(const fs::path& file) {
   if (file.extension() == ".db3" || file.extension() == ".mcap") return;
-  if (file.extension() == ".zstd")
-    throw Error(file.string() + ": the bag is compressed (zstd)" + kAdviceToConvert);
+  if (isPacked(file))
+    throw Error(file.string() + ": the file is compressed as a whole (zstd); unpack it: zstd -d " +
+                file.string() + " -o " + fs::path(file).replace_extension().string());
   throw Error(file.string() + ": not a .db3 or .mcap file of a ROS 2 bag" + kAdviceToConvert);
 }
 
@@ -90,9 +105,9 @@ std::uint64_t numberInName(const fs::path& file) {
 std::vector<fs::path> listedBagFiles(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path extension = entry.path().extension();
-    if (extension == ".db3" || extension == ".zstd" || extension == ".mcap")
-      files.push_back(entry.path());
+    const fs::path& file = entry.path();
+    const bool isBag = file.extension() == ".db3" || file.extension() == ".mcap";
+    if (isBag || (isPacked(file) && unpackedFile(file) == file)) files.push_back(file);
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return std::make_pair(numberInName(a), a) < std::make_pair(numberInName(b), b);
@@ -115,7 +130,7 @@ BagFiles filesOfBag(const fs::path& folder) {
   }
   // Old versions of rosbag2 write the name of the folder before that of the file.
   for (const std::string& name : metadata.files)
-    result.files.push_back(absolute / fs::path(name).filename());
+    result.files.push_back(unpackedFile(absolute / fs::path(name).filename()));
   return result;
 }
 

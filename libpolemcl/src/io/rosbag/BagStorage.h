@@ -14,7 +14,7 @@ struct StoredTopic {
   std::int64_t id = 0;       ///< positive
   std::string name;          ///< "/points"
   std::string type;          ///< "sensor_msgs/msg/PointCloud2"
-  std::string format;        ///< of its messages: "cdr"; some programs leave it empty
+  std::string format;        ///< of its messages: "cdr" or empty; others are not those of ROS 2
   std::size_t messages = 0;  ///< may be none
 };
 

@@ -215,16 +215,15 @@ void McapStorage::scanChunk(std::size_t chunk) {
 void McapStorage::listTopics() {
   for (const auto& [id, channel] : m_channels) {
     const McapSchema& schema = m_schemas[channel.schema];  // none: empty
+    std::string format = channel.format;
     if (!schema.encoding.empty() && schema.encoding != "ros2msg" && schema.encoding != "ros2idl")
-      throw Error(m_file.where() + channel.topic + ": a schema in " + schema.encoding +
-                  "; ros2msg and ros2idl are allowed: record it with ROS 2");
+      format += " with a schema in " + schema.encoding;
     auto topic = std::find_if(m_topics.begin(), m_topics.end(), [&](const StoredTopic& other) {
-      return other.name == channel.topic && other.type == schema.name &&
-             other.format == channel.format;
+      return other.name == channel.topic && other.type == schema.name && other.format == format;
     });
     if (topic == m_topics.end()) {
-      m_topics.push_back({static_cast<std::int64_t>(m_topics.size()) + 1, channel.topic,
-                          schema.name, channel.format, 0});
+      m_topics.push_back(
+          {static_cast<std::int64_t>(m_topics.size()) + 1, channel.topic, schema.name, format, 0});
       topic = m_topics.end() - 1;
     }
     m_topicOf[id] = topic->id;

@@ -16,7 +16,7 @@ constexpr std::uint64_t kMostInBag = 1 << 30;
 ///
 /// Chunks stay compressed until one of their messages is read, unless they have no index. Where
 /// the end of the file is missing, what is whole before it is there, with a note.
-/// \throws Error when it is damaged, or has schemas that are not those of ROS 2.
+/// \throws Error when it is damaged.
 std::unique_ptr<BagStorage> openMcapStorage(const std::filesystem::path& file);
 
 }  // namespace polemcl::io
