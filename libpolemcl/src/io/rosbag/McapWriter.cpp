@@ -58,15 +58,14 @@ std::string schemaRecord(std::uint16_t id, const McapTopic& topic) {
   return recordOf(McapOpcode::schema, writer.bytes());
 }
 
-/// Channel and schema have the same number.
-std::string channelRecord(std::uint16_t id, const McapTopic& topic) {
+std::string channelRecord(std::uint16_t id, std::uint16_t schema, const McapTopic& topic) {
   ByteWriter metadata, writer;
   if (topic.latched) {
     metadata.putText("offered_qos_profiles");
     metadata.putText(kLatchedQos);
   }
   writer.put(id);
-  writer.put(id);
+  writer.put(schema);
   writer.putText(topic.name);
   writer.putText("cdr");
   writer.putText(metadata.bytes());
@@ -91,11 +90,16 @@ McapWriter::McapWriter(const std::filesystem::path& file) : m_file(file) {
 
 std::uint16_t McapWriter::addTopic(const McapTopic& topic) {
   const auto id = static_cast<std::uint16_t>(m_counts.size() + 1);
-  const std::string schema = schemaRecord(id, topic), channel = channelRecord(id, topic);
+  const auto [schema, isNew] =
+      m_schemaIds.emplace(topic.type, static_cast<std::uint16_t>(m_schemaIds.size() + 1));
+  if (isNew) {
+    const std::string record = schemaRecord(schema->second, topic);
+    m_schemas += record;
+    m_chunk.putRaw(record);
+  }
+  const std::string channel = channelRecord(id, schema->second, topic);
   m_counts[id] = 0;
-  m_schemas += schema;
   m_channels += channel;
-  m_chunk.putRaw(schema);
   m_chunk.putRaw(channel);
   return id;
 }
@@ -139,6 +143,24 @@ void McapWriter::writeChunk() {
   writeRecord(McapOpcode::chunk, chunk.bytes());
 
   const std::uint64_t end = m_size;
+  const std::string offsets = writeMessageIndexes();
+  ByteWriter summary;
+  for (const std::uint64_t value : {m_chunkTimes.first, m_chunkTimes.last, begin, end - begin})
+    summary.put(value);
+  summary.putText(offsets);
+  summary.put(m_size - end);
+  summary.putText("zstd");
+  summary.put(static_cast<std::uint64_t>(data.size()));
+  summary.put(static_cast<std::uint64_t>(records.size()));
+  m_chunkIndexes += recordOf(McapOpcode::chunkIndex, summary.bytes());
+  ++m_chunks;
+  m_chunk = {};
+  m_chunkIndex.clear();
+  m_chunkTimes = {};
+}
+
+/// For each channel of the chunk. Returns where each one is.
+std::string McapWriter::writeMessageIndexes() {
   ByteWriter offsets;
   for (auto& [channel, entries] : m_chunkIndex) {
     std::stable_sort(entries.begin(), entries.end(),
@@ -154,19 +176,7 @@ void McapWriter::writeChunk() {
     offsets.put(m_size);
     writeRecord(McapOpcode::messageIndex, index.bytes());
   }
-  ByteWriter summary;
-  for (const std::uint64_t value : {m_chunkTimes.first, m_chunkTimes.last, begin, end - begin})
-    summary.put(value);
-  summary.putText(offsets.bytes());
-  summary.put(m_size - end);
-  summary.putText("zstd");
-  summary.put(static_cast<std::uint64_t>(data.size()));
-  summary.put(static_cast<std::uint64_t>(records.size()));
-  m_chunkIndexes += recordOf(McapOpcode::chunkIndex, summary.bytes());
-  ++m_chunks;
-  m_chunk = {};
-  m_chunkIndex.clear();
-  m_chunkTimes = {};
+  return offsets.bytes();
 }
 
 std::string McapWriter::statistics() const {
@@ -176,10 +186,10 @@ std::string McapWriter::statistics() const {
     counts.put(count);
   }
   writer.put(m_times.messages);
-  writer.put(static_cast<std::uint16_t>(m_counts.size()));  // schemas
-  writer.put(static_cast<std::uint32_t>(m_counts.size()));  // channels
-  writer.put(std::uint32_t{0});                             // attachments
-  writer.put(std::uint32_t{0});                             // metadata
+  writer.put(static_cast<std::uint16_t>(m_schemaIds.size()));
+  writer.put(static_cast<std::uint32_t>(m_counts.size()));
+  writer.put(std::uint32_t{0});  // attachments
+  writer.put(std::uint32_t{0});  // metadata
   writer.put(m_chunks);
   writer.put(m_times.first);
   writer.put(m_times.last);

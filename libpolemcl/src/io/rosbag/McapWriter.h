@@ -51,12 +51,14 @@ class McapWriter {
   void write(std::string_view bytes);
   void writeRecord(McapOpcode opcode, std::string_view content);
   void writeChunk();
+  std::string writeMessageIndexes();
   void writeSummary();
   std::string statistics() const;
 
   AtomicFile m_file;
   std::uint64_t m_size = 0;  ///< bytes written
   std::uint32_t m_checksum = 0;
+  std::map<std::string, std::uint16_t> m_schemaIds;   ///< by type
   std::string m_schemas, m_channels, m_chunkIndexes;  ///< records for the summary
   std::map<std::uint16_t, std::uint64_t> m_counts;    ///< messages of each channel
   std::uint32_t m_chunks = 0;

@@ -24,7 +24,7 @@ void putHeader(CdrEncoder& message, const RosStamp& stamp) {
 }
 
 /// Position and quaternion; translation and rotation of a transform are the same.
-void putPose(CdrEncoder& message, const Pose2D& pose, double z = 0) {
+void putPlanarPose(CdrEncoder& message, const Pose2D& pose, double z = 0) {
   for (const double value : {pose.x, pose.y, z, 0.0, 0.0}) message.put(value);
   message.put(std::sin(pose.yaw / 2));
   message.put(std::cos(pose.yaw / 2));
@@ -51,7 +51,7 @@ void putMarker(CdrEncoder& message, const RosStamp& stamp, const std::string& na
   putHeader(message, stamp);
   message.putText(name);
   for (const std::int32_t value : {id, kCylinder, action}) message.put(value);
-  putPose(message, {pole.x, pole.y, 0}, (pole.bottom + pole.top) / 2);
+  putPlanarPose(message, {pole.x, pole.y, 0}, (pole.bottom + pole.top) / 2);
   const double diameter = 2 * std::max(pole.radius, kLeastRadius);
   for (const double size : {diameter, diameter, std::max(pole.top - pole.bottom, kLeastHeight)})
     message.put(size);
@@ -65,8 +65,8 @@ void putMarker(CdrEncoder& message, const RosStamp& stamp, const std::string& na
 }  // namespace
 
 std::uint64_t rosNanoseconds(double time) {
-  const bool canBe = time >= 0 && time < 2147483648.0;
-  if (!canBe)
+  const bool inRange = time >= 0 && time < 2147483648.0;
+  if (!inRange)
     throw Error("time " + std::to_string(time) +
                 " s: bags of ROS 2 state times from 0 to 2147483647 s since 1970");
   const double whole = std::floor(time);
@@ -77,7 +77,7 @@ std::uint64_t rosNanoseconds(double time) {
 std::string encodePose(const RosStamp& stamp, const PoseWithCovariance& pose) {
   CdrEncoder message;
   putHeader(message, stamp);
-  putPose(message, pose.mean);
+  putPlanarPose(message, pose.mean);
   const int planar[6] = {0, 1, -1, -1, -1, 2};  // of x, y, z, roll, pitch, yaw
   for (const int row : planar)
     for (const int column : planar)
@@ -90,7 +90,7 @@ std::string encodeTransform(const RosStamp& stamp, const std::string& child, con
   message.putCount(1);
   putHeader(message, stamp);
   message.putText(child);
-  putPose(message, pose);
+  putPlanarPose(message, pose);
   return message.message();
 }
 
@@ -100,7 +100,7 @@ std::string encodePath(const RosStamp& stamp, const std::vector<StampedPose2D>& 
   message.putCount(poses.size());
   for (const StampedPose2D& pose : poses) {
     putHeader(message, {pose.time, stamp.frame});
-    putPose(message, pose.pose);
+    putPlanarPose(message, pose.pose);
   }
   return message.message();
 }
