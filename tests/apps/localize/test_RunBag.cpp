@@ -115,7 +115,11 @@ TEST_F(RunBag, RefusesOtherNamesAndInputs) {
 }
 
 TEST_F(RunBag, AppearsOnlyWithResults) {
-  expectFailure(run(toBag()), {"no start pose"});
+  const std::vector<StampedPose2D> late{{1e6, {}}, {1e6 + 1, {}}};
+  io::writeTum(folder / "late.tum", late);
+  auto arguments = toBag();
+  arguments.insert(arguments.end(), {"--truth", (folder / "late.tum").string()});
+  expectFailure(run(arguments), {"the truth does not reach the first scan"});
   EXPECT_FALSE(fs::exists(file()));
 }
 
