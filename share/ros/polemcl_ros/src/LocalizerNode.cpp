@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <rclcpp_components/register_node_macro.hpp>
+#include <sstream>
 #include <utility>
 
 #include "Messages.h"
@@ -19,6 +20,19 @@ constexpr int kWarningEvery = 5000;  // ms
 /// Parameters of the INI file have names that nobody can declare beforehand.
 rclcpp::NodeOptions withAllParameters(rclcpp::NodeOptions options) {
   return options.automatically_declare_parameters_from_overrides(true);
+}
+
+/// The value as an INI file has it.
+std::string textOf(const rclcpp::Parameter& parameter) {
+  std::ostringstream text;
+  text.precision(17);
+  if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE)
+    text << parameter.as_double();
+  else if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE_ARRAY)
+    for (const double value : parameter.as_double_array()) text << value << ' ';
+  else
+    text << parameter.value_to_string();
+  return text.str();
 }
 
 /// Twice the standard deviation along the worst axis, m; none if the covariance says nothing.
@@ -56,7 +70,7 @@ std::vector<std::string> LocalizerNode::assignments() const {
   std::vector<std::string> result;
   for (const std::string& name : list_parameters({}, 0).names) {
     const bool isOfRos = name.find('.') == std::string::npos || name.rfind("qos_overrides", 0) == 0;
-    if (!isOfRos) result.push_back(name + "=" + get_parameter(name).value_to_string());
+    if (!isOfRos) result.push_back(name + "=" + textOf(get_parameter(name)));
   }
   return result;
 }
@@ -81,6 +95,9 @@ void LocalizerNode::setUp() {
   m_localizer.emplace(polemcl::Settings(file, assignments()), map);
   if (!m_localizer->isStarted()) m_localizer->startAnywhere();
   m_mapFrame = get_parameter("map_frame").as_string();
+  const rclcpp::Parameter tolerance = get_parameter("transform_tolerance_s");
+  const bool isWhole = tolerance.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER;
+  m_tolerance = isWhole ? static_cast<double>(tolerance.as_int()) : tolerance.as_double();
   advertise();
   std_msgs::msg::Header header;
   header.frame_id = m_mapFrame;
@@ -93,7 +110,7 @@ void LocalizerNode::setUp() {
 
 void LocalizerNode::advertise() {
   m_transforms = std::make_unique<tf2_ros::Buffer>(get_clock());
-  m_listener = std::make_unique<tf2_ros::TransformListener>(*m_transforms, *this, false);
+  m_listener = std::make_unique<tf2_ros::TransformListener>(*m_transforms, this, false);
   m_broadcaster = std::make_unique<tf2_ros::TransformBroadcaster>(*this);
   m_pose = create_publisher<StartPose>("~/pose", 10);
   m_diagnostics = create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 10);
@@ -166,7 +183,7 @@ void LocalizerNode::take(const Cloud::ConstSharedPtr& cloud) {
     m_waiting.pop_front();
     RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), kWarningEvery,
                          "a scan is dropped: no odometry of its time came, or no transform from %s "
-                         "to %s, or the machine is too slow",
+                         "to %s",
                          cloud->header.frame_id.c_str(), m_robotFrame.c_str());
   }
   localizeWaiting();
@@ -256,9 +273,8 @@ void LocalizerNode::publish(const polemcl::LocalizationUpdate& update,
   m_diagnostics->publish(diagnosticsOf(update, header, lidar.frame_id));
   if (!update.estimate) return;
   geometry_msgs::msg::TransformStamped transform;
-  const double tolerance = get_parameter("transform_tolerance_s").get_value<double>();
   transform.header.stamp =
-      rclcpp::Time(lidar.stamp) + rclcpp::Duration::from_seconds(tolerance);
+      rclcpp::Time(lidar.stamp) + rclcpp::Duration::from_seconds(m_tolerance);
   transform.header.frame_id = m_mapFrame;
   transform.child_frame_id = m_odometryFrame;
   transform.transform = transformOf(*m_localizer->odometryFrame());

@@ -64,8 +64,9 @@ class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
 
   std::optional<polemcl::Localizer> m_localizer;
   std::string m_mapFrame, m_odometryFrame, m_robotFrame;
-  std::deque<Cloud::ConstSharedPtr> m_waiting;           ///< for odometry of their time
-  std::vector<polemcl::io::TimedCloud> m_firstScans;     ///< until they told how the LiDAR turns
+  double m_tolerance = 0;  ///< for which the transform is valid after its scan, s
+  std::deque<Cloud::ConstSharedPtr> m_waiting;        ///< for odometry of their time
+  std::vector<polemcl::io::TimedCloud> m_firstScans;  ///< until they told how the LiDAR turns
   bool m_timingIsKnown = false;
 
   std::unique_ptr<tf2_ros::Buffer> m_transforms;

@@ -1,11 +1,14 @@
-// Plays a bag (SQLite, uncompressed) to the node, one scan after another: bag_player BAG.db3 OUT.tum
-// Configures and activates the node /polemcl, waits after each scan for its pose, and writes the
-// poses as TUM. Ends with an error when a pose does not come.
+// Plays a bag (SQLite, uncompressed) to the node /polemcl, one scan after another, and writes its
+// poses: bag_player BAG.db3 OUT.tum [SEARCH_AT [START_AT]]. Configures and activates the node and
+// waits after each scan for what it says. Before the scan SEARCH_AT it calls the global search,
+// before START_AT it sends the last pose as /initialpose. Ends with an error when an answer does not
+// come, or the outputs contradict each other.
 #include <sqlite3.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <functional>
 #include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
@@ -47,7 +50,10 @@ std::vector<Recorded> readBag(const char* file) {
     const auto text = [&](int column) {
       return std::string(reinterpret_cast<const char*>(sqlite3_column_text(rows, column)));
     };
-    Recorded message{text(0), text(1), sqlite3_column_int64(rows, 2), {}};
+    Recorded message;
+    message.topic = text(0);
+    message.type = text(1);
+    message.time = sqlite3_column_int64(rows, 2);
     const auto size = static_cast<std::size_t>(sqlite3_column_bytes(rows, 3));
     message.bytes.reserve(size);
     auto& raw = message.bytes.get_rcl_serialized_message();
@@ -80,6 +86,7 @@ class Player : public rclcpp::Node {
         "/diagnostics", 10, [this](const diagnostic_msgs::msg::DiagnosticArray& message) {
           m_health = message.status.at(0).message;
           ++m_diagnostics;
+          m_searching += m_health == "lost: searching" ? 1 : 0;
         }));
     const auto count = [](std::size_t& markers) {
       return [&markers](const visualization_msgs::msg::MarkerArray& message) {
@@ -95,8 +102,9 @@ class Player : public rclcpp::Node {
   void change(std::uint8_t transition);
   void play(const std::vector<Recorded>& messages);
   void write(const char* file) const;
-  void checkOtherOutputs();
-  void startElsewhere(const std::vector<Recorded>& messages);
+  void checkOutputs();
+
+  std::size_t searchAt = SIZE_MAX, startAt = SIZE_MAX;  ///< numbers of scans, from 0
 
  private:
   void waitUntil(const std::string& what, const std::function<bool()>& isSo);
@@ -105,12 +113,15 @@ class Player : public rclcpp::Node {
                                              typename Service::Request::SharedPtr request);
   rclcpp::GenericPublisher& publisherOf(const Recorded& message);
   void publish(const Recorded& message);
+  void act(std::size_t scan);
+  bool isAnswered(std::size_t scans) const;
 
   std::map<std::int64_t, Pose> m_poses;  ///< by stamp, ns
   geometry_msgs::msg::TransformStamped m_transform;
   nav_msgs::msg::Odometry m_odometry;  ///< the last one
+  rclcpp::Publisher<Pose>::SharedPtr m_start = create_publisher<Pose>("/initialpose", 1);
   std::string m_health;
-  std::size_t m_diagnostics = 0, m_seen = 0, m_mapPoles = 0;
+  std::size_t m_diagnostics = 0, m_searching = 0, m_seen = 0, m_mapPoles = 0;
   std::map<std::string, rclcpp::GenericPublisher::SharedPtr> m_publishers;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> m_subscriptions;
 };
@@ -162,35 +173,61 @@ void Player::publish(const Recorded& message) {
                                                                         &m_odometry);
 }
 
+/// What is to be done before a scan.
+void Player::act(std::size_t scan) {
+  if (scan == searchAt &&
+      !call<std_srvs::srv::Trigger>("/polemcl/global_search",
+                                    std::make_shared<std_srvs::srv::Trigger::Request>())
+           ->success)
+    throw std::runtime_error("the global search was refused");
+  if (scan != startAt) return;
+  Pose start = m_poses.rbegin()->second;
+  for (const int place : {0, 7, 35}) start.pose.covariance[place] = place == 35 ? 0.01 : 0.25;
+  waitUntil("a subscriber of /initialpose", [&] { return m_start->get_subscription_count() > 0; });
+  m_start->publish(start);
+  std::this_thread::sleep_for(500ms);  // nothing answers
+}
+
+/// A scan has the stamp of its odometry. A scan without a pose has diagnostics only.
+bool Player::isAnswered(std::size_t scans) const {
+  return m_diagnostics == scans && (m_health == "lost: searching" ||
+                                    m_poses.count(nanoseconds(m_odometry.header.stamp)) > 0);
+}
+
 void Player::play(const std::vector<Recorded>& messages) {
   for (const Recorded& message : messages) publisherOf(message);  // all are there before any plays
   std::size_t scans = 0;
   for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (messages[i].topic == "/points") act(scans++);
     publish(messages[i]);
-    scans += messages[i].topic == "/points" ? 1 : 0;
-    const bool isLast = i + 1 == messages.size() || messages[i + 1].time > messages[i].time;
-    if (isLast)
-      waitUntil("the pose of scan " + std::to_string(scans),
-                [&] { return m_poses.size() == scans && m_diagnostics == scans; });
+    if (i + 1 == messages.size() || messages[i + 1].time > messages[i].time)
+      waitUntil("what the node says of scan " + std::to_string(scans - 1),
+                [&] { return isAnswered(scans); });
   }
 }
 
+/// With the digits of pole-localize.
 void Player::write(const char* file) const {
   std::FILE* out = std::fopen(file, "w");
   if (!out) throw std::runtime_error(std::string(file) + " cannot be written");
   for (const auto& [time, pose] : m_poses) {
     const auto& p = pose.pose.pose;
-    std::fprintf(out, "%lld.%09lld %.12f %.12f %.12f\n", static_cast<long long>(time / 1000000000),
+    std::fprintf(out, "%lld.%09lld %.9f %.9f 0.000000000 0.000000000 0.000000000 %.9f %.9f\n",
+                 static_cast<long long>(time / 1000000000),
                  static_cast<long long>(time % 1000000000), p.position.x, p.position.y,
-                 yawOf(p.orientation));
+                 p.orientation.z, p.orientation.w);
   }
   std::fclose(out);
 }
 
 /// map -> odom with the odometry must give the pose; the other topics must have been sent.
-void Player::checkOtherOutputs() {
-  const auto& pose = m_poses.rbegin()->second.pose.pose;
+void Player::checkOutputs() {
+  const auto& [time, last] = *m_poses.rbegin();
+  waitUntil("the last transform", [&, stamp = time] {
+    return nanoseconds(m_transform.header.stamp) == stamp + 100000000;  // transform_tolerance_s
+  });
   waitUntil("markers of the map", [&] { return m_mapPoles > 0; });
+  const auto& pose = last.pose.pose;
   const auto& t = m_transform.transform.translation;
   const auto& at = m_odometry.pose.pose.position;
   const double yaw = yawOf(m_transform.transform.rotation);
@@ -199,17 +236,10 @@ void Player::checkOtherOutputs() {
   const double off = std::hypot(x - pose.position.x, y - pose.position.y);
   std::printf("%s -> %s with the odometry: %.1e m off the pose\n",
               m_transform.header.frame_id.c_str(), m_transform.child_frame_id.c_str(), off);
-  std::printf("diagnostics: %zu, the last: %s; markers: %zu of the map, %zu of scans\n",
-              m_diagnostics, m_health.c_str(), m_mapPoles, m_seen);
+  std::printf("diagnostics: %zu, of them searching: %zu, the last: %s\n", m_diagnostics,
+              m_searching, m_health.c_str());
+  std::printf("markers: %zu of the map, %zu of scans\n", m_mapPoles, m_seen);
   if (off > 1e-9 || m_seen == 0) throw std::runtime_error("outputs contradict each other");
-}
-
-/// The global search, then a start pose: both must lead to the last pose again.
-void Player::startElsewhere(const std::vector<Recorded>&) {
-  if (!call<std_srvs::srv::Trigger>("/polemcl/global_search",
-                                    std::make_shared<std_srvs::srv::Trigger::Request>())
-           ->success)
-    throw std::runtime_error("the global search was refused");
 }
 
 }  // namespace
@@ -219,12 +249,13 @@ int main(int count, char** arguments) try {
   if (count < 3) throw std::runtime_error("usage: bag_player BAG.db3 OUT.tum");
   const auto messages = readBag(arguments[1]);
   const auto player = std::make_shared<Player>();
+  if (count > 3) player->searchAt = std::stoul(arguments[3]);
+  if (count > 4) player->startAt = std::stoul(arguments[4]);
   player->change(1);  // configure
   player->change(3);  // activate
   player->play(messages);
   player->write(arguments[2]);
-  player->checkOtherOutputs();
-  player->startElsewhere(messages);
+  player->checkOutputs();
   player->change(4);  // deactivate
   player->change(2);  // clean up
   rclcpp::shutdown();
