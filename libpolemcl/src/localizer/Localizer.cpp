@@ -53,11 +53,12 @@ struct Localizer::Impl {
   }
   void add(const OdometryReading& reading);
   LocalizationUpdate step(const PoleScan& frame);
-  /// \brief With the motion that the odometry tells. \param pose Of the odometry at the scan.
-  LocalizationUpdate follow(PoleScan frame, const Pose2D& pose);
+  /// \brief With the motion that the odometry tells. \param time Of the scan as the odometry
+  /// counts it: observations round theirs. \param pose Of the odometry at that time.
+  LocalizationUpdate follow(PoleScan frame, double time, const Pose2D& pose);
   LocalizationUpdate step(PoleScan frame, const Pose2D& odometry);
   /// \brief With the odometry of add().
-  LocalizationUpdate stepAlone(PoleScan frame);
+  LocalizationUpdate stepAlone(PoleScan frame, double time);
   PoleScan frameOfScan(const mrpt::obs::CObservation& scan);
 
   SettingsValues settings;
@@ -99,18 +100,18 @@ LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {
   return update;
 }
 
-LocalizationUpdate Localizer::Impl::follow(PoleScan frame, const Pose2D& pose) {
+LocalizationUpdate Localizer::Impl::follow(PoleScan frame, double time, const Pose2D& pose) {
   if (odometryBefore) {
     const Pose2D motion = relative(*odometryBefore, pose);
     frame.motion = PoseWithCovariance{motion, motionCovariance(motion, settings.motion)};
-    if (const auto stated = steps.covarianceBetween(timeBefore, frame.time))
+    if (const auto stated = steps.covarianceBetween(timeBefore, time))
       frame.motion->covariance =
           settings.motion.covarianceFactor * (*stated + io::floorCovariance());
   }
   LocalizationUpdate update = step(frame);
   track.forgetBefore(timeBefore);  // the last motion goes on over a jump
-  steps.forgetBefore(frame.time);
-  timeBefore = frame.time;
+  steps.forgetBefore(time);
+  timeBefore = time;
   odometryBefore = pose;
   pose_map_odometry.reset();
   if (update.estimate)
@@ -119,17 +120,18 @@ LocalizationUpdate Localizer::Impl::follow(PoleScan frame, const Pose2D& pose) {
 }
 
 LocalizationUpdate Localizer::Impl::step(PoleScan frame, const Pose2D& odometry) {
-  track.add(frame.time, odometry);
-  const auto pose = track.at(frame.time);
+  const double time = frame.time;
+  track.add(time, odometry);
+  const auto pose = track.at(time);
   if (!pose) throw Error("odometry: x, y and yaw must be finite");
-  return follow(std::move(frame), *pose);
+  return follow(std::move(frame), time, *pose);
 }
 
-LocalizationUpdate Localizer::Impl::stepAlone(PoleScan frame) {
-  const auto pose = track.at(frame.time);
-  if (!pose) throw Error("no odometry within 0.5 s of the scan at " + io::fixed(frame.time, 3) + " s");
+LocalizationUpdate Localizer::Impl::stepAlone(PoleScan frame, double time) {
+  const auto pose = track.at(time);
+  if (!pose) throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) + " s");
   if (!odometryBefore) frame.velocity = reading->velocity;
-  return follow(std::move(frame), *pose);
+  return follow(std::move(frame), time, *pose);
 }
 
 /// The poles of a scan, as found in it or as stored.
@@ -190,7 +192,7 @@ LocalizationUpdate Localizer::step(double time, const PointsView& points,
                                    const Eigen::Isometry3d& T_robot_lidar) {
   auto scan = observationOf(time, points);
   scan.sensorPose = mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_robot_lidar.matrix()));
-  return m_impl->stepAlone(m_impl->frameOfScan(scan));
+  return m_impl->stepAlone(m_impl->frameOfScan(scan), time);
 }
 
 std::optional<Pose2D> Localizer::odometryFrame() const {
