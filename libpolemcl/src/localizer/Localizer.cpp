@@ -1,7 +1,6 @@
-#include <polemcl/localizer/Localizer.h>
-
 #include <cmath>
 
+#include <polemcl/localizer/Localizer.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
@@ -66,7 +65,7 @@ struct Localizer::Impl {
   LocalizationPipeline pipeline;
   bool isStarted = false;
   OdometryTrack track;
-  io::MotionSteps steps;  ///< between the readings whose covariance is known
+  io::MotionSteps steps;                   ///< between the readings whose covariance is known
   std::optional<OdometryReading> reading;  ///< the last one; its pose is that of the track
   std::optional<Pose2D> odometryBefore;    ///< at the last scan
   double timeBefore = 0;                   ///< of the last scan, s

@@ -21,7 +21,8 @@ TEST(MotionSteps, ComposesStepsInProportion) {
 
 TEST(MotionSteps, ForgetsWhatEnded) {
   MotionSteps steps;
-  for (const double begin : {0, 1, 2}) steps.add(begin, begin + 1, {{}, Eigen::Matrix3d::Identity()});
+  for (const double begin : {0, 1, 2})
+    steps.add(begin, begin + 1, {{}, Eigen::Matrix3d::Identity()});
   steps.forgetBefore(1.5);
   EXPECT_FALSE(steps.covarianceBetween(0, 1));
   EXPECT_TRUE(steps.covarianceBetween(1, 3)->isApprox(2 * Eigen::Matrix3d::Identity()));

@@ -28,8 +28,8 @@ struct LocalizationMap;      // private to the library
 
 /// \brief What odometry says at one time.
 struct OdometryReading {
-  double time = 0;  ///< s
-  Pose2D pose;      ///< of the robot in the frame of the odometry, m and rad
+  double time = 0;                        ///< s
+  Pose2D pose;                            ///< of the robot in the frame of the odometry, m and rad
   std::optional<Velocity> velocity = {};  ///< used at the first scan: no motion leads to it
   /// Covariance of (vx, vy, yaw rate), m²/s², m·rad/s², rad²/s², with errors that are independent
   /// from reading to reading. None, zero or negative: `[motion]` says how exact motions are.

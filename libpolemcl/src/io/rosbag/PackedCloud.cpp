@@ -1,8 +1,7 @@
-#include <polemcl/io/rosbag/PackedCloud.h>
-
 #include <array>
 #include <cmath>
 
+#include <polemcl/io/rosbag/PackedCloud.h>
 #include "io/file/Bytes.h"
 
 namespace polemcl::io {
@@ -68,7 +67,7 @@ bool is(const PackedField& field, FieldType type) {
 
 /// The field of this name; null if no field has it.
 const PackedField* findField(const PackedCloud& packed, const std::string& where,
-                            const std::string& name) {
+                             const std::string& name) {
   for (const PackedField& field : packed.fields) {
     if (field.name != name) continue;
     if (field.type < 1 || field.type >= kFieldBytes.size())
@@ -83,7 +82,7 @@ const PackedField* findField(const PackedCloud& packed, const std::string& where
 }
 
 const PackedField* findCoordinate(const PackedCloud& packed, const std::string& where,
-                                 const std::string& name) {
+                                  const std::string& name) {
   const PackedField* field = findField(packed, where, name);
   if (!field || !is(*field, FieldType::float32))
     throw Error(where + "no field " + name + " of float32 in the points");
@@ -118,7 +117,8 @@ TimedCloud unpack(const PackedCloud& packed, const std::string& where, bool with
   const std::size_t points = packed.rows * packed.columns;
   if (points == 0) return result;
   const std::size_t rowBytes = rowBytesOf(packed, where);
-  const PackedField *x = findCoordinate(packed, where, "x"), *y = findCoordinate(packed, where, "y"),
+  const PackedField *x = findCoordinate(packed, where, "x"),
+                    *y = findCoordinate(packed, where, "y"),
                     *z = findCoordinate(packed, where, "z"),
                     *intensity = findField(packed, where, "intensity"),
                     *time = withTimes ? findTime(packed, where) : nullptr;
@@ -131,8 +131,7 @@ TimedCloud unpack(const PackedCloud& packed, const std::string& where, bool with
         return fieldValue(point, *field, packed.bigEndian);
       };
       if (!result.cloud.add(of(x), of(y), of(z), intensity ? of(intensity) : 0) || !time) continue;
-      const double offset =
-          timeSince(packed.stamp, of(time), static_cast<FieldType>(time->type));
+      const double offset = timeSince(packed.stamp, of(time), static_cast<FieldType>(time->type));
       if (!std::isfinite(offset)) throw Error(where + "the time of a point is not finite");
       result.offsets.push_back(offset);
     }

@@ -128,11 +128,11 @@ void LocalizerNode::subscribe() {
       [this](const Odometry& odometry) { take(odometry); }, adjustable());
   m_starts = create_subscription<StartPose>("initialpose", 1,
                                             [this](const StartPose& start) { take(start); });
-  m_search = create_service<Trigger>(
-      "~/global_search", [this](const std::shared_ptr<Trigger::Request> request,
-                                std::shared_ptr<Trigger::Response> response) {
-        searchEverywhere(*request, *response);
-      });
+  m_search = create_service<Trigger>("~/global_search",
+                                     [this](const std::shared_ptr<Trigger::Request> request,
+                                            std::shared_ptr<Trigger::Response> response) {
+                                       searchEverywhere(*request, *response);
+                                     });
 }
 
 LocalizerNode::CallbackReturn LocalizerNode::on_activate(const rclcpp_lifecycle::State& state) {
@@ -241,15 +241,14 @@ std::optional<Eigen::Isometry3d> LocalizerNode::poseOnRobot(
   if (lidar.frame_id == m_robotFrame) return Eigen::Isometry3d::Identity();
   const tf2::TimePoint time = tf2_ros::fromMsg(lidar.stamp);
   if (!m_transforms->canTransform(m_robotFrame, lidar.frame_id, time)) return std::nullopt;
-  return isometryOf(
-      m_transforms->lookupTransform(m_robotFrame, lidar.frame_id, time).transform);
+  return isometryOf(m_transforms->lookupTransform(m_robotFrame, lidar.frame_id, time).transform);
 }
 
 void LocalizerNode::localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar) {
   const std::string where = std::string(m_clouds->get_topic_name()) + ": ";
   polemcl::io::TimedCloud scan = polemcl::io::unpack(packedOf(cloud), where, !m_timingIsKnown);
-  const auto update = m_localizer->step(secondsOf(cloud.header.stamp), scan.cloud.view(),
-                                        T_robot_lidar);
+  const auto update =
+      m_localizer->step(secondsOf(cloud.header.stamp), scan.cloud.view(), T_robot_lidar);
   publish(update, cloud.header);
   if (!m_timingIsKnown) learnTiming(std::move(scan));
 }
@@ -273,8 +272,7 @@ void LocalizerNode::publish(const polemcl::LocalizationUpdate& update,
   m_diagnostics->publish(diagnosticsOf(update, header, lidar.frame_id));
   if (!update.estimate) return;
   geometry_msgs::msg::TransformStamped transform;
-  transform.header.stamp =
-      rclcpp::Time(lidar.stamp) + rclcpp::Duration::from_seconds(m_tolerance);
+  transform.header.stamp = rclcpp::Time(lidar.stamp) + rclcpp::Duration::from_seconds(m_tolerance);
   transform.header.frame_id = m_mapFrame;
   transform.child_frame_id = m_odometryFrame;
   transform.transform = transformOf(*m_localizer->odometryFrame());

@@ -1,8 +1,8 @@
 // Plays a bag (SQLite, uncompressed) to the node /polemcl, one scan after another, and writes its
 // poses: bag_player BAG.db3 OUT.tum [SEARCH_AT [START_AT]]. Configures and activates the node and
 // waits after each scan for what it says. Before the scan SEARCH_AT it calls the global search,
-// before START_AT it sends the last pose as /initialpose. Ends with an error when an answer does not
-// come, or the outputs contradict each other.
+// before START_AT it sends the last pose as /initialpose. Ends with an error when an answer does
+// not come, or the outputs contradict each other.
 #include <sqlite3.h>
 
 #include <chrono>
@@ -70,7 +70,9 @@ std::int64_t nanoseconds(const builtin_interfaces::msg::Time& stamp) {
   return stamp.sec * std::int64_t{1000000000} + stamp.nanosec;
 }
 
-double yawOf(const geometry_msgs::msg::Quaternion& q) { return 2 * std::atan2(q.z, q.w); }
+double yawOf(const geometry_msgs::msg::Quaternion& q) {
+  return 2 * std::atan2(q.z, q.w);
+}
 
 class Player : public rclcpp::Node {
  public:
@@ -142,7 +144,8 @@ typename Service::Response::SharedPtr Player::call(const std::string& name,
   const auto client = create_client<Service>(name);
   waitUntil("the service " + name, [&] { return client->service_is_ready(); });
   auto answer = client->async_send_request(request).future.share();
-  waitUntil("an answer of " + name, [&] { return answer.wait_for(0s) == std::future_status::ready; });
+  waitUntil("an answer of " + name,
+            [&] { return answer.wait_for(0s) == std::future_status::ready; });
   return answer.get();
 }
 
@@ -170,7 +173,7 @@ void Player::publish(const Recorded& message) {
   if (message.topic == "/tf_static") std::this_thread::sleep_for(500ms);  // before the first scan
   if (message.topic == "/odom")
     rclcpp::Serialization<nav_msgs::msg::Odometry>().deserialize_message(&message.bytes,
-                                                                        &m_odometry);
+                                                                         &m_odometry);
 }
 
 /// What is to be done before a scan.
@@ -190,8 +193,8 @@ void Player::act(std::size_t scan) {
 
 /// A scan has the stamp of its odometry. A scan without a pose has diagnostics only.
 bool Player::isAnswered(std::size_t scans) const {
-  return m_diagnostics == scans && (m_health == "lost: searching" ||
-                                    m_poses.count(nanoseconds(m_odometry.header.stamp)) > 0);
+  return m_diagnostics == scans &&
+         (m_health == "lost: searching" || m_poses.count(nanoseconds(m_odometry.header.stamp)) > 0);
 }
 
 void Player::play(const std::vector<Recorded>& messages) {
