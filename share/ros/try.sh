@@ -43,6 +43,7 @@ start=$(awk '{ print $2 "," $3 "," 2 * atan2($7, $8) * 57.29577951 ",0.5,3"; exi
 echo "3/4 Building the node"
 # setup.sh of ROS reads variables that may not be set.
 set +u
+# shellcheck source=/dev/null
 if [ -e "$ros/setup.sh" ]; then . "$ros/setup.sh"; fi
 set -u
 for part in library dev; do
@@ -56,7 +57,7 @@ for packages in "$ros"/lib/python3*/site-packages "$ros"/local/lib/python3*/dist
 done
 {
   cmake -S "$top/share/ros/polemcl_ros" -B "$out/node" -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_INSTALL_PREFIX="$out/installed" -DBUILD_TESTING=ON
+    -DCMAKE_INSTALL_PREFIX="$out/installed" -DPOLEMCL_ROS_BAG_PLAYER=ON
   cmake --build "$out/node" --target install
 } >"$out/build.log" 2>&1 || {
   cat "$out/build.log" >&2
