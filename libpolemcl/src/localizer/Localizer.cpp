@@ -57,7 +57,7 @@ struct Localizer::Impl {
   LocalizationUpdate follow(PoleScan frame, double time, const Pose2D& pose);
   LocalizationUpdate step(PoleScan frame, const Pose2D& odometry);
   /// \brief With the odometry of add().
-  LocalizationUpdate stepAlone(PoleScan frame, double time);
+  LocalizationUpdate stepByOdometry(PoleScan frame, double time);
   PoleScan frameOfScan(const mrpt::obs::CObservation& scan);
 
   SettingsValues settings;
@@ -95,6 +95,7 @@ LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {
         "the localizer has not been started: start it near a pose or anywhere, or say where in "
         "[start] of the settings");
   LocalizationUpdate update = pipeline.step(frame);
+  pose_map_odometry.reset();
   poles_robot = frame.poles_robot;
   return update;
 }
@@ -112,7 +113,6 @@ LocalizationUpdate Localizer::Impl::follow(PoleScan frame, double time, const Po
   steps.forgetBefore(time);
   timeBefore = time;
   odometryBefore = pose;
-  pose_map_odometry.reset();
   if (update.estimate)
     pose_map_odometry = compose(update.estimate->mean, relative(track.asRead(pose), {}));
   return update;
@@ -126,7 +126,7 @@ LocalizationUpdate Localizer::Impl::step(PoleScan frame, const Pose2D& odometry)
   return follow(std::move(frame), time, *pose);
 }
 
-LocalizationUpdate Localizer::Impl::stepAlone(PoleScan frame, double time) {
+LocalizationUpdate Localizer::Impl::stepByOdometry(PoleScan frame, double time) {
   const auto pose = track.at(time);
   if (!pose) throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) + " s");
   if (!odometryBefore) frame.velocity = reading->velocity;
@@ -191,7 +191,7 @@ LocalizationUpdate Localizer::step(double time, const PointsView& points,
                                    const Eigen::Isometry3d& T_robot_lidar) {
   auto scan = observationOf(time, points);
   scan.sensorPose = mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(T_robot_lidar.matrix()));
-  return m_impl->stepAlone(m_impl->frameOfScan(scan), time);
+  return m_impl->stepByOdometry(m_impl->frameOfScan(scan), time);
 }
 
 std::optional<Pose2D> Localizer::odometryFrame() const {
