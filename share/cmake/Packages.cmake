@@ -81,9 +81,9 @@ endif()
 # Documents keep their folders, so that their links hold.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff
         DESTINATION share/doc/polemcl COMPONENT doc EXCLUDE_FROM_ALL)
-install(DIRECTORY share/doc share/examples share/reports share/figures
+install(DIRECTORY share/doc share/examples share/reports share/figures share/ros
         DESTINATION share/doc/polemcl/share COMPONENT doc EXCLUDE_FROM_ALL
-        PATTERN live.sh EXCLUDE)
+        PATTERN live.sh EXCLUDE PATTERN try.sh EXCLUDE)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_VERBATIM_VARIABLES TRUE)

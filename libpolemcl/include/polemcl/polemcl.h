@@ -4,6 +4,7 @@
 
 #include <polemcl/core.h>
 #include <polemcl/io/data/Cloud.h>
+#include <polemcl/io/rosbag/PackedCloud.h>
 #include <polemcl/localizer/Localizer.h>
 #include <polemcl/localizer/MapBuilder.h>
 #include <polemcl/localizer/Settings.h>

@@ -143,6 +143,126 @@ TEST_F(StreetTest, PointsBecomePoses) {
   }
 }
 
+namespace {
+
+/// A drive along the street of writeStreet() with odometry that comes by itself.
+class OdometryTest : public StreetTest {
+ protected:
+  static constexpr std::size_t number = 12;
+  OdometryTest() {
+    writeStreet(folder / "in", number);
+    import("in");
+    const Outcome mapped =
+        runProgram(mapMain, {"build", "--config", config(), "--input", at("in.rawlog"), "--truth",
+                             at("in.tum"), "--output", at("map.polemap")});
+    EXPECT_EQ(mapped.code, 0) << mapped.err;
+  }
+  Localizer started() const {
+    Localizer localizer(Settings(config()), folder / "map.polemap");
+    EXPECT_FALSE(localizer.isStarted());
+    localizer.start({0, 0, 0}, 0.5, 0.1);
+    EXPECT_TRUE(localizer.isStarted());
+    return localizer;
+  }
+  static double timeOf(std::size_t i) { return 50 + 0.2 * static_cast<double>(i); }
+  /// What the odometry says at a scan: the truth in a frame of its own.
+  static OdometryReading readingAt(std::size_t i) {
+    const double yaw = 0.05 * std::sin(0.7 * static_cast<double>(i));
+    OdometryReading reading;
+    reading.time = timeOf(i);
+    reading.pose = compose(pose_odometry_map, {static_cast<double>(i), 0, yaw});
+    return reading;
+  }
+  /// Between two scans, where the odometry interpolated between them is anyway.
+  static OdometryReading readingAfter(std::size_t i) {
+    const Pose2D before = readingAt(i).pose, step = relative(before, readingAt(i + 1).pose);
+    OdometryReading reading;
+    reading.time = timeOf(i) + 0.1;
+    reading.pose = compose(before, {step.x / 2, step.y / 2, step.yaw / 2});
+    return reading;
+  }
+  io::Cloud cloud(std::size_t i) const {
+    return io::readKittiBin(folder / "in" / "velodyne" / scanName(i));
+  }
+  LocalizationUpdate step(Localizer& localizer, std::size_t i) const {
+    return localizer.step(timeOf(i), cloud(i).view(), Eigen::Isometry3d::Identity());
+  }
+  static constexpr Pose2D pose_odometry_map{30, -20, 1};
+};
+
+}  // namespace
+
+TEST_F(OdometryTest, MayComeAtOtherTimesThanTheScans) {
+  Localizer own = started(), known = started();
+  for (std::size_t i = 0; i < number; ++i) {
+    EXPECT_FALSE(own.hasOdometry(timeOf(i)));
+    own.addOdometry(readingAt(i));
+    EXPECT_TRUE(own.hasOdometry(timeOf(i)));
+    own.addOdometry(readingAfter(i));
+    OdometryReading late = readingAt(0);  // left out
+    own.addOdometry(late);
+    const auto update = step(own, i);
+    const auto expected = known.step(timeOf(i), cloud(i).view(), readingAt(i).pose);
+    ASSERT_TRUE(update.estimate);
+    EXPECT_EQ(update.estimate->mean.x, expected.estimate->mean.x) << i;
+    EXPECT_EQ(update.estimate->mean.yaw, expected.estimate->mean.yaw) << i;
+    const Pose2D robot = compose(*own.odometryFrame(), readingAt(i).pose);
+    EXPECT_NEAR(robot.x, update.estimate->mean.x, 1e-9);
+    EXPECT_NEAR(robot.y, update.estimate->mean.y, 1e-9);
+    EXPECT_NEAR(robot.yaw, update.estimate->mean.yaw, 1e-9);
+  }
+}
+
+TEST_F(OdometryTest, ItsCovarianceIsThatOfARawlog) {
+  Localizer own = started(), player = started();
+  std::vector<PoseWithCovariance> expected;
+  player.play(at("in.rawlog"), [&](const auto& update) { expected.push_back(*update.estimate); });
+  ASSERT_EQ(expected.size(), number);
+  for (std::size_t i = 0; i < number; ++i) {
+    OdometryReading reading = readingAt(i);  // sigmas of writeStreet() without those that are added
+    const Eigen::Vector3d variances(4e-4 - 1e-6, 1e-4 - 1e-6, 9e-6 - 1e-8);
+    reading.velocityCovariance = (variances / (0.2 * 0.2)).asDiagonal();
+    own.addOdometry(reading);
+    const auto update = step(own, i);
+    EXPECT_NEAR(update.estimate->mean.x, expected[i].mean.x, 1e-6) << i;
+    EXPECT_NEAR(update.estimate->mean.y, expected[i].mean.y, 1e-6) << i;
+    EXPECT_NEAR(update.estimate->covariance(0, 0), expected[i].covariance(0, 0), 1e-8) << i;
+  }
+}
+
+TEST_F(OdometryTest, AMountedLidarSeesTheSamePoles) {
+  Localizer own = started(), straight = started();
+  Eigen::Isometry3d T_robot_lidar(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  T_robot_lidar.translation() = Eigen::Vector3d(2, 0.5, 0);
+  for (std::size_t i = 0; i < number; ++i) {
+    own.addOdometry(readingAt(i));
+    straight.addOdometry(readingAt(i));
+    // The robot whose LiDAR this is stands 2 m behind and 0.5 m to the right of the other.
+    io::Cloud turned = cloud(i);
+    turned.x.swap(turned.y);
+    for (float& y : turned.y) y = -y;
+    const auto update = own.step(timeOf(i), turned.view(), T_robot_lidar);
+    step(straight, i);
+    ASSERT_EQ(own.poles().size(), straight.poles().size());
+    EXPECT_EQ(update.poles, own.poles().size());
+    for (const PoleDetection& pole : straight.poles()) {
+      double nearest = 1;
+      for (const PoleDetection& other : own.poles())
+        nearest = std::min(nearest, std::hypot(other.x - pole.x - 2, other.y - pole.y - 0.5));
+      EXPECT_LT(nearest, 0.05) << pole.x << ' ' << pole.y;
+    }
+  }
+}
+
+TEST_F(OdometryTest, SaysWhatIsMissing) {
+  Localizer own = started();
+  EXPECT_HAS(messageOf([&] { step(own, 0); }), "no odometry within 0.5 s of the scan at 50.000 s");
+  OdometryReading wrong;
+  wrong.pose.x = NAN;
+  EXPECT_HAS(messageOf([&] { own.addOdometry(wrong); }), "must be finite");
+  EXPECT_FALSE(own.odometryFrame());
+}
+
 TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   constexpr std::size_t number = 12;
   writeStreet(folder / "in", number);

@@ -19,6 +19,15 @@ TEST(MotionSteps, ComposesStepsInProportion) {
   EXPECT_FALSE(steps.covarianceBetween(12, 14.1));
 }
 
+TEST(MotionSteps, ForgetsWhatEnded) {
+  MotionSteps steps;
+  for (const double begin : {0, 1, 2})
+    steps.add(begin, begin + 1, {{}, Eigen::Matrix3d::Identity()});
+  steps.forgetBefore(1.5);
+  EXPECT_FALSE(steps.covarianceBetween(0, 1));
+  EXPECT_TRUE(steps.covarianceBetween(1, 3)->isApprox(2 * Eigen::Matrix3d::Identity()));
+}
+
 TEST(MotionSteps, TurnsMoveTheEnd) {
   MotionSteps steps;
   steps.add(0, 1, {{0, 0, 0}, Eigen::Vector3d(0, 0, 0.01).asDiagonal()});

@@ -88,6 +88,16 @@ TEST(PointTimes, SaysWhyNothingIsFound) {
   expectNone({turn(1, 0, 4000)}, "far from the stamps");
 }
 
+TEST(PointTimes, AreToldOfScansInHand) {
+  const std::vector<TimedCloud> scans(5, turn(1, 0, 0));
+  const auto timing = timingOf(scans);
+  ASSERT_TRUE(timing);
+  EXPECT_EQ(timing->turn, Turn::counterclockwise);
+  EXPECT_NEAR(timing->seconds, 0.1, 0.001);
+  EXPECT_FALSE(timingOf({}));
+  EXPECT_FALSE(timingOf({TimedCloud{scans[0].cloud, {}}}));
+}
+
 TEST(PointTimes, PartialScansAreNotUsed) {
   RosCloud half = turn(1, 0, 0);
   for (auto* values : {&half.cloud.x, &half.cloud.y, &half.cloud.z, &half.cloud.intensity})

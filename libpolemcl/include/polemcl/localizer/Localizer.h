@@ -2,6 +2,8 @@
 /// \file Localizer.h
 /// \brief From scans and odometry to poses on a map of poles: what a run of pole-localize does.
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -12,6 +14,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include <polemcl/core/localization/LocalizationUpdate.h>
+#include <polemcl/core/sensor/SensorOptions.h>
 #include <polemcl/localizer/Settings.h>
 
 namespace mrpt::obs {
@@ -22,6 +25,16 @@ namespace polemcl {
 
 class LocalizationPipeline;  // private to the library
 struct LocalizationMap;      // private to the library
+
+/// \brief What odometry says at one time.
+struct OdometryReading {
+  double time = 0;                        ///< s
+  Pose2D pose;                            ///< of the robot in the frame of the odometry, m and rad
+  std::optional<Velocity> velocity = {};  ///< used at the first scan: no motion leads to it
+  /// Covariance of (vx, vy, yaw rate), m²/s², m·rad/s², rad²/s², with errors that are independent
+  /// from reading to reading. None, zero or negative: `[motion]` says how exact motions are.
+  std::optional<Eigen::Matrix3d> velocityCovariance = {};
+};
 
 /// \brief Localizes one drive. \code
 ///   Localizer localizer(Settings("hdl32e.ini"), "street.polemap");
@@ -53,6 +66,8 @@ class POLEMCL_EXPORT Localizer {
   /// `radius` from x, y on the map are not considered until a pose is known, m.
   /// \throws Error on values that are not finite, or far from every pole of the map.
   void startWithin(double x, double y, double radius);
+  /// \brief False until one of these, or where `[start]` says where.
+  bool isStarted() const;
 
   /// \brief The next scan.
   /// \param time s, greater than that of the scan before.
@@ -73,6 +88,26 @@ class POLEMCL_EXPORT Localizer {
 
   /// \brief The same from poles with a motion whose covariance is known, of one or several LiDARs.
   LocalizationUpdate step(const PoleScan& frame);
+
+  /// \name Where scans and odometry come by themselves, as from sensors
+  /// @{
+  /// \brief A reading of the odometry, at any rate. One that is not later than the one before is
+  /// left out. \throws Error when it is not finite.
+  void addOdometry(const OdometryReading& reading);
+  /// \brief Whether there is odometry at `time` or later: the scan of that time can be taken.
+  bool hasOdometry(double time) const;
+  /// \brief What the recording says of the measuring times of the points, see io::timingOf(); used
+  /// if `[sensor] turn = auto`.
+  void setRecordedTiming(const ScanTiming& timing);
+  /// \brief The next scan; its motion is that of the odometry, interpolated at its time.
+  /// \param T_robot_lidar Pose of the frame of the points in the robot's, m.
+  /// \throws Error as step() above, and without odometry within 0.5 s of the scan.
+  LocalizationUpdate step(double time, const PointsView& points,
+                          const Eigen::Isometry3d& T_robot_lidar);
+  /// \brief Pose of the frame of the odometry in that of the map at the last scan (ROS: `map` to
+  /// `odom`); nullopt if that scan gave no estimate.
+  std::optional<Pose2D> odometryFrame() const;
+  /// @}
 
   /// \brief All scans of a rawlog of scans or poles with odometry; several LiDARs are fused.
   /// \param consume Gets what each scan brings, from changing threads, one call at a time.

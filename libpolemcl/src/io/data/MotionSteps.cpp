@@ -16,6 +16,12 @@ void MotionSteps::add(double begin, double end, const PoseWithCovariance& motion
   m_steps.push_back({begin, end, motion});
 }
 
+void MotionSteps::forgetBefore(double time) {
+  const auto kept = std::find_if(m_steps.begin(), m_steps.end(),
+                                 [time](const Step& step) { return step.end > time; });
+  m_steps.erase(m_steps.begin(), kept);
+}
+
 std::optional<Eigen::Matrix3d> MotionSteps::covarianceBetween(double begin, double end) const {
   auto step = std::upper_bound(m_steps.begin(), m_steps.end(), begin,
                                [](double time, const Step& s) { return time < s.end; });

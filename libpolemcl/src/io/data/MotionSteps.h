@@ -17,6 +17,9 @@ class MotionSteps {
   /// there may be gaps.
   void add(double begin, double end, const PoseWithCovariance& motion);
 
+  /// \brief Drops steps that ended by `time`, s.
+  void forgetBefore(double time);
+
   /// \brief Covariance of (x, y, yaw) of the motion between two times: those of the steps,
   /// composed. A step that lies only partly in the interval contributes in proportion. Gaps count
   /// as the rest of the interval does. \return Nothing if steps cover less than half of the

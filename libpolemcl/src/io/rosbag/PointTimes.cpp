@@ -26,7 +26,7 @@ struct TimedPoints {
   std::vector<double> times, azimuths;  ///< s since the stamp; rad
 };
 
-TimedPoints sampled(const RosCloud& scan) {
+TimedPoints sampled(const TimedCloud& scan) {
   TimedPoints result;
   const std::size_t step = 1 + scan.offsets.size() / kSampledPoints;
   for (std::size_t i = 0; i < scan.offsets.size(); i += step) {
@@ -102,7 +102,7 @@ double medianOf(const std::vector<double>& values) {
 
 }  // namespace
 
-std::optional<TimingEstimate::Fit> TimingEstimate::fit(const RosCloud& scan) {
+std::optional<TimingEstimate::Fit> TimingEstimate::fit(const TimedCloud& scan) {
   TimedPoints samples = sampled(scan);
   const double begin = *quantile(scan.offsets, kTails), end = *quantile(scan.offsets, 1 - kTails);
   const double middle = (begin + end) / 2;  // sums of large times would lose digits
@@ -120,7 +120,7 @@ std::optional<TimingEstimate::Fit> TimingEstimate::fit(const RosCloud& scan) {
   return Fit{rate, atMiddle - rate * middle, middle};
 }
 
-void TimingEstimate::add(const RosCloud& scan) {
+void TimingEstimate::add(const TimedCloud& scan) {
   ++m_scans;
   const auto [first, last] = std::minmax_element(scan.offsets.begin(), scan.offsets.end());
   if (scan.offsets.empty() || *first == *last) {
@@ -187,6 +187,13 @@ std::string TimingEstimate::note() const {
   return "times of the points: turns of " + significant(found.seconds, 4) + " s, " + name +
          ", cut at " + significant(found.cut / degree, 4) + " deg, stamped at " +
          significant(found.stamp, 3) + " of the turn";
+}
+
+std::optional<ScanTiming> timingOf(const std::vector<TimedCloud>& scans) {
+  TimingEstimate estimate;
+  for (const TimedCloud& scan : scans) estimate.add(scan);
+  const ScanTiming timing = estimate.timing();
+  return timing.known() ? std::optional(timing) : std::nullopt;
 }
 
 }  // namespace polemcl::io

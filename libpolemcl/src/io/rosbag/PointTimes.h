@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polemcl/core/sensor/SensorOptions.h>
-#include "io/rosbag/PointCloud2.h"
+#include <polemcl/io/rosbag/PackedCloud.h>
 
 namespace polemcl::io {
 
@@ -20,7 +20,7 @@ class TimingEstimate {
  public:
   /// \brief Takes a scan into account if it is a full turn: points in three quarters of all
   /// directions.
-  void add(const RosCloud& scan);
+  void add(const TimedCloud& scan);
   /// \brief Whether no more scans are needed.
   bool complete() const;
 
@@ -36,7 +36,7 @@ class TimingEstimate {
     double atStamp = 0;  ///< azimuth at the time stamp, rad
     double middle = 0;   ///< from the stamp to the middle of the turn, s
   };
-  static std::optional<Fit> fit(const RosCloud& scan);
+  static std::optional<Fit> fit(const TimedCloud& scan);
   std::string problem() const;
 
   std::vector<Fit> m_fits;

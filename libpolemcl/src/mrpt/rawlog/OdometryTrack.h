@@ -37,6 +37,8 @@ class OdometryTrack {
   }
   /// \brief Pose interpolated between the readings around `time`; nullopt beyond `reach`.
   std::optional<Pose2D> at(double time) const;
+  /// \brief A pose of at() as the readings since the last jump state it.
+  Pose2D asRead(const Pose2D& pose) const { return relative(m_origin, pose); }
   /// \brief Drops readings that are not needed for poses at `time` or later.
   void forgetBefore(double time);
 

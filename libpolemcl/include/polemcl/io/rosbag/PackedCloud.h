@@ -1,0 +1,60 @@
+#pragma once
+/// \file PackedCloud.h
+/// \brief Clouds as ROS packs them, unpacked without ROS.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <polemcl/core/sensor/SensorOptions.h>
+#include <polemcl/export.h>
+#include <polemcl/io/data/Cloud.h>
+
+namespace polemcl::io {
+
+/// \brief A value of each point, as sensor_msgs/msg/PointField states it.
+struct PackedField {
+  std::string name;
+  std::size_t offset = 0;  ///< in its point, bytes
+  std::uint8_t type = 7;   ///< 1 to 8, as PointField numbers its types; 7: float32
+};
+
+/// \brief The content of a sensor_msgs/msg/PointCloud2; its bytes are borrowed.
+struct PackedCloud {
+  double stamp = 0;                          ///< time of the header, s
+  std::size_t rows = 0, columns = 0;         ///< height and width
+  std::size_t pointBytes = 0, rowBytes = 0;  ///< from one point, one row to the next
+  bool bigEndian = false;
+  std::vector<PackedField> fields;
+  std::string_view data;
+};
+
+/// \brief A cloud with the times of its points.
+struct TimedCloud {
+  Cloud cloud;
+  /// Time from the stamp to each point of `cloud`, s; empty if the points have no times.
+  std::vector<double> offsets;
+};
+
+/// \brief Unpacks a cloud.
+///
+/// Points need the fields x, y and z (float32); `intensity` may be of any type, and is 0 where it
+/// is missing. Times are in the first of the fields `t`, `time`, `timestamp`, `time_stamp` and
+/// `offset_time` that is there: uint32 in ns, float32 or float64 in s, since the stamp. A float64
+/// is a time since 1970 if it is above 1e8 s, in ns if it is above 1e17. Other fields are not read.
+/// Invalid points are dropped and counted as in readKittiBin().
+/// \param withTimes Whether to read the times. \param where Prefix of error messages.
+/// \throws Error when the sizes contradict each other, a field has another type or lies outside its
+///         point, or a time is not finite.
+POLEMCL_EXPORT TimedCloud unpack(const PackedCloud& packed, const std::string& where,
+                                 bool withTimes);
+
+/// \brief How the LiDAR turns, from the times that the points of its scans have.
+/// \param scans The first of a drive; five full turns are enough.
+/// \return Nothing if they do not tell.
+POLEMCL_EXPORT std::optional<ScanTiming> timingOf(const std::vector<TimedCloud>& scans);
+
+}  // namespace polemcl::io

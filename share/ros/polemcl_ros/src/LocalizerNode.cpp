@@ -1,0 +1,285 @@
+#include "LocalizerNode.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <rclcpp_components/register_node_macro.hpp>
+#include <sstream>
+#include <utility>
+
+#include "Messages.h"
+
+namespace polemcl_ros {
+namespace {
+
+/// Scans that wait for odometry; one more drops the oldest.
+constexpr std::size_t kMostWaiting = 5;
+/// Scans from which the turn of the LiDAR is learnt.
+constexpr std::size_t kTimingScans = 5;
+constexpr int kWarningEvery = 5000;  // ms
+
+/// Parameters of the INI file have names that nobody can declare beforehand.
+rclcpp::NodeOptions withAllParameters(rclcpp::NodeOptions options) {
+  return options.automatically_declare_parameters_from_overrides(true);
+}
+
+/// The value as an INI file has it.
+std::string textOf(const rclcpp::Parameter& parameter) {
+  std::ostringstream text;
+  text.precision(17);
+  if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE)
+    text << parameter.as_double();
+  else if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE_ARRAY)
+    for (const double value : parameter.as_double_array()) text << value << ' ';
+  else
+    text << parameter.value_to_string();
+  return text.str();
+}
+
+/// Twice the standard deviation along the worst axis, m; none if the covariance says nothing.
+std::optional<double> radiusOf(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance.topLeftCorner<2, 2>());
+  const double variance = axes.eigenvalues().maxCoeff();
+  return variance > 0 ? std::optional(2 * std::sqrt(variance)) : std::nullopt;
+}
+
+std::optional<double> headingOf(const Eigen::Matrix3d& covariance) {
+  const double variance = covariance(2, 2);
+  return variance > 0 ? std::optional(std::min(M_PI, 2 * std::sqrt(variance))) : std::nullopt;
+}
+
+rclcpp::SubscriptionOptions adjustable() {
+  rclcpp::SubscriptionOptions options;
+  options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
+  return options;
+}
+
+}  // namespace
+
+LocalizerNode::LocalizerNode(const rclcpp::NodeOptions& options)
+    : LifecycleNode("polemcl", withAllParameters(options)) {
+  const auto declare = [&](const char* name, auto value) {
+    if (!has_parameter(name)) declare_parameter(name, value);
+  };
+  declare("settings", std::string());
+  declare("map", std::string());
+  declare("map_frame", std::string("map"));
+  declare("transform_tolerance_s", 0.1);
+}
+
+std::vector<std::string> LocalizerNode::assignments() const {
+  std::vector<std::string> result;
+  for (const std::string& name : list_parameters({}, 0).names) {
+    const bool isOfRos = name.find('.') == std::string::npos || name.rfind("qos_overrides", 0) == 0;
+    if (!isOfRos) result.push_back(name + "=" + textOf(get_parameter(name)));
+  }
+  return result;
+}
+
+LocalizerNode::CallbackReturn LocalizerNode::on_configure(const rclcpp_lifecycle::State&) {
+  try {
+    setUp();
+  } catch (const std::exception& error) {
+    RCLCPP_ERROR(get_logger(), "%s", error.what());
+    release();
+    return CallbackReturn::FAILURE;
+  }
+  return CallbackReturn::SUCCESS;
+}
+
+void LocalizerNode::setUp() {
+  const std::string file = get_parameter("settings").as_string();
+  const std::string map = get_parameter("map").as_string();
+  if (file.empty() || map.empty())
+    throw polemcl::Error(
+        "the parameters settings and map must name an INI file and a map of poles (.polemap)");
+  m_localizer.emplace(polemcl::Settings(file, assignments()), map);
+  if (!m_localizer->isStarted()) m_localizer->startAnywhere();
+  m_mapFrame = get_parameter("map_frame").as_string();
+  const rclcpp::Parameter tolerance = get_parameter("transform_tolerance_s");
+  const bool isWhole = tolerance.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER;
+  m_tolerance = isWhole ? static_cast<double>(tolerance.as_int()) : tolerance.as_double();
+  advertise();
+  std_msgs::msg::Header header;
+  header.frame_id = m_mapFrame;
+  header.stamp = now();
+  polemcl::CPoleMap poles;
+  poles.loadFromPoleMapFile(map);
+  m_mapPoles->on_activate();  // kept for whoever comes later
+  m_mapPoles->publish(markersOf(poles.poles(), header));
+}
+
+void LocalizerNode::advertise() {
+  m_transforms = std::make_unique<tf2_ros::Buffer>(get_clock());
+  m_listener = std::make_unique<tf2_ros::TransformListener>(*m_transforms, this, false);
+  m_broadcaster = std::make_unique<tf2_ros::TransformBroadcaster>(*this);
+  m_pose = create_publisher<StartPose>("~/pose", 10);
+  m_diagnostics = create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 10);
+  m_poles = create_publisher<visualization_msgs::msg::MarkerArray>("~/poles", 10);
+  m_mapPoles = create_publisher<visualization_msgs::msg::MarkerArray>(
+      "~/map_poles", rclcpp::QoS(1).transient_local());
+}
+
+void LocalizerNode::subscribe() {
+  m_clouds = create_subscription<Cloud>(
+      "points", rclcpp::SensorDataQoS(),
+      [this](const Cloud::ConstSharedPtr& cloud) { take(cloud); }, adjustable());
+  m_odometry = create_subscription<Odometry>(
+      "odom", rclcpp::SensorDataQoS().keep_last(100),
+      [this](const Odometry& odometry) { take(odometry); }, adjustable());
+  m_starts = create_subscription<StartPose>("initialpose", 1,
+                                            [this](const StartPose& start) { take(start); });
+  m_search = create_service<Trigger>("~/global_search",
+                                     [this](const std::shared_ptr<Trigger::Request> request,
+                                            std::shared_ptr<Trigger::Response> response) {
+                                       searchEverywhere(*request, *response);
+                                     });
+}
+
+LocalizerNode::CallbackReturn LocalizerNode::on_activate(const rclcpp_lifecycle::State& state) {
+  subscribe();
+  return LifecycleNode::on_activate(state);  // and the publishers
+}
+
+LocalizerNode::CallbackReturn LocalizerNode::on_deactivate(const rclcpp_lifecycle::State& state) {
+  m_clouds.reset();
+  m_odometry.reset();
+  m_starts.reset();
+  m_search.reset();
+  m_waiting.clear();
+  return LifecycleNode::on_deactivate(state);
+}
+
+LocalizerNode::CallbackReturn LocalizerNode::on_cleanup(const rclcpp_lifecycle::State&) {
+  release();
+  return CallbackReturn::SUCCESS;
+}
+
+LocalizerNode::CallbackReturn LocalizerNode::on_shutdown(const rclcpp_lifecycle::State&) {
+  release();
+  return CallbackReturn::SUCCESS;
+}
+
+void LocalizerNode::release() {
+  m_clouds.reset();
+  m_odometry.reset();
+  m_starts.reset();
+  m_search.reset();
+  m_pose.reset();
+  m_diagnostics.reset();
+  m_poles.reset();
+  m_mapPoles.reset();
+  m_broadcaster.reset();
+  m_listener.reset();
+  m_transforms.reset();
+  m_waiting.clear();
+  m_firstScans.clear();
+  m_timingIsKnown = false;
+  m_localizer.reset();
+}
+
+void LocalizerNode::take(const Cloud::ConstSharedPtr& cloud) {
+  m_waiting.push_back(cloud);
+  if (m_waiting.size() > kMostWaiting) {
+    m_waiting.pop_front();
+    RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), kWarningEvery,
+                         "a scan is dropped: no odometry of its time came, or no transform from %s "
+                         "to %s",
+                         cloud->header.frame_id.c_str(), m_robotFrame.c_str());
+  }
+  localizeWaiting();
+}
+
+void LocalizerNode::take(const Odometry& odometry) {
+  m_odometryFrame = odometry.header.frame_id;
+  m_robotFrame = odometry.child_frame_id;
+  try {
+    m_localizer->addOdometry(readingOf(odometry));
+  } catch (const polemcl::Error& error) {
+    RCLCPP_ERROR_THROTTLE(get_logger(), *get_clock(), kWarningEvery, "%s", error.what());
+  }
+  localizeWaiting();
+}
+
+void LocalizerNode::take(const StartPose& start) {
+  if (start.header.frame_id != m_mapFrame) {
+    RCLCPP_ERROR(get_logger(), "initialpose is in the frame %s: %s is allowed",
+                 start.header.frame_id.c_str(), m_mapFrame.c_str());
+    return;
+  }
+  const polemcl::PoseWithCovariance guess = guessOf(start);
+  try {
+    m_localizer->start(guess.mean, radiusOf(guess.covariance), headingOf(guess.covariance));
+  } catch (const polemcl::Error& error) {
+    RCLCPP_ERROR(get_logger(), "initialpose: %s", error.what());
+  }
+}
+
+void LocalizerNode::searchEverywhere(const Trigger::Request&, Trigger::Response& response) {
+  m_localizer->startAnywhere();
+  response.success = true;
+  response.message = "the poles of the next metres tell the pose";
+}
+
+void LocalizerNode::localizeWaiting() {
+  while (!m_waiting.empty()) {
+    const Cloud::ConstSharedPtr cloud = m_waiting.front();
+    if (!m_localizer->hasOdometry(secondsOf(cloud->header.stamp))) return;
+    const auto T_robot_lidar = poseOnRobot(cloud->header);
+    if (!T_robot_lidar) return;
+    m_waiting.pop_front();
+    try {
+      localize(*cloud, *T_robot_lidar);
+    } catch (const polemcl::Error& error) {
+      RCLCPP_ERROR_THROTTLE(get_logger(), *get_clock(), kWarningEvery, "%s", error.what());
+      m_diagnostics->publish(failureOf(error.what(), cloud->header));
+    }
+  }
+}
+
+std::optional<Eigen::Isometry3d> LocalizerNode::poseOnRobot(
+    const std_msgs::msg::Header& lidar) const {
+  if (lidar.frame_id == m_robotFrame) return Eigen::Isometry3d::Identity();
+  const tf2::TimePoint time = tf2_ros::fromMsg(lidar.stamp);
+  if (!m_transforms->canTransform(m_robotFrame, lidar.frame_id, time)) return std::nullopt;
+  return isometryOf(m_transforms->lookupTransform(m_robotFrame, lidar.frame_id, time).transform);
+}
+
+void LocalizerNode::localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar) {
+  const std::string where = std::string(m_clouds->get_topic_name()) + ": ";
+  polemcl::io::TimedCloud scan = polemcl::io::unpack(packedOf(cloud), where, !m_timingIsKnown);
+  const auto update =
+      m_localizer->step(secondsOf(cloud.header.stamp), scan.cloud.view(), T_robot_lidar);
+  publish(update, cloud.header);
+  if (!m_timingIsKnown) learnTiming(std::move(scan));
+}
+
+void LocalizerNode::learnTiming(polemcl::io::TimedCloud cloud) {
+  m_firstScans.push_back(std::move(cloud));
+  m_timingIsKnown = m_firstScans.size() == kTimingScans;
+  if (!m_timingIsKnown) return;
+  if (const auto timing = polemcl::io::timingOf(m_firstScans))
+    m_localizer->setRecordedTiming(*timing);
+  m_firstScans.clear();
+}
+
+void LocalizerNode::publish(const polemcl::LocalizationUpdate& update,
+                            const std_msgs::msg::Header& lidar) {
+  std_msgs::msg::Header header;
+  header.stamp = lidar.stamp;
+  header.frame_id = m_robotFrame;
+  m_poles->publish(markersOf(m_localizer->poles(), header));
+  header.frame_id = m_mapFrame;
+  m_diagnostics->publish(diagnosticsOf(update, header, lidar.frame_id));
+  if (!update.estimate) return;
+  geometry_msgs::msg::TransformStamped transform;
+  transform.header.stamp = rclcpp::Time(lidar.stamp) + rclcpp::Duration::from_seconds(m_tolerance);
+  transform.header.frame_id = m_mapFrame;
+  transform.child_frame_id = m_odometryFrame;
+  transform.transform = transformOf(*m_localizer->odometryFrame());
+  m_broadcaster->sendTransform(transform);
+  m_pose->publish(poseMessage(header, *update.estimate));
+}
+
+}  // namespace polemcl_ros
+
+RCLCPP_COMPONENTS_REGISTER_NODE(polemcl_ros::LocalizerNode)

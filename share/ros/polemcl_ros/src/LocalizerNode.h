@@ -1,0 +1,86 @@
+#pragma once
+/// \file LocalizerNode.h
+/// \brief polemcl::Localizer as a lifecycle node: clouds and odometry in, pose and transform out.
+
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <deque>
+#include <diagnostic_msgs/msg/diagnostic_array.hpp>
+#include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
+#include <memory>
+#include <nav_msgs/msg/odometry.hpp>
+#include <optional>
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+#include <rclcpp_lifecycle/lifecycle_publisher.hpp>
+#include <sensor_msgs/msg/point_cloud2.hpp>
+#include <std_srvs/srv/trigger.hpp>
+#include <string>
+#include <vector>
+#include <visualization_msgs/msg/marker_array.hpp>
+
+#include <polemcl/polemcl.h>
+
+namespace polemcl_ros {
+
+/// \brief The node. share/doc/ros.md lists topics, parameters and frames.
+///
+/// All callbacks are of one group: none runs beside another.
+class LocalizerNode : public rclcpp_lifecycle::LifecycleNode {
+ public:
+  explicit LocalizerNode(const rclcpp::NodeOptions& options);
+
+  CallbackReturn on_configure(const rclcpp_lifecycle::State&) override;
+  CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override;
+  CallbackReturn on_deactivate(const rclcpp_lifecycle::State& state) override;
+  CallbackReturn on_cleanup(const rclcpp_lifecycle::State&) override;
+  CallbackReturn on_shutdown(const rclcpp_lifecycle::State&) override;
+
+ private:
+  using Cloud = sensor_msgs::msg::PointCloud2;
+  using Odometry = nav_msgs::msg::Odometry;
+  using StartPose = geometry_msgs::msg::PoseWithCovarianceStamped;
+  using Trigger = std_srvs::srv::Trigger;
+
+  void setUp();
+  void release();
+  void advertise();
+  void subscribe();
+  /// \brief The parameters that are keys of the INI file, as `section.key=value`.
+  std::vector<std::string> assignments() const;
+
+  void take(const Cloud::ConstSharedPtr& cloud);
+  void take(const Odometry& odometry);
+  void take(const StartPose& start);
+  void searchEverywhere(const Trigger::Request& request, Trigger::Response& response);
+
+  /// \brief Localizes the scans whose odometry and sensor pose are there.
+  void localizeWaiting();
+  std::optional<Eigen::Isometry3d> poseOnRobot(const std_msgs::msg::Header& lidar) const;
+  void localize(const Cloud& cloud, const Eigen::Isometry3d& T_robot_lidar);
+  void learnTiming(polemcl::io::TimedCloud cloud);
+  void publish(const polemcl::LocalizationUpdate& update, const std_msgs::msg::Header& lidar);
+
+  std::optional<polemcl::Localizer> m_localizer;
+  std::string m_mapFrame, m_odometryFrame, m_robotFrame;
+  double m_tolerance = 0;  ///< for which the transform is valid after its scan, s
+  std::deque<Cloud::ConstSharedPtr> m_waiting;        ///< for odometry of their time
+  std::vector<polemcl::io::TimedCloud> m_firstScans;  ///< until they told how the LiDAR turns
+  bool m_timingIsKnown = false;
+
+  std::unique_ptr<tf2_ros::Buffer> m_transforms;
+  std::unique_ptr<tf2_ros::TransformListener> m_listener;
+  std::unique_ptr<tf2_ros::TransformBroadcaster> m_broadcaster;
+  rclcpp::Subscription<Cloud>::SharedPtr m_clouds;
+  rclcpp::Subscription<Odometry>::SharedPtr m_odometry;
+  rclcpp::Subscription<StartPose>::SharedPtr m_starts;
+  rclcpp::Service<Trigger>::SharedPtr m_search;
+  template <class Message>
+  using Publisher = std::shared_ptr<rclcpp_lifecycle::LifecyclePublisher<Message>>;
+  Publisher<StartPose> m_pose;
+  Publisher<diagnostic_msgs::msg::DiagnosticArray> m_diagnostics;
+  Publisher<visualization_msgs::msg::MarkerArray> m_poles, m_mapPoles;
+};
+
+}  // namespace polemcl_ros
