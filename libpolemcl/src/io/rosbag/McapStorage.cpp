@@ -216,10 +216,11 @@ void McapStorage::listTopics() {
     if (!schema.encoding.empty() && schema.encoding != "ros2msg" && schema.encoding != "ros2idl")
       throw Error(m_file.where() + channel.topic + ": a schema in " + schema.encoding +
                   "; ros2msg and ros2idl are allowed: record it with ROS 2");
-    auto topic = std::find_if(m_topics.begin(), m_topics.end(), [&](const StoredTopic& other) {
+    const auto isOf = [&channel = channel, &schema](const StoredTopic& other) {
       return other.name == channel.topic && other.type == schema.name &&
              other.format == channel.format;
-    });
+    };
+    auto topic = std::find_if(m_topics.begin(), m_topics.end(), isOf);
     if (topic == m_topics.end()) {
       m_topics.push_back({static_cast<std::int64_t>(m_topics.size()) + 1, channel.topic,
                           schema.name, channel.format, 0});
