@@ -4,15 +4,36 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <ctime>
 
 #include "fuzz/Fuzz.h"
 #include "mrpt/live/CUdpOdometry.h"
 #include "mrpt/live/LiveQueue.h"
+#include "mrpt/live/PcapFile.h"
 #include "mrpt/rawlog/PoleSequence.h"
 #include "support/VelodynePackets.h"
+
+namespace {
+
+thread_local bool isReplaying = false;
+
+}  // namespace
+
+/// MRPT's driver waits in a replay as the LiDAR would.
+extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* wait, timespec* left) {
+  if (isReplaying) return 0;
+  return ::syscall(SYS_clock_nanosleep, clock, flags, wait, left) == 0 ? 0 : errno;
+}
+extern "C" int nanosleep(const timespec* wait, timespec* left) {
+  if (isReplaying) return 0;
+  return static_cast<int>(::syscall(SYS_nanosleep, wait, left));
+}
 
 namespace polemcl::fuzz {
 namespace {
@@ -57,9 +78,10 @@ std::vector<std::string> packetSeeds() {
   return {inputFor(0, few), inputFor(0, turn), inputFor(1, few), inputFor(2, few)};
 }
 
-/// A whole file of packets as MRPT's driver reads it, without the waits of a replay.
+/// A whole file of packets as MRPT's driver reads it.
 void readPcap(std::string_view bytes) {
   const std::string file = fileOf("a.pcap", bytes).string();
+  requireEthernetPcap(file);
   mrpt::config::CConfigFileMemory config;
   config.write("lidar", "model", "VLP16");
   config.write("lidar", "pcap_input", file);
@@ -70,6 +92,7 @@ void readPcap(std::string_view bytes) {
   scanner.setPCAPVerbosity(false);
   CObservationVelodyneScan::Ptr scan;
   mrpt::obs::CObservationGPS::Ptr position;
+  isReplaying = true;
   try {
     scanner.loadConfig(config, "lidar");
     scanner.initialize();
@@ -77,6 +100,7 @@ void readPcap(std::string_view bytes) {
       if (scan) extractor().process(*scan);
   } catch (const std::exception&) {  // SensorThread makes an Error of all that MRPT throws
   }
+  isReplaying = false;
 }
 
 std::vector<std::string> pcapSeeds() {
@@ -124,13 +148,14 @@ void readTimes(std::string_view bytes) {
   LiveQueue queue;
   for (int i = 0; i < 1000 && !numbers.atEnd(); ++i) {
     const bool isScan = numbers.byte() % 2 == 0;
-    const auto nanoseconds = static_cast<std::int64_t>(numbers.real() * 1e6);
+    const double real = numbers.real();  // ticks of 100 ns since 1601
+    const auto ticks = std::abs(real) < 9e18 ? static_cast<std::int64_t>(real) : 0;
     mrpt::obs::CObservation::Ptr one;
     if (isScan)
       one = CObservationPoles::Create();
     else
       one = mrpt::obs::CObservationOdometry::Create();
-    one->timestamp = mrpt::Clock::time_point(mrpt::Clock::duration(nanoseconds));
+    one->timestamp = mrpt::Clock::time_point(mrpt::Clock::duration(ticks));
     queue.push(one);
   }
   queue.end();

@@ -4,7 +4,7 @@
 /// inputs, a folder for each target. A report of a sanitizer, and an exception other than Error,
 /// end it; libFuzzer keeps the input.
 
-#include <mrpt/core/exceptions.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -20,6 +20,7 @@ namespace {
 using polemcl::fuzz::Target;
 
 const Target* chosen = nullptr;
+std::FILE* report = nullptr;  ///< standard error, which libFuzzer closes to silence the readers
 
 const std::vector<Target>& allTargets() {
   using namespace polemcl::fuzz;
@@ -71,6 +72,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     std::fputs("fuzz: --target=NAME must name one of --list\n", stderr);
     std::exit(2);
   }
+  report = fdopen(dup(STDERR_FILENO), "w");
   return 0;
 }
 
@@ -79,7 +81,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     chosen->read({reinterpret_cast<const char*>(bytes), size});
   } catch (const polemcl::Error&) {
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "fuzz: not an Error: %s\n", error.what());
+    std::fprintf(report, "fuzz: not an Error: %s\n", error.what());
+    std::fflush(report);
     std::abort();
   }
   return 0;

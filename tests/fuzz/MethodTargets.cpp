@@ -134,6 +134,7 @@ void localize(std::string_view bytes) {
   static const Settings settings = [] {
     Settings some;
     some.set("filter.particles=50");
+    some.set("start.particles=50");
     return some;
   }();
   Numbers numbers(bytes);

@@ -102,7 +102,8 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   in >> genericMapParams >> insertionOptions.mergeDistance >> insertionOptions.minConfidence;
   auto& l = likelihoodOptions;
   l.model = static_cast<LikelihoodModel>(in.ReadAs<std::uint8_t>());
-  in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
+  in >> l.sigma >> l.outlier >> l.gate;
+  l.weighted = in.ReadAs<std::uint8_t>() != 0;  // any byte: a bool has two values only
   if (version >= 1) in >> l.floor;
   if (version >= 2) {
     in >> l.farOutlier;
