@@ -11,17 +11,16 @@ namespace polemcl::fuzz {
 namespace {
 
 void readMessage(std::string_view bytes) {
-  static const Readers readers{
-      [](auto rest) {
-        io::TimingEstimate timing;
-        timing.add(io::decodeCloud(rest, "cloud: ", true));
-        timing.timing();
-        timing.note();
-      },
-      [](auto rest) { io::decodeOdometry(rest, "odometry: "); },
-      [](auto rest) { io::decodeImu(rest, "imu: "); },
-      [](auto rest) { io::decodeNavSatFix(rest, "fix: "); },
-      [](auto rest) { io::decodeTransforms(rest, "transforms: "); }};
+  static const Readers readers{[](auto rest) {
+                                 io::TimingEstimate timing;
+                                 timing.add(io::decodeCloud(rest, "cloud: ", true));
+                                 timing.timing();
+                                 timing.note();
+                               },
+                               [](auto rest) { io::decodeOdometry(rest, "odometry: "); },
+                               [](auto rest) { io::decodeImu(rest, "imu: "); },
+                               [](auto rest) { io::decodeNavSatFix(rest, "fix: "); },
+                               [](auto rest) { io::decodeTransforms(rest, "transforms: "); }};
   readWithOne(readers, bytes);
 }
 

@@ -80,8 +80,7 @@ void readFolder(std::string_view bytes) {
     return true;
   }();
   if (!prepared || bytes.empty()) return;
-  const Layout& layout =
-      layouts()[static_cast<unsigned char>(bytes.front()) % layouts().size()];
+  const Layout& layout = layouts()[static_cast<unsigned char>(bytes.front()) % layouts().size()];
   const auto texts = pieces(bytes.substr(1), layout.texts.size());
   for (std::size_t i = 0; i < layout.texts.size(); ++i) {
     const std::string name = std::string(layout.folder) + "/" + layout.texts[i];

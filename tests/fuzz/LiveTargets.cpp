@@ -104,7 +104,9 @@ void readPcap(std::string_view bytes) {
 }
 
 std::vector<std::string> pcapSeeds() {
-  const auto pcap = [](std::size_t most) { return testing_apps::pcapFile(streetPackets(most), 2368); };
+  const auto pcap = [](std::size_t most) {
+    return testing_apps::pcapFile(streetPackets(most), 2368);
+  };
   return {pcap(3), pcap(75)};
 }
 
@@ -132,7 +134,8 @@ void readOdometry(std::string_view bytes) {
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<std::uint16_t>(port));
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ::sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  ::sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+           sizeof to);
   sensor.doProcess();
   LiveQueue queue;
   for (const auto& [time, object] : sensor.getObservations())

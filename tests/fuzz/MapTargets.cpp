@@ -1,3 +1,4 @@
+#include "core/mapping/MapSession.h"
 #include "fuzz/Fuzz.h"
 #include "io/file/Npz.h"
 #include "io/map/MapScans.h"
@@ -7,7 +8,6 @@
 #include "map/GeoJson.h"
 #include "map/Inventory.h"
 #include "map/MapFiles.h"
-#include "core/mapping/MapSession.h"
 #include "support/NumpyFiles.h"
 
 namespace polemcl::fuzz {
@@ -62,10 +62,11 @@ void readOsm(std::string_view bytes) {
 }
 
 std::vector<std::string> osmSeeds() {
-  return {R"(<?xml version="1.0"?><osm version="0.6"><node id="1" lat="50.5" lon="7.25"><tag k="highway" v="street_lamp"/></node>
+  return {
+      R"(<?xml version="1.0"?><osm version="0.6"><node id="1" lat="50.5" lon="7.25"><tag k="highway" v="street_lamp"/></node>
 <node id="2" lat="50.6" lon="7.25"/><node id="3" lat="50.6" lon="7.26"/><way id="9"><nd ref="2"/><nd ref="3"/><tag k="type" v="pole"/></way></osm>)",
-          "<!DOCTYPE osm [<!ENTITY a \"b\">]><osm><node id='1' lat='1' lon='2'><tag k='natural' "
-          "v='tree'/><tag k='name' v='&a;&#x20;'/></node></osm>"};
+      "<!DOCTYPE osm [<!ENTITY a \"b\">]><osm><node id='1' lat='1' lon='2'><tag k='natural' "
+      "v='tree'/><tag k='name' v='&a;&#x20;'/></node></osm>"};
 }
 
 }  // namespace

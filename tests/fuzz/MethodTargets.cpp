@@ -1,10 +1,9 @@
-#include <polemcl/core/extraction/PoleExtractor.h>
-#include <polemcl/localizer/Localizer.h>
-#include <polemcl/mrpt/map/CPoleMap.h>
-
 #include <cmath>
 #include <cstring>
 
+#include <polemcl/core/extraction/PoleExtractor.h>
+#include <polemcl/localizer/Localizer.h>
+#include <polemcl/mrpt/map/CPoleMap.h>
 #include "core/global_localization/GlobalLocalizer.h"
 #include "core/localization/LocalSubmap.h"
 #include "core/mapping/DriveAdjustment.h"
@@ -51,8 +50,8 @@ std::string ringsOfPoints() {
     for (int column = 0; column < 60; ++column) {
       const double elevation = (2 * ring - 15) * M_PI / 180, azimuth = column * 0.2 * M_PI / 180;
       const double range = column / 3 == 8 ? 8 : 15;
-      for (const double value : {range * std::cos(azimuth), range * std::sin(azimuth),
-                                 range * std::tan(elevation)}) {
+      for (const double value :
+           {range * std::cos(azimuth), range * std::sin(azimuth), range * std::tan(elevation)}) {
         const auto number = static_cast<float>(value);
         bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
       }

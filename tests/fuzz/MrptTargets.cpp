@@ -1,7 +1,7 @@
 #include <mrpt/core/backtrace.h>
 #include <mrpt/io/CMemoryStream.h>
-#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationGPS.h>
@@ -26,8 +26,8 @@
 #include "support/Samples.h"
 
 /// MRPT notes the stack in each exception, which takes a millisecond.
-void mrpt::callStackBackTrace(TCallStackBackTrace&, const unsigned int, const unsigned int) noexcept {
-}
+void mrpt::callStackBackTrace(TCallStackBackTrace&, const unsigned int,
+                              const unsigned int) noexcept {}
 
 namespace polemcl::fuzz {
 namespace {
@@ -107,9 +107,7 @@ SequenceOptions sequenceOptions() {
 /// All that programs do with a rawlog before they localize.
 void readSequence(std::string_view bytes) {
   static const Readers readers{
-      [](auto) {
-        readPoleSequence((folder() / "a.rawlog").string(), sequenceOptions());
-      },
+      [](auto) { readPoleSequence((folder() / "a.rawlog").string(), sequenceOptions()); },
       [](auto) { readGnssFixes((folder() / "a.rawlog").string(), true); },
       [](auto) { inspectRawlog((folder() / "a.rawlog").string(), true); }};
   if (bytes.empty()) return;

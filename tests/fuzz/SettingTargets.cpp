@@ -13,9 +13,7 @@ namespace {
 
 void readSettings(std::string_view bytes) {
   static const Readers readers{
-      [](auto rest) {
-        apps::settingsFrom(ConfigFile::fromText(std::string(rest), "a.ini"), {});
-      },
+      [](auto rest) { apps::settingsFrom(ConfigFile::fromText(std::string(rest), "a.ini"), {}); },
       [](auto rest) { ConfigFile::read(fileOf("a.ini", rest).string()); },
       [](auto rest) { timingIn(std::string(rest), "a.rawlog"); },
       [](auto rest) { timingInFile(fileOf("a.ini", rest).string()); },
@@ -49,14 +47,14 @@ void readBatch(std::string_view bytes) {
 }
 
 std::vector<std::string> batchSeeds() {
-  return {inputFor(0, made("kitti.ini")),
-          inputFor(0, made("year.ini")),
-          inputFor(1, R"({"format":"polemcl batch plan 2","name":"b","build":"x","files":{"a.ini":"0"},
+  return {
+      inputFor(0, made("kitti.ini")), inputFor(0, made("year.ini")),
+      inputFor(1, R"({"format":"polemcl batch plan 2","name":"b","build":"x","files":{"a.ini":"0"},
 "tasks":[{"id":"poles.a","kind":"poles","needs":[],"commands":[["pole-import","kitti"]],
 "outputs":["poles.rawlog"],"key":"k"}],"cells":[{"setting":"s","session":"a","map":"","own_map":"",
 "score":"","runs":[],"seeds":[1]}]})"),
-          inputFor(2, R"({"a":[1,-2.5e3,null,true,"\u00e4"],"b":{}})"),
-          inputFor(3, made("hdl32e.json"))};
+      inputFor(2, R"({"a":[1,-2.5e3,null,true,"\u00e4"],"b":{}})"),
+      inputFor(3, made("hdl32e.json"))};
 }
 
 }  // namespace

@@ -56,27 +56,29 @@ std::vector<std::string> tableSeeds() {
           inputFor(3, "x,y\n1,2\n-3.5,4e2\n"),
           inputFor(3, "id,x,y,radius,top\n1,2,3,0.1,4\n"),
           inputFor(4, made("drive/poles_gt.csv")),
-          inputFor(5, "time,latitude,longitude,sigma,antenna_x,antenna_y\n1,50.5,7.25,0.5,1,0\n"
-                      "2,50.5001,7.25,0.5,1,0\n"),
+          inputFor(5,
+                   "time,latitude,longitude,sigma,antenna_x,antenna_y\n1,50.5,7.25,0.5,1,0\n"
+                   "2,50.5001,7.25,0.5,1,0\n"),
           inputFor(6, apps::kEstimateColumns + apps::estimateRow(0, 1.5, {})),
           inputFor(7, "scan,time,state\n0,1.5,ok\n1,1.6,lost\n"),
-          inputFor(8, "system,session,f_map,pos_mean,pos_rmse,ang_mean_deg,ang_rmse_deg\n"
-                      "authors,2012-01-08,0.5,0.1,0.2,,1\n"),
+          inputFor(8,
+                   "system,session,f_map,pos_mean,pos_rmse,ang_mean_deg,ang_rmse_deg\n"
+                   "authors,2012-01-08,0.5,0.1,0.2,,1\n"),
           inputFor(9, "id;lon;lat;kind\n1;7.25;50.5;\"lamp; old\"\n"),
           inputFor(9, "x;y;height\n364000;5620000;4,5\n")};
 }
 
 void readTrajectory(std::string_view bytes) {
-  static const Readers readers{
-      [](auto rest) { io::readTum(fileOf("a.tum", rest)); },
-      [](auto rest) {
-        const apps::SessionPoses poses(apps::PoseKind::truth, fileOf("a.tum", rest));
-        poses.at(0, 1.5);
-        poses.velocityAt(1.5);
-      },
-      [](auto rest) { io::readKittiPoses(fileOf("a.txt", rest)); },
-      [](auto rest) { io::parseDatum(std::string(rest), "datum: "); },
-      [](auto rest) { io::secondsOfDate(std::string(rest)); }};
+  static const Readers readers{[](auto rest) { io::readTum(fileOf("a.tum", rest)); },
+                               [](auto rest) {
+                                 const apps::SessionPoses poses(apps::PoseKind::truth,
+                                                                fileOf("a.tum", rest));
+                                 poses.at(0, 1.5);
+                                 poses.velocityAt(1.5);
+                               },
+                               [](auto rest) { io::readKittiPoses(fileOf("a.txt", rest)); },
+                               [](auto rest) { io::parseDatum(std::string(rest), "datum: "); },
+                               [](auto rest) { io::secondsOfDate(std::string(rest)); }};
   readWithOne(readers, bytes);
 }
 
