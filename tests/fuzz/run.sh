@@ -1,7 +1,8 @@
 #!/bin/sh
 # Feeds damaged and forged bytes to every reader, under the address and undefined-behaviour sanitizers.
 # Usage: tests/fuzz/run.sh [LIMIT] [TARGET...]
-#   LIMIT   seconds for each target, such as 10s (default), or executions of each, such as 1000000
+#   LIMIT   seconds for each target, such as 10s (default), executions of each, such as 1000000,
+#           or both, such as 1000000,600s: whichever comes first
 #   TARGET  one or more of `build-fuzz/bin/fuzz --list` (default: all)
 # Prints a table, and exits with 1 if anything was found. Inputs that are findings stay in
 # build-fuzz/findings, and inputs that reach other code in build-fuzz/corpus, where later runs go on.
@@ -12,7 +13,7 @@ fuzz=build-fuzz/bin/fuzz
 limit=10s
 case ${1-} in
   -h | --help)
-    sed -n '2,8s/^# //p' "$0"
+    sed -n '2,10s/^# //p' "$0"
     exit 0
     ;;
   [0-9]*)
@@ -20,11 +21,12 @@ case ${1-} in
     shift
     ;;
 esac
-case $limit in
-  *[!0-9s]* | *s?*) echo "tests/fuzz/run.sh: a limit is seconds, such as 10s, or executions" >&2 && exit 2 ;;
-  *s) option=-max_total_time=${limit%s} ;;
-  *) option=-runs=$limit ;;
-esac
+options=$(echo "$limit" | sed -nE 's/^([0-9]+)s$/-max_total_time=\1/p; s/^([0-9]+)$/-runs=\1/p
+  s/^([0-9]+),([0-9]+)s$/-runs=\1 -max_total_time=\2/p')
+[ -n "$options" ] || {
+  echo "tests/fuzz/run.sh: a limit is seconds, such as 10s, executions, such as 1000000, or both" >&2
+  exit 2
+}
 share/setup/build.sh fuzz fuzz pole-simulate pole-map pole-import
 
 # The files of the fuzzers lie in memory. A fuzzer that is ended leaves its folder.
@@ -68,11 +70,17 @@ run_target() {
   corpus=build-fuzz/corpus/$name findings=build-fuzz/findings/$name log=build-fuzz/findings/$name.log
   mkdir -p "$corpus" "$findings"
   found=0
-  $fuzz --target="$name" "$option" -rss_limit_mb=2048 -malloc_limit_mb=1024 -timeout=10 -max_len=65536 \
+  # shellcheck disable=SC2086 # one option or two
+  $fuzz --target="$name" $options -rss_limit_mb=2048 -malloc_limit_mb=1024 -timeout=10 -max_len=65536 \
     -print_final_stats=1 -verbosity=1 -close_fd_mask=3 -artifact_prefix="$findings/" \
     "$corpus" "$TMPDIR/seeds/$name" >"$log" 2>&1 || found=1
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   seconds=$(($(date +%s) - begin))
+}
+
+record() {
+  [ -s "$POLEMCL_FUZZ_RECORD" ] || echo target,executions,seconds,findings,date >"$POLEMCL_FUZZ_RECORD"
+  echo "$1" >>"$POLEMCL_FUZZ_RECORD"
 }
 
 make_seeds >"$TMPDIR/seeds.log" 2>&1 || {
@@ -87,8 +95,7 @@ for target in "$@"; do
   run_target "$target"
   printf '%-18s %10s %8s %8s %9s\n' "$target" "${runs:-0}" "$seconds" \
     $((${runs:-0} / (seconds > 0 ? seconds : 1))) "$found"
-  [ -z "${POLEMCL_FUZZ_RECORD-}" ] ||
-    echo "$target,${runs:-0},$seconds,$found,$(date -u +%F)" >>"$POLEMCL_FUZZ_RECORD"
+  [ -z "${POLEMCL_FUZZ_RECORD-}" ] || record "$target,${runs:-0},$seconds,$found,$(date -u +%F)"
   [ "$found" = 0 ] || {
     status=1
     echo "  see build-fuzz/findings/$target.log"

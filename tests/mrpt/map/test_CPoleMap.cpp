@@ -298,6 +298,19 @@ TEST(CPoleMap, ReadsMapsOfOlderVersions) {
   }
 }
 
+// A bool holds 0 or 1: any other byte in it is undefined behaviour.
+TEST(CPoleMap, ReadsAnyByteAsYesOrNo) {
+  CPoleMap map = sampleMap();
+  map.likelihoodOptions.weighted = false;
+  std::string no = samples::bytesOf(map);
+  map.likelihoodOptions.weighted = true;
+  const std::string yes = samples::bytesOf(map);
+  const auto place = std::mismatch(no.begin(), no.end(), yes.begin()).first;
+  ASSERT_NE(place, no.end());
+  *place = '\x42';
+  EXPECT_EQ(samples::bytesOf(*samples::objectFrom(no)), yes);
+}
+
 TEST(CPoleMap, RefusesNewerVersions) {
   std::string bytes = samples::bytesOf(sampleMap());
   const std::string name = "polemcl::CPoleMap";
