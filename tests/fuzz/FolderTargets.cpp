@@ -53,7 +53,7 @@ const std::vector<Layout>& layouts() {
        [](const fs::path& path) { return io::readKittiRaw(path, path, kHere); }},
       {"mulran",
        {"Ouster/1561000000000000000.bin", "Ouster/1561000000100000000.bin"},
-       {"global_pose.csv", "ouster_front_stamp.csv"},
+       {"global_pose.csv", "ouster_front_stamp.csv", "gps.csv"},
        [](const fs::path& path) { return io::readMulran(path, io::mulranBaseLidar()); }},
       {"2012-01-08",
        {"velodyne_sync/1326652795000000.bin", "velodyne_sync/1326652795200000.bin"},
@@ -119,7 +119,8 @@ std::vector<std::string> folderSeeds() {
           inputFor(2, joined({"0\n0.1\n", calibration, pose + next})),
           inputFor(3, joined({stamps, stamps, oxts, oxts, imu})),
           inputFor(4, joined({row("1560999999900000000") + row("1561000000200000000"),
-                              "1561000000000000000\n1561000000100000000\n"})),
+                              "1561000000000000000\n1561000000100000000\n",
+                              "1561000000000000000,36.3,127.3,50,1,0,0,0,1,0,0,0,1\n"})),
           inputFor(5, joined({truth, truth, truth, covariance, gps})),
           inputFor(6, yaml)};
 }
