@@ -59,7 +59,7 @@ make_seeds() {
   cp config/hdl32e.ini config/batches/kitti.ini config/batches/year.ini share/models/hdl32e.json "$made"
   samples=/usr/share/mrpt/datasets # package mrpt-common
   for pair in rot_scan_2d:rot_scan_2d test_velodyne_VLP16:velodyne rot_scan_velodyne:rotating tests_rgbd:depth; do
-    [ ! -f "$samples/${pair%:*}.rawlog" ] || cp "$samples/${pair%:*}.rawlog" "$made/${pair#*:}.rawlog"
+    [ ! -f "$samples/${pair%:*}.rawlog" ] || zcat -f "$samples/${pair%:*}.rawlog" >"$made/${pair#*:}.rawlog"
   done
   POLEMCL_FUZZ_MADE=$made $fuzz --seeds="$TMPDIR/seeds"
 }
@@ -87,6 +87,7 @@ make_seeds >"$TMPDIR/seeds.log" 2>&1 || {
   cat "$TMPDIR/seeds.log" >&2
   exit 1
 }
+# shellcheck disable=SC2046 # names, a word each
 [ $# -gt 0 ] || set -- $($fuzz --list 2>"$TMPDIR/list.txt")
 printf '%-18s %10s %8s %8s %9s\n' target executions seconds per_s findings
 status=0
