@@ -26,7 +26,7 @@ TEST(RunRecords, ReadsWhatItWrites) {
 TEST(RunRecords, RefusesACovarianceThatIsNoNumber) {
   const TempFolder folder;
   writeText(folder / "cov.csv", std::string(kEstimateColumns) + "0,1,2,3,0,1,0,no,1,0,1\n");
-  EXPECT_REFUSED(readEstimates(folder / "cov.csv"), "cov.csv", "line 2");
+  EXPECT_REFUSED(readEstimates(folder / "cov.csv"), "cov.csv:2", "is not a finite number");
 }
 
 }  // namespace polemcl::test_run_records
