@@ -7,6 +7,7 @@
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -301,14 +302,18 @@ TEST(CPoleMap, ReadsMapsOfOlderVersions) {
 // A bool holds 0 or 1: any other byte in it is undefined behaviour.
 TEST(CPoleMap, ReadsAnyByteAsYesOrNo) {
   CPoleMap map = sampleMap();
-  map.likelihoodOptions.weighted = false;
-  std::string no = samples::bytesOf(map);
-  map.likelihoodOptions.weighted = true;
-  const std::string yes = samples::bytesOf(map);
-  const auto place = std::mismatch(no.begin(), no.end(), yes.begin()).first;
-  ASSERT_NE(place, no.end());
-  *place = '\x42';
-  EXPECT_EQ(samples::bytesOf(*samples::objectFrom(no)), yes);
+  auto& g = map.genericMapParams;
+  for (bool* flag : {&g.enableSaveAs3DObject, &g.enableObservationLikelihood,
+                     &g.enableObservationInsertion, &map.likelihoodOptions.weighted}) {
+    *flag = false;
+    std::string no = samples::bytesOf(map);
+    *flag = true;
+    const std::string yes = samples::bytesOf(map);
+    const auto place = std::mismatch(no.begin(), no.end(), yes.begin()).first;
+    ASSERT_NE(place, no.end());
+    *place = '\x42';
+    EXPECT_EQ(samples::bytesOf(*samples::objectFrom(no)), yes);
+  }
 }
 
 TEST(CPoleMap, RefusesNewerVersions) {

@@ -102,8 +102,11 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   in >> genericMapParams >> insertionOptions.mergeDistance >> insertionOptions.minConfidence;
   auto& l = likelihoodOptions;
   l.model = static_cast<LikelihoodModel>(in.ReadAs<std::uint8_t>());
-  in >> l.sigma >> l.outlier >> l.gate;
-  l.weighted = in.ReadAs<std::uint8_t>() != 0;  // any byte: a bool has two values only
+  in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
+  auto& g = genericMapParams;
+  for (bool* flag : {&g.enableSaveAs3DObject, &g.enableObservationLikelihood,
+                     &g.enableObservationInsertion, &l.weighted})
+    *flag = storedNumber(*flag) != 0;
   if (version >= 1) in >> l.floor;
   if (version >= 2) {
     in >> l.farOutlier;
