@@ -34,8 +34,9 @@ TMPDIR=$(mktemp -d "$([ -d /dev/shm ] && echo /dev/shm || echo /tmp)/polemcl-fuz
 export TMPDIR
 trap 'rm -rf "$TMPDIR"' EXIT
 # LimitedNew.cpp replaces `new` but not all forms of it, which is no mismatch. Leaks are those of
-# libpcap, in MRPT: tests/run.sh sanitize looks for ours.
-export ASAN_OPTIONS=alloc_dealloc_mismatch=0:detect_leaks=0:quarantine_size_mb=16:malloc_context_size=4
+# libpcap, in MRPT: tests/run.sh sanitize looks for ours. OpenCV throws where
+# malloc() gives nothing.
+export ASAN_OPTIONS=alloc_dealloc_mismatch=0:allocator_may_return_null=1:detect_leaks=0:quarantine_size_mb=16:malloc_context_size=4
 export UBSAN_OPTIONS=print_stacktrace=1
 
 # The first inputs: small files of the programs, and those that the fuzzer writes itself.
