@@ -1,5 +1,6 @@
 #include "cli/RunRecords.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -28,12 +29,14 @@ std::vector<EstimateRecord> readEstimates(const std::filesystem::path& file) {
   std::vector<EstimateRecord> rows;
   rows.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
-    const auto at = [&](int k) { return table.number(i, columns[k]); };
+    // All numbers first: a matrix that an exception leaves half filled ends a debug build.
+    std::array<double, std::size(names)> v;
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] = table.number(i, columns[k]);
     EstimateRecord row;
-    row.scan = at(0);
-    row.time = at(1);
-    row.estimate.mean = {at(2), at(3), at(4)};
-    row.estimate.covariance << at(5), at(6), at(7), at(6), at(8), at(9), at(7), at(9), at(10);
+    row.scan = v[0];
+    row.time = v[1];
+    row.estimate.mean = {v[2], v[3], v[4]};
+    row.estimate.covariance << v[5], v[6], v[7], v[6], v[8], v[9], v[7], v[9], v[10];
     rows.push_back(row);
   }
   return rows;

@@ -83,6 +83,17 @@ TEST(PoleIndex, DistanceMustBeLessThanTheRadius) {
   }
 }
 
+// The cells of such a grid would have numbers beyond all integers.
+TEST(PoleIndex, AnyRadiusMayBePrepared) {
+  for (const double prepared : {1e-310, 1e-200, 1e-20})
+    for (const double x : {0.0, 100.0}) {
+      const PoleIndex index({mapPoleAt(x, 0)}, prepared);
+      EXPECT_EQ(index.nearest(x, 0, prepared).has_value(), prepared * prepared > 0) << prepared;
+      EXPECT_TRUE(index.nearest(x, 0, 0.5)) << prepared;
+      EXPECT_FALSE(index.nearest(x + 1, 0, 0.5)) << prepared;
+    }
+}
+
 TEST(PoleIndex, EmptyMapFindsNothing) {
   const PoleIndex index({});
   EXPECT_EQ(index.size(), 0u);

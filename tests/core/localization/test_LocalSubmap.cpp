@@ -314,6 +314,7 @@ TEST(LocalSubmap, RefusesNumbersThatAreNone) {
   expectRefused([&] { submap.add({s_nan, 0, 0}, {}); }, "motion before frame 1");
   expectRefused([&] { submap.add({0, 0, s_nan}, {}); }, "motion before frame 1");
   expectRefused([&] { submap.add({}, {seen(10, 0), seen(s_nan, 0)}); }, "pole 1 of frame 1");
+  expectRefused([&] { submap.add({}, {seen(1.1e9, 0)}); }, "more than 1e9 m away");
   expectRefused([&] { submap.add({}, {seen(10, 0, -0.01)}); }, "positive semidefinite");
   PoleDetection crooked = seen(10, 0);
   crooked.covariance(0, 1) = 0.005;

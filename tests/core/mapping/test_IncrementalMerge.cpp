@@ -72,6 +72,17 @@ TEST(IncrementalMerge, TheGateIsOpen) {
   EXPECT_EQ(poles[0].count, 2u);
 }
 
+// The numbers of such cells are beyond all integers.
+TEST(IncrementalMerge, FarPolesAndTinyDistances) {
+  std::vector<MapPole> poles;
+  IncrementalMerge merge(poles, 1e-12);
+  for (int scan = 0; scan < 2; ++scan)
+    merge.insertScan(poles, {detectionAt(9e8, -9e8), detectionAt(-9e8, 8e8)});
+  ASSERT_EQ(poles.size(), 2u);
+  EXPECT_EQ(poles[0].count, 2u);
+  EXPECT_EQ(poles[1].count, 2u);
+}
+
 // Poles drift from cell to cell; a merge that begins with the poles of now is the oracle.
 TEST(IncrementalMerge, FollowsPolesThatMove) {
   std::mt19937 random(5);

@@ -383,4 +383,13 @@ TEST(PoleMapBuilder, RefusesWhatIsNotFiniteAndSaysWhere) {
   refuses(scans, "pole 0 of scan 3");
 }
 
+TEST(PoleMapBuilder, RefusesPlacesBeyondAllMaps) {
+  auto scans = pattern("xxx");
+  scans[1].pose_map_robot.x = -1.1e9;
+  EXPECT_REFUSED(buildPoleMap(scans, {}), "pose of scan 1 is more than 1e9 m from the origin");
+  scans = pattern("xxx");
+  scans[2].poles_robot[0].y = 1e30;
+  EXPECT_REFUSED(buildPoleMap(scans, {}), "pole 0 of scan 2 has a place more than 1e9 m away");
+}
+
 }  // namespace polemcl::test_pole_map_builder

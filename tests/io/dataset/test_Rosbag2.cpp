@@ -212,6 +212,16 @@ TEST_F(Rosbag2Test, RefusesBagsWithoutClouds) {
            "driver");
 }
 
+// SQLite lists messages by the index of their times.
+TEST_F(Rosbag2Test, RefusesAnIndexThatLacksMessages) {
+  writeDrive(3, {});
+  bag->run(
+      "CREATE TABLE none(time INTEGER); CREATE INDEX none_idx ON none (time);"
+      "PRAGMA writable_schema = ON; UPDATE sqlite_master SET rootpage = (SELECT rootpage FROM "
+      "sqlite_master WHERE name = 'none_idx') WHERE name = 'timestamp_idx'");
+  expectIn(refusal(), "/points: damaged: it has 3 messages, but lists 0");
+}
+
 TEST_F(Rosbag2Test, RefusesAnImuWithoutOdometry) {
   bag->add(clouds, 0, cloudAt(1));
   bag->add(bag->topic("/imu", imu2), 0, imuMessage(1, "imu", {}, 0));

@@ -7,6 +7,7 @@
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -295,6 +296,23 @@ TEST(CPoleMap, ReadsMapsOfOlderVersions) {
     expectEqual(*read, map);
     EXPECT_EQ(read->likelihoodOptions.floor, version == 0 ? LikelihoodOptions().floor : 0.375);
     EXPECT_EQ(read->likelihoodOptions.farOutlier, 1);
+  }
+}
+
+// A bool holds 0 or 1: any other byte in it is undefined behaviour.
+TEST(CPoleMap, ReadsAnyByteAsYesOrNo) {
+  CPoleMap map = sampleMap();
+  auto& g = map.genericMapParams;
+  for (bool* flag : {&g.enableSaveAs3DObject, &g.enableObservationLikelihood,
+                     &g.enableObservationInsertion, &map.likelihoodOptions.weighted}) {
+    *flag = false;
+    std::string no = samples::bytesOf(map);
+    *flag = true;
+    const std::string yes = samples::bytesOf(map);
+    const auto place = std::mismatch(no.begin(), no.end(), yes.begin()).first;
+    ASSERT_NE(place, no.end());
+    *place = '\x42';
+    EXPECT_EQ(samples::bytesOf(*samples::objectFrom(no)), yes);
   }
 }
 

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
+#include <cstring>
+
 #include "support/ExtractionSamples.h"
 #include "support/Refusal.h"
 
@@ -194,6 +196,15 @@ TEST(DepthImage, CountsPixelsWithoutDepth) {
   EXPECT_EQ(extraction.report().points, 640u * 480u);
   EXPECT_EQ(extraction.report().invalid, empty);
   EXPECT_EQ(poles->poles.size(), kPoles.size());
+}
+
+// MRPT reads flags as bytes: those of a damaged rawlog may be neither 0 nor 1.
+TEST(DepthImage, FlagsOfAnyByte) {
+  auto scan = depthImage(CPose3D(0, 0, 1.5, 0, 0, 0));
+  for (bool* flag : {&scan.hasRangeImage, &scan.range_is_depth, &scan.hasPoints3D})
+    std::memset(flag, 0x42, sizeof *flag);
+  ObservationPoleExtractor extraction(options());
+  EXPECT_EQ(extraction.process(scan)->poles.size(), kPoles.size());
 }
 
 TEST(DepthImage, ImagesOfAnySize) {

@@ -1,9 +1,14 @@
 #include <gtest/gtest.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "core/common/Binder.h"
 #include "mrpt/rawlog/MotionOptions.h"
+#include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl::test_motion_options {
 namespace {
@@ -35,6 +40,22 @@ TEST(MotionOptions, StandingStillKeepsTheFloor) {
   const Eigen::Matrix3d C = motionCovariance({}, sample());
   EXPECT_NEAR(C(0, 0), 4e-6, 1e-15);
   EXPECT_NEAR(C(2, 2), 16e-6, 1e-15);
+}
+
+// A damaged rawlog may name a method that does not exist: the change of the pose counts.
+TEST(MotionOptions, MethodsThatNobodyKnows) {
+  mrpt::obs::CActionRobotMovement2D move;
+  auto change = mrpt::poses::CPosePDFGaussian::Create();
+  change->mean = mrpt::poses::CPose2D(1, 2, 0.5);
+  move.poseChange = change;
+  move.rawOdometryIncrementReading = mrpt::poses::CPose2D(7, 8, 0.9);
+  const std::uint32_t method = 0x10000;
+  std::memcpy(&move.estimationMethod, &method, sizeof method);
+  mrpt::obs::CActionCollection actions;
+  actions.insert(move);
+  const auto motion = motionOf(actions, sample());
+  ASSERT_TRUE(motion);
+  EXPECT_EQ(motion->mean.x, 1);
 }
 
 }  // namespace

@@ -1,14 +1,18 @@
 #include "core/common/DetectionCheck.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/common/Covariance.h"
+#include "core/common/PoleIndex.h"
 
 namespace polemcl {
 
 const char* faultOf(const PoleDetection& pole) {
   if (!std::isfinite(pole.x + pole.y + pole.radius + pole.bottom + pole.top))
     return "a number that is not finite";
+  if (std::max(std::abs(pole.x), std::abs(pole.y)) > PoleIndex::farthest)
+    return "a place more than 1e9 m away";
   if (!(pole.confidence >= 0 && pole.confidence <= 1)) return "a confidence outside [0, 1]";
   if (!isCovariance(pole.covariance))
     return "a covariance that is not symmetric positive semidefinite";

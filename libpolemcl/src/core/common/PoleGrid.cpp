@@ -94,9 +94,10 @@ void PoleGrid::setBounds(const std::vector<Eigen::Vector2d>& points) {
   const double extent = (high - low).maxCoeff() + 2 * m_radius;
   // Twice the radius: a pole is then listed in 4 cells, few enough to stay in the cache, and a cell
   // still lists hardly more than one. Rows and columns have 32 bits of the key each.
-  m_cell = std::max(2 * m_radius, extent * 0x1p-30);
-  m_inverseCell = 1 / m_cell;
+  // Much wider than the margin for rounding too, and its inverse is finite, for any radius.
   const double magnitude = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) + extent;
+  m_cell = std::max({2 * m_radius, magnitude * 0x1p-30, 1e-300});
+  m_inverseCell = 1 / m_cell;
   m_margin = 1e-9 * m_cell + 8 * std::numeric_limits<double>::epsilon() * magnitude;
   m_minX = low.x() - m_radius - 2 * m_margin;
   m_minY = low.y() - m_radius - 2 * m_margin;

@@ -1,8 +1,10 @@
 #include "core/mapping/DetectionToMap.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/common/DetectionCheck.h"
+#include "core/common/PoleIndex.h"
 #include "core/common/Transform.h"
 
 namespace polemcl {
@@ -30,6 +32,9 @@ void checkScan(const Pose2D& pose, const std::vector<PoleDetection>& poles,
   if (!std::isfinite(pose.x + pose.y + pose.yaw)) {
     throw Error("the pose of " + where + " is not finite; leave the scan out or correct its pose");
   }
+  if (std::max(std::abs(pose.x), std::abs(pose.y)) > PoleIndex::farthest)
+    throw Error("the pose of " + where +
+                " is more than 1e9 m from the origin; leave the scan out or correct its pose");
   for (std::size_t i = 0; i < poles.size(); ++i)
     if (const char* fault = faultOf(poles[i]))
       throw Error("pole " + std::to_string(i) + " of " + where + " has " + fault +

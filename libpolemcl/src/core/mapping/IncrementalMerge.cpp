@@ -46,9 +46,10 @@ IncrementalMerge::IncrementalMerge(const std::vector<MapPole>& poles, double mer
 /// Cells far apart may share a number: distances tell their poles apart.
 template <class Place>
 std::uint64_t IncrementalMerge::cellOf(const Place& place, int columns, int rows) const {
+  constexpr double kMostCells = 1e18;
   const auto number = [&](double coordinate, int steps) {
-    return static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(std::floor(coordinate / m_mergeDistance)) + steps);
+    const double cell = std::clamp(coordinate / m_mergeDistance, -kMostCells, kMostCells);
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(cell)) + steps);
   };
   return number(place.x, columns) * 0x9E3779B97F4A7C15u ^ number(place.y, rows);
 }

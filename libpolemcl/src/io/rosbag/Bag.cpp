@@ -90,6 +90,11 @@ std::vector<BagMessage> Bag::messages(std::size_t topic) const {
   for (std::size_t i = 0; i < m_files.size(); ++i)
     for (const std::int64_t id : m_files[i].storage->messages(m_files[i].topicIds[topic]))
       result.push_back({i, topic, id});
+  const BagTopic& counted = m_topics[topic];
+  if (result.size() != counted.messages)  // an index of SQLite may lack messages that are there
+    throw Error(m_path.string() + ": " + counted.name + ": damaged: it has " +
+                std::to_string(counted.messages) + " messages, but lists " +
+                std::to_string(result.size()) + "; write it anew with ros2 bag convert");
   return result;
 }
 

@@ -42,6 +42,7 @@ class Bag {
   /// \brief Sorted by name.
   const std::vector<BagTopic>& topics() const { return m_topics; }
   /// \brief The messages of a topic in the order in which they were recorded.
+  /// \throws Error when a file lists another number of them than it has.
   /// \param topic Index in topics().
   std::vector<BagMessage> messages(std::size_t topic) const;
   /// \brief A message by its file and id. \throws Error when the bag has no such file.

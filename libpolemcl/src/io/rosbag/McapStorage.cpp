@@ -218,9 +218,10 @@ void McapStorage::listTopics() {
     std::string format = channel.format;
     if (!schema.encoding.empty() && schema.encoding != "ros2msg" && schema.encoding != "ros2idl")
       format += " with a schema in " + schema.encoding;
-    auto topic = std::find_if(m_topics.begin(), m_topics.end(), [&](const StoredTopic& other) {
+    const auto isOf = [&channel = channel, &schema, &format](const StoredTopic& other) {
       return other.name == channel.topic && other.type == schema.name && other.format == format;
-    });
+    };
+    auto topic = std::find_if(m_topics.begin(), m_topics.end(), isOf);
     if (topic == m_topics.end()) {
       m_topics.push_back(
           {static_cast<std::int64_t>(m_topics.size()) + 1, channel.topic, schema.name, format, 0});

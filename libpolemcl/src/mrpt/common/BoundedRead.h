@@ -7,6 +7,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,6 +29,16 @@ std::vector<float> readFloats(mrpt::serialization::CArchive& in, std::uint32_t m
 /// \throws Error as readText(), for the number of entries, each key and each value.
 std::map<std::string, std::string> readTexts(mrpt::serialization::CArchive& in, std::uint32_t most,
                                              std::uint32_t longest, const char* what);
+
+/// \brief The number in a bool or an enum that MRPT read. It takes any bytes, and to use one that
+/// is no value of the type is undefined behaviour.
+template <class Value>
+std::uint32_t storedNumber(const Value& value) {
+  static_assert(sizeof value <= sizeof(std::uint32_t));
+  std::uint32_t number = 0;
+  std::memcpy(&number, &value, sizeof value);
+  return number;
+}
 
 /// \brief Writes what PoleDetection and MapPole have in common, then `count`.
 template <class Pole>

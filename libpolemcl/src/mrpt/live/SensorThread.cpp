@@ -7,6 +7,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include "mrpt/common/MrptReason.h"
+#include "mrpt/live/PcapFile.h"
 
 namespace polemcl {
 
@@ -93,6 +94,7 @@ void SensorThread::open(CConfigFileBase& config) {
 /// The ports are those of the class, which takes them when a device is opened.
 void SensorThread::openVelodyne(CConfigFileBase& config) {
   m_pcap = config.read_string(m_section, "pcap_input", "");
+  if (!m_pcap.empty()) requireEthernetPcap(m_pcap);
   if (!config.keyExists(m_section, "pcap_read_once"))
     config.write(m_section, "pcap_read_once", true);
   CVelodyneScanner::VELODYNE_DATA_UDP_PORT = portOf(config, m_section, "data_port", 2368);

@@ -103,6 +103,10 @@ void CPoleMap::serializeFrom(CArchive& in, uint8_t version) {
   auto& l = likelihoodOptions;
   l.model = static_cast<LikelihoodModel>(in.ReadAs<std::uint8_t>());
   in >> l.sigma >> l.outlier >> l.gate >> l.weighted;
+  auto& g = genericMapParams;
+  for (bool* flag : {&g.enableSaveAs3DObject, &g.enableObservationLikelihood,
+                     &g.enableObservationInsertion, &l.weighted})
+    *flag = storedNumber(*flag) != 0;
   if (version >= 1) in >> l.floor;
   if (version >= 2) {
     in >> l.farOutlier;

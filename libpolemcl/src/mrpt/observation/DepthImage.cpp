@@ -9,11 +9,12 @@
 
 #include <polemcl/core/common/Types.h>
 #include "core/sensor/PinholeCamera.h"
+#include "mrpt/common/BoundedRead.h"
 
 namespace polemcl {
 
 bool hasPixels(const mrpt::obs::CObservation3DRangeScan& observation) {
-  return observation.hasRangeImage && observation.rangeImage.rows() > 0 &&
+  return storedNumber(observation.hasRangeImage) != 0 && observation.rangeImage.rows() > 0 &&
          observation.rangeImage.cols() > 0;
 }
 
@@ -92,6 +93,7 @@ std::size_t unproject(const mrpt::obs::CObservation3DRangeScan& observation,
   const double units = observation.rangeUnits;
   const auto width = static_cast<std::size_t>(camera.width);
   std::size_t empty = 0, pixel = 0;
+  const bool isDepth = storedNumber(observation.range_is_depth) != 0;
   for (int row = 0; row < camera.height; ++row) {
     const double up = (camera.cy - row) / camera.fy;
     for (int column = 0; column < camera.width; ++column, ++pixel) {
@@ -104,8 +106,7 @@ std::size_t unproject(const mrpt::obs::CObservation3DRangeScan& observation,
         continue;
       }
       const double left = (camera.cx - column) / camera.fx;
-      const double ahead =
-          depth * units / (observation.range_is_depth ? 1 : std::sqrt(1 + left * left + up * up));
+      const double ahead = depth * units / (isDepth ? 1 : std::sqrt(1 + left * left + up * up));
       to.x.push_back(static_cast<float>(ahead));
       to.y.push_back(static_cast<float>(ahead * left));
       to.z.push_back(static_cast<float>(ahead * up));

@@ -16,6 +16,7 @@
 
 #include <polemcl/io/data/Cloud.h>
 #include "core/sensor/SensorModel.h"
+#include "mrpt/common/BoundedRead.h"
 
 namespace polemcl {
 
@@ -71,6 +72,14 @@ namespace {
 struct StorageFormat : CObservationPointCloud {
   static ExternalStorageFormat of(const CObservationPointCloud& observation) {
     return observation.*(&StorageFormat::m_externally_stored);
+  }
+};
+
+/// As StorageFormat; also the flags are hidden.
+struct StorageFlags : CObservation3DRangeScan {
+  static bool areSet(const CObservation3DRangeScan& scan) {
+    return storedNumber(scan.*(&StorageFlags::m_rangeImage_external_stored)) != 0 ||
+           storedNumber(scan.*(&StorageFlags::m_points3D_external_stored)) != 0;
   }
 };
 
@@ -176,8 +185,7 @@ PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& obser
 /// Prefers the image, the raw data of the camera: a cloud beside it may be thinned or in another
 /// frame.
 PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observation) {
-  const bool stored =
-      observation.rangeImage_isExternallyStored() || observation.points3D_isExternallyStored();
+  const bool stored = StorageFlags::areSet(observation);
   std::optional<CObservation3DRangeScan> copy;
   if (stored) copy.emplace(observation).load();
   const CObservation3DRangeScan& scan = stored ? *copy : observation;
@@ -187,7 +195,7 @@ PointsView ObservationPoints::readDepth(const CObservation3DRangeScan& observati
     m_dropped = unproject(scan, *m_camera, m_pixels, {m_x, m_y, m_z});
     return owned();
   }
-  if (!scan.hasPoints3D) return {};
+  if (storedNumber(scan.hasPoints3D) == 0) return {};
   m_x.assign(scan.points3D_x.begin(), scan.points3D_x.end());
   m_y.assign(scan.points3D_y.begin(), scan.points3D_y.end());
   m_z.assign(scan.points3D_z.begin(), scan.points3D_z.end());

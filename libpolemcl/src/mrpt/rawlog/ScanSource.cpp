@@ -16,6 +16,7 @@
 #include "config/TimingComment.h"
 #include "core/common/Binder.h"
 #include "core/common/Covariance.h"
+#include "mrpt/common/BoundedRead.h"
 #include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/observation/ScanFusion.h"
 #include "mrpt/rawlog/RawlogReader.h"
@@ -46,8 +47,10 @@ std::optional<PoseWithCovariance> motionOf2D(const CActionRobotMovement2D& actio
                                              const MotionOptions& options) {
   const bool isGaussian =
       dynamic_cast<const mrpt::poses::CPosePDFGaussian*>(action.poseChange.get()) != nullptr;
+  const bool isOdometry =
+      storedNumber(action.estimationMethod) == CActionRobotMovement2D::emOdometry;
   PoseWithCovariance motion;
-  if (action.estimationMethod == CActionRobotMovement2D::emOdometry) {
+  if (isOdometry) {
     // The reading itself: the motion model may have turned it into random samples.
     motion.mean = planar(action.rawOdometryIncrementReading);
     motion.covariance = motionCovariance(motion.mean, options);
@@ -56,7 +59,7 @@ std::optional<PoseWithCovariance> motionOf2D(const CActionRobotMovement2D& actio
     return std::nullopt;
   }
   const auto [covariance, mean] = action.poseChange->getCovarianceAndMean();
-  if (action.estimationMethod != CActionRobotMovement2D::emOdometry) motion.mean = planar(mean);
+  if (!isOdometry) motion.mean = planar(mean);
   motion.covariance = covariance.asEigen() * options.covarianceFactor;
   return motion;
 }

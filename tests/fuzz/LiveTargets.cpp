@@ -1,0 +1,187 @@
+#include <arpa/inet.h>
+#include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/hwdrivers/CVelodyneScanner.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+
+#include "fuzz/Fuzz.h"
+#include "mrpt/live/CUdpOdometry.h"
+#include "mrpt/live/LiveQueue.h"
+#include "mrpt/live/PcapFile.h"
+#include "mrpt/rawlog/PoleSequence.h"
+#include "support/VelodynePackets.h"
+
+namespace {
+
+thread_local bool isReplaying = false;
+
+}  // namespace
+
+/// MRPT's driver waits in a replay as the LiDAR would.
+extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* wait, timespec* left) {
+  if (isReplaying) return 0;
+  return ::syscall(SYS_clock_nanosleep, clock, flags, wait, left) == 0 ? 0 : errno;
+}
+extern "C" int nanosleep(const timespec* wait, timespec* left) {
+  if (isReplaying) return 0;
+  return static_cast<int>(::syscall(SYS_nanosleep, wait, left));
+}
+
+namespace polemcl::fuzz {
+namespace {
+
+using mrpt::hwdrivers::CVelodyneScanner;
+using mrpt::obs::CObservationVelodyneScan;
+using Packet = CObservationVelodyneScan::TVelodyneRawPacket;
+
+ObservationPoleExtractor& extractor() {
+  static ObservationPoleExtractor one = [] {
+    ObservationPoleExtractorOptions options;
+    options.sensor.model = "vlp16";
+    options.sensor.checkBeams = false;
+    return ObservationPoleExtractor(options);
+  }();
+  return one;
+}
+
+/// The poles of a scan of arbitrary packets. The first byte says which LiDAR sent them.
+void readPackets(std::string_view bytes) {
+  if (bytes.empty()) return;
+  static const char* const models[] = {"VLP16", "HDL32", "HDL64"};
+  CObservationVelodyneScan scan;
+  scan.calibration = mrpt::obs::VelodyneCalibration::LoadDefaultCalibration(
+      models[static_cast<unsigned char>(bytes.front()) % 3]);
+  scan.timestamp = mrpt::Clock::fromDouble(1e9);
+  for (bytes.remove_prefix(1); bytes.size() >= sizeof(Packet); bytes.remove_prefix(sizeof(Packet)))
+    std::memcpy(&scan.scan_packets.emplace_back(), bytes.data(), sizeof(Packet));
+  extractor().process(scan);
+}
+
+std::vector<std::string> streetPackets(std::size_t most) {
+  auto packets = testing_apps::turnOfVlp16(testing_apps::streetPoles(), 0, 0, 0);
+  packets.resize(std::min(most, packets.size()));
+  return packets;
+}
+
+std::vector<std::string> packetSeeds() {
+  std::string few, turn;
+  for (const std::string& packet : streetPackets(2)) few += packet;
+  for (const std::string& packet : streetPackets(75)) turn += packet;
+  return {inputFor(0, few), inputFor(0, turn), inputFor(1, few), inputFor(2, few)};
+}
+
+/// A whole file of packets as MRPT's driver reads it.
+void readPcap(std::string_view bytes) {
+  const std::string file = fileOf("a.pcap", bytes).string();
+  requireEthernetPcap(file);
+  mrpt::config::CConfigFileMemory config;
+  config.write("lidar", "model", "VLP16");
+  config.write("lidar", "pcap_input", file);
+  config.write("lidar", "pcap_read_once", true);
+  config.write("lidar", "pcap_read_fast", true);
+  config.write("lidar", "pcap_read_full_scan_delay_ms", 0);
+  CVelodyneScanner scanner;
+  scanner.setPCAPVerbosity(false);
+  CObservationVelodyneScan::Ptr scan;
+  mrpt::obs::CObservationGPS::Ptr position;
+  isReplaying = true;
+  try {
+    scanner.loadConfig(config, "lidar");
+    scanner.initialize();
+    for (int i = 0; i < 3000 && scanner.getNextObservation(scan, position); ++i)
+      if (scan) extractor().process(*scan);
+  } catch (const std::exception&) {  // SensorThread makes an Error of all that MRPT throws
+  }
+  isReplaying = false;
+}
+
+std::vector<std::string> pcapSeeds() {
+  const auto pcap = [](std::size_t most) {
+    return testing_apps::pcapFile(streetPackets(most), 2368);
+  };
+  return {pcap(3), pcap(75)};
+}
+
+/// A port of this process on the loopback; neighbours try the next one.
+int openOdometry(CUdpOdometry& sensor) {
+  for (int port = 20000 + ::getpid() % 20000;; ++port) {
+    mrpt::config::CConfigFileMemory config;
+    config.write("odometry", "udp_port", port);
+    sensor.loadConfig(config, "odometry");
+    try {
+      sensor.initialize();
+      return port;
+    } catch (const Error&) {
+      if (port > 60000) throw;
+    }
+  }
+}
+
+/// One packet of odometry through the loopback, then the queue of scans.
+void readOdometry(std::string_view bytes) {
+  static CUdpOdometry sensor;
+  static const int port = openOdometry(sensor);
+  static const int sender = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(port));
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ::sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+           sizeof to);
+  sensor.doProcess();
+  LiveQueue queue;
+  for (const auto& [time, object] : sensor.getObservations())
+    queue.push(std::dynamic_pointer_cast<mrpt::obs::CObservation>(object));
+  queue.end();
+  for (RawlogEntry entry; queue.next(entry);) {
+  }
+}
+
+/// Scans and odometry with arbitrary times.
+void readTimes(std::string_view bytes) {
+  Numbers numbers(bytes);
+  LiveQueue queue;
+  for (int i = 0; i < 1000 && !numbers.atEnd(); ++i) {
+    const bool isScan = numbers.byte() % 2 == 0;
+    const double real = numbers.real();  // ticks of 100 ns since 1601
+    const auto ticks = std::abs(real) < 9e18 ? static_cast<std::int64_t>(real) : 0;
+    mrpt::obs::CObservation::Ptr one;
+    if (isScan)
+      one = CObservationPoles::Create();
+    else
+      one = mrpt::obs::CObservationOdometry::Create();
+    one->timestamp = mrpt::Clock::time_point(mrpt::Clock::duration(ticks));
+    queue.push(one);
+  }
+  queue.end();
+  for (RawlogEntry entry; queue.next(entry);) {
+  }
+}
+
+void readLive(std::string_view bytes) {
+  static const Readers readers{readOdometry, readTimes};
+  readWithOne(readers, bytes);
+}
+
+std::vector<std::string> liveSeeds() {
+  return {inputFor(0, "1.5 2 0.25"), inputFor(0, "-1 1e300 nan 5"),
+          inputFor(1, std::string(25, '\x40')), inputFor(1, std::string(25, '\x41'))};
+}
+
+}  // namespace
+
+std::vector<Target> liveTargets() {
+  return {{"packets", readPackets, packetSeeds},
+          {"pcap", readPcap, pcapSeeds},
+          {"live", readLive, liveSeeds}};
+}
+
+}  // namespace polemcl::fuzz
