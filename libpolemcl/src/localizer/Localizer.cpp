@@ -87,6 +87,8 @@ void Localizer::Impl::add(const OdometryReading& next) {
     steps.add(reading->time, next.time, {step, *covariance * seconds * seconds});
   }
   reading = taken;
+  track.forgetBefore(next.time - keptOdometry);
+  steps.forgetBefore(next.time - keptOdometry);
 }
 
 LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {

@@ -263,6 +263,24 @@ TEST_F(OdometryTest, SaysWhatIsMissing) {
   EXPECT_FALSE(own.odometryFrame());
 }
 
+/// Hours without a scan must not fill the memory.
+TEST_F(OdometryTest, IsKeptForAMinute) {
+  Localizer own = started();
+  for (const double later : {0.0, 0.2, 30.0, 59.0}) {
+    OdometryReading reading = readingAt(0);
+    reading.time += later;
+    own.addOdometry(reading);
+  }
+  EXPECT_NO_THROW(step(own, 0));
+  Localizer late = started();
+  for (const double later : {0.0, 0.2, 30.0, 59.0, 61.0, 90.0, 120.0}) {
+    OdometryReading reading = readingAt(0);
+    reading.time += later;
+    late.addOdometry(reading);
+  }
+  EXPECT_HAS(messageOf([&] { step(late, 0); }), "no odometry within 0.5 s of the scan");
+}
+
 TEST_F(StreetTest, PointsBecomeTheMapOfPoleMapBuild) {
   constexpr std::size_t number = 12;
   writeStreet(folder / "in", number);

@@ -91,8 +91,10 @@ class POLEMCL_EXPORT Localizer {
 
   /// \name Where scans and odometry come by themselves, as from sensors
   /// @{
+  /// \brief s; a scan that comes later than that after its time finds no odometry.
+  static constexpr double keptOdometry = 60;
   /// \brief A reading of the odometry, at any rate. One that is not later than the one before is
-  /// left out. \throws Error when it is not finite.
+  /// left out. Readings are kept for `keptOdometry`. \throws Error when it is not finite.
   void addOdometry(const OdometryReading& reading);
   /// \brief Whether there is odometry at `time` or later: the scan of that time can be taken.
   bool hasOdometry(double time) const;
