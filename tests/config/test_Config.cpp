@@ -420,6 +420,17 @@ TEST(Config, SavesAFile) {
   std::filesystem::remove(path);
 }
 
+/// MRPT expands $eval{} once more in what its first pass, which ends at a zero byte, did not see.
+TEST(Config, RefusesABrokenExpressionBehindAZeroByte) {
+  const std::string text = std::string("[scan_timing]\nturn") + '\0' + "a = 1" + '\0' + "t$eval{x";
+  try {
+    ConfigFile::fromText(text, "t.ini");
+    FAIL() << "read";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("t.ini: ", 0), 0u) << error.what();
+  }
+}
+
 TEST(Range, SaysWhatItAllows) {
   EXPECT_EQ(Range::any().text(), "any number");
   EXPECT_EQ(Range::atLeast(0).text(), ">= 0");

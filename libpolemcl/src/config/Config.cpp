@@ -132,6 +132,8 @@ std::optional<std::string> faultOfRemoved(const std::string& section, const std:
 
 ConfigFile ConfigFile::fromText(const std::string& text, const std::string& name) {
   Lint lint(name);
+  ConfigFile file;
+  file.m_name = name;
   try {
     const std::string expanded = mrpt::config::config_parser(text);  // @define, $env{}, ...
     std::size_t number = 0;
@@ -140,14 +142,12 @@ ConfigFile ConfigFile::fromText(const std::string& text, const std::string& name
       lint.line(++number, expanded.substr(at, end - at));
       at = end + 1;
     }
+    file.m_source = std::make_shared<mrpt::config::CConfigFileMemory>(lint.clean());
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
     throw Error(name + ": " + error.what());
   }
-  ConfigFile file;
-  file.m_name = name;
-  file.m_source = std::make_shared<mrpt::config::CConfigFileMemory>(lint.clean());
   return file;
 }
 
