@@ -50,6 +50,17 @@ bool isRight(const Pose2D& pose, const Pose2D& truth) {
          std::abs(wrapAngle(pose.yaw - truth.yaw)) <= 2 * M_PI / 180;
 }
 
+/// The map of the city, and the same 5 km east of it.
+std::vector<MapPole> mapTwice(const PoleCity& world) {
+  std::vector<MapPole> map = world.map();
+  const std::size_t half = map.size();
+  for (std::size_t i = 0; i < half; ++i) {
+    map.push_back(map[i]);
+    map.back().x += 5000;
+  }
+  return map;
+}
+
 struct Count {
   int right = 0, wrong = 0, undecided = 0;
   Count& operator+=(const Count& other) {
@@ -188,12 +199,7 @@ TEST(GlobalLocalizer, WithstandsAnOldMapAndManyFalseDetections) {
 /// Two copies of a city side by side: both places are right, and it must say so.
 TEST(GlobalLocalizer, NamesBothOfTwoEqualPlaces) {
   const PoleCity world(city(1051));
-  std::vector<MapPole> map = world.map();
-  const std::size_t half = map.size();
-  for (std::size_t i = 0; i < half; ++i) {
-    map.push_back(map[i]);
-    map.back().x += 5000;
-  }
+  const std::vector<MapPole> map = mapTwice(world);
   const Drive drive = driveFrom(world, 1, 60);
   const GlobalResult result = GlobalLocalizer(map).localize(drive.submap);
   EXPECT_EQ(result.verdict, GlobalVerdict::ambiguous);
@@ -211,12 +217,7 @@ TEST(GlobalLocalizer, NamesBothOfTwoEqualPlaces) {
 /// Where the drive began, to within 20 m, decides between the two.
 TEST(GlobalLocalizer, DecidesByTheAreaWhereTheDriveBegan) {
   const PoleCity world(city(1051));
-  std::vector<MapPole> map = world.map();
-  const std::size_t half = map.size();
-  for (std::size_t i = 0; i < half; ++i) {
-    map.push_back(map[i]);
-    map.back().x += 5000;
-  }
+  const std::vector<MapPole> map = mapTwice(world);
   const GlobalLocalizer localizer(map);
   const Drive drive = driveFrom(world, 1, 60);
   const Pose2D& begin = drive.frames.front().truth;

@@ -85,6 +85,15 @@ TEST_F(PoleMotionsTest, CoastsOverAFewBlindScans) {
   EXPECT_GT(scans[42].motion->covariance(0, 0), scans[30].motion->covariance(0, 0));
 }
 
+/// Each gap may be as long; the odometry between them knows the way.
+TEST_F(PoleMotionsTest, CoastsOverSeveralGapsOfTheOdometry) {
+  for (const std::size_t begin : {20, 50}) {
+    forgetMotions(begin, begin + 15);
+    blind(begin, begin + 15);
+  }
+  EXPECT_EQ(fillMotions(scans).coasted, 30u);
+}
+
 TEST_F(PoleMotionsTest, RefusesWhereNothingTellsTheWay) {
   forgetMotions(1, scans.size());
   blind(40, 65);

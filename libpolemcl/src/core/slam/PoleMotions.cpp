@@ -16,8 +16,7 @@ constexpr double kLongestCoast = 2;              // s without poles that tell th
 constexpr double kMaxSpeed = 40;                 // m/s
 constexpr double kMaxTurnRate = 1.5;             // rad/s
 constexpr int kMinPairsNear = 2, kMinPairs = 3;  // near the motion before; searched
-constexpr double kMinShare =
-    0.4;  // least share of the poles of the scan with fewer that are paired
+constexpr double kMinShare = 0.4;                // of the poles of the scan with fewer, paired
 constexpr double kSigma = 0.05, kShare = 0.05, kTurnSigma = 0.01;  // m, of the way, rad
 constexpr double kAcceleration = 3, kTurnAcceleration = 0.5;       // m/s², rad/s², while coasting
 
@@ -35,10 +34,12 @@ class MotionFiller {
   FilledMotions run() {
     for (std::size_t i = 0; i < m_scans.size(); ++i) {
       if (i > 0) {
-        if (m_scans[i].motion)
+        if (m_scans[i].motion) {
           learnVelocity(i, velocityOf(m_scans[i].motion->mean, secondsTo(i)));
-        else
+          m_coasted = 0;
+        } else {
           fill(i);
+        }
         m_poses[i] = compose(m_poses[i - 1], m_scans[i].motion->mean);
       }
       m_poles.push_back(stillPoles(m_scans[i], m_velocity.value_or(Velocity())));
@@ -139,7 +140,7 @@ class MotionFiller {
   std::vector<Pose2D> m_poses;                      ///< in the frame of the first
   std::vector<std::vector<PoleDetection>> m_poles;  ///< of each scan, when it was taken
   std::optional<Velocity> m_velocity;               ///< by the last motion that was told
-  double m_coasted = 0;                             ///< s, since poles last told the motion
+  double m_coasted = 0;  ///< s, since poles or odometry last told the motion
   FilledMotions m_filled;
 };
 

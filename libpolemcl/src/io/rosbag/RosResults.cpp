@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kSecond = 1000000000;
 /// Markers without size are not drawn.
 constexpr double kLeastRadius = 0.05, kLeastHeight = 0.1;
-/// Of visualization_msgs/msg/Marker.
+/// Numbers of the type and the actions in visualization_msgs/msg/Marker.
 constexpr std::int32_t kCylinder = 3, kAdd = 0, kDeleteAll = 3;
 
 void putHeader(CdrEncoder& message, const RosStamp& stamp) {

@@ -25,7 +25,7 @@ visualization_msgs::msg::Marker allDeleted(const std_msgs::msg::Header& header) 
   return marker;
 }
 
-/// Of a pole of the map or of a scan; both name their parts alike.
+/// The marker of a pole. \tparam Pole MapPole or PoleDetection.
 template <class Pole>
 visualization_msgs::msg::Marker markerOf(const Pole& pole, const std_msgs::msg::Header& header) {
   visualization_msgs::msg::Marker marker;
