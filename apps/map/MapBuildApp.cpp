@@ -14,6 +14,7 @@
 #include "io/map/PoleMapFile.h"
 #include "map/DriveFixFiles.h"
 #include "map/DrivePoses.h"
+#include "map/TimingDoubt.h"
 #include "report/picture/MapPicture.h"
 
 namespace polemcl::apps {
@@ -249,6 +250,25 @@ MappedDrives findPosesOf(std::vector<MappingSession>& drives, const MapBuildJob&
   return mapped;
 }
 
+/// The poses of the drives, and whether their poles doubt the timing.
+void mapDrivesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
+                 const AddedSessions& before, std::optional<io::Datum>& datum,
+                 const AllSettings& settings, MapBuildSummary& summary) {
+  const ScanTiming& timing = settings.sensor.timing;
+  std::vector<TimingEstimate> dead;
+  for (const MappingSession& drive : drives) {
+    summary.filled.push_back(drive.filled);
+    dead.push_back(remainingTiming(drive, timing.seconds));
+  }
+  summary.mapped = findPosesOf(drives, job, before, datum, settings);
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const std::string doubt =
+        timingDoubt(dead[i], remainingTiming(drives[i], timing.seconds), timing);
+    if (!doubt.empty())
+      summary.timingDoubts.push_back(job.inputs[i].filename().string() + ": " + doubt);
+  }
+}
+
 }  // namespace
 
 MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
@@ -271,9 +291,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
     });
   }
   if (job.kind == PoseKind::odometry)
-    for (const MappingSession& drive : drives) summary.filled.push_back(drive.filled);
-  if (job.kind == PoseKind::odometry)
-    summary.mapped = findPosesOf(drives, job, sessions.added(), datum, settings);
+    mapDrivesOf(drives, job, sessions.added(), datum, settings, summary);
   const auto paths = pathsOf(drives);
   for (std::size_t i = 0; i < drives.size(); ++i)
     addDrive(job, i, std::move(drives[i]), sessions, summary);
@@ -303,7 +321,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
 }
 
 std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = summary.timingDoubts;
   for (std::size_t i = 0; i < summary.motions.size(); ++i)
     if (summary.motions[i].contradicts())
       warnings.push_back(job.inputs[i].filename().string() + ": " + summary.motions[i].verdict() +

@@ -55,6 +55,7 @@ struct MapBuildSummary {
   std::optional<InventoryAdjustment> inventory;  ///< when one was given
   std::optional<MappedDrives> mapped;            ///< when odometry stood for poses
   std::vector<MotionCheck> motions;              ///< of each input, when its poses are a truth
+  std::vector<std::string> timingDoubts;         ///< sentences on inputs whose timing looks wrong
   std::size_t twins = 0;                         ///< poles with another nearer than 1 m
 };
 
@@ -70,8 +71,8 @@ struct MapBuildSummary {
 MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress = {});
 
-/// \brief Signs that the poses are wrong: poles that contradict them, many twins. Also in the map's
-/// info, key `warnings`.
+/// \brief Signs that poses or timing are wrong: poles that contradict them, many twins. Also in the
+/// map's info, key `warnings`.
 std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const MapBuildJob& job);
 
 /// \brief What the program prints.

@@ -11,13 +11,15 @@
 # false.
 # "-alone": without any odometry, by the poles alone; "cast-630" to "cast-633" also: streets of 400 m, a scan a metre,
 # the next numbers that nothing was looked at on.
+# "-clock": the clock of the scans, off by these seconds; "-uncorrected": scans of a turning LiDAR whose
+# motion is not corrected. "timing": what the program says of it, for all drives.
 # "several drives": the even and the odd key frames of the kilometre, each with an odometry of its own (seeds 7, 8),
 # at once and the odd ones added to the map of the even; two days of the streets 701 to 704 at once. "apart": each
 # street and the next one, which are different places: 20 pairs that must be refused. "gnss": fixes drawn by
 # gnss_fixes.py (seed 7) for the streets 701 to 704 and KAIST 01.
 # "localized": a second day of the streets 701 to 704 in the map without truth and in that of the true poses: share
 # of the scans that are ok, and errors after the best rigid motion within 60 m (local_error.py).
-# Programs: build/bin, or POLEMCL_BIN. Needs jq, python3-numpy and python3-scipy; 20 minutes.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq, python3-numpy and python3-scipy; 30 minutes.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -63,13 +65,14 @@ map() {
   found=$(for drive in $drives; do echo "$name-$drive-found"; done)
   begin=$(date +%s)
   "$bin/pole-map" build --config "$config" "$@" --input $(with_ending .rawlog " " $drives) --output "$name.polemap" \
-    --trajectory $(with_ending .tum " " $found) --png "$name.png" >"$name.txt"
+    --trajectory $(with_ending .tum " " $found) --png "$name.png" >"$name.txt" 2>"$name.warnings"
   seconds=$(($(date +%s) - begin))
   loops=$(sed -n 's/.*; \([0-9]*\) places passed again.*/\1/p' "$name.txt")
+  timing=$(sed -n 's/.*clock_offset_s = \([-0-9.]*\).*/clock: set \1/p; s/.*not look corrected.*/not corrected/p' "$name.warnings")
   /usr/bin/python3 "$top/share/experiments/aligned_error.py" "$(with_ending .tum , $truths)" \
     "$(with_ending .tum , $found)" "$(with_ending _cov.csv , $found)" "$sigmas" |
-    jq -c --arg drive "$name" --argjson loops "$loops" --argjson seconds $seconds \
-      '{drive: $drive, loops: $loops} + . + {seconds: $seconds}' >>results
+    jq -c --arg drive "$name" --argjson loops "$loops" --argjson seconds $seconds --arg timing "$timing" \
+      '{drive: $drive, loops: $loops} + . + {seconds: $seconds, timing: $timing}' >>results
 }
 
 # real NAME FOLDER CONFIG SIGMAS MOUNTING "IMPORT OPTIONS" [OPTION...]
@@ -173,6 +176,16 @@ for seed in 7 8 9 10 11; do
     "$clockwise $biased --seed $seed" --set sensor.height_m=1.77
 done
 real kitti_raw_0005 "$data/kitti_raw_0005" "$top/config/kitti.ini" 0.01,0.03 "0 0 0 0 0 0" "$clockwise $biased --seed 7"
+for offset in -0.1 -0.05 -0.03 0.03 0.05 0.1; do
+  real "vlp16-clock$offset" "$data/vlp16_loop" "$top/config/vlp16.ini" 0.015,0.03 "0 0 0 0 2.513 0.028" \
+    "$clockwise $biased --seed 7" --set sensor.height_m=1.77 --set sensor.clock_offset_s=$offset
+  real "kitti_raw_0005-clock$offset" "$data/kitti_raw_0005" "$top/config/kitti.ini" 0.01,0.03 "0 0 0 0 0 0" \
+    "$clockwise $biased --seed 7" --set sensor.clock_offset_s=$offset
+done
+real vlp16-uncorrected "$data/vlp16_loop" "$top/config/vlp16.ini" 0.015,0.03 "0 0 0 0 2.513 0.028" \
+  "--turn compensated $biased --seed 7" --set sensor.height_m=1.77
+real kitti_raw_0005-uncorrected "$data/kitti_raw_0005" "$top/config/kitti.ini" 0.01,0.03 "0 0 0 0 0 0" \
+  "--turn compensated $biased --seed 7"
 nuscenes
 alone vlp16 "$data/vlp16_loop" "$top/config/vlp16.ini" 0.015,0.03 "0 0 0 0 2.513 0.028" "$clockwise" \
   --set sensor.height_m=1.77
@@ -181,6 +194,8 @@ for world in 630 631 632 633; do cast_street $world; done
 if [ -n "$kilometre" ]; then
   alone kilometre "$kilometre" "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise"
   real kilometre "$kilometre" "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise $biased --seed 7"
+  real kilometre-uncorrected "$kilometre" "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" \
+    "--turn compensated $biased --seed 7"
   link_scans "$kilometre" "$out/laser" 1 228
   /usr/bin/python3 "$top/share/experiments/planar_motions.py" "$data/kitti_odom_00_km/laser_odometry.txt" laser/odometry.txt
   real kilometre-laser laser "$top/config/kitti.ini" 0.025,0.03 "0 0 0 0 0 0" "$clockwise"
@@ -204,11 +219,11 @@ for world in $(seq 701 720); do apart "$world" $((world == 720 ? 701 : world + 1
 
 jq -s . results >result.json
 rm results
-jq -r '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end_percent, .nees, .seconds] | @tsv' result.json |
+jq -r '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end_percent, .nees, .seconds, .timing] | @tsv' result.json |
   awk -F '\t' 'BEGIN {
-      format = "%-18s %6s %8s %8s %8s %8s %8s %6s %8s\n"
-      printf format, "drive", "loops", "way m", "rms m", "max m", "local m", "end %", "NEES", "seconds" }
-    { printf format, $1, $2, $3, $4, $5, $6, $7, $8, $9 }' >table.txt
+      format = "%-26s %6s %8s %8s %8s %8s %8s %6s %8s  %s\n"
+      printf format, "drive", "loops", "way m", "rms m", "max m", "local m", "end %", "NEES", "seconds", "timing" }
+    { printf format, $1, $2, $3, $4, $5, $6, $7, $8, $9, $10 }' >table.txt
 {
   jq -r '.[] | select(.localized) | "localized in \(.localized), \(.map): ok \(.ok), \(.local) m"' result.json
   jq -r '[.[] | select(.apart) | .refused] | "two streets, refused: \(map(select(.)) | length) of \(length)"' result.json

@@ -1,0 +1,47 @@
+#include "map/TimingDoubt.h"
+
+#include <cmath>
+
+#include "core/common/Transform.h"
+#include "io/file/TextFile.h"
+
+namespace polemcl::apps {
+namespace {
+
+constexpr double kLeastOffset = 0.02;  ///< s; what is found without one is up to 0.01 s
+
+TimedScan timedScan(const SessionScan& scan) {
+  TimedScan result{scan.time, scan.pose_map_robot, {}};
+  for (const PoleDetection& pole : scan.poles_robot) {
+    const Pose2D seen = relative(scan.pose_robot_sensor, {pole.x, pole.y, 0});
+    result.poles_robot.push_back({pole.x, pole.y, std::atan2(seen.y, seen.x)});
+  }
+  return result;
+}
+
+std::string errors(double significance) {
+  return " (" + io::fixed(significance, 1) + " standard errors)";
+}
+
+}  // namespace
+
+TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds) {
+  std::vector<TimedScan> scans;
+  for (const SessionScan& scan : drive.scans) scans.push_back(timedScan(scan));
+  return searchTiming(scans, turnSeconds);
+}
+
+std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped,
+                        const ScanTiming& timing) {
+  if (std::abs(dead.timing.clock) >= kLeastOffset)
+    return "the clocks of scans and odometry differ: its poles fit better with [sensor] "
+           "clock_offset_s = " +
+           io::fixed(timing.clock + dead.timing.clock, 2) + errors(dead.clockSignificance);
+  const TimingEstimate& found = dead.timing.known() ? dead : mapped;
+  if (!found.timing.known()) return {};
+  return "its scans do not look corrected for the motion during a turn" +
+         errors(found.turnSignificance) +
+         ": pole-extract --inspect tells [sensor] turn and cut_deg";
+}
+
+}  // namespace polemcl::apps

@@ -1,0 +1,26 @@
+#pragma once
+/// \file TimingDoubt.h
+/// \brief Do the poles of a drive say that the timing of its scans is wrong?
+
+#include <string>
+
+#include "core/sensor/TimingSearch.h"
+#include "map/MappingSession.h"
+
+namespace polemcl::apps {
+
+/// \brief The timing that fits the poles of a drive best, beyond what its scans were corrected by.
+/// Its poses may drift.
+TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds);
+
+/// \brief Another offset between the clocks of scans and odometry, or a turn of the LiDAR that
+/// nobody corrected.
+/// \param dead By dead reckoning. Only this shows the clocks: poses that poles made better follow
+///             the scans.
+/// \param mapped At the poses that were found, which may show the turn more clearly.
+/// \param timing What the settings say.
+/// \return A sentence for people; empty when there is nothing to say.
+std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped,
+                        const ScanTiming& timing);
+
+}  // namespace polemcl::apps
