@@ -14,15 +14,14 @@ case "$#:${1-}" in
     ;;
 esac
 dir=$(mktemp -d)
-# shellcheck source=tests/install/debian.sh
-. "$top/tests/install/debian.sh"
+# shellcheck source=share/setup/debian.sh
+. "$top/share/setup/debian.sh"
 [ "$(id -u)" = 0 ] || fail "needs root, for chroot"
 trap clean_up EXIT
 
 echo "An empty Debian: $release"
 make_root
-mkdir "$root/polemcl"
-(cd "$top" && git ls-files -z | tar -c --null -T - --ignore-failed-read) | tar -C "$root/polemcl" -x
+copy_sources
 data=
 if [ -n "${POLEMCL_DATA-}" ]; then
   mkdir "$root/data"

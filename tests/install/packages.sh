@@ -16,8 +16,8 @@ case "$#:${1-}" in
     ;;
 esac
 dir=$(mktemp -d)
-# shellcheck source=tests/install/debian.sh
-. "$top/tests/install/debian.sh"
+# shellcheck source=share/setup/debian.sh
+. "$top/share/setup/debian.sh"
 [ "$(id -u)" = 0 ] || fail "needs root, for chroot"
 trap clean_up EXIT
 

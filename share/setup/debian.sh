@@ -1,6 +1,6 @@
-# An empty Debian in a folder, for the scripts beside this one, which source it. They run as root, set
-# `dir` (a new folder of their own) and `release` (bookworm or trixie), and call clean_up at their end.
-# shellcheck shell=sh disable=SC2154 # dir and release are the caller's
+# An empty Debian in a folder, for the scripts that source this. They run as root, set `top` (of the sources), `dir`
+# (a new folder of their own) and `release` (bookworm or trixie), and call clean_up at their end.
+# shellcheck shell=sh disable=SC2154 # top, dir and release are the caller's
 root=$dir/root
 
 fail() {
@@ -62,4 +62,10 @@ make_root() {
   mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts"
   [ -e "$root/dev/ptmx" ] || ln -s pts/ptmx "$root/dev/ptmx"
   apt_get update
+}
+
+# copy_sources: the files that git knows, in /polemcl of the new Debian.
+copy_sources() {
+  mkdir "$root/polemcl"
+  (cd "$top" && git ls-files -z | tar -c --null -T - --ignore-failed-read) | tar -C "$root/polemcl" -x
 }
