@@ -23,6 +23,8 @@ class Injector {
       append(m_trial.origin, scanAfterMetres(m_trial.origin));
     } else if (m_options.fault == Fault::kidnap) {
       kidnap();
+    } else if (m_options.fault == Fault::jump) {
+      jump();
     } else {
       spoil();
     }
@@ -114,6 +116,23 @@ class Injector {
                 io::fixed(m_options.maxJump, 0) + " m from its scan " + std::to_string(from));
   }
 
+  void jump() {
+    m_trial.origin = drawStart(m_options.lead, 0);
+    const std::size_t from = scanAfterSeconds(m_trial.origin, m_options.lead);
+    append(m_trial.origin, scanAfterMetres(from));
+    m_trial.begin = from - m_trial.origin;
+    m_trial.jump = uniform(m_random, m_options.minShift, m_options.maxShift);
+    const double direction = uniform(m_random, -M_PI, M_PI);
+    const Pose2D shift{m_trial.jump * std::cos(direction), m_trial.jump * std::sin(direction), 0};
+    const bool returns = m_random() % 2 == 0;
+    m_trial.end = m_trial.begin + (returns ? 2 : 1);
+    for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
+      if (!m_trial.frames[i].motion) continue;
+      Pose2D& mean = m_trial.frames[i].motion->mean;
+      mean = compose(i == m_trial.begin ? shift : Pose2D{-shift.x, -shift.y, 0}, mean);
+    }
+  }
+
   void spoil() {
     m_trial.origin = drawStart(m_options.lead, m_options.duration);
     const std::size_t begin = scanAfterSeconds(m_trial.origin, m_options.lead);
@@ -146,7 +165,8 @@ class Injector {
 }  // namespace
 
 const char* name(Fault fault) {
-  static constexpr const char* kNames[] = {"none", "kidnap", "wrong-map", "blind", "stuck", "slip"};
+  static constexpr const char* kNames[] = {"none",  "kidnap", "wrong-map", "blind",
+                                           "stuck", "slip",   "jump"};
   return kNames[static_cast<int>(fault)];
 }
 

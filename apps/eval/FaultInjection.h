@@ -14,7 +14,8 @@ enum class Fault {
   wrongMap,  ///< the map is another one from the start on
   blind,     ///< no pole is detected
   stuck,     ///< the odometry says that the vehicle stands
-  slip       ///< the odometry is 20 % too long or too short
+  slip,      ///< the odometry is 20 % too long or too short
+  jump       ///< the odometry jumps by 0.5 to 3 m; in half of the trials, back one scan later
 };
 const char* name(Fault fault);  ///< of the command line
 
@@ -25,6 +26,7 @@ struct FaultOptions {
   double tail = 150;                   ///< driven after the fault's end, or after the kidnapping, m
   double slip = 0.2;                   ///< error of the slipping odometry's scale
   double minJump = 20, maxJump = 500;  ///< straight distance of the kidnapping, m
+  double minShift = 0.5, maxShift = 3;  ///< of the odometry that jumps, m
 };
 
 /// \brief Uniform in an interval; the same numbers on every machine.

@@ -21,7 +21,7 @@ struct Trial {
   std::size_t begin = 0;       ///< first scan with the fault; without one, the first scan
   std::size_t end = 0;         ///< first scan after it; `begin` for what lasts no time
   std::size_t origin = 0;      ///< scan of the whole drive that is the first here
-  double jump = 0;             ///< distance of a kidnapping, m
+  double jump = 0;             ///< distance of a kidnapping, or of a jump of the odometry, m
 };
 
 /// \brief Scans of the drive as they are, without a start. \param end First scan left out.
@@ -66,7 +66,7 @@ struct HealthCounts {
 /// so. A pose is right within 0.5 m and 2 degrees.
 struct TrialOutcome {
   std::size_t scan = 0;   ///< Trial::origin
-  double jump = 0;        ///< kidnapped by, m
+  double jump = 0;        ///< Trial::jump, m
   bool okBefore = false;  ///< in the scan before `begin`
   /// \name Since `begin`
   /// @{

@@ -8,6 +8,7 @@ namespace polemcl::apps {
 namespace {
 
 constexpr double kWithinSeconds = 5, kWithinMetres = 20;  // demanded of a fault
+constexpr double kJumpWithinSeconds = 0.5;
 
 using Outcomes = std::vector<TrialOutcome>;
 using Numbers = std::vector<double>;
@@ -167,6 +168,9 @@ bool passes(Fault fault, const TrialOutcome& outcome) {
       return within(outcome.lost, -1, kWithinMetres);
     case Fault::none:
       return !outcome.lost;
+    case Fault::jump:
+      return within(outcome.degraded, kJumpWithinSeconds, -1) &&
+             within(outcome.ok, -1, kWithinMetres);
     default:
       return within(outcome.degraded, kWithinSeconds, -1) && within(outcome.ok, -1, kWithinMetres);
   }

@@ -56,7 +56,8 @@ Figures faultFigures(const TrialDrive& drive, const TrialOptions& options,
 /// @}
 
 /// \brief What is demanded: kidnap, wrongMap: `lost` within 5 s or 20 m (wrongMap: 20 m). Blind,
-/// stuck, slip: at least `degraded` within 5 s, `ok` with the right pose within 20 m of the end.
+/// stuck, slip: at least `degraded` within 5 s (jump: 0.5 s), `ok` with the right pose within 20 m
+/// of the end.
 bool passes(Fault fault, const TrialOutcome& outcome);
 
 }  // namespace polemcl::apps

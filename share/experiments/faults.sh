@@ -2,7 +2,7 @@
 # Checks whether the localization notices faults, and recovers. Drives are simulated at 10 Hz and 7 m/s
 # along a 6 km road (poles drawn by the model of share/models/hdl32e.json, another day and another
 # drive than the map's, odometry of wheels, 1 % too long). 200 trials each on five worlds: kidnapped, wrong
-# map, blind, odometry stuck, odometry slipping. Also: half of the poles gone with twice the false
+# map, blind, odometry stuck, slipping, jumping. Also: half of the poles gone with twice the false
 # detections, and healthy drives of 10 h.
 # Usage: share/experiments/faults.sh [--quick] OUT [TRACK]
 #   OUT      gets maps, drives, one JSON and one text for each fault, table.txt and faults.json
@@ -62,15 +62,15 @@ faults() {
 }
 
 rm -f "$out"/*.kidnap.json "$out"/*.wrong-map.json "$out"/*.blind.json "$out"/*.stuck.json \
-  "$out"/*.slip.json "$out"/*.none.json "$out"/kidnap.txt "$out"/wrong-map.txt "$out"/blind.txt \
-  "$out"/stuck.txt "$out"/slip.txt "$out"/none.txt
+  "$out"/*.slip.json "$out"/*.jump.json "$out"/*.none.json "$out"/kidnap.txt "$out"/wrong-map.txt "$out"/blind.txt \
+  "$out"/stuck.txt "$out"/slip.txt "$out"/jump.txt "$out"/none.txt
 
 map_of 599 # the wrong map: another town on the same road
 seed=501
 for world in $worlds; do
   map_of "$world"
   drive "day$world" "$world" 1 2
-  for fault in kidnap blind stuck slip; do
+  for fault in kidnap blind stuck slip jump; do
     faults "$world" "day$world" "$fault" "$trials" "$seed"
   done
   faults "$world" "day$world" wrong-map "$trials" "$seed" --other-map "$out/map599.polemap" --tail 60
@@ -105,7 +105,7 @@ healthy_row() {
 {
   echo "fault      trials  as demanded  ok before  degraded max s  lost max s  lost max m  ok max m  \
 error after max m"
-  for fault in kidnap wrong-map blind stuck slip; do row "$fault"; done |
+  for fault in kidnap wrong-map blind stuck slip jump; do row "$fault"; done |
     awk -F '\t' '{ printf "%-10s %6d %12d %10d %15.1f %11.1f %11.1f %9.1f %18.3f\n", \
       $1, $2, $3, $4, $5, $6, $7, $8, $9 }'
   echo
@@ -119,7 +119,7 @@ collected() {
 }
 {
   echo '{'
-  for fault in kidnap wrong-map blind stuck slip; do
+  for fault in kidnap wrong-map blind stuck slip jump; do
     echo "\"$fault\": $(collected "$out"/*."$fault".json),"
   done
   echo "\"healthy\": $(collected "$out"/healthy*.none.json),"

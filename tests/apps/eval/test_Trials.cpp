@@ -358,8 +358,28 @@ TEST_F(FaultTrials, AKidnappingJumpsAsFarAsToldAndTimeGoesOn) {
   }
 }
 
+TEST_F(FaultTrials, TheOdometryJumpsAndMayComeBack) {
+  const TrialDrive whole = drive();
+  int back = 0;
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    const Trial jump = inject(Fault::jump, seed);
+    back += jump.end == jump.begin + 2;
+    for (std::size_t i = 1; i < jump.frames.size(); ++i) {
+      const Pose2D &seen = jump.frames[i].motion->mean,
+                   &right = whole.frames[jump.origin + i].motion->mean;
+      const bool faulty = i >= jump.begin && i < jump.end;
+      EXPECT_NEAR(std::hypot(seen.x - right.x, seen.y - right.y), faulty ? jump.jump : 0, 1e-9);
+      EXPECT_EQ(seen.yaw, right.yaw);
+    }
+    EXPECT_GE(jump.jump, 0.5);
+    EXPECT_LE(jump.jump, 3);
+  }
+  EXPECT_GT(back, 3);  // of 19: half, by chance
+  EXPECT_LT(back, 16);
+}
+
 TEST_F(FaultTrials, FaultsAreNoticedAndRecoveredFrom) {
-  for (const Fault fault : {Fault::kidnap, Fault::blind, Fault::stuck}) {
+  for (const Fault fault : {Fault::kidnap, Fault::blind, Fault::stuck, Fault::jump}) {
     options.fault.fault = fault;
     for (const TrialOutcome& trial : outcomes(drive(), faultyStretches)) {
       EXPECT_TRUE(trial.okBefore);
