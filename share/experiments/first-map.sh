@@ -3,7 +3,8 @@
 # street are cast (demo.ini, world 3), with the odometry of wheels, 1 % too long and 0.01 deg/m off. The map comes
 # from the odometry of the first day, and for comparison from its true poses; the second day is localized in both.
 # Usage: share/experiments/first-map.sh OUT [LENGTH]     LENGTH of the street, m; 200 unless given
-# Prints, and writes to OUT/table.txt: poles of the map; share of the scans that are ok; mean and greatest error against the true poses.
+# Prints, and writes to OUT/table.txt: poles of the map; share of the scans that are ok; mean and greatest error
+# against the true poses.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh

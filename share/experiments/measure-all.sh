@@ -68,7 +68,8 @@ measure kilometre result.json kilometre.json real-drives.sh "$data" @ --kilometr
 measure real-odometry-1 result.json real-1.json real-drives.sh "$data" @ --odometry 0.01,0.01
 measure real-odometry-5 result.json real-5.json real-drives.sh "$data" @ --odometry 0.05,0.05
 join real-odometry.json '{"0.01,0.01": .[0], "0.05,0.05": .[1]}' real-1.json real-5.json
-measure visual-odometry result.json visual-odometry.json kitti-split.sh "$data/kitti_raw_0005" @ "$top/config/kitti.ini" visual
+measure visual-odometry result.json visual-odometry.json kitti-split.sh "$data/kitti_raw_0005" @ \
+  "$top/config/kitti.ini" visual
 measure map-curves result.json map-curves.json map-curves.sh "$data" "$kilometre" @
 measure accumulated-cloud result.json accumulated-cloud.json accumulated-cloud.sh "$data" "$kilometre" @
 measure range-correction result.json range-correction.json range-correction.sh "$data" "$kilometre" @
