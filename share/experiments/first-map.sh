@@ -3,7 +3,8 @@
 # street are cast (demo.ini, world 3), with the odometry of wheels, 1 % too long and 0.01 deg/m off. The map comes
 # from the odometry of the first day, and for comparison from its true poses; the second day is localized in both.
 # Usage: share/experiments/first-map.sh OUT [LENGTH]     LENGTH of the street, m; 200 unless given
-# Prints: poles of the map; share of the scans that are ok; mean and greatest error against the true poses.
+# Prints, and writes to OUT/table.txt: poles of the map; share of the scans that are ok; mean and greatest error
+# against the true poses.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -29,7 +30,7 @@ awk '
   { x += $1 * cos(yaw) - $2 * sin(yaw); y += $1 * sin(yaw) + $2 * cos(yaw); yaw += $3; pose(time[++m + 1]) }
 ' day0.tum scans0/odometry.txt >odometry.tum
 
-printf '%-10s %6s %6s %8s %8s\n' map poles ok mean max
+printf '%-10s %6s %6s %8s %8s\n' map poles ok mean max >table.txt
 for truth in odometry day0; do
   "$bin/pole-map" build --quiet --config day0.ini --input day0.rawlog --truth $truth.tum --output $truth.polemap \
     --csv $truth.csv >/dev/null
@@ -40,5 +41,6 @@ for truth in odometry day0; do
     FILENAME ~ /health/ { scans++; ok += $3 == "ok"; next }
     { sum += $3; n++; if ($3 > most) most = $3 }
     END { printf "%-10s %6d %5.1f%% %8.3f %8.3f\n", name, poles, 100 * ok / scans, sum / n, most }
-  ' $truth/run_00_health.csv $truth/run_00_errors.csv
+  ' $truth/run_00_health.csv $truth/run_00_errors.csv >>table.txt
 done
+cat table.txt

@@ -7,8 +7,8 @@
 #              tells the commit, the day and the minutes of each. What is there is not measured again
 #   NAME       experiments, as measured.csv names them; all unless given
 # Copy OUT/reports/ to share/reports/ then. An experiment that fails is told at the end; the others go on.
-# Not among them: scan_matching.py and train-classifier.sh, which need programs of others or hours; bench_extraction
-# and bench_step (speed.json), which need a quiet machine.
+# Not among them: scan_matching.py and train-classifier.sh, which need programs of others or hours; bench_extraction,
+# bench_step and bench_global (speed.json), which need a quiet machine.
 # Programs: build/bin, or POLEMCL_BIN, of the commit that is checked out. Needs jq, python3-scipy, mrpt-apps; hours.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -68,6 +68,8 @@ measure kilometre result.json kilometre.json real-drives.sh "$data" @ --kilometr
 measure real-odometry-1 result.json real-1.json real-drives.sh "$data" @ --odometry 0.01,0.01
 measure real-odometry-5 result.json real-5.json real-drives.sh "$data" @ --odometry 0.05,0.05
 join real-odometry.json '{"0.01,0.01": .[0], "0.05,0.05": .[1]}' real-1.json real-5.json
+measure visual-odometry result.json visual-odometry.json kitti-split.sh "$data/kitti_raw_0005" @ \
+  "$top/config/kitti.ini" visual
 measure map-curves result.json map-curves.json map-curves.sh "$data" "$kilometre" @
 measure accumulated-cloud result.json accumulated-cloud.json accumulated-cloud.sh "$data" "$kilometre" @
 measure range-correction result.json range-correction.json range-correction.sh "$data" "$kilometre" @
@@ -86,6 +88,8 @@ measure map-upkeep result.json map-upkeep.json map-upkeep.sh @ 811 4
 measure global result.json global-default.json global.sh "$data/tracks" @
 measure global-dense result.json global-dense.json global.sh "$data/tracks" @ --dense
 join global.json '{default: .[0], dense: .[1]}' global-default.json global-dense.json
+measure first-map table.txt first-map.txt first-map.sh @
+measure first-map-600 table.txt first-map-600.txt first-map.sh @ 600
 measure motion-distortion result.json motion-distortion.json motion-distortion.sh @ 824 3 200
 measure two-lidars result.json two-lidars.json two-lidars.sh @ 861 3 150
 measure crossed-sensors result.json crossed-sensors.json crossed-sensors.sh @ "$kilometre"
