@@ -82,7 +82,8 @@ class POLEMCL_EXPORT Localizer {
   /// \brief The same from an observation of MRPT with its time stamp and sensor pose: point clouds,
   /// Velodyne and rotating scans, depth images, CObservationPoles.
   LocalizationUpdate step(const mrpt::obs::CObservation& scan, const Pose2D& odometry);
-  /// \brief The same from poles that were found elsewhere. \param poles_robot Frame of the robot.
+  /// \brief The same from poles that were found elsewhere. \param poles_robot Frame of the robot;
+  /// of more than 200, the most confident are used.
   LocalizationUpdate step(double time, const std::vector<PoleDetection>& poles_robot,
                           const Pose2D& odometry);
 

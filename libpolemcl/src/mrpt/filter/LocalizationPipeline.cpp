@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -47,6 +48,21 @@ bool isWide(const Eigen::Matrix3d& covariance) {
   const double square = LocalizationPipeline::wideMetres * LocalizationPipeline::wideMetres;
   return covariance(0, 0) > square || covariance(1, 1) > square ||
          covariance(2, 2) > LocalizationPipeline::wideRadians * LocalizationPipeline::wideRadians;
+}
+
+/// The most confident poles of a scan that has too many, in their order; the earlier of equal ones.
+void keepMostConfident(std::vector<PoleDetection>& poles) {
+  if (poles.size() <= LocalizationPipeline::mostPoles) return;
+  std::vector<std::size_t> order(poles.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return poles[a].confidence > poles[b].confidence;
+  });
+  order.resize(LocalizationPipeline::mostPoles);
+  std::sort(order.begin(), order.end());
+  std::vector<PoleDetection> kept;
+  for (const std::size_t i : order) kept.push_back(poles[i]);
+  poles = std::move(kept);
 }
 
 /// Median of the standard deviations of the poles' places along an axis, m.
@@ -190,9 +206,9 @@ std::vector<PoleDetection> LocalizationPipeline::polesForFilter(
   return m_tracks.take(static_cast<std::uint32_t>(tracking.minHits), tracking.every);
 }
 
-/// The frame with its poles as seen from the pose at its time stamp. Unless the frame states it,
-/// the velocity is that of the motion to it, extrapolated by half of its change since the motion
-/// before.
+/// The frame with its poles, not too many, as seen from the pose at its time stamp. Unless the
+/// frame states it, the velocity is that of the motion to it, extrapolated by half of its change
+/// since the motion before.
 PoleScan LocalizationPipeline::deskewed(PoleScan frame) {
   std::optional<Velocity> velocity = frame.velocity;
   if (m_stepped) {
@@ -200,6 +216,7 @@ PoleScan LocalizationPipeline::deskewed(PoleScan frame) {
     if (!velocity) velocity = m_meanVelocity ? extrapolated(*m_meanVelocity, mean) : mean;
     m_meanVelocity = mean;
   }
+  keepMostConfident(frame.poles_robot);
   for (PoleDetection& pole : frame.poles_robot) {
     const double unknown = velocity ? 0 : unknownSpeed * pole.timeOffset;
     pole.covariance += unknown * unknown * Eigen::Matrix2d::Identity();

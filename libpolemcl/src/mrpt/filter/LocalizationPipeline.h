@@ -96,6 +96,8 @@ class POLEMCL_EXPORT LocalizationPipeline {
   static constexpr double maxStartDistance = 1000;  ///< m
   /// Standard deviation of the velocity during a first scan that does not state it, m/s.
   static constexpr double unknownSpeed = 5;
+  /// Of a scan with more poles, the most confident are used: a step takes bounded time.
+  static constexpr std::size_t mostPoles = 200;
   /// Above this distance between two scans their poles are not averaged, m.
   static constexpr double sparseMetres = 2;
   /// Poles are seen again over this distance: what chance matches say about the place is new only
