@@ -13,6 +13,7 @@
 #include <cmath>
 #include <random>
 
+#include "mrpt/filter/LocalizationPipeline.h"
 #include "mrpt/filter/MotionAction.h"
 #include "mrpt/filter/PoleParticleFilter.h"
 
@@ -54,6 +55,17 @@ class Scene {
                           overTheMap ? uniform(-M_PI, M_PI) : truth.yaw + uniform(-0.05, 0.05));
     }
     return result;
+  }
+
+  /// Until the scan has `count` poles.
+  void addClutter(std::size_t count) {
+    while (frame.poles_robot.size() < count) {
+      PoleDetection clutter;
+      clutter.x = uniform(-50, 50);
+      clutter.y = uniform(-50, 50);
+      clutter.confidence = 0.5;
+      frame.poles_robot.push_back(clutter);
+    }
   }
 
   const Pose2D truth{700, 1, 0.02};
@@ -136,6 +148,24 @@ void stepOfMrpt(benchmark::State& state) {
   }
 }
 
+/// The first two scans after a start pose, the first with as many particles as a start has.
+/// \param range(0) Poles in each scan.
+void firstScans(benchmark::State& state) {
+  Scene scene;
+  scene.addClutter(static_cast<std::size_t>(state.range(0)));
+  const LocalizationMap map(scene.map);
+  StartOptions start;
+  start.pose = scene.truth;
+  for (auto _ : state) {
+    LocalizationPipeline localization(map, {}, 1);
+    localization.start(start);
+    for (int scan = 0; scan < 2; ++scan) {
+      scene.frame.time += 0.1;
+      benchmark::DoNotOptimize(localization.step(scene.frame));
+    }
+  }
+}
+
 void putBack(benchmark::State& state) {
   Scene scene;
   const auto particles = scene.particles(1000, false);
@@ -152,6 +182,12 @@ void places(benchmark::internal::Benchmark* bench) {
 BENCHMARK_CAPTURE(step, once, 0)->Apply(places);
 BENCHMARK_CAPTURE(step, tempered, FilterOptions().tempering)->Apply(places);
 BENCHMARK(stepOfMrpt)->Apply(places);
+BENCHMARK(firstScans)
+    ->ArgNames({"poles"})
+    ->Arg(10)
+    ->Arg(200)
+    ->Arg(10000)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(putBack)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
