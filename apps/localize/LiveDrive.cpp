@@ -11,6 +11,7 @@
 #include "io/file/TextFile.h"
 #include "mrpt/live/LiveQueue.h"
 #include "mrpt/live/LiveSensors.h"
+#include "mrpt/live/RecordedEntries.h"
 #include "mrpt/rawlog/EntryStream.h"
 #include "mrpt/rawlog/ScanSource.h"
 
@@ -99,6 +100,15 @@ class GapWatch {
   bool m_isBusy = false, m_isWarned = false;
 };
 
+/// A record that cannot be kept is a failure, unless there is one already.
+void keep(RecordedEntries& record, std::string& failure) {
+  try {
+    record.commit();
+  } catch (const Error& error) {
+    if (failure.empty()) failure = error.what();
+  }
+}
+
 }  // namespace
 
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,
@@ -125,10 +135,14 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
                                      [&](const std::string& warning) {
                                        if (drive.warn) drive.warn(warning);
                                      }});
+  const auto record =
+      drive.record ? std::make_shared<RecordedEntries>(queue, drive.record->string()) : nullptr;
   LiveDriveResult result;
-  result.counts = streamPoles(queue, drive.sensors.string(), options,
+  result.counts = streamPoles(record ? std::static_pointer_cast<EntrySource>(record) : queue,
+                              drive.sensors.string(), options,
                               [&](const ReadScan& scan) { watch.consume(scan, consume); });
   result.failure = result.counts.failure.empty() ? queue->failure() : result.counts.failure;
+  if (record) keep(*record, result.failure);
   if (!result.failure.empty() && result.counts.scans == 0) throw Error(result.failure);
   return result;
 }

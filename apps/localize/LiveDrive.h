@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "mrpt/rawlog/PoleSequence.h"
@@ -11,9 +12,10 @@
 namespace polemcl::apps {
 
 struct LiveDriveOptions {
-  std::filesystem::path sensors;      ///< see startSensors(); also a name among the shipped ones
-  double seconds = 0;                 ///< ends after this time, s; 0: never
-  double longestGap = 2;              ///< more time without a scan is told, s
+  std::filesystem::path sensors;  ///< see startSensors(); also a name among the shipped ones
+  std::optional<std::filesystem::path> record = {};  ///< rawlog of what is taken from the sensors
+  double seconds = 0;                                ///< ends after this time, s; 0: never
+  double longestGap = 2;                             ///< more time without a scan is told, s
   std::function<bool()> goesOn = {};  ///< false ends the drive; called from one thread at a time
   /// Called after each `longestGap` without a scan, also before the first one. May be called while
   /// a scan is consumed.
@@ -30,6 +32,8 @@ struct LiveDriveResult {
 /// \brief Streams poles from sensors until Ctrl-C (SIGINT) or SIGTERM, the end of a PCAP file, the
 /// failure of a sensor, or the given time. A second signal ends the program at once.
 ///
+/// The record gives the same poses when it is played. It is kept whatever ends the drive; when it
+/// cannot be written, that is a failure.
 /// Scans that come faster than `consume` takes them are dropped, the oldest first, see LiveQueue.
 /// \throws Error as startSensors() and streamPoles(); the failure of a sensor before any scan.
 LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptions& options,

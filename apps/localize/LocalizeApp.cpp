@@ -116,7 +116,7 @@ LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const 
     progress.update(scan.index + 1, scan.expected);
   };
   if (!job.isLive()) return {streamPoles(job.input.string(), options, take), ""};
-  LiveDriveOptions drive{job.sensors, job.seconds, settings.localization.maxGap};
+  LiveDriveOptions drive{job.sensors, job.record, job.seconds, settings.localization.maxGap};
   drive.warn = warn;
   if (stream) {
     drive.gap = [stream] { stream->addGap(); };
@@ -221,6 +221,9 @@ void addSources(CLI::App& cli, LocalizeJob& job) {
           ->excludes(input);
   addNumber(cli, "--for", job.seconds, "End a drive with --sensors after this time, s; 0: never",
             CLI::Range(0.0, 1e6))
+      ->needs(sensors);
+  addOutput(cli, "--record", job.record,
+            "Rawlog of what is taken from the sensors; played as --input, it gives the same poses")
       ->needs(sensors);
   addNumber(
       cli, "--follow", job.follow,

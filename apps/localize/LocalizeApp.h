@@ -20,8 +20,9 @@ struct LocalizeJob {
   std::filesystem::path config, input, map, output;
   std::filesystem::path sensors;  ///< in place of `input`: INI file of sensors; or empty
   double seconds = 0;             ///< length of a drive with sensors, s; 0: no end
-  std::vector<std::string> set;   ///< `section.key=value`, see loadSettings()
-  std::optional<std::filesystem::path> truth;  ///< TUM
+  std::optional<std::filesystem::path> record = {};  ///< rawlog of a drive with sensors
+  std::vector<std::string> set;                      ///< `section.key=value`, see loadSettings()
+  std::optional<std::filesystem::path> truth;        ///< TUM
   std::optional<int> runs, particles;
   std::optional<std::uint32_t> seed;
   std::vector<double> start;  ///< x, y (m), yaw (deg), radius (m), heading (deg); or empty

@@ -166,6 +166,32 @@ TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
   EXPECT_NE(outcome.out.find("0 scans dropped"), std::string::npos) << outcome.out;
 }
 
+TEST_F(LiveDriveTest, TheRecordGivesTheSamePoses) {
+  std::thread sender([this] {
+    drive(12, [this](std::size_t complete) { waitForLines(complete); });
+    waitForLines(10);
+    interrupt();
+  });
+  const std::string record = (folder / "record.rawlog").string();
+  const Outcome live = run({"--record", record});
+  sender.join();
+  ASSERT_EQ(live.code, 0) << live.err;
+  const Outcome played =
+      runProgram(localizeMain, {"--config", std::string(POLEMCL_SOURCE_DIR) + "/config/vlp16.ini",
+                                "--input", record, "--map", (folder / "map.polemap").string(),
+                                "--output", (folder / "again").string(), "--start", "0,0,0,0.3,3",
+                                "--set", "health.max_gap_s=60"});
+  ASSERT_EQ(played.code, 0) << played.err;
+  EXPECT_EQ(io::readPlanarTum(folder / "out/run_00.tum").size(), 10u);
+  for (const char* name : {"run_00.tum", "run_00_cov.csv", "run_00_health.csv"})
+    EXPECT_EQ(readText(folder / "again" / name), readText(folder / "out" / name)) << name;
+}
+
+TEST_F(LiveDriveTest, ARecordThatCannotBeWrittenIsSaid) {
+  const Outcome outcome = run({"--record", (folder / "nowhere/record.rawlog").string()});
+  expectFailure(outcome, {"nowhere"});
+}
+
 /// A standing vehicle; the odometry comes over the network as before.
 TEST_F(LiveDriveTest, APcapFilePlaysAsIfLiveAndEnds) {
   constexpr std::size_t turns = 12;
