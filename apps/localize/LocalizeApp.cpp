@@ -96,7 +96,9 @@ LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const 
   SequenceOptions options = settings.reading();
   options.allowTruncated = job.allowTruncated;
   options.follow = job.follow;
-  Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });
+  // Where the user steers, the view sets the pace.
+  Pace pace(rateOf(job, settings),
+            [&] { return view.isOpen() ? view.follows() : job.rate.has_value(); });
   options.pace = [&](double time) { return pace.waitFor(time); };
   Progress progress("localize", 0, job.quiet);
   std::mutex ofProgress;
@@ -175,7 +177,11 @@ LocalizeResult localize(const LocalizeJob& job) {
                          ": is left of a run that was killed, its results up to then are in "
                          "it; remove it when you do not need them")
               << '\n';
-  RunView view(settings.view, map->poles(), job.source().filename().string(), folder);
+  using Source = report::Playback::Source;
+  RunView view(settings.view,
+               {map->poles(), job.source().filename().string(), job.truth ? &truth : nullptr,
+                settings.reading(), job.isLive() ? Source::sensors : Source::rawlog},
+               folder);
 
   const LocalizationMap prepared(map);
   const auto begin = ScanClock::now();
