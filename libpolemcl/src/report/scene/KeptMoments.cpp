@@ -81,8 +81,8 @@ LiveMoment KeptMoments::at(std::size_t scan) const {
   moment.scan = scan;
   std::optional<Pose2D> pose;
   if (moment.estimate) pose = moment.estimate->mean;
-  moment.way = m_way.upTo(scan, pose, moment.health.state);
-  moment.trueWay = m_trueWay.upTo(scan, moment.truth);
+  moment.way = m_way.until(scan, pose, moment.health.state);
+  moment.trueWay = m_trueWay.until(scan, moment.truth);
   return moment;
 }
 

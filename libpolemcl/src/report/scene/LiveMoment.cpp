@@ -37,8 +37,8 @@ void Way::add(const std::optional<Pose2D>& pose, bool jumped, HealthState state)
   m_broken = false;
 }
 
-std::vector<WayPoint> Way::upTo(std::size_t scan, const std::optional<Pose2D>& pose,
-                                HealthState state) const {
+std::vector<WayPoint> Way::until(std::size_t scan, const std::optional<Pose2D>& pose,
+                                 HealthState state) const {
   const auto end =
       std::upper_bound(m_points.begin(), m_points.end(), scan,
                        [](std::size_t limit, const WayPoint& point) { return limit < point.scan; });

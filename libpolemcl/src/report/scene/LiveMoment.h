@@ -32,8 +32,8 @@ class Way {
   void add(const std::optional<Pose2D>& pose, bool jumped, HealthState state = HealthState::ok);
   const std::vector<WayPoint>& points() const { return m_points; }
   /// \brief As it was after this scan, at which pose and state were these.
-  std::vector<WayPoint> upTo(std::size_t scan, const std::optional<Pose2D>& pose,
-                             HealthState state = HealthState::ok) const;
+  std::vector<WayPoint> until(std::size_t scan, const std::optional<Pose2D>& pose,
+                              HealthState state = HealthState::ok) const;
 
  private:
   std::vector<WayPoint> m_points;

@@ -11,7 +11,7 @@
 
 namespace polemcl::report {
 
-/// \brief Robot frame, without points that are no returns; of more than 50000 evenly so many.
+/// \brief Robot frame, without points that are no returns; at most 50000, evenly chosen.
 /// \param sources Of one scan, as in ReadScan. \param reading As the scan was read.
 /// \throws Error as ObservationPoints::read().
 std::vector<mrpt::math::TPoint3Df> scanPoints(
