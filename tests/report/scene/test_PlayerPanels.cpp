@@ -77,11 +77,13 @@ TEST(TimeLine, FewScansFillTheirColumns) {
 TEST(TimeLine, TheWordsTellScanTimeAndWhetherItStandsStill) {
   Playback playback(Playback::Source::rawlog);
   for (int i = 0; i < 5; ++i) playback.add(0.1 * i, ok);
-  EXPECT_EQ(describe(playback, 240), "scan 0 of 239, 0.0 s");
+  EXPECT_EQ(describe(playback, 240), "scan 0 of about 239, 0.0 s");
   playback.step(3);
-  EXPECT_EQ(describe(playback, 0), "scan 3 of 4, 0.3 s, paused");
+  EXPECT_EQ(describe(playback, 0), "scan 3 of 4 so far, 0.3 s, paused");
   playback.goTo(50);
-  EXPECT_EQ(describe(playback, 240), "scan 3 of 239, 0.3 s, seeking: at 0.4 s");
+  EXPECT_EQ(describe(playback, 240), "scan 3 of about 239, 0.3 s, seeking: at 0.4 s");
+  playback.end();
+  EXPECT_EQ(describe(playback, 240), "scan 4 of 4, 0.4 s, paused");
 }
 
 TEST(PlayerPanels, ShowHealthErrorsAndTimes) {
@@ -99,7 +101,7 @@ TEST(PlayerPanels, ShowHealthErrorsAndTimes) {
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * 10);  // the marks of 0, 5, ... 45 s
 
   showTimeLine(*live.scene(), makeTimeLine(playback, std::vector<float>(50, 0.3f), 0), "");
-  EXPECT_NE(textOf(live.scene(), "player").find("0.2 m off the truth"), std::string::npos);
+  EXPECT_NE(textOf(live.scene(), "player").find("off the truth; line: 0.3 m"), std::string::npos);
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * (10 + 500));  // and the curve
 }
 

@@ -35,9 +35,9 @@ viz::CGridPlaneXY::Ptr makeGrid(double x, double y, double half, double step) {
   return scene::makeGround({centre - reach, centre + reach}, step);
 }
 
-/// Small, and above the vehicle, which it would hide.
+/// Above the vehicle, which it would hide.
 viz::CSetOfObjects::Ptr makeTruth(const Pose2D& truth, double length) {
-  auto arrow = makeArrow(truth, 0.3 * length, scene::truthColor);
+  auto arrow = makeArrow(truth, length, scene::truthColor);
   arrow->setLocation(0, 0, 1);
   return arrow;
 }
@@ -165,7 +165,8 @@ void LiveScene::showObjects(const LiveMoment& moment) {
   put(viewport, "dots", known ? nullptr : makeDots(m_map, 4 * m_textScale));
   put(viewport, "way", makeWay(moment.way));
   put(viewport, "true_way", makeTrueWay(moment.trueWay, known ? 0.2 : 0.004 * m_extent));
-  put(viewport, "true_vehicle", moment.truth ? makeTruth(*moment.truth, length) : nullptr);
+  put(viewport, "true_vehicle",
+      moment.truth ? makeTruth(*moment.truth, known ? 1.5 : 0.6 * length) : nullptr);
   put(viewport, "points", makePoints(moment, 2 * m_textScale));
   put(viewport, "vehicle", known ? makeArrow(pose, 3, colorOf(moment.health.state)) : nullptr);
   put(viewport, "ellipse", known ? makeEllipse(*moment.estimate, 0.1, 0.08) : nullptr);

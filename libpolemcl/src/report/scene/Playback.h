@@ -60,6 +60,7 @@ class Playback {
   bool follows() const { return isPlaying() && m_position + 1 >= newest(); }
   /// \brief The run is to make its next scan.
   bool wantsMore() const;
+  bool hasEnded() const { return m_ended; }
   /// \brief The run is over, and its last scan has been played.
   bool isOver() const { return m_ended && isPlaying() && m_position == newest(); }
 

@@ -54,7 +54,7 @@ class PanelPen {
 };
 
 const TColor s_empty(0xdd, 0xe1, 0xe6), s_area(0xc3, 0xca, 0xd3), s_curve(0x40, 0x48, 0x54),
-    s_shown(0x10, 0x10, 0x10);
+    s_mark(0x90, 0x98, 0xa4), s_shown(0x10, 0x10, 0x10);
 
 double endOf(const Playback& playback, std::size_t expected) {
   const double newest = playback.elapsed(playback.newest());
@@ -63,8 +63,13 @@ double endOf(const Playback& playback, std::size_t expected) {
   return std::max(newest * scale, 1.0);
 }
 
+/// A round error in the upper half of the curve.
+double markOf(double limit) {
+  const double step = tickStep(limit, 4);
+  return step * std::floor(0.95 * limit / step);
+}
+
 void drawErrors(PanelPen& pen, const TimeLine& line) {
-  const double step = tickStep(line.limit, 3);
   const auto height = [&](double error) {
     return s_curveBottom + s_curveHeight * std::min(error / line.limit, 1.0);
   };
@@ -81,10 +86,8 @@ void drawErrors(PanelPen& pen, const TimeLine& line) {
                   std::max(joined ? before : top, top) + 1, s_curve);
     before = top;
   }
-  for (double tick = step; tick < 0.75 * line.limit; tick += step) {
-    pen.rectangle(s_left, s_right, height(tick), height(tick) + 1, s_empty);
-    pen.text(s_left, height(tick) + 3, io::significant(tick, 3) + " m off the truth", 10);
-  }
+  const double tick = markOf(line.limit);
+  pen.rectangle(s_left, s_right, height(tick), height(tick) + 1, s_mark);
 }
 
 void drawHealth(PanelPen& pen, const TimeLine& line) {
@@ -140,9 +143,15 @@ TimeLine makeTimeLine(const Playback& playback, const std::vector<float>& errors
 }
 
 std::string describe(const Playback& playback, std::size_t expected) {
-  const std::size_t position = playback.position(), all = std::max(expected, playback.newest() + 1);
-  std::string words = "scan " + std::to_string(position) + " of " + std::to_string(all - 1) + ", " +
-                      io::fixed(playback.elapsed(position), 1) + " s";
+  const std::size_t position = playback.position(), newest = playback.newest();
+  std::string words = "scan " + std::to_string(position) + " of ";
+  if (playback.hasEnded())
+    words += std::to_string(newest);
+  else if (expected > newest)
+    words += "about " + std::to_string(expected - 1);
+  else
+    words += std::to_string(newest) + " so far";
+  words += ", " + io::fixed(playback.elapsed(position), 1) + " s";
   if (playback.isSeeking())
     words += ", seeking: at " + io::fixed(playback.elapsed(playback.newest()), 1) + " s";
   else if (playback.isPaused())
@@ -164,6 +173,9 @@ void showTimeLine(viz::Scene& scene, const TimeLine& line, const std::string& wo
   pen.rectangle(shown - 0.001, shown + 0.001, s_stripBottom - 4, height - s_text - 2 * s_margin,
                 s_shown);
   pen.text(s_left, height - s_margin - s_text, words, s_text);
+  if (withErrors)
+    pen.text(0.55, height - s_margin - s_text,
+             "off the truth; line: " + io::significant(markOf(line.limit), 3) + " m", 11);
   pen.text(0.89, height - s_margin - s_text, "h: help on keys", 11);
   pen.finish();
 }

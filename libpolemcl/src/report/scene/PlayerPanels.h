@@ -29,7 +29,7 @@ struct TimeLine {
 TimeLine makeTimeLine(const Playback& playback, const std::vector<float>& errors,
                       std::size_t expected);
 
-/// \brief `scan 13 of 239, 1.3 s, paused`: as the files of results count, from 0 to the last.
+/// \brief `scan 13 of about 239, 1.3 s, paused`: as the files of results count, from 0 to the last.
 std::string describe(const Playback& playback, std::size_t expected);
 
 /// \brief Panel `player` along the upper edge: the words, errors if there are any, health by
