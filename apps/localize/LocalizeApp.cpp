@@ -240,7 +240,7 @@ void addSources(CLI::App& cli, LocalizeJob& job) {
 }
 
 void addViewOptions(CLI::App& cli, LocalizeJob& job) {
-  cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
+  cli.add_flag("--live", job.live, "Play the first run in a window, h lists its keys; closing it ends only the view");
   cli.add_flag("--hold", job.hold, "As --live, and keep the window until it is closed");
   cli.add_option("--rate", job.rate, "Speed of the input: 1x as driven, 2.5x, max")
       ->type_name("SPEED")
@@ -265,6 +265,8 @@ const Guides kLocalizeGuides{
        "--output out --live",
        "pole-localize --config vlp16.ini --sensors live/vlp16.ini --map street.polemap --start "
        "0,0,0,2,5 --output out --stream -"},
+      "Keys of --live: space pauses, arrows step and skip, digits and enter go to a time, n to the "
+      "next degraded or lost scan; h lists all. They change no result. "
       "Evaluate and draw a run: pole-eval trajectory --truth drive.tum --estimate out/run_00.tum "
       "--map street.polemap --png run.png."}},
 };

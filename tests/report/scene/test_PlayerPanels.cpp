@@ -95,13 +95,13 @@ TEST(PlayerPanels, ShowHealthErrorsAndTimes) {
   const std::string words = textOf(live.scene(), "player");
   for (const char* part : {"the words", "h: help", "0 s", "40 s"})
     EXPECT_NE(words.find(part), std::string::npos) << part << " is not in:\n" << words;
-  EXPECT_EQ(words.find("truth"), std::string::npos);
+  EXPECT_EQ(words.find("error"), std::string::npos);
   for (const HealthState state : {ok, degraded, lost})
     EXPECT_EQ(facesOf(live.scene(), live::pathColorOf(state)), 2) << name(state);
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * 10);  // the marks of 0, 5, ... 45 s
 
   showTimeLine(*live.scene(), makeTimeLine(playback, std::vector<float>(50, 0.3f), 0), "");
-  EXPECT_NE(textOf(live.scene(), "player").find("off the truth; line: 0.3 m"), std::string::npos);
+  EXPECT_NE(textOf(live.scene(), "player").find("error of the position; line: 0.3 m"), std::string::npos);
   EXPECT_EQ(facesOf(live.scene(), scene::truthColor), 2 * (10 + 500));  // and the curve
 }
 

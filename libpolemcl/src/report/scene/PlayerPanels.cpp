@@ -174,8 +174,8 @@ void showTimeLine(viz::Scene& scene, const TimeLine& line, const std::string& wo
                 s_shown);
   pen.text(s_left, height - s_margin - s_text, words, s_text);
   if (withErrors)
-    pen.text(0.55, height - s_margin - s_text,
-             "off the truth; line: " + io::significant(markOf(line.limit), 3) + " m", 11);
+    pen.text(0.5, height - s_margin - s_text,
+             "error of the position; line: " + io::significant(markOf(line.limit), 3) + " m", 11);
   pen.text(0.89, height - s_margin - s_text, "h: help on keys", 11);
   pen.finish();
 }
