@@ -68,6 +68,7 @@ void LivePlayer::add(report::LiveMoment moment, const WatchedScan& scan) {
 void LivePlayer::end() {
   const std::lock_guard lock(m_mutex);
   m_playback.end();
+  m_newest.expected = 0;  // the newest is the last
   m_changed = true;
 }
 

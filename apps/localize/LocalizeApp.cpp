@@ -240,7 +240,8 @@ void addSources(CLI::App& cli, LocalizeJob& job) {
 }
 
 void addViewOptions(CLI::App& cli, LocalizeJob& job) {
-  cli.add_flag("--live", job.live, "Play the first run in a window, h lists its keys; closing it ends only the view");
+  cli.add_flag("--live", job.live,
+               "Play the first run in a window, h lists its keys; closing it ends only the view");
   cli.add_flag("--hold", job.hold, "As --live, and keep the window until it is closed");
   cli.add_option("--rate", job.rate, "Speed of the input: 1x as driven, 2.5x, max")
       ->type_name("SPEED")

@@ -124,20 +124,21 @@ TimeLine makeTimeLine(const Playback& playback, const std::vector<float>& errors
     const double share = std::clamp(playback.elapsed(scan) / line.length, 0.0, 1.0);
     return std::min(static_cast<std::size_t>(share * columns), columns - 1);
   };
-  std::vector<double> known;
   for (std::size_t scan = 0; scan <= playback.newest(); ++scan) {
     // Up to the next scan, where there are fewer scans than columns.
     const std::size_t first = columnOf(scan);
     const std::size_t last =
         scan < playback.newest() ? std::max(first + 1, columnOf(scan + 1)) : first + 1;
     const double error = errors[scan];
-    if (error >= 0) known.push_back(error);
     for (std::size_t i = first; i < last; ++i) {
       TimeLine::Column& column = line.columns[i];
       column.state = std::max(column.state.value_or(HealthState::ok), playback.state(scan));
       if (error >= 0) column.error = std::max(column.error.value_or(0), error);
     }
   }
+  std::vector<double> known;
+  for (const TimeLine::Column& column : line.columns)
+    if (column.error) known.push_back(*column.error);
   if (!known.empty()) line.limit = valueLimit(known);
   return line;
 }
