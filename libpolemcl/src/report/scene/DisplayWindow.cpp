@@ -75,23 +75,32 @@ class PressedKeys : public mrpt::system::CObserver {
   std::vector<KeyPress> m_pressed;
 };
 
+/// MRPT's thread draws a window, and gives it keys, for a moment after it has been closed: it would
+/// use memory that is freed. So this one is closed, but never deleted.
+struct Window : mrpt::gui::CDisplayWindow3D {
+  using CDisplayWindow3D::CDisplayWindow3D;
+  void close() { destroyWxWindow(); }
+  PressedKeys keys;
+};
+
 class DisplayWindow : public LiveWindow {
  public:
   DisplayWindow(const std::string& title, unsigned width, unsigned height,
                 const viz::Scene::Ptr& scene)
-      : m_window(title, width, height) {
+      : m_window(*new Window(title, width, height)) {
     if (!m_window.isOpen())
       throw Error(
           "no window can be opened on this display; leave --live out, --frames DIR writes "
           "pictures without a display");
     m_window.get3DSceneAndLock() = scene;
     m_window.unlockAccess3DScene();
-    m_keys.observeBegin(m_window);
+    m_window.keys.observeBegin(m_window);
   }
+  ~DisplayWindow() override { m_window.close(); }
+  DisplayWindow(const DisplayWindow&) = delete;
+  DisplayWindow& operator=(const DisplayWindow&) = delete;
 
-  bool isOpen() const override {
-    return const_cast<mrpt::gui::CDisplayWindow3D&>(m_window).isOpen();
-  }
+  bool isOpen() const override { return m_window.isOpen(); }
 
   void update(const std::function<void()>& change, const viz::CCamera& camera) override {
     m_window.get3DSceneAndLock();
@@ -110,7 +119,7 @@ class DisplayWindow : public LiveWindow {
     if (m_window.isOpen()) m_window.setWindowTitle(title);
   }
 
-  std::vector<KeyPress> takeKeys() override { return m_keys.take(); }
+  std::vector<KeyPress> takeKeys() override { return m_window.keys.take(); }
 
  private:
   /// How the user has turned the camera.
@@ -135,8 +144,7 @@ class DisplayWindow : public LiveWindow {
     m_followed = true;
   }
 
-  PressedKeys m_keys;  ///< outlives the window, whose thread calls it
-  mrpt::gui::CDisplayWindow3D m_window;
+  Window& m_window;
   bool m_followed = false;
   float m_azimuth = 0, m_zoom = 0;  ///< of the scene's camera
   std::map<float, View> m_views;    ///< by the distance of the scene's camera
