@@ -96,7 +96,9 @@ LiveDriveResult play(const LocalizeJob& job, const AllSettings& settings, const 
   SequenceOptions options = settings.reading();
   options.allowTruncated = job.allowTruncated;
   options.follow = job.follow;
-  Pace pace(rateOf(job, settings), [&] { return job.rate || view.isOpen(); });
+  // Where the user steers, the view sets the pace.
+  Pace pace(rateOf(job, settings),
+            [&] { return view.isOpen() ? view.follows() : job.rate.has_value(); });
   options.pace = [&](double time) { return pace.waitFor(time); };
   Progress progress("localize", 0, job.quiet);
   std::mutex ofProgress;
@@ -175,7 +177,11 @@ LocalizeResult localize(const LocalizeJob& job) {
                          ": is left of a run that was killed, its results up to then are in "
                          "it; remove it when you do not need them")
               << '\n';
-  RunView view(settings.view, map->poles(), job.source().filename().string(), folder);
+  using Source = report::Playback::Source;
+  RunView view(settings.view,
+               {map->poles(), job.source().filename().string(), job.truth ? &truth : nullptr,
+                settings.reading(), job.isLive() ? Source::sensors : Source::rawlog},
+               folder);
 
   const LocalizationMap prepared(map);
   const auto begin = ScanClock::now();
@@ -237,7 +243,8 @@ void addSources(CLI::App& cli, LocalizeJob& job) {
 }
 
 void addViewOptions(CLI::App& cli, LocalizeJob& job) {
-  cli.add_flag("--live", job.live, "Show the first run in a window; closing it ends only the view");
+  cli.add_flag("--live", job.live,
+               "Play the first run in a window, h lists its keys; closing it ends only the view");
   cli.add_flag("--hold", job.hold, "As --live, and keep the window until it is closed");
   cli.add_option("--rate", job.rate, "Speed of the input: 1x as driven, 2.5x, max")
       ->type_name("SPEED")
@@ -262,6 +269,8 @@ const Guides kLocalizeGuides{
        "--output out --live",
        "pole-localize --config vlp16.ini --sensors live/vlp16.ini --map street.polemap --start "
        "0,0,0,2,5 --output out --stream -"},
+      "Keys of --live: space pauses, arrows step and skip, digits and enter go to a time, n to the "
+      "next degraded or lost scan; h lists all. They change no result. "
       "Evaluate and draw a run: pole-eval trajectory --truth drive.tum --estimate out/run_00.tum "
       "--map street.polemap --png run.png."}},
 };

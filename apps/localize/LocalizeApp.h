@@ -59,9 +59,11 @@ struct LocalizeResult {
 /// each scan side by side, with the same bytes as one by one.
 ///
 /// Memory does not grow with the length of the drive, but for the truth (32 bytes a pose) and,
-/// while the run is watched, the path of the estimate (24 bytes a metre). By default a scan follows
+/// while the run is watched, the paths (32 bytes a metre each) and, with a window, what KeptMoments
+/// keeps of each scan (2 kB). By default a scan follows
 /// the one before as fast as it goes. `--rate` sets a pace (see Pace.h); with a window `[view]
-/// rate` does (1x by default), until the user closes it.
+/// rate` does (1x by default), until the user closes it. A user who pauses or goes back in the
+/// window makes a rawlog wait; the results stay the same.
 ///
 /// With sensors, scans that come faster than they can be handled are dropped (see LiveQueue), and
 /// the drive ends with a signal (see LiveDrive.h). A sensor that fails ends it as well, and so does

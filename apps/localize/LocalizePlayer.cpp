@@ -33,7 +33,7 @@ void LocalizePlayer::take(const ReadScan& scan) {
   if (m_truth) m_covered += poseAt(*m_truth, frame.time, longestTruthGap).has_value();
   for (std::size_t i = 0; i < steps.size(); ++i) m_files[i].add(steps[i].update);
   if (m_bag) m_bag->add(m_runs->localization(0), frame, steps[0].update);
-  m_view.show(m_runs->localization(0), frame, steps[0].update);
+  m_view.show(m_runs->localization(0), frame, steps[0].update, {scan.sources, scan.expected});
   m_timings.write.add(secondsSince(found));
   for (const FilterStep& step : steps) m_timings.step.add(step.seconds);
   m_timings.read.add(scan.readSeconds);

@@ -16,13 +16,8 @@ constexpr double farAway = 1e8;  // s; the clock can count to 9e9
 Pace::Pace(std::optional<double> rate, std::function<bool()> goesOn)
     : m_rate(rate), m_goesOn(std::move(goesOn)) {}
 
-ScanClock::time_point Pace::waitFor(double time) {
-  const auto goesOn = [&] { return m_rate && (!m_goesOn || m_goesOn()); };
-  if (!goesOn()) {
-    m_time.reset();
-    return ScanClock::now();
-  }
-  if (m_time) {
+ScanClock::time_point Pace::dueOf(double time) {
+  if (m_rate && m_time) {
     const std::chrono::duration<double> gap(
         std::min(std::clamp(time - *m_time, 0.0, longestGap) / *m_rate, farAway));
     m_due += std::chrono::duration_cast<ScanClock::duration>(gap);
@@ -30,6 +25,16 @@ ScanClock::time_point Pace::waitFor(double time) {
     m_due = ScanClock::now();
   }
   m_time = time;
+  return m_due;
+}
+
+ScanClock::time_point Pace::waitFor(double time) {
+  const auto goesOn = [&] { return m_rate && (!m_goesOn || m_goesOn()); };
+  if (!goesOn()) {
+    restart();
+    return ScanClock::now();
+  }
+  dueOf(time);
   // In short pieces: a window that is closed, or an error elsewhere, ends the waiting.
   while (ScanClock::now() < m_due && goesOn() && !tbb::is_current_task_group_canceling())
     std::this_thread::sleep_for(

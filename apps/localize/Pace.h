@@ -23,6 +23,10 @@ class Pace {
   /// \brief Waits until the scan of this time (s) is due; ends early when the work is cancelled.
   /// \return When it was due; without a rate, now.
   ScanClock::time_point waitFor(double time);
+  /// \brief The same without the wait.
+  ScanClock::time_point dueOf(double time);
+  /// \brief The clock starts again with the next scan.
+  void restart() { m_time.reset(); }
 
  private:
   std::optional<double> m_rate;

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Opens each kind of .3Dscene in MRPT's SceneViewer3D, untouched, and looks at the picture: poles and
-# paths in the middle of the window, in the map's frame and at UTM coordinates. Then mrpt-tools.sh: the others.
+# paths in the middle of the window, in the map's frame and at UTM coordinates. Then mrpt-tools.sh: the others;
+# player.sh: the window of pole-localize.
 # Usage: tests/viewers/run.sh [PICTURES]; skips, and says why, where a program is missing.
 # Programs: build/bin, or POLEMCL_BIN. PICTURES: a folder that gets the screenshots.
 set -eu
@@ -111,3 +112,4 @@ if look "$folder/broken.3Dscene" map 10 "$pictures/broken.png"; then
 fi
 echo "Test of viewers: passed; SceneViewer3D shows maps, trajectories, changes and live scenes"
 "$top/tests/viewers/mrpt-tools.sh" "$@"
+"$top/tests/viewers/player.sh" "$@"

@@ -37,6 +37,17 @@ TEST(Pace, TheClockGoesOnWhileTheWorkIsSlow) {
   EXPECT_NEAR(seconds(pace.waitFor(2) - first), 0.002, 1e-9);
 }
 
+TEST(Pace, StartsAgainWithoutTheTimeInBetween) {
+  Pace pace(1.0);
+  const auto first = pace.dueOf(10);  // does not wait
+  EXPECT_NEAR(seconds(pace.dueOf(11.5) - first), 1.5, 1e-9);
+  pace.restart();
+  const auto again = pace.dueOf(60);
+  EXPECT_LE(again, ScanClock::now());
+  EXPECT_GE(again, first);
+  EXPECT_NEAR(seconds(pace.dueOf(60.5) - again), 0.5, 1e-9);
+}
+
 TEST(Pace, WithoutARateNothingWaits) {
   Pace pace(std::nullopt);
   const auto begin = ScanClock::now();

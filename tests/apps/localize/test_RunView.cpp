@@ -33,7 +33,7 @@ class RunViewTest : public testing::Test {
   /// Two runs, the first of them watched. \return What it found.
   Updates run() {
     RunFolder results(folder / "out");
-    RunView watched(view, street.map->poles(), "drive", results);
+    RunView watched(view, {street.map->poles(), "drive"}, results);
     const Updates done = play(watched);
     watched.finish();
     writeText(results.staged("summary.json"), "done");
@@ -74,7 +74,7 @@ TEST_F(RunViewTest, WithoutAnythingToShowNothingIsWritten) {
   run();
   EXPECT_EQ(names(folder / "out"), Names({"summary.json"}));
   RunFolder results(folder / "out");
-  EXPECT_FALSE(RunView(view, street.map->poles(), "drive", results).isOpen());
+  EXPECT_FALSE(RunView(view, {street.map->poles(), "drive"}, results).isOpen());
 }
 
 TEST_F(RunViewTest, WritesFramesEverySoManyScans) {
@@ -139,7 +139,7 @@ TEST_F(RunViewTest, AFrameThatCannotBeWrittenEndsTheRun) {
   view.frames = (folder / "frames").string();
   view.width = 160, view.height = 160;
   RunFolder results(folder / "out");
-  RunView watched(view, street.map->poles(), "drive", results);
+  RunView watched(view, {street.map->poles(), "drive"}, results);
   for (const auto& name : names(folder.path()))  // the folder under its temporary name
     if (name.rfind("frames", 0) == 0) fs::remove_all(folder / name);
   try {

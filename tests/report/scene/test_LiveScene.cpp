@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
+#include <mrpt/opengl/CSetOfTriangles.h>
 #include <mrpt/opengl/CText.h>
 
 #include <Eigen/LU>
@@ -7,6 +8,7 @@
 #include <iterator>
 
 #include "mrpt/drawing/SceneParts.h"
+#include "report/scene/LiveObjects.h"
 #include "report/scene/LiveScene.h"
 #include "support/LiveMoments.h"
 #include "support/SampleViews.h"
@@ -96,6 +98,64 @@ TEST(LiveScene, AJumpLeavesNoLine) {
   EXPECT_NEAR(boxOf(scene.scene(), "way").max.x, 9, 1e-4);
 }
 
+TEST(LiveScene, ThePathHasTheColoursOfHealth) {
+  LiveMoment moment = knownMoment();
+  moment.way = {{0, 0, false},
+                {1, 0, true},
+                {2, 0, true, HealthState::degraded},
+                {3, 0, true, HealthState::lost},
+                {9, 9, false},
+                {9, 8, true}};
+  LiveScene scene(smallMap(), "");
+  scene.show(moment);
+  const auto way = std::dynamic_pointer_cast<mrpt::opengl::CSetOfTriangles>(
+      scene.scene()->getViewport()->getByName("way"));
+  ASSERT_TRUE(way);
+  ASSERT_EQ(way->getTrianglesCount(), 8u);  // two for each metre, none over the jump
+  const HealthState states[] = {HealthState::ok, HealthState::degraded, HealthState::lost,
+                                HealthState::ok};
+  for (std::size_t i = 0; i < 8; ++i) {
+    mrpt::opengl::TTriangle face;
+    way->getTriangle(i, face);
+    const auto color = live::pathColorOf(states[i / 2]);
+    EXPECT_EQ(face.vertices[0].xyzrgba.r, color.R) << i;
+    EXPECT_EQ(face.vertices[0].xyzrgba.g, color.G) << i;
+    EXPECT_NEAR(face.vertices[0].xyzrgba.pt.x, i < 6 ? i / 2 : 9, 0.4) << i;
+  }
+}
+
+TEST(LiveScene, TheTruthIsThereWhenItIsKnown) {
+  LiveMoment moment = knownMoment();
+  LiveScene scene(smallMap(), "");
+  scene.show(moment);
+  EXPECT_FALSE(scene.scene()->getViewport()->getByName("true_way"));
+  EXPECT_EQ(legendOf(scene.scene()).find("true path"), std::string::npos);
+  moment.truth = Pose2D{10.3, 0.4, M_PI / 2 - 0.1};
+  moment.trueWay = {{8.3, 0.4, false}, {10.3, 0.4, true}};
+  scene.show(moment);
+  EXPECT_NEAR(boxOf(scene.scene(), "true_way").min.x, 8.3, 1e-4);
+  EXPECT_NEAR(boxOf(scene.scene(), "true_way").max.x, 10.3, 1e-4);
+  const auto arrow = boxOf(scene.scene(), "true_vehicle");
+  EXPECT_NEAR((arrow.min.x + arrow.max.x) / 2, 10.3, 0.1);
+  EXPECT_NE(legendOf(scene.scene()).find("true path"), std::string::npos);
+  EXPECT_NE(legendOf(scene.scene()).find("error 0.500 m, 5.73 deg"), std::string::npos);
+}
+
+TEST(LiveScene, ThePointsOfTheScanStandAtTheEstimate) {
+  LiveMoment moment = knownMoment();  // at (10, 0), looking along +y
+  moment.points_robot = {{2, 1, 0.1f}, {2, 1, 4}};
+  LiveScene scene(smallMap(), "");
+  scene.show(moment);
+  const auto points = std::dynamic_pointer_cast<mrpt::opengl::CPointCloudColoured>(
+      scene.scene()->getViewport()->getByName("points"));
+  ASSERT_TRUE(points);
+  ASSERT_EQ(points->size(), 2u);
+  EXPECT_NEAR(points->getPoint3Df(1).x, 9, 1e-5);
+  EXPECT_NEAR(points->getPoint3Df(1).y, 2, 1e-5);
+  EXPECT_NEAR(points->getPoint3Df(1).z, 4, 1e-5);
+  EXPECT_GT(points->getPointColor(0).R, points->getPointColor(1).R);  // high ones are darker
+}
+
 TEST(LiveScene, WithoutAPoseItShowsThePlacesSupposedAndTheWholeMap) {
   LiveScene scene(smallMap(), "drive");
   scene.show(knownMoment());
@@ -131,7 +191,11 @@ TEST(LiveScene, TheTextTellsTheHealth) {
   scene.show(moment);
   text = legendOf(scene.scene());
   EXPECT_NE(text.find(std::string("degraded: ") + name(HealthReason::noPoles)), std::string::npos);
-  EXPECT_EQ(text.find("ok\n"), std::string::npos);
+  EXPECT_EQ(text.find("degraded"), 0u);  // the first line
+  EXPECT_EQ(text.find("found by the search"), std::string::npos);
+  moment.relocalized = true;
+  scene.show(moment);
+  EXPECT_NE(legendOf(scene.scene()).find("found by the search"), std::string::npos);
 }
 
 TEST(LiveScene, TheCameraFollowsFromBehindAndTurnsGently) {

@@ -93,6 +93,22 @@ Viewport& panelOf(Scene& scene, const std::string& name, double border) {
   return *panel;
 }
 
+void hidePanel(Viewport& panel) {
+  panel.clear();
+  panel.clearTextMessages();
+  panel.setBorderSize(0);
+  panel.setViewportPosition(0, 0, 0.001, 0.001);
+}
+
+void addText(Viewport& panel, double x, double y, const std::string& text, std::size_t index,
+             double size, const TColor& color) {
+  viz::TFontParams font;
+  font.vfont_name = "sans";
+  font.vfont_scale = static_cast<float>(size);
+  font.color = mrpt::img::TColorf(color);
+  panel.addTextMessage(x, y, asciiOf(text), index, font);
+}
+
 viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step) {
   const auto down = [&](double value) {
     return static_cast<float>(std::floor(value / step) * step);
@@ -195,7 +211,8 @@ std::vector<LegendLine> countLegend(const std::vector<MapPole>& poles) {
   return lines;
 }
 
-void showLegend(Scene& scene, const std::vector<LegendLine>& lines, double scale, Corner corner) {
+void showLegend(Scene& scene, const std::vector<LegendLine>& lines, double scale, Corner corner,
+                const std::string& name) {
   constexpr double kMargin = 10, kSpacing = 6, kMark = 10, kIndent = 18;  // pixels
   constexpr double kLetter = 0.82;  // width of a letter relative to its size
   double height = 2 * kMargin - kSpacing, width = 0;
@@ -205,12 +222,13 @@ void showLegend(Scene& scene, const std::vector<LegendLine>& lines, double scale
                                 (line.mark ? kIndent : 0));
   }
   width += 2 * kMargin;
-  const auto place = [&](bool far, double length) {  // MRPT: negative counts from far side
-    constexpr double kOff = 10;
-    return far ? -(kOff + length) * scale : kOff * scale;
+  // MRPT: negative counts from the far side.
+  const auto place = [&](bool far, double offset, double length) {
+    return far ? -(offset + length) * scale : offset * scale;
   };
-  Viewport& panel = panelOf(scene, "text", scale);
-  panel.setViewportPosition(place(corner.right, width), place(corner.top, height), width * scale,
+  Viewport& panel = panelOf(scene, name, scale);
+  panel.setViewportPosition(place(corner.right, 10, width),
+                            place(corner.top, corner.offset, height), width * scale,
                             height * scale);
   panel.getCamera().setNoProjection();
   panel.clearTextMessages();
@@ -224,12 +242,8 @@ void showLegend(Scene& scene, const std::vector<LegendLine>& lines, double scale
       marks.push_back(
           {{2 * (kMargin + kMark / 2) / width - 1, 2 * (y + line.size / 2) / height - 1, 0},
            *line.mark});
-    viz::TFontParams font;
-    font.vfont_name = "sans";
-    font.vfont_scale = static_cast<float>(line.size * scale);
-    font.color = mrpt::img::TColorf(line.color);
-    panel.addTextMessage((kMargin + (line.mark ? kIndent : 0)) * scale, y * scale,
-                         asciiOf(line.text), i, font);
+    addText(panel, (kMargin + (line.mark ? kIndent : 0)) * scale, y * scale, line.text, i,
+            line.size * scale, line.color);
     y -= kSpacing;
   }
   put(panel, "marks", makeDots(marks, kMark * scale));

@@ -36,6 +36,12 @@ void prepare(viz::Viewport& viewport);
 void put(viz::Viewport& viewport, const std::string& name, const viz::CVisualObject::Ptr& object);
 /// \brief A viewport with a border over the main one; created on first use.
 viz::Viewport& panelOf(viz::Scene& scene, const std::string& name, double border);
+/// \brief Viewports cannot be taken away: this one becomes a dot without content.
+void hidePanel(viz::Viewport& panel);
+/// \brief A line of text in a panel. \param x,y As CTextMessageCapable takes them. \param index Of
+/// the text in the panel. \param size Height of the letters, pixels.
+void addText(viz::Viewport& panel, double x, double y, const std::string& text, std::size_t index,
+             double size, const TColor& color = textColor);
 
 /// \brief A grid that covers the box, with lines at multiples of `step`.
 viz::CGridPlaneXY::Ptr makeGround(const Eigen::AlignedBox2d& box, double step);
@@ -81,11 +87,12 @@ struct LegendLine {
 std::vector<LegendLine> countLegend(const std::vector<MapPole>& poles);
 struct Corner {
   bool right = false, top = false;
+  double offset = 10;  ///< from the top or from the bottom, pixels
 };
-/// \brief Panel `text` in a corner, with the lines from top to bottom.
+/// \brief A panel in a corner, with the lines from top to bottom.
 /// \param scale Factor on the size of letters and marks.
 void showLegend(viz::Scene& scene, const std::vector<LegendLine>& lines, double scale = 1,
-                Corner corner = {});
+                Corner corner = {}, const std::string& name = "text");
 
 /// \brief Writes a `.3Dscene`, atomically. \throws Error when it cannot be written.
 void save(const viz::Scene& scene, const std::filesystem::path& file);

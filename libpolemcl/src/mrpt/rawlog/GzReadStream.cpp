@@ -118,7 +118,8 @@ std::uint64_t GzReadStream::Seek(std::int64_t, TSeekOrigin) {
 
 double GzReadStream::progress() const {
   if (m_follow.count() > 0) return 0;
-  const auto at = gzoffset(m_file);
+  // That of zlib is ahead by what it has buffered.
+  const auto at = gzdirect(m_file) ? static_cast<z_off_t>(m_position) : gzoffset(m_file);
   return m_fileSize == 0 || at < 0
              ? 1.0
              : std::min(1.0, static_cast<double>(at) / static_cast<double>(m_fileSize));

@@ -18,20 +18,38 @@ std::vector<double> relativeWeights(const std::vector<double>& logWeights) {
 }  // namespace
 
 void Way::add(const LocalizationUpdate& update) {
-  if (update.relocalized || !update.estimate) m_broken = true;
-  if (!update.estimate) return;
-  const Pose2D& pose = update.estimate->mean;
+  std::optional<Pose2D> pose;
+  if (update.estimate) pose = update.estimate->mean;
+  add(pose, update.relocalized, update.health.state);
+}
+
+void Way::add(const std::optional<Pose2D>& pose, bool jumped, HealthState state) {
+  const std::size_t scan = m_scans++;
+  if (jumped || !pose) m_broken = true;
+  if (!pose) return;
   if (m_provisional && !m_broken) m_points.pop_back();
   const bool far =
-      m_broken || std::hypot(pose.x - m_points.back().x, pose.y - m_points.back().y) >= spacing;
-  m_points.push_back({pose.x, pose.y, !m_broken});
+      m_broken || std::hypot(pose->x - m_points.back().x, pose->y - m_points.back().y) >= spacing;
+  m_worst = m_broken ? state : std::max(m_worst, state);
+  m_points.push_back({pose->x, pose->y, !m_broken, m_worst, scan});
+  if (far) m_worst = HealthState::ok;
   m_provisional = !far;
   m_broken = false;
 }
 
+std::vector<WayPoint> Way::until(std::size_t scan, const std::optional<Pose2D>& pose,
+                                 HealthState state) const {
+  const auto end =
+      std::upper_bound(m_points.begin(), m_points.end(), scan,
+                       [](std::size_t limit, const WayPoint& point) { return limit < point.scan; });
+  std::vector<WayPoint> way(m_points.begin(), end);
+  const bool stayed = !way.empty() && way.back().scan == scan;
+  if (pose && !stayed) way.push_back({pose->x, pose->y, true, state, scan});
+  return way;
+}
+
 LiveMoment momentOf(const LocalizationPipeline& localization, const PoleScan& frame,
-                    const LocalizationUpdate& update, std::size_t scan, double start,
-                    const Way& way) {
+                    const LocalizationUpdate& update, std::size_t scan, double start) {
   LiveMoment moment;
   moment.scan = scan;
   moment.elapsed = frame.time - start;
@@ -48,8 +66,13 @@ LiveMoment momentOf(const LocalizationPipeline& localization, const PoleScan& fr
   moment.health = update.health;
   moment.step = update.step;
   moment.relocalized = update.relocalized;
-  moment.way = way.points();
   return moment;
+}
+
+std::optional<double> positionError(const LiveMoment& moment) {
+  if (!moment.estimate || !moment.truth) return std::nullopt;
+  const Pose2D& pose = moment.estimate->mean;
+  return std::hypot(pose.x - moment.truth->x, pose.y - moment.truth->y);
 }
 
 }  // namespace polemcl::report

@@ -14,7 +14,7 @@ using viz::CSetOfLines;
 using viz::CSetOfObjects;
 using viz::CSetOfTriangles;
 
-constexpr double aboveGround = 0.05;  // m; the grid would flicker through
+constexpr double aboveGround = 0.1;  // m; the grid would flicker through
 
 Eigen::Vector3d corner(const Pose2D& pose, double ahead, double left, double z) {
   const Pose2D place = compose(pose, {ahead, left, 0});
@@ -33,6 +33,11 @@ TColor mixed(const TColor& a, const TColor& b, double share) {
 TColor colorOf(HealthState state) {
   if (state == HealthState::ok) return {0x00, 0x6d, 0x4e};
   return state == HealthState::degraded ? TColor(0xb3, 0x5c, 0x00) : TColor(0xc0, 0x10, 0x28);
+}
+
+TColor pathColorOf(HealthState state) {
+  if (state == HealthState::ok) return scene::estimateColor;
+  return state == HealthState::degraded ? TColor(0xf0, 0xb0, 0x00) : colorOf(state);
 }
 
 CSetOfObjects::Ptr makeMap(const std::vector<MapPole>& poles) {
@@ -73,22 +78,50 @@ CSetOfObjects::Ptr makeObserved(const LiveMoment& moment, bool matched) {
   return objects;
 }
 
-CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way) {
-  constexpr double width = 0.6;  // m
+namespace {
+
+/// \param colorAt Of the band that leads to a point.
+template <class ColorAt>
+CSetOfTriangles::Ptr makeBands(const std::vector<WayPoint>& way, double height, double width,
+                               const ColorAt& colorAt) {
   auto bands = CSetOfTriangles::Create();
   scene::Path line;
-  const auto finish = [&] {
-    scene::insertRibbon(*bands, line, aboveGround, width, scene::estimateColor);
-    line.clear();
-  };
-  for (const WayPoint& point : way) {
-    if (!point.joined) finish();
-    line.emplace_back(point.x, point.y);
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (!way[i].joined) line.clear();
+    line.emplace_back(way[i].x, way[i].y);
+    const bool goesOn = i + 1 < way.size() && way[i + 1].joined;
+    if (goesOn && (line.size() == 1 || way[i + 1].state == way[i].state)) continue;
+    scene::insertRibbon(*bands, line, height, width, colorAt(way[i]));
+    line.erase(line.begin(), line.end() - 1);  // the next band begins where this one ends
   }
-  finish();
   if (bands->getTrianglesCount() == 0) return nullptr;
-  scene::setColor(*bands, scene::estimateColor);
+  scene::setColor(*bands, colorAt(way.back()));
   return bands;
+}
+
+}  // namespace
+
+CSetOfTriangles::Ptr makeWay(const std::vector<WayPoint>& way) {
+  constexpr double width = 0.6;  // m
+  return makeBands(way, aboveGround, width,
+                   [](const WayPoint& point) { return pathColorOf(point.state); });
+}
+
+CSetOfTriangles::Ptr makeTrueWay(const std::vector<WayPoint>& way, double width) {
+  return makeBands(way, 3 * aboveGround, width, [](const WayPoint&) { return scene::truthColor; });
+}
+
+viz::CPointCloudColoured::Ptr makePoints(const LiveMoment& moment, double pointSize) {
+  if (!moment.estimate || moment.points_robot.empty()) return nullptr;
+  constexpr double high = 5;  // m above ground, from where on they are darkest
+  std::vector<scene::Dot> dots;
+  dots.reserve(moment.points_robot.size());
+  for (const auto& point : moment.points_robot) {
+    const Pose2D place = compose(moment.estimate->mean, {point.x, point.y, 0});
+    const double share = std::clamp(point.z / high, 0.0, 1.0);
+    dots.push_back({{place.x, place.y, point.z}, mixed(lowPoint, highPoint, share)});
+  }
+  return scene::makeDots(dots, pointSize);
 }
 
 CSetOfObjects::Ptr makeArrow(const Pose2D& pose, double length, const TColor& color) {

@@ -35,13 +35,22 @@ viz::CGridPlaneXY::Ptr makeGrid(double x, double y, double half, double step) {
   return scene::makeGround({centre - reach, centre + reach}, step);
 }
 
+/// Above the vehicle, which it would hide.
+viz::CSetOfObjects::Ptr makeTruth(const Pose2D& truth, double length) {
+  auto arrow = makeArrow(truth, length, scene::truthColor);
+  arrow->setLocation(0, 0, 1);
+  return arrow;
+}
+
 /// As seen from another origin; the axes stay.
 LiveMoment movedBy(LiveMoment moment, const Eigen::Vector2d& origin) {
   const auto move = [&](auto& place) { place.x -= origin.x(), place.y -= origin.y(); };
   if (moment.estimate) move(moment.estimate->mean);
   for (Pose2D& particle : moment.particles) move(particle);
   for (GlobalHypothesis& place : moment.hypotheses) move(place.pose_map_robot);
-  for (WayPoint& point : moment.way) move(point);
+  for (auto* way : {&moment.way, &moment.trueWay})
+    for (WayPoint& point : *way) move(point);
+  if (moment.truth) move(*moment.truth);
   return moment;
 }
 
@@ -67,10 +76,10 @@ std::vector<std::string> describe(const LiveMoment& moment) {
   const Health& health = moment.health;
   std::string state = name(health.state);
   if (health.state != HealthState::ok) state += std::string(": ") + name(health.reason);
-  if (moment.relocalized) state += " (found by the search)";
   const auto onMap = std::count_if(moment.matches.begin(), moment.matches.end(),
                                    [](const PoleMatch& match) { return match.matched; });
   std::vector<std::string> lines{state, line("time %.1f s, scan %zu", moment.elapsed, moment.scan)};
+  if (moment.relocalized) lines.push_back("found by the search");
   if (!moment.estimate) {
     lines.push_back(line("observed poles %zu, places %zu", moment.poles_robot.size(),
                          moment.hypotheses.size()));
@@ -83,6 +92,9 @@ std::vector<std::string> describe(const LiveMoment& moment) {
   lines.push_back(line("spread %.3f m, %.2f deg", health.spread, health.spreadHeading / degree));
   lines.push_back(
       line("particles %zu, effective %.0f", moment.step.particles, health.effectiveParticles));
+  if (const auto error = positionError(moment))
+    lines.push_back(
+        line("error %.3f m, %.2f deg", *error, wrapAngle(pose.yaw - moment.truth->yaw) / degree));
   return lines;
 }
 
@@ -146,17 +158,21 @@ void LiveScene::showObjects(const LiveMoment& moment) {
   Viewport& viewport = *m_scene->getViewport();
   const bool known = moment.estimate.has_value();
   const Pose2D pose = known ? moment.estimate->mean : Pose2D{m_centre.x(), m_centre.y(), 0};
+  const double length = known ? 5 : std::max(0.04 * m_extent, 5.0);
   put(viewport, "ground",
       known ? makeGrid(pose.x, pose.y, 150, 5)
             : makeGrid(pose.x, pose.y, 0.6 * m_extent, tickStep(m_extent, 40)));
   put(viewport, "dots", known ? nullptr : makeDots(m_map, 4 * m_textScale));
   put(viewport, "way", makeWay(moment.way));
+  put(viewport, "true_way", makeTrueWay(moment.trueWay, known ? 0.2 : 0.004 * m_extent));
+  put(viewport, "true_vehicle",
+      moment.truth ? makeTruth(*moment.truth, known ? 1.5 : 0.6 * length) : nullptr);
+  put(viewport, "points", makePoints(moment, 2 * m_textScale));
   put(viewport, "vehicle", known ? makeArrow(pose, 3, colorOf(moment.health.state)) : nullptr);
   put(viewport, "ellipse", known ? makeEllipse(*moment.estimate, 0.1, 0.08) : nullptr);
   put(viewport, "particles", makeParticles(moment, 0.15, 3 * m_textScale));
   put(viewport, "matched", makeObserved(moment, true));
   put(viewport, "unmatched", makeObserved(moment, false));
-  const double length = known ? 5 : std::max(0.04 * m_extent, 5.0);
   put(viewport, "hypotheses",
       makeHypotheses(moment.hypotheses, length, static_cast<int>(16 * m_textScale)));
 }
@@ -164,13 +180,8 @@ void LiveScene::showObjects(const LiveMoment& moment) {
 void LiveScene::showClose(const LiveMoment& moment) {
   Viewport& viewport = scene::panelOf(*m_scene, "close", m_textScale);
   Viewport& caption = scene::panelOf(*m_scene, "caption", m_textScale);
-  if (!moment.estimate) {  // viewports cannot be taken away: this one is a dot without content
-    viewport.clear();
-    caption.clearTextMessages();
-    for (Viewport* panel : {&viewport, &caption}) {
-      panel->setBorderSize(0);
-      panel->setViewportPosition(0, 0, 0.001, 0.001);
-    }
+  if (!moment.estimate) {
+    for (Viewport* panel : {&viewport, &caption}) scene::hidePanel(*panel);
     return;
   }
   // Steps, so that it does not breathe with every update.
@@ -193,12 +204,8 @@ void LiveScene::showClose(const LiveMoment& moment) {
   put(viewport, "ground", makeGrid(0, 0, 2 * half, step));
   put(viewport, "particles", makeParticles(near, 0.01 * half, 3 * m_textScale));
   put(viewport, "ellipse", makeEllipse(*near.estimate, 0.02 * half, 0.015 * half));
-  viz::TFontParams font;
-  font.vfont_name = "sans";
-  font.vfont_scale = static_cast<float>(11 * m_textScale);
-  font.color = mrpt::img::TColorf(scene::textColor);
-  caption.addTextMessage(8 * m_textScale, 12 * m_textScale,
-                         line("particles, y up, grid %g m", step), 0, font);
+  scene::addText(caption, 8 * m_textScale, 12 * m_textScale,
+                 line("particles, y up, grid %g m", step), 0, 11 * m_textScale);
 }
 
 void LiveScene::showText(const LiveMoment& moment) {
@@ -210,10 +217,13 @@ void LiveScene::showText(const LiveMoment& moment) {
   lines.insert(lines.end(), {{"map poles", mapColor},
                              {"observed poles on the map", matchedColor},
                              {"observed poles not on the map", unmatchedColor},
-                             {"path of the estimate", scene::estimateColor},
+                             {"path while ok", pathColorOf(HealthState::ok)},
+                             {"path while degraded", pathColorOf(HealthState::degraded)},
+                             {"path while lost", pathColorOf(HealthState::lost)},
                              {"particles, the heavier the darker", particleColor},
                              {"95 % of the estimate's positions", ellipseColor},
                              {"places supposed by the search", hypothesisColor}});
+  if (!moment.trueWay.empty()) lines.push_back({"true path", scene::truthColor});
   if (!m_origin.isZero()) lines.push_back({scene::originText(m_origin)});
   scene::showLegend(*m_scene, lines, m_textScale);
 }

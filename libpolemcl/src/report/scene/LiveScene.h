@@ -14,7 +14,8 @@ namespace polemcl::report {
 ///
 /// Viewport `main`, map frame, ground at z = 0, with the objects
 /// - `ground`: a grid; `map`: a cylinder per map pole;
-/// - `way`: where the estimate has been; `vehicle`: an arrow at the estimate, coloured by health;
+/// - `way`: where the estimate has been; `vehicle`: an arrow at the estimate; coloured by health;
+/// - `true_way`, `true_vehicle`: the same of the truth; `points`: those of the scan;
 /// - `ellipse`: 95 % of the estimate's positions; `particles`: points, the heavier the darker;
 /// - `matched`, `unmatched`: observed poles that stand on the map, or not, with lines of sight;
 /// - `hypotheses`: arrows where the last search supposes the vehicle, while the pose is in doubt.

@@ -8,8 +8,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <polemcl/mrpt/common/Compatibility.h>
+#include "report/scene/PlayerKeys.h"
 
 namespace polemcl::report {
 
@@ -19,10 +21,14 @@ class LiveWindow {
   /// \brief False once the user has closed it.
   virtual bool isOpen() const = 0;
   /// \brief Changes the scene that the window shows. The camera goes along as that of the scene
-  /// moves, from wherever the user has turned it to.
+  /// moves, from wherever the user has turned it to; where the scene shows the whole map, the user
+  /// has a view of its own.
   /// \param change Called with the window's drawing stopped.
   /// \param camera That of the scene, read after the change.
   virtual void update(const std::function<void()>& change, const viz::CCamera& camera) = 0;
+  virtual void setTitle(const std::string& title) = 0;
+  /// \brief The keys that were pressed since the last call, in order.
+  virtual std::vector<KeyPress> takeKeys() = 0;
 };
 
 /// \brief Opens a window that shows this scene. \param width,height Pixels.
