@@ -16,6 +16,7 @@
 #include "cli/JsonFile.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
+#include "io/file/Sync.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -196,11 +197,13 @@ void BatchFolder::commit(const BatchTask& task, const fs::path& staged) const {
                                {"crc32", checksumOf(kept / output)}});
   }
   writeJson(kept / "done.json", done);
+  io::syncAll(kept);
   std::error_code failure;
   fs::rename(kept, work(task.id), failure);
   // On a cluster, a task that was taken for dead may have ended after all: the bytes are the same.
   if (failure && state(task) != State::done)
     throw Error(work(task.id).string() + ": cannot be completed: " + failure.message());
+  io::syncFolder(m_path / "tasks");
   std::error_code none;
   fs::remove_all(staged, none);
   fs::remove(m_path / "failed" / (task.id + ".json"), none);

@@ -172,8 +172,10 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
                 " to draw; there are " + std::to_string(summary.counts.scans) +
                 ", numbered from 0");
   gnss.writeRest();
-  rawlog.commit();
+  io::AtomicFiles together;
   if (csv) csv->commit();
+  rawlog.commit();
+  together.commit();
   return summary;
 }
 

@@ -239,7 +239,10 @@ def tables(report):
 def write(file, text):
     """Writes all of a file or nothing."""
     part = file.with_name(file.name + ".part")
-    part.write_text(text, encoding="utf-8", newline="\n")
+    with part.open("w", encoding="utf-8", newline="\n") as stream:
+        stream.write(text)
+        stream.flush()
+        os.fsync(stream.fileno())
     os.replace(part, file)
 
 

@@ -1,0 +1,45 @@
+"""What a machine may lack: descriptors, memory, space, the right to write."""
+
+import os
+import resource
+import signal
+
+NOBODY = 65534
+ENOUGH = 5  # limits at which all is well; larger ones are not tried
+
+
+def limits(bench, count, chance):
+    """One line on stderr, or the output is there; nothing half-written."""
+    largest = max(len(content) for content in bench.new.values())
+    sizes = sorted(chance.sample(range(largest), min(count, largest)))
+    for what, limit, unit, numbers in (("descriptors", resource.RLIMIT_NOFILE, 1, range(3, 100)),
+                                       ("MB of memory", resource.RLIMIT_AS, 1 << 20, range(100, 4000)),
+                                       ("bytes in a file", resource.RLIMIT_FSIZE, 1, sizes)):
+        well = 0
+        for number in numbers:
+            code, wrong = tried(bench, number % 2, 0o755, lambda: limited(limit, number * unit))
+            yield f"{number} {what}", wrong
+            well = well + 1 if code == 0 else 0
+            if well == ENOUGH:
+                break
+    for earlier in (False, True):
+        yield f"no right to write, earlier {earlier}", tried(bench, earlier, 0o555, without_rights)[1]
+
+
+def tried(bench, earlier, mode, prepare):
+    """Exit code, and what is wrong. Libraries that cannot be loaded end the program as they like."""
+    bench.fresh(earlier)
+    bench.out.chmod(mode)
+    code, stderr = bench.finish(bench.start(preexec_fn=prepare))
+    is_begun = "while loading shared libraries" not in stderr and "terminate called" not in stderr
+    return code, (bench.said(code, stderr) if is_begun else []) + bench.judge(earlier, code)
+
+
+def limited(limit, number):
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a file that grows too large is an error
+    resource.setrlimit(limit, (number, number))
+
+
+def without_rights():
+    if os.geteuid() == 0:
+        os.setuid(NOBODY)
