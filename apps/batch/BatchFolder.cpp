@@ -170,9 +170,12 @@ BatchFolder::State BatchFolder::state(const BatchTask& task, std::string* why) c
   return State::done;
 }
 
+fs::path BatchFolder::part(const BatchTask& task) const {
+  return work(task.id).string() + "." + host() + "-" + std::to_string(::getpid()) + ".part";
+}
+
 fs::path BatchFolder::stage(const BatchTask& task) const {
-  fs::path folder = work(task.id);
-  folder += "." + host() + "-" + std::to_string(::getpid()) + ".part";
+  const fs::path folder = part(task);
   std::error_code none;
   fs::remove_all(folder, none);
   createFolder(folder);
@@ -210,8 +213,12 @@ void BatchFolder::commit(const BatchTask& task, const fs::path& staged) const {
 }
 
 void BatchFolder::remove(const BatchTask& task) const {
+  const fs::path aside = part(task);  // so that half of it never has its name
   std::error_code failure;
-  fs::remove_all(work(task.id), failure);
+  fs::remove_all(aside, failure);
+  fs::rename(work(task.id), aside, failure);
+  if (failure == std::errc::no_such_file_or_directory) return;
+  if (!failure) fs::remove_all(aside, failure);
   if (failure) throw Error(work(task.id).string() + ": cannot be removed: " + failure.message());
 }
 

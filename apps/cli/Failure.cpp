@@ -70,6 +70,7 @@ void sayFailure(const std::string& program, const std::string& text) {
 void endUncaughtInOneLine(const char* path) {
   const char* const slash = std::strrchr(path, '/');
   s_program = slash ? slash + 1 : path;
+  s_hasFailed = false;
   std::set_terminate(endInOneLine);
 }
 

@@ -58,6 +58,7 @@ using testing_disk::DiskCallNotes;
 using testing_disk::s_calls;
 
 extern "C" {
+#pragma GCC visibility push(default)  // so that libraries call these, too
 
 int fsync(int file) {
   DiskCallNotes::note("sync " + DiskCallNotes::nameOf(file));
@@ -104,4 +105,5 @@ std::FILE* fopen(const char* file, const char* mode) {
   return real(file, mode);
 }
 
+#pragma GCC visibility pop
 }  // extern "C"
