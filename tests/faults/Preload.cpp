@@ -200,6 +200,7 @@ int removeFile(const std::string& path, Call call) {
   }
 
 extern "C" {
+#pragma GCC visibility push(default)
 
 OPEN(open)
 OPEN(open64)
@@ -272,4 +273,6 @@ int unlinkat(int folder, const char* path, int flags) noexcept {
   return removeFile(folder == AT_FDCWD ? absolute(path) : absolute(folder, path),
                     [&] { return real(folder, path, flags); });
 }
+
+#pragma GCC visibility pop
 }

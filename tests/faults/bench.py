@@ -38,6 +38,8 @@ class Bench:
         self.undisturbed("a", preload=True)
         self.calls = Counter(line.split("\t")[0].replace("exchange", "rename")
                              for line in self.log.read_text().splitlines())
+        if self.calls["rename"] == 0:
+            raise SystemExit(f"{self.command}: {self.preload} sees no calls")
 
     def undisturbed(self, version, **options):
         self.fresh()

@@ -16,6 +16,9 @@ map-convert: pole-map convert {in}/session.polemap --output {out}/street.polemap
 map-import: pole-map import --input {in}/trees.csv --columns lon,lat --sigma-m 1 --output {out}/city.polemap
 localize: pole-localize --config demo.ini --input {in}/drive.rawlog --map {in}/street.polemap --truth {in}/drive.tum --particles 100 --output {out}/run --mcap {out}/run.mcap --scenes 30
 eval-trajectory: pole-eval trajectory --truth {in}/drive.tum --estimate {in}/run/run_00.tum --map {in}/street.polemap --png {out}/run.png --json {out}/run.json
+eval-map: pole-eval map --truth {in}/scans/poles_gt.csv --map {in}/street.polemap --json {out}/map.json
+eval-detections: pole-eval detections --scans {in}/scans --poles {in}/poles.rawlog --visible {out}/seen.csv --json {out}/found.json
+eval-mrpt-truth: pole-eval mrpt-truth --truth {in}/drive.tum --output {out}/truth.txt
 eval-features: pole-eval features --config demo.ini --scans {in}/scans --output {out}/features.csv
 batch: pole-batch {in}/batch.ini --output {out}/batch --jobs 1 --resume
 """.strip().splitlines()}
@@ -26,6 +29,7 @@ INPUTS = """
 pole-simulate --config demo.ini --length 40 --day {day} --set simulation.spacing_m=20 --output {in}/scans
 pole-simulate --config demo.ini --length 40 --day {day} --set simulation.detections=hdl32e.json --poles {in}/drive.rawlog
 pole-import folder --input {in}/scans --output {in}/scans.rawlog --embed
+pole-extract --config demo.ini --input {in}/scans.rawlog --output {in}/poles.rawlog
 pole-map build --config demo.ini --input {in}/drive.rawlog --truth {in}/drive.tum --output {in}/street.polemap
 pole-map build --config demo.ini --input {in}/drive.rawlog --truth {in}/drive.tum --output {in}/session.polemap --keep-scans
 pole-localize --config demo.ini --input {in}/drive.rawlog --map {in}/street.polemap --truth {in}/drive.tum --output {in}/run

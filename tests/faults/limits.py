@@ -18,7 +18,8 @@ def limits(bench, count, chance):
         well = 0
         for number in numbers:
             code, wrong = tried(bench, number % 2, 0o755, lambda: limited(limit, number * unit))
-            yield f"{number} {what}", wrong
+            if wrong is not None:
+                yield f"{number} {what}", wrong
             well = well + 1 if code == 0 else 0
             if well == ENOUGH:
                 break
@@ -27,12 +28,13 @@ def limits(bench, count, chance):
 
 
 def tried(bench, earlier, mode, prepare):
-    """Exit code, and what is wrong. Libraries that cannot be loaded end the program as they like."""
+    """Exit code, and what is wrong; None where libraries cannot even be loaded."""
     bench.fresh(earlier)
     bench.out.chmod(mode)
     code, stderr = bench.finish(bench.start(preexec_fn=prepare))
-    is_begun = "while loading shared libraries" not in stderr and "terminate called" not in stderr
-    return code, (bench.said(code, stderr) if is_begun else []) + bench.judge(earlier, code)
+    if "while loading shared libraries" in stderr or "terminate called" in stderr:
+        return code, None
+    return code, bench.said(code, stderr) + bench.judge(earlier, code)
 
 
 def limited(limit, number):

@@ -12,7 +12,7 @@
 #     together  two at once with one output; updates: two of pole-map update in place
 #     replaced  a map that is read is replaced meanwhile
 # Prints a table, and exits with 1 if anything was found. Needs python3.
-# POLEMCL_FAULTS_RECORD names a CSV that gets a line for each: share/reports/broken-writes.csv.
+# POLEMCL_FAULTS_RECORD names a CSV that gets a line for each: share/reports/faults-io.csv.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 case ${1-} in
