@@ -16,6 +16,7 @@
 #include "cli/JsonFile.h"
 #include "io/file/AtomicFile.h"
 #include "io/file/Bytes.h"
+#include "io/file/Sync.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -169,9 +170,12 @@ BatchFolder::State BatchFolder::state(const BatchTask& task, std::string* why) c
   return State::done;
 }
 
+fs::path BatchFolder::part(const BatchTask& task) const {
+  return work(task.id).string() + "." + host() + "-" + std::to_string(::getpid()) + ".part";
+}
+
 fs::path BatchFolder::stage(const BatchTask& task) const {
-  fs::path folder = work(task.id);
-  folder += "." + host() + "-" + std::to_string(::getpid()) + ".part";
+  const fs::path folder = part(task);
   std::error_code none;
   fs::remove_all(folder, none);
   createFolder(folder);
@@ -196,19 +200,25 @@ void BatchFolder::commit(const BatchTask& task, const fs::path& staged) const {
                                {"crc32", checksumOf(kept / output)}});
   }
   writeJson(kept / "done.json", done);
+  io::syncAll(kept);
   std::error_code failure;
   fs::rename(kept, work(task.id), failure);
   // On a cluster, a task that was taken for dead may have ended after all: the bytes are the same.
   if (failure && state(task) != State::done)
     throw Error(work(task.id).string() + ": cannot be completed: " + failure.message());
+  io::syncFolder(m_path / "tasks");
   std::error_code none;
   fs::remove_all(staged, none);
   fs::remove(m_path / "failed" / (task.id + ".json"), none);
 }
 
 void BatchFolder::remove(const BatchTask& task) const {
+  const fs::path aside = part(task);  // so that half of it never has its name
   std::error_code failure;
-  fs::remove_all(work(task.id), failure);
+  fs::remove_all(aside, failure);
+  fs::rename(work(task.id), aside, failure);
+  if (failure == std::errc::no_such_file_or_directory) return;
+  if (!failure) fs::remove_all(aside, failure);
   if (failure) throw Error(work(task.id).string() + ": cannot be removed: " + failure.message());
 }
 

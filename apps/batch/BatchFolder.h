@@ -72,6 +72,9 @@ class BatchFolder {
   std::string failure(const std::string& task) const;
 
  private:
+  /// What a task of this process is called while it is not whole.
+  std::filesystem::path part(const BatchTask& task) const;
+
   std::filesystem::path m_path;
   int m_lock = -1;
 };

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
+#include "cli/Failure.h"
 #include "cli/Messages.h"
 #include "cli/Outputs.h"
 #include "cli/Progress.h"
@@ -137,9 +138,9 @@ int CommandLine::work(const std::function<void()>& work) const {
     return exitDone;
   } catch (const std::exception& e) {
     if (oneLine(e.what()) != e.what()) sayDetail(std::string("in full: ") + e.what());
-    std::cerr << m_program << ": " << coloured(Colour::red, oneLine(e.what())) << '\n';
+    sayFailure(m_program, oneLine(reasonOf(e)));
   } catch (...) {
-    std::cerr << m_program << ": " << coloured(Colour::red, "failed for an unknown reason") << '\n';
+    sayFailure(m_program, "failed for an unknown reason");
   }
   return exitFailed;
 }

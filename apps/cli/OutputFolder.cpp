@@ -1,10 +1,14 @@
 #include "cli/OutputFolder.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/Sync.h"
 
 namespace polemcl::apps {
 namespace fs = std::filesystem;
@@ -32,6 +36,23 @@ void refuseForeign(const fs::path& target, const std::string& what,
     throw Error(target.string() + ": is no earlier output (no " + marker + ")" + advice);
 }
 
+/// Renames a folder. An earlier one in that place gets the other name at the same moment.
+std::error_code takePlace(const fs::path& from, const fs::path& to) {
+  std::error_code failure;
+  fs::rename(from, to, failure);
+  if (failure.value() != ENOTEMPTY && failure.value() != EEXIST) return failure;
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return {};
+  if (errno != EINVAL && errno != ENOSYS) return {errno, std::generic_category()};
+  // A file system that cannot do that, such as NFS: for a moment nothing has the name.
+  const fs::path old = from.string() + ".old";
+  fs::rename(to, old, failure);
+  if (failure) return failure;
+  fs::rename(from, to, failure);
+  std::error_code ignored;
+  fs::rename(old, failure ? to : from, ignored);
+  return failure;
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& target, const std::string& what,
@@ -39,12 +60,14 @@ OutputFolder::OutputFolder(const fs::path& target, const std::string& what,
     : m_target(withoutSlash(target)) {
   try {
     refuseForeign(m_target, what, known, marker);
-    m_temporary = m_target;
-    m_temporary += "." + std::to_string(::getpid()) + ".tmp";
     io::removeLeftovers(m_target);
-    if (!fs::create_directory(m_temporary))
-      throw Error(m_temporary.string() + ": exists already; remove it");
-    m_lock = io::PathLock(m_temporary);
+    for (unsigned number = 0;; ++number) {
+      m_temporary = m_target;
+      m_temporary += "." + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp";
+      if (!fs::create_directory(m_temporary)) continue;  // of another machine's process
+      m_lock = io::PathLock(m_temporary);
+      if (!m_lock.isOfAnother() && fs::exists(m_temporary)) return;  // else taken for a leftover
+    }
   } catch (const fs::filesystem_error& error) {
     throw Error(m_target.string() + ": cannot be created: " + error.code().message());
   }
@@ -57,24 +80,13 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::commit() {
-  try {
-    fs::path old;
-    if (fs::exists(m_target)) {  // aside first, so that there is never half of each
-      old = m_temporary;
-      old += ".old";
-      fs::rename(m_target, old);
-    }
-    std::error_code failure;
-    fs::rename(m_temporary, m_target, failure);
-    if (failure) {
-      if (!old.empty()) fs::rename(old, m_target);
-      throw Error(m_target.string() + ": cannot be completed: " + failure.message());
-    }
-    m_temporary.clear();
-    if (!old.empty()) fs::remove_all(old);
-  } catch (const fs::filesystem_error& error) {
-    throw Error(m_target.string() + ": cannot be replaced: " + error.code().message());
-  }
+  io::syncAll(m_temporary);
+  if (const auto failure = takePlace(m_temporary, m_target))
+    throw Error(m_target.string() + ": cannot be completed: " + failure.message());
+  io::syncFolder(m_target.parent_path());  // before an earlier output goes
+  std::error_code ignored;
+  fs::remove_all(m_temporary, ignored);
+  m_temporary.clear();
 }
 
 }  // namespace polemcl::apps

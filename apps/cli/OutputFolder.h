@@ -10,9 +10,11 @@
 
 namespace polemcl::apps {
 
-/// \brief A folder that appears under its name only once it is complete: filled beside its place
-/// under a temporary name ending in `.tmp`, then renamed. Removed again unless committed; what a
-/// killed process left is removed by the next one for the same target.
+/// \brief A folder that appears under its name only once it is complete and on the disk: filled
+/// beside its place under a temporary name ending in `.tmp`, then renamed. An earlier output stays
+/// until that moment; on a file system that cannot exchange two folders, a process killed in it
+/// leaves the earlier one as `….tmp.old`. Removed again unless committed; what a killed process
+/// left is removed by the next one for the same target.
 class OutputFolder {
  public:
   /// \param target Where the folder shall appear. What is there is replaced if it is an empty

@@ -96,11 +96,17 @@ void drawRangeImage(const ReadScan& scan, const AllSettings& settings, const std
   report::drawRangeImagePng({title, cloud.view(), lidar.sensor, lidar.extraction.rangeImage}, png);
 }
 
-void draw(const ReadScan& scan, const AllSettings& settings, const ExtractOptions& options) {
-  const std::string number = std::to_string(scan.index);
+/// A scan that can be drawn.
+const ReadScan& withPoints(const ReadScan& scan, const ExtractOptions& options) {
   if (scan.stored)
-    throw Error(options.input.string() + ": scan " + number + " holds poles, no points to draw");
-  const std::string title = options.input.filename().string() + ", scan " + number;
+    throw Error(options.input.string() + ": scan " + std::to_string(scan.index) +
+                " holds poles, no points to draw");
+  return scan;
+}
+
+void draw(const ReadScan& scan, const AllSettings& settings, const ExtractOptions& options) {
+  const std::string title =
+      options.input.filename().string() + ", scan " + std::to_string(scan.index);
   if (options.png) drawFromAbove(scan, settings, title, *options.png);
   if (options.rangeImage) drawRangeImage(scan, settings, title, *options.rangeImage);
 }
@@ -155,25 +161,29 @@ ExtractSummary extractPoles(const ExtractOptions& options, const AllSettings& se
     csv->stream() << "scan,timestamp,x,y,radius,bottom,top,confidence,points,cxx,cxy,cyy\n";
   }
   ExtractSummary summary;
+  std::optional<ReadScan> drawn;
   summary.counts = streamPoles(options.input.string(), sequence, [&](const ReadScan& scan) {
     const auto motion = scan.index == 0 ? standstill() : scan.motion;
     gnss.writeBefore(scan.observation->timestamp);
     rawlog.write(makeActions(motion, scan.observation->timestamp), scan.observation);
     if (csv) writeRows(csv->stream(), scan);
     summary.extraction += scan.report;
-    if (drawing && scan.index == options.pngScan) draw(scan, settings, options);
+    if (drawing && scan.index == options.pngScan) drawn = withPoints(scan, options);
     if (progress) progress(scan.index + 1, scan.expected);
   });
   if (summary.counts.scans == summary.counts.emptyScans)
     throw Error(options.input.string() + ": no usable scan, " +
                 std::to_string(summary.counts.emptyScans) + " scans in it, all without a point");
-  if (drawing && summary.counts.scans <= options.pngScan)
+  if (drawing && !drawn)
     throw Error(options.input.string() + ": no scan " + std::to_string(options.pngScan) +
                 " to draw; there are " + std::to_string(summary.counts.scans) +
                 ", numbered from 0");
   gnss.writeRest();
-  rawlog.commit();
+  io::AtomicFiles together;
+  if (drawn) draw(*drawn, settings, options);
   if (csv) csv->commit();
+  rawlog.commit();
+  together.commit();
   return summary;
 }
 

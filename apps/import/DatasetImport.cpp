@@ -179,7 +179,6 @@ ScanTiming timingOf(const ImportOptions& options, const io::ScanFolder& folder) 
   return folder.timing.turn != Turn::automatic ? folder.timing : datasetTiming(options.dataset);
 }
 
-/// Both files appear together, when both are complete.
 /// Poses in a camera's frame move along z, as no vehicle does.
 std::optional<std::string> climbNote(const std::vector<io::StampedPose3D>& truth) {
   Eigen::AlignedBox3d box;
@@ -191,11 +190,13 @@ std::optional<std::string> climbNote(const std::vector<io::StampedPose3D>& truth
          " m in x and y: z must point up, so these may be in the frame of a camera";
 }
 
+/// Both files appear together, when both are complete.
 void publish(RawlogWriter& rawlog, std::optional<io::AtomicFile>& truthFile,
              const std::vector<io::StampedPose3D>& truth) {
-  if (truthFile) io::writeTum(truthFile->temporaryPath(), truth);
+  io::AtomicFiles together;
+  if (truthFile) io::writeTum(*truthFile, truth);
   rawlog.commit();
-  if (truthFile) truthFile->commit();
+  together.commit();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/Sync.h"
 
 namespace polemcl::apps {
 
@@ -88,14 +89,19 @@ void RunFolder::requireFreeNames() const {
 }
 
 void RunFolder::commit() {
+  const auto turn = io::PathLock::waitFor(m_folder);  // another may write the same results
   requireFreeNames();
+  io::syncAll(m_staging);
   try {
     fs::remove(m_folder / summaryName);
+    io::syncFolder(m_folder);  // so that after a power cut, too, what has a summary is complete
     for (const auto& entry : entriesOf(m_folder))
       if (isOfARun(entry)) fs::remove_all(entry);
     for (const auto& entry : entriesOf(m_staging))
       if (entry.filename() != summaryName) fs::rename(entry, m_folder / entry.filename());
+    io::syncFolder(m_folder);
     if (fs::exists(staged(summaryName))) fs::rename(staged(summaryName), m_folder / summaryName);
+    io::syncFolder(m_folder);
   } catch (const fs::filesystem_error& error) {
     throw Error(m_folder.string() + ": cannot move the results in: " + error.code().message());
   }

@@ -25,25 +25,36 @@ namespace fs = std::filesystem;
 constexpr double kTwin = 1;          ///< m; real poles seldom stand nearer to each other
 constexpr double kManyTwins = 0.25;  ///< share of the poles
 
+/// The map that is added to, or the inventory.
+struct BaseMap {
+  std::filesystem::path file;  ///< empty: there is no such map
+  io::PoleMapData map = {};
+  std::optional<AddedSessions> scans = {};
+};
+
+BaseMap baseOf(const MapBuildJob& job) {
+  BaseMap base{job.add ? *job.add : job.inventory.value_or("")};
+  if (!base.file.empty()) base.map = io::readPoleMap(base.file, &base.scans);
+  return base;
+}
+
 /// The sessions before; empty unless `add` is given.
-MapAccumulator accumulator(const MapBuildJob& job, const AllSettings& settings) {
+MapAccumulator accumulator(const MapBuildJob& job, BaseMap& base, const AllSettings& settings) {
   if (!job.add) return {settings.map, settings.upkeep};
-  auto scans = io::readMapScans(*job.add);
-  if (!scans)
+  if (!base.scans)
     throw Error(job.add->string() +
                 ": keeps no scans, so none can be added; build it with --keep-scans");
   return io::located(job.add->string() + ": ", [&] {
-    return MapAccumulator(settings.map, settings.upkeep, std::move(*scans));
+    return MapAccumulator(settings.map, settings.upkeep, std::move(*base.scans));
   });
 }
 
 /// The job's datum, or that of the map that is added to, or of the inventory: both must be the
 /// same.
-std::optional<io::Datum> datumFor(const MapBuildJob& job) {
-  const auto& base = job.add ? job.add : job.inventory;
-  if (!base) return job.datum;
-  const std::string where = base->string() + ": ";
-  auto info = io::readPoleMap(*base).info;
+std::optional<io::Datum> datumFor(const MapBuildJob& job, const BaseMap& base) {
+  if (base.file.empty()) return job.datum;
+  const std::string where = base.file.string() + ": ";
+  auto info = base.map.info;
   if (job.datum) io::setDatum(info, *job.datum, where);
   return io::datumOf(info, where);
 }
@@ -275,8 +286,9 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
                          const ScanProgress& progress) {
   job.validate();
   MapBuildSummary summary;
-  auto datum = datumFor(job);
-  MapAccumulator sessions = accumulator(job, settings);
+  BaseMap base = baseOf(job);
+  auto datum = datumFor(job, base);
+  MapAccumulator sessions = accumulator(job, base, settings);
   std::vector<MappingSession> drives;
   for (std::size_t i = 0; i < job.inputs.size(); ++i)
     drives.push_back(loadMappingSession(job.session(i), settings, job.allowTruncated, progress));
@@ -284,7 +296,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
     for (const MappingSession& drive : drives) summary.motions.push_back(checkMotion(drive.scans));
   LandmarkMap inventory;
   if (job.inventory) {
-    inventory = io::landmarkMap(io::readPoleMap(*job.inventory));
+    inventory = io::landmarkMap(base.map);
     summary.inventory.emplace();
     summary.inventory->drives = io::located(job.inventory->string() + ": ", [&] {
       return adjustToInventory(drives, job.inputs, presentPoles(inventory), settings);

@@ -20,8 +20,7 @@ MapContent readMapFile(const std::filesystem::path& file, const std::optional<io
   MapContent content;
   switch (mapFileKind(file)) {
     case MapFileKind::polemap:
-      content.map = io::readPoleMap(file);
-      content.scans = io::readMapScans(file);
+      content.map = io::readPoleMap(file, &content.scans);
       break;
     case MapFileKind::csv:
       content.map = io::readPoleCsv(file);

@@ -54,11 +54,12 @@ class PoleDriveWriter {
   }
 
   PoleDriveSummary commit(const sim::World& world, const AllSettings& settings) {
-    io::writeTum(m_truth.temporaryPath(), m_poses);
+    io::AtomicFiles together;
+    io::writeTum(m_truth, m_poses);
     sim::writeTruePoles(m_files.poles, world.poles());
     saveSettings(settings, m_files.config.string());
     m_rawlog.commit();
-    m_truth.commit();
+    together.commit();
     m_summary.truePoles = world.poles().size();
     m_summary.length = m_options.spacing * static_cast<double>(m_summary.scans - 1);
     return m_summary;

@@ -237,10 +237,16 @@ def tables(report):
 
 
 def write(file, text):
-    """Writes all of a file or nothing."""
+    """Writes all of a file or nothing, also when the power is cut."""
     part = file.with_name(file.name + ".part")
-    part.write_text(text, encoding="utf-8", newline="\n")
+    with part.open("w", encoding="utf-8", newline="\n") as stream:
+        stream.write(text)
+        stream.flush()
+        os.fsync(stream.fileno())
     os.replace(part, file)
+    folder = os.open(file.parent, os.O_RDONLY)
+    os.fsync(folder)
+    os.close(folder)
 
 
 def read(file):

@@ -8,6 +8,7 @@
 
 #include "batch/BatchRunner.h"
 #include "support/BatchTestFiles.h"
+#include "support/DiskCalls.h"
 
 namespace polemcl::test_batch_runner {
 
@@ -188,6 +189,17 @@ TEST_F(BatchRunner, DamagedOutputsAreDoneAgain) {
     EXPECT_NE(why.find("c/done.json is not what was written"), std::string::npos) << why;
     EXPECT_EQ(run(), Names{"c"}) << damaged;
   }
+}
+
+TEST_F(BatchRunner, HalfOfATaskNeverHasItsName) {
+  add("a", {{"write", "out", "A"}});
+  run();
+  const testing_disk::DiskCalls calls;
+  m_batch.remove(m_plan.tasks[0]);
+  ASSERT_EQ(calls.of("rename a.").size(), 1u);
+  EXPECT_NE(calls.all()[0].find(".part"), std::string::npos);
+  EXPECT_TRUE(fs::is_empty(m_batch.path() / "tasks"));
+  EXPECT_NO_THROW(m_batch.remove(m_plan.tasks[0])) << "nothing is there";
 }
 
 TEST_F(BatchRunner, RemainsOfTasksCutShortGo) {

@@ -1,5 +1,6 @@
 #include <polemcl/core/common/Types.h>
 #include "cli/OutputFolder.h"
+#include "support/DiskCalls.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_output_folder {
@@ -23,6 +24,7 @@ class OutputFolderTest : public testing::Test {
     }
     return "";
   }
+  std::string parent() const { return folder.path().filename(); }
   TempFolder folder;
 };
 }  // namespace
@@ -75,6 +77,44 @@ TEST_F(OutputFolderTest, KeepsTheEarlierOutputWhenTheNewOneFails) {
   writeText(folder / "out" / "mark", "old");
   { writeText(open("out").temporary() / "mark", "half"); }
   EXPECT_EQ(readText(folder / "out" / "mark"), "old");
+}
+
+TEST_F(OutputFolderTest, IsOnTheDiskBeforeItHasItsName) {
+  OutputFolder out = open("out");
+  const testing_disk::DiskCalls calls;
+  out.commit();
+  EXPECT_EQ(calls.all(), (std::vector<std::string>{"sync all", "rename out", "sync " + parent()}));
+}
+
+TEST_F(OutputFolderTest, TheEarlierOutputHasTheNameUntilTheNewOneHasIt) {
+  writeText(folder / "out" / "mark", "old");
+  OutputFolder out = open("out");
+  writeText(out.temporary() / "mark", "new");
+  const testing_disk::DiskCalls calls;
+  out.commit();
+  EXPECT_EQ(calls.all(),
+            (std::vector<std::string>{"sync all", "exchange out", "sync " + parent()}));
+  EXPECT_EQ(readText(folder / "out" / "mark"), "new");
+  EXPECT_EQ(names(folder.path()), std::vector<std::string>{"out"});
+}
+
+TEST_F(OutputFolderTest, ReplacesWhereNamesCannotBeExchanged) {
+  writeText(folder / "out" / "mark", "old");
+  testing_disk::DiskCalls calls;
+  calls.failExchange = true;
+  OutputFolder out = open("out");
+  writeText(out.temporary() / "mark", "new");
+  out.commit();
+  EXPECT_EQ(readText(folder / "out" / "mark"), "new");
+  EXPECT_EQ(names(folder.path()), std::vector<std::string>{"out"});
+}
+
+TEST_F(OutputFolderTest, TakesAnotherNameWhenTheFirstIsTakenForALeftover) {
+  testing_disk::DiskCalls calls;
+  calls.othersLocks = 1;
+  const OutputFolder out = open("out");
+  EXPECT_TRUE(io::PathLock(out.temporary()).isOfAnother());
+  EXPECT_EQ(names(folder.path()).size(), 2u);
 }
 
 TEST_F(OutputFolderTest, RefusesAFolderWithForeignFiles) {

@@ -7,6 +7,7 @@
 #include "extract/ExtractApp.h"
 #include "mrpt/rawlog/GnssFixes.h"
 #include "mrpt/rawlog/RawlogReader.h"
+#include "support/DiskCalls.h"
 #include "support/Samples.h"
 #include "support/StreetTest.h"
 
@@ -121,6 +122,16 @@ TEST_F(ExtractApp, DrawsAScanWithItsPoles) {
   expectFailure(runProgram(extractMain, {"--config", config(), "--input", at("poles.rawlog"),
                                          "--output", at("again.rawlog"), "--png", at("p.png")}),
                 {at("poles.rawlog"), "holds poles"});
+}
+
+TEST_F(ExtractApp, PictureAndTableAppearWithTheRawlog) {
+  writeStreet(folder / "in", 2);
+  import("in");
+  const testing_disk::DiskCalls calls;
+  ASSERT_EQ(run({"--csv", at("poles.csv"), "--png", at("scan.png")}).code, 0);
+  EXPECT_EQ(calls.of("rename"),
+            (std::vector<std::string>{"rename scan.png, locked", "rename poles.csv, locked",
+                                      "rename poles.rawlog, locked"}));
 }
 
 TEST_F(ExtractApp, DrawsTheStepsOfTheRangeImageMethodOnly) {

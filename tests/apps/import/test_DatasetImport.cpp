@@ -9,6 +9,7 @@
 #include "import/DatasetImport.h"
 #include "io/data/Trajectory.h"
 #include "mrpt/rawlog/RawlogReader.h"
+#include "support/DiskCalls.h"
 #include "support/ScanFolders.h"
 
 namespace polemcl::test_dataset_import {
@@ -89,6 +90,14 @@ TEST_F(DatasetImport, KeepsTimesPathsAndTruth) {
     cloud.load();
     EXPECT_EQ(cloud.pointcloud->size(), 2u);
   }
+}
+
+TEST_F(DatasetImport, RawlogAndTruthAppearTogether) {
+  writeLine(options.input, 3);
+  const testing_disk::DiskCalls calls;
+  importDataset(options);
+  EXPECT_EQ(calls.of("rename"),
+            (std::vector<std::string>{"rename out.tum, locked", "rename out.rawlog, locked"}));
 }
 
 TEST_F(DatasetImport, FirstActionIsIdentityAndOthersAreEmptyWithoutOdometry) {

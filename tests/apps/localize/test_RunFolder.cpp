@@ -1,5 +1,6 @@
 #include <polemcl/core/common/Types.h>
 #include "localize/RunFolder.h"
+#include "support/DiskCalls.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_run_folder {
@@ -28,6 +29,20 @@ TEST(RunFolder, SwapsOldRunsForNewOnesAndKeepsTheRest) {
   EXPECT_EQ(readText(folder / "config.ini"), "new");
   EXPECT_EQ(readText(folder / "summary.json"), "new");
   EXPECT_EQ(readText(folder / "mine"), "old");
+}
+
+TEST(RunFolder, WhatHasASummaryIsOnTheDisk) {
+  const TempFolder folder;
+  writeText(folder / "summary.json", "old");
+  RunFolder results(folder.path());
+  writeText(results.staged("summary.json"), "new");
+  writeText(results.staged("run_00.tum"), "new");
+  const std::string sync = "sync " + folder.path().filename().string();
+  const testing_disk::DiskCalls calls;
+  results.commit();
+  EXPECT_EQ(calls.all(), Names({"sync all", sync, "rename run_00.tum, locked", sync,
+                                "rename summary.json, locked", sync}))
+      << "after the old summary is gone, before the new one comes, and at the end";
 }
 
 TEST(RunFolder, ScenesOfOldRunsGoAndOtherFoldersStay) {

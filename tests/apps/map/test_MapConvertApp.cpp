@@ -5,6 +5,7 @@
 #include "io/map/PolePositions.h"
 #include "map/MapApp.h"
 #include "map/MapConvertApp.h"
+#include "support/DiskCalls.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_map_convert_app {
@@ -73,6 +74,13 @@ TEST_F(MapConvertApp, GoesThroughEveryKindOfFile) {
   EXPECT_EQ(map.poles[2].count, 7u);
   EXPECT_EQ(map.info.at("converted_from"), "b.csv");
   EXPECT_EQ(io::readPoleMap(folder / "f.polemap").poles[2].radius, 0.125);
+}
+
+TEST_F(MapConvertApp, ReadsMapAndScansAtOnceAsAnotherMayReplaceThem) {
+  const testing_disk::DiskCalls calls;
+  ASSERT_EQ(convert("m.polemap", "n.polemap").code, 0);
+  EXPECT_EQ(calls.of("open m.polemap").size(), 1u);
+  EXPECT_TRUE(io::readMapScans(folder / "n.polemap"));
 }
 
 TEST_F(MapConvertApp, GivesAMapItsDatumAndKeepsTheRest) {

@@ -5,6 +5,7 @@
 #include "io/file/Bytes.h"
 #include "io/map/PoleMapFile.h"
 #include "map/MapApp.h"
+#include "support/DiskCalls.h"
 #include "support/StreetTest.h"
 
 namespace polemcl::test_map_sessions {
@@ -138,6 +139,13 @@ TEST_F(MapSessions, SessionsThatDisagreeOnTheDatumAreRefused) {
   }
   EXPECT_EQ(chunk("o.polemap", "SCAN"), "");  // an updated map is not what its scans say
   expectFailure(map("all.ini", {"one"}, "n.polemap", {"--datum", "91,0"}), {"--datum", "91,0"});
+}
+
+TEST_F(MapSessions, ReadTheMapOnceAsAnotherMayReplaceIt) {
+  ASSERT_EQ(map("all.ini", {"one"}, "m.polemap", {"--keep-scans"}).code, 0);
+  const testing_disk::DiskCalls calls;
+  ASSERT_EQ(map("all.ini", {"three"}, "n.polemap", {"--add", at("m.polemap")}).code, 0);
+  EXPECT_EQ(calls.of("open m.polemap").size(), 1u);
 }
 
 TEST_F(MapSessions, WrongUsage) {

@@ -7,6 +7,7 @@
 #include "io/map/PolePositions.h"
 #include "mrpt/rawlog/PoleSequence.h"
 #include "simulate/SimulateApp.h"
+#include "support/DiskCalls.h"
 #include "support/TempFolder.h"
 
 namespace polemcl::test_simulated_poles {
@@ -107,6 +108,16 @@ TEST_F(SimulatedPoles, DrawnFromAModelAreTheSameBytesOnAnyNumberOfThreads) {
             (std::vector<std::string>{"one.rawlog", "one.tum", "one_config.ini", "one_poles_gt.csv",
                                       "street.ini", "two.rawlog", "two.tum", "two_config.ini",
                                       "two_poles_gt.csv"}));
+}
+
+TEST_F(SimulatedPoles, AppearTogetherWithTruthAndSettings) {
+  configure("scans = 2\ndetections = " + s_model + "\n");
+  const testing_disk::DiskCalls calls;
+  ASSERT_EQ(run("drive.rawlog").code, 0);
+  EXPECT_EQ(
+      calls.of("rename"),
+      (std::vector<std::string>{"rename drive.tum, locked", "rename drive_poles_gt.csv, locked",
+                                "rename drive_config.ini, locked", "rename drive.rawlog, locked"}));
 }
 
 TEST_F(SimulatedPoles, OfAnotherDriveOfTheDayDifferInNoiseOnly) {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "io/file/AtomicFile.h"
+#include "support/DiskCalls.h"
 #include "support/IoFiles.h"
 
 namespace polemcl::test_atomic_file {
@@ -12,6 +13,8 @@ using namespace polemcl::io::test;
 using polemcl::io::AtomicFile;
 
 using AtomicFileTest = FolderTest;
+using testing_disk::DiskCalls;
+using Names = std::vector<std::string>;
 
 namespace {
 
@@ -125,6 +128,51 @@ TEST_F(AtomicFileTest, FilesAppearTogether) {
   EXPECT_EQ(read(path("c")), "3");
 }
 
+TEST_F(AtomicFileTest, TheContentIsOnTheDiskBeforeTheNameAndThenTheFolder) {
+  AtomicFile file(path("out"));
+  const std::string temporary = file.temporaryPath().filename();
+  const DiskCalls calls;
+  file.commit();
+  EXPECT_EQ(calls.all(),
+            Names({"sync " + temporary, "rename out", "sync " + m_folder.filename().string()}));
+}
+
+TEST_F(AtomicFileTest, FilesThatAppearTogetherAreAllOnTheDiskBefore) {
+  AtomicFile a(path("a")), b(path("b"));
+  const Names temporaries{a.temporaryPath().filename(), b.temporaryPath().filename()};
+  io::AtomicFiles files;
+  const DiskCalls calls;
+  a.commit();
+  b.commit();
+  files.commit();
+  EXPECT_EQ(calls.all(),
+            Names({"sync " + temporaries[0], "sync " + temporaries[1], "rename a, locked",
+                   "rename b, locked", "sync " + m_folder.filename().string()}))
+      << "and no other program renames meanwhile";
+}
+
+TEST_F(AtomicFileTest, ADiskThatFailsIsAnErrorAndChangesNothing) {
+  write("out", "before");
+  {
+    AtomicFile file(path("out"));
+    file.stream() << "new";
+    DiskCalls calls;
+    calls.failSync = EIO;
+    EXPECT_REFUSED(file.commit(), path("out").string() + ": Input/output error");
+    EXPECT_TRUE(calls.of("rename").empty());
+  }
+  EXPECT_EQ(read(path("out")), "before");
+  EXPECT_EQ(entries(m_folder), 1u);
+}
+
+TEST_F(AtomicFileTest, TakesAnotherNameWhenTheFirstIsTakenForALeftover) {
+  DiskCalls calls;
+  calls.othersLocks = 1;
+  const AtomicFile file(path("out"));
+  EXPECT_TRUE(io::PathLock(file.temporaryPath()).isOfAnother());
+  EXPECT_EQ(entries(m_folder), 2u);
+}
+
 TEST_F(AtomicFileTest, KeepsALinkAndReplacesWhatItNames) {
   write("real/out", "before");
   fs::create_symlink(path("real/out"), path("link"));
@@ -144,13 +192,6 @@ TEST_F(AtomicFileTest, PermissionsFollowTheUmask) {
   struct stat status {};
   ASSERT_EQ(::stat(path("out").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0640u);
-}
-
-TEST_F(AtomicFileTest, OtherWritersMayUseTheTemporary) {
-  AtomicFile file(path("out"));
-  std::ofstream(file.temporaryPath(), std::ios::binary) << "by another";
-  file.commit();
-  EXPECT_EQ(read(path("out")), "by another");
 }
 
 TEST_F(AtomicFileTest, RefusesBadInput) {

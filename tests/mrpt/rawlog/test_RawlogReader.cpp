@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
@@ -6,12 +7,14 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/serialization/CSerializable.h>
 #include <mrpt/version.h>
 #include <zlib.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <new>
 #include <set>
 #include <thread>
 
@@ -19,7 +22,34 @@
 #include "support/ExpectHas.h"
 #include "support/Samples.h"
 
+namespace {
+bool s_zlibHasMemory = true;
+}
+
+/// In place of zlib's.
+extern "C" const char* gzerror(gzFile file, int* code) {
+  using Function = const char* (*)(gzFile, int*);
+  static const auto real = reinterpret_cast<Function>(::dlsym(RTLD_NEXT, "gzerror"));
+  const char* const text = real(file, code);
+  if (!s_zlibHasMemory) *code = Z_MEM_ERROR;
+  return text;
+}
+
 namespace polemcl::test_rawlog_reader {
+
+/// An object for which there is not enough memory.
+class CTooLarge : public mrpt::serialization::CSerializable {
+  DEFINE_SERIALIZABLE(CTooLarge, polemcl::test_rawlog_reader)
+};
+IMPLEMENTS_SERIALIZABLE(CTooLarge, CSerializable, polemcl::test_rawlog_reader)
+std::uint8_t CTooLarge::serializeGetVersion() const {
+  return 0;
+}
+void CTooLarge::serializeTo(mrpt::serialization::CArchive&) const {}
+void CTooLarge::serializeFrom(mrpt::serialization::CArchive&, std::uint8_t) {
+  throw std::bad_alloc();
+}
+
 namespace {
 
 using namespace mrpt::obs;
@@ -120,6 +150,20 @@ TEST_F(RawlogReaderTest, ReadsPairs) {
     EXPECT_NEAR(entry.action->getBestMovementEstimation()->poseChange->getMeanVal().x(), 2, 1e-9);
     EXPECT_EQ(entry.frame->getObservationByClass<CObservationPoles>()->poles[0].x, 20);
   }
+}
+
+TEST_F(RawlogReaderTest, LackOfMemoryIsNoDamageOfTheFile) {
+  mrpt::rtti::registerClass(CLASS_ID(CTooLarge));
+  const std::string bytes = action(1) + frame(10) + samples::bytesOf(CTooLarge());
+  for (const bool allowTruncated : {false, true})
+    EXPECT_THROW(bench.read(bytes, allowTruncated), std::bad_alloc);
+}
+
+TEST_F(RawlogReaderTest, LackOfMemoryInZlibIsNoEndOfTheFile) {
+  writeFile(bench.path, gzipped(action(1) + frame(10), bench.folder));
+  s_zlibHasMemory = false;
+  EXPECT_THROW(readAll(bench.path, true), std::bad_alloc);
+  s_zlibHasMemory = true;
 }
 
 TEST_F(RawlogReaderTest, WaitsAtTheEndOfAFileThatGrows) {

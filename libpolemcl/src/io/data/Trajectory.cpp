@@ -130,10 +130,14 @@ void writeTum(const std::filesystem::path& file, const std::vector<StampedPose2D
 
 void writeTum(const std::filesystem::path& file, const std::vector<StampedPose3D>& trajectory) {
   AtomicFile output(file);
+  writeTum(output, trajectory);
+}
+
+void writeTum(AtomicFile& output, const std::vector<StampedPose3D>& trajectory) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const auto& [time, pose] = trajectory[i];
     if (!isFinite(time, pose))
-      throw Error("cannot write " + file.string() + ": pose " + std::to_string(i) +
+      throw Error("cannot write " + output.target().string() + ": pose " + std::to_string(i) +
                   " (counted from 0) is not finite");
     output.stream() << tumRow(time, pose);
   }

@@ -10,6 +10,8 @@
 
 namespace polemcl::io {
 
+class AtomicFile;
+
 struct StampedPose3D {
   double time = 0;                                         ///< s
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< in the map frame, m
@@ -41,6 +43,8 @@ std::string tumRow(const StampedPose2D& pose);
 /// \throws Error when it cannot be written, or a value is not finite.
 void writeTum(const std::filesystem::path& file, const std::vector<StampedPose2D>& trajectory);
 void writeTum(const std::filesystem::path& file, const std::vector<StampedPose3D>& trajectory);
+/// \brief The same with a file that was begun before, to know early that it can be written.
+void writeTum(AtomicFile& output, const std::vector<StampedPose3D>& trajectory);
 
 /// \brief Reads poses as twelve numbers per line (row-major 3×4), as in KITTI odometry and in the
 /// plain folder layout. `#` starts a comment. Plain text or gzip.

@@ -6,9 +6,11 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <utility>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/Sync.h"
 
 namespace polemcl::io {
 
@@ -38,6 +40,10 @@ fs::path checkedTarget(const fs::path& path) {
   return named;
 }
 
+fs::path folderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 thread_local AtomicFiles* t_together = nullptr;
 
 }  // namespace
@@ -54,7 +60,7 @@ TemporaryFile::TemporaryFile(fs::path target) : m_target(std::move(target)) {
     if (made < 0) continue;
     m_lock = PathLock(made);
     std::error_code none;
-    if (fs::exists(m_path, none)) return;  // else it was taken for a leftover
+    if (!m_lock.isOfAnother() && fs::exists(m_path, none)) return;  // else taken for a leftover
   }
 }
 
@@ -89,11 +95,15 @@ void AtomicFile::commit() {
     const std::string why = errno != 0 ? std::strerror(errno) : "a write failed";
     throw cannotWrite(target, why + " (the disk may be full); nothing was changed");
   }
+  // Else the name may survive a power cut, and the content not.
+  if (const auto error = syncFile(m_temporary.path())) throw cannotWrite(target, error.message());
   m_committed = true;
-  if (t_together)
+  if (t_together) {
     t_together->m_complete.push_back(std::move(m_temporary));
-  else
+  } else {
     m_temporary.rename();
+    syncFolder(folderOf(target));
+  }
 }
 
 AtomicFiles::AtomicFiles() {
@@ -106,8 +116,15 @@ AtomicFiles::~AtomicFiles() {
 }
 
 void AtomicFiles::commit() {
-  for (TemporaryFile& file : m_complete) file.rename();
+  if (m_complete.empty()) return;
+  std::set<fs::path> folders;
+  const PathLock turn = PathLock::waitFor(folderOf(m_complete.front().target()));
+  for (TemporaryFile& file : m_complete) {
+    file.rename();
+    folders.insert(folderOf(file.target()));
+  }
   m_complete.clear();
+  for (const fs::path& folder : folders) syncFolder(folder);
 }
 
 void writeFile(const fs::path& file, std::string_view content) {

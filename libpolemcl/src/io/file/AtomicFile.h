@@ -36,8 +36,8 @@ class TemporaryFile {
 /// \brief A file that appears under its name only once it is complete.
 ///
 /// The temporary file lies in the target's folder, ends in `.tmp`, and is removed unless committed.
-/// This is safe against a full disk and against a process that ends at any moment. The result of a
-/// power failure depends on the file system (nothing is synced).
+/// This is safe against a full disk, a process that ends at any moment, and a power cut: commit()
+/// waits for the disk, before and after it renames.
 ///
 /// If the target is a symbolic link to a regular file, the link stays and the file behind it is
 /// replaced.
@@ -52,7 +52,8 @@ class AtomicFile {
 
   /// \brief The stream to write to; binary.
   std::ofstream& stream() { return m_stream; }
-  /// \brief Path for writers that open files themselves. They must close the file before commit().
+  const std::filesystem::path& target() const { return m_temporary.target(); }
+  /// \brief Where it lies until commit().
   const std::filesystem::path& temporaryPath() const { return m_temporary.path(); }
   /// \brief Completes the file and renames it to the target, replacing an existing file; see
   /// AtomicFiles.
@@ -67,7 +68,8 @@ class AtomicFile {
 };
 
 /// \brief Files that appear together: while it exists, files that this thread commits keep their
-/// temporary names. commit() gives them their own; otherwise none of them appears.
+/// temporary names. commit() gives them their own; otherwise none of them appears. Of two programs
+/// that write the same files at once, all are those of one.
 class AtomicFiles {
  public:
   AtomicFiles();

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <utility>
 
 namespace polemcl::io {
@@ -23,10 +24,23 @@ bool isLinked(int descriptor) {
 PathLock::PathLock(const fs::path& path)
     : PathLock(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)) {}
 
-PathLock::PathLock(int descriptor)
-    : m_descriptor(descriptor),
-      m_isHeld(descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 &&
-               isLinked(descriptor)) {}
+PathLock::PathLock(int descriptor) : m_descriptor(descriptor) {
+  if (descriptor < 0) return;
+  const bool isLocked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  m_isOfAnother = !isLocked && errno == EWOULDBLOCK;
+  m_isHeld = isLocked && isLinked(descriptor);
+}
+
+PathLock PathLock::waitFor(const fs::path& path) {
+  PathLock lock;
+  lock.m_descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  int failed = 0;
+  do {
+    failed = ::flock(lock.m_descriptor, LOCK_EX);
+  } while (failed != 0 && errno == EINTR);
+  lock.m_isHeld = failed == 0;
+  return lock;
+}
 
 PathLock::~PathLock() {
   if (m_descriptor >= 0) ::close(m_descriptor);
@@ -34,11 +48,13 @@ PathLock::~PathLock() {
 
 PathLock::PathLock(PathLock&& other) noexcept
     : m_descriptor(std::exchange(other.m_descriptor, -1)),
-      m_isHeld(std::exchange(other.m_isHeld, false)) {}
+      m_isHeld(std::exchange(other.m_isHeld, false)),
+      m_isOfAnother(std::exchange(other.m_isOfAnother, false)) {}
 
 PathLock& PathLock::operator=(PathLock&& other) noexcept {
   std::swap(m_descriptor, other.m_descriptor);
   std::swap(m_isHeld, other.m_isHeld);
+  std::swap(m_isOfAnother, other.m_isOfAnother);
   return *this;
 }
 

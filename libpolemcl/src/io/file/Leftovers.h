@@ -18,15 +18,19 @@ class PathLock {
   explicit PathLock(const std::filesystem::path& path);
   /// \brief Takes over an open descriptor.
   explicit PathLock(int descriptor);
+  /// \brief Waits while another has it. Holds nothing where a file system has no locks.
+  static PathLock waitFor(const std::filesystem::path& path);
   ~PathLock();
   PathLock(PathLock&& other) noexcept;
   PathLock& operator=(PathLock&& other) noexcept;
   /// \brief False also when another process has removed the file or folder before it was locked.
   bool isHeld() const { return m_isHeld; }
+  /// \brief Another process, or this one, had locked it before.
+  bool isOfAnother() const { return m_isOfAnother; }
 
  private:
   int m_descriptor = -1;
-  bool m_isHeld = false;
+  bool m_isHeld = false, m_isOfAnother = false;
 };
 
 /// \brief Files and folders in `folder` that nobody has locked.

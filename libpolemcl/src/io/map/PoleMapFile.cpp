@@ -255,7 +255,7 @@ std::optional<AddedSessions> readMapScans(const std::filesystem::path& file) {
   return scans;
 }
 
-PoleMapData readPoleMap(const std::filesystem::path& file) {
+PoleMapData readPoleMap(const std::filesystem::path& file, std::optional<AddedSessions>* scans) {
   PoleMapData data;
   bool hasPoles = false;
   eachChunk(file, [&](std::string_view tag, std::string_view content, const std::string& where) {
@@ -264,6 +264,7 @@ PoleMapData readPoleMap(const std::filesystem::path& file) {
     if (tag == "POLE") readPoles(chunk, where, data);
     if (tag == "CAND" && !readRecords(chunk, where, data.candidates))
       throw Error(where + "damaged: its candidates have no histories");
+    if (scans && tag == "SCAN") *scans = unpackMapScans(content, where);
     hasPoles = hasPoles || tag == "POLE";
   });
   if (!hasPoles) throw Error(file.string() + ": damaged: it has no list of poles");

@@ -59,8 +59,11 @@ POLEMCL_EXPORT void writePoleMap(const std::filesystem::path& file, const PoleMa
 /// \brief The scans stored in the file; nullopt if it has none. \throws Error as readPoleMap().
 POLEMCL_EXPORT std::optional<AddedSessions> readMapScans(const std::filesystem::path& file);
 
+/// \param scans Gets the scans as readMapScans() does, of the same bytes: another program may
+/// replace the file at any moment.
 /// \throws Error when the file cannot be read, is not a pole map, is truncated or damaged, was
 ///         written by a newer version, or holds poles that writePoleMap() rejects.
-POLEMCL_EXPORT PoleMapData readPoleMap(const std::filesystem::path& file);
+POLEMCL_EXPORT PoleMapData readPoleMap(const std::filesystem::path& file,
+                                       std::optional<AddedSessions>* scans = nullptr);
 
 }  // namespace polemcl::io

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <stdexcept>
 #include <thread>
 
@@ -52,6 +53,7 @@ bool GzReadStream::refill() {
   int code = Z_OK;
   const int got = readPiece(code);
   if (code == Z_ERRNO) throw Error(m_path + ": cannot be read: " + std::strerror(errno));
+  if (code == Z_MEM_ERROR) throw std::bad_alloc();
   // Z_BUF_ERROR: truncated gzip data; Z_DATA_ERROR: damaged data or wrong checksum.
   if (got <= 0 && (m_endsEarly || (code != Z_OK && code != Z_STREAM_END))) m_cutShort = true;
   m_endsEarly = got > 0 && code == Z_BUF_ERROR;  // zlib 1.3.2 does not tell it again

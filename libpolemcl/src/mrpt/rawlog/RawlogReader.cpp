@@ -3,6 +3,7 @@
 #include <mrpt/obs/CObservationComment.h>
 
 #include <limits>
+#include <new>
 
 #include <polemcl/mrpt/common/RegisterClasses.h>
 #include "io/file/FileKind.h"
@@ -78,6 +79,9 @@ std::optional<RawlogReader::Object> RawlogReader::readObject() {
     Object object{RawlogArchive(m_stream).readEntry(), offset};
     ++m_objects;
     return object;
+  } catch (const std::bad_alloc& error) {
+    if (!limit.reached()) throw;  // the machine's fault, not the file's
+    what = error.what();
   } catch (const std::exception& error) {
     what = error.what();
     if (what.rfind(m_name + ": ", 0) == 0) throw;  // about the file itself, not its content
