@@ -5,6 +5,10 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "localize/LivePlayer.h"
 #include "support/LiveMoments.h"

@@ -5,10 +5,13 @@
 #include <mrpt/gui/CDisplayWindow3D.h>
 #include <mrpt/gui/keycodes.h>
 #include <mrpt/system/CObserver.h>
+#include <unistd.h>
 
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -150,6 +153,19 @@ class DisplayWindow : public LiveWindow {
   std::map<float, View> m_views;    ///< by the distance of the scene's camera
 };
 
+/// MRPT's thread goes on after the last window, and would use wxWidgets while exit() takes it
+/// apart. So the program ends before that; what it wrote is complete.
+void endBeforeLibraries() {
+  static const int registered = on_exit(
+      [](int status, void*) {
+        std::cout.flush();
+        std::fflush(nullptr);
+        _exit(status);
+      },
+      nullptr);
+  if (registered != 0) throw Error("no window can be opened: the system is out of memory");
+}
+
 /// MRPT would wait for seconds, print GTK's complaint, and go on without a window.
 void requireDisplay() {
   const char* name = std::getenv("DISPLAY");
@@ -173,5 +189,6 @@ extern "C" __attribute__((visibility("default"))) polemcl::report::LiveWindow* p
     const std::string& title, unsigned width, unsigned height,
     const polemcl::viz::Scene::Ptr& scene) {
   polemcl::report::requireDisplay();
+  polemcl::report::endBeforeLibraries();
   return new polemcl::report::DisplayWindow(title, width, height, scene);
 }
