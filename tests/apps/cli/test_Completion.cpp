@@ -44,7 +44,7 @@ TEST(Completion, OfSubcommandsAndOptions) {
 }
 
 TEST(Completion, OfWordsThatAnOptionAllows) {
-  EXPECT_EQ(offered("pole-eval faults --fault ''"), "none,kidnap,wrong-map,blind,stuck,slip");
+  EXPECT_EQ(offered("pole-eval faults --fault ''"), "none,kidnap,wrong-map,blind,stuck,slip,jump");
   EXPECT_EQ(offered("pole-eval faults --fault s"), "stuck,slip");
   EXPECT_EQ(offered("pole-eval trajectory --per = m"), "metre");
   EXPECT_EQ(offered("pole-eval trajectory --per ="), "pose,metre");

@@ -424,37 +424,6 @@ TEST_F(PoleLocalizationTest, SameSeedSameBytes) {
   EXPECT_NE(run(4), run(5));
 }
 
-TEST_F(PoleLocalizationTest, OfTooManyPolesTheMostConfidentAreUsed) {
-  driveFrom(5, 3);
-  std::vector<PoleScan> crowded = frames;
-  sim::Random random(7);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    std::vector<PoleDetection>&few = frames[i].poles_robot, &many = crowded[i].poles_robot;
-    for (PoleDetection& pole : few) pole.confidence = 0.9;
-    many.clear();
-    while (many.size() < 3000) {  // most of them before the poles that are kept
-      PoleDetection clutter;
-      clutter.x = random.uniform(-50, 50);
-      clutter.y = random.uniform(-50, 50);
-      clutter.confidence = 0.1;
-      many.push_back(clutter);
-    }
-    std::vector<PoleDetection> first(many.begin(),
-                                     many.begin() + static_cast<std::ptrdiff_t>(200 - few.size()));
-    many.insert(many.end(), few.begin(), few.end());
-    few.insert(few.begin(), first.begin(), first.end());
-  }
-  LocalizationPipeline one = chain(), other = chain();
-  one.start(atTruth());
-  other.start(atTruth());
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const LocalizationUpdate expected = one.step(frames[i]), found = other.step(crowded[i]);
-    EXPECT_EQ(found.poles, 200u);
-    EXPECT_EQ(found.estimate->mean.x, expected.estimate->mean.x);
-    EXPECT_EQ(found.estimate->mean.yaw, expected.estimate->mean.yaw);
-  }
-}
-
 TEST_F(PoleLocalizationTest, RefusesAStartFarFromTheMap) {
   driveFrom(1, 5);
   LocalizationPipeline localization = chain();
