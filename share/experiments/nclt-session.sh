@@ -27,42 +27,42 @@ find_tools jq git
 first=219 # key frames, from 1
 last=1046
 
-script() {
+script() (
   name=$1
   shift
   /usr/bin/python3 "$top/share/experiments/$name.py" "$@"
-}
+)
 
 # views FOLDER NAME OPTION...: virtual scans of a folder in OUT.
-views() {
+views() (
   folder=$out/$1
   to=$out/$2
   shift 2
   script virtual_scans "$folder" "$to" --compensated --level --height 0.85 "$@"
-}
+)
 
 # import_drive NAME RAWLOG POSES...: the mapped stretch of these views, with odometry and true poses.
-import_drive() {
+import_drive() (
   link_scans "$out/$1" "$out/part" $first $last
   rawlog=$2
   shift 2
   "$bin/pole-import" folder --quiet --embed --input "$out/part" --output "$out/$rawlog.rawlog" --turn compensated \
     --sensor-pose "0 0 0 90.703 0 0" --odometry "$out/odometry.tum" --odometry-of sensor --poses "$@"
-}
+)
 
 # localize FRAMES CONFIDENCE DRIVE MAP RUNS [OPTION...]: errors as JSON.
-localize() {
+localize() (
   settings=$out/$1.ini
-  confidence=$2
+  least=$2
   drive=$out/$3
   map=$out/$4.polemap
   runs=$5
   shift 5
-  "$bin/pole-localize" --quiet --config "$settings" --set scan_line.min_confidence="$confidence" --input "$drive.rawlog" \
+  "$bin/pole-localize" --quiet --config "$settings" --set scan_line.min_confidence="$least" --input "$drive.rawlog" \
     --map "$map" --truth "$drive.tum" --output "$out/run" --runs "$runs" "$@" >/dev/null
   script nclt_compare runs "$out/run"
   rm -r "$out/run"
-}
+)
 
 # build_map FRAMES DRIVE MAP: map of a drive, also as CSV.
 build_map() {

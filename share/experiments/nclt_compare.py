@@ -105,20 +105,22 @@ def compare_poses(path_file, other_file):
 
 
 def run_errors(folder):
-    errors = [np.abs(np.loadtxt(file, delimiter=",", skiprows=1, usecols=(2, 5)))
-              for file in sorted(glob.glob(folder + "/run_*_errors.csv"))]
+    """Scans without a pose, while the map is searched, have no error."""
+    rows = [np.loadtxt(file, delimiter=",", skiprows=1, usecols=(0, 2, 5)) for file in sorted(glob.glob(folder + "/run_*_errors.csv"))]
     states = [np.loadtxt(file, delimiter=",", skiprows=1, usecols=2, dtype=str)
               for file in sorted(glob.glob(folder + "/run_*_health.csv"))]
-    half = len(errors[0]) // 2
-    result = {"runs": len(errors), "scans": len(errors[0])}
-    for name, part in (("first_half", slice(0, half)), ("second_half", slice(half, None))):
-        means = [run[part, 0].mean() for run in errors]
-        ok = np.concatenate([run[part] == "ok" for run in states])
-        all_runs = np.concatenate([run[part] for run in errors])
+    scans = len(states[0])
+    result = {"runs": len(rows), "scans": scans}
+    for name, first, last in (("first_half", 0, scans // 2), ("second_half", scans // 2, scans)):
+        parts = [run[(run[:, 0] >= first) & (run[:, 0] < last)] for run in rows]
+        means = [part[:, 1].mean() for part in parts]
+        ok = np.concatenate([state[part[:, 0].astype(int)] == "ok" for state, part in zip(states, parts)])
+        position, heading = np.abs(np.concatenate(parts)[:, 1:]).T
         result[name] = {"mean_m": rounded(np.mean(means)), "least_m": rounded(min(means)), "greatest_m": rounded(max(means)),
-                        "rmse_m": rounded(np.mean([np.sqrt((run[part, 0] ** 2).mean()) for run in errors])),
-                        "heading_deg": rounded(all_runs[:, 1].mean()), "worst_m": rounded(all_runs[:, 0].max()),
-                        "ok": rounded(ok.mean()), "worst_ok_m": rounded(all_runs[ok, 0].max(initial=0))}
+                        "rmse_m": rounded(np.mean([np.sqrt((part[:, 1] ** 2).mean()) for part in parts])),
+                        "heading_deg": rounded(heading.mean()), "worst_m": rounded(position.max()),
+                        "without_pose": last - first - min(map(len, parts)),
+                        "ok": rounded(ok.mean()), "worst_ok_m": rounded(position[ok].max(initial=0))}
     return result
 
 
