@@ -99,14 +99,16 @@ def compare_poses(path_file, other_file):
         t, s = rigid(other[part], path[part])
         own.append(np.sqrt(((other[part] @ t + s - path[part]) ** 2).sum(axis=1).mean()))
     distance = np.hypot(*errors.T)
-    return {"mean_m": rounded(distance.mean()), "rms_m": rounded(np.sqrt((distance**2).mean())), "worst_m": rounded(distance.max()),
+    return {"mean_m": rounded(distance.mean()), "rms_m": rounded(np.sqrt((distance**2).mean())),
+            "worst_m": rounded(distance.max()),
             "offset_by_window_m": [rounded(errors[part].mean(0)) for _, part in windows(path)],
             "rms_in_windows_m": rounded(np.mean(own))}
 
 
 def run_errors(folder):
     """Scans without a pose, while the map is searched, have no error."""
-    rows = [np.loadtxt(file, delimiter=",", skiprows=1, usecols=(0, 2, 5)) for file in sorted(glob.glob(folder + "/run_*_errors.csv"))]
+    rows = [np.loadtxt(file, delimiter=",", skiprows=1, usecols=(0, 2, 5))
+            for file in sorted(glob.glob(folder + "/run_*_errors.csv"))]
     states = [np.loadtxt(file, delimiter=",", skiprows=1, usecols=2, dtype=str)
               for file in sorted(glob.glob(folder + "/run_*_health.csv"))]
     scans = len(states[0])
@@ -116,7 +118,8 @@ def run_errors(folder):
         means = [part[:, 1].mean() for part in parts]
         ok = np.concatenate([state[part[:, 0].astype(int)] == "ok" for state, part in zip(states, parts)])
         position, heading = np.abs(np.concatenate(parts)[:, 1:]).T
-        result[name] = {"mean_m": rounded(np.mean(means)), "least_m": rounded(min(means)), "greatest_m": rounded(max(means)),
+        result[name] = {"mean_m": rounded(np.mean(means)),
+                        "least_m": rounded(min(means)), "greatest_m": rounded(max(means)),
                         "rmse_m": rounded(np.mean([np.sqrt((part[:, 1] ** 2).mean()) for part in parts])),
                         "heading_deg": rounded(heading.mean()), "worst_m": rounded(position.max()),
                         "without_pose": last - first - min(map(len, parts)),
