@@ -13,6 +13,7 @@
 # the next numbers that nothing was looked at on.
 # "-clock": the clock of the scans, off by these seconds; "-uncorrected": scans of a turning LiDAR whose
 # motion is not corrected. "timing": what the program says of it, for all drives.
+# "cast-kaist01": 2 km of KAIST 01 where it passes streets again, cast.
 # "several drives": the even and the odd key frames of the kilometre, each with an odometry of its own (seeds 7, 8),
 # at once and the odd ones added to the map of the even; two days of the streets 701 to 704 at once. "apart": each
 # street and the next one, which are different places: 20 pairs that must be refused. "gnss": fixes drawn by
@@ -100,6 +101,19 @@ cast_street() {
     --set simulation.spacing_m=1 --output cast >/dev/null
   alone "cast-$1" "$out/cast" "$top/config/hdl32e.ini" 0,0 "0 0 0 0 0 0" ""
   rm -r cast*
+}
+
+# Metres 3000 to 5000 of KAIST 01, cast, world 601, a scan a metre, wheels.
+cast_kaist() {
+  gunzip -c "$tracks/kaist01.txt.gz" | awk '
+    NR > 1 { way += sqrt(($4 - x) ^ 2 + ($8 - y) ^ 2) }
+    { x = $4; y = $8 }
+    way >= 3000 && way <= 5000' >kaist.txt
+  # shellcheck disable=SC2086 # several words
+  copy_settings "$top/config/hdl32e.ini" kaist.ini $wheels world.seed=601 world.track=kaist.txt simulation.spacing_m=1
+  "$bin/pole-simulate" --quiet --config kaist.ini --output kaist >/dev/null
+  real cast-kaist01 kaist "$top/config/hdl32e.ini" 0,0 "0 0 0 0 0 0" ""
+  rm -r kaist kaist.*
 }
 
 # nuScenes with the poses by planes.
@@ -205,6 +219,7 @@ if [ -n "$tracks" ]; then
   draw_drive "$out/kaist01" "$top/config/hdl32e.ini" 601 0 "world.track=$tracks/kaist01.txt.gz"
   map kaist01 kaist01.ini kaist01 kaist01 0,0
   gnss kaist01
+  cast_kaist
 fi
 for world in $(seq 701 720); do
   draw_drive "$out/street-$world" "$top/config/hdl32e.ini" "$world" 0 world.length_m=600
