@@ -4,6 +4,7 @@
 # that was tried.
 # Usage: share/figures/first-map.sh [PICTURES]
 #   PICTURES  folder of the picture, share/figures unless given
+# Needs ImageMagick.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=share/experiments/common.sh
@@ -11,6 +12,7 @@ top=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_arguments 0 1 "$@"
 find_programs pole-simulate pole-map
+find_tools convert
 pictures=$(cd "${1:-$top/share/figures}" && pwd)
 
 out=$(mktemp -d)
@@ -25,4 +27,5 @@ awk '
   BEGIN { block(1); block(-1); go(240, 1) }' >"$out/track.txt"
 draw_drive "$out/drive" "$top/config/hdl32e.ini" 801 0 world.track="$out/track.txt"
 "$bin/pole-map" build --quiet --config "$out/drive.ini" --input "$out/drive.rawlog" --output "$out/street.polemap" \
-  --png "$pictures/first-map.png"
+  --png "$out/map.png"
+convert "$out/map.png" -resize 1000x -colors 32 "$pictures/first-map.png"

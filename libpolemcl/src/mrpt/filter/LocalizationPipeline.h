@@ -96,7 +96,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   static constexpr double maxStartDistance = 1000;  ///< m
   /// Standard deviation of the velocity during a first scan that does not state it, m/s.
   static constexpr double unknownSpeed = 5;
-  /// Of a scan with more poles, the most confident are used: a step takes bounded time.
+  /// Most poles of a scan that are used: the most confident ones. It limits the time of a step.
   static constexpr std::size_t mostPoles = 200;
   /// Above this distance between two scans their poles are not averaged, m.
   static constexpr double sparseMetres = 2;
