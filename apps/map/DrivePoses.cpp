@@ -43,6 +43,19 @@ void addScans(const AddedSessions& sessions, std::vector<DrivenScan>& scans) {
     }
 }
 
+/// Zero where poses are true; empty if all are.
+std::vector<Eigen::Matrix3d> covariancesOf(const AddedSessions& before) {
+  std::vector<Eigen::Matrix3d> covariances;
+  bool found = false;
+  for (const AddedSession& session : before.sessions) {
+    found |= !session.covariances.empty();
+    covariances.insert(covariances.end(), session.covariances.begin(), session.covariances.end());
+    if (session.covariances.empty())
+      covariances.resize(covariances.size() + session.scans.size(), Eigen::Matrix3d::Zero());
+  }
+  return found ? covariances : std::vector<Eigen::Matrix3d>();
+}
+
 /// \throws Error when most scans of a drive have no odometry.
 void requireOdometry(const MappingSession& drive, const std::filesystem::path& input) {
   const auto known = static_cast<std::size_t>(
@@ -88,6 +101,7 @@ MappedDrives findPoses(std::vector<MappingSession>& drives,
   addScans(before, job.scans);
   for (const AddedSession& session : before.sessions) job.names.push_back(session.name);
   job.known = job.scans.size();
+  job.knownCovariances = covariancesOf(before);
   addScans(drives, job.scans);
   for (const auto& input : inputs) job.names.push_back(input.string());
   MappedDrives mapped = mapDrives(std::move(job), trustOf(settings));

@@ -72,11 +72,25 @@ std::vector<LandmarkRecord> outOfSight(const LandmarkMap& inventory, const Adjus
   return left;
 }
 
+/// \param covariances Of the poses, when they were found without truth; else empty.
 void addDrive(const MapBuildJob& job, std::size_t drive, MappingSession found,
-              MapAccumulator& sessions, MapBuildSummary& summary) {
+              std::vector<Eigen::Matrix3d> covariances, MapAccumulator& sessions,
+              MapBuildSummary& summary) {
   if (!job.dates.empty()) setDate(found.scans, job.dates[drive]);
-  sessions.add(job.inputs[drive].filename().string(), std::move(found.scans));
+  sessions.add(job.inputs[drive].filename().string(), std::move(found.scans),
+               std::move(covariances));
   summary.skipped += found.skipped;
+}
+
+void addDrives(const MapBuildJob& job, std::vector<MappingSession> drives, MapAccumulator& sessions,
+               MapBuildSummary& summary) {
+  std::size_t next = summary.mapped ? summary.mapped->known : 0;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    std::vector<Eigen::Matrix3d> covariances;
+    for (std::size_t k = 0; summary.mapped && k < drives[i].scans.size(); ++k)
+      covariances.push_back(summary.mapped->poses.at(next++).covariance);
+    addDrive(job, i, std::move(drives[i]), std::move(covariances), sessions, summary);
+  }
 }
 
 void countSessions(const AddedSessions& added, MapBuildSummary& summary) {
@@ -305,8 +319,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   if (job.kind == PoseKind::odometry)
     mapDrivesOf(drives, job, sessions.added(), datum, settings, summary);
   const auto paths = pathsOf(drives);
-  for (std::size_t i = 0; i < drives.size(); ++i)
-    addDrive(job, i, std::move(drives[i]), sessions, summary);
+  addDrives(job, std::move(drives), sessions, summary);
   countSessions(sessions.added(), summary);
   if (summary.scans == 0)
     throw Error(job.inputs.front().string() + ": no usable scan, " +

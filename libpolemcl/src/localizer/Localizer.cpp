@@ -1,18 +1,13 @@
-#include <cmath>
-
 #include <polemcl/localizer/Localizer.h>
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
-#include "core/common/Covariance.h"
 #include "core/common/Transform.h"
-#include "io/data/MotionSteps.h"
 #include "io/file/TextFile.h"
 #include "localizer/PointsObservation.h"
+#include "localizer/ScanOdometry.h"
 #include "localizer/SettingsValues.h"
 #include "mrpt/filter/LocalizationPipeline.h"
-#include "mrpt/rawlog/MotionOptions.h"
-#include "mrpt/rawlog/OdometryTrack.h"
 #include "mrpt/rawlog/PoleSequence.h"
 
 namespace polemcl {
@@ -25,17 +20,14 @@ LocalizationMap loaded(const std::filesystem::path& file, const SettingsValues& 
   return {map};
 }
 
-bool isFinite(const Pose2D& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
-}
-
 }  // namespace
 
 struct Localizer::Impl {
   Impl(const SettingsValues& values, LocalizationMap map, std::uint32_t seed)
       : settings(values),
         extractor(settings.poleExtraction()),
-        pipeline(std::move(map), settings.localization, seed) {
+        pipeline(std::move(map), settings.localization, seed),
+        odometry(settings.motion) {
     if (settings.start.anywhere)
       startAnywhere(settings.start.area);
     else if (settings.start.pose)
@@ -50,13 +42,13 @@ struct Localizer::Impl {
     pipeline.initializeGlobally(area);
     isStarted = true;
   }
-  void add(const OdometryReading& reading);
   LocalizationUpdate step(const PoleScan& frame);
-  /// \brief With the motion that the odometry tells. \param time Of the scan as the odometry
-  /// counts it: observations round theirs. \param pose Of the odometry at that time.
+  LocalizationUpdate step(PoleScan frame, const Pose2D& atScan) {
+    const double time = frame.time;
+    return follow(std::move(frame), time, odometry.addAtScan(time, atScan));
+  }
+  /// \brief With the motion that the odometry tells; arguments of ScanOdometry::motionTo().
   LocalizationUpdate follow(PoleScan frame, double time, const Pose2D& pose);
-  LocalizationUpdate step(PoleScan frame, const Pose2D& odometry);
-  /// \brief With the odometry of add().
   LocalizationUpdate stepByOdometry(PoleScan frame, double time);
   PoleScan frameOfScan(const mrpt::obs::CObservation& scan);
 
@@ -64,32 +56,10 @@ struct Localizer::Impl {
   ObservationPoleExtractor extractor;
   LocalizationPipeline pipeline;
   bool isStarted = false;
-  OdometryTrack track;
-  io::MotionSteps steps;                   ///< between the readings whose covariance is known
-  std::optional<OdometryReading> reading;  ///< the last one; its pose is that of the track
-  std::optional<Pose2D> odometryBefore;    ///< at the last scan
-  double timeBefore = 0;                   ///< of the last scan, s
+  ScanOdometry odometry;
   std::optional<Pose2D> pose_map_odometry;
   std::vector<PoleDetection> poles_robot;
 };
-
-void Localizer::Impl::add(const OdometryReading& next) {
-  if (!std::isfinite(next.time) || !isFinite(next.pose))
-    throw Error("odometry: time, x, y and yaw must be finite");
-  if (reading && next.time <= reading->time) return;
-  track.add(next.time, next.pose);
-  OdometryReading taken = next;
-  taken.pose = *track.at(next.time);
-  const auto& covariance = next.velocityCovariance;
-  if (reading && covariance && isCovariance(*covariance) && covariance->trace() > 0) {
-    const double seconds = next.time - reading->time;
-    const Pose2D step = relative(reading->pose, taken.pose);
-    steps.add(reading->time, next.time, {step, *covariance * seconds * seconds});
-  }
-  reading = taken;
-  track.forgetBefore(next.time - keptOdometry);
-  steps.forgetBefore(next.time - keptOdometry);
-}
 
 LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {
   if (!isStarted)
@@ -103,35 +73,18 @@ LocalizationUpdate Localizer::Impl::step(const PoleScan& frame) {
 }
 
 LocalizationUpdate Localizer::Impl::follow(PoleScan frame, double time, const Pose2D& pose) {
-  if (odometryBefore) {
-    const Pose2D motion = relative(*odometryBefore, pose);
-    frame.motion = PoseWithCovariance{motion, motionCovariance(motion, settings.motion)};
-    if (const auto stated = steps.covarianceBetween(timeBefore, time))
-      frame.motion->covariance =
-          settings.motion.covarianceFactor * (*stated + io::floorCovariance());
-  }
+  frame.motion = odometry.motionTo(time, pose);
   LocalizationUpdate update = step(frame);
-  track.forgetBefore(timeBefore);  // the last motion goes on over a jump
-  steps.forgetBefore(time);
-  timeBefore = time;
-  odometryBefore = pose;
+  odometry.pass(time, pose);
   if (update.estimate)
-    pose_map_odometry = compose(update.estimate->mean, relative(track.asRead(pose), {}));
+    pose_map_odometry = compose(update.estimate->mean, relative(odometry.track().asRead(pose), {}));
   return update;
 }
 
-LocalizationUpdate Localizer::Impl::step(PoleScan frame, const Pose2D& odometry) {
-  const double time = frame.time;
-  track.add(time, odometry);
-  const auto pose = track.at(time);
-  if (!pose) throw Error("odometry: x, y and yaw must be finite");
-  return follow(std::move(frame), time, *pose);
-}
-
 LocalizationUpdate Localizer::Impl::stepByOdometry(PoleScan frame, double time) {
-  const auto pose = track.at(time);
+  const auto pose = odometry.track().at(time);
   if (!pose) throw Error("no odometry within 0.5 s of the scan at " + io::fixed(time, 3) + " s");
-  if (!odometryBefore) frame.velocity = reading->velocity;
+  if (!odometry.motionTo(time, *pose)) frame.velocity = odometry.velocity();
   return follow(std::move(frame), time, *pose);
 }
 
@@ -178,11 +131,11 @@ LocalizationUpdate Localizer::step(const mrpt::obs::CObservation& scan, const Po
 }
 
 void Localizer::addOdometry(const OdometryReading& reading) {
-  m_impl->add(reading);
+  m_impl->odometry.add(reading);
 }
 
 bool Localizer::hasOdometry(double time) const {
-  return m_impl->track.reaches(time);
+  return m_impl->odometry.track().reaches(time);
 }
 
 void Localizer::setRecordedTiming(const ScanTiming& timing) {
@@ -227,7 +180,7 @@ const LocalizationPipeline& Localizer::pipeline() const {
 }
 
 std::size_t Localizer::odometryJumps() const {
-  return m_impl->track.jumps();
+  return m_impl->odometry.track().jumps();
 }
 
 const std::vector<PoleDetection>& Localizer::poles() const {

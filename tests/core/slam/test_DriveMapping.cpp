@@ -106,8 +106,10 @@ std::vector<DriveFix> fixesOf(const Drive& drive, const Eigen::Vector2d& antenna
 }
 
 MappedDrives map(const std::vector<Drive>& drives, std::size_t knownScans = 0,
-                 std::vector<DriveFix> fixes = {}) {
+                 std::vector<DriveFix> fixes = {},
+                 std::vector<Eigen::Matrix3d> knownCovariances = {}) {
   DrivesToMap job;
+  job.knownCovariances = std::move(knownCovariances);
   job.fixes = std::move(fixes);
   for (const Drive& drive : drives) {
     job.scans.insert(job.scans.end(), drive.scans.begin(), drive.scans.end());
@@ -264,20 +266,27 @@ TEST(DriveMapping, RefusesDrivesOfDifferentPlaces) {
   EXPECT_REFUSED(map({ringDrive(1), ringDrive(2)}), "drive 1: none of its places was found");
 }
 
-/// Known poses of a drive stay, and another drive finds its place among them.
+/// A drive round a ring in UTM, with poses that are known.
+Drive knownRing(const std::vector<Eigen::Vector2d>& poles, const Pose2D& start) {
+  Drive drive(440, ring(70), poles, 5, start);
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    drive.scans[i].pose_map_robot = drive.truth[i];
+    if (i > 0)
+      drive.scans[i].motion = PoseWithCovariance{relative(drive.truth[i - 1], drive.truth[i]),
+                                                 1e-6 * Eigen::Matrix3d::Identity()};
+  }
+  return drive;
+}
+
+/// Known poses of a drive stay, and another drive finds its place among them. Its poses are as
+/// uncertain as those that it is added to, and more.
 TEST(DriveMapping, AddsADriveToPosesThatAreKnown) {
   const auto poles = ringPoles(70, 71);
   const Pose2D start{300000, 5000000, 3.1};
   std::vector<Eigen::Vector2d> moved;
   for (const Eigen::Vector2d& pole : poles)
     moved.push_back(centreOf(compose(start, {pole.x(), pole.y(), 0})));
-  Drive before(440, ring(70), moved, 5, start);
-  for (std::size_t i = 0; i < before.scans.size(); ++i) {
-    before.scans[i].pose_map_robot = before.truth[i];
-    if (i > 0)
-      before.scans[i].motion = PoseWithCovariance{relative(before.truth[i - 1], before.truth[i]),
-                                                  1e-6 * Eigen::Matrix3d::Identity()};
-  }
+  const Drive before = knownRing(moved, start);
   const Drive added(200, ring(70), moved, 6, compose(start, {70, 70, M_PI / 2}));
   const MappedDrives mapped = map({before, added}, before.scans.size());
   for (std::size_t i = 0; i < before.truth.size() + added.truth.size(); ++i) {
@@ -286,6 +295,19 @@ TEST(DriveMapping, AddsADriveToPosesThatAreKnown) {
     const Pose2D& found = mapped.poses[i].mean;
     ASSERT_LT(std::hypot(found.x - truth.x, found.y - truth.y), known ? 0.03 : 0.08) << i;
     ASSERT_NEAR(wrapAngle(found.yaw - truth.yaw), 0, 0.003) << i;
+  }
+
+  std::vector<Eigen::Matrix3d> known;  // grow along the drive
+  for (std::size_t i = 0; i < before.truth.size(); ++i)
+    known.emplace_back(1e-4 * static_cast<double>(i + 1) * Eigen::Matrix3d::Identity());
+  const MappedDrives bent = map({before, added}, known.size(), {}, known);
+  for (std::size_t i = 0; i < bent.poses.size(); ++i) {
+    const bool first = i < before.truth.size();
+    // Where the added drive begins, the other one has gone a quarter of the ring.
+    const double expected =
+        first ? 0 : 1e-4 * (70 * M_PI / 2 + static_cast<double>(i - known.size()));
+    const Eigen::Matrix3d more = bent.poses[i].covariance - mapped.poses[i].covariance;
+    ASSERT_LT((more - expected * Eigen::Matrix3d::Identity()).norm(), 5e-4) << i;
   }
 }
 

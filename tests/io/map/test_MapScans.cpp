@@ -43,6 +43,10 @@ AddedSessions sample() {
       session.scans.push_back(scan);
       session.used.push_back(used);
     }
+    for (std::size_t i = 0; i < session.scans.size() && session.name[0] == 'z'; ++i) {
+      const Eigen::Matrix3d root = Eigen::Matrix3d::NullaryExpr(number);
+      session.covariances.push_back((root * root.transpose()).selfadjointView<Eigen::Upper>());
+    }
   }
   return added;
 }
@@ -60,6 +64,7 @@ void expectSame(const AddedSessions& a, const AddedSessions& b) {
     const AddedSession &one = a.sessions[s], &two = b.sessions[s];
     EXPECT_EQ(one.name, two.name);
     EXPECT_EQ(one.used, two.used);
+    EXPECT_EQ(one.covariances, two.covariances);
     ASSERT_EQ(one.scans.size(), two.scans.size());
     for (std::size_t i = 0; i < one.scans.size(); ++i) {
       EXPECT_EQ(one.scans[i].time, two.scans[i].time);

@@ -87,8 +87,9 @@ MapAccumulator::MapAccumulator(const PoleMapOptions& mapping, const MapUpdateOpt
   m_added = std::move(before);
 }
 
-const AddedSession& MapAccumulator::add(std::string name, std::vector<SessionScan> scans) {
-  AddedSession session{std::move(name), std::move(scans), {}};
+const AddedSession& MapAccumulator::add(std::string name, std::vector<SessionScan> scans,
+                                        std::vector<Eigen::Matrix3d> covariances) {
+  AddedSession session{std::move(name), std::move(scans), {}, std::move(covariances)};
   requireFinitePoses(session);
   requireOneDatum(session, m_added.sessions);
   session.used.assign(session.scans.size(), true);

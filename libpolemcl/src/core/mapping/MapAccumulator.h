@@ -19,6 +19,9 @@ struct AddedSession {
   /// Scans in the order driven. A scan that is not used keeps only its time and pose.
   std::vector<SessionScan> scans;
   std::vector<bool> used;  ///< one a scan
+  /// Of each scan's pose against the first pose of the map (x, y, yaw; m², m·rad, rad²), where the
+  /// poses were found without truth. Else empty.
+  std::vector<Eigen::Matrix3d> covariances = {};
   std::size_t usedCount() const;
   /// \brief Share of the scans that are used (`f_map`), 0 without a scan.
   double usedShare() const;
@@ -44,10 +47,12 @@ class MapAccumulator {
 
   /// \brief The next session. Its scans are used unless a scan of an earlier session, used or not,
   /// stood within `unvisited` of them. The session itself does not count, so loops of it are used.
-  /// \param scans In the order driven. \return The session with what is kept of it; valid until the
-  ///         next call. \throws Error on a pose that is not finite, naming session and scan, and on
+  /// \param scans In the order driven. \param covariances As in AddedSession.
+  /// \return The session with what is kept of it; valid until the next call. \throws Error on a
+  /// pose that is not finite, naming session and scan, and on
   ///         a session more than 10 km from all before: it is in another frame.
-  const AddedSession& add(std::string name, std::vector<SessionScan> scans);
+  const AddedSession& add(std::string name, std::vector<SessionScan> scans,
+                          std::vector<Eigen::Matrix3d> covariances = {});
 
   /// \brief buildPoleMap() on the scans used. \throws Error as buildPoleMap().
   PoleMapResult build() const;

@@ -26,6 +26,47 @@ struct Resighting {
   std::size_t scanA, poleA, scanB, poleB;
 };
 
+double meanOf(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// For each pair of sightings the vector from the first place to the second, m, and how it changes
+/// with the offset (m) and the scale of the ranges.
+struct RangeFit {
+  explicit RangeFit(std::size_t pairs)
+      : apart(static_cast<Eigen::Index>(pairs), 2), byOffset(apart), byScale(apart) {}
+  Eigen::VectorXd distances(const Eigen::Vector2d& fit) const {
+    return (apart + fit[0] * byOffset + fit[1] * byScale).rowwise().norm();
+  }
+  std::vector<double> clippedDistances(const Eigen::Vector2d& fit) const {
+    const Eigen::VectorXd clipped = distances(fit).cwiseMin(kFar);
+    return {clipped.begin(), clipped.end()};
+  }
+  /// Offset, and scale - 1, by least squares with Cauchy weights.
+  Eigen::Vector2d solve() const;
+
+  Eigen::MatrixX2d apart, byOffset, byScale;
+};
+
+Eigen::Vector2d RangeFit::solve() const {
+  Eigen::Vector2d fit(0, 0);
+  for (int round = 0; round < 20; ++round) {
+    const Eigen::VectorXd error = distances(fit);
+    const double usual = 2 * nearestRank({error.begin(), error.end()}, 0.5) + 1e-6;
+    const Eigen::VectorXd weight = (1 + (error / usual).array().square()).inverse();
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right(0, 0);
+    for (Eigen::Index k = 0; k < apart.rows(); ++k) {
+      Eigen::Matrix2d design;
+      design << byOffset.row(k).transpose(), byScale.row(k).transpose();
+      normal += weight[k] * design.transpose() * design;
+      right -= weight[k] * design.transpose() * apart.row(k).transpose();
+    }
+    fit = normal.ldlt().solve(right);
+  }
+  return fit;
+}
+
 class Search {
  public:
   Search(const std::vector<TimedScan>& scans, double turnSeconds);
@@ -47,6 +88,7 @@ class Search {
   /// From the LiDAR to the pole when it was measured, map frame, m.
   Eigen::Vector2d ray(std::size_t scan, const TimedPole& pole, const ScanTiming& timing,
                       const Eigen::Vector2d& lidar_robot) const;
+  RangeFit rangeFit(const ScanTiming& timing, const Eigen::Vector2d& lidar_robot) const;
   std::vector<std::size_t> partners(std::size_t scan) const;
 
   const std::vector<TimedScan>& m_scans;
@@ -141,9 +183,7 @@ std::vector<double> Search::distances(const ScanTiming& timing) const {
 }
 
 double Search::mean(const ScanTiming& timing) const {
-  double sum = 0;
-  for (const double distance : distances(timing)) sum += distance;
-  return sum / static_cast<double>(m_pairs.size());
+  return meanOf(distances(timing));
 }
 
 double Search::significance(const ScanTiming& better, const ScanTiming& worse) const {
@@ -162,48 +202,29 @@ double Search::significance(const std::vector<double>& good, const std::vector<d
   return squares > 0 ? sum / std::sqrt(squares) : 0;
 }
 
-RangeCorrection Search::bestRanges(const ScanTiming& timing,
-                                   const Eigen::Vector2d& lidar_robot) const {
-  const auto count = static_cast<Eigen::Index>(m_pairs.size());
-  // By pair: how its vector from the first place to the second changes with offset and scale.
-  Eigen::MatrixX2d apart(count, 2), byOffset(count, 2), byScale(count, 2);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Resighting& pair = m_pairs[static_cast<std::size_t>(k)];
+RangeFit Search::rangeFit(const ScanTiming& timing, const Eigen::Vector2d& lidar_robot) const {
+  RangeFit fit(m_pairs.size());
+  for (std::size_t k = 0; k < m_pairs.size(); ++k) {
+    const Resighting& pair = m_pairs[k];
     const TimedPole& a = m_scans[pair.scanA].poles_robot[pair.poleA];
     const TimedPole& b = m_scans[pair.scanB].poles_robot[pair.poleB];
     const Eigen::Vector2d rayA = ray(pair.scanA, a, timing, lidar_robot),
                           rayB = ray(pair.scanB, b, timing, lidar_robot);
-    apart.row(k) = place(pair.scanB, b, timing) - place(pair.scanA, a, timing);
-    byOffset.row(k) = rayB.normalized() - rayA.normalized();
-    byScale.row(k) = rayB - rayA;
+    const auto row = static_cast<Eigen::Index>(k);
+    fit.apart.row(row) = place(pair.scanB, b, timing) - place(pair.scanA, a, timing);
+    fit.byOffset.row(row) = rayB.normalized() - rayA.normalized();
+    fit.byScale.row(row) = rayB - rayA;
   }
-  const auto remaining = [&](const Eigen::Vector2d& fit) -> Eigen::VectorXd {
-    return (apart + fit[0] * byOffset + fit[1] * byScale).rowwise().norm();
-  };
-  Eigen::Vector2d fit(0, 0);
-  for (int round = 0; round < 20; ++round) {
-    const Eigen::VectorXd error = remaining(fit);
-    const double usual = 2 * nearestRank({error.begin(), error.end()}, 0.5) + 1e-6;
-    const Eigen::VectorXd weight = (1 + (error / usual).array().square()).inverse();
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d right(0, 0);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      Eigen::Matrix2d design;
-      design << byOffset.row(k).transpose(), byScale.row(k).transpose();
-      normal += weight[k] * design.transpose() * design;
-      right -= weight[k] * design.transpose() * apart.row(k).transpose();
-    }
-    fit = normal.ldlt().solve(right);
-  }
-  const auto clipped = [&](const Eigen::Vector2d& by) {
-    const Eigen::VectorXd error = remaining(by).cwiseMin(kFar);
-    return std::vector<double>(error.begin(), error.end());
-  };
-  const auto good = clipped(fit), bad = clipped(Eigen::Vector2d::Zero());
-  const auto mean = [&](const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(count);
-  };
-  return {fit[0], 1 + fit[1], mean(bad), mean(good), significance(good, bad)};
+  return fit;
+}
+
+RangeCorrection Search::bestRanges(const ScanTiming& timing,
+                                   const Eigen::Vector2d& lidar_robot) const {
+  const RangeFit fit = rangeFit(timing, lidar_robot);
+  const Eigen::Vector2d found = fit.solve();
+  const auto good = fit.clippedDistances(found);
+  const auto bad = fit.clippedDistances(Eigen::Vector2d::Zero());
+  return {found[0], 1 + found[1], meanOf(bad), meanOf(good), significance(good, bad)};
 }
 
 /// The best of not turning, and of turning with cuts in steps of 15°.

@@ -5,6 +5,7 @@
 
 #include "core/common/DisjointSets.h"
 #include "core/common/GreedyAssignment.h"
+#include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "core/slam/DriveFrames.h"
 
@@ -30,6 +31,7 @@ class DriveMapping {
       : m_scans(std::move(drives.scans)),
         m_names(std::move(drives.names)),
         m_knownCount(drives.known),
+        m_knownCovariances(std::move(drives.knownCovariances)),
         m_fixes(std::move(drives.fixes)),
         m_trust(trust),
         m_drives(drivesOf(m_scans)) {}
@@ -49,11 +51,13 @@ class DriveMapping {
   void requireConnected() const;
   void merge(double gate, Covariance covariance);
   Eigen::Matrix3d covarianceOf(std::size_t scan) const;
+  std::vector<PoseWithCovariance> poses() const;
   MappedDrives result() const;
 
   std::vector<DrivenScan> m_scans;
   std::vector<std::string> m_names;
   std::size_t m_knownCount;
+  std::vector<Eigen::Matrix3d> m_knownCovariances;
   std::vector<DriveFix> m_fixes;
   AdjustmentTrust m_trust;
   std::vector<std::size_t> m_drives;  ///< of each scan
@@ -240,6 +244,21 @@ Eigen::Matrix3d DriveMapping::covarianceOf(std::size_t scan) const {
   return (1 - share) * block(before) + share * block(after);
 }
 
+/// The known poses were taken as they are. So a pose among them has their errors besides its own.
+std::vector<PoseWithCovariance> DriveMapping::poses() const {
+  std::vector<PoseWithCovariance> poses;
+  for (std::size_t i = 0; i < m_scans.size(); ++i)
+    poses.push_back({m_state.poses[i], covarianceOf(i)});
+  if (m_knownCovariances.empty()) return poses;
+  const auto centres = centresOf(m_state.poses);
+  const KdTree2D known(
+      {centres.begin(), centres.begin() + static_cast<std::ptrdiff_t>(m_knownCount)});
+  for (std::size_t i = m_knownCount; i < poses.size(); ++i)
+    poses[i].covariance +=
+        m_knownCovariances.at(known.nearest(centres[i].x(), centres[i].y(), INFINITY).index);
+  return poses;
+}
+
 MappedDrives DriveMapping::result() const {
   MappedDrives result;
   const std::size_t knownDrives = m_knownCount == 0 ? 0 : m_drives[m_knownCount - 1] + 1;
@@ -247,8 +266,7 @@ MappedDrives DriveMapping::result() const {
   result.fixes = m_factors.gnss.fixes.size();
   result.odometry.assign(m_state.odometry.begin() + static_cast<std::ptrdiff_t>(knownDrives),
                          m_state.odometry.end());
-  for (std::size_t i = 0; i < m_scans.size(); ++i)
-    result.poses.push_back({m_state.poses[i], covarianceOf(i)});
+  result.poses = poses();
   for (const Loop& loop : m_loops) result.loops.push_back({loop.tie.first, loop.tie.second});
   for (const PoleTrack& track : m_tracks.tracks) result.tracks += track.hits >= kFollowed ? 1 : 0;
   for (std::size_t i = m_knownCount + 1; i < m_scans.size(); ++i)

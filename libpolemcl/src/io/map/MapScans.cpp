@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include "core/common/Covariance.h"
 #include "io/file/Bytes.h"
 #include "io/file/Inflate.h"
 
@@ -32,6 +33,12 @@ void put(ByteWriter& writer, const SessionScan& scan, bool used) {
   for (const PoleDetection& pole : scan.poles_robot) put(writer, pole);
   writer.put(static_cast<std::uint32_t>(scan.visibilityRange.size()));
   for (const float range : scan.visibilityRange) writer.put(range);
+}
+
+/// Upper triangle, by rows.
+void put(ByteWriter& writer, const Eigen::Matrix3d& c) {
+  for (const double value : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)})
+    writer.put(value);
 }
 
 std::string deflated(const std::string& bytes) {
@@ -85,6 +92,25 @@ bool getScan(ByteReader& reader, const std::string& where, SessionScan& scan) {
   return true;
 }
 
+Eigen::Matrix3d getCovariance(ByteReader& reader, const std::string& where) {
+  Eigen::Matrix3d c;
+  for (double* value : {&c(0, 0), &c(0, 1), &c(0, 2), &c(1, 1), &c(1, 2), &c(2, 2)})
+    *value = reader.get<double>();
+  c.triangularView<Eigen::StrictlyLower>() = c.transpose();
+  if (!isCovariance(c)) throw Error(where + "damaged: the covariance of a pose is none");
+  return c;
+}
+
+/// All scans of a session have one, or none.
+void getCovariances(ByteReader& reader, const std::string& where, AddedSession& session) {
+  const auto count = countOf<std::uint64_t>(reader, 6 * 8, where);
+  if (count != 0 && count != session.scans.size())
+    throw Error(where + "damaged: " + std::to_string(count) + " covariances of " +
+                std::to_string(session.scans.size()) + " poses");
+  for (std::uint64_t i = 0; i < count; ++i)
+    session.covariances.push_back(getCovariance(reader, where));
+}
+
 }  // namespace
 
 std::string packMapScans(const AddedSessions& added) {
@@ -96,6 +122,10 @@ std::string packMapScans(const AddedSessions& added) {
     writer.put(static_cast<std::uint64_t>(session.scans.size()));
     for (std::size_t i = 0; i < session.scans.size(); ++i)
       put(writer, session.scans[i], session.used.at(i));
+  }
+  for (const AddedSession& session : added.sessions) {
+    writer.put(static_cast<std::uint64_t>(session.covariances.size()));
+    for (const Eigen::Matrix3d& covariance : session.covariances) put(writer, covariance);
   }
   ByteWriter content;
   content.put(static_cast<std::uint64_t>(writer.bytes().size()));
@@ -119,6 +149,8 @@ AddedSessions unpackMapScans(std::string_view content, const std::string& where)
     session.used.reserve(scans);
     for (SessionScan& scan : session.scans) session.used.push_back(getScan(reader, where, scan));
   }
+  if (reader.remaining() == 0) return added;  // written by 1.0.0
+  for (AddedSession& session : added.sessions) getCovariances(reader, where, session);
   return added;
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+/// \file ScanOdometry.h
+/// \brief From odometry at times of its own to the motion of each scan.
+
+#include <optional>
+
+#include <polemcl/localizer/Localizer.h>
+#include "io/data/MotionSteps.h"
+#include "mrpt/rawlog/MotionOptions.h"
+#include "mrpt/rawlog/OdometryTrack.h"
+
+namespace polemcl {
+
+/// \brief Readings in, motions from scan to scan out. Keeps what later scans may need.
+class ScanOdometry {
+ public:
+  explicit ScanOdometry(const MotionOptions& options) : m_options(options) {}
+
+  /// \brief A reading not later than the last one is left out. \throws Error unless finite.
+  void add(const OdometryReading& reading);
+  /// \brief The odometry at a scan. \throws Error unless finite.
+  Pose2D addAtScan(double time, const Pose2D& pose);
+  const OdometryTrack& track() const { return m_track; }
+  /// \brief As the last reading of add() stated it.
+  std::optional<Velocity> velocity() const;
+
+  /// \brief Since the scan before; nothing at the first. \param time Of the scan as the odometry
+  /// counts it: observations round theirs. \param pose Of the track at that time.
+  std::optional<PoseWithCovariance> motionTo(double time, const Pose2D& pose) const;
+  /// \brief The scan of these is the one before from now on.
+  void pass(double time, const Pose2D& pose);
+
+ private:
+  MotionOptions m_options;
+  OdometryTrack m_track;
+  io::MotionSteps m_steps;                   ///< between the readings whose covariance is known
+  std::optional<OdometryReading> m_reading;  ///< the last one; its pose is that of the track
+  std::optional<Pose2D> m_before;            ///< at the last scan
+  double m_timeBefore = 0;                   ///< of the last scan, s
+};
+
+}  // namespace polemcl
