@@ -106,6 +106,22 @@ TEST(LocalizationHealth, TooFewMatchesDegradeThenLose) {
   feed.expect(State::ok, Reason::none);
 }
 
+// Key frames 3.6 m apart, as on the real kilometre. Three poles are too few for a window.
+TEST(LocalizationHealth, FewPolesRaiseDoubtWhereNoneMatches) {
+  Feed feed;
+  feed.metres = 3.6;
+  feed.scans(10, 0.9);
+  feed.scan(0, 3);
+  feed.expect(State::ok, Reason::none);
+  feed.scan(0, 3);
+  feed.expect(State::degraded, Reason::mismatch);
+  feed.scan(1, 3);
+  feed.expect(State::ok, Reason::none);
+  feed.metres = 0.05;  // scans from one place show the same poles again
+  feed.scans(20, 0, 3);
+  feed.expect(State::ok, Reason::none);
+}
+
 TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {
   Feed feed;
   feed.scans(60, 0.9);

@@ -111,6 +111,34 @@ TEST(OdometryMonitor, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
     }
 }
 
+// 7 m/s, then nothing: no vehicle stops in a tenth of a second. After 5 s it must have.
+TEST(OdometryMonitor, WithoutPolesASuddenStopIsDoubtedForAWhile) {
+  OdometryMonitor check;
+  const Eigen::Matrix3d covariance = 1e-6 * Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 100; ++i) {
+    const bool stuck = i >= 20, doubted = stuck && i < 70;
+    const double step = stuck ? 0 : 0.7;
+    const MonitoredMotion motion = check.add(100 + 0.1 * i, {step, 0, 0}, covariance, {});
+    EXPECT_EQ(motion.replaced, doubted) << i;
+    EXPECT_EQ(motion.verdict == OdometryVerdict::contradicted, doubted) << i;
+    EXPECT_NEAR(motion.motion.x, doubted ? 0.7 : step, 1e-12) << i;
+    EXPECT_NEAR(motion.covariance(0, 0), doubted ? 0.35 * 0.35 : 0, 1e-4) << i;
+  }
+}
+
+// Hard braking from 14 m/s, with scan times that are a fifth too long or too short.
+TEST(OdometryMonitor, WithoutPolesHardBrakingIsBelieved) {
+  OdometryMonitor check;
+  double speed = 14;
+  for (int i = 0; i < 60; ++i) {
+    if (i > 20) speed = std::max(0.0, speed - 0.9);
+    const double late = i % 2 == 0 ? 0.01 : -0.01;
+    const Pose2D motion{0.1 * speed, 0, 0};
+    EXPECT_FALSE(check.add(100 + 0.1 * i + late, motion, Eigen::Matrix3d::Zero(), {}).replaced)
+        << i;
+  }
+}
+
 TEST(OdometryMonitor, ASlippingOdometryIsReplacedWithinASecond) {
   for (const double factor : {0.8, 1.2})
     for (const std::uint64_t seed : {7, 8, 9}) {

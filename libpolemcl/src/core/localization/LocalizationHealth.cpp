@@ -27,7 +27,13 @@ constexpr double kUsualWithin = 200;
 /// Lost: a smaller share of the observed poles is on the map. A pose that has gone wrong was known
 /// well before, so matches by chance are rare: 0.002 for 20 cm round each pole.
 constexpr double kLostShare = 0.03;
-constexpr double kDegradedShare = 0.4;      // degraded: a smaller share of them is on the map
+constexpr double kDegradedShare = 0.4;  // degraded: a smaller share of them is on the map
+/// Degraded: e to this power is how much better a wrong place explains the last scans than the
+/// right one, at which these shares of the poles match. Few poles say it where none of them
+/// matches.
+constexpr double kDoubt = 4, kRightShare = 0.7, kWrongShare = 0.1;
+/// Scans nearer to each other show the same poles, m: they say so much less.
+constexpr double kSamePoles = 3;
 constexpr double kLostSpread = 5;           // lost: greater σ of the position, m
 constexpr double kDegradedSpread = 0.2;     // degraded: greater σ of the position, m
 constexpr double kDegradedHeading = 0.052;  // degraded: greater σ of the heading, rad
@@ -120,12 +126,22 @@ void HealthMonitor::remember(const HealthInput& input) {
     scan.squared += match.squared;
     ++scan.matches;
   }
+  doubt(scan, input.metres);
   Viewpoint& viewpoint = m_viewpoints.back();
   const double share = 1.0 / ++viewpoint.scans;
   viewpoint.seen += share * (scan.seen - viewpoint.seen);
   viewpoint.matched += share * (scan.matched - viewpoint.matched);
   viewpoint.squared += share * (scan.squared - viewpoint.squared);
   viewpoint.matches += share * (scan.matches - viewpoint.matches);
+}
+
+/// The sequential test of Page (1954): what spoke for the right place before does not count.
+void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
+  const double wrong =
+      (scan.seen - scan.matched) * std::log((1 - kWrongShare) / (1 - kRightShare)) -
+      scan.matched * std::log(kRightShare / kWrongShare);
+  m_doubt += std::min(1.0, metres / kSamePoles) * wrong;
+  m_doubt = std::clamp(m_doubt, 0.0, 2 * kDoubt);
 }
 
 HealthMonitor::Window HealthMonitor::sumOver(double metres) const {
@@ -192,7 +208,7 @@ void HealthMonitor::judge(const HealthInput& input) {
       {m_health.spread > kLostSpread && !severalModes, State::lost, Reason::spread},
       {severalModes, State::degraded, Reason::ambiguous},
       {!m_confirmed, State::degraded, Reason::converging},
-      {m_isEnough && fewMatched, State::degraded, Reason::mismatch},
+      {(m_isEnough && fewMatched) || m_doubt > kDoubt, State::degraded, Reason::mismatch},
       {wide, State::degraded, Reason::spread},
       {m_driven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind, State::degraded, Reason::noPoles},

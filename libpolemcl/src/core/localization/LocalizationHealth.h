@@ -58,6 +58,7 @@ class POLEMCL_EXPORT HealthMonitor {
   };
   void learnUsual();
   void remember(const HealthInput& input);
+  void doubt(const Viewpoint& scan, double metres);
   Window sumOver(double metres) const;
   double shareOfUsual(const Window& window) const;
   void sumUp();
@@ -74,8 +75,9 @@ class POLEMCL_EXPORT HealthMonitor {
   bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window; to be lost
   double m_longShare = 0;                           ///< of matched poles over the longer window
   double m_seenDriven = 0, m_seenTime = 0;          ///< when a pole was last seen
-  double m_goodDriven = 0;                          ///< metres in a row with enough matches
-  double m_gapUntil = -1;  ///< metres driven at which a time gap is forgotten
+  double m_doubt = 0;       ///< log of how much better a wrong place explains the last scans
+  double m_goodDriven = 0;  ///< metres in a row with enough matches
+  double m_gapUntil = -1;   ///< metres driven at which a time gap is forgotten
 };
 
 }  // namespace polemcl

@@ -24,11 +24,13 @@ constexpr double kMargin = 1.5;   // least lead of the poles' motion over the od
 constexpr double kSettle = 0.5;   // time of agreement until the odometry is believed again, s
 constexpr double kHold = 5;       // time for which the last speed is kept without enough poles, s
 constexpr double kMaxSpeed = 40;  // greatest speed of the vehicle, m/s
-constexpr double kMaxTurnRate = 1.5;  // greatest turn rate, rad/s
-constexpr double kLeastSigma = 0.02;  // of a motion by poles, m
-constexpr double kLeastTurn = 0.002;  // rad
-constexpr double kMostVariance = 1;   // m²; above it, the motion by poles is too uncertain
-constexpr double kMostDoubt = 5;      // m
+constexpr double kMaxTurnRate = 1.5;     // greatest turn rate, rad/s
+constexpr double kMostAcceleration = 6;  // of the vehicle, m/s²
+constexpr double kTimeTolerance = 0.2;   // of the time between scans, as a share
+constexpr double kLeastSigma = 0.02;     // of a motion by poles, m
+constexpr double kLeastTurn = 0.002;     // rad
+constexpr double kMostVariance = 1;      // m²; above it, the motion by poles is too uncertain
+constexpr double kMostDoubt = 5;         // m
 
 std::vector<PoleDetection> usable(const std::vector<PoleDetection>& poles) {
   std::vector<PoleDetection> result;
@@ -197,6 +199,31 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
     result.pairs = std::max(result.pairs, finding.alignment.pairs);
   }
   m_state = State::believed;
+  if (result.verdict == OdometryVerdict::unknown && !isPossible(now, odometry.motion))
+    return coasted(now, odometry);
+  m_possibleTime = now.time;
+  return result;
+}
+
+/// Whether a vehicle can change its speed so much. After kHold seconds, any motion is.
+bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) const {
+  if (m_past.size() < 2 || now.time - m_possibleTime > kHold) return true;
+  const double seconds = now.time - m_past.back().time;
+  const Pose2D expected = coast(seconds), change = relative(expected, motion);
+  const double way = std::max(std::hypot(expected.x, expected.y), std::hypot(motion.x, motion.y));
+  return std::hypot(change.x, change.y) <=
+         kTolerance + kTimeTolerance * way + kMostAcceleration * seconds * seconds;
+}
+
+/// The speed before goes on. The covariance says that the odometry may be right.
+MonitoredMotion OdometryMonitor::coasted(Reference& now, const MonitoredMotion& odometry) const {
+  const Reference& last = m_past.back();
+  MonitoredMotion result = odometry;
+  result.verdict = OdometryVerdict::contradicted;
+  result.replaced = true;
+  result.motion = coast(now.time - last.time);
+  now.used = compose(last.used, result.motion);
+  result.covariance += doubt(result.motion, odometry.motion, 0.5);
   return result;
 }
 
@@ -265,13 +292,8 @@ MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& 
     break;
   }
   if (!found) {
-    result = odometry;
-    result.verdict = OdometryVerdict::contradicted;
-    result.replaced = true;
-    result.motion = coast(now.time - last.time);
-    now.used = compose(last.used, result.motion);
+    result = coasted(now, odometry);
     now.known = false;
-    result.covariance += doubt(result.motion, odometry.motion, 0.5);
   }
   if (hasSettled(now) || now.time - m_knownTime > kHold) {
     m_state = State::believed;

@@ -6,8 +6,9 @@
 /// slip has added up. While poles and odometry agree, nothing is changed. An odometry that is
 /// stuck, slips or jumps is contradicted when enough poles fit another motion, clearly better than
 /// the odometry's, and that motion is outside what the odometry's covariance and a tolerance for
-/// errors of its scale allow. From then on the poles' motion takes its place, until both agree
-/// again for a while. See share/doc/health.md.
+/// errors of its scale allow. Without such poles, a change of speed that no vehicle makes
+/// contradicts it, for some seconds. From then on the poles' motion takes its place, until both
+/// agree again for a while. See share/doc/health.md.
 
 #include <Eigen/Core>
 #include <deque>
@@ -82,13 +83,16 @@ class POLEMCL_EXPORT OdometryMonitor {
                        const ScanRegistration& alignment);
   bool hasSettled(const Reference& now) const;
   Pose2D coast(double seconds) const;
+  MonitoredMotion coasted(Reference& now, const MonitoredMotion& odometry) const;
+  bool isPossible(const Reference& now, const Pose2D& motion) const;
   std::size_t keyScan() const;
 
   bool m_enabled;
   std::deque<Reference> m_past;
   State m_state = State::believed;
-  Pose2D m_speed;          ///< of the last motion handed out, per second
-  double m_knownTime = 0;  ///< when the poles last told the motion, while contradicted, s
+  Pose2D m_speed;             ///< of the last motion handed out, per second
+  double m_possibleTime = 0;  ///< when the odometry last was possible, or the poles agreed, s
+  double m_knownTime = 0;     ///< when the poles last told the motion, while contradicted, s
   /// Time of the scan that later scans are aligned with while contradicted, s. Several scans share
   /// one such scan: chains of every third scan would drift apart.
   double m_keyTime = 0;

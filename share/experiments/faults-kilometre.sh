@@ -1,0 +1,67 @@
+#!/bin/sh
+# Checks on a real drive whether the localization notices faults, and recovers: those of faults.sh, put into the first
+# half of the real kilometre. Map of the even key frames and localization on the odd ones, and the other way round
+# (3.6 m apart, 2.4 scans a second), with a real laser odometry. 100 trials each; since the drive has 400 m, they overlap.
+# Usage: share/experiments/faults-kilometre.sh DATA_DIR KILOMETRE OUT
+#   DATA_DIR   folder with kitti_odom_00_km/ and kitti_raw_0005/, whose map is the wrong one
+#   KILOMETRE  the scans of DATA_DIR/kitti_odom_00_km as a folder (its README.md says how to lay them out)
+#   OUT        gets maps, drives, one JSON and one text for each fault, table.txt and faults.json
+# 8 s before each fault, 10 s of it, 100 m after it; kidnapped by 20 m and more. Seeds 501 and 502.
+# Programs: build/bin, or POLEMCL_BIN. Needs jq; two minutes.
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=share/experiments/common.sh
+. "$top/share/experiments/common.sh"
+
+kilometre_arguments "$@"
+data=$(cd "$1" && pwd)
+find_programs pole-import pole-extract pole-map pole-eval
+find_tools jq
+config=$top/config/kitti.ini
+clockwise="--turn clockwise --cut-deg 180 --stamp-turn 0.5"
+cd "$out"
+rm -f ./*.json ./*.txt
+
+# poles_of FOLDER NAME [OPTION...]: NAME.rawlog with the poles, NAME.tum.
+poles_of() {
+  folder=$1 name=$2
+  shift 2
+  # shellcheck disable=SC2086 # several words
+  "$bin/pole-import" folder --quiet --input "$folder" --output "$name.scans.rawlog" $clockwise "$@"
+  mv "$name.scans.tum" "$name.tum"
+  "$bin/pole-extract" --quiet --config "$config" --input "$name.scans.rawlog" --output "$name.rawlog"
+  rm "$name.scans.rawlog"
+  "$bin/pole-map" build --quiet --config "$config" --input "$name.rawlog" --truth "$name.tum" \
+    --output "$name.polemap" >/dev/null
+}
+
+# faults SCANS MAP SEED FAULT [OPTION...]
+faults() {
+  scans=$1 map=$2 seed=$3 fault=$4
+  shift 4
+  "$bin/pole-eval" faults --config "$config" --map "$map.polemap" --input "$scans.rawlog" --truth "$scans.tum" \
+    --fault "$fault" --trials 100 --seed "$seed" --lead 8 --duration 10 --json "$scans.$fault.json" \
+    "$@" >>"$fault.txt"
+}
+
+link_scans "$kilometre" "$out/drive" 1 228
+/usr/bin/python3 "$top/share/experiments/planar_motions.py" "$labels/laser_odometry.txt" drive/odometry.txt
+poles_of drive even --every 2 --offset 0
+poles_of drive odd --every 2 --offset 1
+rm -r drive
+poles_of "$data/kitti_raw_0005" wrong --odometry-noise 0.02 --seed 7
+for fault in kidnap blind stuck slip jump; do
+  faults odd even 501 "$fault" --tail 100
+  faults even odd 502 "$fault" --tail 100
+done
+faults odd even 501 wrong-map --other-map wrong.polemap --tail 60
+faults even odd 502 wrong-map --other-map wrong.polemap --tail 60
+
+for fault in kidnap wrong-map blind stuck slip jump; do
+  jq -s 'map(del(.failed))' ./*."$fault.json" | jq "{\"$fault\": .}"
+done | jq -s add >faults.json
+jq -r '["fault", "trials", "as demanded", "ok before", "degraded max s", "lost max s", "ok max m", "error after max m"],
+  (to_entries[] | .value as $v | [.key, ($v | map(.trials) | add), ($v | map(.passed) | add), ($v | map(.ok_before) | add),
+  ($v | map(.degraded.max_s) | max), ($v | map(.lost.max_s) | max), ($v | map(.ok.max_m) | max),
+  ($v | map(.error_after_max_m) | max)]) | @tsv' faults.json | column -t -s "$(printf '\t')" >table.txt
+cat table.txt
