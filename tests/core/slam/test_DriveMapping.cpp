@@ -303,9 +303,8 @@ TEST(DriveMapping, AddsADriveToPosesThatAreKnown) {
   const MappedDrives bent = map({before, added}, known.size(), {}, known);
   for (std::size_t i = 0; i < bent.poses.size(); ++i) {
     const bool first = i < before.truth.size();
-    // Where the added drive begins, the other one has gone a quarter of the ring.
-    const double expected =
-        first ? 0 : 1e-4 * (70 * M_PI / 2 + static_cast<double>(i - known.size()));
+    // The added drive begins a quarter of the ring behind the other: 220 scans.
+    const double expected = first ? 0 : 1e-4 * (220 + static_cast<double>(i - known.size()));
     const Eigen::Matrix3d more = bent.poses[i].covariance - mapped.poses[i].covariance;
     ASSERT_LT((more - expected * Eigen::Matrix3d::Identity()).norm(), 5e-4) << i;
   }

@@ -26,7 +26,7 @@ constexpr double kHold = 5;       // time for which the last speed is kept witho
 constexpr double kMaxSpeed = 40;  // greatest speed of the vehicle, m/s
 constexpr double kMaxTurnRate = 1.5;     // greatest turn rate, rad/s
 constexpr double kMostAcceleration = 6;  // of the vehicle, m/s²
-constexpr double kTimeTolerance = 0.2;   // of the time between scans, as a share
+constexpr double kTimeError = 0.04;      // of the time between two scans, s
 constexpr double kLeastSigma = 0.02;     // of a motion by poles, m
 constexpr double kLeastTurn = 0.002;     // rad
 constexpr double kMostVariance = 1;      // m²; above it, the motion by poles is too uncertain
@@ -212,7 +212,7 @@ bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) con
   const Pose2D expected = coast(seconds), change = relative(expected, motion);
   const double way = std::max(std::hypot(expected.x, expected.y), std::hypot(motion.x, motion.y));
   return std::hypot(change.x, change.y) <=
-         kTolerance + kTimeTolerance * way + kMostAcceleration * seconds * seconds;
+         kTolerance + kTimeError * way / seconds + kMostAcceleration * seconds * seconds;
 }
 
 /// The speed before goes on. The covariance says that the odometry may be right.
