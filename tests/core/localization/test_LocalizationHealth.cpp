@@ -115,7 +115,7 @@ TEST(LocalizationHealth, FewPolesRaiseDoubtWhereNoneMatches) {
   feed.expect(State::ok, Reason::none);
   feed.scan(0, 3);
   feed.expect(State::degraded, Reason::mismatch);
-  feed.scans(2, 1, 3);
+  feed.scans(4, 1, 3);
   feed.expect(State::ok, Reason::none);
   feed.metres = 0.002;  // scans from one place show the same poles again
   feed.scans(20, 0, 3);
