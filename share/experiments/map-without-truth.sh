@@ -7,7 +7,8 @@
 #   --tracks     folder of the road kaist01.txt.gz (sensor poses, 12 numbers a line)
 # Odometry is the true motion with 2 % noise, 1 % too long and 0.01 deg/m off (seeds 7 to 11 on the VLP-16 loop, 7 on
 # the others); on the kilometre also that of a real laser odometry. nuScenes has the poses by the planes in its scans
-# (plane_adjustment.py). "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is
+# (plane_adjustment.py); "sides_apart" is how far those by the points on the left and on the right end apart.
+# "street": worlds 701 to 720, drawn, 600 m, wheels: no place is passed again, so each loop is
 # false.
 # "-alone": without any odometry, by the poles alone; "cast-630" to "cast-633" also: streets of 400 m, a scan a metre,
 # the next numbers that nothing was looked at on.
@@ -116,13 +117,31 @@ cast_kaist() {
   rm -r kaist kaist.*
 }
 
+# planes_apart POSES POSES: how far the last poses are apart when the first ones are laid on each other.
+planes_apart() {
+  paste -d ' ' "$1" "$2" | awk '
+    function yaw(k) { return atan2($(k + 4), $k) }
+    function away(k, own) { own["x"] = $(k + 3) - begin[k]; own["y"] = $(k + 7) - begin[k + 1] }
+    NR == 1 { for (k = 1; k <= 13; k += 12) { begin[k] = $(k + 3); begin[k + 1] = $(k + 7); turn[k] = yaw(k) } }
+    { away(1, a); away(13, b); angle = turn[1] - turn[13]
+      x = cos(angle) * b["x"] - sin(angle) * b["y"] - a["x"]; y = sin(angle) * b["x"] + cos(angle) * b["y"] - a["y"]
+      deg = (yaw(13) - turn[13] - yaw(1) + turn[1]) * 180 / 3.14159265 }
+    END { printf "{\"truth\": \"nuscenes-planes\", \"sides_apart_m\": %.3f, \"sides_apart_deg\": %.3f}\n",
+      sqrt(x * x + y * y), sqrt(deg * deg) }'
+}
+
 # nuScenes with the poses by planes.
 nuscenes() {
   set -- --set sensor.height_m=1.84 --set sensor.min_range_m=2.5
   "$bin/pole-import" folder --quiet --input "$data/nuscenes_scene" --output planes.rawlog
   "$bin/pole-extract" --quiet --config "$top/config/hdl32e.ini" "$@" --input planes.rawlog --output planes-poles.rawlog \
     --csv planes.csv
-  /usr/bin/python3 "$top/share/experiments/plane_adjustment.py" "$data/nuscenes_scene" planes.csv planes.txt >planes.log
+  for side in "" left right; do
+    # shellcheck disable=SC2086 # one word or none
+    /usr/bin/python3 "$top/share/experiments/plane_adjustment.py" "$data/nuscenes_scene" planes.csv "planes$side.txt" 0 \
+      $side >"planes$side.log"
+  done
+  planes_apart planesleft.txt planesright.txt >>results
   rm -rf planes planes*.rawlog
   link_scans "$data/nuscenes_scene" "$out/planes" 1 39
   cp planes.txt planes/poses.txt
@@ -242,6 +261,7 @@ jq -r '.[] | select(.drive) | [.drive, .loops, .length, .rms, .max, .local, .end
 {
   jq -r '.[] | select(.localized) | "localized in \(.localized), \(.map): ok \(.ok), \(.local) m"' result.json
   jq -r '[.[] | select(.apart) | .refused] | "two streets, refused: \(map(select(.)) | length) of \(length)"' result.json
+  jq -r '.[] | select(.truth) | "\(.truth): poses by the points on each side end \(.sides_apart_m) m and \(.sides_apart_deg) degrees apart"' result.json
   jq -r '.[] | select(.earth_rms) | "\(.drive) on Earth: \(.earth_rms) m, NEES \(.earth_nees)"' result.json
 } >>table.txt
 cat table.txt

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Poses of a drive from the planes in its scans, as a check of published poses.
 
-Usage: plane_adjustment.py DRIVE POLES OUT [SHIFT_M]
+Usage: plane_adjustment.py DRIVE POLES OUT [SHIFT_M [SIDE]]
   DRIVE    folder with velodyne/*.bin (compensated for motion) and poses.txt (12 numbers a line)
   POLES    table of the poles of all scans (pole-extract --csv): points within 1 m of one are not used
   OUT      gets the adjusted poses, 12 numbers a line; the first one stays as it is
   SHIFT_M  disturbs the poses first by normal noise of this sigma, and 1 deg for each metre of it
+  SIDE     "left" or "right": only points on this side of the vehicle, for two results that share no point
 Each scan's planar points are paired with the planes of all scans within 15 m, and the distances are
 minimized over all poses at once (Gauss-Newton, Cauchy weights), with a gate that shrinks from 1 to 0.2 m.
 Needs python3-scipy.
@@ -32,8 +33,10 @@ ROUNDS, CONVERGED = 25, 2e-4  # most rounds; least step, m
 class Scan:
     """Points, those of planes, normals and centres of planes, in the frame of the LiDAR."""
 
-    def __init__(self, path, poles, random):
+    def __init__(self, path, poles, random, side):
         points = np.fromfile(path, np.float32).reshape(-1, 4)[:, :3].astype(float)
+        if side:
+            points = points[points[:, 1] > 0 if side == "left" else points[:, 1] < 0]
         distance = np.hypot(points[:, 0], points[:, 1])
         points = points[(distance > NEAREST) & (distance < FARTHEST)]
         if poles:
@@ -124,16 +127,16 @@ def adjust(scans, rotations, places):
 
 
 def main():
-    if len(sys.argv) not in (4, 5):
+    if len(sys.argv) not in (4, 5, 6) or sys.argv[5:] not in ([], ["left"], ["right"]):
         sys.exit(__doc__)
     drive, poles, out = pathlib.Path(sys.argv[1]), read_poles(sys.argv[2]), sys.argv[3]
-    shift = float(sys.argv[4]) if len(sys.argv) == 5 else 0.0
+    shift = float(sys.argv[4]) if len(sys.argv) > 4 else 0.0
     random = np.random.default_rng(1)
     poses = np.loadtxt(drive / "poses.txt").reshape(-1, 3, 4)
     files = sorted((drive / "velodyne").glob("*.bin"))
     if len(files) != len(poses):
         sys.exit(f"plane_adjustment.py: {len(files)} scans, but {len(poses)} poses in {drive}")
-    scans = [Scan(path, poles.get(k), random) for k, path in enumerate(files)]
+    scans = [Scan(path, poles.get(k), random, "".join(sys.argv[5:])) for k, path in enumerate(files)]
     rotations, places = poses[:, :, :3].copy(), poses[:, :, 3].copy()
     if shift > 0:
         places[1:] += random.normal(0, shift, places[1:].shape)
