@@ -126,6 +126,7 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
   for (const LidarOptions& lidar : options.vehicle.lidars)
     queueOptions.lidars.push_back(lidar.label);
   const auto queue = std::make_shared<LiveQueue>(queueOptions);
+  std::atomic<std::size_t> lostPackets{0}, ignoredPackets{0};
   const auto sensors = startSensors(io::installedFile(drive.sensors, "config").string(),
                                     {[&](const mrpt::obs::CObservation::Ptr& observation) {
                                        watch.observed(*observation);
@@ -134,6 +135,10 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
                                      [&](const std::string& failure) { queue->end(failure); },
                                      [&](const std::string& warning) {
                                        if (drive.warn) drive.warn(warning);
+                                     },
+                                     [&](std::size_t lost, std::size_t ignored) {
+                                       lostPackets += lost;
+                                       ignoredPackets += ignored;
                                      }});
   const auto record =
       drive.record ? std::make_shared<RecordedEntries>(queue, drive.record->string()) : nullptr;
@@ -141,6 +146,8 @@ LiveDriveResult streamSensors(const LiveDriveOptions& drive, const SequenceOptio
   result.counts = streamPoles(record ? std::static_pointer_cast<EntrySource>(record) : queue,
                               drive.sensors.string(), options,
                               [&](const ReadScan& scan) { watch.consume(scan, consume); });
+  result.counts.lostPackets = lostPackets;
+  result.counts.ignoredPackets = ignoredPackets;
   result.failure = result.counts.failure.empty() ? queue->failure() : result.counts.failure;
   if (record) keep(*record, result.failure);
   if (!result.failure.empty() && result.counts.scans == 0) throw Error(result.failure);

@@ -89,8 +89,8 @@ struct LocalizeResult {
 ///   and in `ok_beyond_spread` the scans of all runs that were `ok` though the error was above 0.5
 ///   m and 5 times the spread; `start_source` says who gave the start pose: the `truth` (at the
 ///   first scan), the `configuration`, the `command line`, or nobody: the start is `anywhere`, or
-///   near the first fix of the rawlog (`gnss`); with sensors also `dropped_scans` and
-///   `scans_without_odometry`, which are left out;
+///   near the first fix of the rawlog (`gnss`); with sensors also `dropped_scans`,
+///   `lost_packets`, `ignored_packets` and `scans_without_odometry`, which are left out;
 /// - `config.ini`: the effective configuration;
 /// - `timings.json`: the only file that differs from repetition to repetition. `wall_s`, `rate`
 ///   (times the pace of the recording, 1 with sensors, or `max`), `filter_s` of each run, and in

@@ -95,6 +95,8 @@ Json inputs(const LocalizeFacts& facts) {
   json["truncated"] = counts.truncated;
   if (job.isLive()) {
     json["dropped_scans"] = counts.dropped;
+    json["lost_packets"] = counts.lostPackets;
+    json["ignored_packets"] = counts.ignoredPackets;
     json["scans_without_odometry"] = counts.unknownMotions;
   }
   json["odometry_jumps"] = counts.odometryJumps;
@@ -180,7 +182,7 @@ void printTable(std::ostream& out, const LocalizeFacts& facts, const LocalizeRes
   if (counts.truncated) out << "the rawlog is truncated: only its readable part was used\n";
   if (facts.job.isLive())
     out << counts.dropped << " scans dropped, " << counts.unknownMotions
-        << " left out without odometry\n";
+        << " left out without odometry, " << counts.lostPackets << " packets lost\n";
   if (counts.odometryJumps)
     out << counts.odometryJumps << " jumps of the odometry, bridged by the motion before\n";
   if (counts.emptyScans) out << counts.emptyScans << " scans without a valid point\n";

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace testing_apps {
 
@@ -78,13 +79,28 @@ class UdpSender {
   }
   /// Returns once the packet has been read, or nobody listens any more.
   void send(const std::string& packet) const {
-    const auto address = loopback(m_port);
-    sendto(m_socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&address),
-           sizeof address);
-    waitFor([this] { return bytesWaiting(m_port).value_or(0) == 0; });
+    put(packet);
+    waitUntilRead();
+  }
+  /// The same for many; as many at once as any buffer holds.
+  void sendAll(const std::vector<std::string>& packets) const {
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      put(packets[i]);
+      if (i % 50 == 49) waitUntilRead();
+    }
+    waitUntilRead();
   }
 
  private:
+  void put(const std::string& packet) const {
+    const auto address = loopback(m_port);
+    sendto(m_socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&address),
+           sizeof address);
+  }
+  void waitUntilRead() const {
+    waitFor([this] { return bytesWaiting(m_port).value_or(0) == 0; });
+  }
+
   int m_port, m_socket;
 };
 

@@ -14,6 +14,7 @@
 #include <polemcl/mrpt/map/CPoleMap.h>
 #include "io/data/Trajectory.h"
 #include "localize/LocalizeApp.h"
+#include "support/ExpectHas.h"
 #include "support/UdpSender.h"
 #include "support/VelodynePackets.h"
 
@@ -55,7 +56,7 @@ class LiveDriveTest : public testing::Test {
     set("data_port", std::to_string(lidarPort));
     set("position_port", std::to_string(freeUdpPort()) + "\n" + more);
     set("udp_port", std::to_string(odometryPort));
-    ini.insert(0, other + "\n");  // the last Velodyne has the ports
+    ini.insert(0, other + "\n");
     writeText(folder / "sensors.ini", ini);
   }
 
@@ -156,14 +157,15 @@ TEST_F(LiveDriveTest, PacketsBecomePosesUntilCtrlC) {
             (std::vector<std::string>{"config.ini", "run_00.tum", "run_00_cov.csv",
                                       "run_00_health.csv", "summary.json", "timings.json"}));
   EXPECT_EQ(io::readPlanarTum(folder / "out/run_00.tum").size(), 20u);
-  EXPECT_EQ(result("summary.json")["dropped_scans"], 0);
+  for (const char* key : {"dropped_scans", "lost_packets", "ignored_packets"})
+    EXPECT_EQ(result("summary.json")[key], 0) << key;
   EXPECT_EQ(result("summary.json")["input"], (folder / "sensors.ini").string());
   const auto latency = result("timings.json")["latency_ms"]["total"];
   EXPECT_EQ(latency["count"], 20);
   EXPECT_GT(latency["median"], 0);
   EXPECT_LE(latency["median"], latency["p99"]);
   EXPECT_LE(latency["p99"], latency["worst"].get<double>() * 1.01);
-  EXPECT_NE(outcome.out.find("0 scans dropped"), std::string::npos) << outcome.out;
+  EXPECT_HAS(outcome.out, "0 scans dropped, 0 left out without odometry, 0 packets lost\n");
 }
 
 TEST_F(LiveDriveTest, TheRecordGivesTheSamePoses) {
@@ -291,6 +293,7 @@ TEST_F(LiveDriveTest, WarnsAndGoesOn) {
         [this](std::size_t complete) {
           waitForLines(complete);
           UdpSender(odometryPort).send("nan 1,2 \x01 hello");
+          UdpSender(lidarPort).send("hello");
         },
         true);
     waitForLines(6);
@@ -302,7 +305,9 @@ TEST_F(LiveDriveTest, WarnsAndGoesOn) {
   EXPECT_EQ(lines().size(), 6u);
   EXPECT_EQ(countOf("[odometry]: CUdpOdometry: a packet holds 'nan 1,2 ? hello'", outcome.err), 1u);
   EXPECT_EQ(countOf("warning: [sensor] turn = counterclockwise", outcome.err), 1u);
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
+  EXPECT_EQ(countOf("[lidar]: CVelodyneScanner: a packet is not of this LiDAR", outcome.err), 1u);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 3) << outcome.err;
+  EXPECT_EQ(result("summary.json")["ignored_packets"], 8);
 }
 
 /// What `turn` says does not matter where the LiDAR states nothing, and auto is always right.

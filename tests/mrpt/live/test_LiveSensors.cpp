@@ -7,65 +7,15 @@
 
 #include <algorithm>
 #include <cstring>
-#include <mutex>
 
 #include <polemcl/core/common/Types.h>
-#include "mrpt/live/LiveSensors.h"
 #include "mrpt/rawlog/RawlogReader.h"
-#include "support/Refusal.h"
-#include "support/TempFolder.h"
-#include "support/UdpSender.h"
+#include "support/LiveSensorsTest.h"
 
 namespace polemcl::test_live_sensors {
 
 using namespace testing_apps;
 using mrpt::obs::CObservationVelodyneScan;
-
-namespace {
-
-class LiveSensorsTest : public testing::Test {
- protected:
-  std::unique_ptr<LiveSensors> start(const std::string& ini) {
-    writeText(folder / "sensors.ini", ini);
-    return startSensors((folder / "sensors.ini").string(),
-                        {[this](const mrpt::obs::CObservation::Ptr& observation) {
-                           const std::lock_guard lock(mutex);
-                           observations.push_back(observation);
-                         },
-                         [this](const std::string& failure) {
-                           const std::lock_guard lock(mutex);
-                           ends.push_back(failure);
-                         },
-                         [this](const std::string& warning) {
-                           const std::lock_guard lock(mutex);
-                           warnings.push_back(warning);
-                         }});
-  }
-  void expectError(const std::string& ini, const std::vector<std::string>& words) {
-    EXPECT_TRUE(tests::says(tests::messageOf([&] { start(ini); }), words)) << ini;
-  }
-  std::size_t ended() {
-    const std::lock_guard lock(mutex);
-    return ends.size();
-  }
-  std::size_t observed() {
-    const std::lock_guard lock(mutex);
-    return observations.size();
-  }
-  /// A Velodyne at free ports.
-  static std::string velodyne(const std::string& more) {
-    return "[lidar]\ndriver = CVelodyneScanner\nmodel = VLP16\ndata_port = " +
-           std::to_string(freeUdpPort()) + "\nposition_port = " + std::to_string(freeUdpPort()) +
-           "\n" + more;
-  }
-
-  const TempFolder folder;
-  std::mutex mutex;
-  std::vector<mrpt::obs::CObservation::Ptr> observations;
-  std::vector<std::string> ends, warnings;
-};
-
-}  // namespace
 
 TEST_F(LiveSensorsTest, NeedsASensorWithADriver) {
   EXPECT_THROW(startSensors((folder / "none.ini").string(), {}), Error);
@@ -79,8 +29,6 @@ TEST_F(LiveSensorsTest, NeedsASensorWithADriver) {
 }
 
 TEST_F(LiveSensorsTest, NamesWrongValues) {
-  expectError("[lidar]\ndriver = CVelodyneScanner\nmodel = VLP16\ndata_port = 40000\n",
-              {"[lidar]: CVelodyneScanner: data_port = 40000: allowed is 1 to 32767"});
   expectError(velodyne("process_rate = 0\n"), {"[lidar]", "process_rate = 0"});
   expectError("[lidar]\ndriver = CVelodyneScanner\nmodel = VLP17\n", {"[lidar]", "VLP17"});
   expectError("[odo]\ndriver = CUdpOdometry\n", {"[odo]: CUdpOdometry: udp_port"});
@@ -93,10 +41,6 @@ TEST_F(LiveSensorsTest, NamesADeviceThatCannotBeOpened) {
   const std::string port = std::to_string(freeUdpPort());
   const std::string odometry = "driver = CUdpOdometry\nudp_port = " + port + "\n";
   expectError("[a]\n" + odometry + "[b]\n" + odometry, {"[b]: CUdpOdometry", port, "in use"});
-  const std::string lidar = velodyne("");
-  std::string second = lidar;
-  second.replace(0, 7, "[other]");
-  expectError(lidar + second, {"[other]: CVelodyneScanner", "in use (UDP ports "});
   expectError(velodyne("pcap_input = none.pcap\n"), {"[lidar]: CVelodyneScanner", "none.pcap"});
 }
 
@@ -184,43 +128,6 @@ TEST_F(LiveSensorsTest, APcapFileWithoutTurnsIsAFailure) {
   EXPECT_TRUE(waitFor([&] { return ended() == 1; }));
   testing::internal::GetCapturedStderr();  // MRPT's complaints
   EXPECT_HAS(ends.at(0), "[lidar]: CVelodyneScanner: no turn in the first 3000 packets");
-}
-
-/// The recorded turns of MRPT's sample, the first one twice, as that is left out; an end is seen
-/// with the begin of the next one.
-TEST_F(LiveSensorsTest, PacketsOfARealVlp16BecomeTheRecordedScans) {
-  std::vector<CObservationVelodyneScan::Ptr> turns;
-  RawlogReader reader("/usr/share/mrpt/datasets/test_velodyne_VLP16.rawlog");
-  for (RawlogEntry entry; reader.next(entry);)
-    if (auto scan = std::dynamic_pointer_cast<CObservationVelodyneScan>(entry.observation))
-      turns.push_back(scan);
-  ASSERT_FALSE(turns.empty());
-  turns.insert(turns.begin(), turns.front());
-
-  const std::string ini = velodyne("sensorLabel = roof\npose_z = 1.5\n");
-  const int port = std::stoi(ini.substr(ini.find("data_port = ") + 12));
-  auto sensors = start(ini);
-  const UdpSender sender(port);
-  ASSERT_TRUE(sender.waitForListener());
-  const auto send = [&](const CObservationVelodyneScan::TVelodyneRawPacket& packet) {
-    sender.send({reinterpret_cast<const char*>(&packet), sizeof packet});
-  };
-  for (const auto& turn : turns)
-    std::for_each(turn->scan_packets.begin(), turn->scan_packets.end(), send);
-  send(turns[0]->scan_packets[0]);
-  ASSERT_TRUE(waitFor([&] { return observed() + 1 >= turns.size(); }));
-  sensors.reset();
-  ASSERT_EQ(observations.size() + 1, turns.size());
-  for (std::size_t i = 1; i < turns.size(); ++i) {
-    const auto scan = std::dynamic_pointer_cast<CObservationVelodyneScan>(observations[i - 1]);
-    ASSERT_TRUE(scan);
-    ASSERT_EQ(scan->scan_packets.size(), turns[i]->scan_packets.size());
-    EXPECT_EQ(std::memcmp(scan->scan_packets.data(), turns[i]->scan_packets.data(),
-                          scan->scan_packets.size() * sizeof scan->scan_packets[0]),
-              0);
-    EXPECT_EQ(scan->sensorLabel, "roof_SCAN");
-    EXPECT_NEAR(scan->sensorPose.z(), 1.5, 1e-6);
-  }
 }
 
 }  // namespace polemcl::test_live_sensors

@@ -93,19 +93,25 @@ ObservationPoleExtractorOptions vlp16() {
   return options;
 }
 
-TEST(ObservationPoints, GeneratesVelodyneCloudsOnACopy) {
+TEST(ObservationPoints, ReadsAllReturnsOfAVelodyne) {
   if (!std::filesystem::exists(kDatasets)) GTEST_SKIP() << kDatasets << " is not there";
   const auto scan =
       std::dynamic_pointer_cast<CObservationVelodyneScan>(firstOf("test_velodyne_VLP16.rawlog"));
   ASSERT_TRUE(scan);
   ASSERT_EQ(scan->point_cloud.size(), 0u);
+  std::size_t returns = 0;
+  for (const auto& packet : scan->scan_packets)
+    for (const auto& block : packet.blocks)
+      for (const auto& one : block.laser_returns)
+        returns += one.distance() * 0.002 >= scan->minRange;
   ObservationPoleExtractor extraction(vlp16());
-  const auto poles = extraction.process(*scan);
+  extraction.process(*scan);
   EXPECT_EQ(scan->point_cloud.size(), 0u);
-  EXPECT_EQ(extraction.report().points, 11305u);  // all its returns, as counted by MRPT
+  EXPECT_EQ(extraction.report().points, returns);
   EXPECT_EQ(extraction.report().outOfView, 0u);
-  scan->generatePointCloud();
-  EXPECT_EQ(extraction.process(*scan)->poles.size(), poles->poles.size());
+  scan->generatePointCloud();  // a cloud that is there is taken
+  extraction.process(*scan);
+  EXPECT_EQ(extraction.report().points, 11305u);
 }
 
 // MRPT makes a rotating scan of its Velodyne sample, sparse and with rings in firing order. Range
@@ -117,6 +123,7 @@ TEST(ObservationPoints, RotatingScanMatchesTheVelodyneScanItCameFrom) {
   ASSERT_TRUE(velodyne);
   CObservationRotatingScan rotating;
   rotating.fromVelodyne(*velodyne);
+  velodyne->generatePointCloud();  // MRPT reads the same half of the returns
   ObservationPoleExtractor extraction(vlp16());
   const auto expected = extraction.process(*velodyne);
   const auto scan = extraction.process(rotating);

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "mrpt/live/UdpSocket.h"
+
 namespace polemcl {
 
 /// \brief Gives a CObservationOdometry for each UDP packet.
@@ -22,7 +24,6 @@ class CUdpOdometry : public mrpt::hwdrivers::CGenericSensor {
   DEFINE_GENERIC_SENSOR(CUdpOdometry)
  public:
   CUdpOdometry() { m_sensorLabel = "odometry"; }
-  ~CUdpOdometry() override;
   /// \throws std::exception when the port cannot be listened at.
   void initialize() override;
   /// \brief Waits a few milliseconds at most.
@@ -35,7 +36,10 @@ class CUdpOdometry : public mrpt::hwdrivers::CGenericSensor {
                                  const std::string& section) override;
 
  private:
-  int m_port = 0, m_socket = -1;
+  void take(const UdpPacket& packet);
+
+  int m_port = 0;
+  UdpSocket m_socket;
   std::string m_address = "127.0.0.1";
   std::optional<std::string> m_ignored;
 };

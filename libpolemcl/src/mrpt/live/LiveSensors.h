@@ -21,6 +21,8 @@ struct SensorEvents {
   std::function<void(const std::string& failure)> ended;
   /// Something is not right, but the sensor goes on.
   std::function<void(const std::string& warning)> warned;
+  /// More packets of a LiDAR are missing in its scans, or were not of it.
+  std::function<void(std::size_t lost, std::size_t ignored)> counted = {};
 };
 
 /// \brief Sensors at work, each in a thread of its own. The destructor ends them and waits.
@@ -34,8 +36,9 @@ class LiveSensors {
 /// Each section is a sensor, except `[global]` and those with `rawlog-grabber-ignore = true`. Its
 /// key `driver` names the class: one of MRPT's, or CUdpOdometry. `process_rate` is how often in a
 /// second the driver is asked (default: 1000). The other keys are those of the class. For
-/// CVelodyneScanner these are added: `data_port` and `position_port` (UDP; default: 2368 and 8308);
-/// its `pcap_read_once` is true unless set. Its first turn is left out: it is not complete.
+/// CVelodyneScanner, VelodyneReceiver listens and adds keys. With `pcap_input`, MRPT's class reads
+/// the file; there `data_port` and `position_port` are those of the last such sensor,
+/// `pcap_read_once` is true unless set, and the first turn is left out: it is not complete.
 /// \throws Error with file and section: no sensor, no or unknown driver, a wrong value, a device
 ///         that cannot be opened; or the module is missing.
 std::unique_ptr<LiveSensors> startSensors(const std::string& file, SensorEvents events);

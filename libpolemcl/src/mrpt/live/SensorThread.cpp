@@ -1,7 +1,6 @@
 #include "mrpt/live/SensorThread.h"
 
 #include <pthread.h>
-#include <sys/prctl.h>
 
 #include <csignal>
 
@@ -19,10 +18,7 @@ namespace {
 
 constexpr double kUsualRate = 1000;  // calls of a driver in a second
 
-/// More packets than a turn of any Velodyne has. MRPT reads a file without any over and over.
-constexpr std::size_t kMostPackets = 3000;
-
-/// MRPT keeps ports in a short, and compares with unsigned ones.
+/// MRPT keeps the ports of PCAP files in a short, and compares with unsigned ones.
 short portOf(const CConfigFileBase& config, const std::string& section, const char* key,
              int usual) {
   const int port = config.read_int(section, key, usual);
@@ -57,7 +53,11 @@ SensorThread::SensorThread(const std::string& file, const std::string& section,
   if (m_driver.empty())
     throw Error(m_place +
                 "no driver: name the class of the sensor, such as driver = CVelodyneScanner");
-  m_sensor = CGenericSensor::createSensorPtr(m_driver);
+  m_pcap = config.read_string(section, "pcap_input", "");
+  if (m_driver == "CVelodyneScanner" && m_pcap.empty())
+    m_sensor = std::make_shared<VelodyneReceiver>();
+  else
+    m_sensor = CGenericSensor::createSensorPtr(m_driver);
   if (!m_sensor)
     throw Error(m_place + "driver = " + m_driver +
                 ": is no sensor that MRPT knows; allowed are the classes of mrpt::hwdrivers, such "
@@ -65,7 +65,7 @@ SensorThread::SensorThread(const std::string& file, const std::string& section,
   try {
     open(config);
   } catch (const std::exception& error) {
-    throw Error(m_place + m_driver + ": " + mrptReason(error.what()) + m_ports);
+    throw Error(m_place + m_driver + ": " + mrptReason(error.what()));
   }
 }
 
@@ -81,27 +81,27 @@ SensorThread::~SensorThread() {
 void SensorThread::open(CConfigFileBase& config) {
   if (!config.keyExists(m_section, "process_rate"))
     config.write(m_section, "process_rate", kUsualRate);
-  m_scanner = dynamic_cast<CVelodyneScanner*>(m_sensor.get());
+  m_receiver = dynamic_cast<const VelodyneReceiver*>(m_sensor.get());
   m_odometry = dynamic_cast<const CUdpOdometry*>(m_sensor.get());
-  if (m_scanner) openVelodyne(config);
+  if (!m_receiver) m_player = dynamic_cast<CVelodyneScanner*>(m_sensor.get());
+  if (m_player) openPcap(config);
   m_sensor->loadConfig(config, m_section);
+  if (m_player)  // MRPT reads the key, but does not use it
+    m_player->setModelName(config.read_enum(m_section, "model", m_player->getModelName()));
   if (!(m_sensor->getProcessRate() > 0))
     throw Error("process_rate = " + config.read_string(m_section, "process_rate", "") +
                 ": allowed is more than 0, in calls a second");
   m_sensor->initialize();
 }
 
-/// The ports are those of the class, which takes them when a device is opened.
-void SensorThread::openVelodyne(CConfigFileBase& config) {
-  m_pcap = config.read_string(m_section, "pcap_input", "");
-  if (!m_pcap.empty()) requireEthernetPcap(m_pcap);
+/// The ports are those of the class.
+void SensorThread::openPcap(CConfigFileBase& config) {
+  requireEthernetPcap(m_pcap);
   if (!config.keyExists(m_section, "pcap_read_once"))
     config.write(m_section, "pcap_read_once", true);
   CVelodyneScanner::VELODYNE_DATA_UDP_PORT = portOf(config, m_section, "data_port", 2368);
   CVelodyneScanner::VELODYNE_POSITION_UDP_PORT = portOf(config, m_section, "position_port", 8308);
-  m_ports = " (UDP ports " + std::to_string(CVelodyneScanner::VELODYNE_DATA_UDP_PORT) + " and " +
-            std::to_string(CVelodyneScanner::VELODYNE_POSITION_UDP_PORT) + ")";
-  m_scanner->setPCAPVerbosity(false);  // it would write to standard output, between the poses
+  m_player->setPCAPVerbosity(false);  // it would write to standard output, between the poses
 }
 
 void SensorThread::start(const SensorEvents& events) {
@@ -116,11 +116,12 @@ bool SensorThread::waitUntil(std::chrono::steady_clock::time_point next) {
 
 void SensorThread::work(const SensorEvents& events) {
   using Clock = std::chrono::steady_clock;
-  // MRPT waits 1 ms for a position packet after each packet of a scan; the usual slack of 50 us
-  // would let it take a tenth fewer packets in a second.
-  prctl(PR_SET_TIMERSLACK, 1);
   const auto period = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(1 / m_sensor->getProcessRate()));
+  if (m_receiver && m_receiver->isOfThisComputerOnly())
+    events.warned(
+        m_place + m_driver +
+        ": listens to this computer only; for a LiDAR in the network set address = 0.0.0.0");
   try {
     for (auto next = Clock::now(); waitUntil(next); next = std::max(next + period, Clock::now()))
       if (!process(events)) return events.ended("");
@@ -131,9 +132,10 @@ void SensorThread::work(const SensorEvents& events) {
 
 /// \return false at the end of a PCAP file.
 bool SensorThread::process(const SensorEvents& events) {
-  if (m_scanner) return processVelodyne(events);
+  if (m_player) return processPcap(events);
   m_sensor->doProcess();
-  if (m_odometry) warnOfOdometry(events);
+  if (m_odometry) tellOdometry(events);
+  if (m_receiver) tellPackets(events);
   for (const auto& [time, object] : m_sensor->getObservations())
     if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object))
       events.observed(observation);
@@ -141,7 +143,7 @@ bool SensorThread::process(const SensorEvents& events) {
 }
 
 /// Once, as a broken sender would fill the screen.
-void SensorThread::warnOfOdometry(const SensorEvents& events) {
+void SensorThread::tellOdometry(const SensorEvents& events) {
   if (m_warned || !m_odometry->ignored()) return;
   m_warned = true;
   events.warned(m_place + m_driver + ": a packet holds '" + *m_odometry->ignored() +
@@ -149,16 +151,33 @@ void SensorThread::warnOfOdometry(const SensorEvents& events) {
                 "without a Unix time within 10 s of the clock here");
 }
 
-/// The first turn is cut: it begins somewhere. MRPT's doProcess() would report the end of a PCAP
-/// file as an error.
-bool SensorThread::processVelodyne(const SensorEvents& events) {
+/// Each kind is told once.
+void SensorThread::tellPackets(const SensorEvents& events) {
+  const auto& counts = m_receiver->counts();
+  const std::size_t lost = counts.lost - m_told.lost, ignored = counts.ignored - m_told.ignored;
+  const std::string place = m_place + m_driver + ": ";
+  if (ignored > 0 && m_told.ignored == 0)
+    events.warned(place +
+                  "a packet is not of this LiDAR, by its size or sender: it is ignored, and so are "
+                  "others");
+  if (lost > 0 && m_told.lost == 0)
+    events.warned(place + "packets are missing, the first before packet " +
+                  std::to_string(counts.packets) +
+                  ": the network or this computer loses them; scans have gaps");
+  if (lost + ignored > 0 && events.counted) events.counted(lost, ignored);
+  m_told = counts;
+}
+
+/// MRPT reads a file without packets over and over. The first turn is cut: it begins somewhere.
+/// MRPT's doProcess() would report the end of a PCAP file as an error.
+bool SensorThread::processPcap(const SensorEvents& events) {
   mrpt::obs::CObservationVelodyneScan::Ptr scan;
   mrpt::obs::CObservationGPS::Ptr position;
-  if (!m_scanner->getNextObservation(scan, position)) return m_pcap.empty();
+  if (!m_player->getNextObservation(scan, position)) return false;
   if (scan && m_turns++ > 0) events.observed(scan);
-  if (!m_pcap.empty() && m_turns == 0 && ++m_packets > kMostPackets)
-    throw Error("no turn in the first " + std::to_string(kMostPackets) + " packets of " + m_pcap +
-                ": check data_port and device_ip");
+  if (m_turns == 0 && ++m_packets > VelodyneReceiver::kMostPackets)
+    throw Error("no turn in the first " + std::to_string(VelodyneReceiver::kMostPackets) +
+                " packets of " + m_pcap + ": check data_port and device_ip");
   return true;
 }
 

@@ -12,6 +12,7 @@
 
 #include "mrpt/live/CUdpOdometry.h"
 #include "mrpt/live/LiveSensors.h"
+#include "mrpt/live/VelodyneReceiver.h"
 
 namespace polemcl {
 
@@ -30,21 +31,23 @@ class SensorThread {
 
  private:
   void open(mrpt::config::CConfigFileBase& config);
-  void openVelodyne(mrpt::config::CConfigFileBase& config);
+  void openPcap(mrpt::config::CConfigFileBase& config);
   void work(const SensorEvents& events);
   bool process(const SensorEvents& events);
-  void warnOfOdometry(const SensorEvents& events);
-  bool processVelodyne(const SensorEvents& events);
+  void tellOdometry(const SensorEvents& events);
+  void tellPackets(const SensorEvents& events);
+  bool processPcap(const SensorEvents& events);
   bool waitUntil(std::chrono::steady_clock::time_point next);
 
   std::string m_section, m_driver, m_place;  ///< m_place: for messages
-  std::string m_ports;                       ///< of a Velodyne, for messages
+  std::string m_pcap;  ///< file of packets of a Velodyne in place of the device; or empty
   mrpt::hwdrivers::CGenericSensor::Ptr m_sensor;
-  mrpt::hwdrivers::CVelodyneScanner* m_scanner = nullptr;  ///< m_sensor, if it is one
-  const CUdpOdometry* m_odometry = nullptr;                ///< m_sensor, if it is one
-  bool m_warned = false;                                   ///< of a packet of odometry
-  std::string m_pcap;         ///< file of packets in place of a device; or empty
-  std::size_t m_packets = 0;  ///< of the file, before the first turn
+  mrpt::hwdrivers::CVelodyneScanner* m_player = nullptr;  ///< m_sensor, if it plays m_pcap
+  const VelodyneReceiver* m_receiver = nullptr;           ///< m_sensor, if it is one
+  const CUdpOdometry* m_odometry = nullptr;               ///< m_sensor, if it is one
+  VelodyneReceiver::Counts m_told;                        ///< those that events know
+  bool m_warned = false;                                  ///< of a packet of odometry
+  std::size_t m_packets = 0;                              ///< of the file, before the first turn
   std::size_t m_turns = 0;
   std::mutex m_mutex;
   std::condition_variable m_stopping;

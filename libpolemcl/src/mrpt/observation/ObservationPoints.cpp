@@ -172,14 +172,9 @@ PointsView ObservationPoints::readVelodyne(const CObservationVelodyneScan& obser
   const auto& own = observation.point_cloud;
   if (own.size() > 0 || observation.scan_packets.empty())
     return {own.x.data(), own.y.data(), own.z.data(), own.size()};
-  CObservationVelodyneScan copy = observation;
-  CObservationVelodyneScan::TGeneratePointCloudParameters parameters;
-  parameters.minDistance = 0;  // `[sensor] min_range_m` applies instead
-  copy.generatePointCloud(parameters);
-  m_x.swap(copy.point_cloud.x);
-  m_y.swap(copy.point_cloud.y);
-  m_z.swap(copy.point_cloud.z);
-  return owned();
+  readVelodynePackets(observation, m_velodyne);
+  const auto& points = m_velodyne;
+  return {points.x.data(), points.y.data(), points.z.data(), points.x.size()};
 }
 
 /// Prefers the image, the raw data of the camera: a cloud beside it may be thinned or in another

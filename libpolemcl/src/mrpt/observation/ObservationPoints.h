@@ -12,10 +12,10 @@
 #include <polemcl/core/sensor/SensorOptions.h>
 #include "core/sensor/PinholeCamera.h"
 #include "mrpt/observation/DepthImage.h"
+#include "mrpt/observation/VelodynePoints.h"
 
 namespace mrpt::obs {
 class CObservationPointCloud;
-class CObservationVelodyneScan;
 class CObservation3DRangeScan;
 class CObservationRotatingScan;
 }  // namespace mrpt::obs
@@ -68,6 +68,7 @@ class ObservationPoints {
 
   SensorOptions m_sensor;
   std::vector<float> m_x, m_y, m_z;
+  VelodynePoints m_velodyne;
   std::size_t m_dropped = 0;
   std::optional<PinholeCamera> m_camera;
   UndistortedPixels m_pixels;  ///< of the last depth image

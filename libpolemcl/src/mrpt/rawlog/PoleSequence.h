@@ -66,6 +66,8 @@ struct SequenceCounts {
   std::size_t unknownMotions = 0;  ///< scans without odometry: after the first one; of sensors,
                                    ///< these are left out
   std::size_t dropped = 0;         ///< scans of sensors that nobody had time for
+  std::size_t lostPackets = 0;     ///< of LiDARs, missing in their scans
+  std::size_t ignoredPackets = 0;  ///< of other things than those LiDARs
   std::size_t odometryJumps = 0;   ///< steps of the odometry that no vehicle makes, bridged by
                                    ///< the motion before
   bool truncated = false;          ///< the file is truncated, and this was allowed
