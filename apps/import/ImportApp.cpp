@@ -162,9 +162,10 @@ void printImport(const ImportReport& report, const ImportOptions& options) {
             << (report.hasMotion  ? options.odometryNoise ? "odometry: true motion with noise\n"
                                     : options.odometry    ? "odometry: from --odometry\n"
                                                           : "odometry: from the dataset\n"
-                : report.hasTruth ? "odometry: none; good for mapping, not for localization\n"
-                                  : "odometry: none; without it and without true poses (--poses) "
-                                    "only poles can be extracted\n");
+                : report.hasTruth ? "odometry: none; good for mapping; to localize, give "
+                                    "--odometry or --odometry-noise\n"
+                                  : "odometry: none; good for mapping, by the poles alone; to "
+                                    "localize, give --odometry\n");
   for (const auto& note : report.notes) std::cout << "note: " << note << '\n';
 }
 
