@@ -178,7 +178,7 @@ void endWithAHint(int signal) {
 
 const Guides kBatchGuides{
     {"",
-     {{"pole-batch batches/year.ini --output year",
+     {{"pole-batch sample.ini --output report", "pole-batch batches/year.ini --output year",
        "pole-batch batches/kitti.ini --data KITTI --output kitti --jobs 4 --resume"},
       "Open report.html in the folder of the batch. After an interruption, go on with "
       "--resume."}},

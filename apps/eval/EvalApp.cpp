@@ -6,61 +6,61 @@ namespace {
 /// By subcommand; the first one is that of the program.
 const Guides kEvalGuides{
     {"",
-     {{"pole-eval trajectory --truth drive.tum --estimate out/run_00.tum --map street.polemap "
+     {{"pole-eval trajectory --truth tuesday.tum --estimate out/run_00.tum --map street.polemap "
        "--png run.png",
-       "pole-eval map --truth scans/poles_gt.csv --map street.polemap --one-to-one"},
+       "pole-eval map --truth monday_poles_gt.csv --map street.polemap --one-to-one"},
       "See the options of one subcommand, such as pole-eval map --help."}},
     {"map",
-     {{"pole-eval map --truth scans/poles_gt.csv --map street.polemap --one-to-one --radius 0.5 "
+     {{"pole-eval map --truth monday_poles_gt.csv --map street.polemap --one-to-one --radius 0.5 "
        "--json score.json"},
       "If too few poles are found, see the settings in [map]: pole-map build --config demo.ini "
       "--print-config."}},
     {"trajectory",
-     {{"pole-eval trajectory --truth drive.tum --estimate out/run_00.tum --per metre --map "
+     {{"pole-eval trajectory --truth tuesday.tum --estimate out/run_00.tum --per metre --map "
        "street.polemap --png run.png"},
       "See whether the errors fit the covariances: pole-eval consistency --help."}},
     {"detections",
      {{"pole-eval detections --scans scans --poles poles.rawlog --json detections.json"},
       "See how often poles are found again: pole-eval repeatability --help."}},
     {"repeatability",
-     {{"pole-eval repeatability --poles poles.rawlog --truth drive.tum"},
+     {{"pole-eval repeatability --poles monday.rawlog --truth monday.tum"},
       "Check the true poses: pole-eval motion --help."}},
     {"rotation",
-     {{"pole-eval rotation --config demo.ini --input drive.rawlog --every 10"},
+     {{"pole-eval rotation --config demo.ini --input scans.rawlog --every 10"},
       "Compare with another configuration, such as paper/kitti.ini."}},
     {"model",
-     {{"pole-eval model --drives a0.rawlog a1.rawlog b0.rawlog b1.rawlog --model my.json"},
+     {{"pole-eval model --drives monday.rawlog tuesday.rawlog --model my.json"},
       "Simulate long drives with it: pole-simulate --config hdl32e.ini --set "
       "simulation.detections=my.json --length 1000 --poles long.rawlog."}},
     {"sightings",
-     {{"pole-eval sightings --poles drive.rawlog --json sightings.json"},
+     {{"pole-eval sightings --poles monday.rawlog --json sightings.json"},
       "Fit a model of detections to such drives: pole-eval model --help."}},
     {"mrpt-truth",
-     {{"pole-eval mrpt-truth --truth drive.tum --output truth.txt"},
+     {{"pole-eval mrpt-truth --truth tuesday.tum --output truth.txt"},
       "Name it in the settings of pf-localization: ground_truth_path_file = truth.txt."}},
     {"motion",
-     {{"pole-eval motion --poles poles.rawlog --truth drive.tum --every 4"},
+     {{"pole-eval motion --poles monday.rawlog --truth monday.tum --every 4"},
       "If the poses disagree, mend the times or the poses of the dataset before you build a "
       "map."}},
     {"global",
-     {{"pole-eval global --config demo.ini --map street.polemap --input poles.rawlog --truth "
-       "drive.tum --trials 50"},
+     {{"pole-eval global --config demo.ini --map street.polemap --input tuesday.rawlog --truth "
+       "tuesday.tum --trials 50"},
       "Put faults into a drive: pole-eval faults --help."}},
     {"starts",
-     {{"pole-eval starts --config demo.ini --map street.polemap --input poles.rawlog --truth "
-       "drive.tum --trials 50"},
+     {{"pole-eval starts --config demo.ini --map street.polemap --input tuesday.rawlog --truth "
+       "tuesday.tum --trials 50"},
       "Start without any pose: pole-eval global --help."}},
     {"consistency",
-     {{"pole-eval consistency --truth drive.tum --cov out/run_00_cov.csv --health "
+     {{"pole-eval consistency --truth tuesday.tum --cov out/run_00_cov.csv --health "
        "out/run_00_health.csv"},
       "If the errors are larger than the covariances say, state the error of the truth "
       "(--truth-sigma-m), or check it: pole-eval motion --help."}},
     {"faults",
-     {{"pole-eval faults --config demo.ini --map street.polemap --input poles.rawlog --truth "
-       "drive.tum --fault kidnap --trials 50"},
+     {{"pole-eval faults --config demo.ini --map street.polemap --input tuesday.rawlog --truth "
+       "tuesday.tum --fault jump --lead 5 --tail 40 --trials 50"},
       "Compare with a drive without a fault: --fault none."}},
     {"features",
-     {{"pole-eval features --config hdl32e.ini --scans scans --poles scans/poles_gt.csv "
+     {{"pole-eval features --config demo.ini --scans scans --poles scans/poles_gt.csv "
        "--output features.csv"},
       "Weights are fitted to the tables of several drives: see "
       "share/experiments/train-classifier.sh in the sources."}},

@@ -208,11 +208,11 @@ void runInspection(const InspectOptions& options, bool quiet) {
 
 const Guides kExtractGuides{
     {"",
-     {{"pole-extract --config demo.ini --input drive.rawlog --output poles.rawlog --csv "
+     {{"pole-extract --config demo.ini --input scans.rawlog --output poles.rawlog --csv "
        "poles.csv --png scan.png",
-       "pole-extract --inspect drive.rawlog --write-config my.ini"},
+       "pole-extract --inspect scans.rawlog --write-config my.ini"},
       "Rawlogs of poles take the place of rawlogs of scans: pole-map build --config demo.ini "
-      "--input poles.rawlog --truth drive.tum --output street.polemap."}},
+      "--input poles.rawlog --truth scans.tum --output scans.polemap."}},
 };
 
 }  // namespace

@@ -162,24 +162,25 @@ void printImport(const ImportReport& report, const ImportOptions& options) {
             << (report.hasMotion  ? options.odometryNoise ? "odometry: true motion with noise\n"
                                     : options.odometry    ? "odometry: from --odometry\n"
                                                           : "odometry: from the dataset\n"
-                : report.hasTruth ? "odometry: none; good for mapping, not for localization\n"
-                                  : "odometry: none; without it and without true poses (--poses) "
-                                    "only poles can be extracted\n");
+                : report.hasTruth ? "odometry: none; good for mapping; to localize, give "
+                                    "--odometry or --odometry-noise\n"
+                                  : "odometry: none; good for mapping, by the poles alone; to "
+                                    "localize, give --odometry\n");
   for (const auto& note : report.notes) std::cout << "note: " << note << '\n';
 }
 
 /// By subcommand; the first one is that of the program.
 const Guides kImportGuides{
     {"",
-     {{"pole-import folder --input scans --output drive.rawlog",
+     {{"pole-import folder --input scans --output scans.rawlog",
        "pole-import kitti-odometry --input dataset/sequences/00 --output 00.rawlog"},
       "See the options of one dataset, such as pole-import folder --help."}},
     {"folder",
-     {{"pole-import folder --input scans --output drive.rawlog",
+     {{"pole-import folder --input scans --output scans.rawlog",
        "pole-import folder --input scans --output odd.rawlog --every 2 --offset 1 "
        "--odometry-noise 0.02 --seed 7"},
-      "Build a map of the drive: pole-map build --config demo.ini --input drive.rawlog --truth "
-      "drive.tum --output street.polemap."}},
+      "Build a map of the drive: pole-map build --config demo.ini --input scans.rawlog --truth "
+      "scans.tum --output street.polemap."}},
     {"kitti-odometry",
      {{"pole-import kitti-odometry --input dataset/sequences/00 --output 00.rawlog "
        "--odometry-noise 0.02"},

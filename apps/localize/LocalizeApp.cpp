@@ -263,15 +263,15 @@ void addViewOptions(CLI::App& cli, LocalizeJob& job) {
 
 const Guides kLocalizeGuides{
     {"",
-     {{"pole-localize --config demo.ini --input drive.rawlog --map street.polemap --truth "
-       "drive.tum --output out --runs 5",
-       "pole-localize --config demo.ini --input drive.rawlog --map street.polemap --global "
-       "--output out --live",
+     {{"pole-localize --config demo.ini --input tuesday.rawlog --map street.polemap --truth "
+       "tuesday.tum --output out --runs 5",
+       "pole-localize --config demo.ini --input tuesday.rawlog --map street.polemap --global "
+       "--output found --mcap found.mcap",
        "pole-localize --config vlp16.ini --sensors live/vlp16.ini --map street.polemap --start "
        "0,0,0,2,5 --output out --stream -"},
       "Keys of --live: space pauses, arrows step and skip, digits and enter go to a time, n to the "
       "next degraded or lost scan; h lists all. They change no result. "
-      "Evaluate and draw a run: pole-eval trajectory --truth drive.tum --estimate out/run_00.tum "
+      "Evaluate and draw a run: pole-eval trajectory --truth tuesday.tum --estimate out/run_00.tum "
       "--map street.polemap --png run.png."}},
 };
 

@@ -227,25 +227,25 @@ Subcommand importCommand(CLI::App& program) {
 /// By subcommand; the first one is that of the program.
 const Guides kMapGuides{
     {"",
-     {{"pole-map build --config demo.ini --input drive.rawlog --truth drive.tum --output "
+     {{"pole-map build --config demo.ini --input monday.rawlog --truth monday.tum --output "
        "street.polemap",
        "pole-map convert street.polemap --output street.csv"},
       "See the options of one subcommand, such as pole-map build --help."}},
     {"build",
-     {{"pole-map build --config demo.ini --input drive.rawlog --truth drive.tum --output "
+     {{"pole-map build --config demo.ini --input monday.rawlog --truth monday.tum --output "
        "street.polemap",
-       "pole-map build --config hdl32e.ini --input a.rawlog b.rawlog --truth a.tum b.tum "
-       "--output campus.polemap --keep-scans --scene campus.3Dscene",
-       "pole-map build --config hdl32e.ini --input drive.rawlog --estimate out/run_00.tum "
-       "--inventory city.polemap --output exact.polemap"},
+       "pole-map build --config demo.ini --input monday.rawlog tuesday.rawlog --truth monday.tum "
+       "tuesday.tum --output both.polemap --keep-scans --scene both.3Dscene",
+       "pole-map build --config demo.ini --input tuesday.rawlog --estimate out/run_00.tum "
+       "--inventory street.polemap --output exact.polemap"},
       "Localize another drive in the map: pole-localize --help. Where the true poles are known, "
       "score the map: pole-eval map --help."}},
     {"update",
-     {{"pole-map update --config demo.ini --map street.polemap --input friday.rawlog --truth "
-       "friday.tum --output friday.polemap --date 2026-03-06"},
-      "List what changed: pole-map diff street.polemap friday.polemap --png changes.png."}},
+     {{"pole-map update --config demo.ini --map street.polemap --input tuesday.rawlog --truth "
+       "tuesday.tum --output tuesday.polemap --date 2026-03-06"},
+      "List what changed: pole-map diff street.polemap tuesday.polemap --png changes.png."}},
     {"diff",
-     {{"pole-map diff street.polemap friday.polemap --png changes.png --csv changes.csv"},
+     {{"pole-map diff street.polemap tuesday.polemap --png changes.png --csv changes.csv"},
       "Open a scene written with --scene in MRPT's SceneViewer3D."}},
     {"convert",
      {{"pole-map convert street.polemap --output street.csv",

@@ -229,8 +229,10 @@ double sigmaOf(const PoseWithCovariance& pose) {
 std::string foundText(const MapBuildSummary& summary, const MapBuildJob& job) {
   const MappedDrives& mapped = *summary.mapped;
   std::ostringstream out;
-  out << "poses by odometry and " << mapped.tracks << " poles followed over "
-      << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
+  const bool alone = std::all_of(summary.filled.begin(), summary.filled.end(),
+                                 [](const FilledMotions& filled) { return filled.all; });
+  out << (alone ? "poses by " : "poses by odometry and ") << mapped.tracks
+      << " poles followed over " << io::fixed(mapped.driven, 1) << " m; " << mapped.loops.size()
       << " places passed again; the last pose is certain to "
       << io::fixed(sigmaOf(mapped.poses.back()), 2)
       << (mapped.fixes + mapped.known > 0 ? " m\n" : " m against the first\n");

@@ -28,7 +28,9 @@ std::string errors(double significance) {
 TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds) {
   std::vector<TimedScan> scans;
   for (const SessionScan& scan : drive.scans) scans.push_back(timedScan(scan));
-  return searchTiming(scans, turnSeconds);
+  TimingEstimate result = searchTiming(scans, turnSeconds);
+  if (drive.filled.all) result.timing.clock = 0;
+  return result;
 }
 
 std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped,

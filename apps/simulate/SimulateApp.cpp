@@ -63,9 +63,10 @@ std::vector<std::string> sensorNames() {
 
 const Guides kSimulateGuides{
     {"",
-     {{"pole-simulate --config demo.ini --length 300 --output scans",
-       "pole-simulate --config hdl32e.ini --length 1000 --day 30 --poles drive.rawlog"},
-      "Make a rawlog of the scans: pole-import folder --input scans --output drive.rawlog. A "
+     {{"pole-simulate --config demo.ini --length 60 --output scans",
+       "pole-simulate --config hdl32e.ini --length 1000 --day 30 --poles long.rawlog --set "
+       "simulation.detections=hdl32e.json"},
+      "Make a rawlog of the scans: pole-import folder --input scans --output scans.rawlog. A "
       "rawlog of poles goes to pole-map and pole-localize as it is."}},
 };
 

@@ -13,3 +13,7 @@ set(POLEMCL_PYTHON_FOLDER lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_M
 if(CMAKE_INSTALL_PREFIX STREQUAL /usr)  # where Debian keeps the modules of packages
   set(POLEMCL_PYTHON_FOLDER lib/python3/dist-packages)
 endif()
+if(SKBUILD)  # pip: the module at the top of its folder of modules, settings in the share/ that the module looks in
+  set(POLEMCL_PYTHON_FOLDER .)
+  install(DIRECTORY config DESTINATION ${SKBUILD_DATA_DIR}/share/polemcl COMPONENT python)
+endif()

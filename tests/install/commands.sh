@@ -1,7 +1,8 @@
 #!/bin/sh
 # Runs both commands of the README in an empty Debian, from a copy of the files that git knows: they
-# install what they need themselves. Then opens what MRPT's viewers show, reads here what was written
-# there and there what was written here, makes the Debian packages there, and tries them (packages.sh).
+# install what they need themselves. Then installs the Python module with pip (trixie), opens what MRPT's
+# viewers show, reads here what was written there and there what was written here, makes the Debian
+# packages there, and tries them (packages.sh).
 # Usage: tests/install/commands.sh bookworm | trixie    Needs root, and a mirror of Debian.
 # Programs here: build/bin, or POLEMCL_BIN. With POLEMCL_DATA, the tests on real scans run, too.
 set -eu
@@ -32,6 +33,15 @@ echo "share/demo/run.sh"
 inside /polemcl/share/demo/run.sh
 echo "tests/run.sh"
 inside env $data /polemcl/tests/run.sh
+if [ "$release" = trixie ]; then # Debian 12 has no scikit-build-core
+  echo "pip install, into a new virtual environment"
+  apt_get install python3-scikit-build-core python3-venv
+  quietly inside python3 -m venv --system-site-packages /env
+  quietly inside /env/bin/pip install --no-build-isolation --no-index /polemcl
+  for test in extraction localization maps; do
+    quietly inside env POLEMCL_BIN_DIR=/polemcl/build/bin /env/bin/python "/polemcl/tests/python/test_$test.py"
+  done
+fi
 echo "MRPT's viewers"
 apt_get install xvfb openbox imagemagick xdotool xclip
 inside /polemcl/tests/viewers/run.sh

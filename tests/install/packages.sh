@@ -60,7 +60,7 @@ quietly inside dpkg --verify $names
 echo "4/7 The start page, as a user"
 page=/usr/share/doc/polemcl/share/doc/start.md
 # shellcheck disable=SC2016 # for awk
-quietly as_user "awk '/^## A map/ { on = 1 } /^\`\`\`/ { take = on && /sh\$/; next } take' $page >start.sh && bash -ex start.sh"
+quietly as_user "awk '/^## In one minute/ { on = 1 } /^\`\`\`/ { take = on && /sh\$/; next } take' $page >start.sh && bash -ex start.sh"
 quietly as_user '
   pole-eval trajectory --truth tuesday.tum --estimate out/run_00.tum --json error.json
   pole-simulate --quiet --config hdl32e.ini --length 60 --poles poles.rawlog --set simulation.detections=hdl32e.json'

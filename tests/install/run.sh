@@ -1,7 +1,8 @@
 #!/bin/sh
 # Installs into a folder of its own, builds the examples against that and checks what they print.
 # Also: programs and the Python module find settings, models and the window from where they are
-# installed; there are man pages; the libraries export the project's own symbols only.
+# installed; there are man pages; the libraries export the project's own symbols only; the examples of
+# --help run in the sample.
 # Usage: tests/install/run.sh [BUILD]
 #   BUILD  folder of a complete build, build/ unless given
 set -eu
@@ -38,7 +39,7 @@ lib=$(find "$prefix" -name libpolemcl.so -exec dirname {} \;)
 [ -n "$lib" ] || fail "libpolemcl.so was not installed"
 bin=$prefix/bin
 
-echo "1/8 Headers and symbols"
+echo "1/9 Headers and symbols"
 headers=$(find "$prefix/include/polemcl" -mindepth 2 -name '*.h' | wc -l)
 if [ "$headers" -lt 12 ] || [ "$headers" -gt 18 ]; then
   fail "$headers public headers; 12 to 18 in the rooms were meant"
@@ -50,7 +51,7 @@ foreign=$(nm -DC --defined-only "$lib/libpolemcl.so" | cut -d' ' -f3- |
 [ "$own" -ge 100 ] || fail "libpolemcl.so exports $own symbols of polemcl; at least 100 were meant"
 [ "$foreign" -eq 0 ] || fail "libpolemcl.so exports $foreign symbols of other libraries"
 
-echo "2/8 Installed programs, with installed settings, models and batches by their names"
+echo "2/9 Installed programs, with installed settings, models and batches by their names"
 cd "$dir"
 quietly "$bin/pole-simulate" --quiet --config demo.ini --length 60 --output scans
 quietly "$bin/pole-simulate" --quiet --config hdl32e.ini --length 60 --poles poles.rawlog \
@@ -78,14 +79,14 @@ for text in 'pole-map-build - Builds a map' '--keep-scans' '\$ pole-map build --
 done
 [ -s "$prefix/share/bash-completion/completions/pole-map" ] || fail "completion was not installed"
 
-echo "3/8 extract: poles of one scan, without MRPT"
+echo "3/9 extract: poles of one scan, without MRPT"
 example extract -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-obs=ON -DCMAKE_DISABLE_FIND_PACKAGE_mrpt-maps=ON
 ! ldd extract/extract | grep -q mrpt || fail "the example of polemcl::core links MRPT"
 extract/extract scans/velodyne/000040.bin >extracted.txt
 awk 'NF != 3 || $3 <= 0 || $3 > 0.5 { exit 1 } END { if (NR < 3) exit 1 }' extracted.txt ||
   fail "extract did not print three poles or more: $(cat extracted.txt)"
 
-echo "4/8 map: scans at known poses to a map"
+echo "4/9 map: scans at known poses to a map"
 example map
 map/map scans street.polemap >mapped.txt
 "$bin/pole-eval" map --quiet --one-to-one --truth scans/poles_gt.csv --map street.polemap \
@@ -93,7 +94,7 @@ map/map scans street.polemap >mapped.txt
 jq -e '.precision > 0.7 and .recall > 0.4' score.json >/dev/null ||
   fail "the map of the example is poor: $(cat mapped.txt score.json)"
 
-echo "5/8 localize: points to poses"
+echo "5/9 localize: points to poses"
 example localize
 # The true poses as x, y; the start is 0.5 m off.
 awk '{ print $4, $8, atan2($5, $1) }' scans/poses.txt >true.txt
@@ -109,7 +110,7 @@ if localize/localize scans missing.polemap 0 0 0 2>error.txt; then fail "a missi
 grep -q '^localize: .*missing\.polemap' error.txt ||
   fail "polemcl::Error was not caught outside the library: $(cat error.txt)"
 
-echo "6/8 rawlog: a rawlog of poles to poses, those of pole-localize"
+echo "6/9 rawlog: a rawlog of poles to poses, those of pole-localize"
 example rawlog
 start=$(awk "BEGIN { print $x + 0.3, $y - 0.4, $yaw * 57.29577951308232 }" | tr ' ' ',')
 quietly "$bin/pole-localize" --quiet --config demo.ini --input poles.rawlog --map street.polemap --output run \
@@ -134,7 +135,7 @@ readme/build/readme >readme.txt
 if rawlog/rawlog poles.rawlog street.polemap demo.ini 2>error.txt; then fail "it started without a pose"; fi
 grep -q '^rawlog: the localizer has not been started' error.txt || fail "demo.ini was refused: $(cat error.txt)"
 
-echo "7/8 mrpt: MRPT's filter on a pole map, known by name, with a linker that drops unused libraries"
+echo "7/9 mrpt: MRPT's filter on a pole map, known by name, with a linker that drops unused libraries"
 example mrpt -DCMAKE_EXE_LINKER_FLAGS=-Wl,--as-needed
 mrpt/mrpt poles.rawlog "$prefix/share/polemcl/config/mrpt/pf-localization.ini" "$x" "$y" "$yaw" >filtered.txt ||
   fail "MRPT does not know the classes of the library"
@@ -153,7 +154,7 @@ awk 'NR > 40 { sum += $1; ++n } END { if (!(n > 300 && sum / n < 0.05)) { print 
   pf/pf_000_*/GT_error.txt || fail "the example of pf-localization.ini misses the truth by more than 0.05 m"
 module=$(find "$prefix" -path '*/dist-packages/polemcl.*.so')
 if grep -q '^POLEMCL_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
-  echo "8/8 Python: scans to a map and to poses; installed settings by their names"
+  echo "8/9 Python: scans to a map and to poses; installed settings by their names"
   [ -n "$module" ] || fail "the Python module was not installed"
   python=$(sed -n 's/^POLEMCL_PYTHON_EXECUTABLE:INTERNAL=//p' "$build/CMakeCache.txt")
   PYTHONPATH=$(dirname "$module")
@@ -164,7 +165,22 @@ if grep -q '^POLEMCL_PYTHON:BOOL=ON' "$build/CMakeCache.txt"; then
   entries=$(nm -D --defined-only "$module" | cut -d' ' -f3-)
   [ "$entries" = PyInit_polemcl ] || fail "the Python module exports more than its entry: $entries"
 else
-  echo "8/8 Python: the module was not built (POLEMCL_PYTHON)"
+  echo "8/9 Python: the module was not built (POLEMCL_PYTHON)"
   [ -z "$module" ] || fail "a Python module was installed that was not to be built"
 fi
+
+echo "9/9 The examples that --help shows, as they stand, in a copy of the sample"
+cp -r "$prefix/share/polemcl/sample" sample
+# help_of PROGRAM: what it prints for --help, and what its subcommands do.
+help_of() {
+  "$bin/$1" --help
+  "$bin/$1" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z0-9-]*\).*/\1/p' |
+    while read -r subcommand; do "$bin/$1" "$subcommand" --help; done
+}
+# In an order in which each finds what it reads; not those on data of others and on sensors, nor the year: it takes minutes.
+for program in simulate import extract localize map eval batch; do help_of "pole-$program"; done |
+  awk '/^[^ ]/ { on = /^Examples:/ } on && /^  pole-/ && !seen[$0]++' |
+  grep -vE '^  pole-import (kitti|nclt|mulran|pcd|rosbag2)| --sensors | --data |batches/year' >sample/examples.sh
+[ "$(wc -l <sample/examples.sh)" -gt 25 ] || fail "--help shows few examples: $(cat sample/examples.sh)"
+(cd sample && PATH="$bin:$PATH" quietly sh -ex examples.sh)
 echo "Installed tree: all checks passed"

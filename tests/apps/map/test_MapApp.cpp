@@ -240,6 +240,7 @@ TEST_F(MapApp, WithoutTruthOdometryOrPolesTellTheWay) {
   };
   const auto outcome = build({});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("poses by odometry"), std::string::npos);
   EXPECT_HAS(outcome.out, "in.rawlog: no odometry leads to 19 scans; the poles told the way to 19");
   EXPECT_EQ(outcome.out.find("its odometry is"), std::string::npos);
   fs::remove(folder / "street.polemap");

@@ -48,6 +48,9 @@ TEST(TimingDoubt, SeesClocksThatDiffer) {
   const TimingEstimate found = remainingTiming(session(late), 0.1);
   EXPECT_NEAR(found.timing.clock, 0.08, 0.011);
   EXPECT_HAS(timingDoubt(found, kNothing, {}), "clocks of scans and odometry differ");
+  MappingSession alone = session(late);
+  alone.filled.all = true;  // no odometry, no clock of it
+  EXPECT_EQ(timingDoubt(remainingTiming(alone, 0.1), kNothing, {}), "");
 }
 
 TEST(TimingDoubt, SeesScansThatWereNotCorrected) {

@@ -281,7 +281,8 @@ TEST_F(KittiRawTest, RefusesADriveWithoutCommonFrames) {
 }
 
 TEST_F(KittiRawTest, RefusesADriveWithoutScansOrOxts) {
-  EXPECT_REFUSED(readKittiRaw(path("no"), path("date"), kIdentity), path("no").string());
+  EXPECT_REFUSED(readKittiRaw(path("no"), path("date"), kIdentity), path("no").string(),
+                 "no folder velodyne_points/data");
   fs::remove_all(path("drive/oxts/data"));
   expectIn(refusal(), path("drive/oxts/data").string(), "No such file or directory");
 }

@@ -98,7 +98,12 @@ std::vector<std::uint64_t> missingFrom(const std::vector<std::uint64_t>& all,
 
 Drive listDrive(const fs::path& folder, std::vector<std::string>& notes) {
   Drive drive;
-  drive.scans = listFiles(folder / "velodyne_points" / "data", ".bin");
+  const fs::path scans = folder / "velodyne_points" / "data";
+  if (!fs::is_directory(scans))
+    throw Error(folder.string() +
+                ": no folder velodyne_points/data in it; name the folder of one drive, such as "
+                "2011_09_26_drive_0009_sync");
+  drive.scans = listFiles(scans, ".bin");
   const auto oxtsFiles = listFiles(folder / "oxts" / "data", ".txt");
   drive.scanNumbers = fileNumbers(drive.scans);
   drive.oxtsNumbers = fileNumbers(oxtsFiles);
