@@ -95,7 +95,7 @@ TEST_F(ImportApp, ImportsPcdFilesIntoTheRawlog) {
   const auto outcome = run("pcd");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* words : {"2 scans; 2 points, 2 invalid", "truth: none",
-                            "only poles can be extracted", "0.1 s apart"})
+                            "to localize, give --odometry", "0.1 s apart"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
   fs::remove_all(folder / "in");  // the points are inside
   polemcl::RawlogReader reader((folder / "out.rawlog").string());

@@ -209,10 +209,10 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
 bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) const {
   if (m_past.size() < 2 || now.time - m_possibleTime > kHold) return true;
   const double seconds = now.time - m_past.back().time;
-  const Pose2D expected = coast(seconds), change = relative(expected, motion);
-  const double way = std::max(std::hypot(expected.x, expected.y), std::hypot(motion.x, motion.y));
-  return std::hypot(change.x, change.y) <=
-         kTolerance + kTimeError * way / seconds + kMostAcceleration * seconds * seconds;
+  const double way = std::hypot(motion.x, motion.y);
+  const double expected = seconds * std::hypot(m_speed.x, m_speed.y);
+  return std::abs(way - expected) <= kTolerance + kTimeError * std::max(way, expected) / seconds +
+                                         kMostAcceleration * seconds * seconds;
 }
 
 /// The speed before goes on. The covariance says that the odometry may be right.
