@@ -1,6 +1,6 @@
 #pragma once
 /// \file ScanOdometry.h
-/// \brief From odometry at times of its own to the motion of each scan.
+/// \brief Motions between scans, from odometry that is read at other times.
 
 #include <optional>
 
@@ -11,7 +11,7 @@
 
 namespace polemcl {
 
-/// \brief Readings in, motions from scan to scan out. Keeps what later scans may need.
+/// \brief Collects readings, and tells the motion from one scan to the next.
 class ScanOdometry {
  public:
   explicit ScanOdometry(const MotionOptions& options) : m_options(options) {}
@@ -24,10 +24,10 @@ class ScanOdometry {
   /// \brief As the last reading of add() stated it.
   std::optional<Velocity> velocity() const;
 
-  /// \brief Since the scan before; nothing at the first. \param time Of the scan as the odometry
-  /// counts it: observations round theirs. \param pose Of the track at that time.
+  /// \brief The motion since the scan before; none at the first. \param time Of the scan as the
+  /// odometry counts it: observations round theirs. \param pose Of the track at that time.
   std::optional<PoseWithCovariance> motionTo(double time, const Pose2D& pose) const;
-  /// \brief The scan of these is the one before from now on.
+  /// \brief Ends a scan: the next motion begins here.
   void pass(double time, const Pose2D& pose);
 
  private:

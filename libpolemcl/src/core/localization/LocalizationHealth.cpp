@@ -28,11 +28,11 @@ constexpr double kUsualWithin = 200;
 /// well before, so matches by chance are rare: 0.002 for 20 cm round each pole.
 constexpr double kLostShare = 0.03;
 constexpr double kDegradedShare = 0.4;  // degraded: a smaller share of them is on the map
-/// Degraded: e to this power is how much better a wrong place explains the last scans than the
-/// right one, at which these shares of the poles match. Few poles say it where none of them
+/// Degraded: the log-likelihood ratio of a wrong place against the right one is above kDoubt. At a
+/// right and at a wrong place, these shares of the poles match. A few poles suffice if none
 /// matches.
 constexpr double kDoubt = 4, kRightShare = 0.7, kWrongShare = 0.1;
-/// Scans nearer to each other show the same poles, m: they say so much less.
+/// Scans nearer to each other than this see the same poles, m. They count less, by their distance.
 constexpr double kSamePoles = 3;
 constexpr double kLostSpread = 5;           // lost: greater σ of the position, m
 constexpr double kDegradedSpread = 0.2;     // degraded: greater σ of the position, m
@@ -135,7 +135,7 @@ void HealthMonitor::remember(const HealthInput& input) {
   viewpoint.matches += share * (scan.matches - viewpoint.matches);
 }
 
-/// The sequential test of Page (1954): what spoke for the right place before does not count.
+/// The cumulative sum test of Page (1954): earlier matches do not outweigh the latest scans.
 void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
   const double wrong =
       (scan.seen - scan.matched) * std::log((1 - kWrongShare) / (1 - kRightShare)) -

@@ -75,7 +75,7 @@ class POLEMCL_EXPORT HealthMonitor {
   bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window; to be lost
   double m_longShare = 0;                           ///< of matched poles over the longer window
   double m_seenDriven = 0, m_seenTime = 0;          ///< when a pole was last seen
-  double m_doubt = 0;       ///< log of how much better a wrong place explains the last scans
+  double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
   double m_goodDriven = 0;  ///< metres in a row with enough matches
   double m_gapUntil = -1;   ///< metres driven at which a time gap is forgotten
 };

@@ -205,7 +205,8 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
   return result;
 }
 
-/// Whether a vehicle can change its speed so much. After kHold seconds, any motion is.
+/// Whether a vehicle can have this speed after the one before. After kHold seconds, any is
+/// believed.
 bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) const {
   if (m_past.size() < 2 || now.time - m_possibleTime > kHold) return true;
   const double seconds = now.time - m_past.back().time;
@@ -215,7 +216,7 @@ bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) con
                                          kMostAcceleration * seconds * seconds;
 }
 
-/// The speed before goes on. The covariance says that the odometry may be right.
+/// Keeps the speed before. The covariance also covers the motion that the odometry states.
 MonitoredMotion OdometryMonitor::coasted(Reference& now, const MonitoredMotion& odometry) const {
   const Reference& last = m_past.back();
   MonitoredMotion result = odometry;

@@ -19,8 +19,8 @@ struct AddedSession {
   /// Scans in the order driven. A scan that is not used keeps only its time and pose.
   std::vector<SessionScan> scans;
   std::vector<bool> used;  ///< one a scan
-  /// Of each scan's pose against the first pose of the map (x, y, yaw; m², m·rad, rad²), where the
-  /// poses were found without truth. Else empty.
+  /// Covariance of the pose of each scan (x, y, yaw; m², m·rad, rad²), relative to the first pose
+  /// of the map. Empty if the poses are true ones.
   std::vector<Eigen::Matrix3d> covariances = {};
   std::size_t usedCount() const;
   /// \brief Share of the scans that are used (`f_map`), 0 without a scan.
@@ -48,9 +48,9 @@ class MapAccumulator {
   /// \brief The next session. Its scans are used unless a scan of an earlier session, used or not,
   /// stood within `unvisited` of them. The session itself does not count, so loops of it are used.
   /// \param scans In the order driven. \param covariances As in AddedSession.
-  /// \return The session with what is kept of it; valid until the next call. \throws Error on a
-  /// pose that is not finite, naming session and scan, and on
-  ///         a session more than 10 km from all before: it is in another frame.
+  /// \return The session with what is kept of it; valid until the next call.
+  /// \throws Error naming session and scan for a pose that is not finite; for a session more than
+  /// 10 km from all before, which is in another frame.
   const AddedSession& add(std::string name, std::vector<SessionScan> scans,
                           std::vector<Eigen::Matrix3d> covariances = {});
 

@@ -244,7 +244,8 @@ Eigen::Matrix3d DriveMapping::covarianceOf(std::size_t scan) const {
   return (1 - share) * block(before) + share * block(after);
 }
 
-/// The known poses were taken as they are. So a pose among them has their errors besides its own.
+/// The known poses were taken as exact. The covariance of the nearest one is added to each new
+/// pose.
 std::vector<PoseWithCovariance> DriveMapping::poses() const {
   std::vector<PoseWithCovariance> poses;
   for (std::size_t i = 0; i < m_scans.size(); ++i)

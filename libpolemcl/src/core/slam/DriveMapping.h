@@ -27,7 +27,8 @@ struct DrivesToMap {
   /// Number of scans at the begin, all of the first drives, whose poses are known and stay. Of the
   /// others only those where a drive begins count, and only the first is where it begins.
   std::size_t known = 0;
-  /// Of the known poses against the first one; zero: true poses.
+  /// Covariances of the known poses, relative to the first one. Zero for a true pose; empty if all
+  /// are true.
   std::vector<Eigen::Matrix3d> knownCovariances;
   /// By scans. They are on the plane of the map, whose frame is that of the poses found then.
   std::vector<DriveFix> fixes;

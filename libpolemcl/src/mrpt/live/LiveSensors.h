@@ -21,7 +21,8 @@ struct SensorEvents {
   std::function<void(const std::string& failure)> ended;
   /// Something is not right, but the sensor goes on.
   std::function<void(const std::string& warning)> warned;
-  /// More packets of a LiDAR are missing in its scans, or were not of it.
+  /// Packets of a LiDAR since the last call: lost on the way; ignored, since another sender or
+  /// size.
   std::function<void(std::size_t lost, std::size_t ignored)> counted = {};
 };
 

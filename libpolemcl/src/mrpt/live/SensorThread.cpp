@@ -151,7 +151,7 @@ void SensorThread::tellOdometry(const SensorEvents& events) {
                 "without a Unix time within 10 s of the clock here");
 }
 
-/// Each kind is told once.
+/// Warns once of each kind.
 void SensorThread::tellPackets(const SensorEvents& events) {
   const auto& counts = m_receiver->counts();
   const std::size_t lost = counts.lost - m_told.lost, ignored = counts.ignored - m_told.ignored;

@@ -45,7 +45,7 @@ class SensorThread {
   mrpt::hwdrivers::CVelodyneScanner* m_player = nullptr;  ///< m_sensor, if it plays m_pcap
   const VelodyneReceiver* m_receiver = nullptr;           ///< m_sensor, if it is one
   const CUdpOdometry* m_odometry = nullptr;               ///< m_sensor, if it is one
-  VelodyneReceiver::Counts m_told;                        ///< those that events know
+  VelodyneReceiver::Counts m_told;                        ///< those already reported
   bool m_warned = false;                                  ///< of a packet of odometry
   std::size_t m_packets = 0;                              ///< of the file, before the first turn
   std::size_t m_turns = 0;

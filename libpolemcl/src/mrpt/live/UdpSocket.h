@@ -18,7 +18,7 @@ struct UdpPacket {
   std::string_view bytes;  ///< at most UdpSocket::kLongest of them
   std::size_t size;        ///< as it was sent
   in_addr sender;
-  mrpt::Clock::time_point arrival;  ///< by the kernel: not later when this thread is
+  mrpt::Clock::time_point arrival;  ///< time stamp of the kernel
 };
 
 class UdpSocket {

@@ -18,7 +18,7 @@ struct Direction {
   float cosine, sine;
 };
 
-/// Of each azimuth that a packet can state.
+/// One for each hundredth of a degree: packets state azimuths in this unit.
 const std::vector<Direction>& directions() {
   static const std::vector<Direction> all = [] {
     std::vector<Direction> table(kFullTurn);
