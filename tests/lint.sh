@@ -16,7 +16,7 @@ sources() {
 
 # Not pictures, nor what programs wrote.
 texts() {
-  git ls-files | grep -v '\.png$\|\.rawlog$\|\.polemap$\|\.svg$\|\.gif$\|^tests/releases/[0-9]'
+  git ls-files | grep -v '\.png$\|\.pcap$\|\.rawlog$\|\.polemap$\|\.svg$\|\.gif$\|^tests/releases/[0-9]'
 }
 
 format() {

@@ -1,44 +1,24 @@
 #include <arpa/inet.h>
 #include <mrpt/config/CConfigFileMemory.h>
-#include <mrpt/hwdrivers/CVelodyneScanner.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 
 #include "fuzz/Fuzz.h"
 #include "mrpt/live/CUdpOdometry.h"
 #include "mrpt/live/LiveQueue.h"
+#include "mrpt/live/OusterPackets.h"
 #include "mrpt/live/PcapFile.h"
 #include "mrpt/rawlog/PoleSequence.h"
-#include "support/VelodynePackets.h"
-
-namespace {
-
-thread_local bool isReplaying = false;
-
-}  // namespace
-
-/// MRPT's driver waits in a replay as the LiDAR would.
-extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* wait, timespec* left) {
-  if (isReplaying) return 0;
-  return ::syscall(SYS_clock_nanosleep, clock, flags, wait, left) == 0 ? 0 : errno;
-}
-extern "C" int nanosleep(const timespec* wait, timespec* left) {
-  if (isReplaying) return 0;
-  return static_cast<int>(::syscall(SYS_nanosleep, wait, left));
-}
+#include "support/OusterTurns.h"
 
 namespace polemcl::fuzz {
 namespace {
 
-using mrpt::hwdrivers::CVelodyneScanner;
 using mrpt::obs::CObservationVelodyneScan;
 using Packet = CObservationVelodyneScan::TVelodyneRawPacket;
 
@@ -78,36 +58,48 @@ std::vector<std::string> packetSeeds() {
   return {inputFor(0, few), inputFor(0, turn), inputFor(1, few), inputFor(2, few)};
 }
 
-/// A whole file of packets as MRPT's driver reads it.
+/// A whole file of packets.
 void readPcap(std::string_view bytes) {
-  const std::string file = fileOf("a.pcap", bytes).string();
-  requireEthernetPcap(file);
-  mrpt::config::CConfigFileMemory config;
-  config.write("lidar", "model", "VLP16");
-  config.write("lidar", "pcap_input", file);
-  config.write("lidar", "pcap_read_once", true);
-  config.write("lidar", "pcap_read_fast", true);
-  config.write("lidar", "pcap_read_full_scan_delay_ms", 0);
-  CVelodyneScanner scanner;
-  scanner.setPCAPVerbosity(false);
-  CObservationVelodyneScan::Ptr scan;
-  mrpt::obs::CObservationGPS::Ptr position;
-  isReplaying = true;
-  try {
-    scanner.loadConfig(config, "lidar");
-    scanner.initialize();
-    for (int i = 0; i < 3000 && scanner.getNextObservation(scan, position); ++i)
-      if (scan) extractor().process(*scan);
-  } catch (const std::exception&) {  // SensorThread makes an Error of all that MRPT throws
+  PcapFile file(fileOf("a.pcap", bytes).string());
+  RecordedPacket packet;
+  for (int i = 0; i < 3000 && file.next(packet); ++i) {
   }
-  isReplaying = false;
 }
 
 std::vector<std::string> pcapSeeds() {
   const auto pcap = [](std::size_t most) {
     return testing_apps::pcapFile(streetPackets(most), 2368);
   };
-  return {pcap(3), pcap(75)};
+  std::string fragments = pcap(1);  // which wait for others
+  fragments[24 + 16 + 14 + 6] = 0x20;
+  return {pcap(3), pcap(75), fragments};
+}
+
+/// Metadata, a zero byte, packets.
+void readOuster(std::string_view bytes) {
+  const auto zero = bytes.find('\0');
+  if (zero == bytes.npos) return;
+  const OusterPackets packets(fileOf("os.json", bytes.substr(0, zero)).string());
+  OusterPackets::Points points;
+  for (bytes.remove_prefix(zero + 1); bytes.size() >= packets.size();
+       bytes.remove_prefix(packets.size())) {
+    const auto packet = bytes.substr(0, packets.size());
+    packets.appendPoints(packet, points);
+    packets.isSent(packets.columnOf(packet) / packets.columnsPerPacket());
+    packets.turnOf(packet);
+    packets.timeOf(packet);
+  }
+}
+
+std::vector<std::string> ousterSeeds() {
+  std::vector<std::string> seeds;
+  for (const char* profile : {"RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL", "LEGACY"}) {
+    testing_apps::OusterModel model;
+    model.profile = profile;
+    seeds.push_back(model.metadata(",\"column_window\":[0,100]") + std::string(1, '\0') +
+                    testing_apps::turnOfOuster(model, 0, 0, 0, 1, 0)[0]);
+  }
+  return seeds;
 }
 
 /// A port of this process on the loopback; neighbours try the next one.
@@ -181,6 +173,7 @@ std::vector<std::string> liveSeeds() {
 std::vector<Target> liveTargets() {
   return {{"packets", readPackets, packetSeeds},
           {"pcap", readPcap, pcapSeeds},
+          {"ouster", readOuster, ousterSeeds},
           {"live", readLive, liveSeeds}};
 }
 

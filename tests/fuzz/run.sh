@@ -33,9 +33,8 @@ share/setup/build.sh fuzz fuzz pole-simulate pole-map pole-import
 TMPDIR=$(mktemp -d "$([ -d /dev/shm ] && echo /dev/shm || echo /tmp)/polemcl-fuzz-XXXXXX")
 export TMPDIR
 trap 'rm -rf "$TMPDIR"' EXIT
-# LimitedNew.cpp replaces `new` but not all forms of it, which is no mismatch. Leaks are those of
-# libpcap, in MRPT: tests/run.sh sanitize looks for ours. OpenCV throws where
-# malloc() gives nothing.
+# LimitedNew.cpp replaces `new` but not all forms of it, which is no mismatch. tests/run.sh sanitize
+# looks for leaks. OpenCV throws where malloc() gives nothing.
 export ASAN_OPTIONS=alloc_dealloc_mismatch=0:allocator_may_return_null=1:detect_leaks=0:quarantine_size_mb=16:malloc_context_size=4
 export UBSAN_OPTIONS=print_stacktrace=1
 

@@ -1,5 +1,5 @@
 /// \file test_VelodyneReceiver.cpp
-/// \brief Packets of Velodynes on the loopback: the turns are those of MRPT's driver.
+/// \brief Packets of Velodynes on the loopback and in PCAP files become turns.
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
@@ -101,8 +101,7 @@ TEST_F(VelodyneReceiverTest, PacketsOfARealVlp16BecomeTheRecordedScans) {
   for (std::size_t i = 1; i < turns.size(); ++i) expectSamePackets(*received[i - 1], *turns[i]);
 }
 
-/// MRPT's driver plays a PCAP file of the same packets.
-TEST_F(VelodyneReceiverTest, GivesTheObservationsOfMrptsDriver) {
+TEST_F(VelodyneReceiverTest, APcapFileGivesTheSameTurns) {
   const std::string ini =
       velodyne("sensorLabel = roof\npose_x = 0.5\npose_z = 1.5\npose_yaw = 90\npose_pitch = 2\n");
   const Packets packets = drive(5, 1000), positions{positionPacket('V'), positionPacket('A')};
@@ -132,7 +131,6 @@ TEST_F(VelodyneReceiverTest, GivesTheObservationsOfMrptsDriver) {
   }
 }
 
-/// MRPT's driver takes every LiDAR for a VLP-16.
 TEST_F(VelodyneReceiverTest, TheModelIsThatOfItsKey) {
   std::string ini = velodyne("");
   ini.replace(ini.find("VLP16"), 5, "HDL32");

@@ -6,26 +6,16 @@
 
 #include <polemcl/core/common/Types.h>
 #include "mrpt/common/MrptReason.h"
-#include "mrpt/live/PcapFile.h"
+#include "mrpt/live/VelodyneReceiver.h"
 
 namespace polemcl {
 
 using mrpt::config::CConfigFileBase;
 using mrpt::hwdrivers::CGenericSensor;
-using mrpt::hwdrivers::CVelodyneScanner;
 
 namespace {
 
 constexpr double kUsualRate = 1000;  // calls of a driver in a second
-
-/// MRPT keeps the ports of PCAP files in a short, and compares with unsigned ones.
-short portOf(const CConfigFileBase& config, const std::string& section, const char* key,
-             int usual) {
-  const int port = config.read_int(section, key, usual);
-  if (port < 1 || port > 32767)
-    throw Error(std::string(key) + " = " + std::to_string(port) + ": allowed is 1 to 32767");
-  return static_cast<short>(port);
-}
 
 /// Signals are for the main thread: MRPT takes an interrupted wait for a packet as one that is
 /// there.
@@ -53,15 +43,14 @@ SensorThread::SensorThread(const std::string& file, const std::string& section,
   if (m_driver.empty())
     throw Error(m_place +
                 "no driver: name the class of the sensor, such as driver = CVelodyneScanner");
-  m_pcap = config.read_string(section, "pcap_input", "");
-  if (m_driver == "CVelodyneScanner" && m_pcap.empty())
+  if (m_driver == "CVelodyneScanner")
     m_sensor = std::make_shared<VelodyneReceiver>();
   else
     m_sensor = CGenericSensor::createSensorPtr(m_driver);
   if (!m_sensor)
     throw Error(m_place + "driver = " + m_driver +
                 ": is no sensor that MRPT knows; allowed are the classes of mrpt::hwdrivers, such "
-                "as CVelodyneScanner, and CUdpOdometry");
+                "as CVelodyneScanner, COusterScanner and CUdpOdometry");
   try {
     open(config);
   } catch (const std::exception& error) {
@@ -81,27 +70,13 @@ SensorThread::~SensorThread() {
 void SensorThread::open(CConfigFileBase& config) {
   if (!config.keyExists(m_section, "process_rate"))
     config.write(m_section, "process_rate", kUsualRate);
-  m_receiver = dynamic_cast<const VelodyneReceiver*>(m_sensor.get());
+  m_receiver = dynamic_cast<const PacketReceiver*>(m_sensor.get());
   m_odometry = dynamic_cast<const CUdpOdometry*>(m_sensor.get());
-  if (!m_receiver) m_player = dynamic_cast<CVelodyneScanner*>(m_sensor.get());
-  if (m_player) openPcap(config);
   m_sensor->loadConfig(config, m_section);
-  if (m_player)  // MRPT reads the key, but does not use it
-    m_player->setModelName(config.read_enum(m_section, "model", m_player->getModelName()));
   if (!(m_sensor->getProcessRate() > 0))
     throw Error("process_rate = " + config.read_string(m_section, "process_rate", "") +
                 ": allowed is more than 0, in calls a second");
   m_sensor->initialize();
-}
-
-/// The ports are those of the class.
-void SensorThread::openPcap(CConfigFileBase& config) {
-  requireEthernetPcap(m_pcap);
-  if (!config.keyExists(m_section, "pcap_read_once"))
-    config.write(m_section, "pcap_read_once", true);
-  CVelodyneScanner::VELODYNE_DATA_UDP_PORT = portOf(config, m_section, "data_port", 2368);
-  CVelodyneScanner::VELODYNE_POSITION_UDP_PORT = portOf(config, m_section, "position_port", 8308);
-  m_player->setPCAPVerbosity(false);  // it would write to standard output, between the poses
 }
 
 void SensorThread::start(const SensorEvents& events) {
@@ -118,7 +93,7 @@ void SensorThread::work(const SensorEvents& events) {
   using Clock = std::chrono::steady_clock;
   const auto period = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(1 / m_sensor->getProcessRate()));
-  if (m_receiver && m_receiver->isOfThisComputerOnly())
+  if (m_receiver && m_receiver->source().isOfThisComputerOnly())
     events.warned(
         m_place + m_driver +
         ": listens to this computer only; for a LiDAR in the network set address = 0.0.0.0");
@@ -132,14 +107,19 @@ void SensorThread::work(const SensorEvents& events) {
 
 /// \return false at the end of a PCAP file.
 bool SensorThread::process(const SensorEvents& events) {
-  if (m_player) return processPcap(events);
   m_sensor->doProcess();
   if (m_odometry) tellOdometry(events);
   if (m_receiver) tellPackets(events);
   for (const auto& [time, object] : m_sensor->getObservations())
-    if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object))
+    if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) {
+      ++m_observed;
       events.observed(observation);
-  return true;
+    }
+  if (!m_receiver || !m_receiver->source().atEnd()) return true;
+  if (m_observed == 0)
+    throw Error("no whole turn in " + m_receiver->source().pcap() +
+                ": the first and the last one are left out, as they may be cut");
+  return false;
 }
 
 /// Once, as a broken sender would fill the screen.
@@ -153,7 +133,7 @@ void SensorThread::tellOdometry(const SensorEvents& events) {
 
 /// Warns once of each kind.
 void SensorThread::tellPackets(const SensorEvents& events) {
-  const auto& counts = m_receiver->counts();
+  const auto counts = m_receiver->counts();
   const std::size_t lost = counts.lost - m_told.lost, ignored = counts.ignored - m_told.ignored;
   const std::string place = m_place + m_driver + ": ";
   if (ignored > 0 && m_told.ignored == 0)
@@ -166,19 +146,6 @@ void SensorThread::tellPackets(const SensorEvents& events) {
                   ": the network or this computer loses them; scans have gaps");
   if (lost + ignored > 0 && events.counted) events.counted(lost, ignored);
   m_told = counts;
-}
-
-/// MRPT reads a file without packets over and over. The first turn is cut: it begins somewhere.
-/// MRPT's doProcess() would report the end of a PCAP file as an error.
-bool SensorThread::processPcap(const SensorEvents& events) {
-  mrpt::obs::CObservationVelodyneScan::Ptr scan;
-  mrpt::obs::CObservationGPS::Ptr position;
-  if (!m_player->getNextObservation(scan, position)) return false;
-  if (scan && m_turns++ > 0) events.observed(scan);
-  if (m_turns == 0 && ++m_packets > VelodyneReceiver::kMostPackets)
-    throw Error("no turn in the first " + std::to_string(VelodyneReceiver::kMostPackets) +
-                " packets of " + m_pcap + ": check data_port and device_ip");
-  return true;
 }
 
 }  // namespace polemcl

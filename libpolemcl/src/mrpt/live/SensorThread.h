@@ -3,7 +3,6 @@
 /// \brief One sensor of MRPT in a thread of its own. Part of the module libpolemcl-sensors.so.
 
 #include <mrpt/config/CConfigFileBase.h>
-#include <mrpt/hwdrivers/CVelodyneScanner.h>
 
 #include <condition_variable>
 #include <mutex>
@@ -12,7 +11,7 @@
 
 #include "mrpt/live/CUdpOdometry.h"
 #include "mrpt/live/LiveSensors.h"
-#include "mrpt/live/VelodyneReceiver.h"
+#include "mrpt/live/PacketSource.h"
 
 namespace polemcl {
 
@@ -31,24 +30,19 @@ class SensorThread {
 
  private:
   void open(mrpt::config::CConfigFileBase& config);
-  void openPcap(mrpt::config::CConfigFileBase& config);
   void work(const SensorEvents& events);
   bool process(const SensorEvents& events);
   void tellOdometry(const SensorEvents& events);
   void tellPackets(const SensorEvents& events);
-  bool processPcap(const SensorEvents& events);
   bool waitUntil(std::chrono::steady_clock::time_point next);
 
   std::string m_section, m_driver, m_place;  ///< m_place: for messages
-  std::string m_pcap;  ///< file of packets of a Velodyne in place of the device; or empty
   mrpt::hwdrivers::CGenericSensor::Ptr m_sensor;
-  mrpt::hwdrivers::CVelodyneScanner* m_player = nullptr;  ///< m_sensor, if it plays m_pcap
-  const VelodyneReceiver* m_receiver = nullptr;           ///< m_sensor, if it is one
-  const CUdpOdometry* m_odometry = nullptr;               ///< m_sensor, if it is one
-  VelodyneReceiver::Counts m_told;                        ///< those already reported
-  bool m_warned = false;                                  ///< of a packet of odometry
-  std::size_t m_packets = 0;                              ///< of the file, before the first turn
-  std::size_t m_turns = 0;
+  const PacketReceiver* m_receiver = nullptr;  ///< m_sensor, if it is one
+  const CUdpOdometry* m_odometry = nullptr;    ///< m_sensor, if it is one
+  PacketReceiver::Counts m_told;               ///< those already reported
+  bool m_warned = false;                       ///< of a packet of odometry
+  std::size_t m_observed = 0;                  ///< observations until now
   std::mutex m_mutex;
   std::condition_variable m_stopping;
   bool m_stop = false;

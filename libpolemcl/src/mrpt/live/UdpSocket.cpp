@@ -15,36 +15,9 @@ namespace polemcl {
 namespace {
 
 constexpr int kLongestWait = 10;       // ms
-constexpr int kBuffer = 4 << 20;       // bytes; a second of the fastest Velodyne
+constexpr int kBuffer = 32 << 20;      // bytes; a second of the fastest LiDAR
 constexpr std::size_t kAtOnce = 32;    // packets of one call of the kernel
 constexpr std::size_t kRounds = 1000;  // of such calls, so that a flood cannot hold a thread
-
-/// Where the kernel writes packets.
-struct Batch {
-  struct Slot {
-    char bytes[UdpSocket::kLongest];
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(timespec))];
-    sockaddr_in sender;
-    iovec part;
-  };
-  std::array<Slot, kAtOnce> slots;
-  std::array<mmsghdr, kAtOnce> heads;
-
-  Batch() {
-    for (std::size_t i = 0; i < kAtOnce; ++i) {
-      Slot& slot = slots[i];
-      slot.part = {slot.bytes, sizeof slot.bytes};
-      heads[i] = {};
-      msghdr& head = heads[i].msg_hdr;
-      head.msg_iov = &slot.part;
-      head.msg_iovlen = 1;
-      head.msg_name = &slot.sender;
-      head.msg_namelen = sizeof slot.sender;
-      head.msg_control = slot.control;
-      head.msg_controllen = sizeof slot.control;
-    }
-  }
-};
 
 mrpt::Clock::time_point arrivalOf(msghdr& head) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&head); part; part = CMSG_NXTHDR(&head, part)) {
@@ -60,6 +33,34 @@ mrpt::Clock::time_point arrivalOf(msghdr& head) {
 
 }  // namespace
 
+/// Where the kernel writes packets.
+struct UdpSocket::Batch {
+  struct Slot {
+    char bytes[UdpSocket::kLongest];
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(timespec))];
+    sockaddr_in sender;
+    iovec part;
+  };
+  std::array<Slot, kAtOnce> slots;
+  std::array<mmsghdr, kAtOnce> heads;
+
+  /// The kernel writes over the sizes.
+  void prepare() {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      Slot& slot = slots[i];
+      slot.part = {slot.bytes, sizeof slot.bytes};
+      heads[i] = {};
+      msghdr& head = heads[i].msg_hdr;
+      head.msg_iov = &slot.part;
+      head.msg_iovlen = 1;
+      head.msg_name = &slot.sender;
+      head.msg_namelen = sizeof slot.sender;
+      head.msg_control = slot.control;
+      head.msg_controllen = sizeof slot.control;
+    }
+  }
+};
+
 in_addr ipv4Address(const std::string& key, const std::string& text) {
   in_addr address;
   if (inet_pton(AF_INET, text.c_str(), &address) != 1)
@@ -67,13 +68,20 @@ in_addr ipv4Address(const std::string& key, const std::string& text) {
   return address;
 }
 
+void requirePort(const std::string& key, int port) {
+  if (port < 1 || port > 65535)
+    throw Error(key + " = " + std::to_string(port) + ": allowed is 1 to 65535");
+}
+
+// The slots are not set to zero: most of them are never used.
+UdpSocket::UdpSocket() : m_batch(new Batch) {}
+
 UdpSocket::~UdpSocket() {
   if (m_socket >= 0) close(m_socket);
 }
 
 void UdpSocket::open(const std::string& key, int port, const std::string& address) {
-  if (port < 1 || port > 65535)
-    throw Error(key + " = " + std::to_string(port) + ": allowed is 1 to 65535");
+  requirePort(key, port);
   sockaddr_in at{};
   at.sin_family = AF_INET;
   at.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -94,12 +102,12 @@ bool UdpSocket::wait() const {
 
 void UdpSocket::receive(const std::function<void(const UdpPacket&)>& take) const {
   for (std::size_t round = 0; round < kRounds; ++round) {
-    Batch batch;
+    m_batch->prepare();
     const int count =
-        recvmmsg(m_socket, batch.heads.data(), kAtOnce, MSG_DONTWAIT | MSG_TRUNC, nullptr);
+        recvmmsg(m_socket, m_batch->heads.data(), kAtOnce, MSG_DONTWAIT | MSG_TRUNC, nullptr);
     for (int i = 0; i < count; ++i) {
-      auto& [head, size] = batch.heads[static_cast<std::size_t>(i)];
-      const auto& slot = batch.slots[static_cast<std::size_t>(i)];
+      auto& [head, size] = m_batch->heads[static_cast<std::size_t>(i)];
+      const auto& slot = m_batch->slots[static_cast<std::size_t>(i)];
       take({{slot.bytes, std::min<std::size_t>(size, kLongest)},
             size,
             slot.sender.sin_addr,

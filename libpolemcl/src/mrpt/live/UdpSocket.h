@@ -6,6 +6,7 @@
 #include <netinet/in.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,9 @@ namespace polemcl {
 
 /// \brief The address of a text such as 192.168.1.201. \throws Error naming the key that has it.
 in_addr ipv4Address(const std::string& key, const std::string& text);
+
+/// \throws Error naming the key, unless it is 1 to 65535.
+void requirePort(const std::string& key, int port);
 
 struct UdpPacket {
   std::string_view bytes;  ///< at most UdpSocket::kLongest of them
@@ -23,9 +27,9 @@ struct UdpPacket {
 
 class UdpSocket {
  public:
-  static constexpr std::size_t kLongest = 1500;
+  static constexpr std::size_t kLongest = 65507;  ///< that UDP has
 
-  UdpSocket() = default;
+  UdpSocket();
   ~UdpSocket();
   UdpSocket(const UdpSocket&) = delete;
   UdpSocket& operator=(const UdpSocket&) = delete;
@@ -40,7 +44,10 @@ class UdpSocket {
   void receive(const std::function<void(const UdpPacket&)>& take) const;
 
  private:
+  struct Batch;
+
   int m_socket = -1;
+  std::unique_ptr<Batch> m_batch;
 };
 
 }  // namespace polemcl

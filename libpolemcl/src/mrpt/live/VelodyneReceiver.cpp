@@ -37,7 +37,7 @@ void VelodyneReceiver::loadConfig_sensorSpecific(const mrpt::config::CConfigFile
   m_model = config.read_enum(section, "model", m_model);  // MRPT reads it, but does not use it
   m_dataPort = config.read_int(section, "data_port", m_dataPort);
   m_positionPort = config.read_int(section, "position_port", m_positionPort);
-  m_address = config.read_string(section, "address", m_address);
+  m_source.loadConfig(config, section);
   m_rpm = config.read_int(section, "rpm", m_rpm);
   m_returnType = config.read_enum(section, "return_type", m_returnType);
 }
@@ -45,14 +45,11 @@ void VelodyneReceiver::loadConfig_sensorSpecific(const mrpt::config::CConfigFile
 void VelodyneReceiver::initialize() {
   if (!m_missing.empty())
     throw Error("calibration_file = " + m_missing + ": cannot be read as XML of a Velodyne");
-  if (!m_device_ip.empty()) m_device = ipv4Address("device_ip", m_device_ip);
   if (!m_pcap_output_file.empty())
     throw Error("pcap_output: no PCAP is written; record with tcpdump -w FILE.pcap udp");
   if (m_velodyne_calib.empty()) loadDefaultCalibration();
-  changeSettings();
-  const std::string address = m_address.empty() ? "127.0.0.1" : m_address;
-  m_data.open("data_port", m_dataPort, address);
-  m_positions.open("position_port", m_positionPort, address);
+  if (m_source.pcap().empty()) changeSettings();
+  m_source.open({{"data_port", m_dataPort}, {"position_port", m_positionPort}});
 }
 
 void VelodyneReceiver::loadDefaultCalibration() {
@@ -73,21 +70,19 @@ void VelodyneReceiver::changeSettings() {
 
 void VelodyneReceiver::doProcess() {
   m_state = ssWorking;
-  const bool isData = m_data.wait();
-  m_positions.receive([this](const UdpPacket& packet) {
-    if (const auto position = accepted<Scan::TVelodynePositionPacket>(packet))
+  m_source.receive([this](std::size_t port, const UdpPacket& packet) {
+    if (port == 0) {
+      if (const auto data = accepted<Scan::TVelodyneRawPacket>(packet))
+        takeData(*data, packet.arrival);
+    } else if (const auto position = accepted<Scan::TVelodynePositionPacket>(packet)) {
       takePosition(*position, packet.arrival);
-  });
-  if (!isData) return;
-  m_data.receive([this](const UdpPacket& packet) {
-    if (const auto data = accepted<Scan::TVelodyneRawPacket>(packet))
-      takeData(*data, packet.arrival);
+    }
   });
 }
 
 template <class Packet>
 std::optional<Packet> VelodyneReceiver::accepted(const UdpPacket& packet) {
-  if (packet.size != sizeof(Packet) || (m_device && packet.sender.s_addr != m_device->s_addr)) {
+  if (packet.size != sizeof(Packet)) {
     ++m_counts.ignored;
     return std::nullopt;
   }

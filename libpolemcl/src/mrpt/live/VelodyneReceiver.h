@@ -7,36 +7,27 @@
 
 #include <optional>
 
-#include "mrpt/live/UdpSocket.h"
+#include "mrpt/live/PacketSource.h"
 
 namespace polemcl {
 
-/// \brief Listens in place of MRPT's driver, which takes about 900 packets a second and has one
-/// pair of ports for all LiDARs.
+/// \brief Stands in for MRPT's driver, which takes about 900 packets a second and has one pair of
+/// ports for all LiDARs.
 ///
-/// It has the keys of the base class, except those of PCAP files, and gives the same observations:
-/// a CObservationVelodyneScan for each turn, with the time of arrival of its first packet, or with
-/// GPS time. The first turn is left out: it is not complete. Added keys: `data_port`,
-/// `position_port` (default: 2368 and 8308) and `address`, the IPv4 address to listen at (default:
-/// 127.0.0.1, this computer only; 0.0.0.0: from anywhere).
-class VelodyneReceiver : public mrpt::hwdrivers::CVelodyneScanner {
+/// It has the keys of the base class, and gives the same observations: a CObservationVelodyneScan
+/// for each turn, with the time of arrival of its first packet, or with GPS time. The first turn is
+/// left out: it is not complete. Added keys: `data_port`, `position_port` (default: 2368 and 8308)
+/// and those of PacketSource.
+class VelodyneReceiver : public mrpt::hwdrivers::CVelodyneScanner, public PacketReceiver {
  public:
   /// More than a turn of any Velodyne has. A turn with more is cut: the LiDAR does not turn.
   static constexpr std::size_t kMostPackets = 3000;
-  struct Counts {
-    std::size_t packets = 0;  ///< of measurements
-    std::size_t lost = 0;     ///< missing between those, by the clock in them
-    std::size_t ignored = 0;  ///< of a wrong size or, with `device_ip`, of another sender
-  };
 
-  /// \throws Error when a port cannot be listened at, the LiDAR is of no known model, or it does
-  /// not take the settings of `rpm` and `return_type`.
+  /// \throws Error as PacketSource::open(), and when the LiDAR is of no known model or does not
+  /// take the settings of `rpm` and `return_type`.
   void initialize() override;
   /// \brief Waits a few milliseconds at most.
   void doProcess() override;
-  const Counts& counts() const { return m_counts; }
-  /// \brief No `address` was given.
-  bool isOfThisComputerOnly() const { return m_address.empty(); }
 
  protected:
   void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
@@ -51,7 +42,7 @@ class VelodyneReceiver : public mrpt::hwdrivers::CVelodyneScanner {
 
   void changeSettings();
   void loadDefaultCalibration();
-  /// \return The packet, if it is one of the LiDAR.
+  /// \return The packet, if it has the right size.
   template <class Packet>
   std::optional<Packet> accepted(const UdpPacket& packet);
   void takePosition(const Scan::TVelodynePositionPacket& packet, Time arrival);
@@ -60,12 +51,9 @@ class VelodyneReceiver : public mrpt::hwdrivers::CVelodyneScanner {
   void countLost(std::uint32_t clock);
 
   int m_dataPort = 2368, m_positionPort = 8308;
-  std::string m_address;  ///< empty: of this computer only
   std::string m_missing;  ///< file of the calibration, if it cannot be read
   int m_rpm = 0;          ///< as this and the next one are hidden in the base class
   return_type_t m_returnType = UNCHANGED;
-  std::optional<in_addr> m_device;  ///< the only sender
-  UdpSocket m_data, m_positions;
   Scan::Ptr m_turn;  ///< that is not complete
   bool m_isFirstTurn = true;
   std::optional<Time> m_position;        ///< arrival of the last packet of position that was read
@@ -73,7 +61,6 @@ class VelodyneReceiver : public mrpt::hwdrivers::CVelodyneScanner {
   std::optional<std::uint32_t> m_clock;  ///< of the last packet, us since the full hour
   /// Smallest time between two packets in the turn before, and so far in this one, us; 0: unknown.
   std::uint32_t m_spacing = 0, m_nextSpacing = 0;
-  Counts m_counts;
 };
 
 }  // namespace polemcl
