@@ -9,7 +9,9 @@
 #include <cstring>
 
 #include "fuzz/Fuzz.h"
+#include "io/file/Bytes.h"
 #include "mrpt/live/CUdpOdometry.h"
+#include "mrpt/live/HesaiPackets.h"
 #include "mrpt/live/LiveQueue.h"
 #include "mrpt/live/OusterPackets.h"
 #include "mrpt/live/PcapFile.h"
@@ -75,20 +77,28 @@ std::vector<std::string> pcapSeeds() {
   return {pcap(3), pcap(75), fragments};
 }
 
-/// Metadata, a zero byte, packets.
-void readOuster(std::string_view bytes) {
+/// The file that describes a LiDAR, a zero byte, a packet.
+template <class Packets>
+void readLidar(std::string_view bytes) {
   const auto zero = bytes.find('\0');
   if (zero == bytes.npos) return;
-  const OusterPackets packets(fileOf("os.json", bytes.substr(0, zero)).string());
-  OusterPackets::Points points;
-  for (bytes.remove_prefix(zero + 1); bytes.size() >= packets.size();
-       bytes.remove_prefix(packets.size())) {
-    const auto packet = bytes.substr(0, packets.size());
-    packets.appendPoints(packet, points);
-    packets.isSent(packets.columnOf(packet) / packets.columnsPerPacket());
-    packets.turnOf(packet);
-    packets.timeOf(packet);
+  const Packets packets(fileOf("lidar", bytes.substr(0, zero)).string());
+  LidarPoints points;
+  const std::string_view packet = bytes.substr(zero + 1);
+  if (!packets.isPacket(packet)) return;
+  packets.number(packet);
+  packets.turn(packet);
+  for (int i = 0; i < packets.columns(packet); ++i) {
+    packets.time(packet, i);
+    if (packets.phase(packet, i)) packets.append(packet, i, points);
   }
+}
+
+void readOuster(std::string_view bytes) {
+  readLidar<OusterPackets>(bytes);
+}
+void readHesai(std::string_view bytes) {
+  readLidar<HesaiPackets>(bytes);
 }
 
 std::vector<std::string> ousterSeeds() {
@@ -98,6 +108,17 @@ std::vector<std::string> ousterSeeds() {
     model.profile = profile;
     seeds.push_back(model.metadata(",\"column_window\":[0,100]") + std::string(1, '\0') +
                     testing_apps::turnOfOuster(model, 0, 0, 0, 1, 0)[0]);
+  }
+  return seeds;
+}
+
+std::vector<std::string> hesaiSeeds() {
+  const std::string folder = POLEMCL_SOURCE_DIR "/tests/mrpt/live/captures/hesai-";
+  std::vector<std::string> seeds;
+  for (const char* model : {"xt16", "xt32m", "qt64", "64", "40p"}) {
+    RecordedPacket packet;
+    PcapFile(folder + model + ".pcap").next(packet);
+    seeds.push_back(io::readBytes(folder + model + ".csv") + std::string(1, '\0') + packet.bytes);
   }
   return seeds;
 }
@@ -174,6 +195,7 @@ std::vector<Target> liveTargets() {
   return {{"packets", readPackets, packetSeeds},
           {"pcap", readPcap, pcapSeeds},
           {"ouster", readOuster, ousterSeeds},
+          {"hesai", readHesai, hesaiSeeds},
           {"live", readLive, liveSeeds}};
 }
 

@@ -11,6 +11,7 @@
 
 #include <polemcl/core/common/Types.h>
 #include "io/file/ParsedJson.h"
+#include "mrpt/live/PacketBytes.h"
 
 namespace polemcl {
 namespace {
@@ -42,13 +43,6 @@ const std::map<std::string, Profile>& profiles() {
       {"RNG15_RFL8_NIR8_DUAL", {8, 15, 3, true}},
       {"FUSA_RNG15_RFL8_NIR8_DUAL", {8, 15, 3, true}}};
   return all;
-}
-
-template <class Number>
-Number numberAt(std::string_view bytes, std::size_t place) {
-  Number number;
-  std::memcpy(&number, bytes.data() + place, sizeof number);
-  return number;
 }
 
 /// The file is no metadata, for this reason.
@@ -125,13 +119,19 @@ void OusterPackets::readFormat(const Json& metadata) {
   m_turn = turn;
   m_columns = wholeNumber(metadata, inFormat("columns_per_frame"), columns, kMostColumns);
   m_columnsPerPacket = wholeNumber(metadata, inFormat("columns_per_packet"), 16, kMostColumns);
-  m_port = wholeNumber(metadata, {"/udp_port_lidar", "/config_params/udp_port_lidar"}, 0, 65535);
+  m_port =
+      wholeNumber(metadata, {"/udp_port_lidar", "/config_params/udp_port_lidar"}, m_port, 65535);
   if (m_columns < 1 || m_columnsPerPacket < 1) refuse("it has no columns");
   m_windowEnd = m_columns - 1;
   const Json& window = valueOf(metadata, inFormat("column_window"));
-  if (window.is_null()) return;
-  m_windowBegin = window.at(0).get<int>();
-  m_windowEnd = window.at(1).get<int>();
+  if (!window.is_null()) {
+    m_windowBegin = window.at(0).get<int>();
+    m_windowEnd = window.at(1).get<int>();
+  }
+  m_sentBefore = {0};
+  for (int i = 0; i * m_columnsPerPacket < m_columns; ++i)
+    m_sentBefore.push_back(m_sentBefore.back() + (isSent(i) ? 1 : 0));
+  if (m_sentBefore.back() == 0) refuse("its column_window has no column");
 }
 
 void OusterPackets::readProfile(const Json& metadata) {
@@ -176,8 +176,8 @@ void OusterPackets::readBeams(const Json& metadata) {
   if (m_size > kMostBytes) refuse("its packets are longer than UDP allows");
 }
 
-bool OusterPackets::isSent(int index) const {
-  const int first = index * m_columnsPerPacket, last = first + m_columnsPerPacket - 1;
+bool OusterPackets::isSent(int packet) const {
+  const int first = packet * m_columnsPerPacket, last = first + m_columnsPerPacket - 1;
   if (m_windowBegin <= m_windowEnd) return first <= m_windowEnd && last >= m_windowBegin;
   return first <= m_windowEnd || last >= m_windowBegin;
 }
@@ -186,44 +186,52 @@ std::size_t OusterPackets::columnBegin(int i) const {
   return (m_isLegacy ? 0 : kHeader) + static_cast<std::size_t>(i) * m_columnSize;
 }
 
-std::uint32_t OusterPackets::turnOf(std::string_view packet) const {
-  if (m_hasLongNumbers) return numberAt<std::uint32_t>(packet, 4);
-  return numberAt<std::uint16_t>(packet, m_isLegacy ? 10 : 2);
-}
-
-int OusterPackets::columnOf(std::string_view packet, int i) const {
+int OusterPackets::indexOf(std::string_view packet, int i) const {
   return numberAt<std::uint16_t>(packet, columnBegin(i) + 8);
 }
 
-double OusterPackets::timeOf(std::string_view packet, int i) const {
-  return static_cast<double>(numberAt<std::uint64_t>(packet, columnBegin(i))) * 1e-9;
+std::optional<LidarPackets::Number> OusterPackets::number(std::string_view packet) const {
+  const std::uint64_t turn = m_hasLongNumbers
+                                 ? numberAt<std::uint32_t>(packet, 4)
+                                 : numberAt<std::uint16_t>(packet, m_isLegacy ? 10 : 2);
+  const std::uint64_t turns = m_hasLongNumbers ? std::uint64_t{1} << 32 : 1 << 16;
+  const auto place = static_cast<std::size_t>(indexOf(packet, 0) / m_columnsPerPacket);
+  if (place + 1 >= m_sentBefore.size()) return std::nullopt;
+  const auto perTurn = static_cast<std::uint64_t>(m_sentBefore.back());
+  return Number{turn * perTurn + static_cast<std::uint64_t>(m_sentBefore[place]), turns * perTurn};
 }
 
 bool OusterPackets::isValid(std::string_view packet, int i) const {
-  if (columnOf(packet, i) >= m_columns) return false;
+  if (indexOf(packet, i) >= m_columns) return false;
   if (m_isLegacy) return numberAt<std::uint32_t>(packet, columnBegin(i + 1) - 4) == 0xFFFFFFFF;
   return (numberAt<std::uint16_t>(packet, columnBegin(i) + 10) & 1) != 0;
 }
 
-void OusterPackets::appendPoints(std::string_view packet, Points& points) const {
-  for (int i = 0; i < m_columnsPerPacket; ++i) {
-    if (!isValid(packet, i)) continue;
-    const auto column = static_cast<std::size_t>(columnOf(packet, i));
-    std::size_t place = columnBegin(i) + (m_isLegacy ? 16 : 12);
-    for (const Beam& beam : m_beams) {
-      const auto rangeAt = [&](std::size_t at) {
-        return (numberAt<std::uint32_t>(packet, at) & m_rangeMask) << m_rangeShift;
-      };
-      const std::uint32_t first = rangeAt(place), second = m_isDual ? rangeAt(place + 4) : 0;
-      appendReturn(first, beam, column, points);
-      if (second != first) appendReturn(second, beam, column, points);
-      place += m_pixelSize;
-    }
+std::optional<double> OusterPackets::phase(std::string_view packet, int i) const {
+  if (!isValid(packet, i)) return std::nullopt;
+  return static_cast<double>(indexOf(packet, i)) / m_columns;
+}
+
+double OusterPackets::time(std::string_view packet, int i) const {
+  return static_cast<double>(numberAt<std::uint64_t>(packet, columnBegin(i))) * 1e-9;
+}
+
+void OusterPackets::append(std::string_view packet, int i, LidarPoints& points) const {
+  const auto column = static_cast<std::size_t>(indexOf(packet, i));
+  std::size_t place = columnBegin(i) + (m_isLegacy ? 16 : 12);
+  for (const Beam& beam : m_beams) {
+    const auto rangeAt = [&](std::size_t at) {
+      return (numberAt<std::uint32_t>(packet, at) & m_rangeMask) << m_rangeShift;
+    };
+    const std::uint32_t first = rangeAt(place), second = m_isDual ? rangeAt(place + 4) : 0;
+    appendReturn(first, beam, column, points);
+    if (second != first) appendReturn(second, beam, column, points);
+    place += m_pixelSize;
   }
 }
 
 void OusterPackets::appendReturn(std::uint32_t millimetres, const Beam& beam, std::size_t column,
-                                 Points& points) const {
+                                 LidarPoints& points) const {
   if (millimetres == 0) return;
   const float beyond = static_cast<float>(millimetres) * 1e-3f - m_origin;  // the beam's origin
   const float cosine = m_cosines[column], sine = m_sines[column],

@@ -1,12 +1,11 @@
 #pragma once
 /// \file OusterPackets.h
-/// \brief The points in the packets of an Ouster. Part of the module libpolemcl-sensors.so.
+/// \brief The packets of an Ouster. Part of the module libpolemcl-sensors.so.
 
-#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
-#include <vector>
+
+#include "mrpt/live/LidarPackets.h"
 
 namespace polemcl {
 
@@ -15,38 +14,26 @@ namespace polemcl {
 ///
 /// Packets of firmware 1.13 and later, of all profiles with ranges, one or two returns. Formats as
 /// in Ouster's sensor manual and its public SDK 1.0.
-class OusterPackets {
+///
+/// Frame of the points: origin in the optical centre, x opposite to the connector, z up: the axes
+/// of Ouster's sensor frame, whose origin is 36 mm lower in an OS1. A turn begins at azimuth 180
+/// degrees, clockwise.
+class OusterPackets : public LidarPackets {
  public:
-  struct Points {
-    std::vector<float> x, y, z;  ///< m
-  };
-
   /// \throws Error when the file is no metadata of a LiDAR, or of an unknown profile.
   explicit OusterPackets(const std::string& metadataFile);
 
   std::size_t size() const { return m_size; }  ///< of a packet, bytes
-  int port() const { return m_port; }          ///< that the LiDAR sends to; 0: not stated
-  int columns() const { return m_columns; }    ///< of a turn
-  int columnsPerPacket() const { return m_columnsPerPacket; }
-  double turn() const { return m_turn; }  ///< duration, s
-  /// \brief Whether packet `index` of a turn is sent: not if all its columns are outside the
-  /// window that is set in the LiDAR.
-  bool isSent(int index) const;
 
-  /// \name Of a packet of the right size
-  /// @{
-  std::uint32_t turnOf(std::string_view packet) const;  ///< number of the turn
-  std::uint32_t turnNumbers() const { return m_hasLongNumbers ? 0 : 65536; }  ///< 0: 2^32
-  int columnOf(std::string_view packet, int i = 0) const;   ///< 0: where a turn begins
-  double timeOf(std::string_view packet, int i = 0) const;  ///< by the clock of the LiDAR, s
-  /// \brief Appends its returns, in the order of their columns. The second of two returns is left
-  /// out if it is the same.
-  ///
-  /// Frame: origin in the optical centre, x opposite to the connector, z up: the axes of Ouster's
-  /// sensor frame, whose origin is 36 mm lower in an OS1. A turn begins at azimuth 180 degrees,
-  /// clockwise.
-  void appendPoints(std::string_view packet, Points& points) const;
-  /// @}
+  int usualPort() const override { return m_port; }
+  bool isPacket(std::string_view packet) const override { return packet.size() == m_size; }
+  int columns(std::string_view) const override { return m_columnsPerPacket; }
+  double turn(std::string_view) const override { return m_turn; }
+  /// \brief Packets outside the window that is set in the LiDAR are not sent, and not counted.
+  std::optional<Number> number(std::string_view packet) const override;
+  std::optional<double> phase(std::string_view packet, int i) const override;
+  double time(std::string_view packet, int i) const override;
+  void append(std::string_view packet, int i, LidarPoints& points) const override;
 
  private:
   struct Beam {
@@ -56,13 +43,16 @@ class OusterPackets {
   void readProfile(const nlohmann::json& metadata);
   void readBeams(const nlohmann::json& metadata);
   std::size_t columnBegin(int i) const;
+  int indexOf(std::string_view packet, int i) const;
   bool isValid(std::string_view packet, int i) const;
+  bool isSent(int packet) const;
   void appendReturn(std::uint32_t millimetres, const Beam& beam, std::size_t column,
-                    Points& points) const;
+                    LidarPoints& points) const;
 
-  int m_columns = 0, m_columnsPerPacket = 16, m_port = 0;
+  int m_columns = 0, m_columnsPerPacket = 16, m_port = 7502;
   int m_windowBegin = 0, m_windowEnd = 0;  ///< first and last column
-  double m_turn = 0.1;
+  std::vector<int> m_sentBefore;           ///< packets of a turn before each one, and in all
+  double m_turn = 0.1;                     ///< s
   bool m_isLegacy = false, m_hasLongNumbers = false;
   std::size_t m_pixelSize = 0, m_columnSize = 0, m_size = 0;  ///< bytes
   std::uint32_t m_rangeMask = 0;

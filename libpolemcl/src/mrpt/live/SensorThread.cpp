@@ -50,7 +50,7 @@ SensorThread::SensorThread(const std::string& file, const std::string& section,
   if (!m_sensor)
     throw Error(m_place + "driver = " + m_driver +
                 ": is no sensor that MRPT knows; allowed are the classes of mrpt::hwdrivers, such "
-                "as CVelodyneScanner, COusterScanner and CUdpOdometry");
+                "as CVelodyneScanner, and COusterScanner, CHesaiScanner, CUdpOdometry");
   try {
     open(config);
   } catch (const std::exception& error) {

@@ -1,5 +1,5 @@
-/// \file test_COusterScanner.cpp
-/// \brief Packets of an Ouster on the loopback and in PCAP files become turns.
+/// \file test_PacketScanner.cpp
+/// \brief Packets of an Ouster and a Hesai on the loopback and in PCAP files become turns.
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMap.h>
@@ -11,7 +11,7 @@
 #include "support/LiveSensorsTest.h"
 #include "support/OusterTurns.h"
 
-namespace polemcl::test_ouster_scanner {
+namespace polemcl::test_packet_scanner {
 
 using namespace testing_apps;
 using mrpt::obs::CObservationPointCloud;
@@ -136,7 +136,7 @@ TEST_F(OusterScannerTest, TurnsShowThePolesOfTheStreet) {
   }
 }
 
-TEST_F(OusterScannerTest, TheTimeIsThatOfColumnZero) {
+TEST_F(OusterScannerTest, TheTimeIsThatOfTheBegin) {
   const auto before = mrpt::Clock::nowDouble();
   auto packets = drive(4);
   packets.erase(packets.begin() + 64, packets.begin() + 80);  // a quarter of the first whole turn
@@ -190,8 +190,18 @@ TEST_F(OusterScannerTest, CountsWhatIsLostAndWhatIsIgnored) {
 
 /// Memory must not grow for ever.
 TEST_F(OusterScannerTest, ATurnThatDoesNotEndIsCut) {
-  receive(ouster(), std::vector<std::string>(300, drive(1)[5]));
-  EXPECT_EQ(observed(), 1u);
+  std::string packet = drive(1)[5];
+  for (int i = 1; i < 16; ++i) packet.replace(32 + i * 396 + 8, 2, packet.substr(32 + 8, 2));
+  receive(ouster(), std::vector<std::string>(3800, packet));
+  EXPECT_EQ(observed(), 2u);  // of 20,000 columns, beside the first
+}
+
+TEST_F(OusterScannerTest, WhatIsLostDoesNotJoinTwoTurns) {
+  auto packets = drive(5);
+  packets.erase(packets.begin() + 64 + 10, packets.begin() + 64 * 3 + 20);
+  receive(ouster(), packets);
+  ASSERT_EQ(observed(), 2u);  // ten packets of one turn, 44 of another
+  EXPECT_LT(turns()[0]->pointcloud->size(), turns()[1]->pointcloud->size());
 }
 
 TEST_F(OusterScannerTest, PcapFilesOfFragmentsArePutTogether) {
@@ -239,10 +249,94 @@ TEST_F(OusterScannerTest, PcapFilesArePlayedAtTheirPace) {
   EXPECT_GE(all[1]->timestamp - all[0]->timestamp, std::chrono::milliseconds(20));
 }
 
+/// A PandarXT16 among the poles: 250 packets a turn, which begins within a packet.
+class HesaiScannerTest : public OusterScannerTest {
+ protected:
+  std::string hesai(const std::string& more = "") const {
+    return "[lidar]\ndriver = CHesaiScanner\ncalibration_file = " +
+           std::string(POLEMCL_SOURCE_DIR) +
+           "/tests/mrpt/live/captures/hesai-xt16.csv\ndata_port = " + std::to_string(port) + "\n" +
+           more;
+  }
+  static double elevation(int channel) { return 15 - 2 * channel; }  // degrees
+  std::vector<std::string> driveXt16(int turns) const {
+    const auto poles = streetPoles();
+    std::vector<std::string> packets;
+    for (int block = 3; block < turns * 2000; ++block) {
+      const int azimuth = block % 2000 * 18;  // hundredths of a degree from y, clockwise
+      if ((block - 3) % 8 == 0) packets.emplace_back("\xee\xff\6\1\0\0\x10\x08\0\4\1\2", 12);
+      std::string& bytes = packets.back();
+      appendBytes(bytes, static_cast<std::uint16_t>(azimuth));
+      const double pole = rangeToPoles(poles, 0, 0, M_PI / 2 - azimuth * M_PI / 18000);
+      for (int i = 0; i < 16; ++i) {
+        const int range = firingRange(pole, elevation(i) * M_PI / 180);  // of 2 mm
+        appendBytes(bytes, static_cast<std::uint16_t>(range / 2));
+        bytes += "xx";
+      }
+      if ((block - 3) % 8 < 7) continue;
+      bytes += std::string(10, '\0') + "\x37";
+      appendBytes(bytes, std::uint16_t{600});
+      bytes += std::string("\x7e\x0b\x1a\x0c\0\x05", 6);           // 2026-11-26 12:00:05
+      appendBytes(bytes, static_cast<std::uint32_t>(block * 50));  // us
+      bytes += "B";
+      appendBytes(bytes, static_cast<std::uint32_t>(packets.size()));
+    }
+    packets.pop_back();
+    return packets;
+  }
+};
+
+TEST_F(HesaiScannerTest, TurnsShowThePolesOfTheStreet) {
+  receive(hesai("sensor_time = true\n"), driveXt16(4));
+  const auto all = turns();
+  ASSERT_EQ(all.size(), 2u);
+  ObservationPoleExtractorOptions options;
+  options.sensor.model = "table";
+  for (int i = 0; i < 16; ++i) options.sensor.elevations.push_back(elevation(i) * M_PI / 180);
+  options.sensor.columns = 2000;
+  options.sensor.height = streetSensorHeight;
+  options.sensor.timing.turn = Turn::clockwise;
+  options.sensor.timing.cut = M_PI / 2;
+  options.sensor.timing.stamp = 0;
+  ObservationPoleExtractor extractor(options);
+  constexpr double begin = 1795694405;  // 2026-11-26 12:00:05 UTC
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i]->sensorLabel, "hesai");
+    // The clock of a packet is that of its last block.
+    EXPECT_NEAR(mrpt::Clock::toDouble(all[i]->timestamp), begin + 0.1 * (i + 1.0), 1e-4);
+    CObservationPointCloud level = *all[i];
+    level.sensorPose = mrpt::poses::CPose3D(0, 0, streetSensorHeight, 0, 0, 0);
+    const auto poles = extractor.process(level);
+    EXPECT_GE(poles->poles.size(), 5u);
+    for (const auto& pole : poles->poles)
+      EXPECT_LT(errorOf(pole.x, pole.y), 0.02 + 0.0025 * std::hypot(pole.x, pole.y));
+    // The first and the last point are those of the begin and the end.
+    const auto& points = *level.pointcloud;
+    float x, y, z;
+    points.getPoint(0, x, y, z);
+    EXPECT_NEAR(std::atan2(x, y), 0, 1e-4);
+    points.getPoint(points.size() - 1, x, y, z);
+    EXPECT_NEAR(std::atan2(x, y), -0.18 * M_PI / 180, 1e-4);
+  }
+}
+
+TEST_F(HesaiScannerTest, CountsLostPackets) {
+  auto packets = driveXt16(2);
+  packets.erase(packets.begin() + 100, packets.begin() + 107);
+  packets.insert(packets.begin() + 50, std::string(512, 'p'));
+  receive(hesai(), packets);
+  EXPECT_EQ(lost, 7u);
+  EXPECT_EQ(ignored, 1u);
+}
+
 TEST_F(OusterScannerTest, RefusesWhatCannotBe) {
   expectError("[lidar]\ndriver = COusterScanner\n",
               {"[lidar]: COusterScanner: metadata_file: name the JSON file"});
   expectError(ouster("", "{}"), {"[lidar]: COusterScanner: ", "os.json: is no metadata"});
+  expectError("[lidar]\ndriver = CHesaiScanner\n",
+              {"[lidar]: CHesaiScanner: calibration_file: name the CSV file"});
+  expectError("[lidar]\ndriver = CHesaiScanner\ncalibration_file = none.csv\n",
+              {"none.csv: cannot be read"});
   expectError(ouster("device_ip = roof\n"), {"device_ip = roof: is no IPv4 address"});
   expectError(ouster("pcap_input = none.pcap\n"), {"none.pcap"});
   const auto failure = [&](const std::string& pcap) {
@@ -258,4 +352,4 @@ TEST_F(OusterScannerTest, RefusesWhatCannotBe) {
   EXPECT_HAS(failure(cut), "drive.pcap: is damaged: truncated");
 }
 
-}  // namespace polemcl::test_ouster_scanner
+}  // namespace polemcl::test_packet_scanner
