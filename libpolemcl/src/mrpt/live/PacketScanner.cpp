@@ -15,7 +15,7 @@ IMPLEMENTS_GENERIC_SENSOR(CHesaiScanner, polemcl)
 namespace polemcl {
 namespace {
 
-constexpr std::size_t kMostInTurn = 20000;    // of a turn; with more, the LiDAR does not turn
+constexpr std::size_t kMostInTurn = 20000;     // of a turn; with more, the LiDAR does not turn
 constexpr std::uint64_t kMostMissing = 10000;  // packets; more are a restart of the LiDAR
 constexpr double kLongestTurn = 1.2;           // as a share of a turn
 
