@@ -233,6 +233,16 @@ TEST_F(OusterScannerTest, PcapFilesOfOtherLinkLayersAreRead) {
   }
 }
 
+TEST_F(OusterScannerTest, PcapFilesMayBePlayedAgain) {
+  writeText(folder / "drive.pcap", pcapFile(drive(3), port));
+  const auto sensors =
+      start(ouster("pcap_read_fast = true\npcap_read_once = false\n"
+                   "process_rate = 1e6\npcap_input = " +
+                   (folder / "drive.pcap").string() + "\n"));
+  EXPECT_TRUE(waitFor([&] { return observed() > 5; }));
+  EXPECT_EQ(ended(), 0u);
+}
+
 TEST_F(OusterScannerTest, PcapFilesArePlayedAtTheirPace) {
   std::string pcap = pcapFile(drive(4), port);
   constexpr std::size_t head = 24, record = 16 + 42 + 32 + 16 * (12 + 32 * 12) + 32;
