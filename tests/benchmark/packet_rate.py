@@ -122,4 +122,5 @@ def main():
           f"{options.seconds:g} s: {summary['lost_packets']} lost")
 
 
-main()
+if __name__ == "__main__":
+    main()
