@@ -218,11 +218,12 @@ def measure_batch(options):
     health = [run["health"] for summary in summaries for run in summary["runs"]]
     result = {"exit_code": process.returncode, "runs": len(summaries),
               "scans": sum(summary["scans"] for summary in summaries),
-              "failures": sum(1 for name in os.listdir(folder / "tasks") if name.endswith(".part")),
+              "failures": options.runs - len(summaries),
               "lost_scans": sum(run["lost"] for run in health), "wall_s": round(wall, 1),
               "memory": memory.figures(1)}
-    shutil.rmtree(folder)
-    return result, process.returncode == 0 and is_flat(result["memory"])
+    shutil.rmtree(folder, ignore_errors=True)
+    return result, (process.returncode == 0 and result["failures"] == 0
+                    and is_flat(result["memory"]))
 
 
 def main():
@@ -230,8 +231,8 @@ def main():
     parser.add_argument("part", choices=("file", "live", "packets", "batch"))
     for name in ("bin", "out", "config", "player"):
         parser.add_argument(f"--{name}", type=pathlib.Path)
-    parser.add_argument("--speed", type=int)
-    parser.add_argument("--minutes", type=int)
+    for name in ("speed", "minutes", "runs"):
+        parser.add_argument(f"--{name}", type=int)
     options = parser.parse_args()
     result, sound = globals()[f"measure_{options.part}"](options)
     result |= {"sound": sound, "date": datetime.date.today().isoformat()}
