@@ -8,6 +8,7 @@ import datetime
 import filecmp
 import hashlib
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -126,7 +127,7 @@ def start_of(tum):
     for line in tum.open():
         if not line.startswith("#"):
             x, y, qz, qw = (float(line.split()[i]) for i in (1, 2, 6, 7))
-            yaw = 2 * packet_rate.math.degrees(packet_rate.math.atan2(qz, qw))
+            yaw = 2 * math.degrees(math.atan2(qz, qw))
             return f"{x},{y},{yaw},2.5,5"
     raise SystemExit(f"{tum}: no pose")
 
