@@ -17,13 +17,14 @@
 #   sanitize  the tests under the address and undefined-behaviour sanitizers
 #   fuzz      arbitrary bytes for every reader, ten seconds each
 #   faults    kills, power cuts, full disks and the like for every command that writes
+#   long      24 hours at 10 Hz, from file and live, and a batch of a million scans
 #   coverage  lines and branches that the tests reach, room by room
 # POLEMCL_DATA names the folder of real scans; without it the tests on them are skipped.
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 usage() {
-  sed -n '2,21s/^# //p' "$0"
+  sed -n '2,22s/^# //p' "$0"
   exit "$1"
 }
 
@@ -69,7 +70,7 @@ run_step() {
     lint | unit | sanitize) "$1" ;;
     test) all_tests ;;
     tidy) "$top/tests/lint.sh" tidy ;;
-    golden | mutation | viewers | slurm | site | fuzz | faults) "$top/tests/$1/run.sh" ;;
+    golden | mutation | viewers | slurm | site | fuzz | faults | long) "$top/tests/$1/run.sh" ;;
     debian)
       "$top/tests/install/commands.sh" trixie
       "$top/tests/install/commands.sh" bookworm
@@ -82,13 +83,13 @@ run_step() {
 case "$#:${1-}" in
   0:) set -- test ;;
   1:--quick) set -- unit ;;
-  1:--full) set -- lint test tidy golden mutation viewers slurm debian site clang sanitize fuzz faults coverage ;;
+  1:--full) set -- lint test tidy golden mutation viewers slurm debian site clang sanitize fuzz faults long coverage ;;
   1:-h | 1:--help) usage 0 ;;
 esac
 packages=
 for step in "$@"; do
   case $step in
-    unit | test | golden | sanitize | faults) ;;
+    unit | test | golden | sanitize | faults | long) ;;
     lint | tidy | mutation | viewers | slurm | debian | site | clang | fuzz | coverage) packages=full ;;
     *) usage 2 >&2 ;;
   esac

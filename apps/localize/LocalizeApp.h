@@ -94,10 +94,10 @@ struct LocalizeResult {
 /// - `config.ini`: the effective configuration;
 /// - `timings.json`: the only file that differs from repetition to repetition. `wall_s`, `rate`
 ///   (times the pace of the recording, 1 with sensors, or `max`), `filter_s` of each run, and in
-///   `latency_ms` for each stage `median p99 worst count` (see LocalizeTimings.h; to 0.5 %, `worst`
-///   exactly): `read` (with sensors the wait until the scan is taken), `extract` (not for stored
-///   poles), `step` of each run, `write` with the view, and `total`, from the moment a scan is
-///   there until all runs have its pose and it is streamed. With sensors that is the moment at
+///   `latency_ms` for each stage `median p99 p99.9 worst count` (see LocalizeTimings.h; to 0.5 %,
+///   `worst` exactly): `read` (with sensors the wait until the scan is taken), `extract` (not for
+///   stored poles), `step` of each run, `write` with the view, and `total`, from the moment a scan
+///   is there until all runs have its pose and it is streamed. With sensors that is the moment at
 ///   which the driver gives the scan, at a rate the one at which the scan is due. At full speed it
 ///   is the one at which it has been read, so that `total` contains the wait for the scans before
 ///   it.

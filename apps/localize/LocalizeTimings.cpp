@@ -27,6 +27,7 @@ nlohmann::ordered_json timingsJson(const LocalizeTimings& timings) {
     if (stage.count() == 0) continue;
     json["latency_ms"][name] = {{"median", milliseconds * stage.percentile(0.5)},
                                 {"p99", milliseconds * stage.percentile(0.99)},
+                                {"p99.9", milliseconds * stage.percentile(0.999)},
                                 {"worst", milliseconds * stage.worst()},
                                 {"count", stage.count()}};
   }

@@ -161,4 +161,5 @@ def main():
           f"{summary['dropped_scans']} scans dropped")
 
 
-main()
+if __name__ == "__main__":
+    main()
