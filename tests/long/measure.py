@@ -182,7 +182,8 @@ def measure_packets(options):
     seconds = 60 * options.minutes
     folder = options.out / "packets"
     folder.mkdir(exist_ok=True)
-    packet_rate.prepare(folder, 1)
+    lidar = packet_rate.Hdl32e(dual=False)
+    packet_rate.prepare(folder, lidar, 1)
     subprocess.run([options.bin / "pole-map", "--quiet", "import", "--input", folder / "poles.csv",
                     "--columns", "e,n", "--crs", "EPSG:25832", "--sigma-m", "0.05", "--output",
                     folder / "a.polemap"], check=True)
@@ -190,7 +191,7 @@ def measure_packets(options):
                    folder / "sensors.ini", "--map", folder / "a.polemap", "--start", "0,0,0,1,5"],
                   folder / "out")
     packet_rate.wait_for_listener(drive.process)
-    packet_rate.send(types.SimpleNamespace(dual=False, lidars=1, seconds=seconds))
+    packet_rate.send(lidar, types.SimpleNamespace(lidars=1, seconds=seconds))
     drive.process.send_signal(signal.SIGINT)
     result = drive.figures(min(60, seconds // 10) * RATE)
     summary = json.loads((folder / "out/summary.json").read_text())
