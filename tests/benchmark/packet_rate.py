@@ -86,7 +86,7 @@ class Os1:
 
     def packet(self, n):
         columns = b"".join(
-            struct.pack("<QHH", int((n * 16 + i) * self.period / 16 * 1e9), i, 1) + self.columns[i]
+            struct.pack("<QHH", int((n * 16 + i % 16) * self.period / 16 * 1e9), i, 1) + self.columns[i]
             for i in range(n % 64 * 16, n % 64 * 16 + 16))
         return struct.pack("<HH28x", 1, n // 64 % 65536) + columns + bytes(32)
 
