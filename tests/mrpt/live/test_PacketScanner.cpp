@@ -156,6 +156,27 @@ TEST_F(OusterScannerTest, TheTimeIsThatOfTheBegin) {
   EXPECT_NEAR(mrpt::Clock::toDouble(all[1]->timestamp), 5.2, 1e-5);
 }
 
+/// A packet comes when its last column has been measured.
+TEST_F(OusterScannerTest, WithoutItsClockTheTimeIsThatOfTheArrival) {
+  const auto packets = drive(3);
+  mrpt::Clock::time_point before, after;
+  {
+    const auto sensors = start(ouster());
+    const UdpSender data(port);
+    ASSERT_TRUE(data.waitForListener());
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      if (i >= 64 && i < 96) continue;  // half a turn is lost
+      if (i == 96) before = mrpt::Clock::now();
+      data.send(packets[i]);
+      if (i == 96) after = mrpt::Clock::now();
+    }
+  }
+  ASSERT_EQ(observed(), 1u);
+  const auto measured = std::chrono::microseconds(100'000 * (32 * 16 + 15) / 1024);
+  EXPECT_GE(turns()[0]->timestamp, before - measured - std::chrono::milliseconds(1));
+  EXPECT_LE(turns()[0]->timestamp, after - measured + std::chrono::milliseconds(1));
+}
+
 TEST_F(OusterScannerTest, CountsWhatIsLostAndWhatIsIgnored) {
   auto packets = drive(4);
   packets.erase(packets.begin() + 150, packets.begin() + 153);
