@@ -37,8 +37,8 @@ LidarPoints pointsOf(const LidarPackets& packets, const std::string& packet) {
 
 }  // namespace
 
-/// Numbers of returns and sums of ranges by another program, whose range images of whole captures
-/// have the checksums that Ouster states for four of these LiDARs.
+/// Numbers of returns and sums of ranges by share/experiments/lidar_packets.py, whose range images
+/// of whole captures have the checksums that Ouster states for four of these LiDARs.
 TEST(OusterPackets, ReadsRealPacketsOfEachProfile) {
   const struct {
     std::string name;
@@ -77,8 +77,8 @@ TEST(OusterPackets, ReadsRealPacketsOfEachProfile) {
   }
 }
 
-/// Numbers of returns, sums of ranges and last points by another program, whose points of whole
-/// captures hold those that Nebula's authors state, to 0.01 mm.
+/// Numbers of returns, sums of ranges and last points by share/experiments/lidar_packets.py, whose
+/// points of whole captures hold those that Nebula's authors state, to 0.01 mm.
 TEST(HesaiPackets, ReadsRealPacketsOfEachModel) {
   const struct {
     std::string name;

@@ -132,7 +132,7 @@ void HesaiPackets::append(std::string_view packet, int i, LidarPoints& points) c
   const Format& format = *formatOf(packet);
   const std::size_t begin = format.header + static_cast<std::size_t>(i) * format.blockSize();
   const int azimuth = numberAt<std::uint16_t>(packet, begin + format.mark);
-  // Of two returns, each has a block; the azimuth is the same.
+  // A LiDAR that gives two returns sends two blocks with the same azimuth.
   const bool isSecond =
       i > 0 && numberAt<std::uint16_t>(packet, begin - format.blockSize() + format.mark) == azimuth;
   const double unit =

@@ -12,8 +12,8 @@ namespace polemcl {
 /// \brief One LiDAR, as its metadata describe it: the JSON file of Ouster's programs, or the answer
 /// of the LiDAR to `http://ADDRESS/api/v1/sensor/metadata`.
 ///
-/// Packets of firmware 1.13 and later, of all profiles with ranges, one or two returns. Formats as
-/// in Ouster's sensor manual and its public SDK 1.0.
+/// Packets of firmware 1.13 and later, of all profiles with ranges but those with colours, one or
+/// two returns. Formats as in Ouster's sensor manual and its public SDK 1.0.
 ///
 /// Frame of the points: origin in the optical centre, x opposite to the connector, z up: the axes
 /// of Ouster's sensor frame, whose origin is 36 mm lower in an OS1. A turn begins at azimuth 180

@@ -31,6 +31,7 @@ mrpt::Clock::duration ticks(double seconds) {
 
 void PacketScanner::loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
                                               const std::string& section) {
+  m_description = config.read_string(section, m_key, m_description);
   m_port = config.read_int(section, "data_port", m_port);
   m_useSensorTime = config.read_bool(section, "sensor_time", m_useSensorTime);
   const auto number = [&](const char* key) { return config.read_double(section, key, 0); };
@@ -41,7 +42,8 @@ void PacketScanner::loadConfig_sensorSpecific(const mrpt::config::CConfigFileBas
 }
 
 void PacketScanner::initialize() {
-  m_packets = makePackets();
+  if (m_description.empty()) throw Error(std::string(m_key) + ": name " + m_advice);
+  m_packets = makePackets(m_description);
   m_source.open({{"data_port", m_port == 0 ? m_packets->usualPort() : m_port}});
 }
 
@@ -116,32 +118,22 @@ void PacketScanner::countLost(std::string_view packet) {
   m_number = number->value;
 }
 
-void COusterScanner::loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
-                                               const std::string& section) {
-  PacketScanner::loadConfig_sensorSpecific(config, section);
-  m_description = config.read_string(section, "metadata_file", m_description);
+COusterScanner::COusterScanner()
+    : PacketScanner("ouster", "metadata_file",
+                    "the JSON file that the LiDAR gives at "
+                    "http://ADDRESS/api/v1/sensor/metadata") {}
+
+std::unique_ptr<LidarPackets> COusterScanner::makePackets(const std::string& file) const {
+  return std::make_unique<OusterPackets>(file);
 }
 
-std::unique_ptr<LidarPackets> COusterScanner::makePackets() const {
-  if (m_description.empty())
-    throw Error(
-        "metadata_file: name the JSON file that the LiDAR gives at "
-        "http://ADDRESS/api/v1/sensor/metadata");
-  return std::make_unique<OusterPackets>(m_description);
-}
+CHesaiScanner::CHesaiScanner()
+    : PacketScanner("hesai", "calibration_file",
+                    "the CSV file of the angles of the LiDAR, with the columns channel, elevation "
+                    "and azimuth") {}
 
-void CHesaiScanner::loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
-                                              const std::string& section) {
-  PacketScanner::loadConfig_sensorSpecific(config, section);
-  m_description = config.read_string(section, "calibration_file", m_description);
-}
-
-std::unique_ptr<LidarPackets> CHesaiScanner::makePackets() const {
-  if (m_description.empty())
-    throw Error(
-        "calibration_file: name the CSV file of the angles of the LiDAR, with the columns "
-        "channel, elevation and azimuth");
-  return std::make_unique<HesaiPackets>(m_description);
+std::unique_ptr<LidarPackets> CHesaiScanner::makePackets(const std::string& file) const {
+  return std::make_unique<HesaiPackets>(file);
 }
 
 }  // namespace polemcl

@@ -19,7 +19,8 @@ namespace polemcl {
 /// The time of a turn is that of its begin (`[sensor] stamp_turn = 0`), from the arrival of its
 /// first packet, or with `sensor_time = true` as the LiDAR states it: its clock must then be set to
 /// Unix time (UTC). The first turn is left out: it is not complete. Keys: `data_port`,
-/// `sensor_time`, `pose_x`, …, `pose_roll` (m, degrees), and those of PacketSource.
+/// `sensor_time`, `pose_x`, …, `pose_roll` (m, degrees), those of PacketSource, and one for the
+/// file that describes the LiDAR.
 class PacketScanner : public mrpt::hwdrivers::CGenericSensor, public PacketReceiver {
  public:
   /// \throws Error as makePackets() and PacketSource::open().
@@ -30,10 +31,13 @@ class PacketScanner : public mrpt::hwdrivers::CGenericSensor, public PacketRecei
  protected:
   void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
                                  const std::string& section) override;
-  /// \throws Error when the file that describes the LiDAR is missing or wrong.
-  virtual std::unique_ptr<LidarPackets> makePackets() const = 0;
-
-  std::string m_description;  ///< name of that file
+  /// \param key Of the file that describes the LiDAR. \param advice What that file is, for errors.
+  PacketScanner(const char* label, const char* key, const char* advice)
+      : m_key(key), m_advice(advice) {
+    m_sensorLabel = label;
+  }
+  /// \param file That describes the LiDAR. \throws Error when it cannot be read.
+  virtual std::unique_ptr<LidarPackets> makePackets(const std::string& file) const = 0;
 
  private:
   void take(const UdpPacket& packet);
@@ -42,7 +46,9 @@ class PacketScanner : public mrpt::hwdrivers::CGenericSensor, public PacketRecei
   void endTurn();
   void countLost(std::string_view packet);
 
-  int m_port = 0;  ///< 0: the usual one
+  const char *m_key, *m_advice;
+  std::string m_description;  ///< file that describes the LiDAR
+  int m_port = 0;             ///< 0: the usual one
   bool m_useSensorTime = false;
   mrpt::poses::CPose3D m_pose;
   std::unique_ptr<LidarPackets> m_packets;
@@ -59,24 +65,20 @@ class PacketScanner : public mrpt::hwdrivers::CGenericSensor, public PacketRecei
 class COusterScanner : public PacketScanner {
   DEFINE_GENERIC_SENSOR(COusterScanner)
  public:
-  COusterScanner() { m_sensorLabel = "ouster"; }
+  COusterScanner();
 
  protected:
-  std::unique_ptr<LidarPackets> makePackets() const override;
-  void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
-                                 const std::string& section) override;
+  std::unique_ptr<LidarPackets> makePackets(const std::string& file) const override;
 };
 
 /// \brief `calibration_file`: see HesaiPackets, also for the frame of the points.
 class CHesaiScanner : public PacketScanner {
   DEFINE_GENERIC_SENSOR(CHesaiScanner)
  public:
-  CHesaiScanner() { m_sensorLabel = "hesai"; }
+  CHesaiScanner();
 
  protected:
-  std::unique_ptr<LidarPackets> makePackets() const override;
-  void loadConfig_sensorSpecific(const mrpt::config::CConfigFileBase& config,
-                                 const std::string& section) override;
+  std::unique_ptr<LidarPackets> makePackets(const std::string& file) const override;
 };
 
 }  // namespace polemcl
