@@ -1,13 +1,34 @@
 /// \file main.cpp
-/// \brief The main function of every program. POLEMCL_MAIN is the function that it calls.
+/// \brief All programs are one file: the name by which it is called tells which one runs.
 
+#include <filesystem>
+#include <iostream>
+
+#include "batch/BatchApp.h"
 #include "cli/Failure.h"
-
-namespace polemcl::apps {
-int POLEMCL_MAIN(int argc, const char* const* argv);
-}
+#include "eval/EvalApp.h"
+#include "extract/ExtractApp.h"
+#include "import/ImportApp.h"
+#include "labels/LabelsApp.h"
+#include "localize/LocalizeApp.h"
+#include "map/MapApp.h"
+#include "simulate/SimulateApp.h"
 
 int main(int argc, char** argv) {
-  polemcl::apps::endUncaughtInOneLine(argv[0]);
-  return polemcl::apps::POLEMCL_MAIN(argc, argv);
+  using namespace polemcl::apps;
+  static constexpr struct {
+    const char* name;
+    int (*main)(int argc, const char* const* argv);
+  } programs[] = {{"pole-import", importMain}, {"pole-extract", extractMain},
+                  {"pole-map", mapMain},       {"pole-localize", localizeMain},
+                  {"pole-eval", evalMain},     {"pole-simulate", simulateMain},
+                  {"pole-batch", batchMain},   {"pole-labels", labelsMain}};
+  endUncaughtInOneLine(argv[0]);
+  const auto name = std::filesystem::path(argv[0]).filename();
+  for (const auto& program : programs)
+    if (name == program.name) return program.main(argc, argv);
+  std::cerr << "polemcl: holds all programs; call it by the name of one:";
+  for (const auto& program : programs) std::cerr << ' ' << program.name;
+  std::cerr << '\n';
+  return 2;
 }

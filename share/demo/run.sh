@@ -25,9 +25,8 @@ while [ $# -gt 0 ]; do
 done
 
 "$top/share/setup/install.sh"
-set -- pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
-"$top/share/setup/build.sh" release "$@"
-find_programs "$@"
+"$top/share/setup/build.sh" release polemcl-programs
+find_programs pole-simulate pole-import pole-extract pole-map pole-localize pole-eval
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 started=$(date +%s)

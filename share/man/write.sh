@@ -32,3 +32,4 @@ for program in "$@"; do
     write_page "$program" "$command"
   done
 done
+echo '.so man1/pole-localize.1' >"$out/polemcl.1" # the file that holds all programs

@@ -27,7 +27,7 @@ options=$(echo "$limit" | sed -nE 's/^([0-9]+)s$/-max_total_time=\1/p; s/^([0-9]
   echo "tests/fuzz/run.sh: a limit is seconds, such as 10s, executions, such as 1000000, or both" >&2
   exit 2
 }
-share/setup/build.sh fuzz fuzz pole-simulate pole-map pole-import
+share/setup/build.sh fuzz fuzz polemcl-programs
 
 # The files of the fuzzers lie in memory. A fuzzer that is ended leaves its folder.
 TMPDIR=$(mktemp -d "$([ -d /dev/shm ] && echo /dev/shm || echo /tmp)/polemcl-fuzz-XXXXXX")

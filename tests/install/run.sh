@@ -69,10 +69,15 @@ if "$bin/pole-simulate" --quiet --config nobody.ini --output none 2>error.txt; t
 fi
 grep -q '^pole-simulate: .*nobody\.ini' error.txt || fail "the message does not name the file: $(cat error.txt)"
 
+# All programs are one file.
+[ "$(find "$bin" -type f)" = "$bin/polemcl" ] || fail "more than one program was installed: $(ls "$bin")"
+if "$bin/polemcl" 2>error.txt; then fail "polemcl ran without the name of a program"; fi
+grep -q '^polemcl: .* pole-map pole-localize' error.txt || fail "polemcl does not name the programs: $(cat error.txt)"
+
 # Each subcommand has its page; mandoc has nothing to say of any.
 pages=$prefix/share/man/man1
 [ "$(find "$pages" -name 'pole-*.1' | wc -l)" -gt 25 ] || fail "there are few man pages; is help2man installed?"
-quietly mandoc -Tlint -W warning "$pages"/*.1
+quietly mandoc -Tlint -W warning "$pages"/pole-*.1
 mandoc -Tascii "$pages/pole-map-build.1" | sed 's/.\x08//g' >page.txt
 for text in 'pole-map-build - Builds a map' '--keep-scans' '\$ pole-map build --config' NO_COLOR 'pole-localize(1)'; do
   grep -q -e "$text" page.txt || fail "the man page of pole-map build lacks '$text'"
@@ -171,16 +176,7 @@ fi
 
 echo "9/9 The examples that --help shows, as they stand, in a copy of the sample"
 cp -r "$prefix/share/polemcl/sample" sample
-# help_of PROGRAM: what it prints for --help, and what its subcommands do.
-help_of() {
-  "$bin/$1" --help
-  "$bin/$1" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z0-9-]*\).*/\1/p' |
-    while read -r subcommand; do "$bin/$1" "$subcommand" --help; done
-}
-# In an order in which each finds what it reads; not those on data of others and on sensors, nor the year: it takes minutes.
-for program in simulate import extract localize map eval batch; do help_of "pole-$program"; done |
-  awk '/^[^ ]/ { on = /^Examples:/ } on && /^  pole-/ && !seen[$0]++' |
-  grep -vE '^  pole-import (kitti|nclt|mulran|pcd|rosbag2)| --sensors | --data |batches/year' >sample/examples.sh
+"$top/tests/install/examples.sh" "$bin" >sample/examples.sh
 [ "$(wc -l <sample/examples.sh)" -gt 25 ] || fail "--help shows few examples: $(cat sample/examples.sh)"
 (cd sample && PATH="$bin:$PATH" quietly sh -ex examples.sh)
 echo "Installed tree: all checks passed"

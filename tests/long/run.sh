@@ -8,7 +8,7 @@
 #   --runs     of the batch, a thousand scans each; 1000 unless given, at least 10
 #   OUT        folder for the results, long.json among them; drives in it are used again
 #   PART       of these, all unless given:
-#     file     the drive from file twice at the same time, with one thread and with two
+#     file     the drive from file twice, one after the other: with one thread and with two
 #     live     the drive through the queue of --sensors, from a driver that plays the rawlog (Player.cpp)
 #     packets  a standing HDL-32E, whose packets come by UDP at the rate of the sensor
 #     batch    the runs by pole-batch
