@@ -15,6 +15,7 @@
 #   site      the documentation site
 #   clang     a build with clang
 #   sanitize  the tests under the address and undefined-behaviour sanitizers
+#   valgrind  the examples of --help under Valgrind
 #   fuzz      arbitrary bytes for every reader, ten seconds each
 #   faults    kills, power cuts, full disks and the like for every command that writes
 #   long      24 hours at 10 Hz, from file and live, and a batch of a million scans
@@ -24,7 +25,7 @@ set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 
 usage() {
-  sed -n '2,22s/^# //p' "$0"
+  sed -n '2,23s/^# //p' "$0"
   exit "$1"
 }
 
@@ -71,7 +72,7 @@ run_step() {
     lint | unit | sanitize) "$1" ;;
     test) all_tests ;;
     tidy) "$top/tests/lint.sh" tidy ;;
-    golden | mutation | viewers | slurm | site | fuzz | faults | long) "$top/tests/$1/run.sh" ;;
+    golden | mutation | viewers | slurm | site | valgrind | fuzz | faults | long) "$top/tests/$1/run.sh" ;;
     debian)
       "$top/tests/install/commands.sh" trixie
       "$top/tests/install/commands.sh" bookworm
@@ -84,14 +85,14 @@ run_step() {
 case "$#:${1-}" in
   0:) set -- test ;;
   1:--quick) set -- unit ;;
-  1:--full) set -- lint test tidy golden mutation viewers slurm debian site clang sanitize fuzz faults long coverage ;;
+  1:--full) set -- lint test tidy golden mutation viewers slurm debian site clang sanitize valgrind fuzz faults long coverage ;;
   1:-h | 1:--help) usage 0 ;;
 esac
 packages=
 for step in "$@"; do
   case $step in
     unit | test | golden | sanitize | faults | long) ;;
-    lint | tidy | mutation | viewers | slurm | debian | site | clang | fuzz | coverage) packages=full ;;
+    lint | tidy | mutation | viewers | slurm | debian | site | clang | valgrind | fuzz | coverage) packages=full ;;
     *) usage 2 >&2 ;;
   esac
 done

@@ -181,6 +181,8 @@ TEST(Bindings, RefusesSettingsThatContradictEachOther) {
       {"[range_image]\nfov_up_deg = -80\n", "[range_image] fov_up_deg = -80"},
       {"[map]\nevery_scan = true\nmiddle = passed\n", "[map] middle = passed"},
       {"[likelihood]\nmodel = floored\nweighted = true\n", "[likelihood] weighted = true"},
+      {"[likelihood]\nmodel = floored\nweighted = false\nfloor = 1e-9\n",
+       "[likelihood] floor = 1e-09"},
       {"[filter]\ntempering = 0.6\n", "[filter] tempering = 0.6"},
       {"[filter]\nmin_particles = 20000\n", "[filter] min_particles = 20000"},
       {"[start]\nposition_m = 1\n", "[start] position_m = 1"},

@@ -68,6 +68,7 @@ const std::vector<std::string> kOrder{
     "apps/eval",
     "apps/batch",
     "apps/labels",
+    "apps/programs",
     "apps/python",
 };
 

@@ -287,6 +287,15 @@ TEST_P(PoleExtractorRefusal, IsCounted) {
 INSTANTIATE_TEST_SUITE_P(Each, PoleExtractorRefusal, ::testing::ValuesIn(kSpoiled),
                          [](const auto& i) { return std::string(name(i.param.reason)); });
 
+TEST(PoleExtractorRefusal, IsForThinPolesToo) {
+  const SensorOptions sensor = sensorOptions("os1_64");
+  ExtractionOptions options;
+  options.scanLine.minRadius = 0.4;
+  ExtractionReport report;
+  EXPECT_TRUE(extract(castYard(sensor), sensor, options, &report).empty());
+  EXPECT_GE(report.refused[static_cast<int>(RejectionReason::badFit)], 4u);
+}
+
 TEST(PoleExtractorRefusal, OfPolesTooNearToEachOtherTheMostConfidentStays) {
   const SensorOptions sensor = sensorOptions("os1_64");
   const PointList points = castYard(sensor);

@@ -61,6 +61,9 @@ TEST(VisibilityRange, TowardsSomethingWideTheNearestSectorDecides) {
   ranges[0] = 3;  // beyond the seam
   EXPECT_EQ(visibilityRangeTowards(ranges, -10, 0.05, 0.1), 3);
   EXPECT_EQ(visibilityRangeTowards({}, 1, 0, 0.1), 0);
+  ranges[6] = 2;  // 90° to 135°; what is round the sensor reaches a right angle to both sides
+  EXPECT_EQ(visibilityRangeTowards(ranges, 0.05, 0.005, 0.1), 2);
+  EXPECT_EQ(visibilityRangeTowards(ranges, 0.05, -0.005, 0.1), 7);
 }
 
 TEST(VisibilityRange, EndsAtWallsAndGoesOnOverWhatIsLow) {

@@ -362,6 +362,8 @@ TEST(LocalSubmap, TakesAtTheFrameNearestToTheDistance) {
   EXPECT_TRUE(submap.take(2, 0.5).empty());
   submap.add({0.29, 0, 0}, sure, {seen(9.51, 2)});
   EXPECT_EQ(submap.take(2, 0.5).size(), 1u);
+  submap.add({0.2, 0, 0}, sure, {seen(9.31, 2)});
+  EXPECT_TRUE(submap.take(2, 0.5).empty());
 }
 
 TEST(LocalSubmap, TakesOnlyWhatIsSeenNow) {

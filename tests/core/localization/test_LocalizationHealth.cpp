@@ -89,6 +89,16 @@ TEST(LocalizationHealth, WhatIsSeenIsComparedWithTheMeanOfALongWay) {
   feed.scans(100, 1, 10);
   EXPECT_NEAR(feed.last.seenShare, 1, 1e-9);
   EXPECT_NEAR(feed.scans(20, 1, 4).seenShare, 4.0 / 9, 0.02);
+
+  Feed doubtful;  // six of ten match
+  doubtful.scans(100, 0.6, 10);
+  EXPECT_NEAR(doubtful.scans(20, 0.6, 5).seenShare, 5.0 / 9, 0.04);
+
+  Feed sparse;  // less than a pole a scan
+  sparse.confidence = 0.8;
+  sparse.scans(100, 1, 1);
+  sparse.confidence = 0.2;
+  EXPECT_NEAR(sparse.scans(20, 1, 1).seenShare, 0.2 / 0.7, 0.03);
 }
 
 TEST(LocalizationHealth, TooFewMatchesDegradeThenLose) {
@@ -120,6 +130,20 @@ TEST(LocalizationHealth, FewPolesRaiseDoubtWhereNoneMatches) {
   feed.metres = 0.002;  // scans from one place show the same poles again
   feed.scans(20, 0, 3);
   feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, DoubtIsForgottenAlikeHoweverLongItLasted) {
+  for (const int scansOfDoubt : {250, 600}) {
+    Feed feed;
+    feed.scans(20, 1);
+    feed.confidence = 0.2;  // too little for the shares of windows
+    feed.scans(scansOfDoubt, 0, 1);
+    feed.expect(State::degraded, Reason::mismatch);
+    feed.scans(45, 1, 1);
+    feed.expect(State::degraded, Reason::mismatch);
+    feed.scans(35, 1, 1);
+    feed.expect(State::ok, Reason::none);
+  }
 }
 
 TEST(LocalizationHealth, LostWithinTheWindowOfMetresAfterAJump) {

@@ -66,6 +66,15 @@ TEST(OdometryCalibration, CorrectsMotionsAndStatesWhatIsLeft) {
   EXPECT_LT(corrected.covariance(0, 0), before / 10);
 }
 
+TEST(OdometryCalibration, WithoutPosesItsErrorsGrowWithTheWay) {
+  OdometryCalibration calibration(true);
+  const Eigen::Matrix2d first = calibration.errors().covariance;
+  for (int i = 0; i < 500; ++i) calibration.add({2, 0, 0}, Eigen::Matrix3d::Identity(), nullptr);
+  const Eigen::Matrix2d grown = calibration.errors().covariance - first;
+  EXPECT_NEAR(std::sqrt(grown(0, 0)), std::sqrt(1000.0) * 5e-4, 1e-9);
+  EXPECT_NEAR(std::sqrt(grown(1, 1)), std::sqrt(1000.0) * 1.7e-5, 1e-9);
+}
+
 // By the odometry just less than half a turn, by the poses just more.
 TEST(OdometryCalibration, LearnsFromATurnBack) {
   Bench bench(0.02, 0.0009);

@@ -200,4 +200,15 @@ TEST_F(PoleLocalizationFaults, BadOdometryIsRefusedByNameAndChangesNothing) {
   }
 }
 
+TEST_F(PoleLocalizationFaults, AStartFarFromAllPolesIsRefused) {
+  drive(5);
+  LocalizationPipeline localization(*map, options, 1);
+  StartOptions start;
+  start.pose = Pose2D{9000, 0, 0};
+  start.radius = 100;
+  EXPECT_THROW(localization.start(start), Error);
+  start.radius = 9000;  // reaches the poles
+  localization.start(start);
+}
+
 }  // namespace polemcl::test_localization_pipeline_faults

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/rawlog/RawlogReader.h"
 #include "support/ExpectHas.h"
 #include "support/ExtractionSamples.h"
@@ -196,6 +197,27 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
 }
 
 // Rings keep the elevations of the sensor itself; the sensor pose turns them over.
+TEST(ObservationPoints, RotatingScansMayStateTheirDuration) {
+  const auto options = hdl32(1.5);
+  std::vector<int> topDown(32);
+  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
+  auto scan = rotatingScan(options.sensor, topDown, kUp);
+  ObservationPoints points(options.sensor);
+  scan.sweepDuration = 0;
+  points.read(scan);
+  EXPECT_FALSE(points.timing());
+  scan.sweepDuration = 0.1;
+  points.read(scan);
+  ASSERT_TRUE(points.timing());
+  EXPECT_EQ(points.timing()->turn, Turn::counterclockwise);
+  EXPECT_NEAR(points.timing()->seconds, 0.1, 1e-12);
+  EXPECT_NEAR(points.timing()->cut, -M_PI, 1e-12);
+  scan.azimuthSpan = -M_PI;  // half of a turn, the other way
+  points.read(scan);
+  EXPECT_EQ(points.timing()->turn, Turn::clockwise);
+  EXPECT_NEAR(points.timing()->seconds, 0.2, 1e-12);
+}
+
 TEST(ObservationPoints, RotatingScanUpsideDown) {
   auto options = hdl32(1.5);
   std::vector<int> topDown(32);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include <polemcl/core/common/Types.h>
+#include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/observation/VelodynePoints.h"
 #include "support/Refusal.h"
 #include "support/VelodynePackets.h"
@@ -70,6 +71,25 @@ std::string randomPacket(std::mt19937& random, int returns, bool isDual) {
 }
 
 }  // namespace
+
+TEST(VelodynePoints, TheirPacketsTellWhenTheyAreMeasured) {
+  std::mt19937 random(3);
+  // Turns of 0.1 s: a quarter between two packets, over the full hour.
+  std::vector<std::string> packets;
+  for (const std::uint32_t time : {3599960000u, 3599985000u, 10000u, 35000u}) {
+    const auto azimuth = static_cast<std::uint16_t>(4500 + 9000 * packets.size());
+    packets.push_back(randomPacket(random, 32, false));
+    std::memcpy(&packets.back()[2], &azimuth, sizeof azimuth);
+    std::memcpy(&packets.back()[1200], &time, sizeof time);
+  }
+  const Scan scan = scanOf("HDL32", packets);
+  ObservationPoints points{SensorOptions()};
+  points.read(scan);
+  ASSERT_TRUE(points.timing());
+  EXPECT_EQ(points.timing()->turn, Turn::clockwise);
+  EXPECT_NEAR(points.timing()->seconds, 0.1, 1e-12);
+  EXPECT_NEAR(points.timing()->cut, -M_PI / 4, 1e-12);
+}
 
 /// MRPT's table of sines divides the turn by 35,999, and it rounds halves of a unit by chance.
 TEST(VelodynePoints, AreThoseOfMrptWhereItReadsThem) {
