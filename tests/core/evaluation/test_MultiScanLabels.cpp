@@ -34,6 +34,21 @@ void wall(Points& points, double x, double y, double top = 3) {
                           static_cast<float>(z));
 }
 
+/// A post of 3 by 3 voxels of 0.05 m at (10, 5), and a thin board that begins `gap` voxels beside
+/// it.
+void postAndBoard(Points& points, int gap, const Eigen::Vector2d& towards) {
+  const Eigen::Vector2d across(-towards.y(), towards.x());
+  const auto fill = [&](int u, int v) {
+    const Eigen::Vector2d at = Eigen::Vector2d(10, 5) + 0.05 * (u * towards + v * across);
+    for (double z = 0.05; z < 3; z += 0.07)
+      points.emplace_back(static_cast<float>(at.x()), static_cast<float>(at.y()),
+                          static_cast<float>(z));
+  };
+  for (int u = -1; u <= 1; ++u)
+    for (int v = -1; v <= 1; ++v) fill(u, v);
+  for (int u = 1 + gap; u <= 15; ++u) fill(u, 0);
+}
+
 /// Drives along x past the place (10, 5); `scene` gives the points that scan i has.
 template <class Scene>
 Standing judged(Scene scene, int scans = 12, float height = 0) {
@@ -76,6 +91,18 @@ TEST(MultiScanLabels, APostOnAFenceIsAPoleAndAWallWithACornerIsUnsure) {
               wall(p, 10, 5, 2);
             }),
             Standing::unsure);
+}
+
+TEST(MultiScanLabels, AThingNearerThanTwentyCentimetresBelongsToThePost) {
+  for (const Eigen::Vector2d& towards : {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0),
+                                         Eigen::Vector2d(0, 1), Eigen::Vector2d(0, -1)}) {
+    SCOPED_TRACE(testing::Message() << towards.transpose());
+    const auto with = [&](int gap) {
+      return judged([&](Points& p, const auto&, int) { postAndBoard(p, gap, towards); });
+    };
+    EXPECT_EQ(with(4), Standing::pole);
+    EXPECT_EQ(with(3), Standing::unsure);
+  }
 }
 
 TEST(MultiScanLabels, AWallAndALowPostAreOthers) {

@@ -118,6 +118,17 @@ TEST(VisibilityRange, IsUnknownWhereNothingWasSeen) {
   EXPECT_EQ(at(ranges, -3.0), 0.0f);
 }
 
+// At a right angle to the left and right begins a sector of the ranges and one of the ground.
+TEST(VisibilityRange, IsKnownUpToTheLastSectorWithPoints) {
+  const SensorOptions sensor = sensorOptions("hdl32e");
+  const Casting ahead{0, 0, 5, 0.0, M_PI / 2 - 0.01};
+  const auto ranges = visibilityRangeOf(cast(plain(), SensorModel(sensor), ahead), sensor);
+  for (const double side : {1, -1}) {
+    EXPECT_EQ(at(ranges, side * (M_PI / 2 - 0.001)), 40.0f) << side;
+    EXPECT_EQ(at(ranges, side * (M_PI / 2 + 0.001)), 0.0f) << side;
+  }
+}
+
 TEST(VisibilityRange, TurnsWithTheScan) {
   Scene scene = plain();
   scene.walls.push_back(board(0.5, 12.2, 3, 6));

@@ -1,12 +1,16 @@
 /// \file test_GlobalLocalizerCovariance.cpp
-/// \brief Are the poses found without a start as uncertain as their covariances say?
+/// \brief Are the poses found without a start as uncertain as their covariances say, and poles as
+/// far off as is tolerated?
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 
 #include "core/global_localization/GlobalLocalizer.h"
+#include "core/global_localization/PoseRefinement.h"
 #include "support/PoleCity.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_global_localizer_covariance {
 
@@ -60,6 +64,40 @@ Consistency consistencyOf(const DriveOptions& driving, const SubmapOptions& subm
   return {sum.pose / sum.places, sum.position / sum.places, sum.heading / sum.places, sum.places};
 }
 
+using Places = std::vector<Eigen::Vector2d>;
+
+/// A robot at the origin that has seen poles once, and their map. A pole seen is off from its map
+/// pole by 0.1 m along an axis: 0.005 m^2 as seen, 0.0025 on the map, 0.05 m beyond both.
+struct SeenOnce {
+  SeenOnce(const Places& seen, const Places& mapped)
+      : submap(submapOf(seen)), map(mapOf(mapped), options()), query(submap, map.options) {}
+  static LocalSubmap submapOf(const Places& seen) {
+    SubmapOptions exact;
+    exact.floor = 0;
+    LocalSubmap submap(exact);
+    std::vector<PoleDetection> poles;
+    for (const Eigen::Vector2d& at : seen)
+      poles.push_back(tests::detectionAt(at.x(), at.y(), 0.005));
+    submap.add({}, poles);
+    return submap;
+  }
+  static std::vector<MapPole> mapOf(const Places& mapped) {
+    std::vector<MapPole> map;
+    for (const Eigen::Vector2d& at : mapped)
+      map.push_back(tests::mapPoleAt(at.x(), at.y(), 0.0025));
+    return map;
+  }
+  static GlobalOptions options() {
+    GlobalOptions result;
+    result.minHits = 1;
+    result.sigma = 0.05;
+    return result;
+  }
+  LocalSubmap submap;
+  PreparedMap map;
+  Constellation query;
+};
+
 }  // namespace
 
 // Where all is as the options say: exact odometry, and map poles off by their covariance and sigma.
@@ -86,6 +124,54 @@ TEST(GlobalLocalizerCovariance, ItsCovarianceIsCautiousByDefault) {
   EXPECT_NEAR(c.pose, 1.90, 0.26);  // measured, ± 2.58 of its standard deviations
   EXPECT_NEAR(c.position, 1.62, 0.27);
   EXPECT_NEAR(c.heading, 0.27, 0.065);
+}
+
+// Laid on two poles 20 m apart, each off by 0.1 m along an axis: the variance of their middle is
+// 0.01 m^2 / 2, that of their direction 2 * 0.01 / 20^2. The pole adds its own 0.01 m^2; 2.5
+// standard deviations of it all are tolerated.
+TEST(GlobalLocalizerCovariance, APolesToleranceHasThePairsErrorAndItsOwn) {
+  const Places places = {{10, -10}, {10, 10}, {10, 0}, {30, 0}};
+  const SeenOnce robot(places, places);
+  const std::vector<QueryPole>& poles = robot.query.queryPoles();
+  ASSERT_EQ(poles.size(), 4u);
+  const PairTolerance tolerance(robot.map, robot.query, poles[0], poles[1]);
+  EXPECT_NEAR(tolerance.of(poles[2]), 2.5 * std::sqrt(0.005 + 0.01), 1e-6);
+  EXPECT_NEAR(tolerance.of(poles[3]), 2.5 * std::sqrt(0.005 + 5e-5 * 20 * 20 + 0.01), 1e-6);
+}
+
+// One of five poles stands 0.85 m off on the map. No pair of the others tolerates more than 0.71 m.
+TEST(GlobalLocalizerCovariance, APoleBeyondItsToleranceIsNoHit) {
+  const Places seen = {{-9, 2}, {11, -4}, {3, 13}, {-6, -12}, {14, 9}};
+  Places mapped = seen;
+  const SeenOnce right(seen, mapped);
+  mapped.back() += Eigen::Vector2d(0.6, 0.6);
+  const SeenOnce wrong(seen, mapped);
+  const auto best = [](const SeenOnce& robot) {
+    return ConstellationSearch(robot.map, robot.query).run().at(0).hits;
+  };
+  EXPECT_EQ(best(right), 3u);  // beyond the pair
+  EXPECT_EQ(best(wrong), 2u);
+}
+
+// Six poles on a circle, on the map 2.4 sigma farther out and farther in by turns: no motion makes
+// that better. Twelve coordinates less three unknowns share the sum of the squares.
+TEST(GlobalLocalizerCovariance, ResidualsWidenItByTheirDegreesOfFreedom) {
+  const auto varianceAlongX = [](double off) {
+    Places seen, mapped;
+    for (int i = 0; i < 6; ++i) {
+      const Eigen::Vector2d out(std::cos(i * M_PI / 3), std::sin(i * M_PI / 3));
+      seen.push_back(12 * out);
+      mapped.push_back((i % 2 ? 12 + off : 12 - off) * out);
+    }
+    const SeenOnce robot(seen, mapped);
+    GlobalHypothesis found;
+    PoseRefinement refinement(robot.map, robot.query, robot.submap.pose());
+    EXPECT_TRUE(refinement.run({{}, 4, 0, 3}, found));
+    EXPECT_EQ(found.matched, 6u);
+    return found.covariance(0, 0);
+  };
+  EXPECT_NEAR(varianceAlongX(0), 0.01 / 6, 1e-6);
+  EXPECT_NEAR(varianceAlongX(0.24), 0.01 / 6 * (6 * 2.4 * 2.4 / 9), 1e-5);
 }
 
 }  // namespace polemcl::test_global_localizer_covariance

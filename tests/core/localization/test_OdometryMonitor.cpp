@@ -5,6 +5,7 @@
 
 #include "core/localization/OdometryMonitor.h"
 #include "support/PoleCity.h"
+#include "support/Poles.h"
 
 namespace polemcl::test_odometry_monitor {
 
@@ -71,6 +72,24 @@ double drift(const CheckedDrive& drive, const std::vector<MonitoredMotion>& moti
   for (std::size_t i = from + 1; i <= to; ++i) pose = compose(pose, motions[i].motion);
   return std::hypot(pose.x - drive.frames[to].truth.x, pose.y - drive.frames[to].truth.y);
 }
+
+/// Two scans with a motion between them: `seen` by the poles, `stated` by a sure odometry.
+MonitoredMotion afterTwoScans(const std::vector<Eigen::Vector2d>& places, const Pose2D& seen,
+                              const Pose2D& stated) {
+  std::vector<PoleDetection> before, after;
+  for (const Eigen::Vector2d& place : places) {
+    const Pose2D at = relative(seen, {place.x(), place.y(), 0});
+    before.push_back(tests::detectionAt(place.x(), place.y(), 1e-4));
+    after.push_back(tests::detectionAt(at.x, at.y, 1e-4));
+  }
+  OdometryMonitor check;
+  const Eigen::Matrix3d covariance = 1e-8 * Eigen::Matrix3d::Identity();
+  check.add(0, {}, covariance, before);
+  return check.add(0.1, stated, covariance, after);
+}
+
+const std::vector<Eigen::Vector2d> kAllRound = {{12, 6}, {15, -7},  {-9, 8},
+                                                {22, 5}, {-13, -6}, {2, -9}};
 
 }  // namespace
 
@@ -221,6 +240,26 @@ TEST(OdometryMonitor, AnUncertainOdometryIsNotContradictedForWhatItAdmits) {
                   Eigen::Vector3d(1.44, 1.44, 0.01).asDiagonal(), drive.frames[i].poles_robot);
     EXPECT_FALSE(result.replaced) << i;
   }
+}
+
+// Six poles tell a motion to about 2 cm and 2 mrad. Tolerated are 0.1 m and 0.02 rad.
+TEST(OdometryMonitor, SixPolesContradictWhatIsClearlyBeyondTheTolerance) {
+  for (const Pose2D& slight : {Pose2D{0.08, 0, 0}, Pose2D{0, 0, 0.015}})
+    EXPECT_EQ(afterTwoScans(kAllRound, slight, {}).verdict, OdometryVerdict::agrees);
+  for (const Pose2D& clear : {Pose2D{0.4, 0, 0}, Pose2D{0, 0, 0.04}}) {
+    const MonitoredMotion result = afterTwoScans(kAllRound, clear, {});
+    EXPECT_EQ(result.verdict, OdometryVerdict::contradicted);
+    EXPECT_NEAR(result.motion.x, clear.x, 1e-6);
+    EXPECT_NEAR(result.motion.yaw, clear.yaw, 1e-6);
+  }
+}
+
+// 40 m ahead, a turn looks like a slide to the side: both motions fit the poles to a decimetre.
+TEST(OdometryMonitor, AMotionThatFitsHardlyBetterContradictsNothing) {
+  const std::vector<Eigen::Vector2d> ahead = {{38, 2}, {42, -2}, {38, -2}, {42, 2}};
+  const MonitoredMotion result = afterTwoScans(ahead, {0.7, -0.76, 0.019}, {0.7, 0, 0});
+  EXPECT_EQ(result.verdict, OdometryVerdict::agrees);
+  EXPECT_FALSE(result.replaced);
 }
 
 TEST(OdometryMonitor, AGapEndsTheComparison) {

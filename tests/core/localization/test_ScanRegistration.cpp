@@ -58,6 +58,7 @@ TEST(ScanRegistration, SearchesNoFartherThanTold) {
   options.maxMetres = 3;
   EXPECT_LT(searchMotion(kStreet, after(kStreet, {7, 1, 0}), {}, options).pairs, 3);
   EXPECT_EQ(searchMotion(kStreet, after(kStreet, {7, 1, 0}), {6, 0, 0}, options).pairs, 5);
+  EXPECT_EQ(searchMotion(kStreet, after(kStreet, {1, 7, 0}), {0, 6, 0}, options).pairs, 5);
   options.maxRadians = 0.1;
   EXPECT_LT(searchMotion(kStreet, after(kStreet, {1, 0, 0.3}), {}, options).pairs, 3);
 }

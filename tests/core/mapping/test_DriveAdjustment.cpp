@@ -4,6 +4,7 @@
 
 #include "core/mapping/DriveAdjustment.h"
 #include "support/PoleStreet.h"
+#include "support/Poles.h"
 #include "support/Refusal.h"
 
 namespace polemcl::test_drive_adjustment {
@@ -121,6 +122,27 @@ TEST(DriveAdjustment, ExactPolesPullThePosesToTheirPlace) {
   for (std::size_t i = 0; i < drive.truth.size(); i += 10)
     EXPECT_LT(drive.error(adjusted.poses_map_robot[i], i), 0.03) << i;
   EXPECT_LT(adjusted.sigma, 0.03);
+}
+
+// LiDAR and odometry make one rigid body of the drive; eight poles, known to 0.5 m, hold it: its
+// middle to 0.5 m / sqrt(8) along an axis, its heading to 0.5 m / sqrt(1800 m^2), the sum of their
+// squared distances from the middle. From there, the squared distance of the poses is 10 m^2.
+TEST(DriveAdjustment, SigmaIsThatOfAnAxis) {
+  std::vector<MapPole> map;
+  for (const double x : {-10, 0, 10, 20})
+    for (const double y : {-10, 10}) map.push_back(tests::mapPoleAt(x, y, 0.25));
+  std::vector<DrivenScan> scans;
+  for (int i = 0; i <= 10; ++i) {
+    DrivenScan scan{{1.0 * i, 0, 0}, {}, {}};
+    for (const MapPole& pole : map)
+      scan.poles_robot.push_back(tests::detectionAt(pole.x - i, pole.y, 1e-4));
+    if (i > 0) scan.motion = PoseWithCovariance{{1, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity()};
+    scans.push_back(scan);
+  }
+  const AdjustedDrives adjusted = adjustDrives(scans, map, DriveAdjustmentOptions());
+  ASSERT_EQ(adjusted.anchors.size(), 8u);
+  EXPECT_NEAR(adjusted.anchorDistance, 0, 1e-3);
+  EXPECT_NEAR(adjusted.sigma, 0.5 * std::sqrt(1 / 8. + 10 / 1800. / 2), 0.005);
 }
 
 TEST(DriveAdjustment, NeedsPolesOfTheMap) {

@@ -101,6 +101,29 @@ TEST(LandmarkFusion, LeavesOutliersOut) {
   EXPECT_GE(kept.size(), 18u);
 }
 
+// The vague ones lie within two of their sigmas of the certain one, all on one side of it.
+TEST(LandmarkFusion, ACertainSightingIsNoOutlierOfVagueOnes) {
+  const std::vector<LandmarkObservation> observations{
+      observation(0, 0, 0.09), observation(0.05, 0, 0.09), observation(0.6, 0, 0.0001)};
+  std::vector<std::uint32_t> kept;
+  const Eigen::Vector2d centre = fusedCentre(observations, {0, 1, 2}, nullptr, &kept);
+  EXPECT_NEAR(centre.x(), 0.6, 0.005);
+  EXPECT_EQ(kept.size(), 3u);
+}
+
+// By Rousseeuw and Leroy, six coordinates with two unknowns whose median distance is 0.1 m have a
+// sigma of (1 + 5 / (6 - 2)) 0.1 m / sqrt(1.386) = 0.191 m: the ellipse of 99 % ends at 0.58 m.
+TEST(LandmarkFusion, ThreeSightingsAllowForTheirFewness) {
+  const auto keptWith = [](double farthest) {
+    std::vector<std::uint32_t> kept;
+    fusedCentre({observation(-0.1, 0), observation(0, 0), observation(farthest, 0)}, {0, 1, 2},
+                nullptr, &kept);
+    return kept.size();
+  };
+  EXPECT_EQ(keptWith(0.57), 3u);
+  EXPECT_EQ(keptWith(0.6), 2u);
+}
+
 // 4000 poles of 12 observations with σ = 0.05 m each, that promise 0.05 m, only 0.01 m, or 0.1 m.
 TEST(LandmarkFusion, TheCovarianceIsHonestWhateverTheSightingsPromise) {
   const auto squaredErrors = [](double promised) {

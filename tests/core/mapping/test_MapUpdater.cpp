@@ -245,6 +245,20 @@ TEST(MapUpdater, APoleMovedWithinTheGateTakesItsNewPlace) {
   EXPECT_NEAR(map.poles[1].history.firstSeen, 86400 * 10, 1e-6) << "another pole, or another place";
 }
 
+// 0.4 m are 4.4 or 3.2 sigmas of the difference; the ellipse of 99.9 % ends at 3.7. Of the session,
+// 0.02 m and little noise add to the pole's own.
+TEST(MapUpdater, APoleHasMovedWhenItLeavesItsEllipse) {
+  const auto movedWith = [](double sigma) {
+    LandmarkMap map = kept({{10, 5}});
+    map.poles[0].pole.covariance = sigma * sigma * Eigen::Matrix2d::Identity();
+    MapUpdateCounts counts;
+    updatedBy(map, drive({{10.4, 5}}), &counts);
+    return counts.moved;
+  };
+  EXPECT_EQ(movedWith(0.088), 1u);
+  EXPECT_EQ(movedWith(0.122), 0u);
+}
+
 TEST(MapUpdater, PlacesAreAveragedByTheirCovariances) {
   LandmarkMap map = kept({{10, 5}});
   map.poles[0].pole.covariance = Eigen::Vector2d(4e-4, 1e-4).asDiagonal();

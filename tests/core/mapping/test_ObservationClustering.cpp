@@ -152,6 +152,24 @@ TEST(ObservationClustering, OneEachSplitByAPoorPoseIsMerged) {
   EXPECT_EQ(groups[0].size(), 20u);
 }
 
+// 60 scans see something at 0, 22 at -0.4 m and 22 at 0.45 m; few see two of them. With the nearer
+// neighbour the centre moves to -0.1 m, and the other one is out of its gate.
+TEST(ObservationClustering, OnlyTheNearerOfTwoNeighboursIsMerged) {
+  std::vector<LandmarkObservation> observations;
+  for (std::uint32_t view = 0; view < 100; ++view) {
+    if (view < 60) observations.push_back(observation(0, 0, view));
+    if (view < 2 || (view >= 60 && view < 80)) observations.push_back(observation(-0.4, 0, view));
+    if (view == 2 || view == 3 || view >= 80) observations.push_back(observation(0.45, 0, view));
+  }
+  for (LandmarkObservation& seen : observations)  // so vague that none is an outlier
+    seen.pole.covariance = 0.04 * Eigen::Matrix2d::Identity();
+  const Groups groups = clusterObservations(observations, {0.5, 0.25});
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0].size(), 80u);
+  EXPECT_NEAR(fusedCentre(observations, groups[0]).x(), -0.1, 1e-6);
+  EXPECT_EQ(groups[1].size(), 22u);
+}
+
 TEST(ObservationClustering, TheGateIsStrict) {
   EXPECT_EQ(clusterObservations({observation(0, 0, 0), observation(1, 0, 1)}, {1.0, 0.25}).size(),
             2u);

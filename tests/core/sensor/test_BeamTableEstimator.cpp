@@ -37,6 +37,15 @@ void expectBeams(const BeamTableEstimate& estimate, const sim::LidarModel& lidar
   EXPECT_GE(static_cast<double>(found.size()), share * static_cast<double>(lidar.beams.size()));
 }
 
+/// Returns of one laser, all around and 4 m to 30 m away; `apex` is its height over the origin, m.
+void addRing(PointList& points, double elevationDeg, int returns, double apex = 0) {
+  for (int i = 0; i < returns; ++i) {
+    const double rho = 4 + 26 * std::fmod(0.618034 * i, 1), azimuth = 2 * M_PI * i / returns;
+    points.add(rho * std::cos(azimuth), rho * std::sin(azimuth),
+               apex + rho * std::tan(elevationDeg * kDegree));
+  }
+}
+
 void expectSame(const BeamTableEstimate& a, const BeamTableEstimate& b) {
   EXPECT_EQ(a.elevations(), b.elevations());
   EXPECT_EQ(a.origin.z, b.origin.z);
@@ -83,6 +92,51 @@ TEST(BeamTableEstimator, TellsTwoBlocksApart) {
       nearest = std::min(nearest, std::abs(beam.elevation - elevation));
     EXPECT_LT(nearest, 0.15 * kDegree) << beam.elevation / kDegree;
   }
+}
+
+TEST(BeamTableEstimator, TheOriginMayLieBetweenTwoBlocks) {
+  PointList points;
+  for (int k = 0; k < 6; ++k) {
+    addRing(points, 3 - 1.5 * k, 300, 0.1);
+    addRing(points, -9 - 2 * k, 300, -0.1);
+  }
+  const BeamTableEstimate estimate = estimateBeamTable({points.view()});
+  ASSERT_EQ(estimate.blocks.size(), 2u);
+  EXPECT_NEAR(estimate.blocks[0].apex, 0.1, 0.005);
+  EXPECT_NEAR(estimate.blocks[1].apex, -0.1, 0.005);
+  EXPECT_EQ(estimate.beams(), 12);
+}
+
+// 35 % of each laser's returns lie 0.065 degrees higher than the others.
+TEST(BeamTableEstimator, ABeamIsTheMeanOfItsReturns) {
+  PointList points;
+  for (int k = 0; k < 8; ++k) {
+    addRing(points, -10 + 2 * k, 390);
+    addRing(points, -10 + 2 * k + 0.065, 210);
+  }
+  const std::vector<double> found = estimateBeamTable({points.view()}).elevations();
+  ASSERT_EQ(found.size(), 8u);
+  for (int k = 0; k < 8; ++k)
+    EXPECT_NEAR(found[7 - k] / kDegree, -10 + 2 * k + 0.35 * 0.065, 0.007) << k;
+}
+
+// Most lasers look into the sky, three at the ground: a full one has 2000 returns, and stray ones
+// are a hundredth of that.
+TEST(BeamTableEstimator, StrayReturnsAreNoBeamEvenWhereMostBeamsHaveFew) {
+  PointList points;
+  for (int k = 0; k < 9; ++k) addRing(points, -20 + 2 * k, k < 3 ? 2000 : 300);
+  addRing(points, 1, 20);
+  EXPECT_EQ(estimateBeamTable({points.view()}).beams(), 9);
+}
+
+TEST(BeamTableEstimator, TwoBeamsAreEnough) {
+  PointList points;
+  addRing(points, -1, 1500);
+  addRing(points, -3, 1500);
+  const std::vector<double> found = estimateBeamTable({points.view()}).elevations();
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0], -1 * kDegree, 0.01 * kDegree);
+  EXPECT_NEAR(found[1], -3 * kDegree, 0.01 * kDegree);
 }
 
 TEST(BeamTableEstimator, OrderAndInvalidPointsAreOfNoConsequence) {

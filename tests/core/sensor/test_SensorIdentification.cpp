@@ -29,6 +29,29 @@ PointList scanOf(const std::string& lidar, double height, bool upsideDown = fals
   return points;
 }
 
+/// A VLP-16 whose beams lie off their places by turns up and down.
+PointList offBeams(double off) {
+  PointList points;
+  for (int ring = 0; ring < 16; ++ring)
+    for (int i = 0; i < 600; ++i)
+      points.addPolar(0.6 * i * kDegree, (-15 + 2 * ring + (ring % 2 ? off : -off)) * kDegree,
+                      4 + 26 * std::fmod(0.618034 * i, 1));
+  return points;
+}
+
+/// A VLP-16 so high over level ground, with walls about 30 m away.
+PointList court(double height) {
+  PointList points;
+  for (int elevation = -15; elevation <= 15; elevation += 2)
+    for (int i = 0; i < 360; ++i) {
+      const double azimuth = i * kDegree, wall = 30 + 5 * std::sin(3 * azimuth),
+                   slope = std::tan(elevation * kDegree);
+      const double rho = slope < 0 ? std::min(wall, -height / slope) : wall;
+      points.add(rho * std::cos(azimuth), rho * std::sin(azimuth), rho * slope);
+    }
+  return points;
+}
+
 struct Expected {
   const char* lidar;
   double height;
@@ -102,6 +125,32 @@ TEST(SensorIdentification, TurnsACloudOverThatStandsOnItsHead) {
   EXPECT_EQ(inspection.options().model, "hdl32e");
   EXPECT_FALSE(inspection.options().upsideDown);
   EXPECT_NEAR(inspection.options().height, 1.0, 0.1);
+}
+
+// Beams of the preset lie 2 degrees apart.
+TEST(SensorIdentification, ComparesBeamsWithTheAnglesBetweenThem) {
+  const auto fitOf = [](double off) {
+    for (const PresetFit& fit : identifySensor({offBeams(off).view()}).presets)
+      if (fit.model == "vlp16") return fit;
+    return PresetFit();
+  };
+  const PresetFit near = fitOf(0.2), far = fitOf(0.4);
+  EXPECT_NEAR(near.rms, 0.2 * kDegree, 0.01 * kDegree);
+  EXPECT_NEAR(near.rmsShare, 0.1, 0.01);
+  EXPECT_TRUE(near.fits);
+  EXPECT_EQ(far.matched, 16);
+  EXPECT_NEAR(far.rmsShare, 0.2, 0.01);
+  EXPECT_FALSE(far.fits);
+}
+
+TEST(SensorIdentification, TheGroundIsThatOfTheMiddleHeight) {
+  const PointList a = court(1.4), b = court(0.9), c = court(1.8), d = court(1.1);
+  const auto heightOf = [](const std::vector<PointsView>& scans) {
+    return identifySensor(scans).ground.value().heightOf({0, 0, 0});
+  };
+  EXPECT_NEAR(heightOf({c.view(), b.view(), d.view()}), 1.1, 0.02);
+  // Of an even number, the higher one of both in the middle.
+  EXPECT_NEAR(heightOf({a.view(), b.view(), c.view(), d.view()}), 1.4, 0.02);
 }
 
 TEST(SensorIdentification, FindsTheOriginOverACloudsOwn) {

@@ -76,6 +76,25 @@ TEST(TimingSearch, FindsRangesThatAreOff) {
   EXPECT_GT(found.before, found.after + 0.002);
 }
 
+TEST(TimingSearch, TheRobotMayDriveSideways) {
+  const ScanTiming timing{Turn::clockwise, 0.1, M_PI, 0.5};
+  std::vector<TimedScan> scans = tests::timedDrive(timing);
+  const RangeCorrection ahead = searchRangeCorrection(scans, timing, {1.5, 0.3}).value();
+  const Pose2D quarter{0, 0, M_PI / 2};  // of a turn, by which the robot's axes are turned
+  for (TimedScan& scan : scans) {
+    scan.pose_map_robot = compose(scan.pose_map_robot, quarter);
+    for (TimedPole& pole : scan.poles_robot) {
+      const Pose2D seen = relative(quarter, {pole.x, pole.y, 0});
+      pole.x = seen.x;
+      pole.y = seen.y;
+    }
+  }
+  const RangeCorrection aside = searchRangeCorrection(scans, timing, {0.3, -1.5}).value();
+  EXPECT_NEAR(aside.before, ahead.before, 1e-6);
+  EXPECT_NEAR(aside.offset, ahead.offset, 1e-6);
+  EXPECT_NEAR(aside.scale, ahead.scale, 1e-6);
+}
+
 TEST(TimingSearch, SaysNothingWithoutPairs) {
   const TimingEstimate none = searchTiming({}, 0.1);
   EXPECT_EQ(none.pairs, 0u);

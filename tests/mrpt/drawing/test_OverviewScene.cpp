@@ -129,4 +129,18 @@ TEST(SceneParts, TheLegendHasALetterForEachCharacter) {
   EXPECT_EQ(marks->size(), 1u);
 }
 
+TEST(SceneParts, TheLegendIsAsWideAsItsLinesAndMarksStandBesideTheirs) {
+  mrpt::opengl::COpenGLScene scene;
+  const std::string line(40, 'm');
+  scene::showLegend(scene, {{line}, {"pole", scene::truthColor}, {line}});
+  const auto panel = scene.getViewport("text");
+  double x, y, width, height;  // pixels
+  panel->getViewportPosition(x, y, width, height);
+  EXPECT_GT(width, 40 * 12 * 0.75) << "letters of 12 pixels are hardly narrower than high";
+  EXPECT_LT(width, 40 * 12 * 1.1);
+  const auto mark = panel->getByClass<mrpt::opengl::CPointCloudColoured>()->getPoint3Df(0);
+  const double markAt = (mark.y + 1) / 2 * height;
+  EXPECT_NEAR(markAt, panel->getTextMessages().messages.at(1).y + 6, 0.1) << "half the letters";
+}
+
 }  // namespace polemcl::test_overview_scene

@@ -211,6 +211,7 @@ TEST_F(OusterPacketsTest, PacketsOutsideTheWindowAreNotNumbered) {
   using Numbers = std::vector<std::uint64_t>;
   EXPECT_EQ(numbers("0,1023"), (Numbers{192, 193, 194, 195, 255, 65536 * 64}));
   EXPECT_EQ(numbers("31,32"), (Numbers{6, 6, 7, 8, 8, 65536 * 2}));  // packets 1 and 2
+  EXPECT_EQ(numbers("16,32"), numbers("31,32"));
   EXPECT_EQ(numbers("1008,15"), (Numbers{6, 7, 7, 7, 7, 65536 * 2}));
   EXPECT_REFUSED(of(model.metadata(",\"column_window\":[5000,6000]")), "column_window");
 }

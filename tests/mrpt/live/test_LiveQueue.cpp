@@ -83,6 +83,18 @@ TEST(LiveQueue, DropsAScanOlderThanTheLastOneTaken) {
   EXPECT_EQ(queue.dropped(), 2u);
 }
 
+TEST(SteadyTimes, ClocksThatAreSetBackByDifferentTimesGoOnAlike) {
+  SteadyTimes times;
+  const SteadyTimes::Clock::time_point begin;
+  const auto later = begin + std::chrono::seconds(1);
+  for (const std::string sensor : {"front", "rear"})
+    EXPECT_DOUBLE_EQ(times.of(sensor, 100, begin), 100);
+  EXPECT_DOUBLE_EQ(times.of("front", 40, later), 101);
+  EXPECT_DOUBLE_EQ(times.of("rear", 36.5, later), 101) << "3.5 s more";
+  EXPECT_DOUBLE_EQ(times.offset("front"), 61);
+  EXPECT_DOUBLE_EQ(times.offset("rear"), 64.5);
+}
+
 /// The computer's clock is set back by 60 s while odometry of before is still on its way.
 TEST(LiveQueue, AClockThatIsSetBackDoesNotSilenceTheSensors) {
   LiveQueueOptions options = patient();

@@ -79,6 +79,23 @@ TEST_F(LiveSensorsTest, OdometryComesFromTheNetwork) {
   EXPECT_EQ(ended(), 0u);
 }
 
+/// The driver looks for packets twice a second only.
+TEST_F(LiveSensorsTest, PacketsHaveTheTimesOfTheirArrival) {
+  const int port = freeUdpPort();
+  const auto sensors = start(
+      "[odo]\ndriver = CUdpOdometry\nprocess_rate = 2\nudp_port = " + std::to_string(port) + "\n");
+  const UdpSender sender(port);
+  ASSERT_TRUE(sender.waitForListener());
+  sender.send("1 0 0");
+  ASSERT_TRUE(waitFor([&] { return observed() == 1; }));
+  const double sent = mrpt::Clock::nowDouble();
+  sender.send("2 0 0");  // returns when it has been read
+  const double read = mrpt::Clock::nowDouble();
+  ASSERT_TRUE(waitFor([&] { return observed() == 2; }));
+  const std::lock_guard lock(mutex);
+  EXPECT_LT(mrpt::Clock::toDouble(observations[1]->timestamp) - sent, 0.5 * (read - sent));
+}
+
 TEST_F(LiveSensorsTest, OdometryMayCarryItsTime) {
   const int port = freeUdpPort();
   const auto sensors =

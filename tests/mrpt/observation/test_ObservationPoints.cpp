@@ -113,6 +113,10 @@ TEST(ObservationPoints, ReadsAllReturnsOfAVelodyne) {
   scan->generatePointCloud();  // a cloud that is there is taken
   extraction.process(*scan);
   EXPECT_EQ(extraction.report().points, 11305u);
+  scan->point_cloud = {};
+  scan->point_cloud.x = scan->point_cloud.y = scan->point_cloud.z = {1};
+  extraction.process(*scan);
+  EXPECT_EQ(extraction.report().points, 1u);
 }
 
 // MRPT makes a rotating scan of its Velodyne sample, sparse and with rings in firing order. Range
@@ -196,7 +200,18 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   EXPECT_LT(3 * points(*byModel.process(scan)), 2 * points(*byTable.process(scan)));
 }
 
-// Rings keep the elevations of the sensor itself; the sensor pose turns them over.
+// Those that MRPT 2.5.8 makes use only a part of them.
+TEST(ObservationPoints, RotatingScansOfAVelodyneMayUseAllColumns) {
+  const auto options = hdl32(1.5);
+  std::vector<int> topDown(32);
+  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
+  auto scan = rotatingScan(options.sensor, topDown, kUp);
+  scan.lidarModel = "HDL-32E";
+  ObservationPoints points(options.sensor);
+  const auto returns = (scan.rangeImage.asEigen().array() != 0).count();
+  EXPECT_EQ(points.read(scan).size, static_cast<std::size_t>(returns));
+}
+
 TEST(ObservationPoints, RotatingScansMayStateTheirDuration) {
   const auto options = hdl32(1.5);
   std::vector<int> topDown(32);
@@ -218,6 +233,7 @@ TEST(ObservationPoints, RotatingScansMayStateTheirDuration) {
   EXPECT_NEAR(points.timing()->seconds, 0.2, 1e-12);
 }
 
+// Rings keep the elevations of the sensor itself; the sensor pose turns them over.
 TEST(ObservationPoints, RotatingScanUpsideDown) {
   auto options = hdl32(1.5);
   std::vector<int> topDown(32);

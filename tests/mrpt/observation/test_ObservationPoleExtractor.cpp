@@ -203,6 +203,17 @@ TEST(ObservationPoleExtractor, TiltedMounting) {
   EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.03), 8);
 }
 
+// Upright poles lean by 12° in the LiDAR frame, more than `max_tilt_deg` allows a pole.
+TEST(ObservationPoleExtractor, SteepMounting) {
+  const auto options = hdl32(1.5);
+  for (const double pitch : {12.0, -12.0}) {
+    const CPose3D pose(0, 0, 1.5, 0, mrpt::DEG2RAD(pitch), 0);
+    const TestCloud cloud = castScan(options.sensor, isometry(pose), testPoles());
+    ObservationPoleExtractor extraction(options);
+    EXPECT_GE(found(*extraction.process(*observationOf(cloud, pose)), 0.05), 5) << pitch;
+  }
+}
+
 // Optical frame of a camera: z forward, x right. It is rotated upright before extraction.
 TEST(ObservationPoleExtractor, CloudOnItsSide) {
   const auto options = hdl32(1.5);

@@ -124,6 +124,11 @@ TEST(ForgedLengths, WhatCannotBeReadIsNotWritten) {
   CPoleMap map;
   map.info["config"] = std::string(io::kLongestMapFact + 1, 'x');
   EXPECT_ANY_THROW(bytesOf(map));
+  map.info.clear();
+  for (std::uint32_t i = 0; i < io::kMostMapFacts; ++i) map.info[std::to_string(i)] = "x";
+  EXPECT_NO_THROW(bytesOf(map));
+  map.info["one more"] = "x";
+  EXPECT_ANY_THROW(bytesOf(map));
 }
 
 TEST(ForgedLengths, OfAMap) {

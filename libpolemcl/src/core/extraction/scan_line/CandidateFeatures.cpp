@@ -123,7 +123,7 @@ void topFeatures(const Place& place, const SensorModel& sensor, int row, float g
 }  // namespace
 
 ClusterShape measureShape(const std::vector<ScanLineSegment>& segments,
-                          const SegmentCluster& cluster) {
+                          const SegmentCluster& cluster, const Eigen::Vector2f& upright) {
   ClusterShape shape;
   shape.low = segments[cluster.bottom()].z;
   shape.high = segments[cluster.top()].z;
@@ -154,7 +154,7 @@ ClusterShape measureShape(const std::vector<ScanLineSegment>& segments,
   // Two parameters were fitted per axis: with two segments nothing is left to judge by.
   const float rest = xx + yy - ax * zx - ay * zy;
   shape.scatter = n > 2 ? std::sqrt(std::max(0.f, rest) / (n - 2)) : 0;
-  shape.tilt = std::atan(std::sqrt(ax * ax + ay * ay));
+  shape.tilt = std::atan(std::hypot(ax - upright.x(), ay - upright.y()));
   shape.widthSpread = std::sqrt(ww / n);
   return shape;
 }

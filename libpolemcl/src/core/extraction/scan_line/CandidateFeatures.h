@@ -16,11 +16,13 @@ struct ClusterShape {
   float low = 0, high = 0;  ///< of the segments, lidar frame, m
   float scatter =
       0;  ///< rms distance of the segments' middles from a straight line, m; 0 for two segments
-  float tilt = 0;         ///< of that line against the vertical, rad
+  float tilt = 0;         ///< of that line against an upright pole, rad
   float widthSpread = 0;  ///< standard deviation of the segments' widths, m
 };
+/// \param upright Shift of an upright pole along x and y per unit of height, LiDAR frame.
 ClusterShape measureShape(const std::vector<ScanLineSegment>& segments,
-                          const SegmentCluster& cluster);
+                          const SegmentCluster& cluster,
+                          const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
 
 /// \brief What the beams at a candidate's place say. Heights in m above local ground.
 struct CandidateFeatures {

@@ -117,7 +117,7 @@ std::optional<RejectionReason> ScanLineExtractor::judgeShape(const SegmentCluste
   if (highest.z - lowest.z < m_options.minHeight) return RejectionReason::tooShort;
   if (lowest.z - m_ground.at(lowest.x, lowest.y) > m_options.maxBottom)
     return RejectionReason::startsTooHigh;
-  shape = measureShape(m_segments, cluster);
+  shape = measureShape(m_segments, cluster, m_upright);
   if (shape.points < m_options.minPoints) return RejectionReason::tooFewPoints;
   if (shape.tilt > m_options.maxTilt && shape.high - shape.low > 0.8)
     return RejectionReason::tilted;
