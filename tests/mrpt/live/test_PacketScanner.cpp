@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
+#include "mrpt/live/PcapFile.h"
 #include "support/LiveSensorsTest.h"
 #include "support/OusterTurns.h"
 
@@ -238,6 +239,27 @@ TEST_F(OusterScannerTest, PcapFilesOfFragmentsArePutTogether) {
   ASSERT_EQ(observed(), 2u);
   EXPECT_LT(turns()[0]->pointcloud->size(), whole);
   EXPECT_EQ(lost, 1u);
+}
+
+/// The begins of all datagrams, then their ends.
+TEST_F(OusterScannerTest, OfAPcapFileSixteenDatagramsMayWaitForTheirEnds) {
+  constexpr std::size_t header = 24, head = 16 + 14 + 20, begin = head + 1480, end = head + 520;
+  const auto whole = [&](std::size_t datagrams) {
+    const std::string file =
+        fragmented(std::vector(datagrams, std::string(1992, 'x')), port, 1, kEthernet);
+    std::string first, last;
+    for (std::size_t at = header; at < file.size(); at += begin + end) {
+      first += file.substr(at, begin);
+      last += file.substr(at + begin, end);
+    }
+    writeText(folder / "mixed.pcap", file.substr(0, header) + first + last);
+    PcapFile recording((folder / "mixed.pcap").string());
+    std::size_t count = 0;
+    for (RecordedPacket packet; recording.next(packet);) ++count;
+    return count;
+  };
+  EXPECT_EQ(whole(16), 16u);
+  EXPECT_EQ(whole(17), 0u) << "each end comes when its begin has been given up";
 }
 
 TEST_F(OusterScannerTest, PcapFilesOfOtherLinkLayersAreRead) {

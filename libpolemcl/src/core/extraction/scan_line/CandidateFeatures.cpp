@@ -154,7 +154,8 @@ ClusterShape measureShape(const std::vector<ScanLineSegment>& segments,
   // Two parameters were fitted per axis: with two segments nothing is left to judge by.
   const float rest = xx + yy - ax * zx - ay * zy;
   shape.scatter = n > 2 ? std::sqrt(std::max(0.f, rest) / (n - 2)) : 0;
-  shape.tilt = std::atan(std::hypot(ax - upright.x(), ay - upright.y()));
+  const float leanX = ax - upright.x(), leanY = ay - upright.y();
+  shape.tilt = std::atan(std::sqrt(leanX * leanX + leanY * leanY));
   shape.widthSpread = std::sqrt(ww / n);
   return shape;
 }
