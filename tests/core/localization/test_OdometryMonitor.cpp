@@ -130,6 +130,25 @@ TEST(OdometryMonitor, AStuckOdometryIsReplacedAtOnceAndBelievedAgain) {
     }
 }
 
+// Odometry so uncertain that only a whole second contradicts it. It is 1.4 m off then: farther than
+// poles are paired.
+TEST(OdometryMonitor, ASlipShowsWhichASecondOnlyTells) {
+  OdometryMonitor check;
+  MonitoredMotion motion;
+  for (int i = 0; i <= 15; ++i) {
+    std::vector<PoleDetection> poles;
+    for (int k = -6; k < 8; ++k) {
+      const double x = 6 * k + 2 * std::sin(7.0 * k) - 0.7 * i;
+      if (std::abs(x) < 25) poles.push_back(tests::detectionAt(x, k % 2 ? 5 : -6, 1e-3));
+    }
+    const Eigen::Matrix3d covariance = Eigen::Vector3d(2.6e-3, 1e-5, 1e-6).asDiagonal();
+    motion = check.add(0.1 * i, {0.84, 0, 0}, covariance, poles);
+    EXPECT_FALSE(i < 9 && motion.replaced) << i;
+  }
+  EXPECT_EQ(motion.verdict, OdometryVerdict::contradicted);
+  EXPECT_NEAR(motion.motion.x, 0.7, 0.05);
+}
+
 // 7 m/s, then nothing: no vehicle stops in a tenth of a second. After 5 s it must have.
 TEST(OdometryMonitor, WithoutPolesASuddenStopIsDoubtedForAWhile) {
   OdometryMonitor check;

@@ -97,6 +97,7 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     const Reference& last = m_past.back();
     now.odometry = compose(last.odometry, motion);
     now.used = compose(last.used, motion);
+    now.seen = compose(last.seen, motion);
     now.spent = last.spent + covariance;
     result = m_state == State::contradicted ? replace(now, result) : watch(now, result);
     if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
@@ -118,7 +119,8 @@ std::vector<std::size_t> OdometryMonitor::chosen(double time) const {
   return result;
 }
 
-/// The motion that most poles support: near the motion used, or near the last speed; else searched.
+/// The motion that most poles support: near the motion used, near that of the poles from scan to
+/// scan, or near the last speed; else searched.
 ScanRegistration OdometryMonitor::align(const Reference& reference, const Reference& now,
                                         bool search) const {
   const Reference& last = m_past.back();
@@ -129,6 +131,8 @@ ScanRegistration OdometryMonitor::align(const Reference& reference, const Refere
   const auto keep = [&](const ScanRegistration& other) {
     if (other.score > best.score + 0.5) best = other;
   };
+  keep(refineMotion(reference.poles, now.poles, relative(reference.seen, now.seen),
+                    RegistrationOptions()));
   const double possible =
       kMinShare * static_cast<double>(std::min(reference.poles.size(), now.poles.size()));
   const auto poor = [&] { return best.pairs < kMinPairs || best.score < possible; };
@@ -191,6 +195,8 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
   bool search = true;
   for (const std::size_t i : chosen(now.time)) {
     const Finding finding = compare(m_past[i], now, search);
+    if (search && finding.verdict != OdometryVerdict::unknown)
+      now.seen = compose(m_past[i].seen, finding.alignment.motion);
     search = false;
     if (finding.verdict == OdometryVerdict::contradicted)
       return contradict(now, m_past[i], finding.alignment, odometry);
@@ -296,6 +302,7 @@ MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& 
     result = coasted(now, odometry);
     now.known = false;
   }
+  now.seen = compose(last.seen, result.motion);
   if (hasSettled(now) || now.time - m_knownTime > kHold) {
     m_state = State::believed;
     // Earlier scans are not compared with any more: the odometry was wrong then.

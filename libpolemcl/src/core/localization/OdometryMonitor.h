@@ -48,11 +48,11 @@ class POLEMCL_EXPORT OdometryMonitor {
   void clear();
 
  private:
-  /// A scan to compare with. Chains of motions since the first scan: as the odometry has them, and
-  /// as they were handed out.
+  /// A scan to compare with. Chains of motions since the first scan: as the odometry has them, as
+  /// they were handed out, and as the poles of successive scans have them.
   struct Reference {
     double time = 0;
-    Pose2D odometry, used;
+    Pose2D odometry, used, seen;
     Eigen::Matrix3d spent = Eigen::Matrix3d::Zero();  ///< sum of the odometry's covariances
     std::vector<PoleDetection> poles;
     bool known = true;  ///< the poles confirmed the motion to it (while contradicted)
