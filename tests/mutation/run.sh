@@ -38,11 +38,11 @@ programs=$(echo "$faults" | cut -f 2 | sort -u | sed 's/^/test_/')
   exit 1
 }
 
-# The objects that hold faults: of a unity file, or of a source that is compiled alone.
+# The objects that hold faults: of unity files, some of them of tests, or of a source that is compiled alone.
 objects=$(cd "$copy/build" && echo "$faults" | cut -f 4 | sed 's/:.*//' | sort -u | while read -r source; do
-  unity=$(grep -l "/$source\"" libpolemcl/src/*/CMakeFiles/*.dir/Unity/*.cxx || :)
+  unity=$(grep -l "/$source\"" libpolemcl/src/*/CMakeFiles/*.dir/Unity/*.cxx tests/*/CMakeFiles/*.dir/Unity/*.cxx || :)
   if [ -n "$unity" ]; then
-    echo "$unity.o"
+    echo "$unity" | sed 's/$/.o/'
   else
     ninja -t targets all | sed -n "s|:.*||; \\|${source##*/}\\.o$|p"
   fi
@@ -54,16 +54,14 @@ ninja -C "$copy/build" $objects >"$copy/build.log" || {
 }
 # Linked first, they take the place of the same objects in the libraries. Tests load the module of the sensors.
 mkdir -p "$copy/build/bin" "$copy/build/lib"
-first=$(echo "$objects" | sed "/polemcl-sensors/d; s|^|$copy/build/|" | tr '\n' ' ')
+first=$(echo "$objects" | sed "/polemcl-sensors/d; /\/test_/d; s|^|$copy/build/|" | tr '\n' ' ')
+others=$(echo "$objects" | sed -n "/polemcl-sensors\|\/test_/s|.*|s# & # $copy/build/& #|p")
 for file in $(echo "$programs" | sed 's|test_|bin/&|g'); do
-  link=$(ninja -C "$top/build" -t commands "$file" | sed -n "\$s|-o $file|$first -o $copy/build/$file|; \$s/ && cd .*//p")
+  link=$(ninja -C "$top/build" -t commands "$file" | sed -n "\$s|-o $file|$first -o $copy/build/$file|; \$s/ && cd .*//p" | sed "$others")
   (cd "$top/build" && eval "$link")
 done
 module=lib/libpolemcl-sensors.so
-link=$(ninja -C "$top/build" -t commands $module | sed -n "\$s|-o $module|-o $copy/build/$module|p")
-for object in $(echo "$objects" | grep polemcl-sensors); do
-  link=$(echo "$link" | sed "s| $object | $copy/build/$object |")
-done
+link=$(ninja -C "$top/build" -t commands $module | sed -n "\$s|-o $module|-o $copy/build/$module|p" | sed "$others")
 (cd "$top/build" && eval "$link")
 
 cd "$copy/build/bin" # beside the settings that programs find by name

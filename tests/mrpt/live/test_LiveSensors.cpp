@@ -122,7 +122,7 @@ TEST_F(LiveSensorsTest, OdometryThatIsNotThreeNumbersIsIgnoredWithOneWarning) {
   const UdpSender sender(port);
   ASSERT_TRUE(sender.waitForListener());
   for (const std::string packet :
-       {"nan 1,2 hello", "", "1 2", "1 2 3 4", "1 2 3 4 5", "1 2 nan", "1e999 2 3"})
+       {"nan 1,2 hello", "", "1 2", "1 2 3 m", "1 2 3 4", "1 2 3 4 5", "1 2 nan", "1e999 2 3"})
     sender.send(packet);
   sender.send("4 5 0.5");
   ASSERT_TRUE(waitFor([&] { return observed() + ended() >= 1; }));

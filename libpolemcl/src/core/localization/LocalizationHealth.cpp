@@ -187,8 +187,7 @@ void HealthMonitor::confirm(const HealthInput& input) {
 void HealthMonitor::judge(const HealthInput& input) {
   const bool fewMatched = m_health.matchedShare < kDegradedShare;
   // A lost filter spreads until it meets chance matches; they are no reason to believe it again.
-  const bool wasLost = m_health.state == HealthState::lost;
-  const bool believed = m_confirmed && !wasLost;
+  const bool believed = m_confirmed && m_health.state != HealthState::lost;
   const double lostShare = believed ? kLostShare : kHopelessShare;
   const bool bare =
       m_isEnoughLong && m_driven >= kHopelessAfter && m_longShare < lostShare && fewMatched;
@@ -206,7 +205,7 @@ void HealthMonitor::judge(const HealthInput& input) {
     HealthReason reason;
   } rules[] = {
       {bare || unconfirmed, State::lost, Reason::mismatch},
-      {m_health.spread > kLostSpread && (wasLost || !severalModes), State::lost, Reason::spread},
+      {m_health.spread > kLostSpread && !severalModes, State::lost, Reason::spread},
       {severalModes, State::degraded, Reason::ambiguous},
       {!m_confirmed, State::degraded, Reason::converging},
       {(m_isEnough && fewMatched) || m_doubt > kDoubt, State::degraded, Reason::mismatch},
