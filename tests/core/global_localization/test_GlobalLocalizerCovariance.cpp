@@ -90,6 +90,7 @@ struct SeenOnce {
   static GlobalOptions options() {
     GlobalOptions result;
     result.minHits = 1;
+    result.maxRefined = 100;
     result.sigma = 0.05;
     return result;
   }
@@ -151,6 +152,21 @@ TEST(GlobalLocalizerCovariance, APoleBeyondItsToleranceIsNoHit) {
   };
   EXPECT_EQ(best(right), 3u);  // beyond the pair
   EXPECT_EQ(best(wrong), 2u);
+}
+
+// A ring of 50 poles seen from its middle: headings 7.2 degrees apart fit alike, and all are tried.
+TEST(GlobalLocalizerCovariance, HeadingsSevenDegreesApartAreDifferentCandidates) {
+  Places seen, mapped;
+  for (int i = 0; i < 50; ++i) {
+    const double azimuth = i * M_PI / 25, turned = azimuth + 0.01;
+    seen.emplace_back(15 * std::cos(azimuth), 15 * std::sin(azimuth));
+    mapped.emplace_back(1 + 15 * std::cos(turned), 1 + 15 * std::sin(turned));
+  }
+  const SeenOnce robot(seen, mapped);
+  std::size_t count = 0;
+  for (const PoseCandidate& one : ConstellationSearch(robot.map, robot.query).run())
+    count += std::hypot(one.pose_map_robot.x - 1, one.pose_map_robot.y - 1) < 0.1;
+  EXPECT_EQ(count, 50u);
 }
 
 // Six poles on a circle, on the map 2.4 sigma farther out and farther in by turns: no motion makes
