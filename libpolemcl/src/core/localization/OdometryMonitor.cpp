@@ -289,6 +289,7 @@ MonitoredMotion OdometryMonitor::replace(Reference& now, const MonitoredMotion& 
   for (const std::size_t i : {key, latest}) {
     Reference coasting = now;
     coasting.used = compose(last.used, coast(now.time - last.time));
+    coasting.seen = compose(last.seen, coast(now.time - last.time));
     const ScanRegistration alignment = align(m_past[i], coasting, i == latest);
     if (!suffices(alignment, m_past[i], now)) continue;
     result = take(now, m_past[i], alignment);
