@@ -21,7 +21,8 @@ status=0
 while read -r program options; do
   echo "$program $options"
   # shellcheck disable=SC2086 # as it stands in --help, where quoted words have no blanks
-  eval valgrind -q --trace-children=yes --trace-children-skip='*/python3*,/bin/*,/usr/bin/*' --error-exitcode=99 \
+  eval valgrind -q --suppressions="$top/tests/valgrind/libraries.supp" --trace-children=yes \
+    --trace-children-skip='*/python3*,/bin/*,/usr/bin/*' --error-exitcode=99 \
     --log-file="$dir/log.%p" "$top/build/bin/$program" $options >"$dir/printed" 2>&1 || {
     status=1
     cat "$dir/printed"
