@@ -149,7 +149,7 @@ TEST(SensorIdentification, TheGroundIsThatOfTheMiddleHeight) {
     return identifySensor(scans).ground.value().heightOf({0, 0, 0});
   };
   EXPECT_NEAR(heightOf({c.view(), b.view(), d.view()}), 1.1, 0.02);
-  // Of an even number, the higher one of both in the middle.
+  // Four scans: the third in order of height.
   EXPECT_NEAR(heightOf({a.view(), b.view(), c.view(), d.view()}), 1.4, 0.02);
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <numeric>
 
 #include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/rawlog/RawlogReader.h"
@@ -171,12 +172,17 @@ CObservationRotatingScan rotatingScan(const SensorOptions& sensor, const std::ve
 
 const CPose3D kUp(0, 0, 1.5, 0, 0, 0);
 
+/// The rows of an HDL-32E.
+std::vector<int> topDown() {
+  std::vector<int> rows(32);
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
 TEST(ObservationPoints, RotatingScanWithKnownElevations) {
   auto options = hdl32(1.5);
-  std::vector<int> topDown(32);
-  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
   ObservationPoleExtractor byModel(options);
-  EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown, kUp)), 0.05), 6);
+  EXPECT_GE(found(*byModel.process(rotatingScan(options.sensor, topDown(), kUp)), 0.05), 6);
 
   // Rings in another order: only a table can describe it.
   std::vector<int> mixed;
@@ -203,9 +209,7 @@ TEST(ObservationPoints, RotatingScanWithKnownElevations) {
 // Those that MRPT 2.5.8 makes use only a part of them.
 TEST(ObservationPoints, RotatingScansOfAVelodyneMayUseAllColumns) {
   const auto options = hdl32(1.5);
-  std::vector<int> topDown(32);
-  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
-  auto scan = rotatingScan(options.sensor, topDown, kUp);
+  auto scan = rotatingScan(options.sensor, topDown(), kUp);
   scan.lidarModel = "HDL-32E";
   ObservationPoints points(options.sensor);
   const auto returns = (scan.rangeImage.asEigen().array() != 0).count();
@@ -214,9 +218,7 @@ TEST(ObservationPoints, RotatingScansOfAVelodyneMayUseAllColumns) {
 
 TEST(ObservationPoints, RotatingScansMayStateTheirDuration) {
   const auto options = hdl32(1.5);
-  std::vector<int> topDown(32);
-  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
-  auto scan = rotatingScan(options.sensor, topDown, kUp);
+  auto scan = rotatingScan(options.sensor, topDown(), kUp);
   ObservationPoints points(options.sensor);
   scan.sweepDuration = 0;
   points.read(scan);
@@ -236,9 +238,7 @@ TEST(ObservationPoints, RotatingScansMayStateTheirDuration) {
 // Rings keep the elevations of the sensor itself; the sensor pose turns them over.
 TEST(ObservationPoints, RotatingScanUpsideDown) {
   auto options = hdl32(1.5);
-  std::vector<int> topDown(32);
-  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
-  const auto scan = rotatingScan(options.sensor, topDown, CPose3D(0.5, 0.2, 1.5, 0.3, 0, M_PI));
+  const auto scan = rotatingScan(options.sensor, topDown(), CPose3D(0.5, 0.2, 1.5, 0.3, 0, M_PI));
   options.sensor.upsideDown = true;
   ObservationPoleExtractor extraction(options);
   EXPECT_GE(found(*extraction.process(scan), 0.05), 6);
@@ -246,9 +246,7 @@ TEST(ObservationPoints, RotatingScanUpsideDown) {
 
 TEST(ObservationPoints, RotatingScanClockwise) {
   const auto options = hdl32(1.5);
-  std::vector<int> topDown(32);
-  for (int i = 0; i < 32; ++i) topDown[static_cast<std::size_t>(i)] = i;
-  const auto ccw = rotatingScan(options.sensor, topDown, kUp);
+  const auto ccw = rotatingScan(options.sensor, topDown(), kUp);
   auto cw = ccw;
   cw.azimuthSpan = -2 * M_PI;
   cw.startAzimuth = M_PI;

@@ -192,7 +192,7 @@ OdometryMonitor::Finding OdometryMonitor::compare(const Reference& reference, co
 /// One scan while the odometry is believed or suspected.
 MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& odometry) {
   MonitoredMotion result = odometry;
-  bool search = true;
+  bool search = true;  // with the scan before only
   for (const std::size_t i : chosen(now.time)) {
     const Finding finding = compare(m_past[i], now, search);
     if (search && finding.verdict != OdometryVerdict::unknown)
