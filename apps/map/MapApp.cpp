@@ -157,7 +157,7 @@ Subcommand diffCommand(CLI::App& program) {
   Line& line = *shared;
   addFile(cli, "before", line.files.before, "Map of the earlier day, .polemap")->required();
   addFile(cli, "after", line.files.after, "Map of the later day, .polemap")->required();
-  addConfigOption(cli, line.config, " ([map_update] moved_m, ghost_m)");
+  addConfigOption(cli, line.config, " ([map_update] moved_m)");
   addSetOption(cli, line.set);
   cli.get_option("--set")->needs("--config");
   addOutput(cli, "--scene", line.files.scene, "Also write a .3Dscene of the changes");

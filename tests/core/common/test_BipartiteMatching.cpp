@@ -50,6 +50,7 @@ TEST(BipartiteMatching, FollowsAPathAsLongAsTheGraph) {
     if (left + 1 < size) chain[left].push_back(left + 1);
     chain[left].push_back(left);
   }
+  EXPECT_EQ(maximumMatching(chain, size), size) << "the last one moves all others";
   std::reverse(chain.begin(), chain.end());
   EXPECT_EQ(maximumMatching(chain, size), size);
 }

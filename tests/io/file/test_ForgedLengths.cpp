@@ -8,7 +8,7 @@
 #include "io/data/PcdFile.h"
 #include "io/dataset/NcltScans.h"
 #include "io/file/Bytes.h"
-#include "io/file/Inflate.h"
+#include "io/file/Decompress.h"
 #include "io/file/Npz.h"
 #include "io/file/ReadLimits.h"
 #include "io/file/TextFile.h"

@@ -61,7 +61,7 @@ class MovingScan : public ::testing::Test {
       const V from(0.013 * i, 0.007 * i, kHeight);
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.translation() = from;
-      const SimulatedScan scan = scanner.scan(pose, i, 0, motion);
+      const SimulatedScan scan = scanner.scan(pose, i, motion);
       std::vector<PoleDetection> poles = extractor.extract(scan.view());
       for (PoleDetection& pole : poles) {
         pole.timeOffset = timing.offset(std::atan2(pole.y, pole.x));

@@ -43,7 +43,7 @@ TEST(SolidView, BoundsHoldEveryHit) {
   int hits = 0;
   for (int i = 0; i < 4000; ++i) {
     const Solid solid = randomSolid(random);
-    const SolidView view(solid, V::Zero(), randomPose(random), 5);
+    const SolidView view(solid, randomPose(random), 5);
     BoundsMargin margin;
     margin.translation = 0.3;
     margin.highestRise = 0.2;
@@ -82,7 +82,7 @@ TEST(SolidView, GlassLetsTheGivenShareThrough) {
   solid.position = V(5, 0, 0);
   solid.size = V(1, 4, 4);
   solid.material.passes = 0.7f;
-  const SolidView view(solid, V::Zero(), Eigen::Isometry3d::Identity(), 5);
+  const SolidView view(solid, Eigen::Isometry3d::Identity(), 5);
   int stopped = 0;
   for (std::uint64_t draw = 0; draw < 10000; ++draw)
     stopped += std::isfinite(view.intersect({view.offset, Eigen::Vector3f(1, 0, 0)}, draw).range);

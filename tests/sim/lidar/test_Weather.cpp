@@ -36,7 +36,7 @@ Returned onSurface(const RealismOptions& realism, float reflectivity, double bea
   LidarModel lidar = makeLidar("hdl32e");
   Solid solid;
   solid.material = {reflectivity, 0, 0};
-  const std::vector<SolidView> solids{{solid, {0, 0, 0}, Eigen::Isometry3d::Identity(), 1}};
+  const std::vector<SolidView> solids{{solid, Eigen::Isometry3d::Identity(), 1}};
   const PulseReturnModel model(lidar, solids, realism);
   Beam beam;
   beam.rangeBias = beamBias;

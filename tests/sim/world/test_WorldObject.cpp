@@ -62,16 +62,4 @@ TEST(WorldObject, CrownsAreLabelledApartFromTheTrunk) {
   EXPECT_EQ(tree.solids[1].object, 9u | kFoliageBit);
 }
 
-TEST(WorldObject, WalkersGoThereAndBack) {
-  WorldObject person;
-  person.walk = {8, 6};  // 10 m
-  person.pace = 2;
-  EXPECT_TRUE(person.displacement(0).isApprox(Eigen::Vector2d(0, 0)));
-  EXPECT_TRUE(person.displacement(2.5).isApprox(Eigen::Vector2d(4, 3)));
-  EXPECT_TRUE(person.displacement(5).isApprox(Eigen::Vector2d(8, 6)));
-  EXPECT_TRUE(person.displacement(7.5).isApprox(Eigen::Vector2d(4, 3)));
-  person.pace = 0;
-  EXPECT_TRUE(person.displacement(3).isApprox(Eigen::Vector2d(0, 0)));
-}
-
 }  // namespace polemcl::test_world_object

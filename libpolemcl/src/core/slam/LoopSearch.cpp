@@ -1,6 +1,5 @@
 #include "core/slam/LoopSearch.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "core/common/Covariance.h"
 #include "core/common/KdTree2D.h"
 #include "core/common/Transform.h"
 #include "core/global_localization/GlobalLocalizer.h"
@@ -90,8 +90,7 @@ class LoopSearch {
 };
 
 double LoopSearch::positionSigma(std::size_t knot) const {
-  const Eigen::Matrix2d covariance = blockOf(m_knots, knot, knot).topLeftCorner<2, 2>();
-  return std::sqrt(covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
+  return largestSigma(blockOf(m_knots, knot, knot).topLeftCorner<2, 2>());
 }
 
 /// The way to the knot from the nearest one that was passed long before, if the place fits it.

@@ -1,12 +1,15 @@
 #include "io/file/Decompress.h"
 
 #include <lz4frame.h>
+#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include <polemcl/core/common/Types.h>
+#include "io/file/ReadLimits.h"
 
 namespace polemcl::io {
 namespace {
@@ -70,6 +73,34 @@ std::string decompressedLz4(std::string_view data, std::uint64_t most, const std
     step.frameEnded = left == 0;
     return step;
   });
+}
+
+std::string inflated(std::string_view data, std::uint64_t size, const std::string& where) {
+  if (size > mostInflated(data.size()))
+    throw Error(where + "damaged: " + std::to_string(data.size()) + " bytes cannot hold " +
+                std::to_string(size) + " of numbers");
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw Error(where + "out of memory");
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> closer(&stream, &inflateEnd);
+  const auto piece = [](std::size_t bytes) {
+    return static_cast<uInt>(std::min<std::size_t>(bytes, std::numeric_limits<uInt>::max()));
+  };
+  std::string result =
+      growing(data, size, where, [&](std::string_view in, char* out, std::size_t room) {
+        stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(in.data()));
+        stream.avail_in = piece(in.size());
+        stream.next_out = reinterpret_cast<Bytef*>(out);
+        stream.avail_out = piece(room);
+        const uInt inBefore = stream.avail_in, outBefore = stream.avail_out;
+        const int code = inflate(&stream, Z_NO_FLUSH);
+        DecodeStep step{inBefore - stream.avail_in, outBefore - stream.avail_out};
+        step.frameEnded = code == Z_STREAM_END;
+        step.failed =
+            (code != Z_OK && !step.frameEnded) || (step.frameEnded && step.in < in.size());
+        return step;
+      });
+  if (result.size() != size) throw Error(where + "damaged: it cannot be decompressed");
+  return result;
 }
 
 }  // namespace polemcl::io

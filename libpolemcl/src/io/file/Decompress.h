@@ -1,6 +1,6 @@
 #pragma once
 /// \file Decompress.h
-/// \brief Decompression with Zstandard and LZ4, up to a limit.
+/// \brief Decompression with Zstandard, LZ4 and zlib, up to a limit.
 
 #include <cstdint>
 #include <string>
@@ -15,5 +15,10 @@ std::string decompressedZstd(std::string_view data, std::uint64_t most, const st
 
 /// \brief The same for frames of LZ4.
 std::string decompressedLz4(std::string_view data, std::uint64_t most, const std::string& where);
+
+/// \brief Decompresses one stream of zlib whose size a file claims. \param size Claimed size,
+/// bytes. \throws Error when the data are damaged, hold more or less than `size`, or cannot hold it
+///         (mostInflated()).
+std::string inflated(std::string_view data, std::uint64_t size, const std::string& where);
 
 }  // namespace polemcl::io

@@ -4,7 +4,7 @@
 
 #include "core/common/Covariance.h"
 #include "io/file/Bytes.h"
-#include "io/file/Inflate.h"
+#include "io/file/Decompress.h"
 
 namespace polemcl::io {
 namespace {

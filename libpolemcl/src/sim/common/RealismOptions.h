@@ -25,10 +25,10 @@ struct RealismOptions {
   double ivy = 0.05;       ///< share of poles and trunks with ivy around the lower part
   double hedges = 0.1;     ///< share with a hedge against them
 
-  double rangeBias = 0.012;   ///< standard deviation of each beam's own bias, m (`range_bias_m`)
+  double rangeBias = 0.012;   ///< standard deviation of each beam's own bias, m
   double rangeWalk = 0.015;   ///< dim returns are longer, bright ones shorter by this, m
-                              ///< (`range_walk_m`)
-  double darkDropout = 0.15;  ///< share of the pulses lost on black surfaces (`dark_dropout`)
+                              ///<
+  double darkDropout = 0.15;  ///< share of the pulses lost on black surfaces
   double rain = 2;            ///< mm/h (`rain_mm_h`)
   double spray = 0.1;         ///< share of the pulses to the back that meet the car's own spray
 

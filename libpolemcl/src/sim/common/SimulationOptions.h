@@ -23,23 +23,22 @@ struct WorldOptions {
   std::string track;
   double curviness = 1;        ///< scales the bends of the generated street; 0: straight
   double relief = 1;           ///< scales slopes and undulation of the ground; 0: flat
-  double roadWidth = 10;       ///< kerb to kerb, m (`road_width_m`)
+  double roadWidth = 10;       ///< kerb to kerb, m
   double lampSpacing = 28;     ///< mean distance of lamp posts on one side, m (`lamp_spacing_m`)
   double signSpacing = 24;     ///< mean distance of traffic signs on one side, m (`sign_spacing_m`)
   double treeSpacing = 10;     ///< mean distance of trees in a row, m (`tree_spacing_m`)
   double treeShare = 0.4;      ///< share of the street lined with trees (`tree_share`)
-  double parkedShare = 0.5;    ///< share of parking places taken (`parked_share`)
+  double parkedShare = 0.5;    ///< share of parking places taken
   double clutter = 1;          ///< scales numbers of people, bins, bicycles, bollards, billboards
   double removedShare = 0.03;  ///< poles of day 0 that are gone on another day (`removed_share`)
   double addedShare = 0.02;    ///< new poles on another day, share of all (`added_share`)
   double foliage = 1;          ///< density of leaves; 0: bare branches
-  bool peopleMove = false;     ///< people walk during the drive (`people_move`)
   /// Share of the poles that go for good within 365 days, each on a day of its own, while as many
   /// new ones come to stay (`replaced_per_year`); 0: none.
   double replacedPerYear = 0;
   /// Day of the year of day 0, 1: 1 January (`day_of_year`); 0: no seasons, leaves and no snow.
   int dayOfYear = 0;
-  /// Midwinter's snow banks hide what stands along the kerb up to this height, m (`snow_bank_m`).
+  /// Midwinter's snow banks hide what stands along the kerb up to this height, m.
   double snowBank = 0.5;
   double buildingSites = 0;  ///< per km of street, at any time (`building_sites`)
   int sideStreets = 0;       ///< side streets for detours, 0 to 2 (`side_streets`)
@@ -59,9 +58,9 @@ enum class OdometryModel {
 struct OdometryBias {
   double scale = 0;     ///< error of the distance, share (`odometry_scale`)
   double yaw = 0;       ///< error of the heading, rad per metre (`odometry_yaw_deg_m`)
-  double drift = 0.2;   ///< slow change of both, as a share of them (`odometry_drift`); wheels only
-  double slip = 0.005;  ///< error of turns, share (`wheel_slip`); wheels only
-  double tick = 0.02;   ///< distance per tick, m (`wheel_tick_m`), 0: not counted; wheels only
+  double drift = 0.2;   ///< slow change of both, as a share of them; wheels only
+  double slip = 0.005;  ///< error of turns, share; wheels only
+  double tick = 0.02;   ///< distance per tick, m, 0: not counted; wheels only
 };
 
 /// \brief The drive and its LiDAR. `[simulation]` in INI files.
@@ -77,7 +76,7 @@ struct SimulationOptions {
   double originX = 0, originY = 0, originZ = 0;
   double spacing = 0.5;  ///< distance between scans, m (`spacing_m`)
   double speed = 5;      ///< m/s (`speed_m_s`)
-  /// Offset of the drive from the middle of the road, m, + left (`lane_offset_m`).
+  /// Offset of the drive from the middle of the road, m, + left.
   double laneOffset = -1.5;
   /// Standard deviation as a share of each component of the motion (`odometry_noise`).
   double odometryNoise = 0.02;

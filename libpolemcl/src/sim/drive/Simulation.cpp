@@ -101,7 +101,7 @@ SimulatedScan SimulatedDrive::scan(std::size_t i) const {
   const WorldOptions& world = m_options.world;
   const std::uint64_t seed = driveSeed(m_options, hash(world.seed, world.day, 0x5ca4ull, i));
   const Motion motion = m_options.motionDistortion ? motionAt(m_drive, i) : Motion{};
-  SimulatedScan scan = m_scanner.scan(m_drive.T_map_sensor[i], seed, m_drive.time[i], motion);
+  SimulatedScan scan = m_scanner.scan(m_drive.T_map_sensor[i], seed, motion);
   const Eigen::Vector3f origin =
       Eigen::Vector3d(m_options.originX, m_options.originY, m_options.originZ).cast<float>();
   for (std::size_t k = 0; k < scan.size(); ++k) {

@@ -62,16 +62,14 @@ void Scanner::castGround(const Eigen::Isometry3d& T_map_sensor,
     }
 }
 
-std::vector<SolidView> Scanner::solidsAround(const Eigen::Isometry3d& T_map_sensor,
-                                             double time) const {
+std::vector<SolidView> Scanner::solidsAround(const Eigen::Isometry3d& T_map_sensor) const {
   const Eigen::Isometry3d T_sensor_map = T_map_sensor.inverse();
   const Eigen::Vector3d centre = T_map_sensor.translation();
   std::vector<SolidView> solids;
   for (const std::uint32_t i : m_world.objectsWithin(centre.x(), centre.y(), m_lidar.maxRange)) {
     const WorldObject& object = m_world.objects()[i];
-    const Eigen::Vector2d shift = object.displacement(time);
     for (std::size_t k = 0; k < object.solids.size(); ++k)
-      solids.emplace_back(object.solids[k], Eigen::Vector3d(shift.x(), shift.y(), 0), T_sensor_map,
+      solids.emplace_back(object.solids[k], T_sensor_map,
                           hash(m_world.options().seed, m_world.options().day, object.id, k));
   }
   return solids;
@@ -113,14 +111,14 @@ void Scanner::castSolid(const SolidView& solid, std::int32_t index,
   }
 }
 
-SimulatedScan Scanner::scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t seed, double time,
+SimulatedScan Scanner::scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t seed,
                             const Motion& motion) const {
   const auto columns = columnViews(motion);
   std::vector<SubHit> hits(m_beams.size() * m_lidar.columns * kSubRays,
                            SubHit{static_cast<float>(m_lidar.maxRange), 1, SubHit::kNothing});
   castGround(T_map_sensor, columns, hits);
 
-  const auto solids = solidsAround(T_map_sensor, time);
+  const auto solids = solidsAround(T_map_sensor);
   BoundsMargin margin;
   margin.translation = 0.5 * m_lidar.period * motion.velocity.norm();
   margin.azimuth = 0.5 * m_lidar.period * std::abs(motion.yawRate);

@@ -40,9 +40,8 @@ class Scanner {
   /// \brief Simulates one revolution.
   /// \param T_map_sensor Pose of the optical centre in the middle of the revolution.
   /// \param seed Seed of noise and dropouts; equal seeds give equal scans.
-  /// \param time Time of the scan, s; determines the position of walking objects.
   /// \param motion Distorts the scan: points are computed as if the sensor had not moved.
-  SimulatedScan scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t seed, double time = 0,
+  SimulatedScan scan(const Eigen::Isometry3d& T_map_sensor, std::uint64_t seed,
                      const Motion& motion = {}) const;
 
  private:
@@ -51,7 +50,7 @@ class Scanner {
   std::vector<ColumnView> columnViews(const Motion& motion) const;
   void castGround(const Eigen::Isometry3d& T_map_sensor, const std::vector<ColumnView>& columns,
                   std::vector<SubHit>& hits) const;
-  std::vector<SolidView> solidsAround(const Eigen::Isometry3d& T_map_sensor, double time) const;
+  std::vector<SolidView> solidsAround(const Eigen::Isometry3d& T_map_sensor) const;
   void castSolid(const SolidView& solid, std::int32_t index, const std::vector<ColumnView>& columns,
                  const SolidBounds& bounds, std::uint64_t seed, std::vector<SubHit>& hits) const;
 

@@ -30,12 +30,11 @@ Eigen::Vector3d BeamView::reported(const ColumnView& column, double range) const
           range * m_reported.z() + start.z()};
 }
 
-SolidView::SolidView(const Solid& solid, const Eigen::Vector3d& displacement,
-                     const Eigen::Isometry3d& T_sensor_map, std::uint64_t seed)
+SolidView::SolidView(const Solid& solid, const Eigen::Isometry3d& T_sensor_map, std::uint64_t seed)
     : material(solid.material),
       object(solid.object),
       m_shape(solid.shape),
-      m_position(T_sensor_map * (solid.position + displacement)),
+      m_position(T_sensor_map * solid.position),
       m_axes(T_sensor_map.linear() * solid.axes),
       m_size(solid.size.cast<float>()),
       m_density(solid.density),

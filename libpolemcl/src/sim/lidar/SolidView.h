@@ -57,8 +57,7 @@ struct BoundsMargin {
 /// \brief A solid in the sensor frame of one scan.
 class SolidView {
  public:
-  SolidView(const Solid& solid, const Eigen::Vector3d& displacement,
-            const Eigen::Isometry3d& T_sensor_map, std::uint64_t seed);
+  SolidView(const Solid& solid, const Eigen::Isometry3d& T_sensor_map, std::uint64_t seed);
   SolidBounds bounds(const BoundsMargin& margin) const;
   /// \param draw Random bits for this ray and solid.
   ShapeHit intersect(const LocalRay& ray, std::uint64_t draw) const;

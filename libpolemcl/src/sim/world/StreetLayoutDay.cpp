@@ -64,13 +64,7 @@ void StreetLayout::people(int side) {
     const Site place = site(side, s, m_options.roadWidth / 2 + out);
     if (!m_street.fresh(s) || !claim(place, 0.5, Ground::pavement)) continue;
     if (kind < 0.7) {
-      WorldObject person = makePerson(place, id, own);
-      const double way = own.uniform(5, 30), pace = own.uniform(0.8, 1.6);
-      if (m_options.peopleMove && own.chance(0.7)) {
-        person.walk = way * Eigen::Vector2d(std::cos(place.heading), std::sin(place.heading));
-        person.pace = pace;
-      }
-      add(std::move(person));
+      add(makePerson(place, id, own));
     } else if (kind < 0.85) {
       add(makeBin(place, id, own));
     } else {

@@ -69,7 +69,7 @@ WorldObject makeWall(const Site& site, std::uint32_t id, double length, Random& 
 
 /// \brief A parked car, van or lorry that points along local x.
 WorldObject makeVehicle(const Site& site, std::uint32_t id, Random& random);
-/// \brief A person standing or walking, below 2 m.
+/// \brief A person, below 2 m.
 WorldObject makePerson(const Site& site, std::uint32_t id, Random& random);
 
 /// Distance of a snow bank's middle from the kerb, m.

@@ -34,7 +34,7 @@ World::World(const WorldOptions& options, Street street, Terrain terrain,
     const Eigen::Vector2d cell = (m_objects[i].centre - low) / kIndexCell;
     m_grid[static_cast<std::size_t>(cell.y()) * m_gridX + static_cast<std::size_t>(cell.x())]
         .push_back(static_cast<std::uint32_t>(i));
-    m_largest = std::max(m_largest, m_objects[i].radius + m_objects[i].walk.norm());
+    m_largest = std::max(m_largest, m_objects[i].radius);
   }
 }
 
@@ -52,7 +52,7 @@ std::vector<std::uint32_t> World::objectsWithin(double x, double y, double radiu
     for (int column = x0; column <= x1; ++column)
       for (const std::uint32_t i : m_grid[static_cast<std::size_t>(row) * m_gridX + column]) {
         const WorldObject& object = m_objects[i];
-        const double limit = radius + object.radius + object.walk.norm();
+        const double limit = radius + object.radius;
         if ((object.centre - Eigen::Vector2d(x, y)).squaredNorm() <= limit * limit)
           found.push_back(i);
       }

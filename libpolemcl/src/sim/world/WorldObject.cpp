@@ -16,13 +16,6 @@ const char* name(Kind kind) {
   return names[static_cast<int>(kind)];
 }
 
-Eigen::Vector2d WorldObject::displacement(double time) const {
-  const double way = walk.norm();
-  if (pace <= 0 || way <= 0) return Eigen::Vector2d::Zero();
-  const double phase = std::fmod(pace * time / way, 2.0);  // to the end and back
-  return (phase < 1 ? phase : 2 - phase) * walk;
-}
-
 Eigen::Matrix3d axesAlong(const Eigen::Vector3d& direction) {
   return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction).toRotationMatrix();
 }

@@ -64,17 +64,13 @@ struct Site {
   double heading = 0;                              ///< direction of local x, rad
 };
 
-/// \brief One object. Its solids are in the map frame at time 0.
+/// \brief One object. Its solids are in the map frame.
 struct WorldObject {
   std::uint32_t id = 0;
   Kind kind = Kind::house;
   std::vector<Solid> solids;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< centre of the bounding circle, m
   double radius = 0;                                 ///< of the bounding circle, m
-  Eigen::Vector2d walk = Eigen::Vector2d::Zero();    ///< walks to centre + walk and back, m
-  double pace = 0;                                   ///< m/s; 0: stands still
-  /// \brief Displacement at a time, m.
-  Eigen::Vector2d displacement(double time) const;
 };
 
 /// \brief Axes of a solid, as columns, whose z points along a direction of any length above 0.

@@ -166,48 +166,18 @@ TEST(CircleFit, NoCircleThroughPointsOnALine) {
 TEST(CircleFit, NoCircleThroughTooFewPoints) {
   EXPECT_FALSE(fitCircleKasa({}));
   EXPECT_FALSE(fitCircleKasa({{0, 0}, {1, 1}}));
-  EXPECT_FALSE(fitCircleSilhouette({}, 0.1));
-  EXPECT_FALSE(fitCircleSilhouette({{5, 0}}, 0.1));
 }
 
 TEST(CircleFit, NoCircleThroughOnePointSeveralTimes) {
   const Points same(5, Eigen::Vector2d(4, 3));
   EXPECT_FALSE(fitCircleKasa(same));
-  EXPECT_FALSE(fitCircleSilhouette(same, 0));
 }
 
-TEST(CircleFit, SilhouetteOfARenderedPole) {
-  sim::Random random(3);
-  for (const double bearing : {0.0, 2.0, M_PI, -1.5})  // pi: across the seam of atan2
-    for (const double radius : {0.1, 0.25})
-      for (const double depth : {5.0, 12.0}) {
-        const double step = 0.0005;
-        const Points points = rendered(depth, bearing, radius, step, 0, random);
-        expectCircle(fitCircleSilhouette(points, step * depth), depth * std::cos(bearing),
-                     depth * std::sin(bearing), radius, 0.004 + 0.05 * radius);
-      }
-}
-
-TEST(CircleFit, SilhouetteWithoutWidthIsNone) {
-  EXPECT_FALSE(fitCircleSilhouette({{5, 0}, {6, 0}}, 0));
-  EXPECT_TRUE(fitCircleSilhouette({{5, 0}, {6, 0}}, 0.1));
-}
-
-TEST(CircleFit, SilhouetteOfWhatSurroundsTheSensorIsNone) {
-  EXPECT_FALSE(fitCircleSilhouette({{1, 0}, {0, 1}, {-1, 0}}, 0));
-}
-
-TEST(CircleFit, OnShortArcsKasaIsTooSmallSilhouetteNot) {
+TEST(CircleFit, OnShortArcsKasaIsTooSmall) {
   const double depth = 10, radius = 0.15;
   const Bias kasa = bias(depth, radius, fitCircleKasa);
-  const Bias silhouette = bias(depth, radius, [&](const Points& points) {
-    // Eight rows leave a ninth of a step unseen on either side, on average.
-    return fitCircleSilhouette(points, 2 * 0.003 * depth / 9);
-  });
   EXPECT_LT(kasa.radius, -0.015);
   EXPECT_LT(kasa.centre, -0.02);
-  EXPECT_LT(std::abs(silhouette.radius), 0.004);
-  EXPECT_LT(std::abs(silhouette.centre), 0.004);
 }
 
 }  // namespace polemcl::test_circle_fit

@@ -93,31 +93,4 @@ std::optional<Circle> fitCircleKasaMean(const std::vector<Eigen::Vector2d>& poin
   return singlePrecision ? fitKasaMean<float>(points) : fitKasaMean<double>(points);
 }
 
-std::optional<Circle> fitCircleSilhouette(const std::vector<Eigen::Vector2d>& points,
-                                          double extraWidth) {
-  if (points.size() < 2) return std::nullopt;
-  const double reference = std::atan2(points[0].y(), points[0].x());
-  double low = 0, high = 0, front = 0;
-  for (const auto& p : points) {
-    const double offset = std::remainder(std::atan2(p.y(), p.x()) - reference, 2 * M_PI);
-    low = std::min(low, offset);
-    high = std::max(high, offset);
-    front += p.norm() / static_cast<double>(points.size());
-  }
-  const double bearing = reference + 0.5 * (low + high);
-  Circle circle;
-  circle.radius = 0.5 * (front * (high - low) + extraWidth);
-  if (!(circle.radius > 0) || high - low > 1) return std::nullopt;
-  const Eigen::Vector2d axis(std::cos(bearing), std::sin(bearing));
-  double depth = 0;
-  for (const auto& p : points) {
-    const double along = p.dot(axis), across = p.x() * axis.y() - p.y() * axis.x();
-    const double sagitta = circle.radius * circle.radius - across * across;
-    depth += (along + std::sqrt(std::max(0.0, sagitta))) / static_cast<double>(points.size());
-  }
-  circle.x = depth * axis.x();
-  circle.y = depth * axis.y();
-  return circle;
-}
-
 }  // namespace polemcl

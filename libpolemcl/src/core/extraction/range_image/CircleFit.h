@@ -23,10 +23,4 @@ std::optional<Circle> fitCircleKasa(const std::vector<Eigen::Vector2d>& points);
 std::optional<Circle> fitCircleKasaMean(const std::vector<Eigen::Vector2d>& points,
                                         bool singlePrecision);
 
-/// \brief Half the width seen from the origin is the radius; the centre lies on the bisector so far
-/// behind the front that the points' mean distance to it is the radius. Not biased on short arcs.
-/// \param extraWidth Added to the width seen, m: a firing step less the beam's footprint.
-std::optional<Circle> fitCircleSilhouette(const std::vector<Eigen::Vector2d>& points,
-                                          double extraWidth);
-
 }  // namespace polemcl
