@@ -141,6 +141,24 @@ TEST(VisibilityRange, TurnsWithTheScan) {
   EXPECT_LE(different, 4) << "edges of sectors may round";
 }
 
+// The nose of the LiDAR is 15° down. Ahead, its two highest beams (10.67° and 9.33° up) fall by
+// 4.33° and 5.67°, and the second is below 0.5 m after (1.5 - 0.5) m / tan 5.67° = 10.1 m.
+TEST(VisibilityRange, OfATiltedLidarEndsWhereItsBeamsReachTheGround) {
+  const double lean = std::tan(15 * kDegree);
+  Scene scene;
+  scene.ground = GroundPlane{-kSensorHeight, lean, 0};
+  const SensorOptions sensor = sensorOptions("hdl32e");
+  const PointList points = cast(scene, SensorModel(sensor), {0, 0, 1});
+  PoleExtractor extractor(sensor, {});
+  extractor.extract(points.view(), {static_cast<float>(-lean), 0});
+  const auto tilted = extractor.visibilityRange();
+  EXPECT_NEAR(at(tilted, 0.01), (kSensorHeight - 0.5) / std::tan(5.67 * kDegree), 0.8);
+  EXPECT_GT(at(tilted, 3.1), 35);
+  EXPECT_GT(at(tilted, 1.57), 35);
+  extractor.extract(castYard(sensor, plain()).view());
+  EXPECT_GT(at(extractor.visibilityRange(), 0.01), 35) << "level again";
+}
+
 TEST(VisibilityRange, IsEmptyByThePapersMethodAndOfCameras) {
   ExtractionOptions paper;
   paper.method = ExtractionMethod::rangeImage;
@@ -157,7 +175,7 @@ TEST(VisibilityRange, IsEmptyByThePapersMethodAndOfCameras) {
   ScanLines lines(model);
   GroundGrid ground;
   std::vector<float> ranges{1, 2};
-  VisibilityRangeFinder(model, 1.5, 40).find(lines, ground, ranges);
+  VisibilityRangeFinder(model, 1.5, 40).find(lines, ground, Eigen::Vector2f::Zero(), ranges);
   EXPECT_TRUE(ranges.empty());
 }
 

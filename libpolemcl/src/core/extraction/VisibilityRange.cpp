@@ -12,6 +12,10 @@ constexpr float kSteep = 5;
 constexpr std::size_t kEnoughBeams = 16;  ///< of more, every second, third … is looked at
 constexpr int kFewestBeams = 2;           ///< fewer do not make a pole
 
+double middleOf(int sector) {
+  return (sector + 0.5) * 2 * M_PI / VisibilityRangeFinder::kSectors - M_PI;
+}
+
 }  // namespace
 
 std::size_t visibilityRangeSector(double azimuth, std::size_t sectors) {
@@ -36,55 +40,91 @@ double visibilityRangeTowards(const std::vector<float>& visibilityRange, double 
 }
 
 VisibilityRangeFinder::VisibilityRangeFinder(const SensorModel& sensor, double sensorHeight,
-                                             double maxRange) {
+                                             double maxRange)
+    : m_sensor(sensor), m_sensorHeight(static_cast<float>(sensorHeight)) {
   if (sensor.lookup().planes) return;
   m_steps = static_cast<int>(maxRange / kStep) + 1;  // 0 to m_steps - 1
-  chooseBeams(sensor, static_cast<float>(sensorHeight));
-  std::vector<int> beams(m_steps);
-  for (const Span& span : m_spans)
-    for (int step = span.first; step <= span.last; ++step) ++beams[step];
-  for (const int n : beams)
-    m_mostBlocked.push_back(static_cast<std::int16_t>(std::min(n - kFewestBeams, n / 2)));
-  // A lidar high up passes over all poles beside it.
-  while (m_firstJudged < m_steps && beams[m_firstJudged] < kFewestBeams) ++m_firstJudged;
+  m_mostBlocked.resize(static_cast<std::size_t>(kSectors) * m_steps);
   m_change.resize(static_cast<std::size_t>(kSectors) * (m_steps + 1));
   for (int sector = 0; sector < kSectors; ++sector) {
-    const double azimuth = (sector + 0.5) * 2 * M_PI / kSectors - M_PI;
+    const double azimuth = middleOf(sector);
     const int cell = GroundGrid::cell(static_cast<float>(std::cos(azimuth)),
                                       static_cast<float>(std::sin(azimuth)));
     m_groundSector[sector] = static_cast<std::uint16_t>(cell / GroundGrid::kRings);
   }
+  setUpright(Eigen::Vector2f::Zero());
 }
 
-void VisibilityRangeFinder::chooseBeams(const SensorModel& sensor, float sensorHeight) {
-  std::vector<Span> all;
-  for (int row = 0; row < sensor.beamCount(); ++row) {
-    Span span{row, m_steps, -1};
+/// Notes how many beams pass at pole heights, and how many of these may be blocked.
+void VisibilityRangeFinder::setUpright(const Eigen::Vector2f& upright) {
+  m_upright = upright;
+  chooseBeams();
+  for (int sector = 0; sector < kSectors; ++sector) {
+    std::vector<int> beams(m_steps);
+    for (const Beam& beam : m_beams)
+      for (int step = beam.span[sector].first; step <= beam.span[sector].last; ++step)
+        ++beams[step];
+    // A lidar high up passes over all poles beside it.
+    int first = 0;
+    while (first < m_steps && beams[first] < kFewestBeams) ++first;
+    m_firstJudged[sector] = static_cast<std::int16_t>(first);
+    for (int step = 0; step < m_steps; ++step)
+      m_mostBlocked[static_cast<std::size_t>(step) * kSectors + sector] =
+          step < first
+              ? std::numeric_limits<std::int16_t>::max()
+              : static_cast<std::int16_t>(std::min(beams[step] - kFewestBeams, beams[step] / 2));
+  }
+}
+
+void VisibilityRangeFinder::chooseBeams() {
+  std::vector<Beam> all;
+  std::vector<float> heights(m_steps);
+  for (int row = 0; row < m_sensor.beamCount(); ++row) {
     for (int step = 0; step < m_steps; ++step) {
       const float range = kStep * static_cast<float>(step);
-      const float height = sensor.heightOver(row, range, 0, range) + sensorHeight;
-      if (height < kLowest || height > kHighest) continue;
-      span.first = std::min(span.first, step);
-      span.last = step;
+      heights[step] = m_sensor.heightOver(row, range, 0, range) + m_sensorHeight;
     }
-    if (kStep * static_cast<float>(span.last) >= kSteep) all.push_back(span);
+    Beam beam{row, {}};
+    int last = -1;
+    for (int sector = 0; sector < kSectors; ++sector) {
+      beam.span[sector] = spanAtPoleHeights(heights, sector);
+      last = std::max<int>(last, beam.span[sector].last);
+    }
+    if (kStep * static_cast<float>(last) >= kSteep) all.push_back(beam);
   }
   const std::size_t stride = std::max<std::size_t>(1, all.size() / kEnoughBeams);
-  for (std::size_t i = 0; i < all.size(); i += stride) m_spans.push_back(all[i]);
+  m_beams.clear();
+  for (std::size_t i = 0; i < all.size(); i += stride) m_beams.push_back(all[i]);
+}
+
+/// \param heights Of a beam above the ground under an upright lidar, by step, m.
+VisibilityRangeFinder::Span VisibilityRangeFinder::spanAtPoleHeights(
+    const std::vector<float>& heights, int sector) const {
+  const double azimuth = middleOf(sector);
+  const float rise = m_upright.x() * static_cast<float>(std::cos(azimuth)) +
+                     m_upright.y() * static_cast<float>(std::sin(azimuth));
+  Span span{static_cast<std::int16_t>(m_steps), -1};
+  for (int step = 0; step < m_steps; ++step) {
+    const float height = heights[step] + rise * kStep * static_cast<float>(step);
+    if (height < kLowest || height > kHighest) continue;
+    span.first = std::min(span.first, static_cast<std::int16_t>(step));
+    span.last = static_cast<std::int16_t>(step);
+  }
+  return span;
 }
 
 /// Counts the blocked steps of one beam in all sectors: it sees nothing beyond what it met.
-void VisibilityRangeFinder::countBlocked(const ScanLines& lines, const Span& span) {
-  const float farthest = kStep * static_cast<float>(span.last);
+void VisibilityRangeFinder::countBlocked(const ScanLines& lines, const Beam& beam) {
   float nearest[kSectors];
   std::fill(nearest, nearest + kSectors, std::numeric_limits<float>::infinity());
-  for (const Return* r = lines.begin(span.row); r < lines.end(span.row); ++r) {
+  for (const Return* r = lines.begin(beam.row); r < lines.end(beam.row); ++r) {
     float& least = nearest[ScanLines::part(r->azimuth, kSectors)];
     least = std::min(least, r->rho);
   }
   for (int sector = 0; sector < kSectors; ++sector) {
-    if (!(nearest[sector] < farthest)) continue;
-    const int from = std::max(span.first, static_cast<int>(nearest[sector] / kStep) + 1);
+    const Span span = beam.span[sector];
+    if (!(nearest[sector] < kStep * static_cast<float>(span.last))) continue;
+    const int from = std::max<int>(span.first, static_cast<int>(nearest[sector] / kStep) + 1);
     ++m_change[static_cast<std::size_t>(from) * kSectors + sector];
     --m_change[static_cast<std::size_t>(span.last + 1) * kSectors + sector];
   }
@@ -95,24 +135,24 @@ void VisibilityRangeFinder::countFree(std::int16_t* reached) const {
   std::int16_t blocked[kSectors] = {}, open[kSectors];
   std::fill(open, open + kSectors, std::int16_t{1});
   std::fill(reached, reached + kSectors, std::int16_t{0});
-  const std::int16_t* change = m_change.data();
-  for (int step = 0; step < m_steps; ++step, change += kSectors) {
-    const std::int16_t most =
-        step < m_firstJudged ? std::numeric_limits<std::int16_t>::max() : m_mostBlocked[step];
+  const std::int16_t *change = m_change.data(), *most = m_mostBlocked.data();
+  for (int step = 0; step < m_steps; ++step, change += kSectors, most += kSectors) {
     for (int sector = 0; sector < kSectors; ++sector) {
       blocked[sector] = static_cast<std::int16_t>(blocked[sector] + change[sector]);
-      open[sector] = static_cast<std::int16_t>(open[sector] & (blocked[sector] <= most));
+      open[sector] = static_cast<std::int16_t>(open[sector] & (blocked[sector] <= most[sector]));
       reached[sector] = static_cast<std::int16_t>(reached[sector] + open[sector]);
     }
   }
 }
 
 void VisibilityRangeFinder::find(const ScanLines& lines, const GroundGrid& ground,
+                                 const Eigen::Vector2f& upright,
                                  std::vector<float>& visibilityRange) {
   visibilityRange.clear();
   if (m_steps == 0) return;
+  if (upright != m_upright) setUpright(upright);
   std::fill(m_change.begin(), m_change.end(), std::int16_t{0});
-  for (const Span& span : m_spans) countBlocked(lines, span);
+  for (const Beam& beam : m_beams) countBlocked(lines, beam);
   std::int16_t reached[kSectors];
   countFree(reached);
   bool known[GroundGrid::kSectors] = {};
@@ -120,7 +160,7 @@ void VisibilityRangeFinder::find(const ScanLines& lines, const GroundGrid& groun
     known[cell / GroundGrid::kRings] |= ground.hasPoints(cell);
   visibilityRange.resize(kSectors);
   for (int sector = 0; sector < kSectors; ++sector) {
-    const bool some = known[m_groundSector[sector]] && reached[sector] > m_firstJudged;
+    const bool some = known[m_groundSector[sector]] && reached[sector] > m_firstJudged[sector];
     visibilityRange[sector] = some ? kStep * static_cast<float>(reached[sector] - 1) : 0.f;
   }
 }

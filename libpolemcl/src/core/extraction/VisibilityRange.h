@@ -28,13 +28,13 @@ double visibilityRangeTowards(const std::vector<float>& visibilityRange, double 
 /// ground).
 ///
 /// At a range, the beams that pass there at pole heights are counted (ground taken as level at the
-/// lidar's nominal height; those that reach the ground within 5 m or so are left out, of
-/// 32 and more every second, third … is taken). A beam that met something nearer in the sector is
-/// blocked. The visibility range is the last of steps of 0.5 m before which at least half of the
-/// beams, and two, are free; it ends where fewer than two beams pass at pole heights at all, and at
-/// the extractor's greatest range. A pole ends the visibility range of its own direction at its
-/// front. Beams without a return count as free; a direction in which not a single point was seen is
-/// unknown.
+/// lidar's nominal height, also under a tilted one; those that reach the ground within 5 m or so
+/// are left out, of 32 and more every second, third … is taken). A beam that met something nearer
+/// in the sector is blocked. The visibility range is the last of steps of 0.5 m before which at
+/// least half of the beams, and two, are free; it ends where fewer than two beams pass at pole
+/// heights at all, and at the extractor's greatest range. A pole ends the visibility range of its
+/// own direction at its front. Beams without a return count as free; a direction in which not a
+/// single point was seen is unknown.
 class VisibilityRangeFinder {
  public:
   static constexpr int kSectors = 256;     ///< 1.4° each
@@ -46,23 +46,36 @@ class VisibilityRangeFinder {
   VisibilityRangeFinder(const SensorModel& sensor, double sensorHeight, double maxRange);
   /// \param visibilityRange Becomes kSectors ranges, m, horizontal, lidar frame; sector i as
   /// visibilityRangeSector(). 0: unknown. Empty for depth cameras.
-  void find(const ScanLines& lines, const GroundGrid& ground, std::vector<float>& visibilityRange);
+  /// \param upright Shift of an upright pole along x and y per unit of height, lidar frame.
+  void find(const ScanLines& lines, const GroundGrid& ground, const Eigen::Vector2f& upright,
+            std::vector<float>& visibilityRange);
 
  private:
-  /// \brief Steps of range at which a beam passes at pole heights: first to last.
+  /// \brief Steps of range at which a beam passes at pole heights: first to last, or last is -1.
   struct Span {
-    int row, first, last;
+    std::int16_t first, last;
   };
-  void chooseBeams(const SensorModel& sensor, float sensorHeight);
-  void countBlocked(const ScanLines& lines, const Span& span);
+  struct Beam {
+    int row;
+    Span span[kSectors];
+  };
+  void setUpright(const Eigen::Vector2f& upright);
+  void chooseBeams();
+  Span spanAtPoleHeights(const std::vector<float>& heights, int sector) const;
+  void countBlocked(const ScanLines& lines, const Beam& beam);
   void countFree(std::int16_t* reached) const;
 
-  std::vector<Span> m_spans;
-  std::vector<std::int16_t> m_mostBlocked;  ///< beams that may be blocked, by step
+  const SensorModel& m_sensor;
+  float m_sensorHeight;
+  Eigen::Vector2f m_upright = Eigen::Vector2f::Zero();
+  std::vector<Beam> m_beams;
+  /// step * kSectors + sector: beams that may be blocked.
+  std::vector<std::int16_t> m_mostBlocked;
   /// step * kSectors + sector: blocked beams more than at the step before.
   std::vector<std::int16_t> m_change;
   std::uint16_t m_groundSector[kSectors] = {};  ///< of GroundGrid, by sector
-  int m_steps = 0, m_firstJudged = 0;
+  std::int16_t m_firstJudged[kSectors] = {};    ///< step, by sector
+  int m_steps = 0;
 };
 
 }  // namespace polemcl

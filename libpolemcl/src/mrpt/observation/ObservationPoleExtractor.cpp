@@ -24,18 +24,15 @@ Eigen::Vector2f upright(const LidarFrame& f) {
   return (up.head<2>() / up.z()).cast<float>();
 }
 
-/// Height of a detection's centre in the LiDAR frame. Heights above ground are converted along the
-/// robot's z axis. The scan-line method measures the centre at the height of the sensor, or at the
-/// visible part of the pole nearest to it. The method of the paper uses the mean of all points.
+/// Height of a detection's centre in the LiDAR frame: of the scan-line method that of the sensor,
+/// of the method of the paper the mean of all points. Heights above ground are converted along the
+/// robot's z axis.
 double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double ground,
                       const PoleDetection& pole) {
+  if (method == ExtractionMethod::scanLine) return 0;
   const Eigen::RowVector3d up = f.R_planar_lidar.row(2);
-  const auto inLidar = [&](double aboveGround) {
-    return (aboveGround + ground - up.x() * pole.x - up.y() * pole.y) / up.z();
-  };
-  const double low = inLidar(pole.bottom), high = inLidar(pole.top);
-  return method == ExtractionMethod::rangeImage ? 0.5 * (low + high)
-                                                : std::min(std::max(0.0, low), std::max(low, high));
+  const double middle = 0.5 * (pole.bottom + pole.top);
+  return (middle + ground - up.x() * pole.x - up.y() * pole.y) / up.z();
 }
 
 /// Transforms a detection from the LiDAR frame to the planar sensor frame.

@@ -13,9 +13,10 @@ using namespace polemcl::clouds;
 
 namespace {
 
-GroundGrid built(const PointList& points, double sensorHeight) {
+GroundGrid built(const PointList& points, double sensorHeight,
+                 const Eigen::Vector2f& upright = Eigen::Vector2f::Zero()) {
   GroundGrid ground;
-  ground.build(points.view(), 1, 60, static_cast<float>(sensorHeight));
+  ground.build(points.view(), 1, 60, static_cast<float>(sensorHeight), upright);
   return ground;
 }
 
@@ -80,6 +81,23 @@ TEST(GroundGrid, FollowsASlopeInAnyDirection) {
     const Errors e = errors(ground, plane, 4, 20);
     EXPECT_LT(e.low, 0.3) << direction;
     EXPECT_LT(e.high, 0.15) << direction;
+  }
+}
+
+// The level ground of a sensor that is tilted by 25°: three times as steep as ground may be.
+TEST(GroundGrid, LevelGroundUnderATiltedSensorIsFlat) {
+  const SensorModel sensor = sensorModel("hdl64e");
+  for (double direction = 0; direction < 6.2; direction += 0.7) {
+    const double lean = std::tan(25 * kDegree), x = lean * std::cos(direction),
+                 y = lean * std::sin(direction);
+    const GroundPlane plane{-1.73, -x, -y};
+    const PointList points = cast(onGround(plane), sensor, {0.02, 0, 1});
+    const GroundGrid ground = built(points, 1.73, {static_cast<float>(x), static_cast<float>(y)});
+    const Errors e = errors(ground, plane, 4, 45);
+    EXPECT_LT(std::max(e.low, e.high), 0.07) << direction;
+    EXPECT_NEAR(ground.median(), -1.73, 0.07) << direction;
+    for (std::size_t i = 0; i < points.size(); i += 97)
+      EXPECT_NEAR(ground.levels()[i], points.z[i] + x * points.x[i] + y * points.y[i], 1e-4);
   }
 }
 

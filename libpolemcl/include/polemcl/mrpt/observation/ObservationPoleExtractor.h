@@ -35,7 +35,8 @@ struct POLEMCL_EXPORT ObservationPoleExtractorOptions {
 ///
 /// The origin is that of the cloud, shifted by `SensorOptions::origin` along the robot's axes.
 /// Points are not copied if no transformation is needed. Poles are transformed to the planar sensor
-/// frame at their middle height, so that a tilted mounting does not shift them.
+/// frame at the height where their centre is known (of the sensor; `rangeImage`: their middle), so
+/// that a tilted mounting does not shift them.
 ///
 /// Sources of the points by class:
 /// - CObservationPointCloud: the cloud as it is; external storage is loaded and unloaded.

@@ -24,26 +24,28 @@ enum class Meeting {
 /// The candidate's place, and questions to single rows about it.
 class Place {
  public:
-  Place(const ScanLines& lines, const SensorModel& sensor, const PoleAxis& axis)
+  Place(const ScanLines& lines, const SensorModel& sensor, const PoleAxis& axis,
+        const Eigen::Vector2f& upright)
       : m_lines(lines),
+        m_sensor(sensor),
         m_axis(axis),
-        m_rho(std::sqrt(axis.x * axis.x + axis.y * axis.y)),
-        m_bearing(std::atan2(axis.y, axis.x)),
+        m_upright(upright),
+        m_leans(upright != Eigen::Vector2f::Zero()),
+        m_spot(spot(axis.x, axis.y)),
         m_column(static_cast<float>(sensor.columnAngle())) {}
-  float rho() const { return m_rho; }
-  float bearing() const { return m_bearing; }
-  float heightOfRow(const SensorModel& sensor, int row) const {
-    return sensor.heightOver(row, m_axis.x, m_axis.y, m_rho);
+  float heightOfRow(int row) const {
+    return m_sensor.heightOver(row, m_axis.x, m_axis.y, m_spot.rho);
   }
 
   Meeting meet(int row, float* z) const {
     Meeting meeting = Meeting::empty;
     const float reach = m_axis.radius + kNear;
-    around(row, std::max(m_axis.radius, 0.7f * m_column * m_rho), [&](const Return& r) {
-      if (squaredDistance(r) < reach * reach) {
+    const Spot at = spotOf(row);
+    around(row, at, std::max(m_axis.radius, 0.7f * m_column * at.rho), [&](const Return& r) {
+      if (squaredDistance(r, at) < reach * reach) {
         *z = r.z;
         meeting = Meeting::near;
-      } else if (meeting != Meeting::near && r.rho < m_rho) {
+      } else if (meeting != Meeting::near && r.rho < at.rho) {
         meeting = Meeting::occluded;
       } else if (meeting == Meeting::empty) {
         meeting = Meeting::passed;
@@ -56,19 +58,32 @@ class Place {
   bool cluttered(int row) const {
     bool found = false;
     const float inner = m_axis.radius + kRingInner, outer = m_axis.radius + kRingOuter;
-    around(row, outer, [&](const Return& r) {
-      const float d = squaredDistance(r);
+    const Spot at = spotOf(row);
+    around(row, at, outer, [&](const Return& r) {
+      const float d = squaredDistance(r, at);
       found |= d > inner * inner && d < outer * outer;
     });
     return found;
   }
 
  private:
+  struct Spot {
+    float rho, bearing;
+  };
+  static Spot spot(float x, float y) { return {std::sqrt(x * x + y * y), std::atan2(y, x)}; }
+
+  /// Where a row meets the axis of an upright pole.
+  Spot spotOf(int row) const {
+    if (!m_leans) return m_spot;
+    const float up = heightOfRow(row) - m_axis.z;
+    return spot(m_axis.x + m_upright.x() * up, m_axis.y + m_upright.y() * up);
+  }
+
   /// Squared distance of a return from the axis, m², by the law of cosines; the angle between is
   /// small.
-  float squaredDistance(const Return& r) const {
-    const float step = r.rho - m_rho, turn = wrapped(r.azimuth - m_bearing);
-    return step * step + r.rho * m_rho * turn * turn * (1 - turn * turn * (1 / 12.f));
+  static float squaredDistance(const Return& r, const Spot& at) {
+    const float step = r.rho - at.rho, turn = wrapped(r.azimuth - at.bearing);
+    return step * step + r.rho * at.rho * turn * turn * (1 - turn * turn * (1 / 12.f));
   }
 
   static float wrapped(float turn) {
@@ -78,12 +93,12 @@ class Place {
 
   /// Calls f(return) for the returns of a row within `halfWidth` m to either side.
   template <class F>
-  void around(int row, float halfWidth, F f) const {
-    const float half = std::min(1.f, halfWidth / std::max(m_rho, 0.5f));
+  void around(int row, const Spot& at, float halfWidth, F f) const {
+    const float half = std::min(1.f, halfWidth / std::max(at.rho, 0.5f));
     const float pi = static_cast<float>(M_PI);
-    visit(row, std::max(m_bearing - half, -pi), std::min(m_bearing + half, pi), f);
-    if (m_bearing - half < -pi) visit(row, m_bearing - half + 2 * pi, pi, f);
-    if (m_bearing + half > pi) visit(row, -pi, m_bearing + half - 2 * pi, f);
+    visit(row, std::max(at.bearing - half, -pi), std::min(at.bearing + half, pi), f);
+    if (at.bearing - half < -pi) visit(row, at.bearing - half + 2 * pi, pi, f);
+    if (at.bearing + half > pi) visit(row, -pi, at.bearing + half - 2 * pi, f);
   }
 
   template <class F>
@@ -95,13 +110,16 @@ class Place {
   }
 
   const ScanLines& m_lines;
+  const SensorModel& m_sensor;
   const PoleAxis& m_axis;
-  float m_rho, m_bearing, m_column;
+  Eigen::Vector2f m_upright;
+  bool m_leans;
+  Spot m_spot;  ///< at the height of the axis
+  float m_column;
 };
 
 /// Walks up from the topmost segment while something stands there; one silent row may interrupt it.
-void topFeatures(const Place& place, const SensorModel& sensor, int row, float ground,
-                 CandidateFeatures& features) {
+void topFeatures(const Place& place, int row, float ground, CandidateFeatures& features) {
   features.topBound = kInfinity;
   float bound = kInfinity;
   for (int misses = 0, r = row - 1; r >= 0 && misses < 2; --r) {
@@ -114,7 +132,7 @@ void topFeatures(const Place& place, const SensorModel& sensor, int row, float g
     } else if (meeting == Meeting::occluded) {
       return;
     } else {
-      if (misses++ == 0) bound = place.heightOfRow(sensor, r) - ground;
+      if (misses++ == 0) bound = place.heightOfRow(r) - ground;
     }
   }
   features.topBound = bound;
@@ -164,8 +182,8 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
                                   const GroundGrid& ground,
                                   const std::vector<ScanLineSegment>& segments,
                                   const SegmentCluster& cluster, const ClusterShape& shape,
-                                  const PoleAxis& axis) {
-  const Place place(lines, sensor, axis);
+                                  const PoleAxis& axis, const Eigen::Vector2f& upright) {
+  const Place place(lines, sensor, axis, upright);
   const float groundZ = ground.at(axis.x, axis.y);
   CandidateFeatures e;
   int expected = segments[cluster.top()].row;
@@ -180,14 +198,14 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
   }
   e.bottom = shape.low - groundZ;
   e.top = shape.high - groundZ;
-  topFeatures(place, sensor, segments[cluster.top()].row, groundZ, e);
+  topFeatures(place, segments[cluster.top()].row, groundZ, e);
   return e;
 }
 
 float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
                      const std::vector<ScanLineSegment>& segments, const SegmentCluster& cluster,
-                     const PoleAxis& axis) {
-  const Place place(lines, sensor, axis);
+                     const PoleAxis& axis, const Eigen::Vector2f& upright) {
+  const Place place(lines, sensor, axis, upright);
   int cluttered = 0;
   for (auto i : cluster) cluttered += place.cluttered(segments[i].row);
   return static_cast<float>(cluttered) / static_cast<float>(cluster.count);

@@ -43,11 +43,26 @@ float GroundGrid::at(float x, float y) const {
   const float* a = m_height + s0 % kSectors * kRings + k0;
   const float* b = m_height + (s0 + 1) % kSectors * kRings + k0;
   const float u = s - static_cast<float>(s0), v = k - static_cast<float>(k0);
-  return (1 - u) * ((1 - v) * a[0] + v * a[1]) + u * ((1 - v) * b[0] + v * b[1]);
+  const float level = (1 - u) * ((1 - v) * a[0] + v * a[1]) + u * ((1 - v) * b[0] + v * b[1]);
+  return level - m_upright.x() * x - m_upright.y() * y;
+}
+
+/// The points with their levels in place of z.
+PointsView GroundGrid::levelled(const PointsView& points) {
+  m_levels = points.z;
+  if (m_upright != Eigen::Vector2f::Zero()) {
+    m_tilted.resize(points.size + kKernelPadding);
+    for (std::size_t i = 0; i < points.size; ++i)
+      m_tilted[i] = points.z[i] + m_upright.x() * points.x[i] + m_upright.y() * points.y[i];
+    m_levels = m_tilted.data();
+  }
+  return {points.x, points.y, m_levels, points.size};
 }
 
 const GroundGrid::Counts& GroundGrid::build(const PointsView& points, float minRange,
-                                            float maxRange, float sensorHeight) {
+                                            float maxRange, float sensorHeight,
+                                            const Eigen::Vector2f& upright) {
+  m_upright = upright;
   if (m_cell.size() < points.size + kKernelPadding)
     m_cell.resize(points.size + points.size / 8 + kKernelPadding);
   for (int c = 0; c < kCells; ++c) {
@@ -55,7 +70,8 @@ const GroundGrid::Counts& GroundGrid::build(const PointsView& points, float minR
     m_second[c] = highestGround(c % kRings, sensorHeight);
   }
   m_second[kNoCell] = -kNoHeight;
-  m_counts = collectLowest(points, minRange, maxRange, {m_cell.data(), m_lowest, m_second});
+  m_counts =
+      collectLowest(levelled(points), minRange, maxRange, {m_cell.data(), m_lowest, m_second});
   climb(sensorHeight);
   smooth();
   return m_counts;

@@ -68,7 +68,7 @@ float firmness(const ScanLineSegment& segment, float firmHeight) {
 class CylinderProblem {
  public:
   CylinderProblem(const ScanLines& lines, const std::vector<ScanLineSegment>& segments,
-                  const std::vector<std::uint32_t>& used, const PoleView& view)
+                  const std::vector<std::uint32_t>& used, const PoleView& view, double height)
       : m_lines(lines),
         m_segments(segments),
         m_used(used),
@@ -80,6 +80,9 @@ class CylinderProblem {
     m_bearing = 0.5 * (reference.azimuthBegin + reference.azimuthEnd);
     m_cos = std::cos(m_bearing);
     m_sin = std::sin(m_bearing);
+    m_height = height;
+    m_leanAlong = view.uprightX * m_cos + view.uprightY * m_sin;
+    m_leanAcross = view.uprightY * m_cos - view.uprightX * m_sin;
     for (std::size_t i = 0; i < m_used.size(); i += m_stride) gather(m_segments[m_used[i]]);
   }
   /// Replaces the cylinder by a thin one right behind when the returns lie on a plane across: a
@@ -113,8 +116,10 @@ class CylinderProblem {
     double sumLateral = 0, sumDepth = 0, sumWidth = 0;
     for (std::uint32_t u : m_used) {
       const ScanLineSegment& segment = m_segments[u];
-      sumLateral += segment.rho * offset(0.5 * (segment.azimuthBegin + segment.azimuthEnd));
-      sumDepth += segment.rho;
+      const Shift lean = leanOf(segment);
+      sumLateral +=
+          segment.rho * offset(0.5 * (segment.azimuthBegin + segment.azimuthEnd)) - lean.across;
+      sumDepth += segment.rho - lean.along;
       sumWidth +=
           segment.rho * (segment.azimuthEnd - segment.azimuthBegin + m_columnAngle - kFootprint);
     }
@@ -134,6 +139,15 @@ class CylinderProblem {
   }
 
  private:
+  struct Shift {
+    double along, across;  ///< m
+  };
+  /// How far an upright pole is at a segment from where it is at the height of the fit.
+  Shift leanOf(const ScanLineSegment& segment) const {
+    const double up = segment.z - m_height;
+    return {m_leanAlong * up, m_leanAcross * up};
+  }
+
   /// Azimuth against the reference bearing; a segment's azimuths differ from it by less than a turn
   /// and a half.
   double offset(double azimuth) const {
@@ -157,6 +171,7 @@ class CylinderProblem {
     const Return* row = m_lines.begin(segment.row);
     const std::size_t size = m_lines.size(segment.row);
     const std::size_t groups = std::min<std::size_t>(segment.count, kGroups);
+    const Shift lean = leanOf(segment);
     for (std::size_t g = 0; g < groups; ++g) {
       const std::size_t first = g * segment.count / groups, end = (g + 1) * segment.count / groups;
       float along = 0, across = 0;
@@ -169,8 +184,8 @@ class CylinderProblem {
         across += r.rho * d * (1 - q * (1 / 6.f - q * (1 / 120.f - q * (1 / 5040.f))));
       }
       const float returns = static_cast<float>(end - first);
-      m_points.along[m_points.count] = along / returns;
-      m_points.across[m_points.count] = across / returns;
+      m_points.along[m_points.count] = along / returns - static_cast<float>(lean.along);
+      m_points.across[m_points.count] = across / returns - static_cast<float>(lean.across);
       m_points.returns[m_points.count++] = returns * firmness(segment, m_firmHeight);
     }
   }
@@ -203,11 +218,12 @@ class CylinderProblem {
     const double sigma = std::max(0.004, s.depth * std::sqrt(m_columnAngle * m_columnAngle / 12 +
                                                              0.16 * kFootprint * kFootprint));
     const double weight = firmness(segment, m_firmHeight) / (sigma * sigma);
+    const Shift lean = leanOf(segment);
+    const double lateral = s.lateral + lean.across, depth = s.depth + lean.along;
     if (segment.left == Side::free)
-      n.add(1, 0, 1, s.lateral + s.radius - s.depth * (offset(segment.azimuthEnd) + half), weight);
+      n.add(1, 0, 1, lateral + s.radius - depth * (offset(segment.azimuthEnd) + half), weight);
     if (segment.right == Side::free)
-      n.add(1, 0, -1, s.lateral - s.radius - s.depth * (offset(segment.azimuthBegin) - half),
-            weight);
+      n.add(1, 0, -1, lateral - s.radius - depth * (offset(segment.azimuthBegin) - half), weight);
   }
 
   const ScanLines& m_lines;
@@ -217,17 +233,20 @@ class CylinderProblem {
   FitPoints m_points;
   float m_firmHeight;
   double m_columnAngle, m_bearing, m_cos, m_sin;
+  double m_height;                   ///< of the fit, lidar frame, m
+  double m_leanAlong, m_leanAcross;  ///< of an upright pole, m per m of height
 };
 
 }  // namespace
 
 PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
                    const std::vector<std::uint32_t>& used, float columnAngle) {
-  float x = 0, y = 0, width = 0, n = 0;
+  float x = 0, y = 0, z = 0, width = 0, n = 0;
   for (std::uint32_t u : used) {
     const ScanLineSegment& segment = segments[u];
     x += segment.x;
     y += segment.y;
+    z += segment.z;
     width += segment.rho * (segment.azimuthEnd - segment.azimuthBegin + columnAngle -
                             static_cast<float>(kFootprint));
     n += 1;
@@ -237,6 +256,7 @@ PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
   const float rho = std::sqrt(x * x + y * y) / n;
   axis.x = x / n * (1 + axis.radius / rho);
   axis.y = y / n * (1 + axis.radius / rho);
+  axis.z = z / n;
   return axis;
 }
 
@@ -302,7 +322,8 @@ void moveToSensorHeight(const AxisTilt& tilt, PoleFit& fit) {
 std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLineSegment>& segments,
                                const std::vector<std::uint32_t>& used, const PoleView& view) {
   if (used.empty()) return std::nullopt;
-  const CylinderProblem problem(lines, segments, used, view);
+  const AxisTilt tilt = tiltOf(segments, used, view);
+  const CylinderProblem problem(lines, segments, used, view, tilt.height);
   State s = problem.initial();
   Normal n;
   for (int i = 0; i < kIterations; ++i) {
@@ -327,7 +348,7 @@ std::optional<PoleFit> fitPole(const ScanLines& lines, const std::vector<ScanLin
   const Eigen::Matrix2d local =
       n.H.inverse().topLeftCorner<2, 2>() + kFloorSigma * kFloorSigma * Eigen::Matrix2d::Identity();
   fit.covariance = turn * local * turn.transpose();
-  moveToSensorHeight(tiltOf(segments, used, view), fit);
+  moveToSensorHeight(tilt, fit);
   return fit;
 }
 

@@ -23,8 +23,9 @@ struct PoleFit {
 
 /// \brief Where a pole stands, roughly: middle of the segments' fronts, half their width behind.
 struct PoleAxis {
-  float x = 0, y = 0;  ///< lidar frame, m
+  float x = 0, y = 0;  ///< at the height z, lidar frame, m
   float radius = 0;    ///< m
+  float z = 0;         ///< mean height of the segments, m
 };
 PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
                    const std::vector<std::uint32_t>& used, float columnAngle);

@@ -191,34 +191,36 @@ class Classifier {
   ReturnStreams m_out;
 };
 
-void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                    const RingLookup& lookup, int rows, const ReturnStreams& out) {
+void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* level,
+                    const float* limit, const RingLookup& lookup, int rows,
+                    const ReturnStreams& out) {
   const KeptPoints::D d;
   const hn::RebindToSigned<KeptPoints::D> di;
   const hn::Rebind<std::uint16_t, KeptPoints::D> d16;
   const std::size_t lanes = hn::Lanes(d);
   const Classifier classify(lookup, rows, out);
   KeptPoints kept = {};
-  const auto look = [&](const PointsView& some, std::size_t from) {
-    const auto z = hn::LoadU(d, some.z);
+  const auto look = [&](const PointsView& some, const float* levels, std::size_t from) {
     const auto c = hn::PromoteTo(di, hn::LoadU(d16, cell + from));
-    const std::uint32_t bits = maskBits(d, hn::Ge(z, hn::GatherIndex(d, limit, c)));
+    const std::uint32_t bits =
+        maskBits(d, hn::Ge(hn::LoadU(d, levels), hn::GatherIndex(d, limit, c)));
     if (bits == 0) return;  // most often
-    kept.append(bits, hn::LoadU(d, some.x), hn::LoadU(d, some.y), z, from);
+    kept.append(bits, hn::LoadU(d, some.x), hn::LoadU(d, some.y), hn::LoadU(d, some.z), from);
     if (kept.count < KeptPoints::kRoom) return;
     classify(kept);
     kept.count = 0;
   };
   std::size_t i = 0;
   for (; i + lanes <= points.size; i += lanes)
-    look({points.x + i, points.y + i, points.z + i, lanes}, i);
+    look({points.x + i, points.y + i, points.z + i, lanes}, level + i, i);
   if (i < points.size) {
     // Points that are left over; the lanes behind them are of no cell.
-    HWY_ALIGN float x[8] = {}, y[8] = {}, z[8] = {};
+    HWY_ALIGN float x[8] = {}, y[8] = {}, z[8] = {}, levels[8] = {};
     std::copy(points.x + i, points.x + points.size, x);
     std::copy(points.y + i, points.y + points.size, y);
     std::copy(points.z + i, points.z + points.size, z);
-    look({x, y, z, lanes}, i);
+    std::copy(level + i, level + points.size, levels);
+    look({x, y, z, lanes}, levels, i);
   }
   classify(kept);
 }
@@ -318,9 +320,10 @@ HWY_EXPORT(classifyPoints);
 HWY_EXPORT(findDisorder);
 HWY_EXPORT(findEdges);
 
-void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                    const RingLookup& lookup, int rows, const ReturnStreams& out) {
-  HWY_DYNAMIC_DISPATCH(classifyPoints)(points, cell, limit, lookup, rows, out);
+void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* level,
+                    const float* limit, const RingLookup& lookup, int rows,
+                    const ReturnStreams& out) {
+  HWY_DYNAMIC_DISPATCH(classifyPoints)(points, cell, level, limit, lookup, rows, out);
 }
 
 std::size_t findDisorder(const Return* returns, std::size_t count, std::size_t from) {

@@ -36,9 +36,11 @@ struct ReturnStreams {
 };
 
 /// \brief Returns of the points that lie above a limit.
-/// \param limit Per cell of the ground: least z, m. \param rows Beams.
-void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* limit,
-                    const RingLookup& lookup, int rows, const ReturnStreams& out);
+/// \param cell,level Per point, see GroundGrid. \param limit Per cell: least level, m.
+/// \param rows Beams.
+void classifyPoints(const PointsView& points, const std::uint16_t* cell, const float* level,
+                    const float* limit, const RingLookup& lookup, int rows,
+                    const ReturnStreams& out);
 
 /// \brief The first i from `from` on for which return i + 1 does not have a greater azimuth than
 /// return i; `count`: all have.

@@ -39,8 +39,9 @@ ScanLineExtractor::ScanLineExtractor(SensorModel model, const SensorOptions& sen
 void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f& upright,
                                 std::vector<PoleDetection>& poles, ExtractionReport& report) {
   m_upright = upright;
-  const auto& dropped = m_ground.build(points, static_cast<float>(m_sensorOptions.minRange),
-                                       m_farthest, static_cast<float>(m_sensorOptions.height));
+  const auto& dropped =
+      m_ground.build(points, static_cast<float>(m_sensorOptions.minRange), m_farthest,
+                     static_cast<float>(m_sensorOptions.height), upright);
   const auto& counts = m_lines.build(points, m_ground, kClearance);
   report.points = points.size;
   report.invalid = dropped.invalid;
@@ -62,7 +63,7 @@ void ScanLineExtractor::extract(const PointsView& points, const Eigen::Vector2f&
       m_tilts.push_back(tilt);
     }
   }
-  m_visibilityFinder.find(m_lines, m_ground, m_visibilityRange);
+  m_visibilityFinder.find(m_lines, m_ground, upright, m_visibilityRange);
   setUpright(poles);
   report.refused[static_cast<int>(RejectionReason::duplicate)] = dropDuplicates(poles);
 }
@@ -134,7 +135,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
   const float column = static_cast<float>(m_sensor.columnAngle());
   const PoleAxis axis = roughAxis(m_segments, m_fitSegments, column);
   const CandidateFeatures candidate =
-      computeFeatures(m_lines, m_sensor, m_ground, m_segments, cluster, shape, axis);
+      computeFeatures(m_lines, m_sensor, m_ground, m_segments, cluster, shape, axis, m_upright);
   // The top lies between the highest return and the first beam that passed over it.
   const double top =
       std::isfinite(candidate.topBound) ? 0.5 * (candidate.top + candidate.topBound) : 1e9;
@@ -154,7 +155,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
   // Upper bound: assume no clutter; skip the costly check if even that fails.
   if (confidence(poleOdds(features)) < m_options.minConfidence)
     return RejectionReason::lowConfidence;
-  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);
+  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis, m_upright);
   const double odds = poleOdds(features);
   pole.confidence = confidence(odds);
   if (pole.confidence < m_options.minConfidence) return RejectionReason::notFree;
@@ -172,7 +173,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
 
 void ScanLineExtractor::record(const SegmentCluster& cluster, PoleFeatures features,
                                const PoleAxis& axis, const PoleFit& fit) {
-  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);
+  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis, m_upright);
   m_recorded->push_back({features, fit.x, fit.y, fit.covariance, fit.tilt});
 }
 

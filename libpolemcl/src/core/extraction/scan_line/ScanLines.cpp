@@ -82,7 +82,7 @@ const ScanLines::Counts& ScanLines::build(const PointsView& points, const Ground
   m_limit[GroundGrid::kNoCell] = std::numeric_limits<float>::quiet_NaN();  // below which nothing is
   const auto classify = [&] {
     m_next = m_streamBegin;
-    classifyPoints(points, ground.cells(), m_limit, m_sensor.lookup(), m_rows,
+    classifyPoints(points, ground.cells(), ground.levels(), m_limit, m_sensor.lookup(), m_rows,
                    {m_returns.data(), m_next.data(), m_streamEnd.data()});
   };
   classify();
