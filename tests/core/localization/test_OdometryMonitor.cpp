@@ -165,6 +165,46 @@ TEST(OdometryMonitor, WithoutPolesASuddenStopIsDoubtedForAWhile) {
 }
 
 // Hard braking from 14 m/s, with scan times that are 10 ms off.
+/// Scans 3.6 m and 0.9 s apart, so that a stop may be hard braking. Each sees four poles, two of
+/// them again: too few to tell a motion, and half of them, as the monitor assumes at first.
+struct SparseDrive {
+  OdometryMonitor check;
+  int scan = 0;
+  std::vector<PoleDetection> poles() const {
+    std::vector<PoleDetection> seen;
+    for (const int k : {scan, scan + 1})
+      for (const int side : {-1, 1}) {
+        const double turn = 0.618 * (2 * k + side), aside = 5 + 4 * (turn - std::floor(turn));
+        seen.push_back(tests::detectionAt(8 + 3.6 * (k - scan) + side, side * aside, 1e-4));
+      }
+    return seen;
+  }
+  MonitoredMotion drive(double stated) {
+    ++scan;
+    return check.add(0.9 * scan, {stated, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), poles());
+  }
+};
+
+TEST(OdometryMonitor, PolesOfWhichNoneIsSeenAgainContradict) {
+  SparseDrive drive;
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(drive.drive(3.6).verdict, OdometryVerdict::unknown) << i;
+  // A chance of 1 in 16 each, so of 1 in 4096 after the third.
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(drive.drive(0).verdict, OdometryVerdict::unknown) << i;
+  for (int i = 0; i < 3; ++i) {
+    const MonitoredMotion motion = drive.drive(0);
+    EXPECT_EQ(motion.verdict, OdometryVerdict::contradicted) << i;
+    EXPECT_NEAR(motion.motion.x, 3.6, 1e-9) << "the speed before";
+  }
+  EXPECT_EQ(drive.drive(3.6).verdict, OdometryVerdict::unknown);
+}
+
+TEST(OdometryMonitor, APoleThatIsSeenAgainSpeaksForTheOdometry) {
+  SparseDrive drive;
+  for (int i = 0; i < 40; ++i) drive.drive(3.6);
+  for (const double stated : {0.0, 0.0, 3.6, 0.0, 0.0})
+    EXPECT_EQ(drive.drive(stated).verdict, OdometryVerdict::unknown);
+}
+
 TEST(OdometryMonitor, WithoutPolesHardBrakingIsBelieved) {
   OdometryMonitor check;
   double speed = 14;

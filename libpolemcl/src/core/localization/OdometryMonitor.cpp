@@ -19,9 +19,11 @@ constexpr double kSigmas = 5;  // least difference beyond that contradicts, stan
 constexpr int kMinPairs = 3;   // least number of poles in common that contradict
 constexpr int kSurePairs = 5;  // pairs that decide at once; fewer need two scans running
 constexpr double kMinShare =
-    0.4;                          // least share of the poles of the scan with fewer that are paired
-constexpr double kMargin = 1.5;   // least lead of the poles' motion over the odometry's, in pairs
-constexpr double kSettle = 0.5;   // time of agreement until the odometry is believed again, s
+    0.4;                         // least share of the poles of the scan with fewer that are paired
+constexpr double kMargin = 1.5;  // least lead of the poles' motion over the odometry's, in pairs
+constexpr double kLeastChance = 1e-3;  // that none of the poles is seen again; less contradicts
+constexpr double kForget = 0.98;       // weight of earlier scans in the share seen again
+constexpr double kSettle = 0.5;        // time of agreement until the odometry is believed again, s
 constexpr double kHold = 5;       // time for which the last speed is kept without enough poles, s
 constexpr double kMaxSpeed = 40;  // greatest speed of the vehicle, m/s
 constexpr double kMaxTurnRate = 1.5;     // greatest turn rate, rad/s
@@ -100,7 +102,7 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     now.seen = compose(last.seen, motion);
     now.spent = last.spent + covariance;
     result = m_state == State::contradicted ? replace(now, result) : watch(now, result);
-    if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
+    if (!result.replaced && m_chance == 1) m_speed = scaled(motion, 1 / (time - last.time));
   }
   m_past.push_back(now);
   // One scan older than the window stays, so that the window is full.
@@ -205,10 +207,29 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
     result.pairs = std::max(result.pairs, finding.alignment.pairs);
   }
   m_state = State::believed;
-  if (result.verdict == OdometryVerdict::unknown && !isPossible(now, odometry.motion))
+  countSeenAgain(now, odometry.motion);
+  if (result.verdict == OdometryVerdict::unknown &&
+      (m_chance < kLeastChance || !isPossible(now, odometry.motion)))
     return coasted(now, odometry);
   m_possibleTime = now.time;
   return result;
+}
+
+/// Counts the poles of the scan before that are where the odometry expects them. Updates the chance
+/// that none of them is, as has been since the last one that was.
+void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion) {
+  const Reference& last = m_past.back();
+  const auto poles = static_cast<double>(std::min(last.poles.size(), now.poles.size()));
+  const int seenAgain = judgeMotion(last.poles, now.poles, motion, RegistrationOptions()).pairs;
+  if (poles > 0) m_countedTime = now.time;
+  if (seenAgain > 0 || now.time - m_countedTime > kHold) {
+    m_chance = 1;
+  } else {
+    m_chance *= std::pow(1 - m_seenAgain / m_counted, poles);
+  }
+  if (m_chance < kLeastChance) return;  // the odometry is wrong, not the poles
+  m_seenAgain = kForget * m_seenAgain + seenAgain;
+  m_counted = kForget * m_counted + poles;
 }
 
 /// Whether a vehicle can have this speed after the one before. After kHold seconds, any is
@@ -242,6 +263,7 @@ MonitoredMotion OdometryMonitor::contradict(Reference& now, const Reference& ref
   MonitoredMotion result = take(now, reference, alignment);
   if (decides) {
     m_state = State::contradicted;
+    m_chance = 1;
     m_knownTime = m_keyTime = now.time;
     // The filter may have corrected a part of this already, or the poles may be wrong.
     result.covariance += doubt(odometry.motion, result.motion, 0.5);

@@ -7,8 +7,9 @@
 /// stuck, slips or jumps is contradicted when enough poles fit another motion, clearly better than
 /// the odometry's, and that motion is outside what the odometry's covariance and a tolerance for
 /// errors of its scale allow. Without such poles, a change of speed that no vehicle makes
-/// contradicts it, for some seconds. From then on the poles' motion takes its place, until both
-/// agree again for a while. See share/doc/health.md.
+/// contradicts it, for some seconds; so do poles of which none is seen again where it says, when by
+/// the usual share of those seen again this has a chance of one in a thousand. From then on the
+/// poles' motion takes its place, until both agree again for a while. See share/doc/health.md.
 
 #include <Eigen/Core>
 #include <deque>
@@ -85,12 +86,17 @@ class POLEMCL_EXPORT OdometryMonitor {
   Pose2D coast(double seconds) const;
   MonitoredMotion coasted(Reference& now, const MonitoredMotion& odometry) const;
   bool isPossible(const Reference& now, const Pose2D& motion) const;
+  void countSeenAgain(const Reference& now, const Pose2D& motion);
   std::size_t keyScan() const;
 
   bool m_enabled;
   std::deque<Reference> m_past;
   State m_state = State::believed;
-  Pose2D m_speed;             ///< of the last motion handed out, per second
+  Pose2D m_speed;  ///< of the last motion handed out, per second
+  /// Poles that could be seen again, and those that were; the start counts like a few scans.
+  double m_counted = 20, m_seenAgain = 10;
+  double m_chance = 1;        ///< that no pole was seen again since the last one that was
+  double m_countedTime = 0;   ///< when there last were poles, s
   double m_possibleTime = 0;  ///< when the odometry last was possible, or the poles agreed, s
   double m_knownTime = 0;     ///< when the poles last told the motion, while contradicted, s
   /// Time of the scan that later scans are aligned with while contradicted, s. Several scans share
