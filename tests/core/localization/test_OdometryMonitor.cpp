@@ -169,7 +169,7 @@ TEST(OdometryMonitor, WithoutPolesASuddenStopIsDoubtedForAWhile) {
 /// them again: too few to tell a motion, and half of them, as the monitor assumes at first.
 struct SparseDrive {
   OdometryMonitor check;
-  int scan = 0;
+  int scan = 0, count = 0;
   std::vector<PoleDetection> poles() const {
     std::vector<PoleDetection> seen;
     for (const int k : {scan, scan + 1})
@@ -181,7 +181,7 @@ struct SparseDrive {
   }
   MonitoredMotion drive(double stated) {
     ++scan;
-    return check.add(0.9 * scan, {stated, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), poles());
+    return check.add(0.9 * ++count, {stated, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity(), poles());
   }
 };
 
@@ -196,6 +196,19 @@ TEST(OdometryMonitor, PolesOfWhichNoneIsSeenAgainContradict) {
     EXPECT_NEAR(motion.motion.x, 3.6, 1e-9) << "the speed before";
   }
   EXPECT_EQ(drive.drive(3.6).verdict, OdometryVerdict::unknown);
+}
+
+// Snow, say: from now on nothing is seen again. That is not the fault of the odometry.
+TEST(OdometryMonitor, AfterFiveSecondsTheOdometryIsBelievedWithoutPolesSeenAgain) {
+  SparseDrive drive;
+  for (int i = 0; i < 40; ++i) drive.drive(3.6);
+  double contradicted = 0;
+  for (int i = 0; i < 40; ++i) {
+    drive.scan += 10;  // other poles
+    contradicted += drive.drive(3.6).verdict == OdometryVerdict::contradicted;
+  }
+  EXPECT_GT(contradicted, 0);
+  EXPECT_LE(contradicted, 6);
 }
 
 TEST(OdometryMonitor, APoleThatIsSeenAgainSpeaksForTheOdometry) {

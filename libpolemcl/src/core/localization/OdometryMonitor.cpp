@@ -216,18 +216,18 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
 }
 
 /// Counts the poles of the scan before that are where the odometry expects them. Updates the chance
-/// that none of them is, as has been since the last one that was.
+/// that none of them is, as has been since the last one that was. After kHold seconds of a small
+/// chance, poles are not expected to be seen again.
 void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion) {
   const Reference& last = m_past.back();
   const auto poles = static_cast<double>(std::min(last.poles.size(), now.poles.size()));
   const int seenAgain = judgeMotion(last.poles, now.poles, motion, RegistrationOptions()).pairs;
-  if (poles > 0) m_countedTime = now.time;
-  if (seenAgain > 0 || now.time - m_countedTime > kHold) {
+  m_chance = seenAgain > 0 ? 1 : m_chance * std::pow(1 - m_seenAgain / m_counted, poles);
+  if (m_chance < kLeastChance) {
+    if (now.time - m_possibleTime <= kHold) return;
     m_chance = 1;
-  } else {
-    m_chance *= std::pow(1 - m_seenAgain / m_counted, poles);
+    m_seenAgain = 0;
   }
-  if (m_chance < kLeastChance) return;  // the odometry is wrong, not the poles
   m_seenAgain = kForget * m_seenAgain + seenAgain;
   m_counted = kForget * m_counted + poles;
 }

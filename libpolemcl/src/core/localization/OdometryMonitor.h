@@ -96,7 +96,6 @@ class POLEMCL_EXPORT OdometryMonitor {
   /// Poles that could be seen again, and those that were; the start counts like a few scans.
   double m_counted = 20, m_seenAgain = 10;
   double m_chance = 1;        ///< that no pole was seen again since the last one that was
-  double m_countedTime = 0;   ///< when there last were poles, s
   double m_possibleTime = 0;  ///< when the odometry last was possible, or the poles agreed, s
   double m_knownTime = 0;     ///< when the poles last told the motion, while contradicted, s
   /// Time of the scan that later scans are aligned with while contradicted, s. Several scans share

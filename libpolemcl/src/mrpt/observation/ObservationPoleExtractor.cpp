@@ -31,8 +31,10 @@ double heightOfCentre(const LidarFrame& f, ExtractionMethod method, double groun
                       const PoleDetection& pole) {
   if (method == ExtractionMethod::scanLine) return 0;
   const Eigen::RowVector3d up = f.R_planar_lidar.row(2);
-  const double middle = 0.5 * (pole.bottom + pole.top);
-  return (middle + ground - up.x() * pole.x - up.y() * pole.y) / up.z();
+  const auto inLidar = [&](double aboveGround) {
+    return (aboveGround + ground - up.x() * pole.x - up.y() * pole.y) / up.z();
+  };
+  return 0.5 * (inLidar(pole.bottom) + inLidar(pole.top));
 }
 
 /// Transforms a detection from the LiDAR frame to the planar sensor frame.
