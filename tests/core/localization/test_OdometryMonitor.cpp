@@ -174,7 +174,7 @@ struct SparseDrive {
     std::vector<PoleDetection> seen;
     for (const int k : {scan, scan + 1})
       for (const int side : {-1, 1}) {
-        const double turn = 0.618 * (2 * k + side), aside = 5 + 4 * (turn - std::floor(turn));
+        const double turn = 0.618 * (2 * k + side), aside = 5 + 8 * (turn - std::floor(turn));
         seen.push_back(tests::detectionAt(8 + 3.6 * (k - scan) + side, side * aside, 1e-4));
       }
     return seen;

@@ -215,13 +215,15 @@ MonitoredMotion OdometryMonitor::watch(Reference& now, const MonitoredMotion& od
   return result;
 }
 
-/// Counts the poles of the scan before that are where the odometry expects them. Updates the chance
-/// that none of them is, as has been since the last one that was. After kHold seconds of a small
-/// chance, poles are not expected to be seen again.
+/// Counts the poles of the scan before that are where the odometry expects them, within a metre.
+/// Updates the chance that none of them is, as has been since the last one that was. After kHold
+/// seconds of a small chance, poles are not expected to be seen again.
 void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion) {
   const Reference& last = m_past.back();
   const auto poles = static_cast<double>(std::min(last.poles.size(), now.poles.size()));
-  const int seenAgain = judgeMotion(last.poles, now.poles, motion, RegistrationOptions()).pairs;
+  RegistrationOptions near;
+  near.sigma = near.reach;  // whatever the covariances
+  const int seenAgain = judgeMotion(last.poles, now.poles, motion, near).pairs;
   m_chance = seenAgain > 0 ? 1 : m_chance * std::pow(1 - m_seenAgain / m_counted, poles);
   if (m_chance < kLeastChance) {
     if (now.time - m_possibleTime <= kHold) return;
