@@ -198,6 +198,19 @@ TEST(OdometryMonitor, PolesOfWhichNoneIsSeenAgainContradict) {
   EXPECT_EQ(drive.drive(3.6).verdict, OdometryVerdict::unknown);
 }
 
+// A bus hides four poles at once, and shows four corners.
+TEST(OdometryMonitor, FourPolesAtOnceAreNotEnough) {
+  SparseDrive drive;
+  for (int i = 0; i < 40; ++i) {
+    drive.scan = -1;  // it stands
+    drive.drive(0);
+  }
+  drive.scan = 9;
+  EXPECT_EQ(drive.drive(0).verdict, OdometryVerdict::unknown);
+  drive.scan = 19;
+  EXPECT_EQ(drive.drive(0).verdict, OdometryVerdict::contradicted) << "eight are";
+}
+
 // Snow, say: from now on nothing is seen again. That is not the fault of the odometry.
 TEST(OdometryMonitor, AfterFiveSecondsTheOdometryIsBelievedWithoutPolesSeenAgain) {
   SparseDrive drive;

@@ -21,9 +21,10 @@ constexpr int kSurePairs = 5;  // pairs that decide at once; fewer need two scan
 constexpr double kMinShare =
     0.4;                         // least share of the poles of the scan with fewer that are paired
 constexpr double kMargin = 1.5;  // least lead of the poles' motion over the odometry's, in pairs
-constexpr double kLeastChance = 1e-3;  // that none of the poles is seen again; less contradicts
-constexpr double kForget = 0.98;       // weight of earlier scans in the share seen again
-constexpr double kSettle = 0.5;        // time of agreement until the odometry is believed again, s
+constexpr double kLeastChance = 1e-3;   // that none of the poles is seen again; less contradicts
+constexpr double kForget = 0.98;        // weight of earlier scans in the share seen again
+constexpr double kMostSeenAgain = 0.8;  // of that share: one bus hides several poles
+constexpr double kSettle = 0.5;         // time of agreement until the odometry is believed again, s
 constexpr double kHold = 5;       // time for which the last speed is kept without enough poles, s
 constexpr double kMaxSpeed = 40;  // greatest speed of the vehicle, m/s
 constexpr double kMaxTurnRate = 1.5;     // greatest turn rate, rad/s
@@ -224,7 +225,8 @@ void OdometryMonitor::countSeenAgain(const Reference& now, const Pose2D& motion)
   RegistrationOptions near;
   near.sigma = near.reach;  // whatever the covariances
   const int seenAgain = judgeMotion(last.poles, now.poles, motion, near).pairs;
-  m_chance = seenAgain > 0 ? 1 : m_chance * std::pow(1 - m_seenAgain / m_counted, poles);
+  const double share = std::min(kMostSeenAgain, m_seenAgain / m_counted);
+  m_chance = seenAgain > 0 ? 1 : m_chance * std::pow(1 - share, poles);
   if (m_chance < kLeastChance) {
     if (now.time - m_possibleTime <= kHold) return;
     m_chance = 1;
