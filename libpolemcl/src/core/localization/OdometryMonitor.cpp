@@ -103,7 +103,8 @@ MonitoredMotion OdometryMonitor::add(double time, const Pose2D& motion,
     now.seen = compose(last.seen, motion);
     now.spent = last.spent + covariance;
     result = m_state == State::contradicted ? replace(now, result) : watch(now, result);
-    if (!result.replaced && m_chance == 1) m_speed = scaled(motion, 1 / (time - last.time));
+    if (!result.replaced) m_speed = scaled(motion, 1 / (time - last.time));
+    if (m_chance == 1) m_speedSeen = m_speed;
   }
   m_past.push_back(now);
   // One scan older than the window stays, so that the window is full.
@@ -248,8 +249,9 @@ bool OdometryMonitor::isPossible(const Reference& now, const Pose2D& motion) con
 }
 
 /// Keeps the speed before. The covariance also covers the motion that the odometry states.
-MonitoredMotion OdometryMonitor::coasted(Reference& now, const MonitoredMotion& odometry) const {
+MonitoredMotion OdometryMonitor::coasted(Reference& now, const MonitoredMotion& odometry) {
   const Reference& last = m_past.back();
+  if (m_chance < kLeastChance) m_speed = m_speedSeen;
   MonitoredMotion result = odometry;
   result.verdict = OdometryVerdict::contradicted;
   result.replaced = true;

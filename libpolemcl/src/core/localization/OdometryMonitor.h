@@ -84,7 +84,7 @@ class POLEMCL_EXPORT OdometryMonitor {
                        const ScanRegistration& alignment);
   bool hasSettled(const Reference& now) const;
   Pose2D coast(double seconds) const;
-  MonitoredMotion coasted(Reference& now, const MonitoredMotion& odometry) const;
+  MonitoredMotion coasted(Reference& now, const MonitoredMotion& odometry);
   bool isPossible(const Reference& now, const Pose2D& motion) const;
   void countSeenAgain(const Reference& now, const Pose2D& motion);
   std::size_t keyScan() const;
@@ -95,6 +95,7 @@ class POLEMCL_EXPORT OdometryMonitor {
   Pose2D m_speed;  ///< of the last motion handed out, per second
   /// Poles that could be seen again, and those that were; the start counts like a few scans.
   double m_counted = 20, m_seenAgain = 10;
+  Pose2D m_speedSeen;         ///< the last one with a pole that was seen again
   double m_chance = 1;        ///< that no pole was seen again since the last one that was
   double m_possibleTime = 0;  ///< when the odometry last was possible, or the poles agreed, s
   double m_knownTime = 0;     ///< when the poles last told the motion, while contradicted, s
