@@ -52,7 +52,6 @@ VisibilityRangeFinder::VisibilityRangeFinder(const SensorModel& sensor, double s
                                       static_cast<float>(std::sin(azimuth)));
     m_groundSector[sector] = static_cast<std::uint16_t>(cell / GroundGrid::kRings);
   }
-  setUpright(Eigen::Vector2f::Zero());
 }
 
 /// Notes how many beams pass at pole heights, and how many of these may be blocked.
@@ -79,6 +78,12 @@ void VisibilityRangeFinder::setUpright(const Eigen::Vector2f& upright) {
 void VisibilityRangeFinder::chooseBeams() {
   std::vector<Beam> all;
   std::vector<float> heights(m_steps);
+  float rise[kSectors];  // of a beam over the ground, because of the tilt, m per m
+  for (int sector = 0; sector < kSectors; ++sector) {
+    const double azimuth = middleOf(sector);
+    rise[sector] = m_upright.x() * static_cast<float>(std::cos(azimuth)) +
+                   m_upright.y() * static_cast<float>(std::sin(azimuth));
+  }
   for (int row = 0; row < m_sensor.beamCount(); ++row) {
     for (int step = 0; step < m_steps; ++step) {
       const float range = kStep * static_cast<float>(step);
@@ -87,7 +92,7 @@ void VisibilityRangeFinder::chooseBeams() {
     Beam beam{row, {}};
     int last = -1;
     for (int sector = 0; sector < kSectors; ++sector) {
-      beam.span[sector] = spanAtPoleHeights(heights, sector);
+      beam.span[sector] = spanAtPoleHeights(heights, rise[sector]);
       last = std::max<int>(last, beam.span[sector].last);
     }
     if (kStep * static_cast<float>(last) >= kSteep) all.push_back(beam);
@@ -97,12 +102,10 @@ void VisibilityRangeFinder::chooseBeams() {
   for (std::size_t i = 0; i < all.size(); i += stride) m_beams.push_back(all[i]);
 }
 
-/// \param heights Of a beam above the ground under an upright lidar, by step, m.
+/// \param heights Of a beam above the ground under an upright lidar, by step, m. \param rise What
+/// the tilt adds, m per m.
 VisibilityRangeFinder::Span VisibilityRangeFinder::spanAtPoleHeights(
-    const std::vector<float>& heights, int sector) const {
-  const double azimuth = middleOf(sector);
-  const float rise = m_upright.x() * static_cast<float>(std::cos(azimuth)) +
-                     m_upright.y() * static_cast<float>(std::sin(azimuth));
+    const std::vector<float>& heights, float rise) const {
   Span span{static_cast<std::int16_t>(m_steps), -1};
   for (int step = 0; step < m_steps; ++step) {
     const float height = heights[step] + rise * kStep * static_cast<float>(step);

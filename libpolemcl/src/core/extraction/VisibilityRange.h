@@ -4,6 +4,7 @@
 /// to be seen from here".
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/extraction/scan_line/GroundGrid.h"
@@ -61,13 +62,14 @@ class VisibilityRangeFinder {
   };
   void setUpright(const Eigen::Vector2f& upright);
   void chooseBeams();
-  Span spanAtPoleHeights(const std::vector<float>& heights, int sector) const;
+  Span spanAtPoleHeights(const std::vector<float>& heights, float rise) const;
   void countBlocked(const ScanLines& lines, const Beam& beam);
   void countFree(std::int16_t* reached) const;
 
   const SensorModel& m_sensor;
   float m_sensorHeight;
-  Eigen::Vector2f m_upright = Eigen::Vector2f::Zero();
+  /// Of the scan before; not a number before the first.
+  Eigen::Vector2f m_upright = Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN());
   std::vector<Beam> m_beams;
   /// step * kSectors + sector: beams that may be blocked.
   std::vector<std::int16_t> m_mostBlocked;

@@ -27,7 +27,6 @@ struct RealismOptions {
 
   double rangeBias = 0.012;   ///< standard deviation of each beam's own bias, m
   double rangeWalk = 0.015;   ///< dim returns are longer, bright ones shorter by this, m
-                              ///<
   double darkDropout = 0.15;  ///< share of the pulses lost on black surfaces
   double rain = 2;            ///< mm/h (`rain_mm_h`)
   double spray = 0.1;         ///< share of the pulses to the back that meet the car's own spray

@@ -24,13 +24,11 @@ enum class Meeting {
 /// The candidate's place, and questions to single rows about it.
 class Place {
  public:
-  Place(const ScanLines& lines, const SensorModel& sensor, const PoleAxis& axis,
-        const Eigen::Vector2f& upright)
+  Place(const ScanLines& lines, const SensorModel& sensor, const PoleAxis& axis)
       : m_lines(lines),
         m_sensor(sensor),
         m_axis(axis),
-        m_upright(upright),
-        m_leans(upright != Eigen::Vector2f::Zero()),
+        m_leans(axis.upright != Eigen::Vector2f::Zero()),
         m_spot(spot(axis.x, axis.y)),
         m_column(static_cast<float>(sensor.columnAngle())) {}
   float heightOfRow(int row) const {
@@ -76,7 +74,7 @@ class Place {
   Spot spotOf(int row) const {
     if (!m_leans) return m_spot;
     const float up = heightOfRow(row) - m_axis.z;
-    return spot(m_axis.x + m_upright.x() * up, m_axis.y + m_upright.y() * up);
+    return spot(m_axis.x + m_axis.upright.x() * up, m_axis.y + m_axis.upright.y() * up);
   }
 
   /// Squared distance of a return from the axis, m², by the law of cosines; the angle between is
@@ -112,7 +110,6 @@ class Place {
   const ScanLines& m_lines;
   const SensorModel& m_sensor;
   const PoleAxis& m_axis;
-  Eigen::Vector2f m_upright;
   bool m_leans;
   Spot m_spot;  ///< at the height of the axis
   float m_column;
@@ -182,8 +179,8 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
                                   const GroundGrid& ground,
                                   const std::vector<ScanLineSegment>& segments,
                                   const SegmentCluster& cluster, const ClusterShape& shape,
-                                  const PoleAxis& axis, const Eigen::Vector2f& upright) {
-  const Place place(lines, sensor, axis, upright);
+                                  const PoleAxis& axis) {
+  const Place place(lines, sensor, axis);
   const float groundZ = ground.at(axis.x, axis.y);
   CandidateFeatures e;
   int expected = segments[cluster.top()].row;
@@ -204,8 +201,8 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
 
 float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
                      const std::vector<ScanLineSegment>& segments, const SegmentCluster& cluster,
-                     const PoleAxis& axis, const Eigen::Vector2f& upright) {
-  const Place place(lines, sensor, axis, upright);
+                     const PoleAxis& axis) {
+  const Place place(lines, sensor, axis);
   int cluttered = 0;
   for (auto i : cluster) cluttered += place.cluttered(segments[i].row);
   return static_cast<float>(cluttered) / static_cast<float>(cluster.count);

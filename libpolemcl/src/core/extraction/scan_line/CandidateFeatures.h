@@ -36,14 +36,12 @@ CandidateFeatures computeFeatures(const ScanLines& lines, const SensorModel& sen
                                   const GroundGrid& ground,
                                   const std::vector<ScanLineSegment>& segments,
                                   const SegmentCluster& cluster, const ClusterShape& shape,
-                                  const PoleAxis& axis,
-                                  const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
+                                  const PoleAxis& axis);
 
 /// \brief Share of the cluster's rows with other returns in a ring around the place, 0.15 to 0.55 m
 /// outside the radius: free space, as a score.
 float clutteredShare(const ScanLines& lines, const SensorModel& sensor,
                      const std::vector<ScanLineSegment>& segments, const SegmentCluster& cluster,
-                     const PoleAxis& axis,
-                     const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
+                     const PoleAxis& axis);
 
 }  // namespace polemcl

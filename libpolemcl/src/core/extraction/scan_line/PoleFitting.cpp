@@ -240,7 +240,8 @@ class CylinderProblem {
 }  // namespace
 
 PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
-                   const std::vector<std::uint32_t>& used, float columnAngle) {
+                   const std::vector<std::uint32_t>& used, float columnAngle,
+                   const Eigen::Vector2f& upright) {
   float x = 0, y = 0, z = 0, width = 0, n = 0;
   for (std::uint32_t u : used) {
     const ScanLineSegment& segment = segments[u];
@@ -257,6 +258,7 @@ PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
   axis.x = x / n * (1 + axis.radius / rho);
   axis.y = y / n * (1 + axis.radius / rho);
   axis.z = z / n;
+  axis.upright = upright;
   return axis;
 }
 

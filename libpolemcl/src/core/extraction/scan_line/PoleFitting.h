@@ -26,9 +26,12 @@ struct PoleAxis {
   float x = 0, y = 0;  ///< at the height z, lidar frame, m
   float radius = 0;    ///< m
   float z = 0;         ///< mean height of the segments, m
+  /// Shift of an upright pole along x and y per unit of height.
+  Eigen::Vector2f upright = Eigen::Vector2f::Zero();
 };
 PoleAxis roughAxis(const std::vector<ScanLineSegment>& segments,
-                   const std::vector<std::uint32_t>& used, float columnAngle);
+                   const std::vector<std::uint32_t>& used, float columnAngle,
+                   const Eigen::Vector2f& upright = Eigen::Vector2f::Zero());
 
 /// \brief How poles are looked at.
 struct PoleView {

@@ -133,9 +133,9 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
   if (const auto rejection = judgeShape(cluster, shape)) return rejection;
   selectForFit(cluster);
   const float column = static_cast<float>(m_sensor.columnAngle());
-  const PoleAxis axis = roughAxis(m_segments, m_fitSegments, column);
+  const PoleAxis axis = roughAxis(m_segments, m_fitSegments, column, m_upright);
   const CandidateFeatures candidate =
-      computeFeatures(m_lines, m_sensor, m_ground, m_segments, cluster, shape, axis, m_upright);
+      computeFeatures(m_lines, m_sensor, m_ground, m_segments, cluster, shape, axis);
   // The top lies between the highest return and the first beam that passed over it.
   const double top =
       std::isfinite(candidate.topBound) ? 0.5 * (candidate.top + candidate.topBound) : 1e9;
@@ -155,7 +155,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
   // Upper bound: assume no clutter; skip the costly check if even that fails.
   if (confidence(poleOdds(features)) < m_options.minConfidence)
     return RejectionReason::lowConfidence;
-  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis, m_upright);
+  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);
   const double odds = poleOdds(features);
   pole.confidence = confidence(odds);
   if (pole.confidence < m_options.minConfidence) return RejectionReason::notFree;
@@ -173,7 +173,7 @@ std::optional<RejectionReason> ScanLineExtractor::examine(const SegmentCluster& 
 
 void ScanLineExtractor::record(const SegmentCluster& cluster, PoleFeatures features,
                                const PoleAxis& axis, const PoleFit& fit) {
-  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis, m_upright);
+  features.clutter = clutteredShare(m_lines, m_sensor, m_segments, cluster, axis);
   m_recorded->push_back({features, fit.x, fit.y, fit.covariance, fit.tilt});
 }
 
