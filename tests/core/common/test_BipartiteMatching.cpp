@@ -43,6 +43,11 @@ TEST(BipartiteMatching, GivesUpAGreedyChoice) {
   EXPECT_EQ(maximumMatching({{0, 1}, {0}}, 2), 2u);
 }
 
+// The third moves the first, and the fourth then moves the third and the second.
+TEST(BipartiteMatching, MovesEveryPairOfAPath) {
+  EXPECT_EQ(maximumMatching({{0, 1}, {2, 3}, {0, 2}, {0}}, 4), 4u);
+}
+
 TEST(BipartiteMatching, FollowsAPathAsLongAsTheGraph) {
   const std::uint32_t size = 200000;
   Edges chain(size);
