@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/Progress.h"
+#include "core/evaluation/Consistency.h"
 
 namespace polemcl::apps {
 namespace {
@@ -114,14 +115,17 @@ void judgeSinceBegin(const Scans& scans, std::size_t begin, TrialOutcome& outcom
   outcome.said = delayOf(scans, begin, said);
   if (outcome.said) outcome.saidError = scans[said].error;
   outcome.saidOk = delayUntil(scans, begin, isOk);
+  LongestTime okBeyond;
   for (std::size_t i = begin; i < scans.size(); ++i) {
     const TrialScan& scan = scans[i];
+    okBeyond.add(scan.time, isOk(scan) && scan.sigmas > 5);
     if (std::isfinite(scan.error.metres))
       outcome.errorMax = std::max(outcome.errorMax, scan.error.metres);
     if (!isOk(scan) || scan.error.isRight()) continue;
     outcome.okWrong = true;
     if (i > begin) outcome.okWrongMetres += scan.driven - scans[i - 1].driven;
   }
+  outcome.okBeyondSeconds = okBeyond.seconds();
 }
 
 void judgeSinceEnd(const Scans& scans, std::size_t end, TrialOutcome& outcome) {
@@ -161,10 +165,12 @@ std::vector<TrialScan> record(const Trial& trial, const Settings& settings,
     const auto begin = ScanClock::now();
     const LocalizationUpdate update = localizer.step(trial.frames[i]);
     const double seconds = secondsSince(begin);
-    TrialScan scan{update.time,         trial.driven[i],      {INFINITY, INFINITY},
-                   update.health.state, update.health.reason, update.relocalized,
-                   std::nullopt};
-    if (update.estimate) scan.error = errorOf(update.estimate->mean, trial.truth[i]);
+    TrialScan scan{update.time,         trial.driven[i],      {INFINITY, INFINITY}, INFINITY,
+                   update.health.state, update.health.reason, update.relocalized,   std::nullopt};
+    if (update.estimate) {
+      scan.error = errorOf(update.estimate->mean, trial.truth[i]);
+      scan.sigmas = sigmasOfPosition(*update.estimate, trial.truth[i]);
+    }
     if (localizer.pipeline().searches() > searches) scan.searchSeconds = seconds;
     searches = localizer.pipeline().searches();
     scans.push_back(scan);

@@ -31,6 +31,7 @@ Trial stretchOf(const TrialDrive& drive, std::size_t first, std::size_t end);
 struct TrialScan {
   double time, driven;  ///< s; as in Trial, m
   PlanarError error;    ///< infinite while the pose is unknown
+  double sigmas;        ///< position error in its own standard deviations; infinite as well
   HealthState state;
   HealthReason reason;
   bool relocalized;
@@ -77,6 +78,7 @@ struct TrialOutcome {
   std::optional<Delay> saidOk;          ///< first `ok`
   double okWrongMetres = 0;             ///< driven while `ok` is said of a wrong pose
   bool okWrong = false;                 ///< that happened in at least one scan
+  double okBeyondSeconds = 0;           ///< longest in a row: `ok`, beyond 5 standard deviations
   double errorMax = 0;                  ///< greatest of the position, m
   /// @}
   /// \name Since `end`

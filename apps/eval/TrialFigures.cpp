@@ -64,6 +64,11 @@ Json delayJson(const std::optional<Delay>& delay) {
   return {{"s", delay->seconds}, {"m", delay->metres}};
 }
 
+/// Longest time in a row `ok` beyond five standard deviations, s.
+double longestBeyond(const Outcomes& outcomes) {
+  return ranked(collected(outcomes, &TrialOutcome::okBeyondSeconds), 1);
+}
+
 Json failedJson(const Outcomes& outcomes, Fault fault) {
   Json list = Json::array();
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
@@ -77,7 +82,8 @@ Json failedJson(const Outcomes& outcomes, Fault fault) {
                     {"lost", delayJson(outcome.lost)},
                     {"right", delayJson(outcome.right)},
                     {"ok", delayJson(outcome.ok)},
-                    {"ok_wrong_m", outcome.okWrongMetres}});
+                    {"ok_wrong_m", outcome.okWrongMetres},
+                    {"ok_beyond_5_sigma_s", outcome.okBeyondSeconds}});
   }
   return list;
 }
@@ -107,6 +113,7 @@ Json faultJson(const TrialOptions& options, const Outcomes& outcomes) {
           {"error_largest_median_m", ranked(largest, 0.5)},
           {"ok_wrong_median_m", ranked(wrong, 0.5)},
           {"ok_wrong_max_m", ranked(wrong, 1)},
+          {"ok_beyond_5_sigma_max_s", longestBeyond(outcomes)},
           {"lost_reasons", reasons},
           {"failed", failedJson(outcomes, fault)}};
 }
@@ -142,7 +149,8 @@ Figures healthFigures(const TrialDrive& drive, const TrialOptions& options,
                   std::to_string(drive.frames.size()) + " scans");
     all.add(outcomes[i].health);
   }
-  const Json json = healthJson(all, outcomes.size(), options.seed);
+  Json json = healthJson(all, outcomes.size(), options.seed);
+  json["ok_beyond_5_sigma_max_s"] = longestBeyond(outcomes);
   return {json,
           filled("no fault: {runs} runs, {hours:2} h, {kilometres:1} km, {scans} scans since the "
                  "first ok\n"
@@ -151,7 +159,8 @@ Figures healthFigures(const TrialDrive& drive, const TrialOptions& options,
                  "{longest_not_ok_s:1} s\n"
                  "reasons {reasons}, relocalized {relocalized}, ok with a wrong pose "
                  "{ok_with_wrong_pose} scans\n"
-                 "position error mean {error_mean_m:4}, greatest {error_max_m:3} m\n",
+                 "position error mean {error_mean_m:4}, greatest {error_max_m:3} m; beyond five of "
+                 "its sigmas for {ok_beyond_5_sigma_max_s:1} s at most\n",
                  json)};
 }
 
@@ -263,7 +272,8 @@ Figures faultFigures(const TrialDrive& drive, const TrialOptions& options,
                      "first for {lost_reasons}\n"
                      "mean error over 20 m after ok: median {error_after_median_m:3} m, worst "
                      "{error_after_max_m:3} m; ok said of a wrong pose over {ok_wrong_median_m:1} "
-                     "m in the median, {ok_wrong_max_m:1} m at most\n",
+                     "m in the median, {ok_wrong_max_m:1} m at most; beyond five of its sigmas for "
+                     "{ok_beyond_5_sigma_max_s:1} s at most\n",
                      json)};
 }
 

@@ -99,6 +99,7 @@ TrialOutcome judged(const std::string& letters, std::size_t begin = 0, std::size
     scans.push_back({0.5 * at,
                      at,
                      {error, 0},
+                     letter == '-' ? INFINITY : letter == 'O' ? 5.1 : 4.9,
                      low == 'o'                 ? HealthState::ok
                      : low == 'd' || low == 'a' ? HealthState::degraded
                                                 : HealthState::lost,
@@ -128,6 +129,8 @@ TEST(TrialOutcomes, SayWhenWhatCameToBe) {
   EXPECT_EQ(metres(start.rightForGood), 6);
   EXPECT_TRUE(start.okWrong);
   EXPECT_EQ(start.okWrongMetres, 1);
+  EXPECT_EQ(start.okBeyondSeconds, 0);  // one scan
+  EXPECT_EQ(judged("ooOODOOOoOl-").okBeyondSeconds, 1);
   EXPECT_EQ(start.errorMax, 3);
   EXPECT_EQ(start.endError, 0.1);
   EXPECT_EQ(metres(judged("aal").said), -1);

@@ -28,24 +28,23 @@ void checkSample(const ConsistencySample& sample, std::size_t index) {
     refuseSample(index, "a covariance that is not symmetric positive definite");
 }
 
-/// Longest time in which one sample after the other is beyond 5 sigma.
-class LongestBeyond5 {
- public:
-  /// \param squared Squared Mahalanobis distance of the position.
-  void add(const ConsistencySample& sample, double squared) {
-    const bool goesOn = m_isBeyond && !sample.isFirst;
-    m_isBeyond = squared > 25;
-    if (m_isBeyond && !goesOn) m_begin = sample.time;
-    if (m_isBeyond) m_longest = std::max(m_longest, sample.time - m_begin);
-  }
-  double seconds() const { return m_longest; }
-
- private:
-  bool m_isBeyond = false;
-  double m_begin = 0, m_longest = 0;
-};
+double squaredSigmasOfPosition(const PoseWithCovariance& estimate, const Pose2D& truth) {
+  const Eigen::Vector2d offset(estimate.mean.x - truth.x, estimate.mean.y - truth.y);
+  const Eigen::Matrix2d covariance = estimate.covariance.topLeftCorner<2, 2>();
+  return offset.dot(covariance.inverse() * offset);
+}
 
 }  // namespace
+
+double sigmasOfPosition(const PoseWithCovariance& estimate, const Pose2D& truth) {
+  return std::sqrt(squaredSigmasOfPosition(estimate, truth));
+}
+
+void LongestTime::add(double time, bool holds, bool isFirst) {
+  if (!m_holds || isFirst) m_begin = time;
+  m_holds = holds;
+  if (holds) m_longest = std::max(m_longest, time - m_begin);
+}
 
 ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples) {
   if (samples.empty()) throw Error("no pose to score the consistency of");
@@ -55,20 +54,18 @@ ConsistencyScore scoreConsistency(const std::vector<ConsistencySample>& samples)
   all.reserve(samples.size());
   double sum = 0, position = 0, heading = 0;
   std::size_t covered = 0;
-  LongestBeyond5 beyond5;
+  LongestTime beyond5;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     checkSample(samples[i], i);
     const Eigen::Matrix3d& covariance = samples[i].estimate.covariance;
     const Eigen::Vector3d error = sampleError(samples[i]);
-    const Eigen::Vector2d offset = error.head<2>();
-    const Eigen::Matrix2d ofPosition = covariance.topLeftCorner<2, 2>();
     all.push_back(error.dot(covariance.inverse() * error));
-    const double planar = offset.dot(ofPosition.inverse() * offset);
+    const double planar = squaredSigmasOfPosition(samples[i].estimate, samples[i].truth);
     sum += all.back();
     position += planar;
     heading += error.z() * error.z() / covariance(2, 2);
     covered += planar <= chiSquare95of2 ? 1 : 0;
-    beyond5.add(samples[i], planar);
+    beyond5.add(samples[i].time, planar > 25, samples[i].isFirst);
   }
   const double count = static_cast<double>(samples.size());
   score.neesMean = sum / count;

@@ -30,6 +30,23 @@ struct ConsistencyScore {
 /// Square of the 95 % quantile of a two-dimensional Gaussian's Mahalanobis distance (χ², 2).
 constexpr double chiSquare95of2 = 5.991464547107979;
 
+/// \brief Error of the position in its own standard deviations (Mahalanobis distance).
+/// \param estimate With a positive definite covariance. \param truth In the same frame.
+double sigmasOfPosition(const PoseWithCovariance& estimate, const Pose2D& truth);
+
+/// \brief Longest time between the first and the last of samples in a row for which something
+/// holds.
+class LongestTime {
+ public:
+  /// \param time s, of one sample after the other. \param isFirst It goes on from no other.
+  void add(double time, bool holds, bool isFirst = false);
+  double seconds() const { return m_longest; }
+
+ private:
+  bool m_holds = false;
+  double m_begin = 0, m_longest = 0;
+};
+
 /// \brief Normalised estimation error squared (Bar-Shalom, Li, Kirubarajan 2001, 5.4.2).
 /// \throws Error without samples, and naming the sample whose pose is not finite or whose
 ///         covariance is not symmetric positive definite.
