@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose2D.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
 #include <zlib.h>
 
 #include <cstring>
@@ -217,6 +220,48 @@ TEST(ForgedLengths, ElementsOfCollectionsThatAreNullOrForeign) {
              "element 0 of its collection is null, not an action");
   EXPECT_HAS(rawlogRefusal(folder, actions + pose + end),
              "is a mrpt::poses::CPose2D, not an action");
+}
+
+// MRPT follows the pointer to the distribution, too.
+TEST(ForgedLengths, MovementsWithoutADistribution) {
+  const samples::Folder folder("ForgedLengths");
+  const std::string name = header("mrpt::obs::CActionRobotMovement2D"), method = number(1);
+  const std::string actions =
+      header("mrpt::obs::CActionCollection") + std::string(1, '\0') + number(1);
+  for (const std::string& other :
+       {header("nullptr") + "\x88", bytesOf(mrpt::poses::CPose2D()), method}) {
+    for (const char version : {'\2', '\3', '\7'})
+      EXPECT_HAS(rawlogRefusal(folder, actions + name + version + method + other), "rawlog");
+    EXPECT_HAS(rawlogRefusal(folder, actions + name + std::string(1, '\0') + other), "rawlog");
+  }
+  EXPECT_HAS(rawlogRefusal(folder, name + '\7' + method + header("nullptr") + "\x88"),
+             "a movement without a distribution of poses");
+}
+
+TEST(ForgedLengths, MovementsAreReadAsTheyWereWritten) {
+  const samples::Folder folder("ForgedLengths");
+  mrpt::obs::CActionRobotMovement2D movement;
+  mrpt::poses::CPosePDFGaussian distribution;
+  distribution.mean = {1, 2, 3};
+  movement.poseChange = mrpt::poses::CPosePDFGaussian::Create(distribution);
+  movement.encoderLeftTicks = 7;
+  movement.hasEncodersInfo = true;
+  for (const auto method : {mrpt::obs::CActionRobotMovement2D::emScan2DMatching,
+                            mrpt::obs::CActionRobotMovement2D::emOdometry}) {
+    movement.estimationMethod = method;
+    movement.rawOdometryIncrementReading = {1, 2, 3};
+    mrpt::obs::CActionCollection actions;
+    actions.insert(movement);
+    const std::string path = folder / "movement.rawlog";
+    std::ofstream(path, std::ios::binary) << bytesOf(actions);
+    RawlogReader reader(path);
+    RawlogEntry entry;
+    ASSERT_TRUE(reader.next(entry) && entry.action);
+    const auto read = entry.action->getActionByClass<mrpt::obs::CActionRobotMovement2D>();
+    ASSERT_TRUE(read);
+    EXPECT_NEAR(read->poseChange->getMeanVal().y(), 2, 1e-6);
+    EXPECT_EQ(read->encoderLeftTicks, 7);
+  }
 }
 
 TEST(ForgedLengths, CountsOfCollections) {

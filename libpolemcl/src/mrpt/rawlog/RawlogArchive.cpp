@@ -2,47 +2,81 @@
 
 #include <mrpt/core/Clock.h>
 #include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPosePDF.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace polemcl {
 
 using mrpt::obs::CActionCollection;
+using mrpt::obs::CActionRobotMovement2D;
 using mrpt::obs::CSensoryFrame;
 using mrpt::serialization::CSerializable;
 
-CSerializable::Ptr RawlogArchive::readEntry() {
+std::size_t RawlogArchive::read(void* data, std::size_t size) {
+  const std::size_t again = m_keeps ? 0 : std::min(size, m_again.size());
+  std::copy_n(m_again.begin(), again, static_cast<std::uint8_t*>(data));
+  m_again.erase(m_again.begin(), m_again.begin() + static_cast<std::ptrdiff_t>(again));
+  std::uint8_t* rest = static_cast<std::uint8_t*>(data) + again;
+  const std::size_t count = again < size ? CArchiveStreamBase::read(rest, size - again) : 0;
+  if (m_keeps) m_again.insert(m_again.end(), rest, rest + count);
+  return again + count;
+}
+
+RawlogArchive::Header RawlogArchive::readHeader() {
   Header header;
   internal_ReadObjectHeader(header.name, header.old, header.version);
-  if (header.name == "nullptr") throw std::runtime_error("an object of no class");
-  const auto* known = mrpt::rtti::findRegisteredClass(header.name);
-  if (!known) throw std::runtime_error("the class '" + header.name + "' which is not registered");
+  if (header.name == "nullptr") return header;
+  header.known = mrpt::rtti::findRegisteredClass(header.name);
+  if (!header.known)
+    throw std::runtime_error("the class '" + header.name + "' which is not registered");
+  return header;
+}
+
+CSerializable::Ptr RawlogArchive::readObject(const Header& header) {
+  const auto object = std::dynamic_pointer_cast<CSerializable>(header.known->createObject());
+  if (!object) throw std::runtime_error("a class without content, '" + header.name + "'");
+  if (header.known == CLASS_ID(CActionRobotMovement2D)) requireDistribution(header.version);
+  internal_ReadObject(object.get(), header.name, header.old, header.version);
+  return object;
+}
+
+/// Looks ahead at a CActionRobotMovement2D. MRPT takes its distribution without asking whether it
+/// is one.
+void RawlogArchive::requireDistribution(std::int8_t version) {
+  m_keeps = true;
+  const bool isFirst = version < 2;  // in the file; else after the method, if there is one
+  const bool hasOne = isFirst || ReadAs<std::int32_t>() != CActionRobotMovement2D::emOdometry;
+  const auto* known = hasOne ? readHeader().known : nullptr;
+  m_keeps = false;
+  if (hasOne && !(known && known->derivedFrom(CLASS_ID(mrpt::poses::CPosePDF))))
+    throw std::runtime_error("a movement without a distribution of poses");
+}
+
+CSerializable::Ptr RawlogArchive::readEntry() {
+  const Header header = readHeader();
+  if (!header.known) throw std::runtime_error("an object of no class");
   CSerializable::Ptr object;
-  if (known == CLASS_ID(CSensoryFrame)) {
+  if (header.known == CLASS_ID(CSensoryFrame))
     object = readFrame(header);
-  } else if (known == CLASS_ID(CActionCollection)) {
+  else if (header.known == CLASS_ID(CActionCollection))
     object = readActions(header);
-  } else {
-    object = std::dynamic_pointer_cast<CSerializable>(known->ptrCreateObject());
-    if (!object) throw std::runtime_error("a class without content, '" + header.name + "'");
-    internal_ReadObject(object.get(), header.name, header.old, header.version);
-    return object;
-  }
+  else
+    return readObject(header);
   internal_ReadObject(nullptr, header.name, header.old, header.version);  // its end
   return object;
 }
 
 template <class Element>
 typename Element::Ptr RawlogArchive::readElement(std::uint32_t index, const char* wanted) {
-  const auto object = ReadObject();
-  auto element = std::dynamic_pointer_cast<Element>(object);
-  if (!element)
-    throw std::runtime_error(
-        "element " + std::to_string(index) + " of its collection is " +
-        (object ? std::string("a ") + object->GetRuntimeClass()->className : "null") + ", not " +
-        wanted);
-  return element;
+  const Header header = readHeader();
+  if (!header.known || !header.known->derivedFrom(CLASS_ID(Element)))
+    throw std::runtime_error("element " + std::to_string(index) + " of its collection is " +
+                             (header.known ? "a " + header.name : "null") + ", not " + wanted);
+  return std::dynamic_pointer_cast<Element>(readObject(header));
 }
 
 CSerializable::Ptr RawlogArchive::readFrame(const Header& header) {
