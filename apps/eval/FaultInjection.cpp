@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "cli/RawlogActions.h"
+#include "core/common/Angles.h"
+#include "core/common/PoseInterpolation.h"
+#include "core/common/Transform.h"
 #include "io/file/TextFile.h"
 
 namespace polemcl::apps {
@@ -133,6 +136,7 @@ class Injector {
     }
   }
 
+  /// A fault that lasts.
   void spoil() {
     m_trial.origin = drawStart(m_options.lead, m_options.duration);
     const std::size_t begin = scanAfterSeconds(m_trial.origin, m_options.lead);
@@ -140,20 +144,93 @@ class Injector {
     append(m_trial.origin, scanAfterMetres(end));
     m_trial.begin = begin - m_trial.origin;
     m_trial.end = end - m_trial.origin;
-    const bool longer = m_random() % 2 == 0;
-    const double factor = 1 + (longer ? m_options.slip : -m_options.slip);
-    for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
-      PoleScan& frame = m_trial.frames[i];
-      if (m_options.fault == Fault::blind) frame.poles_robot.clear();
-      if (!frame.motion) continue;
-      if (m_options.fault == Fault::stuck) {
-        frame.motion = standstill();
-      } else if (m_options.fault == Fault::slip) {
-        Pose2D& mean = frame.motion->mean;
-        mean = {factor * mean.x, factor * mean.y, factor * mean.yaw};
-        frame.motion->covariance *= factor * factor;
-      }
+    const bool first = m_random() % 2 == 0;  // of two signs
+    switch (m_options.fault) {
+      case Fault::slip:
+        return slip(1 + (first ? m_options.slip : -m_options.slip));
+      case Fault::clock:
+        return shiftClock((first ? 1 : -1) * uniform(m_random, 0.1, 0.5));
+      case Fault::moved:
+        return moveLidarBehind(first ? 1 : -1);
+      case Fault::halfGone:
+        return hideHalf();
+      case Fault::snow:
+        return addFalsePoles();
+      default:
+        for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
+          PoleScan& frame = m_trial.frames[i];
+          if (m_options.fault == Fault::blind) frame.poles_robot.clear();
+          if (m_options.fault == Fault::stuck && frame.motion) frame.motion = standstill();
+        }
     }
+  }
+
+  void slip(double factor) {
+    for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
+      if (!m_trial.frames[i].motion) continue;
+      PoseWithCovariance& motion = *m_trial.frames[i].motion;
+      motion.mean = {factor * motion.mean.x, factor * motion.mean.y, factor * motion.mean.yaw};
+      motion.covariance *= factor * factor;
+    }
+  }
+
+  void shiftClock(double seconds) {
+    std::vector<StampedPose2D> path;  // of the odometry
+    for (const PoleScan& frame : m_trial.frames)
+      path.push_back({frame.time, path.empty() || !frame.motion
+                                      ? Pose2D{}
+                                      : compose(path.back().pose, frame.motion->mean)});
+    for (std::size_t i = std::max<std::size_t>(m_trial.begin, 1); i < m_trial.end; ++i) {
+      const auto from = poseAt(path, path[i - 1].time + seconds, INFINITY);
+      const auto to = poseAt(path, path[i].time + seconds, INFINITY);
+      if (from && to && m_trial.frames[i].motion)
+        m_trial.frames[i].motion->mean = relative(*from, *to);
+    }
+  }
+
+  void moveLidarBehind(int sign) {
+    const double metres = uniform(m_random, 0.1, 0.5), direction = uniform(m_random, -M_PI, M_PI);
+    const Pose2D shift{metres * std::cos(direction), metres * std::sin(direction),
+                       sign * uniform(m_random, 1, 5) * degree};
+    for (std::size_t i = m_trial.begin; i < m_trial.end; ++i)
+      for (PoleDetection& pole : m_trial.frames[i].poles_robot)
+        if (pole.x < 0) pole = moved(shift, pole);
+  }
+
+  void hideHalf() {
+    const std::vector<MapPole>& poles = m_drive.map.poles->poles();
+    std::vector<bool> isGone(poles.size());
+    for (std::size_t i = 0; i < poles.size(); ++i) isGone[i] = m_random() % 2 == 0;
+    const auto isHidden = [&](const PoleDetection& pole, const Pose2D& pose) {
+      const Eigen::Vector2d centre = movedCentre(pose, pole).centre;
+      const auto distance = [&](const MapPole& other) { return (centreOf(other) - centre).norm(); };
+      const auto nearest = std::min_element(
+          poles.begin(), poles.end(),
+          [&](const MapPole& a, const MapPole& b) { return distance(a) < distance(b); });
+      return nearest != poles.end() && distance(*nearest) < 1 && isGone[nearest - poles.begin()];
+    };
+    for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
+      auto& seen = m_trial.frames[i].poles_robot;
+      seen.erase(std::remove_if(
+                     seen.begin(), seen.end(),
+                     [&](const PoleDetection& pole) { return isHidden(pole, m_trial.truth[i]); }),
+                 seen.end());
+    }
+  }
+
+  /// A false pole is one of this stretch, turned round the vehicle by any angle.
+  void addFalsePoles() {
+    std::vector<PoleDetection> all;
+    for (const PoleScan& frame : m_trial.frames)
+      all.insert(all.end(), frame.poles_robot.begin(), frame.poles_robot.end());
+    if (all.empty()) return;
+    const std::size_t count = 2 * all.size() / m_trial.frames.size();
+    for (std::size_t i = m_trial.begin; i < m_trial.end; ++i)
+      for (std::size_t k = 0; k < count; ++k) {
+        const PoleDetection& pole = all[m_random() % all.size()];
+        m_trial.frames[i].poles_robot.push_back(
+            moved({0, 0, uniform(m_random, -M_PI, M_PI)}, pole));
+      }
   }
 
   const TrialDrive& m_drive;
@@ -165,8 +242,9 @@ class Injector {
 }  // namespace
 
 const char* name(Fault fault) {
-  static constexpr const char* kNames[] = {"none",  "kidnap", "wrong-map", "blind",
-                                           "stuck", "slip",   "jump"};
+  static constexpr const char* kNames[] = {"none",  "kidnap",    "wrong-map", "blind",
+                                           "stuck", "slip",      "jump",      "clock",
+                                           "moved", "half-gone", "snow"};
   return kNames[static_cast<int>(fault)];
 }
 

@@ -15,14 +15,18 @@ enum class Fault {
   blind,     ///< no pole is detected
   stuck,     ///< the odometry says that the vehicle stands
   slip,      ///< the odometry is 20 % too long or too short
-  jump       ///< the odometry jumps by 0.5 to 3 m; in half of the trials, back one scan later
+  jump,      ///< the odometry jumps by 0.5 to 3 m; in half of the trials, back one scan later
+  clock,     ///< the odometry is that of 0.1 to 0.5 s before or after
+  moved,  ///< a LiDAR that sees what is behind the vehicle: moved by 0.1 to 0.5 m, 1 to 5 degrees
+  halfGone,  ///< half of the poles of the map are gone
+  snow       ///< twice as many false poles as there are poles otherwise, others in each scan
 };
 const char* name(Fault fault);  ///< of the command line
 
 struct FaultOptions {
   Fault fault = Fault::none;
   double lead = 20;                    ///< driven in health before the fault, s; wrongMap: none
-  double duration = 30;                ///< of blind, stuck, slip, s
+  double duration = 30;                ///< of faults that last, s
   double tail = 150;                   ///< driven after the fault's end, or after the kidnapping, m
   double slip = 0.2;                   ///< error of the slipping odometry's scale
   double minJump = 20, maxJump = 500;  ///< straight distance of the kidnapping, m

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kWithinSeconds = 5, kWithinMetres = 20;  // demanded of a fault
 constexpr double kJumpWithinSeconds = 0.5;
+constexpr double kBeyondSeconds = 1;  // longest time allowed `ok` beyond five standard deviations
 
 using Outcomes = std::vector<TrialOutcome>;
 using Numbers = std::vector<double>;
@@ -170,6 +171,7 @@ bool passes(Fault fault, const TrialOutcome& outcome) {
   const auto within = [](const std::optional<Delay>& delay, double seconds, double metres) {
     return delay && (delay->seconds <= seconds || delay->metres <= metres);
   };
+  if (outcome.okBeyondSeconds > kBeyondSeconds) return false;
   switch (fault) {
     case Fault::kidnap:
       return within(outcome.lost, kWithinSeconds, kWithinMetres);
@@ -180,6 +182,12 @@ bool passes(Fault fault, const TrialOutcome& outcome) {
     case Fault::jump:
       return within(outcome.degraded, kJumpWithinSeconds, -1) &&
              within(outcome.ok, -1, kWithinMetres);
+    case Fault::clock:
+    case Fault::moved:
+      return within(outcome.ok, -1, kWithinMetres);
+    case Fault::halfGone:
+    case Fault::snow:
+      return !outcome.lost && within(outcome.ok, -1, kWithinMetres);
     default:
       return within(outcome.degraded, kWithinSeconds, -1) && within(outcome.ok, -1, kWithinMetres);
   }

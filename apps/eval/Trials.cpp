@@ -50,8 +50,9 @@ void declareMetres(CLI::App& cli, TrialOptions& options) {
 
 void declareFault(CLI::App& cli, TrialOptions& options) {
   std::vector<std::pair<std::string, Fault>> faults;
-  for (const Fault fault : {Fault::none, Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck,
-                            Fault::slip, Fault::jump})
+  for (const Fault fault :
+       {Fault::none, Fault::kidnap, Fault::wrongMap, Fault::blind, Fault::stuck, Fault::slip,
+        Fault::jump, Fault::clock, Fault::moved, Fault::halfGone, Fault::snow})
     faults.emplace_back(name(fault), fault);
   addChoice(cli, "--fault", options.fault.fault, faults,
             "Kind of fault; none: the whole drive as it is")
@@ -61,7 +62,7 @@ void declareFault(CLI::App& cli, TrialOptions& options) {
     addNumber(cli, flag, value, meaning, positiveNumber());
   };
   number("--lead", options.fault.lead, "Time before the fault, s");
-  number("--duration", options.fault.duration, "Duration of blind, stuck and slip, s");
+  number("--duration", options.fault.duration, "Duration of a fault that lasts, s");
   number("--tail", options.fault.tail, "Path after the fault, m");
   addNumber(cli, "--slip", options.fault.slip, "Error of the slipping odometry's scale, as a share",
             positiveNumber() & CLI::Range(0.0, 1.0));

@@ -44,8 +44,9 @@ TEST(Completion, OfSubcommandsAndOptions) {
 }
 
 TEST(Completion, OfWordsThatAnOptionAllows) {
-  EXPECT_EQ(offered("pole-eval faults --fault ''"), "none,kidnap,wrong-map,blind,stuck,slip,jump");
-  EXPECT_EQ(offered("pole-eval faults --fault s"), "stuck,slip");
+  EXPECT_EQ(offered("pole-eval faults --fault ''"),
+            "none,kidnap,wrong-map,blind,stuck,slip,jump,clock,moved,half-gone,snow");
+  EXPECT_EQ(offered("pole-eval faults --fault s"), "stuck,slip,snow");
   EXPECT_EQ(offered("pole-eval trajectory --per = m"), "metre");
   EXPECT_EQ(offered("pole-eval trajectory --per ="), "pose,metre");
   EXPECT_EQ(offered("pole-simulate --sensor v"), "vlp16");

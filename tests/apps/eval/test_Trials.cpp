@@ -1,88 +1,8 @@
-#include <tbb/global_control.h>
-
-#include <atomic>
-#include <nlohmann/json.hpp>
-
-#include <polemcl/mrpt/common/RegisterClasses.h>
-#include "eval/EvalApp.h"
-#include "eval/Trials.h"
-#include "support/CityFiles.h"
+#include "support/TrialFixture.h"
 
 namespace polemcl::test_trials {
 
-using namespace polemcl;
-using namespace polemcl::apps;
-using namespace testing_apps;
-
 namespace {
-
-using Arguments = std::vector<std::string>;
-
-/// Trials on a drive through a city of poles, a frame a metre, 5 m/s.
-class Trials : public testing::Test {
- protected:
-  explicit Trials(double metres = 250, int trials = 8) : city(metres) {
-    registerClasses();
-    options.files = {city.at("city.ini"), city.at("city.polemap"), city.at("drive.rawlog"),
-                     city.at("drive.tum")};
-    options.trials = trials;
-    options.seed = 3;
-  }
-  TrialDrive drive() const { return loadTrialDrive(options.files); }
-  std::vector<TrialOutcome> outcomes(const TrialDrive& of,
-                                     TrialMaker (*maker)(const TrialDrive&, const TrialOptions&)) {
-    std::atomic<std::size_t> told{0};
-    options.progress = [&] { ++told; };
-    auto result = runTrials(of, options, maker(of, options));
-    EXPECT_EQ(told, result.size());
-    EXPECT_EQ(result.size(), static_cast<std::size_t>(options.trials));
-    return result;
-  }
-  Outcome run(const std::string& command, const Arguments& more = {}) const {
-    Arguments all{command,
-                  "--config",
-                  city.at("city.ini"),
-                  "--map",
-                  city.at("city.polemap"),
-                  "--input",
-                  city.at("drive.rawlog"),
-                  "--truth",
-                  city.at("drive.tum")};
-    all.insert(all.end(), more.begin(), more.end());
-    return runProgram(evalMain, all);
-  }
-  /// What the command writes, the same on one thread as on all; `words` are in its text.
-  nlohmann::json figures(const std::string& command, Arguments more, const std::string& words) {
-    more.insert(more.end(), {"--seed", "3", "--json", city.at("j")});
-    const auto once = [&] {
-      const auto outcome = run(command, more);
-      EXPECT_EQ(outcome.code, 0) << outcome.err;
-      EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
-      return readText(city.at("j"));
-    };
-    const std::string together = once();
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_EQ(once(), together);
-    return nlohmann::json::parse(together);
-  }
-  CityFiles city;
-  TrialOptions options;
-};
-
-class FaultTrials : public Trials {
- protected:
-  FaultTrials() : Trials(400, 6) {
-    options.fault.lead = 8;
-    options.fault.duration = 6;
-    options.fault.tail = 60;
-    options.fault.maxJump = 200;
-  }
-  Trial inject(Fault fault, std::uint64_t seed = 1) {
-    options.fault.fault = fault;
-    std::mt19937_64 random(seed);
-    return injectFault(drive(), options.fault, random);
-  }
-};
 
 /// A trial of 1 m and 0.5 s a scan. Each letter is a scan: `o` ok, `d` degraded, `l` lost, `a`
 /// ambiguous; a capital: with a pose 3 m off; `-`: lost without a pose.
@@ -99,7 +19,9 @@ TrialOutcome judged(const std::string& letters, std::size_t begin = 0, std::size
     scans.push_back({0.5 * at,
                      at,
                      {error, 0},
-                     letter == '-' ? INFINITY : letter == 'O' ? 5.1 : 4.9,
+                     letter == '-'   ? INFINITY
+                     : letter == 'O' ? 5.1
+                                     : 4.9,
                      low == 'o'                 ? HealthState::ok
                      : low == 'd' || low == 'a' ? HealthState::degraded
                                                 : HealthState::lost,
@@ -189,6 +111,21 @@ TEST(TrialOutcomes, PassWhatIsDemandedOfEachFault) {
   EXPECT_TRUE(passesWhenBack(5, 20));
   EXPECT_FALSE(passesWhenBack(5.1, 20));
   EXPECT_FALSE(passesWhenBack(1, 20.1));
+  outcome.ok = Delay{9, 20};
+  outcome.okBeyondSeconds = 1;
+  EXPECT_TRUE(passes(Fault::blind, outcome));
+  outcome.okBeyondSeconds = 1.1;
+  EXPECT_FALSE(passes(Fault::blind, outcome));
+  TrialOutcome right;
+  right.ok = Delay{1, 20};
+  for (const Fault fault : {Fault::clock, Fault::moved, Fault::halfGone, Fault::snow})
+    EXPECT_TRUE(passes(fault, right));
+  right.lost = Delay{1, 1};
+  EXPECT_TRUE(passes(Fault::moved, right));
+  EXPECT_FALSE(passes(Fault::snow, right));
+  EXPECT_FALSE(passes(Fault::halfGone, right));
+  right.ok = Delay{1, 21};
+  EXPECT_FALSE(passes(Fault::clock, right));
 }
 
 TEST_F(Trials, AVehicleIsFoundInItsCity) {
@@ -299,90 +236,9 @@ TEST_F(Trials, RefuseWhatCannotBeTried) {
   expectFailure(run("global"), {"drive.tum", "no true pose"});
 }
 
-TEST_F(FaultTrials, WindowsHoldLeadFaultAndTail) {
-  const TrialDrive whole = drive();
-  int longer = 0;
-  for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    options.fault.fault = Fault::slip;
-    std::mt19937_64 random(seed);
-    const Trial slip = injectFault(whole, options.fault, random);
-    EXPECT_EQ(slip.begin, 40u);  // 8 s of 0.2 s
-    EXPECT_EQ(slip.end, 70u);
-    ASSERT_EQ(slip.frames.size(), slip.truth.size());
-    EXPECT_NEAR(slip.driven.back() - slip.driven[slip.end], 60, 2.5);
-    const auto motion = [&](std::size_t i) { return *whole.frames[slip.origin + i].motion; };
-    const auto factorOf = [&](std::size_t i) {
-      return slip.frames[i].motion->mean.x / motion(i).mean.x;
-    };
-    const double slipping = factorOf(slip.begin);
-    EXPECT_NEAR(std::abs(slipping - 1), 0.2, 1e-6);
-    longer += slipping > 1;
-    for (std::size_t i = 1; i < slip.frames.size(); ++i) {
-      const double factor = i >= slip.begin && i < slip.end ? slipping : 1;
-      EXPECT_NEAR(factorOf(i), factor, 1e-6) << i;
-      EXPECT_NEAR(slip.frames[i].motion->mean.yaw, factor * motion(i).mean.yaw, 1e-12) << i;
-      EXPECT_TRUE(
-          slip.frames[i].motion->covariance.isApprox(factor * factor * motion(i).covariance))
-          << i;
-      EXPECT_NEAR(slip.frames[i].time - slip.frames[i - 1].time, 0.2, 1e-5);
-      EXPECT_EQ(slip.truth[i].x, whole.truth[slip.origin + i].x);
-    }
-  }
-  EXPECT_GT(longer, 3);  // of 19: half, by chance
-  EXPECT_LT(longer, 16);
-}
-
-TEST_F(FaultTrials, EachFaultSpoilsItsOwn) {
-  const Trial blind = inject(Fault::blind), stuck = inject(Fault::stuck);
-  const auto faulty = [](const Trial& trial, std::size_t i) {
-    return i >= trial.begin && i < trial.end;
-  };
-  for (std::size_t i = 1; i < blind.frames.size(); ++i)
-    EXPECT_EQ(blind.frames[i].poles_robot.empty(), faulty(blind, i)) << i;
-  for (std::size_t i = 1; i < stuck.frames.size(); ++i) {
-    EXPECT_EQ(stuck.frames[i].motion->mean.x == 0, faulty(stuck, i)) << i;
-    // It is sure of standing still.
-    const double sigma = std::sqrt(stuck.frames[i].motion->covariance(0, 0));
-    EXPECT_EQ(sigma <= io::motionFloorMetres * (1 + 1e-9), faulty(stuck, i)) << i << ' ' << sigma;
-  }
-}
-
-TEST_F(FaultTrials, AKidnappingJumpsAsFarAsToldAndTimeGoesOn) {
-  for (std::uint64_t seed = 1; seed < 8; ++seed) {
-    const Trial jump = inject(Fault::kidnap, seed);
-    const double distance = errorOf(jump.truth[jump.begin], jump.truth[jump.begin - 1]).metres;
-    EXPECT_GT(distance, 18);
-    EXPECT_LT(distance, 202);
-    EXPECT_NEAR(jump.jump, distance, 2);
-    for (std::size_t i = 1; i < jump.frames.size(); ++i)
-      EXPECT_NEAR(jump.frames[i].time - jump.frames[i - 1].time, 0.2, 1e-5);
-    EXPECT_LT(std::abs(jump.frames[jump.begin].motion->mean.x), 2);  // nothing of the jump
-    EXPECT_EQ(jump.driven[jump.begin], jump.driven[jump.begin - 1]);
-  }
-}
-
-TEST_F(FaultTrials, TheOdometryJumpsAndMayComeBack) {
-  const TrialDrive whole = drive();
-  int back = 0;
-  for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    const Trial jump = inject(Fault::jump, seed);
-    back += jump.end == jump.begin + 2;
-    for (std::size_t i = 1; i < jump.frames.size(); ++i) {
-      const Pose2D &seen = jump.frames[i].motion->mean,
-                   &right = whole.frames[jump.origin + i].motion->mean;
-      const bool faulty = i >= jump.begin && i < jump.end;
-      EXPECT_NEAR(std::hypot(seen.x - right.x, seen.y - right.y), faulty ? jump.jump : 0, 1e-9);
-      EXPECT_EQ(seen.yaw, right.yaw);
-    }
-    EXPECT_GE(jump.jump, 0.5);
-    EXPECT_LE(jump.jump, 3);
-  }
-  EXPECT_GT(back, 3);  // of 19: half, by chance
-  EXPECT_LT(back, 16);
-}
-
 TEST_F(FaultTrials, FaultsAreNoticedAndRecoveredFrom) {
-  for (const Fault fault : {Fault::kidnap, Fault::blind, Fault::stuck, Fault::jump}) {
+  for (const Fault fault : {Fault::kidnap, Fault::blind, Fault::stuck, Fault::jump, Fault::clock,
+                            Fault::moved, Fault::halfGone, Fault::snow}) {
     options.fault.fault = fault;
     for (const TrialOutcome& trial : outcomes(drive(), faultyStretches)) {
       EXPECT_TRUE(trial.okBefore);

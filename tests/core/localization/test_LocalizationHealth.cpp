@@ -33,6 +33,7 @@ class Feed {
     input.effectiveParticles = 500;
     input.modeShare = modeShare;
     input.odometryContradicted = contradicted;
+    input.rival = rival;
     return last = monitor.update(input);
   }
   Health scans(int count, double share, int poles = 10) {
@@ -49,6 +50,7 @@ class Feed {
   double time = 1e9, period = 0.1, metres = 0.5, squared = 2, sigma = 0.02, yaw = 0.001,
          modeShare = 1, confidence = 1;
   bool contradicted = false;
+  RivalPose rival;
 };
 
 using State = HealthState;
@@ -372,6 +374,49 @@ TEST(LocalizationHealth, OdometryAndInnovationDegrade) {
   feed.scans(40, 0.9);
   feed.expect(State::degraded, Reason::innovation);
   EXPECT_NEAR(feed.last.innovation, 5, 1e-12);
+}
+
+TEST(LocalizationHealth, PolesThatFitAnotherPoseTogetherDegrade) {
+  Feed feed;
+  feed.scans(20, 0.6);
+  feed.expect(State::ok, Reason::none);
+  feed.rival = {4, {0.4, 0, 0}};  // (4 - 2 + 1, first without the 1) 0.5 m / 3 m
+  feed.scans(2, 0.6);             // 0.33, 0.83
+  feed.expect(State::ok, Reason::none);
+  feed.scan(0.6);
+  feed.expect(State::degraded, Reason::innovation);
+  feed.rival = {1, {}};
+  feed.scans(40, 0.2, 2);  // a few poles say nothing
+  EXPECT_NE(feed.last.state, State::ok);
+}
+
+TEST(LocalizationHealth, PolesThatFitAnotherPoseAreForgottenOverMetres) {
+  Feed feed;
+  feed.rival = {9, {0.4, 0, 0}};
+  feed.scans(20, 0.6);  // up to 2, which is the most
+  feed.rival = {1, {}};
+  feed.scans(23, 0.6);  // each 0.25 * 0.5 m / 3 m less: above 1 for 24
+  feed.expect(State::degraded, Reason::innovation);
+  feed.scans(2, 0.6);
+  feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, TwoPolesThatFitAnotherPoseMustFitTheSameAgain) {
+  Feed feed;
+  feed.scans(20, 0.6);
+  for (int i = 0; i < 40; ++i) {
+    feed.rival = {2, {i % 2 == 0 ? 0.4 : 0.1, 0, 0}};
+    feed.scan(0.6);
+    EXPECT_EQ(feed.last.state, State::ok) << i;
+  }
+  for (int i = 0; i < 40; ++i) {
+    feed.rival = {2, {0.4, 0, i % 2 == 0 ? 0.03 : 0}};
+    feed.scan(0.6);
+    EXPECT_EQ(feed.last.state, State::ok) << i;
+  }
+  feed.rival = {2, {0.4, 0.1, 0.01}};
+  feed.scans(8, 0.6);  // the first, after another, counts as 0; 7 of 0.167
+  feed.expect(State::degraded, Reason::innovation);
 }
 
 TEST(LocalizationHealth, ElsewhereIsLostAndANewPoseMustProveItself) {

@@ -289,6 +289,20 @@ TEST(ObservationPoleExtractor, RefusesOtherObservations) {
   EXPECT_TRUE(ObservationPoleExtractor::canProcess(CObservationRotatingScan()));
 }
 
+TEST(ObservationPoleExtractor, RefusesSensorPosesThatAreNotFinite) {
+  const auto options = hdl32(1.5);
+  const TestCloud cloud = plainCloud(options);
+  ObservationPoleExtractor extraction(options);
+  for (const CPose3D& pose :
+       {CPose3D(NAN, 0, 0, 0, 0, 0), CPose3D(0, 0, INFINITY, 0, 0, 0), CPose3D(0, 0, 0, 0, NAN, 0)})
+    EXPECT_HAS(refusal(extraction, *observationOf(cloud, pose)), "sensor pose");
+  auto known = options;
+  known.sensorPose = CPose3D();
+  EXPECT_FALSE(ObservationPoleExtractor(known)
+                   .process(*observationOf(cloud, CPose3D(NAN, 0, 0, 0, 0, 0)))
+                   ->poles.empty());
+}
+
 TEST(ObservationPoleExtractor, RefusesBadOptions) {
   auto options = hdl32(1.5);
   options.sensor.model = "hdl3000";

@@ -34,6 +34,11 @@ constexpr double kDegradedShare = 0.4;  // degraded: a smaller share of them is 
 constexpr double kDoubt = 4, kRightShare = 0.7, kWrongShare = 0.1;
 /// Scans nearer to each other than this see the same poles, m. They count less, by their distance.
 constexpr double kSamePoles = 3;
+/// Degraded: poles without a match fit another pose nearby, more than this many beyond two over
+/// kSamePoles. Over this distance without them, the second is forgotten.
+constexpr double kRivals = 1, kRivalsForgotten = 0.25;
+/// Rivals nearer to each other than this are the same, m and rad.
+constexpr double kSameRival = 0.2, kSameRivalTurn = 0.02;
 constexpr double kLostSpread = 5;           // lost: greater σ of the position, m
 constexpr double kDegradedSpread = 0.2;     // degraded: greater σ of the position, m
 constexpr double kDegradedHeading = 0.052;  // degraded: greater σ of the heading, rad
@@ -50,6 +55,10 @@ constexpr double kConfirmWithin = 15;  // lost: a new pose is not confirmed with
 constexpr double kHopelessShare = 0.15;  // lost: a new pose has a smaller share of matches
 constexpr double kHopelessAfter = 2;     // but only after this distance, m
 constexpr double kViewpoint = 0.1;       // scans nearer to each other are of one viewpoint, m
+
+bool isSame(const Pose2D& a, const Pose2D& b) {
+  return std::hypot(a.x - b.x, a.y - b.y) < kSameRival && std::abs(a.yaw - b.yaw) < kSameRivalTurn;
+}
 
 }  // namespace
 
@@ -127,6 +136,7 @@ void HealthMonitor::remember(const HealthInput& input) {
     ++scan.matches;
   }
   doubt(scan, input.metres);
+  doubtByRivals(input);
   Viewpoint& viewpoint = m_viewpoints.back();
   const double share = 1.0 / ++viewpoint.scans;
   viewpoint.seen += share * (scan.seen - viewpoint.seen);
@@ -142,6 +152,20 @@ void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
       scan.matched * std::log(kRightShare / kWrongShare);
   m_doubt += std::min(1.0, metres / kSamePoles) * wrong;
   m_doubt = std::clamp(m_doubt, 0.0, 2 * kDoubt);
+}
+
+/// Two poles fit another pose by chance, but not the same one from scan to scan. Scans with fewer
+/// outweigh earlier ones, but slowly, and not without poles: for metres, all poles may be those of
+/// the LiDAR that moved.
+void HealthMonitor::doubtByRivals(const HealthInput& input) {
+  const RivalPose& rival = input.rival;
+  double beyond = input.matches.size() > 2 ? -kRivalsForgotten : 0;
+  if (rival.pairs >= 2) {
+    beyond = rival.pairs - 2 + (isSame(rival.motion, m_rival) ? 1 : 0);
+    m_rival = rival.motion;
+  }
+  m_rivals += std::min(1.0, input.metres / kSamePoles) * beyond;
+  m_rivals = std::clamp(m_rivals, 0.0, 2 * kRivals);
 }
 
 HealthMonitor::Window HealthMonitor::sumOver(double metres) const {
@@ -213,7 +237,8 @@ void HealthMonitor::judge(const HealthInput& input) {
       {m_driven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind, State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},
-      {m_isEnough && m_health.innovation > kInnovation, State::degraded, Reason::innovation},
+      {(m_isEnough && m_health.innovation > kInnovation) || m_rivals > kRivals, State::degraded,
+       Reason::innovation},
       {true, State::ok, Reason::none},
   };
   const auto* rule =

@@ -22,6 +22,7 @@ struct HealthInput {
   double effectiveParticles = 0;  ///< number
   double modeShare = 1;           ///< of the weight of particles round the estimate, in [0, 1]
   bool odometryContradicted = false;
+  RivalPose rival;  ///< of findRival()
 };
 
 /// \brief Follows one run. Deterministic.
@@ -59,6 +60,7 @@ class POLEMCL_EXPORT HealthMonitor {
   void learnUsual();
   void remember(const HealthInput& input);
   void doubt(const Viewpoint& scan, double metres);
+  void doubtByRivals(const HealthInput& input);
   Window sumOver(double metres) const;
   double shareOfUsual(const Window& window) const;
   void sumUp();
@@ -75,6 +77,8 @@ class POLEMCL_EXPORT HealthMonitor {
   bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window; to be lost
   double m_longShare = 0;                           ///< of matched poles over the longer window
   double m_seenDriven = 0, m_seenTime = 0;          ///< when a pole was last seen
+  double m_rivals = 0;      ///< poles that fit another pose, see doubtByRivals()
+  Pose2D m_rival;           ///< that pose, from the estimate, when there last was one
   double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
   double m_goodDriven = 0;  ///< metres in a row with enough matches
   double m_gapUntil = -1;   ///< metres driven at which a time gap is forgotten

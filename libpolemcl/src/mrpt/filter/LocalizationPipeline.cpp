@@ -262,6 +262,8 @@ void LocalizationPipeline::track(const PoleScan& frame, double metres, Localizat
   input.metres = metres;
   m_matches = match(frame, estimate);
   input.matches = m_matches;
+  input.rival =
+      findRival(frame.poles_robot, m_matches, estimate.mean, m_map.poles->index(), association());
   input.estimate = estimate;
   input.effectiveParticles =
       m_filter.report().effectiveShare * static_cast<double>(m_filter.report().particles);
@@ -335,8 +337,13 @@ bool LocalizationPipeline::fitsBetter(const GlobalHypothesis& place, const PoleS
 
 std::vector<PoleMatch> LocalizationPipeline::match(const PoleScan& frame,
                                                    const PoseWithCovariance& pose) const {
-  return associate(frame.poles_robot, pose, m_map.poles->index(),
-                   {m_map.poles->likelihoodOptions.sigma, 3.5, 1.0});
+  return associate(frame.poles_robot, pose, m_map.poles->index(), association());
+}
+
+AssociationOptions LocalizationPipeline::association() const {
+  AssociationOptions options;
+  options.sigma = m_map.poles->likelihoodOptions.sigma;
+  return options;
 }
 
 void LocalizationPipeline::adopt(const PoleScan& frame, bool resolved, LocalizationUpdate& update) {

@@ -142,6 +142,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   bool agrees(const GlobalHypothesis& place) const;
   bool fitsBetter(const GlobalHypothesis& place, const PoleScan& frame) const;
   std::vector<PoleMatch> match(const PoleScan& frame, const PoseWithCovariance& pose) const;
+  AssociationOptions association() const;
   void adopt(const PoleScan& frame, bool resolved, LocalizationUpdate& update);
 
   LocalizationMap m_map;

@@ -89,7 +89,11 @@ mrpt::poses::CPose3D ObservationPoleExtractorOptions::poseOf(
     const mrpt::obs::CObservation& observation) const {
   mrpt::poses::CPose3D pose;
   observation.getSensorPose(pose);
-  return sensorPose.value_or(pose);
+  if (sensorPose) pose = *sensorPose;
+  if (!pose.asVectorVal().asEigen().allFinite())
+    throw Error(std::string("the sensor pose of a ") + observation.GetRuntimeClass()->className +
+                " is not finite: give the right one with --sensor-pose");
+  return pose;
 }
 
 struct ObservationPoleExtractor::Impl {

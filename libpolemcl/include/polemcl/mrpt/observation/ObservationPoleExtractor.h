@@ -20,6 +20,7 @@ struct POLEMCL_EXPORT ObservationPoleExtractorOptions {
   /// Pose of the sensor in the robot frame, in the place of that of the observations.
   std::optional<mrpt::poses::CPose3D> sensorPose = {};
 
+  /// \throws Error when it has a number that is not finite.
   mrpt::poses::CPose3D poseOf(const mrpt::obs::CObservation& observation) const;
 };
 
