@@ -176,10 +176,11 @@ class Injector {
 
   void shiftClock(double seconds) {
     std::vector<StampedPose2D> path;  // of the odometry
-    for (const PoleScan& frame : m_trial.frames)
-      path.push_back({frame.time, path.empty() || !frame.motion
-                                      ? Pose2D{}
-                                      : compose(path.back().pose, frame.motion->mean)});
+    for (const PoleScan& frame : m_trial.frames) {
+      const Pose2D last = path.empty() ? Pose2D{} : path.back().pose;
+      const bool moves = !path.empty() && frame.motion;
+      path.push_back({frame.time, moves ? compose(last, frame.motion->mean) : last});
+    }
     for (std::size_t i = std::max<std::size_t>(m_trial.begin, 1); i < m_trial.end; ++i) {
       const auto from = poseAt(path, path[i - 1].time + seconds, INFINITY);
       const auto to = poseAt(path, path[i].time + seconds, INFINITY);
@@ -198,16 +199,12 @@ class Injector {
   }
 
   void hideHalf() {
-    const std::vector<MapPole>& poles = m_drive.map.poles->poles();
-    std::vector<bool> isGone(poles.size());
-    for (std::size_t i = 0; i < poles.size(); ++i) isGone[i] = m_random() % 2 == 0;
+    std::vector<bool> isGone(m_drive.map.poles->poles().size());
+    for (std::size_t i = 0; i < isGone.size(); ++i) isGone[i] = m_random() % 2 == 0;
     const auto isHidden = [&](const PoleDetection& pole, const Pose2D& pose) {
       const Eigen::Vector2d centre = movedCentre(pose, pole).centre;
-      const auto distance = [&](const MapPole& other) { return (centreOf(other) - centre).norm(); };
-      const auto nearest = std::min_element(
-          poles.begin(), poles.end(),
-          [&](const MapPole& a, const MapPole& b) { return distance(a) < distance(b); });
-      return nearest != poles.end() && distance(*nearest) < 1 && isGone[nearest - poles.begin()];
+      const auto nearest = m_drive.map.poles->index().nearest(centre.x(), centre.y(), 1);
+      return nearest && isGone[nearest->index];
     };
     for (std::size_t i = m_trial.begin; i < m_trial.end; ++i) {
       auto& seen = m_trial.frames[i].poles_robot;

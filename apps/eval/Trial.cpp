@@ -70,11 +70,20 @@ double meanError(const Scans& scans, double from, double to) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
+/// Longest time in a row `ok` beyond five standard deviations, s.
+double longestBeyond(const Scans& scans, std::size_t from) {
+  LongestTime longest;
+  for (std::size_t i = from; i < scans.size(); ++i)
+    longest.add(scans[i].time, isOk(scans[i]) && !(scans[i].sigmas <= 5));
+  return longest.seconds();
+}
+
 HealthCounts countHealth(const Trial& trial, const Scans& scans) {
   HealthCounts run;
   const std::size_t first = firstScan(scans, 0, isOk);
   run.lostBefore = static_cast<std::size_t>(
       std::count_if(scans.begin(), scans.begin() + static_cast<std::ptrdiff_t>(first), isLost));
+  run.okBeyondSeconds = longestBeyond(scans, first);
   double okTime = 0;
   HealthState last = HealthState::ok;
   for (std::size_t i = first; i < scans.size(); ++i) {
@@ -115,17 +124,15 @@ void judgeSinceBegin(const Scans& scans, std::size_t begin, TrialOutcome& outcom
   outcome.said = delayOf(scans, begin, said);
   if (outcome.said) outcome.saidError = scans[said].error;
   outcome.saidOk = delayUntil(scans, begin, isOk);
-  LongestTime okBeyond;
   for (std::size_t i = begin; i < scans.size(); ++i) {
     const TrialScan& scan = scans[i];
-    okBeyond.add(scan.time, isOk(scan) && scan.sigmas > 5);
     if (std::isfinite(scan.error.metres))
       outcome.errorMax = std::max(outcome.errorMax, scan.error.metres);
     if (!isOk(scan) || scan.error.isRight()) continue;
     outcome.okWrong = true;
     if (i > begin) outcome.okWrongMetres += scan.driven - scans[i - 1].driven;
   }
-  outcome.okBeyondSeconds = okBeyond.seconds();
+  outcome.okBeyondSeconds = longestBeyond(scans, begin);
 }
 
 void judgeSinceEnd(const Scans& scans, std::size_t end, TrialOutcome& outcome) {
@@ -194,6 +201,7 @@ void HealthCounts::add(const HealthCounts& run) {
   wrongOk += run.wrongOk;
   relocalized += run.relocalized;
   lostBefore += run.lostBefore;
+  okBeyondSeconds = std::max(okBeyondSeconds, run.okBeyondSeconds);
 }
 
 TrialOutcome outcomeOf(const Trial& trial, const std::vector<TrialScan>& scans) {

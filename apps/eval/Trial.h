@@ -58,6 +58,7 @@ struct HealthCounts {
   double errorSum = 0, errorMax = 0;             ///< m, over all scans
   std::size_t wrongOk = 0;                       ///< `ok` with a wrong pose
   std::size_t relocalized = 0;
+  double okBeyondSeconds = 0;  ///< as in TrialOutcome
   std::size_t lostBefore = 0;  ///< scans called lost before the first `ok`
 
   void add(const HealthCounts& run);

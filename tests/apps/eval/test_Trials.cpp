@@ -88,6 +88,7 @@ TEST(TrialOutcomes, CountHealthFromTheFirstOkOn) {
   EXPECT_NEAR(health.errorSum, 8 * 0.1 + 3, 1e-12);
   EXPECT_EQ(health.reasons, (std::map<std::string, std::size_t>{{"converging", 4}, {"spread", 2}}));
   EXPECT_EQ(judged("dl-").health.scans, 0u);
+  EXPECT_EQ(judged("OOOddlOOoO", 10, 10).health.okBeyondSeconds, 1);
 }
 
 TEST(TrialOutcomes, PassWhatIsDemandedOfEachFault) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/localization/LocalizationHealth.h"
@@ -380,43 +381,79 @@ TEST(LocalizationHealth, PolesThatFitAnotherPoseTogetherDegrade) {
   Feed feed;
   feed.scans(20, 0.6);
   feed.expect(State::ok, Reason::none);
-  feed.rival = {4, {0.4, 0, 0}};  // (4 - 2 + 1, first without the 1) 0.5 m / 3 m
-  feed.scans(2, 0.6);             // 0.33, 0.83
+  feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};  // (5 - 2) 0.5 m / 3 m
+  feed.scans(2, 0.6);
   feed.expect(State::ok, Reason::none);
   feed.scan(0.6);
   feed.expect(State::degraded, Reason::innovation);
-  feed.rival = {1, {}};
-  feed.scans(40, 0.2, 2);  // a few poles say nothing
-  EXPECT_NE(feed.last.state, State::ok);
+  feed.rival = {};
+  feed.scans(20, 1, 2);  // 10 m with a few poles
+  feed.expect(State::degraded, Reason::innovation);
 }
 
 TEST(LocalizationHealth, PolesThatFitAnotherPoseAreForgottenOverMetres) {
   Feed feed;
-  feed.rival = {9, {0.4, 0, 0}};
+  feed.scans(20, 0.6);
+  feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};
   feed.scans(20, 0.6);  // up to 2, which is the most
-  feed.rival = {1, {}};
-  feed.scans(23, 0.6);  // each 0.25 * 0.5 m / 3 m less: above 1 for 24
+  feed.rival = {};
+  feed.scans(23, 0.6);  // above 1 for 12 m
   feed.expect(State::degraded, Reason::innovation);
+  feed.scans(2, 0.6);
+  feed.expect(State::ok, Reason::none);
+  feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};
+  feed.scans(20, 0.6);
+  feed.rival = {};
+  feed.metres = 8;  // the same for scans far apart
   feed.scans(2, 0.6);
   feed.expect(State::ok, Reason::none);
 }
 
-TEST(LocalizationHealth, TwoPolesThatFitAnotherPoseMustFitTheSameAgain) {
+TEST(LocalizationHealth, TwoPolesThatFitAnotherPoseSayNothingHoweverOftenTheyAreSeen) {
   Feed feed;
   feed.scans(20, 0.6);
-  for (int i = 0; i < 40; ++i) {
-    feed.rival = {2, {i % 2 == 0 ? 0.4 : 0.1, 0, 0}};
+  feed.rival = {{0.4, 0, 0}, {1, 2}};
+  for (int i = 0; i < 60; ++i) {
     feed.scan(0.6);
     EXPECT_EQ(feed.last.state, State::ok) << i;
   }
-  for (int i = 0; i < 40; ++i) {
-    feed.rival = {2, {0.4, 0, i % 2 == 0 ? 0.03 : 0}};
+}
+
+TEST(LocalizationHealth, PolesThatFitTheSameOtherPoseAddUp) {
+  for (const auto& [x, yaw, state] :
+       {std::tuple{0.5, 0.01, State::degraded}, {0.7, 0.0, State::ok}, {0.4, 0.03, State::ok}}) {
+    Feed feed;
+    feed.scans(20, 0.6);
+    feed.rival = {{0.4, 0, 0}, {1, 2}};
+    feed.scans(2, 0.6);
+    for (std::size_t i = 0; i < 4; ++i) {  // 1, 2, 3, 4 beyond two: 10 * 0.5 m / 3 m
+      feed.rival = {{i % 2 == 0 ? x : 0.4, 0, i % 2 == 0 ? yaw : 0}, {i, i + 3}};
+      feed.scan(0.6);
+    }
+    EXPECT_EQ(feed.last.state, state) << x << ' ' << yaw;
+  }
+}
+
+TEST(LocalizationHealth, PolesThatFittedAnotherPoseLongAgoDoNotAddUp) {
+  Feed feed;
+  feed.scans(20, 0.6);
+  for (std::size_t i = 0; i < 20; ++i) {
+    feed.rival = {{0.4, 0, 0}, {2 * i, 2 * i + 1}};
     feed.scan(0.6);
+    feed.rival = {};
+    feed.scans(25, 0.6);  // 12.5 m
     EXPECT_EQ(feed.last.state, State::ok) << i;
   }
-  feed.rival = {2, {0.4, 0.1, 0.01}};
-  feed.scans(8, 0.6);  // the first, after another, counts as 0; 7 of 0.167
-  feed.expect(State::degraded, Reason::innovation);
+}
+
+TEST(LocalizationHealth, ANewPoseIsNotHeldByWhatWasBeforeItWasKnown) {
+  Feed feed;
+  feed.rival = {{0.4, 0, 0}, {1, 2, 3, 4, 5}};
+  feed.scans(9, 0.9);
+  feed.expect(State::degraded, Reason::converging);
+  feed.rival = {};
+  feed.scans(3, 0.9);
+  feed.expect(State::ok, Reason::none);
 }
 
 TEST(LocalizationHealth, ElsewhereIsLostAndANewPoseMustProveItself) {

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/common/PoleIndex.h"
-#include "core/common/Transform.h"
 #include "core/localization/MapAssociation.h"
 #include "support/Poles.h"
 
@@ -89,75 +88,6 @@ TEST(MapAssociation, WhatIsNotFiniteMatchesNothing) {
   EXPECT_FALSE(associate({detection(nan, 0, 0.1)}, {}, index, kExact)[0].matched);
   EXPECT_FALSE(associate({detection(0, 0, nan)}, {}, index, kExact)[0].matched);
   EXPECT_TRUE(associate({}, {}, index, kExact).empty());
-}
-
-namespace {
-
-/// Poles all round a robot at (100, 50), heading 1 rad.
-const Pose2D kRobot{100, 50, 1};
-const double kCentres[][2] = {{8, 3}, {14, -6}, {25, 9}, {-7, 4}, {-12, -8}, {-21, 2}, {-30, 11}};
-
-/// What the robot sees of them; those behind from a LiDAR that has moved.
-std::vector<PoleDetection> seenWith(const Pose2D& motion, std::size_t count = 7) {
-  std::vector<PoleDetection> poles;
-  for (std::size_t i = 0; i < count; ++i) {
-    const PoleDetection pole = detection(kCentres[i][0], kCentres[i][1], 0.02);
-    poles.push_back(pole.x < 0 ? moved(motion, pole) : pole);
-  }
-  return poles;
-}
-
-RivalPose rivalOf(const std::vector<PoleDetection>& poles_robot) {
-  std::vector<MapPole> map;
-  for (const auto& centre : kCentres) {
-    const Pose2D at = compose(kRobot, {centre[0], centre[1], 0});
-    map.push_back(mapPole(at.x, at.y, 0.02));
-  }
-  const PoleIndex index(map);
-  PoseWithCovariance robot;
-  robot.mean = kRobot;
-  return findRival(poles_robot, associate(poles_robot, robot, index, kExact), kRobot, index,
-                   kExact);
-}
-
-}  // namespace
-
-TEST(RivalPose, IsThatOfALidarThatHasMoved) {
-  const Pose2D motion{0.3, -0.4, 0.05};
-  const RivalPose rival = rivalOf(seenWith(motion));
-  EXPECT_EQ(rival.pairs, 4);
-  const Pose2D back = compose(motion, rival.motion);  // map = rival (motion (map))
-  const Pose2D other = compose(rival.motion, motion);
-  EXPECT_NEAR(other.x, 0, 1e-6);
-  EXPECT_NEAR(other.y, 0, 1e-6);
-  EXPECT_NEAR(back.yaw, 0, 1e-6);
-}
-
-TEST(RivalPose, NeedsPolesWithoutAMatchOnBothSides) {
-  EXPECT_EQ(rivalOf(seenWith({})).pairs, 0);                    // all match
-  EXPECT_EQ(rivalOf(seenWith({0.3, -0.4, 0.05}, 4)).pairs, 0);  // one does not
-  EXPECT_EQ(rivalOf({}).pairs, 0);
-  // Two detections of each pole ahead: the second has no match, but the pole of the map has one.
-  auto twice = seenWith({}, 3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    twice.push_back(twice[i]);
-    twice.back().x += 0.1;
-  }
-  EXPECT_EQ(rivalOf(twice).pairs, 0);
-}
-
-TEST(RivalPose, LiesNearTheEstimate) {
-  EXPECT_EQ(rivalOf(seenWith({1.2, 0.8, 0})).pairs, 4);  // 1.44 m
-  EXPECT_LT(rivalOf(seenWith({1.3, 0.9, 0})).pairs, 3);  // 1.58 m
-  EXPECT_EQ(rivalOf(seenWith({0, 0, 0.11})).pairs, 4);
-  EXPECT_LT(rivalOf(seenWith({0, 0, 0.13})).pairs, 3);
-}
-
-TEST(RivalPose, DetectionsWithoutConfidenceOrValueDoNotCount) {
-  auto poles = seenWith({0.3, -0.4, 0.05});
-  poles[3].confidence = 0;
-  poles[4].x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(rivalOf(poles).pairs, 2);
 }
 
 }  // namespace polemcl::test_map_association

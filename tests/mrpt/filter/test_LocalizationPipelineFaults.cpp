@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/common/Transform.h"
 #include "mrpt/filter/LocalizationPipeline.h"
 #include "support/PoleCity.h"
 
@@ -96,6 +97,46 @@ TEST_F(PoleLocalizationFaults, ASlippingOdometryIsDegradedAndThePoseStaysRight) 
     EXPECT_LT(error(updates[i], i), 0.5) << i;
   }
   expectOkFrom(updates, 200 + 28);
+}
+
+TEST_F(PoleLocalizationFaults, ALidarThatHasMovedIsDegradedByTheOther) {
+  drive(210);
+  for (std::size_t i = 100; i < 200; ++i)
+    for (PoleDetection& pole : frames[i].poles_robot)
+      if (pole.x < 0) pole = moved({0.3, 0.2, 0.03}, pole);
+  const auto updates = run();
+  for (std::size_t i = 90; i < 100; ++i) EXPECT_EQ(updates[i].health.state, HealthState::ok) << i;
+  int ok = 0, wrong = 0, byRivals = 0;
+  for (std::size_t i = 105; i < 200; ++i) {
+    ok += updates[i].health.state == HealthState::ok;
+    wrong += updates[i].health.state == HealthState::ok && error(updates[i], i) > 0.15;
+    byRivals += updates[i].health.reason == HealthReason::innovation;
+  }
+  EXPECT_LE(ok, 20);
+  EXPECT_LE(wrong, 20);
+  EXPECT_GE(byRivals, 30);
+  expectOkFrom(updates, 200 + 28);
+}
+
+TEST_F(PoleLocalizationFaults, NewPolesBesideThoseThatAreGoneAreNoRivals) {
+  drive(210);
+  for (std::size_t i = 60; i < frames.size(); ++i)
+    for (PoleDetection& pole : frames[i].poles_robot) {
+      const Eigen::Vector2d centre = movedCentre(truth[i], pole).centre;
+      const auto nearest = map->poles->index().nearest(centre.x(), centre.y(), 0.5);
+      // Of each five poles, one is replaced 0.6 m away from it, in any direction.
+      if (!nearest || nearest->index % 5 != 0) continue;
+      const double direction = 2.4 * static_cast<double>(nearest->index);
+      const Pose2D at = relative(truth[i], {centre.x() + 0.6 * std::cos(direction),
+                                            centre.y() + 0.6 * std::sin(direction), 0});
+      pole.x = at.x;
+      pole.y = at.y;
+    }
+  const auto updates = run();
+  for (std::size_t i = 60; i < updates.size(); ++i) {
+    EXPECT_NE(updates[i].health.reason, HealthReason::innovation) << i;
+    EXPECT_LT(error(updates[i], i), 0.3) << i;
+  }
 }
 
 TEST_F(PoleLocalizationFaults, TheCheckChangesNothingWhilePolesAgree) {

@@ -34,9 +34,10 @@ constexpr double kDegradedShare = 0.4;  // degraded: a smaller share of them is 
 constexpr double kDoubt = 4, kRightShare = 0.7, kWrongShare = 0.1;
 /// Scans nearer to each other than this see the same poles, m. They count less, by their distance.
 constexpr double kSamePoles = 3;
-/// Degraded: poles without a match fit another pose nearby, more than this many beyond two over
-/// kSamePoles. Over this distance without them, the second is forgotten.
-constexpr double kRivals = 1, kRivalsForgotten = 0.25;
+/// Degraded: greater doubt by poles without a match that fit another pose nearby, see
+/// doubtByRivals(). It grows by one for each pole beyond two over kSamePoles.
+constexpr double kRivalDoubt = 1;
+constexpr double kRivalForgotten = 12;  // distance over which this doubt falls by one, m
 /// Rivals nearer to each other than this are the same, m and rad.
 constexpr double kSameRival = 0.2, kSameRivalTurn = 0.02;
 constexpr double kLostSpread = 5;           // lost: greater σ of the position, m
@@ -154,18 +155,24 @@ void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
   m_doubt = std::clamp(m_doubt, 0.0, 2 * kDoubt);
 }
 
-/// Two poles fit another pose by chance, but not the same one from scan to scan. Scans with fewer
-/// outweigh earlier ones, but slowly, and not without poles: for metres, all poles may be those of
-/// the LiDAR that moved.
+/// Poles of the map that fit the same rival pose over the last metres speak against the estimate:
+/// those beyond two, which fit one by chance, as long as they are seen. Such a doubt is forgotten
+/// slowly, and slower where few poles are seen: all may be those of the LiDAR that moved.
 void HealthMonitor::doubtByRivals(const HealthInput& input) {
-  const RivalPose& rival = input.rival;
-  double beyond = input.matches.size() > 2 ? -kRivalsForgotten : 0;
-  if (rival.pairs >= 2) {
-    beyond = rival.pairs - 2 + (isSame(rival.motion, m_rival) ? 1 : 0);
-    m_rival = rival.motion;
+  for (auto pole = m_rivalPoles.begin(); pole != m_rivalPoles.end();)
+    pole = m_driven - pole->second > kRivalForgotten ? m_rivalPoles.erase(pole) : std::next(pole);
+  std::size_t count = 0;
+  if (!input.rival.poles.empty()) {
+    if (!isSame(input.rival.motion, m_lastRival)) m_rivalPoles.clear();
+    m_lastRival = input.rival.motion;
+    for (const std::size_t pole : input.rival.poles) m_rivalPoles[pole] = m_driven;
+    count = m_rivalPoles.size();
   }
-  m_rivals += std::min(1.0, input.metres / kSamePoles) * beyond;
-  m_rivals = std::clamp(m_rivals, 0.0, 2 * kRivals);
+  if (count > 2)
+    m_rivalDoubt += std::min(1.0, input.metres / kSamePoles) * static_cast<double>(count - 2);
+  else
+    m_rivalDoubt -= input.metres / ((input.matches.size() > 2 ? 1 : 3) * kRivalForgotten);
+  m_rivalDoubt = std::clamp(m_rivalDoubt, 0.0, 2 * kRivalDoubt);
 }
 
 HealthMonitor::Window HealthMonitor::sumOver(double metres) const {
@@ -205,7 +212,9 @@ void HealthMonitor::confirm(const HealthInput& input) {
   const bool good = m_isEnough && m_health.matchedShare >= kDegradedShare &&
                     m_longShare >= kConfirmShare && m_health.spread < kDegradedSpread &&
                     m_health.spreadHeading < kDegradedHeading;
-  if (good && m_goodDriven >= (m_found ? kConfirmFound : kConfirm)) m_confirmed = true;
+  if (m_confirmed || !good || m_goodDriven < (m_found ? kConfirmFound : kConfirm)) return;
+  m_confirmed = true;
+  m_rivalDoubt = 0;  // it was of a pose that was not known yet
 }
 
 void HealthMonitor::judge(const HealthInput& input) {
@@ -237,8 +246,8 @@ void HealthMonitor::judge(const HealthInput& input) {
       {m_driven < m_gapUntil, State::degraded, Reason::timeGap},
       {blind, State::degraded, Reason::noPoles},
       {input.odometryContradicted, State::degraded, Reason::odometry},
-      {(m_isEnough && m_health.innovation > kInnovation) || m_rivals > kRivals, State::degraded,
-       Reason::innovation},
+      {(m_isEnough && m_health.innovation > kInnovation) || m_rivalDoubt > kRivalDoubt,
+       State::degraded, Reason::innovation},
       {true, State::ok, Reason::none},
   };
   const auto* rule =

@@ -4,12 +4,14 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <vector>
 
 #include <polemcl/core/localization/LocalizationUpdate.h>
 #include <polemcl/export.h>
 #include "core/common/PoseEstimate.h"
 #include "core/localization/MapAssociation.h"
+#include "core/localization/RivalPose.h"
 
 namespace polemcl {
 
@@ -77,8 +79,10 @@ class POLEMCL_EXPORT HealthMonitor {
   bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window; to be lost
   double m_longShare = 0;                           ///< of matched poles over the longer window
   double m_seenDriven = 0, m_seenTime = 0;          ///< when a pole was last seen
-  double m_rivals = 0;      ///< poles that fit another pose, see doubtByRivals()
-  Pose2D m_rival;           ///< that pose, from the estimate, when there last was one
+  double m_rivalDoubt = 0;  ///< by poles that fit another pose, see doubtByRivals()
+  Pose2D m_lastRival;       ///< that pose, from the estimate
+  /// Poles of the map that fit it, and the metres driven when each last did.
+  std::map<std::size_t, double> m_rivalPoles;
   double m_doubt = 0;       ///< log-likelihood ratio of a wrong place, see doubt()
   double m_goodDriven = 0;  ///< metres in a row with enough matches
   double m_gapUntil = -1;   ///< metres driven at which a time gap is forgotten

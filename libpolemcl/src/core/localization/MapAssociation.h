@@ -37,17 +37,4 @@ POLEMCL_EXPORT std::vector<PoleMatch> associate(const std::vector<PoleDetection>
                                                 const PoleIndex& index,
                                                 const AssociationOptions& options);
 
-/// \brief Another pose near the estimate that poles without a match have in common.
-struct RivalPose {
-  int pairs = 0;  ///< detections without a match that would have one there; 2 may be chance
-  Pose2D motion;  ///< from the estimate, in its frame, m, rad
-};
-
-/// \brief The pose within 1.5 m and 7 degrees at which most detections without a match stand on
-/// poles of the map without one: as when one of two LiDARs has moved.
-/// \param matches Of associate(). Other parameters as there. \return No pairs for fewer than two.
-POLEMCL_EXPORT RivalPose findRival(const std::vector<PoleDetection>& poles_robot,
-                                   const std::vector<PoleMatch>& matches, const Pose2D& robot,
-                                   const PoleIndex& index, const AssociationOptions& options);
-
 }  // namespace polemcl

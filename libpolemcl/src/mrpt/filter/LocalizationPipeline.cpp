@@ -262,8 +262,9 @@ void LocalizationPipeline::track(const PoleScan& frame, double metres, Localizat
   input.metres = metres;
   m_matches = match(frame, estimate);
   input.matches = m_matches;
-  input.rival =
-      findRival(frame.poles_robot, m_matches, estimate.mean, m_map.poles->index(), association());
+  if (!m_map.coarse)
+    input.rival =
+        findRival(frame.poles_robot, m_matches, estimate.mean, m_map.poles->index(), association());
   input.estimate = estimate;
   input.effectiveParticles =
       m_filter.report().effectiveShare * static_cast<double>(m_filter.report().particles);

@@ -21,7 +21,8 @@ class RawlogArchive : public mrpt::serialization::CArchiveStreamBase<GzReadStrea
   using CArchiveStreamBase::CArchiveStreamBase;
 
   /// \brief The next object of the file, never null.
-  /// \throws std::exception when it is damaged or its class is unknown.
+  /// \throws std::exception when it is damaged or its class is unknown. The archive cannot be used
+  ///         after it.
   mrpt::serialization::CSerializable::Ptr readEntry();
 
  protected:

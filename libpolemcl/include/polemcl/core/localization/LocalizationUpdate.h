@@ -25,7 +25,8 @@ enum class HealthReason {
   timeGap,   ///< degraded: no scan for longer than `max_gap_s`, until poles confirm the pose again
   noPoles,   ///< degraded: no pole was seen for 2 s or 20 m
   odometry,  ///< degraded: the poles contradict the odometry
-  innovation,  ///< degraded: matched poles lie farther off than their covariances say
+  innovation,  ///< degraded: matched poles lie farther off than their covariances say, or others
+               ///< fit another pose nearby together
 };
 
 /// \brief The words of the CSV and of the live view, in the order of the enumerators.
