@@ -124,11 +124,12 @@ TEST_F(PoleLocalizationFaults, NewPolesBesideThoseThatAreGoneAreNoRivals) {
     for (PoleDetection& pole : frames[i].poles_robot) {
       const Eigen::Vector2d centre = movedCentre(truth[i], pole).centre;
       const auto nearest = map->poles->index().nearest(centre.x(), centre.y(), 0.5);
-      // Of each five poles, one is replaced 0.6 m away from it, in any direction.
+      // Of each five poles, one is replaced 0.4 to 1.4 m away from it, in any direction.
       if (!nearest || nearest->index % 5 != 0) continue;
-      const double direction = 2.4 * static_cast<double>(nearest->index);
-      const Pose2D at = relative(truth[i], {centre.x() + 0.6 * std::cos(direction),
-                                            centre.y() + 0.6 * std::sin(direction), 0});
+      const auto k = static_cast<double>(nearest->index / 5);
+      const double direction = 2.4 * k, metres = 0.4 + std::fmod(0.37 * k, 1);
+      const Pose2D at = relative(truth[i], {centre.x() + metres * std::cos(direction),
+                                            centre.y() + metres * std::sin(direction), 0});
       pole.x = at.x;
       pole.y = at.y;
     }

@@ -35,8 +35,9 @@ constexpr double kDoubt = 4, kRightShare = 0.7, kWrongShare = 0.1;
 /// Scans nearer to each other than this see the same poles, m. They count less, by their distance.
 constexpr double kSamePoles = 3;
 /// Degraded: greater doubt by poles without a match that fit another pose nearby, see
-/// doubtByRivals(). It grows by one for each pole beyond two over kSamePoles.
+/// doubtByRivals(). It grows by one for each pole beyond these few over kSamePoles.
 constexpr double kRivalDoubt = 1;
+constexpr std::size_t kFewRivals = 2;   // they fit another pose by chance
 constexpr double kRivalForgotten = 12;  // distance over which this doubt falls by one, m
 /// Rivals nearer to each other than this are the same, m and rad.
 constexpr double kSameRival = 0.2, kSameRivalTurn = 0.02;
@@ -156,7 +157,7 @@ void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
 }
 
 /// Poles of the map that fit the same rival pose over the last metres speak against the estimate:
-/// those beyond two, which fit one by chance, as long as they are seen. Such a doubt is forgotten
+/// those beyond a few, which fit one by chance. Such a doubt is forgotten
 /// slowly, and slower where few poles are seen: all may be those of the LiDAR that moved.
 void HealthMonitor::doubtByRivals(const HealthInput& input) {
   for (auto pole = m_rivalPoles.begin(); pole != m_rivalPoles.end();)
@@ -168,8 +169,9 @@ void HealthMonitor::doubtByRivals(const HealthInput& input) {
     for (const std::size_t pole : input.rival.poles) m_rivalPoles[pole] = m_driven;
     count = m_rivalPoles.size();
   }
-  if (count > 2)
-    m_rivalDoubt += std::min(1.0, input.metres / kSamePoles) * static_cast<double>(count - 2);
+  if (count > kFewRivals)
+    m_rivalDoubt +=
+        std::min(1.0, input.metres / kSamePoles) * static_cast<double>(count - kFewRivals);
   else
     m_rivalDoubt -= input.metres / ((input.matches.size() > 2 ? 1 : 3) * kRivalForgotten);
   m_rivalDoubt = std::clamp(m_rivalDoubt, 0.0, 2 * kRivalDoubt);

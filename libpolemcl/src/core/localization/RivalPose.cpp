@@ -17,7 +17,9 @@ namespace {
 
 constexpr double kRivalDistance = 1.5, kRivalTurn = 0.12;   // of a rival from the estimate, m, rad
 constexpr double kSamePose = 0.15, kSamePoseTurn = 0.0175;  // nearer is no other pose
-constexpr std::size_t kMostMapPoles = 48;                   // compared with the detections
+/// Greatest Mahalanobis distance of a pair. Wider ones let more poles fit by chance.
+constexpr double kGate = 2;
+constexpr std::size_t kMostMapPoles = 48;  // compared with the detections
 
 /// What has no match, though some pose within the limits would give it one.
 struct Unmatched {
@@ -83,6 +85,7 @@ RivalPose findRival(const std::vector<PoleDetection>& poles_robot,
   near.sigma = options.sigma;
   near.maxMetres = kRivalDistance;
   near.maxRadians = kRivalTurn;
+  near.gate = kGate;
   RivalPose rival;
   rival.motion = searchMotion(mapNear(left, robot, index), left.poles_robot, {}, near).motion;
   if (isWithin(rival.motion, kSamePose, kSamePoseTurn) ||
@@ -90,7 +93,9 @@ RivalPose findRival(const std::vector<PoleDetection>& poles_robot,
     return {};
   PoseWithCovariance there;
   there.mean = compose(robot, rival.motion);
-  for (const PoleMatch& match : associate(left.poles_robot, there, index, options))
+  AssociationOptions closely = options;
+  closely.gate = kGate;
+  for (const PoleMatch& match : associate(left.poles_robot, there, index, closely))
     if (match.matched && taken.count(match.pole) == 0) rival.poles.push_back(match.pole);
   if (rival.poles.size() < 2 || 2 * rival.poles.size() <= left.poles_robot.size()) return {};
   std::sort(rival.poles.begin(), rival.poles.end());
