@@ -144,14 +144,14 @@ class Injector {
     append(m_trial.origin, scanAfterMetres(end));
     m_trial.begin = begin - m_trial.origin;
     m_trial.end = end - m_trial.origin;
-    const bool first = m_random() % 2 == 0;  // of two signs
+    const int sign = m_random() % 2 == 0 ? 1 : -1;
     switch (m_options.fault) {
       case Fault::slip:
-        return slip(1 + (first ? m_options.slip : -m_options.slip));
+        return slip(1 + sign * m_options.slip);
       case Fault::clock:
-        return shiftClock((first ? 1 : -1) * uniform(m_random, 0.1, 0.5));
+        return shiftClock(sign * uniform(m_random, 0.1, 0.5));
       case Fault::moved:
-        return moveLidarBehind(first ? 1 : -1);
+        return moveLidarBehind(sign);
       case Fault::halfGone:
         return hideHalf();
       case Fault::snow:

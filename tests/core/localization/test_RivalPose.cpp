@@ -17,9 +17,10 @@ const AssociationOptions kExact{0.05, 3.5, 1.0};
 
 /// Poles all round a robot at (100, 50), heading 1 rad.
 const Pose2D kRobot{100, 50, 1};
-const double kCentres[][2] = {{8, 3}, {14, -6}, {25, 9}, {-7, 4}, {-12, -8}, {-21, 2}, {-30, 11}};
+const double kCentres[][2] = {{8, 3},    {14, -6}, {25, 9},   {-7, 4},
+                              {-12, -8}, {-21, 2}, {-30, 11}, {9, 4.5}};
 
-/// What the robot sees of them; those behind from a LiDAR that has moved.
+/// What the robot sees of them, but for the last; those behind from a LiDAR that has moved.
 std::vector<PoleDetection> seenWith(const Pose2D& motion, std::size_t count = 7) {
   std::vector<PoleDetection> poles;
   for (std::size_t i = 0; i < count; ++i) {
