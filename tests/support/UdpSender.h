@@ -40,7 +40,7 @@ inline sockaddr_in loopback(int port) {
 /// A port that nobody uses now, each time another one; differs between test programs that run side
 /// by side. Below those that the system gives away itself.
 inline int freeUdpPort() {
-  static int next = 10000 + 7 * (getpid() % 3000);
+  static int next = 10000 + 64 * (getpid() % 355);  // 64 for each program, with others at once
   for (; next < 32768; ++next) {
     const int probe = socket(AF_INET, SOCK_DGRAM, 0);
     const auto address = loopback(next);
