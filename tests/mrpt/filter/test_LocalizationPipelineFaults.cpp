@@ -124,7 +124,7 @@ TEST_F(PoleLocalizationFaults, NewPolesBesideThoseThatAreGoneAreNoRivals) {
     for (PoleDetection& pole : frames[i].poles_robot) {
       const Eigen::Vector2d centre = movedCentre(truth[i], pole).centre;
       const auto nearest = map->poles->index().nearest(centre.x(), centre.y(), 0.5);
-      // Of each five poles, one is replaced 0.4 to 1.4 m away from it, in any direction.
+      // Every fifth pole of the map has been replaced by a new one, 0.4 to 1.4 m away.
       if (!nearest || nearest->index % 5 != 0) continue;
       const auto k = static_cast<double>(nearest->index / 5);
       const double direction = 2.4 * k, metres = 0.4 + std::fmod(0.37 * k, 1);

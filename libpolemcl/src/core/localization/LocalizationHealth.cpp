@@ -37,7 +37,7 @@ constexpr double kSamePoles = 3;
 /// Degraded: greater doubt by poles without a match that fit another pose nearby, see
 /// doubtByRivals(). It grows by one for each pole beyond these few over kSamePoles.
 constexpr double kRivalDoubt = 1;
-constexpr std::size_t kFewRivals = 2;   // they fit another pose by chance
+constexpr std::size_t kFewRivals = 2;   // poles that may fit another pose by chance
 constexpr double kRivalForgotten = 12;  // distance over which this doubt falls by one, m
 /// Rivals nearer to each other than this are the same, m and rad.
 constexpr double kSameRival = 0.2, kSameRivalTurn = 0.02;
@@ -156,9 +156,9 @@ void HealthMonitor::doubt(const Viewpoint& scan, double metres) {
   m_doubt = std::clamp(m_doubt, 0.0, 2 * kDoubt);
 }
 
-/// Poles of the map that fit the same rival pose over the last metres speak against the estimate:
-/// those beyond a few, which fit one by chance. Such a doubt is forgotten
-/// slowly, and slower where few poles are seen: all may be those of the LiDAR that moved.
+/// The doubt grows with the number of map poles that have fitted the same rival pose over the last
+/// metres; a few do so by chance and do not count. It falls slowly, and more slowly where few poles
+/// are seen, since the LiDAR that moved may have seen all of them.
 void HealthMonitor::doubtByRivals(const HealthInput& input) {
   for (auto pole = m_rivalPoles.begin(); pole != m_rivalPoles.end();)
     pole = m_driven - pole->second > kRivalForgotten ? m_rivalPoles.erase(pole) : std::next(pole);
