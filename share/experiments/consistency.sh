@@ -3,7 +3,7 @@
 # day, and two drives on another day for each world: one per direction, with own detections, noise and
 # seed. Odometry is the truth with 2 % noise.
 # Usage: share/experiments/consistency.sh OUT [FIRST [WORLDS]]
-#   OUT      gets maps, drives, runs, and result.json
+#   OUT      gets maps, drives, runs, and result.json: by direction, all, and of all only what is ok
 #   FIRST    first world, 701 unless given; WORLDS: their number, 30 unless given
 # Poles are drawn by the model of share/models/hdl32e.json. Programs: build/bin, or POLEMCL_BIN.
 set -eu
@@ -35,6 +35,8 @@ forward=
 reverse=
 forward_truth=
 reverse_truth=
+forward_health=
+reverse_health=
 world=$first
 while [ "$world" -lt $((first + worlds)) ]; do
   drive "$world-map" "$world" 0 false
@@ -48,6 +50,8 @@ while [ "$world" -lt $((first + worlds)) ]; do
   reverse="$reverse $out/$world-reverse/run_00_cov.csv"
   forward_truth="$forward_truth $out/$world-forward.tum"
   reverse_truth="$reverse_truth $out/$world-reverse.tum"
+  forward_health="$forward_health $out/$world-forward/run_00_health.csv"
+  reverse_health="$reverse_health $out/$world-reverse/run_00_health.csv"
   world=$((world + 1))
 done
 
@@ -66,7 +70,10 @@ sed -n 2p "$(
   score reverse $reverse_truth --cov $reverse >>"$out/table.txt"
   # shellcheck disable=SC2086
   score all $forward_truth $reverse_truth --cov $forward $reverse >>"$out/table.txt"
+  # shellcheck disable=SC2086
+  score all_ok $forward_truth $reverse_truth --cov $forward $reverse --health $forward_health $reverse_health >>"$out/table.txt"
   echo "$out/all.txt"
 )"
-jq -s '{forward: .[0], reverse: .[1], all: .[2]}' "$out/forward.json" "$out/reverse.json" "$out/all.json" >"$out/result.json"
+jq -s '{forward: .[0], reverse: .[1], all: .[2], all_ok: .[3]}' "$out/forward.json" "$out/reverse.json" "$out/all.json" \
+  "$out/all_ok.json" >"$out/result.json"
 cat "$out/table.txt"

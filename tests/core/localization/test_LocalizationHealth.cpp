@@ -79,11 +79,27 @@ TEST(LocalizationHealth, OkOnceMatchesOverSomeMetresBearThePoseOut) {
 
 TEST(LocalizationHealth, APoseThatASearchFoundIsBorneOutSooner) {
   Feed feed;
-  feed.monitor.begin(true);
+  feed.monitor.begin(PoseSource::found);
   feed.scans(3, 0.9);
   feed.expect(State::degraded, Reason::converging);
   feed.scan(0.9);  // 2 m
   feed.expect(State::ok, Reason::none);
+}
+
+TEST(LocalizationHealth, APoseFoundNearABelievedOneTakesLonger) {
+  const auto scansUntilOk = [](Feed& feed, double share) {
+    feed.monitor.begin(PoseSource::foundNear);
+    int scans = 1;
+    while (feed.scan(share).state != State::ok && scans < 40) ++scans;
+    return scans;
+  };
+  Feed feed;
+  EXPECT_EQ(scansUntilOk(feed, 0.8), 4);   // 2 m: the start was not believed yet
+  EXPECT_EQ(scansUntilOk(feed, 0.8), 16);  // 8 m
+  EXPECT_EQ(scansUntilOk(feed, 0.9), 4);   // nearly all match
+  feed.monitor.begin(PoseSource::foundNear);
+  feed.scan(0.8);
+  EXPECT_EQ(scansUntilOk(feed, 0.8), 16);  // near a pose that was near a believed one
 }
 
 // 50 m with ten poles a scan, then 10 m with four: (50 · 10 + 10 · 4) / 60 = 9 are usual.

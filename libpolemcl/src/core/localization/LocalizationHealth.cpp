@@ -50,6 +50,8 @@ constexpr double kBlindSeconds = 2;  // degraded: no pole for a longer time, s
 constexpr double kBlindMetres = 20;  // degraded: no pole over a longer distance, m
 constexpr double kConfirm = 5;       // distance with good matches until a new pose is ok, m
 constexpr double kConfirmFound = 2;  // the same for a pose that a search found, m
+constexpr double kConfirmNear = 8;   // the same, near a pose that was believed, m
+constexpr double kNearlyAll = 0.85;  // but not where a greater share of the poles matches
 /// Share of matched poles that confirms a new pose. Particles drawn over metres find matches by
 /// chance.
 constexpr double kConfirmShare = 0.5;
@@ -80,13 +82,14 @@ void HealthMonitor::reset() {
   *this = HealthMonitor(m_maxGap);
 }
 
-void HealthMonitor::begin(bool found) {
+void HealthMonitor::begin(PoseSource source) {
   const double usual = m_usual, over = m_usualOver;
+  const bool believed = m_confirmed || m_source == PoseSource::foundNear;
   reset();
   m_usual = usual;
   m_usualOver = over;
   m_begun = true;
-  m_found = found;
+  m_source = source == PoseSource::foundNear && !believed ? PoseSource::found : source;
 }
 
 Health HealthMonitor::update(const HealthInput& input) {
@@ -207,6 +210,12 @@ void HealthMonitor::sumUp() {
   m_isEnoughLong = all.seen >= kMinSightings && shareOfUsual(all) >= kLostSeen;
 }
 
+double HealthMonitor::metresToConfirm() const {
+  if (m_source == PoseSource::given) return kConfirm;
+  const bool doubtful = m_source == PoseSource::foundNear && m_health.matchedShare < kNearlyAll;
+  return doubtful ? kConfirmNear : kConfirmFound;
+}
+
 /// Confirms a new pose after enough metres of good matches.
 void HealthMonitor::confirm(const HealthInput& input) {
   const Viewpoint& here = m_viewpoints.back();
@@ -214,7 +223,7 @@ void HealthMonitor::confirm(const HealthInput& input) {
   const bool good = m_isEnough && m_health.matchedShare >= kDegradedShare &&
                     m_longShare >= kConfirmShare && m_health.spread < kDegradedSpread &&
                     m_health.spreadHeading < kDegradedHeading;
-  if (m_confirmed || !good || m_goodDriven < (m_found ? kConfirmFound : kConfirm)) return;
+  if (m_confirmed || !good || m_goodDriven < metresToConfirm()) return;
   m_confirmed = true;
   m_rivalDoubt = 0;  // it was of a pose that was not known yet
 }

@@ -27,6 +27,14 @@ struct HealthInput {
   RivalPose rival;  ///< of findRival()
 };
 
+/// \brief Where an assumed pose comes from.
+enum class PoseSource {
+  given,      ///< a start, or one of several answers of a search: matches over 5 m bear it out
+  found,      ///< by a search that is sure of it: 2 m do
+  foundNear,  ///< alike, near a pose that was believed: what led that one astray, such as a LiDAR
+              ///< that was moved, may still be there; 8 m, unless nearly all poles match
+};
+
 /// \brief Follows one run. Deterministic.
 class POLEMCL_EXPORT HealthMonitor {
  public:
@@ -35,10 +43,9 @@ class POLEMCL_EXPORT HealthMonitor {
 
   /// \brief No pose is known: `lost`, `searching`.
   void reset();
-  /// \brief A pose was assumed (a start, a search's answer): forgets the scans before; `degraded`,
-  /// `converging` until matches over 5 m support it.
-  /// \param found By a search that is sure of it: 2 m do.
-  void begin(bool found = false);
+  /// \brief A pose was assumed: forgets the scans before; `degraded`, `converging` until matches
+  /// bear it out.
+  void begin(PoseSource source = PoseSource::given);
   /// \brief One update more. Before begin(): stays `searching`.
   Health update(const HealthInput& input);
   /// \brief For one update: the constellation of the last metres lies elsewhere.
@@ -66,14 +73,16 @@ class POLEMCL_EXPORT HealthMonitor {
   Window sumOver(double metres) const;
   double shareOfUsual(const Window& window) const;
   void sumUp();
+  double metresToConfirm() const;
   void confirm(const HealthInput& input);
   void judge(const HealthInput& input);
 
   double m_maxGap;
   Health m_health;
   std::deque<Viewpoint> m_viewpoints;
-  bool m_begun = false, m_found = false, m_confirmed = false;
-  double m_driven = 0, m_time = 0;  ///< at the last update
+  bool m_begun = false, m_confirmed = false;
+  PoseSource m_source = PoseSource::given;  ///< foundNear only if the pose before was believed
+  double m_driven = 0, m_time = 0;          ///< at the last update
   double m_usual = 0;      ///< poles a viewpoint, by confidence; the one under way does not count
   double m_usualOver = 0;  ///< distance that this mean is over, m
   bool m_isEnough = false, m_isEnoughLong = false;  ///< to judge the window; to be lost

@@ -19,6 +19,8 @@ constexpr double kSearchEverySeconds = 5;  // time between two searches of a veh
 /// Distance travelled until an ambiguous answer is used, m; until then the next metres may tell.
 constexpr double kPatience = 30;
 constexpr int kSearchParticles = 4000;  // drawn round the places of an answer
+/// An answer as near to the pose is a correction of it, m and rad.
+constexpr double kNear = 2, kNearTurn = 0.2;
 
 const LocalizationOptions& checked(const LocalizationOptions& options) {
   checkOptions(options);
@@ -305,7 +307,7 @@ void LocalizationPipeline::search(const PoleScan& frame, LocalizationUpdate& upd
   m_search = m_map.search->localize(m_submap, m_area);
   if (m_search.verdict == GlobalVerdict::none) return;
   const bool resolved = m_search.verdict == GlobalVerdict::resolved;
-  const bool here = resolved && m_hasPose && agrees(m_search.hypotheses[0]);
+  const bool here = resolved && isNear(m_search.hypotheses[0], sameMetres, sameRadians);
   if (!resolved) {
     // The filter already covers several places, or a few more metres may resolve the ambiguity.
     if (m_hasPose && m_monitor.health().state != HealthState::lost) return;
@@ -318,11 +320,11 @@ void LocalizationPipeline::search(const PoleScan& frame, LocalizationUpdate& upd
   if (wasElsewhere) m_monitor.reportElsewhere();
 }
 
-bool LocalizationPipeline::agrees(const GlobalHypothesis& place) const {
-  const Pose2D& found = place.pose_map_robot;
-  const Pose2D& estimate = m_estimate.mean;
-  return std::hypot(found.x - estimate.x, found.y - estimate.y) <= sameMetres &&
-         std::abs(wrapAngle(found.yaw - estimate.yaw)) <= sameRadians;
+/// Whether an answer is at the estimate; never without one.
+bool LocalizationPipeline::isNear(const GlobalHypothesis& place, double metres,
+                                  double radians) const {
+  const Pose2D apart = relative(m_estimate.mean, place.pose_map_robot);
+  return m_hasPose && std::hypot(apart.x, apart.y) <= metres && std::abs(apart.yaw) <= radians;
 }
 
 /// A filter that converged to a wrong pose on matching poles is too certain to leave it by itself.
@@ -354,9 +356,11 @@ void LocalizationPipeline::adopt(const PoleScan& frame, bool resolved, Localizat
     if (resolved) break;
   }
   m_filter.start(places, kSearchParticles);
+  m_monitor.begin(!resolved                                          ? PoseSource::given
+                  : isNear(m_search.hypotheses[0], kNear, kNearTurn) ? PoseSource::foundNear
+                                                                     : PoseSource::found);
   m_hasPose = true;
   if (resolved) m_area.reset();
-  m_monitor.begin(resolved);
   track(frame, 0, update);
   update.relocalized = true;
 }

@@ -139,7 +139,7 @@ class POLEMCL_EXPORT LocalizationPipeline {
   void requireNearMap(double x, double y, double radius) const;
   bool searchIsDue() const;
   void search(const PoleScan& frame, LocalizationUpdate& update);
-  bool agrees(const GlobalHypothesis& place) const;
+  bool isNear(const GlobalHypothesis& place, double metres, double radians) const;
   bool fitsBetter(const GlobalHypothesis& place, const PoleScan& frame) const;
   std::vector<PoleMatch> match(const PoleScan& frame, const PoseWithCovariance& pose) const;
   AssociationOptions association() const;
