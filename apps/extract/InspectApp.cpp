@@ -102,11 +102,20 @@ double beginArc(const std::vector<PointOrder>& orders) {
 }
 
 void printCut(std::ostream& out, const ScanTiming& timing, double arc) {
+  for (const auto& [turn, name] : turnNames())
+    if (turn == timing.turn) out << name;
+  if (!timing.known()) {
+    out << ", as far as the poles show";
+    return;
+  }
   if (timing.movingCut)
     out << ", each scan cut at its first point (these lie " << degrees(arc, 0) << " deg apart)";
   else
     out << ", cut at " << degrees(timing.cut, 0) << " deg";
-  out << ", stamped in the middle of the turn";
+  if (timing.stamp == 0.5)
+    out << ", stamped in the middle of the turn";
+  else
+    out << ", stamped at " << io::fixed(timing.stamp, 2) << " of the turn";
   if (!timing.movingCut && arc > kMovingArc)
     out << "\n                  but the scans begin at points " << degrees(arc, 0)
         << " deg apart: no single cut fits them";
@@ -133,21 +142,18 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
     return;
   }
   const ScanTiming& timing = found->timing;
-  for (const auto& [turn, name] : turnNames())
-    if (turn == timing.turn) out << name;
-  if (timing.known())
-    printCut(out, timing, beginArc(inspection.sensor.orders));
-  else
-    out << ", as far as the poles show";
+  if (found->isStated) out << "as the rawlog states it: ";
+  printCut(out, timing, found->isStated ? 0 : beginArc(inspection.sensor.orders));
   out << "\nclock             "
       << (timing.clock != 0 ? "clock_offset_s = " + io::fixed(timing.clock, 2) : "no offset seen")
       << "\nsignificance      " << found->pairs << " pairs of sightings, a pole moves by "
       << io::fixed(found->before, 4) << " m between two scans as they are, by "
       << io::fixed(found->after, 4) << " m\n                  with this timing"
-      << judged(found->after) << ";\n                  turn "
+      << judged(found->after) << ";\n                  "
+      << (found->isStated ? "the best other timing " : "turn ")
       << io::fixed(found->turnSignificance, 1) << " and clock "
-      << io::fixed(found->clockSignificance, 1)
-      << " standard errors better than none (4 are needed)\n";
+      << io::fixed(found->clockSignificance, 1) << " standard errors better than "
+      << (found->isStated ? "this and none" : "none") << " (4 are needed)\n";
 }
 
 void printRanges(std::ostream& out, const Inspection& inspection) {
@@ -204,7 +210,7 @@ bool searchDrive(const InspectOptions& options, bool movingCut, Inspection& foun
                  const ScanProgress& progress) {
   const auto scans = readDrive(options, settingsFor(found), movingCut, progress);
   if (!scans) return false;
-  found.timing = searchTiming(*scans, options.turnSeconds);
+  found.timing = searchTiming(*scans, options.turnSeconds, found.sensor.stated);
   if (!options.truth) return true;
   const mrpt::poses::CPose3D& mount = found.sensor.sensorPose;
   const SensorOptions& sensor = found.sensor.options;
@@ -220,6 +226,7 @@ void searchDrive(const InspectOptions& options, Inspection& result, const ScanPr
   const std::vector<PointOrder>& orders = result.sensor.orders;
   if (beginArc(orders) > kMovingArc) {
     Inspection moving{result.sensor, {}, {}};
+    moving.sensor.stated = {};  // it names a single cut
     if (searchDrive(options, true, moving, progress) &&
         moving.timing->timing.turn == orders.front().turn &&
         std::abs(std::remainder(moving.timing->timing.cut, 2 * M_PI)) <= kNearBegin) {
@@ -245,8 +252,13 @@ AllSettings settingsFor(const Inspection& inspection) {
   AllSettings settings;
   settings.sensor = inspection.sensor.options;
   if (inspection.timing &&
-      (inspection.timing->timing.known() || inspection.timing->timing.clock != 0))
+      (inspection.timing->timing.known() || inspection.timing->timing.clock != 0)) {
     settings.sensor.timing = inspection.timing->timing;
+    if (inspection.timing->isStated) {  // `auto` takes what the rawlog states
+      settings.sensor.timing = ScanTiming();
+      settings.sensor.timing.clock = inspection.timing->timing.clock;
+    }
+  }
   if (inspection.ranges && inspection.ranges->isClear()) {
     settings.sensor.rangeOffset = std::round(1e3 * inspection.ranges->offset) / 1e3;
     settings.sensor.rangeScale = std::round(1e4 * inspection.ranges->scale) / 1e4;

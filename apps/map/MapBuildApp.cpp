@@ -296,6 +296,18 @@ void mapDrivesOf(std::vector<MappingSession>& drives, const MapBuildJob& job,
   }
 }
 
+/// Whether the poles contradict the true poses, or the timing of the scans.
+void checkTruth(const std::vector<MappingSession>& drives, const MapBuildJob& job,
+                const ScanTiming& timing, MapBuildSummary& summary) {
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    summary.motions.push_back(checkMotion(drives[i].scans));
+    const std::string doubt =
+        timingDoubt({}, remainingTiming(drives[i], timing.seconds, false), timing);
+    if (!doubt.empty())
+      summary.timingDoubts.push_back(job.inputs[i].filename().string() + ": " + doubt);
+  }
+}
+
 }  // namespace
 
 MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
@@ -308,8 +320,7 @@ MapBuildSummary buildMap(const MapBuildJob& job, const AllSettings& settings,
   std::vector<MappingSession> drives;
   for (std::size_t i = 0; i < job.inputs.size(); ++i)
     drives.push_back(loadMappingSession(job.session(i), settings, job.allowTruncated, progress));
-  if (job.kind == PoseKind::truth)
-    for (const MappingSession& drive : drives) summary.motions.push_back(checkMotion(drive.scans));
+  if (job.kind == PoseKind::truth) checkTruth(drives, job, settings.sensor.timing, summary);
   LandmarkMap inventory;
   if (job.inventory) {
     inventory = io::landmarkMap(base.map);

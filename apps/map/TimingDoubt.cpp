@@ -25,10 +25,10 @@ std::string errors(double significance) {
 
 }  // namespace
 
-TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds) {
+TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds, bool clocks) {
   std::vector<TimedScan> scans;
   for (const SessionScan& scan : drive.scans) scans.push_back(timedScan(scan));
-  TimingEstimate result = searchTiming(scans, turnSeconds);
+  TimingEstimate result = searchTiming(scans, turnSeconds, {}, clocks);
   if (drive.filled.all) result.timing.clock = 0;
   return result;
 }

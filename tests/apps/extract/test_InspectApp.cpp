@@ -262,6 +262,18 @@ TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   EXPECT_NEAR(found.ranges->offset, 0.055, 0.025);  // as in config/kitti.ini
   EXPECT_EQ(timing->timing.clock, 0);
   EXPECT_NE(readText(folder / "found.ini").find("turn = clockwise"), std::string::npos);
+
+  options.timing = {Turn::clockwise, 0.1, M_PI, 0.5};  // now the rawlog states it
+  importDataset(options);
+  const Inspection stated = inspect(files);
+  ASSERT_TRUE(stated.timing);
+  EXPECT_TRUE(stated.timing->isStated);
+  std::ostringstream text;
+  printInspection(text, stated);
+  EXPECT_TRUE(has(text.str(), "as the rawlog states it: clockwise, cut at 180 deg")) << text.str();
+  const SensorOptions written = loadSettings((folder / "found.ini").string()).sensor;
+  EXPECT_EQ(written.timing.turn, Turn::automatic);
+  EXPECT_EQ(written.timing.clock, 0);
 }
 
 }  // namespace polemcl::test_inspect_app

@@ -57,6 +57,9 @@ TEST(TimingDoubt, SeesScansThatWereNotCorrected) {
   const TimingEstimate found = remainingTiming(session({Turn::clockwise, 0.1, M_PI, 0.5}), 0.1);
   EXPECT_EQ(found.timing.turn, Turn::clockwise);
   EXPECT_HAS(timingDoubt(found, kNothing, {}), "not look corrected");
+  const TimingEstimate ofTruth =
+      remainingTiming(session({Turn::clockwise, 0.1, M_PI, 0.5}), 0.1, false);
+  EXPECT_HAS(timingDoubt({}, ofTruth, {}), "not look corrected");
 }
 
 TEST(TimingDoubt, LooksFromTheLidar) {

@@ -47,6 +47,36 @@ TEST(TimingSearch, FindsTheOffsetOfTheClocks) {
   EXPECT_NEAR(both.timing.clock, -0.05, 0.016);
 }
 
+// Stamped at the end of the turn: the same as in the middle, half a turn later.
+TEST(TimingSearch, FindsStampsAtTheEndsOfTheTurn) {
+  for (const double stamp : {0.0, 1.0}) {
+    const ScanTiming truth{Turn::clockwise, 0.1, M_PI, stamp};
+    const ScanTiming found = searchTiming(tests::timedDrive(truth), 0.1).timing;
+    for (const double azimuth : {-2.0, 0.0, 2.0})
+      EXPECT_NEAR(found.offset(azimuth), truth.offset(azimuth), 0.016) << stamp << ' ' << azimuth;
+  }
+}
+
+TEST(TimingSearch, KeepsAStatedTimingUnlessAnotherIsClearlyBetter) {
+  const ScanTiming truth{Turn::clockwise, 0.1, M_PI, 1};
+  const auto scans = tests::timedDrive(truth);
+  const TimingEstimate kept = searchTiming(scans, 0.1, truth);
+  EXPECT_TRUE(kept.isStated);
+  EXPECT_EQ(kept.timing.stamp, 1);
+  EXPECT_EQ(kept.timing.clock, 0);
+  EXPECT_LT(kept.turnSignificance, kEnoughErrors);
+  EXPECT_LT(kept.after, kept.before);
+  const ScanTiming wrong{Turn::counterclockwise, 0.1, M_PI, 0};
+  const TimingEstimate found = searchTiming(scans, 0.1, wrong);
+  EXPECT_FALSE(found.isStated);
+  EXPECT_EQ(found.timing.turn, Turn::clockwise);
+  ScanTiming late = truth;  // its clock may still be wrong
+  late.clock = 0.06;
+  const TimingEstimate clocked = searchTiming(tests::timedDrive(late), 0.1, truth);
+  EXPECT_TRUE(clocked.isStated);
+  EXPECT_NEAR(clocked.timing.clock, 0.06, 0.011);
+}
+
 TEST(TimingSearch, FindsRangesThatAreOff) {
   const ScanTiming timing{Turn::clockwise, 0.1, M_PI, 0.5};
   const Eigen::Vector2d lidar(1.5, 0.3);

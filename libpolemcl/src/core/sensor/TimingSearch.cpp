@@ -82,6 +82,7 @@ class Search {
   RangeCorrection bestRanges(const ScanTiming& timing, const Eigen::Vector2d& lidar_robot) const;
   ScanTiming bestTurn(double clock) const;
   double bestClock(ScanTiming timing) const;
+  ScanTiming bestOfAll() const;
 
  private:
   Eigen::Vector2d place(std::size_t scan, const TimedPole& pole, const ScanTiming& timing) const;
@@ -258,24 +259,38 @@ double Search::bestClock(ScanTiming timing) const {
   return best;
 }
 
-}  // namespace
+/// The best turn with the best clock. Each needs the other, so they are searched in turns, from
+/// stamps at the end, in the middle and at the begin of a scan.
+ScanTiming Search::bestOfAll() const {
+  ScanTiming best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double stamp : {0.0, -0.5, 0.5}) {
+    ScanTiming timing = bestTurn(stamp * m_seconds);
+    double clock = bestClock(timing);
+    for (int k = 0; k < 4 && clock != timing.clock; ++k) {
+      timing = bestTurn(clock);
+      clock = bestClock(timing);
+    }
+    if (const double distance = mean(timing); distance < least) {
+      least = distance;
+      best = timing;
+    }
+  }
+  return best;
+}
 
-TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeconds) {
+/// The best of all timings, beside none.
+TimingEstimate searchAll(Search& search, double turnSeconds, bool clocks) {
   TimingEstimate result;
   const ScanTiming still{Turn::compensated, turnSeconds, M_PI, 0.5, 0};
   result.timing = still;
-  Search search(scans, turnSeconds);
   // The second time with the pairs that the first result shows.
   for (int round = 0; round < 2; ++round) {
     search.associate(result.timing);
     result.pairs = search.pairs().size();
     if (result.pairs == 0) return result;
     ScanTiming best = search.bestTurn(0);
-    ScanTiming shifted = best;
-    for (int k = 0; k < 4; ++k) {  // each needs the other
-      shifted.clock = search.bestClock(shifted);
-      shifted = search.bestTurn(shifted.clock);
-    }
+    const ScanTiming shifted = clocks ? search.bestOfAll() : best;
     result.clockSignificance = search.significance(shifted, best);
     if (result.clockSignificance >= kEnoughErrors) best = shifted;
     ScanTiming standing = still;
@@ -286,6 +301,32 @@ TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeco
   result.before = search.mean(still);
   result.after = search.mean(result.timing);
   return result;
+}
+
+/// The stated timing, if clocks may differ with the best one if that is clear.
+TimingEstimate keptTiming(const Search& search, const ScanTiming& stated, bool clocks) {
+  TimingEstimate result;
+  result.isStated = true;
+  result.pairs = search.pairs().size();
+  result.timing = stated;
+  if (clocks) result.timing.clock = search.bestClock(stated);
+  result.clockSignificance = search.significance(result.timing, stated);
+  if (result.clockSignificance < kEnoughErrors) result.timing.clock = stated.clock;
+  result.before = search.mean({Turn::compensated, stated.seconds, M_PI, 0.5, 0});
+  result.after = search.mean(result.timing);
+  return result;
+}
+
+}  // namespace
+
+TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeconds,
+                            const ScanTiming& stated, bool clocks) {
+  Search search(scans, turnSeconds);
+  const TimingEstimate found = searchAll(search, turnSeconds, clocks);
+  if (!stated.known() || found.pairs == 0) return found;
+  TimingEstimate kept = keptTiming(search, stated, clocks);
+  kept.turnSignificance = search.significance(found.timing, kept.timing);
+  return kept.turnSignificance < kEnoughErrors ? kept : found;
 }
 
 bool RangeCorrection::isClear() const {

@@ -35,11 +35,14 @@ struct TimingEstimate {
   /// compensated, or the direction of turning, with `seconds` as given and `stamp` = 0.5. Its
   /// `clock` is 0 unless the drive shows another one.
   ScanTiming timing;
-  std::size_t pairs = 0;         ///< of sightings of one pole in two scans
-  double before = 0;             ///< mean distance of a pair, all as measured at the stamps, m
-  double after = 0;              ///< the same with `timing`, m
-  double turnSignificance = 0;   ///< standard errors by which turning is better than not turning
+  std::size_t pairs = 0;  ///< of sightings of one pole in two scans
+  double before = 0;      ///< mean distance of a pair, all as measured at the stamps, m
+  double after = 0;       ///< the same with `timing`, m
+  /// Standard errors by which turning is better than not turning; if `isStated`, by which the best
+  /// other timing is better.
+  double turnSignificance = 0;
   double clockSignificance = 0;  ///< standard errors by which the best clock is better than 0
+  bool isStated = false;         ///< `timing` is the stated one, but for `clock`
 };
 
 /// \brief What corrects the distance of a pole from the LiDAR: scale * distance + offset.
@@ -54,8 +57,12 @@ struct RangeCorrection {
 
 /// \brief Searches directions, cuts and clock offsets (±0.15 s).
 /// \param turnSeconds Duration of a turn of the LiDAR, s.
+/// \param stated Of the file, if `known()`: kept unless another one is better by kEnoughErrors. Its
+///        `movingCut` must be false.
+/// \param clocks False: clocks do not differ; much quicker.
 /// \return `pairs` is 0 where no pole was seen twice.
-TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeconds);
+TimingEstimate searchTiming(const std::vector<TimedScan>& scans, double turnSeconds,
+                            const ScanTiming& stated = {}, bool clocks = true);
 
 /// \brief Fits the pairs by least squares (Cauchy's weights). A pole that one drives past shows the
 /// offset: ahead and behind, it errs in opposite directions. A scale of the poses cannot be told

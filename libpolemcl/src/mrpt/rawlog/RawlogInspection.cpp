@@ -98,6 +98,7 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   result.label = std::string(first.GetRuntimeClass()->className) +
                  (first.sensorLabel.empty() ? "" : " " + first.sensorLabel);
   first.getSensorPose(result.sensorPose);
+  if (!source.timing().movingCut) result.stated = source.timing();
   try {
     result.sensor = identifySensor(views);
   } catch (const Error& error) {
