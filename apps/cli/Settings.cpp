@@ -36,9 +36,8 @@ void bind(Binder& binder, AllSettings& settings) {
 }
 
 AllSettings loadSettings(const std::string& path, const std::vector<std::string>& assignments) {
-  const std::string file = io::installedFile(path, "config").string();
-  sayDetail("settings: " + file);
-  return settingsFrom(ConfigFile::read(file), assignments);
+  sayDetail("settings: " + io::installedFile(path, "config").string());
+  return settingsFrom(ConfigFile::readInstalled(path), assignments);
 }
 
 AllSettings settingsFrom(ConfigFile file, const std::vector<std::string>& assignments) {

@@ -183,11 +183,14 @@ ScanTiming timingOf(const ImportOptions& options, const io::ScanFolder& folder) 
 std::optional<std::string> climbNote(const std::vector<io::StampedPose3D>& truth) {
   Eigen::AlignedBox3d box;
   for (const auto& stamped : truth) box.extend(stamped.pose.translation());
-  if (box.isEmpty() || box.sizes().z() < 5 || box.sizes().z() < box.sizes().head<2>().norm())
+  constexpr double kSteep = 0.2;  // no street climbs so much as a whole
+  if (box.isEmpty() || box.sizes().z() < 5 ||
+      box.sizes().z() < kSteep * box.sizes().head<2>().norm())
     return std::nullopt;
   return "the true poses span " + io::fixed(box.sizes().z(), 1) + " m in z and " +
          io::fixed(box.sizes().head<2>().norm(), 1) +
-         " m in x and y: z must point up, so these may be in the frame of a camera";
+         " m in x and y: z must point up, so these may be in the frame of a camera, or those of "
+         "the LiDAR where the camera's are expected (--poses FILE.tum --poses-of sensor)";
 }
 
 /// Both files appear together, when both are complete.

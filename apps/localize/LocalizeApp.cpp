@@ -148,6 +148,21 @@ void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) 
             << '\n';
 }
 
+void warnIfNeverOk(const LocalizeResult& result, const LocalizeJob& job) {
+  constexpr std::size_t kFewScans = 20;
+  std::size_t scans = 0, ok = 0;
+  for (const auto& run : result.runs) {
+    scans += run.scans;
+    ok += run.states[static_cast<int>(HealthState::ok)];
+  }
+  if (ok > 0 || scans < kFewScans * result.runs.size()) return;
+  std::cerr << warningLine("pole-localize",
+                           "no pose was ok: is " + job.map.string() +
+                               " a map of another place, the start wrong (--global searches it), "
+                               "or the configuration that of another LiDAR?")
+            << '\n';
+}
+
 }  // namespace
 
 std::shared_ptr<const CPoleMap> loadPoleMap(const std::filesystem::path& file,
@@ -206,6 +221,7 @@ LocalizeResult localize(const LocalizeJob& job) {
     out << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
   }
   if (job.truth) warnOfErrors(result.spreadCheck, *job.truth);
+  warnIfNeverOk(result, job);
   view.waitForWindow();
   if (!failure.empty())
     throw Error(failure +

@@ -366,11 +366,13 @@ std::vector<std::string> buildWarnings(const MapBuildSummary& summary, const Map
                          "; check " + job.poses[i].filename().string());
   const std::size_t poles = summary.map.poles.size();
   if (static_cast<double>(summary.twins) > kManyTwins * static_cast<double>(poles))
-    warnings.push_back(std::to_string(summary.twins) + " of " + std::to_string(poles) +
-                       " poles have a twin nearer than 1 m (the scans are " +
-                       io::fixed(scanSpacing(summary), 2) +
-                       " m apart); mostly the poses of some scans are wrong, check them with "
-                       "pole-eval motion");
+    warnings.push_back(
+        std::to_string(summary.twins) + " of " + std::to_string(poles) +
+        " poles have a twin nearer than 1 m (the scans are " + io::fixed(scanSpacing(summary), 2) +
+        " m apart); mostly the poses of some scans are wrong" +
+        (job.kind == PoseKind::truth
+             ? ", check them with pole-eval motion"
+             : ", or that of the LiDAR on the vehicle (--sensor-pose of pole-import)"));
   return warnings;
 }
 

@@ -12,8 +12,7 @@ namespace polemcl::apps {
 /// \brief The timing that fits the poles of a drive best, beyond what its scans were corrected by.
 /// Its poses may drift. Where no odometry is, it has no clock that differs.
 /// \param clocks As for searchTiming().
-TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds,
-                               bool clocks = true);
+TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds, bool clocks = true);
 
 /// \brief Another offset between the clocks of scans and odometry, or a turn of the LiDAR that
 /// nobody corrected.

@@ -133,8 +133,18 @@ TEST_F(KittiOdometryTest, RefusesUnpaddedNumbers) {
   expectIn(refusal(), "9.bin", "same number of digits");
 }
 
-TEST_F(KittiOdometryTest, RefusesAMissingFolder) {
+TEST_F(KittiOdometryTest, RefusesOtherFolders) {
   EXPECT_REFUSED(readKittiOdometry(path("no"), kIdentity), path("no").string());
+  EXPECT_REFUSED(readKittiOdometry(path("sequences"), kIdentity),
+                 "sequences: no folder velodyne in it; name the folder of one sequence");
+}
+
+TEST_F(KittiOdometryTest, NeedsNoCalibrationWithoutPoses) {
+  fs::remove(path("poses/07.txt"));
+  fs::remove(path("sequences/07/calib.txt"));
+  const ScanFolder folder = readKittiOdometry(sequence(), kIdentity);
+  EXPECT_EQ(folder.scans.size(), 3u);
+  EXPECT_FALSE(folder.scans[1].T_map_robot);
 }
 
 TEST_F(KittiOdometryTest, ReadsRealScansLaidOutAsASequence) {

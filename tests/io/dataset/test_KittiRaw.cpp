@@ -232,7 +232,7 @@ TEST_F(KittiRawTest, RefusesFilesThatAreMissingOrWrong) {
            {"timestamps.txt", "No such file or directory"}},
           {"date/calib_imu_to_velo.txt",
            std::nullopt,
-           {"date/calib_imu_to_velo.txt", "No such file or directory"}},
+           {"date: no calib_imu_to_velo.txt in it", "--calib"}},
           {"date/calib_imu_to_velo.txt",
            "R: 1 0 0 0 1 0 0 0 1\nT 0 0 0\n",
            {"calib_imu_to_velo.txt", "9 and 0 found"}},

@@ -101,6 +101,30 @@ TEST_F(Rosbag2Test, InterpolatesOdometryAtTheScans) {
   }
 }
 
+TEST_F(Rosbag2Test, SaysWhereTheLidarStandsOrThatNobodySays) {
+  writeDrive(3, {});
+  expectNote(load(), "so poles are put wrong in curves if the odometry is that of another place");
+  options.readsSensorPose = false;
+  for (const std::string& note : load().notes) EXPECT_EQ(note.find("LiDAR"), std::string::npos);
+}
+
+TEST_F(Rosbag2Test, RefusesCloudsInTheFrameOfTheOdometry) {
+  bag->add(clouds, 0, cloudAt(0.1, "odom"));
+  bag->add(odometry, 0, odometryAt({}));
+  expectIn(refusal(), "/points: these clouds are in odom, the frame of the odometry",
+           "--cloud-topic");
+}
+
+TEST_F(Rosbag2Test, NotesTransformsThatMayBeTheOdometry) {
+  bag->add(clouds, 0, cloudAt(0.1));
+  const int moving = bag->topic("/tf", transforms2);
+  expectNote(load(), "no static transform");
+  for (const std::string& note : load().notes)
+    EXPECT_EQ(note.find("messages of /tf"), std::string::npos);
+  bag->add(moving, 0, transformsMessage({}));
+  expectNote(load(), "the 1 messages of /tf are not read");
+}
+
 TEST_F(Rosbag2Test, CovariancesAreThoseOfTheTwist) {
   writeDrive(5, {0.04, 0.01, 0.0025});
   const Eigen::Matrix3d covariance = load().scans[2].motion->covariance;

@@ -139,6 +139,12 @@ TEST_F(BagTest, RefusesWhatIsNoBag) {
   expectIn(refusal("empty.db3"), "empty.db3: cannot be read as a ROS 2 bag: no such table");
   write("a.bag", "");
   expectIn(refusal("a.bag"), "a.bag: not a .db3 or .mcap file of a ROS 2 bag", "ros2 bag convert");
+  write("a.bag", "#ROSBAG V2.0\n");
+  expectIn(refusal("a.bag"), "a.bag: a bag of ROS 1; rosbag2rawlog");
+  write("pointer.mcap", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+  expectIn(refusal("pointer.mcap"), "pointer.mcap: a pointer of Git LFS", "git lfs pull");
+  write("bag/metadata.yaml", bagMetadata({"a.db3"}));
+  expectIn(refusal("bag/metadata.yaml"), "metadata.yaml: name the folder of the bag");
   fs::create_directories(path("folder"));
   expectIn(refusal("folder"), "folder: no .db3 or .mcap file in it");
   write("lost/metadata.yaml", bagMetadata({"a.db3"}));

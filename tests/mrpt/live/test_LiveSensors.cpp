@@ -141,9 +141,7 @@ TEST_F(LiveSensorsTest, APcapFileWithoutPacketsIsAFailure) {
       velodyne("pcap_read_once = false\npcap_input = " + (folder / "empty.pcap").string() + "\n"));
   EXPECT_TRUE(waitFor([&] { return ended() == 1; }));
   EXPECT_HAS(ends.at(0), "[lidar]: CVelodyneScanner: ");
-  EXPECT_HAS(ends.at(0),
-             "empty.pcap: has no UDP packet for the ports of the LiDAR: check data_port, "
-             "position_port");
+  EXPECT_HAS(ends.at(0), "empty.pcap: has no UDP packet for data_port = ");
 }
 
 }  // namespace polemcl::test_live_sensors

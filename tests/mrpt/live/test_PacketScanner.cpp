@@ -397,8 +397,9 @@ TEST_F(OusterScannerTest, RefusesWhatCannotBe) {
     play(pcap);
     return ends.at(0);
   };
-  EXPECT_HAS(failure(pcapFile(drive(1), port == 7777 ? 7778 : 7777)),
-             "drive.pcap: has no UDP packet for the ports of the LiDAR: check data_port");
+  EXPECT_HAS(
+      failure(pcapFile(drive(1), port == 7777 ? 7778 : 7777)),
+      "drive.pcap: has no UDP packet for data_port = " + std::to_string(port) + "; there are ");
   EXPECT_HAS(failure(pcapFile(drive(2), port)), "no whole turn in ");
   std::string cut = pcapFile(drive(1), port);
   cut.resize(cut.size() - 100);

@@ -50,6 +50,10 @@ void requireRow(const fs::path& file, const std::string& what, std::size_t rows,
 }  // namespace
 
 ScanFolder readKittiOdometry(const fs::path& sequence, const Eigen::Isometry3d& T_robot_sensor) {
+  if (!fs::is_directory(sequence / "velodyne"))
+    throw Error(sequence.string() +
+                ": no folder velodyne in it; name the folder of one sequence, such as "
+                "dataset/sequences/00");
   const auto files = listFiles(sequence / "velodyne", ".bin");
   const auto numbers = fileNumbers(files);
   ScanFolder result;
@@ -60,12 +64,13 @@ ScanFolder readKittiOdometry(const fs::path& sequence, const Eigen::Isometry3d& 
   requireRow(timesFile, "times", times.size(), files, numbers.back());
   requireIncreasing(timesFile, times);
 
-  const Eigen::Isometry3d T_cam_lidar = readLidarInCamera(sequence / "calib.txt");
   const fs::path posesFile = findPoses(sequence);
   std::vector<Eigen::Isometry3d> T_cam0_cam;
+  Eigen::Isometry3d T_cam_lidar = Eigen::Isometry3d::Identity();
   if (posesFile.empty()) {
     result.notes.push_back("no poses: neither poses.txt nor ../../poses/NN.txt is there");
   } else {
+    T_cam_lidar = readLidarInCamera(sequence / "calib.txt");
     T_cam0_cam = readKittiPoses(posesFile);
     requireRow(posesFile, "poses", T_cam0_cam.size(), files, numbers.back());
   }

@@ -194,6 +194,10 @@ ScanFolder readKittiRaw(const fs::path& drive, const fs::path& calibration,
                         const Eigen::Isometry3d& T_robot_sensor) {
   ScanFolder result;
   const Drive frames = listDrive(drive, result.notes);
+  if (!isThere(calibration / "calib_imu_to_velo.txt"))
+    throw Error(calibration.string() +
+                ": no calib_imu_to_velo.txt in it; --calib names the folder of the calibration of "
+                "that day");
   const Eigen::Isometry3d T_imu_robot =
       (T_robot_sensor * readImuInLidar(calibration / "calib_imu_to_velo.txt")).inverse();
   if (isThere(drive / "oxts" / "timestamps.txt")) {

@@ -122,11 +122,44 @@ void estimateTiming(const Bag& bag, std::size_t topic, ScanFolder& folder) {
 }
 
 void findSensorPose(const FrameTree& frames, const std::string& robot, const std::string& sensor,
-                    ScanFolder& folder) {
+                    bool hasOdometry, ScanFolder& folder) {
   folder.T_robot_sensor = frames.find(robot, sensor);
-  if (!folder.T_robot_sensor)
-    folder.notes.push_back("no static transform from " + robot + " to " + sensor +
-                           ": the LiDAR is taken for the robot; --sensor-pose states its pose");
+  if (folder.T_robot_sensor) {
+    const Eigen::Vector3d at = folder.T_robot_sensor->translation();
+    folder.notes.push_back("the robot is " + robot + ", its LiDAR " + sensor + " stands at x y z " +
+                           fixed(at.x(), 2) + ' ' + fixed(at.y(), 2) + ' ' + fixed(at.z(), 2) +
+                           " m; --sensor-pose replaces that");
+    return;
+  }
+  folder.notes.push_back("no static transform from " + robot + " to " + sensor +
+                         " (/tf is not read): the LiDAR is taken for the robot" +
+                         (hasOdometry ? ", so poles are put wrong in curves if the odometry is "
+                                        "that of another place"
+                                      : "") +
+                         "; --sensor-pose states its pose");
+}
+
+/// Clouds that a LiDAR odometry has moved have lost the place they were seen from.
+void requireOwnFrame(const Bag& bag, std::size_t clouds, const std::string& frame,
+                     std::size_t odometry) {
+  const std::vector<BagMessage>& messages = bag.messages(odometry);
+  if (messages.empty()) return;
+  const BagMessage& first = messages.front();
+  if (decodeOdometry(bag.read(first), bag.place(first)).header.frame != frame) return;
+  throw Error(bag.path().string() + ": " + bag.topics()[clouds].name + ": these clouds are in " +
+              frame +
+              ", the frame of the odometry, so they were moved; take the topic of the "
+              "LiDAR's driver with --cloud-topic");
+}
+
+/// What a bag without odometry may have instead.
+void noteTransforms(const Bag& bag, ScanFolder& folder) {
+  for (const BagTopic& topic : bag.topics())
+    if (topic.type == kTransformsType && topic.name == "/tf" && topic.messages > 0)
+      folder.notes.push_back(
+          "the " + std::to_string(topic.messages) +
+          " messages of /tf are not read: if they hold the odometry, write it as a table in TUM "
+          "format, for --odometry");
 }
 
 /// Adds the positions from satellites. Nobody needs them, so several topics are no error.
@@ -164,11 +197,14 @@ ScanFolder readRosbag2(const fs::path& path, const Rosbag2Options& options) {
   folder.notes.insert(folder.notes.begin(), notes.begin(), notes.end());
   const FrameTree frames = readFrames(*bag);
   if (odometry) {
+    requireOwnFrame(*bag, *clouds, sensor, *odometry);
     const std::string child = addRosbagMotions(*bag, *odometry, imu, frames, folder);
     if (!child.empty()) robot = child;
+  } else {
+    noteTransforms(*bag, folder);
   }
   findFixes(*bag, options.topics.fixes, frames, robot, folder);
-  if (options.readsSensorPose) findSensorPose(frames, robot, sensor, folder);
+  if (options.readsSensorPose) findSensorPose(frames, robot, sensor, odometry.has_value(), folder);
   if (options.readsTiming) estimateTiming(*bag, *clouds, folder);
   folder.read = [bag, topic = *clouds](const ScanEntry& scan) {
     return readScan(*bag, topic, scan, false).cloud;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 #include <string>
 #include <utility>
 
@@ -83,12 +84,28 @@ fs::path unpackedFile(const fs::path& file) {
   return fs::is_regular_file(unpacked) ? unpacked : file;
 }
 
+bool begins(const fs::path& file, std::string_view text) {
+  std::string begin(text.size(), '\0');
+  std::ifstream(file, std::ios::binary)
+      .read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == text;
+}
+
 void requireBagFile(const fs::path& file) {
   if (file.extension() == ".db3" || file.extension() == ".mcap") return;
   if (isPacked(file))
     throw Error(file.string() + ": the file is compressed as a whole (zstd); unpack it: zstd -d " +
                 file.string() + " -o " + fs::path(file).replace_extension().string());
+  if (file.filename() == "metadata.yaml")
+    throw Error(file.string() + ": name the folder of the bag, which this file is in");
+  if (begins(file, "#ROSBAG V"))
+    throw Error(file.string() + ": a bag of ROS 1; rosbag2rawlog of MRPT reads its clouds");
   throw Error(file.string() + ": not a .db3 or .mcap file of a ROS 2 bag" + kAdviceToConvert);
+}
+
+void requireContent(const fs::path& file) {
+  if (begins(file, "version https://git-lfs"))
+    throw Error(file.string() + ": a pointer of Git LFS, not the bag: fetch it with git lfs pull");
 }
 
 /// The number before the extension: 12 for "drive_12.db3"; 0 without one.
@@ -144,6 +161,7 @@ BagFiles bagFiles(const fs::path& bag) {
     requireBagFile(file);
     if (!fs::is_regular_file(file))
       throw Error(file.string() + ": missing, although metadata.yaml of the bag names it");
+    requireContent(file);
   }
   return result;
 }

@@ -57,17 +57,30 @@ std::optional<std::size_t> PacketSource::indexOf(int port) const {
   return static_cast<std::size_t>(found - m_ports.begin());
 }
 
+/// The first port is that of the scans.
+void PacketSource::requirePackets() const {
+  const LidarPort& scans = m_ports.front();
+  if (m_packets.count(scans.number) > 0) return;
+  std::vector<std::pair<std::size_t, int>> most;
+  for (const auto& [port, packets] : m_packets) most.emplace_back(packets, port);
+  std::sort(most.rbegin(), most.rend());
+  most.resize(std::min<std::size_t>(most.size(), 5));
+  std::string there;
+  for (const auto& [packets, port] : most)
+    there += (there.empty() ? "" : ", ") + std::to_string(packets) + " for " + std::to_string(port);
+  throw Error(m_pcap + ": has no UDP packet for " + scans.key + " = " +
+              std::to_string(scans.number) + (there.empty() ? "" : "; there are " + there));
+}
+
 /// \return false at the end of the file.
 bool PacketSource::readNext() {
   m_next.emplace();
-  while (m_file->next(*m_next))
-    if (indexOf(m_next->port)) return m_found = true;
-  m_next.reset();
-  if (!m_found) {
-    std::string names;
-    for (const LidarPort& port : m_ports) names += (names.empty() ? "" : ", ") + port.key;
-    throw Error(m_pcap + ": has no UDP packet for the ports of the LiDAR: check " + names);
+  while (m_file->next(*m_next)) {
+    ++m_packets[m_next->port];
+    if (indexOf(m_next->port)) return true;
   }
+  m_next.reset();
+  requirePackets();
   if (!m_once) m_file.emplace(m_pcap);
   m_begin.reset();
   m_atEnd = m_once;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ class PacketSource {
 
  private:
   void play(const Take& take);
+  void requirePackets() const;
   bool readNext();
   void take(const Take& take, std::size_t port, const UdpPacket& packet);
   std::optional<std::size_t> indexOf(int port) const;
@@ -59,7 +61,7 @@ class PacketSource {
   std::deque<UdpSocket> m_sockets;  ///< of the ports
   std::optional<PcapFile> m_file;
   std::optional<RecordedPacket> m_next;  ///< of the file
-  bool m_found = false;                  ///< a packet to one of the ports in the file
+  std::map<int, std::size_t> m_packets;  ///< of the file, by port
   /// When the first packet of the file was played, and its time in the file.
   std::optional<std::pair<std::chrono::steady_clock::time_point, double>> m_begin;
   std::size_t m_ignored = 0;

@@ -129,7 +129,9 @@ void VelodyneReceiver::beginTurn(const Scan::TVelodyneRawPacket& packet, Time ar
   m_turn->maxRange = TModelPropertiesFactory::get().at(m_model).maxRange;
   m_turn->originalReceivedTimestamp = arrival;
   const std::chrono::duration<double> timeout(m_pos_packets_timing_timeout);
-  m_turn->has_satellite_timestamp = m_gps && arrival - m_gps->arrival < timeout;
+  // A file counts as measured when it is played, as the odometry beside it is.
+  m_turn->has_satellite_timestamp =
+      m_source.pcap().empty() && m_gps && arrival - m_gps->arrival < timeout;
   m_turn->timestamp =
       m_turn->has_satellite_timestamp ? inItsHour(packet.gps_timestamp(), m_gps->time) : arrival;
 }
