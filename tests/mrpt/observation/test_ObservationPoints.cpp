@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
@@ -118,6 +119,20 @@ TEST(ObservationPoints, ReadsAllReturnsOfAVelodyne) {
   scan->point_cloud.x = scan->point_cloud.y = scan->point_cloud.z = {1};
   extraction.process(*scan);
   EXPECT_EQ(extraction.report().points, 1u);
+}
+
+TEST(ObservationPoints, PacketsDecodedForAnotherModelAreNoticed) {
+  if (!std::filesystem::exists(kDatasets)) GTEST_SKIP() << kDatasets << " is not there";
+  const auto scan =
+      std::dynamic_pointer_cast<CObservationVelodyneScan>(firstOf("test_velodyne_VLP16.rawlog"));
+  ASSERT_TRUE(scan);
+  EXPECT_EQ(packetContradiction(*scan), "");
+  scan->calibration = mrpt::obs::VelodyneCalibration::LoadDefaultCalibration("HDL32");
+  EXPECT_HAS(packetContradiction(*scan),
+             "every 1327 microseconds, as those of the VLP-16 do, but are decoded for 32 lasers");
+  scan->scan_packets.resize(9);
+  EXPECT_EQ(packetContradiction(*scan), "");
+  EXPECT_EQ(packetContradiction(CObservationPointCloud()), "");
 }
 
 // MRPT makes a rotating scan of its Velodyne sample, sparse and with rings in firing order. Range

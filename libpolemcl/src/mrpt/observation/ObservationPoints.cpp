@@ -15,6 +15,7 @@
 #include <numeric>
 
 #include <polemcl/io/data/Cloud.h>
+#include "core/common/Statistics.h"
 #include "core/sensor/SensorModel.h"
 #include "mrpt/common/BoundedRead.h"
 
@@ -91,19 +92,24 @@ std::uint32_t timestampOf(const CObservationVelodyneScan::TVelodyneRawPacket& pa
   return mrpt::toNativeEndianness(stamp);
 }
 
+std::uint32_t between(const CObservationVelodyneScan::TVelodyneRawPacket& earlier,
+                      const CObservationVelodyneScan::TVelodyneRawPacket& later) {
+  constexpr std::uint32_t kWholeHour = 3'600'000'000;  // microseconds
+  const std::uint32_t from = timestampOf(earlier), to = timestampOf(later);
+  return to >= from ? to - from : to + kWholeHour - from;
+}
+
 /// Measuring times by the packets: the time stamp is that of the first firing, and azimuths of the
 /// device are clockwise. None if the packets do not show a turn (fewer than two, no clock).
 std::optional<ScanTiming> timingOf(
     const std::vector<CObservationVelodyneScan::TVelodyneRawPacket>& packets) {
-  constexpr int kFullTurn = 36000;                     // 1/100 degree
-  constexpr std::uint32_t kWholeHour = 3'600'000'000;  // microseconds
+  constexpr int kFullTurn = 36000;  // 1/100 degree
   if (packets.size() < 2) return std::nullopt;
   const auto rotation = [&](std::size_t i) { return packets[i].blocks[0].rotation() % kFullTurn; };
   double turned = 0, seconds = 0;
   for (std::size_t i = 1; i < packets.size(); ++i) {
-    const std::uint32_t from = timestampOf(packets[i - 1]), to = timestampOf(packets[i]);
     turned += (rotation(i) - rotation(i - 1) + kFullTurn) % kFullTurn;
-    seconds += (to >= from ? to - from : to + kWholeHour - from) * 1e-6;
+    seconds += between(packets[i - 1], packets[i]) * 1e-6;
   }
   if (!(turned > 0 && seconds > 0)) return std::nullopt;
   return ScanTiming{Turn::clockwise, seconds * kFullTurn / turned,
@@ -258,6 +264,28 @@ PointsView ObservationPoints::readRotating(const CObservationRotatingScan& scan)
     }
   }
   return owned();
+}
+
+std::string packetContradiction(const CObservation& observation) {
+  constexpr std::size_t kFewest = 10;
+  constexpr double kVlp16 = 24 * 55.296,
+                   kHdl32e = 12 * 46.08;  // from packet to packet, microseconds
+  const auto* scan = dynamic_cast<const CObservationVelodyneScan*>(&observation);
+  if (!scan || scan->scan_packets.size() < kFewest) return {};
+  std::vector<double> apart;
+  for (std::size_t i = 1; i < scan->scan_packets.size(); ++i)
+    apart.push_back(between(scan->scan_packets[i - 1], scan->scan_packets[i]));
+  const double usual = nearestRank(apart, 0.5);
+  const auto is = [usual](double step) { return std::abs(usual - step) < 0.03 * step; };
+  const std::size_t lasers = scan->calibration.laser_corrections.size();
+  std::string made;
+  if (lasers == 16 && (is(kHdl32e) || is(kHdl32e / 2))) made = "HDL-32E";  // half: dual returns
+  if (lasers == 32 && is(kVlp16)) made = "VLP-16";
+  if (made.empty()) return {};
+  return "its packets come every " + std::to_string(std::lround(usual)) +
+         " microseconds, as those of the " + made + " do, but are decoded for " +
+         std::to_string(lasers) +
+         " lasers: record with the model and the calibration_file of the LiDAR";
 }
 
 }  // namespace polemcl

@@ -76,4 +76,9 @@ class ObservationPoints {
   const mrpt::obs::CObservation* m_loaded = nullptr;  ///< must be unloaded
 };
 
+/// \brief Says that packets of a Velodyne are decoded for another model, by the time between them
+/// (manuals of VLP-16 and HDL-32E). \return Empty for other observations, other models, and where
+/// nothing contradicts.
+std::string packetContradiction(const mrpt::obs::CObservation& observation);
+
 }  // namespace polemcl

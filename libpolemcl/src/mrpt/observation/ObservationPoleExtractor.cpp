@@ -189,8 +189,9 @@ void ObservationPoleExtractor::Impl::compare(const mrpt::obs::CObservation& obse
       cloud.size < SensorConfigCheck::kFewestPoints)
     return;
   --checksLeft;
-  const std::string contradiction =
-      check.contradiction(moved.toLidar(cloud, lidarFrame(sensorPose, sensor)));
+  std::string contradiction = packetContradiction(observation);
+  if (contradiction.empty())
+    contradiction = check.contradiction(moved.toLidar(cloud, lidarFrame(sensorPose, sensor)));
   if (!contradiction.empty()) throw Error(contradiction);
 }
 

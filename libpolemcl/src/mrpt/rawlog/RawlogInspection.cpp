@@ -8,6 +8,7 @@
 #include <polemcl/mrpt/observation/CObservationPoles.h>
 #include <polemcl/mrpt/observation/ObservationPoleExtractor.h>
 #include "mrpt/observation/LidarFrame.h"
+#include "mrpt/observation/ObservationPoints.h"
 #include "mrpt/rawlog/ScanSource.h"
 
 namespace polemcl {
@@ -85,6 +86,8 @@ RawlogInspection inspectRawlog(const std::string& path, bool allowTruncated) {
   for (const auto& scan : scans) {
     try {
       requireBeams(*scan.parts.front().observation);
+      const std::string contradiction = packetContradiction(*scan.parts.front().observation);
+      if (!contradiction.empty()) throw Error(contradiction);
       clouds.push_back(reader.lidarPoints(*scan.parts.front().observation));
     } catch (const Error& error) {
       throw Error(path + ": scan " + std::to_string(scan.index) + ": " + error.what());
