@@ -20,15 +20,17 @@ def run(*arguments):
 class Drive(unittest.TestCase):
     def test_is_localized_on_the_map_of_another_day(self):
         later = street.simulated("later", "--set", "world.day=1")
-        done = run(street.scans_folder(), later, street.temporary_folder() / "example.polemap")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        rows = [line.split() for line in done.stdout.splitlines()]
         truth = np.loadtxt(later / "poses.txt")
-        self.assertEqual(len(rows), len(truth))
-        estimates = np.array([row[1:3] for row in rows], float)
-        errors = np.hypot(*(estimates - truth[:, [3, 7]]).T)
-        self.assertLess(errors[-10:].max(), 0.15)
-        self.assertEqual(rows[-1][4], "ok")
+        for config in ([], [street.CONFIG]):
+            done = run(street.scans_folder(), later, street.temporary_folder() / "example.polemap",
+                       *config)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = [line.split() for line in done.stdout.splitlines()]
+            self.assertEqual(len(rows), len(truth))
+            estimates = np.array([row[1:3] for row in rows], float)
+            errors = np.hypot(*(estimates - truth[:, [3, 7]]).T)
+            self.assertLess(errors[-10:].max(), 0.15)
+            self.assertEqual(rows[-1][4], "ok")
 
     def test_says_what_is_wrong(self):
         self.assertIn("usage:", run().stderr)

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""From scan files to a map and to poses on it: drive.py MAPPED DRIVEN OUT.polemap
+"""From scan files to a map and to poses on it: drive.py MAPPED DRIVEN OUT.polemap [CONFIG]
 
 MAPPED and DRIVEN are folders that pole-simulate writes: two drives in one street, say of two days.
 The first is mapped at its true poses. On that map the second is localized by its odometry, from a
-start that is 0.5 m off. Prints time, x, y, yaw and health of each scan.
+start that is 0.5 m off. Prints time, x, y, yaw and health of each scan. CONFIG is an INI file of
+settings, or the name of an installed one; without it the LiDAR is an HDL-32E 1 m above ground.
 """
 
 import pathlib
@@ -12,7 +13,8 @@ import sys
 import numpy as np
 import polemcl
 
-SENSOR = {"sensor.model": "hdl32e", "sensor.height_m": 1.0}
+CONFIG = sys.argv[4:5]  # one or none
+SENSOR = {} if CONFIG else {"sensor.model": "hdl32e", "sensor.height_m": 1.0}
 
 
 def poses_of(folder):
@@ -23,13 +25,13 @@ def poses_of(folder):
 
 def poles_of(folder):
     """The poles of one scan after the other."""
-    extractor = polemcl.PoleExtractor(settings=SENSOR)
+    extractor = polemcl.PoleExtractor(*CONFIG, settings=SENSOR)
     for file in sorted((folder / "velodyne").glob("*.bin")):
         yield extractor.extract(np.fromfile(file, np.float32).reshape(-1, 4))
 
 
 def build_map(folder):
-    builder = polemcl.PoleMapBuilder()
+    builder = polemcl.PoleMapBuilder(*CONFIG)
     for pose, poles in zip(poses_of(folder), poles_of(folder)):
         builder.add(pose, poles)
     return builder.build()
@@ -38,7 +40,7 @@ def build_map(folder):
 def localize(folder, pole_map, start):
     times = np.loadtxt(folder / "times.txt")
     odometry = np.loadtxt(folder / "odometry.txt")  # row i: from scan i to i + 1, with sigmas
-    localizer = polemcl.Localizer(pole_map, seed=1)
+    localizer = polemcl.Localizer(pole_map, *CONFIG, seed=1)
     localizer.start(start)
     motion = covariance = None  # none before the first scan
     for i, poles in enumerate(poles_of(folder)):
@@ -48,9 +50,9 @@ def localize(folder, pole_map, start):
 
 
 def main():
-    if len(sys.argv) != 4:
-        sys.exit("usage: drive.py MAPPED DRIVEN OUT.polemap")
-    mapped, driven, file = map(pathlib.Path, sys.argv[1:])
+    if len(sys.argv) not in (4, 5):
+        sys.exit("usage: drive.py MAPPED DRIVEN OUT.polemap [CONFIG]")
+    mapped, driven, file = map(pathlib.Path, sys.argv[1:4])
     pole_map = build_map(mapped)
     pole_map.save(file)
     start = poses_of(driven)[0] + (0.3, -0.4, 0)
