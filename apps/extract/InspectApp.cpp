@@ -149,11 +149,14 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
       << "\nsignificance      " << found->pairs << " pairs of sightings, a pole moves by "
       << io::fixed(found->before, 4) << " m between two scans as they are, by "
       << io::fixed(found->after, 4) << " m\n                  with this timing"
-      << judged(found->after) << ";\n                  "
-      << (found->isStated ? "the best other timing " : "turn ")
-      << io::fixed(found->turnSignificance, 1) << " and clock "
-      << io::fixed(found->clockSignificance, 1) << " standard errors better than "
-      << (found->isStated ? "this and none" : "none") << " (4 are needed)\n";
+      << judged(found->after) << ";\n                  ";
+  if (found->isStated && found->turnSignificance <= 0)
+    out << "no other turn is better";
+  else
+    out << (found->isStated ? "the best other turn is " : "turn ")
+        << io::fixed(found->turnSignificance, 1) << " standard errors better"
+        << (found->isStated ? "" : " than none");
+  out << ", the best clock " << io::fixed(found->clockSignificance, 1) << " (4 are needed)\n";
 }
 
 void printRanges(std::ostream& out, const Inspection& inspection) {

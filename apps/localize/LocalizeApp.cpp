@@ -148,18 +148,19 @@ void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) 
             << '\n';
 }
 
-void warnIfNeverOk(const LocalizeResult& result, const LocalizeJob& job) {
-  constexpr std::size_t kFewScans = 20;
-  std::size_t scans = 0, ok = 0;
+/// Not of a drive that ended before its right pose was confirmed.
+void warnIfLost(const LocalizeResult& result, const LocalizeJob& job) {
+  std::size_t scans = 0, ok = 0, lost = 0;
   for (const auto& run : result.runs) {
     scans += run.scans;
     ok += run.states[static_cast<int>(HealthState::ok)];
+    lost += run.states[static_cast<int>(HealthState::lost)];
   }
-  if (ok > 0 || scans < kFewScans * result.runs.size()) return;
-  std::cerr << warningLine("pole-localize",
-                           "no pose was ok: is " + job.map.string() +
-                               " a map of another place, the start wrong (--global searches it), "
-                               "or the configuration that of another LiDAR?")
+  if (ok > 0 || 2 * lost < scans) return;
+  std::cerr << warningLine("pole-localize", "no pose was ok, most were lost: is " +
+                                                job.map.string() +
+                                                " a map of another place, the start wrong, or the "
+                                                "configuration that of another LiDAR?")
             << '\n';
 }
 
@@ -221,7 +222,7 @@ LocalizeResult localize(const LocalizeJob& job) {
     out << timingsLine(result.timings) << "\nresults in " << job.output.string() << std::endl;
   }
   if (job.truth) warnOfErrors(result.spreadCheck, *job.truth);
-  warnIfNeverOk(result, job);
+  warnIfLost(result, job);
   view.waitForWindow();
   if (!failure.empty())
     throw Error(failure +

@@ -301,8 +301,7 @@ void checkTruth(const std::vector<MappingSession>& drives, const MapBuildJob& jo
                 const ScanTiming& timing, MapBuildSummary& summary) {
   for (std::size_t i = 0; i < drives.size(); ++i) {
     summary.motions.push_back(checkMotion(drives[i].scans));
-    const std::string doubt =
-        timingDoubt({}, remainingTiming(drives[i], timing.seconds, false), timing);
+    const std::string doubt = timingDoubtOfTruth(drives[i], timing);
     if (!doubt.empty())
       summary.timingDoubts.push_back(job.inputs[i].filename().string() + ": " + doubt);
   }

@@ -19,16 +19,20 @@ TimedScan timedScan(const SessionScan& scan) {
   return result;
 }
 
+std::vector<TimedScan> timedScans(const MappingSession& drive) {
+  std::vector<TimedScan> scans;
+  for (const SessionScan& scan : drive.scans) scans.push_back(timedScan(scan));
+  return scans;
+}
+
 std::string errors(double significance) {
   return " (" + io::fixed(significance, 1) + " standard errors)";
 }
 
 }  // namespace
 
-TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds, bool clocks) {
-  std::vector<TimedScan> scans;
-  for (const SessionScan& scan : drive.scans) scans.push_back(timedScan(scan));
-  TimingEstimate result = searchTiming(scans, turnSeconds, {}, clocks);
+TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds) {
+  TimingEstimate result = searchTiming(timedScans(drive), turnSeconds);
   if (drive.filled.all) result.timing.clock = 0;
   return result;
 }
@@ -36,7 +40,8 @@ TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds, 
 std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped,
                         const ScanTiming& timing) {
   if (std::abs(dead.timing.clock) >= kLeastOffset)
-    return "the clocks of scans and odometry differ: its poles fit better with [sensor] "
+    return "the clocks of scans and of odometry or true poses differ: its poles fit better with "
+           "[sensor] "
            "clock_offset_s = " +
            io::fixed(timing.clock + dead.timing.clock, 2) + errors(dead.clockSignificance);
   const TimingEstimate& found = dead.timing.known() ? dead : mapped;
@@ -44,6 +49,12 @@ std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped
   return "its scans do not look corrected for the motion during a turn" +
          errors(found.turnSignificance) +
          ": pole-extract --inspect tells [sensor] turn and cut_deg";
+}
+
+/// Clocks are searched only on a suspicion: it takes much longer.
+std::string timingDoubtOfTruth(const MappingSession& drive, const ScanTiming& timing) {
+  if (!searchTiming(timedScans(drive), timing.seconds, {}, false).timing.known()) return {};
+  return timingDoubt(remainingTiming(drive, timing.seconds), {}, timing);
 }
 
 }  // namespace polemcl::apps

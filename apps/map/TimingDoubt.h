@@ -11,8 +11,7 @@ namespace polemcl::apps {
 
 /// \brief The timing that fits the poles of a drive best, beyond what its scans were corrected by.
 /// Its poses may drift. Where no odometry is, it has no clock that differs.
-/// \param clocks As for searchTiming().
-TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds, bool clocks = true);
+TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds);
 
 /// \brief Another offset between the clocks of scans and odometry, or a turn of the LiDAR that
 /// nobody corrected.
@@ -23,5 +22,9 @@ TimingEstimate remainingTiming(const MappingSession& drive, double turnSeconds, 
 /// \return A sentence for people; empty when there is nothing to say.
 std::string timingDoubt(const TimingEstimate& dead, const TimingEstimate& mapped,
                         const ScanTiming& timing);
+
+/// \brief The same of a drive at its true poses: about a turn, or about clocks where these explain
+/// it better.
+std::string timingDoubtOfTruth(const MappingSession& drive, const ScanTiming& timing);
 
 }  // namespace polemcl::apps

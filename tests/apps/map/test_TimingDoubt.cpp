@@ -47,7 +47,8 @@ TEST(TimingDoubt, SeesClocksThatDiffer) {
   late.clock = 0.08;
   const TimingEstimate found = remainingTiming(session(late), 0.1);
   EXPECT_NEAR(found.timing.clock, 0.08, 0.011);
-  EXPECT_HAS(timingDoubt(found, kNothing, {}), "clocks of scans and odometry differ");
+  EXPECT_HAS(timingDoubt(found, kNothing, {}),
+             "clocks of scans and of odometry or true poses differ");
   MappingSession alone = session(late);
   alone.filled.all = true;  // no odometry, no clock of it
   EXPECT_EQ(timingDoubt(remainingTiming(alone, 0.1), kNothing, {}), "");
@@ -57,9 +58,15 @@ TEST(TimingDoubt, SeesScansThatWereNotCorrected) {
   const TimingEstimate found = remainingTiming(session({Turn::clockwise, 0.1, M_PI, 0.5}), 0.1);
   EXPECT_EQ(found.timing.turn, Turn::clockwise);
   EXPECT_HAS(timingDoubt(found, kNothing, {}), "not look corrected");
-  const TimingEstimate ofTruth =
-      remainingTiming(session({Turn::clockwise, 0.1, M_PI, 0.5}), 0.1, false);
-  EXPECT_HAS(timingDoubt({}, ofTruth, {}), "not look corrected");
+}
+
+TEST(TimingDoubt, OfTruePosesToo) {
+  EXPECT_HAS(timingDoubtOfTruth(session({Turn::clockwise, 0.1, M_PI, 0.5}), {}),
+             "not look corrected");
+  EXPECT_EQ(timingDoubtOfTruth(session({Turn::compensated}), {}), "");
+  ScanTiming late{Turn::compensated};  // may look like a turn at first
+  late.clock = 0.1;
+  EXPECT_EQ(timingDoubtOfTruth(session(late), {}).find("not look corrected"), std::string::npos);
 }
 
 TEST(TimingDoubt, LooksFromTheLidar) {

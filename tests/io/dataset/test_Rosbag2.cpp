@@ -115,6 +115,20 @@ TEST_F(Rosbag2Test, RefusesCloudsInTheFrameOfTheOdometry) {
            "--cloud-topic");
 }
 
+TEST_F(Rosbag2Test, CloudsWithoutAFrameOrInThatOfTheRobotAreTaken) {
+  for (const char* frame : {"", "base_link"}) {
+    SetUp();
+    bag->add(clouds, 0, cloudAt(0.1, frame));
+    for (const double time : {0.0, 0.2}) {
+      TestOdometry motion;
+      motion.time = time;
+      motion.frame = frame;
+      bag->add(odometry, 0, odometryAt(motion));
+    }
+    EXPECT_EQ(load().scans.size(), 1u) << frame;
+  }
+}
+
 TEST_F(Rosbag2Test, NotesTransformsThatMayBeTheOdometry) {
   bag->add(clouds, 0, cloudAt(0.1));
   const int moving = bag->topic("/tf", transforms2);

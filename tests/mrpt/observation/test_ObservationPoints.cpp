@@ -6,6 +6,7 @@
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <numeric>
 
@@ -119,6 +120,27 @@ TEST(ObservationPoints, ReadsAllReturnsOfAVelodyne) {
   scan->point_cloud.x = scan->point_cloud.y = scan->point_cloud.z = {1};
   extraction.process(*scan);
   EXPECT_EQ(extraction.report().points, 1u);
+}
+
+TEST(ObservationPoints, TheTimeBetweenPacketsTellsTheModel) {
+  const auto contradiction = [](const std::string& model, double microseconds) {
+    CObservationVelodyneScan scan;
+    scan.calibration = mrpt::obs::VelodyneCalibration::LoadDefaultCalibration(model);
+    scan.scan_packets.resize(20);
+    double time = 3'599'995'000;  // the hour ends on the way
+    for (auto& packet : scan.scan_packets) {
+      const std::uint32_t stamp = static_cast<std::uint64_t>(time) % 3'600'000'000;
+      std::memcpy(reinterpret_cast<char*>(&packet) + sizeof packet.blocks, &stamp, sizeof stamp);
+      time += &packet == &scan.scan_packets[5] ? 2 * microseconds : microseconds;  // one is missing
+    }
+    return packetContradiction(scan);
+  };
+  for (const double fits : {1327.1, 663.6}) EXPECT_EQ(contradiction("VLP16", fits), "") << fits;
+  for (const double fits : {553.0, 276.5, 663.6, 0.0})
+    EXPECT_EQ(contradiction("HDL32", fits), "") << fits;
+  for (const double other : {553.0, 276.5})
+    EXPECT_HAS(contradiction("VLP16", other), "as those of the HDL-32E do, but are decoded for 16");
+  EXPECT_HAS(contradiction("HDL32", 1327.1), "every 1327 microseconds, as those of the VLP-16 do");
 }
 
 TEST(ObservationPoints, PacketsDecodedForAnotherModelAreNoticed) {

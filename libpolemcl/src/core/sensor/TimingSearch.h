@@ -32,8 +32,8 @@ struct TimedScan {
 
 /// \brief What fits a drive best.
 struct TimingEstimate {
-  /// compensated, or the direction of turning, with `seconds` as given and `stamp` = 0.5. Its
-  /// `clock` is 0 unless the drive shows another one.
+  /// compensated, or the direction of turning, with `seconds` as given and `stamp` = 0.5; or what
+  /// was stated, see `isStated`. Its `clock` is 0 unless the drive shows another one.
   ScanTiming timing;
   std::size_t pairs = 0;  ///< of sightings of one pole in two scans
   double before = 0;      ///< mean distance of a pair, all as measured at the stamps, m

@@ -124,6 +124,7 @@ void estimateTiming(const Bag& bag, std::size_t topic, ScanFolder& folder) {
 void findSensorPose(const FrameTree& frames, const std::string& robot, const std::string& sensor,
                     bool hasOdometry, ScanFolder& folder) {
   folder.T_robot_sensor = frames.find(robot, sensor);
+  if (robot == sensor) return;
   if (folder.T_robot_sensor) {
     const Eigen::Vector3d at = folder.T_robot_sensor->translation();
     folder.notes.push_back("the robot is " + robot + ", its LiDAR " + sensor + " stands at x y z " +
@@ -145,7 +146,8 @@ void requireOwnFrame(const Bag& bag, std::size_t clouds, const std::string& fram
   const std::vector<BagMessage>& messages = bag.messages(odometry);
   if (messages.empty()) return;
   const BagMessage& first = messages.front();
-  if (decodeOdometry(bag.read(first), bag.place(first)).header.frame != frame) return;
+  const RosOdometry motion = decodeOdometry(bag.read(first), bag.place(first));
+  if (frame.empty() || frame == motion.child || frame != motion.header.frame) return;
   throw Error(bag.path().string() + ": " + bag.topics()[clouds].name + ": these clouds are in " +
               frame +
               ", the frame of the odometry, so they were moved; take the topic of the "

@@ -320,7 +320,7 @@ void LocalizationPipeline::search(const PoleScan& frame, LocalizationUpdate& upd
   if (wasElsewhere) m_monitor.reportElsewhere();
 }
 
-/// Whether an answer is at the estimate; never without one.
+/// Whether an answer is near the estimate. Without an estimate it is not.
 bool LocalizationPipeline::isNear(const GlobalHypothesis& place, double metres,
                                   double radians) const {
   const Pose2D apart = relative(m_estimate.mean, place.pose_map_robot);
@@ -356,9 +356,11 @@ void LocalizationPipeline::adopt(const PoleScan& frame, bool resolved, Localizat
     if (resolved) break;
   }
   m_filter.start(places, kSearchParticles);
-  m_monitor.begin(!resolved                                          ? PoseSource::given
-                  : isNear(m_search.hypotheses[0], kNear, kNearTurn) ? PoseSource::foundNear
-                                                                     : PoseSource::found);
+  PoseSource source = PoseSource::given;
+  if (resolved)
+    source = isNear(m_search.hypotheses[0], kNear, kNearTurn) ? PoseSource::foundNear
+                                                              : PoseSource::found;
+  m_monitor.begin(source);
   m_hasPose = true;
   if (resolved) m_area.reset();
   track(frame, 0, update);

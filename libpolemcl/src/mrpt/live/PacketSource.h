@@ -37,7 +37,7 @@ class PacketSource {
   void open(std::vector<LidarPort> ports);
   /// \brief The packets that are there; waits some milliseconds for one to the first port.
   /// \param take With the index of the port. \throws Error for a file that is damaged, or has no
-  /// packet to these ports.
+  /// packet to the first port.
   void receive(const Take& take);
   /// \brief Whether all packets of the file have been taken.
   bool atEnd() const { return m_atEnd; }

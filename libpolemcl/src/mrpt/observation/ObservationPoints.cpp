@@ -275,14 +275,14 @@ std::string packetContradiction(const CObservation& observation) {
   std::vector<double> apart;
   for (std::size_t i = 1; i < scan->scan_packets.size(); ++i)
     apart.push_back(between(scan->scan_packets[i - 1], scan->scan_packets[i]));
-  const double usual = nearestRank(apart, 0.5);
-  const auto is = [usual](double step) { return std::abs(usual - step) < 0.03 * step; };
+  const double least = nearestRank(apart, 0.1);  // where packets are missing, others are longer
+  const auto is = [least](double step) { return std::abs(least - step) < 0.03 * step; };
   const std::size_t lasers = scan->calibration.laser_corrections.size();
   std::string made;
   if (lasers == 16 && (is(kHdl32e) || is(kHdl32e / 2))) made = "HDL-32E";  // half: dual returns
   if (lasers == 32 && is(kVlp16)) made = "VLP-16";
   if (made.empty()) return {};
-  return "its packets come every " + std::to_string(std::lround(usual)) +
+  return "its packets come every " + std::to_string(std::lround(least)) +
          " microseconds, as those of the " + made + " do, but are decoded for " +
          std::to_string(lasers) +
          " lasers: record with the model and the calibration_file of the LiDAR";

@@ -189,9 +189,10 @@ void ObservationPoleExtractor::Impl::compare(const mrpt::obs::CObservation& obse
       cloud.size < SensorConfigCheck::kFewestPoints)
     return;
   --checksLeft;
-  std::string contradiction = packetContradiction(observation);
-  if (contradiction.empty())
-    contradiction = check.contradiction(moved.toLidar(cloud, lidarFrame(sensorPose, sensor)));
+  const std::string ofPackets = packetContradiction(observation);
+  if (!ofPackets.empty()) throw Error(ofPackets + "; check_beams = false uses them anyway");
+  const std::string contradiction =
+      check.contradiction(moved.toLidar(cloud, lidarFrame(sensorPose, sensor)));
   if (!contradiction.empty()) throw Error(contradiction);
 }
 
