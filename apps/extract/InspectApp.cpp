@@ -126,6 +126,12 @@ const char* judged(double distance) {
                                    : " (below 0.08 m is usual)";
 }
 
+/// `clock_offset_s` for the rawlog: what a stated timing says of the clock is added to it.
+double clockOffset(const Inspection& inspection) {
+  const TimingEstimate& found = *inspection.timing;
+  return found.timing.clock - (found.isStated ? inspection.sensor.stated.clock : 0);
+}
+
 void printTiming(std::ostream& out, const Inspection& inspection) {
   const std::optional<TimingEstimate>& found = inspection.timing;
   out << "scan timing       ";
@@ -145,7 +151,8 @@ void printTiming(std::ostream& out, const Inspection& inspection) {
   if (found->isStated) out << "as the rawlog states it: ";
   printCut(out, timing, found->isStated ? 0 : beginArc(inspection.sensor.orders));
   out << "\nclock             "
-      << (timing.clock != 0 ? "clock_offset_s = " + io::fixed(timing.clock, 2) : "no offset seen")
+      << (clockOffset(inspection) != 0 ? "clock_offset_s = " + io::fixed(clockOffset(inspection), 2)
+                                       : "no offset seen")
       << "\nsignificance      " << found->pairs << " pairs of sightings, a pole moves by "
       << io::fixed(found->before, 4) << " m between two scans as they are, by "
       << io::fixed(found->after, 4) << " m\n                  with this timing"
@@ -259,7 +266,7 @@ AllSettings settingsFor(const Inspection& inspection) {
     settings.sensor.timing = inspection.timing->timing;
     if (inspection.timing->isStated) {  // `auto` takes what the rawlog states
       settings.sensor.timing = ScanTiming();
-      settings.sensor.timing.clock = inspection.timing->timing.clock;
+      settings.sensor.timing.clock = clockOffset(inspection);
     }
   }
   if (inspection.ranges && inspection.ranges->isClear()) {

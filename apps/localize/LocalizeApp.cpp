@@ -148,7 +148,7 @@ void warnOfErrors(const SpreadCheck& check, const std::filesystem::path& truth) 
             << '\n';
 }
 
-/// Not of a drive that ended before its right pose was confirmed.
+/// A short drive may end before its pose is confirmed; it is not lost.
 void warnIfLost(const LocalizeResult& result, const LocalizeJob& job) {
   std::size_t scans = 0, ok = 0, lost = 0;
   for (const auto& run : result.runs) {

@@ -242,6 +242,20 @@ TEST_F(InspectApp, FindsACutThatMovesAndRangesThatAreOff) {
   EXPECT_NEAR(written.rangeScale, found.ranges->scale, 0.00005);
 }
 
+// The settings add to the clock that the rawlog states.
+TEST_F(InspectApp, OfAStatedTimingOnlyTheRestOfTheClockIsWritten) {
+  Inspection found;
+  found.sensor.stated = {Turn::clockwise, 0.1, M_PI, 1, 0.04};
+  found.timing.emplace();
+  found.timing->timing = found.sensor.stated;
+  found.timing->timing.clock = 0.06;
+  EXPECT_EQ(settingsFor(found).sensor.timing.clock, 0.06);
+  EXPECT_EQ(settingsFor(found).sensor.timing.turn, Turn::clockwise);
+  found.timing->isStated = true;
+  EXPECT_NEAR(settingsFor(found).sensor.timing.clock, 0.02, 1e-12);
+  EXPECT_EQ(settingsFor(found).sensor.timing.turn, Turn::automatic);
+}
+
 TEST_F(InspectApp, FindsFromThePolesHowTheLidarOfKittiTurns) {
   const char* data = std::getenv("POLEMCL_DATA");
   if (!data) GTEST_SKIP() << "POLEMCL_DATA is not set";

@@ -68,7 +68,7 @@ class VisibilityRangeFinder {
 
   const SensorModel& m_sensor;
   float m_sensorHeight;
-  /// Of the previous scan; NaN until the first.
+  /// Up, of the scan before. NaN as long as there was none.
   Eigen::Vector2f m_upright = Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN());
   std::vector<Beam> m_beams;
   /// step * kSectors + sector: beams that may be blocked.
